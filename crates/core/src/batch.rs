@@ -1,0 +1,367 @@
+//! Rays in batches: structure of arrays, aligned to cache lines.
+
+use crate::loss::{ALIVE, Loss};
+
+/// Eight values on one cache line.
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C, align(64))]
+struct CacheLine([u64; 8]);
+
+/// A column of 8-byte numbers that starts on a cache line: wide loads never straddle two.
+#[derive(Clone, Debug)]
+pub struct Column<T> {
+    lines: Vec<CacheLine>,
+    of: std::marker::PhantomData<T>,
+}
+
+impl<T: bytemuck::Pod> Column<T> {
+    /// A column of zeros with room for `capacity` numbers.
+    #[must_use]
+    pub fn new(capacity: usize) -> Self {
+        const { assert!(size_of::<T>() == 8) };
+        Self { lines: vec![CacheLine([0; 8]); capacity.div_ceil(8)], of: std::marker::PhantomData }
+    }
+
+    /// The first `len` numbers.
+    #[inline(always)]
+    #[must_use]
+    pub fn slice(&self, len: usize) -> &[T] {
+        &bytemuck::cast_slice(&self.lines)[..len]
+    }
+
+    /// The first `len` numbers, writable.
+    #[inline(always)]
+    pub fn slice_mut(&mut self, len: usize) -> &mut [T] {
+        &mut bytemuck::cast_slice_mut(&mut self.lines)[..len]
+    }
+}
+
+/// The line number of a ray whose wavelength was drawn from a continuum.
+pub const CONTINUUM: u32 = u32::MAX;
+
+/// A batch of rays. Columns lie behind accessors, so that later ones need no change in a plugin.
+///
+/// | column | unit | meaning |
+/// |---|---|---|
+/// | `x y z` | mm | a point of the ray, in the frame that the holder states |
+/// | `l m n` | 1 | unit direction |
+/// | `wavelength_nm` | nm | vacuum-equal air wavelength, as glass catalogues use it |
+/// | `line` | | number of the source's spectral line that was drawn, or [`CONTINUUM`] |
+/// | `index` | 1 | refractive index of the medium that the ray is in |
+/// | `weight` | stage's | flux forward, throughput backward; `W` or `W nm^-1` and so on, as the stage states |
+/// | `state` | | [`ALIVE`], or cause and surface of the loss ([`Loss::state`]) |
+/// | `tag` | | the input row, path or pixel that the ray belongs to |
+#[derive(Clone, Debug)]
+pub struct RayBatch {
+    len: usize,
+    capacity: usize,
+    x: Column<f64>,
+    y: Column<f64>,
+    z: Column<f64>,
+    l: Column<f64>,
+    m: Column<f64>,
+    n: Column<f64>,
+    wavelength_nm: Column<f64>,
+    index: Column<f64>,
+    weight: Column<f64>,
+    state: Column<u64>,
+    line: Vec<u32>,
+    tag: Vec<u32>,
+    surface: u32,
+    sequential: bool,
+    scratch: Scratch,
+}
+
+/// What the loops of a surface hand to each other.
+#[derive(Clone, Debug)]
+struct Scratch {
+    /// x^2 + y^2, mm^2; stays true from surface to surface while nobody else writes positions.
+    radius2: Column<f64>,
+    radius2_is_true: bool,
+    /// Between the loops the cosine of incidence; afterwards how far the ray is from ending.
+    cosine_then_margin: Column<f64>,
+    valid: Column<f64>,
+}
+
+/// See [`Scratch`].
+pub(crate) struct ScratchColumns<'a> {
+    pub radius2: &'a mut [f64],
+    pub cosine_then_margin: &'a mut [f64],
+    pub valid: &'a mut [f64],
+}
+
+/// All columns of a batch, to read and write at once.
+#[derive(Debug)]
+pub struct Columns<'a> {
+    /// Position, mm.
+    pub x: &'a mut [f64],
+    /// Position, mm.
+    pub y: &'a mut [f64],
+    /// Position, mm.
+    pub z: &'a mut [f64],
+    /// Direction cosine along x.
+    pub l: &'a mut [f64],
+    /// Direction cosine along y.
+    pub m: &'a mut [f64],
+    /// Direction cosine along z.
+    pub n: &'a mut [f64],
+    /// Wavelength, nm.
+    pub wavelength_nm: &'a mut [f64],
+    /// Refractive index of the medium the ray is in.
+    pub index: &'a mut [f64],
+    /// Flux or throughput.
+    pub weight: &'a mut [f64],
+    /// Alive, or cause and surface of the loss.
+    pub state: &'a mut [u64],
+    /// Spectral line drawn, or [`CONTINUUM`].
+    pub line: &'a mut [u32],
+    /// Row, path or pixel.
+    pub tag: &'a mut [u32],
+}
+
+impl RayBatch {
+    /// An empty batch with room for `capacity` rays.
+    #[must_use]
+    pub fn new(capacity: usize) -> Self {
+        let column = || Column::<f64>::new(capacity);
+        Self {
+            len: 0,
+            capacity,
+            x: column(),
+            y: column(),
+            z: column(),
+            l: column(),
+            m: column(),
+            n: column(),
+            wavelength_nm: column(),
+            index: column(),
+            weight: column(),
+            state: Column::new(capacity),
+            line: vec![CONTINUUM; capacity],
+            tag: vec![0; capacity],
+            surface: 0,
+            sequential: true,
+            scratch: Scratch {
+                radius2: column(),
+                radius2_is_true: false,
+                cosine_then_margin: column(),
+                valid: column(),
+            },
+        }
+    }
+
+    /// Starts over with `len` rays, all alive, of weight 1 in air, on no line; positions, directions
+    /// and wavelengths hold whatever was there and are to be written.
+    ///
+    /// # Panics
+    /// If `len` exceeds the capacity: the holder sized the batch.
+    pub fn restart(&mut self, len: usize) {
+        assert!(len <= self.capacity, "a batch of {} rays cannot hold {len}", self.capacity);
+        self.len = len;
+        self.surface = 0;
+        let c = self.columns_mut();
+        c.index.fill(1.0);
+        c.weight.fill(1.0);
+        c.state.fill(ALIVE);
+        c.line.fill(CONTINUUM);
+    }
+
+    /// Number of rays, the ended ones included.
+    #[inline(always)]
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Whether no ray is held.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// The most rays it can hold.
+    #[must_use]
+    pub fn capacity(&self) -> usize {
+        self.capacity
+    }
+
+    /// The number (1-based) of the surface that the living rays left last; 0 before the first.
+    #[must_use]
+    pub fn surface(&self) -> u32 {
+        self.surface
+    }
+
+    /// Sets the surface that the living rays left last.
+    pub fn set_surface(&mut self, surface: u32) {
+        self.surface = surface;
+    }
+
+    /// Whether the rays go from surface to surface in the order of the prescription.
+    #[must_use]
+    pub fn is_sequential(&self) -> bool {
+        self.sequential
+    }
+
+    /// Marks the batch as (not) following the order of the prescription.
+    pub fn set_sequential(&mut self, sequential: bool) {
+        self.sequential = sequential;
+    }
+
+    /// All columns at once, writable.
+    #[inline(always)]
+    pub fn columns_mut(&mut self) -> Columns<'_> {
+        self.scratch.radius2_is_true = false;
+        self.split().0
+    }
+
+    /// All columns, and those that the loops of a surface share, with x^2 + y^2 made true.
+    #[inline(always)]
+    pub(crate) fn columns_and_scratch_mut(&mut self) -> (Columns<'_>, ScratchColumns<'_>) {
+        if !self.scratch.radius2_is_true {
+            self.scratch.radius2_is_true = true;
+            let (c, s) = self.split();
+            for ((r2, x), y) in s.radius2.iter_mut().zip(c.x.iter()).zip(c.y.iter()) {
+                *r2 = x * x + y * y;
+            }
+        }
+        self.split()
+    }
+
+    #[inline(always)]
+    fn split(&mut self) -> (Columns<'_>, ScratchColumns<'_>) {
+        let len = self.len;
+        let columns = Columns {
+            x: self.x.slice_mut(len),
+            y: self.y.slice_mut(len),
+            z: self.z.slice_mut(len),
+            l: self.l.slice_mut(len),
+            m: self.m.slice_mut(len),
+            n: self.n.slice_mut(len),
+            wavelength_nm: self.wavelength_nm.slice_mut(len),
+            index: self.index.slice_mut(len),
+            weight: self.weight.slice_mut(len),
+            state: self.state.slice_mut(len),
+            line: &mut self.line[..len],
+            tag: &mut self.tag[..len],
+        };
+        let scratch = ScratchColumns {
+            radius2: self.scratch.radius2.slice_mut(len),
+            cosine_then_margin: self.scratch.cosine_then_margin.slice_mut(len),
+            valid: self.scratch.valid.slice_mut(len),
+        };
+        (columns, scratch)
+    }
+
+    /// Positions, mm.
+    #[must_use]
+    pub fn positions(&self) -> [&[f64]; 3] {
+        [self.x.slice(self.len), self.y.slice(self.len), self.z.slice(self.len)]
+    }
+
+    /// Unit directions.
+    #[must_use]
+    pub fn directions(&self) -> [&[f64]; 3] {
+        [self.l.slice(self.len), self.m.slice(self.len), self.n.slice(self.len)]
+    }
+
+    /// Wavelengths, nm.
+    #[must_use]
+    pub fn wavelengths_nm(&self) -> &[f64] {
+        self.wavelength_nm.slice(self.len)
+    }
+
+    /// Weights.
+    #[must_use]
+    pub fn weights(&self) -> &[f64] {
+        self.weight.slice(self.len)
+    }
+
+    /// States: [`ALIVE`], or cause and surface of the loss.
+    #[must_use]
+    pub fn states(&self) -> &[u64] {
+        self.state.slice(self.len)
+    }
+
+    /// Spectral lines drawn, or [`CONTINUUM`].
+    #[must_use]
+    pub fn lines(&self) -> &[u32] {
+        &self.line[..self.len]
+    }
+
+    /// Rows, paths or pixels.
+    #[must_use]
+    pub fn tags(&self) -> &[u32] {
+        &self.tag[..self.len]
+    }
+
+    /// Cause and surface of the loss of ray `i`; `None` while it is alive.
+    #[must_use]
+    pub fn loss(&self, i: usize) -> Option<(Loss, u32)> {
+        Loss::of_state(self.states()[i])
+    }
+
+    /// Number of rays that are alive.
+    #[must_use]
+    pub fn alive(&self) -> usize {
+        self.states().iter().filter(|s| **s == ALIVE).count()
+    }
+
+    /// Drops the ended rays; the order of the others stays. Returns how many are left.
+    pub fn compact(&mut self) -> usize {
+        let len = self.len;
+        let c = self.columns_mut();
+        let mut to = 0;
+        for from in 0..len {
+            c.x[to] = c.x[from];
+            c.y[to] = c.y[from];
+            c.z[to] = c.z[from];
+            c.l[to] = c.l[from];
+            c.m[to] = c.m[from];
+            c.n[to] = c.n[from];
+            c.wavelength_nm[to] = c.wavelength_nm[from];
+            c.index[to] = c.index[from];
+            c.weight[to] = c.weight[from];
+            c.line[to] = c.line[from];
+            c.tag[to] = c.tag[from];
+            let state = c.state[from];
+            c.state[to] = state;
+            to += usize::from(state == ALIVE);
+        }
+        self.len = to;
+        to
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_start_on_cache_lines() {
+        let mut batch = RayBatch::new(100);
+        batch.restart(100);
+        let c = batch.columns_mut();
+        for column in [c.x, c.y, c.z, c.l, c.m, c.n, c.wavelength_nm, c.index, c.weight] {
+            assert_eq!(column.as_ptr() as usize % 64, 0);
+            assert_eq!(column.len(), 100);
+        }
+    }
+
+    #[test]
+    fn compaction_keeps_order_and_values() {
+        let mut batch = RayBatch::new(10);
+        batch.restart(10);
+        let c = batch.columns_mut();
+        for i in 0..10 {
+            c.x[i] = i as f64;
+            c.tag[i] = i as u32;
+            if i % 3 != 0 {
+                c.state[i] = Loss::Vignetted.state(2);
+            }
+        }
+        assert_eq!(batch.compact(), 4);
+        assert_eq!(batch.tags(), [0, 3, 6, 9]);
+        assert_eq!(batch.positions()[0], [0.0, 3.0, 6.0, 9.0]);
+        assert_eq!(batch.alive(), 4);
+    }
+}

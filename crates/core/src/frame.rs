@@ -1,0 +1,111 @@
+//! Frames: what is recorded, and what a person sees of it.
+
+/// Size of the recorded frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FrameSize {
+    /// Pixels across.
+    pub width_px: u32,
+    /// Pixels down.
+    pub height_px: u32,
+    /// Width, mm.
+    pub width_mm: f64,
+    /// Height, mm.
+    pub height_mm: f64,
+}
+
+impl FrameSize {
+    /// Number of pixels.
+    #[must_use]
+    pub fn pixels(&self) -> usize {
+        self.width_px as usize * self.height_px as usize
+    }
+
+    /// Area of one pixel, mm^2.
+    #[must_use]
+    pub fn pixel_area_mm2(&self) -> f64 {
+        self.width_mm / f64::from(self.width_px) * (self.height_mm / f64::from(self.height_px))
+    }
+
+    /// The pixel (row-major, first row on top of the upright picture) at a point of the film, or
+    /// `None` beside the frame. A lens turns the picture by half a turn, so the column falls with x
+    /// and the row rises with y.
+    #[inline(always)]
+    #[must_use]
+    pub fn pixel_at(&self, x_mm: f64, y_mm: f64) -> Option<u32> {
+        let column = (0.5 - x_mm / self.width_mm) * f64::from(self.width_px);
+        let row = (0.5 + y_mm / self.height_mm) * f64::from(self.height_px);
+        let inside = column >= 0.0 && row >= 0.0 && column < f64::from(self.width_px) && row < f64::from(self.height_px);
+        inside.then(|| row as u32 * self.width_px + column as u32)
+    }
+
+    /// The point of the film at (`u`, `v`) in [0, 1]^2 of a pixel, mm; inverse of [`FrameSize::pixel_at`].
+    #[inline(always)]
+    #[must_use]
+    pub fn point_of(&self, pixel: u32, u: f64, v: f64) -> (f64, f64) {
+        let column = f64::from(pixel % self.width_px) + u;
+        let row = f64::from(pixel / self.width_px) + v;
+        (
+            (0.5 - column / f64::from(self.width_px)) * self.width_mm,
+            (row / f64::from(self.height_px) - 0.5) * self.height_mm,
+        )
+    }
+}
+
+/// Linear exposure per channel and pixel: what light left, before any curve.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ExposureFrame {
+    /// Size.
+    pub size: FrameSize,
+    /// One plane a channel, row-major, upright.
+    pub channels: Vec<ExposureChannel>,
+}
+
+/// One plane of an [`ExposureFrame`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct ExposureChannel {
+    /// Name, such as `Y` or `ortho`.
+    pub name: String,
+    /// Unit, such as `lx s`.
+    pub unit: String,
+    /// Values, `width_px * height_px` of them.
+    pub values: Vec<f32>,
+}
+
+impl ExposureFrame {
+    /// The channel of that name.
+    #[must_use]
+    pub fn channel(&self, name: &str) -> Option<&ExposureChannel> {
+        self.channels.iter().find(|c| c.name == name)
+    }
+}
+
+/// A picture for a screen: linear light, sRGB primaries, 1 is the screen's white.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DisplayPicture {
+    /// Pixels across.
+    pub width_px: u32,
+    /// Pixels down.
+    pub height_px: u32,
+    /// Row-major, upright, (red, green, blue); values outside of [0, 1] are clipped when written.
+    pub rgb: Vec<[f32; 3]>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_and_pixels_are_inverse_and_upright() {
+        let size = FrameSize { width_px: 6, height_px: 4, width_mm: 36.0, height_mm: 24.0 };
+        for pixel in 0..24 {
+            let (x, y) = size.point_of(pixel, 0.4, 0.6);
+            assert_eq!(size.pixel_at(x, y), Some(pixel));
+        }
+        // The subject's upper left is at film lower right: +x, -y (seen from behind the camera).
+        assert_eq!(size.pixel_at(17.9, -11.9), Some(0));
+        assert_eq!(size.pixel_at(-17.9, 11.9), Some(23));
+        for (x, y) in [(18.1, 0.0), (-18.1, 0.0), (0.0, 12.1), (f64::NAN, 0.0)] {
+            assert_eq!(size.pixel_at(x, y), None);
+        }
+    }
+}

@@ -1,0 +1,145 @@
+//! Instruction sets, chosen once at run time: one source, three compilations.
+//!
+//! A kernel is plain scalar code over slices, marked `#[inline(always)]` and wrapped in a
+//! [`Vectorized`] value; [`Isa::run`] compiles it once per tier and the compiler vectorises each.
+//! Rust never contracts `a * b + c`, so every tier gives the same bits.
+//!
+//! This is the one module of the workspace that may hold `unsafe` code.
+#![allow(unsafe_code)]
+
+/// An instruction-set tier that kernels are compiled for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Isa {
+    /// What every machine of the target has (x86-64: SSE2).
+    Baseline,
+    /// 256-bit vectors.
+    Avx2,
+    /// 512-bit vectors.
+    Avx512,
+}
+
+/// Work that [`Isa::run`] compiles for each tier. `run` and all it calls must be `#[inline(always)]`,
+/// or the tier's instructions do not reach it.
+pub trait Vectorized {
+    /// What the work returns.
+    type Output;
+    /// Does the work.
+    fn run(self) -> Self::Output;
+}
+
+impl Isa {
+    /// The widest tier that this machine has.
+    #[must_use]
+    pub fn detect() -> Self {
+        #[cfg(target_arch = "x86_64")]
+        {
+            if std::arch::is_x86_feature_detected!("avx512f")
+                && std::arch::is_x86_feature_detected!("avx512dq")
+                && std::arch::is_x86_feature_detected!("avx512vl")
+                && std::arch::is_x86_feature_detected!("avx512bw")
+            {
+                return Self::Avx512;
+            }
+            if std::arch::is_x86_feature_detected!("avx2") {
+                return Self::Avx2;
+            }
+        }
+        Self::Baseline
+    }
+
+    /// Reads a tier's name, `baseline`, `avx2` or `avx512`, as `SPECTRA_ISA` holds it.
+    ///
+    /// # Errors
+    /// The name is unknown, or this machine lacks the tier; the text says which.
+    pub fn by_name(name: &str) -> Result<Self, String> {
+        let isa = match name {
+            "baseline" => Self::Baseline,
+            "avx2" => Self::Avx2,
+            "avx512" => Self::Avx512,
+            _ => return Err(format!("`{name}` is no instruction set; known are baseline, avx2, avx512")),
+        };
+        if isa > Self::detect() {
+            return Err(format!("this machine does not have `{name}`; its widest is {}", Self::detect().name()));
+        }
+        Ok(isa)
+    }
+
+    /// The name that [`Isa::by_name`] reads.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Baseline => "baseline",
+            Self::Avx2 => "avx2",
+            Self::Avx512 => "avx512",
+        }
+    }
+
+    /// All tiers of this machine, narrowest first.
+    #[must_use]
+    pub fn available() -> Vec<Self> {
+        [Self::Baseline, Self::Avx2, Self::Avx512].into_iter().filter(|isa| *isa <= Self::detect()).collect()
+    }
+
+    /// Runs `work`, compiled for this tier.
+    #[inline]
+    pub fn run<V: Vectorized>(self, work: V) -> V::Output {
+        // A tier can be named only through `detect` or `by_name`, or by its variant: check the latter too.
+        #[cfg(target_arch = "x86_64")]
+        match self {
+            // SAFETY: the guard saw that the machine has the features of this tier.
+            Self::Avx512 if detected() >= Self::Avx512 => return unsafe { run_avx512(work) },
+            // SAFETY: as above.
+            Self::Avx2 | Self::Avx512 if detected() >= Self::Avx2 => return unsafe { run_avx2(work) },
+            _ => {}
+        }
+        work.run()
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[inline]
+fn detected() -> Isa {
+    static DETECTED: std::sync::OnceLock<Isa> = std::sync::OnceLock::new();
+    *DETECTED.get_or_init(Isa::detect)
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+fn run_avx2<V: Vectorized>(work: V) -> V::Output {
+    work.run()
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx512f,avx512dq,avx512vl,avx512bw")]
+fn run_avx512<V: Vectorized>(work: V) -> V::Output {
+    work.run()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    struct Sum<'a>(&'a [f64]);
+    impl Vectorized for Sum<'_> {
+        type Output = f64;
+        #[inline(always)]
+        fn run(self) -> f64 {
+            self.0.iter().map(|v| v.sqrt() / (1.0 + v)).sum()
+        }
+    }
+
+    #[test]
+    fn every_tier_gives_the_same_bits() {
+        let values: Vec<f64> = (0..1000).map(|i| f64::from(i) * 0.37).collect();
+        let want = Isa::Baseline.run(Sum(&values)).to_bits();
+        for isa in Isa::available() {
+            assert_eq!(isa.run(Sum(&values)).to_bits(), want, "{}", isa.name());
+        }
+    }
+
+    #[test]
+    fn unknown_tier_is_refused() {
+        assert!(Isa::by_name("sse9").is_err());
+        assert_eq!(Isa::by_name("baseline"), Ok(Isa::Baseline));
+    }
+}

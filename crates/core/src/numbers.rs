@@ -1,0 +1,352 @@
+//! Numbers for sampling: a pure function of (seed, stream, sample, dimension).
+//!
+//! Backward, the stream is the pixel and the sample its i-th; forward, there is one stream and the
+//! sample is the path. No state is carried, so any cut of the work gives the same numbers.
+//!
+//! [`Numbers::sobol`] draws from Owen-scrambled Sobol points: direction numbers by S. Joe and F. Y. Kuo,
+//! "Constructing Sobol sequences with better two-dimensional projections", SIAM J. Sci. Comput. 30
+//! (2008); hash-based nested scrambling by S. Laine and T. Karras (2011) with the constants of
+//! B. Burley, "Practical hash-based Owen scrambling", J. Computer Graphics Techniques 9 (2020).
+//! [`Numbers::random`] draws independent numbers by the SplitMix64 finalizer.
+
+use crate::isa::{Isa, Vectorized};
+
+/// Which dimension of a path a number decides. The wavelength owns one, so that strategies can be
+/// compared at equal numbers elsewhere.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub enum Dimension {
+    /// The wavelength.
+    Wavelength = 0,
+    /// Horizontal place in the pixel, or on the source.
+    PlaceU = 1,
+    /// Vertical place.
+    PlaceV = 2,
+    /// Place on the pupil.
+    PupilU = 3,
+    /// Place on the pupil.
+    PupilV = 4,
+}
+
+/// Dimensions that Sobol points cover; any beyond are independent random numbers.
+pub const SOBOL_DIMENSIONS: usize = 8;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    Random,
+    Sobol,
+}
+
+/// A family of numbers in [0, 1).
+#[derive(Clone, Debug)]
+pub struct Numbers {
+    kind: Kind,
+    seed: u64,
+    /// Low eight bits of each dimension's points.
+    low: Box<[[u32; 256]; SOBOL_DIMENSIONS]>,
+}
+
+/// The SplitMix64 finalizer (G. Steele, D. Lea, C. Flood, OOPSLA 2014).
+#[inline(always)]
+#[must_use]
+pub fn mix64(mut x: u64) -> u64 {
+    x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    x ^ (x >> 31)
+}
+
+const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
+
+/// The upper 52 bits as a number in [0, 1): the same bits on every tier, no integer conversion needed.
+#[inline(always)]
+fn unit_from_u64(x: u64) -> f64 {
+    f64::from_bits((x >> 12) | 0x3ff0_0000_0000_0000) - 1.0
+}
+
+/// 32 bits as the centre of their cell in [0, 1).
+#[inline(always)]
+fn unit_from_u32(x: u32) -> f64 {
+    f64::from_bits((u64::from(x) << 20) | 0x3ff0_0000_0008_0000) - 1.0
+}
+
+/// Nested uniform scrambling of the bits of `x`, given bit-reversed; the result is in usual order.
+#[inline(always)]
+fn owen_scramble_reversed(x: u32, seed: u32) -> u32 {
+    let mut x = x ^ x.wrapping_mul(0x3d20_adea);
+    x = x.wrapping_add(seed);
+    x = x.wrapping_mul((seed >> 16) | 1);
+    x ^= x.wrapping_mul(0x0552_6c56);
+    x ^= x.wrapping_mul(0x53a2_2864);
+    x.reverse_bits()
+}
+
+/// Degree, coefficients and initial numbers of each dimension after the first (Joe and Kuo 2008).
+const JOE_KUO: [(u32, u32, &[u32]); SOBOL_DIMENSIONS - 1] = [
+    (1, 0, &[1]),
+    (2, 1, &[1, 3]),
+    (3, 1, &[1, 3, 1]),
+    (3, 2, &[1, 1, 1]),
+    (4, 1, &[1, 1, 3, 3]),
+    (4, 4, &[1, 3, 5, 13]),
+    (5, 2, &[1, 1, 5, 5, 17]),
+];
+
+/// Direction numbers, bit-reversed: bit k of the index flips `DIRECTIONS[d][k]`.
+static DIRECTIONS: [[u32; 32]; SOBOL_DIMENSIONS] = directions();
+
+const fn directions() -> [[u32; 32]; SOBOL_DIMENSIONS] {
+    let mut all = [[0_u32; 32]; SOBOL_DIMENSIONS];
+    let mut k = 0;
+    while k < 32 {
+        all[0][k] = 1 << k; // bit-reversed radical inverse
+        k += 1;
+    }
+    let mut d = 1;
+    while d < SOBOL_DIMENSIONS {
+        let (degree, coefficients, initial) = JOE_KUO[d - 1];
+        let s = degree as usize;
+        let mut v = [0_u32; 32];
+        let mut i = 0;
+        while i < 32 {
+            if i < s {
+                v[i] = initial[i] << (31 - i);
+            } else {
+                v[i] = v[i - s] ^ (v[i - s] >> s);
+                let mut j = 1;
+                while j < s {
+                    if (coefficients >> (s - 1 - j)) & 1 == 1 {
+                        v[i] ^= v[i - j];
+                    }
+                    j += 1;
+                }
+            }
+            i += 1;
+        }
+        i = 0;
+        while i < 32 {
+            all[d][i] = v[i].reverse_bits();
+            i += 1;
+        }
+        d += 1;
+    }
+    all
+}
+
+fn point_reversed(dimension: usize, mut index: u32) -> u32 {
+    let mut x = 0;
+    let mut k = 0;
+    while index != 0 {
+        if index & 1 == 1 {
+            x ^= DIRECTIONS[dimension][k];
+        }
+        index >>= 1;
+        k += 1;
+    }
+    x
+}
+
+impl Numbers {
+    fn new(kind: Kind, seed: u64) -> Self {
+        let low = std::array::from_fn(|d| std::array::from_fn(|i| point_reversed(d, i as u32)));
+        Self { kind, seed: mix64(seed.wrapping_add(GOLDEN)), low: Box::new(low) }
+    }
+
+    /// Owen-scrambled Sobol points: the samples of a stream fill the space evenly.
+    #[must_use]
+    pub fn sobol(seed: u64) -> Self {
+        Self::new(Kind::Sobol, seed)
+    }
+
+    /// Independent random numbers.
+    #[must_use]
+    pub fn random(seed: u64) -> Self {
+        Self::new(Kind::Random, seed)
+    }
+
+    /// The same seed with independent numbers: for the parts of a path that must not be even.
+    #[must_use]
+    pub fn as_random(&self) -> Self {
+        Self { kind: Kind::Random, ..self.clone() }
+    }
+
+    fn key(&self, stream: u64, dimension: u32) -> u64 {
+        mix64(self.seed ^ mix64(stream.wrapping_mul(GOLDEN).wrapping_add(u64::from(dimension))))
+    }
+
+    /// Writes the numbers of samples `first`, `first + 1`, ... of `stream` in `dimension`.
+    pub fn fill(&self, isa: Isa, stream: u64, first: u64, dimension: u32, out: &mut [f64]) {
+        if self.kind == Kind::Random || dimension as usize >= SOBOL_DIMENSIONS {
+            isa.run(FillRandom { key: self.key(stream, dimension), first, out });
+            return;
+        }
+        let d = dimension as usize;
+        let mut at = first;
+        let mut rest = out;
+        while !rest.is_empty() {
+            // One aligned block of 256 points shares all but the low eight bits of the index.
+            let start = (at & 0xff) as usize;
+            let many = (256 - start).min(rest.len());
+            let (now, later) = rest.split_at_mut(many);
+            let block = at >> 32; // beyond 2^32 samples: another scrambling of the same points
+            let key = self.key(stream ^ block.wrapping_mul(0xd1b5_4a32_d192_ed03), dimension) as u32;
+            let high = point_reversed(d, (at as u32) & !0xff);
+            isa.run(FillSobol { low: &self.low[d][start..start + many], high, key, out: now });
+            at += many as u64;
+            rest = later;
+        }
+    }
+
+    /// One number: the same as [`Numbers::fill`] gives.
+    #[must_use]
+    pub fn one(&self, stream: u64, sample: u64, dimension: u32) -> f64 {
+        let mut out = [0.0];
+        self.fill(Isa::Baseline, stream, sample, dimension, &mut out);
+        out[0]
+    }
+
+    /// A generator for one sample, for code that draws by `rand` and `rand_distr`: independent
+    /// numbers of the dimensions from `dimension` on.
+    #[must_use]
+    pub fn generator(&self, stream: u64, sample: u64, dimension: u32) -> SampleRng {
+        SampleRng { state: mix64(self.key(stream, dimension) ^ mix64(sample.wrapping_mul(GOLDEN))) }
+    }
+}
+
+struct FillRandom<'a> {
+    key: u64,
+    first: u64,
+    out: &'a mut [f64],
+}
+
+impl Vectorized for FillRandom<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run(self) {
+        for (i, out) in self.out.iter_mut().enumerate() {
+            let sample = self.first.wrapping_add(i as u64);
+            *out = unit_from_u64(mix64(self.key.wrapping_add(sample.wrapping_mul(GOLDEN))));
+        }
+    }
+}
+
+struct FillSobol<'a> {
+    low: &'a [u32],
+    high: u32,
+    key: u32,
+    out: &'a mut [f64],
+}
+
+impl Vectorized for FillSobol<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run(self) {
+        for (out, low) in self.out.iter_mut().zip(self.low) {
+            *out = unit_from_u32(owen_scramble_reversed(low ^ self.high, self.key));
+        }
+    }
+}
+
+/// A random generator that belongs to one sample; see [`Numbers::generator`].
+#[derive(Clone, Debug)]
+pub struct SampleRng {
+    state: u64,
+}
+
+impl rand::rand_core::TryRng for SampleRng {
+    type Error = std::convert::Infallible;
+
+    fn try_next_u32(&mut self) -> Result<u32, Self::Error> {
+        self.try_next_u64().map(|x| (x >> 32) as u32)
+    }
+
+    fn try_next_u64(&mut self) -> Result<u64, Self::Error> {
+        self.state = self.state.wrapping_add(GOLDEN);
+        Ok(mix64(self.state))
+    }
+
+    fn try_fill_bytes(&mut self, dst: &mut [u8]) -> Result<(), Self::Error> {
+        for chunk in dst.chunks_mut(8) {
+            let bytes = self.try_next_u64()?.to_le_bytes();
+            chunk.copy_from_slice(&bytes[..chunk.len()]);
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_do_not_depend_on_the_cut_or_the_tier() {
+        for numbers in [Numbers::sobol(7), Numbers::random(7)] {
+            for dimension in [0, 3, 11] {
+                let mut whole = vec![0.0; 1000];
+                numbers.fill(Isa::Baseline, 42, 100, dimension, &mut whole);
+                for isa in Isa::available() {
+                    let mut parts = vec![0.0; 1000];
+                    let (a, b) = parts.split_at_mut(333);
+                    numbers.fill(isa, 42, 100, dimension, a);
+                    numbers.fill(isa, 42, 433, dimension, b);
+                    assert_eq!(parts, whole);
+                }
+                assert_eq!(numbers.one(42, 555, dimension), whole[455]);
+                assert!(whole.iter().all(|v| (0.0..1.0).contains(v)));
+            }
+        }
+    }
+
+    /// A (0, m, 1)-net in base 2: one point of 2^m in each of 2^m equal intervals, also after scrambling.
+    #[test]
+    fn sobol_points_are_stratified_in_each_dimension() {
+        for stream in 0..20 {
+            let numbers = Numbers::sobol(3);
+            for d in 0..SOBOL_DIMENSIONS as u32 {
+                let mut u = vec![0.0; 1024];
+                numbers.fill(Isa::detect(), stream, 2048, d, &mut u);
+                let mut seen = vec![0; 1024];
+                u.iter().for_each(|v| seen[(v * 1024.0) as usize] += 1);
+                assert!(seen.iter().all(|s| *s == 1), "dimension {d}");
+            }
+        }
+    }
+
+    /// The first two dimensions form a (0, 2, 2)-net: every elementary interval of 2^m points holds one.
+    #[test]
+    fn first_pair_is_a_net() {
+        let numbers = Numbers::sobol(9);
+        let (mut u, mut v) = (vec![0.0; 256], vec![0.0; 256]);
+        numbers.fill(Isa::detect(), 5, 0, 0, &mut u);
+        numbers.fill(Isa::detect(), 5, 0, 1, &mut v);
+        for a in 0..=8 {
+            let (nu, nv) = (1 << a, 1 << (8 - a));
+            let mut seen = vec![0; 256];
+            for i in 0..256 {
+                seen[(u[i] * nu as f64) as usize * nv + (v[i] * nv as f64) as usize] += 1;
+            }
+            assert!(seen.iter().all(|s| *s == 1), "{nu} x {nv}");
+        }
+    }
+
+    /// Mean and variance of a uniform variate, and no correlation of neighboring streams and dimensions.
+    #[test]
+    fn random_numbers_are_uniform_and_uncorrelated() {
+        let n = 200_000;
+        let numbers = Numbers::random(1);
+        let mut columns = Vec::new();
+        for (stream, dimension) in [(0, 0), (0, 1), (1, 0)] {
+            let mut u = vec![0.0; n];
+            numbers.fill(Isa::detect(), stream, 0, dimension, &mut u);
+            columns.push(u);
+        }
+        let se = (1.0 / 12.0 / n as f64).sqrt();
+        for u in &columns {
+            let mean = u.iter().sum::<f64>() / n as f64;
+            assert!((mean - 0.5).abs() < 4.0 * se, "{mean}");
+        }
+        for (a, b) in [(0, 1), (0, 2)] {
+            let c: f64 = columns[a].iter().zip(&columns[b]).map(|(x, y)| (x - 0.5) * (y - 0.5)).sum::<f64>() / n as f64 * 12.0;
+            assert!(c.abs() < 4.0 / (n as f64).sqrt(), "{c}");
+        }
+    }
+}

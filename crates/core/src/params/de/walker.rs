@@ -1,0 +1,291 @@
+//! The deserializer of a node.
+
+use super::super::node::{Node, Number, Value};
+use super::super::path::{Step, joined};
+use super::super::quantity::{QUANTITY, finite};
+use super::super::stage_node;
+use super::super::text::{found, listed};
+use super::NODE;
+use super::access::{EnumWalk, MapWalk, SeqWalk};
+use super::error::{Cause, Culprit, NodeError};
+use super::placeholder::Placeholder;
+use super::session::{Session, Standin, address};
+use serde::de::{Deserializer, Error, Visitor};
+
+/// A node in a walk, with the way to it.
+#[derive(Clone, Copy)]
+pub(super) struct Walker<'n, 'p> {
+    pub node: &'n Node,
+    pub session: &'p Session<'n>,
+    step: Option<Step<'n>>,
+    parent: Option<&'p Walker<'n, 'p>>,
+}
+
+impl<'n, 'p> Walker<'n, 'p> {
+    pub(super) fn root(node: &'n Node, session: &'p Session<'n>) -> Self {
+        session.visit();
+        Self { node, session, step: None, parent: None }
+    }
+
+    pub(super) fn child<'q>(&'q self, step: Step<'n>, node: &'n Node) -> Walker<'n, 'q>
+    where
+        'p: 'q,
+    {
+        self.session.visit();
+        Walker { node, session: self.session, step: Some(step), parent: Some(self) }
+    }
+
+    /// Path of the node in the file.
+    pub(super) fn path(&self) -> String {
+        let mut steps = Vec::new();
+        let mut walker = Some(self);
+        while let Some(at) = walker {
+            steps.extend(at.step);
+            walker = at.parent;
+        }
+        steps.iter().rev().fold(self.session.prefix().to_owned(), |path, &step| joined(&path, step))
+    }
+
+    fn culprit(&self) -> Culprit {
+        let mut chain = Vec::new();
+        let mut walker = Some(self);
+        while let Some(at) = walker {
+            chain.push(address(at.node));
+            walker = at.parent;
+        }
+        Culprit { chain, path: self.path() }
+    }
+
+    /// The error with this place, unless it has one further inside.
+    pub(super) fn place(&self, error: NodeError) -> NodeError {
+        let error = if self.session.standin(self.node).is_some() { error.silenced() } else { error };
+        error.at(|| self.culprit())
+    }
+
+    /// The failure of the placeholder for a missing key of this map.
+    pub(super) fn missing(&self, key: &'static str) -> NodeError {
+        NodeError::of_missing(key, self.culprit())
+    }
+
+    /// What takes the place of this node, if it failed on an earlier walk.
+    fn placeholder(&self) -> Option<Placeholder> {
+        match self.session.standin(self.node)? {
+            Standin::Placeholder(level) => Some(Placeholder::new(level)),
+            // Left out by the map or list around it; the root of a walk is never replaced.
+            Standin::Left => None,
+        }
+    }
+
+    fn mismatch(&self, expected: &str) -> NodeError {
+        let quoted_number = self.node.is_quoted()
+            && matches!(&self.node.value, Value::String(text) if matches!(Value::from_plain(text), Value::Number(_) | Value::Bool(_)));
+        let hint = quoted_number.then(|| "remove the quotes".to_owned());
+        NodeError::new(Cause::Text(format!("found {}, expected {expected}", found(self.node)), hint))
+    }
+
+    fn float(&self) -> Result<f64, NodeError> {
+        match &self.node.value {
+            Value::Number(number) => finite(number).map_err(|message| NodeError::text(&message)),
+            _ => Err(self.mismatch("a number such as 1.5")),
+        }
+    }
+
+    /// A whole number between two limits.
+    fn integer(&self, least: i128, most: i128) -> Result<i128, NodeError> {
+        let Value::Number(number) = &self.node.value else { return Err(self.mismatch("a whole number such as 16")) };
+        let Some(value) = whole(number) else { return Err(self.mismatch("a whole number such as 16")) };
+        if value < least {
+            Err(self.mismatch(&format!("a whole number of at least {least}")))
+        } else if value > most {
+            Err(self.mismatch(&format!("a whole number of at most {most}")))
+        } else {
+            Ok(value)
+        }
+    }
+
+    fn text(&self) -> Result<&'n str, NodeError> {
+        match &self.node.value {
+            Value::String(text) => Ok(text),
+            Value::Number(number) => Ok(&number.text),
+            Value::Bool(value) => Err(self.mismatch("a text")).map_err(|error| with_hint(error, format!("write \"{value}\" with quotes"))),
+            _ => Err(self.mismatch("a text")),
+        }
+    }
+}
+
+/// A number's whole value, exact; also where it is written as `1e6`.
+fn whole(number: &Number) -> Option<i128> {
+    /// Up to here an f64 holds every integer.
+    const EXACT: f64 = 9_007_199_254_740_992.0;
+    let plus = number.text.strip_prefix('+').unwrap_or(&number.text);
+    if let Ok(value) = plus.parse() {
+        return Some(value);
+    }
+    let exact = number.value.abs() <= EXACT && number.value.floor() == number.value;
+    exact.then_some(number.value as i128)
+}
+
+fn with_hint(error: NodeError, hint: String) -> NodeError {
+    match error.into_parts().0 {
+        Cause::Text(message, _) => NodeError::new(Cause::Text(message, Some(hint))),
+        cause => NodeError::new(cause),
+    }
+}
+
+/// A method that gives way to a placeholder and places what goes wrong.
+macro_rules! methods {
+    ($(fn $name:ident($self:ident, $visitor:ident $(, $arg:ident: $ty:ty)*) $body:expr)*) => {$(
+        fn $name<V: Visitor<'n>>(self, $($arg: $ty,)* $visitor: V) -> Result<V::Value, NodeError> {
+            let $self = self;
+            let result = match $self.placeholder() {
+                Some(placeholder) => placeholder.$name($($arg,)* $visitor),
+                None => $body,
+            };
+            result.map_err(|error| self.place(error))
+        }
+    )*};
+}
+
+/// Integers by their limits.
+macro_rules! integers {
+    ($($name:ident, $visit:ident, $ty:ty;)*) => {
+        methods! {$(
+            fn $name(me, visitor) {
+                let value = me.integer(i128::from(<$ty>::MIN), i128::from(<$ty>::MAX));
+                // The limits have been checked.
+                value.and_then(|value| visitor.$visit(value as $ty))
+            }
+        )*}
+    };
+}
+
+impl<'n, 'p> Deserializer<'n> for Walker<'n, 'p> {
+    type Error = NodeError;
+
+    integers! {
+        deserialize_i8, visit_i8, i8;
+        deserialize_i16, visit_i16, i16;
+        deserialize_i32, visit_i32, i32;
+        deserialize_i64, visit_i64, i64;
+        deserialize_u8, visit_u8, u8;
+        deserialize_u16, visit_u16, u16;
+        deserialize_u32, visit_u32, u32;
+        deserialize_u64, visit_u64, u64;
+    }
+
+    methods! {
+        fn deserialize_any(me, visitor) match &me.node.value {
+            Value::Null => visitor.visit_unit(),
+            Value::Bool(value) => visitor.visit_bool(*value),
+            Value::Number(number) => match whole(number) {
+                Some(value) if !number.text.contains(['.', 'e', 'E']) => match (u64::try_from(value), i64::try_from(value)) {
+                    (Ok(value), _) => visitor.visit_u64(value),
+                    (_, Ok(value)) => visitor.visit_i64(value),
+                    _ => visitor.visit_f64(number.value),
+                },
+                _ => visitor.visit_f64(number.value),
+            },
+            Value::String(text) => visitor.visit_borrowed_str(text),
+            Value::Seq(elements) => visitor.visit_seq(SeqWalk::new(me, elements)),
+            Value::Map(entries) => visitor.visit_map(MapWalk::new(me, entries, None)),
+        }
+
+        fn deserialize_bool(me, visitor) match &me.node.value {
+            Value::Bool(value) => visitor.visit_bool(*value),
+            Value::String(text) => {
+                let hint = match text.to_ascii_lowercase().as_str() {
+                    "yes" | "on" | "y" | "true" => Some("write `true`, without quotes"),
+                    "no" | "off" | "n" | "false" => Some("write `false`, without quotes"),
+                    _ => None,
+                };
+                let error = me.mismatch("true or false");
+                Err(match hint {
+                    Some(hint) => with_hint(error, hint.to_owned()),
+                    None => error,
+                })
+            }
+            _ => Err(me.mismatch("true or false")),
+        }
+
+        fn deserialize_i128(me, visitor) me.integer(i128::MIN, i128::MAX).and_then(|value| visitor.visit_i128(value))
+
+        fn deserialize_u128(me, visitor) me.integer(0, i128::MAX).and_then(|value| visitor.visit_u128(value.unsigned_abs()))
+
+        fn deserialize_f32(me, visitor) me.float().and_then(|value| visitor.visit_f64(value))
+
+        fn deserialize_f64(me, visitor) me.float().and_then(|value| visitor.visit_f64(value))
+
+        fn deserialize_char(me, visitor) me.text().and_then(|text| visitor.visit_borrowed_str(text))
+
+        fn deserialize_str(me, visitor) me.text().and_then(|text| visitor.visit_borrowed_str(text))
+
+        fn deserialize_string(me, visitor) me.text().and_then(|text| visitor.visit_borrowed_str(text))
+
+        fn deserialize_bytes(me, visitor) me.text().and_then(|text| visitor.visit_borrowed_bytes(text.as_bytes()))
+
+        fn deserialize_byte_buf(me, visitor) me.text().and_then(|text| visitor.visit_borrowed_bytes(text.as_bytes()))
+
+        fn deserialize_option(me, visitor) match &me.node.value {
+            Value::Null => visitor.visit_none(),
+            _ => visitor.visit_some(me),
+        }
+
+        fn deserialize_unit(me, visitor) match &me.node.value {
+            Value::Null => visitor.visit_unit(),
+            _ => Err(me.mismatch("nothing")),
+        }
+
+        fn deserialize_unit_struct(me, visitor, _name: &'static str) match &me.node.value {
+            Value::Null => visitor.visit_unit(),
+            _ => Err(me.mismatch("nothing")),
+        }
+
+        fn deserialize_newtype_struct(me, visitor, name: &'static str) match (name, &me.node.value) {
+            (NODE, _) => {
+                stage_node::hand_over(me.node.clone(), me.path());
+                visitor.visit_unit()
+            }
+            (QUANTITY, Value::Number(number)) if number.value.is_finite() => visitor.visit_f64(number.value),
+            (QUANTITY, Value::Number(Number { text, .. }) | Value::String(text)) => visitor.visit_str(text),
+            (QUANTITY, _) => {
+                let found = found(me.node);
+                Err(NodeError::invalid_type(serde::de::Unexpected::Other(&found), &visitor))
+            }
+            _ => visitor.visit_newtype_struct(me),
+        }
+
+        fn deserialize_seq(me, visitor) match &me.node.value {
+            Value::Seq(elements) => visitor.visit_seq(SeqWalk::new(me, elements)),
+            _ => Err(me.mismatch("a list such as [1, 2]")),
+        }
+
+        fn deserialize_tuple(me, visitor, len: usize) match &me.node.value {
+            Value::Seq(elements) if elements.len() == len => visitor.visit_seq(SeqWalk::new(me, elements)),
+            Value::Seq(elements) => Err(NodeError::text(&format!("found a list of {}, expected a list of {len}", elements.len()))),
+            _ => Err(me.mismatch(&format!("a list of {len}"))),
+        }
+
+        fn deserialize_tuple_struct(me, visitor, _name: &'static str, len: usize) me.deserialize_tuple(len, visitor)
+
+        fn deserialize_map(me, visitor) match &me.node.value {
+            Value::Map(entries) => visitor.visit_map(MapWalk::new(me, entries, None)),
+            _ => Err(me.mismatch("a map such as {key: value}")),
+        }
+
+        fn deserialize_struct(me, visitor, _name: &'static str, fields: &'static [&'static str]) match &me.node.value {
+            Value::Map(entries) => visitor.visit_map(MapWalk::new(me, entries, Some(fields))),
+            _ if fields.is_empty() => Err(me.mismatch("a map without keys, {}")),
+            _ => Err(with_hint(me.mismatch("a map such as {key: value}"), format!("known keys: {}", listed(fields.iter().copied())))),
+        }
+
+        fn deserialize_enum(me, visitor, _name: &'static str, variants: &'static [&'static str]) match &me.node.value {
+            Value::String(_) | Value::Number(_) => me.text().and_then(|text| visitor.visit_enum(EnumWalk::unit(me, text))),
+            Value::Map(entries) if entries.len() == 1 => visitor.visit_enum(EnumWalk::with_value(me, &entries[0])),
+            _ => Err(me.mismatch(&format!("one of {}", listed(variants.iter().copied())))),
+        }
+
+        fn deserialize_identifier(me, visitor) me.text().and_then(|text| visitor.visit_borrowed_str(text))
+
+        fn deserialize_ignored_any(_me, visitor) visitor.visit_unit()
+    }
+}

@@ -1,0 +1,264 @@
+//! The tree that a scene file becomes: values with the place where each was written.
+
+use super::fault::Fault;
+use std::fmt;
+use std::path::Path;
+use std::sync::Arc;
+
+/// Deepest nesting of maps and lists that is read or built: recursion over a [`Node`] is bounded by it.
+pub const MAX_DEPTH: usize = 64;
+
+/// A place in a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Span {
+    /// Line, from 1.
+    pub line: usize,
+    /// Column in characters, from 1.
+    pub column: usize,
+    /// Offset in bytes, from 0.
+    pub offset: usize,
+    /// Length in bytes; 0 where nothing was written.
+    pub len: usize,
+}
+
+impl Default for Span {
+    /// The start of a file, empty.
+    fn default() -> Self {
+        Self { line: 1, column: 1, offset: 0, len: 0 }
+    }
+}
+
+impl Span {
+    /// The part of it on its first line: what a message points at when a value covers many lines.
+    #[must_use]
+    pub fn first_line(self, text: &str) -> Self {
+        let covered = text.get(self.offset..).unwrap_or("");
+        let end = covered.find(['\n', '\r']).unwrap_or(covered.len());
+        let line = covered[..end].trim_end();
+        Self { len: self.len.min(line.len()), ..self }
+    }
+}
+
+/// A text that values were read from.
+#[derive(Clone, PartialEq, Eq)]
+pub struct SourceFile {
+    /// How it is named to a person: a path, `bundled:...`, or the argument `--set path=value`.
+    pub name: String,
+    /// Content.
+    pub text: String,
+}
+
+impl SourceFile {
+    /// A named text.
+    #[must_use]
+    pub fn new(name: impl Into<String>, text: impl Into<String>) -> Self {
+        Self { name: name.into(), text: text.into() }
+    }
+
+    /// Whether it is an argument of the command line and no file; then lines and columns say nothing to a person.
+    #[must_use]
+    pub fn is_argument(&self) -> bool {
+        self.name.starts_with("--")
+    }
+
+    /// Folder that relative paths in it are relative to: empty (the working folder) for an argument,
+    /// `None` for what has no folder on disk.
+    #[must_use]
+    pub fn folder(&self) -> Option<&Path> {
+        if self.is_argument() {
+            Some(Path::new(""))
+        } else if self.name.starts_with("bundled:") {
+            None
+        } else {
+            Path::new(&self.name).parent()
+        }
+    }
+}
+
+impl fmt::Debug for SourceFile {
+    /// The name only: every node holds its file.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "SourceFile({})", self.name)
+    }
+}
+
+/// A number as it was written.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Number {
+    /// Its value; infinite also where the digits exceed an f64.
+    pub value: f64,
+    /// Its spelling: integers keep all digits, and a name such as `135` stays a name.
+    pub text: String,
+}
+
+/// The key of a map.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Key {
+    /// Its text.
+    pub text: String,
+    /// Where it stands, in the same file as its value.
+    pub span: Span,
+}
+
+/// What a node holds.
+#[derive(Clone, Debug)]
+pub enum Value {
+    /// Nothing, `null` or `~`.
+    Null,
+    /// `true` or `false`.
+    Bool(bool),
+    /// A number without a unit.
+    Number(Number),
+    /// A text, and so a number with a unit.
+    String(String),
+    /// A list.
+    Seq(Vec<Node>),
+    /// A map, in the order of the file; no key comes twice.
+    Map(Vec<(Key, Node)>),
+}
+
+impl Value {
+    /// The value of an unquoted scalar by the core schema of YAML 1.2 (section 10.3.2), with strict
+    /// booleans: only `true` and `false`.
+    #[must_use]
+    pub fn from_plain(text: &str) -> Self {
+        match text {
+            "" | "~" | "null" | "Null" | "NULL" => Self::Null,
+            "true" => Self::Bool(true),
+            "false" => Self::Bool(false),
+            _ => match plain_number(text) {
+                Some(value) => Self::Number(Number { value, text: text.to_owned() }),
+                None => Self::String(text.to_owned()),
+            },
+        }
+    }
+}
+
+/// The value of a number's spelling by the core schema; an overflow is infinite.
+fn plain_number(text: &str) -> Option<f64> {
+    if let Some(digits) = text.strip_prefix("0x") {
+        return radix(digits, 16);
+    }
+    if let Some(digits) = text.strip_prefix("0o") {
+        return radix(digits, 8);
+    }
+    let (negative, unsigned) = match text.as_bytes().first()? {
+        b'-' => (true, &text[1..]),
+        b'+' => (false, &text[1..]),
+        _ => (false, text),
+    };
+    match unsigned {
+        ".inf" | ".Inf" | ".INF" => return Some(if negative { f64::NEG_INFINITY } else { f64::INFINITY }),
+        _ if matches!(text, ".nan" | ".NaN" | ".NAN") => return Some(f64::NAN),
+        _ => {}
+    }
+    let (end, _) = decimal_end(unsigned)?;
+    if end == unsigned.len() { text.parse().ok() } else { None }
+}
+
+fn radix(digits: &str, base: u32) -> Option<f64> {
+    if digits.is_empty() {
+        return None;
+    }
+    digits.chars().try_fold(0.0, |sum: f64, c| Some(sum * f64::from(base) + f64::from(c.to_digit(base)?)))
+}
+
+/// Where the decimal number at the start of `text` (without a sign) ends, in bytes, and whether it is
+/// written as an integer; `None` if there is none.
+pub(super) fn decimal_end(text: &str) -> Option<(usize, bool)> {
+    let bytes = text.as_bytes();
+    let digits = |from: usize| bytes[from..].iter().take_while(|b| b.is_ascii_digit()).count();
+    let whole = digits(0);
+    let mut end = whole;
+    let mut integer = true;
+    if bytes.get(end) == Some(&b'.') {
+        let fraction = digits(end + 1);
+        if whole + fraction == 0 {
+            return None;
+        }
+        integer = false;
+        end += 1 + fraction;
+    } else if whole == 0 {
+        return None;
+    }
+    if matches!(bytes.get(end), Some(b'e' | b'E')) {
+        let sign = usize::from(matches!(bytes.get(end + 1), Some(b'+' | b'-')));
+        let exponent = digits(end + 1 + sign);
+        if exponent > 0 {
+            integer = false;
+            end += 1 + sign + exponent;
+        }
+    }
+    Some((end, integer))
+}
+
+/// A value with its place.
+#[derive(Clone, Debug)]
+pub struct Node {
+    /// What it holds.
+    pub value: Value,
+    /// Where it was written.
+    pub span: Span,
+    /// In which file.
+    pub file: Arc<SourceFile>,
+}
+
+impl Node {
+    /// A node.
+    #[must_use]
+    pub fn new(value: Value, span: Span, file: Arc<SourceFile>) -> Self {
+        Self { value, span, file }
+    }
+
+    /// The value under a key, if this is a map that has it.
+    #[must_use]
+    pub fn get(&self, key: &str) -> Option<&Node> {
+        self.entry(key).map(|(_, node)| node)
+    }
+
+    /// The key and value under a key, if this is a map that has it.
+    #[must_use]
+    pub fn entry(&self, key: &str) -> Option<(&Key, &Node)> {
+        match &self.value {
+            Value::Map(entries) => entries.iter().find(|(k, _)| k.text == key).map(|(k, node)| (k, node)),
+            _ => None,
+        }
+    }
+
+    /// The element of a list.
+    #[must_use]
+    pub fn element(&self, index: usize) -> Option<&Node> {
+        match &self.value {
+            Value::Seq(elements) => elements.get(index),
+            _ => None,
+        }
+    }
+
+    /// Its text, if it is one; a number counts by its spelling.
+    #[must_use]
+    pub fn as_str(&self) -> Option<&str> {
+        match &self.value {
+            Value::String(text) => Some(text),
+            Value::Number(number) => Some(&number.text),
+            _ => None,
+        }
+    }
+
+    /// Whether it was written in quotes.
+    #[must_use]
+    pub fn is_quoted(&self) -> bool {
+        matches!(self.file.text.as_bytes().get(self.span.offset), Some(b'"' | b'\'')) && self.span.len > 1
+    }
+
+    /// Where a message about it points: the part of it on its first line.
+    #[must_use]
+    pub fn place(&self) -> (Arc<SourceFile>, Span) {
+        (Arc::clone(&self.file), self.span.first_line(&self.file.text))
+    }
+
+    /// A fault placed here.
+    #[must_use]
+    pub fn fault(&self, message: impl Into<String>) -> Fault {
+        Fault { place: Some(self.place()), ..Fault::new(message) }
+    }
+}

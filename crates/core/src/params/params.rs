@@ -1,0 +1,146 @@
+//! The parameters of one stage.
+
+use super::de;
+use super::fault::{Fault, Faults};
+use super::node::{Key, Node, Value};
+use super::path::joined;
+use super::path::steps;
+use super::text::{found, shown};
+use serde::de::DeserializeOwned;
+use std::path::Path;
+
+/// The key that names a stage.
+const KIND: &str = "kind";
+
+/// The parameters of one stage: a map, its `kind` apart, with its places and its path in the file.
+#[derive(Clone, Debug)]
+pub struct Params {
+    /// A map without `kind`.
+    node: Node,
+    kind: Option<(Key, Node)>,
+    path: String,
+}
+
+impl Params {
+    /// The parameters of a stage at a path: a map with or without `kind`; or a text, which is the name of
+    /// a kind with nothing else said.
+    ///
+    /// # Errors
+    /// It is neither, or its `kind` is not a name.
+    pub fn stage(mut node: Node, path: &str) -> Result<Self, Faults> {
+        let kind = match &mut node.value {
+            Value::Map(entries) => entries.iter().position(|(key, _)| key.text == KIND).map(|index| entries.remove(index)),
+            Value::String(_) => {
+                let map = Node { value: Value::Map(Vec::new()), ..node.clone() };
+                let name = std::mem::replace(&mut node, map);
+                Some((Key { text: KIND.to_owned(), span: name.span }, name))
+            }
+            _ => {
+                let message = format!("found {}, expected a map such as {{kind: ...}}", found(&node));
+                return Err(node.fault(message).path(path).into());
+            }
+        };
+        if let Some((_, name)) = &kind
+            && name.as_str().is_none()
+        {
+            let message = format!("found {}, expected the name of a kind", found(name));
+            return Err(name.fault(message).path(join(path, KIND)).into());
+        }
+        Ok(Self { node, kind, path: path.to_owned() })
+    }
+
+    /// The parameters of what has no kinds: a file, a section of it. `kind` is a key like any other here.
+    ///
+    /// # Errors
+    /// It is not a map.
+    pub fn section(node: Node, path: &str) -> Result<Self, Faults> {
+        match &node.value {
+            Value::Map(_) => Ok(Self { node, kind: None, path: path.to_owned() }),
+            _ => Err(node.fault(format!("found {}, expected a map such as {{key: value}}", found(&node))).path(path).into()),
+        }
+    }
+
+    /// The same kind with another map, at another path.
+    pub(super) fn with_node(&self, node: Node, path: &str) -> Self {
+        Self { node, kind: self.kind.clone(), path: path.to_owned() }
+    }
+
+    /// The same map, of no kind.
+    pub(super) fn without_kind(self) -> Self {
+        Self { kind: None, ..self }
+    }
+
+    /// The `kind`, if one is named.
+    #[must_use]
+    pub fn kind(&self) -> Option<&str> {
+        self.kind.as_ref().and_then(|(_, name)| name.as_str())
+    }
+
+    /// Its path in the file, such as `source` or `surfaces[3]`; empty for the file itself.
+    #[must_use]
+    pub fn path(&self) -> &str {
+        &self.path
+    }
+
+    /// The map, without `kind`.
+    #[must_use]
+    pub fn node(&self) -> &Node {
+        &self.node
+    }
+
+    /// The value under a key.
+    #[must_use]
+    pub fn get(&self, key: &str) -> Option<&Node> {
+        self.node.get(key)
+    }
+
+    /// The folder that relative paths in it are relative to; `None` for what has no folder on disk.
+    #[must_use]
+    pub fn base_dir(&self) -> Option<&Path> {
+        self.node.file.folder()
+    }
+
+    /// The typed parameters.
+    ///
+    /// # Errors
+    /// Everything that is wrong with this map, in one go: unknown keys, wrong types, units of another dimension,
+    /// missing keys.
+    pub fn parse<T: DeserializeOwned>(&self) -> Result<T, Faults> {
+        de::parse(&self.node, &self.path)
+    }
+
+    /// A fault placed at the value of a key (`radius`, `color.R`, `blades[2]`); or at the map, where there
+    /// is no such key. For what a type cannot say: ranges, combinations.
+    #[must_use]
+    pub fn fault(&self, key: &str, message: impl Into<String>) -> Fault {
+        let node = match &self.kind {
+            Some((_, name)) if key == KIND => name,
+            _ => self.node.nearest_at(key),
+        };
+        node.fault(message).path(join(&self.path, key))
+    }
+
+    /// A fault placed at the map itself.
+    #[must_use]
+    pub fn fault_here(&self, message: impl Into<String>) -> Fault {
+        self.node.fault(message).path(&self.path)
+    }
+}
+
+/// A path of keys behind another one.
+fn join(path: &str, key: &str) -> String {
+    match steps(key) {
+        Ok(steps) => steps.into_iter().fold(path.to_owned(), |path, step| joined(&path, step)),
+        Err(_) => shown(path),
+    }
+}
+
+impl Node {
+    /// A value of this type, such as the whole of a file.
+    ///
+    /// # Errors
+    /// Everything that is wrong with it, in one go.
+    pub fn parse<T: DeserializeOwned>(&self) -> Result<T, Faults> {
+        de::parse(self, "")
+    }
+}

@@ -1,0 +1,62 @@
+//! Parts of a map: one key's stage, some keys apart from the others.
+
+use super::fault::{Fault, Faults};
+use super::node::{Node, Value};
+use super::params::Params;
+use std::sync::Arc;
+
+impl Params {
+    /// The stage under a key, if the key is there.
+    ///
+    /// # Errors
+    /// What is there is no stage.
+    pub fn stage_at(&self, key: &str) -> Result<Option<Self>, Faults> {
+        self.get(key).map(|node| Self::stage(node.clone(), &self.path_of(key))).transpose()
+    }
+
+    /// A stage of which nothing is said: the registry's default kind with its default parameters.
+    /// Faults in it are placed at this map.
+    #[must_use]
+    pub fn nothing_said(&self, key: &str) -> Self {
+        let map = Node::new(Value::Map(Vec::new()), self.node().span, Arc::clone(&self.node().file));
+        self.with_node(map, &self.path_of(key)).without_kind()
+    }
+
+    /// The parameters under `keys`, and all others (with the kind).
+    #[must_use]
+    pub fn split(&self, keys: &[&str]) -> (Self, Self) {
+        let (mut inside, mut outside) = (Vec::new(), Vec::new());
+        if let Value::Map(entries) = &self.node().value {
+            for (key, value) in entries {
+                let part = if keys.contains(&key.text.as_str()) { &mut inside } else { &mut outside };
+                part.push((key.clone(), value.clone()));
+            }
+        }
+        let with = |entries| {
+            let node = Node::new(Value::Map(entries), self.node().span, Arc::clone(&self.node().file));
+            self.with_node(node, self.path())
+        };
+        (with(inside), with(outside))
+    }
+
+    /// Puts those faults that have no place yet (a file that was not found) at the value of a key.
+    #[must_use]
+    pub fn place_at(&self, key: &str, faults: Faults) -> Faults {
+        Faults(faults.0.into_iter().map(|fault| self.placed(key, fault)).collect())
+    }
+
+    fn placed(&self, key: &str, fault: Fault) -> Fault {
+        if fault.place.is_some() {
+            return fault;
+        }
+        let placed = self.fault(key, fault.message);
+        match fault.hint {
+            Some(hint) => placed.hint(hint),
+            None => placed,
+        }
+    }
+
+    fn path_of(&self, key: &str) -> String {
+        if self.path().is_empty() { key.to_owned() } else { format!("{}.{key}", self.path()) }
+    }
+}

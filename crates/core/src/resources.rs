@@ -1,0 +1,57 @@
+//! Files that a stage may ask for, by name: beside the scene first, then among the bundled data.
+
+use crate::params::{Faults, Params};
+use std::borrow::Cow;
+use std::path::PathBuf;
+
+/// What went wrong with a file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ResourceError {
+    /// No such file, neither beside the scene nor bundled; holds near names.
+    NotFound(Vec<String>),
+    /// It is larger than the asker wants to read, bytes: (found, limit).
+    TooLarge(u64, u64),
+    /// The system's word.
+    Io(String),
+}
+
+impl std::fmt::Display for ResourceError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::NotFound(near) if near.is_empty() => write!(f, "no such file"),
+            Self::NotFound(near) => write!(f, "no such file; near: {}", near.join(", ")),
+            Self::TooLarge(found, limit) => write!(f, "{found} bytes; at most {limit} are read"),
+            Self::Io(text) => f.write_str(text),
+        }
+    }
+}
+
+impl std::error::Error for ResourceError {}
+
+/// A file that was found.
+#[derive(Clone, Debug)]
+pub struct Resource {
+    /// How to name it to a person: a path, or `bundled:...`.
+    pub name: String,
+    /// Its folder on disk, for paths that it holds; `None` when bundled.
+    pub folder: Option<PathBuf>,
+    /// Content.
+    pub bytes: Cow<'static, [u8]>,
+}
+
+/// Finds files for stages.
+pub trait Resources: Send + Sync {
+    /// Reads `path`: as given relative to the scene's folder, else bundled under one of `folders`
+    /// (such as `lenses`), with each of `endings` (such as `.yaml`) tried too.
+    ///
+    /// # Errors
+    /// [`ResourceError`].
+    fn read(&self, path: &str, folders: &[&str], endings: &[&str], limit_bytes: u64) -> Result<Resource, ResourceError>;
+
+    /// Reads and parses a YAML document (a lens, a film stock), found as by [`Resources::read`].
+    ///
+    /// # Errors
+    /// What is wrong with the file or its syntax, with its place in that file; where the file itself is
+    /// not found the fault has no place: put it at the key that named it.
+    fn document(&self, path: &str, folders: &[&str], endings: &[&str]) -> Result<Params, Faults>;
+}

@@ -1,0 +1,196 @@
+//! Light over the band, as one stage hands it to the next.
+
+use std::sync::Arc;
+
+/// Where light is computed unless a scene says otherwise: 350 to 830 nm, by 1 nm.
+pub const BAND: Grid = Grid { start_nm: 350.0, step_nm: 1.0, count: 481 };
+
+/// A uniform grid of wavelengths.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grid {
+    /// First wavelength, nm.
+    pub start_nm: f64,
+    /// Distance of neighbors, nm.
+    pub step_nm: f64,
+    /// Number of wavelengths, at least 2.
+    pub count: usize,
+}
+
+impl Grid {
+    /// Last wavelength, nm.
+    #[must_use]
+    pub fn end_nm(&self) -> f64 {
+        self.start_nm + self.step_nm * (self.count - 1) as f64
+    }
+
+    /// Wavelength `i`, nm.
+    #[must_use]
+    pub fn wavelength_nm(&self, i: usize) -> f64 {
+        self.start_nm + self.step_nm * i as f64
+    }
+
+    /// All wavelengths, nm.
+    pub fn wavelengths_nm(&self) -> impl Iterator<Item = f64> + '_ {
+        (0..self.count).map(|i| self.wavelength_nm(i))
+    }
+
+    /// Whether `wavelength_nm` lies on the band, its ends included.
+    #[must_use]
+    pub fn contains(&self, wavelength_nm: f64) -> bool {
+        wavelength_nm >= self.start_nm && wavelength_nm <= self.end_nm()
+    }
+
+    /// Value at `wavelength_nm` of a table on this grid, linear between points, 0 outside of it.
+    #[inline(always)]
+    #[must_use]
+    pub fn interpolate(&self, table: &[f64], wavelength_nm: f64) -> f64 {
+        let p = (wavelength_nm - self.start_nm) / self.step_nm;
+        let last = self.count - 1;
+        if !(p >= 0.0 && p <= last as f64) {
+            return 0.0;
+        }
+        let i = (p as usize).min(last - 1);
+        let f = p - i as f64;
+        table[i] + (table[i + 1] - table[i]) * f
+    }
+
+    /// Integral over the band of the product of two tables, each linear between points; exact.
+    #[must_use]
+    pub fn integrate_product(&self, a: &[f64], b: &[f64]) -> f64 {
+        let mut sum = 0.0;
+        for i in 0..self.count - 1 {
+            // Simpson's rule is exact for the quadratic that the product of two lines is.
+            let mid = 0.25 * (a[i] + a[i + 1]) * (b[i] + b[i + 1]);
+            sum += a[i] * b[i] + 4.0 * mid + a[i + 1] * b[i + 1];
+        }
+        sum * self.step_nm / 6.0
+    }
+
+    /// Integral over the band of a table that is linear between points; exact.
+    #[must_use]
+    pub fn integrate(&self, a: &[f64]) -> f64 {
+        let inner: f64 = a[1..self.count - 1].iter().sum();
+        (inner + 0.5 * (a[0] + a[self.count - 1])) * self.step_nm
+    }
+}
+
+/// A spectral line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Line {
+    /// Wavelength in air, nm.
+    pub wavelength_nm: f64,
+    /// Power (or radiance) in the line; the unit is that of the continuum times nm.
+    pub power: f64,
+}
+
+/// Emitted light: a continuum per nanometre on a grid, and lines beside it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SpectralPower {
+    /// The grid of the continuum.
+    pub grid: Grid,
+    /// Power per nanometre at each point, linear between them.
+    pub continuum: Vec<f64>,
+    /// Lines; those outside of the band are nobody's business here.
+    pub lines: Vec<Line>,
+}
+
+impl SpectralPower {
+    /// No light.
+    #[must_use]
+    pub fn dark(grid: Grid) -> Self {
+        Self { grid, continuum: vec![0.0; grid.count], lines: Vec::new() }
+    }
+
+    /// All of it times `factor`.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        Self {
+            grid: self.grid,
+            continuum: self.continuum.iter().map(|v| v * factor).collect(),
+            lines: self.lines.iter().map(|l| Line { power: l.power * factor, ..*l }).collect(),
+        }
+    }
+
+    /// Power seen through a response on the same grid: integral of the product, lines included.
+    #[must_use]
+    pub fn seen_by(&self, response: &[f64]) -> f64 {
+        let lines: f64 = self.lines.iter().map(|l| l.power * self.grid.interpolate(response, l.wavelength_nm)).sum();
+        self.grid.integrate_product(&self.continuum, response) + lines
+    }
+
+    /// Whether no power is held.
+    #[must_use]
+    pub fn is_dark(&self) -> bool {
+        self.continuum.iter().all(|v| *v == 0.0) && self.lines.iter().all(|l| l.power == 0.0)
+    }
+}
+
+/// One channel of what is recorded: X of XYZ, a layer of a film.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Channel {
+    /// Short name; names the channel in the EXR.
+    pub name: String,
+    /// Unit of the recorded exposure, such as `lx s`.
+    pub unit: String,
+    /// Response per unit of spectral irradiance (W m^-2 nm^-1) at each point of the grid, so that
+    /// the integral of irradiance times response is in `unit` (times the exposure time where the unit has one).
+    pub response: Vec<f64>,
+}
+
+/// What a wavelength sampler must know of the whole.
+#[derive(Clone, Debug)]
+pub struct SystemResponse {
+    /// The band and its grid.
+    pub grid: Grid,
+    /// What the source emits into the lens, in any common scale.
+    pub source: SpectralPower,
+    /// What is recorded.
+    pub channels: Arc<[Channel]>,
+}
+
+impl SystemResponse {
+    /// Sum of the channels' responses, each scaled to a peak of 1, so that none is forgotten.
+    #[must_use]
+    pub fn summed_response(&self) -> Vec<f64> {
+        let mut sum = vec![0.0; self.grid.count];
+        for channel in self.channels.iter() {
+            let peak = channel.response.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
+            if peak > 0.0 {
+                for (s, r) in sum.iter_mut().zip(&channel.response) {
+                    *s += r.abs() / peak;
+                }
+            }
+        }
+        sum
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn integrals_of_lines_and_parabolas_are_exact() {
+        let grid = Grid { start_nm: 400.0, step_nm: 10.0, count: 11 };
+        let ramp: Vec<f64> = grid.wavelengths_nm().map(|w| w - 400.0).collect();
+        // Integral of x and x^2 from 0 to 100.
+        assert!((grid.integrate(&ramp) - 5000.0).abs() < 1e-9);
+        assert!((grid.integrate_product(&ramp, &ramp) - 1e6 / 3.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn tables_are_linear_inside_and_zero_outside() {
+        let grid = Grid { start_nm: 400.0, step_nm: 10.0, count: 3 };
+        let table = [1.0, 3.0, 7.0];
+        for (w, want) in [(399.9, 0.0), (400.0, 1.0), (405.0, 2.0), (420.0, 7.0), (420.1, 0.0), (f64::NAN, 0.0)] {
+            assert_eq!(grid.interpolate(&table, w), want, "{w}");
+        }
+    }
+
+    #[test]
+    fn lines_count_beside_the_continuum() {
+        let grid = Grid { start_nm: 400.0, step_nm: 10.0, count: 3 };
+        let light = SpectralPower { grid, continuum: vec![2.0; 3], lines: vec![Line { wavelength_nm: 405.0, power: 3.0 }] };
+        assert!((light.seen_by(&[1.0, 1.0, 1.0]) - 43.0).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,158 @@
+//! The stages of the light path. A stage is immutable while light is traced, and never knows which
+//! concrete stage comes before or after it.
+//!
+//! Weights: forward, a ray carries flux in W m^-2 mm^2 (radiance in W m^-2 sr^-1 times areas in mm^2),
+//! so that flux over the pixel's area in mm^2 is irradiance in W m^-2. Backward, it carries
+//! throughput, and ends as irradiance in W m^-2 once the radiance is multiplied in. Both are divided
+//! by the probability with which wavelength and places were drawn.
+
+use crate::RayBatch;
+use crate::frame::{DisplayPicture, ExposureFrame, FrameSize};
+use crate::isa::Isa;
+use crate::spectral::{Channel, SpectralPower, SystemResponse};
+
+/// What is emitted. It can emit rays, answer for the radiance along them, or both.
+pub trait Source: Send + Sync {
+    /// Light that goes into the lens, summed over the source, in any scale: what the wavelength
+    /// sampler weighs. Its lines are those that [`RayBatch::lines`] numbers.
+    fn spectrum(&self) -> &SpectralPower;
+
+    /// Peak over mean brightness: keeps highlights inside of the range of the exact sums.
+    fn peak_over_mean(&self) -> f64 {
+        1.0
+    }
+
+    /// Distance from the first vertex, mm, for messages and focus; infinity is allowed.
+    fn distance_mm(&self) -> f64;
+
+    /// The forward ability.
+    fn emit(&self) -> Option<&dyn Emit> {
+        None
+    }
+
+    /// The backward ability.
+    fn radiance(&self) -> Option<&dyn Radiance> {
+        None
+    }
+
+    /// What a person wants to know of it, for the log and the EXR.
+    fn describe(&self) -> String;
+}
+
+/// Emits rays.
+pub trait Emit: Send + Sync {
+    /// Writes where each ray starts (mm, frame of the lens), and multiplies its weight by what is
+    /// emitted there at its wavelength over the density with which the place was drawn: radiance
+    /// times area (W m^-2 sr^-1 nm^-1 mm^2, without the nm^-1 on a line), or a point's intensity
+    /// (W sr^-1 nm^-1) times 1e6. `u` and `v` are the numbers to draw with, one a ray.
+    fn place(&self, rays: &mut RayBatch, u: &[f64], v: &[f64], isa: Isa);
+
+    /// With the directions now set: multiplies the weight by the emission toward it relative to
+    /// that of [`Emit::place`], the cosine of an emitting plane included.
+    fn radiate(&self, rays: &mut RayBatch, isa: Isa);
+}
+
+/// Answers for the light along rays.
+pub trait Radiance: Send + Sync {
+    /// Multiplies the weight of each living ray, which travels from the lens toward the object (its
+    /// position in the frame of the lens), by the radiance that comes against it: W m^-2 sr^-1 nm^-1,
+    /// or W m^-2 sr^-1 where the wavelength is a line's.
+    fn radiance(&self, rays: &mut RayBatch, isa: Isa);
+}
+
+/// From a color to a spectrum.
+pub trait ColorModel: Send + Sync {
+    /// The lines in it, nm; a ray on line `i` of the model is evaluated there only.
+    fn lines_nm(&self) -> &[f64];
+
+    /// What [`ColorModel::evaluate`] needs of one color, given in linear light, sRGB primaries.
+    fn coefficients(&self, linear_srgb: [f64; 3]) -> [f32; 3];
+
+    /// The spectrum of one color: (1, 1, 1) is white; any common scale.
+    fn spectrum(&self, linear_srgb: [f64; 3]) -> SpectralPower;
+
+    /// Multiplies each weight by the spectrum of its color: per nm, or a line's power for a ray on a line.
+    fn evaluate(&self, coefficients: &[[f32; 3]], wavelength_nm: &[f64], line: &[u32], weight: &mut [f64]);
+}
+
+/// How wavelengths are drawn.
+pub trait WavelengthSampler: Send + Sync {
+    /// Fits the strategy to the system.
+    ///
+    /// # Errors
+    /// A text that says why this strategy cannot sample this system without bias.
+    fn prepare(&self, system: &SystemResponse) -> Result<Box<dyn WavelengthDensity>, String>;
+}
+
+/// A strategy fitted to a system.
+pub trait WavelengthDensity: Send + Sync {
+    /// Draws one wavelength a number of `u` in [0, 1): writes the wavelength (nm) and the line (or
+    /// [`crate::batch::CONTINUUM`]), and multiplies the weight by one over the density (nm) or one
+    /// over the line's probability.
+    fn draw(&self, u: &[f64], wavelength_nm: &mut [f64], line: &mut [u32], weight: &mut [f64], isa: Isa);
+
+    /// Probability density of drawing from the continuum at a wavelength, 1/nm.
+    fn density_per_nm(&self, wavelength_nm: f64) -> f64;
+
+    /// Probability of drawing line `i` of the source.
+    fn line_probability(&self, line: usize) -> f64;
+}
+
+/// The imager: which pixel, which channel.
+pub trait Imager: Send + Sync {
+    /// Its size.
+    fn size(&self) -> FrameSize;
+
+    /// The channels it records by itself; `None` where a film lies on it and decides.
+    fn channels(&self) -> Option<Vec<Channel>>;
+
+    /// The forward ability.
+    fn receive(&self) -> Option<&dyn Receive> {
+        None
+    }
+
+    /// The backward ability.
+    fn launch(&self) -> Option<&dyn Launch> {
+        None
+    }
+
+    /// A picture of what it recorded by itself; `None` where a film makes it.
+    fn display(&self, exposure: &ExposureFrame) -> Option<DisplayPicture>;
+
+    /// Exposure time, s, where the imager states one.
+    fn exposure_time_s(&self) -> Option<f64> {
+        None
+    }
+}
+
+/// Receives rays.
+pub trait Receive: Send + Sync {
+    /// Moves the living rays (frame: the nominal image plane is z = 0) onto the imager and writes the
+    /// pixel into the tag; rays beside the frame end as [`crate::Loss::OutOfFrame`].
+    fn receive(&self, rays: &mut RayBatch, isa: Isa);
+}
+
+/// Launches rays.
+pub trait Launch: Send + Sync {
+    /// For the pixel in each ray's tag and (`u`, `v`) in [0, 1)^2 of it, writes the point (mm; nominal
+    /// image plane z = 0), and the imager's unit normal (toward the lens) in place of the direction.
+    fn place(&self, rays: &mut RayBatch, u: &[f64], v: &[f64], isa: Isa);
+}
+
+/// The film: which light it sees, and what becomes of it.
+pub trait Film: Send + Sync {
+    /// Its channels: responses per spectral irradiance, in lux (times seconds of exposure).
+    fn channels(&self) -> Vec<Channel>;
+
+    /// Exposure time, s.
+    fn exposure_time_s(&self) -> f64;
+
+    /// Develops the frame (exposure in lx s per channel) into a picture.
+    ///
+    /// # Errors
+    /// A text that says which channel is missing.
+    fn develop(&self, exposure: &ExposureFrame) -> Result<DisplayPicture, String>;
+
+    /// What a person wants to know of it, for the log and the EXR.
+    fn describe(&self) -> String;
+}

@@ -1,0 +1,43 @@
+//! Snell's law in vector form: d' = mu d + push N, for the unit direction d, the unit normal N of
+//! either sense and mu the index before over the index after. A mirror is mu = 1, push = -2 d . N.
+
+/// The push along the normal for a ray that comes at `cosine` = d . N, and the square of the cosine
+/// behind the surface: negative (or NaN) where the ray is totally reflected.
+#[inline(always)]
+pub(super) fn snell(cosine: f64, mu: f64) -> (f64, f64) {
+    let along = mu * cosine;
+    let k = (1.0 - mu * mu) + along * along;
+    (k.sqrt().copysign(cosine) - along, k)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Snell's law at n = 1.0016: 20 deg gives 19.96669 deg, 35 deg gives 34.93594 deg (closed form,
+    /// asin(sin i / n)); the same with the normal turned round.
+    #[test]
+    fn snell_by_angle() {
+        for (incidence, want) in [(20.0_f64, 19.96669), (35.0, 34.93594)] {
+            for sense in [1.0, -1.0] {
+                let i = incidence.to_radians();
+                let (s, c) = (crate::math::sin(i), crate::math::cos(i));
+                let mu = 1.0 / 1.0016;
+                let (push, k) = snell(sense * c, mu);
+                assert!(k > 0.0);
+                let (y, z) = (mu * s, mu * c + push * sense);
+                let angle = crate::math::atan2(y, z).to_degrees();
+                assert!((angle - want).abs() < 5e-6, "{angle}");
+                assert!((y * y + z * z - 1.0).abs() < 1e-15);
+            }
+        }
+    }
+
+    #[test]
+    fn total_reflection_is_a_negative_square() {
+        assert!(snell(0.6, 1.5).1 < 0.0);
+        // At the critical angle, sin i = 1/n, it is zero.
+        let s: f64 = 1.0 / 1.5;
+        assert!(snell((1.0 - s * s).sqrt(), 1.5).1.abs() < 1e-15);
+    }
+}

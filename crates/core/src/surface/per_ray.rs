@@ -1,0 +1,92 @@
+//! The plain tier: one ray at a time, as a person would write it.
+
+use super::{Action, Interface, Surface, bend};
+use crate::RayBatch;
+use crate::isa::Isa;
+use crate::loss::{ALIVE, Loss};
+use glam::DVec3;
+
+/// Where a ray meets a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Intersection {
+    /// Distance along the ray, mm; may be negative.
+    pub distance_mm: f64,
+    /// Normal of any length but zero, of either sense.
+    pub normal: DVec3,
+}
+
+/// A surface by scalar code.
+pub trait ScalarShape: Send + Sync + std::fmt::Debug {
+    /// Where the ray through `position` (mm, frame of the surface) along the unit `direction` meets
+    /// the surface; `None` where it does not.
+    fn intersect(&self, position: DVec3, direction: DVec3) -> Option<Intersection>;
+    /// As [`Surface::sag_mm`].
+    fn sag_mm(&self, x_mm: f64, y_mm: f64) -> Option<f64>;
+    /// As [`Surface::vertex_curvature_per_mm`].
+    fn vertex_curvature_per_mm(&self) -> (f64, f64);
+    /// As [`Surface::is_stop`].
+    fn is_stop(&self) -> bool {
+        false
+    }
+}
+
+/// Makes a [`Surface`] of a [`ScalarShape`].
+#[derive(Clone, Debug)]
+pub struct PerRay<S>(pub S);
+
+impl<S: ScalarShape> Surface for PerRay<S> {
+    fn sag_mm(&self, x_mm: f64, y_mm: f64) -> Option<f64> {
+        self.0.sag_mm(x_mm, y_mm)
+    }
+    fn vertex_curvature_per_mm(&self) -> (f64, f64) {
+        self.0.vertex_curvature_per_mm()
+    }
+    fn is_stop(&self) -> bool {
+        self.0.is_stop()
+    }
+    fn interact(&self, rays: &mut RayBatch, interface: &Interface<'_>, _isa: Isa) -> usize {
+        let c = rays.columns_mut();
+        let mut lost = 0;
+        for i in 0..c.x.len() {
+            if c.state[i] != ALIVE {
+                continue;
+            }
+            let position = DVec3::new(c.x[i], c.y[i], c.z[i] - interface.shift_mm);
+            let direction = DVec3::new(c.l[i], c.m[i], c.n[i]);
+            match one(&self.0, position, direction, interface, i) {
+                Ok((at, toward)) => {
+                    (c.x[i], c.y[i], c.z[i]) = (at.x, at.y, at.z);
+                    (c.l[i], c.m[i], c.n[i]) = (toward.x, toward.y, toward.z);
+                }
+                Err(loss) => {
+                    c.state[i] = loss.state(interface.number);
+                    lost += 1;
+                }
+            }
+        }
+        lost
+    }
+}
+
+#[inline]
+fn one<S: ScalarShape>(shape: &S, p: DVec3, d: DVec3, at: &Interface<'_>, i: usize) -> Result<(DVec3, DVec3), Loss> {
+    let hit = shape.intersect(p, d).ok_or(Loss::Missed)?;
+    let q = p + hit.distance_mm * d;
+    if !q.is_finite() {
+        return Err(Loss::Missed);
+    }
+    if q.x * q.x + q.y * q.y > at.clip_radius2_mm2 {
+        return Err(Loss::Vignetted);
+    }
+    if at.action == Action::Pass {
+        return Ok((q, d));
+    }
+    let normal = hit.normal / hit.normal.length();
+    let cosine = d.dot(normal);
+    if at.action == Action::Reflect {
+        return Ok((q, d - 2.0 * cosine * normal));
+    }
+    let mu = at.before.n[i] * at.after.inverse[i];
+    let (push, k) = bend::snell(cosine, mu);
+    if k >= 0.0 { Ok((q, mu * d + push * normal)) } else { Err(Loss::TotalReflection) }
+}

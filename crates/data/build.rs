@@ -1,0 +1,71 @@
+//! Writes a sorted table of the repository's data files, their bytes compiled in.
+//!
+//! What is bundled: everything under `spectra/`, `lenses/*` and the YAML files under `scenes/`.
+//! Hidden files and editors' backups are left out.
+
+use std::env;
+use std::fmt::Write as _;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Folder of the repository, and the endings taken from it (none: every file).
+const FOLDERS: [(&str, &[&str]); 3] = [
+    ("spectra", &[]),
+    ("lenses", &[]),
+    ("scenes", &["yaml", "yml"]),
+];
+
+fn collect(folder: &Path, endings: &[&str], found: &mut Vec<PathBuf>) {
+    println!("cargo:rerun-if-changed={}", folder.display());
+    let Ok(entries) = fs::read_dir(folder) else {
+        return; // a checkout without this folder bundles nothing from it
+    };
+    for entry in entries.filter_map(Result::ok) {
+        let path = entry.path();
+        let name = entry.file_name().to_string_lossy().into_owned();
+        if name.starts_with('.') || name.ends_with('~') || name.ends_with(".tmp") {
+            continue;
+        }
+        if path.is_dir() {
+            collect(&path, endings, found);
+            continue;
+        }
+        let ending = path
+            .extension()
+            .and_then(|e| e.to_str())
+            .unwrap_or_default();
+        if endings.is_empty() || endings.contains(&ending) {
+            println!("cargo:rerun-if-changed={}", path.display());
+            found.push(path);
+        }
+    }
+}
+
+fn main() {
+    println!("cargo:rerun-if-changed=build.rs");
+    let manifest = PathBuf::from(env::var_os("CARGO_MANIFEST_DIR").expect("cargo sets it"));
+    let root = manifest.join("../..");
+    let mut files = Vec::new();
+    for (folder, endings) in FOLDERS {
+        let mut found = Vec::new();
+        collect(&root.join(folder), endings, &mut found);
+        for path in found {
+            let inside = path.strip_prefix(&root).expect("collected below the root");
+            let name: Vec<String> = inside
+                .components()
+                .map(|c| c.as_os_str().to_string_lossy().into_owned())
+                .collect();
+            files.push((name.join("/"), path));
+        }
+    }
+    files.sort();
+
+    let mut code = String::from("static FILES: &[(&str, &[u8])] = &[\n");
+    for (name, path) in &files {
+        let path = path.to_str().expect("paths of the repository are UTF-8");
+        writeln!(code, "    ({name:?}, include_bytes!({path:?})),").expect("writing to a string");
+    }
+    code.push_str("];\n");
+    let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets it"));
+    fs::write(out.join("files.rs"), code).expect("OUT_DIR can be written");
+}

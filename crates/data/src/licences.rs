@@ -1,0 +1,117 @@
+//! Who made the bundled data, and under which terms.
+
+use crate::{FILES, text};
+
+/// One source and its terms, with the files that come from it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Licence {
+    /// Terms as the file states them, such as `CC0-1.0`.
+    pub licence: String,
+    /// Publication or catalogue the figures come from.
+    pub source: String,
+    /// Bundled files, by path in the repository, sorted.
+    pub files: Vec<&'static str>,
+}
+
+/// The value of `key` in a line such as `# key: value` (CSV) or `key: value` (YAML at its first level).
+fn value<'a>(line: &'a str, key: &str) -> Option<&'a str> {
+    let line = line.strip_prefix('#').map_or(line, str::trim_start);
+    let value = line.strip_prefix(key)?.strip_prefix(':')?.trim();
+    let quoted = value.strip_prefix('"').and_then(|v| v.strip_suffix('"'));
+    let quoted = quoted.or_else(|| value.strip_prefix('\'').and_then(|v| v.strip_suffix('\'')));
+    Some(quoted.unwrap_or(value)).filter(|v| !v.is_empty())
+}
+
+/// A line `!source MARK TEXT` of a catalogue that joins several sources, each text naming its terms.
+fn catalogue_source(line: &str) -> Option<(&str, &str)> {
+    const TERMS: [&str; 6] = [
+        "CC0 1.0",
+        "CC-BY 4.0",
+        "MIT",
+        "Apache-2.0",
+        "BSD-3",
+        "BSD-2",
+    ];
+    let (_, source) = line.strip_prefix("!source ")?.split_once(' ')?;
+    let terms = TERMS.into_iter().find(|t| source.contains(t))?;
+    Some((terms, source.trim()))
+}
+
+/// Licence and source of every bundled file that states them, one entry for each pair, sorted.
+///
+/// The first `licence` and the first `source` among the first 60 lines of a file count, or else every line
+/// `!source MARK TEXT` there.
+#[must_use]
+pub fn licences() -> Vec<Licence> {
+    let mut all: Vec<Licence> = Vec::new();
+    for (name, _) in FILES {
+        let Some(text) = text(name) else { continue };
+        // Terms stand at the head of a file; data rows below need no search.
+        let head: Vec<&str> = text.lines().take(60).collect();
+        let licence = head.iter().find_map(|l| value(l, "licence"));
+        let source = head.iter().find_map(|l| value(l, "source"));
+        let stated = licence.zip(source);
+        for (licence, source) in stated
+            .into_iter()
+            .chain(head.iter().filter_map(|l| catalogue_source(l)))
+        {
+            match all
+                .iter_mut()
+                .find(|l| l.licence == licence && l.source == source)
+            {
+                Some(known) => known.files.push(name),
+                None => all.push(Licence {
+                    licence: licence.into(),
+                    source: source.into(),
+                    files: vec![name],
+                }),
+            }
+        }
+    }
+    all.sort_by(|a, b| (&a.licence, &a.source).cmp(&(&b.licence, &b.source)));
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_are_read_from_csv_and_yaml_heads() {
+        assert_eq!(value("# licence: CC0-1.0", "licence"), Some("CC0-1.0"));
+        assert_eq!(value("licence: \"MIT\"", "licence"), Some("MIT"));
+        assert_eq!(value("  licence: nested", "licence"), None);
+        assert_eq!(value("licences: x", "licence"), None);
+        assert_eq!(value("licence:", "licence"), None);
+    }
+
+    #[test]
+    fn catalogues_name_several_sources() {
+        let line = "!source hoya HOYA optical glass catalogue, as carried by ZemaxGlass 1.0 (MIT)";
+        assert_eq!(
+            catalogue_source(line),
+            Some((
+                "MIT",
+                "HOYA optical glass catalogue, as carried by ZemaxGlass 1.0 (MIT)"
+            ))
+        );
+        assert_eq!(catalogue_source("!source x unknown terms"), None);
+    }
+
+    #[test]
+    fn each_pair_appears_once_with_all_its_files() {
+        let all = licences();
+        for (i, a) in all.iter().enumerate() {
+            assert!(
+                all[i + 1..]
+                    .iter()
+                    .all(|b| (&a.licence, &a.source) != (&b.licence, &b.source))
+            );
+        }
+        let daylight = all
+            .iter()
+            .find(|l| l.files.contains(&"spectra/illuminants/D65.csv"))
+            .expect("D65 is bundled");
+        assert!(daylight.licence.starts_with("BSD-3-Clause") && daylight.source.contains("CIE 15"));
+    }
+}

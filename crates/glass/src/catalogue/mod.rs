@@ -1,0 +1,189 @@
+//! Media by name, and the nearest glass to an index and an Abbe number.
+//!
+//! The bundled catalogue stays text: only names are indexed at the start, and a record is parsed when it is asked for.
+
+mod find;
+mod nearest;
+mod text;
+
+pub use find::{Candidate, FindError};
+pub use nearest::{Match, Query};
+
+use std::borrow::Cow;
+use std::sync::{Arc, OnceLock};
+
+use thiserror::Error;
+
+use crate::glass::Glass;
+use text::Bundle;
+
+/// A line of a catalogue file that cannot be read.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[error("catalogue line {line}: {message}")]
+pub struct CatalogueError {
+    /// Line, from 1.
+    pub line: usize,
+    /// What is wrong.
+    pub message: String,
+}
+
+/// Where the record of an indexed name is.
+#[derive(Clone, Copy, Debug)]
+enum Place {
+    /// Record of the text.
+    Text(u32),
+    /// A glass added by the user.
+    Own(u32),
+}
+
+/// Glasses and other media by name.
+#[derive(Clone, Debug)]
+pub struct Catalogue {
+    bundle: Arc<Bundle>,
+    own: Vec<Glass>,
+    /// Upper-case names, sorted, with their places.
+    index: Vec<(Cow<'static, str>, Place)>,
+}
+
+impl Catalogue {
+    /// The catalogue that is compiled in: makers' optical glasses, historical ones, filters, crystals, plastics, liquids,
+    /// gases; about 4 000 media. Built once, within a millisecond or two.
+    #[must_use]
+    pub fn bundled() -> &'static Catalogue {
+        static BUNDLED: OnceLock<Catalogue> = OnceLock::new();
+        BUNDLED.get_or_init(|| {
+            let text = spectra_data::text("spectra/glass/catalogue.txt")
+                .expect("the glass catalogue is bundled");
+            Catalogue::from_text(text)
+                .expect("the bundled catalogue is well-formed: a test reads all of it")
+        })
+    }
+
+    /// A catalogue in the format of `spectra/glass/README.md`.
+    ///
+    /// # Errors
+    /// The first line whose head cannot be read. Records are looked at when they are asked for, and one that cannot be read
+    /// panics then: the text is compiled in, and a test calls [`Catalogue::verify`].
+    pub fn from_text(text: &'static str) -> Result<Catalogue, CatalogueError> {
+        let bundle = Bundle::new(text)?;
+        let mut index: Vec<_> = (0..bundle.len())
+            .map(|i| (upper(bundle.name(i)), Place::Text(i as u32)))
+            .collect();
+        index.sort_unstable_by(|a, b| a.0.cmp(&b.0));
+        Ok(Catalogue {
+            bundle: Arc::new(bundle),
+            own: Vec::new(),
+            index,
+        })
+    }
+
+    /// An empty catalogue, for a user's own glasses alone.
+    #[must_use]
+    pub fn empty() -> Catalogue {
+        Catalogue {
+            bundle: Arc::default(),
+            own: Vec::new(),
+            index: Vec::new(),
+        }
+    }
+
+    /// Adds glasses (of a user's AGF file, say). One with the same maker and name as an earlier one replaces it.
+    pub fn add(&mut self, glasses: impl IntoIterator<Item = Glass>) {
+        for glass in glasses {
+            let name = glass.name.to_uppercase();
+            let maker = glass.maker.to_uppercase();
+            let same = |(n, place): &(Cow<'static, str>, Place)| {
+                *n == name && self.maker_of(*place).to_uppercase() == maker
+            };
+            if let Some(at) = self.index.iter().position(same) {
+                self.index.remove(at);
+            }
+            let place = Place::Own(self.own.len() as u32);
+            self.own.push(glass);
+            let at = self
+                .index
+                .partition_point(|(n, _)| n.as_ref() <= name.as_str());
+            self.index.insert(at, (Cow::Owned(name), place));
+        }
+    }
+
+    /// Number of media.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.index.len()
+    }
+
+    /// Whether there is none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.index.is_empty()
+    }
+
+    /// All media, by name.
+    pub fn glasses(&self) -> impl Iterator<Item = Glass> + '_ {
+        self.index.iter().map(|(_, place)| self.glass(*place))
+    }
+
+    /// All names as `MAKER/NAME`, without reading the data.
+    pub fn full_names(&self) -> impl Iterator<Item = String> + '_ {
+        self.index
+            .iter()
+            .map(|(_, place)| format!("{}/{}", self.maker_of(*place), self.name_of(*place)))
+    }
+
+    /// The makers (and substances) in order of the alphabet.
+    #[must_use]
+    pub fn makers(&self) -> Vec<String> {
+        let mut makers: Vec<_> = self
+            .index
+            .iter()
+            .map(|(_, place)| self.maker_of(*place).to_owned())
+            .collect();
+        makers.sort_unstable();
+        makers.dedup();
+        makers
+    }
+
+    /// Reads every record of the text.
+    ///
+    /// # Errors
+    /// The first record that cannot be read.
+    pub fn verify(&self) -> Result<(), CatalogueError> {
+        (0..self.bundle.len()).try_for_each(|i| self.bundle.glass(i).map(drop))
+    }
+
+    fn glass(&self, place: Place) -> Glass {
+        match place {
+            Place::Own(i) => self.own[i as usize].clone(),
+            Place::Text(i) => self.bundle.glass(i as usize).expect(
+                "records of the bundled catalogue are well-formed: a test reads all of them",
+            ),
+        }
+    }
+
+    fn maker_of(&self, place: Place) -> &str {
+        match place {
+            Place::Own(i) => &self.own[i as usize].maker,
+            Place::Text(i) => self.bundle.maker(i as usize),
+        }
+    }
+
+    fn name_of(&self, place: Place) -> &str {
+        match place {
+            Place::Own(i) => &self.own[i as usize].name,
+            Place::Text(i) => self.bundle.name(i as usize),
+        }
+    }
+}
+
+/// Upper case, borrowed where it is that already.
+fn upper(name: &'static str) -> Cow<'static, str> {
+    if name
+        .bytes()
+        .any(|b| b.is_ascii_lowercase() || !b.is_ascii())
+    {
+        Cow::Owned(name.to_uppercase())
+    } else {
+        Cow::Borrowed(name)
+    }
+}

@@ -1,0 +1,121 @@
+//! The real glass behind a patent's index and Abbe number.
+
+use super::Catalogue;
+use crate::glass::{Category, Glass, Status};
+use crate::lines::LineTriple;
+
+/// What to look for. [`Query::new`] asks for the ten nearest optical glasses of all makers and eras.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Query {
+    /// Index at the middle line.
+    pub n: f64,
+    /// Abbe number; without it the index alone decides.
+    pub v: Option<f64>,
+    /// Lines of index and Abbe number: [`LineTriple::FDC`] for nd and Vd, and so on.
+    pub lines: LineTriple,
+    /// Makers allowed, any case; all if empty.
+    pub makers: Vec<String>,
+    /// Categories allowed; all if empty.
+    pub categories: Vec<Category>,
+    /// Only glasses found in a catalogue of this year or earlier; the oldest bundled one is of 1983.
+    pub known_by: Option<u16>,
+    /// Only glasses still found in a catalogue of this year or later.
+    pub still_in: Option<u16>,
+    /// Whether obsolete glasses count.
+    pub obsolete: bool,
+    /// How many to list.
+    pub count: usize,
+}
+
+impl Query {
+    /// The ten optical glasses nearest to index `n` and Abbe number `v` at `lines`.
+    #[must_use]
+    pub fn new(n: f64, v: Option<f64>, lines: LineTriple) -> Query {
+        Query {
+            n,
+            v,
+            lines,
+            makers: Vec::new(),
+            categories: vec![Category::OpticalGlass],
+            known_by: None,
+            still_in: None,
+            obsolete: true,
+            count: 10,
+        }
+    }
+
+    fn admits(&self, glass: &Glass) -> bool {
+        let maker = self.makers.is_empty()
+            || self
+                .makers
+                .iter()
+                .any(|m| m.eq_ignore_ascii_case(&glass.maker));
+        let category = self.categories.is_empty() || self.categories.contains(&glass.category);
+        let known = self
+            .known_by
+            .is_none_or(|year| glass.years.is_some_and(|(first, _)| first <= year));
+        let still = self
+            .still_in
+            .is_none_or(|year| glass.years.is_some_and(|(_, last)| year <= last));
+        maker && category && known && still && (self.obsolete || glass.status != Status::Obsolete)
+    }
+}
+
+/// A glass and how far it is from what was asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Match {
+    /// The glass.
+    pub glass: Glass,
+    /// Its index at the middle line.
+    pub n: f64,
+    /// Its Abbe number for the lines asked for.
+    pub v: f64,
+    /// Its index less the one asked for.
+    pub delta_n: f64,
+    /// Its Abbe number less the one asked for; 0 if none was.
+    pub delta_v: f64,
+    /// Both in one number: 1 is a catalogue's usual tolerance (0.0005 in n, or 0.5 % in V; ISO 12123, NP050 and AN5).
+    pub distance: f64,
+}
+
+/// Tolerance of the index in the ranking.
+const TOLERANCE_N: f64 = 5e-4;
+/// Relative tolerance of the Abbe number in the ranking.
+const TOLERANCE_V: f64 = 5e-3;
+
+impl Catalogue {
+    /// The glasses nearest to an index and an Abbe number, nearest first; equals by name.
+    #[must_use]
+    pub fn nearest(&self, query: &Query) -> Vec<Match> {
+        let mut matches: Vec<Match> = (self.glasses())
+            .filter(|glass| query.admits(glass))
+            .filter_map(|glass| {
+                let (n, v) = (
+                    glass.index(query.lines.mid.wavelength_nm),
+                    glass.abbe_number(query.lines),
+                );
+                let delta_n = n - query.n;
+                let delta_v = query.v.map_or(0.0, |asked| v - asked);
+                let in_v = query.v.map_or(0.0, |asked| delta_v / (TOLERANCE_V * asked));
+                let in_n = delta_n / TOLERANCE_N;
+                let distance = (in_n * in_n + in_v * in_v).sqrt();
+                distance.is_finite().then_some(Match {
+                    glass,
+                    n,
+                    v,
+                    delta_n,
+                    delta_v,
+                    distance,
+                })
+            })
+            .collect();
+        matches.sort_by(|a, b| {
+            a.distance
+                .total_cmp(&b.distance)
+                .then_with(|| a.glass.name.cmp(&b.glass.name))
+                .then_with(|| a.glass.maker.cmp(&b.glass.maker))
+        });
+        matches.truncate(query.count);
+        matches
+    }
+}

@@ -1,0 +1,216 @@
+//! The refractive index as the tracer evaluates it: once per ray and medium.
+//!
+//! A Sellmeier formula costs three divisions and a square root. Over a band of light it is, to 1e-10, a quotient of
+//! two short polynomials in the wavelength or its square, and then n and 1/n together cost one division.
+
+mod rational;
+mod sampled;
+
+pub use rational::Rational;
+
+use rational::Variable;
+use sampled::Sampled;
+use thiserror::Error;
+
+use crate::medium::Medium;
+
+/// Error of a rational fit that is small enough to look no further, in n.
+const RATIONAL_TOLERANCE: f64 = 2e-10;
+/// Largest error of any fit, in n.
+const LAST_TOLERANCE: f64 = 1e-9;
+/// Variables and nodes that are tried, in this order, at each degree. Glass formulas are functions of the square.
+const TRIALS: [(Variable, Variable); 3] = [
+    (Variable::Square, Variable::InverseSquare),
+    (Variable::Square, Variable::Wavelength),
+    (Variable::Wavelength, Variable::Wavelength),
+];
+/// An interpolation this much worse than asked for may still be levelled into the tolerance.
+const HOPE: f64 = 50.0;
+/// Wavelengths at which a fit is checked.
+const CHECKS: usize = 4000;
+
+/// Why a medium has no fit.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+pub enum DispersionError {
+    /// The band is empty, reversed or not positive.
+    #[error("no band of light: {min_nm} to {max_nm} nm")]
+    Band {
+        /// Shortest wavelength, nm.
+        min_nm: f64,
+        /// Longest wavelength, nm.
+        max_nm: f64,
+    },
+    /// The formula has no positive real index somewhere in the band.
+    #[error("no refractive index at {wavelength_nm} nm")]
+    NoIndex {
+        /// Where, nm.
+        wavelength_nm: f64,
+    },
+}
+
+#[derive(Clone, Debug)]
+enum Form {
+    Rational(Rational),
+    Sampled(Sampled),
+    /// Data too rough for either.
+    Exact(Medium),
+}
+
+/// A fast and nearly exact n(lambda) over a band, and 1/n with it.
+#[derive(Clone, Debug)]
+pub struct Dispersion {
+    form: Form,
+    band_nm: (f64, f64),
+    max_error: f64,
+}
+
+impl Dispersion {
+    /// Fits `medium` from `min_nm` to `max_nm`: the rational function of the smallest degree up to (6, 6) that is within
+    /// 2e-10 of the formula, or else the best one within 1e-9; for tabulated data a uniform table of cubics within 1e-9;
+    /// for data too rough for that, the formula itself.
+    ///
+    /// Where the band reaches beyond the medium's data ([`Medium::covers`]) its formula is extrapolated.
+    ///
+    /// # Errors
+    /// A band that is none, and a formula without a positive index somewhere in it.
+    pub fn fit(medium: &Medium, min_nm: f64, max_nm: f64) -> Result<Dispersion, DispersionError> {
+        if !(min_nm > 0.0 && min_nm < max_nm && max_nm.is_finite()) {
+            return Err(DispersionError::Band { min_nm, max_nm });
+        }
+        let checks: Vec<(f64, f64)> = (0..CHECKS)
+            .map(|i| min_nm + (max_nm - min_nm) * i as f64 / (CHECKS - 1) as f64)
+            .map(|w| (w, medium.index(w)))
+            .collect();
+        if let Some(&(wavelength_nm, _)) = checks.iter().find(|(_, n)| !(n.is_finite() && *n > 0.0))
+        {
+            return Err(DispersionError::NoIndex { wavelength_nm });
+        }
+        let band_nm = (min_nm, max_nm);
+        let mut best: Option<(Rational, f64)> = None;
+        for degree in 0..=Rational::MAX_DEGREE {
+            for (variable, nodes) in TRIALS {
+                let Some(mut rational) =
+                    Rational::fit(medium, min_nm, max_nm, degree, variable, nodes)
+                else {
+                    continue;
+                };
+                let mut max_error = largest_error(&checks, |w| rational.evaluate(w));
+                if max_error > RATIONAL_TOLERANCE && max_error < HOPE * RATIONAL_TOLERANCE {
+                    (rational, max_error) = rational.level(&checks);
+                }
+                if max_error <= RATIONAL_TOLERANCE {
+                    return Ok(Dispersion {
+                        form: Form::Rational(rational),
+                        band_nm,
+                        max_error,
+                    });
+                }
+                if max_error <= LAST_TOLERANCE
+                    && best.as_ref().is_none_or(|(_, error)| max_error < *error)
+                {
+                    best = Some((rational, max_error));
+                }
+            }
+        }
+        if let Some((rational, max_error)) = best {
+            return Ok(Dispersion {
+                form: Form::Rational(rational),
+                band_nm,
+                max_error,
+            });
+        }
+        if let Some((sampled, max_error)) =
+            Sampled::fit(medium, min_nm, max_nm, LAST_TOLERANCE, &checks)
+        {
+            return Ok(Dispersion {
+                form: Form::Sampled(sampled),
+                band_nm,
+                max_error,
+            });
+        }
+        Ok(Dispersion {
+            form: Form::Exact(medium.clone()),
+            band_nm,
+            max_error: 0.0,
+        })
+    }
+
+    /// Largest difference from the medium's formula found on 4 000 wavelengths of the band.
+    #[must_use]
+    pub fn max_error(&self) -> f64 {
+        self.max_error
+    }
+
+    /// The band of the fit, nm.
+    #[must_use]
+    pub fn band_nm(&self) -> (f64, f64) {
+        self.band_nm
+    }
+
+    /// The rational function, where that is the form: for kernels that evaluate it themselves.
+    #[must_use]
+    pub fn rational(&self) -> Option<&Rational> {
+        match &self.form {
+            Form::Rational(rational) => Some(rational),
+            Form::Sampled(_) | Form::Exact(_) => None,
+        }
+    }
+
+    /// The index if it is the same at all wavelengths.
+    #[must_use]
+    pub fn constant(&self) -> Option<f64> {
+        self.rational()
+            .filter(|r| r.degree() == 0)
+            .map(|r| r.evaluate(self.band_nm.0))
+    }
+
+    /// Refractive index at a wavelength in nm. Meant for the band; not accurate outside of it.
+    #[inline]
+    #[must_use]
+    pub fn evaluate(&self, wavelength_nm: f64) -> f64 {
+        match &self.form {
+            Form::Rational(rational) => rational.evaluate(wavelength_nm),
+            Form::Sampled(sampled) => sampled.evaluate(wavelength_nm),
+            Form::Exact(medium) => medium.index(wavelength_nm),
+        }
+    }
+
+    /// n and 1/n of a batch of wavelengths in nm. The same bits as [`Dispersion::evaluate`] for n, whatever the length
+    /// of the slices; with all forms but the rational one a table is read per wavelength.
+    ///
+    /// # Panics
+    /// If the slices differ in length.
+    #[inline(always)]
+    pub fn index_and_inverse(&self, wavelength_nm: &[f64], n: &mut [f64], inverse_n: &mut [f64]) {
+        assert!(
+            wavelength_nm.len() == n.len() && n.len() == inverse_n.len(),
+            "columns of a batch have one length"
+        );
+        match &self.form {
+            Form::Rational(rational) => rational.index_and_inverse(wavelength_nm, n, inverse_n),
+            Form::Sampled(sampled) => {
+                for ((w, n), inverse) in wavelength_nm.iter().zip(n).zip(inverse_n) {
+                    *n = sampled.evaluate(*w);
+                    *inverse = 1.0 / *n;
+                }
+            }
+            Form::Exact(medium) => {
+                for ((w, n), inverse) in wavelength_nm.iter().zip(n).zip(inverse_n) {
+                    *n = medium.index(*w);
+                    *inverse = 1.0 / *n;
+                }
+            }
+        }
+    }
+}
+
+fn largest_error(checks: &[(f64, f64)], n: impl Fn(f64) -> f64) -> f64 {
+    // An error that is no number must not pass as small.
+    checks
+        .iter()
+        .map(|&(w, exact)| (n(w) - exact).abs())
+        .fold(0.0, |m, e| if e > m || e.is_nan() { e } else { m })
+}
+
+#[cfg(test)]
+mod tests;

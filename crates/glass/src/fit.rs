@@ -1,0 +1,96 @@
+//! Dispersion formulas from measured points.
+//!
+//! ```
+//! use spectra_glass::fit::{Sample, cauchy_least_squares};
+//!
+//! let crown = [(486.0, 1.523), (589.0, 1.517), (656.0, 1.514)].map(|(wavelength_nm, n)| Sample { wavelength_nm, n });
+//! let fit = cauchy_least_squares(&crown, 2)?;
+//! assert!(fit.max_deviation < 5e-4);
+//! # Ok::<(), spectra_glass::fit::FitError>(())
+//! ```
+
+mod cauchy;
+mod sellmeier;
+
+pub use cauchy::{CauchyRows, cauchy_by_rows, cauchy_least_squares};
+pub use sellmeier::sellmeier_least_squares;
+
+use thiserror::Error;
+
+use crate::formula::Formula;
+
+/// A measured index.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// Wavelength in air, nm.
+    pub wavelength_nm: f64,
+    /// Refractive index.
+    pub n: f64,
+}
+
+/// A formula and how well it meets the samples.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fit {
+    /// The formula.
+    pub formula: Formula,
+    /// Square root of the mean squared difference.
+    pub rms_deviation: f64,
+    /// Mean of the absolute differences.
+    pub mean_deviation: f64,
+    /// Largest absolute difference.
+    pub max_deviation: f64,
+}
+
+impl Fit {
+    fn of(formula: Formula, samples: &[Sample]) -> Fit {
+        let deviations: Vec<f64> = samples
+            .iter()
+            .map(|s| (formula.index(s.wavelength_nm) - s.n).abs())
+            .collect();
+        let count = deviations.len() as f64;
+        Fit {
+            rms_deviation: (deviations.iter().map(|d| d * d).sum::<f64>() / count).sqrt(),
+            mean_deviation: deviations.iter().sum::<f64>() / count,
+            max_deviation: deviations.iter().copied().fold(0.0, f64::max),
+            formula,
+        }
+    }
+}
+
+/// Why samples give no formula.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+pub enum FitError {
+    /// Too few samples for the number of coefficients.
+    #[error("{found} samples are too few: {needed} are needed")]
+    TooFew {
+        /// How many are needed.
+        needed: usize,
+        /// How many there are.
+        found: usize,
+    },
+    /// A wavelength or index that is none.
+    #[error("row {row}: the wavelength must be positive and the index at least 1")]
+    BadSample {
+        /// Row, from 1.
+        row: usize,
+    },
+    /// Two samples at one wavelength, or a number of terms that is not offered.
+    #[error("the samples do not determine the coefficients")]
+    Undetermined,
+}
+
+fn check(samples: &[Sample], needed: usize) -> Result<(), FitError> {
+    let bad = |s: &Sample| {
+        !(s.wavelength_nm.is_finite() && s.wavelength_nm > 0.0 && s.n.is_finite() && s.n >= 1.0)
+    };
+    if let Some(row) = samples.iter().position(bad) {
+        return Err(FitError::BadSample { row: row + 1 });
+    }
+    if samples.len() < needed {
+        return Err(FitError::TooFew {
+            needed,
+            found: samples.len(),
+        });
+    }
+    Ok(())
+}

@@ -1,0 +1,39 @@
+//! Refractive index: dispersion formulas, catalogues, fast evaluation.
+//!
+//! - [`Formula`] is n(lambda) as makers and papers write it; [`Glass`] is a named medium with its data;
+//!   [`Catalogue`] finds one by name, or the nearest to a patent's (n, V).
+//! - [`Medium`] is what light travels in; [`Dispersion`] is the same, fitted for tracing.
+//! - [`fit`] makes formulas from tables, [`interface`] has Fresnel's equations, [`agf`] reads users' catalogues.
+//!
+//! Conventions: wavelengths are in nanometres at every public border and are those in air; glass formulas take
+//! micrometres inside. The index of a glass is relative to air as its maker gives it, so air is 1 and
+//! vacuum a little less than 1 (see [`air`]).
+//!
+//! ```
+//! use spectra_glass::{Catalogue, Dispersion, Medium, lines};
+//!
+//! let glass = Catalogue::bundled().find("SCHOTT/N-BK7")?;
+//! assert!((glass.index(lines::D.wavelength_nm) - 1.516_800).abs() < 1e-6);
+//! let fast = Dispersion::fit(&Medium::from(glass), 350.0, 830.0)?;
+//! assert!(fast.max_error() <= 2e-10);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+pub mod agf;
+pub mod air;
+mod catalogue;
+mod dispersion;
+pub mod fit;
+mod formula;
+mod glass;
+pub mod interface;
+mod linear;
+pub mod lines;
+mod medium;
+
+pub use catalogue::{Candidate, Catalogue, CatalogueError, FindError, Match, Query};
+pub use dispersion::{Dispersion, DispersionError, Rational};
+pub use formula::{Formula, Melt, ModelGlass, NumberedFormula, Table, TableError};
+pub use glass::{Category, Extinction, Glass, Status, Thermal};
+pub use lines::{Line, LineTriple};
+pub use medium::Medium;

@@ -1,0 +1,161 @@
+//! First-order (paraxial) optics by the ray-transfer method.
+//!
+//! A paraxial ray has a height y (mm) and a slope u = dy/dz; a surface of curvature c between media
+//! n and n' maps n' u' = n u - y c (n' - n) (W. J. Smith, Modern Optical Engineering, ch. 3).
+
+use crate::Lens;
+use spectra_core::surface::Action;
+
+/// First-order figures of a lens at one wavelength. Distances are measured as the names say, in mm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FirstOrder {
+    /// Wavelength, nm; `None` where every medium was held at its stated index.
+    pub wavelength_nm: Option<f64>,
+    /// Effective focal length.
+    pub efl_mm: f64,
+    /// Back focal length: last vertex to the rear focal point.
+    pub bfl_mm: f64,
+    /// Front focal length: first vertex to the front focal point (negative in front of it).
+    pub ffl_mm: f64,
+    /// Rear principal plane, from the first vertex.
+    pub rear_principal_z_mm: f64,
+    /// Front principal plane, from the first vertex.
+    pub front_principal_z_mm: f64,
+    /// Entrance pupil, from the first vertex; `None` without a stop.
+    pub entrance_pupil_z_mm: Option<f64>,
+    /// Exit pupil, from the first vertex; `None` without a stop.
+    pub exit_pupil_z_mm: Option<f64>,
+    /// Entrance pupil's size over the stop's.
+    pub entrance_pupil_magnification: Option<f64>,
+    /// Exit pupil's size over the stop's.
+    pub exit_pupil_magnification: Option<f64>,
+}
+
+/// The paraxial map through a lens, from the first vertex plane to the last.
+#[derive(Clone, Copy, Debug)]
+struct Matrix {
+    /// height' = a height + b slope; slope' = c height + d slope.
+    a: f64,
+    b: f64,
+    c: f64,
+    d: f64,
+}
+
+impl Matrix {
+    const UNIT: Self = Self { a: 1.0, b: 0.0, c: 0.0, d: 1.0 };
+
+    fn refract(self, curvature: f64, n: f64, after: f64) -> Self {
+        let power = curvature * (after - n) / after;
+        let ratio = n / after;
+        Self { a: self.a, b: self.b, c: ratio * self.c - power * self.a, d: ratio * self.d - power * self.b }
+    }
+
+    fn advance(self, distance: f64) -> Self {
+        Self { a: self.a + distance * self.c, b: self.b + distance * self.d, ..self }
+    }
+}
+
+impl Lens {
+    fn matrix(&self, elements: std::ops::Range<usize>, index: &dyn Fn(usize) -> f64) -> Matrix {
+        let mut m = Matrix::UNIT;
+        let end = elements.end;
+        for at in elements {
+            let e = &self.elements[at];
+            // The plane of the paper is y-z.
+            let (_, curvature) = e.surface.vertex_curvature_per_mm();
+            if e.action == Action::Refract {
+                m = m.refract(curvature, index(e.medium_before), index(e.medium_after));
+            }
+            if at + 1 < end {
+                m = m.advance(e.thickness_mm);
+            }
+        }
+        m
+    }
+
+    /// First order at a wavelength, nm.
+    #[must_use]
+    pub fn first_order(&self, wavelength_nm: f64) -> FirstOrder {
+        FirstOrder { wavelength_nm: Some(wavelength_nm), ..self.first_order_by(&|m| self.index(m, wavelength_nm)) }
+    }
+
+    /// First order with every medium at its stated index (its formula's at the reference line where none is stated).
+    #[must_use]
+    pub fn first_order_at_stated_nd(&self) -> FirstOrder {
+        self.first_order_by(&|m| self.media[m].stated_nd.unwrap_or_else(|| self.index(m, self.reference_nm)))
+    }
+
+    fn first_order_by(&self, index: &dyn Fn(usize) -> f64) -> FirstOrder {
+        let count = self.elements.len();
+        let last_z = self.elements.last().map_or(0.0, |e| e.vertex_z_mm);
+        let m = self.matrix(0..count, index);
+        let n_object = self.elements.first().map_or(1.0, |e| index(e.medium_before));
+        let n_image = self.elements.last().map_or(1.0, |e| index(e.medium_after));
+        let efl = -1.0 / m.c;
+        let bfl = -m.a / m.c;
+        // A ray that leaves parallel to the axis enters with slope s and height h: c h + d s = 0.
+        let ffl = m.d / m.c;
+        let front_focal = efl * n_object / n_image;
+        let (mut enp, mut exp, mut enp_m, mut exp_m) = (None, None, None, None);
+        if let Some(stop) = self.stop() {
+            // From the first vertex plane to the stop: the stop's image in object space.
+            let to_stop = self.matrix(0..stop, index);
+            let gap = if stop > 0 { self.elements[stop].vertex_z_mm - self.elements[stop - 1].vertex_z_mm } else { 0.0 };
+            let front = to_stop.advance(gap);
+            // A ray through the centre of the stop: a h + b s = 0, it crosses the axis at -h / s = b / a.
+            enp = Some(front.b / front.a);
+            enp_m = Some(1.0 / front.a);
+            if stop + 1 < count {
+                let start = Matrix::UNIT.advance(self.elements[stop + 1].vertex_z_mm - self.elements[stop].vertex_z_mm);
+                let behind = self.matrix(stop + 1..count, index);
+                // `behind` after `start`.
+                let rear = Matrix {
+                    a: behind.a * start.a + behind.b * start.c,
+                    b: behind.a * start.b + behind.b * start.d,
+                    c: behind.c * start.a + behind.d * start.c,
+                    d: behind.c * start.b + behind.d * start.d,
+                };
+                let z = -rear.b / rear.d;
+                exp = Some(last_z + z);
+                exp_m = Some(rear.a + z * rear.c);
+            } else {
+                exp = Some(self.elements[stop].vertex_z_mm);
+                exp_m = Some(1.0);
+            }
+        }
+        FirstOrder {
+            wavelength_nm: None,
+            efl_mm: efl,
+            bfl_mm: bfl,
+            ffl_mm: ffl,
+            rear_principal_z_mm: last_z + bfl - efl,
+            front_principal_z_mm: ffl + front_focal,
+            entrance_pupil_z_mm: enp,
+            exit_pupil_z_mm: exp,
+            entrance_pupil_magnification: enp_m,
+            exit_pupil_magnification: exp_m,
+        }
+    }
+
+    /// Where the paraxial image of an axial point lies, mm behind the last vertex; the point is
+    /// `object_mm` in front of the first vertex (infinity allowed).
+    #[must_use]
+    pub fn paraxial_image_gap_mm(&self, object_mm: f64, wavelength_nm: f64) -> f64 {
+        let m = self.matrix(0..self.elements.len(), &|medium| self.index(medium, wavelength_nm));
+        // A ray from the point with slope s: height object s at the first vertex.
+        let (height, slope) = if object_mm.is_finite() {
+            (m.a * object_mm + m.b, m.c * object_mm + m.d)
+        } else {
+            (m.a, m.c)
+        };
+        -height / slope
+    }
+
+    /// Lateral magnification of an object `object_mm` in front of the first vertex (negative: upside down).
+    #[must_use]
+    pub fn paraxial_magnification(&self, object_mm: f64, wavelength_nm: f64) -> f64 {
+        let m = self.matrix(0..self.elements.len(), &|medium| self.index(medium, wavelength_nm));
+        let gap = self.paraxial_image_gap_mm(object_mm, wavelength_nm);
+        m.a + gap * m.c
+    }
+}

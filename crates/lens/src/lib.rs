@@ -1,0 +1,21 @@
+//! Lens prescriptions, tracing, first-order optics, focus and stop.
+//!
+//! A [`Lens`] is what a file states; a [`Tracer`] is a lens made ready for one band of light. Rays
+//! enter a tracer in the frame of the lens (vertex of the first surface at the origin) and leave it
+//! in the frame of the image plane (z = 0 there); backward it is the other way round.
+
+mod aim;
+mod aperture;
+mod first_order;
+mod focus;
+mod lens;
+mod prescription;
+mod tracer;
+
+pub use aim::{FrontDisk, RearPupil};
+pub use aperture::{ApertureError, MarginalRay};
+pub use focus::FocusError;
+pub use first_order::FirstOrder;
+pub use lens::{Element, Lens, LensMedium};
+pub use prescription::{load, parse};
+pub use tracer::{Indices, RayPath, Tracer, Travel, Work};

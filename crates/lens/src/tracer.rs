@@ -1,0 +1,270 @@
+//! Sequential tracing of whole batches, in either sense.
+
+use crate::{Element, Lens};
+use glam::DVec3;
+use spectra_core::batch::Column;
+use spectra_core::isa::{Isa, Vectorized};
+use spectra_core::surface::{IndexColumns, Interface};
+use spectra_core::{Loss, LossCounts, RayBatch};
+use spectra_glass::{Dispersion, DispersionError, Medium};
+
+/// Which refractive indices a tracer uses.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Indices {
+    /// Those of each ray's wavelength, over this band, nm.
+    Band {
+        /// Shortest wavelength, nm.
+        min_nm: f64,
+        /// Longest, nm.
+        max_nm: f64,
+    },
+    /// Every medium at the index that the prescription states, where it does.
+    Stated,
+    /// Every medium at this wavelength, nm, whatever the ray's own is.
+    At(f64),
+}
+
+/// Sense of travel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Travel {
+    /// From the object to the imager.
+    Forward,
+    /// From the imager to the object.
+    Backward,
+}
+
+/// A lens made ready for one band of light.
+#[derive(Debug)]
+pub struct Tracer {
+    elements: Vec<Element>,
+    image_z_mm: f64,
+    media: Vec<Dispersion>,
+    isa: Isa,
+}
+
+/// What one thread needs to trace: index columns, and what was lost.
+#[derive(Debug)]
+pub struct Work {
+    media: Vec<IndexColumnPair>,
+    /// Rays lost so far, by cause and surface.
+    pub losses: LossCounts,
+    compact: bool,
+}
+
+/// One ray, surface by surface.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RayPath {
+    /// The start, then the point on each surface that it met, mm, frame of the lens.
+    pub points: Vec<DVec3>,
+    /// Direction behind the last surface it passed.
+    pub direction: DVec3,
+    /// Why and where it ended, if it did.
+    pub end: Option<(Loss, u32)>,
+}
+
+impl Tracer {
+    /// Makes a lens ready.
+    ///
+    /// # Errors
+    /// A medium has no usable index somewhere in the band.
+    pub fn new(lens: &Lens, indices: Indices, isa: Isa) -> Result<Self, DispersionError> {
+        let media = lens
+            .media
+            .iter()
+            .map(|m| match indices {
+                Indices::Band { min_nm, max_nm } => Dispersion::fit(&m.medium, min_nm, max_nm),
+                Indices::Stated => {
+                    let nd = m.stated_nd.unwrap_or_else(|| m.medium.index(lens.reference_nm));
+                    Dispersion::fit(&Medium::Constant(nd), 350.0, 830.0)
+                }
+                Indices::At(wavelength_nm) => Dispersion::fit(&Medium::Constant(m.medium.index(wavelength_nm)), 350.0, 830.0),
+            })
+            .collect::<Result<_, _>>()?;
+        Ok(Self { elements: lens.elements.clone(), image_z_mm: lens.image_z_mm(), media, isa })
+    }
+
+    /// The instruction set in use.
+    #[must_use]
+    pub fn isa(&self) -> Isa {
+        self.isa
+    }
+
+    /// Number of surfaces, the stop included, the image plane not.
+    #[must_use]
+    pub fn surfaces(&self) -> usize {
+        self.elements.len()
+    }
+
+    /// Scratch space for batches of up to `capacity` rays. Rays that end are dropped from the batch
+    /// once they are the most of it.
+    #[must_use]
+    pub fn work(&self, capacity: usize) -> Work {
+        let media = self.media.iter().map(|medium| IndexColumnPair::new(medium, capacity)).collect();
+        Work { media, losses: LossCounts::default(), compact: true }
+    }
+
+    /// The same, but no ray leaves its place in the batch.
+    #[must_use]
+    pub fn work_in_place(&self, capacity: usize) -> Work {
+        Work { compact: false, ..self.work(capacity) }
+    }
+
+    /// Traces a batch through the whole lens. Forward, it enters in the frame of the lens and leaves
+    /// in that of the image plane; backward the other way round.
+    pub fn trace(&self, rays: &mut RayBatch, work: &mut Work, travel: Travel) {
+        self.refractive_indices(rays, work);
+        // `origin` is the place, along the axis of the lens, of the frame that the rays are in.
+        let mut origin = if travel == Travel::Forward { 0.0 } else { self.image_z_mm };
+        let mut alive = rays.len();
+        for step in 0..self.elements.len() {
+            let at = if travel == Travel::Forward { step } else { self.elements.len() - 1 - step };
+            let element = &self.elements[at];
+            let (before, after) = match travel {
+                Travel::Forward => (element.medium_before, element.medium_after),
+                Travel::Backward => (element.medium_after, element.medium_before),
+            };
+            let number = at as u32 + 1;
+            let len = rays.len();
+            let interface = Interface {
+                number,
+                shift_mm: element.vertex_z_mm - origin,
+                clip_radius2_mm2: element.semi_diameter_mm.map_or(f64::INFINITY, |s| s * s),
+                action: element.action,
+                before: columns(&work.media[before], len),
+                after: columns(&work.media[after], len),
+            };
+            let ended = element.surface.interact(rays, &interface, self.isa);
+            origin = element.vertex_z_mm;
+            rays.set_surface(number);
+            if ended > 0 {
+                self.count(rays, number, &mut work.losses);
+                alive -= ended;
+                if work.compact && alive * 2 < rays.len() {
+                    rays.compact();
+                    self.refractive_indices(rays, work);
+                }
+            }
+        }
+        let outside = match travel {
+            Travel::Forward => self.elements.last().map_or(0, |e| e.medium_after),
+            Travel::Backward => self.elements.first().map_or(0, |e| e.medium_before),
+        };
+        let end = if travel == Travel::Forward { self.image_z_mm } else { 0.0 };
+        let len = rays.len();
+        let c = rays.columns_mut();
+        c.index.copy_from_slice(work.media[outside].n.slice(len));
+        for z in c.z.iter_mut() {
+            *z += origin - end;
+        }
+    }
+
+    /// Follows one ray forward, surface by surface: for drawings and searches, not for light.
+    ///
+    /// `position` (mm) and the unit `direction` are in the frame of the lens; so are the points.
+    #[must_use]
+    pub fn path(&self, position: DVec3, direction: DVec3, wavelength_nm: f64) -> RayPath {
+        let mut rays = RayBatch::new(1);
+        rays.restart(1);
+        let c = rays.columns_mut();
+        (c.x[0], c.y[0], c.z[0]) = position.into();
+        (c.l[0], c.m[0], c.n[0]) = direction.into();
+        c.wavelength_nm[0] = wavelength_nm;
+        let mut work = self.work_in_place(1);
+        self.refractive_indices(&rays, &mut work);
+        let mut path = RayPath { points: vec![position], direction, end: None };
+        let mut origin = 0.0;
+        for (at, element) in self.elements.iter().enumerate() {
+            let interface = Interface {
+                number: at as u32 + 1,
+                shift_mm: element.vertex_z_mm - origin,
+                clip_radius2_mm2: element.semi_diameter_mm.map_or(f64::INFINITY, |s| s * s),
+                action: element.action,
+                before: columns(&work.media[element.medium_before], 1),
+                after: columns(&work.media[element.medium_after], 1),
+            };
+            element.surface.interact(&mut rays, &interface, Isa::Baseline);
+            origin = element.vertex_z_mm;
+            let ([x, y, z], [l, m, n]) = (rays.positions(), rays.directions());
+            path.end = rays.loss(0);
+            if path.end.is_none_or(|(cause, _)| cause == Loss::Vignetted) {
+                path.points.push(DVec3::new(x[0], y[0], z[0] + origin));
+            }
+            if path.end.is_some() {
+                break;
+            }
+            path.direction = DVec3::new(l[0], m[0], n[0]);
+        }
+        path
+    }
+
+    fn refractive_indices(&self, rays: &RayBatch, work: &mut Work) {
+        let len = rays.len();
+        for (medium, columns) in self.media.iter().zip(&mut work.media) {
+            if !columns.constant {
+                let (n, inverse) = (columns.n.slice_mut(len), columns.inverse.slice_mut(len));
+                self.isa.run(Evaluate { medium, wavelength_nm: rays.wavelengths_nm(), n, inverse });
+            }
+        }
+    }
+
+    fn count(&self, rays: &RayBatch, number: u32, losses: &mut LossCounts) {
+        for cause in [Loss::Missed, Loss::Vignetted, Loss::TotalReflection, Loss::Absorbed] {
+            let many = self.isa.run(Count { states: rays.states(), state: cause.state(number) });
+            if many > 0 {
+                losses.add(cause, number, many);
+            }
+        }
+    }
+}
+
+/// Index and inverse index of one medium, for each ray of a batch.
+#[derive(Debug)]
+struct IndexColumnPair {
+    n: Column<f64>,
+    inverse: Column<f64>,
+    /// Air, or an index held: written once, true for every batch.
+    constant: bool,
+}
+
+impl IndexColumnPair {
+    fn new(medium: &Dispersion, capacity: usize) -> Self {
+        let (mut n, mut inverse) = (Column::new(capacity), Column::new(capacity));
+        if let Some(index) = medium.constant() {
+            n.slice_mut(capacity).fill(index);
+            inverse.slice_mut(capacity).fill(1.0 / index);
+        }
+        Self { n, inverse, constant: medium.constant().is_some() }
+    }
+}
+
+fn columns(medium: &IndexColumnPair, len: usize) -> IndexColumns<'_> {
+    IndexColumns { n: medium.n.slice(len), inverse: medium.inverse.slice(len) }
+}
+
+struct Evaluate<'a> {
+    medium: &'a Dispersion,
+    wavelength_nm: &'a [f64],
+    n: &'a mut [f64],
+    inverse: &'a mut [f64],
+}
+
+impl Vectorized for Evaluate<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run(self) {
+        self.medium.index_and_inverse(self.wavelength_nm, self.n, self.inverse);
+    }
+}
+
+struct Count<'a> {
+    states: &'a [u64],
+    state: u64,
+}
+
+impl Vectorized for Count<'_> {
+    type Output = u64;
+    #[inline(always)]
+    fn run(self) -> u64 {
+        self.states.iter().map(|s| u64::from(*s == self.state)).sum()
+    }
+}

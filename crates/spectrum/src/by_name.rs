@@ -1,0 +1,400 @@
+//! Finds a spectrum by what a person writes for it.
+//!
+//! | written | means |
+//! |---|---|
+//! | `D65`, `mercury`, `v-lambda-1924` | a bundled file; case, spaces, hyphens and underscores do not matter |
+//! | `colorchecker#dark-skin` | a column of a file of several |
+//! | `spectra/illuminants/A.csv`, `mine.csv`, `mine.csv#red` | a file, beside the scene first, then bundled |
+//! | `blackbody:5800` | radiance of a black body of that many kelvin |
+//! | `daylight:5500` | CIE daylight of that correlated color temperature, K |
+//! | `line:C'`, `line:632.8` | one line, by its letter or its wavelength in nm |
+//! | `gaussian:550,20` | center and standard deviation, nm |
+//! | `rectangle:500,600` | 1 between two wavelengths, nm |
+//! | `constant:0.18` | the same value everywhere |
+//!
+//! A Gaussian, a rectangle or a constant is whatever is wanted: light, filter, surface or detector.
+
+use std::fs;
+use std::io::Read as _;
+
+use spectra_core::resources::{ResourceError, Resources};
+use spectra_core::spectral::Line;
+
+use crate::emission::Emission;
+use crate::error::SpectrumError;
+use crate::filter::{Reflectance, Sensitivity, Transmittance};
+use crate::illuminants::daylight;
+use crate::lines::named_line;
+use crate::meta::Kind;
+use crate::names::{candidates, normalized};
+use crate::shape::Shape;
+use crate::table::{MAX_BYTES, Table};
+
+/// A spectrum of any kind.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Found {
+    /// Light.
+    Emission(Emission),
+    /// A filter.
+    Transmittance(Transmittance),
+    /// A surface.
+    Reflectance(Reflectance),
+    /// A detector.
+    Sensitivity(Sensitivity),
+}
+
+impl Found {
+    /// Its kind.
+    #[must_use]
+    pub fn kind(&self) -> Kind {
+        match self {
+            Self::Emission(_) => Kind::Emission,
+            Self::Transmittance(_) => Kind::Transmittance,
+            Self::Reflectance(_) => Kind::Reflectance,
+            Self::Sensitivity(_) => Kind::Sensitivity,
+        }
+    }
+}
+
+/// Where bundled spectra lie that can be named without their folder.
+const FOLDERS: [&str; 6] = [
+    "spectra/illuminants/",
+    "spectra/lamps/",
+    "spectra/reflectances/",
+    "spectra/transmittances/",
+    "spectra/cie/",
+    "spectra/film/",
+];
+
+/// Bundled spectra that can be named: (name, path in the bundled data), in the order of the folders.
+pub fn bundled_spectra() -> impl Iterator<Item = (&'static str, &'static str)> {
+    FOLDERS.into_iter().flat_map(|folder| {
+        spectra_data::list(folder).filter_map(move |path| {
+            let name = path.strip_prefix(folder)?.strip_suffix(".csv")?;
+            Some((name.rsplit('/').next().unwrap_or(name), path))
+        })
+    })
+}
+
+/// The spectrum `name`; files are looked up in the working directory, then among the bundled data.
+///
+/// A shape that could be of any kind is taken as light; see [`find_transmittance`] and its like.
+///
+/// # Errors
+/// [`SpectrumError`]: an unknown name with near ones, a faulty file with row and column, a file of several columns of
+/// which none is chosen.
+pub fn find(name: &str) -> Result<Found, SpectrumError> {
+    load(name, None, Kind::Emission)
+}
+
+/// The spectrum `name`; files are looked up by `files`, beside the scene.
+///
+/// # Errors
+/// As [`find`].
+pub fn find_in(name: &str, files: &dyn Resources) -> Result<Found, SpectrumError> {
+    load(name, Some(files), Kind::Emission)
+}
+
+macro_rules! typed {
+    ($plain:ident, $with:ident, $kind:ident, $what:literal) => {
+        #[doc = concat!("The ", $what, " `name`; see [`find`].")]
+        ///
+        /// # Errors
+        /// As [`find`], and [`SpectrumError::WrongKind`].
+        pub fn $plain(name: &str) -> Result<$kind, SpectrumError> {
+            of_kind(name, load(name, None, Kind::$kind)?)
+        }
+
+        #[doc = concat!("The ", $what, " `name`; see [`find_in`].")]
+        ///
+        /// # Errors
+        /// As [`find`], and [`SpectrumError::WrongKind`].
+        pub fn $with(name: &str, files: &dyn Resources) -> Result<$kind, SpectrumError> {
+            of_kind(name, load(name, Some(files), Kind::$kind)?)
+        }
+
+        impl TryFrom<Found> for $kind {
+            type Error = Kind;
+            /// The spectrum, or the kind that it is.
+            fn try_from(found: Found) -> Result<Self, Kind> {
+                match found {
+                    Found::$kind(it) => Ok(it),
+                    other => Err(other.kind()),
+                }
+            }
+        }
+
+        impl OfKind for $kind {
+            const KIND: Kind = Kind::$kind;
+        }
+    };
+}
+
+typed!(find_emission, find_emission_in, Emission, "light");
+typed!(
+    find_transmittance,
+    find_transmittance_in,
+    Transmittance,
+    "filter"
+);
+typed!(
+    find_reflectance,
+    find_reflectance_in,
+    Reflectance,
+    "surface"
+);
+typed!(
+    find_sensitivity,
+    find_sensitivity_in,
+    Sensitivity,
+    "detector"
+);
+
+trait OfKind: TryFrom<Found, Error = Kind> {
+    const KIND: Kind;
+}
+
+fn of_kind<T: OfKind>(name: &str, found: Found) -> Result<T, SpectrumError> {
+    let wrong = |kind: Kind| SpectrumError::WrongKind {
+        name: name.into(),
+        found: kind.word(),
+        wanted: T::KIND.word(),
+    };
+    T::try_from(found).map_err(wrong)
+}
+
+fn load(name: &str, files: Option<&dyn Resources>, wanted: Kind) -> Result<Found, SpectrumError> {
+    let name = name.trim();
+    if let Some((head, arguments)) = name.split_once(':')
+        && let Some(found) = inline(name, head.trim(), arguments.trim(), wanted)
+    {
+        return found;
+    }
+    let (file, column) = match name.rsplit_once('#') {
+        Some((file, column)) => (file.trim(), Some(column.trim())),
+        None => (name, None),
+    };
+    from_table(name, &table(file, files, wanted)?, column)
+}
+
+/// An inline spectrum; `None` if `head` is none of them.
+fn inline(
+    text: &str,
+    head: &str,
+    arguments: &str,
+    wanted: Kind,
+) -> Option<Result<Found, SpectrumError>> {
+    let fault = |wanted| SpectrumError::Inline {
+        text: text.chars().take(80).collect(),
+        wanted,
+    };
+    let one = |help| {
+        numbers(arguments)
+            .and_then(|n| <[f64; 1]>::try_from(n).ok())
+            .ok_or_else(|| fault(help))
+    };
+    let two = |help| {
+        numbers(arguments)
+            .and_then(|n| <[f64; 2]>::try_from(n).ok())
+            .ok_or_else(|| fault(help))
+    };
+    Some(match head.to_ascii_lowercase().as_str() {
+        "blackbody" => one("write a temperature in kelvin, such as blackbody:5800")
+            .and_then(|[k]| Emission::blackbody(k))
+            .map(Found::Emission),
+        "daylight" => one("write a temperature in kelvin, such as daylight:5500")
+            .and_then(|[k]| daylight(k))
+            .map(Found::Emission),
+        "line" => named_line(arguments)
+            .map(|l| [l.nominal_nm])
+            .map_or_else(
+                || one("write a letter or a wavelength in nm, such as line:C' or line:632.8"),
+                Ok,
+            )
+            .and_then(|[nm]| Emission::line(nm, 1.0))
+            .map(Found::Emission),
+        "gaussian" => two("write center and standard deviation in nm, such as gaussian:550,20")
+            .and_then(|[center, sigma]| Shape::gaussian(center, sigma))
+            .and_then(|shape| of_shape(shape, wanted)),
+        "rectangle" => two("write two wavelengths in nm, such as rectangle:500,600")
+            .and_then(|[from, to]| Shape::rectangle(from, to))
+            .and_then(|shape| of_shape(shape, wanted)),
+        "constant" => {
+            one("write a value, such as constant:0.18").and_then(|[value]| constant(value, wanted))
+        }
+        _ => return None,
+    })
+}
+
+fn numbers(text: &str) -> Option<Vec<f64>> {
+    text.split(',')
+        .map(|n| n.trim().parse().ok().filter(|v: &f64| v.is_finite()))
+        .collect()
+}
+
+/// A shape of peak 1, as what is wanted.
+fn of_shape(shape: Shape, wanted: Kind) -> Result<Found, SpectrumError> {
+    Ok(match wanted {
+        Kind::Transmittance => Found::Transmittance(Transmittance::from_unit(shape)),
+        Kind::Reflectance => Found::Reflectance(Reflectance::from_unit(shape)),
+        Kind::Sensitivity => Found::Sensitivity(Sensitivity::from_unit(shape)),
+        _ => Found::Emission(Emission::new(Some(shape), Vec::new())?),
+    })
+}
+
+fn constant(value: f64, wanted: Kind) -> Result<Found, SpectrumError> {
+    Ok(match wanted {
+        Kind::Transmittance => Found::Transmittance(Transmittance::constant(value)?),
+        Kind::Reflectance => Found::Reflectance(Reflectance::constant(value)?),
+        Kind::Sensitivity => Found::Sensitivity(Sensitivity::constant(value)?),
+        _ => Found::Emission(Emission::constant(value)?),
+    })
+}
+
+/// The table of a bundled name, or of a file.
+fn table(name: &str, files: Option<&dyn Resources>, wanted: Kind) -> Result<Table, SpectrumError> {
+    let is_file = name.ends_with(".csv") || name.contains(['/', '\\']);
+    if !is_file {
+        let key = normalized(name);
+        let fluorescent = key
+            .strip_prefix('f')
+            .filter(|n| n.starts_with(|c: char| c.is_ascii_digit()));
+        let key = fluorescent.map_or(key.clone(), |n| format!("fl{n}"));
+        if let Some((_, path)) = bundled_spectra().find(|(n, _)| normalized(n) == key) {
+            return Ok(Table::parse_bytes(
+                path,
+                spectra_data::get(path).unwrap_or_default(),
+                None,
+            )?);
+        }
+        return Err(unknown(name));
+    }
+    let (shown, bytes) = match files {
+        Some(files) => read_resource(name, files)?,
+        None => read_file(name)?,
+    };
+    Ok(Table::parse_bytes(&shown, &bytes, Some(wanted))?)
+}
+
+fn unknown(name: &str) -> SpectrumError {
+    const INLINE: [&str; 6] = [
+        "blackbody:5800",
+        "daylight:5500",
+        "line:C'",
+        "gaussian:550,20",
+        "rectangle:500,600",
+        "constant:1",
+    ];
+    let head = |text: &'static str| text.split_once(':').map_or(text, |(head, _)| head);
+    let near = match name.split_once(':') {
+        Some((wanted, _)) => candidates(wanted, INLINE.into_iter().map(head)),
+        None => candidates(
+            name,
+            bundled_spectra()
+                .map(|(n, _)| n)
+                .chain(INLINE.into_iter().map(head)),
+        ),
+    };
+    let example = |n: String| {
+        INLINE
+            .into_iter()
+            .find(|i| head(i) == n)
+            .map_or(n, str::to_owned)
+    };
+    SpectrumError::Unknown {
+        name: name.chars().take(80).collect(),
+        candidates: near.into_iter().map(example).collect(),
+    }
+}
+
+fn read_resource(name: &str, files: &dyn Resources) -> Result<(String, Vec<u8>), SpectrumError> {
+    match files.read(name, &["spectra"], &[".csv"], MAX_BYTES) {
+        Ok(resource) => Ok((resource.name, resource.bytes.into_owned())),
+        Err(ResourceError::NotFound(candidates)) => Err(SpectrumError::Unknown {
+            name: name.into(),
+            candidates,
+        }),
+        Err(other) => Err(SpectrumError::Io {
+            name: name.into(),
+            cause: other.to_string(),
+        }),
+    }
+}
+
+fn read_file(name: &str) -> Result<(String, Vec<u8>), SpectrumError> {
+    let io = |cause: String| SpectrumError::Io {
+        name: name.into(),
+        cause,
+    };
+    let file = match fs::File::open(name) {
+        Ok(file) => file,
+        Err(error) => {
+            return match spectra_data::get(name) {
+                Some(bytes) => Ok((name.into(), bytes.to_vec())),
+                None if error.kind() == std::io::ErrorKind::NotFound => Err(unknown(name)),
+                None => Err(io(error.to_string())),
+            };
+        }
+    };
+    let mut bytes = Vec::new();
+    file.take(MAX_BYTES + 1)
+        .read_to_end(&mut bytes)
+        .map_err(|e| io(e.to_string()))?;
+    if bytes.len() as u64 > MAX_BYTES {
+        return Err(io(format!("more than {MAX_BYTES} bytes")));
+    }
+    Ok((name.into(), bytes))
+}
+
+fn from_table(name: &str, table: &Table, column: Option<&str>) -> Result<Found, SpectrumError> {
+    let index = match column {
+        None if table.columns.len() == 1 => 0,
+        None => {
+            return Err(SpectrumError::Ambiguous {
+                name: name.into(),
+                columns: table.columns.clone(),
+            });
+        }
+        Some(wanted) => {
+            let key = normalized(wanted);
+            let at = table.columns.iter().position(|c| normalized(c) == key);
+            at.ok_or_else(|| SpectrumError::NoColumn {
+                name: table.file.clone(),
+                column: wanted.chars().take(80).collect(),
+                columns: table.columns.clone(),
+            })?
+        }
+    };
+    let values = table.column_at(index);
+    Ok(match table.kind {
+        Kind::Emission => Found::Emission(Emission::tabulated(values)?),
+        Kind::Lines => {
+            let lines = values.wavelengths_nm().iter().zip(values.values());
+            let lines = lines
+                .map(|(w, p)| Line {
+                    wavelength_nm: *w,
+                    power: *p,
+                })
+                .collect();
+            Found::Emission(Emission::new(None, lines)?)
+        }
+        Kind::Transmittance => Found::Transmittance(Transmittance::from_checked(values)),
+        Kind::Reflectance => Found::Reflectance(Reflectance::from_checked(values)),
+        Kind::Sensitivity => Found::Sensitivity(Sensitivity::from_checked(values)),
+        // A function that is nowhere negative can be seen with; the others have no meaning as a detector.
+        Kind::ColorMatching if values.extremes().0 >= 0.0 => {
+            Found::Sensitivity(Sensitivity::from_checked(values))
+        }
+        Kind::ColorMatching | Kind::Components => {
+            let (found, wanted) = (
+                table.kind.word(),
+                "emission, transmittance, reflectance or sensitivity",
+            );
+            return Err(SpectrumError::WrongKind {
+                name: name.into(),
+                found,
+                wanted,
+            });
+        }
+    })
+}

@@ -1,0 +1,201 @@
+//! The CIE's observers: color-matching functions and luminous efficiency.
+//!
+//! The tables are the CIE's, by 1 nm: 360-830 nm for 1931 and 1964, 390-830 nm for 2015. The band of light here begins
+//! at 350 nm, so below its first wavelength each function falls on at the mean logarithmic rate of its first ten
+//! nanometres ([`crate::Outside::Geometric`]): for the 1931 observer a factor of about 3.2 in ten nanometres. All of
+//! what lies below 360 nm adds 1e-5 to the X of equal-energy light.
+
+use std::sync::{Arc, OnceLock};
+
+use spectra_core::spectral::{BAND, Grid, SpectralPower};
+
+use crate::bundled;
+use crate::emission::Emission;
+use crate::filter::Sensitivity;
+use crate::tabulated::Tabulated;
+
+/// A standard observer: three color-matching functions.
+#[derive(Clone, Debug)]
+pub struct Observer {
+    name: &'static str,
+    functions: [Tabulated; 3],
+    band: [Vec<f64>; 3],
+}
+
+impl Observer {
+    fn load(name: &'static str, path: &str) -> Self {
+        let table = bundled::table(path);
+        let functions = [0, 1, 2].map(|i| table.column_at(i));
+        let band = [0, 1, 2].map(|i| BAND.wavelengths_nm().map(|w| functions[i].at(w)).collect());
+        Self {
+            name,
+            functions,
+            band,
+        }
+    }
+
+    /// CIE 1931, field of 2 degrees: the one meant where nothing else is said.
+    pub fn cie_1931_2deg() -> &'static Self {
+        static ONE: OnceLock<Observer> = OnceLock::new();
+        ONE.get_or_init(|| Self::load("CIE 1931 2 deg", "spectra/cie/cie-1931-2deg.csv"))
+    }
+
+    /// CIE 1964, field of 10 degrees.
+    pub fn cie_1964_10deg() -> &'static Self {
+        static ONE: OnceLock<Observer> = OnceLock::new();
+        ONE.get_or_init(|| Self::load("CIE 1964 10 deg", "spectra/cie/cie-1964-10deg.csv"))
+    }
+
+    /// CIE 2015 (from cone fundamentals), field of 2 degrees.
+    pub fn cie_2015_2deg() -> &'static Self {
+        static ONE: OnceLock<Observer> = OnceLock::new();
+        ONE.get_or_init(|| Self::load("CIE 2015 2 deg", "spectra/cie/cie-2015-2deg.csv"))
+    }
+
+    /// CIE 2015 (from cone fundamentals), field of 10 degrees.
+    pub fn cie_2015_10deg() -> &'static Self {
+        static ONE: OnceLock<Observer> = OnceLock::new();
+        ONE.get_or_init(|| Self::load("CIE 2015 10 deg", "spectra/cie/cie-2015-10deg.csv"))
+    }
+
+    /// The CIE RGB functions of 1931 (primaries 700, 546.1 and 435.8 nm), with their negative lobes; every 5 nm from
+    /// 380 to 780 nm, 0 beyond.
+    pub fn cie_rgb_1931() -> &'static Self {
+        static ONE: OnceLock<Observer> = OnceLock::new();
+        ONE.get_or_init(|| Self::load("CIE RGB 1931", "spectra/cie/cie-rgb-1931.csv"))
+    }
+
+    /// How people call it.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        self.name
+    }
+
+    /// The three functions at `wavelength_nm`.
+    #[must_use]
+    pub fn at(&self, wavelength_nm: f64) -> [f64; 3] {
+        [0, 1, 2].map(|i| self.functions[i].at(wavelength_nm))
+    }
+
+    /// The three functions on `grid`.
+    #[must_use]
+    pub fn on_grid(&self, grid: &Grid) -> [Vec<f64>; 3] {
+        if *grid == BAND {
+            return self.band.clone();
+        }
+        [0, 1, 2].map(|i| {
+            grid.wavelengths_nm()
+                .map(|w| self.functions[i].at(w))
+                .collect()
+        })
+    }
+
+    /// The integral of `light` times each function over 350-830 nm, lines included; no factor.
+    ///
+    /// Times 683 lm/W, and of a radiance in W m^-2 sr^-1 nm^-1, Y is a luminance in cd/m^2.
+    #[must_use]
+    pub fn xyz(&self, light: &Emission) -> [f64; 3] {
+        self.xyz_of_power(&light.to_power(&BAND))
+    }
+
+    /// The same of light on a grid: the sum over its points times the step, as the CIE prescribes at 1 nm (CIE 15:2004,
+    /// 7.1), and the lines, each at its own wavelength.
+    ///
+    /// The integral of the piecewise linear functions ([`SpectralPower::seen_by`]) differs by 5e-5 for a smooth surface.
+    #[must_use]
+    pub fn xyz_of_power(&self, light: &SpectralPower) -> [f64; 3] {
+        let elsewhere = (light.grid != BAND).then(|| self.on_grid(&light.grid));
+        let functions = elsewhere.as_ref().unwrap_or(&self.band);
+        let mut xyz = [0, 1, 2].map(|i| {
+            let sum: f64 = light
+                .continuum
+                .iter()
+                .zip(&functions[i])
+                .map(|(p, f)| p * f)
+                .sum();
+            sum * light.grid.step_nm
+        });
+        for line in light
+            .lines
+            .iter()
+            .filter(|l| light.grid.contains(l.wavelength_nm))
+        {
+            let at = self.at(line.wavelength_nm);
+            (0..3).for_each(|i| xyz[i] += line.power * at[i]);
+        }
+        xyz
+    }
+}
+
+/// Luminous efficiency for photopic vision, V(lambda) of the CIE 1924; the y function of the 1931 observer.
+#[must_use]
+pub fn v_lambda() -> Sensitivity {
+    Sensitivity::from_checked(bundled::table("spectra/cie/v-lambda-1924.csv").column_at(0))
+}
+
+/// Luminous efficiency for scotopic vision, V'(lambda) of the CIE 1951.
+#[must_use]
+pub fn v_prime() -> Sensitivity {
+    Sensitivity::from_checked(bundled::table("spectra/cie/v-prime-1951.csv").column_at(0))
+}
+
+/// Mean and characteristic vectors S0, S1 and S2 of daylight (CIE 15:2004, table T.2).
+pub(crate) fn daylight_components() -> &'static [Tabulated; 3] {
+    static ONE: OnceLock<Arc<[Tabulated; 3]>> = OnceLock::new();
+    ONE.get_or_init(|| {
+        let table = bundled::table("spectra/cie/daylight-components.csv");
+        Arc::new([0, 1, 2].map(|i| table.column_at(i)))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// CIE 018:2019: V(555 nm) = 1; the 1931 functions have equal sums (their chromaticity of E is 1/3, 1/3).
+    #[test]
+    fn functions_are_those_of_the_cie() {
+        let o = Observer::cie_1931_2deg();
+        assert_eq!(o.at(555.0)[1], 1.0);
+        assert_eq!(o.at(575.0), [0.8425, 0.9154, 0.0018]);
+        let sums = [0, 1, 2].map(|i| o.band[i].iter().sum::<f64>());
+        for s in sums {
+            assert!((s - 106.87).abs() < 0.03, "{sums:?}");
+        }
+        let v = v_lambda();
+        for w in [380.0, 450.5, 555.0, 700.0] {
+            assert!((v.at(w) - o.at(w)[1]).abs() < 1e-9, "{w}");
+        }
+        assert_eq!(v_prime().at(507.0), 1.0);
+    }
+
+    /// The CIE RGB functions at 575 nm, W. D. Wright and J. Guild.
+    #[test]
+    fn cie_rgb_has_its_negative_lobe() {
+        let rgb = Observer::cie_rgb_1931().at(575.0);
+        for (got, want) in rgb.into_iter().zip([0.2072, 0.1543, -0.0012]) {
+            assert!((got - want).abs() <= 1e-4, "{rgb:?}");
+        }
+        assert!(Observer::cie_rgb_1931().at(500.0)[0] < -0.07);
+    }
+
+    #[test]
+    fn below_the_table_functions_fall_smoothly_toward_350_nm() {
+        for o in [
+            Observer::cie_1931_2deg(),
+            Observer::cie_1964_10deg(),
+            Observer::cie_2015_2deg(),
+            Observer::cie_2015_10deg(),
+        ] {
+            for f in &o.functions {
+                let first = f.range_nm().0;
+                let (end, below) = (f.at(first), f.at(first - 0.5));
+                assert!(below > 0.8 * end && below < end, "{} {below} {end}", o.name);
+                assert!(f.at(350.0) > 0.0 && f.at(350.0) < 0.4 * end, "{}", o.name);
+            }
+        }
+        let o = Observer::cie_1931_2deg();
+        let added: f64 = (350..360).map(|w| o.at(f64::from(w))[0]).sum();
+        assert!(added / 106.87 < 1.2e-5, "{added}");
+    }
+}

@@ -1,0 +1,102 @@
+//! What can be wrong with a spectrum that is not read from a file.
+
+use crate::table::TableError;
+
+/// A spectrum that cannot be.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SpectrumError {
+    /// A parameter outside of its range.
+    #[error("{what} must be {wanted}, not {value}")]
+    OutOfRange {
+        /// The parameter, with its unit.
+        what: &'static str,
+        /// What it may be.
+        wanted: &'static str,
+        /// What it was.
+        value: f64,
+    },
+    /// Light that a scale refers to is absent: no luminance, or no power.
+    #[error("the spectrum has no {0} to scale")]
+    NothingToScale(&'static str),
+    /// A name that nothing bears.
+    #[error("no spectrum is called `{name}`{}", near(.candidates))]
+    Unknown {
+        /// The name asked for.
+        name: String,
+        /// Names that resemble it, best first.
+        candidates: Vec<String>,
+    },
+    /// An inline spectrum such as `gaussian:550,20` with wrong arguments.
+    #[error("`{text}` is not understood: {wanted}")]
+    Inline {
+        /// What was written.
+        text: String,
+        /// How to write it.
+        wanted: &'static str,
+    },
+    /// A file of several spectra where one is wanted.
+    #[error("`{name}` holds {}; write `{name}#{}`", .columns.join(", "), .columns[0])]
+    Ambiguous {
+        /// The file or bundled name.
+        name: String,
+        /// Its columns.
+        columns: Vec<String>,
+    },
+    /// A column that the file does not hold.
+    #[error("`{name}` has no column `{column}`; it has {}", .columns.join(", "))]
+    NoColumn {
+        /// The file or bundled name.
+        name: String,
+        /// The column asked for.
+        column: String,
+        /// Its columns.
+        columns: Vec<String>,
+    },
+    /// A spectrum of one kind where another is wanted: a light as a filter.
+    #[error("`{name}` is of kind {found}, but {wanted} is wanted here")]
+    WrongKind {
+        /// The name asked for.
+        name: String,
+        /// Its kind.
+        found: &'static str,
+        /// The kind wanted.
+        wanted: &'static str,
+    },
+    /// A file that cannot be read.
+    #[error("{name}: {cause}")]
+    Io {
+        /// The file.
+        name: String,
+        /// The system's word.
+        cause: String,
+    },
+    /// A table with a fault.
+    #[error(transparent)]
+    Table(#[from] TableError),
+}
+
+fn near(candidates: &[String]) -> String {
+    if candidates.is_empty() {
+        String::new()
+    } else {
+        format!("; near: {}", candidates.join(", "))
+    }
+}
+
+/// `value` if `test` holds and it is finite.
+pub(crate) fn check(
+    what: &'static str,
+    wanted: &'static str,
+    value: f64,
+    test: impl Fn(f64) -> bool,
+) -> Result<f64, SpectrumError> {
+    if value.is_finite() && test(value) {
+        Ok(value)
+    } else {
+        Err(SpectrumError::OutOfRange {
+            what,
+            wanted,
+            value,
+        })
+    }
+}

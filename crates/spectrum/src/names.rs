@@ -1,0 +1,96 @@
+//! Names as people type them.
+
+/// Lower case, without spaces, hyphens and underscores.
+#[must_use]
+pub(crate) fn normalized(name: &str) -> String {
+    name.chars()
+        .filter(|c| !matches!(c, ' ' | '-' | '_'))
+        .flat_map(char::to_lowercase)
+        .collect()
+}
+
+/// Number of characters to insert, delete, replace or swap with their neighbor to get from `a` to `b`.
+fn distance(a: &[char], b: &[char]) -> usize {
+    let mut before: Vec<usize> = Vec::new();
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for i in 1..=a.len() {
+        let mut next = vec![i; b.len() + 1];
+        for j in 1..=b.len() {
+            let replace = row[j - 1] + usize::from(a[i - 1] != b[j - 1]);
+            next[j] = replace.min(row[j] + 1).min(next[j - 1] + 1);
+            if i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] {
+                next[j] = next[j].min(before[j - 2] + 1);
+            }
+        }
+        before = std::mem::replace(&mut row, next);
+    }
+    row[b.len()]
+}
+
+/// Up to six of `names` that resemble `wanted`, nearest first: few letters apart, or one within the other.
+pub(crate) fn candidates<'a>(wanted: &str, names: impl Iterator<Item = &'a str>) -> Vec<String> {
+    // A name of a file's length is no misspelling of anything; comparing it would only cost time.
+    const LONGEST: usize = 80;
+    let key = normalized(wanted);
+    let letters: Vec<char> = key.chars().take(LONGEST).collect();
+    let mut near: Vec<(usize, &str)> = Vec::new();
+    for name in names {
+        let other = normalized(name);
+        let apart = distance(&letters, &other.chars().collect::<Vec<_>>());
+        let within = letters.len() >= 3
+            && (other.contains(&key) || key.contains(&other) && other.len() >= 3);
+        if within {
+            near.push((0, name));
+        } else if apart <= (letters.len() / 3).max(1) {
+            near.push((apart, name));
+        }
+    }
+    near.sort();
+    near.dedup();
+    near.into_iter()
+        .take(6)
+        .map(|(_, n)| n.to_owned())
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn slips_of_the_pen_are_one_apart() {
+        let d = |a: &str, b: &str| {
+            distance(
+                &a.chars().collect::<Vec<_>>(),
+                &b.chars().collect::<Vec<_>>(),
+            )
+        };
+        assert_eq!(
+            [
+                d("d65", "d56"),
+                d("d65", "d6"),
+                d("d65", "d655"),
+                d("d65", "d60"),
+                d("", "ab")
+            ],
+            [1, 1, 1, 1, 2]
+        );
+    }
+
+    #[test]
+    fn nearest_come_first() {
+        let names = [
+            "mercury",
+            "neon",
+            "argon",
+            "hydrogen",
+            "iso-7589-photographic-daylight",
+        ];
+        assert_eq!(candidates("mercuri", names.into_iter()), ["mercury"]);
+        assert_eq!(
+            candidates("Photographic Daylight", names.into_iter()),
+            ["iso-7589-photographic-daylight"]
+        );
+        assert!(candidates("zzzz", names.into_iter()).is_empty());
+    }
+}

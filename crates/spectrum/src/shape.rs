@@ -1,0 +1,356 @@
+//! A function of wavelength, of whatever origin.
+//!
+//! It says nothing of what it is a function *of*: that is what [`crate::Emission`], [`crate::Transmittance`],
+//! [`crate::Reflectance`] and [`crate::Sensitivity`] are for.
+
+use std::sync::Arc;
+
+use spectra_core::spectral::Grid;
+
+use crate::cell;
+use crate::error::{SpectrumError, check};
+use crate::planck::planck_radiance;
+use crate::tabulated::Tabulated;
+
+/// A function of the wavelength: constant, rectangle, Gaussian, black body, table, histogram, or made of others.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shape(Node);
+
+#[derive(Clone, Debug, PartialEq)]
+enum Node {
+    Constant(f64),
+    Rectangle { from_nm: f64, to_nm: f64 },
+    Gaussian { center_nm: f64, sigma_nm: f64 },
+    Blackbody { temperature_k: f64 },
+    Tabulated(Tabulated),
+    Histogram(Arc<Histogram>),
+    Scaled(f64, Arc<Shape>),
+    Sum(Arc<[Shape; 2]>),
+    Product(Arc<[Shape; 2]>),
+}
+
+#[derive(Debug, PartialEq)]
+struct Histogram {
+    edges_nm: Vec<f64>,
+    per_nm: Vec<f64>,
+}
+
+impl Histogram {
+    /// A bin holds its lower edge; the last one its upper edge too.
+    fn at(&self, wavelength_nm: f64) -> f64 {
+        let after = self.edges_nm.partition_point(|e| *e <= wavelength_nm);
+        let last = self.edges_nm.len() - 1;
+        match after {
+            0 => 0.0,
+            n if n <= last => self.per_nm[n - 1],
+            _ if wavelength_nm == self.edges_nm[last] => self.per_nm[last - 1],
+            _ => 0.0,
+        }
+    }
+}
+
+impl Shape {
+    /// The same `value` everywhere.
+    ///
+    /// # Errors
+    /// [`SpectrumError::OutOfRange`] if it is not finite.
+    pub fn constant(value: f64) -> Result<Self, SpectrumError> {
+        Ok(Self(Node::Constant(check(
+            "value",
+            "finite",
+            value,
+            |_| true,
+        )?)))
+    }
+
+    /// 1 from `from_nm` to `to_nm`, both included, 0 elsewhere.
+    ///
+    /// # Errors
+    /// [`SpectrumError::OutOfRange`] unless 0 <= from < to, both finite.
+    pub fn rectangle(from_nm: f64, to_nm: f64) -> Result<Self, SpectrumError> {
+        let from_nm = check("lower edge, nm", "0 or more", from_nm, |w| w >= 0.0)?;
+        let to_nm = check("upper edge, nm", "above the lower one", to_nm, |w| {
+            w > from_nm
+        })?;
+        Ok(Self(Node::Rectangle { from_nm, to_nm }))
+    }
+
+    /// exp(-(x - center)^2 / (2 sigma^2)): peak 1, standard deviation `sigma_nm`.
+    ///
+    /// # Errors
+    /// [`SpectrumError::OutOfRange`] unless both are finite and sigma is positive.
+    pub fn gaussian(center_nm: f64, sigma_nm: f64) -> Result<Self, SpectrumError> {
+        let center_nm = check("center, nm", "finite", center_nm, |_| true)?;
+        let sigma_nm = check("standard deviation, nm", "positive", sigma_nm, |s| s > 0.0)?;
+        Ok(Self(Node::Gaussian {
+            center_nm,
+            sigma_nm,
+        }))
+    }
+
+    /// Spectral radiance of a black body, W m^-2 sr^-1 nm^-1; see [`planck_radiance`].
+    ///
+    /// # Errors
+    /// [`SpectrumError::OutOfRange`] unless the temperature is positive and at most 1e9 K.
+    pub fn blackbody(temperature_k: f64) -> Result<Self, SpectrumError> {
+        let temperature_k = check(
+            "temperature, K",
+            "positive and at most 1e9",
+            temperature_k,
+            |t| t > 0.0 && t <= 1e9,
+        )?;
+        Ok(Self(Node::Blackbody { temperature_k }))
+    }
+
+    /// A table.
+    #[must_use]
+    pub fn tabulated(table: Tabulated) -> Self {
+        Self(Node::Tabulated(table))
+    }
+
+    /// A histogram as a detector measures it: `contents[i]` of power between `edges_nm[i]` and `edges_nm[i + 1]`.
+    ///
+    /// Its value is the content divided by the width of the bin: power per nanometre.
+    ///
+    /// # Errors
+    /// [`SpectrumError::OutOfRange`] unless there is one more edge than contents, at least one bin, edges increase
+    /// from 0 or more and all is finite.
+    pub fn histogram(edges_nm: &[f64], contents: &[f64]) -> Result<Self, SpectrumError> {
+        check("number of bins", "at least 1", contents.len() as f64, |n| {
+            n >= 1.0
+        })?;
+        let wanted = (contents.len() + 1) as f64;
+        check(
+            "number of edges",
+            "one more than that of bins",
+            edges_nm.len() as f64,
+            |n| n == wanted,
+        )?;
+        let mut before = check("edge, nm", "0 or more", edges_nm[0], |e| e >= 0.0)?;
+        let mut per_nm = Vec::with_capacity(contents.len());
+        for (edge, content) in edges_nm[1..].iter().zip(contents) {
+            let after = check("edge, nm", "larger than the one before", *edge, |e| {
+                e > before
+            })?;
+            per_nm
+                .push(check("content of a bin", "finite", *content, |_| true)? / (after - before));
+            before = after;
+        }
+        Ok(Self(Node::Histogram(Arc::new(Histogram {
+            edges_nm: edges_nm.to_vec(),
+            per_nm,
+        }))))
+    }
+
+    /// This times a number.
+    ///
+    /// # Errors
+    /// [`SpectrumError::OutOfRange`] if it is not finite.
+    pub fn scaled(&self, factor: f64) -> Result<Self, SpectrumError> {
+        check("factor", "finite", factor, |_| true)?;
+        Ok(match &self.0 {
+            Node::Scaled(before, shape) => Self(Node::Scaled(before * factor, Arc::clone(shape))),
+            _ => Self(Node::Scaled(factor, Arc::new(self.clone()))),
+        })
+    }
+
+    /// Sum of both, wavelength by wavelength.
+    #[must_use]
+    pub fn plus(&self, other: &Self) -> Self {
+        Self(Node::Sum(Arc::new([self.clone(), other.clone()])))
+    }
+
+    /// Product of both, wavelength by wavelength.
+    #[must_use]
+    pub fn times(&self, other: &Self) -> Self {
+        Self(Node::Product(Arc::new([self.clone(), other.clone()])))
+    }
+
+    /// Value at `wavelength_nm`; 0 for NaN.
+    #[must_use]
+    pub fn at(&self, wavelength_nm: f64) -> f64 {
+        match &self.0 {
+            _ if wavelength_nm.is_nan() => 0.0,
+            Node::Constant(value) => *value,
+            Node::Rectangle { from_nm, to_nm } => {
+                if (*from_nm..=*to_nm).contains(&wavelength_nm) {
+                    1.0
+                } else {
+                    0.0
+                }
+            }
+            Node::Gaussian {
+                center_nm,
+                sigma_nm,
+            } => {
+                let t = (wavelength_nm - center_nm) / sigma_nm;
+                libm::exp(-0.5 * t * t)
+            }
+            Node::Blackbody { temperature_k } => planck_radiance(wavelength_nm, *temperature_k),
+            Node::Tabulated(table) => table.at(wavelength_nm),
+            Node::Histogram(histogram) => histogram.at(wavelength_nm),
+            Node::Scaled(factor, shape) => factor * shape.at(wavelength_nm),
+            Node::Sum(parts) => parts[0].at(wavelength_nm) + parts[1].at(wavelength_nm),
+            Node::Product(parts) => parts[0].at(wavelength_nm) * parts[1].at(wavelength_nm),
+        }
+    }
+
+    /// Values on `grid`.
+    ///
+    /// At a point of the grid the value there; where the shape has edges or is finer than the grid (rectangle,
+    /// histogram, a Gaussian of under two steps, a table of closer points), the mean over the cell from half a step
+    /// below to half a step above, so that no power is lost or doubled between the points.
+    #[must_use]
+    pub fn on_grid(&self, grid: &Grid) -> Vec<f64> {
+        if !self.is_finer_than(grid.step_nm) {
+            return grid.wavelengths_nm().map(|w| self.at(w)).collect();
+        }
+        let half = 0.5 * grid.step_nm;
+        grid.wavelengths_nm()
+            .map(|w| self.mean(w - half, w + half))
+            .collect()
+    }
+
+    /// Mean over the wavelengths from `low_nm` to `high_nm`.
+    #[must_use]
+    pub fn mean(&self, low_nm: f64, high_nm: f64) -> f64 {
+        let mut breaks = vec![low_nm, high_nm];
+        self.breaks(low_nm, high_nm, &mut breaks);
+        breaks.retain(|b| (low_nm..=high_nm).contains(b));
+        breaks.sort_by(f64::total_cmp);
+        cell::integral(|w| self.at(w), &breaks) / (high_nm - low_nm)
+    }
+
+    /// Whether points `step_nm` apart would miss or double some of it.
+    fn is_finer_than(&self, step_nm: f64) -> bool {
+        match &self.0 {
+            Node::Constant(_) | Node::Blackbody { .. } => false,
+            Node::Rectangle { .. } | Node::Histogram(_) => true,
+            Node::Gaussian { sigma_nm, .. } => *sigma_nm < 2.0 * step_nm,
+            Node::Tabulated(table) => table.finest_step_nm() < step_nm * (1.0 - 1e-9),
+            Node::Scaled(_, shape) => shape.is_finer_than(step_nm),
+            Node::Sum(parts) | Node::Product(parts) => {
+                parts.iter().any(|p| p.is_finer_than(step_nm))
+            }
+        }
+    }
+
+    /// Adds the places between which the shape is smooth enough for a quadrature of high order.
+    fn breaks(&self, low_nm: f64, high_nm: f64, out: &mut Vec<f64>) {
+        match &self.0 {
+            Node::Constant(_) | Node::Blackbody { .. } => {}
+            Node::Rectangle { from_nm, to_nm } => out.extend([*from_nm, *to_nm]),
+            Node::Gaussian {
+                center_nm,
+                sigma_nm,
+            } => {
+                for k in [0.0, 1.0, 2.0, 3.0, 4.5, 6.0, 9.0] {
+                    out.extend([center_nm - k * sigma_nm, center_nm + k * sigma_nm]);
+                }
+            }
+            Node::Tabulated(table) => out.extend(table.knots(low_nm, high_nm)),
+            Node::Histogram(histogram) => {
+                let edges = &histogram.edges_nm;
+                let from = edges.partition_point(|e| *e < low_nm);
+                let to = edges.partition_point(|e| *e <= high_nm);
+                out.extend(&edges[from..to.max(from)]);
+            }
+            Node::Scaled(_, shape) => shape.breaks(low_nm, high_nm, out),
+            Node::Sum(parts) | Node::Product(parts) => {
+                parts.iter().for_each(|p| p.breaks(low_nm, high_nm, out))
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const GRID: Grid = spectra_core::spectral::BAND;
+
+    fn sum(shape: &Shape) -> f64 {
+        shape.on_grid(&GRID).iter().sum::<f64>() * GRID.step_nm
+    }
+
+    /// Areas: a rectangle its width, a Gaussian sigma sqrt(2 pi), however narrow and wherever between the points.
+    #[test]
+    fn power_on_the_grid_is_kept() {
+        let root = (2.0 * std::f64::consts::PI).sqrt();
+        for offset in [0.0, 0.1, 0.5, 0.77] {
+            for sigma in [0.01, 0.1, 0.5, 1.9, 2.1, 20.0] {
+                let g = Shape::gaussian(550.0 + offset, sigma).expect("valid");
+                assert!(
+                    (sum(&g) / (sigma * root) - 1.0).abs() < 1e-9,
+                    "{sigma} at {offset}: {}",
+                    sum(&g) / (sigma * root)
+                );
+            }
+            let r = Shape::rectangle(500.0 + offset, 500.3 + 2.0 * offset).expect("valid");
+            assert!((sum(&r) - (0.3 + offset)).abs() < 1e-12, "{}", sum(&r));
+        }
+        let h = Shape::histogram(&[400.0, 400.25, 401.0, 499.4], &[1.0, 0.0, 5.0]).expect("valid");
+        assert!((sum(&h) - 6.0).abs() < 1e-12);
+    }
+
+    /// A product has edges where one factor has: half of a ramp under a rectangle.
+    #[test]
+    fn products_keep_the_edges_of_their_factors() {
+        let ramp = Tabulated::new(
+            &[500.0, 600.0],
+            &[0.0, 1.0],
+            crate::Outside::Zero,
+            crate::Scale::Linear,
+        );
+        let ramp = Shape::tabulated(ramp.expect("valid"));
+        let half = ramp.times(&Shape::rectangle(500.0, 550.4).expect("valid"));
+        assert!(
+            (sum(&half) - 50.4 * 50.4 / 200.0).abs() < 1e-9,
+            "{}",
+            sum(&half)
+        );
+        let twice = half.plus(&half).scaled(0.5).expect("valid");
+        assert!((sum(&twice) - sum(&half)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_table_finer_than_the_grid_keeps_its_power() {
+        // A triangle of half width 0.2 nm between two points of the grid.
+        let t = Tabulated::new(
+            &[500.3, 500.5, 500.7],
+            &[0.0, 4.0, 0.0],
+            crate::Outside::Zero,
+            crate::Scale::Linear,
+        );
+        assert!((sum(&Shape::tabulated(t.expect("valid"))) - 0.8).abs() < 1e-12);
+    }
+
+    #[test]
+    fn histogram_bins_hold_their_lower_edge() {
+        let h = Shape::histogram(&[400.0, 410.0, 412.0], &[10.0, 4.0]).expect("valid");
+        for (w, want) in [
+            (399.9, 0.0),
+            (400.0, 1.0),
+            (409.9, 1.0),
+            (410.0, 2.0),
+            (412.0, 2.0),
+            (412.1, 0.0),
+        ] {
+            assert_eq!(h.at(w), want, "{w}");
+        }
+    }
+
+    #[test]
+    fn impossible_parameters_are_refused() {
+        let nan = f64::NAN;
+        assert!(Shape::constant(f64::INFINITY).is_err());
+        assert!(Shape::rectangle(500.0, 500.0).is_err() && Shape::rectangle(nan, 500.0).is_err());
+        assert!(Shape::gaussian(550.0, 0.0).is_err() && Shape::gaussian(nan, 1.0).is_err());
+        assert!(Shape::blackbody(0.0).is_err() && Shape::blackbody(f64::INFINITY).is_err());
+        assert!(
+            Shape::histogram(&[400.0], &[]).is_err()
+                && Shape::histogram(&[400.0, 390.0], &[1.0]).is_err()
+        );
+        assert!(Shape::histogram(&[400.0, 410.0], &[nan]).is_err());
+    }
+}

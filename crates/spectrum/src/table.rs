@@ -1,0 +1,438 @@
+//! Reads the CSV files in which spectra are kept.
+//!
+//! Front matter of `# key: value` lines (see [`Meta`]), a header row `wavelength_nm,<columns>`, then one row a
+//! wavelength, in increasing order. Without `# spectra: 1` on the first line, lines that begin with `#` are plain
+//! comments, and the reader is told the kind.
+//!
+//! ```
+//! use spectra_spectrum::table::Table;
+//! use spectra_spectrum::Kind;
+//!
+//! let fault = Table::parse("mine.csv", "wavelength_nm,red\n400,0.5\n410,80\n", Some(Kind::Sensitivity)).unwrap_err();
+//! assert_eq!(fault.to_string(), "mine.csv: row 3, column 2 (red): 80 is more than 2: given as percent? divide by 100");
+//! ```
+
+use std::fmt;
+use std::sync::Arc;
+
+use crate::meta::{Interpolation, Kind, Meta, Scale};
+use crate::sprague;
+use crate::tabulated::{Reading, Tabulated};
+
+/// Most rows that are read.
+pub const MAX_ROWS: usize = 100_000;
+/// Most columns that are read.
+pub const MAX_COLUMNS: usize = 256;
+/// Largest file that is read, bytes.
+pub const MAX_BYTES: u64 = 32 << 20;
+
+/// What is wrong with a table, and where.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{place}: {cause}")]
+pub struct TableError {
+    /// Where it is.
+    pub place: Box<Place>,
+    /// What is wrong.
+    pub cause: TableFault,
+}
+
+/// A place in a table. As text: `mine.csv: row 3, column 2 (red)`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Place {
+    /// The file.
+    pub file: String,
+    /// Line of the file, from 1; 0 for the file as a whole.
+    pub row: usize,
+    /// Field of the row, from 1; 0 for the row as a whole.
+    pub column: usize,
+    /// The column's name in the header, empty where there is none.
+    pub column_name: String,
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            file,
+            row,
+            column,
+            column_name,
+        } = self;
+        match (row, column, column_name.as_str()) {
+            (0, ..) => f.write_str(file),
+            (_, 0, _) => write!(f, "{file}: row {row}"),
+            (.., "") => write!(f, "{file}: row {row}, column {column}"),
+            (.., name) => write!(f, "{file}: row {row}, column {column} ({name})"),
+        }
+    }
+}
+
+/// Causes of a [`TableError`].
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum TableFault {
+    /// No row of numbers.
+    #[error("holds no data")]
+    Empty,
+    /// Not text.
+    #[error("is not UTF-8 text")]
+    NotText,
+    /// More rows than [`MAX_ROWS`].
+    #[error("more than {MAX_ROWS} rows")]
+    TooManyRows,
+    /// More columns than [`MAX_COLUMNS`].
+    #[error("more than {MAX_COLUMNS} columns")]
+    TooManyColumns,
+    /// A key of the front matter that has no meaning.
+    #[error("unknown key `{0}`; known are {known}", known = Meta::KEYS.join(", "))]
+    UnknownKey(String),
+    /// A value of the front matter that has no meaning.
+    #[error("`{key}` should be {wanted}, not `{found}`")]
+    FrontMatter {
+        /// The key.
+        key: String,
+        /// What it should be.
+        wanted: &'static str,
+        /// What it is.
+        found: String,
+    },
+    /// A comment line in the front matter that is no `key: value`.
+    #[error("front matter is written as `# key: value`")]
+    NotKeyValue,
+    /// The kind is stated nowhere.
+    #[error(
+        "the kind is not stated; write `# spectra: 1` and `# kind: emission` (or another) above the header"
+    )]
+    NoKind,
+    /// The first row of the table is no header.
+    #[error("a header such as `wavelength_nm,power` is wanted here, not `{0}`")]
+    Header(String),
+    /// A column name that is empty or appears twice.
+    #[error("column name `{0}` is empty or appears twice")]
+    ColumnName(String),
+    /// A row with too few or too many fields.
+    #[error("{found} fields where the header has {expected}")]
+    FieldCount {
+        /// Fields in this row.
+        found: usize,
+        /// Fields in the header.
+        expected: usize,
+    },
+    /// A field that is no number.
+    #[error("`{0}` is not a number")]
+    NotANumber(String),
+    /// NaN or infinity.
+    #[error("`{0}` is not a finite number")]
+    NotFinite(String),
+    /// A wavelength that is not positive.
+    #[error("a wavelength is a positive number of nanometres, not {0}")]
+    Wavelength(f64),
+    /// A wavelength that is not larger than the one above it.
+    #[error("{found} nm does not come after {before} nm: wavelengths must increase")]
+    OutOfOrder {
+        /// The wavelength of the row before.
+        before: f64,
+        /// The wavelength of this row.
+        found: f64,
+    },
+    /// A negative value where none can be.
+    #[error("{kind} cannot be negative: {value}")]
+    Negative {
+        /// Kind of the table.
+        kind: Kind,
+        /// The value.
+        value: f64,
+    },
+    /// A value too large for its kind.
+    #[error("{value} is more than {bound}: given as percent? divide by 100")]
+    AboveBound {
+        /// The value.
+        value: f64,
+        /// The largest that is believed.
+        bound: f64,
+    },
+    /// Sprague's interpolation of points that it is not made for.
+    #[error("interpolation: sprague wants at least six equally spaced wavelengths")]
+    Sprague,
+    /// A logarithm to base 10 that is no plausible one.
+    #[error("{0} as a logarithm to base 10 is beyond belief")]
+    Logarithm(f64),
+}
+
+/// A table as a file holds it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Table {
+    /// The file it came from.
+    pub file: String,
+    /// Its front matter.
+    pub meta: Meta,
+    /// What its columns are.
+    pub kind: Kind,
+    /// Names of the columns after the wavelength.
+    pub columns: Vec<String>,
+    /// Wavelengths in air, nm, increasing.
+    pub wavelengths_nm: Arc<[f64]>,
+    /// Values by column, then by row, in the unit of the front matter.
+    pub values: Vec<Arc<[f64]>>,
+}
+
+impl Table {
+    /// Reads `bytes` of a file; see [`Table::parse`].
+    ///
+    /// # Errors
+    /// [`TableError`], also when they are not UTF-8.
+    pub fn parse_bytes(file: &str, bytes: &[u8], kind: Option<Kind>) -> Result<Self, TableError> {
+        let text = std::str::from_utf8(bytes).map_err(|_| whole(file, TableFault::NotText))?;
+        Self::parse(file, text, kind)
+    }
+
+    /// Reads a table. `kind` is taken where the file does not state one; `file` is for messages.
+    ///
+    /// # Errors
+    /// [`TableError`] with row and column: no data, more than [`MAX_ROWS`], a bad front matter or header, a wrong
+    /// number of fields, no number, NaN, wavelengths that do not increase, negative power, percentages.
+    pub fn parse(file: &str, text: &str, kind: Option<Kind>) -> Result<Self, TableError> {
+        Reader::new(file, text.strip_prefix('\u{feff}').unwrap_or(text), kind).read()
+    }
+
+    /// The column `name`, ready to be evaluated.
+    #[must_use]
+    pub fn column(&self, name: &str) -> Option<Tabulated> {
+        let at = self.columns.iter().position(|c| c == name)?;
+        Some(self.column_at(at))
+    }
+
+    /// Column `index` (from 0), ready to be evaluated.
+    ///
+    /// # Panics
+    /// If there is no such column.
+    #[must_use]
+    pub fn column_at(&self, index: usize) -> Tabulated {
+        Tabulated::from_checked(
+            Arc::clone(&self.wavelengths_nm),
+            Arc::clone(&self.values[index]),
+            Reading {
+                outside: self.meta.outside.unwrap_or(self.kind.outside()),
+                scale: self.meta.scale(),
+                interpolation: self.meta.interpolation,
+                // The polynomial may dip below 0 between two small values; matter and detectors do not.
+                at_least_zero: !self.kind.may_be_negative() && self.meta.scale() == Scale::Linear,
+            },
+        )
+    }
+}
+
+fn whole(file: &str, cause: TableFault) -> TableError {
+    let place = Place {
+        file: file.into(),
+        row: 0,
+        column: 0,
+        column_name: String::new(),
+    };
+    TableError {
+        place: Box::new(place),
+        cause,
+    }
+}
+
+struct Reader<'a> {
+    file: &'a str,
+    text: &'a str,
+    kind: Option<Kind>,
+    header: Vec<&'a str>,
+}
+
+impl<'a> Reader<'a> {
+    fn new(file: &'a str, text: &'a str, kind: Option<Kind>) -> Self {
+        Self {
+            file,
+            text,
+            kind,
+            header: Vec::new(),
+        }
+    }
+
+    fn fault(&self, row: usize, column: usize, cause: TableFault) -> TableError {
+        let name = column
+            .checked_sub(1)
+            .and_then(|i| self.header.get(i))
+            .copied()
+            .unwrap_or_default();
+        let place = Place {
+            file: self.file.into(),
+            row,
+            column,
+            column_name: name.into(),
+        };
+        TableError {
+            place: Box::new(place),
+            cause,
+        }
+    }
+
+    fn read(mut self) -> Result<Table, TableError> {
+        let mut meta = Meta::default();
+        let strict = self
+            .text
+            .lines()
+            .next()
+            .is_some_and(|l| key_value(l).is_some_and(|(k, _)| k == "spectra"));
+        let mut kind = None;
+        let mut wavelengths: Vec<f64> = Vec::new();
+        let mut values: Vec<Vec<f64>> = Vec::new();
+        for (i, line) in self.text.lines().enumerate() {
+            let row = i + 1;
+            let line = line.trim();
+            if line.is_empty() {
+                continue;
+            }
+            if line.starts_with('#') {
+                if strict {
+                    self.front_matter(&mut meta, row, line)?;
+                }
+                continue;
+            }
+            if self.header.is_empty() {
+                self.read_header(row, line)?;
+                kind = Some(
+                    meta.kind
+                        .or(self.kind)
+                        .ok_or_else(|| self.fault(row, 0, TableFault::NoKind))?,
+                );
+                values = vec![Vec::new(); self.header.len() - 1];
+                continue;
+            }
+            if wavelengths.len() == MAX_ROWS {
+                return Err(self.fault(row, 0, TableFault::TooManyRows));
+            }
+            let kind = kind.expect("set with the header");
+            self.read_row(row, line, kind, meta.scale(), &mut wavelengths, &mut values)?;
+        }
+        let (Some(kind), false) = (kind, wavelengths.is_empty()) else {
+            return Err(whole(self.file, TableFault::Empty));
+        };
+        if meta.interpolation == Interpolation::Sprague && !sprague::applies(&wavelengths) {
+            return Err(whole(self.file, TableFault::Sprague));
+        }
+        Ok(Table {
+            file: self.file.into(),
+            kind,
+            columns: self.header[1..].iter().map(|c| (*c).to_owned()).collect(),
+            wavelengths_nm: wavelengths.into(),
+            values: values.into_iter().map(Into::into).collect(),
+            meta,
+        })
+    }
+
+    fn front_matter(&self, meta: &mut Meta, row: usize, line: &str) -> Result<(), TableError> {
+        let (key, value) =
+            key_value(line).ok_or_else(|| self.fault(row, 0, TableFault::NotKeyValue))?;
+        meta.set(key, value).map_err(|wanted| {
+            let cause = match wanted {
+                Some(wanted) => TableFault::FrontMatter {
+                    key: key.into(),
+                    wanted,
+                    found: value.into(),
+                },
+                None => TableFault::UnknownKey(key.into()),
+            };
+            self.fault(row, 0, cause)
+        })
+    }
+
+    fn read_header(&mut self, row: usize, line: &'a str) -> Result<(), TableError> {
+        let header: Vec<&str> = line.split(',').map(str::trim).collect();
+        if header[0] != "wavelength_nm" || header.len() < 2 {
+            return Err(self.fault(row, 1, TableFault::Header(shorten(line))));
+        }
+        if header.len() - 1 > MAX_COLUMNS {
+            return Err(self.fault(row, MAX_COLUMNS + 2, TableFault::TooManyColumns));
+        }
+        for (i, name) in header.iter().enumerate() {
+            if name.is_empty() || header[..i].contains(name) {
+                return Err(self.fault(row, i + 1, TableFault::ColumnName(shorten(name))));
+            }
+        }
+        self.header = header;
+        Ok(())
+    }
+
+    fn read_row(
+        &self,
+        row: usize,
+        line: &str,
+        kind: Kind,
+        scale: Scale,
+        wavelengths: &mut Vec<f64>,
+        values: &mut [Vec<f64>],
+    ) -> Result<(), TableError> {
+        let found = line.split(',').count();
+        if found != self.header.len() {
+            let cause = TableFault::FieldCount {
+                found,
+                expected: self.header.len(),
+            };
+            return Err(self.fault(row, found.min(self.header.len()), cause));
+        }
+        for (i, field) in line.split(',').enumerate() {
+            let value = number(field).map_err(|cause| self.fault(row, i + 1, cause))?;
+            if i == 0 {
+                check_wavelength(value, wavelengths.last().copied())
+                    .map_err(|cause| self.fault(row, 1, cause))?;
+                wavelengths.push(value);
+            } else {
+                check_value(value, kind, scale).map_err(|cause| self.fault(row, i + 1, cause))?;
+                values[i - 1].push(value);
+            }
+        }
+        Ok(())
+    }
+}
+
+fn key_value(line: &str) -> Option<(&str, &str)> {
+    let (key, value) = line.trim().strip_prefix('#')?.split_once(':')?;
+    Some((key.trim(), value.trim()))
+}
+
+/// The first 40 characters, for a message.
+fn shorten(text: &str) -> String {
+    text.chars().take(40).collect()
+}
+
+fn number(field: &str) -> Result<f64, TableFault> {
+    let field = field.trim();
+    let value: f64 = field
+        .parse()
+        .map_err(|_| TableFault::NotANumber(shorten(field)))?;
+    if value.is_finite() {
+        Ok(value)
+    } else {
+        Err(TableFault::NotFinite(shorten(field)))
+    }
+}
+
+fn check_wavelength(found: f64, before: Option<f64>) -> Result<(), TableFault> {
+    match before {
+        _ if found <= 0.0 => Err(TableFault::Wavelength(found)),
+        Some(before) if found <= before => Err(TableFault::OutOfOrder { before, found }),
+        _ => Ok(()),
+    }
+}
+
+fn check_value(value: f64, kind: Kind, scale: Scale) -> Result<(), TableFault> {
+    // Sensitivities in cm^2/erg or m^2/J span some ten decades; a percentage or a wavelength in this
+    // column does not fit.
+    const LOG10_BOUND: f64 = 20.0;
+    if scale == Scale::Log10 {
+        return if value.abs() <= LOG10_BOUND {
+            Ok(())
+        } else {
+            Err(TableFault::Logarithm(value))
+        };
+    }
+    if value < 0.0 && !kind.may_be_negative() {
+        return Err(TableFault::Negative { kind, value });
+    }
+    match kind.bound() {
+        Some(bound) if value > bound => Err(TableFault::AboveBound { value, bound }),
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,34 @@
+//! `kind: lines`: the source's spectral lines only, in proportion to their power.
+
+use crate::Mixture;
+use spectra_core::registry::SamplerEntry;
+use spectra_core::spectral::SystemResponse;
+use spectra_core::stage::{WavelengthDensity, WavelengthSampler};
+
+/// The strategy.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Lines;
+
+impl WavelengthSampler for Lines {
+    fn prepare(&self, system: &SystemResponse) -> Result<Box<dyn WavelengthDensity>, String> {
+        if system.source.continuum.iter().any(|v| *v != 0.0) {
+            return Err("the source has a continuum, which drawing lines only would forget; \
+                        take `source-times-response`, or give the source a color model of lines"
+                .to_owned());
+        }
+        let weights: Vec<f64> = system.source.lines.iter().map(|l| l.power.abs()).collect();
+        Mixture::new(&system.source.lines, &weights, 1.0, None)
+            .map(|m| Box::new(m) as Box<dyn WavelengthDensity>)
+            .ok_or_else(|| "the source has no spectral lines".to_owned())
+    }
+}
+
+inventory::submit! {
+    SamplerEntry::new(
+        "lines",
+        "The source's spectral lines only, by their power.",
+        env!("CARGO_PKG_NAME"),
+        env!("CARGO_PKG_VERSION"),
+        |params, _| crate::no_params(params).map(|()| Box::new(Lines) as Box<dyn WavelengthSampler>),
+    )
+}

@@ -1,0 +1,33 @@
+//! `kind: uniform`: every wavelength of the band alike; where the source has lines too, they get half.
+
+use crate::{Mixture, Quantiles};
+use spectra_core::registry::SamplerEntry;
+use spectra_core::spectral::SystemResponse;
+use spectra_core::stage::{WavelengthDensity, WavelengthSampler};
+
+/// The strategy.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Uniform;
+
+impl WavelengthSampler for Uniform {
+    fn prepare(&self, system: &SystemResponse) -> Result<Box<dyn WavelengthDensity>, String> {
+        let has_continuum = system.source.continuum.iter().any(|v| *v != 0.0);
+        let continuum = (has_continuum || system.source.lines.is_empty())
+            .then(|| Quantiles::of(system.grid, &vec![1.0; system.grid.count]))
+            .flatten();
+        let weights = vec![1.0; system.source.lines.len()];
+        Mixture::new(&system.source.lines, &weights, 0.5, continuum)
+            .map(|m| Box::new(m) as Box<dyn WavelengthDensity>)
+            .ok_or_else(|| "the source emits nothing".to_owned())
+    }
+}
+
+inventory::submit! {
+    SamplerEntry::new(
+        "uniform",
+        "Every wavelength of the band alike.",
+        env!("CARGO_PKG_NAME"),
+        env!("CARGO_PKG_VERSION"),
+        |params, _| crate::no_params(params).map(|()| Box::new(Uniform) as Box<dyn WavelengthSampler>),
+    )
+}

@@ -1,0 +1,88 @@
+//! `kind: plane` and `kind: stop`: flat across the axis.
+
+use serde::Deserialize;
+use spectra_core::params::{Faults, Params};
+use spectra_core::registry::{Context, SurfaceEntry};
+use spectra_core::surface::{Hit, Kernel, KernelShape, Ray, Real, Surface};
+
+/// The plane z = 0; as a stop it only clips.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Plane {
+    stop: bool,
+}
+
+impl Plane {
+    /// A refracting plane.
+    #[must_use]
+    pub fn refracting() -> Self {
+        Self { stop: false }
+    }
+
+    /// The aperture stop.
+    #[must_use]
+    pub fn stop() -> Self {
+        Self { stop: true }
+    }
+}
+
+impl KernelShape for Plane {
+    #[inline(always)]
+    fn hit<R: Real>(&self, ray: Ray<R>) -> Hit<R> {
+        let n = ray.direction[2];
+        // A ray along the plane never meets it: 0 is made negative, everything else stays positive.
+        Hit { distance: -ray.position[2] / n, cosine: n, valid: n * n - R::constant(f64::MIN_POSITIVE) }
+    }
+
+    #[inline(always)]
+    fn normal<R: Real>(&self, _: [R; 3]) -> [R; 3] {
+        [R::constant(0.0), R::constant(0.0), R::constant(1.0)]
+    }
+
+    fn sag_mm(&self, _: f64, _: f64) -> Option<f64> {
+        Some(0.0)
+    }
+
+    fn vertex_curvature_per_mm(&self) -> (f64, f64) {
+        (0.0, 0.0)
+    }
+
+    fn is_stop(&self) -> bool {
+        self.stop
+    }
+}
+
+/// Parameters of `kind: plane` and `kind: stop`: none of their own.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct NoParams {}
+
+inventory::submit! {
+    SurfaceEntry::new("plane", "A plane across the axis.", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION"), build_plane)
+}
+
+inventory::submit! {
+    SurfaceEntry::new("stop", "The aperture stop: it clips, and its size sets the f-number.", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION"), build_stop)
+}
+
+fn build_plane(params: &Params, _: &Context<'_>) -> Result<Box<dyn Surface>, Faults> {
+    params.parse::<NoParams>()?;
+    Ok(Box::new(Kernel(Plane::refracting())))
+}
+
+fn build_stop(params: &Params, _: &Context<'_>) -> Result<Box<dyn Surface>, Faults> {
+    params.parse::<NoParams>()?;
+    Ok(Box::new(Kernel(Plane::stop())))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_ray_along_the_plane_misses_it() {
+        let hit = |n: f64| Plane::refracting().hit(Ray { position: [0.0, 0.0, -1.0], direction: [0.0, 1.0, n], radius2: 0.0 });
+        assert!(!(hit(0.0).valid >= 0.0));
+        assert!(hit(1e-3).valid >= 0.0);
+        assert_eq!(hit(0.5).distance, 2.0);
+    }
+}

@@ -1,0 +1,7 @@
+//! The `spectra` program: the built-in plugins, and the command that runs them.
+
+use spectra_plugins as _;
+
+fn main() -> std::process::ExitCode {
+    spectra_command::main()
+}

@@ -1,0 +1,186 @@
+#!/usr/bin/env python3
+"""Writes the CIE, ISO and ColorChecker tables under spectra/, and the values that tests hold them to.
+
+Run from the root of the repository:
+
+    python3 -m venv VENV
+    VENV/bin/pip install colour-science==0.4.7
+    VENV/bin/python xtask/import_colour_science.py
+
+Source of all tables: the Python package colour-science 0.4.7 (BSD-3-Clause, Copyright 2013 Colour Developers), which
+names the publication of each; that publication is what `source` states. Numbers are written as the package holds them
+(the shortest decimal that reads back to the same double, which is what was typed there). Nothing is interpolated,
+extended, normalised or cut: `outside` states what a reader does beyond the range, `interpolation` what it does between
+points where that is not a straight line.
+
+Expected values (`crates/spectrum/tests/data/`) are computed here, by that package and numpy alone:
+  illuminants.csv  x, y of each illuminant: aligned to 360-830 nm by 1 nm (linear, constant ends), summed with the
+                   1 nm CIE 1931 functions; CCT and Duv by Ohno (2013) from that chromaticity, where it has one
+  checker-d50.csv  XYZ and Lab of the ColorChecker patches under D50; reflectances by Sprague's interpolation (CIE 167:2005)
+"""
+
+import pathlib
+import re
+
+import colour
+import numpy as np
+from colour.colorimetry import SDS_BASIS_FUNCTIONS_CIE_ILLUMINANT_D_SERIES as DAYLIGHT
+
+LICENCE = "BSD-3-Clause (colour-science 0.4.7, Copyright 2013 Colour Developers)"
+SPECTRA = pathlib.Path("spectra")
+EXPECTED = pathlib.Path("crates/spectrum/tests/data")
+CIE15 = "CIE 15:2004, Colorimetry, 3rd edition, tables"
+CIE15_2018 = "CIE 015:2018, Colorimetry, 4th edition, doi:10.25039/TR.015.2018"
+
+
+def number(value):
+    """The shortest decimal that reads back to the same double, without a trailing `.0`."""
+    text = repr(float(value))
+    return text[:-2] if text.endswith(".0") else text
+
+
+def write(path, front_matter, wavelengths, columns):
+    """One file: front matter, a header row, rows."""
+    low, high = number(wavelengths[0]), number(wavelengths[-1])
+    lines = ["# spectra: 1"]
+    lines += [f"# {key}: {value}" for key, value in front_matter.items()]
+    lines.append(f"# range: {low}-{high} nm")
+    lines.append(",".join(["wavelength_nm", *columns]))
+    for i, wavelength in enumerate(wavelengths):
+        lines.append(",".join([number(wavelength), *(number(values[i]) for values in columns.values())]))
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def slug(name):
+    """A file name: lower case, with hyphens."""
+    return re.sub(r"[^a-z0-9.]+", "-", name.lower()).strip("-")
+
+
+def observers():
+    """Color-matching functions and luminous efficiency functions."""
+    table = [
+        ("cie-1931-2deg", "CIE 1931 2 Degree Standard Observer", "CIE 1931 2 deg", CIE15 + " (CIE 018:2019)", "geometric"),
+        ("cie-1964-10deg", "CIE 1964 10 Degree Standard Observer", "CIE 1964 10 deg", CIE15, "geometric"),
+        ("cie-2015-2deg", "CIE 2015 2 Degree Standard Observer", "CIE 2015 2 deg",
+         "CIE 170-2:2015, Fundamental chromaticity diagram with physiological axes, part 2 (CVRL)", "geometric"),
+        ("cie-2015-10deg", "CIE 2015 10 Degree Standard Observer", "CIE 2015 10 deg",
+         "CIE 170-2:2015, Fundamental chromaticity diagram with physiological axes, part 2 (CVRL)", "geometric"),
+        ("cie-rgb-1931", "Wright & Guild 1931 2 Degree RGB CMFs", "CIE RGB 1931",
+         "CIE 1931 RGB functions of Wright and Guild, primaries 700, 546.1 and 435.8 nm; A. D. Broadbent (2009)", "zero"),
+    ]
+    for file, key, name, source, outside in table:
+        cmfs = colour.MSDS_CMFS[key]
+        labels = ["r", "g", "b"] if "rgb" in file else ["x", "y", "z"]
+        columns = {label: cmfs.values[:, i] for i, label in enumerate(labels)}
+        write(SPECTRA / "cie" / f"{file}.csv", {
+            "name": name, "kind": "color-matching", "quantity": "color-matching functions", "unit": "1",
+            "source": source, "licence": LICENCE,
+            "conditions": f"{'2' if '10' not in name else '10'} degree field", "outside": outside,
+        }, cmfs.wavelengths, columns)
+    table = [
+        ("v-lambda-1924", "CIE 1924 Photopic Standard Observer", "V(lambda)", "V",
+         "CIE 1924 photopic luminous efficiency; " + CIE15, "photopic, 2 degree field"),
+        ("v-prime-1951", "CIE 1951 Scotopic Standard Observer", "V'(lambda)", "V'",
+         "CIE 1951 scotopic luminous efficiency; CIE 018:2019", "scotopic"),
+    ]
+    for file, key, name, column, source, conditions in table:
+        lef = colour.SDS_LEFS[key]
+        write(SPECTRA / "cie" / f"{file}.csv", {
+            "name": name, "kind": "sensitivity", "quantity": "spectral luminous efficiency", "unit": "1",
+            "source": source, "licence": LICENCE, "conditions": conditions, "outside": "geometric",
+        }, lef.wavelengths, {column: lef.values})
+    wavelengths = DAYLIGHT["S0"].wavelengths
+    write(SPECTRA / "cie" / "daylight-components.csv", {
+        "name": "daylight components", "kind": "components", "quantity": "relative spectral power", "unit": "1",
+        "source": CIE15 + "; D. B. Judd, D. L. MacAdam, G. Wyszecki, J. Opt. Soc. Am. 54, 1031 (1964)",
+        "licence": LICENCE, "conditions": "mean and first two characteristic vectors of daylight", "outside": "constant",
+    }, wavelengths, {key: DAYLIGHT[key].values for key in ("S0", "S1", "S2")})
+
+
+def illuminant_front_matter(name):
+    """Source and conditions of an illuminant."""
+    source, conditions = CIE15, "CIE illuminant"
+    if name == "D60":
+        conditions = "CIE daylight of 6000 K nominal (6003.5 K), computed from the daylight components"
+    elif name == "E":
+        conditions = "equal power at all wavelengths"
+    elif name.startswith("FL3."):
+        conditions = "CIE fluorescent lamps, second series; 5 nm bands hold the mercury lines"
+    elif name.startswith("FL"):
+        conditions = "CIE fluorescent lamp; 5 nm bands hold the mercury lines"
+    elif name.startswith("HP"):
+        conditions = "CIE high-pressure discharge lamp"
+    elif name.startswith("LED"):
+        source, conditions = CIE15_2018, "CIE typical LED lamp"
+    elif name.startswith("ID"):
+        source, conditions = CIE15_2018, "CIE indoor daylight, behind window glass"
+    elif name.startswith("ISO"):
+        source = "ISO 7589:2002, Photography - Illuminants for sensitometry"
+        conditions = "defined in the range below only"
+        if "Sensitometric" in name:
+            conditions += "; through the ISO standard lens" + (" and diffuser" if "Printer" in name else "")
+    return {
+        "name": name, "kind": "emission", "quantity": "relative spectral power", "unit": "1/nm",
+        "source": source, "licence": LICENCE, "conditions": conditions, "outside": "constant",
+    }
+
+
+def illuminants():
+    """All illuminants, and the chromaticities that a test holds them to."""
+    cmfs = colour.MSDS_CMFS["CIE 1931 2 Degree Standard Observer"]
+    rows = ["name,x,y,cct_k,duv"]
+    for name in colour.SDS_ILLUMINANTS:
+        if name != name.strip():
+            continue
+        sd = colour.SDS_ILLUMINANTS[name]
+        label = slug(name) if name.startswith("ISO") else name
+        write(SPECTRA / "illuminants" / f"{label}.csv", illuminant_front_matter(name), sd.wavelengths, {"power": sd.values})
+        aligned = sd.copy().align(colour.SpectralShape(360, 830, 1))
+        xyz = aligned.values @ cmfs.values
+        x, y = xyz[0] / xyz.sum(), xyz[1] / xyz.sum()
+        cct, duv = colour.temperature.uv_to_CCT_Ohno2013(colour.UCS_to_uv(colour.XYZ_to_UCS(xyz / xyz[1])))
+        temperature = f"{cct:.2f},{duv:.6f}" if abs(duv) < 0.05 and 1000 < cct < 25000 else ","
+        rows.append(f"{name},{x:.7f},{y:.7f},{temperature}")
+    EXPECTED.mkdir(parents=True, exist_ok=True)
+    (EXPECTED / "illuminants.csv").write_text("\n".join(rows) + "\n", encoding="utf-8")
+
+
+PATCH_NAMES = {
+    "white 9.5 (.05 D)": "white", "neutral 8 (.23 D)": "neutral-8", "neutral 6.5 (.44 D)": "neutral-6.5",
+    "neutral 5 (.70 D)": "neutral-5", "neutral 3.5 (1.05 D)": "neutral-3.5", "black 2 (1.5 D)": "black",
+}
+
+
+def checkers():
+    """ColorChecker reflectances, and their colors under D50."""
+    table = [
+        ("colorchecker", "ISO 17321-1", "ColorChecker", "ISO 17321-1:2012, annex C", "24 patches, 0/45 geometry"),
+        ("colorchecker-babelcolor", "BabelColor Average", "ColorChecker BabelColor average",
+         "D. Pascale, The ColorChecker (since 1976!), BabelColor (2012)", "24 patches, average of 30 charts"),
+    ]
+    for file, key, name, source, conditions in table:
+        patches = colour.SDS_COLOURCHECKERS[key]
+        columns = {PATCH_NAMES.get(p, slug(p)): sd.values for p, sd in patches.items()}
+        wavelengths = next(iter(patches.values())).wavelengths
+        write(SPECTRA / "reflectances" / f"{file}.csv", {
+            "name": name, "kind": "reflectance", "quantity": "reflectance factor", "unit": "1",
+            "source": source, "licence": LICENCE, "conditions": conditions,
+            "interpolation": "sprague", "outside": "constant",
+        }, wavelengths, columns)
+    shape = colour.SpectralShape(360, 830, 1)
+    cmfs = colour.MSDS_CMFS["CIE 1931 2 Degree Standard Observer"].values
+    light = colour.SDS_ILLUMINANTS["D50"].copy().align(shape).values
+    white = light @ cmfs
+    rows = ["patch,X,Y,Z,L,a,b"]
+    for patch, sd in colour.SDS_COLOURCHECKERS["ISO 17321-1"].items():
+        xyz = 100 * (sd.copy().align(shape).values * light) @ cmfs / white[1]
+        lab = colour.XYZ_to_Lab(xyz / 100, colour.XYZ_to_xy(white))
+        rows.append(",".join([PATCH_NAMES.get(patch, slug(patch)), *(f"{v:.5f}" for v in (*xyz, *lab))]))
+    (EXPECTED / "checker-d50.csv").write_text("\n".join(rows) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    observers()
+    illuminants()
+    checkers()
