@@ -34,7 +34,8 @@ impl FrameSize {
     pub fn pixel_at(&self, x_mm: f64, y_mm: f64) -> Option<u32> {
         let column = (0.5 - x_mm / self.width_mm) * f64::from(self.width_px);
         let row = (0.5 + y_mm / self.height_mm) * f64::from(self.height_px);
-        let inside = column >= 0.0 && row >= 0.0 && column < f64::from(self.width_px) && row < f64::from(self.height_px);
+        let inside =
+            column >= 0.0 && row >= 0.0 && column < f64::from(self.width_px) && row < f64::from(self.height_px);
         inside.then(|| row as u32 * self.width_px + column as u32)
     }
 

@@ -86,7 +86,10 @@ impl LossCounts {
     /// The counts that are not zero: (surface, cause, rays).
     pub fn iter(&self) -> impl Iterator<Item = (u32, Loss, u64)> + '_ {
         self.rows.iter().enumerate().flat_map(|(surface, row)| {
-            Loss::ALL.into_iter().map(move |cause| (surface as u32, cause, row[cause as usize])).filter(|(_, _, many)| *many > 0)
+            Loss::ALL
+                .into_iter()
+                .map(move |cause| (surface as u32, cause, row[cause as usize]))
+                .filter(|(_, _, many)| *many > 0)
         })
     }
 

@@ -345,7 +345,8 @@ mod tests {
             assert!((mean - 0.5).abs() < 4.0 * se, "{mean}");
         }
         for (a, b) in [(0, 1), (0, 2)] {
-            let c: f64 = columns[a].iter().zip(&columns[b]).map(|(x, y)| (x - 0.5) * (y - 0.5)).sum::<f64>() / n as f64 * 12.0;
+            let c: f64 =
+                columns[a].iter().zip(&columns[b]).map(|(x, y)| (x - 0.5) * (y - 0.5)).sum::<f64>() / n as f64 * 12.0;
             assert!(c.abs() < 4.0 / (n as f64).sqrt(), "{c}");
         }
     }

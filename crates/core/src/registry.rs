@@ -50,7 +50,13 @@ pub struct Entry<S: ?Sized + 'static> {
 impl<S: ?Sized> Entry<S> {
     /// An entry; see the fields.
     #[must_use]
-    pub const fn new(name: &'static str, summary: &'static str, package: &'static str, version: &'static str, build: Build<S>) -> Self {
+    pub const fn new(
+        name: &'static str,
+        summary: &'static str,
+        package: &'static str,
+        version: &'static str,
+        build: Build<S>,
+    ) -> Self {
         Self { name, summary, package, version, default: false, build }
     }
 

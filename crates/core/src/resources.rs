@@ -46,7 +46,8 @@ pub trait Resources: Send + Sync {
     ///
     /// # Errors
     /// [`ResourceError`].
-    fn read(&self, path: &str, folders: &[&str], endings: &[&str], limit_bytes: u64) -> Result<Resource, ResourceError>;
+    fn read(&self, path: &str, folders: &[&str], endings: &[&str], limit_bytes: u64)
+    -> Result<Resource, ResourceError>;
 
     /// Reads and parses a YAML document (a lens, a film stock), found as by [`Resources::read`].
     ///

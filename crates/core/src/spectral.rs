@@ -190,7 +190,8 @@ mod tests {
     #[test]
     fn lines_count_beside_the_continuum() {
         let grid = Grid { start_nm: 400.0, step_nm: 10.0, count: 3 };
-        let light = SpectralPower { grid, continuum: vec![2.0; 3], lines: vec![Line { wavelength_nm: 405.0, power: 3.0 }] };
+        let light =
+            SpectralPower { grid, continuum: vec![2.0; 3], lines: vec![Line { wavelength_nm: 405.0, power: 3.0 }] };
         assert!((light.seen_by(&[1.0, 1.0, 1.0]) - 43.0).abs() < 1e-12);
     }
 }

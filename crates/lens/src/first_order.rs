@@ -100,7 +100,8 @@ impl Lens {
         if let Some(stop) = self.stop() {
             // From the first vertex plane to the stop: the stop's image in object space.
             let to_stop = self.matrix(0..stop, index);
-            let gap = if stop > 0 { self.elements[stop].vertex_z_mm - self.elements[stop - 1].vertex_z_mm } else { 0.0 };
+            let gap =
+                if stop > 0 { self.elements[stop].vertex_z_mm - self.elements[stop - 1].vertex_z_mm } else { 0.0 };
             let front = to_stop.advance(gap);
             // A ray through the centre of the stop: a h + b s = 0, it crosses the axis at -h / s = b / a.
             enp = Some(front.b / front.a);
@@ -143,11 +144,8 @@ impl Lens {
     pub fn paraxial_image_gap_mm(&self, object_mm: f64, wavelength_nm: f64) -> f64 {
         let m = self.matrix(0..self.elements.len(), &|medium| self.index(medium, wavelength_nm));
         // A ray from the point with slope s: height object s at the first vertex.
-        let (height, slope) = if object_mm.is_finite() {
-            (m.a * object_mm + m.b, m.c * object_mm + m.d)
-        } else {
-            (m.a, m.c)
-        };
+        let (height, slope) =
+            if object_mm.is_finite() { (m.a * object_mm + m.b, m.c * object_mm + m.d) } else { (m.a, m.c) };
         -height / slope
     }
 

@@ -70,6 +70,23 @@ pub struct Lens {
 }
 
 impl Lens {
+    /// A lens without surfaces, of which nothing but the name is known; to be filled.
+    #[must_use]
+    pub fn empty(name: &str) -> Self {
+        Self {
+            name: name.to_owned(),
+            year: None,
+            patent: None,
+            maker: None,
+            source: None,
+            remark: None,
+            reference_nm: spectra_glass::lines::D.wavelength_nm,
+            elements: Vec::new(),
+            media: vec![LensMedium::air()],
+            warnings: Vec::new(),
+        }
+    }
+
     /// Number of the stop among the elements, if there is one.
     #[must_use]
     pub fn stop(&self) -> Option<usize> {

@@ -14,8 +14,8 @@ mod tracer;
 
 pub use aim::{FrontDisk, RearPupil};
 pub use aperture::{ApertureError, MarginalRay};
-pub use focus::FocusError;
 pub use first_order::FirstOrder;
+pub use focus::FocusError;
 pub use lens::{Element, Lens, LensMedium};
 pub use prescription::{load, parse};
 pub use tracer::{Indices, RayPath, Tracer, Travel, Work};

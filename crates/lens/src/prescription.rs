@@ -161,7 +161,12 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
 }
 
 /// The medium that a surface states, or `None` for air.
-fn medium(stated: &Place, place: &Params, number: usize, warnings: &mut Vec<String>) -> Result<Option<LensMedium>, Faults> {
+fn medium(
+    stated: &Place,
+    place: &Params,
+    number: usize,
+    warnings: &mut Vec<String>,
+) -> Result<Option<LensMedium>, Faults> {
     let by_figures = |nd: f64, vd: Option<f64>, key: &str| -> Result<Medium, Fault> {
         let refuse = |what: String| Err(place.fault(key, what).hint("nd lies between 1 and 4, vd between 5 and 200"));
         if !(1.0..=4.0).contains(&nd) {

@@ -77,7 +77,9 @@ impl Tracer {
                     let nd = m.stated_nd.unwrap_or_else(|| m.medium.index(lens.reference_nm));
                     Dispersion::fit(&Medium::Constant(nd), 350.0, 830.0)
                 }
-                Indices::At(wavelength_nm) => Dispersion::fit(&Medium::Constant(m.medium.index(wavelength_nm)), 350.0, 830.0),
+                Indices::At(wavelength_nm) => {
+                    Dispersion::fit(&Medium::Constant(m.medium.index(wavelength_nm)), 350.0, 830.0)
+                }
             })
             .collect::<Result<_, _>>()?;
         Ok(Self { elements: lens.elements.clone(), image_z_mm: lens.image_z_mm(), media, isa })

@@ -38,6 +38,8 @@ mod lines;
 pub mod matrix;
 mod meta;
 mod names;
+mod normal;
+mod normal_quantile;
 mod planck;
 pub mod rgb;
 mod shape;
@@ -45,6 +47,7 @@ mod spectral_color;
 mod sprague;
 pub mod table;
 mod tabulated;
+mod truncated;
 
 pub use adaptation::Adaptation;
 pub use by_name::{
@@ -72,3 +75,4 @@ pub use shape::Shape;
 pub use spectra_core::spectral::{BAND, Grid, Line, SpectralPower};
 pub use spectral_color::{spectral_color_encoded, spectral_color_linear, spectral_color_srgb8};
 pub use tabulated::Tabulated;
+pub use truncated::TruncatedGaussian;

@@ -92,7 +92,8 @@ mod tests {
     /// weight is one over the stated density.
     #[test]
     fn gaps_and_edges_keep_a_positive_density() {
-        let density: Vec<f64> = BAND.wavelengths_nm().map(|w| if (400.0..450.0).contains(&w) || w > 700.0 { 1.0 } else { 0.0 }).collect();
+        let density: Vec<f64> =
+            BAND.wavelengths_nm().map(|w| if (400.0..450.0).contains(&w) || w > 700.0 { 1.0 } else { 0.0 }).collect();
         let q = Quantiles::of(BAND, &density).unwrap();
         for i in 0..10_000 {
             let (w, inverse) = q.draw((f64::from(i) + 0.5) / 10_000.0);

@@ -26,12 +26,8 @@ impl WavelengthSampler for SourceTimesResponse {
         if of_response <= 0.0 {
             return Err("no channel sees anything in the band".to_owned());
         }
-        let weights: Vec<f64> = system
-            .source
-            .lines
-            .iter()
-            .map(|l| l.power.abs() * grid.interpolate(&response, l.wavelength_nm))
-            .collect();
+        let weights: Vec<f64> =
+            system.source.lines.iter().map(|l| l.power.abs() * grid.interpolate(&response, l.wavelength_nm)).collect();
         let of_lines: f64 = weights.iter().sum();
         let has_continuum = system.source.continuum.iter().any(|v| *v != 0.0);
         // A continuum that is seen nowhere is dark, but it may be lit elsewhere on the source: keep it if it is there.

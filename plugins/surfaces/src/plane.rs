@@ -80,7 +80,9 @@ mod tests {
 
     #[test]
     fn a_ray_along_the_plane_misses_it() {
-        let hit = |n: f64| Plane::refracting().hit(Ray { position: [0.0, 0.0, -1.0], direction: [0.0, 1.0, n], radius2: 0.0 });
+        let hit = |n: f64| {
+            Plane::refracting().hit(Ray { position: [0.0, 0.0, -1.0], direction: [0.0, 1.0, n], radius2: 0.0 })
+        };
         assert!(!(hit(0.0).valid >= 0.0));
         assert!(hit(1e-3).valid >= 0.0);
         assert_eq!(hit(0.5).distance, 2.0);

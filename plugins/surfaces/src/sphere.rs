@@ -80,7 +80,10 @@ inventory::submit! {
 fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Surface>, Faults> {
     let p: SphereParams = params.parse()?;
     if p.radius.mm() == 0.0 {
-        return Err(params.fault("radius", "a radius of 0 is no sphere").hint("a plane is `radius: inf` or `kind: plane`").into());
+        return Err(params
+            .fault("radius", "a radius of 0 is no sphere")
+            .hint("a plane is `radius: inf` or `kind: plane`")
+            .into());
     }
     Ok(Box::new(Kernel(Sphere::new(p.radius.mm()))))
 }
@@ -104,7 +107,10 @@ mod tests {
                 for sense in [1.0, -1.0] {
                     let hit = hit(radius, [h, 0.0, -3.0 * sense], [0.0, 0.0, sense]);
                     let z = -3.0 * sense + hit.distance * sense;
-                    assert!((z - want).abs() < 1e-8_f64.max(1e-14 * radius.abs()) && hit.valid > 0.0, "{radius} {h} {z} {want}");
+                    assert!(
+                        (z - want).abs() < 1e-8_f64.max(1e-14 * radius.abs()) && hit.valid > 0.0,
+                        "{radius} {h} {z} {want}"
+                    );
                     let cosine = sense * f64::sqrt(1.0 - h * h / (radius * radius));
                     assert!((hit.cosine - cosine).abs() < 1e-12);
                 }

@@ -74,6 +74,8 @@ mod path;
 mod quantities;
 pub mod quantity;
 mod stage_node;
+#[cfg(test)]
+mod tests;
 mod text;
 mod units;
 
@@ -82,8 +84,8 @@ pub use node::{Key, MAX_DEPTH, Node, Number, SourceFile, Span, Value};
 pub use params::Params;
 pub use path::{Step, steps};
 pub use quantities::{
-    Angle, Exposure, FNumber, Illuminance, Length, LengthOrInfinity, Luminance, NonNegative, OrInfinity, Positive, Power,
-    RadiantIntensity, Ratio, SpatialFrequency, Temperature, Time, Wavelength,
+    Angle, Exposure, FNumber, Illuminance, Length, LengthOrInfinity, Luminance, NonNegative, OrInfinity, Positive,
+    Power, RadiantIntensity, Ratio, SpatialFrequency, Temperature, Time, Wavelength,
 };
 pub use quantity::{Bound, Quantity};
 pub use stage_node::StageNode;

@@ -29,7 +29,9 @@ impl Params {
     /// It is neither, or its `kind` is not a name.
     pub fn stage(mut node: Node, path: &str) -> Result<Self, Faults> {
         let kind = match &mut node.value {
-            Value::Map(entries) => entries.iter().position(|(key, _)| key.text == KIND).map(|index| entries.remove(index)),
+            Value::Map(entries) => {
+                entries.iter().position(|(key, _)| key.text == KIND).map(|index| entries.remove(index))
+            }
             Value::String(_) => {
                 let map = Node { value: Value::Map(Vec::new()), ..node.clone() };
                 let name = std::mem::replace(&mut node, map);
@@ -56,7 +58,10 @@ impl Params {
     pub fn section(node: Node, path: &str) -> Result<Self, Faults> {
         match &node.value {
             Value::Map(_) => Ok(Self { node, kind: None, path: path.to_owned() }),
-            _ => Err(node.fault(format!("found {}, expected a map such as {{key: value}}", found(&node))).path(path).into()),
+            _ => Err(node
+                .fault(format!("found {}, expected a map such as {{key: value}}", found(&node)))
+                .path(path)
+                .into()),
         }
     }
 

@@ -89,14 +89,19 @@ pub trait Quantity: Copy {
         let expected = expected::<Self>();
         match Reading::of(text) {
             Reading::Bare(value) => checked(Self::from_bare(value), text),
-            Reading::Quantity { value, unit } if unit.dimension == Self::DIMENSION => checked(Self::from_unit(value, unit), text),
-            Reading::Quantity { .. } => Err(format!("found {}, expected {expected}{}", found_text(text), units_hint::<Self>())),
+            Reading::Quantity { value, unit } if unit.dimension == Self::DIMENSION => {
+                checked(Self::from_unit(value, unit), text)
+            }
+            Reading::Quantity { .. } => {
+                Err(format!("found {}, expected {expected}{}", found_text(text), units_hint::<Self>()))
+            }
             Reading::Infinity(false) if Self::INFINITY => Ok(Self::from_bare(f64::INFINITY)),
             Reading::Infinity(_) | Reading::NotANumber => Err(format!("found {}, expected {expected}", shown(text))),
             Reading::TooLarge => Err(format!("found {}, which is too large; expected {expected}", shown(text))),
-            Reading::DecimalComma => {
-                Err(format!("found the text `{}`, expected {expected}\nhint: write a decimal point, not a comma", shown(text)))
-            }
+            Reading::DecimalComma => Err(format!(
+                "found the text `{}`, expected {expected}\nhint: write a decimal point, not a comma",
+                shown(text)
+            )),
             Reading::UnknownUnit(unit) => {
                 let units = Self::DIMENSION.units();
                 let hint = match nearest(unit, units.iter().copied()) {
@@ -105,7 +110,9 @@ pub trait Quantity: Copy {
                 };
                 Err(format!("unknown unit `{}`, expected {expected}{hint}", shown(unit)))
             }
-            Reading::Text => Err(format!("found the text `{}`, expected {expected}{}", shown(text), text_hint::<Self>(text))),
+            Reading::Text => {
+                Err(format!("found the text `{}`, expected {expected}{}", shown(text), text_hint::<Self>(text)))
+            }
         }
     }
 }
@@ -130,7 +137,9 @@ fn units_hint<Q: Quantity>() -> String {
 
 fn text_hint<Q: Quantity>(text: &str) -> String {
     let text = text.trim();
-    if Q::DIMENSION == Dimension::FNumber && text.trim_start_matches(['f', 'F', '/', ' ']).starts_with(|c: char| c.is_ascii_digit()) {
+    if Q::DIMENSION == Dimension::FNumber
+        && text.trim_start_matches(['f', 'F', '/', ' ']).starts_with(|c: char| c.is_ascii_digit())
+    {
         let figure = text.trim_start_matches(['f', 'F', '/', ' ']);
         return format!("\nhint: write `f/{}`", shown(figure));
     }
@@ -172,7 +181,11 @@ impl<'de, Q: Quantity> Visitor<'de> for QuantityVisitor<Q> {
     }
 
     fn visit_f64<E: Error>(self, value: f64) -> Result<Q, E> {
-        if value.is_finite() { checked(Q::from_bare(value), &value.to_string()).map_err(E::custom) } else { self.visit_str(&value.to_string()) }
+        if value.is_finite() {
+            checked(Q::from_bare(value), &value.to_string()).map_err(E::custom)
+        } else {
+            self.visit_str(&value.to_string())
+        }
     }
 
     fn visit_u64<E: Error>(self, value: u64) -> Result<Q, E> {

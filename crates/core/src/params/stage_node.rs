@@ -4,8 +4,8 @@ use super::de::{self, NODE};
 use super::fault::Faults;
 use super::node::Node;
 use super::params::Params;
-use serde::de::{DeserializeOwned, Deserializer, Error, Visitor};
 use serde::Deserialize;
+use serde::de::{DeserializeOwned, Deserializer, Error, Visitor};
 use std::cell::RefCell;
 use std::fmt;
 
@@ -84,7 +84,9 @@ impl<'de> Deserialize<'de> for StageNode {
             }
 
             fn visit_unit<E: Error>(self) -> Result<StageNode, E> {
-                HANDED_OVER.with(|slot| slot.borrow_mut().take()).ok_or_else(|| E::custom("a stage cannot be read from here"))
+                HANDED_OVER
+                    .with(|slot| slot.borrow_mut().take())
+                    .ok_or_else(|| E::custom("a stage cannot be read from here"))
             }
         }
 

@@ -65,7 +65,7 @@ pub(super) fn listed<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
 }
 
 /// The hint for an unknown name: the nearest known one, or all of them.
-pub(super) fn hint_for<'a>(name: &str, what: &str, known: &[&'a str]) -> String {
+pub(super) fn hint_for(name: &str, what: &str, known: &[&str]) -> String {
     match nearest(name, known.iter().copied()) {
         Some(near) => format!("did you mean `{near}`?"),
         None if known.is_empty() => format!("no {what} is known here"),

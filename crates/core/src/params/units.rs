@@ -246,7 +246,9 @@ impl<'a> Reading<'a> {
         match Unit::find(unit) {
             Some(unit) => Self::Quantity { value, unit },
             // `50mm-lens` and `2020-01-01` are texts; `50 mn` is a quantity with a slip in it.
-            None if unit.len() > 12 || unit.starts_with(['-', '.', ':', '+']) || unit.contains(char::is_control) => Self::Text,
+            None if unit.len() > 12 || unit.starts_with(['-', '.', ':', '+']) || unit.contains(char::is_control) => {
+                Self::Text
+            }
             None => Self::UnknownUnit(unit),
         }
     }
@@ -338,7 +340,8 @@ mod tests {
 
     #[test]
     fn conversion_is_correctly_rounded() {
-        let convert = |value: f64, from: &str, to: &str| Unit::find(from).unwrap().convert(value, Unit::find(to).unwrap());
+        let convert =
+            |value: f64, from: &str, to: &str| Unit::find(from).unwrap().convert(value, Unit::find(to).unwrap());
         for (value, from, to, expected) in [
             (5.0, "um", "mm", 0.005),
             (550.0, "nm", "mm", 0.000_55),

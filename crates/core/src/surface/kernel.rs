@@ -139,11 +139,7 @@ impl<S: KernelShape, const ACTION: u8> Vectorized for Interact<'_, S, ACTION> {
     #[inline(always)]
     fn run(self) -> usize {
         intersect(self.shape, self.rays, self.interface.shift_mm);
-        if bend_all::<S, ACTION>(self.shape, self.rays, self.interface) {
-            book(self.rays, self.interface)
-        } else {
-            0
-        }
+        if bend_all::<S, ACTION>(self.shape, self.rays, self.interface) { book(self.rays, self.interface) } else { 0 }
     }
 }
 

@@ -7,7 +7,9 @@ use super::placeholder::Placeholder;
 use super::session::Standin;
 use super::walker::Walker;
 use serde::de::value::{BorrowedStrDeserializer, StrDeserializer};
-use serde::de::{DeserializeSeed, Deserializer, EnumAccess, Error, IntoDeserializer, MapAccess, SeqAccess, VariantAccess, Visitor};
+use serde::de::{
+    DeserializeSeed, Deserializer, EnumAccess, Error, IntoDeserializer, MapAccess, SeqAccess, VariantAccess, Visitor,
+};
 use serde::forward_to_deserialize_any;
 
 /// A list in a walk.
@@ -50,7 +52,11 @@ pub(super) struct MapWalk<'n, 'p> {
 
 impl<'n, 'p> MapWalk<'n, 'p> {
     /// With `fields`, other keys are reported and left out.
-    pub(super) fn new(map: Walker<'n, 'p>, entries: &'n [(Key, Node)], fields: Option<&'static [&'static str]>) -> Self {
+    pub(super) fn new(
+        map: Walker<'n, 'p>,
+        entries: &'n [(Key, Node)],
+        fields: Option<&'static [&'static str]>,
+    ) -> Self {
         let session = map.session;
         let mut taken = Vec::with_capacity(entries.len());
         for entry in entries {
@@ -132,7 +138,10 @@ impl<'de> Deserializer<'de> for KeyText<'de> {
     fn deserialize_f64<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, NodeError> {
         match Value::from_plain(self.0) {
             Value::Number(number) if number.value.is_finite() => visitor.visit_f64(number.value),
-            _ => Err(NodeError::custom(format!("found the key `{}`, expected a number", super::super::text::shown(self.0)))),
+            _ => Err(NodeError::custom(format!(
+                "found the key `{}`, expected a number",
+                super::super::text::shown(self.0)
+            ))),
         }
     }
 
@@ -141,7 +150,11 @@ impl<'de> Deserializer<'de> for KeyText<'de> {
     }
 
     /// Keys that are quantities, too.
-    fn deserialize_newtype_struct<V: Visitor<'de>>(self, _name: &'static str, visitor: V) -> Result<V::Value, NodeError> {
+    fn deserialize_newtype_struct<V: Visitor<'de>>(
+        self,
+        _name: &'static str,
+        visitor: V,
+    ) -> Result<V::Value, NodeError> {
         visitor.visit_newtype_struct(self)
     }
 
@@ -178,7 +191,10 @@ impl<'n, 'p> EnumWalk<'n, 'p> {
 
     fn value<R>(&self, read: impl FnOnce(Walker<'n, '_>) -> Result<R, NodeError>) -> Result<R, NodeError> {
         let Some(node) = self.value else {
-            return Err(NodeError::custom(format!("`{}` needs parameters\nhint: write {{{}: ...}}", self.name, self.name)));
+            return Err(NodeError::custom(format!(
+                "`{}` needs parameters\nhint: write {{{}: ...}}",
+                self.name, self.name
+            )));
         };
         let value = self.node.child(Step::Key(self.name), node);
         read(value).map_err(|error| value.place(error))
@@ -201,7 +217,9 @@ impl<'n> VariantAccess<'n> for EnumWalk<'n, '_> {
     fn unit_variant(self) -> Result<(), NodeError> {
         match self.value.map(|node| &node.value) {
             None | Some(Value::Null) => Ok(()),
-            Some(_) => Err(NodeError::custom(format!("`{}` takes no parameters\nhint: write just `{}`", self.name, self.name))),
+            Some(_) => {
+                Err(NodeError::custom(format!("`{}` takes no parameters\nhint: write just `{}`", self.name, self.name)))
+            }
         }
     }
 
@@ -213,7 +231,11 @@ impl<'n> VariantAccess<'n> for EnumWalk<'n, '_> {
         self.value(|value| value.deserialize_tuple(len, visitor))
     }
 
-    fn struct_variant<V: Visitor<'n>>(self, fields: &'static [&'static str], visitor: V) -> Result<V::Value, NodeError> {
+    fn struct_variant<V: Visitor<'n>>(
+        self,
+        fields: &'static [&'static str],
+        visitor: V,
+    ) -> Result<V::Value, NodeError> {
         self.value(|value| value.deserialize_struct("", fields, visitor))
     }
 }

@@ -6,7 +6,9 @@ use super::super::stage_node;
 use super::NODE;
 use super::error::{Cause, NodeError};
 use serde::de::value::StrDeserializer;
-use serde::de::{DeserializeSeed, Deserializer, EnumAccess, IntoDeserializer, MapAccess, SeqAccess, VariantAccess, Visitor};
+use serde::de::{
+    DeserializeSeed, Deserializer, EnumAccess, IntoDeserializer, MapAccess, SeqAccess, VariantAccess, Visitor,
+};
 use std::sync::Arc;
 
 /// How many forms a placeholder can take for a type that accepts several.
@@ -96,7 +98,11 @@ impl<'de> Deserializer<'de> for Placeholder {
         visitor.visit_unit()
     }
 
-    fn deserialize_newtype_struct<V: Visitor<'de>>(self, name: &'static str, visitor: V) -> Result<V::Value, NodeError> {
+    fn deserialize_newtype_struct<V: Visitor<'de>>(
+        self,
+        name: &'static str,
+        visitor: V,
+    ) -> Result<V::Value, NodeError> {
         match name {
             NODE => {
                 let file = Arc::new(SourceFile::new("", ""));
@@ -116,7 +122,12 @@ impl<'de> Deserializer<'de> for Placeholder {
         visitor.visit_seq(Row { inside: self.inside()?, fields: &[], left: len })
     }
 
-    fn deserialize_tuple_struct<V: Visitor<'de>>(self, _name: &'static str, len: usize, visitor: V) -> Result<V::Value, NodeError> {
+    fn deserialize_tuple_struct<V: Visitor<'de>>(
+        self,
+        _name: &'static str,
+        len: usize,
+        visitor: V,
+    ) -> Result<V::Value, NodeError> {
         self.deserialize_tuple(len, visitor)
     }
 
@@ -209,7 +220,11 @@ impl<'de> VariantAccess<'de> for Variant {
         self.inside.deserialize_tuple(len, visitor)
     }
 
-    fn struct_variant<V: Visitor<'de>>(self, fields: &'static [&'static str], visitor: V) -> Result<V::Value, NodeError> {
+    fn struct_variant<V: Visitor<'de>>(
+        self,
+        fields: &'static [&'static str],
+        visitor: V,
+    ) -> Result<V::Value, NodeError> {
         self.inside.deserialize_struct("", fields, visitor)
     }
 }

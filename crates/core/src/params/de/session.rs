@@ -45,6 +45,8 @@ pub(super) struct Session<'n> {
     prefix: &'n str,
     faults: RefCell<Vec<Fault>>,
     visits: Cell<usize>,
+    /// Whether the walks ended before all faults were found.
+    cut: Cell<bool>,
     /// Values that failed, by address.
     failed: RefCell<HashMap<usize, Standin>>,
     /// Missing keys, by address of the map.
@@ -62,6 +64,7 @@ impl<'n> Session<'n> {
             prefix,
             faults: RefCell::default(),
             visits: Cell::new(0),
+            cut: Cell::new(false),
             failed: RefCell::default(),
             missing: RefCell::default(),
             tainted: RefCell::default(),
@@ -97,7 +100,13 @@ impl<'n> Session<'n> {
 
     /// Whether a key is in `fields`; reports it the first time if it is not. A field that it was
     /// meant for is then not reported as missing.
-    pub(super) fn is_known(&self, map: &Node, map_path: &dyn Fn() -> String, entry: &(Key, Node), fields: &[&'static str]) -> bool {
+    pub(super) fn is_known(
+        &self,
+        map: &Node,
+        map_path: &dyn Fn() -> String,
+        entry: &(Key, Node),
+        fields: &[&'static str],
+    ) -> bool {
         let (key, value) = entry;
         if fields.contains(&key.text.as_str()) {
             return true;
@@ -137,8 +146,14 @@ impl<'n> Session<'n> {
     /// Remembers what an error says; false if another walk would not find more.
     pub(super) fn absorb(&self, error: NodeError) -> bool {
         let (cause, culprit) = error.into_parts();
-        let Some(culprit) = culprit else { return false };
-        let Some(node) = self.node_at(&culprit.chain) else { return false };
+        let place = culprit.and_then(|culprit| Some((self.node_at(&culprit.chain)?, culprit)));
+        let Some((node, culprit)) = place else {
+            // Not from this walk: said at the whole rather than not at all.
+            if let Cause::Text(message, hint) = cause {
+                self.report(Fault { hint, ..self.root.fault(message).path(self.prefix) });
+            }
+            return false;
+        };
         let at = culprit.chain[0];
         match cause {
             Cause::Text(message, hint) => {
@@ -155,7 +170,8 @@ impl<'n> Session<'n> {
                 }
             }
             Cause::Missing(key) => {
-                let known = self.missing.borrow().get(&at).and_then(|keys| keys.iter().find(|(k, _)| *k == key).copied());
+                let known =
+                    self.missing.borrow().get(&at).and_then(|keys| keys.iter().find(|(k, _)| *k == key).copied());
                 // Present but left out: it has been reported, and no placeholder went through.
                 let given_up = node.get(key).is_some() || known.is_some_and(|(_, standin)| standin == Standin::Left);
                 if given_up {
@@ -177,7 +193,10 @@ impl<'n> Session<'n> {
                 }
             }
         }
-        self.faults.borrow().len() <= MOST_FAULTS && self.visits.get() < MOST_VISITS
+        if self.visits.get() >= MOST_VISITS && self.faults.borrow().len() <= MOST_FAULTS {
+            self.cut.set(true);
+        }
+        self.faults.borrow().len() <= MOST_FAULTS && !self.cut.get()
     }
 
     /// Gives a node its next stand-in; where it has none left, the node around it. False at the root.
@@ -213,9 +232,15 @@ impl<'n> Session<'n> {
     /// The faults in the order of the file.
     pub(super) fn finish(self) -> Faults {
         let mut faults = self.faults.into_inner();
-        let cut = if faults.len() > MOST_FAULTS { faults.pop() } else { None };
+        let last = if faults.len() > MOST_FAULTS {
+            faults.pop()
+        } else if self.cut.get() {
+            Some(self.root.fault("the search for faults ends here: the file is large; there may be more"))
+        } else {
+            None
+        };
         faults.sort_by_key(|fault| fault.place.as_ref().map_or(0, |(_, span)| span.offset));
-        faults.extend(cut);
+        faults.extend(last);
         Faults(faults)
     }
 }

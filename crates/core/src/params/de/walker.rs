@@ -107,7 +107,9 @@ impl<'n, 'p> Walker<'n, 'p> {
         match &self.node.value {
             Value::String(text) => Ok(text),
             Value::Number(number) => Ok(&number.text),
-            Value::Bool(value) => Err(self.mismatch("a text")).map_err(|error| with_hint(error, format!("write \"{value}\" with quotes"))),
+            Value::Bool(value) => {
+                Err(self.mismatch("a text")).map_err(|error| with_hint(error, format!("write \"{value}\" with quotes")))
+            }
             _ => Err(self.mismatch("a text")),
         }
     }

@@ -1,0 +1,241 @@
+//! Speed of the sequential trace, as ratio to a careful C++ engineer's (`soa.cpp`), in one run.
+//!
+//! The work is that of `soa.cpp`: its Biotar (ten refractions, stop, image plane: 12 intersections), field 5 degrees,
+//! a random wavelength per ray, a million rays, one thread. The two programs take turns; each figure is the median of
+//! its turns. Last line: JSON.
+
+use spectra_core::surface::Action;
+use spectra_core::{Isa, RayBatch};
+use spectra_glass::{Category, Formula, Glass, Medium};
+use spectra_lens::{Element, Indices, Lens, LensMedium, Tracer, Travel};
+use spectra_plugin_surfaces::{Plane, Sphere};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// Twice the radius, twice the thickness, index and Abbe number behind (0: air), clear diameter: `soa.cpp`'s table.
+const BIOTAR: [[f64; 5]; 11] = [
+    [83.6, 10.75, 1.64238, 48.0, 37.0],
+    [321.0, 1.65, 1.0, 0.0, 37.0],
+    [44.8, 15.55, 1.62306, 56.9, 33.0],
+    [-1150.0, 5.05, 1.57566, 41.2, 33.0],
+    [28.3, 11.1, 1.0, 0.0, 22.5],
+    [0.0, 7.8, 1.0, 0.0, 22.5],
+    [-38.5, 5.05, 1.6727, 32.2, 22.5],
+    [50.5, 21.22, 1.64238, 48.0, 30.0],
+    [-53.2, 0.97, 1.0, 0.0, 30.0],
+    [106.0, 13.9, 1.64238, 48.0, 30.0],
+    [-120.0, 2.0 * 32.664_346_461_698_344, 1.0, 0.0, 30.0],
+];
+const RAYS: usize = 1_000_000 / BATCH * BATCH;
+const BATCH: usize = 256;
+const INTERSECTIONS: f64 = 12.0;
+const TURNS: usize = 5;
+const REPEATS: usize = 5;
+const FIELD_DEG: f64 = 5.0;
+
+/// The glass as `soa.cpp` has it: n = A + B / L^2 through nd and Vd, L in micrometres.
+fn cauchy(nd: f64, vd: f64) -> Medium {
+    let (d, f, c) = (0.587_561_8_f64, 0.486_132_7_f64, 0.656_272_5_f64);
+    let b = (nd - 1.0) / vd / (1.0 / (f * f) - 1.0 / (c * c));
+    Medium::from(Glass::new(
+        "bench",
+        "cauchy",
+        Category::User,
+        Formula::Cauchy(vec![nd - b / (d * d), b]),
+        (350.0, 830.0),
+    ))
+}
+
+fn biotar(glass: impl Fn(f64, f64) -> Medium) -> Lens {
+    let mut media = vec![LensMedium::air()];
+    let mut elements = Vec::new();
+    let (mut z, mut before) = (0.0, 0);
+    for [diameter, thickness, nd, vd, clear] in BIOTAR {
+        let label = format!("{nd}");
+        let after = if vd == 0.0 {
+            0
+        } else {
+            media.iter().position(|m| m.label == label).unwrap_or_else(|| {
+                media.push(LensMedium { medium: glass(nd, vd), stated_nd: Some(nd), label });
+                media.len() - 1
+            })
+        };
+        let stop = diameter == 0.0;
+        elements.push(Element {
+            kind: "surface".to_owned(),
+            surface: if stop {
+                Arc::new(spectra_core::surface::Kernel(Plane::stop()))
+            } else {
+                Arc::new(spectra_core::surface::Kernel(Sphere::new(diameter / 2.0)))
+            },
+            vertex_z_mm: z,
+            thickness_mm: thickness / 2.0,
+            semi_diameter_mm: Some(clear / 2.0),
+            action: if stop { Action::Pass } else { Action::Refract },
+            medium_before: before,
+            medium_after: after,
+        });
+        z += thickness / 2.0;
+        before = after;
+    }
+    Lens { elements, media, ..Lens::empty("Biotar of soa.cpp") }
+}
+
+struct Rays {
+    x: Vec<f64>,
+    y: Vec<f64>,
+    wavelength_nm: Vec<f64>,
+}
+
+/// The rays of `soa.cpp`: the same xorshift, the same disk.
+fn rays() -> Rays {
+    let mut state = 88_172_645_463_325_252_u64;
+    let mut uniform = || {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state >> 11) as f64 * (1.0 / 9_007_199_254_740_992.0)
+    };
+    let mut rays = Rays { x: Vec::new(), y: Vec::new(), wavelength_nm: Vec::new() };
+    let tangent = libm::tan(FIELD_DEG.to_radians());
+    for _ in 0..RAYS {
+        let (r, t) = (12.0 * uniform().sqrt(), std::f64::consts::TAU * uniform());
+        rays.x.push(r * libm::cos(t));
+        rays.y.push(r * libm::sin(t) - 40.0 * tangent);
+        rays.wavelength_nm.push(1e3 * (0.4 + 0.3 * uniform()));
+    }
+    rays
+}
+
+/// Traces all rays once; returns the mean height on the image plane, the check of `soa.cpp`.
+fn trace(tracer: &Tracer, rays: &Rays, image: &mut [f64]) -> (f64, u64) {
+    let mut batch = RayBatch::new(BATCH);
+    let mut work = tracer.work(BATCH);
+    let (m, n) = (libm::sin(FIELD_DEG.to_radians()), libm::cos(FIELD_DEG.to_radians()));
+    let mut landed = 0;
+    for start in (0..RAYS).step_by(BATCH) {
+        let len = BATCH.min(RAYS - start);
+        batch.restart(len);
+        let c = batch.columns_mut();
+        let (x, y, w) = (&rays.x[start..][..len], &rays.y[start..][..len], &rays.wavelength_nm[start..][..len]);
+        for i in 0..len {
+            (c.x[i], c.y[i], c.z[i]) = (x[i], y[i], -20.0);
+            (c.l[i], c.m[i], c.n[i]) = (0.0, m, n);
+            c.wavelength_nm[i] = w[i];
+        }
+        tracer.trace(&mut batch, &mut work, Travel::Forward);
+        // To the image plane: the twelfth intersection.
+        let ([_, y, z], [_, m, n]) = (batch.positions(), batch.directions());
+        for i in 0..batch.len() {
+            image[landed + i] = y[i] - z[i] / n[i] * m[i];
+        }
+        landed += batch.len();
+    }
+    (image[..landed].iter().sum::<f64>() / landed as f64, work.losses.total())
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values[values.len() / 2]
+}
+
+/// Builds `soa.cpp` where a compiler is; `None` otherwise.
+fn build_soa() -> Option<PathBuf> {
+    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/soa.cpp");
+    let target = std::env::temp_dir().join(format!("spectra-soa-{}", std::process::id()));
+    let flags = ["-O3", "-march=native", "-fno-math-errno", "-fno-trapping-math", "-pthread", "-DREAL=double"];
+    for wide in [&["-mprefer-vector-width=512"][..], &[]] {
+        let built = Command::new("c++").args(flags).args(wide).arg(&source).arg("-o").arg(&target).output();
+        if built.is_ok_and(|out| out.status.success()) {
+            return Some(target);
+        }
+    }
+    None
+}
+
+fn run_soa(program: &Path) -> Option<f64> {
+    let output = Command::new(program).args(["1e6", "1", &REPEATS.to_string(), "1"]).output().ok()?;
+    let text = String::from_utf8(output.stdout).ok()?;
+    text.split("\"rays_per_s\":").nth(1)?.split(',').next()?.trim().parse().ok()
+}
+
+fn main() {
+    // `cargo test --benches` asks whether it runs, not how fast.
+    let quick = !std::env::args().any(|a| a == "--bench");
+    let turns = if quick { 1 } else { TURNS };
+    let soa = if quick { None } else { build_soa() };
+    let rays = rays();
+    let mut image = vec![0.0; RAYS];
+    let band = Indices::Band { min_nm: 400.0, max_nm: 700.0 };
+    let wide = Indices::Band { min_nm: 350.0, max_nm: 830.0 };
+    let make =
+        |lens: &Lens, indices, isa| Tracer::new(lens, indices, isa).expect("the glasses of the bench have indices");
+    let best = Isa::detect();
+    let numbers = biotar(cauchy);
+    let catalogue = biotar(|nd, _| {
+        let name = if nd < 1.6 {
+            "LZOS/LF5"
+        } else if nd < 1.63 {
+            "SCHOTT/SK10"
+        } else if nd < 1.65 {
+            "SCHOTT/BAF9"
+        } else {
+            "SCHOTT/SF5"
+        };
+        spectra_glass::Catalogue::bundled().medium(name).expect("a bundled glass")
+    });
+    let mut cases: Vec<(String, Tracer, Vec<f64>)> = Vec::new();
+    cases.push((format!("spectra {}, glasses of soa.cpp", best.name()), make(&numbers, band, best), Vec::new()));
+    cases.push((
+        format!("spectra {}, catalogue glasses, 350-830 nm", best.name()),
+        make(&catalogue, wide, best),
+        Vec::new(),
+    ));
+    for isa in Isa::available().into_iter().filter(|i| *i != best) {
+        cases.push((format!("spectra {}, glasses of soa.cpp", isa.name()), make(&numbers, band, isa), Vec::new()));
+    }
+    let mut soa_rates = Vec::new();
+    let mut ratios = Vec::new();
+    for _ in 0..turns {
+        let reference = soa.as_deref().and_then(run_soa);
+        soa_rates.extend(reference);
+        for (i, (_, tracer, rates)) in cases.iter_mut().enumerate() {
+            let times = (0..if quick { 1 } else { REPEATS }).map(|_| {
+                let start = Instant::now();
+                std::hint::black_box(trace(tracer, &rays, &mut image));
+                start.elapsed().as_secs_f64()
+            });
+            let rate = RAYS as f64 / median(times.collect());
+            rates.push(rate);
+            if i == 0 {
+                ratios.extend(reference.map(|soa| rate / soa));
+            }
+        }
+    }
+    let (mean_y, lost) = trace(&cases[0].1, &rays, &mut image);
+    // soa.cpp prints the same: same rays, same glass, same lens.
+    assert!((mean_y - 4.354_748).abs() < 2e-6, "mean height {mean_y} mm, soa.cpp has 4.354748");
+    let soa_rate = (!soa_rates.is_empty()).then(|| median(soa_rates));
+    println!("{:<48} {:>12} {:>8}", "one thread, f64, random wavelength per ray", "M rays/s", "ratio");
+    if let Some(rate) = soa_rate {
+        println!("{:<48} {:>12.1} {:>8.2}", "soa.cpp (C++, fused multiply-add)", rate / 1e6, 1.0);
+    }
+    for (name, _, rates) in &cases {
+        let rate = median(rates.clone());
+        let ratio = soa_rate.map_or_else(|| "-".to_owned(), |soa| format!("{:.2}", rate / soa));
+        println!("{name:<48} {:>12.1} {ratio:>8}", rate / 1e6);
+    }
+    let rate = median(cases[0].2.clone());
+    let ratio = if ratios.is_empty() { "null".to_owned() } else { format!("{:.4}", median(ratios)) };
+    println!(
+        "{{\"bench\":\"kernel\",\"isa\":\"{}\",\"rays_per_second\":{rate:.0},\"intersections_per_second\":{:.0},\"ratio_to_soa\":{ratio},\"mean_y_mm\":{mean_y:.6},\"lost\":{lost}}}",
+        best.name(),
+        rate * INTERSECTIONS
+    );
+    if let Some(program) = soa {
+        // A leftover in the temporary folder harms nobody.
+        let _ = std::fs::remove_file(program);
+    }
+}

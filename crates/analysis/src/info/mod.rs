@@ -1,0 +1,6 @@
+//! A lens in figures.
+
+mod report;
+mod table;
+
+pub use report::{LensReport, SurfaceReport};

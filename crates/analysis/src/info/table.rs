@@ -1,0 +1,90 @@
+//! The report as a person reads it.
+
+use super::LensReport;
+use std::fmt;
+
+/// A length, or why there is none.
+fn mm(value: Option<f64>) -> String {
+    match value {
+        Some(value) if value.is_finite() => format!("{value:.4} mm"),
+        Some(_) => "infinite".to_owned(),
+        None => "unknown".to_owned(),
+    }
+}
+
+impl fmt::Display for LensReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.name)?;
+        if let Some(year) = self.year {
+            write!(f, " ({year})")?;
+        }
+        writeln!(f)?;
+        let origin =
+            [("maker", &self.maker), ("patent", &self.patent), ("source", &self.source), ("remark", &self.remark)];
+        for (name, text) in origin {
+            if let Some(text) = text {
+                writeln!(f, "{name}: {}", text.trim())?;
+            }
+        }
+        match (self.wavelength_nm, self.line) {
+            (Some(nm), Some(line)) => writeln!(f, "at {nm} nm, the line {line}")?,
+            (Some(nm), None) => writeln!(f, "at {nm} nm")?,
+            (None, _) => writeln!(f, "at the indices that the prescription states")?,
+        }
+        writeln!(f)?;
+        self.figures(f)?;
+        writeln!(f)?;
+        self.prescription(f)?;
+        for warning in &self.warnings {
+            writeln!(f, "warning: {warning}")?;
+        }
+        Ok(())
+    }
+}
+
+impl LensReport {
+    fn figures(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let f_number = self.f_number.map_or("unknown".to_owned(), |n| format!("f/{n:.4}"));
+        let rows = [
+            ("focal length", mm(Some(self.efl_mm)), ""),
+            ("f-number", f_number, "by the real marginal ray"),
+            ("back focal length", mm(Some(self.bfl_mm)), "from the last vertex"),
+            ("front focal length", mm(Some(self.ffl_mm)), "from the first vertex"),
+            ("front principal plane", mm(Some(self.front_principal_z_mm)), "from the first vertex"),
+            ("rear principal plane", mm(Some(self.rear_principal_z_mm)), "from the first vertex"),
+            ("entrance pupil", mm(self.entrance_pupil_z_mm), "from the first vertex"),
+            ("  its diameter", mm(self.entrance_pupil_diameter_mm), "by the real marginal ray"),
+            ("exit pupil", mm(self.exit_pupil_z_mm), "from the first vertex"),
+            ("  its diameter", mm(self.exit_pupil_diameter_mm), "by the real marginal ray"),
+            ("stop", mm(self.stop_semi_diameter_mm), "semi-diameter"),
+            ("length", mm(Some(self.vertex_length_mm)), "first vertex to last"),
+            ("image plane", mm(Some(self.image_distance_mm)), "from the last vertex"),
+            ("total track", mm(Some(self.total_track_mm)), "first vertex to image plane"),
+        ];
+        for (name, value, remark) in rows {
+            let line = format!("{name:<22} {value:>16}   {remark}");
+            writeln!(f, "{}", line.trim_end())?;
+        }
+        Ok(())
+    }
+
+    fn prescription(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let kinds = self.surfaces.iter().map(|s| s.kind.len()).max().unwrap_or(0).max(7);
+        writeln!(
+            f,
+            "{:>3}  {:<kinds$} {:>13} {:>11} {:>13} {:>10}  medium behind",
+            "#", "surface", "radius", "thickness", "semi-diameter", "index"
+        )?;
+        for s in &self.surfaces {
+            let radius = s.radius_mm.map_or("flat".to_owned(), |r| format!("{r:.4}"));
+            let semi_diameter = s.semi_diameter_mm.map_or("-".to_owned(), |d| format!("{d:.4}"));
+            let medium = if s.mirror { "mirror" } else { &s.medium };
+            writeln!(
+                f,
+                "{:>3}  {:<kinds$} {radius:>13} {:>11.4} {semi_diameter:>13} {:>10.6}  {medium}",
+                s.number, s.kind, s.thickness_mm, s.index
+            )?;
+        }
+        Ok(())
+    }
+}

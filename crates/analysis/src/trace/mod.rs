@@ -1,0 +1,269 @@
+//! Rays as CSV through a lens, and where they end as CSV.
+//!
+//! In: columns `x_mm, y_mm, z_mm` (a point of the ray before the first surface, frame of the lens: its
+//! vertex is the origin, +z toward the image), `l, m, n` (unit direction) and `wavelength_nm`, by name
+//! and in any order. Out, a row for each: `status,surface,x_mm,y_mm,z_mm,l,m,n`. A `hit` is where the ray
+//! meets the image plane, in the frame of the lens, with its direction there; a ray that ended on the way
+//! gives `missed`, `vignetted`, `tir` or `absorbed` and the number of the surface, and its other fields are
+//! empty. A ray that leaves along the image plane has `missed` it: one surface more than the lens has.
+
+mod csv;
+mod row;
+
+use crate::Light;
+use csv::NumberRows;
+use row::Row;
+use spectra_core::spectral::BAND;
+use spectra_core::{Isa, Loss, LossCounts, RayBatch};
+use spectra_lens::{Indices, Lens, Tracer, Travel, Work};
+use std::io::{BufRead, Write};
+
+pub use row::Format;
+
+/// Why rays could not be traced.
+#[derive(Debug, thiserror::Error)]
+pub enum TraceError {
+    /// Something is wrong in the table of rays.
+    #[error("{file}:{line}:{column}: {message}")]
+    Input {
+        /// The file.
+        file: String,
+        /// Row of the file, from 1.
+        line: usize,
+        /// Column in characters, from 1.
+        column: usize,
+        /// What was found and what is expected.
+        message: String,
+    },
+    /// The table of rays cannot be read.
+    #[error("{file}: cannot be read: {cause}")]
+    Read {
+        /// The file.
+        file: String,
+        /// The system's word.
+        cause: std::io::Error,
+    },
+    /// The result cannot be written.
+    #[error("the result cannot be written: {0}")]
+    Write(#[source] std::io::Error),
+    /// A medium of the lens has no index in some light.
+    #[error("the lens cannot be traced: {0}")]
+    Lens(#[from] spectra_glass::DispersionError),
+}
+
+/// What became of the rays of a table.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TraceSummary {
+    /// Rays traced.
+    pub rays: u64,
+    /// Rays that reached the image plane.
+    pub hits: u64,
+    /// The others, by cause and surface.
+    pub losses: LossCounts,
+    /// What a person should know: glasses used beyond their data.
+    pub warnings: Vec<String>,
+}
+
+/// Rays a batch.
+const BATCH: usize = 1024;
+/// How far the length of a direction may be from 1; nearer ones are scaled to it.
+const UNIT_TOLERANCE: f64 = 1e-6;
+const COLUMNS: [&str; 7] = ["x_mm", "y_mm", "z_mm", "l", "m", "n", "wavelength_nm"];
+
+/// Traces the rays of `input` (called `file` in messages) and writes a row for each to `output`, in the
+/// order of the input. Without a `light` each ray has its own wavelength. Memory does not grow with
+/// the number of rays.
+///
+/// # Errors
+/// [`TraceError`]; rows before the faulty one are written.
+pub fn trace(
+    lens: &Lens,
+    light: Option<Light>,
+    isa: Isa,
+    input: impl BufRead,
+    file: &str,
+    output: &mut impl Write,
+    format: Format,
+) -> Result<TraceSummary, TraceError> {
+    let wanted = if light.is_some() { &COLUMNS[..6] } else { &COLUMNS[..] };
+    let mut rows = NumberRows::new(input, file, wanted)?;
+    let mut bench = Bench::new(lens, light, isa)?;
+    let mut text = String::from(format.header());
+    let mut more = true;
+    while more {
+        more = bench.fill(&mut rows)?;
+        for row in bench.trace()? {
+            row.write(format, &mut text);
+        }
+        output.write_all(text.as_bytes()).map_err(TraceError::Write)?;
+        text.clear();
+    }
+    output.flush().map_err(TraceError::Write)?;
+    Ok(bench.summary())
+}
+
+/// A batch of rays in front of a lens.
+struct Bench<'a> {
+    lens: &'a Lens,
+    light: Option<Light>,
+    isa: Isa,
+    tracer: Tracer,
+    work: Work,
+    rays: RayBatch,
+    /// Rows of the batch whose wavelength lies outside of the band that the tracer was made for.
+    outside: Vec<usize>,
+    /// The tracer of the last of them.
+    single: Option<(f64, Tracer)>,
+    start: Vec<[f64; 7]>,
+    seen_nm: Option<(f64, f64)>,
+    summary: TraceSummary,
+}
+
+impl<'a> Bench<'a> {
+    fn new(lens: &'a Lens, light: Option<Light>, isa: Isa) -> Result<Self, TraceError> {
+        let indices = match light {
+            Some(Light::Stated) => Indices::Stated,
+            Some(Light::Wavelength(nm)) => Indices::At(nm),
+            None => Indices::Band { min_nm: BAND.start_nm, max_nm: BAND.end_nm() },
+        };
+        let tracer = Tracer::new(lens, indices, isa)?;
+        Ok(Self {
+            lens,
+            light,
+            isa,
+            work: tracer.work_in_place(BATCH),
+            tracer,
+            rays: RayBatch::new(BATCH),
+            outside: Vec::new(),
+            single: None,
+            start: Vec::with_capacity(BATCH),
+            seen_nm: light.and_then(Light::wavelength_nm).map(|nm| (nm, nm)),
+            summary: TraceSummary::default(),
+        })
+    }
+
+    /// Reads a batch; false where the table ended.
+    fn fill(&mut self, rows: &mut NumberRows<impl BufRead>) -> Result<bool, TraceError> {
+        self.start.clear();
+        self.outside.clear();
+        let mut more = true;
+        while more && self.start.len() < BATCH {
+            let mut ray = [0.0; 7];
+            let wanted = if self.light.is_some() { 6 } else { 7 };
+            more = rows.next_row(&mut ray[..wanted])?;
+            if !more {
+                break;
+            }
+            let [.., l, m, n, nm] = ray;
+            let length = (l * l + m * m + n * n).sqrt();
+            // False too for a length that overflowed.
+            let is_unit = (length - 1.0).abs() <= UNIT_TOLERANCE;
+            if !is_unit {
+                return Err(rows.fault_at(
+                    "l",
+                    &format!("the direction (l, m, n) has the length {length}, expected a unit vector"),
+                ));
+            }
+            for cosine in &mut ray[3..6] {
+                *cosine /= length;
+            }
+            if self.light.is_none() {
+                self.check_wavelength(nm).map_err(|message| rows.fault_at("wavelength_nm", &message))?;
+            }
+            self.start.push(ray);
+        }
+        Ok(more)
+    }
+
+    fn check_wavelength(&mut self, nm: f64) -> Result<(), String> {
+        if nm <= 0.0 {
+            return Err(format!("column `wavelength_nm`: found {nm}, expected a positive number"));
+        }
+        let (low, high) = self.seen_nm.unwrap_or((nm, nm));
+        self.seen_nm = Some((low.min(nm), high.max(nm)));
+        if !BAND.contains(nm) {
+            let none = |n: f64| !(n.is_finite() && n > 0.0);
+            if let Some(medium) = self.lens.media.iter().find(|medium| none(medium.medium.index(nm))) {
+                return Err(format!("{} has no refractive index at {nm} nm", medium.label));
+            }
+            self.outside.push(self.start.len());
+        }
+        Ok(())
+    }
+
+    /// Traces the batch.
+    fn trace(&mut self) -> Result<Vec<Row>, TraceError> {
+        let len = self.start.len();
+        self.rays.restart(len);
+        let c = self.rays.columns_mut();
+        for (i, ray) in self.start.iter().enumerate() {
+            [c.x[i], c.y[i], c.z[i], c.l[i], c.m[i], c.n[i], c.wavelength_nm[i]] = *ray;
+            if self.light.is_some() || !BAND.contains(c.wavelength_nm[i]) {
+                c.wavelength_nm[i] = self.lens.reference_nm;
+            }
+        }
+        self.tracer.trace(&mut self.rays, &mut self.work, Travel::Forward);
+        let surfaces = self.tracer.surfaces() as u32;
+        let image_z_mm = self.lens.image_z_mm();
+        let mut rows: Vec<Row> = (0..len).map(|i| row_of(&self.rays, i, surfaces, image_z_mm)).collect();
+        for at in std::mem::take(&mut self.outside) {
+            rows[at] = self.trace_outside(self.start[at])?;
+        }
+        self.summary.rays += len as u64;
+        for row in &rows {
+            match row {
+                Row::Hit { .. } => self.summary.hits += 1,
+                Row::Lost { cause, surface } => self.summary.losses.add(*cause, *surface, 1),
+            }
+        }
+        Ok(rows)
+    }
+
+    /// One ray at the formulas' own indices for its wavelength.
+    fn trace_outside(&mut self, ray: [f64; 7]) -> Result<Row, TraceError> {
+        let nm = ray[6];
+        let tracer = match self.single.take() {
+            Some((made_for, tracer)) if made_for == nm => tracer,
+            _ => Tracer::new(self.lens, Indices::At(nm), self.isa)?,
+        };
+        let mut rays = RayBatch::new(1);
+        rays.restart(1);
+        let c = rays.columns_mut();
+        [c.x[0], c.y[0], c.z[0], c.l[0], c.m[0], c.n[0], c.wavelength_nm[0]] = ray;
+        tracer.trace(&mut rays, &mut tracer.work_in_place(1), Travel::Forward);
+        let row = row_of(&rays, 0, tracer.surfaces() as u32, self.lens.image_z_mm());
+        self.single = Some((nm, tracer));
+        Ok(row)
+    }
+
+    fn summary(mut self) -> TraceSummary {
+        if let Some((low, high)) = self.seen_nm {
+            for medium in &self.lens.media {
+                if let (false, Some((from, to))) = (medium.medium.covers(low, high), medium.medium.range_nm()) {
+                    let message =
+                        format!("{} is measured from {from} to {to} nm; rays beyond went by its formula", medium.label);
+                    if !self.summary.warnings.contains(&message) {
+                        self.summary.warnings.push(message);
+                    }
+                }
+            }
+        }
+        self.summary
+    }
+}
+
+/// What became of ray `i`, which left the tracer in the frame of the image plane.
+fn row_of(rays: &RayBatch, i: usize, surfaces: u32, image_z_mm: f64) -> Row {
+    if let Some((cause, surface)) = rays.loss(i) {
+        return Row::Lost { cause, surface };
+    }
+    let [x, y, z] = rays.positions().map(|column| column[i]);
+    let [l, m, n] = rays.directions().map(|column| column[i]);
+    let distance = -z / n;
+    let (x, y) = (x + distance * l, y + distance * m);
+    if x.is_finite() && y.is_finite() {
+        Row::Hit { point_mm: [x, y, image_z_mm], direction: [l, m, n] }
+    } else {
+        Row::Lost { cause: Loss::Missed, surface: surfaces + 1 }
+    }
+}

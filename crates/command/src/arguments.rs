@@ -1,0 +1,270 @@
+//! What can be written after `spectra`.
+
+use crate::quantity::parse;
+use crate::version;
+use clap::{Args, Parser, Subcommand};
+use spectra_core::params::{FNumber, Length, OrInfinity, Positive, Time, Wavelength};
+use std::path::PathBuf;
+
+/// The open spectral camera: light with a spectrum, through real glass, onto a measured film.
+#[derive(Debug, Parser)]
+#[command(
+    name = "spectra",
+    version = version::VERSION,
+    long_version = version::long(),
+    arg_required_else_help = true,
+    after_help = "Start with: spectra run scenes/biotar-ortho.yaml",
+    after_long_help = "Start with:\n  spectra run scenes/biotar-ortho.yaml\n\n\
+        Exit codes: 0 done, or stopped by --time-limit; 1 something failed (a full disk, a render error); \
+        2 the input is wrong; 130 interrupted by Ctrl-C.\n\n\
+        Environment: SPECTRA_ISA=baseline|avx2|avx512 forces an instruction set (the picture is the same bit by bit); \
+        NO_COLOR turns colors off."
+)]
+pub(crate) struct Arguments {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Option<Command>,
+    /// Show the terms of the program and of the data in it.
+    #[arg(long, exclusive = true)]
+    pub licenses: bool,
+    /// Say on standard error what is going on inside.
+    #[arg(short, long, global = true)]
+    pub verbose: bool,
+}
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Render a scene: the picture, and the light behind it.
+    Run(Run),
+    /// Find every fault of scenes without rendering them.
+    Check(Check),
+    /// List what can be written in a scene.
+    List(List),
+    /// Look at a lens as an optical engineer does.
+    Lens(LensArguments),
+}
+
+/// `spectra run`.
+#[derive(Debug, Args)]
+#[command(
+    long_about = "Render a scene: the picture, and the light behind it.\n\n\
+        Writes, as the scene's `output` asks, SCENE.exr (linear exposure, one channel each of the imager or film, 32-bit \
+        float) and SCENE.png or SCENE.tiff (what a person looks at), named like the scene file, and render.json (time, \
+        rays, where light was lost, versions). Files appear under their names only when they are whole.\n\n\
+        Ctrl-C stops within a second and writes what there is, marked as partial (exit code 130); a second Ctrl-C gives \
+        it up at once.",
+    after_long_help = "Example: a quick look at the Biotar wide open, into the folder `try`\n  \
+        spectra run scenes/biotar-ortho.yaml --samples 16 --set lens.f-number=f/1.4 --output try"
+)]
+pub(crate) struct Run {
+    /// The scene file.
+    #[arg(value_name = "SCENE")]
+    pub scene: PathBuf,
+    /// Folder to write to; it is made where it does not exist.
+    #[arg(short, long, value_name = "DIR", default_value = "out")]
+    pub output: PathBuf,
+    #[command(flatten)]
+    pub set: Set,
+    /// Threads to render on: all processors if not given. The picture does not depend on it.
+    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Seed of the random numbers, in place of the scene's.
+    #[arg(long, value_name = "N")]
+    pub seed: Option<u64>,
+    /// Samples a pixel, in place of the scene's: four times as many make half the noise. A scene that is rendered forward
+    /// launches rays in proportion.
+    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub samples: Option<u32>,
+    /// Stop after this time (30s, 5min), counted from the start of the program, and write what there is.
+    #[arg(long, value_name = "TIME", value_parser = parse::<Positive<Time>>)]
+    pub time_limit: Option<Positive<Time>>,
+    /// One JSON object a line on standard output for each event: start, progress, warning, written, done, error.
+    #[arg(long, conflicts_with = "quiet")]
+    pub json: bool,
+    /// Say nothing but errors.
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+/// `--set`.
+#[derive(Debug, Args)]
+pub(crate) struct Set {
+    /// Set a value of the scene, as if it stood in the file; may be given again.
+    #[arg(
+        long = "set",
+        value_name = "PATH=VALUE",
+        long_help = "Set a value of the scene, as if it stood in the file; may be given again.\n\
+            Examples: --set film.exposure=\"1/125 s\"  --set lens.f-number=f/4  --set output=[exr]"
+    )]
+    pub overrides: Vec<String>,
+}
+
+/// `spectra check`.
+#[derive(Debug, Args)]
+#[command(
+    long_about = "Find every fault of scenes without rendering them.\n\n\
+        Each fault is shown with file, line and column and, where there is one, a hint. Exit code 2 if there is any.",
+    after_long_help = "Example:\n  spectra check scenes/*.yaml"
+)]
+pub(crate) struct Check {
+    /// Scene files.
+    #[arg(value_name = "SCENE", required = true)]
+    pub scenes: Vec<PathBuf>,
+    #[command(flatten)]
+    pub set: Set,
+    /// One JSON object on standard output: scenes, each with its faults and warnings.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `spectra list`.
+#[derive(Debug, Args)]
+#[command(
+    long_about = "List what can be written in a scene: the registered stages, and the bundled lenses, film stocks and scenes.",
+    after_long_help = "Example: which sources are there?\n  spectra list source"
+)]
+pub(crate) struct List {
+    /// Only this stage: source, color, wavelengths, surface, imager, film; or lens, stock, scene.
+    #[arg(value_name = "STAGE")]
+    pub stage: Option<String>,
+    /// A JSON list on standard output.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `spectra lens`.
+#[derive(Debug, Args)]
+#[command(after_long_help = "Example:\n  spectra lens info zeiss-biotar-50-f1.4")]
+pub(crate) struct LensArguments {
+    /// What to do with it.
+    #[command(subcommand)]
+    pub command: LensCommand,
+}
+
+/// The commands on lenses.
+#[derive(Debug, Subcommand)]
+pub(crate) enum LensCommand {
+    /// Show a lens in figures: focal lengths, pupils, f-number, prescription.
+    Info(LensInfo),
+    /// Trace rays through a lens: CSV in, CSV out.
+    Trace(LensTrace),
+}
+
+/// A lens, and how it is set.
+#[derive(Debug, Args)]
+pub(crate) struct LensSetting {
+    /// A lens file, or the name of a bundled lens (see `spectra list lens`).
+    #[arg(value_name = "LENS")]
+    pub lens: String,
+    /// Focus at this distance from the first surface (2m, 77cm, inf); as the file has it if not given.
+    #[arg(long, value_name = "DISTANCE", value_parser = parse::<OrInfinity<Positive<Length>>>)]
+    pub focus: Option<OrInfinity<Positive<Length>>>,
+    /// Set the stop to this f-number (f/2), by the real marginal ray; as the file has it if not given.
+    #[arg(long, value_name = "F/N", value_parser = parse::<FNumber>)]
+    pub f_number: Option<FNumber>,
+}
+
+/// One light for all.
+#[derive(Debug, Args)]
+#[group(multiple = false)]
+pub(crate) struct OneLight {
+    /// Look at this spectral line: i, h, g, F', F, e, d, D, C', C, r, A', s or t.
+    #[arg(long, value_name = "LINE", value_parser = line)]
+    pub line: Option<f64>,
+    /// Look at this wavelength in air.
+    #[arg(long, value_name = "NM", value_parser = parse::<Wavelength>)]
+    pub wavelength_nm: Option<Wavelength>,
+    /// Hold every glass at the index that the prescription states.
+    #[arg(long)]
+    pub nd: bool,
+}
+
+/// Wavelength of a spectral line, nm.
+fn line(name: &str) -> Result<f64, String> {
+    spectra_glass::lines::by_name(name).map(|line| line.wavelength_nm).ok_or_else(|| {
+        let known: Vec<&str> = spectra_glass::lines::ALL.iter().map(|line| line.name).collect();
+        format!("no such spectral line; known: {}", known.join(", "))
+    })
+}
+
+/// `spectra lens info`.
+#[derive(Debug, Args)]
+#[command(
+    long_about = "Show a lens in figures: focal lengths, principal planes, pupils, f-number and prescription.\n\n\
+        At the reference line of its patent unless a light is given. f-number and pupil diameters are those of the real \
+        marginal ray; the places of planes and pupils are paraxial.",
+    after_long_help = "Example: the same lens in blue light\n  spectra lens info zeiss-biotar-50-f1.4 --line g"
+)]
+pub(crate) struct LensInfo {
+    #[command(flatten)]
+    pub setting: LensSetting,
+    #[command(flatten)]
+    pub light: OneLight,
+    /// A JSON object on standard output.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `spectra lens trace`.
+#[derive(Debug, Args)]
+#[command(
+    long_about = "Trace rays through a lens: CSV in, CSV out.\n\n\
+        In: columns x_mm,y_mm,z_mm (a point of the ray before the first surface, whose vertex is the origin; +z runs toward \
+        the image), l,m,n (unit direction) and, unless one light is given for all, wavelength_nm; found by name, in any \
+        order.\n\n\
+        Out, a row for each: status,surface,x_mm,y_mm,z_mm,l,m,n. A `hit` is where the ray meets the image plane, in the \
+        same frame; a ray that ended on the way is `missed`, `vignetted`, `tir` or `absorbed`, with the number of the \
+        surface from 1. Surfaces clip at stated semi-diameters only, unless --f-number sets the stop; nothing is \
+        refocused unless --focus is given.",
+    after_long_help = "Example:\n  spectra lens trace zeiss-biotar-50-f1.4 --rays rays.csv --nd -o hits.csv"
+)]
+pub(crate) struct LensTrace {
+    #[command(flatten)]
+    pub setting: LensSetting,
+    #[command(flatten)]
+    pub light: OneLight,
+    /// The rays; `-` reads standard input.
+    #[arg(long, value_name = "FILE")]
+    pub rays: PathBuf,
+    /// File to write to; standard output if not given, or `-`.
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// One JSON object a ray and line, in place of CSV.
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_grammar_is_sound() {
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn units_are_read_in_arguments() {
+        let arguments = ["spectra", "run", "a.yaml", "--time-limit", "1.5 min", "--set", "film.exposure=1/60 s"];
+        let Some(Command::Run(run)) = Arguments::try_parse_from(arguments).expect("good").command else {
+            panic!("a run")
+        };
+        assert_eq!(run.time_limit.map(f64::from), Some(90.0));
+        assert_eq!(run.set.overrides, ["film.exposure=1/60 s"]);
+        for bad in
+            [["--time-limit", "2 m"], ["--time-limit", "-2"], ["--threads", "0"], ["--samples", "0"], ["--seed", "-1"]]
+        {
+            assert!(Arguments::try_parse_from(["spectra", "run", "a.yaml"].iter().chain(&bad)).is_err(), "{bad:?}");
+        }
+    }
+
+    #[test]
+    fn one_light_at_a_time() {
+        let with = |more: &[&str]| Arguments::try_parse_from(["spectra", "lens", "info", "x"].iter().chain(more));
+        assert!(with(&["--line", "F'"]).is_ok() && with(&["--nd"]).is_ok());
+        assert!(with(&["--nd", "--line", "d"]).is_err());
+        assert!(with(&["--line", "q"]).unwrap_err().to_string().contains("no such spectral line"));
+    }
+}

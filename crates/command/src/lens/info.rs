@@ -1,0 +1,27 @@
+//! `spectra lens info`.
+
+use super::{load, one_light};
+use crate::arguments::LensInfo;
+use crate::console;
+use crate::outcome::{DONE, Failure, Outcome};
+use spectra_analysis::Light;
+use spectra_analysis::info::LensReport;
+
+/// Shows a lens in figures.
+pub(crate) fn info(arguments: &LensInfo) -> Outcome {
+    let lens = load(&arguments.setting)?;
+    let light = one_light(&arguments.light).unwrap_or(Light::Wavelength(lens.reference_nm));
+    if let Some(nm) = light.wavelength_nm() {
+        let none = |n: f64| !(n.is_finite() && n > 0.0);
+        if let Some(medium) = lens.media.iter().find(|medium| none(medium.medium.index(nm))) {
+            return Err(Failure::Input(format!("{} has no refractive index at {nm} nm", medium.label)));
+        }
+    }
+    let report = LensReport::of(&lens, light);
+    if arguments.json {
+        console::pretty_json(&report)?;
+    } else {
+        console::out(&report.to_string())?;
+    }
+    Ok(DONE)
+}

@@ -1,0 +1,43 @@
+//! `spectra lens`: the lens as an optical engineer looks at it.
+
+mod info;
+mod trace;
+
+use crate::arguments::{LensCommand, LensSetting, OneLight};
+use crate::outcome::{Failure, Outcome};
+use spectra_analysis::Light;
+use spectra_core::Isa;
+use spectra_lens::Lens;
+use spectra_scene::FileResources;
+use std::path::Path;
+
+/// Runs a command on a lens.
+pub(crate) fn lens(command: &LensCommand, isa: Isa) -> Outcome {
+    match command {
+        LensCommand::Info(info) => info::info(info),
+        LensCommand::Trace(trace) => trace::trace(trace, isa),
+    }
+}
+
+/// The lens, focused and stopped as asked.
+fn load(setting: &LensSetting) -> Result<Lens, Failure> {
+    let mut lens = spectra_lens::load(&setting.lens, &FileResources::beside(Path::new("")))?;
+    let refuse = |error: String| Failure::Input(format!("{}: {error}", setting.lens));
+    if let Some(f_number) = setting.f_number {
+        lens = lens.at_f_number(f_number.number()).map_err(|e| refuse(format!("--f-number: {e}")))?;
+    }
+    if let Some(focus) = setting.focus {
+        lens = lens.focused_at(focus.mm()).map_err(|e| refuse(format!("--focus: {e}")))?;
+    }
+    Ok(lens)
+}
+
+/// The light asked for, if one is.
+fn one_light(light: &OneLight) -> Option<Light> {
+    match (light.line, light.wavelength_nm) {
+        _ if light.nd => Some(Light::Stated),
+        (Some(nm), _) => Some(Light::Wavelength(nm)),
+        (None, Some(wavelength)) => Some(Light::Wavelength(wavelength.nm())),
+        (None, None) => None,
+    }
+}

@@ -1,0 +1,94 @@
+//! `spectra lens trace`.
+
+use super::{load, one_light};
+use crate::arguments::LensTrace;
+use crate::outcome::{DONE, Failure, Outcome};
+use crate::{console, words};
+use spectra_analysis::trace::{Format, TraceError, TraceSummary, trace as trace_rays};
+use spectra_core::{Isa, Loss};
+use spectra_film::write::{WriteFault, write_atomically};
+use std::fs::File;
+use std::io::{self, BufReader, BufWriter, Read, Write};
+use std::path::Path;
+
+/// Traces a table of rays.
+pub(crate) fn trace(arguments: &LensTrace, isa: Isa) -> Outcome {
+    let lens = load(&arguments.setting)?;
+    let light = one_light(&arguments.light);
+    let format = if arguments.json { Format::JsonLines } else { Format::Csv };
+    let (input, name) = open(&arguments.rays)?;
+    let run = |output: &mut dyn Write| {
+        trace_rays(&lens, light, isa, BufReader::new(input), &name, &mut BufWriter::new(output), format)
+    };
+    let output = arguments.output.as_deref().filter(|path| *path != Path::new("-"));
+    let summary = match output {
+        None => run(&mut io::stdout().lock()).map_err(|error| failure(error, None))?,
+        Some(path) => to_file(path, run)?,
+    };
+    for warning in lens.warnings.iter().chain(&summary.warnings) {
+        console::warning(warning);
+    }
+    if let Some(path) = output {
+        console::note(&format!("wrote {}: {}", path.display(), describe(&summary)));
+    }
+    Ok(DONE)
+}
+
+fn open(path: &Path) -> Result<(Box<dyn Read>, String), Failure> {
+    if path == Path::new("-") {
+        return Ok((Box::new(io::stdin().lock()), "standard input".to_owned()));
+    }
+    let name = path.display().to_string();
+    let file = File::open(path).map_err(|error| Failure::Input(format!("{name}: cannot be read: {error}")))?;
+    Ok((Box::new(file), name))
+}
+
+/// A file appears under its name only when all rays are traced; a device is written as it goes.
+fn to_file(
+    path: &Path,
+    run: impl FnOnce(&mut dyn Write) -> Result<TraceSummary, TraceError>,
+) -> Result<TraceSummary, Failure> {
+    if std::fs::metadata(path).is_ok_and(|data| !data.is_file()) {
+        let mut device = File::options().write(true).open(path).map_err(|error| cannot_write(path, &error))?;
+        return run(&mut device).map_err(|error| failure(error, Some(path)));
+    }
+    let mut result = None;
+    let written = write_atomically(path, |file| {
+        let outcome = run(file);
+        let good = outcome.is_ok();
+        result = Some(outcome);
+        // Taken back below: what went wrong is in `result`.
+        if good { Ok(()) } else { Err(WriteFault::Format(String::new())) }
+    });
+    match (result, written) {
+        (Some(Err(error)), _) => Err(failure(error, Some(path))),
+        (_, Err(error)) => Err(Failure::Failed(error.to_string())),
+        (Some(Ok(summary)), Ok(())) => Ok(summary),
+        (None, Ok(())) => unreachable!("a file is written by running"),
+    }
+}
+
+fn cannot_write(path: &Path, error: &io::Error) -> Failure {
+    Failure::Failed(format!("{}: cannot be written: {error}", path.display()))
+}
+
+fn failure(error: TraceError, output: Option<&Path>) -> Failure {
+    match (error, output) {
+        (TraceError::Write(cause), None) => cause.into(),
+        (TraceError::Write(cause), Some(path)) => cannot_write(path, &cause),
+        (error @ TraceError::Read { .. }, _) => Failure::Failed(error.to_string()),
+        (error @ (TraceError::Input { .. } | TraceError::Lens(_)), _) => Failure::Input(error.to_string()),
+    }
+}
+
+/// `1 540 rays, 912 hit, 520 vignetted`.
+fn describe(summary: &TraceSummary) -> String {
+    let mut text = format!("{} rays, {} hit", words::count(summary.rays), words::count(summary.hits));
+    for cause in Loss::ALL {
+        let many = summary.losses.of_cause(cause);
+        if many > 0 {
+            text.push_str(&format!(", {} {}", words::count(many), cause.name()));
+        }
+    }
+    text
+}

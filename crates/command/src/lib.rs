@@ -1,0 +1,78 @@
+//! The `spectra` command: arguments in, pictures and figures out.
+//!
+//! Exit codes: 0 done (or stopped by `--time-limit`); 1 something failed on the way, such as a full disk;
+//! 2 the input is wrong; 130 interrupted by Ctrl-C. What a person asked for goes to standard output, what is
+//! said about it (progress, warnings, errors) to standard error.
+
+mod arguments;
+mod check;
+mod console;
+mod lens;
+mod licences;
+mod list;
+mod outcome;
+mod quantity;
+mod run;
+mod version;
+mod words;
+
+use arguments::{Arguments, Command};
+use clap::Parser;
+use outcome::{Failure, Outcome};
+use spectra_core::{Isa, registry};
+use std::process::ExitCode;
+use std::time::Instant;
+
+/// Runs the program with the arguments of the process.
+pub fn main() -> ExitCode {
+    let started = Instant::now();
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            // Help and version come this way too, with code 0. A reader that has gone away is no failure.
+            let _ = error.print();
+            return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(outcome::BAD_INPUT));
+        }
+    };
+    if arguments.verbose {
+        log_to_stderr();
+    }
+    match dispatch(&arguments, started) {
+        Ok(code) => ExitCode::from(code),
+        Err(failure) => ExitCode::from(failure.report()),
+    }
+}
+
+fn dispatch(arguments: &Arguments, started: Instant) -> Outcome {
+    registry::check()
+        .map_err(|faults| Failure::Failed(format!("this program is put together wrongly: {}", faults.join("; "))))?;
+    let isa = instruction_set()?;
+    tracing::debug!(isa = isa.name(), "instruction set");
+    if arguments.licenses {
+        return licences::show();
+    }
+    match &arguments.command {
+        Some(Command::Run(run)) => run::run(run, isa, started),
+        Some(Command::Check(check)) => check::check(check, isa),
+        Some(Command::List(list)) => list::list(list),
+        Some(Command::Lens(lens)) => lens::lens(&lens.command, isa),
+        // The parser shows help where neither a command nor a flag stands.
+        None => Ok(outcome::DONE),
+    }
+}
+
+/// The tier that `SPECTRA_ISA` names, or the widest of this machine.
+fn instruction_set() -> Result<Isa, Failure> {
+    match std::env::var_os("SPECTRA_ISA") {
+        Some(name) if !name.is_empty() => {
+            Isa::by_name(&name.to_string_lossy()).map_err(|error| Failure::Input(format!("SPECTRA_ISA: {error}")))
+        }
+        _ => Ok(Isa::detect()),
+    }
+}
+
+fn log_to_stderr() {
+    let format = tracing_subscriber::fmt().with_writer(std::io::stderr).with_max_level(tracing::Level::DEBUG);
+    // Fails only where a log is set up already: then that one goes on.
+    let _ = format.with_ansi(console::stderr_is_colored()).try_init();
+}

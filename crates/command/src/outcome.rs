@@ -1,0 +1,67 @@
+//! How a command ends.
+
+use crate::console;
+use spectra_core::params::Faults;
+use std::io;
+
+/// Done, or stopped when its time was up.
+pub(crate) const DONE: u8 = 0;
+/// Something failed on the way.
+pub(crate) const FAILED: u8 = 1;
+/// The input is wrong.
+pub(crate) const BAD_INPUT: u8 = 2;
+/// Interrupted by the person at the keyboard: 128 + SIGINT, as shells have it.
+pub(crate) const INTERRUPTED: u8 = 130;
+
+/// An exit code, or why the command could not do what it should.
+pub(crate) type Outcome = Result<u8, Failure>;
+
+/// Why a command could not do what it should.
+#[derive(Debug)]
+pub(crate) enum Failure {
+    /// Everything wrong with the files given.
+    Faults(Faults),
+    /// An argument or a table is wrong.
+    Input(String),
+    /// The system refused something, or the render failed.
+    Failed(String),
+    /// Whoever read standard output has enough: `spectra list | head -1`.
+    ReaderGone,
+}
+
+impl Failure {
+    /// Says so on standard error; returns the exit code.
+    pub(crate) fn report(&self) -> u8 {
+        match self {
+            Self::Faults(faults) => console::faults(faults),
+            Self::Input(text) | Self::Failed(text) => console::error(text),
+            Self::ReaderGone => {}
+        }
+        self.code()
+    }
+
+    /// The exit code.
+    pub(crate) fn code(&self) -> u8 {
+        match self {
+            Self::Faults(_) | Self::Input(_) => BAD_INPUT,
+            Self::Failed(_) => FAILED,
+            Self::ReaderGone => DONE,
+        }
+    }
+}
+
+impl From<Faults> for Failure {
+    fn from(faults: Faults) -> Self {
+        Self::Faults(faults)
+    }
+}
+
+/// Standard output that cannot be written.
+impl From<io::Error> for Failure {
+    fn from(error: io::Error) -> Self {
+        match error.kind() {
+            io::ErrorKind::BrokenPipe => Self::ReaderGone,
+            _ => Self::Failed(format!("standard output cannot be written: {error}")),
+        }
+    }
+}

@@ -1,0 +1,37 @@
+//! Arguments with units, read as a scene reads them.
+
+use spectra_core::params::Quantity;
+
+/// Reads an argument such as `2m`, `f/2` or `30s`.
+///
+/// # Errors
+/// What was found and what is expected, on one line.
+pub(crate) fn parse<Q: Quantity>(text: &str) -> Result<Q, String> {
+    Q::from_text(text).map_err(|message| match message.split_once("\nhint: ") {
+        Some((message, hint)) => format!("{message} ({hint})"),
+        None => message,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use spectra_core::params::{FNumber, Length, OrInfinity, Positive, Time};
+
+    #[test]
+    fn units_may_touch_their_numbers() {
+        assert_eq!(parse::<Positive<Time>>("30s").map(f64::from), Ok(30.0));
+        assert_eq!(parse::<Positive<Time>>("1.5 min").map(f64::from), Ok(90.0));
+        assert_eq!(parse::<OrInfinity<Positive<Length>>>("2m").map(|l| l.mm()), Ok(2000.0));
+        assert_eq!(parse::<OrInfinity<Positive<Length>>>("inf").map(|l| l.mm()), Ok(f64::INFINITY));
+        assert_eq!(parse::<FNumber>("f/2").map(|n| n.number()), Ok(2.0));
+    }
+
+    #[test]
+    fn faults_fit_on_one_line() {
+        for text in ["2 s", "-2 m", "far", "2 mmm", ""] {
+            let message = parse::<Positive<Length>>(text).unwrap_err();
+            assert!(!message.contains('\n') && message.contains("expected a positive length"), "{message}");
+        }
+    }
+}

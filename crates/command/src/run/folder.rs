@@ -1,0 +1,80 @@
+//! The folder that results go to.
+
+use super::picture::{attributes, picture};
+use super::report::Report;
+use crate::outcome::Failure;
+use spectra_film::write::{write_atomically, write_exr, write_png8, write_tiff16};
+use spectra_scene::{Output, Scene};
+use std::fmt::Display;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// The folder, known to take files, and what goes into it.
+pub(crate) struct Folder {
+    files: Vec<(Output, PathBuf)>,
+    report: PathBuf,
+}
+
+impl Folder {
+    /// Makes the folder where it does not exist, and sees to it that files can be written there.
+    pub(crate) fn prepare(folder: &Path, scene: &Scene) -> Result<Self, Failure> {
+        std::fs::create_dir_all(folder).map_err(|error| refuse(folder, &error))?;
+        let files: Vec<(Output, PathBuf)> = scene
+            .output
+            .iter()
+            .map(|output| (*output, folder.join(format!("{}.{}", scene.name, ending(*output)))))
+            .collect();
+        let report = folder.join("render.json");
+        for path in files.iter().map(|(_, path)| path).chain([&report]) {
+            if path.is_dir() {
+                return Err(refuse(path, &"a folder of that name is in the way"));
+            }
+        }
+        // Rights, read-only disks, quotas: only the attempt tells.
+        let attempt = folder.join(format!(".spectra-{}.tmp", std::process::id()));
+        std::fs::write(&attempt, b"spectra").map_err(|error| refuse(folder, &error))?;
+        std::fs::remove_file(&attempt).map_err(|error| refuse(folder, &error))?;
+        Ok(Self { files, report })
+    }
+
+    /// Writes all that the scene asks for; gives the paths.
+    pub(crate) fn write(&self, report: &Report<'_>) -> Result<Vec<PathBuf>, Failure> {
+        let failed = |error: &dyn Display| Failure::Failed(error.to_string());
+        let mut shown = None;
+        for (output, path) in &self.files {
+            if *output == Output::Exr {
+                write_exr(path, &report.rendering.exposure, &attributes(report)).map_err(|e| failed(&e))?;
+                continue;
+            }
+            let picture = match shown.take() {
+                Some(picture) => picture,
+                None => picture(report).map_err(Failure::Failed)?,
+            };
+            let written = match output {
+                Output::Tiff => write_tiff16(path, &picture),
+                Output::Png | Output::Exr => write_png8(path, &picture),
+            };
+            written.map_err(|e| failed(&e))?;
+            shown = Some(picture);
+        }
+        let paths: Vec<PathBuf> = self.files.iter().map(|(_, path)| path).chain([&self.report]).cloned().collect();
+        let text = format!("{:#}\n", report.to_json(&paths));
+        write_atomically(&self.report, |file| Ok(file.write_all(text.as_bytes())?)).map_err(|e| failed(&e))?;
+        Ok(paths)
+    }
+}
+
+fn ending(output: Output) -> &'static str {
+    match output {
+        Output::Exr => "exr",
+        Output::Png => "png",
+        Output::Tiff => "tiff",
+    }
+}
+
+fn refuse(path: &Path, reason: &dyn Display) -> Failure {
+    Failure::Failed(format!(
+        "cannot write to `{}`: {reason} (nothing was rendered; choose another folder with --output)",
+        path.display()
+    ))
+}

@@ -1,0 +1,118 @@
+//! `spectra run`: from a scene file to pictures.
+
+mod folder;
+mod interrupt;
+mod picture;
+mod progress;
+mod report;
+
+use crate::arguments::Run;
+use crate::console;
+use crate::outcome::{DONE, Failure, INTERRUPTED, Outcome};
+use folder::Folder;
+use progress::Progress;
+use report::Report;
+use serde_json::json;
+use spectra_core::Isa;
+use spectra_render::{Control, RenderError, Renderer, Rendering};
+use spectra_scene::{Scene, diagnostics};
+use std::sync::Arc;
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::time::{Duration, Instant};
+
+/// How often the progress is looked at, and Ctrl-C with it.
+const TICK: Duration = Duration::from_millis(50);
+
+/// Renders a scene; with `--json` a failure is an event as well.
+pub(crate) fn run(arguments: &Run, isa: Isa, started: Instant) -> Outcome {
+    let outcome = render_scene(arguments, isa, started);
+    if let (true, Err(failure)) = (arguments.json, &outcome) {
+        let event = match failure {
+            Failure::Faults(faults) => {
+                json!({ "event": "error", "message": faults.to_string(), "faults": diagnostics::to_json(faults) })
+            }
+            Failure::Input(text) | Failure::Failed(text) => json!({ "event": "error", "message": text, "faults": [] }),
+            Failure::ReaderGone => return outcome,
+        };
+        // A reader that has gone away misses the event, not the picture.
+        let _ = console::json(&event);
+    }
+    outcome
+}
+
+fn render_scene(arguments: &Run, isa: Isa, started: Instant) -> Outcome {
+    let scene = spectra_scene::load(&arguments.scene, &overrides(arguments))?;
+    tracing::debug!(seconds = started.elapsed().as_secs_f64(), "scene loaded");
+    // Before any light is traced: an hour's picture must not end without a place to go.
+    let folder = Folder::prepare(&arguments.output, &scene)?;
+    let limit_s = arguments.time_limit.map(f64::from);
+    let deadline = limit_s.and_then(|s| started.checked_add(Duration::try_from_secs_f64(s).ok()?));
+    let control = Arc::new(deadline.map_or_else(Control::new, Control::until));
+    let interrupt = interrupt::listen(&control);
+    let threads = arguments.threads.map_or_else(processors, usize::from);
+    let mut progress = Progress::new(arguments, deadline);
+    for warning in &scene.warnings {
+        progress.warning(warning);
+    }
+    let renderer = Renderer::new(&scene, isa).map_err(failed)?;
+    tracing::debug!(seconds = started.elapsed().as_secs_f64(), "ready to render");
+    progress.start(&scene, threads, isa);
+    let begun = Instant::now();
+    let rendering =
+        watch(&renderer, threads, &control, || progress.tick(&control, interrupt.happened())).map_err(failed)?;
+    let seconds = begun.elapsed().as_secs_f64();
+    progress.finish(&rendering);
+    let report = Report { scene: &scene, arguments, rendering: &rendering, seconds, threads, isa };
+    for path in folder.write(&report)? {
+        progress.written(&path);
+    }
+    let interrupted = rendering.partial && interrupt.happened();
+    progress.done(&report, interrupted);
+    Ok(if interrupted { INTERRUPTED } else { DONE })
+}
+
+/// All that is set on the command line, as texts `path=value`; the options come after what `--set` says.
+fn overrides(arguments: &Run) -> Vec<String> {
+    let mut all = arguments.set.overrides.clone();
+    all.extend(arguments.seed.map(|seed| format!("render.seed={seed}")));
+    all.extend(arguments.samples.map(|samples| format!("render.samples={samples}")));
+    all
+}
+
+/// Processors that this process may use.
+fn processors() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
+}
+
+fn failed(error: RenderError) -> Failure {
+    Failure::Failed(error.to_string())
+}
+
+/// Renders on other threads and calls `tick` meanwhile.
+fn watch(
+    renderer: &Renderer<'_>,
+    threads: usize,
+    control: &Control,
+    mut tick: impl FnMut(),
+) -> Result<Rendering, RenderError> {
+    std::thread::scope(|scope| {
+        let (end, ended) = mpsc::channel::<()>();
+        let worker = scope.spawn(move || {
+            // Dropped at the end, also by a panic: that is what ends the wait below.
+            let _end = end;
+            renderer.run(threads, control)
+        });
+        while ended.recv_timeout(TICK) == Err(RecvTimeoutError::Timeout) {
+            tick();
+        }
+        worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+    })
+}
+
+/// What a person wants to know of the way light is computed.
+fn direction(scene: &Scene) -> &'static str {
+    match scene.render.direction {
+        spectra_scene::Direction::Forward => "forward",
+        spectra_scene::Direction::Backward => "backward",
+    }
+}

@@ -1,0 +1,249 @@
+//! What is said while a scene renders.
+
+use super::direction;
+use super::report::Report;
+use crate::arguments::Run;
+use crate::{console, words};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use serde_json::{Value, json};
+use spectra_core::{Isa, Loss};
+use spectra_render::{Control, Rendering};
+use spectra_scene::Scene;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+/// Who listens.
+enum Listener {
+    /// A person at a terminal.
+    Bar(ProgressBar),
+    /// A file or a pipe: whole lines, few of them.
+    Lines,
+    /// A program.
+    Json,
+    /// Nobody.
+    Quiet,
+}
+
+/// Says what goes on, to whoever listens.
+pub(crate) struct Progress {
+    listener: Listener,
+    deadline: Option<Instant>,
+    begun: Instant,
+    said: Instant,
+    stopping: bool,
+}
+
+/// One JSON event in this time.
+const JSON_EVERY: Duration = Duration::from_millis(200);
+/// One plain line in this time.
+const LINE_EVERY: Duration = Duration::from_secs(10);
+
+/// How far a render is.
+struct State {
+    rays: u64,
+    total: u64,
+    rays_per_second: f64,
+    seconds_left: Option<f64>,
+}
+
+impl State {
+    fn fraction(&self) -> f64 {
+        if self.total > 0 { self.rays as f64 / self.total as f64 } else { 0.0 }
+    }
+}
+
+impl Progress {
+    /// Nothing is said yet.
+    pub(crate) fn new(arguments: &Run, deadline: Option<Instant>) -> Self {
+        let listener = if arguments.quiet {
+            Listener::Quiet
+        } else if arguments.json {
+            Listener::Json
+        } else if console::stderr_moves() {
+            Listener::Bar(bar())
+        } else {
+            Listener::Lines
+        };
+        Self { listener, deadline, begun: Instant::now(), said: Instant::now(), stopping: false }
+    }
+
+    /// What a person should know before believing the picture.
+    pub(crate) fn warning(&self, text: &str) {
+        match &self.listener {
+            Listener::Json => event(json!({ "event": "warning", "message": text })),
+            Listener::Quiet => {}
+            Listener::Bar(_) | Listener::Lines => console::warning(text),
+        }
+    }
+
+    /// Light is traced from now on.
+    pub(crate) fn start(&mut self, scene: &Scene, threads: usize, isa: Isa) {
+        self.begun = Instant::now();
+        self.said = self.begun;
+        let size = scene.imager.size();
+        match &self.listener {
+            Listener::Json => event(json!({
+                "event": "start",
+                "scene": scene.name,
+                "lens": scene.lens.name,
+                "direction": direction(scene),
+                "width_px": size.width_px,
+                "height_px": size.height_px,
+                "seed": scene.render.seed,
+                "threads": threads,
+                "isa": isa.name(),
+            })),
+            Listener::Quiet => {}
+            Listener::Bar(_) | Listener::Lines => {
+                let film = scene.film.as_ref().map_or(String::new(), |film| format!(", {}", film.describe()));
+                let plural = if threads == 1 { "" } else { "s" };
+                console::note(&format!(
+                    "{}: {} x {} pixels through {}{film}; {} on {threads} thread{plural}",
+                    scene.name,
+                    size.width_px,
+                    size.height_px,
+                    scene.lens.name,
+                    direction(scene)
+                ));
+            }
+        }
+    }
+
+    /// Called many times a second.
+    pub(crate) fn tick(&mut self, control: &Control, interrupted: bool) {
+        if interrupted && !self.stopping {
+            self.stopping = true;
+            self.say("stopping: what there is will be written; Ctrl-C again gives it up");
+        }
+        let state = self.state(control);
+        let elapsed = self.said.elapsed();
+        match &self.listener {
+            Listener::Bar(bar) => {
+                bar.set_length(state.total);
+                bar.set_position(state.rays);
+                let left = state.seconds_left.map_or(String::new(), |s| format!(", {} left", words::duration(s)));
+                bar.set_message(format!("{}{left}", words::rate(state.rays_per_second)));
+            }
+            Listener::Json if elapsed >= JSON_EVERY => {
+                self.said = Instant::now();
+                event(json!({
+                    "event": "progress",
+                    "rays": state.rays,
+                    "total_rays": state.total,
+                    "fraction": state.fraction(),
+                    "rays_per_second": state.rays_per_second,
+                    "seconds": self.begun.elapsed().as_secs_f64(),
+                    "seconds_left": state.seconds_left,
+                }));
+            }
+            Listener::Lines if elapsed >= LINE_EVERY => {
+                self.said = Instant::now();
+                let left = state.seconds_left.map_or(String::new(), |s| format!(", {} left", words::duration(s)));
+                console::note(&format!(
+                    "{:.0} %, {}{left}",
+                    100.0 * state.fraction(),
+                    words::rate(state.rays_per_second)
+                ));
+            }
+            Listener::Json | Listener::Lines | Listener::Quiet => {}
+        }
+    }
+
+    fn state(&self, control: &Control) -> State {
+        let (rays, total) = (control.rays(), control.total_rays());
+        let seconds = self.begun.elapsed().as_secs_f64();
+        let rays_per_second = if seconds > 0.0 { rays as f64 / seconds } else { 0.0 };
+        let by_work = (rays > 0 && total >= rays).then(|| (total - rays) as f64 / rays_per_second);
+        let by_clock = self.deadline.map(|deadline| deadline.saturating_duration_since(Instant::now()).as_secs_f64());
+        let seconds_left = match (by_work, by_clock) {
+            (Some(work), Some(clock)) => Some(work.min(clock)),
+            (work, clock) => work.or(clock),
+        };
+        State { rays, total, rays_per_second, seconds_left }
+    }
+
+    /// A remark beside the progress.
+    fn say(&self, text: &str) {
+        match &self.listener {
+            // Above the bar, which is drawn again below it.
+            Listener::Bar(bar) => bar.suspend(|| console::note(text)),
+            Listener::Lines => console::note(text),
+            Listener::Json => event(json!({ "event": "stopping", "message": text })),
+            Listener::Quiet => {}
+        }
+    }
+
+    /// No more light is traced.
+    pub(crate) fn finish(&self, rendering: &Rendering) {
+        if let Listener::Bar(bar) = &self.listener {
+            bar.set_position(rendering.rays);
+            bar.finish_and_clear();
+        }
+    }
+
+    /// A file is complete.
+    pub(crate) fn written(&self, path: &Path) {
+        match &self.listener {
+            Listener::Json => event(json!({ "event": "written", "path": path.display().to_string() })),
+            Listener::Quiet => {}
+            // A reader that has gone away misses the names, not the files.
+            Listener::Bar(_) | Listener::Lines => drop(console::out(&format!("wrote {}\n", path.display()))),
+        }
+    }
+
+    /// The end.
+    pub(crate) fn done(&self, report: &Report<'_>, interrupted: bool) {
+        let rendering = report.rendering;
+        match &self.listener {
+            Listener::Json => event(json!({
+                "event": "done",
+                "seconds": report.seconds,
+                "rays": rendering.rays,
+                "rays_per_second": report.rays_per_second(),
+                "lost": rendering.losses.total(),
+                "partial": rendering.partial,
+                "interrupted": interrupted,
+            })),
+            Listener::Quiet => {}
+            Listener::Bar(_) | Listener::Lines => console::note(&summary(report)),
+        }
+    }
+}
+
+fn bar() -> ProgressBar {
+    let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr_with_hz(10));
+    let style = ProgressStyle::with_template("[{bar:32}] {percent:>3} %  {msg}").expect("the template is a constant");
+    bar.set_style(style.progress_chars("=> "));
+    bar
+}
+
+/// An event; a reader that has gone away misses it, and the picture is finished all the same.
+fn event(value: Value) {
+    let _ = console::json(&value);
+}
+
+/// `157 286 400 rays in 41 s, 3.8 million rays/s; 61 % lost: vignetted 55 %, missed 6.0 %`.
+fn summary(report: &Report<'_>) -> String {
+    let rendering = report.rendering;
+    let mut text = format!(
+        "{} rays in {}, {}",
+        words::count(rendering.rays),
+        words::duration(report.seconds),
+        words::rate(report.rays_per_second())
+    );
+    let mut causes: Vec<(u64, &str)> = Loss::ALL.iter().map(|c| (rendering.losses.of_cause(*c), c.name())).collect();
+    causes.retain(|(many, _)| *many > 0);
+    causes.sort_by_key(|(many, _)| std::cmp::Reverse(*many));
+    if !causes.is_empty() {
+        let parts: Vec<String> = causes
+            .iter()
+            .map(|(many, name)| format!("{} {}", name.replace('_', " "), words::percent(*many, rendering.rays)))
+            .collect();
+        let lost = words::percent(rendering.losses.total(), rendering.rays);
+        text.push_str(&format!("; {lost} ended on the way: {}", parts.join(", ")));
+    }
+    if rendering.partial {
+        text.push_str("\npartial: stopped before all samples were taken");
+    }
+    text
+}

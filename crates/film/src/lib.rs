@@ -1,0 +1,16 @@
+//! Exposure frames, film stocks, development, display and picture files.
+//!
+//! What an imager records is linear exposure, channel by channel. From there:
+//!
+//! - [`stock`]: what a film sees and how it answers, from a data file;
+//! - [`curve`]: density over log exposure; [`develop`]: exposure to density; [`mod@print`]: the negative's positive;
+//! - [`display`]: absolute XYZ to a screen, with automatic exposure as one explicit step;
+//! - [`mod@write`]: OpenEXR of the exposure, PNG and TIFF of the picture.
+
+pub mod curve;
+pub mod develop;
+pub mod display;
+mod lookup;
+pub mod print;
+pub mod stock;
+pub mod write;

@@ -1,0 +1,68 @@
+//! Smooth functions, sampled once and read off for every pixel of a frame.
+
+use rayon::prelude::*;
+
+/// Pixels that one task takes at a time.
+pub(crate) const PIXELS_A_TASK: usize = 8192;
+
+/// A function sampled at equal steps, linear between the samples, held constant beyond them.
+pub(crate) struct Lookup {
+    low: f64,
+    per_step: f64,
+    values: Vec<f64>,
+}
+
+impl Lookup {
+    /// Samples `f` at both ends and `steps - 1` places between.
+    pub(crate) fn new(low: f64, high: f64, steps: usize, f: impl Fn(f64) -> f64 + Sync) -> Self {
+        let width = (high - low) / steps as f64;
+        let values = (0..steps + 1).into_par_iter().with_min_len(1024).map(|i| f(low + width * i as f64)).collect();
+        Self { low, per_step: 1.0 / width, values }
+    }
+
+    /// The function at `x`; no number is taken as the low end.
+    pub(crate) fn at(&self, x: f64) -> f64 {
+        let last = self.values.len() - 1;
+        let p = ((x - self.low) * self.per_step).max(0.0).min(last as f64);
+        let i = (p as usize).min(last - 1);
+        let (a, b) = (self.values[i], self.values[i + 1]);
+        a + (b - a) * (p - i as f64)
+    }
+}
+
+/// Octaves of a positive number over the smallest normal one: whole at the powers of 2 and straight between, so
+/// it is cheap, exact and has an exact inverse.
+pub(crate) fn octaves(value: f32) -> f64 {
+    f64::from(value.to_bits()) * (1.0 / 8_388_608.0) - 1.0
+}
+
+/// The number of so many octaves, for octaves of at least 0.
+pub(crate) fn from_octaves(octaves: f64) -> f64 {
+    let whole = octaves.floor();
+    // 2^-126 is the smallest normal number; a double holds all its octaves.
+    (1.0 + (octaves - whole)) * f64::from_bits(((whole as u64) + 1023 - 126) << 52)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn octaves_and_back() {
+        for value in [f32::MIN_POSITIVE, 1e-12, 0.01, 0.125, 1.0, 1.5, 1.999_999_9, 3.7e5, f32::MAX] {
+            assert_eq!(from_octaves(octaves(value)), f64::from(value), "{value}");
+        }
+        assert_eq!(octaves(1.0), 126.0);
+        assert_eq!(octaves(1.5), 126.5);
+    }
+
+    #[test]
+    fn linear_between_samples_and_held_beyond() {
+        let square = Lookup::new(-1.0, 3.0, 4, |x| x * x);
+        for (x, want) in [(-1.0, 1.0), (0.0, 0.0), (0.5, 0.5), (2.5, 6.5), (3.0, 9.0), (7.0, 9.0), (-5.0, 1.0)] {
+            assert!((square.at(x) - want).abs() < 1e-14, "{x}");
+        }
+        assert_eq!(square.at(f64::NAN), 1.0);
+        assert_eq!(square.at(f64::INFINITY), 9.0);
+    }
+}

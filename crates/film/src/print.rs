@@ -1,0 +1,219 @@
+//! The positive: a print of a black-and-white negative, looked at as a scan.
+
+use crate::curve::{CharacteristicCurve, CurveError, ToeShoulder};
+use crate::lookup::{Lookup, PIXELS_A_TASK};
+use rayon::prelude::*;
+use spectra_core::math::{exp, log10};
+use std::f64::consts::LN_10;
+
+/// What a mid gray subject, exposed as the meter says, is shown as in linear light: the reflectance of the
+/// gray card.
+pub const MID_GRAY: f64 = 0.18;
+
+/// Exposure of a mid gray subject that is exposed as the meter says, lx s, on a film of ISO speed `iso`:
+/// 10/S, by the definition of exposure meters (ISO 2720:1974).
+#[must_use]
+pub fn metered_exposure_lx_s(iso: f64) -> f64 {
+    10.0 / iso
+}
+
+/// A photographic paper.
+///
+/// Density rises along a [`ToeShoulder`]. Its exposure range is that of ISO 6846:1992: between 0.04
+/// over the paper's white and nine tenths of its maximum density.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Paper {
+    /// Exposure range, log10; ISO range over 100.
+    pub range: f64,
+    /// Maximum density over the white of the paper.
+    pub maximum_density: f64,
+    /// Width of the toe, where the highlights are, log10 of exposure.
+    pub toe: f64,
+    /// Sharpness of the shoulder, where the shadows are.
+    pub shoulder: f64,
+}
+
+impl Default for Paper {
+    /// A soft paper of ISO range R160 with the black of a glossy one, 2.1: on a negative of average gradient
+    /// 0.66 the picture has a gradient of 1.3 at mid gray, a little more contrast than the subject,
+    /// which is what a picture on a screen in a dim room wants (C. J. Bartleson and E. J. Breneman,
+    /// "Brightness reproduction in the photographic process", Photogr. Sci. Eng. 11 (1967)).
+    fn default() -> Self {
+        Self { range: 1.6, maximum_density: 2.1, toe: 0.1, shoulder: 4.0 }
+    }
+}
+
+impl Paper {
+    /// Its curve, with log10 exposure 0 at the density of 0.04.
+    ///
+    /// # Errors
+    /// [`CurveError`] for values that are no paper.
+    pub fn curve(&self) -> Result<ToeShoulder, CurveError> {
+        let high = [self.range, 0.9 * self.maximum_density];
+        ToeShoulder::through([0.0, 0.04], high, self.toe, self.maximum_density, self.shoulder)
+    }
+}
+
+/// A paper and the light it is printed with.
+///
+/// The light is set so that the density of a mid gray subject comes out as [`MID_GRAY`]. The picture is a scan of
+/// the print: white is the bare paper, black is what unexposed film prints as, which is how a darkroom finds
+/// its printing time, and between them picture values are proportional to reflectance.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Print {
+    paper: ToeShoulder,
+    light: f64,
+    black: f64,
+}
+
+impl Print {
+    /// Prints negatives whose unexposed density is `unexposed_density`, and whose mid gray has
+    /// `gray_density`, on `paper`.
+    ///
+    /// # Errors
+    /// [`CurveError`]: the paper cannot be, or no printing light shows that gray as [`MID_GRAY`], since it is not denser
+    /// than unexposed film.
+    pub fn balanced(paper: &Paper, unexposed_density: f64, gray_density: f64) -> Result<Self, CurveError> {
+        let curve = paper.curve()?;
+        let of_light = |light: f64| {
+            let black = reflectance(&curve, light - unexposed_density);
+            Self { paper: curve.clone(), light, black }
+        };
+        // More light, darker gray: from a light that leaves both white to one that turns both black.
+        let (mut left, mut right) = (gray_density, gray_density + 2.0 * paper.range);
+        let above = |light: f64| of_light(light).picture(gray_density) > MID_GRAY;
+        if !above(left) || above(right) {
+            return Err(CurveError::OutOfRange {
+                what: "density of mid gray",
+                wanted: "well above that of the unexposed film, for a print",
+                value: gray_density,
+            });
+        }
+        loop {
+            let middle = 0.5 * (left + right);
+            if middle <= left || middle >= right {
+                return Ok(of_light(left));
+            }
+            if above(middle) {
+                left = middle;
+            } else {
+                right = middle;
+            }
+        }
+    }
+
+    /// What a place of the negative with `density` is shown as, linear light in [0, 1].
+    #[must_use]
+    pub fn picture(&self, density: f64) -> f64 {
+        (reflectance(&self.paper, self.light - density) - self.black) / (1.0 - self.black)
+    }
+
+    /// The picture of a whole negative: [`Print::picture`] of each density, within 1e-6.
+    #[must_use]
+    pub fn pictures(&self, density: &[f32]) -> Vec<f32> {
+        // Curves end below a density of 10. The picture's second derivative over density is below 60 (a gradient of
+        // 4 at most), so steps of 3e-4 interpolate within 60 / 8 * 9e-8 = 7e-7.
+        const HIGHEST: f64 = 10.0;
+        const STEPS: usize = 1 << 15;
+        let sampled = Lookup::new(0.0, HIGHEST, STEPS, |d| self.picture(d));
+        let one = |d: &f32| sampled.at(f64::from(*d)) as f32;
+        density.par_iter().with_min_len(PIXELS_A_TASK).map(one).collect()
+    }
+
+    /// Gradient of the whole: change of log10 of the picture's light per change of log10 of the exposure of
+    /// `film`, at log10 of an exposure in lx s.
+    #[must_use]
+    pub fn system_gradient(&self, film: &CharacteristicCurve, log10_exposure: f64) -> f64 {
+        let step = 1e-4;
+        let at = |x: f64| log10(self.picture(film.density(x)));
+        (at(log10_exposure + step) - at(log10_exposure - step)) / (2.0 * step)
+    }
+}
+
+/// Reflectance relative to the white of the paper.
+fn reflectance(paper: &ToeShoulder, log10_exposure: f64) -> f64 {
+    exp(-LN_10 * paper.density(log10_exposure))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn film() -> CharacteristicCurve {
+        ToeShoulder::through([-2.0, 0.1], [-0.5, 1.09], 0.2, 2.5, 4.0).expect("a film's curve").into()
+    }
+
+    fn print() -> Print {
+        let gray = film().density(log10(metered_exposure_lx_s(80.0)));
+        Print::balanced(&Paper::default(), 0.0, gray).expect("balanced")
+    }
+
+    #[test]
+    fn paper_has_its_range_and_its_black() {
+        let paper = Paper::default();
+        let curve = CharacteristicCurve::from(paper.curve().expect("a paper"));
+        let low = curve.log10_exposure_at(0.04).expect("above white");
+        let high = curve.log10_exposure_at(0.9 * paper.maximum_density).expect("below black");
+        assert!((high - low - 1.6).abs() < 1e-12);
+        assert_eq!(curve.density_range(), (0.0, 2.1));
+    }
+
+    #[test]
+    fn mid_gray_is_shown_as_such_and_clear_film_as_black() {
+        let (print, film) = (print(), film());
+        let shown = |lx_s: f64| print.picture(film.density(log10(lx_s)));
+        assert!((shown(0.125) - MID_GRAY).abs() < 1e-12);
+        assert_eq!(shown(0.0), 0.0);
+        // A white subject (0.9 over 0.18) is bright but not yet bare paper; far beyond it is.
+        assert!((0.75..0.95).contains(&shown(0.125 * 5.0)), "{}", shown(0.125 * 5.0));
+        assert!(shown(0.125 * 64.0) > 0.98 && shown(f64::INFINITY) < 1.0 + 1e-12);
+        // Five stops under mid gray are black to the eye: under 1 % of white.
+        assert!(shown(0.125 / 32.0) < 0.01, "{}", shown(0.125 / 32.0));
+    }
+
+    #[test]
+    fn a_whole_negative_prints_like_its_places() {
+        let print = print();
+        let density: Vec<f32> = (0..60_000).map(|i| i as f32 * 5e-5).collect();
+        for (d, shown) in density.iter().zip(print.pictures(&density)) {
+            // As stated, and the rounding to 24 bits.
+            assert!((f64::from(shown) - print.picture(f64::from(*d))).abs() < 1.1e-6, "{d}");
+        }
+        assert_eq!(print.pictures(&[0.0]), [0.0]);
+    }
+
+    #[test]
+    fn picture_rises_with_exposure() {
+        let (print, film) = (print(), film());
+        let mut before = -1.0;
+        for i in 0..400 {
+            let v = print.picture(film.density(-5.0 + f64::from(i) * 0.02));
+            assert!(v >= before, "{i}");
+            before = v;
+        }
+    }
+
+    #[test]
+    fn system_gradient_at_mid_gray_is_as_stated() {
+        let gradient = print().system_gradient(&film(), log10(0.125));
+        assert!((gradient - 1.3).abs() < 0.01, "{gradient}");
+    }
+
+    /// Base and fog weaken the printing light and change nothing else.
+    #[test]
+    fn base_and_fog_do_not_change_the_picture() {
+        let film = film();
+        let gray = film.density(log10(0.125));
+        let fogged = Print::balanced(&Paper::default(), 0.3, gray + 0.3).expect("balanced");
+        for i in 0..50 {
+            let d = f64::from(i) * 0.05;
+            assert!((fogged.picture(d + 0.3) - print().picture(d)).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn a_gray_as_clear_as_the_film_cannot_be_printed() {
+        assert!(Print::balanced(&Paper::default(), 0.3, 0.3).is_err());
+        assert!(Print::balanced(&Paper { range: -1.0, ..Paper::default() }, 0.0, 0.8).is_err());
+    }
+}

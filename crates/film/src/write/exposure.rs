@@ -1,0 +1,207 @@
+//! OpenEXR of the linear exposure.
+
+use super::{WriteError, WriteFault, write_atomically};
+use exr::meta::attribute::AttributeValue;
+use exr::prelude::{
+    AnyChannel, AnyChannels, Blocks, Compression, Encoding, FlatSamples, Image, ImageAttributes, IntegerBounds, Layer,
+    LayerAttributes, LineOrder, Text, Vec2, WritableImage,
+};
+use spectra_core::frame::ExposureFrame;
+use std::fs::File;
+use std::io::{BufReader, Read, Seek, SeekFrom, Write};
+use std::path::Path;
+
+/// Writes the frame as OpenEXR: 32-bit floats, scanlines in increasing order, lossless (zip), a channel
+/// of the file for each of the frame under its name, `attributes` (name, text) in the header beside each
+/// channel's unit (`unit NAME`). The same frame and attributes give the same bytes.
+///
+/// # Errors
+/// [`WriteError`]: the system refuses, the frame has no channel, or an attribute has a name that is empty,
+/// longer than 255 bytes, given twice, or reserved by OpenEXR.
+pub fn write_exr(path: &Path, frame: &ExposureFrame, attributes: &[(String, String)]) -> Result<(), WriteError> {
+    write_atomically(path, |file| {
+        let image = image_of(frame, attributes)?;
+        image.write().to_unbuffered(&mut *file).map_err(fault)?;
+        sort_header(file)
+    })
+}
+
+fn fault(error: exr::error::Error) -> WriteFault {
+    match error {
+        exr::error::Error::Io(cause) => WriteFault::Io(cause),
+        other => WriteFault::Format(other.to_string()),
+    }
+}
+
+fn image_of(
+    frame: &ExposureFrame,
+    attributes: &[(String, String)],
+) -> Result<Image<Layer<AnyChannels<FlatSamples>>>, WriteFault> {
+    let size = Vec2(frame.size.width_px as usize, frame.size.height_px as usize);
+    if frame.channels.is_empty() {
+        return Err(WriteFault::Format("the frame has no channel".into()));
+    }
+    let mut layer = LayerAttributes::default();
+    let units = frame.channels.iter().map(|c| (format!("unit {}", c.name), c.unit.clone()));
+    for (name, value) in units.chain(attributes.iter().cloned()) {
+        // The bytes as they are: OpenEXR leaves the encoding open, and its tools take UTF-8.
+        let value = AttributeValue::Text(Text::from_slice_unchecked(value.as_bytes()));
+        if layer.other.insert(Text::from_slice_unchecked(name.as_bytes()), value).is_some() {
+            return Err(WriteFault::Format(format!("the attribute `{name}` is given twice")));
+        }
+    }
+    let channels = frame.channels.iter().map(|channel| {
+        let name = Text::from_slice_unchecked(channel.name.as_bytes());
+        if channel.values.len() != frame.size.pixels() {
+            let (found, wanted) = (channel.values.len(), frame.size.pixels());
+            return Err(WriteFault::Format(format!(
+                "channel `{}` has {found} values for {wanted} pixels",
+                channel.name
+            )));
+        }
+        Ok(AnyChannel::new(name, FlatSamples::F32(channel.values.clone())))
+    });
+    let channels = AnyChannels::sort(channels.collect::<Result<_, _>>()?);
+    // The lossless presets of the library leave the order of the chunks to the threads.
+    let encoding =
+        Encoding { compression: Compression::ZIP16, blocks: Blocks::ScanLines, line_order: LineOrder::Increasing };
+    let pixel_width = frame.size.width_mm / f64::from(frame.size.width_px);
+    let pixel_height = frame.size.height_mm / f64::from(frame.size.height_px);
+    let mut shared = ImageAttributes::new(IntegerBounds::from_dimensions(size));
+    shared.pixel_aspect = (pixel_width / pixel_height) as f32;
+    Ok(Image { attributes: shared, layer_data: Layer::new(size, layer, encoding, channels) })
+}
+
+/// Sorts the attributes of the header by name, in place: the library writes those of one's own in the
+/// order of a hash table, which differs from run to run. Sizes, and with them all offsets, stay.
+fn sort_header(file: &mut File) -> Result<(), WriteFault> {
+    const START: u64 = 8; // magic number and version
+    file.seek(SeekFrom::Start(START))?;
+    let mut from = BufReader::new(&mut *file);
+    let mut attributes: Vec<(Vec<u8>, Vec<u8>)> = Vec::new();
+    loop {
+        let mut bytes = Vec::new();
+        let name = null_terminated(&mut from, &mut bytes)?;
+        if name.is_empty() {
+            break;
+        }
+        null_terminated(&mut from, &mut bytes)?;
+        let mut size = [0; 4];
+        from.read_exact(&mut size)?;
+        bytes.extend_from_slice(&size);
+        let size = u64::from(u32::from_le_bytes(size));
+        if from.by_ref().take(size).read_to_end(&mut bytes)? as u64 != size {
+            return Err(std::io::Error::from(std::io::ErrorKind::UnexpectedEof).into());
+        }
+        attributes.push((name, bytes));
+    }
+    attributes.sort();
+    let sorted: Vec<u8> = attributes.into_iter().flat_map(|(_, bytes)| bytes).collect();
+    file.seek(SeekFrom::Start(START))?;
+    file.write_all(&sorted)?;
+    Ok(())
+}
+
+/// Reads to the next zero byte; adds what was read, with the zero, to `all`, and returns it without.
+fn null_terminated(from: &mut impl Read, all: &mut Vec<u8>) -> Result<Vec<u8>, WriteFault> {
+    let mut text = Vec::new();
+    loop {
+        let mut byte = [0];
+        from.read_exact(&mut byte)?;
+        all.push(byte[0]);
+        if byte[0] == 0 {
+            return Ok(text);
+        }
+        text.push(byte[0]);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use exr::prelude::{ReadChannels, ReadLayers};
+    use spectra_core::frame::{ExposureChannel, FrameSize};
+
+    fn frame() -> ExposureFrame {
+        let size = FrameSize { width_px: 70, height_px: 50, width_mm: 36.0, height_mm: 24.0 };
+        let channel = |name: &str, scale: f32| ExposureChannel {
+            name: name.into(),
+            unit: "lx s".into(),
+            values: (0..size.pixels()).map(|i| ((i * 7919) % 1013) as f32 / 1013.0 * scale).collect(),
+        };
+        ExposureFrame { size, channels: vec![channel("X", 0.5), channel("Z", 3e-7), channel("Y", 1e5)] }
+    }
+
+    fn attributes() -> Vec<(String, String)> {
+        (0..12).map(|i| (format!("spectra:key {i}"), format!("value {i}, \u{3bb} = 550 nm"))).collect()
+    }
+
+    #[test]
+    fn what_is_written_is_read_back_to_the_bit() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("frame.exr");
+        let frame = frame();
+        write_exr(&path, &frame, &attributes()).expect("written");
+        let read = exr::prelude::read();
+        let image = read
+            .no_deep_data()
+            .largest_resolution_level()
+            .all_channels()
+            .first_valid_layer()
+            .all_attributes()
+            .from_file(&path)
+            .expect("readable");
+        let layer = &image.layer_data;
+        assert_eq!(layer.encoding.line_order, LineOrder::Increasing);
+        assert_eq!(layer.encoding.blocks, Blocks::ScanLines);
+        let names: Vec<String> = layer.channel_data.list.iter().map(|c| c.name.to_string()).collect();
+        assert_eq!(names, ["X", "Y", "Z"]);
+        for channel in &layer.channel_data.list {
+            let wanted = frame.channel(&channel.name.to_string()).expect("of that name");
+            let FlatSamples::F32(values) = &channel.sample_data else { panic!("32-bit floats") };
+            assert!(values.iter().zip(&wanted.values).all(|(a, b)| a.to_bits() == b.to_bits()));
+        }
+        for (name, value) in attributes() {
+            let Some(AttributeValue::Text(text)) = layer.attributes.other.get(&Text::from(name.as_str())) else {
+                panic!("{name} is missing")
+            };
+            assert_eq!(text.as_slice(), value.as_bytes());
+        }
+        assert_eq!(layer.attributes.other.len(), 12 + 3);
+        assert_eq!(image.attributes.pixel_aspect, (36.0 / 70.0 / (24.0 / 50.0)) as f32);
+    }
+
+    #[test]
+    fn the_same_frame_gives_the_same_bytes() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let files: Vec<Vec<u8>> = (0..8)
+            .map(|i| {
+                let path = folder.path().join(format!("{i}.exr"));
+                write_exr(&path, &frame(), &attributes()).expect("written");
+                std::fs::read(&path).expect("there")
+            })
+            .collect();
+        assert!(files.windows(2).all(|w| w[0] == w[1]));
+    }
+
+    #[test]
+    fn faulty_attributes_and_frames_are_refused() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("frame.exr");
+        let pair = |a: &str| (a.to_owned(), String::new());
+        for attributes in
+            [vec![pair("")], vec![pair("a"), pair("a")], vec![pair(&"x".repeat(256))], vec![pair("owner")]]
+        {
+            assert!(
+                matches!(write_exr(&path, &frame(), &attributes), Err(WriteError::Format { .. })),
+                "{attributes:?}"
+            );
+        }
+        let mut short = frame();
+        short.channels[1].values.pop();
+        assert!(matches!(write_exr(&path, &short, &[]), Err(WriteError::Format { .. })));
+        short.channels.clear();
+        assert!(matches!(write_exr(&path, &short, &[]), Err(WriteError::Format { .. })));
+        assert!(!path.exists());
+    }
+}

@@ -1,0 +1,146 @@
+//! Ilford Ortho Plus as bundled, against its sheet.
+
+use spectra_core::frame::{ExposureChannel, ExposureFrame, FrameSize};
+use spectra_core::math::{log10, pow};
+use spectra_core::spectral::{BAND, Grid};
+use spectra_film::develop::develop;
+use spectra_film::stock::{Reading, SpectralSensitivity, Stock};
+use spectra_scene::FileResources;
+use spectra_spectrum::{Emission, illuminant, v_lambda};
+
+fn ortho_plus() -> Stock {
+    Stock::load("ilford-ortho-plus", &FileResources::beside("/nowhere".as_ref())).expect("bundled and sound")
+}
+
+fn sensitometric() -> (Emission, Emission) {
+    let light = |name| illuminant(name).expect("bundled");
+    (light("iso-7589-sensitometric-daylight"), light("iso-7589-sensitometric-studio-tungsten"))
+}
+
+#[test]
+fn says_what_the_sheet_says() {
+    let stock = ortho_plus();
+    assert_eq!((stock.iso, stock.iso_tungsten), (80.0, Some(40.0)));
+    assert_eq!(stock.bases.iter().map(|b| b.thickness_mm).collect::<Vec<_>>(), [0.125, 0.18]);
+    assert!(stock.layers[0].developments[0].assumed && stock.layers[0].developments[0].remark.is_some());
+    assert_eq!(stock.filter_factors.len(), 4);
+    assert_eq!(Stock::bundled().filter(|name| *name == "ilford-ortho-plus").count(), 1);
+}
+
+/// The sheet's ISO 80 in daylight and 40 in tungsten are steps of a third of a stop: 1.58 to 2.5. Computed
+/// independently from the table: 1.73 read as equal-energy.
+#[test]
+fn daylight_to_tungsten_speed_ratio() {
+    let (daylight, tungsten) = sensitometric();
+    let sensitivity = &ortho_plus().layers[0].sensitivity;
+    let ratio = sensitivity.per_lux(&daylight) / sensitivity.per_lux(&tungsten);
+    assert!((1.58..=2.5).contains(&ratio), "{ratio}");
+    assert!((ratio - 1.73).abs() <= 0.005, "{ratio}");
+}
+
+/// The other reading of the same plot, divided by a lamp of 2850 K, independently computed: 2.15.
+#[test]
+fn speed_ratio_where_the_lamp_is_divided_out() {
+    let (daylight, tungsten) = sensitometric();
+    let text = spectra_data::text("spectra/film/ilford-ortho-plus.csv").expect("bundled");
+    let table = spectra_spectrum::table::Table::parse("ortho", text, None).expect("sound");
+    let points: Vec<[f64; 2]> =
+        table.wavelengths_nm.iter().zip(table.values[0].iter()).map(|(w, s)| [*w, *s]).collect();
+    let lamp = Emission::blackbody(2850.0).expect("a lamp");
+    let divided = SpectralSensitivity::new(&points, Reading::Log10 { floor: Some(0.0) }, Some(lamp)).expect("sound");
+    let ratio = divided.per_lux(&daylight) / divided.per_lux(&tungsten);
+    assert!((ratio - 2.15).abs() <= 0.01, "{ratio}");
+}
+
+#[test]
+fn sees_blue_and_green_but_no_red() {
+    let stock = ortho_plus();
+    let s = |w: f64| stock.layers[0].sensitivity.at(w);
+    for w in [350.0, 355.0, 565.0, 570.0, 589.3, 643.85, 656.27, 830.0] {
+        assert_eq!(s(w), 0.0, "{w}");
+    }
+    // Peaks of the digitized plot: 10^0.976 at 425 nm, 10^0.978 at 540 nm, a saddle of 10^0.806 at 510 nm between.
+    for (w, want) in [(425.0, 9.4624), (540.0, 9.5060), (510.0, 6.3973)] {
+        assert!((s(w) / want - 1.0).abs() < 1e-4, "{w}: {}", s(w));
+    }
+    // Of a daylight exposure, 2 to 8 % comes from below 380 nm: the band has to begin at 350.
+    let light = illuminant("D65").expect("bundled");
+    let below = Grid { start_nm: 350.0, step_nm: 1.0, count: 31 };
+    let seen = |grid: Grid| {
+        let table: Vec<f64> = grid.wavelengths_nm().map(s).collect();
+        light.to_power(&grid).seen_by(&table)
+    };
+    let share = seen(below) / seen(BAND);
+    assert!((0.02..0.08).contains(&share), "{share}");
+}
+
+/// Decision of the unit: the reference light gives as many lux-seconds on film as it has to the eye, whatever the grid
+/// that a scene computes on.
+#[test]
+fn reference_daylight_gives_its_photometric_exposure() {
+    let stock = ortho_plus();
+    let (daylight, tungsten) = sensitometric();
+    let power = daylight.to_power(&BAND);
+    let v = v_lambda();
+    let lux_of = |light: &Emission| {
+        let luminous: Vec<f64> = BAND.wavelengths_nm().map(|w| 683.0 * v.at(w)).collect();
+        light.to_power(&BAND).seen_by(&luminous)
+    };
+    let channel = &stock.channels(&BAND).expect("seen")[0];
+    assert_eq!((channel.name.as_str(), channel.unit.as_str()), ("ortho", "lx s"));
+    assert!((power.seen_by(&channel.response) / lux_of(&daylight) - 1.0).abs() < 1e-12);
+    // In tungsten light the film is slower by the ratio above.
+    let slower = tungsten.to_power(&BAND).seen_by(&channel.response) / lux_of(&tungsten);
+    assert!((1.0 / slower - 1.73).abs() < 0.005, "{slower}");
+    let narrow = Grid { start_nm: 400.0, step_nm: 1.0, count: 301 };
+    let same = &stock.channels(&narrow).expect("seen")[0];
+    assert_eq!(same.response[0], channel.response[50]);
+}
+
+/// ISO 6:1993: 0.8/S lx s gives 0.1 over base and fog; the sheet's pictorial average gradient is .62 to .70, over 1.5
+/// of log10 exposure from there (Ilford), and it must not depend much on the length that is measured (ISO 6: 1.3).
+#[test]
+fn curve_passes_the_speed_point_with_the_gradient_of_the_sheet() {
+    let stock = ortho_plus();
+    let curve = &stock.layers[0].developments[0].curve;
+    assert!((curve.density(log10(0.8 / 80.0)) - 0.1).abs() < 1e-12);
+    assert!((curve.speed_point().expect("has one") - log10(0.01)).abs() < 1e-12);
+    let over = |span| curve.average_gradient(span).expect("has a speed point");
+    assert!((over(1.5) - 0.66).abs() < 1e-12, "{}", over(1.5));
+    assert!((0.62..=0.70).contains(&over(1.3)), "{}", over(1.3));
+    assert_eq!(curve.density_range(), (0.0, 2.5));
+    assert_eq!(curve.unexposed_density(), 0.0);
+}
+
+/// A step wedge of 21 half-stop steps through the whole of development comes out on the stock's own curve.
+#[test]
+fn a_step_wedge_recovers_the_curve() {
+    let stock = ortho_plus();
+    let steps: Vec<f32> = (0..21).map(|i| 1e-3 * pow(2.0, f64::from(i) * 0.5) as f32).collect();
+    let size = FrameSize { width_px: 21, height_px: 1, width_mm: 21.0, height_mm: 1.0 };
+    let channel = ExposureChannel { name: "ortho".into(), unit: "lx s".into(), values: steps.clone() };
+    let frame = ExposureFrame { size, channels: vec![channel] };
+    let developed = develop(&stock, "pictorial", &frame, 1.0 / 60.0).expect("complete");
+    for (step, density) in steps.iter().zip(&developed.layers[0].density) {
+        let want = stock.layers[0].developments[0].curve.density(log10(f64::from(*step)));
+        // Interpolation 5e-7 and the rounding to 24 bits.
+        assert!((f64::from(*density) - want).abs() < 1e-6, "{step}");
+    }
+    // No light, less than none and no number leave it clear.
+    let odd = ExposureChannel { name: "ortho".into(), unit: "lx s".into(), values: vec![0.0, -1.0, f32::NAN] };
+    let size = FrameSize { width_px: 3, ..size };
+    let clear = develop(&stock, "pictorial", &ExposureFrame { size, channels: vec![odd] }, 1.0).expect("complete");
+    assert_eq!(clear.layers[0].density, [0.0; 3]);
+    assert!(develop(&stock, "lith", &frame, 1.0).is_err());
+}
+
+/// The sheet: a metered 10 s becomes 17.8 s, so that 17.8 s do what 10 s would; up to 1 s nothing is lost.
+#[test]
+fn long_exposures_lose_what_the_sheet_says() {
+    let reciprocity = ortho_plus().reciprocity.expect("printed");
+    assert!((17.8 * reciprocity.effect(17.8) - 10.0).abs() < 0.02);
+    for time_s in [1e-3, 1.0 / 60.0, 1.0] {
+        assert_eq!(reciprocity.effect(time_s), 1.0);
+    }
+    assert!((reciprocity.effect(1.0 + 1e-9) - 1.0).abs() < 1e-9);
+}

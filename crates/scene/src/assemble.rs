@@ -1,0 +1,308 @@
+//! From a scene file to a [`Scene`], with every fault in one go.
+
+use crate::{ConePattern, Direction, FileResources, Output, RenderSettings, Scene, yaml};
+use serde::Deserialize;
+use spectra_core::params::{FNumber, Fault, Faults, Length, OrInfinity, Params, Positive, StageNode, Wavelength};
+use spectra_core::registry::{self, Context};
+use spectra_core::resources::Resources;
+use spectra_core::spectral::{BAND, Channel, Grid};
+use spectra_core::stage::{Film, Imager, Source, WavelengthSampler};
+use spectra_lens::Lens;
+use std::path::Path;
+use std::sync::Arc;
+
+/// A scene file: its sections. Those that name a stage hold that stage's own parameters.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[expect(
+    dead_code,
+    reason = "states which keys a scene has; sections are taken one by one, so that a fault in one hides none in another"
+)]
+struct SceneFile {
+    /// Version of the format.
+    spectra: f64,
+    source: StageNode,
+    #[serde(default)]
+    wavelengths: Option<StageNode>,
+    lens: StageNode,
+    imager: StageNode,
+    #[serde(default)]
+    film: Option<StageNode>,
+    #[serde(default)]
+    render: Option<StageNode>,
+    #[serde(default)]
+    output: Option<Vec<String>>,
+}
+
+/// The `lens` section.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct LensSection {
+    /// A lens file beside the scene, or the name of a bundled lens.
+    file: String,
+    /// Aperture; as the lens file says if absent.
+    f_number: Option<FNumber>,
+    /// Distance that is in focus, from the first vertex, or `infinity`; the lens file's focus if absent.
+    focus: Option<OrInfinity<Positive<Length>>>,
+}
+
+/// The `wavelengths` section's own keys; the others are the sampler's.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct BandSection {
+    /// First and last wavelength of the band, nm if bare.
+    band: Option<[Wavelength; 2]>,
+}
+
+/// The `render` section.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct RenderSection {
+    /// `auto`, `forward` or `backward`.
+    direction: Option<String>,
+    /// Backward: samples a pixel.
+    samples: Option<f64>,
+    /// Forward: rays in all.
+    rays: Option<f64>,
+    /// Seed of all numbers.
+    seed: Option<f64>,
+    /// Rays a batch.
+    batch: Option<f64>,
+    /// `sobol` or `random`.
+    numbers: Option<String>,
+    /// `disk`, `rings` or `random`.
+    cone: Option<String>,
+}
+
+const DEFAULT_SAMPLES: f64 = 64.0;
+const DEFAULT_BATCH: f64 = 256.0;
+/// Forward rays a pixel and sample asked for, where `rays` is not given: a forward ray lands anywhere.
+const FORWARD_RAYS_A_SAMPLE: f64 = 4.0;
+
+/// Reads and assembles a scene. `overrides` are texts `path=value`, as given by `--set`.
+///
+/// # Errors
+/// Everything that is wrong with it, each with its place.
+pub fn load(path: &Path, overrides: &[String]) -> Result<Scene, Faults> {
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let resources = FileResources::beside(folder);
+    let name = path.file_stem().map_or_else(|| "scene".to_owned(), |s| s.to_string_lossy().into_owned());
+    let mut root = yaml::read(path)?;
+    let mut faults = Faults::new();
+    for text in overrides {
+        faults.take(yaml::parse_override(text).and_then(|o| o.apply(&mut root).map_err(Faults::from)));
+    }
+    faults.into_result(())?;
+    let text = record(&root.file.text, overrides);
+    assemble(&name, text, &Params::section(root, "")?, &resources)
+}
+
+/// The scene as written, with the overrides below it. What changes no picture is left out, so that the
+/// record in a picture file does not change with it either.
+fn record(text: &str, overrides: &[String]) -> String {
+    let mut record = text.to_owned();
+    for line in overrides.iter().filter(|o| !o.starts_with("render.batch")) {
+        record.push_str("# --set ");
+        record.push_str(line);
+        record.push('\n');
+    }
+    record
+}
+
+fn assemble(name: &str, text: String, params: &Params, resources: &dyn Resources) -> Result<Scene, Faults> {
+    let mut faults = Faults::new();
+    let file: Option<SceneFile> = faults.take(params.parse());
+    // Even where a section is missing or unknown, the others are looked at: all faults in one go.
+    let section = |key: &str, faults: &mut Faults| faults.take(params.stage_at(key)).flatten();
+    let parts = ["wavelengths", "source", "lens", "imager", "film", "render"].map(|key| section(key, &mut faults));
+    let [wavelengths, source, lens, imager, film, render] = parts;
+    let film_is_wanted = film.is_some();
+    if file.as_ref().is_some_and(|f| f.spectra != 1.0) {
+        faults.push(
+            params.fault("spectra", "unknown version of the scene format").hint("this program reads `spectra: 1`"),
+        );
+    }
+    let (band, sampler) = wavelengths.unwrap_or_else(|| params.nothing_said("wavelengths")).split(&["band"]);
+    let grid = faults.take(band.parse::<BandSection>().and_then(|b| grid_of(&b, &band))).unwrap_or(BAND);
+    let context = Context { resources, grid, illuminant: None };
+    let source = source.and_then(|p| faults.take(registry::build::<dyn Source>(&p, &context)));
+    let sampler = faults.take(registry::build::<dyn WavelengthSampler>(&sampler, &context));
+    let lens = lens.and_then(|p| faults.take(lens_of(&p, resources)));
+    let imager = imager.and_then(|p| faults.take(registry::build::<dyn Imager>(&p, &context)));
+    let film = film.and_then(|p| faults.take(registry::build::<dyn Film>(&p, &context)));
+    let render = render.unwrap_or_else(|| params.nothing_said("render"));
+    let settings = faults.take(render.parse::<RenderSection>());
+    let output = file.as_ref().and_then(|f| faults.take(outputs(f.output.as_deref(), params)));
+    let channels = imager.as_ref().and_then(|imager| match (imager.channels(), &film) {
+        (Some(own), None) => Some(own),
+        (None, Some(film)) => Some(film.channels()),
+        (Some(_), Some(_)) => {
+            let fault = params.fault("film", "this imager records by itself, no film lies on it");
+            faults.push(fault.hint("write `imager: {kind: film, ...}`, or leave the film out"));
+            None
+        }
+        // A film that failed to build has been reported.
+        (None, None) if film_is_wanted => None,
+        (None, None) => {
+            faults.push(
+                params
+                    .fault("imager", "a film imager needs a `film`")
+                    .hint("such as `film: {stock: ilford-ortho-plus, exposure: 1/60 s}`"),
+            );
+            None
+        }
+    });
+    let settings = match (&settings, &source, &imager) {
+        (Some(s), Some(source), Some(imager)) => faults.take(render_settings(s, &render, &**source, &**imager)),
+        _ => None,
+    };
+    let parts = (source, sampler, lens, imager, channels, settings, output);
+    let (Some(source), Some(sampler), Some(lens), Some(imager), Some(channels), Some(render), Some(output)) =
+        faults.into_result(parts)?
+    else {
+        return Err(Fault::new("the scene is incomplete").into());
+    };
+    let channels: Arc<[Channel]> = channels.into();
+    let warnings = warnings(&lens, grid);
+    Ok(Scene {
+        name: name.to_owned(),
+        text,
+        grid,
+        source,
+        sampler,
+        lens,
+        imager,
+        film,
+        channels,
+        render,
+        output,
+        warnings,
+    })
+}
+
+fn grid_of(section: &BandSection, params: &Params) -> Result<Grid, Faults> {
+    let Some([first, last]) = section.band else { return Ok(BAND) };
+    let (first, last) = (first.nm(), last.nm());
+    if !(first >= 200.0 && last <= 2500.0 && last - first >= 1.0) {
+        let fault = params.fault("band", format!("no band of light: {first} to {last} nm"));
+        return Err(fault.hint("two wavelengths from 200 to 2500 nm, the shorter one first").into());
+    }
+    let count = (last - first).ceil() as usize + 1;
+    Ok(Grid { start_nm: first, step_nm: (last - first) / (count - 1) as f64, count })
+}
+
+fn lens_of(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults> {
+    let section: LensSection = params.parse()?;
+    let lens = spectra_lens::load(&section.file, resources).map_err(|faults| params.place_at("file", faults))?;
+    let mut faults = Faults::new();
+    let lens = match section.f_number {
+        Some(f_number) => {
+            let stopped = lens.clone().at_f_number(f_number.number());
+            faults.take(stopped.map_err(|e| params.fault("f-number", e.to_string()))).unwrap_or(lens)
+        }
+        None => lens,
+    };
+    let Some(focus) = section.focus else { return faults.into_result(lens) };
+    match lens.focused_at(focus.mm()) {
+        Ok(lens) => faults.into_result(lens),
+        Err(e) => {
+            faults.push(params.fault("focus", e.to_string()));
+            Err(faults)
+        }
+    }
+}
+
+fn render_settings(
+    s: &RenderSection,
+    params: &Params,
+    source: &dyn Source,
+    imager: &dyn Imager,
+) -> Result<RenderSettings, Faults> {
+    let mut faults = Faults::new();
+    let mut whole = |key: &str, value: Option<f64>, default: f64, min: f64, max: f64| -> f64 {
+        let value = value.unwrap_or(default);
+        if value.fract() != 0.0 || !(value >= min && value <= max) {
+            faults.push(params.fault(key, format!("`{key}` must be a whole number from {min} to {max}")));
+        }
+        value
+    };
+    let samples = whole("samples", s.samples, DEFAULT_SAMPLES, 1.0, 4_194_304.0);
+    let rays = s.rays.unwrap_or(samples * FORWARD_RAYS_A_SAMPLE * imager.size().pixels() as f64);
+    let rays = whole("rays", Some(rays), 0.0, 1.0, 1e15);
+    let seed = whole("seed", s.seed, 1.0, 0.0, 9_007_199_254_740_992.0);
+    let batch = whole("batch", s.batch, DEFAULT_BATCH, 8.0, 65_536.0);
+    let mut one_of = |key: &str, value: Option<&str>, known: &[&str]| -> usize {
+        let Some(value) = value else { return 0 };
+        known.iter().position(|k| *k == value).unwrap_or_else(|| {
+            let fault = params.fault(key, format!("unknown {key} `{value}`"));
+            faults.push(fault.hint(format!("one of {}", known.join(", "))));
+            0
+        })
+    };
+    let direction = one_of("direction", s.direction.as_deref(), &["auto", "forward", "backward"]);
+    let numbers = one_of("numbers", s.numbers.as_deref(), &["sobol", "random"]);
+    let cone = one_of("cone", s.cone.as_deref(), &["disk", "rings", "random"]);
+    let can_backward = source.radiance().is_some() && imager.launch().is_some();
+    let can_forward = source.emit().is_some() && imager.receive().is_some();
+    let direction = match direction {
+        0 if can_backward => Direction::Backward,
+        0 => Direction::Forward,
+        1 => Direction::Forward,
+        _ => Direction::Backward,
+    };
+    if direction == Direction::Backward && !can_backward {
+        let fault = params.fault("direction", "this source cannot be rendered backward");
+        faults.push(fault.hint("write `direction: forward`, or leave it to `auto`"));
+    }
+    if direction == Direction::Forward && !can_forward {
+        let fault = params.fault("direction", "this source cannot be rendered forward");
+        faults.push(fault.hint("write `direction: backward`, or leave it to `auto`"));
+    }
+    faults.into_result(RenderSettings {
+        direction,
+        samples: samples as u32,
+        rays: rays as u64,
+        seed: seed as u64,
+        batch: batch as usize,
+        stratified: numbers == 0,
+        cone: [ConePattern::Disk, ConePattern::Rings, ConePattern::Random][cone],
+    })
+}
+
+fn outputs(names: Option<&[String]>, params: &Params) -> Result<Vec<Output>, Faults> {
+    let Some(names) = names else { return Ok(vec![Output::Exr, Output::Png]) };
+    let mut faults = Faults::new();
+    let mut found = Vec::new();
+    for (i, name) in names.iter().enumerate() {
+        match name.as_str() {
+            "exr" => found.push(Output::Exr),
+            "png" => found.push(Output::Png),
+            "tiff" => found.push(Output::Tiff),
+            _ => {
+                let fault = params.fault(&format!("output[{i}]"), format!("unknown kind of output `{name}`"));
+                faults.push(fault.hint("one of exr, png, tiff"));
+            }
+        }
+    }
+    found.sort_unstable();
+    found.dedup();
+    faults.into_result(found)
+}
+
+/// What a person should know before believing the picture.
+fn warnings(lens: &Lens, grid: Grid) -> Vec<String> {
+    let mut all = lens.warnings.clone();
+    for medium in &lens.media {
+        if let Some((min, max)) =
+            medium.medium.range_nm().filter(|_| !medium.medium.covers(grid.start_nm, grid.end_nm()))
+        {
+            all.push(format!(
+                "{} was measured from {min:.0} to {max:.0} nm; between {:.0} and {:.0} nm its formula is extrapolated",
+                medium.label,
+                grid.start_nm,
+                grid.end_nm()
+            ));
+        }
+    }
+    all
+}

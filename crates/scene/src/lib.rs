@@ -1,0 +1,14 @@
+//! Scene files: YAML with places, assembly of stages, diagnostics.
+//!
+//! [`load`] reads a scene, finds every fault of it at once, and gives a [`Scene`]: all stages built, the
+//! lens focused and stopped, nothing traced yet.
+
+mod assemble;
+pub mod diagnostics;
+mod resources;
+mod scene;
+pub mod yaml;
+
+pub use assemble::load;
+pub use resources::FileResources;
+pub use scene::{ConePattern, Direction, Output, RenderSettings, Scene};

@@ -1,0 +1,109 @@
+//! Files for stages: beside the scene first, then among the bundled data.
+
+use crate::yaml;
+use spectra_core::params::{Fault, Faults, Params, SourceFile, nearest};
+use spectra_core::resources::{Resource, ResourceError, Resources};
+use std::borrow::Cow;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+/// Largest YAML document, bytes.
+const MAX_DOCUMENT: u64 = 4 << 20;
+
+/// Looks beside a file, then among the bundled data.
+#[derive(Clone, Debug)]
+pub struct FileResources {
+    folder: PathBuf,
+}
+
+impl FileResources {
+    /// Files in and under `folder`; absolute paths are taken as they are.
+    #[must_use]
+    pub fn beside(folder: &Path) -> Self {
+        Self { folder: folder.to_owned() }
+    }
+}
+
+impl Resources for FileResources {
+    fn read(
+        &self,
+        path: &str,
+        folders: &[&str],
+        endings: &[&str],
+        limit_bytes: u64,
+    ) -> Result<Resource, ResourceError> {
+        let endings = || std::iter::once("").chain(endings.iter().copied());
+        for ending in endings() {
+            let on_disk = self.folder.join(format!("{path}{ending}"));
+            if on_disk.is_file() {
+                let bytes = read_file(&on_disk, limit_bytes)?;
+                let folder = on_disk.parent().map(Path::to_owned);
+                return Ok(Resource { name: on_disk.display().to_string(), folder, bytes: Cow::Owned(bytes) });
+            }
+        }
+        for folder in folders {
+            for ending in endings() {
+                let name = format!("{folder}/{path}{ending}");
+                if let Some(bytes) = spectra_data::get(&name) {
+                    return Ok(Resource { name: format!("bundled:{name}"), folder: None, bytes: Cow::Borrowed(bytes) });
+                }
+            }
+        }
+        Err(ResourceError::NotFound(self.near(path, folders)))
+    }
+
+    fn document(&self, path: &str, folders: &[&str], endings: &[&str]) -> Result<Params, Faults> {
+        let resource = self.read(path, folders, endings, MAX_DOCUMENT).map_err(|e| match e {
+            ResourceError::NotFound(near) if near.is_empty() => Fault::new(format!("`{path}`: no such file")),
+            ResourceError::NotFound(near) => {
+                Fault::new(format!("`{path}`: no such file")).hint(format!("did you mean {}?", list(&near)))
+            }
+            other => Fault::new(format!("`{path}`: {other}")),
+        })?;
+        let text = String::from_utf8(resource.bytes.into_owned())
+            .map_err(|e| Fault::new(format!("`{path}` is not UTF-8 text: byte {}", e.utf8_error().valid_up_to())))?;
+        let node = yaml::parse(SourceFile::new(resource.name, text))?;
+        Params::section(node, "")
+    }
+}
+
+impl FileResources {
+    /// The nearest names, bundled or on disk.
+    fn near(&self, path: &str, folders: &[&str]) -> Vec<String> {
+        let mut names: Vec<String> = folders
+            .iter()
+            .flat_map(|folder| {
+                let prefix = format!("{folder}/");
+                spectra_data::list(&prefix)
+                    .filter_map(|name| name.strip_prefix(&prefix).map(str::to_owned))
+                    .filter_map(|name| name.rsplit_once('.').map(|(stem, _)| stem.to_owned()))
+                    .collect::<Vec<_>>()
+            })
+            .collect();
+        let wanted = self.folder.join(path);
+        if let Some(entries) = wanted.parent().and_then(|folder| std::fs::read_dir(folder).ok()) {
+            names.extend(entries.take(10_000).flatten().filter_map(|e| e.file_name().into_string().ok()));
+        }
+        nearest(path, names.iter().map(String::as_str)).map(str::to_owned).into_iter().collect()
+    }
+}
+
+fn list(names: &[String]) -> String {
+    names.iter().map(|n| format!("`{n}`")).collect::<Vec<_>>().join(" or ")
+}
+
+/// Reads a file whose size is checked before and while it is read.
+fn read_file(path: &Path, limit_bytes: u64) -> Result<Vec<u8>, ResourceError> {
+    let io = |e: std::io::Error| ResourceError::Io(e.to_string());
+    let file = std::fs::File::open(path).map_err(io)?;
+    let size = file.metadata().map_err(io)?.len();
+    if size > limit_bytes {
+        return Err(ResourceError::TooLarge(size, limit_bytes));
+    }
+    let mut bytes = Vec::with_capacity(size as usize);
+    file.take(limit_bytes + 1).read_to_end(&mut bytes).map_err(io)?;
+    if bytes.len() as u64 > limit_bytes {
+        return Err(ResourceError::TooLarge(bytes.len() as u64, limit_bytes));
+    }
+    Ok(bytes)
+}

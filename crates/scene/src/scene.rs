@@ -1,0 +1,96 @@
+//! A scene, assembled: every stage built, the lens focused and stopped, nothing traced yet.
+
+use spectra_core::spectral::{Channel, Grid};
+use spectra_core::stage::{Film, Imager, Source, WavelengthSampler};
+use spectra_lens::Lens;
+use std::sync::Arc;
+
+/// Which way light is computed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Direction {
+    /// From the source.
+    Forward,
+    /// From the imager.
+    Backward,
+}
+
+/// How forward rays are spread over the front of the lens.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum ConePattern {
+    /// Independent random points.
+    Random,
+    /// Equal-area rings.
+    Rings,
+    /// Low-discrepancy points, mapped neighbors to neighbors.
+    #[default]
+    Disk,
+}
+
+/// The `render` section.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RenderSettings {
+    /// Sense of travel, decided.
+    pub direction: Direction,
+    /// Backward: samples a pixel.
+    pub samples: u32,
+    /// Forward: rays in all.
+    pub rays: u64,
+    /// Seed of all numbers.
+    pub seed: u64,
+    /// Rays a batch.
+    pub batch: usize,
+    /// Stratified (Sobol) or independent numbers.
+    pub stratified: bool,
+    /// Pattern of the forward cone.
+    pub cone: ConePattern,
+}
+
+/// What the `output` section asks for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Output {
+    /// Linear exposure per channel.
+    Exr,
+    /// The picture.
+    Png,
+    /// The picture with 16 bits a channel.
+    Tiff,
+}
+
+/// A scene, ready to render.
+pub struct Scene {
+    /// Name of its outputs: the file's name without its ending.
+    pub name: String,
+    /// The scene as written, with overrides applied, for the record.
+    pub text: String,
+    /// The band.
+    pub grid: Grid,
+    /// The source.
+    pub source: Box<dyn Source>,
+    /// The wavelength strategy.
+    pub sampler: Box<dyn WavelengthSampler>,
+    /// The lens, focused and stopped.
+    pub lens: Lens,
+    /// The imager.
+    pub imager: Box<dyn Imager>,
+    /// The film on it, if any.
+    pub film: Option<Box<dyn Film>>,
+    /// What is recorded: the imager's own channels, or the film's.
+    pub channels: Arc<[Channel]>,
+    /// How to render.
+    pub render: RenderSettings,
+    /// What to write.
+    pub output: Vec<Output>,
+    /// What a person should know: a glass off its listed range, and so on.
+    pub warnings: Vec<String>,
+}
+
+impl Scene {
+    /// Exposure time that multiplies irradiance, s; 1 where none is stated and irradiance itself is recorded.
+    #[must_use]
+    pub fn exposure_time_s(&self) -> f64 {
+        match &self.film {
+            Some(film) => film.exposure_time_s(),
+            None => self.imager.exposure_time_s().unwrap_or(1.0),
+        }
+    }
+}

@@ -1,0 +1,152 @@
+//! YAML files as trees with the place of every key and value.
+//!
+//! A file is one document of maps, lists, texts, numbers, booleans and nulls by the core schema of YAML 1.2,
+//! with strict booleans (`true`, `false`); anchors and aliases are expanded, tags, merge keys, directives and
+//! further documents are faults. What a file may cost is bounded: [`MAX_BYTES`], [`MAX_NODES`] values with
+//! aliases expanded, and [`MAX_DEPTH`] levels.
+
+mod build;
+mod reports;
+mod syntax;
+#[cfg(test)]
+mod tests;
+mod tree;
+
+use spectra_core::params::{Fault, Faults, MAX_DEPTH, Node, SourceFile, Span};
+use std::io::Read;
+use std::path::Path;
+use std::sync::Arc;
+
+/// Largest file that is read, in bytes.
+pub const MAX_BYTES: usize = 4 * 1024 * 1024;
+
+/// Most values in a file, aliases expanded.
+pub const MAX_NODES: usize = 200_000;
+
+/// Parses a text.
+///
+/// # Errors
+/// Everything that is wrong with it up to the first error of syntax, each with its place.
+pub fn parse(mut file: SourceFile) -> Result<Node, Faults> {
+    if file.text.len() > MAX_BYTES {
+        let bytes = file.text.len();
+        file.text = String::new();
+        return Err(too_large(bytes as u64).at(Arc::new(file), Span::default()).into());
+    }
+    if file.text.starts_with('\u{feff}') {
+        file.text.remove(0);
+    }
+    build::document(&Arc::new(file), Span::default())
+}
+
+/// Parses the bytes of a file with a name for messages.
+///
+/// # Errors
+/// As [`parse`]; and where the bytes are not UTF-8.
+pub fn parse_bytes(name: &str, bytes: &[u8]) -> Result<Node, Faults> {
+    if bytes.len() > MAX_BYTES {
+        return Err(too_large(bytes.len() as u64).at(Arc::new(SourceFile::new(name, "")), Span::default()).into());
+    }
+    match std::str::from_utf8(bytes) {
+        Ok(text) => parse(SourceFile::new(name, text)),
+        Err(error) => Err(not_utf8(name, bytes, error.valid_up_to()).into()),
+    }
+}
+
+/// Reads and parses a file.
+///
+/// # Errors
+/// As [`parse`]; and where the file cannot be read, without a place.
+pub fn read(path: &Path) -> Result<Node, Faults> {
+    let name = path.display().to_string();
+    let unreadable = |error: std::io::Error| Fault::new(format!("cannot read {name}: {error}"));
+    let file = std::fs::File::open(path).map_err(unreadable)?;
+    let mut bytes = Vec::new();
+    // A file can grow, and a device has no length: what counts is what is read.
+    file.take(MAX_BYTES as u64 + 1).read_to_end(&mut bytes).map_err(unreadable)?;
+    if bytes.len() > MAX_BYTES {
+        let length = std::fs::metadata(path).map_or(0, |data| data.len()).max(bytes.len() as u64);
+        return Err(too_large(length).at(Arc::new(SourceFile::new(name, "")), Span::default()).into());
+    }
+    parse_bytes(&name, &bytes)
+}
+
+fn too_large(bytes: u64) -> Fault {
+    Fault::new(format!("the file has {bytes} bytes, at most {MAX_BYTES} are read"))
+        .hint("is this a scene, lens or stock file?")
+}
+
+fn not_utf8(name: &str, bytes: &[u8], valid: usize) -> Fault {
+    let hint = match bytes {
+        [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => "it looks like UTF-16: save it as UTF-8",
+        _ => "save it as UTF-8",
+    };
+    let text = String::from_utf8_lossy(bytes).into_owned();
+    // Up to the first bad byte both texts are equal.
+    let before = text.get(..valid).unwrap_or("");
+    let span = Span { len: '\u{fffd}'.len_utf8(), ..behind(Span::default(), before) };
+    Fault::new("this byte is not UTF-8").at(Arc::new(SourceFile::new(name, text)), span).hint(hint)
+}
+
+/// The place behind `skipped`, which starts at `place`. Lines end as the parser ends them: LF, CR, or both.
+fn behind(place: Span, skipped: &str) -> Span {
+    let mut at = Span { offset: place.offset + skipped.len(), len: 0, ..place };
+    let mut characters = skipped.chars().peekable();
+    while let Some(c) = characters.next() {
+        match c {
+            '\r' if characters.peek() == Some(&'\n') => {}
+            '\n' | '\r' => at = Span { line: at.line + 1, column: 1, ..at },
+            _ => at.column += 1,
+        }
+    }
+    at
+}
+
+/// One `--set path=value` of the command line.
+#[derive(Clone, Debug)]
+pub struct Override {
+    /// Where it goes, such as `film.exposure`.
+    pub path: String,
+    /// What is put there. Its place reads `--set film.exposure=...`.
+    pub node: Node,
+}
+
+impl Override {
+    /// Puts it into a tree; maps that are missing are created.
+    ///
+    /// # Errors
+    /// The path leads through what is no map or no list.
+    pub fn apply(self, root: &mut Node) -> Result<(), Fault> {
+        root.set_path(&self.path, self.node)
+    }
+}
+
+/// Parses `path=value`, the value as YAML: `film.exposure=1/60 s`, `output=[exr, png]`.
+///
+/// # Errors
+/// The argument has no `=`, its path is ill-formed, or its value is not YAML.
+pub fn parse_override(argument: &str) -> Result<Override, Faults> {
+    /// Longest argument that a message repeats, in bytes.
+    const SHOWN: usize = 60;
+    let hint = "write `--set film.exposure=\"1/60 s\"`";
+    let Some((path, value)) = argument.split_once('=') else {
+        let file = SourceFile::new(
+            if argument.len() > SHOWN { "--set".to_owned() } else { format!("--set {argument}") },
+            argument,
+        );
+        return Err(Fault::new("`=` is missing").at(Arc::new(file), Span::default()).hint(hint).into());
+    };
+    let name = if argument.len() <= SHOWN { format!("--set {argument}") } else { format!("--set {path:.SHOWN$}=...") };
+    let file = Arc::new(SourceFile::new(name, argument));
+    if argument.len() > MAX_BYTES {
+        return Err(too_large(argument.len() as u64).at(file, Span::default()).into());
+    }
+    let path = path.trim();
+    if let Err(message) = spectra_core::params::steps(path) {
+        return Err(Fault::new(message).at(file, Span { len: path.len(), ..Span::default() }).hint(hint).into());
+    }
+    let before = &argument[..argument.len() - value.len()];
+    let start = Span { line: 1, column: 1 + before.chars().count(), offset: before.len(), len: value.len() };
+    let node = build::document(&file, start)?;
+    Ok(Override { path: path.to_owned(), node })
+}

@@ -1,0 +1,77 @@
+//! The parser's errors in the words of a person who writes a scene.
+
+use super::MAX_DEPTH;
+use serde_saphyr::granit_parser::ErrorKind;
+
+/// Whether an error is about a tab; then the tab stands at or behind the place that the parser names.
+pub(super) fn is_tab(kind: &ErrorKind) -> bool {
+    use ErrorKind as E;
+    matches!(
+        kind,
+        E::TabInBlockIndentation
+            | E::TabInIndentation
+            | E::TabNotAllowed
+            | E::TabInPlainScalar
+            | E::TabAtBlockScalarStart
+    )
+}
+
+/// Message and hint; `before` is what stands on the line before the error.
+pub(super) fn message(kind: &ErrorKind, before: &str) -> (String, Option<&'static str>) {
+    use ErrorKind as E;
+    if is_tab(kind) {
+        return ("a tab where YAML wants spaces".to_owned(), Some("indent with spaces"));
+    }
+    let (message, hint) = match kind {
+        E::RecursionLimitExceeded => return (format!("nested deeper than {MAX_DEPTH} levels"), None),
+        E::UnclosedFlowCollection { open: '{' } | E::UnexpectedEofFlowMapping => ("`{` is never closed", "add `}`"),
+        E::UnclosedFlowCollection { .. } | E::UnexpectedEofFlowSequence => ("`[` is never closed", "add `]`"),
+        E::UnclosedQuotedScalar => ("a quote is never closed", "close it on the same line"),
+        E::MisplacedFlowCollectionEnd => ("a closing bracket without its opening one", "remove it"),
+        E::ExpectedFlowMappingSeparator => ("expected `,` or `}`", "separate `key: value` pairs with commas"),
+        E::ExpectedFlowSequenceSeparator => ("expected `,` or `]`", "separate entries with commas"),
+        E::MappingValueNotAllowed | E::InvalidColonPlacement if before.contains(": ") => {
+            ("a second `: ` on one line", "put a text that holds `: ` in quotes, or write {key: value}")
+        }
+        E::MappingValueNotAllowed | E::InvalidColonPlacement => (
+            "a `:` that ends no key",
+            "the lines above are read as one text with this one: a `:` needs a space behind it, and keys of one map start in the same column",
+        ),
+        E::MismatchedFlowCollectionEnd { open, close } => {
+            return (format!("`{open}` is closed by `{close}`"), Some("close what was opened last first"));
+        }
+        E::InvalidMappingValueWhitespace => ("`:` without a space behind it", "write `key: value`"),
+        E::SimpleKeyExpected | E::InvalidSimpleKey => ("a key without its `:`", "write `key: value`"),
+        E::ExpectedBlockMappingKey => ("expected a key here", "keys of one map start in the same column"),
+        E::ExpectedBlockSequenceEntry => ("expected `- ` here", "entries of one list start in the same column"),
+        E::InvalidIndentation | E::InvalidFlowScalarIndent | E::InvalidQuotedScalarIndent => {
+            ("this line is indented wrongly", "keys of one map start in the same column")
+        }
+        E::BlockEntryInFlowCollection | E::BlockSequenceEntryNotAllowed => {
+            ("`- ` cannot start an entry here", "start a list on a line of its own, or write [a, b]")
+        }
+        E::InvalidBlockEntryWhitespace => ("`-` without a space behind it", "write `- entry`"),
+        E::CommentNotSeparated => ("`#` without a space before it", "put a space before a comment"),
+        E::UnexpectedCharacter { character } => {
+            let hint = if matches!(character, '@' | '`' | '%' | '*' | '&' | '!' | '|' | '>') {
+                Some("put the text in quotes")
+            } else {
+                None
+            };
+            return (format!("a value cannot start with `{}`", character.escape_default()), hint);
+        }
+        E::UnknownAnchor => {
+            ("this alias names nothing that stands before it", "define it with `&name`, or put the text in quotes")
+        }
+        E::UnknownQuotedScalarEscape => {
+            ("an unknown escape in a text with double quotes", "use single quotes, or double the backslash")
+        }
+        E::DirectiveDisallowed => ("YAML directives are not known here", "remove the line, or put the text in quotes"),
+        E::InvalidDocumentEnd | E::ExpectedDocumentStart | E::MultipleDocumentsUnsupported => {
+            ("text behind the end of the document", "one document a file; keys of one map start in the same column")
+        }
+        E::BomInsideDocument => ("a byte order mark inside of the file", "remove it"),
+        other => return (format!("not YAML: {other}"), None),
+    };
+    (message.to_owned(), Some(hint))
+}

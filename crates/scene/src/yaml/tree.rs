@@ -1,0 +1,125 @@
+//! From items in flat storage to nodes: aliases are expanded here, within the limits.
+
+use super::build::{Item, Placed};
+use super::reports::{Reports, Stop, fault, too_deep, too_many, written};
+use super::{MAX_DEPTH, MAX_NODES};
+use spectra_core::params::{Fault, Faults, Key, Node, SourceFile, Span, Value};
+use std::collections::HashSet;
+use std::sync::Arc;
+
+/// The tree below `root`; an empty file is nothing, at `start`.
+pub(super) fn grow(
+    file: &Arc<SourceFile>,
+    items: &[Placed],
+    root: Option<usize>,
+    start: Span,
+    reports: Reports,
+) -> Result<Node, Faults> {
+    let Some(root) = root else { return Ok(Node::new(Value::Null, start, Arc::clone(file))) };
+    let mut tree = Tree { file, items, reports, count: 0 };
+    match tree.node(root, None, 0) {
+        Ok(node) if tree.reports.is_empty() => Ok(node),
+        Ok(_) => Err(tree.reports.into_faults()),
+        Err(fault) => Err(tree.reports.and(*fault)),
+    }
+}
+
+struct Tree<'a> {
+    file: &'a Arc<SourceFile>,
+    items: &'a [Placed],
+    reports: Reports,
+    count: usize,
+}
+
+impl Tree<'_> {
+    /// An item as a node, with `depth` lists and maps around it. `seat` is the place of its key, for a
+    /// value that is not there. Recursion is bounded by the depth.
+    fn node(&mut self, index: usize, seat: Option<Span>, depth: usize) -> Result<Node, Stop> {
+        let &Placed { ref item, mut span } = &self.items[index];
+        if let Item::Alias(target) = item {
+            // Only the size can be at fault there, and that is the alias' doing.
+            let here = |stop: Stop| Box::new(Fault { place: Some((Arc::clone(self.file), span)), ..*stop });
+            return self.node(self.unalias(*target), None, depth).map_err(here);
+        }
+        self.count += 1;
+        if self.count > MAX_NODES {
+            return Err(too_many(self.file, span));
+        }
+        if depth >= MAX_DEPTH && !matches!(item, Item::Scalar(_)) {
+            return Err(too_deep(self.file, span));
+        }
+        let value = match item {
+            Item::Scalar(value) => {
+                if span.len == 0 {
+                    span = seat.unwrap_or(span);
+                }
+                value.clone()
+            }
+            Item::Seq(elements) => {
+                let mut nodes = Vec::with_capacity(elements.len());
+                for &element in elements {
+                    nodes.push(self.node(element, None, depth + 1)?);
+                }
+                Value::Seq(nodes)
+            }
+            Item::Map(entries) => Value::Map(self.map(entries, depth)?),
+            Item::Alias(_) => Value::Null,
+        };
+        Ok(Node::new(value, span, Arc::clone(self.file)))
+    }
+
+    fn map(&mut self, entries: &[(usize, usize)], depth: usize) -> Result<Vec<(Key, Node)>, Stop> {
+        let mut nodes = Vec::with_capacity(entries.len());
+        let mut seen = HashSet::with_capacity(entries.len());
+        for &(key, value) in entries {
+            let span = self.items[key].span;
+            let text = self.key(key);
+            let node = self.node(value, Some(span), depth + 1)?;
+            let Some(text) = text else { continue };
+            if seen.insert(text.clone()) {
+                nodes.push((Key { text, span }, node));
+            } else {
+                self.report(span, format!("the key `{}` comes twice", written(self.file, span)), "remove one of them");
+            }
+        }
+        Ok(nodes)
+    }
+
+    /// The text of a key; reports what is none.
+    fn key(&mut self, index: usize) -> Option<String> {
+        let span = self.items[index].span;
+        let item = &self.items[self.unalias(index)].item;
+        let quoted = matches!(self.file.text.as_bytes().get(span.offset), Some(b'"' | b'\''));
+        match item {
+            Item::Scalar(Value::String(text)) if text == "<<" && !quoted => {
+                self.report(span, "merge keys are not known here".to_owned(), "write the keys out");
+                None
+            }
+            Item::Scalar(Value::String(text)) => Some(text.clone()),
+            Item::Scalar(Value::Number(number)) => Some(number.text.clone()),
+            Item::Scalar(Value::Bool(value)) => Some(value.to_string()),
+            Item::Scalar(_) if span.len > 0 => Some(written(self.file, span)),
+            Item::Scalar(_) => {
+                self.report(span, "a key is missing before `:`".to_owned(), "write `key: value`");
+                None
+            }
+            Item::Seq(_) | Item::Map(_) | Item::Alias(_) => {
+                self.report(span, "a key must be a text, not a list or a map".to_owned(), "write `key: value`");
+                None
+            }
+        }
+    }
+
+    /// What an alias names; it can name an alias.
+    fn unalias(&self, mut index: usize) -> usize {
+        // An alias names what stands before it, so this ends.
+        while let Item::Alias(target) = self.items[index].item {
+            index = target;
+        }
+        index
+    }
+
+    fn report(&mut self, span: Span, message: String, hint: &str) {
+        self.reports.push(*fault(self.file, span, message, Some(hint)));
+    }
+}

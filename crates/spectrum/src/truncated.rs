@@ -1,0 +1,308 @@
+//! A Gaussian cut off at the ends of a band, drawn by inverse transform.
+//!
+//! Three algorithms share one type, chosen once when it is made: near the middle the inverse of the normal distribution
+//! by M. J. Wichura's AS 241 (Applied Statistics 37, 477, 1988); where the whole band lies more than
+//! 25 standard deviations out, and erfc is about to underflow, Newton's method on the logarithm of the tail, whose
+//! hazard is one over Mills' ratio. All is free of branches, of fused operations and of the system's functions, so
+//! that it fills vectors and gives the same bits on every instruction set.
+
+use spectra_core::isa::{Isa, Vectorized};
+
+use crate::cell;
+use crate::error::{SpectrumError, check};
+use crate::normal::{Mass, SQRT_TAU};
+use crate::normal_quantile::{far_mills, log, upper_quantile};
+
+/// Where the algorithm for the tail takes over, in standard deviations.
+const FAR: f64 = crate::normal_quantile::FAR;
+
+/// Density exp(-(x - center)^2 / (2 sigma^2)) between two wavelengths, 0 beyond, of integral 1.
+///
+/// ```
+/// use spectra_spectrum::TruncatedGaussian;
+/// let density = TruncatedGaussian::new(550.0, 50.0, 380.0, 780.0)?;
+/// assert!((density.quantile(0.5) - 550.0210).abs() < 1e-4);
+/// # Ok::<(), spectra_spectrum::SpectrumError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct TruncatedGaussian {
+    center_nm: f64,
+    sigma_nm: f64,
+    min_nm: f64,
+    max_nm: f64,
+    /// The band in standard deviations from the center.
+    low: f64,
+    high: f64,
+    mass: Mass,
+    draw: Draw,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Draw {
+    Central(Central),
+    Tail(Tail),
+}
+
+impl TruncatedGaussian {
+    /// The Gaussian around `center_nm` of standard deviation `sigma_nm` (before it is cut), on `min_nm` to `max_nm`.
+    ///
+    /// The center may lie anywhere, far outside of the band too.
+    ///
+    /// # Errors
+    /// [`SpectrumError::OutOfRange`] unless the center is within 1e9 nm of 0, sigma from 1e-6 to 1e6 nm, and
+    /// 0 <= min < max <= 1e9 nm.
+    pub fn new(center_nm: f64, sigma_nm: f64, min_nm: f64, max_nm: f64) -> Result<Self, SpectrumError> {
+        check("center, nm", "within 1e9 of 0", center_nm, |c| c.abs() <= 1e9)?;
+        check("standard deviation, nm", "between 1e-6 and 1e6", sigma_nm, |s| (1e-6..=1e6).contains(&s))?;
+        check("lower end of the band, nm", "0 or more", min_nm, |w| w >= 0.0)?;
+        check("upper end of the band, nm", "above the lower one and at most 1e9", max_nm, |w| w > min_nm && w <= 1e9)?;
+        let (low, high) = ((min_nm - center_nm) / sigma_nm, (max_nm - center_nm) / sigma_nm);
+        let mass = Mass::of_width(low, high, (max_nm - min_nm) / sigma_nm);
+        let span = Span { min_nm, max_nm, sigma_nm };
+        let draw = if low > FAR {
+            Draw::Tail(Tail::new(span, min_nm, 1.0, low, mass))
+        } else if high < -FAR {
+            Draw::Tail(Tail::new(span, max_nm, -1.0, -high, mass))
+        } else {
+            let root = std::f64::consts::FRAC_1_SQRT_2;
+            Draw::Central(Central {
+                span,
+                center_nm,
+                below: 0.5 * libm::erfc(-low * root),
+                above: 0.5 * libm::erfc(high * root),
+                mass: mass.value() / SQRT_TAU,
+            })
+        };
+        Ok(Self { center_nm, sigma_nm, min_nm, max_nm, low, high, mass, draw })
+    }
+
+    /// Center before it was cut, nm.
+    #[must_use]
+    pub fn center_nm(&self) -> f64 {
+        self.center_nm
+    }
+
+    /// Standard deviation before it was cut, nm.
+    #[must_use]
+    pub fn sigma_nm(&self) -> f64 {
+        self.sigma_nm
+    }
+
+    /// The band, nm.
+    #[must_use]
+    pub fn band_nm(&self) -> (f64, f64) {
+        (self.min_nm, self.max_nm)
+    }
+
+    /// Share of the whole Gaussian that lies on the band; 0 where it is below all numbers.
+    #[must_use]
+    pub fn mass(&self) -> f64 {
+        self.mass.value() / SQRT_TAU
+    }
+
+    /// Density at `wavelength_nm`, 1/nm; 0 outside of the band, and for NaN.
+    #[must_use]
+    pub fn density(&self, wavelength_nm: f64) -> f64 {
+        if !(self.min_nm..=self.max_nm).contains(&wavelength_nm) {
+            return 0.0;
+        }
+        // Relative to the point of the band nearest to the center: nothing underflows that matters.
+        let from = self.distance_from_nearest(wavelength_nm);
+        let exponent = -0.5 * from * (from + 2.0 * self.mass.nearest);
+        libm::exp(exponent) / (self.sigma_nm * self.mass.scaled)
+    }
+
+    /// Share of the draws at or below `wavelength_nm`; 0 for NaN.
+    #[must_use]
+    pub fn cumulative(&self, wavelength_nm: f64) -> f64 {
+        if wavelength_nm.is_nan() || wavelength_nm <= self.min_nm {
+            return 0.0;
+        }
+        if wavelength_nm >= self.max_nm {
+            return 1.0;
+        }
+        let nearest = self.mass.nearest;
+        let from = self.distance_from_nearest(wavelength_nm);
+        let z = (nearest + from).clamp(self.low, self.high);
+        // The nearest point of a part is that of the band, or z.
+        let part = |mass: Mass, is_z: bool| {
+            let from = if is_z { from } else { 0.0 };
+            mass.scaled / self.mass.scaled * libm::exp(-0.5 * from * (from + 2.0 * nearest))
+        };
+        let width_below = (wavelength_nm - self.min_nm) / self.sigma_nm;
+        let width_above = (self.max_nm - wavelength_nm) / self.sigma_nm;
+        // The smaller part keeps its digits.
+        let below = part(Mass::of_width(self.low, z, width_below), z <= 0.0);
+        if below < 0.5 { below } else { 1.0 - part(Mass::of_width(z, self.high, width_above), z > 0.0) }
+    }
+
+    /// From the point of the band that is nearest to the center, in standard deviations.
+    fn distance_from_nearest(&self, wavelength_nm: f64) -> f64 {
+        let nearest_nm = self.center_nm.clamp(self.min_nm, self.max_nm);
+        (wavelength_nm - nearest_nm) / self.sigma_nm
+    }
+
+    /// Wavelength, nm, below which a share `u` of the draws lies; within the band for every `u`, NaN included.
+    ///
+    /// Its share comes out as u within 1e-13, plus what the roundings of u, of the wavelength and of a wide sigma (2e-16 of
+    /// it, for far more than the band) make of it.
+    #[must_use]
+    pub fn quantile(&self, u: f64) -> f64 {
+        match &self.draw {
+            Draw::Central(central) => central.quantile(u),
+            Draw::Tail(tail) => tail.quantile(u),
+        }
+    }
+
+    /// Draws a wavelength, nm, for each number of `u` in [0, 1): its quantile, bit for bit, on every `isa`.
+    ///
+    /// As many as the shorter of both slices holds.
+    pub fn draw(&self, u: &[f64], wavelength_nm: &mut [f64], isa: Isa) {
+        match self.draw {
+            Draw::Central(central) => isa.run(Fill { quantile: central, u, wavelength_nm }),
+            Draw::Tail(tail) => isa.run(Fill { quantile: tail, u, wavelength_nm }),
+        }
+    }
+
+    /// Mean of the draws, nm.
+    #[must_use]
+    pub fn mean(&self) -> f64 {
+        let nearest_nm = self.center_nm.clamp(self.min_nm, self.max_nm);
+        nearest_nm + self.sigma_nm * self.moments().0
+    }
+
+    /// Standard deviation of the draws, nm.
+    #[must_use]
+    pub fn standard_deviation(&self) -> f64 {
+        self.sigma_nm * self.moments().1
+    }
+
+    /// Mean, from the point nearest to the center, and standard deviation, both in standard deviations of the whole.
+    ///
+    /// By quadrature: the closed forms subtract nearly equal numbers in the tails and on narrow bands.
+    fn moments(&self) -> (f64, f64) {
+        /// Beyond exp(-45) nothing reaches the last digit.
+        const DEEPEST: f64 = 45.0;
+        const PANELS: u32 = 64;
+        let nearest = self.mass.nearest;
+        // Where the density has fallen that far, along the side that leads away from the center.
+        let reach = 2.0 * DEEPEST / (nearest.abs() + (nearest * nearest + 2.0 * DEEPEST).sqrt());
+        let from = (self.low - nearest).max(-reach);
+        let to = (self.high - nearest).min(reach);
+        let breaks: Vec<f64> = (0..=PANELS).map(|i| from + (to - from) * f64::from(i) / f64::from(PANELS)).collect();
+        let weight = |t: f64| libm::exp(-0.5 * t * (t + 2.0 * nearest));
+        let mass = cell::integral(weight, &breaks);
+        let mean = cell::integral(|t| t * weight(t), &breaks) / mass;
+        let variance = cell::integral(|t| (t - mean) * (t - mean) * weight(t), &breaks) / mass;
+        (mean, variance.sqrt())
+    }
+}
+
+/// What every draw ends in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Span {
+    min_nm: f64,
+    max_nm: f64,
+    sigma_nm: f64,
+}
+
+impl Span {
+    /// Within the band; its lower end for NaN.
+    #[inline(always)]
+    fn clamp(self, wavelength_nm: f64) -> f64 {
+        let at_least = if wavelength_nm > self.min_nm { wavelength_nm } else { self.min_nm };
+        if at_least < self.max_nm { at_least } else { self.max_nm }
+    }
+}
+
+/// A share of the draws to the wavelength below which it lies.
+trait Quantile: Copy {
+    fn quantile(&self, u: f64) -> f64;
+}
+
+struct Fill<'a, Q> {
+    quantile: Q,
+    u: &'a [f64],
+    wavelength_nm: &'a mut [f64],
+}
+
+impl<Q: Quantile> Vectorized for Fill<'_, Q> {
+    type Output = ();
+    #[inline(always)]
+    fn run(self) {
+        for (wavelength, u) in self.wavelength_nm.iter_mut().zip(self.u) {
+            *wavelength = self.quantile.quantile(*u);
+        }
+    }
+}
+
+/// A band that reaches to within [`FAR`] of the center.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Central {
+    span: Span,
+    center_nm: f64,
+    /// Share of the whole Gaussian below the band, above it, and on it.
+    below: f64,
+    above: f64,
+    mass: f64,
+}
+
+impl Quantile for Central {
+    #[inline(always)]
+    fn quantile(&self, u: f64) -> f64 {
+        // From whichever end is nearer: a share close to 1 has lost its digits.
+        let lower = self.below + u * self.mass;
+        let upper = self.above + (1.0 - u) * self.mass;
+        let (share, side) = if lower < upper { (lower, -1.0) } else { (upper, 1.0) };
+        // Holds for u = 1 with nothing above the band, too.
+        let share = if share > 1e-300 { share } else { 1e-300 };
+        let z = side * upper_quantile(share);
+        self.span.clamp(self.center_nm + self.span.sigma_nm * z)
+    }
+}
+
+/// A band that lies beyond [`FAR`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Tail {
+    span: Span,
+    /// The end near the center, and the direction away from it.
+    from_nm: f64,
+    direction: f64,
+    /// That end in standard deviations.
+    start: f64,
+    mills: f64,
+    /// Share of the whole tail that lies on the band.
+    share: f64,
+}
+
+impl Tail {
+    fn new(span: Span, from_nm: f64, direction: f64, start: f64, mass: Mass) -> Self {
+        let mills = far_mills(start);
+        Self { span, from_nm, direction, start, mills, share: mass.scaled / mills }
+    }
+}
+
+impl Quantile for Tail {
+    #[inline(always)]
+    fn quantile(&self, u: f64) -> f64 {
+        let u = if self.direction > 0.0 { u } else { 1.0 - u };
+        let left = 1.0 - u * self.share;
+        let left = if left > 1e-300 { left } else { 1e-300 };
+        let wanted = -log(left);
+        // The share beyond a point falls as exp(-start d - d^2/2) times a ratio of Mills' ratios, near 1 here; without
+        // that ratio it is a quadratic, and two steps of Newton's method bring it in to the last digits.
+        let start = self.start;
+        let mut d = 2.0 * wanted / (start + (start * start + 2.0 * wanted).sqrt());
+        let mut step = 0;
+        while step < 2 {
+            let mills = far_mills(start + d);
+            let fallen = d * (start + 0.5 * d) - log(mills / self.mills);
+            d -= (fallen - wanted) * mills;
+            step += 1;
+        }
+        self.span.clamp(self.from_nm + self.direction * self.span.sigma_nm * d)
+    }
+}
+
+#[cfg(test)]
+mod tests;

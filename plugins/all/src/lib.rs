@@ -1,0 +1,8 @@
+//! Every built-in plugin, linked into the program: a crate that nobody names registers nothing.
+
+use spectra_plugin_colors as _;
+use spectra_plugin_films as _;
+use spectra_plugin_imagers as _;
+use spectra_plugin_samplers as _;
+use spectra_plugin_sources as _;
+use spectra_plugin_surfaces as _;

@@ -1,0 +1,89 @@
+//! Color models whose spectrum is a weighted sum of three: one a channel.
+
+use spectra_core::batch::CONTINUUM;
+use spectra_core::spectral::{Grid, Line, SpectralPower};
+use spectra_core::stage::ColorModel;
+use spectra_spectrum::{Observer, matrix};
+
+/// Red, green and blue spectra; a color is their sum, weighted by its linear values.
+#[derive(Clone, Debug)]
+pub struct Basis {
+    grid: Grid,
+    continua: [Vec<f64>; 3],
+    lines_nm: Vec<f64>,
+    /// Power of each line at full red, green, blue.
+    line_powers: Vec<[f64; 3]>,
+}
+
+impl Basis {
+    /// A basis from three spectra on the same grid. Lines at the same wavelength become one.
+    #[must_use]
+    pub fn new(spectra: &[SpectralPower; 3]) -> Self {
+        let mut lines_nm: Vec<f64> = Vec::new();
+        let mut line_powers: Vec<[f64; 3]> = Vec::new();
+        for (channel, spectrum) in spectra.iter().enumerate() {
+            for line in &spectrum.lines {
+                let at = lines_nm.iter().position(|nm| *nm == line.wavelength_nm).unwrap_or_else(|| {
+                    lines_nm.push(line.wavelength_nm);
+                    line_powers.push([0.0; 3]);
+                    lines_nm.len() - 1
+                });
+                line_powers[at][channel] += line.power;
+            }
+        }
+        Self { grid: spectra[0].grid, continua: spectra.clone().map(|s| s.continuum), lines_nm, line_powers }
+    }
+
+    /// The same, with each channel scaled so that white, (1, 1, 1), has the chromaticity of `white`.
+    /// `None` where no positive mixture of the three has it.
+    #[must_use]
+    pub fn balanced(spectra: [SpectralPower; 3], white: &SpectralPower) -> Option<Self> {
+        let observer = Observer::cie_1931_2deg();
+        let columns = spectra.each_ref().map(|s| observer.xyz_of_power(s));
+        let mut xyz_from_rgb = [[0.0; 3]; 3];
+        for (row, cells) in xyz_from_rgb.iter_mut().enumerate() {
+            for (column, cell) in cells.iter_mut().enumerate() {
+                *cell = columns[column][row];
+            }
+        }
+        let amounts = matrix::apply(&matrix::inverse(&xyz_from_rgb), observer.xyz_of_power(white));
+        if amounts.iter().any(|a| !(a.is_finite() && *a > 0.0)) {
+            return None;
+        }
+        let [r, g, b] = spectra;
+        Some(Self::new(&[r.scaled(amounts[0]), g.scaled(amounts[1]), b.scaled(amounts[2])]))
+    }
+}
+
+impl ColorModel for Basis {
+    fn lines_nm(&self) -> &[f64] {
+        &self.lines_nm
+    }
+
+    fn coefficients(&self, linear_srgb: [f64; 3]) -> [f32; 3] {
+        linear_srgb.map(|v| v as f32)
+    }
+
+    fn spectrum(&self, linear_srgb: [f64; 3]) -> SpectralPower {
+        let mix = |powers: [f64; 3]| powers.iter().zip(linear_srgb).map(|(p, c)| p * c).sum::<f64>();
+        SpectralPower {
+            grid: self.grid,
+            continuum: (0..self.grid.count).map(|i| mix([0, 1, 2].map(|c| self.continua[c][i]))).collect(),
+            lines: (self.lines_nm.iter().zip(&self.line_powers))
+                .map(|(nm, powers)| Line { wavelength_nm: *nm, power: mix(*powers) })
+                .collect(),
+        }
+    }
+
+    fn evaluate(&self, coefficients: &[[f32; 3]], wavelength_nm: &[f64], line: &[u32], weight: &mut [f64]) {
+        for i in 0..weight.len() {
+            let color = coefficients[i].map(f64::from);
+            let powers = if line[i] == CONTINUUM {
+                [0, 1, 2].map(|c| self.grid.interpolate(&self.continua[c], wavelength_nm[i]))
+            } else {
+                self.line_powers.get(line[i] as usize).copied().unwrap_or_default()
+            };
+            weight[i] *= color[0] * powers[0] + color[1] * powers[1] + color[2] * powers[2];
+        }
+    }
+}

@@ -1,0 +1,139 @@
+//! `kind: fraunhofer`: each channel one spectral line, by the line's short name or its wavelength.
+
+use crate::Basis;
+use serde::Deserialize;
+use spectra_core::params::{Faults, Params, StageNode, Wavelength};
+use spectra_core::registry::{ColorEntry, Context};
+use spectra_core::spectral::{Grid, Line, SpectralPower};
+use spectra_core::stage::ColorModel;
+
+/// Parameters of `kind: fraunhofer`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct FraunhoferParams {
+    /// Line of the red channel: a short name such as `C'`, or a wavelength.
+    #[serde(rename = "R")]
+    red: Option<StageNode>,
+    /// Line of the green channel.
+    #[serde(rename = "G")]
+    green: Option<StageNode>,
+    /// Line of the blue channel.
+    #[serde(rename = "B")]
+    blue: Option<StageNode>,
+    /// Further lines, linear between their neighbors among the three, zero at the cuts.
+    #[serde(default)]
+    secondary: Vec<StageNode>,
+    /// Where the ultraviolet ends.
+    #[serde(rename = "uv-cut")]
+    uv_cut: Option<Wavelength>,
+    /// Where the infrared begins.
+    #[serde(rename = "ir-cut")]
+    ir_cut: Option<Wavelength>,
+    /// Whether the lines are scaled so that white has the illuminant's chromaticity.
+    #[serde(default = "yes")]
+    balance: bool,
+}
+
+fn yes() -> bool {
+    true
+}
+
+const UV_CUT_NM: f64 = 380.0;
+const IR_CUT_NM: f64 = 780.0;
+
+inventory::submit! {
+    ColorEntry::new(
+        "fraunhofer",
+        "Each channel one spectral line, with secondary lines between them if wanted.",
+        env!("CARGO_PKG_NAME"),
+        env!("CARGO_PKG_VERSION"),
+        build,
+    )
+}
+
+fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn ColorModel>, Faults> {
+    let p: FraunhoferParams = params.parse()?;
+    let mut faults = Faults::new();
+    let primaries = [(p.red, "C'"), (p.green, "e"), (p.blue, "g")]
+        .map(|(node, default)| node.map_or_else(|| Some(named(default)), |node| faults.take(line_nm(&node))));
+    let secondary: Vec<f64> = p.secondary.iter().filter_map(|node| faults.take(line_nm(node))).collect();
+    let [Some(red), Some(green), Some(blue)] = primaries else { return Err(faults) };
+    if !(blue < green && green < red) {
+        faults.push(params.fault("R", "the lines must lie in the order blue, green, red"));
+    }
+    let (uv, ir) = (p.uv_cut.map_or(UV_CUT_NM, |w| w.nm()), p.ir_cut.map_or(IR_CUT_NM, |w| w.nm()));
+    faults.into_result(())?;
+    let spectra =
+        [0, 1, 2].map(|channel| channel_lines([red, green, blue], &secondary, [uv, ir], channel, context.grid));
+    match context.illuminant.filter(|_| p.balance) {
+        None => Ok(Box::new(Basis::new(&spectra))),
+        Some(white) => match Basis::balanced(spectra, white) {
+            Some(basis) => Ok(Box::new(basis)),
+            None => {
+                let fault = params.fault("R", "no mixture of these lines has the color of the illuminant");
+                Err(fault.hint("choose lines further apart, another illuminant, or `balance: false`").into())
+            }
+        },
+    }
+}
+
+fn named(symbol: &str) -> f64 {
+    spectra_spectrum::named_line(symbol).map_or(0.0, |line| line.nominal_nm)
+}
+
+fn line_nm(node: &StageNode) -> Result<f64, Faults> {
+    if let Some(line) = node.node().as_str().and_then(spectra_spectrum::named_line) {
+        return Ok(line.nominal_nm);
+    }
+    node.parse::<Wavelength>().map(|w| w.nm()).map_err(|_| {
+        let known: Vec<&str> = spectra_spectrum::NAMED_LINES.iter().map(|l| l.symbol).collect();
+        node.fault("this is no spectral line")
+            .hint(format!("a wavelength such as 546.07 nm, or one of {}", known.join(", ")))
+            .into()
+    })
+}
+
+/// The lines of one channel at full value: its own, and its share of each secondary line.
+fn channel_lines(
+    [red, green, blue]: [f64; 3],
+    secondary: &[f64],
+    [uv, ir]: [f64; 2],
+    channel: usize,
+    grid: Grid,
+) -> SpectralPower {
+    let own = [red, green, blue][channel];
+    // Knots of the interpolation: the cuts are its zero ends.
+    let knots = [(uv.min(blue), 0.0), (blue, 2.0), (green, 1.0), (red, 0.0), (ir.max(red), 0.0)];
+    let value = |knot: usize| if (1..=3).contains(&knot) && knots[knot].1 == channel as f64 { 1.0 } else { 0.0 };
+    let mut lines = vec![Line { wavelength_nm: own, power: 1.0 }];
+    for &nm in secondary {
+        for knot in 0..4 {
+            let (a, b) = (knots[knot].0, knots[knot + 1].0);
+            if nm > a && nm < b {
+                let part = (nm - a) / (b - a);
+                let power = value(knot) * (1.0 - part) + value(knot + 1) * part;
+                lines.push(Line { wavelength_nm: nm, power });
+            }
+        }
+    }
+    SpectralPower { lines, ..SpectralPower::dark(grid) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use spectra_core::spectral::BAND;
+
+    /// The dispersion study's example: (255, 0, 0) with R = C', G = e, B = g and secondaries F, D
+    /// gives radiants 1 0 0 0 0.44211495 of C' e g F D.
+    #[test]
+    fn red_with_secondaries_reaches_into_the_yellow() {
+        let [red, green, blue, f, d] = ["C'", "e", "g", "F", "D"].map(named);
+        let spectrum = channel_lines([red, green, blue], &[f, d], [380.0, 780.0], 0, BAND);
+        let power = |nm: f64| spectrum.lines.iter().filter(|l| l.wavelength_nm == nm).map(|l| l.power).sum::<f64>();
+        let got = [red, green, blue, f, d].map(power);
+        for (got, want) in got.iter().zip([1.0, 0.0, 0.0, 0.0, 0.442_114_95]) {
+            assert!((got - want).abs() < 5e-9, "{got} {want}");
+        }
+    }
+}

@@ -1,0 +1,74 @@
+//! `kind: gaussians`: each channel one Gaussian.
+
+use crate::Basis;
+use serde::Deserialize;
+use spectra_core::math::exp;
+use spectra_core::params::{Faults, Params, Positive, Wavelength};
+use spectra_core::registry::{ColorEntry, Context};
+use spectra_core::spectral::SpectralPower;
+use spectra_core::stage::ColorModel;
+
+/// One channel: centre and standard deviation.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct Bell {
+    /// Wavelength of the peak, nm if bare.
+    center: Wavelength,
+    /// Standard deviation, nm if bare.
+    sigma: Positive<Wavelength>,
+}
+
+/// Parameters of `kind: gaussians`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct GaussiansParams {
+    /// Red channel.
+    #[serde(rename = "R")]
+    red: Option<Bell>,
+    /// Green channel.
+    #[serde(rename = "G")]
+    green: Option<Bell>,
+    /// Blue channel.
+    #[serde(rename = "B")]
+    blue: Option<Bell>,
+}
+
+/// Default centres and standard deviations, nm: near the dominant wavelengths of the sRGB primaries
+/// (611, 549, 464 nm), wide enough to overlap without a gap.
+const DEFAULTS: [[f64; 2]; 3] = [[611.0, 24.0], [545.0, 26.0], [460.0, 22.0]];
+
+inventory::submit! {
+    ColorEntry::new(
+        "gaussians",
+        "Each channel one Gaussian, scaled so that white is the illuminant's.",
+        env!("CARGO_PKG_NAME"),
+        env!("CARGO_PKG_VERSION"),
+        build,
+    )
+    .or_default()
+}
+
+fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn ColorModel>, Faults> {
+    let p: GaussiansParams = params.parse()?;
+    let bells = [p.red, p.green, p.blue];
+    let mut channel = 0;
+    let spectra = DEFAULTS.map(|default| {
+        let [center, sigma] = bells[channel].map_or(default, |b| [b.center.nm(), b.sigma.nm()]);
+        channel += 1;
+        let value = |w: f64| exp(-0.5 * ((w - center) / sigma) * ((w - center) / sigma));
+        SpectralPower {
+            continuum: context.grid.wavelengths_nm().map(value).collect(),
+            ..SpectralPower::dark(context.grid)
+        }
+    });
+    match context.illuminant {
+        None => Ok(Box::new(Basis::new(&spectra))),
+        Some(white) => match Basis::balanced(spectra, white) {
+            Some(basis) => Ok(Box::new(basis)),
+            None => {
+                let fault = params.fault("R", "no mixture of these Gaussians has the color of the illuminant");
+                Err(fault.hint("move their centres apart, or choose another illuminant").into())
+            }
+        },
+    }
+}

@@ -1,0 +1,5 @@
+//! Built-in film processes.
+
+mod stock;
+
+pub use stock::{StockFilm, StockParams};

@@ -1,0 +1,125 @@
+//! `imager: xyz`, a plane that measures CIE 1931 XYZ in absolute units: a perfect tristimulus colorimeter.
+
+use crate::params::Frame;
+use crate::plane::Plane;
+use serde::Deserialize;
+use spectra_core::frame::{DisplayPicture, ExposureFrame, FrameSize};
+use spectra_core::params::{Exposure, Fault, Faults, Illuminance, Length, Params, Positive, Quantity, Time};
+use spectra_core::registry::{Context, ImagerEntry};
+use spectra_core::spectral::{Channel, Grid};
+use spectra_core::stage::{Imager, Launch, Receive};
+use spectra_film::display::{White, show_xyz};
+use spectra_spectrum::Observer;
+use spectra_spectrum::constants::LUMINOUS_EFFICACY_LM_PER_W;
+
+/// Parameters of `kind: xyz` as written in a scene.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct XyzParams {
+    /// Size by name, such as `135` (36 x 24 mm), `6x6` or `super-35`.
+    #[serde(default)]
+    pub format: Option<String>,
+    /// Width of the frame, mm if bare; together with `height`, in place of `format`.
+    #[serde(default)]
+    pub width: Option<Positive<Length>>,
+    /// Height of the frame, mm if bare.
+    #[serde(default)]
+    pub height: Option<Positive<Length>>,
+    /// Pixels across and down, 1 to 32768 each and at most 200 million.
+    pub resolution: [u32; 2],
+    /// Exposure time, s if bare. With it the channels are in lx s, without it in lx.
+    #[serde(default)]
+    pub exposure: Option<Positive<Time>>,
+    /// The Y that the picture shows as white: an illuminance, or an exposure where an exposure time is given.
+    /// Without it, automatic exposure shows the 99th percentile of Y as 0.9.
+    #[serde(default)]
+    pub white: Option<String>,
+}
+
+/// A plane XYZ imager.
+#[derive(Clone, Debug)]
+pub struct XyzPlane {
+    plane: Plane,
+    channels: Vec<Channel>,
+    exposure_time_s: Option<f64>,
+    white: White,
+}
+
+impl XyzPlane {
+    /// An imager of that size whose channels are given on `grid`, in lx s where there is an exposure time.
+    #[must_use]
+    pub fn new(size: FrameSize, grid: &Grid, exposure_time_s: Option<f64>, white: White) -> Self {
+        let unit = if exposure_time_s.is_some() { "lx s" } else { "lx" };
+        let functions = Observer::cie_1931_2deg().on_grid(grid);
+        let channel = |(name, function): (&str, Vec<f64>)| Channel {
+            name: name.into(),
+            unit: unit.into(),
+            response: function.into_iter().map(|v| v * LUMINOUS_EFFICACY_LM_PER_W).collect(),
+        };
+        let channels = ["X", "Y", "Z"].into_iter().zip(functions).map(channel).collect();
+        Self { plane: Plane::new(size), channels, exposure_time_s, white }
+    }
+}
+
+impl Imager for XyzPlane {
+    fn size(&self) -> FrameSize {
+        self.plane.size()
+    }
+
+    fn channels(&self) -> Option<Vec<Channel>> {
+        Some(self.channels.clone())
+    }
+
+    fn receive(&self) -> Option<&dyn Receive> {
+        Some(&self.plane)
+    }
+
+    fn launch(&self) -> Option<&dyn Launch> {
+        Some(&self.plane)
+    }
+
+    fn display(&self, exposure: &ExposureFrame) -> Option<DisplayPicture> {
+        show_xyz(exposure, self.white).ok()
+    }
+
+    fn exposure_time_s(&self) -> Option<f64> {
+        self.exposure_time_s
+    }
+}
+
+fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Imager>, Faults> {
+    let XyzParams { format, width, height, resolution, exposure, white } = params.parse()?;
+    let mut faults = Faults::new();
+    let size = faults.take(Frame { format, width, height, resolution }.size(params));
+    let white = match &white {
+        None => Some(White::default()),
+        Some(text) => faults.take(stated_white(params, text, exposure.is_some())),
+    };
+    let (Some(size), Some(white)) = (size, white) else {
+        return Err(faults);
+    };
+    Ok(Box::new(XyzPlane::new(size, &context.grid, exposure.map(|t| t.s()), white)))
+}
+
+/// White in the unit of the channels, whose dimension depends on whether there is an exposure time.
+fn stated_white(params: &Params, text: &str, timed: bool) -> Result<White, Fault> {
+    let white = if timed {
+        Positive::<Exposure>::from_text(text).map(|v| v.lx_s())
+    } else {
+        Positive::<Illuminance>::from_text(text).map(|v| v.lx())
+    };
+    white.map(White::Stated).map_err(|error| match error.split_once("\nhint: ") {
+        Some((message, hint)) => params.fault("white", message).hint(hint),
+        None => params.fault("white", error),
+    })
+}
+
+inventory::submit! {
+    ImagerEntry::new(
+        "xyz",
+        "A flat frame that measures CIE 1931 XYZ in lux, or lux-seconds where it is given an exposure time.",
+        env!("CARGO_PKG_NAME"),
+        env!("CARGO_PKG_VERSION"),
+        build,
+    )
+}

@@ -1,0 +1,174 @@
+//! The charts by name.
+
+use std::fmt;
+
+use super::designs;
+use super::drawing::Drawing;
+use super::sheet::Chart;
+
+/// One chart that can be asked for.
+#[derive(Clone, Copy, Debug)]
+pub struct ChartEntry {
+    /// Name in a scene.
+    pub name: &'static str,
+    /// What it is, in one line.
+    pub summary: &'static str,
+    draw: fn(seed: u64) -> Drawing,
+}
+
+impl ChartEntry {
+    /// Draws the chart `width_mm` wide, or in the size of its design. Only charts with something random in
+    /// them look at `seed`.
+    ///
+    /// # Errors
+    /// [`ChartError::Width`] if the width is not positive and finite.
+    pub fn build(&self, width_mm: Option<f64>, seed: u64) -> Result<Chart, ChartError> {
+        if let Some(width_mm) = width_mm
+            && !(width_mm.is_finite() && width_mm > 0.0)
+        {
+            return Err(ChartError::Width { width_mm });
+        }
+        let drawing = (self.draw)(seed);
+        let width_mm = width_mm.unwrap_or(drawing.width_mm());
+        Ok(drawing.finish(self.name, width_mm))
+    }
+}
+
+/// All charts, in order of their names.
+pub const CHARTS: &[ChartEntry] = &[
+    ChartEntry {
+        name: "color-checker",
+        summary: "The 24 patches of a ColorChecker, 6 x 4, on a black frame",
+        draw: designs::color_checker,
+    },
+    ChartEntry {
+        name: "gray-card",
+        summary: "Uniform gray of 18 % reflectance, for exposure and vignetting",
+        draw: designs::gray_card,
+    },
+    ChartEntry {
+        name: "grid",
+        summary: "White lines on black, 28 x 18 squares, for distortion and lateral color",
+        draw: designs::grid,
+    },
+    ChartEntry {
+        name: "resolution",
+        summary: "Photographic test chart: stars, slanted edges, wedges, line groups, circles, grays, color patches",
+        draw: designs::resolution,
+    },
+    ChartEntry {
+        name: "siemens",
+        summary: "One Siemens star of 72 cycles with tone patches in the corners",
+        draw: designs::siemens,
+    },
+    ChartEntry {
+        name: "slanted-edge",
+        summary: "7 x 5 squares of 4:1 contrast, turned by 5 degrees, for MTF over the field",
+        draw: designs::slanted_edge,
+    },
+    ChartEntry {
+        name: "star-field",
+        summary: "Stars as tiny disks on black, by seed, for aberrations and lateral color",
+        draw: designs::star_field,
+    },
+    ChartEntry {
+        name: "step-wedge",
+        summary: "21 gray steps of density 0.15, in both directions, for tone and flare",
+        draw: designs::step_wedge,
+    },
+    ChartEntry {
+        name: "text",
+        summary: "Lines of text in falling sizes, black on white and white on black",
+        draw: designs::text,
+    },
+    ChartEntry {
+        name: "white",
+        summary: "Uniform white of reflectance 1, for vignetting and flat fields",
+        draw: designs::white,
+    },
+];
+
+/// Draws the chart `name`, `width_mm` wide or in the size of its design.
+///
+/// ```
+/// use spectra_plugin_sources::chart::{NO_INK, chart};
+///
+/// let chart = chart("resolution", Some(1500.0), 1)?;
+/// assert_eq!(chart.height_mm(), 1000.0);
+/// assert_ne!(chart.ink_at(0.0, 0.0), NO_INK);
+/// assert_eq!(chart.ink_at(751.0, 0.0), NO_INK);
+/// # Ok::<(), spectra_plugin_sources::chart::ChartError>(())
+/// ```
+///
+/// # Errors
+/// [`ChartError::Unknown`] names the chart that reads most like `name`; [`ChartError::Width`] if the width
+/// is not positive and finite.
+pub fn chart(name: &str, width_mm: Option<f64>, seed: u64) -> Result<Chart, ChartError> {
+    match CHARTS.iter().find(|entry| entry.name == name) {
+        Some(entry) => entry.build(width_mm, seed),
+        None => Err(ChartError::Unknown { name: name.to_owned(), nearest: nearest(name) }),
+    }
+}
+
+/// Why there is no chart.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ChartError {
+    /// No chart has that name.
+    Unknown {
+        /// The name asked for.
+        name: String,
+        /// The known name that reads most like it.
+        nearest: &'static str,
+    },
+    /// The width is not a positive, finite length.
+    Width {
+        /// The width asked for, mm.
+        width_mm: f64,
+    },
+}
+
+impl fmt::Display for ChartError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unknown { name, nearest } => {
+                write!(f, "there is no chart `{name}`; did you mean `{nearest}`? There are: ")?;
+                for (i, entry) in CHARTS.iter().enumerate() {
+                    write!(f, "{}{}", if i == 0 { "" } else { ", " }, entry.name)?;
+                }
+                Ok(())
+            }
+            Self::Width { width_mm } => {
+                write!(f, "a chart must have a positive width, found {width_mm} mm")
+            }
+        }
+    }
+}
+
+impl std::error::Error for ChartError {}
+
+/// The chart whose name takes the fewest edits to reach from `name`; a name that contains it, or lies in it, is
+/// nearer than any other.
+fn nearest(name: &str) -> &'static str {
+    let asked = name.trim().to_lowercase().replace(['_', ' '], "-");
+    let rank = |known: &str| {
+        let kin = !asked.is_empty() && (known.contains(asked.as_str()) || asked.contains(known));
+        (!kin, edits(&asked, known))
+    };
+    CHARTS.iter().map(|entry| entry.name).min_by_key(|known| rank(known)).expect("there are charts")
+}
+
+/// Levenshtein distance, in characters.
+fn edits(a: &str, b: &str) -> usize {
+    let b: Vec<char> = b.chars().collect();
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, from) in a.chars().enumerate() {
+        let mut diagonal = row[0];
+        row[0] = i + 1;
+        for (j, &to) in b.iter().enumerate() {
+            let replaced = diagonal + usize::from(from != to);
+            diagonal = row[j + 1];
+            row[j + 1] = replaced.min(row[j] + 1).min(diagonal + 1);
+        }
+    }
+    row[b.len()]
+}

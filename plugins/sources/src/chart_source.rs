@@ -1,0 +1,237 @@
+//! `kind: chart`: a test chart drawn by the program.
+
+use crate::chart::{self, Chart, Ink};
+use crate::flat::{Flat, Places, Texture};
+use crate::palette::Palette;
+use crate::white;
+use serde::Deserialize;
+use spectra_core::Isa;
+use spectra_core::params::{Faults, Length, Luminance, Params, Positive, Quantity, StageNode};
+use spectra_core::registry::{Context, SourceEntry, build as build_stage};
+use spectra_core::spectral::{Line, SpectralPower};
+use spectra_core::stage::{ColorModel, Source};
+use spectra_spectrum::{Observer, RgbSpace, Transfer};
+
+/// Parameters of `kind: chart`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct ChartParams {
+    /// Which chart: `resolution`, `color-checker`, `gray-card` and so on.
+    chart: String,
+    /// Distance of its plane from the first vertex, mm if bare.
+    distance: Positive<Length>,
+    /// Width of the chart, mm if bare; the height follows.
+    width: Positive<Length>,
+    /// The light that falls on it.
+    #[serde(default = "daylight")]
+    illuminant: String,
+    /// Luminance of a perfect white on it, cd/m2 if bare.
+    #[serde(default = "luminance")]
+    luminance: Positive<Luminance>,
+    /// How RGB becomes a spectrum. If absent, patches have their measured reflectances; if given,
+    /// every ink is this model's spectrum of its sRGB color.
+    color: Option<StageNode>,
+    /// Of charts with anything random in them, such as `star-field`.
+    #[serde(default)]
+    seed: u64,
+}
+
+fn daylight() -> String {
+    "D65".to_owned()
+}
+
+fn luminance() -> Positive<Luminance> {
+    Positive::from_bare(100.0)
+}
+
+inventory::submit! {
+    SourceEntry::new(
+        "chart",
+        "A test chart drawn by the program: resolution, color patches, gray card, star.",
+        env!("CARGO_PKG_NAME"),
+        env!("CARGO_PKG_VERSION"),
+        build,
+    )
+}
+
+fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faults> {
+    let p: ChartParams = params.parse()?;
+    let mut faults = Faults::new();
+    let light = faults.take(white::illuminant(&p.illuminant, params, context));
+    let chart = faults
+        .take(chart::chart(&p.chart, Some(p.width.mm()), p.seed).map_err(|e| params.fault("chart", e.to_string())));
+    let spectra = match (&light, &chart) {
+        (Some(light), Some(chart)) => {
+            let inner = Context { illuminant: Some(light), ..*context };
+            faults.take(match p.color {
+                Some(node) => node
+                    .params()
+                    .and_then(|color| build_stage::<dyn ColorModel>(&color, &inner))
+                    .map(|model| by_model(chart, light, &*model)),
+                None => measured(chart, light, params, &inner),
+            })
+        }
+        _ => None,
+    };
+    let (Some(chart), Some((spectra, white))) = faults.into_result((chart, spectra))? else {
+        return Err(Faults::new());
+    };
+    let scale = p.luminance.cd_per_m2() / white::luminance_cd_m2(&white);
+    let spectra: Vec<SpectralPower> = spectra.iter().map(|s| s.scaled(scale)).collect();
+    let palette = Palette::new(context.grid, &spectra);
+    let texture = ChartTexture::new(chart, palette, &spectra);
+    Ok(Box::new(Flat { texture, distance_mm: p.distance.mm() }))
+}
+
+/// Spectra of the inks, and of a perfect white.
+type Inks = (Vec<SpectralPower>, SpectralPower);
+
+/// Inks as measured, under the light. Colors without a measured spectrum go through the default model.
+fn measured(chart: &Chart, light: &SpectralPower, params: &Params, context: &Context<'_>) -> Result<Inks, Faults> {
+    let mut model = None;
+    let mut spectra = Vec::new();
+    for ink in chart.inks() {
+        spectra.push(match ink {
+            Ink::Gray(reflectance) => light.scaled(*reflectance),
+            Ink::Patch(name) => lit(light, &patch(name, params)?),
+            Ink::Rgb(encoded) => {
+                if model.is_none() {
+                    model = Some(build_stage::<dyn ColorModel>(&params.nothing_said("color"), context)?);
+                }
+                let Some(model) = &model else { return Err(Faults::new()) };
+                // The model's white and the light have one chromaticity; give them one luminance.
+                let of_white = white::luminance_cd_m2(&model.spectrum([1.0; 3]));
+                let scale = white::luminance_cd_m2(light) / of_white;
+                model.spectrum(encoded.map(|v| Transfer::Srgb.decode(v))).scaled(scale)
+            }
+        });
+    }
+    Ok((spectra, light.clone()))
+}
+
+/// Every ink through one color model, by its color in sRGB.
+fn by_model(chart: &Chart, light: &SpectralPower, model: &dyn ColorModel) -> Inks {
+    let spectra = chart
+        .inks()
+        .iter()
+        .map(|ink| match ink {
+            Ink::Gray(reflectance) => model.spectrum([*reflectance; 3]),
+            Ink::Rgb(encoded) => model.spectrum(encoded.map(|v| Transfer::Srgb.decode(v))),
+            Ink::Patch(name) => model.spectrum(linear_srgb(name, light)),
+        })
+        .collect();
+    (spectra, model.spectrum([1.0; 3]))
+}
+
+/// A patch's color in linear sRGB, white being a perfect reflector under D65; negative values cut off.
+fn linear_srgb(name: &str, light: &SpectralPower) -> [f64; 3] {
+    let daylight = spectra_spectrum::find_emission("D65").map_or_else(|_| light.clone(), |e| e.to_power(&light.grid));
+    let Ok(reflectance) = spectra_spectrum::find_reflectance(&column(name)) else {
+        return [0.0; 3];
+    };
+    let observer = Observer::cie_1931_2deg();
+    let white = observer.xyz_of_power(&daylight)[1];
+    let xyz = observer.xyz_of_power(&lit(&daylight, &reflectance)).map(|v| v / white);
+    RgbSpace::srgb().from_xyz(xyz).map(|v| v.max(0.0))
+}
+
+/// A patch's column in the bundled table: `neutral 5 (.70 D)` is `neutral-5`.
+fn column(name: &str) -> String {
+    let plain = name.split(" (").next().unwrap_or(name);
+    // The table calls the white and black patches by their color alone.
+    let plain = if plain.starts_with("white") || plain.starts_with("black") { &plain[..5] } else { plain };
+    format!("colorchecker#{}", plain.replace(' ', "-"))
+}
+
+fn patch(name: &str, params: &Params) -> Result<spectra_spectrum::Reflectance, Faults> {
+    spectra_spectrum::find_reflectance(&column(name))
+        .map_err(|e| params.fault("chart", format!("patch `{name}`: {e}")).into())
+}
+
+fn lit(light: &SpectralPower, reflectance: &spectra_spectrum::Reflectance) -> SpectralPower {
+    SpectralPower {
+        grid: light.grid,
+        continuum: light.grid.wavelengths_nm().zip(&light.continuum).map(|(w, p)| p * reflectance.at(w)).collect(),
+        lines: light.lines.iter().map(|l| Line { power: l.power * reflectance.at(l.wavelength_nm), ..*l }).collect(),
+    }
+}
+
+/// Points a side at which the chart is looked at to weigh its inks.
+const CENSUS: usize = 512;
+
+struct ChartTexture {
+    chart: Chart,
+    palette: Palette,
+    mean: SpectralPower,
+    peak_over_mean: f64,
+}
+
+impl ChartTexture {
+    fn new(chart: Chart, palette: Palette, spectra: &[SpectralPower]) -> Self {
+        let mut areas = vec![0.0; spectra.len()];
+        let step = |i: usize| (i as f64 + 0.5) / CENSUS as f64 - 0.5;
+        for i in 0..CENSUS {
+            for j in 0..CENSUS {
+                let ink = chart.ink_at(step(i) * chart.width_mm(), step(j) * chart.height_mm());
+                if let Some(area) = areas.get_mut(usize::from(ink)) {
+                    *area += 1.0 / (CENSUS * CENSUS) as f64;
+                }
+            }
+        }
+        // An ink too small to be met still must be able to be seen: it keeps the density positive.
+        areas.iter_mut().for_each(|a| *a = a.max(1e-6));
+        let mean = palette.mean(&areas);
+        let peak = spectra.iter().map(white::luminance_cd_m2).fold(0.0, f64::max);
+        let average = white::luminance_cd_m2(&mean);
+        let peak_over_mean = if average > 0.0 { peak / average } else { 1.0 };
+        Self { chart, palette, mean, peak_over_mean }
+    }
+}
+
+impl Texture for ChartTexture {
+    fn shine(&self, at: Places<'_>, weight: &mut [f64], isa: Isa) {
+        let mut inks = [0_u16; 256];
+        for start in (0..weight.len()).step_by(256) {
+            let end = (start + 256).min(weight.len());
+            let inks = &mut inks[..end - start];
+            self.chart.ink_at_batch(&at.x_mm[start..end], &at.y_mm[start..end], inks);
+            let part = Places {
+                x_mm: &at.x_mm[start..end],
+                y_mm: &at.y_mm[start..end],
+                wavelength_nm: &at.wavelength_nm[start..end],
+                line: &at.line[start..end],
+            };
+            isa.run(self.palette.shine(inks, part, &mut weight[start..end]));
+        }
+    }
+
+    fn draw(&self, u: f64, v: f64) -> (f64, f64, f64) {
+        let (width, height) = (self.chart.width_mm(), self.chart.height_mm());
+        ((u - 0.5) * width, (v - 0.5) * height, width * height)
+    }
+
+    fn spectrum(&self) -> &SpectralPower {
+        &self.mean
+    }
+
+    fn peak_over_mean(&self) -> f64 {
+        self.peak_over_mean
+    }
+
+    fn describe(&self) -> String {
+        format!("chart {} ({} x {} mm)", self.chart.name(), self.chart.width_mm(), self.chart.height_mm())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_patch_of_the_charts_has_a_measured_reflectance() {
+        for name in chart::PATCHES {
+            let measured = spectra_spectrum::find_reflectance(&column(name));
+            assert!(measured.is_ok(), "{name}: {measured:?}");
+        }
+    }
+}

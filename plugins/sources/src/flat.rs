@@ -1,0 +1,133 @@
+//! A flat, Lambertian picture across the axis: what charts and pictures have in common.
+
+use spectra_core::isa::{Isa, Vectorized};
+use spectra_core::spectral::SpectralPower;
+use spectra_core::stage::{Emit, Radiance, Source};
+use spectra_core::{Loss, RayBatch, loss::ALIVE};
+
+/// What lies on the plane. Coordinates are mm from its centre: +x as the photographer's right, +y up.
+pub(crate) trait Texture: Send + Sync {
+    /// Multiplies each weight by the radiance at (`x_mm`, `y_mm`): W m^-2 sr^-1 nm^-1, or
+    /// W m^-2 sr^-1 on a line; 0 outside of the picture.
+    fn shine(&self, at: Places<'_>, weight: &mut [f64], isa: Isa);
+
+    /// Draws a place on the picture from (`u`, `v`) in [0, 1)^2: x, y and the area of which it is a
+    /// fair sample (one over the density), mm^2.
+    fn draw(&self, u: f64, v: f64) -> (f64, f64, f64);
+
+    /// Light summed over the picture, in any scale.
+    fn spectrum(&self) -> &SpectralPower;
+
+    /// Peak over mean brightness.
+    fn peak_over_mean(&self) -> f64;
+
+    /// What it is, for the log.
+    fn describe(&self) -> String;
+}
+
+/// Where and at which wavelengths a texture is asked.
+#[derive(Clone, Copy)]
+pub(crate) struct Places<'a> {
+    pub x_mm: &'a [f64],
+    pub y_mm: &'a [f64],
+    pub wavelength_nm: &'a [f64],
+    pub line: &'a [u32],
+}
+
+/// A texture on a plane at a distance in front of the first vertex.
+pub(crate) struct Flat<T> {
+    pub texture: T,
+    pub distance_mm: f64,
+}
+
+impl<T: Texture> Source for Flat<T> {
+    fn spectrum(&self) -> &SpectralPower {
+        self.texture.spectrum()
+    }
+    fn peak_over_mean(&self) -> f64 {
+        self.texture.peak_over_mean()
+    }
+    fn distance_mm(&self) -> f64 {
+        self.distance_mm
+    }
+    fn emit(&self) -> Option<&dyn Emit> {
+        Some(self)
+    }
+    fn radiance(&self) -> Option<&dyn Radiance> {
+        Some(self)
+    }
+    fn describe(&self) -> String {
+        format!("{} at {} mm", self.texture.describe(), self.distance_mm)
+    }
+}
+
+impl<T: Texture> Emit for Flat<T> {
+    fn place(&self, rays: &mut RayBatch, u: &[f64], v: &[f64], isa: Isa) {
+        let c = rays.columns_mut();
+        for i in 0..c.x.len() {
+            let (x, y, area) = self.texture.draw(u[i], v[i]);
+            (c.x[i], c.y[i], c.z[i]) = (x, y, -self.distance_mm);
+            c.weight[i] *= area;
+        }
+        let at = Places { x_mm: c.x, y_mm: c.y, wavelength_nm: c.wavelength_nm, line: c.line };
+        self.texture.shine(at, c.weight, isa);
+    }
+
+    fn radiate(&self, rays: &mut RayBatch, isa: Isa) {
+        let c = rays.columns_mut();
+        isa.run(Cosine { n: c.n, weight: c.weight });
+    }
+}
+
+impl<T: Texture> Radiance for Flat<T> {
+    fn radiance(&self, rays: &mut RayBatch, isa: Isa) {
+        let c = rays.columns_mut();
+        isa.run(ToPlane { distance_mm: self.distance_mm, c: [c.z, c.l, c.m, c.n], x: c.x, y: c.y });
+        // A ray that runs away from the plane sees none of it.
+        for (n, state) in c.n.iter().zip(c.state.iter_mut()) {
+            if *state == ALIVE && !(*n < 0.0) {
+                *state = Loss::Absorbed.state(0);
+            }
+        }
+        let at = Places { x_mm: c.x, y_mm: c.y, wavelength_nm: c.wavelength_nm, line: c.line };
+        self.texture.shine(at, c.weight, isa);
+    }
+}
+
+struct Cosine<'a> {
+    n: &'a [f64],
+    weight: &'a mut [f64],
+}
+
+impl Vectorized for Cosine<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run(self) {
+        for (n, weight) in self.n.iter().zip(self.weight) {
+            *weight *= n.abs();
+        }
+    }
+}
+
+/// Moves rays along themselves into the plane; z stays, nobody asks for it again.
+struct ToPlane<'a> {
+    distance_mm: f64,
+    c: [&'a [f64]; 4],
+    x: &'a mut [f64],
+    y: &'a mut [f64],
+}
+
+impl Vectorized for ToPlane<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run(self) {
+        let len = self.x.len();
+        let [z, l, m, n] = self.c.map(|c| &c[..len]);
+        let y = &mut self.y[..len];
+        for i in 0..len {
+            let t = (-self.distance_mm - z[i]) / n[i];
+            self.x[i] += t * l[i];
+            y[i] += t * m[i];
+        }
+    }
+}

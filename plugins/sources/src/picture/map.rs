@@ -1,0 +1,191 @@
+//! A picture in linear light as a texture: smooth between pixels, sampled where it is bright.
+
+use crate::flat::{Places, Texture};
+use spectra_core::Isa;
+use spectra_core::spectral::SpectralPower;
+use spectra_core::stage::ColorModel;
+
+/// The picture on the plane.
+pub(super) struct PictureMap {
+    pub width_px: usize,
+    pub height_px: usize,
+    pub width_mm: f64,
+    pub height_mm: f64,
+    /// What the color model needs of each pixel, times the luminance scale where the model is linear.
+    pub coefficients: Vec<[f32; 3]>,
+    pub model: Box<dyn ColorModel>,
+    /// Radiance per unit of the model.
+    pub scale: f64,
+    pub mean: SpectralPower,
+    pub peak_over_mean: f64,
+    pub importance: Importance,
+    pub name: String,
+}
+
+impl PictureMap {
+    /// Coefficients at a point, linear between the centres of pixels, constant beyond the outermost.
+    fn at(&self, x_mm: f64, y_mm: f64) -> Option<[f32; 3]> {
+        let column = (x_mm / self.width_mm + 0.5) * self.width_px as f64;
+        let row = (0.5 - y_mm / self.height_mm) * self.height_px as f64;
+        let inside = column >= 0.0 && row >= 0.0 && column <= self.width_px as f64 && row <= self.height_px as f64;
+        if !inside {
+            return None;
+        }
+        let (c, r) = ((column - 0.5).max(0.0), (row - 0.5).max(0.0));
+        let (c0, r0) = ((c as usize).min(self.width_px - 1), (r as usize).min(self.height_px - 1));
+        let (c1, r1) = ((c0 + 1).min(self.width_px - 1), (r0 + 1).min(self.height_px - 1));
+        let (fc, fr) = ((c - c0 as f64) as f32, (r - r0 as f64) as f32);
+        let pixel = |r: usize, c: usize| self.coefficients[r * self.width_px + c];
+        let (a, b, d, e) = (pixel(r0, c0), pixel(r0, c1), pixel(r1, c0), pixel(r1, c1));
+        Some([0, 1, 2].map(|k| {
+            let upper = a[k] + (b[k] - a[k]) * fc;
+            let lower = d[k] + (e[k] - d[k]) * fc;
+            upper + (lower - upper) * fr
+        }))
+    }
+}
+
+impl Texture for PictureMap {
+    fn shine(&self, at: Places<'_>, weight: &mut [f64], _: Isa) {
+        let mut colors = [[0.0_f32; 3]; 64];
+        for start in (0..weight.len()).step_by(64) {
+            let end = (start + 64).min(weight.len());
+            for i in start..end {
+                let color = self.at(at.x_mm[i], at.y_mm[i]);
+                weight[i] *= if color.is_some() { self.scale } else { 0.0 };
+                colors[i - start] = color.unwrap_or_default();
+            }
+            let (wavelength, line) = (&at.wavelength_nm[start..end], &at.line[start..end]);
+            self.model.evaluate(&colors[..end - start], wavelength, line, &mut weight[start..end]);
+        }
+    }
+
+    fn draw(&self, u: f64, v: f64) -> (f64, f64, f64) {
+        let (column, row, inverse) = self.importance.draw(u, v);
+        let x = (column / self.width_px as f64 - 0.5) * self.width_mm;
+        let y = (0.5 - row / self.height_px as f64) * self.height_mm;
+        (x, y, inverse * self.width_mm * self.height_mm)
+    }
+
+    fn spectrum(&self) -> &SpectralPower {
+        &self.mean
+    }
+
+    fn peak_over_mean(&self) -> f64 {
+        self.peak_over_mean
+    }
+
+    fn describe(&self) -> String {
+        format!(
+            "picture {} ({} x {} pixels, {} x {} mm)",
+            self.name, self.width_px, self.height_px, self.width_mm, self.height_mm
+        )
+    }
+}
+
+/// Draws places in proportion to brightness, row first, then column: monotone, so strata stay strata.
+pub(super) struct Importance {
+    width: usize,
+    rows: Cumulative,
+    columns: Vec<Cumulative>,
+}
+
+impl Importance {
+    /// From the brightness of each pixel. A pixel's weight is the mean of its neighborhood, since
+    /// light is smooth between pixels: where any light is, the density is positive.
+    pub(super) fn new(width: usize, height: usize, brightness: &[f32]) -> Self {
+        let mut columns = Vec::with_capacity(height);
+        let mut sums = Vec::with_capacity(height);
+        let mut line = vec![0.0_f64; width];
+        for row in 0..height {
+            let (above, below) = (row.saturating_sub(1), (row + 1).min(height - 1));
+            for (column, cell) in line.iter_mut().enumerate() {
+                let (left, right) = (column.saturating_sub(1), (column + 1).min(width - 1));
+                let mut sum = 0.0;
+                for r in [above, row, below] {
+                    for c in [left, column, right] {
+                        sum += f64::from(brightness[r * width + c]);
+                    }
+                }
+                *cell = sum;
+            }
+            sums.push(line.iter().sum());
+            columns.push(Cumulative::new(&line));
+        }
+        Self { width, rows: Cumulative::new(&sums), columns }
+    }
+
+    /// Column and row (pixels, fractional) and one over the density relative to uniform.
+    fn draw(&self, u: f64, v: f64) -> (f64, f64, f64) {
+        let (row, row_density) = self.rows.draw(v);
+        let index = (row as usize).min(self.columns.len() - 1);
+        let (column, column_density) = self.columns[index].draw(u);
+        (column.min(self.width as f64), row, 1.0 / (row_density * column_density))
+    }
+}
+
+/// A piecewise constant density over cells of width 1, by its cumulative sums and a guide table.
+struct Cumulative {
+    sums: Vec<f32>,
+}
+
+impl Cumulative {
+    fn new(weights: &[f64]) -> Self {
+        // A cell with any light gets a hundredth of the mean at least, or single precision could lose it.
+        let floor = 0.01 * weights.iter().sum::<f64>() / weights.len() as f64;
+        let weights: Vec<f64> = weights.iter().map(|w| if *w > 0.0 { w + floor } else { 0.0 }).collect();
+        let total: f64 = weights.iter().sum();
+        let mut sum = 0.0;
+        let mut sums = Vec::with_capacity(weights.len() + 1);
+        sums.push(0.0);
+        for (i, w) in weights.iter().enumerate() {
+            // A dark row is drawn evenly: it is never drawn, but must be well-formed.
+            sum += if total > 0.0 { w / total } else { 1.0 / weights.len() as f64 };
+            sums.push(if i + 1 == weights.len() { 1.0 } else { (sum as f32).min(1.0) });
+        }
+        Self { sums }
+    }
+
+    /// A place in [0, cells), and the density there relative to uniform.
+    fn draw(&self, u: f64) -> (f64, f64) {
+        let cells = self.sums.len() - 1;
+        let cell = self.sums.partition_point(|s| f64::from(*s) <= u).clamp(1, cells) - 1;
+        let (a, b) = (f64::from(self.sums[cell]), f64::from(self.sums[cell + 1]));
+        let mass = b - a;
+        let part = if mass > 0.0 { ((u - a) / mass).clamp(0.0, 1.0) } else { 0.5 };
+        (cell as f64 + part, mass * cells as f64)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Integral of any function over the picture by drawing, against the sum over pixels: the mean of
+    /// f / density must be the mean of f, dark rows and columns included.
+    #[test]
+    fn importance_is_unbiased() {
+        let (width, height) = (7, 5);
+        let mut brightness = vec![0.0_f32; width * height];
+        brightness[3] = 5.0;
+        brightness[2 * width + 6] = 0.01;
+        brightness[4 * width] = 1.0;
+        let importance = Importance::new(width, height, &brightness);
+        let f = |column: f64, row: f64| {
+            let (c, r) = ((column as usize).min(width - 1), (row as usize).min(height - 1));
+            f64::from(brightness[r * width + c])
+        };
+        let n = 400;
+        let mut sum = 0.0;
+        for i in 0..n {
+            for j in 0..n {
+                let (column, row, inverse) =
+                    importance.draw((f64::from(i) + 0.5) / f64::from(n), (f64::from(j) + 0.5) / f64::from(n));
+                sum += f(column, row) * inverse;
+            }
+        }
+        let mean = sum / f64::from(n * n);
+        let want = brightness.iter().map(|b| f64::from(*b)).sum::<f64>() / (width * height) as f64;
+        assert!((mean / want - 1.0).abs() < 0.01, "{mean} {want}");
+    }
+}

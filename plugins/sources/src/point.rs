@@ -1,0 +1,112 @@
+//! `kind: point`: one point of light.
+
+use crate::white;
+use serde::Deserialize;
+use spectra_core::params::{Angle, Faults, Length, Params, Positive, Quantity, RadiantIntensity};
+use spectra_core::registry::{Context, SourceEntry};
+use spectra_core::spectral::SpectralPower;
+use spectra_core::stage::{Emit, Source};
+use spectra_core::{Isa, RayBatch, batch::CONTINUUM};
+
+/// Parameters of `kind: point`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct PointParams {
+    /// Distance of the plane that holds it from the first vertex, mm if bare.
+    distance: Positive<Length>,
+    /// Place on that plane (to the photographer's right, up), mm if bare.
+    position: Option<[Length; 2]>,
+    /// Or the angles under which it is seen from the first vertex (right, up), degrees if bare.
+    field: Option<[Angle; 2]>,
+    /// Its spectrum, by name.
+    #[serde(default = "daylight")]
+    spectrum: String,
+    /// Radiant intensity in the band, W/sr if bare.
+    #[serde(default = "intensity")]
+    intensity: Positive<RadiantIntensity>,
+}
+
+fn daylight() -> String {
+    "D65".to_owned()
+}
+
+fn intensity() -> Positive<RadiantIntensity> {
+    Positive::from_bare(1e-3)
+}
+
+inventory::submit! {
+    SourceEntry::new(
+        "point",
+        "One point of light at a finite distance.",
+        env!("CARGO_PKG_NAME"),
+        env!("CARGO_PKG_VERSION"),
+        build,
+    )
+}
+
+fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faults> {
+    let p: PointParams = params.parse()?;
+    let distance_mm = p.distance.mm();
+    let [x_mm, y_mm] = match (p.position, p.field) {
+        (Some(_), Some(_)) => {
+            return Err(params.fault("field", "`position` and `field` exclude each other".to_owned()).into());
+        }
+        (Some(position), None) => position.map(|l| l.mm()),
+        (None, Some(field)) => {
+            if let Some(bad) = field.iter().position(|a| a.rad().abs() >= 1.5) {
+                return Err(params
+                    .fault(&format!("field[{bad}]"), "a field angle of 86 degrees and more".to_owned())
+                    .into());
+            }
+            field.map(|a| distance_mm * spectra_core::math::tan(a.rad()))
+        }
+        (None, None) => [0.0; 2],
+    };
+    let named = white::light("spectrum", &p.spectrum, params, context)?;
+    let lines: f64 = named.lines.iter().filter(|l| context.grid.contains(l.wavelength_nm)).map(|l| l.power).sum();
+    let power = context.grid.integrate(&named.continuum) + lines;
+    let spectrum = named.scaled(p.intensity.w_per_sr() / power);
+    Ok(Box::new(Point { place: [x_mm, y_mm, -distance_mm], spectrum }))
+}
+
+struct Point {
+    place: [f64; 3],
+    /// W sr^-1 nm^-1, and W/sr in lines.
+    spectrum: SpectralPower,
+}
+
+impl Source for Point {
+    fn spectrum(&self) -> &SpectralPower {
+        &self.spectrum
+    }
+    fn distance_mm(&self) -> f64 {
+        -self.place[2]
+    }
+    fn emit(&self) -> Option<&dyn Emit> {
+        Some(self)
+    }
+    fn describe(&self) -> String {
+        format!("point at ({}, {}) mm, {} mm in front of the lens", self.place[0], self.place[1], -self.place[2])
+    }
+}
+
+/// mm^2 a m^2: flux over an area in mm^2 is to be irradiance in W m^-2.
+const MM2_PER_M2: f64 = 1e6;
+
+impl Emit for Point {
+    fn place(&self, rays: &mut RayBatch, _: &[f64], _: &[f64], _: Isa) {
+        let c = rays.columns_mut();
+        for i in 0..c.x.len() {
+            (c.x[i], c.y[i], c.z[i]) = self.place.into();
+            let radiated = if c.line[i] == CONTINUUM {
+                self.spectrum.grid.interpolate(&self.spectrum.continuum, c.wavelength_nm[i])
+            } else {
+                self.spectrum.lines.get(c.line[i] as usize).map_or(0.0, |l| l.power)
+            };
+            c.weight[i] *= radiated * MM2_PER_M2;
+        }
+    }
+
+    /// A point shines alike to all sides.
+    fn radiate(&self, _: &mut RayBatch, _: Isa) {}
+}

@@ -1,0 +1,32 @@
+//! The light that makes white: illuminant and luminance, as every source of pictures states them.
+
+use spectra_core::params::{Faults, Params};
+use spectra_core::registry::Context;
+use spectra_core::spectral::SpectralPower;
+use spectra_spectrum::{Observer, constants};
+
+/// The illuminant named by the key `illuminant`, on the band.
+pub(crate) fn illuminant(name: &str, params: &Params, context: &Context<'_>) -> Result<SpectralPower, Faults> {
+    let power = light("illuminant", name, params, context)?;
+    if luminance_cd_m2(&power) > 0.0 {
+        Ok(power)
+    } else {
+        Err(params.fault("illuminant", format!("`{name}` has no visible light")).into())
+    }
+}
+
+/// The emission named by a key, on the band.
+pub(crate) fn light(key: &str, name: &str, params: &Params, context: &Context<'_>) -> Result<SpectralPower, Faults> {
+    let found = spectra_spectrum::find_emission_in(name, context.resources)
+        .map_err(|e| Faults::from(params.fault(key, e.to_string())))?;
+    let power = found.to_power(&context.grid);
+    if power.is_dark() {
+        return Err(params.fault(key, format!("`{name}` has no light in the band")).into());
+    }
+    Ok(power)
+}
+
+/// Luminance of a radiance spectrum (W m^-2 sr^-1 nm^-1), cd/m^2.
+pub(crate) fn luminance_cd_m2(radiance: &SpectralPower) -> f64 {
+    constants::LUMINOUS_EFFICACY_LM_PER_W * Observer::cie_1931_2deg().xyz_of_power(radiance)[1]
+}
