@@ -4,6 +4,7 @@
 //! a random wavelength per ray, a million rays, one thread. The two programs take turns; each figure is the median of
 //! its turns. Last line: JSON.
 
+use spectra_core::isa::Vectorized;
 use spectra_core::surface::Action;
 use spectra_core::{Isa, RayBatch};
 use spectra_glass::{Category, Formula, Glass, Medium};
@@ -109,31 +110,64 @@ fn rays() -> Rays {
     rays
 }
 
-/// Traces all rays once; returns the mean height on the image plane, the check of `soa.cpp`.
-fn trace(tracer: &Tracer, rays: &Rays, image: &mut [f64]) -> (f64, u64) {
+/// Sets a batch to the rays from `start` on, 20 mm in front of the lens.
+struct Start<'a> {
+    rays: &'a Rays,
+    start: usize,
+    batch: &'a mut RayBatch,
+}
+
+impl Vectorized for Start<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run(self) {
+        let (m, n) = (libm::sin(FIELD_DEG.to_radians()), libm::cos(FIELD_DEG.to_radians()));
+        let c = self.batch.columns_mut();
+        let len = c.x.len();
+        c.x.copy_from_slice(&self.rays.x[self.start..][..len]);
+        c.y.copy_from_slice(&self.rays.y[self.start..][..len]);
+        c.wavelength_nm.copy_from_slice(&self.rays.wavelength_nm[self.start..][..len]);
+        c.z.fill(-20.0);
+        c.l.fill(0.0);
+        c.m.fill(m);
+        c.n.fill(n);
+    }
+}
+
+/// The image plane: the twelfth intersection.
+struct Land<'a> {
+    batch: &'a RayBatch,
+    image: &'a mut [f64],
+}
+
+impl Vectorized for Land<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run(self) {
+        let ([_, y, z], [_, m, n]) = (self.batch.positions(), self.batch.directions());
+        let len = self.image.len();
+        let (y, z, m, n) = (&y[..len], &z[..len], &m[..len], &n[..len]);
+        for i in 0..len {
+            self.image[i] = y[i] - z[i] / n[i] * m[i];
+        }
+    }
+}
+
+/// Traces all rays once; returns how many landed and how many were lost.
+fn trace(tracer: &Tracer, rays: &Rays, image: &mut [f64]) -> (usize, u64) {
     let mut batch = RayBatch::new(BATCH);
     let mut work = tracer.work(BATCH);
-    let (m, n) = (libm::sin(FIELD_DEG.to_radians()), libm::cos(FIELD_DEG.to_radians()));
+    let isa = tracer.isa();
     let mut landed = 0;
     for start in (0..RAYS).step_by(BATCH) {
-        let len = BATCH.min(RAYS - start);
-        batch.restart(len);
-        let c = batch.columns_mut();
-        let (x, y, w) = (&rays.x[start..][..len], &rays.y[start..][..len], &rays.wavelength_nm[start..][..len]);
-        for i in 0..len {
-            (c.x[i], c.y[i], c.z[i]) = (x[i], y[i], -20.0);
-            (c.l[i], c.m[i], c.n[i]) = (0.0, m, n);
-            c.wavelength_nm[i] = w[i];
-        }
+        batch.restart(BATCH.min(RAYS - start));
+        isa.run(Start { rays, start, batch: &mut batch });
         tracer.trace(&mut batch, &mut work, Travel::Forward);
-        // To the image plane: the twelfth intersection.
-        let ([_, y, z], [_, m, n]) = (batch.positions(), batch.directions());
-        for i in 0..batch.len() {
-            image[landed + i] = y[i] - z[i] / n[i] * m[i];
-        }
-        landed += batch.len();
+        let len = batch.len();
+        isa.run(Land { batch: &batch, image: &mut image[landed..landed + len] });
+        landed += len;
     }
-    (image[..landed].iter().sum::<f64>() / landed as f64, work.losses.total())
+    (landed, work.losses.total())
 }
 
 fn median(mut values: Vec<f64>) -> f64 {
@@ -214,7 +248,8 @@ fn main() {
             }
         }
     }
-    let (mean_y, lost) = trace(&cases[0].1, &rays, &mut image);
+    let (landed, lost) = trace(&cases[0].1, &rays, &mut image);
+    let mean_y = image[..landed].iter().sum::<f64>() / landed as f64;
     // soa.cpp prints the same: same rays, same glass, same lens.
     assert!((mean_y - 4.354_748).abs() < 2e-6, "mean height {mean_y} mm, soa.cpp has 4.354748");
     let soa_rate = (!soa_rates.is_empty()).then(|| median(soa_rates));

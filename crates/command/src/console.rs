@@ -50,6 +50,9 @@ pub(crate) fn error(text: &str) {
 pub(crate) fn faults(faults: &Faults) {
     let text = diagnostics::render(faults, stderr_is_colored());
     note(text.trim_end());
+    if faults.len() > 1 {
+        error(&format!("{} faults", faults.len()));
+    }
 }
 
 /// Whether standard error shows a moving progress bar.

@@ -18,8 +18,7 @@ pub enum ResourceError {
 impl std::fmt::Display for ResourceError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            Self::NotFound(near) if near.is_empty() => write!(f, "no such file"),
-            Self::NotFound(near) => write!(f, "no such file; near: {}", near.join(", ")),
+            Self::NotFound(_) => write!(f, "no such file"),
             Self::TooLarge(found, limit) => write!(f, "{found} bytes; at most {limit} are read"),
             Self::Io(text) => f.write_str(text),
         }

@@ -7,7 +7,7 @@ use spectra_core::registry::{self, Context};
 use spectra_core::resources::Resources;
 use spectra_core::spectral::BAND;
 use spectra_core::surface::{Action, Surface};
-use spectra_glass::{Catalogue, Medium, lines};
+use spectra_glass::{Catalogue, FindError, Medium, lines};
 use std::sync::Arc;
 
 /// A lens file.
@@ -198,7 +198,13 @@ fn medium(
             Some(nd) => Catalogue::bundled().find_with(name, nd, stated.vd).map(Medium::from),
             None => Catalogue::bundled().medium(name),
         };
-        let medium = found.map_err(|e| place.fault("glass", e.to_string()))?;
+        let medium = found.map_err(|e| {
+            let hint = match &e {
+                FindError::Unknown { nearest, .. } => nearest.first().map(|c| format!("did you mean `{}`?", c.full_name)),
+                FindError::Ambiguous { candidates, .. } => candidates.first().map(|c| format!("for example `{}`", c.full_name)),
+            };
+            place.fault("glass", e.to_string()).hint(hint.unwrap_or_else(|| "or state `glass: {nd: ..., vd: ...}`".to_owned()))
+        })?;
         let own = medium.index(lines::D.wavelength_nm);
         if let Some(nd) = stated.nd.filter(|nd| (nd - own).abs() > INDEX_TOLERANCE) {
             warnings.push(format!("surface {number}: {name} has nd {own:.5}, the prescription states {nd}"));

@@ -153,11 +153,8 @@ impl Tracer {
         };
         let end = if travel == Travel::Forward { self.image_z_mm } else { 0.0 };
         let len = rays.len();
-        let c = rays.columns_mut();
-        c.index.copy_from_slice(work.media[outside].n.slice(len));
-        for z in c.z.iter_mut() {
-            *z += origin - end;
-        }
+        let index = work.media[outside].n.slice(len);
+        self.isa.run(Leave { rays, index, shift_mm: origin - end });
     }
 
     /// Follows one ray forward, surface by surface: for drawings and searches, not for light.
@@ -255,6 +252,25 @@ impl Vectorized for Evaluate<'_> {
     #[inline(always)]
     fn run(self) {
         self.medium.index_and_inverse(self.wavelength_nm, self.n, self.inverse);
+    }
+}
+
+/// Puts rays into the frame that they leave the lens in, and into the medium there.
+struct Leave<'a> {
+    rays: &'a mut RayBatch,
+    index: &'a [f64],
+    shift_mm: f64,
+}
+
+impl Vectorized for Leave<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run(self) {
+        let c = self.rays.columns_mut();
+        c.index.copy_from_slice(self.index);
+        for z in c.z.iter_mut() {
+            *z += self.shift_mm;
+        }
     }
 }
 

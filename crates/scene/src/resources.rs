@@ -1,7 +1,7 @@
 //! Files for stages: beside the scene first, then among the bundled data.
 
 use crate::yaml;
-use spectra_core::params::{Fault, Faults, Params, SourceFile, nearest};
+use spectra_core::params::{Fault, Faults, Params, nearest};
 use spectra_core::resources::{Resource, ResourceError, Resources};
 use std::borrow::Cow;
 use std::io::Read;
@@ -34,7 +34,7 @@ impl Resources for FileResources {
     ) -> Result<Resource, ResourceError> {
         let endings = || std::iter::once("").chain(endings.iter().copied());
         for ending in endings() {
-            let on_disk = self.folder.join(format!("{path}{ending}"));
+            let on_disk = plain(&self.folder.join(format!("{path}{ending}")));
             if on_disk.is_file() {
                 let bytes = read_file(&on_disk, limit_bytes)?;
                 let folder = on_disk.parent().map(Path::to_owned);
@@ -60,10 +60,7 @@ impl Resources for FileResources {
             }
             other => Fault::new(format!("`{path}`: {other}")),
         })?;
-        let text = String::from_utf8(resource.bytes.into_owned())
-            .map_err(|e| Fault::new(format!("`{path}` is not UTF-8 text: byte {}", e.utf8_error().valid_up_to())))?;
-        let node = yaml::parse(SourceFile::new(resource.name, text))?;
-        Params::section(node, "")
+        Params::section(yaml::parse_bytes(&resource.name, &resource.bytes)?, "")
     }
 }
 
@@ -106,4 +103,9 @@ fn read_file(path: &Path, limit_bytes: u64) -> Result<Vec<u8>, ResourceError> {
         return Err(ResourceError::TooLarge(bytes.len() as u64, limit_bytes));
     }
     Ok(bytes)
+}
+
+/// The same path without `.` in it: as a person would write it.
+fn plain(path: &Path) -> PathBuf {
+    path.components().filter(|c| *c != std::path::Component::CurDir).collect()
 }

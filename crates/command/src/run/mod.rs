@@ -61,7 +61,7 @@ fn render_scene(arguments: &Run, isa: Isa, started: Instant) -> Outcome {
     let rendering =
         watch(&renderer, threads, &control, || progress.tick(&control, interrupt.happened())).map_err(failed)?;
     let seconds = begun.elapsed().as_secs_f64();
-    progress.finish(&rendering);
+    progress.finish();
     let report = Report { scene: &scene, arguments, rendering: &rendering, seconds, threads, isa };
     for path in folder.write(&report)? {
         progress.written(&path);

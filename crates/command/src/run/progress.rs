@@ -7,7 +7,7 @@ use crate::{console, words};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::{Value, json};
 use spectra_core::{Isa, Loss};
-use spectra_render::{Control, Rendering};
+use spectra_render::Control;
 use spectra_scene::Scene;
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -37,6 +37,9 @@ pub(crate) struct Progress {
 const JSON_EVERY: Duration = Duration::from_millis(200);
 /// One plain line in this time.
 const LINE_EVERY: Duration = Duration::from_secs(10);
+
+/// Length of the bar: finer than any terminal shows it.
+const BAR_STEPS: u32 = 1000;
 
 /// How far a render is.
 struct State {
@@ -119,8 +122,7 @@ impl Progress {
         let elapsed = self.said.elapsed();
         match &self.listener {
             Listener::Bar(bar) => {
-                bar.set_length(state.total);
-                bar.set_position(state.rays);
+                bar.set_position((state.fraction().max(self.time_used()) * f64::from(BAR_STEPS)) as u64);
                 let left = state.seconds_left.map_or(String::new(), |s| format!(", {} left", words::duration(s)));
                 bar.set_message(format!("{}{left}", words::rate(state.rays_per_second)));
             }
@@ -162,6 +164,14 @@ impl Progress {
         State { rays, total, rays_per_second, seconds_left }
     }
 
+    /// How much of the time limit is over, from 0 to 1; 0 without one.
+    fn time_used(&self) -> f64 {
+        let Some(limit) = self.deadline.map(|deadline| deadline.saturating_duration_since(self.begun)) else {
+            return 0.0;
+        };
+        if limit.is_zero() { 1.0 } else { (self.begun.elapsed().as_secs_f64() / limit.as_secs_f64()).min(1.0) }
+    }
+
     /// A remark beside the progress.
     fn say(&self, text: &str) {
         match &self.listener {
@@ -174,9 +184,8 @@ impl Progress {
     }
 
     /// No more light is traced.
-    pub(crate) fn finish(&self, rendering: &Rendering) {
+    pub(crate) fn finish(&self) {
         if let Listener::Bar(bar) = &self.listener {
-            bar.set_position(rendering.rays);
             bar.finish_and_clear();
         }
     }
@@ -211,7 +220,7 @@ impl Progress {
 }
 
 fn bar() -> ProgressBar {
-    let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr_with_hz(10));
+    let bar = ProgressBar::with_draw_target(Some(u64::from(BAR_STEPS)), ProgressDrawTarget::stderr_with_hz(10));
     let style = ProgressStyle::with_template("[{bar:32}] {percent:>3} %  {msg}").expect("the template is a constant");
     bar.set_style(style.progress_chars("=> "));
     bar

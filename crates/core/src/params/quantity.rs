@@ -143,7 +143,7 @@ fn text_hint<Q: Quantity>(text: &str) -> String {
         let figure = text.trim_start_matches(['f', 'F', '/', ' ']);
         return format!("\nhint: write `f/{}`", shown(figure));
     }
-    String::new()
+    format!("\nhint: write a number with its unit, as in `{}`", Q::EXAMPLE)
 }
 
 /// The quantity, if it obeys its bound.

@@ -231,9 +231,15 @@ fn bend_loop<S: KernelShape, const ACTION: u8>(
         }
         margin = Real::min(margin, valid[i]);
         cosine_then_margin[i] = margin;
-        any |= !(margin >= 0.0) & (state[i] == ALIVE);
+        any |= ends(margin) & (state[i] == ALIVE);
     }
     any
+}
+
+/// Whether a margin is negative, or NaN.
+#[inline(always)]
+fn ends(margin: f64) -> bool {
+    !(margin >= 0.0)
 }
 
 /// Books the rays that ended here, in the order of the light: a ray that misses cannot be clipped,
@@ -251,7 +257,7 @@ fn book(rays: &mut RayBatch, at: &Interface<'_>) -> usize {
     for i in 0..len {
         let mut cause = if radius2[i] <= at.clip_radius2_mm2 { total } else { vignetted };
         cause = if valid[i] >= 0.0 { cause } else { missed };
-        let ends = !(margin[i] >= 0.0) & (state[i] == ALIVE);
+        let ends = ends(margin[i]) & (state[i] == ALIVE);
         state[i] = if ends { cause } else { state[i] };
         lost += u64::from(ends);
     }

@@ -8,8 +8,9 @@ use crate::white;
 use decode::Linear;
 use map::{Importance, PictureMap};
 use serde::Deserialize;
-use spectra_core::params::{Faults, Length, Luminance, Params, Positive, Quantity, StageNode};
+use spectra_core::params::{Fault, Faults, Length, Luminance, Params, Positive, Quantity, StageNode};
 use spectra_core::registry::{Context, SourceEntry, build as build_stage};
+use spectra_core::resources::{Resource, ResourceError};
 use spectra_core::stage::{ColorModel, Source};
 
 /// Largest picture file, bytes.
@@ -54,15 +55,16 @@ inventory::submit! {
 }
 
 fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faults> {
-    let p: PictureParams = params.parse()?;
     let mut faults = Faults::new();
+    let Some(p) = faults.take(params.parse::<PictureParams>()) else {
+        // Whatever else is wrong, a missing picture is said in the same go.
+        if let Some(file) = params.get("file").and_then(|node| node.as_str()) {
+            faults.take(find(file, params, context));
+        }
+        return Err(faults);
+    };
     let light = faults.take(white::illuminant(&p.illuminant, params, context));
-    let resource = faults.take(
-        context
-            .resources
-            .read(&p.file, &[], &[], MAX_BYTES)
-            .map_err(|e| params.fault("file", format!("picture `{}`: {e}", p.file))),
-    );
+    let resource = faults.take(find(&p.file, params, context));
     let linear = resource.and_then(|file| {
         faults.take(decode::decode(&file.bytes).map_err(|e| params.fault("file", format!("picture `{}`: {e}", p.file))))
     });
@@ -75,6 +77,17 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
     let (Some(linear), Some(model)) = parts else { return Err(Faults::new()) };
     let texture = assemble(&linear, &p.file, p.width.mm(), model, p.luminance.cd_per_m2());
     Ok(Box::new(Flat { texture, distance_mm: p.distance.mm() }))
+}
+
+fn find(file: &str, params: &Params, context: &Context<'_>) -> Result<Resource, Fault> {
+    context.resources.read(file, &[], &[], MAX_BYTES).map_err(|e| {
+        let hint = match &e {
+            ResourceError::NotFound(near) if !near.is_empty() => format!("did you mean `{}`?", near.join("` or `")),
+            ResourceError::NotFound(_) => "paths are relative to the folder of the scene".to_owned(),
+            _ => "PNG, JPEG, TIFF and Radiance HDR files are read".to_owned(),
+        };
+        params.fault("file", format!("picture `{file}`: {e}")).hint(hint)
+    })
 }
 
 /// Luminance weights of linear sRGB (IEC 61966-2-1): good enough to say where a picture is bright.

@@ -3,8 +3,8 @@
 use super::super::node::{Key, Node, Value};
 use super::super::path::Step;
 use super::error::NodeError;
+use super::findings::Standin;
 use super::placeholder::Placeholder;
-use super::session::Standin;
 use super::walker::Walker;
 use serde::de::value::{BorrowedStrDeserializer, StrDeserializer};
 use serde::de::{
@@ -28,8 +28,8 @@ impl<'n> SeqAccess<'n> for SeqWalk<'n, '_> {
     type Error = NodeError;
 
     fn next_element_seed<T: DeserializeSeed<'n>>(&mut self, seed: T) -> Result<Option<T::Value>, NodeError> {
-        let session = self.list.session;
-        let Some((index, node)) = self.elements.find(|(_, node)| session.standin(node) != Some(Standin::Left)) else {
+        let findings = self.list.findings;
+        let Some((index, node)) = self.elements.find(|(_, node)| findings.standin(node) != Some(Standin::Left)) else {
             return Ok(None);
         };
         let element = self.list.child(Step::Index(index), node);
@@ -57,15 +57,15 @@ impl<'n, 'p> MapWalk<'n, 'p> {
         entries: &'n [(Key, Node)],
         fields: Option<&'static [&'static str]>,
     ) -> Self {
-        let session = map.session;
+        let findings = map.findings;
         let mut taken = Vec::with_capacity(entries.len());
         for entry in entries {
-            let known = fields.is_none_or(|fields| session.is_known(map.node, &|| map.path(), entry, fields));
-            if known && session.standin(&entry.1) != Some(Standin::Left) {
+            let known = fields.is_none_or(|fields| findings.is_known(map.node, &|| map.path(), entry, fields));
+            if known && findings.standin(&entry.1) != Some(Standin::Left) {
                 taken.push(entry);
             }
         }
-        let missing = session.missing_of(map.node);
+        let missing = findings.missing_of(map.node);
         Self { map, entries: taken.into_iter(), value: None, missing: missing.into_iter(), placeholder: None }
     }
 }

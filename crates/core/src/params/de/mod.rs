@@ -7,14 +7,14 @@
 
 mod access;
 mod error;
+mod findings;
 mod placeholder;
-mod session;
 mod walker;
 
 use super::fault::Faults;
 use super::node::Node;
+use findings::Findings;
 use serde::de::DeserializeOwned;
-use session::Session;
 use walker::Walker;
 
 /// Name by which a field asks for the node itself.
@@ -22,15 +22,15 @@ pub(super) const NODE: &str = "spectra::node";
 
 /// A value from a node, or everything that is wrong with it. `prefix` is the path of the node.
 pub(super) fn parse<T: DeserializeOwned>(node: &Node, prefix: &str) -> Result<T, Faults> {
-    let session = Session::new(node, prefix);
+    let findings = Findings::new(node, prefix);
     loop {
-        let root = Walker::root(node, &session);
+        let root = Walker::root(node, &findings);
         let result = T::deserialize(root).map_err(|error| root.place(error));
         match result {
-            Ok(value) => return session.finish().into_result(value),
+            Ok(value) => return findings.finish().into_result(value),
             Err(error) => {
-                if !session.absorb(error) {
-                    return Err(session.finish());
+                if !findings.absorb(error) {
+                    return Err(findings.finish());
                 }
             }
         }

@@ -8,31 +8,31 @@ use super::super::text::{found, listed};
 use super::NODE;
 use super::access::{EnumWalk, MapWalk, SeqWalk};
 use super::error::{Cause, Culprit, NodeError};
+use super::findings::{Findings, Standin, address};
 use super::placeholder::Placeholder;
-use super::session::{Session, Standin, address};
 use serde::de::{Deserializer, Error, Visitor};
 
 /// A node in a walk, with the way to it.
 #[derive(Clone, Copy)]
 pub(super) struct Walker<'n, 'p> {
     pub node: &'n Node,
-    pub session: &'p Session<'n>,
+    pub findings: &'p Findings<'n>,
     step: Option<Step<'n>>,
     parent: Option<&'p Walker<'n, 'p>>,
 }
 
 impl<'n, 'p> Walker<'n, 'p> {
-    pub(super) fn root(node: &'n Node, session: &'p Session<'n>) -> Self {
-        session.visit();
-        Self { node, session, step: None, parent: None }
+    pub(super) fn root(node: &'n Node, findings: &'p Findings<'n>) -> Self {
+        findings.visit();
+        Self { node, findings, step: None, parent: None }
     }
 
     pub(super) fn child<'q>(&'q self, step: Step<'n>, node: &'n Node) -> Walker<'n, 'q>
     where
         'p: 'q,
     {
-        self.session.visit();
-        Walker { node, session: self.session, step: Some(step), parent: Some(self) }
+        self.findings.visit();
+        Walker { node, findings: self.findings, step: Some(step), parent: Some(self) }
     }
 
     /// Path of the node in the file.
@@ -43,7 +43,7 @@ impl<'n, 'p> Walker<'n, 'p> {
             steps.extend(at.step);
             walker = at.parent;
         }
-        steps.iter().rev().fold(self.session.prefix().to_owned(), |path, &step| joined(&path, step))
+        steps.iter().rev().fold(self.findings.prefix().to_owned(), |path, &step| joined(&path, step))
     }
 
     fn culprit(&self) -> Culprit {
@@ -58,7 +58,7 @@ impl<'n, 'p> Walker<'n, 'p> {
 
     /// The error with this place, unless it has one further inside.
     pub(super) fn place(&self, error: NodeError) -> NodeError {
-        let error = if self.session.standin(self.node).is_some() { error.silenced() } else { error };
+        let error = if self.findings.standin(self.node).is_some() { error.silenced() } else { error };
         error.at(|| self.culprit())
     }
 
@@ -69,7 +69,7 @@ impl<'n, 'p> Walker<'n, 'p> {
 
     /// What takes the place of this node, if it failed on an earlier walk.
     fn placeholder(&self) -> Option<Placeholder> {
-        match self.session.standin(self.node)? {
+        match self.findings.standin(self.node)? {
             Standin::Placeholder(level) => Some(Placeholder::new(level)),
             // Left out by the map or list around it; the root of a walk is never replaced.
             Standin::Left => None,

@@ -40,7 +40,7 @@ pub(super) fn address(node: &Node) -> usize {
 }
 
 /// What is remembered from walk to walk.
-pub(super) struct Session<'n> {
+pub(super) struct Findings<'n> {
     root: &'n Node,
     prefix: &'n str,
     faults: RefCell<Vec<Fault>>,
@@ -57,7 +57,7 @@ pub(super) struct Session<'n> {
     unknown: RefCell<HashSet<usize>>,
 }
 
-impl<'n> Session<'n> {
+impl<'n> Findings<'n> {
     pub(super) fn new(root: &'n Node, prefix: &'n str) -> Self {
         Self {
             root,

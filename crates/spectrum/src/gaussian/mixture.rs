@@ -1,0 +1,129 @@
+//! Signed sums of Gaussian terms.
+
+use super::GaussianTerm;
+
+/// A signed sum of Gaussian terms: closed under sum, product and scale, with exact integrals.
+///
+/// ```
+/// use spectra_spectrum::{GaussianMixture, GaussianTerm};
+/// let filter = GaussianMixture::new(vec![
+///     GaussianTerm::new(1.0, 560.0, 300.0)?,
+///     GaussianTerm::new(-0.6, 520.0, 25.0)?,
+/// ]);
+/// let two = filter.times(&filter);
+/// assert!((two.at(510.0) - filter.at(510.0) * filter.at(510.0)).abs() < 1e-15);
+/// assert_eq!(two.terms().len(), 4);
+/// # Ok::<(), spectra_spectrum::SpectrumError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct GaussianMixture {
+    terms: Vec<GaussianTerm>,
+}
+
+impl GaussianMixture {
+    /// The sum of `terms`; 0 everywhere without any.
+    #[must_use]
+    pub fn new(terms: Vec<GaussianTerm>) -> Self {
+        Self { terms }
+    }
+
+    /// Its terms.
+    #[must_use]
+    pub fn terms(&self) -> &[GaussianTerm] {
+        &self.terms
+    }
+
+    /// Value at `wavelength_nm`.
+    #[must_use]
+    pub fn at(&self, wavelength_nm: f64) -> f64 {
+        self.terms.iter().map(|t| t.at(wavelength_nm)).sum()
+    }
+
+    /// Integral from `min_nm` to `max_nm`, exact.
+    #[must_use]
+    pub fn band_integral(&self, min_nm: f64, max_nm: f64) -> f64 {
+        self.terms.iter().map(|t| t.band_integral(min_nm, max_nm)).sum()
+    }
+
+    /// Sum of both: the terms of both.
+    #[must_use]
+    pub fn plus(&self, other: &Self) -> Self {
+        Self::new([self.terms.as_slice(), &other.terms].concat())
+    }
+
+    /// Product of both, exact: each term of this with each of the other, in that order.
+    #[must_use]
+    pub fn times(&self, other: &Self) -> Self {
+        let products = self.terms.iter().flat_map(|a| other.terms.iter().map(|b| a.times(b)));
+        Self::new(products.collect())
+    }
+
+    /// This times a number of either sign.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        Self::new(self.terms.iter().map(|t| t.scaled(factor)).collect())
+    }
+
+    /// The same terms without their signs: nowhere below this one's absolute value.
+    #[must_use]
+    pub fn absolute(&self) -> Self {
+        Self::new(self.terms.iter().map(GaussianTerm::absolute).collect())
+    }
+
+    /// How much the terms cancel over a band: sum |w| / |sum w| of their band integrals w; 1 for terms of one sign,
+    /// infinite where nothing is left, NaN without terms.
+    ///
+    /// An estimate that draws one term in proportion to |w|, and takes its integral, has the relative standard deviation
+    /// sqrt(kappa^2 - 1).
+    #[must_use]
+    pub fn kappa(&self, min_nm: f64, max_nm: f64) -> f64 {
+        let weights = self.terms.iter().map(|t| t.band_integral(min_nm, max_nm));
+        let (absolute, signed) = weights.fold((0.0, 0.0), |(a, s), w| (a + w.abs(), s + w));
+        absolute / f64::abs(signed)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cell;
+
+    fn mixture(terms: &[[f64; 3]]) -> GaussianMixture {
+        let term = |[a, c, s]: &[f64; 3]| GaussianTerm::new(*a, *c, *s).expect("valid");
+        GaussianMixture::new(terms.iter().map(term).collect())
+    }
+
+    /// Source, filters and detector of the term strategies: product of n filters against dense quadrature, 1e-12.
+    #[test]
+    fn products_of_mixtures_are_exact() {
+        let source = mixture(&[[1.0, 560.0, 120.0], [-0.3, 600.0, 40.0]]);
+        let filter = mixture(&[[1.0, 560.0, 300.0], [-0.6, 520.0, 25.0]]);
+        let detector = mixture(&[[1.0, 445.0, 22.0], [1.0, 560.0, 45.0]]);
+        let breaks: Vec<f64> = (0..=4000).map(|i| 380.0 + 0.1 * f64::from(i)).collect();
+        let mut product = source.times(&detector);
+        for n in 1..=4 {
+            product = product.times(&filter);
+            let value = |x: f64| source.at(x) * detector.at(x) * filter.at(x).powi(n);
+            let want = cell::integral(value, &breaks);
+            let got = product.band_integral(380.0, 780.0);
+            assert!((got / want - 1.0).abs() < 1e-12, "{n}: {got} {want}");
+            assert_eq!(product.terms().len(), 4 << n);
+            assert!((product.at(520.0) / value(520.0) - 1.0).abs() < 1e-12);
+        }
+        let sum = source.plus(&detector.scaled(-2.0));
+        assert!((sum.at(450.0) - (source.at(450.0) - 2.0 * detector.at(450.0))).abs() < 1e-15);
+    }
+
+    /// kappa of one filter by hand: (sqrt(2 pi) (1 * 300 s + 0.6 * 25)) / (... - ...), s the share of the wide one.
+    #[test]
+    fn kappa_measures_cancellation() {
+        let filter = mixture(&[[1.0, 560.0, 300.0], [-0.6, 520.0, 25.0]]);
+        let wide = filter.terms()[0].band_integral(380.0, 780.0);
+        let narrow = -filter.terms()[1].band_integral(380.0, 780.0);
+        assert!((filter.kappa(380.0, 780.0) - (wide + narrow) / (wide - narrow)).abs() < 1e-14);
+        assert_eq!(filter.absolute().kappa(380.0, 780.0), 1.0);
+        assert!(mixture(&[]).kappa(380.0, 780.0).is_nan() && mixture(&[]).at(500.0) == 0.0);
+        let nothing = mixture(&[[1.0, 500.0, 10.0], [-1.0, 500.0, 10.0]]);
+        assert!(nothing.kappa(380.0, 780.0).is_infinite());
+    }
+}
