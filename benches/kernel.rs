@@ -117,20 +117,44 @@ struct Start<'a> {
     batch: &'a mut RayBatch,
 }
 
-impl Vectorized for Start<'_> {
+impl<'a> Vectorized for Start<'a> {
     type Output = ();
     #[inline(always)]
     fn run(self) {
         let (m, n) = (libm::sin(FIELD_DEG.to_radians()), libm::cos(FIELD_DEG.to_radians()));
         let c = self.batch.columns_mut();
         let len = c.x.len();
-        c.x.copy_from_slice(&self.rays.x[self.start..][..len]);
-        c.y.copy_from_slice(&self.rays.y[self.start..][..len]);
-        c.wavelength_nm.copy_from_slice(&self.rays.wavelength_nm[self.start..][..len]);
-        c.z.fill(-20.0);
-        c.l.fill(0.0);
-        c.m.fill(m);
-        c.n.fill(n);
+        let from = |column: &'a [f64]| &column[self.start..][..len];
+        let from = [from(&self.rays.x), from(&self.rays.y), from(&self.rays.wavelength_nm)];
+        start_all(from, [m, n], c.x, c.y, c.z, c.l, c.m, c.n, c.wavelength_nm);
+    }
+}
+
+/// One loop over all columns, as `soa.cpp` has it: the three streams from memory come side by side.
+#[inline(always)]
+fn start_all(
+    [x, y, wavelength_nm]: [&[f64]; 3],
+    [cosine_m, cosine_n]: [f64; 2],
+    to_x: &mut [f64],
+    to_y: &mut [f64],
+    to_z: &mut [f64],
+    to_l: &mut [f64],
+    to_m: &mut [f64],
+    to_n: &mut [f64],
+    to_wavelength: &mut [f64],
+) {
+    let len = to_x.len();
+    let (x, y, w) = (&x[..len], &y[..len], &wavelength_nm[..len]);
+    let (to_y, to_z, to_l) = (&mut to_y[..len], &mut to_z[..len], &mut to_l[..len]);
+    let (to_m, to_n, to_wavelength) = (&mut to_m[..len], &mut to_n[..len], &mut to_wavelength[..len]);
+    for i in 0..len {
+        to_x[i] = x[i];
+        to_y[i] = y[i];
+        to_z[i] = -20.0;
+        to_l[i] = 0.0;
+        to_m[i] = cosine_m;
+        to_n[i] = cosine_n;
+        to_wavelength[i] = w[i];
     }
 }
 

@@ -252,7 +252,6 @@ fn list_and_licenses_show_what_is_there() {
         ("film", "stock"),
         ("lens", "zeiss-biotar-50-f1.4"),
         ("stock", "ilford-ortho-plus"),
-        ("scene", "biotar-ortho"),
     ] {
         assert!(names.contains(&wanted), "{wanted:?}: {names:?}");
     }

@@ -121,11 +121,11 @@ pub(crate) struct Check {
 /// `spectra list`.
 #[derive(Debug, Args)]
 #[command(
-    long_about = "List what can be written in a scene: the registered stages, and the bundled lenses, film stocks and scenes.",
+    long_about = "List what can be written in a scene: the registered stages, and the bundled lenses and film stocks.",
     after_long_help = "Example: which sources are there?\n  spectra list source"
 )]
 pub(crate) struct List {
-    /// Only this stage: source, color, wavelengths, surface, imager, film; or lens, stock, scene.
+    /// Only this stage: source, color, wavelengths, surface, imager, film; or lens, stock.
     #[arg(value_name = "STAGE")]
     pub stage: Option<String>,
     /// A JSON list on standard output.

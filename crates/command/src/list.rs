@@ -19,7 +19,7 @@ struct Item {
 }
 
 /// Bundled files that a scene names: what they are called here, and where they lie.
-const BUNDLED: [(&str, &str); 2] = [("lens", "lenses/"), ("scene", "scenes/")];
+const BUNDLED: [(&str, &str); 1] = [("lens", "lenses/")];
 
 /// Shows the list.
 pub(crate) fn list(arguments: &List) -> Outcome {

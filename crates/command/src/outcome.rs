@@ -2,6 +2,7 @@
 
 use crate::console;
 use spectra_core::params::Faults;
+use spectra_film::write::WriteError;
 use std::io;
 
 /// Done, or stopped when its time was up.
@@ -53,6 +54,12 @@ impl Failure {
 impl From<Faults> for Failure {
     fn from(faults: Faults) -> Self {
         Self::Faults(faults)
+    }
+}
+
+impl From<WriteError> for Failure {
+    fn from(error: WriteError) -> Self {
+        Self::Failed(error.to_string())
     }
 }
 

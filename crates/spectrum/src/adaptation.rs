@@ -18,16 +18,8 @@ impl Adaptation {
     #[must_use]
     pub fn responses_from_xyz(self) -> Matrix {
         match self {
-            Self::Bradford => [
-                [0.8951, 0.2664, -0.1614],
-                [-0.7502, 1.7135, 0.0367],
-                [0.0389, -0.0685, 1.0296],
-            ],
-            Self::Cat02 => [
-                [0.7328, 0.4296, -0.1624],
-                [-0.7036, 1.6975, 0.0061],
-                [0.0030, 0.0136, 0.9834],
-            ],
+            Self::Bradford => [[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367], [0.0389, -0.0685, 1.0296]],
+            Self::Cat02 => [[0.7328, 0.4296, -0.1624], [-0.7036, 1.6975, 0.0061], [0.0030, 0.0136, 0.9834]],
             Self::Cat16 => [
                 [0.401_288, 0.650_173, -0.051_461],
                 [-0.250_268, 1.204_414, 0.045_854],
@@ -79,22 +71,10 @@ mod tests {
     #[test]
     fn white_becomes_white_and_back() {
         for a in [Adaptation::Bradford, Adaptation::Cat02, Adaptation::Cat16] {
-            assert!(
-                a.adapt(D65, D65, D50)
-                    .iter()
-                    .zip(D50)
-                    .all(|(x, y)| (x - y).abs() < 1e-14),
-                "{a:?}"
-            );
+            assert!(a.adapt(D65, D65, D50).iter().zip(D50).all(|(x, y)| (x - y).abs() < 1e-14), "{a:?}");
             let color = [0.3, 0.2, 0.5];
             let there = a.adapt(color, D65, D50);
-            assert!(
-                a.adapt(there, D50, D65)
-                    .iter()
-                    .zip(color)
-                    .all(|(x, y)| (x - y).abs() < 1e-14),
-                "{a:?}"
-            );
+            assert!(a.adapt(there, D50, D65).iter().zip(color).all(|(x, y)| (x - y).abs() < 1e-14), "{a:?}");
         }
     }
 
@@ -102,20 +82,11 @@ mod tests {
     #[test]
     fn cat02_and_cat16_agree_with_an_independent_program() {
         for (a, want) in [
-            (
-                Adaptation::Cat02,
-                [0.216_257_755_0, 0.123_713_851_8, 0.038_518_673_7],
-            ),
-            (
-                Adaptation::Cat16,
-                [0.211_853_708_9, 0.120_408_857_5, 0.038_160_252_5],
-            ),
+            (Adaptation::Cat02, [0.216_257_755_0, 0.123_713_851_8, 0.038_518_673_7]),
+            (Adaptation::Cat16, [0.211_853_708_9, 0.120_408_857_5, 0.038_160_252_5]),
         ] {
             let got = a.adapt([0.2065, 0.12, 0.0514], D65, D50);
-            assert!(
-                got.iter().zip(want).all(|(x, y)| (x - y).abs() < 1e-8),
-                "{a:?} {got:?}"
-            );
+            assert!(got.iter().zip(want).all(|(x, y)| (x - y).abs() < 1e-8), "{a:?} {got:?}");
         }
     }
 }

@@ -131,35 +131,16 @@ macro_rules! typed {
 }
 
 typed!(find_emission, find_emission_in, Emission, "light");
-typed!(
-    find_transmittance,
-    find_transmittance_in,
-    Transmittance,
-    "filter"
-);
-typed!(
-    find_reflectance,
-    find_reflectance_in,
-    Reflectance,
-    "surface"
-);
-typed!(
-    find_sensitivity,
-    find_sensitivity_in,
-    Sensitivity,
-    "detector"
-);
+typed!(find_transmittance, find_transmittance_in, Transmittance, "filter");
+typed!(find_reflectance, find_reflectance_in, Reflectance, "surface");
+typed!(find_sensitivity, find_sensitivity_in, Sensitivity, "detector");
 
 trait OfKind: TryFrom<Found, Error = Kind> {
     const KIND: Kind;
 }
 
 fn of_kind<T: OfKind>(name: &str, found: Found) -> Result<T, SpectrumError> {
-    let wrong = |kind: Kind| SpectrumError::WrongKind {
-        name: name.into(),
-        found: kind.word(),
-        wanted: T::KIND.word(),
-    };
+    let wrong = |kind: Kind| SpectrumError::WrongKind { name: name.into(), found: kind.word(), wanted: T::KIND.word() };
     T::try_from(found).map_err(wrong)
 }
 
@@ -178,39 +159,20 @@ fn load(name: &str, files: Option<&dyn Resources>, wanted: Kind) -> Result<Found
 }
 
 /// An inline spectrum; `None` if `head` is none of them.
-fn inline(
-    text: &str,
-    head: &str,
-    arguments: &str,
-    wanted: Kind,
-) -> Option<Result<Found, SpectrumError>> {
-    let fault = |wanted| SpectrumError::Inline {
-        text: text.chars().take(80).collect(),
-        wanted,
-    };
-    let one = |help| {
-        numbers(arguments)
-            .and_then(|n| <[f64; 1]>::try_from(n).ok())
-            .ok_or_else(|| fault(help))
-    };
-    let two = |help| {
-        numbers(arguments)
-            .and_then(|n| <[f64; 2]>::try_from(n).ok())
-            .ok_or_else(|| fault(help))
-    };
+fn inline(text: &str, head: &str, arguments: &str, wanted: Kind) -> Option<Result<Found, SpectrumError>> {
+    let fault = |wanted| SpectrumError::Inline { text: text.chars().take(80).collect(), wanted };
+    let one = |help| numbers(arguments).and_then(|n| <[f64; 1]>::try_from(n).ok()).ok_or_else(|| fault(help));
+    let two = |help| numbers(arguments).and_then(|n| <[f64; 2]>::try_from(n).ok()).ok_or_else(|| fault(help));
     Some(match head.to_ascii_lowercase().as_str() {
         "blackbody" => one("write a temperature in kelvin, such as blackbody:5800")
             .and_then(|[k]| Emission::blackbody(k))
             .map(Found::Emission),
-        "daylight" => one("write a temperature in kelvin, such as daylight:5500")
-            .and_then(|[k]| daylight(k))
-            .map(Found::Emission),
+        "daylight" => {
+            one("write a temperature in kelvin, such as daylight:5500").and_then(|[k]| daylight(k)).map(Found::Emission)
+        }
         "line" => named_line(arguments)
             .map(|l| [l.nominal_nm])
-            .map_or_else(
-                || one("write a letter or a wavelength in nm, such as line:C' or line:632.8"),
-                Ok,
-            )
+            .map_or_else(|| one("write a letter or a wavelength in nm, such as line:C' or line:632.8"), Ok)
             .and_then(|[nm]| Emission::line(nm, 1.0))
             .map(Found::Emission),
         "gaussian" => two("write center and standard deviation in nm, such as gaussian:550,20")
@@ -219,17 +181,13 @@ fn inline(
         "rectangle" => two("write two wavelengths in nm, such as rectangle:500,600")
             .and_then(|[from, to]| Shape::rectangle(from, to))
             .and_then(|shape| of_shape(shape, wanted)),
-        "constant" => {
-            one("write a value, such as constant:0.18").and_then(|[value]| constant(value, wanted))
-        }
+        "constant" => one("write a value, such as constant:0.18").and_then(|[value]| constant(value, wanted)),
         _ => return None,
     })
 }
 
 fn numbers(text: &str) -> Option<Vec<f64>> {
-    text.split(',')
-        .map(|n| n.trim().parse().ok().filter(|v: &f64| v.is_finite()))
-        .collect()
+    text.split(',').map(|n| n.trim().parse().ok().filter(|v: &f64| v.is_finite())).collect()
 }
 
 /// A shape of peak 1, as what is wanted.
@@ -256,16 +214,10 @@ fn table(name: &str, files: Option<&dyn Resources>, wanted: Kind) -> Result<Tabl
     let is_file = name.ends_with(".csv") || name.contains(['/', '\\']);
     if !is_file {
         let key = normalized(name);
-        let fluorescent = key
-            .strip_prefix('f')
-            .filter(|n| n.starts_with(|c: char| c.is_ascii_digit()));
+        let fluorescent = key.strip_prefix('f').filter(|n| n.starts_with(|c: char| c.is_ascii_digit()));
         let key = fluorescent.map_or(key.clone(), |n| format!("fl{n}"));
         if let Some((_, path)) = bundled_spectra().find(|(n, _)| normalized(n) == key) {
-            return Ok(Table::parse_bytes(
-                path,
-                spectra_data::get(path).unwrap_or_default(),
-                None,
-            )?);
+            return Ok(Table::parse_bytes(path, spectra_data::get(path).unwrap_or_default(), None)?);
         }
         return Err(unknown(name));
     }
@@ -277,30 +229,14 @@ fn table(name: &str, files: Option<&dyn Resources>, wanted: Kind) -> Result<Tabl
 }
 
 fn unknown(name: &str) -> SpectrumError {
-    const INLINE: [&str; 6] = [
-        "blackbody:5800",
-        "daylight:5500",
-        "line:C'",
-        "gaussian:550,20",
-        "rectangle:500,600",
-        "constant:1",
-    ];
+    const INLINE: [&str; 6] =
+        ["blackbody:5800", "daylight:5500", "line:C'", "gaussian:550,20", "rectangle:500,600", "constant:1"];
     let head = |text: &'static str| text.split_once(':').map_or(text, |(head, _)| head);
     let near = match name.split_once(':') {
         Some((wanted, _)) => candidates(wanted, INLINE.into_iter().map(head)),
-        None => candidates(
-            name,
-            bundled_spectra()
-                .map(|(n, _)| n)
-                .chain(INLINE.into_iter().map(head)),
-        ),
+        None => candidates(name, bundled_spectra().map(|(n, _)| n).chain(INLINE.into_iter().map(head))),
     };
-    let example = |n: String| {
-        INLINE
-            .into_iter()
-            .find(|i| head(i) == n)
-            .map_or(n, str::to_owned)
-    };
+    let example = |n: String| INLINE.into_iter().find(|i| head(i) == n).map_or(n, str::to_owned);
     SpectrumError::Unknown {
         name: name.chars().take(80).collect(),
         candidates: near.into_iter().map(example).collect(),
@@ -310,22 +246,13 @@ fn unknown(name: &str) -> SpectrumError {
 fn read_resource(name: &str, files: &dyn Resources) -> Result<(String, Vec<u8>), SpectrumError> {
     match files.read(name, &["spectra"], &[".csv"], MAX_BYTES) {
         Ok(resource) => Ok((resource.name, resource.bytes.into_owned())),
-        Err(ResourceError::NotFound(candidates)) => Err(SpectrumError::Unknown {
-            name: name.into(),
-            candidates,
-        }),
-        Err(other) => Err(SpectrumError::Io {
-            name: name.into(),
-            cause: other.to_string(),
-        }),
+        Err(ResourceError::NotFound(candidates)) => Err(SpectrumError::Unknown { name: name.into(), candidates }),
+        Err(other) => Err(SpectrumError::Io { name: name.into(), cause: other.to_string() }),
     }
 }
 
 fn read_file(name: &str) -> Result<(String, Vec<u8>), SpectrumError> {
-    let io = |cause: String| SpectrumError::Io {
-        name: name.into(),
-        cause,
-    };
+    let io = |cause: String| SpectrumError::Io { name: name.into(), cause };
     let file = match fs::File::open(name) {
         Ok(file) => file,
         Err(error) => {
@@ -337,9 +264,7 @@ fn read_file(name: &str) -> Result<(String, Vec<u8>), SpectrumError> {
         }
     };
     let mut bytes = Vec::new();
-    file.take(MAX_BYTES + 1)
-        .read_to_end(&mut bytes)
-        .map_err(|e| io(e.to_string()))?;
+    file.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(|e| io(e.to_string()))?;
     if bytes.len() as u64 > MAX_BYTES {
         return Err(io(format!("more than {MAX_BYTES} bytes")));
     }
@@ -350,10 +275,7 @@ fn from_table(name: &str, table: &Table, column: Option<&str>) -> Result<Found, 
     let index = match column {
         None if table.columns.len() == 1 => 0,
         None => {
-            return Err(SpectrumError::Ambiguous {
-                name: name.into(),
-                columns: table.columns.clone(),
-            });
+            return Err(SpectrumError::Ambiguous { name: name.into(), columns: table.columns.clone() });
         }
         Some(wanted) => {
             let key = normalized(wanted);
@@ -370,31 +292,17 @@ fn from_table(name: &str, table: &Table, column: Option<&str>) -> Result<Found, 
         Kind::Emission => Found::Emission(Emission::tabulated(values)?),
         Kind::Lines => {
             let lines = values.wavelengths_nm().iter().zip(values.values());
-            let lines = lines
-                .map(|(w, p)| Line {
-                    wavelength_nm: *w,
-                    power: *p,
-                })
-                .collect();
+            let lines = lines.map(|(w, p)| Line { wavelength_nm: *w, power: *p }).collect();
             Found::Emission(Emission::new(None, lines)?)
         }
         Kind::Transmittance => Found::Transmittance(Transmittance::from_checked(values)),
         Kind::Reflectance => Found::Reflectance(Reflectance::from_checked(values)),
         Kind::Sensitivity => Found::Sensitivity(Sensitivity::from_checked(values)),
         // A function that is nowhere negative can be seen with; the others have no meaning as a detector.
-        Kind::ColorMatching if values.extremes().0 >= 0.0 => {
-            Found::Sensitivity(Sensitivity::from_checked(values))
-        }
+        Kind::ColorMatching if values.extremes().0 >= 0.0 => Found::Sensitivity(Sensitivity::from_checked(values)),
         Kind::ColorMatching | Kind::Components => {
-            let (found, wanted) = (
-                table.kind.word(),
-                "emission, transmittance, reflectance or sensitivity",
-            );
-            return Err(SpectrumError::WrongKind {
-                name: name.into(),
-                found,
-                wanted,
-            });
+            let (found, wanted) = (table.kind.word(), "emission, transmittance, reflectance or sensitivity");
+            return Err(SpectrumError::WrongKind { name: name.into(), found, wanted });
         }
     })
 }

@@ -32,15 +32,8 @@ pub fn uv_1960(xy: [f64; 2]) -> [f64; 2] {
 
 /// XYZ of a black body on the 1931 observer, 350-830 nm by 1 nm; no factor.
 fn planckian_xyz(temperature_k: f64) -> [f64; 3] {
-    let continuum = BAND
-        .wavelengths_nm()
-        .map(|w| planck_radiance(w, temperature_k))
-        .collect();
-    Observer::cie_1931_2deg().xyz_of_power(&SpectralPower {
-        grid: BAND,
-        continuum,
-        lines: Vec::new(),
-    })
+    let continuum = BAND.wavelengths_nm().map(|w| planck_radiance(w, temperature_k)).collect();
+    Observer::cie_1931_2deg().xyz_of_power(&SpectralPower { grid: BAND, continuum, lines: Vec::new() })
 }
 
 fn planckian_uv(mired: f64) -> [f64; 2] {
@@ -73,29 +66,18 @@ pub fn cct(xy: [f64; 2]) -> Option<Cct> {
     // the place to full precision, where comparing distances would stop at half the digits.
     let slope = |mired: f64| {
         let step = 1e-3 * mired;
-        let (before, at, after) = (
-            planckian_uv(mired - step),
-            planckian_uv(mired),
-            planckian_uv(mired + step),
-        );
+        let (before, at, after) = (planckian_uv(mired - step), planckian_uv(mired), planckian_uv(mired + step));
         (at[0] - u) * (after[0] - before[0]) + (at[1] - v) * (after[1] - before[1])
     };
     let (mut low, mut high) = (mired_of(nearest - 1), mired_of(nearest + 1));
     while high - low > 1e-7 * low {
         let middle = 0.5 * (low + high);
-        if slope(middle) < 0.0 {
-            low = middle
-        } else {
-            high = middle
-        }
+        if slope(middle) < 0.0 { low = middle } else { high = middle }
     }
     let mired = 0.5 * (low + high);
     let at = planckian_uv(mired);
     let duv = square(at).sqrt().copysign(v - at[1]);
-    (duv.abs() <= LARGEST_DUV).then(|| Cct {
-        kelvin: 1e6 / mired,
-        duv,
-    })
+    (duv.abs() <= LARGEST_DUV).then(|| Cct { kelvin: 1e6 / mired, duv })
 }
 
 #[cfg(test)]
@@ -118,24 +100,16 @@ mod tests {
         ] {
             let body = Emission::blackbody(kelvin).expect("positive");
             let [gx, gy] = chromaticity(Observer::cie_1931_2deg().xyz(&body)).expect("light");
-            assert!(
-                (gx - x).abs() < 1e-4 && (gy - y).abs() < 1e-4,
-                "{kelvin}: {gx} {gy}"
-            );
+            assert!((gx - x).abs() < 1e-4 && (gy - y).abs() < 1e-4, "{kelvin}: {gx} {gy}");
         }
     }
 
     #[test]
     fn a_black_body_has_its_own_temperature() {
-        for kelvin in [
-            900.0, 1000.0, 2000.0, 2856.0, 5000.0, 6503.6, 25_000.0, 100_000.0,
-        ] {
+        for kelvin in [900.0, 1000.0, 2000.0, 2856.0, 5000.0, 6503.6, 25_000.0, 100_000.0] {
             let xy = chromaticity(planckian_xyz(kelvin)).expect("light");
             let got = cct(xy).expect("on the locus");
-            assert!(
-                (got.kelvin / kelvin - 1.0).abs() < 1e-5 && got.duv.abs() < 1e-8,
-                "{kelvin}: {got:?}"
-            );
+            assert!((got.kelvin / kelvin - 1.0).abs() < 1e-5 && got.duv.abs() < 1e-8, "{kelvin}: {got:?}");
         }
     }
 

@@ -27,11 +27,7 @@ impl Observer {
         let table = bundled::table(path);
         let functions = [0, 1, 2].map(|i| table.column_at(i));
         let band = [0, 1, 2].map(|i| BAND.wavelengths_nm().map(|w| functions[i].at(w)).collect());
-        Self {
-            name,
-            functions,
-            band,
-        }
+        Self { name, functions, band }
     }
 
     /// CIE 1931, field of 2 degrees: the one meant where nothing else is said.
@@ -83,11 +79,7 @@ impl Observer {
         if *grid == BAND {
             return self.band.clone();
         }
-        [0, 1, 2].map(|i| {
-            grid.wavelengths_nm()
-                .map(|w| self.functions[i].at(w))
-                .collect()
-        })
+        [0, 1, 2].map(|i| grid.wavelengths_nm().map(|w| self.functions[i].at(w)).collect())
     }
 
     /// The integral of `light` times each function over 350-830 nm, lines included; no factor.
@@ -107,19 +99,10 @@ impl Observer {
         let elsewhere = (light.grid != BAND).then(|| self.on_grid(&light.grid));
         let functions = elsewhere.as_ref().unwrap_or(&self.band);
         let mut xyz = [0, 1, 2].map(|i| {
-            let sum: f64 = light
-                .continuum
-                .iter()
-                .zip(&functions[i])
-                .map(|(p, f)| p * f)
-                .sum();
+            let sum: f64 = light.continuum.iter().zip(&functions[i]).map(|(p, f)| p * f).sum();
             sum * light.grid.step_nm
         });
-        for line in light
-            .lines
-            .iter()
-            .filter(|l| light.grid.contains(l.wavelength_nm))
-        {
+        for line in light.lines.iter().filter(|l| light.grid.contains(l.wavelength_nm)) {
             let at = self.at(line.wavelength_nm);
             (0..3).for_each(|i| xyz[i] += line.power * at[i]);
         }

@@ -18,11 +18,7 @@ pub const STEFAN_BOLTZMANN_W_PER_M2_K4: f64 = {
     let pi = std::f64::consts::PI;
     let k = BOLTZMANN_J_PER_K;
     // Grouped so that no intermediate value leaves the range of an f64.
-    2.0 * (pi * pi * pi * pi * pi) / 15.0
-        * (k / PLANCK_J_S)
-        * (k / PLANCK_J_S)
-        * (k / PLANCK_J_S)
-        * k
+    2.0 * (pi * pi * pi * pi * pi) / 15.0 * (k / PLANCK_J_S) * (k / PLANCK_J_S) * (k / PLANCK_J_S) * k
         / (LIGHT_M_PER_S * LIGHT_M_PER_S)
 };
 

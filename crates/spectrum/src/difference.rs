@@ -13,15 +13,8 @@ pub fn ciede2000(first: [f64; 3], second: [f64; 3]) -> f64 {
     let g = 0.5 * (1.0 - seventh(mean_ab));
     let prime = |lab: [f64; 3]| {
         let a = (1.0 + g) * lab[1];
-        let hue = if a == 0.0 && lab[2] == 0.0 {
-            0.0
-        } else {
-            libm::atan2(lab[2], a)
-        };
-        (
-            chroma(a, lab[2]),
-            if hue < 0.0 { hue + 2.0 * PI } else { hue },
-        )
+        let hue = if a == 0.0 && lab[2] == 0.0 { 0.0 } else { libm::atan2(lab[2], a) };
+        (chroma(a, lab[2]), if hue < 0.0 { hue + 2.0 * PI } else { hue })
     };
     let ((c1, h1), (c2, h2)) = (prime(first), prime(second));
     let colorless = c1 * c2 == 0.0;
@@ -56,9 +49,7 @@ pub fn ciede2000(first: [f64; 3], second: [f64; 3]) -> f64 {
     let (sc, sh) = (1.0 + 0.045 * c, 1.0 + 0.015 * c * t);
     let (dl, dc, dh) = (dl / sl, dc / sc, dh / sh);
     // Rounding can take the form, which is never negative, a hair below 0.
-    (dl * dl + dc * dc + dh * dh + rotation * dc * dh)
-        .max(0.0)
-        .sqrt()
+    (dl * dl + dc * dc + dh * dh + rotation * dc * dh).max(0.0).sqrt()
 }
 
 /// sqrt(c^7 / (c^7 + 25^7)).
@@ -74,15 +65,10 @@ mod tests {
     /// All 34 pairs of Sharma, Wu and Dalal (2005), table 1, to the four decimals printed.
     #[test]
     fn sharma_pairs() {
-        let rows = include_str!("../tests/data/ciede2000-sharma.csv")
-            .lines()
-            .filter(|l| !l.starts_with(['#', 'L']));
+        let rows = include_str!("../tests/data/ciede2000-sharma.csv").lines().filter(|l| !l.starts_with(['#', 'L']));
         let mut count = 0;
         for row in rows {
-            let v: Vec<f64> = row
-                .split(',')
-                .map(|f| f.parse().expect("a number"))
-                .collect();
+            let v: Vec<f64> = row.split(',').map(|f| f.parse().expect("a number")).collect();
             let (a, b) = ([v[0], v[1], v[2]], [v[3], v[4], v[5]]);
             for got in [ciede2000(a, b), ciede2000(b, a)] {
                 assert!((got - v[6]).abs() <= 5.0001e-5, "{row}: {got}");

@@ -63,19 +63,11 @@ pub fn dominant_wavelength(xy: [f64; 2], white_xy: [f64; 2]) -> Option<Dominant>
     // From a white within, each way ends once on the rim: on the locus, or on the line of purples.
     if let Some((distance, wavelength_nm)) = on_locus(white_xy, along) {
         let within = on_locus(white_xy, back).is_some() || on_purples(back).is_some();
-        return within.then_some(Dominant {
-            wavelength_nm,
-            complementary: false,
-            purity: 1.0 / distance,
-        });
+        return within.then_some(Dominant { wavelength_nm, complementary: false, purity: 1.0 / distance });
     }
     let (_, wavelength_nm) = on_locus(white_xy, back)?;
     let distance = on_purples(along)?;
-    Some(Dominant {
-        wavelength_nm,
-        complementary: true,
-        purity: 1.0 / distance,
-    })
+    Some(Dominant { wavelength_nm, complementary: true, purity: 1.0 / distance })
 }
 
 #[cfg(test)]
@@ -92,17 +84,12 @@ mod tests {
             let line = Emission::line(nm, 1.0).expect("valid");
             let xy = chromaticity(Observer::cie_1931_2deg().xyz(&line)).expect("light");
             let got = dominant_wavelength(xy, E).expect("not white");
-            assert!(
-                (got.wavelength_nm - nm).abs() < 0.02 && !got.complementary,
-                "{nm}: {got:?}"
-            );
+            assert!((got.wavelength_nm - nm).abs() < 0.02 && !got.complementary, "{nm}: {got:?}");
             assert!((got.purity - 1.0).abs() < 1e-3, "{nm}: {got:?}");
             // Half way to white: the same wavelength, half the purity.
-            let half = dominant_wavelength([0.5 * (xy[0] + E[0]), 0.5 * (xy[1] + E[1])], E)
-                .expect("not white");
+            let half = dominant_wavelength([0.5 * (xy[0] + E[0]), 0.5 * (xy[1] + E[1])], E).expect("not white");
             assert!(
-                (half.wavelength_nm - got.wavelength_nm).abs() < 1e-9
-                    && (half.purity - 0.5 * got.purity).abs() < 1e-9
+                (half.wavelength_nm - got.wavelength_nm).abs() < 1e-9 && (half.purity - 0.5 * got.purity).abs() < 1e-9
             );
         }
     }
@@ -110,16 +97,9 @@ mod tests {
     /// The sRGB primaries under D65: whole nanometres by colour-science 0.4.7.
     #[test]
     fn srgb_primaries() {
-        for (xy, want) in [
-            ([0.64, 0.33], 611.0),
-            ([0.30, 0.60], 549.0),
-            ([0.15, 0.06], 464.0),
-        ] {
+        for (xy, want) in [([0.64, 0.33], 611.0), ([0.30, 0.60], 549.0), ([0.15, 0.06], 464.0)] {
             let got = dominant_wavelength(xy, D65).expect("not white");
-            assert!(
-                (got.wavelength_nm - want).abs() < 0.6 && !got.complementary,
-                "{xy:?} {got:?}"
-            );
+            assert!((got.wavelength_nm - want).abs() < 0.6 && !got.complementary, "{xy:?} {got:?}");
         }
     }
 
@@ -127,10 +107,7 @@ mod tests {
     fn purples_have_a_complement() {
         let got = dominant_wavelength([0.32, 0.15], D65).expect("not white");
         // 549 nm by colour-science 0.4.7, which gives whole nanometres.
-        assert!(
-            got.complementary && (got.wavelength_nm - 549.0).abs() < 0.6,
-            "{got:?}"
-        );
+        assert!(got.complementary && (got.wavelength_nm - 549.0).abs() < 0.6, "{got:?}");
         assert!((0.0..1.0).contains(&got.purity));
     }
 

@@ -8,6 +8,7 @@ use crate::cie::Observer;
 use crate::constants::LUMINOUS_EFFICACY_LM_PER_W;
 use crate::error::{SpectrumError, check};
 use crate::filter::{Reflectance, Sensitivity, Transmittance};
+use crate::gaussian::GaussianMixture;
 use crate::shape::Shape;
 use crate::tabulated::Tabulated;
 
@@ -48,12 +49,7 @@ impl Emission {
     /// [`SpectrumError::OutOfRange`] unless wavelengths of lines are positive and their powers 0 or more.
     pub fn new(continuum: Option<Shape>, lines: Vec<Line>) -> Result<Self, SpectrumError> {
         for line in &lines {
-            check(
-                "wavelength of a line, nm",
-                "positive",
-                line.wavelength_nm,
-                |w| w > 0.0,
-            )?;
+            check("wavelength of a line, nm", "positive", line.wavelength_nm, |w| w > 0.0)?;
             check("power of a line", "0 or more", line.power, |p| p >= 0.0)?;
         }
         Ok(Self { continuum, lines })
@@ -64,13 +60,7 @@ impl Emission {
     /// # Errors
     /// [`SpectrumError::OutOfRange`]; see [`Emission::new`].
     pub fn line(wavelength_nm: f64, power: f64) -> Result<Self, SpectrumError> {
-        Self::new(
-            None,
-            vec![Line {
-                wavelength_nm,
-                power,
-            }],
-        )
+        Self::new(None, vec![Line { wavelength_nm, power }])
     }
 
     /// `value` per nanometre at all wavelengths; 1 is illuminant E.
@@ -78,15 +68,7 @@ impl Emission {
     /// # Errors
     /// [`SpectrumError::OutOfRange`] unless it is 0 or more.
     pub fn constant(value: f64) -> Result<Self, SpectrumError> {
-        Self::new(
-            Some(Shape::constant(check(
-                "power per nm",
-                "0 or more",
-                value,
-                |v| v >= 0.0,
-            )?)?),
-            Vec::new(),
-        )
+        Self::new(Some(Shape::constant(check("power per nm", "0 or more", value, |v| v >= 0.0)?)?), Vec::new())
     }
 
     /// 1 per nanometre from `from_nm` to `to_nm`.
@@ -105,6 +87,15 @@ impl Emission {
         Self::new(Some(Shape::gaussian(center_nm, sigma_nm)?), Vec::new())
     }
 
+    /// A signed sum of Gaussian terms, power per nanometre; taken as 0 where it falls a little below.
+    ///
+    /// # Errors
+    /// [`SpectrumError::OutOfRange`] if it is nowhere positive on 350-830 nm, or falls below 0 there by more than a tenth
+    /// of its largest value.
+    pub fn mixture(terms: GaussianMixture) -> Result<Self, SpectrumError> {
+        Self::new(Some(Shape::positive_mixture(terms)?.0), Vec::new())
+    }
+
     /// A black body, W m^-2 sr^-1 nm^-1.
     ///
     /// # Errors
@@ -118,9 +109,7 @@ impl Emission {
     /// # Errors
     /// [`SpectrumError::OutOfRange`] if a value is negative.
     pub fn tabulated(table: Tabulated) -> Result<Self, SpectrumError> {
-        check("power per nm", "0 or more", table.extremes().0, |v| {
-            v >= 0.0
-        })?;
+        check("power per nm", "0 or more", table.extremes().0, |v| v >= 0.0)?;
         Self::new(Some(Shape::tabulated(table)), Vec::new())
     }
 
@@ -156,25 +145,14 @@ impl Emission {
     /// The continuum on `grid`; see [`Shape::on_grid`].
     #[must_use]
     pub fn on_grid(&self, grid: &Grid) -> Vec<f64> {
-        self.continuum
-            .as_ref()
-            .map_or_else(|| vec![0.0; grid.count], |c| c.on_grid(grid))
+        self.continuum.as_ref().map_or_else(|| vec![0.0; grid.count], |c| c.on_grid(grid))
     }
 
     /// Continuum on `grid`, and the lines within its band.
     #[must_use]
     pub fn to_power(&self, grid: &Grid) -> SpectralPower {
-        let lines = self
-            .lines
-            .iter()
-            .filter(|l| grid.contains(l.wavelength_nm))
-            .copied()
-            .collect();
-        SpectralPower {
-            grid: *grid,
-            continuum: self.on_grid(grid),
-            lines,
-        }
+        let lines = self.lines.iter().filter(|l| grid.contains(l.wavelength_nm)).copied().collect();
+        SpectralPower { grid: *grid, continuum: self.on_grid(grid), lines }
     }
 
     /// This times a number.
@@ -183,19 +161,8 @@ impl Emission {
     /// [`SpectrumError::OutOfRange`] unless it is finite and 0 or more.
     pub fn scaled(&self, factor: f64) -> Result<Self, SpectrumError> {
         check("factor", "0 or more", factor, |f| f >= 0.0)?;
-        let continuum = self
-            .continuum
-            .as_ref()
-            .map(|c| c.scaled(factor))
-            .transpose()?;
-        let lines = self
-            .lines
-            .iter()
-            .map(|l| Line {
-                power: l.power * factor,
-                ..*l
-            })
-            .collect();
+        let continuum = self.continuum.as_ref().map(|c| c.scaled(factor)).transpose()?;
+        let lines = self.lines.iter().map(|l| Line { power: l.power * factor, ..*l }).collect();
         Ok(Self { continuum, lines })
     }
 
@@ -211,10 +178,7 @@ impl Emission {
     pub fn seen_by(&self, sensitivity: &Sensitivity, grid: &Grid) -> f64 {
         let continuum = grid.integrate_product(&self.on_grid(grid), &sensitivity.on_grid(grid));
         let lines = self.lines.iter().filter(|l| grid.contains(l.wavelength_nm));
-        continuum
-            + lines
-                .map(|l| l.power * sensitivity.at(l.wavelength_nm))
-                .sum::<f64>()
+        continuum + lines.map(|l| l.power * sensitivity.at(l.wavelength_nm)).sum::<f64>()
     }
 
     /// Luminance, cd/m^2, of a radiance in W m^-2 sr^-1 nm^-1: 683 lm/W times the integral over V(lambda).
@@ -259,29 +223,14 @@ impl Emission {
     /// [`SpectrumError::NothingToScale`] for no light.
     pub fn scaled_to_peak(&self) -> Result<Self, SpectrumError> {
         let continuum = self.on_grid(&BAND).into_iter().fold(0.0_f64, f64::max);
-        let peak = if continuum > 0.0 {
-            continuum
-        } else {
-            self.lines.iter().map(|l| l.power).fold(0.0, f64::max)
-        };
-        if peak > 0.0 {
-            self.scaled(1.0 / peak)
-        } else {
-            Err(SpectrumError::NothingToScale("peak"))
-        }
+        let peak = if continuum > 0.0 { continuum } else { self.lines.iter().map(|l| l.power).fold(0.0, f64::max) };
+        if peak > 0.0 { self.scaled(1.0 / peak) } else { Err(SpectrumError::NothingToScale("peak")) }
     }
 
     fn through(&self, shape: &Shape) -> Self {
         Self {
             continuum: self.continuum.as_ref().map(|c| c.times(shape)),
-            lines: self
-                .lines
-                .iter()
-                .map(|l| Line {
-                    power: l.power * shape.at(l.wavelength_nm),
-                    ..*l
-                })
-                .collect(),
+            lines: self.lines.iter().map(|l| Line { power: l.power * shape.at(l.wavelength_nm), ..*l }).collect(),
         }
     }
 }
@@ -315,10 +264,7 @@ impl Add for &Emission {
             (Some(one), None) | (None, Some(one)) => Some(one.clone()),
             (None, None) => None,
         };
-        Emission {
-            continuum,
-            lines: [self.lines.as_slice(), &other.lines].concat(),
-        }
+        Emission { continuum, lines: [self.lines.as_slice(), &other.lines].concat() }
     }
 }
 
@@ -335,48 +281,30 @@ mod tests {
 
     #[test]
     fn lines_pass_matter_at_their_own_wavelength() {
-        let light =
-            Emission::line(450.5, 4.0).expect("valid") + Emission::constant(1.0).expect("valid");
-        let out =
-            &light * &Transmittance::from_points(&[400.0, 500.0], &[0.0, 1.0]).expect("valid");
+        let light = Emission::line(450.5, 4.0).expect("valid") + Emission::constant(1.0).expect("valid");
+        let out = &light * &Transmittance::from_points(&[400.0, 500.0], &[0.0, 1.0]).expect("valid");
         assert!((out.lines()[0].power - 4.0 * 0.505).abs() < 1e-15);
         assert!((out.at(425.0) - 0.25).abs() < 1e-15);
     }
 
     #[test]
     fn scaling_reaches_luminance_and_power() {
-        let lamp = Emission::blackbody(3200.0).expect("valid")
-            + Emission::line(546.074, 3.0).expect("valid");
+        let lamp = Emission::blackbody(3200.0).expect("valid") + Emission::line(546.074, 3.0).expect("valid");
         let lit = lamp.scaled_to_luminance(300.0).expect("has light");
         assert!((lit.luminance() - 300.0).abs() < 1e-10);
         let strong = lamp.scaled_to_power(2.5).expect("has light");
         assert!((strong.power(&BAND) - 2.5).abs() < 1e-12);
         // 1 W at 555 nm, where V is 1, is 683 lm.
         let green = Emission::line(555.0, 1.0).expect("valid");
-        assert!(
-            (green.luminance() - 683.0).abs() < 1e-9,
-            "{}",
-            green.luminance()
-        );
+        assert!((green.luminance() - 683.0).abs() < 1e-9, "{}", green.luminance());
     }
 
     #[test]
     fn darkness_has_no_scale() {
         let infrared = Emission::line(1064.0, 1.0).expect("valid");
-        assert_eq!(
-            infrared.scaled_to_luminance(1.0),
-            Err(SpectrumError::NothingToScale("luminance"))
-        );
-        assert_eq!(
-            infrared.scaled_to_power(1.0),
-            Err(SpectrumError::NothingToScale("power"))
-        );
-        assert!(
-            Emission::constant(1.0)
-                .expect("valid")
-                .scaled_to_luminance(-1.0)
-                .is_err()
-        );
+        assert_eq!(infrared.scaled_to_luminance(1.0), Err(SpectrumError::NothingToScale("luminance")));
+        assert_eq!(infrared.scaled_to_power(1.0), Err(SpectrumError::NothingToScale("power")));
+        assert!(Emission::constant(1.0).expect("valid").scaled_to_luminance(-1.0).is_err());
     }
 
     #[test]

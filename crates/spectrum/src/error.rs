@@ -76,11 +76,7 @@ pub enum SpectrumError {
 }
 
 fn near(candidates: &[String]) -> String {
-    if candidates.is_empty() {
-        String::new()
-    } else {
-        format!("; near: {}", candidates.join(", "))
-    }
+    if candidates.is_empty() { String::new() } else { format!("; near: {}", candidates.join(", ")) }
 }
 
 /// `value` if `test` holds and it is finite.
@@ -90,13 +86,5 @@ pub(crate) fn check(
     value: f64,
     test: impl Fn(f64) -> bool,
 ) -> Result<f64, SpectrumError> {
-    if value.is_finite() && test(value) {
-        Ok(value)
-    } else {
-        Err(SpectrumError::OutOfRange {
-            what,
-            wanted,
-            value,
-        })
-    }
+    if value.is_finite() && test(value) { Ok(value) } else { Err(SpectrumError::OutOfRange { what, wanted, value }) }
 }

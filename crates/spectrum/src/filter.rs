@@ -5,6 +5,7 @@ use std::ops::Mul;
 use spectra_core::spectral::Grid;
 
 use crate::error::{SpectrumError, check};
+use crate::gaussian::GaussianMixture;
 use crate::meta::{Kind, Outside, Scale};
 use crate::shape::Shape;
 use crate::tabulated::Tabulated;
@@ -37,23 +38,26 @@ macro_rules! filter {
             /// # Errors
             /// [`SpectrumError::OutOfRange`]; see [`Shape::rectangle`].
             pub fn rectangle(from_nm: f64, to_nm: f64, value: f64) -> Result<Self, SpectrumError> {
-                Ok(Self(
-                    Shape::rectangle(from_nm, to_nm)?.scaled(check_value($kind, value)?)?,
-                ))
+                Ok(Self(Shape::rectangle(from_nm, to_nm)?.scaled(check_value($kind, value)?)?))
             }
 
             /// A Gaussian of standard deviation `sigma_nm` and height `peak`.
             ///
             /// # Errors
             /// [`SpectrumError::OutOfRange`]; see [`Shape::gaussian`].
-            pub fn gaussian(
-                center_nm: f64,
-                sigma_nm: f64,
-                peak: f64,
-            ) -> Result<Self, SpectrumError> {
-                Ok(Self(
-                    Shape::gaussian(center_nm, sigma_nm)?.scaled(check_value($kind, peak)?)?,
-                ))
+            pub fn gaussian(center_nm: f64, sigma_nm: f64, peak: f64) -> Result<Self, SpectrumError> {
+                Ok(Self(Shape::gaussian(center_nm, sigma_nm)?.scaled(check_value($kind, peak)?)?))
+            }
+
+            /// A signed sum of Gaussian terms; taken as 0 where it falls a little below.
+            ///
+            /// # Errors
+            /// [`SpectrumError::OutOfRange`] if it is nowhere positive on 350-830 nm, falls below 0 there by more than a
+            /// tenth of its largest value, or exceeds the bound of its kind.
+            pub fn mixture(terms: GaussianMixture) -> Result<Self, SpectrumError> {
+                let (shape, largest) = Shape::positive_mixture(terms)?;
+                check_value($kind, largest)?;
+                Ok(Self(shape))
             }
 
             /// A table.
@@ -71,17 +75,9 @@ macro_rules! filter {
             ///
             /// # Errors
             /// [`SpectrumError::OutOfRange`]; see [`Tabulated::new`].
-            pub fn from_points(
-                wavelengths_nm: &[f64],
-                values: &[f64],
-            ) -> Result<Self, SpectrumError> {
+            pub fn from_points(wavelengths_nm: &[f64], values: &[f64]) -> Result<Self, SpectrumError> {
                 let kind: Kind = $kind;
-                Self::tabulated(Tabulated::new(
-                    wavelengths_nm,
-                    values,
-                    kind.outside(),
-                    Scale::Linear,
-                )?)
+                Self::tabulated(Tabulated::new(wavelengths_nm, values, kind.outside(), Scale::Linear)?)
             }
 
             /// A column of a file, whose reader has checked it.
@@ -123,15 +119,8 @@ fn check_value(kind: Kind, value: f64) -> Result<f64, SpectrumError> {
     match kind {
         // A detector's response may be in any unit once it is not read from a file.
         Kind::Sensitivity => check("sensitivity", "0 or more", value, |v| v >= 0.0),
-        Kind::Reflectance => check("reflectance", "between 0 and 1.5", value, |v| {
-            (0.0..=1.5).contains(&v)
-        }),
-        _ => check(
-            "transmittance",
-            "between 0 and 1 (1.02 for noise)",
-            value,
-            |v| (0.0..=1.02).contains(&v),
-        ),
+        Kind::Reflectance => check("reflectance", "between 0 and 1.5", value, |v| (0.0..=1.5).contains(&v)),
+        _ => check("transmittance", "between 0 and 1 (1.02 for noise)", value, |v| (0.0..=1.02).contains(&v)),
     }
 }
 
@@ -140,16 +129,8 @@ impl Sensitivity {
     ///
     /// # Errors
     /// [`SpectrumError::OutOfRange`]; see [`Tabulated::new`].
-    pub fn from_log10_points(
-        wavelengths_nm: &[f64],
-        logarithms: &[f64],
-    ) -> Result<Self, SpectrumError> {
-        Self::tabulated(Tabulated::new(
-            wavelengths_nm,
-            logarithms,
-            Outside::Zero,
-            Scale::Log10,
-        )?)
+    pub fn from_log10_points(wavelengths_nm: &[f64], logarithms: &[f64]) -> Result<Self, SpectrumError> {
+        Self::tabulated(Tabulated::new(wavelengths_nm, logarithms, Outside::Zero, Scale::Log10)?)
     }
 
     /// This times a number.
@@ -157,12 +138,7 @@ impl Sensitivity {
     /// # Errors
     /// [`SpectrumError::OutOfRange`] unless it is finite and 0 or more.
     pub fn scaled(&self, factor: f64) -> Result<Self, SpectrumError> {
-        Ok(Self(self.0.scaled(check(
-            "factor",
-            "0 or more",
-            factor,
-            |f| f >= 0.0,
-        )?)?))
+        Ok(Self(self.0.scaled(check("factor", "0 or more", factor, |f| f >= 0.0)?)?))
     }
 }
 
@@ -190,3 +166,29 @@ multiply!(Reflectance * Transmittance = Reflectance);
 multiply!(Reflectance * Reflectance = Reflectance);
 multiply!(Sensitivity * Transmittance = Sensitivity);
 multiply!(Transmittance * Sensitivity = Sensitivity);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gaussian::{GaussianTerm, fit_gaussians};
+    use crate::{BAND, Emission, find_sensitivity};
+
+    /// Ortho Plus as six Gaussians sees what its table sees, within the integral error of the fit.
+    #[test]
+    fn fitted_terms_are_a_detector() {
+        let film = find_sensitivity("ilford-ortho-plus").expect("bundled");
+        let fit = fit_gaussians(&BAND, &film.on_grid(&BAND), 6).expect("fits");
+        let again = Sensitivity::mixture(fit.mixture).expect("almost nowhere negative");
+        let light = Emission::constant(1.0).expect("valid");
+        let (a, b) = (light.seen_by(&film, &BAND), light.seen_by(&again, &BAND));
+        assert!((b / a - 1.0).abs() < 0.005, "{a} {b}");
+        assert!(BAND.wavelengths_nm().all(|w| again.at(w) >= 0.0));
+    }
+
+    #[test]
+    fn a_filter_passes_no_more_than_all() {
+        let terms = |a| GaussianMixture::new(vec![GaussianTerm::new(a, 550.0, 30.0).expect("valid")]);
+        assert!(Transmittance::mixture(terms(1.0)).is_ok() && Transmittance::mixture(terms(1.1)).is_err());
+        assert!(Reflectance::mixture(terms(1.1)).is_ok() && Sensitivity::mixture(terms(900.0)).is_ok());
+    }
+}

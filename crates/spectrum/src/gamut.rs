@@ -39,10 +39,7 @@ pub fn oklab(xyz: [f64; 3]) -> [f64; 3] {
 /// XYZ under D65 of Oklab.
 #[must_use]
 pub fn xyz_of_oklab(lab: [f64; 3]) -> [f64; 3] {
-    apply(
-        &inverse(&RESPONSES),
-        apply(&inverse(&OKLAB), lab).map(|v| v * v * v),
-    )
+    apply(&inverse(&RESPONSES), apply(&inverse(&OKLAB), lab).map(|v| v * v * v))
 }
 
 fn fits(rgb: [f64; 3]) -> bool {
@@ -91,11 +88,7 @@ fn perceptual(rgb: [f64; 3], space: &RgbSpace) -> [f64; 3] {
     // 40 halvings: a chroma within 1e-12 of the surface of the gamut.
     for _ in 0..40 {
         let middle = 0.5 * (low + high);
-        if fits(at(middle)) {
-            low = middle
-        } else {
-            high = middle
-        }
+        if fits(at(middle)) { low = middle } else { high = middle }
     }
     clip(at(low))
 }
@@ -117,16 +110,8 @@ mod tests {
             ([0.000, 0.000, 1.000], [0.153, -1.415, -0.449]),
         ] {
             let got = oklab(xyz);
-            assert!(
-                got.iter().zip(want).all(|(a, b)| (a - b).abs() < 6e-4),
-                "{got:?} {want:?}"
-            );
-            assert!(
-                xyz_of_oklab(got)
-                    .iter()
-                    .zip(xyz)
-                    .all(|(a, b)| (a - b).abs() < 1e-12)
-            );
+            assert!(got.iter().zip(want).all(|(a, b)| (a - b).abs() < 6e-4), "{got:?} {want:?}");
+            assert!(xyz_of_oklab(got).iter().zip(xyz).all(|(a, b)| (a - b).abs() < 1e-12));
         }
     }
 
@@ -138,22 +123,11 @@ mod tests {
                 for nm in (380..=720).step_by(5) {
                     let rgb = space.from_xyz(Observer::cie_1931_2deg().at(f64::from(nm)));
                     let got = into_gamut(rgb, space, m);
-                    assert!(
-                        got.iter().all(|v| (0.0..=1.0).contains(v)),
-                        "{nm} {m:?} {got:?}"
-                    );
+                    assert!(got.iter().all(|v| (0.0..=1.0).contains(v)), "{nm} {m:?} {got:?}");
                 }
-                for rgb in [
-                    [-1.0; 3],
-                    [5.0; 3],
-                    [f64::NAN, 0.0, 2.0],
-                    [f64::INFINITY, 0.0, 0.0],
-                ] {
+                for rgb in [[-1.0; 3], [5.0; 3], [f64::NAN, 0.0, 2.0], [f64::INFINITY, 0.0, 0.0]] {
                     let got = into_gamut(rgb, space, m);
-                    assert!(
-                        got.iter().all(|v| (0.0..=1.0).contains(v)),
-                        "{rgb:?} {m:?} {got:?}"
-                    );
+                    assert!(got.iter().all(|v| (0.0..=1.0).contains(v)), "{rgb:?} {m:?} {got:?}");
                 }
             }
         }
@@ -164,14 +138,8 @@ mod tests {
         let space = RgbSpace::srgb();
         for rgb in [[0.9, 0.5, -0.2], [1.3, 0.2, 0.1], [-0.3, 0.4, 0.5]] {
             let got = into_gamut(rgb, space, Gamut::Desaturate);
-            assert!(
-                (space.luminance(got) - space.luminance(rgb)).abs() < 1e-14,
-                "{got:?}"
-            );
-            assert!(
-                got.iter().any(|v| *v < 1e-14 || *v > 1.0 - 1e-14),
-                "{got:?}"
-            );
+            assert!((space.luminance(got) - space.luminance(rgb)).abs() < 1e-14, "{got:?}");
+            assert!(got.iter().any(|v| *v < 1e-14 || *v > 1.0 - 1e-14), "{got:?}");
         }
     }
 
@@ -183,10 +151,7 @@ mod tests {
             let after = oklab(space.to_xyz(into_gamut(rgb, space, Gamut::Perceptual)));
             assert!((before[0] - after[0]).abs() < 1e-9);
             let hue = |l: [f64; 3]| libm::atan2(l[2], l[1]);
-            assert!(
-                (hue(before) - hue(after)).abs() < 1e-6,
-                "{before:?} {after:?}"
-            );
+            assert!((hue(before) - hue(after)).abs() < 1e-6, "{before:?} {after:?}");
         }
     }
 }

@@ -23,17 +23,12 @@ pub fn illuminant_names() -> impl Iterator<Item = &'static str> {
 /// [`SpectrumError::Unknown`] with near names.
 pub fn illuminant(name: &str) -> Result<Emission, SpectrumError> {
     let wanted = normalized(name);
-    let fluorescent = wanted
-        .strip_prefix('f')
-        .filter(|n| n.starts_with(|c: char| c.is_ascii_digit()));
+    let fluorescent = wanted.strip_prefix('f').filter(|n| n.starts_with(|c: char| c.is_ascii_digit()));
     let wanted = fluorescent.map_or(wanted.clone(), |n| format!("fl{n}"));
     let found = illuminant_names().find(|n| normalized(n) == wanted);
     let Some(found) = found else {
         let candidates = candidates(name, illuminant_names());
-        return Err(SpectrumError::Unknown {
-            name: name.to_owned(),
-            candidates,
-        });
+        return Err(SpectrumError::Unknown { name: name.to_owned(), candidates });
     };
     Emission::tabulated(bundled::table(&format!("{FOLDER}{found}.csv")).column_at(0))
 }
@@ -43,9 +38,7 @@ pub fn illuminant(name: &str) -> Result<Emission, SpectrumError> {
 /// # Errors
 /// [`SpectrumError::OutOfRange`] outside of 4000-25000 K.
 pub fn daylight_xy(cct_k: f64) -> Result<[f64; 2], SpectrumError> {
-    let t = check("temperature of daylight, K", "4000 to 25000", cct_k, |t| {
-        (4000.0..=25_000.0).contains(&t)
-    })?;
+    let t = check("temperature of daylight, K", "4000 to 25000", cct_k, |t| (4000.0..=25_000.0).contains(&t))?;
     let polynomial = |c: [f64; 4]| ((c[0] / t + c[1]) / t + c[2]) / t + c[3];
     let x = if t <= 7000.0 {
         polynomial([-4.6070e9, 2.9678e6, 0.09911e3, 0.244_063])
@@ -73,12 +66,7 @@ pub fn daylight(cct_k: f64) -> Result<Emission, SpectrumError> {
         // Far from white the sum can dip below 0 at the ultraviolet end, where there is no light.
         .map(|i| (s0.values()[i] + m1 * s1.values()[i] + m2 * s2.values()[i]).max(0.0))
         .collect();
-    Emission::tabulated(Tabulated::new(
-        s0.wavelengths_nm(),
-        &values,
-        Outside::Constant,
-        Scale::Linear,
-    )?)
+    Emission::tabulated(Tabulated::new(s0.wavelengths_nm(), &values, Outside::Constant, Scale::Linear)?)
 }
 
 #[cfg(test)]
@@ -88,21 +76,11 @@ mod tests {
 
     #[test]
     fn names_are_found_however_written() {
-        for name in [
-            "D65",
-            "d65",
-            "F11",
-            "fl 11",
-            "FL3.15",
-            "led_b3",
-            "iso 7589 photographic daylight",
-        ] {
+        for name in ["D65", "d65", "F11", "fl 11", "FL3.15", "led_b3", "iso 7589 photographic daylight"] {
             assert!(illuminant(name).is_ok(), "{name}");
         }
         assert_eq!(illuminant_names().count(), 59);
-        let Err(SpectrumError::Unknown { candidates, .. }) = illuminant("D66") else {
-            panic!("unknown")
-        };
+        let Err(SpectrumError::Unknown { candidates, .. }) = illuminant("D66") else { panic!("unknown") };
         assert!(candidates.contains(&"D65".to_owned()), "{candidates:?}");
     }
 
@@ -122,10 +100,7 @@ mod tests {
     #[test]
     fn d65_is_right_at_the_ultraviolet_edge() {
         let d65 = illuminant("D65").expect("bundled");
-        assert_eq!(
-            [d65.at(350.0), d65.at(355.0), d65.at(360.0)],
-            [44.9117, 45.775, 46.6383]
-        );
+        assert_eq!([d65.at(350.0), d65.at(355.0), d65.at(360.0)], [44.9117, 45.775, 46.6383]);
     }
 
     /// The definition puts a daylight at its own chromaticity; the vectors were rounded to a decimal, hence 5e-4.
@@ -133,12 +108,8 @@ mod tests {
     fn daylight_has_its_chromaticity() {
         for t in [4000.0, 5003.0, 6504.0, 7000.0, 7001.0, 10_000.0, 25_000.0] {
             let want = daylight_xy(t).expect("in range");
-            let got = chromaticity(Observer::cie_1931_2deg().xyz(&daylight(t).expect("in range")))
-                .expect("light");
-            assert!(
-                (got[0] - want[0]).abs() < 5e-4 && (got[1] - want[1]).abs() < 5e-4,
-                "{t}: {got:?} {want:?}"
-            );
+            let got = chromaticity(Observer::cie_1931_2deg().xyz(&daylight(t).expect("in range"))).expect("light");
+            assert!((got[0] - want[0]).abs() < 5e-4 && (got[1] - want[1]).abs() < 5e-4, "{t}: {got:?} {want:?}");
         }
         assert!(daylight(3999.0).is_err() && daylight(f64::NAN).is_err());
     }

@@ -52,22 +52,19 @@ mod truncated;
 
 pub use adaptation::Adaptation;
 pub use by_name::{
-    Found, bundled_spectra, find, find_emission, find_emission_in, find_in, find_reflectance,
-    find_reflectance_in, find_sensitivity, find_sensitivity_in, find_transmittance,
-    find_transmittance_in,
+    Found, bundled_spectra, find, find_emission, find_emission_in, find_in, find_reflectance, find_reflectance_in,
+    find_sensitivity, find_sensitivity_in, find_transmittance, find_transmittance_in,
 };
 pub use cct::{Cct, cct, uv_1960};
 pub use cie::{Observer, v_lambda, v_prime};
-pub use colorimetry::{
-    chromaticity, lab, xyz_of_lab, xyz_of_light, xyz_of_reflectance, xyz_of_transmittance,
-};
+pub use colorimetry::{chromaticity, lab, xyz_of_lab, xyz_of_light, xyz_of_reflectance, xyz_of_transmittance};
 pub use difference::ciede2000;
 pub use dominant::{Dominant, dominant_wavelength};
 pub use emission::Emission;
 pub use error::SpectrumError;
 pub use filter::{Reflectance, Sensitivity, Transmittance};
-pub use gaussian::{GaussianFit, GaussianFitReport, GaussianMixture, GaussianTerm, NoGaussian, fit_gaussians};
 pub use gamut::{Gamut, into_gamut, oklab, xyz_of_oklab};
+pub use gaussian::{GaussianFit, GaussianFitReport, GaussianMixture, GaussianTerm, NoGaussian, fit_gaussians};
 pub use illuminants::{daylight, daylight_xy, illuminant, illuminant_names};
 pub use lines::{LINE_SETS, NAMED_LINES, NamedLine, balmer, line_set, named_line};
 pub use meta::{Interpolation, Kind, Meta, Outside, Scale};

@@ -15,18 +15,8 @@ pub struct NamedLine {
     pub element: &'static str,
 }
 
-const fn named(
-    symbol: &'static str,
-    nominal_nm: f64,
-    precise_nm: f64,
-    element: &'static str,
-) -> NamedLine {
-    NamedLine {
-        symbol,
-        nominal_nm,
-        precise_nm,
-        element,
-    }
+const fn named(symbol: &'static str, nominal_nm: f64, precise_nm: f64, element: &'static str) -> NamedLine {
+    NamedLine { symbol, nominal_nm, precise_nm, element }
 }
 
 /// All named lines, by wavelength. ISO 7944:1998; precise values as makers of glass state them (Schott TIE-29).
@@ -48,12 +38,8 @@ pub const NAMED_LINES: [NamedLine; 14] = [
 ];
 
 /// Sets of three lines by their letters, from blue to red, as they define a dispersion.
-pub const LINE_SETS: [(&str, [&str; 3]); 4] = [
-    ("FDC", ["F", "D", "C"]),
-    ("FdC", ["F", "d", "C"]),
-    ("FeC", ["F", "e", "C"]),
-    ("F'eC'", ["F'", "e", "C'"]),
-];
+pub const LINE_SETS: [(&str, [&str; 3]); 4] =
+    [("FDC", ["F", "D", "C"]), ("FdC", ["F", "d", "C"]), ("FeC", ["F", "e", "C"]), ("F'eC'", ["F'", "e", "C'"])];
 
 /// The line of that letter. Case matters: `d` is helium, `D` sodium. A typographic apostrophe is taken as a straight one.
 #[must_use]
@@ -104,21 +90,13 @@ mod tests {
             ("r", 706.5188),
             ("A'", 768.195),
         ] {
-            assert_eq!(
-                named_line(symbol).expect("named").precise_nm,
-                want,
-                "{symbol}"
-            );
+            assert_eq!(named_line(symbol).expect("named").precise_nm, want, "{symbol}");
         }
     }
 
     #[test]
     fn nominal_lines_are_the_precise_ones_rounded() {
-        assert!(
-            NAMED_LINES
-                .windows(2)
-                .all(|w| w[0].nominal_nm < w[1].nominal_nm)
-        );
+        assert!(NAMED_LINES.windows(2).all(|w| w[0].nominal_nm < w[1].nominal_nm));
         for l in NAMED_LINES {
             // i, g and D are rounded by custom, not arithmetic: 435.8343 is written 435.84.
             assert!((l.nominal_nm - l.precise_nm).abs() < 0.0075, "{}", l.symbol);

@@ -41,10 +41,6 @@ mod tests {
             }
         }
         let v = apply(&inverse(&m), apply(&m, [1.0, 2.0, 3.0]));
-        assert!(
-            v.iter()
-                .zip([1.0, 2.0, 3.0])
-                .all(|(a, b)| (a - b).abs() < 1e-14)
-        );
+        assert!(v.iter().zip([1.0, 2.0, 3.0]).all(|(a, b)| (a - b).abs() < 1e-14));
     }
 }

@@ -80,9 +80,7 @@ impl Kind {
     #[must_use]
     pub fn outside(self) -> Outside {
         match self {
-            Self::Emission | Self::Transmittance | Self::Reflectance | Self::Components => {
-                Outside::Constant
-            }
+            Self::Emission | Self::Transmittance | Self::Reflectance | Self::Components => Outside::Constant,
             Self::Lines | Self::Sensitivity | Self::ColorMatching => Outside::Zero,
         }
     }
@@ -120,9 +118,7 @@ impl Outside {
     /// The extension of that word.
     #[must_use]
     pub fn from_word(word: &str) -> Option<Self> {
-        [Self::Zero, Self::Constant, Self::Geometric]
-            .into_iter()
-            .find(|o| o.word() == word)
+        [Self::Zero, Self::Constant, Self::Geometric].into_iter().find(|o| o.word() == word)
     }
 }
 
@@ -160,9 +156,7 @@ impl Interpolation {
     /// The interpolation of that word.
     #[must_use]
     pub fn from_word(word: &str) -> Option<Self> {
-        [Self::Linear, Self::Sprague]
-            .into_iter()
-            .find(|i| i.word() == word)
+        [Self::Linear, Self::Sprague].into_iter().find(|i| i.word() == word)
     }
 }
 
@@ -223,21 +217,13 @@ impl Meta {
             ("conditions", self.conditions.is_some()),
             ("range", self.range_nm.is_some()),
         ];
-        present
-            .into_iter()
-            .filter(|(_, has)| !has)
-            .map(|(key, _)| key)
-            .collect()
+        present.into_iter().filter(|(_, has)| !has).map(|(key, _)| key).collect()
     }
 
     /// The scale that `unit` names.
     #[must_use]
     pub fn scale(&self) -> Scale {
-        if self.unit.as_deref() == Some("log10") {
-            Scale::Log10
-        } else {
-            Scale::Linear
-        }
+        if self.unit.as_deref() == Some("log10") { Scale::Log10 } else { Scale::Linear }
     }
 
     /// Sets `key`; the error says what the value should have been, or `None` for an unknown key.
@@ -261,17 +247,12 @@ impl Meta {
                 self.kind = Some(Kind::from_word(value).ok_or(Some(wanted))?);
             }
             "outside" => {
-                self.outside =
-                    Some(Outside::from_word(value).ok_or(Some("zero, constant or geometric"))?);
+                self.outside = Some(Outside::from_word(value).ok_or(Some("zero, constant or geometric"))?);
             }
             "interpolation" => {
-                self.interpolation =
-                    Interpolation::from_word(value).ok_or(Some("linear or sprague"))?;
+                self.interpolation = Interpolation::from_word(value).ok_or(Some("linear or sprague"))?;
             }
-            "range" => {
-                self.range_nm =
-                    Some(range(value).ok_or(Some("two wavelengths, such as 380-780 nm"))?)
-            }
+            "range" => self.range_nm = Some(range(value).ok_or(Some("two wavelengths, such as 380-780 nm"))?),
             _ => return Err(None),
         }
         Ok(())

@@ -3,10 +3,7 @@
 /// Lower case, without spaces, hyphens and underscores.
 #[must_use]
 pub(crate) fn normalized(name: &str) -> String {
-    name.chars()
-        .filter(|c| !matches!(c, ' ' | '-' | '_'))
-        .flat_map(char::to_lowercase)
-        .collect()
+    name.chars().filter(|c| !matches!(c, ' ' | '-' | '_')).flat_map(char::to_lowercase).collect()
 }
 
 /// Number of characters to insert, delete, replace or swap with their neighbor to get from `a` to `b`.
@@ -37,8 +34,7 @@ pub(crate) fn candidates<'a>(wanted: &str, names: impl Iterator<Item = &'a str>)
     for name in names {
         let other = normalized(name);
         let apart = distance(&letters, &other.chars().collect::<Vec<_>>());
-        let within = letters.len() >= 3
-            && (other.contains(&key) || key.contains(&other) && other.len() >= 3);
+        let within = letters.len() >= 3 && (other.contains(&key) || key.contains(&other) && other.len() >= 3);
         if within {
             near.push((0, name));
         } else if apart <= (letters.len() / 3).max(1) {
@@ -47,10 +43,7 @@ pub(crate) fn candidates<'a>(wanted: &str, names: impl Iterator<Item = &'a str>)
     }
     near.sort();
     near.dedup();
-    near.into_iter()
-        .take(6)
-        .map(|(_, n)| n.to_owned())
-        .collect()
+    near.into_iter().take(6).map(|(_, n)| n.to_owned()).collect()
 }
 
 #[cfg(test)]
@@ -59,38 +52,15 @@ mod tests {
 
     #[test]
     fn slips_of_the_pen_are_one_apart() {
-        let d = |a: &str, b: &str| {
-            distance(
-                &a.chars().collect::<Vec<_>>(),
-                &b.chars().collect::<Vec<_>>(),
-            )
-        };
-        assert_eq!(
-            [
-                d("d65", "d56"),
-                d("d65", "d6"),
-                d("d65", "d655"),
-                d("d65", "d60"),
-                d("", "ab")
-            ],
-            [1, 1, 1, 1, 2]
-        );
+        let d = |a: &str, b: &str| distance(&a.chars().collect::<Vec<_>>(), &b.chars().collect::<Vec<_>>());
+        assert_eq!([d("d65", "d56"), d("d65", "d6"), d("d65", "d655"), d("d65", "d60"), d("", "ab")], [1, 1, 1, 1, 2]);
     }
 
     #[test]
     fn nearest_come_first() {
-        let names = [
-            "mercury",
-            "neon",
-            "argon",
-            "hydrogen",
-            "iso-7589-photographic-daylight",
-        ];
+        let names = ["mercury", "neon", "argon", "hydrogen", "iso-7589-photographic-daylight"];
         assert_eq!(candidates("mercuri", names.into_iter()), ["mercury"]);
-        assert_eq!(
-            candidates("Photographic Daylight", names.into_iter()),
-            ["iso-7589-photographic-daylight"]
-        );
+        assert_eq!(candidates("Photographic Daylight", names.into_iter()), ["iso-7589-photographic-daylight"]);
         assert!(candidates("zzzz", names.into_iter()).is_empty());
     }
 }

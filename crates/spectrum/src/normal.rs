@@ -34,12 +34,8 @@ pub(crate) struct Mass {
 }
 
 impl Mass {
-    /// From `a` to `b`; none if b is not above a. Relative error about 1e-14.
-    pub fn between(a: f64, b: f64) -> Self {
-        Self::of_width(a, b, b - a)
-    }
-
-    /// From `a` to `b`, whose distance `width` is known with more digits than theirs: far out they lose it.
+    /// From `a` to `b`, whose distance `width` is known with more digits than theirs: far out they lose it. None unless
+    /// it is positive. Relative error about 1e-14.
     ///
     /// By erf where the interval holds 0, by Mills' ratio (erfc without its underflow) in the tails, and by Gauss and
     /// Legendre's rule where the ends are so close that the difference of those would cancel.
@@ -74,6 +70,10 @@ impl Mass {
 mod tests {
     use super::*;
 
+    fn between(a: f64, b: f64) -> Mass {
+        Mass::of_width(a, b, b - a)
+    }
+
     /// Mills' ratio to 16 digits, computed with 40 digits by mpmath: sqrt(pi/2) exp(z^2/2) erfc(z/sqrt 2).
     #[test]
     fn mills_ratio() {
@@ -94,18 +94,18 @@ mod tests {
     #[test]
     fn masses_add_up_across_all_branches() {
         for (a, b) in [(-9.0, 7.0), (-0.4, 0.5), (0.0, 3.0), (2.0, 2.3), (6.0, 40.0), (-50.0, -30.0), (60.0, 61.0)] {
-            let whole = Mass::between(a, b);
+            let whole = between(a, b);
             for share in [1e-3, 0.1, 0.5, 0.93] {
                 let middle = a + (b - a) * share;
-                let sum: f64 = [Mass::between(a, middle), Mass::between(middle, b)]
+                let sum: f64 = [between(a, middle), between(middle, b)]
                     .iter()
                     .map(|m| m.scaled * libm::exp(-0.5 * (m.nearest - whole.nearest) * (m.nearest + whole.nearest)))
                     .sum();
                 assert!((sum / whole.scaled - 1.0).abs() < 3e-14, "{a} {b} {share}: {}", sum / whole.scaled - 1.0);
             }
         }
-        assert_eq!(Mass::between(1.0, 1.0).value(), 0.0);
-        assert!((Mass::between(f64::NEG_INFINITY, f64::INFINITY).value() - SQRT_TAU).abs() < 1e-15);
-        assert_eq!(Mass::between(f64::NAN, 1.0).scaled, 0.0);
+        assert_eq!(between(1.0, 1.0).value(), 0.0);
+        assert!((between(f64::NEG_INFINITY, f64::INFINITY).value() - SQRT_TAU).abs() < 1e-15);
+        assert_eq!(between(f64::NAN, 1.0).scaled, 0.0);
     }
 }

@@ -13,8 +13,7 @@ pub fn planck_radiance(wavelength_nm: f64, temperature_k: f64) -> f64 {
     }
     let m = wavelength_nm * 1e-9;
     let fifth = m * m * m * m * m;
-    let per_metre = FIRST_RADIATION_W_M2_PER_SR
-        / (fifth * libm::expm1(SECOND_RADIATION_M_K / (m * temperature_k)));
+    let per_metre = FIRST_RADIATION_W_M2_PER_SR / (fifth * libm::expm1(SECOND_RADIATION_M_K / (m * temperature_k)));
     per_metre * 1e-9
 }
 
@@ -64,10 +63,7 @@ mod tests {
         let kelvin = 5000.0;
         let peak = WIEN_M_K / kelvin * 1e9;
         let at_peak = planck_radiance(peak, kelvin);
-        assert!(
-            at_peak > planck_radiance(peak * 1.0001, kelvin)
-                && at_peak > planck_radiance(peak / 1.0001, kelvin)
-        );
+        assert!(at_peak > planck_radiance(peak * 1.0001, kelvin) && at_peak > planck_radiance(peak / 1.0001, kelvin));
         // Trapezoids in ln(lambda): the integrand decays smoothly at both ends, so they converge fast.
         let (low, high, n) = (2.0_f64, 18.0_f64, 4000);
         let step = (high - low) / f64::from(n);
@@ -82,14 +78,7 @@ mod tests {
 
     #[test]
     fn extremes_are_finite() {
-        for (nm, kelvin) in [
-            (1e-3, 10.0),
-            (1e9, 1e6),
-            (500.0, 0.0),
-            (0.0, 5000.0),
-            (-1.0, 300.0),
-            (f64::NAN, 300.0),
-        ] {
+        for (nm, kelvin) in [(1e-3, 10.0), (1e9, 1e6), (500.0, 0.0), (0.0, 5000.0), (-1.0, 300.0), (f64::NAN, 300.0)] {
             let got = planck_radiance(nm, kelvin);
             assert!(got >= 0.0 && got.is_finite(), "{nm} {kelvin}: {got}");
         }

@@ -69,36 +69,19 @@ pub struct RgbSpace {
 impl RgbSpace {
     /// A space from its primaries and white; white is RGB (1, 1, 1) with Y = 1.
     #[must_use]
-    pub fn new(
-        name: &'static str,
-        primaries_xy: [[f64; 2]; 3],
-        white_xy: [f64; 2],
-        transfer: Transfer,
-    ) -> Self {
+    pub fn new(name: &'static str, primaries_xy: [[f64; 2]; 3], white_xy: [f64; 2], transfer: Transfer) -> Self {
         let columns = primaries_xy.map(|xy| xyz_of_xy(xy, 1.0));
         let unscaled: Matrix = [0, 1, 2].map(|i| [0, 1, 2].map(|j| columns[j][i]));
         let scale = apply(&inverse(&unscaled), xyz_of_xy(white_xy, 1.0));
         let xyz_from_rgb: Matrix = unscaled.map(|row| [0, 1, 2].map(|j| row[j] * scale[j]));
-        Self {
-            name,
-            primaries_xy,
-            white_xy,
-            transfer,
-            rgb_from_xyz: inverse(&xyz_from_rgb),
-            xyz_from_rgb,
-        }
+        Self { name, primaries_xy, white_xy, transfer, rgb_from_xyz: inverse(&xyz_from_rgb), xyz_from_rgb }
     }
 
     /// sRGB, IEC 61966-2-1:1999: primaries of ITU-R BT.709, white D65 (0.3127, 0.3290).
     pub fn srgb() -> &'static Self {
         static ONE: OnceLock<RgbSpace> = OnceLock::new();
         ONE.get_or_init(|| {
-            Self::new(
-                "sRGB",
-                [[0.64, 0.33], [0.30, 0.60], [0.15, 0.06]],
-                [0.3127, 0.3290],
-                Transfer::Srgb,
-            )
+            Self::new("sRGB", [[0.64, 0.33], [0.30, 0.60], [0.15, 0.06]], [0.3127, 0.3290], Transfer::Srgb)
         })
     }
 
@@ -189,10 +172,7 @@ mod tests {
     fn close(got: &Matrix, want: &Matrix, tolerance: f64) {
         for i in 0..3 {
             for j in 0..3 {
-                assert!(
-                    (got[i][j] - want[i][j]).abs() <= tolerance,
-                    "{got:?} {want:?}"
-                );
+                assert!((got[i][j] - want[i][j]).abs() <= tolerance, "{got:?} {want:?}");
             }
         }
     }
@@ -200,25 +180,12 @@ mod tests {
     /// IEC 61966-2-1 prints four digits; ITU-R BT.2020 the luminance row; S-2014-004 ten digits.
     #[test]
     fn matrices_are_those_of_the_standards() {
-        let srgb = [
-            [0.4124, 0.3576, 0.1805],
-            [0.2126, 0.7152, 0.0722],
-            [0.0193, 0.1192, 0.9505],
-        ];
+        let srgb = [[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]];
         close(&RgbSpace::srgb().xyz_from_rgb, &srgb, 1e-4);
-        let back = [
-            [3.2406, -1.5372, -0.4986],
-            [-0.9689, 1.8758, 0.0415],
-            [0.0557, -0.2040, 1.0570],
-        ];
+        let back = [[3.2406, -1.5372, -0.4986], [-0.9689, 1.8758, 0.0415], [0.0557, -0.2040, 1.0570]];
         close(&RgbSpace::srgb().rgb_from_xyz, &back, 4e-4);
         let y = RgbSpace::rec2020().xyz_from_rgb[1];
-        assert!(
-            y.iter()
-                .zip([0.2627, 0.6780, 0.0593])
-                .all(|(a, b)| (a - b).abs() < 5e-5),
-            "{y:?}"
-        );
+        assert!(y.iter().zip([0.2627, 0.6780, 0.0593]).all(|(a, b)| (a - b).abs() < 5e-5), "{y:?}");
         let ap1 = [
             [0.662_454_181_1, 0.134_004_206_5, 0.156_187_687_0],
             [0.272_228_716_8, 0.674_081_765_8, 0.053_689_517_4],
@@ -256,9 +223,6 @@ mod tests {
     fn eight_bits_round_trip_and_255_is_one() {
         assert!((0..=255).all(|v| to_u8(from_u8(v)) == v));
         assert_eq!(from_u8(255), 1.0);
-        assert_eq!(
-            [to_u8(-0.2), to_u8(1.7), to_u8(f64::NAN), to_u8(0.5)],
-            [0, 255, 0, 128]
-        );
+        assert_eq!([to_u8(-0.2), to_u8(1.7), to_u8(f64::NAN), to_u8(0.5)], [0, 255, 0, 128]);
     }
 }

@@ -5,14 +5,16 @@
 
 use std::sync::Arc;
 
-use spectra_core::spectral::Grid;
+use spectra_core::spectral::{BAND, Grid};
 
 use crate::cell;
 use crate::error::{SpectrumError, check};
+use crate::gaussian::{GaussianMixture, GaussianTerm};
 use crate::planck::planck_radiance;
 use crate::tabulated::Tabulated;
 
-/// A function of the wavelength: constant, rectangle, Gaussian, black body, table, histogram, or made of others.
+/// A function of the wavelength: constant, rectangle, Gaussian, signed sum of Gaussians, black body, table, histogram,
+/// or made of others.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shape(Node);
 
@@ -21,6 +23,7 @@ enum Node {
     Constant(f64),
     Rectangle { from_nm: f64, to_nm: f64 },
     Gaussian { center_nm: f64, sigma_nm: f64 },
+    Mixture { terms: Arc<GaussianMixture>, at_least_zero: bool },
     Blackbody { temperature_k: f64 },
     Tabulated(Tabulated),
     Histogram(Arc<Histogram>),
@@ -55,12 +58,7 @@ impl Shape {
     /// # Errors
     /// [`SpectrumError::OutOfRange`] if it is not finite.
     pub fn constant(value: f64) -> Result<Self, SpectrumError> {
-        Ok(Self(Node::Constant(check(
-            "value",
-            "finite",
-            value,
-            |_| true,
-        )?)))
+        Ok(Self(Node::Constant(check("value", "finite", value, |_| true)?)))
     }
 
     /// 1 from `from_nm` to `to_nm`, both included, 0 elsewhere.
@@ -69,9 +67,7 @@ impl Shape {
     /// [`SpectrumError::OutOfRange`] unless 0 <= from < to, both finite.
     pub fn rectangle(from_nm: f64, to_nm: f64) -> Result<Self, SpectrumError> {
         let from_nm = check("lower edge, nm", "0 or more", from_nm, |w| w >= 0.0)?;
-        let to_nm = check("upper edge, nm", "above the lower one", to_nm, |w| {
-            w > from_nm
-        })?;
+        let to_nm = check("upper edge, nm", "above the lower one", to_nm, |w| w > from_nm)?;
         Ok(Self(Node::Rectangle { from_nm, to_nm }))
     }
 
@@ -82,10 +78,48 @@ impl Shape {
     pub fn gaussian(center_nm: f64, sigma_nm: f64) -> Result<Self, SpectrumError> {
         let center_nm = check("center, nm", "finite", center_nm, |_| true)?;
         let sigma_nm = check("standard deviation, nm", "positive", sigma_nm, |s| s > 0.0)?;
-        Ok(Self(Node::Gaussian {
-            center_nm,
-            sigma_nm,
-        }))
+        Ok(Self(Node::Gaussian { center_nm, sigma_nm }))
+    }
+
+    /// A signed sum of Gaussian terms, with the sign that it has.
+    #[must_use]
+    pub fn mixture(terms: GaussianMixture) -> Self {
+        Self(Node::Mixture { terms: Arc::new(terms), at_least_zero: false })
+    }
+
+    /// A signed sum of Gaussian terms that stands for something which cannot be negative, and its largest value on
+    /// 350-830 nm: where the sum falls below 0, as a fit does at its edges, it is taken as 0.
+    ///
+    /// # Errors
+    /// [`SpectrumError::OutOfRange`] if it is nowhere positive, falls below 0 by more than a tenth of its largest value
+    /// (that is no roughness of a fit), or is not finite.
+    pub(crate) fn positive_mixture(terms: GaussianMixture) -> Result<(Self, f64), SpectrumError> {
+        let centers = terms.terms().iter().map(GaussianTerm::center_nm).filter(|c| BAND.contains(*c));
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        for w in BAND.wavelengths_nm().chain(centers) {
+            let v = check("value of the sum of Gaussians", "finite", terms.at(w), |_| true)?;
+            (low, high) = (low.min(v), high.max(v));
+        }
+        check("largest value of the sum of Gaussians", "positive", high, |h| h > 0.0)?;
+        check("smallest value of the sum of Gaussians over its largest", "-0.1 or more", low / high, |l| l >= -0.1)?;
+        Ok((Self(Node::Mixture { terms: Arc::new(terms), at_least_zero: low < 0.0 }), high))
+    }
+
+    /// This as a sum of Gaussian terms, exact; `None` where it is none, or is cut off at 0.
+    ///
+    /// Gaussians and mixtures are, and sums, products and multiples of such.
+    #[must_use]
+    pub fn as_mixture(&self) -> Option<GaussianMixture> {
+        match &self.0 {
+            Node::Gaussian { center_nm, sigma_nm } => {
+                Some(GaussianMixture::new(vec![GaussianTerm::new(1.0, *center_nm, *sigma_nm).ok()?]))
+            }
+            Node::Mixture { terms, at_least_zero: false } => Some(GaussianMixture::clone(terms)),
+            Node::Scaled(factor, shape) => Some(shape.as_mixture()?.scaled(*factor)),
+            Node::Sum(parts) => Some(parts[0].as_mixture()?.plus(&parts[1].as_mixture()?)),
+            Node::Product(parts) => Some(parts[0].as_mixture()?.times(&parts[1].as_mixture()?)),
+            _ => None,
+        }
     }
 
     /// Spectral radiance of a black body, W m^-2 sr^-1 nm^-1; see [`planck_radiance`].
@@ -93,12 +127,8 @@ impl Shape {
     /// # Errors
     /// [`SpectrumError::OutOfRange`] unless the temperature is positive and at most 1e9 K.
     pub fn blackbody(temperature_k: f64) -> Result<Self, SpectrumError> {
-        let temperature_k = check(
-            "temperature, K",
-            "positive and at most 1e9",
-            temperature_k,
-            |t| t > 0.0 && t <= 1e9,
-        )?;
+        let temperature_k =
+            check("temperature, K", "positive and at most 1e9", temperature_k, |t| t > 0.0 && t <= 1e9)?;
         Ok(Self(Node::Blackbody { temperature_k }))
     }
 
@@ -116,30 +146,17 @@ impl Shape {
     /// [`SpectrumError::OutOfRange`] unless there is one more edge than contents, at least one bin, edges increase
     /// from 0 or more and all is finite.
     pub fn histogram(edges_nm: &[f64], contents: &[f64]) -> Result<Self, SpectrumError> {
-        check("number of bins", "at least 1", contents.len() as f64, |n| {
-            n >= 1.0
-        })?;
+        check("number of bins", "at least 1", contents.len() as f64, |n| n >= 1.0)?;
         let wanted = (contents.len() + 1) as f64;
-        check(
-            "number of edges",
-            "one more than that of bins",
-            edges_nm.len() as f64,
-            |n| n == wanted,
-        )?;
+        check("number of edges", "one more than that of bins", edges_nm.len() as f64, |n| n == wanted)?;
         let mut before = check("edge, nm", "0 or more", edges_nm[0], |e| e >= 0.0)?;
         let mut per_nm = Vec::with_capacity(contents.len());
         for (edge, content) in edges_nm[1..].iter().zip(contents) {
-            let after = check("edge, nm", "larger than the one before", *edge, |e| {
-                e > before
-            })?;
-            per_nm
-                .push(check("content of a bin", "finite", *content, |_| true)? / (after - before));
+            let after = check("edge, nm", "larger than the one before", *edge, |e| e > before)?;
+            per_nm.push(check("content of a bin", "finite", *content, |_| true)? / (after - before));
             before = after;
         }
-        Ok(Self(Node::Histogram(Arc::new(Histogram {
-            edges_nm: edges_nm.to_vec(),
-            per_nm,
-        }))))
+        Ok(Self(Node::Histogram(Arc::new(Histogram { edges_nm: edges_nm.to_vec(), per_nm }))))
     }
 
     /// This times a number.
@@ -179,12 +196,13 @@ impl Shape {
                     0.0
                 }
             }
-            Node::Gaussian {
-                center_nm,
-                sigma_nm,
-            } => {
+            Node::Gaussian { center_nm, sigma_nm } => {
                 let t = (wavelength_nm - center_nm) / sigma_nm;
                 libm::exp(-0.5 * t * t)
+            }
+            Node::Mixture { terms, at_least_zero } => {
+                let value = terms.at(wavelength_nm);
+                if *at_least_zero { value.max(0.0) } else { value }
             }
             Node::Blackbody { temperature_k } => planck_radiance(wavelength_nm, *temperature_k),
             Node::Tabulated(table) => table.at(wavelength_nm),
@@ -206,9 +224,7 @@ impl Shape {
             return grid.wavelengths_nm().map(|w| self.at(w)).collect();
         }
         let half = 0.5 * grid.step_nm;
-        grid.wavelengths_nm()
-            .map(|w| self.mean(w - half, w + half))
-            .collect()
+        grid.wavelengths_nm().map(|w| self.mean(w - half, w + half)).collect()
     }
 
     /// Mean over the wavelengths from `low_nm` to `high_nm`.
@@ -227,11 +243,10 @@ impl Shape {
             Node::Constant(_) | Node::Blackbody { .. } => false,
             Node::Rectangle { .. } | Node::Histogram(_) => true,
             Node::Gaussian { sigma_nm, .. } => *sigma_nm < 2.0 * step_nm,
+            Node::Mixture { terms, .. } => terms.terms().iter().any(|t| t.sigma_nm() < 2.0 * step_nm),
             Node::Tabulated(table) => table.finest_step_nm() < step_nm * (1.0 - 1e-9),
             Node::Scaled(_, shape) => shape.is_finer_than(step_nm),
-            Node::Sum(parts) | Node::Product(parts) => {
-                parts.iter().any(|p| p.is_finer_than(step_nm))
-            }
+            Node::Sum(parts) | Node::Product(parts) => parts.iter().any(|p| p.is_finer_than(step_nm)),
         }
     }
 
@@ -240,13 +255,9 @@ impl Shape {
         match &self.0 {
             Node::Constant(_) | Node::Blackbody { .. } => {}
             Node::Rectangle { from_nm, to_nm } => out.extend([*from_nm, *to_nm]),
-            Node::Gaussian {
-                center_nm,
-                sigma_nm,
-            } => {
-                for k in [0.0, 1.0, 2.0, 3.0, 4.5, 6.0, 9.0] {
-                    out.extend([center_nm - k * sigma_nm, center_nm + k * sigma_nm]);
-                }
+            Node::Gaussian { center_nm, sigma_nm } => bell_breaks(*center_nm, *sigma_nm, out),
+            Node::Mixture { terms, .. } => {
+                terms.terms().iter().for_each(|t| bell_breaks(t.center_nm(), t.sigma_nm(), out));
             }
             Node::Tabulated(table) => out.extend(table.knots(low_nm, high_nm)),
             Node::Histogram(histogram) => {
@@ -256,10 +267,15 @@ impl Shape {
                 out.extend(&edges[from..to.max(from)]);
             }
             Node::Scaled(_, shape) => shape.breaks(low_nm, high_nm, out),
-            Node::Sum(parts) | Node::Product(parts) => {
-                parts.iter().for_each(|p| p.breaks(low_nm, high_nm, out))
-            }
+            Node::Sum(parts) | Node::Product(parts) => parts.iter().for_each(|p| p.breaks(low_nm, high_nm, out)),
         }
+    }
+}
+
+/// Where a Gaussian is cut for a quadrature.
+fn bell_breaks(center_nm: f64, sigma_nm: f64, out: &mut Vec<f64>) {
+    for k in [0.0, 1.0, 2.0, 3.0, 4.5, 6.0, 9.0] {
+        out.extend([center_nm - k * sigma_nm, center_nm + k * sigma_nm]);
     }
 }
 
@@ -296,19 +312,10 @@ mod tests {
     /// A product has edges where one factor has: half of a ramp under a rectangle.
     #[test]
     fn products_keep_the_edges_of_their_factors() {
-        let ramp = Tabulated::new(
-            &[500.0, 600.0],
-            &[0.0, 1.0],
-            crate::Outside::Zero,
-            crate::Scale::Linear,
-        );
+        let ramp = Tabulated::new(&[500.0, 600.0], &[0.0, 1.0], crate::Outside::Zero, crate::Scale::Linear);
         let ramp = Shape::tabulated(ramp.expect("valid"));
         let half = ramp.times(&Shape::rectangle(500.0, 550.4).expect("valid"));
-        assert!(
-            (sum(&half) - 50.4 * 50.4 / 200.0).abs() < 1e-9,
-            "{}",
-            sum(&half)
-        );
+        assert!((sum(&half) - 50.4 * 50.4 / 200.0).abs() < 1e-9, "{}", sum(&half));
         let twice = half.plus(&half).scaled(0.5).expect("valid");
         assert!((sum(&twice) - sum(&half)).abs() < 1e-12);
     }
@@ -316,26 +323,49 @@ mod tests {
     #[test]
     fn a_table_finer_than_the_grid_keeps_its_power() {
         // A triangle of half width 0.2 nm between two points of the grid.
-        let t = Tabulated::new(
-            &[500.3, 500.5, 500.7],
-            &[0.0, 4.0, 0.0],
-            crate::Outside::Zero,
-            crate::Scale::Linear,
-        );
+        let t = Tabulated::new(&[500.3, 500.5, 500.7], &[0.0, 4.0, 0.0], crate::Outside::Zero, crate::Scale::Linear);
         assert!((sum(&Shape::tabulated(t.expect("valid"))) - 0.8).abs() < 1e-12);
+    }
+
+    fn terms(all: &[[f64; 3]]) -> GaussianMixture {
+        let term = |[a, c, s]: &[f64; 3]| GaussianTerm::new(*a, *c, *s).expect("valid");
+        GaussianMixture::new(all.iter().map(term).collect())
+    }
+
+    /// A mixture is a shape like any other: narrow terms keep their integral on the grid, products stay exact.
+    #[test]
+    fn mixtures_are_shapes() {
+        let m = terms(&[[1.0, 550.3, 0.4], [0.2, 520.0, 60.0], [-0.1, 500.0, 30.0]]);
+        let shape = Shape::mixture(m.clone());
+        let want = m.band_integral(349.5, 830.5);
+        assert!((sum(&shape) / want - 1.0).abs() < 1e-9, "{} {want}", sum(&shape));
+        let filter = Shape::gaussian(540.0, 50.0).expect("valid").scaled(0.5).expect("valid");
+        let product = shape.times(&filter).plus(&shape);
+        let exact = product.as_mixture().expect("made of Gaussians only");
+        assert_eq!(exact.terms().len(), 6);
+        for w in [400.0, 500.0, 550.0, 700.0] {
+            assert!((exact.at(w) / product.at(w) - 1.0).abs() < 1e-12, "{w}");
+        }
+        assert!(shape.times(&Shape::constant(1.0).expect("valid")).as_mixture().is_none());
+    }
+
+    #[test]
+    fn what_cannot_be_negative_is_cut_off_at_0() {
+        let ripple = terms(&[[1.0, 550.0, 40.0], [-0.05, 650.0, 20.0]]);
+        let (shape, high) = Shape::positive_mixture(ripple.clone()).expect("a small ripple");
+        assert!(ripple.at(660.0) < 0.0 && shape.at(660.0) == 0.0 && shape.at(550.0) == ripple.at(550.0));
+        assert!((high - 1.0).abs() < 1e-6 && shape.as_mixture().is_none());
+        let (whole, _) = Shape::positive_mixture(terms(&[[1.0, 550.0, 40.0]])).expect("positive");
+        assert!(whole.as_mixture().is_some());
+        assert!(Shape::positive_mixture(terms(&[[1.0, 550.0, 40.0], [-0.2, 700.0, 20.0]])).is_err());
+        assert!(Shape::positive_mixture(terms(&[[-1.0, 550.0, 40.0]])).is_err());
+        assert!(Shape::positive_mixture(terms(&[])).is_err());
     }
 
     #[test]
     fn histogram_bins_hold_their_lower_edge() {
         let h = Shape::histogram(&[400.0, 410.0, 412.0], &[10.0, 4.0]).expect("valid");
-        for (w, want) in [
-            (399.9, 0.0),
-            (400.0, 1.0),
-            (409.9, 1.0),
-            (410.0, 2.0),
-            (412.0, 2.0),
-            (412.1, 0.0),
-        ] {
+        for (w, want) in [(399.9, 0.0), (400.0, 1.0), (409.9, 1.0), (410.0, 2.0), (412.0, 2.0), (412.1, 0.0)] {
             assert_eq!(h.at(w), want, "{w}");
         }
     }
@@ -347,10 +377,7 @@ mod tests {
         assert!(Shape::rectangle(500.0, 500.0).is_err() && Shape::rectangle(nan, 500.0).is_err());
         assert!(Shape::gaussian(550.0, 0.0).is_err() && Shape::gaussian(nan, 1.0).is_err());
         assert!(Shape::blackbody(0.0).is_err() && Shape::blackbody(f64::INFINITY).is_err());
-        assert!(
-            Shape::histogram(&[400.0], &[]).is_err()
-                && Shape::histogram(&[400.0, 390.0], &[1.0]).is_err()
-        );
+        assert!(Shape::histogram(&[400.0], &[]).is_err() && Shape::histogram(&[400.0, 390.0], &[1.0]).is_err());
         assert!(Shape::histogram(&[400.0, 410.0], &[nan]).is_err());
     }
 }

@@ -9,15 +9,9 @@ use crate::rgb::{RgbSpace, to_u8};
 /// Hue is kept, true intensity is not: weigh it by the luminous efficiency where that matters.
 #[must_use]
 pub fn spectral_color_linear(wavelength_nm: f64, space: &RgbSpace) -> [f64; 3] {
-    let rgb = space
-        .from_xyz(Observer::cie_1931_2deg().at(wavelength_nm))
-        .map(|v| v.max(0.0));
+    let rgb = space.from_xyz(Observer::cie_1931_2deg().at(wavelength_nm)).map(|v| v.max(0.0));
     let brightest = rgb[0].max(rgb[1]).max(rgb[2]);
-    if brightest > 0.0 {
-        rgb.map(|v| v / brightest)
-    } else {
-        [0.0; 3]
-    }
+    if brightest > 0.0 { rgb.map(|v| v / brightest) } else { [0.0; 3] }
 }
 
 /// The same with the transfer curve of `space`: code values for a picture file.

@@ -9,21 +9,16 @@ const LEAST: usize = 6;
 
 /// Weights of the six points at the first end that give the two points before it, farther one first; over 209.
 /// Reversed, those of the last end.
-const BEYOND: [[f64; 6]; 2] = [
-    [884.0, -1960.0, 3033.0, -2648.0, 1080.0, -180.0],
-    [508.0, -540.0, 488.0, -367.0, 144.0, -24.0],
-];
+const BEYOND: [[f64; 6]; 2] =
+    [[884.0, -1960.0, 3033.0, -2648.0, 1080.0, -180.0], [508.0, -540.0, 488.0, -367.0, 144.0, -24.0]];
 
 /// Whether the wavelengths are such that it applies: six or more, equally spaced.
 pub(crate) fn applies(wavelengths_nm: &[f64]) -> bool {
     if wavelengths_nm.len() < LEAST {
         return false;
     }
-    let step = (wavelengths_nm[wavelengths_nm.len() - 1] - wavelengths_nm[0])
-        / (wavelengths_nm.len() - 1) as f64;
-    wavelengths_nm
-        .windows(2)
-        .all(|w| ((w[1] - w[0]) / step - 1.0).abs() < 1e-6)
+    let step = (wavelengths_nm[wavelengths_nm.len() - 1] - wavelengths_nm[0]) / (wavelengths_nm.len() - 1) as f64;
+    wavelengths_nm.windows(2).all(|w| ((w[1] - w[0]) / step - 1.0).abs() < 1e-6)
 }
 
 /// Point `index` of `values`, from -2 to two past the last.
@@ -33,12 +28,7 @@ fn point(values: &[f64], index: isize) -> f64 {
         Ok(i) if i < n => values[i],
         Ok(i) => {
             let weights = &BEYOND[1 - (i - n).min(1)];
-            weights
-                .iter()
-                .zip(values.iter().rev())
-                .map(|(w, v)| w * v)
-                .sum::<f64>()
-                / 209.0
+            weights.iter().zip(values.iter().rev()).map(|(w, v)| w * v).sum::<f64>() / 209.0
         }
         Err(_) => {
             let weights = &BEYOND[usize::from(index == -1)];
@@ -75,15 +65,9 @@ mod tests {
             assert!((between(&curved, i, 0.0) - curved[i]).abs() < 1e-10);
             assert!((between(&curved, i, 1.0) - curved[i + 1]).abs() < 1e-10);
             for x in [0.1, 0.25, 0.5, 0.9] {
-                assert!(
-                    (between(&straight, i, x) - line(i as f64 + x)).abs() < 1e-12,
-                    "{i} {x}"
-                );
+                assert!((between(&straight, i, x) - line(i as f64 + x)).abs() < 1e-12, "{i} {x}");
                 if (2..6).contains(&i) {
-                    assert!(
-                        (between(&curved, i, x) - quartic(i as f64 + x)).abs() < 1e-9,
-                        "{i} {x}"
-                    );
+                    assert!((between(&curved, i, x) - quartic(i as f64 + x)).abs() < 1e-9, "{i} {x}");
                 }
             }
         }
@@ -93,8 +77,7 @@ mod tests {
     fn it_wants_equal_steps() {
         assert!(applies(&[400.0, 410.0, 420.0, 430.0, 440.0, 450.0]));
         assert!(
-            !applies(&[400.0, 410.0, 420.0, 430.0, 440.0])
-                && !applies(&[400.0, 410.0, 420.0, 430.0, 440.0, 451.0])
+            !applies(&[400.0, 410.0, 420.0, 430.0, 440.0]) && !applies(&[400.0, 410.0, 420.0, 430.0, 440.0, 451.0])
         );
     }
 }

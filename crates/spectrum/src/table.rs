@@ -51,12 +51,7 @@ pub struct Place {
 
 impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self {
-            file,
-            row,
-            column,
-            column_name,
-        } = self;
+        let Self { file, row, column, column_name } = self;
         match (row, column, column_name.as_str()) {
             (0, ..) => f.write_str(file),
             (_, 0, _) => write!(f, "{file}: row {row}"),
@@ -98,9 +93,7 @@ pub enum TableFault {
     #[error("front matter is written as `# key: value`")]
     NotKeyValue,
     /// The kind is stated nowhere.
-    #[error(
-        "the kind is not stated; write `# spectra: 1` and `# kind: emission` (or another) above the header"
-    )]
+    #[error("the kind is not stated; write `# spectra: 1` and `# kind: emission` (or another) above the header")]
     NoKind,
     /// The first row of the table is no header.
     #[error("a header such as `wavelength_nm,power` is wanted here, not `{0}`")]
@@ -221,16 +214,8 @@ impl Table {
 }
 
 fn whole(file: &str, cause: TableFault) -> TableError {
-    let place = Place {
-        file: file.into(),
-        row: 0,
-        column: 0,
-        column_name: String::new(),
-    };
-    TableError {
-        place: Box::new(place),
-        cause,
-    }
+    let place = Place { file: file.into(), row: 0, column: 0, column_name: String::new() };
+    TableError { place: Box::new(place), cause }
 }
 
 struct Reader<'a> {
@@ -242,39 +227,18 @@ struct Reader<'a> {
 
 impl<'a> Reader<'a> {
     fn new(file: &'a str, text: &'a str, kind: Option<Kind>) -> Self {
-        Self {
-            file,
-            text,
-            kind,
-            header: Vec::new(),
-        }
+        Self { file, text, kind, header: Vec::new() }
     }
 
     fn fault(&self, row: usize, column: usize, cause: TableFault) -> TableError {
-        let name = column
-            .checked_sub(1)
-            .and_then(|i| self.header.get(i))
-            .copied()
-            .unwrap_or_default();
-        let place = Place {
-            file: self.file.into(),
-            row,
-            column,
-            column_name: name.into(),
-        };
-        TableError {
-            place: Box::new(place),
-            cause,
-        }
+        let name = column.checked_sub(1).and_then(|i| self.header.get(i)).copied().unwrap_or_default();
+        let place = Place { file: self.file.into(), row, column, column_name: name.into() };
+        TableError { place: Box::new(place), cause }
     }
 
     fn read(mut self) -> Result<Table, TableError> {
         let mut meta = Meta::default();
-        let strict = self
-            .text
-            .lines()
-            .next()
-            .is_some_and(|l| key_value(l).is_some_and(|(k, _)| k == "spectra"));
+        let strict = self.text.lines().next().is_some_and(|l| key_value(l).is_some_and(|(k, _)| k == "spectra"));
         let mut kind = None;
         let mut wavelengths: Vec<f64> = Vec::new();
         let mut values: Vec<Vec<f64>> = Vec::new();
@@ -292,11 +256,7 @@ impl<'a> Reader<'a> {
             }
             if self.header.is_empty() {
                 self.read_header(row, line)?;
-                kind = Some(
-                    meta.kind
-                        .or(self.kind)
-                        .ok_or_else(|| self.fault(row, 0, TableFault::NoKind))?,
-                );
+                kind = Some(meta.kind.or(self.kind).ok_or_else(|| self.fault(row, 0, TableFault::NoKind))?);
                 values = vec![Vec::new(); self.header.len() - 1];
                 continue;
             }
@@ -323,15 +283,10 @@ impl<'a> Reader<'a> {
     }
 
     fn front_matter(&self, meta: &mut Meta, row: usize, line: &str) -> Result<(), TableError> {
-        let (key, value) =
-            key_value(line).ok_or_else(|| self.fault(row, 0, TableFault::NotKeyValue))?;
+        let (key, value) = key_value(line).ok_or_else(|| self.fault(row, 0, TableFault::NotKeyValue))?;
         meta.set(key, value).map_err(|wanted| {
             let cause = match wanted {
-                Some(wanted) => TableFault::FrontMatter {
-                    key: key.into(),
-                    wanted,
-                    found: value.into(),
-                },
+                Some(wanted) => TableFault::FrontMatter { key: key.into(), wanted, found: value.into() },
                 None => TableFault::UnknownKey(key.into()),
             };
             self.fault(row, 0, cause)
@@ -366,17 +321,13 @@ impl<'a> Reader<'a> {
     ) -> Result<(), TableError> {
         let found = line.split(',').count();
         if found != self.header.len() {
-            let cause = TableFault::FieldCount {
-                found,
-                expected: self.header.len(),
-            };
+            let cause = TableFault::FieldCount { found, expected: self.header.len() };
             return Err(self.fault(row, found.min(self.header.len()), cause));
         }
         for (i, field) in line.split(',').enumerate() {
             let value = number(field).map_err(|cause| self.fault(row, i + 1, cause))?;
             if i == 0 {
-                check_wavelength(value, wavelengths.last().copied())
-                    .map_err(|cause| self.fault(row, 1, cause))?;
+                check_wavelength(value, wavelengths.last().copied()).map_err(|cause| self.fault(row, 1, cause))?;
                 wavelengths.push(value);
             } else {
                 check_value(value, kind, scale).map_err(|cause| self.fault(row, i + 1, cause))?;
@@ -399,14 +350,8 @@ fn shorten(text: &str) -> String {
 
 fn number(field: &str) -> Result<f64, TableFault> {
     let field = field.trim();
-    let value: f64 = field
-        .parse()
-        .map_err(|_| TableFault::NotANumber(shorten(field)))?;
-    if value.is_finite() {
-        Ok(value)
-    } else {
-        Err(TableFault::NotFinite(shorten(field)))
-    }
+    let value: f64 = field.parse().map_err(|_| TableFault::NotANumber(shorten(field)))?;
+    if value.is_finite() { Ok(value) } else { Err(TableFault::NotFinite(shorten(field))) }
 }
 
 fn check_wavelength(found: f64, before: Option<f64>) -> Result<(), TableFault> {
@@ -422,11 +367,7 @@ fn check_value(value: f64, kind: Kind, scale: Scale) -> Result<(), TableFault> {
     // column does not fit.
     const LOG10_BOUND: f64 = 20.0;
     if scale == Scale::Log10 {
-        return if value.abs() <= LOG10_BOUND {
-            Ok(())
-        } else {
-            Err(TableFault::Logarithm(value))
-        };
+        return if value.abs() <= LOG10_BOUND { Ok(()) } else { Err(TableFault::Logarithm(value)) };
     }
     if value < 0.0 && !kind.may_be_negative() {
         return Err(TableFault::Negative { kind, value });

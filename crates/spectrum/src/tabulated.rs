@@ -33,61 +33,24 @@ impl Tabulated {
     /// # Errors
     /// [`SpectrumError::OutOfRange`] for no points, unequal numbers of wavelengths and values, wavelengths that are
     /// not positive or do not increase, and values that are not finite.
-    pub fn new(
-        wavelengths_nm: &[f64],
-        values: &[f64],
-        outside: Outside,
-        scale: Scale,
-    ) -> Result<Self, SpectrumError> {
-        check(
-            "number of points",
-            "at least 1",
-            wavelengths_nm.len() as f64,
-            |n| n >= 1.0,
-        )?;
+    pub fn new(wavelengths_nm: &[f64], values: &[f64], outside: Outside, scale: Scale) -> Result<Self, SpectrumError> {
+        check("number of points", "at least 1", wavelengths_nm.len() as f64, |n| n >= 1.0)?;
         let equal = |n| n == wavelengths_nm.len() as f64;
-        check(
-            "number of values",
-            "that of wavelengths",
-            values.len() as f64,
-            equal,
-        )?;
+        check("number of values", "that of wavelengths", values.len() as f64, equal)?;
         let mut before = 0.0;
         for w in wavelengths_nm {
-            before = check(
-                "wavelength, nm",
-                "positive and larger than the one before",
-                *w,
-                |w| w > before,
-            )?;
+            before = check("wavelength, nm", "positive and larger than the one before", *w, |w| w > before)?;
         }
         for v in values {
             check("value", "finite", *v, |_| true)?;
         }
-        let reading = Reading {
-            outside,
-            scale,
-            interpolation: Interpolation::Linear,
-            at_least_zero: false,
-        };
-        Ok(Self::from_checked(
-            wavelengths_nm.into(),
-            values.into(),
-            reading,
-        ))
+        let reading = Reading { outside, scale, interpolation: Interpolation::Linear, at_least_zero: false };
+        Ok(Self::from_checked(wavelengths_nm.into(), values.into(), reading))
     }
 
     /// A table whose points a reader has checked.
-    pub(crate) fn from_checked(
-        wavelengths_nm: Arc<[f64]>,
-        values: Arc<[f64]>,
-        reading: Reading,
-    ) -> Self {
-        Self {
-            wavelengths_nm,
-            values,
-            reading,
-        }
+    pub(crate) fn from_checked(wavelengths_nm: Arc<[f64]>, values: Arc<[f64]>, reading: Reading) -> Self {
+        Self { wavelengths_nm, values, reading }
     }
 
     /// The wavelengths given, nm.
@@ -118,20 +81,14 @@ impl Tabulated {
     /// First and last wavelength, nm.
     #[must_use]
     pub fn range_nm(&self) -> (f64, f64) {
-        (
-            self.wavelengths_nm[0],
-            self.wavelengths_nm[self.wavelengths_nm.len() - 1],
-        )
+        (self.wavelengths_nm[0], self.wavelengths_nm[self.wavelengths_nm.len() - 1])
     }
 
     /// Smallest and largest value given, linear.
     #[must_use]
     pub fn extremes(&self) -> (f64, f64) {
         let fold = |a: (f64, f64), v: &f64| (a.0.min(*v), a.1.max(*v));
-        let (low, high) = self
-            .values
-            .iter()
-            .fold((f64::INFINITY, f64::NEG_INFINITY), fold);
+        let (low, high) = self.values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), fold);
         (self.linear(low), self.linear(high))
     }
 
@@ -179,11 +136,8 @@ impl Tabulated {
             Outside::Zero => 0.0,
             Outside::Constant => self.linear(self.between(end)),
             Outside::Geometric => {
-                let inner = if wavelength_nm < first {
-                    (first + RATE_NM).min(last)
-                } else {
-                    (last - RATE_NM).max(first)
-                };
+                let inner =
+                    if wavelength_nm < first { (first + RATE_NM).min(last) } else { (last - RATE_NM).max(first) };
                 let (at_end, at_inner) = (self.at(end), self.at(inner));
                 let ratio = at_end / at_inner;
                 if !(ratio > 0.0 && ratio < 1.0) {
@@ -203,10 +157,7 @@ impl Tabulated {
 
     /// Smallest distance of neighbors, nm; infinite for a single point.
     pub(crate) fn finest_step_nm(&self) -> f64 {
-        self.wavelengths_nm
-            .windows(2)
-            .map(|w| w[1] - w[0])
-            .fold(f64::INFINITY, f64::min)
+        self.wavelengths_nm.windows(2).map(|w| w[1] - w[0]).fold(f64::INFINITY, f64::min)
     }
 }
 
@@ -221,13 +172,7 @@ mod tests {
     #[test]
     fn linear_between_points_and_exact_at_them() {
         let t = table(Outside::Zero, Scale::Linear);
-        for (w, want) in [
-            (400.0, 1.0),
-            (405.0, 1.5),
-            (410.0, 2.0),
-            (420.0, 1.0),
-            (430.0, 0.0),
-        ] {
+        for (w, want) in [(400.0, 1.0), (405.0, 1.5), (410.0, 2.0), (420.0, 1.0), (430.0, 0.0)] {
             assert_eq!(t.at(w), want, "{w}");
         }
     }
@@ -235,28 +180,18 @@ mod tests {
     #[test]
     fn logarithms_are_interpolated_as_such() {
         let t = table(Outside::Constant, Scale::Log10);
-        for (w, want) in [
-            (390.0, 10.0),
-            (405.0, 31.622_776_601_683_793),
-            (410.0, 100.0),
-            (440.0, 1.0),
-        ] {
+        for (w, want) in [(390.0, 10.0), (405.0, 31.622_776_601_683_793), (410.0, 100.0), (440.0, 1.0)] {
             assert!((t.at(w) / want - 1.0).abs() < 1e-14, "{w} {}", t.at(w));
         }
     }
 
     #[test]
     fn beyond_the_ends_it_is_as_stated() {
-        for (outside, below, above) in [
-            (Outside::Zero, 0.0, 0.0),
-            (Outside::Constant, 1.0, 0.0),
-            (Outside::Geometric, 0.5, 0.0),
-        ] {
+        for (outside, below, above) in
+            [(Outside::Zero, 0.0, 0.0), (Outside::Constant, 1.0, 0.0), (Outside::Geometric, 0.5, 0.0)]
+        {
             let t = table(outside, Scale::Linear);
-            assert!(
-                (t.at(390.0) - below).abs() < 1e-15 && t.at(431.0) == above,
-                "{outside:?}"
-            );
+            assert!((t.at(390.0) - below).abs() < 1e-15 && t.at(431.0) == above, "{outside:?}");
         }
         assert_eq!(table(Outside::Constant, Scale::Linear).at(f64::NAN), 0.0);
     }
@@ -279,10 +214,7 @@ mod tests {
             (&[400.0, 410.0], &[1.0, f64::INFINITY]),
             (&[400.0, 410.0], &[1.0]),
         ] {
-            assert!(
-                Tabulated::new(w, v, Outside::Zero, Scale::Linear).is_err(),
-                "{w:?} {v:?}"
-            );
+            assert!(Tabulated::new(w, v, Outside::Zero, Scale::Linear).is_err(), "{w:?} {v:?}");
         }
     }
 }

@@ -1,16 +1,12 @@
 //! Faulty tables end in an error that names file, row and column.
 
 use spectra_spectrum::table::{MAX_ROWS, Table};
-use spectra_spectrum::{
-    Kind, Scale, find, find_emission, find_reflectance, find_sensitivity, find_transmittance,
-};
+use spectra_spectrum::{Kind, Scale, find, find_emission, find_reflectance, find_sensitivity, find_transmittance};
 
 const HEAD: &str = "# spectra: 1\n# kind: sensitivity\n";
 
 fn message(text: &str, kind: Option<Kind>) -> String {
-    Table::parse("bad.csv", text, kind)
-        .expect_err(text)
-        .to_string()
+    Table::parse("bad.csv", text, kind).expect_err(text).to_string()
 }
 
 #[test]
@@ -19,10 +15,7 @@ fn each_fault_has_its_place() {
     for (text, want) in [
         ("", "bad.csv: holds no data"),
         ("wavelength_nm,p\n", "bad.csv: holds no data"),
-        (
-            "# spectra: 1\n# kind: emission\nwavelength_nm,p\n\n",
-            "bad.csv: holds no data",
-        ),
+        ("# spectra: 1\n# kind: emission\nwavelength_nm,p\n\n", "bad.csv: holds no data"),
         (
             "wavelength_nm,p\n400,1\n390,1\n",
             "bad.csv: row 3, column 1 (wavelength_nm): 390 nm does not come after 400 nm: wavelengths must increase",
@@ -35,46 +28,19 @@ fn each_fault_has_its_place() {
             "wavelength_nm,p\n-400,1\n",
             "bad.csv: row 2, column 1 (wavelength_nm): a wavelength is a positive number of nanometres, not -400",
         ),
-        (
-            "wavelength_nm,p,q\n400,1,2\n410,1,-2\n",
-            "bad.csv: row 3, column 3 (q): emission cannot be negative: -2",
-        ),
-        (
-            "wavelength_nm,p\n400,NaN\n",
-            "bad.csv: row 2, column 2 (p): `NaN` is not a finite number",
-        ),
-        (
-            "wavelength_nm,p\n400,inf\n",
-            "bad.csv: row 2, column 2 (p): `inf` is not a finite number",
-        ),
-        (
-            "wavelength_nm,p\n400,1e999\n",
-            "bad.csv: row 2, column 2 (p): `1e999` is not a finite number",
-        ),
-        (
-            "wavelength_nm,p\n400,\n",
-            "bad.csv: row 2, column 2 (p): `` is not a number",
-        ),
-        (
-            "wavelength_nm,p\n400,0x10\n",
-            "bad.csv: row 2, column 2 (p): `0x10` is not a number",
-        ),
-        (
-            "wavelength_nm,p\n400\n",
-            "bad.csv: row 2, column 1 (wavelength_nm): 1 fields where the header has 2",
-        ),
-        (
-            "wavelength_nm,p\n400,1,2\n",
-            "bad.csv: row 2, column 2 (p): 3 fields where the header has 2",
-        ),
+        ("wavelength_nm,p,q\n400,1,2\n410,1,-2\n", "bad.csv: row 3, column 3 (q): emission cannot be negative: -2"),
+        ("wavelength_nm,p\n400,NaN\n", "bad.csv: row 2, column 2 (p): `NaN` is not a finite number"),
+        ("wavelength_nm,p\n400,inf\n", "bad.csv: row 2, column 2 (p): `inf` is not a finite number"),
+        ("wavelength_nm,p\n400,1e999\n", "bad.csv: row 2, column 2 (p): `1e999` is not a finite number"),
+        ("wavelength_nm,p\n400,\n", "bad.csv: row 2, column 2 (p): `` is not a number"),
+        ("wavelength_nm,p\n400,0x10\n", "bad.csv: row 2, column 2 (p): `0x10` is not a number"),
+        ("wavelength_nm,p\n400\n", "bad.csv: row 2, column 1 (wavelength_nm): 1 fields where the header has 2"),
+        ("wavelength_nm,p\n400,1,2\n", "bad.csv: row 2, column 2 (p): 3 fields where the header has 2"),
         (
             "400,1\n410,2\n",
             "bad.csv: row 1, column 1: a header such as `wavelength_nm,power` is wanted here, not `400,1`",
         ),
-        (
-            "wavelength_nm,p,p\n",
-            "bad.csv: row 1, column 3: column name `p` is empty or appears twice",
-        ),
+        ("wavelength_nm,p,p\n", "bad.csv: row 1, column 3: column name `p` is empty or appears twice"),
     ] {
         assert_eq!(message(text, emission), want);
     }
@@ -82,36 +48,21 @@ fn each_fault_has_its_place() {
 
 #[test]
 fn percentages_are_noticed() {
-    for (kind, bound) in [
-        (Kind::Sensitivity, "2"),
-        (Kind::Transmittance, "1.02"),
-        (Kind::Reflectance, "1.5"),
-    ] {
+    for (kind, bound) in [(Kind::Sensitivity, "2"), (Kind::Transmittance, "1.02"), (Kind::Reflectance, "1.5")] {
         let got = message("wavelength_nm,red\n400,0.5\n410,80\n", Some(kind));
         assert_eq!(
             got,
-            format!(
-                "bad.csv: row 3, column 2 (red): 80 is more than {bound}: given as percent? divide by 100"
-            )
+            format!("bad.csv: row 3, column 2 (red): 80 is more than {bound}: given as percent? divide by 100")
         );
     }
-    let got = message(
-        &format!("{HEAD}# unit: %\nwavelength_nm,red\n400,50\n"),
-        None,
-    );
-    assert_eq!(
-        got,
-        "bad.csv: row 3: `unit` should be 1 or log10; divide percentages by 100, not `%`"
-    );
+    let got = message(&format!("{HEAD}# unit: %\nwavelength_nm,red\n400,50\n"), None);
+    assert_eq!(got, "bad.csv: row 3: `unit` should be 1 or log10; divide percentages by 100, not `%`");
 }
 
 #[test]
 fn front_matter_is_checked() {
     for (line, want) in [
-        (
-            "# outside: nothing",
-            "bad.csv: row 3: `outside` should be zero, constant or geometric, not `nothing`",
-        ),
+        ("# outside: nothing", "bad.csv: row 3: `outside` should be zero, constant or geometric, not `nothing`"),
         (
             "# kind: light",
             "bad.csv: row 3: `kind` should be emission, lines, transmittance, reflectance, sensitivity, color-matching or components, not `light`",
@@ -120,15 +71,9 @@ fn front_matter_is_checked() {
             "# range: 700-400 nm",
             "bad.csv: row 3: `range` should be two wavelengths, such as 380-780 nm, not `700-400 nm`",
         ),
-        (
-            "# a remark",
-            "bad.csv: row 3: front matter is written as `# key: value`",
-        ),
+        ("# a remark", "bad.csv: row 3: front matter is written as `# key: value`"),
     ] {
-        assert_eq!(
-            message(&format!("{HEAD}{line}\nwavelength_nm,p\n400,1\n"), None),
-            want
-        );
+        assert_eq!(message(&format!("{HEAD}{line}\nwavelength_nm,p\n400,1\n"), None), want);
     }
     let sprague = format!("{HEAD}# interpolation: sprague\nwavelength_nm,p\n400,1\n");
     assert_eq!(
@@ -136,13 +81,9 @@ fn front_matter_is_checked() {
         "bad.csv: interpolation: sprague wants at least six equally spaced wavelengths"
     );
     assert!(
-        message(&format!("{HEAD}# sauce: x\nwavelength_nm,p\n400,1\n"), None)
-            .contains("row 3: unknown key `sauce`")
+        message(&format!("{HEAD}# sauce: x\nwavelength_nm,p\n400,1\n"), None).contains("row 3: unknown key `sauce`")
     );
-    assert!(
-        message("# spectra: 2\nwavelength_nm,p\n400,1\n", None)
-            .contains("row 1: `spectra` should be 1")
-    );
+    assert!(message("# spectra: 2\nwavelength_nm,p\n400,1\n", None).contains("row 1: `spectra` should be 1"));
     assert!(message("wavelength_nm,p\n400,1\n", None).contains("the kind is not stated"));
 }
 
@@ -152,42 +93,19 @@ fn size_is_bounded() {
     for i in 0..=MAX_ROWS {
         text.push_str(&format!("{},1\n", i + 1));
     }
-    assert_eq!(
-        message(&text, Some(Kind::Emission)),
-        format!("bad.csv: row {}: more than 100000 rows", MAX_ROWS + 2)
-    );
-    let wide = vec!["p"; 300]
-        .iter()
-        .enumerate()
-        .map(|(i, p)| format!(",{p}{i}"))
-        .collect::<String>();
-    assert!(
-        message(&format!("wavelength_nm{wide}\n"), Some(Kind::Emission))
-            .contains("more than 256 columns")
-    );
-    assert!(
-        Table::parse_bytes("bad.csv", &[0xff, 0xfe], None)
-            .expect_err("binary")
-            .to_string()
-            .contains("not UTF-8")
-    );
+    assert_eq!(message(&text, Some(Kind::Emission)), format!("bad.csv: row {}: more than 100000 rows", MAX_ROWS + 2));
+    let wide = vec!["p"; 300].iter().enumerate().map(|(i, p)| format!(",{p}{i}")).collect::<String>();
+    assert!(message(&format!("wavelength_nm{wide}\n"), Some(Kind::Emission)).contains("more than 256 columns"));
+    assert!(Table::parse_bytes("bad.csv", &[0xff, 0xfe], None).expect_err("binary").to_string().contains("not UTF-8"));
 }
 
 #[test]
 fn windows_files_and_free_comments_are_read() {
-    let text =
-        "\u{feff}# measured on a Tuesday\r\nwavelength_nm, p\r\n400 , 1\r\n\r\n# more\r\n410,2\r\n";
+    let text = "\u{feff}# measured on a Tuesday\r\nwavelength_nm, p\r\n400 , 1\r\n\r\n# more\r\n410,2\r\n";
     let table = Table::parse("mine.csv", text, Some(Kind::Emission)).expect("sound");
-    assert_eq!(
-        (&*table.wavelengths_nm, &*table.values[0]),
-        (&[400.0, 410.0][..], &[1.0, 2.0][..])
-    );
-    let log = Table::parse(
-        "s.csv",
-        &format!("{HEAD}# unit: log10\nwavelength_nm,s\n400,-1\n410,1.5\n"),
-        None,
-    )
-    .expect("sound");
+    assert_eq!((&*table.wavelengths_nm, &*table.values[0]), (&[400.0, 410.0][..], &[1.0, 2.0][..]));
+    let log = Table::parse("s.csv", &format!("{HEAD}# unit: log10\nwavelength_nm,s\n400,-1\n410,1.5\n"), None)
+        .expect("sound");
     assert_eq!(log.meta.scale(), Scale::Log10);
     assert!((log.column_at(0).at(400.0) - 0.1).abs() < 1e-16);
 }
@@ -197,36 +115,18 @@ fn what_is_not_there_is_said_with_near_names() {
     for (name, want) in [
         ("D66", "no spectrum is called `D66`; near: D60, D65"),
         ("mercuri", "no spectrum is called `mercuri`; near: mercury"),
-        (
-            "blackbdy:5800",
-            "no spectrum is called `blackbdy:5800`; near: blackbody:5800",
-        ),
+        ("blackbdy:5800", "no spectrum is called `blackbdy:5800`; near: blackbody:5800"),
         ("no-such.csv", "no spectrum is called `no-such.csv`"),
         (
             "gaussian:550",
             "`gaussian:550` is not understood: write center and standard deviation in nm, such as gaussian:550,20",
         ),
-        (
-            "gaussian:550,0",
-            "standard deviation, nm must be positive, not 0",
-        ),
-        (
-            "line:Q",
-            "`line:Q` is not understood: write a letter or a wavelength in nm, such as line:C' or line:632.8",
-        ),
-        (
-            "blackbody:nan",
-            "`blackbody:nan` is not understood: write a temperature in kelvin, such as blackbody:5800",
-        ),
+        ("gaussian:550,0", "standard deviation, nm must be positive, not 0"),
+        ("line:Q", "`line:Q` is not understood: write a letter or a wavelength in nm, such as line:C' or line:632.8"),
+        ("blackbody:nan", "`blackbody:nan` is not understood: write a temperature in kelvin, such as blackbody:5800"),
         ("colorchecker", "`colorchecker` holds dark-skin,"),
-        (
-            "colorchecker#rot",
-            "`spectra/reflectances/colorchecker.csv` has no column `rot`",
-        ),
-        (
-            "cie-rgb-1931#r",
-            "`cie-rgb-1931#r` is of kind color-matching",
-        ),
+        ("colorchecker#rot", "`spectra/reflectances/colorchecker.csv` has no column `rot`"),
+        ("cie-rgb-1931#r", "`cie-rgb-1931#r` is of kind color-matching"),
     ] {
         let got = find(name).expect_err(name).to_string();
         assert!(got.starts_with(want), "{got}");
@@ -239,41 +139,12 @@ fn what_is_not_there_is_said_with_near_names() {
 
 #[test]
 fn inline_spectra_are_what_is_wanted() {
-    assert_eq!(
-        find_emission("line:C'").expect("a line").lines()[0].wavelength_nm,
-        643.85
-    );
-    assert_eq!(
-        find_emission("line: 632.8").expect("a line").lines()[0].wavelength_nm,
-        632.8
-    );
-    assert_eq!(
-        find_transmittance("rectangle:500,600")
-            .expect("a filter")
-            .at(550.0),
-        1.0
-    );
-    assert_eq!(
-        find_sensitivity("gaussian:550,20")
-            .expect("a detector")
-            .at(550.0),
-        1.0
-    );
-    assert_eq!(
-        find_reflectance("constant:0.18")
-            .expect("a surface")
-            .at(550.0),
-        0.18
-    );
+    assert_eq!(find_emission("line:C'").expect("a line").lines()[0].wavelength_nm, 643.85);
+    assert_eq!(find_emission("line: 632.8").expect("a line").lines()[0].wavelength_nm, 632.8);
+    assert_eq!(find_transmittance("rectangle:500,600").expect("a filter").at(550.0), 1.0);
+    assert_eq!(find_sensitivity("gaussian:550,20").expect("a detector").at(550.0), 1.0);
+    assert_eq!(find_reflectance("constant:0.18").expect("a surface").at(550.0), 0.18);
     assert!(find_reflectance("constant:18").is_err());
-    assert_eq!(
-        find_sensitivity("cie-1931-2deg#y")
-            .expect("a detector")
-            .at(555.0),
-        1.0
-    );
-    assert!(
-        (find_emission("blackbody:5800").expect("light").at(500.0) * 1e9 / 2.69e13 - 1.0).abs()
-            < 1e-2
-    );
+    assert_eq!(find_sensitivity("cie-1931-2deg#y").expect("a detector").at(555.0), 1.0);
+    assert!((find_emission("blackbody:5800").expect("light").at(500.0) * 1e9 / 2.69e13 - 1.0).abs() < 1e-2);
 }

@@ -3,8 +3,8 @@
 //! `tests/data/*.csv` are written by `xtask/import_colour_science.py` with colour-science 0.4.7.
 
 use spectra_spectrum::{
-    BAND, Observer, cct, chromaticity, find_reflectance, illuminant, illuminant_names, lab,
-    xyz_of_light, xyz_of_reflectance,
+    BAND, Observer, cct, chromaticity, find_reflectance, illuminant, illuminant_names, lab, xyz_of_light,
+    xyz_of_reflectance,
 };
 
 fn rows(text: &'static str) -> impl Iterator<Item = Vec<&'static str>> {
@@ -24,13 +24,7 @@ fn all_illuminants_have_their_chromaticity() {
         let light = illuminant(row[0]).expect("bundled");
         let [x, y] = chromaticity(Observer::cie_1931_2deg().xyz(&light)).expect("light");
         let off = (x - number(row[1])).abs().max((y - number(row[2])).abs());
-        assert!(
-            off < 5e-5,
-            "{}: {x} {y}, wanted {} {}",
-            row[0],
-            row[1],
-            row[2]
-        );
+        assert!(off < 5e-5, "{}: {x} {y}, wanted {} {}", row[0], row[1], row[2]);
         worst = worst.max(off);
         count += 1;
     }
@@ -47,18 +41,8 @@ fn color_temperatures_agree_with_ohno() {
         let got = cct([number(row[1]), number(row[2])]).expect("near the locus");
         let (kelvin, duv) = (number(row[3]), number(row[4]));
         let allowed = if duv.abs() < 0.01 { 1.0 } else { 3.0 };
-        assert!(
-            (got.kelvin - kelvin).abs() < allowed,
-            "{}: {} K, wanted {kelvin}",
-            row[0],
-            got.kelvin
-        );
-        assert!(
-            (got.duv - duv).abs() < 2e-5,
-            "{}: {} , wanted {duv}",
-            row[0],
-            got.duv
-        );
+        assert!((got.kelvin - kelvin).abs() < allowed, "{}: {} K, wanted {kelvin}", row[0], got.kelvin);
+        assert!((got.duv - duv).abs() < 2e-5, "{}: {} , wanted {duv}", row[0], got.duv);
         count += 1;
     }
     assert!(count > 50, "{count}");
@@ -67,32 +51,16 @@ fn color_temperatures_agree_with_ohno() {
 /// CIE 15:2004, tables T.3 and T.8: tristimulus values at Y = 100, and chromaticities.
 #[test]
 fn published_white_points() {
-    for (name, xyz) in [
-        ("D65", [95.047, 100.0, 108.883]),
-        ("D50", [96.42, 100.0, 82.51]),
-        ("A", [109.85, 100.0, 35.59]),
-    ] {
-        let got = xyz_of_light(
-            &illuminant(name).expect("bundled"),
-            Observer::cie_1931_2deg(),
-        )
-        .expect("light");
-        assert!(
-            got.iter().zip(xyz).all(|(a, b)| (a - b).abs() < 0.02),
-            "{name}: {got:?}"
-        );
+    for (name, xyz) in
+        [("D65", [95.047, 100.0, 108.883]), ("D50", [96.42, 100.0, 82.51]), ("A", [109.85, 100.0, 35.59])]
+    {
+        let got = xyz_of_light(&illuminant(name).expect("bundled"), Observer::cie_1931_2deg()).expect("light");
+        assert!(got.iter().zip(xyz).all(|(a, b)| (a - b).abs() < 0.02), "{name}: {got:?}");
     }
-    for (name, x, y) in [
-        ("E", 1.0 / 3.0, 1.0 / 3.0),
-        ("FL2", 0.3721, 0.3751),
-        ("FL11", 0.3805, 0.3769),
-    ] {
+    for (name, x, y) in [("E", 1.0 / 3.0, 1.0 / 3.0), ("FL2", 0.3721, 0.3751), ("FL11", 0.3805, 0.3769)] {
         let light = illuminant(name).expect("bundled");
         let [gx, gy] = chromaticity(Observer::cie_1931_2deg().xyz(&light)).expect("light");
-        assert!(
-            (gx - x).abs() < 3e-4 && (gy - y).abs() < 3e-4,
-            "{name}: {gx} {gy}"
-        );
+        assert!((gx - x).abs() < 3e-4 && (gy - y).abs() < 3e-4, "{name}: {gx} {gy}");
     }
 }
 
@@ -121,14 +89,8 @@ fn colorchecker_under_d50() {
         ("black", [3.22, 3.35, 2.89], [21.4, -0.2, -1.0]),
     ] {
         let (got, got_lab) = patch_color(patch);
-        assert!(
-            got.iter().zip(xyz).all(|(a, b)| (a - b).abs() < 0.02),
-            "{patch}: {got:?}"
-        );
-        assert!(
-            got_lab.iter().zip(want).all(|(a, b)| (a - b).abs() < 0.1),
-            "{patch}: {got_lab:?}"
-        );
+        assert!(got.iter().zip(xyz).all(|(a, b)| (a - b).abs() < 0.02), "{patch}: {got:?}");
+        assert!(got_lab.iter().zip(want).all(|(a, b)| (a - b).abs() < 0.1), "{patch}: {got_lab:?}");
     }
 }
 
@@ -139,12 +101,7 @@ fn all_patches_agree_with_another_program() {
     for row in rows(include_str!("data/checker-d50.csv")) {
         let (xyz, lab) = patch_color(row[0]);
         for (i, got) in xyz.into_iter().chain(lab).enumerate() {
-            assert!(
-                (got - number(row[i + 1])).abs() < 1e-3,
-                "{}: {got}, wanted {}",
-                row[0],
-                row[i + 1]
-            );
+            assert!((got - number(row[i + 1])).abs() < 1e-3, "{}: {got}, wanted {}", row[0], row[i + 1]);
         }
         count += 1;
     }
@@ -156,10 +113,6 @@ fn all_patches_agree_with_another_program() {
 fn daylight_reaches_the_ultraviolet_edge() {
     for name in ["D50", "D55", "D60", "D65", "D75"] {
         let light = illuminant(name).expect("bundled").on_grid(&BAND);
-        assert!(
-            light[0] > 15.0 && light[0] < light[30],
-            "{name}: {}",
-            light[0]
-        );
+        assert!(light[0] > 15.0 && light[0] < light[30], "{name}: {}", light[0]);
     }
 }

@@ -1,18 +1,11 @@
 //! Lines of the bundled lamps against what makers of glass and laboratories state.
 
-use spectra_spectrum::{
-    Observer, balmer, chromaticity, dominant_wavelength, find_emission, named_line,
-};
+use spectra_spectrum::{Observer, balmer, chromaticity, dominant_wavelength, find_emission, named_line};
 
 fn nearest(lamp: &str, wavelength_nm: f64) -> f64 {
     let light = find_emission(lamp).expect("bundled");
     let off = |w: f64| (w - wavelength_nm).abs();
-    light
-        .lines()
-        .iter()
-        .map(|l| l.wavelength_nm)
-        .min_by(|a, b| off(*a).total_cmp(&off(*b)))
-        .expect("lines")
+    light.lines().iter().map(|l| l.wavelength_nm).min_by(|a, b| off(*a).total_cmp(&off(*b))).expect("lines")
 }
 
 /// The precise wavelengths in air of the named lines (ISO 7944, Schott TIE-29) against the tables, which come from
@@ -35,10 +28,7 @@ fn lamps_hold_the_named_lines() {
     // D stands for both lines of sodium; F and C for unresolved doublets whose centre depends on the discharge.
     let d = find_emission("sodium").expect("bundled");
     let mean = 0.5 * (d.lines()[0].wavelength_nm + d.lines()[1].wavelength_nm);
-    assert!(
-        (mean - named_line("D").expect("named").precise_nm).abs() < 0.001,
-        "{mean}"
-    );
+    assert!((mean - named_line("D").expect("named").precise_nm).abs() < 0.001, "{mean}");
     assert!((nearest("he-ne", 632.8) - 632.8).abs() < 0.02);
 }
 
@@ -46,10 +36,7 @@ fn lamps_hold_the_named_lines() {
 fn hydrogen_follows_rydberg() {
     for upper in 3..=9 {
         let want = balmer(upper).expect("above level 2");
-        assert!(
-            (nearest("hydrogen", want) - want).abs() < 0.01,
-            "{upper}: {want}"
-        );
+        assert!((nearest("hydrogen", want) - want).abs() < 0.01, "{upper}: {want}");
     }
 }
 
@@ -57,24 +44,12 @@ fn hydrogen_follows_rydberg() {
 #[test]
 fn lamps_have_the_color_that_one_sees() {
     let observer = Observer::cie_1931_2deg();
-    for (lamp, low, high) in [
-        ("sodium", 589.0, 589.6),
-        ("neon", 590.0, 620.0),
-        ("he-ne", 632.7, 632.9),
-    ] {
+    for (lamp, low, high) in [("sodium", 589.0, 589.6), ("neon", 590.0, 620.0), ("he-ne", 632.7, 632.9)] {
         let xy = chromaticity(observer.xyz(&find_emission(lamp).expect("bundled"))).expect("light");
         let seen = dominant_wavelength(xy, [1.0 / 3.0, 1.0 / 3.0]).expect("colored");
-        assert!(
-            (low..=high).contains(&seen.wavelength_nm),
-            "{lamp}: {seen:?}"
-        );
+        assert!((low..=high).contains(&seen.wavelength_nm), "{lamp}: {seen:?}");
     }
-    for lamp in [
-        "mercury", "hydrogen", "helium", "argon", "krypton", "xenon", "cadmium",
-    ] {
-        assert!(
-            find_emission(lamp).expect("bundled").luminance() > 0.0,
-            "{lamp}"
-        );
+    for lamp in ["mercury", "hydrogen", "helium", "argon", "krypton", "xenon", "cadmium"] {
+        assert!(find_emission(lamp).expect("bundled").luminance() > 0.0, "{lamp}");
     }
 }

@@ -8,6 +8,7 @@ use spectra_scene::{Output, Scene};
 use std::fmt::Display;
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 /// The folder, known to take files, and what goes into it.
 pub(crate) struct Folder {
@@ -39,28 +40,43 @@ impl Folder {
 
     /// Writes all that the scene asks for; gives the paths.
     pub(crate) fn write(&self, report: &Report<'_>) -> Result<Vec<PathBuf>, Failure> {
-        let failed = |error: &dyn Display| Failure::Failed(error.to_string());
-        let mut shown = None;
-        for (output, path) in &self.files {
-            if *output == Output::Exr {
-                write_exr(path, &report.rendering.exposure, &attributes(report)).map_err(|e| failed(&e))?;
-                continue;
-            }
-            let picture = match shown.take() {
-                Some(picture) => picture,
-                None => picture(report).map_err(Failure::Failed)?,
-            };
-            let written = match output {
-                Output::Tiff => write_tiff16(path, &picture),
-                Output::Png | Output::Exr => write_png8(path, &picture),
-            };
-            written.map_err(|e| failed(&e))?;
-            shown = Some(picture);
-        }
+        std::thread::scope(|scope| {
+            // The picture is developed and packed while the light behind it is.
+            let exposure = scope.spawn(|| self.write_exposure(report));
+            let pictures = self.write_pictures(report);
+            exposure.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)).and(pictures)
+        })?;
         let paths: Vec<PathBuf> = self.files.iter().map(|(_, path)| path).chain([&self.report]).cloned().collect();
         let text = format!("{:#}\n", report.to_json(&paths));
-        write_atomically(&self.report, |file| Ok(file.write_all(text.as_bytes())?)).map_err(|e| failed(&e))?;
+        write_atomically(&self.report, |file| Ok(file.write_all(text.as_bytes())?))?;
         Ok(paths)
+    }
+
+    fn write_exposure(&self, report: &Report<'_>) -> Result<(), Failure> {
+        for (_, path) in self.files.iter().filter(|(output, _)| *output == Output::Exr) {
+            let begun = Instant::now();
+            write_exr(path, &report.rendering.exposure, &attributes(report))?;
+            tracing::debug!(seconds = begun.elapsed().as_secs_f64(), "exposure written");
+        }
+        Ok(())
+    }
+
+    fn write_pictures(&self, report: &Report<'_>) -> Result<(), Failure> {
+        if self.files.iter().all(|(output, _)| *output == Output::Exr) {
+            return Ok(());
+        }
+        let begun = Instant::now();
+        let picture = picture(report).map_err(Failure::Failed)?;
+        tracing::debug!(seconds = begun.elapsed().as_secs_f64(), "picture developed");
+        for (output, path) in &self.files {
+            match output {
+                Output::Exr => {}
+                Output::Png => write_png8(path, &picture)?,
+                Output::Tiff => write_tiff16(path, &picture)?,
+            }
+        }
+        tracing::debug!(seconds = begun.elapsed().as_secs_f64(), "pictures written");
+        Ok(())
     }
 }
 

@@ -3,6 +3,7 @@
 use crate::console;
 use crate::outcome::INTERRUPTED;
 use spectra_render::Control;
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering::SeqCst};
 
@@ -18,14 +19,15 @@ impl Interrupt {
     }
 }
 
-/// Listens from now on.
-pub(crate) fn listen(control: &Arc<Control>) -> Interrupt {
+/// Listens from now on. Given up, nothing half written stays in `folder`.
+pub(crate) fn listen(control: &Arc<Control>, folder: &Path) -> Interrupt {
     let count = Arc::new(AtomicU32::new(0));
-    let (counter, control) = (Arc::clone(&count), Arc::clone(control));
+    let (counter, control, folder) = (Arc::clone(&count), Arc::clone(control), folder.to_owned());
     let listening = ctrlc::set_handler(move || {
         if counter.fetch_add(1, SeqCst) == 0 {
             control.stop();
         } else {
+            remove_temporary(&folder);
             std::process::exit(i32::from(INTERRUPTED));
         }
     });
@@ -33,4 +35,36 @@ pub(crate) fn listen(control: &Arc<Control>) -> Interrupt {
         console::warning(&format!("Ctrl-C will not keep what was rendered: {error}"));
     }
     Interrupt { count }
+}
+
+/// Removes the files that this process was writing: `.NAME.PROCESS-NUMBER.tmp`.
+fn remove_temporary(folder: &Path) {
+    let mark = format!(".{}-", std::process::id());
+    for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
+        let name = entry.file_name();
+        let name = name.to_string_lossy();
+        if name.starts_with('.') && name.ends_with(".tmp") && name.contains(&mark) {
+            // The process ends here; there is nobody to tell.
+            let _ = std::fs::remove_file(entry.path());
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_own_temporary_files_are_removed() {
+        let folder = std::env::temp_dir().join(format!("spectra-interrupt-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).expect("a folder");
+        let own = format!(".a.exr.{}-0.tmp", std::process::id());
+        let names = [own.as_str(), ".a.exr.1-0.tmp", "a.exr", "a.tmp"];
+        for name in names {
+            std::fs::write(folder.join(name), "").expect("written");
+        }
+        remove_temporary(&folder);
+        assert_eq!(names.map(|name| folder.join(name).exists()), [false, true, true, true]);
+        std::fs::remove_dir_all(&folder).expect("removed");
+    }
 }

@@ -48,7 +48,7 @@ fn render_scene(arguments: &Run, isa: Isa, started: Instant) -> Outcome {
     let limit_s = arguments.time_limit.map(f64::from);
     let deadline = limit_s.and_then(|s| started.checked_add(Duration::try_from_secs_f64(s).ok()?));
     let control = Arc::new(deadline.map_or_else(Control::new, Control::until));
-    let interrupt = interrupt::listen(&control);
+    let interrupt = interrupt::listen(&control, &arguments.output);
     let threads = arguments.threads.map_or_else(processors, usize::from);
     let mut progress = Progress::new(arguments, deadline);
     for warning in &scene.warnings {

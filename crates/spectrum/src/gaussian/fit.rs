@@ -177,7 +177,7 @@ impl<'a> Search<'a> {
         };
         let mut places = from.places.clone();
         let count = places.len();
-        if number % 3 == 0 {
+        if number.is_multiple_of(3) {
             for place in &mut places {
                 place[0] += libm::exp(place[1]) * (random() - 0.5);
                 place[1] += 0.8 * (random() - 0.5);

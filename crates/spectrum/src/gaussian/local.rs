@@ -109,7 +109,7 @@ mod tests {
             GaussianTerm::local(500.0, 1.0, 0.0, 1.0),
             Err(NoGaussian::NotConcave { curvature_per_nm2: 1.0 })
         ));
-        assert!(matches!(GaussianTerm::local(500.0, 1.0, 0.1, 0.0), Ok(_)));
+        assert!(GaussianTerm::local(500.0, 1.0, 0.1, 0.0).is_ok());
         assert!(GaussianTerm::local(500.0, 1.0, 0.0, 0.0).is_err());
         assert!(matches!(GaussianTerm::local(500.0, 0.0, 0.0, -1.0), Err(NoGaussian::NoLogarithm { .. })));
         assert!(GaussianTerm::local(500.0, f64::NAN, 0.0, -1.0).is_err());
