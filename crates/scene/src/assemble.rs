@@ -2,7 +2,7 @@
 
 use crate::{ConePattern, Direction, FileResources, Output, RenderSettings, Scene, yaml};
 use serde::Deserialize;
-use spectra_core::params::{FNumber, Fault, Faults, Length, OrInfinity, Params, Positive, StageNode, Wavelength};
+use spectra_core::params::{FNumber, Fault, Faults, Length, Node, OrInfinity, Params, Positive, StageNode, Wavelength};
 use spectra_core::registry::{self, Context};
 use spectra_core::resources::Resources;
 use spectra_core::spectral::{BAND, Channel, Grid};
@@ -39,6 +39,7 @@ struct SceneFile {
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct LensSection {
     /// A lens file beside the scene, or the name of a bundled lens.
+    #[expect(dead_code, reason = "states the key; the lens is read even where another key is faulty")]
     file: String,
     /// Aperture; as the lens file says if absent.
     f_number: Option<FNumber>,
@@ -87,7 +88,7 @@ pub fn load(path: &Path, overrides: &[String]) -> Result<Scene, Faults> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let resources = FileResources::beside(folder);
     let name = path.file_stem().map_or_else(|| "scene".to_owned(), |s| s.to_string_lossy().into_owned());
-    let mut root = yaml::read(path)?;
+    let mut root = read(path)?;
     let mut faults = Faults::new();
     for text in overrides {
         faults.take(yaml::parse_override(text).and_then(|o| o.apply(&mut root).map_err(Faults::from)));
@@ -97,10 +98,26 @@ pub fn load(path: &Path, overrides: &[String]) -> Result<Scene, Faults> {
     assemble(&name, text, &Params::section(root, "")?, &resources)
 }
 
+/// The scene file, or the bundled scene of that name.
+fn read(path: &Path) -> Result<Node, Faults> {
+    if !path.exists() {
+        let name = path.to_string_lossy();
+        for bundled in [format!("scenes/{name}"), format!("scenes/{name}.yaml")] {
+            if let Some(bytes) = spectra_data::get(&bundled) {
+                return yaml::parse_bytes(&format!("bundled:{bundled}"), bytes);
+            }
+        }
+    }
+    yaml::read(path)
+}
+
 /// The scene as written, with the overrides below it. What changes no picture is left out, so that the
 /// record in a picture file does not change with it either.
 fn record(text: &str, overrides: &[String]) -> String {
     let mut record = text.to_owned();
+    if !record.is_empty() && !record.ends_with('\n') {
+        record.push('\n');
+    }
     for line in overrides.iter().filter(|o| !o.starts_with("render.batch")) {
         record.push_str("# --set ");
         record.push_str(line);
@@ -192,9 +209,14 @@ fn grid_of(section: &BandSection, params: &Params) -> Result<Grid, Faults> {
 }
 
 fn lens_of(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults> {
-    let section: LensSection = params.parse()?;
-    let lens = spectra_lens::load(&section.file, resources).map_err(|faults| params.place_at("file", faults))?;
     let mut faults = Faults::new();
+    let section = faults.take(params.parse::<LensSection>());
+    // The lens is read even where another key of this section is faulty: all faults in one go.
+    let file = params.get("file").and_then(|node| node.as_str());
+    let lens = file.and_then(|file| {
+        faults.take(spectra_lens::load(file, resources).map_err(|faults| params.place_at("file", faults)))
+    });
+    let (Some(section), Some(lens)) = (section, lens) else { return Err(faults) };
     let lens = match section.f_number {
         Some(f_number) => {
             let stopped = lens.clone().at_f_number(f_number.number());

@@ -79,7 +79,11 @@ impl<'n, 'p> Walker<'n, 'p> {
     fn mismatch(&self, expected: &str) -> NodeError {
         let quoted_number = self.node.is_quoted()
             && matches!(&self.node.value, Value::String(text) if matches!(Value::from_plain(text), Value::Number(_) | Value::Bool(_)));
-        let hint = quoted_number.then(|| "remove the quotes".to_owned());
+        let hint = match expected.split_once(" such as ") {
+            _ if quoted_number => Some("remove the quotes".to_owned()),
+            Some((_, example)) => Some(format!("write it as in `{example}`")),
+            None => None,
+        };
         NodeError::new(Cause::Text(format!("found {}, expected {expected}", found(self.node)), hint))
     }
 
