@@ -4,7 +4,7 @@
 //! a random wavelength per ray, a million rays, one thread. The two programs take turns; each figure is the median of
 //! its turns. Last line: JSON.
 
-use spectra_core::isa::Vectorized;
+use spectra_core::isa::{Vectorized, prefetch};
 use spectra_core::surface::Action;
 use spectra_core::{Isa, RayBatch};
 use spectra_glass::{Category, Formula, Glass, Medium};
@@ -99,7 +99,8 @@ fn rays() -> Rays {
         state ^= state << 17;
         (state >> 11) as f64 * (1.0 / 9_007_199_254_740_992.0)
     };
-    let mut rays = Rays { x: Vec::new(), y: Vec::new(), wavelength_nm: Vec::new() };
+    let column = || Vec::with_capacity(RAYS);
+    let mut rays = Rays { x: column(), y: column(), wavelength_nm: column() };
     let tangent = libm::tan(FIELD_DEG.to_radians());
     for _ in 0..RAYS {
         let (r, t) = (12.0 * uniform().sqrt(), std::f64::consts::TAU * uniform());
@@ -186,6 +187,12 @@ fn trace(tracer: &Tracer, rays: &Rays, image: &mut [f64]) -> (usize, u64) {
     for start in (0..RAYS).step_by(BATCH) {
         batch.restart(BATCH.min(RAYS - start));
         isa.run(Start { rays, start, batch: &mut batch });
+        // The next batch's rays, and the place for this one's points, come from memory while this one is traced.
+        let next = (start + BATCH).min(RAYS)..(start + 2 * BATCH).min(RAYS);
+        for column in [&rays.x, &rays.y, &rays.wavelength_nm] {
+            prefetch(&column[next.clone()]);
+        }
+        prefetch(&image[landed..(landed + BATCH).min(RAYS)]);
         tracer.trace(&mut batch, &mut work, Travel::Forward);
         let len = batch.len();
         isa.run(Land { batch: &batch, image: &mut image[landed..landed + len] });

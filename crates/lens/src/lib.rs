@@ -18,4 +18,5 @@ pub use first_order::FirstOrder;
 pub use focus::FocusError;
 pub use lens::{Element, Lens, LensMedium};
 pub use prescription::{load, parse};
-pub use tracer::{Indices, RayPath, Tracer, Travel, Work};
+pub use spectra_core::surface::Travel;
+pub use tracer::{Indices, RayPath, Tracer, Work};

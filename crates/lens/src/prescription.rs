@@ -200,10 +200,16 @@ fn medium(
         };
         let medium = found.map_err(|e| {
             let hint = match &e {
-                FindError::Unknown { nearest, .. } => nearest.first().map(|c| format!("did you mean `{}`?", c.full_name)),
-                FindError::Ambiguous { candidates, .. } => candidates.first().map(|c| format!("for example `{}`", c.full_name)),
+                FindError::Unknown { nearest, .. } => {
+                    nearest.first().map(|c| format!("did you mean `{}`?", c.full_name))
+                }
+                FindError::Ambiguous { candidates, .. } => {
+                    candidates.first().map(|c| format!("for example `{}`", c.full_name))
+                }
             };
-            place.fault("glass", e.to_string()).hint(hint.unwrap_or_else(|| "or state `glass: {nd: ..., vd: ...}`".to_owned()))
+            place
+                .fault("glass", e.to_string())
+                .hint(hint.unwrap_or_else(|| "or state `glass: {nd: ..., vd: ...}`".to_owned()))
         })?;
         let own = medium.index(lines::D.wavelength_nm);
         if let Some(nd) = stated.nd.filter(|nd| (nd - own).abs() > INDEX_TOLERANCE) {

@@ -4,7 +4,7 @@ use crate::{Element, Lens};
 use glam::DVec3;
 use spectra_core::batch::Column;
 use spectra_core::isa::{Isa, Vectorized};
-use spectra_core::surface::{IndexColumns, Interface};
+use spectra_core::surface::{IndexColumns, Interface, Travel};
 use spectra_core::{Loss, LossCounts, RayBatch};
 use spectra_glass::{Dispersion, DispersionError, Medium};
 
@@ -22,15 +22,6 @@ pub enum Indices {
     Stated,
     /// Every medium at this wavelength, nm, whatever the ray's own is.
     At(f64),
-}
-
-/// Sense of travel.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Travel {
-    /// From the object to the imager.
-    Forward,
-    /// From the imager to the object.
-    Backward,
 }
 
 /// A lens made ready for one band of light.
@@ -132,6 +123,7 @@ impl Tracer {
                 shift_mm: element.vertex_z_mm - origin,
                 clip_radius2_mm2: element.semi_diameter_mm.map_or(f64::INFINITY, |s| s * s),
                 action: element.action,
+                travel,
                 before: columns(&work.media[before], len),
                 after: columns(&work.media[after], len),
             };
@@ -178,6 +170,7 @@ impl Tracer {
                 shift_mm: element.vertex_z_mm - origin,
                 clip_radius2_mm2: element.semi_diameter_mm.map_or(f64::INFINITY, |s| s * s),
                 action: element.action,
+                travel: Travel::Forward,
                 before: columns(&work.media[element.medium_before], 1),
                 after: columns(&work.media[element.medium_after], 1),
             };

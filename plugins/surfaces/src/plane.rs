@@ -27,10 +27,10 @@ impl Plane {
 
 impl KernelShape for Plane {
     #[inline(always)]
-    fn hit<R: Real>(&self, ray: Ray<R>) -> Hit<R> {
+    fn hit<R: Real, const FORWARD: bool>(&self, ray: Ray<R, FORWARD>) -> Hit<R> {
         let n = ray.direction[2];
-        // A ray along the plane never meets it: 0 is made negative, everything else stays positive.
-        Hit { distance: -ray.position[2] / n, cosine: n, valid: n * n - R::constant(f64::MIN_POSITIVE) }
+        // A ray along the plane never meets it: 0 is made negative.
+        Hit { distance: -ray.position[2] / n, cosine: n, valid: ray.along(n) - R::constant(f64::MIN_POSITIVE) }
     }
 
     #[inline(always)]
@@ -81,7 +81,11 @@ mod tests {
     #[test]
     fn a_ray_along_the_plane_misses_it() {
         let hit = |n: f64| {
-            Plane::refracting().hit(Ray { position: [0.0, 0.0, -1.0], direction: [0.0, 1.0, n], radius2: 0.0 })
+            Plane::refracting().hit(Ray::<f64, true> {
+                position: [0.0, 0.0, -1.0],
+                direction: [0.0, 1.0, n],
+                radius2: 0.0,
+            })
         };
         assert!(!(hit(0.0).valid >= 0.0));
         assert!(hit(1e-3).valid >= 0.0);

@@ -26,14 +26,14 @@ impl KernelShape for Sphere {
     /// With b = n - c (p . d) and q = c p^2 - 2 z the distance t solves c t^2 - 2 b t + q = 0. The form
     /// t = q / (b + sqrt(b^2 - c q)) does not cancel for long radii, and holds for a plane.
     #[inline(always)]
-    fn hit<R: Real>(&self, ray: Ray<R>) -> Hit<R> {
+    fn hit<R: Real, const FORWARD: bool>(&self, ray: Ray<R, FORWARD>) -> Hit<R> {
         let c = R::constant(self.curvature_per_mm);
         let ([x, y, z], [l, m, n]) = (ray.position, ray.direction);
         let b = n - c * (x * l + y * m + z * n);
         let q = c * (ray.radius2 + z * z) - (z + z);
         let discriminant = b * b - c * q;
-        // The root nearer to the vertex is the one where the ray passes along its own sense of z.
-        let cosine = discriminant.sqrt().copysign(n);
+        // The root nearer to the vertex is the one where the ray crosses in the sense of travel.
+        let cosine = ray.along(discriminant.sqrt());
         let distance = q / (b + cosine);
         // All points of the sphere lie on one side of the vertex plane: the half is a matter of size.
         let on_vertex_half = R::constant(self.size_mm) - (z + distance * n).abs();
@@ -94,7 +94,12 @@ mod tests {
 
     fn hit(radius_mm: f64, position: [f64; 3], direction: [f64; 3]) -> Hit<f64> {
         let radius2 = position[0] * position[0] + position[1] * position[1];
-        Sphere::new(radius_mm).hit(Ray { position, direction, radius2 })
+        let sphere = Sphere::new(radius_mm);
+        if direction[2] >= 0.0 {
+            sphere.hit(Ray::<f64, true> { position, direction, radius2 })
+        } else {
+            sphere.hit(Ray::<f64, false> { position, direction, radius2 })
+        }
     }
 
     /// Closed form: a ray parallel to the axis at height h meets the sphere at its sag

@@ -1,6 +1,6 @@
 //! The fast tier: a branch-free intersection, vectorised over the batch.
 
-use super::{Action, Interface, Surface, bend};
+use super::{Action, Interface, Surface, Travel, bend};
 use crate::RayBatch;
 use crate::isa::{Isa, Vectorized};
 use crate::loss::{ALIVE, Loss};
@@ -15,8 +15,6 @@ pub trait Real:
     fn constant(value: f64) -> Self;
     /// Square root; of a negative number NaN.
     fn sqrt(self) -> Self;
-    /// Its size with the sign of `sign`.
-    fn copysign(self, sign: Self) -> Self;
     /// Its size.
     fn abs(self) -> Self;
     /// The smaller; `other` if this one is NaN.
@@ -33,10 +31,6 @@ impl Real for f64 {
         Self::sqrt(self)
     }
     #[inline(always)]
-    fn copysign(self, sign: Self) -> Self {
-        Self::copysign(self, sign)
-    }
-    #[inline(always)]
     fn abs(self) -> Self {
         Self::abs(self)
     }
@@ -46,9 +40,9 @@ impl Real for f64 {
     }
 }
 
-/// A ray in the frame of the surface.
+/// A ray in the frame of the surface, of a batch that travels toward the imager (`FORWARD`) or away from it.
 #[derive(Clone, Copy, Debug)]
-pub struct Ray<R> {
+pub struct Ray<R, const FORWARD: bool> {
     /// A point of it, mm.
     pub position: [R; 3],
     /// Unit direction.
@@ -57,22 +51,31 @@ pub struct Ray<R> {
     pub radius2: R,
 }
 
+impl<R: Real, const FORWARD: bool> Ray<R, FORWARD> {
+    /// A size with the sign of the sense of travel: positive forward. Two square roots of opposite sign solve most
+    /// intersections; this one is on the side that the light comes from.
+    #[inline(always)]
+    pub fn along(&self, size: R) -> R {
+        if FORWARD { size } else { -size }
+    }
+}
+
 /// Where a ray meets a surface.
 #[derive(Clone, Copy, Debug)]
 pub struct Hit<R> {
     /// Distance along the ray, mm; may be negative.
     pub distance: R,
-    /// Direction . normal, of either sign.
+    /// Direction . normal, for the normal that points toward +z at the vertex: positive forward, negative backward.
     pub cosine: R,
-    /// Negative or NaN where the ray does not meet the surface.
+    /// Negative or NaN where the ray does not meet the surface, or runs against the sense of travel.
     pub valid: R,
 }
 
 /// A surface by branch-free code. Mark the methods `#[inline(always)]`.
 pub trait KernelShape: Send + Sync + std::fmt::Debug {
     /// Where the ray meets the surface: for a ray along the axis, the vertex.
-    fn hit<R: Real>(&self, ray: Ray<R>) -> Hit<R>;
-    /// Unit normal at a point of the surface, of the same sense as [`Hit::cosine`].
+    fn hit<R: Real, const FORWARD: bool>(&self, ray: Ray<R, FORWARD>) -> Hit<R>;
+    /// Unit normal at a point of the surface, toward +z at the vertex.
     fn normal<R: Real>(&self, point: [R; 3]) -> [R; 3];
     /// `mu * direction + push * normal(point)`: the direction behind the surface. A shape whose normal
     /// is linear in the point may save a few operations here.
@@ -111,10 +114,22 @@ impl<S: KernelShape> Surface for Kernel<S> {
     }
     fn interact(&self, rays: &mut RayBatch, interface: &Interface<'_>, isa: Isa) -> usize {
         match interface.action {
-            Action::Refract => isa.run(Interact::<S, REFRACT> { shape: &self.0, rays, interface }),
-            Action::Reflect => isa.run(Interact::<S, REFLECT> { shape: &self.0, rays, interface }),
-            Action::Pass => isa.run(Interact::<S, PASS> { shape: &self.0, rays, interface }),
+            Action::Refract => interact::<S, REFRACT>(&self.0, rays, interface, isa),
+            Action::Reflect => interact::<S, REFLECT>(&self.0, rays, interface, isa),
+            Action::Pass => interact::<S, PASS>(&self.0, rays, interface, isa),
         }
+    }
+}
+
+fn interact<S: KernelShape, const ACTION: u8>(
+    shape: &S,
+    rays: &mut RayBatch,
+    interface: &Interface<'_>,
+    isa: Isa,
+) -> usize {
+    match interface.travel {
+        Travel::Forward => isa.run(Interact::<S, ACTION, true> { shape, rays, interface }),
+        Travel::Backward => isa.run(Interact::<S, ACTION, false> { shape, rays, interface }),
     }
 }
 
@@ -127,33 +142,46 @@ const PASS: u8 = 2;
 /// several rays' roots are under way at once (measured: 1.3 times the rays a second). What both need
 /// travels in scratch columns: loads and stores are free here, arithmetic is not. Why a ray ended is
 /// asked only where one did.
-struct Interact<'a, S, const ACTION: u8> {
+struct Interact<'a, S, const ACTION: u8, const FORWARD: bool> {
     shape: &'a S,
     rays: &'a mut RayBatch,
     interface: &'a Interface<'a>,
 }
 
-impl<S: KernelShape, const ACTION: u8> Vectorized for Interact<'_, S, ACTION> {
+impl<S: KernelShape, const ACTION: u8, const FORWARD: bool> Vectorized for Interact<'_, S, ACTION, FORWARD> {
     type Output = usize;
 
     #[inline(always)]
     fn run(self) -> usize {
-        intersect(self.shape, self.rays, self.interface.shift_mm);
-        if bend_all::<S, ACTION>(self.shape, self.rays, self.interface) { book(self.rays, self.interface) } else { 0 }
+        intersect::<S, FORWARD>(self.shape, self.rays, self.interface.shift_mm);
+        if bend_all::<S, ACTION, FORWARD>(self.shape, self.rays, self.interface) {
+            book(self.rays, self.interface)
+        } else {
+            0
+        }
     }
 }
 
 /// Moves every ray to the surface; leaves cosine and validity behind.
 #[inline(always)]
-fn intersect<S: KernelShape>(shape: &S, rays: &mut RayBatch, shift: f64) {
+fn intersect<S: KernelShape, const FORWARD: bool>(shape: &S, rays: &mut RayBatch, shift: f64) {
     let (c, s) = rays.columns_and_scratch_mut();
-    intersect_loop(shape, shift, [c.l, c.m, c.n, s.radius2], c.x, c.y, c.z, s.cosine_then_margin, s.valid);
+    intersect_loop::<S, FORWARD>(
+        shape,
+        shift,
+        [c.l, c.m, c.n, s.radius2],
+        c.x,
+        c.y,
+        c.z,
+        s.cosine_then_margin,
+        s.valid,
+    );
 }
 
 /// Columns come as arguments of their own: so the compiler knows that none overlaps another, and
 /// need not compare their addresses at every call.
 #[inline(always)]
-fn intersect_loop<S: KernelShape>(
+fn intersect_loop<S: KernelShape, const FORWARD: bool>(
     shape: &S,
     shift: f64,
     [l, m, n, radius2]: [&[f64]; 4],
@@ -170,7 +198,7 @@ fn intersect_loop<S: KernelShape>(
     for i in 0..len {
         let p = [x[i], y[i], z[i] - shift];
         let d = [l[i], m[i], n[i]];
-        let hit = shape.hit(Ray { position: p, direction: d, radius2: radius2[i] });
+        let hit = shape.hit(Ray::<f64, FORWARD> { position: p, direction: d, radius2: radius2[i] });
         let t = hit.distance;
         (x[i], y[i], z[i]) = (p[0] + t * d[0], p[1] + t * d[1], p[2] + t * d[2]);
         cosine[i] = hit.cosine;
@@ -180,9 +208,13 @@ fn intersect_loop<S: KernelShape>(
 
 /// Bends every ray at its point of the surface; says whether any living one ended.
 #[inline(always)]
-fn bend_all<S: KernelShape, const ACTION: u8>(shape: &S, rays: &mut RayBatch, at: &Interface<'_>) -> bool {
+fn bend_all<S: KernelShape, const ACTION: u8, const FORWARD: bool>(
+    shape: &S,
+    rays: &mut RayBatch,
+    at: &Interface<'_>,
+) -> bool {
     let (c, s) = rays.columns_and_scratch_mut();
-    bend_loop::<S, ACTION>(
+    bend_loop::<S, ACTION, FORWARD>(
         shape,
         at.clip_radius2_mm2,
         [c.x, c.y, c.z, s.valid, at.before.n, at.after.inverse],
@@ -196,7 +228,7 @@ fn bend_all<S: KernelShape, const ACTION: u8>(shape: &S, rays: &mut RayBatch, at
 }
 
 #[inline(always)]
-fn bend_loop<S: KernelShape, const ACTION: u8>(
+fn bend_loop<S: KernelShape, const ACTION: u8, const FORWARD: bool>(
     shape: &S,
     clip2: f64,
     [x, y, z, valid, before, inverse_after]: [&[f64]; 6],
@@ -222,7 +254,7 @@ fn bend_loop<S: KernelShape, const ACTION: u8>(
         let mut margin = clip2 - r2;
         if ACTION == REFRACT {
             let mu = before[i] * inverse_after[i];
-            let (push, k) = bend::snell(cosine_then_margin[i], mu);
+            let (push, k) = bend::snell::<FORWARD>(cosine_then_margin[i], mu);
             (l[i], m[i], n[i]) = shape.bend(q, d, mu, push).into();
             margin = Real::min(k, margin);
         }

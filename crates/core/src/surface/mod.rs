@@ -40,6 +40,15 @@ pub struct IndexColumns<'a> {
     pub inverse: &'a [f64],
 }
 
+/// Sense of travel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Travel {
+    /// From the object to the imager.
+    Forward,
+    /// From the imager to the object.
+    Backward,
+}
+
 /// What the lens tells a surface about its place.
 #[derive(Clone, Copy, Debug)]
 pub struct Interface<'a> {
@@ -51,6 +60,8 @@ pub struct Interface<'a> {
     pub clip_radius2_mm2: f64,
     /// What happens there.
     pub action: Action,
+    /// Sense in which the batch travels.
+    pub travel: Travel,
     /// Medium that the rays come from, in the sense of travel.
     pub before: IndexColumns<'a>,
     /// Medium that they go to.

@@ -87,6 +87,6 @@ fn one<S: ScalarShape>(shape: &S, p: DVec3, d: DVec3, at: &Interface<'_>, i: usi
         return Ok((q, d - 2.0 * cosine * normal));
     }
     let mu = at.before.n[i] * at.after.inverse[i];
-    let (push, k) = bend::snell(cosine, mu);
+    let (push, k) = if cosine > 0.0 { bend::snell::<true>(cosine, mu) } else { bend::snell::<false>(cosine, mu) };
     if k >= 0.0 { Ok((q, mu * d + push * normal)) } else { Err(Loss::TotalReflection) }
 }

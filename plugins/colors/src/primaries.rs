@@ -1,0 +1,40 @@
+//! `kind: primaries`: three smooth emission spectra that are exactly the primaries of sRGB.
+
+use crate::Basis;
+use serde::Deserialize;
+use spectra_core::params::{Faults, Params};
+use spectra_core::registry::{ColorEntry, Context};
+use spectra_core::stage::ColorModel;
+use spectra_spectrum::srgb_primaries;
+
+/// Parameters of `kind: primaries`: none.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PrimariesParams {}
+
+inventory::submit! {
+    ColorEntry::new(
+        "primaries",
+        "The sum of three smooth spectra that have exactly the colors of the sRGB primaries.",
+        env!("CARGO_PKG_NAME"),
+        env!("CARGO_PKG_VERSION"),
+        build,
+    )
+}
+
+fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn ColorModel>, Faults> {
+    let PrimariesParams {} = params.parse()?;
+    let spectra = srgb_primaries().each_ref().map(|light| light.to_power(&context.grid));
+    // Without an illuminant white is that of sRGB; D65 as tabulated differs from it by 3e-5 in x and y.
+    let basis = match context.illuminant {
+        None => Some(Basis::new(&spectra)),
+        Some(white) => Basis::balanced(spectra, white),
+    };
+    match basis {
+        Some(basis) => Ok(Box::new(basis)),
+        None => {
+            let fault = params.fault("kind", "no mixture of the sRGB primaries has the color of the illuminant");
+            Err(fault.hint("choose another illuminant, or `kind: smooth`").into())
+        }
+    }
+}

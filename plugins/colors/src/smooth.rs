@@ -1,0 +1,336 @@
+//! `kind: smooth`: a smooth reflectance for each color, under the illuminant.
+//!
+//! W. Jakob and J. Hanika, "A low-dimensional function space for efficient spectral upsampling", Computer Graphics Forum
+//! 38(2), 147 (2019): a reflectance is a sigmoid of a quadratic in the wavelength, s(x) = 1/2 + x / (2 sqrt(1 + x^2)), whose
+//! three coefficients are solved for the color that it has under D65. As M. Pharr, W. Jakob and G. Humphreys do for light
+//! that has no upper bound ("Physically Based Rendering", 4th edition, 4.6.6), a color is first scaled to a largest value of
+//! 1/2, and its spectrum scaled back: so there is no color too bright, a grey is the illuminant itself, times a number,
+//! and twice the color is twice the spectrum. The price: the reflectance of a full and saturated color exceeds 1.
+//!
+//! Coefficients lie in a table over the two smaller values relative to the largest, filled by Newton's method when the
+//! first model is made. Between pixels of a picture it is the color that is interpolated, not the coefficients: toward
+//! black they have no limit.
+
+use serde::Deserialize;
+use spectra_core::batch::CONTINUUM;
+use spectra_core::params::{Faults, Params};
+use spectra_core::registry::{ColorEntry, Context};
+use spectra_core::spectral::{BAND, Line, SpectralPower};
+use spectra_core::stage::ColorModel;
+use spectra_spectrum::{Observer, RgbSpace, chromaticity, illuminant, matrix};
+use std::sync::OnceLock;
+
+/// Parameters of `kind: smooth`: none.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SmoothParams {}
+
+inventory::submit! {
+    ColorEntry::new(
+        "smooth",
+        "A smooth reflectance for each color, under the illuminant (Jakob and Hanika 2019).",
+        env!("CARGO_PKG_NAME"),
+        env!("CARGO_PKG_VERSION"),
+        build,
+    )
+}
+
+fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn ColorModel>, Faults> {
+    let SmoothParams {} = params.parse()?;
+    let light = context.illuminant.cloned().unwrap_or_else(|| daylight().to_power(&context.grid));
+    Ok(Box::new(Smooth::new(light)))
+}
+
+/// The light under which a reflectance has the color that its RGB says.
+fn daylight() -> spectra_spectrum::Emission {
+    illuminant("D65").expect("D65 is bundled")
+}
+
+/// Largest value to which colors are scaled before they are looked up.
+const LEVEL: f64 = 0.5;
+/// Points along each side of the table.
+const SIDE: usize = 65;
+
+/// Coefficients of the quadratic: of 1, t and (3 t^2 - 1) / 2, t from -1 to 1 over 350-830 nm.
+type Coefficients = [f64; 3];
+
+/// A smooth reflectance of the color, times an illuminant.
+struct Smooth {
+    light: SpectralPower,
+    lines_nm: Vec<f64>,
+    table: &'static Table,
+}
+
+impl Smooth {
+    fn new(light: SpectralPower) -> Self {
+        let lines_nm = light.lines.iter().map(|l| l.wavelength_nm).collect();
+        Self { light, lines_nm, table: Table::of_srgb() }
+    }
+}
+
+impl ColorModel for Smooth {
+    fn lines_nm(&self) -> &[f64] {
+        &self.lines_nm
+    }
+
+    /// The color itself: what lies between two pixels is a mixture of their colors. Negative values count as 0.
+    fn coefficients(&self, linear_srgb: [f64; 3]) -> [f32; 3] {
+        linear_srgb.map(|v| v.max(0.0) as f32)
+    }
+
+    fn spectrum(&self, linear_srgb: [f64; 3]) -> SpectralPower {
+        let (scale, coefficients) = self.table.look_up(linear_srgb);
+        let reflectance = |nm: f64| scale * sigmoid(quadratic(coefficients, nm));
+        let light = &self.light;
+        SpectralPower {
+            grid: light.grid,
+            continuum: light.grid.wavelengths_nm().zip(&light.continuum).map(|(nm, p)| p * reflectance(nm)).collect(),
+            lines: light.lines.iter().map(|l| Line { power: l.power * reflectance(l.wavelength_nm), ..*l }).collect(),
+        }
+    }
+
+    fn evaluate(&self, coefficients: &[[f32; 3]], wavelength_nm: &[f64], line: &[u32], weight: &mut [f64]) {
+        for i in 0..weight.len() {
+            let (scale, color) = self.table.look_up(coefficients[i].map(f64::from));
+            let power = if line[i] == CONTINUUM {
+                self.light.grid.interpolate(&self.light.continuum, wavelength_nm[i])
+            } else {
+                self.light.lines.get(line[i] as usize).map_or(0.0, |l| l.power)
+            };
+            weight[i] *= power * scale * sigmoid(quadratic(color, wavelength_nm[i]));
+        }
+    }
+}
+
+fn sigmoid(x: f64) -> f64 {
+    0.5 + 0.5 * x / (1.0 + x * x).sqrt()
+}
+
+fn place(wavelength_nm: f64) -> f64 {
+    (wavelength_nm - 0.5 * (BAND.start_nm + BAND.end_nm())) / (0.5 * (BAND.end_nm() - BAND.start_nm))
+}
+
+fn quadratic([a, b, c]: Coefficients, wavelength_nm: f64) -> f64 {
+    let t = place(wavelength_nm);
+    a + b * t + c * (1.5 * t * t - 0.5)
+}
+
+/// Coefficients for each largest channel, over the values of the next two relative to it.
+struct Table {
+    points: Vec<[f32; 3]>,
+}
+
+impl Table {
+    /// The table of sRGB, filled once.
+    fn of_srgb() -> &'static Self {
+        static ONE: OnceLock<Table> = OnceLock::new();
+        ONE.get_or_init(|| {
+            let solver = Solver::new();
+            let mut points = Vec::with_capacity(3 * SIDE * SIDE);
+            for largest in 0..3 {
+                // From grey, where all coefficients are 0, each point starts from one that is solved.
+                let mut rows = vec![[[0.0; 3]; SIDE]; SIDE];
+                for row in (0..SIDE).rev() {
+                    for column in (0..SIDE).rev() {
+                        let mut color = [LEVEL; 3];
+                        color[(largest + 1) % 3] = LEVEL * value(row);
+                        color[(largest + 2) % 3] = LEVEL * value(column);
+                        let start = match (row + 1 < SIDE, column + 1 < SIDE) {
+                            (_, true) => rows[row][column + 1],
+                            (true, false) => rows[row + 1][column],
+                            (false, false) => [0.0; 3],
+                        };
+                        rows[row][column] = solver.solve(color, start);
+                    }
+                }
+                points.extend(rows.iter().flatten().map(|c| c.map(|v| v as f32)));
+            }
+            Self { points }
+        })
+    }
+
+    /// The number to multiply by, and the coefficients, linear between points. Negative values and NaN count as 0.
+    fn look_up(&self, linear_srgb: [f64; 3]) -> (f64, Coefficients) {
+        let rgb = linear_srgb.map(|v| v.max(0.0));
+        let largest = if rgb[0] >= rgb[1] && rgb[0] >= rgb[2] {
+            0
+        } else if rgb[1] >= rgb[2] {
+            1
+        } else {
+            2
+        };
+        let most = rgb[largest];
+        if most <= 0.0 {
+            return (0.0, [0.0; 3]);
+        }
+        let cell = |v: f64| {
+            let p = position(v / most);
+            let i = (p as usize).min(SIDE - 2);
+            // Weights by the values themselves, not by the curved scale of the points.
+            let (low, high) = (value(i), value(i + 1));
+            (i, ((v / most - low) / (high - low)).clamp(0.0, 1.0))
+        };
+        let (row, along_rows) = cell(rgb[(largest + 1) % 3]);
+        let (column, along_columns) = cell(rgb[(largest + 2) % 3]);
+        let at = |r: usize, c: usize| self.points[(largest * SIDE + row + r) * SIDE + column + c].map(f64::from);
+        let [p00, p01, p10, p11] = [at(0, 0), at(0, 1), at(1, 0), at(1, 1)];
+        let mixed = |k: usize| {
+            let upper = p00[k] + (p01[k] - p00[k]) * along_columns;
+            let lower = p10[k] + (p11[k] - p10[k]) * along_columns;
+            upper + (lower - upper) * along_rows
+        };
+        (most / LEVEL, [mixed(0), mixed(1), mixed(2)])
+    }
+}
+
+/// Relative value at point `i` of a side: closer together toward 0, where a screen shows smaller differences.
+fn value(i: usize) -> f64 {
+    let s = i as f64 / (SIDE - 1) as f64;
+    s * s
+}
+
+/// The inverse of [`value`].
+fn position(value: f64) -> f64 {
+    value.min(1.0).sqrt() * (SIDE - 1) as f64
+}
+
+/// Finds the coefficients whose reflectance has a color under D65.
+struct Solver {
+    /// Linear sRGB per reflectance at each wavelength, and the quadratic's three functions there.
+    points: Vec<([f64; 3], [f64; 3])>,
+}
+
+impl Solver {
+    fn new() -> Self {
+        let light = daylight();
+        let observer = Observer::cie_1931_2deg();
+        let xyz = observer.xyz(&light);
+        // Primaries of sRGB with the white of D65 as tabulated: a reflectance of 1 has RGB (1, 1, 1).
+        let srgb = RgbSpace::srgb();
+        let white = chromaticity(xyz).unwrap_or(srgb.white_xy);
+        let space = RgbSpace::new("sRGB", srgb.primaries_xy, white, srgb.transfer);
+        let functions = observer.on_grid(&BAND);
+        let points = (0..BAND.count).zip(light.on_grid(&BAND)).map(|(i, power)| {
+            let t = place(BAND.wavelength_nm(i));
+            let seen = [0, 1, 2].map(|k| functions[k][i] * power * BAND.step_nm / xyz[1]);
+            (space.from_xyz(seen), [1.0, t, 1.5 * t * t - 0.5])
+        });
+        Self { points: points.collect() }
+    }
+
+    /// Color of the reflectance, and its change with each coefficient (columns).
+    fn color(&self, c: Coefficients) -> ([f64; 3], matrix::Matrix) {
+        let mut rgb = [0.0; 3];
+        let mut change = [[0.0; 3]; 3];
+        for (seen, functions) in &self.points {
+            let x = c[0] * functions[0] + c[1] * functions[1] + c[2] * functions[2];
+            let root = 1.0 / (1.0 + x * x).sqrt();
+            let (value, slope) = (0.5 + 0.5 * x * root, 0.5 * root * root * root);
+            for i in 0..3 {
+                rgb[i] += value * seen[i];
+                for j in 0..3 {
+                    change[i][j] += slope * functions[j] * seen[i];
+                }
+            }
+        }
+        (rgb, change)
+    }
+
+    /// Newton's method from `start`, each step halved until it comes nearer.
+    fn solve(&self, wanted: [f64; 3], start: Coefficients) -> Coefficients {
+        let distance = |rgb: [f64; 3]| rgb.iter().zip(wanted).map(|(a, b)| (a - b) * (a - b)).sum::<f64>();
+        let mut now = start;
+        let (mut rgb, mut change) = self.color(now);
+        // Quadratic convergence: from a neighbor of the table three steps do.
+        for _ in 0..40 {
+            let off = distance(rgb);
+            if off < 1e-24 {
+                break;
+            }
+            let step = matrix::apply(&matrix::inverse(&change), [0, 1, 2].map(|i| wanted[i] - rgb[i]));
+            let mut share = 1.0;
+            let better = loop {
+                let next = [0, 1, 2].map(|i| now[i] + share * step[i]);
+                let (color, slope) = self.color(next);
+                if distance(color) < off {
+                    break Some((next, color, slope));
+                }
+                share *= 0.5;
+                if share < 1e-6 {
+                    break None;
+                }
+            };
+            match better {
+                Some(next) => (now, rgb, change) = next,
+                None => break,
+            }
+        }
+        now
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn model() -> Smooth {
+        Smooth::new(daylight().to_power(&BAND))
+    }
+
+    /// Newton's method reaches every color of the table, the bounds of sRGB among them.
+    #[test]
+    fn every_color_is_solved() {
+        let (solver, table) = (Solver::new(), Table::of_srgb());
+        let mut worst = 0.0_f64;
+        for largest in 0..3 {
+            for row in 0..SIDE {
+                for column in 0..SIDE {
+                    let mut color = [LEVEL; 3];
+                    color[(largest + 1) % 3] = LEVEL * value(row);
+                    color[(largest + 2) % 3] = LEVEL * value(column);
+                    let (rgb, _) = solver.color(table.look_up(color).1);
+                    worst = rgb.iter().zip(color).fold(worst, |w, (a, b)| w.max((a - b).abs()));
+                }
+            }
+        }
+        println!("largest difference in linear RGB at the points of the table: {worst:e}");
+        // What is left is the table's single precision.
+        assert!(worst < 1e-6, "{worst:e}");
+    }
+
+    #[test]
+    fn grey_is_the_illuminant_and_brightness_has_no_end() {
+        let model = model();
+        let light = daylight().to_power(&BAND);
+        for level in [0.18, 1.0, 20.0] {
+            let grey = model.spectrum([level; 3]);
+            assert!(grey.continuum.iter().zip(&light.continuum).all(|(g, l)| (g / l / level - 1.0).abs() < 1e-12));
+        }
+        let (one, seven) = (model.spectrum([0.9, 0.3, 0.1]), model.spectrum([6.3, 2.1, 0.7]));
+        assert!(one.continuum.iter().zip(&seven.continuum).all(|(a, b)| (b / a / 7.0 - 1.0).abs() < 1e-12));
+        for nothing in [[0.0; 3], [f64::NAN; 3], [-1.0, -2.0, 0.0]] {
+            assert!(model.spectrum(nothing).is_dark());
+        }
+    }
+
+    /// Rays get what the spectrum says, on lines too, and the color goes over from one third of the table to the next.
+    #[test]
+    fn rays_see_the_spectrum() {
+        let mut light = daylight().to_power(&BAND);
+        light.lines.push(Line { wavelength_nm: 546.07, power: 3.0 });
+        let model = Smooth::new(light);
+        for rgb in [[0.2, 0.7, 0.05], [0.5, 0.5, 0.1], [0.5, 0.500_001, 0.1], [0.0, 0.0, 1.0], [3.0, 0.0, 2.0]] {
+            let spectrum = model.spectrum(rgb);
+            let color = model.coefficients(rgb);
+            let mut weight = [1.0, 2.0, 1.0];
+            model.evaluate(&[color; 3], &[450.0, 620.0, 546.07], &[CONTINUUM, CONTINUUM, 0], &mut weight);
+            let want = [spectrum.continuum[100], 2.0 * spectrum.continuum[270], spectrum.lines[0].power];
+            for (got, want) in weight.iter().zip(want) {
+                // Single precision of the color, twice.
+                assert!((got / want - 1.0).abs() < 1e-5, "{rgb:?}: {weight:?} {want}");
+            }
+        }
+        let (a, b) = (model.spectrum([0.5, 0.5, 0.1]), model.spectrum([0.5, 0.500_001, 0.1]));
+        assert!(a.continuum.iter().zip(&b.continuum).all(|(a, b)| (a / b - 1.0).abs() < 1e-4));
+    }
+}
