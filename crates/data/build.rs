@@ -9,11 +9,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Folder of the repository, and the endings taken from it (none: every file).
-const FOLDERS: [(&str, &[&str]); 3] = [
-    ("spectra", &[]),
-    ("lenses", &[]),
-    ("scenes", &["yaml", "yml"]),
-];
+const FOLDERS: [(&str, &[&str]); 3] = [("spectra", &[]), ("lenses", &[]), ("scenes", &["yaml", "yml"])];
 
 fn collect(folder: &Path, endings: &[&str], found: &mut Vec<PathBuf>) {
     println!("cargo:rerun-if-changed={}", folder.display());
@@ -30,10 +26,7 @@ fn collect(folder: &Path, endings: &[&str], found: &mut Vec<PathBuf>) {
             collect(&path, endings, found);
             continue;
         }
-        let ending = path
-            .extension()
-            .and_then(|e| e.to_str())
-            .unwrap_or_default();
+        let ending = path.extension().and_then(|e| e.to_str()).unwrap_or_default();
         if endings.is_empty() || endings.contains(&ending) {
             println!("cargo:rerun-if-changed={}", path.display());
             found.push(path);
@@ -51,10 +44,7 @@ fn main() {
         collect(&root.join(folder), endings, &mut found);
         for path in found {
             let inside = path.strip_prefix(&root).expect("collected below the root");
-            let name: Vec<String> = inside
-                .components()
-                .map(|c| c.as_os_str().to_string_lossy().into_owned())
-                .collect();
+            let name: Vec<String> = inside.components().map(|c| c.as_os_str().to_string_lossy().into_owned()).collect();
             files.push((name.join("/"), path));
         }
     }

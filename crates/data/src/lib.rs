@@ -32,10 +32,7 @@ pub fn text(path: &str) -> Option<&'static str> {
 /// Names of all bundled files that begin with `prefix`, in sorted order.
 pub fn list(prefix: &str) -> impl Iterator<Item = &'static str> + use<'_> {
     let first = FILES.partition_point(|(name, _)| *name < prefix);
-    FILES[first..]
-        .iter()
-        .map(|(name, _)| *name)
-        .take_while(move |name| name.starts_with(prefix))
+    FILES[first..].iter().map(|(name, _)| *name).take_while(move |name| name.starts_with(prefix))
 }
 
 #[cfg(test)]
@@ -53,13 +50,7 @@ mod tests {
 
     #[test]
     fn unknown_names_are_none() {
-        for name in [
-            "",
-            "spectra",
-            "spectra/illuminants/D65",
-            "../Cargo.toml",
-            "spectra/illuminants/D65.csv/",
-        ] {
+        for name in ["", "spectra", "spectra/illuminants/D65", "../Cargo.toml", "spectra/illuminants/D65.csv/"] {
             assert!(get(name).is_none(), "{name}");
         }
     }
@@ -67,10 +58,7 @@ mod tests {
     #[test]
     fn list_gives_what_begins_with_the_prefix() {
         assert_eq!(list("").count(), FILES.len());
-        assert_eq!(
-            list("spectra/illuminants/D65").collect::<Vec<_>>(),
-            ["spectra/illuminants/D65.csv"]
-        );
+        assert_eq!(list("spectra/illuminants/D65").collect::<Vec<_>>(), ["spectra/illuminants/D65.csv"]);
         assert_eq!(list("no such").count(), 0);
     }
 }

@@ -24,14 +24,7 @@ fn value<'a>(line: &'a str, key: &str) -> Option<&'a str> {
 
 /// A line `!source MARK TEXT` of a catalogue that joins several sources, each text naming its terms.
 fn catalogue_source(line: &str) -> Option<(&str, &str)> {
-    const TERMS: [&str; 6] = [
-        "CC0 1.0",
-        "CC-BY 4.0",
-        "MIT",
-        "Apache-2.0",
-        "BSD-3",
-        "BSD-2",
-    ];
+    const TERMS: [&str; 6] = ["CC0 1.0", "CC-BY 4.0", "MIT", "Apache-2.0", "BSD-3", "BSD-2"];
     let (_, source) = line.strip_prefix("!source ")?.split_once(' ')?;
     let terms = TERMS.into_iter().find(|t| source.contains(t))?;
     Some((terms, source.trim()))
@@ -51,20 +44,10 @@ pub fn licences() -> Vec<Licence> {
         let licence = head.iter().find_map(|l| value(l, "licence"));
         let source = head.iter().find_map(|l| value(l, "source"));
         let stated = licence.zip(source);
-        for (licence, source) in stated
-            .into_iter()
-            .chain(head.iter().filter_map(|l| catalogue_source(l)))
-        {
-            match all
-                .iter_mut()
-                .find(|l| l.licence == licence && l.source == source)
-            {
+        for (licence, source) in stated.into_iter().chain(head.iter().filter_map(|l| catalogue_source(l))) {
+            match all.iter_mut().find(|l| l.licence == licence && l.source == source) {
                 Some(known) => known.files.push(name),
-                None => all.push(Licence {
-                    licence: licence.into(),
-                    source: source.into(),
-                    files: vec![name],
-                }),
+                None => all.push(Licence { licence: licence.into(), source: source.into(), files: vec![name] }),
             }
         }
     }
@@ -90,10 +73,7 @@ mod tests {
         let line = "!source hoya HOYA optical glass catalogue, as carried by ZemaxGlass 1.0 (MIT)";
         assert_eq!(
             catalogue_source(line),
-            Some((
-                "MIT",
-                "HOYA optical glass catalogue, as carried by ZemaxGlass 1.0 (MIT)"
-            ))
+            Some(("MIT", "HOYA optical glass catalogue, as carried by ZemaxGlass 1.0 (MIT)"))
         );
         assert_eq!(catalogue_source("!source x unknown terms"), None);
     }
@@ -102,16 +82,9 @@ mod tests {
     fn each_pair_appears_once_with_all_its_files() {
         let all = licences();
         for (i, a) in all.iter().enumerate() {
-            assert!(
-                all[i + 1..]
-                    .iter()
-                    .all(|b| (&a.licence, &a.source) != (&b.licence, &b.source))
-            );
+            assert!(all[i + 1..].iter().all(|b| (&a.licence, &a.source) != (&b.licence, &b.source)));
         }
-        let daylight = all
-            .iter()
-            .find(|l| l.files.contains(&"spectra/illuminants/D65.csv"))
-            .expect("D65 is bundled");
+        let daylight = all.iter().find(|l| l.files.contains(&"spectra/illuminants/D65.csv")).expect("D65 is bundled");
         assert!(daylight.licence.starts_with("BSD-3-Clause") && daylight.source.contains("CIE 15"));
     }
 }

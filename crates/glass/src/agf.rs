@@ -31,12 +31,7 @@ pub struct Agf {
 #[must_use]
 pub fn read(bytes: &[u8], maker: &str) -> Agf {
     let text = decode(bytes);
-    let mut reader = Reader {
-        maker,
-        agf: Agf::default(),
-        record: None,
-        continues: false,
-    };
+    let mut reader = Reader { maker, agf: Agf::default(), record: None, continues: false };
     for (i, line) in text.lines().enumerate() {
         reader.line(i + 1, line);
     }
@@ -47,15 +42,11 @@ pub fn read(bytes: &[u8], maker: &str) -> Agf {
 /// Text from UTF-16 (with a byte-order mark, or seen by its zero bytes), UTF-8 or Latin-1.
 fn decode(bytes: &[u8]) -> Cow<'_, str> {
     let utf16 = |bytes: &[u8], unit: fn([u8; 2]) -> u16| {
-        let units: Vec<u16> = bytes
-            .chunks_exact(2)
-            .map(|pair| unit([pair[0], pair[1]]))
-            .collect();
+        let units: Vec<u16> = bytes.chunks_exact(2).map(|pair| unit([pair[0], pair[1]])).collect();
         Cow::Owned(String::from_utf16_lossy(&units))
     };
     let start = &bytes[..bytes.len().min(64)];
-    let zeros =
-        |from: usize| start.len() >= 4 && start.iter().skip(from).step_by(2).all(|b| *b == 0);
+    let zeros = |from: usize| start.len() >= 4 && start.iter().skip(from).step_by(2).all(|b| *b == 0);
     match bytes {
         [0xff, 0xfe, rest @ ..] => utf16(rest, u16::from_le_bytes),
         [0xfe, 0xff, rest @ ..] => utf16(rest, u16::from_be_bytes),
@@ -93,10 +84,7 @@ struct Reader<'a> {
 
 impl Reader<'_> {
     fn problem(&mut self, line: usize, message: impl Into<String>) {
-        self.agf.problems.push(AgfProblem {
-            line,
-            message: message.into(),
-        });
+        self.agf.problems.push(AgfProblem { line, message: message.into() });
     }
 
     fn line(&mut self, number: usize, line: &str) {
@@ -116,9 +104,7 @@ impl Reader<'_> {
             "CD" => record.coefficients = values,
             "TD" => record.thermal = values,
             "LD" => match values[..] {
-                [min, max, ..] if min > 0.0 && min < max => {
-                    record.range_nm = Some((min * 1000.0, max * 1000.0))
-                }
+                [min, max, ..] if min > 0.0 && min < max => record.range_nm = Some((min * 1000.0, max * 1000.0)),
                 _ => self.problem(number, "LD needs two wavelengths in micrometres; left out"),
             },
             "IT" => match values[..] {
@@ -128,10 +114,7 @@ impl Reader<'_> {
                 // Empty rows fill the tables of some programs, and a negative transmittance is one not measured.
                 [] | [_] | [_, _] => {}
                 [_, tau, ..] if tau < 0.0 => {}
-                _ => self.problem(
-                    number,
-                    "IT needs a wavelength, a transmittance up to 1 and a thickness; left out",
-                ),
+                _ => self.problem(number, "IT needs a wavelength, a transmittance up to 1 and a thickness; left out"),
             },
             _ if continues && value(key).is_some() => {
                 record.coefficients.extend(value(key));
@@ -147,17 +130,11 @@ impl Reader<'_> {
         let words: Vec<&str> = text.split_ascii_whitespace().collect();
         let number = |i: usize| words.get(i).and_then(|w| value(w));
         let (Some(name), Some(formula)) = (words.get(1), number(2)) else {
-            self.problem(
-                line,
-                "NM needs a name and the number of a formula; the glass is left out",
-            );
+            self.problem(line, "NM needs a name and the number of a formula; the glass is left out");
             return;
         };
         if !(1.0..=13.0).contains(&formula) || formula != libm::trunc(formula) {
-            self.problem(
-                line,
-                format!("glass {name}: unknown formula {formula}; the glass is left out"),
-            );
+            self.problem(line, format!("glass {name}: unknown formula {formula}; the glass is left out"));
             return;
         }
         // Programs write 1 and 0 where index and Abbe number are not known.
@@ -191,10 +168,7 @@ impl Reader<'_> {
         let Some(formula) = formula(record.formula, &record.coefficients) else {
             self.problem(
                 record.line,
-                format!(
-                    "glass {}: coefficients are missing; the glass is left out",
-                    record.name
-                ),
+                format!("glass {}: coefficients are missing; the glass is left out", record.name),
             );
             return;
         };
@@ -203,29 +177,20 @@ impl Reader<'_> {
         if !glass.index(0.5 * (range_nm.0 + range_nm.1)).is_finite() {
             self.problem(
                 record.line,
-                format!(
-                    "glass {}: its coefficients give no index; the glass is left out",
-                    record.name
-                ),
+                format!("glass {}: its coefficients give no index; the glass is left out", record.name),
             );
             return;
         }
         if record.range_nm.is_none() {
             self.problem(
                 record.line,
-                format!(
-                    "glass {}: no LD line; 365 to 1014 nm are taken as its range",
-                    record.name
-                ),
+                format!("glass {}: no LD line; 365 to 1014 nm are taken as its range", record.name),
             );
         }
         // Columns that were swapped still give an index, of another glass.
         if record.nd.is_some_and(|nd| (nd - glass.nd()).abs() > 1e-3) {
-            let message = format!(
-                "glass {}: its coefficients give nd {:.5}, not the one listed",
-                record.name,
-                glass.nd()
-            );
+            let message =
+                format!("glass {}: its coefficients give nd {:.5}, not the one listed", record.name, glass.nd());
             self.problem(record.line, message);
         }
         glass.listed_nd = record.nd;
@@ -235,11 +200,7 @@ impl Reader<'_> {
         if let [d0, d1, d2, e0, e1, lambda_tk_um, rest @ ..] = &record.thermal[..] {
             glass.temperature_c = rest.first().copied();
             let known = [d0, d1, d2, e0, e1].iter().any(|v| **v != 0.0);
-            glass.thermal = known.then_some(Thermal {
-                d: [*d0, *d1, *d2],
-                e: [*e0, *e1],
-                lambda_tk_um: *lambda_tk_um,
-            });
+            glass.thermal = known.then_some(Thermal { d: [*d0, *d1, *d2], e: [*e0, *e1], lambda_tk_um: *lambda_tk_um });
         }
         self.agf.glasses.push(glass);
     }
@@ -248,9 +209,7 @@ impl Reader<'_> {
 /// A number as programs of any age and country write it: `1.0E+000`, `1.0D-3`, `1,5`.
 fn value(word: &str) -> Option<f64> {
     let plain = word.parse::<f64>().ok();
-    plain
-        .or_else(|| word.replace(['D', 'd'], "E").replace(',', ".").parse().ok())
-        .filter(|v| v.is_finite())
+    plain.or_else(|| word.replace(['D', 'd'], "E").replace(',', ".").parse().ok()).filter(|v| v.is_finite())
 }
 
 /// The formulas by their number in AGF files; missing coefficients at the end are 0, but the first must be there.
@@ -303,40 +262,22 @@ mod tests {
         LD 3.00000E-01 2.50000E+00\nIT 0.4 0.997 10.0\nIT 0.35 0.986 10.0\nIT 0.3 0.0 10.0\nIT 2.5\n";
 
     fn utf16(text: &str, big: bool, mark: bool) -> Vec<u8> {
-        let units = mark
-            .then_some(0xfeff)
-            .into_iter()
-            .chain(text.encode_utf16());
-        units
-            .flat_map(|u| {
-                if big {
-                    u.to_be_bytes()
-                } else {
-                    u.to_le_bytes()
-                }
-            })
-            .collect()
+        let units = mark.then_some(0xfeff).into_iter().chain(text.encode_utf16());
+        units.flat_map(|u| if big { u.to_be_bytes() } else { u.to_le_bytes() }).collect()
     }
 
     #[test]
     fn all_fields_of_a_record() {
         let agf = read(N_BK7.as_bytes(), "MINE");
         assert_eq!(agf.problems, []);
-        let [glass] = &agf.glasses[..] else {
-            panic!("one glass")
-        };
+        let [glass] = &agf.glasses[..] else { panic!("one glass") };
         assert_eq!(
             (glass.full_name().as_str(), glass.status, glass.range_nm),
             ("MINE/N-BK7", Status::Preferred, (300.0, 2500.0))
         );
-        assert_eq!(
-            (glass.listed_nd, glass.listed_vd, glass.temperature_c),
-            (Some(1.5168), Some(64.17), Some(20.0))
-        );
+        assert_eq!((glass.listed_nd, glass.listed_vd, glass.temperature_c), (Some(1.5168), Some(64.17), Some(20.0)));
         assert!((glass.nd() - 1.5168).abs() < 1e-6 && (glass.vd() - 64.17).abs() < 0.005);
-        let tau = glass
-            .internal_transmittance(400.0, 10.0)
-            .expect("within the data");
+        let tau = glass.internal_transmittance(400.0, 10.0).expect("within the data");
         assert!((tau - 0.997).abs() < 1e-12);
         assert_eq!(glass.internal_transmittance(300.0, 10.0), None);
     }
@@ -346,38 +287,19 @@ mod tests {
         let expected = read(N_BK7.as_bytes(), "MINE");
         for big in [false, true] {
             for mark in [false, true] {
-                assert_eq!(
-                    read(&utf16(N_BK7, big, mark), "MINE"),
-                    expected,
-                    "UTF-16 {big} {mark}"
-                );
+                assert_eq!(read(&utf16(N_BK7, big, mark), "MINE"), expected, "UTF-16 {big} {mark}");
             }
         }
-        assert_eq!(
-            read(&[b"\xef\xbb\xbf", N_BK7.as_bytes()].concat(), "MINE"),
-            expected
-        );
+        assert_eq!(read(&[b"\xef\xbb\xbf", N_BK7.as_bytes()].concat(), "MINE"), expected);
         // Latin-1: the degree sign alone is no UTF-8.
-        assert_eq!(
-            read(
-                &[b"CC 20 \xb0C\r\n", N_BK7.replace('\n', "\r\n").as_bytes()].concat(),
-                "MINE"
-            ),
-            expected
-        );
+        assert_eq!(read(&[b"CC 20 \xb0C\r\n", N_BK7.replace('\n', "\r\n").as_bytes()].concat(), "MINE"), expected);
     }
 
     #[test]
     fn broken_coefficient_lines_and_other_numbers() {
-        let agf = read(
-            b"NM A 1 0 1,5096 60 0 0\nCD 2.25D0 0\n 1E-2\n 0 0 0\nLD 0.4 0.7\n",
-            "M",
-        );
+        let agf = read(b"NM A 1 0 1,5096 60 0 0\nCD 2.25D0 0\n 1E-2\n 0 0 0\nLD 0.4 0.7\n", "M");
         assert_eq!(agf.problems, []);
-        assert_eq!(
-            agf.glasses[0].formula,
-            Formula::Schott([2.25, 0.0, 0.01, 0.0, 0.0, 0.0])
-        );
+        assert_eq!(agf.glasses[0].formula, Formula::Schott([2.25, 0.0, 0.01, 0.0, 0.0, 0.0]));
         assert_eq!(agf.glasses[0].listed_nd, Some(1.5096));
     }
 
@@ -402,14 +324,7 @@ mod tests {
 
     #[test]
     fn rubbish_is_no_glass() {
-        for bytes in [
-            &b""[..],
-            b"\xff\xfe",
-            b"\xff\xfe\x00",
-            b"\x00\x00\x00\x00",
-            b"NM \xff\xff\xff",
-            &[0x80; 300],
-        ] {
+        for bytes in [&b""[..], b"\xff\xfe", b"\xff\xfe\x00", b"\x00\x00\x00\x00", b"NM \xff\xff\xff", &[0x80; 300]] {
             assert!(read(bytes, "M").glasses.is_empty());
         }
     }

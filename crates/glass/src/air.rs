@@ -14,16 +14,10 @@ pub struct AirConditions {
 }
 
 /// Air of the glass catalogues: 20 C, 101 325 Pa.
-pub const CATALOGUE_AIR: AirConditions = AirConditions {
-    temperature_c: 20.0,
-    pressure_pa: 101_325.0,
-};
+pub const CATALOGUE_AIR: AirConditions = AirConditions { temperature_c: 20.0, pressure_pa: 101_325.0 };
 
 /// Standard air of spectroscopy: 15 C, 101 325 Pa.
-pub const STANDARD_AIR: AirConditions = AirConditions {
-    temperature_c: 15.0,
-    pressure_pa: 101_325.0,
-};
+pub const STANDARD_AIR: AirConditions = AirConditions { temperature_c: 15.0, pressure_pa: 101_325.0 };
 
 /// Absolute refractive index of dry air at a wavelength (nm, in that air), 230 to 1690 nm.
 ///
@@ -55,8 +49,7 @@ fn density(air: AirConditions) -> f64 {
     let t = air.temperature_c;
     let kelvin = t + 273.15;
     let ratio = air.pressure_pa / kelvin;
-    let z =
-        1.0 - ratio * (1.581_23e-6 + t * (-2.9331e-8 + t * 1.1043e-10)) + ratio * ratio * 1.83e-11;
+    let z = 1.0 - ratio * (1.581_23e-6 + t * (-2.9331e-8 + t * 1.1043e-10)) + ratio * ratio * 1.83e-11;
     ratio / z
 }
 
@@ -74,33 +67,17 @@ mod tests {
             (10.0, 100_000.0, 27_774.7),
             (30.0, 100_000.0, 25_937.2),
         ] {
-            let n = index_at_vacuum_wavelength(
-                633.0,
-                AirConditions {
-                    temperature_c: t,
-                    pressure_pa: p,
-                },
-            );
-            assert!(
-                ((n - 1.0) * 1e8 - expected).abs() < 0.06,
-                "{t} {p}: {}",
-                (n - 1.0) * 1e8
-            );
+            let n = index_at_vacuum_wavelength(633.0, AirConditions { temperature_c: t, pressure_pa: p });
+            assert!(((n - 1.0) * 1e8 - expected).abs() < 0.06, "{t} {p}: {}", (n - 1.0) * 1e8);
         }
     }
 
     #[test]
     fn vacuum_is_one_and_absolute_is_larger() {
-        let vacuum = AirConditions {
-            temperature_c: 20.0,
-            pressure_pa: 0.0,
-        };
+        let vacuum = AirConditions { temperature_c: 20.0, pressure_pa: 0.0 };
         assert_eq!(index(550.0, vacuum), 1.0);
         assert!(
-            (absolute(1.5168, 587.5618, CATALOGUE_AIR)
-                - 1.5168 * (1.0 + 2.7717e-4 * 288.15 / 293.15))
-                .abs()
-                < 3e-8
+            (absolute(1.5168, 587.5618, CATALOGUE_AIR) - 1.5168 * (1.0 + 2.7717e-4 * 288.15 / 293.15)).abs() < 3e-8
         );
     }
 }

@@ -43,10 +43,7 @@ pub struct Fit {
 
 impl Fit {
     fn of(formula: Formula, samples: &[Sample]) -> Fit {
-        let deviations: Vec<f64> = samples
-            .iter()
-            .map(|s| (formula.index(s.wavelength_nm) - s.n).abs())
-            .collect();
+        let deviations: Vec<f64> = samples.iter().map(|s| (formula.index(s.wavelength_nm) - s.n).abs()).collect();
         let count = deviations.len() as f64;
         Fit {
             rms_deviation: (deviations.iter().map(|d| d * d).sum::<f64>() / count).sqrt(),
@@ -80,17 +77,12 @@ pub enum FitError {
 }
 
 fn check(samples: &[Sample], needed: usize) -> Result<(), FitError> {
-    let bad = |s: &Sample| {
-        !(s.wavelength_nm.is_finite() && s.wavelength_nm > 0.0 && s.n.is_finite() && s.n >= 1.0)
-    };
+    let bad = |s: &Sample| !(s.wavelength_nm.is_finite() && s.wavelength_nm > 0.0 && s.n.is_finite() && s.n >= 1.0);
     if let Some(row) = samples.iter().position(bad) {
         return Err(FitError::BadSample { row: row + 1 });
     }
     if samples.len() < needed {
-        return Err(FitError::TooFew {
-            needed,
-            found: samples.len(),
-        });
+        return Err(FitError::TooFew { needed, found: samples.len() });
     }
     Ok(())
 }

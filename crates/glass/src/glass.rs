@@ -53,20 +53,9 @@ impl Category {
     #[must_use]
     pub fn by_name(name: &str) -> Option<Category> {
         use Category::*;
-        [
-            OpticalGlass,
-            TechnicalGlass,
-            InfraredGlass,
-            FilterGlass,
-            Crystal,
-            Plastic,
-            Organic,
-            Inorganic,
-            Mixed,
-            User,
-        ]
-        .into_iter()
-        .find(|c| c.name() == name)
+        [OpticalGlass, TechnicalGlass, InfraredGlass, FilterGlass, Crystal, Plastic, Organic, Inorganic, Mixed, User]
+            .into_iter()
+            .find(|c| c.name() == name)
     }
 }
 
@@ -125,13 +114,11 @@ impl Extinction {
     /// From wavelengths (nm, rising) and as many values, none negative. `None` otherwise.
     #[must_use]
     pub fn new(wavelength_nm: Arc<[f64]>, k: Vec<f64>) -> Option<Extinction> {
-        let rising = wavelength_nm.windows(2).all(|w| w[0] < w[1])
-            && wavelength_nm.iter().all(|w| w.is_finite() && *w > 0.0);
+        let rising =
+            wavelength_nm.windows(2).all(|w| w[0] < w[1]) && wavelength_nm.iter().all(|w| w.is_finite() && *w > 0.0);
         let usable = k.iter().all(|k| k.is_finite() && *k >= 0.0);
-        (wavelength_nm.len() == k.len() && !k.is_empty() && rising && usable).then(|| Extinction {
-            wavelength_nm,
-            k: k.into(),
-        })
+        (wavelength_nm.len() == k.len() && !k.is_empty() && rising && usable)
+            .then(|| Extinction { wavelength_nm, k: k.into() })
     }
 
     /// k at `wavelength_nm`: between two positive values its logarithm is linear, otherwise k itself is;
@@ -142,38 +129,24 @@ impl Extinction {
         if !(wavelength_nm >= min && wavelength_nm <= max) {
             return None;
         }
-        let i = self
-            .wavelength_nm
-            .partition_point(|&w| w <= wavelength_nm)
-            .clamp(1, self.k.len())
-            - 1;
+        let i = self.wavelength_nm.partition_point(|&w| w <= wavelength_nm).clamp(1, self.k.len()) - 1;
         let Some(&next) = self.wavelength_nm.get(i + 1) else {
             return Some(self.k[i]);
         };
         let t = (wavelength_nm - self.wavelength_nm[i]) / (next - self.wavelength_nm[i]);
         let (a, b) = (self.k[i], self.k[i + 1]);
-        Some(if a > 0.0 && b > 0.0 {
-            a * libm::pow(b / a, t)
-        } else {
-            a + (b - a) * t
-        })
+        Some(if a > 0.0 && b > 0.0 { a * libm::pow(b / a, t) } else { a + (b - a) * t })
     }
 
     /// First and last wavelength, nm.
     #[must_use]
     pub fn range_nm(&self) -> (f64, f64) {
-        (
-            self.wavelength_nm[0],
-            self.wavelength_nm[self.wavelength_nm.len() - 1],
-        )
+        (self.wavelength_nm[0], self.wavelength_nm[self.wavelength_nm.len() - 1])
     }
 
     /// The points, wavelength (nm) and k.
     pub fn points(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
-        self.wavelength_nm
-            .iter()
-            .copied()
-            .zip(self.k.iter().copied())
+        self.wavelength_nm.iter().copied().zip(self.k.iter().copied())
     }
 }
 
@@ -211,13 +184,7 @@ pub struct Glass {
 impl Glass {
     /// A glass of a name and a formula, with nothing else known.
     #[must_use]
-    pub fn new(
-        maker: &str,
-        name: &str,
-        category: Category,
-        formula: Formula,
-        range_nm: (f64, f64),
-    ) -> Glass {
+    pub fn new(maker: &str, name: &str, category: Category, formula: Formula, range_nm: (f64, f64)) -> Glass {
         Glass {
             maker: maker.into(),
             name: name.to_owned(),
@@ -270,13 +237,7 @@ impl Glass {
     #[must_use]
     pub fn melt(&self, nd: f64, vd: f64) -> Option<Glass> {
         let formula = Formula::Melt(Melt::new(self.formula.clone(), nd, vd)?.into());
-        Some(Glass {
-            formula,
-            listed_nd: Some(nd),
-            listed_vd: Some(vd),
-            status: Status::Melt,
-            ..self.clone()
-        })
+        Some(Glass { formula, listed_nd: Some(nd), listed_vd: Some(vd), status: Status::Melt, ..self.clone() })
     }
 
     /// Whether the data reach from `min_nm` to `max_nm`.
@@ -290,9 +251,7 @@ impl Glass {
     #[must_use]
     pub fn internal_transmittance(&self, wavelength_nm: f64, thickness_mm: f64) -> Option<f64> {
         let k = self.extinction.as_ref()?.at(wavelength_nm)?;
-        Some(libm::exp(
-            -4.0 * std::f64::consts::PI * k * thickness_mm * 1e6 / wavelength_nm,
-        ))
+        Some(libm::exp(-4.0 * std::f64::consts::PI * k * thickness_mm * 1e6 / wavelength_nm))
     }
 
     /// Absolute index (relative to vacuum) at a wavelength in nm (in air) and a temperature of glass and air in
@@ -300,22 +259,15 @@ impl Glass {
     #[must_use]
     pub fn absolute_index(&self, wavelength_nm: f64, temperature_c: f64) -> f64 {
         let relative = self.index(wavelength_nm);
-        let reference = self
-            .temperature_c
-            .unwrap_or(air::CATALOGUE_AIR.temperature_c);
-        let air_at = |t| AirConditions {
-            temperature_c: t,
-            ..air::CATALOGUE_AIR
-        };
+        let reference = self.temperature_c.unwrap_or(air::CATALOGUE_AIR.temperature_c);
+        let air_at = |t| AirConditions { temperature_c: t, ..air::CATALOGUE_AIR };
         let change = self.thermal.map_or(0.0, |thermal| {
             let t = temperature_c - reference;
             let um2 = wavelength_nm * wavelength_nm * 1e-6;
             let resonance = um2 - thermal.lambda_tk_um * thermal.lambda_tk_um;
             let [d0, d1, d2] = thermal.d;
             let [e0, e1] = thermal.e;
-            (relative * relative - 1.0) / (2.0 * relative)
-                * t
-                * (d0 + t * (d1 + t * d2) + (e0 + t * e1) / resonance)
+            (relative * relative - 1.0) / (2.0 * relative) * t * (d0 + t * (d1 + t * d2) + (e0 + t * e1) / resonance)
         });
         air::absolute(relative, wavelength_nm, air_at(reference)) + change
     }
@@ -323,10 +275,7 @@ impl Glass {
     /// Index relative to air of the same temperature (degrees Celsius), at 101 325 Pa.
     #[must_use]
     pub fn index_at(&self, wavelength_nm: f64, temperature_c: f64) -> f64 {
-        let air = AirConditions {
-            temperature_c,
-            ..air::CATALOGUE_AIR
-        };
+        let air = AirConditions { temperature_c, ..air::CATALOGUE_AIR };
         self.absolute_index(wavelength_nm, temperature_c) / air::index(wavelength_nm, air)
     }
 

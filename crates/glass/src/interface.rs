@@ -57,13 +57,7 @@ pub fn fresnel(n1: f64, n2: f64, cos_incidence: f64) -> Reflectance {
 /// Reflectance at normal incidence of a layer of index `n_layer` and `thickness_nm` between `n1` and `n2`, at
 /// `wavelength_nm` in air. Airy's sum; Born and Wolf, section 1.6.4.
 #[must_use]
-pub fn single_layer_reflectance(
-    n1: f64,
-    n_layer: f64,
-    n2: f64,
-    thickness_nm: f64,
-    wavelength_nm: f64,
-) -> f64 {
+pub fn single_layer_reflectance(n1: f64, n_layer: f64, n2: f64, thickness_nm: f64, wavelength_nm: f64) -> f64 {
     let front = (n1 - n_layer) / (n1 + n_layer);
     let back = (n_layer - n2) / (n_layer + n2);
     // Phase of one round trip.
@@ -91,12 +85,8 @@ mod tests {
     fn reflectance_is_the_same_from_both_sides() {
         for degrees in [0.0, 20.0, 40.0, 56.0, 80.0] {
             let outside = f64::to_radians(degrees);
-            let inside = refraction_angle(1.0, 1.7, outside)
-                .expect("no total reflection into the denser medium");
-            let (a, b) = (
-                fresnel(1.0, 1.7, libm::cos(outside)),
-                fresnel(1.7, 1.0, libm::cos(inside)),
-            );
+            let inside = refraction_angle(1.0, 1.7, outside).expect("no total reflection into the denser medium");
+            let (a, b) = (fresnel(1.0, 1.7, libm::cos(outside)), fresnel(1.7, 1.0, libm::cos(inside)));
             assert!((a.s - b.s).abs() < 1e-14 && (a.p - b.p).abs() < 1e-14);
         }
     }
@@ -105,9 +95,7 @@ mod tests {
     fn a_layer_of_no_thickness_or_of_half_a_wave_is_not_there() {
         let bare = fresnel(1.0, 1.5168, 1.0).s;
         assert!((single_layer_reflectance(1.0, 1.38, 1.5168, 0.0, 550.0) - bare).abs() < 1e-15);
-        assert!(
-            (single_layer_reflectance(1.0, 1.38, 1.5168, 550.0 / 2.76, 550.0) - bare).abs() < 1e-15
-        );
+        assert!((single_layer_reflectance(1.0, 1.38, 1.5168, 550.0 / 2.76, 550.0) - bare).abs() < 1e-15);
     }
 
     #[test]

@@ -6,9 +6,7 @@ pub(crate) fn solve(a: &[f64], b: &[f64]) -> Option<Vec<f64>> {
     let n = b.len();
     let factors = Factors::new(a, n)?;
     let mut x = factors.apply(b);
-    let residual: Vec<f64> = (0..n)
-        .map(|i| b[i] - (0..n).map(|j| a[i * n + j] * x[j]).sum::<f64>())
-        .collect();
+    let residual: Vec<f64> = (0..n).map(|i| b[i] - (0..n).map(|j| a[i * n + j] * x[j]).sum::<f64>()).collect();
     for (x, d) in x.iter_mut().zip(factors.apply(&residual)) {
         *x += d;
     }
@@ -25,9 +23,7 @@ impl Factors {
     fn new(a: &[f64], n: usize) -> Option<Factors> {
         let mut lu = a.to_vec();
         let mut order: Vec<usize> = (0..n).collect();
-        let scale: Vec<f64> = (0..n)
-            .map(|i| (0..n).map(|j| a[i * n + j].abs()).fold(0.0, f64::max))
-            .collect();
+        let scale: Vec<f64> = (0..n).map(|i| (0..n).map(|j| a[i * n + j].abs()).fold(0.0, f64::max)).collect();
         for k in 0..n {
             let size = |row: usize| lu[row * n + k].abs() / scale[row].max(f64::MIN_POSITIVE);
             let pivot = (k..n).max_by(|&i, &j| size(order[i]).total_cmp(&size(order[j])))?;
@@ -76,26 +72,15 @@ pub(crate) fn least_squares(a: &[f64], b: &[f64], columns: usize) -> Option<Vec<
     let largest = a.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
     let mut diagonal = vec![0.0; columns];
     for k in 0..columns {
-        let norm = (k..rows)
-            .map(|i| a[i * columns + k] * a[i * columns + k])
-            .sum::<f64>()
-            .sqrt();
+        let norm = (k..rows).map(|i| a[i * columns + k] * a[i * columns + k]).sum::<f64>().sqrt();
         if norm <= largest * 1e-15 || norm.is_nan() {
             return None;
         }
-        let alpha = if a[k * columns + k] > 0.0 {
-            -norm
-        } else {
-            norm
-        };
+        let alpha = if a[k * columns + k] > 0.0 { -norm } else { norm };
         a[k * columns + k] -= alpha;
-        let length: f64 = (k..rows)
-            .map(|i| a[i * columns + k] * a[i * columns + k])
-            .sum();
+        let length: f64 = (k..rows).map(|i| a[i * columns + k] * a[i * columns + k]).sum();
         for j in k + 1..columns {
-            let dot: f64 = (k..rows)
-                .map(|i| a[i * columns + k] * a[i * columns + j])
-                .sum();
+            let dot: f64 = (k..rows).map(|i| a[i * columns + k] * a[i * columns + j]).sum();
             for i in k..rows {
                 let v = a[i * columns + k];
                 a[i * columns + j] -= 2.0 * dot / length * v;
@@ -122,12 +107,8 @@ mod tests {
     #[test]
     fn solves_a_hilbert_system() {
         let n = 6;
-        let a: Vec<f64> = (0..n * n)
-            .map(|k| 1.0 / ((k / n + k % n + 1) as f64))
-            .collect();
-        let b: Vec<f64> = (0..n)
-            .map(|i| (0..n).map(|j| a[i * n + j] * (j as f64 + 1.0)).sum())
-            .collect();
+        let a: Vec<f64> = (0..n * n).map(|k| 1.0 / ((k / n + k % n + 1) as f64)).collect();
+        let b: Vec<f64> = (0..n).map(|i| (0..n).map(|j| a[i * n + j] * (j as f64 + 1.0)).sum()).collect();
         for (j, x) in solve(&a, &b).expect("regular").iter().enumerate() {
             assert!((x - (j as f64 + 1.0)).abs() < 1e-8);
         }
@@ -137,8 +118,7 @@ mod tests {
     #[test]
     fn least_squares_of_a_line_is_the_textbook_line() {
         // y = 1, 2, 2 at x = 0, 1, 2: slope 1/2, intercept 7/6.
-        let x =
-            least_squares(&[1.0, 0.0, 1.0, 1.0, 1.0, 2.0], &[1.0, 2.0, 2.0], 2).expect("full rank");
+        let x = least_squares(&[1.0, 0.0, 1.0, 1.0, 1.0, 2.0], &[1.0, 2.0, 2.0], 2).expect("full rank");
         assert!((x[0] - 7.0 / 6.0).abs() < 1e-14 && (x[1] - 0.5).abs() < 1e-14);
         assert!(least_squares(&[1.0, 1.0, 1.0, 1.0], &[1.0, 1.0], 2).is_none());
     }

@@ -12,10 +12,7 @@ pub struct Line {
 }
 
 const fn line(name: &'static str, wavelength_nm: f64) -> Line {
-    Line {
-        name,
-        wavelength_nm,
-    }
+    Line { name, wavelength_nm }
 }
 
 /// i, mercury, ultraviolet.
@@ -48,9 +45,7 @@ pub const S: Line = line("s", 852.11);
 pub const T: Line = line("t", 1013.98);
 
 /// All lines, from short to long.
-pub const ALL: [Line; 14] = [
-    I, H, G, F_PRIME, F, E, D, SODIUM_D, C_PRIME, C, R, A_PRIME, S, T,
-];
+pub const ALL: [Line; 14] = [I, H, G, F_PRIME, F, E, D, SODIUM_D, C_PRIME, C, R, A_PRIME, S, T];
 
 /// The line of that name; `d` and `D` differ, so case counts. A prime may be written `'` or typographically.
 #[must_use]
@@ -72,29 +67,13 @@ pub struct LineTriple {
 
 impl LineTriple {
     /// F, d, C: Vd, the Abbe number of modern catalogues.
-    pub const FDC: LineTriple = LineTriple {
-        mid: D,
-        short: F,
-        long: C,
-    };
+    pub const FDC: LineTriple = LineTriple { mid: D, short: F, long: C };
     /// F, D, C: the sodium line's Abbe number of old catalogues and patents.
-    pub const F_SODIUM_C: LineTriple = LineTriple {
-        mid: SODIUM_D,
-        short: F,
-        long: C,
-    };
+    pub const F_SODIUM_C: LineTriple = LineTriple { mid: SODIUM_D, short: F, long: C };
     /// F, e, C.
-    pub const FEC: LineTriple = LineTriple {
-        mid: E,
-        short: F,
-        long: C,
-    };
+    pub const FEC: LineTriple = LineTriple { mid: E, short: F, long: C };
     /// F', e, C': Ve.
-    pub const F_PRIME_E_C_PRIME: LineTriple = LineTriple {
-        mid: E,
-        short: F_PRIME,
-        long: C_PRIME,
-    };
+    pub const F_PRIME_E_C_PRIME: LineTriple = LineTriple { mid: E, short: F_PRIME, long: C_PRIME };
 
     /// The triple that belongs to a reference line: d and D go with F and C, e with F' and C'; none for other lines.
     #[must_use]
@@ -109,8 +88,7 @@ impl LineTriple {
 
     /// Abbe number of the index function `n(wavelength_nm)`: infinite without dispersion.
     pub fn abbe_number(&self, n: impl Fn(f64) -> f64) -> f64 {
-        (n(self.mid.wavelength_nm) - 1.0)
-            / (n(self.short.wavelength_nm) - n(self.long.wavelength_nm))
+        (n(self.mid.wavelength_nm) - 1.0) / (n(self.short.wavelength_nm) - n(self.long.wavelength_nm))
     }
 }
 
@@ -134,22 +112,10 @@ mod tests {
     fn hydrogen_lines_follow_balmer() {
         let rydberg = 1.096_775_834e7; // 1/m, hydrogen
         let balmer = |n: f64| 1e9 / (rydberg * (0.25 - 1.0 / (n * n))) / 1.000_277;
-        for (level, expected) in [
-            (3.0, 656.288),
-            (4.0, 486.139),
-            (5.0, 434.053),
-            (6.0, 410.180),
-        ] {
-            assert!(
-                (balmer(level) - expected).abs() < 1e-3,
-                "{} {expected}",
-                balmer(level)
-            );
+        for (level, expected) in [(3.0, 656.288), (4.0, 486.139), (5.0, 434.053), (6.0, 410.180)] {
+            assert!((balmer(level) - expected).abs() < 1e-3, "{} {expected}", balmer(level));
         }
         // The catalogue's values are weighted means of the fine structure, some hundredths of a nanometre off.
-        assert!(
-            (balmer(3.0) - C.wavelength_nm).abs() < 0.02
-                && (balmer(4.0) - F.wavelength_nm).abs() < 0.01
-        );
+        assert!((balmer(3.0) - C.wavelength_nm).abs() < 0.02 && (balmer(4.0) - F.wavelength_nm).abs() < 0.01);
     }
 }

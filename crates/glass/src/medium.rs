@@ -53,8 +53,7 @@ impl Medium {
     /// Whether nothing between `min_nm` and `max_nm` is extrapolated.
     #[must_use]
     pub fn covers(&self, min_nm: f64, max_nm: f64) -> bool {
-        self.range_nm()
-            .is_none_or(|(min, max)| min <= min_nm && max_nm <= max)
+        self.range_nm().is_none_or(|(min, max)| min <= min_nm && max_nm <= max)
     }
 
     /// The same medium held at one index for all wavelengths: `stated_nd` if the prescription states it, otherwise its own
@@ -110,10 +109,7 @@ mod tests {
     fn vacuum_is_thinner_than_air() {
         let n = Medium::Vacuum.index(550.0);
         // Standard air (15 C) has 1.000 277 835 there; 20 C thins it by 288.15 / 293.15.
-        assert!(
-            (n - 1.0 / (1.0 + 2.778_35e-4 * 288.15 / 293.15)).abs() < 2e-8,
-            "{n}"
-        );
+        assert!((n - 1.0 / (1.0 + 2.778_35e-4 * 288.15 / 293.15)).abs() < 2e-8, "{n}");
         assert!(Medium::Vacuum.covers(200.0, 3000.0));
     }
 
@@ -121,9 +117,7 @@ mod tests {
     fn held_at_the_stated_index() {
         let model = Medium::from_nd_vd(1.64329, 47.72).expect("a glass");
         assert_eq!(model.at_stated_nd(Some(1.6433)), Medium::Constant(1.6433));
-        let Medium::Constant(n) = model.at_stated_nd(None) else {
-            panic!("not held")
-        };
+        let Medium::Constant(n) = model.at_stated_nd(None) else { panic!("not held") };
         assert!((n - 1.64329).abs() < 1e-15);
         assert_eq!(Medium::Air.at_stated_nd(Some(1.5)), Medium::Air);
     }

@@ -3,21 +3,15 @@
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
-use spectra_glass::{
-    Catalogue, Category, FindError, Formula, Glass, LineTriple, Medium, Query, Status,
-};
+use spectra_glass::{Catalogue, Category, FindError, Formula, Glass, LineTriple, Medium, Query, Status};
 
 fn find(name: &str) -> Glass {
-    Catalogue::bundled()
-        .find(name)
-        .unwrap_or_else(|e| panic!("{e}"))
+    Catalogue::bundled().find(name).unwrap_or_else(|e| panic!("{e}"))
 }
 
 #[test]
 fn every_record_is_well_formed() {
-    Catalogue::bundled()
-        .verify()
-        .unwrap_or_else(|e| panic!("{e}"));
+    Catalogue::bundled().verify().unwrap_or_else(|e| panic!("{e}"));
 }
 
 #[test]
@@ -43,11 +37,7 @@ fn more_than_3_000_media_of_the_makers_and_of_all_kinds() {
         ("CORNING", 50),
         ("CHANCE", 40),
     ] {
-        assert!(
-            by_maker.get(maker).is_some_and(|n| *n >= least),
-            "{maker}: {:?}",
-            by_maker.get(maker)
-        );
+        assert!(by_maker.get(maker).is_some_and(|n| *n >= least), "{maker}: {:?}", by_maker.get(maker));
     }
     for category in [
         "optical glass",
@@ -60,20 +50,9 @@ fn more_than_3_000_media_of_the_makers_and_of_all_kinds() {
         "infrared glass",
         "technical glass",
     ] {
-        assert!(
-            by_category.get(category).is_some_and(|n| *n >= 10),
-            "{category}"
-        );
+        assert!(by_category.get(category).is_some_and(|n| *n >= 10), "{category}");
     }
-    for name in [
-        "water",
-        "PMMA",
-        "polycarbonate",
-        "CaF2/Malitson",
-        "air/Ciddor",
-        "ethanol/Rheims",
-        "Ag/Johnson",
-    ] {
+    for name in ["water", "PMMA", "polycarbonate", "CaF2/Malitson", "air/Ciddor", "ethanol/Rheims", "Ag/Johnson"] {
         find(name);
     }
 }
@@ -95,31 +74,15 @@ fn computed_nd_and_vd_are_the_listed_ones() {
         listed += 1;
         let (dn, dv) = (glass.nd() - nd, glass.vd() - vd);
         if !(dn.abs() <= 1e-4 && dv.abs() <= 0.1) {
-            deviating.push(format!(
-                "{},{nd},{:.6},{vd},{:.3}",
-                glass.full_name(),
-                glass.nd(),
-                glass.vd()
-            ));
+            deviating.push(format!("{},{nd},{:.6},{vd},{:.3}", glass.full_name(), glass.nd(), glass.vd()));
         }
     }
     deviating.sort();
-    println!(
-        "{listed} listed, {} deviate:\n{}",
-        deviating.len(),
-        deviating.join("\n")
-    );
+    println!("{listed} listed, {} deviate:\n{}", deviating.len(), deviating.join("\n"));
     assert!(listed > 1800);
-    assert!(
-        deviating.len() * 100 <= listed,
-        "{} of {listed}",
-        deviating.len()
-    );
-    let known: Vec<&str> = include_str!("data/listed-deviations.csv")
-        .lines()
-        .filter(|l| !l.starts_with('#'))
-        .skip(1)
-        .collect();
+    assert!(deviating.len() * 100 <= listed, "{} of {listed}", deviating.len());
+    let known: Vec<&str> =
+        include_str!("data/listed-deviations.csv").lines().filter(|l| !l.starts_with('#')).skip(1).collect();
     assert_eq!(deviating, known);
 }
 
@@ -149,29 +112,15 @@ fn glasses_of_the_biotar() {
             Err(error) => panic!("{error}"),
         }
     }
-    let by_values = |name, nd, vd| {
-        Catalogue::bundled()
-            .find_with(name, nd, Some(vd))
-            .map(|g| g.full_name())
-    };
+    let by_values = |name, nd, vd| Catalogue::bundled().find_with(name, nd, Some(vd)).map(|g| g.full_name());
     assert_eq!(by_values("LF5", 1.57501, 41.19).as_deref(), Ok("LZOS/LF5"));
     assert_eq!(by_values("SF5", 1.6727, 32.21).as_deref(), Ok("SCHOTT/SF5"));
-    assert!(matches!(
-        by_values("SF5", 1.7, 32.15),
-        Err(FindError::Ambiguous { .. })
-    ));
+    assert!(matches!(by_values("SF5", 1.7, 32.15), Err(FindError::Ambiguous { .. })));
 }
 
 #[test]
 fn names_in_any_case_and_spelling() {
-    for name in [
-        "schott/n-bk7",
-        " SCHOTT / N-BK7 ",
-        "Schott/NBK7",
-        "schott/n_bk7",
-        "N-BK7",
-        "nbk7",
-    ] {
+    for name in ["schott/n-bk7", " SCHOTT / N-BK7 ", "Schott/NBK7", "schott/n_bk7", "N-BK7", "nbk7"] {
         assert_eq!(find(name).full_name(), "SCHOTT/N-BK7");
     }
     assert_eq!(find("nikon/j-bk7a").full_name(), "HIKARI/J-BK7A");
@@ -184,88 +133,48 @@ fn air_and_vacuum_are_media_of_a_lens() {
     let medium = |name| Catalogue::bundled().medium(name);
     assert_eq!(medium("air"), Ok(Medium::Air));
     assert_eq!(medium(" Vacuum"), Ok(Medium::Vacuum));
-    assert_eq!(
-        medium("N-BK7").map(|m| m.name()).as_deref(),
-        Ok("SCHOTT/N-BK7")
-    );
+    assert_eq!(medium("N-BK7").map(|m| m.name()).as_deref(), Ok("SCHOTT/N-BK7"));
     assert!(medium("glas").is_err());
 }
 
 #[test]
 fn ambiguous_names_list_all_candidates() {
-    let Err(error) = Catalogue::bundled().find("F2") else {
-        panic!("F2 is the name of several glasses")
-    };
-    let FindError::Ambiguous { name, candidates } = &error else {
-        panic!("{error}")
-    };
+    let Err(error) = Catalogue::bundled().find("F2") else { panic!("F2 is the name of several glasses") };
+    let FindError::Ambiguous { name, candidates } = &error else { panic!("{error}") };
     assert_eq!(name, "F2");
     for full_name in ["SCHOTT/F2", "CDGM/F2", "HIKARI/F2", "HOYA/F2"] {
-        assert!(
-            candidates.iter().any(|c| c.full_name == full_name),
-            "{error}"
-        );
+        assert!(candidates.iter().any(|c| c.full_name == full_name), "{error}");
     }
-    assert!(
-        error
-            .to_string()
-            .contains("SCHOTT/F2 (nd 1.62004, Vd 36.37)"),
-        "{error}"
-    );
+    assert!(error.to_string().contains("SCHOTT/F2 (nd 1.62004, Vd 36.37)"), "{error}");
     // A substance with several measurements.
-    assert!(matches!(
-        Catalogue::bundled().find("h2o"),
-        Err(FindError::Ambiguous { .. })
-    ));
+    assert!(matches!(Catalogue::bundled().find("h2o"), Err(FindError::Ambiguous { .. })));
 }
 
 #[test]
 fn unknown_names_list_the_nearest() {
-    for (wrong, right) in [
-        ("N-BK8", "SCHOTT/N-BK7"),
-        ("SCHOTT/N-SF12", "SCHOTT/N-SF11"),
-        ("S-FPL54", "OHARA/S-FPL53"),
-    ] {
+    for (wrong, right) in [("N-BK8", "SCHOTT/N-BK7"), ("SCHOTT/N-SF12", "SCHOTT/N-SF11"), ("S-FPL54", "OHARA/S-FPL53")]
+    {
         let Err(FindError::Unknown { nearest, .. }) = Catalogue::bundled().find(wrong) else {
             panic!("{wrong} is no glass")
         };
-        assert!(
-            nearest.iter().any(|c| c.full_name == right),
-            "{wrong}: {nearest:?}"
-        );
+        assert!(nearest.iter().any(|c| c.full_name == right), "{wrong}: {nearest:?}");
     }
     for name in ["", "/", "SCHOTT/", "\u{1f52d}", &"x".repeat(10_000)] {
-        assert!(
-            matches!(
-                Catalogue::bundled().find(name),
-                Err(FindError::Unknown { .. })
-            ),
-            "{name}"
-        );
+        assert!(matches!(Catalogue::bundled().find(name), Err(FindError::Unknown { .. })), "{name}");
     }
 }
 
 #[test]
 fn nearest_glass_to_a_patent() {
     let catalogue = Catalogue::bundled();
-    let best = |query: &Query| {
-        catalogue
-            .nearest(query)
-            .into_iter()
-            .map(|m| m.glass.full_name())
-            .collect::<Vec<_>>()
-    };
+    let best = |query: &Query| catalogue.nearest(query).into_iter().map(|m| m.glass.full_name()).collect::<Vec<_>>();
     let mut query = Query::new(1.5168, Some(64.17), LineTriple::FDC);
     query.makers = vec!["schott".into()];
     assert!(best(&query)[0].starts_with("SCHOTT/N-BK7"));
     // The same glass by its values at the other reference lines.
     let n_bk7 = find("SCHOTT/N-BK7");
     for lines in [LineTriple::F_SODIUM_C, LineTriple::F_PRIME_E_C_PRIME] {
-        query = Query::new(
-            n_bk7.index(lines.mid.wavelength_nm),
-            Some(n_bk7.abbe_number(lines)),
-            lines,
-        );
+        query = Query::new(n_bk7.index(lines.mid.wavelength_nm), Some(n_bk7.abbe_number(lines)), lines);
         query.makers = vec!["SCHOTT".into()];
         let matches = catalogue.nearest(&query);
         assert!(matches[0].glass.name.starts_with("N-BK7") && matches[0].distance < 1e-9);
@@ -294,36 +203,20 @@ fn nearest_glass_to_a_patent() {
 #[test]
 fn a_users_glass_joins_and_replaces() {
     let mut catalogue = Catalogue::bundled().clone();
-    let mine = Glass::new(
-        "SCHOTT",
-        "n-bk7",
-        Category::User,
-        Formula::Constant(1.5),
-        (400.0, 700.0),
-    );
-    let other = Glass::new(
-        "MINE",
-        "MELT 7",
-        Category::User,
-        Formula::Constant(1.6),
-        (400.0, 700.0),
-    );
+    let mine = Glass::new("SCHOTT", "n-bk7", Category::User, Formula::Constant(1.5), (400.0, 700.0));
+    let other = Glass::new("MINE", "MELT 7", Category::User, Formula::Constant(1.6), (400.0, 700.0));
     let before = catalogue.len();
     catalogue.add([mine, other]);
     assert_eq!(catalogue.len(), before + 1);
     assert_eq!(catalogue.find("SCHOTT/N-BK7").map(|g| g.nd()), Ok(1.5));
-    assert_eq!(
-        catalogue.find("melt7").map(|g| g.full_name()).as_deref(),
-        Ok("MINE/MELT 7")
-    );
+    assert_eq!(catalogue.find("melt7").map(|g| g.full_name()).as_deref(), Ok("MINE/MELT 7"));
     assert!(Catalogue::empty().find("N-BK7").is_err());
 }
 
 /// The catalogue costs less than 5 ms at the start, and a glass some microseconds.
 #[test]
 fn start_up_is_short() {
-    let text =
-        spectra_data::text("spectra/glass/catalogue.txt").expect("the glass catalogue is bundled");
+    let text = spectra_data::text("spectra/glass/catalogue.txt").expect("the glass catalogue is bundled");
     let best = |f: &dyn Fn()| {
         let run = || {
             let start = Instant::now();
@@ -333,11 +226,7 @@ fn start_up_is_short() {
         (0..20).map(|_| run()).min().unwrap_or(Duration::MAX)
     };
     let build = best(&|| drop(std::hint::black_box(Catalogue::from_text(text))));
-    let find = best(&|| {
-        drop(std::hint::black_box(
-            Catalogue::bundled().find("SCHOTT/N-BK7"),
-        ))
-    });
+    let find = best(&|| drop(std::hint::black_box(Catalogue::bundled().find("SCHOTT/N-BK7"))));
     println!("index {build:?}, find {find:?}");
     assert!(build < Duration::from_millis(5), "{build:?}");
     assert!(find < Duration::from_millis(1), "{find:?}");

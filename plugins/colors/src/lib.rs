@@ -3,5 +3,7 @@
 mod basis;
 mod fraunhofer;
 mod gaussians;
+mod primaries;
+mod smooth;
 
 pub use basis::Basis;

@@ -20,6 +20,7 @@ inventory::submit! {
         env!("CARGO_PKG_VERSION"),
         build,
     )
+    .or_default()
 }
 
 fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn ColorModel>, Faults> {

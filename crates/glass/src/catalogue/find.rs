@@ -22,11 +22,7 @@ pub struct Candidate {
 impl fmt::Display for Candidate {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if self.nd.is_finite() && self.vd.is_finite() && self.vd.abs() < 1000.0 {
-            write!(
-                f,
-                "{} (nd {:.5}, Vd {:.2})",
-                self.full_name, self.nd, self.vd
-            )
+            write!(f, "{} (nd {:.5}, Vd {:.2})", self.full_name, self.nd, self.vd)
         } else {
             f.write_str(&self.full_name)
         }
@@ -55,11 +51,7 @@ pub enum FindError {
 }
 
 fn list(candidates: &[Candidate]) -> String {
-    candidates
-        .iter()
-        .map(ToString::to_string)
-        .collect::<Vec<_>>()
-        .join(", ")
+    candidates.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
 }
 
 /// How many names an error lists.
@@ -87,14 +79,8 @@ impl Catalogue {
         let places = self.places(name);
         match places[..] {
             [place] => Ok(self.glass(place)),
-            [] => Err(FindError::Unknown {
-                name: name.to_owned(),
-                nearest: self.nearest_names(name),
-            }),
-            _ => Err(FindError::Ambiguous {
-                name: name.to_owned(),
-                candidates: self.candidates(&places),
-            }),
+            [] => Err(FindError::Unknown { name: name.to_owned(), nearest: self.nearest_names(name) }),
+            _ => Err(FindError::Ambiguous { name: name.to_owned(), candidates: self.candidates(&places) }),
         }
     }
 
@@ -126,17 +112,10 @@ impl Catalogue {
             let v = vd.map_or(0.0, |vd| (glass.vd() - vd).abs() / (0.02 * vd));
             n.max(v)
         };
-        let best = places
-            .iter()
-            .map(|&p| self.glass(p))
-            .map(|g| (far(&g), g))
-            .min_by(|a, b| a.0.total_cmp(&b.0));
+        let best = places.iter().map(|&p| self.glass(p)).map(|g| (far(&g), g)).min_by(|a, b| a.0.total_cmp(&b.0));
         match best {
             Some((distance, glass)) if distance <= 1.0 => Ok(glass),
-            _ => Err(FindError::Ambiguous {
-                name: name.to_owned(),
-                candidates: self.candidates(&places),
-            }),
+            _ => Err(FindError::Ambiguous { name: name.to_owned(), candidates: self.candidates(&places) }),
         }
     }
 
@@ -146,36 +125,20 @@ impl Catalogue {
         let (maker, name) = split_maker(name);
         let maker = maker.map(|m| {
             let m = m.to_uppercase();
-            MAKERS
-                .iter()
-                .find(|(alias, _)| *alias == m)
-                .map_or(m, |(_, maker)| (*maker).to_owned())
+            MAKERS.iter().find(|(alias, _)| *alias == m).map_or(m, |(_, maker)| (*maker).to_owned())
         });
-        let of_maker = |place: &Place| {
-            maker
-                .as_ref()
-                .is_none_or(|m| self.maker_of(*place).to_uppercase() == *m)
-        };
+        let of_maker = |place: &Place| maker.as_ref().is_none_or(|m| self.maker_of(*place).to_uppercase() == *m);
         let upper = name.to_uppercase();
-        let start = self
-            .index
-            .partition_point(|(n, _)| n.as_ref() < upper.as_str());
-        let same = self.index[start..]
-            .iter()
-            .take_while(|(n, _)| n.as_ref() == upper)
-            .map(|(_, place)| *place);
+        let start = self.index.partition_point(|(n, _)| n.as_ref() < upper.as_str());
+        let same = self.index[start..].iter().take_while(|(n, _)| n.as_ref() == upper).map(|(_, place)| *place);
         let exact: Vec<Place> = same.filter(of_maker).collect();
         if !exact.is_empty() {
             return exact;
         }
         // A substance without the name of a measurement.
         if maker.is_none() {
-            let all: Vec<Place> = self
-                .index
-                .iter()
-                .map(|(_, p)| *p)
-                .filter(|p| self.maker_of(*p).to_uppercase() == upper)
-                .collect();
+            let all: Vec<Place> =
+                self.index.iter().map(|(_, p)| *p).filter(|p| self.maker_of(*p).to_uppercase() == upper).collect();
             if !all.is_empty() {
                 return all;
             }
@@ -184,18 +147,11 @@ impl Catalogue {
         if squeezed.is_empty() {
             return Vec::new();
         }
-        self.index
-            .iter()
-            .filter(|(n, p)| squeeze(n) == squeezed && of_maker(p))
-            .map(|(_, place)| *place)
-            .collect()
+        self.index.iter().filter(|(n, p)| squeeze(n) == squeezed && of_maker(p)).map(|(_, place)| *place).collect()
     }
 
     fn candidates(&self, places: &[Place]) -> Vec<Candidate> {
-        places
-            .iter()
-            .map(|&place| candidate(&self.glass(place)))
-            .collect()
+        places.iter().map(|&place| candidate(&self.glass(place))).collect()
     }
 
     /// The names with the smallest edit distance; those of the maker that was named come first.
@@ -205,27 +161,18 @@ impl Catalogue {
         let bare: Vec<char> = bare.to_uppercase().chars().take(64).collect();
         let mut scored: Vec<(usize, bool, usize)> = (self.index.iter().enumerate())
             .map(|(i, (candidate, place))| {
-                let other_maker = maker
-                    .as_ref()
-                    .is_some_and(|m| self.maker_of(*place).to_uppercase() != *m);
+                let other_maker = maker.as_ref().is_some_and(|m| self.maker_of(*place).to_uppercase() != *m);
                 (edit_distance(&bare, candidate), other_maker, i)
             })
             .collect();
         scored.sort_unstable();
         scored.truncate(LISTED);
-        scored
-            .iter()
-            .map(|&(_, _, i)| candidate(&self.glass(self.index[i].1)))
-            .collect()
+        scored.iter().map(|&(_, _, i)| candidate(&self.glass(self.index[i].1))).collect()
     }
 }
 
 fn candidate(glass: &Glass) -> Candidate {
-    Candidate {
-        full_name: glass.full_name(),
-        nd: glass.nd(),
-        vd: glass.vd(),
-    }
+    Candidate { full_name: glass.full_name(), nd: glass.nd(), vd: glass.vd() }
 }
 
 /// `SCHOTT/N-BK7` and the `LZ_` of LZOS glasses in design programs.
@@ -246,10 +193,7 @@ fn strip_lzos(name: &str) -> Option<&str> {
 }
 
 fn squeeze(name: &str) -> String {
-    name.chars()
-        .filter(|c| !matches!(c, '-' | '_' | ' ' | '.'))
-        .flat_map(char::to_uppercase)
-        .collect()
+    name.chars().filter(|c| !matches!(c, '-' | '_' | ' ' | '.')).flat_map(char::to_uppercase).collect()
 }
 
 /// Levenshtein's distance: insertions, deletions and replacements of characters.

@@ -52,10 +52,8 @@ impl Catalogue {
     pub fn bundled() -> &'static Catalogue {
         static BUNDLED: OnceLock<Catalogue> = OnceLock::new();
         BUNDLED.get_or_init(|| {
-            let text = spectra_data::text("spectra/glass/catalogue.txt")
-                .expect("the glass catalogue is bundled");
-            Catalogue::from_text(text)
-                .expect("the bundled catalogue is well-formed: a test reads all of it")
+            let text = spectra_data::text("spectra/glass/catalogue.txt").expect("the glass catalogue is bundled");
+            Catalogue::from_text(text).expect("the bundled catalogue is well-formed: a test reads all of it")
         })
     }
 
@@ -66,25 +64,15 @@ impl Catalogue {
     /// panics then: the text is compiled in, and a test calls [`Catalogue::verify`].
     pub fn from_text(text: &'static str) -> Result<Catalogue, CatalogueError> {
         let bundle = Bundle::new(text)?;
-        let mut index: Vec<_> = (0..bundle.len())
-            .map(|i| (upper(bundle.name(i)), Place::Text(i as u32)))
-            .collect();
+        let mut index: Vec<_> = (0..bundle.len()).map(|i| (upper(bundle.name(i)), Place::Text(i as u32))).collect();
         index.sort_unstable_by(|a, b| a.0.cmp(&b.0));
-        Ok(Catalogue {
-            bundle: Arc::new(bundle),
-            own: Vec::new(),
-            index,
-        })
+        Ok(Catalogue { bundle: Arc::new(bundle), own: Vec::new(), index })
     }
 
     /// An empty catalogue, for a user's own glasses alone.
     #[must_use]
     pub fn empty() -> Catalogue {
-        Catalogue {
-            bundle: Arc::default(),
-            own: Vec::new(),
-            index: Vec::new(),
-        }
+        Catalogue { bundle: Arc::default(), own: Vec::new(), index: Vec::new() }
     }
 
     /// Adds glasses (of a user's AGF file, say). One with the same maker and name as an earlier one replaces it.
@@ -92,17 +80,14 @@ impl Catalogue {
         for glass in glasses {
             let name = glass.name.to_uppercase();
             let maker = glass.maker.to_uppercase();
-            let same = |(n, place): &(Cow<'static, str>, Place)| {
-                *n == name && self.maker_of(*place).to_uppercase() == maker
-            };
+            let same =
+                |(n, place): &(Cow<'static, str>, Place)| *n == name && self.maker_of(*place).to_uppercase() == maker;
             if let Some(at) = self.index.iter().position(same) {
                 self.index.remove(at);
             }
             let place = Place::Own(self.own.len() as u32);
             self.own.push(glass);
-            let at = self
-                .index
-                .partition_point(|(n, _)| n.as_ref() <= name.as_str());
+            let at = self.index.partition_point(|(n, _)| n.as_ref() <= name.as_str());
             self.index.insert(at, (Cow::Owned(name), place));
         }
     }
@@ -126,19 +111,13 @@ impl Catalogue {
 
     /// All names as `MAKER/NAME`, without reading the data.
     pub fn full_names(&self) -> impl Iterator<Item = String> + '_ {
-        self.index
-            .iter()
-            .map(|(_, place)| format!("{}/{}", self.maker_of(*place), self.name_of(*place)))
+        self.index.iter().map(|(_, place)| format!("{}/{}", self.maker_of(*place), self.name_of(*place)))
     }
 
     /// The makers (and substances) in order of the alphabet.
     #[must_use]
     pub fn makers(&self) -> Vec<String> {
-        let mut makers: Vec<_> = self
-            .index
-            .iter()
-            .map(|(_, place)| self.maker_of(*place).to_owned())
-            .collect();
+        let mut makers: Vec<_> = self.index.iter().map(|(_, place)| self.maker_of(*place).to_owned()).collect();
         makers.sort_unstable();
         makers.dedup();
         makers
@@ -155,9 +134,10 @@ impl Catalogue {
     fn glass(&self, place: Place) -> Glass {
         match place {
             Place::Own(i) => self.own[i as usize].clone(),
-            Place::Text(i) => self.bundle.glass(i as usize).expect(
-                "records of the bundled catalogue are well-formed: a test reads all of them",
-            ),
+            Place::Text(i) => self
+                .bundle
+                .glass(i as usize)
+                .expect("records of the bundled catalogue are well-formed: a test reads all of them"),
         }
     }
 
@@ -178,10 +158,7 @@ impl Catalogue {
 
 /// Upper case, borrowed where it is that already.
 fn upper(name: &'static str) -> Cow<'static, str> {
-    if name
-        .bytes()
-        .any(|b| b.is_ascii_lowercase() || !b.is_ascii())
-    {
+    if name.bytes().any(|b| b.is_ascii_lowercase() || !b.is_ascii()) {
         Cow::Owned(name.to_uppercase())
     } else {
         Cow::Borrowed(name)

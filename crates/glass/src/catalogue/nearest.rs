@@ -45,18 +45,10 @@ impl Query {
     }
 
     fn admits(&self, glass: &Glass) -> bool {
-        let maker = self.makers.is_empty()
-            || self
-                .makers
-                .iter()
-                .any(|m| m.eq_ignore_ascii_case(&glass.maker));
+        let maker = self.makers.is_empty() || self.makers.iter().any(|m| m.eq_ignore_ascii_case(&glass.maker));
         let category = self.categories.is_empty() || self.categories.contains(&glass.category);
-        let known = self
-            .known_by
-            .is_none_or(|year| glass.years.is_some_and(|(first, _)| first <= year));
-        let still = self
-            .still_in
-            .is_none_or(|year| glass.years.is_some_and(|(_, last)| year <= last));
+        let known = self.known_by.is_none_or(|year| glass.years.is_some_and(|(first, _)| first <= year));
+        let still = self.still_in.is_none_or(|year| glass.years.is_some_and(|(_, last)| year <= last));
         maker && category && known && still && (self.obsolete || glass.status != Status::Obsolete)
     }
 }
@@ -90,23 +82,13 @@ impl Catalogue {
         let mut matches: Vec<Match> = (self.glasses())
             .filter(|glass| query.admits(glass))
             .filter_map(|glass| {
-                let (n, v) = (
-                    glass.index(query.lines.mid.wavelength_nm),
-                    glass.abbe_number(query.lines),
-                );
+                let (n, v) = (glass.index(query.lines.mid.wavelength_nm), glass.abbe_number(query.lines));
                 let delta_n = n - query.n;
                 let delta_v = query.v.map_or(0.0, |asked| v - asked);
                 let in_v = query.v.map_or(0.0, |asked| delta_v / (TOLERANCE_V * asked));
                 let in_n = delta_n / TOLERANCE_N;
                 let distance = (in_n * in_n + in_v * in_v).sqrt();
-                distance.is_finite().then_some(Match {
-                    glass,
-                    n,
-                    v,
-                    delta_n,
-                    delta_v,
-                    distance,
-                })
+                distance.is_finite().then_some(Match { glass, n, v, delta_n, delta_v, distance })
             })
             .collect();
         matches.sort_by(|a, b| {

@@ -37,30 +37,19 @@ impl Bundle {
         let mut bundle = Bundle::default();
         let mut sources: Vec<(&str, Arc<str>)> = Vec::new();
         for (i, line) in text.lines().enumerate() {
-            let fail = |message: &str| CatalogueError {
-                line: i + 1,
-                message: message.to_owned(),
-            };
+            let fail = |message: &str| CatalogueError { line: i + 1, message: message.to_owned() };
             match line.as_bytes().first() {
                 None | Some(b'#') => {}
                 Some(b'!') => {
-                    let (key, value) = line[1..]
-                        .split_once(' ')
-                        .ok_or_else(|| fail("a directive without a value"))?;
+                    let (key, value) = line[1..].split_once(' ').ok_or_else(|| fail("a directive without a value"))?;
                     match key {
                         "grid" => bundle.grids.push(value),
                         "source" => {
-                            let (mark, text) = value
-                                .split_once(' ')
-                                .ok_or_else(|| fail("a source without a text"))?;
+                            let (mark, text) = value.split_once(' ').ok_or_else(|| fail("a source without a text"))?;
                             sources.push((mark, text.into()));
                         }
                         "alias" => {
-                            bundle.aliases.push(
-                                value
-                                    .split_once(" = ")
-                                    .ok_or_else(|| fail("an alias without ` = `"))?,
-                            );
+                            bundle.aliases.push(value.split_once(" = ").ok_or_else(|| fail("an alias without ` = `"))?);
                         }
                         _ => return Err(fail("unknown directive")),
                     }
@@ -68,13 +57,9 @@ impl Bundle {
                 Some(b'@') => {
                     let mut parts = line[1..].split('|');
                     let (maker, category, mark) = (parts.next(), parts.next(), parts.next());
-                    let category = category
-                        .and_then(Category::by_name)
-                        .ok_or_else(|| fail("unknown category"))?;
-                    let source = sources
-                        .iter()
-                        .find(|(m, _)| Some(*m) == mark)
-                        .ok_or_else(|| fail("unknown source"))?;
+                    let category = category.and_then(Category::by_name).ok_or_else(|| fail("unknown category"))?;
+                    let source =
+                        sources.iter().find(|(m, _)| Some(*m) == mark).ok_or_else(|| fail("unknown source"))?;
                     bundle.blocks.push(Block {
                         maker: maker.unwrap_or_default().into(),
                         category,
@@ -82,21 +67,10 @@ impl Bundle {
                     });
                 }
                 Some(_) => {
-                    let (name, rest) = line
-                        .split_once('|')
-                        .ok_or_else(|| fail("a record without fields"))?;
-                    let block = bundle
-                        .blocks
-                        .len()
-                        .checked_sub(1)
-                        .ok_or_else(|| fail("a record before its maker"))?
-                        as u32;
-                    bundle.records.push(Record {
-                        name,
-                        rest,
-                        block,
-                        line: i as u32 + 1,
-                    });
+                    let (name, rest) = line.split_once('|').ok_or_else(|| fail("a record without fields"))?;
+                    let block =
+                        bundle.blocks.len().checked_sub(1).ok_or_else(|| fail("a record before its maker"))? as u32;
+                    bundle.records.push(Record { name, rest, block, line: i as u32 + 1 });
                 }
             }
         }
@@ -117,34 +91,22 @@ impl Bundle {
 
     /// What an everyday name stands for.
     pub(super) fn alias(&self, name: &str) -> Option<&'static str> {
-        self.aliases
-            .iter()
-            .find(|(alias, _)| alias.eq_ignore_ascii_case(name))
-            .map(|(_, target)| *target)
+        self.aliases.iter().find(|(alias, _)| alias.eq_ignore_ascii_case(name)).map(|(_, target)| *target)
     }
 
     /// Reads record `i`.
     pub(super) fn glass(&self, i: usize) -> Result<Glass, CatalogueError> {
         let record = &self.records[i];
         let block = &self.blocks[record.block as usize];
-        self.read(record, block).map_err(|message| CatalogueError {
-            line: record.line as usize,
-            message: message.to_owned(),
-        })
+        self.read(record, block)
+            .map_err(|message| CatalogueError { line: record.line as usize, message: message.to_owned() })
     }
 
     fn read(&self, record: &Record, block: &Block) -> Result<Glass, &'static str> {
         let mut fields = record.rest.split('|');
         let mut field = || fields.next().unwrap_or_default();
-        let (kind, range, listed, status, data, thermal, extinction) = (
-            field(),
-            field(),
-            field(),
-            field(),
-            field(),
-            field(),
-            field(),
-        );
+        let (kind, range, listed, status, data, thermal, extinction) =
+            (field(), field(), field(), field(), field(), field(), field());
         let [min, max] = numbers(range)?[..] else {
             return Err("a range is two wavelengths");
         };
@@ -152,13 +114,7 @@ impl Bundle {
             maker: block.maker.clone(),
             source: block.source.clone(),
             formula: formula(kind, data)?,
-            ..Glass::new(
-                "",
-                record.name,
-                block.category,
-                Formula::Constant(1.0),
-                (min, max),
-            )
+            ..Glass::new("", record.name, block.category, Formula::Constant(1.0), (min, max))
         };
         match numbers(listed)?[..] {
             [] => {}
@@ -171,11 +127,7 @@ impl Bundle {
             [t] => glass.temperature_c = Some(t),
             [t, d0, d1, d2, e0, e1, lambda_tk_um] => {
                 glass.temperature_c = Some(t);
-                glass.thermal = Some(Thermal {
-                    d: [d0, d1, d2],
-                    e: [e0, e1],
-                    lambda_tk_um,
-                });
+                glass.thermal = Some(Thermal { d: [d0, d1, d2], e: [e0, e1], lambda_tk_um });
             }
             _ => return Err("thermal data are a temperature and six coefficients"),
         }
@@ -187,11 +139,7 @@ impl Bundle {
 
     fn extinction(&self, text: &str) -> Result<Extinction, &'static str> {
         let (grid, values) = text.split_once(' ').ok_or("extinction without values")?;
-        let grid = grid
-            .parse()
-            .ok()
-            .and_then(|i: usize| self.grids.get(i))
-            .ok_or("unknown wavelength grid")?;
+        let grid = grid.parse().ok().and_then(|i: usize| self.grids.get(i)).ok_or("unknown wavelength grid")?;
         let k = values.split(' ').map(short).collect::<Result<_, _>>()?;
         Extinction::new(numbers(grid)?.into(), k).ok_or("extinction does not fit its grid")
     }
@@ -200,14 +148,11 @@ impl Bundle {
 fn formula(kind: &str, data: &str) -> Result<Formula, &'static str> {
     let c = numbers(data)?;
     match kind {
-        "B" => c
-            .try_into()
-            .map(Formula::Buchdahl)
-            .map_err(|_| "Buchdahl's model has four coefficients"),
+        "B" => c.try_into().map(Formula::Buchdahl).map_err(|_| "Buchdahl's model has four coefficients"),
         "M" => match c[..] {
-            [nd, vd] => ModelGlass::new(nd, vd, LineTriple::FDC)
-                .map(Formula::Model)
-                .ok_or("no glass has such nd and Vd"),
+            [nd, vd] => {
+                ModelGlass::new(nd, vd, LineTriple::FDC).map(Formula::Model).ok_or("no glass has such nd and Vd")
+            }
             _ => Err("a model glass is nd and Vd"),
         },
         "T" => {
@@ -215,15 +160,11 @@ fn formula(kind: &str, data: &str) -> Result<Formula, &'static str> {
                 return Err("a table is pairs");
             }
             let points: Vec<_> = c.chunks_exact(2).map(|p| (p[0], p[1])).collect();
-            Table::new(&points)
-                .map(|t| Formula::Table(t.into()))
-                .map_err(|_| "wavelengths of a table must rise")
+            Table::new(&points).map(|t| Formula::Table(t.into())).map_err(|_| "wavelengths of a table must rise")
         }
         _ => {
             let number = kind.parse().map_err(|_| "unknown type")?;
-            NumberedFormula::new(number, &c)
-                .map(Formula::Numbered)
-                .ok_or("coefficients do not fit the formula")
+            NumberedFormula::new(number, &c).map(Formula::Numbered).ok_or("coefficients do not fit the formula")
         }
     }
 }
@@ -253,10 +194,7 @@ fn status_and_years(text: &str) -> Result<(Status, Years), &'static str> {
 }
 
 fn numbers(text: &str) -> Result<Vec<f64>, &'static str> {
-    text.split(' ')
-        .filter(|t| !t.is_empty())
-        .map(|t| t.parse().map_err(|_| "not a number"))
-        .collect()
+    text.split(' ').filter(|t| !t.is_empty()).map(|t| t.parse().map_err(|_| "not a number")).collect()
 }
 
 /// `286-8` is 286e-8; a plain number is itself.
@@ -286,15 +224,9 @@ mod tests {
             (glass.full_name().as_str(), glass.status, glass.years),
             ("MAKER/G1", Status::Preferred, Some((1983, 2017)))
         );
-        assert_eq!(
-            (glass.listed_nd, glass.listed_vd, glass.temperature_c),
-            (Some(1.5), Some(60.0), Some(20.0))
-        );
+        assert_eq!((glass.listed_nd, glass.listed_vd, glass.temperature_c), (Some(1.5), Some(60.0), Some(20.0)));
         assert!((glass.index(500.0) - 1.516).abs() < 1e-15);
-        assert_eq!(
-            glass.extinction.as_ref().and_then(|e| e.at(400.0)),
-            Some(2.86e-6)
-        );
+        assert_eq!(glass.extinction.as_ref().and_then(|e| e.at(400.0)), Some(2.86e-6));
         assert_eq!(&*glass.source, "Somebody");
         assert_eq!(bundle.alias("Best"), Some("MAKER/G1"));
         let plain = bundle.glass(1).expect("well-formed");
@@ -313,11 +245,7 @@ mod tests {
             ("@M|optical glass|a\n", 1),
             ("!what is\n", 1),
         ] {
-            assert_eq!(
-                Bundle::new(text).map_err(|e| e.line).err(),
-                Some(line),
-                "{text}"
-            );
+            assert_eq!(Bundle::new(text).map_err(|e| e.line).err(), Some(line), "{text}");
         }
         for record in [
             "G|5|400|",
@@ -329,16 +257,10 @@ mod tests {
             "G|T|4 7|||1 1 1 1",
             "G|5|4 x|||1",
         ] {
-            let text: &'static str = Box::leak(
-                format!("!source a b\n!grid 400 500\n@M|optical glass|a\n{record}\n")
-                    .into_boxed_str(),
-            );
+            let text: &'static str =
+                Box::leak(format!("!source a b\n!grid 400 500\n@M|optical glass|a\n{record}\n").into_boxed_str());
             assert_eq!(
-                Bundle::new(text)
-                    .expect("heads are fine")
-                    .glass(0)
-                    .map_err(|e| e.line)
-                    .err(),
+                Bundle::new(text).expect("heads are fine").glass(0).map_err(|e| e.line).err(),
                 Some(4),
                 "{record}"
             );

@@ -81,17 +81,14 @@ impl Dispersion {
             .map(|i| min_nm + (max_nm - min_nm) * i as f64 / (CHECKS - 1) as f64)
             .map(|w| (w, medium.index(w)))
             .collect();
-        if let Some(&(wavelength_nm, _)) = checks.iter().find(|(_, n)| !(n.is_finite() && *n > 0.0))
-        {
+        if let Some(&(wavelength_nm, _)) = checks.iter().find(|(_, n)| !(n.is_finite() && *n > 0.0)) {
             return Err(DispersionError::NoIndex { wavelength_nm });
         }
         let band_nm = (min_nm, max_nm);
         let mut best: Option<(Rational, f64)> = None;
         for degree in 0..=Rational::MAX_DEGREE {
             for (variable, nodes) in TRIALS {
-                let Some(mut rational) =
-                    Rational::fit(medium, min_nm, max_nm, degree, variable, nodes)
-                else {
+                let Some(mut rational) = Rational::fit(medium, min_nm, max_nm, degree, variable, nodes) else {
                     continue;
                 };
                 let mut max_error = largest_error(&checks, |w| rational.evaluate(w));
@@ -99,40 +96,20 @@ impl Dispersion {
                     (rational, max_error) = rational.level(&checks);
                 }
                 if max_error <= RATIONAL_TOLERANCE {
-                    return Ok(Dispersion {
-                        form: Form::Rational(rational),
-                        band_nm,
-                        max_error,
-                    });
+                    return Ok(Dispersion { form: Form::Rational(rational), band_nm, max_error });
                 }
-                if max_error <= LAST_TOLERANCE
-                    && best.as_ref().is_none_or(|(_, error)| max_error < *error)
-                {
+                if max_error <= LAST_TOLERANCE && best.as_ref().is_none_or(|(_, error)| max_error < *error) {
                     best = Some((rational, max_error));
                 }
             }
         }
         if let Some((rational, max_error)) = best {
-            return Ok(Dispersion {
-                form: Form::Rational(rational),
-                band_nm,
-                max_error,
-            });
+            return Ok(Dispersion { form: Form::Rational(rational), band_nm, max_error });
         }
-        if let Some((sampled, max_error)) =
-            Sampled::fit(medium, min_nm, max_nm, LAST_TOLERANCE, &checks)
-        {
-            return Ok(Dispersion {
-                form: Form::Sampled(sampled),
-                band_nm,
-                max_error,
-            });
+        if let Some((sampled, max_error)) = Sampled::fit(medium, min_nm, max_nm, LAST_TOLERANCE, &checks) {
+            return Ok(Dispersion { form: Form::Sampled(sampled), band_nm, max_error });
         }
-        Ok(Dispersion {
-            form: Form::Exact(medium.clone()),
-            band_nm,
-            max_error: 0.0,
-        })
+        Ok(Dispersion { form: Form::Exact(medium.clone()), band_nm, max_error: 0.0 })
     }
 
     /// Largest difference from the medium's formula found on 4 000 wavelengths of the band.
@@ -159,9 +136,7 @@ impl Dispersion {
     /// The index if it is the same at all wavelengths.
     #[must_use]
     pub fn constant(&self) -> Option<f64> {
-        self.rational()
-            .filter(|r| r.degree() == 0)
-            .map(|r| r.evaluate(self.band_nm.0))
+        self.rational().filter(|r| r.degree() == 0).map(|r| r.evaluate(self.band_nm.0))
     }
 
     /// Refractive index at a wavelength in nm. Meant for the band; not accurate outside of it.
@@ -182,10 +157,7 @@ impl Dispersion {
     /// If the slices differ in length.
     #[inline(always)]
     pub fn index_and_inverse(&self, wavelength_nm: &[f64], n: &mut [f64], inverse_n: &mut [f64]) {
-        assert!(
-            wavelength_nm.len() == n.len() && n.len() == inverse_n.len(),
-            "columns of a batch have one length"
-        );
+        assert!(wavelength_nm.len() == n.len() && n.len() == inverse_n.len(), "columns of a batch have one length");
         match &self.form {
             Form::Rational(rational) => rational.index_and_inverse(wavelength_nm, n, inverse_n),
             Form::Sampled(sampled) => {
@@ -206,10 +178,7 @@ impl Dispersion {
 
 fn largest_error(checks: &[(f64, f64)], n: impl Fn(f64) -> f64) -> f64 {
     // An error that is no number must not pass as small.
-    checks
-        .iter()
-        .map(|&(w, exact)| (n(w) - exact).abs())
-        .fold(0.0, |m, e| if e > m || e.is_nan() { e } else { m })
+    checks.iter().map(|&(w, exact)| (n(w) - exact).abs()).fold(0.0, |m, e| if e > m || e.is_nan() { e } else { m })
 }
 
 #[cfg(test)]

@@ -50,9 +50,7 @@ impl Variable {
         match self {
             Variable::Wavelength => between(min_nm, max_nm),
             Variable::Square => between(min_nm * min_nm, max_nm * max_nm).sqrt(),
-            Variable::InverseSquare => {
-                1.0 / between(1.0 / (min_nm * min_nm), 1.0 / (max_nm * max_nm)).sqrt()
-            }
+            Variable::InverseSquare => 1.0 / between(1.0 / (min_nm * min_nm), 1.0 / (max_nm * max_nm)).sqrt(),
         }
     }
 }
@@ -158,8 +156,7 @@ impl Rational {
         rational.p[..=degree].copy_from_slice(&solution[..=degree]);
         rational.q[0] = 1.0;
         rational.q[1..=degree].copy_from_slice(&solution[degree + 1..2 * degree + 1]);
-        (has_no_zero(&rational.p[..=degree]) && has_no_zero(&rational.q[..=degree]))
-            .then_some(rational)
+        (has_no_zero(&rational.p[..=degree]) && has_no_zero(&rational.q[..=degree])).then_some(rational)
     }
 
     #[inline(always)]
@@ -221,12 +218,7 @@ impl Rational {
     }
 
     #[inline(always)]
-    fn batch<const DEGREE: usize>(
-        &self,
-        wavelength_nm: &[f64],
-        n: &mut [f64],
-        inverse_n: &mut [f64],
-    ) {
+    fn batch<const DEGREE: usize>(&self, wavelength_nm: &[f64], n: &mut [f64], inverse_n: &mut [f64]) {
         for ((w, n), inverse) in wavelength_nm.iter().zip(n).zip(inverse_n) {
             (*n, *inverse) = self.pair::<DEGREE>(*w);
         }
@@ -268,16 +260,9 @@ fn has_no_zero(c: &[f64]) -> bool {
         next[0] += c;
         powers = next;
     }
-    let choose = |n: usize, k: usize| {
-        (1..=k).fold(1.0, |product, i| product * (n + 1 - i) as f64 / i as f64)
-    };
-    let bernstein: Vec<f64> = (0..=degree)
-        .map(|i| {
-            (0..=i)
-                .map(|k| choose(i, k) / choose(degree, k) * powers[k])
-                .sum()
-        })
-        .collect();
+    let choose = |n: usize, k: usize| (1..=k).fold(1.0, |product, i| product * (n + 1 - i) as f64 / i as f64);
+    let bernstein: Vec<f64> =
+        (0..=degree).map(|i| (0..=i).map(|k| choose(i, k) / choose(degree, k) * powers[k]).sum()).collect();
     one_sign(&bernstein, 0)
 }
 

@@ -30,10 +30,8 @@ impl Sampled {
         while intervals <= MOST_INTERVALS {
             let table = Sampled::new(medium, min_nm, max_nm, intervals);
             let step = (max_nm - min_nm) / intervals as f64;
-            let middles: Vec<(f64, f64)> = (0..intervals)
-                .map(|i| min_nm + step * (i as f64 + 0.5))
-                .map(|w| (w, medium.index(w)))
-                .collect();
+            let middles: Vec<(f64, f64)> =
+                (0..intervals).map(|i| min_nm + step * (i as f64 + 0.5)).map(|w| (w, medium.index(w))).collect();
             let error = largest_error(&middles, |w| table.evaluate(w));
             if error <= tolerance {
                 let error = error.max(largest_error(checks, |w| table.evaluate(w)));
@@ -48,9 +46,7 @@ impl Sampled {
 
     fn new(medium: &Medium, min_nm: f64, max_nm: f64, intervals: usize) -> Sampled {
         let step = (max_nm - min_nm) / intervals as f64;
-        let samples: Vec<f64> = (0..=intervals)
-            .map(|i| medium.index(min_nm + step * i as f64))
-            .collect();
+        let samples: Vec<f64> = (0..=intervals).map(|i| medium.index(min_nm + step * i as f64)).collect();
         let cubics = (0..intervals)
             .map(|i| {
                 // At the ends the four samples are all on one side.
@@ -58,21 +54,11 @@ impl Sampled {
                 let t = |k: usize| (first + k) as f64 - i as f64;
                 interpolate(
                     [t(0), t(1), t(2), t(3)],
-                    [
-                        samples[first],
-                        samples[first + 1],
-                        samples[first + 2],
-                        samples[first + 3],
-                    ],
+                    [samples[first], samples[first + 1], samples[first + 2], samples[first + 3]],
                 )
             })
             .collect();
-        Sampled {
-            min_nm,
-            inverse_step_nm: 1.0 / step,
-            last: (intervals - 1) as f64,
-            cubics,
-        }
+        Sampled { min_nm, inverse_step_nm: 1.0 / step, last: (intervals - 1) as f64, cubics }
     }
 
     #[inline(always)]
@@ -110,10 +96,7 @@ mod tests {
         let cubic = |t: f64| 2.0 - t + 0.5 * t * t + 3.0 * t * t * t;
         for first in [-2.0, -1.0, 0.0] {
             let t = [first, first + 1.0, first + 2.0, first + 3.0];
-            for (got, expected) in interpolate(t, t.map(cubic))
-                .iter()
-                .zip([2.0, -1.0, 0.5, 3.0])
-            {
+            for (got, expected) in interpolate(t, t.map(cubic)).iter().zip([2.0, -1.0, 0.5, 3.0]) {
                 assert!((got - expected).abs() < 1e-13);
             }
         }

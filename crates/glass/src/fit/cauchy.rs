@@ -41,13 +41,7 @@ pub fn cauchy_by_rows(samples: &[Sample]) -> Result<CauchyRows, FitError> {
     let a_rows: Vec<f64> = (0..count).map(|i| samples[i].n - b_nm2 * x(i)).collect();
     let a = mean(&a_rows);
     let fit = Fit::of(Formula::Cauchy(vec![a, b_nm2 * 1e-6]), samples);
-    Ok(CauchyRows {
-        a,
-        b_nm2,
-        a_rows,
-        b_rows_nm2,
-        fit,
-    })
+    Ok(CauchyRows { a, b_nm2, a_rows, b_rows_nm2, fit })
 }
 
 /// Cauchy's formula with `terms` coefficients (1 to 6) by least squares: n = A + B L^-2 + C L^-4 + ...
@@ -86,59 +80,32 @@ mod tests {
     use super::*;
 
     fn samples(rows: &[(f64, f64)]) -> Vec<Sample> {
-        rows.iter()
-            .map(|&(wavelength_nm, n)| Sample { wavelength_nm, n })
-            .collect()
+        rows.iter().map(|&(wavelength_nm, n)| Sample { wavelength_nm, n }).collect()
     }
 
     #[test]
     fn finds_the_coefficients_that_made_the_samples() {
         let made = Formula::Cauchy(vec![1.5, 0.004, 1e-4, -2e-6]);
-        let rows: Vec<_> = [365.0, 405.0, 436.0, 486.0, 546.0, 588.0, 656.0, 852.0]
-            .map(|w| (w, made.index(w)))
-            .into();
+        let rows: Vec<_> = [365.0, 405.0, 436.0, 486.0, 546.0, 588.0, 656.0, 852.0].map(|w| (w, made.index(w))).into();
         let fit = cauchy_least_squares(&samples(&rows), 4).expect("determined");
-        for (got, expected) in fit
-            .formula
-            .coefficients()
-            .iter()
-            .zip([1.5, 0.004, 1e-4, -2e-6])
-        {
+        for (got, expected) in fit.formula.coefficients().iter().zip([1.5, 0.004, 1e-4, -2e-6]) {
             assert!((got - expected).abs() < 1e-10, "{got} {expected}");
         }
         assert!(fit.max_deviation < 1e-14);
-        let two = cauchy_by_rows(&samples(&[
-            (400.0, 1.5 + 5000.0 / 160_000.0),
-            (500.0, 1.5 + 5000.0 / 250_000.0),
-        ]))
-        .expect("determined");
+        let two = cauchy_by_rows(&samples(&[(400.0, 1.5 + 5000.0 / 160_000.0), (500.0, 1.5 + 5000.0 / 250_000.0)]))
+            .expect("determined");
         assert!((two.a - 1.5).abs() < 1e-13 && (two.b_nm2 - 5000.0).abs() < 1e-7);
     }
 
     #[test]
     fn refuses_what_determines_nothing() {
-        assert_eq!(
-            cauchy_by_rows(&samples(&[(500.0, 1.5)])),
-            Err(FitError::TooFew {
-                needed: 2,
-                found: 1
-            })
-        );
-        assert_eq!(
-            cauchy_by_rows(&samples(&[(500.0, 1.5), (500.0, 1.6)])),
-            Err(FitError::Undetermined)
-        );
-        assert_eq!(
-            cauchy_least_squares(&samples(&[(500.0, 1.5), (500.0, 1.6)]), 2),
-            Err(FitError::Undetermined)
-        );
+        assert_eq!(cauchy_by_rows(&samples(&[(500.0, 1.5)])), Err(FitError::TooFew { needed: 2, found: 1 }));
+        assert_eq!(cauchy_by_rows(&samples(&[(500.0, 1.5), (500.0, 1.6)])), Err(FitError::Undetermined));
+        assert_eq!(cauchy_least_squares(&samples(&[(500.0, 1.5), (500.0, 1.6)]), 2), Err(FitError::Undetermined));
         assert_eq!(
             cauchy_least_squares(&samples(&[(500.0, 1.5), (-1.0, 1.6)]), 2),
             Err(FitError::BadSample { row: 2 })
         );
-        assert_eq!(
-            cauchy_least_squares(&samples(&[(500.0, 1.5)]), 0),
-            Err(FitError::Undetermined)
-        );
+        assert_eq!(cauchy_least_squares(&samples(&[(500.0, 1.5)]), 0), Err(FitError::Undetermined));
     }
 }

@@ -19,16 +19,8 @@ mod tests {
     fn handbook1_of_beta_barium_borate() {
         let ordinary = Formula::Handbook1([2.7405, 0.0184, 0.0179, 0.0155]);
         let extraordinary = Formula::Handbook1([2.3730, 0.0128, 0.0156, 0.0044]);
-        check::indices(
-            &ordinary,
-            &[(1064.2, 1.65510), (532.1, 1.67493), (354.7, 1.70556)],
-            1e-3,
-        );
-        check::indices(
-            &extraordinary,
-            &[(1064.2, 1.54254), (532.1, 1.55552), (354.7, 1.57757)],
-            1e-3,
-        );
+        check::indices(&ordinary, &[(1064.2, 1.65510), (532.1, 1.67493), (354.7, 1.70556)], 1e-3);
+        check::indices(&extraordinary, &[(1064.2, 1.54254), (532.1, 1.55552), (354.7, 1.57757)], 1e-3);
     }
 
     /// Potassium titanyl phosphate (Fan et al. 1987, Appl. Opt. 26, 2390): n_x 1.7377 and n_z 1.8305 at 1064 nm,

@@ -18,15 +18,10 @@ impl Melt {
     pub fn new(base: Formula, nd: f64, vd: f64) -> Option<Melt> {
         let n = |w| base.index(w);
         let base_nd = n(D.wavelength_nm);
-        let principal_dispersion =
-            n(LineTriple::FDC.short.wavelength_nm) - n(LineTriple::FDC.long.wavelength_nm);
+        let principal_dispersion = n(LineTriple::FDC.short.wavelength_nm) - n(LineTriple::FDC.long.wavelength_nm);
         let factor = (nd - 1.0) / vd / principal_dispersion;
         let usable = nd > 1.0 && nd.is_finite() && vd > 0.0 && factor.is_finite() && factor > 0.0;
-        usable.then_some(Melt {
-            base,
-            offset: nd - factor * base_nd,
-            factor,
-        })
+        usable.then_some(Melt { base, offset: nd - factor * base_nd, factor })
     }
 
     pub(super) fn index(&self, wavelength_nm: f64) -> f64 {
@@ -62,14 +57,10 @@ mod tests {
             1.010_469_45,
             103.560_653,
         ]);
-        let melt = Melt::new(n_bk7.clone(), 1.51712, 64.01)
-            .map(|m| Formula::Melt(m.into()))
-            .expect("a melt");
+        let melt = Melt::new(n_bk7.clone(), 1.51712, 64.01).map(|m| Formula::Melt(m.into())).expect("a melt");
         assert!((melt.index(D.wavelength_nm) - 1.51712).abs() < 1e-15);
         assert!((LineTriple::FDC.abbe_number(|w| melt.index(w)) - 64.01).abs() < 1e-9);
-        let partial = |f: &Formula| {
-            (f.index(435.8343) - f.index(486.1327)) / (f.index(486.1327) - f.index(656.2725))
-        };
+        let partial = |f: &Formula| (f.index(435.8343) - f.index(486.1327)) / (f.index(486.1327) - f.index(656.2725));
         assert!((partial(&melt) - partial(&n_bk7)).abs() < 1e-12);
         assert!((partial(&n_bk7) - 0.5349).abs() < 1e-4);
     }
@@ -80,8 +71,6 @@ mod tests {
             assert!(Melt::new(Formula::Constant(base), nd, vd).is_none());
         }
         let crown = Formula::Cauchy(vec![1.5, 0.004]);
-        assert!(
-            Melt::new(crown.clone(), 1.0, 60.0).is_none() && Melt::new(crown, 1.5, 0.0).is_none()
-        );
+        assert!(Melt::new(crown.clone(), 1.0, 60.0).is_none() && Melt::new(crown, 1.5, 0.0).is_none());
     }
 }

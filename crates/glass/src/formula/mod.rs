@@ -154,11 +154,7 @@ pub(crate) mod check {
     pub(crate) fn indices(formula: &Formula, expected: &[(f64, f64)], tolerance: f64) {
         for &(wavelength_nm, n) in expected {
             let got = formula.index(wavelength_nm);
-            assert!(
-                (got - n).abs() <= tolerance,
-                "{} at {wavelength_nm} nm: {got}, not {n}",
-                formula.name()
-            );
+            assert!((got - n).abs() <= tolerance, "{} at {wavelength_nm} nm: {got}, not {n}", formula.name());
         }
     }
 }

@@ -22,27 +22,13 @@ impl ModelGlass {
     #[must_use]
     pub fn new(n: f64, v: f64, lines: LineTriple) -> Option<ModelGlass> {
         let term = |wavelength_nm: f64| 1.0 / (wavelength_nm * wavelength_nm * 1e-6 - POLE_UM2);
-        let (short, mid, long) = (
-            lines.short.wavelength_nm,
-            lines.mid.wavelength_nm,
-            lines.long.wavelength_nm,
-        );
+        let (short, mid, long) = (lines.short.wavelength_nm, lines.mid.wavelength_nm, lines.long.wavelength_nm);
         let in_order = 200.0 <= short && short < long && 200.0 <= mid;
         if !(n.is_finite() && n >= 1.0 && v >= 0.0 && in_order) {
             return None;
         }
-        let b_um2 = if v == 0.0 {
-            0.0
-        } else {
-            (n - 1.0) / v / (term(short) - term(long))
-        };
-        Some(ModelGlass {
-            index_mid: n,
-            abbe_number: v,
-            lines,
-            a: n - b_um2 * term(mid),
-            b_um2,
-        })
+        let b_um2 = if v == 0.0 { 0.0 } else { (n - 1.0) / v / (term(short) - term(long)) };
+        Some(ModelGlass { index_mid: n, abbe_number: v, lines, a: n - b_um2 * term(mid), b_um2 })
     }
 
     /// Index at a wavelength in nm.
@@ -76,18 +62,8 @@ mod tests {
 
     #[test]
     fn gives_back_what_was_stated_for_any_lines() {
-        for lines in [
-            LineTriple::FDC,
-            LineTriple::F_SODIUM_C,
-            LineTriple::FEC,
-            LineTriple::F_PRIME_E_C_PRIME,
-        ] {
-            for (n, v) in [
-                (1.5168, 64.17),
-                (1.78472, 25.68),
-                (1.43875, 94.95),
-                (1.64329, 47.72),
-            ] {
+        for lines in [LineTriple::FDC, LineTriple::F_SODIUM_C, LineTriple::FEC, LineTriple::F_PRIME_E_C_PRIME] {
+            for (n, v) in [(1.5168, 64.17), (1.78472, 25.68), (1.43875, 94.95), (1.64329, 47.72)] {
                 let model = ModelGlass::new(n, v, lines).expect("a glass");
                 assert!((model.index(lines.mid.wavelength_nm) - n).abs() < 1e-15);
                 assert!((lines.abbe_number(|w| model.index(w)) - v).abs() < 1e-10 * v);

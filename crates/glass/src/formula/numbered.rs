@@ -30,10 +30,7 @@ impl NumberedFormula {
             return None;
         }
         c.resize(length, 0.0);
-        Some(NumberedFormula {
-            number,
-            coefficients: c.into(),
-        })
+        Some(NumberedFormula { number, coefficients: c.into() })
     }
 
     /// Number of the form, 1 to 9.
@@ -70,26 +67,16 @@ impl NumberedFormula {
         let square = um * um;
         let pairs = |from: usize| c[from..].chunks_exact(2).map(|pair| (pair[0], pair[1]));
         match self.number {
-            1 => pairs(1)
-                .fold(1.0 + c[0], |s, (b, m)| s + b * square / (square - m * m))
-                .sqrt(),
-            2 => pairs(1)
-                .fold(1.0 + c[0], |s, (b, m)| s + b * square / (square - m))
-                .sqrt(),
+            1 => pairs(1).fold(1.0 + c[0], |s, (b, m)| s + b * square / (square - m * m)).sqrt(),
+            2 => pairs(1).fold(1.0 + c[0], |s, (b, m)| s + b * square / (square - m)).sqrt(),
             3 => pairs(1).fold(c[0], |s, (b, p)| s + b * power(um, p)).sqrt(),
             4 => {
                 // A resonance without strength has no pole: 0^0 is 1, which would put one at 1 um.
                 let resonance = |c: &[f64]| {
-                    if c[0] == 0.0 {
-                        0.0
-                    } else {
-                        c[0] * power(um, c[1]) / (square - power(c[2], c[3]))
-                    }
+                    if c[0] == 0.0 { 0.0 } else { c[0] * power(um, c[1]) / (square - power(c[2], c[3])) }
                 };
                 let start = c[0] + resonance(&c[1..5]) + resonance(&c[5..9]);
-                pairs(9)
-                    .fold(start, |s, (b, p)| s + b * power(um, p))
-                    .sqrt()
+                pairs(9).fold(start, |s, (b, p)| s + b * power(um, p)).sqrt()
             }
             5 => pairs(1).fold(c[0], |s, (b, p)| s + b * power(um, p)),
             6 => pairs(1).fold(1.0 + c[0], |s, (b, m)| s + b / (m - 1.0 / square)),
@@ -132,49 +119,16 @@ mod tests {
     /// Fused silica, Malitson 1965: poles as wavelengths.
     #[test]
     fn form_1_of_fused_silica() {
-        let silica = form(
-            1,
-            &[
-                0.0,
-                0.696_166_3,
-                0.068_404_3,
-                0.407_942_6,
-                0.116_241_4,
-                0.897_479_4,
-                9.896_161,
-            ],
-        );
-        check::indices(
-            &silica,
-            &[(404.656, 1.46962), (587.561, 1.45847), (656.272, 1.45637)],
-            1e-5,
-        );
+        let silica = form(1, &[0.0, 0.696_166_3, 0.068_404_3, 0.407_942_6, 0.116_241_4, 0.897_479_4, 9.896_161]);
+        check::indices(&silica, &[(404.656, 1.46962), (587.561, 1.45847), (656.272, 1.45637)], 1e-5);
     }
 
     /// SCHOTT F2, the maker's sheet: nd 1.62004, nF 1.63208, nC 1.61503.
     #[test]
     fn form_2_of_f2() {
-        let f2 = form(
-            2,
-            &[
-                0.0,
-                1.345_333_59,
-                0.009_977_438_71,
-                0.209_073_176,
-                0.047_045_076_7,
-                0.937_357_162,
-                111.886_764,
-            ],
-        );
-        check::indices(
-            &f2,
-            &[
-                (587.5618, 1.62004),
-                (486.1327, 1.63208),
-                (656.2725, 1.61503),
-            ],
-            5.1e-6,
-        );
+        let f2 =
+            form(2, &[0.0, 1.345_333_59, 0.009_977_438_71, 0.209_073_176, 0.047_045_076_7, 0.937_357_162, 111.886_764]);
+        check::indices(&f2, &[(587.5618, 1.62004), (486.1327, 1.63208), (656.2725, 1.61503)], 5.1e-6);
     }
 
     /// HOYA FCD1: nd 1.49700.
@@ -193,36 +147,15 @@ mod tests {
             -5.885_226_9e-7,
             -8.0,
         ];
-        check::indices(
-            &form(3, &c),
-            &[(587.5618, 1.49700), (435.8343, 1.50451)],
-            1e-5,
-        );
+        check::indices(&form(3, &c), &[(587.5618, 1.49700), (435.8343, 1.50451)], 1e-5);
     }
 
     /// KDP, ordinary ray (Zernike 1964, J. Opt. Soc. Am. 54, 1215), with both kinds of resonance: constants and measured
     /// indices of the paper.
     #[test]
     fn form_4_of_kdp() {
-        let kdp = form(
-            4,
-            &[
-                2.259_276,
-                13.005_22,
-                2.0,
-                400.0,
-                1.0,
-                0.010_089_56,
-                0.0,
-                0.012_942_6,
-                1.0,
-            ],
-        );
-        check::indices(
-            &kdp,
-            &[(546.07, 1.51152), (578.0, 1.50987), (632.8, 1.50737)],
-            3e-4,
-        );
+        let kdp = form(4, &[2.259_276, 13.005_22, 2.0, 400.0, 1.0, 0.010_089_56, 0.0, 0.012_942_6, 1.0]);
+        check::indices(&kdp, &[(546.07, 1.51152), (578.0, 1.50987), (632.8, 1.50737)], 3e-4);
         // Further pairs add powers: + 0.5 L^2 at L = 1 um.
         let more = form(4, &[2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.5, 2.0]);
         let n = more.index(1000.0);
@@ -246,31 +179,20 @@ mod tests {
     /// Silicon at 26 C (Edwards and Ochoa 1980, Appl. Opt. 19, 4130): 3.4215 at 10 um in Palik's table.
     #[test]
     fn form_7_of_silicon() {
-        let silicon = form(
-            7,
-            &[3.419_83, 0.159_906, -0.123_109, 1.268_78e-6, -1.951_04e-9],
-        );
+        let silicon = form(7, &[3.419_83, 0.159_906, -0.123_109, 1.268_78e-6, -1.951_04e-9]);
         check::indices(&silicon, &[(10_000.0, 3.4215), (2437.3, 3.4434)], 5e-4);
     }
 
     /// Silver bromide (Schroeter 1931, Z. Phys. 67, 24), the form of Lorentz and Lorenz: 2.253 at the sodium line (CRC).
     #[test]
     fn form_8_of_silver_bromide() {
-        check::indices(
-            &form(8, &[0.452_505, 0.099_39, 0.070_537, -0.000_150]),
-            &[(589.3, 2.253)],
-            5e-3,
-        );
+        check::indices(&form(8, &[0.452_505, 0.099_39, 0.070_537, -0.000_150]), &[(589.3, 2.253)], 5e-3);
     }
 
     /// Each term of the form by hand, at L = 2 um: 1 + 3 / (4 - 1) + 2 * 1 / (1 + 1) = 3.
     #[test]
     fn form_9_by_hand() {
-        check::indices(
-            &form(9, &[1.0, 3.0, 1.0, 2.0, 1.0, 1.0]),
-            &[(2000.0, 3f64.sqrt())],
-            1e-15,
-        );
+        check::indices(&form(9, &[1.0, 3.0, 1.0, 2.0, 1.0, 1.0]), &[(2000.0, 3f64.sqrt())], 1e-15);
     }
 
     #[test]
@@ -280,9 +202,6 @@ mod tests {
         assert!(NumberedFormula::new(2, &[]).is_none());
         assert!(NumberedFormula::new(2, &[0.0, 1.0]).is_none());
         assert!(NumberedFormula::new(2, &[0.0, f64::NAN, 1.0]).is_none());
-        assert_eq!(
-            NumberedFormula::new(4, &[2.0]).map(|f| f.coefficients().len()),
-            Some(9)
-        );
+        assert_eq!(NumberedFormula::new(4, &[2.0]).map(|f| f.coefficients().len()), Some(9));
     }
 }

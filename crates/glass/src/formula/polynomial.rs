@@ -92,20 +92,8 @@ mod tests {
     /// each of the longer forms must be the same function, and each further coefficient must weigh its own power.
     #[test]
     fn extended_forms_hold_the_schott_form_and_their_own_powers() {
-        let c = [
-            2.218_113_2,
-            -0.005_799_427,
-            0.008_347_067_9,
-            6.504_652_3e-5,
-            8.514_218_6e-6,
-            -5.885_226_9e-7,
-        ];
-        let published = [
-            (587.5618, 1.49700),
-            (486.1327, 1.50123),
-            (656.2725, 1.49514),
-            (435.8343, 1.50451),
-        ];
+        let c = [2.218_113_2, -0.005_799_427, 0.008_347_067_9, 6.504_652_3e-5, 8.514_218_6e-6, -5.885_226_9e-7];
+        let published = [(587.5618, 1.49700), (486.1327, 1.50123), (656.2725, 1.49514), (435.8343, 1.50451)];
         let pad = [c[0], c[1], c[2], c[3], c[4], c[5], 0.0, 0.0];
         let third = [c[0], c[1], 0.0, c[2], c[3], c[4], c[5], 0.0, 0.0];
         check::indices(&Formula::Schott(c), &published, 1e-5);
@@ -116,10 +104,7 @@ mod tests {
             for (k, power) in expected.iter().enumerate() {
                 // n^2 at L = 2 um of a unit coefficient is 2^power.
                 let n = formula(k).index(2000.0);
-                assert!(
-                    (n * n - 2f64.powi(*power)).abs() < 1e-14 * 2f64.powi(*power),
-                    "coefficient {k}"
-                );
+                assert!((n * n - 2f64.powi(*power)).abs() < 1e-14 * 2f64.powi(*power), "coefficient {k}");
             }
         };
         powers(

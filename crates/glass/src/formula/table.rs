@@ -54,11 +54,7 @@ impl Table {
             }
         }
         let (x, y): (Vec<f64>, Vec<f64>) = points.iter().map(|&(w, v)| (abscissa(w), v)).unzip();
-        Ok(Table {
-            wavelength_nm: points.iter().map(|p| p.0).collect(),
-            slope: slopes(&x, &y).into(),
-            value: y.into(),
-        })
+        Ok(Table { wavelength_nm: points.iter().map(|p| p.0).collect(), slope: slopes(&x, &y).into(), value: y.into() })
     }
 
     /// Value at `wavelength_nm`.
@@ -72,10 +68,7 @@ impl Table {
             return self.value[end] + self.slope[end] * (x - abscissa(self.wavelength_nm[end]));
         }
         let i = after - 1;
-        let (x0, x1) = (
-            abscissa(self.wavelength_nm[i]),
-            abscissa(self.wavelength_nm[i + 1]),
-        );
+        let (x0, x1) = (abscissa(self.wavelength_nm[i]), abscissa(self.wavelength_nm[i + 1]));
         let h = x1 - x0;
         let t = (x - x0) / h;
         let s = 1.0 - t;
@@ -88,18 +81,12 @@ impl Table {
     /// First and last wavelength, nm.
     #[must_use]
     pub fn range_nm(&self) -> (f64, f64) {
-        (
-            self.wavelength_nm[0],
-            self.wavelength_nm[self.wavelength_nm.len() - 1],
-        )
+        (self.wavelength_nm[0], self.wavelength_nm[self.wavelength_nm.len() - 1])
     }
 
     /// The points, wavelength (nm) and value.
     pub fn points(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
-        self.wavelength_nm
-            .iter()
-            .copied()
-            .zip(self.value.iter().copied())
+        self.wavelength_nm.iter().copied().zip(self.value.iter().copied())
     }
 }
 
@@ -119,11 +106,7 @@ fn slopes(x: &[f64], y: &[f64]) -> Vec<f64> {
     }
     let limit = |slope: f64, a: f64, b: f64| {
         let most = 3.0 * a.abs().min(b.abs());
-        if a * b <= 0.0 || slope * a <= 0.0 {
-            0.0
-        } else {
-            slope.clamp(-most, most)
-        }
+        if a * b <= 0.0 || slope * a <= 0.0 { 0.0 } else { slope.clamp(-most, most) }
     };
     let end = |h0: f64, h1: f64, d0: f64, d1: f64| limit(d0 + (d0 - d1) * h0 / (h0 + h1), d0, d0);
     let mut slope = vec![0.0; n];
@@ -152,19 +135,14 @@ mod tests {
             1.010_469_45,
             103.560_653,
         ]);
-        let points: Vec<_> = crate::lines::ALL
-            .iter()
-            .map(|l| (l.wavelength_nm, n_bk7.index(l.wavelength_nm)))
-            .collect();
+        let points: Vec<_> =
+            crate::lines::ALL.iter().map(|l| (l.wavelength_nm, n_bk7.index(l.wavelength_nm))).collect();
         let table = Table::new(&points).expect("a table");
         for (w, n) in &points {
             assert_eq!(table.value(*w), *n);
         }
         let worst = |from: u32, to: u32| {
-            (from..=to)
-                .map(f64::from)
-                .map(|w| (table.value(w) - n_bk7.index(w)).abs())
-                .fold(0.0, f64::max)
+            (from..=to).map(f64::from).map(|w| (table.value(w) - n_bk7.index(w)).abs()).fold(0.0, f64::max)
         };
         assert!(worst(366, 800) < 3e-6, "{}", worst(366, 800));
         // From s to t the lines lie far apart.
@@ -173,14 +151,8 @@ mod tests {
 
     #[test]
     fn is_monotone_where_the_points_are() {
-        let table = Table::new(&[
-            (400.0, 1.0),
-            (410.0, 1.0),
-            (420.0, 2.0),
-            (430.0, 2.0),
-            (700.0, 2.5),
-        ])
-        .expect("a table");
+        let table =
+            Table::new(&[(400.0, 1.0), (410.0, 1.0), (420.0, 2.0), (430.0, 2.0), (700.0, 2.5)]).expect("a table");
         let mut previous = table.value(400.0);
         for i in 0..=3000 {
             let value = table.value(400.0 + f64::from(i) * 0.1);
@@ -192,17 +164,8 @@ mod tests {
     #[test]
     fn bad_points_are_refused_with_their_row() {
         assert_eq!(Table::new(&[(400.0, 1.5)]), Err(TableError::TooFewPoints));
-        assert_eq!(
-            Table::new(&[(400.0, 1.5), (400.0, 1.6)]),
-            Err(TableError::NotRising { row: 2 })
-        );
-        assert_eq!(
-            Table::new(&[(400.0, 1.5), (500.0, f64::NAN)]),
-            Err(TableError::NotANumber { row: 2 })
-        );
-        assert_eq!(
-            Table::new(&[(0.0, 1.5), (500.0, 1.0)]),
-            Err(TableError::NotANumber { row: 1 })
-        );
+        assert_eq!(Table::new(&[(400.0, 1.5), (400.0, 1.6)]), Err(TableError::NotRising { row: 2 }));
+        assert_eq!(Table::new(&[(400.0, 1.5), (500.0, f64::NAN)]), Err(TableError::NotANumber { row: 2 }));
+        assert_eq!(Table::new(&[(0.0, 1.5), (500.0, 1.0)]), Err(TableError::NotANumber { row: 1 }));
     }
 }
