@@ -127,6 +127,8 @@ impl Importance {
 /// A piecewise constant density over cells of width 1, by its cumulative sums and a guide table.
 struct Cumulative {
     sums: Vec<f32>,
+    /// For each of as many equal parts of [0, 1) the cell that its lower end lies in: a draw starts there.
+    guide: Vec<u16>,
 }
 
 impl Cumulative {
@@ -143,13 +145,25 @@ impl Cumulative {
             sum += if total > 0.0 { w / total } else { 1.0 / weights.len() as f64 };
             sums.push(if i + 1 == weights.len() { 1.0 } else { (sum as f32).min(1.0) });
         }
-        Self { sums }
+        let mut guide = Vec::with_capacity(weights.len());
+        let mut cell = 0;
+        for part in 0..weights.len() {
+            let from = part as f64 / weights.len() as f64;
+            while cell + 1 < weights.len() && f64::from(sums[cell + 1]) <= from {
+                cell += 1;
+            }
+            guide.push(cell as u16); // the sides of a picture have at most 65 535 pixels
+        }
+        Self { sums, guide }
     }
 
     /// A place in [0, cells), and the density there relative to uniform.
     fn draw(&self, u: f64) -> (f64, f64) {
         let cells = self.sums.len() - 1;
-        let cell = self.sums.partition_point(|s| f64::from(*s) <= u).clamp(1, cells) - 1;
+        let mut cell = usize::from(self.guide[((u * cells as f64) as usize).min(cells - 1)]);
+        while cell + 1 < cells && f64::from(self.sums[cell + 1]) <= u {
+            cell += 1;
+        }
         let (a, b) = (f64::from(self.sums[cell]), f64::from(self.sums[cell + 1]));
         let mass = b - a;
         let part = if mass > 0.0 { ((u - a) / mass).clamp(0.0, 1.0) } else { 0.5 };
