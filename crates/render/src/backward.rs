@@ -1,7 +1,7 @@
 //! Backward: each pixel asks, through the rear of the lens, what light arrives.
 
+use crate::error::RenderError;
 use crate::pipeline::{Pipeline, ThreadState};
-use crate::renderer::RenderError;
 use crate::sums::ExactSums;
 use spectra_core::RayBatch;
 use spectra_core::isa::Vectorized;

@@ -1,7 +1,7 @@
 //! Forward: paths from the source, splatted where they land.
 
+use crate::error::RenderError;
 use crate::pipeline::{Pipeline, ThreadState};
-use crate::renderer::RenderError;
 use crate::sums::ExactSums;
 use spectra_core::isa::Vectorized;
 use spectra_core::math::{concentric_disk, polar_disk};

@@ -6,6 +6,7 @@
 
 mod backward;
 mod control;
+mod error;
 mod forward;
 mod pipeline;
 mod renderer;
@@ -13,4 +14,5 @@ mod response;
 mod sums;
 
 pub use control::Control;
-pub use renderer::{RenderError, Renderer, Rendering};
+pub use error::RenderError;
+pub use renderer::{Renderer, Rendering};

@@ -1,6 +1,6 @@
 //! What both directions share: the stages made ready, and one thread's columns.
 
-use crate::renderer::RenderError;
+use crate::error::RenderError;
 use crate::response::Responses;
 use crate::sums::Round;
 use spectra_core::batch::Column;

@@ -225,6 +225,7 @@ mod tests {
    \u{b7}         \u{252c}
    \u{b7}         \u{2570}\u{2500}\u{2500} radius
    \u{2570}\u{2500}\u{2500}\u{2500}\u{2500}
+  help: write a number with its unit, as in `50 mm`
 ";
         assert_eq!(shown, expected);
     }
