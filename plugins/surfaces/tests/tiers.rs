@@ -70,8 +70,15 @@ fn interact(surface: &dyn Surface, travel: Travel, isa: Isa) -> (RayBatch, usize
     let glass = IndexColumns { n: glass.slice(RAYS), inverse: air.slice(RAYS) };
     let air = IndexColumns { n: one.slice(RAYS), inverse: one.slice(RAYS) };
     let (before, after) = if travel == Travel::Forward { (air, glass) } else { (glass, air) };
-    let interface =
-        Interface { number: 3, shift_mm: 1.25, clip_radius2_mm2: 30.0 * 30.0, action: Action::Refract, travel, before, after };
+    let interface = Interface {
+        number: 3,
+        shift_mm: 1.25,
+        clip_radius2_mm2: 30.0 * 30.0,
+        action: Action::Refract,
+        travel,
+        before,
+        after,
+    };
     let mut batch = rays(travel);
     let lost = surface.interact(&mut batch, &interface, isa);
     (batch, lost)
