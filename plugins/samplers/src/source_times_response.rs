@@ -3,7 +3,10 @@
 //! A density that is zero where any channel sees is a bias, so the product is mixed with 5 % of the
 //! summed response of all channels. (A uniform floor over the band would cost ten times as much:
 //! its strata straddle the edges of what a film sees.)
+//!
+//! Lines beside no continuum, or no more channels than one, come out exact; see [`crate::Shares`].
 
+use crate::seen::Seen;
 use crate::{Mixture, Quantiles};
 use spectra_core::registry::SamplerEntry;
 use spectra_core::spectral::SystemResponse;
@@ -16,33 +19,20 @@ const FLOOR: f64 = 0.05;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SourceTimesResponse;
 
+impl SourceTimesResponse {
+    pub(crate) fn density(system: &SystemResponse) -> Result<Mixture, String> {
+        let seen = Seen::of(system)?;
+        let continuum = seen
+            .draws_continuum()
+            .then(|| Quantiles::of(system.grid, &seen.with_floor(&seen.product, seen.of_continuum, FLOOR)))
+            .flatten();
+        seen.mixture(system, continuum)
+    }
+}
+
 impl WavelengthSampler for SourceTimesResponse {
     fn prepare(&self, system: &SystemResponse) -> Result<Box<dyn WavelengthDensity>, String> {
-        let grid = system.grid;
-        let response = system.summed_response();
-        let product: Vec<f64> = system.source.continuum.iter().zip(&response).map(|(s, r)| s.abs() * r).collect();
-        let of_continuum = grid.integrate(&product);
-        let of_response = grid.integrate(&response);
-        if of_response <= 0.0 {
-            return Err("no channel sees anything in the band".to_owned());
-        }
-        let weights: Vec<f64> =
-            system.source.lines.iter().map(|l| l.power.abs() * grid.interpolate(&response, l.wavelength_nm)).collect();
-        let of_lines: f64 = weights.iter().sum();
-        let has_continuum = system.source.continuum.iter().any(|v| *v != 0.0);
-        // A continuum that is seen nowhere is dark, but it may be lit elsewhere on the source: keep it if it is there.
-        let continuum = (has_continuum || of_lines == 0.0)
-            .then(|| {
-                let scale = if of_continuum > 0.0 { (1.0 - FLOOR) / of_continuum } else { 0.0 };
-                let density: Vec<f64> =
-                    product.iter().zip(&response).map(|(p, r)| p * scale + r * FLOOR / of_response).collect();
-                Quantiles::of(grid, &density)
-            })
-            .flatten();
-        let share = (of_lines / (of_lines + of_continuum)).clamp(FLOOR, 1.0 - FLOOR);
-        Mixture::new(&system.source.lines, &weights, share, continuum)
-            .map(|m| Box::new(m) as Box<dyn WavelengthDensity>)
-            .ok_or_else(|| "the imager sees none of the source's light".to_owned())
+        Ok(Box::new(Self::density(system)?))
     }
 }
 

@@ -1,6 +1,6 @@
 //! `kind: uniform`: every wavelength of the band alike; where the source has lines too, they get half.
 
-use crate::{Mixture, Quantiles};
+use crate::{Mixture, Quantiles, Shares};
 use spectra_core::registry::SamplerEntry;
 use spectra_core::spectral::SystemResponse;
 use spectra_core::stage::{WavelengthDensity, WavelengthSampler};
@@ -16,7 +16,7 @@ impl WavelengthSampler for Uniform {
             .then(|| Quantiles::of(system.grid, &vec![1.0; system.grid.count]))
             .flatten();
         let weights = vec![1.0; system.source.lines.len()];
-        Mixture::new(&system.source.lines, &weights, 0.5, continuum)
+        Mixture::new(&system.source.lines, &weights, Shares::WholeStrata, 0.5, continuum)
             .map(|m| Box::new(m) as Box<dyn WavelengthDensity>)
             .ok_or_else(|| "the source emits nothing".to_owned())
     }

@@ -1,0 +1,53 @@
+//! The share of the samples that follows what the channels see, so that no density is zero there.
+
+use crate::Cells;
+use crate::seen::Seen;
+use serde::{Deserialize, Deserializer};
+use spectra_core::params::{Quantity, Ratio, quantity};
+use spectra_core::spectral::Grid;
+
+/// Share of the samples that follow the summed response of all channels, whatever else a strategy
+/// draws: 0 to below 1, as `5 %` or `0.05`.
+///
+/// A density that is zero where any channel sees is a bias. (A uniform floor over the band would cost
+/// ten times as much: its strata straddle the edges of what a film sees.)
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Floor(f64);
+
+impl Floor {
+    /// None: the strategy's own density must reach everything that is seen.
+    pub const NONE: Self = Self(0.0);
+
+    /// A share, if it is 0 or more and below 1.
+    #[must_use]
+    pub fn new(share: f64) -> Option<Self> {
+        (0.0..1.0).contains(&share).then_some(Self(share))
+    }
+
+    /// The share.
+    #[must_use]
+    pub fn share(self) -> f64 {
+        self.0
+    }
+
+    /// The density to draw it from; `None` where the share is 0.
+    pub(crate) fn cells(self, grid: Grid, seen: &Seen) -> Option<Cells> {
+        if self.0 > 0.0 { Cells::of(grid, &seen.response) } else { None }
+    }
+}
+
+impl Default for Floor {
+    /// 1/16: four strata of 64.
+    fn default() -> Self {
+        Self(0.0625)
+    }
+}
+
+impl<'de> Deserialize<'de> for Floor {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let share: Ratio = quantity::deserialize(deserializer)?;
+        Self::new(share.bare()).ok_or_else(|| {
+            serde::de::Error::custom("a floor takes a share of the samples\nhint: 0 or more and below 1, such as 5 %")
+        })
+    }
+}

@@ -1,0 +1,224 @@
+//! `kind: gaussian-terms`: a few signed Gaussian terms, fitted to the source, as the density.
+//!
+//! Two ways to draw from them. Collapsed: the terms without their signs are one density, and a sample weighs one over
+//! it. Term, then wavelength: a term is drawn in proportion to the absolute value of its integral over the band,
+//! the wavelength from it, and the sample keeps the sign of its term; for given wavelengths the mean of the weights
+//! is the same, but where terms cancel they scatter about it, so that it never is the better one. It is there
+//! to be measured. (To follow one term of every factor of a light path is a third way, without a wavelength;
+//! see [`crate::OneTerm`].)
+//!
+//! Neither is biased by what the fit leaves over: the source itself is evaluated at the wavelength.
+
+use crate::seen::Seen;
+use crate::truncated_gaussian::EDGE;
+use crate::{Cells, Continuum, Floor};
+use serde::Deserialize;
+use spectra_core::isa::Isa;
+use spectra_core::params::{Faults, Params};
+use spectra_core::registry::{Context, SamplerEntry};
+use spectra_core::spectral::SystemResponse;
+use spectra_core::stage::{WavelengthDensity, WavelengthSampler};
+use spectra_spectrum::{GaussianMixture, TruncatedGaussian, fit_gaussians};
+
+/// How a wavelength is drawn from signed terms.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Follow {
+    /// From the sum of the terms without their signs.
+    #[default]
+    Collapsed,
+    /// A term, whose sign stays with the sample, then the wavelength from it.
+    TermThenWavelength,
+}
+
+/// Parameters of `kind: gaussian-terms` as written in a scene.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct GaussianTermsParams {
+    /// Number of terms that are fitted to the source's continuum, 1 to 32; 6 if left out.
+    #[serde(default = "usual_terms")]
+    pub terms: u32,
+    /// `collapsed` (the usual) or `term-then-wavelength`.
+    #[serde(default)]
+    pub follow: Follow,
+    /// Share of the samples that follow the summed response of all channels instead; 1/16 if left out.
+    #[serde(default)]
+    pub floor: Floor,
+}
+
+fn usual_terms() -> u32 {
+    6
+}
+
+/// The strategy.
+#[derive(Clone, Debug)]
+pub struct GaussianTerms {
+    terms: Terms,
+    follow: Follow,
+    floor: Floor,
+}
+
+#[derive(Clone, Debug)]
+enum Terms {
+    Fitted(usize),
+    Given(GaussianMixture),
+}
+
+impl GaussianTerms {
+    /// As many terms as stated, fitted to the source when it is known; `None` unless they are 1 to 32.
+    #[must_use]
+    pub fn fitted(terms: usize, follow: Follow, floor: Floor) -> Option<Self> {
+        (1..=32).contains(&terms).then_some(Self { terms: Terms::Fitted(terms), follow, floor })
+    }
+
+    /// Terms that are known.
+    #[must_use]
+    pub fn given(mixture: GaussianMixture, follow: Follow, floor: Floor) -> Self {
+        Self { terms: Terms::Given(mixture), follow, floor }
+    }
+}
+
+impl WavelengthSampler for GaussianTerms {
+    fn prepare(&self, system: &SystemResponse) -> Result<Box<dyn WavelengthDensity>, String> {
+        let seen = Seen::of(system)?;
+        if !seen.draws_continuum() {
+            return Ok(Box::new(seen.mixture::<Signed>(system, None)?));
+        }
+        let grid = system.grid;
+        let fitted;
+        let mixture = match &self.terms {
+            Terms::Given(mixture) => mixture,
+            Terms::Fitted(terms) => {
+                // Where there is no continuum to fit, what is seen of any.
+                let fit_to = if seen.has_continuum { &system.source.continuum } else { &seen.response };
+                fitted = fit_gaussians(&grid, fit_to, *terms).map_err(|e| format!("no terms fit the source: {e}"))?;
+                &fitted.mixture
+            }
+        };
+        let floor = self.floor.cells(grid, &seen).map(|cells| (self.floor.share(), cells));
+        let signed = Signed::new(mixture, self.follow, floor, grid.start_nm, grid.end_nm())?;
+        // A narrow term that takes away takes most at its center.
+        let centers = mixture.terms().iter().map(|t| t.center_nm());
+        let centers = centers.filter(|w| grid.interpolate(&seen.response, *w) > 0.0);
+        if let Some(nm) = seen.wavelengths_nm(&grid).chain(centers).find(|w| !signed.can_draw(*w)) {
+            return Err(format!(
+                "the terms cancel, or are all far away, at {nm} nm, where a channel sees; \
+                 take more terms, a floor, or `follow: collapsed`"
+            ));
+        }
+        Ok(Box::new(seen.mixture(system, Some(signed))?))
+    }
+}
+
+/// A term that can be drawn.
+#[derive(Clone, Debug)]
+struct Term {
+    sign: f64,
+    probability: f64,
+    /// Upper end of its part of [0, 1).
+    upper: f64,
+    gaussian: TruncatedGaussian,
+}
+
+/// Signed terms, and a floor that comes before them in [0, 1).
+#[derive(Clone, Debug)]
+struct Signed {
+    floor: Option<(f64, Cells)>,
+    terms: Vec<Term>,
+    follow: Follow,
+}
+
+impl Signed {
+    fn new(
+        mixture: &GaussianMixture,
+        follow: Follow,
+        floor: Option<(f64, Cells)>,
+        min_nm: f64,
+        max_nm: f64,
+    ) -> Result<Self, String> {
+        let integrals: Vec<f64> = mixture.terms().iter().map(|t| t.band_integral(min_nm, max_nm)).collect();
+        let sum: f64 = integrals.iter().map(|w| w.abs()).sum();
+        if !(sum > 0.0 && sum.is_finite()) {
+            return Err("no Gaussian term reaches the band".to_owned());
+        }
+        let mut upper = floor.as_ref().map_or(0.0, |f| f.0);
+        let rest = 1.0 - upper;
+        let mut terms = Vec::new();
+        for (term, integral) in mixture.terms().iter().zip(&integrals).filter(|(_, w)| **w != 0.0) {
+            let probability = integral.abs() / sum * rest;
+            upper += probability;
+            let gaussian = TruncatedGaussian::new(term.center_nm(), term.sigma_nm(), min_nm, max_nm)
+                .map_err(|e| format!("a Gaussian term cannot be drawn: {e}"))?;
+            terms.push(Term { sign: term.sign(), probability, upper, gaussian });
+        }
+        if let Some(last) = terms.last_mut() {
+            last.upper = 1.0; // the sum may have been rounded below it
+        }
+        Ok(Self { floor, terms, follow })
+    }
+
+    fn of_floor(&self, wavelength_nm: f64) -> f64 {
+        self.floor.as_ref().map_or(0.0, |(share, cells)| share * cells.density_per_nm(wavelength_nm))
+    }
+
+    /// What a sample's weight is one over, but for its sign.
+    fn divisor(&self, wavelength_nm: f64) -> f64 {
+        let term = |t: &Term| {
+            let density = t.probability * t.gaussian.density(wavelength_nm);
+            if self.follow == Follow::Collapsed { density } else { t.sign * density }
+        };
+        self.of_floor(wavelength_nm) + self.terms.iter().map(term).sum::<f64>()
+    }
+
+    /// Whether weights stay in bounds: the density is not as good as 0, and the signed one above a
+    /// hundredth of it.
+    fn can_draw(&self, wavelength_nm: f64) -> bool {
+        let density = self.density_per_nm(wavelength_nm);
+        density > 1e-12 && self.divisor(wavelength_nm) > 0.01 * density
+    }
+}
+
+impl Continuum for Signed {
+    fn draw(&self, u: &[f64], wavelength_nm: &mut [f64], weight: &mut [f64], _isa: Isa) {
+        for ((u, nm), weight) in u.iter().zip(wavelength_nm).zip(weight) {
+            let mut sign = 1.0;
+            match &self.floor {
+                Some((share, cells)) if u < share => *nm = cells.quantile(u / share),
+                _ => {
+                    let at = self.terms.partition_point(|t| t.upper <= *u).min(self.terms.len() - 1);
+                    let term = &self.terms[at];
+                    let part = (u - (term.upper - term.probability)) / term.probability;
+                    *nm = term.gaussian.quantile(part.clamp(EDGE, 1.0 - EDGE));
+                    if self.follow == Follow::TermThenWavelength {
+                        sign = term.sign;
+                    }
+                }
+            }
+            let divisor = self.divisor(*nm);
+            // Where terms cancel nothing is seen, or the strategy would have been refused.
+            *weight *= if divisor == 0.0 { 0.0 } else { sign / divisor };
+        }
+    }
+
+    fn density_per_nm(&self, wavelength_nm: f64) -> f64 {
+        let terms = self.terms.iter().map(|t| t.probability * t.gaussian.density(wavelength_nm));
+        self.of_floor(wavelength_nm) + terms.sum::<f64>()
+    }
+}
+
+fn build(params: &Params, _context: &Context<'_>) -> Result<Box<dyn WavelengthSampler>, Faults> {
+    let GaussianTermsParams { terms, follow, floor } = params.parse()?;
+    let sampler = GaussianTerms::fitted(terms as usize, follow, floor)
+        .ok_or_else(|| params.fault("terms", format!("{terms} is no number of terms")).hint("1 to 32"))?;
+    Ok(Box::new(sampler))
+}
+
+inventory::submit! {
+    SamplerEntry::new(
+        "gaussian-terms",
+        "A few Gaussian terms, fitted to the source.",
+        env!("CARGO_PKG_NAME"),
+        env!("CARGO_PKG_VERSION"),
+        build,
+    )
+}

@@ -1,0 +1,106 @@
+//! `kind: inverse-transform`: any named spectrum as the density, by inverting its integral.
+//!
+//! A share of the samples (see [`Floor`]) follows what the channels see, so that a spectrum that is zero
+//! where one of them sees is no bias; without it, such a spectrum is refused.
+
+use crate::seen::Seen;
+use crate::{Floor, Quantiles};
+use serde::Deserialize;
+use spectra_core::params::{Faults, Params};
+use spectra_core::registry::{Context, SamplerEntry};
+use spectra_core::spectral::{Grid, SystemResponse};
+use spectra_core::stage::{WavelengthDensity, WavelengthSampler};
+use spectra_spectrum::{Found, Observer, find_in};
+
+/// Parameters of `kind: inverse-transform` as written in a scene.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct InverseTransformParams {
+    /// What to draw in proportion to: `x-bar`, `y-bar` or `z-bar` (CIE 1931, 2 degrees), a bundled spectrum such as
+    /// `D65`, a file beside the scene, or an inline one such as `gaussian:550,50`. It needs a continuum.
+    pub spectrum: String,
+    /// Share of the samples that follow the summed response of all channels instead; 1/16 if left out.
+    #[serde(default)]
+    pub floor: Floor,
+}
+
+/// The strategy.
+#[derive(Clone, Debug)]
+pub struct InverseTransform {
+    name: String,
+    grid: Grid,
+    /// On that grid, in any scale.
+    spectrum: Vec<f64>,
+    floor: Floor,
+}
+
+impl InverseTransform {
+    /// A density in proportion to `spectrum`, given on `grid` and called `name` in messages; `None` unless it has a
+    /// value for each point, all finite, none negative and one positive.
+    #[must_use]
+    pub fn new(name: &str, grid: Grid, spectrum: Vec<f64>, floor: Floor) -> Option<Self> {
+        let sound = spectrum.len() == grid.count
+            && spectrum.iter().all(|v| v.is_finite() && *v >= 0.0)
+            && spectrum.iter().any(|v| *v > 0.0);
+        sound.then(|| Self { name: name.to_owned(), grid, spectrum, floor })
+    }
+}
+
+impl WavelengthSampler for InverseTransform {
+    fn prepare(&self, system: &SystemResponse) -> Result<Box<dyn WavelengthDensity>, String> {
+        let seen = Seen::of(system)?;
+        let grid = system.grid;
+        let resampled = (grid != self.grid)
+            .then(|| grid.wavelengths_nm().map(|w| self.grid.interpolate(&self.spectrum, w)).collect::<Vec<_>>());
+        let spectrum = resampled.as_ref().unwrap_or(&self.spectrum);
+        if self.floor == Floor::NONE {
+            let blind = |i: &usize| {
+                let either = |of: &[f64]| of[*i] > 0.0 || of[*i + 1] > 0.0;
+                either(&seen.response) && !either(spectrum)
+            };
+            if let Some(i) = (0..grid.count - 1).find(blind) {
+                return Err(format!(
+                    "`{}` is zero at {} nm, where a channel sees: never drawn, that light would be missing; \
+                     give it a floor",
+                    self.name,
+                    grid.wavelength_nm(i)
+                ));
+            }
+        }
+        let shape = seen.with_floor(spectrum, grid.integrate(spectrum), self.floor.share());
+        let continuum = seen.draws_continuum().then(|| Quantiles::of(grid, &shape)).flatten();
+        Ok(Box::new(seen.mixture(system, continuum)?))
+    }
+}
+
+fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn WavelengthSampler>, Faults> {
+    let InverseTransformParams { spectrum: name, floor } = params.parse()?;
+    let grid = context.grid;
+    let fault = |text: String| params.fault("spectrum", text);
+    let spectrum = match ["x-bar", "y-bar", "z-bar"].iter().position(|n| *n == name.trim().to_ascii_lowercase()) {
+        Some(i) => Observer::cie_1931_2deg().on_grid(&grid)[i].clone(),
+        None => match find_in(&name, context.resources).map_err(|e| fault(e.to_string()))? {
+            Found::Emission(light) if light.continuum().is_none() => {
+                let text = format!("`{name}` has lines only, which are no density over wavelengths");
+                return Err(fault(text).hint("`kind: lines` draws the source's lines").into());
+            }
+            Found::Emission(light) => light.on_grid(&grid),
+            Found::Transmittance(filter) => filter.on_grid(&grid),
+            Found::Reflectance(surface) => surface.on_grid(&grid),
+            Found::Sensitivity(detector) => detector.on_grid(&grid),
+        },
+    };
+    let sampler = InverseTransform::new(&name, grid, spectrum, floor)
+        .ok_or_else(|| fault(format!("`{name}` has nothing in the band")))?;
+    Ok(Box::new(sampler))
+}
+
+inventory::submit! {
+    SamplerEntry::new(
+        "inverse-transform",
+        "In proportion to any named spectrum.",
+        env!("CARGO_PKG_NAME"),
+        env!("CARGO_PKG_VERSION"),
+        build,
+    )
+}

@@ -1,0 +1,118 @@
+//! Widths and centers beyond reason, blind spots, and what is refused.
+
+use crate::world::{draw, estimate, exact, light, ortho_plus, system, xyz, y_bar};
+use spectra_core::isa::Isa;
+use spectra_core::numbers::Numbers;
+use spectra_core::spectral::{BAND, SpectralPower};
+use spectra_core::stage::WavelengthSampler;
+use spectra_plugin_samplers::{
+    Floor, Follow, GaussianTerms, InverseTransform, Lines, SourceTimesResponse, Stratified, TruncatedGaussianSampler,
+    Uniform,
+};
+use spectra_spectrum::{GaussianMixture, GaussianTerm};
+
+fn numbers() -> Vec<f64> {
+    let mut u = vec![0.0; 1024];
+    Numbers::sobol(1).fill(Isa::detect(), 0, 0, 0, &mut u);
+    u.extend([0.0, 1e-300, 1e-16, 0.0625, 0.0625_f64.next_down(), 0.5, 1.0 - 0.5 * f64::EPSILON]);
+    u
+}
+
+/// Widths from 0.01 to 10 000 nm, centers far outside of the band, and the ends of [0, 1).
+#[test]
+fn no_weight_is_infinite_or_nan() {
+    for channels in [xyz(), ortho_plus()] {
+        let system = system(light("D65"), channels);
+        for center in [1e-3, 100.0, 349.0, 350.0, 425.3, 550.0, 830.0, 2000.0, 1e6] {
+            for sigma in [0.01, 0.5, 20.0, 300.0, 10_000.0] {
+                let term = GaussianTerm::new(1.0, center, sigma).expect("in range");
+                let gaussian = TruncatedGaussianSampler::new(center, sigma, Floor::default()).expect("in range");
+                let terms = GaussianTerms::given(GaussianMixture::new(vec![term]), Follow::Collapsed, Floor::default());
+                for (name, sampler) in [("gaussian", &gaussian as &dyn WavelengthSampler), ("terms", &terms)] {
+                    let density = match sampler.prepare(&system) {
+                        Ok(density) => density,
+                        // A term without any share of the band within reach of numbers is refused, with its reason.
+                        Err(text) => {
+                            assert!(name == "terms" && text.contains("no Gaussian term reaches"), "{name}: {text}");
+                            continue;
+                        }
+                    };
+                    let draws = draw(density.as_ref(), &numbers());
+                    for (nm, weight) in draws.wavelength_nm.iter().zip(&draws.weight) {
+                        assert!((350.0..=830.0).contains(nm), "{name} {center} {sigma}: {nm}");
+                        assert!(*weight > 0.0 && weight.is_finite(), "{name} {center} {sigma}: {weight} at {nm}");
+                    }
+                    assert!(estimate(&system, &draws).iter().all(|e| e.is_finite() && *e > 0.0));
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn ends_of_the_numbers_stay_in_the_band() {
+    let stratified = Stratified::new(7).expect("in range");
+    let all: [&dyn WavelengthSampler; 4] = [&SourceTimesResponse, &Uniform, &stratified, &y_bar(Floor::default())];
+    for source in [light("D65"), light("mercury"), crate::world::mixed()] {
+        let system = system(source, xyz());
+        for sampler in all {
+            let draws = draw(sampler.prepare(&system).expect("can be sampled").as_ref(), &numbers());
+            assert!(draws.wavelength_nm.iter().all(|w| (350.0..=830.0).contains(w)));
+            assert!(draws.weight.iter().all(|w| *w > 0.0 && w.is_finite()));
+        }
+    }
+}
+
+/// What would be a bias is refused, and says where.
+#[test]
+fn blind_densities_are_refused() {
+    let daylight = system(light("D65"), xyz());
+    let green: Vec<f64> = BAND.wavelengths_nm().map(|w| f64::from((500.0..=600.0).contains(&w))).collect();
+    let blind = InverseTransform::new("green", BAND, green.clone(), Floor::NONE).expect("sound");
+    let text = blind.prepare(&daylight).err().expect("refused");
+    assert!(text.contains("`green` is zero at 350 nm"), "{text}");
+    let mixed = InverseTransform::new("green", BAND, green, Floor::default()).expect("sound");
+    assert!(mixed.prepare(&daylight).is_ok());
+    assert!(y_bar(Floor::NONE).prepare(&daylight).is_ok());
+    let narrow = TruncatedGaussianSampler::new(550.0, 5.0, Floor::NONE).expect("in range");
+    assert!(narrow.prepare(&daylight).err().expect("refused").contains("give it a floor"));
+    let wide = TruncatedGaussianSampler::new(550.0, 100.0, Floor::NONE).expect("in range");
+    assert!(wide.prepare(&daylight).is_ok());
+    // 1 - 1.2 exp(...) is below 0 around 520 nm.
+    let cancel = |peak| {
+        GaussianMixture::new(vec![
+            GaussianTerm::new(1.0, 560.0, 300.0).expect("in range"),
+            GaussianTerm::new(peak, 520.0, 25.0).expect("in range"),
+        ])
+    };
+    let signed = |peak, follow| GaussianTerms::given(cancel(peak), follow, Floor::NONE);
+    assert!(signed(-1.2, Follow::TermThenWavelength).prepare(&daylight).err().expect("refused").contains("cancel"));
+    assert!(signed(-1.2, Follow::Collapsed).prepare(&daylight).is_ok());
+    assert!(signed(-0.6, Follow::TermThenWavelength).prepare(&daylight).is_ok());
+    assert!(Lines.prepare(&daylight).is_err());
+}
+
+#[test]
+fn parameters_out_of_range_are_refused() {
+    assert!(Floor::new(1.0).is_none() && Floor::new(-0.1).is_none() && Floor::new(f64::NAN).is_none());
+    assert!(Stratified::new(0).is_none() && Stratified::new(100_000).is_none());
+    assert!(TruncatedGaussianSampler::new(550.0, 0.0, Floor::default()).is_err());
+    assert!(TruncatedGaussianSampler::new(f64::NAN, 1.0, Floor::default()).is_err());
+    assert!(GaussianTerms::fitted(0, Follow::Collapsed, Floor::default()).is_none());
+    assert!(InverseTransform::new("x", BAND, vec![0.0; BAND.count], Floor::default()).is_none());
+    assert!(InverseTransform::new("x", BAND, vec![-1.0; BAND.count], Floor::default()).is_none());
+    assert!(InverseTransform::new("x", BAND, vec![1.0; 3], Floor::default()).is_none());
+}
+
+/// A source that is dark as a whole may be lit in places: its density follows what is seen.
+#[test]
+fn darkness_can_be_sampled() {
+    let dark = system(SpectralPower::dark(BAND), xyz());
+    for sampler in [&SourceTimesResponse as &dyn WavelengthSampler, &Uniform, &y_bar(Floor::default())] {
+        let density = sampler.prepare(&dark).expect("can be sampled");
+        assert_eq!(estimate(&dark, &draw(density.as_ref(), &numbers())), exact(&dark));
+    }
+    let mut blind = xyz();
+    blind.iter_mut().for_each(|c| c.response.fill(0.0));
+    assert!(SourceTimesResponse.prepare(&system(light("D65"), blind)).is_err());
+}
