@@ -5,6 +5,7 @@
 //! said about it (progress, warnings, errors) to standard error.
 
 mod arguments;
+mod bench;
 mod check;
 mod console;
 mod lens;
@@ -13,6 +14,7 @@ mod list;
 mod outcome;
 mod quantity;
 mod run;
+mod spectrum;
 mod version;
 mod words;
 
@@ -56,6 +58,8 @@ fn dispatch(arguments: &Arguments, started: Instant) -> Outcome {
         Some(Command::Check(check)) => check::check(check, isa),
         Some(Command::List(list)) => list::list(list),
         Some(Command::Lens(lens)) => lens::lens(&lens.command, isa),
+        Some(Command::Bench(bench)) => bench::bench(bench, isa),
+        Some(Command::Spectrum(spectrum)) => spectrum::spectrum(&spectrum.command),
         // The parser shows help where neither a command nor a flag stands.
         None => Ok(outcome::DONE),
     }

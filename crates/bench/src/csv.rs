@@ -1,0 +1,45 @@
+//! The report as a table for a spreadsheet.
+
+use crate::report::Report;
+
+/// CSV (RFC 4180, lines end with LF), one row a strategy, measure, kind of numbers and number of samples. Errors are
+/// relative; `bias_*` are those of the channel that is furthest off in standard errors; empty where there is nothing
+/// to say.
+#[must_use]
+pub fn csv(report: &Report) -> String {
+    let mut text = String::from(
+        "measure,numbers,strategy,samples,seeds,relative_rms_error,error_low,error_high,slope,slope_low,slope_high,\
+         ns_a_sample,seconds,bias_channel,bias_relative,bias_standard_errors,ciede2000\n",
+    );
+    for series in &report.series {
+        let slope = series.slope.map_or(",,".to_owned(), |s| format!("{},{},{}", s.value, s.low, s.high));
+        for point in &series.points {
+            let worst = point.bias.iter().max_by(|a, b| a.standard_errors.abs().total_cmp(&b.standard_errors.abs()));
+            let bias = worst
+                .map_or(",,".to_owned(), |b| format!("{},{},{}", quoted(&b.channel), b.relative, b.standard_errors));
+            let color = point.ciede2000.map_or(String::new(), |d| d.to_string());
+            text.push_str(&format!(
+                "{},{},{},{},{},{},{},{},{slope},{},{},{bias},{color}\n",
+                series.measure.name(),
+                series.numbers.name(),
+                quoted(&series.strategy),
+                point.samples,
+                series.seeds,
+                point.error.value,
+                point.error.low,
+                point.error.high,
+                series.ns_a_sample,
+                point.seconds,
+            ));
+        }
+    }
+    text
+}
+
+fn quoted(field: &str) -> String {
+    if field.contains([',', '"', '\n', '\r']) {
+        format!("\"{}\"", field.replace('"', "\"\""))
+    } else {
+        field.to_owned()
+    }
+}

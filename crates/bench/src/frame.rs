@@ -1,0 +1,130 @@
+//! The scene as it is rendered: every pixel against a reference.
+
+use crate::BenchError;
+use crate::colors::White;
+use crate::integral::Measured;
+use crate::statistics::mean_and_variance_of_mean;
+use spectra_core::Isa;
+use spectra_core::frame::ExposureFrame;
+use spectra_render::{Control, Renderer};
+use spectra_scene::Scene;
+use std::time::Instant;
+
+/// Renders of the reference.
+pub(crate) const RENDERS: u32 = 8;
+
+/// One render of `samples` samples a pixel, and the seconds that its light took.
+pub(crate) fn render(
+    scene: &mut Scene,
+    strategy: &str,
+    samples: u32,
+    seed: u64,
+    threads: usize,
+    isa: Isa,
+) -> Result<(ExposureFrame, f64), BenchError> {
+    scene.render.samples = samples;
+    scene.render.rays = u64::from(samples) * scene.imager.size().pixels() as u64;
+    scene.render.seed = seed;
+    let failed = |error| BenchError::Render { strategy: strategy.to_owned(), error };
+    let renderer = Renderer::new(scene, isa).map_err(failed)?;
+    let begun = Instant::now();
+    let rendering = renderer.run(threads, &Control::new()).map_err(failed)?;
+    Ok((rendering.exposure, begun.elapsed().as_secs_f64()))
+}
+
+/// The mean of some renders, and how well it is known.
+#[derive(Debug)]
+pub(crate) struct Truth {
+    /// Exposure of each pixel, each channel.
+    planes: Vec<Vec<f64>>,
+    /// Sum over pixels of the squared exposure, each channel.
+    power: Vec<f64>,
+    /// Sum over pixels of the variance of the mean, each channel.
+    variance: Vec<f64>,
+    /// Sum over pixels, each channel, and the relative variance of it.
+    totals: Vec<f64>,
+    total_variance: Vec<f64>,
+}
+
+impl Truth {
+    /// From renders of other seeds; two at least.
+    pub(crate) fn of(renders: &[ExposureFrame]) -> Self {
+        let channels = renders[0].channels.len();
+        let many = renders.len() as f64;
+        let mut truth = Self {
+            planes: Vec::new(),
+            power: vec![0.0; channels],
+            variance: vec![0.0; channels],
+            totals: vec![0.0; channels],
+            total_variance: vec![0.0; channels],
+        };
+        for channel in 0..channels {
+            let values = |pixel: usize| renders.iter().map(move |r| f64::from(r.channels[channel].values[pixel]));
+            let plane: Vec<f64> = (0..renders[0].size.pixels()).map(|p| values(p).sum::<f64>() / many).collect();
+            truth.power[channel] = plane.iter().map(|v| v * v).sum();
+            let scatter: f64 =
+                plane.iter().enumerate().map(|(p, m)| values(p).map(|v| (v - m) * (v - m)).sum::<f64>()).sum();
+            truth.variance[channel] = scatter / (many * (many - 1.0));
+            let totals: Vec<f64> = renders.iter().map(|r| total(r, channel)).collect();
+            let (mean, variance) = mean_and_variance_of_mean(&totals);
+            truth.totals[channel] = mean;
+            truth.total_variance[channel] = if mean == 0.0 { 0.0 } else { variance / (mean * mean) };
+            truth.planes.push(plane);
+        }
+        truth
+    }
+
+    /// Channels that recorded any light.
+    pub(crate) fn seen(&self) -> Vec<usize> {
+        (0..self.planes.len()).filter(|c| self.power[*c] > 0.0 && self.totals[*c] != 0.0).collect()
+    }
+
+    /// Relative RMS error of the truth itself over those channels.
+    pub(crate) fn error(&self, seen: &[usize]) -> f64 {
+        (seen.iter().map(|c| self.variance[*c] / self.power[*c]).sum::<f64>() / seen.len() as f64).sqrt()
+    }
+
+    /// Compares renders of one strategy. `light` is the color of the source, where the channels `xyz` are X, Y, Z.
+    pub(crate) fn compare(
+        &self,
+        renders: &[ExposureFrame],
+        seen: &[usize],
+        xyz: Option<([usize; 3], [f64; 3])>,
+    ) -> Measured {
+        let squared = |render: &ExposureFrame| {
+            let of = |c: &usize| {
+                let pairs = self.planes[*c].iter().zip(&render.channels[*c].values);
+                let sum: f64 = pairs.map(|(a, b)| (f64::from(*b) - a) * (f64::from(*b) - a)).sum();
+                // Render and truth are independent: their squared difference holds the variance of both.
+                (sum - self.variance[*c]) / self.power[*c]
+            };
+            seen.iter().map(of).sum::<f64>() / seen.len() as f64
+        };
+        let relative = |c: &usize| renders.iter().map(|r| total(r, *c) / self.totals[*c] - 1.0).collect();
+        Measured {
+            squared: renders.iter().map(squared).collect(),
+            relative: seen.iter().map(relative).collect(),
+            truth_variance: seen.iter().map(|c| self.total_variance[*c]).collect(),
+            seconds: f64::INFINITY,
+            ciede2000: xyz.and_then(|(channels, light)| self.differences(renders, channels, light)),
+        }
+    }
+
+    fn differences(&self, renders: &[ExposureFrame], channels: [usize; 3], light: [f64; 3]) -> Option<f64> {
+        let lightest = self.planes[channels[1]].iter().fold(0.0_f64, |a, b| a.max(*b));
+        let white = White::new(light, lightest)?;
+        let pixels = self.planes[channels[1]].len();
+        let of = |r: &ExposureFrame| {
+            let one = |p: usize| {
+                let seen = channels.map(|c| f64::from(r.channels[c].values[p]));
+                white.difference(seen, channels.map(|c| self.planes[c][p]))
+            };
+            (0..pixels).map(one).sum::<f64>() / pixels as f64
+        };
+        Some(renders.iter().map(of).sum::<f64>() / renders.len() as f64)
+    }
+}
+
+fn total(render: &ExposureFrame, channel: usize) -> f64 {
+    render.channels[channel].values.iter().map(|v| f64::from(*v)).sum()
+}

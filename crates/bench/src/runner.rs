@@ -1,0 +1,312 @@
+//! The benchmark: every strategy, every number of samples, every seed.
+
+use crate::frame::{RENDERS, Truth, render};
+use crate::integral::{Draws, Measured, exact, measure};
+use crate::report::{ChannelBias, LeftOut, Measure, NumberKind, Point, Reference, Report, Series};
+use crate::statistics::{fit, in_standard_errors, mean_and_variance_of_mean};
+use crate::strategy::{Said, Strategy, all, resolve};
+use crate::{BenchError, colors};
+use spectra_core::Isa;
+use spectra_core::spectral::SystemResponse;
+use spectra_core::stage::{WavelengthDensity, WavelengthSampler};
+use spectra_scene::{Direction, Scene};
+use std::path::Path;
+use std::sync::Arc;
+
+/// How a benchmark is run.
+#[derive(Clone, Debug)]
+pub struct Settings {
+    /// Seeds of each render, 2 at least.
+    pub seeds: usize,
+    /// Seeds of each integral, 2 at least: it is so much quicker than a render that it can have many more.
+    pub integral_seeds: usize,
+    /// Numbers of samples, each from 1 to 2^20; powers of two keep Sobol points even.
+    pub samples: Vec<u32>,
+    /// Strategies to compare, the first of which the others are related to; all registered ones if empty.
+    pub strategies: Vec<Strategy>,
+    /// Whether the scene is rendered too, or the integral measured alone.
+    pub render: bool,
+    /// Threads to render on.
+    pub threads: usize,
+    /// Instruction set.
+    pub isa: Isa,
+}
+
+/// Most samples.
+const MOST: u32 = 1 << 20;
+
+/// Between the seeds of one number of samples and the next, so that none is used twice.
+const SEED_STRIDE: u64 = 1 << 32;
+
+/// Measures the strategies on a scene file with `overrides` (texts `path=value`). `tell` is given a line on what is
+/// being measured, now and then.
+///
+/// # Errors
+/// [`BenchError`].
+pub fn bench(
+    path: &Path,
+    overrides: &[String],
+    settings: &Settings,
+    tell: &mut dyn FnMut(&str),
+) -> Result<Report, BenchError> {
+    let samples = checked(settings)?;
+    let scene = spectra_scene::load(path, overrides)?;
+    let mut run = Run::prepare(&scene, path, overrides, settings, samples)?;
+    let mut series = Vec::new();
+    let own = if scene.render.stratified { NumberKind::Sobol } else { NumberKind::Random };
+    let other = if scene.render.stratified { NumberKind::Random } else { NumberKind::Sobol };
+    for kind in [own, other] {
+        tell(&format!("{}: spectral integral, {} numbers", scene.name, kind.name()));
+        related(&mut series, run.entrants.iter().map(|e| run.integral(e, kind)));
+    }
+    let mut reference = None;
+    if settings.render {
+        reference = Some(run.scene(own, &mut series, tell)?);
+    }
+    let size = scene.imager.size();
+    Ok(Report {
+        scene: scene.name.clone(),
+        source: scene.source.describe(),
+        lens: scene.lens.name.clone(),
+        channels: scene.channels.iter().map(|c| c.name.clone()).collect(),
+        width_px: size.width_px,
+        height_px: size.height_px,
+        direction: if scene.render.direction == Direction::Forward { "forward" } else { "backward" },
+        threads: settings.threads,
+        isa: settings.isa.name(),
+        intervals: "95 %, percentiles of 1000 bootstrap resamples of the seeds",
+        reference,
+        series,
+        left_out: run.left_out,
+    })
+}
+
+/// Numbers of samples, rising, each once.
+fn checked(settings: &Settings) -> Result<Vec<u32>, BenchError> {
+    let mut samples = settings.samples.clone();
+    samples.sort_unstable();
+    samples.dedup();
+    if samples.is_empty() || samples.iter().any(|n| !(1..=MOST).contains(n)) {
+        return Err(BenchError::Settings("samples: one number at least, each from 1 to 1048576"));
+    }
+    if settings.seeds < 2 || settings.integral_seeds < 2 {
+        return Err(BenchError::Settings("seeds: 2 at least, or there is no scatter to judge by"));
+    }
+    Ok(samples)
+}
+
+/// A strategy, fitted.
+struct Entrant {
+    strategy: Strategy,
+    scene: Scene,
+    density: Shared,
+}
+
+/// A strategy that was fitted once for all renders of the scene: a fit of Gaussian terms takes longer than a small
+/// render.
+#[derive(Clone)]
+struct Shared(Arc<dyn WavelengthDensity>);
+
+impl WavelengthSampler for Shared {
+    fn prepare(&self, _system: &SystemResponse) -> Result<Box<dyn WavelengthDensity>, String> {
+        Ok(Box::new(self.clone()))
+    }
+}
+
+impl WavelengthDensity for Shared {
+    fn draw(&self, u: &[f64], wavelength_nm: &mut [f64], line: &mut [u32], weight: &mut [f64], isa: Isa) {
+        self.0.draw(u, wavelength_nm, line, weight, isa);
+    }
+
+    fn density_per_nm(&self, wavelength_nm: f64) -> f64 {
+        self.0.density_per_nm(wavelength_nm)
+    }
+
+    fn line_probability(&self, line: usize) -> f64 {
+        self.0.line_probability(line)
+    }
+}
+
+struct Run<'a> {
+    settings: &'a Settings,
+    samples: Vec<u32>,
+    system: SystemResponse,
+    /// Channels that see any of the light.
+    seen: Vec<usize>,
+    names: Vec<String>,
+    first_seed: u64,
+    entrants: Vec<Entrant>,
+    left_out: Vec<LeftOut>,
+}
+
+impl<'a> Run<'a> {
+    fn prepare(
+        scene: &Scene,
+        path: &Path,
+        overrides: &[String],
+        settings: &'a Settings,
+        samples: Vec<u32>,
+    ) -> Result<Self, BenchError> {
+        let (source, channels) = (scene.source.spectrum().clone(), scene.channels.clone());
+        let system = SystemResponse { grid: scene.grid, source, channels };
+        let exact = exact(&system);
+        let seen: Vec<usize> = (0..exact.len()).filter(|c| exact[*c] != 0.0).collect();
+        if seen.is_empty() {
+            return Err(BenchError::Dark);
+        }
+        let names = scene.channels.iter().map(|c| c.name.clone()).collect();
+        let first_seed = scene.render.seed;
+        let said = Said::by(scene, overrides)?;
+        let wanted = if settings.strategies.is_empty() { all() } else { settings.strategies.clone() };
+        let (mut entrants, mut left_out) = (Vec::new(), Vec::new());
+        for strategy in &wanted {
+            let (strategy, replacement) = resolve(strategy, &said, scene, &system);
+            let overrides: Vec<String> = overrides.iter().cloned().chain(replacement).collect();
+            let mut scene = match spectra_scene::load(path, &overrides) {
+                Ok(scene) => scene,
+                // Nobody asked for it by name: what it lacks is worth a word, not an end.
+                Err(faults) if settings.strategies.is_empty() => {
+                    left_out.push(LeftOut { strategy: strategy.label(), reason: faults.to_string() });
+                    continue;
+                }
+                Err(faults) => return Err(faults.into()),
+            };
+            match scene.sampler.prepare(&system) {
+                Ok(density) => {
+                    let density = Shared(density.into());
+                    scene.sampler = Box::new(density.clone());
+                    entrants.push(Entrant { strategy, scene, density });
+                }
+                Err(reason) => left_out.push(LeftOut { strategy: strategy.label(), reason }),
+            }
+        }
+        if entrants.is_empty() {
+            let why: Vec<String> = left_out.iter().map(|l| format!("{}: {}", l.strategy, l.reason)).collect();
+            return Err(BenchError::NoneLeft(why.join("; ")));
+        }
+        Ok(Self { settings, samples, system, seen, names, first_seed, entrants, left_out })
+    }
+
+    /// First seed of the `at`-th number of samples: none is shared with another, so that errors are independent.
+    fn seed(&self, at: usize) -> u64 {
+        self.first_seed.wrapping_add((at as u64 + 1).wrapping_mul(SEED_STRIDE))
+    }
+
+    fn integral(&self, entrant: &Entrant, kind: NumberKind) -> Series {
+        let xyz = colors::xyz_channels(&self.names);
+        let draws = |(at, samples): (usize, &u32)| {
+            let seeds = self.settings.integral_seeds;
+            Draws { kind, samples: *samples, seeds, first_seed: self.seed(at) }
+        };
+        let one = |draws| measure(&self.system, &entrant.density, &self.seen, xyz, draws, self.settings.isa);
+        let measured: Vec<Measured> = self.samples.iter().enumerate().map(draws).map(one).collect();
+        self.series(entrant, Measure::Integral, kind, &self.seen, &measured, 1.0)
+    }
+
+    /// Renders the scene by all strategies, and the reference that they are compared with.
+    fn scene(
+        &mut self,
+        kind: NumberKind,
+        series: &mut Vec<Series>,
+        tell: &mut dyn FnMut(&str),
+    ) -> Result<Reference, BenchError> {
+        let Settings { threads, isa, seeds, .. } = *self.settings;
+        let most = self.samples[self.samples.len() - 1];
+        // Of all strategies the one that scenes take by themselves; else the first that was asked for.
+        let label = self.entrants[0].strategy.label();
+        let many = most.saturating_mul(2);
+        tell(&format!("reference: {RENDERS} renders of {many} samples a pixel by {label}"));
+        let (first_seed, scene) = (self.first_seed, &mut self.entrants[0].scene);
+        let renders: Result<Vec<_>, BenchError> = (0..u64::from(RENDERS))
+            .map(|r| render(scene, &label, many, first_seed.wrapping_add(r), threads, isa).map(|r| r.0))
+            .collect();
+        let truth = Truth::of(&renders?);
+        let seen = truth.seen();
+        if seen.is_empty() {
+            return Err(BenchError::Dark);
+        }
+        let xyz = colors::xyz_channels(&self.names)
+            .map(|c| (c, c.map(|c| self.system.source.seen_by(&self.system.channels[c].response))));
+        let pixels = self.entrants[0].scene.imager.size().pixels() as f64;
+        let mut all = Vec::new();
+        for entrant in 0..self.entrants.len() {
+            let label = self.entrants[entrant].strategy.label();
+            tell(&format!("scene, {label}"));
+            let mut measured = Vec::new();
+            for (at, samples) in self.samples.clone().iter().enumerate() {
+                let first_seed = self.seed(at);
+                let scene = &mut self.entrants[entrant].scene;
+                let (mut frames, mut seconds) = (Vec::with_capacity(seeds), f64::INFINITY);
+                for seed in 0..seeds as u64 {
+                    let seed = first_seed.wrapping_add(seed);
+                    let (frame, time) = render(scene, &label, *samples, seed, threads, isa)?;
+                    frames.push(frame);
+                    seconds = seconds.min(time);
+                }
+                measured.push(Measured { seconds, ..truth.compare(&frames, &seen, xyz) });
+            }
+            all.push(self.series(&self.entrants[entrant], Measure::Scene, kind, &seen, &measured, pixels));
+        }
+        related(series, all.into_iter());
+        Ok(Reference { strategy: label, renders: RENDERS, samples: many, error: truth.error(&seen) })
+    }
+
+    /// `pixels` share each sample.
+    fn series(
+        &self,
+        entrant: &Entrant,
+        measure: Measure,
+        numbers: NumberKind,
+        seen: &[usize],
+        measured: &[Measured],
+        pixels: f64,
+    ) -> Series {
+        let squared: Vec<Vec<f64>> = measured.iter().map(|m| m.squared.clone()).collect();
+        let fitted = fit(&self.samples, &squared);
+        let most = f64::from(self.samples[self.samples.len() - 1]);
+        let seconds_a_sample = measured[measured.len() - 1].seconds / (most * pixels);
+        let point = |at: usize| Point {
+            samples: self.samples[at],
+            error: fitted.errors[at],
+            seconds: seconds_a_sample * f64::from(self.samples[at]) * pixels,
+            bias: seen.iter().enumerate().map(|(i, c)| bias(&self.names[*c], &measured[at], i)).collect(),
+            ciede2000: measured[at].ciede2000,
+        };
+        Series {
+            strategy: entrant.strategy.label(),
+            measure,
+            numbers,
+            seeds: squared[0].len(),
+            slope: fitted.slope,
+            ns_a_sample: 1e9 * seconds_a_sample,
+            ratio_at_equal_samples: None,
+            ratio_at_equal_time: None,
+            points: (0..measured.len()).map(point).collect(),
+        }
+    }
+}
+
+fn bias(channel: &str, measured: &Measured, at: usize) -> ChannelBias {
+    let (relative, variance) = mean_and_variance_of_mean(&measured.relative[at]);
+    let standard_errors = in_standard_errors(relative, variance + measured.truth_variance[at]);
+    ChannelBias { channel: channel.to_owned(), relative, standard_errors }
+}
+
+/// Relates each series to the first of them, and adds them to the others.
+fn related(to: &mut Vec<Series>, series: impl Iterator<Item = Series>) {
+    let mut first: Option<(f64, f64)> = None;
+    for mut one in series {
+        let error = one.points.last().map_or(0.0, |p| p.error.value);
+        let (base, base_ns) = *first.get_or_insert((error, one.ns_a_sample));
+        if base > crate::statistics::ROUNDING {
+            let ratio = error / base;
+            one.ratio_at_equal_samples = Some(ratio);
+            // In the time of the first, base_ns / ns times as many samples are drawn.
+            one.ratio_at_equal_time = one
+                .slope
+                .map(|slope| ratio * libm::pow(base_ns / one.ns_a_sample, slope.value))
+                .filter(|r| r.is_finite());
+        }
+        to.push(one);
+    }
+}

@@ -1,0 +1,218 @@
+//! Which strategies are compared, and with which parameters.
+
+use crate::BenchError;
+use spectra_core::params::nearest;
+use spectra_core::registry::{SamplerEntry, Stage};
+use spectra_core::spectral::{BAND, SystemResponse};
+use spectra_core::stage::WavelengthSampler;
+use spectra_scene::{Scene, yaml};
+
+/// A strategy as written: a `kind` of the `wavelengths` section, and its other keys.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Strategy {
+    /// Its kind.
+    pub kind: String,
+    /// The other keys, as a YAML map has them between its braces; `None` for those of the scene, or the usual ones.
+    pub keys: Option<String>,
+}
+
+impl Strategy {
+    /// Its name in tables.
+    #[must_use]
+    pub fn label(&self) -> String {
+        match &self.keys {
+            Some(keys) => format!("{} {{{keys}}}", self.kind),
+            None => self.kind.clone(),
+        }
+    }
+}
+
+/// Reads strategies, separated by commas: `uniform, truncated-gaussian{center: 550, sigma: 60}`.
+///
+/// # Errors
+/// [`BenchError::Strategy`]: braces that do not match, a name that is not registered, one that comes twice.
+pub fn parse_list(text: &str) -> Result<Vec<Strategy>, BenchError> {
+    let names = registered();
+    let mut found: Vec<Strategy> = Vec::new();
+    for part in split(text)? {
+        let (kind, keys) = match part.split_once('{') {
+            Some((kind, keys)) => {
+                let keys = keys
+                    .trim_end()
+                    .strip_suffix('}')
+                    .ok_or_else(|| BenchError::Strategy(format!("`{part}`: write NAME, or NAME{{key: value, ...}}")))?;
+                (kind.trim(), Some(keys.trim()).filter(|k| !k.is_empty()))
+            }
+            None => (part.trim(), None),
+        };
+        if !names.contains(&kind) {
+            let near = nearest(kind, names.iter().copied());
+            let near = near.map_or(String::new(), |n| format!("did you mean `{n}`? "));
+            return Err(BenchError::Strategy(format!("unknown strategy `{kind}`; {near}Known: {}", names.join(", "))));
+        }
+        let strategy = Strategy { kind: kind.to_owned(), keys: keys.map(str::to_owned) };
+        if found.contains(&strategy) {
+            return Err(BenchError::Strategy(format!("`{}` comes twice", strategy.label())));
+        }
+        found.push(strategy);
+    }
+    Ok(found)
+}
+
+/// Parts between the commas that stand in no braces, brackets or quotes.
+fn split(text: &str) -> Result<Vec<&str>, BenchError> {
+    let (mut parts, mut depth, mut quote, mut from) = (Vec::new(), 0_i32, None, 0);
+    for (at, c) in text.char_indices() {
+        match (quote, c) {
+            (Some(q), _) if c == q => quote = None,
+            (Some(_), _) => {}
+            (None, '"') => quote = Some(c),
+            (None, '{' | '[') => depth += 1,
+            (None, '}' | ']') => depth -= 1,
+            (None, ',') if depth == 0 => {
+                parts.push(&text[from..at]);
+                from = at + 1;
+            }
+            _ => {}
+        }
+    }
+    if depth != 0 || quote.is_some() {
+        return Err(BenchError::Strategy(format!("`{text}`: a brace or a quote is not closed")));
+    }
+    parts.push(&text[from..]);
+    Ok(parts)
+}
+
+/// Names of all registered strategies, sorted.
+fn registered() -> Vec<&'static str> {
+    let mut names: Vec<&str> = entries().iter().map(|e| e.name).collect();
+    names.sort_unstable();
+    names
+}
+
+fn entries() -> Vec<&'static SamplerEntry> {
+    <dyn WavelengthSampler as Stage>::entries()
+}
+
+/// The strategy that a scene takes by itself.
+fn usual() -> Option<&'static str> {
+    entries().iter().find(|e| e.default).map(|e| e.name)
+}
+
+/// All registered strategies, the one that scenes take by themselves first.
+pub(crate) fn all() -> Vec<Strategy> {
+    let mut names = registered();
+    names.sort_by_key(|n| Some(*n) != usual());
+    names.into_iter().map(|kind| Strategy { kind: kind.to_owned(), keys: None }).collect()
+}
+
+/// What the scene file says, with `overrides` applied.
+pub(crate) struct Said {
+    /// Its own strategy.
+    kind: Option<String>,
+    /// What its source shines by.
+    light: Option<String>,
+}
+
+impl Said {
+    pub(crate) fn by(scene: &Scene, overrides: &[String]) -> Result<Self, BenchError> {
+        let mut root = yaml::parse_bytes(&scene.name, scene.text.as_bytes())?;
+        for text in overrides {
+            yaml::parse_override(text)?.apply(&mut root).map_err(spectra_core::params::Faults::from)?;
+        }
+        let text = |path: &str| root.at_path(path).and_then(|node| node.as_str()).map(str::to_owned);
+        Ok(Self {
+            kind: text("wavelengths.kind").or_else(|| usual().map(str::to_owned)),
+            light: text("source.illuminant").or_else(|| text("source.spectrum")),
+        })
+    }
+}
+
+/// The strategy with the keys that it needs, and the override that puts it into the scene: `None` where it is the
+/// scene's own.
+pub(crate) fn resolve(
+    strategy: &Strategy,
+    said: &Said,
+    scene: &Scene,
+    system: &SystemResponse,
+) -> (Strategy, Option<String>) {
+    if strategy.keys.is_none() && said.kind.as_deref() == Some(&strategy.kind) {
+        return (strategy.clone(), None);
+    }
+    let keys = strategy.keys.clone().or_else(|| needed(&strategy.kind, said, system));
+    let grid = scene.grid;
+    let mut map = format!("kind: {}", strategy.kind);
+    if grid != BAND {
+        map.push_str(&format!(", band: [{} nm, {} nm]", grid.start_nm, grid.end_nm()));
+    }
+    if let Some(keys) = &keys {
+        map.push_str(&format!(", {keys}"));
+    }
+    (Strategy { kind: strategy.kind.clone(), keys }, Some(format!("wavelengths={{{map}}}")))
+}
+
+/// Keys without which a strategy cannot be: of the scene's light and channels.
+fn needed(kind: &str, said: &Said, system: &SystemResponse) -> Option<String> {
+    match kind {
+        // Center and standard deviation of the light that the channels see.
+        "truncated-gaussian" => {
+            let (center_nm, sigma_nm) = moments(system)?;
+            Some(format!("center: {center_nm:.0} nm, sigma: {:.0} nm", sigma_nm.max(1.0)))
+        }
+        // In proportion to the source alone.
+        "inverse-transform" => {
+            let light = said.light.as_deref().unwrap_or("D65");
+            Some(format!("spectrum: \"{}\"", light.replace(['"', '\\'], "")))
+        }
+        _ => None,
+    }
+}
+
+/// Mean and standard deviation of the wavelength of the light that the channels see together, nm.
+fn moments(system: &SystemResponse) -> Option<(f64, f64)> {
+    let seen = system.summed_response();
+    let weighted = |f: &dyn Fn(f64) -> f64| {
+        let response: Vec<f64> = seen.iter().zip(system.grid.wavelengths_nm()).map(|(r, nm)| r * f(nm)).collect();
+        system.source.seen_by(&response)
+    };
+    let total = weighted(&|_| 1.0);
+    let mean = weighted(&|nm| nm) / total;
+    let variance = weighted(&|nm| (nm - mean) * (nm - mean)) / total;
+    (total > 0.0).then(|| (mean, variance.max(0.0).sqrt()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use spectra_core::spectral::{Channel, SpectralPower};
+    use spectra_plugins as _;
+
+    #[test]
+    fn lists_are_split_outside_of_braces() {
+        let list = parse_list("uniform, truncated-gaussian{center: 550, sigma: 60},stratified{}").unwrap();
+        let labels: Vec<String> = list.iter().map(Strategy::label).collect();
+        assert_eq!(labels, ["uniform", "truncated-gaussian {center: 550, sigma: 60}", "stratified"]);
+        for bad in ["uniform,uniform", "unifrom", "uniform{a: 1", "uniform}", "", "uniform{a: 1}b"] {
+            assert!(parse_list(bad).is_err(), "{bad}");
+        }
+        assert!(parse_list("unifrom").unwrap_err().to_string().contains("did you mean `uniform`"));
+    }
+
+    #[test]
+    fn the_usual_strategy_comes_first() {
+        let all = all();
+        assert_eq!(Some(all[0].kind.as_str()), usual());
+        assert!(all.len() >= 2);
+    }
+
+    /// A flat light seen by a triangle of 400 nm to 600 nm: mean 500, variance of a symmetric triangle h^2/6.
+    #[test]
+    fn moments_of_a_triangle() {
+        let response: Vec<f64> = BAND.wavelengths_nm().map(|w| (1.0 - (w - 500.0).abs() / 100.0).max(0.0)).collect();
+        let source = SpectralPower { grid: BAND, continuum: vec![1.0; BAND.count], lines: Vec::new() };
+        let channels = vec![Channel { name: "t".into(), unit: "1".into(), response }].into();
+        let (mean, sigma) = moments(&SystemResponse { grid: BAND, source, channels }).unwrap();
+        // The second moment is integrated linearly between nanometres: 1/6 nm^2 beside it.
+        assert!((mean - 500.0).abs() < 1e-9 && (sigma - (1e4 / 6.0_f64).sqrt()).abs() < 0.01, "{mean} {sigma}");
+    }
+}

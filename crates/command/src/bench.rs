@@ -1,0 +1,66 @@
+//! `spectra bench`: wavelength strategies against each other.
+
+use crate::arguments::Bench;
+use crate::console;
+use crate::outcome::{DONE, Failure, Outcome};
+use spectra_bench::{BenchError, Settings, parse_list};
+use spectra_core::Isa;
+use spectra_film::write::write_atomically;
+use std::io::Write as _;
+use std::path::Path;
+
+/// Seeds of the integral a seed of the render: it costs next to nothing.
+const INTEGRAL_SEEDS: usize = 50;
+
+/// Measures, writes the files, and shows the table, or JSON in its place.
+pub(crate) fn bench(arguments: &Bench, isa: Isa) -> Outcome {
+    let strategies = match &arguments.strategies {
+        Some(list) => parse_list(list)?,
+        None => Vec::new(),
+    };
+    let seeds = usize::from(arguments.seeds);
+    let threads = arguments.threads.map(usize::from);
+    let settings = Settings {
+        seeds,
+        integral_seeds: seeds * INTEGRAL_SEEDS,
+        samples: arguments.samples.clone(),
+        strategies,
+        render: !arguments.integral_only,
+        threads: threads.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from)),
+        isa,
+    };
+    // Before anything is measured: an hour's figures must not end without a place to go.
+    let folder = &arguments.output;
+    std::fs::create_dir_all(folder).map_err(|e| Failure::Input(format!("{}: {e}", folder.display())))?;
+    let mut tell = |line: &str| console::note(line);
+    let report = spectra_bench::bench(&arguments.scene, &arguments.set.overrides, &settings, &mut tell)?;
+    let picture = spectra_bench::picture(&report);
+    let file = |ending: &str| folder.join(format!("{}-sampling.{ending}", report.scene));
+    write(&file("csv"), &spectra_bench::csv(&report))?;
+    for path in [file("svg"), file("png")] {
+        picture.write(&path).map_err(|e| Failure::Failed(e.to_string()))?;
+        console::note(&format!("wrote {}", path.display()));
+    }
+    if arguments.json {
+        console::pretty_json(&report)?;
+    } else {
+        console::out(&spectra_bench::table(&report))?;
+    }
+    Ok(DONE)
+}
+
+fn write(path: &Path, text: &str) -> Result<(), Failure> {
+    write_atomically(path, |file| Ok(file.write_all(text.as_bytes())?))?;
+    console::note(&format!("wrote {}", path.display()));
+    Ok(())
+}
+
+impl From<BenchError> for Failure {
+    fn from(error: BenchError) -> Self {
+        match error {
+            BenchError::Faults(faults) => Self::Faults(faults),
+            BenchError::Render { .. } => Self::Failed(error.to_string()),
+            _ => Self::Input(error.to_string()),
+        }
+    }
+}

@@ -1,0 +1,228 @@
+//! `spectra spectrum info`.
+
+use super::arguments::{ObserverName, SpectrumInfo};
+use super::describe::table;
+use super::{load, load_illuminant};
+use crate::console;
+use crate::outcome::{DONE, Failure, Outcome};
+use serde::Serialize;
+use spectra_spectrum::{
+    Adaptation, BAND, Dominant, Emission, Found, Gamut, Observer, RgbSpace, cct, chromaticity, dominant_wavelength,
+    into_gamut, lab, to_u8, xyz_of_light, xyz_of_reflectance, xyz_of_transmittance,
+};
+use std::fmt::Write;
+
+/// A spectrum in figures. What it does not have is `None`.
+#[derive(Debug, Serialize)]
+struct Report {
+    name: String,
+    kind: &'static str,
+    title: Option<String>,
+    source: Option<String>,
+    licence: Option<String>,
+    range_nm: Option<[f64; 2]>,
+    observer: &'static str,
+    /// The light that matter is seen in, and the white of `lab`, `dominant_wavelength_nm` and `purity`.
+    illuminant: String,
+    xyz: Option<[f64; 3]>,
+    xy: Option<[f64; 2]>,
+    lab: Option<[f64; 3]>,
+    cct_k: Option<f64>,
+    /// Distance from the Planckian locus, CIE 1960.
+    duv: Option<f64>,
+    dominant_wavelength_nm: Option<f64>,
+    /// Of a purple, which has no dominant one.
+    complementary_wavelength_nm: Option<f64>,
+    purity: Option<f64>,
+    /// Of a light: cd/m2 where its unit is W m^-2 sr^-1 nm^-1, relative otherwise.
+    luminance: Option<f64>,
+    peak_nm: Option<f64>,
+    srgb: Option<[u8; 3]>,
+    srgb_linear: Option<[f64; 3]>,
+}
+
+/// Shows a spectrum in figures.
+pub(crate) fn info(arguments: &SpectrumInfo) -> Outcome {
+    let found = load(&arguments.name)?;
+    let illuminant = load_illuminant(&arguments.illuminant)?;
+    let observer = observer(arguments.observer);
+    let standard = Observer::cie_1931_2deg();
+    let white = |observer| {
+        let none = || Failure::Input(format!("--illuminant: nothing of `{}` is seen", arguments.illuminant));
+        xyz_of_light(&illuminant, observer).ok_or_else(none)
+    };
+    let meta = table(&arguments.name).map(|table| table.meta).unwrap_or_default();
+    let xyz = xyz(&found, &illuminant, observer);
+    let color = Color::of(&found, &illuminant, white(standard)?);
+    let dominant = color.as_ref().and_then(|c| c.dominant);
+    let temperature =
+        color.as_ref().and_then(|c| c.xy).filter(|_| !matches!(found, Found::Reflectance(_))).and_then(cct);
+    let white = white(observer)?;
+    let report = Report {
+        name: arguments.name.trim().to_owned(),
+        kind: found.kind().word(),
+        title: meta.name,
+        source: meta.source,
+        licence: meta.licence,
+        range_nm: meta.range_nm.map(|(from, to)| [from, to]),
+        observer: observer.name(),
+        illuminant: arguments.illuminant.trim().to_owned(),
+        xyz,
+        xy: xyz.and_then(chromaticity),
+        lab: xyz.map(|xyz| lab(xyz, white)),
+        cct_k: temperature.map(|t| t.kelvin),
+        duv: temperature.map(|t| t.duv),
+        dominant_wavelength_nm: dominant.filter(|d| !d.complementary).map(|d| d.wavelength_nm),
+        complementary_wavelength_nm: dominant.filter(|d| d.complementary).map(|d| d.wavelength_nm),
+        purity: dominant.map(|d| d.purity),
+        luminance: if let Found::Emission(light) = &found { Some(light.luminance()) } else { None },
+        peak_nm: peak_nm(&found),
+        srgb: color.as_ref().map(|c| RgbSpace::srgb().encode(c.linear).map(to_u8)),
+        srgb_linear: color.as_ref().map(|c| c.linear),
+    };
+    if arguments.json {
+        console::pretty_json(&report)?;
+    } else {
+        console::out(&text(&report, &found))?;
+    }
+    Ok(DONE)
+}
+
+fn observer(name: ObserverName) -> &'static Observer {
+    match name {
+        ObserverName::Cie1931 => Observer::cie_1931_2deg(),
+        ObserverName::Cie1964 => Observer::cie_1964_10deg(),
+        ObserverName::Cie2015Narrow => Observer::cie_2015_2deg(),
+        ObserverName::Cie2015Wide => Observer::cie_2015_10deg(),
+    }
+}
+
+fn xyz(found: &Found, illuminant: &Emission, observer: &Observer) -> Option<[f64; 3]> {
+    match found {
+        Found::Emission(light) => xyz_of_light(light, observer),
+        Found::Transmittance(filter) => xyz_of_transmittance(filter, illuminant, observer),
+        Found::Reflectance(surface) => xyz_of_reflectance(surface, illuminant, observer),
+        Found::Sensitivity(_) => None,
+    }
+}
+
+/// What is defined on the CIE 1931 observer only.
+struct Color {
+    xy: Option<[f64; 2]>,
+    dominant: Option<Dominant>,
+    /// Linear sRGB of 0 to 1. Of a light its most brilliant; of matter with the illuminant's white brought to D65.
+    linear: [f64; 3],
+}
+
+impl Color {
+    fn of(found: &Found, illuminant: &Emission, white: [f64; 3]) -> Option<Self> {
+        let srgb = RgbSpace::srgb();
+        let xyz = xyz(found, illuminant, Observer::cie_1931_2deg())?;
+        let xy = chromaticity(xyz);
+        let dominant = xy.zip(chromaticity(white)).and_then(|(xy, white)| dominant_wavelength(xy, white));
+        let linear = if let Found::Emission(_) = found {
+            let rgb = srgb.from_xyz(xyz).map(|v| v.max(0.0));
+            let brightest = rgb.into_iter().fold(0.0, f64::max);
+            if brightest > 0.0 { rgb.map(|v| v / brightest) } else { rgb }
+        } else {
+            let unit = |xyz: [f64; 3]| xyz.map(|v| v / 100.0);
+            let adapted = Adaptation::Bradford.adapt(unit(xyz), unit(white), srgb.white_xyz());
+            into_gamut(srgb.from_xyz(adapted), srgb, Gamut::Perceptual)
+        };
+        Some(Self { xy, dominant, linear })
+    }
+}
+
+/// Wavelength of the highest value on the band, by whole nanometres; of the strongest line where there is no continuum.
+fn peak_nm(found: &Found) -> Option<f64> {
+    let highest = |values: Vec<f64>| {
+        let best =
+            BAND.wavelengths_nm().zip(values).fold((0.0, 0.0), |best, now| if now.1 > best.1 { now } else { best });
+        (best.1 > 0.0).then_some(best.0)
+    };
+    match found {
+        Found::Emission(light) => {
+            let strongest = || light.lines().iter().max_by(|a, b| a.power.total_cmp(&b.power)).map(|l| l.wavelength_nm);
+            highest(light.on_grid(&BAND)).or_else(strongest)
+        }
+        Found::Transmittance(filter) => highest(filter.on_grid(&BAND)),
+        Found::Reflectance(surface) => highest(surface.on_grid(&BAND)),
+        Found::Sensitivity(detector) => highest(detector.on_grid(&BAND)),
+    }
+}
+
+/// The report as a person reads it.
+fn text(report: &Report, found: &Found) -> String {
+    let matter = matches!(found, Found::Transmittance(_) | Found::Reflectance(_));
+    let title = report.title.as_deref().filter(|title| *title != report.name);
+    let mut out = format!("{}{}: {}\n\n", report.name, title.map_or(String::new(), |t| format!(" ({t})")), report.kind);
+    let mut row = |name: &str, value: Option<String>| {
+        if let Some(value) = value {
+            // Writing to a String cannot fail.
+            let _ = writeln!(out, "  {name:<22}{value}");
+        }
+    };
+    row("source", report.source.clone());
+    row("licence", report.licence.clone());
+    row("range", report.range_nm.map(|[from, to]| format!("{from} to {to} nm")));
+    row("peak", report.peak_nm.map(|nm| format!("{nm} nm")));
+    if report.xyz.is_some() {
+        let light = if matter { format!(", under {}", report.illuminant) } else { String::new() };
+        row("observer", Some(format!("{}{light}", report.observer)));
+    }
+    row("XYZ", report.xyz.map(|v| numbers(&v, 4)));
+    row("xy", report.xy.map(|v| numbers(&v, 5)));
+    row("Lab", report.lab.map(|v| format!("{}  (white: {})", numbers(&v, 3), report.illuminant)));
+    let far = |duv: Option<f64>| duv.map_or(String::new(), |duv| format!("  (Duv {duv:+.4})"));
+    row("color temperature", report.cct_k.map(|k| format!("{k:.1} K{}", far(report.duv))));
+    row("dominant wavelength", report.dominant_wavelength_nm.map(|nm| format!("{nm:.2} nm")));
+    row("complementary", report.complementary_wavelength_nm.map(|nm| format!("{nm:.2} nm")));
+    row("excitation purity", report.purity.map(|p| format!("{:.2} %", 100.0 * p)));
+    row("luminance", report.luminance.map(|l| format!("{} cd/m2, if its unit is W/(m2 sr nm)", significant(l))));
+    let srgb = report.srgb.zip(report.srgb_linear);
+    row(
+        "sRGB",
+        srgb.map(|([r, g, b], linear)| {
+            format!("{r} {g} {b}  #{r:02x}{g:02x}{b:02x}  (linear {})", numbers(&linear, 4))
+        }),
+    );
+    out
+}
+
+fn numbers(values: &[f64], decimals: usize) -> String {
+    let shown: Vec<String> = values.iter().map(|v| format!("{:.decimals$}", v + 0.0)).collect();
+    shown.join("  ")
+}
+
+/// Six digits, with a power of ten where the number is large or small.
+fn significant(value: f64) -> String {
+    if value == 0.0 || (1e-3..1e6).contains(&value.abs()) {
+        let whole = format!("{:.0}", value.abs()).len();
+        format!("{value:.*}", 6_usize.saturating_sub(whole))
+    } else {
+        format!("{value:.5e}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_keep_six_digits() {
+        assert_eq!(
+            [0.0, 12.3456789, 123_456.7, 1.5e9, 2e-5].map(significant),
+            ["0.00000", "12.3457", "123457", "1.50000e9", "2.00000e-5"]
+        );
+    }
+
+    #[test]
+    fn peaks_are_of_continuum_or_lines() {
+        let peak = |name: &str| load(name).ok().and_then(|found| peak_nm(&found));
+        assert_eq!(
+            [peak("gaussian:550,20"), peak("line:632.8"), peak("v-lambda-1924")],
+            [Some(550.0), Some(632.8), Some(555.0)]
+        );
+        assert_eq!(peak("constant:0"), None);
+    }
+}

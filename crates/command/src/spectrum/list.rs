@@ -1,0 +1,70 @@
+//! `spectra spectrum list`.
+
+use super::arguments::SpectrumList;
+use super::describe::bundled;
+use crate::console;
+use crate::outcome::{DONE, Outcome};
+use serde::Serialize;
+use spectra_spectrum::bundled_spectra;
+use std::fmt::Write;
+
+/// A bundled spectrum, or several of one file.
+#[derive(Debug, Serialize)]
+struct Item {
+    name: &'static str,
+    title: Option<String>,
+    kind: &'static str,
+    range_nm: Option<[f64; 2]>,
+    /// What can stand after `#`; empty where the file holds one spectrum.
+    columns: Vec<String>,
+    source: Option<String>,
+    licence: Option<String>,
+    file: &'static str,
+}
+
+/// Shows the list.
+pub(crate) fn list(arguments: &SpectrumList) -> Outcome {
+    let items: Vec<Item> = bundled_spectra().filter_map(|(name, path)| item(name, path)).collect();
+    if arguments.json {
+        console::pretty_json(&items)?;
+    } else {
+        console::out(&table(&items))?;
+    }
+    Ok(DONE)
+}
+
+fn item(name: &'static str, file: &'static str) -> Option<Item> {
+    let table = bundled(file)?;
+    let columns = if table.columns.len() > 1 { table.columns } else { Vec::new() };
+    let range_nm = table.meta.range_nm.map(|(from, to)| [from, to]);
+    let (title, source, licence) = (table.meta.name, table.meta.source, table.meta.licence);
+    Some(Item { name, title, kind: table.kind.word(), range_nm, columns, source, licence, file })
+}
+
+fn table(items: &[Item]) -> String {
+    let width = items.iter().map(|item| item.name.len()).max().unwrap_or(0);
+    let mut out = String::new();
+    let mut folder = "";
+    for item in items {
+        let (of, _) = item.file.trim_start_matches("spectra/").split_once('/').unwrap_or((item.file, ""));
+        if of != folder {
+            let gap = if folder.is_empty() { "" } else { "\n" };
+            folder = of;
+            // Writing to a String cannot fail.
+            let _ = writeln!(out, "{gap}{folder}");
+        }
+        let range = item.range_nm.map_or(String::new(), |[from, to]| format!("{from:.0}-{to:.0} nm"));
+        let title = item.title.as_deref().unwrap_or("");
+        let _ = write!(out, "  {:<width$}  {:<14}  {range:<12}  {title}", item.name, item.kind);
+        match item.columns.as_slice() {
+            [] => out.push('\n'),
+            columns => {
+                let _ = writeln!(out, " (#{})", columns.join(", #"));
+            }
+        }
+    }
+    out.push_str(
+        "\nwritten out: blackbody:5800  daylight:5500  line:C'  line:632.8  gaussian:550,20  rectangle:500,600\n",
+    );
+    out
+}

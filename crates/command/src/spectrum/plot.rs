@@ -1,0 +1,64 @@
+//! `spectra spectrum plot`.
+
+use super::arguments::SpectrumPlot;
+use super::{load, load_illuminant};
+use crate::console;
+use crate::outcome::{DONE, Failure, Outcome};
+use spectra_plot::{Format, PlotError, figure};
+use spectra_spectrum::{
+    BAND, Emission, Found, Observer, chromaticity, xyz_of_light, xyz_of_reflectance, xyz_of_transmittance,
+};
+
+/// Draws spectra, or their chromaticities.
+pub(crate) fn plot(arguments: &SpectrumPlot) -> Outcome {
+    let output = &arguments.output;
+    // Before anything is computed: a wrong ending is found out at once.
+    Format::of(output).map_err(failure)?;
+    let named = |name: &String| Ok((name.trim().to_owned(), load(name)?));
+    let spectra = arguments.names.iter().map(named).collect::<Result<Vec<_>, Failure>>()?;
+    let canvas = if arguments.chromaticity {
+        let illuminant = load_illuminant(&arguments.illuminant)?;
+        let point = |(name, found): &(String, Found)| Ok((name.clone(), xy(name, found, &illuminant)?));
+        let points = spectra.iter().map(point).collect::<Result<Vec<_>, Failure>>()?;
+        figure::chromaticity(&points)
+    } else {
+        spectra.iter().filter(|(_, found)| is_dark(found)).for_each(|(name, _)| {
+            console::warning(&format!("`{name}` is 0 from {} to {} nm", BAND.start_nm, BAND.end_nm()));
+        });
+        figure::spectrum(&spectra)
+    };
+    canvas.write(output).map_err(failure)?;
+    console::note(&format!("wrote {}", output.display()));
+    Ok(DONE)
+}
+
+fn failure(error: PlotError) -> Failure {
+    match error {
+        PlotError::Ending { .. } => Failure::Input(error.to_string()),
+        PlotError::Write(error) => error.into(),
+    }
+}
+
+fn xy(name: &str, found: &Found, illuminant: &Emission) -> Result<[f64; 2], Failure> {
+    let observer = Observer::cie_1931_2deg();
+    let xyz = match found {
+        Found::Emission(light) => xyz_of_light(light, observer),
+        Found::Transmittance(filter) => xyz_of_transmittance(filter, illuminant, observer),
+        Found::Reflectance(surface) => xyz_of_reflectance(surface, illuminant, observer),
+        Found::Sensitivity(_) => {
+            return Err(Failure::Input(format!("`{name}` is a sensitivity: it has no chromaticity")));
+        }
+    };
+    let xy = xyz.and_then(chromaticity);
+    xy.ok_or_else(|| Failure::Input(format!("`{name}` has no chromaticity: nothing of it is seen")))
+}
+
+fn is_dark(found: &Found) -> bool {
+    let dark = |values: Vec<f64>| values.iter().all(|v| *v <= 0.0);
+    match found {
+        Found::Emission(light) => light.to_power(&BAND).is_dark(),
+        Found::Transmittance(filter) => dark(filter.on_grid(&BAND)),
+        Found::Reflectance(surface) => dark(surface.on_grid(&BAND)),
+        Found::Sensitivity(detector) => dark(detector.on_grid(&BAND)),
+    }
+}

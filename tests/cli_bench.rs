@@ -1,0 +1,138 @@
+//! `spectra bench`: figures that a program can read, and that are right.
+
+mod common;
+
+use common::{good, repository, run, shown, text};
+use serde_json::Value;
+use std::path::Path;
+
+fn scene(name: &str) -> String {
+    shown(&repository(&format!("scenes/bench/sampling-{name}.yaml"))).to_owned()
+}
+
+/// The report of a benchmark, its files in `folder`.
+fn report(folder: &Path, name: &str, more: &[&str]) -> Value {
+    let scene = scene(name);
+    let arguments = ["bench", &scene, "--json", "--threads", "2", "-o", shown(folder)];
+    let arguments: Vec<&str> = arguments.into_iter().chain(more.iter().copied()).collect();
+    serde_json::from_str(&good(&arguments)).expect("JSON")
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("a number, not {value}"))
+}
+
+fn series<'a>(report: &'a Value, measure: &'a str, numbers: &'a str) -> impl Iterator<Item = &'a Value> {
+    let all = report["series"].as_array().expect("a list");
+    all.iter().filter(move |s| s["measure"] == measure && s["numbers"] == numbers)
+}
+
+#[test]
+fn a_tiny_benchmark_writes_what_programs_read() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let tiny = ["--seeds", "3", "--samples", "1,4", "--set", "imager.resolution=[6, 4]"];
+    let tiny: Vec<&str> = tiny.into_iter().chain(["--strategies", "source-times-response,uniform"]).collect();
+    let report = report(folder.path(), "d65-xyz", &tiny);
+    assert_eq!(report["channels"], serde_json::json!(["X", "Y", "Z"]));
+    // Two strategies: the integral with either kind of numbers, and the scene.
+    assert_eq!(report["series"].as_array().expect("a list").len(), 6);
+
+    let csv = std::fs::read_to_string(folder.path().join("sampling-d65-xyz-sampling.csv")).expect("a table");
+    let mut lines = csv.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    let head = lines.next().expect("a head");
+    let rows: Vec<Vec<&str>> = lines.collect();
+    assert_eq!(rows.len(), 12);
+    let column = |name: &str| head.iter().position(|h| *h == name).unwrap_or_else(|| panic!("no column {name}"));
+    for row in &rows {
+        assert_eq!(row.len(), head.len(), "{row:?}");
+        let value = |name: &str| row[column(name)].parse::<f64>().unwrap_or_else(|e| panic!("{name}: {e}: {row:?}"));
+        let (low, error, high) = (value("error_low"), value("relative_rms_error"), value("error_high"));
+        assert!(low <= error && error <= high && error > 0.0, "{row:?}");
+        assert!(value("seconds") > 0.0 && value("ciede2000") > 0.0, "{row:?}");
+    }
+    let svg = std::fs::read_to_string(folder.path().join("sampling-d65-xyz-sampling.svg")).expect("a picture");
+    assert!(svg.starts_with("<svg") && svg.contains("samples a pixel"));
+    assert!(folder.path().join("sampling-d65-xyz-sampling.png").exists());
+}
+
+/// Independent uniform wavelengths: the error falls with the root of their number, by the central limit theorem.
+#[test]
+fn random_numbers_have_a_slope_of_one_half() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let more = ["--integral-only", "--strategies", "uniform", "--samples", "4,16,64,256,1024"];
+    let report = report(folder.path(), "d65-ortho", &more);
+    let slope = number(&series(&report, "integral", "random").next().expect("a series")["slope"]["value"]);
+    assert!((slope + 0.5).abs() < 0.02, "{slope}");
+    let even = number(&series(&report, "integral", "sobol").next().expect("a series")["slope"]["value"]);
+    assert!(even < -0.9, "{even}");
+}
+
+/// The figures that issue 3 asks of the usual strategy: 64 jittered strata, 1 000 seeds.
+#[test]
+fn the_usual_strategy_is_as_good_as_promised() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let cases = [("d65-ortho", 0.002), ("fl11-ortho", 0.006), ("d65-xyz", 0.005), ("fl11-xyz", 0.010)];
+    for (name, most) in cases.into_iter().chain([("mercury-ortho", 1e-9)]) {
+        let more = ["--integral-only", "--strategies", "source-times-response", "--samples", "64"];
+        let report = report(folder.path(), name, &more);
+        let point = &series(&report, "integral", "sobol").next().expect("a series")["points"][0];
+        assert!(number(&point["error"]["value"]) <= most, "{name}: {point}");
+    }
+}
+
+#[test]
+fn no_strategy_is_biased() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for name in ["d65-ortho", "fl11-xyz", "mercury-ortho"] {
+        let report = report(folder.path(), name, &["--integral-only", "--samples", "4,64"]);
+        let mut strategies = 0;
+        for one in series(&report, "integral", "sobol").chain(series(&report, "integral", "random")) {
+            strategies += 1;
+            for point in one["points"].as_array().expect("a list") {
+                for bias in point["bias"].as_array().expect("a list") {
+                    assert!(number(&bias["standard_errors"]).abs() < 4.0, "{name}, {}: {bias}", one["strategy"]);
+                }
+            }
+        }
+        assert!(strategies >= 8, "{name}: {strategies}");
+    }
+}
+
+/// Rendered pixels too: no strategy is off the reference, and all agree on the way their error falls.
+#[test]
+fn rendered_pixels_are_not_biased_either() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let more = ["--seeds", "12", "--samples", "4,64", "--set", "imager.resolution=[12, 8]"];
+    let report = report(folder.path(), "d65-xyz", &more);
+    let mut strategies = 0;
+    for one in series(&report, "scene", "sobol") {
+        strategies += 1;
+        let slope = number(&one["slope"]["value"]);
+        assert!((-1.2..-0.4).contains(&slope), "{}: {slope}", one["strategy"]);
+        for point in one["points"].as_array().expect("a list") {
+            for bias in point["bias"].as_array().expect("a list") {
+                assert!(number(&bias["standard_errors"]).abs() < 4.0, "{}: {bias}", one["strategy"]);
+            }
+        }
+    }
+    assert!(strategies >= 5, "{strategies}");
+}
+
+#[test]
+fn wrong_requests_are_named() {
+    let scene = scene("d65-xyz");
+    let cases = [
+        (["--strategies", "unifrom"], "did you mean `uniform`"),
+        (["--strategies", "uniform{"], "not closed"),
+        (["--strategies", "stratified{strata: 0}"], "strata"),
+        (["--strategies", "lines"], "continuum"),
+        (["--samples", "0"], "0"),
+        (["--seeds", "1"], "1"),
+    ];
+    let folder = tempfile::tempdir().expect("a folder");
+    for (more, word) in cases {
+        let output = run(&[&["bench", &scene, "-o", shown(folder.path())][..], &more].concat());
+        assert_eq!(output.status.code(), Some(2), "{more:?}");
+        assert!(text(&output.stderr).contains(word), "{more:?}: {}", text(&output.stderr));
+    }
+}

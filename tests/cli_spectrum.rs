@@ -1,0 +1,189 @@
+//! `spectra spectrum`: color in figures and pictures.
+
+mod common;
+
+use common::{good, run, shown, text};
+use serde_json::Value;
+
+fn info(arguments: &[&str]) -> Value {
+    let output = good(&[&["spectrum", "info", "--json"][..], arguments].concat());
+    serde_json::from_str(&output).expect("JSON")
+}
+
+fn numbers(value: &Value) -> Vec<f64> {
+    let array = value.as_array().expect("an array");
+    array.iter().map(|v| v.as_f64().expect("a number")).collect()
+}
+
+fn close(found: &Value, wanted: &[f64], tolerance: f64) {
+    let found = if found.is_array() { numbers(found) } else { vec![found.as_f64().expect("a number")] };
+    let near = |(a, b): (&f64, &f64)| (a - b).abs() <= tolerance;
+    assert!(found.len() == wanted.len() && found.iter().zip(wanted).all(near), "{found:?} is not {wanted:?}");
+}
+
+/// The message of a run that must be refused as bad input.
+fn refused(arguments: &[&str]) -> String {
+    let output = run(&[&["spectrum"][..], arguments].concat());
+    assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+    text(&output.stderr)
+}
+
+/// CIE 15:2004: x 0.31272, y 0.32903, XYZ 95.04 100 108.88. 6503.6 K: 6500 K times 1.438777 / 1.438, the constant of
+/// Planck's law by which it was defined.
+#[test]
+fn d65() {
+    let d65 = info(&["D65"]);
+    close(&d65["xy"], &[0.31272, 0.32903], 2e-5);
+    close(&d65["xyz"], &[95.04, 100.0, 108.88], 0.01);
+    close(&d65["lab"], &[100.0, 0.0, 0.0], 1e-9);
+    close(&d65["cct_k"], &[6503.5], 1.5);
+    assert!(d65["dominant_wavelength_nm"].is_null() && d65["purity"].is_null());
+    // The white of sRGB is D65 to four decimals of x and y.
+    close(&d65["srgb_linear"], &[1.0, 1.0, 1.0], 2e-3);
+    close(&d65["srgb"], &[255.0, 255.0, 255.0], 0.0);
+    close(&d65["range_nm"], &[300.0, 780.0], 0.0);
+    assert_eq!([&d65["name"], &d65["kind"]], ["D65", "emission"]);
+    assert!(d65["source"].is_string() && d65["licence"].is_string() && d65["luminance"].as_f64() > Some(0.0));
+    // CIE 15:2004: 10 degrees, x 0.31382, y 0.33100.
+    close(&info(&["d65", "--observer", "1964"])["xy"], &[0.31382, 0.33100], 3e-5);
+    for observer in ["2015-2", "2015-10"] {
+        let seen = info(&["D65", "--observer", observer]);
+        assert!(seen["observer"] != d65["observer"] && seen["xy"] != d65["xy"]);
+        assert_eq!(seen["cct_k"], d65["cct_k"]);
+    }
+}
+
+/// CIE 15:2004: illuminant A has x 0.44758, y 0.40745. Its formula, summed by 1 nm, has XYZ 109.850 100 35.585; straight
+/// lines between the 5 nm of its table, which the CIE asks for, raise Z by 0.006.
+#[test]
+fn illuminant_a() {
+    let a = info(&["A"]);
+    close(&a["xy"], &[0.44758, 0.40745], 2e-5);
+    close(&a["xyz"], &[109.850, 100.0, 35.585], 0.01);
+    close(&a["cct_k"], &[2855.5], 1.5);
+    let body = info(&["blackbody:2856"]);
+    close(&body["xy"], &numbers(&a["xy"]), 1e-4);
+    close(&body["cct_k"], &[2856.0], 0.5);
+    assert!(body["source"].is_null() && body["range_nm"].is_null() && body["title"].is_null());
+}
+
+/// A line is its own dominant wavelength.
+#[test]
+fn a_line() {
+    let line = info(&["line:C'"]);
+    close(&line["dominant_wavelength_nm"], &[643.85], 0.05);
+    close(&line["purity"], &[1.0], 2e-3);
+    assert!(line["cct_k"].is_null() && line["complementary_wavelength_nm"].is_null());
+    let green = info(&["line:555"]);
+    // 1 at 555 nm, where V is 1: 683 lm/W.
+    close(&green["luminance"], &[683.0], 0.01);
+    close(&green["peak_nm"], &[555.0], 0.0);
+    let dark = info(&["line:t"]);
+    for key in ["xyz", "xy", "lab", "cct_k", "dominant_wavelength_nm", "purity", "srgb", "srgb_linear"] {
+        assert!(dark.get(key).is_some_and(Value::is_null), "{key}");
+    }
+    close(&dark["luminance"], &[0.0], 0.0);
+}
+
+#[test]
+fn matter_is_seen_in_a_light() {
+    let grey = info(&["colorchecker#neutral-5"]);
+    let xyz = numbers(&grey["xyz"]);
+    assert_eq!(grey["kind"], "reflectance");
+    assert!((15.0..25.0).contains(&xyz[1]) && grey["luminance"].is_null() && grey["cct_k"].is_null());
+    let lab = numbers(&grey["lab"]);
+    assert!(lab[1].abs() < 2.0 && lab[2].abs() < 2.0, "{lab:?}");
+    let srgb = numbers(&grey["srgb"]);
+    assert!(srgb.iter().all(|v| (v - srgb[1]).abs() <= 6.0), "{srgb:?}");
+    // Grey stays grey in another light, whose color it takes on.
+    let in_a = info(&["colorchecker#neutral-5", "--illuminant", "A"]);
+    close(&in_a["xy"], &[0.448, 0.407], 0.005);
+    let srgb = numbers(&in_a["srgb"]);
+    assert!(srgb.iter().all(|v| (v - srgb[1]).abs() <= 6.0), "{srgb:?}");
+    let magenta = info(&["colorchecker#magenta"]);
+    assert!(magenta["dominant_wavelength_nm"].is_null());
+    assert!((490.0..570.0).contains(&magenta["complementary_wavelength_nm"].as_f64().expect("a purple")));
+    // A detector has no color.
+    let eye = info(&["v-lambda-1924"]);
+    assert!(eye["xyz"].is_null() && eye["luminance"].is_null());
+    close(&eye["peak_nm"], &[555.0], 0.0);
+}
+
+#[test]
+fn files_of_ones_own() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("half.csv");
+    let filter = "# spectra: 1\n# kind: transmittance\n# name: half\nwavelength_nm,T\n350,0.5\n830,0.5\n";
+    std::fs::write(&path, filter).expect("written");
+    let half = info(&[shown(&path), "--illuminant", "A"]);
+    assert_eq!([&half["kind"], &half["title"]], ["transmittance", "half"]);
+    close(&half["xyz"], &[109.85 / 2.0, 50.0, 35.58 / 2.0], 0.01);
+    close(&half["cct_k"], &[2855.5], 1.5);
+    std::fs::write(&path, filter.replace("830,0.5", "830,50")).expect("written");
+    let message = refused(&["info", shown(&path)]);
+    assert!(message.contains("half.csv") && message.contains('6'), "{message}");
+}
+
+#[test]
+fn people_read_a_table() {
+    let shown = good(&["spectrum", "info", "FL11"]);
+    for wanted in ["emission", "source", "color temperature", " K", "dominant wavelength", "sRGB", "XYZ"] {
+        assert!(shown.contains(wanted), "{wanted}: {shown}");
+    }
+    assert!(!shown.contains("null") && !shown.contains("NaN"));
+    let list = good(&["spectrum", "list"]);
+    assert!(list.contains("D65") && list.contains("mercury") && list.contains("#dark-skin"));
+    let list: Value = serde_json::from_str(&good(&["spectrum", "list", "--json"])).expect("JSON");
+    for item in list.as_array().expect("a list") {
+        assert!(item["name"].is_string() && item["licence"].is_string() && item["source"].is_string(), "{item}");
+    }
+}
+
+#[test]
+fn unknown_names_are_refused_with_near_ones() {
+    assert!(refused(&["info", "D66"]).contains("D65"));
+    assert!(refused(&["info", "mercurry"]).contains("mercury"));
+    assert!(refused(&["info", "qqqqqqqqqq"]).contains("spectra spectrum list"));
+    assert!(refused(&["info", "gaussian:550"]).contains("gaussian:550,20"));
+    assert!(refused(&["info", "colorchecker"]).contains("colorchecker#"));
+    assert!(refused(&["info", "D65", "--illuminant", "D66"]).contains("--illuminant"));
+    assert!(refused(&["info", "D65", "--illuminant", "line:t"]).contains("--illuminant"));
+    assert!(refused(&["info", "D65", "--observer", "1932"]).contains("1931"));
+    assert!(refused(&["plot", "D66", "-o", "x.svg"]).contains("D65"));
+    assert!(refused(&["plot", "D65", "-o", "x.jpg"]).contains(".svg or .png"));
+    assert!(refused(&["plot", "line:t", "--chromaticity", "-o", "x.svg"]).contains("chromaticity"));
+    assert!(refused(&["plot", "v-lambda-1924", "--chromaticity", "-o", "x.svg"]).contains("sensitivity"));
+}
+
+#[test]
+fn pictures_of_both_kinds() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let names = ["D65", "line:C'", "colorchecker#red"];
+    for more in [&[][..], &["--chromaticity"]] {
+        let [svg, png] = ["a.svg", "a.png"].map(|name| folder.path().join(name));
+        for path in [&svg, &png] {
+            good(&[&["spectrum", "plot", "-o", shown(path)][..], more, &names].concat());
+        }
+        let svg = std::fs::read_to_string(svg).expect("written");
+        assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"));
+        for name in names {
+            let wanted = format!("aria-label=\"{name}\"");
+            assert!(svg.contains(&wanted), "{wanted}");
+        }
+        assert!(!svg.contains("NaN") && !svg.contains("inf "));
+        let size = |name: &str| {
+            let start = svg.find(&format!("{name}=\"")).expect("a size") + name.len() + 2;
+            svg[start..].split('"').next().and_then(|n| n.parse::<f64>().ok()).expect("a number")
+        };
+        // The signature of PNG, then the size in the first chunk: two pixels a unit.
+        let png = std::fs::read(png).expect("written");
+        assert_eq!(&png[..8], b"\x89PNG\r\n\x1a\n");
+        let word = |at: usize| u32::from_be_bytes(png[at..at + 4].try_into().expect("four bytes"));
+        assert_eq!([word(16), word(20)].map(f64::from), ["width", "height"].map(|n| (2.0 * size(n)).round_ties_even()));
+        assert!(png.len() > 20_000 && png.ends_with(b"IEND\xaeB`\x82"));
+    }
+    assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 2);
+    let missing = folder.path().join("no/a.svg");
+    let output = run(&["spectrum", "plot", "D65", "-o", shown(&missing)]);
+    assert_eq!(output.status.code(), Some(1));
+}
