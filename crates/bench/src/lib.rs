@@ -1,6 +1,6 @@
 //! Wavelength strategies against each other: error against samples and against time.
 //!
-//! [`bench`] takes a scene and measures every strategy on it in two ways: the spectral integral alone (the exposure of
+//! [`bench()`] takes a scene and measures every strategy on it in two ways: the spectral integral alone (the exposure of
 //! each channel, against exact quadrature), and the scene as it is rendered (every pixel, against a reference render
 //! of many more samples). What comes out is a [`Report`]: [`table`] shows it to a person, [`csv()`] to a spreadsheet,
 //! [`picture()`] draws it, and `serde` writes it as JSON.
