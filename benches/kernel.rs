@@ -5,7 +5,7 @@
 //! its turns. Last line: JSON.
 
 use spectra_core::isa::{Vectorized, prefetch};
-use spectra_core::surface::Action;
+use spectra_core::surface::{Kernel, Surface};
 use spectra_core::{Isa, RayBatch};
 use spectra_glass::{Category, Formula, Glass, Medium};
 use spectra_lens::{Element, Indices, Lens, LensMedium, Tracer, Travel};
@@ -52,7 +52,7 @@ fn cauchy(nd: f64, vd: f64) -> Medium {
 fn biotar(glass: impl Fn(f64, f64) -> Medium) -> Lens {
     let mut media = vec![LensMedium::air()];
     let mut elements = Vec::new();
-    let (mut z, mut before) = (0.0, 0);
+    let mut before = 0;
     for [diameter, thickness, nd, vd, clear] in BIOTAR {
         let label = format!("{nd}");
         let after = if vd == 0.0 {
@@ -64,24 +64,17 @@ fn biotar(glass: impl Fn(f64, f64) -> Medium) -> Lens {
             })
         };
         let stop = diameter == 0.0;
-        elements.push(Element {
-            kind: "surface".to_owned(),
-            surface: if stop {
-                Arc::new(spectra_core::surface::Kernel(Plane::stop()))
-            } else {
-                Arc::new(spectra_core::surface::Kernel(Sphere::new(diameter / 2.0)))
-            },
-            vertex_z_mm: z,
-            thickness_mm: thickness / 2.0,
-            semi_diameter_mm: Some(clear / 2.0),
-            action: if stop { Action::Pass } else { Action::Refract },
-            medium_before: before,
-            medium_after: after,
-        });
-        z += thickness / 2.0;
+        let surface: Arc<dyn Surface> =
+            if stop { Arc::new(Kernel(Plane::stop())) } else { Arc::new(Kernel(Sphere::new(diameter / 2.0))) };
+        let mut element = Element::new("surface", surface, before, after);
+        element.thickness_mm = thickness / 2.0;
+        element.semi_diameter_mm = Some(clear / 2.0);
+        elements.push(element);
         before = after;
     }
-    Lens { elements, media, ..Lens::empty("Biotar of soa.cpp") }
+    let mut lens = Lens { elements, media, ..Lens::empty("Biotar of soa.cpp") };
+    lens.arrange();
+    lens
 }
 
 struct Rays {

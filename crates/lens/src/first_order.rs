@@ -1,7 +1,9 @@
 //! First-order (paraxial) optics by the ray-transfer method.
 //!
 //! A paraxial ray has a height y (mm) and a slope u = dy/dz; a surface of curvature c between media
-//! n and n' maps n' u' = n u - y c (n' - n) (W. J. Smith, Modern Optical Engineering, ch. 3).
+//! n and n' maps n' u' = n u - y c (n' - n) (W. J. Smith, Modern Optical Engineering, ch. 3). Behind a mirror light
+//! runs toward -z: indices count as negative there, and a mirror is a surface with n' = -n. A folded axis is taken as
+//! if it were straight.
 
 use crate::Lens;
 use spectra_core::surface::Action;
@@ -31,6 +33,24 @@ pub struct FirstOrder {
     pub exit_pupil_magnification: Option<f64>,
 }
 
+/// A plane through the axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Section {
+    /// x and z.
+    X,
+    /// y and z: the plane of the paper.
+    Y,
+}
+
+impl Section {
+    fn of(self, (x, y): (f64, f64)) -> f64 {
+        match self {
+            Self::X => x,
+            Self::Y => y,
+        }
+    }
+}
+
 /// The paraxial map through a lens, from the first vertex plane to the last.
 #[derive(Clone, Copy, Debug)]
 struct Matrix {
@@ -44,8 +64,9 @@ struct Matrix {
 impl Matrix {
     const UNIT: Self = Self { a: 1.0, b: 0.0, c: 0.0, d: 1.0 };
 
-    fn refract(self, curvature: f64, n: f64, after: f64) -> Self {
-        let power = curvature * (after - n) / after;
+    /// A surface of this power, 1/mm, between media of these (signed) indices.
+    fn bend(self, power: f64, n: f64, after: f64) -> Self {
+        let power = power / after;
         let ratio = n / after;
         Self { a: self.a, b: self.b, c: ratio * self.c - power * self.a, d: ratio * self.d - power * self.b }
     }
@@ -56,42 +77,61 @@ impl Matrix {
 }
 
 impl Lens {
-    fn matrix(&self, elements: std::ops::Range<usize>, index: &dyn Fn(usize) -> f64) -> Matrix {
+    fn matrix(&self, elements: std::ops::Range<usize>, section: Section, index: &dyn Fn(usize) -> f64) -> Matrix {
         let mut m = Matrix::UNIT;
         let end = elements.end;
         for at in elements {
             let e = &self.elements[at];
-            // The plane of the paper is y-z.
-            let (_, curvature) = e.surface.vertex_curvature_per_mm();
-            if e.action == Action::Refract {
-                m = m.refract(curvature, index(e.medium_before), index(e.medium_after));
+            let sign = if e.along == e.reversed { -1.0 } else { 1.0 };
+            let (n, after) = (sign * index(e.medium_before), sign * index(e.medium_after));
+            let curvature = section.of(e.vertex_curvature_per_mm());
+            match e.action {
+                Action::Refract => m = m.bend(curvature * (after - n), n, after),
+                Action::Reflect => m = m.bend(curvature * (-n - n), n, -n),
+                Action::Pass => {}
             }
             if at + 1 < end {
-                m = m.advance(e.thickness_mm);
+                m = m.advance(self.gap_mm(at));
             }
         }
         m
     }
 
+    /// Whether light that runs forward leaves the lens toward +z: 1; else -1.
+    fn sense_behind(&self) -> f64 {
+        let mirrors = self.elements.iter().filter(|e| e.action == Action::Reflect).count();
+        if mirrors % 2 == 0 { 1.0 } else { -1.0 }
+    }
+
     /// First order at a wavelength, nm.
     #[must_use]
     pub fn first_order(&self, wavelength_nm: f64) -> FirstOrder {
-        FirstOrder { wavelength_nm: Some(wavelength_nm), ..self.first_order_by(&|m| self.index(m, wavelength_nm)) }
+        self.first_order_in(Section::Y, wavelength_nm)
+    }
+
+    /// First order in one section of the lens, at a wavelength, nm: a cylinder has power in one only.
+    #[must_use]
+    pub fn first_order_in(&self, section: Section, wavelength_nm: f64) -> FirstOrder {
+        let by = self.first_order_by(section, &|m| self.index(m, wavelength_nm));
+        FirstOrder { wavelength_nm: Some(wavelength_nm), ..by }
     }
 
     /// First order with every medium at its stated index (its formula's at the reference line where none is stated).
     #[must_use]
     pub fn first_order_at_stated_nd(&self) -> FirstOrder {
-        self.first_order_by(&|m| self.media[m].stated_nd.unwrap_or_else(|| self.index(m, self.reference_nm)))
+        let index = |m: usize| self.media[m].stated_nd.unwrap_or_else(|| self.index(m, self.reference_nm));
+        self.first_order_by(Section::Y, &index)
     }
 
-    fn first_order_by(&self, index: &dyn Fn(usize) -> f64) -> FirstOrder {
+    fn first_order_by(&self, section: Section, index: &dyn Fn(usize) -> f64) -> FirstOrder {
         let count = self.elements.len();
-        let last_z = self.elements.last().map_or(0.0, |e| e.vertex_z_mm);
-        let m = self.matrix(0..count, index);
+        let last_z = self.elements.last().map_or(0.0, |e| e.along_axis_mm);
+        let m = self.matrix(0..count, section, index);
         let n_object = self.elements.first().map_or(1.0, |e| index(e.medium_before));
         let n_image = self.elements.last().map_or(1.0, |e| index(e.medium_after));
-        let efl = -1.0 / m.c;
+        // One over the power, positive for a lens that collects light, whichever way the light leaves.
+        let focal = -1.0 / m.c;
+        let efl = focal * self.sense_behind();
         let bfl = -m.a / m.c;
         // A ray that leaves parallel to the axis enters with slope s and height h: c h + d s = 0.
         let ffl = m.d / m.c;
@@ -99,37 +139,24 @@ impl Lens {
         let (mut enp, mut exp, mut enp_m, mut exp_m) = (None, None, None, None);
         if let Some(stop) = self.stop() {
             // From the first vertex plane to the stop: the stop's image in object space.
-            let to_stop = self.matrix(0..stop, index);
-            let gap =
-                if stop > 0 { self.elements[stop].vertex_z_mm - self.elements[stop - 1].vertex_z_mm } else { 0.0 };
+            let to_stop = self.matrix(0..stop, section, index);
+            let gap = if stop > 0 { self.gap_mm(stop - 1) } else { 0.0 };
             let front = to_stop.advance(gap);
             // A ray through the centre of the stop: a h + b s = 0, it crosses the axis at -h / s = b / a.
             enp = Some(front.b / front.a);
             enp_m = Some(1.0 / front.a);
-            if stop + 1 < count {
-                let start = Matrix::UNIT.advance(self.elements[stop + 1].vertex_z_mm - self.elements[stop].vertex_z_mm);
-                let behind = self.matrix(stop + 1..count, index);
-                // `behind` after `start`.
-                let rear = Matrix {
-                    a: behind.a * start.a + behind.b * start.c,
-                    b: behind.a * start.b + behind.b * start.d,
-                    c: behind.c * start.a + behind.d * start.c,
-                    d: behind.c * start.b + behind.d * start.d,
-                };
-                let z = -rear.b / rear.d;
-                exp = Some(last_z + z);
-                exp_m = Some(rear.a + z * rear.c);
-            } else {
-                exp = Some(self.elements[stop].vertex_z_mm);
-                exp_m = Some(1.0);
-            }
+            // Behind its center: with the bending there, where the stop is an optical surface.
+            let rear = self.matrix(stop..count, section, index);
+            let z = -rear.b / rear.d;
+            exp = Some(last_z + z);
+            exp_m = Some(rear.a + z * rear.c);
         }
         FirstOrder {
             wavelength_nm: None,
             efl_mm: efl,
             bfl_mm: bfl,
             ffl_mm: ffl,
-            rear_principal_z_mm: last_z + bfl - efl,
+            rear_principal_z_mm: last_z + bfl - focal,
             front_principal_z_mm: ffl + front_focal,
             entrance_pupil_z_mm: enp,
             exit_pupil_z_mm: exp,
@@ -142,7 +169,7 @@ impl Lens {
     /// `object_mm` in front of the first vertex (infinity allowed).
     #[must_use]
     pub fn paraxial_image_gap_mm(&self, object_mm: f64, wavelength_nm: f64) -> f64 {
-        let m = self.matrix(0..self.elements.len(), &|medium| self.index(medium, wavelength_nm));
+        let m = self.matrix(0..self.elements.len(), Section::Y, &|medium| self.index(medium, wavelength_nm));
         // A ray from the point with slope s: height object s at the first vertex.
         let (height, slope) =
             if object_mm.is_finite() { (m.a * object_mm + m.b, m.c * object_mm + m.d) } else { (m.a, m.c) };
@@ -152,7 +179,7 @@ impl Lens {
     /// Lateral magnification of an object `object_mm` in front of the first vertex (negative: upside down).
     #[must_use]
     pub fn paraxial_magnification(&self, object_mm: f64, wavelength_nm: f64) -> f64 {
-        let m = self.matrix(0..self.elements.len(), &|medium| self.index(medium, wavelength_nm));
+        let m = self.matrix(0..self.elements.len(), Section::Y, &|medium| self.index(medium, wavelength_nm));
         let gap = self.paraxial_image_gap_mm(object_mm, wavelength_nm);
         m.a + gap * m.c
     }

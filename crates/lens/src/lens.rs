@@ -1,8 +1,11 @@
 //! A lens: surfaces along the axis, media between them, and where it comes from.
 
-use spectra_core::surface::{Action, Surface};
+use crate::aperture::Shape;
+use crate::group::Group;
+use crate::pose::{AxisBreak, Pose};
+use crate::{Element, symmetry};
+use spectra_core::surface::Action;
 use spectra_glass::Medium;
-use std::sync::Arc;
 
 /// A medium as the prescription names it.
 #[derive(Clone, Debug)]
@@ -21,27 +24,6 @@ impl LensMedium {
     pub fn air() -> Self {
         Self { medium: Medium::Air, stated_nd: Some(1.0), label: "air".to_owned() }
     }
-}
-
-/// One surface in its place.
-#[derive(Clone, Debug)]
-pub struct Element {
-    /// Its `kind` in the file.
-    pub kind: String,
-    /// Shape and bending.
-    pub surface: Arc<dyn Surface>,
-    /// Vertex on the axis, mm from the first vertex.
-    pub vertex_z_mm: f64,
-    /// Distance to the next vertex, mm; of the last surface, to the image plane.
-    pub thickness_mm: f64,
-    /// Clear semi-diameter, mm; `None` clips nothing.
-    pub semi_diameter_mm: Option<f64>,
-    /// What it does to light.
-    pub action: Action,
-    /// Medium in front of it: index into [`Lens::media`].
-    pub medium_before: usize,
-    /// Medium behind it.
-    pub medium_after: usize,
 }
 
 /// A lens.
@@ -63,6 +45,12 @@ pub struct Lens {
     pub reference_nm: f64,
     /// The surfaces, in the order of the light.
     pub elements: Vec<Element>,
+    /// Groups of surfaces that move together.
+    pub groups: Vec<Group>,
+    /// Bends of the axis between the last surface and the image plane.
+    pub image_breaks: Vec<AxisBreak>,
+    /// Where the image plane stands; follows from the above, see [`Lens::arrange`].
+    pub image_pose: Pose,
     /// The media; number 0 is air.
     pub media: Vec<LensMedium>,
     /// What a person should know of the file: a glass that disagrees with the stated index, and so on.
@@ -82,6 +70,9 @@ impl Lens {
             remark: None,
             reference_nm: spectra_glass::lines::D.wavelength_nm,
             elements: Vec::new(),
+            groups: Vec::new(),
+            image_breaks: Vec::new(),
+            image_pose: Pose::IDENTITY,
             media: vec![LensMedium::air()],
             warnings: Vec::new(),
         }
@@ -90,13 +81,60 @@ impl Lens {
     /// Number of the stop among the elements, if there is one.
     #[must_use]
     pub fn stop(&self) -> Option<usize> {
-        self.elements.iter().position(|e| e.surface.is_stop())
+        self.elements.iter().position(|e| e.stop)
     }
 
-    /// Distance of the image plane from the first vertex, mm.
+    /// Puts every surface where thicknesses, bends of the axis, displacements and groups say. To be called after any
+    /// of them was changed.
+    pub fn arrange(&mut self) {
+        let mut axis = Pose::IDENTITY;
+        let mut along_axis_mm = 0.0;
+        let mut along = true;
+        for e in &mut self.elements {
+            (axis, along_axis_mm) = bent(axis, along_axis_mm, &e.breaks);
+            e.along_axis_mm = along_axis_mm;
+            let pose = if e.displacement.is_none() { axis } else { axis.then(&e.displacement.pose()) };
+            e.pose = if e.reversed { pose.reversed() } else { pose };
+            e.along = along != e.reversed;
+            if e.action == Action::Reflect {
+                along = !along;
+            }
+            axis = axis.advanced(e.thickness_mm);
+            along_axis_mm += e.thickness_mm;
+        }
+        self.image_pose = bent(axis, along_axis_mm, &self.image_breaks).0;
+        for group in &self.groups {
+            group.displace(&mut self.elements);
+        }
+    }
+
+    /// Distance of the image plane from the first vertex along the lens's z, mm.
     #[must_use]
     pub fn image_z_mm(&self) -> f64 {
-        self.elements.last().map_or(0.0, |e| e.vertex_z_mm + e.thickness_mm)
+        self.image_pose.origin_mm.z
+    }
+
+    /// Length of the axis from the vertex of element `at` to the next one, mm.
+    pub(crate) fn gap_mm(&self, at: usize) -> f64 {
+        match (self.elements.get(at), self.elements.get(at + 1)) {
+            (Some(here), Some(next)) => next.along_axis_mm - here.along_axis_mm,
+            _ => 0.0,
+        }
+    }
+
+    /// Whether it looks the same from all azimuths: nothing is displaced or folded, and every surface and aperture
+    /// is round.
+    #[must_use]
+    pub fn has_axis_of_revolution(&self) -> bool {
+        symmetry::has_axis_of_revolution(self)
+    }
+
+    /// The same lens with the blades of its stop opened to their circle: for what the f-number means.
+    pub(crate) fn with_round_stop(mut self) -> Self {
+        for e in &mut self.elements {
+            e.apertures.retain(|a| !matches!(a.shape, Shape::Iris(_)));
+        }
+        self
     }
 
     /// Distance of the image plane from the last vertex, mm.
@@ -111,6 +149,7 @@ impl Lens {
         if let Some(last) = self.elements.last_mut() {
             last.thickness_mm = gap_mm;
         }
+        self.arrange();
         self
     }
 
@@ -134,4 +173,16 @@ impl Lens {
     pub fn largest_semi_diameter_mm(&self) -> Option<f64> {
         self.elements.iter().filter_map(|e| e.semi_diameter_mm).reduce(f64::max)
     }
+}
+
+/// The axis behind bends, and how long it is by then.
+fn bent(mut axis: Pose, mut along_axis_mm: f64, breaks: &[AxisBreak]) -> (Pose, f64) {
+    for bend in breaks {
+        if !bend.displacement.is_none() {
+            axis = axis.then(&bend.displacement.pose());
+        }
+        axis = axis.advanced(bend.thickness_mm);
+        along_axis_mm += bend.thickness_mm;
+    }
+    (axis, along_axis_mm)
 }

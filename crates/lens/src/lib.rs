@@ -6,17 +6,26 @@
 
 mod aim;
 mod aperture;
+mod element;
+mod f_number;
 mod first_order;
 mod focus;
+mod group;
 mod lens;
+mod pose;
 mod prescription;
+mod symmetry;
 mod tracer;
 
 pub use aim::{FrontDisk, RearPupil};
-pub use aperture::{ApertureError, MarginalRay};
-pub use first_order::FirstOrder;
+pub use aperture::{Aperture, Iris, Mask, Opening, Shape};
+pub use element::Element;
+pub use f_number::{ApertureError, MarginalRay};
+pub use first_order::{FirstOrder, Section};
 pub use focus::FocusError;
-pub use lens::{Element, Lens, LensMedium};
+pub use group::Group;
+pub use lens::{Lens, LensMedium};
+pub use pose::{AxisBreak, Displacement, Pose};
 pub use prescription::{load, parse};
 pub use spectra_core::surface::Travel;
 pub use tracer::{Indices, RayPath, Tracer, Work};

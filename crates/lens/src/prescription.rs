@@ -1,8 +1,8 @@
 //! Lens files: a prescription in YAML, and where it comes from.
 
-use crate::{Element, Lens, LensMedium};
+use crate::{AxisBreak, Displacement, Element, Group, Lens, LensMedium, aperture};
 use serde::Deserialize;
-use spectra_core::params::{Fault, Faults, Length, Params, StageNode};
+use spectra_core::params::{Angle, Fault, Faults, Length, Params, Positive, StageNode};
 use spectra_core::registry::{self, Context};
 use spectra_core::resources::Resources;
 use spectra_core::spectral::BAND;
@@ -31,6 +31,9 @@ struct LensFile {
     remark: Option<String>,
     /// The surfaces, in the order of the light.
     surfaces: Vec<StageNode>,
+    /// Groups of surfaces that move together.
+    #[serde(default)]
+    groups: Vec<StageNode>,
 }
 
 fn line_d() -> String {
@@ -52,9 +55,86 @@ struct Place {
     vd: Option<f64>,
     /// Clear semi-diameter, mm if bare; clips nothing if absent.
     semi_diameter: Option<Length>,
+    /// A word for people; read, and left to them.
+    #[expect(dead_code, reason = "a remark is for the reader of the file")]
+    remark: Option<String>,
+    /// Edge of the element, mm if bare, for drawing; clips nothing.
+    outer_semi_diameter: Option<Positive<Length>>,
+    /// Leg of the chamfer at the edge, mm if bare: positive toward +z.
+    chamfer: Option<Length>,
+    /// What else limits the light: one aperture or a list.
+    aperture: Option<StageNode>,
+    /// Whether it reflects.
+    #[serde(default)]
+    mirror: bool,
+    /// Whether this optical surface is the aperture stop.
+    #[serde(default)]
+    stop: bool,
+    /// Shift of this surface alone, mm if bare.
+    decenter: Option<[Length; 2]>,
+    /// Tilt of this surface alone about x, y, z, degrees if bare.
+    tilt: Option<[Angle; 3]>,
+    /// Whether it stands the other way round.
+    #[serde(default)]
+    reversed: bool,
 }
 
-const PLACE_KEYS: [&str; 5] = ["thickness", "glass", "nd", "vd", "semi-diameter"];
+const PLACE_KEYS: [&str; 14] = [
+    "thickness",
+    "glass",
+    "nd",
+    "vd",
+    "semi-diameter",
+    "outer-semi-diameter",
+    "chamfer",
+    "aperture",
+    "mirror",
+    "stop",
+    "decenter",
+    "tilt",
+    "reversed",
+    "remark",
+];
+
+/// The kind that bends the axis, and is no surface.
+const BREAK: &str = "coordinate-break";
+
+/// A bend of the axis.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct BreakParams {
+    /// Shift of the axis, mm if bare.
+    decenter: Option<[Length; 2]>,
+    /// Tilt of the axis about x, y, z, degrees if bare.
+    tilt: Option<[Angle; 3]>,
+    /// `decenter-first` or `tilt-first`.
+    order: Option<String>,
+    /// Distance to what follows, along the new axis, mm if bare.
+    thickness: Option<Length>,
+}
+
+impl BreakParams {
+    fn axis_break(&self, params: &Params) -> Result<AxisBreak, Fault> {
+        let tilt_first = match self.order.as_deref() {
+            None | Some("decenter-first") => false,
+            Some("tilt-first") => true,
+            Some(other) => {
+                let fault = params.fault("order", format!("unknown order `{other}`"));
+                return Err(fault.hint("decenter-first or tilt-first"));
+            }
+        };
+        let displacement = Displacement { tilt_first, ..displacement(self.decenter, self.tilt) };
+        Ok(AxisBreak { displacement, thickness_mm: self.thickness.map_or(0.0, Length::mm) })
+    }
+}
+
+fn displacement(decenter: Option<[Length; 2]>, tilt: Option<[Angle; 3]>) -> Displacement {
+    Displacement {
+        decenter_mm: decenter.map_or([0.0; 2], |d| d.map(Length::mm)),
+        tilt_rad: tilt.map_or([0.0; 3], |t| t.map(Angle::rad)),
+        tilt_first: false,
+    }
+}
 
 /// A glass by its figures.
 #[derive(Debug, Deserialize)]
@@ -100,34 +180,38 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
         source: file.source,
         remark: file.remark,
         reference_nm,
-        elements: Vec::new(),
-        media: vec![LensMedium::air()],
-        warnings: Vec::new(),
+        ..Lens::empty("")
     };
     if file.surfaces.is_empty() {
         faults.push(params.fault("surfaces", "a lens has at least one surface"));
     }
     let context = Context { resources, grid: BAND, illuminant: None };
-    let mut z_mm = 0.0;
     let mut medium_before = 0;
+    let mut along = true;
+    let mut breaks = Vec::new();
     for node in &file.surfaces {
         let Some(params) = faults.take(node.params()) else { continue };
+        if params.kind() == Some(BREAK) {
+            let own = faults.take(params.parse::<BreakParams>());
+            breaks.extend(own.and_then(|p| faults.take(p.axis_break(&params).map_err(Faults::from))));
+            continue;
+        }
         let (place, shape) = params.split(&PLACE_KEYS);
         let surface = faults.take(registry::build::<dyn Surface>(&shape, &context));
         let stated = faults.take(place.parse::<Place>());
         let (Some(surface), Some(stated)) = (surface, stated) else { continue };
-        let thickness_mm = stated.thickness.map_or(0.0, |t| t.mm());
-        if thickness_mm < 0.0 {
-            let fault = place.fault("thickness", format!("the thickness is negative: {thickness_mm} mm"));
-            faults.push(fault.hint("distances run in the sense of the light: write it without the minus sign"));
-        }
         let semi_diameter_mm = stated.semi_diameter.map(|s| s.mm());
         if semi_diameter_mm.is_some_and(|s| s <= 0.0) {
             let fault = place.fault("semi-diameter", "the semi-diameter must be greater than 0");
             faults.push(fault.hint("leave it out where it is not known"));
         }
         let number = lens.elements.len() + 1;
-        let medium_after = if surface.is_stop() && stated.glass.is_none() && stated.nd.is_none() {
+        let medium_is_stated = stated.glass.is_some() || stated.nd.is_some();
+        if stated.mirror && medium_is_stated {
+            let fault = place.fault("mirror", "light does not go behind a mirror: it has no glass of its own");
+            faults.push(fault.hint("the medium in front of it goes on"));
+        }
+        let medium_after = if stated.mirror || (surface.is_stop() && !medium_is_stated) {
             medium_before // a stop stands in the medium that is there
         } else {
             match medium(&stated, &place, number, &mut lens.warnings) {
@@ -139,25 +223,75 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
                 }
             }
         };
-        let action = if surface.is_stop() { Action::Pass } else { Action::Refract };
-        lens.elements.push(Element {
-            kind: shape.kind().unwrap_or("surface").to_owned(),
-            surface: Arc::from(surface),
-            vertex_z_mm: z_mm,
-            thickness_mm,
-            semi_diameter_mm,
-            action,
-            medium_before,
-            medium_after,
-        });
-        z_mm += thickness_mm;
+        if stated.mirror {
+            along = !along;
+        }
+        let thickness_mm = stated.thickness.map_or(0.0, |t| t.mm());
+        // Behind a mirror light runs the other way; between two planes in air the step may be imagined.
+        if thickness_mm < 0.0 && along && medium_after != medium_before {
+            let fault = place.fault("thickness", format!("the thickness is negative: {thickness_mm} mm"));
+            faults.push(fault.hint("distances run in the sense of the light: write it without the minus sign"));
+        }
+        let apertures = stated.aperture.as_ref().map(|node| aperture::read(node, resources));
+        let mut element =
+            Element::new(shape.kind().unwrap_or("surface"), Arc::from(surface), medium_before, medium_after);
+        if stated.mirror && element.stop {
+            faults.push(place.fault("mirror", "a stop bends no light").hint("`kind: plane` with `stop: true`"));
+        } else if stated.mirror {
+            element.action = Action::Reflect;
+        }
+        element.parameters = Some(shape);
+        element.breaks = std::mem::take(&mut breaks);
+        element.displacement = displacement(stated.decenter, stated.tilt);
+        element.reversed = stated.reversed;
+        element.thickness_mm = thickness_mm;
+        element.semi_diameter_mm = semi_diameter_mm;
+        element.outer_semi_diameter_mm = stated.outer_semi_diameter.map(|s| s.mm());
+        element.chamfer_mm = stated.chamfer.map_or(0.0, Length::mm);
+        element.apertures = apertures.and_then(|read| faults.take(read)).unwrap_or_default();
+        element.stop |= stated.stop;
+        lens.elements.push(element);
         medium_before = medium_after;
     }
-    let stops = lens.elements.iter().filter(|e| e.surface.is_stop()).count();
+    lens.image_breaks = breaks;
+    for node in &file.groups {
+        lens.groups.extend(faults.take(group(node, lens.elements.len())));
+    }
+    lens.arrange();
+    let stops = lens.elements.iter().filter(|e| e.stop).count();
     if stops > 1 {
         faults.push(params.fault("surfaces", format!("{stops} surfaces are stops; a lens has one")));
     }
     faults.into_result(lens)
+}
+
+/// A group of surfaces.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct GroupParams {
+    /// Its name.
+    name: String,
+    /// First and last surface, by number from 1 (a bend of the axis does not count).
+    surfaces: [f64; 2],
+    /// Shift of the group, mm if bare.
+    decenter: Option<[Length; 2]>,
+    /// Tilt of the group about the vertex of its first surface, about x, y, z, degrees if bare.
+    tilt: Option<[Angle; 3]>,
+}
+
+fn group(node: &StageNode, surfaces: usize) -> Result<Group, Faults> {
+    let params = Params::section(node.node().clone(), node.path())?;
+    let p: GroupParams = params.parse()?;
+    let [first, last] = p.surfaces;
+    if first.fract() != 0.0 || last.fract() != 0.0 || !(first >= 1.0 && last >= first && last <= surfaces as f64) {
+        let fault = params.fault("surfaces", format!("no surfaces {first} to {last} in this lens"));
+        return Err(fault.hint(format!("two numbers from 1 to {surfaces}, the smaller one first")).into());
+    }
+    Ok(Group {
+        name: p.name,
+        elements: first as usize - 1..last as usize,
+        displacement: displacement(p.decenter, p.tilt),
+    })
 }
 
 /// The medium that a surface states, or `None` for air.

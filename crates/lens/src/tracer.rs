@@ -1,10 +1,12 @@
 //! Sequential tracing of whole batches, in either sense.
 
+use crate::aperture::Shape;
+use crate::pose::Pose;
 use crate::{Element, Lens};
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use spectra_core::batch::Column;
 use spectra_core::isa::{Isa, Vectorized};
-use spectra_core::surface::{IndexColumns, Interface, Travel};
+use spectra_core::surface::{Action, IndexColumns, Interface, Travel};
 use spectra_core::{Loss, LossCounts, RayBatch};
 use spectra_glass::{Dispersion, DispersionError, Medium};
 
@@ -28,9 +30,36 @@ pub enum Indices {
 #[derive(Debug)]
 pub struct Tracer {
     elements: Vec<Element>,
-    image_z_mm: f64,
+    /// Square of the radius at which each clips, mm^2.
+    clips: Vec<f64>,
+    forward: Vec<Step>,
+    backward: Vec<Step>,
     media: Vec<Dispersion>,
     isa: Isa,
+}
+
+/// How rays come from one frame into the next.
+#[derive(Clone, Copy, Debug)]
+enum Step {
+    /// Both stand alike on one line along z: the next origin lies this far, mm.
+    Shift(f64),
+    /// Anything else: the pose of the frame they are in, seen from the next one.
+    Turn(Pose),
+}
+
+impl Step {
+    fn between(from: &Pose, to: &Pose) -> Self {
+        let aside = from.origin_mm - to.origin_mm;
+        if from.rotation == to.rotation && from.rotation == DMat3::IDENTITY && aside.x == 0.0 && aside.y == 0.0 {
+            return Self::Shift(to.origin_mm.z - from.origin_mm.z);
+        }
+        Self::Turn(to.inverse().then(from))
+    }
+
+    /// The steps along a list of frames.
+    fn along<'a>(frames: impl Iterator<Item = &'a Pose> + Clone) -> Vec<Self> {
+        frames.clone().zip(frames.skip(1)).map(|(from, to)| Self::between(from, to)).collect()
+    }
 }
 
 /// What one thread needs to trace: index columns, and what was lost.
@@ -73,7 +102,13 @@ impl Tracer {
                 }
             })
             .collect::<Result<_, _>>()?;
-        Ok(Self { elements: lens.elements.clone(), image_z_mm: lens.image_z_mm(), media, isa })
+        let own = std::iter::once(&Pose::IDENTITY);
+        let frames: Vec<&Pose> =
+            own.chain(lens.elements.iter().map(|e| &e.pose)).chain(std::iter::once(&lens.image_pose)).collect();
+        let forward = Step::along(frames.iter().copied());
+        let backward = Step::along(frames.iter().rev().copied());
+        let clips = lens.elements.iter().map(round_clip2_mm2).collect();
+        Ok(Self { elements: lens.elements.clone(), clips, forward, backward, media, isa })
     }
 
     /// The instruction set in use.
@@ -106,32 +141,13 @@ impl Tracer {
     /// in that of the image plane; backward the other way round.
     pub fn trace(&self, rays: &mut RayBatch, work: &mut Work, travel: Travel) {
         self.refractive_indices(rays, work);
-        // `origin` is the place, along the axis of the lens, of the frame that the rays are in.
-        let mut origin = if travel == Travel::Forward { 0.0 } else { self.image_z_mm };
+        let steps = if travel == Travel::Forward { &self.forward } else { &self.backward };
         let mut alive = rays.len();
-        for step in 0..self.elements.len() {
+        for (step, into) in steps[..self.elements.len()].iter().enumerate() {
             let at = if travel == Travel::Forward { step } else { self.elements.len() - 1 - step };
-            let element = &self.elements[at];
-            let (before, after) = match travel {
-                Travel::Forward => (element.medium_before, element.medium_after),
-                Travel::Backward => (element.medium_after, element.medium_before),
-            };
-            let number = at as u32 + 1;
-            let len = rays.len();
-            let interface = Interface {
-                number,
-                shift_mm: element.vertex_z_mm - origin,
-                clip_radius2_mm2: element.semi_diameter_mm.map_or(f64::INFINITY, |s| s * s),
-                action: element.action,
-                travel,
-                before: columns(&work.media[before], len),
-                after: columns(&work.media[after], len),
-            };
-            let ended = element.surface.interact(rays, &interface, self.isa);
-            origin = element.vertex_z_mm;
-            rays.set_surface(number);
+            let ended = self.interact(rays, work, at, into, travel, self.isa);
             if ended > 0 {
-                self.count(rays, number, &mut work.losses);
+                self.count(rays, at as u32 + 1, &mut work.losses);
                 alive -= ended;
                 if work.compact && alive * 2 < rays.len() {
                     rays.compact();
@@ -143,10 +159,48 @@ impl Tracer {
             Travel::Forward => self.elements.last().map_or(0, |e| e.medium_after),
             Travel::Backward => self.elements.first().map_or(0, |e| e.medium_before),
         };
-        let end = if travel == Travel::Forward { self.image_z_mm } else { 0.0 };
         let len = rays.len();
         let index = work.media[outside].n.slice(len);
-        self.isa.run(Leave { rays, index, shift_mm: origin - end });
+        let shift_mm = match steps[self.elements.len()] {
+            Step::Shift(shift_mm) => shift_mm,
+            Step::Turn(pose) => {
+                self.isa.run(Reframe { rays, pose });
+                0.0
+            }
+        };
+        self.isa.run(Leave { rays, index, shift_mm: -shift_mm });
+    }
+
+    /// Brings a batch onto element `at` and through it; says how many rays ended there.
+    fn interact(&self, rays: &mut RayBatch, work: &Work, at: usize, into: &Step, travel: Travel, isa: Isa) -> usize {
+        let element = &self.elements[at];
+        let shift_mm = match into {
+            Step::Shift(shift_mm) => *shift_mm,
+            Step::Turn(pose) => {
+                isa.run(Reframe { rays, pose: *pose });
+                0.0
+            }
+        };
+        let (before, after) = match travel {
+            Travel::Forward => (element.medium_before, element.medium_after),
+            Travel::Backward => (element.medium_after, element.medium_before),
+        };
+        let len = rays.len();
+        let interface = Interface {
+            number: at as u32 + 1,
+            shift_mm,
+            clip_radius2_mm2: self.clips[at],
+            action: element.action,
+            travel: sense(element, travel),
+            before: columns(&work.media[before], len),
+            after: columns(&work.media[after], len),
+        };
+        let mut ended = element.surface.interact(rays, &interface, isa);
+        for aperture in &element.apertures {
+            ended += aperture.clip(rays, interface.number, element.semi_diameter_mm);
+        }
+        rays.set_surface(interface.number);
+        ended
     }
 
     /// Follows one ray forward, surface by surface: for drawings and searches, not for light.
@@ -163,28 +217,17 @@ impl Tracer {
         let mut work = self.work_in_place(1);
         self.refractive_indices(&rays, &mut work);
         let mut path = RayPath { points: vec![position], direction, end: None };
-        let mut origin = 0.0;
-        for (at, element) in self.elements.iter().enumerate() {
-            let interface = Interface {
-                number: at as u32 + 1,
-                shift_mm: element.vertex_z_mm - origin,
-                clip_radius2_mm2: element.semi_diameter_mm.map_or(f64::INFINITY, |s| s * s),
-                action: element.action,
-                travel: Travel::Forward,
-                before: columns(&work.media[element.medium_before], 1),
-                after: columns(&work.media[element.medium_after], 1),
-            };
-            element.surface.interact(&mut rays, &interface, Isa::Baseline);
-            origin = element.vertex_z_mm;
+        for (at, (element, into)) in self.elements.iter().zip(&self.forward).enumerate() {
+            self.interact(&mut rays, &work, at, into, Travel::Forward, Isa::Baseline);
             let ([x, y, z], [l, m, n]) = (rays.positions(), rays.directions());
             path.end = rays.loss(0);
             if path.end.is_none_or(|(cause, _)| cause == Loss::Vignetted) {
-                path.points.push(DVec3::new(x[0], y[0], z[0] + origin));
+                path.points.push(element.pose.point(DVec3::new(x[0], y[0], z[0])));
             }
             if path.end.is_some() {
                 break;
             }
-            path.direction = DVec3::new(l[0], m[0], n[0]);
+            path.direction = element.pose.direction(DVec3::new(l[0], m[0], n[0]));
         }
         path
     }
@@ -245,6 +288,57 @@ impl Vectorized for Evaluate<'_> {
     #[inline(always)]
     fn run(self) {
         self.medium.index_and_inverse(self.wavelength_nm, self.n, self.inverse);
+    }
+}
+
+/// The sense in which light meets a surface, along the surface's own z: behind a mirror, or where the surface is turned
+/// round, it is the other one.
+fn sense(element: &Element, travel: Travel) -> Travel {
+    // Backward, a mirror is met from where light leaves it forward: on the same side.
+    let forward = match travel {
+        Travel::Forward => element.along,
+        Travel::Backward => element.along == (element.action == Action::Reflect),
+    };
+    if forward { Travel::Forward } else { Travel::Backward }
+}
+
+/// Square of the radius at which a surface clips, mm^2: an iris reaches beyond the circle of its area.
+fn round_clip2_mm2(element: &Element) -> f64 {
+    let Some(size_mm) = element.semi_diameter_mm else { return f64::INFINITY };
+    let iris = element.apertures.iter().find_map(|a| match &a.shape {
+        Shape::Iris(iris) => Some(iris.opening(size_mm).corner_radius_mm()),
+        _ => None,
+    });
+    let reach_mm = iris.unwrap_or(size_mm);
+    reach_mm * reach_mm
+}
+
+/// Brings rays from one frame into another.
+struct Reframe<'a> {
+    rays: &'a mut RayBatch,
+    /// The frame they are in, seen from the one they go to.
+    pose: Pose,
+}
+
+impl Vectorized for Reframe<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run(self) {
+        let Pose { origin_mm: o, rotation: r } = self.pose;
+        let c = self.rays.columns_mut();
+        let len = c.x.len();
+        let (x, y, z) = (&mut c.x[..len], &mut c.y[..len], &mut c.z[..len]);
+        let (l, m, n) = (&mut c.l[..len], &mut c.m[..len], &mut c.n[..len]);
+        for i in 0..len {
+            let (px, py, pz) = (x[i], y[i], z[i]);
+            x[i] = r.x_axis.x * px + r.y_axis.x * py + r.z_axis.x * pz + o.x;
+            y[i] = r.x_axis.y * px + r.y_axis.y * py + r.z_axis.y * pz + o.y;
+            z[i] = r.x_axis.z * px + r.y_axis.z * py + r.z_axis.z * pz + o.z;
+            let (dl, dm, dn) = (l[i], m[i], n[i]);
+            l[i] = r.x_axis.x * dl + r.y_axis.x * dm + r.z_axis.x * dn;
+            m[i] = r.x_axis.y * dl + r.y_axis.y * dm + r.z_axis.y * dn;
+            n[i] = r.x_axis.z * dl + r.y_axis.z * dm + r.z_axis.z * dn;
+        }
     }
 }
 

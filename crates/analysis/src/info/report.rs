@@ -117,7 +117,7 @@ impl LensReport {
             front_principal_z_mm: first_order.front_principal_z_mm,
             rear_principal_z_mm: first_order.rear_principal_z_mm,
             total_track_mm: lens.image_z_mm(),
-            vertex_length_mm: lens.elements.last().map_or(0.0, |e| e.vertex_z_mm),
+            vertex_length_mm: lens.elements.last().map_or(0.0, |e| e.along_axis_mm),
             image_distance_mm: lens.image_gap_mm(),
             stop_semi_diameter_mm: lens.stop().and_then(|stop| lens.elements[stop].semi_diameter_mm),
             surfaces: surfaces(&held),
@@ -142,11 +142,11 @@ fn diameter_at_mm(held: &Lens, ray: MarginalRay, z_mm: f64) -> Option<f64> {
 
 fn surfaces(held: &Lens) -> Vec<SurfaceReport> {
     let each = held.elements.iter().enumerate().map(|(at, e)| {
-        let (_, curvature) = e.surface.vertex_curvature_per_mm();
+        let (_, curvature) = e.vertex_curvature_per_mm();
         SurfaceReport {
             number: at + 1,
             kind: e.kind.clone(),
-            z_mm: e.vertex_z_mm,
+            z_mm: e.vertex_z_mm(),
             radius_mm: (curvature != 0.0).then(|| 1.0 / curvature),
             thickness_mm: e.thickness_mm,
             semi_diameter_mm: e.semi_diameter_mm,

@@ -12,10 +12,11 @@ mod row;
 
 use crate::Light;
 use csv::NumberRows;
+use glam::DVec3;
 use row::Row;
 use spectra_core::spectral::BAND;
 use spectra_core::{Isa, Loss, LossCounts, RayBatch};
-use spectra_lens::{Indices, Lens, Tracer, Travel, Work};
+use spectra_lens::{Indices, Lens, Pose, Tracer, Travel, Work};
 use std::io::{BufRead, Write};
 
 pub use row::Format;
@@ -204,8 +205,8 @@ impl<'a> Bench<'a> {
         }
         self.tracer.trace(&mut self.rays, &mut self.work, Travel::Forward);
         let surfaces = self.tracer.surfaces() as u32;
-        let image_z_mm = self.lens.image_z_mm();
-        let mut rows: Vec<Row> = (0..len).map(|i| row_of(&self.rays, i, surfaces, image_z_mm)).collect();
+        let image = &self.lens.image_pose;
+        let mut rows: Vec<Row> = (0..len).map(|i| row_of(&self.rays, i, surfaces, image)).collect();
         for at in std::mem::take(&mut self.outside) {
             rows[at] = self.trace_outside(self.start[at])?;
         }
@@ -231,7 +232,7 @@ impl<'a> Bench<'a> {
         let c = rays.columns_mut();
         [c.x[0], c.y[0], c.z[0], c.l[0], c.m[0], c.n[0], c.wavelength_nm[0]] = ray;
         tracer.trace(&mut rays, &mut tracer.work_in_place(1), Travel::Forward);
-        let row = row_of(&rays, 0, tracer.surfaces() as u32, self.lens.image_z_mm());
+        let row = row_of(&rays, 0, tracer.surfaces() as u32, &self.lens.image_pose);
         self.single = Some((nm, tracer));
         Ok(row)
     }
@@ -253,7 +254,7 @@ impl<'a> Bench<'a> {
 }
 
 /// What became of ray `i`, which left the tracer in the frame of the image plane.
-fn row_of(rays: &RayBatch, i: usize, surfaces: u32, image_z_mm: f64) -> Row {
+fn row_of(rays: &RayBatch, i: usize, surfaces: u32, image: &Pose) -> Row {
     if let Some((cause, surface)) = rays.loss(i) {
         return Row::Lost { cause, surface };
     }
@@ -262,7 +263,8 @@ fn row_of(rays: &RayBatch, i: usize, surfaces: u32, image_z_mm: f64) -> Row {
     let distance = -z / n;
     let (x, y) = (x + distance * l, y + distance * m);
     if x.is_finite() && y.is_finite() {
-        Row::Hit { point_mm: [x, y, image_z_mm], direction: [l, m, n] }
+        let (point_mm, direction) = (image.point(DVec3::new(x, y, 0.0)), image.direction(DVec3::new(l, m, n)));
+        Row::Hit { point_mm: point_mm.into(), direction: direction.into() }
     } else {
         Row::Lost { cause: Loss::Missed, surface: surfaces + 1 }
     }

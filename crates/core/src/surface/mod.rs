@@ -81,6 +81,11 @@ pub trait Surface: Send + Sync + std::fmt::Debug {
         false
     }
 
+    /// Whether it treats azimuths differently although its sag does not show it: a ruled grating.
+    fn is_directional(&self) -> bool {
+        false
+    }
+
     /// Moves the living rays of the batch from the frame of the surface before onto this one, in
     /// its own frame, and bends them; those that end get cause and number. Works in either sense of
     /// travel. Returns how many ended here.

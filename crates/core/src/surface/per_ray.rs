@@ -28,6 +28,10 @@ pub trait ScalarShape: Send + Sync + std::fmt::Debug {
     fn is_stop(&self) -> bool {
         false
     }
+    /// As [`Surface::is_directional`].
+    fn is_directional(&self) -> bool {
+        false
+    }
 }
 
 /// Makes a [`Surface`] of a [`ScalarShape`].
@@ -43,6 +47,9 @@ impl<S: ScalarShape> Surface for PerRay<S> {
     }
     fn is_stop(&self) -> bool {
         self.0.is_stop()
+    }
+    fn is_directional(&self) -> bool {
+        self.0.is_directional()
     }
     fn interact(&self, rays: &mut RayBatch, interface: &Interface<'_>, _isa: Isa) -> usize {
         let c = rays.columns_mut();

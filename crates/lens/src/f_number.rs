@@ -6,6 +6,7 @@
 use crate::{Indices, Lens, Tracer};
 use glam::DVec3;
 use spectra_core::Isa;
+use spectra_core::surface::Action;
 use spectra_glass::DispersionError;
 
 /// The marginal ray of an axial object at infinity.
@@ -61,8 +62,12 @@ impl Lens {
         if path.end.is_some() {
             return None;
         }
-        let stop_height_mm = self.stop().and_then(|stop| path.points.get(stop + 1)).map(|p| p.y.abs());
-        Some(MarginalRay { height_mm, sine: path.direction.y.abs(), stop_height_mm })
+        let stop_height_mm = self.stop().and_then(|stop| {
+            let local = self.elements[stop].pose.local_point(*path.points.get(stop + 1)?);
+            Some(local.truncate().length())
+        });
+        let behind = self.image_pose.local_direction(path.direction);
+        Some(MarginalRay { height_mm, sine: behind.truncate().length(), stop_height_mm })
     }
 
     /// The highest axial ray that the lens passes as it stands.
@@ -71,7 +76,8 @@ impl Lens {
     /// [`ApertureError::Unlimited`].
     pub fn marginal_ray(&self) -> Result<MarginalRay, ApertureError> {
         let largest = self.largest_semi_diameter_mm().ok_or(ApertureError::Unlimited)?;
-        let tracer = Tracer::new(self, Indices::At(self.reference_nm), Isa::Baseline)?;
+        let round = self.clone().with_round_stop();
+        let tracer = Tracer::new(&round, Indices::At(self.reference_nm), Isa::Baseline)?;
         if self.axial_ray(&tracer, largest * 2.0).is_some() {
             return Err(ApertureError::Unlimited);
         }
@@ -98,6 +104,7 @@ impl Lens {
         let mut open = self.clone();
         for e in &mut open.elements {
             e.semi_diameter_mm = None;
+            e.apertures.clear();
         }
         let tracer = Tracer::new(&open, Indices::At(self.reference_nm), Isa::Baseline)?;
         let mut high = self.first_order(self.reference_nm).efl_mm.abs() * sine * 2.0;
@@ -112,7 +119,8 @@ impl Lens {
         }
         let ray = found.filter(|r| (r.sine / sine - 1.0).abs() < 1e-9).ok_or(ApertureError::NoRay(f_number));
         let mut unset = self.clone();
-        if let Some(stop) = unset.stop() {
+        // The rim of an optical surface is there, whatever the stop is set to.
+        if let Some(stop) = unset.stop().filter(|stop| unset.elements[*stop].action == Action::Pass) {
             unset.elements[stop].semi_diameter_mm = None;
         }
         if let Ok(widest) = unset.marginal_ray() {

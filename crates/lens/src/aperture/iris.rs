@@ -1,0 +1,178 @@
+//! The opening between the blades of a stop.
+
+use spectra_core::math;
+
+/// Blades that close a stop.
+///
+/// The opening has one corner between two blades; each side is an arc of the blade's radius, or straight. While the
+/// blade's radius is that of the opening, as wide open on most lenses, it is a circle; stopped down it turns into a
+/// polygon with bulging sides. The semi-diameter of the stop is that of the circle of the same area, so that an
+/// f-number means the same light whatever the blades.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Iris {
+    /// Number of blades, at least 3.
+    pub blades: u32,
+    /// Radius of each blade's edge, mm; infinite for straight blades. Smaller than the opening it is taken as round.
+    pub blade_radius_mm: f64,
+    /// Turns the opening counter-clockwise (seen with +x right and +y up), rad; at 0 a corner lies on +y.
+    pub rotation_rad: f64,
+}
+
+/// The opening of an iris at one size: where all its disks overlap (or, with straight blades, all its half-planes).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Opening {
+    /// Unit vectors from the center to the middle of each side.
+    sides: Vec<[f64; 2]>,
+    /// Center of each side's arc, as distance along its unit vector (zero or negative), mm, and radius; infinite
+    /// radius: straight, at `apothem_mm`.
+    arc: Option<(f64, f64)>,
+    apothem_mm: f64,
+    corner_mm: f64,
+}
+
+impl Iris {
+    /// The opening whose area is that of a circle of this radius, mm.
+    #[must_use]
+    pub fn opening(&self, semi_diameter_mm: f64) -> Opening {
+        let corner_mm = self.corner_radius_mm(semi_diameter_mm);
+        let half = std::f64::consts::PI / f64::from(self.blades);
+        let sides = (0..self.blades).map(|k| {
+            let a = self.rotation_rad + std::f64::consts::FRAC_PI_2 + half * f64::from(2 * k + 1);
+            [math::cos(a), math::sin(a)]
+        });
+        let apothem_mm = corner_mm * math::cos(half);
+        let arc = self.blade_radius_mm.is_finite().then(|| {
+            let radius = self.blade_radius_mm.max(corner_mm);
+            let chord = corner_mm * math::sin(half);
+            (apothem_mm - (radius * radius - chord * chord).max(0.0).sqrt(), radius)
+        });
+        Opening { sides: sides.collect(), arc, apothem_mm, corner_mm }
+    }
+
+    /// Distance of the corners from the center, mm.
+    fn corner_radius_mm(&self, semi_diameter_mm: f64) -> f64 {
+        let want = std::f64::consts::PI * semi_diameter_mm * semi_diameter_mm;
+        if self.blade_radius_mm <= semi_diameter_mm {
+            return semi_diameter_mm;
+        }
+        // The polygon of three blades, the longest, has its corners at 1.56 times the circle's radius.
+        let (mut low, mut high) = (semi_diameter_mm, 1.6 * semi_diameter_mm);
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if self.area_mm2(middle) < want {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        0.5 * (low + high)
+    }
+
+    /// Area with the corners at this distance from the center, mm^2: a polygon, and a segment of a disk on each side.
+    fn area_mm2(&self, corner_mm: f64) -> f64 {
+        let n = f64::from(self.blades);
+        let half = std::f64::consts::PI / n;
+        let polygon = n * corner_mm * corner_mm * math::sin(half) * math::cos(half);
+        if !self.blade_radius_mm.is_finite() {
+            return polygon;
+        }
+        let radius = self.blade_radius_mm.max(corner_mm);
+        let angle = 2.0 * math::asin((corner_mm * math::sin(half) / radius).min(1.0));
+        polygon + n * 0.5 * radius * radius * (angle - math::sin(angle))
+    }
+}
+
+impl Opening {
+    /// Whether a point lies in it, mm from its center.
+    #[must_use]
+    pub fn contains(&self, x_mm: f64, y_mm: f64) -> bool {
+        if x_mm * x_mm + y_mm * y_mm > self.corner_mm * self.corner_mm {
+            return false;
+        }
+        self.sides.iter().all(|[ex, ey]| match self.arc {
+            Some((center, radius)) => {
+                let (x, y) = (x_mm - center * ex, y_mm - center * ey);
+                x * x + y * y <= radius * radius
+            }
+            None => x_mm * ex + y_mm * ey <= self.apothem_mm,
+        })
+    }
+
+    /// Distance of its corners from the center, mm.
+    #[must_use]
+    pub fn corner_radius_mm(&self) -> f64 {
+        self.corner_mm
+    }
+
+    /// Its outline, `per_side` points a blade, mm.
+    #[must_use]
+    pub fn outline_mm(&self, per_side: usize) -> Vec<[f64; 2]> {
+        let half = std::f64::consts::PI / self.sides.len() as f64;
+        let mut points = Vec::with_capacity(self.sides.len() * per_side);
+        for [ex, ey] in &self.sides {
+            for k in 0..per_side {
+                let a = half * (2.0 * k as f64 / per_side as f64 - 1.0);
+                // Along the ray at angle `a` from the side's middle, out to where the side is met.
+                let (s, c) = (math::sin(a), math::cos(a));
+                let r = match self.arc {
+                    Some((center, radius)) => {
+                        let along = center * c;
+                        along + (along * along + radius * radius - center * center).max(0.0).sqrt()
+                    }
+                    None => self.apothem_mm / c,
+                };
+                points.push([r * (c * ex - s * ey), r * (c * ey + s * ex)]);
+            }
+        }
+        points
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn area(opening: &Opening, half_mm: f64) -> f64 {
+        let n = 1000;
+        let at = |i: usize| ((i as f64 + 0.5) / f64::from(n) * 2.0 - 1.0) * half_mm;
+        let inside = (0..n * n).filter(|k| opening.contains(at((k % n) as usize), at((k / n) as usize))).count();
+        inside as f64 / f64::from(n * n) * 4.0 * half_mm * half_mm
+    }
+
+    /// The area is that of the stop's circle, by counting points, whatever the blades; and by the outline.
+    #[test]
+    fn the_area_is_the_circles() {
+        for blades in [3, 5, 6, 9, 15] {
+            for blade_radius_mm in [5.0, 6.0, 20.0, f64::INFINITY] {
+                let iris = Iris { blades, blade_radius_mm, rotation_rad: 0.3 };
+                let opening = iris.opening(5.0);
+                let want = std::f64::consts::PI * 25.0;
+                let got = area(&opening, 8.5);
+                assert!((got / want - 1.0).abs() < 2e-3, "{iris:?}: {got} {want}");
+                let outline = opening.outline_mm(200);
+                let shoelace: f64 = outline
+                    .iter()
+                    .zip(outline.iter().cycle().skip(1))
+                    .map(|([x, y], [u, v])| 0.5 * (x * v - u * y))
+                    .sum();
+                assert!((shoelace / want - 1.0).abs() < 1e-3, "{iris:?}: {shoelace} {want}");
+            }
+        }
+    }
+
+    /// A blade of the opening's own radius makes a circle; straight blades a regular polygon with a corner on +y.
+    #[test]
+    fn round_wide_open_and_straight_when_it_should() {
+        let round = Iris { blades: 6, blade_radius_mm: 5.0, rotation_rad: 0.0 }.opening(5.0);
+        for k in 0..100 {
+            let a = std::f64::consts::TAU * f64::from(k) / 100.0;
+            let (x, y) = (math::cos(a), math::sin(a));
+            assert!(round.contains(4.999 * x, 4.999 * y) && !round.contains(5.001 * x, 5.001 * y));
+        }
+        let straight = Iris { blades: 6, blade_radius_mm: f64::INFINITY, rotation_rad: 0.0 }.opening(5.0);
+        // A hexagon of side a has the area 3 sqrt(3) / 2 a^2, and its corners at a.
+        let a = (std::f64::consts::PI * 25.0 / (1.5 * 3.0_f64.sqrt())).sqrt();
+        assert!((straight.corner_radius_mm() - a).abs() < 1e-9);
+        assert!(straight.contains(0.0, a * 0.9999) && !straight.contains(a * 0.9, 0.0));
+    }
+}

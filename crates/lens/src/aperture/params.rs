@@ -1,0 +1,165 @@
+//! Apertures as a lens file writes them.
+
+use super::{Aperture, Iris, Mask, Shape};
+use serde::Deserialize;
+use spectra_core::params::{Angle, Faults, Length, LengthOrInfinity, Params, Positive, StageNode, Value, nearest};
+use spectra_core::resources::Resources;
+use std::sync::Arc;
+
+/// Keys of every aperture; the others belong to its shape.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct Common {
+    /// Its form.
+    shape: String,
+    /// Its center, mm if bare.
+    center: Option<[Length; 2]>,
+    /// Stops what is inside, in place of what is outside.
+    #[serde(default)]
+    obscures: bool,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct RingParams {
+    /// Inner radius, mm if bare; 0 if absent.
+    inner: Option<Length>,
+    /// Outer radius, mm if bare; unlimited if absent.
+    outer: Option<LengthOrInfinity>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct HalfSizes {
+    /// Half the width, mm if bare.
+    half_width: Positive<Length>,
+    /// Half the height, mm if bare.
+    half_height: Positive<Length>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct PolygonParams {
+    /// Corners in order, mm if bare.
+    points: Vec<[Length; 2]>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct IrisParams {
+    /// Number of blades.
+    blades: f64,
+    /// Radius of each blade's edge, mm if bare; straight if absent.
+    blade_radius: Option<Positive<Length>>,
+    /// Turn of the opening, degrees if bare.
+    rotation: Option<Angle>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct MaskParams {
+    /// A picture (PNG, JPEG, TIFF): white passes, black stops.
+    file: String,
+    /// Width of the picture, mm if bare.
+    width: Positive<Length>,
+}
+
+const COMMON: [&str; 3] = ["shape", "center", "obscures"];
+const SHAPES: [&str; 6] = ["ring", "rectangle", "ellipse", "polygon", "iris", "mask"];
+const MAX_MASK_BYTES: u64 = 64 << 20;
+const MAX_MASK_SIDE: u32 = 8192;
+const MAX_CORNERS: usize = 10_000;
+
+/// Reads one aperture or a list of them.
+pub(crate) fn read(node: &StageNode, resources: &dyn Resources) -> Result<Vec<Aperture>, Faults> {
+    let Value::Seq(items) = &node.node().value else {
+        return one(&Params::section(node.node().clone(), node.path())?, resources).map(|a| vec![a]);
+    };
+    let mut faults = Faults::new();
+    let mut all = Vec::new();
+    for (at, item) in items.iter().enumerate() {
+        let params = faults.take(Params::section(item.clone(), &format!("{}[{at}]", node.path())));
+        all.extend(params.and_then(|p| faults.take(one(&p, resources))));
+    }
+    faults.into_result(all)
+}
+
+fn one(params: &Params, resources: &dyn Resources) -> Result<Aperture, Faults> {
+    let (common, own) = params.split(&COMMON);
+    let common: Common = common.parse()?;
+    let shape = match common.shape.as_str() {
+        "ring" => ring(&own)?,
+        "rectangle" => {
+            let p: HalfSizes = own.parse()?;
+            Shape::Rectangle { half_width_mm: p.half_width.mm(), half_height_mm: p.half_height.mm() }
+        }
+        "ellipse" => {
+            let p: HalfSizes = own.parse()?;
+            Shape::Ellipse { half_width_mm: p.half_width.mm(), half_height_mm: p.half_height.mm() }
+        }
+        "polygon" => polygon(&own)?,
+        "iris" => iris(&own)?,
+        "mask" => mask(&own, resources)?,
+        other => {
+            let fault = params.fault("shape", format!("unknown shape `{other}`"));
+            let known = SHAPES.join(", ");
+            return Err(match nearest(other, SHAPES) {
+                Some(near) => fault.hint(format!("did you mean `{near}`? Known: {known}")),
+                None => fault.hint(format!("known: {known}")),
+            }
+            .into());
+        }
+    };
+    let center_mm = common.center.map_or([0.0; 2], |c| c.map(Length::mm));
+    Ok(Aperture { shape, center_mm, obscures: common.obscures })
+}
+
+fn ring(params: &Params) -> Result<Shape, Faults> {
+    let p: RingParams = params.parse()?;
+    let (inner_mm, outer_mm) = (p.inner.map_or(0.0, Length::mm), p.outer.map_or(f64::INFINITY, |o| o.mm()));
+    if !(inner_mm >= 0.0 && outer_mm > inner_mm) {
+        let fault = params.fault("outer", format!("no ring lies between the radii {inner_mm} and {outer_mm} mm"));
+        return Err(fault.hint("0 <= inner < outer").into());
+    }
+    Ok(Shape::Ring { inner_mm, outer_mm })
+}
+
+fn polygon(params: &Params) -> Result<Shape, Faults> {
+    let p: PolygonParams = params.parse()?;
+    if !(3..=MAX_CORNERS).contains(&p.points.len()) {
+        let fault = params.fault("points", format!("{} corners make no polygon", p.points.len()));
+        return Err(fault.hint(format!("3 to {MAX_CORNERS}, in order around it")).into());
+    }
+    Ok(Shape::Polygon(p.points.into_iter().map(|point| point.map(Length::mm)).collect()))
+}
+
+fn iris(params: &Params) -> Result<Shape, Faults> {
+    let p: IrisParams = params.parse()?;
+    if p.blades.fract() != 0.0 || !(3.0..=100.0).contains(&p.blades) {
+        return Err(params.fault("blades", format!("{} blades", p.blades)).hint("a whole number from 3 to 100").into());
+    }
+    Ok(Shape::Iris(Iris {
+        blades: p.blades as u32,
+        blade_radius_mm: p.blade_radius.map_or(f64::INFINITY, |r| r.mm()),
+        rotation_rad: p.rotation.map_or(0.0, Angle::rad),
+    }))
+}
+
+fn mask(params: &Params, resources: &dyn Resources) -> Result<Shape, Faults> {
+    let p: MaskParams = params.parse()?;
+    let fail = |text: String| Faults::from(params.fault("file", text).hint("a PNG, JPEG or TIFF beside the lens file"));
+    let beside = params.base_dir().map(|folder| folder.join(&p.file)).filter(|path| path.is_file());
+    let path = beside.map_or_else(|| p.file.clone(), |path| path.to_string_lossy().into_owned());
+    let found =
+        resources.read(&path, &["lenses"], &[], MAX_MASK_BYTES).map_err(|e| fail(format!("`{}`: {e}", p.file)))?;
+    let mut reader = image::ImageReader::new(std::io::Cursor::new(&found.bytes[..]))
+        .with_guessed_format()
+        .map_err(|e| fail(format!("`{}`: {e}", p.file)))?;
+    let mut limits = image::Limits::default();
+    (limits.max_image_width, limits.max_image_height) = (Some(MAX_MASK_SIDE), Some(MAX_MASK_SIDE));
+    reader.limits(limits);
+    let picture = reader.decode().map_err(|e| fail(format!("`{}`: {e}", p.file)))?.into_luma16();
+    let (width, height) = picture.dimensions();
+    let values: Arc<[f32]> = picture.as_raw().iter().map(|v| f32::from(*v) / 65535.0).collect();
+    Ok(Shape::Mask(Mask::new(width as usize, height as usize, p.width.mm(), values)))
+}
