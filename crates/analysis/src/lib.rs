@@ -2,8 +2,12 @@
 //!
 //! - [`trace`]: rays as CSV through a lens, the door through which any other program can be compared
 //!   with this one;
-//! - [`info`]: first-order figures, pupils and prescription, for a program and for a person.
+//! - [`info`]: first-order figures, pupils and prescription, for a program and for a person;
+//! - [`fan`]: the rays of a field that pass, and the chief ray among them;
+//! - [`draw`]: a lens as a figure, with rays in the colors of their wavelengths.
 
+pub mod draw;
+pub mod fan;
 pub mod info;
 mod light;
 pub mod trace;

@@ -197,8 +197,65 @@ pub(crate) struct LensArguments {
 pub(crate) enum LensCommand {
     /// Show a lens in figures: focal lengths, pupils, f-number, prescription.
     Info(LensInfo),
+    /// Draw a lens: glass, stop, rays of several fields in their spectral colors.
+    Draw(LensDraw),
     /// Trace rays through a lens: CSV in, CSV out.
     Trace(LensTrace),
+}
+
+/// `spectra lens draw`.
+#[derive(Debug, Args)]
+#[command(
+    long_about = "Draw a lens: glass tinted by its index and dispersion, stop, image plane, and rays of several fields in the \
+        colors of their wavelengths.\n\n\
+        Every ray is traced; a fan holds rays evenly over what really passes at its field. An element whose prescription \
+        states no size is drawn as large as the light on it.",
+    after_long_help = "Example: the Biotar at f/4, three fields\n  \
+        spectra lens draw zeiss-biotar-50-f1.4 --f-number f/4 --fields 0,10,20 -o biotar.svg"
+)]
+pub(crate) struct LensDraw {
+    #[command(flatten)]
+    pub setting: LensSetting,
+    /// File to write: .svg or .png.
+    #[arg(short, long, value_name = "FILE")]
+    pub output: PathBuf,
+    /// Field angles in degrees; if not given, the axis, and 0.6 and 0.95 of the largest field that passes (up to 85).
+    #[arg(long, value_name = "DEG,DEG,...", value_delimiter = ',', allow_negative_numbers = true)]
+    pub fields: Vec<f64>,
+    /// Wavelengths (550nm) or lines (C').
+    #[arg(long, value_name = "NM,NM,...", value_delimiter = ',', default_value = "F',e,C'", value_parser = wavelength_or_line)]
+    pub wavelengths: Vec<f64>,
+    /// Rays a fan and wavelength.
+    #[arg(long, value_name = "N", default_value = "5", value_parser = clap::value_parser!(u16).range(0..=1001))]
+    pub rays: u16,
+    /// Distance of the object from the first surface (2m, inf).
+    #[arg(long, value_name = "DISTANCE", default_value = "inf", value_parser = parse::<OrInfinity<Positive<Length>>>)]
+    pub object: OrInfinity<Positive<Length>>,
+    /// The cut: y-z or x-z.
+    #[arg(long, value_enum, default_value_t = CutArgument::Y)]
+    pub section: CutArgument,
+    /// Width of the drawing (of a .png, in half pixels).
+    #[arg(long, value_name = "UNITS", default_value = "900", value_parser = clap::value_parser!(u16).range(100..=8000))]
+    pub width: u16,
+    /// White glass and added light on a black ground.
+    #[arg(long)]
+    pub dark: bool,
+}
+
+/// The plane of a drawing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum CutArgument {
+    /// y upward.
+    Y,
+    /// x upward.
+    X,
+}
+
+fn wavelength_or_line(text: &str) -> Result<f64, String> {
+    match spectra_glass::lines::by_name(text.trim()) {
+        Some(line) => Ok(line.wavelength_nm),
+        None => parse::<Wavelength>(text).map(|w| w.nm()).map_err(|e| format!("{e}; or a line such as F', e, C'")),
+    }
 }
 
 /// A lens, and how it is set.

@@ -47,6 +47,12 @@ pub trait Emit: Send + Sync {
     /// (W sr^-1 nm^-1) times 1e6. `u` and `v` are the numbers to draw with, one a ray.
     fn place(&self, rays: &mut RayBatch, u: &[f64], v: &[f64], isa: Isa);
 
+    /// Whether [`Emit::place`] writes the directions too, as of a beam: then rays are not aimed at the lens, and their
+    /// weight is spectral flux times 1e6 (W nm^-1, W on a line).
+    fn is_directed(&self) -> bool {
+        false
+    }
+
     /// With the directions now set: multiplies the weight by the emission toward it relative to
     /// that of [`Emit::place`], the cosine of an emitting plane included.
     fn radiate(&self, rays: &mut RayBatch, isa: Isa);

@@ -118,7 +118,12 @@ impl Canvas {
             match &part.kind {
                 PartKind::Fill { polygon, paint } => raster.fill(std::slice::from_ref(polygon), paint, part.clip),
                 PartKind::Line { points, closed, stroke } => {
-                    raster.fill(&stroke.outline(points, *closed), &stroke.color.into(), part.clip);
+                    let area = stroke.outline(points, *closed);
+                    if stroke.is_light {
+                        raster.shine(&area, &stroke.color.into(), part.clip);
+                    } else {
+                        raster.fill(&area, &stroke.color.into(), part.clip);
+                    }
                 }
                 PartKind::Text { strokes, stroke, halo, .. } => {
                     for stroke in halo.iter().chain([stroke]) {

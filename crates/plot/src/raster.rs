@@ -36,6 +36,15 @@ impl Raster {
 
     /// Fills what lies in the polygons (where they wind around a place at all), within `clip`.
     pub(crate) fn fill(&mut self, polygons: &[Vec<Point>], paint: &Paint, clip: Option<Rect>) {
+        self.put(polygons, paint, clip, false);
+    }
+
+    /// Adds light in the polygons, within `clip`.
+    pub(crate) fn shine(&mut self, polygons: &[Vec<Point>], paint: &Paint, clip: Option<Rect>) {
+        self.put(polygons, paint, clip, true);
+    }
+
+    fn put(&mut self, polygons: &[Vec<Point>], paint: &Paint, clip: Option<Rect>, light: bool) {
         let scale = self.scale;
         let whole = Rect::new(0.0, 0.0, self.width as f64 / scale, self.height as f64 / scale);
         let edge = |value: f64, largest: usize| (value * scale).round_ties_even().clamp(0.0, largest as f64) as usize;
@@ -53,13 +62,13 @@ impl Raster {
         let mut steps = vec![0.0_f32; self.width + 2];
         for (row, lines) in crossings.rows() {
             if cover(lines, &columns, &mut steps) {
-                self.blend(row, &columns, &mut steps, paint);
+                self.blend(row, &columns, &mut steps, paint, light);
             }
         }
     }
 
     /// Puts paint on a row, by the coverage that `steps` add up to; leaves them 0.
-    fn blend(&mut self, row: usize, columns: &std::ops::Range<usize>, steps: &mut [f32], paint: &Paint) {
+    fn blend(&mut self, row: usize, columns: &std::ops::Range<usize>, steps: &mut [f32], paint: &Paint, light: bool) {
         let mut covered = 0.0;
         for column in columns.clone() {
             covered += steps[column];
@@ -69,7 +78,11 @@ impl Raster {
                 let share = covered.min(1.0) * color.opacity as f32;
                 let pixel = &mut self.rgb[row * self.width + column];
                 for (old, new) in pixel.iter_mut().zip(color.rgb) {
-                    *old += share * (f32::from(new) - *old);
+                    *old = if light {
+                        encoded(linear(*old) + share * linear(f32::from(new)))
+                    } else {
+                        *old + share * (f32::from(new) - *old)
+                    };
                 }
             }
         }
@@ -81,6 +94,18 @@ impl Raster {
         let rgb = self.rgb.into_iter().map(|p| p.map(code)).collect();
         Pixels { width_px: self.width as u32, height_px: self.height as u32, rgb }
     }
+}
+
+/// Light of an sRGB code value of 0 to 255 (IEC 61966-2-1), white is 1.
+fn linear(code: f32) -> f32 {
+    let v = code / 255.0;
+    if v <= 0.04045 { v / 12.92 } else { libm::powf((v + 0.055) / 1.055, 2.4) }
+}
+
+/// The way back; more light than white is white.
+fn encoded(light: f32) -> f32 {
+    let v = light.min(1.0);
+    255.0 * if v <= 0.003_130_8 { 12.92 * v } else { 1.055 * libm::powf(v, 1.0 / 2.4) - 0.055 }
 }
 
 /// Where edges cross the scan lines: place and sense.
@@ -171,6 +196,22 @@ mod tests {
         let sides = disc.len() as f64;
         let area = 0.5 * sides * 16.0 * libm::sin(std::f64::consts::TAU / sides);
         assert!((ink(&drawn(&[disc], Color::BLACK, None)) - area).abs() < 0.05);
+    }
+
+    /// Red and green light on one place are yellow, half of white twice is white, and paper cannot get brighter.
+    #[test]
+    fn light_adds() {
+        let all = Rect::new(0.0, 0.0, 10.0, 10.0).corners().to_vec();
+        let shone = |ground: Color, colors: &[Color]| {
+            let mut raster = Raster::new(10.0, 10.0, 1.0, ground);
+            colors.iter().for_each(|c| raster.shine(std::slice::from_ref(&all), &(*c).into(), None));
+            raster.finish().rgb[55]
+        };
+        let half = Color::WHITE.with_opacity(0.5);
+        assert_eq!(shone(Color::BLACK, &[Color::new(255, 0, 0), Color::new(0, 255, 0)]), [255, 255, 0]);
+        assert_eq!(shone(Color::BLACK, &[half]), [188; 3]);
+        assert_eq!(shone(Color::BLACK, &[half, half]), [255; 3]);
+        assert_eq!(shone(Color::WHITE, &[half]), [255; 3]);
     }
 
     #[test]

@@ -23,19 +23,27 @@ pub struct Stroke {
     pub cap: Cap,
     /// Lengths of dash, gap, dash ... in turn; empty for a whole line.
     pub dashes: Vec<f64>,
+    /// Whether it adds its light to what is below, as rays do that cross on a dark ground, in place of covering it.
+    pub is_light: bool,
 }
 
 impl Stroke {
     /// A whole line with flat ends.
     #[must_use]
     pub fn new(color: Color, width: f64) -> Self {
-        Self { color, width, cap: Cap::Flat, dashes: Vec::new() }
+        Self { color, width, cap: Cap::Flat, dashes: Vec::new(), is_light: false }
     }
 
     /// The same with round ends.
     #[must_use]
     pub fn round(self) -> Self {
         Self { cap: Cap::Round, ..self }
+    }
+
+    /// The same as light, added to what is below.
+    #[must_use]
+    pub fn as_light(self) -> Self {
+        Self { is_light: true, ..self }
     }
 
     /// The same with dashes and gaps of these lengths.

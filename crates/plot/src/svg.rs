@@ -134,10 +134,11 @@ impl Svg {
                 format!(" stroke-dasharray=\"{}\"", lengths.join(" "))
             }
         };
+        let light = if stroke.is_light { " style=\"mix-blend-mode:screen\"" } else { "" };
         let (color, width) = (stroke.color.hex(), number(stroke.width));
         self.line(&format!(
             "<path d=\"{way}\" fill=\"none\" stroke=\"{color}\" stroke-width=\"{width}\" \
-             stroke-linejoin=\"round\"{cap}{opacity}{dashes}{clip}/>"
+             stroke-linejoin=\"round\"{cap}{opacity}{dashes}{light}{clip}/>"
         ));
     }
 }

@@ -54,10 +54,18 @@ impl Canvas {
     /// # Errors
     /// [`PlotError`].
     pub fn write(&self, path: &Path) -> Result<(), PlotError> {
+        self.write_at(path, PIXELS_A_UNIT)
+    }
+
+    /// The same with `scale` pixels a unit in a PNG.
+    ///
+    /// # Errors
+    /// [`PlotError`].
+    pub fn write_at(&self, path: &Path, scale: f64) -> Result<(), PlotError> {
         let bytes = match Format::of(path)? {
             Format::Svg => Ok(self.to_svg().into_bytes()),
             Format::Png => {
-                let pixels = self.to_pixels(PIXELS_A_UNIT);
+                let pixels = self.to_pixels(scale);
                 png(pixels.rgb.as_flattened(), pixels.width_px, pixels.height_px)
             }
         };

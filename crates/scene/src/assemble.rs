@@ -1,6 +1,6 @@
 //! From a scene file to a [`Scene`], with every fault in one go.
 
-use crate::{ConePattern, Direction, FileResources, Output, RenderSettings, Scene, yaml};
+use crate::{ConePattern, Direction, FileResources, RenderSettings, Scene, output, yaml};
 use serde::Deserialize;
 use spectra_core::params::{FNumber, Fault, Faults, Length, Node, OrInfinity, Params, Positive, StageNode, Wavelength};
 use spectra_core::registry::{self, Context};
@@ -31,7 +31,7 @@ struct SceneFile {
     #[serde(default)]
     render: Option<StageNode>,
     #[serde(default)]
-    output: Option<Vec<String>>,
+    output: Option<Vec<StageNode>>,
 }
 
 /// The `lens` section.
@@ -149,7 +149,7 @@ fn assemble(name: &str, text: String, params: &Params, resources: &dyn Resources
     let film = film.and_then(|p| faults.take(registry::build::<dyn Film>(&p, &context)));
     let render = render.unwrap_or_else(|| params.nothing_said("render"));
     let settings = faults.take(render.parse::<RenderSection>());
-    let output = file.as_ref().and_then(|f| faults.take(outputs(f.output.as_deref(), params)));
+    let output = file.as_ref().and_then(|f| faults.take(output::read(f.output.as_deref())));
     let channels = imager.as_ref().and_then(|imager| match (imager.channels(), &film) {
         (Some(own), None) => Some(own),
         (None, Some(film)) => Some(film.channels()),
@@ -289,26 +289,6 @@ fn render_settings(
         stratified: numbers == 0,
         cone: [ConePattern::Disk, ConePattern::Rings, ConePattern::Random][cone],
     })
-}
-
-fn outputs(names: Option<&[String]>, params: &Params) -> Result<Vec<Output>, Faults> {
-    let Some(names) = names else { return Ok(vec![Output::Exr, Output::Png]) };
-    let mut faults = Faults::new();
-    let mut found = Vec::new();
-    for (i, name) in names.iter().enumerate() {
-        match name.as_str() {
-            "exr" => found.push(Output::Exr),
-            "png" => found.push(Output::Png),
-            "tiff" => found.push(Output::Tiff),
-            _ => {
-                let fault = params.fault(&format!("output[{i}]"), format!("unknown kind of output `{name}`"));
-                faults.push(fault.hint("one of exr, png, tiff"));
-            }
-        }
-    }
-    found.sort_unstable();
-    found.dedup();
-    faults.into_result(found)
 }
 
 /// What a person should know before believing the picture.

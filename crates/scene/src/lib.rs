@@ -5,10 +5,11 @@
 
 mod assemble;
 pub mod diagnostics;
+mod output;
 mod resources;
 mod scene;
 pub mod yaml;
 
 pub use assemble::load;
 pub use resources::FileResources;
-pub use scene::{ConePattern, Direction, Output, RenderSettings, Scene};
+pub use scene::{ConePattern, Direction, Output, RaysFigure, RenderSettings, Scene};

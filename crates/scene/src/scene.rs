@@ -54,6 +54,29 @@ pub enum Output {
     Png,
     /// The picture with 16 bits a channel.
     Tiff,
+    /// The light's way through the lens, as a figure.
+    Rays(RaysFigure),
+}
+
+/// A figure of the lens and the light on its way through it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct RaysFigure {
+    /// Width, pixels (of an SVG, units).
+    pub width_px: u32,
+    /// Height, pixels.
+    pub height_px: u32,
+    /// Rays across the beam, for each wavelength.
+    pub rays: u32,
+    /// Wavelengths over a continuous spectrum.
+    pub wavelengths: u32,
+    /// Whether each color is as bright as its light, relative to the brightest; else all shine in full.
+    pub true_intensity: bool,
+    /// On white, in place of black.
+    pub light: bool,
+    /// As SVG, in place of PNG.
+    pub svg: bool,
+    /// Whether the image plane is drawn and ends the rays.
+    pub screen: bool,
 }
 
 /// A scene, ready to render.

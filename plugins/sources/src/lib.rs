@@ -1,5 +1,6 @@
 //! Built-in light sources.
 
+mod beam;
 pub mod chart;
 mod chart_source;
 mod flat;

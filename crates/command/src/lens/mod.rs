@@ -1,5 +1,6 @@
 //! `spectra lens`: the lens as an optical engineer looks at it.
 
+mod draw;
 mod info;
 mod trace;
 
@@ -14,6 +15,7 @@ use std::path::Path;
 /// Runs a command on a lens.
 pub(crate) fn lens(command: &LensCommand, isa: Isa) -> Outcome {
     match command {
+        LensCommand::Draw(draw) => draw::draw(draw),
         LensCommand::Info(info) => info::info(info),
         LensCommand::Trace(trace) => trace::trace(trace, isa),
     }

@@ -1,10 +1,12 @@
 //! The folder that results go to.
 
 use super::picture::{attributes, picture};
+use super::rays;
 use super::report::Report;
 use crate::outcome::Failure;
 use spectra_film::write::{write_atomically, write_exr, write_png8, write_tiff16};
-use spectra_scene::{Output, Scene};
+use spectra_plot::PlotError;
+use spectra_scene::{Output, RaysFigure, Scene};
 use std::fmt::Display;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -23,7 +25,7 @@ impl Folder {
         let files: Vec<(Output, PathBuf)> = scene
             .output
             .iter()
-            .map(|output| (*output, folder.join(format!("{}.{}", scene.name, ending(*output)))))
+            .map(|output| (*output, folder.join(format!("{}{}", scene.name, ending(*output)))))
             .collect();
         let report = folder.join("render.json");
         for path in files.iter().map(|(_, path)| path).chain([&report]) {
@@ -62,7 +64,15 @@ impl Folder {
     }
 
     fn write_pictures(&self, report: &Report<'_>) -> Result<(), Failure> {
-        if self.files.iter().all(|(output, _)| *output == Output::Exr) {
+        for (output, path) in &self.files {
+            if let Output::Rays(figure) = output {
+                rays::draw(report.scene, figure, report.isa)?.write_at(path, 1.0).map_err(|e| match e {
+                    PlotError::Write(error) => error.into(),
+                    PlotError::Ending { .. } => Failure::Failed(e.to_string()),
+                })?;
+            }
+        }
+        if !self.files.iter().any(|(output, _)| matches!(output, Output::Png | Output::Tiff)) {
             return Ok(());
         }
         let begun = Instant::now();
@@ -70,7 +80,7 @@ impl Folder {
         tracing::debug!(seconds = begun.elapsed().as_secs_f64(), "picture developed");
         for (output, path) in &self.files {
             match output {
-                Output::Exr => {}
+                Output::Exr | Output::Rays(_) => {}
                 Output::Png => write_png8(path, &picture)?,
                 Output::Tiff => write_tiff16(path, &picture)?,
             }
@@ -82,9 +92,11 @@ impl Folder {
 
 fn ending(output: Output) -> &'static str {
     match output {
-        Output::Exr => "exr",
-        Output::Png => "png",
-        Output::Tiff => "tiff",
+        Output::Exr => ".exr",
+        Output::Png => ".png",
+        Output::Tiff => ".tiff",
+        Output::Rays(RaysFigure { svg: false, .. }) => "-rays.png",
+        Output::Rays(RaysFigure { svg: true, .. }) => "-rays.svg",
     }
 }
 

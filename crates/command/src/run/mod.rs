@@ -4,6 +4,7 @@ mod folder;
 mod interrupt;
 mod picture;
 mod progress;
+mod rays;
 mod report;
 
 use crate::arguments::Run;

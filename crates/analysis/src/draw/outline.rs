@@ -1,0 +1,150 @@
+//! Elements as areas: what a cut through the axis shows of the glass.
+
+use super::View;
+use glam::DVec3;
+use spectra_core::surface::Action;
+use spectra_glass::lines;
+use spectra_lens::{Element, Lens, LensMedium};
+
+/// Points along a surface from edge to edge.
+const POINTS: usize = 97;
+
+/// A piece of glass, cut.
+#[derive(Clone, Debug)]
+pub struct Solid {
+    /// Around it, mm.
+    pub outline: Vec<DVec3>,
+    /// Index at the d line.
+    pub nd: f64,
+    /// Abbe number; 0 where it is not known.
+    pub vd: f64,
+}
+
+/// What a lens is made of, in one section.
+#[derive(Clone, Debug, Default)]
+pub struct Outlines {
+    /// Glass.
+    pub solids: Vec<Solid>,
+    /// Surfaces with no glass behind or in front: mirrors in air, ideal lenses, gratings.
+    pub sheets: Vec<Vec<DVec3>>,
+    /// Mirrors, each edge to edge with a point behind its vertex, to hatch that side.
+    pub mirrors: Vec<(Vec<DVec3>, DVec3)>,
+    /// The stop: two blades, each from the edge of the opening outward.
+    pub stops: Vec<[DVec3; 2]>,
+}
+
+/// Cuts a lens. `reach_mm` is how high light goes at each element: it sizes what states no size.
+pub fn outlines(lens: &Lens, view: &View, reach_mm: &[f64]) -> Outlines {
+    let mut all = Outlines::default();
+    let sizes: Vec<f64> = (0..lens.elements.len()).map(|at| size_mm(lens, at, reach_mm)).collect();
+    for (at, e) in lens.elements.iter().enumerate() {
+        let next = lens.elements.get(at + 1);
+        let solid_behind = is_solid(&lens.media[e.medium_after]) && e.action != Action::Reflect;
+        if let Some(next) = next.filter(|_| solid_behind && e.medium_after != 0) {
+            let outer = sizes[at].max(sizes[at + 1]);
+            let medium = &lens.media[e.medium_after];
+            let nd = medium.medium.index(lines::D.wavelength_nm);
+            let (nf, nc) = (medium.medium.index(lines::F.wavelength_nm), medium.medium.index(lines::C.wavelength_nm));
+            let vd = if nf > nc { (nd - 1.0) / (nf - nc) } else { 0.0 };
+            all.solids.push(Solid { outline: cut(e, next, [sizes[at], sizes[at + 1]], outer, view), nd, vd });
+        }
+        let in_glass = is_solid(&lens.media[e.medium_before]) || is_solid(&lens.media[e.medium_after]);
+        if e.action == Action::Reflect {
+            let normal = if e.along { DVec3::Z } else { DVec3::NEG_Z };
+            all.mirrors.push((profile(e, sizes[at], view), e.pose.point(normal)));
+        } else if e.action == Action::Refract && !in_glass {
+            all.sheets.push(profile(e, sizes[at], view));
+        }
+        // A stop of no stated size is as wide as the light on it.
+        let open = e.semi_diameter_mm.or_else(|| reach_mm.get(at).copied().filter(|reach| *reach > 0.0));
+        if e.stop
+            && let Some(open) = open
+        {
+            let blade = 0.45 * open.max(0.4 * sizes.iter().copied().fold(0.0, f64::max));
+            for side in [-1.0, 1.0] {
+                let at = |h: f64| e.pose.point(view.across(side * h, sag(e, side * h, view)));
+                all.stops.push([at(open), at(open) + e.pose.direction(view.across(side * blade, 0.0))]);
+            }
+        }
+    }
+    all
+}
+
+fn is_solid(medium: &LensMedium) -> bool {
+    !matches!(medium.medium, spectra_glass::Medium::Air) && medium.label != "air"
+}
+
+/// Half the height at which an element's edge is drawn, mm.
+fn size_mm(lens: &Lens, at: usize, reach_mm: &[f64]) -> f64 {
+    let e = &lens.elements[at];
+    if let Some(size) = e.outer_semi_diameter_mm.or(e.semi_diameter_mm) {
+        return size;
+    }
+    let stated = |e: &Element| e.outer_semi_diameter_mm.or(e.semi_diameter_mm);
+    // A cemented group shares the size of its first surface; else the other side of the same glass.
+    let before = (is_solid(&lens.media[e.medium_before]) && at > 0).then(|| stated(&lens.elements[at - 1])).flatten();
+    let after = is_solid(&lens.media[e.medium_after]).then(|| lens.elements.get(at + 1).and_then(stated)).flatten();
+    before.or(after).unwrap_or_else(|| (1.08 * reach_mm.get(at).copied().unwrap_or(0.0)).max(1e-3))
+}
+
+fn sag(e: &Element, height_mm: f64, view: &View) -> f64 {
+    let local = view.across(height_mm, 0.0);
+    e.surface.sag_mm(local.x, local.y).unwrap_or(0.0)
+}
+
+/// A surface from its lower to its upper edge, as far as it reaches, mm.
+fn profile(e: &Element, size_mm: f64, view: &View) -> Vec<DVec3> {
+    let points = (0..POINTS).filter_map(|i| {
+        // Closer together toward the edges, where steep surfaces bend away.
+        let h = size_mm * (std::f64::consts::PI * (i as f64 / (POINTS - 1) as f64 - 0.5)).sin();
+        let local = view.across(h, 0.0);
+        e.surface.sag_mm(local.x, local.y).map(|z| e.pose.point(local + DVec3::new(0.0, 0.0, z)))
+    });
+    let mut points: Vec<DVec3> = points.collect();
+    // A surface that stands the other way round runs the other way only where x is cut: keep lower to upper.
+    if let (Some(first), Some(last)) = (points.first(), points.last())
+        && view.vertical(*first) > view.vertical(*last)
+        && e.reversed
+    {
+        points.reverse();
+    }
+    points
+}
+
+/// The area between two surfaces: each within its clear size, flat annuli out to the common edge, chamfers.
+fn cut(front: &Element, back: &Element, [a, b]: [f64; 2], outer: f64, view: &View) -> Vec<DVec3> {
+    let side = |e: &Element, size: f64| {
+        let mut points = profile(e, size, view);
+        let (Some(first), Some(last)) = (points.first().copied(), points.last().copied()) else { return points };
+        if outer > size * (1.0 + 1e-9) {
+            let annulus = e.pose.direction(view.across(outer - size, 0.0));
+            let annulus = if view.vertical(annulus) < 0.0 { -annulus } else { annulus };
+            points.insert(0, first - annulus);
+            points.push(last + annulus);
+        }
+        chamfer(&mut points, e, view);
+        points
+    };
+    let mut outline = side(front, a);
+    let mut rear = side(back, b);
+    rear.reverse();
+    outline.extend(rear);
+    outline
+}
+
+/// Bevels the ends of a profile: along z by the leg, and inward by the same.
+fn chamfer(points: &mut Vec<DVec3>, e: &Element, view: &View) {
+    let leg = e.chamfer_mm;
+    if leg == 0.0 || points.len() < 2 {
+        return;
+    }
+    let along = e.pose.direction(DVec3::new(0.0, 0.0, leg));
+    let inward = e.pose.direction(view.across(leg.abs(), 0.0));
+    let inward = if view.vertical(inward) < 0.0 { -inward } else { inward };
+    let (first, last) = (points[0], points[points.len() - 1]);
+    let end = points.len() - 1;
+    points[0] = first + inward;
+    points[end] = last - inward;
+    points.insert(0, first + along);
+    points.push(last + along);
+}

@@ -1,0 +1,121 @@
+//! The `output` section: what a scene wants written.
+
+use crate::{Output, RaysFigure};
+use serde::Deserialize;
+use spectra_core::params::{Fault, Faults, Params, StageNode, nearest};
+
+/// `kind: rays`: the light's way through the lens, as a figure.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct RaysParams {
+    /// Width and height, pixels.
+    #[serde(default = "rays_size")]
+    size: [f64; 2],
+    /// Rays across the beam for each wavelength.
+    #[serde(default = "rays_across")]
+    rays: f64,
+    /// Wavelengths over a continuous spectrum.
+    #[serde(default = "rays_wavelengths")]
+    wavelengths: f64,
+    /// `full`: every color shines alike; `true`: relative to the brightest.
+    intensity: Option<String>,
+    /// `dark` or `light`.
+    ground: Option<String>,
+    /// `png` or `svg`.
+    format: Option<String>,
+    /// Whether the image plane is drawn, and ends the rays.
+    #[serde(default)]
+    screen: bool,
+}
+
+fn rays_size() -> [f64; 2] {
+    [800.0, 600.0]
+}
+
+fn rays_across() -> f64 {
+    1.0
+}
+
+fn rays_wavelengths() -> f64 {
+    64.0
+}
+
+const KINDS: [&str; 4] = ["exr", "png", "tiff", "rays"];
+
+/// Reads the section; EXR and PNG where it is absent.
+pub(crate) fn read(items: Option<&[StageNode]>) -> Result<Vec<Output>, Faults> {
+    let Some(items) = items else { return Ok(vec![Output::Exr, Output::Png]) };
+    let mut faults = Faults::new();
+    let mut found = Vec::new();
+    for item in items {
+        let Some(params) = faults.take(item.params()) else { continue };
+        let own = match params.kind() {
+            Some("exr") => nothing_more(&params).map(|()| Output::Exr),
+            Some("png") => nothing_more(&params).map(|()| Output::Png),
+            Some("tiff") => nothing_more(&params).map(|()| Output::Tiff),
+            Some("rays") => rays(&params).map(Output::Rays),
+            Some(other) => {
+                let fault = item.fault(format!("unknown kind of output `{other}`"));
+                let known = KINDS.join(", ");
+                Err(match nearest(other, KINDS) {
+                    Some(near) => fault.hint(format!("did you mean `{near}`? One of {known}")),
+                    None => fault.hint(format!("one of {known}")),
+                }
+                .into())
+            }
+            None => Err(item.fault("an output needs a kind").hint(format!("one of {}", KINDS.join(", "))).into()),
+        };
+        found.extend(faults.take(own));
+    }
+    found.sort_unstable();
+    found.dedup();
+    faults.into_result(found)
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct NoParams {}
+
+fn nothing_more(params: &Params) -> Result<(), Faults> {
+    params.parse::<NoParams>().map(|_| ())
+}
+
+fn rays(params: &Params) -> Result<RaysFigure, Faults> {
+    let p: RaysParams = params.parse()?;
+    let mut faults = Faults::new();
+    let mut whole = |key: &str, value: f64, min: f64, max: f64| {
+        if value.fract() != 0.0 || !(min..=max).contains(&value) {
+            faults.push(params.fault(key, format!("`{key}` must be a whole number from {min} to {max}")));
+        }
+        value as u32
+    };
+    let [width_px, height_px] = [whole("size[0]", p.size[0], 64.0, 8192.0), whole("size[1]", p.size[1], 64.0, 8192.0)];
+    let rays = whole("rays", p.rays, 1.0, 1001.0);
+    let wavelengths = whole("wavelengths", p.wavelengths, 1.0, 4001.0);
+    let mut second_of = |key: &str, value: &Option<String>, known: [&str; 2]| match value.as_deref() {
+        None => false,
+        Some(v) if v == known[0] => false,
+        Some(v) if v == known[1] => true,
+        Some(other) => {
+            faults.push(unknown(params, key, other, known));
+            false
+        }
+    };
+    let true_intensity = second_of("intensity", &p.intensity, ["full", "true"]);
+    let light = second_of("ground", &p.ground, ["dark", "light"]);
+    let svg = second_of("format", &p.format, ["png", "svg"]);
+    faults.into_result(RaysFigure {
+        width_px,
+        height_px,
+        rays,
+        wavelengths,
+        true_intensity,
+        light,
+        svg,
+        screen: p.screen,
+    })
+}
+
+fn unknown(params: &Params, key: &str, found: &str, known: [&str; 2]) -> Fault {
+    params.fault(key, format!("unknown {key} `{found}`")).hint(format!("{} or {}", known[0], known[1]))
+}
