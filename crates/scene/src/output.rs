@@ -2,7 +2,7 @@
 
 use crate::{Output, RaysFigure};
 use serde::Deserialize;
-use spectra_core::params::{Fault, Faults, Params, StageNode, nearest};
+use spectra_core::params::{Fault, Faults, Length, Params, Positive, StageNode, nearest};
 
 /// `kind: rays`: the light's way through the lens, as a figure.
 #[derive(Debug, Deserialize)]
@@ -11,6 +11,8 @@ struct RaysParams {
     /// Width and height, pixels.
     #[serde(default = "rays_size")]
     size: [f64; 2],
+    /// Width of what is shown, mm if bare; fitted to the lens if absent.
+    view: Option<Positive<Length>>,
     /// Rays across the beam for each wavelength.
     #[serde(default = "rays_across")]
     rays: f64,
@@ -67,9 +69,13 @@ pub(crate) fn read(items: Option<&[StageNode]>) -> Result<Vec<Output>, Faults> {
         };
         found.extend(faults.take(own));
     }
-    found.sort_unstable();
-    found.dedup();
-    faults.into_result(found)
+    let mut once: Vec<Output> = Vec::new();
+    for output in found {
+        if !once.iter().any(|o| std::mem::discriminant(o) == std::mem::discriminant(&output)) {
+            once.push(output);
+        }
+    }
+    faults.into_result(once)
 }
 
 #[derive(Debug, Deserialize)]
@@ -113,6 +119,7 @@ fn rays(params: &Params) -> Result<RaysFigure, Faults> {
         light,
         svg,
         screen: p.screen,
+        view_mm: p.view.map(|v| v.mm()),
     })
 }
 

@@ -46,7 +46,7 @@ pub struct RenderSettings {
 }
 
 /// What the `output` section asks for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Output {
     /// Linear exposure per channel.
     Exr,
@@ -59,12 +59,14 @@ pub enum Output {
 }
 
 /// A figure of the lens and the light on its way through it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RaysFigure {
     /// Width, pixels (of an SVG, units).
     pub width_px: u32,
     /// Height, pixels.
     pub height_px: u32,
+    /// Width of what is shown, mm; fitted to the lens if `None`.
+    pub view_mm: Option<f64>,
     /// Rays across the beam, for each wavelength.
     pub rays: u32,
     /// Wavelengths over a continuous spectrum.

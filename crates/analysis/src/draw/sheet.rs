@@ -22,6 +22,8 @@ pub struct Sheet {
     pub width: f64,
     /// Height; `None` fits it to the lens.
     pub height: Option<f64>,
+    /// Width of what is shown, mm; `None` fits it to the lens.
+    pub width_mm: Option<f64>,
     /// Its ground.
     pub ground: Ground,
     /// The cut.
@@ -63,7 +65,7 @@ impl Sheet {
             ((high[1] - low[1]) * wide + 2.0 * MARGIN + footer).clamp(LEAST_HEIGHT, MOST_HEIGHT * self.width)
         });
         let tall = (height - 2.0 * MARGIN - footer) / (high[1] - low[1]).max(1e-6);
-        let factor = wide.min(tall);
+        let factor = self.width_mm.map_or(wide.min(tall), |mm| self.width / mm);
         let origin = [
             0.5 * self.width - factor * 0.5 * (low[0] + high[0]),
             0.5 * (height - footer) + factor * 0.5 * (low[1] + high[1]),

@@ -39,6 +39,7 @@ pub(crate) fn draw(arguments: &LensDraw) -> Outcome {
         width: f64::from(arguments.width),
         height: None,
         ground,
+        width_mm: None,
         view: View { section },
         caption: caption(&lens),
         image: true,

@@ -27,6 +27,7 @@ pub(crate) fn draw(scene: &Scene, figure: &RaysFigure, isa: Isa) -> Result<Canva
         width: f64::from(figure.width_px),
         height: Some(f64::from(figure.height_px)),
         ground: if figure.light { Ground::Light } else { Ground::Dark },
+        width_mm: figure.view_mm,
         view: View { section: Section::Y },
         caption: String::new(),
         image: figure.screen,
