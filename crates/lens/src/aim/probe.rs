@@ -109,6 +109,8 @@ impl<'a> Prober<'a> {
         while opening > smallest {
             let mut open = lens.clone();
             for (at, element) in open.elements.iter_mut().enumerate() {
+                // What obscures may grow with the opening that it stands in.
+                element.apertures.retain(|a| !a.obscures);
                 if at != met_first {
                     element.semi_diameter_mm = element.semi_diameter_mm.map(|own| own.max(opening));
                 }

@@ -288,14 +288,7 @@ struct Lattice {
 }
 
 impl Lattice {
-    fn new(
-        task: &Task<'_>,
-        prober: &mut Prober<'_>,
-        azimuths: usize,
-        looks: usize,
-        steps: usize,
-        most: f64,
-    ) -> Self {
+    fn new(task: &Task<'_>, prober: &mut Prober<'_>, azimuths: usize, looks: usize, steps: usize, most: f64) -> Self {
         let grid = if azimuths == 1 { GRID } else { GRID_WITHOUT_AXIS };
         let mut rows = Vec::new();
         for depth in &task.depth_nodes {
