@@ -21,8 +21,13 @@ fn lens(name: &str) -> Lens {
         .unwrap_or_else(|faults| panic!("{faults}"))
 }
 
+/// At 1.4 as it is.
 fn biotar(f_number: f64) -> Lens {
-    lens("zeiss-biotar-50-f1.4").at_f_number(f_number).expect("it can be stopped down")
+    let open = lens("zeiss-biotar-50-f1.4");
+    if f_number == 1.4 {
+        return open;
+    }
+    open.at_f_number(f_number).expect("it can be stopped down")
 }
 
 fn fisheye() -> Lens {
@@ -299,7 +304,7 @@ fn the_rear_pupil_loses_nothing_for_any_shape_of_imager() {
         Displacement { decenter_mm: [0.4, -0.2], tilt_rad: [0.02, 0.03, 0.0], tilt_first: false };
     tilted_lens.arrange();
     for (what, lens, reach) in
-        [("Biotar", biotar(1.4), 1.0), ("tilted Biotar", tilted_lens, 1.0), ("fisheye", fisheye(), 0.07)]
+        [("Biotar", biotar(1.4), 1.0), ("tilted Biotar", tilted_lens, 1.0), ("fisheye", fisheye(), 0.05)]
     {
         let tracer = tracer(&lens);
         for (name, shape) in shapes {

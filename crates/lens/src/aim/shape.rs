@@ -1,6 +1,7 @@
 //! The ellipse or rectangle that holds places on a plane.
 
 use super::probe::Bounds;
+use spectra_core::math::sin_cos_turns;
 
 /// An ellipse along the axes of its plane, or the rectangle around it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,7 +18,7 @@ impl Shape {
         let bounds = Bounds::around(places)?.widened(margin);
         let (center, half) = (bounds.center(), bounds.half());
         let reach2 = places.iter().map(|p| {
-            let [a, b] = std::array::from_fn(|i| ((p[i] - center[i]).abs() + margin[i] * TURNED) / half[i]);
+            let [a, b] = std::array::from_fn(|i| ((p[i] - center[i]).abs() + margin[i]) / half[i]);
             a * a + b * b
         });
         let reach2 = reach2.fold(0.0, f64::max).max(1e-6);
@@ -27,15 +28,20 @@ impl Shape {
         Some(Self { center, half: half.map(|h| h * scale), ellipse })
     }
 
+    /// A place around it: on its edge at `reach` 1, farther out beyond that. `share` in [0, 1) goes around.
+    pub fn beside(&self, share: f64, reach: f64) -> [f64; 2] {
+        let (sin, cos) = sin_cos_turns(share);
+        let scale = if self.ellipse { reach } else { reach / sin.abs().max(cos.abs()) };
+        [self.center[0] + self.half[0] * cos * scale, self.center[1] + self.half[1] * sin * scale]
+    }
+
     /// Whether it holds a place.
+    #[cfg(test)]
     pub fn holds(&self, place: [f64; 2]) -> bool {
         let [a, b] = std::array::from_fn(|i| (place[i] - self.center[i]).abs() / self.half[i]);
         if self.ellipse { a * a + b * b <= 1.0 } else { a <= 1.0 && b <= 1.0 }
     }
 }
-
-/// A margin that is to be seen in every direction, not along both axes at once.
-const TURNED: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 /// The corners of the convex hull (A. M. Andrew's monotone chain, Inf. Process. Lett. 9, 1979): whatever
 /// convex shape holds them holds all places, also seen on another plane from the same point.
@@ -99,7 +105,7 @@ mod tests {
         for [x, y] in places {
             for turn in 0..16 {
                 let (sin, cos) = spectra_core::math::sin_cos_turns(f64::from(turn) / 16.0);
-                assert!(shape.holds([x + 0.1 * TURNED * cos, y + 0.05 * TURNED * sin]));
+                assert!(shape.holds([x + 0.1 * cos, y + 0.05 * sin]));
             }
         }
     }
@@ -112,6 +118,18 @@ mod tests {
         assert_eq!(Shape::around(&corners, [0.1, 0.1]), Shape::around(&places, [0.1, 0.1]));
         let square: Vec<[f64; 2]> = (0..100).map(|k| [f64::from(k % 10), f64::from(k / 10)]).collect();
         assert_eq!(hull(&square), [[0.0, 0.0], [9.0, 0.0], [9.0, 9.0], [0.0, 9.0]]);
+    }
+
+    #[test]
+    fn beside_is_outside_of_both_kinds() {
+        for ellipse in [false, true] {
+            let shape = Shape { center: [1.0, 2.0], half: [3.0, 0.5], ellipse };
+            for k in 0..40 {
+                let share = (f64::from(k) + 0.3) / 40.0;
+                assert!(!shape.holds(shape.beside(share, 1.0 + 1e-9)));
+                assert!(shape.holds(shape.beside(share, 1.0 - 1e-9)));
+            }
+        }
     }
 
     #[test]
