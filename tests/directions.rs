@@ -63,6 +63,32 @@ fn compare(common: &[&str], samples: &str, rays: &str) {
     }
 }
 
+/// The path of a lens of the test data, as an override.
+fn lens(name: &str) -> String {
+    format!("lens.file={}/tests/data/lenses/{name}.yaml", env!("CARGO_MANIFEST_DIR"))
+}
+
+/// A card close to a lens of 1 mm: the frame's edges see it at 80 degrees from the axis.
+#[test]
+fn a_fisheye_out_to_80_degrees() {
+    let lens = lens("minolta-fisheye-1-f2.7");
+    let common = [
+        &lens,
+        "lens.focus=infinity",
+        "source.distance=100",
+        "source.width=1700",
+        "imager={kind: xyz, width: 2.8, height: 1.86, resolution: [30, 20]}",
+    ];
+    compare(&common, "render.samples=1024", "render.rays=20000000");
+}
+
+#[test]
+fn a_wide_angle_lens() {
+    let lens = lens("zeiss-hologon-15-f8");
+    let common = [&lens, "source.width=5.4 m", "imager.resolution=[60, 40]"];
+    compare(&common, "render.samples=512", "render.rays=6000000");
+}
+
 #[test]
 fn gray_card_wide_open() {
     compare(&["imager.resolution=[60, 40]"], "render.samples=256", "render.rays=3000000");

@@ -17,7 +17,7 @@ mod prescription;
 mod symmetry;
 mod tracer;
 
-pub use aim::{FrontDisk, RearPupil};
+pub use aim::{AimPattern, AimRegion, FrontPupil, RearPupil};
 pub use aperture::{Aperture, Iris, Mask, Opening, Shape};
 pub use element::Element;
 pub use f_number::{ApertureError, MarginalRay};

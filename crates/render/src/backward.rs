@@ -3,8 +3,10 @@
 use crate::error::RenderError;
 use crate::pipeline::{Pipeline, ThreadState};
 use crate::sums::ExactSums;
+use glam::DVec3;
+use spectra_core::Isa;
 use spectra_core::RayBatch;
-use spectra_core::isa::Vectorized;
+use spectra_core::frame::FrameSize;
 use spectra_core::numbers::Numbers;
 use spectra_core::stage::{Launch, Radiance};
 use spectra_lens::{RearPupil, Travel};
@@ -25,17 +27,22 @@ pub(crate) struct Backward<'a> {
 impl<'a> Backward<'a> {
     pub(crate) fn new(pipeline: Pipeline<'a>, seed: u64) -> Result<Self, RenderError> {
         let scene = pipeline.scene;
-        let size = scene.imager.size();
-        let film_radius_mm = 0.5 * (size.width_mm * size.width_mm + size.height_mm * size.height_mm).sqrt();
+        let launch = scene.imager.launch().ok_or(RenderError::CannotLaunch)?;
+        let points = imager_points(launch, scene.imager.size(), pipeline.isa);
         let grid = scene.grid;
-        let rear = RearPupil::search(&scene.lens, &pipeline.tracer, film_radius_mm, grid.start_nm, grid.end_nm());
+        let rear = RearPupil::search(&scene.lens, &pipeline.tracer, &points, grid.start_nm, grid.end_nm());
         Ok(Self {
-            launch: scene.imager.launch().ok_or(RenderError::CannotLaunch)?,
+            launch,
             radiance: scene.source.radiance().ok_or(RenderError::NoRadiance)?,
             rear: rear.ok_or(RenderError::NoAperture)?,
             numbers: pipeline.numbers(seed),
             pipeline,
         })
+    }
+
+    /// The same with the numbers of another seed.
+    pub(crate) fn reseeded(self, seed: u64) -> Self {
+        Self { numbers: self.pipeline.numbers(seed), ..self }
     }
 
     /// Traces `count` samples, from `first` on, of each of `pixels`: pixel after pixel. Afterwards
@@ -63,7 +70,8 @@ impl<'a> Backward<'a> {
         }
         let [_, u, v, a, b] = &state.numbers;
         self.launch.place(&mut state.rays, u.slice(len), v.slice(len), isa);
-        isa.run(AimRear { rear: &self.rear, u: a.slice(len), v: b.slice(len), rays: &mut state.rays });
+        let dark = self.rear.aim(&mut state.rays, a.slice(len), b.slice(len), isa);
+        state.drop_dark(dark);
         self.pipeline.tracer.trace(&mut state.rays, &mut state.work, Travel::Backward);
         self.radiance.radiance(&mut state.rays, isa);
         state.silence_ended(isa);
@@ -113,39 +121,27 @@ impl<'a> Backward<'a> {
     }
 }
 
-/// Turns rays from the film toward the rear of the lens, and starts them on its plane.
-struct AimRear<'a> {
-    rear: &'a RearPupil,
-    u: &'a [f64],
-    v: &'a [f64],
-    rays: &'a mut RayBatch,
-}
-
-impl Vectorized for AimRear<'_> {
-    type Output = ();
-    #[inline(always)]
-    fn run(self) {
-        let c = self.rays.columns_mut();
-        let len = c.x.len();
-        let (u, v) = (&self.u[..len], &self.v[..len]);
-        for i in 0..len {
-            let (x, y, z) = (c.x[i], c.y[i], c.z[i]);
-            let radius = (x * x + y * y).sqrt();
-            let r = self.rear.rectangle(radius);
-            // Unit vector along the radius; any will do on the axis.
-            let (ex, ey) = if radius > 0.0 { (x / radius, y / radius) } else { (0.0, 1.0) };
-            let along = r.along_min_mm + u[i] * (r.along_max_mm - r.along_min_mm);
-            let across = (2.0 * v[i] - 1.0) * r.across_mm;
-            let (tx, ty, tz) = (along * ex - across * ey, along * ey + across * ex, self.rear.z_mm);
-            let (dx, dy, dz) = (tx - x, ty - y, tz - z);
-            let inverse = 1.0 / (dx * dx + dy * dy + dz * dz).sqrt();
-            let (l, m, n) = (dx * inverse, dy * inverse, dz * inverse);
-            let area = (r.along_max_mm - r.along_min_mm) * 2.0 * r.across_mm;
-            // The imager's normal stands in the place of the direction.
-            let cosine = (l * c.l[i] + m * c.m[i] + n * c.n[i]).max(0.0);
-            c.weight[i] *= area * n.abs() * cosine * inverse * inverse;
-            (c.x[i], c.y[i], c.z[i]) = (tx, ty, tz);
-            (c.l[i], c.m[i], c.n[i]) = (l, m, n);
-        }
+/// Points over the whole of an imager, those of its rim and corners among them: its shape, as the
+/// search of the pupil needs it.
+fn imager_points(launch: &dyn Launch, size: FrameSize, isa: Isa) -> Vec<DVec3> {
+    const SIDE: u32 = 65;
+    let mut rays = RayBatch::new((SIDE * SIDE) as usize);
+    rays.restart((SIDE * SIDE) as usize);
+    // Pixel and place in it, from one edge of the frame to the other.
+    let split = |k: u32, pixels: u32| {
+        let at = f64::from(k) / f64::from(SIDE - 1) * f64::from(pixels);
+        let pixel = (at as u32).min(pixels - 1);
+        (pixel, at - f64::from(pixel))
+    };
+    let (mut u, mut v) = (Vec::new(), Vec::new());
+    for (i, tag) in rays.columns_mut().tag.iter_mut().enumerate() {
+        let (column, x) = split(i as u32 % SIDE, size.width_px);
+        let (row, y) = split(i as u32 / SIDE, size.height_px);
+        *tag = row * size.width_px + column;
+        u.push(x);
+        v.push(y);
     }
+    launch.place(&mut rays, &u, &v, isa);
+    let [x, y, z] = rays.positions();
+    (0..rays.len()).map(|i| DVec3::new(x[i], y[i], z[i])).collect()
 }

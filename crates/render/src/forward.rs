@@ -3,11 +3,10 @@
 use crate::error::RenderError;
 use crate::pipeline::{Pipeline, ThreadState};
 use crate::sums::ExactSums;
-use spectra_core::isa::Vectorized;
-use spectra_core::math::{concentric_disk, polar_disk};
+use glam::DVec3;
 use spectra_core::numbers::{Dimension, Numbers};
 use spectra_core::stage::{Emit, Receive};
-use spectra_lens::{FrontDisk, Travel};
+use spectra_lens::{AimPattern, FrontPupil, Travel};
 use spectra_scene::ConePattern;
 
 /// Paths a unit of work: some milliseconds.
@@ -19,24 +18,39 @@ pub(crate) struct Forward<'a> {
     pub pipeline: Pipeline<'a>,
     emit: &'a dyn Emit,
     receive: &'a dyn Receive,
-    front: FrontDisk,
+    pupil: FrontPupil,
     numbers: Numbers,
     cone: Numbers,
 }
 
+/// Source points that are looked at before the pupil is searched.
+const SOURCE_POINTS: usize = 4096;
+
 impl<'a> Forward<'a> {
     pub(crate) fn new(pipeline: Pipeline<'a>, seed: u64) -> Result<Self, RenderError> {
         let scene = pipeline.scene;
+        let emit = scene.source.emit().ok_or(RenderError::CannotEmit)?;
+        let receive = scene.imager.receive().ok_or(RenderError::CannotReceive)?;
+        let (numbers, cone) = Self::numbers(&pipeline, seed);
+        let points = source_points(&pipeline, emit, &numbers);
+        let grid = scene.grid;
+        let pupil = FrontPupil::search(&scene.lens, &pipeline.tracer, &points, grid.start_nm, grid.end_nm());
+        let pupil = pupil.ok_or(RenderError::NoAperture)?;
+        Ok(Self { emit, receive, pupil, numbers, cone, pipeline })
+    }
+
+    /// The same with the numbers of another seed.
+    pub(crate) fn reseeded(self, seed: u64) -> Self {
+        let (numbers, cone) = Self::numbers(&self.pipeline, seed);
+        Self { numbers, cone, ..self }
+    }
+
+    /// The numbers of a path, and those of its place on the pupil.
+    fn numbers(pipeline: &Pipeline<'_>, seed: u64) -> (Numbers, Numbers) {
         let numbers = pipeline.numbers(seed);
-        let cone = if scene.render.cone == ConePattern::Random { numbers.as_random() } else { numbers.clone() };
-        Ok(Self {
-            emit: scene.source.emit().ok_or(RenderError::CannotEmit)?,
-            receive: scene.imager.receive().ok_or(RenderError::CannotReceive)?,
-            front: FrontDisk::of(&scene.lens).ok_or(RenderError::NoAperture)?,
-            numbers,
-            cone,
-            pipeline,
-        })
+        let random = pipeline.scene.render.cone == ConePattern::Random;
+        let cone = if random { numbers.as_random() } else { numbers.clone() };
+        (numbers, cone)
     }
 
     /// Traces paths `first .. first + len`; what arrived is left in the batch, pixels in the tags.
@@ -49,12 +63,10 @@ impl<'a> Forward<'a> {
         state.draw_wavelengths(&self.pipeline, len);
         let [_, u, v, a, b] = &state.numbers;
         self.emit.place(&mut state.rays, u.slice(len), v.slice(len), isa);
-        let aim = Aim { front: self.front, u: a.slice(len), v: b.slice(len), rays: &mut state.rays };
-        if self.pipeline.scene.render.cone == ConePattern::Rings {
-            isa.run(AimBy::<true>(aim));
-        } else {
-            isa.run(AimBy::<false>(aim));
-        }
+        let rings = self.pipeline.scene.render.cone == ConePattern::Rings;
+        let pattern = if rings { AimPattern::Rings } else { AimPattern::Disk };
+        let dark = self.pupil.aim(&mut state.rays, a.slice(len), b.slice(len), pattern, isa);
+        state.drop_dark(dark);
         self.emit.radiate(&mut state.rays, isa);
         self.pipeline.tracer.trace(&mut state.rays, &mut state.work, Travel::Forward);
         let before = state.rays.alive();
@@ -86,37 +98,16 @@ impl<'a> Forward<'a> {
     }
 }
 
-/// Turns rays toward points of the front disk, and starts them there.
-struct Aim<'a> {
-    front: FrontDisk,
-    u: &'a [f64],
-    v: &'a [f64],
-    rays: &'a mut spectra_core::RayBatch,
-}
-
-struct AimBy<'a, const RINGS: bool>(Aim<'a>);
-
-impl<const RINGS: bool> Vectorized for AimBy<'_, RINGS> {
-    type Output = ();
-    #[inline(always)]
-    fn run(self) {
-        let Aim { front, u, v, rays } = self.0;
-        let c = rays.columns_mut();
-        let len = c.x.len();
-        let (u, v) = (&u[..len], &v[..len]);
-        let (x, y, z) = (&mut c.x[..len], &mut c.y[..len], &mut c.z[..len]);
-        let (l, m, n) = (&mut c.l[..len], &mut c.m[..len], &mut c.n[..len]);
-        let weight = &mut c.weight[..len];
-        let area = std::f64::consts::PI * front.radius_mm * front.radius_mm;
-        for i in 0..len {
-            let (p, q) = if RINGS { polar_disk(u[i], v[i]) } else { concentric_disk(u[i], v[i]) };
-            let (tx, ty, tz) = (p * front.radius_mm, q * front.radius_mm, front.z_mm);
-            let (dx, dy, dz) = (tx - x[i], ty - y[i], tz - z[i]);
-            let inverse = 1.0 / (dx * dx + dy * dy + dz * dz).sqrt();
-            (l[i], m[i], n[i]) = (dx * inverse, dy * inverse, dz * inverse);
-            // Solid angle of the disk's area element as the source point sees it.
-            weight[i] *= area * n[i] * inverse * inverse;
-            (x[i], y[i], z[i]) = (tx, ty, tz);
-        }
+/// Some points of a source, as the search of the pupil needs them.
+fn source_points(pipeline: &Pipeline<'_>, emit: &dyn Emit, numbers: &Numbers) -> Vec<DVec3> {
+    let isa = pipeline.isa;
+    let mut state = ThreadState::new(pipeline, SOURCE_POINTS);
+    for (dimension, column) in state.numbers.iter_mut().enumerate() {
+        numbers.fill(isa, STREAM, 0, dimension as u32, column.slice_mut(SOURCE_POINTS));
     }
+    state.draw_wavelengths(pipeline, SOURCE_POINTS);
+    let [_, u, v, _, _] = &state.numbers;
+    emit.place(&mut state.rays, u.slice(SOURCE_POINTS), v.slice(SOURCE_POINTS), isa);
+    let [x, y, z] = state.rays.positions();
+    (0..SOURCE_POINTS).map(|i| DVec3::new(x[i], y[i], z[i])).collect()
 }

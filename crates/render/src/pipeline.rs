@@ -80,6 +80,14 @@ impl ThreadState {
         isa.run(Silence { state: c.state, weight: c.weight });
     }
 
+    /// Books and drops the rays that were not even aimed: nothing passes from where they start.
+    pub(crate) fn drop_dark(&mut self, dark: usize) {
+        if dark > 0 {
+            self.work.losses.add_states(self.rays.states());
+            self.rays.compact();
+        }
+    }
+
     /// The largest contribution of the batch to any channel.
     pub(crate) fn largest(&mut self, pipeline: &Pipeline<'_>) -> f64 {
         let len = self.rays.len();

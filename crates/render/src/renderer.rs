@@ -52,8 +52,7 @@ impl<'a> Renderer<'a> {
         let pilot = Self::way(scene, isa, PILOT_SEED)?;
         let largest = Self::pilot(scene, &pilot);
         let scale = scale_for(largest * scene.source.peak_over_mean().max(1.0));
-        let way = Self::way(scene, isa, scene.render.seed)?;
-        Ok(Self { scene, way, scale })
+        Ok(Self { scene, way: pilot.reseeded(scene.render.seed), scale })
     }
 
     fn way(scene: &'a Scene, isa: Isa, seed: u64) -> Result<Way<'a>, RenderError> {
@@ -162,6 +161,14 @@ impl<'a> Renderer<'a> {
 }
 
 impl Way<'_> {
+    /// The same with the numbers of another seed.
+    fn reseeded(self, seed: u64) -> Self {
+        match self {
+            Way::Forward(forward) => Way::Forward(forward.reseeded(seed)),
+            Way::Backward(backward) => Way::Backward(backward.reseeded(seed)),
+        }
+    }
+
     fn pipeline(&self) -> &Pipeline<'_> {
         match self {
             Way::Forward(forward) => &forward.pipeline,

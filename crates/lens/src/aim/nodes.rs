@@ -1,0 +1,112 @@
+//! The points that stand for zones, and what passes from each of them.
+
+use super::probe::{Bounds, Found, Plane, Prober};
+use super::search::Sphere;
+use super::shape::hull;
+use crate::Travel;
+use glam::DVec3;
+
+/// How points are described to the search: by the angle at which the reference point sees them, by
+/// depth and by azimuth.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Geometry {
+    pub travel: Travel,
+    /// The reference point, mm along the axis.
+    pub eye_z_mm: f64,
+    /// Holds the surface that is met first.
+    pub bound: Sphere,
+}
+
+impl Geometry {
+    /// +1 where points lie at smaller z than the lens.
+    pub fn sense(&self) -> f64 {
+        if self.travel == Travel::Forward { 1.0 } else { -1.0 }
+    }
+
+    pub fn eye(&self) -> DVec3 {
+        DVec3::new(0.0, 0.0, self.eye_z_mm)
+    }
+
+    /// The point at a measure of the angle (see `table::measure`), a depth (one over the distance
+    /// forward, mm ahead backward) and an azimuth in turns; `None` where there is none: no point behind
+    /// the reference point has a depth on the film's side.
+    pub fn point(&self, measure: f64, depth: f64, turns: f64) -> Option<DVec3> {
+        let (radius, ahead) = if measure <= 1.0 { (measure, 1.0 - measure) } else { (2.0 - measure, 1.0 - measure) };
+        let scale = if self.travel == Travel::Forward {
+            1.0 / (depth.max(self.least_depth()) * (radius * radius + ahead * ahead).sqrt())
+        } else {
+            depth / ahead
+        };
+        let (sin, cos) = spectra_core::math::sin_cos_turns(turns);
+        let beside = radius * scale;
+        let point = DVec3::new(beside * cos, beside * sin, self.eye_z_mm - self.sense() * ahead * scale);
+        (scale > 0.0 && point.is_finite()).then_some(point)
+    }
+
+    /// Stands for infinity: so far away that nothing moves by more than rounding.
+    fn least_depth(&self) -> f64 {
+        1e-8 / self.bound.radius_mm
+    }
+
+    /// The plane through the reference point at right angles to the direction to `point`; `turns` says
+    /// where its azimuth is, for a point on the axis.
+    pub fn plane(&self, point: DVec3, turns: f64) -> Plane {
+        let (sin, cos) = spectra_core::math::sin_cos_turns(turns);
+        let radial = DVec3::new(cos, sin, 0.0);
+        let across = DVec3::new(-sin, cos, 0.0);
+        let way = (self.eye() - point).normalize();
+        // Away from the axis, turned into the plane.
+        let along = (radial - way * radial.dot(way)).normalize();
+        Plane { origin: self.eye(), along, across }
+    }
+
+    /// A rectangle on that plane that holds all that can meet the first surface.
+    pub fn whole(&self, point: DVec3, plane: &Plane) -> Bounds {
+        let to = self.bound.center - point;
+        let distance = to.length();
+        let axis = plane.along.cross(plane.across);
+        let axis = axis * axis.dot(to).signum();
+        let to_plane = (plane.origin - point).dot(axis);
+        // In the plane of the point and the axis: the sphere's middle is off the plane's normal by an angle,
+        // and its edge by another one. Nearly along the plane, a limit.
+        let off = (to.dot(plane.along) / distance).clamp(-1.0, 1.0);
+        let off = spectra_core::math::asin(off);
+        let half = spectra_core::math::asin((self.bound.radius_mm / distance).min(1.0));
+        let tangent = |angle: f64| to_plane * spectra_core::math::tan(angle.clamp(-1.4, 1.4));
+        let (low, high) = (tangent(off - half), tangent(off + half));
+        // Across, the edge is farthest away where the plane is.
+        let farthest = (low * low).max(high * high) + to_plane * to_plane;
+        let sin = (self.bound.radius_mm / distance).min(0.98);
+        let across = farthest.sqrt() * sin / (1.0 - sin * sin).sqrt();
+        Bounds { low: [low, -across], high: [high, across] }
+    }
+
+    /// What passes from one point.
+    pub fn node(&self, prober: &mut Prober<'_>, measure: f64, depth: f64, turns: f64, grid: usize) -> Option<Node> {
+        let point = self.point(measure, depth, turns)?;
+        let plane = self.plane(point, turns);
+        let start = self.whole(point, &plane);
+        let Found { places, cell } = prober.search(point, &plane, start, grid)?;
+        let bounds = Bounds::around(&places)?;
+        let (sin, cos) = spectra_core::math::sin_cos_turns(turns);
+        let local = |p: DVec3| DVec3::new(p.x * cos + p.y * sin, -p.x * sin + p.y * cos, p.z);
+        Some(Node {
+            point: local(point),
+            targets: hull(&places).into_iter().map(|p| local(plane.at(p))).collect(),
+            center: local(plane.at(bounds.center())),
+            cell,
+        })
+    }
+}
+
+/// What passes from one point, in the point's own frame: x away from the axis, y across, z along the axis.
+#[derive(Clone, Debug)]
+pub(super) struct Node {
+    pub point: DVec3,
+    /// Corners around all the places that rays pass through.
+    pub targets: Vec<DVec3>,
+    /// Their middle.
+    pub center: DVec3,
+    /// Beyond each place, no farther than this, light may pass unseen, mm.
+    pub cell: [f64; 2],
+}

@@ -1,0 +1,240 @@
+//! Rays from one point over a plane, to see which of them pass.
+
+use crate::{Indices, Lens, Tracer, Travel, Work};
+use glam::DVec3;
+use spectra_core::RayBatch;
+use spectra_core::loss::ALIVE;
+
+/// Rays of one batch of probes.
+const BATCH: usize = 4096;
+
+/// The plane that probes of one point are aimed at.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Plane {
+    pub origin: DVec3,
+    /// Unit vector in the plane of the point and the axis.
+    pub along: DVec3,
+    /// Unit vector across it.
+    pub across: DVec3,
+}
+
+impl Plane {
+    pub fn at(&self, [along, across]: [f64; 2]) -> DVec3 {
+        self.origin + self.along * along + self.across * across
+    }
+
+    /// Where the line from `point` through `target` crosses the plane, and how much farther away from
+    /// the point than `target` that is, as a factor. `None` where it does not.
+    pub fn project(&self, point: DVec3, target: DVec3) -> Option<([f64; 2], f64)> {
+        let normal = self.along.cross(self.across);
+        let way = target - point;
+        let factor = (self.origin - point).dot(normal) / way.dot(normal);
+        let from_origin = point + way * factor - self.origin;
+        let at = [from_origin.dot(self.along), from_origin.dot(self.across)];
+        (factor.is_finite() && factor > 0.0).then_some((at, factor))
+    }
+}
+
+/// A rectangle on a plane: lower and upper ends along and across, mm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Bounds {
+    pub low: [f64; 2],
+    pub high: [f64; 2],
+}
+
+impl Bounds {
+    /// Nothing yet.
+    pub const EMPTY: Self = Self { low: [f64::INFINITY; 2], high: [f64::NEG_INFINITY; 2] };
+
+    pub fn around(points: &[[f64; 2]]) -> Option<Self> {
+        let mut bounds = Self::EMPTY;
+        points.iter().for_each(|p| bounds.include(*p));
+        (!points.is_empty()).then_some(bounds)
+    }
+
+    pub fn include(&mut self, point: [f64; 2]) {
+        for i in 0..2 {
+            self.low[i] = self.low[i].min(point[i]);
+            self.high[i] = self.high[i].max(point[i]);
+        }
+    }
+
+    pub fn center(&self) -> [f64; 2] {
+        std::array::from_fn(|i| 0.5 * (self.low[i] + self.high[i]))
+    }
+
+    pub fn half(&self) -> [f64; 2] {
+        std::array::from_fn(|i| 0.5 * (self.high[i] - self.low[i]))
+    }
+
+    pub fn widened(mut self, by: [f64; 2]) -> Self {
+        for i in 0..2 {
+            self.low[i] -= by[i];
+            self.high[i] += by[i];
+        }
+        self
+    }
+}
+
+/// One lens that probes are sent through.
+struct Stage {
+    tracer: Tracer,
+    work: Work,
+}
+
+/// The lens, and the same lens with its small openings opened: step by step, so that each step passes
+/// all that the next one does. However small the pupil is, it is found by closing in on it.
+pub(super) struct Prober<'a> {
+    travel: Travel,
+    wavelengths_nm: [f64; 3],
+    opened: Vec<Stage>,
+    tracer: &'a Tracer,
+    work: Work,
+    rays: RayBatch,
+}
+
+/// From one opening to the next. Light that fills the grid of one step is still seen on a dozen of its rays at the next.
+const STEP: f64 = 0.4;
+/// Grid of a step that only narrows.
+const COARSE: usize = 24;
+/// Grid of a step in which nothing was seen, before it is believed.
+const FINE: usize = 96;
+
+impl<'a> Prober<'a> {
+    /// `None` where a medium has no index in the middle of the band.
+    pub fn new(lens: &Lens, tracer: &'a Tracer, travel: Travel, min_nm: f64, max_nm: f64) -> Option<Self> {
+        let middle_nm = 0.5 * (min_nm + max_nm);
+        let smallest = lens.elements.iter().filter_map(|e| e.semi_diameter_mm).reduce(f64::min)?;
+        let mut opening = lens.largest_semi_diameter_mm()?;
+        let met_first = if travel == Travel::Forward { 0 } else { lens.elements.len() - 1 };
+        let mut opened = Vec::new();
+        while opening > smallest {
+            let mut open = lens.clone();
+            for (at, element) in open.elements.iter_mut().enumerate() {
+                // What obscures may grow with the opening that it stands in.
+                element.apertures.retain(|a| !a.obscures);
+                if at != met_first {
+                    element.semi_diameter_mm = element.semi_diameter_mm.map(|own| own.max(opening));
+                }
+            }
+            let tracer = Tracer::new(&open, Indices::At(middle_nm), tracer.isa()).ok()?;
+            let work = tracer.work_in_place(BATCH);
+            opened.push(Stage { tracer, work });
+            opening *= STEP;
+        }
+        Some(Self {
+            travel,
+            wavelengths_nm: [min_nm, middle_nm, max_nm],
+            opened,
+            work: tracer.work_in_place(BATCH),
+            tracer,
+            rays: RayBatch::new(BATCH),
+        })
+    }
+
+    /// What passes from `point` through `start` on `plane`, at the ends and the middle of the band: its
+    /// places on the plane, and the size of the cells of the grid that found them.
+    pub fn search(&mut self, point: DVec3, plane: &Plane, start: Bounds, grid: usize) -> Option<Found> {
+        let mut bounds = start;
+        for level in 0..=self.opened.len() {
+            let last = level == self.opened.len();
+            let mut n = COARSE;
+            let found = loop {
+                let mut found = Vec::new();
+                for wavelength_nm in self.wavelengths_nm {
+                    if last || wavelength_nm == self.wavelengths_nm[1] {
+                        self.grid(level, point, plane, &bounds, n, wavelength_nm, &mut found);
+                    }
+                }
+                // A handful of points tells little of the size: look closer.
+                if found.len() >= if last { 3 * 12 } else { 6 } || n >= FINE {
+                    break found;
+                }
+                n = (n * 2).min(FINE);
+            };
+            let seen = Bounds::around(&found)?;
+            let cell: [f64; 2] = bounds.half().map(|h| 2.0 * h / n as f64);
+            bounds = seen.widened(cell.map(|c| 1.5 * c));
+            if last {
+                // Once more, on a grid that fits.
+                let mut places = Vec::new();
+                for wavelength_nm in self.wavelengths_nm {
+                    self.grid(level, point, plane, &bounds, grid, wavelength_nm, &mut places);
+                }
+                places.extend(found);
+                return Some(Found { places, cell: bounds.half().map(|h| 2.0 * h / grid as f64) });
+            }
+        }
+        None
+    }
+
+    /// Adds those places of a grid over `bounds` that pass.
+    fn grid(
+        &mut self,
+        level: usize,
+        point: DVec3,
+        plane: &Plane,
+        bounds: &Bounds,
+        n: usize,
+        wavelength_nm: f64,
+        found: &mut Vec<[f64; 2]>,
+    ) {
+        let (center, half) = (bounds.center(), bounds.half());
+        let at = |k: usize| ((k as f64 + 0.5) / n as f64) * 2.0 - 1.0;
+        // Rows of a grid may all pass beside a narrow tip: shift every other one by half a cell.
+        let place = |k: usize| {
+            let (i, j) = (k % n, k / n);
+            let shift = if j % 2 == 1 { 0.5 } else { -0.5 } / n as f64;
+            [center[0] + half[0] * at(j), center[1] + half[1] * (at(i) + shift)]
+        };
+        let mut first = 0;
+        while first < n * n {
+            let len = BATCH.min(n * n - first);
+            let places = (first..first + len).map(place);
+            let probes = places.clone().map(|p| (point, plane.at(p), wavelength_nm));
+            self.trace(level, probes);
+            for (state, place) in self.rays.states().iter().zip(places) {
+                if *state == ALIVE {
+                    found.push(place);
+                }
+            }
+            first += len;
+        }
+    }
+
+    /// Which of these probes (point, target, wavelength), at most a batch, pass the lens itself.
+    pub fn pass(&mut self, probes: impl ExactSizeIterator<Item = (DVec3, DVec3, f64)>) -> &[u64] {
+        let level = self.opened.len();
+        self.trace(level, probes);
+        self.rays.states()
+    }
+
+    /// The most probes at once.
+    pub fn capacity(&self) -> usize {
+        BATCH
+    }
+
+    fn trace(&mut self, level: usize, probes: impl ExactSizeIterator<Item = (DVec3, DVec3, f64)>) {
+        self.rays.restart(probes.len());
+        let c = self.rays.columns_mut();
+        for (i, (point, target, wavelength_nm)) in probes.enumerate() {
+            let direction = (target - point).normalize();
+            (c.x[i], c.y[i], c.z[i]) = target.into();
+            (c.l[i], c.m[i], c.n[i]) = direction.into();
+            c.wavelength_nm[i] = wavelength_nm;
+        }
+        match self.opened.get_mut(level) {
+            Some(stage) => stage.tracer.trace(&mut self.rays, &mut stage.work, self.travel),
+            None => self.tracer.trace(&mut self.rays, &mut self.work, self.travel),
+        }
+    }
+}
+
+/// What passes from one point.
+#[derive(Clone, Debug)]
+pub(super) struct Found {
+    /// Places on the plane.
+    pub places: Vec<[f64; 2]>,
+    /// Cell of the grid, mm: beyond each place, no farther than this, light may pass unseen.
+    pub cell: [f64; 2],
+}

@@ -1,0 +1,79 @@
+//! The pupil as the film sees it.
+
+use super::front::AimRegion;
+use super::nodes::Geometry;
+use super::search::{Sphere, Task};
+use super::table::{AimPattern, Depth, Table, measure};
+use crate::{Lens, Tracer, Travel};
+use glam::DVec3;
+use spectra_core::{Isa, RayBatch};
+
+/// Where on its way out of the lens light comes from, for each point of the imager: the real exit pupil,
+/// as it is seen from there.
+///
+/// Points are in the frame of the image plane (mm, z = 0 there, the lens at negative z). They may lie
+/// anywhere behind the lens: zones go by the angle to the axis at which a point is seen from the last
+/// vertex, and by its z where points differ in it. Points beside the depths that the search was told of
+/// are aimed at the whole last surface: slower, as true.
+#[derive(Clone, Debug)]
+pub struct RearPupil {
+    table: Table,
+}
+
+/// Zones of the depth are this fine, times the distance from the last vertex.
+const DEPTH_STEP: f64 = 0.02;
+const MAX_DEPTHS: usize = 8;
+/// Points within this of one plane, as a share of their distance, are on it.
+const FLAT: f64 = 1e-7;
+
+impl RearPupil {
+    /// Searches the rear of a lens as `tracer` holds it, for the points of an imager, of which `points`
+    /// are examples all over it, its corners among them (mm), and light from `min_nm` to `max_nm`. `None`
+    /// where no surface states a size, or no point is given.
+    #[must_use]
+    pub fn search(lens: &Lens, tracer: &Tracer, points: &[DVec3], min_nm: f64, max_nm: f64) -> Option<Self> {
+        let bound = Sphere::around(lens, Travel::Backward)?;
+        let vertex = lens.image_pose.local_point(lens.elements.last()?.pose.origin_mm);
+        let nearest = points.iter().map(|p| p.z).reduce(f64::min)?;
+        // The last vertex; of a lens that stands among the points, some place in front of them.
+        let eye_z_mm = vertex.z.min(nearest - 0.1 * bound.radius_mm);
+        let ahead = |p: &DVec3| p.z - eye_z_mm;
+        let near = points.iter().map(ahead).reduce(f64::min)?;
+        let far = points.iter().map(ahead).reduce(f64::max)?;
+        let beside = |p: &DVec3| (p.x * p.x + p.y * p.y).sqrt();
+        let most = points.iter().map(|p| measure(beside(p), ahead(p)));
+        // A little beyond the points that were shown, which stand for those between them.
+        let most = most.fold(0.0, f64::max) * 1.01 + 1e-6;
+        let flat = far - near <= FLAT * far;
+        let (middle, slack) = (0.5 * (near + far), 0.02 * (far - near) + FLAT * far);
+        let (from, to) = ((near - slack).max(0.5 * near), far + slack);
+        let zones = if flat { 1 } else { (((to - from) / (DEPTH_STEP * from)).ceil() as usize).clamp(1, MAX_DEPTHS) };
+        let node = |k: usize| from + (to - from) * k as f64 / zones as f64;
+        let task = Task {
+            lens,
+            tracer,
+            geometry: Geometry { travel: Travel::Backward, eye_z_mm, bound },
+            depth: Depth { from, to, zones },
+            depth_nodes: if flat { vec![middle] } else { (0..=zones).map(node).collect() },
+            most: most.min(0.999),
+            band_nm: [min_nm, max_nm],
+        };
+        Some(Self { table: task.run()? })
+    }
+
+    /// Turns the rays of a batch, which are at points of the imager, toward the pupil, starts them
+    /// there, and multiplies their weights by the projected solid angle of the region, sr; the imager's
+    /// unit normal stands in the place of each direction. `u` and `v`, one a ray in [0, 1), choose the
+    /// place. Rays of points to which nothing comes end, vignetted at the last surface; returns how many.
+    pub fn aim(&self, rays: &mut RayBatch, u: &[f64], v: &[f64], isa: Isa) -> usize {
+        self.table.aim::<true>(rays, u, v, AimPattern::Disk, isa)
+    }
+
+    /// The region for a point of the imager, mm in the frame of the image plane. `None` where the point
+    /// lies at a depth that was not searched.
+    #[must_use]
+    pub fn region(&self, point: DVec3) -> Option<AimRegion> {
+        let (zone, radial, across) = self.table.zone::<true>(point)?;
+        Some(AimRegion::new(&zone, radial, across, self.table.eye_z_mm))
+    }
+}
