@@ -18,7 +18,8 @@ pub(crate) struct Forward<'a> {
     pub pipeline: Pipeline<'a>,
     emit: &'a dyn Emit,
     receive: &'a dyn Receive,
-    pupil: FrontPupil,
+    /// Where light goes in; `None` for a source that sets its directions itself.
+    pupil: Option<FrontPupil>,
     numbers: Numbers,
     cone: Numbers,
 }
@@ -32,10 +33,14 @@ impl<'a> Forward<'a> {
         let emit = scene.source.emit().ok_or(RenderError::CannotEmit)?;
         let receive = scene.imager.receive().ok_or(RenderError::CannotReceive)?;
         let (numbers, cone) = Self::numbers(&pipeline, seed);
-        let points = source_points(&pipeline, emit, &numbers);
-        let grid = scene.grid;
-        let pupil = FrontPupil::search(&scene.lens, &pipeline.tracer, &points, grid.start_nm, grid.end_nm());
-        let pupil = pupil.ok_or(RenderError::NoAperture)?;
+        let pupil = if emit.is_directed() {
+            None
+        } else {
+            let points = source_points(&pipeline, emit, &numbers);
+            let grid = scene.grid;
+            let pupil = FrontPupil::search(&scene.lens, &pipeline.tracer, &points, grid.start_nm, grid.end_nm());
+            Some(pupil.ok_or(RenderError::NoAperture)?)
+        };
         Ok(Self { emit, receive, pupil, numbers, cone, pipeline })
     }
 
@@ -65,8 +70,10 @@ impl<'a> Forward<'a> {
         self.emit.place(&mut state.rays, u.slice(len), v.slice(len), isa);
         let rings = self.pipeline.scene.render.cone == ConePattern::Rings;
         let pattern = if rings { AimPattern::Rings } else { AimPattern::Disk };
-        let dark = self.pupil.aim(&mut state.rays, a.slice(len), b.slice(len), pattern, isa);
-        state.drop_dark(dark);
+        if let Some(pupil) = &self.pupil {
+            let dark = pupil.aim(&mut state.rays, a.slice(len), b.slice(len), pattern, isa);
+            state.drop_dark(dark);
+        }
         self.emit.radiate(&mut state.rays, isa);
         self.pipeline.tracer.trace(&mut state.rays, &mut state.work, Travel::Forward);
         let before = state.rays.alive();

@@ -9,6 +9,7 @@ use spectra_core::{Isa, RayBatch};
 use spectra_lens::{Indices, Section, Tracer};
 use spectra_plot::Canvas;
 use spectra_scene::{RaysFigure, Scene};
+use spectra_spectrum::{Observer, RgbSpace};
 
 /// Light that a screen can show, nm.
 const VISIBLE_NM: [f64; 2] = [390.0, 710.0];
@@ -69,7 +70,7 @@ fn beam(
                 let [position, direction] =
                     [rays.positions(), rays.directions()].map(|columns| DVec3::from_array(columns.map(|c| c[k])));
                 let path = tracer.path(position, direction, wavelength_nm);
-                drawn.push(DrawnRay { path, wavelength_nm, strength: rays.weights()[k] });
+                drawn.push(DrawnRay { path, wavelength_nm, strength: rays.weights()[k] * brightness(wavelength_nm) });
             }
         }
         let brightest = drawn[first..].iter().map(|r| r.strength).fold(0.0, f64::max);
@@ -78,6 +79,12 @@ fn beam(
         }
     }
     Ok(drawn)
+}
+
+/// How bright a screen shows one unit of light of a wavelength: the largest channel of its linear sRGB.
+fn brightness(wavelength_nm: f64) -> f64 {
+    let rgb = RgbSpace::srgb().from_xyz(Observer::cie_1931_2deg().at(wavelength_nm));
+    rgb.into_iter().fold(0.0, f64::max)
 }
 
 /// Fans over the field, for a source that shines everywhere.
