@@ -78,7 +78,7 @@ pub fn channel<'a>(frame: &'a ExposureFrame, name: &str) -> Result<&'a ExposureC
 ///
 /// # Errors
 /// [`MissingChannel`].
-pub fn show_xyz(frame: &ExposureFrame, white: White) -> Result<DisplayPicture, MissingChannel> {
+pub fn show_xyz(frame: &ExposureFrame, white: White, gamut: Gamut) -> Result<DisplayPicture, MissingChannel> {
     let [x, y, z] = [channel(frame, "X")?, channel(frame, "Y")?, channel(frame, "Z")?];
     let white = match white {
         White::Auto(auto) => auto.white(&y.values),
@@ -89,7 +89,7 @@ pub fn show_xyz(frame: &ExposureFrame, white: White) -> Result<DisplayPicture, M
     let srgb = RgbSpace::srgb();
     let one = |((x, y), z): ((&f32, &f32), &f32)| {
         let xyz = [x, y, z].map(|v| f64::from(*v) * scale);
-        into_gamut(srgb.from_xyz(xyz), srgb, Gamut::Desaturate).map(|v| v as f32)
+        into_gamut(srgb.from_xyz(xyz), srgb, gamut).map(|v| v as f32)
     };
     let pixels = x.values.par_iter().zip(&y.values).zip(&z.values).with_min_len(PIXELS_A_TASK);
     let FrameSize { width_px, height_px, .. } = frame.size;
@@ -114,8 +114,11 @@ mod tests {
     #[test]
     fn stated_white_is_one_and_half_of_it_a_half() {
         let white = RgbSpace::srgb().white_xyz();
-        let shown =
-            show_xyz(&frame(&[white.map(|v| v * 40.0), white.map(|v| v * 20.0), [0.0; 3]]), White::Stated(40.0));
+        let shown = show_xyz(
+            &frame(&[white.map(|v| v * 40.0), white.map(|v| v * 20.0), [0.0; 3]]),
+            White::Stated(40.0),
+            Gamut::Desaturate,
+        );
         let rgb = shown.expect("complete").rgb;
         for (got, want) in rgb.iter().zip([1.0, 0.5, 0.0]) {
             assert!(got.iter().all(|v| (v - want).abs() < 1e-6), "{rgb:?}");
@@ -127,7 +130,8 @@ mod tests {
         for i in 0..3 {
             let mut wanted = [0.0; 3];
             wanted[i] = 0.7;
-            let shown = show_xyz(&frame(&[RgbSpace::srgb().to_xyz(wanted)]), White::Stated(1.0)).expect("complete");
+            let shown = show_xyz(&frame(&[RgbSpace::srgb().to_xyz(wanted)]), White::Stated(1.0), Gamut::Desaturate)
+                .expect("complete");
             assert!((0..3).all(|j| (f64::from(shown.rgb[0][j]) - wanted[j]).abs() < 1e-6), "{:?}", shown.rgb[0]);
         }
     }
@@ -152,11 +156,11 @@ mod tests {
 
     #[test]
     fn a_frame_without_light_is_black() {
-        let shown = show_xyz(&frame(&[[0.0; 3]; 4]), White::default()).expect("complete");
+        let shown = show_xyz(&frame(&[[0.0; 3]; 4]), White::default(), Gamut::Desaturate).expect("complete");
         assert!(shown.rgb.iter().all(|p| *p == [0.0; 3]));
         let mut incomplete = frame(&[[1.0; 3]]);
         incomplete.channels.remove(2);
-        assert_eq!(show_xyz(&incomplete, White::default()), Err(MissingChannel("Z".into())));
+        assert_eq!(show_xyz(&incomplete, White::default(), Gamut::Desaturate), Err(MissingChannel("Z".into())));
     }
 
     /// Every spectral color at every exposure: in gamut, of its own luminance, and its place between gray and

@@ -9,8 +9,8 @@ use spectra_core::registry::{Context, ImagerEntry};
 use spectra_core::spectral::{Channel, Grid};
 use spectra_core::stage::{Imager, Launch, Receive};
 use spectra_film::display::{White, show_xyz};
-use spectra_spectrum::Observer;
 use spectra_spectrum::constants::LUMINOUS_EFFICACY_LM_PER_W;
+use spectra_spectrum::{Gamut, Observer};
 
 /// Parameters of `kind: xyz` as written in a scene.
 #[derive(Debug, Deserialize)]
@@ -34,6 +34,10 @@ pub struct XyzParams {
     /// Without it, automatic exposure shows the 99th percentile of Y as 0.9.
     #[serde(default)]
     pub white: Option<String>,
+    /// What becomes of colors that a screen cannot show: `desaturate` (luminance stays, the default), `perceptual` (hue
+    /// and lightness as they are seen stay) or `clip` (each of red, green and blue by itself: vivid).
+    #[serde(default)]
+    pub gamut: Option<String>,
 }
 
 /// A plane XYZ imager.
@@ -43,6 +47,7 @@ pub struct XyzPlane {
     channels: Vec<Channel>,
     exposure_time_s: Option<f64>,
     white: White,
+    gamut: Gamut,
 }
 
 impl XyzPlane {
@@ -57,7 +62,13 @@ impl XyzPlane {
             response: function.into_iter().map(|v| v * LUMINOUS_EFFICACY_LM_PER_W).collect(),
         };
         let channels = ["X", "Y", "Z"].into_iter().zip(functions).map(channel).collect();
-        Self { plane: Plane::new(size), channels, exposure_time_s, white }
+        Self { plane: Plane::new(size), channels, exposure_time_s, white, gamut: Gamut::Desaturate }
+    }
+
+    /// The same, showing colors beyond the screen's another way.
+    #[must_use]
+    pub fn with_gamut(self, gamut: Gamut) -> Self {
+        Self { gamut, ..self }
     }
 }
 
@@ -79,7 +90,7 @@ impl Imager for XyzPlane {
     }
 
     fn display(&self, exposure: &ExposureFrame) -> Option<DisplayPicture> {
-        show_xyz(exposure, self.white).ok()
+        show_xyz(exposure, self.white, self.gamut).ok()
     }
 
     fn exposure_time_s(&self) -> Option<f64> {
@@ -88,17 +99,28 @@ impl Imager for XyzPlane {
 }
 
 fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Imager>, Faults> {
-    let XyzParams { format, width, height, resolution, exposure, white } = params.parse()?;
+    let XyzParams { format, width, height, resolution, exposure, white, gamut } = params.parse()?;
     let mut faults = Faults::new();
     let size = faults.take(Frame { format, width, height, resolution }.size(params));
     let white = match &white {
         None => Some(White::default()),
         Some(text) => faults.take(stated_white(params, text, exposure.is_some())),
     };
+    let gamut = match gamut.as_deref() {
+        None | Some("desaturate") => Gamut::Desaturate,
+        Some("perceptual") => Gamut::Perceptual,
+        Some("clip") => Gamut::Clip,
+        Some(other) => {
+            let fault = params.fault("gamut", format!("unknown gamut mapping `{other}`"));
+            faults.push(fault.hint("desaturate, perceptual or clip"));
+            Gamut::Desaturate
+        }
+    };
     let (Some(size), Some(white)) = (size, white) else {
         return Err(faults);
     };
-    Ok(Box::new(XyzPlane::new(size, &context.grid, exposure.map(|t| t.s()), white)))
+    let imager = XyzPlane::new(size, &context.grid, exposure.map(|t| t.s()), white).with_gamut(gamut);
+    faults.into_result(Box::new(imager))
 }
 
 /// White in the unit of the channels, whose dimension depends on whether there is an exposure time.
