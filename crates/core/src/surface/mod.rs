@@ -12,10 +12,12 @@ mod bend;
 mod kernel;
 mod per_ray;
 mod sag;
+mod search;
 
 pub use kernel::{Hit, Kernel, KernelShape, Ray, Real};
 pub use per_ray::{Bending, Intersection, PerRay, ScalarShape};
 pub use sag::{FromSag, SagShape};
+pub use search::nearest_crossing;
 
 use crate::RayBatch;
 use crate::isa::Isa;
