@@ -39,23 +39,25 @@ impl KernelShape for Conic {
     /// Half the gradient of c (r^2 + (1 + k) z^2) - 2 z, turned round: unit length on spheres only.
     const UNIT_NORMAL: bool = false;
 
-    /// As for the sphere: a t^2 - 2 b t + q = 0 with a = c (1 + k n^2), b = n - c (x l + y m + (1 + k) z n) and
+    /// From the point of the ray nearest to the vertex (a source far away would cost digits), as for the sphere: a t^2 - 2 b t + q = 0 with a = c (1 + k n^2), b = n - c (x l + y m + (1 + k) z n) and
     /// q = c (r^2 + (1 + k) z^2) - 2 z, solved by t = q / (b + sqrt(b^2 - a q)). There the ray crosses in the sense of travel.
     #[inline(always)]
     fn hit<R: Real, const FORWARD: bool>(&self, ray: Ray<R, FORWARD>) -> Hit<R> {
         let c = R::constant(self.section.curvature_per_mm);
         let flat = R::constant(self.section.one_plus_conic);
         let ([x, y, z], [l, m, n]) = (ray.position, ray.direction);
+        let near = -(x * l + y * m + z * n);
+        let (x, y, z) = (x + near * l, y + near * m, z + near * n);
         let (flat_z, flat_n) = (flat * z, flat * n);
         let a = c * ((l * l + m * m) + flat_n * n);
         let b = n - c * ((x * l + y * m) + flat_z * n);
-        let q = c * (ray.radius2 + flat_z * z) - (z + z);
+        let q = c * ((x * x + y * y) + flat_z * z) - (z + z);
         let discriminant = b * b - a * q;
         let cosine = ray.along(discriminant.sqrt());
         let distance = q / (b + cosine);
         // The other half of an ellipsoid, the other sheet of a hyperboloid: there the normal would point to -z.
         let on_vertex_sheet = R::constant(1.0) - c * (flat_z + flat_n * distance);
-        Hit { distance, cosine, valid: discriminant.min(on_vertex_sheet) }
+        Hit { distance: near + distance, cosine, valid: discriminant.min(on_vertex_sheet) }
     }
 
     #[inline(always)]

@@ -42,13 +42,15 @@ impl Cylinder {
 }
 
 impl KernelShape for Cylinder {
-    /// As for the sphere, without the coordinate along the axis: with the curvatures c, d of the two sections, of which one
+    /// From the point of the ray nearest to the vertex, as for the sphere without the coordinate along the axis: with the curvatures c, d of the two sections, of which one
     /// is 0, the surface is c x^2 + d y^2 + (c + d) z^2 - 2 z = 0.
     #[inline(always)]
     fn hit<R: Real, const FORWARD: bool>(&self, ray: Ray<R, FORWARD>) -> Hit<R> {
         let (cx, cy) = (R::constant(self.x_per_mm), R::constant(self.y_per_mm));
         let c = R::constant(self.x_per_mm + self.y_per_mm);
         let ([x, y, z], [l, m, n]) = (ray.position, ray.direction);
+        let near = -(x * l + y * m + z * n);
+        let (x, y, z) = (x + near * l, y + near * m, z + near * n);
         let (cx_l, cy_m, c_n) = (cx * l, cy * m, c * n);
         let a = (cx_l * l + cy_m * m) + c_n * n;
         let b = n - ((cx_l * x + cy_m * y) + c_n * z);
@@ -57,7 +59,7 @@ impl KernelShape for Cylinder {
         let cosine = ray.along(discriminant.sqrt());
         let distance = q / (b + cosine);
         let on_vertex_half = R::constant(1.0) - c * (z + distance * n);
-        Hit { distance, cosine, valid: discriminant.min(on_vertex_half) }
+        Hit { distance: near + distance, cosine, valid: discriminant.min(on_vertex_half) }
     }
 
     #[inline(always)]

@@ -82,6 +82,21 @@ pub struct Hit<R> {
 pub trait KernelShape: Send + Sync + std::fmt::Debug {
     /// Where the ray meets the surface: for a ray along the axis, the vertex.
     fn hit<R: Real, const FORWARD: bool>(&self, ray: Ray<R, FORWARD>) -> Hit<R>;
+    /// How many times [`KernelShape::refine`] runs over the batch between `hit` and `finish`: for a shape that is met by
+    /// iteration, whose `hit` is a first guess. Each step is a loop over the batch of its own: in one loop the steps of a
+    /// ray wait for each other, apart those of several rays are under way at once. Such a shape has no `UNIT_NORMAL`, and
+    /// `cosine` carries what it likes from step to step.
+    const ROUNDS: usize = 0;
+    /// A better hit, from the one before.
+    #[inline(always)]
+    fn refine<R: Real, const FORWARD: bool>(&self, _ray: Ray<R, FORWARD>, hit: Hit<R>) -> Hit<R> {
+        hit
+    }
+    /// The last one.
+    #[inline(always)]
+    fn finish<R: Real, const FORWARD: bool>(&self, _ray: Ray<R, FORWARD>, hit: Hit<R>) -> Hit<R> {
+        hit
+    }
     /// Normal at a point of the surface, toward +z at the vertex; of unit length unless [`KernelShape::UNIT_NORMAL`]
     /// says that it is not.
     fn normal<R: Real>(&self, point: [R; 3]) -> [R; 3];
@@ -191,7 +206,8 @@ impl<S: KernelShape, const FORWARD: bool> Vectorized for Intersect<'_, S, FORWAR
         intersect_loop::<S, FORWARD>(
             self.shape,
             self.shift_mm,
-            [c.l, c.m, c.n, s.radius2],
+            [c.l, c.m, c.n],
+            s.radius2,
             c.state,
             c.x,
             c.y,
@@ -243,7 +259,8 @@ fn search<S: KernelShape>(shape: &S, rays: &mut RayBatch, travel: Travel) {
 fn intersect_loop<S: KernelShape, const FORWARD: bool>(
     shape: &S,
     shift: f64,
-    [l, m, n, radius2]: [&[f64]; 4],
+    [l, m, n]: [&[f64]; 3],
+    radius2: &mut [f64],
     state: &[u64],
     x: &mut [f64],
     y: &mut [f64],
@@ -254,7 +271,10 @@ fn intersect_loop<S: KernelShape, const FORWARD: bool>(
     let len = x.len();
     // Equal lengths, said once, take the bounds checks out of the loop.
     let (y, z, cosine, valid) = (&mut y[..len], &mut z[..len], &mut cosine[..len], &mut valid[..len]);
-    let (l, m, n, radius2, state) = (&l[..len], &m[..len], &n[..len], &radius2[..len], &state[..len]);
+    let (l, m, n, radius2, state) = (&l[..len], &m[..len], &n[..len], &mut radius2[..len], &state[..len]);
+    if S::ROUNDS > 0 {
+        return iterate::<S, FORWARD>(shape, shift, [l, m, n], radius2, state, x, y, z, cosine, valid);
+    }
     let mut unsure = false;
     for i in 0..len {
         let p = [x[i], y[i], z[i] - shift];
@@ -263,6 +283,56 @@ fn intersect_loop<S: KernelShape, const FORWARD: bool>(
         let t = hit.distance;
         (x[i], y[i], z[i]) = (p[0] + t * d[0], p[1] + t * d[1], p[2] + t * d[2]);
         cosine[i] = hit.cosine;
+        valid[i] = hit.valid;
+        if S::SEARCHES {
+            unsure |= ends(hit.valid) & (state[i] == ALIVE);
+        }
+    }
+    unsure
+}
+
+/// The same for a shape that is met by iteration. The column of x^2 + y^2, which bending writes anew, holds the distance
+/// between the steps.
+#[inline(always)]
+fn iterate<S: KernelShape, const FORWARD: bool>(
+    shape: &S,
+    shift: f64,
+    [l, m, n]: [&[f64]; 3],
+    radius2_then_distance: &mut [f64],
+    state: &[u64],
+    x: &mut [f64],
+    y: &mut [f64],
+    z: &mut [f64],
+    cosine: &mut [f64],
+    valid: &mut [f64],
+) -> bool {
+    let len = x.len();
+    let (y, z, cosine, valid) = (&mut y[..len], &mut z[..len], &mut cosine[..len], &mut valid[..len]);
+    let (l, m, n, state) = (&l[..len], &m[..len], &n[..len], &state[..len]);
+    let distance = &mut radius2_then_distance[..len];
+    for i in 0..len {
+        z[i] -= shift;
+        let (position, direction) = ([x[i], y[i], z[i]], [l[i], m[i], n[i]]);
+        let hit = shape.hit(Ray::<f64, FORWARD> { position, direction, radius2: distance[i] });
+        (distance[i], cosine[i], valid[i]) = (hit.distance, hit.cosine, hit.valid);
+    }
+    for _ in 0..S::ROUNDS {
+        for i in 0..len {
+            let (position, direction) = ([x[i], y[i], z[i]], [l[i], m[i], n[i]]);
+            let radius2 = position[0] * position[0] + position[1] * position[1];
+            let hit = Hit { distance: distance[i], cosine: cosine[i], valid: valid[i] };
+            let hit = shape.refine(Ray::<f64, FORWARD> { position, direction, radius2 }, hit);
+            (distance[i], cosine[i], valid[i]) = (hit.distance, hit.cosine, hit.valid);
+        }
+    }
+    let mut unsure = false;
+    for i in 0..len {
+        let (p, d) = ([x[i], y[i], z[i]], [l[i], m[i], n[i]]);
+        let radius2 = p[0] * p[0] + p[1] * p[1];
+        let hit = Hit { distance: distance[i], cosine: cosine[i], valid: valid[i] };
+        let hit = shape.finish(Ray::<f64, FORWARD> { position: p, direction: d, radius2 }, hit);
+        let t = hit.distance;
+        (x[i], y[i], z[i]) = (p[0] + t * d[0], p[1] + t * d[1], p[2] + t * d[2]);
         valid[i] = hit.valid;
         if S::SEARCHES {
             unsure |= ends(hit.valid) & (state[i] == ALIVE);

@@ -24,6 +24,8 @@ const GROWTH: f64 = 1.1;
 const RINGS: usize = 64;
 /// Halvings toward the rim of a surface: 1e-9 of a step.
 const RIM_HALVINGS: usize = 30;
+/// Halvings toward the summit or the valley between two points.
+const EXTREMUM_HALVINGS: usize = 30;
 /// Steps within a bracket, each at least a halving.
 const BRACKET_STEPS: usize = 120;
 
@@ -47,8 +49,12 @@ pub fn nearest_crossing(
         if !(scale.is_finite() && middle.is_finite()) {
             return None;
         }
-        march(&|t| height(t).map(|(value, _)| sense * value), middle, FIRST_STEP * scale.max(SMALLEST_MM))
-            .and_then(|(below, above)| within(&height, below, above, sense))
+        march(
+            &|t| height(t).map(|(value, slope)| (sense * value, sense * slope)),
+            middle,
+            FIRST_STEP * scale.max(SMALLEST_MM),
+        )
+        .and_then(|(below, above)| within(&height, below, above, sense))
     })
 }
 
@@ -75,48 +81,76 @@ fn newton(height: &impl Fn(f64) -> Option<(f64, f64)>, start: f64, sense: f64) -
     (last <= 10.0 * ARRIVED_MM + 10.0 * f64::EPSILON * t.abs() && slope * sense > 0.0).then_some(t)
 }
 
-/// Two neighboring points between which the surface is crossed from below to above, (below, above): looked for outward
-/// from the middle, to both sides in turn.
-fn march(height: &impl Fn(f64) -> Option<f64>, middle: f64, first: f64) -> Option<(f64, f64)> {
-    let here = height(middle);
-    // Each side: the place reached, and the height there.
+/// A place along the ray, the height there, and its derivative.
+type Place = (f64, f64, f64);
+
+/// Two points between which the surface is crossed once from below to above, (below, above): looked for outward from the
+/// middle, to both sides in turn.
+fn march(height: &impl Fn(f64) -> Option<(f64, f64)>, middle: f64, first: f64) -> Option<(f64, f64)> {
+    let place = |t: f64| height(t).map(|(value, slope)| (t, value, slope));
+    let here = place(middle);
+    // Each side: the place reached, and what is there.
     let mut sides = [(middle, here), (middle, here)];
     let mut step = first;
     for _ in 0..RINGS {
-        for (i, outward) in [-1.0, 1.0].into_iter().enumerate() {
-            let (at, was) = sides[i];
+        for (side, outward) in sides.iter_mut().zip([-1.0, 1.0]) {
+            let (at, was) = *side;
             let next = at + outward * step;
-            let is = height(next);
+            let is = place(next);
+            *side = (next, is);
             // Where only one of the two points has surface, the interval ends at its rim.
             let (from, to) = match (was, is) {
-                (Some(a), Some(b)) => ((at, a), (next, b)),
-                (Some(a), None) => ((at, a), rim(height, at, a, next)),
-                (None, Some(b)) => (rim(height, next, b, at), (next, b)),
-                (None, None) => ((at, 0.0), (at, 0.0)),
+                (Some(a), Some(b)) => (a, b),
+                (Some(a), None) => (a, rim(&place, a, next)),
+                (None, Some(b)) => (rim(&place, b, at), b),
+                (None, None) => continue,
             };
-            let ((low, a), (high, b)) = if outward > 0.0 { (from, to) } else { (to, from) };
-            // The sign says which side of the surface, not where the ray came from: along the ray from - to +.
-            if a < 0.0 && b >= 0.0 {
-                return Some((low, high));
+            let (low, high) = if outward > 0.0 { (from, to) } else { (to, from) };
+            if let Some(found) = between(&place, low, high) {
+                return Some(found);
             }
-            sides[i] = (next, is);
         }
         step *= GROWTH;
     }
     None
 }
 
-/// The last point that has surface between `on`, which has, and `off`, which has not; with the height there.
-fn rim(height: &impl Fn(f64) -> Option<f64>, on: f64, value: f64, off: f64) -> (f64, f64) {
-    let (mut on, mut value, mut off) = (on, value, off);
+/// The crossing from below to above between two places: plain where their signs differ so; where they are alike, behind a
+/// summit or a valley between them.
+fn between(place: &impl Fn(f64) -> Option<Place>, low: Place, high: Place) -> Option<(f64, f64)> {
+    if low.1 < 0.0 && high.1 >= 0.0 {
+        return Some((low.0, high.0));
+    }
+    let summit = low.1 < 0.0 && high.1 < 0.0 && low.2 > 0.0 && high.2 < 0.0;
+    let valley = low.1 >= 0.0 && high.1 >= 0.0 && low.2 < 0.0 && high.2 > 0.0;
+    if !summit && !valley {
+        return None;
+    }
+    let (mut a, mut b) = (low.0, high.0);
+    for _ in 0..EXTREMUM_HALVINGS {
+        let (t, value, slope) = place(0.5 * (a + b))?;
+        if summit && value >= 0.0 {
+            return Some((low.0, t));
+        }
+        if valley && value < 0.0 {
+            return Some((t, high.0));
+        }
+        if (slope > 0.0) == summit { a = t } else { b = t }
+    }
+    None
+}
+
+/// The last place that has surface between `on`, which has, and `off`, which has not.
+fn rim(place: &impl Fn(f64) -> Option<Place>, on: Place, off: f64) -> Place {
+    let (mut on, mut off) = (on, off);
     for _ in 0..RIM_HALVINGS {
-        let middle = 0.5 * (on + off);
-        match height(middle) {
-            Some(v) => (on, value) = (middle, v),
+        let middle = 0.5 * (on.0 + off);
+        match place(middle) {
+            Some(found) => on = found,
             None => off = middle,
         }
     }
-    (on, value)
+    on
 }
 
 /// Newton's method held in a bracket: a step that leaves it, or is not below half of the one before, is a halving.
