@@ -58,6 +58,10 @@ impl ScalarShape for Grating {
         KernelShape::vertex_curvature_per_mm(&self.sphere)
     }
 
+    fn is_directional(&self) -> bool {
+        self.order_lines_per_mm != DVec3::ZERO
+    }
+
     fn redirect(&self, at: &Bending) -> Option<Result<DVec3, Loss>> {
         /// mm in a nm.
         const MM: f64 = 1e-6;
