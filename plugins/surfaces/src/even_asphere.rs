@@ -58,7 +58,7 @@ impl<const TERMS: usize> EvenAsphere<TERMS> {
     /// a2 + a6 x + ..., a4 + a8 x + ..., and their derivatives.
     #[inline(always)]
     fn halves<R: Real>(&self, x: R) -> (R, R, R, R) {
-        const { assert!(TERMS % 2 == 0 && TERMS >= 2) };
+        const { assert!(TERMS.is_multiple_of(2) && TERMS >= 2) };
         let a = &self.coefficients;
         let zero = R::constant(0.0);
         let (mut even, mut even_slope) = (R::constant(a[TERMS - 2]), zero);
