@@ -8,7 +8,7 @@ use spectra_core::surface::{
     Action, FromSag, IndexColumns, Interface, Intersection, Kernel, PerRay, SagShape, ScalarShape, Surface, Travel,
 };
 use spectra_core::{Isa, RayBatch};
-use spectra_plugin_surfaces::Sphere;
+use spectra_plugin_surfaces::{Conic, Cylinder, CylinderAxis, EvenAsphere, OddAsphere, Sphere, TiltedPlane};
 
 const RADIUS_MM: f64 = 40.0;
 const RAYS: usize = 2000;
@@ -120,4 +120,83 @@ fn tiers_agree_ray_by_ray() {
             }
         }
     }
+}
+
+/// Branch-free code against the scalar tier, which knows a shape by its sag alone; and the same bits on every instruction set.
+fn same_in_both_tiers(name: &str, kernel: &dyn Surface, scalar: &dyn Surface, few_disagree: usize) {
+    for travel in [Travel::Forward, Travel::Backward] {
+        let (want, lost) = interact(scalar, travel, Isa::Baseline);
+        assert!(lost < RAYS * 9 / 10, "{name}: {lost} lost");
+        let (got, _) = interact(kernel, travel, Isa::Baseline);
+        for isa in Isa::available() {
+            let (same, _) = interact(kernel, travel, isa);
+            assert_eq!(same.states(), got.states());
+            for (a, b) in
+                same.positions().iter().chain(&same.directions()).zip(got.positions().iter().chain(&got.directions()))
+            {
+                for i in 0..RAYS {
+                    assert!(
+                        got.loss(i).is_some() || a[i].to_bits() == b[i].to_bits(),
+                        "{name}: bits on {}",
+                        isa.name()
+                    );
+                }
+            }
+        }
+        let mut disagree = 0;
+        for i in 0..RAYS {
+            if got.loss(i).is_some() || want.loss(i).is_some() {
+                disagree += usize::from(got.loss(i).is_some() != want.loss(i).is_some());
+                continue;
+            }
+            for (a, b) in got.positions().iter().zip(want.positions()) {
+                assert!((a[i] - b[i]).abs() < 1e-11, "{name}, ray {i}: {} and {} mm", a[i], b[i]);
+            }
+            for (a, b) in got.directions().iter().zip(want.directions()) {
+                assert!((a[i] - b[i]).abs() < 1e-11, "{name}, ray {i}: direction {} and {}", a[i], b[i]);
+            }
+        }
+        assert!(disagree <= few_disagree, "{name}: {disagree} rays lost in one tier only");
+    }
+}
+
+/// The sag of a kernel shape, as a plugin author would write it.
+#[derive(Debug)]
+struct SagOf<S>(S);
+
+impl<S: spectra_core::surface::KernelShape> SagShape for SagOf<S> {
+    fn sag_mm(&self, x_mm: f64, y_mm: f64) -> Option<f64> {
+        self.0.sag_mm(x_mm, y_mm)
+    }
+    /// From the normal, which the reference rays test.
+    fn slope(&self, x_mm: f64, y_mm: f64) -> Option<(f64, f64)> {
+        let [a, b, c] = self.0.normal([x_mm, y_mm, self.sag_mm(x_mm, y_mm)?]);
+        Some((-a / c, -b / c))
+    }
+}
+
+#[test]
+fn kernels_agree_with_their_sags() {
+    let even = [0.0, 2e-6, -3e-9, 1e-12];
+    let odd = [0.0, 0.0, 0.0, 2e-6, 0.0, -3e-9, 0.0, 1e-12];
+    same_in_both_tiers("conic", &Kernel(Conic::new(60.0, -2.0)), &PerRay(FromSag(SagOf(Conic::new(60.0, -2.0)))), 0);
+    // The line may cross an ellipsoid near its rim, where the sag is steep without bounds.
+    same_in_both_tiers(
+        "ellipsoid",
+        &Kernel(Conic::new(-45.0, 0.5)),
+        &PerRay(FromSag(SagOf(Conic::new(-45.0, 0.5)))),
+        0,
+    );
+    same_in_both_tiers(
+        "even asphere",
+        &Kernel(EvenAsphere::<8>::new(60.0, -1.5, &even)),
+        &PerRay(FromSag(OddAsphere::new(60.0, -1.5, &odd))),
+        0,
+    );
+    let steep = EvenAsphere::<20>::new(-50.0, -1.0, &[1e-3, 4e-6, 1e-9]);
+    same_in_both_tiers("steep even asphere", &Kernel(steep), &PerRay(FromSag(SagOf(steep))), 0);
+    let cylinder = Cylinder::new(45.0, CylinderAxis::X);
+    same_in_both_tiers("cylinder", &Kernel(cylinder), &PerRay(FromSag(SagOf(cylinder))), 0);
+    let plane = TiltedPlane::new(0.3, -0.4);
+    same_in_both_tiers("tilted plane", &Kernel(plane), &PerRay(FromSag(SagOf(plane))), 0);
 }

@@ -13,6 +13,16 @@ pub(super) fn snell<const POSITIVE: bool>(cosine: f64, mu: f64) -> (f64, f64) {
     (if POSITIVE { root - along } else { -root - along }, k)
 }
 
+/// The same for a normal of any length, whose square is `length2`: `along` is d . N, and the square of the cosine is
+/// that square times `length2`.
+#[inline(always)]
+pub(super) fn snell_of_length<const POSITIVE: bool>(along: f64, mu: f64, length2: f64) -> (f64, f64) {
+    let along = mu * along;
+    let k = (1.0 - mu * mu) * length2 + along * along;
+    let root = k.sqrt();
+    ((if POSITIVE { root - along } else { -root - along }) / length2, k)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -34,6 +44,15 @@ mod tests {
                 assert!((y * y + z * z - 1.0).abs() < 1e-15);
             }
         }
+    }
+
+    /// A longer normal gets a shorter push, and bends alike.
+    #[test]
+    fn length_of_the_normal_does_not_matter() {
+        let (c, mu, length) = (0.8, 1.0 / 1.5, 3.7);
+        let (push, k) = snell::<true>(c, mu);
+        let (long_push, long_k) = snell_of_length::<true>(c * length, mu, length * length);
+        assert!((long_push * length - push).abs() < 1e-15 && (long_k - k * length * length).abs() < 1e-14);
     }
 
     #[test]

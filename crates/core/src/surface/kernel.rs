@@ -19,6 +19,8 @@ pub trait Real:
     fn abs(self) -> Self;
     /// The smaller; `other` if this one is NaN.
     fn min(self, other: Self) -> Self;
+    /// `chosen` where this is zero or more, `otherwise` where it is negative or NaN.
+    fn choose(self, chosen: Self, otherwise: Self) -> Self;
 }
 
 impl Real for f64 {
@@ -37,6 +39,10 @@ impl Real for f64 {
     #[inline(always)]
     fn min(self, other: Self) -> Self {
         if self < other { self } else { other }
+    }
+    #[inline(always)]
+    fn choose(self, chosen: Self, otherwise: Self) -> Self {
+        if self >= 0.0 { chosen } else { otherwise }
     }
 }
 
@@ -66,6 +72,7 @@ pub struct Hit<R> {
     /// Distance along the ray, mm; may be negative.
     pub distance: R,
     /// Direction . normal, for the normal that points toward +z at the vertex: positive forward, negative backward.
+    /// Read only of shapes whose normal is of unit length.
     pub cosine: R,
     /// Negative or NaN where the ray does not meet the surface, or runs against the sense of travel.
     pub valid: R,
@@ -75,10 +82,36 @@ pub struct Hit<R> {
 pub trait KernelShape: Send + Sync + std::fmt::Debug {
     /// Where the ray meets the surface: for a ray along the axis, the vertex.
     fn hit<R: Real, const FORWARD: bool>(&self, ray: Ray<R, FORWARD>) -> Hit<R>;
-    /// Unit normal at a point of the surface, toward +z at the vertex.
+    /// How many times [`KernelShape::refine`] runs over the batch between `hit` and `finish`: for a shape that is met by
+    /// iteration, whose `hit` is a first guess. Each step is a loop over the batch of its own: in one loop the steps of a
+    /// ray wait for each other, apart those of several rays are under way at once. Such a shape has no `UNIT_NORMAL`, and
+    /// `cosine` carries what it likes from step to step.
+    const ROUNDS: usize = 0;
+    /// A better hit, from the one before.
+    #[inline(always)]
+    fn refine<R: Real, const FORWARD: bool>(&self, _ray: Ray<R, FORWARD>, hit: Hit<R>) -> Hit<R> {
+        hit
+    }
+    /// The last one.
+    #[inline(always)]
+    fn finish<R: Real, const FORWARD: bool>(&self, _ray: Ray<R, FORWARD>, hit: Hit<R>) -> Hit<R> {
+        hit
+    }
+    /// Normal at a point of the surface, toward +z at the vertex; of unit length unless [`KernelShape::UNIT_NORMAL`]
+    /// says that it is not.
     fn normal<R: Real>(&self, point: [R; 3]) -> [R; 3];
+    /// Whether the normal is of unit length. Where that would cost a square root it need not be: Snell's law holds for
+    /// a normal of any length, at the price of a division.
+    const UNIT_NORMAL: bool = true;
+    /// Whether rays that [`KernelShape::hit`] calls invalid are asked for again, by [`KernelShape::search`]. Then the
+    /// distance of an invalid hit must be 0.
+    const SEARCHES: bool = false;
+    /// The distance, mm, along a ray of which `hit` was not sure: by slow and patient code. `None` where it misses.
+    fn search(&self, _position: [f64; 3], _direction: [f64; 3], _travel: Travel) -> Option<f64> {
+        None
+    }
     /// `mu * direction + push * normal(point)`: the direction behind the surface. A shape whose normal
-    /// is linear in the point may save a few operations here.
+    /// is linear in the point may save a few operations here. Used of unit normals only.
     #[inline(always)]
     fn bend<R: Real>(&self, point: [R; 3], direction: [R; 3], mu: R, push: R) -> [R; 3] {
         let normal = self.normal(point);
@@ -128,8 +161,8 @@ fn interact<S: KernelShape, const ACTION: u8>(
     isa: Isa,
 ) -> usize {
     match interface.travel {
-        Travel::Forward => isa.run(Interact::<S, ACTION, true> { shape, rays, interface }),
-        Travel::Backward => isa.run(Interact::<S, ACTION, false> { shape, rays, interface }),
+        Travel::Forward => interact_along::<S, ACTION, true>(shape, rays, interface, isa),
+        Travel::Backward => interact_along::<S, ACTION, false>(shape, rays, interface, isa),
     }
 }
 
@@ -142,18 +175,61 @@ const PASS: u8 = 2;
 /// several rays' roots are under way at once (measured: 1.3 times the rays a second). What both need
 /// travels in scratch columns: loads and stores are free here, arithmetic is not. Why a ray ended is
 /// asked only where one did.
-struct Interact<'a, S, const ACTION: u8, const FORWARD: bool> {
+#[inline]
+fn interact_along<S: KernelShape, const ACTION: u8, const FORWARD: bool>(
+    shape: &S,
+    rays: &mut RayBatch,
+    interface: &Interface<'_>,
+    isa: Isa,
+) -> usize {
+    let unsure = isa.run(Intersect::<S, FORWARD> { shape, rays, shift_mm: interface.shift_mm });
+    if S::SEARCHES && unsure {
+        search(shape, rays, interface.travel);
+    }
+    isa.run(Bend::<S, ACTION, FORWARD> { shape, rays, interface })
+}
+
+/// Moves every ray to the surface; leaves cosine and validity behind. Says, of shapes that search, whether any living
+/// ray may have missed.
+struct Intersect<'a, S, const FORWARD: bool> {
+    shape: &'a S,
+    rays: &'a mut RayBatch,
+    shift_mm: f64,
+}
+
+impl<S: KernelShape, const FORWARD: bool> Vectorized for Intersect<'_, S, FORWARD> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn run(self) -> bool {
+        let (c, s) = self.rays.columns_and_scratch_mut();
+        intersect_loop::<S, FORWARD>(
+            self.shape,
+            self.shift_mm,
+            [c.l, c.m, c.n],
+            s.radius2,
+            c.state,
+            c.x,
+            c.y,
+            c.z,
+            s.cosine_then_margin,
+            s.valid,
+        )
+    }
+}
+
+/// Bends every ray at its point of the surface and books those that end.
+struct Bend<'a, S, const ACTION: u8, const FORWARD: bool> {
     shape: &'a S,
     rays: &'a mut RayBatch,
     interface: &'a Interface<'a>,
 }
 
-impl<S: KernelShape, const ACTION: u8, const FORWARD: bool> Vectorized for Interact<'_, S, ACTION, FORWARD> {
+impl<S: KernelShape, const ACTION: u8, const FORWARD: bool> Vectorized for Bend<'_, S, ACTION, FORWARD> {
     type Output = usize;
 
     #[inline(always)]
     fn run(self) -> usize {
-        intersect::<S, FORWARD>(self.shape, self.rays, self.interface.shift_mm);
         if bend_all::<S, ACTION, FORWARD>(self.shape, self.rays, self.interface) {
             book(self.rays, self.interface)
         } else {
@@ -162,20 +238,19 @@ impl<S: KernelShape, const ACTION: u8, const FORWARD: bool> Vectorized for Inter
     }
 }
 
-/// Moves every ray to the surface; leaves cosine and validity behind.
-#[inline(always)]
-fn intersect<S: KernelShape, const FORWARD: bool>(shape: &S, rays: &mut RayBatch, shift: f64) {
+/// Asks again for the living rays that the fast code was not sure of.
+#[cold]
+fn search<S: KernelShape>(shape: &S, rays: &mut RayBatch, travel: Travel) {
     let (c, s) = rays.columns_and_scratch_mut();
-    intersect_loop::<S, FORWARD>(
-        shape,
-        shift,
-        [c.l, c.m, c.n, s.radius2],
-        c.x,
-        c.y,
-        c.z,
-        s.cosine_then_margin,
-        s.valid,
-    );
+    for i in 0..c.x.len() {
+        if c.state[i] == ALIVE && ends(s.valid[i]) {
+            let (p, d) = ([c.x[i], c.y[i], c.z[i]], [c.l[i], c.m[i], c.n[i]]);
+            if let Some(t) = shape.search(p, d, travel) {
+                (c.x[i], c.y[i], c.z[i]) = (p[0] + t * d[0], p[1] + t * d[1], p[2] + t * d[2]);
+                s.valid[i] = 0.0;
+            }
+        }
+    }
 }
 
 /// Columns come as arguments of their own: so the compiler knows that none overlaps another, and
@@ -184,17 +259,23 @@ fn intersect<S: KernelShape, const FORWARD: bool>(shape: &S, rays: &mut RayBatch
 fn intersect_loop<S: KernelShape, const FORWARD: bool>(
     shape: &S,
     shift: f64,
-    [l, m, n, radius2]: [&[f64]; 4],
+    [l, m, n]: [&[f64]; 3],
+    radius2: &mut [f64],
+    state: &[u64],
     x: &mut [f64],
     y: &mut [f64],
     z: &mut [f64],
     cosine: &mut [f64],
     valid: &mut [f64],
-) {
+) -> bool {
     let len = x.len();
     // Equal lengths, said once, take the bounds checks out of the loop.
     let (y, z, cosine, valid) = (&mut y[..len], &mut z[..len], &mut cosine[..len], &mut valid[..len]);
-    let (l, m, n, radius2) = (&l[..len], &m[..len], &n[..len], &radius2[..len]);
+    let (l, m, n, radius2, state) = (&l[..len], &m[..len], &n[..len], &mut radius2[..len], &state[..len]);
+    if S::ROUNDS > 0 {
+        return iterate::<S, FORWARD>(shape, shift, [l, m, n], radius2, state, x, y, z, cosine, valid);
+    }
+    let mut unsure = false;
     for i in 0..len {
         let p = [x[i], y[i], z[i] - shift];
         let d = [l[i], m[i], n[i]];
@@ -203,7 +284,61 @@ fn intersect_loop<S: KernelShape, const FORWARD: bool>(
         (x[i], y[i], z[i]) = (p[0] + t * d[0], p[1] + t * d[1], p[2] + t * d[2]);
         cosine[i] = hit.cosine;
         valid[i] = hit.valid;
+        if S::SEARCHES {
+            unsure |= ends(hit.valid) & (state[i] == ALIVE);
+        }
     }
+    unsure
+}
+
+/// The same for a shape that is met by iteration. The column of x^2 + y^2, which bending writes anew, holds the distance
+/// between the steps.
+#[inline(always)]
+fn iterate<S: KernelShape, const FORWARD: bool>(
+    shape: &S,
+    shift: f64,
+    [l, m, n]: [&[f64]; 3],
+    radius2_then_distance: &mut [f64],
+    state: &[u64],
+    x: &mut [f64],
+    y: &mut [f64],
+    z: &mut [f64],
+    cosine: &mut [f64],
+    valid: &mut [f64],
+) -> bool {
+    let len = x.len();
+    let (y, z, cosine, valid) = (&mut y[..len], &mut z[..len], &mut cosine[..len], &mut valid[..len]);
+    let (l, m, n, state) = (&l[..len], &m[..len], &n[..len], &state[..len]);
+    let distance = &mut radius2_then_distance[..len];
+    for i in 0..len {
+        z[i] -= shift;
+        let (position, direction) = ([x[i], y[i], z[i]], [l[i], m[i], n[i]]);
+        let hit = shape.hit(Ray::<f64, FORWARD> { position, direction, radius2: distance[i] });
+        (distance[i], cosine[i], valid[i]) = (hit.distance, hit.cosine, hit.valid);
+    }
+    for _ in 0..S::ROUNDS {
+        for i in 0..len {
+            let (position, direction) = ([x[i], y[i], z[i]], [l[i], m[i], n[i]]);
+            let radius2 = position[0] * position[0] + position[1] * position[1];
+            let hit = Hit { distance: distance[i], cosine: cosine[i], valid: valid[i] };
+            let hit = shape.refine(Ray::<f64, FORWARD> { position, direction, radius2 }, hit);
+            (distance[i], cosine[i], valid[i]) = (hit.distance, hit.cosine, hit.valid);
+        }
+    }
+    let mut unsure = false;
+    for i in 0..len {
+        let (p, d) = ([x[i], y[i], z[i]], [l[i], m[i], n[i]]);
+        let radius2 = p[0] * p[0] + p[1] * p[1];
+        let hit = Hit { distance: distance[i], cosine: cosine[i], valid: valid[i] };
+        let hit = shape.finish(Ray::<f64, FORWARD> { position: p, direction: d, radius2 }, hit);
+        let t = hit.distance;
+        (x[i], y[i], z[i]) = (p[0] + t * d[0], p[1] + t * d[1], p[2] + t * d[2]);
+        valid[i] = hit.valid;
+        if S::SEARCHES {
+            unsure |= ends(hit.valid) & (state[i] == ALIVE);
+        }
+    }
+    unsure
 }
 
 /// Bends every ray at its point of the surface; says whether any living one ended.
@@ -252,13 +387,26 @@ fn bend_loop<S: KernelShape, const ACTION: u8, const FORWARD: bool>(
         radius2[i] = r2;
         // NaN where the ray missed: `min` passes over it to the validity.
         let mut margin = clip2 - r2;
-        if ACTION == REFRACT {
+        if ACTION != PASS && !S::UNIT_NORMAL {
+            let g = shape.normal(q);
+            let length2 = g[0] * g[0] + g[1] * g[1] + g[2] * g[2];
+            let along = d[0] * g[0] + d[1] * g[1] + d[2] * g[2];
+            let (mut mu, mut push) = (1.0, -2.0 * along / length2);
+            if ACTION == REFRACT {
+                let k;
+                mu = before[i] * inverse_after[i];
+                (push, k) = bend::snell_of_length::<FORWARD>(along, mu, length2);
+                margin = Real::min(k, margin);
+            }
+            l[i] = mu * d[0] + push * g[0];
+            m[i] = mu * d[1] + push * g[1];
+            n[i] = mu * d[2] + push * g[2];
+        } else if ACTION == REFRACT {
             let mu = before[i] * inverse_after[i];
             let (push, k) = bend::snell::<FORWARD>(cosine_then_margin[i], mu);
             (l[i], m[i], n[i]) = shape.bend(q, d, mu, push).into();
             margin = Real::min(k, margin);
-        }
-        if ACTION == REFLECT {
+        } else if ACTION == REFLECT {
             (l[i], m[i], n[i]) = shape.bend(q, d, 1.0, -2.0 * cosine_then_margin[i]).into();
         }
         margin = Real::min(margin, valid[i]);

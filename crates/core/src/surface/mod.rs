@@ -12,10 +12,12 @@ mod bend;
 mod kernel;
 mod per_ray;
 mod sag;
+mod search;
 
 pub use kernel::{Hit, Kernel, KernelShape, Ray, Real};
-pub use per_ray::{Intersection, PerRay, ScalarShape};
+pub use per_ray::{Bending, Intersection, PerRay, ScalarShape};
 pub use sag::{FromSag, SagShape};
+pub use search::nearest_crossing;
 
 use crate::RayBatch;
 use crate::isa::Isa;
@@ -75,6 +77,14 @@ pub trait Surface: Send + Sync + std::fmt::Debug {
 
     /// Curvature at the vertex, 1/mm (x, y): what paraxial optics sees.
     fn vertex_curvature_per_mm(&self) -> (f64, f64);
+
+    /// Power for paraxial optics, 1/mm (in the x-z and the y-z section), between media of these refractive indices:
+    /// n' u' = n u - power h. A mirror is `n_after = -n_before`, as usual in lens design. By default what Snell's law
+    /// makes of the curvature at the vertex.
+    fn paraxial_power_per_mm(&self, n_before: f64, n_after: f64) -> (f64, f64) {
+        let (x, y) = self.vertex_curvature_per_mm();
+        ((n_after - n_before) * x, (n_after - n_before) * y)
+    }
 
     /// Whether this is the aperture stop: it bends no light, and its size sets the f-number.
     fn is_stop(&self) -> bool {

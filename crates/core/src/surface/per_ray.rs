@@ -1,6 +1,6 @@
 //! The plain tier: one ray at a time, as a person would write it.
 
-use super::{Action, Interface, Surface, bend};
+use super::{Action, Interface, Surface, Travel, bend};
 use crate::RayBatch;
 use crate::isa::Isa;
 use crate::loss::{ALIVE, Loss};
@@ -15,6 +15,27 @@ pub struct Intersection {
     pub normal: DVec3,
 }
 
+/// A ray at the point where it meets a surface, about to be bent.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bending {
+    /// The point, mm, frame of the surface.
+    pub point: DVec3,
+    /// Unit direction before.
+    pub direction: DVec3,
+    /// Unit normal; it points to where the ray goes (`direction . normal` is not negative).
+    pub normal: DVec3,
+    /// Wavelength in vacuum-equal air, nm.
+    pub wavelength_nm: f64,
+    /// Refractive index of the medium that the ray comes from.
+    pub n_before: f64,
+    /// Refractive index of the medium behind the surface, in the sense of travel.
+    pub n_after: f64,
+    /// What happens here: never [`Action::Pass`], which leaves the direction alone.
+    pub action: Action,
+    /// Sense of travel along z.
+    pub travel: Travel,
+}
+
 /// A surface by scalar code.
 pub trait ScalarShape: Send + Sync + std::fmt::Debug {
     /// Where the ray through `position` (mm, frame of the surface) along the unit `direction` meets
@@ -24,6 +45,16 @@ pub trait ScalarShape: Send + Sync + std::fmt::Debug {
     fn sag_mm(&self, x_mm: f64, y_mm: f64) -> Option<f64>;
     /// As [`Surface::vertex_curvature_per_mm`].
     fn vertex_curvature_per_mm(&self) -> (f64, f64);
+    /// As [`Surface::paraxial_power_per_mm`].
+    fn paraxial_power_per_mm(&self, n_before: f64, n_after: f64) -> (f64, f64) {
+        let (x, y) = self.vertex_curvature_per_mm();
+        ((n_after - n_before) * x, (n_after - n_before) * y)
+    }
+    /// The unit direction behind the surface, or why the ray ends, where the surface bends light by another law than
+    /// Snell's: an ideal lens, a grating. By default `None`: refracted or reflected as the action says.
+    fn redirect(&self, _at: &Bending) -> Option<Result<DVec3, Loss>> {
+        None
+    }
     /// As [`Surface::is_stop`].
     fn is_stop(&self) -> bool {
         false
@@ -45,6 +76,9 @@ impl<S: ScalarShape> Surface for PerRay<S> {
     fn vertex_curvature_per_mm(&self) -> (f64, f64) {
         self.0.vertex_curvature_per_mm()
     }
+    fn paraxial_power_per_mm(&self, n_before: f64, n_after: f64) -> (f64, f64) {
+        self.0.paraxial_power_per_mm(n_before, n_after)
+    }
     fn is_stop(&self) -> bool {
         self.0.is_stop()
     }
@@ -60,7 +94,7 @@ impl<S: ScalarShape> Surface for PerRay<S> {
             }
             let position = DVec3::new(c.x[i], c.y[i], c.z[i] - interface.shift_mm);
             let direction = DVec3::new(c.l[i], c.m[i], c.n[i]);
-            match one(&self.0, position, direction, interface, i) {
+            match one(&self.0, position, direction, c.wavelength_nm[i], interface, i) {
                 Ok((at, toward)) => {
                     (c.x[i], c.y[i], c.z[i]) = (at.x, at.y, at.z);
                     (c.l[i], c.m[i], c.n[i]) = (toward.x, toward.y, toward.z);
@@ -76,7 +110,14 @@ impl<S: ScalarShape> Surface for PerRay<S> {
 }
 
 #[inline]
-fn one<S: ScalarShape>(shape: &S, p: DVec3, d: DVec3, at: &Interface<'_>, i: usize) -> Result<(DVec3, DVec3), Loss> {
+fn one<S: ScalarShape>(
+    shape: &S,
+    p: DVec3,
+    d: DVec3,
+    wavelength_nm: f64,
+    at: &Interface<'_>,
+    i: usize,
+) -> Result<(DVec3, DVec3), Loss> {
     let hit = shape.intersect(p, d).ok_or(Loss::Missed)?;
     let q = p + hit.distance_mm * d;
     if !q.is_finite() {
@@ -89,11 +130,25 @@ fn one<S: ScalarShape>(shape: &S, p: DVec3, d: DVec3, at: &Interface<'_>, i: usi
         return Ok((q, d));
     }
     let normal = hit.normal / hit.normal.length();
+    let normal = if d.dot(normal) < 0.0 { -normal } else { normal };
+    let bending = Bending {
+        point: q,
+        direction: d,
+        normal,
+        wavelength_nm,
+        n_before: at.before.n[i],
+        n_after: at.after.n[i],
+        action: at.action,
+        travel: at.travel,
+    };
+    if let Some(toward) = shape.redirect(&bending) {
+        return toward.map(|toward| (q, toward));
+    }
     let cosine = d.dot(normal);
     if at.action == Action::Reflect {
         return Ok((q, d - 2.0 * cosine * normal));
     }
     let mu = at.before.n[i] * at.after.inverse[i];
-    let (push, k) = if cosine > 0.0 { bend::snell::<true>(cosine, mu) } else { bend::snell::<false>(cosine, mu) };
+    let (push, k) = bend::snell::<true>(cosine, mu);
     if k >= 0.0 { Ok((q, mu * d + push * normal)) } else { Err(Loss::TotalReflection) }
 }

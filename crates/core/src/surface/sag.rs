@@ -1,6 +1,7 @@
 //! The smallest thing that makes a surface: its sag.
 
-use super::{Intersection, ScalarShape};
+use super::search::nearest_crossing;
+use super::{Intersection, ScalarShape, Travel};
 use glam::DVec3;
 
 /// A surface given by its sag z(x, y).
@@ -22,74 +23,46 @@ pub trait SagShape: Send + Sync + std::fmt::Debug {
         };
         Some((along(h, 0.0)?, along(0.0, h)?))
     }
+
+    /// As [`super::Surface::vertex_curvature_per_mm`]; by differences unless given.
+    fn vertex_curvature_per_mm(&self) -> (f64, f64) {
+        let h = 1e-3;
+        let second = |dx: f64, dy: f64| {
+            let at = |x: f64, y: f64| self.sag_mm(x, y).unwrap_or(0.0);
+            (at(dx, dy) - 2.0 * at(0.0, 0.0) + at(-dx, -dy)) / (h * h)
+        };
+        (second(h, 0.0), second(0.0, h))
+    }
 }
 
-/// Makes a [`ScalarShape`] of a [`SagShape`], by Newton's method.
+/// Makes a [`ScalarShape`] of a [`SagShape`]: a ray meets it where it crosses the sag in its sense along z.
 #[derive(Clone, Debug)]
 pub struct FromSag<S>(pub S);
-
-/// Newton's method on a smooth sag gains about one doubling of digits a step from the vertex plane:
-/// five reach 1e-13 mm on lens surfaces; the rest is for steep ones.
-const STEPS: usize = 50;
-/// Halvings of a step that leads beyond the rim: 1/1000 of it.
-const HALVINGS: usize = 10;
-/// Where a step is smaller than this, mm, the ray has arrived.
-const ARRIVED_MM: f64 = 1e-12;
 
 impl<S: SagShape> ScalarShape for FromSag<S> {
     fn intersect(&self, position: DVec3, direction: DVec3) -> Option<Intersection> {
         if direction.z == 0.0 {
             return None;
         }
-        let at = |t: f64| {
-            let p = position + t * direction;
-            self.0.sag_mm(p.x, p.y).map(|sag| (p, sag))
-        };
-        // From the vertex plane; where the surface does not reach out to there, from the point nearest to the axis.
-        let across = direction.x * direction.x + direction.y * direction.y;
-        let nearest = -(position.x * direction.x + position.y * direction.y) / across;
-        let mut t = -position.z / direction.z;
-        let (mut p, mut sag) = match at(t) {
-            Some(found) => found,
-            None => {
-                t = nearest;
-                at(t)?
-            }
-        };
-        for _ in 0..STEPS {
+        let travel = if direction.z > 0.0 { Travel::Forward } else { Travel::Backward };
+        // Distances count from the vertex plane, so that a far source costs no digits.
+        let to_plane = -position.z / direction.z;
+        let origin = position + to_plane * direction;
+        let height = |t: f64| {
+            let p = origin + t * direction;
+            let sag = self.0.sag_mm(p.x, p.y)?;
             let (sx, sy) = self.0.slope(p.x, p.y)?;
-            let normal = DVec3::new(-sx, -sy, 1.0);
-            let mut step = (sag - p.z) / direction.dot(normal);
-            if !step.is_finite() {
-                return None;
-            }
-            // A step beyond the rim of the surface is halved until it is on it.
-            let mut next = at(t + step);
-            for _ in 0..HALVINGS {
-                if next.is_some() {
-                    break;
-                }
-                step *= 0.5;
-                next = at(t + step);
-            }
-            (p, sag) = next?;
-            t += step;
-            if step.abs() < ARRIVED_MM * (1.0 + t.abs() * 1e-2) {
-                let (sx, sy) = self.0.slope(p.x, p.y)?;
-                return Some(Intersection { distance_mm: t, normal: DVec3::new(-sx, -sy, 1.0) });
-            }
-        }
-        None
+            Some((p.z - sag, direction.z - direction.x * sx - direction.y * sy))
+        };
+        let t = nearest_crossing(height, origin, direction, travel, 0.0)?;
+        let p = origin + t * direction;
+        let (sx, sy) = self.0.slope(p.x, p.y)?;
+        Some(Intersection { distance_mm: to_plane + t, normal: DVec3::new(-sx, -sy, 1.0) })
     }
     fn sag_mm(&self, x_mm: f64, y_mm: f64) -> Option<f64> {
         self.0.sag_mm(x_mm, y_mm)
     }
     fn vertex_curvature_per_mm(&self) -> (f64, f64) {
-        let h = 1e-3;
-        let second = |dx: f64, dy: f64| {
-            let at = |x: f64, y: f64| self.0.sag_mm(x, y).unwrap_or(0.0);
-            (at(dx, dy) - 2.0 * at(0.0, 0.0) + at(-dx, -dy)) / (h * h)
-        };
-        (second(h, 0.0), second(0.0, h))
+        self.0.vertex_curvature_per_mm()
     }
 }

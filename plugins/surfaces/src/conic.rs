@@ -1,0 +1,98 @@
+//! `kind: conic`: a surface of revolution of a conic section.
+
+use crate::shared::{self, ConicSection};
+use serde::Deserialize;
+use spectra_core::params::{Faults, LengthOrInfinity, Params};
+use spectra_core::registry::{Context, SurfaceEntry};
+use spectra_core::surface::{Hit, Kernel, KernelShape, Ray, Real, Surface};
+
+/// z = c r^2 / (1 + sqrt(1 - (1 + k) c^2 r^2)) for the curvature c = 1 / radius and the conic constant k: a hyperboloid
+/// below k = -1, a paraboloid at -1, an ellipsoid above (prolate below 0, a sphere at 0, oblate beyond).
+///
+/// In a lens file: `{kind: conic, radius: -200, conic: -1, mirror: true, thickness: -100}` is a parabolic mirror.
+///
+/// Only the sheet, or the half, that holds the vertex is surface; a ray meets it where it crosses in the sense of travel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Conic {
+    section: ConicSection,
+}
+
+impl Conic {
+    /// A conic of this radius of curvature at the vertex, mm (positive where the center lies at larger z; infinite is a
+    /// plane), and this conic constant.
+    #[must_use]
+    pub fn new(radius_mm: f64, conic: f64) -> Self {
+        Self::of_curvature(1.0 / radius_mm, conic)
+    }
+
+    #[inline(always)]
+    pub(crate) fn of_section(section: ConicSection) -> Self {
+        Self { section }
+    }
+
+    pub(crate) fn of_curvature(curvature_per_mm: f64, conic: f64) -> Self {
+        Self { section: ConicSection::new(curvature_per_mm, conic) }
+    }
+}
+
+impl KernelShape for Conic {
+    /// Half the gradient of c (r^2 + (1 + k) z^2) - 2 z, turned round: unit length on spheres only.
+    const UNIT_NORMAL: bool = false;
+
+    /// From the point of the ray nearest to the vertex (a source far away would cost digits), as for the sphere: a t^2 - 2 b t + q = 0 with a = c (1 + k n^2), b = n - c (x l + y m + (1 + k) z n) and
+    /// q = c (r^2 + (1 + k) z^2) - 2 z, solved by t = q / (b + sqrt(b^2 - a q)). There the ray crosses in the sense of travel.
+    #[inline(always)]
+    fn hit<R: Real, const FORWARD: bool>(&self, ray: Ray<R, FORWARD>) -> Hit<R> {
+        let c = R::constant(self.section.curvature_per_mm);
+        let flat = R::constant(self.section.one_plus_conic);
+        let ([x, y, z], [l, m, n]) = (ray.position, ray.direction);
+        let near = -(x * l + y * m + z * n);
+        let (x, y, z) = (x + near * l, y + near * m, z + near * n);
+        let (flat_z, flat_n) = (flat * z, flat * n);
+        let a = c * ((l * l + m * m) + flat_n * n);
+        let b = n - c * ((x * l + y * m) + flat_z * n);
+        let q = c * ((x * x + y * y) + flat_z * z) - (z + z);
+        let discriminant = b * b - a * q;
+        let cosine = ray.along(discriminant.sqrt());
+        let distance = q / (b + cosine);
+        // The other half of an ellipsoid, the other sheet of a hyperboloid: there the normal would point to -z.
+        let on_vertex_sheet = R::constant(1.0) - c * (flat_z + flat_n * distance);
+        Hit { distance: near + distance, cosine, valid: discriminant.min(on_vertex_sheet) }
+    }
+
+    #[inline(always)]
+    fn normal<R: Real>(&self, [x, y, z]: [R; 3]) -> [R; 3] {
+        let c = R::constant(self.section.curvature_per_mm);
+        [-(c * x), -(c * y), R::constant(1.0) - c * (R::constant(self.section.one_plus_conic) * z)]
+    }
+
+    fn sag_mm(&self, x_mm: f64, y_mm: f64) -> Option<f64> {
+        self.section.sag_mm(x_mm * x_mm + y_mm * y_mm)
+    }
+
+    fn vertex_curvature_per_mm(&self) -> (f64, f64) {
+        (self.section.curvature_per_mm, self.section.curvature_per_mm)
+    }
+}
+
+/// Parameters of `kind: conic` as written in a lens.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct ConicParams {
+    /// Radius of curvature at the vertex, mm if bare: positive where the center lies at larger z; `inf` is a plane.
+    radius: LengthOrInfinity,
+    /// Conic constant: 0 is a sphere, -1 a paraboloid.
+    conic: f64,
+}
+
+inventory::submit! {
+    SurfaceEntry::new("conic", "A surface of revolution of a conic section.", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION"), build)
+}
+
+fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Surface>, Faults> {
+    let p: ConicParams = params.parse()?;
+    let mut faults = Faults::new();
+    let c = shared::curvature(params, "radius", p.radius, &mut faults);
+    shared::finite(params, "conic", p.conic, &mut faults);
+    faults.into_result(Box::new(Kernel(Conic::of_curvature(c, p.conic))) as Box<dyn Surface>)
+}

@@ -1,0 +1,115 @@
+//! `kind: grating`: ruled lines on a sphere or a plane.
+
+use crate::sphere::Sphere;
+use glam::DVec3;
+use serde::Deserialize;
+use spectra_core::Loss;
+use spectra_core::math::{cos, sin};
+use spectra_core::params::{Angle, Faults, LengthOrInfinity, Params, SpatialFrequency};
+use spectra_core::registry::{Context, SurfaceEntry};
+use spectra_core::surface::{Action, Bending, Intersection, KernelShape, PerRay, Ray, ScalarShape, Surface};
+
+/// A diffraction grating: lines in parallel planes along the axis, equally spaced on the vertex plane, on a sphere.
+///
+/// In a lens file: `{kind: grating, lines-per-mm: 600, order: 1, mirror: true, thickness: -100}` is a plane reflection
+/// grating whose order 1 goes up.
+///
+/// In the tangent plane of the surface the direction changes by n' d' - n d = order x wavelength x G (G. H. Spencer and
+/// M. V. R. K. Murty, "General ray-tracing procedure", J. Opt. Soc. Am. 52, 672 (1962)), where G, of `lines-per-mm`
+/// length, points across the lines: along +y for `direction: 0`, turned by `direction` right-handed about +z (90 is -x).
+/// So order 1 turns light toward G. All light goes into the one order; an order that does not exist, because its sine
+/// would exceed 1, counts as totally reflected.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grating {
+    sphere: Sphere,
+    /// Order times lines per mm, across the lines.
+    order_lines_per_mm: DVec3,
+}
+
+impl Grating {
+    /// A grating of `order`, on a sphere of this radius, mm (infinite is a plane).
+    #[must_use]
+    pub fn new(lines_per_mm: f64, order: i32, radius_mm: f64, direction_rad: f64) -> Self {
+        let size = f64::from(order) * lines_per_mm;
+        let across = DVec3::new(-size * sin(direction_rad), size * cos(direction_rad), 0.0);
+        Self { sphere: Sphere::new(radius_mm), order_lines_per_mm: across }
+    }
+}
+
+impl ScalarShape for Grating {
+    fn intersect(&self, position: DVec3, direction: DVec3) -> Option<Intersection> {
+        let (p, d) = (position.to_array(), direction.to_array());
+        let radius2 = p[0] * p[0] + p[1] * p[1];
+        let hit = if direction.z >= 0.0 {
+            self.sphere.hit(Ray::<f64, true> { position: p, direction: d, radius2 })
+        } else {
+            self.sphere.hit(Ray::<f64, false> { position: p, direction: d, radius2 })
+        };
+        let point = position + hit.distance * direction;
+        (hit.valid >= 0.0)
+            .then(|| Intersection { distance_mm: hit.distance, normal: self.sphere.normal(point.to_array()).into() })
+    }
+
+    fn sag_mm(&self, x_mm: f64, y_mm: f64) -> Option<f64> {
+        KernelShape::sag_mm(&self.sphere, x_mm, y_mm)
+    }
+
+    fn vertex_curvature_per_mm(&self) -> (f64, f64) {
+        KernelShape::vertex_curvature_per_mm(&self.sphere)
+    }
+
+    fn is_directional(&self) -> bool {
+        self.order_lines_per_mm != DVec3::ZERO
+    }
+
+    fn redirect(&self, at: &Bending) -> Option<Result<DVec3, Loss>> {
+        /// mm in a nm.
+        const MM: f64 = 1e-6;
+        let n_after = if at.action == Action::Reflect { at.n_before } else { at.n_after };
+        let turned = at.n_before * at.direction + at.wavelength_nm * MM * self.order_lines_per_mm;
+        let tangential = (turned - turned.dot(at.normal) * at.normal) / n_after;
+        let square = 1.0 - tangential.length_squared();
+        if !(square >= 0.0) {
+            return Some(Err(Loss::TotalReflection));
+        }
+        let away = if at.action == Action::Reflect { -square.sqrt() } else { square.sqrt() };
+        Some(Ok(tangential + away * at.normal))
+    }
+}
+
+/// Parameters of `kind: grating` as written in a lens.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct GratingParams {
+    /// Lines per mm, if bare: `600 lines/mm`. Zero or more.
+    lines_per_mm: spectra_core::params::NonNegative<SpatialFrequency>,
+    /// Order of diffraction, any sign; 0 is the undiffracted light.
+    order: i32,
+    /// Radius of the sphere that it is ruled on, mm if bare; a plane if left out.
+    #[serde(default = "plane")]
+    radius: LengthOrInfinity,
+    /// Direction across the lines, degrees if bare, right-handed about +z from +y: 0 turns order 1 toward +y, 90 toward
+    /// -x.
+    #[serde(default = "upward")]
+    direction: Angle,
+}
+
+fn plane() -> LengthOrInfinity {
+    LengthOrInfinity::Infinite
+}
+
+fn upward() -> Angle {
+    Angle::from_rad(0.0)
+}
+
+inventory::submit! {
+    SurfaceEntry::new("grating", "A diffraction grating, plane or on a sphere, in one order.", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION"), build)
+}
+
+fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Surface>, Faults> {
+    let p: GratingParams = params.parse()?;
+    let mut faults = Faults::new();
+    crate::shared::curvature(params, "radius", p.radius, &mut faults);
+    let grating = Grating::new(p.lines_per_mm.per_mm(), p.order, p.radius.mm(), p.direction.rad());
+    faults.into_result(Box::new(PerRay(grating)) as Box<dyn Surface>)
+}

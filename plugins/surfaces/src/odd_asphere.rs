@@ -1,0 +1,76 @@
+//! `kind: odd-asphere`: a conic with a polynomial in all powers of the radius on top.
+
+use crate::shared::{self, ConicSection, MOST_COEFFICIENTS, polynomial};
+use serde::Deserialize;
+use spectra_core::params::{Faults, LengthOrInfinity, Params};
+use spectra_core::registry::{Context, SurfaceEntry};
+use spectra_core::surface::{FromSag, PerRay, SagShape, Surface};
+
+/// z = conic sag + a1 r + a2 r^2 + a3 r^3 + ...: with a1 it is a cone (an axicon) at the vertex.
+///
+/// In a lens file: `{kind: odd-asphere, radius: inf, coefficients: [0.05], glass: SCHOTT/N-BK7}` is an axicon.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OddAsphere {
+    section: ConicSection,
+    /// 0, a1, a2, ...
+    coefficients: Vec<f64>,
+}
+
+impl OddAsphere {
+    /// An asphere of this radius of curvature, mm, conic constant, and coefficients a1, a2, ... in mm^(1 - power).
+    #[must_use]
+    pub fn new(radius_mm: f64, conic: f64, coefficients: &[f64]) -> Self {
+        let coefficients = std::iter::once(0.0).chain(coefficients.iter().copied()).collect();
+        Self { section: ConicSection::new(1.0 / radius_mm, conic), coefficients }
+    }
+}
+
+impl SagShape for OddAsphere {
+    fn sag_mm(&self, x_mm: f64, y_mm: f64) -> Option<f64> {
+        let radius2 = x_mm * x_mm + y_mm * y_mm;
+        Some(self.section.sag_mm(radius2)? + polynomial(&self.coefficients, radius2.sqrt()).0)
+    }
+
+    fn slope(&self, x_mm: f64, y_mm: f64) -> Option<(f64, f64)> {
+        let radius2 = x_mm * x_mm + y_mm * y_mm;
+        let (_, conic) = self.section.sag_and_slope(radius2)?;
+        let radius = radius2.sqrt();
+        // The tip of a cone has no slope: by symmetry it is taken as flat.
+        let odd = if radius > 0.0 { polynomial(&self.coefficients, radius).1 / radius } else { 0.0 };
+        let along = 2.0 * conic + odd;
+        Some((along * x_mm, along * y_mm))
+    }
+
+    /// Without the term a1, whose curvature at the vertex is infinite.
+    fn vertex_curvature_per_mm(&self) -> (f64, f64) {
+        let c = self.section.curvature_per_mm + 2.0 * self.coefficients.get(2).copied().unwrap_or(0.0);
+        (c, c)
+    }
+}
+
+/// Parameters of `kind: odd-asphere` as written in a lens.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct OddAsphereParams {
+    /// Radius of curvature of the conic part, mm if bare: positive where the center lies at larger z; `inf` is none.
+    radius: LengthOrInfinity,
+    /// Conic constant.
+    #[serde(default)]
+    conic: f64,
+    /// a1, a2, a3, ... in mm^(1 - power): the first is that of r. At most 20.
+    coefficients: Vec<f64>,
+}
+
+inventory::submit! {
+    SurfaceEntry::new("odd-asphere", "A conic with a polynomial in all powers of the radius on top.", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION"), build)
+}
+
+fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Surface>, Faults> {
+    let p: OddAsphereParams = params.parse()?;
+    let mut faults = Faults::new();
+    shared::curvature(params, "radius", p.radius, &mut faults);
+    shared::finite(params, "conic", p.conic, &mut faults);
+    shared::coefficients(params, &p.coefficients, MOST_COEFFICIENTS, &mut faults);
+    let asphere = OddAsphere::new(p.radius.mm(), p.conic, &p.coefficients);
+    faults.into_result(Box::new(PerRay(FromSag(asphere))) as Box<dyn Surface>)
+}

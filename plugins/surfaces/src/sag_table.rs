@@ -1,0 +1,208 @@
+//! `kind: sag-table`: a measured or computed surface, given at the points of a grid.
+
+use serde::Deserialize;
+use spectra_core::params::{Faults, Length, Params, Positive};
+use spectra_core::registry::{Context, SurfaceEntry};
+use spectra_core::surface::{FromSag, PerRay, SagShape, Surface};
+
+/// Fewest points a side: a cubic needs them.
+const FEWEST: usize = 4;
+/// Most points a side.
+const MOST: usize = 1024;
+/// Largest file that is read, bytes: 1024 x 1024 numbers of 24 characters.
+const MAX_BYTES: u64 = 26_000_000;
+
+/// Sag at the points of a square grid around the vertex, bicubic between them: the tensor product of cubic splines
+/// (continuous to the second derivative, not-a-knot ends), so cubic surfaces are met exactly. There is no surface beyond
+/// the outermost points.
+///
+/// In a lens file: `{kind: sag-table, step: 0.5, file: measured.csv, glass: SCHOTT/N-BK7}`. Rows run along x from -x to +x,
+/// the first row is that at the smallest y.
+///
+/// Spline: C. de Boor, "Bicubic spline interpolation", J. Math. and Phys. 41, 212 (1962).
+#[derive(Clone, Debug, PartialEq)]
+pub struct SagTable {
+    step_mm: f64,
+    columns: usize,
+    rows: usize,
+    /// Row by row: sag, its derivatives by x, by y and by both, in mm a cell.
+    nodes: Vec<[f64; 4]>,
+}
+
+impl SagTable {
+    /// The surface through these sags, mm: rows of equal length, from the smallest y up, each from the smallest x up.
+    /// `None` if a side has fewer than 4 or more than 1024 points, rows differ in length, or a number is not finite.
+    #[must_use]
+    pub fn new(step_mm: f64, sag_mm: &[Vec<f64>]) -> Option<Self> {
+        let (rows, columns) = (sag_mm.len(), sag_mm.first()?.len());
+        let sides = (FEWEST..=MOST).contains(&rows) && (FEWEST..=MOST).contains(&columns);
+        if !sides || sag_mm.iter().any(|row| row.len() != columns || row.iter().any(|v| !v.is_finite())) {
+            return None;
+        }
+        let mut nodes: Vec<[f64; 4]> = sag_mm.iter().flatten().map(|z| [*z, 0.0, 0.0, 0.0]).collect();
+        // From the sag its derivatives along rows and along columns; from those by x, along columns, the mixed ones.
+        for row in 0..rows {
+            differentiate(&mut nodes, row * columns, 1, columns, 0, 1);
+        }
+        for column in 0..columns {
+            differentiate(&mut nodes, column, columns, rows, 0, 2);
+            differentiate(&mut nodes, column, columns, rows, 1, 3);
+        }
+        Some(Self { step_mm, columns, rows, nodes })
+    }
+
+    /// Sag, mm, and slopes at a point.
+    fn at(&self, x_mm: f64, y_mm: f64) -> Option<(f64, f64, f64)> {
+        let place = |v: f64, count: usize| {
+            let last = (count - 1) as f64;
+            let u = v / self.step_mm + 0.5 * last;
+            (u >= 0.0 && u <= last).then(|| {
+                let cell = (u as usize).min(count - 2);
+                (cell, u - cell as f64)
+            })
+        };
+        let (i, u) = place(x_mm, self.columns)?;
+        let (j, v) = place(y_mm, self.rows)?;
+        let ((a, da), (b, db)) = (hermite(u), hermite(v));
+        let (mut z, mut by_x, mut by_y) = (0.0, 0.0, 0.0);
+        for (dj, di) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+            let [f, fx, fy, fxy] = self.nodes[(j + dj) * self.columns + i + di];
+            // Of each node: the weights of its value and of its derivative.
+            let (x0, x1, dx0, dx1) = (a[di], a[2 + di], da[di], da[2 + di]);
+            let (y0, y1, dy0, dy1) = (b[dj], b[2 + dj], db[dj], db[2 + dj]);
+            z += y0 * (x0 * f + x1 * fx) + y1 * (x0 * fy + x1 * fxy);
+            by_x += y0 * (dx0 * f + dx1 * fx) + y1 * (dx0 * fy + dx1 * fxy);
+            by_y += dy0 * (x0 * f + x1 * fx) + dy1 * (x0 * fy + x1 * fxy);
+        }
+        Some((z, by_x / self.step_mm, by_y / self.step_mm))
+    }
+}
+
+/// Weights, at u in a cell, of the values at both ends and of the derivatives there; and their derivatives.
+fn hermite(u: f64) -> ([f64; 4], [f64; 4]) {
+    let w = 1.0 - u;
+    (
+        [w * w * (1.0 + 2.0 * u), u * u * (1.0 + 2.0 * w), u * w * w, -(u * u * w)],
+        [-6.0 * u * w, 6.0 * u * w, w * (w - 2.0 * u), u * (u - 2.0 * w)],
+    )
+}
+
+/// Derivatives, a cell, of the cubic spline through `count` nodes from `first` on, `stride` apart: of the number `from`
+/// of each, into the number `to`.
+fn differentiate(nodes: &mut [[f64; 4]], first: usize, stride: usize, count: usize, from: usize, to: usize) {
+    let f = |nodes: &[[f64; 4]], i: usize| nodes[first + i * stride][from];
+    let last = count - 1;
+    // d[i-1] + 4 d[i] + d[i+1] = 3 (f[i+1] - f[i-1]) inside; at the ends d[0] + 2 d[1] = (-5 f[0] + 4 f[1] + f[2]) / 2.
+    // Forward elimination: row i reads diagonal d[i] + above d[i+1] = right.
+    let (mut above, mut right) = (vec![0.0; count], vec![0.0; count]);
+    above[0] = 2.0;
+    right[0] = 0.5 * (4.0 * f(nodes, 1) + f(nodes, 2) - 5.0 * f(nodes, 0));
+    for i in 1..last {
+        let pivot = 4.0 - above[i - 1];
+        above[i] = 1.0 / pivot;
+        right[i] = (3.0 * (f(nodes, i + 1) - f(nodes, i - 1)) - right[i - 1]) / pivot;
+    }
+    let end = 0.5 * (5.0 * f(nodes, last) - 4.0 * f(nodes, last - 1) - f(nodes, last - 2));
+    let mut d = (end - 2.0 * right[last - 1]) / (1.0 - 2.0 * above[last - 1]);
+    nodes[first + last * stride][to] = d;
+    for i in (0..last).rev() {
+        d = right[i] - above[i] * d;
+        nodes[first + i * stride][to] = d;
+    }
+}
+
+impl SagShape for SagTable {
+    fn sag_mm(&self, x_mm: f64, y_mm: f64) -> Option<f64> {
+        self.at(x_mm, y_mm).map(|(z, _, _)| z)
+    }
+
+    fn slope(&self, x_mm: f64, y_mm: f64) -> Option<(f64, f64)> {
+        self.at(x_mm, y_mm).map(|(_, by_x, by_y)| (by_x, by_y))
+    }
+
+    fn vertex_curvature_per_mm(&self) -> (f64, f64) {
+        // The slope of a cubic spline is continuous and its curvature piecewise linear: a cell to either side.
+        let h = 0.5 * self.step_mm;
+        let slope = |x: f64, y: f64| self.slope(x, y).unwrap_or((0.0, 0.0));
+        ((slope(h, 0.0).0 - slope(-h, 0.0).0) / (2.0 * h), (slope(0.0, h).1 - slope(0.0, -h).1) / (2.0 * h))
+    }
+}
+
+/// Parameters of `kind: sag-table` as written in a lens.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct SagTableParams {
+    /// Distance between neighboring points along x and along y, mm if bare, more than 0. The grid is centered on the vertex.
+    step: Positive<Length>,
+    /// Rows of sags, mm: from the smallest y up, each from the smallest x up; 4 to 1024 a side.
+    #[serde(default)]
+    sag: Option<Vec<Vec<f64>>>,
+    /// A CSV file beside the scene with those rows; empty lines and such as start with `#` are passed over.
+    #[serde(default)]
+    file: Option<String>,
+}
+
+inventory::submit! {
+    SurfaceEntry::new("sag-table", "Sag at the points of a grid, bicubic between them.", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION"), build)
+}
+
+fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Surface>, Faults> {
+    let p: SagTableParams = params.parse()?;
+    let (key, rows) = match (p.sag, p.file) {
+        (Some(rows), None) => ("sag", rows),
+        (None, Some(file)) => ("file", read(params, context, &file)?),
+        (None, None) => {
+            return Err(params.fault_here("no sags are given").hint("`sag: [[...], ...]` or `file: NAME.csv`").into());
+        }
+        (Some(_), Some(_)) => {
+            return Err(params.fault("file", "both `sag` and `file` are given").hint("leave one of them out").into());
+        }
+    };
+    let mut faults = Faults::new();
+    let columns = rows.first().map_or(0, Vec::len);
+    for (what, count) in [("rows", rows.len()), ("columns", columns)] {
+        if !(FEWEST..=MOST).contains(&count) {
+            faults.push(params.fault(key, format!("{count} {what}; a table has {FEWEST} to {MOST}")));
+        }
+    }
+    for (j, row) in rows.iter().enumerate() {
+        let place = if key == "sag" { format!("sag[{j}]") } else { key.to_owned() };
+        if row.len() != columns {
+            let text = format!("row {} has {} numbers, the first has {columns}", j + 1, row.len());
+            faults.push(params.fault(&place, text));
+        }
+        if let Some(i) = row.iter().position(|v| !v.is_finite()) {
+            faults.push(params.fault(&place, format!("row {}, number {}: {} is not finite", j + 1, i + 1, row[i])));
+        }
+    }
+    match SagTable::new(p.step.mm(), &rows) {
+        Some(table) if faults.is_empty() => Ok(Box::new(PerRay(FromSag(table)))),
+        _ => Err(faults),
+    }
+}
+
+/// The rows of a CSV file.
+fn read(params: &Params, context: &Context<'_>, file: &str) -> Result<Vec<Vec<f64>>, Faults> {
+    let fault = |text: String| Faults::from(params.fault("file", text));
+    let found = context.resources.read(file, &[], &[], MAX_BYTES).map_err(|e| fault(format!("{file}: {e}")))?;
+    let Ok(text) = std::str::from_utf8(&found.bytes) else {
+        return Err(fault(format!("{}: this is no text", found.name)));
+    };
+    let mut rows = Vec::new();
+    for (number, line) in (1..).zip(text.lines()) {
+        let line = line.trim();
+        if line.is_empty() || line.starts_with('#') {
+            continue;
+        }
+        let row: Result<Vec<f64>, String> =
+            line.split(',').map(|cell| cell.trim().parse().map_err(|_| cell.trim().to_owned())).collect();
+        rows.push(row.map_err(|cell| {
+            let cell: String = cell.chars().take(40).collect();
+            fault(format!("{}, line {number}: `{cell}` is no number", found.name))
+        })?);
+        if rows.len() > MOST {
+            return Err(fault(format!("{}: more than {MOST} rows", found.name)));
+        }
+    }
+    Ok(rows)
+}

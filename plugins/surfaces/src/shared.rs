@@ -1,0 +1,79 @@
+//! What several kinds have in common: checks of parameters, and the formulas of conics.
+
+use spectra_core::params::{Faults, LengthOrInfinity, Params};
+
+/// The most coefficients that an asphere may have.
+pub(crate) const MOST_COEFFICIENTS: usize = 20;
+
+/// The curvature, 1/mm, of a radius under `key`; a radius of 0 is a fault.
+pub(crate) fn curvature(params: &Params, key: &str, radius: LengthOrInfinity, faults: &mut Faults) -> f64 {
+    if radius.mm() == 0.0 {
+        faults.push(
+            params.fault(key, "a radius of 0 is no surface").hint(format!("without curvature it is `{key}: inf`")),
+        );
+    }
+    1.0 / radius.mm()
+}
+
+/// A number under `key` that has to be finite.
+pub(crate) fn finite(params: &Params, key: &str, value: f64, faults: &mut Faults) {
+    if !value.is_finite() {
+        faults.push(params.fault(key, format!("found {value}, expected a finite number")));
+    }
+}
+
+/// Coefficients under `coefficients`: finite, and `most` at most.
+pub(crate) fn coefficients(params: &Params, values: &[f64], most: usize, faults: &mut Faults) {
+    if values.len() > most {
+        faults.push(
+            params
+                .fault("coefficients", format!("{} coefficients; this kind takes at most {most}", values.len()))
+                .hint("coefficients stand in order of their powers, the lowest first; missing ones are 0"),
+        );
+    }
+    for (i, value) in values.iter().enumerate() {
+        finite(params, &format!("coefficients[{i}]"), *value, faults);
+    }
+}
+
+/// A surface of revolution of a conic section, z = c r^2 / (1 + sqrt(1 - (1 + k) c^2 r^2)).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct ConicSection {
+    /// Curvature at the vertex c, 1/mm.
+    pub curvature_per_mm: f64,
+    /// 1 + k, for the conic constant k.
+    pub one_plus_conic: f64,
+}
+
+impl ConicSection {
+    pub(crate) fn new(curvature_per_mm: f64, conic: f64) -> Self {
+        Self { curvature_per_mm, one_plus_conic: 1.0 + conic }
+    }
+
+    /// Sag, mm, and its derivative by r^2, 1/mm, at a square of the radius, mm^2; `None` beyond the rim.
+    pub(crate) fn sag_and_slope(&self, radius2: f64) -> Option<(f64, f64)> {
+        let c = self.curvature_per_mm;
+        let square = 1.0 - self.one_plus_conic * c * c * radius2;
+        if !(square >= 0.0) {
+            return None;
+        }
+        let root = square.sqrt();
+        Some((c * radius2 / (1.0 + root), c / (2.0 * root)))
+    }
+
+    /// Sag, mm; `None` beyond the rim.
+    pub(crate) fn sag_mm(&self, radius2: f64) -> Option<f64> {
+        self.sag_and_slope(radius2).map(|(sag, _)| sag)
+    }
+}
+
+/// A polynomial sum of a_i x^i from i = 0, and its derivative, by Horner's rule.
+#[inline(always)]
+pub(crate) fn polynomial(coefficients: &[f64], x: f64) -> (f64, f64) {
+    let (mut value, mut slope) = (0.0, 0.0);
+    for a in coefficients.iter().rev() {
+        slope = slope * x + value;
+        value = value * x + a;
+    }
+    (value, slope)
+}

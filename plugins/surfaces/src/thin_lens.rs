@@ -1,0 +1,77 @@
+//! `kind: thin-lens`: an ideal lens without thickness.
+
+use glam::DVec3;
+use serde::Deserialize;
+use spectra_core::Loss;
+use spectra_core::params::{Faults, Length, Params};
+use spectra_core::registry::{Context, SurfaceEntry};
+use spectra_core::surface::{Action, Bending, Intersection, PerRay, ScalarShape, Surface};
+
+/// An ideal lens: every plane across the axis is imaged sharp and to scale, n'/s' = n/s + 1/f at any angle. With u the
+/// slope against the axis and h the place on the lens, n' u' = n u - h / f.
+///
+/// In a lens file: `{kind: thin-lens, focal-length: 50, semi-diameter: 12, thickness: 50}`. With `mirror: true` it is an
+/// ideal mirror of that focal length, positive where it gathers light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ThinLens {
+    power_per_mm: f64,
+}
+
+impl ThinLens {
+    /// A lens of this focal length in air, mm: positive gathers light; infinite does nothing.
+    #[must_use]
+    pub fn new(focal_length_mm: f64) -> Self {
+        Self { power_per_mm: 1.0 / focal_length_mm }
+    }
+}
+
+impl ScalarShape for ThinLens {
+    fn intersect(&self, position: DVec3, direction: DVec3) -> Option<Intersection> {
+        (direction.z != 0.0)
+            .then(|| Intersection { distance_mm: -position.z / direction.z, normal: DVec3::new(0.0, 0.0, 1.0) })
+    }
+
+    fn sag_mm(&self, _: f64, _: f64) -> Option<f64> {
+        Some(0.0)
+    }
+
+    fn vertex_curvature_per_mm(&self) -> (f64, f64) {
+        (0.0, 0.0)
+    }
+
+    fn paraxial_power_per_mm(&self, _: f64, _: f64) -> (f64, f64) {
+        (self.power_per_mm, self.power_per_mm)
+    }
+
+    fn redirect(&self, at: &Bending) -> Option<Result<DVec3, Loss>> {
+        // Slopes count along the light, so that a lens gathers it in either sense.
+        let along = at.direction.z.abs();
+        let (after, sense) = match at.action {
+            Action::Reflect => (at.n_before, -at.direction.z.signum()),
+            _ => (at.n_after, at.direction.z.signum()),
+        };
+        let slope = |cosine: f64, h: f64| (at.n_before * cosine / along - h * self.power_per_mm) / after;
+        let (u, v) = (slope(at.direction.x, at.point.x), slope(at.direction.y, at.point.y));
+        Some(Ok(DVec3::new(u, v, sense).normalize()))
+    }
+}
+
+/// Parameters of `kind: thin-lens` as written in a lens.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct ThinLensParams {
+    /// Focal length in air, mm if bare, not 0: positive gathers light.
+    focal_length: Length,
+}
+
+inventory::submit! {
+    SurfaceEntry::new("thin-lens", "An ideal lens without thickness or aberration.", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION"), build)
+}
+
+fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Surface>, Faults> {
+    let p: ThinLensParams = params.parse()?;
+    if p.focal_length.mm() == 0.0 {
+        return Err(params.fault("focal-length", "a focal length of 0 is no lens").into());
+    }
+    Ok(Box::new(PerRay(ThinLens::new(p.focal_length.mm()))))
+}

@@ -1,0 +1,88 @@
+//! `kind: tilted-plane`: a plane that is not across the axis; what follows stays on the old axis.
+
+use serde::Deserialize;
+use spectra_core::math::{cos, sin};
+use spectra_core::params::{Angle, Faults, Params};
+use spectra_core::registry::{Context, SurfaceEntry};
+use spectra_core::surface::{Hit, Kernel, KernelShape, Ray, Real, Surface};
+
+/// A plane through the vertex, turned by right-handed rotations about x, then about the new y. So its sag is
+/// z = y tan(tilt-x) - x tan(tilt-y) / cos(tilt-x): a positive tilt about x moves the upper part to larger z.
+///
+/// In a lens file: `{kind: tilted-plane, tilt-x: 30, thickness: 20, glass: SCHOTT/N-SF11}` is the face of a prism.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TiltedPlane {
+    /// Unit normal, toward +z.
+    normal: [f64; 3],
+}
+
+impl TiltedPlane {
+    /// A plane with these tilts about x and y, rad, each of less than a right angle.
+    #[must_use]
+    pub fn new(tilt_x_rad: f64, tilt_y_rad: f64) -> Self {
+        let (sx, cx, sy, cy) = (sin(tilt_x_rad), cos(tilt_x_rad), sin(tilt_y_rad), cos(tilt_y_rad));
+        Self { normal: [sy, -(sx * cy), cx * cy] }
+    }
+}
+
+impl KernelShape for TiltedPlane {
+    #[inline(always)]
+    fn hit<R: Real, const FORWARD: bool>(&self, ray: Ray<R, FORWARD>) -> Hit<R> {
+        let [a, b, c] = self.normal.map(R::constant);
+        let ([x, y, z], [l, m, n]) = (ray.position, ray.direction);
+        let cosine = l * a + m * b + n * c;
+        let height = x * a + y * b + z * c;
+        // A ray along the plane never meets it: 0 is made negative.
+        Hit { distance: -height / cosine, cosine, valid: ray.along(cosine) - R::constant(f64::MIN_POSITIVE) }
+    }
+
+    #[inline(always)]
+    fn normal<R: Real>(&self, _: [R; 3]) -> [R; 3] {
+        self.normal.map(R::constant)
+    }
+
+    fn sag_mm(&self, x_mm: f64, y_mm: f64) -> Option<f64> {
+        let [a, b, c] = self.normal;
+        Some(-(a * x_mm + b * y_mm) / c)
+    }
+
+    fn vertex_curvature_per_mm(&self) -> (f64, f64) {
+        (0.0, 0.0)
+    }
+}
+
+/// Parameters of `kind: tilted-plane` as written in a lens.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct TiltedPlaneParams {
+    /// Rotation about x, degrees if bare, between -90 and 90: positive moves the upper part to larger z.
+    #[serde(default = "no_tilt")]
+    tilt_x: Angle,
+    /// Rotation about the y axis so turned, degrees if bare, between -90 and 90: positive moves the part at +x to
+    /// smaller z.
+    #[serde(default = "no_tilt")]
+    tilt_y: Angle,
+}
+
+fn no_tilt() -> Angle {
+    Angle::from_rad(0.0)
+}
+
+inventory::submit! {
+    SurfaceEntry::new("tilted-plane", "A plane that is not across the axis.", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION"), build)
+}
+
+fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Surface>, Faults> {
+    let p: TiltedPlaneParams = params.parse()?;
+    let mut faults = Faults::new();
+    for (key, tilt) in [("tilt-x", p.tilt_x), ("tilt-y", p.tilt_y)] {
+        if !(tilt.rad().abs() < std::f64::consts::FRAC_PI_2) {
+            let text = format!(
+                "found {} deg; light along the axis meets the plane below 90 deg only",
+                tilt.rad().to_degrees()
+            );
+            faults.push(params.fault(key, text));
+        }
+    }
+    faults.into_result(Box::new(Kernel(TiltedPlane::new(p.tilt_x.rad(), p.tilt_y.rad()))) as Box<dyn Surface>)
+}

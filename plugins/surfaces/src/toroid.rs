@@ -1,0 +1,98 @@
+//! `kind: toroid`: a curve in the y-z plane, rotated about an axis parallel to y.
+
+use crate::shared::{self, ConicSection, MOST_COEFFICIENTS, polynomial};
+use serde::Deserialize;
+use spectra_core::params::{Faults, LengthOrInfinity, Params};
+use spectra_core::registry::{Context, SurfaceEntry};
+use spectra_core::surface::{FromSag, PerRay, SagShape, Surface};
+
+/// The curve z = g(y) = conic sag + a2 y^2 + a4 y^4 + ..., rotated about the line through (z = `rotation-radius`) parallel to
+/// y: (R - z)^2 + x^2 = (R - g(y))^2. Infinite, the rotation is a shift along x.
+///
+/// In a lens file: `{kind: toroid, radius: 40, rotation-radius: 55, thickness: 4, glass: SCHOTT/N-BK7}`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Toroid {
+    section: ConicSection,
+    /// 0, a2, a4, ...: by powers of y^2.
+    coefficients: Vec<f64>,
+    rotation_per_mm: f64,
+}
+
+impl Toroid {
+    /// Radius, mm, conic constant and coefficients a2, a4, ... (mm^(1 - power)) of the curve; distance of the axis of
+    /// rotation from the vertex, mm, positive where it lies at larger z.
+    #[must_use]
+    pub fn new(radius_mm: f64, conic: f64, coefficients: &[f64], rotation_radius_mm: f64) -> Self {
+        Self {
+            section: ConicSection::new(1.0 / radius_mm, conic),
+            coefficients: std::iter::once(0.0).chain(coefficients.iter().copied()).collect(),
+            rotation_per_mm: 1.0 / rotation_radius_mm,
+        }
+    }
+
+    /// The curve at y, mm, and its derivative.
+    fn curve(&self, y: f64) -> Option<(f64, f64)> {
+        let (sag, slope) = self.section.sag_and_slope(y * y)?;
+        let (p, dp) = polynomial(&self.coefficients, y * y);
+        Some((sag + p, 2.0 * y * (slope + dp)))
+    }
+
+    /// With v = 1 - g / R the surface is z = g + x^2 / (R v (1 + w)), w = sqrt(1 - x^2 / (R v)^2): the curve, `R v` inverted,
+    /// and w. Beyond the axis of rotation (v < 0) there is no surface.
+    fn parts(&self, x: f64, y: f64) -> Option<(f64, f64, f64, f64)> {
+        let (g, dg) = self.curve(y)?;
+        let v = 1.0 - g * self.rotation_per_mm;
+        let around = self.rotation_per_mm / v;
+        let square = 1.0 - x * x * around * around;
+        (v > 0.0 && square >= 0.0).then(|| (g, dg, around, square.sqrt()))
+    }
+}
+
+impl SagShape for Toroid {
+    fn sag_mm(&self, x_mm: f64, y_mm: f64) -> Option<f64> {
+        let (g, _, around, root) = self.parts(x_mm, y_mm)?;
+        Some(g + x_mm * x_mm * around / (1.0 + root))
+    }
+
+    /// By the implicit form: dz/dx = x / (R - z), dz/dy = g' (R - g) / (R - z), and R - z = (R - g) w.
+    fn slope(&self, x_mm: f64, y_mm: f64) -> Option<(f64, f64)> {
+        let (_, dg, around, root) = self.parts(x_mm, y_mm)?;
+        Some((x_mm * around / root, dg / root))
+    }
+
+    fn vertex_curvature_per_mm(&self) -> (f64, f64) {
+        let a2 = self.coefficients.get(1).copied().unwrap_or(0.0);
+        (self.rotation_per_mm, self.section.curvature_per_mm + 2.0 * a2)
+    }
+}
+
+/// Parameters of `kind: toroid` as written in a lens.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct ToroidParams {
+    /// Radius of the curve in the y-z plane, mm if bare: positive where its center lies at larger z; `inf` is straight.
+    radius: LengthOrInfinity,
+    /// Conic constant of the curve.
+    #[serde(default)]
+    conic: f64,
+    /// a2, a4, ... of the curve, in mm^(1 - power): the first is that of y^2. At most 20.
+    #[serde(default)]
+    coefficients: Vec<f64>,
+    /// Distance from the vertex, mm if bare, at which the axis of rotation crosses the z axis; `inf`: not curved along x.
+    rotation_radius: LengthOrInfinity,
+}
+
+inventory::submit! {
+    SurfaceEntry::new("toroid", "A curve in the y-z plane, rotated about an axis parallel to y.", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION"), build)
+}
+
+fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Surface>, Faults> {
+    let p: ToroidParams = params.parse()?;
+    let mut faults = Faults::new();
+    shared::curvature(params, "radius", p.radius, &mut faults);
+    shared::curvature(params, "rotation-radius", p.rotation_radius, &mut faults);
+    shared::finite(params, "conic", p.conic, &mut faults);
+    shared::coefficients(params, &p.coefficients, MOST_COEFFICIENTS, &mut faults);
+    let toroid = Toroid::new(p.radius.mm(), p.conic, &p.coefficients, p.rotation_radius.mm());
+    faults.into_result(Box::new(PerRay(FromSag(toroid))) as Box<dyn Surface>)
+}
