@@ -79,7 +79,7 @@ fn a_fisheye_out_to_80_degrees() {
         "source.width=1700",
         "imager={kind: xyz, width: 2.8, height: 1.86, resolution: [30, 20]}",
     ];
-    compare(&common, "render.samples=1024", "render.rays=20000000");
+    compare(&common, "render.samples=512", "render.rays=10000000");
 }
 
 #[test]

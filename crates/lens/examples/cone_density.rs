@@ -22,6 +22,7 @@ const POINTS: usize = 1500;
 /// Points drawn before they are chosen by weight.
 const DRAWN: usize = 16 * POINTS;
 const PANEL: f64 = 420.0;
+const HEIGHT: f64 = 216.0;
 const TOP: f64 = 92.0;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -29,7 +30,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let path = path.as_deref().unwrap_or(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/images/cone-density.png"));
     let by_area = by_area();
     let by_solid_angle = by_solid_angle()?;
-    let mut canvas = Canvas::new(2.0 * PANEL, PANEL + TOP + 34.0, "Rays of a near point: by area, and per solid angle");
+    let mut canvas =
+        Canvas::new(2.0 * PANEL, TOP + HEIGHT + 46.0, "Rays of a near point: by area, and per solid angle");
     let strong = TextStyle::new(17.0).weight(1.3);
     let title = "A round front, 40 mm wide, seen from a point 16 mm in front of its plane and 34 mm beside its axis";
     canvas.text([PANEL, 26.0], title, &TextStyle::new(14.5).middle());
@@ -38,12 +40,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         ("even per solid angle", &by_solid_angle, Color::BLUE),
     ];
     for (k, (what, directions, color)) in panels.into_iter().enumerate() {
-        let middle = [PANEL * (k as f64 + 0.5), TOP + 0.5 * PANEL];
+        let middle = [PANEL * (k as f64 + 0.5), TOP + 0.5 * HEIGHT];
         canvas.text([middle[0], 66.0], what, &strong.clone().middle());
         draw(&mut canvas, middle, directions, color);
     }
     let note = "Both as the point sees them, equal areas of the figure being equal solid angles; 1500 rays each.";
-    canvas.text([PANEL, TOP + PANEL + 12.0], note, &TextStyle::new(13.0).middle());
+    canvas.text([PANEL, TOP + HEIGHT + 26.0], note, &TextStyle::new(13.0).middle());
     canvas.write(Path::new(path))?;
     Ok(())
 }
@@ -116,7 +118,7 @@ fn draw(canvas: &mut Canvas, middle: Point, directions: &[DVec3], color: Color) 
         (0.5 * (low + high), high - low)
     };
     let ((cx, width), (cy, height)) = (span(0), span(1));
-    let unit = 0.88 * PANEL / width.max(height);
+    let unit = (0.88 * PANEL / width).min(HEIGHT / height);
     let place = |p: [f64; 2]| [middle[0] + (p[0] - cx) * unit, middle[1] - (p[1] - cy) * unit];
     let outline: Vec<Point> = edge.into_iter().map(place).collect();
     for direction in directions {

@@ -4,7 +4,7 @@ use super::nodes::{Geometry, Node};
 use super::probe::{Plane, Prober};
 use super::shape::Shape;
 use super::table::{Depth, Row, SLOTS, Table, Zone};
-use crate::{Lens, Tracer, Travel};
+use crate::{Aperture, Indices, Lens, Shape, Tracer, Travel};
 use glam::DVec3;
 use spectra_core::Isa;
 use spectra_core::loss::ALIVE;
@@ -55,8 +55,6 @@ const ZONES: usize = 64;
 const ZONES_WITHOUT_AXIS: usize = 32;
 /// Zones of the azimuth, without one.
 const AZIMUTHS: usize = 24;
-/// Azimuths from which a lens is looked at whose iris alone is not round.
-const LOOKS: usize = 4;
 /// Grid over what passes from one point.
 const GRID: usize = 32;
 const GRID_WITHOUT_AXIS: usize = 24;
@@ -75,19 +73,26 @@ impl Task<'_> {
     /// Searches all zones. `None` where no surface states a size.
     pub fn run(self) -> Option<Table> {
         let [min_nm, max_nm] = self.band_nm;
+        let iris = |a: &Aperture| matches!(a.shape, Shape::Iris(_));
+        if self.lens.elements.iter().any(|e| e.semi_diameter_mm.is_some() && e.apertures.iter().any(iris)) {
+            let lens = with_round_irises(self.lens);
+            let has_more = lens.elements.iter().any(|e| e.apertures.iter().any(iris));
+            let tracer = Tracer::new(&lens, Indices::Band { min_nm, max_nm }, self.tracer.isa()).ok()?;
+            if !has_more {
+                return Task { lens: &lens, tracer: &tracer, ..self }.run();
+            }
+        }
         let travel = self.geometry.travel;
         let mut prober = Prober::new(self.lens, self.tracer, travel, min_nm, max_nm)?;
-        let with_axis = has_axis(self.lens);
+        let with_axis = self.lens.has_axis_of_revolution();
         let azimuths = if with_axis { 1 } else { AZIMUTHS };
-        // The blades of an iris spoil the axis only a little: a look from some sides, and one zone for all.
-        let looks = if with_axis && !self.lens.has_axis_of_revolution() { LOOKS } else { azimuths };
         let zones = if with_axis { ZONES } else { ZONES_WITHOUT_AXIS };
-        let most = self.end_of_field(&mut prober, looks).min(self.most);
+        let most = self.end_of_field(&mut prober, azimuths).min(self.most);
         let scale = if most > 0.0 { zones as f64 / most } else { 0.0 };
         let mut rows = Vec::new();
         if most > 0.0 {
             // Of a zone, its two edges and its middle are looked at; over the azimuth, its edges.
-            let lattice = Lattice::new(&self, &mut prober, azimuths, looks, 2 * zones, most);
+            let lattice = Lattice::new(&self, &mut prober, azimuths, 2 * zones, most);
             for depth in 0..self.depth.zones {
                 for azimuth in 0..azimuths {
                     let row: Vec<Zone> = (0..zones)
@@ -116,10 +121,10 @@ impl Task<'_> {
     }
 
     /// The measure of the angle beyond which nothing passes; 0 where nothing does at all.
-    fn end_of_field(&self, prober: &mut Prober<'_>, looks: usize) -> f64 {
+    fn end_of_field(&self, prober: &mut Prober<'_>, azimuths: usize) -> f64 {
         let (first, last) = (self.depth_nodes[0], self.depth_nodes[self.depth_nodes.len() - 1]);
         let depths = if first == last { vec![first] } else { vec![first, last] };
-        let looks = looks.min(8);
+        let looks = azimuths.min(8);
         let mut end = 0.0;
         let mut step = 0;
         // Nobody builds a lens that sees more than 130 degrees to each side.
@@ -264,9 +269,26 @@ fn turns(share: f64) -> f64 {
     (quarter + atan2(part, 1.0 - part) * std::f64::consts::FRAC_2_PI) * 0.25
 }
 
-/// Whether a lens has an axis of revolution, but for the blades of its iris.
-fn has_axis(lens: &Lens) -> bool {
-    lens.clone().with_round_stop().has_axis_of_revolution()
+/// The lens with each iris in its middle opened to the circle around its corners: it passes all that the
+/// lens does, and blades alone take the axis of revolution from no lens.
+fn with_round_irises(lens: &Lens) -> Lens {
+    let mut round = lens.clone();
+    for e in &mut round.elements {
+        let mut corner_mm = 0.0_f64;
+        e.apertures.retain(|a| match (&a.shape, e.semi_diameter_mm) {
+            (Shape::Iris(iris), Some(size)) if a.center_mm == [0.0; 2] => {
+                if !a.obscures {
+                    corner_mm = corner_mm.max(iris.opening(size).corner_radius_mm());
+                }
+                false
+            }
+            _ => true,
+        });
+        if corner_mm > 0.0 {
+            e.semi_diameter_mm = Some(corner_mm);
+        }
+    }
+    round
 }
 
 /// Where a zone is among the others.
@@ -282,21 +304,17 @@ struct ZonePlace {
 /// All nodes: by depth, azimuth, and half-zones of the angle.
 struct Lattice {
     rows: Vec<Vec<Option<Node>>>,
-    /// Zones of the azimuth, and how many azimuths there are nodes at: as many, or some for the one zone.
     azimuths: usize,
-    looks: usize,
     depths: usize,
 }
 
 impl Lattice {
-    fn new(task: &Task<'_>, prober: &mut Prober<'_>, azimuths: usize, looks: usize, steps: usize, most: f64) -> Self {
+    fn new(task: &Task<'_>, prober: &mut Prober<'_>, azimuths: usize, steps: usize, most: f64) -> Self {
         let grid = if azimuths == 1 { GRID } else { GRID_WITHOUT_AXIS };
         let mut rows = Vec::new();
         for depth in &task.depth_nodes {
-            for look in 0..looks {
-                // For one zone: not at the corners or the sides of an iris alone.
-                let skewed = if azimuths == 1 { 0.37 * look as f64 } else { look as f64 / looks as f64 };
-                let turns = turns(skewed);
+            for azimuth in 0..azimuths {
+                let turns = turns(azimuth as f64 / azimuths as f64);
                 let node = |k: usize| {
                     let measure = most * k as f64 / steps as f64;
                     task.geometry.node(prober, measure, *depth, turns, grid)
@@ -304,22 +322,18 @@ impl Lattice {
                 rows.push((0..=steps).map(node).collect());
             }
         }
-        Self { rows, azimuths, looks, depths: task.depth_nodes.len() }
+        Self { rows, azimuths, depths: task.depth_nodes.len() }
     }
 
     /// Nodes of a zone that all see light.
     fn nodes_a_zone(&self) -> usize {
-        3 * if self.azimuths > 1 { 2 } else { self.looks } * if self.depths > 1 { 2 } else { 1 }
+        3 * if self.azimuths > 1 { 2 } else { 1 } * if self.depths > 1 { 2 } else { 1 }
     }
 
     fn rows_of(&self, at: &ZonePlace) -> Vec<&Vec<Option<Node>>> {
         let depths = if self.depths > 1 { vec![at.depth, at.depth + 1] } else { vec![0] };
-        let looks: Vec<usize> = if self.azimuths > 1 {
-            vec![at.azimuth, (at.azimuth + 1) % self.azimuths]
-        } else {
-            (0..self.looks).collect()
-        };
-        depths.iter().flat_map(|d| looks.iter().map(move |a| &self.rows[d * self.looks + a])).collect()
+        let looks = if self.azimuths > 1 { vec![at.azimuth, (at.azimuth + 1) % self.azimuths] } else { vec![0] };
+        depths.iter().flat_map(|d| looks.iter().map(move |a| &self.rows[d * self.azimuths + a])).collect()
     }
 
     /// The nodes at the edges and in the middle of a zone from which light passes.
