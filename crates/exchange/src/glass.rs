@@ -13,6 +13,8 @@ const USUAL: [&str; 9] = ["SCHOTT", "OHARA", "HOYA", "HIKARI", "CDGM", "SUMITA",
 const EVERYDAY: [(&str, &str); 20] = [
     ("SILICA", "silica"),
     ("F_SILICA", "silica"),
+    // Corning's fused silica.
+    ("C79-80", "silica"),
     ("ACRYLIC", "acrylic"),
     ("PMMA", "PMMA"),
     ("POLYCARB", "polycarbonate"),
@@ -30,7 +32,6 @@ const EVERYDAY: [(&str, &str); 20] = [
     ("CALCITE", "calcite"),
     ("NACL", "salt"),
     ("E48R", "ZeonexE48R"),
-    ("BASF5", "SCHOTT/BASF5"),
 ];
 
 /// A medium, and what must be told of it: whether light goes another way, and the words.
@@ -61,6 +62,13 @@ pub(crate) fn maker_of_catalogue(catalogue: &str) -> Option<&'static str> {
     marks.iter().find(|(mark, _)| name.contains(mark)).map(|(_, maker)| *maker)
 }
 
+/// The name in a design program's miscellaneous catalogue of a medium of ours that no maker has.
+pub(crate) fn everyday_name(full_name: &str) -> Option<&'static str> {
+    let catalogue = Catalogue::bundled();
+    let same = |ours: &str| catalogue.find(ours).is_ok_and(|glass| glass.full_name() == full_name);
+    EVERYDAY.iter().find(|(_, ours)| same(ours)).map(|(theirs, _)| *theirs)
+}
+
 /// The medium of a name, as near to what the file means as our catalogue has it. `stated` are nd and Vd that the file
 /// gives beside the name; `makers` come first, in order.
 pub(crate) fn look_up(name: &str, stated: Option<(f64, f64)>, makers: &[&str]) -> Found {
@@ -73,9 +81,9 @@ pub(crate) fn look_up(name: &str, stated: Option<(f64, f64)>, makers: &[&str]) -
     }
     match find(name, stated, makers) {
         Some((glass, None)) => with_stated(&glass, stated),
-        Some((glass, Some(text))) => {
+        Some((glass, Some(told))) => {
             let found = with_stated(&glass, stated);
-            Found { note: found.note.or(Some((false, text))), ..found }
+            Found { note: found.note.or(Some(told)), ..found }
         }
         None => match stated {
             Some((nd, vd)) => {
@@ -107,7 +115,7 @@ pub(crate) fn model(nd: f64, vd: f64) -> Found {
 }
 
 /// The glass of a name, and what a person should know of the choice.
-fn find(name: &str, stated: Option<(f64, f64)>, makers: &[&str]) -> Option<(Glass, Option<String>)> {
+fn find(name: &str, stated: Option<(f64, f64)>, makers: &[&str]) -> Option<(Glass, Option<(bool, String)>)> {
     let catalogue = Catalogue::bundled();
     let by = |full: &str| match stated {
         Some((nd, vd)) => catalogue.find_with(full, nd, (vd > 0.0).then_some(vd)),
@@ -124,13 +132,19 @@ fn find(name: &str, stated: Option<(f64, f64)>, makers: &[&str]) -> Option<(Glas
             let of = |maker: &&str| candidates.iter().find(|c| c.full_name.starts_with(&format!("{maker}/")));
             let chosen = makers.iter().chain(&USUAL).find_map(of).or(candidates.first())?;
             let text = format!("{name} is the name of {} glasses: {} is taken", candidates.len(), chosen.full_name);
-            catalogue.find(&chosen.full_name).ok().map(|glass| (glass, Some(text)))
+            catalogue.find(&chosen.full_name).ok().map(|glass| (glass, Some((false, text))))
         }
         Err(FindError::Unknown { .. }) => {
+            // Molding changes an index in the third decimal.
+            if let Some(raw) = name.strip_suffix("_MOLD").filter(|_| stated.is_none()) {
+                let (glass, _) = find(raw, None, makers)?;
+                let text = format!("{name} is taken as {} before molding", glass.full_name());
+                return Some((glass, Some((true, text))));
+            }
             let (_, ours) = EVERYDAY.iter().find(|(theirs, _)| name.eq_ignore_ascii_case(theirs))?;
             let glass = catalogue.find(ours).ok()?;
             let text = format!("{name} is taken as {}", glass.full_name());
-            Some((glass, Some(text)))
+            Some((glass, Some((false, text))))
         }
     }
 }
@@ -167,7 +181,7 @@ mod tests {
         for (theirs, makers, ours) in [
             ("N-BK7", &["SCHOTT"][..], "SCHOTT/N-BK7"),
             ("NBK7", &["SCHOTT"], "SCHOTT/N-BK7"),
-            ("BK7", &["SCHOTT"], "SCHOTT/N-BK7"),
+            ("BK7", &["SCHOTT"], "SCHOTT/BK7"),
             ("SLAL8", &["OHARA"], "OHARA/S-LAL8"),
             ("F2", &["HOYA"], "HOYA/F2"),
             ("F2", &["SCHOTT", "HOYA"], "SCHOTT/F2"),

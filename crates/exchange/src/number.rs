@@ -18,8 +18,9 @@ pub(crate) fn parse(word: &str) -> Option<f64> {
     Some(sign * number)
 }
 
-/// The radius (mm) of a curvature stated per `unit_mm`: of all radii that give back this curvature exactly, the one of the
-/// fewest digits, since that is what was typed in. Infinite for 0.
+/// The radius (mm) of a curvature stated per `unit_mm`: of all radii that give back this curvature within two units in its last place
+/// (what writing it with 16 digits leaves), the one of the fewest digits, since that is what was typed in. Infinite
+/// for 0.
 pub(crate) fn radius_mm(curvature: f64, unit_mm: f64) -> f64 {
     if curvature == 0.0 {
         return f64::INFINITY;
@@ -30,7 +31,7 @@ pub(crate) fn radius_mm(curvature: f64, unit_mm: f64) -> f64 {
     }
     let plain = (6..16)
         .filter_map(|digits| format!("{radius:.digits$e}").parse::<f64>().ok())
-        .find(|candidate| 1.0 / candidate == curvature)
+        .find(|candidate| (1.0 / candidate - curvature).abs() <= 2.0 * f64::EPSILON * curvature.abs())
         .unwrap_or(radius);
     plain * unit_mm
 }
@@ -73,6 +74,7 @@ mod tests {
             assert_eq!(radius_mm(1.0 / radius, 1.0), radius);
         }
         assert_eq!(radius_mm("-5.208333333333333565E-02".parse().expect("a number"), 1.0), -19.2);
+        assert_eq!(radius_mm("4.950495049504951E-001".parse().expect("a number"), 1.0), 2.02);
         assert_eq!(radius_mm(0.0, 1.0), f64::INFINITY);
         assert_eq!(radius_mm(-0.0, 25.4), f64::INFINITY);
         assert_eq!(radius_mm(f64::from_bits(1), 1.0), f64::INFINITY);

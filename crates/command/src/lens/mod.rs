@@ -1,5 +1,8 @@
 //! `spectra lens`: the lens as an optical engineer looks at it.
 
+mod exchanged;
+mod export;
+mod import;
 mod info;
 mod trace;
 
@@ -16,6 +19,8 @@ pub(crate) fn lens(command: &LensCommand, isa: Isa) -> Outcome {
     match command {
         LensCommand::Info(info) => info::info(info),
         LensCommand::Trace(trace) => trace::trace(trace, isa),
+        LensCommand::Import(import) => import::import(import),
+        LensCommand::Export(export) => export::export(export),
     }
 }
 

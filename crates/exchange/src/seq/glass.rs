@@ -122,7 +122,7 @@ mod tests {
             ("NBK7_SCHOTT", "SCHOTT/N-BK7"),
             ("SLAL8_OHARA", "OHARA/S-LAL8"),
             ("f2", "SCHOTT/F2"),
-            ("bk7", "SCHOTT/N-BK7"),
+            ("bk7", "SCHOTT/BK7"),
         ] {
             assert!(matches!(medium(name, &[]).medium, Medium::Glass { name, .. } if name == ours), "{name}");
         }

@@ -94,7 +94,7 @@ fn note_others(params: &Params, known: &[&str], whose: &str, lens: &mut Prescrip
 }
 
 /// Keys of every surface.
-const PLACE: [&str; 13] = [
+const PLACE: [&str; 14] = [
     "thickness",
     "glass",
     "nd",
@@ -107,7 +107,8 @@ const PLACE: [&str; 13] = [
     "aperture",
     "decenter",
     "tilt",
-    "comment",
+    "remark",
+    "reversed",
 ];
 
 fn item(params: &Params, number: usize, lens: &mut Prescription) -> Result<(), Faults> {
@@ -145,8 +146,11 @@ fn item(params: &Params, number: usize, lens: &mut Prescription) -> Result<(), F
         outer_semi_diameter_mm: mm(params, "outer-semi-diameter")?,
         apertures: apertures(params)?,
         displacement: displacement(params)?,
-        comment: value(params, "comment")?.unwrap_or_default(),
+        comment: value(params, "remark")?.unwrap_or_default(),
     };
+    if value(params, "reversed")?.unwrap_or(false) {
+        lens.leave_out(line, true, format!("{whose}it stands the other way round"));
+    }
     if params.get("chamfer").is_some() {
         lens.leave_out(line, false, format!("{whose}the chamfer"));
     }
@@ -194,8 +198,8 @@ fn shape(kind: &str, params: &Params) -> Result<(Shape, &'static [&'static str])
             &["radius-x", "radius-y", "conic-x", "conic-y"],
         ),
         "tilted-plane" => {
-            let tangent = |degrees: f64| libm::tan(degrees.to_radians());
-            let (tan_x, tan_y) = (tangent(angle(params, "tilt-x")?), tangent(angle(params, "tilt-y")?));
+            let (about_x, about_y) = (angle(params, "tilt-x")?.to_radians(), angle(params, "tilt-y")?.to_radians());
+            let (tan_x, tan_y) = (0.0 - libm::tan(about_y) / libm::cos(about_x), libm::tan(about_x));
             (Shape::TiltedPlane { tan_x, tan_y }, &["tilt-x", "tilt-y"])
         }
         "thin-lens" => {
@@ -256,7 +260,7 @@ fn aperture(node: &Node) -> Result<Aperture, Faults> {
     let params = Params::section(node.clone(), "aperture")?;
     let size = |key: &str| mm(&params, key).map(|size| size.unwrap_or(0.0));
     let shape = match value::<String>(&params, "shape")?.unwrap_or_default().as_str() {
-        "ring" => ApertureShape::Ring { inner: size("inner")?, outer: size("outer")? },
+        "ring" => ApertureShape::Ring { inner: size("inner")?, outer: radius(&params, "outer")? },
         "rectangle" => ApertureShape::Rectangle { half_width: size("half-width")?, half_height: size("half-height")? },
         "ellipse" => ApertureShape::Ellipse { half_width: size("half-width")?, half_height: size("half-height")? },
         other => ApertureShape::Other { name: other.to_owned() },

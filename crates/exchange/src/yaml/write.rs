@@ -6,7 +6,6 @@ use crate::prescription::{
     Aperture, ApertureShape, CoordinateBreak, Displacement, FieldKind, Item, Medium, Ordering, Prescription, Shape,
     Surface, SystemAperture,
 };
-use std::fmt::Write;
 
 /// Most notes that are written out.
 const MOST_NOTES: usize = 200;
@@ -53,11 +52,7 @@ pub fn write(lens: &Prescription, source: Option<&str>) -> String {
     for item in &lens.items {
         match item {
             Item::Surface(surface) => {
-                let mut text = format!("  - {{{}}}", surface_keys(surface).join(", "));
-                if !surface.comment.is_empty() {
-                    let _ = write!(text, " # {}", comment(&surface.comment));
-                }
-                line(&text);
+                line(&format!("  - {{{}}}", surface_keys(surface).join(", ")));
             }
             Item::Break(axis) => line(&format!("  - {{{}}}", break_keys(axis).join(", "))),
         }
@@ -176,17 +171,16 @@ fn surface_keys(surface: &Surface) -> Vec<String> {
         }
     }
     displacement(&surface.displacement, &mut keys);
+    if !surface.comment.is_empty() {
+        keys.push(format!("remark: {}", quoted(&surface.comment)));
+    }
     keys
 }
 
 fn aperture(aperture: &Aperture) -> String {
     let mut keys = match &aperture.shape {
         ApertureShape::Ring { inner, outer } => {
-            vec![
-                "shape: ring".to_owned(),
-                format!("inner: {}", shortest(*inner)),
-                format!("outer: {}", shortest(*outer)),
-            ]
+            vec!["shape: ring".to_owned(), format!("inner: {}", shortest(*inner)), format!("outer: {}", length(*outer))]
         }
         ApertureShape::Rectangle { half_width, half_height } => vec![
             "shape: rectangle".to_owned(),
@@ -251,8 +245,10 @@ fn shape_keys(shape: &Shape) -> Vec<String> {
             &[("radius-x", *radius_x), ("radius-y", *radius_y), ("conic-x", *conic_x), ("conic-y", *conic_y)],
         ),
         Shape::TiltedPlane { tan_x, tan_y } => {
-            let degrees = |tangent: f64| libm::atan(tangent).to_degrees();
-            with("tilted-plane", &[("tilt-x", degrees(*tan_x)), ("tilt-y", degrees(*tan_y))])
+            // z = y tan(tilt-x) - x tan(tilt-y) / cos(tilt-x): turned about x, then about the new y.
+            let about_x = libm::atan(*tan_y);
+            let about_y = 0.0 - libm::atan(tan_x * libm::cos(about_x));
+            with("tilted-plane", &[("tilt-x", about_x.to_degrees()), ("tilt-y", about_y.to_degrees())])
         }
         Shape::ThinLens { focal_length } => with("thin-lens", &[("focal-length", *focal_length)]),
         Shape::Grating { lines_per_mm, order, radius, conic: _, direction_deg } => {

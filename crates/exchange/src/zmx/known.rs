@@ -14,11 +14,11 @@ const SURFACE_HARMLESS: [&str; 26] = [
 ];
 
 /// Records of the system that only say how it is computed, drawn or toleranced.
-const SYSTEM_HARMLESS: [&str; 47] = [
-    "VERS", "AUTH", "IWDP", "STUD", "PFIL", "LANG", "GFAC", "RAIM", "PUSH", "SDMA", "OMMA", "ROPD", "HYPR", "PICB",
-    "FWGN", "POLS", "GLRS", "GSTD", "NSCD", "COFN", "LUID", "EERA", "BLNK", "MODE", "UNIT", "FTYP", "XFLN", "YFLN",
-    "XFLD", "YFLD", "FWGT", "WAVM", "WAVL", "WAVN", "WWGT", "WWGN", "PWAV", "ENPD", "FNUM", "OBNA", "FLOA", "NAME",
-    "GCAT", "NOTE", "ENVD", "TEMP", "PRES",
+const SYSTEM_HARMLESS: [&str; 48] = [
+    "VERS", "DBDT", "AUTH", "IWDP", "STUD", "PFIL", "LANG", "GFAC", "RAIM", "PUSH", "SDMA", "OMMA", "ROPD", "HYPR",
+    "PICB", "FWGN", "POLS", "GLRS", "GSTD", "NSCD", "COFN", "LUID", "EERA", "BLNK", "MODE", "UNIT", "FTYP", "XFLN",
+    "YFLN", "XFLD", "YFLD", "FWGT", "WAVM", "WAVL", "WAVN", "WWGT", "WWGN", "PWAV", "ENPD", "FNUM", "OBNA", "FLOA",
+    "NAME", "GCAT", "NOTE", "ENVD", "TEMP", "PRES",
 ];
 
 /// Vignetting factors: they choose rays, and stop none.

@@ -44,6 +44,7 @@ pub fn read(name: &str, text: &str) -> Result<Prescription, Faults> {
         let times = if count > 1 { format!(" ({count} lines)") } else { String::new() };
         lens.leave_out(line, true, format!("{keyword}: an unknown record of a surface{times}"));
     }
+    note_coatings(&records, &mut lens);
     note_rest(&records.rest, &mut lens);
     if lens.system_aperture == Some(SystemAperture::StopSize) {
         float_by_stop(&mut lens, &blocks);
@@ -200,6 +201,18 @@ fn note_solves(records: &Records<'_>, lens: &mut Prescription) {
         let text = format!("solves and pickups ({} lines): their values are carried as saved", solves.len());
         lens.leave_out(first.line, false, text);
     }
+}
+
+/// Coatings change how much light goes on, not where.
+fn note_coatings(records: &Records<'_>, lens: &mut Prescription) {
+    let coats = || records.surfaces.iter().flatten().filter(|record| record.keyword.eq_ignore_ascii_case("COAT"));
+    let Some(first) = coats().next() else { return };
+    let mut names: Vec<String> = coats().map(|record| shown(record.rest)).collect();
+    let count = names.len();
+    names.sort_unstable();
+    names.dedup();
+    names.truncate(12);
+    lens.leave_out(first.line, false, format!("coatings of {count} surfaces ({})", names.join(", ")));
 }
 
 /// Merit function, tolerances and configurations.

@@ -39,13 +39,12 @@ impl Block {
                         format!("surface {number}: the conic constant {conic} of a grating"),
                     );
                 }
-                Shape::Grating {
-                    lines_per_mm: value(1) * 1000.0,
-                    order: value(2),
-                    radius,
-                    conic: 0.0,
-                    direction_deg: 0.0,
-                }
+                let text = "the order of a grating is taken to turn light toward +y where it is positive";
+                lens.leave_out(self.line, false, format!("surface {number}: {text}"));
+                // Lines are not counted below zero: the order has the sign.
+                let sign = if value(1) < 0.0 { -1.0 } else { 1.0 };
+                let (lines_per_mm, order) = (sign * value(1) * 1000.0, sign * value(2));
+                Shape::Grating { lines_per_mm, order, radius, conic: 0.0, direction_deg: 0.0 }
             }
             "SZERNSAG" => self.zernike(number, Ordering::Noll, lens).unwrap_or(simple),
             "FZERNSAG" => self.zernike(number, Ordering::Fringe, lens).unwrap_or(simple),

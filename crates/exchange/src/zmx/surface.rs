@@ -160,7 +160,8 @@ impl Block {
                     block.aperture.center_mm = [0, 1].map(|at| number(at).unwrap_or(0.0) * unit_mm);
                 }
                 "COMM" => block.comment = shown(record.rest),
-                "COAT" => lens.leave_out(record.line, false, format!("coating {}", shown(record.rest))),
+                // Told once for the whole lens.
+                "COAT" => {}
                 "SCBD" => block.own_tilt(record, unit_mm, lens),
                 "IGNR" => {
                     if number(0).is_some_and(|flag| flag != 0.0) {

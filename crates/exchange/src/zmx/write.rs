@@ -1,6 +1,6 @@
 //! A prescription as a `.zmx`.
 
-use crate::glass::maker_of_catalogue;
+use crate::glass::{everyday_name, maker_of_catalogue};
 use crate::number::shortest;
 use crate::place::shown;
 use crate::prescription::{
@@ -314,19 +314,15 @@ impl Writer {
                     let vd = vd.unwrap_or_else(|| glass.vd());
                     let vd = if vd.is_finite() { vd } else { 0.0 };
                     let nd = nd.unwrap_or_else(|| glass.nd());
-                    match maker_of_catalogue(&glass.maker) {
-                        Some(maker) => {
+                    let maker = maker_of_catalogue(&glass.maker);
+                    let everyday = if maker.is_none() { everyday_name(&glass.full_name()) } else { None };
+                    match maker.map(|maker| (maker, &*glass.name)).or(everyday.map(|name| ("MISC", name))) {
+                        Some((maker, name)) => {
                             if !self.makers.iter().any(|known| known == maker) {
                                 self.makers.push(maker.to_owned());
                             }
                             let prefix = if maker == "LZOS" { "LZ_" } else { "" };
-                            record!(
-                                self,
-                                "GLAS {prefix}{} 0 0 {} {} 0 0 0 0 0 0",
-                                glass.name,
-                                shortest(nd),
-                                shortest(vd)
-                            );
+                            record!(self, "GLAS {prefix}{name} 0 0 {} {} 0 0 0 0 0 0", shortest(nd), shortest(vd));
                         }
                         None => {
                             let vd = if (0.0..=200.0).contains(&vd) { vd } else { 0.0 };
@@ -377,7 +373,8 @@ impl Writer {
                 self.note(true, format!("surface {number}: a second aperture ({keyword}): a surface has one there"));
                 continue;
             }
-            record!(self, "{keyword} {} {} 0", shortest(a), shortest(b));
+            // A ring without an outer edge: larger than any lens.
+            record!(self, "{keyword} {} {} 0", shortest(a), shortest(b.min(1e6)));
             if aperture.center_mm != [0.0; 2] {
                 record!(self, "OBDC {} {}", shortest(aperture.center_mm[0]), shortest(aperture.center_mm[1]));
             }
