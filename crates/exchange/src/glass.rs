@@ -121,10 +121,25 @@ fn find(name: &str, stated: Option<(f64, f64)>, makers: &[&str]) -> Option<(Glas
         Some((nd, vd)) => catalogue.find_with(full, nd, (vd > 0.0).then_some(vd)),
         None => catalogue.find(full),
     };
-    for maker in makers {
-        if let Ok(glass) = by(&format!("{maker}/{name}")) {
-            return Some((glass, None));
-        }
+    let fits = |glass: &Glass| stated.is_none_or(|(nd, _)| (nd - glass.nd()).abs() <= SAME_INDEX);
+    // The prefix of a catalogue says more than the list of all catalogues.
+    let prefixed = name.get(..3).is_some_and(|prefix| prefix.eq_ignore_ascii_case("LZ_"));
+    let named: Vec<Glass> = match prefixed {
+        true => Vec::new(),
+        false => makers.iter().filter_map(|maker| by(&format!("{maker}/{name}")).ok()).collect(),
+    };
+    if let Some(glass) = named.iter().find(|glass| fits(glass)) {
+        return Some((glass.clone(), None));
+    }
+    if let Some(glass) = named.first() {
+        // Another maker's glass of this name has the stated index.
+        return match by(name) {
+            Ok(other) if fits(&other) => {
+                let text = format!("{name} is taken as {}, which has the stated index", other.full_name());
+                Some((other, Some((false, text))))
+            }
+            _ => Some((glass.clone(), None)),
+        };
     }
     match by(name) {
         Ok(glass) => Some((glass, None)),
@@ -186,6 +201,7 @@ mod tests {
             ("F2", &["HOYA"], "HOYA/F2"),
             ("F2", &["SCHOTT", "HOYA"], "SCHOTT/F2"),
             ("SILICA", &["SCHOTT"], "SiO2/Malitson"),
+            ("LZ_LF5", &["SCHOTT"], "LZOS/LF5"),
             ("PMMA", &[], "poly_methyl_methacrylate/Sultanova"),
         ] {
             let found = look_up(theirs, None, makers);

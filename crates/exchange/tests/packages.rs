@@ -90,7 +90,10 @@ fn every_file_of_the_folders_is_read_and_written() {
                 read(Format::Zmx, "again.zmx", &spectra_exchange::zmx::encode(&written.text)).expect("readable");
             assert_eq!(again.surfaces().count(), lens.surfaces().count(), "{name}");
             let (a, b) = (focal_length_mm(&lens, 555.0), focal_length_mm(&again, 555.0));
-            assert!(a.is_infinite() && b.is_infinite() || (a / b - 1.0).abs() < 1e-12, "{name}: {a} {b}");
+            // A medium that no catalogue there has goes by two figures, and that is told.
+            let by_figures = written.left_out.iter().any(|note| note.text.contains("is written by its nd and Vd"));
+            let allowed = if by_figures { 1e-4 } else { 1e-12 };
+            assert!(a.is_infinite() && b.is_infinite() || (a / b - 1.0).abs() < allowed, "{name}: {a} {b}");
             count += 1;
         }
     }
