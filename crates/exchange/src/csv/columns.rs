@@ -94,7 +94,7 @@ pub(super) fn by_name(name: &str) -> Option<Column> {
         return Some(*column);
     }
     let power: u32 = unitless.strip_prefix('a')?.parse().ok()?;
-    (power % 2 == 0 && (2..=40).contains(&power)).then_some(Column::Coefficient(power))
+    (power.is_multiple_of(2) && (2..=40).contains(&power)).then_some(Column::Coefficient(power))
 }
 
 /// Names that a person may write, for a hint.

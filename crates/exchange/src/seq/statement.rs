@@ -49,11 +49,8 @@ fn end_of_word(text: &str) -> usize {
     let mut quote = None;
     for (at, c) in text.char_indices() {
         match quote {
-            Some(open) => {
-                if c == open {
-                    quote = None;
-                }
-            }
+            Some(open) if c == open => quote = None,
+            Some(_) => {}
             None if c == '\'' || c == '"' => quote = Some(c),
             None if c.is_whitespace() || matches!(c, ';' | '!' | '&') => return at,
             None => {}
