@@ -201,6 +201,10 @@ pub(crate) enum LensCommand {
     Draw(LensDraw),
     /// Trace rays through a lens: CSV in, CSV out.
     Trace(LensTrace),
+    /// Make a lens file of one of another program: .zmx, .seq or .csv.
+    Import(LensImport),
+    /// Write a lens for another program, as .zmx.
+    Export(LensExport),
 }
 
 /// `spectra lens draw`.
@@ -339,6 +343,53 @@ pub(crate) struct LensTrace {
     pub output: Option<PathBuf>,
     /// One JSON object a ray and line, in place of CSV.
     #[arg(long)]
+    pub json: bool,
+}
+
+/// `spectra lens import`.
+#[derive(Debug, Args)]
+#[command(
+    long_about = "Make a lens file of one of another program: .zmx (Zemax OpticStudio, sequential), .seq (CODE V) or .csv (a row \
+        a surface).\n\n\
+        What cannot be carried is listed on standard error and stands in the file as comments; what makes light go another way \
+        is marked with `!`. Entrance pupil, f-number, fields and wavelengths become a remark. Every command that takes a \
+        lens reads these files too, without importing them first.",
+    after_long_help = "Example:\n  spectra lens import tessar.zmx -o tessar.yaml"
+)]
+pub(crate) struct LensImport {
+    /// The file of the other program.
+    #[arg(value_name = "FILE")]
+    pub file: PathBuf,
+    /// Lens file to write; standard output if not given, or `-`.
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Write over a file that exists.
+    #[arg(long)]
+    pub force: bool,
+    /// A JSON object on standard output: what was read, and what was left out; needs -o.
+    #[arg(long, requires = "output")]
+    pub json: bool,
+}
+
+/// `spectra lens export`.
+#[derive(Debug, Args)]
+#[command(
+    long_about = "Write a lens for another program, as .zmx (Zemax OpticStudio and what reads its files).\n\n\
+        Glasses go by the names of their catalogues, others by nd and Vd. What cannot be carried is listed on standard error.",
+    after_long_help = "Example:\n  spectra lens export zeiss-biotar-50-f1.4 -o biotar.zmx"
+)]
+pub(crate) struct LensExport {
+    /// A lens file, or the name of a bundled lens.
+    #[arg(value_name = "LENS")]
+    pub lens: String,
+    /// File to write, its name ending with .zmx; standard output if not given, or `-`.
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Write over a file that exists.
+    #[arg(long)]
+    pub force: bool,
+    /// A JSON object on standard output: what was written, and what was left out; needs -o.
+    #[arg(long, requires = "output")]
     pub json: bool,
 }
 

@@ -1,8 +1,9 @@
 //! Files for stages: beside the scene first, then among the bundled data.
 
 use crate::yaml;
-use spectra_core::params::{Fault, Faults, Params, nearest};
+use spectra_core::params::{Fault, Faults, Params, SourceFile, nearest};
 use spectra_core::resources::{Resource, ResourceError, Resources};
+use spectra_exchange::Format;
 use std::borrow::Cow;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -53,14 +54,26 @@ impl Resources for FileResources {
     }
 
     fn document(&self, path: &str, folders: &[&str], endings: &[&str]) -> Result<Params, Faults> {
-        let resource = self.read(path, folders, endings, MAX_DOCUMENT).map_err(|e| match e {
+        // A lens of another program is read as the lens file that its import would write.
+        let foreign = Format::of_name(path).filter(|_| folders.contains(&"lenses"));
+        let limit = if foreign.is_some() { spectra_exchange::MAX_BYTES } else { MAX_DOCUMENT };
+        let resource = self.read(path, folders, endings, limit).map_err(|e| match e {
             ResourceError::NotFound(near) if near.is_empty() => Fault::new(format!("`{path}`: no such file")),
             ResourceError::NotFound(near) => {
                 Fault::new(format!("`{path}`: no such file")).hint(format!("did you mean {}?", list(&near)))
             }
             other => Fault::new(format!("`{path}`: {other}")),
         })?;
-        Params::section(yaml::parse_bytes(&resource.name, &resource.bytes)?, "")
+        let node = match foreign {
+            None => yaml::parse_bytes(&resource.name, &resource.bytes)?,
+            Some(format) => {
+                let lens = spectra_exchange::read(format, &resource.name, &resource.bytes)?;
+                let text =
+                    spectra_exchange::yaml::write(&lens, Path::new(path).file_name().and_then(|name| name.to_str()));
+                yaml::parse(SourceFile::new(resource.name, text))?
+            }
+        };
+        Params::section(node, "")
     }
 }
 

@@ -1,6 +1,9 @@
 //! `spectra lens`: the lens as an optical engineer looks at it.
 
 mod draw;
+mod exchanged;
+mod export;
+mod import;
 mod info;
 mod trace;
 
@@ -18,6 +21,8 @@ pub(crate) fn lens(command: &LensCommand, isa: Isa) -> Outcome {
         LensCommand::Draw(draw) => draw::draw(draw),
         LensCommand::Info(info) => info::info(info),
         LensCommand::Trace(trace) => trace::trace(trace, isa),
+        LensCommand::Import(import) => import::import(import),
+        LensCommand::Export(export) => export::export(export),
     }
 }
 

@@ -1,0 +1,71 @@
+//! What import and export have in common: a file that is not written over, and the list of what was left out.
+
+use crate::console;
+use crate::outcome::{DONE, Failure, Outcome};
+use serde_json::json;
+use spectra_exchange::Note;
+use spectra_film::write::write_atomically;
+use std::io::Write;
+use std::path::Path;
+
+/// The file to write to; `None` is standard output.
+///
+/// # Errors
+/// It exists, and nobody said to write over it.
+pub(super) fn target(output: Option<&Path>, force: bool) -> Result<Option<&Path>, Failure> {
+    let output = output.filter(|path| *path != Path::new("-"));
+    if let Some(path) = output
+        && !force
+        && path.exists()
+    {
+        return Err(Failure::Input(format!(
+            "{} exists: give another name, or --force to write over it",
+            path.display()
+        )));
+    }
+    Ok(output)
+}
+
+/// Writes the bytes and says what was left out.
+pub(super) fn deliver(
+    name: &str,
+    surfaces: usize,
+    output: Option<&Path>,
+    bytes: &[u8],
+    left_out: &[Note],
+    as_json: bool,
+) -> Outcome {
+    match output {
+        Some(path) => write_atomically(path, |file| Ok(file.write_all(bytes)?))?,
+        None => console::out(&String::from_utf8_lossy(bytes))?,
+    }
+    if as_json {
+        let notes: Vec<_> = left_out
+            .iter()
+            .map(|note| {
+                json!({
+                    "line": (note.line > 0).then_some(note.line),
+                    "text": note.text,
+                    "alters_light": note.alters,
+                })
+            })
+            .collect();
+        console::pretty_json(&json!({
+            "lens": name,
+            "surfaces": surfaces,
+            "written": output.map(|path| path.display().to_string()),
+            "not_carried": notes,
+        }))?;
+        return Ok(DONE);
+    }
+    if !left_out.is_empty() {
+        console::note("not carried (what makes light go another way is marked with !):");
+        for note in left_out {
+            console::note(&format!("  {} {note}", if note.alters { "!" } else { "-" }));
+        }
+    }
+    if let Some(path) = output {
+        console::note(&format!("wrote {}: {name}, {surfaces} surfaces", path.display()));
+    }
+    Ok(DONE)
+}

@@ -1,0 +1,27 @@
+//! `spectra lens export`.
+
+use super::exchanged::{deliver, target};
+use crate::arguments::LensExport;
+use crate::outcome::{Failure, Outcome};
+use spectra_core::resources::Resources;
+use spectra_exchange::{Format, yaml, zmx};
+use spectra_scene::FileResources;
+use std::path::Path;
+
+/// Writes a lens for another program.
+pub(crate) fn export(arguments: &LensExport) -> Outcome {
+    let output = target(arguments.output.as_deref(), arguments.force)?;
+    if let Some(path) = output
+        && Format::of_name(&path.display().to_string()) != Some(Format::Zmx)
+    {
+        return Err(Failure::Input(format!("{}: only .zmx can be written", path.display())));
+    }
+    let resources = FileResources::beside(Path::new(""));
+    let document = resources.document(&arguments.lens, &["lenses"], &[".yaml"])?;
+    // All that is wrong with the lens is found here.
+    spectra_lens::parse(&document, &resources)?;
+    let lens = yaml::read(&document)?;
+    let written = zmx::write(&lens);
+    let bytes = zmx::encode(&written.text);
+    deliver(&lens.name, lens.surfaces().count(), output, &bytes, &written.left_out, arguments.json)
+}

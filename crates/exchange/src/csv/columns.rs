@@ -1,0 +1,128 @@
+//! What columns are called.
+
+/// What a column holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Column {
+    Lens,
+    Number,
+    Kind,
+    Radius,
+    Curvature,
+    Thickness,
+    Glass,
+    Index,
+    Abbe,
+    SemiDiameter,
+    Diameter,
+    Conic,
+    /// Coefficient of this power of the radius.
+    Coefficient(u32),
+    Coefficients,
+    Comment,
+}
+
+/// Names without case, blanks, dashes and units.
+const NAMES: [(&str, Column); 55] = [
+    ("lens", Column::Lens),
+    ("name", Column::Lens),
+    ("lensname", Column::Lens),
+    ("surface", Column::Number),
+    ("surf", Column::Number),
+    ("number", Column::Number),
+    ("no", Column::Number),
+    ("#", Column::Number),
+    ("index#", Column::Number),
+    ("type", Column::Kind),
+    ("kind", Column::Kind),
+    ("surfacetype", Column::Kind),
+    ("radius", Column::Radius),
+    ("r", Column::Radius),
+    ("roc", Column::Radius),
+    ("radiusofcurvature", Column::Radius),
+    ("curvature", Column::Curvature),
+    ("curv", Column::Curvature),
+    ("c", Column::Curvature),
+    ("thickness", Column::Thickness),
+    ("t", Column::Thickness),
+    ("d", Column::Thickness),
+    ("distance", Column::Thickness),
+    ("separation", Column::Thickness),
+    ("gap", Column::Thickness),
+    ("glass", Column::Glass),
+    ("glassafter", Column::Glass),
+    ("material", Column::Glass),
+    ("medium", Column::Glass),
+    ("nd", Column::Index),
+    ("n", Column::Index),
+    ("ndafter", Column::Index),
+    ("index", Column::Index),
+    ("refractiveindex", Column::Index),
+    ("vd", Column::Abbe),
+    ("v", Column::Abbe),
+    ("vdafter", Column::Abbe),
+    ("abbe", Column::Abbe),
+    ("abbenumber", Column::Abbe),
+    ("semidiameter", Column::SemiDiameter),
+    ("sd", Column::SemiDiameter),
+    ("semiaperture", Column::SemiDiameter),
+    ("clearsemidiameter", Column::SemiDiameter),
+    ("diameter", Column::Diameter),
+    ("diam", Column::Diameter),
+    ("clearaperture", Column::Diameter),
+    ("conic", Column::Conic),
+    ("k", Column::Conic),
+    ("conicconstant", Column::Conic),
+    ("aspherecoefficients", Column::Coefficients),
+    ("coefficients", Column::Coefficients),
+    ("comment", Column::Comment),
+    ("remark", Column::Comment),
+    ("note", Column::Comment),
+    ("label", Column::Comment),
+];
+
+/// The column of a name.
+pub(super) fn by_name(name: &str) -> Option<Column> {
+    let bare = name.split(['[', '(']).next().unwrap_or(name);
+    let plain: String = bare
+        .chars()
+        .filter(|c| !c.is_whitespace() && !matches!(c, '-' | '_' | '.'))
+        .flat_map(char::to_lowercase)
+        .collect();
+    let plain = plain.trim_matches('"');
+    let unitless = plain.strip_suffix("mm").filter(|rest| !rest.is_empty()).unwrap_or(plain);
+    if let Some((_, column)) = NAMES.iter().find(|(known, _)| *known == unitless) {
+        return Some(*column);
+    }
+    let power: u32 = unitless.strip_prefix('a')?.parse().ok()?;
+    (power.is_multiple_of(2) && (2..=40).contains(&power)).then_some(Column::Coefficient(power))
+}
+
+/// Names that a person may write, for a hint.
+pub(super) const HINT: &str = "known columns: lens, surface, type, radius, curvature, thickness, glass, nd, vd, semi-diameter, \
+                               diameter, conic, a2, a4, ..., comment";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn many_spellings() {
+        for (name, column) in [
+            ("radius_mm", Column::Radius),
+            ("R", Column::Radius),
+            ("Radius [mm]", Column::Radius),
+            ("Semi-Diameter", Column::SemiDiameter),
+            ("semi_diameter_mm", Column::SemiDiameter),
+            ("nd_after", Column::Index),
+            ("Abbe Number", Column::Abbe),
+            ("A4", Column::Coefficient(4)),
+            ("a_10", Column::Coefficient(10)),
+            ("asphere_coefficients", Column::Coefficients),
+        ] {
+            assert_eq!(by_name(name), Some(column), "{name}");
+        }
+        for name in ["", "mm", "a3", "a42", "colour"] {
+            assert_eq!(by_name(name), None, "{name}");
+        }
+    }
+}

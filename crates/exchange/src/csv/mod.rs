@@ -1,0 +1,27 @@
+//! A table of surfaces, one row each, with a line of column names.
+//!
+//! | column | other names | meaning |
+//! |---|---|---|
+//! | `radius` | `r`, `radius_mm`, `roc` | mm; empty, `inf` or 0 is a plane |
+//! | `curvature` | `c`, `curv` | 1/mm, in place of a radius |
+//! | `thickness` | `t`, `d`, `distance`, `thickness_mm` | mm to the next surface; of the last one, to the image plane |
+//! | `glass` | `material`, `medium`, `glass_after` | name behind the surface, `mirror` reflects |
+//! | `nd`, `vd` | `n`, `index`, `nd_after`; `v`, `abbe`, `vd_after` | figures of the medium behind |
+//! | `semi-diameter` | `sd`, `semi_diameter_mm`, `semi_aperture`; `diameter` | clear semi-diameter, mm; 0 or empty is unknown |
+//! | `type` | `kind`, `surface_type` | `spherical`, `plane`, `stop`, `conic`, `aspherical`, `cyl-x`, `cyl-y`; `object` and `image` rows are no surfaces |
+//! | `conic` | `k` | conic constant |
+//! | `a2`, `a4`, ... | | coefficients of an even asphere, mm^(1-power) |
+//! | `asphere_coefficients` | `coefficients` | the same of r^2, r^4, ... in one cell, separated by blanks or `;` |
+//! | `lens` | `name` | name of the lens: one in all rows |
+//! | `surface` | `#`, `no`, `number` | any counting; `stop` marks one |
+//! | `comment` | `remark`, `note` | words |
+//!
+//! Case, blanks, `-`, `_` and a unit in brackets do not matter in names. Cells are separated by comma, semicolon or tab; with
+//! semicolons and tabs a decimal comma is understood. Lines that start with `#` are comments.
+
+mod columns;
+mod table;
+#[cfg(test)]
+mod tests;
+
+pub use table::read;

@@ -1,0 +1,244 @@
+//! Glasses by the names that other programs give them.
+
+use crate::prescription::Medium;
+use spectra_glass::{Catalogue, FindError, Glass};
+
+/// Largest difference between a stated index and that of the glass of this name, if it is to be that glass.
+const SAME_INDEX: f64 = 0.002;
+
+/// Makers in the order in which they are meant where a name has several and the file does not say.
+const USUAL: [&str; 9] = ["SCHOTT", "OHARA", "HOYA", "HIKARI", "CDGM", "SUMITA", "NHG", "LZOS", "CORNING"];
+
+/// Names of the miscellaneous catalogues of design programs, and ours.
+const EVERYDAY: [(&str, &str); 20] = [
+    ("SILICA", "silica"),
+    ("F_SILICA", "silica"),
+    // Corning's fused silica.
+    ("C79-80", "silica"),
+    ("ACRYLIC", "acrylic"),
+    ("PMMA", "PMMA"),
+    ("POLYCARB", "polycarbonate"),
+    ("POLYCARBONATE", "polycarbonate"),
+    ("POLYSTYR", "polystyrene"),
+    ("POLYSTYRENE", "polystyrene"),
+    ("WATER", "water"),
+    ("SAPPHIRE", "sapphire"),
+    ("SAPHIR", "sapphire"),
+    ("CAF2", "calcium fluoride"),
+    ("CALCIUM_FLUORIDE", "calcium fluoride"),
+    ("MGF2", "magnesium fluoride"),
+    ("DIAMOND", "diamond"),
+    ("QUARTZ", "quartz"),
+    ("CALCITE", "calcite"),
+    ("NACL", "salt"),
+    ("E48R", "ZeonexE48R"),
+];
+
+/// A medium, and what must be told of it: whether light goes another way, and the words.
+pub(crate) struct Found {
+    pub(crate) medium: Medium,
+    pub(crate) note: Option<(bool, String)>,
+}
+
+/// Our name of the maker of a catalogue of a design program: `OHARA_2010`, `OLD_SCHO`, `NIKON-HIKARI`; `None` for
+/// collections such as MISC.
+pub(crate) fn maker_of_catalogue(catalogue: &str) -> Option<&'static str> {
+    let name = catalogue.to_ascii_uppercase();
+    // The first letters are what old programs with short file names keep.
+    let marks: [(&str, &str); 12] = [
+        ("SCHO", "SCHOTT"),
+        ("OHAR", "OHARA"),
+        ("HOYA", "HOYA"),
+        ("HIKARI", "HIKARI"),
+        ("NIKON", "HIKARI"),
+        ("CDGM", "CDGM"),
+        ("CHENGDU", "CDGM"),
+        ("SUMI", "SUMITA"),
+        ("NHG", "NHG"),
+        ("LZOS", "LZOS"),
+        ("CORN", "CORNING"),
+        ("ISUZU", "ISUZU"),
+    ];
+    marks.iter().find(|(mark, _)| name.contains(mark)).map(|(_, maker)| *maker)
+}
+
+/// The name in a design program's miscellaneous catalogue of a medium of ours that no maker has.
+pub(crate) fn everyday_name(full_name: &str) -> Option<&'static str> {
+    let catalogue = Catalogue::bundled();
+    let same = |ours: &str| catalogue.find(ours).is_ok_and(|glass| glass.full_name() == full_name);
+    EVERYDAY.iter().find(|(_, ours)| same(ours)).map(|(theirs, _)| *theirs)
+}
+
+/// The medium of a name, as near to what the file means as our catalogue has it. `stated` are nd and Vd that the file
+/// gives beside the name; `makers` come first, in order.
+pub(crate) fn look_up(name: &str, stated: Option<(f64, f64)>, makers: &[&str]) -> Found {
+    let quiet = |medium| Found { medium, note: None };
+    if name.eq_ignore_ascii_case("air") {
+        return quiet(Medium::Air);
+    }
+    if name.eq_ignore_ascii_case("vacuum") {
+        return quiet(Medium::Glass { name: "vacuum".to_owned(), nd: None, vd: None });
+    }
+    match find(name, stated, makers) {
+        Some((glass, None)) => with_stated(&glass, stated),
+        Some((glass, Some(told))) => {
+            let found = with_stated(&glass, stated);
+            Found { note: found.note.or(Some(told)), ..found }
+        }
+        None => match stated {
+            Some((nd, vd)) => {
+                let text = format!("glass {name} is in no catalogue here: carried by its nd {nd} and Vd {vd}");
+                let Found { medium, note } = model(nd, vd);
+                Found { medium, note: note.or(Some((false, text))) }
+            }
+            None => Found {
+                medium: Medium::Unknown { name: name.to_owned() },
+                note: Some((
+                    true,
+                    format!("glass {name} is in no catalogue here, and the file states no index: write one"),
+                )),
+            },
+        },
+    }
+}
+
+/// A glass of which an index and an Abbe number are known.
+pub(crate) fn model(nd: f64, vd: f64) -> Found {
+    if nd == 1.0 {
+        return Found { medium: Medium::Air, note: None };
+    }
+    if (5.0..=200.0).contains(&vd) {
+        return Found { medium: Medium::Model { nd, vd: Some(vd) }, note: None };
+    }
+    let note = (vd != 0.0).then(|| (true, format!("an Abbe number of {vd}: carried without dispersion")));
+    Found { medium: Medium::Model { nd, vd: None }, note }
+}
+
+/// The glass of a name, and what a person should know of the choice.
+fn find(name: &str, stated: Option<(f64, f64)>, makers: &[&str]) -> Option<(Glass, Option<(bool, String)>)> {
+    let catalogue = Catalogue::bundled();
+    let by = |full: &str| match stated {
+        Some((nd, vd)) => catalogue.find_with(full, nd, (vd > 0.0).then_some(vd)),
+        None => catalogue.find(full),
+    };
+    let fits = |glass: &Glass| stated.is_none_or(|(nd, _)| (nd - glass.nd()).abs() <= SAME_INDEX);
+    // The prefix of a catalogue says more than the list of all catalogues.
+    let prefixed = name.get(..3).is_some_and(|prefix| prefix.eq_ignore_ascii_case("LZ_"));
+    let named: Vec<Glass> = match prefixed {
+        true => Vec::new(),
+        false => makers.iter().filter_map(|maker| by(&format!("{maker}/{name}")).ok()).collect(),
+    };
+    if let Some(glass) = named.iter().find(|glass| fits(glass)) {
+        return Some((glass.clone(), None));
+    }
+    if let Some(glass) = named.first() {
+        // Another maker's glass of this name has the stated index.
+        return match by(name) {
+            Ok(other) if fits(&other) => {
+                let text = format!("{name} is taken as {}, which has the stated index", other.full_name());
+                Some((other, Some((false, text))))
+            }
+            _ => Some((glass.clone(), None)),
+        };
+    }
+    match by(name) {
+        Ok(glass) => Some((glass, None)),
+        Err(FindError::Ambiguous { candidates, .. }) => {
+            let of = |maker: &&str| candidates.iter().find(|c| c.full_name.starts_with(&format!("{maker}/")));
+            let chosen = makers.iter().chain(&USUAL).find_map(of).or(candidates.first())?;
+            let text = format!("{name} is the name of {} glasses: {} is taken", candidates.len(), chosen.full_name);
+            catalogue.find(&chosen.full_name).ok().map(|glass| (glass, Some((false, text))))
+        }
+        Err(FindError::Unknown { .. }) => {
+            // Molding changes an index in the third decimal.
+            if let Some(raw) = name.strip_suffix("_MOLD").filter(|_| stated.is_none()) {
+                let (glass, _) = find(raw, None, makers)?;
+                let text = format!("{name} is taken as {} before molding", glass.full_name());
+                return Some((glass, Some((true, text))));
+            }
+            let (_, ours) = EVERYDAY.iter().find(|(theirs, _)| name.eq_ignore_ascii_case(theirs))?;
+            let glass = catalogue.find(ours).ok()?;
+            let text = format!("{name} is taken as {}", glass.full_name());
+            Some((glass, Some((false, text))))
+        }
+    }
+}
+
+/// The glass, with the stated figures where they are its own.
+fn with_stated(glass: &Glass, stated: Option<(f64, f64)>) -> Found {
+    let name = glass.full_name();
+    match stated {
+        Some((nd, vd)) if (nd - glass.nd()).abs() <= SAME_INDEX => Found {
+            medium: Medium::Glass { name, nd: Some(nd), vd: (5.0..=200.0).contains(&vd).then_some(vd) },
+            note: None,
+        },
+        Some((nd, _)) => {
+            let text = format!("{name} has nd {:.5}; the file's {nd} beside its name is left out", glass.nd());
+            Found { medium: Medium::Glass { name, nd: None, vd: None }, note: Some((false, text)) }
+        }
+        None => Found { medium: Medium::Glass { name, nd: None, vd: None }, note: None },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn name(medium: &Medium) -> &str {
+        match medium {
+            Medium::Glass { name, .. } | Medium::Unknown { name } => name,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn names_of_design_programs() {
+        for (theirs, makers, ours) in [
+            ("N-BK7", &["SCHOTT"][..], "SCHOTT/N-BK7"),
+            ("NBK7", &["SCHOTT"], "SCHOTT/N-BK7"),
+            ("BK7", &["SCHOTT"], "SCHOTT/BK7"),
+            ("SLAL8", &["OHARA"], "OHARA/S-LAL8"),
+            ("F2", &["HOYA"], "HOYA/F2"),
+            ("F2", &["SCHOTT", "HOYA"], "SCHOTT/F2"),
+            ("SILICA", &["SCHOTT"], "SiO2/Malitson"),
+            ("LZ_LF5", &["SCHOTT"], "LZOS/LF5"),
+            ("PMMA", &[], "poly_methyl_methacrylate/Sultanova"),
+        ] {
+            let found = look_up(theirs, None, makers);
+            assert_eq!(name(&found.medium), ours, "{theirs}");
+        }
+    }
+
+    #[test]
+    fn what_nobody_knows_is_told() {
+        let found = look_up("UNOBTAINIUM", None, &["SCHOTT"]);
+        assert_eq!(name(&found.medium), "UNOBTAINIUM");
+        assert!(found.note.is_some_and(|(alters, text)| alters && text.contains("UNOBTAINIUM")));
+        let found = look_up("UNOBTAINIUM", Some((1.6, 50.0)), &["SCHOTT"]);
+        assert_eq!(found.medium, Medium::Model { nd: 1.6, vd: Some(50.0) });
+        assert!(found.note.is_some_and(|(alters, text)| !alters && text.contains("UNOBTAINIUM")));
+    }
+
+    #[test]
+    fn figures_that_are_not_the_glass_are_told() {
+        let found = look_up("N-BK7", Some((1.52, 64.0)), &[]);
+        assert!(matches!(found.medium, Medium::Glass { nd: None, .. }));
+        assert!(found.note.is_some_and(|(_, text)| text.contains("1.51680") && text.contains("1.52")));
+        let found = look_up("N-BK7", Some((1.5168, 64.17)), &[]);
+        assert!(matches!(found.medium, Medium::Glass { nd: Some(1.5168), vd: Some(64.17), .. }));
+    }
+
+    #[test]
+    fn catalogues_have_makers() {
+        for (catalogue, maker) in [
+            ("SCHOTT", Some("SCHOTT")),
+            ("OLD_SCHO", Some("SCHOTT")),
+            ("ohara_2010", Some("OHARA")),
+            ("NIKON-HIKARI", Some("HIKARI")),
+            ("MISC", None),
+            ("INFRARED", None),
+        ] {
+            assert_eq!(maker_of_catalogue(catalogue), maker);
+        }
+    }
+}

@@ -1,0 +1,112 @@
+use super::read;
+use crate::prescription::{
+    ApertureShape, CoordinateBreak, Displacement, Item, Medium, Prescription, Shape, Surface, SystemAperture,
+};
+
+fn lens(text: &str) -> Prescription {
+    read("x.seq", text).unwrap_or_else(|faults| panic!("{faults}"))
+}
+
+fn first(text: &str) -> Surface {
+    lens(&format!("RDM\nSO 0 1e11\n{text}\nSI 0 0\n")).surfaces().next().expect("a surface").clone()
+}
+
+#[test]
+fn radii_curvatures_and_units() {
+    let radius = |text: &str| match lens(text).surfaces().next().expect("a surface").shape {
+        Shape::Sphere { radius } => radius,
+        ref other => panic!("{other:?}"),
+    };
+    assert_eq!(radius("RDM;LEN\nS 50 5 NBK7_SCHOTT\nSI 0 0"), 50.0);
+    assert_eq!(radius("RDM N\nS 0.02 5 NBK7_SCHOTT\nSI 0 0"), 50.0);
+    assert_eq!(radius("RDM\nDIM I\nS 2 5 NBK7_SCHOTT\nSI 0 0"), 50.8);
+    assert_eq!(radius("RDM N\nCUY S1 0.5\nS 1 1\nCUY S0 0.04\nSI 0 0\n").recip().abs().recip(), 25.0);
+    // Nobody says which: the figures do.
+    assert_eq!(radius("S 50 5 NBK7_SCHOTT\nSI 0 0"), 50.0);
+    assert_eq!(radius("S 0.02 5 NBK7_SCHOTT\nSI 0 0"), 50.0);
+    assert!(lens("S 50 5\nSI 0 0").left_out.iter().any(|note| note.alters && note.text.contains("RDM is missing")));
+}
+
+#[test]
+fn forms() {
+    let asphere =
+        |radius, conic, coefficients: &[f64]| Shape::EvenAsphere { radius, conic, coefficients: coefficients.to_vec() };
+    for (text, shape) in [
+        ("S 50 1 NBK7_SCHOTT\n CON\n K -1", Shape::Conic { radius: 50.0, conic: -1.0 }),
+        (
+            "S 50 1 NBK7_SCHOTT\n ASP\n K -1; A 1e-6; B 2e-9; C 0.0; D &\n 3e-15",
+            asphere(50.0, -1.0, &[0.0, 1e-6, 2e-9, 0.0, 3e-15]),
+        ),
+        ("S 50 1 NBK7_SCHOTT\n CYL", Shape::Cylinder { radius: 50.0, along_x: true }),
+        (
+            "S 50 1 NBK7_SCHOTT\n YTO\n RDX 80",
+            Shape::Toroid { radius: 50.0, conic: 0.0, coefficients: vec![], rotation_radius: 80.0 },
+        ),
+        (
+            "S 50 1 NBK7_SCHOTT\n AAS\n RDX 80\n KX -1",
+            Shape::Biconic { radius_x: 80.0, radius_y: 50.0, conic_x: -1.0, conic_y: 0.0 },
+        ),
+    ] {
+        assert_eq!(first(text).shape, shape, "{text}");
+    }
+    let diffractive = lens("RDM\nS 9.93 3.7 NBK7_SCHOTT\n DIF DOE\n HCO C1 -0.0018\nS 0 1\nSI 0 0");
+    assert!(diffractive.left_out.iter().any(|note| note.alters && note.text.contains("DIF DOE")));
+}
+
+#[test]
+fn glasses_mirrors_and_apertures() {
+    let found = first("S 50 1 516800.641700\n STO\n CIR 4\n CIR EDG 5\n CIR OBS 1\n SLB \"front\"");
+    assert_eq!(found.medium, Medium::Model { nd: 1.5168, vd: Some(64.17) });
+    assert_eq!((found.stop, found.semi_diameter_mm, found.outer_semi_diameter_mm), (true, Some(4.0), Some(5.0)));
+    assert_eq!(found.apertures[0].shape, ApertureShape::Ring { inner: 0.0, outer: 1.0 });
+    assert!(found.apertures[0].obscures && found.comment == "front");
+    let found = first("S -100 -50 REFL\n REX 7; REY 8; ADY 9");
+    assert!(found.mirror);
+    assert_eq!(found.apertures[0].shape, ApertureShape::Rectangle { half_width: 7.0, half_height: 8.0 });
+    assert_eq!(found.apertures[0].center_mm, [0.0, 9.0]);
+    assert_eq!(first("S 0 3\n STO").shape, Shape::Stop);
+}
+
+/// Tilts about x and y are left-handed there and right-handed here.
+#[test]
+fn decenters_of_four_sorts() {
+    let items = |text: &str| lens(&format!("RDM\n{text}\nSI 0 0\n")).items;
+    let by = |decenter_mm, tilt_deg| Displacement { decenter_mm, tilt_deg };
+    let axis = |by, tilt_first, thickness_mm| Item::Break(CoordinateBreak { by, tilt_first, thickness_mm });
+    let thickness = |item: &Item| item.thickness_mm();
+
+    let basic = items("S 0 7\n XDE 1; YDE 2; ADE 10; BDE 20; CDE 30");
+    assert_eq!(basic[0], axis(by([1.0, 2.0], [-10.0, -20.0, 30.0]), false, 0.0));
+    assert_eq!(thickness(&basic[1]), 7.0);
+
+    let back = items("S 0 7\n DAR; YDE 2; ADE 10; ZDE 3");
+    let Item::Surface(surface) = &back[1] else { panic!("{back:?}") };
+    assert_eq!((surface.displacement, surface.thickness_mm), (by([0.0, 2.0], [-10.0, 0.0, 0.0]), 4.0));
+    assert_eq!(thickness(&back[0]), 3.0);
+
+    let reverse = items("S 0 7\n REV; YDE 2; ADE 10");
+    assert_eq!((thickness(&reverse[0]), &reverse[1]), (0.0, &axis(by([0.0, -2.0], [10.0, 0.0, 0.0]), true, 7.0)));
+
+    let bend = items("S 0 -7 REFL\n BEN; ADE 45");
+    let turn = by([0.0; 2], [-45.0, 0.0, 0.0]);
+    assert_eq!((&bend[0], thickness(&bend[1]), &bend[2]), (&axis(turn, false, 0.0), 0.0, &axis(turn, false, -7.0)));
+}
+
+#[test]
+fn the_rest_is_told() {
+    let found = lens(
+        "RDM\nTIT 'A lens'\nEPD 5\nWL 656 588 486\nREF 2\nYAN 0 7\nSO 0 120\nS 50 5 NOBODYS_SCHOTT\nFROB 3\nSI 0 -0.25\nGO\n",
+    );
+    assert_eq!((found.name.as_str(), found.object_distance_mm), ("A lens", Some(120.0)));
+    assert_eq!(found.system_aperture, Some(SystemAperture::EntrancePupilDiameter(5.0)));
+    assert_eq!((found.wavelengths.len(), found.primary), (3, Some(1)));
+    assert_eq!(found.items[0].thickness_mm(), 4.75, "defocus moves the image plane");
+    let notes: Vec<String> = found.left_out.iter().filter(|n| n.alters).map(ToString::to_string).collect();
+    assert!(
+        notes.iter().any(|note| note.contains("NOBODYS")) && notes.iter().any(|note| note.contains("FROB 3")),
+        "{notes:?}"
+    );
+    let message = read("bad.seq", "RDM\nS 50 5\n K x1\n").unwrap_err().to_string();
+    assert!(message.contains("bad.seq:3:4: `x1` is no number"), "{message}");
+    assert!(read("bad.seq", "").unwrap_err().to_string().contains("no surfaces"));
+}

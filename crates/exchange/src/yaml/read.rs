@@ -1,0 +1,273 @@
+//! A lens file as a prescription, for writing it in another format.
+
+use crate::prescription::{
+    Aperture, ApertureShape, CoordinateBreak, Displacement, Item, Medium, Ordering, Prescription, Shape, Surface,
+};
+use serde::de::DeserializeOwned;
+use spectra_core::params::{Angle, Faults, Length, LengthOrInfinity, Node, Params, SpatialFrequency, StageNode, Value};
+
+/// Reads a lens file. What it holds that no other program knows is noted in `left_out`. The file is expected to be sound: a lens is
+/// loaded before it is written.
+///
+/// # Errors
+/// What is wrong with values that are looked at.
+pub fn read(params: &Params) -> Result<Prescription, Faults> {
+    let mut lens = Prescription {
+        name: value::<String>(params, "name")?.unwrap_or_default(),
+        maker: value(params, "maker")?,
+        patent: value(params, "patent")?,
+        year: value(params, "year")?,
+        reference_line: value(params, "reference-line")?,
+        ..Prescription::default()
+    };
+    for key in ["source", "remark"] {
+        lens.remarks.extend(value::<String>(params, key)?);
+    }
+    let known = ["name", "maker", "patent", "year", "reference-line", "source", "remark", "surfaces"];
+    note_others(params, &known, "", &mut lens);
+    let mut faults = Faults::new();
+    let nodes: Vec<StageNode> = value(params, "surfaces")?.unwrap_or_default();
+    for (at, node) in nodes.iter().enumerate() {
+        faults.take(node.params().and_then(|params| item(&params, at + 1, &mut lens)));
+    }
+    faults.into_result(lens)
+}
+
+/// The value under a key.
+fn value<T: DeserializeOwned>(params: &Params, key: &str) -> Result<Option<T>, Faults> {
+    params.get(key).map(|node| StageNode::new(node.clone(), format!("{}.{key}", params.path())).parse()).transpose()
+}
+
+/// A length, mm.
+fn mm(params: &Params, key: &str) -> Result<Option<f64>, Faults> {
+    Ok(value::<Length>(params, key)?.map(|length| length.mm()))
+}
+
+/// A radius, mm; infinite where it is not said.
+fn radius(params: &Params, key: &str) -> Result<f64, Faults> {
+    Ok(value::<LengthOrInfinity>(params, key)?.map_or(f64::INFINITY, |length| length.mm()))
+}
+
+/// A number; 0 where it is not said.
+fn number(params: &Params, key: &str) -> Result<f64, Faults> {
+    Ok(value(params, key)?.unwrap_or(0.0))
+}
+
+fn coefficients(params: &Params) -> Result<Vec<f64>, Faults> {
+    Ok(value(params, "coefficients")?.unwrap_or_default())
+}
+
+/// Degrees: a bare number as it stands, since turning it to radians and back would change its last digit.
+fn degrees(node: &Node, path: &str) -> Result<f64, Faults> {
+    match &node.value {
+        Value::Number(number) => Ok(number.value),
+        _ => Ok(StageNode::new(node.clone(), path).parse::<Angle>()?.rad().to_degrees()),
+    }
+}
+
+fn angle(params: &Params, key: &str) -> Result<f64, Faults> {
+    params.get(key).map_or(Ok(0.0), |node| degrees(node, key))
+}
+
+fn displacement(params: &Params) -> Result<Displacement, Faults> {
+    let mut by = Displacement::default();
+    for (at, length) in value::<Vec<Length>>(params, "decenter")?.unwrap_or_default().iter().take(2).enumerate() {
+        by.decenter_mm[at] = length.mm();
+    }
+    if let Some(Value::Seq(angles)) = params.get("tilt").map(|node| &node.value) {
+        for (at, node) in angles.iter().take(3).enumerate() {
+            by.tilt_deg[at] = degrees(node, "tilt")?;
+        }
+    }
+    Ok(by)
+}
+
+/// Notes the keys that are not in `known`.
+fn note_others(params: &Params, known: &[&str], whose: &str, lens: &mut Prescription) {
+    if let Value::Map(entries) = &params.node().value {
+        for (key, _) in entries {
+            if !known.contains(&key.text.as_str()) {
+                lens.leave_out(key.span.line, true, format!("{whose}the key `{}`", key.text));
+            }
+        }
+    }
+}
+
+/// Keys of every surface.
+const PLACE: [&str; 14] = [
+    "thickness",
+    "glass",
+    "nd",
+    "vd",
+    "semi-diameter",
+    "mirror",
+    "stop",
+    "outer-semi-diameter",
+    "chamfer",
+    "aperture",
+    "decenter",
+    "tilt",
+    "remark",
+    "reversed",
+];
+
+fn item(params: &Params, number: usize, lens: &mut Prescription) -> Result<(), Faults> {
+    let kind = params.kind().unwrap_or_default().to_owned();
+    let line = params.node().span.line;
+    let whose = format!("surface {number}: ");
+    if kind == "coordinate-break" {
+        note_others(params, &["decenter", "tilt", "order", "thickness"], &whose, lens);
+        lens.items.push(Item::Break(CoordinateBreak {
+            by: displacement(params)?,
+            tilt_first: value::<String>(params, "order")?.as_deref() == Some("tilt-first"),
+            thickness_mm: mm(params, "thickness")?.unwrap_or(0.0),
+        }));
+        return Ok(());
+    }
+    let (shape, known) = shape(&kind, params)?;
+    let (_, own) = params.split(&PLACE);
+    if let Shape::Other { kind } = &shape {
+        lens.leave_out(line, true, format!("{whose}the kind `{kind}`, a plane instead"));
+    } else {
+        note_others(&own, known, &whose, lens);
+    }
+    let is_stop = shape == Shape::Stop;
+    let mirror = value(params, "mirror")?.unwrap_or(false);
+    let stands_in = || lens.surfaces().filter(|s| !s.mirror).last().map(|s| s.medium.clone()).unwrap_or_default();
+    let stated = params.get("glass").is_some() || params.get("nd").is_some();
+    let surface = Surface {
+        shape,
+        thickness_mm: mm(params, "thickness")?.unwrap_or(0.0),
+        // A stop stands in the medium that is there.
+        medium: if is_stop && !stated { stands_in() } else { medium(params)? },
+        mirror,
+        stop: is_stop || value(params, "stop")?.unwrap_or(false),
+        semi_diameter_mm: mm(params, "semi-diameter")?,
+        outer_semi_diameter_mm: mm(params, "outer-semi-diameter")?,
+        apertures: apertures(params)?,
+        displacement: displacement(params)?,
+        comment: value(params, "remark")?.unwrap_or_default(),
+    };
+    if value(params, "reversed")?.unwrap_or(false) {
+        lens.leave_out(line, true, format!("{whose}it stands the other way round"));
+    }
+    if params.get("chamfer").is_some() {
+        lens.leave_out(line, false, format!("{whose}the chamfer"));
+    }
+    lens.items.push(Item::Surface(Box::new(surface)));
+    Ok(())
+}
+
+/// The form, and the keys that say all of it.
+fn shape(kind: &str, params: &Params) -> Result<(Shape, &'static [&'static str]), Faults> {
+    let r = || radius(params, "radius");
+    let conic = || number(params, "conic");
+    Ok(match kind {
+        "plane" => (Shape::Plane, &[]),
+        "stop" => (Shape::Stop, &[]),
+        "sphere" => (Shape::conic(r()?, 0.0), &["radius"]),
+        "conic" => (Shape::conic(r()?, conic()?), &["radius", "conic"]),
+        "even-asphere" => (
+            Shape::EvenAsphere { radius: r()?, conic: conic()?, coefficients: coefficients(params)? },
+            &["radius", "conic", "coefficients"],
+        ),
+        "odd-asphere" => (
+            Shape::OddAsphere { radius: r()?, conic: conic()?, coefficients: coefficients(params)? },
+            &["radius", "conic", "coefficients"],
+        ),
+        "cylinder" => {
+            let along_x = value::<String>(params, "axis")?.as_deref() == Some("x");
+            (Shape::Cylinder { radius: r()?, along_x }, &["radius", "axis"])
+        }
+        "toroid" => (
+            Shape::Toroid {
+                radius: r()?,
+                conic: conic()?,
+                coefficients: coefficients(params)?,
+                rotation_radius: radius(params, "rotation-radius")?,
+            },
+            &["radius", "conic", "coefficients", "rotation-radius"],
+        ),
+        "biconic" => (
+            Shape::Biconic {
+                radius_x: radius(params, "radius-x")?,
+                radius_y: radius(params, "radius-y")?,
+                conic_x: number(params, "conic-x")?,
+                conic_y: number(params, "conic-y")?,
+            },
+            &["radius-x", "radius-y", "conic-x", "conic-y"],
+        ),
+        "tilted-plane" => {
+            let (about_x, about_y) = (angle(params, "tilt-x")?.to_radians(), angle(params, "tilt-y")?.to_radians());
+            let (tan_x, tan_y) = (0.0 - libm::tan(about_y) / libm::cos(about_x), libm::tan(about_x));
+            (Shape::TiltedPlane { tan_x, tan_y }, &["tilt-x", "tilt-y"])
+        }
+        "thin-lens" => {
+            let focal_length = mm(params, "focal-length")?.unwrap_or(f64::INFINITY);
+            (Shape::ThinLens { focal_length }, &["focal-length"])
+        }
+        "grating" => (
+            Shape::Grating {
+                lines_per_mm: value::<SpatialFrequency>(params, "lines-per-mm")?.map_or(0.0, |f| f.per_mm()),
+                order: number(params, "order")?,
+                radius: r()?,
+                conic: conic()?,
+                direction_deg: angle(params, "direction")?,
+            },
+            &["lines-per-mm", "order", "radius", "conic", "direction"],
+        ),
+        "zernike" => {
+            let fringe = value::<String>(params, "ordering")?.as_deref() == Some("fringe");
+            let shape = Shape::Zernike {
+                radius: r()?,
+                conic: conic()?,
+                normalization_radius: mm(params, "normalization-radius")?.unwrap_or(1.0),
+                coefficients: coefficients(params)?,
+                ordering: if fringe { Ordering::Fringe } else { Ordering::Noll },
+            };
+            (shape, &["radius", "conic", "normalization-radius", "coefficients", "ordering"])
+        }
+        other => (Shape::Other { kind: other.to_owned() }, &[]),
+    })
+}
+
+fn medium(params: &Params) -> Result<Medium, Faults> {
+    let (nd, vd): (Option<f64>, Option<f64>) = (value(params, "nd")?, value(params, "vd")?);
+    let Some(glass) = params.get("glass") else {
+        return Ok(nd.map_or(Medium::Air, |nd| Medium::Model { nd, vd }));
+    };
+    match glass.as_str() {
+        Some(name) if name.eq_ignore_ascii_case("air") => Ok(Medium::Air),
+        Some(name) => Ok(Medium::Glass { name: name.to_owned(), nd, vd }),
+        None => {
+            let figures = Params::section(glass.clone(), "glass")?;
+            let nd = number(&figures, "nd")?;
+            Ok(Medium::Model { nd, vd: value(&figures, "vd")? })
+        }
+    }
+}
+
+fn apertures(params: &Params) -> Result<Vec<Aperture>, Faults> {
+    let Some(node) = params.get("aperture") else { return Ok(Vec::new()) };
+    let nodes: Vec<&Node> = match &node.value {
+        Value::Seq(several) => several.iter().collect(),
+        _ => vec![node],
+    };
+    nodes.into_iter().map(aperture).collect()
+}
+
+fn aperture(node: &Node) -> Result<Aperture, Faults> {
+    let params = Params::section(node.clone(), "aperture")?;
+    let size = |key: &str| mm(&params, key).map(|size| size.unwrap_or(0.0));
+    let shape = match value::<String>(&params, "shape")?.unwrap_or_default().as_str() {
+        "ring" => ApertureShape::Ring { inner: size("inner")?, outer: radius(&params, "outer")? },
+        "rectangle" => ApertureShape::Rectangle { half_width: size("half-width")?, half_height: size("half-height")? },
+        "ellipse" => ApertureShape::Ellipse { half_width: size("half-width")?, half_height: size("half-height")? },
+        other => ApertureShape::Other { name: other.to_owned() },
+    };
+    let mut center_mm = [0.0; 2];
+    for (at, length) in value::<Vec<Length>>(&params, "center")?.unwrap_or_default().iter().take(2).enumerate() {
+        center_mm[at] = length.mm();
+    }
+    Ok(Aperture { shape, center_mm, obscures: value(&params, "obscures")?.unwrap_or(false) })
+}

@@ -1,0 +1,269 @@
+//! A prescription as a lens file.
+
+use super::quote::{comment, quoted, scalar};
+use crate::number::shortest;
+use crate::prescription::{
+    Aperture, ApertureShape, CoordinateBreak, Displacement, FieldKind, Item, Medium, Ordering, Prescription, Shape,
+    Surface, SystemAperture,
+};
+
+/// Most notes that are written out.
+const MOST_NOTES: usize = 200;
+
+/// The text of a lens file: what is not carried stands above it as comments, and what alters the light's way also in its
+/// remark. `source` is the name of the file that it comes from.
+#[must_use]
+pub fn write(lens: &Prescription, source: Option<&str>) -> String {
+    let mut out = String::new();
+    let mut line = |text: &str| {
+        out.push_str(text);
+        out.push('\n');
+    };
+    if let Some(source) = source {
+        line(&format!("# Imported from {}.", comment(source)));
+    }
+    if !lens.left_out.is_empty() {
+        line("# Not carried (what makes light go another way is marked with !):");
+        for note in lens.left_out.iter().take(MOST_NOTES) {
+            line(&format!("# {} {}", if note.alters { "!" } else { "-" }, comment(&note.to_string())));
+        }
+        if lens.left_out.len() > MOST_NOTES {
+            line(&format!("# and {} more", lens.left_out.len() - MOST_NOTES));
+        }
+    }
+    let name = if lens.name.trim().is_empty() { source.unwrap_or("unnamed lens") } else { &lens.name };
+    line(&format!("name: {}", quoted(name)));
+    if let Some(year) = lens.year {
+        line(&format!("year: {year}"));
+    }
+    for (key, value) in [("maker", &lens.maker), ("patent", &lens.patent), ("reference-line", &lens.reference_line)] {
+        if let Some(value) = value {
+            line(&format!("{key}: {}", quoted(value)));
+        }
+    }
+    if let Some(source) = source {
+        line(&format!("source: {}", quoted(&format!("imported from {source}"))));
+    }
+    let remark = remark(lens);
+    if !remark.is_empty() {
+        line(&format!("remark: {}", quoted(&remark)));
+    }
+    line("surfaces:");
+    for item in &lens.items {
+        match item {
+            Item::Surface(surface) => {
+                line(&format!("  - {{{}}}", surface_keys(surface).join(", ")));
+            }
+            Item::Break(axis) => line(&format!("  - {{{}}}", break_keys(axis).join(", "))),
+        }
+    }
+    out
+}
+
+/// The words of a lens that only a person reads.
+fn remark(lens: &Prescription) -> String {
+    let mut parts = Vec::new();
+    let mut say = |text: String| parts.push(text);
+    if let Some(distance) = lens.object_distance_mm {
+        say(format!("The object stands {} mm in front of the first surface.", shortest(distance)));
+    }
+    match lens.system_aperture {
+        Some(SystemAperture::EntrancePupilDiameter(d)) => say(format!("Entrance pupil diameter {} mm.", shortest(d))),
+        Some(SystemAperture::FNumber(n)) => say(format!("f/{}.", shortest(n))),
+        Some(SystemAperture::ObjectNumericalAperture(n)) => {
+            say(format!("Numerical aperture {} at the object.", shortest(n)))
+        }
+        Some(SystemAperture::ImageNumericalAperture(n)) => {
+            say(format!("Numerical aperture {} at the image.", shortest(n)))
+        }
+        Some(SystemAperture::StopSize) | None => {}
+    }
+    if !lens.wavelengths.is_empty() {
+        let words: Vec<String> = (lens.wavelengths.iter().enumerate())
+            .map(|(at, wavelength)| {
+                let primary = if lens.primary == Some(at) && lens.wavelengths.len() > 1 { " (primary)" } else { "" };
+                format!("{}{primary}", shortest(wavelength.nm))
+            })
+            .collect();
+        say(format!("Wavelengths in nm: {}.", words.join(", ")));
+    }
+    if let Some(fields) = &lens.fields {
+        let what = match fields.kind {
+            FieldKind::Angle => "angles in degrees",
+            FieldKind::ObjectHeight => "heights of the object in mm",
+            FieldKind::ParaxialImageHeight => "heights of the paraxial image in mm",
+            FieldKind::RealImageHeight => "heights of the image in mm",
+        };
+        let points: Vec<String> =
+            fields.points.iter().map(|[x, y]| format!("({}, {})", shortest(*x), shortest(*y))).collect();
+        say(format!("Fields, {what} (x, y): {}.", points.join(", ")));
+    }
+    lens.remarks.iter().for_each(|remark| say(remark.clone()));
+    let altering: Vec<&str> = lens.left_out.iter().filter(|note| note.alters).map(|note| note.text.as_str()).collect();
+    if !altering.is_empty() {
+        say(format!("Not carried: {}.", altering.into_iter().take(10).collect::<Vec<_>>().join("; ")));
+    }
+    parts.join(" ")
+}
+
+/// `inf`, or the shortest spelling.
+fn length(mm: f64) -> String {
+    if mm.is_finite() { shortest(mm) } else { "inf".to_owned() }
+}
+
+fn list(values: &[f64]) -> String {
+    format!("[{}]", values.iter().map(|v| shortest(*v)).collect::<Vec<_>>().join(", "))
+}
+
+fn displacement(by: &Displacement, keys: &mut Vec<String>) {
+    if by.decenter_mm != [0.0; 2] {
+        keys.push(format!("decenter: {}", list(&by.decenter_mm)));
+    }
+    if by.tilt_deg != [0.0; 3] {
+        keys.push(format!("tilt: {}", list(&by.tilt_deg)));
+    }
+}
+
+fn break_keys(axis: &CoordinateBreak) -> Vec<String> {
+    let mut keys = vec!["kind: coordinate-break".to_owned()];
+    displacement(&axis.by, &mut keys);
+    if axis.tilt_first {
+        keys.push("order: tilt-first".to_owned());
+    }
+    if axis.thickness_mm != 0.0 {
+        keys.push(format!("thickness: {}", shortest(axis.thickness_mm)));
+    }
+    keys
+}
+
+fn surface_keys(surface: &Surface) -> Vec<String> {
+    let mut keys = shape_keys(&surface.shape);
+    if surface.thickness_mm != 0.0 {
+        keys.push(format!("thickness: {}", shortest(surface.thickness_mm)));
+    }
+    if surface.mirror {
+        keys.push("mirror: true".to_owned());
+    } else {
+        match &surface.medium {
+            Medium::Air => {}
+            Medium::Glass { name, nd, vd } => {
+                keys.push(format!("glass: {}", scalar(name)));
+                keys.extend(nd.map(|nd| format!("nd: {}", shortest(nd))));
+                keys.extend(vd.filter(|_| nd.is_some()).map(|vd| format!("vd: {}", shortest(vd))));
+            }
+            Medium::Model { nd, vd } => {
+                let vd = vd.map_or(String::new(), |vd| format!(", vd: {}", shortest(vd)));
+                keys.push(format!("glass: {{nd: {}{vd}}}", shortest(*nd)));
+            }
+            Medium::Unknown { name } => keys.push(format!("glass: {}", scalar(name))),
+        }
+    }
+    if surface.stop && surface.shape != Shape::Stop {
+        keys.push("stop: true".to_owned());
+    }
+    keys.extend(surface.semi_diameter_mm.map(|s| format!("semi-diameter: {}", shortest(s))));
+    keys.extend(surface.outer_semi_diameter_mm.map(|s| format!("outer-semi-diameter: {}", shortest(s))));
+    match surface.apertures.as_slice() {
+        [] => {}
+        [one] => keys.push(format!("aperture: {}", aperture(one))),
+        several => {
+            keys.push(format!("aperture: [{}]", several.iter().map(aperture).collect::<Vec<_>>().join(", ")));
+        }
+    }
+    displacement(&surface.displacement, &mut keys);
+    if !surface.comment.is_empty() {
+        keys.push(format!("remark: {}", quoted(&surface.comment)));
+    }
+    keys
+}
+
+fn aperture(aperture: &Aperture) -> String {
+    let mut keys = match &aperture.shape {
+        ApertureShape::Ring { inner, outer } => {
+            vec!["shape: ring".to_owned(), format!("inner: {}", shortest(*inner)), format!("outer: {}", length(*outer))]
+        }
+        ApertureShape::Rectangle { half_width, half_height } => vec![
+            "shape: rectangle".to_owned(),
+            format!("half-width: {}", shortest(*half_width)),
+            format!("half-height: {}", shortest(*half_height)),
+        ],
+        ApertureShape::Ellipse { half_width, half_height } => vec![
+            "shape: ellipse".to_owned(),
+            format!("half-width: {}", shortest(*half_width)),
+            format!("half-height: {}", shortest(*half_height)),
+        ],
+        ApertureShape::Polygon { points } => {
+            let points: Vec<String> = points.iter().map(|point| list(point)).collect();
+            vec!["shape: polygon".to_owned(), format!("points: [{}]", points.join(", "))]
+        }
+        ApertureShape::Other { name } => vec![format!("shape: {}", scalar(name))],
+    };
+    if aperture.center_mm != [0.0; 2] {
+        keys.push(format!("center: {}", list(&aperture.center_mm)));
+    }
+    if aperture.obscures {
+        keys.push("obscures: true".to_owned());
+    }
+    format!("{{{}}}", keys.join(", "))
+}
+
+fn shape_keys(shape: &Shape) -> Vec<String> {
+    let kind = |name: &str| vec![format!("kind: {name}")];
+    let with = |name: &str, figures: &[(&str, f64)]| {
+        let mut keys = kind(name);
+        keys.extend(figures.iter().map(|(key, value)| format!("{key}: {}", length(*value))));
+        keys
+    };
+    let with_list = |mut keys: Vec<String>, coefficients: &[f64]| {
+        if !coefficients.is_empty() {
+            keys.push(format!("coefficients: {}", list(coefficients)));
+        }
+        keys
+    };
+    match shape {
+        Shape::Plane => kind("plane"),
+        Shape::Stop => kind("stop"),
+        Shape::Sphere { radius } => with("sphere", &[("radius", *radius)]),
+        Shape::Conic { radius, conic } => with("conic", &[("radius", *radius), ("conic", *conic)]),
+        Shape::EvenAsphere { radius, conic, coefficients } => {
+            with_list(with("even-asphere", &[("radius", *radius), ("conic", *conic)]), coefficients)
+        }
+        Shape::OddAsphere { radius, conic, coefficients } => {
+            with_list(with("odd-asphere", &[("radius", *radius), ("conic", *conic)]), coefficients)
+        }
+        Shape::Cylinder { radius, along_x } => {
+            let mut keys = with("cylinder", &[("radius", *radius)]);
+            keys.push(format!("axis: {}", if *along_x { "x" } else { "y" }));
+            keys
+        }
+        Shape::Toroid { radius, conic, coefficients, rotation_radius } => {
+            let keys = with("toroid", &[("radius", *radius), ("conic", *conic), ("rotation-radius", *rotation_radius)]);
+            with_list(keys, coefficients)
+        }
+        Shape::Biconic { radius_x, radius_y, conic_x, conic_y } => with(
+            "biconic",
+            &[("radius-x", *radius_x), ("radius-y", *radius_y), ("conic-x", *conic_x), ("conic-y", *conic_y)],
+        ),
+        Shape::TiltedPlane { tan_x, tan_y } => {
+            // z = y tan(tilt-x) - x tan(tilt-y) / cos(tilt-x): turned about x, then about the new y.
+            let about_x = libm::atan(*tan_y);
+            let about_y = 0.0 - libm::atan(tan_x * libm::cos(about_x));
+            with("tilted-plane", &[("tilt-x", about_x.to_degrees()), ("tilt-y", about_y.to_degrees())])
+        }
+        Shape::ThinLens { focal_length } => with("thin-lens", &[("focal-length", *focal_length)]),
+        Shape::Grating { lines_per_mm, order, radius, conic: _, direction_deg } => {
+            let mut keys = with("grating", &[("lines-per-mm", *lines_per_mm), ("order", *order), ("radius", *radius)]);
+            if *direction_deg != 0.0 {
+                keys.push(format!("direction: {}", shortest(*direction_deg)));
+            }
+            keys
+        }
+        Shape::Zernike { radius, conic, normalization_radius, coefficients, ordering } => {
+            let figures = [("radius", *radius), ("conic", *conic), ("normalization-radius", *normalization_radius)];
+            let mut keys = with_list(with("zernike", &figures), coefficients);
+            keys.push(format!("ordering: {}", if *ordering == Ordering::Noll { "noll" } else { "fringe" }));
+            keys
+        }
+        Shape::Other { kind: name } => kind(name),
+    }
+}

@@ -1,0 +1,260 @@
+//! A whole file.
+
+use super::record::{Record, Records, sort};
+use super::surface::Block;
+use super::{known, system};
+use crate::place::{Source, shown};
+use crate::prescription::{CoordinateBreak, Item, Medium, Note, Prescription, Shape, Surface, SystemAperture};
+use crate::{MAX_ITEMS, glass};
+use spectra_core::params::Faults;
+use std::collections::BTreeMap;
+
+/// Object distances (mm) beyond which an object is at infinity.
+const INFINITY_MM: f64 = 1e10;
+
+/// Reads the text of a file; `name` is how faults name it.
+///
+/// # Errors
+/// It is not sequential, has no surfaces, or a figure is no number.
+pub fn read(name: &str, text: &str) -> Result<Prescription, Faults> {
+    let source = Source::new(name, text);
+    let records = sort(source.text());
+    let mut lens = Prescription::default();
+    let mut faults = Faults::new();
+    let system = system::read(&records.system, &source, &mut lens, &mut faults);
+    if records.surfaces.len() > MAX_ITEMS {
+        let found = records.surfaces.len();
+        return Err(source.fault_here(format!("{found} surfaces; at most {MAX_ITEMS} are read")).into());
+    }
+    let mut blocks = Vec::with_capacity(records.surfaces.len());
+    let mut unknown = BTreeMap::new();
+    for lines in &records.surfaces {
+        blocks.push(Block::read(lines, &source, system.unit_mm, &mut lens, &mut unknown, &mut faults));
+    }
+    if blocks.len() < 3 && faults.is_empty() {
+        let what = if blocks.is_empty() { "no surfaces" } else { "no surfaces between object and image" };
+        faults.push(source.fault_here(what).hint("is this a sequential .zmx file?"));
+    }
+    if !faults.is_empty() {
+        return Err(faults);
+    }
+    Reader { lens: &mut lens, media: Vec::new(), makers: &system.makers }.surfaces(&blocks);
+    note_solves(&records, &mut lens);
+    for (keyword, (line, count)) in unknown {
+        let times = if count > 1 { format!(" ({count} lines)") } else { String::new() };
+        lens.leave_out(line, true, format!("{keyword}: an unknown record of a surface{times}"));
+    }
+    note_coatings(&records, &mut lens);
+    note_rest(&records.rest, &mut lens);
+    if lens.system_aperture == Some(SystemAperture::StopSize) {
+        float_by_stop(&mut lens, &blocks);
+    }
+    lens.left_out.sort_by_key(|note| note.line);
+    Ok(lens)
+}
+
+struct Reader<'a> {
+    lens: &'a mut Prescription,
+    /// Medium behind each surface of the file, mirrors included.
+    media: Vec<Medium>,
+    makers: &'a [&'static str],
+}
+
+impl Reader<'_> {
+    /// Turns blocks into items: the first one is the object, the last one the image.
+    fn surfaces(&mut self, blocks: &[Block]) {
+        let (object, image) = (&blocks[0], &blocks[blocks.len() - 1]);
+        let distance = object.thickness_mm.unwrap_or(f64::INFINITY);
+        if distance.abs() < INFINITY_MM {
+            self.lens.object_distance_mm = Some(distance);
+        }
+        if object.glass.is_some() {
+            self.lens.leave_out(object.line, true, "the object stands in a glass: air is in front of the lens here");
+        }
+        if object.curvature_radius_mm.is_finite() {
+            self.lens.leave_out(object.line, false, "the object is curved");
+        }
+        self.media.push(Medium::Air);
+        for (number, block) in blocks.iter().enumerate().take(blocks.len() - 1).skip(1) {
+            self.surface(number, block);
+        }
+        if image.curvature_radius_mm.is_finite() {
+            let radius = crate::number::shortest(image.curvature_radius_mm);
+            self.lens.leave_out(
+                image.line,
+                true,
+                format!("the image surface is curved, radius {radius} mm: it is a plane here"),
+            );
+        }
+        if !image.aperture.is_none() {
+            self.lens.leave_out(image.line, false, "the aperture of the image surface");
+        }
+        for tilt in &image.before {
+            self.lens.items.push(Item::Break(*tilt));
+        }
+        if !image.after.is_empty() {
+            self.lens.leave_out(image.line, false, "a tilt behind the image surface");
+        }
+        // A break in front of the image is kept; the gap in front of it was that of the last surface.
+        if self.lens.items.iter().all(|item| matches!(item, Item::Break(_))) {
+            // A lens has a surface: a plane that does nothing.
+            self.lens.items.push(Item::Surface(Box::default()));
+        }
+    }
+
+    fn surface(&mut self, number: usize, block: &Block) {
+        let mut thickness_mm = block.thickness_mm.unwrap_or(0.0);
+        if !thickness_mm.is_finite() {
+            self.lens.leave_out(block.line, true, format!("surface {number}: an infinite thickness: 0 here"));
+            thickness_mm = 0.0;
+        }
+        for tilt in &block.before {
+            self.lens.items.push(Item::Break(*tilt));
+        }
+        let before = self.media.last().cloned().unwrap_or_default();
+        // What comes behind a tilt is measured along the new axis.
+        let own_mm = if block.after.is_empty() { thickness_mm } else { 0.0 };
+        if block.is_break() {
+            self.media.push(before);
+            let axis = CoordinateBreak { thickness_mm: own_mm, ..block.coordinate_break() };
+            self.lens.items.push(Item::Break(axis));
+        } else {
+            let mirror = block.glass.as_ref().is_some_and(|glass| glass.name.eq_ignore_ascii_case("MIRROR"));
+            let medium = if mirror { before.clone() } else { self.medium(number, block) };
+            let mut surface = Surface {
+                shape: block.shape(number, self.lens),
+                thickness_mm: own_mm,
+                medium: medium.clone(),
+                mirror,
+                stop: block.stop,
+                comment: block.comment.clone(),
+                ..Surface::default()
+            };
+            block.aperture.place(&mut surface);
+            let bends_nothing =
+                surface.shape == Shape::Plane && !mirror && before == Medium::Air && medium == Medium::Air;
+            if block.stop && bends_nothing && surface.apertures.is_empty() {
+                surface.shape = Shape::Stop;
+            }
+            self.media.push(medium);
+            self.lens.items.push(Item::Surface(Box::new(surface)));
+        }
+        for (at, tilt) in block.after.iter().enumerate() {
+            let thickness_mm = if at + 1 == block.after.len() { thickness_mm } else { 0.0 };
+            self.lens.items.push(Item::Break(CoordinateBreak { thickness_mm, ..*tilt }));
+        }
+    }
+
+    /// The medium behind a surface that is no mirror.
+    fn medium(&mut self, number: usize, block: &Block) -> Medium {
+        let Some(stated) = &block.glass else { return Medium::Air };
+        let blank = stated.name.starts_with("___") || stated.name.is_empty();
+        let found = match (blank, stated.pickup.and_then(|from| self.media.get(from))) {
+            (true, Some(medium)) => glass::Found { medium: medium.clone(), note: None },
+            (true, None) if !(1.0..=4.0).contains(&stated.nd) => glass::Found {
+                medium: Medium::Unknown { name: format!("nd {}", stated.nd) },
+                note: Some((true, format!("a glass with an index of {}", stated.nd))),
+            },
+            (true, None) => glass::model(stated.nd, stated.vd),
+            // 1.5 and 40 are what the program writes where nothing is known.
+            (false, _) => {
+                let known =
+                    (1.0..=4.0).contains(&stated.nd) && stated.nd != 1.0 && (stated.nd, stated.vd) != (1.5, 40.0);
+                glass::look_up(&stated.name, known.then_some((stated.nd, stated.vd)), self.makers)
+            }
+        };
+        if let Some((alters, text)) = found.note {
+            self.lens.leave_out(block.line, alters, format!("surface {number}: {text}"));
+        }
+        found.medium
+    }
+}
+
+/// The stop of a system that floats by its size clips at that size.
+fn float_by_stop(lens: &mut Prescription, blocks: &[Block]) {
+    let size = blocks.iter().find(|block| block.stop).and_then(|block| block.aperture.semi_diameter_mm);
+    let stop = lens.items.iter_mut().find_map(|item| match item {
+        Item::Surface(surface) if surface.stop => Some(surface),
+        _ => None,
+    });
+    if let (Some(stop), Some(size)) = (stop, size)
+        && stop.semi_diameter_mm.is_none()
+        && size > 0.0
+    {
+        stop.semi_diameter_mm = Some(size);
+        stop.outer_semi_diameter_mm = stop.outer_semi_diameter_mm.filter(|outer| *outer > size);
+    }
+}
+
+/// Values that the program derives from others: they are carried as saved.
+fn note_solves(records: &Records<'_>, lens: &mut Prescription) {
+    let is_solve = |record: &&Record<'_>| {
+        let keyword = record.keyword.to_ascii_uppercase();
+        match keyword.as_str() {
+            "PPAR" | "PZUP" | "MAZH" | "CHZH" => true,
+            "CURV" => record.number(1).is_some_and(|kind| kind > 1.0),
+            _ => false,
+        }
+    };
+    let solves: Vec<&Record<'_>> = records.surfaces.iter().flatten().filter(is_solve).collect();
+    if let Some(first) = solves.first() {
+        let text = format!("solves and pickups ({} lines): their values are carried as saved", solves.len());
+        lens.leave_out(first.line, false, text);
+    }
+}
+
+/// Coatings change how much light goes on, not where.
+fn note_coatings(records: &Records<'_>, lens: &mut Prescription) {
+    let coats = || records.surfaces.iter().flatten().filter(|record| record.keyword.eq_ignore_ascii_case("COAT"));
+    let Some(first) = coats().next() else { return };
+    let mut names: Vec<String> = coats().map(|record| shown(record.rest)).collect();
+    let count = names.len();
+    names.sort_unstable();
+    names.dedup();
+    names.truncate(12);
+    lens.leave_out(first.line, false, format!("coatings of {count} surfaces ({})", names.join(", ")));
+}
+
+/// Merit function, tolerances and configurations.
+fn note_rest(rest: &[Record<'_>], lens: &mut Prescription) {
+    let silent = |keyword: &str| ["BLNK", "MOFF"].contains(&keyword) || known::is_harmless_in_system(keyword);
+    let mut operands: Vec<(usize, String)> = Vec::new();
+    let mut count = 0;
+    let mut configurations: Option<(usize, usize, usize)> = None;
+    let mut varied: Vec<String> = Vec::new();
+    for record in rest {
+        let keyword = record.keyword.to_ascii_uppercase();
+        let is_tolerance = keyword == "TOL";
+        if keyword == "MNUM" {
+            let number = |at| record.number(at).map_or(1, |n| n as usize);
+            configurations = Some((record.line, number(0), number(1)));
+        } else if is_tolerance && record.word(0).is_some_and(|word| word == "TOFF") || silent(&keyword) {
+            // An empty line of its editor.
+        } else if configurations.is_some_and(|(_, count, _)| count > 1) && !is_tolerance {
+            let text = shown(&format!("{keyword} {}", record.words().take(3).collect::<Vec<_>>().join(" ")));
+            if varied.len() < 12 {
+                varied.push(text);
+            }
+        } else {
+            count += 1;
+            let text = shown(&keyword);
+            if operands.len() < 12 && !operands.iter().any(|(_, known)| *known == text) {
+                operands.push((record.line, text));
+            }
+        }
+    }
+    if let Some((line, _)) = operands.first() {
+        let names: Vec<&str> = operands.iter().map(|(_, name)| name.as_str()).collect();
+        let text = format!("merit function and tolerances ({count} lines: {})", names.join(", "));
+        lens.left_out.push(Note { line: *line, text, alters: false });
+    }
+    if let Some((line, count, current)) = configurations
+        && count > 1
+    {
+        let what = if varied.is_empty() { String::new() } else { format!(" ({})", varied.join("; ")) };
+        let text = format!(
+            "{count} configurations: the values of number {current}, which was current when saved, are carried{what}"
+        );
+        lens.leave_out(line, false, text);
+    }
+}

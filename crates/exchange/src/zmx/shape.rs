@@ -1,0 +1,158 @@
+//! Surface types and the forms that they are.
+
+use super::surface::Block;
+use crate::prescription::{Ordering, Prescription, Shape};
+
+/// Most coefficients of an asphere in a lens file.
+const MOST_COEFFICIENTS: usize = 20;
+
+impl Block {
+    /// The form of a surface; what cannot be carried is noted. `number` is the file's.
+    pub(super) fn shape(&self, number: usize, lens: &mut Prescription) -> Shape {
+        let (radius, conic) = (self.curvature_radius_mm, self.conic);
+        let simple = Shape::conic(radius, conic);
+        let value = |at: u32| self.parameters.get(&at).copied().unwrap_or(0.0);
+        match self.kind.as_str() {
+            "STANDARD" => simple,
+            "EVENASPH" => even(radius, conic, self.polynomial(1..=8, 2, 2)),
+            "ODDASPHE" => {
+                let coefficients = self.polynomial(1..=8, 1, 1);
+                if coefficients.is_empty() { simple } else { Shape::OddAsphere { radius, conic, coefficients } }
+            }
+            "XASPHERE" => even(radius, conic, self.extended(number, lens)),
+            "TOROIDAL" => self.toroid(number, lens),
+            "BICONICX" => {
+                let radius_x = if value(1) == 0.0 { f64::INFINITY } else { value(1) * self.unit_mm };
+                Shape::Biconic { radius_x, radius_y: radius, conic_x: value(2), conic_y: conic }
+            }
+            "TILTSURF" => {
+                self.note_beyond(number, &[1, 2], lens);
+                Shape::TiltedPlane { tan_x: value(1), tan_y: value(2) }
+            }
+            "PARAXIAL" if value(1) != 0.0 => Shape::ThinLens { focal_length: value(1) * self.unit_mm },
+            "PARAXIAL" => Shape::Plane,
+            "DGRATING" => {
+                if conic != 0.0 {
+                    lens.leave_out(
+                        self.line,
+                        true,
+                        format!("surface {number}: the conic constant {conic} of a grating"),
+                    );
+                }
+                let text = "the order of a grating is taken to turn light toward +y where it is positive";
+                lens.leave_out(self.line, false, format!("surface {number}: {text}"));
+                // Lines are not counted below zero: the order has the sign.
+                let sign = if value(1) < 0.0 { -1.0 } else { 1.0 };
+                let (lines_per_mm, order) = (sign * value(1) * 1000.0, sign * value(2));
+                Shape::Grating { lines_per_mm, order, radius, conic: 0.0, direction_deg: 0.0 }
+            }
+            "SZERNSAG" => self.zernike(number, Ordering::Noll, lens).unwrap_or(simple),
+            "FZERNSAG" => self.zernike(number, Ordering::Fringe, lens).unwrap_or(simple),
+            other => {
+                let what = if matches!(simple, Shape::Plane) { "a plane" } else { "its sphere or conic" };
+                let other = crate::place::shown(other);
+                lens.leave_out(
+                    self.line,
+                    true,
+                    format!("surface {number}: type {other} is unknown, carried as {what}"),
+                );
+                simple
+            }
+        }
+    }
+
+    /// Parameters as coefficients of `first`, `first + step`, ... powers of a length, in mm; zeros at the end are cut off.
+    fn polynomial(&self, parameters: std::ops::RangeInclusive<u32>, first: u32, step: u32) -> Vec<f64> {
+        let mut power = first;
+        let mut coefficients = Vec::new();
+        for at in parameters {
+            let value = self.parameters.get(&at).copied().unwrap_or(0.0);
+            coefficients.push(value / power_of(self.unit_mm, power - 1));
+            power += step;
+        }
+        trimmed(coefficients)
+    }
+
+    /// Coefficients of the extended asphere: sum of a_i (r / R)^(2 i), extra data 1 the number of terms, 2 R, then a_1, ...
+    fn extended(&self, number: usize, lens: &mut Prescription) -> Vec<f64> {
+        let value = |at: u32| self.extra.get(&at).copied().unwrap_or(0.0);
+        let terms = value(1).clamp(0.0, 240.0) as u32;
+        let normalization = if value(2) == 0.0 { 1.0 } else { value(2) } * self.unit_mm;
+        let mut coefficients =
+            trimmed((1..=terms).map(|i| value(2 + i) * self.unit_mm / power_of(normalization, 2 * i)).collect());
+        if coefficients.len() > MOST_COEFFICIENTS || coefficients.iter().any(|a| !a.is_finite()) {
+            let text = format!("surface {number}: coefficients of an asphere beyond r^{}", 2 * MOST_COEFFICIENTS);
+            lens.leave_out(self.line, true, text);
+            coefficients.truncate(MOST_COEFFICIENTS);
+            coefficients.retain(|a| a.is_finite());
+        }
+        coefficients
+    }
+
+    /// Parameter 1 is the radius of rotation (0: none), then y^2, y^4, ...; extra data are Zernike terms.
+    fn toroid(&self, number: usize, lens: &mut Prescription) -> Shape {
+        let terms = self.extra.get(&1).copied().unwrap_or(0.0);
+        if terms > 0.0 && self.extra.iter().any(|(at, value)| *at > 2 && *value != 0.0) {
+            lens.leave_out(self.line, true, format!("surface {number}: Zernike terms of a toroid"));
+        }
+        let stated = self.parameters.get(&1).copied().unwrap_or(0.0);
+        let rotation_radius = if stated == 0.0 { f64::INFINITY } else { stated * self.unit_mm };
+        let coefficients = self.polynomial(2..=8, 2, 2);
+        let (radius, conic) = (self.curvature_radius_mm, self.conic);
+        match (radius.is_infinite(), rotation_radius.is_infinite()) {
+            (true, true) if coefficients.is_empty() => Shape::Plane,
+            (false, true) if coefficients.is_empty() && conic == 0.0 => Shape::Cylinder { radius, along_x: true },
+            (true, false) if coefficients.is_empty() => Shape::Cylinder { radius: rotation_radius, along_x: false },
+            _ => Shape::Toroid { radius, conic, coefficients, rotation_radius },
+        }
+    }
+
+    /// Extra data: number of terms, normalization radius, coefficients. Parameters are an even asphere and a decenter:
+    /// only where all of them are 0 is it what a lens file has.
+    fn zernike(&self, number: usize, ordering: Ordering, lens: &mut Prescription) -> Option<Shape> {
+        let value = |at: u32| self.extra.get(&at).copied().unwrap_or(0.0);
+        if self.parameters.iter().any(|(at, value)| *at > 0 && *value != 0.0) {
+            let text =
+                format!("surface {number}: Zernike sag with an asphere or a decenter, carried as its sphere or conic");
+            lens.leave_out(self.line, true, text);
+            return None;
+        }
+        let terms = value(1).clamp(0.0, 240.0) as u32;
+        let coefficients = trimmed((1..=terms).map(|i| value(2 + i) * self.unit_mm).collect());
+        let normalization_radius = value(2) * self.unit_mm;
+        if coefficients.is_empty() || normalization_radius <= 0.0 {
+            return None;
+        }
+        let (radius, conic) = (self.curvature_radius_mm, self.conic);
+        Some(Shape::Zernike { radius, conic, normalization_radius, coefficients, ordering })
+    }
+
+    fn note_beyond(&self, number: usize, known: &[u32], lens: &mut Prescription) {
+        for (at, value) in &self.parameters {
+            if *at > 0 && !known.contains(at) && *value != 0.0 {
+                lens.leave_out(self.line, true, format!("surface {number}: parameter {at} ({value}) of {}", self.kind));
+            }
+        }
+    }
+}
+
+fn even(radius: f64, conic: f64, coefficients: Vec<f64>) -> Shape {
+    if coefficients.is_empty() {
+        Shape::conic(radius, conic)
+    } else {
+        Shape::EvenAsphere { radius, conic, coefficients }
+    }
+}
+
+/// Without zeros at the end.
+fn trimmed(mut coefficients: Vec<f64>) -> Vec<f64> {
+    while coefficients.last() == Some(&0.0) {
+        coefficients.pop();
+    }
+    coefficients
+}
+
+/// A whole power by multiplication: the same bits everywhere.
+pub(super) fn power_of(base: f64, power: u32) -> f64 {
+    (0..power).fold(1.0, |product, _| product * base)
+}

@@ -1,0 +1,243 @@
+//! One block of records: what a file says of a surface.
+
+use super::known;
+use super::record::Record;
+use crate::number;
+use crate::place::{Source, shown};
+use crate::prescription::{Aperture, ApertureShape, CoordinateBreak, Displacement, Prescription, Surface};
+use spectra_core::params::Faults;
+use std::collections::BTreeMap;
+
+/// A glass as a file names it.
+#[derive(Clone, Debug)]
+pub(super) struct GlassRecord {
+    /// Name, `MIRROR`, or `___BLANK`.
+    pub(super) name: String,
+    /// Surface that it is picked up from.
+    pub(super) pickup: Option<usize>,
+    /// Stated index and Abbe number; 1.5 and 40 where nobody stated them.
+    pub(super) nd: f64,
+    pub(super) vd: f64,
+}
+
+/// Apertures of a surface.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Apertures {
+    /// From the `DIAM` record, mm: a size, which clips nothing by itself.
+    pub(super) semi_diameter_mm: Option<f64>,
+    mechanical_mm: Option<f64>,
+    shape: Option<(ApertureShape, bool)>,
+    center_mm: [f64; 2],
+}
+
+impl Apertures {
+    /// Whether nothing clips.
+    pub(super) fn is_none(&self) -> bool {
+        self.shape.is_none()
+    }
+
+    /// Puts what clips, and the size for drawing, onto a surface.
+    pub(super) fn place(&self, surface: &mut Surface) {
+        let drawn = self.semi_diameter_mm.unwrap_or(0.0).max(self.mechanical_mm.unwrap_or(0.0));
+        match &self.shape {
+            Some((ApertureShape::Ring { inner, outer }, false)) if *inner == 0.0 && self.center_mm == [0.0; 2] => {
+                surface.semi_diameter_mm = Some(*outer);
+            }
+            Some((shape, obscures)) => {
+                let aperture = Aperture { shape: shape.clone(), center_mm: self.center_mm, obscures: *obscures };
+                surface.apertures.push(aperture);
+            }
+            None => {}
+        }
+        let clear = surface.semi_diameter_mm.unwrap_or(0.0);
+        surface.outer_semi_diameter_mm = (drawn > clear).then_some(drawn);
+    }
+}
+
+/// A surface, the object or the image, as a file states it; lengths in mm already, coefficients not.
+#[derive(Clone, Debug)]
+pub(super) struct Block {
+    pub(super) line: usize,
+    /// `STANDARD` and so on, in upper case.
+    pub(super) kind: String,
+    /// Infinite where flat.
+    pub(super) curvature_radius_mm: f64,
+    pub(super) thickness_mm: Option<f64>,
+    pub(super) glass: Option<GlassRecord>,
+    pub(super) conic: f64,
+    /// Parameters by number, in the file's units.
+    pub(super) parameters: BTreeMap<u32, f64>,
+    /// Extra data by number, in the file's units.
+    pub(super) extra: BTreeMap<u32, f64>,
+    pub(super) stop: bool,
+    pub(super) aperture: Apertures,
+    pub(super) comment: String,
+    /// Tilts and decenters that belong to the surface itself, before and behind it.
+    pub(super) before: Vec<CoordinateBreak>,
+    pub(super) after: Vec<CoordinateBreak>,
+    pub(super) unit_mm: f64,
+}
+
+/// Largest number of a parameter that means something.
+const LARGEST_NUMBER: f64 = 500.0;
+
+impl Block {
+    pub(super) fn read(
+        records: &[Record<'_>],
+        source: &Source,
+        unit_mm: f64,
+        lens: &mut Prescription,
+        unknown: &mut BTreeMap<String, (usize, usize)>,
+        faults: &mut Faults,
+    ) -> Self {
+        let mut block = Self {
+            line: records.first().map_or(0, |record| record.line),
+            kind: "STANDARD".to_owned(),
+            curvature_radius_mm: f64::INFINITY,
+            thickness_mm: None,
+            glass: None,
+            conic: 0.0,
+            parameters: BTreeMap::new(),
+            extra: BTreeMap::new(),
+            stop: false,
+            aperture: Apertures::default(),
+            comment: String::new(),
+            before: Vec::new(),
+            after: Vec::new(),
+            unit_mm,
+        };
+        for record in records.iter().skip(1) {
+            let keyword = record.keyword.to_ascii_uppercase();
+            let mut number = |at: usize| match record.word(at) {
+                None => None,
+                Some(word) => {
+                    let value = number::parse(word);
+                    if value.is_none() {
+                        faults.push(source.fault(word, format!("{keyword}: `{}` is no number", shown(word))));
+                    }
+                    value
+                }
+            };
+            match keyword.as_str() {
+                "TYPE" => block.kind = record.word(0).unwrap_or("STANDARD").to_ascii_uppercase(),
+                "CURV" => {
+                    let curvature = number(0).unwrap_or(0.0);
+                    block.curvature_radius_mm = number::radius_mm(curvature, unit_mm);
+                }
+                "DISZ" => block.thickness_mm = number(0).map(|t| t * unit_mm),
+                "CONI" => block.conic = number(0).filter(|k| k.is_finite()).unwrap_or(0.0),
+                "GLAS" => {
+                    block.glass = record.word(0).map(|name| GlassRecord {
+                        name: shown(name),
+                        pickup: (record.number(1) == Some(2.0)).then(|| record.number(2).map(|n| n as usize)).flatten(),
+                        nd: record.number(3).unwrap_or(1.5),
+                        vd: record.number(4).unwrap_or(40.0),
+                    });
+                }
+                "PARM" | "XDAT" => {
+                    let map = if keyword == "PARM" { &mut block.parameters } else { &mut block.extra };
+                    if let (Some(at), Some(value)) = (number(0), number(1)) {
+                        if (0.0..=LARGEST_NUMBER).contains(&at) && value.is_finite() {
+                            map.insert(at as u32, value);
+                        } else if value != 0.0 && at > LARGEST_NUMBER {
+                            lens.leave_out(record.line, true, format!("{keyword} {at}: more data than is read"));
+                        }
+                    }
+                }
+                "STOP" => block.stop = true,
+                "DIAM" => block.aperture.semi_diameter_mm = number(0).map(|d| d * unit_mm).filter(|d| d.is_finite()),
+                "MEMA" => block.aperture.mechanical_mm = number(0).map(|d| d * unit_mm).filter(|d| d.is_finite()),
+                "CLAP" | "FLAP" | "OBSC" | "SQAP" | "SQOB" | "ELAP" | "ELOB" => {
+                    let sizes = [number(0).unwrap_or(0.0) * unit_mm, number(1).unwrap_or(0.0) * unit_mm];
+                    block.clip(&keyword, sizes, record.line, lens);
+                }
+                "USAP" | "USOB" | "SPID" | "UDAP" | "UDAD" | "UDOB" => {
+                    let text =
+                        format!("{keyword} {}: an aperture of a file or of arms clips nothing here", record.rest);
+                    lens.leave_out(record.line, true, shown(&text));
+                }
+                "OBDC" => {
+                    block.aperture.center_mm = [0, 1].map(|at| number(at).unwrap_or(0.0) * unit_mm);
+                }
+                "COMM" => block.comment = shown(record.rest),
+                // Told once for the whole lens.
+                "COAT" => {}
+                "SCBD" => block.own_tilt(record, unit_mm, lens),
+                "IGNR" => {
+                    if number(0).is_some_and(|flag| flag != 0.0) {
+                        lens.leave_out(record.line, true, "a surface that is ignored there: it is carried here");
+                    }
+                }
+                // Values of solves are in the records that they solve.
+                "PPAR" | "PZUP" | "MAZH" | "CHZH" => {}
+                _ if known::is_harmless_on_surface(&keyword) => {}
+                _ => {
+                    let entry = unknown.entry(shown(&keyword)).or_insert((record.line, 0));
+                    entry.1 += 1;
+                }
+            }
+        }
+        block
+    }
+
+    fn clip(&mut self, keyword: &str, [a, b]: [f64; 2], line: usize, lens: &mut Prescription) {
+        // A floating aperture is as large as the surface.
+        let b = if keyword == "FLAP" && b <= 0.0 { self.aperture.semi_diameter_mm.unwrap_or(0.0) } else { b };
+        let shape = match keyword {
+            "CLAP" | "FLAP" | "OBSC" => ApertureShape::Ring { inner: a.max(0.0), outer: b },
+            "SQAP" | "SQOB" => ApertureShape::Rectangle { half_width: a, half_height: b },
+            _ => ApertureShape::Ellipse { half_width: a, half_height: b },
+        };
+        let obscures = matches!(keyword, "OBSC" | "SQOB" | "ELOB");
+        let sound = match shape {
+            ApertureShape::Ring { inner, outer } => inner < outer && outer.is_finite(),
+            _ => a > 0.0 && b > 0.0 && a.is_finite() && b.is_finite(),
+        };
+        if sound {
+            self.aperture.shape = Some((shape, obscures));
+        } else if !(obscures && b <= a) {
+            lens.leave_out(
+                line,
+                true,
+                format!("{keyword} {} {}: no opening", number::shortest(a), number::shortest(b)),
+            );
+        }
+    }
+
+    /// `SCBD side order pickup x y tilt-x tilt-y tilt-z`, side 1 before and 2 behind the surface.
+    fn own_tilt(&mut self, record: &Record<'_>, unit_mm: f64, lens: &mut Prescription) {
+        let value = |at| record.number(at).unwrap_or(0.0);
+        let by = Displacement {
+            decenter_mm: [value(3) * unit_mm, value(4) * unit_mm],
+            tilt_deg: [value(5), value(6), value(7)],
+        };
+        let finite = by.decenter_mm.iter().chain(&by.tilt_deg).all(|v| v.is_finite());
+        if by.is_none() && finite {
+            return;
+        }
+        let tilt = CoordinateBreak { by, tilt_first: value(1) != 0.0, thickness_mm: 0.0 };
+        match (value(0), value(2)) {
+            (1.0, 0.0) if finite => self.before.push(tilt),
+            (2.0, 0.0) if finite => self.after.push(tilt),
+            _ => lens.leave_out(record.line, true, shown(&format!("SCBD {}: a tilt of the surface", record.rest))),
+        }
+    }
+
+    /// Whether it moves the axis and is no surface.
+    pub(super) fn is_break(&self) -> bool {
+        self.kind == "COORDBRK"
+    }
+
+    /// The move of the axis.
+    pub(super) fn coordinate_break(&self) -> CoordinateBreak {
+        let value = |at: u32| self.parameters.get(&at).copied().unwrap_or(0.0);
+        CoordinateBreak {
+            by: Displacement {
+                decenter_mm: [value(1) * self.unit_mm, value(2) * self.unit_mm],
+                tilt_deg: [value(3), value(4), value(5)],
+            },
+            tilt_first: value(6) != 0.0,
+            thickness_mm: 0.0,
+        }
+    }
+}

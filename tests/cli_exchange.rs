@@ -1,0 +1,143 @@
+//! `spectra lens import` and `export`, and lens files of other programs wherever a lens is asked for.
+
+mod common;
+
+use common::{good, repository, run, shown, text};
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+
+/// All lens files of the repository.
+fn lenses() -> Vec<PathBuf> {
+    let files = |folder: &str| {
+        let entries = std::fs::read_dir(repository(folder)).expect("a folder");
+        entries
+            .map(|entry| entry.expect("an entry").path())
+            .filter(|path| path.extension().is_some_and(|e| e == "yaml"))
+    };
+    files("tests/data/lenses").chain(files("lenses")).collect()
+}
+
+fn efl(lens: &str, light: &[&str]) -> f64 {
+    let arguments: Vec<&str> = ["lens", "info", lens, "--json"].into_iter().chain(light.iter().copied()).collect();
+    let info: Value = serde_json::from_str(&good(&arguments)).expect("JSON");
+    info["efl_mm"].as_f64().expect("a focal length")
+}
+
+/// Rays over a square in front of a lens, in three directions.
+fn rays(folder: &Path, half_mm: f64) -> PathBuf {
+    let mut table = "x_mm,y_mm,z_mm,l,m,n\n".to_owned();
+    for slope in [0.0_f64, 0.05, -0.12] {
+        for i in -6_i32..=6 {
+            for j in -6_i32..=6 {
+                let (x, y) = (f64::from(i) * half_mm / 6.0, f64::from(j) * half_mm / 6.0);
+                table.push_str(&format!("{},{},-1,0,{slope},{}\n", x, y - slope, (1.0 - slope * slope).sqrt()));
+            }
+        }
+    }
+    let path = folder.join("rays.csv");
+    std::fs::write(&path, table).expect("written");
+    path
+}
+
+/// Every lens goes out and comes back as the same lens: rays meet the image plane within 1e-12 mm (relative to a
+/// focal length of 100 mm), and end for the same cause at the same surface.
+#[test]
+fn export_and_import_keep_every_ray() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut hits = 0;
+    for path in lenses() {
+        let lens = shown(&path);
+        let zmx = folder.path().join("lens.zmx");
+        good(&["lens", "export", lens, "-o", shown(&zmx), "--force"]);
+        let yaml = folder.path().join("lens.yaml");
+        good(&["lens", "import", shown(&zmx), "-o", shown(&yaml), "--force"]);
+        let scale = (efl(lens, &[]).abs() / 100.0).max(1.0);
+        let rays = rays(folder.path(), 0.35 * efl(lens, &[]).abs());
+        for light in [&["--nd"][..], &["--line", "g"], &["--line", "C"]] {
+            let trace = |lens: &str| {
+                let arguments = ["lens", "trace", lens, "--rays", shown(&rays)];
+                good(&arguments.into_iter().chain(light.iter().copied()).collect::<Vec<_>>())
+            };
+            let wanted = trace(lens);
+            for found in [trace(shown(&zmx)), trace(shown(&yaml))] {
+                assert_eq!(found.lines().count(), wanted.lines().count());
+                for (a, b) in wanted.lines().zip(found.lines()).skip(1) {
+                    let (a, b): (Vec<&str>, Vec<&str>) = (a.split(',').collect(), b.split(',').collect());
+                    assert_eq!(a[..2], b[..2], "{lens} {light:?}");
+                    for (a, b) in a[2..].iter().zip(&b[2..]).filter(|(a, _)| !a.is_empty()) {
+                        let (a, b): (f64, f64) = (a.parse().expect("a number"), b.parse().expect("a number"));
+                        assert!((a - b).abs() <= 1e-12 * scale, "{lens} {light:?}: {a} {b}");
+                    }
+                    hits += usize::from(a[0] == "hit");
+                }
+            }
+        }
+    }
+    assert!(hits > 10_000, "{hits}");
+}
+
+#[test]
+fn other_files_stand_for_lenses_everywhere() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = |name: &str, text: &str| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, text).expect("written");
+        path
+    };
+    // The same lens in three languages: N-BK7, R = 50, 5 mm thick; focal length 49.21300 mm at d in closed form.
+    let zmx = file(
+        "a.zmx",
+        "MODE SEQ\nUNIT MM\nGCAT SCHOTT\nSURF 0\n  DISZ INFINITY\nSURF 1\n  STOP\n  CURV 0.02\n  DISZ 5\n  GLAS N-BK7 0 0 1.5 40\n  \
+         CLAP 0 10 0\nSURF 2\n  CURV -0.02\n  DISZ 47.5\nSURF 3\n  CURV 0\n",
+    );
+    let seq = file("a.seq", "RDM\nDIM M\nSO 0 1e11\nS 50 5 NBK7_SCHOTT\n STO\n CIR 10\nS -50 47.5\nSI 0 0\n");
+    let csv = file("a.csv", "radius,thickness,glass,semi-diameter\n50,5,SCHOTT/N-BK7,10\n-50,47.5,,\n");
+    for path in [&zmx, &seq, &csv] {
+        assert!((efl(shown(path), &["--line", "d"]) - 49.21300).abs() < 5e-6, "{}", path.display());
+    }
+    let scene = "spectra: 1\nsource: {kind: chart, chart: gray-card, distance: 2 m, width: 2.4 m, illuminant: D65, luminance: 300 cd/m2}\n\
+                 lens: {file: a.zmx, focus: 2 m}\nimager: {kind: xyz, format: 135, resolution: [30, 20]}\nrender: {samples: 4, seed: 1}\n";
+    let scene = file("scene.yaml", scene);
+    assert!(good(&["check", shown(&scene)]).contains("good"));
+}
+
+#[test]
+fn what_is_left_out_is_told_and_nothing_is_written_over() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let zmx = folder.path().join("a.zmx");
+    std::fs::write(&zmx, "SURF 0\n  DISZ INFINITY\nSURF 1\n  CURV 0.02\n  DISZ 5\n  GLAS N-BK7 0 0 1.5 40\n  FROB 1\n  COAT AR\nSURF 2\n  DISZ 90\nSURF 3\n")
+        .expect("written");
+    let out = folder.path().join("a.yaml");
+    let first = run(&["lens", "import", shown(&zmx), "-o", shown(&out)]);
+    let told = text(&first.stderr);
+    assert!(
+        first.status.success()
+            && told.contains("! line 7: FROB")
+            && told.contains("- line 8: coatings of 1 surfaces (AR)"),
+        "{told}"
+    );
+    let written = std::fs::read_to_string(&out).expect("written");
+    assert!(written.contains("# ! line 7: FROB") && written.contains("kind: sphere, radius: 50"), "{written}");
+
+    let again = run(&["lens", "import", shown(&zmx), "-o", shown(&out)]);
+    assert_eq!(again.status.code(), Some(2));
+    assert!(text(&again.stderr).contains("--force"));
+    let json = good(&["lens", "import", shown(&zmx), "-o", shown(&out), "--force", "--json"]);
+    let json: Value = serde_json::from_str(&json).expect("JSON");
+    assert_eq!(json["not_carried"].as_array().map(Vec::len), Some(2));
+    assert_eq!(json["not_carried"][0]["alters_light"], Value::Bool(true));
+    assert!(good(&["lens", "import", shown(&zmx)]).contains("surfaces:"), "without -o it goes to standard output");
+    assert!(good(&["lens", "export", "zeiss-biotar-50-f1.4"]).contains("GLAS BAF9 0 0 1.64329 47.72"));
+
+    for (arguments, word) in [
+        (&["import", "none.zmx"][..], "no such file"),
+        (&["import", "lens.stl"], "no format that is known"),
+        (&["export", "zeiss-biotar-50-f1.4", "-o", "x.seq"], "only .zmx"),
+        (&["export", "zeiss-biotar-50-f1.5"], "zeiss-biotar-50-f1.4"),
+    ] {
+        let output = run(&["lens"].into_iter().chain(arguments.iter().copied()).collect::<Vec<_>>());
+        let message = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
+        assert!(message.contains(word), "{arguments:?}: {message}");
+    }
+}
