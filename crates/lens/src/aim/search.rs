@@ -4,7 +4,8 @@ use super::nodes::{Geometry, Node};
 use super::probe::{Plane, Prober};
 use super::shape::Shape;
 use super::table::{Depth, Row, SLOTS, Table, Zone};
-use crate::{Aperture, Indices, Lens, Shape, Tracer, Travel};
+use crate::aperture::{self, Aperture};
+use crate::{Indices, Lens, Tracer, Travel};
 use glam::DVec3;
 use spectra_core::Isa;
 use spectra_core::loss::ALIVE;
@@ -73,7 +74,7 @@ impl Task<'_> {
     /// Searches all zones. `None` where no surface states a size.
     pub fn run(self) -> Option<Table> {
         let [min_nm, max_nm] = self.band_nm;
-        let iris = |a: &Aperture| matches!(a.shape, Shape::Iris(_));
+        let iris = |a: &Aperture| matches!(a.shape, aperture::Shape::Iris(_));
         if self.lens.elements.iter().any(|e| e.semi_diameter_mm.is_some() && e.apertures.iter().any(iris)) {
             let lens = with_round_irises(self.lens);
             let has_more = lens.elements.iter().any(|e| e.apertures.iter().any(iris));
@@ -276,7 +277,7 @@ fn with_round_irises(lens: &Lens) -> Lens {
     for e in &mut round.elements {
         let mut corner_mm = 0.0_f64;
         e.apertures.retain(|a| match (&a.shape, e.semi_diameter_mm) {
-            (Shape::Iris(iris), Some(size)) if a.center_mm == [0.0; 2] => {
+            (aperture::Shape::Iris(iris), Some(size)) if a.center_mm == [0.0; 2] => {
                 if !a.obscures {
                     corner_mm = corner_mm.max(iris.opening(size).corner_radius_mm());
                 }

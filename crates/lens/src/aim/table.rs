@@ -192,8 +192,12 @@ impl Table {
     #[inline(always)]
     fn is_stray<const BACKWARD: bool>(&self, x: f64, y: f64, z: f64) -> bool {
         let ahead = if BACKWARD { z - self.eye_z_mm } else { self.eye_z_mm - z };
-        let depth = Self::depth_of::<BACKWARD>(x * x + y * y, ahead);
-        !((depth >= self.depth.from) & (depth <= self.depth.to))
+        if BACKWARD {
+            !((ahead >= self.depth.from) & (ahead <= self.depth.to))
+        } else {
+            // One over the distance is below the upper end; the lower one is 0. Without a root or division.
+            !((x * x + y * y + ahead * ahead) * (self.depth.to * self.depth.to) >= 1.0)
+        }
     }
 
     /// The zone of a point, and the frame of that point: radial and across in the plane of the lens.
