@@ -1,6 +1,7 @@
 //! A lens: surfaces along the axis, media between them, and where it comes from.
 
 use crate::aperture::Shape;
+use crate::coating::Coating;
 use crate::group::Group;
 use crate::pose::{AxisBreak, Pose};
 use crate::{Element, symmetry};
@@ -53,6 +54,10 @@ pub struct Lens {
     pub image_pose: Pose,
     /// The media; number 0 is air.
     pub media: Vec<LensMedium>,
+    /// Coating of every surface that states none of its own.
+    pub coating: Coating,
+    /// Whether glass absorbs, where its catalogue says how much.
+    pub absorption: bool,
     /// What a person should know of the file: a glass that disagrees with the stated index, and so on.
     pub warnings: Vec<String>,
 }
@@ -74,6 +79,8 @@ impl Lens {
             image_breaks: Vec::new(),
             image_pose: Pose::IDENTITY,
             media: vec![LensMedium::air()],
+            coating: Coating::Ideal,
+            absorption: false,
             warnings: Vec::new(),
         }
     }

@@ -6,6 +6,7 @@
 
 mod aim;
 mod aperture;
+mod coating;
 mod element;
 mod f_number;
 mod first_order;
@@ -16,9 +17,11 @@ mod pose;
 mod prescription;
 mod symmetry;
 mod tracer;
+mod transmission;
 
 pub use aim::{FrontDisk, RearPupil};
 pub use aperture::{Aperture, Iris, Mask, Opening, Shape};
+pub use coating::{Coating, Transmittance, read_coating};
 pub use element::Element;
 pub use f_number::{ApertureError, MarginalRay};
 pub use first_order::{FirstOrder, Section};

@@ -1,8 +1,8 @@
 //! Lens files: a prescription in YAML, and where it comes from.
 
-use crate::{AxisBreak, Displacement, Element, Group, Lens, LensMedium, aperture};
+use crate::{AxisBreak, Displacement, Element, Group, Lens, LensMedium, aperture, read_coating};
 use serde::Deserialize;
-use spectra_core::params::{Angle, Fault, Faults, Length, Params, Positive, StageNode};
+use spectra_core::params::{Angle, Fault, Faults, Length, Params, Positive, Ratio, StageNode};
 use spectra_core::registry::{self, Context};
 use spectra_core::resources::Resources;
 use spectra_core::spectral::BAND;
@@ -34,6 +34,11 @@ struct LensFile {
     /// Groups of surfaces that move together.
     #[serde(default)]
     groups: Vec<StageNode>,
+    /// Coating of all surfaces that state none: `ideal` (the default), `bare`, or a layer.
+    coating: Option<StageNode>,
+    /// Whether glass absorbs as its catalogue says.
+    #[serde(default)]
+    absorption: bool,
 }
 
 fn line_d() -> String {
@@ -77,9 +82,13 @@ struct Place {
     /// Whether it stands the other way round.
     #[serde(default)]
     reversed: bool,
+    /// Its own coating.
+    coating: Option<StageNode>,
+    /// Part of the light that a mirror reflects; all of it if absent.
+    reflectance: Option<Ratio>,
 }
 
-const PLACE_KEYS: [&str; 14] = [
+const PLACE_KEYS: [&str; 16] = [
     "thickness",
     "glass",
     "nd",
@@ -94,6 +103,8 @@ const PLACE_KEYS: [&str; 14] = [
     "tilt",
     "reversed",
     "remark",
+    "coating",
+    "reflectance",
 ];
 
 /// The kind that bends the axis, and is no surface.
@@ -250,10 +261,21 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
         element.chamfer_mm = stated.chamfer.map_or(0.0, Length::mm);
         element.apertures = apertures.and_then(|read| faults.take(read)).unwrap_or_default();
         element.stop |= stated.stop;
+        element.coating = stated.coating.as_ref().and_then(|node| faults.take(read_coating(node)));
+        element.reflectance = stated.reflectance.map_or(1.0, Ratio::number);
+        if stated.reflectance.is_some() && !stated.mirror {
+            let fault = place.fault("reflectance", "only a mirror has a reflectance of its own");
+            faults.push(fault.hint("what a lens surface reflects follows from its `coating`"));
+        } else if !(0.0..=1.0).contains(&element.reflectance) {
+            let fault = place.fault("reflectance", format!("a mirror cannot reflect {}", element.reflectance));
+            faults.push(fault.hint("a part of 1, such as 0.9 or 90 %"));
+        }
         lens.elements.push(element);
         medium_before = medium_after;
     }
     lens.image_breaks = breaks;
+    lens.coating = file.coating.as_ref().and_then(|node| faults.take(read_coating(node))).unwrap_or_default();
+    lens.absorption = file.absorption;
     for node in &file.groups {
         lens.groups.extend(faults.take(group(node, lens.elements.len())));
     }
