@@ -2,6 +2,7 @@
 
 use crate::aperture::Shape;
 use crate::coating::Coating;
+use crate::focus::FocusLaw;
 use crate::group::Group;
 use crate::pose::{AxisBreak, Pose};
 use crate::{Element, symmetry};
@@ -48,6 +49,10 @@ pub struct Lens {
     pub elements: Vec<Element>,
     /// Groups of surfaces that move together.
     pub groups: Vec<Group>,
+    /// How groups move in focusing; none: the whole lens moves.
+    pub focus_laws: Vec<FocusLaw>,
+    /// Distance from the first vertex that it is focused at, mm; infinite as the file has it.
+    pub focused_mm: f64,
     /// Bends of the axis between the last surface and the image plane.
     pub image_breaks: Vec<AxisBreak>,
     /// Where the image plane stands; follows from the above, see [`Lens::arrange`].
@@ -76,6 +81,8 @@ impl Lens {
             reference_nm: spectra_glass::lines::D.wavelength_nm,
             elements: Vec::new(),
             groups: Vec::new(),
+            focus_laws: Vec::new(),
+            focused_mm: f64::INFINITY,
             image_breaks: Vec::new(),
             image_pose: Pose::IDENTITY,
             media: vec![LensMedium::air()],
