@@ -40,6 +40,8 @@ impl ChiefRay {
 
 /// Step of the field, rad: from one point to the next the pupil wanders by less than itself.
 const STEP_RAD: f64 = std::f64::consts::PI / 180.0;
+/// How far the light may wander over the front of the lens, in radii of it for a radian of field.
+const WANDER: f64 = 2.0;
 /// Field angles that differ by less, rad, are the same: 0.001 degrees.
 const NEAR_RAD: f64 = 1.7e-5;
 /// Newton's steps: a handful each, with halvings where the light is lost.
@@ -58,37 +60,32 @@ impl Lens {
         let tracer = Tracer::new(self, Indices::At(nm), Isa::detect())?;
         let window = |field_rad: f64| Window::new(self, ObjectPoint::on_sphere(self, object_mm, field_rad));
         let Some(mut cut) = window(0.0).and_then(|w| w.search(&tracer, nm).ok()) else { return Ok(None) };
-        // Near the limit what passes is a sliver beside where it was just before.
-        let passes = |field_rad: f64, near| {
+        // Near the limit what passes is a sliver beside where it was just before: it wanders by no more than the lens is
+        // large for a radian of field, and is looked for that far around.
+        let passes = |field_rad: f64, from_rad: f64, near: Cut| {
             let window = window(field_rad).ok_or(None)?;
-            let least = 1e-3 * window.reach_mm;
-            for (part, cells) in [(0.5, 32), (0.15, 160)] {
-                if let Ok(cut) = window.passing(&tracer, Cut::grown(near, part, least), cells, nm) {
-                    return Ok(cut);
-                }
+            let wander_mm = WANDER * window.reach_mm * (field_rad - from_rad);
+            let mut seen = window.passing(&tracer, near.grown(0.5, wander_mm), 48, nm);
+            if seen.is_err() {
+                seen = window.passing(&tracer, near.grown(0.1, wander_mm), 240, nm);
             }
-            window.passing(&tracer, window.whole(), 160, nm)
+            // Seen with few rays: look closer.
+            seen.map(|cut| window.passing(&tracer, cut, 48, nm).unwrap_or(cut))
         };
         let (mut low, mut high) = (0.0, std::f64::consts::PI);
         let mut limit = None;
-        let mut next = STEP_RAD;
-        while next < std::f64::consts::PI && limit.is_none() {
-            match passes(next, cut) {
-                Ok(found) => (low, cut) = (next, found),
-                Err(why) => {
-                    high = next;
-                    limit = why;
-                    break;
-                }
+        while low + STEP_RAD < high {
+            match passes(low + STEP_RAD, low, cut) {
+                Ok(found) => (low, cut) = (low + STEP_RAD, found),
+                Err(why) => (high, limit) = (low + STEP_RAD, why),
             }
-            next += STEP_RAD;
         }
-        if next >= std::f64::consts::PI {
+        if limit.is_none() {
             return Ok(Some(FieldLimit { field_rad: std::f64::consts::PI, limit: None }));
         }
         while high - low > NEAR_RAD {
             let middle = 0.5 * (low + high);
-            match passes(middle, cut) {
+            match passes(middle, low, cut) {
                 Ok(found) => (low, cut) = (middle, found),
                 Err(why) => (high, limit) = (middle, why),
             }
