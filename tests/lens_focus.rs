@@ -109,12 +109,11 @@ fn faults_of_laws_say_what_to_do() {
         ("focus: [{group: rear, factor: 1}, {group: rear, factor: 2}]\n", "two laws"),
         ("coating: bear\n", "unknown coating"),
         ("coating: {layer: 1.38}\n", "either a `thickness`"),
-        ("coating: {layer: 0.2, thickness: 100}\n", "an index of 0.2"),
-        ("coating: {layer: 0.2, thickness: 100}\n", "from 1 to 5"),
+        ("coating: {layer: 0.2, thickness: 100}\n", "a layer of index 0.2"),
+        ("coating: {layer: 1.38, thickness: 1 mm}\n", "no thin layer"),
     ] {
         let faults = two_groups(laws).expect_err(laws);
-        // Layers are said to have an index.
-        assert!(faults.contains(word) || faults.contains("a layer of index 0.2"), "{laws}: {faults}");
+        assert!(faults.contains(word), "{laws}: {faults}");
     }
 }
 
@@ -122,13 +121,12 @@ fn faults_of_laws_say_what_to_do() {
 #[test]
 fn spot_and_contrast_differ_on_fast_lenses() {
     for (path, least_mm) in
-        [("lenses/zeiss-biotar-50-f1.4.yaml", 0.02), ("tests/data/lenses/asahi-takumar-100-f1.2.yaml", 0.05)]
+        [("lenses/zeiss-biotar-50-f1.4.yaml", 0.02), ("tests/data/lenses/meyer-primoplan-100-f1.5.yaml", 0.3)]
     {
         let lens = bundled(path);
         for field_deg in [0.0, 10.0] {
             let small = lens.best_focus_shift_mm(&rms(f64::INFINITY, field_deg)).expect("light");
             let sharp = lens.best_focus_shift_mm(&contrast(f64::INFINITY, field_deg, 30.0)).expect("light");
-            println!("{path} {field_deg}: {small} {sharp}");
             let point = ObjectPoint::on_plane(&lens, f64::INFINITY, f64::to_radians(field_deg));
             let beam = Beam::of(&lens, point, &[(lens.reference_nm, 1.0)], 96).expect("media").expect("light");
             for step in -200..=200 {
@@ -141,10 +139,31 @@ fn spot_and_contrast_differ_on_fast_lenses() {
             }
         }
         // Stopped down they meet, and meet the paraxial focus.
-        let slow = lens.at_f_number(16.0).expect("f/16");
+        let slow = lens.at_f_number(22.0).expect("f/22");
         let small = slow.best_focus_shift_mm(&rms(f64::INFINITY, 0.0)).expect("light");
         assert!((small - paraxial_miss(&slow, f64::INFINITY)).abs() < 0.02, "{small}");
     }
+}
+
+/// Primary spherical aberration: the smallest root-mean-square spot lies two thirds of the way from the paraxial focus to
+/// the marginal one (W. T. Welford, Aberrations of Optical Systems, section 8.2), here of a singlet at f/10.
+#[test]
+fn the_smallest_spot_is_where_theory_has_it() {
+    let lens = written(
+        "name: singlet\nsurfaces:\n  - {kind: stop, thickness: 0, semi-diameter: 5}\n  \
+         - {kind: sphere, radius: 100, thickness: 3, glass: SCHOTT/N-BK7, semi-diameter: 20}\n  \
+         - {kind: sphere, radius: -100, thickness: 96, semi-diameter: 20}\n",
+    )
+    .expect("good");
+    let tracer = Tracer::new(&lens, Indices::At(587.5618), Isa::Baseline).expect("media");
+    let path = tracer.path(DVec3::new(0.0, 4.999_999, -1.0), DVec3::Z, 587.5618);
+    let last = path.points.last().expect("points");
+    let marginal = last.z - last.y * path.direction.z / path.direction.y - lens.image_z_mm();
+    let paraxial = paraxial_miss(&lens, f64::INFINITY);
+    let small = lens.best_focus_shift_mm(&rms(f64::INFINITY, 0.0)).expect("light");
+    let part = (small - paraxial) / (marginal - paraxial);
+    // Higher orders and the edge of a grid of 96 rays across leave half a per cent.
+    assert!((part - 2.0 / 3.0).abs() < 0.005, "{part}");
 }
 
 /// Moving the lens to the best focus puts the best focus on the image plane; by groups too.
