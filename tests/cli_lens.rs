@@ -85,10 +85,108 @@ fn f_number_and_focus_are_set() {
     assert!(blue != red && (blue / red - 1.0).abs() < 0.01, "{blue} {red}");
 }
 
+/// Coatings, focus shifts, field, chief rays and mounts are there, and fit each other.
+#[test]
+fn the_report_is_whole() {
+    let biotar = info("zeiss-biotar-50-f1.4", &[]);
+    for key in [
+        "efl_mm",
+        "bfl_mm",
+        "ffl_mm",
+        "f_number",
+        "t_number",
+        "entrance_pupil_z_mm",
+        "entrance_pupil_diameter_mm",
+        "exit_pupil_z_mm",
+        "exit_pupil_diameter_mm",
+        "front_principal_z_mm",
+        "rear_principal_z_mm",
+        "front_nodal_z_mm",
+        "rear_nodal_z_mm",
+        "total_track_mm",
+        "image_distance_mm",
+        "max_field_deg",
+        "magnification",
+        "paraxial_focus_shift_mm",
+        "rms_focus_shift_mm",
+        "contrast_focus_shift_mm",
+    ] {
+        figure(&biotar, key);
+    }
+    // Ideal coatings by default; nodal points are the principal ones in air; nothing is anamorphic.
+    assert_eq!(biotar["t_number"], biotar["f_number"]);
+    assert!((figure(&biotar, "front_nodal_z_mm") - figure(&biotar, "front_principal_z_mm")).abs() < 1e-9);
+    assert!((figure(&biotar, "rear_nodal_z_mm") - figure(&biotar, "rear_principal_z_mm")).abs() < 1e-9);
+    assert!(biotar.get("efl_x_mm").is_none());
+    assert_eq!(biotar["focus_distance_mm"], Value::Null);
+    let rays = biotar["chief_ray_exit_angle_deg"].as_array().expect("a list");
+    assert_eq!(rays.len(), 11);
+    assert_eq!((figure(&rays[0], "field_deg"), figure(&rays[0], "angle_deg")), (0.0, 0.0));
+    // f tan(field), but for some per cent of distortion.
+    let (field, height) = (figure(&rays[5], "field_deg"), figure(&rays[5], "image_height_mm"));
+    assert!((height / (figure(&biotar, "efl_mm") * field.to_radians().tan()) - 1.0).abs() < 0.03, "{field} {height}");
+    // 32.4 mm behind the glass: room for Leica's 27.80, none for a mirror.
+    let mounts = biotar["mounts"].as_array().expect("a list");
+    let clearance = |name: &str| mounts.iter().find(|m| m["name"] == name).map(|m| figure(m, "clearance_mm"));
+    assert!((clearance("Leica M").expect("it fits") - (figure(&biotar, "image_distance_mm") - 27.8)).abs() < 1e-9);
+    assert!(clearance("Nikon F").is_none() && clearance("M42").is_none());
+    let retrofocus = info(&lens("nikon-retrofocus-100-f2.8"), &[]);
+    assert!(retrofocus["mounts"].as_array().is_some_and(|m| m.iter().any(|m| m["name"] == "Nikon F")));
+}
+
+/// The same distance in both forms; m = f / (distance - front focus) at a distance.
+#[test]
+fn focus_is_given_in_either_form() {
+    let unit = info("zeiss-biotar-50-f1.4", &["--focus", "2 m"]);
+    let bare = info("zeiss-biotar-50-f1.4", &["--focus-mm", "2000"]);
+    assert_eq!(unit, bare);
+    assert_eq!(figure(&bare, "focus_distance_mm"), 2000.0);
+    let want = -figure(&bare, "efl_mm") / (2000.0 + figure(&bare, "ffl_mm"));
+    assert!((figure(&bare, "magnification") - want).abs() < 1e-12, "{want}");
+    let both = run(&["lens", "info", "zeiss-biotar-50-f1.4", "--focus", "2 m", "--focus-mm", "2000"]);
+    assert_eq!(both.status.code(), Some(2));
+}
+
+/// The T-number of a bare singlet, small aperture: N / T^(1/2), T = (1 - R)^2, R = ((n - 1) / (n + 1))^2.
+#[test]
+fn t_number_counts_reflections() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("bare.yaml");
+    let write = |coating: &str| {
+        let text = format!(
+            "name: Bare\nsurfaces:\n  - {{kind: sphere, radius: 500, thickness: 5, glass: {{nd: 1.5168}}, semi-diameter: 5}}\n  \
+             - {{kind: sphere, radius: -500, thickness: 480, semi-diameter: 6}}\n{coating}"
+        );
+        std::fs::write(&file, text).expect("written");
+        info(shown(&file), &["--nd"])
+    };
+    let (ideal, bare) = (write(""), write("coating: bare\n"));
+    let coated = write("coating: {layer: 1.38, quarter-wave-at: 587.5618 nm}\n");
+    assert_eq!(ideal["t_number"], ideal["f_number"]);
+    for (info, reflectance) in [(bare, 0.042_164_6), (coated, 0.012_835_4)] {
+        assert_eq!(info["f_number"], ideal["f_number"]);
+        let ratio = figure(&info, "f_number") / figure(&info, "t_number");
+        assert!((ratio - (1.0 - reflectance)).abs() < 1e-6, "{ratio} {reflectance}");
+        assert!((figure(&info, "transmittance") - ratio * ratio).abs() < 1e-12);
+    }
+}
+
 #[test]
 fn people_get_a_table() {
     let table = good(&["lens", "info", "zeiss-biotar-50-f1.4"]);
-    for word in ["Biotar", "1927", "US 1786916", "focal length", "SCHOTT/BAF9", "stop", "f/1.4"] {
+    for word in [
+        "Biotar",
+        "1927",
+        "US 1786916",
+        "focal length",
+        "SCHOTT/BAF9",
+        "stop",
+        "f/1.4",
+        "T/1.4",
+        "Leica M",
+        "largest field",
+        "smallest spot",
+    ] {
         assert!(table.contains(word), "{word}: {table}");
     }
     assert!(!table.contains('\u{1b}'));

@@ -3,11 +3,13 @@
 //! - [`trace`]: rays as CSV through a lens, the door through which any other program can be compared
 //!   with this one;
 //! - [`info`]: first-order figures, pupils and prescription, for a program and for a person;
+//! - [`focus`]: what an image point is sharp for;
 //! - [`fan`]: the rays of a field that pass, and the chief ray among them;
 //! - [`draw`]: a lens as a figure, with rays in the colors of their wavelengths.
 
 pub mod draw;
 pub mod fan;
+pub mod focus;
 pub mod info;
 mod light;
 pub mod trace;

@@ -271,6 +271,9 @@ pub(crate) struct LensSetting {
     /// Focus at this distance from the first surface (2m, 77cm, inf); as the file has it if not given.
     #[arg(long, value_name = "DISTANCE", value_parser = parse::<OrInfinity<Positive<Length>>>)]
     pub focus: Option<OrInfinity<Positive<Length>>>,
+    /// The same, as a bare number of millimeters.
+    #[arg(long, value_name = "MM", value_parser = parse::<OrInfinity<Positive<Length>>>, conflicts_with = "focus")]
+    pub focus_mm: Option<OrInfinity<Positive<Length>>>,
     /// Set the stop to this f-number (f/2), by the real marginal ray; as the file has it if not given.
     #[arg(long, value_name = "F/N", value_parser = parse::<FNumber>)]
     pub f_number: Option<FNumber>,
@@ -302,9 +305,11 @@ fn line(name: &str) -> Result<f64, String> {
 /// `spectra lens info`.
 #[derive(Debug, Args)]
 #[command(
-    long_about = "Show a lens in figures: focal lengths, principal planes, pupils, f-number and prescription.\n\n\
+    long_about = "Show a lens in figures: focal lengths, principal planes, pupils, f-number, T-number, focus, field, the \
+        mounts that it leaves room for, and prescription.\n\n\
         At the reference line of its patent unless a light is given. f-number and pupil diameters are those of the real \
-        marginal ray; the places of planes and pupils are paraxial.",
+        marginal ray; the places of planes and pupils are paraxial; focus shifts, the largest field and the chief rays \
+        are those of real rays. The T-number counts what the lens file states of coatings, mirrors and absorption.",
     after_long_help = "Example: the same lens in blue light\n  spectra lens info zeiss-biotar-50-f1.4 --line g"
 )]
 pub(crate) struct LensInfo {

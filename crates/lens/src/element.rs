@@ -1,6 +1,7 @@
 //! One surface in its place.
 
 use crate::aperture::Aperture;
+use crate::coating::Coating;
 use crate::pose::{AxisBreak, Displacement, Pose};
 use spectra_core::params::Params;
 use spectra_core::surface::{Action, Surface};
@@ -36,6 +37,10 @@ pub struct Element {
     pub stop: bool,
     /// What it does to light.
     pub action: Action,
+    /// Its own coating; `None` has the lens's.
+    pub coating: Option<Coating>,
+    /// Part of the light that it reflects where it is a mirror, 0 to 1.
+    pub reflectance: f64,
     /// Medium in front of it: index into [`crate::Lens::media`].
     pub medium_before: usize,
     /// Medium behind it.
@@ -67,6 +72,8 @@ impl Element {
             apertures: Vec::new(),
             stop,
             action: if stop { Action::Pass } else { Action::Refract },
+            coating: None,
+            reflectance: 1.0,
             medium_before,
             medium_after,
             pose: Pose::IDENTITY,

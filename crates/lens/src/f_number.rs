@@ -3,10 +3,11 @@
 //! N = 1 / (2 sin theta'), where theta' is the angle at which the marginal ray of an axial object at
 //! infinity leaves the lens. With the tangent of a paraxial ray instead, f/1.4 is 11 % off in exposure.
 
-use crate::{Indices, Lens, Tracer};
+use crate::{Indices, Lens, Tracer, Travel};
 use glam::DVec3;
-use spectra_core::Isa;
+use spectra_core::loss::ALIVE;
 use spectra_core::surface::Action;
+use spectra_core::{Isa, RayBatch, math};
 use spectra_glass::DispersionError;
 
 /// The marginal ray of an axial object at infinity.
@@ -55,6 +56,10 @@ pub enum ApertureError {
 
 /// Halvings of the height: an interval of 100 mm ends below 1e-13 mm.
 const HALVINGS: usize = 50;
+/// Rings of equal area over the pupil.
+const RINGS: usize = 256;
+/// Rays on each, where the lens is not round.
+const SPOKES: usize = 64;
 
 impl Lens {
     fn axial_ray(&self, tracer: &Tracer, height_mm: f64) -> Option<MarginalRay> {
@@ -91,6 +96,43 @@ impl Lens {
             }
         }
         Ok(best)
+    }
+
+    /// Part of the light of an axial object at infinity, within the entrance pupil of `marginal`, that reaches the image:
+    /// what coatings, mirrors and glass leave, and what an obstruction in the middle lets pass of it. Where the lens
+    /// is not round about its axis, of the light that passes at all. Without a `marginal` ray, along the axis.
+    ///
+    /// # Errors
+    /// A medium has no usable index.
+    pub fn axial_transmittance(&self, indices: Indices, marginal: Option<MarginalRay>) -> Result<f64, DispersionError> {
+        let tracer = Tracer::new(self, indices, Isa::detect())?;
+        let radius_mm = marginal.map_or(0.0, |ray| ray.height_mm);
+        let round = self.has_axis_of_revolution();
+        let spokes = if round { 1 } else { SPOKES };
+        let mut rays = RayBatch::new(RINGS * spokes);
+        rays.restart(RINGS * spokes);
+        let wavelength_nm = match indices {
+            Indices::At(nm) => nm,
+            Indices::Band { .. } | Indices::Stated => self.reference_nm,
+        };
+        let c = rays.columns_mut();
+        for i in 0..RINGS * spokes {
+            // Rings and spokes of equal area.
+            let r = radius_mm * (((i / spokes) as f64 + 0.5) / RINGS as f64).sqrt();
+            let (sin, cos) = math::sin_cos_turns(((i % spokes) as f64 + 0.5) / spokes as f64);
+            (c.x[i], c.y[i], c.z[i]) = (if round { 0.0 } else { r * cos }, if round { r } else { r * sin }, 0.0);
+            (c.l[i], c.m[i], c.n[i]) = (0.0, 0.0, 1.0);
+            c.wavelength_nm[i] = wavelength_nm;
+        }
+        tracer.trace(&mut rays, &mut tracer.work_in_place(RINGS * spokes), Travel::Forward);
+        let (mut sum, mut passed) = (0.0, 0);
+        for (weight, state) in rays.weights().iter().zip(rays.states()) {
+            if *state == ALIVE {
+                sum += weight;
+                passed += 1;
+            }
+        }
+        Ok(sum / if round { RINGS as f64 } else { f64::from(passed.max(1)) })
     }
 
     /// The same lens with its stop set so that the real marginal ray leaves at this f-number.

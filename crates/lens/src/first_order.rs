@@ -23,6 +23,10 @@ pub struct FirstOrder {
     pub rear_principal_z_mm: f64,
     /// Front principal plane, from the first vertex.
     pub front_principal_z_mm: f64,
+    /// Front nodal point, from the first vertex: what aims at it leaves the rear one in the same direction.
+    pub front_nodal_z_mm: f64,
+    /// Rear nodal point, from the first vertex.
+    pub rear_nodal_z_mm: f64,
     /// Entrance pupil, from the first vertex; `None` without a stop.
     pub entrance_pupil_z_mm: Option<f64>,
     /// Exit pupil, from the first vertex; `None` without a stop.
@@ -158,6 +162,8 @@ impl Lens {
             ffl_mm: ffl,
             rear_principal_z_mm: last_z + bfl - focal,
             front_principal_z_mm: ffl + front_focal,
+            front_nodal_z_mm: ffl + focal,
+            rear_nodal_z_mm: last_z + bfl - front_focal,
             entrance_pupil_z_mm: enp,
             exit_pupil_z_mm: exp,
             entrance_pupil_magnification: enp_m,

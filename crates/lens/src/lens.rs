@@ -1,6 +1,8 @@
 //! A lens: surfaces along the axis, media between them, and where it comes from.
 
 use crate::aperture::Shape;
+use crate::coating::Coating;
+use crate::focus::FocusLaw;
 use crate::group::Group;
 use crate::pose::{AxisBreak, Pose};
 use crate::{Element, symmetry};
@@ -47,12 +49,20 @@ pub struct Lens {
     pub elements: Vec<Element>,
     /// Groups of surfaces that move together.
     pub groups: Vec<Group>,
+    /// How groups move in focusing; none: the whole lens moves.
+    pub focus_laws: Vec<FocusLaw>,
+    /// Distance from the first vertex that it is focused at, mm; infinite as the file has it.
+    pub focused_mm: f64,
     /// Bends of the axis between the last surface and the image plane.
     pub image_breaks: Vec<AxisBreak>,
     /// Where the image plane stands; follows from the above, see [`Lens::arrange`].
     pub image_pose: Pose,
     /// The media; number 0 is air.
     pub media: Vec<LensMedium>,
+    /// Coating of every surface that states none of its own.
+    pub coating: Coating,
+    /// Whether glass absorbs, where its catalogue says how much.
+    pub absorption: bool,
     /// What a person should know of the file: a glass that disagrees with the stated index, and so on.
     pub warnings: Vec<String>,
 }
@@ -71,9 +81,13 @@ impl Lens {
             reference_nm: spectra_glass::lines::D.wavelength_nm,
             elements: Vec::new(),
             groups: Vec::new(),
+            focus_laws: Vec::new(),
+            focused_mm: f64::INFINITY,
             image_breaks: Vec::new(),
             image_pose: Pose::IDENTITY,
             media: vec![LensMedium::air()],
+            coating: Coating::Ideal,
+            absorption: false,
             warnings: Vec::new(),
         }
     }

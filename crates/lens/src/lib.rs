@@ -6,26 +6,35 @@
 
 mod aim;
 mod aperture;
+mod beam;
+mod coating;
 mod element;
 mod f_number;
+mod field;
 mod first_order;
 mod focus;
 mod group;
 mod lens;
 mod pose;
 mod prescription;
+mod reverse;
 mod symmetry;
 mod tracer;
+mod transmission;
 
 pub use aim::{AimPattern, AimRegion, FrontPupil, RearPupil};
 pub use aperture::{Aperture, Iris, Mask, Opening, Shape};
+pub use beam::{Beam, ObjectPoint};
+pub use coating::{Coating, Transmittance, read_coating};
 pub use element::Element;
 pub use f_number::{ApertureError, MarginalRay};
+pub use field::{ChiefRay, FieldLimit};
 pub use first_order::{FirstOrder, Section};
-pub use focus::FocusError;
-pub use group::Group;
+pub use focus::{Criterion, FocusError, FocusLaw, FocusSearch, FocusTable, GroupTravel};
+pub use group::{Group, Misalignment};
 pub use lens::{Lens, LensMedium};
 pub use pose::{AxisBreak, Displacement, Pose};
-pub use prescription::{load, parse};
+pub use prescription::{load, parse, unknown_group};
+pub use reverse::ReverseError;
 pub use spectra_core::surface::Travel;
 pub use tracer::{Indices, RayPath, Tracer, Work};

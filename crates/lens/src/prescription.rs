@@ -1,8 +1,11 @@
 //! Lens files: a prescription in YAML, and where it comes from.
 
-use crate::{AxisBreak, Displacement, Element, Group, Lens, LensMedium, aperture};
+use crate::{
+    AxisBreak, Displacement, Element, FocusLaw, FocusTable, Group, GroupTravel, Lens, LensMedium, aperture,
+    read_coating,
+};
 use serde::Deserialize;
-use spectra_core::params::{Angle, Fault, Faults, Length, Params, Positive, StageNode};
+use spectra_core::params::{Angle, Fault, Faults, Length, OrInfinity, Params, Positive, Ratio, StageNode, nearest};
 use spectra_core::registry::{self, Context};
 use spectra_core::resources::Resources;
 use spectra_core::spectral::BAND;
@@ -34,6 +37,14 @@ struct LensFile {
     /// Groups of surfaces that move together.
     #[serde(default)]
     groups: Vec<StageNode>,
+    /// How groups move in focusing; the whole lens if absent.
+    #[serde(default)]
+    focus: Vec<StageNode>,
+    /// Coating of all surfaces that state none: `ideal` (the default), `bare`, or a layer.
+    coating: Option<StageNode>,
+    /// Whether glass absorbs as its catalogue says.
+    #[serde(default)]
+    absorption: bool,
 }
 
 fn line_d() -> String {
@@ -77,9 +88,13 @@ struct Place {
     /// Whether it stands the other way round.
     #[serde(default)]
     reversed: bool,
+    /// Its own coating.
+    coating: Option<StageNode>,
+    /// Part of the light that a mirror reflects; all of it if absent.
+    reflectance: Option<Ratio>,
 }
 
-const PLACE_KEYS: [&str; 14] = [
+const PLACE_KEYS: [&str; 16] = [
     "thickness",
     "glass",
     "nd",
@@ -94,6 +109,8 @@ const PLACE_KEYS: [&str; 14] = [
     "tilt",
     "reversed",
     "remark",
+    "coating",
+    "reflectance",
 ];
 
 /// The kind that bends the axis, and is no surface.
@@ -250,12 +267,38 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
         element.chamfer_mm = stated.chamfer.map_or(0.0, Length::mm);
         element.apertures = apertures.and_then(|read| faults.take(read)).unwrap_or_default();
         element.stop |= stated.stop;
+        element.coating = stated.coating.as_ref().and_then(|node| faults.take(read_coating(node)));
+        element.reflectance = stated.reflectance.map_or(1.0, Ratio::number);
+        if stated.reflectance.is_some() && !stated.mirror {
+            let fault = place.fault("reflectance", "only a mirror has a reflectance of its own");
+            faults.push(fault.hint("what a lens surface reflects follows from its `coating`"));
+        } else if !(0.0..=1.0).contains(&element.reflectance) {
+            let fault = place.fault("reflectance", format!("a mirror cannot reflect {}", element.reflectance));
+            faults.push(fault.hint("a part of 1, such as 0.9 or 90 %"));
+        }
         lens.elements.push(element);
         medium_before = medium_after;
     }
     lens.image_breaks = breaks;
+    lens.coating = file.coating.as_ref().and_then(|node| faults.take(read_coating(node))).unwrap_or_default();
+    lens.absorption = file.absorption;
     for node in &file.groups {
         lens.groups.extend(faults.take(group(node, lens.elements.len())));
+    }
+    for node in &file.focus {
+        let law = faults.take(focus_law(node, &lens.groups));
+        if let Some(again) = law.as_ref().filter(|law| lens.focus_laws.iter().any(|l| l.group == law.group)) {
+            let name = &lens.groups[again.group].name;
+            faults.push(node.fault(format!("group `{name}` moves by two laws")).hint("one law a group"));
+        }
+        lens.focus_laws.extend(law);
+    }
+    if lens.absorption {
+        for medium in &lens.media {
+            if medium.medium.internal_transmittance(lens.reference_nm, 1.0).is_none() {
+                lens.warnings.push(format!("{}: no absorption is known; none is taken", medium.label));
+            }
+        }
     }
     lens.arrange();
     let stops = lens.elements.iter().filter(|e| e.stop).count();
@@ -263,6 +306,56 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
         faults.push(params.fault("surfaces", format!("{stops} surfaces are stops; a lens has one")));
     }
     faults.into_result(lens)
+}
+
+/// The motion of a group in focusing.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct FocusParams {
+    /// Name of the group.
+    group: String,
+    /// Its travel relative to the others', toward the object.
+    factor: Option<f64>,
+    /// Distances of the object (mm if bare), falling, each with the shift toward the object (mm if bare).
+    table: Option<Vec<(OrInfinity<Positive<Length>>, Length)>>,
+}
+
+fn focus_law(node: &StageNode, groups: &[Group]) -> Result<FocusLaw, Faults> {
+    let params = Params::section(node.node().clone(), node.path())?;
+    let p: FocusParams = params.parse()?;
+    let Some(group) = groups.iter().position(|g| g.name == p.group) else {
+        return Err(unknown_group(&params, "group", &p.group, groups).into());
+    };
+    let travel = match (p.factor, p.table) {
+        (Some(factor), None) if factor.is_finite() && factor != 0.0 => GroupTravel::Factor(factor),
+        (Some(_), None) => {
+            let fault = params.fault("factor", "a group of factor 0 does not move");
+            return Err(fault.hint("leave its law out").into());
+        }
+        (None, Some(points)) => {
+            let points: Vec<_> = points.iter().map(|(distance, shift)| (distance.mm(), shift.mm())).collect();
+            let fault = || params.fault("table", "two or more distances, the farthest first, each with its shift");
+            GroupTravel::Table(FocusTable::new(&points).ok_or_else(|| fault().hint("such as [[inf, 0], [2000, 0.4]]"))?)
+        }
+        (None, None) | (Some(_), Some(_)) => {
+            let fault = params.fault_here("a group moves either by a `factor` or by a `table`");
+            return Err(fault
+                .hint("{group: rear, factor: 0.6}, or {group: rear, table: [[inf, 0], [500, 1.9]]}")
+                .into());
+        }
+    };
+    Ok(FocusLaw { group, travel })
+}
+
+/// A fault for a group that the lens does not have, at `key`.
+pub fn unknown_group(params: &Params, key: &str, name: &str, groups: &[Group]) -> Fault {
+    let fault = params.fault(key, format!("the lens has no group `{name}`"));
+    let known: Vec<&str> = groups.iter().map(|g| g.name.as_str()).collect();
+    match (nearest(name, known.iter().copied()), known.is_empty()) {
+        (_, true) => fault.hint("its file names none under `groups`"),
+        (Some(near), _) => fault.hint(format!("did you mean `{near}`? Known: {}", known.join(", "))),
+        (None, _) => fault.hint(format!("known: {}", known.join(", "))),
+    }
 }
 
 /// A group of surfaces.
@@ -290,6 +383,7 @@ fn group(node: &StageNode, surfaces: usize) -> Result<Group, Faults> {
     Ok(Group {
         name: p.name,
         elements: first as usize - 1..last as usize,
+        about: first as usize - 1,
         displacement: displacement(p.decenter, p.tilt),
     })
 }

@@ -2,6 +2,7 @@
 
 use crate::aperture::Shape;
 use crate::pose::Pose;
+use crate::transmission::{Absorption, Before, Passage};
 use crate::{Element, Lens};
 use glam::{DMat3, DVec3};
 use spectra_core::batch::Column;
@@ -35,6 +36,10 @@ pub struct Tracer {
     forward: Vec<Step>,
     backward: Vec<Step>,
     media: Vec<Dispersion>,
+    /// What each surface does to the weight of light.
+    passages: Vec<Passage>,
+    /// What each medium absorbs, where that is asked for.
+    absorptions: Vec<Option<Absorption>>,
     isa: Isa,
 }
 
@@ -69,6 +74,8 @@ pub struct Work {
     /// Rays lost so far, by cause and surface.
     pub losses: LossCounts,
     compact: bool,
+    /// Of a lens that does not pass everything.
+    before: Option<Before>,
 }
 
 /// One ray, surface by surface.
@@ -108,7 +115,16 @@ impl Tracer {
         let forward = Step::along(frames.iter().copied());
         let backward = Step::along(frames.iter().rev().copied());
         let clips = lens.elements.iter().map(round_clip2_mm2).collect();
-        Ok(Self { elements: lens.elements.clone(), clips, forward, backward, media, isa })
+        let passages = lens.elements.iter().map(|e| Passage::of(lens, e)).collect();
+        let (min_nm, max_nm) = match indices {
+            Indices::Band { min_nm, max_nm } => (min_nm, max_nm),
+            Indices::Stated => (lens.reference_nm, lens.reference_nm),
+            Indices::At(wavelength_nm) => (wavelength_nm, wavelength_nm),
+        };
+        let absorption = |medium: &Medium| Absorption::of(medium, min_nm, max_nm).filter(|_| lens.absorption);
+        let absorptions = lens.media.iter().map(|m| absorption(&m.medium)).collect();
+        let elements = lens.elements.clone();
+        Ok(Self { elements, clips, forward, backward, media, passages, absorptions, isa })
     }
 
     /// The instruction set in use.
@@ -123,12 +139,18 @@ impl Tracer {
         self.elements.len()
     }
 
+    /// Whether light keeps its weight through it.
+    fn is_ideal(&self) -> bool {
+        self.passages.iter().all(|p| *p == Passage::All) && self.absorptions.iter().all(Option::is_none)
+    }
+
     /// Scratch space for batches of up to `capacity` rays. Rays that end are dropped from the batch
     /// once they are the most of it.
     #[must_use]
     pub fn work(&self, capacity: usize) -> Work {
         let media = self.media.iter().map(|medium| IndexColumnPair::new(medium, capacity)).collect();
-        Work { media, losses: LossCounts::default(), compact: true }
+        let before = (!self.is_ideal()).then(|| Before::new(capacity));
+        Work { media, losses: LossCounts::default(), compact: true, before }
     }
 
     /// The same, but no ray leaves its place in the batch.
@@ -145,7 +167,7 @@ impl Tracer {
         let mut alive = rays.len();
         for (step, into) in steps[..self.elements.len()].iter().enumerate() {
             let at = if travel == Travel::Forward { step } else { self.elements.len() - 1 - step };
-            let ended = self.interact(rays, work, at, into, travel, self.isa);
+            let ended = self.interact(rays, work, at, into, travel, self.isa, step == 0);
             if ended > 0 {
                 self.count(rays, at as u32 + 1, &mut work.losses);
                 alive -= ended;
@@ -171,8 +193,18 @@ impl Tracer {
         self.isa.run(Leave { rays, index, shift_mm: -shift_mm });
     }
 
-    /// Brings a batch onto element `at` and through it; says how many rays ended there.
-    fn interact(&self, rays: &mut RayBatch, work: &Work, at: usize, into: &Step, travel: Travel, isa: Isa) -> usize {
+    /// Brings a batch onto element `at` and through it; says how many rays ended there. What lies in front of the
+    /// `first` one is not part of the lens and absorbs nothing.
+    fn interact(
+        &self,
+        rays: &mut RayBatch,
+        work: &mut Work,
+        at: usize,
+        into: &Step,
+        travel: Travel,
+        isa: Isa,
+        first: bool,
+    ) -> usize {
         let element = &self.elements[at];
         let shift_mm = match into {
             Step::Shift(shift_mm) => *shift_mm,
@@ -186,6 +218,9 @@ impl Tracer {
             Travel::Backward => (element.medium_after, element.medium_before),
         };
         let len = rays.len();
+        if let Some(noted) = &mut work.before {
+            noted.note(rays);
+        }
         let interface = Interface {
             number: at as u32 + 1,
             shift_mm,
@@ -196,6 +231,12 @@ impl Tracer {
             after: columns(&work.media[after], len),
         };
         let mut ended = element.surface.interact(rays, &interface, isa);
+        if let Some(noted) = &work.before {
+            if let (Some(absorption), false) = (&self.absorptions[before], first) {
+                noted.absorb(rays, absorption, shift_mm);
+            }
+            noted.pass(rays, self.passages[at], interface.before.n, interface.after.n, isa);
+        }
         for aperture in &element.apertures {
             ended += aperture.clip(rays, interface.number, element.semi_diameter_mm);
         }
@@ -218,7 +259,7 @@ impl Tracer {
         self.refractive_indices(&rays, &mut work);
         let mut path = RayPath { points: vec![position], direction, end: None };
         for (at, (element, into)) in self.elements.iter().zip(&self.forward).enumerate() {
-            self.interact(&mut rays, &work, at, into, Travel::Forward, Isa::Baseline);
+            self.interact(&mut rays, &mut work, at, into, Travel::Forward, Isa::Baseline, at == 0);
             let ([x, y, z], [l, m, n]) = (rays.positions(), rays.directions());
             path.end = rays.loss(0);
             if path.end.is_none_or(|(cause, _)| cause == Loss::Vignetted) {

@@ -1,8 +1,9 @@
 //! From a scene file to a [`Scene`], with every fault in one go.
 
+use crate::lens_section::lens_of;
 use crate::{ConePattern, Direction, FileResources, RenderSettings, Scene, output, yaml};
 use serde::Deserialize;
-use spectra_core::params::{FNumber, Fault, Faults, Length, Node, OrInfinity, Params, Positive, StageNode, Wavelength};
+use spectra_core::params::{Fault, Faults, Node, Params, StageNode, Wavelength};
 use spectra_core::registry::{self, Context};
 use spectra_core::resources::Resources;
 use spectra_core::spectral::{BAND, Channel, Grid};
@@ -32,19 +33,6 @@ struct SceneFile {
     render: Option<StageNode>,
     #[serde(default)]
     output: Option<Vec<StageNode>>,
-}
-
-/// The `lens` section.
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-struct LensSection {
-    /// A lens file beside the scene, or the name of a bundled lens.
-    #[expect(dead_code, reason = "states the key; the lens is read even where another key is faulty")]
-    file: String,
-    /// Aperture; as the lens file says if absent.
-    f_number: Option<FNumber>,
-    /// Distance that is in focus, from the first vertex, or `infinity`; the lens file's focus if absent.
-    focus: Option<OrInfinity<Positive<Length>>>,
 }
 
 /// The `wavelengths` section's own keys; the others are the sampler's.
@@ -206,32 +194,6 @@ fn grid_of(section: &BandSection, params: &Params) -> Result<Grid, Faults> {
     }
     let count = (last - first).ceil() as usize + 1;
     Ok(Grid { start_nm: first, step_nm: (last - first) / (count - 1) as f64, count })
-}
-
-fn lens_of(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults> {
-    let mut faults = Faults::new();
-    let section = faults.take(params.parse::<LensSection>());
-    // The lens is read even where another key of this section is faulty: all faults in one go.
-    let file = params.get("file").and_then(|node| node.as_str());
-    let lens = file.and_then(|file| {
-        faults.take(spectra_lens::load(file, resources).map_err(|faults| params.place_at("file", faults)))
-    });
-    let (Some(section), Some(lens)) = (section, lens) else { return Err(faults) };
-    let lens = match section.f_number {
-        Some(f_number) => {
-            let stopped = lens.clone().at_f_number(f_number.number());
-            faults.take(stopped.map_err(|e| params.fault("f-number", e.to_string()))).unwrap_or(lens)
-        }
-        None => lens,
-    };
-    let Some(focus) = section.focus else { return faults.into_result(lens) };
-    match lens.focused_at(focus.mm()) {
-        Ok(lens) => faults.into_result(lens),
-        Err(e) => {
-            faults.push(params.fault("focus", e.to_string()));
-            Err(faults)
-        }
-    }
 }
 
 fn render_settings(

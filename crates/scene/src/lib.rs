@@ -5,6 +5,7 @@
 
 mod assemble;
 pub mod diagnostics;
+mod lens_section;
 mod output;
 mod resources;
 mod scene;

@@ -1,11 +1,13 @@
 //! First-order figures, pupils and prescription of a lens.
 
+use super::field::{FREQUENCY_PER_MM, FieldReport, LimitReport, field, focus_shift_mm};
+use super::mounts::{MountReport, cleared};
 use crate::Light;
 use glam::DVec3;
 use serde::Serialize;
 use spectra_core::Isa;
 use spectra_core::surface::Action;
-use spectra_lens::{FirstOrder, Indices, Lens, MarginalRay, Tracer};
+use spectra_lens::{Criterion, FirstOrder, Indices, Lens, MarginalRay, Section, Tracer};
 
 /// A lens in figures, all in one light. Places along the axis (`..._z_mm`) are measured from the first
 /// vertex, +z toward the image. What a lens does not have (a pupil without a stop, a focal length
@@ -30,12 +32,19 @@ pub struct LensReport {
     pub line: Option<&'static str>,
     /// Effective focal length.
     pub efl_mm: f64,
+    /// Effective focal length in the x-z section, where it is another one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub efl_x_mm: Option<f64>,
     /// Back focal length: last vertex to the rear focal point.
     pub bfl_mm: f64,
     /// Front focal length: first vertex to the front focal point, negative in front of it.
     pub ffl_mm: f64,
     /// 1 / (2 sin theta') of the real marginal ray of an axial object at infinity.
     pub f_number: Option<f64>,
+    /// The f-number over the square root of the transmittance: what the exposure goes by.
+    pub t_number: Option<f64>,
+    /// Part of the light of the axial beam that reaches the image: coatings, mirrors, absorption, obstructions.
+    pub transmittance: Option<f64>,
     /// Entrance pupil, paraxial.
     pub entrance_pupil_z_mm: Option<f64>,
     /// Diameter of the beam that the lens takes in from an axial object at infinity: twice the height of
@@ -51,6 +60,30 @@ pub struct LensReport {
     pub front_principal_z_mm: f64,
     /// Rear principal plane.
     pub rear_principal_z_mm: f64,
+    /// Front nodal point.
+    pub front_nodal_z_mm: f64,
+    /// Rear nodal point.
+    pub rear_nodal_z_mm: f64,
+    /// Distance from the first vertex that it is focused at; infinite unless asked for.
+    pub focus_distance_mm: f64,
+    /// Size of the image over that of the object there, paraxial, negative upside down.
+    pub magnification: f64,
+    /// How far behind the image plane the paraxial image of the axial point there lies.
+    pub paraxial_focus_shift_mm: Option<f64>,
+    /// How far behind the image plane its spot is smallest (root mean square, real rays).
+    pub rms_focus_shift_mm: Option<f64>,
+    /// How far behind the image plane contrast is highest (geometrical, real rays).
+    pub contrast_focus_shift_mm: Option<f64>,
+    /// Spatial frequency of that contrast, line pairs a mm.
+    pub contrast_frequency_per_mm: f64,
+    /// Largest field angle from which any real ray passes.
+    pub max_field_deg: Option<f64>,
+    /// What ends the last light beyond it.
+    pub max_field_limit: Option<LimitReport>,
+    /// Chief rays: real ones through the center of the stop, from the axis to the largest field.
+    pub chief_ray_exit_angle_deg: Vec<FieldReport>,
+    /// Mounts that the back focus clears.
+    pub mounts: Vec<MountReport>,
     /// First vertex to image plane.
     pub total_track_mm: f64,
     /// First vertex to last.
@@ -95,6 +128,12 @@ impl LensReport {
         let held = light.hold(lens.clone());
         let first_order = held.first_order(held.reference_nm);
         let marginal = held.marginal_ray().ok();
+        let efl_x_mm = held.first_order_in(Section::X, held.reference_nm).efl_mm;
+        let f_number = marginal.map(|ray| ray.f_number()).filter(|n| n.is_finite());
+        let indices = light.wavelength_nm().map_or(Indices::Stated, Indices::At);
+        let transmittance = lens.axial_transmittance(indices, marginal).ok();
+        let (max_field_deg, max_field_limit, chief_rays) = field(&held);
+        let paraxial = held.paraxial_image_gap_mm(held.focused_mm, held.reference_nm) - held.image_gap_mm();
         let exit_pupil_z_mm = first_order.exit_pupil_z_mm.filter(|z| z.is_finite());
         Self {
             name: lens.name.clone(),
@@ -108,7 +147,10 @@ impl LensReport {
             efl_mm: first_order.efl_mm,
             bfl_mm: first_order.bfl_mm,
             ffl_mm: first_order.ffl_mm,
-            f_number: marginal.map(|ray| ray.f_number()).filter(|n| n.is_finite()),
+            efl_x_mm: Some(efl_x_mm).filter(|x| (x - first_order.efl_mm).abs() > 1e-9 * first_order.efl_mm.abs()),
+            f_number,
+            t_number: f_number.zip(transmittance).map(|(n, t)| n / t.sqrt()).filter(|n| n.is_finite()),
+            transmittance,
             entrance_pupil_z_mm: first_order.entrance_pupil_z_mm.filter(|z| z.is_finite()),
             entrance_pupil_diameter_mm: marginal.map(|ray| 2.0 * ray.height_mm),
             exit_pupil_z_mm,
@@ -116,6 +158,18 @@ impl LensReport {
             pupil_magnification: pupil_magnification(&first_order),
             front_principal_z_mm: first_order.front_principal_z_mm,
             rear_principal_z_mm: first_order.rear_principal_z_mm,
+            front_nodal_z_mm: first_order.front_nodal_z_mm,
+            rear_nodal_z_mm: first_order.rear_nodal_z_mm,
+            focus_distance_mm: lens.focused_mm,
+            magnification: magnification(&held),
+            paraxial_focus_shift_mm: Some(paraxial).filter(|z| z.is_finite()),
+            rms_focus_shift_mm: focus_shift_mm(&held, Criterion::Rms),
+            contrast_focus_shift_mm: focus_shift_mm(&held, Criterion::Contrast { per_mm: FREQUENCY_PER_MM }),
+            contrast_frequency_per_mm: FREQUENCY_PER_MM,
+            max_field_deg,
+            max_field_limit,
+            chief_ray_exit_angle_deg: chief_rays,
+            mounts: back_focal_distance_mm(lens).map(cleared).unwrap_or_default(),
             total_track_mm: lens.image_z_mm(),
             vertex_length_mm: lens.elements.last().map_or(0.0, |e| e.along_axis_mm),
             image_distance_mm: lens.image_gap_mm(),
@@ -124,6 +178,22 @@ impl LensReport {
             warnings: lens.warnings.clone(),
         }
     }
+}
+
+/// At infinity everything is imaged without size.
+fn magnification(held: &Lens) -> f64 {
+    if held.focused_mm == f64::INFINITY { 0.0 } else { held.paraxial_magnification(held.focused_mm, held.reference_nm) }
+}
+
+/// From the rearmost glass, vertex or rim, to the image plane; `None` where the axis is folded.
+fn back_focal_distance_mm(lens: &Lens) -> Option<f64> {
+    let last = lens.elements.iter().rfind(|e| e.action != Action::Pass)?;
+    if !lens.image_pose.is_on_axis() || lens.elements.iter().any(|e| e.action == Action::Reflect) {
+        return None;
+    }
+    let sense = if last.reversed { -1.0 } else { 1.0 };
+    let rim = last.semi_diameter_mm.and_then(|r| last.surface.sag_mm(0.0, r)).map_or(0.0, |sag| sense * sag);
+    Some(lens.image_z_mm() - last.vertex_z_mm() - rim.max(0.0))
 }
 
 fn pupil_magnification(first_order: &FirstOrder) -> Option<f64> {

@@ -34,6 +34,8 @@ impl fmt::Display for LensReport {
         writeln!(f)?;
         self.figures(f)?;
         writeln!(f)?;
+        self.field(f)?;
+        self.room(f)?;
         self.prescription(f)?;
         for warning in &self.warnings {
             writeln!(f, "warning: {warning}")?;
@@ -45,13 +47,21 @@ impl fmt::Display for LensReport {
 impl LensReport {
     fn figures(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let f_number = self.f_number.map_or("unknown".to_owned(), |n| format!("f/{n:.4}"));
+        let t_number = self.t_number.map_or("unknown".to_owned(), |n| format!("T/{n:.4}"));
+        let max_field = self.max_field_deg.map_or("unknown".to_owned(), |field| format!("{field:.3} deg"));
+        let limit =
+            self.max_field_limit.map_or(String::new(), |l| format!("then {} at surface {}", l.cause, l.surface));
+        let contrast = format!("where contrast at {} lp/mm is highest", self.contrast_frequency_per_mm);
         let rows = [
             ("focal length", mm(Some(self.efl_mm)), ""),
             ("f-number", f_number, "by the real marginal ray"),
+            ("T-number", t_number, "with coatings and glass as stated"),
             ("back focal length", mm(Some(self.bfl_mm)), "from the last vertex"),
             ("front focal length", mm(Some(self.ffl_mm)), "from the first vertex"),
             ("front principal plane", mm(Some(self.front_principal_z_mm)), "from the first vertex"),
             ("rear principal plane", mm(Some(self.rear_principal_z_mm)), "from the first vertex"),
+            ("front nodal point", mm(Some(self.front_nodal_z_mm)), "from the first vertex"),
+            ("rear nodal point", mm(Some(self.rear_nodal_z_mm)), "from the first vertex"),
             ("entrance pupil", mm(self.entrance_pupil_z_mm), "from the first vertex"),
             ("  its diameter", mm(self.entrance_pupil_diameter_mm), "by the real marginal ray"),
             ("exit pupil", mm(self.exit_pupil_z_mm), "from the first vertex"),
@@ -60,10 +70,39 @@ impl LensReport {
             ("length", mm(Some(self.vertex_length_mm)), "first vertex to last"),
             ("image plane", mm(Some(self.image_distance_mm)), "from the last vertex"),
             ("total track", mm(Some(self.total_track_mm)), "first vertex to image plane"),
+            ("focused at", mm(Some(self.focus_distance_mm)), "from the first vertex"),
+            ("  magnification", format!("{:.6}", self.magnification), ""),
+            ("  paraxial image", mm(self.paraxial_focus_shift_mm), "behind the image plane"),
+            ("  smallest spot", mm(self.rms_focus_shift_mm), "behind it, root mean square, real rays"),
+            ("  best contrast", mm(self.contrast_focus_shift_mm), &contrast),
+            ("largest field", max_field, &limit),
         ];
+        if let Some(efl_x_mm) = self.efl_x_mm {
+            writeln!(f, "{:<22} {:>16}   in the x-z section", "focal length", mm(Some(efl_x_mm)))?;
+        }
         for (name, value, remark) in rows {
             let line = format!("{name:<22} {value:>16}   {remark}");
             writeln!(f, "{}", line.trim_end())?;
+        }
+        Ok(())
+    }
+
+    fn field(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.chief_ray_exit_angle_deg.is_empty() {
+            return Ok(());
+        }
+        writeln!(f, "{:>10} {:>16} {:>16}   chief ray", "field", "exit angle", "image height")?;
+        for ray in &self.chief_ray_exit_angle_deg {
+            writeln!(f, "{:>8.2} ° {:>14.3} ° {:>13.4} mm", ray.field_deg, ray.angle_deg, ray.image_height_mm)?;
+        }
+        writeln!(f)
+    }
+
+    fn room(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mounts: Vec<String> = self.mounts.iter().map(|m| format!("{} {}", m.name, m.flange_mm)).collect();
+        if !mounts.is_empty() {
+            writeln!(f, "clears the flange of (mm): {}", mounts.join(", "))?;
+            writeln!(f)?;
         }
         Ok(())
     }

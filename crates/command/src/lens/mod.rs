@@ -33,7 +33,7 @@ fn load(setting: &LensSetting) -> Result<Lens, Failure> {
     if let Some(f_number) = setting.f_number {
         lens = lens.at_f_number(f_number.number()).map_err(|e| refuse(format!("--f-number: {e}")))?;
     }
-    if let Some(focus) = setting.focus {
+    if let Some(focus) = setting.focus.or(setting.focus_mm) {
         lens = lens.focused_at(focus.mm()).map_err(|e| refuse(format!("--focus: {e}")))?;
     }
     Ok(lens)

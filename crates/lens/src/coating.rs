@@ -1,0 +1,313 @@
+//! What a refracting surface lets through: bare glass by Fresnel's equations, or under one thin layer.
+//!
+//! Born and Wolf, Principles of Optics, sections 1.5.2 and 1.6.4. With eta = n cos(theta) for the electric field across
+//! the plane of incidence (s) and cos(theta) / n in it (p), a layer of phase thickness delta transmits
+//! T = 4 eta eta' / ((eta + eta')^2 cos^2(delta) + (eta eta' / eta_1 + eta_1)^2 sin^2(delta)). It is the same from both
+//! sides, and without a layer (delta = 0) it is Fresnel's.
+
+use serde::Deserialize;
+use spectra_core::math;
+use spectra_core::params::{Faults, Params, StageNode, Wavelength};
+
+/// Coating of a refracting surface.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Coating {
+    /// Everything passes.
+    #[default]
+    Ideal,
+    /// None: Fresnel's equations.
+    Bare,
+    /// One layer of a dielectric.
+    Layer {
+        /// Its refractive index, at all wavelengths.
+        index: f64,
+        /// Its thickness, nm.
+        thickness_nm: f64,
+    },
+}
+
+/// Transmittance by polarization: parts of the power.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Transmittance {
+    /// Electric field perpendicular to the plane of incidence.
+    pub s: f64,
+    /// Electric field in the plane of incidence.
+    pub p: f64,
+}
+
+impl Transmittance {
+    /// Everything.
+    pub const FULL: Self = Self { s: 1.0, p: 1.0 };
+
+    /// Of unpolarized light.
+    #[must_use]
+    pub fn mean(self) -> f64 {
+        0.5 * (self.s + self.p)
+    }
+}
+
+impl Coating {
+    /// A layer that is a quarter of a wave thick at a wavelength, nm, at normal incidence.
+    #[must_use]
+    pub fn quarter_wave(index: f64, wavelength_nm: f64) -> Self {
+        Self::Layer { index, thickness_nm: 0.25 * wavelength_nm / index }
+    }
+
+    /// Transmittance from a medium of index `n` into one of index `n_after`, at this cosine of the angle of incidence
+    /// (0 to 1) and wavelength in air, nm. Nothing passes on total reflection; `Ideal` passes everything else.
+    #[must_use]
+    pub fn transmittance(self, n: f64, n_after: f64, cos_incidence: f64, wavelength_nm: f64) -> Transmittance {
+        let sine = n * (1.0 - cos_incidence * cos_incidence).max(0.0).sqrt();
+        let cos_square = 1.0 - sine * sine / (n_after * n_after);
+        if cos_square <= 0.0 {
+            return Transmittance { s: 0.0, p: 0.0 };
+        }
+        let cosines = [cos_incidence, cos_square.sqrt()];
+        match self {
+            Self::Ideal => Transmittance::FULL,
+            Self::Bare => bare([n, n_after], cosines),
+            Self::Layer { index, thickness_nm } => layer([n, n_after], cosines, index, thickness_nm / wavelength_nm),
+        }
+    }
+}
+
+/// Fresnel: indices and cosines on both sides.
+#[inline(always)]
+pub(crate) fn bare([n, n_after]: [f64; 2], [c, c_after]: [f64; 2]) -> Transmittance {
+    let pass = |a: f64, b: f64| 4.0 * a * b / ((a + b) * (a + b));
+    Transmittance { s: pass(n * c, n_after * c_after), p: pass(n_after * c, n * c_after) }
+}
+
+/// Square of `n_1 cos(theta_1)` in a layer; negative where the light does not run in it but decays.
+#[inline(always)]
+pub(crate) fn layer_square(index: f64, n: f64, c: f64) -> f64 {
+    index * index - n * n * (1.0 - c * c)
+}
+
+/// A layer in which the light runs: `in_layer` is n_1 cos(theta_1), `waves` its thickness over the wavelength.
+#[inline(always)]
+pub(crate) fn running_layer(
+    [n, n_after]: [f64; 2],
+    [c, c_after]: [f64; 2],
+    index: f64,
+    in_layer: f64,
+    waves: f64,
+) -> Transmittance {
+    let turns = in_layer * waves;
+    let (sin, cos) = math::sin_cos_turns(turns - turns.floor());
+    let (sin2, cos2) = (sin * sin, cos * cos);
+    let pass = |a: f64, b: f64, layer: f64| {
+        let (sum, through) = (a + b, a * b / layer + layer);
+        4.0 * a * b / (sum * sum * cos2 + through * through * sin2)
+    };
+    Transmittance {
+        s: pass(n * c, n_after * c_after, in_layer),
+        p: pass(c / n, c_after / n_after, in_layer / (index * index)),
+    }
+}
+
+/// A layer of any kind; in a thin one of low index between two glasses the light may decay, and some of it tunnels.
+pub(crate) fn layer([n, n_after]: [f64; 2], [c, c_after]: [f64; 2], index: f64, waves: f64) -> Transmittance {
+    let square = layer_square(index, n, c);
+    if square > 0.0 {
+        return running_layer([n, n_after], [c, c_after], index, square.sqrt(), waves);
+    }
+    // eta_1 and delta turn imaginary: cos to cosh, sin to i sinh.
+    let decay = (-square).sqrt();
+    let depth = std::f64::consts::TAU * decay * waves;
+    if depth > 300.0 {
+        return Transmittance { s: 0.0, p: 0.0 };
+    }
+    let (up, down) = (math::exp(depth), math::exp(-depth));
+    let (sinh, cosh) = (0.5 * (up - down), 0.5 * (up + down));
+    // sinh over eta_1; at the critical angle itself both vanish, and their ratio is that of their slopes.
+    let pass = |a: f64, b: f64, scale: f64| {
+        let layer = decay / scale;
+        let ratio = if decay > 0.0 { sinh / layer } else { std::f64::consts::TAU * waves * scale };
+        let (sum, through) = ((a + b) * cosh, a * b * ratio - layer * sinh);
+        4.0 * a * b / (sum * sum + through * through)
+    };
+    Transmittance { s: pass(n * c, n_after * c_after, 1.0), p: pass(c / n, c_after / n_after, index * index) }
+}
+
+/// A layer as a file writes it.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct LayerParams {
+    /// Refractive index of the layer.
+    layer: f64,
+    /// Thickness, nm if bare.
+    thickness: Option<Wavelength>,
+    /// Wavelength at which it is a quarter of a wave thick, nm if bare.
+    quarter_wave_at: Option<Wavelength>,
+}
+
+const HINT: &str = "ideal, bare, or such as {layer: 1.38, quarter-wave-at: 550 nm}";
+
+/// Reads `ideal`, `bare`, or a layer.
+///
+/// # Errors
+/// What is wrong with it, placed.
+pub fn read_coating(node: &StageNode) -> Result<Coating, Faults> {
+    match node.node().as_str() {
+        Some("ideal") => return Ok(Coating::Ideal),
+        Some("bare") => return Ok(Coating::Bare),
+        Some(other) => return Err(node.fault(format!("unknown coating `{other}`")).hint(HINT).into()),
+        None => {}
+    }
+    let params = Params::section(node.node().clone(), node.path())?;
+    let p: LayerParams = params.parse()?;
+    if !(1.0..=5.0).contains(&p.layer) {
+        let fault = params.fault("layer", format!("a layer of index {}", p.layer));
+        return Err(fault.hint("from 1 to 5; magnesium fluoride has 1.38").into());
+    }
+    match (p.thickness, p.quarter_wave_at) {
+        (Some(thickness), None) if thickness.nm() <= 1e5 => {
+            Ok(Coating::Layer { index: p.layer, thickness_nm: thickness.nm() })
+        }
+        (None, Some(wave)) if wave.nm() <= 1e5 => Ok(Coating::quarter_wave(p.layer, wave.nm())),
+        (Some(_), Some(_)) | (None, None) => Err(params
+            .fault_here("a layer has either a `thickness` or is `quarter-wave-at` a wavelength")
+            .hint(HINT)
+            .into()),
+        (thickness, _) => {
+            let key = if thickness.is_some() { "thickness" } else { "quarter-wave-at" };
+            Err(params.fault(key, "more than 100 um is no thin layer").into())
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn reflectance(coating: Coating, n: f64, angle_deg: f64, wavelength_nm: f64) -> (f64, f64) {
+        let t = coating.transmittance(1.0, n, math::cos(angle_deg.to_radians()), wavelength_nm);
+        (1.0 - t.s, 1.0 - t.p)
+    }
+
+    /// Textbook values at n = 1.5, six decimals.
+    #[test]
+    fn bare_glass_by_angle() {
+        for (angle, s, p) in [
+            (0.0, 0.04, 0.04),
+            (30.0, 0.057796, 0.025249),
+            (45.0, 0.092013, 0.008466),
+            (60.0, 0.176571, 0.001802),
+            (80.0, 0.538595, 0.236814),
+        ] {
+            let got = reflectance(Coating::Bare, 1.5, angle, 550.0);
+            assert!((got.0 - s).abs() < 1e-6 && (got.1 - p).abs() < 1e-6, "{angle}: {got:?}");
+        }
+        assert!(reflectance(Coating::Bare, 1.5, math::atan(1.5).to_degrees(), 550.0).1.abs() < 1e-15);
+    }
+
+    /// Normal incidence: (n - 1)^2 / (n + 1)^2, (n1^2 - n)^2 / (n1^2 + n)^2 for a quarter wave, and Airy's sum for 99.6 nm.
+    #[test]
+    fn one_layer_at_normal_incidence() {
+        let quarter = Coating::quarter_wave(1.38, 587.56);
+        let thin = Coating::Layer { index: 1.38, thickness_nm: 99.6 };
+        for (coating, n, wavelength_nm, want) in [
+            (Coating::Bare, 1.5168, 587.56, 0.042_164_6),
+            (quarter, 1.5168, 587.56, 0.012_835_4),
+            (Coating::Bare, 1.518522, 550.0, 0.042_388),
+            (thin, 1.518522, 550.0, 0.012_708_8),
+        ] {
+            let (s, p) = reflectance(coating, n, 0.0, wavelength_nm);
+            assert!((s - want).abs() < 5e-7 && (p - want).abs() < 5e-7, "{coating:?}: {s} {p} {want}");
+        }
+    }
+
+    /// Amplitudes of the three-media sum in complex numbers (Born and Wolf 1.6.4, eq. 55 to 58), by hand: r + t apart.
+    fn airy(n: [f64; 3], cos0: f64, waves: f64, p: bool) -> (f64, f64) {
+        let cosine = |k: usize| (1.0 - (n[0] / n[k]).powi(2) * (1.0 - cos0 * cos0)).sqrt();
+        let c = [cos0, cosine(1), cosine(2)];
+        let r = |a: usize, b: usize| {
+            let (x, y) = if p { (n[b] * c[a], n[a] * c[b]) } else { (n[a] * c[a], n[b] * c[b]) };
+            (x - y) / (x + y)
+        };
+        let t = |a: usize, b: usize| {
+            let down = if p { n[b] * c[a] + n[a] * c[b] } else { n[a] * c[a] + n[b] * c[b] };
+            2.0 * n[a] * c[a] / down
+        };
+        let beta = std::f64::consts::TAU * n[1] * c[1] * waves;
+        let (r01, r12) = (r(0, 1), r(1, 2));
+        let (co, si) = (math::cos(2.0 * beta), math::sin(2.0 * beta));
+        let up = (r01 + r12 * co).powi(2) + (r12 * si).powi(2);
+        let down = (1.0 + r01 * r12 * co).powi(2) + (r01 * r12 * si).powi(2);
+        let through = (t(0, 1) * t(1, 2)).powi(2) / down * n[2] * c[2] / (n[0] * c[0]);
+        (up / down, through)
+    }
+
+    /// R and T of the sum over all bounces add up to one, and T is ours, at every angle, thickness and polarization.
+    #[test]
+    fn a_layer_keeps_energy() {
+        for n in [[1.0, 1.38, 1.5168], [1.0, 2.1, 1.9], [1.7, 1.38, 1.0], [1.6, 1.5, 1.7]] {
+            for step in 0..40 {
+                let cos0 = 1.0 - 0.19 * f64::from(step) / 40.0;
+                for waves in [0.05, 0.18, 0.25, 1.3] {
+                    let coating = Coating::Layer { index: n[1], thickness_nm: waves * 500.0 };
+                    let got = coating.transmittance(n[0], n[2], cos0, 500.0);
+                    for (p, got) in [(false, got.s), (true, got.p)] {
+                        let (r, t) = airy(n, cos0, waves, p);
+                        if t.is_nan() {
+                            assert_eq!(got, 0.0);
+                            continue;
+                        }
+                        assert!(
+                            (r + t - 1.0).abs() < 1e-12 && (got - t).abs() < 1e-12,
+                            "{n:?} {cos0} {waves} {p}: {got} {t}"
+                        );
+                    }
+                }
+            }
+        }
+    }
+
+    /// Light passes as well backward, along the same path.
+    #[test]
+    fn both_ways_alike() {
+        for coating in
+            [Coating::Bare, Coating::quarter_wave(1.38, 550.0), Coating::Layer { index: 1.1, thickness_nm: 90.0 }]
+        {
+            for (n, m) in [(1.0, 1.8), (1.7, 1.5)] {
+                for step in 0..20 {
+                    let cos = 1.0 - 0.04 * f64::from(step);
+                    let there = coating.transmittance(n, m, cos, 480.0);
+                    let cos_after = (1.0 - (n / m) * (n / m) * (1.0 - cos * cos)).max(0.0).sqrt();
+                    if cos_after < 1e-3 {
+                        continue;
+                    }
+                    let back = coating.transmittance(m, n, cos_after, 480.0);
+                    assert!(
+                        (there.s - back.s).abs() < 1e-11 && (there.p - back.p).abs() < 1e-11,
+                        "{coating:?} {n} {cos}"
+                    );
+                }
+            }
+        }
+    }
+
+    /// A gap of air between two prisms beyond the critical angle: nothing through a wide one, everything through none, and
+    /// for equal glasses T = 1 / (1 + (a sinh(depth))^2) (frustrated total reflection, s light: a = (q^2 + e^2) / (2 q e)).
+    #[test]
+    fn light_tunnels_through_a_thin_gap() {
+        let (n, cos) = (1.5_f64, 0.6_f64);
+        let gap = |nm: f64| Coating::Layer { index: 1.0, thickness_nm: nm }.transmittance(n, n, cos, 500.0);
+        assert!((gap(1e-6).s - 1.0).abs() < 1e-9 && gap(50_000.0).s == 0.0 && gap(5000.0).p < 1e-9);
+        let decay = (n * n * (1.0 - cos * cos) - 1.0).sqrt();
+        let e = n * cos;
+        for nm in [20.0, 100.0, 300.0] {
+            let depth: f64 = std::f64::consts::TAU * decay * nm / 500.0;
+            let a = (decay * decay + e * e) / (2.0 * decay * e) * depth.sinh();
+            assert!((gap(nm).s - 1.0 / (1.0 + a * a)).abs() < 1e-12, "{nm}");
+        }
+        // At the critical angle both forms meet.
+        let critical = (1.0 - 1.0 / (n * n)).sqrt();
+        let at = |cos: f64| Coating::Layer { index: 1.0, thickness_nm: 120.0 }.transmittance(n, n, cos, 500.0);
+        for delta in [-1e-9, 0.0, 1e-9] {
+            let (here, there) = (at(critical + delta), at(critical + 1e-7));
+            assert!((here.s - there.s).abs() < 1e-5 && (here.p - there.p).abs() < 1e-5, "{delta}");
+        }
+    }
+}

@@ -1,0 +1,120 @@
+//! How groups move when a lens is focused.
+
+/// The motion of one group.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FocusLaw {
+    /// The group: index into [`crate::Lens::groups`].
+    pub group: usize,
+    /// How it moves.
+    pub travel: GroupTravel,
+}
+
+/// How a group moves.
+#[derive(Clone, Debug, PartialEq)]
+pub enum GroupTravel {
+    /// This many times the common travel, toward the object where positive. The travel follows from the distance.
+    Factor(f64),
+    /// As a table says.
+    Table(FocusTable),
+}
+
+/// Shift of a group by the distance of the object: a monotone cubic in one over the distance, through every point.
+///
+/// F. N. Fritsch and J. Butland, "A method for constructing local monotone piecewise cubic interpolants", SIAM J. Sci.
+/// Stat. Comput. 5 (1984), 300.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FocusTable {
+    /// One over the distance, 1/mm, rising.
+    vergence: Vec<f64>,
+    shift_mm: Vec<f64>,
+    slope: Vec<f64>,
+}
+
+impl FocusTable {
+    /// From points (distance of the object from the first vertex, mm, falling, infinity allowed; shift toward the object,
+    /// mm). `None` unless there are two or more, in order.
+    #[must_use]
+    pub fn new(points: &[(f64, f64)]) -> Option<Self> {
+        let vergence: Vec<f64> = points.iter().map(|(distance_mm, _)| 1.0 / distance_mm).collect();
+        let shift_mm: Vec<f64> = points.iter().map(|(_, shift)| *shift).collect();
+        let rising = vergence.windows(2).all(|w| w[0] < w[1]) && vergence.iter().all(|v| *v >= 0.0 && v.is_finite());
+        if points.len() < 2 || !rising || !shift_mm.iter().all(|s| s.is_finite()) {
+            return None;
+        }
+        let step = |i: usize| vergence[i + 1] - vergence[i];
+        let secant = |i: usize| (shift_mm[i + 1] - shift_mm[i]) / step(i);
+        let last = points.len() - 1;
+        let slope = (0..=last)
+            .map(|i| match i {
+                0 => secant(0),
+                _ if i == last => secant(last - 1),
+                _ => {
+                    let (before, after) = (secant(i - 1), secant(i));
+                    if before * after <= 0.0 {
+                        return 0.0;
+                    }
+                    let (a, b) = (2.0 * step(i) + step(i - 1), step(i) + 2.0 * step(i - 1));
+                    (a + b) / (a / before + b / after)
+                }
+            })
+            .collect();
+        Some(Self { vergence, shift_mm, slope })
+    }
+
+    /// Nearest and farthest distance, mm.
+    #[must_use]
+    pub fn range_mm(&self) -> (f64, f64) {
+        (1.0 / self.vergence[self.vergence.len() - 1], 1.0 / self.vergence[0])
+    }
+
+    /// Shift toward the object, mm, for an object at this distance, mm; `None` beyond the table.
+    #[must_use]
+    pub fn shift_mm(&self, object_mm: f64) -> Option<f64> {
+        let v = 1.0 / object_mm;
+        let last = self.vergence.len() - 1;
+        if !(v >= self.vergence[0] && v <= self.vergence[last]) {
+            return None;
+        }
+        let i = self.vergence.partition_point(|w| *w <= v).clamp(1, last) - 1;
+        let h = self.vergence[i + 1] - self.vergence[i];
+        let t = (v - self.vergence[i]) / h;
+        let (a, b) = (self.shift_mm[i], self.shift_mm[i + 1]);
+        let (p, q) = (self.slope[i] * h, self.slope[i + 1] * h);
+        // Hermite's cubic about its left end.
+        Some(a + t * (p + t * ((3.0 * (b - a) - 2.0 * p - q) + t * (2.0 * (a - b) + p + q))))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_table_goes_through_its_points_and_never_back() {
+        let points = [(f64::INFINITY, 0.0), (2000.0, 0.4), (1900.0, 0.4), (500.0, 1.9), (300.0, 7.0)];
+        let table = FocusTable::new(&points).expect("in order");
+        for (distance, shift) in points {
+            assert!((table.shift_mm(distance).expect("inside") - shift).abs() < 1e-13, "{distance}");
+        }
+        let mut before = 0.0;
+        for step in 0..=1000 {
+            let shift = table.shift_mm(300.0 * 1000.0 / f64::from(step)).expect("inside");
+            assert!(shift >= before - 1e-13, "{step}: {shift} after {before}");
+            before = shift;
+        }
+        assert_eq!(table.shift_mm(299.0), None);
+        assert_eq!(table.range_mm(), (300.0, f64::INFINITY));
+        assert!(FocusTable::new(&points[..1]).is_none());
+        assert!(FocusTable::new(&[(500.0, 1.0), (2000.0, 0.4)]).is_none());
+    }
+
+    /// A shift in proportion to 1/distance is a straight line.
+    #[test]
+    fn a_line_stays_a_line() {
+        let line = |d: f64| 700.0 / d + 0.1;
+        let table = FocusTable::new(&[3000.0, 1500.0, 800.0, 450.0].map(|d| (d, line(d)))).expect("in order");
+        for d in [3000.0, 2000.0, 1000.0, 700.0, 460.0] {
+            assert!((table.shift_mm(d).expect("inside") - line(d)).abs() < 1e-12, "{d}");
+        }
+    }
+}

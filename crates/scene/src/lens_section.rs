@@ -1,0 +1,189 @@
+//! The `lens` section of a scene: which lens, and how it is set.
+//!
+//! In this order: the lens is turned round, coated, stopped and focused as its maker meant it; then groups go out of place;
+//! a focus by real rays, as a camera finds it, comes last and sees them so.
+
+use serde::Deserialize;
+use spectra_core::params::{
+    Angle, FNumber, Faults, Length, OrInfinity, Params, Positive, SpatialFrequency, StageNode, Value, Wavelength,
+};
+use spectra_core::resources::Resources;
+use spectra_lens::{Criterion, FocusSearch, Lens, Misalignment};
+
+/// The `lens` section.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct LensSection {
+    /// A lens file beside the scene, or the name of a bundled lens.
+    #[expect(dead_code, reason = "states the key; the lens is read even where another key is faulty")]
+    file: String,
+    /// Whether it is mounted the other way round.
+    #[serde(default)]
+    reverse: bool,
+    /// Coating of all surfaces, in place of what the lens file states.
+    coating: Option<StageNode>,
+    /// Whether glass absorbs; as the lens file says if absent.
+    absorption: Option<bool>,
+    /// Aperture; as the lens file says if absent.
+    f_number: Option<FNumber>,
+    /// Distance that is in focus, from the first vertex, or `infinity`; the lens file's focus if absent. Or a map with
+    /// what to focus by.
+    focus: Option<StageNode>,
+    /// Groups out of place.
+    #[serde(default)]
+    adjust: Vec<StageNode>,
+}
+
+/// `focus` as a map.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct FocusParams {
+    /// Distance that is in focus, from the first vertex, mm if bare, or `infinity`.
+    distance: OrInfinity<Positive<Length>>,
+    /// `paraxial`, `rms` or `contrast`.
+    by: Option<String>,
+    /// Field angle that is in focus, degrees if bare; on the axis if absent.
+    field: Option<Angle>,
+    /// Wavelength, nm if bare; the reference line of the lens if absent.
+    wavelength: Option<Wavelength>,
+    /// Several wavelengths, nm if bare, each with its weight.
+    spectrum: Option<Vec<(Wavelength, f64)>>,
+    /// Spatial frequency whose contrast counts, line pairs a mm if bare.
+    frequency: Option<Positive<SpatialFrequency>>,
+}
+
+/// A group out of place.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct AdjustParams {
+    /// Name of the group.
+    group: String,
+    /// Shift along x and y, mm if bare.
+    decenter: Option<[Length; 2]>,
+    /// Tilts about x, y and z, degrees if bare, about the vertex of its first surface.
+    tilt: Option<[Angle; 3]>,
+    /// Shift along the axis toward the image, mm if bare.
+    shift: Option<Length>,
+}
+
+/// Spatial frequency that counts where none is said, line pairs a mm: that of a sharp 35 mm negative.
+const DEFAULT_FREQUENCY: f64 = 30.0;
+/// Field angles of a plane, degrees.
+const MAX_FIELD_DEG: f64 = 89.0;
+
+/// What is in focus, and by what.
+struct Focus {
+    distance_mm: f64,
+    search: Option<FocusSearch>,
+}
+
+/// The lens of a scene, set.
+pub(crate) fn lens_of(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults> {
+    let mut faults = Faults::new();
+    let section = faults.take(params.parse::<LensSection>());
+    // The lens is read even where another key of this section is faulty: all faults in one go.
+    let file = params.get("file").and_then(|node| node.as_str());
+    let lens = file.and_then(|file| {
+        faults.take(spectra_lens::load(file, resources).map_err(|faults| params.place_at("file", faults)))
+    });
+    let (Some(section), Some(mut lens)) = (section, lens) else { return Err(faults) };
+    if section.reverse {
+        let reversed = faults.take(lens.reversed().map_err(|e| params.fault("reverse", e.to_string())));
+        lens = reversed.unwrap_or(lens);
+    }
+    if let Some(coating) = section.coating.and_then(|node| faults.take(spectra_lens::read_coating(&node))) {
+        lens = lens.with_coating(coating);
+    }
+    lens.absorption = section.absorption.unwrap_or(lens.absorption);
+    if let Some(f_number) = section.f_number {
+        let stopped = lens.clone().at_f_number(f_number.number());
+        lens = faults.take(stopped.map_err(|e| params.fault("f-number", e.to_string()))).unwrap_or(lens);
+    }
+    let focus = section.focus.and_then(|node| faults.take(focus_of(&node, lens.reference_nm)));
+    if let Some(focus) = &focus {
+        let focused = lens.clone().focused_at(focus.distance_mm);
+        lens = faults.take(focused.map_err(|e| params.fault("focus", e.to_string()))).unwrap_or(lens);
+    }
+    for node in &section.adjust {
+        lens = faults.take(adjusted(&lens, node)).unwrap_or(lens);
+    }
+    if let (Some(search), true) = (focus.and_then(|f| f.search), faults.is_empty()) {
+        let found = lens.clone().focused_by(&search);
+        lens = faults.take(found.map_err(|e| params.fault("focus", e.to_string()))).unwrap_or(lens);
+    }
+    faults.into_result(lens)
+}
+
+fn focus_of(node: &StageNode, reference_nm: f64) -> Result<Focus, Faults> {
+    if !matches!(node.node().value, Value::Map(_)) {
+        let distance: OrInfinity<Positive<Length>> = node.parse()?;
+        return Ok(Focus { distance_mm: distance.mm(), search: None });
+    }
+    let params = Params::section(node.node().clone(), node.path())?;
+    let p: FocusParams = params.parse()?;
+    let mut faults = Faults::new();
+    let criterion = match p.by.as_deref() {
+        None | Some("paraxial") => None,
+        Some("rms") => Some(Criterion::Rms),
+        Some("contrast") => Some(Criterion::Contrast { per_mm: p.frequency.map_or(DEFAULT_FREQUENCY, |f| f.per_mm()) }),
+        Some(other) => {
+            let fault = params.fault("by", format!("no way to focus by `{other}`"));
+            faults.push(fault.hint("paraxial, rms or contrast"));
+            None
+        }
+    };
+    let by_rays = criterion.is_some();
+    let is_contrast = matches!(criterion, Some(Criterion::Contrast { .. }));
+    for (key, given, used) in [
+        ("field", p.field.is_some(), by_rays),
+        ("wavelength", p.wavelength.is_some(), by_rays),
+        ("spectrum", p.spectrum.is_some(), by_rays),
+        ("frequency", p.frequency.is_some(), is_contrast),
+    ] {
+        if given && !used && faults.is_empty() {
+            let needed = if key == "frequency" { "`by: contrast`" } else { "`by: rms` or `by: contrast`" };
+            faults.push(params.fault(key, format!("`{key}` matters only with {needed}")));
+        }
+    }
+    let field_rad = p.field.map_or(0.0, Angle::rad);
+    if field_rad.abs() > MAX_FIELD_DEG.to_radians() {
+        let fault = params.fault("field", "no plane is seen at this angle");
+        faults.push(fault.hint(format!("between {} and {MAX_FIELD_DEG} degrees", -MAX_FIELD_DEG)));
+    }
+    let light = match (p.wavelength, p.spectrum) {
+        (None, None) => vec![(reference_nm, 1.0)],
+        (Some(wavelength), None) => vec![(wavelength.nm(), 1.0)],
+        (None, Some(spectrum)) => {
+            let light: Vec<(f64, f64)> = spectrum.iter().map(|(w, weight)| (w.nm(), *weight)).collect();
+            let good = (1..=64).contains(&light.len()) && light.iter().all(|(_, w)| *w > 0.0 && w.is_finite());
+            if !good {
+                let fault = params.fault("spectrum", "1 to 64 wavelengths, each with a positive weight");
+                faults.push(fault.hint("such as [[486, 1], [546, 2], [656, 1]]"));
+            }
+            light
+        }
+        (Some(_), Some(_)) => {
+            faults.push(params.fault("spectrum", "either `wavelength` or `spectrum`"));
+            Vec::new()
+        }
+    };
+    if light.iter().any(|(nm, _)| !(200.0..=2500.0).contains(nm)) {
+        let key = if p.wavelength.is_some() { "wavelength" } else { "spectrum" };
+        faults.push(params.fault(key, "this is no light").hint("from 200 to 2500 nm"));
+    }
+    let object_mm = p.distance.mm();
+    let search = criterion.map(|criterion| FocusSearch { object_mm, field_rad, criterion, light });
+    faults.into_result(Focus { distance_mm: object_mm, search })
+}
+
+fn adjusted(lens: &Lens, node: &StageNode) -> Result<Lens, Faults> {
+    let params = Params::section(node.node().clone(), node.path())?;
+    let p: AdjustParams = params.parse()?;
+    let by = Misalignment {
+        decenter_mm: p.decenter.map(|d| d.map(Length::mm)),
+        tilt_rad: p.tilt.map(|t| t.map(Angle::rad)),
+        shift_mm: p.shift.map_or(0.0, Length::mm),
+    };
+    let moved = lens.clone().with_misalignment(&p.group, &by);
+    moved.ok_or_else(|| spectra_lens::unknown_group(&params, "group", &p.group, &lens.groups).into())
+}

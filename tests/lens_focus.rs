@@ -1,0 +1,298 @@
+//! Focusing by laws and by real rays; groups out of place; a lens turned round.
+
+use glam::DVec3;
+use spectra_core::{Isa, RayBatch};
+use spectra_lens::{
+    Beam, Criterion, FocusError, FocusSearch, Indices, Lens, Misalignment, ObjectPoint, Tracer, Travel,
+};
+use spectra_plugins as _;
+use spectra_scene::FileResources;
+use std::path::Path;
+
+fn load(path: &Path) -> Result<Lens, String> {
+    spectra_lens::load(&path.to_string_lossy(), &FileResources::beside(Path::new("."))).map_err(|f| f.to_string())
+}
+
+fn bundled(path: &str) -> Lens {
+    load(&Path::new(env!("CARGO_MANIFEST_DIR")).join(path)).expect("a lens")
+}
+
+fn written(text: &str) -> Result<Lens, String> {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("lens.yaml");
+    std::fs::write(&path, text).expect("written");
+    load(&path)
+}
+
+/// Two thin-ish groups, and laws.
+fn two_groups(laws: &str) -> Result<Lens, String> {
+    written(&format!(
+        "name: two groups\nsurfaces:\n\
+         \x20 - {{kind: sphere, radius: 60, thickness: 4, glass: SCHOTT/N-BK7, semi-diameter: 10}}\n\
+         \x20 - {{kind: sphere, radius: -200, thickness: 8, semi-diameter: 10}}\n\
+         \x20 - {{kind: stop, thickness: 8, semi-diameter: 6}}\n\
+         \x20 - {{kind: sphere, radius: 150, thickness: 4, glass: SCHOTT/N-BK7, semi-diameter: 10}}\n\
+         \x20 - {{kind: sphere, radius: -70, thickness: 40.5, semi-diameter: 10}}\n\
+         groups: [{{name: front, surfaces: [1, 2]}}, {{name: rear, surfaces: [4, 5]}}]\n{laws}"
+    ))
+}
+
+fn paraxial_miss(lens: &Lens, object_mm: f64) -> f64 {
+    lens.paraxial_image_gap_mm(object_mm, lens.reference_nm) - lens.image_gap_mm()
+}
+
+fn rms(object_mm: f64, field_deg: f64) -> FocusSearch {
+    let light = vec![(587.5618, 1.0)];
+    FocusSearch { object_mm, field_rad: field_deg.to_radians(), criterion: Criterion::Rms, light }
+}
+
+fn contrast(object_mm: f64, field_deg: f64, per_mm: f64) -> FocusSearch {
+    FocusSearch { criterion: Criterion::Contrast { per_mm }, ..rms(object_mm, field_deg) }
+}
+
+/// Floating groups: the image plane stays, each group travels in proportion, and the image is as far from the plane as it
+/// was at infinity.
+#[test]
+fn groups_float_by_their_factors() {
+    let lens = two_groups("focus: [{group: front, factor: 1}, {group: rear, factor: 0.6}]\n").expect("good");
+    for object_mm in [5000.0, 1000.0, 400.0] {
+        let near = lens.clone().focused_at(object_mm).expect("focused");
+        assert!((paraxial_miss(&near, object_mm) - paraxial_miss(&lens, f64::INFINITY)).abs() < 1e-9);
+        // From the image plane, which stays.
+        let place = |lens: &Lens, at: usize| lens.image_z_mm() - lens.elements[at].vertex_z_mm();
+        let travel = |at: usize| place(&near, at) - place(&lens, at);
+        assert!(travel(0) > 0.0 && (travel(0) - travel(1)).abs() < 1e-12);
+        assert!((travel(3) / travel(0) - 0.6).abs() < 1e-9 && (travel(3) - travel(4)).abs() < 1e-12);
+        assert!(travel(2).abs() < 1e-12, "the stop belongs to no group");
+        assert_eq!(near.focused_mm, object_mm);
+    }
+    assert_eq!(lens.clone().focused_at(f64::INFINITY).expect("as it is").image_z_mm(), lens.image_z_mm());
+    // So near that the groups would have to pass through each other, or nothing helps.
+    assert!(lens.focused_at(20.0).is_err());
+}
+
+/// One law that moves everything is the helicoid.
+#[test]
+fn a_law_for_all_is_the_whole_lens() {
+    let text = |laws: &str| {
+        format!(
+            "name: s\nsurfaces:\n  - {{kind: sphere, radius: 60, thickness: 4, glass: SCHOTT/N-BK7, semi-diameter: 10}}\n  \
+             - {{kind: sphere, radius: -60, thickness: 57, semi-diameter: 10}}\n\
+             groups: [{{name: all, surfaces: [1, 2]}}]\n{laws}"
+        )
+    };
+    let whole = written(&text("")).expect("good").focused_at(700.0).expect("focused");
+    let law = written(&text("focus: [{group: all, factor: 1}]\n")).expect("good").focused_at(700.0).expect("focused");
+    assert!((whole.image_gap_mm() - law.image_gap_mm()).abs() < 1e-9);
+}
+
+#[test]
+fn groups_follow_their_tables() {
+    let lens = two_groups("focus: [{group: rear, table: [[inf, 0], [2 m, 0.4], [500, 1.9]]}]\n").expect("good");
+    for (object_mm, shift) in [(f64::INFINITY, 0.0), (2000.0, 0.4), (500.0, 1.9)] {
+        let near = lens.clone().focused_at(object_mm).expect("in the table");
+        assert!((near.elements[3].vertex_z_mm() - (lens.elements[3].vertex_z_mm() - shift)).abs() < 1e-12);
+        assert!((near.image_z_mm() - lens.image_z_mm()).abs() < 1e-12);
+    }
+    assert!(matches!(lens.clone().focused_at(400.0), Err(FocusError::BeyondTable { .. })));
+    let far = two_groups("focus: [{group: rear, table: [[inf, 0], [500, 9]]}]\n").expect("good");
+    assert!(matches!(far.focused_at(500.0), Err(FocusError::Collision { surface: 3, .. })));
+}
+
+#[test]
+fn faults_of_laws_say_what_to_do() {
+    for (laws, word) in [
+        ("focus: [{group: raer, factor: 1}]\n", "did you mean `rear`"),
+        ("focus: [{group: rear}]\n", "either by a `factor` or by a `table`"),
+        ("focus: [{group: rear, factor: 0}]\n", "does not move"),
+        ("focus: [{group: rear, table: [[500, 1], [inf, 0]]}]\n", "the farthest first"),
+        ("focus: [{group: rear, factor: 1}, {group: rear, factor: 2}]\n", "two laws"),
+        ("coating: bear\n", "unknown coating"),
+        ("coating: {layer: 1.38}\n", "either a `thickness`"),
+        ("coating: {layer: 0.2, thickness: 100}\n", "a layer of index 0.2"),
+        ("coating: {layer: 1.38, thickness: 1 mm}\n", "no thin layer"),
+    ] {
+        let faults = two_groups(laws).expect_err(laws);
+        assert!(faults.contains(word), "{laws}: {faults}");
+    }
+}
+
+/// The smallest spot and the best contrast differ on a fast lens, and each is the best by its own measure against a scan.
+#[test]
+fn spot_and_contrast_differ_on_fast_lenses() {
+    for (path, least_mm) in
+        [("lenses/zeiss-biotar-50-f1.4.yaml", 0.02), ("tests/data/lenses/meyer-primoplan-100-f1.5.yaml", 0.3)]
+    {
+        let lens = bundled(path);
+        for field_deg in [0.0, 10.0] {
+            let small = lens.best_focus_shift_mm(&rms(f64::INFINITY, field_deg)).expect("light");
+            let sharp = lens.best_focus_shift_mm(&contrast(f64::INFINITY, field_deg, 30.0)).expect("light");
+            let point = ObjectPoint::on_plane(&lens, f64::INFINITY, f64::to_radians(field_deg));
+            let beam = Beam::of(&lens, point, &[(lens.reference_nm, 1.0)], 96).expect("media").expect("light");
+            for step in -200..=200 {
+                let z = 0.01 * f64::from(step);
+                assert!(beam.rms_mm(z) >= beam.rms_mm(small) - 1e-12, "{z}");
+                assert!(beam.contrast(z, 30.0) <= beam.contrast(sharp, 30.0) + 1e-9, "{z}");
+            }
+            if field_deg == 0.0 {
+                assert!((small - sharp).abs() > least_mm, "{path}: {small} {sharp}");
+            }
+        }
+        // Stopped down they meet, and meet the paraxial focus.
+        let slow = lens.at_f_number(22.0).expect("f/22");
+        let small = slow.best_focus_shift_mm(&rms(f64::INFINITY, 0.0)).expect("light");
+        assert!((small - paraxial_miss(&slow, f64::INFINITY)).abs() < 0.02, "{small}");
+    }
+}
+
+/// Primary spherical aberration: the smallest root-mean-square spot lies two thirds of the way from the paraxial focus to
+/// the marginal one (W. T. Welford, Aberrations of Optical Systems, section 8.2), here of a singlet at f/10.
+#[test]
+fn the_smallest_spot_is_where_theory_has_it() {
+    let lens = written(
+        "name: singlet\nsurfaces:\n  - {kind: stop, thickness: 0, semi-diameter: 5}\n  \
+         - {kind: sphere, radius: 100, thickness: 3, glass: SCHOTT/N-BK7, semi-diameter: 20}\n  \
+         - {kind: sphere, radius: -100, thickness: 96, semi-diameter: 20}\n",
+    )
+    .expect("good");
+    let tracer = Tracer::new(&lens, Indices::At(587.5618), Isa::Baseline).expect("media");
+    let path = tracer.path(DVec3::new(0.0, 4.999_999, -1.0), DVec3::Z, 587.5618);
+    let last = path.points.last().expect("points");
+    let marginal = last.z - last.y * path.direction.z / path.direction.y - lens.image_z_mm();
+    let paraxial = paraxial_miss(&lens, f64::INFINITY);
+    let small = lens.best_focus_shift_mm(&rms(f64::INFINITY, 0.0)).expect("light");
+    let part = (small - paraxial) / (marginal - paraxial);
+    // Higher orders and the edge of a grid of 96 rays across leave half a per cent.
+    assert!((part - 2.0 / 3.0).abs() < 0.005, "{part}");
+}
+
+/// Moving the lens to the best focus puts the best focus on the image plane; by groups too.
+#[test]
+fn the_lens_moves_to_its_best_focus() {
+    let biotar = bundled("lenses/zeiss-biotar-50-f1.4.yaml");
+    for search in [rms(2000.0, 0.0), contrast(2000.0, 0.0, 30.0), rms(2000.0, 12.0)] {
+        let start = biotar.clone().focused_at(2000.0).expect("focused");
+        let found = start.clone().focused_by(&search).expect("light");
+        assert!(found.best_focus_shift_mm(&search).expect("light").abs() < 1e-5);
+        assert!((found.image_gap_mm() - start.image_gap_mm()).abs() > 1e-4);
+    }
+    let floating = two_groups("focus: [{group: front, factor: 1}, {group: rear, factor: 0.6}]\n").expect("good");
+    let start = floating.focused_at(800.0).expect("focused");
+    let found = start.clone().focused_by(&rms(800.0, 0.0)).expect("light");
+    assert!((found.image_gap_mm() - start.image_gap_mm()).abs() > 1e-3);
+    let shift = found.best_focus_shift_mm(&rms(800.0, 0.0)).expect("light");
+    assert!(shift.abs() < 1e-3, "{shift}");
+}
+
+/// A shifted group is the same lens with other gaps; a group decentered by hand is what the file would state.
+#[test]
+fn groups_go_out_of_place() {
+    let lens = two_groups("").expect("good");
+    let by = Misalignment { decenter_mm: Some([0.05, 0.0]), tilt_rad: Some([0.002, 0.0, 0.0]), shift_mm: 0.1 };
+    let moved = lens.clone().with_misalignment("rear", &by).expect("the group");
+    let mut want = lens.clone();
+    want.elements[2].thickness_mm += 0.1;
+    want.elements[4].thickness_mm -= 0.1;
+    want.groups[1].displacement.decenter_mm = [0.05, 0.0];
+    want.groups[1].displacement.tilt_rad = [0.002, 0.0, 0.0];
+    want.arrange();
+    for (a, b) in moved.elements.iter().zip(&want.elements) {
+        assert!((a.pose.origin_mm - b.pose.origin_mm).length() < 1e-13 && a.pose.rotation == b.pose.rotation);
+    }
+    assert!((moved.image_z_mm() - lens.image_z_mm()).abs() < 1e-12);
+    assert!(!moved.has_axis_of_revolution());
+    assert!(lens.with_misalignment("middle", &by).is_none());
+}
+
+fn trace(lens: &Lens, rays: &[(DVec3, DVec3)], travel: Travel) -> Vec<Option<(DVec3, DVec3)>> {
+    let tracer = Tracer::new(lens, Indices::At(lens.reference_nm), Isa::Baseline).expect("media");
+    let mut batch = RayBatch::new(rays.len());
+    batch.restart(rays.len());
+    let c = batch.columns_mut();
+    for (i, (p, d)) in rays.iter().enumerate() {
+        (c.x[i], c.y[i], c.z[i]) = (*p).into();
+        (c.l[i], c.m[i], c.n[i]) = (*d).into();
+        c.wavelength_nm[i] = lens.reference_nm;
+    }
+    tracer.trace(&mut batch, &mut tracer.work_in_place(rays.len()), travel);
+    let (p, d) = (batch.positions(), batch.directions());
+    (0..rays.len())
+        .map(|i| {
+            let ray = (DVec3::new(p[0][i], p[1][i], p[2][i]), DVec3::new(d[0][i], d[1][i], d[2][i]));
+            batch.loss(i).is_none().then_some(ray)
+        })
+        .collect()
+}
+
+/// A lens turned round, with surfaces tilted, the axis bent and a group out of place, is the lens traced backward.
+#[test]
+fn a_reversed_lens_is_the_lens_from_behind() {
+    let crooked = written(
+        "name: crooked\nsurfaces:\n\
+         \x20 - {kind: sphere, radius: 60, thickness: 4, glass: SCHOTT/N-BK7, semi-diameter: 12, decenter: [0.3, -0.2]}\n\
+         \x20 - {kind: sphere, radius: -90, thickness: 5, semi-diameter: 12, tilt: [1, 2, 3]}\n\
+         \x20 - {kind: coordinate-break, decenter: [0.4, 0.7], tilt: [3, -2, 10], thickness: 2}\n\
+         \x20 - {kind: coordinate-break, decenter: [-0.1, 0.2], tilt: [-1, 4, 5], order: tilt-first, thickness: 1}\n\
+         \x20 - {kind: stop, thickness: 3, semi-diameter: 9}\n\
+         \x20 - {kind: sphere, radius: 150, thickness: 4, glass: SCHOTT/F2, semi-diameter: 12}\n\
+         \x20 - {kind: sphere, radius: -70, thickness: 80, semi-diameter: 12}\n\
+         groups: [{name: rear, surfaces: [4, 5], decenter: [0.2, 0.1], tilt: [0.5, -1, 2]}]\n",
+    )
+    .expect("good");
+    let biotar = bundled("lenses/zeiss-biotar-50-f1.4.yaml");
+    for lens in [biotar, crooked] {
+        let reversed = lens.reversed().expect("no mirrors");
+        let rays: Vec<_> = (0..60)
+            .map(|k| {
+                let k = f64::from(k);
+                let d = DVec3::new(0.04 * k.sin(), 0.06 * (0.7 * k).cos(), 1.0).normalize();
+                (DVec3::new(5.0 * (3.0 * k).cos(), 5.0 * (2.0 * k).sin(), -10.0), d)
+            })
+            .collect();
+        // Half a turn about y, then onto the last vertex of the lens as it was.
+        let last = lens.elements.last().expect("surfaces");
+        let group = lens.groups.first();
+        let axis = match group {
+            // Where the last vertex would stand without the group's misalignment.
+            Some(_) => {
+                let mut straight = lens.clone();
+                straight.groups.clear();
+                straight.arrange();
+                straight.elements.last().expect("surfaces").pose
+            }
+            None => last.pose,
+        };
+        let turned = axis.reversed();
+        let out = trace(&reversed, &rays, Travel::Forward);
+        let backward: Vec<_> = rays
+            .iter()
+            .map(|(p, d)| {
+                let (p, d) = (turned.point(*p), turned.direction(*d));
+                (lens.image_pose.local_point(p), lens.image_pose.local_direction(d))
+            })
+            .collect();
+        let want = trace(&lens, &backward, Travel::Backward);
+        let mut arrived = 0;
+        for (got, want) in out.iter().zip(&want) {
+            assert_eq!(got.is_some(), want.is_some());
+            let (Some((p, d)), Some((q, e))) = (got, want) else { continue };
+            arrived += 1;
+            let (p, d) = (reversed.image_pose.point(*p), reversed.image_pose.direction(*d));
+            let (p, d) = (turned.point(p), turned.direction(d));
+            assert!((d - *e).length() < 1e-12, "{d} {e}");
+            assert!((p - *q).cross(*e).length() < 1e-10, "{p} {q}");
+        }
+        assert!(arrived > 20, "{arrived}");
+        let again = reversed.reversed().expect("no mirrors");
+        for (a, b) in again.elements.iter().zip(&lens.elements) {
+            assert!((a.pose.origin_mm - b.pose.origin_mm).length() < 1e-10 && a.reversed == b.reversed);
+        }
+        let (there, back) = (lens.first_order(587.5618), reversed.first_order(587.5618));
+        if group.is_none() {
+            assert!((there.efl_mm - back.efl_mm).abs() < 1e-9 && (there.ffl_mm + back.bfl_mm).abs() < 1e-9);
+            assert!((reversed.image_gap_mm() - back.bfl_mm).abs() < 1e-9);
+        }
+    }
+    let mirror = written("name: m\nsurfaces:\n  - {kind: sphere, radius: -100, mirror: true, thickness: -50}\n");
+    assert!(mirror.expect("good").reversed().is_err());
+}

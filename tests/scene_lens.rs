@@ -1,0 +1,64 @@
+//! The `lens` section of a scene.
+
+use spectra_lens::{Coating, Lens};
+use spectra_plugins as _;
+use spectra_scene::load;
+use std::path::Path;
+
+fn lens(set: &[&str]) -> Result<Lens, String> {
+    let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/biotar-ortho.yaml");
+    let overrides: Vec<String> = set.iter().map(|s| (*s).to_owned()).collect();
+    load(&scene, &overrides).map(|scene| scene.lens).map_err(|faults| faults.to_string())
+}
+
+#[test]
+fn focus_may_say_by_what() {
+    let plain = lens(&["lens.focus=2 m"]).expect("good");
+    let same = lens(&["lens.focus={distance: 2 m, by: paraxial}"]).expect("good");
+    assert_eq!(plain.image_gap_mm().to_bits(), same.image_gap_mm().to_bits());
+    let rms = lens(&["lens.focus={distance: 2 m, by: rms}", "lens.f-number=f/1.44"]).expect("good");
+    let contrast =
+        lens(&["lens.focus={distance: 2 m, by: contrast, frequency: 20 lp/mm}", "lens.f-number=f/1.44"]).expect("good");
+    let off =
+        lens(&["lens.focus={distance: 2 m, by: rms, field: 12 deg, spectrum: [[486, 1], [656, 1]]}"]).expect("good");
+    let gaps = [&plain, &rms, &contrast, &off].map(Lens::image_gap_mm);
+    for (i, a) in gaps.iter().enumerate() {
+        assert!(gaps[..i].iter().all(|b| (a - b).abs() > 1e-3), "{gaps:?}");
+    }
+    assert!(gaps.iter().all(|g| (g - gaps[0]).abs() < 1.0));
+}
+
+#[test]
+fn a_lens_may_be_turned_coated_and_bent() {
+    let plain = lens(&["lens.focus=infinity"]).expect("good");
+    let turned = lens(&["lens.focus=infinity", "lens.reverse=true"]).expect("good");
+    assert_eq!(turned.elements.len(), plain.elements.len());
+    assert!((turned.first_order(587.56).ffl_mm + plain.first_order(587.56).bfl_mm).abs() < 1e-9);
+    let bare = lens(&["lens.coating=bare", "lens.absorption=true"]).expect("good");
+    assert_eq!((bare.coating, bare.absorption), (Coating::Bare, true));
+    assert_eq!((plain.coating, plain.absorption), (Coating::Ideal, false));
+}
+
+#[test]
+fn faults_of_the_lens_come_at_once() {
+    let faults = lens(&[
+        "lens.focus={distance: 2 m, by: eye, field: 95}",
+        "lens.coating=shiny",
+        "lens.adjust=[{group: rear, shift: 0.1}]",
+    ])
+    .expect_err("bad");
+    for word in ["no way to focus by `eye`", "no plane is seen", "unknown coating `shiny`", "no group `rear`"] {
+        assert!(faults.contains(word), "{word}: {faults}");
+    }
+    for (set, word) in [
+        ("lens.focus={distance: 2 m, frequency: 30}", "matters only with"),
+        ("lens.focus={distance: 2 m, by: rms, spectrum: []}", "1 to 64 wavelengths"),
+        ("lens.focus={distance: 2 m, by: rms, wavelength: 10 nm}", "this is no light"),
+        ("lens.focus={by: rms}", "missing key `distance`"),
+        ("lens.focus=3 kg", "expected a positive length"),
+        ("lens.revers=true", "did you mean `reverse`"),
+    ] {
+        let faults = lens(&[set]).expect_err(set);
+        assert!(faults.contains(word), "{set}: {faults}");
+    }
+}
