@@ -125,6 +125,10 @@ impl WavelengthDensity for Shared {
     fn line_probability(&self, line: usize) -> f64 {
         self.0.line_probability(line)
     }
+
+    fn group(&self) -> u32 {
+        self.0.group()
+    }
 }
 
 struct Run<'a> {

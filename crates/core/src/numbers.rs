@@ -196,6 +196,26 @@ impl Numbers {
         }
     }
 
+    /// Writes numbers of which `group` samples at a time share one, rotated: sample i has that of i / group, moved on by
+    /// (i mod group) / group around [0, 1). A group covers [0, 1) evenly, each of its numbers is as uniform as the one
+    /// shared, and a number is still a function of (seed, stream, sample, dimension). A group of 1 (or 0) is
+    /// [`Numbers::fill`].
+    pub fn fill_rotated(&self, isa: Isa, stream: u64, first: u64, group: u32, dimension: u32, out: &mut [f64]) {
+        if group <= 1 {
+            return self.fill(isa, stream, first, dimension, out);
+        }
+        let size = u64::from(group);
+        let (Some(last), base) = (out.len().checked_sub(1), first / size) else { return };
+        let at = |i: usize| first.wrapping_add(i as u64);
+        let groups = (at(last) / size - base) as usize + 1;
+        self.fill(isa, stream, base, dimension, &mut out[..groups]);
+        // From the end: a sample stands behind the number of its group, or where it is.
+        for i in (0..out.len()).rev() {
+            let moved = out[(at(i) / size - base) as usize] + (at(i) % size) as f64 / f64::from(group);
+            out[i] = if moved < 1.0 { moved } else { moved - 1.0 };
+        }
+    }
+
     /// One number: the same as [`Numbers::fill`] gives.
     #[must_use]
     pub fn one(&self, stream: u64, sample: u64, dimension: u32) -> f64 {
@@ -294,6 +314,36 @@ mod tests {
                 assert!(whole.iter().all(|v| (0.0..1.0).contains(v)));
             }
         }
+    }
+
+    /// Rotated numbers are a function of the sample alone, and a group is a regular comb.
+    #[test]
+    fn rotated_numbers_do_not_depend_on_the_cut_and_cover_evenly() {
+        for numbers in [Numbers::sobol(7), Numbers::random(7)] {
+            for group in [1, 2, 3, 4, 7, 1000] {
+                let mut whole = vec![0.0; 1000];
+                numbers.fill_rotated(Isa::Baseline, 42, 0, group, 0, &mut whole);
+                for isa in Isa::available() {
+                    for cut in [1, 2, 5, 333, 999] {
+                        let mut parts = vec![0.0; 1000];
+                        let (a, b) = parts.split_at_mut(cut);
+                        numbers.fill_rotated(isa, 42, 0, group, 0, a);
+                        numbers.fill_rotated(isa, 42, cut as u64, group, 0, b);
+                        assert_eq!(parts, whole, "{group} {cut}");
+                    }
+                }
+                assert_eq!(whole[0], numbers.one(42, 0, 0));
+                for (g, comb) in whole.chunks_exact(group as usize).enumerate() {
+                    let mut comb = comb.to_vec();
+                    assert_eq!(comb[0], numbers.one(42, g as u64, 0));
+                    comb.sort_by(f64::total_cmp);
+                    let step = 1.0 / f64::from(group);
+                    assert!(comb.windows(2).all(|w| (w[1] - w[0] - step).abs() < 1e-15));
+                    assert!(comb[0] >= 0.0 && comb[comb.len() - 1] < 1.0);
+                }
+            }
+        }
+        Numbers::sobol(1).fill_rotated(Isa::Baseline, 0, 5, 4, 0, &mut []);
     }
 
     /// A (0, m, 1)-net in base 2: one point of 2^m in each of 2^m equal intervals, also after scrambling.

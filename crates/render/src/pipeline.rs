@@ -44,6 +44,11 @@ impl<'a> Pipeline<'a> {
     pub(crate) fn numbers(&self, seed: u64) -> Numbers {
         if self.scene.render.stratified { Numbers::sobol(seed) } else { Numbers::random(seed) }
     }
+
+    /// How many samples in a row share one number of a dimension, rotated: only wavelengths ever do.
+    pub(crate) fn group(&self, dimension: usize) -> u32 {
+        if dimension == Dimension::Wavelength as usize { self.density.group() } else { 1 }
+    }
 }
 
 /// Columns of one thread.
