@@ -65,6 +65,7 @@ pub(crate) fn measure(
         let numbers = match draws.kind {
             NumberKind::Sobol => Numbers::sobol(seed),
             NumberKind::Random => Numbers::random(seed),
+            NumberKind::Stratified => Numbers::stratified(seed, draws.samples),
         };
         let begun = Instant::now();
         columns.draw(&numbers, density, isa);

@@ -1,6 +1,6 @@
 //! From a scene file to a [`Scene`], with every fault in one go.
 
-use crate::{ConePattern, Direction, FileResources, Output, RenderSettings, Scene, yaml};
+use crate::{ConePattern, Direction, FileResources, NumberFamily, Output, RenderSettings, Scene, yaml};
 use serde::Deserialize;
 use spectra_core::params::{FNumber, Fault, Faults, Length, Node, OrInfinity, Params, Positive, StageNode, Wavelength};
 use spectra_core::registry::{self, Context};
@@ -69,7 +69,7 @@ struct RenderSection {
     seed: Option<f64>,
     /// Rays a batch.
     batch: Option<f64>,
-    /// `sobol` or `random`.
+    /// `sobol`, `random` or `stratified`.
     numbers: Option<String>,
     /// `disk`, `rings` or `random`.
     cone: Option<String>,
@@ -262,7 +262,7 @@ fn render_settings(
         })
     };
     let direction = one_of("direction", s.direction.as_deref(), &["auto", "forward", "backward"]);
-    let numbers = one_of("numbers", s.numbers.as_deref(), &["sobol", "random"]);
+    let numbers = one_of("numbers", s.numbers.as_deref(), &["sobol", "random", "stratified"]);
     let cone = one_of("cone", s.cone.as_deref(), &["disk", "rings", "random"]);
     let can_backward = source.radiance().is_some() && imager.launch().is_some();
     let can_forward = source.emit().is_some() && imager.receive().is_some();
@@ -286,7 +286,7 @@ fn render_settings(
         rays: rays as u64,
         seed: seed as u64,
         batch: batch as usize,
-        stratified: numbers == 0,
+        numbers: [NumberFamily::Sobol, NumberFamily::Random, NumberFamily::Stratified][numbers],
         cone: [ConePattern::Disk, ConePattern::Rings, ConePattern::Random][cone],
     })
 }

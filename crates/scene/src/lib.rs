@@ -11,4 +11,4 @@ pub mod yaml;
 
 pub use assemble::load;
 pub use resources::FileResources;
-pub use scene::{ConePattern, Direction, Output, RenderSettings, Scene};
+pub use scene::{ConePattern, Direction, NumberFamily, Output, RenderSettings, Scene};
