@@ -61,7 +61,7 @@ impl WavelengthSampler for TruncatedGaussianSampler {
                 "at {nm} nm, where a channel sees, the Gaussian is too far from its center to be drawn; give it a floor"
             ));
         }
-        let continuum = seen.draws_continuum().then(|| WithFloor { gaussian, floor });
+        let continuum = seen.draws_continuum().then_some(WithFloor { gaussian, floor });
         Ok(Box::new(seen.mixture(system, continuum)?))
     }
 }

@@ -210,11 +210,14 @@ pub(crate) fn measure(arguments: &SpectrumModels) -> Outcome {
     Ok(DONE)
 }
 
+/// A row of the picture: its name, and the colors of its patches.
+type Row = (String, Vec<[u8; 3]>);
+
 /// Patches in a row of the picture.
 const PATCHES: usize = 60;
 
 /// The hues at full value, then from red to black and to white, as given and as each model brings them back.
-fn rows(models: &[Model]) -> Result<Vec<(String, Vec<[u8; 3]>)>, Failure> {
+fn rows(models: &[Model]) -> Result<Vec<Row>, Failure> {
     let colors: Vec<[u8; 3]> = (0..PATCHES).map(patch).collect();
     let mut rows = vec![("as given".to_owned(), colors.clone())];
     for model in models {
