@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{good, repository, run, shown, text};
+use common::{good, repository, run, shown, text as text_of};
 use serde_json::Value;
 use std::path::Path;
 
@@ -80,6 +80,53 @@ fn the_usual_strategy_is_as_good_as_promised() {
     }
 }
 
+/// A color sensor as three curves in a file: each column is a channel, and the integral is measured alone.
+#[test]
+fn responses_of_ones_own_are_measured() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("sensor.csv");
+    let curve = |nm: f64, center: f64| (-0.5 * ((nm - center) / 35.0) * ((nm - center) / 35.0)).exp();
+    let mut text = String::from("# spectra: 1\n# kind: sensitivity\nwavelength_nm,red,green,blue\n");
+    for i in 0..=40 {
+        let nm = 380.0 + 10.0 * f64::from(i);
+        text += &format!("{nm},{:.6},{:.6},{:.6}\n", curve(nm, 600.0), curve(nm, 540.0), curve(nm, 455.0));
+    }
+    std::fs::write(&path, text).expect("written");
+    let more = ["--response", shown(&path), "--samples", "64", "--strategies", "source-times-response,uniform,hero"];
+    let report = report(folder.path(), "fl11-xyz", &more);
+    assert_eq!(report["channels"], serde_json::json!(["red", "green", "blue"]));
+    assert!(report["reference"].is_null());
+    let errors: Vec<f64> =
+        series(&report, "integral", "sobol").map(|s| number(&s["points"][0]["error"]["value"])).collect();
+    assert!(errors.len() == 3 && errors[0] < 0.02 && errors[1] > 3.0 * errors[0], "{errors:?}");
+    let scene = scene("fl11-xyz");
+    for (name, word) in [("no-such", "no-such"), ("D65", "kind emission"), ("nowhere.csv", "nowhere.csv")] {
+        let output = run(&["bench", &scene, "--response", name, "-o", shown(folder.path())]);
+        assert_eq!(output.status.code(), Some(2), "{name}");
+        assert!(text_of(&output.stderr).contains("--response") && text_of(&output.stderr).contains(word), "{name}");
+    }
+}
+
+/// The third family of numbers, by the scene's own word.
+#[test]
+fn stratified_numbers_are_measured() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let more = [
+        "--integral-only",
+        "--strategies",
+        "source-times-response",
+        "--samples",
+        "64",
+        "--set",
+        "render.numbers=stratified",
+    ];
+    let report = report(folder.path(), "d65-xyz", &more);
+    let error = |numbers| {
+        number(&series(&report, "integral", numbers).next().expect("a series")["points"][0]["error"]["value"])
+    };
+    assert!(error("stratified") < 0.005 && error("random") > 10.0 * error("stratified"));
+}
+
 #[test]
 fn no_strategy_is_biased() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -133,6 +180,6 @@ fn wrong_requests_are_named() {
     for (more, word) in cases {
         let output = run(&[&["bench", &scene, "-o", shown(folder.path())][..], &more].concat());
         assert_eq!(output.status.code(), Some(2), "{more:?}");
-        assert!(text(&output.stderr).contains(word), "{more:?}: {}", text(&output.stderr));
+        assert!(text_of(&output.stderr).contains(word), "{more:?}: {}", text_of(&output.stderr));
     }
 }

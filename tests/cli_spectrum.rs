@@ -187,3 +187,158 @@ fn pictures_of_both_kinds() {
     let output = run(&["spectrum", "plot", "D65", "-o", shown(&missing)]);
     assert_eq!(output.status.code(), Some(1));
 }
+
+/// A fit is written, read again, and stands for the spectrum as well as it said.
+#[test]
+fn fitted_terms_are_a_spectrum_like_any_other() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("ortho.yaml");
+    let arguments = ["spectrum", "fit", "ilford-ortho-plus", "--terms", "4", "--band", "380,780", "--json", "-o"];
+    let fit: Value = serde_json::from_str(&good(&[&arguments[..], &[shown(&path)]].concat())).expect("JSON");
+    assert_eq!(fit["terms"].as_array().expect("a list").len(), 4);
+    // Four terms reach a relative L2 of 0.0227, by 60 random starts of another program.
+    let l2 = fit["relative_l2"].as_f64().expect("a number");
+    assert!(l2 > 0.0 && l2 <= 1.1 * 0.0227, "{l2}");
+    assert!(fit["kappa"].as_f64() >= Some(1.0) && fit["integral"].as_f64().map(f64::abs) < Some(0.02));
+    assert!(fit["maximum"].is_f64() && fit["smallest"].is_f64());
+    let again = info(&[shown(&path)]);
+    assert_eq!(again["kind"], "sensitivity");
+    assert_eq!(again["title"], "ilford-ortho-plus, 4 Gaussian terms");
+    close(&again["peak_nm"], &[info(&["ilford-ortho-plus"])["peak_nm"].as_f64().expect("a number")], 12.0);
+    // The terms of the file are those of the JSON, to the last digits (whose reading may be one off).
+    let text = std::fs::read_to_string(&path).expect("written");
+    let of_file: Vec<f64> = text
+        .split("center: ")
+        .skip(1)
+        .map(|rest| rest.split(',').next().and_then(|n| n.parse().ok()).expect("a number"))
+        .collect();
+    let terms = fit["terms"].as_array().expect("a list");
+    let of_json: Vec<f64> = terms.iter().map(|t| t["center_nm"].as_f64().expect("a number")).collect();
+    assert!(of_file.len() == 4 && of_file.iter().zip(&of_json).all(|(a, b)| (a / b - 1.0).abs() < 1e-14), "{text}");
+    // Lines stay lines.
+    let path = folder.path().join("lamp.yaml");
+    good(&["spectrum", "fit", "0.01 * D65 + line:e", "--terms", "2", "-o", shown(&path)]);
+    let text = std::fs::read_to_string(&path).expect("written");
+    assert!(text.contains("kind: sum") && text.contains("{wavelength: 546.07, power: 1}"), "{text}");
+    assert_eq!(info(&[shown(&path)])["kind"], "emission");
+    for (arguments, word) in [
+        (&["fit", "mercury"][..], "lines only"),
+        (&["fit", "D65", "--terms", "0"], "0"),
+        (&["fit", "D65", "--terms", "33"], "33"),
+        (&["fit", "D65", "-o", "x.csv"], ".yaml"),
+        (&["fit", "D65", "--band", "780,380"], "--band"),
+        (&["fit", "D65", "--band", "380"], "--band"),
+        (&["fit", "D65", "--step", "1e-9"], "at most"),
+        (&["fit", "D65", "--band", "380,390", "--terms", "8"], "a third of the points"),
+    ] {
+        assert!(refused(arguments).contains(word), "{arguments:?}: {}", refused(arguments));
+    }
+}
+
+/// Bad files end in an error that names file, row and column.
+#[test]
+fn bad_files_are_refused_with_their_place() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("bad.csv");
+    let head = |kind: &str| format!("# spectra: 1\n# kind: {kind}\nwavelength_nm,p\n");
+    for (text, place, word) in [
+        (format!("{}400,1\n390,1\n", head("emission")), "row 5, column 1", "wavelengths must increase"),
+        (format!("{}400,1\n410,-1\n", head("emission")), "row 5, column 2 (p)", "cannot be negative"),
+        (format!("{}400,NaN\n", head("emission")), "row 4, column 2 (p)", "not a finite number"),
+        (format!("{}400,87\n", head("sensitivity")), "row 4, column 2 (p)", "percent"),
+        (format!("{}400;87\n", head("sensitivity")), "row 4, column 1", "fields"),
+        (String::new(), "bad.csv", "holds no data"),
+        (head("emission"), "bad.csv", "holds no data"),
+    ] {
+        std::fs::write(&path, &text).expect("written");
+        let message = refused(&["info", shown(&path)]);
+        assert!(message.contains("bad.csv") && message.contains(place) && message.contains(word), "{text}: {message}");
+    }
+    let path = folder.path().join("bad.yaml");
+    for (text, place, word) in [
+        ("kind: table\nwavelengths: [400, 390]\nvalues: [1, 1]\n", "bad.yaml:2:20", "must increase"),
+        ("kind: histogram\nedges: [400, 410]\ncounts: [-3]\n", "bad.yaml:3:10", "negative"),
+        ("kind: gaussian\ncenter: 550\n", "bad.yaml:1:1", "sigma"),
+    ] {
+        std::fs::write(&path, text).expect("written");
+        let message = refused(&["info", shown(&path)]);
+        assert!(message.contains(place) && message.contains(word), "{text}: {message}");
+    }
+    std::fs::write(&path, "").expect("written");
+    assert!(refused(&["info", shown(&path)]).contains("bad.yaml"));
+}
+
+/// Spectral colors, linear and encoded, each by its name: the table of the dispersion study.
+#[test]
+fn spectral_colors_linear_and_encoded() {
+    for (nm, linear, encoded) in [
+        (436, [33.0, 0.0, 255.0], [101.0, 0.0, 255.0]),
+        (547, [0.0, 255.0, 0.0], [0.0, 255.0, 0.0]),
+        (577, [255.0, 148.0, 0.0], [255.0, 200.0, 0.0]),
+        (579, [255.0, 126.0, 0.0], [255.0, 187.0, 0.0]),
+        (620, [255.0, 0.0, 0.0], [255.0, 0.0, 0.0]),
+    ] {
+        let line = info(&[&format!("line:{nm}")]);
+        let of_255: Vec<f64> = numbers(&line["srgb_linear"]).iter().map(|v| 255.0 * v).collect();
+        assert!(of_255.iter().zip(linear).all(|(a, b)| (a - b).abs() <= 1.0), "{nm}: {of_255:?}");
+        close(&line["srgb"], &encoded, 1.0);
+    }
+    let text = good(&["spectrum", "info", "line:C'"]);
+    assert!(text.contains("sRGB") && text.contains("linear 1.0000"), "{text}");
+}
+
+/// The models that may be the default bring every color back; the others do not, and say by how much.
+#[test]
+fn colors_through_each_model() {
+    let report: Value = serde_json::from_str(&good(&[
+        "spectrum",
+        "models",
+        "--json",
+        "--step",
+        "51",
+        "--model",
+        "all",
+        "--model",
+        "fraunhofer{secondary: [F, D]}",
+    ]))
+    .expect("JSON");
+    let models = report["models"].as_array().expect("a list");
+    let number = |name: &str, key: &str| {
+        let model = models.iter().find(|m| m["model"] == name).unwrap_or_else(|| panic!("no {name}"));
+        model[key].as_f64().expect("a number")
+    };
+    assert_eq!((models.len(), &models[0]["default"]), (5, &Value::Bool(true)));
+    for (name, most, green) in [("primaries", 0.5, 0.5), ("smooth", 0.5, 0.5)] {
+        assert!(number(name, "largest") <= most && number(name, "phantom_green") <= green, "{name}");
+    }
+    assert!(number("gaussians", "largest") > 20.0 && number("fraunhofer", "largest") > 20.0);
+    // A yellow line beside the red one: green that was never there.
+    assert!(number("fraunhofer{secondary: [F, D]}", "phantom_green") > 30.0);
+
+    let color: Value = serde_json::from_str(&good(&["spectrum", "color", "255", "128", "64", "--json"])).expect("JSON");
+    let hex: Value = serde_json::from_str(&good(&["spectrum", "color", "#ff8040", "--json"])).expect("JSON");
+    assert_eq!(color, hex);
+    for model in color["models"].as_array().expect("a list") {
+        if ["smooth", "primaries"].contains(&model["model"].as_str().expect("a name")) {
+            close(&model["back"], &[255.0, 128.0, 64.0], 0.5);
+            close(&model["srgb"], &[255.0, 128.0, 64.0], 0.0);
+        }
+    }
+    assert!(good(&["spectrum", "color", "ff8040"]).contains("comes back as"));
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("colors.png");
+    good(&["spectrum", "models", "--step", "255", "-o", shown(&path)]);
+    assert!(std::fs::read(&path).expect("written").starts_with(b"\x89PNG"));
+    for (arguments, word) in [
+        (&["color", "256", "0", "0"][..], "no color"),
+        (&["color", "#ff80"], "no color"),
+        (&["color", "1", "2"], "no color"),
+        (&["models", "--model", "smoth"], "did you mean `smooth`"),
+        (&["models", "--model", "fraunhofer{secondary: [Q]}"], "no spectral line"),
+        (&["models", "--model", "fraunhofer{"], "--model"),
+        (&["models", "-o", "x.jpg"], ".svg or .png"),
+        (&["models", "--illuminant", "nowhere"], "--illuminant"),
+    ] {
+        assert!(refused(arguments).contains(word), "{arguments:?}: {}", refused(arguments));
+    }
+}

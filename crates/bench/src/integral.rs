@@ -65,6 +65,7 @@ pub(crate) fn measure(
         let numbers = match draws.kind {
             NumberKind::Sobol => Numbers::sobol(seed),
             NumberKind::Random => Numbers::random(seed),
+            NumberKind::Stratified => Numbers::stratified(seed, draws.samples),
         };
         let begun = Instant::now();
         columns.draw(&numbers, density, isa);
@@ -99,7 +100,7 @@ impl Columns {
     }
 
     fn draw(&mut self, numbers: &Numbers, density: &dyn WavelengthDensity, isa: Isa) {
-        numbers.fill(isa, 0, 0, Dimension::Wavelength as u32, &mut self.u);
+        numbers.fill_rotated(isa, 0, 0, density.group(), Dimension::Wavelength as u32, &mut self.u);
         self.weight.fill(1.0);
         density.draw(&self.u, &mut self.wavelength_nm, &mut self.line, &mut self.weight, isa);
     }

@@ -31,6 +31,8 @@ pub enum NumberKind {
     Sobol,
     /// Independent random numbers.
     Random,
+    /// Jittered strata, as many as there are samples.
+    Stratified,
 }
 
 impl NumberKind {
@@ -40,6 +42,7 @@ impl NumberKind {
         match self {
             Self::Sobol => "sobol",
             Self::Random => "random",
+            Self::Stratified => "stratified",
         }
     }
 }

@@ -7,9 +7,9 @@ use crate::statistics::{fit, in_standard_errors, mean_and_variance_of_mean};
 use crate::strategy::{Said, Strategy, all, resolve};
 use crate::{BenchError, colors};
 use spectra_core::Isa;
-use spectra_core::spectral::SystemResponse;
+use spectra_core::spectral::{Channel, SystemResponse};
 use spectra_core::stage::{WavelengthDensity, WavelengthSampler};
-use spectra_scene::{Direction, Scene};
+use spectra_scene::{Direction, NumberFamily, Scene};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -26,6 +26,9 @@ pub struct Settings {
     pub strategies: Vec<Strategy>,
     /// Whether the scene is rendered too, or the integral measured alone.
     pub render: bool,
+    /// What is recorded in place of the scene's channels, on its grid; then the integral is measured alone, for no
+    /// imager of the scene has them.
+    pub response: Option<Vec<Channel>>,
     /// Threads to render on.
     pub threads: usize,
     /// Instruction set.
@@ -53,14 +56,17 @@ pub fn bench(
     let scene = spectra_scene::load(path, overrides)?;
     let mut run = Run::prepare(&scene, path, overrides, settings, samples)?;
     let mut series = Vec::new();
-    let own = if scene.render.stratified { NumberKind::Sobol } else { NumberKind::Random };
-    let other = if scene.render.stratified { NumberKind::Random } else { NumberKind::Sobol };
+    let (own, other) = match scene.render.numbers {
+        NumberFamily::Sobol => (NumberKind::Sobol, NumberKind::Random),
+        NumberFamily::Random => (NumberKind::Random, NumberKind::Sobol),
+        NumberFamily::Stratified => (NumberKind::Stratified, NumberKind::Random),
+    };
     for kind in [own, other] {
         tell(&format!("{}: spectral integral, {} numbers", scene.name, kind.name()));
         related(&mut series, run.entrants.iter().map(|e| run.integral(e, kind)));
     }
     let mut reference = None;
-    if settings.render {
+    if settings.render && settings.response.is_none() {
         reference = Some(run.scene(own, &mut series, tell)?);
     }
     let size = scene.imager.size();
@@ -68,7 +74,7 @@ pub fn bench(
         scene: scene.name.clone(),
         source: scene.source.describe(),
         lens: scene.lens.name.clone(),
-        channels: scene.channels.iter().map(|c| c.name.clone()).collect(),
+        channels: run.names.clone(),
         width_px: size.width_px,
         height_px: size.height_px,
         direction: if scene.render.direction == Direction::Forward { "forward" } else { "backward" },
@@ -125,6 +131,10 @@ impl WavelengthDensity for Shared {
     fn line_probability(&self, line: usize) -> f64 {
         self.0.line_probability(line)
     }
+
+    fn group(&self) -> u32 {
+        self.0.group()
+    }
 }
 
 struct Run<'a> {
@@ -147,14 +157,21 @@ impl<'a> Run<'a> {
         settings: &'a Settings,
         samples: Vec<u32>,
     ) -> Result<Self, BenchError> {
-        let (source, channels) = (scene.source.spectrum().clone(), scene.channels.clone());
+        let source = scene.source.spectrum().clone();
+        let channels: Arc<[Channel]> = match &settings.response {
+            Some(response) if response.iter().any(|c| c.response.len() != scene.grid.count) => {
+                return Err(BenchError::Settings("response: a channel is not given on the grid of the scene"));
+            }
+            Some(response) => response.clone().into(),
+            None => scene.channels.clone(),
+        };
         let system = SystemResponse { grid: scene.grid, source, channels };
         let exact = exact(&system);
         let seen: Vec<usize> = (0..exact.len()).filter(|c| exact[*c] != 0.0).collect();
         if seen.is_empty() {
             return Err(BenchError::Dark);
         }
-        let names = scene.channels.iter().map(|c| c.name.clone()).collect();
+        let names = system.channels.iter().map(|c| c.name.clone()).collect();
         let first_seed = scene.render.seed;
         let said = Said::by(scene, overrides)?;
         let wanted = if settings.strategies.is_empty() { all() } else { settings.strategies.clone() };

@@ -154,6 +154,10 @@ pub(crate) struct Bench {
     /// given, with the scene's keys for its own strategy.
     #[arg(long, value_name = "A,B,...")]
     pub strategies: Option<String>,
+    /// Record by this sensitivity in place of the scene's imager, and measure the integral only: a bundled spectrum, a
+    /// file (of several columns: a channel each), or one written out (gaussian:540,40). Can be given several times.
+    #[arg(long, value_name = "NAME")]
+    pub response: Vec<String>,
     /// Measure the spectral integral only.
     #[arg(long)]
     pub integral_only: bool,

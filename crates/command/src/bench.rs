@@ -5,7 +5,10 @@ use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
 use spectra_bench::{BenchError, Settings, parse_list};
 use spectra_core::Isa;
+use spectra_core::spectral::Channel;
 use spectra_film::write::write_atomically;
+use spectra_scene::FileResources;
+use spectra_spectrum::{SpectrumError, find_sensitivity_in};
 use std::io::Write as _;
 use std::path::Path;
 
@@ -26,6 +29,7 @@ pub(crate) fn bench(arguments: &Bench, isa: Isa) -> Outcome {
         samples: arguments.samples.clone(),
         strategies,
         render: !arguments.integral_only,
+        response: response(&arguments.response, &arguments.scene, &arguments.set.overrides)?,
         threads: threads.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from)),
         isa,
     };
@@ -47,6 +51,29 @@ pub(crate) fn bench(arguments: &Bench, isa: Isa) -> Outcome {
         console::out(&spectra_bench::table(&report))?;
     }
     Ok(DONE)
+}
+
+/// Channels by name; `None` where none is asked for.
+fn response(names: &[String], scene: &Path, overrides: &[String]) -> Result<Option<Vec<Channel>>, Failure> {
+    if names.is_empty() {
+        return Ok(None);
+    }
+    let grid = spectra_scene::load(scene, overrides)?.grid;
+    let files = FileResources::beside(Path::new(""));
+    let mut channels = Vec::new();
+    for name in names {
+        // A file of several spectra is asked for its columns.
+        let columns = match find_sensitivity_in(name, &files) {
+            Err(SpectrumError::Ambiguous { columns, .. }) => columns.iter().map(|c| format!("{name}#{c}")).collect(),
+            _ => vec![name.clone()],
+        };
+        for column in columns {
+            let found = find_sensitivity_in(&column, &files).map_err(|e| Failure::Input(format!("--response: {e}")))?;
+            let name = column.rsplit_once('#').map_or(column.as_str(), |(_, column)| column).trim().to_owned();
+            channels.push(Channel { name, unit: "1".to_owned(), response: found.on_grid(&grid) });
+        }
+    }
+    Ok(Some(channels))
 }
 
 fn write(path: &Path, text: &str) -> Result<(), Failure> {

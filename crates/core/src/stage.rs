@@ -102,6 +102,12 @@ pub trait WavelengthDensity: Send + Sync {
 
     /// Probability of drawing line `i` of the source.
     fn line_probability(&self, line: usize) -> f64;
+
+    /// How many samples in a row share one number, rotated among them (see
+    /// [`crate::numbers::Numbers::fill_rotated`]); 1 where each has its own.
+    fn group(&self) -> u32 {
+        1
+    }
 }
 
 /// The imager: which pixel, which channel.

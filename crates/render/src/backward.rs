@@ -59,7 +59,8 @@ impl<'a> Backward<'a> {
         for pixel in pixels.clone() {
             for (dimension, column) in state.numbers.iter_mut().enumerate() {
                 let out = &mut column.slice_mut(len + count)[len..];
-                self.numbers.fill(isa, u64::from(pixel), u64::from(first), dimension as u32, out);
+                let (group, pixel, first) = (self.pipeline.group(dimension), u64::from(pixel), u64::from(first));
+                self.numbers.fill_rotated(isa, pixel, first, group, dimension as u32, out);
             }
             len += count;
         }

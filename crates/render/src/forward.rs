@@ -63,7 +63,8 @@ impl<'a> Forward<'a> {
         let isa = self.pipeline.isa;
         for (dimension, column) in state.numbers.iter_mut().enumerate() {
             let numbers = if dimension >= Dimension::PupilU as usize { &self.cone } else { &self.numbers };
-            numbers.fill(isa, STREAM, first, dimension as u32, column.slice_mut(len));
+            let group = self.pipeline.group(dimension);
+            numbers.fill_rotated(isa, STREAM, first, group, dimension as u32, column.slice_mut(len));
         }
         state.draw_wavelengths(&self.pipeline, len);
         let [_, u, v, a, b] = &state.numbers;

@@ -11,7 +11,7 @@ use spectra_core::spectral::SystemResponse;
 use spectra_core::stage::WavelengthDensity;
 use spectra_core::{Isa, RayBatch};
 use spectra_lens::{Indices, Tracer, Work};
-use spectra_scene::Scene;
+use spectra_scene::{NumberFamily, Scene};
 
 /// The stages, made ready for one scene.
 pub(crate) struct Pipeline<'a> {
@@ -42,7 +42,16 @@ impl<'a> Pipeline<'a> {
 
     /// The numbers of a seed, as the scene wants them.
     pub(crate) fn numbers(&self, seed: u64) -> Numbers {
-        if self.scene.render.stratified { Numbers::sobol(seed) } else { Numbers::random(seed) }
+        match self.scene.render.numbers {
+            NumberFamily::Sobol => Numbers::sobol(seed),
+            NumberFamily::Random => Numbers::random(seed),
+            NumberFamily::Stratified => Numbers::stratified(seed, self.scene.render.samples),
+        }
+    }
+
+    /// How many samples in a row share one number of a dimension, rotated: only wavelengths ever do.
+    pub(crate) fn group(&self, dimension: usize) -> u32 {
+        if dimension == Dimension::Wavelength as usize { self.density.group() } else { 1 }
     }
 }
 

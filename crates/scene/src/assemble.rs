@@ -1,7 +1,7 @@
 //! From a scene file to a [`Scene`], with every fault in one go.
 
 use crate::lens_section::lens_of;
-use crate::{ConePattern, Direction, FileResources, RenderSettings, Scene, output, yaml};
+use crate::{ConePattern, Direction, FileResources, NumberFamily, RenderSettings, Scene, output, yaml};
 use serde::Deserialize;
 use spectra_core::params::{Fault, Faults, Node, Params, StageNode, Wavelength};
 use spectra_core::registry::{self, Context};
@@ -57,7 +57,7 @@ struct RenderSection {
     seed: Option<f64>,
     /// Rays a batch.
     batch: Option<f64>,
-    /// `sobol` or `random`.
+    /// `sobol`, `random` or `stratified`.
     numbers: Option<String>,
     /// `disk`, `rings` or `random`.
     cone: Option<String>,
@@ -224,7 +224,7 @@ fn render_settings(
         })
     };
     let direction = one_of("direction", s.direction.as_deref(), &["auto", "forward", "backward"]);
-    let numbers = one_of("numbers", s.numbers.as_deref(), &["sobol", "random"]);
+    let numbers = one_of("numbers", s.numbers.as_deref(), &["sobol", "random", "stratified"]);
     let cone = one_of("cone", s.cone.as_deref(), &["disk", "rings", "random"]);
     let can_backward = source.radiance().is_some() && imager.launch().is_some();
     let can_forward = source.emit().is_some() && imager.receive().is_some();
@@ -248,7 +248,7 @@ fn render_settings(
         rays: rays as u64,
         seed: seed as u64,
         batch: batch as usize,
-        stratified: numbers == 0,
+        numbers: [NumberFamily::Sobol, NumberFamily::Random, NumberFamily::Stratified][numbers],
         cone: [ConePattern::Disk, ConePattern::Rings, ConePattern::Random][cone],
     })
 }

@@ -13,4 +13,4 @@ pub mod yaml;
 
 pub use assemble::load;
 pub use resources::FileResources;
-pub use scene::{ConePattern, Direction, Output, RaysFigure, RenderSettings, Scene};
+pub use scene::{ConePattern, Direction, NumberFamily, Output, RaysFigure, RenderSettings, Scene};

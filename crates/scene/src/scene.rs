@@ -26,6 +26,18 @@ pub enum ConePattern {
     Disk,
 }
 
+/// How the numbers of one stream of samples lie to each other.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum NumberFamily {
+    /// Owen-scrambled Sobol points.
+    #[default]
+    Sobol,
+    /// Independent random numbers.
+    Random,
+    /// Jittered strata, as many as a pixel has samples (forward: as the scene states `samples`).
+    Stratified,
+}
+
 /// The `render` section.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RenderSettings {
@@ -39,8 +51,8 @@ pub struct RenderSettings {
     pub seed: u64,
     /// Rays a batch.
     pub batch: usize,
-    /// Stratified (Sobol) or independent numbers.
-    pub stratified: bool,
+    /// Family of the numbers.
+    pub numbers: NumberFamily,
     /// Pattern of the forward cone.
     pub cone: ConePattern,
 }

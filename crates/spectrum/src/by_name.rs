@@ -10,23 +10,29 @@
 //! | `line:C'`, `line:632.8` | one line, by its letter or its wavelength in nm |
 //! | `gaussian:550,20` | center and standard deviation, nm |
 //! | `rectangle:500,600` | 1 between two wavelengths, nm |
-//! | `constant:0.18` | the same value everywhere |
+//! | `constant`, `constant:0.18` | the same value everywhere |
+//! | `lines:404.66=1,e=2` | several lines with their powers |
+//! | `mine.yaml` | any spectrum of those in [`crate::document`]: signed Gaussians, histograms, products ... |
+//! | `0.5 * D65 + line:e`, `A * gaussian:550,40` | sums and products, with spaces around their signs |
 //!
-//! A Gaussian, a rectangle or a constant is whatever is wanted: light, filter, surface or detector.
+//! A Gaussian, a rectangle or a constant is whatever is wanted: light, filter, surface or detector. Of a product the first
+//! may be that, what stands behind it are filters. Two lights have no product, and only like is added to like.
 
+use std::cell::Cell;
 use std::fs;
 use std::io::Read as _;
 
 use spectra_core::resources::{ResourceError, Resources};
 use spectra_core::spectral::Line;
 
+use crate::document;
 use crate::emission::Emission;
 use crate::error::SpectrumError;
 use crate::filter::{Reflectance, Sensitivity, Transmittance};
-use crate::illuminants::daylight;
-use crate::lines::named_line;
-use crate::meta::Kind;
+use crate::inline::{self, Factor};
+use crate::meta::{Kind, Meta};
 use crate::names::{candidates, normalized};
+use crate::piece::Piece;
 use crate::shape::Shape;
 use crate::table::{MAX_BYTES, Table};
 
@@ -145,68 +151,129 @@ fn of_kind<T: OfKind>(name: &str, found: Found) -> Result<T, SpectrumError> {
 }
 
 fn load(name: &str, files: Option<&dyn Resources>, wanted: Kind) -> Result<Found, SpectrumError> {
+    Loader::new(files).piece(name, wanted)?.into_found(wanted)
+}
+
+/// What a bundled spectrum or a file says of itself: name, source, licence, range. `None` for a spectrum that is written
+/// out, and for what is not found.
+#[must_use]
+pub fn meta_in(name: &str, files: &dyn Resources) -> Option<Meta> {
     let name = name.trim();
-    if let Some((head, arguments)) = name.split_once(':')
-        && let Some(found) = inline(name, head.trim(), arguments.trim(), wanted)
-    {
-        return found;
+    if inline::sum_of_products(name).is_some() || inline::single(name).is_some() {
+        return None;
     }
-    let (file, column) = match name.rsplit_once('#') {
-        Some((file, column)) => (file.trim(), Some(column.trim())),
-        None => (name, None),
-    };
-    from_table(name, &table(file, files, wanted)?, column)
+    let file = name.rsplit_once('#').map_or(name, |(file, _)| file.trim());
+    if is_yaml(file) {
+        return Loader::new(Some(files)).document(file, Kind::Emission).ok().map(|(_, meta)| meta);
+    }
+    table(file, Some(files), Kind::Emission).ok().map(|table| table.meta)
 }
 
-/// An inline spectrum; `None` if `head` is none of them.
-fn inline(text: &str, head: &str, arguments: &str, wanted: Kind) -> Option<Result<Found, SpectrumError>> {
-    let fault = |wanted| SpectrumError::Inline { text: text.chars().take(80).collect(), wanted };
-    let one = |help| numbers(arguments).and_then(|n| <[f64; 1]>::try_from(n).ok()).ok_or_else(|| fault(help));
-    let two = |help| numbers(arguments).and_then(|n| <[f64; 2]>::try_from(n).ok()).ok_or_else(|| fault(help));
-    Some(match head.to_ascii_lowercase().as_str() {
-        "blackbody" => one("write a temperature in kelvin, such as blackbody:5800")
-            .and_then(|[k]| Emission::blackbody(k))
-            .map(Found::Emission),
-        "daylight" => {
-            one("write a temperature in kelvin, such as daylight:5500").and_then(|[k]| daylight(k)).map(Found::Emission)
+/// Loads spectra that may be made of others, and bounds how many.
+pub(crate) struct Loader<'a> {
+    files: Option<&'a dyn Resources>,
+    /// Spectra that may still be loaded, and how deep they may still lie in one another.
+    left: Cell<u32>,
+    depth: Cell<u32>,
+}
+
+impl<'a> Loader<'a> {
+    /// More than anybody writes; few enough that a file which names itself ends at once.
+    const MOST: u32 = 1000;
+    const DEEPEST: u32 = 12;
+
+    fn new(files: Option<&'a dyn Resources>) -> Self {
+        Self { files, left: Cell::new(Self::MOST), depth: Cell::new(Self::DEEPEST) }
+    }
+
+    /// Counts one more spectrum.
+    pub(crate) fn count(&self, name: &str) -> Result<(), SpectrumError> {
+        match self.left.get().checked_sub(1) {
+            Some(left) => {
+                self.left.set(left);
+                Ok(())
+            }
+            None => Err(SpectrumError::TooMany(name.chars().take(80).collect())),
         }
-        "line" => named_line(arguments)
-            .map(|l| [l.nominal_nm])
-            .map_or_else(|| one("write a letter or a wavelength in nm, such as line:C' or line:632.8"), Ok)
-            .and_then(|[nm]| Emission::line(nm, 1.0))
-            .map(Found::Emission),
-        "gaussian" => two("write center and standard deviation in nm, such as gaussian:550,20")
-            .and_then(|[center, sigma]| Shape::gaussian(center, sigma))
-            .and_then(|shape| of_shape(shape, wanted)),
-        "rectangle" => two("write two wavelengths in nm, such as rectangle:500,600")
-            .and_then(|[from, to]| Shape::rectangle(from, to))
-            .and_then(|shape| of_shape(shape, wanted)),
-        "constant" => one("write a value, such as constant:0.18").and_then(|[value]| constant(value, wanted)),
-        _ => return None,
-    })
+    }
+
+    /// The spectrum of that name; a shape stays one.
+    pub(crate) fn piece(&self, name: &str, wanted: Kind) -> Result<Piece, SpectrumError> {
+        let name = name.trim();
+        match inline::sum_of_products(name) {
+            Some(products) => self.sum(&products, wanted),
+            None => self.single(name, wanted),
+        }
+    }
+
+    fn sum(&self, products: &[Vec<Factor<'_>>], wanted: Kind) -> Result<Piece, SpectrumError> {
+        let mut sum: Option<Piece> = None;
+        for factors in products {
+            let product = self.product(factors, wanted)?;
+            sum = Some(match sum {
+                None => product,
+                Some(before) => before.plus(product)?,
+            });
+        }
+        sum.ok_or_else(|| unknown(""))
+    }
+
+    /// The first that has a name may be what is wanted; those behind it are filters.
+    fn product(&self, factors: &[Factor<'_>], wanted: Kind) -> Result<Piece, SpectrumError> {
+        let (mut number, mut product) = (1.0, None);
+        for factor in factors {
+            product = match (factor, product) {
+                (Factor::Number(n), before) => {
+                    number *= n;
+                    before
+                }
+                (Factor::Named(name), None) => Some(self.single(name, wanted)?),
+                (Factor::Named(name), Some(before)) => {
+                    Some(Piece::times(before, self.single(name, Kind::Transmittance)?)?)
+                }
+            };
+        }
+        match product {
+            Some(product) if number == 1.0 => Ok(product),
+            Some(product) => product.scaled(number),
+            None => Ok(Piece::Bare(Shape::constant(number)?)),
+        }
+    }
+
+    fn single(&self, name: &str, wanted: Kind) -> Result<Piece, SpectrumError> {
+        self.count(name)?;
+        if let Some(piece) = inline::single(name) {
+            return piece;
+        }
+        let (file, column) = match name.rsplit_once('#') {
+            Some((file, column)) => (file.trim(), Some(column.trim())),
+            None => (name, None),
+        };
+        if is_yaml(file) {
+            return self.document(name, wanted).map(|(piece, _)| piece);
+        }
+        from_table(name, &table(file, self.files, wanted)?, column).map(Piece::Typed)
+    }
+
+    fn document(&self, name: &str, wanted: Kind) -> Result<(Piece, Meta), SpectrumError> {
+        let Some(files) = self.files else {
+            let cause = "a spectrum in YAML is found beside a scene, not by its bare name".to_owned();
+            return Err(SpectrumError::Io { name: name.into(), cause });
+        };
+        let Some(depth) = self.depth.get().checked_sub(1) else {
+            return Err(SpectrumError::TooMany(name.chars().take(80).collect()));
+        };
+        let file = files.document(name, &["spectra"], &[]).map_err(SpectrumError::Document)?;
+        self.depth.set(depth);
+        let found = document::of_file(&file, wanted, self).map_err(SpectrumError::Document);
+        self.depth.set(depth + 1);
+        found
+    }
 }
 
-fn numbers(text: &str) -> Option<Vec<f64>> {
-    text.split(',').map(|n| n.trim().parse().ok().filter(|v: &f64| v.is_finite())).collect()
-}
-
-/// A shape of peak 1, as what is wanted.
-fn of_shape(shape: Shape, wanted: Kind) -> Result<Found, SpectrumError> {
-    Ok(match wanted {
-        Kind::Transmittance => Found::Transmittance(Transmittance::from_unit(shape)),
-        Kind::Reflectance => Found::Reflectance(Reflectance::from_unit(shape)),
-        Kind::Sensitivity => Found::Sensitivity(Sensitivity::from_unit(shape)),
-        _ => Found::Emission(Emission::new(Some(shape), Vec::new())?),
-    })
-}
-
-fn constant(value: f64, wanted: Kind) -> Result<Found, SpectrumError> {
-    Ok(match wanted {
-        Kind::Transmittance => Found::Transmittance(Transmittance::constant(value)?),
-        Kind::Reflectance => Found::Reflectance(Reflectance::constant(value)?),
-        Kind::Sensitivity => Found::Sensitivity(Sensitivity::constant(value)?),
-        _ => Found::Emission(Emission::constant(value)?),
-    })
+fn is_yaml(name: &str) -> bool {
+    let ending = name.rsplit_once('.').map(|(_, ending)| ending.to_ascii_lowercase());
+    ending.is_some_and(|e| e == "yaml" || e == "yml")
 }
 
 /// The table of a bundled name, or of a file.
@@ -229,14 +296,12 @@ fn table(name: &str, files: Option<&dyn Resources>, wanted: Kind) -> Result<Tabl
 }
 
 fn unknown(name: &str) -> SpectrumError {
-    const INLINE: [&str; 6] =
-        ["blackbody:5800", "daylight:5500", "line:C'", "gaussian:550,20", "rectangle:500,600", "constant:1"];
     let head = |text: &'static str| text.split_once(':').map_or(text, |(head, _)| head);
     let near = match name.split_once(':') {
-        Some((wanted, _)) => candidates(wanted, INLINE.into_iter().map(head)),
-        None => candidates(name, bundled_spectra().map(|(n, _)| n).chain(INLINE.into_iter().map(head))),
+        Some((wanted, _)) => candidates(wanted, inline::EXAMPLES.into_iter().map(head)),
+        None => candidates(name, bundled_spectra().map(|(n, _)| n).chain(inline::EXAMPLES.into_iter().map(head))),
     };
-    let example = |n: String| INLINE.into_iter().find(|i| head(i) == n).map_or(n, str::to_owned);
+    let example = |n: String| inline::EXAMPLES.into_iter().find(|i| head(i) == n).map_or(n, str::to_owned);
     SpectrumError::Unknown {
         name: name.chars().take(80).collect(),
         candidates: near.into_iter().map(example).collect(),

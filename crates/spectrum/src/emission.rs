@@ -227,7 +227,8 @@ impl Emission {
         if peak > 0.0 { self.scaled(1.0 / peak) } else { Err(SpectrumError::NothingToScale("peak")) }
     }
 
-    fn through(&self, shape: &Shape) -> Self {
+    /// What passes matter of that shape.
+    pub(crate) fn through(&self, shape: &Shape) -> Self {
         Self {
             continuum: self.continuum.as_ref().map(|c| c.times(shape)),
             lines: self.lines.iter().map(|l| Line { power: l.power * shape.at(l.wavelength_nm), ..*l }).collect(),

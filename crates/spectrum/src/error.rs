@@ -1,6 +1,7 @@
 //! What can be wrong with a spectrum that is not read from a file.
 
 use crate::table::TableError;
+use spectra_core::params::Faults;
 
 /// A spectrum that cannot be.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -62,6 +63,22 @@ pub enum SpectrumError {
         /// The kind wanted.
         wanted: &'static str,
     },
+    /// Two spectra that cannot be multiplied, or added: light and light, light and a filter.
+    #[error("{left} and {right} have no {operation}")]
+    NotTogether {
+        /// Kind of the first.
+        left: &'static str,
+        /// Kind of the second.
+        right: &'static str,
+        /// `product` or `sum`.
+        operation: &'static str,
+    },
+    /// A file that names itself, or spectra in such numbers that nobody wrote them.
+    #[error("`{0}` is made of too many spectra, or of itself")]
+    TooMany(String),
+    /// A YAML file with faults, each with its place.
+    #[error("{0}")]
+    Document(Faults),
     /// A file that cannot be read.
     #[error("{name}: {cause}")]
     Io {

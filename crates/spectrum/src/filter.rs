@@ -85,9 +85,12 @@ macro_rules! filter {
                 Self(Shape::tabulated(table))
             }
 
-            /// A shape of values between 0 and 1.
-            pub(crate) fn from_unit(shape: Shape) -> Self {
-                Self(shape)
+            /// A shape, whose values are checked on 350-830 nm.
+            pub(crate) fn from_shape(shape: Shape) -> Result<Self, SpectrumError> {
+                let (low, high) = shape.extremes();
+                check_value($kind, low)?;
+                check_value($kind, high)?;
+                Ok(Self(shape))
             }
 
             #[doc = concat!("The ", $what, " at `wavelength_nm`; 0 for NaN.")]

@@ -28,6 +28,7 @@ mod cie;
 mod colorimetry;
 pub mod constants;
 mod difference;
+mod document;
 mod dominant;
 mod emission;
 mod error;
@@ -35,6 +36,7 @@ mod filter;
 mod gamut;
 mod gaussian;
 mod illuminants;
+mod inline;
 mod line_color;
 mod lines;
 pub mod matrix;
@@ -42,9 +44,11 @@ mod meta;
 mod names;
 mod normal;
 mod normal_quantile;
+mod piece;
 mod planck;
 mod primaries;
 pub mod rgb;
+mod round_trip;
 mod shape;
 mod spectral_color;
 mod sprague;
@@ -55,7 +59,7 @@ mod truncated;
 pub use adaptation::Adaptation;
 pub use by_name::{
     Found, bundled_spectra, find, find_emission, find_emission_in, find_in, find_reflectance, find_reflectance_in,
-    find_sensitivity, find_sensitivity_in, find_transmittance, find_transmittance_in,
+    find_sensitivity, find_sensitivity_in, find_transmittance, find_transmittance_in, meta_in,
 };
 pub use cct::{Cct, cct, uv_1960};
 pub use cie::{Observer, v_lambda, v_prime};
@@ -74,6 +78,7 @@ pub use meta::{Interpolation, Kind, Meta, Outside, Scale};
 pub use planck::planck_radiance;
 pub use primaries::{srgb_light, srgb_primaries};
 pub use rgb::{RgbSpace, Transfer, from_u8, to_u8, xyz_of_xy};
+pub use round_trip::{RoundTrip, RoundTripErrors};
 pub use shape::Shape;
 pub use spectra_core::spectral::{BAND, Grid, Line, SpectralPower};
 pub use spectral_color::{spectral_color_encoded, spectral_color_linear, spectral_color_srgb8};

@@ -237,6 +237,15 @@ impl Shape {
         cell::integral(|w| self.at(w), &breaks) / (high_nm - low_nm)
     }
 
+    /// Smallest and largest value on 350-830 nm: at whole nanometres, at knots, centers and edges.
+    pub(crate) fn extremes(&self) -> (f64, f64) {
+        let (low_nm, high_nm) = (BAND.start_nm, BAND.end_nm());
+        let mut places: Vec<f64> = BAND.wavelengths_nm().collect();
+        self.breaks(low_nm, high_nm, &mut places);
+        let values = places.into_iter().filter(|w| BAND.contains(*w)).map(|w| self.at(w));
+        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)))
+    }
+
     /// Whether points `step_nm` apart would miss or double some of it.
     fn is_finer_than(&self, step_nm: f64) -> bool {
         match &self.0 {

@@ -116,3 +116,21 @@ fn daylight_reaches_the_ultraviolet_edge() {
         assert!(light[0] > 15.0 && light[0] < light[30], "{name}: {}", light[0]);
     }
 }
+
+/// ISO 7589:2002 defines its film illuminants from 350 to 690 nm and nowhere else (the printer's from a shorter range).
+#[test]
+fn film_illuminants_are_defined_from_350_to_690_nm() {
+    let files = spectra_spectrum::bundled_spectra().filter(|(name, _)| name.starts_with("iso-7589-"));
+    let mut count = 0;
+    for (name, path) in files {
+        let bytes = spectra_data::get(path).expect("bundled");
+        let table = spectra_spectrum::table::Table::parse_bytes(path, bytes, None).expect("sound");
+        let (from, to) = (table.wavelengths_nm[0], table.wavelengths_nm[table.wavelengths_nm.len() - 1]);
+        assert!(from >= 350.0 && to <= 690.0, "{name}: {from} to {to}");
+        if !name.ends_with("printer") {
+            assert_eq!((from, to), (350.0, 690.0), "{name}");
+        }
+        count += 1;
+    }
+    assert_eq!(count, 7);
+}

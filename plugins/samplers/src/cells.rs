@@ -58,7 +58,8 @@ impl Cells {
     pub fn density_per_nm(&self, wavelength_nm: f64) -> f64 {
         let p = (wavelength_nm - self.grid.start_nm) * self.per_step;
         let count = self.density_per_nm.len();
-        if p >= 0.0 && p <= count as f64 { self.density_per_nm[(p as usize).min(count - 1)] } else { 0.0 }
+        // Cells are few enough for 32 bits, whose conversion is one instruction.
+        if p >= 0.0 && p <= count as f64 { self.density_per_nm[(p as i32 as usize).min(count - 1)] } else { 0.0 }
     }
 }
 

@@ -1,14 +1,15 @@
 //! `kind: gaussian-terms`: a few signed Gaussian terms, fitted to the source, as the density.
 //!
-//! Two ways to draw from them. Collapsed: the terms without their signs are one density, and a sample weighs one over
-//! it. Term, then wavelength: a term is drawn in proportion to the absolute value of its integral over the band,
-//! the wavelength from it, and the sample keeps the sign of its term; for given wavelengths the mean of the weights
-//! is the same, but where terms cancel they scatter about it, so that it never is the better one. It is there
-//! to be measured. (To follow one term of every factor of a light path is a third way, without a wavelength;
-//! see [`crate::OneTerm`].)
+//! Three ways to draw from them. Collapsed: the terms without their signs are one density, and a sample weighs one over
+//! it. Term, then wavelength: a term is drawn in proportion to the absolute value of its integral over the band, the
+//! wavelength from it, and the sample keeps the sign of its term; for given wavelengths the mean of the weights is
+//! the same, but where terms cancel they scatter about it, so that it never is the better one. One term: the term is
+//! followed, and the sample is its light alone ([`crate::followed`]). The latter two are there to be measured.
 //!
-//! Neither is biased by what the fit leaves over: the source itself is evaluated at the wavelength.
+//! None is biased by what the fit leaves over: the source itself is evaluated at the wavelength, or what is left over
+//! followed too.
 
+use crate::followed::Followed;
 use crate::seen::Seen;
 use crate::truncated_gaussian::EDGE;
 use crate::{Cells, Continuum, Floor};
@@ -29,6 +30,8 @@ pub enum Follow {
     Collapsed,
     /// A term, whose sign stays with the sample, then the wavelength from it.
     TermThenWavelength,
+    /// A term, whose light alone is the sample, at a wavelength drawn from it. It takes no floor.
+    OneTerm,
 }
 
 /// Parameters of `kind: gaussian-terms` as written in a scene.
@@ -38,7 +41,7 @@ pub struct GaussianTermsParams {
     /// Number of terms that are fitted to the source's continuum, 1 to 32; 6 if left out.
     #[serde(default = "usual_terms")]
     pub terms: u32,
-    /// `collapsed` (the usual) or `term-then-wavelength`.
+    /// `collapsed` (the usual), `term-then-wavelength` or `one-term`.
     #[serde(default)]
     pub follow: Follow,
     /// Share of the samples that follow the summed response of all channels instead; 1/16 if left out.
@@ -95,6 +98,16 @@ impl WavelengthSampler for GaussianTerms {
                 &fitted.mixture
             }
         };
+        if self.follow == Follow::OneTerm && seen.has_continuum {
+            let followed = Followed::new(mixture, grid, &system.source.continuum)?;
+            if let Some(nm) = seen.wavelengths_nm(&grid).find(|w| !followed.can_follow(*w)) {
+                return Err(format!(
+                    "the terms cancel at {nm} nm, where a channel sees: a sample of one term would weigh a hundred times \
+                     what it should; take fewer or more terms, or `follow: collapsed`"
+                ));
+            }
+            return Ok(Box::new(seen.mixture(system, Some(followed))?));
+        }
         let floor = self.floor.cells(grid, &seen).map(|cells| (self.floor.share(), cells));
         let signed = Signed::new(mixture, self.follow, floor, grid.start_nm, grid.end_nm())?;
         // A narrow term that takes away takes most at its center.
@@ -165,7 +178,7 @@ impl Signed {
     fn divisor(&self, wavelength_nm: f64) -> f64 {
         let term = |t: &Term| {
             let density = t.probability * t.gaussian.density(wavelength_nm);
-            if self.follow == Follow::Collapsed { density } else { t.sign * density }
+            if self.follow == Follow::TermThenWavelength { t.sign * density } else { density }
         };
         self.of_floor(wavelength_nm) + self.terms.iter().map(term).sum::<f64>()
     }

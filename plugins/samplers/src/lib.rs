@@ -9,16 +9,20 @@
 //! | `inverse-transform` | any named spectrum |
 //! | `truncated-gaussian` | one Gaussian, cut off at the ends of the band |
 //! | `gaussian-terms` | Gaussian terms fitted to the source |
+//! | `hero` | that of another strategy, one number rotated among the samples of a group |
 //! | `uniform` | the same everywhere |
 //! | `stratified` | the same everywhere, in strata of equal width |
 //! | `lines` | the source's lines, where it has nothing else |
 //!
-//! What follows one Gaussian term of every factor has no wavelength and can pass no lens: it is no
-//! sampler, but [`OneTerm`] does it for spectral integrals.
+//! `gaussian-terms` draws from all its terms at once, from one whose sign the sample keeps, or follows one. What follows a
+//! term of every factor has no wavelength and can pass no lens: it is no sampler, but [`OneTerm`] does it for
+//! spectral integrals.
 
 mod cells;
 mod floor;
+mod followed;
 mod gaussian_terms;
+mod hero;
 mod inverse_transform;
 mod lines;
 mod mixture;
@@ -33,6 +37,7 @@ mod uniform;
 pub use cells::Cells;
 pub use floor::Floor;
 pub use gaussian_terms::{Follow, GaussianTerms, GaussianTermsParams};
+pub use hero::{Hero, HeroParams};
 pub use inverse_transform::{InverseTransform, InverseTransformParams};
 pub use lines::Lines;
 pub use mixture::{Continuum, Mixture, Shares};

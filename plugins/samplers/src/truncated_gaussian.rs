@@ -8,7 +8,7 @@ use crate::mixture::CHUNK;
 use crate::seen::Seen;
 use crate::{Cells, Continuum, Floor};
 use serde::Deserialize;
-use spectra_core::isa::Isa;
+use spectra_core::isa::{Isa, Vectorized};
 use spectra_core::params::{Faults, Params, Wavelength};
 use spectra_core::registry::{Context, SamplerEntry};
 use spectra_core::spectral::SystemResponse;
@@ -61,7 +61,7 @@ impl WavelengthSampler for TruncatedGaussianSampler {
                 "at {nm} nm, where a channel sees, the Gaussian is too far from its center to be drawn; give it a floor"
             ));
         }
-        let continuum = seen.draws_continuum().then(|| WithFloor { density: Density::of(&gaussian), gaussian, floor });
+        let continuum = seen.draws_continuum().then_some(WithFloor { gaussian, floor });
         Ok(Box::new(seen.mixture(system, continuum)?))
     }
 }
@@ -76,95 +76,82 @@ fn is_drawn(density_per_nm: f64) -> bool {
 /// infinite.
 pub(crate) const EDGE: f64 = 0.5 * f64::EPSILON;
 
-/// The density of a [`TruncatedGaussian`] within its band, with all divisions done before.
-#[derive(Clone, Copy, Debug)]
-struct Density {
-    /// The point of the band nearest to the center, nm, and in standard deviations from it.
-    nearest_nm: f64,
-    nearest: f64,
-    per_sigma: f64,
-    /// Density there, 1/nm.
-    largest_per_nm: f64,
-}
-
-impl Density {
-    fn of(gaussian: &TruncatedGaussian) -> Self {
-        let (min_nm, max_nm) = gaussian.band_nm();
-        let nearest_nm = gaussian.center_nm().clamp(min_nm, max_nm);
-        Self {
-            nearest_nm,
-            nearest: (nearest_nm - gaussian.center_nm()) / gaussian.sigma_nm(),
-            per_sigma: 1.0 / gaussian.sigma_nm(),
-            largest_per_nm: gaussian.density(nearest_nm),
-        }
-    }
-
-    #[inline(always)]
-    fn at(self, wavelength_nm: f64) -> f64 {
-        let from = (wavelength_nm - self.nearest_nm) * self.per_sigma;
-        self.largest_per_nm * libm::exp(-0.5 * from * (from + 2.0 * self.nearest))
-    }
-}
-
 /// A Gaussian, and the share and the density of the floor beside it.
 #[derive(Clone, Debug)]
 struct WithFloor {
     gaussian: TruncatedGaussian,
-    density: Density,
     floor: Option<(f64, Cells)>,
 }
 
 impl Continuum for WithFloor {
+    /// In passes over small buffers: what fills vectors apart from what looks things up.
     fn draw(&self, u: &[f64], wavelength_nm: &mut [f64], weight: &mut [f64], isa: Isa) {
-        let Some((share, cells)) = &self.floor else {
-            return self.draw_with(0.0, |_| 0.0, u, wavelength_nm, weight, isa);
-        };
-        self.draw_with(*share, |part| cells.quantile(part), u, wavelength_nm, weight, isa);
+        let share = self.floor.as_ref().map_or(0.0, |f| f.0);
+        let (rest, inverse) = (1.0 - share, 1.0 / (1.0 - share));
+        let (mut numbers, mut density, mut of_floor) = ([0.0; CHUNK], [0.0; CHUNK], [0.0; CHUNK]);
+        for first in (0..u.len()).step_by(CHUNK) {
+            let part = first..u.len().min(first + CHUNK);
+            let (u, nm) = (&u[part.clone()], &mut wavelength_nm[part.clone()]);
+            let (numbers, density) = (&mut numbers[..u.len()], &mut density[..u.len()]);
+            let of_floor = &mut of_floor[..u.len()];
+            isa.run(Rescale { u, share, inverse, out: numbers });
+            self.gaussian.draw(numbers, nm, isa);
+            if let Some((share, cells)) = &self.floor {
+                for (nm, u) in nm.iter_mut().zip(u) {
+                    if u < share {
+                        *nm = cells.quantile(u / share);
+                    }
+                }
+                for (of_floor, nm) in of_floor.iter_mut().zip(&*nm) {
+                    *of_floor = share * cells.density_per_nm(*nm);
+                }
+            }
+            self.gaussian.densities(nm, density, isa);
+            isa.run(Weigh { of_floor, density, rest, weight: &mut weight[part] });
+        }
     }
 
     fn density_per_nm(&self, wavelength_nm: f64) -> f64 {
-        let (min_nm, max_nm) = self.gaussian.band_nm();
-        if (min_nm..=max_nm).contains(&wavelength_nm) { self.within(wavelength_nm) } else { 0.0 }
-    }
-}
-
-impl WithFloor {
-    /// Density at a wavelength of the band, 1/nm.
-    #[inline(always)]
-    fn within(&self, wavelength_nm: f64) -> f64 {
-        let gaussian = self.density.at(wavelength_nm);
+        let gaussian = self.gaussian.density(wavelength_nm);
         match &self.floor {
             Some((share, cells)) => share * cells.density_per_nm(wavelength_nm) + (1.0 - share) * gaussian,
             None => gaussian,
         }
     }
+}
 
+/// Numbers behind the floor's share, on [0, 1) again.
+struct Rescale<'a> {
+    u: &'a [f64],
+    share: f64,
+    inverse: f64,
+    out: &'a mut [f64],
+}
+
+impl Vectorized for Rescale<'_> {
+    type Output = ();
     #[inline(always)]
-    fn draw_with(
-        &self,
-        share: f64,
-        of_floor: impl Fn(f64) -> f64,
-        u: &[f64],
-        wavelength_nm: &mut [f64],
-        weight: &mut [f64],
-        isa: Isa,
-    ) {
-        let rest = 1.0 - share;
-        let mut rescaled = [0.0; CHUNK];
-        for first in (0..u.len()).step_by(CHUNK) {
-            let part = first..u.len().min(first + CHUNK);
-            let (u, nm) = (&u[part.clone()], &mut wavelength_nm[part.clone()]);
-            let numbers = &mut rescaled[..part.len()];
-            for (number, u) in numbers.iter_mut().zip(u) {
-                *number = ((u - share) / rest).clamp(EDGE, 1.0 - EDGE);
-            }
-            self.gaussian.draw(numbers, nm, isa);
-            for ((nm, weight), u) in nm.iter_mut().zip(&mut weight[part]).zip(u) {
-                if *u < share {
-                    *nm = of_floor(u / share);
-                }
-                *weight /= self.within(*nm);
-            }
+    fn run(self) {
+        for (out, u) in self.out.iter_mut().zip(self.u) {
+            *out = ((u - self.share) * self.inverse).clamp(EDGE, 1.0 - EDGE);
+        }
+    }
+}
+
+/// Weights over the density of floor and Gaussian together.
+struct Weigh<'a> {
+    of_floor: &'a [f64],
+    density: &'a [f64],
+    rest: f64,
+    weight: &'a mut [f64],
+}
+
+impl Vectorized for Weigh<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run(self) {
+        for ((weight, of_floor), density) in self.weight.iter_mut().zip(self.of_floor).zip(self.density) {
+            *weight /= of_floor + self.rest * density;
         }
     }
 }

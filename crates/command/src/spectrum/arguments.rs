@@ -7,12 +7,15 @@ use std::path::PathBuf;
 #[derive(Debug, Args)]
 #[command(
     long_about = "Look at spectra: their color in figures, and pictures of them.\n\n\
-        NAME is a bundled spectrum (see `spectra spectrum list`), a column of one (`colorchecker#red`), a CSV file, or is \
-        written out: blackbody:5800 and daylight:5500 (K), line:C' or line:632.8, gaussian:550,20 (center and standard \
-        deviation, nm), rectangle:500,600 (nm), constant:1.",
+        NAME is a bundled spectrum (see `spectra spectrum list`), a column of one (`colorchecker#red`), a CSV or YAML file, \
+        or is written out: blackbody:5800 and daylight:5500 (K), line:C' or line:632.8, lines:404.66=1,e=2 (with powers), \
+        gaussian:550,20 (center and standard deviation, nm), rectangle:500,600 (nm), constant:1; and sums and products of \
+        these with spaces around their signs, such as '0.5 * D65 + line:e' or 'A * gaussian:550,40'.",
     after_long_help = "Examples:\n  spectra spectrum info D65\n  \
         spectra spectrum plot A D65 blackbody:5800 -o lights.svg\n  \
-        spectra spectrum plot D50 LED-B3 line:e --chromaticity -o diagram.png"
+        spectra spectrum plot D50 LED-B3 line:e --chromaticity -o diagram.png\n  \
+        spectra spectrum fit ilford-ortho-plus --terms 6 -o ortho.yaml\n  \
+        spectra spectrum color 255 128 64"
 )]
 pub(crate) struct SpectrumArguments {
     /// What to do.
@@ -27,6 +30,12 @@ pub(crate) enum SpectrumCommand {
     Info(SpectrumInfo),
     /// Draw spectra, or their chromaticities.
     Plot(SpectrumPlot),
+    /// Fit signed Gaussian terms to a spectrum.
+    Fit(SpectrumFit),
+    /// Show a color as a spectrum, by each color model, and what comes back.
+    Color(SpectrumColor),
+    /// Measure how well colors survive each color model.
+    Models(SpectrumModels),
     /// List the bundled spectra.
     List(SpectrumList),
 }
@@ -94,6 +103,86 @@ pub(crate) struct SpectrumPlot {
     /// The light on surfaces and behind filters in the chromaticity diagram.
     #[arg(long, value_name = "NAME", default_value = "D65", requires = "chromaticity")]
     pub illuminant: String,
+}
+
+/// `spectra spectrum fit`.
+#[derive(Debug, Args)]
+#[command(
+    long_about = "Fit signed Gaussian terms to a spectrum by least squares, and show how well they stand for it: relative \
+        L2 error, largest error, error of the integral, smallest value, and kappa, the sum of the terms' absolute integrals \
+        over that of their signed ones.\n\nThe file that -o writes is a spectrum like any other: a scene, a strategy and \
+        these commands take it by its name. Spectral lines are no part of the fit; the file has them beside the terms.",
+    after_long_help = "Example:\n  spectra spectrum fit D65 --terms 8 -o d65-terms.yaml\n  \
+        spectra spectrum plot D65 d65-terms.yaml -o both.png"
+)]
+pub(crate) struct SpectrumFit {
+    /// A bundled spectrum, a file, or a spectrum written out (blackbody:5800).
+    #[arg(value_name = "NAME")]
+    pub name: String,
+    /// Number of terms, 1 to 32.
+    #[arg(long, value_name = "N", default_value_t = 6, value_parser = clap::value_parser!(u8).range(1..=32))]
+    pub terms: u8,
+    /// Where it is fitted, nm.
+    #[arg(long, value_name = "FROM,TO", value_delimiter = ',', num_args = 1..=2, default_value = "350,830")]
+    pub band: Vec<f64>,
+    /// Distance of the points that are fitted, nm.
+    #[arg(long, value_name = "NM", default_value_t = 1.0)]
+    pub step: f64,
+    /// File to write: FILE.yaml.
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// A JSON object on standard output.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `spectra spectrum color`.
+#[derive(Debug, Args)]
+#[command(
+    long_about = "Show a color as a spectrum, by each color model, and what comes back: the spectrum seen by the CIE 1931 \
+        observer, as sRGB.",
+    after_long_help = "Examples:\n  spectra spectrum color 255 128 64\n  \
+        spectra spectrum color '#ff8040' --model 'fraunhofer{secondary: [F, D]}'"
+)]
+pub(crate) struct SpectrumColor {
+    /// Red, green and blue of 0 to 255, or #ff8040.
+    #[arg(value_name = "COLOR", required = true, num_args = 1..=3)]
+    pub color: Vec<String>,
+    /// A color model, with its keys in braces where it has any; all of them if left out. Can be given several times.
+    #[arg(long, value_name = "NAME", default_value = "all")]
+    pub model: Vec<String>,
+    /// The light whose color is white.
+    #[arg(long, value_name = "NAME", default_value = "D65")]
+    pub illuminant: String,
+    /// A JSON object on standard output.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `spectra spectrum models`.
+#[derive(Debug, Args)]
+#[command(
+    long_about = "Measure how well colors survive each color model: over all 8-bit colors in steps, the largest and the \
+        mean difference of what comes back, and how much green a pure red has then. -o draws colors as they are given, and \
+        as each model brings them back.",
+    after_long_help = "Example:\n  spectra spectrum models --model smooth --model 'fraunhofer{secondary: [F, D]}' -o colors.png"
+)]
+pub(crate) struct SpectrumModels {
+    /// A color model, with its keys in braces where it has any; all of them if left out. Can be given several times.
+    #[arg(long, value_name = "NAME", default_value = "all")]
+    pub model: Vec<String>,
+    /// The light whose color is white.
+    #[arg(long, value_name = "NAME", default_value = "D65")]
+    pub illuminant: String,
+    /// Distance of the colors, 1 to 255.
+    #[arg(long, value_name = "N", default_value_t = 15, value_parser = clap::value_parser!(u8).range(1..=255))]
+    pub step: u8,
+    /// Picture to write: FILE.svg or FILE.png.
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// A JSON object on standard output.
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// `spectra spectrum list`.

@@ -1,14 +1,13 @@
 //! `spectra spectrum info`.
 
 use super::arguments::{ObserverName, SpectrumInfo};
-use super::describe::table;
-use super::{load, load_illuminant};
+use super::{files, load, load_illuminant};
 use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
 use serde::Serialize;
 use spectra_spectrum::{
     Adaptation, BAND, Dominant, Emission, Found, Gamut, Observer, RgbSpace, cct, chromaticity, dominant_wavelength,
-    into_gamut, lab, to_u8, xyz_of_light, xyz_of_reflectance, xyz_of_transmittance,
+    into_gamut, lab, meta_in, to_u8, xyz_of_light, xyz_of_reflectance, xyz_of_transmittance,
 };
 use std::fmt::Write;
 
@@ -51,7 +50,7 @@ pub(crate) fn info(arguments: &SpectrumInfo) -> Outcome {
         let none = || Failure::Input(format!("--illuminant: nothing of `{}` is seen", arguments.illuminant));
         xyz_of_light(&illuminant, observer).ok_or_else(none)
     };
-    let meta = table(&arguments.name).map(|table| table.meta).unwrap_or_default();
+    let meta = meta_in(&arguments.name, &files()).unwrap_or_default();
     let xyz = xyz(&found, &illuminant, observer);
     let color = Color::of(&found, &illuminant, white(standard)?);
     let dominant = color.as_ref().and_then(|c| c.dominant);

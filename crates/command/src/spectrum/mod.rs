@@ -1,7 +1,9 @@
 //! `spectra spectrum`: light and matter by wavelength.
 
 mod arguments;
+mod color;
 mod describe;
+mod fit;
 mod info;
 mod list;
 mod plot;
@@ -19,6 +21,9 @@ pub(crate) fn spectrum(command: &SpectrumCommand) -> Outcome {
     match command {
         SpectrumCommand::Info(arguments) => info::info(arguments),
         SpectrumCommand::Plot(arguments) => plot::plot(arguments),
+        SpectrumCommand::Fit(arguments) => fit::fit(arguments),
+        SpectrumCommand::Color(arguments) => color::color(arguments),
+        SpectrumCommand::Models(arguments) => color::measure(arguments),
         SpectrumCommand::List(arguments) => list::list(arguments),
     }
 }
@@ -38,6 +43,7 @@ fn load_illuminant(name: &str) -> Result<Emission, Failure> {
 
 fn refuse(error: SpectrumError) -> Failure {
     let hint = match &error {
+        SpectrumError::Document(faults) => return Failure::Faults(faults.clone()),
         SpectrumError::Unknown { candidates, .. } if candidates.is_empty() => "; see `spectra spectrum list`",
         _ => "",
     };

@@ -2,9 +2,11 @@
 
 mod chromaticity;
 mod spectrum;
+mod swatches;
 
 pub use chromaticity::chromaticity;
 pub use spectrum::spectrum;
+pub use swatches::swatches;
 
 use crate::canvas::Canvas;
 use crate::color::Color;

@@ -1,6 +1,6 @@
 //! Samples against the stated density: chi-square, and Kolmogorov and Smirnov's test on the continuum.
 
-use crate::world::{CONTINUUM, Draws, draw, imagers, lights, strategies, system};
+use crate::world::{CONTINUUM, Draws, draw, imagers, lights, may_refuse, strategies, system};
 use spectra_core::isa::Isa;
 use spectra_core::numbers::Numbers;
 use spectra_core::spectral::SystemResponse;
@@ -95,7 +95,7 @@ fn samples_follow_the_stated_density() {
             let system = system(source.clone(), channels);
             for (name, sampler) in strategies() {
                 let Ok(density) = sampler.prepare(&system) else {
-                    assert_eq!(name, "lines");
+                    assert!(may_refuse(name), "{name}, {light}, {imager}");
                     continue;
                 };
                 let mut u = vec![0.0; SAMPLES];
@@ -123,7 +123,7 @@ fn weights_are_one_over_the_stated_density() {
             let system = system(source.clone(), channels);
             for (name, sampler) in strategies() {
                 let Ok(density) = sampler.prepare(&system) else { continue };
-                if name == "gaussian-terms, term then wavelength" {
+                if ["gaussian-terms, term then wavelength", "gaussian-terms, one term"].contains(&name) {
                     continue; // signed: the mean of its weights at a wavelength is
                 }
                 let mut u = vec![0.0; 4096];

@@ -3,6 +3,7 @@
 mod density;
 mod errors;
 mod extremes;
+mod hero;
 mod params;
 mod speed;
 mod terms;

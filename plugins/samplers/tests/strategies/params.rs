@@ -27,6 +27,10 @@ fn every_kind_is_built_from_a_scene() {
         "{kind: truncated-gaussian, center: 550 nm, sigma: 0.06 um}",
         "{kind: gaussian-terms, terms: 3, follow: term-then-wavelength}",
         "{kind: gaussian-terms}",
+        "{kind: gaussian-terms, follow: one-term}",
+        "kind: hero",
+        "{kind: hero, group: 8, density: uniform}",
+        "{kind: hero, density: {kind: truncated-gaussian, center: 550, sigma: 60}}",
     ] {
         let sampler = build(text).unwrap_or_else(|e| panic!("{text}: {e}"));
         let density = sampler.prepare(&daylight).unwrap_or_else(|e| panic!("{text}: {e}"));
@@ -48,7 +52,11 @@ fn faults_name_the_key_and_the_reason() {
         ("{kind: truncated-gaussian, center: 550, sigma: 1e9}", "standard deviation"),
         ("{kind: truncated-gaussian, center: 550, sigma: -1}", "a positive wavelength"),
         ("{kind: gaussian-terms, terms: 33}", "33 is no number of terms"),
-        ("{kind: gaussian-terms, follow: one-term}", "one-term"),
+        ("{kind: gaussian-terms, follow: two-terms}", "two-terms"),
+        ("{kind: hero, group: 1}", "1 is no size of a group"),
+        ("{kind: hero, density: hero}", "a group of groups"),
+        ("{kind: hero, density: unifrom}", "did you mean `uniform`"),
+        ("{kind: hero, density: {kind: stratified, strata: 0}}", "0 is no number of strata"),
     ] {
         let faults = build(text).err().unwrap_or_else(|| panic!("{text} was built")).to_string();
         assert!(faults.contains(wanted) && faults.starts_with("scene.yaml:1:"), "{text}: {faults}");

@@ -1,7 +1,7 @@
 //! Gaussian-term strategies on the set-up that two other programs computed: source G(560, 120) with and without
 //! -0.3 G(600, 40), n equal filters G(560, 300) - 0.6 G(520, 25), detector G(445, 22) + G(560, 45), band 380-780 nm.
 
-use crate::world::draw;
+use crate::world::{draw, estimate, exact, light, sobol, system, xyz};
 use spectra_core::isa::Isa;
 use spectra_core::numbers::Numbers;
 use spectra_core::spectral::{Channel, Grid, SpectralPower, SystemResponse};
@@ -99,4 +99,42 @@ fn terms_with_wavelengths_scatter_as_computed() {
             );
         }
     }
+}
+
+/// One term of the source followed in a scene: daylight by a single Gaussian that misses it by far. What is left over is
+/// followed too, or the estimate would be that of the Gaussian.
+#[test]
+fn following_one_term_of_the_source_is_unbiased_however_bad_the_fit() {
+    let system = system(light("D65"), xyz());
+    let poor = mixture(&[[90.0, 540.0, 160.0]]);
+    let density =
+        GaussianTerms::given(poor.clone(), Follow::OneTerm, Floor::NONE).prepare(&system).expect("can be followed");
+    let want = exact(&system);
+    let (seeds, samples) = (1000, 64);
+    let mut sums = vec![[0.0; 2]; want.len()];
+    for seed in 0..seeds {
+        let got = estimate(&system, &draw(density.as_ref(), &sobol(seed, samples)));
+        for (sum, (got, want)) in sums.iter_mut().zip(got.iter().zip(&want)) {
+            sum[0] += got / want - 1.0;
+            sum[1] += (got / want - 1.0) * (got / want - 1.0);
+        }
+    }
+    let of_fit: Vec<f64> = {
+        let continuum = system.grid.wavelengths_nm().map(|w| poor.at(w)).collect();
+        let power = SpectralPower { grid: system.grid, continuum, lines: Vec::new() };
+        system.channels.iter().map(|c| power.seen_by(&c.response)).collect()
+    };
+    for (c, [sum, squares]) in sums.into_iter().enumerate() {
+        let (mean, n) = (sum / seeds as f64, seeds as f64);
+        let error = ((squares / n - mean * mean) / (n - 1.0)).sqrt();
+        let fit = of_fit[c] / want[c] - 1.0;
+        println!("{}: {:.2} standard errors; the fit alone {:.0}", system.channels[c].name, mean / error, fit / error);
+        assert!(mean.abs() < 3.0 * error, "{c}: {mean:e} +- {error:e}");
+        assert!(fit.abs() > 10.0 * error, "{c}: the fit is too good to show anything");
+    }
+    // The usual fit of daylight can be followed; terms that cancel are refused with a reason.
+    assert!(GaussianTerms::fitted(4, Follow::OneTerm, Floor::NONE).expect("in range").prepare(&system).is_ok());
+    let cancel = mixture(&[[9e4, 540.0, 160.0], [-9e4, 540.0, 160.0]]);
+    let refused = GaussianTerms::given(cancel, Follow::OneTerm, Floor::NONE).prepare(&system).err().expect("refused");
+    assert!(refused.contains("cancel"), "{refused}");
 }

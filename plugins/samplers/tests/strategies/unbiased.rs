@@ -1,6 +1,6 @@
 //! Estimates against quadrature, over 1 000 seeds.
 
-use crate::world::{draw, estimate, exact, imagers, lights, sobol, strategies, system};
+use crate::world::{draw, estimate, exact, imagers, lights, may_refuse, sobol, strategies, system};
 
 const SEEDS: u64 = 1000;
 const SAMPLES: usize = 64;
@@ -15,7 +15,7 @@ fn estimates_are_unbiased() {
             let want = exact(&system);
             for (name, sampler) in strategies() {
                 let Ok(density) = sampler.prepare(&system) else {
-                    assert_eq!(name, "lines");
+                    assert!(may_refuse(name), "{name}, {light}, {imager}");
                     continue;
                 };
                 let mut sums = vec![[0.0; 2]; want.len()];

@@ -6,8 +6,8 @@ use spectra_core::spectral::{BAND, Channel, SpectralPower, SystemResponse};
 use spectra_core::stage::{WavelengthDensity, WavelengthSampler};
 use spectra_film::stock::Stock;
 use spectra_plugin_samplers::{
-    Floor, Follow, GaussianTerms, InverseTransform, Lines, SourceTimesResponse, Stratified, TruncatedGaussianSampler,
-    Uniform,
+    Floor, Follow, GaussianTerms, Hero, InverseTransform, Lines, SourceTimesResponse, Stratified,
+    TruncatedGaussianSampler, Uniform,
 };
 use spectra_scene::FileResources;
 use spectra_spectrum::{Observer, find_emission};
@@ -69,6 +69,8 @@ pub fn strategies() -> Vec<(&'static str, Box<dyn WavelengthSampler>)> {
         ("truncated-gaussian 900, 150", Box::new(gaussian(900.0, 150.0))),
         ("gaussian-terms, collapsed", Box::new(terms(Follow::Collapsed))),
         ("gaussian-terms, term then wavelength", Box::new(terms(Follow::TermThenWavelength))),
+        ("gaussian-terms, one term", Box::new(terms(Follow::OneTerm))),
+        ("hero", Box::new(Hero::new(4, Box::new(SourceTimesResponse)).expect("in range"))),
     ]
 }
 
@@ -106,6 +108,11 @@ pub fn estimate(system: &SystemResponse, draws: &Draws) -> Vec<f64> {
 /// Exposure of each channel by quadrature.
 pub fn exact(system: &SystemResponse) -> Vec<f64> {
     system.channels.iter().map(|c| system.source.seen_by(&c.response)).collect()
+}
+
+/// Whether a strategy may refuse: no lines, or terms that cancel.
+pub fn may_refuse(name: &str) -> bool {
+    ["lines", "gaussian-terms, one term"].contains(&name)
 }
 
 /// Sobol numbers: in a power of 2, one in each of `n` equal parts of [0, 1), in a random order.

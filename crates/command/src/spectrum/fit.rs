@@ -1,0 +1,197 @@
+//! `spectra spectrum fit`.
+
+use super::arguments::SpectrumFit;
+use super::load;
+use crate::console;
+use crate::outcome::{DONE, Failure, Outcome};
+use serde::Serialize;
+use spectra_film::write::write_atomically;
+use spectra_spectrum::{Found, GaussianFit, GaussianMixture, Grid, Line, fit_gaussians};
+use std::fmt::Write as _;
+use std::io::Write as _;
+use std::path::Path;
+
+/// A term as JSON has it.
+#[derive(Debug, Serialize)]
+struct Term {
+    amplitude: f64,
+    center_nm: f64,
+    sigma_nm: f64,
+    /// Over the band.
+    integral: f64,
+}
+
+/// A fit in figures.
+#[derive(Debug, Serialize)]
+struct Report {
+    name: String,
+    kind: &'static str,
+    band_nm: [f64; 2],
+    terms: Vec<Term>,
+    relative_l2: f64,
+    maximum: f64,
+    integral: f64,
+    smallest: f64,
+    kappa: f64,
+    /// Lines that are no part of the fit; the file that is written has them beside it.
+    lines: usize,
+}
+
+/// Largest number of points that are fitted.
+const MOST_POINTS: f64 = 10_000.0;
+
+/// Fits Gaussian terms, shows how well they stand for the spectrum, and writes them.
+pub(crate) fn fit(arguments: &SpectrumFit) -> Outcome {
+    if let Some(path) = &arguments.output {
+        yaml_ending(path)?;
+    }
+    let grid = grid(arguments)?;
+    let found = load(&arguments.name)?;
+    let name = arguments.name.trim();
+    let (values, lines) = match &found {
+        Found::Emission(light) if light.continuum().is_none() => {
+            let text = format!("`{name}` has spectral lines only: they are taken as lines, not as Gaussians");
+            return Err(Failure::Input(text));
+        }
+        Found::Emission(light) => (light.on_grid(&grid), light.lines().to_vec()),
+        Found::Transmittance(filter) => (filter.on_grid(&grid), Vec::new()),
+        Found::Reflectance(surface) => (surface.on_grid(&grid), Vec::new()),
+        Found::Sensitivity(detector) => (detector.on_grid(&grid), Vec::new()),
+    };
+    let fit = fit_gaussians(&grid, &values, usize::from(arguments.terms))
+        .map_err(|e| Failure::Input(format!("`{name}` cannot be fitted: {e}")))?;
+    let report = report(name, &found, &grid, &fit, lines.len());
+    if let Some(path) = &arguments.output {
+        let text = file(&report, &fit.mixture, &lines);
+        write_atomically(path, |out| Ok(out.write_all(text.as_bytes())?))?;
+        console::note(&format!("wrote {}", path.display()));
+    }
+    if report.smallest < 0.0 {
+        let below = format!("the terms fall to {:.2} % of the peak below 0", -100.0 * report.smallest);
+        let then = if report.smallest < -0.1 {
+            "more than the 10 % up to which a scene takes them as 0: take more terms, or another band"
+        } else {
+            "a scene takes them as 0 there"
+        };
+        console::warning(&format!("{below}; {then}"));
+    }
+    if arguments.json {
+        console::pretty_json(&report)?;
+    } else {
+        console::out(&text(&report))?;
+    }
+    Ok(DONE)
+}
+
+fn yaml_ending(path: &Path) -> Result<(), Failure> {
+    match path.extension().map(|e| e.to_string_lossy().to_lowercase()).as_deref() {
+        Some("yaml" | "yml") => Ok(()),
+        _ => Err(Failure::Input(format!("{}: terms are written as .yaml", path.display()))),
+    }
+}
+
+fn grid(arguments: &SpectrumFit) -> Result<Grid, Failure> {
+    let [from, to] = arguments.band[..] else {
+        return Err(Failure::Input("--band: two wavelengths in nm, such as 380,780".to_owned()));
+    };
+    let step = arguments.step;
+    let good = from.is_finite() && to.is_finite() && step.is_finite() && from > 0.0 && step > 0.0;
+    if !good || to <= from || (to - from) / step > MOST_POINTS || to > 1e6 {
+        let text = format!("--band {from},{to} by {step} nm: wavelengths that rise, at most {MOST_POINTS} of them");
+        return Err(Failure::Input(text));
+    }
+    // As many whole steps as fit.
+    let count = ((to - from) / step + 1e-9).floor() as usize + 1;
+    if count < 2 {
+        return Err(Failure::Input(format!("--band {from},{to} holds no two points {step} nm apart")));
+    }
+    Ok(Grid { start_nm: from, step_nm: step, count })
+}
+
+fn report(name: &str, found: &Found, grid: &Grid, fit: &GaussianFit, lines: usize) -> Report {
+    let band_nm = [grid.start_nm, grid.end_nm()];
+    let term = |t: &spectra_spectrum::GaussianTerm| Term {
+        amplitude: t.peak(),
+        center_nm: t.center_nm(),
+        sigma_nm: t.sigma_nm(),
+        integral: t.band_integral(band_nm[0], band_nm[1]),
+    };
+    let r = fit.report;
+    Report {
+        name: name.to_owned(),
+        kind: found.kind().word(),
+        band_nm,
+        terms: fit.mixture.terms().iter().map(term).collect(),
+        relative_l2: r.relative_l2,
+        maximum: r.maximum,
+        integral: r.integral,
+        smallest: r.smallest,
+        kappa: r.kappa,
+        lines,
+    }
+}
+
+/// The report as a person reads it.
+fn text(report: &Report) -> String {
+    let [from, to] = report.band_nm;
+    let mut out =
+        format!("{}: {}, {} Gaussian terms on {from}-{to} nm\n\n", report.name, report.kind, report.terms.len());
+    // Writing to a String cannot fail.
+    let _ = writeln!(out, "  {:>13}  {:>10}  {:>10}  {:>13}", "amplitude", "center/nm", "sigma/nm", "integral");
+    for t in &report.terms {
+        let _ = writeln!(
+            out,
+            "  {:>13.6e}  {:>10.3}  {:>10.3}  {:>13.6e}",
+            t.amplitude, t.center_nm, t.sigma_nm, t.integral
+        );
+    }
+    out.push('\n');
+    let mut row = |name: &str, value: String| {
+        let _ = writeln!(out, "  {name:<24}{value}");
+    };
+    row("relative L2 error", format!("{:.6}", report.relative_l2));
+    row("largest error", format!("{:.6} of the peak", report.maximum));
+    row("error of the integral", format!("{:+.2e}", report.integral));
+    row("smallest value", format!("{:.6} of the peak", report.smallest));
+    row("kappa", format!("{:.4}  (sum |w| / |sum w|: how much the terms cancel)", report.kappa));
+    if report.lines > 0 {
+        row("lines beside them", report.lines.to_string());
+    }
+    out
+}
+
+/// The terms as a scene reads them, all digits kept.
+fn file(report: &Report, mixture: &GaussianMixture, lines: &[Line]) -> String {
+    let [from, to] = report.band_nm;
+    let mut out = format!(
+        "# {} Gaussian terms, fitted on {from}-{to} nm.\n# Relative L2 error {:.6}, largest {:.6} of the peak, integral \
+         {:+.2e}, kappa {:.4}.\nspectra: 1\nname: {}\nof: {}\n",
+        mixture.terms().len(),
+        report.relative_l2,
+        report.maximum,
+        report.integral,
+        report.kappa,
+        quoted(&format!("{}, {} Gaussian terms", report.name, mixture.terms().len())),
+        report.kind
+    );
+    let term = |indent: &str, t: &spectra_spectrum::GaussianTerm| {
+        format!("{indent}- {{amplitude: {}, center: {}, sigma: {}}}\n", t.peak(), t.center_nm(), t.sigma_nm())
+    };
+    if lines.is_empty() {
+        out.push_str("kind: mixture\nterms:\n");
+        mixture.terms().iter().for_each(|t| out.push_str(&term("  ", t)));
+        return out;
+    }
+    out.push_str("kind: sum\nparts:\n  - kind: mixture\n    terms:\n");
+    mixture.terms().iter().for_each(|t| out.push_str(&term("      ", t)));
+    out.push_str("  - kind: lines\n    lines:\n");
+    for line in lines {
+        let _ = writeln!(out, "      - {{wavelength: {}, power: {}}}", line.wavelength_nm, line.power);
+    }
+    out
+}
+
+/// A text in double quotes, as YAML and JSON share them.
+fn quoted(text: &str) -> String {
+    serde_json::Value::String(text.to_owned()).to_string()
+}

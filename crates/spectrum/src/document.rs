@@ -1,0 +1,502 @@
+//! Spectra in YAML: every kind by its name, those made of others among them.
+//!
+//! ```yaml
+//! spectra: 1
+//! name: a warm lamp behind a filter
+//! kind: product
+//! factors:
+//!   - {kind: blackbody, temperature: 2856 K}
+//!   - {kind: mixture, terms: [{amplitude: 0.9, center: 560, sigma: 300}, {amplitude: -0.5, center: 520, sigma: 25}]}
+//! ```
+//!
+//! | `kind` | keys |
+//! |---|---|
+//! | `line` | `wavelength` (a number, or a letter such as `"C'"`), `power` (1) |
+//! | `lines` | `lines`: a list of `{wavelength, power}` |
+//! | `constant` | `value` (1) |
+//! | `rectangle` | `from`, `to`, `value` (1) |
+//! | `gaussian` | `center`, `sigma`, `peak` (1) |
+//! | `blackbody` | `temperature`: radiance, W m^-2 sr^-1 nm^-1 |
+//! | `daylight` | `temperature`: CIE daylight, relative |
+//! | `table` | `wavelengths`, `values`, `scale` (`linear` or `log10`), `outside` (`zero`, `constant` or `geometric`) |
+//! | `histogram` | `edges` and `counts`, one fewer: what a detector measured between neighboring edges |
+//! | `mixture` | `terms`: signed Gaussians `{amplitude, center, sigma}` |
+//! | `product`, `sum` | `factors`, `parts`: spectra, as maps like these or by name |
+//! | `scale` | `spectrum`, and one of `factor`, `peak`, `power` (W over 350-830 nm) or `luminance` (cd/m2) |
+//!
+//! A file may say what it is a spectrum `of` (`emission`, `transmittance`, `reflectance`, `sensitivity`) and, in words,
+//! its `name`, `source`, `licence`, `conditions` and `note`. Without `of` a function is what is wanted where it is named.
+
+use serde::Deserialize;
+use spectra_core::params::{
+    Dimension, Fault, Faults, Luminance, NonNegative, Params, Positive, Power, Quantity, StageNode, Temperature,
+    Wavelength, nearest, quantity,
+};
+use spectra_core::spectral::Line;
+
+use crate::by_name::{Found, Loader};
+use crate::emission::Emission;
+use crate::error::SpectrumError;
+use crate::gaussian::{GaussianMixture, GaussianTerm};
+use crate::illuminants::daylight;
+use crate::lines::named_line;
+use crate::meta::{Kind, Meta, Outside, Scale};
+use crate::piece::{Piece, of_shape};
+use crate::shape::Shape;
+use crate::table::MAX_ROWS;
+use crate::tabulated::Tabulated;
+
+/// A place on the axis of wavelengths, of any sign: a Gaussian's center may lie far outside of all light. nm if bare.
+#[derive(Clone, Copy, Debug)]
+struct Center(f64);
+
+impl Quantity for Center {
+    const DIMENSION: Dimension = Dimension::Length;
+    const NOUN: &'static str = "wavelength";
+    const BARE_UNIT: &'static str = "nm";
+    const EXAMPLE: &'static str = "550 nm";
+
+    fn from_bare(value: f64) -> Self {
+        Self(value)
+    }
+
+    fn bare(self) -> f64 {
+        self.0
+    }
+}
+
+impl<'de> Deserialize<'de> for Center {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        quantity::deserialize(deserializer)
+    }
+}
+
+/// What a file says of itself beside its spectrum.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct Head {
+    spectra: Option<u32>,
+    of: Option<String>,
+    name: Option<String>,
+    source: Option<String>,
+    licence: Option<String>,
+    conditions: Option<String>,
+    note: Option<String>,
+}
+
+const HEAD: [&str; 7] = ["spectra", "of", "name", "source", "licence", "conditions", "note"];
+
+/// Kinds of spectra that a file can hold.
+pub(crate) const KINDS: [&str; 13] = [
+    "blackbody",
+    "constant",
+    "daylight",
+    "gaussian",
+    "histogram",
+    "line",
+    "lines",
+    "mixture",
+    "product",
+    "rectangle",
+    "scale",
+    "sum",
+    "table",
+];
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct LineParams {
+    wavelength: StageNode,
+    power: Option<NonNegative<f64>>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct LinesParams {
+    lines: Vec<LineParams>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct ConstantParams {
+    value: Option<NonNegative<f64>>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct RectangleParams {
+    from: Wavelength,
+    to: Wavelength,
+    value: Option<NonNegative<f64>>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct GaussianParams {
+    center: Center,
+    sigma: Positive<Wavelength>,
+    peak: Option<NonNegative<f64>>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct TemperatureParams {
+    temperature: Temperature,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum ScaleName {
+    Linear,
+    Log10,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum OutsideName {
+    Zero,
+    Constant,
+    Geometric,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct TableParams {
+    wavelengths: Vec<Wavelength>,
+    values: Vec<f64>,
+    scale: Option<ScaleName>,
+    outside: Option<OutsideName>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct HistogramParams {
+    edges: Vec<Wavelength>,
+    counts: Vec<f64>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct TermParams {
+    amplitude: f64,
+    center: Center,
+    sigma: Positive<Wavelength>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct MixtureParams {
+    terms: Vec<TermParams>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct ProductParams {
+    factors: Vec<StageNode>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct SumParams {
+    parts: Vec<StageNode>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct ScaleParams {
+    spectrum: StageNode,
+    factor: Option<NonNegative<f64>>,
+    peak: Option<NonNegative<f64>>,
+    power: Option<Power>,
+    luminance: Option<Luminance>,
+}
+
+/// The spectrum of a whole file, as what is wanted unless the file says what it is of; and what it says of itself.
+pub(crate) fn of_file(file: &Params, wanted: Kind, loader: &Loader<'_>) -> Result<(Piece, Meta), Faults> {
+    let whole = Params::stage(file.node().clone(), "")?;
+    let (head, _) = whole.split(&HEAD);
+    let mut faults = Faults::new();
+    let said: Option<Head> = faults.take(head.parse());
+    let of = said.as_ref().and_then(|head| faults.take(of(head, &whole)));
+    let piece = faults.take(of_stage(&whole, of.flatten().unwrap_or(wanted), loader, &HEAD));
+    let (Some(said), Some(of), Some(piece)) = (said, of, piece) else { return Err(faults) };
+    faults.into_result(())?;
+    let piece = match of {
+        Some(kind) => {
+            let found = piece.into_found(kind).map_err(|e| whole.fault_here(e.to_string()))?;
+            if found.kind() != kind {
+                let text = format!("what the file holds is of kind {}", found.kind());
+                return Err(whole.fault("of", text).into());
+            }
+            Piece::Typed(found)
+        }
+        None => piece,
+    };
+    let Head { name, source, licence, conditions, note, .. } = said;
+    let notes = note.into_iter().collect();
+    Ok((piece, Meta { name, kind: of, source, licence, conditions, notes, ..Meta::default() }))
+}
+
+fn of(head: &Head, whole: &Params) -> Result<Option<Kind>, Fault> {
+    if head.spectra.is_some_and(|format| format != 1) {
+        return Err(whole.fault("spectra", "the format that this program reads is 1"));
+    }
+    let known = [Kind::Emission, Kind::Transmittance, Kind::Reflectance, Kind::Sensitivity];
+    match &head.of {
+        None => Ok(None),
+        Some(word) => match known.into_iter().find(|k| k.word() == word) {
+            Some(kind) => Ok(Some(kind)),
+            None => Err(whole
+                .fault("of", format!("`{}` is no kind of spectrum", word.chars().take(40).collect::<String>()))
+                .hint("emission, transmittance, reflectance or sensitivity")),
+        },
+    }
+}
+
+/// What is written in place of a spectrum: a name, or a map with its kind.
+fn of_node(node: &StageNode, wanted: Kind, loader: &Loader<'_>) -> Result<Piece, Faults> {
+    match node.node().as_str() {
+        Some(name) => loader.piece(name, wanted).map_err(|e| match e {
+            SpectrumError::Document(faults) => faults,
+            other => node.fault(other.to_string()).into(),
+        }),
+        None => {
+            loader.count("this file").map_err(|e| node.fault(e.to_string()))?;
+            of_stage(&node.params()?, wanted, loader, &[])
+        }
+    }
+}
+
+/// A map with a kind; `beside` are keys that are somebody else's.
+fn of_stage(params: &Params, wanted: Kind, loader: &Loader<'_>, beside: &[&str]) -> Result<Piece, Faults> {
+    let Some(kind) = params.kind() else {
+        let fault = params.fault_here("a spectrum names its `kind`");
+        return Err(fault.hint(format!("one of {}", KINDS.join(", "))).into());
+    };
+    let (_, own) = params.split(beside);
+    let at = |key: &'static str| move |e: SpectrumError| Faults::from(params.fault(key, e.to_string()));
+    let light = |light| Piece::Typed(Found::Emission(light));
+    let times = |shape: Shape, value: Option<NonNegative<f64>>| match value {
+        Some(value) => shape.scaled(value.get()).map(Piece::Bare),
+        None => Ok(Piece::Bare(shape)),
+    };
+    match kind {
+        "line" => Emission::new(None, vec![line(&own.parse()?)?]).map(light).map_err(at("wavelength")),
+        "lines" => {
+            let LinesParams { lines } = own.parse()?;
+            let mut faults = Faults::new();
+            let lines: Vec<Line> = lines.iter().filter_map(|l| faults.take(line(l))).collect();
+            if lines.is_empty() && faults.is_empty() {
+                faults.push(params.fault("lines", "no line is listed"));
+            }
+            faults.into_result(())?;
+            Emission::new(None, lines).map(light).map_err(at("lines"))
+        }
+        "constant" => {
+            let ConstantParams { value } = own.parse()?;
+            Shape::constant(value.map_or(1.0, NonNegative::get)).map(Piece::Bare).map_err(at("value"))
+        }
+        "rectangle" => {
+            let p: RectangleParams = own.parse()?;
+            Shape::rectangle(p.from.nm(), p.to.nm()).and_then(|s| times(s, p.value)).map_err(at("to"))
+        }
+        "gaussian" => {
+            let p: GaussianParams = own.parse()?;
+            Shape::gaussian(p.center.0, p.sigma.nm()).and_then(|s| times(s, p.peak)).map_err(at("sigma"))
+        }
+        "blackbody" => {
+            let TemperatureParams { temperature } = own.parse()?;
+            Emission::blackbody(temperature.kelvin()).map(light).map_err(at("temperature"))
+        }
+        "daylight" => {
+            let TemperatureParams { temperature } = own.parse()?;
+            daylight(temperature.kelvin()).map(light).map_err(at("temperature"))
+        }
+        "table" => table(&own, wanted),
+        "histogram" => histogram(&own),
+        "mixture" => mixture(&own),
+        "product" => {
+            let ProductParams { factors } = own.parse()?;
+            // The first may be what is wanted; what stands behind it are filters.
+            let wanted = |i| if i == 0 { wanted } else { Kind::Transmittance };
+            together(&factors, wanted, loader, Piece::times, || params.fault("factors", "there are none"))
+        }
+        "sum" => {
+            let SumParams { parts } = own.parse()?;
+            together(&parts, |_| wanted, loader, Piece::plus, || params.fault("parts", "there are none"))
+        }
+        "scale" => scaled(params, own.parse()?, wanted, loader),
+        other => {
+            let fault = params.fault("kind", format!("no spectrum is of kind `{other}`"));
+            Err(match nearest(other, KINDS.iter().copied()) {
+                Some(near) => fault.hint(format!("did you mean `{near}`?")),
+                None => fault.hint(format!("one of {}", KINDS.join(", "))),
+            }
+            .into())
+        }
+    }
+}
+
+fn line(p: &LineParams) -> Result<Line, Faults> {
+    let wavelength_nm = match p.wavelength.node().as_str().and_then(named_line) {
+        Some(line) => line.nominal_nm,
+        None => p.wavelength.parse::<Wavelength>()?.nm(),
+    };
+    Ok(Line { wavelength_nm, power: p.power.map_or(1.0, NonNegative::get) })
+}
+
+/// A fault for each value that does not increase.
+fn rising(params: &Params, key: &str, nm: &[Wavelength], faults: &mut Faults) {
+    for (i, pair) in nm.windows(2).enumerate() {
+        if pair[1].nm() <= pair[0].nm() {
+            let text = format!("{} nm does not come after {} nm", pair[1].nm(), pair[0].nm());
+            faults.push(params.fault(&format!("{key}[{}]", i + 1), text).hint("wavelengths must increase"));
+        }
+    }
+}
+
+/// Checks lengths before anything is made of them.
+fn lengths(params: &Params, keys: [&str; 2], [found, wanted]: [usize; 2], what: &str) -> Result<(), Fault> {
+    if found > MAX_ROWS || wanted > MAX_ROWS {
+        return Err(params.fault(keys[0], format!("more than {MAX_ROWS} points")));
+    }
+    if found == 0 || found != wanted {
+        return Err(params.fault(keys[1], format!("{found} {}, but {what} asks for {wanted}", keys[1])));
+    }
+    Ok(())
+}
+
+fn table(params: &Params, wanted: Kind) -> Result<Piece, Faults> {
+    let p: TableParams = params.parse()?;
+    let counts = [p.values.len(), p.wavelengths.len()];
+    lengths(params, ["wavelengths", "values"], counts, "the list of wavelengths")?;
+    let (mut faults, scale) = (Faults::new(), p.scale.unwrap_or(ScaleName::Linear));
+    rising(params, "wavelengths", &p.wavelengths, &mut faults);
+    for (i, value) in p.values.iter().enumerate() {
+        let text = match scale {
+            ScaleName::Log10 if value.abs() > 20.0 => format!("{value} as a logarithm to base 10 is beyond belief"),
+            ScaleName::Linear if *value < 0.0 => format!("{wanted} cannot be negative: {value}"),
+            ScaleName::Linear if wanted.bound().is_some_and(|b| *value > b) => {
+                format!("{value} is more than a {wanted} can be: given as percent? divide by 100")
+            }
+            _ => continue,
+        };
+        faults.push(params.fault(&format!("values[{i}]"), text));
+    }
+    faults.into_result(())?;
+    let outside = match p.outside {
+        None => wanted.outside(),
+        Some(OutsideName::Zero) => Outside::Zero,
+        Some(OutsideName::Constant) => Outside::Constant,
+        Some(OutsideName::Geometric) => Outside::Geometric,
+    };
+    let scale = if matches!(scale, ScaleName::Log10) { Scale::Log10 } else { Scale::Linear };
+    let nm: Vec<f64> = p.wavelengths.iter().map(|w| w.nm()).collect();
+    let table = Tabulated::new(&nm, &p.values, outside, scale).map_err(|e| params.fault("values", e.to_string()))?;
+    Ok(Piece::Bare(Shape::tabulated(table)))
+}
+
+fn histogram(params: &Params) -> Result<Piece, Faults> {
+    let p: HistogramParams = params.parse()?;
+    let wanted = [p.counts.len(), p.edges.len().saturating_sub(1)];
+    lengths(params, ["edges", "counts"], wanted, "one between each two edges")?;
+    let mut faults = Faults::new();
+    rising(params, "edges", &p.edges, &mut faults);
+    for (i, count) in p.counts.iter().enumerate().filter(|(_, c)| **c < 0.0) {
+        faults.push(params.fault(&format!("counts[{i}]"), format!("a count cannot be negative: {count}")));
+    }
+    faults.into_result(())?;
+    let edges: Vec<f64> = p.edges.iter().map(|w| w.nm()).collect();
+    let shape = Shape::histogram(&edges, &p.counts).map_err(|e| params.fault("counts", e.to_string()))?;
+    Ok(Piece::Bare(shape))
+}
+
+fn mixture(params: &Params) -> Result<Piece, Faults> {
+    /// More than any fit has, and than a product of several that is written out.
+    const MOST: usize = 4096;
+    let MixtureParams { terms } = params.parse()?;
+    if terms.is_empty() || terms.len() > MOST {
+        return Err(params.fault("terms", format!("{} terms; 1 to {MOST}", terms.len())).into());
+    }
+    let mut faults = Faults::new();
+    let term = |(i, t): (usize, &TermParams)| {
+        let term = GaussianTerm::new(t.amplitude, t.center.0, t.sigma.nm());
+        faults.take(term.map_err(|e| params.fault(&format!("terms[{i}]"), e.to_string())))
+    };
+    let terms: Vec<GaussianTerm> = terms.iter().enumerate().filter_map(term).collect();
+    faults.into_result(())?;
+    let shape =
+        Shape::positive_mixture(GaussianMixture::new(terms)).map_err(|e| params.fault("terms", e.to_string()))?;
+    Ok(Piece::Bare(shape.0))
+}
+
+fn together(
+    nodes: &[StageNode],
+    wanted: impl Fn(usize) -> Kind,
+    loader: &Loader<'_>,
+    join: impl Fn(Piece, Piece) -> Result<Piece, SpectrumError>,
+    none: impl Fn() -> Fault,
+) -> Result<Piece, Faults> {
+    let mut faults = Faults::new();
+    let mut joined: Option<Piece> = None;
+    for (i, node) in nodes.iter().enumerate() {
+        // What is wrong with one hides nothing that is wrong with the next.
+        let Some(next) = faults.take(of_node(node, wanted(i), loader)) else { continue };
+        joined = match joined {
+            None => Some(next),
+            Some(before) => Some(join(before, next).map_err(|e| node.fault(e.to_string()))?),
+        };
+    }
+    faults.into_result(())?;
+    joined.ok_or_else(|| none().into())
+}
+
+fn scaled(params: &Params, p: ScaleParams, wanted: Kind, loader: &Loader<'_>) -> Result<Piece, Faults> {
+    let piece = of_node(&p.spectrum, wanted, loader)?;
+    let said = [p.factor.is_some(), p.peak.is_some(), p.power.is_some(), p.luminance.is_some()];
+    if said.iter().filter(|s| **s).count() != 1 {
+        let fault = params.fault_here("a scale takes one of `factor`, `peak`, `power` and `luminance`");
+        return Err(fault.into());
+    }
+    if let Some(factor) = p.factor {
+        return piece.scaled(factor.get()).map_err(|e| params.fault("factor", e.to_string()).into());
+    }
+    if let (Some(peak), Piece::Bare(shape)) = (p.peak, &piece) {
+        let highest = shape.extremes().1;
+        if !(highest > 0.0 && highest.is_finite()) {
+            return Err(params.fault("peak", "the spectrum has no peak to scale").into());
+        }
+        let scaled = shape.scaled(peak.get() / highest).map_err(|e| params.fault("peak", e.to_string()))?;
+        return Ok(Piece::Bare(scaled));
+    }
+    let found = piece.into_found(Kind::Emission).map_err(|e| params.fault("spectrum", e.to_string()))?;
+    let (key, scaled) = match (found, p.peak, p.power, p.luminance) {
+        (Found::Emission(light), Some(peak), ..) => {
+            ("peak", light.scaled_to_peak().and_then(|l| l.scaled(peak.get())).map(Found::Emission))
+        }
+        (Found::Emission(light), _, Some(power), _) => ("power", light.scaled_to_power(power.w()).map(Found::Emission)),
+        (Found::Emission(light), _, _, Some(luminance)) => {
+            ("luminance", light.scaled_to_luminance(luminance.cd_per_m2()).map(Found::Emission))
+        }
+        (matter, Some(peak), ..) => ("peak", to_peak(matter, peak.get())),
+        (matter, ..) => {
+            let text = format!("only light is scaled to a power or a luminance; this is of kind {}", matter.kind());
+            return Err(params.fault("spectrum", text).into());
+        }
+    };
+    scaled.map(Piece::Typed).map_err(|e| params.fault(key, e.to_string()).into())
+}
+
+fn to_peak(matter: Found, peak: f64) -> Result<Found, SpectrumError> {
+    let shape = match &matter {
+        Found::Transmittance(filter) => filter.shape(),
+        Found::Reflectance(surface) => surface.shape(),
+        Found::Sensitivity(detector) => detector.shape(),
+        Found::Emission(_) => return Ok(matter),
+    };
+    let highest = shape.extremes().1;
+    if !(highest > 0.0 && highest.is_finite()) {
+        return Err(SpectrumError::NothingToScale("peak"));
+    }
+    of_shape(shape.scaled(peak / highest)?, matter.kind())
+}

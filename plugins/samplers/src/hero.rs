@@ -1,0 +1,111 @@
+//! `kind: hero`: one number for a group of samples, rotated among them.
+//!
+//! After A. Wilkie, S. Nawaz, M. Droske, A. Weidlich and J. Hanika, "Hero wavelength spectral sampling", Computer Graphics
+//! Forum 33(4), 123 (2014): the hero's wavelength is drawn, the others of its group lie around it at equal distances. There
+//! the wavelengths of a group share a path; a lens disperses them, so here every sample keeps a path of its own, and the
+//! distances are equal in probability, not in nanometres: the rotation is of the number, before the density is
+//! inverted, so that each wavelength has exactly the density of the strategy that it is made of.
+//!
+//! A group of k is k strata with one jitter for all. With independent numbers it takes the noise of the wavelength from
+//! k samples to that of k even ones; Sobol points are more even than that already.
+
+use crate::SourceTimesResponse;
+use serde::Deserialize;
+use spectra_core::isa::Isa;
+use spectra_core::params::{Faults, Params, StageNode};
+use spectra_core::registry::{self, Context, SamplerEntry};
+use spectra_core::spectral::SystemResponse;
+use spectra_core::stage::{WavelengthDensity, WavelengthSampler};
+
+/// Parameters of `kind: hero` as written in a scene.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct HeroParams {
+    /// Wavelengths of a group, 2 to 1024; 4 if left out.
+    #[serde(default = "usual_group")]
+    pub group: u32,
+    /// The strategy whose density is drawn from: a name, or a map with its `kind`; `source-times-response` if left out.
+    pub density: Option<StageNode>,
+}
+
+const MOST: u32 = 1024;
+
+fn usual_group() -> u32 {
+    4
+}
+
+/// The strategy.
+pub struct Hero {
+    group: u32,
+    density: Box<dyn WavelengthSampler>,
+}
+
+impl Hero {
+    /// Groups of `group` wavelengths, drawn from the density of another strategy; `None` unless they are 2 to 1024.
+    #[must_use]
+    pub fn new(group: u32, density: Box<dyn WavelengthSampler>) -> Option<Self> {
+        (2..=MOST).contains(&group).then_some(Self { group, density })
+    }
+}
+
+impl WavelengthSampler for Hero {
+    fn prepare(&self, system: &SystemResponse) -> Result<Box<dyn WavelengthDensity>, String> {
+        Ok(Box::new(Rotated { group: self.group, density: self.density.prepare(system)? }))
+    }
+}
+
+/// A density whose numbers are rotated.
+struct Rotated {
+    group: u32,
+    density: Box<dyn WavelengthDensity>,
+}
+
+impl WavelengthDensity for Rotated {
+    fn draw(&self, u: &[f64], wavelength_nm: &mut [f64], line: &mut [u32], weight: &mut [f64], isa: Isa) {
+        self.density.draw(u, wavelength_nm, line, weight, isa);
+    }
+
+    fn density_per_nm(&self, wavelength_nm: f64) -> f64 {
+        self.density.density_per_nm(wavelength_nm)
+    }
+
+    fn line_probability(&self, line: usize) -> f64 {
+        self.density.line_probability(line)
+    }
+
+    fn group(&self) -> u32 {
+        self.group
+    }
+}
+
+fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn WavelengthSampler>, Faults> {
+    let HeroParams { group, density } = params.parse()?;
+    let mut faults = Faults::new();
+    let density: Option<Box<dyn WavelengthSampler>> = match &density {
+        None => Some(Box::new(SourceTimesResponse)),
+        Some(node) => faults.take(node.params()).and_then(|inner| match inner.kind() {
+            Some("hero") => {
+                faults.push(inner.fault("kind", "a group of groups").hint("name another strategy"));
+                None
+            }
+            _ => faults.take(registry::build::<dyn WavelengthSampler>(&inner, context)),
+        }),
+    };
+    if !(2..=MOST).contains(&group) {
+        faults.push(params.fault("group", format!("{group} is no size of a group")).hint(format!("2 to {MOST}")));
+    }
+    match density.and_then(|density| Hero::new(group, density)) {
+        Some(hero) if faults.is_empty() => Ok(Box::new(hero)),
+        _ => Err(faults),
+    }
+}
+
+inventory::submit! {
+    SamplerEntry::new(
+        "hero",
+        "Groups of samples share one number, rotated among them.",
+        env!("CARGO_PKG_NAME"),
+        env!("CARGO_PKG_VERSION"),
+        build,
+    )
+}
