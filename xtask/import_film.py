@@ -12,6 +12,7 @@ Lohse; https://pypi.org/project/spectral-film-lut/) beside it; only its tables a
 
 The package holds digitizations of figures in makers' data sheets. Numbers are written as they stand there, but for:
   - exposures that the package counts in stops from the normal exposure: log10 lx s = stops x log10(2) + log10(10 / S);
+  - densities a few ten-thousandths below 0 are 0;
   - characteristic curves that turn where the pen slipped: running maximum (reversal: minimum), counted in the remark;
   - Wratten filters, given as densities at points of unequal distance: resampled on 2 nm, straight in density between
     points, ends held (beyond a density of 2.9 or so, where the figures end, a straight line goes on down to 5).
@@ -68,6 +69,7 @@ def monotone(points, rising):
     """Running maximum or minimum, and how many points it moved by how much."""
     out, moved, most = [], 0, 0.0
     for x, y in points:
+        y = max(y, 0.0)
         if out and ((y < out[-1][1]) if rising else (y > out[-1][1])):
             moved, most = moved + 1, max(most, abs(y - out[-1][1]))
             y = out[-1][1]
