@@ -21,8 +21,17 @@ impl Deposit {
     pub fn of(stock: &Stock) -> Self {
         let flat = |value: f64| vec![value; BAND.count];
         let base = stock.minimum_density.as_ref().map_or_else(|| flat(0.0), |m| m.density.on_grid(&BAND));
-        let dye = |layer: &crate::stock::Layer| layer.dye.as_ref().map_or_else(|| flat(1.0), |d| d.density.on_grid(&BAND));
+        let dye =
+            |layer: &crate::stock::Layer| layer.dye.as_ref().map_or_else(|| flat(1.0), |d| d.density.on_grid(&BAND));
         Self { base, per_unit: stock.layers.iter().map(dye).collect() }
+    }
+
+    /// Three separation negatives, each of which is printed alone: as if each held back one third of the spectrum and
+    /// nothing else, in the order blue, green, red.
+    #[must_use]
+    pub(crate) fn separations() -> Self {
+        let part = |record: usize| BAND.wavelengths_nm().map(|w| if third(w) == record { 1.0 } else { 0.0 }).collect();
+        Self { base: vec![0.0; BAND.count], per_unit: (0..3).map(part).collect() }
     }
 
     /// How many layers it has.
@@ -70,9 +79,8 @@ impl Deposit {
             let mut system: Vec<Vec<f64>> = Vec::with_capacity(n);
             for (weight, wanted) in weights.iter().zip(wanted) {
                 let sum: f64 = weight.iter().zip(&passes).map(|(w, t)| w * t).sum();
-                let slope = |d: &Vec<f64>| {
-                    weight.iter().zip(&passes).zip(d).map(|((w, t), d)| w * t * d).sum::<f64>() / sum
-                };
+                let slope =
+                    |d: &Vec<f64>| weight.iter().zip(&passes).zip(d).map(|((w, t), d)| w * t * d).sum::<f64>() / sum;
                 let mut row: Vec<f64> = self.per_unit.iter().map(slope).collect();
                 row.push(wanted + log10(sum));
                 system.push(row);
@@ -91,6 +99,14 @@ impl Deposit {
         }
         None
     }
+}
+
+/// Where an additive printer parts its lamp into blue, green and red, nm.
+const THIRDS_NM: [f64; 2] = [500.0, 590.0];
+
+/// Which part of the lamp a wavelength is in: 0 blue, 1 green, 2 red.
+pub(crate) fn third(wavelength_nm: f64) -> usize {
+    THIRDS_NM.iter().filter(|edge| wavelength_nm >= **edge).count()
 }
 
 /// Solves a small linear system by Gauss's elimination with pivots; each row ends with its right side.

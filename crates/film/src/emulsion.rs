@@ -109,6 +109,13 @@ impl Emulsion {
         Ok(Self { deposit, curves: amounts.into_iter().map(table).collect() })
     }
 
+    /// Three separation negatives of silver, in the order blue, green, red; see
+    /// [`crate::positive::Positive::from_separations`].
+    #[must_use]
+    pub fn separations(curves: [CharacteristicCurve; 3]) -> Self {
+        Self { deposit: Deposit::separations(), curves: curves.into_iter().map(AmountCurve::Density).collect() }
+    }
+
     /// What it holds back.
     #[must_use]
     pub fn deposit(&self) -> &Deposit {

@@ -94,7 +94,9 @@ pub(crate) fn seen(
         _ => {}
     }
     let (Some(light), Some(lamp)) = faults.into_result((light, lamp))? else { return Err(Faults::new()) };
-    let unfit = |error: spectra_film::positive::PositiveError| Faults::from(params.fault("stock", format!("{}: {error}", stock.name)));
+    let unfit = |error: spectra_film::positive::PositiveError| {
+        Faults::from(params.fault("stock", format!("{}: {error}", stock.name)))
+    };
     let positive = |picture: Positive, words: String| Seen { picture: Picture::Positive(Box::new(picture)), words };
     match view {
         View::Print => print(p, params, resources, stock, film, gray_lx_s, &light, lamp.as_ref()),
@@ -103,7 +105,9 @@ pub(crate) fn seen(
             let table = Positive::transmitted(stock, film, &light).map_err(unfit)?;
             Ok(positive(table, "the negative itself".into()))
         }
-        View::Projection => Ok(positive(Positive::transmitted(stock, film, &light).map_err(unfit)?, "projected".into())),
+        View::Projection => {
+            Ok(positive(Positive::transmitted(stock, film, &light).map_err(unfit)?, "projected".into()))
+        }
     }
 }
 

@@ -90,7 +90,31 @@ impl Positive {
         let viewing = Viewing::by(light).ok_or(PositiveError::DarkLight)?;
         let gray = film.neutral(spectra_core::math::log10(gray_lx_s));
         let unexposed = film.neutral(f64::NEG_INFINITY);
-        let printing = Printing::balanced(film.deposit(), &unexposed, &gray, print, printed, lamp, viewing)?;
+        let printing = Printing::balanced(film.deposit(), &unexposed, &gray, print, printed, Some(lamp), viewing)?;
+        Ok(Self::tabulated(film, Way::Print(Box::new(printing))))
+    }
+
+    /// Printed by dye transfer: three separation negatives ([`Emulsion::separations`]), each onto the matrix of one dye of
+    /// `print`, whose layers are blue, green and red in this order; balanced for a mid gray subject that left `gray_lx_s` on
+    /// each, and looked at as [`Positive::printed`] is.
+    ///
+    /// # Errors
+    /// [`PositiveError`].
+    pub fn from_separations(
+        film: &Emulsion,
+        gray_lx_s: &[f64; 3],
+        print: &Stock,
+        printed: Emulsion,
+        light: &Emission,
+    ) -> Result<Self, PositiveError> {
+        if film.layers() != 3 || printed.layers() != 3 {
+            return Err(PositiveError::NoPrintStock { stock: print.name.clone() });
+        }
+        let viewing = Viewing::by(light).ok_or(PositiveError::DarkLight)?;
+        let gray: Vec<f64> =
+            gray_lx_s.iter().enumerate().map(|(i, h)| film.amount(i, spectra_core::math::log10(*h))).collect();
+        let unexposed = film.neutral(f64::NEG_INFINITY);
+        let printing = Printing::balanced(film.deposit(), &unexposed, &gray, print, printed, None, viewing)?;
         Ok(Self::tabulated(film, Way::Print(Box::new(printing))))
     }
 

@@ -2,16 +2,13 @@
 
 use super::PositiveError;
 use super::viewing::{Viewing, on_band};
-use crate::deposit::{Deposit, solve};
+use crate::deposit::{Deposit, solve, third};
 use crate::emulsion::Emulsion;
 use crate::print::MID_GRAY;
 use crate::stock::{Process, Stock};
 use spectra_core::math::{log10, pow};
 use spectra_core::spectral::BAND;
 use spectra_spectrum::Emission;
-
-/// Where an additive printer parts its lamp into blue, green and red, nm.
-const BANDS_NM: [f64; 2] = [500.0, 590.0];
 
 /// A negative on its way through the printer.
 #[derive(Clone, Debug)]
@@ -29,26 +26,30 @@ impl Printing {
     /// [`MID_GRAY`] between the clear print (white) and the print of a negative of the amounts `unexposed` (black).
     ///
     /// A print stock of three layers is printed by an additive lamp house: `lamp` parted at 500 and 590 nm, each part with a
-    /// strength of its own; one of a single layer by the whole of `lamp`.
+    /// strength of its own; one of a single layer by the whole of `lamp`. Without a lamp, each layer is printed alone, from a
+    /// separation negative of its own.
     pub(super) fn balanced(
         negative: &Deposit,
         unexposed: &[f64],
         gray: &[f64],
         stock: &Stock,
         emulsion: Emulsion,
-        lamp: &Emission,
+        lamp: Option<&Emission>,
         viewing: Viewing,
     ) -> Result<Self, PositiveError> {
         if stock.process != Process::Print {
             return Err(PositiveError::NoPrintStock { stock: stock.name.clone() });
         }
         let layers = emulsion.layers();
-        let lamp = on_band(lamp);
-        let part = |w: f64| if layers == 1 { 0 } else { 2 - BANDS_NM.iter().filter(|edge| w >= **edge).count() };
-        // Layer by part of the lamp; parts in the order red, green, blue.
+        let power = lamp.map(on_band);
+        let part = |w: f64| if layers == 1 { 0 } else { third(w) };
+        // Of a layer, to a part of the lamp.
         let sensitivity = |layer: usize, of: usize| -> Vec<f64> {
-            let at = |(i, w): (usize, f64)| {
-                if part(w) == of { stock.layers[layer].sensitivity.at(w) * lamp[i] } else { 0.0 }
+            let at = |(i, w): (usize, f64)| match &power {
+                _ if part(w) != of => 0.0,
+                Some(power) => stock.layers[layer].sensitivity.at(w) * power[i],
+                None if layer == of => 1.0,
+                None => 0.0,
             };
             BAND.wavelengths_nm().enumerate().map(at).collect()
         };

@@ -215,7 +215,8 @@ fn layers(
             None => Some(None),
         };
         let mtf = faults.take(mtf(params, &at, &layer.mtf));
-        let (Some(sensitivity), Some(developments), Some(dye), Some(mtf)) = (sensitivity, developments, dye, mtf) else {
+        let (Some(sensitivity), Some(developments), Some(dye), Some(mtf)) = (sensitivity, developments, dye, mtf)
+        else {
             continue;
         };
         if let Some(reference) = reference

@@ -185,8 +185,7 @@ pub(super) struct MinimumDensityFile {
 
 impl MinimumDensityFile {
     pub(super) fn read(&self, params: &Params) -> Result<MinimumDensity, Fault> {
-        let density =
-            SpectralDensity::new(&self.table).map_err(|text| params.fault("minimum-density.table", text))?;
+        let density = SpectralDensity::new(&self.table).map_err(|text| params.fault("minimum-density.table", text))?;
         if self.assumed && self.remark.as_ref().is_none_or(|r| r.trim().is_empty()) {
             let fault = params.fault("minimum-density.assumed", "an assumed density says why");
             return Err(fault.hint("a `remark` says what it rests on"));
