@@ -71,7 +71,8 @@ fn record(stock: &str, development: Option<&str>, filters: &[&str]) -> RecordPar
 
 // As J. Ball described the camera ("The Technicolor process of three-color cinematography", J. SMPE 25, 127, 1935): a green
 // filter before one film; a magenta one before the pair of the others, the front film of which sees blue and is dyed red.
-// The stocks are later ones, whose sensitivities are known.
+// The stock of all three is a later one whose sensitivity is known, behind a blue filter where the front film saw blue only:
+// records of one contrast, as the process needs them.
 fn red() -> RecordParams {
     record("kodak-double-x-5222", Some("9-min"), &["wratten-32", "wratten-25"])
 }
@@ -81,7 +82,7 @@ fn green() -> RecordParams {
 }
 
 fn blue() -> RecordParams {
-    record("blue-sensitive-plate", None, &["wratten-32"])
+    record("kodak-double-x-5222", Some("9-min"), &["wratten-47"])
 }
 
 fn daylight() -> String {

@@ -111,7 +111,6 @@ pub(crate) fn seen(
     }
 }
 
-#[allow(clippy::too_many_arguments, reason = "each is another part of the way; a struct would be used once")]
 fn print(
     p: &StockParams,
     params: &Params,

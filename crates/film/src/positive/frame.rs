@@ -10,8 +10,8 @@ use std::f64::consts::LN_10;
 
 /// Steps of the tables over the amounts of three dyes. Densities of sums over the band are nearly linear in the amounts: their
 /// second derivative is the variance of the dye's density over what the receiver sees, times ln 10, 0.2 or less. Over a
-/// range of 4 that is 0.2 / 8 * (4 / 48)^2 = 2e-4 in density.
-const STEPS: usize = 48;
+/// range of 4 that is 0.2 / 8 * (4 / 64)^2 = 1e-4 in density.
+const STEPS: usize = 64;
 
 /// Steps of the picture of one layer of silver, and the largest density there. The picture's second derivative over
 /// density is below 60, so linear interpolation is within 60 / 8 * (6 / 8192)^2 = 4e-6.
@@ -148,9 +148,12 @@ fn densities(deposit: &Deposit, ranges: [(f64, f64); 3], weights: &[Vec<f64>]) -
             let both: Vec<f64> =
                 base.iter().zip(&layers[0][i]).zip(&layers[1][j]).map(|((b, x), y)| b * x * y).collect();
             for (channel, weight) in weights.iter().take(3).enumerate() {
-                let weighed: Vec<f64> = both.iter().zip(weight).map(|(b, w)| b * w).collect();
+                // Where the receiver sees nothing there is nothing to add.
+                let from = weight.iter().position(|w| *w != 0.0).unwrap_or(0);
+                let to = weight.iter().rposition(|w| *w != 0.0).map_or(0, |last| last + 1).max(from);
+                let weighed: Vec<f64> = both[from..to].iter().zip(&weight[from..to]).map(|(b, w)| b * w).collect();
                 for (value, third) in row.iter_mut().zip(&layers[2]) {
-                    value[channel] = -log10(dot(&weighed, third)) as f32;
+                    value[channel] = -log10(dot(&weighed, &third[from..to])) as f32;
                 }
             }
         }
