@@ -115,8 +115,9 @@ fn speed_points_lie_where_the_speed_says() {
         assert!((over - SPEED_POINT_DENSITY).abs() < 0.05, "{name}: {over}");
         let gray = curve.density(log10(metered_exposure_lx_s(iso))) - curve.unexposed_density();
         assert!((0.55..0.95).contains(&gray), "{name}: {gray}");
+        // From Kodak's contrast index of .56 for pictorial negatives (a little less over 1.5) to Ilford's .70.
         let gradient = curve.average_gradient(1.5).expect("has one");
-        assert!((0.55..0.75).contains(&gradient), "{name}: {gradient}");
+        assert!((0.5..=0.7001).contains(&gradient), "{name}: {gradient}");
     }
 }
 

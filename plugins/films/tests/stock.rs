@@ -84,7 +84,7 @@ fn parameters_are_checked() {
         ("stock: kodak-tri-x-400\nmetering: average\npush: 5\n", "stops"),
         ("stock: kodak-vision-2383\nmetering: average\n", "no camera film"),
         ("stock: kodak-ektachrome-100d\nmetering: average\nview: print\n", "positive already"),
-        ("stock: kodak-vision3-250d-5207\nmetering: average\nprint: kodak-2383\n", "kodak-vision-2383"),
+        ("stock: kodak-vision3-250d-5207\nmetering: average\nprint: kodak-2383\n", "did you mean"),
         ("stock: ilford-ortho-plus\nmetering: average\nlight: D5500\n", "light"),
         ("stock: ilford-ortho-plus\nexposure: 1 s\ndevelopment: lith\n", "pictorial"),
     ] {

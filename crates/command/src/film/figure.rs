@@ -116,7 +116,7 @@ fn dyes(canvas: &mut Canvas, stock: &Stock, frame: Rect) {
     }
     let top = all.iter().flat_map(|(.., p)| p.iter().map(|p| p[1])).fold(0.5, f64::max);
     let x = Axis::new("wavelength / nm", BAND.start_nm, BAND.end_nm()).ticks(10, 5);
-    let axes = Axes::new(frame, x, Axis::new("density of a unit of dye", 0.0, 1.3 * top).ticks(6, 2));
+    let axes = Axes::new(frame, x, Axis::new("density of a unit of dye", 0.0, 1.55 * top).ticks(6, 2));
     axes.draw_grid(canvas);
     canvas.clip(Some(frame));
     for (_, color, table) in &all {
