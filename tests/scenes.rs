@@ -64,6 +64,7 @@ fn the_registry_is_sound_and_complete() {
         "color/fraunhofer",
         "color/gaussians",
         "film/stock",
+        "film/three-strip",
         "imager/film",
         "imager/xyz",
         "source/chart",

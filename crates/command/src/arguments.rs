@@ -1,5 +1,6 @@
 //! What can be written after `spectra`.
 
+use crate::film::FilmArguments;
 use crate::quantity::parse;
 use crate::spectrum::SpectrumArguments;
 use crate::version;
@@ -44,6 +45,8 @@ pub(crate) enum Command {
     List(List),
     /// Look at a lens as an optical engineer does.
     Lens(LensArguments),
+    /// Look at film stocks: sensitivities, curves, dyes.
+    Film(FilmArguments),
     /// Compare ways to draw wavelengths: error against samples and time.
     Bench(Bench),
     /// Look at spectra: their color in figures, and pictures of them.

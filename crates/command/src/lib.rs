@@ -8,6 +8,7 @@ mod arguments;
 mod bench;
 mod check;
 mod console;
+mod film;
 mod lens;
 mod licences;
 mod list;
@@ -58,6 +59,7 @@ fn dispatch(arguments: &Arguments, started: Instant) -> Outcome {
         Some(Command::Check(check)) => check::check(check, isa),
         Some(Command::List(list)) => list::list(list),
         Some(Command::Lens(lens)) => lens::lens(&lens.command, isa),
+        Some(Command::Film(arguments)) => film::film(&arguments.command),
         Some(Command::Bench(bench)) => bench::bench(bench, isa),
         Some(Command::Spectrum(spectrum)) => spectrum::spectrum(&spectrum.command),
         // The parser shows help where neither a command nor a flag stands.

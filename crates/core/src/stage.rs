@@ -156,8 +156,14 @@ pub trait Film: Send + Sync {
     /// Its channels: responses per spectral irradiance, in lux (times seconds of exposure).
     fn channels(&self) -> Vec<Channel>;
 
-    /// Exposure time, s.
+    /// Exposure time that the light is recorded for, s.
     fn exposure_time_s(&self) -> f64;
+
+    /// Exposure time that the film is developed as having had, s: what the camera's meter chose, where one meters the frame;
+    /// else the time that it was recorded for.
+    fn metered_time_s(&self, _exposure: &ExposureFrame) -> f64 {
+        self.exposure_time_s()
+    }
 
     /// Develops the frame (exposure in lx s per channel) into a picture.
     ///

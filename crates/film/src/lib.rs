@@ -3,14 +3,21 @@
 //! What an imager records is linear exposure, channel by channel. From there:
 //!
 //! - [`stock`]: what a film sees and how it answers, from a data file;
-//! - [`curve`]: density over log exposure; [`develop`]: exposure to density; [`mod@print`]: the negative's positive;
+//! - [`curve`]: density over log exposure; [`emulsion`], [`develop`]: exposure to amounts of silver or dye;
+//! - [`deposit`]: what those hold back, wavelength by wavelength;
+//! - [`mod@print`]: a black-and-white negative on paper; [`positive`]: any film on a print stock, as a scan, projected;
 //! - [`display`]: absolute XYZ to a screen, with automatic exposure as one explicit step;
 //! - [`mod@write`]: OpenEXR of the exposure, PNG and TIFF of the picture.
 
+mod cube;
 pub mod curve;
+pub mod deposit;
 pub mod develop;
 pub mod display;
+pub mod emulsion;
 mod lookup;
+pub mod positive;
 pub mod print;
+pub mod push;
 pub mod stock;
 pub mod write;

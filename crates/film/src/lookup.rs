@@ -6,6 +6,7 @@ use rayon::prelude::*;
 pub(crate) const PIXELS_A_TASK: usize = 8192;
 
 /// A function sampled at equal steps, linear between the samples, held constant beyond them.
+#[derive(Clone, Debug)]
 pub(crate) struct Lookup {
     low: f64,
     per_step: f64,
@@ -18,6 +19,17 @@ impl Lookup {
         let width = (high - low) / steps as f64;
         let values = (0..steps + 1).into_par_iter().with_min_len(1024).map(|i| f(low + width * i as f64)).collect();
         Self { low, per_step: 1.0 / width, values }
+    }
+
+    /// Equal steps from `low` to `high` with these values; at least two.
+    pub(crate) fn from_values(low: f64, high: f64, values: Vec<f64>) -> Self {
+        Self { low, per_step: (values.len() - 1) as f64 / (high - low), values }
+    }
+
+    /// Smallest and largest value.
+    pub(crate) fn extremes(&self) -> (f64, f64) {
+        let fold = |start: f64, f: fn(f64, f64) -> f64| self.values.iter().copied().fold(start, f);
+        (fold(f64::INFINITY, f64::min), fold(f64::NEG_INFINITY, f64::max))
     }
 
     /// The function at `x`; no number is taken as the low end.

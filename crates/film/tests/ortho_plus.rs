@@ -20,7 +20,7 @@ fn sensitometric() -> (Emission, Emission) {
 #[test]
 fn says_what_the_sheet_says() {
     let stock = ortho_plus();
-    assert_eq!((stock.iso, stock.iso_tungsten), (80.0, Some(40.0)));
+    assert_eq!((stock.iso, stock.iso_tungsten), (Some(80.0), Some(40.0)));
     assert_eq!(stock.bases.iter().map(|b| b.thickness_mm).collect::<Vec<_>>(), [0.125, 0.18]);
     assert!(stock.layers[0].developments[0].assumed && stock.layers[0].developments[0].remark.is_some());
     assert_eq!(stock.filter_factors.len(), 4);

@@ -128,3 +128,39 @@ fn assumed_curves_are_checked() {
         assert!(text.contains(key), "{numbers}: {text}");
     }
 }
+
+/// Faults of color stocks: dyes, densities and curves that do not fit each other, each with its place.
+#[test]
+fn layers_that_do_not_fit_are_told() {
+    let layer = |name: &str, dye: &str, curves: &str| {
+        format!(
+            "  - name: {name}\n    sensitivity: {{table: [[400, 1], [650, 1]], reading: linear, measured-under: equal-energy}}\n{dye}    curves:\n{curves}"
+        )
+    };
+    let dye = "    dye: {name: cyan, table: [[400, 0.1], [650, 1.0]]}\n";
+    let curve = "      - {development: normal, points: [[-3, 0.1], [-1, 1.8]]}\n";
+    let head = "spectra: 1\nname: Mine\nsource: me\nlicence: CC0-1.0\niso: 100\nreference-illuminant: D55\n";
+    let cases = [
+        (format!("{head}layers:\n{}{}", layer("red", dye, curve), layer("green", "", curve)), "some have none"),
+        (format!("{head}layers:\n{}{}", layer("red", "", curve), layer("green", "", curve)), "a `dye` in each"),
+        (format!("{head}density: status-m\nlayers:\n{}", layer("red", dye, curve)), "three layers, not 1"),
+        (format!("{head}layers:\n{}", layer("red", "", "      - {development: normal}\n")), "average-gradient"),
+        (format!("{head}layers:\n{}", layer("red", "    mtf: [[20, 0.9], [10, 0.5]]\n", curve)), "modulation transfer"),
+        (
+            format!("{head}minimum-density: {{table: [[400, 0.2]]}}\nlayers:\n{}", layer("red", "", curve)),
+            "base and fog",
+        ),
+        (format!("{head}halation: {{scattered: 2, backing: 0.1}}\nlayers:\n{}", layer("red", "", curve)), "share"),
+        (format!("{head}reciprocity: {{above: 1 s}}\nlayers:\n{}", layer("red", "", curve)), "`exponent` or a `table`"),
+        (
+            format!("{head}layers:\n{}", layer("red", "", curve))
+                .replace("[[400, 1], [650, 1]]", "[[900, 1], [950, 1]]"),
+            "900 to 950 nm",
+        ),
+        (format!("{head}layers:\n{}", layer("red", "", curve)).replace("iso: 100\n", ""), "has a speed"),
+    ];
+    for (yaml, word) in cases {
+        let text = load(&yaml, "").expect_err(word);
+        assert!(text.contains(word) && text.contains("mine.yaml:"), "{word}: {text}");
+    }
+}

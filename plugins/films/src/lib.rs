@@ -1,5 +1,11 @@
 //! Built-in film processes.
 
+mod metering;
 mod stock;
+mod three_strip;
+mod view;
 
+pub use metering::{Metering, SpotParams};
 pub use stock::{StockFilm, StockParams};
+pub use three_strip::{RecordParams, ThreeStrip, ThreeStripParams};
+pub use view::{PaperParams, View};

@@ -1,15 +1,20 @@
-//! `film: stock`, black-and-white negative film from a data file, printed.
+//! `film: stock`, film from a data file: exposed, developed, and printed, scanned or projected.
 
+use crate::metering::{Meter, Metering, SpotParams};
+use crate::view::{PaperParams, Picture, View, seen};
 use serde::Deserialize;
 use spectra_core::frame::{DisplayPicture, ExposureFrame};
-use spectra_core::math::log10;
+use spectra_core::math::pow;
 use spectra_core::params::{Fault, Faults, Params, Positive, Time, nearest};
 use spectra_core::registry::{Context, FilmEntry};
+use spectra_core::resources::Resources;
 use spectra_core::spectral::Channel;
 use spectra_core::stage::Film;
-use spectra_film::develop::develop;
-use spectra_film::print::{Paper, Print, metered_exposure_lx_s};
-use spectra_film::stock::Stock;
+use spectra_film::display::channel;
+use spectra_film::emulsion::Emulsion;
+use spectra_film::print::{Print, metered_exposure_lx_s};
+use spectra_film::push::pushed;
+use spectra_film::stock::{Process, Stock};
 
 /// Parameters of `kind: stock` as written in a scene.
 #[derive(Debug, Deserialize)]
@@ -17,21 +22,48 @@ use spectra_film::stock::Stock;
 pub struct StockParams {
     /// Name of a bundled stock, such as `ilford-ortho-plus`, or a YAML file beside the scene.
     pub stock: String,
-    /// Exposure time, s if bare.
-    pub exposure: Positive<Time>,
-    /// How the film is developed: a name from the stock's file; the first one there if left out.
+    /// Exposure time, s if bare; may be left out where the camera meters.
+    pub exposure: Option<Positive<Time>>,
+    /// How the camera finds its exposure: `manual`, `average` or `spot`. A metered frame is exposed so much longer or
+    /// shorter that what is metered gets the 10/S lx s of a mid gray.
     #[serde(default)]
+    pub metering: Metering,
+    /// The spot of `metering: spot`.
+    pub spot: Option<SpotParams>,
+    /// Stops by which a metered frame is exposed more than the meter says.
+    pub compensation: Option<f64>,
+    /// The speed that the meter, and whoever prints, takes the film for; the stock's, times two for each stop pushed, if
+    /// left out.
+    pub iso: Option<Positive<f64>>,
+    /// How the film is developed: a name from the stock's file; the first one there if left out.
     pub development: Option<String>,
+    /// Stops by which it is developed longer, or shorter if negative: where the stock's file has a series of times.
+    pub push: Option<f64>,
+    /// How it is looked at: `print`, `negative`, `scan`, or `projection` of a reversal film.
+    pub view: Option<View>,
+    /// The print stock; the maker's for this film if left out, or paper for black and white.
+    pub print: Option<String>,
+    /// How the print is developed: a name from the print stock's file.
+    pub print_development: Option<String>,
+    /// The paper of a black-and-white print.
+    pub paper: Option<PaperParams>,
+    /// The printer's lamp; that of the print stock if left out.
+    pub lamp: Option<String>,
+    /// The light that film and prints are looked at by: D55 if left out.
+    pub light: Option<String>,
 }
 
-/// A black-and-white negative film, developed and printed.
+/// A film from a data file.
 #[derive(Clone, Debug)]
 pub struct StockFilm {
     stock: Stock,
     development: String,
+    emulsion: Emulsion,
     channels: Vec<Channel>,
     exposure_time_s: f64,
-    print: Print,
+    meter: Meter,
+    picture: Picture,
+    words: String,
 }
 
 impl StockFilm {
@@ -40,28 +72,32 @@ impl StockFilm {
     /// # Errors
     /// What is wrong with the parameters or with the stock's file.
     pub fn build(params: &Params, context: &Context<'_>) -> Result<Self, Faults> {
-        let StockParams { stock, exposure, development } = params.parse()?;
-        let stock = Stock::load(&stock, context.resources).map_err(|faults| place_at_stock(faults, params, &stock))?;
-        let [layer] = &stock.layers[..] else {
-            let text = format!("{} has {} layers; this process develops films of one", stock.name, stock.layers.len());
-            return Err(params.fault("stock", text).into());
+        let p: StockParams = params.parse()?;
+        let stock = load_stock(&p.stock, "stock", params, context.resources)?;
+        let mut faults = Faults::new();
+        let Some(iso) = stock.iso.filter(|_| stock.process != Process::Print) else {
+            let fault = params.fault("stock", format!("{} is no camera film", stock.name));
+            return Err(fault.hint("a print stock is named at `print`").into());
         };
-        let chosen = match &development {
-            None => layer.developments.first(),
-            Some(name) => layer.development(name),
+        if p.exposure.is_none() && p.metering == Metering::Manual {
+            let fault = params.fault("exposure", "missing key `exposure`");
+            faults.push(fault.hint("add `exposure: 1/125 s`, or let the camera find it: `metering: average`"));
+        }
+        let developed = faults.take(develop_as(&p, params, &stock));
+        let speed = p.iso.map_or(iso * pow(2.0, p.push.unwrap_or(0.0)), Positive::get);
+        let meter = Meter::new(params, p.metering, p.spot, speed, p.compensation);
+        let meter = faults.take(meter.map_err(Faults::from));
+        let blind = |error| Faults::from(params.fault("stock", format!("{}: {error}", stock.name)));
+        let channels = faults.take(stock.channels(&context.grid).map_err(blind));
+        let (Some((emulsion, development)), Some(meter), Some(mut channels)) = (developed, meter, channels) else {
+            return Err(faults);
         };
-        let Some(chosen) = chosen else {
-            let known: Vec<&str> = layer.developments.iter().map(|d| d.name.as_str()).collect();
-            let text = format!("{} has no curve for the development `{}`", stock.name, development.unwrap_or_default());
-            return Err(params.fault("development", text).hint(format!("known: {}", known.join(", "))).into());
-        };
-        let gray = chosen.curve.density(log10(metered_exposure_lx_s(stock.iso)));
-        let unprintable = |error| params.fault("stock", format!("{}: {error}", stock.name));
-        let print = Print::balanced(&Paper::default(), chosen.curve.unexposed_density(), gray).map_err(unprintable)?;
-        let blind = |error| params.fault("stock", format!("{}: {error}", stock.name));
-        let channels = stock.channels(&context.grid).map_err(blind)?;
-        let development = chosen.name.clone();
-        Ok(Self { stock, development, channels, exposure_time_s: exposure.s(), print })
+        faults.into_result(())?;
+        let seen = seen(&p, params, context.resources, &stock, &emulsion, metered_exposure_lx_s(speed))?;
+        channels.extend(meter.channel(&context.grid));
+        let exposure_time_s = p.exposure.map_or(1.0, |t| t.s());
+        let (picture, words) = (seen.picture, seen.words);
+        Ok(Self { stock, development, emulsion, channels, exposure_time_s, meter, picture, words })
     }
 
     /// The stock.
@@ -70,15 +106,63 @@ impl StockFilm {
         &self.stock
     }
 
-    /// The print that it ends in.
+    /// The stock as developed.
     #[must_use]
-    pub fn print(&self) -> &Print {
-        &self.print
+    pub fn emulsion(&self) -> &Emulsion {
+        &self.emulsion
+    }
+
+    /// The print on paper that it ends in, if it does.
+    #[must_use]
+    pub fn print(&self) -> Option<&Print> {
+        match &self.picture {
+            Picture::Paper(print) => Some(print),
+            Picture::Positive(_) => None,
+        }
+    }
+
+    /// The developed film: a plane of amounts a layer (see [`spectra_film::deposit::Deposit`]), in the order of the stock.
+    ///
+    /// # Errors
+    /// A text that says which channel is missing.
+    pub fn developed(&self, exposure: &ExposureFrame) -> Result<Vec<Vec<f32>>, String> {
+        let factor = self.meter.factor(exposure);
+        let time_s = self.exposure_time_s * factor;
+        let effect = self.stock.reciprocity.as_ref().map_or(1.0, |r| r.effect(time_s));
+        let layers = self.stock.layers.iter().enumerate().map(|(i, layer)| {
+            let mut plane = channel(exposure, &layer.name).map_err(|error| error.to_string())?.values.clone();
+            self.emulsion.develop(i, &mut plane, factor * effect);
+            Ok(plane)
+        });
+        layers.collect()
     }
 }
 
+/// The emulsion, and the name of its development.
+fn develop_as(p: &StockParams, params: &Params, stock: &Stock) -> Result<(Emulsion, String), Faults> {
+    let known: Vec<&str> = stock.developments().collect();
+    let chosen = p.development.as_deref().or(known.first().copied()).unwrap_or_default();
+    if !known.contains(&chosen) {
+        let text = format!("{} has no curve for the development `{chosen}`", stock.name);
+        return Err(params.fault("development", text).hint(format!("known: {}", known.join(", "))).into());
+    }
+    let Some(stops) = p.push else {
+        let emulsion = Emulsion::new(stock, chosen).map_err(|e| params.fault("stock", e.to_string()))?;
+        return Ok((emulsion, chosen.to_owned()));
+    };
+    let developed = pushed(stock, chosen, stops)
+        .map_err(|e| params.fault("push", e.to_string()).hint("or change `iso`: the same film, exposed otherwise"))?;
+    let emulsion = Emulsion::with_curves(stock, developed.curves).map_err(|e| params.fault("push", e.to_string()))?;
+    Ok((emulsion, format!("{:.1} min (pushed {stops:+} stops)", developed.minutes)))
+}
+
+/// The stock that `key` names.
+pub(crate) fn load_stock(name: &str, key: &str, params: &Params, resources: &dyn Resources) -> Result<Stock, Faults> {
+    Stock::load(name, resources).map_err(|faults| place_at(faults, params, key, name))
+}
+
 /// A file that is not found has no place of its own: the key that names it has.
-fn place_at_stock(faults: Faults, params: &Params, name: &str) -> Faults {
+fn place_at(faults: Faults, params: &Params, key: &str, name: &str) -> Faults {
     let place = |fault: Fault| {
         if fault.place.is_some() {
             return fault;
@@ -89,7 +173,7 @@ fn place_at_stock(faults: Faults, params: &Params, name: &str) -> Faults {
             (None, Some(hint)) => hint,
             (None, None) => format!("bundled stocks: {}", known.join(", ")),
         };
-        params.fault("stock", fault.message).hint(hint)
+        params.fault(key, fault.message).hint(hint)
     };
     faults.into_iter().map(place).collect::<Vec<_>>().into()
 }
@@ -103,22 +187,31 @@ impl Film for StockFilm {
         self.exposure_time_s
     }
 
+    fn metered_time_s(&self, exposure: &ExposureFrame) -> f64 {
+        self.exposure_time_s * self.meter.factor(exposure)
+    }
+
     fn develop(&self, exposure: &ExposureFrame) -> Result<DisplayPicture, String> {
-        let developed = develop(&self.stock, &self.development, exposure, self.exposure_time_s);
-        let developed = developed.map_err(|error| error.to_string())?;
-        let size = developed.size;
-        // One layer, as `build` saw to it.
-        let gray = developed.layers.iter().flat_map(|layer| self.print.pictures(&layer.density));
-        let rgb = gray.map(|v| [v; 3]).collect();
+        let planes = self.developed(exposure)?;
+        let planes: Vec<&[f32]> = planes.iter().map(Vec::as_slice).collect();
+        let rgb = match (&self.picture, &planes[..]) {
+            (Picture::Paper(print), [silver]) => print.pictures(silver).into_iter().map(|v| [v; 3]).collect(),
+            (Picture::Positive(positive), planes) => positive.picture(planes),
+            // `build` makes paper prints of one layer only.
+            (Picture::Paper(_), _) => return Err(format!("{} is no film of one layer", self.stock.name)),
+        };
+        let size = exposure.size;
         Ok(DisplayPicture { width_px: size.width_px, height_px: size.height_px, rgb })
     }
 
     fn describe(&self) -> String {
-        let assumed = self.stock.layers.iter().any(|l| l.development(&self.development).is_some_and(|d| d.assumed));
+        let named = |l: &spectra_film::stock::Layer| l.development(&self.development).is_some_and(|d| d.assumed);
+        let assumed = self.stock.layers.iter().any(named);
         let curve = if assumed { " (curve assumed)" } else { "" };
+        let iso = self.stock.iso.map_or(String::new(), |iso| format!(", ISO {iso}"));
         format!(
-            "{}, ISO {}, {} development{curve}, exposed for {} s, printed",
-            self.stock.name, self.stock.iso, self.development, self.exposure_time_s
+            "{}{iso}, {} development{curve}, exposed for {} s, {}",
+            self.stock.name, self.development, self.exposure_time_s, self.words
         )
     }
 }
@@ -130,7 +223,7 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Film>, Faults
 inventory::submit! {
     FilmEntry::new(
         "stock",
-        "Black-and-white negative film from a data file, developed and printed.",
+        "Film from a data file, developed, and printed, scanned or projected.",
         env!("CARGO_PKG_NAME"),
         env!("CARGO_PKG_VERSION"),
         build,

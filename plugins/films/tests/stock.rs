@@ -71,7 +71,21 @@ fn parameters_are_checked() {
         ("stock: ilford-ortho-plus\n", "exposure"),
         ("stock: ilford-ortho-plus\nexposure: 0 s\n", "positive"),
         ("stock: ilford-ortho-plus\nexposure: 3 mm\n", "time"),
-        ("stock: ilford-ortho-plus\nexposure: 1 s\niso: 3\n", "iso"),
+        ("stock: ilford-ortho-plus\nexposure: 1 s\niso: 0\n", "positive"),
+        ("stock: ilford-ortho-plus\nexposure: 1 s\nasa: 3\n", "asa"),
+        ("stock: ilford-ortho-plus\nexposure: 1 s\ncompensation: 1\n", "meter"),
+        ("stock: ilford-ortho-plus\nexposure: 1 s\nspot: {diameter: 0.2}\n", "metering: spot"),
+        ("stock: ilford-ortho-plus\nmetering: spot\nspot: {diameter: 0}\n", "diameter"),
+        ("stock: ilford-ortho-plus\nmetering: average\nview: projection\n", "negative"),
+        ("stock: ilford-ortho-plus\nmetering: average\nview: scan\nprint: kodak-2302\n", "view: print"),
+        ("stock: ilford-ortho-plus\nmetering: average\nprint: kodak-tri-x-400\n", "no print stock"),
+        ("stock: ilford-ortho-plus\nmetering: average\nprint: kodak-2302\npaper: {range: 1}\n", "paper"),
+        ("stock: ilford-ortho-plus\nmetering: average\npush: 1\n", "other times"),
+        ("stock: kodak-tri-x-400\nmetering: average\npush: 5\n", "stops"),
+        ("stock: kodak-vision-2383\nmetering: average\n", "no camera film"),
+        ("stock: kodak-ektachrome-100d\nmetering: average\nview: print\n", "positive already"),
+        ("stock: kodak-vision3-250d-5207\nmetering: average\nprint: kodak-2383\n", "did you mean"),
+        ("stock: ilford-ortho-plus\nmetering: average\nlight: D5500\n", "light"),
         ("stock: ilford-ortho-plus\nexposure: 1 s\ndevelopment: lith\n", "pictorial"),
     ] {
         let text = build(yaml).unwrap_err().to_string();
@@ -85,4 +99,86 @@ fn a_frame_without_its_channel_is_refused() {
     let mut other = frame(&[1.0]);
     other.channels[0].name = "Y".into();
     assert!(film.develop(&other).unwrap_err().contains("ortho"));
+}
+
+fn frame_of(names: &[&str], planes: &[Vec<f32>]) -> ExposureFrame {
+    let pixels = planes[0].len() as u32;
+    let size = FrameSize { width_px: pixels, height_px: 1, width_mm: f64::from(pixels), height_mm: 1.0 };
+    let channel = |(name, values): (&&str, &Vec<f32>)| ExposureChannel {
+        name: (*name).into(),
+        unit: "lx s".into(),
+        values: values.clone(),
+    };
+    ExposureFrame { size, channels: names.iter().zip(planes).map(channel).collect() }
+}
+
+/// The meter makes the mean of what it sees a mid gray of 10/S lx s, whatever the scene's own time; compensation is in stops.
+#[test]
+fn a_metered_frame_gets_the_meters_exposure() {
+    for (yaml, factor) in [
+        ("stock: kodak-tri-x-400\nmetering: average\n", 0.025 / 3.0),
+        ("stock: kodak-tri-x-400\nmetering: average\ncompensation: 1\n", 0.05 / 3.0),
+        ("stock: kodak-tri-x-400\nmetering: average\niso: 800\n", 0.0125 / 3.0),
+        // Rated higher where it is developed longer.
+        ("stock: kodak-tri-x-400\nmetering: average\npush: 1\n", 0.0125 / 3.0),
+        // The middle one of five pixels, one high.
+        ("stock: kodak-tri-x-400\nmetering: spot\nspot: {diameter: 1}\n", 0.025 / 5.0),
+        ("stock: kodak-tri-x-400\nmetering: spot\nspot: {center: [0.1, 0.5], diameter: 1}\n", 0.025),
+        ("stock: kodak-tri-x-400\nexposure: 1/8 s\n", 1.0),
+    ] {
+        let film = build(yaml).unwrap_or_else(|faults| panic!("{yaml}: {faults}"));
+        let metered = yaml.contains("metering");
+        let names: Vec<String> = film.channels().iter().map(|c| c.name.clone()).collect();
+        assert_eq!(names.iter().any(|n| n == "meter"), metered, "{yaml}");
+        let meter = vec![1.0, 2.0, 5.0, 3.0, 4.0];
+        let frame = frame_of(&["panchromatic", "meter"], &[meter.clone(), meter]);
+        let time_s = film.metered_time_s(&frame);
+        assert!((time_s / (film.exposure_time_s() * factor) - 1.0).abs() < 1e-9, "{yaml}: {time_s}");
+        let dark = frame_of(&["panchromatic", "meter"], &[vec![0.0; 5], vec![0.0; 5]]);
+        assert_eq!(film.metered_time_s(&dark), film.exposure_time_s());
+    }
+}
+
+/// A step wedge of exposures through the film stage comes out on the stock's own curve, to 0.02 in density.
+#[test]
+fn a_step_wedge_through_the_stage_recovers_the_curve() {
+    for name in ["kodak-tri-x-400", "kodak-double-x-5222", "ilford-ortho-plus"] {
+        let film = build(&format!("stock: {name}\nexposure: 1/60 s\n")).expect("sound");
+        let layer = &film.stock().layers[0];
+        let steps: Vec<f32> = (0..40).map(|i| 1e-4 * 1.3_f32.powi(i)).collect();
+        let developed = film.developed(&frame_of(&[&layer.name], std::slice::from_ref(&steps))).expect("complete");
+        for (h, density) in steps.iter().zip(&developed[0]) {
+            let want = layer.developments[0].curve.density(f64::from(*h).log10());
+            assert!((f64::from(*density) - want).abs() < 1e-4, "{name} {h}: {density} {want}");
+        }
+    }
+}
+
+/// Long exposures count less: Tri-X metered at 10 s needs 50 s (Kodak F-4017), so 50 s count as 10.
+#[test]
+fn long_exposures_count_as_the_sheet_says() {
+    let developed = |yaml: &str, lx_s: f32| {
+        let film = build(yaml).expect("sound");
+        film.developed(&frame_of(&["panchromatic"], &[vec![lx_s]])).expect("complete")[0][0]
+    };
+    let long = developed("stock: kodak-tri-x-400\nexposure: 50 s\n", 0.125);
+    let short = developed("stock: kodak-tri-x-400\nexposure: 1/60 s\n", 0.025);
+    assert!((long - short).abs() < 1e-5, "{long} {short}");
+}
+
+/// Color film through the stage: a neutral of the meter's exposure is a neutral mid gray, on print and scan; more light on
+/// the red layer alone makes it red.
+#[test]
+fn color_negative_prints_in_color() {
+    for view in ["print", "scan"] {
+        let film = build(&format!("stock: kodak-vision3-250d-5207\nexposure: 1/60 s\nview: {view}\n")).expect("sound");
+        let names: Vec<String> = film.channels().iter().map(|c| c.name.clone()).collect();
+        assert_eq!(names, ["blue", "green", "red"]);
+        let planes = [vec![0.04, 0.02, 0.0], vec![0.04, 0.02, 0.0], vec![0.04, 0.08, 0.0]];
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        let rgb = film.develop(&frame_of(&names, &planes)).expect("complete").rgb;
+        assert!(rgb[0].iter().all(|v| (v - 0.18).abs() < 2e-3), "{view}: {:?}", rgb[0]);
+        assert!(rgb[1][0] > 2.0 * rgb[1][1] && rgb[1][0] > 2.0 * rgb[1][2], "{view}: {:?}", rgb[1]);
+        assert!(rgb[2].iter().all(|v| *v < 0.01), "{view}: {:?}", rgb[2]);
+    }
 }

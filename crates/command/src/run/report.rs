@@ -55,6 +55,7 @@ impl Report<'_> {
             "height_mm": size.height_mm,
             "channels": channels,
             "exposure_time_s": scene.exposure_time_s(),
+            "metered_time_s": scene.film.as_ref().map(|film| film.metered_time_s(&rendering.exposure)),
             "source": scene.source.describe(),
             "lens": { "name": scene.lens.name, "patent": scene.lens.patent },
             "film": scene.film.as_ref().map(|film| film.describe()),

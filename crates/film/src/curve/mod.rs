@@ -87,6 +87,19 @@ impl CharacteristicCurve {
         }
     }
 
+    /// Where it bends: log10 exposures between which all but a thousandth of its density changes.
+    #[must_use]
+    pub fn span(&self) -> (f64, f64) {
+        match self {
+            Self::Tabulated(c) => c.span(),
+            Self::ToeShoulder(c) => {
+                let (_, high) = self.density_range();
+                let at = |share: f64| c.log10_exposure_at(share * high);
+                (at(0.001).unwrap_or(-6.0), at(0.999).unwrap_or(6.0))
+            }
+        }
+    }
+
     /// Density of the unexposed film, as far as the curve holds it.
     #[must_use]
     pub fn unexposed_density(&self) -> f64 {

@@ -50,6 +50,12 @@ impl TabulatedCurve {
         Ok(Self { log10_exposure, density, slope })
     }
 
+    /// Log10 exposures of its first and its last point.
+    #[must_use]
+    pub fn span(&self) -> (f64, f64) {
+        (self.log10_exposure[0], self.log10_exposure[self.log10_exposure.len() - 1])
+    }
+
     /// Density at log10 of the exposure.
     #[must_use]
     pub fn density(&self, log10_exposure: f64) -> f64 {

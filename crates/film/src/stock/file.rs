@@ -1,18 +1,19 @@
 //! A stock's YAML file: its keys, and the checks that need more than a type.
 
-use super::{
-    Base, Development, FilterFactor, Layer, Reading, Reciprocity, SensitivityError, SpectralSensitivity, Stock,
-};
+use super::material::{DyeFile, MinimumDensityFile, densitometry};
+use super::reciprocity::ReciprocityFile;
+use super::structure::{BaseFile, GranularityFile, HalationFile, mtf};
+use super::{Development, FilterFactor, Layer, Process, Reading, SensitivityError, SpectralSensitivity, Stock};
 use crate::curve::{
     AVERAGE_GRADIENT_SPAN, CharacteristicCurve, CurveError, SPEED_POINT_DENSITY, TabulatedCurve, ToeShoulder,
 };
 use serde::Deserialize;
 use spectra_core::math::log10;
-use spectra_core::params::{Fault, Faults, Length, Params, Positive, Time};
+use spectra_core::params::{Fault, Faults, Params, Positive};
 use spectra_core::resources::{Resource, ResourceError, Resources};
 use spectra_core::spectral::BAND;
 use spectra_spectrum::table::{MAX_BYTES, Table};
-use spectra_spectrum::{Emission, Kind, Scale, SpectrumError, find_emission, illuminant};
+use spectra_spectrum::{Emission, Kind, Scale, SpectrumError, find_emission};
 use std::borrow::Cow;
 
 #[derive(Debug, Deserialize)]
@@ -25,9 +26,17 @@ struct StockFile {
     source: String,
     licence: String,
     remark: Option<String>,
-    iso: Positive<f64>,
+    #[serde(default)]
+    process: ProcessFile,
+    #[serde(default)]
+    density: DensityFile,
+    iso: Option<Positive<f64>>,
     iso_tungsten: Option<Positive<f64>>,
     reference_illuminant: String,
+    print: Option<String>,
+    minimum_density: Option<MinimumDensityFile>,
+    granularity: Option<GranularityFile>,
+    halation: Option<HalationFile>,
     layers: Vec<LayerFile>,
     #[serde(default)]
     bases: Vec<BaseFile>,
@@ -36,11 +45,33 @@ struct StockFile {
     filter_factors: Vec<FilterFactorFile>,
 }
 
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum ProcessFile {
+    #[default]
+    Negative,
+    Reversal,
+    Print,
+}
+
+/// How densities were measured.
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum DensityFile {
+    #[default]
+    Visual,
+    StatusA,
+    StatusM,
+}
+
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct LayerFile {
     name: String,
     sensitivity: SensitivityFile,
+    dye: Option<DyeFile>,
+    #[serde(default)]
+    mtf: Vec<[f64; 2]>,
     curves: Vec<CurveFile>,
 }
 
@@ -53,6 +84,8 @@ struct SensitivityFile {
     reading: ReadingFile,
     floor: Option<f64>,
     measured_under: String,
+    #[serde(default)]
+    assumed: bool,
     remark: Option<String>,
 }
 
@@ -67,6 +100,7 @@ enum ReadingFile {
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct CurveFile {
     development: String,
+    minutes: Option<Positive<f64>>,
     #[serde(default)]
     assumed: bool,
     remark: Option<String>,
@@ -77,21 +111,6 @@ struct CurveFile {
     maximum_density: Option<f64>,
     toe: Option<f64>,
     shoulder: Option<f64>,
-}
-
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-struct BaseFile {
-    formats: String,
-    material: Option<String>,
-    thickness: Positive<Length>,
-}
-
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-struct ReciprocityFile {
-    exponent: f64,
-    above: Positive<Time>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -113,33 +132,38 @@ pub(super) fn read(params: &Params, resources: &dyn Resources) -> Result<Stock, 
     if file.layers.is_empty() {
         faults.push(params.fault("layers", "a film has at least one layer"));
     }
-    let mut layers: Vec<Layer> = Vec::new();
-    for (i, layer) in file.layers.iter().enumerate() {
-        let at = format!("layers[{i}]");
-        if layer.name.is_empty() || file.layers[..i].iter().any(|l| l.name == layer.name) {
-            faults.push(params.fault(&format!("{at}.name"), "each layer has a name of its own: it names the channel"));
-        }
-        let sensitivity = faults.take(sensitivity(params, &at, &layer.sensitivity, resources));
-        let developments = faults.take(developments(params, &at, &layer.curves, file.iso.get()));
-        let (Some(sensitivity), Some(developments)) = (sensitivity, developments) else {
-            continue;
-        };
-        if let Some(reference) = &reference
-            && let Err(error) = sensitivity.channel(&layer.name, reference, &BAND)
-        {
-            faults.push(params.fault(&format!("{at}.sensitivity"), error.to_string()));
-        }
-        let remark = layer.sensitivity.remark.clone();
-        layers.push(Layer { name: layer.name.clone(), sensitivity, remark, developments });
+    let process = match file.process {
+        ProcessFile::Negative => Process::Negative,
+        ProcessFile::Reversal => Process::Reversal,
+        ProcessFile::Print => Process::Print,
+    };
+    if file.iso.is_none() && process != Process::Print {
+        let fault = params.fault("iso", "a camera film has a speed");
+        faults.push(fault.hint("`iso: 100`; what has none is a `process: print`"));
     }
+    let layers = layers(params, &file, reference.as_ref(), resources, &mut faults);
     faults.extend(unlike_developments(params, &file.layers));
-    let reciprocity = file.reciprocity.map(|r| {
-        if !(1.0..=10.0).contains(&r.exponent) {
-            let text = format!("the exponent is between 1 and 10, not {}", r.exponent);
-            faults.push(params.fault("reciprocity.exponent", text));
-        }
-        Reciprocity { exponent: r.exponent, above_s: r.above.s() }
-    });
+    let densitometry = faults.take(densitometry(params, file.density, file.layers.len()));
+    let dyes = file.layers.iter().filter(|l| l.dye.is_some()).count();
+    if dyes != 0 && dyes != file.layers.len() {
+        let fault = params.fault("layers", "some layers have a dye and some have none");
+        faults.push(fault.hint("a `dye` in each, or none for silver"));
+    }
+    if dyes == 0 && file.layers.len() > 1 {
+        faults.push(params.fault("layers", "a film of several layers needs a `dye` in each"));
+    }
+    let minimum_density = file.minimum_density.as_ref().and_then(|m| faults.take(m.read(params)));
+    if file.minimum_density.is_some() && dyes == 0 {
+        let fault = params.fault("minimum-density", "curves of silver hold base and fog already");
+        faults.push(fault.hint("leave it out"));
+    }
+    let granularity = file.granularity.as_ref().map(GranularityFile::read);
+    let halation = file.halation.as_ref().and_then(|h| faults.take(h.read(params)));
+    let bases = file.bases.iter().enumerate().filter_map(|(i, b)| faults.take(b.read(params, i))).collect();
+    let reciprocity = file.reciprocity.as_ref().and_then(|r| faults.take(r.read(params)));
+    let Some(densitometry) = densitometry else {
+        return Err(faults);
+    };
     let Some(reference) = reference else {
         return Err(faults);
     };
@@ -149,19 +173,67 @@ pub(super) fn read(params: &Params, resources: &dyn Resources) -> Result<Stock, 
         source: file.source,
         licence: file.licence,
         remark: file.remark,
-        iso: file.iso.get(),
+        process,
+        densitometry,
+        iso: file.iso.map(|v| v.get()),
         iso_tungsten: file.iso_tungsten.map(|v| v.get()),
         reference_illuminant: file.reference_illuminant,
         reference,
         layers,
-        bases: file.bases.into_iter().map(base).collect(),
+        bases,
+        minimum_density,
+        granularity,
+        halation,
+        print: file.print,
         reciprocity,
         filter_factors: file.filter_factors.into_iter().map(filter_factor).collect(),
     })
 }
 
-fn base(file: BaseFile) -> Base {
-    Base { formats: file.formats, material: file.material, thickness_mm: file.thickness.mm() }
+/// The layers that could be read.
+fn layers(
+    params: &Params,
+    file: &StockFile,
+    reference: Option<&Emission>,
+    resources: &dyn Resources,
+    faults: &mut Faults,
+) -> Vec<Layer> {
+    let mut layers: Vec<Layer> = Vec::new();
+    for (i, layer) in file.layers.iter().enumerate() {
+        let at = format!("layers[{i}]");
+        if layer.name.is_empty() || file.layers[..i].iter().any(|l| l.name == layer.name) {
+            faults.push(params.fault(&format!("{at}.name"), "each layer has a name of its own: it names the channel"));
+        }
+        if layer.sensitivity.assumed && layer.sensitivity.remark.as_ref().is_none_or(|r| r.trim().is_empty()) {
+            let fault = params.fault(&format!("{at}.sensitivity.assumed"), "an assumed sensitivity says why");
+            faults.push(fault.hint("a `remark` says what it rests on"));
+        }
+        let sensitivity = faults.take(sensitivity(params, &at, &layer.sensitivity, resources));
+        let developments = faults.take(developments(params, &at, &layer.curves, file.iso.map(|v| v.get())));
+        let dye = match &layer.dye {
+            Some(dye) => faults.take(dye.read(params, &at)).map(Some),
+            None => Some(None),
+        };
+        let mtf = faults.take(mtf(params, &at, &layer.mtf));
+        let (Some(sensitivity), Some(developments), Some(dye), Some(mtf)) = (sensitivity, developments, dye, mtf)
+        else {
+            continue;
+        };
+        if let Some(reference) = reference
+            && let Err(error) = sensitivity.channel(&layer.name, reference, &BAND)
+        {
+            let (first, last) = sensitivity.range_nm();
+            let fault = params.fault(&format!("{at}.sensitivity"), error.to_string());
+            faults.push(fault.hint(format!(
+                "its table runs from {first} to {last} nm; light is computed from {} to {} nm",
+                BAND.start_nm,
+                BAND.end_nm()
+            )));
+        }
+        let (name, remark, assumed) = (layer.name.clone(), layer.sensitivity.remark.clone(), layer.sensitivity.assumed);
+        layers.push(Layer { name, sensitivity, assumed, remark, dye, mtf, developments });
+    }
+    layers
 }
 
 fn filter_factor(file: FilterFactorFile) -> FilterFactor {
@@ -169,7 +241,7 @@ fn filter_factor(file: FilterFactorFile) -> FilterFactor {
 }
 
 fn reference(params: &Params, name: &str) -> Result<Emission, Fault> {
-    illuminant(name).map_err(|error| {
+    find_emission(name).map_err(|error| {
         let hint = "the sheets of films mean iso-7589-sensitometric-daylight";
         params.fault("reference-illuminant", error.to_string()).hint(hint)
     })
@@ -281,7 +353,7 @@ fn beside(params: &Params, name: &str, resources: &dyn Resources) -> Result<Reso
     read(name)
 }
 
-fn developments(params: &Params, at: &str, files: &[CurveFile], iso: f64) -> Result<Vec<Development>, Faults> {
+fn developments(params: &Params, at: &str, files: &[CurveFile], iso: Option<f64>) -> Result<Vec<Development>, Faults> {
     let mut faults = Faults::new();
     if files.is_empty() {
         faults.push(params.fault(&format!("{at}.curves"), "a layer has at least one curve"));
@@ -298,13 +370,14 @@ fn developments(params: &Params, at: &str, files: &[CurveFile], iso: f64) -> Res
         }
         if let Some(curve) = faults.take(curve(params, &at, file, iso)) {
             let (name, remark) = (file.development.clone(), file.remark.clone());
-            developments.push(Development { name, assumed: file.assumed, remark, curve });
+            let minutes = file.minutes.map(|m| m.get());
+            developments.push(Development { name, minutes, assumed: file.assumed, remark, curve });
         }
     }
     faults.into_result(developments)
 }
 
-fn curve(params: &Params, at: &str, file: &CurveFile, iso: f64) -> Result<CharacteristicCurve, Fault> {
+fn curve(params: &Params, at: &str, file: &CurveFile, iso: Option<f64>) -> Result<CharacteristicCurve, Fault> {
     let shape = [
         ("average-gradient", file.average_gradient),
         ("maximum-density", file.maximum_density),
@@ -323,6 +396,10 @@ fn curve(params: &Params, at: &str, file: &CurveFile, iso: f64) -> Result<Charac
     let [Some(gradient), Some(maximum), Some(toe), Some(shoulder)] = shape.map(|(_, v)| v) else {
         let text = format!("the curve has no {}", missing.join(", "));
         return Err(params.fault(at, text).hint("or `points`: pairs of log10 exposure (lx s) and density"));
+    };
+    let Some(iso) = iso else {
+        let text = "without a speed, a curve is given by `points`";
+        return Err(params.fault(at, text).hint("pairs of log10 exposure (lx s) and density"));
     };
     // ISO 6:1993: the exposure 0.8/S lx s gives the density 0.1 over base and fog.
     let low = [log10(0.8 / iso), SPEED_POINT_DENSITY];

@@ -1,9 +1,15 @@
 //! Film stocks: what a maker's sheet says, each value with its source; what is unknown is absent.
 
 mod file;
+mod material;
+mod reciprocity;
 mod sensitivity;
+mod structure;
 
+pub use material::{Densitometry, Dye, MinimumDensity, SpectralDensity};
+pub use reciprocity::Reciprocity;
 pub use sensitivity::{Reading, SensitivityError, SpectralSensitivity};
+pub use structure::{Base, Granularity, Halation};
 
 use crate::curve::CharacteristicCurve;
 use spectra_core::params::{Faults, Params};
@@ -13,6 +19,17 @@ use spectra_spectrum::Emission;
 
 /// Folder of the bundled stocks.
 pub const FOLDER: &str = "spectra/film";
+
+/// What becomes of light and shade on a stock.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Process {
+    /// A camera negative: the more light, the denser; to be printed or scanned.
+    Negative,
+    /// A camera film developed to a positive: the more light, the clearer; to be projected.
+    Reversal,
+    /// What negatives are printed on.
+    Print,
+}
 
 /// A film stock.
 #[derive(Clone, Debug)]
@@ -27,8 +44,12 @@ pub struct Stock {
     pub licence: String,
     /// What else is worth knowing.
     pub remark: Option<String>,
-    /// ISO speed in daylight (arithmetic).
-    pub iso: f64,
+    /// What it is for.
+    pub process: Process,
+    /// How the densities of its curves were measured.
+    pub densitometry: Densitometry,
+    /// ISO speed in daylight (arithmetic); `None` for a print stock alone.
+    pub iso: Option<f64>,
     /// ISO speed in tungsten light, where the sheet prints one.
     pub iso_tungsten: Option<f64>,
     /// Name of the illuminant under which the unit of the curves' axis is photometric lux-seconds.
@@ -39,6 +60,14 @@ pub struct Stock {
     pub layers: Vec<Layer>,
     /// The bases that it is coated on.
     pub bases: Vec<Base>,
+    /// What is left where nothing was exposed, over wavelengths; `None` where the curves alone tell it.
+    pub minimum_density: Option<MinimumDensity>,
+    /// How grainy it is; `None` where the sheet does not say.
+    pub granularity: Option<Granularity>,
+    /// What its back sends back; `None` where nothing is known of it.
+    pub halation: Option<Halation>,
+    /// The stock that its maker wants its negatives printed on.
+    pub print: Option<String>,
     /// How it fails to count long exposures in full; `None` where the sheet does not say.
     pub reciprocity: Option<Reciprocity>,
     /// Filter factors that the sheet prints.
@@ -52,8 +81,15 @@ pub struct Layer {
     pub name: String,
     /// Which light it sees.
     pub sensitivity: SpectralSensitivity,
+    /// Whether its sensitivity is assumed; the remark says on what grounds.
+    pub assumed: bool,
     /// How its table came to be read as it is.
     pub remark: Option<String>,
+    /// The dye that forms in it; `None` for silver.
+    pub dye: Option<Dye>,
+    /// Modulation transfer: (spatial frequency in cycles/mm, response), frequencies increasing; empty where the sheet does
+    /// not say. Developing makes edges stand out, so it may exceed 1.
+    pub mtf: Vec<[f64; 2]>,
     /// Its curves by development, the usual one first; at least one.
     pub developments: Vec<Development>,
 }
@@ -63,32 +99,14 @@ pub struct Layer {
 pub struct Development {
     /// Name, such as `pictorial`.
     pub name: String,
+    /// How long it takes, min; `None` where the sheet does not say.
+    pub minutes: Option<f64>,
     /// Whether the curve is assumed since none is printed.
     pub assumed: bool,
     /// What it rests on.
     pub remark: Option<String>,
     /// The curve.
     pub curve: CharacteristicCurve,
-}
-
-/// What the emulsion is coated on.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Base {
-    /// The formats that come on it, as the sheet names them.
-    pub formats: String,
-    /// Material, such as `acetate`.
-    pub material: Option<String>,
-    /// Thickness, mm.
-    pub thickness_mm: f64,
-}
-
-/// Reciprocity failure by a power law: to act like Tm, an exposure longer than the threshold takes Tm^exponent (s).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Reciprocity {
-    /// Exponent, at least 1.
-    pub exponent: f64,
-    /// Threshold, s.
-    pub above_s: f64,
 }
 
 /// How much longer to expose behind a filter.
@@ -125,6 +143,11 @@ impl Stock {
     pub fn bundled() -> impl Iterator<Item = &'static str> {
         let stem = |path: &'static str| path.strip_prefix(FOLDER)?.strip_prefix('/')?.strip_suffix(".yaml");
         spectra_data::list(FOLDER).filter_map(stem)
+    }
+
+    /// Names of its developments, the usual one first.
+    pub fn developments(&self) -> impl Iterator<Item = &str> {
+        self.layers.first().into_iter().flat_map(|layer| layer.developments.iter().map(|d| d.name.as_str()))
     }
 
     /// The channels that record the exposure of its layers on `grid`, in lx s.

@@ -1,0 +1,213 @@
+//! `spectra film info`.
+
+use super::arguments::FilmInfo;
+use super::load;
+use crate::console;
+use crate::outcome::{DONE, Outcome};
+use serde_json::{Value, json};
+use spectra_core::math::log10;
+use spectra_core::spectral::BAND;
+use spectra_film::curve::{AVERAGE_GRADIENT_SPAN, CharacteristicCurve};
+use spectra_film::print::metered_exposure_lx_s;
+use spectra_film::stock::{Layer, Process, Reciprocity, Stock};
+use spectra_spectrum::illuminant;
+use std::fmt::Write;
+
+/// Shows a stock.
+pub(crate) fn info(arguments: &FilmInfo) -> Outcome {
+    let stock = load(&arguments.name)?;
+    if arguments.json {
+        console::pretty_json(&to_json(&stock))?;
+    } else {
+        console::out(&text(&stock))?;
+    }
+    Ok(DONE)
+}
+
+/// What the stock is for.
+pub(super) fn process(stock: &Stock) -> &'static str {
+    match stock.process {
+        Process::Negative => "negative",
+        Process::Reversal => "reversal",
+        Process::Print => "print",
+    }
+}
+
+/// Wavelengths and logarithms of a layer's sensitivity to equal energy, 0 at its peak, where it sees anything.
+pub(super) fn sensitivity(layer: &Layer, step_nm: usize) -> Vec<[f64; 2]> {
+    let all: Vec<[f64; 2]> = BAND.wavelengths_nm().map(|w| [w, layer.sensitivity.at(w)]).collect();
+    let peak = all.iter().fold(0.0_f64, |a, p| a.max(p[1]));
+    let seen = all.into_iter().step_by(step_nm).filter(|p| p[1] > 0.0 && peak > 0.0);
+    seen.map(|[w, s]| [w, log10(s / peak)]).collect()
+}
+
+/// Points of a curve, a tenth of log10 exposure apart.
+pub(super) fn points(curve: &CharacteristicCurve, step: f64) -> Vec<[f64; 2]> {
+    let (low, high) = curve.span();
+    let steps = ((high - low) / step).ceil().max(1.0) as usize;
+    let at = |i: usize| low + (high - low) * i as f64 / steps as f64;
+    (0..=steps).map(|i| [at(i), curve.density(at(i))]).collect()
+}
+
+fn peak_nm(layer: &Layer) -> Option<f64> {
+    let peak = |a: f64, b: f64| layer.sensitivity.at(a).total_cmp(&layer.sensitivity.at(b));
+    BAND.wavelengths_nm().max_by(|a, b| peak(*a, *b))
+}
+
+/// How much faster the layer is in daylight than in tungsten light, both of ISO 7589 through the standard lens.
+fn daylight_over_tungsten(layer: &Layer) -> Option<f64> {
+    let day = illuminant("iso-7589-sensitometric-daylight").ok()?;
+    let tungsten = illuminant("iso-7589-sensitometric-studio-tungsten").ok()?;
+    let ratio = layer.sensitivity.per_lux(&day) / layer.sensitivity.per_lux(&tungsten);
+    ratio.is_finite().then_some(ratio)
+}
+
+fn to_json(stock: &Stock) -> Value {
+    let layers: Vec<Value> = stock.layers.iter().map(layer_json).collect();
+    let reciprocity = stock.reciprocity.as_ref().map(|r| match r {
+        Reciprocity::PowerLaw { exponent, above_s } => json!({ "exponent": exponent, "above_s": above_s }),
+        Reciprocity::Table { above_s, rows } => json!({ "above_s": above_s, "metered_and_adjusted_s": rows }),
+    });
+    let bases: Vec<Value> = stock
+        .bases
+        .iter()
+        .map(|b| {
+            json!({ "formats": b.formats, "material": b.material, "thickness_mm": b.thickness_mm, "index": b.index,
+                "assumed": b.assumed })
+        })
+        .collect();
+    let factors: Vec<Value> = stock
+        .filter_factors
+        .iter()
+        .map(|f| json!({ "filter": f.filter, "daylight": f.daylight, "tungsten": f.tungsten }))
+        .collect();
+    json!({
+        "name": stock.name,
+        "maker": stock.maker,
+        "process": process(stock),
+        "densitometry": stock.densitometry.name(),
+        "iso": stock.iso,
+        "iso_tungsten": stock.iso_tungsten,
+        "reference_illuminant": stock.reference_illuminant,
+        "mid_gray_lx_s": stock.iso.map(metered_exposure_lx_s),
+        "layers": layers,
+        "bases": bases,
+        "minimum_density": stock.minimum_density.as_ref().map(|m| {
+            json!({ "assumed": m.assumed, "remark": m.remark, "wavelength_nm_and_density": m.density.points() })
+        }),
+        "granularity": stock.granularity.map(|g| {
+            json!({ "rms": g.rms, "aperture_mm": g.aperture_mm, "density": g.density })
+        }),
+        "halation": stock.halation.map(|h| {
+            json!({ "scattered": h.scattered, "backing": h.backing, "assumed": h.assumed })
+        }),
+        "reciprocity": reciprocity,
+        "filter_factors": factors,
+        "print": stock.print,
+        "source": stock.source,
+        "licence": stock.licence,
+        "remark": stock.remark,
+    })
+}
+
+fn layer_json(layer: &Layer) -> Value {
+    let developments: Vec<Value> = layer
+        .developments
+        .iter()
+        .map(|d| {
+            let (low, high) = d.curve.density_range();
+            json!({
+                "development": d.name,
+                "minutes": d.minutes,
+                "assumed": d.assumed,
+                "remark": d.remark,
+                "minimum_density": low,
+                "maximum_density": high,
+                "speed_point_log10_lx_s": d.curve.speed_point(),
+                "average_gradient": d.curve.average_gradient(AVERAGE_GRADIENT_SPAN),
+                "log10_lx_s_and_density": points(&d.curve, 0.1),
+            })
+        })
+        .collect();
+    json!({
+        "name": layer.name,
+        "peak_nm": peak_nm(layer),
+        "range_nm": [layer.sensitivity.range_nm().0, layer.sensitivity.range_nm().1],
+        "assumed": layer.assumed,
+        "remark": layer.remark,
+        "daylight_over_tungsten_speed": daylight_over_tungsten(layer),
+        "wavelength_nm_and_log10_sensitivity": sensitivity(layer, 5),
+        "dye": layer.dye.as_ref().map(|d| json!({ "name": d.name, "wavelength_nm_and_density": d.density.points() })),
+        "cycles_per_mm_and_response": (!layer.mtf.is_empty()).then_some(&layer.mtf),
+        "developments": developments,
+    })
+}
+
+fn text(stock: &Stock) -> String {
+    let mut out = format!("{}: {} film, {} layer(s)\n\n", stock.name, process(stock), stock.layers.len());
+    let mut row = |name: &str, value: Option<String>| {
+        if let Some(value) = value {
+            // Writing to a String cannot fail.
+            let _ = writeln!(out, "  {name:<20}{value}");
+        }
+    };
+    row("maker", stock.maker.clone());
+    row("ISO", stock.iso.map(|iso| stock.iso_tungsten.map_or(format!("{iso}"), |t| format!("{iso} (tungsten {t})"))));
+    row("mid gray", stock.iso.map(|iso| format!("{:.4} lx s", metered_exposure_lx_s(iso))));
+    row("lux-seconds of", Some(stock.reference_illuminant.clone()));
+    row("densities", Some(stock.densitometry.name().to_owned()));
+    for base in &stock.bases {
+        let assumed = if base.assumed { " (assumed)" } else { "" };
+        let index = base.index.map_or(String::new(), |n| format!(", index {n}"));
+        let material = base.material.as_deref().unwrap_or("");
+        row("base", Some(format!("{} mm {material}{index}, for {}{assumed}", base.thickness_mm, base.formats)));
+    }
+    row(
+        "granularity",
+        stock.granularity.map(|g| format!("RMS {} at density {}, aperture {} mm", g.rms, g.density, g.aperture_mm)),
+    );
+    row(
+        "reciprocity",
+        stock.reciprocity.as_ref().map(|r| match r {
+            Reciprocity::PowerLaw { exponent, above_s } => format!("Tm^{exponent} above {above_s} s"),
+            Reciprocity::Table { rows, .. } => {
+                let rows: Vec<String> = rows.iter().map(|[m, a]| format!("{m} s -> {a} s")).collect();
+                rows.join(", ")
+            }
+        }),
+    );
+    row("print on", stock.print.clone());
+    row("source", Some(stock.source.clone()));
+    row("licence", Some(stock.licence.clone()));
+    for layer in &stock.layers {
+        let assumed = if layer.assumed { " (assumed)" } else { "" };
+        let dye = layer.dye.as_ref().map_or(String::new(), |d| format!(", forms {} dye", d.name));
+        let (from, to) = layer.sensitivity.range_nm();
+        let peak = peak_nm(layer).map_or(String::new(), |nm| format!(", peak at {nm} nm"));
+        let _ = writeln!(out, "\nlayer {}{dye}: {from} to {to} nm{peak}{assumed}", layer.name);
+        if let Some(ratio) = daylight_over_tungsten(layer).filter(|_| stock.process != Process::Print) {
+            let _ = writeln!(out, "  speed in daylight over tungsten (ISO 7589): {ratio:.2}");
+        }
+        let _ = writeln!(out, "  development   speed point/log lx s   average gradient   Dmin   Dmax");
+        for d in &layer.developments {
+            let (low, high) = d.curve.density_range();
+            let number = |v: Option<f64>| v.map_or("-".to_owned(), |v| format!("{v:.2}"));
+            let (point, gradient) =
+                (number(d.curve.speed_point()), number(d.curve.average_gradient(AVERAGE_GRADIENT_SPAN)));
+            let assumed = if d.assumed { "  (assumed)" } else { "" };
+            let _ = writeln!(out, "  {:<14}{point:>20}{gradient:>19}{low:>7.2}{high:>7.2}{assumed}", d.name);
+        }
+    }
+    let _ = writeln!(out, "\nlog10 sensitivity to equal energy, 0 at the peak");
+    let names: String = stock.layers.iter().fold(String::new(), |all, l| format!("{all}{:>16}", l.name));
+    let _ = writeln!(out, "      nm{names}");
+    for w in (350..=830).step_by(20).map(f64::from) {
+        let values = stock.layers.iter().map(|l| sensitivity(l, 1).into_iter().find(|p| p[0] == w).map(|p| p[1]));
+        let values: Vec<Option<f64>> = values.collect();
+        if values.iter().any(Option::is_some) {
+            let shown = values.iter().map(|v| v.map_or(format!("{:>16}", "-"), |v| format!("{v:>16.2}")));
+            let _ = writeln!(out, "{w:>8}{}", shown.collect::<String>());
+        }
+    }
+    out
+}

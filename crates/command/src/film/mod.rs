@@ -1,0 +1,55 @@
+//! `spectra film`: a stock's sensitivities and curves.
+
+mod arguments;
+mod figure;
+mod info;
+
+pub(crate) use arguments::FilmArguments;
+
+use crate::console;
+use crate::outcome::{DONE, Failure, Outcome};
+use arguments::{FilmCommand, FilmPlot};
+use spectra_core::params::nearest;
+use spectra_film::stock::Stock;
+use spectra_plot::{Format, PlotError};
+use spectra_scene::FileResources;
+use std::path::Path;
+
+/// Runs a command on film stocks.
+pub(crate) fn film(command: &FilmCommand) -> Outcome {
+    match command {
+        FilmCommand::Info(arguments) => info::info(arguments),
+        FilmCommand::Plot(arguments) => plot(arguments),
+    }
+}
+
+/// A stock file, or a bundled stock.
+fn load(name: &str) -> Result<Stock, Failure> {
+    let known: Vec<&str> = Stock::bundled().collect();
+    let is_file = name.ends_with(".yaml") || name.ends_with(".yml") || name.contains(['/', '\\']);
+    if !is_file && !known.contains(&name) {
+        let hint = match nearest(name, known.iter().copied()) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => format!("known: {}", known.join(", ")),
+        };
+        return Err(Failure::Input(format!("no film stock is called `{name}`; {hint}")));
+    }
+    Ok(Stock::load(name, &FileResources::beside(Path::new("")))?)
+}
+
+fn plot(arguments: &FilmPlot) -> Outcome {
+    let output = &arguments.output;
+    // Before anything is computed: a wrong ending is found out at once.
+    Format::of(output).map_err(failure)?;
+    let stock = load(&arguments.name)?;
+    figure::sheet(&stock).write(output).map_err(failure)?;
+    console::note(&format!("wrote {}", output.display()));
+    Ok(DONE)
+}
+
+fn failure(error: PlotError) -> Failure {
+    match error {
+        PlotError::Ending { .. } => Failure::Input(error.to_string()),
+        PlotError::Write(error) => error.into(),
+    }
+}

@@ -1,0 +1,164 @@
+//! What a developed film holds back, wavelength by wavelength: dyes or silver, over its base.
+
+use crate::stock::Stock;
+use spectra_core::math::{exp, log10};
+use spectra_core::spectral::BAND;
+use std::f64::consts::LN_10;
+
+/// The spectral density of a developed film as a function of the amounts in its layers, on the band of 350-830 nm by 1 nm.
+///
+/// Amounts of dye are counted in units of the stock's dye tables, over the minimum density. Of silver there is one layer:
+/// its amount is the visual density, base and fog included, the same at all wavelengths.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Deposit {
+    base: Vec<f64>,
+    per_unit: Vec<Vec<f64>>,
+}
+
+impl Deposit {
+    /// That of a stock.
+    #[must_use]
+    pub fn of(stock: &Stock) -> Self {
+        let flat = |value: f64| vec![value; BAND.count];
+        let base = stock.minimum_density.as_ref().map_or_else(|| flat(0.0), |m| m.density.on_grid(&BAND));
+        let dye =
+            |layer: &crate::stock::Layer| layer.dye.as_ref().map_or_else(|| flat(1.0), |d| d.density.on_grid(&BAND));
+        Self { base, per_unit: stock.layers.iter().map(dye).collect() }
+    }
+
+    /// Three separation negatives, each of which is printed alone: as if each held back one third of the spectrum and
+    /// nothing else, in the order blue, green, red.
+    #[must_use]
+    pub(crate) fn separations() -> Self {
+        let part = |record: usize| BAND.wavelengths_nm().map(|w| if third(w) == record { 1.0 } else { 0.0 }).collect();
+        Self { base: vec![0.0; BAND.count], per_unit: (0..3).map(part).collect() }
+    }
+
+    /// How many layers it has.
+    #[must_use]
+    pub fn layers(&self) -> usize {
+        self.per_unit.len()
+    }
+
+    /// Transmittance of layer `layer` alone at an amount, without the base.
+    #[must_use]
+    pub fn layer_transmittance(&self, layer: usize, amount: f64) -> Vec<f64> {
+        self.per_unit[layer].iter().map(|d| exp(-LN_10 * amount * d)).collect()
+    }
+
+    /// Transmittance of the base alone.
+    #[must_use]
+    pub fn base_transmittance(&self) -> Vec<f64> {
+        self.base.iter().map(|d| exp(-LN_10 * d)).collect()
+    }
+
+    /// Transmittance of the whole; `amounts` are one a layer.
+    #[must_use]
+    pub fn transmittance(&self, amounts: &[f64]) -> Vec<f64> {
+        let density = |i: usize| self.base[i] + self.per_unit.iter().zip(amounts).map(|(d, a)| d[i] * a).sum::<f64>();
+        (0..self.base.len()).map(|i| exp(-LN_10 * density(i))).collect()
+    }
+
+    /// What passes to each of several receivers: the sum over the band of weight times transmittance.
+    #[must_use]
+    pub fn seen(&self, amounts: &[f64], weights: &[Vec<f64>]) -> Vec<f64> {
+        let passes = self.transmittance(amounts);
+        weights.iter().map(|w| w.iter().zip(&passes).map(|(w, t)| w * t).sum()).collect()
+    }
+
+    /// The amounts that make each of as many receivers as layers see the density (-log10 of what passes) in `wanted`, by
+    /// Newton's method from `start`; `None` where there are no such amounts.
+    #[must_use]
+    pub fn amounts_for(&self, wanted: &[f64], weights: &[Vec<f64>], start: &[f64]) -> Option<Vec<f64>> {
+        const STEPS: usize = 60;
+        let n = self.layers();
+        let mut amounts = start.to_vec();
+        for _ in 0..STEPS {
+            let passes = self.transmittance(&amounts);
+            // Rows: derivatives of each receiver's density to the amounts, and what is missing.
+            let mut system: Vec<Vec<f64>> = Vec::with_capacity(n);
+            for (weight, wanted) in weights.iter().zip(wanted) {
+                let sum: f64 = weight.iter().zip(&passes).map(|(w, t)| w * t).sum();
+                let slope =
+                    |d: &Vec<f64>| weight.iter().zip(&passes).zip(d).map(|((w, t), d)| w * t * d).sum::<f64>() / sum;
+                let mut row: Vec<f64> = self.per_unit.iter().map(slope).collect();
+                row.push(wanted + log10(sum));
+                system.push(row);
+            }
+            let step = solve(system)?;
+            let largest = step.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
+            if !largest.is_finite() {
+                return None;
+            }
+            // Far from the answer, no more than half a unit at once.
+            let damping = if largest > 0.5 { 0.5 / largest } else { 1.0 };
+            amounts.iter_mut().zip(&step).for_each(|(a, s)| *a += damping * s);
+            if largest < 1e-12 {
+                return Some(amounts);
+            }
+        }
+        None
+    }
+}
+
+/// Where an additive printer parts its lamp into blue, green and red, nm.
+const THIRDS_NM: [f64; 2] = [500.0, 590.0];
+
+/// Which part of the lamp a wavelength is in: 0 blue, 1 green, 2 red.
+pub(crate) fn third(wavelength_nm: f64) -> usize {
+    THIRDS_NM.iter().filter(|edge| wavelength_nm >= **edge).count()
+}
+
+/// Solves a small linear system by Gauss's elimination with pivots; each row ends with its right side.
+pub(crate) fn solve(mut rows: Vec<Vec<f64>>) -> Option<Vec<f64>> {
+    let n = rows.len();
+    for column in 0..n {
+        let pivot = (column..n).max_by(|a, b| rows[*a][column].abs().total_cmp(&rows[*b][column].abs()))?;
+        rows.swap(column, pivot);
+        let head = rows[column].clone();
+        if !(head[column].abs() > 1e-300) {
+            return None;
+        }
+        for (i, row) in rows.iter_mut().enumerate().filter(|(i, _)| *i != column) {
+            debug_assert!(i != column);
+            let factor = row[column] / head[column];
+            row.iter_mut().zip(&head).for_each(|(v, h)| *v -= factor * h);
+        }
+    }
+    Some((0..n).map(|i| rows[i][n] / rows[i][i]).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn linear_systems_are_solved() {
+        let solved = solve(vec![vec![0.0, 2.0, 1.0, 7.0], vec![1.0, 1.0, 1.0, 6.0], vec![2.0, 0.0, -1.0, -1.0]]);
+        let solved = solved.expect("regular");
+        assert!(solved.iter().zip([1.0, 2.0, 3.0]).all(|(a, b)| (a - b).abs() < 1e-14), "{solved:?}");
+        assert_eq!(solve(vec![vec![1.0, 1.0, 1.0], vec![1.0, 1.0, 2.0]]), None);
+    }
+
+    /// Dyes that overlap: what Newton finds gives the densities asked for, and narrow receivers read Beer's law.
+    #[test]
+    fn amounts_are_found_from_densities() {
+        let bell = |center: f64, width: f64| -> Vec<f64> {
+            BAND.wavelengths_nm().map(|w| exp(-((w - center) / width) * ((w - center) / width))).collect()
+        };
+        let deposit = Deposit {
+            base: vec![0.1; BAND.count],
+            per_unit: vec![bell(440.0, 60.0), bell(540.0, 60.0), bell(650.0, 70.0)],
+        };
+        let weights = [bell(440.0, 20.0), bell(540.0, 20.0), bell(640.0, 20.0)].to_vec();
+        for amounts in [[0.0, 0.0, 0.0], [1.0, 0.5, 2.0], [3.0, 3.0, 3.0], [0.1, 2.5, 0.0]] {
+            let wanted: Vec<f64> = deposit.seen(&amounts, &weights).into_iter().map(|v| -log10(v)).collect();
+            let found = deposit.amounts_for(&wanted, &weights, &[0.5; 3]).expect("there are such amounts");
+            assert!(found.iter().zip(amounts).all(|(a, b)| (a - b).abs() < 1e-9), "{amounts:?} {found:?}");
+        }
+        let mut narrow = vec![0.0; BAND.count];
+        narrow[(540 - 350) as usize] = 1.0;
+        let passes = deposit.seen(&[0.0, 1.3, 0.0], &[narrow])[0];
+        assert!((-log10(passes) - 1.4).abs() < 1e-12);
+    }
+}

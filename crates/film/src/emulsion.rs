@@ -1,0 +1,196 @@
+//! A stock and one development of it: from exposure to amounts of silver or dye.
+
+use crate::curve::CharacteristicCurve;
+use crate::deposit::Deposit;
+use crate::lookup::{Lookup, PIXELS_A_TASK, from_octaves, octaves};
+use crate::stock::{Densitometry, Stock};
+use rayon::prelude::*;
+use spectra_core::math::log10;
+
+/// A stock whose layers cannot be developed as asked.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum EmulsionError {
+    /// A layer without that development.
+    #[error("layer `{layer}` has no curve for the development `{development}`; known: {known}")]
+    NoCurve {
+        /// The layer.
+        layer: String,
+        /// What was asked for.
+        development: String,
+        /// What there is.
+        known: String,
+    },
+    /// Curves that no amounts of these dyes can give.
+    #[error("at log10 exposure {log10_exposure:.2} no amounts of its dyes have the densities of its curves")]
+    NoAmounts {
+        /// Where.
+        log10_exposure: f64,
+    },
+    /// Layers that the densitometry does not know.
+    #[error("a film of three dyes has layers called red, green and blue")]
+    Layers,
+}
+
+/// A stock in one development, ready to turn exposures into amounts; see [`Deposit`] for their unit.
+#[derive(Clone, Debug)]
+pub struct Emulsion {
+    deposit: Deposit,
+    curves: Vec<AmountCurve>,
+}
+
+#[derive(Clone, Debug)]
+enum AmountCurve {
+    /// Silver: the curve as it is.
+    Density(CharacteristicCurve),
+    /// Dye: amounts over log10 exposure, straight between samples.
+    Amount(Lookup),
+}
+
+impl AmountCurve {
+    fn at(&self, log10_exposure: f64) -> f64 {
+        match self {
+            Self::Density(curve) => curve.density(log10_exposure),
+            Self::Amount(table) => table.at(log10_exposure),
+        }
+    }
+}
+
+/// Samples of a dye curve a decade of exposure: with a second derivative below 15 (a print film's toe), linear interpolation
+/// is within 15 / 8 / 200^2 = 5e-5.
+const SAMPLES_A_DECADE: f64 = 200.0;
+
+impl Emulsion {
+    /// The stock after the development called `development`.
+    ///
+    /// # Errors
+    /// [`EmulsionError`].
+    pub fn new(stock: &Stock, development: &str) -> Result<Self, EmulsionError> {
+        let curve = |layer: &crate::stock::Layer| {
+            layer.development(development).map(|d| d.curve.clone()).ok_or_else(|| EmulsionError::NoCurve {
+                layer: layer.name.clone(),
+                development: development.into(),
+                known: layer.developments.iter().map(|d| d.name.as_str()).collect::<Vec<_>>().join(", "),
+            })
+        };
+        Self::with_curves(stock, stock.layers.iter().map(curve).collect::<Result<_, _>>()?)
+    }
+
+    /// The stock with a curve of one's own for each layer, in its densitometry.
+    ///
+    /// Curves of color film are densities of neutral exposures, measured through three filters of which each sees all three
+    /// dyes. They are taken apart into amounts: at each exposure, those of which the sheet's dyes make the sheet's densities
+    /// over the minimum. Each layer then answers to its own exposure alone.
+    ///
+    /// # Errors
+    /// [`EmulsionError`].
+    pub fn with_curves(stock: &Stock, curves: Vec<CharacteristicCurve>) -> Result<Self, EmulsionError> {
+        let deposit = Deposit::of(stock);
+        if stock.densitometry == Densitometry::Visual {
+            return Ok(Self { deposit, curves: curves.into_iter().map(AmountCurve::Density).collect() });
+        }
+        let names: Vec<&str> = stock.layers.iter().map(|l| l.name.as_str()).collect();
+        let products = stock.densitometry.products(&names).ok_or(EmulsionError::Layers)?;
+        let clear: Vec<f64> = deposit.seen(&[0.0; 3], &products).into_iter().map(|v| -log10(v)).collect();
+        let spans: Vec<(f64, f64)> = curves.iter().map(CharacteristicCurve::span).collect();
+        let low = spans.iter().fold(f64::INFINITY, |a, s| a.min(s.0));
+        let high = spans.iter().fold(f64::NEG_INFINITY, |a, s| a.max(s.1));
+        let steps = (((high - low) * SAMPLES_A_DECADE).ceil() as usize).max(1);
+        let mut amounts = vec![Vec::with_capacity(steps + 1); names.len()];
+        let mut last = vec![0.0; names.len()];
+        for i in 0..=steps {
+            let x = low + (high - low) * i as f64 / steps as f64;
+            let over = |c: &CharacteristicCurve| c.density(x) - c.density_range().0;
+            let wanted: Vec<f64> = curves.iter().zip(&clear).map(|(c, clear)| clear + over(c)).collect();
+            let found = deposit.amounts_for(&wanted, &products, &last);
+            last = found.ok_or(EmulsionError::NoAmounts { log10_exposure: x })?;
+            amounts.iter_mut().zip(&last).for_each(|(all, one)| all.push(*one));
+        }
+        let table = |values: Vec<f64>| AmountCurve::Amount(Lookup::from_values(low, high, values));
+        Ok(Self { deposit, curves: amounts.into_iter().map(table).collect() })
+    }
+
+    /// Three separation negatives of silver, in the order blue, green, red; see
+    /// [`crate::positive::Positive::from_separations`].
+    #[must_use]
+    pub fn separations(curves: [CharacteristicCurve; 3]) -> Self {
+        Self { deposit: Deposit::separations(), curves: curves.into_iter().map(AmountCurve::Density).collect() }
+    }
+
+    /// What it holds back.
+    #[must_use]
+    pub fn deposit(&self) -> &Deposit {
+        &self.deposit
+    }
+
+    /// How many layers it has.
+    #[must_use]
+    pub fn layers(&self) -> usize {
+        self.curves.len()
+    }
+
+    /// Amount in a layer at log10 of its exposure (lx s); -infinity is no exposure.
+    #[must_use]
+    pub fn amount(&self, layer: usize, log10_exposure: f64) -> f64 {
+        self.curves[layer].at(log10_exposure)
+    }
+
+    /// Amounts in all layers at the same log10 exposure of each: a neutral subject in the light that the film is made for.
+    #[must_use]
+    pub fn neutral(&self, log10_exposure: f64) -> Vec<f64> {
+        (0..self.layers()).map(|i| self.amount(i, log10_exposure)).collect()
+    }
+
+    /// Smallest and largest amount in a layer.
+    #[must_use]
+    pub fn range(&self, layer: usize) -> (f64, f64) {
+        match &self.curves[layer] {
+            AmountCurve::Density(curve) => curve.density_range(),
+            AmountCurve::Amount(table) => table.extremes(),
+        }
+    }
+
+    /// Log10 of the exposure that gives `amount` in a layer, by bisection; `None` where it gives none.
+    #[must_use]
+    pub fn log10_exposure_at(&self, layer: usize, amount: f64) -> Option<f64> {
+        let at = |x: f64| self.amount(layer, x) - amount;
+        let (mut left, mut right) = (-12.0, 12.0);
+        let rising = at(right) > at(left);
+        let over = |x: f64| (at(x) > 0.0) == rising;
+        if at(left) == 0.0 || at(right) == 0.0 || over(left) || !over(right) {
+            return None;
+        }
+        loop {
+            let middle = 0.5 * (left + right);
+            if middle <= left || middle >= right {
+                return Some(right);
+            }
+            if over(middle) { right = middle } else { left = middle }
+        }
+    }
+
+    /// Turns the exposures of a layer (lx s) into amounts, in place. `effect` multiplies them first: what a long exposure
+    /// counts (see [`crate::stock::Reciprocity`]). Less than no exposure, and no number, are taken as none.
+    pub fn develop(&self, layer: usize, plane: &mut [f32], effect: f64) {
+        let curve = &self.curves[layer];
+        let sampled = per_octave(|log10_exposure| curve.at(log10_exposure), effect);
+        let unexposed = curve.at(f64::NEG_INFINITY) as f32;
+        plane.par_chunks_mut(PIXELS_A_TASK).for_each(|pixels| {
+            for h in pixels {
+                *h = if *h > 0.0 { sampled.at(octaves(*h)) as f32 } else { unexposed };
+            }
+        });
+    }
+}
+
+/// Steps of the sampled curve an octave of exposure. With a second derivative of the density below 1 in octaves
+/// (a film of gradient 3 at most), linear interpolation is within 1 / 8 / 512^2 = 5e-7 of the curve.
+const STEPS_AN_OCTAVE: usize = 512;
+
+/// Octaves over the smallest normal `f32` that are sampled: 2^-40 to 2^40 lx s, some 1e-12 to 1e12.
+const OCTAVES: (usize, usize) = (126 - 40, 126 + 40);
+
+/// A function of log10 exposure, sampled over octaves of an `f32`.
+pub(crate) fn per_octave(f: impl Fn(f64) -> f64 + Sync, effect: f64) -> Lookup {
+    let (low, high) = OCTAVES;
+    Lookup::new(low as f64, high as f64, (high - low) * STEPS_AN_OCTAVE, |o| f(log10(from_octaves(o) * effect)))
+}

@@ -1,0 +1,174 @@
+//! From a developed film to a picture: printed on a print stock, scanned, projected, or on a light table.
+//!
+//! Amounts of dye or silver become a spectral transmittance; light through it exposes the layers of the print stock, or meets
+//! a scanner's filters, or the eye. For whole frames the spectral sums are tabulated once, over the amounts.
+
+mod frame;
+mod printing;
+mod scan;
+mod viewing;
+
+pub use viewing::{Viewing, on_band};
+
+use crate::deposit::Deposit;
+use crate::emulsion::Emulsion;
+use crate::stock::{Process, Stock};
+use frame::Tables;
+use printing::Printing;
+use scan::Scan;
+use spectra_spectrum::Emission;
+
+/// A film that cannot be shown as asked.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum PositiveError {
+    /// A light that no eye sees.
+    #[error("the light is dark to the eye")]
+    DarkLight,
+    /// A camera film where a print stock is wanted.
+    #[error("{stock} is no print stock")]
+    NoPrintStock {
+        /// Its name.
+        stock: String,
+    },
+    /// A print stock that cannot be balanced for this negative.
+    #[error("{stock}: {reason}")]
+    Unbalanced {
+        /// The print stock.
+        stock: String,
+        /// Why.
+        reason: &'static str,
+    },
+    /// A film whose mid gray is no denser than unexposed film.
+    #[error("its mid gray is not denser than unexposed film")]
+    NoGray,
+}
+
+/// How amounts become a picture.
+#[derive(Clone, Debug)]
+pub struct Positive {
+    film: Deposit,
+    way: Way,
+    tables: Tables,
+}
+
+#[derive(Clone, Debug)]
+enum Way {
+    Look(Viewing),
+    Print(Box<Printing>),
+    Scan(Scan),
+}
+
+impl Positive {
+    /// The film itself in transmitted light: a negative on a light table (the bare light is white), or a slide, projected
+    /// (the clear film is white).
+    ///
+    /// # Errors
+    /// [`PositiveError::DarkLight`].
+    pub fn transmitted(stock: &Stock, film: &Emulsion, light: &Emission) -> Result<Self, PositiveError> {
+        let mut viewing = Viewing::by(light).ok_or(PositiveError::DarkLight)?;
+        if stock.process == Process::Reversal {
+            let clear: Vec<f64> = (0..film.layers()).map(|i| film.range(i).0).collect();
+            let clear = viewing.xyz(film.deposit(), &clear);
+            viewing = viewing.between(0.0, clear);
+        }
+        Ok(Self::tabulated(film, Way::Look(viewing)))
+    }
+
+    /// Printed on `print` (developed as `printed`) by a printer whose lamp has the spectrum `lamp`, balanced for a mid gray
+    /// subject that left `gray_lx_s` on the negative, and looked at in `light`.
+    ///
+    /// # Errors
+    /// [`PositiveError`].
+    pub fn printed(
+        film: &Emulsion,
+        gray_lx_s: f64,
+        print: &Stock,
+        printed: Emulsion,
+        lamp: &Emission,
+        light: &Emission,
+    ) -> Result<Self, PositiveError> {
+        let viewing = Viewing::by(light).ok_or(PositiveError::DarkLight)?;
+        let gray = film.neutral(spectra_core::math::log10(gray_lx_s));
+        let unexposed = film.neutral(f64::NEG_INFINITY);
+        let printing = Printing::balanced(film.deposit(), &unexposed, &gray, print, printed, Some(lamp), viewing)?;
+        Ok(Self::tabulated(film, Way::Print(Box::new(printing))))
+    }
+
+    /// Printed by dye transfer: three separation negatives ([`Emulsion::separations`]), each onto the matrix of one dye of
+    /// `print`, whose layers are blue, green and red in this order; balanced for a mid gray subject that left `gray_lx_s` on
+    /// each, and looked at as [`Positive::printed`] is.
+    ///
+    /// # Errors
+    /// [`PositiveError`].
+    pub fn from_separations(
+        film: &Emulsion,
+        gray_lx_s: &[f64; 3],
+        print: &Stock,
+        printed: Emulsion,
+        light: &Emission,
+    ) -> Result<Self, PositiveError> {
+        if film.layers() != 3 || printed.layers() != 3 {
+            return Err(PositiveError::NoPrintStock { stock: print.name.clone() });
+        }
+        let viewing = Viewing::by(light).ok_or(PositiveError::DarkLight)?;
+        let gray: Vec<f64> =
+            gray_lx_s.iter().enumerate().map(|(i, h)| film.amount(i, spectra_core::math::log10(*h))).collect();
+        let unexposed = film.neutral(f64::NEG_INFINITY);
+        let printing = Printing::balanced(film.deposit(), &unexposed, &gray, print, printed, None, viewing)?;
+        Ok(Self::tabulated(film, Way::Print(Box::new(printing))))
+    }
+
+    /// Scanned: density through the filters of the stock's densitometry, turned around on the slope of the straight part of
+    /// its curves, mid gray (`gray_lx_s` on the film) shown as such and unexposed film as black. Channels are shown as the
+    /// screen's, unmanaged, as a scanner does without a profile.
+    ///
+    /// # Errors
+    /// [`PositiveError::NoGray`].
+    pub fn scanned(stock: &Stock, film: &Emulsion, gray_lx_s: f64) -> Result<Self, PositiveError> {
+        let scan = Scan::new(stock, film, gray_lx_s)?;
+        Ok(Self::tabulated(film, Way::Scan(scan)))
+    }
+
+    fn tabulated(film: &Emulsion, way: Way) -> Self {
+        let ranges: Vec<(f64, f64)> = (0..film.layers()).map(|i| film.range(i)).collect();
+        let deposit = film.deposit().clone();
+        let tables = Tables::new(&deposit, &ranges, &way);
+        Self { film: deposit, way, tables }
+    }
+
+    /// What a place of the film with these amounts is shown as: linear light, sRGB primaries.
+    #[must_use]
+    pub fn shown(&self, amounts: &[f64]) -> [f64; 3] {
+        match &self.way {
+            Way::Look(viewing) => viewing.shown(viewing.xyz(&self.film, amounts)),
+            Way::Print(printing) => printing.viewing.shown(printing.xyz(&self.film, amounts)),
+            Way::Scan(scan) => scan.shown(&scan.densities(&self.film, amounts)),
+        }
+    }
+
+    /// XYZ of a place, relative to the bare light, where there is an eye in the way: not in a scan.
+    #[must_use]
+    pub fn xyz(&self, amounts: &[f64]) -> Option<[f64; 3]> {
+        match &self.way {
+            Way::Look(viewing) => Some(viewing.xyz(&self.film, amounts)),
+            Way::Print(printing) => Some(printing.xyz(&self.film, amounts)),
+            Way::Scan(_) => None,
+        }
+    }
+
+    /// Amounts in the print of a place; `None` where nothing is printed.
+    #[must_use]
+    pub fn print_amounts(&self, amounts: &[f64]) -> Option<Vec<f64>> {
+        match &self.way {
+            Way::Print(printing) => Some(printing.printed(&self.film, amounts)),
+            _ => None,
+        }
+    }
+
+    /// The picture of a whole film: one plane of amounts a layer, of equal length. Within a code value of 8 bits of
+    /// [`Positive::shown`] for each place.
+    #[must_use]
+    pub fn picture(&self, planes: &[&[f32]]) -> Vec<[f32; 3]> {
+        self.tables.picture(planes, &self.way)
+    }
+}

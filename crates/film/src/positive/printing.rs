@@ -1,0 +1,108 @@
+//! The printing light, and the exposure that a negative leaves of it on a print stock.
+
+use super::PositiveError;
+use super::viewing::{Viewing, on_band};
+use crate::deposit::{Deposit, solve, third};
+use crate::emulsion::Emulsion;
+use crate::print::MID_GRAY;
+use crate::stock::{Process, Stock};
+use spectra_core::math::{log10, pow};
+use spectra_core::spectral::BAND;
+use spectra_spectrum::Emission;
+
+/// A negative on its way through the printer.
+#[derive(Clone, Debug)]
+pub(super) struct Printing {
+    /// Of each print layer: sensitivity times printing light, over the band.
+    pub weights: Vec<Vec<f64>>,
+    /// The print stock, developed.
+    pub emulsion: Emulsion,
+    /// The print, looked at.
+    pub viewing: Viewing,
+}
+
+impl Printing {
+    /// Sets the printing light so that a negative of the amounts `gray` prints as a neutral gray that is shown as
+    /// [`MID_GRAY`] between the clear print (white) and the print of a negative of the amounts `unexposed` (black).
+    ///
+    /// A print stock of three layers is printed by an additive lamp house: `lamp` parted at 500 and 590 nm, each part with a
+    /// strength of its own; one of a single layer by the whole of `lamp`. Without a lamp, each layer is printed alone, from a
+    /// separation negative of its own.
+    pub(super) fn balanced(
+        negative: &Deposit,
+        unexposed: &[f64],
+        gray: &[f64],
+        stock: &Stock,
+        emulsion: Emulsion,
+        lamp: Option<&Emission>,
+        viewing: Viewing,
+    ) -> Result<Self, PositiveError> {
+        if stock.process != Process::Print {
+            return Err(PositiveError::NoPrintStock { stock: stock.name.clone() });
+        }
+        let layers = emulsion.layers();
+        let power = lamp.map(on_band);
+        let part = |w: f64| if layers == 1 { 0 } else { third(w) };
+        // Of a layer, to a part of the lamp.
+        let sensitivity = |layer: usize, of: usize| -> Vec<f64> {
+            let at = |(i, w): (usize, f64)| match &power {
+                _ if part(w) != of => 0.0,
+                Some(power) => stock.layers[layer].sensitivity.at(w) * power[i],
+                None if layer == of => 1.0,
+                None => 0.0,
+            };
+            BAND.wavelengths_nm().enumerate().map(at).collect()
+        };
+        let parts: Vec<Vec<Vec<f64>>> =
+            (0..layers).map(|layer| (0..layers).map(|p| sensitivity(layer, p)).collect()).collect();
+        let clear = viewing.xyz(emulsion.deposit(), &(0..layers).map(|i| emulsion.range(i).0).collect::<Vec<_>>());
+        let unbalanced = |reason: &'static str| PositiveError::Unbalanced { stock: stock.name.clone(), reason };
+        let mut black = 0.0;
+        let mut printing = None;
+        // Black depends on the light and the light on black, but little: each pass is some hundred times closer.
+        for _ in 0..8 {
+            let share = (black + MID_GRAY * (clear[1] - black)) / clear[1];
+            let wanted: Vec<f64> = clear.iter().map(|w| -log10(w * share)).collect();
+            let amounts = match layers {
+                1 => emulsion.deposit().amounts_for(&wanted[1..2], &viewing.weights()[1..2], &[0.7]),
+                _ => emulsion.deposit().amounts_for(&wanted, viewing.weights(), &vec![0.7; layers]),
+            };
+            let amounts = amounts.ok_or_else(|| unbalanced("its dyes make no neutral gray"))?;
+            let needed = amounts.iter().enumerate().map(|(i, a)| Some(pow(10.0, emulsion.log10_exposure_at(i, *a)?)));
+            let needed: Vec<f64> =
+                needed.collect::<Option<_>>().ok_or_else(|| unbalanced("its curves do not reach a mid gray"))?;
+            let mut system: Vec<Vec<f64>> = parts.iter().map(|of_layer| negative.seen(gray, of_layer)).collect();
+            system.iter_mut().zip(&needed).for_each(|(row, n)| row.push(*n));
+            let lights = solve(system).filter(|l| l.iter().all(|v| *v > 0.0 && v.is_finite()));
+            let lights = lights.ok_or_else(|| unbalanced("no light of its printer passes this negative as a gray"))?;
+            let weights = parts.iter().map(|of_layer| {
+                (0..BAND.count).map(|i| of_layer.iter().zip(&lights).map(|(p, l)| p[i] * l).sum()).collect()
+            });
+            let now = Self { weights: weights.collect(), emulsion: emulsion.clone(), viewing: viewing.clone() };
+            let next = now.viewing.xyz(now.emulsion.deposit(), &now.printed(negative, unexposed))[1];
+            let moved = (next - black).abs();
+            black = next;
+            printing = Some(Self { viewing: now.viewing.clone().between(black, clear), ..now });
+            if moved < 1e-9 {
+                break;
+            }
+        }
+        let printing = printing.ok_or_else(|| unbalanced("no light was found"))?;
+        let gray_y = printing.viewing.xyz(printing.emulsion.deposit(), &printing.printed(negative, gray))[1];
+        if gray_y <= black + 0.02 * (clear[1] - black) {
+            return Err(unbalanced("its mid gray is hardly denser than unexposed film"));
+        }
+        Ok(printing)
+    }
+
+    /// Amounts in the print of a negative.
+    pub(super) fn printed(&self, negative: &Deposit, amounts: &[f64]) -> Vec<f64> {
+        let exposures = negative.seen(amounts, &self.weights);
+        exposures.iter().enumerate().map(|(i, h)| self.emulsion.amount(i, log10(*h))).collect()
+    }
+
+    /// XYZ of the print of a negative, relative to the bare viewing light.
+    pub(super) fn xyz(&self, negative: &Deposit, amounts: &[f64]) -> [f64; 3] {
+        self.viewing.xyz(self.emulsion.deposit(), &self.printed(negative, amounts))
+    }
+}

@@ -1,0 +1,112 @@
+//! Longer development: curves between those that a sheet prints.
+
+use crate::curve::{CharacteristicCurve, CurveError, TabulatedCurve};
+use crate::print::metered_exposure_lx_s;
+use crate::stock::{Development, Layer, Stock};
+use spectra_core::math::{log, log10};
+
+/// A film that cannot be pushed as asked.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum PushError {
+    /// No series of development times.
+    #[error("{stock} has no curves for other times of development than its usual one")]
+    NoSeries {
+        /// The stock.
+        stock: String,
+    },
+    /// Beyond the longest or the shortest time.
+    #[error("the curves of {stock} reach from {fewest:+.1} to {most:+.1} stops, not {stops:+.1}")]
+    Beyond {
+        /// The stock.
+        stock: String,
+        /// What was asked for.
+        stops: f64,
+        /// How far its shortest time pulls.
+        fewest: f64,
+        /// How far its longest time pushes.
+        most: f64,
+    },
+    /// Curves that cannot be joined.
+    #[error(transparent)]
+    Curve(#[from] CurveError),
+}
+
+/// A development between those of the sheet.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pushed {
+    /// How long it takes, min.
+    pub minutes: f64,
+    /// A curve for each layer.
+    pub curves: Vec<CharacteristicCurve>,
+}
+
+/// Points at which two curves are mixed.
+const POINTS: usize = 256;
+
+/// Pushes by `stops` (pulls, if negative) from the development `usual`: the time of development at which a mid gray metered at
+/// 2^stops times the speed has the density over base and fog that one metered at the speed has after the usual time. Between
+/// two times of the sheet, densities are interpolated linearly in the logarithm of the time.
+///
+/// # Errors
+/// [`PushError`].
+pub fn pushed(stock: &Stock, usual: &str, stops: f64) -> Result<Pushed, PushError> {
+    let none = || PushError::NoSeries { stock: stock.name.clone() };
+    let iso = stock.iso.ok_or_else(none)?;
+    let [layer] = &stock.layers[..] else { return Err(none()) };
+    let usual = layer.development(usual).ok_or_else(none)?;
+    let series = series(layer);
+    let start = usual.minutes.filter(|_| series.len() > 1).ok_or_else(none)?;
+    let gray = log10(metered_exposure_lx_s(iso));
+    let over = |d: f64, fog: f64| d - fog;
+    let wanted = over(usual.curve.density(gray), usual.curve.unexposed_density());
+    // Stops by which a time pushes: how much less exposure gives that density.
+    let reach = |minutes: f64| -> Option<f64> {
+        let at = |x: f64| over(density(&series, minutes, x), density(&series, minutes, f64::NEG_INFINITY)) - wanted;
+        let (mut left, mut right) = (gray - 3.0, gray + 3.0);
+        if at(left) > 0.0 || at(right) < 0.0 {
+            return None;
+        }
+        while right - left > 1e-12 {
+            let middle = 0.5 * (left + right);
+            if at(middle) > 0.0 { right = middle } else { left = middle }
+        }
+        Some((gray - right) / log10(2.0))
+    };
+    let (shortest, longest) = (series[0].0, series[series.len() - 1].0);
+    let (fewest, most) = (reach(shortest).unwrap_or(0.0), reach(longest).unwrap_or(0.0));
+    let (mut left, mut right) = (shortest, longest);
+    if stops == 0.0 {
+        (left, right) = (start, start);
+    } else if !(stops >= fewest && stops <= most) {
+        return Err(PushError::Beyond { stock: stock.name.clone(), stops, fewest, most });
+    }
+    while right - left > 1e-9 {
+        let middle = 0.5 * (left + right);
+        if reach(middle).is_some_and(|r| r > stops) { right = middle } else { left = middle }
+    }
+    let minutes = 0.5 * (left + right);
+    let low = series.iter().map(|(_, d)| d.curve.span().0).fold(f64::INFINITY, f64::min);
+    let high = series.iter().map(|(_, d)| d.curve.span().1).fold(f64::NEG_INFINITY, f64::max);
+    let points: Vec<[f64; 2]> = (0..=POINTS)
+        .map(|i| low + (high - low) * i as f64 / POINTS as f64)
+        .map(|x| [x, density(&series, minutes, x)])
+        .collect();
+    Ok(Pushed { minutes, curves: vec![TabulatedCurve::new(&points)?.into()] })
+}
+
+/// Developments of known time, the shortest first.
+fn series(layer: &Layer) -> Vec<(f64, &Development)> {
+    let mut all: Vec<(f64, &Development)> =
+        layer.developments.iter().filter_map(|d| d.minutes.map(|m| (m, d))).collect();
+    all.sort_by(|a, b| a.0.total_cmp(&b.0));
+    all
+}
+
+/// Density after any time, at log10 of an exposure.
+fn density(series: &[(f64, &Development)], minutes: f64, log10_exposure: f64) -> f64 {
+    let i = series.partition_point(|s| s.0 <= minutes).clamp(1, series.len() - 1);
+    let ((t0, a), (t1, b)) = (series[i - 1], series[i]);
+    let part = log(minutes / t0) / log(t1 / t0);
+    let (a, b) = (a.curve.density(log10_exposure), b.curve.density(log10_exposure));
+    a + (b - a) * part
+}

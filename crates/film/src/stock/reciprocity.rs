@@ -1,0 +1,125 @@
+//! How a film fails to count long exposures in full.
+
+use serde::Deserialize;
+use spectra_core::math::{exp, log, pow};
+use spectra_core::params::{Fault, Params, Positive, Time};
+
+/// Reciprocity failure: the time Ta to expose for when the meter says Tm. An exposure of Ta then does what Tm would
+/// without the effect.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Reciprocity {
+    /// Ta = Tm^exponent, in units of the threshold (K. Schwarzschild, 1900).
+    PowerLaw {
+        /// Exponent, at least 1.
+        exponent: f64,
+        /// Threshold, s: shorter times count in full.
+        above_s: f64,
+    },
+    /// As the sheet lists it; straight between rows in the logarithms of both, and on beyond the last row.
+    Table {
+        /// Threshold, s: shorter times count in full.
+        above_s: f64,
+        /// Rows (Tm, Ta), s, both increasing, Tm above the threshold and Ta at least Tm.
+        rows: Vec<[f64; 2]>,
+    },
+}
+
+impl Reciprocity {
+    /// Longest time that counts in full, s.
+    #[must_use]
+    pub fn above_s(&self) -> f64 {
+        match self {
+            Self::PowerLaw { above_s, .. } | Self::Table { above_s, .. } => *above_s,
+        }
+    }
+
+    /// How much an exposure of `time_s` counts, relative to a short one of the same lx s: Tm / Ta at Ta = `time_s`; 1
+    /// up to the threshold, less beyond.
+    #[must_use]
+    pub fn effect(&self, time_s: f64) -> f64 {
+        if !(time_s > self.above_s()) {
+            return 1.0;
+        }
+        match self {
+            Self::PowerLaw { exponent, above_s } => pow(time_s / above_s, 1.0 / exponent - 1.0),
+            Self::Table { above_s, rows } => {
+                let start = [log(*above_s); 2];
+                let points: Vec<[f64; 2]> =
+                    std::iter::once(start).chain(rows.iter().map(|r| [log(r[0]), log(r[1])])).collect();
+                let ta = log(time_s);
+                // The segment that holds it, or the last one.
+                let i = points.partition_point(|p| p[1] <= ta).clamp(1, points.len() - 1);
+                let (a, b) = (points[i - 1], points[i]);
+                let tm = a[0] + (b[0] - a[0]) * (ta - a[1]) / (b[1] - a[1]);
+                exp(tm - ta)
+            }
+        }
+    }
+}
+
+/// `reciprocity` of a stock file.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub(super) struct ReciprocityFile {
+    /// Of the power law.
+    exponent: Option<f64>,
+    /// Rows of metered and adjusted time, s.
+    table: Option<Vec<[f64; 2]>>,
+    above: Positive<Time>,
+}
+
+impl ReciprocityFile {
+    pub(super) fn read(&self, params: &Params) -> Result<Reciprocity, Fault> {
+        let above_s = self.above.s();
+        match (self.exponent, &self.table) {
+            (Some(exponent), None) if (1.0..=10.0).contains(&exponent) => {
+                Ok(Reciprocity::PowerLaw { exponent, above_s })
+            }
+            (Some(exponent), None) => {
+                let text = format!("the exponent is between 1 and 10, not {exponent}");
+                Err(params.fault("reciprocity.exponent", text))
+            }
+            (None, Some(rows)) => {
+                let mut before = [above_s; 2];
+                for (i, row) in rows.iter().enumerate() {
+                    let sound = row.iter().all(|t| t.is_finite()) && row[0] > before[0] && row[1] > before[1];
+                    if !sound || row[1] < row[0] {
+                        let text = "metered and adjusted times increase, the adjusted one at least the metered one";
+                        let fault = params.fault(&format!("reciprocity.table[{i}]"), text);
+                        return Err(fault.hint(format!("[metered, adjusted] in seconds, above {above_s} s")));
+                    }
+                    before = *row;
+                }
+                if rows.is_empty() {
+                    return Err(params.fault("reciprocity.table", "the table has no rows"));
+                }
+                Ok(Reciprocity::Table { above_s, rows: rows.clone() })
+            }
+            _ => {
+                let fault = params.fault("reciprocity", "either an `exponent` or a `table`");
+                Err(fault.hint("`{exponent: 1.25, above: 1 s}` or `{table: [[1, 2], [10, 50]], above: 0.1 s}`"))
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Kodak F-4017: metered 1, 10 and 100 s become 2, 50 and 1200 s.
+    #[test]
+    fn a_table_gives_back_its_rows() {
+        let table = Reciprocity::Table { above_s: 0.1, rows: vec![[1.0, 2.0], [10.0, 50.0], [100.0, 1200.0]] };
+        for (tm, ta) in [(1.0, 2.0), (10.0, 50.0), (100.0, 1200.0)] {
+            assert!((table.effect(ta) * ta / tm - 1.0).abs() < 1e-12, "{ta}");
+        }
+        assert_eq!([0.01, 0.1, f64::NAN].map(|t| table.effect(t)), [1.0; 3]);
+        let mut before = 1.0;
+        for i in 0..400 {
+            let effect = table.effect(pow(10.0, -2.0 + f64::from(i) * 0.015));
+            assert!(effect <= before + 1e-12 && effect > 0.0, "{i}");
+            before = effect;
+        }
+    }
+}

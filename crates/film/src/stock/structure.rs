@@ -1,0 +1,122 @@
+//! What a film is made of beside its sensitive layers, and how fine it is.
+
+use serde::Deserialize;
+use spectra_core::params::{Fault, Faults, Length, Params, Positive};
+
+/// What the emulsion is coated on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Base {
+    /// The formats that come on it, as the sheet names them.
+    pub formats: String,
+    /// Material, such as `acetate`.
+    pub material: Option<String>,
+    /// Thickness, mm.
+    pub thickness_mm: f64,
+    /// Refractive index; `None` where the sheet does not say.
+    pub index: Option<f64>,
+    /// Whether thickness and index are assumed.
+    pub assumed: bool,
+}
+
+/// RMS granularity: 1000 times the standard deviation of density through a round aperture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Granularity {
+    /// The figure of the sheet.
+    pub rms: f64,
+    /// Diameter of the aperture, mm; 0.048 by custom.
+    pub aperture_mm: f64,
+    /// The density at which it was measured; 1 by custom.
+    pub density: f64,
+}
+
+/// Light that comes back from the film's back.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Halation {
+    /// Share of the exposing light that is scattered on into the base, 0 to 1.
+    pub scattered: f64,
+    /// Transmittance of the anti-halation backing, passed on the way out and on the way back, 0 to 1.
+    pub backing: f64,
+    /// Whether this is assumed: sheets hardly ever say.
+    pub assumed: bool,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub(super) struct BaseFile {
+    formats: String,
+    material: Option<String>,
+    thickness: Positive<Length>,
+    index: Option<f64>,
+    #[serde(default)]
+    assumed: bool,
+}
+
+impl BaseFile {
+    pub(super) fn read(&self, params: &Params, i: usize) -> Result<Base, Fault> {
+        if let Some(index) = self.index.filter(|n| !(1.0..=3.0).contains(n)) {
+            let text = format!("a refractive index is between 1 and 3, not {index}");
+            return Err(params.fault(&format!("bases[{i}].index"), text));
+        }
+        Ok(Base {
+            formats: self.formats.clone(),
+            material: self.material.clone(),
+            thickness_mm: self.thickness.mm(),
+            index: self.index,
+            assumed: self.assumed,
+        })
+    }
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub(super) struct GranularityFile {
+    rms: Positive<f64>,
+    aperture: Option<Positive<Length>>,
+    density: Option<Positive<f64>>,
+}
+
+impl GranularityFile {
+    pub(super) fn read(&self) -> Granularity {
+        Granularity {
+            rms: self.rms.get(),
+            aperture_mm: self.aperture.map_or(0.048, |a| a.mm()),
+            density: self.density.map_or(1.0, |d| d.get()),
+        }
+    }
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub(super) struct HalationFile {
+    scattered: f64,
+    backing: f64,
+    #[serde(default)]
+    assumed: bool,
+}
+
+impl HalationFile {
+    pub(super) fn read(&self, params: &Params) -> Result<Halation, Faults> {
+        let mut faults = Faults::new();
+        for (key, value) in [("scattered", self.scattered), ("backing", self.backing)] {
+            if !(0.0..=1.0).contains(&value) {
+                faults.push(params.fault(&format!("halation.{key}"), format!("a share from 0 to 1, not {value}")));
+            }
+        }
+        let Self { scattered, backing, assumed } = *self;
+        faults.into_result(Halation { scattered, backing, assumed })
+    }
+}
+
+/// Checks a modulation transfer.
+pub(super) fn mtf(params: &Params, at: &str, points: &[[f64; 2]]) -> Result<Vec<[f64; 2]>, Fault> {
+    let mut before = 0.0;
+    for (i, [frequency, response]) in points.iter().enumerate() {
+        if !(*frequency > before && frequency.is_finite() && (0.0..=2.0).contains(response)) {
+            let text = format!("[{frequency}, {response}] is no point of a modulation transfer");
+            let fault = params.fault(&format!("{at}.mtf[{i}]"), text);
+            return Err(fault.hint("[cycles/mm, response]: frequencies increase, responses lie between 0 and 2"));
+        }
+        before = *frequency;
+    }
+    Ok(points.to_vec())
+}

@@ -1,0 +1,131 @@
+//! How the camera finds its exposure.
+
+use serde::Deserialize;
+use spectra_core::frame::ExposureFrame;
+use spectra_core::params::{Fault, Params};
+use spectra_core::spectral::{Channel, Grid};
+use spectra_film::print::metered_exposure_lx_s;
+use spectra_spectrum::constants::LUMINOUS_EFFICACY_LM_PER_W;
+use spectra_spectrum::v_lambda;
+
+/// The channel that the meter reads: photometric lux-seconds, whatever the film sees.
+pub(crate) const METER: &str = "meter";
+
+/// `metering` as written in a scene.
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+pub enum Metering {
+    /// The exposure time is the scene's.
+    #[default]
+    Manual,
+    /// The mean of the frame is taken for a mid gray.
+    Average,
+    /// The mean of a round spot is.
+    Spot,
+}
+
+/// `spot` as written in a scene.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct SpotParams {
+    /// Its center, in shares of the frame's width and height from the upper left corner.
+    #[serde(default = "center")]
+    pub center: [f64; 2],
+    /// Its diameter, in shares of the frame's height.
+    #[serde(default = "diameter")]
+    pub diameter: f64,
+}
+
+fn center() -> [f64; 2] {
+    [0.5, 0.5]
+}
+
+fn diameter() -> f64 {
+    0.1
+}
+
+/// A meter, set for a speed.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Meter {
+    metering: Metering,
+    spot: SpotParams,
+    /// Exposure that what is metered is to get, lx s.
+    target_lx_s: f64,
+}
+
+impl Meter {
+    /// A meter for the speed `speed`, with a compensation in stops.
+    pub(crate) fn new(
+        params: &Params,
+        metering: Metering,
+        spot: Option<SpotParams>,
+        speed: f64,
+        compensation: Option<f64>,
+    ) -> Result<Self, Vec<Fault>> {
+        let mut faults = Vec::new();
+        if spot.is_some() && metering != Metering::Spot {
+            faults.push(params.fault("spot", "only `metering: spot` has a spot"));
+        }
+        let spot = spot.unwrap_or(SpotParams { center: center(), diameter: diameter() });
+        if !spot.center.iter().all(|c| (0.0..=1.0).contains(c)) {
+            faults.push(params.fault("spot.center", "the center lies within the frame: two shares from 0 to 1"));
+        }
+        if !(spot.diameter > 0.0 && spot.diameter <= 4.0) {
+            faults.push(params.fault("spot.diameter", "the diameter is a share of the frame's height, above 0 to 4"));
+        }
+        if compensation.is_some() && metering == Metering::Manual {
+            let fault = params.fault("compensation", "without a meter there is nothing to compensate");
+            faults.push(fault.hint("`metering: average`, or another `exposure`"));
+        }
+        let stops = compensation.unwrap_or(0.0);
+        if !(-10.0..=10.0).contains(&stops) {
+            faults.push(params.fault("compensation", "a compensation is between -10 and 10 stops"));
+        }
+        if !faults.is_empty() {
+            return Err(faults);
+        }
+        let target_lx_s = metered_exposure_lx_s(speed) * spectra_core::math::pow(2.0, stops);
+        Ok(Self { metering, spot, target_lx_s })
+    }
+
+    /// The channel that it needs beside the film's.
+    pub(crate) fn channel(&self, grid: &Grid) -> Option<Channel> {
+        let v = v_lambda();
+        let response = || grid.wavelengths_nm().map(|w| LUMINOUS_EFFICACY_LM_PER_W * v.at(w)).collect();
+        (self.metering != Metering::Manual).then(|| Channel {
+            name: METER.into(),
+            unit: "lx s".into(),
+            response: response(),
+        })
+    }
+
+    /// How many times longer the meter wants the frame exposed; 1 where it sees no light.
+    pub(crate) fn factor(&self, exposure: &ExposureFrame) -> f64 {
+        if self.metering == Metering::Manual {
+            return 1.0;
+        }
+        let Some(channel) = exposure.channel(METER) else { return 1.0 };
+        let size = exposure.size;
+        let width = size.width_px as usize;
+        let (mut sum, mut count) = (0.0, 0_u64);
+        // Row by row in their order, in double precision: the same on any machine.
+        for (row, values) in channel.values.chunks(width.max(1)).enumerate() {
+            for (column, value) in values.iter().enumerate() {
+                if self.metering == Metering::Spot {
+                    let x = (column as f64 + 0.5) / f64::from(size.width_px) - self.spot.center[0];
+                    let y = (row as f64 + 0.5) / f64::from(size.height_px) - self.spot.center[1];
+                    let (x, y) = (x * size.width_mm / size.height_mm, y);
+                    if x * x + y * y > 0.25 * self.spot.diameter * self.spot.diameter {
+                        continue;
+                    }
+                }
+                if value.is_finite() {
+                    sum += f64::from(*value);
+                    count += 1;
+                }
+            }
+        }
+        let mean = sum / count.max(1) as f64;
+        if mean > 0.0 { self.target_lx_s / mean } else { 1.0 }
+    }
+}

@@ -1,0 +1,276 @@
+//! `film: three-strip`, three separation negatives behind a beam splitter, printed by dye transfer.
+
+use crate::metering::{Meter, Metering, SpotParams};
+use crate::stock::load_stock;
+use serde::Deserialize;
+use spectra_core::frame::{DisplayPicture, ExposureFrame};
+use spectra_core::params::{Faults, Params, Positive as AboveZero, Time};
+use spectra_core::registry::{Context, FilmEntry};
+use spectra_core::spectral::{BAND, Channel};
+use spectra_core::stage::Film;
+use spectra_film::display::channel;
+use spectra_film::emulsion::Emulsion;
+use spectra_film::positive::Positive;
+use spectra_film::print::metered_exposure_lx_s;
+use spectra_film::stock::Stock;
+use spectra_spectrum::constants::LUMINOUS_EFFICACY_LM_PER_W;
+use spectra_spectrum::{Emission, Transmittance, find_emission_in, find_transmittance_in, v_lambda};
+
+/// Parameters of `kind: three-strip` as written in a scene.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct ThreeStripParams {
+    /// Exposure time, s if bare; may be left out where the camera meters.
+    pub exposure: Option<AboveZero<Time>>,
+    /// How the camera finds its exposure; as of `kind: stock`.
+    #[serde(default)]
+    pub metering: Metering,
+    /// The spot of `metering: spot`.
+    pub spot: Option<SpotParams>,
+    /// Stops by which a metered frame is exposed more than the meter says.
+    pub compensation: Option<f64>,
+    /// The speed of the whole camera, behind beam splitter and filters; 5 if left out.
+    pub iso: Option<AboveZero<f64>>,
+    /// The light in which a neutral subject exposes all three records alike.
+    #[serde(default = "daylight")]
+    pub balance: String,
+    /// The light that the print is looked at by.
+    #[serde(default = "daylight")]
+    pub light: String,
+    /// The print, with its dyes and the curves of its matrices.
+    #[serde(default = "technicolor")]
+    pub print: String,
+    /// The negative of the red record.
+    #[serde(default = "red")]
+    pub red: RecordParams,
+    /// The negative of the green record.
+    #[serde(default = "green")]
+    pub green: RecordParams,
+    /// The negative of the blue record.
+    #[serde(default = "blue")]
+    pub blue: RecordParams,
+}
+
+/// One record: a stock behind filters.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct RecordParams {
+    /// The stock; one of a single layer.
+    pub stock: String,
+    /// How it is developed; a name from its file.
+    pub development: Option<String>,
+    /// Filters before it: beam splitter's filter, dyed emulsion in front of it.
+    #[serde(default)]
+    pub filters: Vec<String>,
+}
+
+fn record(stock: &str, development: Option<&str>, filters: &[&str]) -> RecordParams {
+    let filters = filters.iter().map(|&f| f.to_owned()).collect();
+    RecordParams { stock: stock.into(), development: development.map(Into::into), filters }
+}
+
+// As J. Ball described the camera ("The Technicolor process of three-color cinematography", J. SMPE 25, 127, 1935): a green
+// filter before one film; a magenta one before the pair of the others, the front film of which sees blue and is dyed red.
+// The stock of all three is a later one whose sensitivity is known, behind a blue filter where the front film saw blue only:
+// records of one contrast, as the process needs them.
+fn red() -> RecordParams {
+    record("kodak-double-x-5222", Some("9-min"), &["wratten-32", "wratten-25"])
+}
+
+fn green() -> RecordParams {
+    record("kodak-double-x-5222", Some("9-min"), &["wratten-58"])
+}
+
+fn blue() -> RecordParams {
+    record("kodak-double-x-5222", Some("9-min"), &["wratten-47"])
+}
+
+fn daylight() -> String {
+    "D55".into()
+}
+
+fn technicolor() -> String {
+    "technicolor-iv".into()
+}
+
+/// A three-strip camera and its dye-transfer print.
+#[derive(Clone, Debug)]
+pub struct ThreeStrip {
+    film: Emulsion,
+    channels: Vec<Channel>,
+    exposure_time_s: f64,
+    meter: Meter,
+    positive: Positive,
+    words: String,
+}
+
+/// Speed of the camera, about what it had in the daylight of 1935.
+const SPEED: f64 = 5.0;
+
+/// Records in the order of the print's layers.
+const RECORDS: [&str; 3] = ["blue", "green", "red"];
+
+impl ThreeStrip {
+    /// The camera that `params` describe.
+    ///
+    /// # Errors
+    /// What is wrong with the parameters or with a stock's file.
+    pub fn build(params: &Params, context: &Context<'_>) -> Result<Self, Faults> {
+        let p: ThreeStripParams = params.parse()?;
+        let iso = p.iso.map_or(SPEED, AboveZero::get);
+        let mut faults = Faults::new();
+        if p.exposure.is_none() && p.metering == Metering::Manual {
+            let fault = params.fault("exposure", "missing key `exposure`");
+            faults.push(fault.hint("add `exposure: 1/60 s`, or let the camera find it: `metering: average`"));
+        }
+        let meter = Meter::new(params, p.metering, p.spot, iso, p.compensation);
+        let meter = faults.take(meter.map_err(Faults::from));
+        let light = |key: &str, name: &str| {
+            find_emission_in(name, context.resources)
+                .map_err(|error| Faults::from(params.fault(key, error.to_string())))
+        };
+        let balance = faults.take(light("balance", &p.balance));
+        let view = faults.take(light("light", &p.light));
+        let print = faults.take(load_stock(&p.print, "print", params, context.resources));
+        let records = RECORDS
+            .iter()
+            .zip([&p.blue, &p.green, &p.red])
+            .map(|(name, record)| faults.take(Record::new(name, record, params, context)));
+        let records: Vec<Option<Record>> = records.collect();
+        let (Some(meter), Some(balance), Some(view), Some(print)) = (meter, balance, view, print) else {
+            return Err(faults);
+        };
+        let Some(records) = records.into_iter().collect::<Option<Vec<Record>>>() else { return Err(faults) };
+        let mut channels = Vec::new();
+        for record in &records {
+            channels.extend(faults.take(record.channel(&balance, params, context)));
+        }
+        faults.into_result(())?;
+        channels.extend(meter.channel(&context.grid));
+        let layers: Vec<&str> = print.layers.iter().map(|l| l.name.as_str()).collect();
+        if layers != RECORDS {
+            let fault = params.fault("print", format!("{} has no dyes for three records", print.name));
+            return Err(fault.hint("a print stock of layers called blue, green and red").into());
+        }
+        let development = print.developments().next().unwrap_or_default().to_owned();
+        let printed = Emulsion::new(&print, &development).map_err(|e| params.fault("print", e.to_string()))?;
+        // Each record's exposure counts from its own speed, so that a mid gray is as dense as its stock would have it.
+        let film = Emulsion::separations([0, 1, 2].map(|i| records[i].curve.clone()));
+        let gray = metered_exposure_lx_s(iso);
+        let scaled: Vec<f64> = records.iter().map(|r| metered_exposure_lx_s(r.iso) / gray).collect();
+        for (channel, scale) in channels.iter_mut().zip(&scaled) {
+            channel.response.iter_mut().for_each(|r| *r *= scale);
+        }
+        let grays = [0, 1, 2].map(|i| metered_exposure_lx_s(records[i].iso));
+        let positive = Positive::from_separations(&film, &grays, &print, printed, &view);
+        let positive = positive.map_err(|e| params.fault("print", e.to_string()))?;
+        let stocks: Vec<&str> = records.iter().map(|r| r.name.as_str()).collect();
+        let words = format!("three-strip camera, ISO {iso} ({}), printed as {}", stocks.join(", "), print.name);
+        let exposure_time_s = p.exposure.map_or(1.0, |t| t.s());
+        Ok(Self { film, channels, exposure_time_s, meter, positive, words })
+    }
+}
+
+/// One negative of the camera.
+struct Record {
+    key: &'static str,
+    name: String,
+    iso: f64,
+    stock: Stock,
+    curve: spectra_film::curve::CharacteristicCurve,
+    filters: Vec<Transmittance>,
+}
+
+impl Record {
+    fn new(key: &'static str, p: &RecordParams, params: &Params, context: &Context<'_>) -> Result<Self, Faults> {
+        let at = format!("{key}.stock");
+        let stock = load_stock(&p.stock, &at, params, context.resources)?;
+        let (Some(iso), [layer]) = (stock.iso, &stock.layers[..]) else {
+            let fault = params.fault(&at, format!("{} is no camera film of one layer", stock.name));
+            return Err(fault.hint("a black-and-white negative such as `kodak-double-x-5222`").into());
+        };
+        let development = match &p.development {
+            Some(name) => layer.development(name),
+            None => layer.developments.first(),
+        };
+        let Some(development) = development else {
+            let known: Vec<&str> = stock.developments().collect();
+            let fault = params.fault(&format!("{key}.development"), format!("{} has no such development", stock.name));
+            return Err(fault.hint(format!("known: {}", known.join(", "))).into());
+        };
+        let mut faults = Faults::new();
+        let filters = p.filters.iter().enumerate().filter_map(|(i, name)| {
+            let found = find_transmittance_in(name, context.resources);
+            faults.take(found.map_err(|e| params.fault(&format!("{key}.filters[{i}]"), e.to_string())))
+        });
+        let filters = filters.collect();
+        let (name, curve) = (stock.name.clone(), development.curve.clone());
+        faults.into_result(Self { key, name, iso, stock, curve, filters })
+    }
+
+    fn sees(&self, wavelength_nm: f64) -> f64 {
+        let passes: f64 = self.filters.iter().map(|f| f.at(wavelength_nm)).product();
+        self.stock.layers[0].sensitivity.at(wavelength_nm) * passes
+    }
+
+    /// The channel of its exposure: photometric lux seconds of `balance`, before the filters.
+    fn channel(&self, balance: &Emission, params: &Params, context: &Context<'_>) -> Result<Channel, Faults> {
+        let power = balance.to_power(&BAND);
+        let on_band = |f: &dyn Fn(f64) -> f64| BAND.wavelengths_nm().map(f).collect::<Vec<f64>>();
+        let v = v_lambda();
+        let lux = LUMINOUS_EFFICACY_LM_PER_W * power.seen_by(&on_band(&|w| v.at(w)));
+        let seen = power.seen_by(&on_band(&|w| self.sees(w)));
+        if !(seen > 0.0 && seen.is_finite()) {
+            let text = format!("behind its filters, {} sees nothing of that light", self.name);
+            return Err(params.fault(&format!("{}.filters", self.key), text).into());
+        }
+        let response = context.grid.wavelengths_nm().map(|w| self.sees(w) * lux / seen).collect();
+        Ok(Channel { name: self.key.into(), unit: "lx s".into(), response })
+    }
+}
+
+impl Film for ThreeStrip {
+    fn channels(&self) -> Vec<Channel> {
+        self.channels.clone()
+    }
+
+    fn exposure_time_s(&self) -> f64 {
+        self.exposure_time_s
+    }
+
+    fn metered_time_s(&self, exposure: &ExposureFrame) -> f64 {
+        self.exposure_time_s * self.meter.factor(exposure)
+    }
+
+    fn develop(&self, exposure: &ExposureFrame) -> Result<DisplayPicture, String> {
+        let factor = self.meter.factor(exposure);
+        let negatives = RECORDS.iter().enumerate().map(|(i, name)| {
+            let mut plane = channel(exposure, name).map_err(|error| error.to_string())?.values.clone();
+            self.film.develop(i, &mut plane, factor);
+            Ok(plane)
+        });
+        let negatives = negatives.collect::<Result<Vec<_>, String>>()?;
+        let planes: Vec<&[f32]> = negatives.iter().map(Vec::as_slice).collect();
+        let rgb = self.positive.picture(&planes);
+        let size = exposure.size;
+        Ok(DisplayPicture { width_px: size.width_px, height_px: size.height_px, rgb })
+    }
+
+    fn describe(&self) -> String {
+        format!("{}, exposed for {} s", self.words, self.exposure_time_s)
+    }
+}
+
+fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Film>, Faults> {
+    Ok(Box::new(ThreeStrip::build(params, context)?))
+}
+
+inventory::submit! {
+    FilmEntry::new(
+        "three-strip",
+        "Three separation negatives behind a beam splitter, printed by dye transfer.",
+        env!("CARGO_PKG_NAME"),
+        env!("CARGO_PKG_VERSION"),
+        build,
+    )
+}

@@ -1,0 +1,172 @@
+//! How the developed film is looked at.
+
+use crate::stock::{StockParams, load_stock};
+use serde::Deserialize;
+use spectra_core::math::log10;
+use spectra_core::params::{Faults, Params, Positive as AboveZero};
+use spectra_core::resources::Resources;
+use spectra_film::emulsion::Emulsion;
+use spectra_film::positive::Positive;
+use spectra_film::print::{Paper, Print};
+use spectra_film::stock::{Process, Stock};
+use spectra_spectrum::{Emission, find_emission_in};
+
+/// `view` as written in a scene.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+pub enum View {
+    /// A negative printed on paper or on a print stock.
+    Print,
+    /// The film itself on a light table.
+    Negative,
+    /// A negative scanned and turned around.
+    Scan,
+    /// A reversal film, projected.
+    Projection,
+}
+
+/// `paper` as written in a scene; see [`Paper`].
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct PaperParams {
+    /// Exposure range, log10 (ISO range over 100).
+    pub range: Option<AboveZero<f64>>,
+    /// Maximum density over the paper's white.
+    pub maximum_density: Option<AboveZero<f64>>,
+    /// Width of the toe, log10 of exposure.
+    pub toe: Option<AboveZero<f64>>,
+    /// Sharpness of the shoulder.
+    pub shoulder: Option<AboveZero<f64>>,
+}
+
+/// The positive that the film ends in.
+#[derive(Clone, Debug)]
+pub(crate) enum Picture {
+    /// Paper under silver.
+    Paper(Print),
+    /// All else.
+    Positive(Box<Positive>),
+}
+
+/// A picture and what to call it.
+pub(crate) struct Seen {
+    pub picture: Picture,
+    pub words: String,
+}
+
+/// The way from a developed `film` to a picture that `p` asks for; a mid gray subject left `gray_lx_s` on it.
+pub(crate) fn seen(
+    p: &StockParams,
+    params: &Params,
+    resources: &dyn Resources,
+    stock: &Stock,
+    film: &Emulsion,
+    gray_lx_s: f64,
+) -> Result<Seen, Faults> {
+    let mut faults = Faults::new();
+    let usual = if stock.process == Process::Reversal { View::Projection } else { View::Print };
+    let view = p.view.unwrap_or(usual);
+    let printed = view == View::Print;
+    for (key, given) in [
+        ("print", p.print.is_some()),
+        ("print-development", p.print_development.is_some()),
+        ("paper", p.paper.is_some()),
+        ("lamp", p.lamp.is_some()),
+    ] {
+        if given && !printed {
+            faults.push(params.fault(key, "only a print is made so").hint("`view: print`"));
+        }
+    }
+    let light = faults.take(emission(params, "light", p.light.as_deref().unwrap_or("D55"), resources));
+    let lamp = match p.lamp.as_deref() {
+        Some(name) => faults.take(emission(params, "lamp", name, resources)).map(Some),
+        None => Some(None),
+    };
+    match (view, stock.process) {
+        (View::Print | View::Negative | View::Scan, Process::Reversal) => {
+            let fault = params.fault("view", format!("{} is a positive already", stock.name));
+            faults.push(fault.hint("`view: projection`"));
+        }
+        (View::Projection, Process::Negative) => {
+            let fault = params.fault("view", format!("{} is a negative: projected, it shows one", stock.name));
+            faults.push(fault.hint("`view: print`, `view: scan`, or `view: negative`"));
+        }
+        _ => {}
+    }
+    let (Some(light), Some(lamp)) = faults.into_result((light, lamp))? else { return Err(Faults::new()) };
+    let unfit = |error: spectra_film::positive::PositiveError| {
+        Faults::from(params.fault("stock", format!("{}: {error}", stock.name)))
+    };
+    let positive = |picture: Positive, words: String| Seen { picture: Picture::Positive(Box::new(picture)), words };
+    match view {
+        View::Print => print(p, params, resources, stock, film, gray_lx_s, &light, lamp.as_ref()),
+        View::Scan => Ok(positive(Positive::scanned(stock, film, gray_lx_s).map_err(unfit)?, "scanned".into())),
+        View::Negative => {
+            let table = Positive::transmitted(stock, film, &light).map_err(unfit)?;
+            Ok(positive(table, "the negative itself".into()))
+        }
+        View::Projection => {
+            Ok(positive(Positive::transmitted(stock, film, &light).map_err(unfit)?, "projected".into()))
+        }
+    }
+}
+
+fn print(
+    p: &StockParams,
+    params: &Params,
+    resources: &dyn Resources,
+    stock: &Stock,
+    film: &Emulsion,
+    gray_lx_s: f64,
+    light: &Emission,
+    lamp: Option<&Emission>,
+) -> Result<Seen, Faults> {
+    let on = match (&p.print, &p.paper, &stock.print) {
+        (Some(_), Some(_), _) => {
+            let fault = params.fault("paper", "a print is either on a print stock or on paper");
+            return Err(fault.hint("`print` or `paper`").into());
+        }
+        (Some(name), None, _) => Some(name.clone()),
+        (None, None, Some(usual)) => Some(usual.clone()),
+        _ => None,
+    };
+    let Some(on) = on else {
+        if film.layers() != 1 {
+            let fault = params.fault("stock", format!("{} needs a print stock for its colors", stock.name));
+            return Err(fault.hint("`print: kodak-vision-2383`, or `view: scan`").into());
+        }
+        return on_paper(p, params, stock, film, gray_lx_s);
+    };
+    let print_stock = load_stock(&on, "print", params, resources)?;
+    let development = match &p.print_development {
+        Some(name) => name.clone(),
+        None => print_stock.developments().next().unwrap_or_default().to_owned(),
+    };
+    let key = if p.print_development.is_some() { "print-development" } else { "print" };
+    let emulsion = Emulsion::new(&print_stock, &development).map_err(|e| params.fault(key, e.to_string()))?;
+    let lamp = lamp.unwrap_or(&print_stock.reference);
+    let positive = Positive::printed(film, gray_lx_s, &print_stock, emulsion, lamp, light);
+    let positive = positive.map_err(|e| params.fault("print", e.to_string()))?;
+    Ok(Seen { picture: Picture::Positive(Box::new(positive)), words: format!("printed on {}", print_stock.name) })
+}
+
+fn on_paper(p: &StockParams, params: &Params, stock: &Stock, film: &Emulsion, gray_lx_s: f64) -> Result<Seen, Faults> {
+    let usual = Paper::default();
+    let given = |value: Option<Option<AboveZero<f64>>>, usual: f64| value.flatten().map_or(usual, AboveZero::get);
+    let paper = Paper {
+        range: given(p.paper.map(|p| p.range), usual.range),
+        maximum_density: given(p.paper.map(|p| p.maximum_density), usual.maximum_density),
+        toe: given(p.paper.map(|p| p.toe), usual.toe),
+        shoulder: given(p.paper.map(|p| p.shoulder), usual.shoulder),
+    };
+    let gray = film.amount(0, log10(gray_lx_s));
+    let print = Print::balanced(&paper, film.amount(0, f64::NEG_INFINITY), gray);
+    let key = if p.paper.is_some() { "paper" } else { "stock" };
+    let print = print.map_err(|error| params.fault(key, format!("{}: {error}", stock.name)))?;
+    Ok(Seen { picture: Picture::Paper(print), words: "printed".into() })
+}
+
+fn emission(params: &Params, key: &str, name: &str, resources: &dyn Resources) -> Result<Emission, Faults> {
+    find_emission_in(name, resources)
+        .map_err(|error| params.fault(key, error.to_string()).hint("a light such as D55 or blackbody:3200").into())
+}

