@@ -7,10 +7,12 @@
 //! - [`display`]: absolute XYZ to a screen, with automatic exposure as one explicit step;
 //! - [`mod@write`]: OpenEXR of the exposure, PNG and TIFF of the picture.
 
+mod convolve;
 pub mod curve;
 pub mod develop;
 pub mod display;
 mod lookup;
 pub mod print;
+pub mod raster;
 pub mod stock;
 pub mod write;
