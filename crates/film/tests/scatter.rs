@@ -49,11 +49,13 @@ fn sine_targets_recover_friesers_curve() {
 #[test]
 fn sine_targets_recover_a_measured_curve() {
     // A curve of the shape that makers print, no overshoot.
-    let mtf = Mtf::measured(&[[5.0, 0.99], [10.0, 0.965], [20.0, 0.87], [40.0, 0.62], [60.0, 0.43], [100.0, 0.22]])
-        .expect("a curve");
-    for frequency in [6.0, 10.0, 20.0, 40.0, 60.0, 80.0] {
+    let points = [[5.0, 0.99], [10.0, 0.965], [20.0, 0.87], [40.0, 0.62], [60.0, 0.43], [100.0, 0.22]];
+    let mtf = Mtf::measured(&points).expect("a curve");
+    // At the points themselves: 256 pixels hold a whole number of periods of a frequency that is close; what is left
+    // is the slope of the curve.
+    for [frequency, response] in points {
         let (got, at) = contrast(&mtf, 0.004, frequency, false);
-        let want = mtf.response(at);
+        let want = response + mtf.response(at) - mtf.response(frequency);
         println!("{at:.1} cycles/mm: {got:.4} of {want:.4}");
         assert!((got - want).abs() < 0.01, "{at}: {got} {want}");
     }

@@ -4,23 +4,46 @@ use super::field::normal_below;
 use spectra_core::math::exp;
 
 /// Nodes of the square root of the mean: steps an unit, and where the table ends.
-const STEPS: usize = 8;
+const STEPS: usize = 16;
 const END: usize = 8;
 
 /// Nodes of the normal number: from -LIMIT to LIMIT, so many steps a unit.
 const LIMIT: usize = 5;
-const FINENESS: usize = 16;
+const FINENESS: usize = 32;
 const NODES: usize = 2 * LIMIT * FINENESS + 1;
 
 /// Quantiles of Poisson's law, sampled.
 pub(super) struct Counts {
     table: Vec<f32>,
+    /// Of each mean, what [`tie`] says.
+    ties: Vec<f32>,
 }
 
 impl Counts {
     pub(super) fn new() -> Self {
         let means = (0..=STEPS * END).map(|k| (k as f64 / STEPS as f64) * (k as f64 / STEPS as f64));
-        Self { table: means.flat_map(row).collect() }
+        let (rows, ties): (Vec<_>, Vec<_>) = means.map(row).unzip();
+        Self { table: rows.concat(), ties }
+    }
+
+    /// The mean to count with, where `mean` are expected in a pixel and `alone` is the part of the variance of large areas
+    /// that it has by itself (the rest comes from its ties to its neighbors).
+    ///
+    /// Counts are less tied than the normal numbers that they come from, so larger areas would lose variance where
+    /// pixels are finer than grains; fewer and larger grains make up for it.
+    #[inline(always)]
+    pub(super) fn evened(&self, mean: f32, alone: f32) -> f32 {
+        if mean >= (END * END) as f32 {
+            return mean;
+        }
+        let kept = |mean: f32| {
+            let place = mean.sqrt() * STEPS as f32;
+            let k = (place as usize).min(STEPS * END - 1);
+            let tie = self.ties[k] + (self.ties[k + 1] - self.ties[k]) * (place - k as f32);
+            alone + (1.0 - alone) * tie
+        };
+        let first = mean * kept(mean);
+        mean * kept(mean * kept(first))
     }
 
     /// The number of grains where `mean` are expected and the normal number is `z`: its mean over z is `mean`, so is
@@ -50,10 +73,14 @@ impl Counts {
 }
 
 /// The quantiles of one mean: of each node the mean over its cell of the normal distribution.
-fn row(mean: f64) -> Vec<f32> {
+///
+/// Also their tie: the variance of a sum of many neighbors over that of normal numbers so tied, where the correlation falls with
+/// distance as a Gaussian. A part of the order k in Hermite's polynomials is tied by the correlation to the power k, and
+/// that of a Gaussian has an area k times as small (F. G. Mehler, 1866).
+fn row(mean: f64) -> (Vec<f32>, f32) {
     let mut below = Vec::new(); // the distribution function
     let (mut term, mut sum) = (exp(-mean), 0.0);
-    for k in 0..200 {
+    for k in 0..(mean + 12.0 * mean.sqrt()) as u32 + 20 {
         sum += term;
         below.push(sum);
         term *= mean / f64::from(k + 1);
@@ -67,20 +94,35 @@ fn row(mean: f64) -> Vec<f32> {
             over / (high - low)
         })
         .collect();
-    // The mean of the interpolated function, by fine steps.
-    let fine = 32;
-    let (mut total, mut weight) = (0.0, 0.0);
+    // The interpolated function's mean, and its parts in Hermite's polynomials, by fine steps.
+    const ORDERS: usize = 9;
+    let fine = 8;
+    let (mut parts, mut square, mut weight) = ([0.0; ORDERS], 0.0, 0.0);
     for i in 0..NODES - 1 {
         for s in 0..fine {
             let t = (f64::from(s) + 0.5) / f64::from(fine);
             let z = place(i as f64 + t);
             let w = exp(-z * z / 2.0);
-            total += w * (values[i] + (values[i + 1] - values[i]) * t);
+            let value = values[i] + (values[i + 1] - values[i]) * t;
+            let (mut before, mut now) = (0.0, 1.0); // normalized: He_k / sqrt(k!)
+            for (k, part) in parts.iter_mut().enumerate() {
+                *part += w * value * now;
+                let k = k as f64;
+                (before, now) = (now, (z * now - k.sqrt() * before) / (k + 1.0).sqrt());
+            }
+            square += w * value * value;
             weight += w;
         }
     }
-    let found = total / weight;
-    values.iter().map(|v| if found > 0.0 { (v * mean / found) as f32 } else { 0.0 }).collect()
+    parts.iter_mut().for_each(|p| *p /= weight);
+    let (found, variance) = (parts[0], square / weight - parts[0] * parts[0]);
+    if !(found > 0.0 && variance > 0.0) {
+        return (vec![0.0; NODES], 1.0 / ORDERS as f32);
+    }
+    let orders: f64 = parts[1..].iter().map(|p| p * p).sum();
+    let tied: f64 = parts[1..].iter().enumerate().map(|(k, p)| p * p / (k as f64 + 1.0)).sum();
+    let tie = (tied + (variance - orders).max(0.0) / ORDERS as f64) / variance;
+    (values.iter().map(|v| (v * mean / found) as f32).collect(), tie as f32)
 }
 
 #[cfg(test)]
@@ -92,8 +134,9 @@ mod tests {
     fn moments_are_poissons() {
         let counts = Counts::new();
         for (mean, off_variance, off_skewness) in [
-            (0.05_f64, 0.03, 0.1),
-            (0.3, 0.02, 0.05),
+            // Few grains: neighboring nodes jump at unlike places, and between them some variance is lost.
+            (0.05_f64, 0.15, 0.1),
+            (0.3, 0.03, 0.05),
             (1.0, 0.01, 0.05),
             (1.7, 0.01, 0.05),
             (6.3, 0.005, 0.05),
@@ -119,6 +162,20 @@ mod tests {
             assert!((variance - 1.0).abs() < off_variance, "{mean}: {variance}");
             assert!((skewness - 1.0).abs() < off_skewness, "{mean}: {skewness}");
         }
+    }
+
+    /// With many grains counts are as tied as their numbers; with few, a pixel by itself loses nothing.
+    #[test]
+    fn ties_loosen_where_grains_are_few() {
+        let counts = Counts::new();
+        assert!((1.0 - counts.evened(60.0, 0.0) / 60.0) < 1e-3);
+        assert_eq!(counts.evened(100.0, 0.0), 100.0);
+        // To the second order in 1 / sqrt(mean), the quantile's parts are z and (z^2 - 1) / 6: 1 / (18 mean) of the variance is
+        // of order 2, half of which is lost.
+        let kept = counts.evened(10.0, 0.0) / 10.0;
+        assert!((kept - (1.0 - 1.0 / 360.0)).abs() < 5e-4, "{kept}");
+        assert!((counts.evened(0.5, 1.0) - 0.5).abs() < 1e-6);
+        assert!(counts.evened(0.5, 0.0) < 0.5 && counts.evened(0.5, 0.0) > 0.3);
     }
 
     #[test]

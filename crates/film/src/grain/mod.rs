@@ -17,9 +17,9 @@
 //! number, with the mean that its density asks for: never negative, skew in the shadows, the mean density unchanged.
 //!
 //! **Limits.** Pixels that are much finer than a grain show soft blobs, not the shapes of grains. Counts of
-//! neighboring pixels are tied by their normal numbers, not by splitting one count: where a pixel has fewer than about two grains,
-//! means over larger areas differ between two resolutions by some hundredths of their deviation. Layers
-//! are independent.
+//! neighboring pixels are tied by their normal numbers, not by splitting one count. So means over 48 um of the same film
+//! at two resolutions are correlated by 0.99 and more at the density 1, but by about 0.97 at the density 0.1, where pixels
+//! finer than grains hold about one each. Layers are independent.
 
 mod calibrate;
 mod count;
@@ -144,6 +144,7 @@ impl Vectorized for Strip<'_> {
         let width = columns.len();
         // Variance of the density 1 over a pixel, were all its cells taken whole.
         let variance = grain.selwyn_mm2 * (self.cells_a_pixel / self.pitch_mm) * (self.cells_a_pixel / self.pitch_mm);
+        let area = (self.cells_a_pixel * self.cells_a_pixel) as f32;
         let mut line = Vec::new();
         for from in (0..width).step_by(TILE) {
             let to = (from + TILE).min(width);
@@ -169,9 +170,10 @@ impl Vectorized for Strip<'_> {
                     let (first, weights) = columns.of(column);
                     let sum: f32 = weights.iter().zip(&line[(first - x) as usize..]).map(|(w, z)| w * z).sum();
                     let squares = rows.square(row) * columns.square(column);
-                    // A grain's density in this pixel.
+                    // A grain's density in this pixel, and the grains that are expected.
                     let one = (variance * f64::from(squares)) as f32;
-                    *density = one * grain.counts.quantile(*density / one, sum / squares.sqrt());
+                    let mean = grain.counts.evened(*density / one, (squares * area).min(1.0));
+                    *density *= grain.counts.quantile(mean, sum / squares.sqrt()) / mean;
                 }
             }
         }

@@ -58,8 +58,14 @@ impl Level {
                 let parts = (40.0 * cell / ring).ceil().clamp(4.0, 64.0) as usize;
                 over_pixels(radius, cell, parts, &density)
             } else {
-                let place = |k: usize| k as f64 * cell;
-                Kernel::new(radius, |i, j| density((place(i) * place(i) + place(j) * place(j)).sqrt()))
+                let value = |i: f64, j: f64| density((i * i + j * j).sqrt() * cell);
+                // Sharing light out to cells and interpolating between them spread it by s^2 / 6 each, in the mean and along
+                // each axis: half of the sum, times the Laplacian, is taken off beforehand.
+                Kernel::new(radius, |i, j| {
+                    let (i, j) = (i as f64, j as f64);
+                    let around = value(i - 1.0, j) + value(i + 1.0, j) + value(i, j - 1.0) + value(i, j + 1.0);
+                    value(i, j) - (around - 4.0 * value(i, j)) / 6.0
+                })
             };
             let mass = even * base.returned_weighted(weight);
             let sum = kernel.sum();

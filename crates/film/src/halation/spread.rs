@@ -1,4 +1,4 @@
-//! Convolution over the levels: cells are averaged on the way down and interpolated on the way up.
+//! Convolution over the levels: light is shared out to coarser cells on the way down, interpolated on the way up.
 
 use super::kernel::{Level, STEP};
 use crate::convolve::Convolver;
@@ -43,12 +43,13 @@ impl Spread {
 
     pub(super) fn apply(&self, plane: &mut [f32]) {
         let source = plane.to_vec();
-        // Averages, finest first.
+        // Finest first.
         let mut coarse: Vec<Cells> = Vec::new();
+        let frame = [self.width, self.height];
         for (cell_px, _) in self.levels.iter().filter(|(cell, _)| *cell > 1) {
             let next = match coarse.last() {
-                Some(finer) => finer.averaged(self.width, self.height),
-                None => Cells::averaged_pixels(&source, self.width, self.height, *cell_px),
+                Some(f) => Cells::gathered(&f.values, f.width, MARGIN, frame, f.cell_px, STEP),
+                None => Cells::gathered(&source, self.width, 0, frame, 1, *cell_px),
             };
             coarse.push(next);
         }
@@ -60,7 +61,7 @@ impl Spread {
             }
             if let Some(cells) = coarse.pop() {
                 let mut spread = vec![0.0; cells.values.len()];
-                convolver.apply(&cells.values, &mut spread, |to, v| *to = v.max(0.0) as f32);
+                convolver.apply(&cells.values, &mut spread, |to, v| *to = v as f32);
                 let mut now = Cells { values: spread, ..cells };
                 if let Some(above) = above.take() {
                     above.add_to_cells(&mut now);
@@ -78,33 +79,37 @@ impl Spread {
 }
 
 impl Cells {
-    /// Means of the pixels that each cell covers; beside the frame there is no light.
-    fn averaged_pixels(plane: &[f32], width: usize, height: usize, cell_px: usize) -> Self {
-        let (w, h) = (with_margin(width, cell_px), with_margin(height, cell_px));
-        let mut values = vec![0.0_f32; w * h];
-        let area = (cell_px * cell_px) as f64;
-        values.par_chunks_mut(w).enumerate().for_each(|(row, line)| {
-            let Some(y) = row.checked_sub(MARGIN).map(|r| r * cell_px).filter(|y| *y < height) else { return };
-            let mut sums = vec![0.0_f64; w];
-            for line in plane[y * width..(y + cell_px).min(height) * width].chunks_exact(width) {
-                for (sum, cell) in sums[MARGIN..].iter_mut().zip(line.chunks(cell_px)) {
-                    *sum += cell.iter().filter(|v| v.is_finite()).map(|v| f64::from(*v)).sum::<f64>();
+    /// The light of finer cells (or pixels, without margin) shared out to the cells around each, linearly by distance, so
+    /// that its sum and its center of gravity stay; for a frame of `frame` pixels.
+    fn gathered(fine: &[f32], fine_width: usize, margin: usize, frame: [usize; 2], fine_px: usize, step: usize) -> Self {
+        let cell_px = fine_px * step;
+        let (width, height) = (with_margin(frame[0], cell_px), with_margin(frame[1], cell_px));
+        let fine_height = fine.len() / fine_width;
+        let center = |k: usize| (k as f64 + 0.5 - margin as f64) / step as f64;
+        let columns: Vec<_> = (0..fine_width).map(|k| Self::place(center(k))).collect();
+        let rows: Vec<_> = (0..fine_height).map(|k| Self::place(center(k))).collect();
+        let area = (step * step) as f64;
+        let mut values = vec![0.0_f32; width * height];
+        values.par_chunks_mut(width).enumerate().for_each(|(row, line)| {
+            // Rows that share with this one lie next to each other.
+            let begin = rows.partition_point(|(j, _)| j + 1 < row);
+            let end = rows.partition_point(|(j, _)| *j <= row);
+            let mut sums = vec![0.0_f64; fine_width];
+            for k in begin..end {
+                let (j, part) = rows[k];
+                let weight = if j == row { 1.0 - part } else { part };
+                for (sum, v) in sums.iter_mut().zip(&fine[k * fine_width..(k + 1) * fine_width]) {
+                    *sum += if v.is_finite() { f64::from(weight) * f64::from(*v) } else { 0.0 };
                 }
             }
-            line.iter_mut().zip(sums).for_each(|(to, sum)| *to = (sum / area) as f32);
+            let mut cells = vec![0.0_f64; width];
+            for (sum, (i, part)) in sums.iter().zip(&columns) {
+                cells[*i] += sum * (1.0 - f64::from(*part));
+                cells[i + 1] += sum * f64::from(*part);
+            }
+            line.iter_mut().zip(cells).for_each(|(to, v)| *to = (v / area) as f32);
         });
-        Self { cell_px, width: w, values }
-    }
-
-    /// The next coarser level of a frame of `width` by `height` pixels.
-    fn averaged(&self, width: usize, height: usize) -> Self {
-        let (w, h) = (width.div_ceil(self.cell_px), height.div_ceil(self.cell_px));
-        let inner = (0..h).flat_map(|j| {
-            let from = (j + MARGIN) * self.width + MARGIN;
-            self.values[from..from + w].iter().copied()
-        });
-        let next = Self::averaged_pixels(&inner.collect::<Vec<f32>>(), w, h, STEP);
-        Self { cell_px: self.cell_px * STEP, ..next }
+        Self { cell_px, width, values }
     }
 
     /// The column or row left of the place `x` (center of a pixel or cell, in units of these cells from the frame's

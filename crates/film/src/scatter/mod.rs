@@ -38,8 +38,7 @@ impl Scatter {
     /// The kernel is the one of weights from 0 on that comes closest to the curve below 0.8 of the pixels' limit
     /// (half a cycle a pixel), by projections onto both demands in turn; [`Scatter::residual`] says how close. Pixels of
     /// 6 um and less follow the curve of a usual film within 0.01. On larger ones most light stays in its pixel, and weights
-    /// from 0 on cannot follow to the limit. Neither can they where a measured curve rises over 1: that is the developer's
-    /// work (adjacency), not the light's.
+    /// from 0 on cannot follow to the limit.
     ///
     /// # Errors
     /// [`MtfError::OutOfRange`] for a pitch that is not positive and finite, or so fine (under a thousandth of the
