@@ -10,7 +10,8 @@ use std::time::Instant;
 const BASE: HalationBase = HalationBase { thickness_mm: 0.125, index: 1.48, entering: 0.3, transmittance: 0.9 };
 
 fn save(folder: &Path, name: &str, width: usize, height: usize, value: impl Fn(usize) -> f64) {
-    let pixel = |x: u32, y: u32| image::Luma([(value(y as usize * width + x as usize) * 255.0).clamp(0.0, 255.0) as u8]);
+    let pixel =
+        |x: u32, y: u32| image::Luma([(value(y as usize * width + x as usize) * 255.0).clamp(0.0, 255.0) as u8]);
     let picture = image::GrayImage::from_fn(width as u32, height as u32, pixel);
     let path = folder.join(name);
     match picture.save(&path) {
@@ -26,8 +27,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for pitch_um in [0.25, 1.0, 3.0, 6.0, 7.3, 24.0] {
         // An even gray and steps of density, at this zoom.
         let (width, height) = (512, 384);
-        let mut plane: Vec<f32> =
-            (0..width * height).map(|k| if k / width < 256 { 0.8 } else { 0.1 + 0.25 * (k % width / 64) as f32 }).collect();
+        let mut plane: Vec<f32> = (0..width * height)
+            .map(|k| if k / width < 256 { 0.8 } else { 0.1 + 0.25 * (k % width / 64) as f32 })
+            .collect();
         grain.apply(&mut plane, &Raster::new(width, height, pitch_um / 1e3));
         save(folder, &format!("grain-{pitch_um}um.png"), width, height, |k| 10_f64.powf(-f64::from(plane[k]) / 2.2));
     }

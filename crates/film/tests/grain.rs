@@ -184,7 +184,8 @@ fn far_pixels_are_independent() {
         let (below, _) = at(0, 1);
         println!("{pitch} mm: neighbors {next:.4} {below:.4}");
         assert!((next - below).abs() < 0.01 && (0.0..0.2).contains(&next), "{next} {below}");
-        for (dx, dy) in [(2, 0), (3, 0), (0, 2), (4, 4), (5, 0), (8, 0), (16, 0), (32, 0), (64, 0), (0, 64), (63, 1), (128, 128)]
+        for (dx, dy) in
+            [(2, 0), (3, 0), (0, 2), (4, 4), (5, 0), (8, 0), (16, 0), (32, 0), (64, 0), (0, 64), (63, 1), (128, 128)]
         {
             let (correlation, pairs) = at(dx, dy);
             assert!(correlation.abs() < 4.5 / pairs.sqrt() + 1e-3, "{pitch}: lag {dx} {dy}: {correlation}");

@@ -72,7 +72,12 @@ fn point_stays_positive_and_whole() {
         let scatter = Scatter::new(&mtf, &raster).expect("a curve");
         scatter.apply(&mut plane);
         let sum: f64 = plane.iter().map(|v| f64::from(*v)).sum();
-        println!("{pitch} mm: sum {:.9}, center {:.4}, residual {:.5}", sum / 1e5, plane[150 * 301 + 150] / 1e5, scatter.residual());
+        println!(
+            "{pitch} mm: sum {:.9}, center {:.4}, residual {:.5}",
+            sum / 1e5,
+            plane[150 * 301 + 150] / 1e5,
+            scatter.residual()
+        );
         assert!((sum / 1e5 - 1.0).abs() < 1e-6, "{pitch}: {sum}");
         assert!(plane.iter().all(|v| *v >= 0.0));
         assert!(scatter.residual() <= residual, "{pitch}: {}", scatter.residual());

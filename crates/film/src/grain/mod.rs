@@ -105,11 +105,23 @@ impl Grain {
         }
         let (level, cells_a_pixel) = self.level(raster.pitch_mm);
         let columns = Taps::new(raster.offset_px[0], raster.width, cells_a_pixel);
-        density.par_chunks_mut(raster.width * TILE).enumerate().for_each_init(Cells::default, |cells, (strip, plane)| {
-            let first = raster.offset_px[1] + (strip * TILE) as i64;
-            let rows = Taps::new(first, plane.len() / raster.width, cells_a_pixel);
-            self.isa.run(Strip { grain: self, level, cells_a_pixel, pitch_mm: raster.pitch_mm, columns: &columns, rows: &rows, cells, plane });
-        });
+        density.par_chunks_mut(raster.width * TILE).enumerate().for_each_init(
+            Cells::default,
+            |cells, (strip, plane)| {
+                let first = raster.offset_px[1] + (strip * TILE) as i64;
+                let rows = Taps::new(first, plane.len() / raster.width, cells_a_pixel);
+                self.isa.run(Strip {
+                    grain: self,
+                    level,
+                    cells_a_pixel,
+                    pitch_mm: raster.pitch_mm,
+                    columns: &columns,
+                    rows: &rows,
+                    cells,
+                    plane,
+                });
+            },
+        );
     }
 
     /// The level whose cells suit a pixel, and how many of them it has along a side.

@@ -81,7 +81,14 @@ impl Spread {
 impl Cells {
     /// The light of finer cells (or pixels, without margin) shared out to the cells around each, linearly by distance, so
     /// that its sum and its center of gravity stay; for a frame of `frame` pixels.
-    fn gathered(fine: &[f32], fine_width: usize, margin: usize, frame: [usize; 2], fine_px: usize, step: usize) -> Self {
+    fn gathered(
+        fine: &[f32],
+        fine_width: usize,
+        margin: usize,
+        frame: [usize; 2],
+        fine_px: usize,
+        step: usize,
+    ) -> Self {
         let cell_px = fine_px * step;
         let (width, height) = (with_margin(frame[0], cell_px), with_margin(frame[1], cell_px));
         let fine_height = fine.len() / fine_width;
