@@ -93,7 +93,8 @@ impl Grain {
     /// Replaces a plane of density (over base and fog) by that of its grains, in place. The mean stays.
     ///
     /// The result of a pixel depends on its own density and its place on the film alone: any cut into tiles gives the
-    /// same bits. Densities of 0 and less, and no numbers, stay as they are. Memory: some tiles.
+    /// same bits. Densities of 0 and less, and no numbers, stay as they are, and so does all where the
+    /// pitch is not positive and finite. Memory: some tiles.
     ///
     /// # Panics
     /// If the plane has another number of pixels than the raster.

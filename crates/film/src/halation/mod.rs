@@ -4,8 +4,8 @@
 //! about the base's index does (Lambert's law inside of the base). A ray at the angle theta to the normal meets the back,
 //! is reflected by Fresnel's law (wholly beyond the critical angle asin(1/n)), and returns to the emulsion at the
 //! distance r = 2 t tan(theta). Backing and base absorb on both ways, each longer by 1/cos(theta). So the ring that
-//! photographers see around a lamp begins at r = 2 t tan(asin(1/n)), as A. Cornu and the brothers Lumiere knew
-//! (C. E. K. Mees, "The Theory of the Photographic Process", 1942, chapter on halation).
+//! photographers see around a lamp begins at r = 2 t tan(asin(1/n)), as A. Cornu found ("Sur le halo
+//! photographique", Comptes rendus 110, 1890; C. E. K. Mees, "The Theory of the Photographic Process", 1942, chapter on halation).
 //!
 //! With sin^2(theta) = r^2 / (r^2 + 4 t^2), the light that returns per area is
 //!
