@@ -9,15 +9,20 @@
 //! - [`display`]: absolute XYZ to a screen, with automatic exposure as one explicit step;
 //! - [`mod@write`]: OpenEXR of the exposure, PNG and TIFF of the picture.
 
+mod convolve;
 mod cube;
 pub mod curve;
 pub mod deposit;
 pub mod develop;
 pub mod display;
 pub mod emulsion;
+pub mod grain;
+pub mod halation;
 mod lookup;
 pub mod positive;
 pub mod print;
 pub mod push;
+pub mod raster;
+pub mod scatter;
 pub mod stock;
 pub mod write;

@@ -1,0 +1,132 @@
+//! The spread as a sum of kernels, each on a grid four times as coarse as the one before.
+//!
+//! The returned light falls with the fourth power of the distance but never ends, and is smooth outside of the ring. So
+//! the ring is computed on the pixels, and each further part on cells of four times the size, up to the frame's diagonal.
+
+use super::base::HalationBase;
+use crate::convolve::Kernel;
+use crate::raster::Raster;
+
+/// How much coarser each level is.
+pub(super) const STEP: usize = 4;
+
+/// The first part ends at so many radii of the ring.
+const RINGS: f64 = 2.2;
+
+/// Where a part begins to fade into the next, over where it ends.
+const FADE: f64 = 0.6;
+
+/// Cells that each part reaches, at least and at most.
+const REACH: (f64, f64) = (24.0, 400.0);
+
+/// One part of the spread.
+pub(super) struct Level {
+    /// Side of its cells, in pixels: a power of [`STEP`].
+    pub(super) cell_px: usize,
+    /// Its kernel, in cells.
+    pub(super) kernel: Kernel,
+}
+
+/// 1 up to `FADE * end`, 0 from `end` on, smooth between.
+fn fading(r: f64, end: f64) -> f64 {
+    let x = ((end - r) / (end * (1.0 - FADE))).clamp(0.0, 1.0);
+    x * x * x * (10.0 + x * (6.0 * x - 15.0))
+}
+
+impl Level {
+    /// All parts, finest first. Together with the light that stays they sum to 1, but for what lies farther away
+    /// than the frame is long.
+    pub(super) fn all(base: &HalationBase, raster: &Raster) -> Vec<Self> {
+        let ring = base.ring_radius_mm();
+        let even = 1.0 / (1.0 + base.returned());
+        // Where pixels are far finer than the ring, it is computed on cells that still are.
+        let mut cell_px = 1;
+        while RINGS * ring / (raster.pitch_mm * cell_px as f64) > REACH.1 {
+            cell_px *= STEP;
+        }
+        let diagonal = ((raster.width * raster.width + raster.height * raster.height) as f64).sqrt() * raster.pitch_mm;
+        let cell = raster.pitch_mm * cell_px as f64;
+        let mut end = (RINGS * ring).max(REACH.0 * cell);
+        let mut before: Option<f64> = None;
+        let mut levels = Vec::new();
+        loop {
+            let weight = |r: f64| fading(r, end) - before.map_or(0.0, |b| fading(r, b));
+            let cell = raster.pitch_mm * cell_px as f64;
+            let radius = (end / cell).ceil() as usize;
+            let density = |r: f64| weight(r) * base.density_per_mm2(r);
+            let kernel = if before.is_none() {
+                let parts = (40.0 * cell / ring).ceil().clamp(4.0, 64.0) as usize;
+                over_pixels(radius, cell, parts, &density)
+            } else {
+                let value = |i: f64, j: f64| density((i * i + j * j).sqrt() * cell);
+                // Sharing light out to cells and interpolating between them spread it by s^2 / 6 each, in the mean and along
+                // each axis: half of the sum, times the Laplacian, is taken off beforehand.
+                Kernel::new(radius, |i, j| {
+                    let (i, j) = (i as f64, j as f64);
+                    let around = value(i - 1.0, j) + value(i + 1.0, j) + value(i, j - 1.0) + value(i, j + 1.0);
+                    value(i, j) - (around - 4.0 * value(i, j)) / 6.0
+                })
+            };
+            let mass = even * base.returned_weighted(weight);
+            let sum = kernel.sum();
+            // A kernel without weight (all absorbed) stays so.
+            let mut kernel = kernel.scaled(if sum > 0.0 { mass / sum } else { 0.0 });
+            if cell_px == 1 {
+                kernel.add_center(even);
+            }
+            let longest = raster.width.max(raster.height).div_ceil(cell_px) + 2 * super::spread::MARGIN;
+            levels.push(Self { cell_px, kernel: kernel.cropped(longest) });
+            if FADE * end >= diagonal {
+                return levels;
+            }
+            before = Some(end);
+            end *= STEP as f64;
+            cell_px *= STEP;
+        }
+    }
+}
+
+/// The kernel of pixels: from a pixel that is evenly bright to the mean over another. The distance between points of two
+/// pixels has a tent of two pixels' width, which `parts` points a pixel sample.
+fn over_pixels(radius: usize, pitch: f64, parts: usize, density: &(impl Fn(f64) -> f64 + Sync)) -> Kernel {
+    // Sampled by squared distance once: the integrand is called for many points.
+    let table = Table::new(pitch * (radius as f64 + 1.0) * 1.5, density);
+    let offsets: Vec<(f64, f64)> = (0..2 * parts)
+        .map(|k| {
+            let x = (k as f64 + 0.5) / parts as f64 - 1.0;
+            (x, (1.0 - x.abs()) / parts as f64)
+        })
+        .collect();
+    Kernel::new(radius, |i, j| {
+        let mut sum = 0.0;
+        for (y, wy) in &offsets {
+            let dy = (j as f64 + y) * pitch;
+            let row = offsets.iter().map(|(x, wx)| {
+                let dx = (i as f64 + x) * pitch;
+                wx * table.at((dx * dx + dy * dy).sqrt())
+            });
+            sum += wy * row.sum::<f64>();
+        }
+        sum * pitch * pitch
+    })
+}
+
+/// A function of the radius, linear between samples.
+struct Table {
+    per_step: f64,
+    values: Vec<f64>,
+}
+
+impl Table {
+    fn new(end: f64, f: &impl Fn(f64) -> f64) -> Self {
+        const STEPS: usize = 65_536;
+        let step = end / STEPS as f64;
+        Self { per_step: 1.0 / step, values: (0..STEPS + 2).map(|k| f(k as f64 * step)).collect() }
+    }
+
+    fn at(&self, r: f64) -> f64 {
+        let p = r * self.per_step;
+        let i = (p as usize).min(self.values.len() - 2);
+        self.values[i] + (self.values[i + 1] - self.values[i]) * (p - i as f64)
+    }
+}

@@ -1,0 +1,78 @@
+//! Halation: light that passes the emulsion, meets the back of the film and comes back.
+//!
+//! A point of the picture scatters light into the base (thickness t, index n) evenly in radiance, as turbid gelatin of
+//! about the base's index does (Lambert's law inside of the base). A ray at the angle theta to the normal meets the back,
+//! is reflected by Fresnel's law (wholly beyond the critical angle asin(1/n)), and returns to the emulsion at the
+//! distance r = 2 t tan(theta). Backing and base absorb on both ways, each longer by 1/cos(theta). So the ring that
+//! photographers see around a lamp begins at r = 2 t tan(asin(1/n)), as A. Cornu found ("Sur le halo
+//! photographique", Comptes rendus 110, 1890; C. E. K. Mees, "The Theory of the Photographic Process", 1942, chapter on halation).
+//!
+//! With sin^2(theta) = r^2 / (r^2 + 4 t^2), the light that returns per area is
+//!
+//! f(r) = R(theta) T^(2/cos(theta)) 4 t^2 / (pi (r^2 + 4 t^2)^2),
+//!
+//! whose integral is the fraction that returns. Light that goes around more than once is left out: it needs a
+//! second reflection at the emulsion, and adds a faint second ring at twice the distance.
+//!
+//! **Energy.** A stock's speed is measured with even light, halation and all. So what arrives is divided by one plus the
+//! returned part: an even, endless exposure stays as it is, and in general the plane's sum after is its sum before less
+//! what falls beside the frame. Beside the frame the film is taken as unexposed.
+
+mod base;
+mod kernel;
+mod spread;
+
+pub use base::{HalationBase, HalationError};
+
+use crate::raster::Raster;
+use kernel::Level;
+use spread::Spread;
+
+/// Halation of one layer on planes of one size.
+///
+/// ```
+/// use spectra_film::halation::{Halation, HalationBase};
+/// use spectra_film::raster::Raster;
+/// let base = HalationBase { thickness_mm: 0.125, index: 1.48, entering: 0.3, transmittance: 0.9 };
+/// assert!((base.ring_radius_mm() - 0.2291).abs() < 5e-5);
+/// let raster = Raster::new(60, 40, 0.012);
+/// let mut exposure = vec![0.0; raster.pixels()];
+/// exposure[20 * 60 + 30] = 1000.0;
+/// Halation::new(&base, &raster)?.apply(&mut exposure);
+/// assert!(exposure[20 * 60 + 30 + 19] > 2.0 * exposure[20 * 60 + 30 + 9]);
+/// # Ok::<(), spectra_film::halation::HalationError>(())
+/// ```
+pub struct Halation {
+    raster: Raster,
+    spread: Option<Spread>,
+}
+
+impl Halation {
+    /// Prepares the halation of `base` for planes of the size and pitch of `raster`.
+    ///
+    /// # Errors
+    /// [`HalationError`] for values out of range, and for a pitch that is not positive and finite.
+    pub fn new(base: &HalationBase, raster: &Raster) -> Result<Self, HalationError> {
+        base.check()?;
+        if !(raster.pitch_mm > 0.0 && raster.pitch_mm.is_finite()) {
+            return Err(HalationError::OutOfRange { what: "pitch", value: raster.pitch_mm, range: "over 0 mm" });
+        }
+        let none = base.returned() == 0.0 || raster.pixels() == 0;
+        let spread = (!none).then(|| Spread::new(Level::all(base, raster), 1.0 / (1.0 + base.returned()), raster));
+        Ok(Self { raster: *raster, spread })
+    }
+
+    /// Spreads the light of a plane of exposure (linear; any unit), in place.
+    ///
+    /// The plane is a whole frame: light of a part of it that is not given is missing. Values that are no number
+    /// count as 0. Takes memory for about one more plane.
+    ///
+    /// # Panics
+    /// If the plane has another number of pixels than the raster.
+    pub fn apply(&self, exposure: &mut [f32]) {
+        assert_eq!(exposure.len(), self.raster.pixels(), "the plane has the size that was prepared for");
+        if let Some(spread) = &self.spread {
+            spread.apply(exposure);
+        }
+    }
+}

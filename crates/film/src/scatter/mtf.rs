@@ -1,0 +1,240 @@
+//! Modulation transfer functions.
+
+use std::f64::consts::{LN_10, PI};
+
+/// How much contrast of a fine pattern a film keeps.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mtf {
+    curve: Curve,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum Curve {
+    /// Frieser's constant, mm.
+    Frieser(f64),
+    /// Gaussians exp(-(f / g)^2): g in cycles/mm, and its weight, from 0 on; the weights sum to 1.
+    Gaussians(Vec<[f64; 2]>),
+}
+
+/// A curve that is none.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum MtfError {
+    /// A value out of range.
+    #[error("{what} {value} is out of range: {range}")]
+    OutOfRange {
+        /// Which value.
+        what: &'static str,
+        /// The value.
+        value: f64,
+        /// What it may be.
+        range: &'static str,
+    },
+    /// Fewer than two points.
+    #[error("a modulation transfer function has at least two points, not {0}")]
+    TooFew(usize),
+    /// Frequencies that do not rise.
+    #[error("frequencies rise from point to point; {1} cycles/mm comes after {0}")]
+    NotRising(f64, f64),
+}
+
+fn in_range(what: &'static str, value: f64, low: f64, high: f64, range: &'static str) -> Result<(), MtfError> {
+    if value >= low && value <= high { Ok(()) } else { Err(MtfError::OutOfRange { what, value, range }) }
+}
+
+impl Mtf {
+    /// H. Frieser's one-constant model: a line of light is spread as 10^(-2 |x| / k), so that
+    /// M(f) = 1 / (1 + (pi k f / ln 10)^2) (H. Frieser, "Spread function and contrast transfer function of photographic
+    /// layers", Photographic Science and Engineering 4, 1960, 324). `k_mm` is the width in which the line falls to a tenth on
+    /// both sides together, 0.0001 to 1 mm; films have 0.005 to 0.04.
+    ///
+    /// # Errors
+    /// [`MtfError::OutOfRange`].
+    pub fn frieser(k_mm: f64) -> Result<Self, MtfError> {
+        in_range("Frieser's constant", k_mm, 1e-4, 1.0, "0.0001 to 1 mm")?;
+        Ok(Self { curve: Curve::Frieser(k_mm) })
+    }
+
+    /// A measured curve: spatial frequency (cycles/mm, rising, from 0 on) and response (0 to 2; 1 is all contrast).
+    ///
+    /// The curve becomes the closest sum of Gaussians of weights from 0 on (least squares at the points): then the spread of a
+    /// point is smooth and positive, which straight lines between measured points are not. A response over 1 is the
+    /// developer's work (adjacency), not the light's, and is taken as 1. [`Mtf::deviation`] tells how well it fits.
+    ///
+    /// # Errors
+    /// [`MtfError`].
+    pub fn measured(points: &[[f64; 2]]) -> Result<Self, MtfError> {
+        check(points)?;
+        Ok(Self { curve: Curve::Gaussians(gaussians(points)) })
+    }
+
+    /// Frieser's model with the constant that fits a measured curve best: least squares at its points, values over 1
+    /// taken as 1.
+    ///
+    /// # Errors
+    /// [`MtfError`].
+    pub fn frieser_through(points: &[[f64; 2]]) -> Result<Self, MtfError> {
+        check(points)?;
+        let model = |log10_k: f64| Self { curve: Curve::Frieser(spectra_core::math::pow(10.0, log10_k)) };
+        let error = |log10_k: f64| -> f64 {
+            let model = model(log10_k);
+            let off = |p: &[f64; 2]| model.response(p[0]) - p[1].min(1.0);
+            points.iter().map(|p| off(p) * off(p)).sum()
+        };
+        // The error has one valley as a rule: find it coarsely, then close in by golden sections.
+        let coarse = (0..161).map(|i| -4.0 + 0.025 * f64::from(i));
+        let best = coarse.min_by(|a, b| error(*a).total_cmp(&error(*b))).unwrap_or(-2.0);
+        let (mut low, mut high) = ((best - 0.025).max(-4.0), (best + 0.025).min(0.0));
+        let golden = (5.0_f64.sqrt() - 1.0) / 2.0;
+        for _ in 0..60 {
+            let (a, b) = (high - golden * (high - low), low + golden * (high - low));
+            if error(a) < error(b) {
+                high = b;
+            } else {
+                low = a;
+            }
+        }
+        Ok(model((low + high) / 2.0))
+    }
+
+    /// Frieser's constant, mm, where this is his model.
+    #[must_use]
+    pub fn frieser_constant_mm(&self) -> Option<f64> {
+        match &self.curve {
+            Curve::Frieser(k_mm) => Some(*k_mm),
+            Curve::Gaussians(_) => None,
+        }
+    }
+
+    /// The response at `frequency` cycles/mm: 1 at 0, falling.
+    #[must_use]
+    pub fn response(&self, frequency: f64) -> f64 {
+        match &self.curve {
+            Curve::Frieser(k_mm) => {
+                let x = PI * k_mm * frequency / LN_10;
+                1.0 / (1.0 + x * x)
+            }
+            Curve::Gaussians(terms) => terms.iter().map(|[g, w]| w * gaussian(frequency, *g)).sum(),
+        }
+    }
+
+    /// Largest difference from measured points, values over 1 taken as 1.
+    #[must_use]
+    pub fn deviation(&self, points: &[[f64; 2]]) -> f64 {
+        points.iter().map(|p| (self.response(p[0]) - p[1].min(1.0)).abs()).fold(0.0, f64::max)
+    }
+
+    /// How far the light goes, mm: beyond, less than a millionth of it lies.
+    pub(super) fn reach_mm(&self) -> f64 {
+        match &self.curve {
+            // The spread of a point is K0(r / a) with a = k / (2 ln 10): 16 a hold all but 4e-7.
+            Curve::Frieser(k_mm) => 16.0 * k_mm / (2.0 * LN_10),
+            // That of a Gaussian is one of the deviation 1 / (sqrt(2) pi g); beyond r lies exp(-(pi g r)^2).
+            Curve::Gaussians(terms) => {
+                let far = |[g, w]: &[f64; 2]| spectra_core::math::log((w * 1e7).max(1.0)).sqrt() / (PI * g);
+                terms.iter().map(far).fold(0.0, f64::max)
+            }
+        }
+    }
+}
+
+fn gaussian(frequency: f64, g: f64) -> f64 {
+    spectra_core::math::exp(-(frequency / g) * (frequency / g))
+}
+
+fn check(points: &[[f64; 2]]) -> Result<(), MtfError> {
+    for point in points {
+        in_range("frequency", point[0], 0.0, 1e5, "0 to 100 000 cycles/mm")?;
+        in_range("response", point[1], 0.0, 2.0, "0 to 2")?;
+    }
+    if let Some(pair) = points.windows(2).find(|pair| pair[1][0] <= pair[0][0]) {
+        return Err(MtfError::NotRising(pair[0][0], pair[1][0]));
+    }
+    let positive = points.iter().filter(|p| p[0] > 0.0).count();
+    if positive < 2 { Err(MtfError::TooFew(positive)) } else { Ok(()) }
+}
+
+/// The sum of Gaussians of a ladder of widths that is closest to the points, weights from 0 on that sum to 1: coordinate
+/// by coordinate (C. L. Lawson and R. J. Hanson, "Solving Least Squares Problems", 1974, pose it).
+fn gaussians(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    const RUNGS: usize = 40;
+    const ROUNDS: usize = 4000;
+    // How much dearer than a point's an error of the sum is.
+    const SUM: f64 = 30.0;
+    let first = points.iter().map(|p| p[0]).find(|f| *f > 0.0).unwrap_or(1.0);
+    let last = points.iter().map(|p| p[0]).fold(first, f64::max);
+    let (low, high) = (first.max(last / 300.0) * 0.7, last * 6.0);
+    let ladder: Vec<f64> =
+        (0..RUNGS).map(|i| low * spectra_core::math::pow(high / low, i as f64 / (RUNGS - 1) as f64)).collect();
+    let column =
+        |g: &f64| -> Vec<f64> { points.iter().map(|p| gaussian(p[0], *g)).chain(std::iter::once(SUM)).collect() };
+    let columns: Vec<Vec<f64>> = ladder.iter().map(column).collect();
+    let mut weights = [0.0; RUNGS];
+    let mut rest: Vec<f64> = points.iter().map(|p| p[1].min(1.0)).chain(std::iter::once(SUM)).collect();
+    for _ in 0..ROUNDS {
+        for (w, column) in weights.iter_mut().zip(&columns) {
+            let square: f64 = column.iter().map(|c| c * c).sum();
+            let slope: f64 = column.iter().zip(&rest).map(|(c, r)| c * r).sum();
+            let next = (*w + slope / square).max(0.0);
+            rest.iter_mut().zip(column).for_each(|(r, c)| *r -= (next - *w) * c);
+            *w = next;
+        }
+    }
+    let sum: f64 = weights.iter().sum();
+    ladder.into_iter().zip(weights).filter(|(_, w)| *w > 0.0).map(|(g, w)| [g, w / sum]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn friesers_curve_is_the_transform_of_his_line() {
+        let k = 0.015;
+        let mtf = Mtf::frieser(k).unwrap();
+        for f in [5.0, 20.0, 49.0, 100.0] {
+            let step = k / 20_000.0;
+            let (mut sum, mut total) = (0.0, 0.0);
+            for i in 0..200_000 {
+                let x = (f64::from(i) + 0.5) * step;
+                let line = spectra_core::math::pow(10.0, -2.0 * x / k);
+                sum += line * spectra_core::math::cos(2.0 * PI * f * x);
+                total += line;
+            }
+            assert!((mtf.response(f) - sum / total).abs() < 1e-6, "{f}");
+        }
+    }
+
+    /// Points of a sheet's shape, without overshoot: a positive spread goes through them.
+    #[test]
+    fn measured_curves_go_through_their_points() {
+        let points = [[5.0, 0.99], [10.0, 0.965], [20.0, 0.87], [40.0, 0.62], [60.0, 0.43], [100.0, 0.22]];
+        let mtf = Mtf::measured(&points).unwrap();
+        println!("deviation {:.5}", mtf.deviation(&points));
+        assert!(mtf.deviation(&points) < 0.005, "{}", mtf.deviation(&points));
+        assert!((mtf.response(0.0) - 1.0).abs() < 1e-12);
+        // Adjacency: what rises over 1 is followed as 1, as far as a positive spread can.
+        let edge = [[3.0, 1.04], [10.0, 1.1], [20.0, 1.05], [40.0, 0.8], [80.0, 0.4], [160.0, 0.15]];
+        let mtf = Mtf::measured(&edge).unwrap();
+        println!("with adjacency: deviation {:.5}", mtf.deviation(&edge));
+        assert!(mtf.deviation(&edge) < 0.08);
+        assert!((0..2000).all(|f| mtf.response(f64::from(f)) >= mtf.response(f64::from(f + 1))));
+    }
+
+    #[test]
+    fn friesers_constant_is_found_again() {
+        let truth = Mtf::frieser(0.0173).unwrap();
+        let points: Vec<[f64; 2]> = (1..20).map(|i| f64::from(i) * 7.0).map(|f| [f, truth.response(f)]).collect();
+        let found = Mtf::frieser_through(&points).unwrap().frieser_constant_mm().unwrap();
+        assert!((found / 0.0173 - 1.0).abs() < 1e-6, "{found}");
+        // His curve is a mixture of Gaussians too, exp(-t) in t = 1/g^2.
+        assert!(Mtf::measured(&points).unwrap().deviation(&points) < 5e-3);
+    }
+
+    #[test]
+    fn bad_curves_are_named() {
+        assert!(matches!(Mtf::measured(&[[1.0, 1.0]]), Err(MtfError::TooFew(1))));
+        assert!(matches!(Mtf::measured(&[[2.0, 1.0], [2.0, 0.9]]), Err(MtfError::NotRising(..))));
+        assert!(matches!(Mtf::measured(&[[2.0, 1.0], [f64::NAN, 0.9]]), Err(MtfError::OutOfRange { .. })));
+        assert!(matches!(Mtf::frieser(0.0), Err(MtfError::OutOfRange { .. })));
+    }
+}

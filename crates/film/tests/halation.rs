@@ -1,0 +1,178 @@
+//! Halation in rendered planes: the ring, the light that is kept, and what falls beside the frame.
+
+use spectra_film::halation::{Halation, HalationBase};
+use spectra_film::raster::Raster;
+
+const ACETATE: HalationBase = HalationBase { thickness_mm: 0.125, index: 1.48, entering: 0.4, transmittance: 0.9 };
+
+/// A point of `light` in the pixel (`x`, `y`).
+fn point(base: &HalationBase, raster: &Raster, x: usize, y: usize, light: f32) -> Vec<f32> {
+    let mut plane = vec![0.0; raster.pixels()];
+    plane[y * raster.width + x] = light;
+    Halation::new(base, raster).expect("a base").apply(&mut plane);
+    plane
+}
+
+fn sum(plane: &[f32]) -> f64 {
+    plane.iter().map(|v| f64::from(*v)).sum()
+}
+
+/// 2 t tan(asin(1/n)) = .2291 mm for t = 0.125 mm, n = 1.48: the profile rises to half of the ring there, and is highest.
+#[test]
+fn ring_begins_where_total_reflection_does() {
+    for pitch in [0.002, 0.004, 0.006] {
+        let side = (1.0 / pitch) as usize | 1;
+        let raster = Raster::new(side, side, pitch);
+        let plane = point(&ACETATE, &raster, side / 2, side / 2, 1e6);
+        // Mean over rings one pixel wide.
+        let mut rings = vec![(0.0, 0); side];
+        for (k, v) in plane.iter().enumerate() {
+            let (dx, dy) = ((k % side) as f64 - (side / 2) as f64, (k / side) as f64 - (side / 2) as f64);
+            let ring = &mut rings[(dx * dx + dy * dy).sqrt().round() as usize];
+            *ring = (ring.0 + f64::from(*v), ring.1 + 1);
+        }
+        let profile: Vec<f64> = rings[..side / 2].iter().map(|(s, n)| s / f64::from(*n)).collect();
+        // From well inside on; the point itself is far brighter.
+        let inside = (0.1 / pitch) as usize;
+        let peak = (inside..profile.len()).max_by(|a, b| profile[*a].total_cmp(&profile[*b])).expect("a profile");
+        let half = profile[peak] / 2.0;
+        let rise = (inside..=peak).rev().find(|r| profile[*r] < half).expect("a rise");
+        let begin = (rise as f64 + (half - profile[rise]) / (profile[rise + 1] - profile[rise])) * pitch;
+        println!("pitch {pitch}: half of the ring at {begin:.4} mm, highest at {:.4} mm", peak as f64 * pitch);
+        assert!((begin / 0.2291 - 1.0).abs() < 0.03, "{begin}");
+        assert!((peak as f64 * pitch / 0.2291 - 1.0).abs() < 0.03, "{}", peak as f64 * pitch);
+    }
+}
+
+/// What the rendered plane has at some distance is the closed form there.
+#[test]
+fn profile_is_the_closed_form() {
+    let pitch = 0.006;
+    let raster = Raster::new(1601, 1201, pitch);
+    let plane = point(&ACETATE, &raster, 800, 600, 1e6);
+    let even = 1.0 + ACETATE.returned();
+    for (x, y, within) in [
+        (20, 0, 0.01),
+        (30, 10, 0.01),
+        (45, 0, 0.01),
+        (40, 30, 0.01),
+        (70, 0, 0.01),
+        (150, 100, 0.01),
+        (600, 333, 0.01),
+    ] {
+        let r = f64::from(x * x + y * y).sqrt() * pitch;
+        let want = 1e6 * pitch * pitch * ACETATE.density_per_mm2(r) / even;
+        let got = f64::from(plane[(600 + y as usize) * 1601 + 800 + x as usize]);
+        println!("{r:.3} mm: {got:.5e}, closed form {want:.5e}");
+        assert!((got / want - 1.0).abs() < within, "{r} mm: {got} {want}");
+    }
+}
+
+/// What leaves the frame is what the closed form puts beside it; all else is kept, to 1e-6 of the light.
+#[test]
+fn light_is_kept() {
+    for (width, height, pitch, at, transmittance) in [
+        (601, 401, 0.006, (300, 200), 0.9),
+        (601, 401, 0.006, (20, 390), 0.6),
+        (601, 401, 0.06, (300, 200), 1.0),
+        (121, 81, 0.3, (60, 40), 0.9),
+        (1001, 701, 0.0005, (500, 350), 0.9),
+    ] {
+        let base = HalationBase { transmittance, ..ACETATE };
+        let raster = Raster::new(width, height, pitch);
+        let plane = point(&base, &raster, at.0, at.1, 1e6);
+        // Beside the frame, by angles around the point: outside of the distance to the border.
+        let border = |angle: f64| {
+            let (s, c) = (spectra_core::math::sin(angle), spectra_core::math::cos(angle));
+            let x = if c > 0.0 { width as f64 - at.0 as f64 - 0.5 } else { at.0 as f64 + 0.5 } * pitch / c.abs();
+            let y = if s > 0.0 { height as f64 - at.1 as f64 - 0.5 } else { at.1 as f64 + 0.5 } * pitch / s.abs();
+            x.min(y)
+        };
+        let returned = base.returned();
+        let angles = 720;
+        let beside: f64 = (0..angles)
+            .map(|k| (f64::from(k) + 0.5) * std::f64::consts::TAU / f64::from(angles))
+            .map(|angle| (returned - base.returned_within(border(angle))) / f64::from(angles))
+            .sum();
+        let want = 1.0 - beside / (1.0 + returned);
+        let got = sum(&plane) / 1e6;
+        println!("{width} x {height} of {pitch} mm: {got:.9}, want {want:.9}, beside {:.3e}", 1.0 - want);
+        assert!((got - want).abs() < 1e-6, "{got} {want}");
+    }
+}
+
+/// Far from every border nothing leaves: the sum is kept to 1e-6.
+#[test]
+fn absorbing_base_keeps_all_light_in_the_frame() {
+    // Grazing light is absorbed, so nothing reaches 2 mm.
+    let base = HalationBase { transmittance: 0.05, ..ACETATE };
+    let raster = Raster::new(2001, 2001, 0.006);
+    let plane = point(&base, &raster, 1000, 1000, 1e6);
+    assert!((sum(&plane) / 1e6 - 1.0).abs() < 1e-6, "{}", sum(&plane));
+}
+
+/// An even exposure keeps its level away from the borders, and falls toward them as the closed form says.
+#[test]
+fn even_light_stays_even() {
+    let raster = Raster::new(1500, 1000, 0.012);
+    let mut plane = vec![2.0; raster.pixels()];
+    Halation::new(&ACETATE, &raster).expect("a base").apply(&mut plane);
+    let center = f64::from(plane[500 * 1500 + 750]);
+    // From 6 mm on, the returned light is missing: at most what comes from beyond.
+    let missing = (ACETATE.returned() - ACETATE.returned_within(6.0)) / (1.0 + ACETATE.returned());
+    assert!(center <= 2.0 + 1e-6 && center >= 2.0 * (1.0 - missing) - 1e-6, "{center}, missing {missing}");
+    // On the border's middle half of the returned light is missing (the pixel is half a pixel inside).
+    let edge = f64::from(plane[750]);
+    let want = 2.0 * (1.0 - ACETATE.returned() / 2.0 / (1.0 + ACETATE.returned()));
+    assert!((edge / want - 1.0).abs() < 0.005, "{edge} {want}");
+}
+
+/// Nothing comes around from the other side of the frame.
+#[test]
+fn nothing_wraps_around() {
+    let raster = Raster::new(300, 200, 0.006);
+    let plane = point(&ACETATE, &raster, 0, 100, 1e6);
+    let row = &plane[100 * 300..101 * 300];
+    assert!(row[299] < row[250], "{} {}", row[299], row[250]);
+    let even = 1.0 + ACETATE.returned();
+    let want = 1e6 * 0.006 * 0.006 * ACETATE.density_per_mm2(299.0 * 0.006) / even;
+    assert!((f64::from(row[299]) / want - 1.0).abs() < 0.01, "{} {want}", row[299]);
+}
+
+#[test]
+fn backing_weakens_the_ring() {
+    let raster = Raster::new(201, 201, 0.006);
+    let ring =
+        |transmittance| point(&HalationBase { transmittance, ..ACETATE }, &raster, 100, 100, 1e6)[100 * 201 + 60];
+    let (none, some) = (ring(1.0), ring(0.5));
+    // Passed twice at the critical angle, cos = sqrt(1 - 1/n^2): both also differ in what even light returns.
+    let cosine = (1.0 - 1.0 / (1.48_f64 * 1.48)).sqrt();
+    let even = |t| 1.0 + HalationBase { transmittance: t, ..ACETATE }.returned();
+    let want = spectra_core::math::pow(0.5, 2.0 / cosine) * even(1.0) / even(0.5);
+    assert!((f64::from(some / none) / want - 1.0).abs() < 0.05, "{} {want}", some / none);
+}
+
+#[test]
+fn no_light_and_no_pixels() {
+    let none = HalationBase { entering: 0.0, ..ACETATE };
+    let raster = Raster::new(3, 2, 0.01);
+    let mut plane = vec![1.0, 2.0, 3.0, 4.0, 5.0, 6.0];
+    Halation::new(&none, &raster).expect("a base").apply(&mut plane);
+    assert_eq!(plane, [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
+    Halation::new(&ACETATE, &Raster::new(0, 0, 0.01)).expect("a base").apply(&mut []);
+    assert!(Halation::new(&ACETATE, &Raster::new(3, 2, f64::NAN)).is_err());
+}
+
+#[test]
+fn same_bits_on_any_threads() {
+    let raster = Raster::new(700, 500, 0.01);
+    let run = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+        pool.install(|| {
+            let mut plane: Vec<f32> = (0..raster.pixels()).map(|k| ((k * 7919) % 1013) as f32).collect();
+            Halation::new(&ACETATE, &raster).expect("a base").apply(&mut plane);
+            plane
+        })
+    };
+    assert!(run(1) == run(3));
+}
