@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use spectra_core::{Isa, RayBatch};
-use spectra_lens::{Indices, Lens, Tracer, Travel};
+use spectra_lens::{Indices, Lens, Section, Tracer, Travel};
 use spectra_plugins as _;
 use spectra_scene::FileResources;
 use std::path::Path;
@@ -228,6 +228,26 @@ fn mirrors_focus_and_light_is_reversible() {
             (DVec3::from_array([0, 1, 2].map(|k| start_p[k][i])), DVec3::from_array([0, 1, 2].map(|k| start_d[k][i])));
         assert!((d - e).length() < 1e-13 && (p - q).cross(e).length() < 1e-11, "ray {i}");
     }
+}
+
+/// An ideal lens has its focal length, whichever way it stands and wherever light comes from; a cylinder has power in one
+/// section.
+#[test]
+fn power_by_the_surface_itself() {
+    for more in ["", ", reversed: true"] {
+        let thin = lens(&format!("  - {{kind: thin-lens, focal-length: 80, thickness: 80{more}}}\n"));
+        assert!((thin.first_order(587.56).efl_mm - 80.0).abs() < 1e-12);
+    }
+    let folded = lens(
+        "  - {kind: plane, mirror: true, thickness: -10}\n\
+         \x20 - {kind: thin-lens, focal-length: 80, thickness: -80}\n",
+    );
+    let f = folded.first_order(587.56);
+    assert!((f.efl_mm - 80.0).abs() < 1e-12 && (f.bfl_mm + 80.0).abs() < 1e-12, "{f:?}");
+    let cylinder =
+        lens("  - {kind: cylinder, radius: 50, axis: x, glass: {nd: 1.5}, thickness: 0}\n  - {kind: plane}\n");
+    let [x, y] = [Section::X, Section::Y].map(|section| cylinder.first_order_in(section, 587.56).efl_mm);
+    assert!((y - 100.0).abs() < 1e-9 && x.is_infinite(), "{x} {y}");
 }
 
 /// A stop with blades passes the light of the circle of the same area; the f-number does not change; light outside of

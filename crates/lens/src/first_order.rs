@@ -88,10 +88,13 @@ impl Lens {
             let e = &self.elements[at];
             let sign = if e.along == e.reversed { -1.0 } else { 1.0 };
             let (n, after) = (sign * index(e.medium_before), sign * index(e.medium_after));
-            let curvature = section.of(e.vertex_curvature_per_mm());
             match e.action {
-                Action::Refract => m = m.bend(curvature * (after - n), n, after),
-                Action::Reflect => m = m.bend(curvature * (-n - n), n, -n),
+                // Turned round, a surface stands between the same media in the other order.
+                Action::Refract => {
+                    let (first, second) = if e.reversed { (after, n) } else { (n, after) };
+                    m = m.bend(section.of(e.surface.paraxial_power_per_mm(first, second)), n, after);
+                }
+                Action::Reflect => m = m.bend(section.of(e.vertex_curvature_per_mm()) * (-n - n), n, -n),
                 Action::Pass => {}
             }
             if at + 1 < end {
