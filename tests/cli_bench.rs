@@ -67,7 +67,7 @@ fn random_numbers_have_a_slope_of_one_half() {
     assert!(even < -0.9, "{even}");
 }
 
-/// The figures that issue 3 asks of the usual strategy: 64 jittered strata, 1 000 seeds.
+/// The figures that the usual strategy is held to: 64 jittered strata, 1 000 seeds.
 #[test]
 fn the_usual_strategy_is_as_good_as_promised() {
     let folder = tempfile::tempdir().expect("a folder");
