@@ -100,6 +100,25 @@ fn chief_rays_pass_the_center_of_the_stop() {
     }
 }
 
+/// Without any sizes there is no limit to the field, but there are chief rays.
+#[test]
+fn chief_rays_need_no_rims() {
+    let full = lens("lenses/zeiss-biotar-50-f1.4.yaml");
+    let mut open = full.clone();
+    open.elements.iter_mut().for_each(|e| e.semi_diameter_mm = None);
+    assert_eq!(open.field_limit(f64::INFINITY).expect("media"), None);
+    let fields = [0.0, 0.1, 0.3];
+    let rays = |lens: &Lens| lens.chief_rays(f64::INFINITY, &fields).expect("media");
+    for (a, b) in rays(&full).iter().zip(rays(&open)) {
+        let (a, b) = (a.expect("a chief ray"), b.expect("a chief ray"));
+        assert!((a.image_mm[1] - b.image_mm[1]).abs() < 1e-8);
+    }
+    // With a stop alone the field reaches on, and the whole beam is found.
+    let stopped = open.at_f_number(5.6).expect("f/5.6");
+    let limit = stopped.field_limit(f64::INFINITY).expect("media").expect("a stop");
+    assert!(limit.field_rad > 0.5, "{limit:?}");
+}
+
 /// With its stop in the front focal plane a lens is telecentric behind: near the axis all chief rays leave along it.
 #[test]
 fn a_stop_in_the_front_focus_is_telecentric() {

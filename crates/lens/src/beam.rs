@@ -47,6 +47,14 @@ fn eye_z_mm(lens: &Lens) -> f64 {
     pupil.filter(|z| z.is_finite()).unwrap_or(0.0)
 }
 
+/// A radius that light enters a lens within whose first surface states no size, mm: some sizes of what does state one
+/// (the stop), and room for the pupil to lie behind it.
+fn far_enough_mm(lens: &Lens) -> f64 {
+    let sized = lens.largest_semi_diameter_mm().map_or(0.0, |size| 4.0 * size);
+    let far = sized + eye_z_mm(lens).abs();
+    if far > 0.0 { far } else { 0.5 * lens.first_order(lens.reference_nm).efl_mm.abs().min(1e6) }
+}
+
 /// A window that rays from an object point are aimed through: a plane across the way to the front of the lens.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Window {
@@ -80,12 +88,13 @@ impl Cut {
 }
 
 impl Window {
-    /// For an object point of a lens; `None` where no surface states a size.
+    /// For an object point of a lens; `None` where no light runs from there to the lens.
     pub(crate) fn new(lens: &Lens, point: ObjectPoint) -> Option<Self> {
         let first = lens.elements.first()?;
-        let radius_mm = first.semi_diameter_mm.or_else(|| lens.largest_semi_diameter_mm())?;
+        let radius_mm = first.semi_diameter_mm.unwrap_or_else(|| far_enough_mm(lens));
         // The cap of the first surface, seen from anywhere, lies inside of a ball about the middle of it.
-        let sag_mm = first.surface.sag_mm(radius_mm, 0.0).unwrap_or(0.0) * if first.reversed { -1.0 } else { 1.0 };
+        let sag_mm = first.semi_diameter_mm.and_then(|r| first.surface.sag_mm(r, 0.0)).unwrap_or(0.0);
+        let sag_mm = if first.reversed { -sag_mm } else { sag_mm };
         let middle = first.pose.origin_mm + DVec3::new(0.0, 0.0, 0.5 * sag_mm);
         let reach_mm = (radius_mm * radius_mm + 0.25 * sag_mm * sag_mm).sqrt() * 1.02;
         let along = match point {
@@ -210,7 +219,7 @@ struct Moments {
 
 impl Beam {
     /// Traces a grid of `cells` by `cells` over what passes of the light of an object point, for each wavelength (nm) with
-    /// its weight. `None` where nothing passes.
+    /// its weight. `None` where nothing passes, or no surface states a size.
     ///
     /// # Errors
     /// A medium has no usable index at a wavelength.
@@ -220,7 +229,8 @@ impl Beam {
         light: &[(f64, f64)],
         cells: usize,
     ) -> Result<Option<Self>, DispersionError> {
-        let Some(window) = Window::new(lens, point) else { return Ok(None) };
+        let limited = lens.largest_semi_diameter_mm().is_some();
+        let Some(window) = Window::new(lens, point).filter(|_| limited) else { return Ok(None) };
         let mut beam = Self::default();
         for (wavelength_nm, weight) in light {
             let tracer = Tracer::new(lens, Indices::At(*wavelength_nm), Isa::detect())?;

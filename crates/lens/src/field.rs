@@ -57,6 +57,9 @@ impl Lens {
     /// A medium has no usable index.
     pub fn field_limit(&self, object_mm: f64) -> Result<Option<FieldLimit>, DispersionError> {
         let nm = self.reference_nm;
+        if self.largest_semi_diameter_mm().is_none() {
+            return Ok(None);
+        }
         let tracer = Tracer::new(self, Indices::At(nm), Isa::detect())?;
         let window = |field_rad: f64| Window::new(self, ObjectPoint::on_sphere(self, object_mm, field_rad));
         let Some(mut cut) = window(0.0).and_then(|w| w.search(&tracer, nm).ok()) else { return Ok(None) };

@@ -79,6 +79,9 @@ pub fn conjugate(lens: &Lens, light: Light, image_mm: DVec3) -> Result<Option<Co
     Ok(most_together(&lines))
 }
 
+/// A line across which the direction runs: place and slope there by the distance along it, and its part of the light.
+type FlatLine = ([f64; 2], [f64; 2], f64);
+
 /// Where lines (a point, a unit direction, a weight) are most together.
 fn most_together(lines: &[(DVec3, DVec3, f64)]) -> Option<Conjugate> {
     let total: f64 = lines.iter().map(|(.., w)| w).sum();
@@ -87,7 +90,7 @@ fn most_together(lines: &[(DVec3, DVec3, f64)]) -> Option<Conjugate> {
     let a = (aside - aside.dot(direction) * direction).normalize();
     let b = direction.cross(a);
     // Each line as place and slope across the direction, by the distance s along it.
-    let flat: Vec<_> = lines
+    let flat: Vec<FlatLine> = lines
         .iter()
         .map(|(p, d, w)| {
             let (s, along) = (p.dot(direction), d.dot(direction));
@@ -95,10 +98,10 @@ fn most_together(lines: &[(DVec3, DVec3, f64)]) -> Option<Conjugate> {
             ([p.dot(a) - slope[0] * s, p.dot(b) - slope[1] * s], slope, w / total)
         })
         .collect();
-    let mean = |of: &dyn Fn(&([f64; 2], [f64; 2], f64)) -> f64| flat.iter().map(|line| line.2 * of(line)).sum::<f64>();
+    let mean = |of: &dyn Fn(&FlatLine) -> f64| flat.iter().map(|line| line.2 * of(line)).sum::<f64>();
     let place = [0, 1].map(|k| mean(&|line| line.0[k]));
     let slope = [0, 1].map(|k| mean(&|line| line.1[k]));
-    let product = |of: &dyn Fn(&([f64; 2], [f64; 2], f64), usize) -> f64| mean(&|line| of(line, 0) + of(line, 1));
+    let product = |of: &dyn Fn(&FlatLine, usize) -> f64| mean(&|line| of(line, 0) + of(line, 1));
     let places = product(&|l, k| (l.0[k] - place[k]) * (l.0[k] - place[k]));
     let mixed = product(&|l, k| (l.0[k] - place[k]) * (l.1[k] - slope[k]));
     let slopes = product(&|l, k| (l.1[k] - slope[k]) * (l.1[k] - slope[k]));

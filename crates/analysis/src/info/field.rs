@@ -35,16 +35,19 @@ pub struct LimitReport {
 
 /// Fields shown, from the axis to the largest.
 const FIELDS: usize = 11;
+/// Largest field shown where nothing limits it: that of a normal lens.
+const NORMAL_FIELD_DEG: f64 = 20.0;
 /// Spatial frequency of the focus by contrast, line pairs a mm.
 pub(super) const FREQUENCY_PER_MM: f64 = 30.0;
 
 /// Largest field angle (degrees), what limits it, and chief rays from the axis to there.
 pub(super) fn field(held: &Lens) -> (Option<f64>, Option<LimitReport>, Vec<FieldReport>) {
-    let Ok(Some(reach)) = held.field_limit(held.focused_mm) else { return (None, None, Vec::new()) };
-    let limit = reach.limit.map(|(cause, surface)| LimitReport { cause: cause.name(), surface });
-    let fields: Vec<f64> = (0..FIELDS).map(|i| reach.field_rad * i as f64 / (FIELDS - 1) as f64).collect();
+    let reach = held.field_limit(held.focused_mm).ok().flatten();
+    let limit = reach.and_then(|r| r.limit).map(|(cause, surface)| LimitReport { cause: cause.name(), surface });
+    let largest_rad = reach.map_or(NORMAL_FIELD_DEG.to_radians(), |r| r.field_rad);
+    let fields: Vec<f64> = (0..FIELDS).map(|i| largest_rad * i as f64 / (FIELDS - 1) as f64).collect();
     let rays = held.chief_rays(held.focused_mm, &fields).unwrap_or_default();
-    (Some(reach.field_rad.to_degrees()), limit, rays.into_iter().flatten().map(FieldReport::from).collect())
+    (reach.map(|r| r.field_rad.to_degrees()), limit, rays.into_iter().flatten().map(FieldReport::from).collect())
 }
 
 /// How far behind the image plane the axial image is by this measure, mm.
