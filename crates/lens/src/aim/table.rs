@@ -206,7 +206,8 @@ impl Table {
         if self.is_stray::<BACKWARD>(point.x, point.y, point.z) {
             return None;
         }
-        let (row, slot, ex, ey) = self.place::<BACKWARD, true>(point.x, point.y, point.z);
+        let (row, slot, ex, ey) =
+            self.place::<BACKWARD, true>(self.eye_z_mm, self.angle_scale, point.x, point.y, point.z);
         let f = |field: usize| self.rows[row].0[field][slot];
         let zone =
             Zone { center: [f(0), f(1), f(2)], half_along: [f(3), f(4)], half_across: f(5), ellipse: f(9) > 0.0 };
@@ -215,11 +216,18 @@ impl Table {
 
     /// Row and slot of a point, and the unit vector from the axis to it.
     #[inline(always)]
-    fn place<const BACKWARD: bool, const MANY: bool>(&self, x: f64, y: f64, z: f64) -> (usize, usize, f64, f64) {
+    fn place<const BACKWARD: bool, const MANY: bool>(
+        &self,
+        eye_z_mm: f64,
+        angle_scale: f64,
+        x: f64,
+        y: f64,
+        z: f64,
+    ) -> (usize, usize, f64, f64) {
         let radius2 = x * x + y * y;
         let radius = radius2.sqrt();
-        let ahead = if BACKWARD { z - self.eye_z_mm } else { self.eye_z_mm - z };
-        let slot = (measure(radius, ahead) * self.angle_scale) as i32;
+        let ahead = if BACKWARD { z - eye_z_mm } else { eye_z_mm - z };
+        let slot = (measure(radius, ahead) * angle_scale) as i32;
         let slot = slot.min(SLOTS as i32 - 1) as usize & (SLOTS - 1);
         // Unit vector away from the axis; on it any will do.
         let on_axis = radius == 0.0;
@@ -276,9 +284,14 @@ impl<const BACKWARD: bool, const RINGS: bool, const MANY: bool> Vectorized for A
         let c = self.rays.columns_mut();
         let dark = aim_loop::<BACKWARD, RINGS, MANY>(
             self.table,
+            &self.table.rows[0].0,
             [self.u, self.v],
-            [c.x, c.y, c.z],
-            [c.l, c.m, c.n],
+            c.x,
+            c.y,
+            c.z,
+            c.l,
+            c.m,
+            c.n,
             c.weight,
             c.state,
         );
@@ -286,12 +299,18 @@ impl<const BACKWARD: bool, const RINGS: bool, const MANY: bool> Vectorized for A
     }
 }
 
+/// Columns come as arguments of their own, and so does the first row: so the compiler knows that none overlaps another.
 #[inline(always)]
 fn aim_loop<const BACKWARD: bool, const RINGS: bool, const MANY: bool>(
     table: &Table,
+    only: &[[f64; SLOTS]; FIELDS],
     [u, v]: [&[f64]; 2],
-    [x, y, z]: [&mut [f64]; 3],
-    [l, m, n]: [&mut [f64]; 3],
+    x: &mut [f64],
+    y: &mut [f64],
+    z: &mut [f64],
+    l: &mut [f64],
+    m: &mut [f64],
+    n: &mut [f64],
     weight: &mut [f64],
     state: &mut [u64],
 ) -> usize {
@@ -300,11 +319,11 @@ fn aim_loop<const BACKWARD: bool, const RINGS: bool, const MANY: bool>(
     let (l, m, n) = (&mut l[..len], &mut m[..len], &mut n[..len]);
     let (weight, state) = (&mut weight[..len], &mut state[..len]);
     let ended = Loss::Vignetted.state(table.surface);
-    let only = &table.rows[0].0;
+    let (eye, scale) = (table.eye_z_mm, table.angle_scale);
     let mut dark = 0_u64;
     for i in 0..len {
         let (px, py, pz) = (x[i], y[i], z[i]);
-        let (row, k, ex, ey) = table.place::<BACKWARD, MANY>(px, py, pz);
+        let (row, k, ex, ey) = table.place::<BACKWARD, MANY>(eye, scale, px, py, pz);
         let f = if MANY { &table.rows[row].0 } else { only };
         let disk = if RINGS { polar_disk(u[i], v[i]) } else { concentric_disk(u[i], v[i]) };
         let ellipse = f[9][k] > 0.0;
@@ -314,7 +333,7 @@ fn aim_loop<const BACKWARD: bool, const RINGS: bool, const MANY: bool>(
         let across = f[1][k] + q * f[5][k];
         let tx = radial * ex - across * ey;
         let ty = radial * ey + across * ex;
-        let tz = table.eye_z_mm + (f[2][k] + p * f[4][k]);
+        let tz = eye + (f[2][k] + p * f[4][k]);
         let (dx, dy, dz) = (tx - px, ty - py, tz - pz);
         let inverse = 1.0 / (dx * dx + dy * dy + dz * dz).sqrt();
         let (dl, dm, dn) = (dx * inverse, dy * inverse, dz * inverse);
