@@ -77,8 +77,6 @@ fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Surface>, Faults> {
     let mut faults = Faults::new();
     shared::curvature(params, "radius-x", p.radius_x, &mut faults);
     shared::curvature(params, "radius-y", p.radius_y, &mut faults);
-    shared::finite(params, "conic-x", p.conic_x, &mut faults);
-    shared::finite(params, "conic-y", p.conic_y, &mut faults);
     let biconic = Biconic::new((p.radius_x.mm(), p.radius_y.mm()), (p.conic_x, p.conic_y));
     faults.into_result(Box::new(PerRay(FromSag(biconic))) as Box<dyn Surface>)
 }

@@ -93,6 +93,5 @@ fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Surface>, Faults> {
     let p: ConicParams = params.parse()?;
     let mut faults = Faults::new();
     let c = shared::curvature(params, "radius", p.radius, &mut faults);
-    shared::finite(params, "conic", p.conic, &mut faults);
     faults.into_result(Box::new(Kernel(Conic::of_curvature(c, p.conic))) as Box<dyn Surface>)
 }

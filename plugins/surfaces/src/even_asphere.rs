@@ -203,7 +203,6 @@ fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Surface>, Faults> {
     let p: EvenAsphereParams = params.parse()?;
     let mut faults = Faults::new();
     let c = shared::curvature(params, "radius", p.radius, &mut faults);
-    shared::finite(params, "conic", p.conic, &mut faults);
     shared::coefficients(params, &p.coefficients, MOST_COEFFICIENTS, &mut faults);
     if !faults.is_empty() {
         return Err(faults);

@@ -69,7 +69,6 @@ fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Surface>, Faults> {
     let p: OddAsphereParams = params.parse()?;
     let mut faults = Faults::new();
     shared::curvature(params, "radius", p.radius, &mut faults);
-    shared::finite(params, "conic", p.conic, &mut faults);
     shared::coefficients(params, &p.coefficients, MOST_COEFFICIENTS, &mut faults);
     let asphere = OddAsphere::new(p.radius.mm(), p.conic, &p.coefficients);
     faults.into_result(Box::new(PerRay(FromSag(asphere))) as Box<dyn Surface>)

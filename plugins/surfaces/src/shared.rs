@@ -15,14 +15,7 @@ pub(crate) fn curvature(params: &Params, key: &str, radius: LengthOrInfinity, fa
     1.0 / radius.mm()
 }
 
-/// A number under `key` that has to be finite.
-pub(crate) fn finite(params: &Params, key: &str, value: f64, faults: &mut Faults) {
-    if !value.is_finite() {
-        faults.push(params.fault(key, format!("found {value}, expected a finite number")));
-    }
-}
-
-/// Coefficients under `coefficients`: finite, and `most` at most.
+/// Checks that there are at most `most` coefficients.
 pub(crate) fn coefficients(params: &Params, values: &[f64], most: usize, faults: &mut Faults) {
     if values.len() > most {
         faults.push(
@@ -30,9 +23,6 @@ pub(crate) fn coefficients(params: &Params, values: &[f64], most: usize, faults:
                 .fault("coefficients", format!("{} coefficients; this kind takes at most {most}", values.len()))
                 .hint("coefficients stand in order of their powers, the lowest first; missing ones are 0"),
         );
-    }
-    for (i, value) in values.iter().enumerate() {
-        finite(params, &format!("coefficients[{i}]"), *value, faults);
     }
 }
 

@@ -91,7 +91,6 @@ fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Surface>, Faults> {
     let mut faults = Faults::new();
     shared::curvature(params, "radius", p.radius, &mut faults);
     shared::curvature(params, "rotation-radius", p.rotation_radius, &mut faults);
-    shared::finite(params, "conic", p.conic, &mut faults);
     shared::coefficients(params, &p.coefficients, MOST_COEFFICIENTS, &mut faults);
     let toroid = Toroid::new(p.radius.mm(), p.conic, &p.coefficients, p.rotation_radius.mm());
     faults.into_result(Box::new(PerRay(FromSag(toroid))) as Box<dyn Surface>)

@@ -177,7 +177,6 @@ fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Surface>, Faults> {
     let p: ZernikeParams = params.parse()?;
     let mut faults = Faults::new();
     shared::curvature(params, "radius", p.radius, &mut faults);
-    shared::finite(params, "conic", p.conic, &mut faults);
     shared::coefficients(params, &p.coefficients, MOST, &mut faults);
     if !faults.is_empty() {
         return Err(faults);
