@@ -77,10 +77,7 @@ fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Surface>, Faults> {
     let mut faults = Faults::new();
     for (key, tilt) in [("tilt-x", p.tilt_x), ("tilt-y", p.tilt_y)] {
         if !(tilt.rad().abs() < std::f64::consts::FRAC_PI_2) {
-            let text = format!(
-                "found {} deg; light along the axis meets the plane below 90 deg only",
-                tilt.rad().to_degrees()
-            );
+            let text = "a plane that is tilted by 90 degrees or more does not face light along the axis";
             faults.push(params.fault(key, text));
         }
     }

@@ -384,7 +384,7 @@ fn even_asphere_never_lands_on_a_wrong_sheet() {
     let (mut met, mut missed) = (0, 0);
     for shape in shapes {
         let surface = Kernel(shape);
-        for i in 0..4000 {
+        for i in 0..1000 {
             let u = |k: u32| 2.0 * spectra_core::numbers::Numbers::random(9).one(0, i, k) - 1.0;
             let sense_z = if i % 2 == 0 { 1.0 } else { -1.0 };
             let d = DVec3::new(1.5 * u(0), 1.5 * u(1), sense_z).normalize();
@@ -417,6 +417,6 @@ fn even_asphere_never_lands_on_a_wrong_sheet() {
             }
         }
     }
-    assert!(met > 4000 && missed > 100, "{met} {missed}");
+    assert!(met > 1000 && missed > 25, "{met} {missed}");
     assert_eq!(sense(DVec3::new(0.0, 0.0, -1.0)), Travel::Backward);
 }
