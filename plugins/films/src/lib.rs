@@ -1,10 +1,12 @@
 //! Built-in film processes.
 
+mod effects;
 mod metering;
 mod stock;
 mod three_strip;
 mod view;
 
+pub use effects::HalationParams;
 pub use metering::{Metering, SpotParams};
 pub use stock::{StockFilm, StockParams};
 pub use three_strip::{RecordParams, ThreeStrip, ThreeStripParams};

@@ -1,5 +1,6 @@
 //! `film: stock`, film from a data file: exposed, developed, and printed, scanned or projected.
 
+use crate::effects::{Effects, HalationParams};
 use crate::metering::{Meter, Metering, SpotParams};
 use crate::view::{PaperParams, Picture, View, seen};
 use serde::Deserialize;
@@ -51,6 +52,15 @@ pub struct StockParams {
     pub lamp: Option<String>,
     /// The light that film and prints are looked at by: D55 if left out.
     pub light: Option<String>,
+    /// Whether the emulsion spreads light, where the stock's file has its modulation transfer; `true` if left out.
+    pub scatter: Option<bool>,
+    /// What the back of the film throws back; as the stock's file says if left out.
+    pub halation: Option<HalationParams>,
+    /// Whether silver is grainy, where the stock's file has its granularity; `true` if left out.
+    pub grain: Option<bool>,
+    /// Which piece of film it is: another seed, other grains.
+    #[serde(default)]
+    pub grain_seed: u64,
 }
 
 /// A film from a data file.
@@ -62,6 +72,7 @@ pub struct StockFilm {
     channels: Vec<Channel>,
     exposure_time_s: f64,
     meter: Meter,
+    effects: Effects,
     picture: Picture,
     words: String,
 }
@@ -92,12 +103,13 @@ impl StockFilm {
         let (Some((emulsion, development)), Some(meter), Some(mut channels)) = (developed, meter, channels) else {
             return Err(faults);
         };
-        faults.into_result(())?;
+        let effects = faults.take(Effects::new(&p, params, &stock));
+        let Some(effects) = faults.into_result(effects)? else { return Err(Faults::new()) };
         let seen = seen(&p, params, context.resources, &stock, &emulsion, metered_exposure_lx_s(speed))?;
         channels.extend(meter.channel(&context.grid));
         let exposure_time_s = p.exposure.map_or(1.0, |t| t.s());
         let (picture, words) = (seen.picture, seen.words);
-        Ok(Self { stock, development, emulsion, channels, exposure_time_s, meter, picture, words })
+        Ok(Self { stock, development, emulsion, channels, exposure_time_s, meter, effects, picture, words })
     }
 
     /// The stock.
@@ -129,9 +141,13 @@ impl StockFilm {
         let factor = self.meter.factor(exposure);
         let time_s = self.exposure_time_s * factor;
         let effect = self.stock.reciprocity.as_ref().map_or(1.0, |r| r.effect(time_s));
+        let raster = self.effects.raster(exposure.size)?;
         let layers = self.stock.layers.iter().enumerate().map(|(i, layer)| {
             let mut plane = channel(exposure, &layer.name).map_err(|error| error.to_string())?.values.clone();
+            self.effects.spread(i, &mut plane, &raster)?;
             self.emulsion.develop(i, &mut plane, factor * effect);
+            let clear = self.emulsion.amount(i, f64::NEG_INFINITY);
+            self.effects.grain(i, &mut plane, clear as f32, &raster)?;
             Ok(plane)
         });
         layers.collect()

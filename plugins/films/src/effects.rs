@@ -1,0 +1,129 @@
+//! What happens inside of the film: light is spread before the curve, silver lies in grains after it.
+
+use crate::stock::StockParams;
+use serde::Deserialize;
+use spectra_core::frame::FrameSize;
+use spectra_core::params::{Faults, Length, Params, Positive};
+use spectra_film::grain::Grain;
+use spectra_film::halation::{Halation, HalationBase};
+use spectra_film::raster::Raster;
+use spectra_film::scatter::{Mtf, Scatter};
+use spectra_film::stock::{Densitometry, Stock};
+
+/// `halation` as written in a scene; see [`HalationBase`].
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct HalationParams {
+    /// Light that enters the base, over the light that exposes the layer.
+    pub entering: f64,
+    /// Transmittance of base and backing, passed once.
+    pub transmittance: f64,
+    /// Thickness of the base, mm if bare; the stock's first base if left out.
+    pub thickness: Option<Positive<Length>>,
+    /// Refractive index of the base; the stock's if left out.
+    pub index: Option<f64>,
+}
+
+/// The effects of one film.
+#[derive(Clone, Debug)]
+pub(crate) struct Effects {
+    /// Of each layer, where it is known.
+    mtf: Vec<Option<Mtf>>,
+    halation: Option<HalationBase>,
+    /// RMS granularity at 48 um and the density 1.
+    rms: Option<f64>,
+    seed: u64,
+}
+
+impl Effects {
+    pub(crate) fn new(p: &StockParams, params: &Params, stock: &Stock) -> Result<Self, Faults> {
+        let mut faults = Faults::new();
+        if p.scatter == Some(true) && stock.layers.iter().all(|l| l.mtf.is_empty()) {
+            let text = format!("{} has no modulation transfer in its file", stock.name);
+            faults.push(params.fault("scatter", text).hint("leave it out, or give the stock's layers an `mtf`"));
+        }
+        let scatters = p.scatter.unwrap_or(true);
+        let mut mtf = Vec::new();
+        for layer in &stock.layers {
+            let measured = (scatters && !layer.mtf.is_empty())
+                .then(|| Mtf::measured(&layer.mtf).map_err(|e| params.fault("stock", format!("{}: {e}", stock.name))));
+            mtf.push(measured.and_then(|m| faults.take(m)));
+        }
+        let grainy = stock.granularity.filter(|_| stock.densitometry == Densitometry::Visual);
+        if p.grain == Some(true) && grainy.is_none() {
+            let text = format!("{} has no granularity of silver in its file", stock.name);
+            faults.push(params.fault("grain", text).hint("leave it out, or give the stock a `granularity`"));
+        }
+        // At another density the variance goes with the density (Nutting), at another aperture with one over the area (Selwyn).
+        let at_one = |g: spectra_film::stock::Granularity| g.rms * (g.aperture_mm / 0.048) / g.density.sqrt();
+        let rms = grainy.filter(|_| p.grain.unwrap_or(true)).map(at_one);
+        if let Some(rms) = rms
+            && let Err(error) = Grain::calibrated(rms, p.grain_seed, 0)
+        {
+            faults.push(params.fault("stock", format!("{}: {error}", stock.name)));
+        }
+        let halation = halation(p, params, stock, &mut faults);
+        faults.into_result(Self { mtf, halation, rms, seed: p.grain_seed })
+    }
+
+    /// Where the pixels of a frame lie on the film.
+    pub(crate) fn raster(&self, size: FrameSize) -> Result<Raster, String> {
+        let across = size.width_mm / f64::from(size.width_px);
+        let down = size.height_mm / f64::from(size.height_px);
+        let any = self.halation.is_some() || self.rms.is_some() || self.mtf.iter().any(Option::is_some);
+        if any && (across / down - 1.0).abs() > 0.01 {
+            return Err(format!(
+                "scatter, halation and grain need square pixels, not {across:.5} x {down:.5} mm: give a resolution of the \
+                 format's shape, or `scatter: false, grain: false`"
+            ));
+        }
+        Ok(Raster::new(size.width_px as usize, size.height_px as usize, (across * down).sqrt()))
+    }
+
+    /// Spreads the light of a layer.
+    pub(crate) fn spread(&self, layer: usize, plane: &mut [f32], raster: &Raster) -> Result<(), String> {
+        if let Some(mtf) = &self.mtf[layer] {
+            Scatter::new(mtf, raster).map_err(|e| e.to_string())?.apply(plane);
+        }
+        if let Some(base) = &self.halation {
+            Halation::new(base, raster).map_err(|e| e.to_string())?.apply(plane);
+        }
+        Ok(())
+    }
+
+    /// Turns the densities of a layer into those of its grains; `clear` is that of base and fog, which has none.
+    pub(crate) fn grain(&self, layer: usize, plane: &mut [f32], clear: f32, raster: &Raster) -> Result<(), String> {
+        let Some(rms) = self.rms else { return Ok(()) };
+        let grain = Grain::calibrated(rms, self.seed, layer as u32).map_err(|e| e.to_string())?;
+        plane.iter_mut().for_each(|d| *d -= clear);
+        grain.apply(plane, raster);
+        plane.iter_mut().for_each(|d| *d += clear);
+        Ok(())
+    }
+}
+
+fn halation(p: &StockParams, params: &Params, stock: &Stock, faults: &mut Faults) -> Option<HalationBase> {
+    let base = stock.bases.first();
+    let (entering, transmittance) = match (&p.halation, &stock.halation) {
+        (Some(h), _) => (h.entering, h.transmittance),
+        (None, Some(h)) => (h.scattered, h.backing),
+        (None, None) => return None,
+    };
+    let thickness_mm = p.halation.and_then(|h| h.thickness).map(|t| t.mm()).or_else(|| base.map(|b| b.thickness_mm));
+    let index = p.halation.and_then(|h| h.index).or_else(|| base.and_then(|b| b.index));
+    let (Some(thickness_mm), Some(index)) = (thickness_mm, index) else {
+        let missing = if thickness_mm.is_none() { "thickness" } else { "index" };
+        let fault = params.fault("halation", format!("the {missing} of the base of {} is not known", stock.name));
+        faults.push(fault.hint("`halation: {entering: 0.2, transmittance: 0.5, thickness: 0.125 mm, index: 1.48}`"));
+        return None;
+    };
+    let base = HalationBase { thickness_mm, index, entering, transmittance };
+    // A frame of one pixel is enough to have the values checked.
+    match Halation::new(&base, &Raster::new(1, 1, 1.0)) {
+        Ok(_) => Some(base),
+        Err(error) => {
+            faults.push(params.fault("halation", error.to_string()));
+            None
+        }
+    }
+}
