@@ -17,9 +17,8 @@ fn load(name: &str) -> Lens {
 
 /// The lenses that are bundled, but prisms and the like: what has a stop takes pictures.
 fn library() -> Vec<(String, Lens)> {
-    let names = spectra_data::list("lenses/").filter_map(|path| {
-        path.strip_prefix("lenses/").and_then(|name| name.strip_suffix(".yaml")).map(str::to_owned)
-    });
+    let names = spectra_data::list("lenses/")
+        .filter_map(|path| path.strip_prefix("lenses/").and_then(|name| name.strip_suffix(".yaml")).map(str::to_owned));
     names.map(|name| (name.clone(), load(&name))).filter(|(_, lens)| lens.stop().is_some()).collect()
 }
 
@@ -103,8 +102,7 @@ fn focal_lengths_and_f_numbers_are_the_stated_ones() {
 fn every_lens_is_documented() {
     let library = library();
     assert!(library.len() >= 20, "{}", library.len());
-    let unsized_stops =
-        ["zeiss-biotar-50-f1.4", "helios-44-58-f2", "canon-fd-50-f1.8", "zeiss-hologon-15-f8"];
+    let unsized_stops = ["zeiss-biotar-50-f1.4", "helios-44-58-f2", "canon-fd-50-f1.8", "zeiss-hologon-15-f8"];
     for (name, lens) in library {
         assert!(lens.source.is_some() && lens.remark.is_some(), "{name}");
         let dated = lens.year.is_some() && lens.maker.is_some();

@@ -56,7 +56,8 @@ def names():
 
 
 def pictures(program, name, info):
-    run(program, "lens", "draw", name, "--width", "420", "--rays", "5", "-o", IMAGES / f"{name}.png")
+    section = "x" if info.get("efl_x_mm") else "y"
+    run(program, "lens", "draw", name, "--section", section, "--width", "640", "--wavelengths", "e", "-o", IMAGES / f"{name}.svg")
     frame = FORMATS.get(name, "135")
     width, height = SIZES[frame]
     # Two metres, or forty focal lengths; the chart fills the frame, and a fisheye's reaches to 60 degrees or so.
@@ -69,10 +70,11 @@ def pictures(program, name, info):
         rows=rows, focus=f"{round(distance)} mm",
     )  # fmt: skip
     with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / f"{name}.yaml"
+        # Not named like the lens: what stands beside a scene is found before what is bundled.
+        path = Path(folder) / "shot.yaml"
         path.write_text(scene, encoding="utf-8")
         run(program, "run", path, "--output", folder, "--quiet", "--threads", "1")
-        (IMAGES / f"{name}-chart.png").write_bytes((Path(folder) / f"{name}.png").read_bytes())
+        (IMAGES / f"{name}-chart.png").write_bytes((Path(folder) / "shot.png").read_bytes())
 
 
 def head(name):
@@ -88,7 +90,7 @@ def page(infos):
     lines = [
         "# The lens library",
         "",
-        "Every lens in `lenses/`, with its drawing (rays at the axis, at 0.6 and at 0.95 of the largest field that passes) and the",
+        "Every lens in `lenses/`, with its drawing (rays of the e line on the axis, at 0.6 and at 0.95 of the largest field that passes) and the",
         "resolution chart through it, wide open, focused at 2 m or forty focal lengths by the paraxial rule. Focal length and f-number are",
         "those of the reference line, by the real marginal ray. Where each comes from, and what is doubtful, stands in its file;",
         "`tests/lenses.rs` holds them to the figures of their patents. Written by `xtask/lens_sheet.py`.",
@@ -111,7 +113,7 @@ def page(infos):
             "",
             f"`{name}`: {', '.join(facts)}. Source: {about['source']}.",
             "",
-            f"![{about['name']}, drawing](images/lenses/{name}.png)",
+            f"![{about['name']}, drawing](images/lenses/{name}.svg)",
             f"![{about['name']}, chart](images/lenses/{name}-chart.png)",
             "",
         ]
@@ -126,7 +128,7 @@ def main():
     with ThreadPoolExecutor(2) as pool:
         list(pool.map(lambda name: pictures(program, name, infos[name]), wanted))
     page(infos)
-    total = sum(p.stat().st_size for p in IMAGES.glob("*.png"))
+    total = sum(p.stat().st_size for p in IMAGES.glob("*"))
     print(f"{len(infos)} lenses, {total / 1e6:.2f} MB of pictures")
 
 
