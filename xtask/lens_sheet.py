@@ -26,12 +26,12 @@ FORMATS = {
     "meyer-primoplan-100-f1.5": "6x4.5",
     "nikon-retrofocus-100-f2.8": "6x9",
     "zeiss-biotar-100-f1.4": "6x4.5",
-    "asahi-takumar-100-f1.2": "6x6",
-    "nikkor-100-f1.4": "6x6",
+    "asahi-takumar-100-f1.2": "6x4.5",
+    "nikkor-100-f1.4": "6x4.5",
     "kodak-petzval-100-f2.2": "academy",
     "schneider-anamorphic-60": "super-35",
 }
-SIZES = {"135": (36, 24), "6x4.5": (56, 41.5), "6x6": (56, 56), "6x9": (84, 56), "academy": (22, 16), "super-35": (24.89, 18.67)}
+SIZES = {"135": (36, 24), "6x4.5": (56, 41.5), "6x9": (84, 56), "academy": (22, 16), "super-35": (24.89, 18.67)}
 
 SCENE = """spectra: 1
 source: {{kind: chart, chart: resolution, distance: {distance} mm, width: {width} mm, illuminant: D65, luminance: 300 cd/m2}}
@@ -60,10 +60,11 @@ def pictures(program, name, info):
     run(program, "lens", "draw", name, "--section", section, "--width", "640", "--wavelengths", "e", "-o", IMAGES / f"{name}.svg")
     frame = FORMATS.get(name, "135")
     width, height = SIZES[frame]
-    # Two metres, or forty focal lengths; the chart fills the frame, and a fisheye's reaches to 60 degrees or so.
+    # Two metres, or forty focal lengths; the cylinders of an anamorphic are set for infinity. The chart fills the frame;
+    # a fisheye's is wider.
     focal = info.get("efl_x_mm") or info["efl_mm"]
-    distance = max(2000.0, 40 * info["efl_mm"])
-    across = width / focal * distance
+    distance = 1e6 if info.get("efl_x_mm") else max(2000.0, 40 * info["efl_mm"])
+    across = width / focal * distance * (2.2 if "fisheye" in name else 1.0)
     rows = 160
     scene = SCENE.format(
         name=name, format=frame, distance=round(distance), width=round(1.02 * across), columns=round(rows * width / height / 2) * 2,
@@ -91,7 +92,7 @@ def page(infos):
         "# The lens library",
         "",
         "Every lens in `lenses/`, with its drawing (rays of the e line on the axis, at 0.6 and at 0.95 of the largest field that passes) and the",
-        "resolution chart through it, wide open, focused at 2 m or forty focal lengths by the paraxial rule. Focal length and f-number are",
+        "resolution chart through it, wide open, focused at 2 m or forty focal lengths (the anamorphic at 1 km) by the paraxial rule. Focal length and f-number are",
         "those of the reference line, by the real marginal ray. Where each comes from, and what is doubtful, stands in its file;",
         "`tests/lenses.rs` holds them to the figures of their patents. Written by `xtask/lens_sheet.py`.",
         "",
