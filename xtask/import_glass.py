@@ -386,6 +386,18 @@ def from_agf(catalogue, archive, member, maker, source, year, strip="", replace=
     return count
 
 
+# In the typed-in table the base indices of twelve dense flints of Schott stand in other rows than their dispersion:
+# with the index of the row on the right each has the nd and Vd of its six-digit code, of the same type of other makers
+# (SF18, SF19 of OHARA) and of its successors (SF56A, SF57), and the twelve values are used up once each.
+ROBB_ROWS = {
+    "SF17": "1.651546", "SF18": "1.723262", "SF19": "1.668239", "SF50": "1.656144", "SF51": "1.661675",
+    "SF52": "1.690119", "SF53": "1.730102", "SF54": "1.742670", "SF55": "1.763801", "SF56": "1.786830",
+    "SF57": "1.849171", "SF58": "1.920613",
+}  # fmt: skip
+# Corning names its glasses by their code: 658573 has nd 1.658 and Vd 57.3, its row gives 1.691 and 54.7.
+ROBB_WRONG = {("CORNING", "658573")}
+
+
 def from_robb(catalogue, text):
     makers = {"SCHOTT": "SCHOTT", "OHARA": "OHARA", "HOYA": "HOYA", "CORNING-FRANCE": "CORNING", "CHANCE": "CHANCE"}
     maker = None
@@ -400,6 +412,10 @@ def from_robb(catalogue, text):
         if len(words) < 7:
             continue
         name, values = " ".join(words[:-6]), words[-6:]
+        if (maker, name) in ROBB_WRONG:
+            continue
+        if maker == "SCHOTT":
+            values[0] = ROBB_ROWS.get(name, values[0])
         if catalogue.has(maker, name):
             catalogue.mark_first_year(maker, name, 1983)
             continue

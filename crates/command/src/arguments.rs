@@ -1,6 +1,7 @@
 //! What can be written after `spectra`.
 
 use crate::film::FilmArguments;
+use crate::glass::GlassArguments;
 use crate::quantity::parse;
 use crate::spectrum::SpectrumArguments;
 use crate::version;
@@ -51,6 +52,8 @@ pub(crate) enum Command {
     Bench(Bench),
     /// Look at spectra: their color in figures, and pictures of them.
     Spectrum(SpectrumArguments),
+    /// Look at glass: refractive index, Abbe diagram, nearest glass, fits.
+    Glass(GlassArguments),
 }
 
 /// `spectra run`.

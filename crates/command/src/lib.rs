@@ -9,6 +9,7 @@ mod bench;
 mod check;
 mod console;
 mod film;
+mod glass;
 mod lens;
 mod licences;
 mod list;
@@ -62,6 +63,7 @@ fn dispatch(arguments: &Arguments, started: Instant) -> Outcome {
         Some(Command::Film(arguments)) => film::film(&arguments.command),
         Some(Command::Bench(bench)) => bench::bench(bench, isa),
         Some(Command::Spectrum(spectrum)) => spectrum::spectrum(&spectrum.command),
+        Some(Command::Glass(glass)) => glass::glass(&glass.command),
         // The parser shows help where neither a command nor a flag stands.
         None => Ok(outcome::DONE),
     }

@@ -10,9 +10,13 @@
 //! ```
 
 mod cauchy;
+mod linear_forms;
+mod samples;
 mod sellmeier;
 
 pub use cauchy::{CauchyRows, cauchy_by_rows, cauchy_least_squares};
+pub use linear_forms::{conrady_least_squares, herzberger_least_squares, schott_least_squares};
+pub use samples::{NamedSamples, SamplesError, read_csv};
 pub use sellmeier::sellmeier_least_squares;
 
 use thiserror::Error;

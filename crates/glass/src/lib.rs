@@ -31,7 +31,10 @@ mod linear;
 pub mod lines;
 mod medium;
 
-pub use catalogue::{Candidate, Catalogue, CatalogueError, FindError, Match, Query};
+pub use catalogue::{
+    Candidate, Catalogue, CatalogueError, Deviation, Era, EraError, FindError, LISTED_TOLERANCE_ND,
+    LISTED_TOLERANCE_VD, ListedCheck, Match, Query,
+};
 pub use dispersion::{Dispersion, DispersionError, Rational};
 pub use formula::{Formula, Melt, ModelGlass, NumberedFormula, Table, TableError};
 pub use glass::{Category, Extinction, Glass, Status, Thermal};

@@ -3,7 +3,9 @@
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
-use spectra_glass::{Catalogue, Category, FindError, Formula, Glass, LineTriple, Medium, Query, Status};
+use spectra_glass::{
+    Catalogue, Category, Deviation, Era, FindError, Formula, Glass, LineTriple, Medium, Query, Status,
+};
 
 fn find(name: &str) -> Glass {
     Catalogue::bundled().find(name).unwrap_or_else(|e| panic!("{e}"))
@@ -61,22 +63,11 @@ fn more_than_3_000_media_of_the_makers_and_of_all_kinds() {
 /// `data/listed-deviations.csv`, neither more nor fewer.
 #[test]
 fn computed_nd_and_vd_are_the_listed_ones() {
-    let mut listed = 0;
-    let mut deviating = Vec::new();
-    for glass in Catalogue::bundled().glasses() {
-        let (Some(nd), Some(vd)) = (glass.listed_nd, glass.listed_vd) else {
-            continue;
-        };
-        // Made from the listed values, so no proof of them.
-        if matches!(glass.formula, Formula::Model(_)) {
-            continue;
-        }
-        listed += 1;
-        let (dn, dv) = (glass.nd() - nd, glass.vd() - vd);
-        if !(dn.abs() <= 1e-4 && dv.abs() <= 0.1) {
-            deviating.push(format!("{},{nd},{:.6},{vd},{:.3}", glass.full_name(), glass.nd(), glass.vd()));
-        }
-    }
+    let check = Catalogue::bundled().check_listed();
+    let listed = check.listed;
+    let row =
+        |d: &Deviation| format!("{},{},{:.6},{},{:.3}", d.glass.full_name(), d.listed_nd, d.nd, d.listed_vd, d.vd);
+    let mut deviating: Vec<String> = check.deviating.iter().map(row).collect();
     deviating.sort();
     println!("{listed} listed, {} deviate:\n{}", deviating.len(), deviating.join("\n"));
     assert!(listed > 1800);
@@ -231,4 +222,40 @@ fn start_up_is_short() {
     assert!(build < Duration::from_millis(5), "{build:?}");
     assert!(find < Duration::from_millis(1), "{find:?}");
     assert!(text.len() <= 1_250_000);
+}
+
+/// Eras narrow a search: no lanthanum glass for a lens of 1927, and none of 1983's dropped ones for one of today.
+#[test]
+fn eras_of_glass() {
+    let catalogue = Catalogue::bundled();
+    let best = |n: f64, v: f64, era: Era| {
+        let mut query = Query::new(n, Some(v), LineTriple::FDC);
+        query.makers = vec!["SCHOTT".into()];
+        era.narrow(&mut query);
+        catalogue.nearest(&query).into_iter().map(|m| m.glass).collect::<Vec<_>>()
+    };
+    // LaK9's own values, and those of the Biotar's dense barium crown.
+    assert_eq!(best(1.691, 54.7, Era::Historical)[0].name, "LAK9");
+    assert!(best(1.691, 54.7, Era::Year(1927)).iter().all(|g| !g.name.starts_with("LA")));
+    assert_eq!(best(1.6228, 56.87, Era::Year(1927))[0].name, "SK10");
+    let modern = best(1.64329, 47.72, Era::Modern);
+    assert!(modern.iter().all(|g| g.status != Status::Obsolete && g.years.is_some_and(|(_, last)| last >= 2017)));
+    // The rule of thumb for the time before rare earths, against the names of Schott's list of 1983: it keeps the old
+    // kinds (F, BaF, SK, ...), and no lanthanum glass.
+    let mut kept = [0, 0];
+    let mut dropped = [0, 0];
+    for glass in catalogue.glasses() {
+        if &*glass.maker != "SCHOTT" || glass.years.is_none_or(|(first, _)| first > 1983) {
+            continue;
+        }
+        let rare_earth = usize::from(glass.name.starts_with("LA"));
+        let admits = Era::Year(1927).admits(&glass);
+        let side = if admits { &mut kept } else { &mut dropped };
+        side[rare_earth] += 1;
+        if !admits && rare_earth == 0 {
+            println!("dropped {} nd {:.4} Vd {:.1}", glass.name, glass.nd(), glass.vd());
+        }
+    }
+    println!("kept {kept:?}, dropped {dropped:?}");
+    assert!(kept[0] >= 175 && kept[1] == 0 && dropped[0] <= 16 && dropped[1] >= 40, "{kept:?} {dropped:?}");
 }

@@ -2,10 +2,14 @@
 //!
 //! The bundled catalogue stays text: only names are indexed at the start, and a record is parsed when it is asked for.
 
+mod check;
+mod era;
 mod find;
 mod nearest;
 mod text;
 
+pub use check::{Deviation, LISTED_TOLERANCE_ND, LISTED_TOLERANCE_VD, ListedCheck};
+pub use era::{Era, EraError};
 pub use find::{Candidate, FindError};
 pub use nearest::{Match, Query};
 

@@ -1,6 +1,6 @@
 //! The real glass behind a patent's index and Abbe number.
 
-use super::Catalogue;
+use super::{Catalogue, Era};
 use crate::glass::{Category, Glass, Status};
 use crate::lines::LineTriple;
 
@@ -21,6 +21,8 @@ pub struct Query {
     pub known_by: Option<u16>,
     /// Only glasses still found in a catalogue of this year or later.
     pub still_in: Option<u16>,
+    /// Only what a designer of that time could have had; see [`Era::narrow`].
+    pub era: Option<Era>,
     /// Whether obsolete glasses count.
     pub obsolete: bool,
     /// How many to list.
@@ -39,6 +41,7 @@ impl Query {
             categories: vec![Category::OpticalGlass],
             known_by: None,
             still_in: None,
+            era: None,
             obsolete: true,
             count: 10,
         }
@@ -49,7 +52,8 @@ impl Query {
         let category = self.categories.is_empty() || self.categories.contains(&glass.category);
         let known = self.known_by.is_none_or(|year| glass.years.is_some_and(|(first, _)| first <= year));
         let still = self.still_in.is_none_or(|year| glass.years.is_some_and(|(_, last)| year <= last));
-        maker && category && known && still && (self.obsolete || glass.status != Status::Obsolete)
+        let of_era = self.era.is_none_or(|era| era.admits(glass));
+        maker && category && known && still && of_era && (self.obsolete || glass.status != Status::Obsolete)
     }
 }
 

@@ -1,10 +1,14 @@
-//! Whole figures of spectra and their colors.
+//! Whole figures of spectra, their colors, and of glasses.
 
+mod abbe;
 mod chromaticity;
+mod dispersion;
 mod spectrum;
 mod swatches;
 
+pub use abbe::{AbbeGroup, abbe};
 pub use chromaticity::chromaticity;
+pub use dispersion::{IndexCurve, dispersion};
 pub use spectrum::spectrum;
 pub use swatches::swatches;
 
@@ -51,6 +55,12 @@ const SAMPLE: f64 = 30.0;
 fn entry(canvas: &mut Canvas, at: Point, name: &str, stroke: &Stroke, style: &TextStyle) {
     let y = at[1] - style.half_cap();
     canvas.line([at[0], y], [at[0] + SAMPLE - 7.0, y], stroke);
+    canvas.text([at[0] + SAMPLE, at[1]], name, style);
+}
+
+/// As [`entry`], with a disc in place of a line.
+fn entry_disc(canvas: &mut Canvas, at: Point, name: &str, color: Color, style: &TextStyle) {
+    canvas.disc([at[0] + 0.5 * (SAMPLE - 7.0), at[1] - style.half_cap()], 4.0, color);
     canvas.text([at[0] + SAMPLE, at[1]], name, style);
 }
 

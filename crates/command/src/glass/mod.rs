@@ -1,0 +1,83 @@
+//! `spectra glass`: refractive index.
+
+mod arguments;
+mod check;
+mod fit;
+mod info;
+mod nearest;
+mod plot;
+
+pub(crate) use arguments::GlassArguments;
+
+use crate::console;
+use crate::outcome::{Failure, Outcome};
+use arguments::{GlassCommand, OwnCatalogues};
+use spectra_core::params::nearest as near_words;
+use spectra_glass::{Catalogue, agf};
+use std::borrow::Cow;
+use std::io::Read;
+use std::path::Path;
+
+/// Runs a command on glass.
+pub(crate) fn glass(command: &GlassCommand) -> Outcome {
+    match command {
+        GlassCommand::Info(arguments) => info::info(arguments),
+        GlassCommand::Plot(arguments) => plot::plot(arguments),
+        GlassCommand::Match(arguments) => nearest::nearest(arguments),
+        GlassCommand::Fit(arguments) => fit::fit(arguments),
+        GlassCommand::Check(arguments) => check::check(arguments),
+    }
+}
+
+/// Largest file that is read, bytes: makers' catalogues have some hundred thousand.
+const MAX_BYTES: u64 = 16 << 20;
+
+/// The bundled catalogue, with the user's own glasses; what of those is not understood is told.
+fn catalogue(own: &OwnCatalogues) -> Result<Cow<'static, Catalogue>, Failure> {
+    let mut catalogue = Cow::Borrowed(Catalogue::bundled());
+    for path in &own.files {
+        let bytes = read(path)?;
+        let maker = path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
+        let read = agf::read(&bytes, &maker);
+        for problem in &read.problems {
+            console::warning(&format!("{}:{}: {}", path.display(), problem.line, problem.message));
+        }
+        if read.glasses.is_empty() {
+            let hint = "a glass catalogue (AGF) has lines `NM ...` and `CD ...`";
+            return Err(Failure::Input(format!("{}: no glass in it; {hint}", path.display())));
+        }
+        catalogue.to_mut().add(read.glasses);
+    }
+    Ok(catalogue)
+}
+
+/// A whole file, or standard input for `-`.
+fn read(path: &Path) -> Result<Vec<u8>, Failure> {
+    let refuse = |text: String| Failure::Input(format!("{}: {text}", path.display()));
+    let mut bytes = Vec::new();
+    if path == Path::new("-") {
+        let input = std::io::stdin().lock();
+        input.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(|e| refuse(format!("cannot be read: {e}")))?;
+    } else {
+        let file = std::fs::File::open(path).map_err(|e| refuse(format!("cannot be read: {e}")))?;
+        file.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(|e| refuse(format!("cannot be read: {e}")))?;
+    }
+    if bytes.len() as u64 > MAX_BYTES {
+        return Err(refuse(format!("larger than {} MB", MAX_BYTES >> 20)));
+    }
+    Ok(bytes)
+}
+
+/// The makers' names as the catalogue writes them.
+fn makers(asked: &[String], catalogue: &Catalogue) -> Result<Vec<String>, Failure> {
+    let known = catalogue.makers();
+    let find = |name: &String| {
+        let name = name.trim();
+        known.iter().find(|k| k.eq_ignore_ascii_case(name)).cloned().ok_or_else(|| {
+            let near = near_words(name, known.iter().map(String::as_str));
+            let hint = near.map_or(String::new(), |near| format!("; did you mean {near}?"));
+            Failure::Input(format!("no maker `{name}`{hint}"))
+        })
+    };
+    asked.iter().map(find).collect()
+}

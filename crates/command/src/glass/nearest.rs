@@ -1,0 +1,196 @@
+//! `spectra glass match`.
+
+use super::arguments::GlassMatch;
+use super::{catalogue, makers};
+use crate::console;
+use crate::outcome::{DONE, Failure, Outcome};
+use serde::Serialize;
+use spectra_glass::{Catalogue, Category, LineTriple, Match, Query, lines};
+use spectra_lens::Lens;
+use spectra_scene::FileResources;
+use std::fmt::Write;
+use std::path::Path;
+
+/// The glasses nearest to one pair of figures.
+#[derive(Debug, Serialize)]
+struct Report {
+    /// How the lens names the medium; null where figures were given.
+    medium: Option<String>,
+    /// Surfaces of the lens in front of the medium, from 1.
+    surfaces: Vec<usize>,
+    line: &'static str,
+    n: f64,
+    v: Option<f64>,
+    matches: Vec<Row>,
+}
+
+/// A glass.
+#[derive(Debug, Serialize)]
+struct Row {
+    name: String,
+    maker: String,
+    n: f64,
+    v: f64,
+    delta_n: f64,
+    /// Null where no Abbe number was given.
+    delta_v: Option<f64>,
+    /// 1 is the usual tolerance of a catalogue.
+    distance: f64,
+    status: &'static str,
+    years: Option<(u16, u16)>,
+}
+
+/// A medium of a lens: label, surfaces, index, Abbe number.
+struct Wanted {
+    label: Option<String>,
+    surfaces: Vec<usize>,
+    n: f64,
+    v: Option<f64>,
+}
+
+/// Finds the nearest glasses.
+pub(crate) fn nearest(arguments: &GlassMatch) -> Outcome {
+    let catalogue = catalogue(&arguments.own)?;
+    let (lines, wanted) = match &arguments.lens {
+        Some(name) => {
+            let lens = spectra_lens::load(name, &FileResources::beside(Path::new("")))?;
+            let lines = triple(lens.reference_nm);
+            (lines, media(&lens, lines))
+        }
+        None => {
+            let n = arguments.nd.unwrap_or(f64::NAN);
+            let refuse = |what: &str| Err(Failure::Input(what.to_owned()));
+            if !(1.0..=4.0).contains(&n) {
+                return refuse("--nd: an index lies between 1 and 4");
+            }
+            if arguments.vd.is_some_and(|v| !(1.0..=1000.0).contains(&v)) {
+                return refuse("--vd: an Abbe number lies between 1 and 1000");
+            }
+            (arguments.line, vec![Wanted { label: None, surfaces: Vec::new(), n, v: arguments.vd }])
+        }
+    };
+    let makers = makers(&arguments.makers, &catalogue)?;
+    let limit = arguments.limit.map_or(if arguments.lens.is_some() { 3 } else { 10 }, usize::from);
+    let reports: Vec<Report> = wanted
+        .into_iter()
+        .map(|wanted| {
+            let mut query = Query::new(wanted.n, wanted.v, lines);
+            query.makers.clone_from(&makers);
+            query.count = limit;
+            if arguments.all_media {
+                query.categories.clear();
+            } else {
+                query.categories.push(Category::User);
+            }
+            if let Some(era) = arguments.era {
+                era.narrow(&mut query);
+            }
+            report(&catalogue, wanted, &query)
+        })
+        .collect();
+    match (&arguments.lens, arguments.json) {
+        (None, true) => console::pretty_json(&reports[0])?,
+        (Some(_), true) => console::pretty_json(&reports)?,
+        (_, false) => console::out(&reports.iter().map(text).collect::<Vec<_>>().join("\n"))?,
+    }
+    if reports.iter().any(|r| r.matches.is_empty()) {
+        console::note("no glass fits; widen --maker or --era");
+    }
+    Ok(DONE)
+}
+
+/// The lines that belong to a reference wavelength; d's for one that defines no Abbe number.
+fn triple(reference_nm: f64) -> LineTriple {
+    let line = lines::ALL.into_iter().find(|line| line.wavelength_nm == reference_nm);
+    line.and_then(LineTriple::of_reference).unwrap_or(LineTriple::FDC)
+}
+
+/// The media of a lens but air, each once, with the surfaces in front of them.
+fn media(lens: &Lens, lines: LineTriple) -> Vec<Wanted> {
+    let surfaces = |medium: usize| -> Vec<usize> {
+        let after = |(i, e): (usize, &spectra_lens::Element)| {
+            (e.medium_after == medium && e.medium_before != medium).then_some(i + 1)
+        };
+        lens.elements.iter().enumerate().filter_map(after).collect()
+    };
+    let of = |(at, medium): (usize, &spectra_lens::LensMedium)| {
+        let v = medium.medium.abbe_number(lines);
+        Wanted {
+            label: Some(medium.label.clone()),
+            surfaces: surfaces(at),
+            n: medium.stated_nd.unwrap_or_else(|| medium.medium.index(lines.mid.wavelength_nm)),
+            v: (v.is_finite() && v > 0.0).then_some(v),
+        }
+    };
+    lens.media.iter().enumerate().skip(1).map(of).collect()
+}
+
+fn report(catalogue: &Catalogue, wanted: Wanted, query: &Query) -> Report {
+    let row = |m: Match| Row {
+        name: m.glass.full_name(),
+        maker: m.glass.maker.to_string(),
+        n: m.n,
+        v: m.v,
+        delta_n: m.delta_n,
+        delta_v: query.v.map(|_| m.delta_v),
+        distance: m.distance,
+        status: m.glass.status.name(),
+        years: m.glass.years,
+    };
+    Report {
+        medium: wanted.label,
+        surfaces: wanted.surfaces,
+        line: query.lines.mid.name,
+        n: wanted.n,
+        v: wanted.v,
+        matches: catalogue.nearest(query).into_iter().map(row).collect(),
+    }
+}
+
+fn text(report: &Report) -> String {
+    let line = report.line;
+    let mut out = String::new();
+    // Writing to a String cannot fail.
+    if let Some(medium) = &report.medium {
+        let numbers: Vec<String> = report.surfaces.iter().map(ToString::to_string).collect();
+        let _ = write!(out, "behind surface {}: {medium}, ", numbers.join(", "));
+    }
+    let _ = write!(out, "n{line} {}", report.n);
+    let _ = report.v.map(|v| write!(out, ", V{line} {}", rounded(v)));
+    let width = report.matches.iter().map(|row| row.name.len()).max().unwrap_or(0).max(5);
+    let _ = writeln!(
+        out,
+        "\n  {:<width$}  {:>9}  {:>7}  {:>9}  {:>7}  {:>8}  {:<9}  listed",
+        "glass",
+        format!("n{line}"),
+        format!("V{line}"),
+        "dn",
+        "dV",
+        "distance",
+        "status"
+    );
+    for row in &report.matches {
+        let years = row.years.map_or(String::new(), |(first, last)| match first == last {
+            true => first.to_string(),
+            false => format!("{first}-{last}"),
+        });
+        let line = format!(
+            "  {:<width$}  {:>9.5}  {:>7.2}  {:>+9.5}  {:>7}  {:>8.2}  {:<9}  {years}",
+            row.name,
+            row.n,
+            row.v,
+            row.delta_n,
+            row.delta_v.map_or(String::new(), |v| format!("{v:+.2}")),
+            row.distance,
+            row.status,
+        );
+        let _ = writeln!(out, "{}", line.trim_end());
+    }
+    out
+}
+
+/// Two decimals, without zeros at the end.
+fn rounded(value: f64) -> String {
+    let text = format!("{value:.2}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}

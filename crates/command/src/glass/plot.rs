@@ -1,0 +1,92 @@
+//! `spectra glass plot`.
+
+use super::arguments::GlassPlot;
+use super::{catalogue, makers};
+use crate::console;
+use crate::outcome::{DONE, Failure, Outcome};
+use spectra_glass::{Catalogue, Category, LineTriple, Medium, Query, lines};
+use spectra_plot::figure::{self, AbbeGroup, IndexCurve};
+use spectra_plot::{Canvas, Format, PlotError};
+use std::path::PathBuf;
+
+/// Spectral lines that are marked in a drawing.
+const MARKED: [&str; 9] = ["i", "h", "g", "F", "e", "d", "C", "r", "s"];
+/// Points of a curve.
+const POINTS: usize = 600;
+
+/// Draws indices or the Abbe diagram.
+pub(crate) fn plot(arguments: &GlassPlot) -> Outcome {
+    let default = || PathBuf::from(if arguments.abbe { "abbe.svg" } else { "dispersion.svg" });
+    let output = arguments.output.clone().unwrap_or_else(default);
+    // Before anything is computed: a wrong ending is found out at once.
+    Format::of(&output).map_err(failure)?;
+    let catalogue = catalogue(&arguments.own)?;
+    let find = |name: &String| match catalogue.medium(name) {
+        Ok(medium) => Ok((name.trim().to_owned(), medium)),
+        Err(error) => Err(Failure::Input(error.to_string())),
+    };
+    let media = arguments.names.iter().map(find).collect::<Result<Vec<_>, Failure>>()?;
+    let canvas =
+        if arguments.abbe { abbe(arguments, &catalogue, &media)? } else { dispersion(&media, arguments.range_nm)? };
+    canvas.write(&output).map_err(failure)?;
+    console::note(&format!("wrote {}", output.display()));
+    Ok(DONE)
+}
+
+fn failure(error: PlotError) -> Failure {
+    match error {
+        PlotError::Ending { .. } => Failure::Input(error.to_string()),
+        PlotError::Write(error) => error.into(),
+    }
+}
+
+fn dispersion(media: &[(String, Medium)], band_nm: (f64, f64)) -> Result<Canvas, Failure> {
+    let step = (band_nm.1 - band_nm.0) / POINTS as f64;
+    let mut curves = Vec::new();
+    for (name, medium) in media {
+        let at = |i: usize| band_nm.0 + step * i as f64;
+        let points: Vec<[f64; 2]> = (0..=POINTS).map(|i| [at(i), medium.index(at(i))]).collect();
+        if points.iter().all(|p| !p[1].is_finite()) {
+            let (from, to) = band_nm;
+            return Err(Failure::Input(format!("{name} has no index from {from} to {to} nm")));
+        }
+        curves.push(IndexCurve { name: name.clone(), points, range_nm: medium.range_nm() });
+    }
+    let marks: Vec<(&str, f64)> =
+        lines::ALL.iter().filter(|line| MARKED.contains(&line.name)).map(|l| (l.name, l.wavelength_nm)).collect();
+    Ok(figure::dispersion(&curves, band_nm, &marks))
+}
+
+fn abbe(arguments: &GlassPlot, catalogue: &Catalogue, media: &[(String, Medium)]) -> Result<Canvas, Failure> {
+    let makers = makers(&arguments.makers, catalogue)?;
+    let glasses = |maker: Option<&String>| {
+        let mut query = Query::new(1.5, None, LineTriple::FDC);
+        query.count = usize::MAX;
+        query.makers.extend(maker.cloned());
+        query.categories.push(Category::User);
+        if let Some(era) = arguments.era {
+            era.narrow(&mut query);
+        }
+        let points = catalogue.nearest(&query).iter().map(|m| [m.glass.vd(), m.n]).filter(visible).collect();
+        AbbeGroup { name: maker.map_or("all makers", String::as_str).to_owned(), points }
+    };
+    let groups: Vec<AbbeGroup> =
+        if makers.is_empty() { vec![glasses(None)] } else { makers.iter().map(|m| glasses(Some(m))).collect() };
+    let mut named = Vec::new();
+    for (name, medium) in media {
+        let (n, v) = (medium.index(lines::D.wavelength_nm), medium.abbe_number(LineTriple::FDC));
+        if !visible(&[v, n]) {
+            return Err(Failure::Input(format!("{name} has no Abbe number that a diagram can show")));
+        }
+        named.push((name.clone(), [v, n]));
+    }
+    for group in groups.iter().filter(|g| g.points.is_empty()) {
+        console::warning(&format!("no optical glass of {} fits", group.name));
+    }
+    Ok(figure::abbe(&groups, &named))
+}
+
+/// What an Abbe diagram has room for.
+fn visible([v, n]: &[f64; 2]) -> bool {
+    (1.0..=4.0).contains(n) && (5.0..=130.0).contains(v)
+}

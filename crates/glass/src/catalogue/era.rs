@@ -1,0 +1,113 @@
+//! Which glasses a designer of some time could have had.
+
+use std::str::FromStr;
+
+use super::nearest::Query;
+use crate::glass::{Glass, Status};
+use crate::lines::LineTriple;
+
+/// A time, as far as the bundled catalogues tell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Era {
+    /// Glasses that were listed by that year. The oldest bundled list is of 1983: before that, all it holds; before 1940,
+    /// of these the ones without rare earths and without fluor phosphates (see [`Era::admits`]).
+    Year(u16),
+    /// Glasses listed by 1983.
+    Historical,
+    /// Glasses of catalogues of 2017 and later that are still made.
+    Modern,
+}
+
+/// Year of the oldest bundled list.
+const OLDEST: u16 = 1983;
+/// Year from which a catalogue counts as of today.
+const TODAY: u16 = 2017;
+/// Rare-earth glasses came into lenses after the patent of G. W. Morey (US 2150694, filed 1936, granted 1939).
+const RARE_EARTH: u16 = 1940;
+
+/// Not an era.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("`{0}` is no era: historical, modern, or a year from 1880 to 2100")]
+pub struct EraError(String);
+
+impl FromStr for Era {
+    type Err = EraError;
+
+    fn from_str(text: &str) -> Result<Era, EraError> {
+        match text.trim() {
+            "historical" => Ok(Era::Historical),
+            "modern" => Ok(Era::Modern),
+            year => match year.parse() {
+                Ok(year @ 1880..=2100) => Ok(Era::Year(year)),
+                _ => Err(EraError(text.to_owned())),
+            },
+        }
+    }
+}
+
+impl Era {
+    /// Narrows a search to glasses of this era.
+    pub fn narrow(self, query: &mut Query) {
+        match self {
+            Era::Year(year) => {
+                query.known_by = Some(year.max(OLDEST));
+                query.era = Some(self);
+            }
+            Era::Historical => query.known_by = Some(OLDEST),
+            Era::Modern => {
+                query.still_in = Some(TODAY);
+                query.obsolete = false;
+            }
+        }
+    }
+
+    /// Whether a glass fits the era by what it is, its years apart.
+    ///
+    /// Before 1940 that is a rule of thumb, drawn through Schott's list of 1983: the old glasses (fluor, phosphate and
+    /// boron crowns, crowns and flints, barium crowns and flints) keep below nd + 0.0066 Vd = 2.02 and Vd = 71, most
+    /// lanthanum glasses lie above; those that do not are told by their names. The list has no years of first
+    /// melting, so some younger glass of an old kind passes.
+    #[must_use]
+    pub fn admits(self, glass: &Glass) -> bool {
+        match self {
+            Era::Year(year) if year < RARE_EARTH => {
+                let (nd, vd) = (glass.nd(), glass.abbe_number(LineTriple::FDC));
+                nd + 0.0066 * vd <= 2.02 && vd <= 71.0 && !has_name_of_rare_earths(&glass.name)
+            }
+            Era::Modern => glass.status != Status::Obsolete,
+            Era::Year(_) | Era::Historical => true,
+        }
+    }
+}
+
+/// Lanthanum, tantalum and niobium types of the makers: LaK, LaF, N-LaSF, TaC, TaFD, NbF, S-LAL, J-LASF ...
+fn has_name_of_rare_earths(name: &str) -> bool {
+    let upper = name.to_uppercase();
+    // A letter and a hyphen before the type tell how it is made.
+    let bare = upper.split_once('-').filter(|(before, _)| before.len() <= 2).map_or(upper.as_str(), |(_, rest)| rest);
+    ["LA", "TA", "NB"].iter().any(|kind| bare.starts_with(kind))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn eras_are_words_or_years() {
+        assert_eq!(" 1927".parse(), Ok(Era::Year(1927)));
+        assert_eq!("modern".parse(), Ok(Era::Modern));
+        for bad in ["", "old", "27", "19277", "-1927"] {
+            assert!(bad.parse::<Era>().is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn names_of_rare_earths() {
+        for name in ["LAK9", "N-LASF44", "S-LAL14", "TaFD5", "NbF1", "LaF2"] {
+            assert!(has_name_of_rare_earths(name), "{name}");
+        }
+        for name in ["SK16", "BAF9", "N-BK7", "KZFSN5", "F2", "BALF4", "PLANE"] {
+            assert!(!has_name_of_rare_earths(name), "{name}");
+        }
+    }
+}

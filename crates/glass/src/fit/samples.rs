@@ -1,0 +1,171 @@
+//! Tables of measured indices, as text.
+
+use super::Sample;
+
+/// The samples of one material of a file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedSamples {
+    /// Name of the material, where the file has a column for it.
+    pub name: Option<String>,
+    /// Its rows, in the order of the file.
+    pub samples: Vec<Sample>,
+}
+
+/// A line of a table that cannot be read.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("line {line}: {message}")]
+pub struct SamplesError {
+    /// Line, from 1.
+    pub line: usize,
+    /// What is wrong.
+    pub message: String,
+}
+
+/// Names of the columns, and the unit of wavelengths in nm.
+const WAVELENGTH: [(&str, f64); 8] = [
+    ("wavelength_nm", 1.0),
+    ("wavelength", 1.0),
+    ("lambda_nm", 1.0),
+    ("nm", 1.0),
+    ("wavelength_um", 1000.0),
+    ("lambda_um", 1000.0),
+    ("um", 1000.0),
+    ("wl", 1000.0), // refractiveindex.info's exports
+];
+const INDEX: [&str; 4] = ["n", "index", "refractive_index", "nd"];
+const MATERIAL: [&str; 4] = ["material", "name", "glass", "medium"];
+
+/// Wavelengths from 10 nm to 1 mm: what lies outside is a slip of the unit.
+const SENSIBLE_NM: std::ops::RangeInclusive<f64> = 10.0..=1e6;
+
+struct Columns {
+    wavelength: usize,
+    unit_nm: f64,
+    index: usize,
+    material: Option<usize>,
+}
+
+/// Reads a table of wavelengths and indices: columns `wavelength_nm` (or `wavelength_um`) and `n`, found by name, and
+/// `material` where a file holds several; a file without a head has wavelengths in nm and indices. Lines that begin
+/// with `#` are remarks; values are parted by commas, semicolons, tabs or blanks.
+///
+/// # Errors
+/// The first line that cannot be read; a file without samples.
+pub fn read_csv(text: &str) -> Result<Vec<NamedSamples>, SamplesError> {
+    let mut columns: Option<Columns> = None;
+    let mut found: Vec<NamedSamples> = Vec::new();
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    for (i, line) in text.lines().enumerate() {
+        let line = line.trim();
+        if line.is_empty() || line.starts_with('#') {
+            continue;
+        }
+        let fail = |message: String| SamplesError { line: i + 1, message };
+        let values = split(line);
+        let number = |at: usize| values.get(at).and_then(|v| v.parse::<f64>().ok());
+        let Some(columns) = &columns else {
+            let head = if number(0).is_some() && number(1).is_some() {
+                Columns { wavelength: 0, unit_nm: 1.0, index: 1, material: None }
+            } else {
+                head(&values).map_err(fail)?
+            };
+            if number(0).is_some() {
+                push(&mut found, &head, &values).map_err(fail)?;
+            }
+            columns = Some(head);
+            continue;
+        };
+        push(&mut found, columns, &values).map_err(fail)?;
+    }
+    if found.is_empty() {
+        let message = "no samples: a table has columns `wavelength_nm` and `n`".to_owned();
+        return Err(SamplesError { line: text.lines().count().max(1), message });
+    }
+    Ok(found)
+}
+
+fn split(line: &str) -> Vec<&str> {
+    let by = |c: char| line.split(c).map(|v| v.trim().trim_matches('"')).collect();
+    match [',', ';', '\t'].into_iter().find(|c| line.contains(*c)) {
+        Some(separator) => by(separator),
+        None => line.split_ascii_whitespace().collect(),
+    }
+}
+
+fn head(names: &[&str]) -> Result<Columns, String> {
+    let lower: Vec<String> = names.iter().map(|n| n.to_lowercase().replace([' ', '-'], "_")).collect();
+    let place = |known: &[&str]| lower.iter().position(|n| known.contains(&n.as_str()));
+    let wavelength = WAVELENGTH.iter().find_map(|(name, unit)| Some((place(&[name])?, *unit)));
+    let (Some((wavelength, unit_nm)), Some(index)) = (wavelength, place(&INDEX)) else {
+        let found = names.join(", ");
+        return Err(format!("columns `wavelength_nm` (or `wavelength_um`) and `n` are needed; found: {found}"));
+    };
+    Ok(Columns { wavelength, unit_nm, index, material: place(&MATERIAL) })
+}
+
+fn push(found: &mut Vec<NamedSamples>, columns: &Columns, values: &[&str]) -> Result<(), String> {
+    let number = |at: usize, what: &str| {
+        let text = values.get(at).copied().unwrap_or_default();
+        let value = text.parse::<f64>().ok().filter(|v| v.is_finite());
+        value.ok_or_else(|| format!("`{text}` is no {what}"))
+    };
+    let wavelength_nm = number(columns.wavelength, "wavelength")? * columns.unit_nm;
+    if !SENSIBLE_NM.contains(&wavelength_nm) {
+        return Err(format!(
+            "a wavelength of {wavelength_nm} nm; name the column `wavelength_um` where it is in micrometres"
+        ));
+    }
+    let n = number(columns.index, "index")?;
+    if !(1.0..=10.0).contains(&n) {
+        return Err(format!("an index of {n}: it lies between 1 and 10"));
+    }
+    let name = columns.material.map(|at| values.get(at).copied().unwrap_or_default().to_owned());
+    let sample = Sample { wavelength_nm, n };
+    match found.iter_mut().find(|group| group.name == name) {
+        Some(group) => group.samples.push(sample),
+        None => found.push(NamedSamples { name, samples: vec![sample] }),
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_are_found_by_name_or_place() {
+        let plain = read_csv("486.1 1.523\n589.3 1.517\n").expect("good");
+        assert_eq!(plain[0].samples[1], Sample { wavelength_nm: 589.3, n: 1.517 });
+        for text in [
+            "# remark\nwavelength_nm,n\n486.1,1.523\n589.3,1.517\n",
+            "n;wavelength_nm\r\n1.523;486.1\r\n1.517;589.3\r\n",
+            "\u{feff}Wavelength_um\tn\n0.4861\t1.523\n0.5893\t1.517",
+            "486.1, 1.523\n\n589.3, 1.517",
+        ] {
+            let read = read_csv(text).expect(text);
+            assert_eq!(read.len(), 1);
+            for (got, made) in read[0].samples.iter().zip(&plain[0].samples) {
+                assert!((got.wavelength_nm - made.wavelength_nm).abs() < 1e-9 && got.n == made.n, "{text}");
+            }
+        }
+        let two = read_csv("material,wavelength_nm,n\nA,486,1.5\nB,486,1.6\nA,589,1.49\n").expect("good");
+        let names: Vec<_> = two.iter().map(|g| (g.name.as_deref(), g.samples.len())).collect();
+        assert_eq!(names, [(Some("A"), 2), (Some("B"), 1)]);
+    }
+
+    #[test]
+    fn what_is_wrong_has_its_line() {
+        for (text, line, word) in [
+            ("", 1, "no samples"),
+            ("wavelength_nm,k\n", 1, "found: wavelength_nm, k"),
+            ("wavelength_nm,n\n486,x\n", 2, "`x` is no index"),
+            ("wavelength_nm,n\n\n486\n", 3, "`` is no index"),
+            ("wavelength_nm,n\n486,0.9\n", 2, "between 1 and 10"),
+            ("0.486 1.52\n", 1, "wavelength_um"),
+            ("wavelength_nm,n\n486,nan\n", 2, "`nan`"),
+        ] {
+            let error = read_csv(text).expect_err(text);
+            assert!(error.line == line && error.message.contains(word), "{text}: {error}");
+        }
+    }
+}

@@ -1,0 +1,221 @@
+//! `spectra glass`: what is known of a glass, pictures, nearest glasses, fits.
+
+mod common;
+
+use common::{good, lens, repository, run, shown, text};
+use serde_json::Value;
+use std::time::{Duration, Instant};
+
+fn json(arguments: &[&str]) -> Value {
+    let output = good(&[&["glass"][..], arguments, &["--json"]].concat());
+    serde_json::from_str(&output).expect("JSON")
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("no number: {value}"))
+}
+
+/// The message of a run that must be refused as bad input.
+fn refused(arguments: &[&str]) -> String {
+    let output = run(&[&["glass"][..], arguments].concat());
+    assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+    text(&output.stderr)
+}
+
+/// Schott's data sheets: nd, nF, nC, ng, ne, Vd, Ve.
+#[test]
+fn makers_values_are_shown() {
+    let info = json(&["info", "N-BK7", "--wavelength-nm", "632.8"]);
+    for (found, wanted, tolerance) in [
+        (&info["nd"], 1.516800, 1e-6),
+        (&info["vd"], 64.17, 0.005),
+        (&info["ne"], 1.518722, 1e-6),
+        (&info["ve"], 63.96, 0.005),
+        (&info["n"]["F"], 1.522376, 1e-6),
+        (&info["n"]["C"], 1.514322, 1e-6),
+        (&info["n"]["g"], 1.526685, 1e-6),
+        // n at 632.8 nm, in the data sheet; internal transmittance of 10 mm at 400 nm and above: 0.997.
+        (&info["n_at"], 1.515089, 1e-5),
+        (&info["internal_transmittance_10mm"]["h"], 0.997, 1e-3),
+        (&info["reflectance"], 0.0421646, 1e-7),
+    ] {
+        assert!((number(found) - wanted).abs() <= tolerance, "{found} is not {wanted}");
+    }
+    assert_eq!([&info["maker"], &info["name"], &info["relative_to"]], ["SCHOTT", "SCHOTT/N-BK7", "air"]);
+    assert_eq!(info["range_nm"], serde_json::json!([300.0, 2500.0]));
+    assert!(info["formula"].is_string() && info["coefficients"].is_array());
+    let table = good(&["glass", "info", "schott/f2"]);
+    for wanted in ["SCHOTT/F2", "1.620040", "36.37", "internal transmittance", "dn/dT"] {
+        assert!(table.contains(wanted), "{wanted}: {table}");
+    }
+    assert!(!table.contains("null") && !table.contains("NaN"));
+}
+
+#[test]
+fn temperature_and_vacuum() {
+    // Schott's data sheet of SF6: 1e6 dn/dT at e, 20 to 40 C: 11.1 relative, 9.5 absolute.
+    let at = |more: &[&str]| number(&json(&[&["info", "SCHOTT/SF6"], more].concat())["ne"]);
+    let slope = |more: &[&str]| {
+        let hot = at(&[more, &["--temperature-c", "40"]].concat());
+        (hot - at(&[more, &["--temperature-c", "20"]].concat())) / 20.0 * 1e6
+    };
+    assert!((slope(&[]) - 11.1).abs() < 0.1 && (slope(&["--absolute"]) - 9.5).abs() < 0.1);
+    // Air at 20 C: n - 1 of standard air (15 C: 277.8e-6 at 550 nm, Ciddor) thinned by 288.15 / 293.15.
+    let air = json(&["info", "air", "--absolute", "--wavelength-nm", "550"]);
+    assert!((number(&air["n_at"]) - 1.0 - 277.8e-6 * 288.15 / 293.15).abs() < 1e-7, "{air}");
+    assert_eq!(number(&json(&["info", "air"])["nd"]), 1.0);
+    assert!(refused(&["info", "N-BK7", "--temperature-c", "1e9"]).contains("degrees Celsius"));
+}
+
+#[test]
+fn melts_and_glasses_of_figures_alone() {
+    let melt = json(&["info", "N-BK7", "--nd", "1.51712", "--vd", "64.01"]);
+    assert!((number(&melt["nd"]) - 1.51712).abs() < 1e-12 && (number(&melt["vd"]) - 64.01).abs() < 1e-9);
+    assert_eq!(melt["status"], "melt");
+    let model = json(&["info", "--nd", "1.5168", "--vd", "64.17"]);
+    assert!((number(&model["vd"]) - 64.17).abs() < 1e-9 && model["maker"].is_null());
+    assert!(refused(&["info", "--nd", "9", "--vd", "64"]).contains("no glass has nd 9"));
+    assert!(refused(&["info", "--nd", "1.5"]).contains("--vd"));
+}
+
+#[test]
+fn ambiguous_and_unknown_names_are_refused_with_candidates() {
+    let message = refused(&["info", "F2"]);
+    for candidate in ["SCHOTT/F2", "HOYA/F2", "CDGM/F2"] {
+        assert!(message.contains(candidate), "{message}");
+    }
+    assert!(refused(&["info", "N-BK8"]).contains("SCHOTT/N-BK7"));
+    assert!(refused(&["plot", "N-BK8"]).contains("SCHOTT/N-BK7"));
+    assert!(refused(&["match", "--nd", "1.5", "--maker", "SHOTT"]).contains("did you mean SCHOTT"));
+    assert!(refused(&["match", "--nd", "15"]).contains("between 1 and 4"));
+    assert!(refused(&["match", "--nd", "1.5", "--era", "old"]).contains("historical, modern, or a year"));
+}
+
+#[test]
+fn a_catalogue_of_ones_own() {
+    let forms = repository("crates/glass/tests/data/forms.agf");
+    let info = json(&["info", "FORMS/ZNO-O", "--catalogue", shown(&forms)]);
+    assert!((number(&info["nd"]) - 2.003385).abs() < 1e-6);
+    assert_eq!(info["category"], "user");
+    let own = json(&["match", "--nd", "1.61266", "--vd", "44.46", "--catalogue", shown(&forms), "--limit", "2"]);
+    let names: Vec<&str> =
+        own["matches"].as_array().expect("a list").iter().filter_map(|m| m["name"].as_str()).collect();
+    assert!(names.contains(&"forms/E-KZFH1"), "{names:?}");
+    let folder = tempfile::tempdir().expect("a folder");
+    let broken = folder.path().join("broken.agf");
+    std::fs::write(&broken, "NM GOOD 1 0 1.5 60\nCD 2.25\nLD 0.4 0.7\nNM BAD 99 0 1.5 60\n").expect("written");
+    let output = run(&["glass", "info", "GOOD", "--catalogue", shown(&broken)]);
+    assert!(output.status.success() && text(&output.stderr).contains(":4: glass BAD: unknown formula"));
+    std::fs::write(&broken, "no glass").expect("written");
+    assert!(refused(&["info", "GOOD", "--catalogue", shown(&broken)]).contains("no glass in it"));
+    assert!(refused(&["info", "GOOD", "--catalogue", "no-such.agf"]).contains("no-such.agf"));
+}
+
+/// The dense barium crown of the Biotar of 1927, by the patent's nd and Vd.
+#[test]
+fn nearest_glasses() {
+    let found = json(&["match", "--nd", "1.64329", "--vd", "48", "--era", "1927", "--limit", "4"]);
+    let matches = found["matches"].as_array().expect("a list");
+    assert_eq!(matches.len(), 4);
+    assert_eq!(matches[0]["name"], "SCHOTT/BAF9");
+    assert!(matches.windows(2).all(|m| number(&m[0]["distance"]) <= number(&m[1]["distance"])));
+    assert!(matches.iter().all(|m| !m["name"].as_str().expect("a name").contains("/LA")));
+    // The same glass by its values at the e line.
+    let e =
+        json(&["match", "--nd", "1.518722", "--vd", "63.96", "--line", "e", "--maker", "SCHOTT", "--era", "modern"]);
+    assert_eq!([&e["matches"][0]["name"], &e["line"]], ["SCHOTT/N-BK7", "e"]);
+    // Each medium of a lens, in the order of the light.
+    let of_lens = json(&["match", "--lens", &lens("helios-44-58-f2")]);
+    let media = of_lens.as_array().expect("a list");
+    assert_eq!(media.len(), 3);
+    assert_eq!(media[0]["surfaces"], serde_json::json!([1, 3, 8]));
+    let best: Vec<&str> = media.iter().filter_map(|m| m["matches"][0]["name"].as_str()).collect();
+    assert_eq!(best.len(), 3);
+    // The lens is of LZOS glass: LF7 and TK14 by name in other transcriptions.
+    assert!(media.iter().all(|m| number(&m["matches"][0]["distance"]) < 1.0), "{best:?}");
+    assert!(good(&["glass", "match", "--lens", "zeiss-biotar-50-f1.4"]).contains("behind surface 1, 8, 10"));
+}
+
+#[test]
+fn pictures_of_both_kinds() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let names = ["SCHOTT/N-BK7", "water"];
+    for more in [&[][..], &["--abbe", "--makers", "SCHOTT,LZOS"]] {
+        let [svg, png] = ["a.svg", "a.png"].map(|name| folder.path().join(name));
+        for path in [&svg, &png] {
+            good(&[&["glass", "plot", "-o", shown(path)][..], more, &names].concat());
+        }
+        let svg = std::fs::read_to_string(svg).expect("written");
+        assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>") && !svg.contains("NaN"));
+        for name in names {
+            assert!(svg.contains(&format!("aria-label=\"{name}\"")), "{name}");
+        }
+        assert!(std::fs::read(png).expect("written").starts_with(b"\x89PNG\r\n\x1a\n"));
+    }
+    assert!(refused(&["plot", "N-BK7", "-o", "x.jpg"]).contains(".svg or .png"));
+    assert!(refused(&["plot", "N-BK7", "--range-nm", "800,400"]).contains("two wavelengths"));
+    assert!(refused(&["plot", "--abbe", "--makers", "SHOTT"]).contains("SCHOTT"));
+    assert!(refused(&["plot", "air", "--abbe", "-o", "x.svg"]).contains("no Abbe number"));
+}
+
+/// CRC Handbook (1990): Cauchy's A and B by neighboring rows and means, in nm^2.
+#[test]
+fn fits_of_seven_materials() {
+    let tables = repository("crates/glass/tests/data/cauchy-tables.csv");
+    let reports = json(&["fit", shown(&tables)]);
+    let wanted = [
+        ("water-20c", 1.3238, 1e-4, 3126.8, 0.1),
+        ("zinc-crown", 1.5020, 1e-4, 4964.6, 0.1),
+        ("higher-dispersion-crown", 1.5037, 1e-4, 5569.1, 0.1),
+        ("light-flint", 1.5536, 1e-4, 7661.0, 0.1),
+        ("heavy-flint", 1.6199, 1e-4, 10655.7, 0.1),
+        ("heaviest-flint", 1.8321, 1e-4, 20737.8, 0.1),
+        ("fused-quartz", 1.44751, 1e-5, 3689.68, 0.01),
+    ];
+    for (report, (material, a, a_unit, b, b_unit)) in reports.as_array().expect("a list").iter().zip(wanted) {
+        assert_eq!(report["material"], material);
+        let [rows, squares] = [&report["fits"][0], &report["fits"][1]];
+        assert_eq!([&rows["model"], &squares["model"]], ["cauchy", "cauchy-ls"]);
+        assert!((number(&rows["coefficients"]["a"]) - a).abs() <= a_unit, "{material}");
+        assert!((number(&rows["coefficients"]["b_nm2"]) - b).abs() <= b_unit, "{material}");
+        // Nothing of this form is nearer than least squares.
+        assert!(number(&squares["rms_deviation"]) <= number(&rows["rms_deviation"]), "{material}");
+    }
+    let table = good(&["glass", "fit", shown(&tables), "--model", "cauchy,conrady"]);
+    assert!(table.contains("3689.68") && table.contains("conrady") && table.contains("deviation: mean"));
+    // Three rows determine no Sellmeier: the others are shown, and the code tells.
+    let output = run(&["glass", "fit", shown(&tables), "--model", "sellmeier"]);
+    assert!(output.status.code() == Some(2) && text(&output.stderr).contains("water-20c"));
+    assert!(text(&output.stdout).contains("fused-quartz"));
+    let folder = tempfile::tempdir().expect("a folder");
+    let bad = folder.path().join("bad.csv");
+    std::fs::write(&bad, "wavelength_nm,n\n486,1.52\n589,x\n").expect("written");
+    assert!(refused(&["fit", shown(&bad)]).contains("bad.csv:3: `x` is no index"));
+}
+
+/// At least 99 % of what makers list comes out of their coefficients; the others are named.
+#[test]
+fn the_catalogue_is_checked() {
+    let check = json(&["check"]);
+    let (listed, deviating) = (number(&check["listed"]), check["deviating"].as_array().expect("a list"));
+    assert!(listed > 1800.0 && (deviating.len() as f64) < 0.01 * listed, "{listed} {}", deviating.len());
+    assert!(good(&["glass", "check"]).contains("SCHOTT/BOROFLOAT33"));
+}
+
+/// A catalogue of more than 3000 glasses costs less than 5 ms at the start: the quickest of some cold starts each.
+#[test]
+fn a_look_up_starts_fast() {
+    let best = |arguments: &[&str]| {
+        let time = || {
+            let start = Instant::now();
+            good(arguments);
+            start.elapsed()
+        };
+        (0..15).map(|_| time()).min().unwrap_or_default()
+    };
+    let (idle, look_up) = (best(&["--version"]), best(&["glass", "info", "N-BK7"]));
+    println!("--version {idle:?}, glass info {look_up:?}");
+    // An unoptimized build is slower by a factor of ten.
+    let limit = Duration::from_millis(if cfg!(debug_assertions) { 100 } else { 5 });
+    assert!(look_up.saturating_sub(idle) < limit, "{idle:?} {look_up:?}");
+}

@@ -1,0 +1,348 @@
+#!/usr/bin/env python3
+"""Writes the lens library, lenses/*.yaml, from the prescriptions in tests/data/lenses.csv.
+
+Run from the root of the repository, with the program itself for the choice of glasses:
+
+    python3 xtask/lens_library.py target/release/spectra
+
+- Three prescriptions of the CSV are left out, since they do not hold together as lenses, though their focal lengths do:
+  leica-summilux-35-f1.4 and nikon-28-70-f2.8-wide have 4 and 1.4 mm of spherical aberration wide open (aspheres seem to be
+  lost in the transcription), kodak-100-f3.8 has 0.4 % of lateral color (a glass seems to be wrong).
+- Radii, thicknesses, nd and Vd are copied; a lens of unit focal length is scaled, figure by figure.
+- A catalogue glass is named where one of the time agrees within 0.0005 in nd and 0.5 in Vd (`spectra glass match`);
+  elsewhere nd and Vd stand alone.
+- Semi-diameters are copied where they are clear apertures. Where the source has none, or says that they are not
+  reliable, they are computed here by tracing real rays: the stop by the axial beam at the stated f-number, the others
+  to pass that beam, and of the beam at the edge of the format the middle half.
+"""
+
+import csv
+import json
+import math
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+DATA = ROOT / "tests" / "data"
+KINDS = {"spherical": "sphere", "plane": "plane", "stop": "stop"}
+
+LENTIL = "transcription of the lentil project (MIT)"
+ISS = "transcription of the ISS project (MIT)"
+OPTRACE = "transcription of the optrace project (MIT)"
+OPTILAND = "transcription of the Optiland project (MIT)"
+REALFLARE = "transcription of the realflare project (MIT)"
+
+# By name: the CSV's name where it differs, scale, name, year, maker, patent, source, remark, makers of glass (in order of
+# preference), era, semi-diameters to compute: (f-number, half diagonal of the format in mm).
+LENSES = {
+    "angenieux-100-f1.1": dict(
+        name="Angénieux 100 mm f/1.1", year=1953, maker="P. Angénieux, Paris", patent="US 2701982", source=LENTIL,
+        remark="Normalized to 100 mm; built shorter. The glasses named in the transcription are Schott's.",
+        makers=["SCHOTT", "CORNING"], era="1953"),
+    "meyer-primoplan-100-f1.5": dict(
+        name="Meyer Primoplan 100 mm f/1.5", year=1936, maker="Meyer-Optik Görlitz", patent="DE 1387593",
+        source=LENTIL, remark="Normalized to 100 mm. The number of the patent is that of the transcription.",
+        makers=["SCHOTT"], era="1936"),
+    "nikon-retrofocus-100-f2.8": dict(
+        name="Nikon retrofocus 100 mm f/2.8", year=1971, maker="Nippon Kogaku", patent="US 3583791", source=LENTIL,
+        remark="Normalized to 100 mm: a wide angle for a short focal length; the image circle is that of 66 degrees.",
+        makers=["OHARA", "HOYA", "SCHOTT"], era="1971"),
+    "zeiss-biotar-100-f1.4": dict(
+        name="Zeiss Biotar 100 mm f/1.4", year=1927, maker="Carl Zeiss Jena (W. Merté)", patent="DE 485798", source=LENTIL,
+        remark="The same design as example 2 of US 1786916, at the scale of the patent.", makers=["SCHOTT"], era="1927"),
+    "asahi-takumar-100-f1.2": dict(
+        name="Asahi Takumar 100 mm f/1.2", year=1969, maker="Asahi Kogaku", patent="US 3451745", source=LENTIL,
+        remark="Normalized to 100 mm; the type of the Super Takumar 50 mm f/1.4.", makers=["OHARA", "HOYA"], era="1969"),
+    "canon-35-f1.8": dict(
+        csv="canon-35-f1.8-unit", scale=35, name="Canon 35 mm f/1.8", year=1956, maker="Canon", patent="US 2854890", source=LENTIL,
+        remark="The patent's unit focal length times 35. It states three decimals, so radii are known to some 1 %; the image plane is put to the "
+        "smallest axial spot, 0.49 mm behind that of the source.", gap=24.1152,
+        makers=["OHARA", "SCHOTT", "HOYA"], era="1956"),
+    "kodak-petzval-100-f2.2": dict(
+        name="Kodak Petzval 100 mm f/2.2", year=1948, maker="Eastman Kodak", patent="US 2500046", source=LENTIL,
+        remark="Normalized to 100 mm: a projection lens for small angles.", makers=["SCHOTT", "CORNING", "CHANCE"], era="1948"),
+    "minolta-fisheye-16-f2.7": dict(
+        csv="minolta-fisheye-1-f2.7", scale=16, name="Minolta fisheye 16 mm f/2.7", year=1978, maker="Minolta", patent="US 4256373",
+        source=LENTIL, plane_from=9000,
+        remark="The patent's unit focal length times 16. The transcription writes the plane filter behind the front group as radii of 9999.",
+        makers=["OHARA", "HOYA"], era="1978"),
+    "schneider-anamorphic-60": dict(
+        csv="schneider-anamorphic", name="Schneider anamorphic 60 mm, squeeze 1.9", year=2001, maker="Schneider", patent="US 6310731",
+        source=LENTIL,
+        remark="Not compared with the print of the patent; the transcription holds together: across, the cylinders in front are afocal "
+        "to 1.3e-5 per mm with a magnification of 0.5195, the images of both sections lie within 0.025 mm of each other, and with "
+        "the sign of any of the five radii changed neither is so. The plane before the biconvex cylinder carries no power. "
+        "Nothing is said of the f-number: it is what the stated stop gives.",
+        makers=["SCHOTT", "OHARA", "HIKARI"], era="2001"),
+    "zeiss-biotar-50-f1.4": None,  # kept as it is, with the remarks of its own
+    "helios-44-58-f2": dict(
+        name="Helios-44 58 mm f/2", year=1958, maker="KMZ Krasnogorsk", source=OPTRACE,
+        remark="The source cites no patent; a Soviet Biotar. The image plane is put to the smallest axial spot: the source's 37.12 lies 0.88 mm "
+        "in front of it.", makers=["LZOS"], gap=37.9975),
+    "canon-fd-50-f1.8": dict(
+        name="Canon FD 50 mm f/1.8", year=1979, maker="Canon", patent="JP 1988-081312", source=REALFLARE,
+        remark="The source calls it 50 mm; 48.9 mm come out. The image plane is put to the smallest axial spot: the source's 34.81 "
+        "lies 2.15 mm behind it, as for an object at 1.2 m.", makers=["OHARA", "HOYA", "SCHOTT"], era="1979", gap=32.6629),
+    "zeiss-hologon-15-f8": dict(
+        name="Zeiss Hologon 15 mm f/8", year=1969, maker="Carl Zeiss", source=REALFLARE,
+        remark="The source cites no patent. The stop lies in the glass of the middle element, between two planes.",
+        makers=["SCHOTT", "HOYA", "CDGM"], era="1969"),
+    "canon-ef-70-200-f2.8-at-72": dict(
+        name="Canon EF 70-200 mm f/2.8L at 72 mm", year=1995, maker="Canon", patent="US 5537259", source=ISS,
+        remark="One position of a zoom. The image plane is put to the smallest axial spot: the source has none.",
+        makers=["OHARA", "HOYA"], era="1995", sizes=(2.923, 21.633), gap=52.1753),
+    "nikkor-100-f1.4": dict(
+        name="Nikkor 100 mm f/1.4", year=1981, maker="Nippon Kogaku (K. Wakamiya)", patent="US 4448497, example 1", source=OPTRACE,
+        remark="Normalized to 100 mm; a 50 mm lens. Two rows may differ from the patent in the last digit.",
+        makers=["HIKARI", "OHARA"], era="1983"),
+    "cooke-triplet-50-f5": dict(
+        name="Cooke triplet 50 mm f/5", source="textbook design; " + OPTILAND, stop_at=4,
+        remark="No patent: the design that textbooks optimize after H. D. Taylor (1893). The rear of the flint is the stop.",
+        makers=["SCHOTT"], sizes=(5.0, 18.2)),
+    "tessar-50-f4.5": dict(
+        csv="tessar-4-f4.5", scale=12.5, name="Tessar 50 mm f/4.5", source="M. Laikin, Lens Design, 4th ed.; " + OPTILAND,
+        remark="No patent: a textbook Tessar of 4 inches, its numbers times 12.5.", makers=["SCHOTT"], sizes=(4.5, 21.633)),
+    "double-gauss-100-f5": dict(
+        name="Double Gauss 100 mm f/5", source="textbook design; " + OPTILAND, remark="No patent.", makers=["SCHOTT"],
+        sizes=(5.0, 25.0)),
+}  # fmt: skip
+
+
+def rows(name):
+    with open(DATA / name, newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def number(x):
+    """Ten digits at most, without zeros at the end: products of printed figures carry no more."""
+    text = f"{x:.10g}"
+    return text.replace("e+", "e")
+
+
+class Surface:
+    def __init__(self, row, scale, index_before, plane_from):
+        self.kind = row["type"]
+        self.radius = float(row["radius_mm"]) * scale
+        if abs(float(row["radius_mm"])) > plane_from:
+            self.radius = math.inf
+        self.thickness = float(row["thickness_mm"]) * scale
+        self.n = index_before if self.kind == "stop" else float(row["nd_after"])
+        self.v = row["vd_after"]
+        self.nd_text = row["nd_after"]
+        self.hint = row["glass_after"]
+        self.size = float(row["semi_diameter_mm"] or 0) * scale
+        self.cylinder = self.kind == "cyl-y"
+
+
+class System:
+    """Spheres and planes on one axis; rays of real size."""
+
+    def __init__(self, surfaces):
+        self.surfaces = surfaces
+
+    def paraxial(self):
+        y, u, n = 1.0, 0.0, 1.0
+        for i, s in enumerate(self.surfaces):
+            c = 0.0 if math.isinf(s.radius) or s.cylinder else 1 / s.radius
+            u = (n * u - y * c * (s.n - n)) / s.n
+            n = s.n
+            if i + 1 < len(self.surfaces):
+                y += u * s.thickness
+        return -1 / u, -y / u
+
+    def trace(self, y, z, angle):
+        """Heights of a ray in the plane of the paper at each surface, and its last slope; None where it is lost."""
+        m, l, n = math.sin(angle), math.cos(angle), 1.0
+        heights = []
+        for s in self.surfaces:
+            if math.isinf(s.radius):
+                t = -z / l
+                y, z, normal = y + t * m, 0.0, (0.0, 1.0)
+            else:
+                zc = z - s.radius
+                b = y * m + zc * l
+                disc = b * b - (y * y + zc * zc - s.radius**2)
+                if disc < 0:
+                    return None
+                roots = [-b - math.sqrt(disc), -b + math.sqrt(disc)]
+                t = min(roots, key=lambda r: abs(z + r * l))
+                y, z = y + t * m, z + t * l
+                normal = (y / s.radius, (z - s.radius) / s.radius)
+            heights.append(y)
+            c = normal[0] * m + normal[1] * l
+            if c < 0:
+                normal, c = (-normal[0], -normal[1]), -c
+            r = n / s.n
+            under = 1 - r * r * (1 - c * c)
+            if under < 0:
+                return None
+            k = math.sqrt(under) - r * c
+            m, l, n = r * m + k * normal[0], r * l + k * normal[1], s.n
+            z -= s.thickness
+        return heights, m
+
+    def marginal(self, f_number):
+        """Heights of the axial ray that leaves with sin = 1 / (2 N)."""
+        wanted = 0.5 / f_number
+        low, high = 0.0, 2.0 * self.paraxial()[0] * wanted
+        for _ in range(80):
+            middle = 0.5 * (low + high)
+            ray = self.trace(middle, -1e-9, 0.0)
+            if ray and abs(ray[1]) < wanted:
+                low = middle
+            else:
+                high = middle
+        return self.trace(low, -1e-9, 0.0)[0]
+
+    def beam(self, stop, height, start, edge):
+        """Heights of the rays that meet the stop at a height, from the axis to the edge of the field in half degrees: each
+        from the one before, so that no far-fetched way through the glass is taken. Ends where there is none."""
+        y, found, steps = start, [], max(1, math.ceil(math.degrees(edge) / 0.5))
+        for k in range(steps + 1):
+            angle = edge * k / steps
+            off = None
+            for _ in range(40):
+                ray = self.trace(y, -1e-9, angle)
+                beside = self.trace(y + 1e-6, -1e-9, angle)
+                if not ray or not beside:
+                    return found
+                off = ray[0][stop] - height
+                if abs(off) < 1e-9:
+                    break
+                slope = (beside[0][stop] - ray[0][stop]) / 1e-6
+                if abs(slope) < 1e-3:
+                    return found
+                y -= max(-1.0, min(1.0, off / slope))
+            if abs(off) > 1e-6:
+                return found
+            found.append((angle, ray[0]))
+        return found
+
+    def sizes(self, stop, f_number, half_diagonal):
+        axial = [abs(h) for h in self.marginal(f_number)]
+        need = list(axial)
+        edge = math.atan(half_diagonal / self.paraxial()[0])
+        for share in (-0.5, 0.0, 0.5):
+            rays = self.beam(stop, share * axial[stop], share * axial[0], edge)
+            if not rays or rays[-1][0] < edge:
+                reached = math.degrees(rays[-1][0]) if rays else 0.0
+                print(f"  {share} of the stop: rays to {reached:.1f} degrees only", file=sys.stderr)
+            for _, heights in rays:
+                need = [max(a, abs(h)) for a, h in zip(need, heights)]
+        # A twentieth to a tenth of a millimetre of play, so that the axial beam is limited by the stop alone.
+        return [round(axial[i], 4) if i == stop else math.ceil(20 * need[i] + 1) / 20 for i in range(len(need))]
+
+
+def glass(program, surface, entry, seen):
+    """The catalogue's glass for nd and Vd, by the first maker that has one near enough; None if none has."""
+    key = (surface.nd_text, surface.v)
+    if key in seen:
+        return seen[key]
+    best = None
+    for maker in entry["makers"]:
+        command = [program, "glass", "match", "--nd", surface.nd_text, "--vd", surface.v, "--json", "--limit", "40", "--maker", maker]
+        if entry.get("era"):
+            command += ["--era", entry["era"]]
+        found = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)["matches"]
+        near = [m for m in found if abs(m["delta_n"]) <= 0.0005 and abs(m["delta_v"]) <= 0.5]
+        # Glass for the ultraviolet is no lens maker's.
+        near = [m for m in near if not m["name"].split("/")[1].startswith("UBK")]
+        hinted = [m for m in near if m["name"].split("/")[1] == surface.hint.removeprefix("LZ_")] if surface.hint else []
+        if hinted or near:
+            best = (hinted or near)[0]["name"]
+            break
+    seen[key] = best
+    return best
+
+
+def text_block(key, text):
+    """A folded text of at most 110 letters a line."""
+    lines, line = [], ""
+    for word in text.split():
+        if len(line) + len(word) + 1 > 106:
+            lines.append(line)
+            line = ""
+        line = f"{line} {word}" if line else word
+    lines.append(line)
+    return [f"{key}: >-"] + [f"  {line}" for line in lines]
+
+
+def write(name, entry, table, program):
+    scale = entry.get("scale", 1)
+    source_name = entry.get("csv", name)
+    surfaces, n = [], 1.0
+    for row in table[source_name]:
+        surfaces.append(Surface(row, scale, n, entry.get("plane_from", math.inf)))
+        n = surfaces[-1].n
+    stop_at = entry.get("stop_at")
+    stop = stop_at - 1 if stop_at else next(i for i, s in enumerate(surfaces) if s.kind == "stop")
+    system = System(surfaces)
+    efl, bfl = system.paraxial()
+    remark = entry["remark"]
+    if entry.get("sizes"):
+        f_number, half = entry["sizes"]
+        for s, size in zip(surfaces, system.sizes(stop, f_number, half)):
+            s.size = size
+        remark += (
+            f" Semi-diameters computed: the axial beam at f/{number(f_number)}, and the middle half of the beam at "
+            f"{math.degrees(math.atan(half / efl)):.0f} degrees."
+        )
+    if entry.get("gap"):
+        surfaces[-1].thickness = entry["gap"]
+    seen = {}
+    lines = ["# Written by xtask/lens_library.py from tests/data/lenses.csv.", f"name: {entry['name']}"]
+    for key in ("year", "maker", "patent"):
+        if entry.get(key):
+            lines.append(f"{key}: {entry[key]}")
+    lines += ["reference-line: d", f"source: {entry['source']}"]
+    body = []
+    for i, s in enumerate(surfaces):
+        if s.cylinder:
+            keys = [("kind", "cylinder"), ("axis", "y"), ("radius", number(s.radius))]
+        elif s.kind == "stop":
+            keys = [("kind", "stop")]
+        elif math.isinf(s.radius):
+            keys = [("kind", "plane")]
+        else:
+            keys = [("kind", "sphere"), ("radius", number(s.radius))]
+        if stop_at and i == stop:
+            keys.append(("stop", "true"))
+        if s.thickness:
+            keys.append(("thickness", number(s.thickness)))
+        if s.kind != "stop" and s.n != 1.0:
+            found = glass(program, s, entry, seen)
+            if found:
+                keys.append(("glass", found))
+            keys += [("nd", number(float(s.nd_text))), ("vd", number(float(f"{float(s.v):.6g}")))]
+        if s.size > 0:
+            keys.append(("semi-diameter", number(s.size)))
+        body.append("  - {" + ", ".join(f"{k}: {v}" for k, v in keys) + "}")
+    named = [g for g in seen.values() if g]
+    plain = [f"{k[0]}/{k[1]}" for k, g in seen.items() if not g]
+    if named and plain:
+        remark += " Catalogue glasses stand where one of the time has the stated nd and Vd; the other media are known by these alone."
+    elif named and entry.get("era"):
+        remark += " Catalogue glasses of the time with the stated nd and Vd are chosen."
+    elif named:
+        remark += " The glasses are those that the source names, or have the stated nd and Vd."
+    else:
+        remark += " No catalogue glass of the time has the stated nd and Vd: they stand alone."
+    lines += text_block("remark", remark.strip())
+    lines.append("surfaces:")
+    (ROOT / "lenses" / f"{name}.yaml").write_text("\n".join(lines + body) + "\n", encoding="utf-8")
+    print(f"{name}: EFL {efl:.6f} BFL {bfl:.6f}; {len(named)} glasses named, by figures: {plain}")
+
+
+def main():
+    program = str(Path(sys.argv[1]).resolve())
+    table = {}
+    for row in rows("lenses.csv"):
+        table.setdefault(row["lens"], []).append(row)
+    for name, entry in LENSES.items():
+        if entry:
+            write(name, entry, table, program)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,137 @@
+#!/usr/bin/env python3
+"""Writes docs/lenses.md and docs/images/lenses: each lens of the library as a drawing and as a picture of a chart.
+
+Run from the root of the repository:
+
+    python3 xtask/lens_sheet.py target/release/spectra [NAME...]
+
+With names, only the pictures of these lenses are made anew; the page is always of all.
+"""
+
+import json
+import re
+import subprocess
+import sys
+import tempfile
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+LENSES = ROOT / "lenses"
+IMAGES = ROOT / "docs" / "images" / "lenses"
+
+# Frames in which a lens is shown, where it is not 135: lenses normalized to 100 mm have larger circles.
+FORMATS = {
+    "angenieux-100-f1.1": "6x4.5",
+    "meyer-primoplan-100-f1.5": "6x4.5",
+    "nikon-retrofocus-100-f2.8": "6x9",
+    "zeiss-biotar-100-f1.4": "6x4.5",
+    "asahi-takumar-100-f1.2": "6x4.5",
+    "nikkor-100-f1.4": "6x4.5",
+    "kodak-petzval-100-f2.2": "academy",
+    "schneider-anamorphic-60": "super-35",
+}
+SIZES = {"135": (36, 24), "6x4.5": (56, 41.5), "6x9": (84, 56), "academy": (22, 16), "super-35": (24.89, 18.67)}
+
+SCENE = """spectra: 1
+source: {{kind: chart, chart: resolution, distance: {distance} mm, width: {width} mm, illuminant: D65, luminance: 300 cd/m2}}
+lens: {{file: {name}, focus: {focus}}}
+imager: {{kind: xyz, format: {format}, resolution: [{columns}, {rows}]}}
+render: {{samples: 256, seed: 1}}
+output: [png]
+"""
+
+
+def run(*command):
+    done = subprocess.run([str(c) for c in command], capture_output=True, text=True)
+    if done.returncode:
+        raise SystemExit(f"{' '.join(map(str, command))}: {done.stderr}")
+    return done.stdout
+
+
+def names():
+    """Lenses with a stop, that is, without prisms."""
+    has_stop = re.compile(r"kind: stop|stop: true")
+    return sorted(p.stem for p in LENSES.glob("*.yaml") if has_stop.search(p.read_text(encoding="utf-8")))
+
+
+def pictures(program, name, info):
+    section = "x" if info.get("efl_x_mm") else "y"
+    run(program, "lens", "draw", name, "--section", section, "--width", "640", "--wavelengths", "e", "-o", IMAGES / f"{name}.svg")
+    frame = FORMATS.get(name, "135")
+    width, height = SIZES[frame]
+    # Two metres, or forty focal lengths; the cylinders of an anamorphic are set for infinity. The chart fills the frame;
+    # a fisheye's is wider.
+    focal = info.get("efl_x_mm") or info["efl_mm"]
+    distance = 1e6 if info.get("efl_x_mm") else max(2000.0, 40 * info["efl_mm"])
+    across = width / focal * distance * (2.2 if "fisheye" in name else 1.0)
+    rows = 160
+    scene = SCENE.format(
+        name=name, format=frame, distance=round(distance), width=round(1.02 * across), columns=round(rows * width / height / 2) * 2,
+        rows=rows, focus=f"{round(distance)} mm",
+    )  # fmt: skip
+    with tempfile.TemporaryDirectory() as folder:
+        # Not named like the lens: what stands beside a scene is found before what is bundled.
+        path = Path(folder) / "shot.yaml"
+        path.write_text(scene, encoding="utf-8")
+        run(program, "run", path, "--output", folder, "--quiet", "--threads", "1")
+        (IMAGES / f"{name}-chart.png").write_bytes((Path(folder) / "shot.png").read_bytes())
+
+
+def head(name):
+    """The plain keys of a lens file."""
+    found = {}
+    for line in (LENSES / f"{name}.yaml").read_text(encoding="utf-8").splitlines():
+        if match := re.match(r"([a-z-]+): (.+)", line):
+            found[match[1]] = match[2].strip('"')
+    return found
+
+
+def page(infos):
+    lines = [
+        "# The lens library",
+        "",
+        "Every lens in `lenses/`, with its drawing (rays of the e line on the axis, at 0.6 and at 0.95 of the largest field that passes) and the",
+        "resolution chart through it, wide open, focused at 2 m or forty focal lengths (the anamorphic at 1 km) by the paraxial rule. Focal length and f-number are",
+        "those of the reference line, by the real marginal ray. Where each comes from, and what is doubtful, stands in its file;",
+        "`tests/lenses.rs` holds them to the figures of their patents. Written by `xtask/lens_sheet.py`.",
+        "",
+        "A lens named 100 mm whose circle is larger than 135 is shown as its patent has it, normalized; its frame is named.",
+        "",
+    ]
+    for name, info in infos.items():
+        about = head(name)
+        facts = [f"f = {info['efl_mm']:.2f} mm"]
+        across = info.get("efl_x_mm")
+        if across and abs(across / info["efl_mm"] - 1) > 1e-3:
+            facts.append(f"across {across:.2f} mm")
+        if info.get("f_number"):
+            facts.append(f"f/{info['f_number']:.2f}")
+        facts += [about[k] for k in ("year", "patent") if k in about]
+        facts.append(FORMATS.get(name, "135"))
+        lines += [
+            f"## {about['name']}",
+            "",
+            f"`{name}`: {', '.join(facts)}. Source: {about['source']}.",
+            "",
+            f"![{about['name']}, drawing](images/lenses/{name}.svg)",
+            f"![{about['name']}, chart](images/lenses/{name}-chart.png)",
+            "",
+        ]
+    (ROOT / "docs" / "lenses.md").write_text("\n".join(lines), encoding="utf-8")
+
+
+def main():
+    program = Path(sys.argv[1]).resolve()
+    IMAGES.mkdir(parents=True, exist_ok=True)
+    infos = {name: json.loads(run(program, "lens", "info", name, "--json")) for name in names()}
+    wanted = sys.argv[2:] or list(infos)
+    with ThreadPoolExecutor(2) as pool:
+        list(pool.map(lambda name: pictures(program, name, infos[name]), wanted))
+    page(infos)
+    total = sum(p.stat().st_size for p in IMAGES.glob("*"))
+    print(f"{len(infos)} lenses, {total / 1e6:.2f} MB of pictures")
+
+
+if __name__ == "__main__":
+    main()
