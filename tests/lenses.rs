@@ -43,7 +43,7 @@ const FIRST_ORDER: [(&str, f64, f64, f64); 12] = [
 fn first_order_is_that_of_the_prescriptions() {
     for (name, scale, efl_mm, bfl_mm) in FIRST_ORDER {
         let found = load(name).first_order_at_stated_nd();
-        // One unit of the last digit, scaled. The fisheye's radii of 9999 are planes in the library: 1e-7 of its focal length.
+        // One unit of the last digit, scaled.
         let tolerance = scale * 1.5e-7;
         assert!((found.efl_mm - scale * efl_mm).abs() < tolerance, "{name}: {}", found.efl_mm);
         assert!((found.bfl_mm - scale * bfl_mm).abs() < tolerance, "{name}: {}", found.bfl_mm);

@@ -64,8 +64,8 @@ LENSES = {
         remark="Normalized to 100 mm: a projection lens for small angles.", makers=["SCHOTT", "CORNING", "CHANCE"], era="1948"),
     "minolta-fisheye-16-f2.7": dict(
         csv="minolta-fisheye-1-f2.7", scale=16, name="Minolta fisheye 16 mm f/2.7", year=1978, maker="Minolta", patent="US 4256373",
-        source=LENTIL, plane_from=9000,
-        remark="The patent's unit focal length times 16. The transcription writes the plane filter behind the front group as radii of 9999.",
+        source=LENTIL,
+        remark="The patent's unit focal length times 16. The filter before the stop is plane; the transcription writes radii of 9999, which are kept.",
         makers=["OHARA", "HOYA"], era="1978"),
     "schneider-anamorphic-60": dict(
         csv="schneider-anamorphic", name="Schneider anamorphic 60 mm, squeeze 1.9", year=2001, maker="Schneider", patent="US 6310731",
@@ -121,11 +121,9 @@ def number(x):
 
 
 class Surface:
-    def __init__(self, row, scale, index_before, plane_from):
+    def __init__(self, row, scale, index_before):
         self.kind = row["type"]
         self.radius = float(row["radius_mm"]) * scale
-        if abs(float(row["radius_mm"])) > plane_from:
-            self.radius = math.inf
         self.thickness = float(row["thickness_mm"]) * scale
         self.n = index_before if self.kind == "stop" else float(row["nd_after"])
         self.v = row["vd_after"]
@@ -273,7 +271,7 @@ def write(name, entry, table, program):
     source_name = entry.get("csv", name)
     surfaces, n = [], 1.0
     for row in table[source_name]:
-        surfaces.append(Surface(row, scale, n, entry.get("plane_from", math.inf)))
+        surfaces.append(Surface(row, scale, n))
         n = surfaces[-1].n
     stop_at = entry.get("stop_at")
     stop = stop_at - 1 if stop_at else next(i for i, s in enumerate(surfaces) if s.kind == "stop")
