@@ -116,7 +116,9 @@ impl Lens {
             axis = axis.advanced(e.thickness_mm);
             along_axis_mm += e.thickness_mm;
         }
-        self.image_pose = bent(axis, along_axis_mm, &self.image_breaks).0;
+        // Behind an odd number of mirrors light arrives from the other side: the image plane faces it.
+        let image = bent(axis, along_axis_mm, &self.image_breaks).0;
+        self.image_pose = if along { image } else { image.reversed() };
         for group in &self.groups {
             group.displace(&mut self.elements);
         }
