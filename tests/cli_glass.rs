@@ -202,20 +202,25 @@ fn the_catalogue_is_checked() {
     assert!(good(&["glass", "check"]).contains("SCHOTT/BOROFLOAT33"));
 }
 
-/// A catalogue of more than 3000 glasses costs less than 5 ms at the start: the quickest of some cold starts each.
+/// A catalogue of more than 3000 glasses costs less than 5 ms at the start: the quickest of some cold starts each, taken in
+/// turns, as many as it takes on a busy machine.
 #[test]
 fn a_look_up_starts_fast() {
-    let best = |arguments: &[&str]| {
-        let time = || {
-            let start = Instant::now();
-            good(arguments);
-            start.elapsed()
-        };
-        (0..15).map(|_| time()).min().unwrap_or_default()
+    let time = |arguments: &[&str]| {
+        let start = Instant::now();
+        good(arguments);
+        start.elapsed()
     };
-    let (idle, look_up) = (best(&["--version"]), best(&["glass", "info", "N-BK7"]));
-    println!("--version {idle:?}, glass info {look_up:?}");
     // An unoptimized build is slower by a factor of ten.
     let limit = Duration::from_millis(if cfg!(debug_assertions) { 100 } else { 5 });
+    let (mut idle, mut look_up) = (Duration::MAX, Duration::MAX);
+    for round in 0..100 {
+        idle = idle.min(time(&["--version"]));
+        look_up = look_up.min(time(&["glass", "info", "N-BK7"]));
+        if round >= 10 && look_up.saturating_sub(idle) < limit {
+            break;
+        }
+    }
+    println!("--version {idle:?}, glass info {look_up:?}");
     assert!(look_up.saturating_sub(idle) < limit, "{idle:?} {look_up:?}");
 }

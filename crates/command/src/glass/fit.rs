@@ -144,7 +144,8 @@ fn named(model: Model, c: &[f64]) -> Vec<(String, f64)> {
         Model::Sellmeier => {
             // One and two terms come with the constant of their form, which is 0.
             let c = if c.len() % 2 == 1 { &c[1..] } else { c };
-            let name = |k: usize| if k % 2 == 0 { format!("k{}", k / 2 + 1) } else { format!("m{}_um2", k / 2 + 1) };
+            let name =
+                |k: usize| if k.is_multiple_of(2) { format!("k{}", k / 2 + 1) } else { format!("m{}_um2", k / 2 + 1) };
             c.iter().enumerate().map(|(k, v)| (name(k), *v)).collect()
         }
         Model::Schott => c.iter().enumerate().map(|(k, v)| (format!("a{k}"), *v)).collect(),
