@@ -1,6 +1,6 @@
 //! Surfaces that are tilted, shifted, folded and turned round, against closed forms.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use spectra_core::{Isa, RayBatch};
 use spectra_lens::{Indices, Lens, Section, Tracer, Travel};
 use spectra_plugins as _;
@@ -189,6 +189,9 @@ fn mirrors_focus_and_light_is_reversible() {
     let f = mirror.first_order(587.56);
     assert!((f.efl_mm - 50.0).abs() < 1e-12 && (f.bfl_mm + 50.0).abs() < 1e-12, "{f:?}");
     assert!((f.rear_principal_z_mm).abs() < 1e-12);
+    // The image plane faces the light, and keeps left and right.
+    assert_eq!(mirror.image_pose.rotation, DMat3::from_diagonal(DVec3::new(1.0, 1.0, -1.0)));
+    assert!(mirror.has_axis_of_revolution());
     let (p, _) = trace(&mirror, &[(DVec3::new(0.0, 0.01, -200.0), DVec3::Z)])[0].expect("it comes back");
     assert!(p.y.abs() < 1e-7 && (p.z + 50.0).abs() < 1e-12, "{p}");
 
@@ -214,7 +217,7 @@ fn mirrors_focus_and_light_is_reversible() {
     let mut work = t.work_in_place(n);
     t.trace(&mut batch, &mut work, Travel::Forward);
     assert_eq!(batch.alive(), n);
-    assert!(batch.directions()[2].iter().all(|z| *z < 0.0));
+    assert!(batch.directions()[2].iter().all(|z| *z > 0.0));
     let c = batch.columns_mut();
     for i in 0..n {
         (c.l[i], c.m[i], c.n[i]) = (-c.l[i], -c.m[i], -c.n[i]);

@@ -116,9 +116,10 @@ impl Lens {
             axis = axis.advanced(e.thickness_mm);
             along_axis_mm += e.thickness_mm;
         }
-        // Behind an odd number of mirrors light arrives from the other side: the image plane faces it.
+        // Behind an odd number of mirrors light arrives from the other side: the image plane faces it, and its x is
+        // that of the lens still, so that a picture shows the subject unmirrored.
         let image = bent(axis, along_axis_mm, &self.image_breaks).0;
-        self.image_pose = if along { image } else { image.reversed() };
+        self.image_pose = if along { image } else { image.facing_back() };
         for group in &self.groups {
             group.displace(&mut self.elements);
         }

@@ -71,6 +71,13 @@ impl Pose {
         self.rotation == DMat3::IDENTITY && self.origin_mm.x == 0.0 && self.origin_mm.y == 0.0
     }
 
+    /// With z toward the other side, x and y as they are: a left-handed frame, in which a picture stays unmirrored.
+    #[must_use]
+    pub fn facing_back(&self) -> Self {
+        let r = self.rotation;
+        Self { rotation: DMat3::from_cols(r.x_axis, r.y_axis, -r.z_axis), ..*self }
+    }
+
     /// Moved to the other side of itself: turned by half a turn about its y axis.
     #[must_use]
     pub fn reversed(&self) -> Self {

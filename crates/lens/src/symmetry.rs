@@ -12,7 +12,7 @@ const SAME_MM: f64 = 1e-12;
 const RIM_MM: f64 = 1.0;
 
 pub(crate) fn has_axis_of_revolution(lens: &Lens) -> bool {
-    (lens.image_pose.is_on_axis() || lens.image_pose.reversed().is_on_axis()) && lens.elements.iter().all(is_round)
+    (lens.image_pose.is_on_axis() || lens.image_pose.facing_back().is_on_axis()) && lens.elements.iter().all(is_round)
 }
 
 fn is_round(e: &Element) -> bool {
