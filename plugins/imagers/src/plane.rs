@@ -1,5 +1,8 @@
-//! A flat imager in the nominal image plane, centered on the axis: what each plane imager is made of.
+//! A frame of pixels: what each imager is made of. Flat in the nominal image plane and centered on the axis unless it is
+//! told to stand otherwise.
 
+use crate::standing::Standing;
+use glam::DVec3;
 use spectra_core::frame::FrameSize;
 use spectra_core::isa::{Isa, Vectorized};
 use spectra_core::loss::ALIVE;
@@ -11,35 +14,73 @@ pub const MAX_SIDE_PX: u32 = 32_768;
 /// Most pixels of a frame.
 pub const MAX_PIXELS: u64 = 200_000_000;
 
-/// A flat frame at z = 0, upright and centered.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// A frame of pixels: at z = 0, upright and centered, unless it stands otherwise.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Plane {
     size: FrameSize,
+    standing: Standing,
 }
 
 impl Plane {
-    /// A plane of that size.
+    /// A flat frame of that size, at z = 0, upright and centered.
     #[must_use]
     pub fn new(size: FrameSize) -> Self {
-        Self { size }
+        Self { size, standing: Standing::NOMINAL }
     }
 
-    /// Its size.
+    /// The same, shifted, tilted or curved.
+    #[must_use]
+    pub fn standing(self, standing: Standing) -> Self {
+        Self { standing, ..self }
+    }
+
+    /// Its size; where it is curved, along its surface.
     #[must_use]
     pub fn size(&self) -> FrameSize {
         self.size
+    }
+
+    /// Moves one ray onto it: the pixel, or `None` beside it.
+    fn receive_one(&self, from: DVec3, way: DVec3) -> Option<(DVec3, u32)> {
+        let (point, x, y) = self.standing.meet(from, way)?;
+        Some((point, self.size.pixel_at(x, y)?))
     }
 }
 
 impl Receive for Plane {
     fn receive(&self, rays: &mut RayBatch, isa: Isa) {
-        isa.run(ReceiveBatch { size: self.size, rays });
+        if self.standing == Standing::NOMINAL {
+            return isa.run(ReceiveBatch { size: self.size, rays });
+        }
+        let c = rays.columns_mut();
+        for i in 0..c.x.len() {
+            if c.state[i] != ALIVE {
+                continue;
+            }
+            let (from, way) = (DVec3::new(c.x[i], c.y[i], c.z[i]), DVec3::new(c.l[i], c.m[i], c.n[i]));
+            match self.receive_one(from, way) {
+                Some((point, pixel)) => {
+                    [c.x[i], c.y[i], c.z[i]] = point.to_array();
+                    c.tag[i] = pixel;
+                }
+                None => c.state[i] = Loss::OutOfFrame.state(0),
+            }
+        }
     }
 }
 
 impl Launch for Plane {
     fn place(&self, rays: &mut RayBatch, u: &[f64], v: &[f64], isa: Isa) {
-        isa.run(PlaceBatch { size: self.size, rays, u, v });
+        if self.standing == Standing::NOMINAL {
+            return isa.run(PlaceBatch { size: self.size, rays, u, v });
+        }
+        let c = rays.columns_mut();
+        for i in 0..c.x.len() {
+            let (x, y) = self.size.point_of(c.tag[i], u[i], v[i]);
+            let (point, normal) = self.standing.at(x, y);
+            [c.x[i], c.y[i], c.z[i]] = point.to_array();
+            [c.l[i], c.m[i], c.n[i]] = normal.to_array();
+        }
     }
 }
 
@@ -117,6 +158,7 @@ impl Vectorized for PlaceBatch<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::standing::Bend;
     use spectra_core::numbers::Numbers;
 
     fn size() -> FrameSize {
@@ -169,6 +211,85 @@ mod tests {
             assert_eq!(rays.alive(), n);
             assert_eq!(rays.tags(), pixels, "{}", isa.name());
         }
+    }
+
+    /// Shifted, tilted and curved: points lie on the shape, normals are unit and stand on it, areas are kept (by
+    /// differences), and a ray from any side of the lens is received by the pixel and place that it was aimed at.
+    #[test]
+    fn a_frame_stands_as_it_is_told() {
+        let bends = [
+            Bend::Flat,
+            Bend::Cylinder { radius_mm: -60.0 },
+            Bend::Cylinder { radius_mm: 25.0 },
+            Bend::Sphere { radius_mm: -40.0 },
+            Bend::Sphere { radius_mm: 50.0 },
+        ];
+        let n = 500;
+        let (u, v) = (uniform(0, n), uniform(1, n));
+        for bend in bends {
+            let standing = Standing::new([3.0, -2.0], [0.2, -0.15], bend);
+            let plane = Plane::new(size()).standing(standing);
+            let mut rays = RayBatch::new(n);
+            rays.restart(n);
+            for (i, tag) in rays.columns_mut().tag.iter_mut().enumerate() {
+                *tag = (i as u32 * 614_657) % size().pixels() as u32;
+            }
+            let pixels = rays.tags().to_vec();
+            plane.place(&mut rays, &u, &v, Isa::Baseline);
+            let c = rays.columns_mut();
+            for i in 0..n {
+                let (x, y) = size().point_of(pixels[i], u[i], v[i]);
+                let point = DVec3::new(c.x[i], c.y[i], c.z[i]);
+                let normal = DVec3::new(c.l[i], c.m[i], c.n[i]);
+                assert_eq!((point, normal), standing.at(x, y));
+                assert!((normal.length() - 1.0).abs() < 1e-14 && normal.z < 0.0);
+                let step = 1e-5;
+                let along = |dx: f64, dy: f64| standing.at(x + dx, y + dy).0 - standing.at(x - dx, y - dy).0;
+                let cross = along(step, 0.0).cross(along(0.0, step)) / (4.0 * step * step);
+                assert!((cross.length() - 1.0).abs() < 1e-8, "{bend:?}: area {}", cross.length());
+                assert!((cross.normalize() + normal).length() < 1e-8, "{bend:?}: {cross} {normal}");
+                let axes = standing.axes(x, y);
+                assert!((axes.z_axis + normal).length() < 1e-14 && (axes.determinant() - 1.0).abs() < 1e-14);
+                let from = DVec3::new(15.0 * (v[i] - 0.5), 15.0 * (u[i] - 0.5), -55.0);
+                let way = (point - from).normalize();
+                let (met, mx, my) = standing.meet(from, way).expect("met");
+                assert!((met - point).length() < 1e-12 && (mx - x).abs() + (my - y).abs() < 1e-12, "{bend:?}");
+                // A little inward, clear of the pixel's border by more than the rounding.
+                let (x, y) = size().point_of(pixels[i], 0.001 + 0.998 * u[i], 0.001 + 0.998 * v[i]);
+                let way = (standing.at(x, y).0 - from).normalize();
+                [c.x[i], c.y[i], c.z[i]] = from.to_array();
+                [c.l[i], c.m[i], c.n[i]] = way.to_array();
+                c.tag[i] = 0;
+            }
+            plane.receive(&mut rays, Isa::Baseline);
+            assert_eq!(rays.alive(), n);
+            assert_eq!(rays.tags(), pixels, "{bend:?}");
+        }
+    }
+
+    /// Distances by hand: on the cylinder and the sphere a point is the radius away from the axis and the center; a tilt
+    /// about x of 30 degrees moves the upper edge by half its height away from the lens.
+    #[test]
+    fn shapes_are_where_geometry_says() {
+        let shift = DVec3::new(3.0, -2.0, 0.0);
+        for r in [-45.0_f64, 45.0] {
+            let cylinder = Standing::new([3.0, -2.0], [0.0; 2], Bend::Cylinder { radius_mm: r });
+            let (p, _) = cylinder.at(15.0, 7.0);
+            let d = p - shift - DVec3::new(0.0, 7.0, r);
+            assert!((d.length() - 45.0).abs() < 1e-12 && d.y.abs() < 1e-12);
+            // The arc of 15 mm is an angle of a third of a radian.
+            assert!((p.x - 3.0 - 45.0 * libm::sin(1.0 / 3.0)).abs() < 1e-12);
+            let sphere = Standing::new([3.0, -2.0], [0.0; 2], Bend::Sphere { radius_mm: r });
+            let (p, _) = sphere.at(15.0, 7.0);
+            assert!(((p - shift - DVec3::new(0.0, 0.0, r)).length() - 45.0).abs() < 1e-12);
+            assert!(p.z * r > 0.0);
+        }
+        let tilted = Standing::new([0.0; 2], [std::f64::consts::FRAC_PI_6, 0.0], Bend::Flat);
+        let (p, n) = tilted.at(0.0, 12.0);
+        assert!((p - DVec3::new(0.0, 12.0 * 0.75_f64.sqrt(), 6.0)).length() < 1e-12, "{p}");
+        assert!((n - DVec3::new(0.0, 0.5, -(0.75_f64.sqrt()))).length() < 1e-12, "{n}");
+        // From behind nothing is received.
+        assert!(tilted.meet(DVec3::new(0.0, 0.0, 5.0), DVec3::NEG_Z).is_none());
     }
 
     /// A lens images the subject's upper left to +x, -y (seen from behind, the sky is at the bottom of the film);
