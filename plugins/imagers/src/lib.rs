@@ -4,6 +4,7 @@ mod film;
 mod formats;
 mod params;
 mod plane;
+pub mod sensor;
 mod standing;
 mod xyz;
 

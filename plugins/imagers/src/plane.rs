@@ -40,6 +40,16 @@ impl Plane {
         self.size
     }
 
+    /// Where a ray that travels along `way` meets it: the point, and its place on the frame, mm; see [`Standing::meet`].
+    pub(crate) fn meet(&self, from: DVec3, way: DVec3) -> Option<(DVec3, f64, f64)> {
+        self.standing.meet(from, way)
+    }
+
+    /// The axes of its surface at a place, see [`Standing::axes`].
+    pub(crate) fn axes(&self, x_mm: f64, y_mm: f64) -> glam::DMat3 {
+        self.standing.axes(x_mm, y_mm)
+    }
+
     /// Moves one ray onto it: the pixel, or `None` beside it.
     fn receive_one(&self, from: DVec3, way: DVec3) -> Option<(DVec3, u32)> {
         let (point, x, y) = self.standing.meet(from, way)?;

@@ -55,7 +55,7 @@ fn faulty_frames_are_told_at_their_keys() {
         ("format: 135\nresolution: [9, 6]\ntilt: [5 deg, 85 deg]", "3:15", "at most 80"),
         ("format: 135\nresolution: [9, 6]\ntilt: 5 deg", "3:7", "list of 2"),
         ("format: 135\nresolution: [9, 6]\nshift: [1 s, 0]", "3:9", "length"),
-        ("format: 135\nresolution: [9, 6]\nshift: [0, 1e9]", "3:11", "100 m"),
+        ("format: 135\nresolution: [9, 6]\nshift: [0, 1e9]", "3:12", "100 m"),
         ("format: 135\nresolution: [9, 6]\ncurvature: {shape: saddle, radius: 9}", "3:20", "cylinder"),
         ("format: 135\nresolution: [9, 6]\ncurvature: {shape: sphere, radius: -20}", "3:36", "60 degrees"),
         ("format: 135\nresolution: [9, 6]\ncurvature: {shape: sphere, radius: 0}", "3:36", "60 degrees"),
