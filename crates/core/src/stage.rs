@@ -136,6 +136,11 @@ pub trait Imager: Send + Sync {
         None
     }
 
+    /// Whether it has a converter: [`Imager::raw`] gives something.
+    fn has_converter(&self) -> bool {
+        false
+    }
+
     /// What its converter gives, of an imager that has one.
     fn raw(&self, _exposure: &ExposureFrame) -> Option<RawFrame> {
         None

@@ -116,12 +116,12 @@ fn head(frame: &RawFrame) -> Result<Vec<u8>, WriteFault> {
     if let Some(pattern) = frame.pattern {
         let matrix: Vec<f64> = frame.camera_from_xyz.iter().flatten().copied().collect();
         fields.extend([
-            shorts(33_421, &[2, 2]), // CFARepeatPatternDim
-            bytes(33_422, &pattern), // CFAPattern
-            bytes(50_710, &[0, 1, 2]), // CFAPlaneColor
-            shorts(50_711, &[1]),    // CFALayout: rectangular
-            signed_rationals(50_721, &matrix), // ColorMatrix1
-            rationals(50_728, &frame.neutral), // AsShotNeutral
+            shorts(33_421, &[2, 2]),             // CFARepeatPatternDim
+            bytes(33_422, &pattern),             // CFAPattern
+            bytes(50_710, &[0, 1, 2]),           // CFAPlaneColor
+            shorts(50_711, &[1]),                // CFALayout: rectangular
+            signed_rationals(50_721, &matrix),   // ColorMatrix1
+            rationals(50_728, &frame.neutral),   // AsShotNeutral
             shorts(50_778, &[frame.illuminant]), // CalibrationIlluminant1
         ]);
     }

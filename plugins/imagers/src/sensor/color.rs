@@ -6,9 +6,30 @@ use spectra_spectrum::{Emission, Observer, find_reflectance};
 
 /// The patches that the matrix is fitted to: ISO 17321-1.
 const PATCHES: [&str; 24] = [
-    "dark-skin", "light-skin", "blue-sky", "foliage", "blue-flower", "bluish-green", "orange", "purplish-blue",
-    "moderate-red", "purple", "yellow-green", "orange-yellow", "blue", "green", "red", "yellow", "magenta", "cyan", "white",
-    "neutral-8", "neutral-6.5", "neutral-5", "neutral-3.5", "black",
+    "dark-skin",
+    "light-skin",
+    "blue-sky",
+    "foliage",
+    "blue-flower",
+    "bluish-green",
+    "orange",
+    "purplish-blue",
+    "moderate-red",
+    "purple",
+    "yellow-green",
+    "orange-yellow",
+    "blue",
+    "green",
+    "red",
+    "yellow",
+    "magenta",
+    "cyan",
+    "white",
+    "neutral-8",
+    "neutral-6.5",
+    "neutral-5",
+    "neutral-3.5",
+    "black",
 ];
 
 /// Matrix and white of a camera under a light.
@@ -43,7 +64,8 @@ impl CameraColor {
         let (mut products, mut squares) = (DMat3::ZERO, DMat3::ZERO);
         for patch in PATCHES {
             let reflectance = find_reflectance(&format!("colorchecker#{patch}")).ok()?;
-            let continuum = power.continuum.iter().zip(grid.wavelengths_nm()).map(|(p, w)| p * reflectance.at(w)).collect();
+            let continuum =
+                power.continuum.iter().zip(grid.wavelengths_nm()).map(|(p, w)| p * reflectance.at(w)).collect();
             let line = |l: &spectra_core::spectral::Line| spectra_core::spectral::Line {
                 power: l.power * reflectance.at(l.wavelength_nm),
                 ..*l
@@ -60,8 +82,7 @@ impl CameraColor {
         let fitted = products * squares.inverse();
         let missing = neutral - fitted * white_xyz;
         let along = white_xyz / white_xyz.length_squared();
-        let camera_from_xyz =
-            fitted + DMat3::from_cols(missing * along.x, missing * along.y, missing * along.z);
+        let camera_from_xyz = fitted + DMat3::from_cols(missing * along.x, missing * along.y, missing * along.z);
         camera_from_xyz.inverse().is_finite().then_some(Self { camera_from_xyz, neutral, white_xyz })
     }
 }

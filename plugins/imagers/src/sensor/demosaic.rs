@@ -55,7 +55,8 @@ mod tests {
     fn ramps_of_constant_hue_come_back() {
         let (width, height) = (12, 10);
         for (_, pattern) in &super::super::pattern::PATTERNS[..4] {
-            let value = |c: usize, r: usize, color: usize| 3.0 + 0.5 * c as f32 - 0.25 * r as f32 + [0.0, 2.0, 5.0][color];
+            let value =
+                |c: usize, r: usize, color: usize| 3.0 + 0.5 * c as f32 - 0.25 * r as f32 + [0.0, 2.0, 5.0][color];
             let mosaic: Vec<f32> = (0..width * height)
                 .map(|i| value(i % width, i / width, pattern.channel((i % width) as u32, (i / width) as u32) as usize))
                 .collect();

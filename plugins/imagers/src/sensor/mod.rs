@@ -178,6 +178,10 @@ impl Imager for Sensor {
         Some(self.converter.exposure_time_s)
     }
 
+    fn has_converter(&self) -> bool {
+        true
+    }
+
     fn raw(&self, exposure: &ExposureFrame) -> Option<RawFrame> {
         Some(self.converter.convert(exposure))
     }

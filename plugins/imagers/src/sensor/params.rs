@@ -119,7 +119,13 @@ impl SensorParams {
     }
 
     /// The channels, in electrons for the light of the exposure.
-    fn channels(&self, params: &Params, context: &Context<'_>, pattern: Pattern, area_mm2: f64) -> Result<Vec<Channel>, Faults> {
+    fn channels(
+        &self,
+        params: &Params,
+        context: &Context<'_>,
+        pattern: Pattern,
+        area_mm2: f64,
+    ) -> Result<Vec<Channel>, Faults> {
         let mut faults = Faults::new();
         let name = self.sensitivity.as_deref().unwrap_or(DEFAULT_SENSITIVITY);
         if pattern == Pattern::Monochrome && self.sensitivity.is_none() {
@@ -136,7 +142,9 @@ impl SensorParams {
         let mut tables = Vec::new();
         for (channel, text) in wanted {
             let found = find_sensitivity_in(&text, context.resources);
-            tables.extend(faults.take(found.map(|s| (channel, s.on_grid(grid))).map_err(|e| params.fault("sensitivity", e.to_string()))));
+            tables.extend(faults.take(
+                found.map(|s| (channel, s.on_grid(grid))).map_err(|e| params.fault("sensitivity", e.to_string())),
+            ));
         }
         faults.into_result(())?;
         // Photons per joule go with the wavelength: electrons a photon are sensitivity over wavelength.
@@ -168,7 +176,9 @@ impl SensorParams {
         let mut faults = Faults::new();
         let index = p.index.map_or(SILICA, |i| i.bare());
         if !(1.0..=5.0).contains(&index) {
-            faults.push(params.fault("photosite.index", format!("{index} is no refractive index of a stack")).hint("1 to 5"));
+            faults.push(
+                params.fault("photosite.index", format!("{index} is no refractive index of a stack")).hint("1 to 5"),
+            );
         }
         let microlens = p.microlens.map_or(0.0, |m| m.number());
         if microlens > 1.0 {
@@ -185,7 +195,13 @@ impl SensorParams {
         faults.into_result(Some(photosite))
     }
 
-    fn converter(&self, params: &Params, context: &Context<'_>, pattern: Pattern, channels: &[Channel]) -> Result<Converter, Faults> {
+    fn converter(
+        &self,
+        params: &Params,
+        context: &Context<'_>,
+        pattern: Pattern,
+        channels: &[Channel],
+    ) -> Result<Converter, Faults> {
         let mut faults = Faults::new();
         let bits = self.bits.unwrap_or(14);
         if !(8..=16).contains(&bits) {
@@ -194,7 +210,9 @@ impl SensorParams {
         let white_level = ((1_u32 << bits.clamp(8, 16)) - 1) as u16;
         let black = self.black_level.unwrap_or(u32::from(white_level).div_ceil(32));
         if black >= u32::from(white_level) {
-            faults.push(params.fault("black-level", format!("{black} leaves no range")).hint(format!("below {white_level}")));
+            faults.push(
+                params.fault("black-level", format!("{black} leaves no range")).hint(format!("below {white_level}")),
+            );
         }
         let base_iso = self.base_iso.map_or(100.0, |i| i.bare());
         let iso = self.iso.map_or(base_iso, |i| i.bare());
@@ -205,10 +223,12 @@ impl SensorParams {
         let color = match pattern {
             Pattern::Monochrome => None,
             Pattern::Bayer(_) => {
-                let found = find_emission_in(light, context.resources).map_err(|e| params.fault("white-balance", e.to_string()));
+                let found = find_emission_in(light, context.resources)
+                    .map_err(|e| params.fault("white-balance", e.to_string()));
                 faults.take(found).and_then(|light| {
                     let color = CameraColor::fit(channels, &light, &context.grid);
-                    let blind = || params.fault("white-balance", "these sensitivities do not tell colors apart in this light");
+                    let blind =
+                        || params.fault("white-balance", "these sensitivities do not tell colors apart in this light");
                     faults.take(color.ok_or_else(blind))
                 })
             }
@@ -248,7 +268,9 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Imager>, Faul
     let channels = faults.take(parsed.channels(params, context, pattern, area_mm2));
     let photosite = faults.take(parsed.photosite(params, context, pitch_mm.unwrap_or(area_mm2.sqrt())));
     let converter = channels.as_ref().and_then(|c| faults.take(parsed.converter(params, context, pattern, c)));
-    let (Some(channels), Some(photosite), Some(converter)) = (channels, photosite, converter) else { return Err(faults) };
+    let (Some(channels), Some(photosite), Some(converter)) = (channels, photosite, converter) else {
+        return Err(faults);
+    };
     let pixels = Pixels { plane, pattern, open: fill.sqrt(), photosite };
     faults.into_result(Box::new(Sensor { pixels, channels, converter }))
 }

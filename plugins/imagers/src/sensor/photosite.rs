@@ -106,8 +106,8 @@ impl Photosite {
     ) -> [i32; 2] {
         let local = axes.transpose() * way;
         let number = number_of(way, wavelength_nm, entry);
-        let aside = (self.aside_mm(local, wavelength_nm, number) - self.made_for_mm(place_mm[0], place_mm[1]))
-            / self.pitch_mm;
+        let aside =
+            (self.aside_mm(local, wavelength_nm, number) - self.made_for_mm(place_mm[0], place_mm[1])) / self.pitch_mm;
         let gathered = 1.0 - self.microlens;
         // Columns count against x, rows along y.
         [entry[0] * gathered - aside.x, entry[1] * gathered + aside.y].map(|at| (at + 0.5).floor() as i32)
