@@ -39,10 +39,13 @@ fn colors(frame: &ExposureFrame, left: usize, top: usize, side: usize) -> [f64; 
 fn casts(frame: &ExposureFrame) -> [[f64; 2]; 2] {
     let (width, height) = (frame.size.width_px as usize, frame.size.height_px as usize);
     let side = 16;
+    // The same square of all four quarters: the fall of the light from filter to filter cancels.
     let at = |share: f64| {
-        let left = ((1.0 - share) * (width - side) as f64 / 2.0) as usize / 2 * 2;
-        let top = ((1.0 - share) * (height - side) as f64 / 2.0) as usize / 2 * 2;
-        colors(frame, left, top, side)
+        let near = |pixels: usize| ((1.0 - share) * (pixels - side) as f64 / 2.0) as usize / 2 * 2;
+        let (left, top) = (near(width), near(height));
+        let corners = [(left, top), (width - side - left, top), (left, height - side - top)];
+        let all = corners.into_iter().chain([(width - side - left, height - side - top)]);
+        all.map(|(left, top)| colors(frame, left, top, side)).fold([0.0; 3], |a, c| [0, 1, 2].map(|i| a[i] + c[i]))
     };
     let stops = |c: [f64; 3], m: [f64; 3]| [0, 2].map(|i| libm::log2(c[i] / c[1] / (m[i] / m[1])));
     let middle = at(0.0);
@@ -67,9 +70,8 @@ fn a_symmetric_wide_angle_lens_casts_color_and_a_retrofocus_does_not() {
     let retrofocus = casts(&render(&load("sensor-wide-angle.yaml", &[&COMMON[..], &retrofocus].concat())));
     println!("retrofocus {retrofocus:.3?}");
     for color in 0..2 {
-        assert!(hologon[1][color].abs() > 0.25, "{hologon:?}");
-        assert!(hologon[1][color].abs() > 1.5 * hologon[0][color].abs(), "{hologon:?}");
-        assert!(shallow[1][color].abs() < 0.03 && retrofocus[1][color].abs() < 0.05, "{shallow:?} {retrofocus:?}");
+        assert!(hologon[1][color] > 0.12 && hologon[0][color].abs() < 0.5 * hologon[1][color], "{hologon:?}");
+        assert!(shallow[1][color].abs() < 0.01 && retrofocus[1][color].abs() < 0.02, "{shallow:?} {retrofocus:?}");
     }
 }
 
@@ -106,7 +108,8 @@ fn compare(scene: &str, common: &[&str], samples: &str, rays: &str, of: impl Fn(
 #[test]
 fn forward_and_backward_agree_on_a_sensor() {
     let stands = "imager={kind: sensor, format: 135, resolution: [40, 28], pitch: 5 um, fill-factor: 70 %, tilt: [5, -8], \
-                  shift: [2, 1], exposure: 1 s, photosite: {stack: 4 um, microlens: 50 %, well: 3 um, exit-pupil: 40 mm}}";
+                  shift: [2, 1], exposure: 1 s, photosite: {stack: 4 um, microlens: 50 %, well: 3 um, exit-pupil: 40 mm}, \
+                  cover: [{glass: SCHOTT/N-BK7, thickness: 1 mm, gap: 0.5}], low-pass: [{thickness: 0.5}]}";
     let squares = |frame: &ExposureFrame| {
         [(0, 0), (26, 0), (0, 14), (14, 8)].iter().flat_map(|(left, top)| colors(frame, *left, *top, 14)).collect()
     };

@@ -49,8 +49,8 @@ impl Imager for FilmPlane {
     }
 }
 
-fn build(params: &Params, _context: &Context<'_>) -> Result<Box<dyn Imager>, Faults> {
-    Ok(Box::new(FilmPlane::new(params.parse::<FilmPlaneParams>()?.frame().plane(params)?)))
+fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Imager>, Faults> {
+    Ok(Box::new(FilmPlane::new(params.parse::<FilmPlaneParams>()?.frame().plane(params, context)?)))
 }
 
 inventory::submit! {

@@ -2,10 +2,14 @@
 
 use crate::formats::{FORMATS, format_named};
 use crate::plane::{MAX_PIXELS, MAX_SIDE_PX, Plane};
+use crate::plates::{Plate, Plates};
 use crate::standing::{Bend, Standing};
 use serde::Deserialize;
 use spectra_core::frame::FrameSize;
-use spectra_core::params::{Angle, Fault, Faults, Length, Params, Positive, nearest};
+use spectra_core::params::{Angle, Fault, Faults, Length, NonNegative, Params, Positive, nearest};
+use spectra_core::registry::Context;
+use spectra_glass::Catalogue;
+use spectra_spectrum::find_transmittance_in;
 
 /// Parameters of an imager: those that all share, and its own behind them. One struct holds all, so that an unknown
 /// key is compared with every known one.
@@ -37,6 +41,12 @@ macro_rules! imager_params {
             /// A frame that is not flat.
             #[serde(default)]
             pub curvature: Option<$crate::params::Curvature>,
+            /// Plates of glass before the frame: cover glass, filters against ultraviolet and infrared.
+            #[serde(default)]
+            pub cover: Option<Vec<$crate::params::CoverParams>>,
+            /// Plates of a crystal that split every point in two, against false colors.
+            #[serde(default)]
+            pub low_pass: Option<Vec<$crate::params::LowPassParams>>,
             $($(#[$field_doc])* pub $field: $type,)*
         }
 
@@ -51,6 +61,8 @@ macro_rules! imager_params {
                     shift: self.shift,
                     tilt: self.tilt,
                     curvature: self.curvature.clone(),
+                    cover: self.cover.clone().unwrap_or_default(),
+                    low_pass: self.low_pass.clone().unwrap_or_default(),
                 }
             }
         }
@@ -69,6 +81,36 @@ pub struct Curvature {
     pub radius: Length,
 }
 
+/// A plate of glass before the frame, as written in a scene. Reflections at its surfaces are not counted.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct CoverParams {
+    /// A glass of the catalogue, such as `SCHOTT/N-BK7`; what it absorbs counts.
+    pub glass: String,
+    /// Thickness, mm if bare.
+    pub thickness: Positive<Length>,
+    /// Air between it and what stands behind it, mm if bare: for the record, since it changes nothing.
+    #[serde(default)]
+    pub gap: Option<NonNegative<Length>>,
+    /// A further transmittance, by name: a coating against infrared, a dyed layer.
+    #[serde(default)]
+    pub transmittance: Option<String>,
+}
+
+/// A birefringent plate before the frame, as written in a scene, its axis at 45 degrees to it.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct LowPassParams {
+    /// `quartz` (the default), `lithium-niobate`, or a uniaxial crystal of the catalogue without its `-o` or `-e`.
+    #[serde(default)]
+    pub crystal: Option<String>,
+    /// Thickness, mm if bare: 1.5 mm of quartz split by 8.8 um.
+    pub thickness: Positive<Length>,
+    /// Where the second point lies, from +x toward +y, degrees if bare; 0 if left out.
+    #[serde(default)]
+    pub azimuth: Option<Angle>,
+}
+
 /// The frame as a scene writes it: a named format or width and height, the number of pixels, how it stands.
 pub(crate) struct Frame {
     pub(crate) format: Option<String>,
@@ -78,23 +120,77 @@ pub(crate) struct Frame {
     pub(crate) shift: Option<[Length; 2]>,
     pub(crate) tilt: Option<[Angle; 2]>,
     pub(crate) curvature: Option<Curvature>,
+    pub(crate) cover: Vec<CoverParams>,
+    pub(crate) low_pass: Vec<LowPassParams>,
 }
 
 /// Most of a tilt, degrees.
 const MAX_TILT_DEG: f64 = 80.0;
+/// Thickest plate, mm.
+const MAX_PLATE_MM: f64 = 100.0;
 /// Most of a shift, mm.
 const MAX_SHIFT_MM: f64 = 1e5;
 
 impl Frame {
     /// Checks it, before anything is allocated by it.
-    pub(crate) fn plane(&self, params: &Params) -> Result<Plane, Faults> {
+    pub(crate) fn plane(&self, params: &Params, context: &Context<'_>) -> Result<Plane, Faults> {
         let mut faults = Faults::new();
         let size = faults.take(self.size(params));
         let standing = faults.take(self.standing(params, size));
-        match (size, standing) {
-            (Some(size), Some(standing)) => faults.into_result(Plane::new(size).standing(standing)),
+        let plates = faults.take(self.plates(params, context));
+        match (size, standing, plates) {
+            (Some(size), Some(standing), Some(plates)) => {
+                faults.into_result(Plane::new(size).standing(standing).behind(plates))
+            }
             _ => Err(faults),
         }
+    }
+
+    /// The plates before it.
+    fn plates(&self, params: &Params, context: &Context<'_>) -> Result<Plates, Faults> {
+        let mut faults = Faults::new();
+        let catalogue = Catalogue::bundled();
+        let grid = &context.grid;
+        let mut plates = Vec::new();
+        let thick = |thickness: &Positive<Length>, key: String| {
+            let mm = thickness.mm();
+            let fault = || params.fault(&key, format!("a plate of {mm} mm")).hint(format!("at most {MAX_PLATE_MM} mm"));
+            if mm <= MAX_PLATE_MM { Ok(mm) } else { Err(fault()) }
+        };
+        for (i, plate) in self.cover.iter().enumerate() {
+            let key = |name: &str| format!("cover[{i}].{name}");
+            let medium = catalogue.medium(&plate.glass).map_err(|e| params.fault(&key("glass"), e.to_string()));
+            let filter = plate.transmittance.as_ref().map(|name| find_transmittance_in(name, context.resources));
+            let filter = filter.transpose().map_err(|e| params.fault(&key("transmittance"), e.to_string()));
+            let (medium, filter) = (faults.take(medium), faults.take(filter));
+            if let (Some(mm), Some(medium), Some(filter)) =
+                (faults.take(thick(&plate.thickness, key("thickness"))), medium, filter)
+            {
+                plates.push(Plate::glass(&medium, mm, |w| filter.as_ref().map_or(1.0, |f| f.at(w)), grid));
+            }
+        }
+        for (i, plate) in self.low_pass.iter().enumerate() {
+            let key = |name: &str| format!("low-pass[{i}].{name}");
+            let crystal = match plate.crystal.as_deref() {
+                None | Some("quartz") => "SiO2/Ghosh",
+                Some("lithium-niobate") => "LiNbO3/Zelmon",
+                Some(other) => other,
+            };
+            let ray = |which: &str| {
+                let found = catalogue.medium(&format!("{crystal}-{which}"));
+                found.map_err(|e| params.fault(&key("crystal"), e.to_string()).hint("quartz or lithium-niobate"))
+            };
+            let (ordinary, extraordinary) = (faults.take(ray("o")), faults.take(ray("e")));
+            let mm = faults.take(thick(&plate.thickness, key("thickness")));
+            if let (Some(mm), Some(o), Some(e)) = (mm, ordinary, extraordinary) {
+                plates.push(Plate::crystal(&o, &e, mm, plate.azimuth.map_or(0.0, Angle::rad), grid));
+            }
+        }
+        if self.curvature.is_some() && !(self.cover.is_empty() && self.low_pass.is_empty()) {
+            let key = if self.cover.is_empty() { "low-pass" } else { "cover" };
+            faults.push(params.fault(key, "plates stand before a flat frame only").hint("leave `curvature` out"));
+        }
+        faults.into_result(Plates::new(grid, plates))
     }
 
     /// Its size.

@@ -1,31 +1,46 @@
 //! A frame of pixels: what each imager is made of. Flat in the nominal image plane and centered on the axis unless it is
 //! told to stand otherwise.
 
+use crate::plates::Plates;
 use crate::standing::Standing;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use spectra_core::frame::FrameSize;
 use spectra_core::isa::{Isa, Vectorized};
 use spectra_core::loss::ALIVE;
 use spectra_core::stage::{Launch, Receive};
 use spectra_core::{Loss, RayBatch};
+use std::sync::Arc;
 
 /// Most pixels along one side.
 pub const MAX_SIDE_PX: u32 = 32_768;
 /// Most pixels of a frame.
 pub const MAX_PIXELS: u64 = 200_000_000;
 
-/// A frame of pixels: at z = 0, upright and centered, unless it stands otherwise.
+/// A frame of pixels: at z = 0, upright and centered, with nothing before it, unless it is told otherwise.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plane {
     size: FrameSize,
     standing: Standing,
+    plates: Option<Arc<Plates>>,
+}
+
+/// Where a ray meets a frame.
+pub(crate) struct Met {
+    /// The point, mm, frame of the nominal image plane.
+    pub(crate) point: DVec3,
+    /// The place on the frame, mm.
+    pub(crate) x: f64,
+    /// The place on the frame, mm.
+    pub(crate) y: f64,
+    /// Share of the light that the plates let pass.
+    pub(crate) passed: f64,
 }
 
 impl Plane {
     /// A flat frame of that size, at z = 0, upright and centered.
     #[must_use]
     pub fn new(size: FrameSize) -> Self {
-        Self { size, standing: Standing::NOMINAL }
+        Self { size, standing: Standing::NOMINAL, plates: None }
     }
 
     /// The same, shifted, tilted or curved.
@@ -34,15 +49,25 @@ impl Plane {
         Self { standing, ..self }
     }
 
+    /// The same behind plates, which are parallel to it; it must be flat.
+    #[must_use]
+    pub fn behind(self, plates: Plates) -> Self {
+        Self { plates: (!plates.is_empty()).then(|| Arc::new(plates)), ..self }
+    }
+
     /// Its size; where it is curved, along its surface.
     #[must_use]
     pub fn size(&self) -> FrameSize {
         self.size
     }
 
-    /// Where a ray that travels along `way` meets it: the point, and its place on the frame, mm; see [`Standing::meet`].
-    pub(crate) fn meet(&self, from: DVec3, way: DVec3) -> Option<(DVec3, f64, f64)> {
-        self.standing.meet(from, way)
+    /// Where a ray that travels along `way` meets it, see [`Standing::meet`]; through the plates, if there are any.
+    pub(crate) fn meet(&self, from: DVec3, way: DVec3, wavelength_nm: f64) -> Option<Met> {
+        let (point, x, y) = self.standing.meet(from, way)?;
+        let Some(plates) = &self.plates else { return Some(Met { point, x, y, passed: 1.0 }) };
+        let (beside, passed) = plates.pass(self.axes(x, y).transpose() * way, wavelength_nm);
+        let (x, y) = (x + beside.x, y + beside.y);
+        Some(Met { point: self.standing.at(x, y).0, x, y, passed })
     }
 
     /// The axes of its surface at a place, see [`Standing::axes`].
@@ -50,16 +75,15 @@ impl Plane {
         self.standing.axes(x_mm, y_mm)
     }
 
-    /// Moves one ray onto it: the pixel, or `None` beside it.
-    fn receive_one(&self, from: DVec3, way: DVec3) -> Option<(DVec3, u32)> {
-        let (point, x, y) = self.standing.meet(from, way)?;
-        Some((point, self.size.pixel_at(x, y)?))
+    /// Whether it is as [`Plane::new`] makes it.
+    fn is_plain(&self) -> bool {
+        self.standing == Standing::NOMINAL && self.plates.is_none()
     }
 }
 
 impl Receive for Plane {
     fn receive(&self, rays: &mut RayBatch, isa: Isa) {
-        if self.standing == Standing::NOMINAL {
+        if self.is_plain() {
             return isa.run(ReceiveBatch { size: self.size, rays });
         }
         let c = rays.columns_mut();
@@ -68,9 +92,11 @@ impl Receive for Plane {
                 continue;
             }
             let (from, way) = (DVec3::new(c.x[i], c.y[i], c.z[i]), DVec3::new(c.l[i], c.m[i], c.n[i]));
-            match self.receive_one(from, way) {
-                Some((point, pixel)) => {
-                    [c.x[i], c.y[i], c.z[i]] = point.to_array();
+            let met = self.meet(from, way, c.wavelength_nm[i]);
+            match met.and_then(|met| Some((self.size.pixel_at(met.x, met.y)?, met))) {
+                Some((pixel, met)) => {
+                    [c.x[i], c.y[i], c.z[i]] = met.point.to_array();
+                    c.weight[i] *= met.passed;
                     c.tag[i] = pixel;
                 }
                 None => c.state[i] = Loss::OutOfFrame.state(0),
@@ -81,15 +107,39 @@ impl Receive for Plane {
 
 impl Launch for Plane {
     fn place(&self, rays: &mut RayBatch, u: &[f64], v: &[f64], isa: Isa) {
-        if self.standing == Standing::NOMINAL {
+        if self.is_plain() {
             return isa.run(PlaceBatch { size: self.size, rays, u, v });
         }
+        let lift_mm = self.plates.as_ref().map_or(0.0, |plates| plates.lift_mm());
         let c = rays.columns_mut();
         for i in 0..c.x.len() {
             let (x, y) = self.size.point_of(c.tag[i], u[i], v[i]);
             let (point, normal) = self.standing.at(x, y);
-            [c.x[i], c.y[i], c.z[i]] = point.to_array();
+            // As near as the frame seems through the plates.
+            [c.x[i], c.y[i], c.z[i]] = (point + normal * lift_mm).to_array();
             [c.l[i], c.m[i], c.n[i]] = normal.to_array();
+        }
+    }
+
+    /// Moves the rays from where the frame seems to be near the axis to where Snell's law has them.
+    fn admit(&self, rays: &mut RayBatch, _isa: Isa) {
+        let Some(plates) = &self.plates else { return };
+        let axes = self.axes(0.0, 0.0);
+        let lift_mm = plates.lift_mm();
+        let c = rays.columns_mut();
+        for i in 0..c.x.len() {
+            if c.state[i] != ALIVE {
+                continue;
+            }
+            let way = axes.transpose() * -DVec3::new(c.l[i], c.m[i], c.n[i]);
+            let (beside, passed) = plates.pass(way, c.wavelength_nm[i]);
+            // The straight ray crosses the frame `lift_mm` behind the point that it was aimed from.
+            let across = -beside - DVec2::new(way.x, way.y) * (lift_mm / way.z);
+            let across = axes.x_axis * across.x + axes.y_axis * across.y;
+            c.x[i] += across.x;
+            c.y[i] += across.y;
+            c.z[i] += across.z;
+            c.weight[i] *= passed;
         }
     }
 }
@@ -300,6 +350,46 @@ mod tests {
         assert!((n - DVec3::new(0.0, 0.5, -(0.75_f64.sqrt()))).length() < 1e-12, "{n}");
         // From behind nothing is received.
         assert!(tilted.meet(DVec3::new(0.0, 0.0, 5.0), DVec3::NEG_Z).is_none());
+    }
+
+    /// Behind a tilted stack of plates, launched rays that travel back along their way land where they came from: the
+    /// two ways through the plates undo each other, for each branch.
+    #[test]
+    fn plates_are_the_same_from_both_sides() {
+        use crate::plates::Plate;
+        use spectra_core::spectral::BAND;
+        let medium = |name: &str| spectra_glass::Catalogue::bundled().medium(name).expect("bundled");
+        let quartz = Plate::crystal(&medium("SiO2/Ghosh-o"), &medium("SiO2/Ghosh-e"), 1.5, 0.4, &BAND);
+        let glass = Plate::glass(&medium("SCHOTT/N-BK7"), 2.0, |_| 0.8, &BAND);
+        let standing = Standing::new([1.0, -2.0], [0.1, 0.05], Bend::Flat);
+        let plane = Plane::new(size()).standing(standing).behind(Plates::new(&BAND, vec![glass, quartz]));
+        let n = 500;
+        let (u, v, p, q) = (uniform(0, n), uniform(1, n), uniform(2, n), uniform(3, n));
+        let mut rays = RayBatch::new(n);
+        rays.restart(n);
+        let c = rays.columns_mut();
+        for i in 0..n {
+            c.tag[i] = (i as u32 * 614_657) % size().pixels() as u32;
+            c.wavelength_nm[i] = 400.0 + 300.0 * v[i];
+        }
+        let pixels = rays.tags().to_vec();
+        plane.place(&mut rays, &u, &v, Isa::Baseline);
+        let c = rays.columns_mut();
+        for i in 0..n {
+            let at = DVec3::new(c.x[i], c.y[i], c.z[i]);
+            let target = DVec3::new(20.0 * p[i] - 10.0, 20.0 * q[i] - 10.0, -40.0);
+            [c.x[i], c.y[i], c.z[i]] = target.to_array();
+            [c.l[i], c.m[i], c.n[i]] = (target - at).normalize().to_array();
+        }
+        plane.admit(&mut rays, Isa::Baseline);
+        let c = rays.columns_mut();
+        for i in 0..n {
+            let way = -DVec3::new(c.l[i], c.m[i], c.n[i]);
+            let met = plane.meet(DVec3::new(c.x[i], c.y[i], c.z[i]), way, c.wavelength_nm[i]).expect("met");
+            let (x, y) = size().point_of(pixels[i], u[i], v[i]);
+            assert!((met.x - x).abs() + (met.y - y).abs() < 1e-11, "{} {x} {} {y}", met.x, met.y);
+            assert!((c.weight[i] - met.passed).abs() < 1e-15 && (met.passed - 0.8).abs() < 0.02);
+        }
     }
 
     /// A lens images the subject's upper left to +x, -y (seen from behind, the sky is at the bottom of the film);

@@ -89,7 +89,7 @@ impl Imager for XyzPlane {
 fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Imager>, Faults> {
     let parsed: XyzParams = params.parse()?;
     let mut faults = Faults::new();
-    let plane = faults.take(parsed.frame().plane(params));
+    let plane = faults.take(parsed.frame().plane(params, context));
     let XyzParams { exposure, white, gamut, .. } = parsed;
     let white = match &white {
         None => Some(White::default()),

@@ -255,7 +255,7 @@ impl SensorParams {
 fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Imager>, Faults> {
     let parsed: SensorParams = params.parse()?;
     let mut faults = Faults::new();
-    let plane = faults.take(parsed.frame().plane(params));
+    let plane = faults.take(parsed.frame().plane(params, context));
     let pattern = faults.take(parsed.pattern(params));
     let fill = parsed.fill_factor.map_or(1.0, |f| f.number());
     if fill > 1.0 {
@@ -271,7 +271,7 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Imager>, Faul
     let (Some(channels), Some(photosite), Some(converter)) = (channels, photosite, converter) else {
         return Err(faults);
     };
-    let pixels = Pixels { plane, pattern, open: fill.sqrt(), photosite };
+    let pixels = Pixels { plane, pattern, open: fill.sqrt(), photosite, coarse: parsed.pitch.is_some() };
     faults.into_result(Box::new(Sensor { pixels, channels, converter }))
 }
 
