@@ -67,6 +67,7 @@ fn the_registry_is_sound_and_complete() {
         "film/stock",
         "film/three-strip",
         "imager/film",
+        "imager/sensor",
         "imager/xyz",
         "source/chart",
         "source/picture",

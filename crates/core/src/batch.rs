@@ -39,6 +39,24 @@ impl<T: bytemuck::Pod> Column<T> {
 /// The line number of a ray whose wavelength was drawn from a continuum.
 pub const CONTINUUM: u32 = u32::MAX;
 
+/// Bits of a tag that number a pixel. Those above them name the only channel that the ray adds to, counted from 1; 0 there:
+/// all channels.
+pub const PIXEL_BITS: u32 = 28;
+
+/// The tag of a ray that adds to one channel of a pixel only: its light passed that channel's filter, of a mosaic.
+#[inline(always)]
+#[must_use]
+pub fn tag_of(pixel: u32, only_channel: u32) -> u32 {
+    pixel | (only_channel + 1) << PIXEL_BITS
+}
+
+/// The pixel of a tag, and the only channel that the ray adds to, if it is not all of them.
+#[inline(always)]
+#[must_use]
+pub fn pixel_and_channel(tag: u32) -> (u32, Option<u32>) {
+    (tag & ((1 << PIXEL_BITS) - 1), (tag >> PIXEL_BITS).checked_sub(1))
+}
+
 /// A batch of rays. Columns lie behind accessors, so that later ones need no change in a plugin.
 ///
 /// | column | unit | meaning |

@@ -91,6 +91,37 @@ pub struct DisplayPicture {
     pub rgb: Vec<[f32; 3]>,
 }
 
+/// What a sensor's converter gives: one number a pixel, and what a raw converter must know to make a picture of them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RawFrame {
+    /// Pixels across.
+    pub width_px: u32,
+    /// Pixels down.
+    pub height_px: u32,
+    /// Row-major, upright.
+    pub values: Vec<u16>,
+    /// Colors of the filters, 2 x 2 in rows from the upper left: 0 red, 1 green, 2 blue. `None`: no filters.
+    pub pattern: Option<[u8; 4]>,
+    /// Value without light.
+    pub black_level: u16,
+    /// Value from which on nothing is told apart.
+    pub white_level: u16,
+    /// Rows give the camera's red, green and blue from XYZ, under [`RawFrame::illuminant`].
+    pub camera_from_xyz: [[f64; 3]; 3],
+    /// The camera's red, green and blue of white; the largest is 1.
+    pub neutral: [f64; 3],
+    /// The light that white was measured in: its EXIF number (`LightSource`), such as 21 for D65.
+    pub illuminant: u16,
+    /// Maker for the file.
+    pub maker: String,
+    /// Model for the file.
+    pub model: String,
+    /// Exposure time, s.
+    pub exposure_time_s: f64,
+    /// ISO setting.
+    pub iso: f64,
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -7,7 +7,7 @@
 //! by the probability with which wavelength and places were drawn.
 
 use crate::RayBatch;
-use crate::frame::{DisplayPicture, ExposureFrame, FrameSize};
+use crate::frame::{DisplayPicture, ExposureFrame, FrameSize, RawFrame};
 use crate::isa::Isa;
 use crate::spectral::{Channel, SpectralPower, SystemResponse};
 
@@ -135,12 +135,23 @@ pub trait Imager: Send + Sync {
     fn exposure_time_s(&self) -> Option<f64> {
         None
     }
+
+    /// Whether it has a converter: [`Imager::raw`] gives something.
+    fn has_converter(&self) -> bool {
+        false
+    }
+
+    /// What its converter gives, of an imager that has one.
+    fn raw(&self, _exposure: &ExposureFrame) -> Option<RawFrame> {
+        None
+    }
 }
 
 /// Receives rays.
 pub trait Receive: Send + Sync {
     /// Moves the living rays (frame: the nominal image plane is z = 0) onto the imager and writes the
-    /// pixel into the tag; rays beside the frame end as [`crate::Loss::OutOfFrame`].
+    /// pixel into the tag (with one channel, where the light adds to no other: [`crate::batch::tag_of`]); rays beside
+    /// the frame end as [`crate::Loss::OutOfFrame`].
     fn receive(&self, rays: &mut RayBatch, isa: Isa);
 }
 
@@ -149,6 +160,11 @@ pub trait Launch: Send + Sync {
     /// For the pixel in each ray's tag and (`u`, `v`) in [0, 1)^2 of it, writes the point (mm; nominal
     /// image plane z = 0), and the imager's unit normal (toward the lens) in place of the direction.
     fn place(&self, rays: &mut RayBatch, u: &[f64], v: &[f64], isa: Isa);
+
+    /// With the directions now set (toward the lens; positions anywhere along the rays): what stands before the pixels
+    /// does to each ray. It may move a ray aside by less than what its pupil would notice, change its weight, end it, and
+    /// name the one channel that it adds to ([`crate::batch::tag_of`]).
+    fn admit(&self, _rays: &mut RayBatch, _isa: Isa) {}
 }
 
 /// The film: which light it sees, and what becomes of it.

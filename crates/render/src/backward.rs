@@ -6,6 +6,7 @@ use crate::sums::ExactSums;
 use glam::DVec3;
 use spectra_core::Isa;
 use spectra_core::RayBatch;
+use spectra_core::batch::pixel_and_channel;
 use spectra_core::frame::FrameSize;
 use spectra_core::numbers::Numbers;
 use spectra_core::stage::{Launch, Radiance};
@@ -73,6 +74,9 @@ impl<'a> Backward<'a> {
         self.launch.place(&mut state.rays, u.slice(len), v.slice(len), isa);
         let dark = self.rear.aim(&mut state.rays, a.slice(len), b.slice(len), isa);
         state.drop_dark(dark);
+        self.launch.admit(&mut state.rays, isa);
+        let ended = state.rays.len() - state.rays.alive();
+        state.drop_dark(ended);
         self.pipeline.tracer.trace(&mut state.rays, &mut state.work, Travel::Backward);
         self.radiance.radiance(&mut state.rays, isa);
         state.silence_ended(isa);
@@ -106,9 +110,12 @@ impl<'a> Backward<'a> {
                     sums.mark_overflow();
                 }
                 for (i, tag) in state.rays.tags().iter().enumerate() {
-                    let cell = (*tag - begin) as usize * channels;
+                    let (pixel, only) = pixel_and_channel(*tag);
+                    let cell = (pixel - begin) as usize * channels;
                     for (channel, integers) in state.integers.iter().enumerate() {
-                        local[cell + channel] += integers[i];
+                        if only.is_none_or(|only| only as usize == channel) {
+                            local[cell + channel] += integers[i];
+                        }
                     }
                 }
                 sample += count;

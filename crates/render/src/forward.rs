@@ -4,6 +4,8 @@ use crate::error::RenderError;
 use crate::pipeline::{Pipeline, ThreadState};
 use crate::sums::ExactSums;
 use glam::DVec3;
+use spectra_core::Loss;
+use spectra_core::batch::pixel_and_channel;
 use spectra_core::numbers::{Dimension, Numbers};
 use spectra_core::stage::{Emit, Receive};
 use spectra_lens::{AimPattern, FrontPupil, Travel};
@@ -77,10 +79,12 @@ impl<'a> Forward<'a> {
         }
         self.emit.radiate(&mut state.rays, isa);
         self.pipeline.tracer.trace(&mut state.rays, &mut state.work, Travel::Forward);
-        let before = state.rays.alive();
         self.receive.receive(&mut state.rays, isa);
-        let outside = before - state.rays.alive();
-        state.work.losses.add(spectra_core::Loss::OutOfFrame, 0, outside as u64);
+        // What the lens ended is in the books already.
+        for cause in [Loss::OutOfFrame, Loss::Absorbed] {
+            let ended = state.rays.states().iter().filter(|s| **s == cause.state(0)).count();
+            state.work.losses.add(cause, 0, ended as u64);
+        }
         state.rays.compact();
     }
 
@@ -95,10 +99,13 @@ impl<'a> Forward<'a> {
             if !state.contributions(&self.pipeline, scale) {
                 sums.mark_overflow();
             }
-            for (i, pixel) in state.rays.tags().iter().enumerate() {
-                let cell = *pixel as usize * channels;
+            for (i, tag) in state.rays.tags().iter().enumerate() {
+                let (pixel, only) = pixel_and_channel(*tag);
+                let cell = pixel as usize * channels;
                 for (channel, integers) in state.integers.iter().enumerate() {
-                    sums.add(cell + channel, integers[i]);
+                    if only.is_none_or(|only| only as usize == channel) {
+                        sums.add(cell + channel, integers[i]);
+                    }
                 }
             }
             at += len;

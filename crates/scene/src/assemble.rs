@@ -1,9 +1,9 @@
 //! From a scene file to a [`Scene`], with every fault in one go.
 
 use crate::lens_section::lens_of;
-use crate::{ConePattern, Direction, FileResources, NumberFamily, RenderSettings, Scene, output, yaml};
+use crate::{ConePattern, Direction, FileResources, NumberFamily, Output, RenderSettings, Scene, films, output, yaml};
 use serde::Deserialize;
-use spectra_core::params::{Fault, Faults, Node, Params, StageNode, Wavelength};
+use spectra_core::params::{Fault, Faults, Node, Params, StageNode, Value, Wavelength};
 use spectra_core::registry::{self, Context};
 use spectra_core::resources::Resources;
 use spectra_core::spectral::{BAND, Channel, Grid};
@@ -116,12 +116,17 @@ fn record(text: &str, overrides: &[String]) -> String {
 
 fn assemble(name: &str, text: String, params: &Params, resources: &dyn Resources) -> Result<Scene, Faults> {
     let mut faults = Faults::new();
-    let file: Option<SceneFile> = faults.take(params.parse());
+    // Several films are no single stage: their section is read apart.
+    let (several, others) = match params.get("film").map(|node| &node.value) {
+        Some(Value::Seq(items)) => (Some(items), params.split(&["film"]).1),
+        _ => (None, params.clone()),
+    };
+    let file: Option<SceneFile> = faults.take(others.parse());
     // Even where a section is missing or unknown, the others are looked at: all faults in one go.
-    let section = |key: &str, faults: &mut Faults| faults.take(params.stage_at(key)).flatten();
+    let section = |key: &str, faults: &mut Faults| faults.take(others.stage_at(key)).flatten();
     let parts = ["wavelengths", "source", "lens", "imager", "film", "render"].map(|key| section(key, &mut faults));
     let [wavelengths, source, lens, imager, film, render] = parts;
-    let film_is_wanted = film.is_some();
+    let film_is_wanted = film.is_some() || several.is_some();
     if file.as_ref().is_some_and(|f| f.spectra != 1.0) {
         faults.push(
             params.fault("spectra", "unknown version of the scene format").hint("this program reads `spectra: 1`"),
@@ -134,13 +139,16 @@ fn assemble(name: &str, text: String, params: &Params, resources: &dyn Resources
     let sampler = faults.take(registry::build::<dyn WavelengthSampler>(&sampler, &context));
     let lens = lens.and_then(|p| faults.take(lens_of(&p, resources)));
     let imager = imager.and_then(|p| faults.take(registry::build::<dyn Imager>(&p, &context)));
-    let film = film.and_then(|p| faults.take(registry::build::<dyn Film>(&p, &context)));
+    let films = match several {
+        Some(items) => faults.take(films::several(items, params, &context)),
+        None => film.and_then(|p| faults.take(registry::build::<dyn Film>(&p, &context))).map(films::one),
+    };
     let render = render.unwrap_or_else(|| params.nothing_said("render"));
     let settings = faults.take(render.parse::<RenderSection>());
     let output = file.as_ref().and_then(|f| faults.take(output::read(f.output.as_deref())));
-    let channels = imager.as_ref().and_then(|imager| match (imager.channels(), &film) {
+    let channels = imager.as_ref().and_then(|imager| match (imager.channels(), &films) {
         (Some(own), None) => Some(own),
-        (None, Some(film)) => Some(film.channels()),
+        (None, Some(films)) => Some(films::channels(films)),
         (Some(_), Some(_)) => {
             let fault = params.fault("film", "this imager records by itself, no film lies on it");
             faults.push(fault.hint("write `imager: {kind: film, ...}`, or leave the film out"));
@@ -157,6 +165,13 @@ fn assemble(name: &str, text: String, params: &Params, resources: &dyn Resources
             None
         }
     });
+    if let (Some(imager), Some(wanted)) = (&imager, &output)
+        && wanted.contains(&Output::Dng)
+        && !imager.has_converter()
+    {
+        let fault = params.fault("output", "this imager has no converter: there are no raw numbers");
+        faults.push(fault.hint("`imager: {kind: sensor, ...}`, or leave `dng` out"));
+    }
     let settings = match (&settings, &source, &imager) {
         (Some(s), Some(source), Some(imager)) => faults.take(render_settings(s, &render, &**source, &**imager)),
         _ => None,
@@ -177,7 +192,7 @@ fn assemble(name: &str, text: String, params: &Params, resources: &dyn Resources
         sampler,
         lens,
         imager,
-        film,
+        films: films.unwrap_or_default(),
         channels,
         render,
         output,

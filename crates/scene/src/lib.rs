@@ -5,6 +5,7 @@
 
 mod assemble;
 pub mod diagnostics;
+mod films;
 mod lens_section;
 mod output;
 mod resources;
@@ -13,4 +14,4 @@ pub mod yaml;
 
 pub use assemble::load;
 pub use resources::FileResources;
-pub use scene::{ConePattern, Direction, NumberFamily, Output, RaysFigure, RenderSettings, Scene};
+pub use scene::{ConePattern, Direction, NumberFamily, Output, RaysFigure, RenderSettings, Scene, SceneFilm};

@@ -42,7 +42,7 @@ fn rays_wavelengths() -> f64 {
     64.0
 }
 
-const KINDS: [&str; 4] = ["exr", "png", "tiff", "rays"];
+const KINDS: [&str; 5] = ["exr", "png", "tiff", "dng", "rays"];
 
 /// Reads the section; EXR and PNG where it is absent.
 pub(crate) fn read(items: Option<&[StageNode]>) -> Result<Vec<Output>, Faults> {
@@ -55,6 +55,7 @@ pub(crate) fn read(items: Option<&[StageNode]>) -> Result<Vec<Output>, Faults> {
             Some("exr") => nothing_more(&params).map(|()| Output::Exr),
             Some("png") => nothing_more(&params).map(|()| Output::Png),
             Some("tiff") => nothing_more(&params).map(|()| Output::Tiff),
+            Some("dng") => nothing_more(&params).map(|()| Output::Dng),
             Some("rays") => rays(&params).map(Output::Rays),
             Some(other) => {
                 let fault = item.fault(format!("unknown kind of output `{other}`"));

@@ -1,8 +1,10 @@
 //! A scene, assembled: every stage built, the lens focused and stopped, nothing traced yet.
 
+use spectra_core::frame::{ExposureChannel, ExposureFrame};
 use spectra_core::spectral::{Channel, Grid};
 use spectra_core::stage::{Film, Imager, Source, WavelengthSampler};
 use spectra_lens::Lens;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// Which way light is computed.
@@ -66,6 +68,8 @@ pub enum Output {
     Png,
     /// The picture with 16 bits a channel.
     Tiff,
+    /// The numbers of a sensor's converter, for raw converters.
+    Dng,
     /// The light's way through the lens, as a figure.
     Rays(RaysFigure),
 }
@@ -93,6 +97,27 @@ pub struct RaysFigure {
     pub screen: bool,
 }
 
+/// A film on the imager.
+pub struct SceneFilm {
+    /// What its pictures are called by, where there are several films.
+    pub name: Option<String>,
+    /// The film.
+    pub film: Box<dyn Film>,
+    /// Which channels of the scene are its own.
+    pub channels: Range<usize>,
+}
+
+impl SceneFilm {
+    /// What this film recorded of a frame of the whole scene, its channels under the film's own names.
+    #[must_use]
+    pub fn exposure(&self, all: &ExposureFrame) -> ExposureFrame {
+        let own = all.channels.get(self.channels.clone()).unwrap_or_default();
+        let named = own.iter().zip(self.film.channels());
+        let channels = named.map(|(plane, channel)| ExposureChannel { name: channel.name, ..plane.clone() }).collect();
+        ExposureFrame { size: all.size, channels }
+    }
+}
+
 /// A scene, ready to render.
 pub struct Scene {
     /// Name of its outputs: the file's name without its ending.
@@ -109,9 +134,9 @@ pub struct Scene {
     pub lens: Lens,
     /// The imager.
     pub imager: Box<dyn Imager>,
-    /// The film on it, if any.
-    pub film: Option<Box<dyn Film>>,
-    /// What is recorded: the imager's own channels, or the film's.
+    /// The film on it, or several side by side in the same light; none on an imager that records by itself.
+    pub films: Vec<SceneFilm>,
+    /// What is recorded: the imager's own channels, or those of all films, one film after the other.
     pub channels: Arc<[Channel]>,
     /// How to render.
     pub render: RenderSettings,
@@ -125,8 +150,9 @@ impl Scene {
     /// Exposure time that multiplies irradiance, s; 1 where none is stated and irradiance itself is recorded.
     #[must_use]
     pub fn exposure_time_s(&self) -> f64 {
-        match &self.film {
-            Some(film) => film.exposure_time_s(),
+        match self.films.first() {
+            // Of several films the others' channels hold what their own time is more or less.
+            Some(first) => first.film.exposure_time_s(),
             None => self.imager.exposure_time_s().unwrap_or(1.0),
         }
     }

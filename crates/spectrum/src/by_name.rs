@@ -63,13 +63,14 @@ impl Found {
 }
 
 /// Where bundled spectra lie that can be named without their folder.
-const FOLDERS: [&str; 6] = [
+const FOLDERS: [&str; 7] = [
     "spectra/illuminants/",
     "spectra/lamps/",
     "spectra/reflectances/",
     "spectra/transmittances/",
     "spectra/cie/",
     "spectra/film/",
+    "spectra/sensors/",
 ];
 
 /// Bundled spectra that can be named: (name, path in the bundled data), in the order of the folders.

@@ -1,12 +1,18 @@
-//! Built-in imagers: flat frames in the image plane.
+//! Built-in imagers: frames of pixels in the image plane, or shifted, tilted, curved.
 
 mod film;
 mod formats;
 mod params;
 mod plane;
+mod plates;
+pub mod sensor;
+mod standing;
 mod xyz;
 
 pub use film::{FilmPlane, FilmPlaneParams};
 pub use formats::{FORMATS, Format, format_named};
+pub use params::{CoverParams, Curvature, LowPassParams};
 pub use plane::{MAX_PIXELS, MAX_SIDE_PX, Plane};
+pub use plates::{Plate, Plates};
+pub use standing::{Bend, Standing};
 pub use xyz::{XyzParams, XyzPlane};

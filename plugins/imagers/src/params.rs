@@ -1,21 +1,200 @@
 //! The parameters that all plane imagers share, and the frame that they describe.
 
 use crate::formats::{FORMATS, format_named};
-use crate::plane::{MAX_PIXELS, MAX_SIDE_PX};
+use crate::plane::{MAX_PIXELS, MAX_SIDE_PX, Plane};
+use crate::plates::{Plate, Plates};
+use crate::standing::{Bend, Standing};
+use serde::Deserialize;
 use spectra_core::frame::FrameSize;
-use spectra_core::params::{Fault, Faults, Length, Params, Positive, nearest};
+use spectra_core::params::{Angle, Fault, Faults, Length, NonNegative, Params, Positive, nearest};
+use spectra_core::registry::Context;
+use spectra_glass::Catalogue;
+use spectra_spectrum::find_transmittance_in;
 
-/// The frame as a scene writes it: a named format or width and height, and the number of pixels.
+/// Parameters of an imager: those that all share, and its own behind them. One struct holds all, so that an unknown
+/// key is compared with every known one.
+macro_rules! imager_params {
+    ($(#[$doc:meta])* $name:ident { $($(#[$field_doc:meta])* $field:ident: $type:ty,)* }) => {
+        $(#[$doc])*
+        #[derive(Debug, serde::Deserialize)]
+        #[serde(deny_unknown_fields, rename_all = "kebab-case")]
+        pub struct $name {
+            /// Size by name, such as `135` (36 x 24 mm), `6x6` or `super-35`.
+            #[serde(default)]
+            pub format: Option<String>,
+            /// Width of the frame, mm if bare; together with `height`, in place of `format`.
+            #[serde(default)]
+            pub width: Option<spectra_core::params::Positive<spectra_core::params::Length>>,
+            /// Height of the frame, mm if bare.
+            #[serde(default)]
+            pub height: Option<spectra_core::params::Positive<spectra_core::params::Length>>,
+            /// Pixels across and down, 1 to 32768 each and at most 200 million.
+            pub resolution: [u32; 2],
+            /// Where the center of the frame lies in the image plane, along x and y, mm if bare; +y is up. The image is
+            /// upside down: a frame moved up shows more of what is below.
+            #[serde(default)]
+            pub shift: Option<[spectra_core::params::Length; 2]>,
+            /// Turns of the frame about its own center, about x and then about the y that turned along, degrees if
+            /// bare, right-handed: a positive one about x moves the upper edge away from the lens. Within 80 degrees.
+            #[serde(default)]
+            pub tilt: Option<[spectra_core::params::Angle; 2]>,
+            /// A frame that is not flat.
+            #[serde(default)]
+            pub curvature: Option<$crate::params::Curvature>,
+            /// Plates of glass before the frame: cover glass, filters against ultraviolet and infrared.
+            #[serde(default)]
+            pub cover: Option<Vec<$crate::params::CoverParams>>,
+            /// Plates of a crystal that split every point in two, against false colors.
+            #[serde(default)]
+            pub low_pass: Option<Vec<$crate::params::LowPassParams>>,
+            $($(#[$field_doc])* pub $field: $type,)*
+        }
+
+        impl $name {
+            /// The part that all imagers share.
+            fn frame(&self) -> $crate::params::Frame {
+                $crate::params::Frame {
+                    format: self.format.clone(),
+                    width: self.width,
+                    height: self.height,
+                    resolution: self.resolution,
+                    shift: self.shift,
+                    tilt: self.tilt,
+                    curvature: self.curvature.clone(),
+                    cover: self.cover.clone().unwrap_or_default(),
+                    low_pass: self.low_pass.clone().unwrap_or_default(),
+                }
+            }
+        }
+    };
+}
+pub(crate) use imager_params;
+
+/// How a frame is curved, as written in a scene.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Curvature {
+    /// `cylinder`: bent along x, as film in a curved gate; or `sphere`.
+    pub shape: String,
+    /// Radius, mm if bare; positive where its center lies behind the frame, negative where the frame is hollow toward
+    /// the lens.
+    pub radius: Length,
+}
+
+/// A plate of glass before the frame, as written in a scene. Reflections at its surfaces are not counted.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct CoverParams {
+    /// A glass of the catalogue, such as `SCHOTT/N-BK7`; what it absorbs counts.
+    pub glass: String,
+    /// Thickness, mm if bare.
+    pub thickness: Positive<Length>,
+    /// Air between it and what stands behind it, mm if bare: for the record, since it changes nothing.
+    #[serde(default)]
+    pub gap: Option<NonNegative<Length>>,
+    /// A further transmittance, by name: a coating against infrared, a dyed layer.
+    #[serde(default)]
+    pub transmittance: Option<String>,
+}
+
+/// A birefringent plate before the frame, as written in a scene, its axis at 45 degrees to it.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct LowPassParams {
+    /// `quartz` (the default), `lithium-niobate`, or a uniaxial crystal of the catalogue without its `-o` or `-e`.
+    #[serde(default)]
+    pub crystal: Option<String>,
+    /// Thickness, mm if bare: 1.5 mm of quartz split by 8.8 um.
+    pub thickness: Positive<Length>,
+    /// Where the second point lies, from +x toward +y, degrees if bare; 0 if left out.
+    #[serde(default)]
+    pub azimuth: Option<Angle>,
+}
+
+/// The frame as a scene writes it: a named format or width and height, the number of pixels, how it stands.
 pub(crate) struct Frame {
     pub(crate) format: Option<String>,
     pub(crate) width: Option<Positive<Length>>,
     pub(crate) height: Option<Positive<Length>>,
     pub(crate) resolution: [u32; 2],
+    pub(crate) shift: Option<[Length; 2]>,
+    pub(crate) tilt: Option<[Angle; 2]>,
+    pub(crate) curvature: Option<Curvature>,
+    pub(crate) cover: Vec<CoverParams>,
+    pub(crate) low_pass: Vec<LowPassParams>,
 }
+
+/// Most of a tilt, degrees.
+const MAX_TILT_DEG: f64 = 80.0;
+/// Thickest plate, mm.
+const MAX_PLATE_MM: f64 = 100.0;
+/// Most of a shift, mm.
+const MAX_SHIFT_MM: f64 = 1e5;
 
 impl Frame {
     /// Checks it, before anything is allocated by it.
-    pub(crate) fn size(&self, params: &Params) -> Result<FrameSize, Faults> {
+    pub(crate) fn plane(&self, params: &Params, context: &Context<'_>) -> Result<Plane, Faults> {
+        let mut faults = Faults::new();
+        let size = faults.take(self.size(params));
+        let standing = faults.take(self.standing(params, size));
+        let plates = faults.take(self.plates(params, context));
+        match (size, standing, plates) {
+            (Some(size), Some(standing), Some(plates)) => {
+                faults.into_result(Plane::new(size).standing(standing).behind(plates))
+            }
+            _ => Err(faults),
+        }
+    }
+
+    /// The plates before it.
+    fn plates(&self, params: &Params, context: &Context<'_>) -> Result<Plates, Faults> {
+        let mut faults = Faults::new();
+        let catalogue = Catalogue::bundled();
+        let grid = &context.grid;
+        let mut plates = Vec::new();
+        let thick = |thickness: &Positive<Length>, key: String| {
+            let mm = thickness.mm();
+            let fault = || params.fault(&key, format!("a plate of {mm} mm")).hint(format!("at most {MAX_PLATE_MM} mm"));
+            if mm <= MAX_PLATE_MM { Ok(mm) } else { Err(fault()) }
+        };
+        for (i, plate) in self.cover.iter().enumerate() {
+            let key = |name: &str| format!("cover[{i}].{name}");
+            let medium = catalogue.medium(&plate.glass).map_err(|e| params.fault(&key("glass"), e.to_string()));
+            let filter = plate.transmittance.as_ref().map(|name| find_transmittance_in(name, context.resources));
+            let filter = filter.transpose().map_err(|e| params.fault(&key("transmittance"), e.to_string()));
+            let (medium, filter) = (faults.take(medium), faults.take(filter));
+            if let (Some(mm), Some(medium), Some(filter)) =
+                (faults.take(thick(&plate.thickness, key("thickness"))), medium, filter)
+            {
+                plates.push(Plate::glass(&medium, mm, |w| filter.as_ref().map_or(1.0, |f| f.at(w)), grid));
+            }
+        }
+        for (i, plate) in self.low_pass.iter().enumerate() {
+            let key = |name: &str| format!("low-pass[{i}].{name}");
+            let crystal = match plate.crystal.as_deref() {
+                None | Some("quartz") => "SiO2/Ghosh",
+                Some("lithium-niobate") => "LiNbO3/Zelmon",
+                Some(other) => other,
+            };
+            let ray = |which: &str| {
+                let found = catalogue.medium(&format!("{crystal}-{which}"));
+                found.map_err(|e| params.fault(&key("crystal"), e.to_string()).hint("quartz or lithium-niobate"))
+            };
+            let (ordinary, extraordinary) = (faults.take(ray("o")), faults.take(ray("e")));
+            let mm = faults.take(thick(&plate.thickness, key("thickness")));
+            if let (Some(mm), Some(o), Some(e)) = (mm, ordinary, extraordinary) {
+                plates.push(Plate::crystal(&o, &e, mm, plate.azimuth.map_or(0.0, Angle::rad), grid));
+            }
+        }
+        if self.curvature.is_some() && !(self.cover.is_empty() && self.low_pass.is_empty()) {
+            let key = if self.cover.is_empty() { "low-pass" } else { "cover" };
+            faults.push(params.fault(key, "plates stand before a flat frame only").hint("leave `curvature` out"));
+        }
+        faults.into_result(Plates::new(grid, plates))
+    }
+
+    /// Its size.
+    fn size(&self, params: &Params) -> Result<FrameSize, Faults> {
         let mut faults = Faults::new();
         let size_mm = faults.take(self.size_mm(params));
         faults.extend(self.resolution_faults(params));
@@ -66,6 +245,22 @@ impl Frame {
         }
     }
 
+    /// How it stands; `size` as far as it is known.
+    fn standing(&self, params: &Params, size: Option<FrameSize>) -> Result<Standing, Faults> {
+        let mut faults = Faults::new();
+        let shift_mm = self.shift.map_or([0.0; 2], |shift| shift.map(Length::mm));
+        for (i, mm) in shift_mm.into_iter().enumerate().filter(|(_, mm)| !(mm.abs() <= MAX_SHIFT_MM)) {
+            faults.push(params.fault(&format!("shift[{i}]"), format!("a shift of {mm} mm")).hint("at most 100 m"));
+        }
+        let tilt_rad = self.tilt.map_or([0.0; 2], |tilt| tilt.map(Angle::rad));
+        for (i, rad) in tilt_rad.into_iter().enumerate().filter(|(_, t)| !(t.to_degrees().abs() <= MAX_TILT_DEG)) {
+            let text = format!("{} degrees turn the frame away from the lens", rad.to_degrees());
+            faults.push(params.fault(&format!("tilt[{i}]"), text).hint(format!("at most {MAX_TILT_DEG} degrees")));
+        }
+        let bend = self.curvature.as_ref().and_then(|c| faults.take(bend(c, params, size))).unwrap_or(Bend::Flat);
+        faults.into_result(Standing::new(shift_mm, tilt_rad, bend))
+    }
+
     fn resolution_faults(&self, params: &Params) -> Vec<Fault> {
         let mut faults = Vec::new();
         for (i, px) in self.resolution.into_iter().enumerate() {
@@ -81,4 +276,24 @@ impl Frame {
         }
         faults
     }
+}
+
+/// The bend, which must leave the frame well within a half of the cylinder or sphere.
+fn bend(curvature: &Curvature, params: &Params, size: Option<FrameSize>) -> Result<Bend, Fault> {
+    let radius_mm = curvature.radius.mm();
+    let bend = match curvature.shape.as_str() {
+        "cylinder" => Bend::Cylinder { radius_mm },
+        "sphere" => Bend::Sphere { radius_mm },
+        other => {
+            let fault = params.fault("curvature.shape", format!("unknown shape `{other}`"));
+            return Err(fault.hint("cylinder (bent along x) or sphere"));
+        }
+    };
+    let Some(size) = size else { return Ok(bend) };
+    let least_mm = bend.least_radius_mm(size.width_mm, size.height_mm);
+    if !(radius_mm.abs() >= least_mm && radius_mm.is_finite()) {
+        let text = format!("a radius of {radius_mm} mm bends the frame by more than 60 degrees");
+        return Err(params.fault("curvature.radius", text).hint(format!("at least {least_mm:.4} mm, either sign")));
+    }
+    Ok(bend)
 }

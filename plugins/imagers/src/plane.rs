@@ -1,45 +1,146 @@
-//! A flat imager in the nominal image plane, centered on the axis: what each plane imager is made of.
+//! A frame of pixels: what each imager is made of. Flat in the nominal image plane and centered on the axis unless it is
+//! told to stand otherwise.
 
+use crate::plates::Plates;
+use crate::standing::Standing;
+use glam::{DVec2, DVec3};
 use spectra_core::frame::FrameSize;
 use spectra_core::isa::{Isa, Vectorized};
 use spectra_core::loss::ALIVE;
 use spectra_core::stage::{Launch, Receive};
 use spectra_core::{Loss, RayBatch};
+use std::sync::Arc;
 
 /// Most pixels along one side.
 pub const MAX_SIDE_PX: u32 = 32_768;
 /// Most pixels of a frame.
 pub const MAX_PIXELS: u64 = 200_000_000;
 
-/// A flat frame at z = 0, upright and centered.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// A frame of pixels: at z = 0, upright and centered, with nothing before it, unless it is told otherwise.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Plane {
     size: FrameSize,
+    standing: Standing,
+    plates: Option<Arc<Plates>>,
+}
+
+/// Where a ray meets a frame.
+pub(crate) struct Met {
+    /// The point, mm, frame of the nominal image plane.
+    pub(crate) point: DVec3,
+    /// The place on the frame, mm.
+    pub(crate) x: f64,
+    /// The place on the frame, mm.
+    pub(crate) y: f64,
+    /// Share of the light that the plates let pass.
+    pub(crate) passed: f64,
 }
 
 impl Plane {
-    /// A plane of that size.
+    /// A flat frame of that size, at z = 0, upright and centered.
     #[must_use]
     pub fn new(size: FrameSize) -> Self {
-        Self { size }
+        Self { size, standing: Standing::NOMINAL, plates: None }
     }
 
-    /// Its size.
+    /// The same, shifted, tilted or curved.
+    #[must_use]
+    pub fn standing(self, standing: Standing) -> Self {
+        Self { standing, ..self }
+    }
+
+    /// The same behind plates, which are parallel to it; it must be flat.
+    #[must_use]
+    pub fn behind(self, plates: Plates) -> Self {
+        Self { plates: (!plates.is_empty()).then(|| Arc::new(plates)), ..self }
+    }
+
+    /// Its size; where it is curved, along its surface.
     #[must_use]
     pub fn size(&self) -> FrameSize {
         self.size
+    }
+
+    /// Where a ray that travels along `way` meets it, see [`Standing::meet`]; through the plates, if there are any.
+    pub(crate) fn meet(&self, from: DVec3, way: DVec3, wavelength_nm: f64) -> Option<Met> {
+        let (point, x, y) = self.standing.meet(from, way)?;
+        let Some(plates) = &self.plates else { return Some(Met { point, x, y, passed: 1.0 }) };
+        let (beside, passed) = plates.pass(self.axes(x, y).transpose() * way, wavelength_nm);
+        let (x, y) = (x + beside.x, y + beside.y);
+        Some(Met { point: self.standing.at(x, y).0, x, y, passed })
+    }
+
+    /// The axes of its surface at a place, see [`Standing::axes`].
+    pub(crate) fn axes(&self, x_mm: f64, y_mm: f64) -> glam::DMat3 {
+        self.standing.axes(x_mm, y_mm)
+    }
+
+    /// Whether it is as [`Plane::new`] makes it.
+    fn is_plain(&self) -> bool {
+        self.standing == Standing::NOMINAL && self.plates.is_none()
     }
 }
 
 impl Receive for Plane {
     fn receive(&self, rays: &mut RayBatch, isa: Isa) {
-        isa.run(ReceiveBatch { size: self.size, rays });
+        if self.is_plain() {
+            return isa.run(ReceiveBatch { size: self.size, rays });
+        }
+        let c = rays.columns_mut();
+        for i in 0..c.x.len() {
+            if c.state[i] != ALIVE {
+                continue;
+            }
+            let (from, way) = (DVec3::new(c.x[i], c.y[i], c.z[i]), DVec3::new(c.l[i], c.m[i], c.n[i]));
+            let met = self.meet(from, way, c.wavelength_nm[i]);
+            match met.and_then(|met| Some((self.size.pixel_at(met.x, met.y)?, met))) {
+                Some((pixel, met)) => {
+                    [c.x[i], c.y[i], c.z[i]] = met.point.to_array();
+                    c.weight[i] *= met.passed;
+                    c.tag[i] = pixel;
+                }
+                None => c.state[i] = Loss::OutOfFrame.state(0),
+            }
+        }
     }
 }
 
 impl Launch for Plane {
     fn place(&self, rays: &mut RayBatch, u: &[f64], v: &[f64], isa: Isa) {
-        isa.run(PlaceBatch { size: self.size, rays, u, v });
+        if self.is_plain() {
+            return isa.run(PlaceBatch { size: self.size, rays, u, v });
+        }
+        let lift_mm = self.plates.as_ref().map_or(0.0, |plates| plates.lift_mm());
+        let c = rays.columns_mut();
+        for i in 0..c.x.len() {
+            let (x, y) = self.size.point_of(c.tag[i], u[i], v[i]);
+            let (point, normal) = self.standing.at(x, y);
+            // As near as the frame seems through the plates.
+            [c.x[i], c.y[i], c.z[i]] = (point + normal * lift_mm).to_array();
+            [c.l[i], c.m[i], c.n[i]] = normal.to_array();
+        }
+    }
+
+    /// Moves the rays from where the frame seems to be near the axis to where Snell's law has them.
+    fn admit(&self, rays: &mut RayBatch, _isa: Isa) {
+        let Some(plates) = &self.plates else { return };
+        let axes = self.axes(0.0, 0.0);
+        let lift_mm = plates.lift_mm();
+        let c = rays.columns_mut();
+        for i in 0..c.x.len() {
+            if c.state[i] != ALIVE {
+                continue;
+            }
+            let way = axes.transpose() * -DVec3::new(c.l[i], c.m[i], c.n[i]);
+            let (beside, passed) = plates.pass(way, c.wavelength_nm[i]);
+            // The straight ray crosses the frame `lift_mm` behind the point that it was aimed from.
+            let across = -beside - DVec2::new(way.x, way.y) * (lift_mm / way.z);
+            let across = axes.x_axis * across.x + axes.y_axis * across.y;
+            c.x[i] += across.x;
+            c.y[i] += across.y;
+            c.z[i] += across.z;
+            c.weight[i] *= passed;
+        }
     }
 }
 
@@ -117,6 +218,7 @@ impl Vectorized for PlaceBatch<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::standing::Bend;
     use spectra_core::numbers::Numbers;
 
     fn size() -> FrameSize {
@@ -168,6 +270,125 @@ mod tests {
             plane.receive(&mut rays, isa);
             assert_eq!(rays.alive(), n);
             assert_eq!(rays.tags(), pixels, "{}", isa.name());
+        }
+    }
+
+    /// Shifted, tilted and curved: points lie on the shape, normals are unit and stand on it, areas are kept (by
+    /// differences), and a ray from any side of the lens is received by the pixel and place that it was aimed at.
+    #[test]
+    fn a_frame_stands_as_it_is_told() {
+        let bends = [
+            Bend::Flat,
+            Bend::Cylinder { radius_mm: -60.0 },
+            Bend::Cylinder { radius_mm: 25.0 },
+            Bend::Sphere { radius_mm: -40.0 },
+            Bend::Sphere { radius_mm: 50.0 },
+        ];
+        let n = 500;
+        let (u, v) = (uniform(0, n), uniform(1, n));
+        for bend in bends {
+            let standing = Standing::new([3.0, -2.0], [0.2, -0.15], bend);
+            let plane = Plane::new(size()).standing(standing);
+            let mut rays = RayBatch::new(n);
+            rays.restart(n);
+            for (i, tag) in rays.columns_mut().tag.iter_mut().enumerate() {
+                *tag = (i as u32 * 614_657) % size().pixels() as u32;
+            }
+            let pixels = rays.tags().to_vec();
+            plane.place(&mut rays, &u, &v, Isa::Baseline);
+            let c = rays.columns_mut();
+            for i in 0..n {
+                let (x, y) = size().point_of(pixels[i], u[i], v[i]);
+                let point = DVec3::new(c.x[i], c.y[i], c.z[i]);
+                let normal = DVec3::new(c.l[i], c.m[i], c.n[i]);
+                assert_eq!((point, normal), standing.at(x, y));
+                assert!((normal.length() - 1.0).abs() < 1e-14 && normal.z < 0.0);
+                let step = 1e-5;
+                let along = |dx: f64, dy: f64| standing.at(x + dx, y + dy).0 - standing.at(x - dx, y - dy).0;
+                let cross = along(step, 0.0).cross(along(0.0, step)) / (4.0 * step * step);
+                assert!((cross.length() - 1.0).abs() < 1e-8, "{bend:?}: area {}", cross.length());
+                assert!((cross.normalize() + normal).length() < 1e-8, "{bend:?}: {cross} {normal}");
+                let axes = standing.axes(x, y);
+                assert!((axes.z_axis + normal).length() < 1e-14 && (axes.determinant() - 1.0).abs() < 1e-14);
+                let from = DVec3::new(15.0 * (v[i] - 0.5), 15.0 * (u[i] - 0.5), -55.0);
+                let way = (point - from).normalize();
+                let (met, mx, my) = standing.meet(from, way).expect("met");
+                assert!((met - point).length() < 1e-12 && (mx - x).abs() + (my - y).abs() < 1e-12, "{bend:?}");
+                // A little inward, clear of the pixel's border by more than the rounding.
+                let (x, y) = size().point_of(pixels[i], 0.001 + 0.998 * u[i], 0.001 + 0.998 * v[i]);
+                let way = (standing.at(x, y).0 - from).normalize();
+                [c.x[i], c.y[i], c.z[i]] = from.to_array();
+                [c.l[i], c.m[i], c.n[i]] = way.to_array();
+                c.tag[i] = 0;
+            }
+            plane.receive(&mut rays, Isa::Baseline);
+            assert_eq!(rays.alive(), n);
+            assert_eq!(rays.tags(), pixels, "{bend:?}");
+        }
+    }
+
+    /// Distances by hand: on the cylinder and the sphere a point is the radius away from the axis and the center; a tilt
+    /// about x of 30 degrees moves the upper edge by half its height away from the lens.
+    #[test]
+    fn shapes_are_where_geometry_says() {
+        let shift = DVec3::new(3.0, -2.0, 0.0);
+        for r in [-45.0_f64, 45.0] {
+            let cylinder = Standing::new([3.0, -2.0], [0.0; 2], Bend::Cylinder { radius_mm: r });
+            let (p, _) = cylinder.at(15.0, 7.0);
+            let d = p - shift - DVec3::new(0.0, 7.0, r);
+            assert!((d.length() - 45.0).abs() < 1e-12 && d.y.abs() < 1e-12);
+            // The arc of 15 mm is an angle of a third of a radian.
+            assert!((p.x - 3.0 - 45.0 * libm::sin(1.0 / 3.0)).abs() < 1e-12);
+            let sphere = Standing::new([3.0, -2.0], [0.0; 2], Bend::Sphere { radius_mm: r });
+            let (p, _) = sphere.at(15.0, 7.0);
+            assert!(((p - shift - DVec3::new(0.0, 0.0, r)).length() - 45.0).abs() < 1e-12);
+            assert!(p.z * r > 0.0);
+        }
+        let tilted = Standing::new([0.0; 2], [std::f64::consts::FRAC_PI_6, 0.0], Bend::Flat);
+        let (p, n) = tilted.at(0.0, 12.0);
+        assert!((p - DVec3::new(0.0, 12.0 * 0.75_f64.sqrt(), 6.0)).length() < 1e-12, "{p}");
+        assert!((n - DVec3::new(0.0, 0.5, -(0.75_f64.sqrt()))).length() < 1e-12, "{n}");
+        // From behind nothing is received.
+        assert!(tilted.meet(DVec3::new(0.0, 0.0, 5.0), DVec3::NEG_Z).is_none());
+    }
+
+    /// Behind a tilted stack of plates, launched rays that travel back along their way land where they came from: the
+    /// two ways through the plates undo each other, for each branch.
+    #[test]
+    fn plates_are_the_same_from_both_sides() {
+        use crate::plates::Plate;
+        use spectra_core::spectral::BAND;
+        let medium = |name: &str| spectra_glass::Catalogue::bundled().medium(name).expect("bundled");
+        let quartz = Plate::crystal(&medium("SiO2/Ghosh-o"), &medium("SiO2/Ghosh-e"), 1.5, 0.4, &BAND);
+        let glass = Plate::glass(&medium("SCHOTT/N-BK7"), 2.0, |_| 0.8, &BAND);
+        let standing = Standing::new([1.0, -2.0], [0.1, 0.05], Bend::Flat);
+        let plane = Plane::new(size()).standing(standing).behind(Plates::new(&BAND, vec![glass, quartz]));
+        let n = 500;
+        let (u, v, p, q) = (uniform(0, n), uniform(1, n), uniform(2, n), uniform(3, n));
+        let mut rays = RayBatch::new(n);
+        rays.restart(n);
+        let c = rays.columns_mut();
+        for i in 0..n {
+            c.tag[i] = (i as u32 * 614_657) % size().pixels() as u32;
+            c.wavelength_nm[i] = 400.0 + 300.0 * v[i];
+        }
+        let pixels = rays.tags().to_vec();
+        plane.place(&mut rays, &u, &v, Isa::Baseline);
+        let c = rays.columns_mut();
+        for i in 0..n {
+            let at = DVec3::new(c.x[i], c.y[i], c.z[i]);
+            let target = DVec3::new(20.0 * p[i] - 10.0, 20.0 * q[i] - 10.0, -40.0);
+            [c.x[i], c.y[i], c.z[i]] = target.to_array();
+            [c.l[i], c.m[i], c.n[i]] = (target - at).normalize().to_array();
+        }
+        plane.admit(&mut rays, Isa::Baseline);
+        let c = rays.columns_mut();
+        for i in 0..n {
+            let way = -DVec3::new(c.l[i], c.m[i], c.n[i]);
+            let met = plane.meet(DVec3::new(c.x[i], c.y[i], c.z[i]), way, c.wavelength_nm[i]).expect("met");
+            let (x, y) = size().point_of(pixels[i], u[i], v[i]);
+            assert!((met.x - x).abs() + (met.y - y).abs() < 1e-11, "{} {x} {} {y}", met.x, met.y);
+            assert!((c.weight[i] - met.passed).abs() < 1e-15 && (met.passed - 0.8).abs() < 0.02);
         }
     }
 

@@ -1,10 +1,9 @@
 //! `imager: xyz`, a plane that measures CIE 1931 XYZ in absolute units: a perfect tristimulus colorimeter.
 
-use crate::params::Frame;
+use crate::params::imager_params;
 use crate::plane::Plane;
-use serde::Deserialize;
 use spectra_core::frame::{DisplayPicture, ExposureFrame, FrameSize};
-use spectra_core::params::{Exposure, Fault, Faults, Illuminance, Length, Params, Positive, Quantity, Time};
+use spectra_core::params::{Exposure, Fault, Faults, Illuminance, Params, Positive, Quantity, Time};
 use spectra_core::registry::{Context, ImagerEntry};
 use spectra_core::spectral::{Channel, Grid};
 use spectra_core::stage::{Imager, Launch, Receive};
@@ -12,32 +11,21 @@ use spectra_film::display::{White, show_xyz};
 use spectra_spectrum::constants::LUMINOUS_EFFICACY_LM_PER_W;
 use spectra_spectrum::{Gamut, Observer};
 
-/// Parameters of `kind: xyz` as written in a scene.
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub struct XyzParams {
-    /// Size by name, such as `135` (36 x 24 mm), `6x6` or `super-35`.
-    #[serde(default)]
-    pub format: Option<String>,
-    /// Width of the frame, mm if bare; together with `height`, in place of `format`.
-    #[serde(default)]
-    pub width: Option<Positive<Length>>,
-    /// Height of the frame, mm if bare.
-    #[serde(default)]
-    pub height: Option<Positive<Length>>,
-    /// Pixels across and down, 1 to 32768 each and at most 200 million.
-    pub resolution: [u32; 2],
-    /// Exposure time, s if bare. With it the channels are in lx s, without it in lx.
-    #[serde(default)]
-    pub exposure: Option<Positive<Time>>,
-    /// The Y that the picture shows as white: an illuminance, or an exposure where an exposure time is given.
-    /// Without it, automatic exposure shows the 99th percentile of Y as 0.9.
-    #[serde(default)]
-    pub white: Option<String>,
-    /// What becomes of colors that a screen cannot show: `desaturate` (luminance stays, the default), `perceptual` (hue
-    /// and lightness as they are seen stay) or `clip` (each of red, green and blue by itself: vivid).
-    #[serde(default)]
-    pub gamut: Option<String>,
+imager_params! {
+    /// Parameters of `kind: xyz` as written in a scene.
+    XyzParams {
+        /// Exposure time, s if bare. With it the channels are in lx s, without it in lx.
+        #[serde(default)]
+        exposure: Option<Positive<Time>>,
+        /// The Y that the picture shows as white: an illuminance, or an exposure where an exposure time is given.
+        /// Without it, automatic exposure shows the 99th percentile of Y as 0.9.
+        #[serde(default)]
+        white: Option<String>,
+        /// What becomes of colors that a screen cannot show: `desaturate` (luminance stays, the default), `perceptual`
+        /// (hue and lightness as they are seen stay) or `clip` (each of red, green and blue by itself: vivid).
+        #[serde(default)]
+        gamut: Option<String>,
+    }
 }
 
 /// A plane XYZ imager.
@@ -51,9 +39,9 @@ pub struct XyzPlane {
 }
 
 impl XyzPlane {
-    /// An imager of that size whose channels are given on `grid`, in lx s where there is an exposure time.
+    /// An imager on that frame whose channels are given on `grid`, in lx s where there is an exposure time.
     #[must_use]
-    pub fn new(size: FrameSize, grid: &Grid, exposure_time_s: Option<f64>, white: White) -> Self {
+    pub fn new(plane: Plane, grid: &Grid, exposure_time_s: Option<f64>, white: White) -> Self {
         let unit = if exposure_time_s.is_some() { "lx s" } else { "lx" };
         let functions = Observer::cie_1931_2deg().on_grid(grid);
         let channel = |(name, function): (&str, Vec<f64>)| Channel {
@@ -62,7 +50,7 @@ impl XyzPlane {
             response: function.into_iter().map(|v| v * LUMINOUS_EFFICACY_LM_PER_W).collect(),
         };
         let channels = ["X", "Y", "Z"].into_iter().zip(functions).map(channel).collect();
-        Self { plane: Plane::new(size), channels, exposure_time_s, white, gamut: Gamut::Desaturate }
+        Self { plane, channels, exposure_time_s, white, gamut: Gamut::Desaturate }
     }
 
     /// The same, showing colors beyond the screen's another way.
@@ -99,9 +87,10 @@ impl Imager for XyzPlane {
 }
 
 fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Imager>, Faults> {
-    let XyzParams { format, width, height, resolution, exposure, white, gamut } = params.parse()?;
+    let parsed: XyzParams = params.parse()?;
     let mut faults = Faults::new();
-    let size = faults.take(Frame { format, width, height, resolution }.size(params));
+    let plane = faults.take(parsed.frame().plane(params, context));
+    let XyzParams { exposure, white, gamut, .. } = parsed;
     let white = match &white {
         None => Some(White::default()),
         Some(text) => faults.take(stated_white(params, text, exposure.is_some())),
@@ -116,10 +105,10 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Imager>, Faul
             Gamut::Desaturate
         }
     };
-    let (Some(size), Some(white)) = (size, white) else {
+    let (Some(plane), Some(white)) = (plane, white) else {
         return Err(faults);
     };
-    let imager = XyzPlane::new(size, &context.grid, exposure.map(|t| t.s()), white).with_gamut(gamut);
+    let imager = XyzPlane::new(plane, &context.grid, exposure.map(|t| t.s()), white).with_gamut(gamut);
     faults.into_result(Box::new(imager))
 }
 
@@ -139,7 +128,7 @@ fn stated_white(params: &Params, text: &str, timed: bool) -> Result<White, Fault
 inventory::submit! {
     ImagerEntry::new(
         "xyz",
-        "A flat frame that measures CIE 1931 XYZ in lux, or lux-seconds where it is given an exposure time.",
+        "A frame that measures CIE 1931 XYZ in lux, or lux-seconds where it is given an exposure time.",
         env!("CARGO_PKG_NAME"),
         env!("CARGO_PKG_VERSION"),
         build,

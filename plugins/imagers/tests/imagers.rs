@@ -26,7 +26,7 @@ fn build(kind: &str, yaml: &str) -> Result<Box<dyn Imager>, Faults> {
 fn sizes_are_given_by_name_or_in_millimetres() {
     for (yaml, width, height) in [
         ("format: 135\nresolution: [960, 640]", 36.0, 24.0),
-        ("format: 6x7\nresolution: [960, 640]", 70.0, 56.0),
+        ("format: 6x7\nresolution: [960, 640]", 69.5, 56.0),
         ("format: super-35\nresolution: [960, 640]", 24.89, 18.67),
         ("width: 3.6 cm\nheight: 24\nresolution: [960, 640]", 36.0, 24.0),
     ] {
@@ -52,6 +52,16 @@ fn faulty_frames_are_told_at_their_keys() {
         ("format: 135\nresolution: [960.5, 640]", "2:14", "960.5"),
         ("format: 135\nresolution: 960", "2:13", "960"),
         ("format: 135\nresolution: [960, 640]\npitch: 3 um", "3:1", "pitch"),
+        ("format: 135\nresolution: [9, 6]\ntilt: [5 deg, 85 deg]", "3:15", "at most 80"),
+        ("format: 135\nresolution: [9, 6]\ntilt: 5 deg", "3:7", "list of 2"),
+        ("format: 135\nresolution: [9, 6]\nshift: [1 s, 0]", "3:9", "length"),
+        ("format: 135\nresolution: [9, 6]\nshift: [0, 1e9]", "3:12", "100 m"),
+        ("format: 135\nresolution: [9, 6]\ncover: [{glass: N-BK99, thickness: 1}]", "3:17", "N-BK"),
+        ("format: 135\nresolution: [9, 6]\ncover: [{glass: N-BK7, thickness: 1 m}]", "3:35", "100 mm"),
+        ("format: 135\nresolution: [9, 6]\nlow-pass: [{crystal: sugar, thickness: 1}]", "3:22", "quartz"),
+        ("format: 135\nresolution: [9, 6]\ncurvature: {shape: saddle, radius: 9}", "3:20", "cylinder"),
+        ("format: 135\nresolution: [9, 6]\ncurvature: {shape: sphere, radius: -20}", "3:36", "60 degrees"),
+        ("format: 135\nresolution: [9, 6]\ncurvature: {shape: sphere, radius: 0}", "3:36", "60 degrees"),
     ] {
         for kind in ["xyz", "film"] {
             let text = build(kind, yaml).map(|_| ()).unwrap_err().to_string();

@@ -1,10 +1,10 @@
 //! The folder that results go to.
 
-use super::picture::{attributes, picture};
+use super::picture::{attributes, pictures};
 use super::rays;
 use super::report::Report;
 use crate::outcome::Failure;
-use spectra_film::write::{write_atomically, write_exr, write_png8, write_tiff16};
+use spectra_film::write::{write_atomically, write_dng, write_exr, write_png8, write_tiff16};
 use spectra_plot::PlotError;
 use spectra_scene::{Output, RaysFigure, Scene};
 use std::fmt::Display;
@@ -22,11 +22,15 @@ impl Folder {
     /// Makes the folder where it does not exist, and sees to it that files can be written there.
     pub(crate) fn prepare(folder: &Path, scene: &Scene) -> Result<Self, Failure> {
         std::fs::create_dir_all(folder).map_err(|error| refuse(folder, &error))?;
-        let files: Vec<(Output, PathBuf)> = scene
-            .output
-            .iter()
-            .map(|output| (*output, folder.join(format!("{}{}", scene.name, ending(*output)))))
-            .collect();
+        let mut files: Vec<(Output, PathBuf)> = Vec::new();
+        for output in &scene.output {
+            let of_each_film = matches!(output, Output::Png | Output::Tiff) && !scene.films.is_empty();
+            let films = if of_each_film { scene.films.iter().map(|f| f.name.as_deref()).collect() } else { vec![None] };
+            for film in films {
+                let film = film.map_or(String::new(), |name| format!("-{name}"));
+                files.push((*output, folder.join(format!("{}{film}{}", scene.name, ending(*output)))));
+            }
+        }
         let report = folder.join("render.json");
         for path in files.iter().map(|(_, path)| path).chain([&report]) {
             if path.is_dir() {
@@ -72,17 +76,27 @@ impl Folder {
                 })?;
             }
         }
+        for (output, path) in &self.files {
+            if *output == Output::Dng {
+                let raw = report.scene.imager.raw(&report.rendering.exposure);
+                let raw = raw.ok_or_else(|| Failure::Failed("this imager has no converter".to_owned()))?;
+                write_dng(path, &raw)?;
+            }
+        }
         if !self.files.iter().any(|(output, _)| matches!(output, Output::Png | Output::Tiff)) {
             return Ok(());
         }
         let begun = Instant::now();
-        let picture = picture(report).map_err(Failure::Failed)?;
-        tracing::debug!(seconds = begun.elapsed().as_secs_f64(), "picture developed");
-        for (output, path) in &self.files {
-            match output {
-                Output::Exr | Output::Rays(_) => {}
-                Output::Png => write_png8(path, &picture)?,
-                Output::Tiff => write_tiff16(path, &picture)?,
+        let pictures = pictures(report).map_err(Failure::Failed)?;
+        tracing::debug!(seconds = begun.elapsed().as_secs_f64(), "pictures developed");
+        // Files and pictures come in the same order: for each kind of file, film after film.
+        for kind in [Output::Png, Output::Tiff] {
+            let paths = self.files.iter().filter(|(output, _)| *output == kind).map(|(_, path)| path);
+            for (path, (_, picture)) in paths.zip(&pictures) {
+                match kind {
+                    Output::Tiff => write_tiff16(path, picture)?,
+                    _ => write_png8(path, picture)?,
+                }
             }
         }
         tracing::debug!(seconds = begun.elapsed().as_secs_f64(), "pictures written");
@@ -95,6 +109,7 @@ fn ending(output: Output) -> &'static str {
         Output::Exr => ".exr",
         Output::Png => ".png",
         Output::Tiff => ".tiff",
+        Output::Dng => ".dng",
         Output::Rays(RaysFigure { svg: false, .. }) => "-rays.png",
         Output::Rays(RaysFigure { svg: true, .. }) => "-rays.svg",
     }

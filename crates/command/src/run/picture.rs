@@ -2,16 +2,30 @@
 
 use super::report::Report;
 use spectra_core::frame::DisplayPicture;
+use spectra_scene::{Scene, SceneFilm};
 
-/// The picture of the frame: by the film, or else by the imager.
-pub(crate) fn picture(report: &Report<'_>) -> Result<DisplayPicture, String> {
+/// The pictures of the frame: by each film, with its name where there are several, or else by the imager.
+pub(crate) fn pictures(report: &Report<'_>) -> Result<Vec<(Option<String>, DisplayPicture)>, String> {
     let (scene, exposure) = (report.scene, &report.rendering.exposure);
-    match &scene.film {
-        Some(film) => film.develop(exposure),
-        None => {
-            scene.imager.display(exposure).ok_or_else(|| "this imager shows no picture without a film on it".to_owned())
-        }
+    let developed = |film: &SceneFilm| match &film.name {
+        // A film alone has the frame for itself.
+        None => Ok((None, film.film.develop(exposure)?)),
+        Some(name) => Ok((Some(name.clone()), film.film.develop(&film.exposure(exposure))?)),
+    };
+    if scene.films.is_empty() {
+        let shown = scene.imager.display(exposure);
+        let picture = shown.ok_or_else(|| "this imager shows no picture without a film on it".to_owned())?;
+        return Ok(vec![(None, picture)]);
     }
+    scene.films.iter().map(developed).collect()
+}
+
+/// What is on the imager, in words.
+pub(crate) fn films(scene: &Scene) -> Option<String> {
+    let one =
+        |f: &SceneFilm| f.name.as_ref().map_or_else(|| f.film.describe(), |n| format!("{n}: {}", f.film.describe()));
+    let all: Vec<String> = scene.films.iter().map(one).collect();
+    (!all.is_empty()).then(|| all.join("; "))
 }
 
 /// Where a pixel lies on the film, for whoever measures in the EXR.
@@ -35,7 +49,7 @@ pub(crate) fn attributes(report: &Report<'_>) -> Vec<(String, String)> {
     ];
     let patent = lens.patent.clone().map(|patent| ("spectra:lens patent", patent));
     let source = lens.source.clone().map(|source| ("spectra:lens source", source));
-    let film = scene.film.as_ref().map(|film| ("spectra:film", film.describe()));
+    let film = films(scene).map(|films| ("spectra:film", films));
     let partial =
         report.rendering.partial.then(|| ("spectra:partial", "true: stopped before all samples were taken".to_owned()));
     all.extend([patent, source, film, partial].into_iter().flatten());

@@ -1,6 +1,7 @@
 //! What is said while a scene renders.
 
 use super::direction;
+use super::picture::films;
 use super::report::Report;
 use crate::arguments::Run;
 use crate::{console, words};
@@ -98,7 +99,7 @@ impl Progress {
             })),
             Listener::Quiet => {}
             Listener::Bar(_) | Listener::Lines => {
-                let film = scene.film.as_ref().map_or(String::new(), |film| format!(", {}", film.describe()));
+                let film = films(scene).map_or(String::new(), |films| format!(", {films}"));
                 let plural = if threads == 1 { "" } else { "s" };
                 console::note(&format!(
                     "{}: {} x {} pixels through {}{film}; {} on {threads} thread{plural}",

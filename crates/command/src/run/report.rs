@@ -1,6 +1,7 @@
 //! `render.json`: how a picture came about.
 
 use super::direction;
+use super::picture::films;
 use crate::arguments::Run;
 use crate::version;
 use serde_json::{Map, Value, json};
@@ -55,13 +56,28 @@ impl Report<'_> {
             "height_mm": size.height_mm,
             "channels": channels,
             "exposure_time_s": scene.exposure_time_s(),
-            "metered_time_s": scene.film.as_ref().map(|film| film.metered_time_s(&rendering.exposure)),
+            "metered_time_s": self.metered_times_s(),
             "source": scene.source.describe(),
             "lens": { "name": scene.lens.name, "patent": scene.lens.patent },
-            "film": scene.film.as_ref().map(|film| film.describe()),
+            "film": films(scene),
             "versions": version::to_json(),
             "warnings": scene.warnings,
         })
+    }
+
+    /// What the camera's meter chose: a number, of several films one each by their names.
+    fn metered_times_s(&self) -> Value {
+        let exposure = &self.rendering.exposure;
+        let mut by_name = Map::new();
+        for film in &self.scene.films {
+            match &film.name {
+                None => return film.film.metered_time_s(exposure).into(),
+                Some(name) => {
+                    by_name.insert(name.clone(), film.film.metered_time_s(&film.exposure(exposure)).into());
+                }
+            }
+        }
+        if by_name.is_empty() { Value::Null } else { by_name.into() }
     }
 
     /// Rays that ended on the way, by cause, and by surface with its causes. A surface number of `null` is none of the

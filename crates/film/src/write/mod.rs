@@ -1,10 +1,12 @@
 //! Files: each is written whole or not at all, and nothing in it changes from run to run.
 
 mod atomically;
+mod dng;
 mod exposure;
 mod picture;
 
 pub use atomically::write_atomically;
+pub use dng::write_dng;
 pub use exposure::write_exr;
 pub use picture::{write_png8, write_png16, write_tiff16};
 

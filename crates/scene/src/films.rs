@@ -1,0 +1,83 @@
+//! The film of a scene, or several side by side: one light, recorded by each.
+
+use crate::SceneFilm;
+use spectra_core::params::{Fault, Faults, Node, Params};
+use spectra_core::registry::{self, Context};
+use spectra_core::spectral::Channel;
+use spectra_core::stage::Film;
+
+/// Most films side by side.
+const MAX_FILMS: usize = 16;
+
+/// A film alone.
+pub(crate) fn one(film: Box<dyn Film>) -> Vec<SceneFilm> {
+    let channels = 0..film.channels().len();
+    vec![SceneFilm { name: None, film, channels }]
+}
+
+/// The films of a list. Each has a name that its pictures bear: its key `name`, or else the name of its stock or kind.
+pub(crate) fn several(items: &[Node], params: &Params, context: &Context<'_>) -> Result<Vec<SceneFilm>, Faults> {
+    let mut faults = Faults::new();
+    if items.is_empty() || items.len() > MAX_FILMS {
+        let fault = params.fault("film", format!("{} films side by side", items.len()));
+        return Err(fault.hint(format!("1 to {MAX_FILMS}")).into());
+    }
+    let mut films: Vec<SceneFilm> = Vec::new();
+    for (at, item) in items.iter().enumerate() {
+        let Some(stage) = faults.take(Params::stage(item.clone(), &format!("film[{at}]"))) else { continue };
+        let (named, own) = stage.split(&["name"]);
+        let name = faults.take(name(&named, &own, &films));
+        let film = faults.take(registry::build::<dyn Film>(&own, context));
+        if let (Some(name), Some(film)) = (name, film) {
+            let first = films.last().map_or(0, |f| f.channels.end);
+            let channels = first..first + film.channels().len();
+            films.push(SceneFilm { name: Some(name), film, channels });
+        }
+    }
+    faults.into_result(films)
+}
+
+/// A name of a few letters that is part of a file's name, and that no other film has.
+fn name(named: &Params, own: &Params, others: &[SceneFilm]) -> Result<String, Fault> {
+    let taken = |name: &str| others.iter().any(|f| f.name.as_deref() == Some(name));
+    let Some(node) = named.get("name") else {
+        let stock =
+            own.get("stock").and_then(|n| n.as_str()).map(|path| path.rsplit(['/', '\\']).next().unwrap_or(path));
+        let stock = stock.map(|file| file.trim_end_matches(".yaml").trim_end_matches(".yml"));
+        let base = stock.or(own.kind()).unwrap_or("film").to_owned();
+        let numbered = (2..).map(|n| format!("{base}-{n}"));
+        return Ok(std::iter::once(base.clone()).chain(numbered).find(|n| !taken(n)).unwrap_or(base));
+    };
+    let fault = |text: String| node.fault(text).path(format!("{}.name", own.path()));
+    let Some(name) = node.as_str() else {
+        return Err(fault("the name of a film is a text".to_owned()).hint("such as `name: ortho`"));
+    };
+    let good = |c: char| c.is_alphanumeric() || "-_+".contains(c);
+    if name.is_empty() || name.len() > 64 || !name.chars().all(good) {
+        return Err(fault(format!("`{name}` cannot be part of a file's name")).hint("letters, digits, - and _"));
+    }
+    if taken(name) {
+        return Err(fault(format!("two films are called `{name}`")).hint("each needs a name of its own"));
+    }
+    Ok(name.to_owned())
+}
+
+/// The channels of all films, in order. Of several films each channel bears the film's name before its own, and its
+/// response holds how much longer than the first one the film is exposed.
+pub(crate) fn channels(films: &[SceneFilm]) -> Vec<Channel> {
+    let time = |film: &SceneFilm| film.film.exposure_time_s();
+    let Some(first_s) = films.first().map(time) else { return Vec::new() };
+    let mut all = Vec::new();
+    for film in films {
+        let longer = time(film) / first_s;
+        for channel in film.film.channels() {
+            let Some(name) = &film.name else {
+                all.push(channel);
+                continue;
+            };
+            let response = channel.response.iter().map(|r| r * longer).collect();
+            all.push(Channel { name: format!("{name}.{}", channel.name), unit: channel.unit, response });
+        }
+    }
+    all
+}

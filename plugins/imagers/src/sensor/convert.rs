@@ -1,0 +1,124 @@
+//! From electrons to numbers, and from numbers to a picture.
+
+use super::color::CameraColor;
+use super::demosaic::demosaic;
+use super::noise::PixelNumbers;
+use super::pattern::Pattern;
+use glam::DVec3;
+use rayon::prelude::*;
+use spectra_core::frame::{DisplayPicture, ExposureChannel, ExposureFrame, FrameSize, RawFrame};
+use spectra_film::display::{White, show_xyz};
+use spectra_spectrum::{Adaptation, Gamut, RgbSpace};
+
+/// The electronics.
+#[derive(Clone, Debug)]
+pub struct Converter {
+    /// Its filters.
+    pub pattern: Pattern,
+    /// Exposure time, s.
+    pub exposure_time_s: f64,
+    /// Most electrons of a well.
+    pub full_well: f64,
+    /// Standard deviation of what reading adds, electrons.
+    pub read_noise: f64,
+    /// Electrons a number.
+    pub electrons_per_number: f64,
+    /// Value without light.
+    pub black_level: u16,
+    /// Largest value.
+    pub white_level: u16,
+    /// Whether light is counted and reading is noisy, and the seed of both.
+    pub noise: Option<u64>,
+    /// ISO setting.
+    pub iso: f64,
+    /// Matrix and white; `None` without filters.
+    pub color: Option<CameraColor>,
+    /// EXIF number of the light of white.
+    pub illuminant: u16,
+    /// Name for the file.
+    pub model: String,
+}
+
+/// What each well holds on average: the sum of the channels.
+#[must_use]
+pub fn electrons(exposure: &ExposureFrame) -> Vec<f64> {
+    let mut sum = vec![0.0; exposure.size.pixels()];
+    for channel in &exposure.channels {
+        for (s, v) in sum.iter_mut().zip(&channel.values) {
+            *s += f64::from(*v);
+        }
+    }
+    sum
+}
+
+impl Converter {
+    /// One exposure: photons arrive as they will, wells fill, the amplifier adds its noise, the converter rounds.
+    #[must_use]
+    pub fn convert(&self, exposure: &ExposureFrame) -> RawFrame {
+        let one = |(pixel, mean): (usize, &f64)| {
+            let (counted, read) = match self.noise {
+                None => (*mean, 0.0),
+                Some(seed) => {
+                    let mut numbers = PixelNumbers::new(seed, pixel as u64);
+                    (numbers.poisson(*mean), self.read_noise * numbers.normal())
+                }
+            };
+            let value = f64::from(self.black_level) + (counted.min(self.full_well) + read) / self.electrons_per_number;
+            // The cast saturates, and takes what is no number to 0.
+            value.round().min(f64::from(self.white_level)) as u16
+        };
+        let values = electrons(exposure).par_iter().enumerate().with_min_len(1 << 12).map(one).collect();
+        let color = self.color.as_ref();
+        let rows = |c: &CameraColor| [0, 1, 2].map(|row| c.camera_from_xyz.row(row).to_array());
+        RawFrame {
+            width_px: exposure.size.width_px,
+            height_px: exposure.size.height_px,
+            values,
+            pattern: match self.pattern {
+                Pattern::Monochrome => None,
+                Pattern::Bayer(colors) => Some(colors),
+            },
+            black_level: self.black_level,
+            white_level: self.white_level,
+            camera_from_xyz: color.map_or([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], rows),
+            neutral: color.map_or([1.0; 3], |c| c.neutral.to_array()),
+            illuminant: self.illuminant,
+            maker: "spectra".to_owned(),
+            model: self.model.clone(),
+            exposure_time_s: self.exposure_time_s,
+            iso: self.iso,
+        }
+    }
+
+    /// A picture of a raw frame: missing colors filled in, white made white, matrix, automatic exposure.
+    #[must_use]
+    pub fn show(&self, raw: &RawFrame) -> Option<DisplayPicture> {
+        let (black, range) = (f32::from(self.black_level), f32::from(self.white_level) - f32::from(self.black_level));
+        let linear: Vec<f32> = raw.values.iter().map(|v| (f32::from(*v) - black) / range).collect();
+        let (width, height) = (raw.width_px as usize, raw.height_px as usize);
+        let rgb = demosaic(&linear, width, height, self.pattern);
+        let screen = RgbSpace::srgb();
+        let xyz = |[r, g, b]: [f32; 3]| match &self.color {
+            None => screen.to_xyz([r, g, b].map(f64::from)),
+            Some(color) => {
+                // A color that is clipped must not tint the others: all end at the lowest ceiling.
+                let camera = DVec3::new(r.into(), g.into(), b.into());
+                let camera = (camera / color.neutral).min(DVec3::ONE) * color.neutral;
+                (color.camera_from_xyz.inverse() * camera).to_array()
+            }
+        };
+        let white = self.color.as_ref().map(|c| c.white_xyz.to_array());
+        let pixels: Vec<[f64; 3]> = rgb
+            .into_iter()
+            .map(|p| white.map_or_else(|| xyz(p), |w| Adaptation::Bradford.adapt(xyz(p), w, screen.white_xyz())))
+            .collect();
+        let plane = |i: usize, name: &str| ExposureChannel {
+            name: name.to_owned(),
+            unit: String::new(),
+            values: pixels.iter().map(|p| p[i] as f32).collect(),
+        };
+        let size = FrameSize { width_px: raw.width_px, height_px: raw.height_px, width_mm: 1.0, height_mm: 1.0 };
+        let frame = ExposureFrame { size, channels: vec![plane(0, "X"), plane(1, "Y"), plane(2, "Z")] };
+        show_xyz(&frame, White::default(), Gamut::Desaturate).ok()
+    }
+}

@@ -1,0 +1,267 @@
+//! `imager: sensor`, a chip of pixels: color filters, measured sensitivities, photons counted, a converter.
+
+mod color;
+mod convert;
+mod demosaic;
+mod noise;
+mod params;
+mod pattern;
+mod photosite;
+
+pub use color::CameraColor;
+pub use convert::{Converter, electrons};
+pub use demosaic::demosaic;
+pub use noise::PixelNumbers;
+pub use params::{PhotositeParams, SensorParams};
+pub use pattern::{PATTERNS, Pattern};
+pub use photosite::Photosite;
+
+use crate::plane::{Met, Plane};
+use glam::DVec3;
+use spectra_core::batch::{Columns, pixel_and_channel, tag_of};
+use spectra_core::frame::{DisplayPicture, ExposureFrame, FrameSize, RawFrame};
+use spectra_core::isa::Isa;
+use spectra_core::loss::ALIVE;
+use spectra_core::spectral::Channel;
+use spectra_core::stage::{Imager, Launch, Receive};
+use spectra_core::{Loss, RayBatch};
+
+/// A sensor. Its channels are electrons by the filter that their light passed: each pixel's well holds their sum.
+#[derive(Clone, Debug)]
+pub struct Sensor {
+    pub(crate) pixels: Pixels,
+    pub(crate) channels: Vec<Channel>,
+    pub(crate) converter: Converter,
+}
+
+/// The geometry of the pixels.
+#[derive(Clone, Debug)]
+pub(crate) struct Pixels {
+    pub(crate) plane: Plane,
+    pub(crate) pattern: Pattern,
+    /// Side of the open part of a pixel over the pitch.
+    pub(crate) open: f64,
+    pub(crate) photosite: Option<Photosite>,
+    /// Whether the pixels of the picture are coarser than the sensor's own. Then a neighbor's well lies in the same pixel of
+    /// the picture, and only the filter that light has passed is another one.
+    pub(crate) coarse: bool,
+}
+
+/// Why a ray adds nothing.
+const BESIDE: (Loss, u32) = (Loss::OutOfFrame, 0);
+const WALLED: (Loss, u32) = (Loss::Absorbed, 0);
+
+impl Pixels {
+    fn tag(&self, column: u32, row: u32, well: u32) -> u32 {
+        match self.pattern {
+            Pattern::Monochrome => well,
+            Pattern::Bayer(_) => tag_of(well, self.pattern.channel(column, row)),
+        }
+    }
+
+    /// Column and row of a place on the frame, with fractions.
+    fn place(&self, x: f64, y: f64) -> [f64; 2] {
+        let FrameSize { width_px, height_px, width_mm, height_mm } = self.plane.size();
+        [(0.5 - x / width_mm) * f64::from(width_px), (0.5 + y / height_mm) * f64::from(height_px)]
+    }
+
+    fn neighbor(&self, column: u32, row: u32, [dc, dr]: [i32; 2]) -> Option<(u32, u32)> {
+        let size = self.plane.size();
+        let (column, row) = (column.checked_add_signed(dc)?, row.checked_add_signed(dr)?);
+        (column < size.width_px && row < size.height_px).then_some((column, row))
+    }
+
+    /// From the pixel whose filter light passes to the one whose well it ends in.
+    fn landing(&self, entry: [f64; 2], x: f64, y: f64, way: DVec3, nm: f64) -> Result<[i32; 2], (Loss, u32)> {
+        let Some(photosite) = &self.photosite else { return Ok([0, 0]) };
+        let by = photosite.landing(entry, [x, y], self.plane.axes(x, y), way, nm);
+        // Farther than the next well there are walls of metal.
+        if by.iter().all(|d| d.abs() <= 1) { Ok(by) } else { Err(WALLED) }
+    }
+
+    fn receive_one(&self, c: &mut Columns<'_>, i: usize) -> Result<(), (Loss, u32)> {
+        let (from, way) = (DVec3::new(c.x[i], c.y[i], c.z[i]), DVec3::new(c.l[i], c.m[i], c.n[i]));
+        let Met { point, x, y, passed } = self.plane.meet(from, way, c.wavelength_nm[i]).ok_or(BESIDE)?;
+        let pixel = self.plane.size().pixel_at(x, y).ok_or(BESIDE)?;
+        let (column, row) = (pixel % self.plane.size().width_px, pixel / self.plane.size().width_px);
+        let [at_column, at_row] = self.place(x, y);
+        let entry = [at_column - f64::from(column) - 0.5, at_row - f64::from(row) - 0.5];
+        if entry.iter().any(|e| e.abs() > 0.5 * self.open) {
+            return Err(WALLED);
+        }
+        let by = self.landing(entry, x, y, way, c.wavelength_nm[i])?;
+        c.tag[i] = if self.coarse {
+            self.tag(column.wrapping_add_signed(-by[0]), row.wrapping_add_signed(-by[1]), pixel)
+        } else {
+            let (to_column, to_row) = self.neighbor(column, row, by).ok_or(BESIDE)?;
+            self.tag(column, row, to_row * self.plane.size().width_px + to_column)
+        };
+        [c.x[i], c.y[i], c.z[i]] = point.to_array();
+        c.weight[i] *= passed;
+        Ok(())
+    }
+
+    fn admit_one(&self, c: &mut Columns<'_>, i: usize) -> Result<(), (Loss, u32)> {
+        let (at, way) = (DVec3::new(c.x[i], c.y[i], c.z[i]), -DVec3::new(c.l[i], c.m[i], c.n[i]));
+        let size = self.plane.size();
+        let (well, _) = pixel_and_channel(c.tag[i]);
+        let (column, row) = (well % size.width_px, well / size.width_px);
+        c.weight[i] *= self.open * self.open;
+        if self.photosite.is_none() {
+            c.tag[i] = self.tag(column, row, well);
+            return Ok(());
+        }
+        let Met { x, y, .. } = self.plane.meet(at, way, c.wavelength_nm[i]).ok_or(WALLED)?;
+        let [at_column, at_row] = self.place(x, y);
+        let entry = [at_column - f64::from(column) - 0.5, at_row - f64::from(row) - 0.5];
+        let [dc, dr] = self.landing(entry, x, y, way, c.wavelength_nm[i])?;
+        if self.coarse {
+            c.tag[i] = self.tag(column.wrapping_add_signed(-dc), row.wrapping_add_signed(-dr), well);
+            return Ok(());
+        }
+        // What ends in this well came in by that neighbor: the ray is moved there.
+        let (from_column, from_row) = self.neighbor(column, row, [-dc, -dr]).ok_or(WALLED)?;
+        c.tag[i] = self.tag(from_column, from_row, well);
+        if [dc, dr] != [0, 0] {
+            let axes = self.plane.axes(x, y);
+            let across = size.width_mm / f64::from(size.width_px) * f64::from(dc);
+            let down = size.height_mm / f64::from(size.height_px) * f64::from(dr);
+            [c.x[i], c.y[i], c.z[i]] = (at + axes.x_axis * across - axes.y_axis * down).to_array();
+        }
+        Ok(())
+    }
+}
+
+/// Does `one` to each living ray, and ends those for which it says why.
+fn each(rays: &mut RayBatch, one: impl Fn(&mut Columns<'_>, usize) -> Result<(), (Loss, u32)>) {
+    let mut c = rays.columns_mut();
+    for i in 0..c.x.len() {
+        if c.state[i] != ALIVE {
+            continue;
+        }
+        if let Err((cause, surface)) = one(&mut c, i) {
+            c.state[i] = cause.state(surface);
+        }
+    }
+}
+
+impl Receive for Pixels {
+    fn receive(&self, rays: &mut RayBatch, _isa: Isa) {
+        each(rays, |c, i| self.receive_one(c, i));
+    }
+}
+
+impl Launch for Pixels {
+    fn place(&self, rays: &mut RayBatch, u: &[f64], v: &[f64], isa: Isa) {
+        if self.open == 1.0 {
+            return self.plane.place(rays, u, v, isa);
+        }
+        let open = |u: &[f64]| -> Vec<f64> { u.iter().map(|u| 0.5 + (u - 0.5) * self.open).collect() };
+        self.plane.place(rays, &open(u), &open(v), isa);
+    }
+
+    fn admit(&self, rays: &mut RayBatch, isa: Isa) {
+        self.plane.admit(rays, isa);
+        each(rays, |c, i| self.admit_one(c, i));
+    }
+}
+
+impl Imager for Sensor {
+    fn size(&self) -> FrameSize {
+        self.pixels.plane.size()
+    }
+
+    fn channels(&self) -> Option<Vec<Channel>> {
+        Some(self.channels.clone())
+    }
+
+    fn receive(&self) -> Option<&dyn Receive> {
+        Some(&self.pixels)
+    }
+
+    fn launch(&self) -> Option<&dyn Launch> {
+        Some(&self.pixels)
+    }
+
+    fn display(&self, exposure: &ExposureFrame) -> Option<DisplayPicture> {
+        self.converter.show(&self.converter.convert(exposure))
+    }
+
+    fn exposure_time_s(&self) -> Option<f64> {
+        Some(self.converter.exposure_time_s)
+    }
+
+    fn has_converter(&self) -> bool {
+        true
+    }
+
+    fn raw(&self, exposure: &ExposureFrame) -> Option<RawFrame> {
+        Some(self.converter.convert(exposure))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::standing::{Bend, Standing};
+    use spectra_core::numbers::Numbers;
+    use spectra_core::spectral::BAND;
+
+    /// A ray that a well admits, sent back along its way, ends in that well with the same filter, on the sensor's own
+    /// pixels and on coarser ones; at 35 to 50 degrees a good part has passed a neighbor's filter, beyond that walls end it.
+    #[test]
+    fn receive_undoes_admit() {
+        let silicon = spectra_glass::Catalogue::bundled().medium("Si/Green-2008").expect("bundled");
+        let size = FrameSize { width_px: 60, height_px: 40, width_mm: 0.3, height_mm: 0.2 };
+        let standing = Standing::new([12.0, 6.0], [0.05, -0.03], Bend::Flat);
+        let n = 2000;
+        let column = |dimension: u32| {
+            let mut out = vec![0.0; n];
+            Numbers::random(5).fill(Isa::Baseline, 0, 0, dimension, &mut out);
+            out
+        };
+        let [u, v, a, b] = [0, 1, 2, 3].map(column);
+        for coarse in [false, true] {
+            let mut photosite = Photosite::new(0.005, &silicon, &BAND);
+            (photosite.stack_mm, photosite.stack_index, photosite.microlens) = (0.003, 1.46, 0.4);
+            let plane = Plane::new(size).standing(standing);
+            let pattern = PATTERNS[2].1;
+            let pixels = Pixels { plane, pattern, open: 0.9, photosite: Some(photosite), coarse };
+            let mut rays = RayBatch::new(n);
+            rays.restart(n);
+            let c = rays.columns_mut();
+            for i in 0..n {
+                // Away from the border, whose neighbors are beyond it.
+                let (x, y) = (2 + i as u32 % 56, 2 + i as u32 / 56 % 36);
+                (c.tag[i], c.wavelength_nm[i]) = (y * 60 + x, 550.0);
+            }
+            Launch::place(&pixels, &mut rays, &u, &v, Isa::Baseline);
+            let c = rays.columns_mut();
+            for i in 0..n {
+                let at = DVec3::new(c.x[i], c.y[i], c.z[i]);
+                let target = DVec3::new(6.0 * a[i] - 3.0, 6.0 * b[i] - 3.0, -15.0);
+                [c.x[i], c.y[i], c.z[i]] = target.to_array();
+                [c.l[i], c.m[i], c.n[i]] = (target - at).normalize().to_array();
+            }
+            pixels.admit(&mut rays, Isa::Baseline);
+            rays.compact();
+            let left = rays.len();
+            let admitted = rays.tags().to_vec();
+            let c = rays.columns_mut();
+            for i in 0..left {
+                (c.l[i], c.m[i], c.n[i], c.tag[i]) = (-c.l[i], -c.m[i], -c.n[i], 0);
+                assert!((c.weight[i] - 0.81).abs() < 1e-12);
+            }
+            pixels.receive(&mut rays, Isa::Baseline);
+            assert_eq!(rays.alive(), left);
+            assert_eq!(rays.tags(), admitted);
+            let strange = |tag: &&u32| {
+                let (well, only) = pixel_and_channel(**tag);
+                only != Some(pattern.channel(well % 60, well / 60))
+            };
+            let crossed = admitted.iter().filter(strange).count() as f64 / left as f64;
+            println!("coarse {coarse}: {left} of {n} admitted, {crossed:.3} by another filter");
+            assert!(left > n / 2 && (0.1..0.9).contains(&crossed), "{left} {crossed}");
+        }
+    }
+}

@@ -1,0 +1,286 @@
+//! `kind: sensor` as a scene writes it.
+
+use super::{CameraColor, Converter, PATTERNS, Pattern, Photosite, Pixels, Sensor};
+use crate::params::imager_params;
+use serde::Deserialize;
+use spectra_core::params::{
+    Fault, Faults, Length, NonNegative, OrInfinity, Params, Positive, Quantity, Ratio, Time, nearest,
+};
+use spectra_core::registry::{Context, ImagerEntry};
+use spectra_core::spectral::Channel;
+use spectra_core::stage::Imager;
+use spectra_glass::Catalogue;
+use spectra_spectrum::constants::{LIGHT_M_PER_S, PLANCK_J_S};
+use spectra_spectrum::{find_emission_in, find_sensitivity_in};
+
+imager_params! {
+    /// Parameters of `kind: sensor` as written in a scene.
+    SensorParams {
+        /// Exposure time, s if bare.
+        exposure: Positive<Time>,
+        /// Color filters from the upper left of the picture: `rggb` (the default), `bggr`, `grbg`, `gbrg`; or
+        /// `monochrome`.
+        #[serde(default)]
+        pattern: Option<String>,
+        /// What the pixels see: a bundled table or a file with the columns red, green and blue, relative per power;
+        /// of a monochrome sensor one sensitivity, such as `file#column`. The default is `nikon-d5100`, with filters.
+        #[serde(default)]
+        sensitivity: Option<String>,
+        /// Electrons per photon where that is largest: what makes a relative table absolute. 0.5 if left out, an assumption.
+        #[serde(default)]
+        peak_quantum_efficiency: Option<Positive<Ratio>>,
+        /// Distance of two pixels of the sensor, mm if bare; that of `resolution` if left out. A picture of fewer pixels
+        /// shows what the sensor's own pixels give.
+        #[serde(default)]
+        pitch: Option<Positive<Length>>,
+        /// Share of a pixel's area that takes in light, its microlens included; 1 if left out.
+        #[serde(default)]
+        fill_factor: Option<Positive<Ratio>>,
+        /// What stands before the silicon; without it a pixel takes light from all directions alike.
+        #[serde(default)]
+        photosite: Option<PhotositeParams>,
+        /// Most electrons of a well; 30000 if left out, an assumption.
+        #[serde(default)]
+        full_well: Option<Positive<f64>>,
+        /// Standard deviation of reading, electrons; 3 if left out, an assumption.
+        #[serde(default)]
+        read_noise: Option<NonNegative<f64>>,
+        /// ISO setting, at which numbers end at full well times `base-iso` over `iso`; the base if left out.
+        #[serde(default)]
+        iso: Option<Positive<f64>>,
+        /// The setting at which a full well is the largest number; 100 if left out.
+        #[serde(default)]
+        base_iso: Option<Positive<f64>>,
+        /// Bits of the converter, 8 to 16; 14 if left out.
+        #[serde(default)]
+        bits: Option<u32>,
+        /// Value without light; a 32nd of the range if left out.
+        #[serde(default)]
+        black_level: Option<u32>,
+        /// Whether photons and reading are noisy; they are if left out.
+        #[serde(default)]
+        noise: Option<bool>,
+        /// Seed of the noise; 1 if left out.
+        #[serde(default)]
+        noise_seed: Option<u32>,
+        /// The light that is shown as white; D65 if left out.
+        #[serde(default)]
+        white_balance: Option<String>,
+        /// Model, for the raw file.
+        #[serde(default)]
+        model: Option<String>,
+    }
+}
+
+/// `photosite` as written in a scene.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct PhotositeParams {
+    /// From the color filter to the silicon, mm if bare.
+    pub stack: NonNegative<Length>,
+    /// Refractive index of the stack; 1.46, silica, if left out.
+    #[serde(default)]
+    pub index: Option<Positive<f64>>,
+    /// How far the microlens gathers light toward the middle, 0 to 1; 0 if left out.
+    #[serde(default)]
+    pub microlens: Option<NonNegative<Ratio>>,
+    /// Distance of the exit pupil that the microlenses are shifted for, mm if bare; not shifted if left out.
+    #[serde(default)]
+    pub exit_pupil: Option<OrInfinity<Positive<Length>>>,
+    /// Depth of the well, mm if bare; 0 if left out: all is absorbed at the surface.
+    #[serde(default)]
+    pub well: Option<NonNegative<Length>>,
+}
+
+const DEFAULT_SENSITIVITY: &str = "nikon-d5100";
+const DEFAULT_PEAK: f64 = 0.5;
+const DEFAULT_FULL_WELL: f64 = 30_000.0;
+const DEFAULT_READ_NOISE: f64 = 3.0;
+const SILICA: f64 = 1.46;
+/// M. A. Green, Solar Energy Materials and Solar Cells 92, 1305 (2008).
+const SILICON: &str = "Si/Green-2008";
+/// EXIF numbers (`LightSource`) of lights; 255 is any other.
+const LIGHT_SOURCES: [(&str, u16); 7] =
+    [("A", 17), ("B", 18), ("C", 19), ("D55", 20), ("D65", 21), ("D75", 22), ("D50", 23)];
+
+impl SensorParams {
+    fn pattern(&self, params: &Params) -> Result<Pattern, Fault> {
+        let Some(name) = &self.pattern else { return Ok(PATTERNS[0].1) };
+        let found = PATTERNS.iter().find(|(known, _)| *known == name.to_ascii_lowercase());
+        found.map(|(_, pattern)| *pattern).ok_or_else(|| {
+            let names = PATTERNS.map(|(name, _)| name);
+            let known = names.join(", ");
+            let fault = params.fault("pattern", format!("unknown pattern `{name}`"));
+            match nearest(name, names) {
+                Some(near) => fault.hint(format!("did you mean `{near}`? One of {known}")),
+                None => fault.hint(format!("one of {known}")),
+            }
+        })
+    }
+
+    /// The channels, in electrons for the light of the exposure.
+    fn channels(
+        &self,
+        params: &Params,
+        context: &Context<'_>,
+        pattern: Pattern,
+        area_mm2: f64,
+    ) -> Result<Vec<Channel>, Faults> {
+        let mut faults = Faults::new();
+        let name = self.sensitivity.as_deref().unwrap_or(DEFAULT_SENSITIVITY);
+        if pattern == Pattern::Monochrome && self.sensitivity.is_none() {
+            let fault = params.fault("sensitivity", "a monochrome sensor needs its sensitivity");
+            return Err(fault.hint("a file beside the scene with the columns wavelength_nm and sensitivity").into());
+        }
+        let wanted: Vec<(&str, String)> = match pattern {
+            Pattern::Monochrome => vec![("Y", name.to_owned())],
+            Pattern::Bayer(_) => [("R", "red"), ("G", "green"), ("B", "blue")]
+                .map(|(channel, column)| (channel, format!("{name}#{column}")))
+                .into(),
+        };
+        let grid = &context.grid;
+        let mut tables = Vec::new();
+        for (channel, text) in wanted {
+            let found = find_sensitivity_in(&text, context.resources);
+            tables.extend(faults.take(
+                found.map(|s| (channel, s.on_grid(grid))).map_err(|e| params.fault("sensitivity", e.to_string())),
+            ));
+        }
+        faults.into_result(())?;
+        // Photons per joule go with the wavelength: electrons a photon are sensitivity over wavelength.
+        let peak = tables
+            .iter()
+            .flat_map(|(_, table)| table.iter().zip(grid.wavelengths_nm()).map(|(s, w)| s / w))
+            .fold(0.0, f64::max);
+        if !(peak > 0.0) {
+            return Err(params.fault("sensitivity", format!("`{name}` sees nothing of the band")).into());
+        }
+        let efficiency = self.peak_quantum_efficiency.map_or(DEFAULT_PEAK, |q| q.number());
+        if efficiency > 1.0 {
+            let text = format!("{efficiency} electrons a photon");
+            return Err(params.fault("peak-quantum-efficiency", text).hint("at most 100 %").into());
+        }
+        const M2_PER_MM2: f64 = 1e-6;
+        const M_PER_NM: f64 = 1e-9;
+        let scale = efficiency / peak * area_mm2 * M2_PER_MM2 * M_PER_NM / (PLANCK_J_S * LIGHT_M_PER_S);
+        let channel = |(name, table): (&str, Vec<f64>)| Channel {
+            name: name.to_owned(),
+            unit: "e-".to_owned(),
+            response: table.into_iter().map(|s| s * scale).collect(),
+        };
+        Ok(tables.into_iter().map(channel).collect())
+    }
+
+    fn photosite(&self, params: &Params, context: &Context<'_>, pitch_mm: f64) -> Result<Option<Photosite>, Faults> {
+        let Some(p) = &self.photosite else { return Ok(None) };
+        let mut faults = Faults::new();
+        let index = p.index.map_or(SILICA, |i| i.bare());
+        if !(1.0..=5.0).contains(&index) {
+            faults.push(
+                params.fault("photosite.index", format!("{index} is no refractive index of a stack")).hint("1 to 5"),
+            );
+        }
+        let microlens = p.microlens.map_or(0.0, |m| m.number());
+        if microlens > 1.0 {
+            faults.push(params.fault("photosite.microlens", "gathers more than all").hint("0 to 1"));
+        }
+        let silicon = Catalogue::bundled().medium(SILICON).map_err(|e| params.fault("photosite", e.to_string()));
+        let Some(silicon) = faults.take(silicon) else { return Err(faults) };
+        let mut photosite = Photosite::new(pitch_mm, &silicon, &context.grid);
+        photosite.stack_mm = p.stack.mm();
+        photosite.stack_index = index;
+        photosite.microlens = microlens;
+        photosite.exit_pupil_mm = p.exit_pupil.map_or(f64::INFINITY, |e| e.mm());
+        photosite.well_mm = p.well.map_or(0.0, |w| w.mm());
+        faults.into_result(Some(photosite))
+    }
+
+    fn converter(
+        &self,
+        params: &Params,
+        context: &Context<'_>,
+        pattern: Pattern,
+        channels: &[Channel],
+    ) -> Result<Converter, Faults> {
+        let mut faults = Faults::new();
+        let bits = self.bits.unwrap_or(14);
+        if !(8..=16).contains(&bits) {
+            faults.push(params.fault("bits", format!("a converter of {bits} bits")).hint("8 to 16"));
+        }
+        let white_level = ((1_u32 << bits.clamp(8, 16)) - 1) as u16;
+        let black = self.black_level.unwrap_or(u32::from(white_level).div_ceil(32));
+        if black >= u32::from(white_level) {
+            faults.push(
+                params.fault("black-level", format!("{black} leaves no range")).hint(format!("below {white_level}")),
+            );
+        }
+        let base_iso = self.base_iso.map_or(100.0, |i| i.bare());
+        let iso = self.iso.map_or(base_iso, |i| i.bare());
+        if iso < base_iso {
+            faults.push(params.fault("iso", format!("{iso} is below the base")).hint(format!("{base_iso} or more")));
+        }
+        let light = self.white_balance.as_deref().unwrap_or("D65");
+        let color = match pattern {
+            Pattern::Monochrome => None,
+            Pattern::Bayer(_) => {
+                let found = find_emission_in(light, context.resources)
+                    .map_err(|e| params.fault("white-balance", e.to_string()));
+                faults.take(found).and_then(|light| {
+                    let color = CameraColor::fit(channels, &light, &context.grid);
+                    let blind =
+                        || params.fault("white-balance", "these sensitivities do not tell colors apart in this light");
+                    faults.take(color.ok_or_else(blind))
+                })
+            }
+        };
+        let full_well = self.full_well.map_or(DEFAULT_FULL_WELL, |w| w.bare());
+        let range = f64::from(white_level) - f64::from(black.min(u32::from(white_level) - 1));
+        faults.into_result(Converter {
+            pattern,
+            exposure_time_s: self.exposure.s(),
+            full_well,
+            read_noise: self.read_noise.map_or(DEFAULT_READ_NOISE, |r| r.bare()),
+            electrons_per_number: full_well * base_iso / iso / range,
+            black_level: black as u16,
+            white_level,
+            noise: self.noise.unwrap_or(true).then_some(u64::from(self.noise_seed.unwrap_or(1))),
+            iso,
+            color,
+            illuminant: LIGHT_SOURCES.iter().find(|(name, _)| *name == light).map_or(255, |(_, number)| *number),
+            model: self.model.clone().unwrap_or_else(|| "sensor".to_owned()),
+        })
+    }
+}
+
+fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Imager>, Faults> {
+    let parsed: SensorParams = params.parse()?;
+    let mut faults = Faults::new();
+    let plane = faults.take(parsed.frame().plane(params, context));
+    let pattern = faults.take(parsed.pattern(params));
+    let fill = parsed.fill_factor.map_or(1.0, |f| f.number());
+    if fill > 1.0 {
+        faults.push(params.fault("fill-factor", "more than all of a pixel").hint("at most 100 %"));
+    }
+    let (Some(plane), Some(pattern)) = (plane, pattern) else { return Err(faults) };
+    let size = plane.size();
+    let pitch_mm = parsed.pitch.map(|p| p.mm());
+    let area_mm2 = pitch_mm.map_or(size.pixel_area_mm2(), |p| p * p);
+    let channels = faults.take(parsed.channels(params, context, pattern, area_mm2));
+    let photosite = faults.take(parsed.photosite(params, context, pitch_mm.unwrap_or(area_mm2.sqrt())));
+    let converter = channels.as_ref().and_then(|c| faults.take(parsed.converter(params, context, pattern, c)));
+    let (Some(channels), Some(photosite), Some(converter)) = (channels, photosite, converter) else {
+        return Err(faults);
+    };
+    let pixels = Pixels { plane, pattern, open: fill.sqrt(), photosite, coarse: parsed.pitch.is_some() };
+    faults.into_result(Box::new(Sensor { pixels, channels, converter }))
+}
+
+inventory::submit! {
+    ImagerEntry::new(
+        "sensor",
+        "A chip of pixels with color filters: electrons, noise, raw files.",
+        env!("CARGO_PKG_NAME"),
+        env!("CARGO_PKG_VERSION"),
+        build,
+    )
+}

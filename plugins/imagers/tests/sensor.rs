@@ -1,0 +1,195 @@
+//! The sensor: electrons, noise, colors, and what it says of faulty keys.
+
+use spectra_core::frame::{ExposureChannel, ExposureFrame};
+use spectra_core::params::Faults;
+use spectra_core::registry::{Context, Stage};
+use spectra_core::resources::Resources;
+use spectra_core::spectral::{BAND, Channel, SpectralPower};
+use spectra_core::stage::Imager;
+use spectra_plugin_imagers::Plane;
+use spectra_plugin_imagers::sensor::CameraColor;
+use spectra_scene::FileResources;
+use spectra_spectrum::{Observer, ciede2000, find_emission, find_reflectance, lab};
+
+fn build(yaml: &str) -> Result<Box<dyn Imager>, Faults> {
+    // Names the crate, so that it is linked and its entries with it.
+    let _ = Plane::new;
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("imager.yaml"), yaml).expect("written");
+    std::fs::write(folder.path().join("mono.csv"), "wavelength_nm,sensitivity\n400,0.5\n700,0.5\n").expect("written");
+    let resources = FileResources::beside(folder.path());
+    let params = resources.document("imager.yaml", &[], &[]).expect("YAML");
+    let entries = <dyn Imager as Stage>::entries();
+    let entry = entries.iter().find(|e| e.name == "sensor").expect("registered");
+    (entry.build)(&params, &Context { resources: &resources, grid: BAND, illuminant: None })
+}
+
+const FRAME: &str = "width: 1 mm\nheight: 1 mm\nresolution: [200, 200]\nexposure: 1/100 s\n";
+
+fn sensor(more: &str) -> Box<dyn Imager> {
+    build(&format!("{FRAME}{more}")).unwrap_or_else(|f| panic!("{f}"))
+}
+
+fn channels(imager: &dyn Imager) -> Vec<Channel> {
+    imager.channels().expect("its own")
+}
+
+/// The same mean in every well.
+fn flat(imager: &dyn Imager, electrons: f32) -> ExposureFrame {
+    let size = imager.size();
+    let all = channels(imager).into_iter().enumerate().map(|(i, c)| ExposureChannel {
+        name: c.name,
+        unit: c.unit,
+        values: vec![if i == 0 { electrons } else { 0.0 }; size.pixels()],
+    });
+    ExposureFrame { size, channels: all.collect() }
+}
+
+/// One W m^-2 at a wavelength is wavelength / (h c) photons: 2.7689e18 a second and m^2 at 550 nm (h c = 1.98645e-25 J m).
+/// The pixel has 5 um; at the peak of quantum efficiency 40 % of them become electrons.
+#[test]
+fn electrons_are_photons_times_quantum_efficiency() {
+    let imager = sensor("peak-quantum-efficiency: 40 %\n");
+    let photons_per_nm = 25e-12 / 1.986_445_857e-25 * 1e-9;
+    let mut peak = 0.0_f64;
+    for channel in channels(&*imager) {
+        assert_eq!(channel.unit, "e-");
+        for (i, nm) in BAND.wavelengths_nm().enumerate() {
+            peak = peak.max(channel.response[i] / (photons_per_nm * nm));
+        }
+    }
+    assert!((peak - 0.4).abs() < 1e-9, "{peak}");
+    assert_eq!(imager.exposure_time_s(), Some(0.01));
+    // The pitch counts, not the pixels of the picture.
+    let green = |imager: &dyn Imager| channels(imager)[1].response[200];
+    let coarse = sensor("pitch: 10 um\npeak-quantum-efficiency: 40 %\n");
+    assert!((green(&*coarse) / green(&*imager) - 4.0).abs() < 1e-12);
+    let mono = sensor("pattern: monochrome\nsensitivity: mono.csv\n");
+    let [only] = &channels(&*mono)[..] else { panic!("one channel") };
+    assert_eq!(only.name, "Y");
+}
+
+/// The photon transfer of J. R. Janesick: variance against mean has one over the gain as its slope and the read noise at
+/// its foot; each within five standard errors of 40000 pixels, quantization (1/12) counted in.
+#[test]
+fn photon_transfer_gives_back_gain_and_read_noise() {
+    let imager = sensor("full-well: 20000\nread-noise: 4\niso: 200\nbits: 14\nblack-level: 500\n");
+    let gain = 10_000.0 / (16_383.0 - 500.0);
+    for mean in [0.0_f32, 2.0, 50.0, 1000.0, 8000.0] {
+        let raw = imager.raw(&flat(&*imager, mean)).expect("a converter");
+        let n = raw.values.len() as f64;
+        let values = || raw.values.iter().map(|v| f64::from(*v) - 500.0);
+        let got = values().sum::<f64>() / n;
+        let variance = values().map(|v| (v - got) * (v - got)).sum::<f64>() / (n - 1.0);
+        let want = f64::from(mean) / gain;
+        let wanted = (f64::from(mean) + 16.0) / (gain * gain) + 1.0 / 12.0;
+        assert!((got - want).abs() < 5.0 * (wanted / n).sqrt(), "{mean}: mean {got} {want}");
+        assert!((variance / wanted - 1.0).abs() < 5.0 * (2.3 / n).sqrt(), "{mean}: variance {variance} {wanted}");
+    }
+}
+
+#[test]
+fn wells_and_numbers_end_somewhere() {
+    let quiet = sensor("noise: false\nfull-well: 20000\nblack-level: 600\n");
+    let number = |imager: &dyn Imager, electrons| imager.raw(&flat(imager, electrons)).expect("a converter").values[7];
+    assert_eq!([number(&*quiet, 0.0), number(&*quiet, 20_000.0), number(&*quiet, 1e6)], [600, 16_383, 16_383]);
+    assert_eq!(number(&*quiet, 10_000.0), 600 + 7892);
+    // At four times the base setting a quarter of the well is the largest number.
+    let fast = sensor("noise: false\nfull-well: 20000\nblack-level: 600\niso: 400\n");
+    assert_eq!([number(&*fast, 2500.0), number(&*fast, 5000.0)], [600 + 7892, 16_383]);
+    let again = sensor("noise-seed: 5\n");
+    let frame = flat(&*again, 100.0);
+    assert_eq!(again.raw(&frame), again.raw(&frame));
+    assert_ne!(again.raw(&frame).expect("raw").values, sensor("noise-seed: 6\n").raw(&frame).expect("raw").values);
+}
+
+/// The matrix, turned round, gives the colors of the ColorChecker back as the eye sees them: CIEDE2000 below 2 on average
+/// and below 6 for the worst patch, which is what a camera of three colors and a linear matrix reaches; white exactly.
+#[test]
+fn the_matrix_gives_colors_back() {
+    let imager = sensor("");
+    let channels = channels(&*imager);
+    let light = find_emission("D65").expect("bundled");
+    let color = CameraColor::fit(&channels, &light, &BAND).expect("three colors");
+    assert!((color.camera_from_xyz * color.white_xyz - color.neutral).length() < 1e-12);
+    let raw = imager.raw(&flat(&*imager, 1.0)).expect("a converter");
+    assert_eq!(raw.neutral, color.neutral.to_array());
+    assert_eq!(raw.illuminant, 21);
+    let power = light.to_power(&BAND);
+    let observer = Observer::cie_1931_2deg().on_grid(&BAND);
+    let largest = channels.iter().map(|c| power.seen_by(&c.response)).fold(0.0, f64::max);
+    let y = power.seen_by(&observer[1]);
+    let mut errors = Vec::new();
+    for patch in [
+        "dark-skin",
+        "light-skin",
+        "blue-sky",
+        "foliage",
+        "orange",
+        "blue",
+        "green",
+        "red",
+        "yellow",
+        "cyan",
+        "neutral-5",
+    ] {
+        let reflectance = find_reflectance(&format!("colorchecker#{patch}")).expect("bundled");
+        let continuum = power.continuum.iter().zip(BAND.wavelengths_nm()).map(|(p, w)| p * reflectance.at(w)).collect();
+        let lit = SpectralPower { continuum, ..power.clone() };
+        let camera = glam::DVec3::from_array([0, 1, 2].map(|i: usize| lit.seen_by(&channels[i].response) / largest));
+        let got = color.camera_from_xyz.inverse() * camera;
+        let want = [0, 1, 2].map(|i: usize| lit.seen_by(&observer[i]) / y);
+        let white = color.white_xyz.to_array();
+        errors.push(ciede2000(lab(got.to_array(), white), lab(want, white)));
+    }
+    let mean = errors.iter().sum::<f64>() / errors.len() as f64;
+    println!("CIEDE2000 mean {mean:.2}, all {errors:.2?}");
+    assert!(mean < 2.0 && errors.iter().all(|e| *e < 6.0), "{errors:?}");
+}
+
+/// A gray card is shown gray: the picture of white light has three equal values.
+#[test]
+fn white_is_shown_white() {
+    let imager = sensor("noise: false\n");
+    let light = find_emission("D65").expect("bundled").scaled_to_luminance(30.0).expect("light").to_power(&BAND);
+    let size = imager.size();
+    let pixels = || (0..size.pixels()).map(|p| (p % 200 % 2, p / 200 % 2));
+    let all = channels(&*imager).into_iter().enumerate().map(|(i, c)| {
+        let seen = light.seen_by(&c.response) as f32 * 0.01;
+        // rggb
+        let own = |(column, row): (usize, usize)| column + row == i;
+        ExposureChannel {
+            name: c.name,
+            unit: c.unit,
+            values: pixels().map(|p| if own(p) { seen } else { 0.0 }).collect(),
+        }
+    });
+    let picture = imager.display(&ExposureFrame { size, channels: all.collect() }).expect("a picture");
+    for rgb in [picture.rgb[0], picture.rgb[20_100]] {
+        let spread = rgb.iter().fold(0.0_f32, |a, v| a.max((v / rgb[1] - 1.0).abs()));
+        assert!(spread < 0.01 && rgb[1] > 0.5, "{rgb:?}");
+    }
+}
+
+#[test]
+fn faulty_keys_are_told_at_their_places() {
+    for (yaml, word) in [
+        ("pattern: rgbg", "did you mean"),
+        ("peak-quantum-efficiency: 140 %", "at most 100 %"),
+        ("fill-factor: 2", "at most 100 %"),
+        ("sensitivity: nikon-d51", "nikon-d5100"),
+        ("sensitivity: colorchecker", "red"),
+        ("pattern: monochrome", "needs its sensitivity"),
+        ("bits: 20", "8 to 16"),
+        ("black-level: 20000", "no range"),
+        ("iso: 50", "below the base"),
+        ("white-balance: D56", "D55"),
+        ("photosite: {stack: 3 um, index: 0.5}", "1 to 5"),
+        ("photosite: {stack: 3 um, microlens: 2}", "0 to 1"),
+        ("photosite: {well: 3 um}", "stack"),
+        ("exposures: 3 s", "exposure"),
+    ] {
+        let text = build(&format!("{FRAME}{yaml}")).map(|_| ()).unwrap_err().to_string();
+        assert!(text.contains("imager.yaml:") && text.contains(word), "{yaml}: {text}");
+    }
+}
