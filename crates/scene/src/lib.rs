@@ -5,6 +5,7 @@
 
 mod assemble;
 pub mod diagnostics;
+mod filters;
 mod lens_section;
 mod output;
 mod resources;
