@@ -34,7 +34,7 @@ pub use first_order::{FirstOrder, Section};
 pub use focus::{Criterion, FocusError, FocusLaw, FocusSearch, FocusTable, GroupTravel};
 pub use group::{Group, Misalignment};
 pub use lens::{Lens, LensMedium};
-pub use matte_box::MatteBox;
+pub use matte_box::{MATTE_BOX, MatteBox};
 pub use pose::{AxisBreak, Displacement, Pose};
 pub use prescription::{load, parse, unknown_group};
 pub use reverse::ReverseError;

@@ -6,6 +6,9 @@ use crate::{Element, Lens};
 use spectra_core::surface::{Action, Hit, Kernel, KernelShape, Ray, Real};
 use std::sync::Arc;
 
+/// The `kind` of the element that a matte box is.
+pub const MATTE_BOX: &str = "matte-box";
+
 /// A rectangular opening in front of the lens, centered on the axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MatteBox {
@@ -49,7 +52,7 @@ impl Lens {
     #[must_use]
     pub fn behind_matte_box(mut self, opening: &MatteBox) -> Self {
         let (half_width_mm, half_height_mm) = (0.5 * opening.width_mm, 0.5 * opening.height_mm);
-        let mut element = Element::new("matte-box", Arc::new(Kernel(Opening)), 0, 0);
+        let mut element = Element::new(MATTE_BOX, Arc::new(Kernel(Opening)), 0, 0);
         element.action = Action::Pass;
         element.breaks = vec![AxisBreak { displacement: Displacement::NONE, thickness_mm: -opening.distance_mm }];
         element.thickness_mm = opening.distance_mm;

@@ -9,7 +9,7 @@ use spectra_core::registry::{self, Context};
 use spectra_core::resources::Resources;
 use spectra_core::spectral::{BAND, Channel, Grid};
 use spectra_core::stage::{Film, Imager, Source, WavelengthSampler};
-use spectra_lens::Lens;
+use spectra_lens::{Lens, MATTE_BOX};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -137,7 +137,7 @@ fn assemble(name: &str, text: String, params: &Params, resources: &dyn Resources
     let lens_place = lens.clone();
     let lens = lens.and_then(|p| faults.take(lens_of(&p, resources)));
     if let (Some(place), Some(lens), Some(source)) = (lens_place, &lens, &source)
-        && lens.elements.first().is_some_and(|e| e.vertex_z_mm() <= -source.distance_mm())
+        && lens.elements.first().is_some_and(|e| e.kind == MATTE_BOX && e.vertex_z_mm() <= -source.distance_mm())
     {
         let fault = place.fault("matte-box", "the source stands between the matte box and the lens");
         faults.push(fault.hint(format!("nearer to the lens than {} mm", source.distance_mm())));
