@@ -1,6 +1,6 @@
 //! Writes a sorted table of the repository's data files, their bytes compiled in.
 //!
-//! What is bundled: everything under `spectra/`, `lenses/*` and the YAML files under `scenes/`.
+//! What is bundled: everything under `spectra/`, `lenses/*` and the YAML files under `scenes/` with their pictures.
 //! Hidden files and editors' backups are left out.
 
 use std::env;
@@ -9,7 +9,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Folder of the repository, and the endings taken from it (none: every file).
-const FOLDERS: [(&str, &[&str]); 3] = [("spectra", &[]), ("lenses", &[]), ("scenes", &["yaml", "yml"])];
+const FOLDERS: [(&str, &[&str]); 3] = [("spectra", &[]), ("lenses", &[]), ("scenes", &["yaml", "yml", "exr"])];
 
 fn collect(folder: &Path, endings: &[&str], found: &mut Vec<PathBuf>) {
     println!("cargo:rerun-if-changed={}", folder.display());

@@ -1,5 +1,6 @@
 //! From a scene file to a [`Scene`], with every fault in one go.
 
+use crate::filters;
 use crate::lens_section::lens_of;
 use crate::{ConePattern, Direction, FileResources, NumberFamily, Output, RenderSettings, Scene, films, output, yaml};
 use serde::Deserialize;
@@ -8,7 +9,7 @@ use spectra_core::registry::{self, Context};
 use spectra_core::resources::Resources;
 use spectra_core::spectral::{BAND, Channel, Grid};
 use spectra_core::stage::{Film, Imager, Source, WavelengthSampler};
-use spectra_lens::Lens;
+use spectra_lens::{Lens, MATTE_BOX};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -137,7 +138,15 @@ fn assemble(name: &str, text: String, params: &Params, resources: &dyn Resources
     let context = Context { resources, grid, illuminant: None };
     let source = source.and_then(|p| faults.take(registry::build::<dyn Source>(&p, &context)));
     let sampler = faults.take(registry::build::<dyn WavelengthSampler>(&sampler, &context));
+    let filters = lens.as_ref().and_then(|p| faults.take(filters::filters_of(p, grid, resources))).flatten();
+    let lens_place = lens.clone();
     let lens = lens.and_then(|p| faults.take(lens_of(&p, resources)));
+    if let (Some(place), Some(lens), Some(source)) = (lens_place, &lens, &source)
+        && lens.elements.first().is_some_and(|e| e.kind == MATTE_BOX && e.vertex_z_mm() <= -source.distance_mm())
+    {
+        let fault = place.fault("matte-box", "the source stands between the matte box and the lens");
+        faults.push(fault.hint(format!("nearer to the lens than {} mm", source.distance_mm())));
+    }
     let imager = imager.and_then(|p| faults.take(registry::build::<dyn Imager>(&p, &context)));
     let films = match several {
         Some(items) => faults.take(films::several(items, params, &context)),
@@ -182,6 +191,10 @@ fn assemble(name: &str, text: String, params: &Params, resources: &dyn Resources
     else {
         return Err(Fault::new("the scene is incomplete").into());
     };
+    let mut channels = channels;
+    if let Some(transmittance) = filters {
+        filters::fold(&mut channels, &transmittance);
+    }
     let channels: Arc<[Channel]> = channels.into();
     let warnings = warnings(&lens, grid);
     Ok(Scene {

@@ -1,14 +1,14 @@
 //! The `lens` section of a scene: which lens, and how it is set.
 //!
 //! In this order: the lens is turned round, coated, stopped and focused as its maker meant it; then groups go out of place;
-//! a focus by real rays, as a camera finds it, comes last and sees them so.
+//! a focus by real rays, as a camera finds it, sees them so; a matte box comes last.
 
 use serde::Deserialize;
 use spectra_core::params::{
     Angle, FNumber, Faults, Length, OrInfinity, Params, Positive, SpatialFrequency, StageNode, Value, Wavelength,
 };
 use spectra_core::resources::Resources;
-use spectra_lens::{Criterion, FocusSearch, Lens, Misalignment};
+use spectra_lens::{Criterion, FocusSearch, Lens, MatteBox, Misalignment};
 
 /// The `lens` section.
 #[derive(Debug, Deserialize)]
@@ -32,6 +32,23 @@ struct LensSection {
     /// Groups out of place.
     #[serde(default)]
     adjust: Vec<StageNode>,
+    /// Filters in front of it.
+    #[expect(dead_code, reason = "states the key; filters are read by themselves")]
+    filters: Option<StageNode>,
+    /// A rectangular opening in front of it.
+    matte_box: Option<StageNode>,
+}
+
+/// A matte box.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct MatteBoxParams {
+    /// Distance of the opening in front of the first vertex, mm if bare.
+    distance: Positive<Length>,
+    /// Width of the opening, mm if bare.
+    width: Positive<Length>,
+    /// Its height, mm if bare.
+    height: Positive<Length>,
 }
 
 /// `focus` as a map.
@@ -110,6 +127,12 @@ pub(crate) fn lens_of(params: &Params, resources: &dyn Resources) -> Result<Lens
     if let (Some(search), true) = (focus.and_then(|f| f.search), faults.is_empty()) {
         let found = lens.clone().focused_by(&search);
         lens = faults.take(found.map_err(|e| params.fault("focus", e.to_string()))).unwrap_or(lens);
+    }
+    if let Some(node) = section.matte_box
+        && let Some(p) = faults.take(node.parse::<MatteBoxParams>())
+    {
+        let opening = MatteBox { distance_mm: p.distance.mm(), width_mm: p.width.mm(), height_mm: p.height.mm() };
+        lens = lens.behind_matte_box(&opening);
     }
     faults.into_result(lens)
 }

@@ -6,6 +6,7 @@
 mod assemble;
 pub mod diagnostics;
 mod films;
+mod filters;
 mod lens_section;
 mod output;
 mod resources;

@@ -4,6 +4,7 @@ mod beam;
 pub mod chart;
 mod chart_source;
 mod flat;
+mod layers;
 mod palette;
 mod picture;
 mod point;

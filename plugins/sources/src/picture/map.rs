@@ -4,16 +4,17 @@ use crate::flat::{Places, Texture};
 use spectra_core::Isa;
 use spectra_core::spectral::SpectralPower;
 use spectra_core::stage::ColorModel;
+use std::sync::Arc;
 
 /// The picture on the plane.
-pub(super) struct PictureMap {
+pub(crate) struct PictureMap {
     pub width_px: usize,
     pub height_px: usize,
     pub width_mm: f64,
     pub height_mm: f64,
     /// What the color model needs of each pixel, times the luminance scale where the model is linear.
     pub coefficients: Vec<[f32; 3]>,
-    pub model: Box<dyn ColorModel>,
+    pub model: Arc<dyn ColorModel>,
     /// Radiance per unit of the model.
     pub scale: f64,
     pub mean: SpectralPower,
@@ -22,26 +23,49 @@ pub(super) struct PictureMap {
     pub name: String,
 }
 
+/// Four pixels, and how far a place lies from the upper left one of them toward the others.
+pub(crate) struct Spot {
+    cells: [usize; 4],
+    part: [f32; 2],
+}
+
+impl Spot {
+    /// Linear between the values of the four pixels.
+    pub(crate) fn mix<const N: usize>(&self, value: impl Fn(usize) -> [f32; N]) -> [f32; N] {
+        let [a, b, d, e] = self.cells.map(value);
+        std::array::from_fn(|k| {
+            let upper = a[k] + (b[k] - a[k]) * self.part[0];
+            let lower = d[k] + (e[k] - d[k]) * self.part[0];
+            upper + (lower - upper) * self.part[1]
+        })
+    }
+}
+
 impl PictureMap {
-    /// Coefficients at a point, linear between the centres of pixels, constant beyond the outermost.
-    fn at(&self, x_mm: f64, y_mm: f64) -> Option<[f32; 3]> {
+    /// Column and row of a point, pixels from the upper left; `None` beside the picture.
+    pub(crate) fn place(&self, x_mm: f64, y_mm: f64) -> Option<[f64; 2]> {
         let column = (x_mm / self.width_mm + 0.5) * self.width_px as f64;
         let row = (0.5 - y_mm / self.height_mm) * self.height_px as f64;
         let inside = column >= 0.0 && row >= 0.0 && column <= self.width_px as f64 && row <= self.height_px as f64;
-        if !inside {
-            return None;
-        }
+        inside.then_some([column, row])
+    }
+
+    /// The four pixels around a place in the picture; at its rim those of the rim.
+    pub(crate) fn spot(&self, [column, row]: [f64; 2]) -> Spot {
         let (c, r) = ((column - 0.5).max(0.0), (row - 0.5).max(0.0));
         let (c0, r0) = ((c as usize).min(self.width_px - 1), (r as usize).min(self.height_px - 1));
         let (c1, r1) = ((c0 + 1).min(self.width_px - 1), (r0 + 1).min(self.height_px - 1));
-        let (fc, fr) = ((c - c0 as f64) as f32, (r - r0 as f64) as f32);
-        let pixel = |r: usize, c: usize| self.coefficients[r * self.width_px + c];
-        let (a, b, d, e) = (pixel(r0, c0), pixel(r0, c1), pixel(r1, c0), pixel(r1, c1));
-        Some([0, 1, 2].map(|k| {
-            let upper = a[k] + (b[k] - a[k]) * fc;
-            let lower = d[k] + (e[k] - d[k]) * fc;
-            upper + (lower - upper) * fr
-        }))
+        let cell = |r: usize, c: usize| r * self.width_px + c;
+        Spot {
+            cells: [cell(r0, c0), cell(r0, c1), cell(r1, c0), cell(r1, c1)],
+            part: [(c - c0 as f64) as f32, (r - r0 as f64) as f32],
+        }
+    }
+
+    /// Coefficients at a point, linear between the centres of pixels, constant beyond the outermost.
+    fn at(&self, x_mm: f64, y_mm: f64) -> Option<[f32; 3]> {
+        let place = self.place(x_mm, y_mm)?;
+        Some(self.spot(place).mix(|cell| self.coefficients[cell]))
     }
 }
 
@@ -84,7 +108,7 @@ impl Texture for PictureMap {
 }
 
 /// Draws places in proportion to brightness, row first, then column: monotone, so strata stay strata.
-pub(super) struct Importance {
+pub(crate) struct Importance {
     width: usize,
     rows: Cumulative,
     columns: Vec<Cumulative>,

@@ -1,17 +1,30 @@
-//! `kind: picture`: a picture file on a plane at a distance.
+//! `kind: picture`: a picture file on a plane at a distance, or with the depth that it states.
 
-mod decode;
-mod map;
+pub(crate) mod decode;
+mod deep;
+mod depth;
+mod exr;
+#[cfg(test)]
+mod exr_tests;
+mod field;
+mod highlights;
+pub(crate) mod linear;
+pub(crate) mod map;
 
 use crate::flat::Flat;
 use crate::white;
-use decode::Linear;
+use deep::DeepPicture;
+use depth::Depth;
+use field::HeightField;
+use linear::{Choice, Linear, Trouble};
 use map::{Importance, PictureMap};
 use serde::Deserialize;
 use spectra_core::params::{Fault, Faults, Length, Luminance, Params, Positive, Quantity, StageNode};
 use spectra_core::registry::{Context, SourceEntry, build as build_stage};
 use spectra_core::resources::{Resource, ResourceError};
+use spectra_core::spectral::SpectralPower;
 use spectra_core::stage::{ColorModel, Source};
+use std::sync::Arc;
 
 /// Largest picture file, bytes.
 const MAX_BYTES: u64 = 1 << 30;
@@ -20,8 +33,10 @@ const MAX_BYTES: u64 = 1 << 30;
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct PictureParams {
-    /// A PNG, JPEG, TIFF or Radiance HDR file, beside the scene.
+    /// An OpenEXR, PNG, JPEG, TIFF or Radiance HDR file, beside the scene.
     file: String,
+    /// The layer of an OpenEXR file; its plain R, G and B if absent.
+    layer: Option<String>,
     /// Distance of its plane from the first vertex, mm if bare.
     distance: Positive<Length>,
     /// Width of the picture on that plane, mm if bare; the height follows.
@@ -34,6 +49,18 @@ struct PictureParams {
     luminance: Positive<Luminance>,
     /// How RGB becomes a spectrum; the registry's default if absent.
     color: Option<StageNode>,
+    /// How far each pixel stands; all on the plane if absent.
+    depth: Option<StageNode>,
+    /// Guesses the light of clipped highlights of integer files; nothing is guessed if absent.
+    recover_highlights: Option<RecoverParams>,
+}
+
+/// `recover-highlights`: see [`highlights`].
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct RecoverParams {
+    /// Stops above white that the middle of a large highlight may reach, above 0 to 12.
+    stops: f64,
 }
 
 fn daylight() -> String {
@@ -47,7 +74,7 @@ fn luminance() -> Positive<Luminance> {
 inventory::submit! {
     SourceEntry::new(
         "picture",
-        "A picture file (PNG, JPEG, TIFF, HDR) on a plane at a distance.",
+        "A picture file (EXR, PNG, JPEG, TIFF, HDR) on a plane at a distance.",
         env!("CARGO_PKG_NAME"),
         env!("CARGO_PKG_VERSION"),
         build,
@@ -65,26 +92,86 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
     };
     let light = faults.take(white::illuminant(&p.illuminant, params, context));
     let resource = faults.take(find(&p.file, params, context));
+    let said = p.depth.is_some();
+    let depth = p.depth.as_ref().and_then(|node| faults.take(Depth::read(node)));
     let linear = resource.and_then(|file| {
-        faults.take(decode::decode(&file.bytes).map_err(|e| params.fault("file", format!("picture `{}`: {e}", p.file))))
+        let choice = Choice { layer: p.layer.as_deref(), depth: depth.as_ref().and_then(Depth::channel) };
+        faults.take(decode::decode(&file.bytes, choice).map_err(|e| trouble(&p.file, &e, params)))
     });
-    let model = light.and_then(|light| {
-        let color = p.color.map_or_else(|| Ok(params.nothing_said("color")), |node| node.params());
-        let inner = Context { illuminant: Some(&light), ..*context };
-        faults.take(color.and_then(|color| build_stage::<dyn ColorModel>(&color, &inner)))
+    let linear = linear.and_then(|mut linear| {
+        let Some(recover) = &p.recover_highlights else { return Some(linear) };
+        let key = "recover-highlights";
+        let Some(clipped_at) = linear.clipped_at else {
+            let fault = params.fault(key, format!("`{}` holds floating point, which clips nothing", p.file));
+            faults.push(fault.hint("leave `recover-highlights` out"));
+            return None;
+        };
+        if !(recover.stops > 0.0 && recover.stops <= 12.0) {
+            faults.push(params.fault(key, format!("{} stops", recover.stops)).hint("above 0, at most 12"));
+            return None;
+        }
+        highlights::recover(&mut linear.rgb, linear.width as usize, clipped_at, recover.stops);
+        Some(linear)
     });
+    let model = light.and_then(|light| faults.take(color_model(p.color, &light, params, context)));
+    let (width_mm, distance_mm) = (p.width.mm(), p.distance.mm());
+    let deep = match (&linear, depth) {
+        (Some(linear), Some(depth)) => {
+            let plane_mm = distance_mm + depth.eye_mm;
+            if plane_mm > 0.0 {
+                let all = faults.take(depth.of(linear, plane_mm, width_mm, context));
+                all.map(|all| (depth, plane_mm, all))
+            } else {
+                faults.push(params.fault("distance", "the center of projection lies behind the picture's plane"));
+                None
+            }
+        }
+        _ => None,
+    };
     let parts = faults.into_result((linear, model))?;
     let (Some(linear), Some(model)) = parts else { return Err(Faults::new()) };
-    let texture = assemble(&linear, &p.file, p.width.mm(), model, p.luminance.cd_per_m2());
-    Ok(Box::new(Flat { texture, distance_mm: p.distance.mm() }))
+    let texture = assemble(&linear, &p.file, width_mm, model, p.luminance.cd_per_m2());
+    if !said {
+        return Ok(Box::new(Flat { texture, distance_mm }));
+    }
+    let Some((depth, plane_mm, all)) = deep else { return Err(Faults::new()) };
+    let ends = all.iter().fold([f32::INFINITY, 0.0_f32], |[a, b], d| [a.min(*d), b.max(*d)]);
+    Ok(Box::new(DeepPicture {
+        field: HeightField::new(texture.width_px, texture.height_px, &all, depth.edge),
+        map: texture,
+        plane_mm,
+        eye_mm: depth.eye_mm,
+        nearest_mm: f64::from(ends[0]),
+        farthest_mm: f64::from(ends[1]),
+    }))
 }
 
-fn find(file: &str, params: &Params, context: &Context<'_>) -> Result<Resource, Fault> {
-    context.resources.read(file, &[], &[], MAX_BYTES).map_err(|e| {
+/// The color model under `color`, for this light.
+pub(crate) fn color_model(
+    color: Option<StageNode>,
+    light: &SpectralPower,
+    params: &Params,
+    context: &Context<'_>,
+) -> Result<Arc<dyn ColorModel>, Faults> {
+    let color = color.map_or_else(|| Ok(params.nothing_said("color")), |node| node.params())?;
+    build_stage::<dyn ColorModel>(&color, &Context { illuminant: Some(light), ..*context }).map(Arc::from)
+}
+
+/// A fault of a picture file, at the key that it belongs to.
+pub(crate) fn trouble(file: &str, trouble: &Trouble, params: &Params) -> Fault {
+    let fault = params.fault(trouble.key, format!("picture `{file}`: {}", trouble.text));
+    match &trouble.hint {
+        Some(hint) => fault.hint(hint.as_str()),
+        None => fault,
+    }
+}
+
+pub(crate) fn find(file: &str, params: &Params, context: &Context<'_>) -> Result<Resource, Fault> {
+    context.resources.read(file, &["scenes"], &[], MAX_BYTES).map_err(|e| {
         let hint = match &e {
             ResourceError::NotFound(near) if !near.is_empty() => format!("did you mean `{}`?", near.join("` or `")),
             ResourceError::NotFound(_) => "paths are relative to the folder of the scene".to_owned(),
-            _ => "PNG, JPEG, TIFF and Radiance HDR files are read".to_owned(),
+            _ => "OpenEXR, PNG, JPEG, TIFF and Radiance HDR files are read".to_owned(),
         };
         params.fault("file", format!("picture `{file}`: {e}")).hint(hint)
     })
@@ -95,11 +182,11 @@ fn brightness([r, g, b]: [f32; 3]) -> f32 {
     0.2126 * r + 0.7152 * g + 0.0722 * b
 }
 
-fn assemble(
+pub(crate) fn assemble(
     linear: &Linear,
     name: &str,
     width_mm: f64,
-    model: Box<dyn ColorModel>,
+    model: Arc<dyn ColorModel>,
     luminance_cd_m2: f64,
 ) -> PictureMap {
     let (width, height) = (linear.width as usize, linear.height as usize);
@@ -118,7 +205,7 @@ fn assemble(
         width_px: width,
         height_px: height,
         width_mm,
-        height_mm: width_mm * height as f64 / width as f64,
+        height_mm: width_mm * height as f64 / (width as f64 * linear.pixel_aspect),
         coefficients: linear.rgb.iter().map(|p| model.coefficients(p.map(f64::from))).collect(),
         mean: model.spectrum(mean).scaled(scale),
         peak_over_mean: if mean_brightness > 0.0 { f64::from(peak) / mean_brightness } else { 1.0 },

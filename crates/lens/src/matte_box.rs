@@ -1,0 +1,73 @@
+//! A matte box: a rectangular opening in front of the lens.
+
+use crate::aperture::{Aperture, Shape};
+use crate::pose::{AxisBreak, Displacement};
+use crate::{Element, Lens};
+use spectra_core::surface::{Action, Hit, Kernel, KernelShape, Ray, Real};
+use std::sync::Arc;
+
+/// The `kind` of the element that a matte box is.
+pub const MATTE_BOX: &str = "matte-box";
+
+/// A rectangular opening in front of the lens, centered on the axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MatteBox {
+    /// Distance of the opening in front of the first vertex, mm, positive.
+    pub distance_mm: f64,
+    /// Its full width, mm.
+    pub width_mm: f64,
+    /// Its full height, mm.
+    pub height_mm: f64,
+}
+
+/// The plane of the opening.
+#[derive(Clone, Copy, Debug)]
+struct Opening;
+
+impl KernelShape for Opening {
+    #[inline(always)]
+    fn hit<R: Real, const FORWARD: bool>(&self, ray: Ray<R, FORWARD>) -> Hit<R> {
+        let n = ray.direction[2];
+        // A ray along the plane never meets it: 0 is made negative.
+        Hit { distance: -ray.position[2] / n, cosine: n, valid: ray.along(n) - R::constant(f64::MIN_POSITIVE) }
+    }
+
+    #[inline(always)]
+    fn normal<R: Real>(&self, _: [R; 3]) -> [R; 3] {
+        [R::constant(0.0), R::constant(0.0), R::constant(1.0)]
+    }
+
+    fn sag_mm(&self, _: f64, _: f64) -> Option<f64> {
+        Some(0.0)
+    }
+
+    fn vertex_curvature_per_mm(&self) -> (f64, f64) {
+        (0.0, 0.0)
+    }
+}
+
+impl Lens {
+    /// The same lens behind a matte box: an element in front of the first, which clips in both directions and which
+    /// every search of a pupil sees. All that stood stays where it is, the origin too; numbers of elements rise by one.
+    #[must_use]
+    pub fn behind_matte_box(mut self, opening: &MatteBox) -> Self {
+        let (half_width_mm, half_height_mm) = (0.5 * opening.width_mm, 0.5 * opening.height_mm);
+        let mut element = Element::new(MATTE_BOX, Arc::new(Kernel(Opening)), 0, 0);
+        element.action = Action::Pass;
+        element.breaks = vec![AxisBreak { displacement: Displacement::NONE, thickness_mm: -opening.distance_mm }];
+        element.thickness_mm = opening.distance_mm;
+        element.semi_diameter_mm = Some((half_width_mm * half_width_mm + half_height_mm * half_height_mm).sqrt());
+        element.apertures = vec![Aperture {
+            shape: Shape::Rectangle { half_width_mm, half_height_mm },
+            center_mm: [0.0; 2],
+            obscures: false,
+        }];
+        self.elements.insert(0, element);
+        for group in &mut self.groups {
+            group.elements = group.elements.start + 1..group.elements.end + 1;
+            group.about += 1;
+        }
+        self.arrange();
+        self
+    }
+}

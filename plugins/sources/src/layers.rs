@@ -1,0 +1,207 @@
+//! `kind: layers`: pictures one behind the other, each with its own cover.
+//!
+//! A ray from the lens meets them from the front to the back: each adds its light (which is multiplied by its cover
+//! already) times what the ones in front of it let pass (T. Porter and T. Duff, "Compositing digital images", SIGGRAPH
+//! 1984). Nothing is guessed: what a layer hides, the one behind it knows.
+
+use crate::picture::decode::decode;
+use crate::picture::linear::Choice;
+use crate::picture::map::PictureMap;
+use crate::picture::{assemble, color_model, find, trouble};
+use crate::white;
+use serde::Deserialize;
+use spectra_core::loss::{ALIVE, Loss};
+use spectra_core::params::{Faults, Length, Luminance, Params, Positive, Quantity, StageNode};
+use spectra_core::registry::{Context, SourceEntry};
+use spectra_core::spectral::SpectralPower;
+use spectra_core::stage::{Radiance, Source};
+use spectra_core::{Isa, RayBatch};
+
+/// Parameters of `kind: layers`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct LayersParams {
+    /// The layers, from the front to the back.
+    layers: Vec<StageNode>,
+    /// The light that white has the chromaticity of.
+    #[serde(default = "daylight")]
+    illuminant: String,
+    /// Luminance of white (255 of 8 bits, 1.0 of floating point), cd/m2 if bare.
+    #[serde(default = "luminance")]
+    luminance: Positive<Luminance>,
+    /// How RGB becomes a spectrum; the registry's default if absent.
+    color: Option<StageNode>,
+}
+
+/// One layer.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct LayerParams {
+    /// An OpenEXR, PNG, JPEG, TIFF or Radiance HDR file, beside the scene.
+    file: String,
+    /// The layer of an OpenEXR file; its plain R, G and B if absent.
+    layer: Option<String>,
+    /// Distance of its plane from the first vertex, mm if bare.
+    distance: Positive<Length>,
+    /// Width of the picture on that plane, mm if bare; the height follows.
+    width: Positive<Length>,
+    /// Its center on that plane (to the photographer's right, up), mm if bare; on the axis if absent.
+    center: Option<[Length; 2]>,
+    /// Luminance of its white, cd/m2 if bare; that of all layers if absent.
+    luminance: Option<Positive<Luminance>>,
+}
+
+fn daylight() -> String {
+    "D65".to_owned()
+}
+
+fn luminance() -> Positive<Luminance> {
+    Positive::from_bare(100.0)
+}
+
+/// More than anybody paints.
+const MOST: usize = 64;
+
+inventory::submit! {
+    SourceEntry::new(
+        "layers",
+        "Picture files one behind the other, with cover: what is hidden is known.",
+        env!("CARGO_PKG_NAME"),
+        env!("CARGO_PKG_VERSION"),
+        build,
+    )
+}
+
+fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faults> {
+    let p: LayersParams = params.parse()?;
+    let mut faults = Faults::new();
+    if p.layers.is_empty() || p.layers.len() > MOST {
+        faults.push(params.fault("layers", format!("{} layers", p.layers.len())).hint(format!("1 to {MOST}")));
+        return Err(faults);
+    }
+    let light = faults.take(white::illuminant(&p.illuminant, params, context));
+    let model = light.and_then(|light| faults.take(color_model(p.color, &light, params, context)));
+    let mut layers: Vec<Layer> = Vec::new();
+    let mut before_mm = 0.0;
+    for node in &p.layers {
+        let Some(own) = faults.take(Params::section(node.node().clone(), node.path())) else { continue };
+        let Some(layer) = faults.take(own.parse::<LayerParams>()) else { continue };
+        let distance_mm = layer.distance.mm();
+        if distance_mm <= before_mm {
+            let text = format!("{distance_mm} mm is not behind the layer before it, at {before_mm} mm");
+            faults.push(own.fault("distance", text).hint("layers go from the front to the back"));
+        }
+        before_mm = distance_mm;
+        let center_mm = layer.center.map_or([0.0; 2], |c| c.map(Length::mm));
+        if !center_mm.iter().all(|c| c.is_finite()) {
+            faults.push(own.fault("center", "a center lies at a finite place"));
+        }
+        let Some(resource) = faults.take(find(&layer.file, &own, context)) else { continue };
+        let choice = Choice { layer: layer.layer.as_deref(), depth: None };
+        let linear = decode(&resource.bytes, choice).map_err(|e| trouble(&layer.file, &e, &own));
+        let (Some(mut linear), Some(model)) = (faults.take(linear), &model) else { continue };
+        let luminance = layer.luminance.unwrap_or(p.luminance).cd_per_m2();
+        let cover = linear.alpha.take();
+        let map = assemble(&linear, &layer.file, layer.width.mm(), std::sync::Arc::clone(model), luminance);
+        layers.push(Layer { map, cover, distance_mm, center_mm });
+    }
+    faults.into_result(())?;
+    Ok(Box::new(Layers::new(layers)))
+}
+
+struct Layer {
+    map: PictureMap,
+    /// Cover of each pixel; all of it if absent.
+    cover: Option<Vec<f32>>,
+    distance_mm: f64,
+    center_mm: [f64; 2],
+}
+
+impl Layer {
+    /// Coefficients of the light and the cover where a ray meets it.
+    fn at(&self, [x, y, z]: [f64; 3], [l, m, n]: [f64; 3]) -> ([f32; 3], f32) {
+        let t = (-self.distance_mm - z) / n;
+        let place = self.map.place(x + t * l - self.center_mm[0], y + t * m - self.center_mm[1]);
+        let Some(place) = place else { return ([0.0; 3], 0.0) };
+        let spot = self.map.spot(place);
+        let cover = self.cover.as_ref().map_or(1.0, |cover| spot.mix(|cell| [cover[cell]])[0]);
+        (spot.mix(|cell| self.map.coefficients[cell]), cover)
+    }
+}
+
+struct Layers {
+    layers: Vec<Layer>,
+    spectrum: SpectralPower,
+    peak_over_mean: f64,
+}
+
+impl Layers {
+    fn new(layers: Vec<Layer>) -> Self {
+        // As large as each is seen from the lens; what hides what matters little to the choice of wavelengths.
+        let seen = |l: &Layer| l.map.width_mm * l.map.height_mm / (l.distance_mm * l.distance_mm);
+        let mut spectrum = layers[0].map.mean.scaled(seen(&layers[0]));
+        for layer in &layers[1..] {
+            let more = layer.map.mean.scaled(seen(layer));
+            spectrum.continuum.iter_mut().zip(&more.continuum).for_each(|(a, b)| *a += b);
+            spectrum.lines.iter_mut().zip(&more.lines).for_each(|(a, b)| a.power += b.power);
+        }
+        let peak_over_mean = layers.iter().map(|l| l.map.peak_over_mean).fold(1.0, f64::max) * layers.len() as f64;
+        Self { layers, spectrum, peak_over_mean }
+    }
+}
+
+impl Source for Layers {
+    fn spectrum(&self) -> &SpectralPower {
+        &self.spectrum
+    }
+    fn peak_over_mean(&self) -> f64 {
+        self.peak_over_mean
+    }
+    fn distance_mm(&self) -> f64 {
+        self.layers[0].distance_mm
+    }
+    fn radiance(&self) -> Option<&dyn Radiance> {
+        Some(self)
+    }
+    fn describe(&self) -> String {
+        let each: Vec<String> = self.layers.iter().map(|l| format!("{} at {} mm", l.map.name, l.distance_mm)).collect();
+        format!("layers: {}", each.join(", "))
+    }
+}
+
+const CHUNK: usize = 64;
+
+impl Radiance for Layers {
+    fn radiance(&self, rays: &mut RayBatch, _: Isa) {
+        let c = rays.columns_mut();
+        for start in (0..c.x.len()).step_by(CHUNK) {
+            let end = (start + CHUNK).min(c.x.len());
+            let len = end - start;
+            let mut passes = [0.0_f64; CHUNK];
+            for i in start..end {
+                if c.state[i] == ALIVE && !(c.n[i] < 0.0) {
+                    c.state[i] = Loss::Absorbed.state(0);
+                }
+                passes[i - start] = f64::from(c.state[i] == ALIVE);
+            }
+            let (wavelength, line) = (&c.wavelength_nm[start..end], &c.line[start..end]);
+            let mut sum = [0.0_f64; CHUNK];
+            for layer in &self.layers {
+                let mut colors = [[0.0_f32; 3]; CHUNK];
+                let mut own = passes;
+                for k in 0..len {
+                    if passes[k] > 0.0 {
+                        let i = start + k;
+                        let (color, cover) = layer.at([c.x[i], c.y[i], c.z[i]], [c.l[i], c.m[i], c.n[i]]);
+                        colors[k] = color;
+                        passes[k] *= 1.0 - f64::from(cover);
+                    }
+                    own[k] *= layer.map.scale;
+                }
+                layer.map.model.evaluate(&colors[..len], wavelength, line, &mut own[..len]);
+                sum.iter_mut().zip(&own).take(len).for_each(|(sum, own)| *sum += own);
+            }
+            c.weight[start..end].iter_mut().zip(&sum).for_each(|(weight, sum)| *weight *= sum);
+        }
+    }
+}

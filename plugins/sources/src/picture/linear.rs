@@ -1,0 +1,71 @@
+//! A picture in linear light, and what can be wrong with a picture file.
+
+/// Largest side of a picture, pixels.
+pub(crate) const MAX_SIDE: u32 = 65_535;
+/// Largest picture, pixels: as linear light it takes 12 bytes each.
+pub(crate) const MAX_PIXELS: u64 = 120_000_000;
+
+/// A picture in linear light, sRGB primaries, upright, row by row from the top.
+pub(crate) struct Linear {
+    pub width: u32,
+    pub height: u32,
+    /// Width over height of a pixel.
+    pub pixel_aspect: f64,
+    /// Light, 0 or more; where the picture is not opaque, times alpha.
+    pub rgb: Vec<[f32; 3]>,
+    /// Cover, 0 to 1; `None` where all of it is opaque.
+    pub alpha: Option<Vec<f32>>,
+    /// The depth channel as the file has it, if one was asked for.
+    pub depth: Option<Vec<f32>>,
+    /// The code value from which on integers are clipped, in linear light; `None` for floating point.
+    pub clipped_at: Option<f32>,
+}
+
+/// What is chosen of a file of several layers.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Choice<'a> {
+    /// The layer; the file's plain R, G, B if absent.
+    pub layer: Option<&'a str>,
+    /// The channel that holds depth, where depth is wanted.
+    pub depth: Option<&'a str>,
+}
+
+/// What is wrong with a picture file.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Trouble {
+    /// The key whose value is to be changed: `file`, `layer` or `depth`.
+    pub key: &'static str,
+    pub text: String,
+    pub hint: Option<String>,
+}
+
+impl Trouble {
+    pub(crate) fn file(text: impl Into<String>) -> Self {
+        Self { key: "file", text: text.into(), hint: None }
+    }
+
+    pub(crate) fn at(key: &'static str, text: impl Into<String>) -> Self {
+        Self { key, text: text.into(), hint: None }
+    }
+
+    pub(crate) fn hint(self, hint: impl Into<String>) -> Self {
+        Self { hint: Some(hint.into()), ..self }
+    }
+}
+
+/// Whether a picture of that size is read at all.
+pub(crate) fn check_size(width: u64, height: u64) -> Result<(), Trouble> {
+    if width == 0 || height == 0 {
+        return Err(Trouble::file("the picture has no pixels"));
+    }
+    if width > u64::from(MAX_SIDE) || height > u64::from(MAX_SIDE) || width * height > MAX_PIXELS {
+        let text = format!("{width} x {height} pixels; at most {MAX_PIXELS} in all and {MAX_SIDE} a side are read");
+        return Err(Trouble::file(text));
+    }
+    Ok(())
+}
+
+/// Light as the sources take it: infinite, negative and undefined values are none.
+pub(super) fn clean(value: f32) -> f32 {
+    if value.is_finite() { value.max(0.0) } else { 0.0 }
+}

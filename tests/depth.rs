@@ -1,0 +1,210 @@
+//! Pictures with depth and layers: occlusion at edges, against the area of the pupil's part that sees each.
+
+use exr::prelude::{AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, WritableImage};
+use spectra_core::Isa;
+use spectra_plugins as _;
+use spectra_render::{Control, Renderer};
+use std::path::Path;
+
+const SEMI_DIAMETER: f64 = 6.25;
+const NEAR: f64 = 1000.0;
+const FAR: f64 = 2000.0;
+/// Luminance of the foreground, the background's being 1.
+const DIM: f64 = 0.2;
+const COLUMNS: usize = 40;
+const FRAME: f64 = 0.8;
+
+fn exr_file(path: &Path, size: (usize, usize), planes: &[(&str, Vec<f32>)]) {
+    let channels = planes.iter().map(|(name, v)| AnyChannel::new(*name, FlatSamples::F32(v.clone()))).collect();
+    let layer = Layer::new(size, LayerAttributes::default(), Encoding::SMALL_LOSSLESS, AnyChannels::sort(channels));
+    Image::from_layer(layer).write().to_file(path).expect("written");
+}
+
+/// Half of the picture is a dim foreground, the other a background.
+fn halves(path: &Path, with: impl Fn(bool) -> Vec<(&'static str, f32)>) {
+    let (width, height) = (64, 32);
+    let sides = [with(true), with(false)];
+    let plane = |k: usize| (0..width * height).map(|i| sides[usize::from(i % width >= width / 2)][k].1).collect();
+    let planes: Vec<_> = (0..sides[0].len()).map(|k| (sides[0][k].0, plane(k))).collect();
+    exr_file(path, (width, height), &planes);
+}
+
+/// Y of each column of the frame.
+fn columns(scene: &Path, set: &[&str]) -> Vec<f64> {
+    let set: Vec<String> = set.iter().map(|s| (*s).to_owned()).collect();
+    let scene = spectra_scene::load(scene, &set).unwrap_or_else(|faults| panic!("{faults}"));
+    let renderer = Renderer::new(&scene, Isa::detect()).expect("the scene can be rendered");
+    let frame = renderer.run(2, &Control::new()).expect("rendered").exposure;
+    let values = &frame.channel("Y").expect("an XYZ imager").values;
+    (0..COLUMNS)
+        .map(|c| {
+            let column: Vec<f64> = values.iter().skip(c).step_by(COLUMNS).map(|v| f64::from(*v)).collect();
+            column.iter().sum::<f64>() / column.len() as f64
+        })
+        .collect()
+}
+
+struct Files {
+    folder: tempfile::TempDir,
+}
+
+impl Files {
+    fn new() -> Self {
+        let folder = tempfile::tempdir().expect("a folder");
+        let at = |name: &str| folder.path().join(name);
+        let light = |v: f32| vec![("R", v), ("G", v), ("B", v)];
+        halves(&at("deep.exr"), |near| {
+            let mut planes = light(if near { DIM as f32 } else { 1.0 });
+            planes.push(("Z", if near { NEAR } else { FAR } as f32 / 1000.0));
+            planes
+        });
+        halves(&at("front.exr"), |near| {
+            let mut planes = light(if near { DIM as f32 } else { 0.0 });
+            planes.push(("A", f32::from(near)));
+            planes
+        });
+        halves(&at("white.exr"), |_| light(1.0));
+        std::fs::write(
+            at("thin.yaml"),
+            format!(
+                "name: Thin lens\nsurfaces:\n  - {{kind: thin-lens, focal-length: 50, semi-diameter: {SEMI_DIAMETER}, stop: true, thickness: 50}}\n"
+            ),
+        )
+        .expect("written");
+        let scene = |source: &str| {
+            format!(
+                "spectra: 1\nsource: {source}\nlens: {{file: thin.yaml, focus: 2 m}}\n\
+                 imager: {{kind: xyz, width: {FRAME}, height: 0.4, resolution: [{COLUMNS}, 20]}}\n\
+                 render: {{samples: 512, seed: 3, direction: backward}}\n"
+            )
+        };
+        let color = "luminance: 100 cd/m2";
+        for (name, source) in [
+            ("white", format!("{{kind: picture, file: white.exr, distance: 2 m, width: 400, {color}}}")),
+            (
+                "deep",
+                format!("{{kind: picture, file: deep.exr, distance: 2 m, width: 400, depth: {{unit: m}}, {color}}}"),
+            ),
+            (
+                "layers",
+                format!(
+                    "{{kind: layers, {color}, layers: [{{file: front.exr, distance: 1 m, width: 32 mm, center: [0, 0]}}, \
+                     {{file: white.exr, distance: 2 m, width: 4 m}}]}}"
+                ),
+            ),
+        ] {
+            std::fs::write(at(&format!("{name}.yaml")), scene(&source)).expect("written");
+        }
+        Self { folder }
+    }
+
+    fn columns(&self, name: &str, set: &[&str]) -> Vec<f64> {
+        columns(&self.folder.path().join(format!("{name}.yaml")), set)
+    }
+}
+
+/// Part of a disk of radius 1 on the side x > u.
+fn segment(u: f64) -> f64 {
+    let u = u.clamp(-1.0, 1.0);
+    (u.acos() - u * (1.0 - u * u).sqrt()) / std::f64::consts::PI
+}
+
+/// What each column sees relative to the background alone, an edge at x = 0 being at `NEAR` and the lens being
+/// focused on `focus`: a ray from the pupil's px to X on the plane in focus passes the edge's plane at
+/// px (1 - NEAR / focus) + X NEAR / focus.
+fn closed_form(focus: f64) -> Vec<f64> {
+    let magnification = 50.0 / (focus - 50.0);
+    (0..COLUMNS)
+        .map(|c| {
+            let parts = 64;
+            let covered = (0..parts).map(|k| {
+                let at = (c as f64 + (f64::from(k) + 0.5) / f64::from(parts)) / COLUMNS as f64 - 0.5;
+                let x = at * FRAME / magnification * NEAR / focus;
+                let radius = SEMI_DIAMETER * (1.0 - NEAR / focus);
+                if radius > 0.0 { segment(x / radius) } else { f64::from(x < 0.0) }
+            });
+            let covered = covered.sum::<f64>() / f64::from(parts);
+            covered * DIM + (1.0 - covered)
+        })
+        .collect()
+}
+
+fn compare(files: &Files, name: &str) {
+    let open = files.columns("white", &[]);
+    let seen = files.columns(name, &[]);
+    let mut worst = 0.0_f64;
+    for (column, want) in closed_form(FAR).iter().enumerate() {
+        let got = seen[column] / open[column];
+        worst = worst.max((got / want - 1.0).abs());
+        assert!((got / want - 1.0).abs() < 0.02, "{name} column {column}: {got:.4}, closed form {want:.4}");
+    }
+    println!("{name}: worst of {COLUMNS} columns {:.2} % from the closed form", 100.0 * worst);
+}
+
+#[test]
+fn a_blurred_edge_of_a_picture_with_depth_is_the_segment_of_the_pupil() {
+    compare(&Files::new(), "deep");
+}
+
+#[test]
+fn a_blurred_edge_of_a_layer_is_the_segment_of_the_pupil() {
+    compare(&Files::new(), "layers");
+}
+
+/// With the foreground in focus its edge is sharp: no background inside of it, and no foreground beside it although much
+/// of what is seen there is hidden from the picture's own point of view.
+#[test]
+fn an_edge_in_focus_leaks_nothing_either_way() {
+    let files = Files::new();
+    let focus = ["lens.focus=1 m"];
+    let open = files.columns("white", &focus);
+    for name in ["deep", "layers"] {
+        let seen = files.columns(name, &focus);
+        for column in 0..COLUMNS {
+            let got = seen[column] / open[column];
+            let want = if column < COLUMNS / 2 { DIM } else { 1.0 };
+            // A layer's cover falls over one of its pixels, 0.5 mm: 1.3 columns around the edge.
+            if name == "deep" || !(COLUMNS / 2 - 2..COLUMNS / 2 + 2).contains(&column) {
+                assert!((got / want - 1.0).abs() < 1e-4, "{name} column {column}: {got}");
+            }
+        }
+    }
+}
+
+#[test]
+fn faults_of_depth_say_where_and_what_to_do() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let gray: Vec<f32> = vec![0.5; 4];
+    let file = |name: &str, depth: Option<[f32; 4]>| {
+        let mut planes = vec![("R", gray.clone()), ("G", gray.clone()), ("B", gray.clone())];
+        planes.extend(depth.map(|d| ("Z", d.to_vec())));
+        exr_file(&folder.path().join(name), (2, 2), &planes);
+    };
+    file("flat.exr", None);
+    file("zero.exr", Some([1.0, 0.0, 1.0, 1.0]));
+    file("nan.exr", Some([1.0, 1.0, f32::NAN, 1.0]));
+    file("sky.exr", Some([1.0, 1.0, 1.0, f32::INFINITY]));
+    exr_file(&folder.path().join("small.exr"), (2, 1), &[("Z", vec![1.0, 1.0])]);
+    let load = |file: &str, depth: &str| {
+        let scene = folder.path().join("scene.yaml");
+        let text = format!(
+            "spectra: 1\nsource: {{kind: picture, file: {file}, distance: 2 m, width: 1 m, depth: {depth}}}\n\
+             lens: {{file: zeiss-biotar-50-f1.4}}\nimager: {{kind: xyz, format: 135, resolution: [6, 4]}}\n"
+        );
+        std::fs::write(&scene, text).expect("written");
+        spectra_scene::load(&scene, &[]).map(|_| ()).map_err(|faults| faults.to_string())
+    };
+    for (file, depth, words) in [
+        ("flat.exr", "{unit: m}", ["no depth channel `Z`", "`R`"]),
+        ("zero.exr", "{unit: m}", ["0 or less at column 1, row 0", "`far`"]),
+        ("nan.exr", "{unit: m}", ["not a number at column 0, row 1", "`far`"]),
+        ("sky.exr", "{unit: m}", ["infinite at column 1, row 1", "far: 1 km"]),
+        ("sky.exr", "{unit: yard, scale: 0}", ["no unit of depth `yard`", "a scale of 0"]),
+        ("flat.exr", "{file: small.exr}", ["2 x 1 pixels, the picture 2 x 2", "same size"]),
+        ("sky.exr", "{kind: radial, far: 1 m, near: 2 m}", ["no kind of depth `radial`", "farther than `near`"]),
+    ] {
+        let faults = load(file, depth).expect_err(file);
+        assert!(words.iter().all(|word| faults.contains(word)), "{file} {depth}: {faults}");
+    }
+    load("sky.exr", "{unit: m, far: 100 m}").expect("a backdrop");
+}

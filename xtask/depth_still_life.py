@@ -1,0 +1,172 @@
+"""Writes scenes/depth-still-life.exr: a small synthetic picture with depth, by ray casting from a pinhole.
+
+A checkered table runs from 0.6 m to 3.5 m; a red cone stands at 0.95 m on the left, a gray ball at 2 m in the middle, a
+green post at 3 m on the right; behind them a dark wall at 12 m with small lamps. One sample a pixel, so that every
+pixel's color and depth belong to one thing. R, G, B (linear, Rec. 709) and Z (m, along the axis) as 16-bit floats,
+ZIP compressed, as OpenEXR's "File Layout" describes. Needs nothing but Python 3.
+
+    python3 xtask/depth_still_life.py
+"""
+
+import math
+import pathlib
+import random
+import struct
+import zlib
+
+WIDTH, HEIGHT = 720, 480
+PLANE, ACROSS = 2.0, 1.7  # m: the picture is this wide on a plane at this distance
+TABLE = -0.32  # m below the eye
+LIGHT = (0.45, 0.75, 0.48)  # toward the light; +z toward the camera
+
+
+def unit(v):
+    n = math.sqrt(sum(c * c for c in v))
+    return tuple(c / n for c in v)
+
+
+LIGHT = unit(LIGHT)
+
+
+def lit(color, normal):
+    shade = 0.25 + 0.75 * max(0.0, sum(a * b for a, b in zip(normal, LIGHT)))
+    return tuple(c * shade for c in color)
+
+
+def lamps():
+    numbers = random.Random(5)
+    tints = [(1.0, 0.75, 0.45), (1.0, 0.9, 0.8), (0.55, 0.75, 1.0), (1.0, 0.35, 0.25), (0.5, 1.0, 0.6)]
+    for _ in range(46):
+        x, y = numbers.uniform(-4.6, 4.6), numbers.uniform(-0.4, 3.0)
+        power = numbers.choice([6.0, 12.0, 25.0])
+        yield x, y, tuple(power * c for c in numbers.choice(tints))
+
+
+LAMPS = list(lamps())
+
+
+def cone(d):
+    """Apex up, axis vertical; radius 0.11 m at the table, 0.42 m high, at (-0.2, -0.95)."""
+    ax, az, high, radius = -0.22, -0.95, 0.42, 0.11
+    k = (radius / high) ** 2
+    top = TABLE + high
+    a = d[0] ** 2 + d[2] ** 2 - k * d[1] ** 2
+    b = -d[0] * ax - d[2] * az + k * d[1] * top
+    c = ax * ax + az * az - k * top * top
+    under = b * b - a * c
+    if under < 0:
+        return None
+    for t in sorted(((-b - math.sqrt(under)) / a, (-b + math.sqrt(under)) / a)):
+        y = t * d[1]
+        if t > 0 and TABLE <= y <= top:
+            n = unit((t * d[0] - ax, k * (top - y), t * d[2] - az))
+            return t, lit((0.75, 0.08, 0.05), n)
+    return None
+
+
+def ball(d):
+    center, radius = (0.05, TABLE + 0.2, -2.0), 0.2
+    b = sum(p * q for p, q in zip(d, center))
+    a = sum(p * p for p in d)
+    under = b * b - a * (sum(p * p for p in center) - radius * radius)
+    if under < 0:
+        return None
+    t = (b - math.sqrt(under)) / a
+    n = unit(tuple(t * p - q for p, q in zip(d, center)))
+    band = math.floor(12 * math.atan2(n[0], n[2]) / math.pi) + math.floor(8 * math.asin(max(-1, min(1, n[1]))) / math.pi)
+    return t, lit((0.6, 0.6, 0.6) if band % 2 else (0.16, 0.18, 0.22), n)
+
+
+def post(d):
+    ax, az, radius, top = 0.62, -3.0, 0.09, 0.62
+    a = d[0] ** 2 + d[2] ** 2
+    b = d[0] * ax + d[2] * az
+    under = b * b - a * (ax * ax + az * az - radius * radius)
+    if under < 0:
+        return None
+    t = (b - math.sqrt(under)) / a
+    y = t * d[1]
+    if not TABLE <= y <= top:
+        return None
+    stripe = math.floor((y - TABLE) / 0.12) % 2
+    return t, lit((0.08, 0.4, 0.12) if stripe else (0.7, 0.7, 0.55), unit((t * d[0] - ax, 0, t * d[2] - az)))
+
+
+def table(d):
+    if d[1] >= 0:
+        return None
+    t = TABLE / d[1]
+    if t > 3.5:
+        return None
+    square = (math.floor(t * d[0] / 0.12) + math.floor(t / 0.12)) % 2
+    return t, lit((0.42, 0.3, 0.2) if square else (0.13, 0.09, 0.06), (0, 1, 0))
+
+
+def wall(d):
+    t = 12.0
+    x, y = t * d[0], t * d[1]
+    color = (0.01, 0.013, 0.02)
+    for lx, ly, lamp in LAMPS:
+        if (x - lx) ** 2 + (y - ly) ** 2 < 0.028**2:
+            color = lamp
+    return t, color
+
+
+def pixel(column, row):
+    x = ((column + 0.5) / WIDTH - 0.5) * ACROSS / PLANE
+    y = (0.5 * HEIGHT - row - 0.5) / WIDTH * ACROSS / PLANE
+    d = (x, y, -1.0)  # so that t is the depth
+    return min((hit for hit in (cone(d), ball(d), post(d), table(d), wall(d)) if hit), key=lambda hit: hit[0])
+
+
+def attribute(name, kind, value):
+    return name.encode() + b"\0" + kind.encode() + b"\0" + struct.pack("<i", len(value)) + value
+
+
+def compressed(raw):
+    """OpenEXR's ZIP: bytes apart by parity, differences plus 128, deflate."""
+    halves = raw[0::2] + raw[1::2]
+    differences = bytearray(halves[:1])
+    differences += bytes((b - a + 128) & 255 for a, b in zip(halves, halves[1:]))
+    packed = zlib.compress(bytes(differences), 9)
+    return packed if len(packed) < len(raw) else raw
+
+
+def main():
+    rows = [[pixel(c, r) for c in range(WIDTH)] for r in range(HEIGHT)]
+    channels = b"".join(n.encode() + b"\0" + struct.pack("<iBxxxii", 1, 0, 1, 1) for n in "BGRZ") + b"\0"
+    window = struct.pack("<4i", 0, 0, WIDTH - 1, HEIGHT - 1)
+    header = struct.pack("<ii", 20000630, 2) + b"".join(
+        [
+            attribute("channels", "chlist", channels),
+            attribute("comments", "string", b"Synthetic, by xtask/depth_still_life.py; CC0-1.0"),
+            attribute("compression", "compression", bytes([3])),
+            attribute("dataWindow", "box2i", window),
+            attribute("displayWindow", "box2i", window),
+            attribute("lineOrder", "lineOrder", bytes([0])),
+            attribute("pixelAspectRatio", "float", struct.pack("<f", 1)),
+            attribute("screenWindowCenter", "v2f", struct.pack("<ff", 0, 0)),
+            attribute("screenWindowWidth", "float", struct.pack("<f", 1)),
+            b"\0",
+        ]
+    )
+    blocks = []
+    for first in range(0, HEIGHT, 16):
+        raw = b""
+        for row in rows[first : first + 16]:
+            for of in (lambda p: p[1][2], lambda p: p[1][1], lambda p: p[1][0], lambda p: p[0]):
+                raw += struct.pack(f"<{WIDTH}e", *map(of, row))
+        packed = compressed(raw)
+        blocks.append(struct.pack("<ii", first, len(packed)) + packed)
+    at = len(header) + 8 * len(blocks)
+    table_of_blocks = b""
+    for block in blocks:
+        table_of_blocks += struct.pack("<Q", at)
+        at += len(block)
+    out = pathlib.Path(__file__).resolve().parent.parent / "scenes" / "depth-still-life.exr"
+    out.write_bytes(header + table_of_blocks + b"".join(blocks))
+    print(out, out.stat().st_size, "bytes")
+
+
+if __name__ == "__main__":
+    main()
