@@ -54,7 +54,7 @@ fn orthochromatic_negatives_have_dark_reds_and_light_blues() {
         let emulsion = Emulsion::new(&film, film.developments().next().expect("has one")).expect("sound");
         let mut plane = frame.channel(&film.layers[0].name).expect("its channel").values.clone();
         // As the meter of the scene has it, and no more: densities on the straight part.
-        let factor = scene.film.as_ref().expect("a film").metered_time_s(&frame) / scene.exposure_time_s();
+        let factor = scene.films.first().expect("a film").film.metered_time_s(&frame) / scene.exposure_time_s();
         emulsion.develop(0, &mut plane, factor);
         let exposure = |column, row| {
             let density = patch(&plane, frame.size, column, row);
@@ -93,7 +93,7 @@ fn a_metered_gray_card_is_a_mid_gray() {
             ],
         );
         let frame = render(&scene);
-        let picture = scene.film.as_ref().expect("a film").develop(&frame).expect("complete");
+        let picture = scene.films.first().expect("a film").film.develop(&frame).expect("complete");
         // The middle of the frame, which the spot meters.
         let middle: Vec<[f32; 3]> =
             [9 * 30 + 14, 9 * 30 + 15, 10 * 30 + 14, 10 * 30 + 15].map(|i| picture.rgb[i]).into();
