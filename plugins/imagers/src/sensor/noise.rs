@@ -98,7 +98,7 @@ mod tests {
         let values: Vec<f64> = (0..n).map(|pixel| PixelNumbers::new(3, pixel).normal()).collect();
         let moment = |k: i32| values.iter().map(|c| c.powi(k)).sum::<f64>() / n as f64;
         for (k, want, variance) in [(1, 0.0, 1.0), (2, 1.0, 2.0), (3, 0.0, 15.0), (4, 3.0, 96.0)] {
-            assert!((moment(k) - want).abs() < 5.0 * (variance / n as f64 as f64).sqrt(), "{k}: {}", moment(k));
+            assert!((moment(k) - want).abs() < 5.0 * (variance / n as f64).sqrt(), "{k}: {}", moment(k));
         }
     }
 }
