@@ -6,6 +6,7 @@ mod params;
 mod plane;
 mod plates;
 pub mod sensor;
+mod spectral;
 mod standing;
 mod xyz;
 
@@ -14,5 +15,6 @@ pub use formats::{FORMATS, Format, format_named};
 pub use params::{CoverParams, Curvature, LowPassParams};
 pub use plane::{MAX_PIXELS, MAX_SIDE_PX, Plane};
 pub use plates::{Plate, Plates};
+pub use spectral::{SpectralParams, SpectralPlane};
 pub use standing::{Bend, Standing};
 pub use xyz::{XyzParams, XyzPlane};

@@ -1,0 +1,175 @@
+//! `imager: spectral`: a plane that records the spectrum itself, one channel a band.
+
+use crate::params::imager_params;
+use crate::plane::Plane;
+use spectra_core::frame::{DisplayPicture, ExposureChannel, ExposureFrame, FrameSize};
+use spectra_core::params::{Faults, Params, Wavelength};
+use spectra_core::registry::{Context, ImagerEntry};
+use spectra_core::spectral::{Channel, Grid};
+use spectra_core::stage::{Imager, Launch, Receive};
+use spectra_film::display::{White, show_xyz};
+use spectra_spectrum::constants::LUMINOUS_EFFICACY_LM_PER_W;
+use spectra_spectrum::{Gamut, Observer};
+
+imager_params! {
+    /// Parameters of `kind: spectral` as written in a scene.
+    SpectralParams {
+        /// Number of bands of equal width, 1 to 256.
+        bands: f64,
+        /// First and last wavelength, nm if bare; 380 to 780 nm if absent.
+        #[serde(default)]
+        range: Option<[Wavelength; 2]>,
+    }
+}
+
+/// Most bands.
+const MAX_BANDS: usize = 256;
+
+/// A plane of spectrographs. A channel is named by the middle of its band as the spectral OpenEXR convention has it
+/// (A. Fichet, R. Pacanowski, A. Wilkie, "An OpenEXR layout for spectral images", J. Computer Graphics Techniques 10, 2021):
+/// `S0.550,0nm`; its value is the mean spectral irradiance of the band, W m^-2 nm^-1.
+#[derive(Clone, Debug)]
+pub struct SpectralPlane {
+    plane: Plane,
+    channels: Vec<Channel>,
+    /// CIE XYZ, lux, of one unit in each band.
+    xyz: Vec<[f64; 3]>,
+}
+
+impl SpectralPlane {
+    /// `bands` bands of equal width from `first_nm` to `last_nm`, on `grid`.
+    #[must_use]
+    pub fn new(plane: Plane, grid: &Grid, bands: usize, first_nm: f64, last_nm: f64) -> Self {
+        let width_nm = (last_nm - first_nm) / bands as f64;
+        let functions = Observer::cie_1931_2deg().on_grid(grid);
+        let (mut channels, mut xyz) = (Vec::new(), Vec::new());
+        for band in 0..bands {
+            let low = first_nm + width_nm * band as f64;
+            let response: Vec<f64> = (0..grid.count)
+                .map(|i| share(grid.start_nm + grid.step_nm * i as f64, low, width_nm, grid.step_nm))
+                .collect();
+            xyz.push([0, 1, 2].map(|k| {
+                let seen: Vec<f64> = functions[k].iter().zip(&response).map(|(f, r)| f * r * width_nm).collect();
+                grid.integrate(&seen) * LUMINOUS_EFFICACY_LM_PER_W
+            }));
+            let name = format!("S0.{:.1}nm", low + 0.5 * width_nm).replacen('.', "\u{0}", 1).replace('.', ",");
+            channels.push(Channel { name: name.replace('\u{0}', ".").into(), unit: "W.m^-2.nm^-1".into(), response });
+        }
+        Self { plane, channels, xyz }
+    }
+}
+
+/// Response at a node of the grid, 1/nm: the part of the node's cell that lies in the band, over the band's width. The
+/// responses of bands side by side add up to that of one band.
+fn share(nm: f64, low_nm: f64, width_nm: f64, step_nm: f64) -> f64 {
+    let overlap = (nm + 0.5 * step_nm).min(low_nm + width_nm) - (nm - 0.5 * step_nm).max(low_nm);
+    overlap.max(0.0) / step_nm / width_nm
+}
+
+impl Imager for SpectralPlane {
+    fn size(&self) -> FrameSize {
+        self.plane.size()
+    }
+
+    fn channels(&self) -> Option<Vec<Channel>> {
+        Some(self.channels.clone())
+    }
+
+    fn receive(&self) -> Option<&dyn Receive> {
+        Some(&self.plane)
+    }
+
+    fn launch(&self) -> Option<&dyn Launch> {
+        Some(&self.plane)
+    }
+
+    /// The colors of the bands, as an eye sees them, under automatic exposure.
+    fn display(&self, exposure: &ExposureFrame) -> Option<DisplayPicture> {
+        let planes: Option<Vec<&[f32]>> =
+            self.channels.iter().map(|c| exposure.channel(&c.name).map(|plane| &plane.values[..])).collect();
+        let planes = planes?;
+        let channels = ["X", "Y", "Z"].into_iter().enumerate().map(|(k, name)| ExposureChannel {
+            name: name.into(),
+            unit: "lx".into(),
+            values: (0..exposure.size.pixels())
+                .map(|p| {
+                    planes.iter().zip(&self.xyz).map(|(plane, xyz)| f64::from(plane[p]) * xyz[k]).sum::<f64>() as f32
+                })
+                .collect(),
+        });
+        let frame = ExposureFrame { size: exposure.size, channels: channels.collect() };
+        show_xyz(&frame, White::default(), Gamut::Desaturate).ok()
+    }
+}
+
+fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Imager>, Faults> {
+    let parsed: SpectralParams = params.parse()?;
+    let mut faults = Faults::new();
+    let plane = faults.take(parsed.frame().plane(params, context));
+    let SpectralParams { bands, range, .. } = parsed;
+    if bands.fract() != 0.0 || !(1.0..=MAX_BANDS as f64).contains(&bands) {
+        faults.push(
+            params.fault("bands", format!("{bands} bands")).hint(format!("a whole number from 1 to {MAX_BANDS}")),
+        );
+    }
+    let [first, last] = range.map_or([380.0, 780.0], |range| range.map(|w| w.nm()));
+    let grid = &context.grid;
+    if !(first >= grid.start_nm && last <= grid.end_nm() && last - first >= bands * grid.step_nm) {
+        let fault = params.fault("range", format!("no {bands} bands between {first} and {last} nm"));
+        faults.push(fault.hint(format!(
+            "within the band of the scene, {} to {} nm, each band at least {} nm wide",
+            grid.start_nm,
+            grid.end_nm(),
+            grid.step_nm
+        )));
+    }
+    let Some(plane) = plane.filter(|_| faults.is_empty()) else { return Err(faults) };
+    Ok(Box::new(SpectralPlane::new(plane, grid, bands as usize, first, last)))
+}
+
+inventory::submit! {
+    ImagerEntry::new(
+        "spectral",
+        "A frame that records the spectrum itself: one channel a band, in W m^-2 nm^-1.",
+        env!("CARGO_PKG_NAME"),
+        env!("CARGO_PKG_VERSION"),
+        build,
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use spectra_core::spectral::BAND;
+
+    fn size() -> FrameSize {
+        FrameSize { width_px: 2, height_px: 1, width_mm: 2.0, height_mm: 1.0 }
+    }
+
+    /// Light of one W m^-2 nm^-1 everywhere has 1 in every band; bands side by side see every wavelength once; names are those
+    /// of the convention.
+    #[test]
+    fn bands_share_the_spectrum() {
+        let imager = SpectralPlane::new(Plane::new(size()), &BAND, 16, 400.0, 700.0);
+        let channels = imager.channels().expect("its own");
+        assert_eq!(channels[0].name.as_str(), "S0.409,4nm");
+        for channel in &channels {
+            assert!((BAND.integrate(&channel.response) - 1.0).abs() < 1e-12, "{}", channel.name);
+        }
+        for i in 52..348 {
+            let sum: f64 = channels.iter().map(|c| c.response[i]).sum();
+            assert!((sum * 300.0 / 16.0 - 1.0).abs() < 1e-12, "{i}: {sum}");
+        }
+    }
+
+    /// The picture of an equal-energy spectrum is as bright as the sum of y-bar says, whatever the bands: 106.857 nm
+    /// (CIE 1931, 1 nm sums from 360 to 830 nm; 380-780 nm hold all but 1e-4 of it).
+    #[test]
+    fn the_preview_is_photometric() {
+        for bands in [1, 8, 40] {
+            let imager = SpectralPlane::new(Plane::new(size()), &BAND, bands, 380.0, 780.0);
+            let y: f64 = imager.xyz.iter().map(|xyz| xyz[1]).sum();
+            assert!((y / (LUMINOUS_EFFICACY_LM_PER_W * 106.857) - 1.0).abs() < 2e-4, "{bands}: {y}");
+        }
+    }
+}
