@@ -22,9 +22,9 @@ fn scene(lens: &str, f_number: &str, object: &str) -> Scene {
     let (distance, width) = if object == "infinity" { ("10 km", "16 km") } else { (object, "3.4 m") };
     let overrides = [
         format!("lens={{file: {lens}, f-number: {f_number}, focus: {object}}}"),
-        format!("source={{kind: chart, chart: uniform, distance: {distance}, width: {width}, luminance: {LUMINANCE}}}"),
+        format!("source={{kind: chart, chart: white, distance: {distance}, width: {width}, luminance: {LUMINANCE}}}"),
         format!("imager.resolution=[{WIDTH}, {HEIGHT}]"),
-        "render.samples=1024".to_owned(),
+        "render.samples=8192".to_owned(),
     ];
     spectra_scene::load(&path, &overrides).unwrap_or_else(|faults| panic!("{faults}"))
 }

@@ -52,8 +52,8 @@ impl SpectralPlane {
                 let seen: Vec<f64> = functions[k].iter().zip(&response).map(|(f, r)| f * r * width_nm).collect();
                 grid.integrate(&seen) * LUMINOUS_EFFICACY_LM_PER_W
             }));
-            let name = format!("S0.{:.1}nm", low + 0.5 * width_nm).replacen('.', "\u{0}", 1).replace('.', ",");
-            channels.push(Channel { name: name.replace('\u{0}', ".").into(), unit: "W.m^-2.nm^-1".into(), response });
+            let middle = format!("{:.1}", low + 0.5 * width_nm).replace('.', ",");
+            channels.push(Channel { name: format!("S0.{middle}nm"), unit: "W.m^-2.nm^-1".into(), response });
         }
         Self { plane, channels, xyz }
     }
