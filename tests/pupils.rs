@@ -298,7 +298,8 @@ fn the_rear_pupil_loses_nothing_for_any_shape_of_imager() {
     let bowl = |x: f64, y: f64| DVec3::new(x, y, 0.002 * (x * x + y * y) - 0.3);
     let tilted = |x: f64, y: f64| DVec3::new(x, y, 0.1 * y + 0.05 * x);
     let flat = |x: f64, y: f64| DVec3::new(x, y, 0.0);
-    let shapes: [(&str, fn(f64, f64) -> DVec3); 3] = [("flat", flat), ("tilted", tilted), ("bowl", bowl)];
+    type Shape = (&'static str, fn(f64, f64) -> DVec3);
+    let shapes: [Shape; 3] = [("flat", flat), ("tilted", tilted), ("bowl", bowl)];
     let mut tilted_lens = biotar(2.0);
     tilted_lens.elements[6].displacement =
         Displacement { decenter_mm: [0.4, -0.2], tilt_rad: [0.02, 0.03, 0.0], tilt_first: false };
