@@ -115,6 +115,17 @@ fn forward_and_backward_agree_on_a_sensor() {
     compare("sensor-wide-angle.yaml", &[stands], "render.samples=1024", "render.rays=6000000", squares);
 }
 
+/// The same behind a thick cover glass, which moves steep rays aside by a good part of this lens's small pupil.
+#[test]
+fn forward_and_backward_agree_behind_plates() {
+    let stands = "imager={kind: sensor, format: 135, resolution: [40, 28], pitch: 5 um, exposure: 1 s, \
+                  cover: [{glass: SCHOTT/N-BK7, thickness: 1.5 mm}]}";
+    let squares = |frame: &ExposureFrame| {
+        [(0, 0), (26, 0), (0, 14), (14, 8)].iter().flat_map(|(left, top)| colors(frame, *left, *top, 14)).collect()
+    };
+    compare("sensor-wide-angle.yaml", &[stands], "render.samples=1024", "render.rays=6000000", squares);
+}
+
 /// The same for a curved, tilted colorimeter, wide open.
 #[test]
 fn forward_and_backward_agree_on_a_curved_frame() {

@@ -29,9 +29,15 @@ impl<'a> Backward<'a> {
     pub(crate) fn new(pipeline: Pipeline<'a>, seed: u64) -> Result<Self, RenderError> {
         let scene = pipeline.scene;
         let launch = scene.imager.launch().ok_or(RenderError::CannotLaunch)?;
-        let points = imager_points(launch, scene.imager.size(), pipeline.isa);
+        let mut rays = imager_rays(launch, scene.imager.size(), pipeline.isa);
+        let [x, y, z] = rays.positions();
+        let points: Vec<DVec3> = (0..rays.len()).map(|i| DVec3::new(x[i], y[i], z[i])).collect();
         let grid = scene.grid;
         let rear = RearPupil::search(&scene.lens, &pipeline.tracer, &points, grid.start_nm, grid.end_nm());
+        let rear = rear.map(|rear| {
+            let aside_mm = aside_mm(launch, &rear, &mut rays, grid.start_nm, pipeline.isa);
+            if aside_mm > 0.0 { rear.widened(ROOM * aside_mm) } else { rear }
+        });
         Ok(Self {
             launch,
             radiance: scene.source.radiance().ok_or(RenderError::NoRadiance)?,
@@ -131,7 +137,7 @@ impl<'a> Backward<'a> {
 
 /// Points over the whole of an imager, those of its rim and corners among them: its shape, as the
 /// search of the pupil needs it.
-fn imager_points(launch: &dyn Launch, size: FrameSize, isa: Isa) -> Vec<DVec3> {
+fn imager_rays(launch: &dyn Launch, size: FrameSize, isa: Isa) -> RayBatch {
     const SIDE: u32 = 65;
     let mut rays = RayBatch::new((SIDE * SIDE) as usize);
     rays.restart((SIDE * SIDE) as usize);
@@ -150,6 +156,29 @@ fn imager_points(launch: &dyn Launch, size: FrameSize, isa: Isa) -> Vec<DVec3> {
         v.push(y);
     }
     launch.place(&mut rays, &u, &v, isa);
-    let [x, y, z] = rays.positions();
-    (0..rays.len()).map(|i| DVec3::new(x[i], y[i], z[i])).collect()
+    rays
+}
+
+/// What was measured on some rays may be exceeded by others: this much room is left.
+const ROOM: f64 = 1.25;
+
+/// How far an imager moves rays aside after they were aimed, mm: the most of rays from all over it, the shortest wavelength
+/// in the middle and at four sides of the pupil.
+fn aside_mm(launch: &dyn Launch, rear: &RearPupil, points: &mut RayBatch, wavelength_nm: f64, isa: Isa) -> f64 {
+    let mut most = 0.0_f64;
+    for (u, v) in [(0.5, 0.5), (0.02, 0.5), (0.98, 0.5), (0.5, 0.02), (0.5, 0.98)] {
+        let mut rays = points.clone();
+        let n = rays.len();
+        rays.columns_mut().wavelength_nm.fill(wavelength_nm);
+        rear.aim(&mut rays, &vec![u; n], &vec![v; n], isa);
+        let before = rays.clone();
+        launch.admit(&mut rays, isa);
+        let at = |rays: &RayBatch, i: usize| DVec3::from_array(rays.positions().map(|c| c[i]));
+        for i in (0..n).filter(|i| before.loss(*i).is_none()) {
+            let way = DVec3::from_array(rays.directions().map(|c| c[i]));
+            let moved = at(&rays, i) - at(&before, i);
+            most = most.max((moved - moved.dot(way) * way).length());
+        }
+    }
+    most
 }

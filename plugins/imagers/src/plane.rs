@@ -122,8 +122,7 @@ impl Launch for Plane {
     }
 
     /// Moves the rays from where the frame seems to be near the axis to where Snell's law has them. Rays were aimed before
-    /// that: where they come steeply, by a small pupil, and through thick plates, some of them miss it that should not have
-    /// (1.5 mm of plates and a pupil of 2 mm, at more than 45 degrees: up to 5 % of the light). Forward rays are exact.
+    /// that, at a region that leaves room for it.
     fn admit(&self, rays: &mut RayBatch, _isa: Isa) {
         let Some(plates) = &self.plates else { return };
         let axes = self.axes(0.0, 0.0);

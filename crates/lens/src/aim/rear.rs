@@ -61,6 +61,12 @@ impl RearPupil {
         Some(Self { table: task.run()? })
     }
 
+    /// The same for an imager that moves rays aside by up to `margin_mm` after they were aimed, as plates of glass do.
+    #[must_use]
+    pub fn widened(self, margin_mm: f64) -> Self {
+        Self { table: self.table.widened(margin_mm) }
+    }
+
     /// Turns the rays of a batch, which are at points of the imager, toward the pupil, starts them
     /// there, and multiplies their weights by the projected solid angle of the region, sr; the imager's
     /// unit normal stands in the place of each direction. `u` and `v`, one a ray in [0, 1), choose the

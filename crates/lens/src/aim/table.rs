@@ -63,6 +63,26 @@ impl Row {
         }
         Self(row)
     }
+
+    /// The same with every region larger: whatever lay in it may be moved by `margin_mm` in its plane.
+    fn widened(&self, margin_mm: f64) -> Self {
+        let mut row = self.0.clone();
+        for k in 0..SLOTS {
+            let (along, across) = ((row[3][k] * row[3][k] + row[4][k] * row[4][k]).sqrt(), row[5][k]);
+            if row[8][k] <= 0.0 || along <= 0.0 || across <= 0.0 {
+                continue;
+            }
+            // An ellipse that grows in proportion holds disks about all of its places; a rectangle needs the margin alone.
+            let ellipse = row[9][k] > 0.0;
+            let grown = |half: f64| if ellipse { 1.0 + margin_mm / along.min(across) } else { 1.0 + margin_mm / half };
+            let (f, g) = (grown(along), grown(across));
+            row[3][k] *= f;
+            row[4][k] *= f;
+            row[5][k] *= g;
+            row[8][k] *= f * g;
+        }
+        Self(row)
+    }
 }
 
 /// The depth of a point: how near it is (forward), or where along the axis (backward).
@@ -92,6 +112,13 @@ pub(super) struct Table {
     pub bound: Sphere,
     /// Number of that surface: light that no zone passes is booked there.
     pub surface: u32,
+}
+
+impl Table {
+    /// See [`Row::widened`].
+    pub fn widened(self, margin_mm: f64) -> Self {
+        Self { rows: self.rows.iter().map(|row| row.widened(margin_mm)).collect(), ..self }
+    }
 }
 
 /// A measure of the angle at which a point is seen from the reference point, `radius` beside the axis
