@@ -66,7 +66,7 @@ impl Row {
 
     /// The same with every region larger: whatever lay in it may be moved by `margin_mm` in its plane.
     fn widened(&self, margin_mm: f64) -> Self {
-        let mut row = self.0.clone();
+        let mut row = self.0;
         for k in 0..SLOTS {
             let (along, across) = ((row[3][k] * row[3][k] + row[4][k] * row[4][k]).sqrt(), row[5][k]);
             if row[8][k] <= 0.0 || along <= 0.0 || across <= 0.0 {
