@@ -163,33 +163,6 @@ impl<'a> FanFinder<'a> {
         alive.map(|(i, alive)| alive && (self.is_sized || self.passes(field_rad, object_mm, at(i as f64)))).collect()
     }
 
-    /// The chief ray of a fan: through the center of the stop, by real tracing; without a stop, or where the stop's
-    /// center is hidden for this field, the middle of what passes.
-    #[must_use]
-    pub fn chief_mm(&self, fan: &Fan) -> f64 {
-        let middle = 0.5 * (fan.low_mm + fan.high_mm);
-        let Some(stop) = self.lens.stop() else { return middle };
-        let height = |s_mm: f64| {
-            let path = self.path(fan.field_rad, fan.object_mm, s_mm);
-            let local = self.lens.elements[stop].pose.local_point(*path.points.get(stop + 1)?);
-            Some(if self.section == Section::X { local.x } else { local.y })
-        };
-        let (mut a, mut b) = (fan.low_mm, fan.high_mm);
-        let (Some(at_a), Some(at_b)) = (height(a), height(b)) else { return middle };
-        if (at_a < 0.0) == (at_b < 0.0) {
-            return middle;
-        }
-        for _ in 0..60 {
-            let m = 0.5 * (a + b);
-            match height(m) {
-                Some(h) if (h < 0.0) == (at_a < 0.0) => a = m,
-                Some(_) => b = m,
-                None => return middle,
-            }
-        }
-        0.5 * (a + b)
-    }
-
     /// The largest field angle at which anything passes, rad, up to `limit_rad`: to 0.01 degrees.
     #[must_use]
     pub fn largest_field_rad(&self, object_mm: f64, limit_rad: f64) -> Option<f64> {

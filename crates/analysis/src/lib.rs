@@ -4,7 +4,7 @@
 //!   with this one;
 //! - [`info`]: first-order figures, pupils and prescription, for a program and for a person;
 //! - [`focus`]: what an image point is sharp for;
-//! - [`fan`]: the rays of a field that pass, and the chief ray among them;
+//! - [`fan`]: the rays of a field that pass, as a drawing shows them;
 //! - [`draw`]: a lens as a figure, with rays in the colors of their wavelengths.
 
 pub mod draw;
