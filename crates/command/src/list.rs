@@ -12,7 +12,7 @@ use std::fmt::Write;
 struct Item {
     stage: &'static str,
     name: String,
-    summary: Option<&'static str>,
+    summary: Option<String>,
     package: &'static str,
     version: &'static str,
     default: bool,
@@ -46,7 +46,7 @@ fn items() -> Vec<Item> {
     let registered = registry::list().into_iter().map(|l| Item {
         stage: l.stage,
         name: l.name.to_owned(),
-        summary: Some(l.summary),
+        summary: Some(l.documentation().summary),
         package: l.package,
         version: l.version,
         default: l.default,
@@ -78,7 +78,7 @@ fn table(items: &[Item]) -> String {
             // Writing to a String cannot fail.
             let _ = writeln!(out, "{gap}{stage}");
         }
-        let mut line = format!("  {:<width$}  {}", item.name, item.summary.unwrap_or(""));
+        let mut line = format!("  {:<width$}  {}", item.name, item.summary.as_deref().unwrap_or(""));
         if item.default {
             line.push_str(" (default)");
         }
@@ -95,7 +95,7 @@ mod tests {
     use super::*;
 
     fn item(stage: &'static str, name: &str, package: &'static str, default: bool) -> Item {
-        Item { stage, name: name.to_owned(), summary: Some("A thing."), package, version: "1.2.3", default }
+        Item { stage, name: name.to_owned(), summary: Some("A thing.".to_owned()), package, version: "1.2.3", default }
     }
 
     #[test]

@@ -1,27 +1,32 @@
 //! `kind: fraunhofer`: each channel one spectral line, by the line's short name or its wavelength.
 
 use crate::Basis;
+use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{Faults, Params, StageNode, Wavelength};
-use spectra_core::registry::{ColorEntry, Context};
+use spectra_core::registry::Context;
 use spectra_core::spectral::{Grid, Line, SpectralPower};
 use spectra_core::stage::ColorModel;
 
-/// Parameters of `kind: fraunhofer`.
-#[derive(Debug, Deserialize)]
+/// Each channel one spectral line, with secondary lines between them if wanted.
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct FraunhoferParams {
     /// Line of the red channel: a short name such as `C'`, or a wavelength.
     #[serde(rename = "R")]
+    #[schemars(with = "Option<LineName>")]
     red: Option<StageNode>,
     /// Line of the green channel.
     #[serde(rename = "G")]
+    #[schemars(with = "Option<LineName>")]
     green: Option<StageNode>,
     /// Line of the blue channel.
     #[serde(rename = "B")]
+    #[schemars(with = "Option<LineName>")]
     blue: Option<StageNode>,
     /// Further lines, linear between their neighbors among the three, zero at the cuts.
     #[serde(default)]
+    #[schemars(with = "Vec<LineName>")]
     secondary: Vec<StageNode>,
     /// Where the ultraviolet ends.
     #[serde(rename = "uv-cut")]
@@ -34,6 +39,17 @@ struct FraunhoferParams {
     balance: bool,
 }
 
+/// What a line is written as.
+#[derive(JsonSchema)]
+#[serde(untagged)]
+#[expect(dead_code, reason = "states what is allowed; lines are read by `line_nm`")]
+enum LineName {
+    /// Where it lies.
+    Wavelength(Wavelength),
+    /// Its short name, such as `C'`.
+    Symbol(String),
+}
+
 fn yes() -> bool {
     true
 }
@@ -41,15 +57,7 @@ fn yes() -> bool {
 const UV_CUT_NM: f64 = 380.0;
 const IR_CUT_NM: f64 = 780.0;
 
-inventory::submit! {
-    ColorEntry::new(
-        "fraunhofer",
-        "Each channel one spectral line, with secondary lines between them if wanted.",
-        env!("CARGO_PKG_NAME"),
-        env!("CARGO_PKG_VERSION"),
-        build,
-    )
-}
+spectra_core::register!(color "fraunhofer": FraunhoferParams, build);
 
 fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn ColorModel>, Faults> {
     let p: FraunhoferParams = params.parse()?;

@@ -1,15 +1,16 @@
 //! `kind: gaussians`: each channel one Gaussian.
 
 use crate::Basis;
+use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::math::exp;
 use spectra_core::params::{Faults, Params, Positive, Wavelength};
-use spectra_core::registry::{ColorEntry, Context};
+use spectra_core::registry::Context;
 use spectra_core::spectral::SpectralPower;
 use spectra_core::stage::ColorModel;
 
 /// One channel: centre and standard deviation.
-#[derive(Clone, Copy, Debug, Deserialize)]
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct Bell {
     /// Wavelength of the peak, nm if bare.
@@ -18,8 +19,8 @@ struct Bell {
     sigma: Positive<Wavelength>,
 }
 
-/// Parameters of `kind: gaussians`.
-#[derive(Debug, Deserialize)]
+/// Each channel one Gaussian, scaled so that white is the illuminant's.
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct GaussiansParams {
     /// Red channel.
@@ -37,15 +38,7 @@ struct GaussiansParams {
 /// (611, 549, 464 nm), wide enough to overlap without a gap.
 const DEFAULTS: [[f64; 2]; 3] = [[611.0, 24.0], [545.0, 26.0], [460.0, 22.0]];
 
-inventory::submit! {
-    ColorEntry::new(
-        "gaussians",
-        "Each channel one Gaussian, scaled so that white is the illuminant's.",
-        env!("CARGO_PKG_NAME"),
-        env!("CARGO_PKG_VERSION"),
-        build,
-    )
-}
+spectra_core::register!(color "gaussians": GaussiansParams, build);
 
 fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn ColorModel>, Faults> {
     let p: GaussiansParams = params.parse()?;

@@ -1,27 +1,19 @@
 //! `kind: primaries`: three smooth emission spectra that are exactly the primaries of sRGB.
 
 use crate::Basis;
+use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{Faults, Params};
-use spectra_core::registry::{ColorEntry, Context};
+use spectra_core::registry::Context;
 use spectra_core::stage::ColorModel;
 use spectra_spectrum::srgb_primaries;
 
-/// Parameters of `kind: primaries`: none.
-#[derive(Debug, Deserialize)]
+/// The sum of three smooth spectra that have exactly the colors of the sRGB primaries.
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct PrimariesParams {}
 
-inventory::submit! {
-    ColorEntry::new(
-        "primaries",
-        "The sum of three smooth spectra that have exactly the colors of the sRGB primaries.",
-        env!("CARGO_PKG_NAME"),
-        env!("CARGO_PKG_VERSION"),
-        build,
-    )
-    .or_default()
-}
+spectra_core::register!(color "primaries" (default): PrimariesParams, build);
 
 fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn ColorModel>, Faults> {
     let PrimariesParams {} = params.parse()?;

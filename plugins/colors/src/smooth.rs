@@ -11,29 +11,22 @@
 //! first model is made. Between pixels of a picture it is the color that is interpolated, not the coefficients: toward
 //! black they have no limit.
 
+use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::batch::CONTINUUM;
 use spectra_core::params::{Faults, Params};
-use spectra_core::registry::{ColorEntry, Context};
+use spectra_core::registry::Context;
 use spectra_core::spectral::{BAND, Line, SpectralPower};
 use spectra_core::stage::ColorModel;
 use spectra_spectrum::{Observer, RgbSpace, chromaticity, illuminant, matrix};
 use std::sync::OnceLock;
 
-/// Parameters of `kind: smooth`: none.
-#[derive(Debug, Deserialize)]
+/// A smooth reflectance for each color, under the illuminant (Jakob and Hanika 2019).
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct SmoothParams {}
 
-inventory::submit! {
-    ColorEntry::new(
-        "smooth",
-        "A smooth reflectance for each color, under the illuminant (Jakob and Hanika 2019).",
-        env!("CARGO_PKG_NAME"),
-        env!("CARGO_PKG_VERSION"),
-        build,
-    )
-}
+spectra_core::register!(color "smooth": SmoothParams, build);
 
 fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn ColorModel>, Faults> {
     let SmoothParams {} = params.parse()?;

@@ -1,6 +1,7 @@
 //! What happens inside of the film: light is spread before the curve, silver lies in grains after it.
 
 use crate::stock::StockParams;
+use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::frame::FrameSize;
 use spectra_core::params::{Faults, Length, Params, Positive};
@@ -11,7 +12,7 @@ use spectra_film::scatter::{Mtf, Scatter};
 use spectra_film::stock::{Densitometry, Stock};
 
 /// `halation` as written in a scene; see [`HalationBase`].
-#[derive(Clone, Copy, Debug, Deserialize)]
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct HalationParams {
     /// Light that enters the base, over the light that exposes the layer.

@@ -1,5 +1,6 @@
 //! How the camera finds its exposure.
 
+use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::frame::ExposureFrame;
 use spectra_core::params::{Fault, Params};
@@ -12,7 +13,7 @@ use spectra_spectrum::v_lambda;
 pub(crate) const METER: &str = "meter";
 
 /// `metering` as written in a scene.
-#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 pub enum Metering {
     /// The exposure time is the scene's.
@@ -25,7 +26,7 @@ pub enum Metering {
 }
 
 /// `spot` as written in a scene.
-#[derive(Clone, Copy, Debug, Deserialize)]
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct SpotParams {
     /// Its center, in shares of the frame's width and height from the upper left corner.

@@ -3,11 +3,12 @@
 use crate::effects::{Effects, HalationParams};
 use crate::metering::{Meter, Metering, SpotParams};
 use crate::view::{PaperParams, Picture, View, seen};
+use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::frame::{DisplayPicture, ExposureFrame};
 use spectra_core::math::pow;
 use spectra_core::params::{Fault, Faults, Params, Positive, Time, nearest};
-use spectra_core::registry::{Context, FilmEntry};
+use spectra_core::registry::Context;
 use spectra_core::resources::Resources;
 use spectra_core::spectral::Channel;
 use spectra_core::stage::Film;
@@ -17,8 +18,8 @@ use spectra_film::print::{Print, metered_exposure_lx_s};
 use spectra_film::push::pushed;
 use spectra_film::stock::{Process, Stock};
 
-/// Parameters of `kind: stock` as written in a scene.
-#[derive(Debug, Deserialize)]
+/// Film from a data file, developed, and printed, scanned or projected.
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct StockParams {
     /// Name of a bundled stock, such as `ilford-ortho-plus`, or a YAML file beside the scene.
@@ -236,13 +237,4 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Film>, Faults
     Ok(Box::new(StockFilm::build(params, context)?))
 }
 
-inventory::submit! {
-    FilmEntry::new(
-        "stock",
-        "Film from a data file, developed, and printed, scanned or projected.",
-        env!("CARGO_PKG_NAME"),
-        env!("CARGO_PKG_VERSION"),
-        build,
-    )
-    .or_default()
-}
+spectra_core::register!(film "stock" (default): StockParams, build);

@@ -2,10 +2,11 @@
 
 use crate::metering::{Meter, Metering, SpotParams};
 use crate::stock::load_stock;
+use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::frame::{DisplayPicture, ExposureFrame};
 use spectra_core::params::{Faults, Params, Positive as AboveZero, Time};
-use spectra_core::registry::{Context, FilmEntry};
+use spectra_core::registry::Context;
 use spectra_core::spectral::{BAND, Channel};
 use spectra_core::stage::Film;
 use spectra_film::display::channel;
@@ -16,8 +17,8 @@ use spectra_film::stock::Stock;
 use spectra_spectrum::constants::LUMINOUS_EFFICACY_LM_PER_W;
 use spectra_spectrum::{Emission, Transmittance, find_emission_in, find_transmittance_in, v_lambda};
 
-/// Parameters of `kind: three-strip` as written in a scene.
-#[derive(Debug, Deserialize)]
+/// Three separation negatives behind a beam splitter, printed by dye transfer.
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct ThreeStripParams {
     /// Exposure time, s if bare; may be left out where the camera meters.
@@ -52,7 +53,7 @@ pub struct ThreeStripParams {
 }
 
 /// One record: a stock behind filters.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct RecordParams {
     /// The stock; one of a single layer.
@@ -265,12 +266,4 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Film>, Faults
     Ok(Box::new(ThreeStrip::build(params, context)?))
 }
 
-inventory::submit! {
-    FilmEntry::new(
-        "three-strip",
-        "Three separation negatives behind a beam splitter, printed by dye transfer.",
-        env!("CARGO_PKG_NAME"),
-        env!("CARGO_PKG_VERSION"),
-        build,
-    )
-}
+spectra_core::register!(film "three-strip": ThreeStripParams, build);

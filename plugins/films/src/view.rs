@@ -1,6 +1,7 @@
 //! How the developed film is looked at.
 
 use crate::stock::{StockParams, load_stock};
+use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::math::log10;
 use spectra_core::params::{Faults, Params, Positive as AboveZero};
@@ -12,7 +13,7 @@ use spectra_film::stock::{Process, Stock};
 use spectra_spectrum::{Emission, find_emission_in};
 
 /// `view` as written in a scene.
-#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 pub enum View {
     /// A negative printed on paper or on a print stock.
@@ -26,7 +27,7 @@ pub enum View {
 }
 
 /// `paper` as written in a scene; see [`Paper`].
-#[derive(Clone, Copy, Debug, Deserialize)]
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct PaperParams {
     /// Exposure range, log10 (ISO range over 100).

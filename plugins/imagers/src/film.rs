@@ -4,12 +4,12 @@ use crate::params::imager_params;
 use crate::plane::Plane;
 use spectra_core::frame::{DisplayPicture, ExposureFrame, FrameSize};
 use spectra_core::params::{Faults, Params};
-use spectra_core::registry::{Context, ImagerEntry};
+use spectra_core::registry::Context;
 use spectra_core::spectral::Channel;
 use spectra_core::stage::{Imager, Launch, Receive};
 
 imager_params! {
-    /// Parameters of `kind: film` as written in a scene.
+    /// A frame with a film on it; what it records is the film's.
     FilmPlaneParams {}
 }
 
@@ -53,12 +53,4 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Imager>, Faul
     Ok(Box::new(FilmPlane::new(params.parse::<FilmPlaneParams>()?.frame().plane(params, context)?)))
 }
 
-inventory::submit! {
-    ImagerEntry::new(
-        "film",
-        "A frame with a film on it; what it records is the film's.",
-        env!("CARGO_PKG_NAME"),
-        env!("CARGO_PKG_VERSION"),
-        build,
-    )
-}
+spectra_core::register!(imager "film": FilmPlaneParams, build);

@@ -4,6 +4,7 @@ use crate::formats::{FORMATS, format_named};
 use crate::plane::{MAX_PIXELS, MAX_SIDE_PX, Plane};
 use crate::plates::{Plate, Plates};
 use crate::standing::{Bend, Standing};
+use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::frame::FrameSize;
 use spectra_core::params::{Angle, Fault, Faults, Length, NonNegative, Params, Positive, nearest};
@@ -16,7 +17,7 @@ use spectra_spectrum::find_transmittance_in;
 macro_rules! imager_params {
     ($(#[$doc:meta])* $name:ident { $($(#[$field_doc:meta])* $field:ident: $type:ty,)* }) => {
         $(#[$doc])*
-        #[derive(Debug, serde::Deserialize)]
+        #[derive(Debug, serde::Deserialize, schemars::JsonSchema)]
         #[serde(deny_unknown_fields, rename_all = "kebab-case")]
         pub struct $name {
             /// Size by name, such as `135` (36 x 24 mm), `6x6` or `super-35`.
@@ -71,7 +72,7 @@ macro_rules! imager_params {
 pub(crate) use imager_params;
 
 /// How a frame is curved, as written in a scene.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Curvature {
     /// `cylinder`: bent along x, as film in a curved gate; or `sphere`.
@@ -82,7 +83,7 @@ pub struct Curvature {
 }
 
 /// A plate of glass before the frame, as written in a scene. Reflections at its surfaces are not counted.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct CoverParams {
     /// A glass of the catalogue, such as `SCHOTT/N-BK7`; what it absorbs counts.
@@ -98,7 +99,7 @@ pub struct CoverParams {
 }
 
 /// A birefringent plate before the frame, as written in a scene, its axis at 45 degrees to it.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct LowPassParams {
     /// `quartz` (the default), `lithium-niobate`, or a uniaxial crystal of the catalogue without its `-o` or `-e`.

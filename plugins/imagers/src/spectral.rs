@@ -4,7 +4,7 @@ use crate::params::imager_params;
 use crate::plane::Plane;
 use spectra_core::frame::{DisplayPicture, ExposureChannel, ExposureFrame, FrameSize};
 use spectra_core::params::{Faults, Params, Wavelength};
-use spectra_core::registry::{Context, ImagerEntry};
+use spectra_core::registry::Context;
 use spectra_core::spectral::{Channel, Grid};
 use spectra_core::stage::{Imager, Launch, Receive};
 use spectra_film::display::{White, show_xyz};
@@ -12,7 +12,7 @@ use spectra_spectrum::constants::LUMINOUS_EFFICACY_LM_PER_W;
 use spectra_spectrum::{Gamut, Observer};
 
 imager_params! {
-    /// Parameters of `kind: spectral` as written in a scene.
+    /// A frame that records the spectrum itself: one channel a band, in W m^-2 nm^-1.
     SpectralParams {
         /// Number of bands of equal width, 1 to 256.
         bands: f64,
@@ -127,15 +127,7 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Imager>, Faul
     Ok(Box::new(SpectralPlane::new(plane, grid, bands as usize, first, last)))
 }
 
-inventory::submit! {
-    ImagerEntry::new(
-        "spectral",
-        "A frame that records the spectrum itself: one channel a band, in W m^-2 nm^-1.",
-        env!("CARGO_PKG_NAME"),
-        env!("CARGO_PKG_VERSION"),
-        build,
-    )
-}
+spectra_core::register!(imager "spectral": SpectralParams, build);
 
 #[cfg(test)]
 mod tests {

@@ -4,7 +4,7 @@ use crate::params::imager_params;
 use crate::plane::Plane;
 use spectra_core::frame::{DisplayPicture, ExposureFrame, FrameSize};
 use spectra_core::params::{Exposure, Fault, Faults, Illuminance, Params, Positive, Quantity, Time};
-use spectra_core::registry::{Context, ImagerEntry};
+use spectra_core::registry::Context;
 use spectra_core::spectral::{Channel, Grid};
 use spectra_core::stage::{Imager, Launch, Receive};
 use spectra_film::display::{White, show_xyz};
@@ -12,7 +12,7 @@ use spectra_spectrum::constants::LUMINOUS_EFFICACY_LM_PER_W;
 use spectra_spectrum::{Gamut, Observer};
 
 imager_params! {
-    /// Parameters of `kind: xyz` as written in a scene.
+    /// A frame that measures CIE 1931 XYZ in lux, or lux-seconds where it is given an exposure time.
     XyzParams {
         /// Exposure time, s if bare. With it the channels are in lx s, without it in lx.
         #[serde(default)]
@@ -125,12 +125,4 @@ fn stated_white(params: &Params, text: &str, timed: bool) -> Result<White, Fault
     })
 }
 
-inventory::submit! {
-    ImagerEntry::new(
-        "xyz",
-        "A frame that measures CIE 1931 XYZ in lux, or lux-seconds where it is given an exposure time.",
-        env!("CARGO_PKG_NAME"),
-        env!("CARGO_PKG_VERSION"),
-        build,
-    )
-}
+spectra_core::register!(imager "xyz": XyzParams, build);

@@ -2,8 +2,9 @@
 
 use crate::Cells;
 use crate::seen::Seen;
-use serde::{Deserialize, Deserializer};
-use spectra_core::params::{Quantity, Ratio, quantity};
+use schemars::{JsonSchema, Schema, SchemaGenerator};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use spectra_core::params::{NonNegative, Quantity, Ratio, quantity, schema_of};
 use spectra_core::spectral::Grid;
 
 /// Share of the samples that follow the summed response of all channels, whatever else a strategy
@@ -33,6 +34,28 @@ impl Floor {
     /// The density to draw it from; `None` where the share is 0.
     pub(crate) fn cells(self, grid: Grid, seen: &Seen) -> Option<Cells> {
         if self.0 > 0.0 { Cells::of(grid, &seen.response) } else { None }
+    }
+}
+
+impl JsonSchema for Floor {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        "Floor".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        let mut schema = schema_of::<NonNegative<Ratio>>();
+        schema.insert("exclusiveMaximum".to_owned(), 1.into());
+        schema
+    }
+}
+
+impl Serialize for Floor {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_f64(self.0)
     }
 }
 

@@ -13,16 +13,17 @@ use crate::followed::Followed;
 use crate::seen::Seen;
 use crate::truncated_gaussian::EDGE;
 use crate::{Cells, Continuum, Floor};
+use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::isa::Isa;
 use spectra_core::params::{Faults, Params};
-use spectra_core::registry::{Context, SamplerEntry};
+use spectra_core::registry::Context;
 use spectra_core::spectral::SystemResponse;
 use spectra_core::stage::{WavelengthDensity, WavelengthSampler};
 use spectra_spectrum::{GaussianMixture, TruncatedGaussian, fit_gaussians};
 
 /// How a wavelength is drawn from signed terms.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Follow {
     /// From the sum of the terms without their signs.
@@ -34,8 +35,8 @@ pub enum Follow {
     OneTerm,
 }
 
-/// Parameters of `kind: gaussian-terms` as written in a scene.
-#[derive(Clone, Copy, Debug, Deserialize)]
+/// A few Gaussian terms, fitted to the source.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct GaussianTermsParams {
     /// Number of terms that are fitted to the source's continuum, 1 to 32; 6 if left out.
@@ -226,12 +227,4 @@ fn build(params: &Params, _context: &Context<'_>) -> Result<Box<dyn WavelengthSa
     Ok(Box::new(sampler))
 }
 
-inventory::submit! {
-    SamplerEntry::new(
-        "gaussian-terms",
-        "A few Gaussian terms, fitted to the source.",
-        env!("CARGO_PKG_NAME"),
-        env!("CARGO_PKG_VERSION"),
-        build,
-    )
-}
+spectra_core::register!(wavelengths "gaussian-terms": GaussianTermsParams, build);

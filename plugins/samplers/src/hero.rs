@@ -10,21 +10,23 @@
 //! k samples to that of k even ones; Sobol points are more even than that already.
 
 use crate::SourceTimesResponse;
+use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::isa::Isa;
 use spectra_core::params::{Faults, Params, StageNode};
-use spectra_core::registry::{self, Context, SamplerEntry};
+use spectra_core::registry::{self, Context, StageOf};
 use spectra_core::spectral::SystemResponse;
 use spectra_core::stage::{WavelengthDensity, WavelengthSampler};
 
-/// Parameters of `kind: hero` as written in a scene.
-#[derive(Clone, Debug, Deserialize)]
+/// Groups of samples share one number, rotated among them.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct HeroParams {
     /// Wavelengths of a group, 2 to 1024; 4 if left out.
     #[serde(default = "usual_group")]
     pub group: u32,
     /// The strategy whose density is drawn from: a name, or a map with its `kind`; `source-times-response` if left out.
+    #[schemars(with = "Option<StageOf<dyn WavelengthSampler>>")]
     pub density: Option<StageNode>,
 }
 
@@ -100,12 +102,4 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn WavelengthSam
     }
 }
 
-inventory::submit! {
-    SamplerEntry::new(
-        "hero",
-        "Groups of samples share one number, rotated among them.",
-        env!("CARGO_PKG_NAME"),
-        env!("CARGO_PKG_VERSION"),
-        build,
-    )
-}
+spectra_core::register!(wavelengths "hero": HeroParams, build);

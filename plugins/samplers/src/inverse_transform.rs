@@ -5,15 +5,16 @@
 
 use crate::seen::Seen;
 use crate::{Floor, Quantiles};
+use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{Faults, Params};
-use spectra_core::registry::{Context, SamplerEntry};
+use spectra_core::registry::Context;
 use spectra_core::spectral::{Grid, SystemResponse};
 use spectra_core::stage::{WavelengthDensity, WavelengthSampler};
 use spectra_spectrum::{Found, Observer, find_in};
 
-/// Parameters of `kind: inverse-transform` as written in a scene.
-#[derive(Clone, Debug, Deserialize)]
+/// In proportion to any named spectrum.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct InverseTransformParams {
     /// What to draw in proportion to: `x-bar`, `y-bar` or `z-bar` (CIE 1931, 2 degrees), a bundled spectrum such as
@@ -95,12 +96,4 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn WavelengthSam
     Ok(Box::new(sampler))
 }
 
-inventory::submit! {
-    SamplerEntry::new(
-        "inverse-transform",
-        "In proportion to any named spectrum.",
-        env!("CARGO_PKG_NAME"),
-        env!("CARGO_PKG_VERSION"),
-        build,
-    )
-}
+spectra_core::register!(wavelengths "inverse-transform": InverseTransformParams, build);

@@ -47,15 +47,3 @@ pub use source_times_response::SourceTimesResponse;
 pub use stratified::{Stratified, StratifiedParams};
 pub use truncated_gaussian::{TruncatedGaussianParams, TruncatedGaussianSampler};
 pub use uniform::Uniform;
-
-use serde::Deserialize;
-use spectra_core::params::{Faults, Params};
-
-/// Parameters of strategies that have none.
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-struct NoParams {}
-
-fn no_params(params: &Params) -> Result<(), Faults> {
-    params.parse::<NoParams>().map(|_| ())
-}

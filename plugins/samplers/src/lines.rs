@@ -1,7 +1,11 @@
 //! `kind: lines`: the source's spectral lines only, in proportion to their power.
 
 use crate::{Mixture, Quantiles, Shares};
-use spectra_core::registry::SamplerEntry;
+use schemars::JsonSchema;
+use serde::Deserialize;
+use spectra_core::params::{Faults, Params};
+use spectra_core::registry::Context;
+
 use spectra_core::spectral::SystemResponse;
 use spectra_core::stage::{WavelengthDensity, WavelengthSampler};
 
@@ -23,12 +27,14 @@ impl WavelengthSampler for Lines {
     }
 }
 
-inventory::submit! {
-    SamplerEntry::new(
-        "lines",
-        "The source's spectral lines only, by their power.",
-        env!("CARGO_PKG_NAME"),
-        env!("CARGO_PKG_VERSION"),
-        |params, _| crate::no_params(params).map(|()| Box::new(Lines) as Box<dyn WavelengthSampler>),
-    )
+/// The source's spectral lines only, by their power.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+struct LinesParams {}
+
+spectra_core::register!(wavelengths "lines": LinesParams, build);
+
+fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn WavelengthSampler>, Faults> {
+    let LinesParams {} = params.parse()?;
+    Ok(Box::new(Lines))
 }

@@ -8,7 +8,11 @@
 
 use crate::seen::Seen;
 use crate::{Mixture, Quantiles};
-use spectra_core::registry::SamplerEntry;
+use schemars::JsonSchema;
+use serde::Deserialize;
+use spectra_core::params::{Faults, Params};
+use spectra_core::registry::Context;
+
 use spectra_core::spectral::SystemResponse;
 use spectra_core::stage::{WavelengthDensity, WavelengthSampler};
 
@@ -36,13 +40,14 @@ impl WavelengthSampler for SourceTimesResponse {
     }
 }
 
-inventory::submit! {
-    SamplerEntry::new(
-        "source-times-response",
-        "The source's power times what the imager sees; lines as lines.",
-        env!("CARGO_PKG_NAME"),
-        env!("CARGO_PKG_VERSION"),
-        |params, _| crate::no_params(params).map(|()| Box::new(SourceTimesResponse) as Box<dyn WavelengthSampler>),
-    )
-    .or_default()
+/// The source's power times what the imager sees; lines as lines.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+struct SourceTimesResponseParams {}
+
+spectra_core::register!(wavelengths "source-times-response" (default): SourceTimesResponseParams, build);
+
+fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn WavelengthSampler>, Faults> {
+    let SourceTimesResponseParams {} = params.parse()?;
+    Ok(Box::new(SourceTimesResponse))
 }

@@ -11,16 +11,17 @@
 //! about 1e-4 of the stratum's own spread, and that of all strata together by 2e-5.
 
 use crate::{Continuum, Mixture, Shares};
+use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::isa::{Isa, Vectorized};
 use spectra_core::numbers::mix64;
 use spectra_core::params::{Faults, Params};
-use spectra_core::registry::{Context, SamplerEntry};
+use spectra_core::registry::Context;
 use spectra_core::spectral::SystemResponse;
 use spectra_core::stage::{WavelengthDensity, WavelengthSampler};
 
-/// Parameters of `kind: stratified` as written in a scene.
-#[derive(Clone, Copy, Debug, Deserialize)]
+/// Strata of the band of equal width, jittered independently.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct StratifiedParams {
     /// Number of strata of the band, 1 to 65 536; 64 if left out.
@@ -115,12 +116,4 @@ fn build(params: &Params, _context: &Context<'_>) -> Result<Box<dyn WavelengthSa
     Ok(Box::new(stratified))
 }
 
-inventory::submit! {
-    SamplerEntry::new(
-        "stratified",
-        "Strata of the band of equal width, jittered independently.",
-        env!("CARGO_PKG_NAME"),
-        env!("CARGO_PKG_VERSION"),
-        build,
-    )
-}
+spectra_core::register!(wavelengths "stratified": StratifiedParams, build);

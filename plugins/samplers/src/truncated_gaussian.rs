@@ -7,16 +7,17 @@
 use crate::mixture::CHUNK;
 use crate::seen::Seen;
 use crate::{Cells, Continuum, Floor};
+use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::isa::{Isa, Vectorized};
 use spectra_core::params::{Faults, Params, Wavelength};
-use spectra_core::registry::{Context, SamplerEntry};
+use spectra_core::registry::Context;
 use spectra_core::spectral::SystemResponse;
 use spectra_core::stage::{WavelengthDensity, WavelengthSampler};
 use spectra_spectrum::{SpectrumError, TruncatedGaussian};
 
-/// Parameters of `kind: truncated-gaussian` as written in a scene.
-#[derive(Clone, Copy, Debug, Deserialize)]
+/// One Gaussian, cut off at the ends of the band.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct TruncatedGaussianParams {
     /// Center, nm if bare; it may lie outside of the band.
@@ -163,12 +164,4 @@ fn build(params: &Params, _context: &Context<'_>) -> Result<Box<dyn WavelengthSa
     Ok(Box::new(sampler))
 }
 
-inventory::submit! {
-    SamplerEntry::new(
-        "truncated-gaussian",
-        "One Gaussian, cut off at the ends of the band.",
-        env!("CARGO_PKG_NAME"),
-        env!("CARGO_PKG_VERSION"),
-        build,
-    )
-}
+spectra_core::register!(wavelengths "truncated-gaussian": TruncatedGaussianParams, build);

@@ -1,7 +1,11 @@
 //! `kind: uniform`: every wavelength of the band alike; where the source has lines too, they get half.
 
 use crate::{Mixture, Quantiles, Shares};
-use spectra_core::registry::SamplerEntry;
+use schemars::JsonSchema;
+use serde::Deserialize;
+use spectra_core::params::{Faults, Params};
+use spectra_core::registry::Context;
+
 use spectra_core::spectral::SystemResponse;
 use spectra_core::stage::{WavelengthDensity, WavelengthSampler};
 
@@ -22,12 +26,14 @@ impl WavelengthSampler for Uniform {
     }
 }
 
-inventory::submit! {
-    SamplerEntry::new(
-        "uniform",
-        "Every wavelength of the band alike.",
-        env!("CARGO_PKG_NAME"),
-        env!("CARGO_PKG_VERSION"),
-        |params, _| crate::no_params(params).map(|()| Box::new(Uniform) as Box<dyn WavelengthSampler>),
-    )
+/// Every wavelength of the band alike.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+struct UniformParams {}
+
+spectra_core::register!(wavelengths "uniform": UniformParams, build);
+
+fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn WavelengthSampler>, Faults> {
+    let UniformParams {} = params.parse()?;
+    Ok(Box::new(Uniform))
 }

@@ -1,16 +1,17 @@
 //! `kind: beam`: a thin beam of parallel light.
 
 use crate::white;
+use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::math::{concentric_disk, tan};
 use spectra_core::params::{Angle, Faults, Length, Params, Positive, Power, Quantity};
-use spectra_core::registry::{Context, SourceEntry};
+use spectra_core::registry::Context;
 use spectra_core::spectral::SpectralPower;
 use spectra_core::stage::{Emit, Source};
 use spectra_core::{Isa, RayBatch, batch::CONTINUUM};
 
-/// Parameters of `kind: beam`.
-#[derive(Debug, Deserialize)]
+/// A thin beam of parallel light, round or cut by a slit.
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct BeamParams {
     /// Distance of its start from the first vertex, mm if bare.
@@ -39,15 +40,7 @@ fn power() -> Positive<Power> {
     Positive::from_bare(1e-3)
 }
 
-inventory::submit! {
-    SourceEntry::new(
-        "beam",
-        "A thin beam of parallel light, round or cut by a slit.",
-        env!("CARGO_PKG_NAME"),
-        env!("CARGO_PKG_VERSION"),
-        build,
-    )
-}
+spectra_core::register!(source "beam": BeamParams, build);
 
 fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faults> {
     let p: BeamParams = params.parse()?;

@@ -4,16 +4,17 @@ use crate::chart::{self, Chart, Ink};
 use crate::flat::{Flat, Places, Texture};
 use crate::palette::Palette;
 use crate::white;
+use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::Isa;
 use spectra_core::params::{Faults, Length, Luminance, Params, Positive, Quantity, StageNode};
-use spectra_core::registry::{Context, SourceEntry, build as build_stage};
+use spectra_core::registry::{Context, StageOf, build as build_stage};
 use spectra_core::spectral::{Line, SpectralPower};
 use spectra_core::stage::{ColorModel, Source};
 use spectra_spectrum::{Observer, RgbSpace, Transfer};
 
-/// Parameters of `kind: chart`.
-#[derive(Debug, Deserialize)]
+/// A test chart drawn by the program: resolution, color patches, gray card, star.
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct ChartParams {
     /// Which chart: `resolution`, `color-checker`, `gray-card` and so on.
@@ -30,6 +31,7 @@ struct ChartParams {
     luminance: Positive<Luminance>,
     /// How RGB becomes a spectrum. If absent, patches have their measured reflectances; if given,
     /// every ink is this model's spectrum of its sRGB color.
+    #[schemars(with = "Option<StageOf<dyn ColorModel>>")]
     color: Option<StageNode>,
     /// Of charts with anything random in them, such as `star-field`.
     #[serde(default)]
@@ -44,15 +46,7 @@ fn luminance() -> Positive<Luminance> {
     Positive::from_bare(100.0)
 }
 
-inventory::submit! {
-    SourceEntry::new(
-        "chart",
-        "A test chart drawn by the program: resolution, color patches, gray card, star.",
-        env!("CARGO_PKG_NAME"),
-        env!("CARGO_PKG_VERSION"),
-        build,
-    )
-}
+spectra_core::register!(source "chart": ChartParams, build);
 
 fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faults> {
     let p: ChartParams = params.parse()?;

@@ -9,19 +9,21 @@ use crate::picture::linear::Choice;
 use crate::picture::map::PictureMap;
 use crate::picture::{assemble, color_model, find, trouble};
 use crate::white;
+use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::loss::{ALIVE, Loss};
 use spectra_core::params::{Faults, Length, Luminance, Params, Positive, Quantity, StageNode};
-use spectra_core::registry::{Context, SourceEntry};
+use spectra_core::registry::{Context, StageOf};
 use spectra_core::spectral::SpectralPower;
-use spectra_core::stage::{Radiance, Source};
+use spectra_core::stage::{ColorModel, Radiance, Source};
 use spectra_core::{Isa, RayBatch};
 
-/// Parameters of `kind: layers`.
-#[derive(Debug, Deserialize)]
+/// Picture files one behind the other, with cover: what is hidden is known.
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct LayersParams {
     /// The layers, from the front to the back.
+    #[schemars(with = "Vec<LayerParams>")]
     layers: Vec<StageNode>,
     /// The light that white has the chromaticity of.
     #[serde(default = "daylight")]
@@ -30,11 +32,12 @@ struct LayersParams {
     #[serde(default = "luminance")]
     luminance: Positive<Luminance>,
     /// How RGB becomes a spectrum; the registry's default if absent.
+    #[schemars(with = "Option<StageOf<dyn ColorModel>>")]
     color: Option<StageNode>,
 }
 
 /// One layer.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct LayerParams {
     /// An OpenEXR, PNG, JPEG, TIFF or Radiance HDR file, beside the scene.
@@ -62,15 +65,7 @@ fn luminance() -> Positive<Luminance> {
 /// More than anybody paints.
 const MOST: usize = 64;
 
-inventory::submit! {
-    SourceEntry::new(
-        "layers",
-        "Picture files one behind the other, with cover: what is hidden is known.",
-        env!("CARGO_PKG_NAME"),
-        env!("CARGO_PKG_VERSION"),
-        build,
-    )
-}
+spectra_core::register!(source "layers": LayersParams, build);
 
 fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faults> {
     let p: LayersParams = params.parse()?;

@@ -1,15 +1,16 @@
 //! `kind: point`: one point of light.
 
 use crate::white;
+use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{Angle, Faults, Length, Params, Positive, Quantity, RadiantIntensity};
-use spectra_core::registry::{Context, SourceEntry};
+use spectra_core::registry::Context;
 use spectra_core::spectral::SpectralPower;
 use spectra_core::stage::{Emit, Source};
 use spectra_core::{Isa, RayBatch, batch::CONTINUUM};
 
-/// Parameters of `kind: point`.
-#[derive(Debug, Deserialize)]
+/// One point of light at a finite distance.
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct PointParams {
     /// Distance of the plane that holds it from the first vertex, mm if bare.
@@ -34,15 +35,7 @@ fn intensity() -> Positive<RadiantIntensity> {
     Positive::from_bare(1e-3)
 }
 
-inventory::submit! {
-    SourceEntry::new(
-        "point",
-        "One point of light at a finite distance.",
-        env!("CARGO_PKG_NAME"),
-        env!("CARGO_PKG_VERSION"),
-        build,
-    )
-}
+spectra_core::register!(source "point": PointParams, build);
 
 fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faults> {
     let p: PointParams = params.parse()?;

@@ -1,9 +1,10 @@
 //! `kind: biconic`: two conic sections across each other.
 
 use crate::shared;
+use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{Faults, LengthOrInfinity, Params};
-use spectra_core::registry::{Context, SurfaceEntry};
+use spectra_core::registry::Context;
 use spectra_core::surface::{FromSag, PerRay, SagShape, Surface};
 
 /// z = (cx x^2 + cy y^2) / (1 + sqrt(1 - (1 + kx) cx^2 x^2 - (1 + ky) cy^2 y^2)), with the curvatures cx, cy and the conic
@@ -52,8 +53,8 @@ impl SagShape for Biconic {
     }
 }
 
-/// Parameters of `kind: biconic` as written in a lens.
-#[derive(Debug, Deserialize)]
+/// Two conic sections across each other.
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct BiconicParams {
     /// Radius in the x-z section, mm if bare: positive where the center lies at larger z; `inf` is straight.
@@ -68,9 +69,7 @@ struct BiconicParams {
     conic_y: f64,
 }
 
-inventory::submit! {
-    SurfaceEntry::new("biconic", "Two conic sections across each other.", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION"), build)
-}
+spectra_core::register!(surface "biconic": BiconicParams, build);
 
 fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Surface>, Faults> {
     let p: BiconicParams = params.parse()?;

@@ -1,9 +1,10 @@
 //! `kind: conic`: a surface of revolution of a conic section.
 
 use crate::shared::{self, ConicSection};
+use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{Faults, LengthOrInfinity, Params};
-use spectra_core::registry::{Context, SurfaceEntry};
+use spectra_core::registry::Context;
 use spectra_core::surface::{Hit, Kernel, KernelShape, Ray, Real, Surface};
 
 /// z = c r^2 / (1 + sqrt(1 - (1 + k) c^2 r^2)) for the curvature c = 1 / radius and the conic constant k: a hyperboloid
@@ -75,8 +76,8 @@ impl KernelShape for Conic {
     }
 }
 
-/// Parameters of `kind: conic` as written in a lens.
-#[derive(Debug, Deserialize)]
+/// A surface of revolution of a conic section.
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct ConicParams {
     /// Radius of curvature at the vertex, mm if bare: positive where the center lies at larger z; `inf` is a plane.
@@ -85,9 +86,7 @@ struct ConicParams {
     conic: f64,
 }
 
-inventory::submit! {
-    SurfaceEntry::new("conic", "A surface of revolution of a conic section.", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION"), build)
-}
+spectra_core::register!(surface "conic": ConicParams, build);
 
 fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Surface>, Faults> {
     let p: ConicParams = params.parse()?;

@@ -1,9 +1,10 @@
 //! `kind: cylinder`: curved in one section only.
 
 use crate::shared;
+use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{Faults, LengthOrInfinity, Params};
-use spectra_core::registry::{Context, SurfaceEntry};
+use spectra_core::registry::Context;
 use spectra_core::surface::{Hit, Kernel, KernelShape, Ray, Real, Surface};
 
 /// A circular cylinder. The straight lines on it run along x or y; across them it is a circle.
@@ -20,7 +21,7 @@ pub struct Cylinder {
 }
 
 /// Along which the straight lines of a [`Cylinder`] run.
-#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 pub enum CylinderAxis {
     /// Along x: curved in the y-z plane.
@@ -79,8 +80,8 @@ impl KernelShape for Cylinder {
     }
 }
 
-/// Parameters of `kind: cylinder` as written in a lens.
-#[derive(Debug, Deserialize)]
+/// A circular cylinder: power in one section only.
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct CylinderParams {
     /// Radius, mm if bare: positive where the axis of the cylinder lies at larger z; `inf` is a plane.
@@ -89,9 +90,7 @@ struct CylinderParams {
     axis: CylinderAxis,
 }
 
-inventory::submit! {
-    SurfaceEntry::new("cylinder", "A circular cylinder: power in one section only.", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION"), build)
-}
+spectra_core::register!(surface "cylinder": CylinderParams, build);
 
 fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Surface>, Faults> {
     let p: CylinderParams = params.parse()?;

@@ -3,9 +3,10 @@
 use crate::conic::Conic;
 use crate::shared::{self, ConicSection, MOST_COEFFICIENTS};
 use glam::DVec3;
+use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{Faults, LengthOrInfinity, Params};
-use spectra_core::registry::{Context, SurfaceEntry};
+use spectra_core::registry::Context;
 use spectra_core::surface::{Hit, Kernel, KernelShape, Ray, Real, Surface, Travel, nearest_crossing};
 
 /// z = conic sag + a2 r^2 + a4 r^4 + ..., with up to `TERMS` coefficients: the sizes are compiled apart, so that the
@@ -182,8 +183,8 @@ impl<const TERMS: usize> KernelShape for EvenAsphere<TERMS> {
     }
 }
 
-/// Parameters of `kind: even-asphere` as written in a lens.
-#[derive(Debug, Deserialize)]
+/// A conic with a polynomial in even powers of the radius on top.
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct EvenAsphereParams {
     /// Radius of curvature of the conic part, mm if bare: positive where the center lies at larger z; `inf` is none.
@@ -195,9 +196,7 @@ struct EvenAsphereParams {
     coefficients: Vec<f64>,
 }
 
-inventory::submit! {
-    SurfaceEntry::new("even-asphere", "A conic with a polynomial in even powers of the radius on top.", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION"), build)
-}
+spectra_core::register!(surface "even-asphere": EvenAsphereParams, build);
 
 fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Surface>, Faults> {
     let p: EvenAsphereParams = params.parse()?;

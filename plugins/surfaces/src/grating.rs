@@ -2,11 +2,12 @@
 
 use crate::sphere::Sphere;
 use glam::DVec3;
+use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::Loss;
 use spectra_core::math::{cos, sin};
 use spectra_core::params::{Angle, Faults, LengthOrInfinity, Params, SpatialFrequency};
-use spectra_core::registry::{Context, SurfaceEntry};
+use spectra_core::registry::Context;
 use spectra_core::surface::{Action, Bending, Intersection, KernelShape, PerRay, Ray, ScalarShape, Surface};
 
 /// A diffraction grating: lines in parallel planes along the axis, equally spaced on the vertex plane, on a sphere.
@@ -77,8 +78,8 @@ impl ScalarShape for Grating {
     }
 }
 
-/// Parameters of `kind: grating` as written in a lens.
-#[derive(Debug, Deserialize)]
+/// A diffraction grating, plane or on a sphere, in one order.
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct GratingParams {
     /// Lines per mm, if bare: `600 lines/mm`. Zero or more.
@@ -102,9 +103,7 @@ fn upward() -> Angle {
     Angle::from_rad(0.0)
 }
 
-inventory::submit! {
-    SurfaceEntry::new("grating", "A diffraction grating, plane or on a sphere, in one order.", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION"), build)
-}
+spectra_core::register!(surface "grating": GratingParams, build);
 
 fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Surface>, Faults> {
     let p: GratingParams = params.parse()?;

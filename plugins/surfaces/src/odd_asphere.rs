@@ -1,9 +1,10 @@
 //! `kind: odd-asphere`: a conic with a polynomial in all powers of the radius on top.
 
 use crate::shared::{self, ConicSection, MOST_COEFFICIENTS, polynomial};
+use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{Faults, LengthOrInfinity, Params};
-use spectra_core::registry::{Context, SurfaceEntry};
+use spectra_core::registry::Context;
 use spectra_core::surface::{FromSag, PerRay, SagShape, Surface};
 
 /// z = conic sag + a1 r + a2 r^2 + a3 r^3 + ...: with a1 it is a cone (an axicon) at the vertex.
@@ -48,8 +49,8 @@ impl SagShape for OddAsphere {
     }
 }
 
-/// Parameters of `kind: odd-asphere` as written in a lens.
-#[derive(Debug, Deserialize)]
+/// A conic with a polynomial in all powers of the radius on top.
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct OddAsphereParams {
     /// Radius of curvature of the conic part, mm if bare: positive where the center lies at larger z; `inf` is none.
@@ -61,9 +62,7 @@ struct OddAsphereParams {
     coefficients: Vec<f64>,
 }
 
-inventory::submit! {
-    SurfaceEntry::new("odd-asphere", "A conic with a polynomial in all powers of the radius on top.", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION"), build)
-}
+spectra_core::register!(surface "odd-asphere": OddAsphereParams, build);
 
 fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Surface>, Faults> {
     let p: OddAsphereParams = params.parse()?;

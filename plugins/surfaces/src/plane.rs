@@ -1,8 +1,9 @@
 //! `kind: plane` and `kind: stop`: flat across the axis.
 
+use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{Faults, Params};
-use spectra_core::registry::{Context, SurfaceEntry};
+use spectra_core::registry::Context;
 use spectra_core::surface::{Hit, Kernel, KernelShape, Ray, Real, Surface};
 
 /// The plane z = 0; as a stop it only clips.
@@ -51,26 +52,27 @@ impl KernelShape for Plane {
     }
 }
 
-/// Parameters of `kind: plane` and `kind: stop`: none of their own.
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-struct NoParams {}
+/// A plane across the axis.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+struct PlaneParams {}
 
-inventory::submit! {
-    SurfaceEntry::new("plane", "A plane across the axis.", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION"), build_plane)
-}
+spectra_core::register!(surface "plane": PlaneParams, build_plane);
 
-inventory::submit! {
-    SurfaceEntry::new("stop", "The aperture stop: it clips, and its size sets the f-number.", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION"), build_stop)
-}
+/// The aperture stop: it clips, and its size sets the f-number.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+struct StopParams {}
+
+spectra_core::register!(surface "stop": StopParams, build_stop);
 
 fn build_plane(params: &Params, _: &Context<'_>) -> Result<Box<dyn Surface>, Faults> {
-    params.parse::<NoParams>()?;
+    params.parse::<PlaneParams>()?;
     Ok(Box::new(Kernel(Plane::refracting())))
 }
 
 fn build_stop(params: &Params, _: &Context<'_>) -> Result<Box<dyn Surface>, Faults> {
-    params.parse::<NoParams>()?;
+    params.parse::<StopParams>()?;
     Ok(Box::new(Kernel(Plane::stop())))
 }
 

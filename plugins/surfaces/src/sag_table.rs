@@ -1,8 +1,9 @@
 //! `kind: sag-table`: a measured or computed surface, given at the points of a grid.
 
+use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{Faults, Length, Params, Positive};
-use spectra_core::registry::{Context, SurfaceEntry};
+use spectra_core::registry::Context;
 use spectra_core::surface::{FromSag, PerRay, SagShape, Surface};
 
 /// Fewest points a side: a cubic needs them.
@@ -128,8 +129,8 @@ impl SagShape for SagTable {
     }
 }
 
-/// Parameters of `kind: sag-table` as written in a lens.
-#[derive(Debug, Deserialize)]
+/// Sag at the points of a grid, bicubic between them.
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct SagTableParams {
     /// Distance between neighboring points along x and along y, mm if bare, more than 0. The grid is centered on the vertex.
@@ -142,9 +143,7 @@ struct SagTableParams {
     file: Option<String>,
 }
 
-inventory::submit! {
-    SurfaceEntry::new("sag-table", "Sag at the points of a grid, bicubic between them.", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION"), build)
-}
+spectra_core::register!(surface "sag-table": SagTableParams, build);
 
 fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Surface>, Faults> {
     let p: SagTableParams = params.parse()?;

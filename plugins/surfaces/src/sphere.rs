@@ -1,8 +1,9 @@
 //! `kind: sphere`: part of a sphere, or with `radius: inf` a plane.
 
+use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{Faults, LengthOrInfinity, Params};
-use spectra_core::registry::{Context, SurfaceEntry};
+use spectra_core::registry::Context;
 use spectra_core::surface::{Hit, Kernel, KernelShape, Ray, Real, Surface};
 
 /// Part of a sphere around (0, 0, radius). A ray meets it on the half that holds the vertex, at the
@@ -65,17 +66,15 @@ impl KernelShape for Sphere {
     }
 }
 
-/// Parameters of `kind: sphere` as written in a lens.
-#[derive(Debug, Deserialize)]
+/// Part of a sphere.
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct SphereParams {
     /// Radius of curvature, mm if bare: positive where the centre lies at larger z; `inf` is a plane.
     radius: LengthOrInfinity,
 }
 
-inventory::submit! {
-    SurfaceEntry::new("sphere", "Part of a sphere.", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION"), build).or_default()
-}
+spectra_core::register!(surface "sphere" (default): SphereParams, build);
 
 fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Surface>, Faults> {
     let p: SphereParams = params.parse()?;

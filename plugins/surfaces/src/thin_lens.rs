@@ -1,10 +1,11 @@
 //! `kind: thin-lens`: an ideal lens without thickness.
 
 use glam::DVec3;
+use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::Loss;
 use spectra_core::params::{Faults, Length, Params};
-use spectra_core::registry::{Context, SurfaceEntry};
+use spectra_core::registry::Context;
 use spectra_core::surface::{Action, Bending, Intersection, PerRay, ScalarShape, Surface};
 
 /// An ideal lens: every plane across the axis is imaged sharp and to scale, n'/s' = n/s + 1/f at any angle. With u the
@@ -56,17 +57,15 @@ impl ScalarShape for ThinLens {
     }
 }
 
-/// Parameters of `kind: thin-lens` as written in a lens.
-#[derive(Debug, Deserialize)]
+/// An ideal lens without thickness or aberration.
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct ThinLensParams {
     /// Focal length in air, mm if bare, not 0: positive gathers light.
     focal_length: Length,
 }
 
-inventory::submit! {
-    SurfaceEntry::new("thin-lens", "An ideal lens without thickness or aberration.", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION"), build)
-}
+spectra_core::register!(surface "thin-lens": ThinLensParams, build);
 
 fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Surface>, Faults> {
     let p: ThinLensParams = params.parse()?;

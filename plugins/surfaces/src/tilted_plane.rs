@@ -1,9 +1,10 @@
 //! `kind: tilted-plane`: a plane that is not across the axis; what follows stays on the old axis.
 
+use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::math::{cos, sin};
 use spectra_core::params::{Angle, Faults, Params};
-use spectra_core::registry::{Context, SurfaceEntry};
+use spectra_core::registry::Context;
 use spectra_core::surface::{Hit, Kernel, KernelShape, Ray, Real, Surface};
 
 /// A plane through the vertex, turned by right-handed rotations about x, then about the new y. So its sag is
@@ -51,8 +52,8 @@ impl KernelShape for TiltedPlane {
     }
 }
 
-/// Parameters of `kind: tilted-plane` as written in a lens.
-#[derive(Debug, Deserialize)]
+/// A plane that is not across the axis.
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct TiltedPlaneParams {
     /// Rotation about x, degrees if bare, between -90 and 90: positive moves the upper part to larger z.
@@ -68,9 +69,7 @@ fn no_tilt() -> Angle {
     Angle::from_rad(0.0)
 }
 
-inventory::submit! {
-    SurfaceEntry::new("tilted-plane", "A plane that is not across the axis.", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION"), build)
-}
+spectra_core::register!(surface "tilted-plane": TiltedPlaneParams, build);
 
 fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Surface>, Faults> {
     let p: TiltedPlaneParams = params.parse()?;

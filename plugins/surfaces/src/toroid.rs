@@ -1,9 +1,10 @@
 //! `kind: toroid`: a curve in the y-z plane, rotated about an axis parallel to y.
 
 use crate::shared::{self, ConicSection, MOST_COEFFICIENTS, polynomial};
+use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{Faults, LengthOrInfinity, Params};
-use spectra_core::registry::{Context, SurfaceEntry};
+use spectra_core::registry::Context;
 use spectra_core::surface::{FromSag, PerRay, SagShape, Surface};
 
 /// The curve z = g(y) = conic sag + a2 y^2 + a4 y^4 + ..., rotated about the line through (z = `rotation-radius`) parallel to
@@ -66,8 +67,8 @@ impl SagShape for Toroid {
     }
 }
 
-/// Parameters of `kind: toroid` as written in a lens.
-#[derive(Debug, Deserialize)]
+/// A curve in the y-z plane, rotated about an axis parallel to y.
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct ToroidParams {
     /// Radius of the curve in the y-z plane, mm if bare: positive where its center lies at larger z; `inf` is straight.
@@ -82,9 +83,7 @@ struct ToroidParams {
     rotation_radius: LengthOrInfinity,
 }
 
-inventory::submit! {
-    SurfaceEntry::new("toroid", "A curve in the y-z plane, rotated about an axis parallel to y.", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION"), build)
-}
+spectra_core::register!(surface "toroid": ToroidParams, build);
 
 fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Surface>, Faults> {
     let p: ToroidParams = params.parse()?;

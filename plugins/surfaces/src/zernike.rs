@@ -1,9 +1,10 @@
 //! `kind: zernike`: a conic with Zernike polynomials on top.
 
 use crate::shared::{self, ConicSection, polynomial};
+use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{Faults, Length, LengthOrInfinity, Params, Positive};
-use spectra_core::registry::{Context, SurfaceEntry};
+use spectra_core::registry::Context;
 use spectra_core::surface::{FromSag, PerRay, SagShape, Surface};
 
 /// The most coefficients taken: radial orders up to 14 in Noll's order.
@@ -26,7 +27,7 @@ pub struct Zernike {
 }
 
 /// In which order the polynomials of a [`Zernike`] come, and how large they are.
-#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 pub enum ZernikeOrdering {
     /// Noll's, of mean square 1.
@@ -147,8 +148,8 @@ impl SagShape for Zernike {
     }
 }
 
-/// Parameters of `kind: zernike` as written in a lens.
-#[derive(Debug, Deserialize)]
+/// A conic with Zernike polynomials on top.
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct ZernikeParams {
     /// Radius of curvature of the conic part, mm if bare; none if left out.
@@ -169,9 +170,7 @@ fn plane() -> LengthOrInfinity {
     LengthOrInfinity::Infinite
 }
 
-inventory::submit! {
-    SurfaceEntry::new("zernike", "A conic with Zernike polynomials on top.", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION"), build)
-}
+spectra_core::register!(surface "zernike": ZernikeParams, build);
 
 fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Surface>, Faults> {
     let p: ZernikeParams = params.parse()?;

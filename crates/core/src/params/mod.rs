@@ -73,6 +73,7 @@ mod parts;
 mod path;
 mod quantities;
 pub mod quantity;
+mod schema;
 mod stage_node;
 #[cfg(test)]
 mod tests;
@@ -88,6 +89,7 @@ pub use quantities::{
     Power, RadiantIntensity, Ratio, SpatialFrequency, Temperature, Time, Wavelength,
 };
 pub use quantity::{Bound, Quantity};
+pub use schema::schema_of;
 pub use stage_node::StageNode;
 pub use text::nearest;
 pub use units::{Dimension, Reading, Unit};

@@ -107,7 +107,7 @@ impl Unit {
 
 use Dimension as D;
 
-static UNITS: &[Unit] = &[
+pub(super) static UNITS: &[Unit] = &[
     // Reference: nanometre.
     Unit::new(&["nm"], D::Length, 1.0),
     Unit::new(&["um", "micron", "microns"], D::Length, 1e3),

@@ -2,11 +2,12 @@
 
 use super::{CameraColor, Converter, PATTERNS, Pattern, Photosite, Pixels, Sensor};
 use crate::params::imager_params;
+use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{
     Fault, Faults, Length, NonNegative, OrInfinity, Params, Positive, Quantity, Ratio, Time, nearest,
 };
-use spectra_core::registry::{Context, ImagerEntry};
+use spectra_core::registry::Context;
 use spectra_core::spectral::Channel;
 use spectra_core::stage::Imager;
 use spectra_glass::Catalogue;
@@ -14,7 +15,7 @@ use spectra_spectrum::constants::{LIGHT_M_PER_S, PLANCK_J_S};
 use spectra_spectrum::{find_emission_in, find_sensitivity_in};
 
 imager_params! {
-    /// Parameters of `kind: sensor` as written in a scene.
+    /// A chip of pixels with color filters: electrons, noise, raw files.
     SensorParams {
         /// Exposure time, s if bare.
         exposure: Positive<Time>,
@@ -73,7 +74,7 @@ imager_params! {
 }
 
 /// `photosite` as written in a scene.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct PhotositeParams {
     /// From the color filter to the silicon, mm if bare.
@@ -275,12 +276,4 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Imager>, Faul
     faults.into_result(Box::new(Sensor { pixels, channels, converter }))
 }
 
-inventory::submit! {
-    ImagerEntry::new(
-        "sensor",
-        "A chip of pixels with color filters: electrons, noise, raw files.",
-        env!("CARGO_PKG_NAME"),
-        env!("CARGO_PKG_VERSION"),
-        build,
-    )
-}
+spectra_core::register!(imager "sensor": SensorParams, build);

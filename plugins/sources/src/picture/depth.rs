@@ -2,14 +2,15 @@
 
 use super::linear::{Choice, Linear};
 use super::{decode, find, trouble};
+use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{Faults, Length, Params, Positive, Ratio, StageNode};
 use spectra_core::registry::Context;
 
 /// `depth` of a picture.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
-struct DepthParams {
+pub(super) struct DepthParams {
     /// A file of its own; the picture's if absent.
     file: Option<String>,
     /// The channel; `Z` if absent.

@@ -18,9 +18,10 @@ use depth::Depth;
 use field::HeightField;
 use linear::{Choice, Linear, Trouble};
 use map::{Importance, PictureMap};
+use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{Fault, Faults, Length, Luminance, Params, Positive, Quantity, StageNode};
-use spectra_core::registry::{Context, SourceEntry, build as build_stage};
+use spectra_core::registry::{Context, StageOf, build as build_stage};
 use spectra_core::resources::{Resource, ResourceError};
 use spectra_core::spectral::SpectralPower;
 use spectra_core::stage::{ColorModel, Source};
@@ -29,8 +30,8 @@ use std::sync::Arc;
 /// Largest picture file, bytes.
 const MAX_BYTES: u64 = 1 << 30;
 
-/// Parameters of `kind: picture`.
-#[derive(Debug, Deserialize)]
+/// A picture file (EXR, PNG, JPEG, TIFF, HDR) on a plane at a distance.
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct PictureParams {
     /// An OpenEXR, PNG, JPEG, TIFF or Radiance HDR file, beside the scene.
@@ -48,15 +49,17 @@ struct PictureParams {
     #[serde(default = "luminance")]
     luminance: Positive<Luminance>,
     /// How RGB becomes a spectrum; the registry's default if absent.
+    #[schemars(with = "Option<StageOf<dyn ColorModel>>")]
     color: Option<StageNode>,
     /// How far each pixel stands; all on the plane if absent.
+    #[schemars(with = "Option<depth::DepthParams>")]
     depth: Option<StageNode>,
     /// Guesses the light of clipped highlights of integer files; nothing is guessed if absent.
     recover_highlights: Option<RecoverParams>,
 }
 
 /// `recover-highlights`: see [`highlights`].
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct RecoverParams {
     /// Stops above white that the middle of a large highlight may reach, above 0 to 12.
@@ -71,15 +74,7 @@ fn luminance() -> Positive<Luminance> {
     Positive::from_bare(100.0)
 }
 
-inventory::submit! {
-    SourceEntry::new(
-        "picture",
-        "A picture file (EXR, PNG, JPEG, TIFF, HDR) on a plane at a distance.",
-        env!("CARGO_PKG_NAME"),
-        env!("CARGO_PKG_VERSION"),
-        build,
-    )
-}
+spectra_core::register!(source "picture": PictureParams, build);
 
 fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faults> {
     let mut faults = Faults::new();

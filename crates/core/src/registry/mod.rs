@@ -1,21 +1,66 @@
 //! The registry: name -> typed parameters -> stage.
 //!
-//! A plugin crate submits one [`Entry`] a stage:
+//! A plugin crate registers each of its stages where it builds it:
 //!
-//! ```ignore
-//! inventory::submit! {
-//!     SurfaceEntry::new("sphere", "Part of a sphere.", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION"), build)
-//! }
 //! ```
+//! use schemars::JsonSchema;
+//! use serde::Deserialize;
+//! use spectra_core::params::{Faults, Length, Params};
+//! use spectra_core::registry::Context;
+//! use spectra_core::surface::{FromSag, PerRay, SagShape, Surface};
+//!
+//! /// A paraboloid.
+//! ///
+//! /// # Example
+//! /// ```yaml
+//! /// {kind: paraboloid, focal-length: 100 mm, thickness: 50, mirror: true}
+//! /// ```
+//! #[derive(Debug, Deserialize, JsonSchema)]
+//! #[serde(deny_unknown_fields, rename_all = "kebab-case")]
+//! struct ParaboloidParams {
+//!     /// Focal length as a mirror, mm if bare.
+//!     focal_length: Length,
+//! }
+//!
+//! spectra_core::register!(surface "paraboloid": ParaboloidParams, build);
+//!
+//! #[derive(Debug)]
+//! struct Paraboloid(f64);
+//!
+//! impl SagShape for Paraboloid {
+//!     fn sag_mm(&self, x_mm: f64, y_mm: f64) -> Option<f64> {
+//!         Some((x_mm * x_mm + y_mm * y_mm) / (4.0 * self.0))
+//!     }
+//! }
+//!
+//! fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Surface>, Faults> {
+//!     let p: ParaboloidParams = params.parse()?;
+//!     Ok(Box::new(PerRay(FromSag(Paraboloid(p.focal_length.mm())))))
+//! }
+//! # assert_eq!(spectra_core::registry::list()[0].documentation().summary, "A paraboloid.");
+//! ```
+//!
+//! What a person reads about a stage comes from the doc comments of its parameters ([`Documentation`]), what an editor
+//! completes from their types ([`definitions`]).
 //!
 //! The order of submission differs between builds and a name could come twice: [`check`] sorts and
 //! refuses, and the command calls it before anything else.
+
+mod documentation;
+mod schema;
+
+pub use documentation::{Documentation, Parameter};
+pub use schema::{StageOf, definitions};
 
 use crate::params::{Fault, Faults, Params};
 use crate::resources::Resources;
 use crate::spectral::{Grid, SpectralPower};
 use crate::stage::{ColorModel, Film, Imager, Source, WavelengthSampler};
 use crate::surface::Surface;
+use schemars::{JsonSchema, Schema, SchemaGenerator};
+
+#[doc(hidden)] // for `register!`
+pub use inventory;
 
 /// What a builder may ask for.
 #[derive(Clone, Copy)]
@@ -31,40 +76,77 @@ pub struct Context<'a> {
 /// How a stage is built from its parameters.
 pub type Build<S> = fn(&Params, &Context<'_>) -> Result<Box<S>, Faults>;
 
-/// One registered stage.
+/// The JSON Schema of a stage's own parameters: a map without `kind`.
+pub type SchemaOf = fn(&mut SchemaGenerator) -> Schema;
+
+/// One registered stage; see [`crate::register!`].
 pub struct Entry<S: ?Sized + 'static> {
     /// Name in a scene (`kind: name`), kebab-case.
     pub name: &'static str,
-    /// One line for a person.
-    pub summary: &'static str,
     /// The crate that it comes from.
     pub package: &'static str,
     /// That crate's version.
     pub version: &'static str,
     /// Whether it is taken where a scene names no kind.
     pub default: bool,
+    /// What its parameters are written in, with their documentation.
+    pub schema: SchemaOf,
     /// Builds it.
     pub build: Build<S>,
 }
 
 impl<S: ?Sized> Entry<S> {
-    /// An entry; see the fields.
+    /// An entry whose parameters are a `P`; see the fields.
     #[must_use]
-    pub const fn new(
+    pub const fn new<P: JsonSchema>(
         name: &'static str,
-        summary: &'static str,
         package: &'static str,
         version: &'static str,
+        default: bool,
         build: Build<S>,
     ) -> Self {
-        Self { name, summary, package, version, default: false, build }
+        Self { name, package, version, default, schema: P::json_schema, build }
     }
+}
 
-    /// The same, taken where a scene names no kind.
-    #[must_use]
-    pub const fn or_default(self) -> Self {
-        Self { default: true, ..self }
-    }
+/// Registers a stage: `register!(surface "axicon": AxiconParams, build);`.
+///
+/// The stages are `source`, `color`, `wavelengths`, `surface`, `imager` and `film`. The parameters' type implements
+/// `Deserialize` and `JsonSchema`, and its doc comment is what `spectra doc` shows: first the summary, then text, then
+/// (optional) `# Example` with a block of YAML, and `# References`. `build` is a [`registry::Build`](crate::registry::Build).
+/// A name followed by `(default)` is taken where a scene names no kind.
+#[macro_export]
+macro_rules! register {
+    ($stage:ident $name:literal (default): $params:ty, $build:expr) => {
+        $crate::register!(@entry $stage, $name, true, $params, $build);
+    };
+    ($stage:ident $name:literal: $params:ty, $build:expr) => {
+        $crate::register!(@entry $stage, $name, false, $params, $build);
+    };
+    (@entry $stage:ident, $name:literal, $default:literal, $params:ty, $build:expr) => {
+        $crate::registry::inventory::submit! {
+            <$crate::register!(@type $stage)>::new::<$params>(
+                $name,
+                env!("CARGO_PKG_NAME"),
+                env!("CARGO_PKG_VERSION"),
+                $default,
+                $build,
+            )
+        }
+    };
+    (@type source) => { $crate::registry::SourceEntry };
+    (@type color) => { $crate::registry::ColorEntry };
+    (@type wavelengths) => { $crate::registry::SamplerEntry };
+    (@type surface) => { $crate::registry::SurfaceEntry };
+    (@type imager) => { $crate::registry::ImagerEntry };
+    (@type film) => { $crate::registry::FilmEntry };
+    (@type $other:ident) => {
+        compile_error!(concat!(
+            "no stage is called `",
+            stringify!($other),
+            "`: source, color, wavelengths, surface, imager or film"
+        ))
+    };
 }
 
 /// A kind of stage, as the registry knows it.
@@ -109,21 +191,21 @@ stages! {
     FilmEntry, dyn Film, "film", "A registered film process.";
 }
 
-/// What `spectra list` shows of a stage.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// A registered stage without what builds it.
+#[derive(Clone, Copy, Debug)]
 pub struct Listed {
     /// Kind of stage.
     pub stage: &'static str,
     /// Name in a scene.
     pub name: &'static str,
-    /// One line.
-    pub summary: &'static str,
     /// Crate.
     pub package: &'static str,
     /// Version of the crate.
     pub version: &'static str,
     /// Whether it is taken where a scene names no kind.
     pub default: bool,
+    /// What its parameters are written in.
+    pub schema: SchemaOf,
 }
 
 impl Listed {
@@ -131,15 +213,21 @@ impl Listed {
         Self {
             stage: S::NAME,
             name: entry.name,
-            summary: entry.summary,
             package: entry.package,
             version: entry.version,
             default: entry.default,
+            schema: entry.schema,
         }
+    }
+
+    /// What a person reads about it.
+    #[must_use]
+    pub fn documentation(&self) -> Documentation {
+        Documentation::of(self.schema)
     }
 }
 
-/// Tests the registry: no name twice, none ill-formed, each with a summary, one default at most.
+/// Tests the registry: no name twice, none ill-formed, one default at most.
 ///
 /// # Errors
 /// One text a fault; a duplicate names both crates.
@@ -155,9 +243,6 @@ fn check_list(all: &[Listed]) -> Result<(), Vec<String>> {
             && !a.name.ends_with('-');
         if !well_formed {
             faults.push(format!("{} `{}` of crate {} {}: names are kebab-case", a.stage, a.name, a.package, a.version));
-        }
-        if a.summary.trim().is_empty() {
-            faults.push(format!("{} `{}` of crate {} {}: the summary is empty", a.stage, a.name, a.package, a.version));
         }
         for b in &all[i + 1..] {
             if a.stage == b.stage && a.name == b.name {
@@ -214,7 +299,7 @@ mod tests {
     use super::*;
 
     fn listed(name: &'static str, package: &'static str) -> Listed {
-        Listed { stage: "surface", name, summary: "x", package, version: "1.2.3", default: false }
+        Listed { stage: "surface", name, package, version: "1.2.3", default: false, schema: <()>::json_schema }
     }
 
     #[test]

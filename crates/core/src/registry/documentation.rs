@@ -1,0 +1,373 @@
+//! What a person reads about a stage, taken from the schema of its parameters.
+
+use super::SchemaOf;
+use schemars::SchemaGenerator;
+use serde::Serialize;
+use serde_json::{Map, Value};
+
+/// Documentation of a stage, or of any map whose parameters have a schema.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Documentation {
+    /// The first paragraph.
+    pub summary: String,
+    /// What follows, without examples and references; Markdown.
+    pub text: String,
+    /// Blocks of YAML, each as it could stand in a file.
+    pub examples: Vec<String>,
+    /// Where formulas and data come from.
+    pub references: Vec<String>,
+    /// Its parameters, in the order of their declaration.
+    pub parameters: Vec<Parameter>,
+}
+
+/// One parameter.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Parameter {
+    /// Its key; `.` leads into a map, `[]` into a list.
+    pub key: String,
+    /// What it is written as, in words.
+    #[serde(rename = "type")]
+    pub kind: String,
+    /// Unit of a bare number; empty where there is none.
+    pub unit: String,
+    /// Which values are allowed, in words; empty where any of the type are.
+    pub range: String,
+    /// What is taken where it is left out; `None` where it must be given, or where leaving it out is a value of its own.
+    pub default: Option<Value>,
+    /// Whether it must be given.
+    pub required: bool,
+    /// What it means.
+    pub description: String,
+    /// Examples of its value.
+    pub examples: Vec<Value>,
+}
+
+impl Documentation {
+    /// Of parameters with this schema.
+    #[must_use]
+    pub fn of(schema: SchemaOf) -> Self {
+        let mut generator = SchemaGenerator::default();
+        let schema = schema(&mut generator);
+        let definitions = generator.take_definitions(true);
+        let description = schema.get("description").and_then(Value::as_str).unwrap_or_default();
+        let mut found = Self::read(description);
+        parameters(schema.as_value(), &definitions, "", 0, &mut found.parameters);
+        found
+    }
+
+    /// Takes a description apart.
+    fn read(description: &str) -> Self {
+        let mut sections: Vec<(String, Vec<&str>)> = vec![(String::new(), Vec::new())];
+        let mut in_block = false;
+        for line in description.lines() {
+            in_block ^= line.trim_start().starts_with("```");
+            match line.strip_prefix("# ").filter(|_| !in_block) {
+                Some(title) => sections.push((title.trim().to_lowercase(), Vec::new())),
+                None => sections.last_mut().expect("one is there").1.push(line),
+            }
+        }
+        let (mut summary, mut text) = (String::new(), String::new());
+        let (mut examples, mut references) = (Vec::new(), Vec::new());
+        for (title, lines) in &sections {
+            let body = lines.join("\n");
+            match title.as_str() {
+                "" => {
+                    let (first, rest) = body.trim().split_once("\n\n").unwrap_or((body.trim(), ""));
+                    summary = first.replace('\n', " ");
+                    text = rest.trim().to_owned();
+                }
+                "example" | "examples" => {
+                    let blocks = body.split("```").skip(1).step_by(2);
+                    examples.extend(blocks.map(|block| {
+                        let (_, code) = block.split_once('\n').unwrap_or(("", block));
+                        code.trim_end().to_owned()
+                    }));
+                }
+                "reference" | "references" => references = items(lines),
+                other => {
+                    text.push_str(&format!("\n\n# {other}\n{}", body.trim_end()));
+                }
+            }
+        }
+        Self { summary, text: text.trim().to_owned(), examples, references, parameters: Vec::new() }
+    }
+}
+
+/// The items of a list of Markdown; lines that go on belong to the item before.
+fn items(lines: &[&str]) -> Vec<String> {
+    let mut found: Vec<String> = Vec::new();
+    for line in lines.iter().map(|line| line.trim()).filter(|line| !line.is_empty()) {
+        match (line.strip_prefix("- ").or(line.strip_prefix("* ")), found.last_mut()) {
+            (Some(item), _) => found.push(item.to_owned()),
+            (None, Some(last)) => {
+                last.push(' ');
+                last.push_str(line);
+            }
+            (None, None) => found.push(line.to_owned()),
+        }
+    }
+    found
+}
+
+/// Deepest nesting that is shown.
+const DEEPEST: usize = 4;
+
+/// Adds the parameters of a map, and of the maps in it.
+fn parameters(
+    schema: &Value,
+    definitions: &Map<String, Value>,
+    prefix: &str,
+    depth: usize,
+    found: &mut Vec<Parameter>,
+) {
+    let Some(Value::Object(properties)) = schema.get("properties") else { return };
+    let required = |key: &str| {
+        schema.get("required").and_then(Value::as_array).is_some_and(|all| all.iter().any(|k| k.as_str() == Some(key)))
+    };
+    for (key, property) in properties {
+        let path = format!("{prefix}{key}");
+        let inner = resolved(property, definitions);
+        let said = property.get("description").or_else(|| inner.get("description"));
+        found.push(Parameter {
+            key: path.clone(),
+            kind: kind(property, definitions),
+            unit: inner.get("x-unit").and_then(Value::as_str).unwrap_or_default().to_owned(),
+            range: range(inner),
+            default: property.get("default").or_else(|| inner.get("default")).filter(|d| !d.is_null()).cloned(),
+            required: required(key),
+            description: said.and_then(Value::as_str).unwrap_or_default().replace('\n', " "),
+            examples: inner.get("examples").and_then(Value::as_array).cloned().unwrap_or_default(),
+        });
+        if depth < DEEPEST {
+            let inside =
+                if is(inner, "array") { inner.get("items").map(|i| resolved(i, definitions)) } else { Some(inner) };
+            let mark = if is(inner, "array") { "[]." } else { "." };
+            for map in inside.into_iter().flat_map(|s| maps(s, definitions)) {
+                parameters(map, definitions, &format!("{path}{mark}"), depth + 1, found);
+            }
+        }
+    }
+}
+
+/// The maps among the alternatives of a schema.
+fn maps<'a>(schema: &'a Value, definitions: &'a Map<String, Value>) -> Vec<&'a Value> {
+    if schema.get("properties").is_some() {
+        return vec![schema];
+    }
+    alternatives(schema).map(|a| resolved(a, definitions)).filter(|a| a.get("properties").is_some()).collect()
+}
+
+fn alternatives(schema: &Value) -> impl Iterator<Item = &Value> {
+    ["anyOf", "oneOf"].into_iter().filter_map(|key| schema.get(key)?.as_array()).flatten()
+}
+
+fn is(schema: &Value, name: &str) -> bool {
+    match schema.get("type") {
+        Some(Value::String(one)) => one == name,
+        Some(Value::Array(several)) => several.iter().any(|s| s.as_str() == Some(name)),
+        _ => false,
+    }
+}
+
+/// What a reference leads to; of something or null, the something.
+fn resolved<'a>(schema: &'a Value, definitions: &'a Map<String, Value>) -> &'a Value {
+    let mut at = schema;
+    for _ in 0..8 {
+        if let Some(name) = at.get("$ref").and_then(Value::as_str).and_then(|r| r.strip_prefix("#/$defs/")) {
+            match definitions.get(name) {
+                Some(definition) => at = definition,
+                None => return at,
+            }
+            continue;
+        }
+        let mut others = alternatives(at).filter(|a| !is_null(a));
+        match (others.next(), others.next()) {
+            (Some(only), None) => at = only,
+            _ => return at,
+        }
+    }
+    at
+}
+
+fn is_null(schema: &Value) -> bool {
+    schema.get("type").and_then(Value::as_str) == Some("null")
+}
+
+/// What a value is written as, in words.
+fn kind(schema: &Value, definitions: &Map<String, Value>) -> String {
+    let schema = resolved(schema, definitions);
+    if let Some(stage) = schema.get("$ref").and_then(Value::as_str).and_then(|r| r.strip_prefix("#/$defs/")) {
+        return format!("a {stage}");
+    }
+    if let Some(quantity) = schema.get("x-quantity").and_then(Value::as_str) {
+        let infinity = if schema.get("x-infinity").is_some() { " or inf" } else { "" };
+        return format!("{quantity}{infinity}");
+    }
+    if let Some(all) = schema.get("enum").and_then(Value::as_array) {
+        return words(all.iter().filter_map(Value::as_str));
+    }
+    let several: Vec<&Value> = alternatives(schema).filter(|a| !is_null(a)).collect();
+    if !several.is_empty() {
+        let names: Option<Vec<&str>> = several.iter().map(|a| a.get("const").and_then(Value::as_str)).collect();
+        return match names {
+            Some(names) => words(names.into_iter()),
+            None => {
+                let mut all: Vec<String> = several.iter().map(|a| kind(a, definitions)).collect();
+                all.dedup();
+                all.join(", or ")
+            }
+        };
+    }
+    if is(schema, "array") {
+        let count = match (bound(schema, "minItems"), bound(schema, "maxItems")) {
+            (Some(min), Some(max)) if min == max => format!("{min} of "),
+            _ => String::new(),
+        };
+        let of = schema.get("items").map_or_else(|| "anything".to_owned(), |items| kind(items, definitions));
+        return format!("list of {count}{of}");
+    }
+    for (name, word) in [
+        ("object", "map"),
+        ("boolean", "true or false"),
+        ("integer", "whole number"),
+        ("number", "number"),
+        ("string", "text"),
+    ] {
+        if is(schema, name) {
+            return word.to_owned();
+        }
+    }
+    "anything".to_owned()
+}
+
+fn words<'a>(names: impl Iterator<Item = &'a str>) -> String {
+    names.collect::<Vec<_>>().join(" | ")
+}
+
+fn bound<'a>(schema: &'a Value, key: &str) -> Option<&'a Value> {
+    schema.get(key)
+}
+
+/// Which values are allowed, in words.
+fn range(schema: &Value) -> String {
+    let mut parts = Vec::new();
+    if let Some(least) = schema.get("minimum").filter(|v| v.as_f64() != Some(f64::from(i32::MIN))) {
+        parts.push(format!(">= {least}"));
+    }
+    if let Some(below) = schema.get("exclusiveMinimum") {
+        parts.push(format!("> {below}"));
+    }
+    if let Some(most) = schema.get("maximum") {
+        parts.push(format!("<= {most}"));
+    }
+    if let Some(above) = schema.get("exclusiveMaximum") {
+        parts.push(format!("< {above}"));
+    }
+    let count = (schema.get("minItems"), schema.get("maxItems"));
+    match count {
+        (Some(min), Some(max)) if min != max => parts.push(format!("{min} to {max} of them")),
+        (Some(min), None) => parts.push(format!("{min} of them or more")),
+        (None, Some(max)) => parts.push(format!("{max} of them at most")),
+        _ => {}
+    }
+    parts.join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::params::{Angle, Length, OrInfinity, Positive};
+    use schemars::JsonSchema;
+    use serde::Deserialize;
+
+    /// A cone: it draws a beam out
+    /// into a line.
+    ///
+    /// The tip is sharp.
+    ///
+    /// # Example
+    /// ```yaml
+    /// kind: cone
+    /// angle: 5 deg
+    /// ```
+    /// # References
+    /// - Somebody, J. Opt. Soc. Am. 44,
+    ///   592 (1954).
+    #[derive(Deserialize, JsonSchema)]
+    #[serde(deny_unknown_fields, rename_all = "kebab-case")]
+    #[allow(dead_code, reason = "only its schema is looked at")]
+    struct ConeParams {
+        /// Angle of the side, degrees if bare.
+        angle: Angle,
+        /// Where it ends.
+        #[serde(default = "five")]
+        end_radius: Positive<Length>,
+        /// Where it begins.
+        begin: Option<OrInfinity<Length>>,
+        /// Terms.
+        #[schemars(length(max = 20))]
+        #[serde(default)]
+        terms: Vec<f64>,
+        /// Its tip.
+        tip: Option<Tip>,
+    }
+
+    /// A tip.
+    #[derive(Deserialize, JsonSchema)]
+    #[serde(deny_unknown_fields, rename_all = "kebab-case")]
+    #[allow(dead_code, reason = "only its schema is looked at")]
+    struct Tip {
+        /// Its shape.
+        shape: Shape,
+    }
+
+    #[derive(Deserialize, JsonSchema)]
+    #[serde(rename_all = "kebab-case")]
+    #[allow(dead_code, reason = "only its schema is looked at")]
+    enum Shape {
+        /// As made.
+        Sharp,
+        /// As worn.
+        VeryRound,
+    }
+
+    fn five() -> Positive<Length> {
+        Positive::from_bare(5.0)
+    }
+
+    use crate::params::Quantity;
+
+    #[test]
+    fn doc_comments_become_documentation() {
+        let doc = Documentation::of(ConeParams::json_schema);
+        assert_eq!(doc.summary, "A cone: it draws a beam out into a line.");
+        assert_eq!(doc.text, "The tip is sharp.");
+        assert_eq!(doc.examples, ["kind: cone\nangle: 5 deg"]);
+        assert_eq!(doc.references, ["Somebody, J. Opt. Soc. Am. 44, 592 (1954)."]);
+        let shown: Vec<String> = doc
+            .parameters
+            .iter()
+            .map(|p| {
+                let default = p.default.as_ref().map_or(String::new(), ToString::to_string);
+                format!(
+                    "{}: {} [{}] {} {default} {}",
+                    p.key,
+                    p.kind,
+                    p.unit,
+                    p.range,
+                    if p.required { "!" } else { "" }
+                )
+            })
+            .collect();
+        let wanted = [
+            "angle: angle [deg]   !",
+            "end-radius: length [mm] > 0 \"5 mm\" ",
+            "begin: length or inf [mm]   ",
+            "terms: list of number [] 20 of them at most [] ",
+            "tip: map []   ",
+            "tip.shape: sharp | very-round []   !",
+        ];
+        assert_eq!(shown, wanted);
+        assert_eq!(doc.parameters[0].description, "Angle of the side, degrees if bare.");
+    }
+}
