@@ -44,6 +44,10 @@ pub(crate) enum Command {
     Check(Check),
     /// List what can be written in a scene.
     List(List),
+    /// Show what a stage does, and what is written in it.
+    Doc(Doc),
+    /// Write the JSON Schema of scenes, lenses, stocks or spectra.
+    Schema(SchemaOf),
     /// Look at a lens as an optical engineer does.
     Lens(LensArguments),
     /// Look at film stocks: sensitivities, curves, dyes.
@@ -127,6 +131,37 @@ pub(crate) struct Check {
     /// One JSON object on standard output: scenes, each with its faults and warnings.
     #[arg(long)]
     pub json: bool,
+}
+
+/// `spectra doc`.
+#[derive(Debug, Args)]
+#[command(
+    long_about = "Show what a stage does, and what is written in it: parameters with types, units, ranges and defaults, \
+        examples, references.",
+    after_long_help = "Examples:\n  spectra doc surface/even-asphere\n  spectra doc surface\n  spectra doc scene"
+)]
+pub(crate) struct Doc {
+    /// A stage (surface/sphere), a kind of stage (surface), or a file (scene, lens, stock, spectrum).
+    #[arg(value_name = "STAGE/NAME")]
+    pub name: String,
+    /// One JSON object on standard output.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `spectra schema`.
+#[derive(Debug, Args)]
+#[command(
+    long_about = "Write the JSON Schema (2020-12) of scenes, lenses, stocks or spectra to standard output.\n\n\
+        It has every stage of this program, plugins included. Editors that know YAML complete and check files by it.",
+    after_long_help = "Example:\n  spectra schema scene > spectra-scene.json\n\n\
+        and as the first line of a scene, for the YAML language server of most editors:\n  \
+        # yaml-language-server: $schema=spectra-scene.json"
+)]
+pub(crate) struct SchemaOf {
+    /// Which files.
+    #[arg(value_name = "KIND", default_value = "scene", value_parser = ["scene", "lens", "stock", "spectrum"])]
+    pub kind: String,
 }
 
 /// `spectra bench`.

@@ -8,6 +8,7 @@ mod arguments;
 mod bench;
 mod check;
 mod console;
+mod doc;
 mod film;
 mod glass;
 mod lens;
@@ -16,6 +17,7 @@ mod list;
 mod outcome;
 mod quantity;
 mod run;
+mod schema;
 mod spectrum;
 mod version;
 mod words;
@@ -59,6 +61,8 @@ fn dispatch(arguments: &Arguments, started: Instant) -> Outcome {
         Some(Command::Run(run)) => run::run(run, isa, started),
         Some(Command::Check(check)) => check::check(check, isa),
         Some(Command::List(list)) => list::list(list),
+        Some(Command::Doc(arguments)) => doc::doc(arguments),
+        Some(Command::Schema(arguments)) => schema::schema(arguments),
         Some(Command::Lens(lens)) => lens::lens(&lens.command, isa),
         Some(Command::Film(arguments)) => film::film(&arguments.command),
         Some(Command::Bench(bench)) => bench::bench(bench, isa),

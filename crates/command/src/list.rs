@@ -4,7 +4,8 @@ use crate::arguments::List;
 use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
 use serde::Serialize;
-use spectra_core::{params, registry};
+use spectra_core::params;
+use spectra_core::registry::{self, Documentation};
 use std::fmt::Write;
 
 /// Something that a scene can name.
@@ -12,10 +13,11 @@ use std::fmt::Write;
 struct Item {
     stage: &'static str,
     name: String,
-    summary: Option<String>,
     package: &'static str,
     version: &'static str,
     default: bool,
+    /// Of a registered stage.
+    documentation: Option<Documentation>,
 }
 
 /// Bundled files that a scene names: what they are called here, and where they lie.
@@ -46,18 +48,18 @@ fn items() -> Vec<Item> {
     let registered = registry::list().into_iter().map(|l| Item {
         stage: l.stage,
         name: l.name.to_owned(),
-        summary: Some(l.documentation().summary),
         package: l.package,
         version: l.version,
         default: l.default,
+        documentation: Some(l.documentation()),
     });
     let bundled = |stage, name: &str| Item {
         stage,
         name: name.to_owned(),
-        summary: None,
         package: "bundled",
         version: crate::version::VERSION,
         default: false,
+        documentation: None,
     };
     let files = BUNDLED.into_iter().flat_map(|(stage, folder)| {
         let names = spectra_data::list(folder).filter_map(move |path| path.strip_prefix(folder)?.strip_suffix(".yaml"));
@@ -69,7 +71,8 @@ fn items() -> Vec<Item> {
 
 fn table(items: &[Item]) -> String {
     let mut out = String::new();
-    let width = items.iter().map(|item| item.name.len()).max().unwrap_or(0);
+    let width = |of: fn(&Item) -> usize| items.iter().map(of).max().unwrap_or(0);
+    let (names, origins) = (width(|item| item.name.len()), width(|item| origin(item).len()));
     let mut stage = "";
     for item in items {
         if item.stage != stage {
@@ -78,16 +81,21 @@ fn table(items: &[Item]) -> String {
             // Writing to a String cannot fail.
             let _ = writeln!(out, "{gap}{stage}");
         }
-        let mut line = format!("  {:<width$}  {}", item.name, item.summary.as_deref().unwrap_or(""));
+        let mut line = format!("  {:<names$}  {:<origins$}", item.name, origin(item));
+        if let Some(documentation) = &item.documentation {
+            let _ = write!(line, "  {}", documentation.summary);
+        }
         if item.default {
             line.push_str(" (default)");
-        }
-        if item.package != "bundled" && !item.package.starts_with("spectra-plugin-") {
-            let _ = write!(line, " [{} {}]", item.package, item.version);
         }
         let _ = writeln!(out, "{}", line.trim_end());
     }
     out
+}
+
+/// Where it comes from: crate and version.
+fn origin(item: &Item) -> String {
+    format!("{} {}", item.package, item.version)
 }
 
 #[cfg(test)]
@@ -95,17 +103,33 @@ mod tests {
     use super::*;
 
     fn item(stage: &'static str, name: &str, package: &'static str, default: bool) -> Item {
-        Item { stage, name: name.to_owned(), summary: Some("A thing.".to_owned()), package, version: "1.2.3", default }
+        let documentation = Documentation {
+            summary: "A thing.".to_owned(),
+            text: String::new(),
+            examples: Vec::new(),
+            references: Vec::new(),
+            parameters: Vec::new(),
+        };
+        let documentation = Some(documentation);
+        Item { stage, name: name.to_owned(), package, version: "1.2.3", default, documentation }
     }
 
     #[test]
-    fn stages_are_groups_and_strangers_are_named() {
+    fn stages_are_groups_with_their_crates() {
         let items = [
             item("source", "chart", "spectra-plugin-sources", false),
             item("source", "far-lamp", "lamps", false),
             item("surface", "sphere", "spectra-plugin-surfaces", true),
         ];
-        let wanted = "source\n  chart     A thing.\n  far-lamp  A thing. [lamps 1.2.3]\n\nsurface\n  sphere    A thing. (default)\n";
-        assert_eq!(table(&items), wanted);
+        let wanted = [
+            "source",
+            "  chart     spectra-plugin-sources 1.2.3   A thing.",
+            "  far-lamp  lamps 1.2.3                    A thing.",
+            "",
+            "surface",
+            "  sphere    spectra-plugin-surfaces 1.2.3  A thing. (default)",
+            "",
+        ];
+        assert_eq!(table(&items), wanted.join("\n"));
     }
 }

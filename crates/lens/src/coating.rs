@@ -5,6 +5,7 @@
 //! T = 4 eta eta' / ((eta + eta')^2 cos^2(delta) + (eta eta' / eta_1 + eta_1)^2 sin^2(delta)). It is the same from both
 //! sides, and without a layer (delta = 0) it is Fresnel's.
 
+use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::math;
 use spectra_core::params::{Faults, Params, StageNode, Wavelength};
@@ -131,15 +132,35 @@ pub(crate) fn layer([n, n_after]: [f64; 2], [c, c_after]: [f64; 2], index: f64, 
 }
 
 /// A layer as a file writes it.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
-struct LayerParams {
+pub struct LayerParams {
     /// Refractive index of the layer.
     layer: f64,
     /// Thickness, nm if bare.
     thickness: Option<Wavelength>,
     /// Wavelength at which it is a quarter of a wave thick, nm if bare.
     quarter_wave_at: Option<Wavelength>,
+}
+
+/// What a coating is written as.
+#[derive(JsonSchema)]
+#[serde(untagged)]
+pub enum CoatingForm {
+    /// By name.
+    Named(CoatingName),
+    /// One layer.
+    Layer(LayerParams),
+}
+
+/// A coating by name.
+#[derive(JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum CoatingName {
+    /// All light passes.
+    Ideal,
+    /// None: Fresnel's formulas.
+    Bare,
 }
 
 const HINT: &str = "ideal, bare, or such as {layer: 1.38, quarter-wave-at: 550 nm}";

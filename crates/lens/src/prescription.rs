@@ -1,9 +1,10 @@
 //! Lens files: a prescription in YAML, and where it comes from.
 
 use crate::{
-    AxisBreak, Displacement, Element, FocusLaw, FocusTable, Group, GroupTravel, Lens, LensMedium, aperture,
-    read_coating,
+    AxisBreak, CoatingForm, Displacement, Element, FocusLaw, FocusTable, Group, GroupTravel, Lens, LensMedium,
+    aperture, read_coating, schema,
 };
+use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{Angle, Fault, Faults, Length, OrInfinity, Params, Positive, Ratio, StageNode, nearest};
 use spectra_core::registry::{self, Context};
@@ -14,9 +15,9 @@ use spectra_glass::{Catalogue, FindError, Medium, lines};
 use std::sync::Arc;
 
 /// A lens file.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
-struct LensFile {
+pub(crate) struct LensFile {
     /// Name for people.
     name: String,
     /// Year of design.
@@ -33,14 +34,18 @@ struct LensFile {
     /// Doubts, choices of glass.
     remark: Option<String>,
     /// The surfaces, in the order of the light.
+    #[schemars(with = "Vec<schema::SurfaceOrBreak>")]
     surfaces: Vec<StageNode>,
     /// Groups of surfaces that move together.
     #[serde(default)]
+    #[schemars(with = "Vec<GroupParams>")]
     groups: Vec<StageNode>,
     /// How groups move in focusing; the whole lens if absent.
     #[serde(default)]
+    #[schemars(with = "Vec<FocusParams>")]
     focus: Vec<StageNode>,
     /// Coating of all surfaces that state none: `ideal` (the default), `bare`, or a layer.
+    #[schemars(with = "Option<CoatingForm>")]
     coating: Option<StageNode>,
     /// Whether glass absorbs as its catalogue says.
     #[serde(default)]
@@ -52,13 +57,14 @@ fn line_d() -> String {
 }
 
 /// What every surface may state, whatever its kind; all other keys are the kind's own.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
-struct Place {
+pub(crate) struct Place {
     /// Distance to the next vertex along the axis (of the last surface, to the image plane), mm if bare.
     #[serde(default)]
     thickness: Option<Length>,
     /// Medium behind the surface: a catalogue name, or its nd and vd. Air if absent.
+    #[schemars(with = "Option<schema::GlassForm>")]
     glass: Option<StageNode>,
     /// Index at the reference line, as the patent states it.
     nd: Option<f64>,
@@ -74,6 +80,7 @@ struct Place {
     /// Leg of the chamfer at the edge, mm if bare: positive toward +z.
     chamfer: Option<Length>,
     /// What else limits the light: one aperture or a list.
+    #[schemars(with = "Option<aperture::ApertureForm>")]
     aperture: Option<StageNode>,
     /// Whether it reflects.
     #[serde(default)]
@@ -89,6 +96,7 @@ struct Place {
     #[serde(default)]
     reversed: bool,
     /// Its own coating.
+    #[schemars(with = "Option<CoatingForm>")]
     coating: Option<StageNode>,
     /// Part of the light that a mirror reflects; all of it if absent.
     reflectance: Option<Ratio>,
@@ -114,17 +122,18 @@ const PLACE_KEYS: [&str; 16] = [
 ];
 
 /// The kind that bends the axis, and is no surface.
-const BREAK: &str = "coordinate-break";
+pub(crate) const BREAK: &str = "coordinate-break";
 
 /// A bend of the axis.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
-struct BreakParams {
+pub(crate) struct BreakParams {
     /// Shift of the axis, mm if bare.
     decenter: Option<[Length; 2]>,
     /// Tilt of the axis about x, y, z, degrees if bare.
     tilt: Option<[Angle; 3]>,
     /// `decenter-first` or `tilt-first`.
+    #[schemars(extend("enum" = ["decenter-first", "tilt-first"]))]
     order: Option<String>,
     /// Distance to what follows, along the new axis, mm if bare.
     thickness: Option<Length>,
@@ -154,9 +163,9 @@ fn displacement(decenter: Option<[Length; 2]>, tilt: Option<[Angle; 3]>) -> Disp
 }
 
 /// A glass by its figures.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
-struct ModelFigures {
+pub(crate) struct ModelFigures {
     /// Index at the d line.
     nd: f64,
     /// Abbe number; without one the glass has no dispersion.
@@ -309,7 +318,7 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
 }
 
 /// The motion of a group in focusing.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct FocusParams {
     /// Name of the group.
@@ -359,7 +368,7 @@ pub fn unknown_group(params: &Params, key: &str, name: &str, groups: &[Group]) -
 }
 
 /// A group of surfaces.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct GroupParams {
     /// Its name.

@@ -1,11 +1,12 @@
 //! From a scene file to a [`Scene`], with every fault in one go.
 
 use crate::filters;
-use crate::lens_section::lens_of;
+use crate::lens_section::{LensSection, lens_of};
 use crate::{ConePattern, Direction, FileResources, NumberFamily, Output, RenderSettings, Scene, films, output, yaml};
+use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{Fault, Faults, Node, Params, StageNode, Value, Wavelength};
-use spectra_core::registry::{self, Context};
+use spectra_core::registry::{self, Context, StageOf};
 use spectra_core::resources::Resources;
 use spectra_core::spectral::{BAND, Channel, Grid};
 use spectra_core::stage::{Film, Imager, Source, WavelengthSampler};
@@ -14,41 +15,56 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// A scene file: its sections. Those that name a stage hold that stage's own parameters.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 #[expect(
     dead_code,
     reason = "states which keys a scene has; sections are taken one by one, so that a fault in one hides none in another"
 )]
-struct SceneFile {
+pub(crate) struct SceneFile {
     /// Version of the format.
     spectra: f64,
+    /// What is in front of the lens.
+    #[schemars(with = "StageOf<dyn Source>")]
     source: StageNode,
     #[serde(default)]
+    /// How wavelengths are drawn, and from which band.
+    #[schemars(with = "Option<StageOf<dyn WavelengthSampler>>")]
     wavelengths: Option<StageNode>,
+    /// Which lens, and how it is set.
+    #[schemars(with = "LensSection")]
     lens: StageNode,
+    /// What records the light.
+    #[schemars(with = "StageOf<dyn Imager>")]
     imager: StageNode,
     #[serde(default)]
+    /// The film on a film imager, or several side by side.
+    #[schemars(with = "Option<films::FilmForm>")]
     film: Option<StageNode>,
     #[serde(default)]
+    /// How much light is traced.
+    #[schemars(with = "Option<RenderSection>")]
     render: Option<StageNode>,
     #[serde(default)]
+    /// What is written; EXR and PNG if absent.
+    #[schemars(with = "Option<Vec<output::OutputForm>>")]
     output: Option<Vec<StageNode>>,
 }
 
 /// The `wavelengths` section's own keys; the others are the sampler's.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
-struct BandSection {
+pub(crate) struct BandSection {
     /// First and last wavelength of the band, nm if bare.
     band: Option<[Wavelength; 2]>,
 }
 
 /// The `render` section.
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct RenderSection {
     /// `auto`, `forward` or `backward`.
+    #[schemars(extend("enum" = ["auto", "forward", "backward"]))]
     direction: Option<String>,
     /// Backward: samples a pixel.
     samples: Option<f64>,
@@ -59,8 +75,10 @@ struct RenderSection {
     /// Rays a batch.
     batch: Option<f64>,
     /// `sobol`, `random` or `stratified`.
+    #[schemars(extend("enum" = ["sobol", "random", "stratified"]))]
     numbers: Option<String>,
     /// `disk`, `rings` or `random`.
+    #[schemars(extend("enum" = ["disk", "rings", "random"]))]
     cone: Option<String>,
 }
 

@@ -1,10 +1,36 @@
 //! The film of a scene, or several side by side: one light, recorded by each.
 
 use crate::SceneFilm;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde_json::json;
 use spectra_core::params::{Fault, Faults, Node, Params};
 use spectra_core::registry::{self, Context};
 use spectra_core::spectral::Channel;
 use spectra_core::stage::Film;
+use std::borrow::Cow;
+
+/// What the section is written as: a film, or a list.
+pub(crate) struct FilmForm;
+
+impl JsonSchema for FilmForm {
+    fn schema_name() -> Cow<'static, str> {
+        "FilmOrFilms".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        let film = json!({ "$ref": "#/$defs/film" });
+        json_schema!({ "x-words": "a film, or a list of films", "if": { "type": "array" }, "then": { "items": film, "minItems": 1, "maxItems": MAX_FILMS }, "else": film })
+    }
+}
+
+/// What every film of a list may state.
+#[derive(JsonSchema)]
+#[schemars(rename_all = "kebab-case")]
+#[expect(dead_code, reason = "states what is allowed; `name` reads it")]
+pub(crate) struct FilmKeys {
+    /// In a list of films: what its pictures are called.
+    name: Option<String>,
+}
 
 /// Most films side by side.
 const MAX_FILMS: usize = 16;

@@ -4,6 +4,7 @@
 //! response of the channels: both directions, every source and the choice of wavelengths see it, and so does whatever
 //! meters the exposure. Filters are taken at normal incidence, and shift no focus.
 
+use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{Faults, Length, Params, Positive, StageNode, Value};
 use spectra_core::resources::Resources;
@@ -12,32 +13,47 @@ use spectra_glass::{Catalogue, Medium};
 use spectra_lens::{Coating, read_coating};
 
 /// The part of the `lens` section that stands in front of the lens.
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct FrontSection {
     /// Filters, in any order: a name of a transmittance, `{file: ...}`, or `{glass: ..., thickness: ...}`.
     #[serde(default)]
+    #[schemars(with = "Vec<FilterForm>")]
     filters: Vec<StageNode>,
 }
 
 /// A measured transmittance.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
-struct Measured {
+pub(crate) struct Measured {
     /// A table beside the scene, or a bundled name.
     file: String,
 }
 
 /// A plate of glass.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
-struct Plate {
+pub(crate) struct Plate {
     /// Its name in a catalogue.
     glass: String,
     /// How thick it is, mm if bare.
     thickness: Positive<Length>,
     /// Coating of both faces: `bare` if absent.
+    #[schemars(with = "Option<spectra_lens::CoatingForm>")]
     coating: Option<StageNode>,
+}
+
+/// What a filter is written as.
+#[derive(JsonSchema)]
+#[serde(untagged)]
+#[expect(dead_code, reason = "states what is allowed; `one` reads it")]
+pub(crate) enum FilterForm {
+    /// A transmittance by name.
+    Named(String),
+    /// A table beside the scene.
+    Measured(Measured),
+    /// A plate of glass.
+    Plate(Plate),
 }
 
 /// More than anybody stacks.

@@ -3,17 +3,19 @@
 //! In this order: the lens is turned round, coated, stopped and focused as its maker meant it; then groups go out of place;
 //! a focus by real rays, as a camera finds it, sees them so; a matte box comes last.
 
+use crate::filters::FilterForm;
+use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{
     Angle, FNumber, Faults, Length, OrInfinity, Params, Positive, SpatialFrequency, StageNode, Value, Wavelength,
 };
 use spectra_core::resources::Resources;
-use spectra_lens::{Criterion, FocusSearch, Lens, MatteBox, Misalignment};
+use spectra_lens::{CoatingForm, Criterion, FocusSearch, Lens, MatteBox, Misalignment};
 
 /// The `lens` section.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
-struct LensSection {
+pub(crate) struct LensSection {
     /// A lens file beside the scene, or the name of a bundled lens.
     #[expect(dead_code, reason = "states the key; the lens is read even where another key is faulty")]
     file: String,
@@ -21,6 +23,7 @@ struct LensSection {
     #[serde(default)]
     reverse: bool,
     /// Coating of all surfaces, in place of what the lens file states.
+    #[schemars(with = "Option<CoatingForm>")]
     coating: Option<StageNode>,
     /// Whether glass absorbs; as the lens file says if absent.
     absorption: Option<bool>,
@@ -28,19 +31,23 @@ struct LensSection {
     f_number: Option<FNumber>,
     /// Distance that is in focus, from the first vertex, or `infinity`; the lens file's focus if absent. Or a map with
     /// what to focus by.
+    #[schemars(with = "Option<FocusForm>")]
     focus: Option<StageNode>,
     /// Groups out of place.
     #[serde(default)]
+    #[schemars(with = "Vec<AdjustParams>")]
     adjust: Vec<StageNode>,
     /// Filters in front of it.
     #[expect(dead_code, reason = "states the key; filters are read by themselves")]
+    #[schemars(with = "Option<Vec<FilterForm>>")]
     filters: Option<StageNode>,
     /// A rectangular opening in front of it.
+    #[schemars(with = "Option<MatteBoxParams>")]
     matte_box: Option<StageNode>,
 }
 
 /// A matte box.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct MatteBoxParams {
     /// Distance of the opening in front of the first vertex, mm if bare.
@@ -52,12 +59,13 @@ struct MatteBoxParams {
 }
 
 /// `focus` as a map.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct FocusParams {
     /// Distance that is in focus, from the first vertex, mm if bare, or `infinity`.
     distance: OrInfinity<Positive<Length>>,
     /// `paraxial`, `rms` or `contrast`.
+    #[schemars(extend("enum" = ["paraxial", "rms", "contrast"]))]
     by: Option<String>,
     /// Field angle that is in focus, degrees if bare; on the axis if absent.
     field: Option<Angle>,
@@ -69,8 +77,19 @@ struct FocusParams {
     frequency: Option<Positive<SpatialFrequency>>,
 }
 
+/// What a focus is written as.
+#[derive(JsonSchema)]
+#[serde(untagged)]
+#[expect(dead_code, reason = "states what is allowed; `focus_of` reads it")]
+enum FocusForm {
+    /// The distance alone.
+    Distance(OrInfinity<Positive<Length>>),
+    /// What to focus by.
+    By(FocusParams),
+}
+
 /// A group out of place.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct AdjustParams {
     /// Name of the group.

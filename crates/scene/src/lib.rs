@@ -11,8 +11,10 @@ mod lens_section;
 mod output;
 mod resources;
 mod scene;
+mod schema;
 pub mod yaml;
 
 pub use assemble::load;
 pub use resources::FileResources;
 pub use scene::{ConePattern, Direction, NumberFamily, Output, RaysFigure, RenderSettings, Scene, SceneFilm};
+pub use schema::{FileKind, file_documentation, file_schema, shared_documentation};

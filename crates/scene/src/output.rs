@@ -1,11 +1,12 @@
 //! The `output` section: what a scene wants written.
 
 use crate::{Output, RaysFigure};
+use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::Deserialize;
-use spectra_core::params::{Fault, Faults, Length, Params, Positive, StageNode, nearest};
+use spectra_core::params::{Fault, Faults, Kinds, Length, Params, Positive, StageNode, nearest};
 
 /// `kind: rays`: the light's way through the lens, as a figure.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct RaysParams {
     /// Width and height, pixels.
@@ -20,10 +21,13 @@ struct RaysParams {
     #[serde(default = "rays_wavelengths")]
     wavelengths: f64,
     /// `full`: every color shines alike; `true`: relative to the brightest.
+    #[schemars(extend("enum" = ["full", "true"]))]
     intensity: Option<String>,
     /// `dark` or `light`.
+    #[schemars(extend("enum" = ["dark", "light"]))]
     ground: Option<String>,
     /// `png` or `svg`.
+    #[schemars(extend("enum" = ["png", "svg"]))]
     format: Option<String>,
     /// Whether the image plane is drawn, and ends the rays.
     #[serde(default)]
@@ -40,6 +44,24 @@ fn rays_across() -> f64 {
 
 fn rays_wavelengths() -> f64 {
     64.0
+}
+
+/// What an item of the section is written as.
+pub(crate) struct OutputForm;
+
+impl JsonSchema for OutputForm {
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        "Output".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let kinds = KINDS.iter().map(|kind| match *kind {
+            "rays" => (*kind, RaysParams::json_schema(generator)),
+            _ => (*kind, NoParams::json_schema(generator)),
+        });
+        let kinds = kinds.collect();
+        Kinds { key: "kind", kinds, default: None, shared: None, by_name: true }.schema()
+    }
 }
 
 const KINDS: [&str; 5] = ["exr", "png", "tiff", "dng", "rays"];
@@ -79,7 +101,7 @@ pub(crate) fn read(items: Option<&[StageNode]>) -> Result<Vec<Output>, Faults> {
     faults.into_result(once)
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct NoParams {}
 

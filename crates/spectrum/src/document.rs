@@ -27,10 +27,11 @@
 //! A file may say what it is a spectrum `of` (`emission`, `transmittance`, `reflectance`, `sensitivity`) and, in words,
 //! its `name`, `source`, `licence`, `conditions` and `note`. Without `of` a function is what is wanted where it is named.
 
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
 use spectra_core::params::{
-    Dimension, Fault, Faults, Luminance, NonNegative, Params, Positive, Power, Quantity, StageNode, Temperature,
-    Wavelength, nearest, quantity,
+    Dimension, Fault, Faults, Kinds, Luminance, NonNegative, Params, Positive, Power, Quantity, StageNode, Temperature,
+    Wavelength, nearest, quantity, schema_of,
 };
 use spectra_core::spectral::Line;
 
@@ -65,6 +66,20 @@ impl Quantity for Center {
     }
 }
 
+impl JsonSchema for Center {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        "Center".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        schema_of::<Self>()
+    }
+}
+
 impl<'de> Deserialize<'de> for Center {
     fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         quantity::deserialize(deserializer)
@@ -72,10 +87,11 @@ impl<'de> Deserialize<'de> for Center {
 }
 
 /// What a file says of itself beside its spectrum.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct Head {
     spectra: Option<u32>,
+    #[schemars(extend("enum" = ["emission", "transmittance", "reflectance", "sensitivity"]))]
     of: Option<String>,
     name: Option<String>,
     source: Option<String>,
@@ -103,26 +119,27 @@ pub(crate) const KINDS: [&str; 13] = [
     "table",
 ];
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct LineParams {
+    #[schemars(with = "LineForm")]
     wavelength: StageNode,
     power: Option<NonNegative<f64>>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct LinesParams {
     lines: Vec<LineParams>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct ConstantParams {
     value: Option<NonNegative<f64>>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct RectangleParams {
     from: Wavelength,
@@ -130,7 +147,7 @@ struct RectangleParams {
     value: Option<NonNegative<f64>>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct GaussianParams {
     center: Center,
@@ -138,20 +155,20 @@ struct GaussianParams {
     peak: Option<NonNegative<f64>>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct TemperatureParams {
     temperature: Temperature,
 }
 
-#[derive(Clone, Copy, Debug, Deserialize)]
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 enum ScaleName {
     Linear,
     Log10,
 }
 
-#[derive(Clone, Copy, Debug, Deserialize)]
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 enum OutsideName {
     Zero,
@@ -159,7 +176,7 @@ enum OutsideName {
     Geometric,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct TableParams {
     wavelengths: Vec<Wavelength>,
@@ -168,14 +185,14 @@ struct TableParams {
     outside: Option<OutsideName>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct HistogramParams {
     edges: Vec<Wavelength>,
     counts: Vec<f64>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct TermParams {
     amplitude: f64,
@@ -183,32 +200,89 @@ struct TermParams {
     sigma: Positive<Wavelength>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct MixtureParams {
     terms: Vec<TermParams>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct ProductParams {
+    #[schemars(with = "Vec<SpectrumForm>")]
     factors: Vec<StageNode>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct SumParams {
+    #[schemars(with = "Vec<SpectrumForm>")]
     parts: Vec<StageNode>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct ScaleParams {
+    #[schemars(with = "SpectrumForm")]
     spectrum: StageNode,
     factor: Option<NonNegative<f64>>,
     peak: Option<NonNegative<f64>>,
     power: Option<Power>,
     luminance: Option<Luminance>,
+}
+
+/// What a line is written as.
+#[derive(JsonSchema)]
+#[serde(untagged)]
+#[expect(dead_code, reason = "states what is allowed; `line` reads it")]
+enum LineForm {
+    /// Where it lies.
+    Wavelength(Wavelength),
+    /// Its short name, such as `C'`.
+    Symbol(String),
+}
+
+/// What stands where a spectrum is wanted: a name or an expression, or a map with its kind.
+struct SpectrumForm;
+
+impl JsonSchema for SpectrumForm {
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        "spectrum".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let inside = kinds(generator, None);
+        json_schema!({ "x-words": "name or expression, or map", "if": { "type": "string" }, "else": inside })
+    }
+}
+
+/// The schema of a file that holds a spectrum.
+#[must_use]
+pub fn schema(generator: &mut SchemaGenerator) -> Schema {
+    let head = Head::json_schema(generator);
+    kinds(generator, Some(&head))
+}
+
+fn kinds(generator: &mut SchemaGenerator, shared: Option<&Schema>) -> Schema {
+    let own = KINDS.iter().map(|name| {
+        let schema = match *name {
+            "blackbody" | "daylight" => TemperatureParams::json_schema(generator),
+            "constant" => ConstantParams::json_schema(generator),
+            "gaussian" => GaussianParams::json_schema(generator),
+            "histogram" => HistogramParams::json_schema(generator),
+            "line" => LineParams::json_schema(generator),
+            "lines" => LinesParams::json_schema(generator),
+            "mixture" => MixtureParams::json_schema(generator),
+            "product" => ProductParams::json_schema(generator),
+            "rectangle" => RectangleParams::json_schema(generator),
+            "scale" => ScaleParams::json_schema(generator),
+            "sum" => SumParams::json_schema(generator),
+            _ => TableParams::json_schema(generator),
+        };
+        (*name, schema)
+    });
+    let kinds = own.collect();
+    Kinds { key: "kind", kinds, default: None, shared, by_name: false }.schema()
 }
 
 /// The spectrum of a whole file, as what is wanted unless the file says what it is of; and what it says of itself.

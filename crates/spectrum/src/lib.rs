@@ -65,6 +65,7 @@ pub use cct::{Cct, cct, uv_1960};
 pub use cie::{Observer, v_lambda, v_prime};
 pub use colorimetry::{chromaticity, lab, xyz_of_lab, xyz_of_light, xyz_of_reflectance, xyz_of_transmittance};
 pub use difference::ciede2000;
+pub use document::schema as document_schema;
 pub use dominant::{Dominant, dominant_wavelength};
 pub use emission::Emission;
 pub use error::SpectrumError;

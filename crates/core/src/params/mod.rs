@@ -89,7 +89,7 @@ pub use quantities::{
     Power, RadiantIntensity, Ratio, SpatialFrequency, Temperature, Time, Wavelength,
 };
 pub use quantity::{Bound, Quantity};
-pub use schema::schema_of;
+pub use schema::{Kinds, schema_of};
 pub use stage_node::StageNode;
 pub use text::nearest;
 pub use units::{Dimension, Reading, Unit};

@@ -52,6 +52,9 @@ impl Documentation {
         let description = schema.get("description").and_then(Value::as_str).unwrap_or_default();
         let mut found = Self::read(description);
         parameters(schema.as_value(), &definitions, "", 0, &mut found.parameters);
+        for (kind, map) in kinds(schema.as_value()) {
+            parameters(map, &definitions, &format!("({kind})."), 1, &mut found.parameters);
+        }
         found
     }
 
@@ -125,6 +128,10 @@ fn parameters(
         schema.get("required").and_then(Value::as_array).is_some_and(|all| all.iter().any(|k| k.as_str() == Some(key)))
     };
     for (key, property) in properties {
+        // The key that names the kind has been said.
+        if property.get("const").is_some() {
+            continue;
+        }
         let path = format!("{prefix}{key}");
         let inner = resolved(property, definitions);
         let said = property.get("description").or_else(|| inner.get("description"));
@@ -145,6 +152,9 @@ fn parameters(
             for map in inside.into_iter().flat_map(|s| maps(s, definitions)) {
                 parameters(map, definitions, &format!("{path}{mark}"), depth + 1, found);
             }
+            for (kind, map) in inside.into_iter().flat_map(kinds) {
+                parameters(map, definitions, &format!("{path}({kind}){mark}"), depth + 1, found);
+            }
         }
     }
 }
@@ -155,6 +165,19 @@ fn maps<'a>(schema: &'a Value, definitions: &'a Map<String, Value>) -> Vec<&'a V
         return vec![schema];
     }
     alternatives(schema).map(|a| resolved(a, definitions)).filter(|a| a.get("properties").is_some()).collect()
+}
+
+/// The kinds of a map that has a key for its kind, see [`crate::params::Kinds`]: each with its schema.
+fn kinds(schema: &Value) -> Vec<(&str, &Value)> {
+    let one = schema.get("else").filter(|e| e.get("$ref").is_none()).unwrap_or(schema);
+    let all = one.get("allOf").and_then(Value::as_array).into_iter().flatten();
+    all.filter_map(|case| {
+        let condition = case.get("if")?.get("properties")?.as_object()?;
+        let kind = condition.values().next()?.get("const")?.as_str()?;
+        let then = case.get("then")?;
+        then.get("properties").is_some().then_some((kind, then))
+    })
+    .collect()
 }
 
 fn alternatives(schema: &Value) -> impl Iterator<Item = &Value> {
@@ -196,8 +219,11 @@ fn is_null(schema: &Value) -> bool {
 /// What a value is written as, in words.
 fn kind(schema: &Value, definitions: &Map<String, Value>) -> String {
     let schema = resolved(schema, definitions);
+    if let Some(words) = schema.get("x-words").and_then(Value::as_str) {
+        return words.to_owned();
+    }
     if let Some(stage) = schema.get("$ref").and_then(Value::as_str).and_then(|r| r.strip_prefix("#/$defs/")) {
-        return format!("a {stage}");
+        return format!("{stage} (see `spectra doc {stage}`)");
     }
     if let Some(quantity) = schema.get("x-quantity").and_then(Value::as_str) {
         let infinity = if schema.get("x-infinity").is_some() { " or inf" } else { "" };

@@ -7,6 +7,7 @@ use super::{Development, FilterFactor, Layer, Process, Reading, SensitivityError
 use crate::curve::{
     AVERAGE_GRADIENT_SPAN, CharacteristicCurve, CurveError, SPEED_POINT_DENSITY, TabulatedCurve, ToeShoulder,
 };
+use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::Deserialize;
 use spectra_core::math::log10;
 use spectra_core::params::{Fault, Faults, Params, Positive};
@@ -16,7 +17,7 @@ use spectra_spectrum::table::{MAX_BYTES, Table};
 use spectra_spectrum::{Emission, Kind, Scale, SpectrumError, find_emission};
 use std::borrow::Cow;
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct StockFile {
     /// Format of the file.
@@ -45,7 +46,7 @@ struct StockFile {
     filter_factors: Vec<FilterFactorFile>,
 }
 
-#[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 enum ProcessFile {
     #[default]
@@ -55,7 +56,7 @@ enum ProcessFile {
 }
 
 /// How densities were measured.
-#[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum DensityFile {
     #[default]
@@ -64,7 +65,7 @@ pub(super) enum DensityFile {
     StatusM,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct LayerFile {
     name: String,
@@ -75,7 +76,7 @@ struct LayerFile {
     curves: Vec<CurveFile>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct SensitivityFile {
     file: Option<String>,
@@ -89,14 +90,14 @@ struct SensitivityFile {
     remark: Option<String>,
 }
 
-#[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema, PartialEq)]
 #[serde(rename_all = "kebab-case")]
 enum ReadingFile {
     Linear,
     Log10,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct CurveFile {
     development: String,
@@ -113,12 +114,17 @@ struct CurveFile {
     shoulder: Option<f64>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct FilterFactorFile {
     filter: String,
     daylight: Positive<f64>,
     tungsten: Positive<f64>,
+}
+
+/// The schema of a stock file.
+pub(super) fn schema(generator: &mut SchemaGenerator) -> Schema {
+    StockFile::json_schema(generator)
 }
 
 /// Reads and checks the whole file; every fault of it in one go.

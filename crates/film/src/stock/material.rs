@@ -1,6 +1,7 @@
 //! What a developed film holds back, wavelength by wavelength, and how that is measured.
 
 use super::file::DensityFile;
+use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::math::pow;
 use spectra_core::params::{Fault, Params};
@@ -156,7 +157,7 @@ pub(super) fn densitometry(params: &Params, file: DensityFile, layers: usize) ->
     }
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(super) struct DyeFile {
     name: String,
@@ -174,7 +175,7 @@ impl DyeFile {
     }
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(super) struct MinimumDensityFile {
     #[serde(default)]

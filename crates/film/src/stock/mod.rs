@@ -12,6 +12,7 @@ pub use sensitivity::{Reading, SensitivityError, SpectralSensitivity};
 pub use structure::{Base, Granularity, Halation};
 
 use crate::curve::CharacteristicCurve;
+use schemars::{Schema, SchemaGenerator};
 use spectra_core::params::{Faults, Params};
 use spectra_core::resources::Resources;
 use spectra_core::spectral::{Channel, Grid};
@@ -137,6 +138,12 @@ impl Stock {
     /// All that is wrong with it.
     pub fn from_params(params: &Params, resources: &dyn Resources) -> Result<Self, Faults> {
         file::read(params, resources)
+    }
+
+    /// The schema of a stock file, for editors.
+    #[must_use]
+    pub fn schema(generator: &mut SchemaGenerator) -> Schema {
+        file::schema(generator)
     }
 
     /// Names of the bundled stocks, sorted.

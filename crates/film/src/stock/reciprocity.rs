@@ -1,5 +1,6 @@
 //! How a film fails to count long exposures in full.
 
+use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::math::{exp, log, pow};
 use spectra_core::params::{Fault, Params, Positive, Time};
@@ -58,7 +59,7 @@ impl Reciprocity {
 }
 
 /// `reciprocity` of a stock file.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(super) struct ReciprocityFile {
     /// Of the power law.

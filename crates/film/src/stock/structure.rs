@@ -1,5 +1,6 @@
 //! What a film is made of beside its sensitive layers, and how fine it is.
 
+use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{Fault, Faults, Length, Params, Positive};
 
@@ -40,7 +41,7 @@ pub struct Halation {
     pub assumed: bool,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(super) struct BaseFile {
     formats: String,
@@ -67,7 +68,7 @@ impl BaseFile {
     }
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(super) struct GranularityFile {
     rms: Positive<f64>,
@@ -85,7 +86,7 @@ impl GranularityFile {
     }
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(super) struct HalationFile {
     scattered: f64,

@@ -8,7 +8,7 @@ mod params;
 
 pub use iris::{Iris, Opening};
 pub use mask::Mask;
-pub(crate) use params::read;
+pub(crate) use params::{ApertureForm, read};
 
 use spectra_core::RayBatch;
 use spectra_core::loss::{ALIVE, Loss};

@@ -1,13 +1,16 @@
 //! Apertures as a lens file writes them.
 
 use super::{Aperture, Iris, Mask, Shape};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
-use spectra_core::params::{Angle, Faults, Length, LengthOrInfinity, Params, Positive, StageNode, Value, nearest};
+use spectra_core::params::{
+    Angle, Faults, Kinds, Length, LengthOrInfinity, Params, Positive, StageNode, Value, nearest,
+};
 use spectra_core::resources::Resources;
 use std::sync::Arc;
 
 /// Keys of every aperture; the others belong to its shape.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct Common {
     /// Its form.
@@ -19,7 +22,7 @@ struct Common {
     obscures: bool,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct RingParams {
     /// Inner radius, mm if bare; 0 if absent.
@@ -28,7 +31,7 @@ struct RingParams {
     outer: Option<LengthOrInfinity>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct HalfSizes {
     /// Half the width, mm if bare.
@@ -37,14 +40,14 @@ struct HalfSizes {
     half_height: Positive<Length>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct PolygonParams {
     /// Corners in order, mm if bare.
     points: Vec<[Length; 2]>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct IrisParams {
     /// Number of blades.
@@ -55,13 +58,42 @@ struct IrisParams {
     rotation: Option<Angle>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct MaskParams {
     /// A picture (PNG, JPEG, TIFF): white passes, black stops.
     file: String,
     /// Width of the picture, mm if bare.
     width: Positive<Length>,
+}
+
+/// What an aperture is written as: one, or a list.
+pub(crate) struct ApertureForm;
+
+impl JsonSchema for ApertureForm {
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        "Aperture".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let shared = Common::json_schema(generator);
+        let one = Kinds {
+            key: "shape",
+            kinds: vec![
+                ("ring", RingParams::json_schema(generator)),
+                ("rectangle", HalfSizes::json_schema(generator)),
+                ("ellipse", HalfSizes::json_schema(generator)),
+                ("polygon", PolygonParams::json_schema(generator)),
+                ("iris", IrisParams::json_schema(generator)),
+                ("mask", MaskParams::json_schema(generator)),
+            ],
+            default: None,
+            shared: Some(&shared),
+            by_name: false,
+        };
+        let one = one.schema();
+        json_schema!({ "x-words": "map, or list of maps", "if": { "type": "array" }, "then": { "items": one }, "else": one })
+    }
 }
 
 const COMMON: [&str; 3] = ["shape", "center", "obscures"];

@@ -1,0 +1,220 @@
+//! `spectra doc`: what a stage does, and what is written in it.
+
+use crate::arguments::Doc;
+use crate::console;
+use crate::outcome::{DONE, Failure, Outcome};
+use serde_json::{Value, json};
+use spectra_core::params::nearest;
+use spectra_core::registry::{self, Documentation, Listed, Parameter};
+use spectra_scene::{FileKind, file_documentation, shared_documentation};
+use std::fmt::Write;
+
+/// Columns of a page.
+const WIDTH: usize = 100;
+
+/// Shows a page.
+pub(crate) fn doc(arguments: &Doc) -> Outcome {
+    let page = find(&arguments.name)?;
+    if arguments.json {
+        console::pretty_json(&page.to_json())?;
+    } else {
+        console::out(&page.text())?;
+    }
+    Ok(DONE)
+}
+
+/// What can be read about.
+enum Page {
+    /// A stage.
+    Stage(Listed),
+    /// A kind of stage: which there are, and what all of them take.
+    Kind(&'static str, Vec<Listed>),
+    /// A file.
+    File(FileKind),
+}
+
+/// A stage as `surface/sphere`, or by its name alone where only one has it; a kind of stage; a kind of file.
+fn find(name: &str) -> Result<Page, Failure> {
+    let all = registry::list();
+    let wanted: Vec<&Listed> = match name.split_once('/') {
+        Some((stage, kind)) => all.iter().filter(|l| l.stage == stage && l.name == kind).collect(),
+        None => {
+            // What names both is a file: `spectra doc lens`.
+            if let Some(kind) = FileKind::ALL.into_iter().find(|kind| kind.name() == name) {
+                return Ok(Page::File(kind));
+            }
+            let of: Vec<Listed> = all.iter().filter(|l| l.stage == name).copied().collect();
+            if let Some(first) = of.first() {
+                return Ok(Page::Kind(first.stage, of));
+            }
+            all.iter().filter(|l| l.name == name).collect()
+        }
+    };
+    let full = |l: &Listed| format!("{}/{}", l.stage, l.name);
+    match wanted[..] {
+        [one] => Ok(Page::Stage(*one)),
+        [] => {
+            let mut names: Vec<String> = all.iter().map(full).collect();
+            names.extend(all.iter().map(|l| l.stage.to_owned()));
+            names.extend(all.iter().map(|l| l.name.to_owned()));
+            names.extend(FileKind::ALL.map(|kind| kind.name().to_owned()));
+            let near = nearest(name, names.iter().map(String::as_str));
+            let hint = near
+                .map_or_else(|| "`spectra list` shows what there is".to_owned(), |n| format!("did you mean `{n}`?"));
+            Err(Failure::Input(format!("nothing is called `{name}` ({hint})")))
+        }
+        _ => {
+            let names: Vec<String> = wanted.into_iter().map(full).collect();
+            Err(Failure::Input(format!("`{name}` is the name of several: {}", names.join(", "))))
+        }
+    }
+}
+
+/// A stage as a program reads it.
+pub(crate) fn stage_json(stage: &Listed) -> Value {
+    let documentation = stage.documentation();
+    json!({
+        "stage": stage.stage,
+        "name": stage.name,
+        "package": stage.package,
+        "version": stage.version,
+        "default": stage.default,
+        "documentation": documentation,
+    })
+}
+
+impl Page {
+    fn to_json(&self) -> Value {
+        match self {
+            Self::Stage(stage) => stage_json(stage),
+            Self::Kind(kind, all) => json!({
+                "stage": kind,
+                "kinds": all.iter().map(stage_json).collect::<Vec<_>>(),
+                "shared": shared_documentation(kind),
+            }),
+            Self::File(kind) => json!({ "file": kind.name(), "documentation": file_documentation(*kind) }),
+        }
+    }
+
+    fn text(&self) -> String {
+        let mut out = String::new();
+        // Writing to a String cannot fail.
+        match self {
+            Self::Stage(stage) => {
+                let doc = stage.documentation();
+                let default = if stage.default { ", the default" } else { "" };
+                let _ =
+                    writeln!(out, "{}/{} ({} {}{default})\n", stage.stage, stage.name, stage.package, stage.version);
+                body(&mut out, &doc);
+                if shared_documentation(stage.stage).is_some() {
+                    let _ = writeln!(out, "\nWhat every {0} takes beside these: `spectra doc {0}`.", stage.stage);
+                }
+            }
+            Self::Kind(kind, all) => {
+                let _ = writeln!(out, "{kind}: one of\n");
+                let width = all.iter().map(|l| l.name.len()).max().unwrap_or(0);
+                for l in all {
+                    let default = if l.default { " (default)" } else { "" };
+                    let _ = writeln!(out, "  {:<width$}  {}{default}", l.name, l.documentation().summary);
+                }
+                if let Some(shared) = shared_documentation(kind) {
+                    let _ = writeln!(out, "\nEvery {kind} takes, beside its own:");
+                    parameters(&mut out, &shared.parameters);
+                }
+                let _ = writeln!(out, "\nMore: `spectra doc {kind}/NAME`.");
+            }
+            Self::File(kind) => {
+                let _ = writeln!(out, "{} file\n", kind.name());
+                body(&mut out, &file_documentation(*kind));
+            }
+        }
+        out
+    }
+}
+
+fn body(out: &mut String, doc: &Documentation) {
+    wrapped(out, &doc.summary, 0);
+    if !doc.text.is_empty() {
+        out.push('\n');
+        for paragraph in doc.text.split("\n\n") {
+            if paragraph.starts_with(['-', '|', '`', ' ']) {
+                let _ = writeln!(out, "{paragraph}");
+            } else {
+                wrapped(out, &paragraph.replace('\n', " "), 0);
+            }
+        }
+    }
+    if doc.parameters.is_empty() {
+        let _ = writeln!(out, "\nNo parameters.");
+    } else {
+        let _ = writeln!(out, "\nParameters");
+        parameters(out, &doc.parameters);
+    }
+    for example in &doc.examples {
+        let _ = writeln!(out, "\nExample");
+        for line in example.lines() {
+            let _ = writeln!(out, "  {line}");
+        }
+    }
+    if !doc.references.is_empty() {
+        let _ = writeln!(out, "\nReferences");
+        for reference in &doc.references {
+            wrapped(out, &format!("- {reference}"), 2);
+        }
+    }
+}
+
+fn parameters(out: &mut String, all: &[Parameter]) {
+    for p in all {
+        let mut words = vec![p.kind.clone()];
+        if !p.unit.is_empty() && p.unit != "f/" && !p.description.contains("if bare") {
+            words.push(format!("in {} if bare", p.unit));
+        }
+        if !p.range.is_empty() {
+            words.push(p.range.clone());
+        }
+        match (&p.default, p.required) {
+            (_, true) => words.push("required".to_owned()),
+            (Some(default), _) => words.push(format!("default {}", plain(default))),
+            (None, false) => {}
+        }
+        let _ = writeln!(out, "  {}: {}", p.key, words.join(", "));
+        let mut said = p.description.clone();
+        if let (Some(example), false) = (p.examples.first(), p.kind == "number") {
+            let _ = write!(said, " Such as {}.", plain(example));
+        }
+        wrapped(out, said.trim(), 6);
+    }
+}
+
+/// A value as a scene has it.
+fn plain(value: &Value) -> String {
+    match value {
+        Value::String(text) => text.clone(),
+        other => other.to_string(),
+    }
+}
+
+/// A paragraph in lines of [`WIDTH`], indented.
+fn wrapped(out: &mut String, text: &str, indent: usize) {
+    let mut column = 0;
+    for word in text.split_whitespace() {
+        let length = word.chars().count();
+        if column > 0 && column + 1 + length > WIDTH {
+            out.push('\n');
+            column = 0;
+        }
+        if column == 0 {
+            let _ = write!(out, "{:indent$}", "");
+            column = indent;
+        } else {
+            out.push(' ');
+            column += 1;
+        }
+        out.push_str(word);
+        column += length;
+    }
+    if column > 0 {
+        out.push('\n');
+    }
+}

@@ -1,0 +1,58 @@
+//! JSON Schema of a lens file, for editors.
+
+use crate::prescription::{BreakParams, LensFile, ModelFigures, Place};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde_json::json;
+use spectra_core::params::Kinds;
+use std::borrow::Cow;
+
+/// The schema of a lens file. Its surfaces refer to the definition `surface`, see
+/// [`spectra_core::registry::definitions`].
+#[must_use]
+pub fn lens_schema(generator: &mut SchemaGenerator) -> Schema {
+    LensFile::json_schema(generator)
+}
+
+/// What every surface may state beside the parameters of its kind: the schema of a map.
+#[must_use]
+pub fn surface_keys(generator: &mut SchemaGenerator) -> Schema {
+    Place::json_schema(generator)
+}
+
+/// An item of `surfaces`.
+pub(crate) struct SurfaceOrBreak;
+
+impl JsonSchema for SurfaceOrBreak {
+    fn schema_name() -> Cow<'static, str> {
+        "SurfaceOrBreak".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let bend = Kinds {
+            key: "kind",
+            kinds: vec![(crate::prescription::BREAK, BreakParams::json_schema(generator))],
+            default: None,
+            shared: None,
+            by_name: true,
+        };
+        let is_bend =
+            json!({ "properties": { "kind": { "const": crate::prescription::BREAK } }, "required": ["kind"] });
+        json_schema!({
+            "x-words": "a surface, or a coordinate-break",
+            "if": { "type": "object", "allOf": [is_bend] },
+            "then": bend.schema(),
+            "else": { "$ref": "#/$defs/surface" },
+        })
+    }
+}
+
+/// What a glass is written as.
+#[derive(JsonSchema)]
+#[serde(untagged)]
+#[expect(dead_code, reason = "states what is allowed; `medium` reads it")]
+pub(crate) enum GlassForm {
+    /// A name of the catalogue, `air`.
+    Named(String),
+    /// Its figures.
+    Figures(ModelFigures),
+}
