@@ -3,5 +3,5 @@
 use spectra_plugins as _;
 
 fn main() -> std::process::ExitCode {
-    spectra_command::main()
+    spectra_command::main(spectra_workspace::unpack)
 }

@@ -78,6 +78,14 @@ impl ExposureFrame {
     pub fn channel(&self, name: &str) -> Option<&ExposureChannel> {
         self.channels.iter().find(|c| c.name == name)
     }
+
+    /// The values of the channel of that name, as many as the frame has pixels.
+    ///
+    /// # Errors
+    /// A text that says which channel is missing, as [`crate::stage::Film::develop`] wants it.
+    pub fn values(&self, name: &str) -> Result<&[f32], String> {
+        self.channel(name).map(|c| &c.values[..]).ok_or_else(|| format!("the exposure has no channel `{name}`"))
+    }
 }
 
 /// A picture for a screen: linear light, sRGB primaries, 1 is the screen's white.
@@ -89,6 +97,14 @@ pub struct DisplayPicture {
     pub height_px: u32,
     /// Row-major, upright, (red, green, blue); values outside of [0, 1] are clipped when written.
     pub rgb: Vec<[f32; 3]>,
+}
+
+impl DisplayPicture {
+    /// A picture of a frame, from the values of one of its channels: each makes a color (linear light, sRGB primaries).
+    #[must_use]
+    pub fn of(size: FrameSize, values: &[f32], color: impl FnMut(&f32) -> [f32; 3]) -> Self {
+        Self { width_px: size.width_px, height_px: size.height_px, rgb: values.iter().map(color).collect() }
+    }
 }
 
 /// What a sensor's converter gives: one number a pixel, and what a raw converter must know to make a picture of them.

@@ -11,6 +11,7 @@ pub mod loss;
 pub mod math;
 pub mod numbers;
 pub mod params;
+pub mod prelude;
 pub mod registry;
 pub mod resources;
 pub mod spectral;
@@ -18,5 +19,6 @@ pub mod stage;
 pub mod surface;
 
 pub use batch::RayBatch;
+pub use glam;
 pub use isa::Isa;
 pub use loss::{Loss, LossCounts};

@@ -12,7 +12,8 @@ mod output;
 mod resources;
 mod scene;
 mod schema;
-pub mod yaml;
+
+pub use spectra_yaml as yaml;
 
 pub use assemble::load;
 pub use resources::FileResources;

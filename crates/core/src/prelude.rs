@@ -1,0 +1,11 @@
+//! What nearly every plugin names: `use spectra_core::prelude::*;`.
+
+pub use crate::frame::{DisplayPicture, ExposureFrame, FrameSize};
+pub use crate::params::{
+    Angle, Faults, Length, LengthOrInfinity, NonNegative, Params, Positive, Temperature, Time, Wavelength,
+};
+pub use crate::registry::Context;
+pub use crate::spectral::{Channel, Grid, Line, SpectralPower, SystemResponse};
+pub use crate::stage::{Emit, Film, Imager, Launch, Radiance, Receive, Source, WavelengthDensity, WavelengthSampler};
+pub use crate::surface::{FromSag, PerRay, SagShape, Surface};
+pub use crate::{Isa, Loss, RayBatch};

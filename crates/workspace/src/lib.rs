@@ -1,0 +1,27 @@
+//! The sources of the program, packed into it: what plugins are built against, with no checkout and no network.
+//!
+//! The archive holds manifests, the lock file and the source files of every crate (tar and deflate, the same bytes wherever
+//! it is packed). What the program holds anyway, its data, is not stored again: whoever unpacks hands it in.
+//!
+//! ```no_run
+//! # fn data() -> impl Iterator<Item = (&'static str, &'static [u8])> { std::iter::empty() }
+//! let sources = spectra_workspace::unpack(std::path::Path::new("cache"), &mut data())?;
+//! assert!(sources.join("crates/core/Cargo.toml").is_file());
+//! # Ok::<(), std::io::Error>(())
+//! ```
+
+mod unpack;
+
+pub use unpack::{Data, unpack};
+
+/// Version of the sources.
+pub const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+/// The packed sources: tar, compressed as zlib does. Empty in a program that was built from a registry.
+pub static ARCHIVE: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/sources.tar.zz"));
+
+/// Whether the sources are in this program.
+#[must_use]
+pub fn is_empty() -> bool {
+    ARCHIVE.is_empty()
+}
