@@ -1,0 +1,104 @@
+//! Stages from YAML texts, as a scene builds them.
+
+use spectra_core::params::{Fault, Faults, Params, SourceFile};
+use spectra_core::registry::{self, Context, Stage};
+use spectra_core::resources::{Resource, ResourceError, Resources};
+use spectra_core::spectral::BAND;
+use spectra_core::stage::{ColorModel, Film, Imager, Source, WavelengthSampler};
+use spectra_core::surface::Surface;
+use std::borrow::Cow;
+use std::path::Path;
+
+/// Files beside the crate under test, then the bundled ones.
+struct Files;
+
+impl Resources for Files {
+    fn read(
+        &self,
+        path: &str,
+        folders: &[&str],
+        endings: &[&str],
+        limit_bytes: u64,
+    ) -> Result<Resource, ResourceError> {
+        let endings = || std::iter::once("").chain(endings.iter().copied());
+        for name in endings().map(|ending| format!("{path}{ending}")).filter(|name| Path::new(name).is_file()) {
+            let bytes = std::fs::read(&name).map_err(|error| ResourceError::Io(error.to_string()))?;
+            if bytes.len() as u64 > limit_bytes {
+                return Err(ResourceError::TooLarge(bytes.len() as u64, limit_bytes));
+            }
+            let folder = Path::new(&name).parent().map(Path::to_owned);
+            return Ok(Resource { name, folder, bytes: Cow::Owned(bytes) });
+        }
+        for folder in folders {
+            for name in endings().map(|ending| format!("{folder}/{path}{ending}")) {
+                if let Some(bytes) = spectra_data::get(&name) {
+                    return Ok(Resource { name: format!("bundled:{name}"), folder: None, bytes: Cow::Borrowed(bytes) });
+                }
+            }
+        }
+        Err(ResourceError::NotFound(Vec::new()))
+    }
+
+    fn document(&self, path: &str, folders: &[&str], endings: &[&str]) -> Result<Params, Faults> {
+        let found = self.read(path, folders, endings, spectra_yaml::MAX_BYTES as u64);
+        let found = found.map_err(|error| Fault::new(format!("`{path}`: {error}")))?;
+        Params::section(spectra_yaml::parse_bytes(&found.name, &found.bytes)?, "")
+    }
+}
+
+fn try_build<S: Stage + ?Sized>(yaml: &str) -> Result<Box<S>, Faults> {
+    let node = spectra_yaml::parse(SourceFile::new("test.yaml", yaml))?;
+    let context = Context { resources: &Files, grid: BAND, illuminant: None };
+    registry::build(&Params::stage(node, S::NAME)?, &context)
+}
+
+fn build<S: Stage + ?Sized>(yaml: &str) -> Box<S> {
+    try_build(yaml).unwrap_or_else(|faults| panic!("{yaml}\n{faults}"))
+}
+
+macro_rules! builders {
+    ($($name:ident, $stage:ty, $what:literal, $example:literal;)*) => {$(
+        #[doc = concat!("The ", $what, " of a YAML text such as `", $example, "`, built through the registry: what is \
+            linked into the test. Files are looked for from the folder of the crate, then among the bundled ones; the \
+            band is 350 to 830 nm.")]
+        ///
+        /// # Panics
+        /// With all faults, where it cannot be built.
+        #[must_use]
+        pub fn $name(yaml: &str) -> Box<$stage> {
+            build(yaml)
+        }
+    )*};
+}
+
+builders! {
+    source, dyn Source, "source", "{kind: point, distance: 2 m}";
+    color, dyn ColorModel, "color model", "{kind: smooth}";
+    wavelengths, dyn WavelengthSampler, "wavelength sampler", "{kind: uniform}";
+    surface, dyn Surface, "surface", "{kind: sphere, radius: 50}";
+    imager, dyn Imager, "imager", "{kind: xyz, format: 135, resolution: [96, 64]}";
+    film, dyn Film, "film", "{stock: ilford-ortho-plus, exposure: 1/60 s}";
+}
+
+/// Asserts that a YAML text is refused, with a fault at this key (`radius`, `color.R`): what a user of the stage gets
+/// to see when he errs. `stage` is its kind of stage, such as `surface`.
+///
+/// # Panics
+/// Where the stage is built all the same, or the faults are elsewhere.
+pub fn assert_fault(stage: &str, yaml: &str, key: &str) {
+    let faults = match stage {
+        "source" => try_build::<dyn Source>(yaml).err(),
+        "color" => try_build::<dyn ColorModel>(yaml).err(),
+        "wavelengths" => try_build::<dyn WavelengthSampler>(yaml).err(),
+        "surface" => try_build::<dyn Surface>(yaml).err(),
+        "imager" => try_build::<dyn Imager>(yaml).err(),
+        "film" => try_build::<dyn Film>(yaml).err(),
+        other => panic!("no stage is called `{other}`"),
+    };
+    let Some(faults) = faults else { panic!("{stage} {yaml}: expected a fault at `{key}`, but it was built") };
+    let path = format!("{stage}.{key}");
+    // A missing or unknown key is named in the text; its place is the map.
+    let quoted = format!("`{key}`");
+    let found = faults.iter().any(|fault| fault.path == path || fault.message.contains(&quoted));
+    assert!(found, "{stage} {yaml}: expected a fault at `{key}`, found\n{faults}");
+}

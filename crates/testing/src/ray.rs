@@ -1,0 +1,116 @@
+//! Rays that meet one surface.
+
+use glam::DVec3;
+use spectra_core::batch::Column;
+use spectra_core::loss::ALIVE;
+use spectra_core::surface::{Action, IndexColumns, Interface, Surface, Travel};
+use spectra_core::{Isa, Loss, RayBatch};
+
+/// A ray: a point, mm, and a unit direction.
+pub type Line = (DVec3, DVec3);
+
+/// What happens to a ray of 550 nm at a surface whose vertex is the origin, between media of the refractive indices
+/// `(before, after)`: the ray behind it, or why it ended. The sense of travel is that of the direction.
+///
+/// # Errors
+/// The cause of the loss.
+pub fn ray(surface: &dyn Surface, ray: Line, indices: (f64, f64), action: Action) -> Result<Line, Loss> {
+    Rays { indices, action, ..Rays::default() }.meet(surface, &[ray], Isa::detect())[0]
+}
+
+/// How rays meet a surface, in a frame whose origin is its vertex.
+#[derive(Clone, Copy, Debug)]
+pub struct Rays {
+    /// Refractive indices before and after, in the sense of travel.
+    pub indices: (f64, f64),
+    /// What happens there.
+    pub action: Action,
+    /// Clear semi-diameter, mm.
+    pub clip_mm: f64,
+    /// Wavelength, nm.
+    pub wavelength_nm: f64,
+    /// Most rays in a batch.
+    pub batch: usize,
+}
+
+impl Default for Rays {
+    /// From air into glass of 1.5, nothing clipped, 550 nm, in batches of 256.
+    fn default() -> Self {
+        Self { indices: (1.0, 1.5), action: Action::Refract, clip_mm: f64::INFINITY, wavelength_nm: 550.0, batch: 256 }
+    }
+}
+
+/// Number that the surface is given, by which losses are booked.
+pub(crate) const NUMBER: u32 = 7;
+/// How far the vertex lies behind the origin of the frame that rays come in, mm.
+const SHIFT_MM: f64 = 1.25;
+
+impl Rays {
+    /// What becomes of rays that all travel in one sense: those behind the surface, or why they ended, in order.
+    ///
+    /// # Panics
+    /// Where the surface counts other losses than it books.
+    #[must_use]
+    pub fn meet(&self, surface: &dyn Surface, rays: &[Line], isa: Isa) -> Vec<Result<Line, Loss>> {
+        let mut out = Vec::with_capacity(rays.len());
+        for part in rays.chunks(self.batch.max(1)) {
+            let mut batch = self.send(part);
+            let lost = self.interact(surface, &mut batch, isa);
+            assert_eq!(lost, batch.len() - batch.alive(), "`interact` returns {lost}, another number of rays ended");
+            out.extend((0..part.len()).map(|i| outcome(&batch, i)));
+        }
+        out
+    }
+
+    /// A batch of these rays in front of the surface.
+    pub(crate) fn send(&self, rays: &[Line]) -> RayBatch {
+        let mut batch = RayBatch::new(rays.len());
+        batch.restart(rays.len());
+        let c = batch.columns_mut();
+        for (i, (p, d)) in rays.iter().enumerate() {
+            (c.x[i], c.y[i], c.z[i]) = (p.x, p.y, p.z + SHIFT_MM);
+            (c.l[i], c.m[i], c.n[i]) = (*d).into();
+            c.wavelength_nm[i] = self.wavelength_nm;
+            c.index[i] = self.indices.0;
+            c.tag[i] = i as u32;
+        }
+        batch
+    }
+
+    /// Lets a batch of [`Rays::send`] meet it.
+    pub(crate) fn interact(&self, surface: &dyn Surface, batch: &mut RayBatch, isa: Isa) -> usize {
+        let len = batch.len();
+        let column = |value: f64| {
+            let mut column = Column::<f64>::new(len);
+            column.slice_mut(len).fill(value);
+            column
+        };
+        let (n, m) = self.indices;
+        let [before, before_inverse, after, after_inverse] = [n, 1.0 / n, m, 1.0 / m].map(column);
+        let forward = batch.directions()[2].iter().zip(batch.states()).any(|(n, s)| *s == ALIVE && *n > 0.0);
+        let interface = Interface {
+            number: NUMBER,
+            shift_mm: SHIFT_MM,
+            clip_radius2_mm2: self.clip_mm * self.clip_mm,
+            action: self.action,
+            travel: if forward { Travel::Forward } else { Travel::Backward },
+            before: IndexColumns { n: before.slice(len), inverse: before_inverse.slice(len) },
+            after: IndexColumns { n: after.slice(len), inverse: after_inverse.slice(len) },
+        };
+        surface.interact(batch, &interface, isa)
+    }
+}
+
+/// What became of ray `i`.
+pub(crate) fn outcome(batch: &RayBatch, i: usize) -> Result<Line, Loss> {
+    match batch.loss(i) {
+        Some((loss, number)) => {
+            assert_eq!(number, NUMBER, "a ray ended as {} at surface {number}; this is number {NUMBER}", loss.name());
+            Err(loss)
+        }
+        None => {
+            let ([x, y, z], [l, m, n]) = (batch.positions(), batch.directions());
+            Ok((DVec3::new(x[i], y[i], z[i]), DVec3::new(l[i], m[i], n[i])))
+        }
+    }
+}

@@ -1,0 +1,307 @@
+//! The laws of surfaces.
+
+use crate::ray::{Line, Rays, outcome};
+use crate::spread::Spread;
+use glam::DVec3;
+use spectra_core::loss::ALIVE;
+use spectra_core::surface::{Action, Surface};
+use spectra_core::{Isa, Loss};
+
+/// The laws of surfaces, and what must be known of one to try them.
+///
+/// - A ray ends up on the sag, on its own line, with a unit direction; the sag is never NaN.
+/// - Snell's law: n' d' x N = n d x N, in the plane of incidence; a mirror keeps the angle.
+/// - Light is reversible.
+/// - The result does not depend on how rays are split into batches, nor (bit by bit) on the instruction set.
+/// - Rays beyond the clear semi-diameter are vignetted; a lost ray keeps its cause and the surface's number, one that was lost
+///   before is left alone.
+/// - The curvature at the vertex is that of the sag, and rays near the axis are bent by the paraxial power.
+/// - Wild rays (grazing, from far away, along the vertex plane) are met or lost; nothing panics and nothing is NaN.
+#[derive(Clone, Copy, Debug)]
+pub struct SurfaceLaws {
+    /// Rays are tried out to this distance from the axis, mm.
+    pub semi_diameter_mm: f64,
+    /// Steepest slope of rays against the axis.
+    pub steepest: f64,
+    /// Farthest that rays start from, mm.
+    pub farthest_mm: f64,
+    /// Whether light is bent by Snell's law; an ideal lens, or a grating, has another.
+    pub snell: bool,
+    /// Whether light that goes back takes the same way.
+    pub reversible: bool,
+    /// Whether the vertex, where paraxial optics looks, is smooth and across the axis: a cone's tip is not.
+    pub smooth_vertex: bool,
+    /// How far from the sag a ray may end, mm.
+    pub tolerance_mm: f64,
+    /// How exact directions are: slopes by differences are good to 1e-8 or so.
+    pub tolerance: f64,
+    /// Rays of each sort.
+    pub rays: usize,
+}
+
+impl Default for SurfaceLaws {
+    /// A smooth surface under Snell's law, 10 mm in semi-diameter.
+    fn default() -> Self {
+        Self {
+            semi_diameter_mm: 10.0,
+            steepest: 0.4,
+            farthest_mm: 1000.0,
+            snell: true,
+            reversible: true,
+            smooth_vertex: true,
+            tolerance_mm: 1e-8,
+            tolerance: 1e-7,
+            rays: 2000,
+        }
+    }
+}
+
+/// Senses of travel, and the media: into glass, out of it.
+const INDICES: [(f64, f64); 2] = [(1.0, 1.7), (1.7, 1.0)];
+
+impl SurfaceLaws {
+    /// Tries all of them.
+    ///
+    /// # Panics
+    /// With the first ray that breaks a law.
+    pub fn hold(&self, surface: &dyn Surface) {
+        for forward in [true, false] {
+            let rays = self.some_rays(forward);
+            for indices in INDICES {
+                for action in [Action::Refract, Action::Reflect, Action::Pass] {
+                    self.bends_each(surface, &rays, Rays { indices, action, ..Rays::default() });
+                }
+            }
+            self.is_the_same_however_asked(surface, &rays);
+            self.clips(surface, &rays);
+        }
+        self.is_known_to_paraxial_optics(surface);
+        self.survives_wild_rays(surface);
+    }
+
+    /// Through points near the vertex plane, from near and far, in one sense of travel.
+    fn some_rays(&self, forward: bool) -> Vec<Line> {
+        let spread = Spread::new(if forward { 1 } else { 2 });
+        let sense = if forward { 1.0 } else { -1.0 };
+        let ray = |i: usize| {
+            let (x, y) = spectra_core::math::concentric_disk(spread.at(i, 0), spread.at(i, 1));
+            let (u, v) = spectra_core::math::concentric_disk(spread.at(i, 2), spread.at(i, 3));
+            let d = DVec3::new(self.steepest * u, self.steepest * v, sense).normalize();
+            let far = spectra_core::math::exp(spread.between(i, 4, 0.0, spectra_core::math::log(self.farthest_mm)));
+            (self.semi_diameter_mm * DVec3::new(x, y, 0.0) - far * d, d)
+        };
+        (0..self.rays).map(ray).collect()
+    }
+
+    fn bends_each(&self, surface: &dyn Surface, rays: &[Line], how: Rays) {
+        let (n, m) = how.indices;
+        let met = how.meet(surface, rays, Isa::detect());
+        let mut alive = 0;
+        for (&(p, d), met) in rays.iter().zip(&met) {
+            let case = || format!("{surface:?}, {:?} from {n} to {m}, ray at {p} mm along {d}", how.action);
+            let Ok((q, after)) = *met else { continue };
+            alive += 1;
+            let sag = surface.sag_mm(q.x, q.y);
+            let off = sag.map(|sag| (q.z - sag).abs());
+            assert!(
+                off.is_some_and(|off| off < self.tolerance_mm),
+                "{}: ends at {q} mm, the sag there is {sag:?}",
+                case()
+            );
+            let aside = (q - p).cross(d).length();
+            assert!(
+                aside < self.tolerance_mm.max(1e-12 * (q - p).length()),
+                "{}: ends {aside} mm off its own line",
+                case()
+            );
+            let length = after.length();
+            assert!((length - 1.0).abs() < 1e-12, "{}: the direction behind it has a length of {length}", case());
+            if how.action == Action::Pass {
+                assert!(after == d, "{}: passing on changes the direction to {after}", case());
+                continue;
+            }
+            if let Some(normal) = normal(surface, q).filter(|_| self.snell) {
+                let (law, broken) = if how.action == Action::Reflect {
+                    ("the law of reflection", (after - (d - 2.0 * d.dot(normal) * normal)).length())
+                } else {
+                    ("Snell's law", (m * after.cross(normal) - n * d.cross(normal)).length())
+                };
+                assert!(broken < self.tolerance, "{}: {law} fails by {broken} at {q} mm, normal {normal}", case());
+                let same_side = after.dot(normal) * d.dot(normal) > 0.0;
+                assert!(same_side == (how.action == Action::Refract), "{}: goes on to the wrong side", case());
+            }
+            // Flat light may cross a curved surface elsewhere before it is back.
+            if self.reversible && how.action == Action::Refract && after.z * d.z > 0.05 {
+                let back =
+                    Rays { indices: (m, n), ..how }.meet(surface, &[(q + 0.5 * after, -after)], Isa::detect())[0];
+                if let Ok((there, out)) = back
+                    && (there - q).length() < 1e-3
+                {
+                    let off = (out + d).length();
+                    assert!(off < self.tolerance, "{}: back it goes along {out}, off by {off}", case());
+                } else {
+                    assert!(back.is_ok(), "{}: on its way back it ends as {back:?}", case());
+                }
+            }
+        }
+        let least = if how.action == Action::Refract { rays.len() / 10 } else { rays.len() / 2 };
+        assert!(
+            alive >= least,
+            "{surface:?}: {:?} from {n} to {m}, only {alive} of {} rays go on; is the semi-diameter right?",
+            how.action,
+            rays.len()
+        );
+    }
+
+    /// Other batches and other instruction sets: the same rays.
+    fn is_the_same_however_asked(&self, surface: &dyn Surface, rays: &[Line]) {
+        let how = Rays { indices: INDICES[1], clip_mm: 0.8 * self.semi_diameter_mm, ..Rays::default() };
+        let want = how.meet(surface, rays, Isa::Baseline);
+        for batch in [1, 7, 64, 1024] {
+            let got = Rays { batch, ..how }.meet(surface, rays, Isa::Baseline);
+            if let Some(i) = differs(&got, &want) {
+                panic!(
+                    "{surface:?}: ray {i} gives {:?} in batches of {batch}, {:?} in batches of 256",
+                    got[i], want[i]
+                );
+            }
+        }
+        for isa in Isa::available() {
+            let got = how.meet(surface, rays, isa);
+            if let Some(i) = differs(&got, &want) {
+                panic!("{surface:?}: ray {i} gives {:?} on {}, {:?} on baseline", got[i], isa.name(), want[i]);
+            }
+        }
+    }
+
+    fn clips(&self, surface: &dyn Surface, rays: &[Line]) {
+        let clip_mm = 0.7 * self.semi_diameter_mm;
+        let open = Rays { action: Action::Pass, ..Rays::default() };
+        let free = open.meet(surface, rays, Isa::detect());
+        let clipped = Rays { clip_mm, ..open }.meet(surface, rays, Isa::detect());
+        for (i, (free, clipped)) in free.iter().zip(&clipped).enumerate() {
+            let Ok((q, _)) = free else {
+                assert_eq!(free, clipped, "{surface:?}: ray {i} ends otherwise where the surface is clipped");
+                continue;
+            };
+            let radius = q.truncate().length();
+            let want = if radius <= clip_mm { *free } else { Err(Loss::Vignetted) };
+            let near = (radius - clip_mm).abs() < 1e-9;
+            assert!(
+                near || *clipped == want,
+                "{surface:?}: ray {i} meets it {radius} mm off the axis, clipped at {clip_mm} mm: {clipped:?}"
+            );
+        }
+        // Every second ray has ended already: it keeps all that it had.
+        let mut batch = Rays { clip_mm, ..open }.send(rays);
+        let before = Loss::Absorbed.state(3);
+        batch.columns_mut().state.iter_mut().step_by(2).for_each(|state| *state = before);
+        let lost = Rays { clip_mm, ..open }.interact(surface, &mut batch, Isa::detect());
+        let newly = batch.states().iter().filter(|s| **s != ALIVE && **s != before).count();
+        assert_eq!(lost, newly, "{surface:?}: `interact` returns {lost}, but {newly} rays ended");
+        for i in 0..rays.len() {
+            if i % 2 == 0 {
+                assert_eq!(batch.states()[i], before, "{surface:?}: ray {i}, which had ended before, ends anew");
+            } else {
+                assert!(
+                    outcome(&batch, i) == clipped[i],
+                    "{surface:?}: ray {i} depends on whether its neighbors are alive"
+                );
+            }
+        }
+    }
+
+    fn is_known_to_paraxial_optics(&self, surface: &dyn Surface) {
+        if !self.smooth_vertex {
+            return;
+        }
+        let at = |x: f64, y: f64| surface.sag_mm(x, y).unwrap_or(f64::NAN);
+        assert!(at(0.0, 0.0).abs() < 1e-9, "{surface:?}: the sag at the vertex is {} mm, not 0", at(0.0, 0.0));
+        let curvature: [f64; 2] = surface.vertex_curvature_per_mm().into();
+        let h = 1e-2 * self.semi_diameter_mm.min(1.0);
+        for (axis, stated) in ["x", "y"].into_iter().zip(curvature) {
+            let along = |k: f64| if axis == "x" { at(k * h, 0.0) } else { at(0.0, k * h) };
+            // Fourth order: what is left of the sixth derivative is nothing here.
+            let second =
+                (16.0 * (along(1.0) + along(-1.0)) - (along(2.0) + along(-2.0)) - 30.0 * along(0.0)) / (12.0 * h * h);
+            let close = (stated - second).abs() < 1e-5 * (stated.abs() + 0.01);
+            assert!(close, "{surface:?}: curvature along {axis} is stated as {stated} per mm; the sag has {second}");
+        }
+        // n' u' = n u - power h, for a ray along the axis.
+        let h = 1e-4;
+        for (n, m) in INDICES {
+            let power: [f64; 2] = surface.paraxial_power_per_mm(n, m).into();
+            for (axis, (power, place)) in [DVec3::X, DVec3::Y].into_iter().zip(power.into_iter().zip(["x", "y"])) {
+                let rays = [axis * h - DVec3::Z, -axis * h - DVec3::Z].map(|p| (p, DVec3::Z));
+                let met = Rays { indices: (n, m), ..Rays::default() }.meet(surface, &rays, Isa::detect());
+                let [Ok((_, a)), Ok((_, b))] = met[..] else {
+                    panic!("{surface:?}: a ray next to the axis ends: {met:?}");
+                };
+                // The difference of two rays: a tilt or a grating's order bends both alike.
+                let slope = 0.5 * ((a / a.z).dot(axis) - (b / b.z).dot(axis));
+                let close = (m * slope + power * h).abs() < 2e-5 * h * (power.abs() + 0.01);
+                assert!(
+                    close || !self.snell && a.truncate().length() > 1e-2,
+                    "{surface:?}: from {n} to {m} the power in the section of {place} is stated as {power} per mm; a ray \
+                     {h} mm off the axis has {}",
+                    -m * slope / h
+                );
+            }
+        }
+    }
+
+    /// Whatever comes: a ray is met on the sag, or it is lost.
+    fn survives_wild_rays(&self, surface: &dyn Surface) {
+        let r = self.semi_diameter_mm;
+        let spread = Spread::new(3);
+        for sense in [1.0, -1.0] {
+            let mut rays = Vec::new();
+            for i in 0..200 {
+                let spot = DVec3::new(spread.between(i, 0, -30.0, 30.0), spread.between(i, 1, -30.0, 30.0), 0.0) * r;
+                let (u, v) = (spread.between(i, 2, -1.0, 1.0), spread.between(i, 3, -1.0, 1.0));
+                for (steep, far) in [(1e-3, 1e12), (1.0, 10.0 * r), (1e3, 10.0 * r), (1e9, r), (1e-300, 0.0)] {
+                    let d = DVec3::new(steep * u, steep * v, sense).normalize();
+                    rays.push((spot - far * d, d));
+                }
+            }
+            // Along the plane, through the vertex and beside it.
+            rays.extend([0.0, 0.5 * r, -3.0].map(|z| (DVec3::new(-2.0 * r, 0.0, z), DVec3::X)));
+            rays.push((DVec3::ZERO, DVec3::Z * sense));
+            for action in [Action::Refract, Action::Reflect, Action::Pass] {
+                let how = Rays { action, ..Rays::default() };
+                for (i, met) in how.meet(surface, &rays, Isa::detect()).iter().enumerate() {
+                    let Ok((q, d)) = met else { continue };
+                    let (p, along) = rays[i];
+                    assert!(
+                        q.is_finite() && d.is_finite(),
+                        "{surface:?}: {action:?}, a wild ray at {p} mm along {along} gives {q} and {d}"
+                    );
+                }
+            }
+            for (p, _) in &rays {
+                let sag = surface.sag_mm(p.x, p.y);
+                assert!(!sag.is_some_and(f64::is_nan), "{surface:?}: the sag at ({}, {}) mm is NaN", p.x, p.y);
+            }
+        }
+    }
+}
+
+/// The first ray that is not the same to the bit.
+fn differs(a: &[Result<Line, Loss>], b: &[Result<Line, Loss>]) -> Option<usize> {
+    let bits = |(p, d): &Line| [p.x, p.y, p.z, d.x, d.y, d.z].map(f64::to_bits);
+    a.iter().zip(b).position(|(a, b)| match (a, b) {
+        (Ok(a), Ok(b)) => bits(a) != bits(b),
+        (a, b) => a != b,
+    })
+}
+
+/// Unit normal by differences of the sag; `None` next to its rim.
+fn normal(surface: &dyn Surface, q: DVec3) -> Option<DVec3> {
+    let h = 1e-3;
+    let along = |dx: f64, dy: f64| {
+        let at = |k: f64| surface.sag_mm(q.x + k * h * dx, q.y + k * h * dy);
+        let (a, b) = (8.0 * (at(1.0)? - at(-1.0)?), at(2.0)? - at(-2.0)?);
+        Some((a - b) / (12.0 * h))
+    };
+    Some(DVec3::new(-along(1.0, 0.0)?, -along(0.0, 1.0)?, 1.0).normalize())
+}
