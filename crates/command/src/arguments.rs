@@ -1,7 +1,9 @@
 //! What can be written after `spectra`.
 
+use crate::build::BuildArguments;
 use crate::film::FilmArguments;
 use crate::glass::GlassArguments;
+use crate::new::NewArguments;
 use crate::quantity::parse;
 use crate::spectrum::SpectrumArguments;
 use crate::version;
@@ -58,6 +60,10 @@ pub(crate) enum Command {
     Spectrum(SpectrumArguments),
     /// Look at glass: refractive index, Abbe diagram, nearest glass, fits.
     Glass(GlassArguments),
+    /// Start a plugin, a scene or a lens of your own.
+    New(NewArguments),
+    /// Build a program with your plugins in it.
+    Build(BuildArguments),
 }
 
 /// `spectra run`.

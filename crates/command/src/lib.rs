@@ -6,6 +6,7 @@
 
 mod arguments;
 mod bench;
+mod build;
 mod check;
 mod console;
 mod doc;
@@ -14,10 +15,12 @@ mod glass;
 mod lens;
 mod licences;
 mod list;
+mod new;
 mod outcome;
 mod quantity;
 mod run;
 mod schema;
+mod sources;
 mod spectrum;
 mod version;
 mod words;
@@ -25,12 +28,13 @@ mod words;
 use arguments::{Arguments, Command};
 use clap::Parser;
 use outcome::{Failure, Outcome};
+pub use sources::Unpack;
 use spectra_core::{Isa, registry};
 use std::process::ExitCode;
 use std::time::Instant;
 
-/// Runs the program with the arguments of the process.
-pub fn main() -> ExitCode {
+/// Runs the program with the arguments of the process; `unpack` unpacks its sources (`spectra_workspace::unpack`).
+pub fn main(unpack: Unpack) -> ExitCode {
     let started = Instant::now();
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
@@ -43,13 +47,13 @@ pub fn main() -> ExitCode {
     if arguments.verbose {
         log_to_stderr();
     }
-    match dispatch(&arguments, started) {
+    match dispatch(&arguments, unpack, started) {
         Ok(code) => ExitCode::from(code),
         Err(failure) => ExitCode::from(failure.report()),
     }
 }
 
-fn dispatch(arguments: &Arguments, started: Instant) -> Outcome {
+fn dispatch(arguments: &Arguments, unpack: Unpack, started: Instant) -> Outcome {
     registry::check()
         .map_err(|faults| Failure::Failed(format!("this program is put together wrongly: {}", faults.join("; "))))?;
     let isa = instruction_set()?;
@@ -68,6 +72,8 @@ fn dispatch(arguments: &Arguments, started: Instant) -> Outcome {
         Some(Command::Bench(bench)) => bench::bench(bench, isa),
         Some(Command::Spectrum(spectrum)) => spectrum::spectrum(&spectrum.command),
         Some(Command::Glass(glass)) => glass::glass(&glass.command),
+        Some(Command::New(arguments)) => new::new(arguments, unpack),
+        Some(Command::Build(arguments)) => build::build(arguments, unpack, started),
         // The parser shows help where neither a command nor a flag stands.
         None => Ok(outcome::DONE),
     }

@@ -1,7 +1,7 @@
 //! How a command ends.
 
 use crate::console;
-use spectra_core::params::Faults;
+use spectra_core::params::{Fault, Faults};
 use spectra_film::write::WriteError;
 use std::io;
 
@@ -54,6 +54,12 @@ impl Failure {
 impl From<Faults> for Failure {
     fn from(faults: Faults) -> Self {
         Self::Faults(faults)
+    }
+}
+
+impl From<Fault> for Failure {
+    fn from(fault: Fault) -> Self {
+        Self::Faults(fault.into())
     }
 }
 

@@ -1,0 +1,155 @@
+//! Cargo, as a program to run.
+
+use super::plugin::Metadata;
+use super::program::Program;
+use crate::outcome::Failure;
+use crate::sources::{Sources, plain};
+use serde_json::Value;
+use spectra_core::params::Fault;
+use std::ffi::OsString;
+use std::io::{BufRead, BufReader};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+/// Cargo.
+#[derive(Debug)]
+pub(crate) struct Cargo {
+    program: OsString,
+    offline: bool,
+}
+
+impl Cargo {
+    /// `$CARGO`, or the one on the path.
+    pub(super) fn find(offline: bool) -> Result<Self, Failure> {
+        let program = std::env::var_os("CARGO").filter(|p| !p.is_empty()).unwrap_or_else(|| "cargo".into());
+        let found = Command::new(&program).arg("--version").stdin(Stdio::null()).output();
+        match found {
+            Ok(output) if output.status.success() => Ok(Self { program, offline }),
+            Ok(output) => Err(Failure::Failed(format!(
+                "`{} --version` fails: {}",
+                program.display(),
+                String::from_utf8_lossy(&output.stderr).trim()
+            ))),
+            Err(error) => {
+                let fault = Fault::new(format!("`{}` cannot be run: {error}", program.display()));
+                Err(fault
+                    .hint("plugins are compiled: install Rust (https://rustup.rs), or set CARGO to its cargo")
+                    .into())
+            }
+        }
+    }
+
+    fn command(&self, verb: &str, manifest: &Path) -> Command {
+        let mut command = Command::new(&self.program);
+        // A toolchain file beside the plugin has its say, as when its author calls cargo there.
+        if let Some(folder) = manifest.parent().filter(|folder| !folder.as_os_str().is_empty()) {
+            command.current_dir(folder);
+        }
+        command.arg(verb).arg("--manifest-path").arg(plain(manifest)).stdin(Stdio::null());
+        if self.offline {
+            command.arg("--offline");
+        }
+        command
+    }
+
+    /// What a manifest says, without looking at its dependencies.
+    pub(super) fn metadata_alone(&self, manifest: &Path) -> Result<Metadata, String> {
+        self.metadata(manifest, &["--no-deps"])
+    }
+
+    fn metadata(&self, manifest: &Path, more: &[&str]) -> Result<Metadata, String> {
+        let mut command = self.command("metadata", manifest);
+        let output = command.args(["--format-version", "1"]).args(more).output().map_err(|error| error.to_string())?;
+        if !output.status.success() {
+            let text = String::from_utf8_lossy(&output.stderr);
+            return Err(text.trim().trim_start_matches("error: ").to_owned());
+        }
+        serde_json::from_slice(&output.stdout).map_err(|error| format!("its answer is not understood: {error}"))
+    }
+
+    /// Looks whether all of the program shares one `spectra-core`, ours.
+    pub(super) fn check_graph(&self, program: &Program, sources: &Sources) -> Result<(), Failure> {
+        let metadata = self.metadata(&program.manifest, &["--filter-platform", env!("SPECTRA_TARGET")]).map_err(|text| {
+            if text.contains("links to the native library `spectra-core`") || text.contains("links to native library `spectra-core`") {
+                let fault = Fault::new(format!("two versions of spectra-core meet in this program\n{text}"));
+                return Failure::from(fault.hint(format!(
+                    "each would know half of the stages: a plugin, or a crate that it depends on, asks for a spectra-core other than {}",
+                    crate::version::VERSION
+                )));
+            }
+            let hint = if self.offline {
+                "without --offline cargo may fetch what it lacks"
+            } else {
+                "cargo could not find a crate that a plugin depends on, or not one that suits all of them"
+            };
+            Fault::new(format!("the program cannot be put together\n{text}")).hint(hint).into()
+        })?;
+        let ours = plain(&sources.crate_folder("crates/core/Cargo.toml"));
+        let other = metadata.packages.iter().find(|p| p.name == "spectra-core" && plain(&p.manifest_path) != ours);
+        match other {
+            None => Ok(()),
+            Some(other) => {
+                let from = other.manifest_path.display();
+                let text = format!("a second spectra-core {} gets into the program, from {from}", other.version);
+                Err(Fault::new(text).hint("its stages would be missing: a plugin asks for it by path or by git").into())
+            }
+        }
+    }
+
+    /// Builds the program; cargo's words go to standard error as they come.
+    pub(super) fn build(&self, program: &Program, profile: &str) -> Result<PathBuf, Failure> {
+        let mut command = self.command("build", &program.manifest);
+        command.args(["--profile", profile, "--message-format", "json-render-diagnostics"]);
+        if std::env::var_os("CARGO_TARGET_DIR").is_none_or(|folder| folder.is_empty()) {
+            command.arg("--target-dir").arg(&program.target);
+        } else if let Some(folder) = std::env::var_os("CARGO_TARGET_DIR") {
+            // Relative to where the user is, not to the generated crate.
+            command.arg("--target-dir").arg(std::path::absolute(&folder).unwrap_or_else(|_| folder.into()));
+        }
+        let failed = |error: std::io::Error| Failure::Failed(format!("cargo cannot be run: {error}"));
+        let mut child = command.stdout(Stdio::piped()).spawn().map_err(failed)?;
+        let mut report = Report::default();
+        for line in child.stdout.take().map(BufReader::new).into_iter().flat_map(BufRead::lines) {
+            let Ok(line) = line else { break };
+            report.read(&line, &program.name);
+        }
+        let status = child.wait().map_err(failed)?;
+        match report.executable {
+            Some(executable) if status.success() => Ok(executable),
+            _ if report.faulty.is_empty() => {
+                Err(Failure::Failed(format!("cargo could not build the program ({status}); its words stand above")))
+            }
+            _ => Err(Failure::Failed(format!(
+                "{} does not compile; the compiler's words stand above",
+                report.faulty.join(", ")
+            ))),
+        }
+    }
+}
+
+/// What cargo says in JSON lines.
+#[derive(Debug, Default)]
+struct Report {
+    executable: Option<PathBuf>,
+    /// Crates with errors.
+    faulty: Vec<String>,
+}
+
+impl Report {
+    fn read(&mut self, line: &str, program: &str) {
+        let Ok(message) = serde_json::from_str::<Value>(line) else { return };
+        let target = message["target"]["name"].as_str().unwrap_or_default();
+        match message["reason"].as_str() {
+            Some("compiler-artifact") if target == program => {
+                self.executable = message["executable"].as_str().map(PathBuf::from).or(self.executable.take());
+            }
+            Some("compiler-message") if message["message"]["level"] == "error" => {
+                let name = format!("`{}`", target.replace('_', "-"));
+                if !self.faulty.contains(&name) {
+                    self.faulty.push(name);
+                }
+            }
+            _ => {}
+        }
+    }
+}

@@ -1,0 +1,100 @@
+//! `spectra build`: this program, with plugins of strangers in it.
+//!
+//! Plugins are linked, not loaded: cargo builds a small generated crate that names the command, the built-in plugins and the
+//! given ones. Before cargo is asked, what can be known about a plugin is checked; afterwards the new program is asked which
+//! stages it knows, and only if each plugin brought some is it given its name.
+
+mod arguments;
+mod cargo;
+mod plugin;
+mod program;
+mod stages;
+
+pub(crate) use arguments::BuildArguments;
+
+use crate::console;
+use crate::outcome::{DONE, Failure, Outcome};
+use crate::sources::{Sources, Unpack};
+use cargo::Cargo;
+use plugin::Plugin;
+use program::Program;
+use spectra_core::params::{Fault, Faults};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// Builds it.
+pub(crate) fn build(arguments: &BuildArguments, unpack: Unpack, started: Instant) -> Outcome {
+    let output = output(&arguments.output)?;
+    let sources = Sources::find(arguments.core.as_deref(), unpack)?;
+    let cargo = Cargo::find(arguments.offline)?;
+    let plugins = plugins(&arguments.with, &cargo, &sources)?;
+    let program = Program::write(&sources, &plugins)?;
+    cargo.check_graph(&program, &sources)?;
+    let built = cargo.build(&program, arguments.profile.name())?;
+    let added = stages::added(&built, &plugins)?;
+    install(&built, &output)?;
+    for (plugin, stages) in plugins.iter().zip(&added) {
+        console::out(&format!("{} {}: {}\n", plugin.package, plugin.version, stages.join(", ")))?;
+    }
+    let took = crate::words::duration(started.elapsed().as_secs_f64());
+    console::out(&format!("{} is ready ({took}); it does what spectra does\n", output.display()))?;
+    Ok(DONE)
+}
+
+/// All plugins, or everything that is wrong with any of them.
+fn plugins(with: &[PathBuf], cargo: &Cargo, sources: &Sources) -> Result<Vec<Plugin>, Failure> {
+    let mut faults = Faults::new();
+    let mut plugins: Vec<Plugin> = Vec::new();
+    for path in with {
+        let Some(plugin) = faults.take(Plugin::read(path, cargo, sources)) else { continue };
+        match plugins.iter().find(|other| other.package == plugin.package) {
+            // The same one named twice is no harm.
+            Some(other) if other.folder == plugin.folder => {}
+            Some(other) => faults.push(
+                Fault::new(format!(
+                    "{} and {}: both packages are called `{}`",
+                    other.folder.display(),
+                    plugin.folder.display(),
+                    plugin.package
+                ))
+                .hint("rename one of them in its Cargo.toml"),
+            ),
+            None => plugins.push(plugin),
+        }
+    }
+    plugins.sort_by(|a, b| a.package.cmp(&b.package));
+    Ok(faults.into_result(plugins)?)
+}
+
+/// Where the program goes; on Windows with its ending.
+fn output(path: &Path) -> Result<PathBuf, Failure> {
+    let mut path = path.to_owned();
+    let ending = std::env::consts::EXE_EXTENSION;
+    if !ending.is_empty() && path.extension().is_none() {
+        path.set_extension(ending);
+    }
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let fault = |text: &str, hint: &str| {
+        Err(Failure::from(Fault::new(format!("--output {}: {text}", path.display())).hint(hint.to_owned())))
+    };
+    if path.is_dir() {
+        return fault("that is a folder", "name the file to write, such as ./spectra-mine");
+    }
+    if !folder.is_dir() || path.file_name().is_none() {
+        return fault("there is no such folder", "make it first");
+    }
+    Ok(path)
+}
+
+/// Gives the program its name, once it is whole.
+fn install(built: &Path, output: &Path) -> Result<(), Failure> {
+    let mut hidden = std::ffi::OsString::from(".");
+    hidden.push(output.file_name().unwrap_or_default());
+    hidden.push(format!(".{}.tmp", std::process::id()));
+    let temporary = output.with_file_name(hidden);
+    std::fs::copy(built, &temporary).and_then(|_| std::fs::rename(&temporary, output)).map_err(|error| {
+        // What removal says adds nothing to the fault that is reported.
+        let _ = std::fs::remove_file(&temporary);
+        Failure::Failed(format!("{}: cannot be written: {error}", output.display()))
+    })
+}

@@ -1,0 +1,134 @@
+//! The generated crate: manifest, lock file, `main.rs`.
+
+use super::plugin::Plugin;
+use crate::outcome::Failure;
+use crate::sources::{Sources, cache, toml, toml_path};
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+/// A crate whose program holds the built-in stages and those of some plugins.
+#[derive(Debug)]
+pub(super) struct Program {
+    /// Name of package and program, one a set of plugins.
+    pub name: String,
+    /// Its manifest.
+    pub manifest: PathBuf,
+    /// Where cargo puts what it builds, if the user does not say so himself.
+    pub target: PathBuf,
+}
+
+/// What the program depends on, among our own crates.
+const OURS: [(&str, &str); 3] = [
+    ("spectra-command", "crates/command"),
+    ("spectra-plugins", "plugins/all"),
+    ("spectra-workspace", "crates/workspace"),
+];
+
+/// Crates that no program holds: cargo would warn of a patch that it does not use.
+const NOT_IN_PROGRAMS: [&str; 1] = ["spectra-testing"];
+
+impl Program {
+    /// Writes it to the cache, one folder a set of plugins; what is there already and equal is left alone, so that cargo
+    /// finds nothing changed.
+    pub(super) fn write(sources: &Sources, plugins: &[Plugin]) -> Result<Self, Failure> {
+        let mut key = sources.folder().display().to_string();
+        for plugin in plugins {
+            // Writing to a String cannot fail.
+            let _ = write!(key, "\n{}\n{}", plugin.package, plugin.folder.display());
+        }
+        let name = format!("spectra-built-{:016x}", fnv1a(key.as_bytes()));
+        let cache = cache()?;
+        let folder = cache.join("programs").join(&name);
+        let source = folder.join("src");
+        std::fs::create_dir_all(&source).map_err(|error| Failure::Failed(format!("{}: {error}", source.display())))?;
+        let manifest = folder.join("Cargo.toml");
+        let lock = folder.join("Cargo.lock");
+        write_if_other(&manifest, &manifest_text(&name, sources, plugins)?)?;
+        write_if_other(&source.join("main.rs"), &main_text(plugins))?;
+        if !lock.is_file() {
+            write_if_other(&lock, &sources.read("Cargo.lock")?)?;
+        }
+        Ok(Self { name, manifest, target: cache.join("target") })
+    }
+}
+
+fn manifest_text(name: &str, sources: &Sources, plugins: &[Plugin]) -> Result<String, Failure> {
+    let mut text = format!(
+        "# Written by `spectra build`; changes are lost.\n\
+         [package]\nname = \"{name}\"\nversion = \"{}\"\nedition = \"2024\"\npublish = false\n\n\
+         [workspace]\n\n[dependencies]\n",
+        crate::version::VERSION
+    );
+    for (package, inside) in OURS {
+        let _ = writeln!(text, "{package} = {{ path = {} }}", toml_path(&sources.crate_folder(inside))?);
+    }
+    for plugin in plugins {
+        let _ = writeln!(text, "{} = {{ path = {} }}", toml(&plugin.package), toml_path(&plugin.folder)?);
+    }
+    text.push_str("\n[patch.crates-io]\n");
+    for (package, folder) in sources.packages()? {
+        if !NOT_IN_PROGRAMS.contains(&package.as_str()) {
+            let _ = writeln!(text, "{package} = {{ path = {} }}", toml_path(&folder)?);
+        }
+    }
+    text.push('\n');
+    text.push_str(&profiles(&sources.read("Cargo.toml")?));
+    Ok(text)
+}
+
+/// The sections of a manifest that say how to compile.
+fn profiles(manifest: &str) -> String {
+    let mut kept = String::new();
+    let mut in_profile = false;
+    for line in manifest.lines() {
+        if line.starts_with('[') {
+            in_profile = line.starts_with("[profile.");
+        }
+        if in_profile && !line.starts_with('#') {
+            kept.push_str(line);
+            kept.push('\n');
+        }
+    }
+    kept
+}
+
+fn main_text(plugins: &[Plugin]) -> String {
+    let mut text = String::from("//! Written by `spectra build`; changes are lost.\n\nuse spectra_plugins as _;\n");
+    for plugin in plugins {
+        let _ = writeln!(text, "use {} as _;", plugin.library);
+    }
+    text.push_str("\nfn main() -> std::process::ExitCode {\n    spectra_command::main(spectra_workspace::unpack)\n}\n");
+    text
+}
+
+/// Writes a file by way of a temporary one, unless it holds that text already.
+fn write_if_other(path: &Path, text: &str) -> Result<(), Failure> {
+    if std::fs::read_to_string(path).is_ok_and(|old| old == text) {
+        return Ok(());
+    }
+    spectra_film::write::write_atomically(path, |file| Ok(std::io::Write::write_all(file, text.as_bytes())?))?;
+    Ok(())
+}
+
+fn fnv1a(bytes: &[u8]) -> u64 {
+    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Vectors of the function's authors: <http://www.isthe.com/chongo/tech/comp/fnv/>.
+    #[test]
+    fn hashes_are_fnv1a() {
+        assert_eq!([fnv1a(b""), fnv1a(b"a")], [0xcbf2_9ce4_8422_2325, 0xaf63_dc4c_8601_ec8c]);
+        assert_eq!(fnv1a(b"foobar"), 0x8594_4171_f739_67e8);
+    }
+
+    #[test]
+    fn profiles_are_taken_over_and_nothing_else() {
+        let manifest = "[package]\nname = \"x\"\n[profile.dev]\n# why\nopt-level = 1\n\n[profile.dev.package.\"*\"]\nopt-level = 2\n[lints]\nworkspace = true\n[profile.release]\ndebug = false\n";
+        let wanted = "[profile.dev]\nopt-level = 1\n\n[profile.dev.package.\"*\"]\nopt-level = 2\n[profile.release]\ndebug = false\n";
+        assert_eq!(profiles(manifest), wanted);
+    }
+}

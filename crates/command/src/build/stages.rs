@@ -1,0 +1,45 @@
+//! What a program that was just built knows.
+
+use super::plugin::Plugin;
+use crate::outcome::Failure;
+use serde::Deserialize;
+use spectra_core::params::Fault;
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+/// The part of `spectra list --json` that is asked for.
+#[derive(Debug, Deserialize)]
+struct Listed {
+    stage: String,
+    name: String,
+    package: String,
+}
+
+/// Runs the program, and gives the stages of each plugin, as `stage name`.
+pub(super) fn added(program: &Path, plugins: &[Plugin]) -> Result<Vec<Vec<String>>, Failure> {
+    let output = Command::new(program).args(["list", "--json"]).stdin(Stdio::null()).output();
+    let output = output.map_err(|error| Failure::Failed(format!("{} cannot be run: {error}", program.display())))?;
+    if !output.status.success() {
+        let text = String::from_utf8_lossy(&output.stderr);
+        let text = text.trim().trim_start_matches("error: ");
+        let fault = Fault::new(format!("the program was built, but does not start: {text}"));
+        return Err(fault.hint("a stage's name must be its own: rename it in `register!`").into());
+    }
+    let listed: Vec<Listed> = serde_json::from_slice(&output.stdout)
+        .map_err(|error| Failure::Failed(format!("the answer of {} is not understood: {error}", program.display())))?;
+    let mut faults = Vec::new();
+    let mut all = Vec::new();
+    for plugin in plugins {
+        let own = listed.iter().filter(|l| l.package == plugin.package);
+        let own: Vec<String> = own.map(|l| format!("{} `{}`", l.stage, l.name)).collect();
+        if own.is_empty() {
+            let fault = Fault::new(format!("the crate `{}` was built in, but registers no stage", plugin.package));
+            faults.push(fault.hint(format!(
+                "`spectra_core::register!(...)` is missing, or stands in a file that {} does not name with `mod`",
+                plugin.folder.join("src/lib.rs").display()
+            )));
+        }
+        all.push(own);
+    }
+    if faults.is_empty() { Ok(all) } else { Err(spectra_core::params::Faults(faults).into()) }
+}

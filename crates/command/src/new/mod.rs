@@ -1,0 +1,53 @@
+//! `spectra new`: a plugin, a scene or a lens to start from, which works as it is.
+
+mod arguments;
+mod files;
+mod name;
+mod plugin;
+
+pub(crate) use arguments::NewArguments;
+
+use crate::console;
+use crate::outcome::{DONE, Failure, Outcome};
+use crate::sources::Unpack;
+use arguments::{NewCommand, NewFile};
+use files::{Folder, filled};
+use spectra_core::params::Fault;
+
+const SCENE: &str = include_str!("templates/scene.yaml");
+const LENS: &str = include_str!("templates/lens.yaml");
+
+/// Makes it.
+pub(crate) fn new(arguments: &NewArguments, unpack: Unpack) -> Outcome {
+    match &arguments.command {
+        NewCommand::Plugin(arguments) => plugin::plugin(arguments, unpack),
+        NewCommand::Scene(arguments) => {
+            let path = file(arguments, SCENE)?;
+            console::out(&format!("{path} is ready; next:\n  spectra check {path}\n  spectra run {path}\n"))?;
+            Ok(DONE)
+        }
+        NewCommand::Lens(arguments) => {
+            let path = file(arguments, LENS)?;
+            let drawing = path.replace(".yaml", ".svg");
+            console::out(&format!(
+                "{path} is ready; next:\n  spectra lens info {path}\n  spectra lens draw {path} -o {drawing}\n"
+            ))?;
+            Ok(DONE)
+        }
+    }
+}
+
+/// Writes one file; returns its path as a person types it.
+fn file(arguments: &NewFile, template: &str) -> Result<String, Failure> {
+    let name = arguments.name.strip_suffix(".yaml").unwrap_or(&arguments.name);
+    name::check(name)?;
+    let path = arguments.path.join(format!("{name}.yaml"));
+    if path.exists() {
+        let fault = Fault::new(format!("{} is there already", path.display()));
+        return Err(fault.hint("choose another name, or remove it first").into());
+    }
+    Folder::must_exist(&arguments.path)?;
+    let text = filled(template, name);
+    spectra_film::write::write_atomically(&path, |file| Ok(std::io::Write::write_all(file, text.as_bytes())?))?;
+    Ok(files::typed(&path))
+}

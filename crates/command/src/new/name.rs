@@ -1,0 +1,157 @@
+//! Names of plugins, which become crates, Rust types, and kinds in scenes.
+
+use crate::outcome::Failure;
+use spectra_core::params::Fault;
+use spectra_core::registry;
+
+/// Longest name.
+const LONGEST: usize = 64;
+
+/// Words of Rust that no crate can be called by (The Rust Reference, "Keywords"), and crates that every program has.
+const RESERVED: [&str; 60] = [
+    "abstract",
+    "alloc",
+    "as",
+    "async",
+    "await",
+    "become",
+    "box",
+    "break",
+    "const",
+    "continue",
+    "core",
+    "crate",
+    "do",
+    "dyn",
+    "else",
+    "enum",
+    "extern",
+    "false",
+    "final",
+    "fn",
+    "for",
+    "gen",
+    "if",
+    "impl",
+    "in",
+    "let",
+    "loop",
+    "macro",
+    "match",
+    "mod",
+    "move",
+    "mut",
+    "override",
+    "priv",
+    "proc-macro",
+    "pub",
+    "ref",
+    "return",
+    "schemars",
+    "self",
+    "serde",
+    "static",
+    "std",
+    "struct",
+    "super",
+    "test",
+    "trait",
+    "true",
+    "try",
+    "type",
+    "typeof",
+    "union",
+    "unsafe",
+    "unsized",
+    "use",
+    "virtual",
+    "where",
+    "while",
+    "yield",
+    "spectra",
+];
+
+/// Checks a name: kebab-case.
+pub(super) fn check(name: &str) -> Result<(), Failure> {
+    let fault = |text: String| {
+        Err(Failure::from(Fault::new(text).hint("lower-case letters, digits and hyphens, such as `ripple-glass`")))
+    };
+    let shown: String = name.chars().take(LONGEST).collect();
+    if name.is_empty() || name.len() > LONGEST {
+        return fault(format!(
+            "`{shown}` is no name: it has {} letters, 1 to {LONGEST} are good",
+            name.chars().count()
+        ));
+    }
+    let good = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
+    if let Some(bad) = name.chars().find(|c| !good(*c)) {
+        return fault(format!("`{}` is no name: `{}` cannot stand in it", shown.escape_debug(), bad.escape_debug()));
+    }
+    if !name.starts_with(|c: char| c.is_ascii_lowercase()) {
+        return fault(format!("`{name}` is no name: it begins with no letter"));
+    }
+    if name.ends_with('-') || name.contains("--") {
+        return fault(format!("`{name}` is no name: hyphens stand between words"));
+    }
+    Ok(())
+}
+
+/// Checks a name for a plugin of this stage: also a word that Rust leaves free, and that nobody has taken.
+pub(super) fn check_plugin(name: &str, stage: &str) -> Result<(), Failure> {
+    check(name)?;
+    if RESERVED.contains(&name) {
+        let fault = Fault::new(format!("`{name}` cannot be the name of a crate: Rust has it"));
+        return Err(fault.hint(format!("such as `my-{name}`")).into());
+    }
+    if name.starts_with("spectra-") {
+        let fault = Fault::new(format!("`{name}`: crates of spectra itself are called so"));
+        return Err(fault.hint(format!("such as `{}`", name.trim_start_matches("spectra-"))).into());
+    }
+    if let Some(taken) = registry::list().into_iter().find(|l| l.stage == stage && l.name == name) {
+        let text = format!("{stage} `{name}` is there already, in crate {} {}", taken.package, taken.version);
+        return Err(Fault::new(text)
+            .hint(format!("choose another name; `spectra doc {stage}/{name}` shows that one"))
+            .into());
+    }
+    Ok(())
+}
+
+/// The name as a Rust type has it: `even-asphere` is `EvenAsphere`.
+pub(super) fn camel_case(name: &str) -> String {
+    let mut out = String::new();
+    for word in name.split('-') {
+        let mut letters = word.chars();
+        out.extend(letters.next().map(|c| c.to_ascii_uppercase()));
+        out.push_str(letters.as_str());
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_kebab_case() {
+        for good in ["ripple", "even-asphere-2", "a"] {
+            assert!(check(good).is_ok(), "{good}");
+        }
+        for bad in ["", "Ripple", "two words", "under_score", "-a", "a-", "a--b", "2nd", "a/b", "..", "\u{e9}", "a\n"] {
+            assert!(check(bad).is_err(), "{bad:?}");
+        }
+        assert!(check(&"x".repeat(65)).is_err());
+    }
+
+    #[test]
+    fn keywords_are_no_crates() {
+        for bad in ["fn", "self", "core", "union", "spectra-core", "serde"] {
+            assert!(check_plugin(bad, "surface").is_err(), "{bad}");
+        }
+        assert!(check_plugin("fn-2", "surface").is_ok());
+    }
+
+    #[test]
+    fn types_are_camel_case() {
+        assert_eq!([camel_case("even-asphere-2"), camel_case("x")], ["EvenAsphere2", "X"]);
+    }
+}
