@@ -21,7 +21,8 @@ impl Resources for Files {
         limit_bytes: u64,
     ) -> Result<Resource, ResourceError> {
         let endings = || std::iter::once("").chain(endings.iter().copied());
-        for name in endings().map(|ending| format!("{path}{ending}")).filter(|name| Path::new(name).is_file()) {
+        let mut beside = endings().map(|ending| format!("{path}{ending}"));
+        if let Some(name) = beside.find(|name| Path::new(name).is_file()) {
             let bytes = std::fs::read(&name).map_err(|error| ResourceError::Io(error.to_string()))?;
             if bytes.len() as u64 > limit_bytes {
                 return Err(ResourceError::TooLarge(bytes.len() as u64, limit_bytes));
