@@ -66,13 +66,13 @@ pub struct ThreeStripParams {
     /// layers called blue, green and red.
     #[serde(default = "technicolor")]
     pub print: String,
-    /// The negative of the red record, and what stands before it.
+    /// The negative of the red record, and what stands before it; Double-X behind wratten-32 and wratten-25 if left out.
     #[serde(default = "red")]
     pub red: RecordParams,
-    /// The negative of the green record, and what stands before it.
+    /// The negative of the green record, and what stands before it; Double-X behind wratten-58 if left out.
     #[serde(default = "green")]
     pub green: RecordParams,
-    /// The negative of the blue record, and what stands before it.
+    /// The negative of the blue record, and what stands before it; Double-X behind wratten-47 if left out.
     #[serde(default = "blue")]
     pub blue: RecordParams,
 }
