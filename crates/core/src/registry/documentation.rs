@@ -327,7 +327,9 @@ fn range(schema: &Value) -> String {
         (Some(least), None) => parts.push(format!(">= {least}")),
         _ => {}
     }
-    if let Some(below) = schema.get("exclusiveMinimum") {
+    // Where both are stated the greater one says it all.
+    let below = schema.get("exclusiveMinimum").filter(|b| least.is_none_or(|l| l.as_f64() <= b.as_f64()));
+    if let Some(below) = below {
         parts.push(format!("> {below}"));
     }
     if let (None, Some(most)) = (least, most) {
