@@ -179,7 +179,7 @@ struct GaussianParams {
     peak: Option<NonNegative<f64>>,
 }
 
-/// Light by its temperature: a `blackbody` by Planck's law, W m^-2 sr^-1 nm^-1, or CIE `daylight`, relative.
+/// Light by its temperature.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct TemperatureParams {
@@ -354,7 +354,14 @@ luminance: 120 cd/m2
 fn kinds(generator: &mut SchemaGenerator, shared: Option<&Schema>) -> Schema {
     let own = KINDS.iter().map(|name| {
         let schema = match *name {
-            "blackbody" | "daylight" => TemperatureParams::json_schema(generator),
+            "blackbody" | "daylight" => {
+                let mut schema = TemperatureParams::json_schema(generator);
+                let daylight = "CIE daylight of a correlated color temperature, relative.";
+                let blackbody = "Light of a blackbody by Planck's law, W m^-2 sr^-1 nm^-1.";
+                let said = if *name == "daylight" { daylight } else { blackbody };
+                schema.insert("description".to_owned(), said.into());
+                schema
+            }
             "constant" => ConstantParams::json_schema(generator),
             "gaussian" => GaussianParams::json_schema(generator),
             "histogram" => HistogramParams::json_schema(generator),
