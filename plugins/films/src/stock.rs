@@ -28,7 +28,7 @@ use spectra_film::stock::{Process, Stock};
 ///
 /// The exposure is that of the scene (`exposure`), or the camera meters: what is metered, by a perfect photometer, gets
 /// the 10/S lx s of a mid gray, S being the ISO speed. `spectra film info NAME` shows what a stock's file holds, and
-/// `spectra list` the bundled stocks.
+/// `spectra list stock` the bundled stocks.
 ///
 /// # Example
 /// ```yaml
