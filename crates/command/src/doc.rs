@@ -115,7 +115,10 @@ impl Page {
                 let width = all.iter().map(|l| l.name.len()).max().unwrap_or(0);
                 for l in all {
                     let default = if l.default { " (default)" } else { "" };
-                    let _ = writeln!(out, "  {:<width$}  {}{default}", l.name, l.documentation().summary);
+                    let mut line = String::new();
+                    wrapped(&mut line, &format!("{}{default}", l.documentation().summary), width + 4, width + 4);
+                    line.replace_range(2..2 + l.name.len(), l.name);
+                    out.push_str(&line);
                 }
                 if let Some(shared) = shared_documentation(kind) {
                     let _ = writeln!(out, "\nEvery {kind} takes, beside its own:");
@@ -133,16 +136,10 @@ impl Page {
 }
 
 fn body(out: &mut String, doc: &Documentation) {
-    wrapped(out, &doc.summary, 0);
+    wrapped(out, &doc.summary, 0, 0);
     if !doc.text.is_empty() {
         out.push('\n');
-        for paragraph in doc.text.split("\n\n") {
-            if paragraph.starts_with(['-', '|', '`', ' ']) {
-                let _ = writeln!(out, "{paragraph}");
-            } else {
-                wrapped(out, &paragraph.replace('\n', " "), 0);
-            }
-        }
+        markdown(out, &doc.text);
     }
     if doc.parameters.is_empty() {
         let _ = writeln!(out, "\nNo parameters.");
@@ -159,7 +156,7 @@ fn body(out: &mut String, doc: &Documentation) {
     if !doc.references.is_empty() {
         let _ = writeln!(out, "\nReferences");
         for reference in &doc.references {
-            wrapped(out, &format!("- {reference}"), 2);
+            wrapped(out, &format!("- {reference}"), 2, 4);
         }
     }
 }
@@ -178,12 +175,13 @@ fn parameters(out: &mut String, all: &[Parameter]) {
             (Some(default), _) => words.push(format!("default {}", plain(default))),
             (None, false) => {}
         }
-        let _ = writeln!(out, "  {}: {}", p.key, words.join(", "));
+        wrapped(out, &format!("{}: {}", p.key, words.join(", ")), 2, 10);
         let mut said = p.description.clone();
-        if let (Some(example), false) = (p.examples.first(), p.kind == "number") {
+        // The usual example of a quantity shows how it is written; where the unit is told it would only mislead.
+        if let (Some(example), false) = (p.examples.first(), p.kind == "number" || said.contains("if bare")) {
             let _ = write!(said, " Such as {}.", plain(example));
         }
-        wrapped(out, said.trim(), 6);
+        wrapped(out, said.trim(), 6, 6);
     }
 }
 
@@ -195,9 +193,38 @@ fn plain(value: &Value) -> String {
     }
 }
 
-/// A paragraph in lines of [`WIDTH`], indented.
-fn wrapped(out: &mut String, text: &str, indent: usize) {
-    let mut column = 0;
+/// Markdown: paragraphs and lists are wrapped, blocks of code stay as they are.
+fn markdown(out: &mut String, text: &str) {
+    let mut paragraph = String::new();
+    let end = |out: &mut String, paragraph: &mut String| {
+        let hanging = if paragraph.starts_with("- ") { 2 } else { 0 };
+        wrapped(out, paragraph, 0, hanging);
+        paragraph.clear();
+    };
+    let mut in_block = false;
+    for line in text.lines() {
+        if line.trim_start().starts_with("```") {
+            end(out, &mut paragraph);
+            in_block = !in_block;
+        } else if in_block {
+            let _ = writeln!(out, "  {line}");
+        } else if line.trim().is_empty() {
+            end(out, &mut paragraph);
+            out.push('\n');
+        } else {
+            if line.starts_with("- ") {
+                end(out, &mut paragraph);
+            }
+            paragraph.push_str(line);
+            paragraph.push(' ');
+        }
+    }
+    end(out, &mut paragraph);
+}
+
+/// A paragraph in lines of [`WIDTH`], the first one and the others indented.
+fn wrapped(out: &mut String, text: &str, first: usize, others: usize) {
+    let (mut column, mut indent) = (0, first);
     for word in text.split_whitespace() {
         let length = word.chars().count();
         if column > 0 && column + 1 + length > WIDTH {
@@ -207,6 +234,7 @@ fn wrapped(out: &mut String, text: &str, indent: usize) {
         if column == 0 {
             let _ = write!(out, "{:indent$}", "");
             column = indent;
+            indent = others;
         } else {
             out.push(' ');
             column += 1;

@@ -14,29 +14,54 @@ use spectra_core::surface::{Action, Surface};
 use spectra_glass::{Catalogue, FindError, Medium, lines};
 use std::sync::Arc;
 
-/// A lens file.
+/// A lens: its prescription, surface by surface, and where it comes from.
+///
+/// Surfaces stand in the order of the light, each with its shape (`kind` and the keys of that kind), the medium behind
+/// it and the thickness to the next vertex; the last thickness leads to the image plane. Lengths are millimeters unless
+/// they say otherwise. The origin is the vertex of the first surface, +z runs toward the image, +y is up; a radius is
+/// positive where its center lies at larger z. Behind a mirror light runs the other way: thicknesses are negative
+/// there.
+///
+/// A `coordinate-break` among the surfaces bends the axis for all that follows. `spectra doc surface` lists the kinds
+/// and what every surface takes; `spectra lens info FILE` shows what the lens does.
+///
+/// # Example
+/// ```yaml
+/// # A cemented doublet
+/// name: Doublet 100 mm f/5
+/// source: textbook
+/// surfaces:
+///   - {kind: sphere, radius: 61.5, thickness: 6, glass: SCHOTT/N-BK7, semi-diameter: 10, stop: true}
+///   - {kind: sphere, radius: -44.6, thickness: 2.5, glass: SCHOTT/N-SF5, semi-diameter: 10}
+///   - {kind: sphere, radius: -129.9, thickness: 95.9, semi-diameter: 10}
+/// groups:
+///   - {name: doublet, surfaces: [1, 3]}
+/// focus:
+///   - {group: doublet, factor: 1}
+/// coating: {layer: 1.38, quarter-wave-at: 550 nm}
+/// ```
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) struct LensFile {
     /// Name for people.
     name: String,
-    /// Year of design.
+    /// Year of design; not known if absent.
     year: Option<i32>,
-    /// Maker.
+    /// Maker; not known if absent.
     maker: Option<String>,
-    /// Patent and example.
+    /// Patent and example; none if absent.
     patent: Option<String>,
-    /// Line at which indices are stated and focus is meant: d, D or e.
+    /// Line at which indices are stated and focus is meant, by its short name: d, D or e mostly.
     #[serde(default = "line_d")]
     reference_line: String,
     /// Where the figures come from.
     source: Option<String>,
-    /// Doubts, choices of glass.
+    /// Doubts and choices, for people.
     remark: Option<String>,
-    /// The surfaces, in the order of the light.
+    /// The surfaces, one or more, in the order of the light.
     #[schemars(with = "Vec<schema::SurfaceOrBreak>")]
     surfaces: Vec<StageNode>,
-    /// Groups of surfaces that move together.
+    /// Groups of surfaces that move together, in focusing or out of place; none if absent.
     #[serde(default)]
     #[schemars(with = "Vec<GroupParams>")]
     groups: Vec<StageNode>,
@@ -60,45 +85,51 @@ fn line_d() -> String {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) struct Place {
-    /// Distance to the next vertex along the axis (of the last surface, to the image plane), mm if bare.
+    /// Distance to the next vertex along the axis (of the last surface, to the image plane), mm if bare: positive in
+    /// the sense of the light before any mirror. 0 if absent.
     #[serde(default)]
     thickness: Option<Length>,
-    /// Medium behind the surface: a catalogue name, or its nd and vd. Air if absent.
+    /// Medium behind the surface: a name of the catalogue such as `SCHOTT/N-BK7`, `air`, or its `nd` and `vd`. Air if
+    /// absent; behind a mirror or a stop, what is in front of it.
     #[schemars(with = "Option<schema::GlassForm>")]
     glass: Option<StageNode>,
-    /// Index at the reference line, as the patent states it.
+    /// Index at the reference line, 1 to 4, as the patent states it; the glass gives the dispersion.
+    #[schemars(range(min = 1, max = 4))]
     nd: Option<f64>,
-    /// Abbe number, as the patent states it.
+    /// Abbe number, 5 to 200, as the patent states it.
+    #[schemars(range(min = 5, max = 200))]
     vd: Option<f64>,
-    /// Clear semi-diameter, mm if bare; clips nothing if absent.
+    /// Clear semi-diameter, mm if bare, more than 0; clips nothing if absent.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     semi_diameter: Option<Length>,
     /// A word for people; read, and left to them.
     #[expect(dead_code, reason = "a remark is for the reader of the file")]
     remark: Option<String>,
-    /// Edge of the element, mm if bare, for drawing; clips nothing.
+    /// Edge of the element, mm if bare, for drawing; clips nothing. The semi-diameter if absent.
     outer_semi_diameter: Option<Positive<Length>>,
-    /// Leg of the chamfer at the edge, mm if bare: positive toward +z.
+    /// Leg of the 45 degree chamfer at the edge, mm if bare: positive toward +z. None if absent.
     chamfer: Option<Length>,
-    /// What else limits the light: one aperture or a list.
+    /// What else limits the light: one aperture or a list; see its `shape`. Nothing if absent.
     #[schemars(with = "Option<aperture::ApertureForm>")]
     aperture: Option<StageNode>,
-    /// Whether it reflects.
+    /// Whether it reflects; then it has no glass of its own.
     #[serde(default)]
     mirror: bool,
     /// Whether this optical surface is the aperture stop.
     #[serde(default)]
     stop: bool,
-    /// Shift of this surface alone, mm if bare.
+    /// Shift of this surface alone along x and y, mm if bare; none if absent.
     decenter: Option<[Length; 2]>,
-    /// Tilt of this surface alone about x, y, z, degrees if bare.
+    /// Tilt of this surface alone about x, y and z, right-handed, degrees if bare; none if absent.
     tilt: Option<[Angle; 3]>,
     /// Whether it stands the other way round.
     #[serde(default)]
     reversed: bool,
-    /// Its own coating.
+    /// Its own coating: `ideal`, `bare`, or a layer; the lens's if absent.
     #[schemars(with = "Option<CoatingForm>")]
     coating: Option<StageNode>,
-    /// Part of the light that a mirror reflects; all of it if absent.
+    /// Part of the light that a mirror reflects, 0 to 1; all of it if absent.
+    #[schemars(extend("minimum" = 0, "maximum" = 1))]
     reflectance: Option<Ratio>,
 }
 
@@ -128,14 +159,14 @@ pub(crate) const BREAK: &str = "coordinate-break";
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) struct BreakParams {
-    /// Shift of the axis, mm if bare.
+    /// Shift of the axis along x and y, mm if bare; none if absent.
     decenter: Option<[Length; 2]>,
-    /// Tilt of the axis about x, y, z, degrees if bare.
+    /// Tilt of the axis about x, y and z, right-handed, degrees if bare; none if absent.
     tilt: Option<[Angle; 3]>,
-    /// `decenter-first` or `tilt-first`.
+    /// What comes first: `decenter-first` (the default) or `tilt-first`.
     #[schemars(extend("enum" = ["decenter-first", "tilt-first"]))]
     order: Option<String>,
-    /// Distance to what follows, along the new axis, mm if bare.
+    /// Distance to what follows, along the new axis, mm if bare; 0 if absent.
     thickness: Option<Length>,
 }
 
@@ -166,9 +197,11 @@ fn displacement(decenter: Option<[Length; 2]>, tilt: Option<[Angle; 3]>) -> Disp
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) struct ModelFigures {
-    /// Index at the d line.
+    /// Index at the d line, 1 to 4.
+    #[schemars(range(min = 1, max = 4))]
     nd: f64,
-    /// Abbe number; without one the glass has no dispersion.
+    /// Abbe number, 5 to 200; without one the glass has no dispersion.
+    #[schemars(range(min = 5, max = 200))]
     vd: Option<f64>,
 }
 
@@ -321,11 +354,12 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct FocusParams {
-    /// Name of the group.
+    /// Name of the group, one of `groups`.
     group: String,
-    /// Its travel relative to the others', toward the object.
+    /// Its travel relative to the others', toward the object where positive, not 0. Or else `table`.
     factor: Option<f64>,
-    /// Distances of the object (mm if bare), falling, each with the shift toward the object (mm if bare).
+    /// Distances of the object (mm if bare, or inf), falling, two or more, each with the shift toward the object (mm if
+    /// bare). Or else `factor`.
     table: Option<Vec<(OrInfinity<Positive<Length>>, Length)>>,
 }
 
@@ -375,9 +409,9 @@ struct GroupParams {
     name: String,
     /// First and last surface, by number from 1 (a bend of the axis does not count).
     surfaces: [f64; 2],
-    /// Shift of the group, mm if bare.
+    /// Shift of the group along x and y, mm if bare; none if absent.
     decenter: Option<[Length; 2]>,
-    /// Tilt of the group about the vertex of its first surface, about x, y, z, degrees if bare.
+    /// Tilt of the group about the vertex of its first surface, about x, y and z, degrees if bare; none if absent.
     tilt: Option<[Angle; 3]>,
 }
 

@@ -14,7 +14,25 @@ use spectra_lens::{Lens, MATTE_BOX};
 use std::path::Path;
 use std::sync::Arc;
 
-/// A scene file: its sections. Those that name a stage hold that stage's own parameters.
+/// A scene: what is in front of the lens, the lens, what records the light, and what is written.
+///
+/// Each section that names a stage (`source`, `wavelengths`, `imager`, `film`) is a map with the stage's `kind` and its
+/// own keys: `spectra list` shows which there are, `spectra doc STAGE/NAME` what each takes. A value with a unit (`2
+/// m`, `1/125 s`, `f/2.8`, `550 nm`) stands wherever a number does; a bare number has the unit that the key's
+/// documentation names. Files are looked up beside the scene first, then among the bundled ones.
+///
+/// `spectra run SCENE` renders it, `spectra check SCENE` finds all of its faults.
+///
+/// # Example
+/// ```yaml
+/// spectra: 1
+/// source: {kind: chart, chart: resolution, distance: 2 m, width: 1.5 m, illuminant: D65, luminance: 300 cd/m2}
+/// lens: {file: zeiss-biotar-50-f1.4, f-number: f/2, focus: 2 m}
+/// imager: {kind: film, format: 135, resolution: [960, 640]}
+/// film: {stock: ilford-ortho-plus, exposure: 1/60 s}
+/// render: {samples: 256, seed: 1}
+/// output: [exr, png]
+/// ```
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 #[expect(
@@ -22,13 +40,14 @@ use std::sync::Arc;
     reason = "states which keys a scene has; sections are taken one by one, so that a fault in one hides none in another"
 )]
 pub(crate) struct SceneFile {
-    /// Version of the format.
+    /// Version of the format: 1.
+    #[schemars(range(min = 1, max = 1))]
     spectra: f64,
     /// What is in front of the lens.
     #[schemars(with = "StageOf<dyn Source>")]
     source: StageNode,
+    /// How wavelengths are drawn, and from which band; `source-times-response` over 350 to 830 nm if absent.
     #[serde(default)]
-    /// How wavelengths are drawn, and from which band.
     #[schemars(with = "Option<StageOf<dyn WavelengthSampler>>")]
     wavelengths: Option<StageNode>,
     /// Which lens, and how it is set.
@@ -37,16 +56,16 @@ pub(crate) struct SceneFile {
     /// What records the light.
     #[schemars(with = "StageOf<dyn Imager>")]
     imager: StageNode,
+    /// The film on a film imager, or a list of films side by side; of other imagers none.
     #[serde(default)]
-    /// The film on a film imager, or several side by side.
     #[schemars(with = "Option<films::FilmForm>")]
     film: Option<StageNode>,
+    /// How much light is traced, and how.
     #[serde(default)]
-    /// How much light is traced.
     #[schemars(with = "Option<RenderSection>")]
     render: Option<StageNode>,
+    /// What is written, into files named after the scene; EXR and PNG if absent.
     #[serde(default)]
-    /// What is written; EXR and PNG if absent.
     #[schemars(with = "Option<Vec<output::OutputForm>>")]
     output: Option<Vec<StageNode>>,
 }
@@ -55,7 +74,7 @@ pub(crate) struct SceneFile {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) struct BandSection {
-    /// First and last wavelength of the band, nm if bare.
+    /// First and last wavelength of the band, nm if bare, from 200 to 2500 nm; 350 and 830 nm if absent.
     band: Option<[Wavelength; 2]>,
 }
 
@@ -63,21 +82,27 @@ pub(crate) struct BandSection {
 #[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct RenderSection {
-    /// `auto`, `forward` or `backward`.
+    /// Which way rays run: `backward` (from the imager), `forward` (from the source) or `auto` (the default: backward
+    /// where source and imager can).
     #[schemars(extend("enum" = ["auto", "forward", "backward"]))]
     direction: Option<String>,
-    /// Backward: samples a pixel.
+    /// Backward: samples a pixel, a whole number from 1 to 4194304; 64 if absent.
+    #[schemars(range(min = 1, max = 4_194_304))]
     samples: Option<f64>,
-    /// Forward: rays in all.
+    /// Forward: rays in all, a whole number from 1 to 1e15; four times pixels times samples if absent.
+    #[schemars(range(min = 1))]
     rays: Option<f64>,
-    /// Seed of all numbers.
+    /// Seed of all random numbers, a whole number, 0 or more; 1 if absent. Same scene, same seed: same picture.
+    #[schemars(range(min = 0))]
     seed: Option<f64>,
-    /// Rays a batch.
+    /// Rays that are traced together, a whole number from 8 to 65536; 256 if absent. It changes the speed, not the
+    /// picture.
+    #[schemars(range(min = 8, max = 65_536))]
     batch: Option<f64>,
-    /// `sobol`, `random` or `stratified`.
+    /// Where numbers come from: `sobol` (the default; evenest), `random` or `stratified`.
     #[schemars(extend("enum" = ["sobol", "random", "stratified"]))]
     numbers: Option<String>,
-    /// `disk`, `rings` or `random`.
+    /// How rays fill the aperture: `disk` (the default), `rings` (of equal area) or `random`.
     #[schemars(extend("enum" = ["disk", "rings", "random"]))]
     cone: Option<String>,
 }

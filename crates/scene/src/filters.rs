@@ -26,7 +26,7 @@ struct FrontSection {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) struct Measured {
-    /// A table beside the scene, or a bundled name.
+    /// A table of transmittance over wavelength beside the scene, or a bundled name.
     file: String,
 }
 
@@ -34,11 +34,11 @@ pub(crate) struct Measured {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) struct Plate {
-    /// Its name in a catalogue.
+    /// Its name in a catalogue, such as `SCHOTT/N-BK7`.
     glass: String,
     /// How thick it is, mm if bare.
     thickness: Positive<Length>,
-    /// Coating of both faces: `bare` if absent.
+    /// Coating of both faces: `ideal`, `bare`, or a layer; `bare` if absent.
     #[schemars(with = "Option<spectra_lens::CoatingForm>")]
     coating: Option<StageNode>,
 }

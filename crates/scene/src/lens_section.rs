@@ -22,26 +22,26 @@ pub(crate) struct LensSection {
     /// Whether it is mounted the other way round.
     #[serde(default)]
     reverse: bool,
-    /// Coating of all surfaces, in place of what the lens file states.
+    /// Coating of all surfaces, in place of what the lens file states: `ideal`, `bare`, or a layer.
     #[schemars(with = "Option<CoatingForm>")]
     coating: Option<StageNode>,
     /// Whether glass absorbs; as the lens file says if absent.
     absorption: Option<bool>,
-    /// Aperture; as the lens file says if absent.
+    /// Aperture, set by the real marginal ray; as the lens file says if absent.
     f_number: Option<FNumber>,
-    /// Distance that is in focus, from the first vertex, or `infinity`; the lens file's focus if absent. Or a map with
-    /// what to focus by.
+    /// Distance that is in focus, from the first vertex, mm if bare, or `infinity`; the lens file's focus if absent. Or
+    /// a map with what to focus by.
     #[schemars(with = "Option<FocusForm>")]
     focus: Option<StageNode>,
-    /// Groups out of place.
+    /// Groups out of place: misalignment. None if absent.
     #[serde(default)]
     #[schemars(with = "Vec<AdjustParams>")]
     adjust: Vec<StageNode>,
-    /// Filters in front of it.
+    /// Filters in front of it, at most 16, each a name of a transmittance or a map; none if absent.
     #[expect(dead_code, reason = "states the key; filters are read by themselves")]
     #[schemars(with = "Option<Vec<FilterForm>>")]
     filters: Option<StageNode>,
-    /// A rectangular opening in front of it.
+    /// A rectangular opening in front of it; none if absent.
     #[schemars(with = "Option<MatteBoxParams>")]
     matte_box: Option<StageNode>,
 }
@@ -64,16 +64,20 @@ struct MatteBoxParams {
 struct FocusParams {
     /// Distance that is in focus, from the first vertex, mm if bare, or `infinity`.
     distance: OrInfinity<Positive<Length>>,
-    /// `paraxial`, `rms` or `contrast`.
+    /// What is sharpest: `paraxial` (by first order; the default), `rms` (the smallest spot) or `contrast` (at a
+    /// spatial frequency).
     #[schemars(extend("enum" = ["paraxial", "rms", "contrast"]))]
     by: Option<String>,
-    /// Field angle that is in focus, degrees if bare; on the axis if absent.
+    /// Field angle that is in focus, degrees if bare, within 89; on the axis if absent.
+    #[schemars(extend("minimum" = -89, "maximum" = 89))]
     field: Option<Angle>,
-    /// Wavelength, nm if bare; the reference line of the lens if absent.
+    /// Wavelength that is in focus, 200 to 2500 nm, nm if bare; the reference line of the lens if absent. Or else
+    /// `spectrum`.
     wavelength: Option<Wavelength>,
-    /// Several wavelengths, nm if bare, each with its weight.
+    /// In place of `wavelength`, 1 to 64 of them, nm if bare, each with its weight, more than 0.
+    #[schemars(length(min = 1, max = 64))]
     spectrum: Option<Vec<(Wavelength, f64)>>,
-    /// Spatial frequency whose contrast counts, line pairs a mm if bare.
+    /// With `by: contrast`: the spatial frequency whose contrast counts, line pairs a mm if bare; 30 if absent.
     frequency: Option<Positive<SpatialFrequency>>,
 }
 
@@ -92,13 +96,14 @@ enum FocusForm {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct AdjustParams {
-    /// Name of the group.
+    /// Name of the group, one of the lens file.
     group: String,
-    /// Shift along x and y, mm if bare.
+    /// Shift along x and y, mm if bare; as the lens file has it if absent.
     decenter: Option<[Length; 2]>,
-    /// Tilts about x, y and z, degrees if bare, about the vertex of its first surface.
+    /// Tilts about x, y and z, degrees if bare, about the vertex of its first surface; as the lens file has them if
+    /// absent.
     tilt: Option<[Angle; 3]>,
-    /// Shift along the axis toward the image, mm if bare.
+    /// Shift along the axis toward the image, mm if bare; none if absent.
     shift: Option<Length>,
 }
 

@@ -9,24 +9,27 @@ use spectra_core::params::{Fault, Faults, Kinds, Length, Params, Positive, Stage
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct RaysParams {
-    /// Width and height, pixels.
+    /// Width and height, pixels, each 64 to 8192.
     #[serde(default = "rays_size")]
+    #[schemars(inner(range(min = 64, max = 8192)))]
     size: [f64; 2],
     /// Width of what is shown, mm if bare; fitted to the lens if absent.
     view: Option<Positive<Length>>,
-    /// Rays across the beam for each wavelength.
+    /// Rays across the beam for each wavelength, 1 to 1001.
     #[serde(default = "rays_across")]
+    #[schemars(range(min = 1, max = 1001))]
     rays: f64,
-    /// Wavelengths over a continuous spectrum.
+    /// Wavelengths over a continuous spectrum, 1 to 4001.
     #[serde(default = "rays_wavelengths")]
+    #[schemars(range(min = 1, max = 4001))]
     wavelengths: f64,
-    /// `full`: every color shines alike; `true`: relative to the brightest.
+    /// How bright colors are: `full` (the default; all alike) or `true` (relative to the brightest).
     #[schemars(extend("enum" = ["full", "true"]))]
     intensity: Option<String>,
-    /// `dark` or `light`.
+    /// What it is drawn on: `dark` (the default) or `light`.
     #[schemars(extend("enum" = ["dark", "light"]))]
     ground: Option<String>,
-    /// `png` or `svg`.
+    /// What it is written as: `png` (the default) or `svg`.
     #[schemars(extend("enum" = ["png", "svg"]))]
     format: Option<String>,
     /// Whether the image plane is drawn, and ends the rays.

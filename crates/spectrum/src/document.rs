@@ -90,13 +90,22 @@ impl<'de> Deserialize<'de> for Center {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct Head {
+    /// Format of the file: 1; 1 if absent.
+    #[schemars(range(min = 1, max = 1))]
     spectra: Option<u32>,
+    /// What it is a spectrum of: `emission`, `transmittance`, `reflectance` or `sensitivity`; what is wanted where it
+    /// is named, if absent.
     #[schemars(extend("enum" = ["emission", "transmittance", "reflectance", "sensitivity"]))]
     of: Option<String>,
+    /// Name for people.
     name: Option<String>,
+    /// Where the figures come from.
     source: Option<String>,
+    /// Licence of the figures.
     licence: Option<String>,
+    /// How it was measured: angle, temperature, age.
     conditions: Option<String>,
+    /// Doubts and choices, for people.
     note: Option<String>,
 }
 
@@ -119,115 +128,166 @@ pub(crate) const KINDS: [&str; 13] = [
     "table",
 ];
 
+/// One spectral line.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct LineParams {
+    /// Where it lies: a short name such as `C'`, or a wavelength, nm if bare.
     #[schemars(with = "LineForm")]
     wavelength: StageNode,
+    /// Power of the line, relative or W; 1 if absent.
     power: Option<NonNegative<f64>>,
 }
 
+/// Several spectral lines.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct LinesParams {
+    /// The lines, one or more.
     lines: Vec<LineParams>,
 }
 
+/// The same at every wavelength.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct ConstantParams {
+    /// Its value at every wavelength; 1 if absent.
     value: Option<NonNegative<f64>>,
 }
 
+/// A value between two wavelengths, and nothing outside.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct RectangleParams {
+    /// Where it begins, nm if bare.
     from: Wavelength,
+    /// Where it ends, nm if bare.
     to: Wavelength,
+    /// Its value in between; 1 if absent. Outside it is 0.
     value: Option<NonNegative<f64>>,
 }
 
+/// A bell: peak x exp(-(w - center)^2 / (2 sigma^2)).
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct GaussianParams {
+    /// Wavelength of the peak, nm if bare; it may lie outside of all light.
     center: Center,
+    /// Standard deviation, nm if bare.
     sigma: Positive<Wavelength>,
+    /// Value at the peak; 1 if absent.
     peak: Option<NonNegative<f64>>,
 }
 
+/// Light by its temperature.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct TemperatureParams {
+    /// Temperature, K if bare: of a blackbody, or the correlated color temperature of daylight.
     temperature: Temperature,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 enum ScaleName {
+    /// As they are.
     Linear,
+    /// Logarithms to base 10.
     Log10,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 enum OutsideName {
+    /// Nothing.
     Zero,
+    /// The nearest value.
     Constant,
+    /// Falling off as at the end of the table.
     Geometric,
 }
 
+/// Values at wavelengths, linear in between.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct TableParams {
+    /// Wavelengths, nm if bare, increasing.
+    #[schemars(length(min = 1))]
     wavelengths: Vec<Wavelength>,
+    /// Values there, as many: shares of 1 of a transmittance or reflectance, any scale of the others.
     values: Vec<f64>,
+    /// What the values are: `linear`, or `log10` of it; `linear` if absent.
     scale: Option<ScaleName>,
+    /// What lies outside of the table: `zero`, `constant` (the nearest value) or `geometric` (falling off as at the
+    /// end); what is usual of its kind if absent.
     outside: Option<OutsideName>,
 }
 
+/// What a detector measured in bins.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct HistogramParams {
+    /// Edges of the bins, nm if bare, increasing.
+    #[schemars(length(min = 2))]
     edges: Vec<Wavelength>,
+    /// What was measured between neighboring edges, one fewer; 0 or more.
     counts: Vec<f64>,
 }
 
+/// One signed Gaussian.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct TermParams {
+    /// Value at its center, of either sign.
     amplitude: f64,
+    /// Wavelength of its center, nm if bare; it may lie outside of all light.
     center: Center,
+    /// Standard deviation, nm if bare.
     sigma: Positive<Wavelength>,
 }
 
+/// A sum of signed Gaussians.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct MixtureParams {
+    /// Signed Gaussians, 1 to 4096; where their sum is negative it counts as 0.
+    #[schemars(length(min = 1, max = 4096))]
     terms: Vec<TermParams>,
 }
 
+/// Spectra multiplied: a light behind filters.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct ProductParams {
+    /// What is multiplied, one or more: the first is what is wanted, such as a light, the others are filters. By name,
+    /// or as maps with their `kind`.
     #[schemars(with = "Vec<SpectrumForm>")]
     factors: Vec<StageNode>,
 }
 
+/// Spectra added.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct SumParams {
+    /// What is added, one or more: by name, or as maps with their `kind`.
     #[schemars(with = "Vec<SpectrumForm>")]
     parts: Vec<StageNode>,
 }
 
+/// A spectrum, brighter or darker.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct ScaleParams {
+    /// What is scaled: by name, or as a map with its `kind`.
     #[schemars(with = "SpectrumForm")]
     spectrum: StageNode,
+    /// What it is multiplied by. One of the four is given.
     factor: Option<NonNegative<f64>>,
+    /// Its greatest value afterwards.
     peak: Option<NonNegative<f64>>,
+    /// Its power over 350-830 nm afterwards, W if bare; of light only.
     power: Option<Power>,
+    /// Its luminance afterwards, cd/m2 if bare; of light only.
     luminance: Option<Luminance>,
 }
 
@@ -252,7 +312,7 @@ impl JsonSchema for SpectrumForm {
 
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
         let inside = kinds(generator, None);
-        json_schema!({ "x-words": "name or expression, or map", "if": { "type": "string" }, "else": inside })
+        json_schema!({ "x-words": "name, expression or map", "x-see": "spectrum", "if": { "type": "string" }, "else": inside })
     }
 }
 
@@ -260,13 +320,48 @@ impl JsonSchema for SpectrumForm {
 #[must_use]
 pub fn schema(generator: &mut SchemaGenerator) -> Schema {
     let head = Head::json_schema(generator);
-    kinds(generator, Some(&head))
+    let mut schema = kinds(generator, Some(&head));
+    schema.insert("description".to_owned(), ABOUT.into());
+    schema
 }
+
+/// What a person reads about such a file.
+const ABOUT: &str = "\
+A spectrum: a light, a filter, a surface or a sensitivity, by its kind.
+
+It may say what it is a spectrum `of`; without that, a function such as a table or a Gaussian is what is wanted where the \
+file is named. Lights are radiance or power a nanometer, relative unless scaled; transmittances and reflectances are shares \
+of 1. Spectra are made of others by `product`, `sum` and `scale`; what stands there is a map like these, the name of a \
+bundled spectrum or file (`D65`, `wratten-15`, `gel.csv`), or an expression such as `blackbody:3200`. A table of many rows \
+is better kept as CSV.
+
+# Examples
+```yaml
+# A warm lamp behind a filter
+spectra: 1
+name: Enlarger lamp
+kind: product
+factors:
+  - {kind: blackbody, temperature: 2856 K}
+  - {kind: table, wavelengths: [400, 500, 600, 700], values: [0.1, 0.4, 0.85, 0.9], outside: constant}
+```
+```yaml
+kind: scale
+spectrum: {kind: lines, lines: [{wavelength: \"C'\", power: 2}, {wavelength: 546.07 nm}]}
+luminance: 120 cd/m2
+```";
 
 fn kinds(generator: &mut SchemaGenerator, shared: Option<&Schema>) -> Schema {
     let own = KINDS.iter().map(|name| {
         let schema = match *name {
-            "blackbody" | "daylight" => TemperatureParams::json_schema(generator),
+            "blackbody" | "daylight" => {
+                let mut schema = TemperatureParams::json_schema(generator);
+                let daylight = "CIE daylight of a correlated color temperature, relative.";
+                let blackbody = "Light of a blackbody by Planck's law, W m^-2 sr^-1 nm^-1.";
+                let said = if *name == "daylight" { daylight } else { blackbody };
+                schema.insert("description".to_owned(), said.into());
+                schema
+            }
             "constant" => ConstantParams::json_schema(generator),
             "gaussian" => GaussianParams::json_schema(generator),
             "histogram" => HistogramParams::json_schema(generator),

@@ -9,32 +9,49 @@ use spectra_core::spectral::{Grid, Line, SpectralPower};
 use spectra_core::stage::ColorModel;
 
 /// Each channel one spectral line, with secondary lines between them if wanted.
+///
+/// A picture of nothing but lines: what a lens does to three wavelengths is seen at once, as three sharp pictures on
+/// one another. The usual lines are C' (643.85 nm), e (546.07 nm) and g (435.84 nm). A line is written by its short
+/// name (`C'` in quotes: `"C'"`) or as a wavelength, and the three must lie in the order blue, green, red.
+///
+/// `secondary` lines fill the gaps: the power of each channel is linear between its own line and those of its
+/// neighbors, and zero at the cuts. They change the colors of a picture: a gray patch gets light between the lines that
+/// sRGB did not ask for.
+///
+/// # Example
+/// ```yaml
+/// {kind: fraunhofer, R: "C'", G: e, B: g}
+/// ```
+/// ```yaml
+/// {kind: fraunhofer, R: C, G: d, B: F, secondary: [610 nm, 520 nm], balance: false}
+/// ```
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct FraunhoferParams {
-    /// Line of the red channel: a short name such as `C'`, or a wavelength.
+    /// Line of the red channel: a short name such as `C'`, or a wavelength, nm if bare; C' if left out.
     #[serde(rename = "R")]
     #[schemars(with = "Option<LineName>")]
     red: Option<StageNode>,
-    /// Line of the green channel.
+    /// Line of the green channel: a short name, or a wavelength, nm if bare; e if left out.
     #[serde(rename = "G")]
     #[schemars(with = "Option<LineName>")]
     green: Option<StageNode>,
-    /// Line of the blue channel.
+    /// Line of the blue channel: a short name, or a wavelength, nm if bare; g if left out.
     #[serde(rename = "B")]
     #[schemars(with = "Option<LineName>")]
     blue: Option<StageNode>,
-    /// Further lines, linear between their neighbors among the three, zero at the cuts.
+    /// Further lines, by name or wavelength, nm if bare; their power is linear between the three and zero at the cuts.
+    /// None if left out.
     #[serde(default)]
     #[schemars(with = "Vec<LineName>")]
     secondary: Vec<StageNode>,
-    /// Where the ultraviolet ends.
+    /// Where the ultraviolet ends and secondary lines have no power, nm if bare; 380 nm if left out.
     #[serde(rename = "uv-cut")]
     uv_cut: Option<Wavelength>,
-    /// Where the infrared begins.
+    /// Where the infrared begins and secondary lines have no power, nm if bare; 780 nm if left out.
     #[serde(rename = "ir-cut")]
     ir_cut: Option<Wavelength>,
-    /// Whether the lines are scaled so that white has the illuminant's chromaticity.
+    /// Whether the lines are scaled so that white has the illuminant's chromaticity; if not, each has the power 1.
     #[serde(default = "yes")]
     balance: bool,
 }

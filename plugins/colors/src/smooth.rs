@@ -21,7 +21,24 @@ use spectra_core::stage::ColorModel;
 use spectra_spectrum::{Observer, RgbSpace, chromaticity, illuminant, matrix};
 use std::sync::OnceLock;
 
-/// A smooth reflectance for each color, under the illuminant (Jakob and Hanika 2019).
+/// A smooth reflectance for each color, under the illuminant.
+///
+/// For pictures of things that are lit: each color becomes the reflectance s(a + b t + c t^2), with the sigmoid s(x) =
+/// 1/2 + x / (2 sqrt(1 + x^2)) and t running over the band, whose three numbers are solved for the color that it has
+/// under D65; its light is that reflectance times the illuminant. So grays have the spectrum of the illuminant itself,
+/// lines included, and fluorescent or sodium light does to colors what it does.
+///
+/// A color is first scaled to a largest value of 1/2 and its spectrum scaled back, so that there is no color too
+/// bright; the price is that the reflectance of a full and saturated color exceeds 1.
+///
+/// # Example
+/// ```yaml
+/// {kind: smooth}
+/// ```
+/// # References
+/// - W. Jakob and J. Hanika, "A low-dimensional function space for efficient spectral upsampling", Computer Graphics
+///   Forum 38(2), 147 (2019).
+/// - M. Pharr, W. Jakob and G. Humphreys, "Physically Based Rendering", 4th edition, 4.6.6.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct SmoothParams {}

@@ -15,13 +15,16 @@ use spectra_film::stock::{Densitometry, Stock};
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct HalationParams {
-    /// Light that enters the base, over the light that exposes the layer.
+    /// Light that enters the base, over the light that exposes the layer, 0 to 10.
+    #[schemars(range(min = 0, max = 10))]
     pub entering: f64,
-    /// Transmittance of base and backing, passed once.
+    /// Transmittance of base and backing, passed once, 0 to 1.
+    #[schemars(range(min = 0, max = 1))]
     pub transmittance: f64,
-    /// Thickness of the base, mm if bare; the stock's first base if left out.
+    /// Thickness of the base, 0.001 to 10 mm, mm if bare; the stock's first base if left out.
     pub thickness: Option<Positive<Length>>,
-    /// Refractive index of the base; the stock's if left out.
+    /// Refractive index of the base, above 1 to 4; the stock's if left out.
+    #[schemars(extend("exclusiveMinimum" = 1, "maximum" = 4))]
     pub index: Option<f64>,
 }
 

@@ -29,11 +29,13 @@ pub enum Metering {
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct SpotParams {
-    /// Its center, in shares of the frame's width and height from the upper left corner.
+    /// Its center, in shares of the frame's width and height from the upper left corner, each 0 to 1.
     #[serde(default = "center")]
+    #[schemars(inner(range(min = 0, max = 1)))]
     pub center: [f64; 2],
-    /// Its diameter, in shares of the frame's height.
+    /// Its diameter, in shares of the frame's height, above 0 to 4.
     #[serde(default = "diameter")]
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 4))]
     pub diameter: f64,
 }
 

@@ -19,6 +19,39 @@ use spectra_film::push::pushed;
 use spectra_film::stock::{Process, Stock};
 
 /// Film from a data file, developed, and printed, scanned or projected.
+///
+/// The light on the frame becomes exposure in lux-seconds by the sensitivity of each layer, density by the
+/// characteristic curve of the development, and a picture by what is done with the film: a negative in black and white
+/// is printed on paper, a color negative on the print stock of its maker, a reversal film is projected. Light that the
+/// emulsion spreads and the base throws back acts before the curve, grain after it, where the stock's file states what
+/// they are.
+///
+/// The exposure is that of the scene (`exposure`), or the camera meters: what is metered, by a perfect photometer, gets
+/// the 10/S lx s of a mid gray, S being the ISO speed. `spectra film info NAME` shows what a stock's file holds, and
+/// `spectra list stock` the bundled stocks.
+///
+/// # Example
+/// ```yaml
+/// {stock: ilford-ortho-plus, exposure: 1/60 s}
+/// ```
+/// ```yaml
+/// # A push by one stop, exposed for it
+/// {kind: stock, stock: kodak-tri-x-400, metering: average, iso: 800, push: 1, paper: {range: 1.0}}
+/// ```
+/// ```yaml
+/// # A color negative, metered on its middle and printed
+/// kind: stock
+/// stock: kodak-vision3-250d-5207
+/// metering: spot
+/// spot: {center: [0.5, 0.5], diameter: 0.2}
+/// compensation: 0.5
+/// view: print
+/// ```
+/// # References
+/// - ISO 2720:1974: exposure meters; 10/S lx s is the exposure of a mid gray.
+/// - ISO 6:1993: the speed point of black-and-white negatives. ISO 6846:1992: the exposure range of papers.
+/// - C. J. Bartleson and E. J. Breneman, "Brightness reproduction in the photographic process", Photogr. Sci. Eng. 11
+///   (1967): the contrast of a print.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct StockParams {
@@ -30,28 +63,32 @@ pub struct StockParams {
     /// shorter that what is metered gets the 10/S lx s of a mid gray.
     #[serde(default)]
     pub metering: Metering,
-    /// The spot of `metering: spot`.
+    /// The spot of `metering: spot`; a tenth of the height in the middle of the frame if left out.
     pub spot: Option<SpotParams>,
-    /// Stops by which a metered frame is exposed more than the meter says.
+    /// Stops by which a metered frame is exposed more than the meter says, -10 to 10; 0 if left out.
+    #[schemars(range(min = -10, max = 10))]
     pub compensation: Option<f64>,
-    /// The speed that the meter, and whoever prints, takes the film for; the stock's, times two for each stop pushed, if
-    /// left out.
+    /// The ISO speed that the meter, and whoever prints, takes the film for, more than 0; the stock's, times two for
+    /// each stop pushed, if left out.
     pub iso: Option<Positive<f64>>,
     /// How the film is developed: a name from the stock's file; the first one there if left out.
     pub development: Option<String>,
-    /// Stops by which it is developed longer, or shorter if negative: where the stock's file has a series of times.
+    /// Stops by which it is developed longer, or shorter if negative, within the series of times that the stock's file
+    /// has; 0 if left out.
     pub push: Option<f64>,
-    /// How it is looked at: `print`, `negative`, `scan`, or `projection` of a reversal film.
+    /// How it is looked at: `print`, `negative`, `scan`, or `projection` of a reversal film; `projection` of a reversal
+    /// film and `print` of any other if left out.
     pub view: Option<View>,
-    /// The print stock; the maker's for this film if left out, or paper for black and white.
+    /// The print stock, by the name of a bundled one or a YAML file beside the scene; the maker's for this film if left
+    /// out, or paper for black and white.
     pub print: Option<String>,
-    /// How the print is developed: a name from the print stock's file.
+    /// How the print is developed: a name from the print stock's file; the first one there if left out.
     pub print_development: Option<String>,
-    /// The paper of a black-and-white print.
+    /// The paper of a black-and-white print, in place of `print`.
     pub paper: Option<PaperParams>,
-    /// The printer's lamp; that of the print stock if left out.
+    /// The printer's lamp: the name of a light or a file; the print stock's reference light if left out.
     pub lamp: Option<String>,
-    /// The light that film and prints are looked at by: D55 if left out.
+    /// The light that film and prints are looked at by: the name of a light or a file; D55 if left out.
     pub light: Option<String>,
     /// Whether the emulsion spreads light, where the stock's file has its modulation transfer; `true` if left out.
     pub scatter: Option<bool>,
@@ -59,7 +96,7 @@ pub struct StockParams {
     pub halation: Option<HalationParams>,
     /// Whether silver is grainy, where the stock's file has its granularity; `true` if left out.
     pub grain: Option<bool>,
-    /// Which piece of film it is: another seed, other grains.
+    /// Which piece of film it is, 0 or more: another seed, other grains.
     #[serde(default)]
     pub grain_seed: u64,
 }

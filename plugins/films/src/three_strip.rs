@@ -18,36 +18,61 @@ use spectra_spectrum::constants::LUMINOUS_EFFICACY_LM_PER_W;
 use spectra_spectrum::{Emission, Transmittance, find_emission_in, find_transmittance_in, v_lambda};
 
 /// Three separation negatives behind a beam splitter, printed by dye transfer.
+///
+/// The Technicolor camera of the 1930s: a prism divides the light between two gates, a green filter stands before one
+/// film, and a pair of films behind a magenta filter takes blue in front and red behind. Each record becomes a matrix
+/// that carries its dye (yellow, magenta, cyan) to the print.
+///
+/// Here each record is any black-and-white stock of one layer behind filters. The three are balanced so that a neutral
+/// subject in the light of `balance` exposes them alike, and each is exposed as its own speed wants it; what the speed
+/// of the whole camera was is said by `iso`.
+///
+/// # Example
+/// ```yaml
+/// {kind: three-strip, metering: average}
+/// ```
+/// ```yaml
+/// kind: three-strip
+/// exposure: 1/50 s
+/// iso: 8
+/// balance: iso-7589-studio-tungsten
+/// blue: {stock: kodak-double-x-5222, development: 9-min, filters: [wratten-47]}
+/// ```
+/// # References
+/// - J. Ball, "The Technicolor process of three-color cinematography", J. SMPE 25, 127 (1935).
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct ThreeStripParams {
     /// Exposure time, s if bare; may be left out where the camera meters.
     pub exposure: Option<AboveZero<Time>>,
-    /// How the camera finds its exposure; as of `kind: stock`.
+    /// How the camera finds its exposure: `manual`, `average` or `spot`. A metered frame is exposed so much longer or
+    /// shorter that what is metered gets the 10/S lx s of a mid gray.
     #[serde(default)]
     pub metering: Metering,
-    /// The spot of `metering: spot`.
+    /// The spot of `metering: spot`; a tenth of the height in the middle of the frame if left out.
     pub spot: Option<SpotParams>,
-    /// Stops by which a metered frame is exposed more than the meter says.
+    /// Stops by which a metered frame is exposed more than the meter says, -10 to 10; 0 if left out.
+    #[schemars(range(min = -10, max = 10))]
     pub compensation: Option<f64>,
-    /// The speed of the whole camera, behind beam splitter and filters; 5 if left out.
+    /// The ISO speed of the whole camera, behind beam splitter and filters, more than 0; 5 if left out.
     pub iso: Option<AboveZero<f64>>,
-    /// The light in which a neutral subject exposes all three records alike.
+    /// The light in which a neutral subject exposes all three records alike: the name of a light or a file.
     #[serde(default = "daylight")]
     pub balance: String,
-    /// The light that the print is looked at by.
+    /// The light that the print is looked at by: the name of a light or a file.
     #[serde(default = "daylight")]
     pub light: String,
-    /// The print, with its dyes and the curves of its matrices.
+    /// The print, with its dyes and the curves of its matrices: a bundled stock or a YAML file beside the scene, of
+    /// layers called blue, green and red.
     #[serde(default = "technicolor")]
     pub print: String,
-    /// The negative of the red record.
+    /// The negative of the red record, and what stands before it; Double-X behind wratten-32 and wratten-25 if left out.
     #[serde(default = "red")]
     pub red: RecordParams,
-    /// The negative of the green record.
+    /// The negative of the green record, and what stands before it; Double-X behind wratten-58 if left out.
     #[serde(default = "green")]
     pub green: RecordParams,
-    /// The negative of the blue record.
+    /// The negative of the blue record, and what stands before it; Double-X behind wratten-47 if left out.
     #[serde(default = "blue")]
     pub blue: RecordParams,
 }
@@ -56,11 +81,12 @@ pub struct ThreeStripParams {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct RecordParams {
-    /// The stock; one of a single layer.
+    /// The stock, a black-and-white negative of a single layer: a bundled one or a YAML file beside the scene.
     pub stock: String,
-    /// How it is developed; a name from its file.
+    /// How it is developed: a name from the stock's file; the first one there if left out.
     pub development: Option<String>,
-    /// Filters before it: beam splitter's filter, dyed emulsion in front of it.
+    /// Transmittances before it, by name or file: the filter of the beam splitter, a dyed emulsion in front of it. None
+    /// if left out.
     #[serde(default)]
     pub filters: Vec<String>,
 }

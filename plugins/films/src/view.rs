@@ -30,13 +30,15 @@ pub enum View {
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct PaperParams {
-    /// Exposure range, log10 (ISO range over 100).
+    /// Exposure range, log10 of exposure (the ISO range over 100), more than 0; 1.6, a soft paper, if left out.
     pub range: Option<AboveZero<f64>>,
-    /// Maximum density over the paper's white.
+    /// Maximum density over the paper's white, more than 0; 2.1, a glossy paper, if left out.
     pub maximum_density: Option<AboveZero<f64>>,
-    /// Width of the toe, log10 of exposure.
+    /// Width of the toe, where the highlights are, log10 of exposure, above 0 to 2; 0.1 if left out.
+    #[schemars(range(max = 2))]
     pub toe: Option<AboveZero<f64>>,
-    /// Sharpness of the shoulder.
+    /// Sharpness of the shoulder, where the shadows are, 1 to 64; 4 if left out.
+    #[schemars(range(min = 1, max = 64))]
     pub shoulder: Option<AboveZero<f64>>,
 }
 

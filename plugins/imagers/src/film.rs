@@ -10,6 +10,26 @@ use spectra_core::stage::{Imager, Launch, Receive};
 
 imager_params! {
     /// A frame with a film on it; what it records is the film's.
+    ///
+    /// The section `film` of the scene says which film, and how it is exposed and developed; several films side by side
+    /// record the same light.
+    ///
+    /// `resolution` is the number of pixels across and down; where their shape differs from that of the frame, pixels
+    /// are not square. The frame stands in the image plane of the lens unless it is shifted or tilted (as on a view
+    /// camera), or bent.
+    ///
+    /// # Example
+    /// ```yaml
+    /// {kind: film, format: 135, resolution: [960, 640]}
+    /// ```
+    /// ```yaml
+    /// # A view camera, swung for a tilted plane of focus
+    /// kind: film
+    /// format: 4x5
+    /// resolution: [1000, 800]
+    /// shift: [0, 15 mm]
+    /// tilt: [-4 deg, 0]
+    /// ```
     FilmPlaneParams {}
 }
 

@@ -20,32 +20,36 @@ macro_rules! imager_params {
         #[derive(Debug, serde::Deserialize, schemars::JsonSchema)]
         #[serde(deny_unknown_fields, rename_all = "kebab-case")]
         pub struct $name {
-            /// Size by name, such as `135` (36 x 24 mm), `6x6` or `super-35`.
+            /// Size by name, such as `135` (36 x 24 mm), `6x6` or `super-35`; or else `width` and `height`.
             #[serde(default)]
             pub format: Option<String>,
-            /// Width of the frame, mm if bare; together with `height`, in place of `format`.
+            /// Width of the frame, 0.001 mm to 100 m, mm if bare; together with `height`, in place of `format`.
             #[serde(default)]
             pub width: Option<spectra_core::params::Positive<spectra_core::params::Length>>,
-            /// Height of the frame, mm if bare.
+            /// Height of the frame, 0.001 mm to 100 m, mm if bare.
             #[serde(default)]
             pub height: Option<spectra_core::params::Positive<spectra_core::params::Length>>,
             /// Pixels across and down, 1 to 32768 each and at most 200 million.
+            #[schemars(inner(range(min = 1, max = 32768)))]
             pub resolution: [u32; 2],
             /// Where the center of the frame lies in the image plane, along x and y, mm if bare; +y is up. The image is
-            /// upside down: a frame moved up shows more of what is below.
+            /// upside down: a frame moved up shows more of what is below. On the axis if left out.
             #[serde(default)]
             pub shift: Option<[spectra_core::params::Length; 2]>,
             /// Turns of the frame about its own center, about x and then about the y that turned along, degrees if
-            /// bare, right-handed: a positive one about x moves the upper edge away from the lens. Within 80 degrees.
+            /// bare, right-handed: a positive one about x moves the upper edge away from the lens. Within 80 degrees;
+            /// across the axis if left out.
             #[serde(default)]
             pub tilt: Option<[spectra_core::params::Angle; 2]>,
-            /// A frame that is not flat.
+            /// The bend of a frame that is not flat.
             #[serde(default)]
             pub curvature: Option<$crate::params::Curvature>,
-            /// Plates of glass before the frame: cover glass, filters against ultraviolet and infrared.
+            /// Plates of glass before a flat frame: cover glass, filters against ultraviolet and infrared. None if left
+            /// out.
             #[serde(default)]
             pub cover: Option<Vec<$crate::params::CoverParams>>,
-            /// Plates of a crystal that split every point in two, against false colors.
+            /// Plates of a crystal before a flat frame that split every point in two, against false colors. None if left
+            /// out.
             #[serde(default)]
             pub low_pass: Option<Vec<$crate::params::LowPassParams>>,
             $($(#[$field_doc])* pub $field: $type,)*
@@ -76,9 +80,10 @@ pub(crate) use imager_params;
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Curvature {
     /// `cylinder`: bent along x, as film in a curved gate; or `sphere`.
+    #[schemars(extend("enum" = ["cylinder", "sphere"]))]
     pub shape: String,
     /// Radius, mm if bare; positive where its center lies behind the frame, negative where the frame is hollow toward
-    /// the lens.
+    /// the lens. It bends the frame by 60 degrees to a side at most.
     pub radius: Length,
 }
 
@@ -88,12 +93,13 @@ pub struct Curvature {
 pub struct CoverParams {
     /// A glass of the catalogue, such as `SCHOTT/N-BK7`; what it absorbs counts.
     pub glass: String,
-    /// Thickness, mm if bare.
+    /// Thickness, mm if bare, at most 100 mm.
     pub thickness: Positive<Length>,
     /// Air between it and what stands behind it, mm if bare: for the record, since it changes nothing.
     #[serde(default)]
     pub gap: Option<NonNegative<Length>>,
-    /// A further transmittance, by name: a coating against infrared, a dyed layer.
+    /// A further transmittance, by name or from a file beside the scene: a coating against infrared, a dyed layer. None
+    /// if left out.
     #[serde(default)]
     pub transmittance: Option<String>,
 }
@@ -105,7 +111,7 @@ pub struct LowPassParams {
     /// `quartz` (the default), `lithium-niobate`, or a uniaxial crystal of the catalogue without its `-o` or `-e`.
     #[serde(default)]
     pub crystal: Option<String>,
-    /// Thickness, mm if bare: 1.5 mm of quartz split by 8.8 um.
+    /// Thickness, mm if bare, at most 100 mm: 1.5 mm of quartz split by 8.8 um.
     pub thickness: Positive<Length>,
     /// Where the second point lies, from +x toward +y, degrees if bare; 0 if left out.
     #[serde(default)]

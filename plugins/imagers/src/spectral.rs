@@ -13,8 +13,28 @@ use spectra_spectrum::{Gamut, Observer};
 
 imager_params! {
     /// A frame that records the spectrum itself: one channel a band, in W m^-2 nm^-1.
+    ///
+    /// For looking at any film, sensor or observer afterwards, and for hyperspectral test data. The value of a channel
+    /// is the mean spectral irradiance of its band. In the OpenEXR file channels are named by the middle of their band,
+    /// as the spectral OpenEXR layout has it: `S0.550,0nm`. The picture shows the colors that an eye sees.
+    ///
+    /// `resolution` is the number of pixels across and down; where their shape differs from that of the frame, pixels
+    /// are not square. The frame stands in the image plane of the lens unless it is shifted or tilted (as on a view
+    /// camera), or bent.
+    ///
+    /// # Example
+    /// ```yaml
+    /// {kind: spectral, format: 135, resolution: [480, 320], bands: 40}
+    /// ```
+    /// ```yaml
+    /// {kind: spectral, format: 6x6, resolution: [256, 256], bands: 16, range: [400 nm, 720 nm]}
+    /// ```
+    /// # References
+    /// - A. Fichet, R. Pacanowski and A. Wilkie, "An OpenEXR layout for spectral images", J. Computer Graphics
+    ///   Techniques 10 (2021).
     SpectralParams {
-        /// Number of bands of equal width, 1 to 256.
+        /// Number of bands of equal width, a whole number from 1 to 256.
+        #[schemars(range(min = 1, max = 256))]
         bands: f64,
         /// First and last wavelength, nm if bare; 380 to 780 nm if absent.
         #[serde(default)]

@@ -13,17 +13,34 @@ use spectra_spectrum::{Gamut, Observer};
 
 imager_params! {
     /// A frame that measures CIE 1931 XYZ in lux, or lux-seconds where it is given an exposure time.
+    ///
+    /// A perfect tristimulus colorimeter at each pixel, without noise: the imager for measuring, and for pictures that
+    /// show what an eye would see there. Y is illuminance on the frame (683 lm/W times V).
+    ///
+    /// `resolution` is the number of pixels across and down; where their shape differs from that of the frame, pixels
+    /// are not square. The frame stands in the image plane of the lens unless it is shifted or tilted (as on a view
+    /// camera), or bent.
+    ///
+    /// # Example
+    /// ```yaml
+    /// {kind: xyz, format: 135, resolution: [960, 640]}
+    /// ```
+    /// ```yaml
+    /// {kind: xyz, width: 24 mm, height: 24 mm, resolution: [512, 512], exposure: 1/60 s, white: 0.4 lx s, gamut: perceptual}
+    /// ```
     XyzParams {
         /// Exposure time, s if bare. With it the channels are in lx s, without it in lx.
         #[serde(default)]
         exposure: Option<Positive<Time>>,
-        /// The Y that the picture shows as white: an illuminance, or an exposure where an exposure time is given.
-        /// Without it, automatic exposure shows the 99th percentile of Y as 0.9.
+        /// The Y that the picture shows as white, with its unit: an illuminance such as `20 lx`, or an exposure such as
+        /// `0.4 lx s` where an exposure time is given. Without it, automatic exposure shows the 99th percentile of Y as
+        /// 0.9.
         #[serde(default)]
         white: Option<String>,
         /// What becomes of colors that a screen cannot show: `desaturate` (luminance stays, the default), `perceptual`
         /// (hue and lightness as they are seen stay) or `clip` (each of red, green and blue by itself: vivid).
         #[serde(default)]
+        #[schemars(extend("enum" = ["desaturate", "perceptual", "clip"]))]
         gamut: Option<String>,
     }
 }

@@ -36,16 +36,34 @@ pub enum Follow {
 }
 
 /// A few Gaussian terms, fitted to the source.
+///
+/// The source's continuum is fitted by signed Gaussians, and wavelengths are drawn from them. No way of drawing is
+/// biased by what the fit leaves over: the source itself is evaluated at the wavelength, or what is left over is
+/// followed too. They differ in their noise.
+///
+/// `collapsed` draws from the sum of the terms without their signs, and is the one to use. `term-then-wavelength` draws
+/// a term, then a wavelength from it, and keeps the term's sign: where terms cancel, its weights scatter. `one-term`
+/// lets the sample be the light of its term alone, and is there to be measured; it takes no floor.
+///
+/// # Example
+/// ```yaml
+/// {kind: gaussian-terms, terms: 8}
+/// ```
+/// ```yaml
+/// {kind: gaussian-terms, terms: 4, follow: one-term}
+/// ```
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct GaussianTermsParams {
     /// Number of terms that are fitted to the source's continuum, 1 to 32; 6 if left out.
     #[serde(default = "usual_terms")]
+    #[schemars(range(min = 1, max = 32))]
     pub terms: u32,
-    /// `collapsed` (the usual), `term-then-wavelength` or `one-term`.
+    /// How a wavelength is drawn from the terms: `collapsed` (the usual), `term-then-wavelength` or `one-term`.
     #[serde(default)]
     pub follow: Follow,
-    /// Share of the samples that follow the summed response of all channels instead; 1/16 if left out.
+    /// Share of the samples that follow the summed response of all channels instead, 0 to below 1, so that nothing that
+    /// is seen is never drawn; 1/16 if left out.
     #[serde(default)]
     pub floor: Floor,
 }

@@ -19,13 +19,32 @@ use spectra_core::spectral::SystemResponse;
 use spectra_core::stage::{WavelengthDensity, WavelengthSampler};
 
 /// Groups of samples share one number, rotated among them.
+///
+/// The wavelength of the first of a group is drawn, those of the others lie around it at equal distances in
+/// probability: a group of k is k strata with one jitter for all, and each wavelength has exactly the density of the
+/// strategy that is named. Each sample keeps a path of its own, since a lens disperses them. With `numbers: random` a
+/// group takes the noise of the wavelength from k samples to that of k even ones; Sobol points are more even than that
+/// already.
+///
+/// # Example
+/// ```yaml
+/// {kind: hero, group: 4}
+/// ```
+/// ```yaml
+/// {kind: hero, group: 8, density: {kind: uniform}}
+/// ```
+/// # References
+/// - A. Wilkie, S. Nawaz, M. Droske, A. Weidlich and J. Hanika, "Hero wavelength spectral sampling", Computer Graphics
+///   Forum 33(4), 123 (2014).
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct HeroParams {
     /// Wavelengths of a group, 2 to 1024; 4 if left out.
     #[serde(default = "usual_group")]
+    #[schemars(range(min = 2, max = 1024))]
     pub group: u32,
-    /// The strategy whose density is drawn from: a name, or a map with its `kind`; `source-times-response` if left out.
+    /// The strategy whose density is drawn from, any but `hero` itself: a name, or a map with its `kind`;
+    /// `source-times-response` if left out.
     #[schemars(with = "Option<StageOf<dyn WavelengthSampler>>")]
     pub density: Option<StageNode>,
 }

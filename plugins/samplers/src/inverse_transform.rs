@@ -14,13 +14,27 @@ use spectra_core::stage::{WavelengthDensity, WavelengthSampler};
 use spectra_spectrum::{Found, Observer, find_in};
 
 /// In proportion to any named spectrum.
+///
+/// The density is the spectrum over its integral, drawn by inverting that integral. A density in the form of human
+/// vision (`y-bar`) is the habit of many renderers; on film it is a poor one, since film sees below 400 nm where y-bar
+/// is next to nothing. `floor` keeps a spectrum that is zero where a channel sees from being a bias; with `floor: 0`
+/// such a spectrum is refused.
+///
+/// # Example
+/// ```yaml
+/// {kind: inverse-transform, spectrum: y-bar}
+/// ```
+/// ```yaml
+/// {kind: inverse-transform, spectrum: "gaussian:550,50", floor: 10 %}
+/// ```
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct InverseTransformParams {
     /// What to draw in proportion to: `x-bar`, `y-bar` or `z-bar` (CIE 1931, 2 degrees), a bundled spectrum such as
     /// `D65`, a file beside the scene, or an inline one such as `gaussian:550,50`. It needs a continuum.
     pub spectrum: String,
-    /// Share of the samples that follow the summed response of all channels instead; 1/16 if left out.
+    /// Share of the samples that follow the summed response of all channels instead, 0 to below 1, so that nothing that
+    /// is seen is never drawn; 1/16 if left out.
     #[serde(default)]
     pub floor: Floor,
 }

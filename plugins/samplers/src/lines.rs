@@ -28,6 +28,15 @@ impl WavelengthSampler for Lines {
 }
 
 /// The source's spectral lines only, by their power.
+///
+/// For gas lamps, and for pictures whose color model is of lines (`color: {kind: fraunhofer}`). Each line is drawn in
+/// proportion to its power, whatever the imager sees of it. A source with a continuum is refused, since drawing lines
+/// only would forget it.
+///
+/// # Example
+/// ```yaml
+/// {kind: lines}
+/// ```
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct LinesParams {}

@@ -41,6 +41,21 @@ impl WavelengthSampler for SourceTimesResponse {
 }
 
 /// The source's power times what the imager sees; lines as lines.
+///
+/// The strategy that is taken where a scene names none, and the one to render with: wavelengths are drawn where their
+/// light matters, so the noise that they add is small whatever the film. Spectral lines are drawn as lines, each at its
+/// own wavelength and in proportion to what is seen of it.
+///
+/// Of the samples 5 % follow the summed response of all channels alone, so that the density is nowhere zero where a
+/// channel sees: that would be a bias.
+///
+/// # Example
+/// ```yaml
+/// {kind: source-times-response}
+/// ```
+/// ```yaml
+/// {band: [380 nm, 780 nm]}
+/// ```
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct SourceTimesResponseParams {}

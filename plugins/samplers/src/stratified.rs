@@ -21,11 +21,21 @@ use spectra_core::spectral::SystemResponse;
 use spectra_core::stage::{WavelengthDensity, WavelengthSampler};
 
 /// Strata of the band of equal width, jittered independently.
+///
+/// The textbook's jittered sampling, as a yardstick: the number of a sample says which stratum, a hash of it where in
+/// the stratum. `kind: uniform` hands on all of the evenness of Sobol points and is the better one beyond as many
+/// samples as strata. Where the source has lines beside a continuum, they get half of the samples.
+///
+/// # Example
+/// ```yaml
+/// {kind: stratified, strata: 128}
+/// ```
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct StratifiedParams {
-    /// Number of strata of the band, 1 to 65 536; 64 if left out.
+    /// Number of strata of the band, 1 to 65536; 64 if left out.
     #[serde(default = "usual_strata")]
+    #[schemars(range(min = 1, max = 65536))]
     pub strata: u32,
 }
 

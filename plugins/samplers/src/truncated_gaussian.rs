@@ -17,6 +17,15 @@ use spectra_core::stage::{WavelengthDensity, WavelengthSampler};
 use spectra_spectrum::{SpectrumError, TruncatedGaussian};
 
 /// One Gaussian, cut off at the ends of the band.
+///
+/// Drawn by the inverse of the normal distribution, safe however far out its center lies. For a narrow source or
+/// detector, and as a yardstick. Far from the center the Gaussian is as good as zero: `floor` sees to it that what a
+/// channel sees there is drawn nonetheless, and without one a Gaussian that does not reach all of it is refused.
+///
+/// # Example
+/// ```yaml
+/// {kind: truncated-gaussian, center: 550 nm, sigma: 60 nm}
+/// ```
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct TruncatedGaussianParams {
@@ -24,7 +33,8 @@ pub struct TruncatedGaussianParams {
     pub center: Wavelength,
     /// Standard deviation before the ends are cut off, nm if bare; 1e-6 to 1e6 nm.
     pub sigma: Wavelength,
-    /// Share of the samples that follow the summed response of all channels instead; 1/16 if left out.
+    /// Share of the samples that follow the summed response of all channels instead, 0 to below 1, so that nothing that
+    /// is seen is never drawn; 1/16 if left out.
     #[serde(default)]
     pub floor: Floor,
 }

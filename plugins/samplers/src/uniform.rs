@@ -27,6 +27,15 @@ impl WavelengthSampler for Uniform {
 }
 
 /// Every wavelength of the band alike.
+///
+/// A yardstick for the other strategies, and the choice where the spectrum itself is what one looks for at every
+/// wavelength. Where the source has lines beside a continuum, they get half of the samples; where it has lines only,
+/// all of them.
+///
+/// # Example
+/// ```yaml
+/// {kind: uniform}
+/// ```
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct UniformParams {}

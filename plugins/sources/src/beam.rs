@@ -11,6 +11,18 @@ use spectra_core::stage::{Emit, Source};
 use spectra_core::{Isa, RayBatch, batch::CONTINUUM};
 
 /// A thin beam of parallel light, round or cut by a slit.
+///
+/// For prisms, gratings and anything on an optical bench: a ray box. All of its rays run in one direction from a disk
+/// (`diameter`) or a rectangle (`slit`) across the beam. It is rendered from the source (`direction: forward`); with
+/// `output: [{kind: rays}]` its way is drawn.
+///
+/// # Example
+/// ```yaml
+/// {kind: beam, distance: 60, direction: [0, 10 deg], slit: [0.2 mm, 5 mm], spectrum: "blackbody:5800", power: 1 mW}
+/// ```
+/// ```yaml
+/// {kind: beam, distance: 100 mm, diameter: 1 mm, spectrum: he-ne}
+/// ```
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct BeamParams {
@@ -18,13 +30,14 @@ struct BeamParams {
     distance: Positive<Length>,
     /// Where it starts (to the photographer's right, up), mm if bare; on the axis if absent.
     position: Option<[Length; 2]>,
-    /// Angles that it is tilted by (toward the photographer's right, upward), degrees if bare.
+    /// Angles that it is tilted by (toward the photographer's right, upward), degrees if bare, each within 85.9
+    /// degrees; along the axis if absent.
     direction: Option<[Angle; 2]>,
-    /// Diameter of a round beam, mm if bare.
+    /// Diameter of a round beam, mm if bare; or else `slit`.
     diameter: Option<Positive<Length>>,
-    /// Width and height of a slit that cuts the beam, mm if bare.
+    /// Width and height of a slit that cuts the beam, mm if bare; or else `diameter`.
     slit: Option<[Positive<Length>; 2]>,
-    /// Its spectrum, by name.
+    /// Its spectrum: the name of a light or lamp, a file beside the scene, or an expression such as `blackbody:5800`.
     #[serde(default = "daylight")]
     spectrum: String,
     /// Radiant power in the band, W if bare.

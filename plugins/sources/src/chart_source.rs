@@ -14,6 +14,34 @@ use spectra_core::stage::{ColorModel, Source};
 use spectra_spectrum::{Observer, RgbSpace, Transfer};
 
 /// A test chart drawn by the program: resolution, color patches, gray card, star.
+///
+/// A flat, Lambertian sheet across the axis, sharp at any magnification since it is drawn, not sampled. The height
+/// follows from the chart. The charts are:
+///
+/// - `resolution`: stars, slanted edges, wedges, line groups, circles, grays and color patches;
+/// - `color-checker`: the 24 patches of a ColorChecker on a black frame, with their measured reflectances;
+/// - `gray-card`: uniform gray of 18 % reflectance; `white`: uniform white of reflectance 1;
+/// - `grid`: white lines on black, for distortion and lateral color;
+/// - `siemens`: one Siemens star of 72 cycles with tone patches in the corners;
+/// - `slanted-edge`: 7 x 5 squares of 4:1 contrast, turned by 5 degrees, for the MTF over the field;
+/// - `star-field`: stars as tiny disks on black, placed by `seed`;
+/// - `step-wedge`: 21 gray steps of density 0.15, in both directions;
+/// - `text`: lines of text in falling sizes, black on white and white on black.
+///
+/// `luminance` and `illuminant` say how bright a perfect white on it would be, and in what light.
+///
+/// # Example
+/// ```yaml
+/// {kind: chart, chart: resolution, distance: 2 m, width: 1.5 m, illuminant: D65, luminance: 300 cd/m2}
+/// ```
+/// ```yaml
+/// kind: chart
+/// chart: color-checker
+/// distance: 1.5 m
+/// width: 60 cm
+/// illuminant: iso-7589-studio-tungsten
+/// color: {kind: fraunhofer, R: "C'", G: e, B: g}
+/// ```
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct ChartParams {
@@ -23,7 +51,8 @@ struct ChartParams {
     distance: Positive<Length>,
     /// Width of the chart, mm if bare; the height follows.
     width: Positive<Length>,
-    /// The light that falls on it.
+    /// The light that falls on it: the name of a spectrum, a file beside the scene, or an expression such as
+    /// `blackbody:3200`.
     #[serde(default = "daylight")]
     illuminant: String,
     /// Luminance of a perfect white on it, cd/m2 if bare.
@@ -33,7 +62,7 @@ struct ChartParams {
     /// every ink is this model's spectrum of its sRGB color.
     #[schemars(with = "Option<StageOf<dyn ColorModel>>")]
     color: Option<StageNode>,
-    /// Of charts with anything random in them, such as `star-field`.
+    /// Seed of charts with anything random in them (`star-field`), 0 or more.
     #[serde(default)]
     seed: u64,
 }

@@ -19,19 +19,41 @@ use spectra_core::stage::{ColorModel, Radiance, Source};
 use spectra_core::{Isa, RayBatch};
 
 /// Picture files one behind the other, with cover: what is hidden is known.
+///
+/// For composed scenes: a foreground, people, a backdrop, each with its alpha. A ray from the lens meets the layers
+/// from the front to the back; each adds its light, times what the ones in front of it let pass. A blurred foreground
+/// shows what it hides, since the layer behind it has it.
+///
+/// Colors are as of `kind: picture`. Alpha of integer files is taken as straight, of floating point as multiplied in,
+/// as OpenEXR has it; a picture without alpha covers all that is behind it. Layers are rendered from the imager only
+/// (`direction: backward`).
+///
+/// # Example
+/// ```yaml
+/// kind: layers
+/// layers:
+///   - {file: leaves.png, distance: 80 cm, width: 50 cm}
+///   - {file: portrait.png, distance: 2 m, width: 1.4 m, center: [10 cm, 0]}
+///   - {file: holiday.png, distance: 20 m, width: 18 m, luminance: 2000 cd/m2}
+/// luminance: 300 cd/m2
+/// ```
+/// # References
+/// - T. Porter and T. Duff, "Compositing digital images", SIGGRAPH 1984.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct LayersParams {
-    /// The layers, from the front to the back.
+    /// The layers, 1 to 64, from the front to the back.
     #[schemars(with = "Vec<LayerParams>")]
+    #[schemars(length(min = 1, max = 64))]
     layers: Vec<StageNode>,
-    /// The light that white has the chromaticity of.
+    /// The light that white has the chromaticity of: the name of a spectrum, a file beside the scene, or an expression
+    /// such as `blackbody:3200`.
     #[serde(default = "daylight")]
     illuminant: String,
     /// Luminance of white (255 of 8 bits, 1.0 of floating point), cd/m2 if bare.
     #[serde(default = "luminance")]
     luminance: Positive<Luminance>,
-    /// How RGB becomes a spectrum; the registry's default if absent.
+    /// How RGB becomes a spectrum: a color model; `primaries` if absent.
     #[schemars(with = "Option<StageOf<dyn ColorModel>>")]
     color: Option<StageNode>,
 }
@@ -40,11 +62,11 @@ struct LayersParams {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct LayerParams {
-    /// An OpenEXR, PNG, JPEG, TIFF or Radiance HDR file, beside the scene.
+    /// An OpenEXR, PNG, JPEG, TIFF or Radiance HDR file, beside the scene; at most 1 GiB.
     file: String,
     /// The layer of an OpenEXR file; its plain R, G and B if absent.
     layer: Option<String>,
-    /// Distance of its plane from the first vertex, mm if bare.
+    /// Distance of its plane from the first vertex, mm if bare; farther than that of the layer before it.
     distance: Positive<Length>,
     /// Width of the picture on that plane, mm if bare; the height follows.
     width: Positive<Length>,

@@ -10,16 +10,31 @@ use spectra_core::stage::{Emit, Source};
 use spectra_core::{Isa, RayBatch, batch::CONTINUUM};
 
 /// One point of light at a finite distance.
+///
+/// For spots, point spread functions, flare and stars. It shines alike to all sides, with the stated radiant intensity
+/// in the band. It is rendered from the source (`direction: forward`), since no ray from the imager would ever meet it.
+///
+/// It stands on a plane across the axis: at a `position` there, or under the angles of `field` as seen from the first
+/// vertex; on the axis where neither is given. Coordinates are the photographer's: to the right, and up.
+///
+/// # Example
+/// ```yaml
+/// {kind: point, distance: 10 m, field: [12 deg, 0], spectrum: D65}
+/// ```
+/// ```yaml
+/// {kind: point, distance: 2 m, position: [30 cm, 10 cm], spectrum: hydrogen, intensity: 0.01 W/sr}
+/// ```
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct PointParams {
     /// Distance of the plane that holds it from the first vertex, mm if bare.
     distance: Positive<Length>,
-    /// Place on that plane (to the photographer's right, up), mm if bare.
+    /// Place on that plane (to the photographer's right, up), mm if bare; on the axis if absent.
     position: Option<[Length; 2]>,
-    /// Or the angles under which it is seen from the first vertex (right, up), degrees if bare.
+    /// In place of `position`: the angles under which it is seen from the first vertex (right, up), degrees if bare,
+    /// each within 85.9 degrees.
     field: Option<[Angle; 2]>,
-    /// Its spectrum, by name.
+    /// Its spectrum: the name of a light or lamp, a file beside the scene, or an expression such as `blackbody:5800`.
     #[serde(default = "daylight")]
     spectrum: String,
     /// Radiant intensity in the band, W/sr if bare.

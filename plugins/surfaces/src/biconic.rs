@@ -54,17 +54,32 @@ impl SagShape for Biconic {
 }
 
 /// Two conic sections across each other.
+///
+/// For astigmatic surfaces that have their own radius and conic constant in the x-z and in the y-z section. Its sag is
+/// z = (cx x^2 + cy y^2) / (1 + sqrt(1 - (1 + kx) cx^2 x^2 - (1 + ky) cy^2 y^2)), with cx = 1 / `radius-x` and so on.
+/// Between the two sections it is not the surface of revolution that a toroid is.
+///
+/// # Example
+/// ```yaml
+/// kind: biconic
+/// radius-x: 50
+/// radius-y: 60
+/// conic-x: -0.5
+/// thickness: 5
+/// glass: SCHOTT/N-BK7
+/// semi-diameter: 15
+/// ```
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct BiconicParams {
-    /// Radius in the x-z section, mm if bare: positive where the center lies at larger z; `inf` is straight.
+    /// Radius in the x-z section, mm if bare, not 0: positive where the center lies at larger z; `inf` is straight.
     radius_x: LengthOrInfinity,
-    /// Radius in the y-z section, mm if bare.
+    /// Radius in the y-z section, mm if bare, not 0: positive where the center lies at larger z; `inf` is straight.
     radius_y: LengthOrInfinity,
-    /// Conic constant of the x-z section.
+    /// Conic constant of the x-z section, any number: 0 is a circle.
     #[serde(default)]
     conic_x: f64,
-    /// Conic constant of the y-z section.
+    /// Conic constant of the y-z section, any number: 0 is a circle.
     #[serde(default)]
     conic_y: f64,
 }

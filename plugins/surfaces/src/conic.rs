@@ -77,12 +77,26 @@ impl KernelShape for Conic {
 }
 
 /// A surface of revolution of a conic section.
+///
+/// For mirrors of telescopes, for aspheres that have no higher terms, for anything that images one point perfectly onto
+/// another. Its sag is z = c r^2 / (1 + sqrt(1 - (1 + k) c^2 r^2)) with the curvature c = 1 / radius and the conic
+/// constant k: a hyperboloid below k = -1, a paraboloid at -1, a prolate ellipsoid from there to 0, a sphere at 0, an
+/// oblate ellipsoid above.
+///
+/// Of an ellipsoid only the half that holds the vertex is surface, of a hyperboloid only the sheet.
+///
+/// # Example
+/// ```yaml
+/// # A parabolic mirror of 100 mm focal length
+/// {kind: conic, radius: -200, conic: -1, thickness: -100, mirror: true, semi-diameter: 25}
+/// ```
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct ConicParams {
-    /// Radius of curvature at the vertex, mm if bare: positive where the center lies at larger z; `inf` is a plane.
+    /// Radius of curvature at the vertex, mm if bare, not 0: positive where the center lies at larger z; `inf` is a
+    /// plane.
     radius: LengthOrInfinity,
-    /// Conic constant: 0 is a sphere, -1 a paraboloid.
+    /// Conic constant k, any number: 0 is a sphere, -1 a paraboloid.
     conic: f64,
 }
 

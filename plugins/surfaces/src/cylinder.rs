@@ -81,10 +81,20 @@ impl KernelShape for Cylinder {
 }
 
 /// A circular cylinder: power in one section only.
+///
+/// For anamorphic attachments and line foci. Across its `axis` it is a circle of the stated radius, along it straight.
+/// Only the half that holds the vertex is surface. Turned about z by `tilt: [0, 0, 30 deg]`, the axis stands at any
+/// angle.
+///
+/// # Example
+/// ```yaml
+/// # Power in the x-z section, which widens or narrows the picture across
+/// {kind: cylinder, radius: 80, axis: y, thickness: 4, glass: SCHOTT/N-BK7, semi-diameter: 20}
+/// ```
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct CylinderParams {
-    /// Radius, mm if bare: positive where the axis of the cylinder lies at larger z; `inf` is a plane.
+    /// Radius, mm if bare, not 0: positive where the axis of the cylinder lies at larger z; `inf` is a plane.
     radius: LengthOrInfinity,
     /// Along which the straight lines run, `x` or `y`: with `x` it is curved in the y-z plane.
     axis: CylinderAxis,

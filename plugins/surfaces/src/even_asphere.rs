@@ -184,15 +184,35 @@ impl<const TERMS: usize> KernelShape for EvenAsphere<TERMS> {
 }
 
 /// A conic with a polynomial in even powers of the radius on top.
+///
+/// The usual asphere of molded and polished lenses. Its sag is z = c r^2 / (1 + sqrt(1 - (1 + k) c^2 r^2)) + a2 r^2 +
+/// a4 r^4 + a6 r^6 + ..., with the curvature c = 1 / radius, the conic constant k and `coefficients: [a2, a4, a6,
+/// ...]`.
+///
+/// The first coefficient is that of r^2. Patents mostly begin with the fourth power: write a 0 before it. Lengths are
+/// in millimeters, so an has the unit mm^(1 - n); a prescription that is scaled by s has coefficients an / s^(n - 1).
+///
+/// # Example
+/// ```yaml
+/// kind: even-asphere
+/// radius: 12.3
+/// conic: -0.8
+/// coefficients: [0, 1.2e-5, -3e-8]
+/// thickness: 3
+/// glass: SCHOTT/N-BK7
+/// semi-diameter: 6
+/// ```
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct EvenAsphereParams {
-    /// Radius of curvature of the conic part, mm if bare: positive where the center lies at larger z; `inf` is none.
+    /// Radius of curvature of the conic part, mm if bare, not 0: positive where the center lies at larger z; `inf` is
+    /// none.
     radius: LengthOrInfinity,
-    /// Conic constant.
+    /// Conic constant k, any number: 0 is a sphere.
     #[serde(default)]
     conic: f64,
-    /// a2, a4, a6, ... in mm^(1 - power): the first is that of r^2. At most 20.
+    /// a2, a4, a6, ... in mm^(1 - power): the first is that of r^2. At most 20; missing ones are 0.
+    #[schemars(length(max = 20))]
     coefficients: Vec<f64>,
 }
 

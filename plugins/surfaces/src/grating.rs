@@ -79,14 +79,35 @@ impl ScalarShape for Grating {
 }
 
 /// A diffraction grating, plane or on a sphere, in one order.
+///
+/// For spectrographs and for diffractive elements, in transmission or, with `mirror: true`, in reflection. The lines
+/// lie in parallel planes along the axis, equally spaced on the vertex plane. In the tangent plane of the surface the
+/// direction changes by n' d' - n d = order x wavelength x G, where G has the length `lines-per-mm` and points across
+/// the lines: order 1 turns light toward G.
+///
+/// All light goes into the one order: there is no blaze and no efficiency. An order that does not exist, since its sine
+/// would exceed 1, counts as totally reflected.
+///
+/// # Example
+/// ```yaml
+/// # A plane reflection grating whose first order goes up
+/// {kind: grating, lines-per-mm: 600, order: 1, thickness: -100, mirror: true, semi-diameter: 12}
+/// ```
+/// ```yaml
+/// # A transmission grating on a window
+/// {kind: grating, lines-per-mm: 300 lines/mm, order: -1, thickness: 3, glass: SCHOTT/N-BK7, semi-diameter: 12}
+/// ```
+/// # References
+/// - G. H. Spencer and M. V. R. K. Murty, "General ray-tracing procedure", J. Opt. Soc. Am. 52, 672 (1962).
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct GratingParams {
-    /// Lines per mm, if bare: `600 lines/mm`. Zero or more.
+    /// Lines a millimeter, 1/mm if bare: `600 lines/mm`. Zero or more.
     lines_per_mm: spectra_core::params::NonNegative<SpatialFrequency>,
     /// Order of diffraction, any sign; 0 is the undiffracted light.
     order: i32,
-    /// Radius of the sphere that it is ruled on, mm if bare; a plane if left out.
+    /// Radius of the sphere that it is ruled on, mm if bare, not 0: positive where the center lies at larger z; a plane
+    /// if left out.
     #[serde(default = "plane")]
     radius: LengthOrInfinity,
     /// Direction across the lines, degrees if bare, right-handed about +z from +y: 0 turns order 1 toward +y, 90 toward

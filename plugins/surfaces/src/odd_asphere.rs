@@ -50,15 +50,30 @@ impl SagShape for OddAsphere {
 }
 
 /// A conic with a polynomial in all powers of the radius on top.
+///
+/// For axicons and for prescriptions that state odd powers. Its sag is z = c r^2 / (1 + sqrt(1 - (1 + k) c^2 r^2)) + a1
+/// r + a2 r^2 + a3 r^3 + ..., with the curvature c = 1 / radius, the conic constant k and `coefficients: [a1, a2, a3,
+/// ...]`.
+///
+/// With a1 the vertex is the tip of a cone; a ray that meets the tip itself sees it as flat, and the paraxial figures
+/// of the lens leave a1 out. Where only even powers are needed take `kind: even-asphere`, which is faster.
+///
+/// # Example
+/// ```yaml
+/// # An axicon, a cone of glass that draws a beam out into a line
+/// {kind: odd-asphere, radius: inf, coefficients: [0.05], thickness: 5, glass: SCHOTT/N-BK7, semi-diameter: 12.7}
+/// ```
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct OddAsphereParams {
-    /// Radius of curvature of the conic part, mm if bare: positive where the center lies at larger z; `inf` is none.
+    /// Radius of curvature of the conic part, mm if bare, not 0: positive where the center lies at larger z; `inf` is
+    /// none.
     radius: LengthOrInfinity,
-    /// Conic constant.
+    /// Conic constant k, any number: 0 is a sphere.
     #[serde(default)]
     conic: f64,
-    /// a1, a2, a3, ... in mm^(1 - power): the first is that of r. At most 20.
+    /// a1, a2, a3, ... in mm^(1 - power): the first is that of r. At most 20; missing ones are 0.
+    #[schemars(length(max = 20))]
     coefficients: Vec<f64>,
 }
 

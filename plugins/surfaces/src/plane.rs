@@ -53,6 +53,15 @@ impl KernelShape for Plane {
 }
 
 /// A plane across the axis.
+///
+/// The flat face of a plano-convex lens, of a window, of a filter in the beam; with `mirror: true` a flat mirror. It
+/// has no parameters of its own. `{kind: sphere, radius: inf}` is the same surface; a plane that is not across the axis
+/// is `kind: tilted-plane`.
+///
+/// # Example
+/// ```yaml
+/// {kind: plane, thickness: 2, glass: SCHOTT/N-BK7, semi-diameter: 15}
+/// ```
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct PlaneParams {}
@@ -60,6 +69,23 @@ struct PlaneParams {}
 spectra_core::register!(surface "plane": PlaneParams, build_plane);
 
 /// The aperture stop: it clips, and its size sets the f-number.
+///
+/// A plane across the axis that bends no light, in the medium that is there. A lens has one stop: either a surface of
+/// this kind, or a glass surface that says `stop: true`. `f-number` of a scene opens or closes it until the real
+/// marginal ray has that f-number; `semi-diameter` is the size that it has where the scene says nothing.
+///
+/// Blades, or an opening of any other form, are its `aperture`.
+///
+/// # Example
+/// ```yaml
+/// {kind: stop, thickness: 4}
+/// ```
+/// ```yaml
+/// kind: stop
+/// thickness: 4
+/// semi-diameter: 10
+/// aperture: {shape: iris, blades: 8, blade-radius: 14, rotation: 10 deg}
+/// ```
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct StopParams {}

@@ -130,15 +130,45 @@ impl SagShape for SagTable {
 }
 
 /// Sag at the points of a grid, bicubic between them.
+///
+/// For a measured surface (an interferogram, a profilometer's scan) or one computed elsewhere. The grid is
+/// square-meshed and centered on the vertex; between its points lies the tensor product of cubic splines, continuous to
+/// the second derivative, so that cubic surfaces are met exactly. There is no surface beyond the outermost points: rays
+/// that pass there are lost as missed.
+///
+/// Rows run along x from the smallest to the largest, the first row is that at the smallest y. The sags stand in the
+/// file itself (`sag`) or in a CSV file (`file`), one row a line, numbers separated by commas, lines that begin with
+/// `#` passed over.
+///
+/// # Example
+/// ```yaml
+/// {kind: sag-table, step: 0.5 mm, file: measured.csv, thickness: 3, glass: SCHOTT/N-BK7, semi-diameter: 0.7}
+/// ```
+/// ```yaml
+/// kind: sag-table
+/// step: 2 mm
+/// sag:
+///   - [0.18, 0.10, 0.10, 0.18]
+///   - [0.10, 0.02, 0.02, 0.10]
+///   - [0.10, 0.02, 0.02, 0.10]
+///   - [0.18, 0.10, 0.10, 0.18]
+/// thickness: 3
+/// glass: SCHOTT/N-BK7
+/// semi-diameter: 3
+/// ```
+/// # References
+/// - C. de Boor, "Bicubic spline interpolation", J. Math. and Phys. 41, 212 (1962).
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct SagTableParams {
-    /// Distance between neighboring points along x and along y, mm if bare, more than 0. The grid is centered on the vertex.
+    /// Distance between neighboring points, along x and along y, mm if bare, more than 0.
     step: Positive<Length>,
-    /// Rows of sags, mm: from the smallest y up, each from the smallest x up; 4 to 1024 a side.
+    /// Rows of sags, mm: from the smallest y up, each from the smallest x up; 4 to 1024 a side. Or else `file`.
     #[serde(default)]
+    #[schemars(length(min = 4, max = 1024), inner(length(min = 4, max = 1024)))]
     sag: Option<Vec<Vec<f64>>>,
-    /// A CSV file beside the scene with those rows; empty lines and such as start with `#` are passed over.
+    /// A CSV file beside the scene with those rows, mm; empty lines and such as start with `#` are passed over. Or else
+    /// `sag`.
     #[serde(default)]
     file: Option<String>,
 }

@@ -67,10 +67,25 @@ impl KernelShape for Sphere {
 }
 
 /// Part of a sphere.
+///
+/// The surface that nearly every lens is made of, and the kind that is taken where a lens file names none. Its sag is z
+/// = c r^2 / (1 + sqrt(1 - c^2 r^2)) with the curvature c = 1 / radius and r the distance from the axis.
+///
+/// The radius is positive where the center of curvature lies at larger z, that is toward the image: a biconvex lens in
+/// air has a positive first and a negative second radius. Only the half that holds the vertex is surface; a ray that
+/// passes outside of it is lost as missed.
+///
+/// # Example
+/// ```yaml
+/// {kind: sphere, radius: 41.8, thickness: 5.375, glass: SCHOTT/N-BAF10, semi-diameter: 18}
+/// ```
+/// ```yaml
+/// {radius: -120 mm, thickness: -60 mm, mirror: true, semi-diameter: 1 in}
+/// ```
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct SphereParams {
-    /// Radius of curvature, mm if bare: positive where the centre lies at larger z; `inf` is a plane.
+    /// Radius of curvature, mm if bare, not 0: positive where the center lies at larger z; `inf` is a plane.
     radius: LengthOrInfinity,
 }
 

@@ -53,15 +53,28 @@ impl KernelShape for TiltedPlane {
 }
 
 /// A plane that is not across the axis.
+///
+/// The face of a prism, or of a tilted plate, where what follows stays on the old axis: unlike `tilt`, which turns any
+/// surface about its vertex, and unlike a `coordinate-break`, which turns all that follows, the tilt here is part of
+/// the shape. The plane goes through the vertex and is turned right-handed about x, then about the y that turned along;
+/// so z = y tan(tilt-x) - x tan(tilt-y) / cos(tilt-x).
+///
+/// # Example
+/// ```yaml
+/// # The first face of a 60 degree prism
+/// {kind: tilted-plane, tilt-x: 30 deg, thickness: 20, glass: SCHOTT/N-SF11, semi-diameter: 20}
+/// ```
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct TiltedPlaneParams {
     /// Rotation about x, degrees if bare, between -90 and 90: positive moves the upper part to larger z.
     #[serde(default = "no_tilt")]
+    #[schemars(extend("exclusiveMinimum" = -90, "exclusiveMaximum" = 90))]
     tilt_x: Angle,
     /// Rotation about the y axis so turned, degrees if bare, between -90 and 90: positive moves the part at +x to
     /// smaller z.
     #[serde(default = "no_tilt")]
+    #[schemars(extend("exclusiveMinimum" = -90, "exclusiveMaximum" = 90))]
     tilt_y: Angle,
 }
 

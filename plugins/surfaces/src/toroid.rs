@@ -68,18 +68,34 @@ impl SagShape for Toroid {
 }
 
 /// A curve in the y-z plane, rotated about an axis parallel to y.
+///
+/// For anamorphic and astigmatic elements: barrels, tires and their aspheric kin. The curve is z = g(y) = c y^2 / (1 +
+/// sqrt(1 - (1 + k) c^2 y^2)) + a2 y^2 + a4 y^4 + ..., with c = 1 / radius; rotated about the line at z = R =
+/// `rotation-radius` it is (R - z)^2 + x^2 = (R - g(y))^2. With R = inf it is shifted along x instead of rotated: a
+/// cylinder whose section is the curve.
+///
+/// The radius is that of the y-z section, the rotation radius that of the x-z section at the vertex; both are positive
+/// where their centers lie at larger z. There is no surface beyond the axis of rotation.
+///
+/// # Example
+/// ```yaml
+/// {kind: toroid, radius: 40, rotation-radius: 55, thickness: 4, glass: SCHOTT/N-BK7, semi-diameter: 15}
+/// ```
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct ToroidParams {
-    /// Radius of the curve in the y-z plane, mm if bare: positive where its center lies at larger z; `inf` is straight.
+    /// Radius of the curve in the y-z plane, mm if bare, not 0: positive where its center lies at larger z; `inf` is
+    /// straight.
     radius: LengthOrInfinity,
-    /// Conic constant of the curve.
+    /// Conic constant k of the curve, any number: 0 is a circle.
     #[serde(default)]
     conic: f64,
-    /// a2, a4, ... of the curve, in mm^(1 - power): the first is that of y^2. At most 20.
+    /// a2, a4, ... of the curve, in mm^(1 - power): the first is that of y^2. At most 20; missing ones are 0.
     #[serde(default)]
+    #[schemars(length(max = 20))]
     coefficients: Vec<f64>,
-    /// Distance from the vertex, mm if bare, at which the axis of rotation crosses the z axis; `inf`: not curved along x.
+    /// Distance from the vertex, mm if bare, not 0, at which the axis of rotation crosses the z axis, positive at
+    /// larger z; `inf`: not curved along x.
     rotation_radius: LengthOrInfinity,
 }
 

@@ -149,20 +149,45 @@ impl SagShape for Zernike {
 }
 
 /// A conic with Zernike polynomials on top.
+///
+/// For figure errors as an interferometer reports them, and for freeform surfaces. The sag is that of a conic of the
+/// stated radius and conic constant, plus the sum of c_j Z_j(x / R, y / R), with R the normalization radius and
+/// `coefficients: [c_1, c_2, ...]` in mm of sag. Angles count from +x toward +y. The polynomials go on beyond the
+/// normalization radius, where they grow fast: state a `semi-diameter`.
+///
+/// `ordering: noll` counts the polynomials as Noll does, each with a mean square of 1 over the disk; `ordering: fringe`
+/// counts as the University of Arizona does, each 1 at the rim, continued by the same rule.
+///
+/// # Example
+/// ```yaml
+/// # Defocus, the fourth of the fringe order, a wavelength of 550 nm deep, on a flat window
+/// kind: zernike
+/// normalization-radius: 12
+/// coefficients: [0, 0, 0, 5.5e-4]
+/// ordering: fringe
+/// thickness: 3
+/// glass: SCHOTT/N-BK7
+/// semi-diameter: 12
+/// ```
+/// # References
+/// - R. J. Noll, "Zernike polynomials and atmospheric turbulence", J. Opt. Soc. Am. 66, 207 (1976).
+/// - J. C. Wyant and K. Creath, "Basic wavefront aberration theory", Applied Optics and Optical Engineering XI (1992).
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct ZernikeParams {
-    /// Radius of curvature of the conic part, mm if bare; none if left out.
+    /// Radius of curvature of the conic part, mm if bare, not 0: positive where the center lies at larger z; none if
+    /// left out.
     #[serde(default = "plane")]
     radius: LengthOrInfinity,
-    /// Conic constant.
+    /// Conic constant of the conic part, any number: 0 is a sphere.
     #[serde(default)]
     conic: f64,
     /// Radius at which the polynomials are normalized, mm if bare, more than 0.
     normalization_radius: Positive<Length>,
-    /// Coefficients from the first polynomial (piston) on, mm of sag; at most 120.
+    /// c_1, c_2, ... from the first polynomial (piston) on, mm of sag; at most 120, missing ones are 0.
+    #[schemars(length(max = 120))]
     coefficients: Vec<f64>,
-    /// `noll` (mean square 1) or `fringe` (1 at the rim).
+    /// How the polynomials are counted and how large they are: `noll` (mean square 1) or `fringe` (1 at the rim).
     ordering: ZernikeOrdering,
 }
 

@@ -105,9 +105,17 @@ impl Kinds<'_> {
             }
             cases.push(json!({ "if": is(name), "then": whole }));
         }
+        // What it says of each kind is the first paragraph of the kind's own description.
+        let mut said = format!("Its {}.", self.key);
+        for (name, own) in &self.kinds {
+            if let Some(text) = own.get("description").and_then(Value::as_str) {
+                let summary = text.split("\n\n").next().unwrap_or(text).replace('\n', " ");
+                said.push_str(&format!(" `{name}`: {summary}"));
+            }
+        }
         let mut schema = json_schema!({
             "type": if self.by_name { json!(["object", "string"]) } else { json!("object") },
-            "properties": { self.key: { "enum": names } },
+            "properties": { self.key: { "enum": names, "description": said } },
             "allOf": cases,
         });
         if self.default.is_none() {

@@ -51,10 +51,9 @@ impl Documentation {
         let definitions = generator.take_definitions(true);
         let description = schema.get("description").and_then(Value::as_str).unwrap_or_default();
         let mut found = Self::read(description);
-        parameters(schema.as_value(), &definitions, "", 0, &mut found.parameters);
-        for (kind, map) in kinds(schema.as_value()) {
-            parameters(map, &definitions, &format!("({kind})."), 1, &mut found.parameters);
-        }
+        let all = |_: &str| true;
+        parameters(schema.as_value(), &definitions, "", 0, &all, &mut found.parameters);
+        of_kinds(schema.as_value(), &definitions, ("", "."), 1, &mut found.parameters);
         found
     }
 
@@ -115,12 +114,13 @@ fn items(lines: &[&str]) -> Vec<String> {
 /// Deepest nesting that is shown.
 const DEEPEST: usize = 4;
 
-/// Adds the parameters of a map, and of the maps in it.
+/// Adds those parameters of a map whose keys are wanted, and those of the maps in them.
 fn parameters(
     schema: &Value,
     definitions: &Map<String, Value>,
     prefix: &str,
     depth: usize,
+    wanted: &dyn Fn(&str) -> bool,
     found: &mut Vec<Parameter>,
 ) {
     let Some(Value::Object(properties)) = schema.get("properties") else { return };
@@ -129,7 +129,7 @@ fn parameters(
     };
     for (key, property) in properties {
         // The key that names the kind has been said.
-        if property.get("const").is_some() {
+        if property.get("const").is_some() || !wanted(key) {
             continue;
         }
         let path = format!("{prefix}{key}");
@@ -138,25 +138,60 @@ fn parameters(
         found.push(Parameter {
             key: path.clone(),
             kind: kind(property, definitions),
-            unit: inner.get("x-unit").and_then(Value::as_str).unwrap_or_default().to_owned(),
+            unit: unit(inner, definitions).to_owned(),
             range: range(inner),
             default: property.get("default").or_else(|| inner.get("default")).filter(|d| !d.is_null()).cloned(),
             required: required(key),
             description: said.and_then(Value::as_str).unwrap_or_default().replace('\n', " "),
             examples: inner.get("examples").and_then(Value::as_array).cloned().unwrap_or_default(),
         });
-        if depth < DEEPEST {
+        // What has a page of its own is not told here.
+        if depth < DEEPEST && inner.get("x-see").is_none() {
             let inside =
                 if is(inner, "array") { inner.get("items").map(|i| resolved(i, definitions)) } else { Some(inner) };
             let mark = if is(inner, "array") { "[]." } else { "." };
-            for map in inside.into_iter().flat_map(|s| maps(s, definitions)) {
-                parameters(map, definitions, &format!("{path}{mark}"), depth + 1, found);
+            let Some(inside) = inside.filter(|s| s.get("x-see").is_none()) else { continue };
+            for map in maps(inside, definitions) {
+                parameters(map, definitions, &format!("{path}{mark}"), depth + 1, &|_| true, found);
             }
-            for (kind, map) in inside.into_iter().flat_map(kinds) {
-                parameters(map, definitions, &format!("{path}({kind}){mark}"), depth + 1, found);
-            }
+            of_kinds(inside, definitions, (&path, mark), depth + 1, found);
         }
     }
+}
+
+/// Adds the parameters of each kind of a map, and before them, once, those that all kinds take alike. `at` is the map's
+/// own path, and what stands between it and a key.
+fn of_kinds(
+    schema: &Value,
+    definitions: &Map<String, Value>,
+    at: (&str, &str),
+    depth: usize,
+    found: &mut Vec<Parameter>,
+) {
+    let all = kinds(schema);
+    let (path, mark) = at;
+    let property = |map: &Value, key: &str| map.get("properties").and_then(|p| p.get(key)).cloned();
+    let [(_, first), others @ ..] = &all[..] else { return };
+    let shared = |key: &str| {
+        let here = property(first, key);
+        !others.is_empty() && here.is_some() && others.iter().all(|(_, map)| property(map, key) == here)
+    };
+    let prefix = if path.is_empty() { String::new() } else { format!("{path}{mark}") };
+    parameters(first, definitions, &prefix, depth, &shared, found);
+    for (kind, map) in &all {
+        parameters(map, definitions, &format!("{path}({kind}){mark}"), depth, &|key| !shared(key), found);
+    }
+}
+
+/// Unit of a bare number; of a list, of its items.
+fn unit<'a>(schema: &'a Value, definitions: &'a Map<String, Value>) -> &'a str {
+    if let Some(unit) = schema.get("x-unit").and_then(Value::as_str) {
+        return unit;
+    }
+    let items = schema.get("items").into_iter();
+    let several = schema.get("prefixItems").and_then(Value::as_array).into_iter().flatten();
+    let inner = items.chain(several).chain(alternatives(schema)).map(|s| resolved(s, definitions));
+    inner.map(|s| if std::ptr::eq(s, schema) { "" } else { unit(s, definitions) }).find(|u| !u.is_empty()).unwrap_or("")
 }
 
 /// The maps among the alternatives of a schema.
@@ -220,7 +255,10 @@ fn is_null(schema: &Value) -> bool {
 fn kind(schema: &Value, definitions: &Map<String, Value>) -> String {
     let schema = resolved(schema, definitions);
     if let Some(words) = schema.get("x-words").and_then(Value::as_str) {
-        return words.to_owned();
+        return match schema.get("x-see").and_then(Value::as_str) {
+            Some(page) => format!("{words} (see `spectra doc {page}`)"),
+            None => words.to_owned(),
+        };
     }
     if let Some(stage) = schema.get("$ref").and_then(Value::as_str).and_then(|r| r.strip_prefix("#/$defs/")) {
         return format!("{stage} (see `spectra doc {stage}`)");
@@ -243,6 +281,10 @@ fn kind(schema: &Value, definitions: &Map<String, Value>) -> String {
                 all.join(", or ")
             }
         };
+    }
+    if let Some(each) = schema.get("prefixItems").and_then(Value::as_array) {
+        let each: Vec<String> = each.iter().map(|item| kind(item, definitions)).collect();
+        return format!("[{}]", each.join(", "));
     }
     if is(schema, "array") {
         let count = match (bound(schema, "minItems"), bound(schema, "maxItems")) {
@@ -277,17 +319,27 @@ fn bound<'a>(schema: &'a Value, key: &str) -> Option<&'a Value> {
 /// Which values are allowed, in words.
 fn range(schema: &Value) -> String {
     let mut parts = Vec::new();
-    if let Some(least) = schema.get("minimum").filter(|v| v.as_f64() != Some(f64::from(i32::MIN))) {
-        parts.push(format!(">= {least}"));
+    let least = schema.get("minimum").filter(|v| v.as_f64() != Some(f64::from(i32::MIN)));
+    let most = schema.get("maximum");
+    match (least, most) {
+        (Some(least), Some(most)) if least == most => parts.push(format!("{least} only")),
+        (Some(least), Some(most)) => parts.push(format!("{least} to {most}")),
+        (Some(least), None) => parts.push(format!(">= {least}")),
+        _ => {}
     }
-    if let Some(below) = schema.get("exclusiveMinimum") {
+    // Where both are stated the greater one says it all.
+    let below = schema.get("exclusiveMinimum").filter(|b| least.is_none_or(|l| l.as_f64() <= b.as_f64()));
+    if let Some(below) = below {
         parts.push(format!("> {below}"));
     }
-    if let Some(most) = schema.get("maximum") {
+    if let (None, Some(most)) = (least, most) {
         parts.push(format!("<= {most}"));
     }
     if let Some(above) = schema.get("exclusiveMaximum") {
         parts.push(format!("< {above}"));
+    }
+    if let Some(each) = schema.get("items").map(range).filter(|each| !each.is_empty()) {
+        parts.push(format!("each {each}"));
     }
     let count = (schema.get("minItems"), schema.get("maxItems"));
     match count {

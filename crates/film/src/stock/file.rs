@@ -17,31 +17,87 @@ use spectra_spectrum::table::{MAX_BYTES, Table};
 use spectra_spectrum::{Emission, Kind, Scale, SpectrumError, find_emission};
 use std::borrow::Cow;
 
+/// A film stock: its layers, how they see, how they develop, and where the figures come from.
+///
+/// What is not known is left out: a stock without grain, halation or modulation transfer in its file has none in the
+/// picture. A figure that somebody chose rather than measured says `assumed: true`, with a `remark` on what it rests
+/// on. Exposures are photometric lux-seconds of the `reference-illuminant`, densities are decadic.
+///
+/// A black-and-white film has one layer, whose curve holds base and fog. A color film has a layer for each dye, from
+/// the one seen by blue light on, each with its `dye`; their curves are integral densities, and `minimum-density` is
+/// the spectrum of base, fog and mask. Layers are developed together: each has a curve for each development.
+///
+/// # Example
+/// ```yaml
+/// spectra: 1
+/// name: Old orthochromatic film
+/// source: sheet of the maker, 1950
+/// licence: facts
+/// iso: 80
+/// reference-illuminant: iso-7589-sensitometric-daylight
+/// layers:
+///   - name: ortho
+///     sensitivity:
+///       reading: linear
+///       measured-under: equal-energy
+///       table: [[360, 0.5], [400, 0.9], [450, 1], [500, 0.6], [550, 0.8], [580, 0.2], [600, 0]]
+///     curves:
+///       - development: normal
+///         points: [[-3, 0.2], [-2.2, 0.24], [-1.6, 0.5], [-0.6, 1.2], [0.4, 1.8], [1, 1.95]]
+/// granularity: {rms: 11}
+/// bases:
+///   - {formats: "135", material: triacetate, thickness: 0.125 mm, index: 1.48}
+/// ```
+/// # References
+/// - ISO 6:1993: the exposure 0.8/S lx s gives the density 0.1 over base and fog.
+/// - ISO 7589: the illuminants that sensitivities are scaled by.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct StockFile {
-    /// Format of the file.
+    /// Format of the file: 1; 1 if absent.
+    #[schemars(range(min = 1, max = 1))]
     spectra: Option<f64>,
+    /// Name for people.
     name: String,
+    /// Who makes or made it; not known if absent.
     maker: Option<String>,
+    /// Where the figures come from: sheet, edition, who digitized it.
     source: String,
+    /// Licence of the figures.
     licence: String,
+    /// Doubts and choices, for people.
     remark: Option<String>,
+    /// What it becomes: `negative` (the default), `reversal` (a positive, to be projected) or `print` (a positive from
+    /// a negative, which has no speed).
     #[serde(default)]
     process: ProcessFile,
+    /// How its densities were measured: `visual` (the default; silver), `status-a` (positives with dyes) or `status-m`
+    /// (negatives with dyes).
     #[serde(default)]
     density: DensityFile,
+    /// ISO speed in daylight; what is no `process: print` must state it.
     iso: Option<Positive<f64>>,
+    /// ISO speed in tungsten light; for the record. Not known if absent.
     iso_tungsten: Option<Positive<f64>>,
+    /// The light whose exposure is counted in photometric lux-seconds, by name: mostly
+    /// `iso-7589-sensitometric-daylight`.
     reference_illuminant: String,
+    /// The print stock that it is printed on where a scene names none, by name; paper, or none, if absent.
     print: Option<String>,
+    /// Spectrum of base, fog and mask of a film with dyes; nothing if absent.
     minimum_density: Option<MinimumDensityFile>,
+    /// Granularity of its silver; no grain if absent.
     granularity: Option<GranularityFile>,
+    /// What the base throws back; nothing if absent.
     halation: Option<HalationFile>,
+    /// Its layers, one or more; each a channel of the exposure.
     layers: Vec<LayerFile>,
+    /// What it is coated on, by format; the first is taken for halation. Not known if absent.
     #[serde(default)]
     bases: Vec<BaseFile>,
+    /// What long exposures lose; nothing if absent.
     reciprocity: Option<ReciprocityFile>,
+    /// Factors by which filters lengthen the exposure, as the maker states them; for the record. Not known if absent.
     #[serde(default)]
     filter_factors: Vec<FilterFactorFile>,
 }
@@ -49,9 +105,12 @@ struct StockFile {
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 enum ProcessFile {
+    /// A negative, to be printed or scanned.
     #[default]
     Negative,
+    /// A reversal film: a positive, to be projected.
     Reversal,
+    /// A print stock: a positive from a negative.
     Print,
 }
 
@@ -59,66 +118,100 @@ enum ProcessFile {
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum DensityFile {
+    /// Visual density: silver, gray.
     #[default]
     Visual,
+    /// Status A of ISO 5-3: positives with dyes.
     StatusA,
+    /// Status M of ISO 5-3: negatives with dyes.
     StatusM,
 }
 
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct LayerFile {
+    /// Its name, and that of its channel; each layer has another.
     name: String,
+    /// Its spectral sensitivity, of which only the form counts: the speed is in the curve.
     sensitivity: SensitivityFile,
+    /// The dye that forms in it; silver if absent.
     dye: Option<DyeFile>,
+    /// Modulation transfer of the emulsion: pairs of spatial frequency, cycles/mm, increasing, and response, 0 to 2.
+    /// Light is not spread if absent.
     #[serde(default)]
     mtf: Vec<[f64; 2]>,
+    /// Its characteristic curves, one for each development.
     curves: Vec<CurveFile>,
 }
 
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct SensitivityFile {
+    /// A CSV file beside this one with the sensitivity over wavelength; or else `table`.
     file: Option<String>,
+    /// Its column of that file; may be left out where there is only one.
     column: Option<String>,
+    /// Pairs of wavelength, nm, increasing, and sensitivity; or else `file`. Outside of the table nothing is seen.
     table: Option<Vec<[f64; 2]>>,
+    /// What the values are: `linear` (in proportion to one over the energy that gives a fixed density) or `log10` of
+    /// that.
     reading: ReadingFile,
+    /// Of a logarithmic one: the value that stands for no sensitivity at all, at the foot of the figure. None if
+    /// absent.
     floor: Option<f64>,
+    /// The light that the figure was made with: `equal-energy`, or an illuminant by name, which is divided out.
     measured_under: String,
+    /// Whether it was chosen rather than measured; then `remark` says why.
     #[serde(default)]
     assumed: bool,
+    /// Doubts and choices, for people.
     remark: Option<String>,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema, PartialEq)]
 #[serde(rename_all = "kebab-case")]
 enum ReadingFile {
+    /// In proportion to one over the energy that gives a fixed density.
     Linear,
+    /// Logarithm to base 10 of that.
     Log10,
 }
 
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct CurveFile {
+    /// Name of the development, by which a scene chooses it.
     development: String,
+    /// Time in the developer, min; not known if absent. Curves with a time are a series, in which a scene can `push`.
     minutes: Option<Positive<f64>>,
+    /// Whether it was chosen rather than measured; then `remark` says why.
     #[serde(default)]
     assumed: bool,
+    /// Developer, temperature, doubts; for people.
     remark: Option<String>,
-    /// Printed: pairs of log10 exposure (lx s) and density.
+    /// As printed: pairs of log10 exposure (lx s of the reference illuminant), increasing, and density. In place of the
+    /// four numbers below.
     points: Option<Vec<[f64; 2]>>,
-    /// Assumed: the numbers of a [`ToeShoulder`].
+    /// Of a curve that is assumed: slope of the chord from the speed point, 0.8/S lx s, over 1.5 in log10 exposure.
     average_gradient: Option<f64>,
+    /// Of a curve that is assumed: maximum density over base and fog.
     maximum_density: Option<f64>,
+    /// Of a curve that is assumed: width of the toe, log10 of exposure, above 0 to 2.
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 2))]
     toe: Option<f64>,
+    /// Of a curve that is assumed: sharpness of the shoulder, 1 to 64.
+    #[schemars(range(min = 1, max = 64))]
     shoulder: Option<f64>,
 }
 
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct FilterFactorFile {
+    /// Name of the filter.
     filter: String,
+    /// Factor in daylight: so many times longer.
     daylight: Positive<f64>,
+    /// Factor in tungsten light: so many times longer.
     tungsten: Positive<f64>,
 }
 

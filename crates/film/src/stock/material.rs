@@ -157,10 +157,13 @@ pub(super) fn densitometry(params: &Params, file: DensityFile, layers: usize) ->
     }
 }
 
+/// The dye of a layer.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(super) struct DyeFile {
+    /// Its color or name.
     name: String,
+    /// Pairs of wavelength, nm, increasing, and density of the amount 1 of the dye.
     table: Vec<[f64; 2]>,
 }
 
@@ -175,12 +178,16 @@ impl DyeFile {
     }
 }
 
+/// Base, fog and mask of a film with dyes.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(super) struct MinimumDensityFile {
+    /// Whether it was chosen rather than measured; then `remark` says why.
     #[serde(default)]
     assumed: bool,
+    /// Doubts and choices, for people.
     remark: Option<String>,
+    /// Pairs of wavelength, nm, increasing, and density where nothing is exposed.
     table: Vec<[f64; 2]>,
 }
 

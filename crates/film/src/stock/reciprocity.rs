@@ -58,14 +58,16 @@ impl Reciprocity {
     }
 }
 
-/// `reciprocity` of a stock file.
+/// What long exposures lose: a power law, or a table.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(super) struct ReciprocityFile {
-    /// Of the power law.
+    /// p of the law, adjusted time = above x (metered time / above)^p, 1 to 10. Or else `table`.
+    #[schemars(range(min = 1, max = 10))]
     exponent: Option<f64>,
-    /// Rows of metered and adjusted time, s.
+    /// Rows of metered and adjusted time, s, increasing. Or else `exponent`.
     table: Option<Vec<[f64; 2]>>,
+    /// Metered time above which it holds, s if bare.
     above: Positive<Time>,
 }
 

@@ -41,13 +41,20 @@ pub struct Halation {
     pub assumed: bool,
 }
 
+/// What a film is coated on.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(super) struct BaseFile {
+    /// The formats that have this base, for people.
     formats: String,
+    /// What it is made of; not known if absent.
     material: Option<String>,
+    /// Its thickness, mm if bare.
     thickness: Positive<Length>,
+    /// Its refractive index, 1 to 3; not known if absent. Halation needs it.
+    #[schemars(range(min = 1, max = 3))]
     index: Option<f64>,
+    /// Whether the figures were chosen rather than measured.
     #[serde(default)]
     assumed: bool,
 }
@@ -68,11 +75,15 @@ impl BaseFile {
     }
 }
 
+/// How grainy silver is.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(super) struct GranularityFile {
+    /// RMS granularity as sheets state it: 1000 times the standard deviation of density.
     rms: Positive<f64>,
+    /// Diameter of the aperture that it was measured through, mm if bare; 0.048 mm if absent.
     aperture: Option<Positive<Length>>,
+    /// Density that it was measured at; 1 if absent.
     density: Option<Positive<f64>>,
 }
 
@@ -86,11 +97,17 @@ impl GranularityFile {
     }
 }
 
+/// Light that the base of a film throws back.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(super) struct HalationFile {
+    /// Light that enters the base, over the light that exposes the layer, 0 to 1.
+    #[schemars(range(min = 0, max = 1))]
     scattered: f64,
+    /// Transmittance of base and backing, passed once, 0 to 1.
+    #[schemars(range(min = 0, max = 1))]
     backing: f64,
+    /// Whether the figures were chosen rather than measured.
     #[serde(default)]
     assumed: bool,
 }

@@ -22,6 +22,7 @@ struct Common {
     obscures: bool,
 }
 
+/// What lies between two circles.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct RingParams {
@@ -31,6 +32,7 @@ struct RingParams {
     outer: Option<LengthOrInfinity>,
 }
 
+/// What lies within a rectangle or an ellipse of this size.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct HalfSizes {
@@ -40,6 +42,7 @@ struct HalfSizes {
     half_height: Positive<Length>,
 }
 
+/// What lies within a polygon.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct PolygonParams {
@@ -47,6 +50,7 @@ struct PolygonParams {
     points: Vec<[Length; 2]>,
 }
 
+/// What the blades of a diaphragm leave open; its size is that of the stop.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct IrisParams {
@@ -58,6 +62,7 @@ struct IrisParams {
     rotation: Option<Angle>,
 }
 
+/// What a picture leaves open.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct MaskParams {

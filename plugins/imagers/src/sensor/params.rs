@@ -16,58 +16,97 @@ use spectra_spectrum::{find_emission_in, find_sensitivity_in};
 
 imager_params! {
     /// A chip of pixels with color filters: electrons, noise, raw files.
+    ///
+    /// Light becomes electrons by the sensitivities of the filters and pixels, electrons scatter as photons do
+    /// (Poisson) and as reading does (normal), a well holds so many of them, and a converter makes whole numbers: those
+    /// go into a DNG file (`output: [dng]`), and a picture is developed from them, demosaicked and balanced. The color
+    /// matrix is fitted to the 24 patches of a ColorChecker.
+    ///
+    /// With `photosite` light that comes at a slant lands beside the middle of its pixel, by the height of the stack,
+    /// and goes on sideways in the silicon: at the edge of the frame of a wide-angle lens colors mix and shift. What is
+    /// not known of a sensor (quantum efficiency, full well, read noise) has a default that is an assumption, and says
+    /// so.
+    ///
+    /// `resolution` is the number of pixels across and down; where their shape differs from that of the frame, pixels
+    /// are not square. The frame stands in the image plane of the lens unless it is shifted or tilted (as on a view
+    /// camera), or bent.
+    ///
+    /// # Example
+    /// ```yaml
+    /// {kind: sensor, format: 135, resolution: [960, 640], exposure: 1/125 s}
+    /// ```
+    /// ```yaml
+    /// # A small part of a sensor, pixel for pixel, behind its cover glass
+    /// kind: sensor
+    /// width: 2.4 mm
+    /// height: 1.6 mm
+    /// resolution: [400, 267]
+    /// exposure: 1/60 s
+    /// iso: 800
+    /// cover: [{glass: SCHOTT/N-BK7, thickness: 1 mm}]
+    /// photosite: {stack: 0.004 mm, microlens: 0.6, exit-pupil: 80 mm, well: 0.006 mm}
+    /// ```
+    /// # References
+    /// - P. B. Catrysse and B. A. Wandell, J. Opt. Soc. Am. A 19, 1610 (2002): light at a slant in a pixel.
+    /// - M. A. Green, Solar Energy Materials and Solar Cells 92, 1305 (2008): index and absorption of silicon.
+    /// - ISO 17321-1: the patches that the color matrix is fitted to.
     SensorParams {
         /// Exposure time, s if bare.
         exposure: Positive<Time>,
         /// Color filters from the upper left of the picture: `rggb` (the default), `bggr`, `grbg`, `gbrg`; or
         /// `monochrome`.
         #[serde(default)]
+        #[schemars(extend("enum" = ["rggb", "bggr", "grbg", "gbrg", "monochrome"]))]
         pattern: Option<String>,
         /// What the pixels see: a bundled table or a file with the columns red, green and blue, relative per power;
         /// of a monochrome sensor one sensitivity, such as `file#column`. The default is `nikon-d5100`, with filters.
         #[serde(default)]
         sensitivity: Option<String>,
-        /// Electrons per photon where that is largest: what makes a relative table absolute. 0.5 if left out, an assumption.
+        /// Electrons per photon where that is largest, above 0 to 1: what makes a relative table absolute. 0.5 if left
+        /// out, an assumption.
         #[serde(default)]
+        #[schemars(extend("maximum" = 1))]
         peak_quantum_efficiency: Option<Positive<Ratio>>,
         /// Distance of two pixels of the sensor, mm if bare; that of `resolution` if left out. A picture of fewer pixels
         /// shows what the sensor's own pixels give.
         #[serde(default)]
         pitch: Option<Positive<Length>>,
-        /// Share of a pixel's area that takes in light, its microlens included; 1 if left out.
+        /// Share of a pixel's area that takes in light, its microlens included, above 0 to 1; 1 if left out.
         #[serde(default)]
+        #[schemars(extend("maximum" = 1))]
         fill_factor: Option<Positive<Ratio>>,
         /// What stands before the silicon; without it a pixel takes light from all directions alike.
         #[serde(default)]
         photosite: Option<PhotositeParams>,
-        /// Most electrons of a well; 30000 if left out, an assumption.
+        /// Most electrons of a well, more than 0; 30000 if left out, an assumption.
         #[serde(default)]
         full_well: Option<Positive<f64>>,
-        /// Standard deviation of reading, electrons; 3 if left out, an assumption.
+        /// Standard deviation of reading, electrons, 0 or more; 3 if left out, an assumption.
         #[serde(default)]
         read_noise: Option<NonNegative<f64>>,
-        /// ISO setting, at which numbers end at full well times `base-iso` over `iso`; the base if left out.
+        /// ISO setting, `base-iso` or more: numbers end at full well times `base-iso` over `iso`; the base if left out.
         #[serde(default)]
         iso: Option<Positive<f64>>,
-        /// The setting at which a full well is the largest number; 100 if left out.
+        /// The ISO setting at which a full well is the largest number; 100 if left out.
         #[serde(default)]
         base_iso: Option<Positive<f64>>,
         /// Bits of the converter, 8 to 16; 14 if left out.
         #[serde(default)]
+        #[schemars(range(min = 8, max = 16))]
         bits: Option<u32>,
-        /// Value without light; a 32nd of the range if left out.
+        /// Value without light, below the largest number; a 32nd of the range if left out.
         #[serde(default)]
         black_level: Option<u32>,
         /// Whether photons and reading are noisy; they are if left out.
         #[serde(default)]
         noise: Option<bool>,
-        /// Seed of the noise; 1 if left out.
+        /// Seed of the noise, 0 or more; 1 if left out.
         #[serde(default)]
         noise_seed: Option<u32>,
-        /// The light that is shown as white; D65 if left out.
+        /// The light that is shown as white: the name of a spectrum, or a file beside the scene; D65 if left out.
         #[serde(default)]
         white_balance: Option<String>,
-        /// Model, for the raw file.
+        /// Name of the camera in the raw file; `sensor` if left out.
         #[serde(default)]
         model: Option<String>,
     }
@@ -79,11 +118,13 @@ imager_params! {
 pub struct PhotositeParams {
     /// From the color filter to the silicon, mm if bare.
     pub stack: NonNegative<Length>,
-    /// Refractive index of the stack; 1.46, silica, if left out.
+    /// Refractive index of the stack, 1 to 5; 1.46, silica, if left out.
     #[serde(default)]
+    #[schemars(extend("minimum" = 1, "maximum" = 5))]
     pub index: Option<Positive<f64>>,
-    /// How far the microlens gathers light toward the middle, 0 to 1; 0 if left out.
+    /// How far the microlens gathers light toward the middle, 0 (not at all) to 1 (to a point); 0 if left out.
     #[serde(default)]
+    #[schemars(extend("maximum" = 1))]
     pub microlens: Option<NonNegative<Ratio>>,
     /// Distance of the exit pupil that the microlenses are shifted for, mm if bare; not shifted if left out.
     #[serde(default)]

@@ -11,21 +11,25 @@ use spectra_core::registry::Context;
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(super) struct DepthParams {
-    /// A file of its own; the picture's if absent.
+    /// A file of its own with the depth channel, an OpenEXR of the picture's size; the picture's file if absent.
     file: Option<String>,
-    /// The channel; `Z` if absent.
+    /// The channel of the file that holds the depth; `Z` if absent.
     channel: Option<String>,
-    /// What its numbers count: mm, cm, m, in or ft; mm if absent.
+    /// What its numbers count: `mm`, `cm`, `m`, `in` or `ft`; `mm` if absent.
+    #[schemars(extend("enum" = ["mm", "cm", "m", "in", "ft"]))]
     unit: Option<String>,
-    /// What they are multiplied by besides.
+    /// What the numbers are multiplied by besides, above 0; 1 if absent.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     scale: Option<f64>,
-    /// What is nearer is taken to be there, mm if bare.
+    /// What is nearer is taken to be there, mm if bare; nothing is moved if absent.
     near: Option<Positive<Length>>,
-    /// What is farther, or infinitely far, is taken to be there, mm if bare.
+    /// What is farther, or infinitely far, is taken to be there, mm if bare; nothing is moved if absent.
     far: Option<Positive<Length>>,
-    /// `z`, along the axis, or `ray`, along the line of sight; `z` if absent.
+    /// Along what the numbers count: `z`, the axis, or `ray`, the line of sight; `z` if absent.
+    #[schemars(extend("enum" = ["z", "ray"]))]
     kind: Option<String>,
-    /// Depths of neighbors that differ by more than this part belong to different things; 5 % if absent.
+    /// Depths of neighbors that differ by more than this part, 0 to 1, belong to different things; 5 % if absent.
+    #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 1))]
     edge: Option<Ratio>,
     /// Distance of the center of projection behind the first vertex, mm if bare; at the vertex if absent.
     eye: Option<Length>,

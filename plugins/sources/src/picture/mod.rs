@@ -31,10 +31,39 @@ use std::sync::Arc;
 const MAX_BYTES: u64 = 1 << 30;
 
 /// A picture file (EXR, PNG, JPEG, TIFF, HDR) on a plane at a distance.
+///
+/// The picture stands across the axis, upright and unmirrored as the photographer sees it, and shines as a Lambertian
+/// surface. Integers of 8 and 16 bits are taken as sRGB-encoded (255 of 8 bits is 1), floating point as linear with the
+/// primaries of sRGB; a value of 1 is white, of the stated luminance and with the chromaticity of the illuminant.
+/// Between pixels light is interpolated, so that no mosaic is seen however near one looks.
+///
+/// With `depth` each pixel stands at its own distance, in the perspective of the camera that took the picture: what is
+/// out of focus is blurred, and edges cover what lies behind them. Where a picture in depth was never seen, behind an
+/// edge, there is nothing to show; `kind: layers` knows what is there.
+///
+/// # Example
+/// ```yaml
+/// {kind: picture, file: holiday.png, distance: 3 m, width: 4 m, illuminant: D55, luminance: 1000 cd/m2}
+/// ```
+/// ```yaml
+/// kind: picture
+/// file: still-life.exr
+/// distance: 2 m
+/// width: 1.2 m
+/// depth: {unit: m, far: 10 m}
+/// ```
+/// ```yaml
+/// kind: picture
+/// file: holiday.png
+/// distance: 3 m
+/// width: 4 m
+/// color: {kind: smooth}
+/// recover-highlights: {stops: 4}
+/// ```
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct PictureParams {
-    /// An OpenEXR, PNG, JPEG, TIFF or Radiance HDR file, beside the scene.
+    /// An OpenEXR, PNG, JPEG, TIFF or Radiance HDR file, beside the scene; at most 1 GiB.
     file: String,
     /// The layer of an OpenEXR file; its plain R, G and B if absent.
     layer: Option<String>,
@@ -42,19 +71,20 @@ struct PictureParams {
     distance: Positive<Length>,
     /// Width of the picture on that plane, mm if bare; the height follows.
     width: Positive<Length>,
-    /// The light that white has the chromaticity of.
+    /// The light that white has the chromaticity of: the name of a spectrum, a file beside the scene, or an expression
+    /// such as `blackbody:3200`.
     #[serde(default = "daylight")]
     illuminant: String,
     /// Luminance of white (255 of 8 bits, 1.0 of floating point), cd/m2 if bare.
     #[serde(default = "luminance")]
     luminance: Positive<Luminance>,
-    /// How RGB becomes a spectrum; the registry's default if absent.
+    /// How RGB becomes a spectrum: a color model; `primaries` if absent.
     #[schemars(with = "Option<StageOf<dyn ColorModel>>")]
     color: Option<StageNode>,
-    /// How far each pixel stands; all on the plane if absent.
+    /// How far each pixel stands, from a depth channel; all on the plane if absent.
     #[schemars(with = "Option<depth::DepthParams>")]
     depth: Option<StageNode>,
-    /// Guesses the light of clipped highlights of integer files; nothing is guessed if absent.
+    /// Guesses the light of the clipped highlights of integer files; nothing is guessed if absent.
     recover_highlights: Option<RecoverParams>,
 }
 
@@ -62,7 +92,9 @@ struct PictureParams {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct RecoverParams {
-    /// Stops above white that the middle of a large highlight may reach, above 0 to 12.
+    /// Stops above white that the middle of a large highlight may reach, above 0 to 12: a clipped pixel d pixels inside
+    /// of its highlight gets stops x d / (d + 4) of them.
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 12))]
     stops: f64,
 }
 
