@@ -86,7 +86,7 @@ fn surfaces_multiply() {
     let lens = biotar();
     let layer = Coating::quarter_wave(1.38, 520.0);
     for coating in [Coating::Bare, layer] {
-        let coated = lens.clone().with_coating(coating);
+        let coated = lens.clone().with_coating(coating.clone());
         let rays = fan(200);
         let mut compared = 0;
         for (ray, out) in rays.iter().zip(trace(&coated, &rays, Travel::Forward, Isa::Baseline)) {
@@ -100,7 +100,7 @@ fn surfaces_multiply() {
                 let cos = (here - before).normalize().dot((center - here).normalize()).abs();
                 let (n, m) = (lens.index(e.medium_before, ray.2), lens.index(e.medium_after, ray.2));
                 // Cement has no coating.
-                let here = if n > 1.1 && m > 1.1 { Coating::Bare } else { coating };
+                let here = if n > 1.1 && m > 1.1 { Coating::Bare } else { coating.clone() };
                 want *= here.transmittance(n, m, cos, ray.2).mean();
             }
             assert!((weight - want).abs() < 1e-9, "{weight} {want}");
@@ -116,7 +116,7 @@ fn surfaces_multiply() {
 fn both_ways_and_all_tiers_alike() {
     let rays = fan(300);
     for coating in [Coating::Ideal, Coating::Bare, Coating::quarter_wave(1.38, 550.0)] {
-        let mut lens = biotar().with_coating(coating);
+        let mut lens = biotar().with_coating(coating.clone());
         lens.absorption = coating != Coating::Ideal;
         let there = trace(&lens, &rays, Travel::Forward, Isa::Baseline);
         for isa in Isa::available() {

@@ -9,7 +9,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Folder of the repository, and the endings taken from it (none: every file).
-const FOLDERS: [(&str, &[&str]); 3] = [("spectra", &[]), ("lenses", &[]), ("scenes", &["yaml", "yml", "exr"])];
+const FOLDERS: [(&str, &[&str]); 3] = [("spectra", &[]), ("lenses", &[]), ("scenes", &["yaml", "yml", "exr", "svg"])];
 
 fn collect(folder: &Path, endings: &[&str], found: &mut Vec<PathBuf>) {
     println!("cargo:rerun-if-changed={}", folder.display());

@@ -1,6 +1,6 @@
 //! Files that a stage may ask for, by name: beside the scene first, then among the bundled data.
 
-use crate::params::{Faults, Params};
+use crate::params::{Faults, Node, Params};
 use std::borrow::Cow;
 use std::path::PathBuf;
 
@@ -54,4 +54,13 @@ pub trait Resources: Send + Sync {
     /// What is wrong with the file or its syntax, with its place in that file; where the file itself is
     /// not found the fault has no place: put it at the key that named it.
     fn document(&self, path: &str, folders: &[&str], endings: &[&str]) -> Result<Params, Faults>;
+}
+
+/// The path by which [`Resources::read`] finds the file `path` that the value `node` names: beside the file in which the
+/// value is written, where there is one; else as it is written, which is beside the scene.
+#[must_use]
+pub fn beside(node: &Node, path: &str) -> String {
+    let there = node.file.folder().map(|folder| folder.join(path)).filter(|there| there.is_file());
+    let absolute = there.and_then(|there| std::path::absolute(there).ok());
+    absolute.and_then(|there| there.into_os_string().into_string().ok()).unwrap_or_else(|| path.to_owned())
 }

@@ -147,6 +147,26 @@ pub trait Imager: Send + Sync {
     }
 }
 
+/// What a detector sees of the light that falls on it, and the picture that it makes of that: the part of an imager that
+/// knows no geometry.
+pub trait Response: Send + Sync {
+    /// Its channels, for an irradiance: an imager with an exposure time records the product with the seconds.
+    fn channels(&self) -> Vec<Channel>;
+
+    /// A picture of what these channels recorded; `None` where there is none.
+    fn display(&self, exposure: &ExposureFrame) -> Option<DisplayPicture>;
+}
+
+impl<R: Response + ?Sized> Response for Box<R> {
+    fn channels(&self) -> Vec<Channel> {
+        (**self).channels()
+    }
+
+    fn display(&self, exposure: &ExposureFrame) -> Option<DisplayPicture> {
+        (**self).display(exposure)
+    }
+}
+
 /// Receives rays.
 pub trait Receive: Send + Sync {
     /// Moves the living rays (frame: the nominal image plane is z = 0) onto the imager and writes the

@@ -23,6 +23,7 @@ pub mod agf;
 pub mod air;
 mod catalogue;
 mod dispersion;
+pub mod file;
 pub mod fit;
 mod formula;
 mod glass;

@@ -25,9 +25,12 @@ mod tracer;
 mod transmission;
 
 pub use aim::{AimPattern, AimRegion, FrontPupil, RearPupil};
-pub use aperture::{Aperture, Iris, Mask, Opening, Shape};
+pub use aperture::read as read_apertures;
+pub use aperture::{Aperture, ApertureForm, Drawing, FLATNESS_MM, FillRule, Iris, Mask, Opening, Painted, Shape};
 pub use beam::{Beam, ObjectPoint};
-pub use coating::{Coating, CoatingForm, CoatingName, LayerParams, Transmittance, read_coating};
+pub use coating::{
+    Coating, CoatingForm, MeasuredCoating, OneLayer, Stack, StackLayer, StackParams, Transmittance, read_coating,
+};
 pub use element::Element;
 pub use f_number::{ApertureError, MarginalRay};
 pub use field::{ChiefRay, FieldLimit};

@@ -11,7 +11,7 @@ use spectra_core::registry::{self, Context};
 use spectra_core::resources::Resources;
 use spectra_core::spectral::BAND;
 use spectra_core::surface::{Action, Surface};
-use spectra_glass::{Catalogue, FindError, Medium, lines};
+use spectra_glass::{Catalogue, Medium, file, lines};
 use std::sync::Arc;
 
 /// A lens: its prescription, surface by surface, and where it comes from.
@@ -273,7 +273,7 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
         let medium_after = if stated.mirror || (surface.is_stop() && !medium_is_stated) {
             medium_before // a stop stands in the medium that is there
         } else {
-            match medium(&stated, &place, number, &mut lens.warnings) {
+            match medium(&stated, &place, number, resources, &mut lens.warnings) {
                 Ok(Some(medium)) => remember(&mut lens.media, medium),
                 Ok(None) => 0,
                 Err(more) => {
@@ -309,7 +309,7 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
         element.chamfer_mm = stated.chamfer.map_or(0.0, Length::mm);
         element.apertures = apertures.and_then(|read| faults.take(read)).unwrap_or_default();
         element.stop |= stated.stop;
-        element.coating = stated.coating.as_ref().and_then(|node| faults.take(read_coating(node)));
+        element.coating = stated.coating.as_ref().and_then(|node| faults.take(read_coating(node, resources)));
         element.reflectance = stated.reflectance.map_or(1.0, Ratio::number);
         if stated.reflectance.is_some() && !stated.mirror {
             let fault = place.fault("reflectance", "only a mirror has a reflectance of its own");
@@ -322,7 +322,8 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
         medium_before = medium_after;
     }
     lens.image_breaks = breaks;
-    lens.coating = file.coating.as_ref().and_then(|node| faults.take(read_coating(node))).unwrap_or_default();
+    lens.coating =
+        file.coating.as_ref().and_then(|node| faults.take(read_coating(node, resources))).unwrap_or_default();
     lens.absorption = file.absorption;
     for node in &file.groups {
         lens.groups.extend(faults.take(group(node, lens.elements.len())));
@@ -436,6 +437,7 @@ fn medium(
     stated: &Place,
     place: &Params,
     number: usize,
+    resources: &dyn Resources,
     warnings: &mut Vec<String>,
 ) -> Result<Option<LensMedium>, Faults> {
     let by_figures = |nd: f64, vd: Option<f64>, key: &str| -> Result<Medium, Fault> {
@@ -465,28 +467,30 @@ fn medium(
         if name == "air" {
             return Ok(None);
         }
-        let found = match stated.nd {
-            Some(nd) => Catalogue::bundled().find_with(name, nd, stated.vd).map(Medium::from),
-            None => Catalogue::bundled().medium(name),
+        let medium = match stated.nd.filter(|_| !file::is_file(name)) {
+            Some(nd) => Catalogue::bundled().find_with(name, nd, stated.vd).map(Medium::from).map_err(|e| {
+                let hint = file::hint(&e);
+                place.fault("glass", e.to_string()).hint(hint)
+            })?,
+            None => file::medium(name, place, "glass", resources)?,
         };
-        let medium = found.map_err(|e| {
-            let hint = match &e {
-                FindError::Unknown { nearest, .. } => {
-                    nearest.first().map(|c| format!("did you mean `{}`?", c.full_name))
-                }
-                FindError::Ambiguous { candidates, .. } => {
-                    candidates.first().map(|c| format!("for example `{}`", c.full_name))
-                }
-            };
-            place
-                .fault("glass", e.to_string())
-                .hint(hint.unwrap_or_else(|| "or state `glass: {nd: ..., vd: ...}`".to_owned()))
-        })?;
         let own = medium.index(lines::D.wavelength_nm);
         if let Some(nd) = stated.nd.filter(|nd| (nd - own).abs() > INDEX_TOLERANCE) {
             warnings.push(format!("surface {number}: {name} has nd {own:.5}, the prescription states {nd}"));
         }
         return Ok(Some(LensMedium { medium, stated_nd: stated.nd.or(Some(own)), label: name.to_owned() }));
+    }
+    // A glass written out where it stands, with the keys of a glass file; one of two figures is a model.
+    if ["formula", "table", "file", "name"].iter().any(|key| glass.node().get(key).is_some()) {
+        let params = Params::section(glass.node().clone(), glass.path())?;
+        let called = format!("surface {number}");
+        let medium = Medium::from(file::from_params(&params, &called, resources)?);
+        let label = medium.name();
+        return Ok(Some(LensMedium {
+            stated_nd: Some(stated.nd.unwrap_or(medium.index(lines::D.wavelength_nm))),
+            medium,
+            label,
+        }));
     }
     let figures: ModelFigures = glass.parse()?;
     let medium = by_figures(figures.nd, figures.vd, "glass")?;
@@ -496,7 +500,7 @@ fn medium(
 
 /// Number of a medium: that of an equal one, or a new one.
 fn remember(media: &mut Vec<LensMedium>, medium: LensMedium) -> usize {
-    let same = |m: &LensMedium| m.label == medium.label && m.stated_nd == medium.stated_nd;
+    let same = |m: &LensMedium| m.label == medium.label && m.stated_nd == medium.stated_nd && m.medium == medium.medium;
     media.iter().position(same).unwrap_or_else(|| {
         media.push(medium);
         media.len() - 1

@@ -51,8 +51,10 @@ impl JsonSchema for SurfaceOrBreak {
 #[serde(untagged)]
 #[expect(dead_code, reason = "states what is allowed; `medium` reads it")]
 pub(crate) enum GlassForm {
-    /// A name of the catalogue, `air`.
+    /// A name of the catalogue, `air`, or a glass file.
     Named(String),
     /// Its figures.
     Figures(ModelFigures),
+    /// Written out with the keys of a glass file.
+    Own(Box<spectra_glass::file::GlassFile>),
 }

@@ -235,7 +235,7 @@ impl Tracer {
             if let (Some(absorption), false) = (&self.absorptions[before], first) {
                 noted.absorb(rays, absorption, shift_mm);
             }
-            noted.pass(rays, self.passages[at], interface.before.n, interface.after.n, isa);
+            noted.pass(rays, &self.passages[at], interface.before.n, interface.after.n, isa);
         }
         for aperture in &element.apertures {
             ended += aperture.clip(rays, interface.number, element.semi_diameter_mm);

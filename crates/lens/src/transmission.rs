@@ -22,7 +22,7 @@ const GAS_INDEX: f64 = 1.05;
 const STEP_NM: f64 = 0.5;
 
 /// What a surface does to the weight of light.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Passage {
     /// Nothing.
     All,
@@ -56,12 +56,11 @@ impl Lens {
     #[must_use]
     pub fn coating_of(&self, element: &Element) -> Coating {
         let is_gas = |medium: usize| self.index(medium, self.reference_nm) < GAS_INDEX;
-        match (element.coating, self.coating) {
-            (Some(own), _) => own,
-            (None, Coating::Layer { .. }) if !is_gas(element.medium_before) && !is_gas(element.medium_after) => {
-                Coating::Bare
-            }
-            (None, all) => all,
+        match (&element.coating, &self.coating) {
+            (Some(own), _) => own.clone(),
+            (None, all @ (Coating::Ideal | Coating::Bare)) => all.clone(),
+            (None, _) if !is_gas(element.medium_before) && !is_gas(element.medium_after) => Coating::Bare,
+            (None, all) => all.clone(),
         }
     }
 
@@ -150,25 +149,46 @@ impl Before {
     }
 
     /// Weighs rays by what a surface passes.
-    pub(crate) fn pass(&self, rays: &mut RayBatch, passage: Passage, n: &[f64], n_after: &[f64], isa: Isa) {
+    pub(crate) fn pass(&self, rays: &mut RayBatch, passage: &Passage, n: &[f64], n_after: &[f64], isa: Isa) {
         let len = rays.len();
         let before = self.direction.each_ref().map(|column| column.slice(len));
         match passage {
             Passage::All | Passage::Coated(Coating::Ideal) => {}
             Passage::Mirror(reflectance) => {
                 for weight in rays.columns_mut().weight {
-                    *weight *= reflectance;
+                    *weight *= *reflectance;
                 }
             }
             Passage::Coated(Coating::Bare) => {
                 isa.run(Pass::<false> { rays, before, n, n_after, index: 1.0, thickness_nm: 0.0 });
             }
             Passage::Coated(Coating::Layer { index, thickness_nm }) => {
+                let (index, thickness_nm) = (*index, *thickness_nm);
                 let decays = isa.run(Pass::<true> { rays, before, n, n_after, index, thickness_nm });
                 if decays {
                     self.tunnel(rays, n, n_after, index, thickness_nm);
                 }
             }
+            Passage::Coated(coating) => self.pass_one_by_one(rays, coating, n, n_after),
+        }
+    }
+
+    /// Weighs rays by a coating without a kernel of its own.
+    fn pass_one_by_one(&self, rays: &mut RayBatch, coating: &Coating, n: &[f64], n_after: &[f64]) {
+        let len = rays.len();
+        let before = self.direction.each_ref().map(|column| column.slice(len));
+        let c = rays.columns_mut();
+        for i in 0..len {
+            let indices = [n[i], n_after[i]];
+            let (size, cosines) = angles(indices, before.map(|column| column[i]), [c.l[i], c.m[i], c.n[i]]);
+            if c.state[i] != ALIVE || size < SAME_INDEX {
+                continue;
+            }
+            let passes = match coating {
+                Coating::Stack(stack) => stack.transmittance(indices, cosines, c.wavelength_nm[i]),
+                other => other.transmittance(n[i], n_after[i], cosines[0], c.wavelength_nm[i]),
+            };
+            c.weight[i] *= passes.mean();
         }
     }
 

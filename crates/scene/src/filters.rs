@@ -9,7 +9,7 @@ use serde::Deserialize;
 use spectra_core::params::{Faults, Length, Params, Positive, StageNode, Value};
 use spectra_core::resources::Resources;
 use spectra_core::spectral::{Channel, Grid};
-use spectra_glass::{Catalogue, Medium};
+use spectra_glass::Medium;
 use spectra_lens::{Coating, read_coating};
 
 /// The part of the `lens` section that stands in front of the lens.
@@ -95,8 +95,7 @@ pub(crate) fn fold(channels: &mut [Channel], transmittance: &[f64]) {
 fn one(node: &StageNode, grid: Grid, resources: &dyn Resources) -> Result<Vec<f64>, Faults> {
     let named = |name: &str| match spectra_spectrum::find_transmittance_in(name, resources) {
         Ok(found) => Ok(found.on_grid(&grid)),
-        Err(spectra_spectrum::SpectrumError::Document(faults)) => Err(faults),
-        Err(e) => Err(node.fault(e.to_string()).into()),
+        Err(e) => Err(e.faults(|text| node.fault(text))),
     };
     if let Some(name) = node.node().as_str() {
         return named(name);
@@ -110,23 +109,18 @@ fn one(node: &StageNode, grid: Grid, resources: &dyn Resources) -> Result<Vec<f6
     }
     let params = Params::section(node.node().clone(), node.path())?;
     let p: Plate = params.parse()?;
-    let medium =
-        Catalogue::bundled().medium(&p.glass).map_err(|e| Faults::from(params.fault("glass", e.to_string())))?;
-    let coating = p.coating.as_ref().map_or(Ok(Coating::Bare), read_coating)?;
-    let ideal = coating == Coating::Ideal;
-    if !(ideal || coating == Coating::Bare) {
-        return Err(params.fault("coating", "a filter is `bare` or `ideal`").into());
-    }
-    plate(&medium, p.thickness.mm(), ideal, grid).ok_or_else(|| {
+    let medium = spectra_glass::file::medium(&p.glass, &params, "glass", resources)?;
+    let coating = p.coating.as_ref().map_or(Ok(Coating::Bare), |node| read_coating(node, resources))?;
+    plate(&medium, p.thickness.mm(), &coating, grid).ok_or_else(|| {
         let fault = params.fault("glass", format!("how much {} absorbs is not known", medium.name()));
         fault.hint("give its transmittance as a table: `{file: ...}`").into()
     })
 }
 
 /// A plate at normal incidence, with all reflections between its two faces, incoherent: (1 - R)^2 t / (1 - R^2 t^2) with
-/// R = ((n - 1) / (n + 1))^2 (Born and Wolf, "Principles of Optics", 1.5.2 and 7.6.1 without interference). Beyond the
-/// catalogue's table of absorption its last value is kept.
-fn plate(medium: &Medium, thickness_mm: f64, ideal: bool, grid: Grid) -> Option<Vec<f64>> {
+/// what its coating does not pass; bare R = ((n - 1) / (n + 1))^2 (Born and Wolf, "Principles of Optics", 1.5.2 and 7.6.1
+/// without interference). Beyond the catalogue's table of absorption its last value is kept.
+fn plate(medium: &Medium, thickness_mm: f64, coating: &Coating, grid: Grid) -> Option<Vec<f64>> {
     let inside: Vec<Option<f64>> =
         grid.wavelengths_nm().map(|nm| medium.internal_transmittance(nm, thickness_mm)).collect();
     let first = inside.iter().position(Option::is_some)?;
@@ -135,7 +129,7 @@ fn plate(medium: &Medium, thickness_mm: f64, ideal: bool, grid: Grid) -> Option<
         let t = known.unwrap_or(last);
         last = t;
         let n = medium.index(nm);
-        let r = if ideal { 0.0 } else { (n - 1.0) * (n - 1.0) / ((n + 1.0) * (n + 1.0)) };
+        let r = 1.0 - coating.transmittance(1.0, n, 1.0, nm).mean();
         (1.0 - r) * (1.0 - r) * t / (1.0 - r * r * t * t)
     });
     Some(all.collect())
@@ -145,18 +139,19 @@ fn plate(medium: &Medium, thickness_mm: f64, ideal: bool, grid: Grid) -> Option<
 mod tests {
     use super::*;
     use spectra_core::spectral::BAND;
+    use spectra_glass::Catalogue;
 
     /// N-BK7 at 587.56 nm: nd 1.5168, so a plate without absorption passes 2 n / (n^2 + 1) = 0.91907; 10 mm of it
     /// absorb hardly anything there (SCHOTT's data sheet: internal transmittance 0.998 at 580 nm).
     #[test]
     fn a_plate_of_crown_passes_92_percent() {
         let glass = Catalogue::bundled().medium("SCHOTT/N-BK7").unwrap();
-        let thin = plate(&glass, 1e-6, false, BAND).unwrap();
+        let thin = plate(&glass, 1e-6, &Coating::Bare, BAND).unwrap();
         let at = |table: &[f64], nm: f64| BAND.interpolate(table, nm);
         assert!((at(&thin, 587.56) - 0.919_07).abs() < 2e-5, "{}", at(&thin, 587.56));
-        let thick = plate(&glass, 10.0, true, BAND).unwrap();
+        let thick = plate(&glass, 10.0, &Coating::Ideal, BAND).unwrap();
         assert!((at(&thick, 580.0) - 0.998).abs() < 1.5e-3, "{}", at(&thick, 580.0));
-        let squared = plate(&glass, 20.0, true, BAND).unwrap();
+        let squared = plate(&glass, 20.0, &Coating::Ideal, BAND).unwrap();
         for (one, two) in thick.iter().zip(squared) {
             assert!((one * one - two).abs() < 1e-12, "Bouguer's law");
         }

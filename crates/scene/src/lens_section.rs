@@ -10,7 +10,7 @@ use spectra_core::params::{
     Angle, FNumber, Faults, Length, OrInfinity, Params, Positive, SpatialFrequency, StageNode, Value, Wavelength,
 };
 use spectra_core::resources::Resources;
-use spectra_lens::{CoatingForm, Criterion, FocusSearch, Lens, MatteBox, Misalignment};
+use spectra_lens::{ApertureForm, CoatingForm, Criterion, FocusSearch, Lens, MatteBox, Misalignment, Shape};
 
 /// The `lens` section.
 #[derive(Debug, Deserialize, JsonSchema)]
@@ -29,6 +29,9 @@ pub(crate) struct LensSection {
     absorption: Option<bool>,
     /// Aperture, set by the real marginal ray; as the lens file says if absent.
     f_number: Option<FNumber>,
+    /// What limits the light at the stop beside its round opening: blades, a mask; one or a list, as in a lens file.
+    #[schemars(with = "Option<ApertureForm>")]
+    aperture: Option<StageNode>,
     /// Distance that is in focus, from the first vertex, mm if bare, or `infinity`; the lens file's focus if absent. Or
     /// a map with what to focus by.
     #[schemars(with = "Option<FocusForm>")]
@@ -132,13 +135,16 @@ pub(crate) fn lens_of(params: &Params, resources: &dyn Resources) -> Result<Lens
         let reversed = faults.take(lens.reversed().map_err(|e| params.fault("reverse", e.to_string())));
         lens = reversed.unwrap_or(lens);
     }
-    if let Some(coating) = section.coating.and_then(|node| faults.take(spectra_lens::read_coating(&node))) {
+    if let Some(coating) = section.coating.and_then(|node| faults.take(spectra_lens::read_coating(&node, resources))) {
         lens = lens.with_coating(coating);
     }
     lens.absorption = section.absorption.unwrap_or(lens.absorption);
     if let Some(f_number) = section.f_number {
         let stopped = lens.clone().at_f_number(f_number.number());
         lens = faults.take(stopped.map_err(|e| params.fault("f-number", e.to_string()))).unwrap_or(lens);
+    }
+    if let Some(node) = section.aperture {
+        lens = faults.take(with_aperture(&lens, &node, resources)).unwrap_or(lens);
     }
     let focus = section.focus.and_then(|node| faults.take(focus_of(&node, lens.reference_nm)));
     if let Some(focus) = &focus {
@@ -159,6 +165,21 @@ pub(crate) fn lens_of(params: &Params, resources: &dyn Resources) -> Result<Lens
         lens = lens.behind_matte_box(&opening);
     }
     faults.into_result(lens)
+}
+
+/// The lens with more at its stop.
+fn with_aperture(lens: &Lens, node: &StageNode, resources: &dyn Resources) -> Result<Lens, Faults> {
+    let apertures = spectra_lens::read_apertures(node, resources)?;
+    let mut lens = lens.clone();
+    let Some(stop) = lens.elements.iter_mut().find(|e| e.stop) else {
+        return Err(node.fault("this lens has no stop").hint("state `aperture` at a surface of its file").into());
+    };
+    if stop.semi_diameter_mm.is_none() && apertures.iter().any(|a| matches!(a.shape, Shape::Iris(_))) {
+        let fault = node.fault("how far are the blades closed? The stop of this lens has no size");
+        return Err(fault.hint("`f-number: f/4` beside `aperture`").into());
+    }
+    stop.apertures.extend(apertures);
+    Ok(lens)
 }
 
 fn focus_of(node: &StageNode, reference_nm: f64) -> Result<Focus, Faults> {

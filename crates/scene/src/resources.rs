@@ -91,7 +91,8 @@ impl FileResources {
             })
             .collect();
         let wanted = self.folder.join(path);
-        if let Some(entries) = wanted.parent().and_then(|folder| std::fs::read_dir(folder).ok()) {
+        let here = |folder: &Path| if folder.as_os_str().is_empty() { PathBuf::from(".") } else { folder.to_owned() };
+        if let Some(entries) = wanted.parent().and_then(|folder| std::fs::read_dir(here(folder)).ok()) {
             names.extend(entries.take(10_000).flatten().filter_map(|e| e.file_name().into_string().ok()));
         }
         nearest(path, names.iter().map(String::as_str)).map(str::to_owned).into_iter().collect()
@@ -118,7 +119,9 @@ fn read_file(path: &Path, limit_bytes: u64) -> Result<Vec<u8>, ResourceError> {
     Ok(bytes)
 }
 
-/// The same path without `.` in it: as a person would write it.
+/// The same path without `.` in it, and from the working folder where it lies in that: as a person would write it.
 fn plain(path: &Path) -> PathBuf {
+    let here = std::env::current_dir().ok();
+    let path = here.and_then(|here| path.strip_prefix(here).ok()).unwrap_or(path);
     path.components().filter(|c| *c != std::path::Component::CurDir).collect()
 }

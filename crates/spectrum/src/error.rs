@@ -1,7 +1,7 @@
 //! What can be wrong with a spectrum that is not read from a file.
 
 use crate::table::TableError;
-use spectra_core::params::Faults;
+use spectra_core::params::{Fault, Faults};
 
 /// A spectrum that cannot be.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -90,6 +90,18 @@ pub enum SpectrumError {
     /// A table with a fault.
     #[error(transparent)]
     Table(#[from] TableError),
+}
+
+impl SpectrumError {
+    /// What is wrong with a file, placed in that file; else one fault that `at` makes of the text, at the key that named
+    /// the spectrum.
+    pub fn faults(self, at: impl FnOnce(String) -> Fault) -> Faults {
+        match self {
+            Self::Document(faults) => faults,
+            Self::Table(error) if error.place.row > 0 => error.fault().into(),
+            other => at(other.to_string()).into(),
+        }
+    }
 }
 
 fn near(candidates: &[String]) -> String {

@@ -15,6 +15,8 @@
 use std::fmt;
 use std::sync::Arc;
 
+use spectra_core::params::{Fault, SourceFile, Span};
+
 use crate::meta::{Interpolation, Kind, Meta, Scale};
 use crate::sprague;
 use crate::tabulated::{Reading, Tabulated};
@@ -36,6 +38,18 @@ pub struct TableError {
     pub cause: TableFault,
 }
 
+impl TableError {
+    /// The same as a fault of the table's file, at its line and field.
+    #[must_use]
+    pub fn fault(&self) -> Fault {
+        let fault = Fault::new(self.cause.to_string());
+        if self.place.row == 0 {
+            return Fault::new(self.to_string());
+        }
+        fault.at(Arc::clone(&self.place.text), self.place.span()).path(self.place.column_name.clone())
+    }
+}
+
 /// A place in a table. As text: `mine.csv: row 3, column 2 (red)`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Place {
@@ -47,11 +61,32 @@ pub struct Place {
     pub column: usize,
     /// The column's name in the header, empty where there is none.
     pub column_name: String,
+    /// The whole text.
+    pub text: Arc<SourceFile>,
+}
+
+impl Place {
+    /// Where the field is written, or the row.
+    #[must_use]
+    pub fn span(&self) -> Span {
+        let text = &self.text.text;
+        let line = text.split_inclusive('\n').nth(self.row.saturating_sub(1)).unwrap_or_default();
+        let start: usize = text.split_inclusive('\n').take(self.row.saturating_sub(1)).map(str::len).sum();
+        let trimmed = line.trim_end();
+        let (mut from, mut to) = (0, trimmed.len());
+        if let Some(field) = self.column.checked_sub(1).and_then(|i| trimmed.split(',').nth(i)) {
+            from = field.as_ptr() as usize - trimmed.as_ptr() as usize;
+            to = from + field.trim_end().len();
+            from += field.len() - field.trim_start().len();
+        }
+        let to = to.max(from);
+        Span { line: self.row, column: trimmed[..from].chars().count() + 1, offset: start + from, len: to - from }
+    }
 }
 
 impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { file, row, column, column_name } = self;
+        let Self { file, row, column, column_name, .. } = self;
         match (row, column, column_name.as_str()) {
             (0, ..) => f.write_str(file),
             (_, 0, _) => write!(f, "{file}: row {row}"),
@@ -214,7 +249,8 @@ impl Table {
 }
 
 fn whole(file: &str, cause: TableFault) -> TableError {
-    let place = Place { file: file.into(), row: 0, column: 0, column_name: String::new() };
+    let text = Arc::new(SourceFile::new(file, ""));
+    let place = Place { file: file.into(), row: 0, column: 0, column_name: String::new(), text };
     TableError { place: Box::new(place), cause }
 }
 
@@ -232,7 +268,8 @@ impl<'a> Reader<'a> {
 
     fn fault(&self, row: usize, column: usize, cause: TableFault) -> TableError {
         let name = column.checked_sub(1).and_then(|i| self.header.get(i)).copied().unwrap_or_default();
-        let place = Place { file: self.file.into(), row, column, column_name: name.into() };
+        let text = Arc::new(SourceFile::new(self.file, self.text));
+        let place = Place { file: self.file.into(), row, column, column_name: name.into(), text };
         TableError { place: Box::new(place), cause }
     }
 

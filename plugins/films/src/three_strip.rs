@@ -153,8 +153,7 @@ impl ThreeStrip {
         let meter = Meter::new(params, p.metering, p.spot, iso, p.compensation);
         let meter = faults.take(meter.map_err(Faults::from));
         let light = |key: &str, name: &str| {
-            find_emission_in(name, context.resources)
-                .map_err(|error| Faults::from(params.fault(key, error.to_string())))
+            find_emission_in(name, context.resources).map_err(|error| error.faults(|text| params.fault(key, text)))
         };
         let balance = faults.take(light("balance", &p.balance));
         let view = faults.take(light("light", &p.light));
@@ -228,7 +227,7 @@ impl Record {
         let mut faults = Faults::new();
         let filters = p.filters.iter().enumerate().filter_map(|(i, name)| {
             let found = find_transmittance_in(name, context.resources);
-            faults.take(found.map_err(|e| params.fault(&format!("{key}.filters[{i}]"), e.to_string())))
+            faults.take(found.map_err(|e| e.faults(|text| params.fault(&format!("{key}.filters[{i}]"), text))))
         });
         let filters = filters.collect();
         let (name, curve) = (stock.name.clone(), development.curve.clone());

@@ -1,5 +1,6 @@
 //! Built-in imagers: frames of pixels in the image plane, or shifted, tilted, curved.
 
+mod detector;
 mod film;
 mod formats;
 mod params;
@@ -10,11 +11,12 @@ mod spectral;
 mod standing;
 mod xyz;
 
+pub use detector::{DetectorParams, DetectorPlane};
 pub use film::{FilmPlane, FilmPlaneParams};
 pub use formats::{FORMATS, Format, format_named};
 pub use params::{CoverParams, Curvature, LowPassParams};
 pub use plane::{MAX_PIXELS, MAX_SIDE_PX, Plane};
 pub use plates::{Plate, Plates};
-pub use spectral::{SpectralParams, SpectralPlane};
+pub use spectral::{Bands, SpectralParams, SpectralPlane};
 pub use standing::{Bend, Standing};
-pub use xyz::{XyzParams, XyzPlane};
+pub use xyz::{XyzParams, XyzPlane, XyzResponse};

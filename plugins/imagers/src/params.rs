@@ -166,9 +166,9 @@ impl Frame {
         };
         for (i, plate) in self.cover.iter().enumerate() {
             let key = |name: &str| format!("cover[{i}].{name}");
-            let medium = catalogue.medium(&plate.glass).map_err(|e| params.fault(&key("glass"), e.to_string()));
+            let medium = spectra_glass::file::medium(&plate.glass, params, &key("glass"), context.resources);
             let filter = plate.transmittance.as_ref().map(|name| find_transmittance_in(name, context.resources));
-            let filter = filter.transpose().map_err(|e| params.fault(&key("transmittance"), e.to_string()));
+            let filter = filter.transpose().map_err(|e| e.faults(|text| params.fault(&key("transmittance"), text)));
             let (medium, filter) = (faults.take(medium), faults.take(filter));
             if let (Some(mm), Some(medium), Some(filter)) =
                 (faults.take(thick(&plate.thickness, key("thickness"))), medium, filter)

@@ -1,12 +1,13 @@
 //! `imager: spectral`: a plane that records the spectrum itself, one channel a band.
 
+use crate::detector::DetectorPlane;
 use crate::params::imager_params;
 use crate::plane::Plane;
-use spectra_core::frame::{DisplayPicture, ExposureChannel, ExposureFrame, FrameSize};
+use spectra_core::frame::{DisplayPicture, ExposureChannel, ExposureFrame};
 use spectra_core::params::{Faults, Params, Wavelength};
 use spectra_core::registry::Context;
 use spectra_core::spectral::{Channel, Grid};
-use spectra_core::stage::{Imager, Launch, Receive};
+use spectra_core::stage::{Imager, Response};
 use spectra_film::display::{White, show_xyz};
 use spectra_spectrum::constants::LUMINOUS_EFFICACY_LM_PER_W;
 use spectra_spectrum::{Gamut, Observer};
@@ -45,16 +46,18 @@ imager_params! {
 /// Most bands.
 const MAX_BANDS: usize = 256;
 
-/// A plane of spectrographs. A channel is named by the middle of its band as the spectral OpenEXR convention has it
+/// A spectrograph. A channel is named by the middle of its band as the spectral OpenEXR convention has it
 /// (A. Fichet, R. Pacanowski, A. Wilkie, "An OpenEXR layout for spectral images", J. Computer Graphics Techniques 10, 2021):
 /// `S0.550,0nm`; its value is the mean spectral irradiance of the band, W m^-2 nm^-1.
 #[derive(Clone, Debug)]
-pub struct SpectralPlane {
-    plane: Plane,
+pub struct Bands {
     channels: Vec<Channel>,
     /// CIE XYZ, lux, of one unit in each band.
     xyz: Vec<[f64; 3]>,
 }
+
+/// A plane of spectrographs.
+pub type SpectralPlane = DetectorPlane<Bands>;
 
 impl SpectralPlane {
     /// `bands` bands of equal width from `first_nm` to `last_nm`, on `grid`.
@@ -75,7 +78,7 @@ impl SpectralPlane {
             let middle = format!("{:.1}", low + 0.5 * width_nm).replace('.', ",");
             channels.push(Channel { name: format!("S0.{middle}nm"), unit: "W.m^-2.nm^-1".into(), response });
         }
-        Self { plane, channels, xyz }
+        Self::of(plane, Bands { channels, xyz }, None)
     }
 }
 
@@ -86,21 +89,9 @@ fn share(nm: f64, low_nm: f64, width_nm: f64, step_nm: f64) -> f64 {
     overlap.max(0.0) / step_nm / width_nm
 }
 
-impl Imager for SpectralPlane {
-    fn size(&self) -> FrameSize {
-        self.plane.size()
-    }
-
-    fn channels(&self) -> Option<Vec<Channel>> {
-        Some(self.channels.clone())
-    }
-
-    fn receive(&self) -> Option<&dyn Receive> {
-        Some(&self.plane)
-    }
-
-    fn launch(&self) -> Option<&dyn Launch> {
-        Some(&self.plane)
+impl Response for Bands {
+    fn channels(&self) -> Vec<Channel> {
+        self.channels.clone()
     }
 
     /// The colors of the bands, as an eye sees them, under automatic exposure.
@@ -152,6 +143,7 @@ spectra_core::register!(imager "spectral": SpectralParams, build);
 #[cfg(test)]
 mod tests {
     use super::*;
+    use spectra_core::frame::FrameSize;
     use spectra_core::spectral::BAND;
 
     fn size() -> FrameSize {
@@ -180,7 +172,7 @@ mod tests {
     fn the_preview_is_photometric() {
         for bands in [1, 8, 40] {
             let imager = SpectralPlane::new(Plane::new(size()), &BAND, bands, 380.0, 780.0);
-            let y: f64 = imager.xyz.iter().map(|xyz| xyz[1]).sum();
+            let y: f64 = imager.response.xyz.iter().map(|xyz| xyz[1]).sum();
             assert!((y / (LUMINOUS_EFFICACY_LM_PER_W * 106.857) - 1.0).abs() < 2e-4, "{bands}: {y}");
         }
     }

@@ -1,12 +1,13 @@
 //! `imager: xyz`, a plane that measures CIE 1931 XYZ in absolute units: a perfect tristimulus colorimeter.
 
+use crate::detector::DetectorPlane;
 use crate::params::imager_params;
 use crate::plane::Plane;
-use spectra_core::frame::{DisplayPicture, ExposureFrame, FrameSize};
+use spectra_core::frame::{DisplayPicture, ExposureFrame};
 use spectra_core::params::{Exposure, Fault, Faults, Illuminance, Params, Positive, Quantity, Time};
 use spectra_core::registry::Context;
 use spectra_core::spectral::{Channel, Grid};
-use spectra_core::stage::{Imager, Launch, Receive};
+use spectra_core::stage::{Imager, Response};
 use spectra_film::display::{White, show_xyz};
 use spectra_spectrum::constants::LUMINOUS_EFFICACY_LM_PER_W;
 use spectra_spectrum::{Gamut, Observer};
@@ -45,61 +46,54 @@ imager_params! {
     }
 }
 
-/// A plane XYZ imager.
+/// CIE 1931 XYZ in lux.
 #[derive(Clone, Debug)]
-pub struct XyzPlane {
-    plane: Plane,
+pub struct XyzResponse {
     channels: Vec<Channel>,
-    exposure_time_s: Option<f64>,
     white: White,
     gamut: Gamut,
 }
 
-impl XyzPlane {
-    /// An imager on that frame whose channels are given on `grid`, in lx s where there is an exposure time.
+impl XyzResponse {
+    /// Channels on `grid`.
     #[must_use]
-    pub fn new(plane: Plane, grid: &Grid, exposure_time_s: Option<f64>, white: White) -> Self {
-        let unit = if exposure_time_s.is_some() { "lx s" } else { "lx" };
+    pub fn new(grid: &Grid, white: White) -> Self {
         let functions = Observer::cie_1931_2deg().on_grid(grid);
         let channel = |(name, function): (&str, Vec<f64>)| Channel {
             name: name.into(),
-            unit: unit.into(),
+            unit: "lx".into(),
             response: function.into_iter().map(|v| v * LUMINOUS_EFFICACY_LM_PER_W).collect(),
         };
         let channels = ["X", "Y", "Z"].into_iter().zip(functions).map(channel).collect();
-        Self { plane, channels, exposure_time_s, white, gamut: Gamut::Desaturate }
-    }
-
-    /// The same, showing colors beyond the screen's another way.
-    #[must_use]
-    pub fn with_gamut(self, gamut: Gamut) -> Self {
-        Self { gamut, ..self }
+        Self { channels, white, gamut: Gamut::Desaturate }
     }
 }
 
-impl Imager for XyzPlane {
-    fn size(&self) -> FrameSize {
-        self.plane.size()
-    }
-
-    fn channels(&self) -> Option<Vec<Channel>> {
-        Some(self.channels.clone())
-    }
-
-    fn receive(&self) -> Option<&dyn Receive> {
-        Some(&self.plane)
-    }
-
-    fn launch(&self) -> Option<&dyn Launch> {
-        Some(&self.plane)
+impl Response for XyzResponse {
+    fn channels(&self) -> Vec<Channel> {
+        self.channels.clone()
     }
 
     fn display(&self, exposure: &ExposureFrame) -> Option<DisplayPicture> {
         show_xyz(exposure, self.white, self.gamut).ok()
     }
+}
 
-    fn exposure_time_s(&self) -> Option<f64> {
-        self.exposure_time_s
+/// A plane XYZ imager.
+pub type XyzPlane = DetectorPlane<XyzResponse>;
+
+impl XyzPlane {
+    /// An imager on that frame whose channels are given on `grid`, in lx s where there is an exposure time.
+    #[must_use]
+    pub fn new(plane: Plane, grid: &Grid, exposure_time_s: Option<f64>, white: White) -> Self {
+        Self::of(plane, XyzResponse::new(grid, white), exposure_time_s)
+    }
+
+    /// The same, showing colors beyond the screen's another way.
+    #[must_use]
+    pub fn with_gamut(mut self, gamut: Gamut) -> Self {
+        self.response.gamut = gamut;
+        self
     }
 }
 

@@ -94,7 +94,7 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn WavelengthSam
     let fault = |text: String| params.fault("spectrum", text);
     let spectrum = match ["x-bar", "y-bar", "z-bar"].iter().position(|n| *n == name.trim().to_ascii_lowercase()) {
         Some(i) => Observer::cie_1931_2deg().on_grid(&grid)[i].clone(),
-        None => match find_in(&name, context.resources).map_err(|e| fault(e.to_string()))? {
+        None => match find_in(&name, context.resources).map_err(|e| e.faults(fault))? {
             Found::Emission(light) if light.continuum().is_none() => {
                 let text = format!("`{name}` has lines only, which are no density over wavelengths");
                 return Err(fault(text).hint("`kind: lines` draws the source's lines").into());

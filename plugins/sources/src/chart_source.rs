@@ -7,11 +7,11 @@ use crate::white;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::Isa;
-use spectra_core::params::{Faults, Length, Luminance, Params, Positive, Quantity, StageNode};
+use spectra_core::params::{Faults, Length, Luminance, Node, Params, Positive, Quantity, StageNode};
 use spectra_core::registry::{Context, StageOf, build as build_stage};
 use spectra_core::spectral::{Line, SpectralPower};
 use spectra_core::stage::{ColorModel, Source};
-use spectra_spectrum::{Observer, RgbSpace, Transfer};
+use spectra_spectrum::{Observer, Reflectance, RgbSpace, SpectrumError, Transfer, find_reflectance_in};
 
 /// A test chart drawn by the program: resolution, color patches, gray card, star.
 ///
@@ -45,8 +45,11 @@ use spectra_spectrum::{Observer, RgbSpace, Transfer};
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct ChartParams {
-    /// Which chart: `resolution`, `color-checker`, `gray-card` and so on.
+    /// Which chart: `resolution`, `color-checker`, `gray-card` and so on; `patches` shows your own `reflectances`.
     chart: String,
+    /// Patches of `chart: patches`: a table beside the scene whose columns are reflectances, or a list of reflectances by name.
+    #[schemars(with = "Option<OwnReflectances>")]
+    reflectances: Option<StageNode>,
     /// Distance of its plane from the first vertex, mm if bare.
     distance: Positive<Length>,
     /// Width of the chart, mm if bare; the height follows.
@@ -67,6 +70,20 @@ struct ChartParams {
     seed: u64,
 }
 
+/// `reflectances` as written in a scene.
+#[derive(JsonSchema)]
+#[serde(untagged)]
+#[expect(dead_code, reason = "says which forms there are")]
+enum OwnReflectances {
+    /// A table of several.
+    Table(String),
+    /// Several by name.
+    Names(Vec<String>),
+}
+
+/// Most patches of one's own.
+const MAX_PATCHES: usize = 1000;
+
 fn daylight() -> String {
     "D65".to_owned()
 }
@@ -81,8 +98,14 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
     let p: ChartParams = params.parse()?;
     let mut faults = Faults::new();
     let light = faults.take(white::illuminant(&p.illuminant, params, context));
-    let chart = faults
-        .take(chart::chart(&p.chart, Some(p.width.mm()), p.seed).map_err(|e| params.fault("chart", e.to_string())));
+    let own = faults.take(own_reflectances(&p, params, context)).unwrap_or_default();
+    let chart =
+        match p.chart.as_str() {
+            chart::OWN_PATCHES => Some(chart::own_patches(own.len() as u16, p.width.mm())),
+            name => faults.take(chart::chart(name, Some(p.width.mm()), p.seed).map_err(|e| {
+                params.fault("chart", e.to_string()).hint("or `patches`, with `reflectances` of your own")
+            })),
+        };
     let spectra = match (&light, &chart) {
         (Some(light), Some(chart)) => {
             let inner = Context { illuminant: Some(light), ..*context };
@@ -90,8 +113,8 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
                 Some(node) => node
                     .params()
                     .and_then(|color| build_stage::<dyn ColorModel>(&color, &inner))
-                    .map(|model| by_model(chart, light, &*model)),
-                None => measured(chart, light, params, &inner),
+                    .map(|model| by_model(chart, &own, light, &*model)),
+                None => measured(chart, &own, light, params, &inner),
             })
         }
         _ => None,
@@ -106,17 +129,68 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
     Ok(Box::new(Flat { texture, distance_mm: p.distance.mm() }))
 }
 
+/// The reflectances that the user brings.
+fn own_reflectances(p: &ChartParams, params: &Params, context: &Context<'_>) -> Result<Vec<Reflectance>, Faults> {
+    let is_own = p.chart == chart::OWN_PATCHES;
+    let node = match (&p.reflectances, is_own) {
+        (None, false) => return Ok(Vec::new()),
+        (Some(node), false) => {
+            let fault = node.fault(format!("the chart `{}` has patches of its own", p.chart));
+            return Err(fault.hint("`chart: patches`").into());
+        }
+        (None, true) => {
+            let fault = params.fault("chart", "patches of which `reflectances`?");
+            return Err(fault.hint("`reflectances: my-paints.csv`: a column a patch beside wavelength_nm").into());
+        }
+        (Some(node), true) => node,
+    };
+    let find = |node: &Node, name: &str| {
+        find_reflectance_in(name, context.resources)
+            .map_err(|e| e.faults(|text| node.fault(text).path(format!("{}.reflectances", params.path()))))
+    };
+    let mut faults = Faults::new();
+    let mut found = Vec::new();
+    if let Some(name) = node.node().as_str() {
+        match find_reflectance_in(name, context.resources) {
+            Err(SpectrumError::Ambiguous { columns, .. }) => {
+                for column in columns {
+                    found.extend(faults.take(find(node.node(), &format!("{name}#{column}"))));
+                }
+            }
+            _ => found.extend(faults.take(find(node.node(), name))),
+        }
+    } else {
+        let names: Vec<String> = node.parse()?;
+        for (i, name) in names.iter().enumerate() {
+            found.extend(faults.take(find(node.node().element(i).unwrap_or(node.node()), name)));
+        }
+    }
+    if faults.is_empty() && !(1..=MAX_PATCHES).contains(&found.len()) {
+        let fault = node.fault(format!("{} patches", found.len()));
+        faults.push(fault.hint(format!("1 to {MAX_PATCHES}")));
+    }
+    faults.into_result(found)
+}
+
 /// Spectra of the inks, and of a perfect white.
 type Inks = (Vec<SpectralPower>, SpectralPower);
 
 /// Inks as measured, under the light. Colors without a measured spectrum go through the default model.
-fn measured(chart: &Chart, light: &SpectralPower, params: &Params, context: &Context<'_>) -> Result<Inks, Faults> {
+fn measured(
+    chart: &Chart,
+    own: &[Reflectance],
+    light: &SpectralPower,
+    params: &Params,
+    context: &Context<'_>,
+) -> Result<Inks, Faults> {
     let mut model = None;
     let mut spectra = Vec::new();
     for ink in chart.inks() {
         spectra.push(match ink {
             Ink::Gray(reflectance) => light.scaled(*reflectance),
             Ink::Patch(name) => lit(light, &patch(name, params)?),
+            // A chart of own patches has as many as there are; where some were faulty it is never seen.
+            Ink::Own(i) => own.get(usize::from(*i)).map_or_else(|| light.scaled(0.0), |r| lit(light, r)),
             Ink::Rgb(encoded) => {
                 if model.is_none() {
                     model = Some(build_stage::<dyn ColorModel>(&params.nothing_said("color"), context)?);
@@ -133,28 +207,29 @@ fn measured(chart: &Chart, light: &SpectralPower, params: &Params, context: &Con
 }
 
 /// Every ink through one color model, by its color in sRGB.
-fn by_model(chart: &Chart, light: &SpectralPower, model: &dyn ColorModel) -> Inks {
+fn by_model(chart: &Chart, own: &[Reflectance], light: &SpectralPower, model: &dyn ColorModel) -> Inks {
     let spectra = chart
         .inks()
         .iter()
         .map(|ink| match ink {
             Ink::Gray(reflectance) => model.spectrum([*reflectance; 3]),
             Ink::Rgb(encoded) => model.spectrum(encoded.map(|v| Transfer::Srgb.decode(v))),
-            Ink::Patch(name) => model.spectrum(linear_srgb(name, light)),
+            Ink::Patch(name) => {
+                let found = spectra_spectrum::find_reflectance(&column(name));
+                model.spectrum(found.map_or([0.0; 3], |r| linear_srgb(&r, light)))
+            }
+            Ink::Own(i) => model.spectrum(own.get(usize::from(*i)).map_or([0.0; 3], |r| linear_srgb(r, light))),
         })
         .collect();
     (spectra, model.spectrum([1.0; 3]))
 }
 
 /// A patch's color in linear sRGB, white being a perfect reflector under D65; negative values cut off.
-fn linear_srgb(name: &str, light: &SpectralPower) -> [f64; 3] {
+fn linear_srgb(reflectance: &Reflectance, light: &SpectralPower) -> [f64; 3] {
     let daylight = spectra_spectrum::find_emission("D65").map_or_else(|_| light.clone(), |e| e.to_power(&light.grid));
-    let Ok(reflectance) = spectra_spectrum::find_reflectance(&column(name)) else {
-        return [0.0; 3];
-    };
     let observer = Observer::cie_1931_2deg();
     let white = observer.xyz_of_power(&daylight)[1];
-    let xyz = observer.xyz_of_power(&lit(&daylight, &reflectance)).map(|v| v / white);
+    let xyz = observer.xyz_of_power(&lit(&daylight, reflectance)).map(|v| v / white);
     RgbSpace::srgb().from_xyz(xyz).map(|v| v.max(0.0))
 }
 
@@ -166,12 +241,12 @@ fn column(name: &str) -> String {
     format!("colorchecker#{}", plain.replace(' ', "-"))
 }
 
-fn patch(name: &str, params: &Params) -> Result<spectra_spectrum::Reflectance, Faults> {
+fn patch(name: &str, params: &Params) -> Result<Reflectance, Faults> {
     spectra_spectrum::find_reflectance(&column(name))
         .map_err(|e| params.fault("chart", format!("patch `{name}`: {e}")).into())
 }
 
-fn lit(light: &SpectralPower, reflectance: &spectra_spectrum::Reflectance) -> SpectralPower {
+fn lit(light: &SpectralPower, reflectance: &Reflectance) -> SpectralPower {
     SpectralPower {
         grid: light.grid,
         continuum: light.grid.wavelengths_nm().zip(&light.continuum).map(|(w, p)| p * reflectance.at(w)).collect(),

@@ -18,7 +18,7 @@ pub(crate) fn illuminant(name: &str, params: &Params, context: &Context<'_>) -> 
 /// The emission named by a key, on the band.
 pub(crate) fn light(key: &str, name: &str, params: &Params, context: &Context<'_>) -> Result<SpectralPower, Faults> {
     let found = spectra_spectrum::find_emission_in(name, context.resources)
-        .map_err(|e| Faults::from(params.fault(key, e.to_string())))?;
+        .map_err(|e| e.faults(|text| params.fault(key, text)))?;
     let power = found.to_power(&context.grid);
     if power.is_dark() {
         return Err(params.fault(key, format!("`{name}` has no light in the band")).into());

@@ -11,7 +11,8 @@ use std::path::PathBuf;
 #[command(
     long_about = "Look at glass: refractive index, Abbe diagram, nearest glass to a patent's figures, fits.\n\n\
         NAME is MAKER/NAME (SCHOTT/N-BK7), or the name alone where one maker has it; a substance or an everyday name (water, \
-        fused silica, PMMA, air). Indices are relative to air at 20 C and 101 325 Pa, wavelengths are those in air.",
+        fused silica, PMMA, air); or a file of your own: FILE.yaml (a formula, a table, nd and vd), FILE.csv (wavelength_nm,n,k), \
+        FILE.agf#NAME. Indices are relative to air at 20 C and 101 325 Pa, wavelengths are those in air.",
     after_long_help = "Examples:\n  spectra glass info N-BK7\n  \
         spectra glass match --nd 1.64329 --vd 48 --era 1927\n  \
         spectra glass plot SCHOTT/N-BK7 SCHOTT/F2 water -o index.svg\n  \

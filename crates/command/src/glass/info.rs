@@ -1,7 +1,7 @@
 //! `spectra glass info`.
 
 use super::arguments::GlassInfo;
-use super::catalogue;
+use super::{catalogue, named, own_file};
 use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
 use serde::{Serialize, Serializer};
@@ -89,9 +89,12 @@ fn medium(arguments: &GlassInfo, catalogue: &Catalogue) -> Result<Medium, Failur
             }
             Medium::from_nd_vd(melt.0, melt.1).ok_or_else(|| refuse(melt))
         }
-        (Some(name), None) => catalogue.medium(name).map_err(|e| Failure::Input(e.to_string())),
+        (Some(name), None) => named(name, catalogue),
         (Some(name), Some(melt)) => {
-            let glass = catalogue.find_with(name, melt.0, Some(melt.1)).map_err(|e| Failure::Input(e.to_string()))?;
+            let glass = match own_file(name)? {
+                Some(glass) => glass,
+                None => catalogue.find_with(name, melt.0, Some(melt.1)).map_err(|e| Failure::Input(e.to_string()))?,
+            };
             glass.melt(melt.0, melt.1).map(Medium::from).ok_or_else(|| refuse(melt))
         }
         (None, None) => Err(Failure::Input("a name, or --nd and --vd, says which glass".into())),

@@ -13,7 +13,8 @@ use crate::console;
 use crate::outcome::{Failure, Outcome};
 use arguments::{GlassCommand, OwnCatalogues};
 use spectra_core::params::nearest as near_words;
-use spectra_glass::{Catalogue, agf};
+use spectra_glass::{Catalogue, Glass, Medium, agf, file};
+use spectra_scene::FileResources;
 use std::borrow::Cow;
 use std::io::Read;
 use std::path::Path;
@@ -49,6 +50,22 @@ fn catalogue(own: &OwnCatalogues) -> Result<Cow<'static, Catalogue>, Failure> {
         catalogue.to_mut().add(read.glasses);
     }
     Ok(catalogue)
+}
+
+/// The medium of a name: a file in the working folder, or one of the catalogue.
+fn named(name: &str, catalogue: &Catalogue) -> Result<Medium, Failure> {
+    match own_file(name)? {
+        Some(glass) => Ok(glass.into()),
+        None => catalogue.medium(name).map_err(|e| Failure::Input(e.to_string())),
+    }
+}
+
+/// The glass of a file in the working folder; `None` for a name of the catalogue.
+fn own_file(name: &str) -> Result<Option<Glass>, Failure> {
+    if !file::is_file(name) {
+        return Ok(None);
+    }
+    Ok(Some(file::load(name, &FileResources::beside(Path::new("")))?))
 }
 
 /// A whole file, or standard input for `-`.

@@ -1,7 +1,7 @@
 //! `spectra glass plot`.
 
 use super::arguments::GlassPlot;
-use super::{catalogue, makers};
+use super::{catalogue, makers, named};
 use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
 use spectra_glass::{Catalogue, Category, LineTriple, Medium, Query, lines};
@@ -21,10 +21,7 @@ pub(crate) fn plot(arguments: &GlassPlot) -> Outcome {
     // Before anything is computed: a wrong ending is found out at once.
     Format::of(&output).map_err(failure)?;
     let catalogue = catalogue(&arguments.own)?;
-    let find = |name: &String| match catalogue.medium(name) {
-        Ok(medium) => Ok((name.trim().to_owned(), medium)),
-        Err(error) => Err(Failure::Input(error.to_string())),
-    };
+    let find = |name: &String| Ok((name.trim().to_owned(), named(name, &catalogue)?));
     let media = arguments.names.iter().map(find).collect::<Result<Vec<_>, Failure>>()?;
     let canvas =
         if arguments.abbe { abbe(arguments, &catalogue, &media)? } else { dispersion(&media, arguments.range_nm)? };

@@ -55,7 +55,7 @@ pub use schema::{StageOf, definitions};
 use crate::params::{Fault, Faults, Params};
 use crate::resources::Resources;
 use crate::spectral::{Grid, SpectralPower};
-use crate::stage::{ColorModel, Film, Imager, Source, WavelengthSampler};
+use crate::stage::{ColorModel, Film, Imager, Response, Source, WavelengthSampler};
 use crate::surface::Surface;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 
@@ -111,7 +111,7 @@ impl<S: ?Sized> Entry<S> {
 
 /// Registers a stage: `register!(surface "axicon": AxiconParams, build);`.
 ///
-/// The stages are `source`, `color`, `wavelengths`, `surface`, `imager` and `film`. The parameters' type implements
+/// The stages are `source`, `color`, `wavelengths`, `surface`, `imager`, `response` and `film`. The parameters' type implements
 /// `Deserialize` and `JsonSchema`, and its doc comment is what `spectra doc` shows: first the summary, then text, then
 /// (optional) `# Example` with a block of YAML, and `# References`. `build` is a [`registry::Build`](crate::registry::Build).
 /// A name followed by `(default)` is taken where a scene names no kind.
@@ -139,12 +139,13 @@ macro_rules! register {
     (@type wavelengths) => { $crate::registry::SamplerEntry };
     (@type surface) => { $crate::registry::SurfaceEntry };
     (@type imager) => { $crate::registry::ImagerEntry };
+    (@type response) => { $crate::registry::ResponseEntry };
     (@type film) => { $crate::registry::FilmEntry };
     (@type $other:ident) => {
         compile_error!(concat!(
             "no stage is called `",
             stringify!($other),
-            "`: source, color, wavelengths, surface, imager or film"
+            "`: source, color, wavelengths, surface, imager, response or film"
         ))
     };
 }
@@ -188,6 +189,7 @@ stages! {
     SamplerEntry, dyn WavelengthSampler, "wavelengths", "A registered wavelength sampler.";
     SurfaceEntry, dyn Surface, "surface", "A registered surface.";
     ImagerEntry, dyn Imager, "imager", "A registered imager.";
+    ResponseEntry, dyn Response, "response", "A registered response of a detector.";
     FilmEntry, dyn Film, "film", "A registered film process.";
 }
 

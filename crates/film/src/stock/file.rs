@@ -1,5 +1,6 @@
 //! A stock's YAML file: its keys, and the checks that need more than a type.
 
+use super::like::inherited;
 use super::material::{DyeFile, MinimumDensityFile, densitometry};
 use super::reciprocity::ReciprocityFile;
 use super::structure::{BaseFile, GranularityFile, HalationFile, mtf};
@@ -7,14 +8,14 @@ use super::{Development, FilterFactor, Layer, Process, Reading, SensitivityError
 use crate::curve::{
     AVERAGE_GRADIENT_SPAN, CharacteristicCurve, CurveError, SPEED_POINT_DENSITY, TabulatedCurve, ToeShoulder,
 };
-use schemars::{JsonSchema, Schema, SchemaGenerator};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
 use spectra_core::math::log10;
-use spectra_core::params::{Fault, Faults, Params, Positive};
-use spectra_core::resources::{Resource, ResourceError, Resources};
+use spectra_core::params::{Fault, Faults, Node, Params, Positive};
+use spectra_core::resources::{Resource, ResourceError, Resources, beside};
 use spectra_core::spectral::BAND;
-use spectra_spectrum::table::{MAX_BYTES, Table};
-use spectra_spectrum::{Emission, Kind, Scale, SpectrumError, find_emission};
+use spectra_spectrum::table::{MAX_BYTES, Table, TableFault};
+use spectra_spectrum::{Emission, Kind, Scale, SpectrumError, find_emission_in};
 use std::borrow::Cow;
 
 /// A film stock: its layers, how they see, how they develop, and where the figures come from.
@@ -217,17 +218,31 @@ struct FilterFactorFile {
 
 /// The schema of a stock file.
 pub(super) fn schema(generator: &mut SchemaGenerator) -> Schema {
-    StockFile::json_schema(generator)
+    let whole = StockFile::json_schema(generator);
+    // What a stock that is like another one states is a part of this, key by key.
+    json_schema!({
+        "if": { "type": "object", "required": ["like"] },
+        "then": {
+            "type": "object",
+            "properties": {
+                "like": { "type": "string", "description": "The stock whose keys hold where this file states none." },
+                "name": { "type": "string", "description": "Name that people know it by." },
+            },
+            "required": ["like", "name"],
+        },
+        "else": whole,
+    })
 }
 
 /// Reads and checks the whole file; every fault of it in one go.
 pub(super) fn read(params: &Params, resources: &dyn Resources) -> Result<Stock, Faults> {
+    let params = &inherited(params, resources)?;
     let file: StockFile = params.parse()?;
     let mut faults = Faults::new();
     if file.spectra.is_some_and(|v| v != 1.0) {
         faults.push(params.fault("spectra", "the format of a stock file that this program reads is 1"));
     }
-    let reference = faults.take(reference(params, &file.reference_illuminant));
+    let reference = faults.take(reference(params, &file.reference_illuminant, resources));
     if file.layers.is_empty() {
         faults.push(params.fault("layers", "a film has at least one layer"));
     }
@@ -339,11 +354,18 @@ fn filter_factor(file: FilterFactorFile) -> FilterFactor {
     FilterFactor { filter: file.filter, daylight: file.daylight.get(), tungsten: file.tungsten.get() }
 }
 
-fn reference(params: &Params, name: &str) -> Result<Emission, Fault> {
-    find_emission(name).map_err(|error| {
-        let hint = "the sheets of films mean iso-7589-sensitometric-daylight";
-        params.fault("reference-illuminant", error.to_string()).hint(hint)
-    })
+fn reference(params: &Params, name: &str, resources: &dyn Resources) -> Result<Emission, Faults> {
+    let key = "reference-illuminant";
+    let hint = "the sheets of films mean iso-7589-sensitometric-daylight";
+    light(params, key, name, resources).map_err(|error| error.faults(|text| params.fault(key, text).hint(hint)))
+}
+
+/// The light that a key of the stock's file names: a bundled one, or a file beside the stock's.
+fn light(params: &Params, key: &str, name: &str, resources: &dyn Resources) -> Result<Emission, SpectrumError> {
+    match params.node().at_path(key) {
+        Some(node) => find_emission_in(&beside_spectrum(node, name), resources),
+        None => find_emission_in(name, resources),
+    }
 }
 
 fn sensitivity(
@@ -355,9 +377,13 @@ fn sensitivity(
     let at = format!("{at}.sensitivity");
     let mut faults = Faults::new();
     let points = faults.take(points(params, &at, file, resources));
-    let light = faults.take(measured_under(&file.measured_under).map_err(|error| {
-        params.fault(&format!("{at}.measured-under"), error.to_string()).hint("`equal-energy`, or an illuminant")
-    }));
+    let key = format!("{at}.measured-under");
+    let light = match file.measured_under.as_str() {
+        "equal-energy" => Ok(None),
+        name => light(params, &key, name, resources).map(Some),
+    };
+    let hint = "`equal-energy`, or an illuminant";
+    let light = faults.take(light.map_err(|error| error.faults(|text| params.fault(&key, text).hint(hint))));
     let reading = match (file.reading, file.floor) {
         (ReadingFile::Log10, floor) => Reading::Log10 { floor },
         (ReadingFile::Linear, None) => Reading::Linear,
@@ -383,42 +409,47 @@ fn sensitivity(
     }
 }
 
-fn measured_under(name: &str) -> Result<Option<Emission>, SpectrumError> {
-    if name == "equal-energy" { Ok(None) } else { find_emission(name).map(Some) }
-}
-
 fn points(
     params: &Params,
     at: &str,
     file: &SensitivityFile,
     resources: &dyn Resources,
-) -> Result<Vec<[f64; 2]>, Fault> {
+) -> Result<Vec<[f64; 2]>, Faults> {
     let name = match (&file.table, &file.file) {
         (Some(table), None) => return Ok(table.clone()),
         (None, Some(name)) => name,
         (None, None) => {
-            return Err(params.fault(at, "the sensitivity has no values").hint("give `file` or `table`"));
+            return Err(params.fault(at, "the sensitivity has no values").hint("give `file` or `table`").into());
         }
         (Some(_), Some(_)) => {
             return Err(params
                 .fault(&format!("{at}.table"), "the sensitivity is given twice")
-                .hint("either file or table"));
+                .hint("either file or table")
+                .into());
         }
     };
     let fault = |text: String| params.fault(&format!("{at}.file"), text);
-    let found = beside(params, name, resources).map_err(|error| fault(format!("`{name}`: {error}")))?;
+    let written = params.node().at_path(&format!("{at}.file")).unwrap_or(params.node());
+    let found = read_beside(written, name, resources).map_err(|error| fault(format!("`{name}`: {error}")))?;
     let table = Table::parse_bytes(&found.name, &found.bytes, Some(Kind::Sensitivity)).map_err(|e| {
-        fault(e.to_string()).hint("logarithms need `# spectra: 1` and `# unit: log10` above the header")
+        let placed = if e.place.row > 0 { e.fault() } else { fault(e.to_string()) };
+        match e.cause {
+            TableFault::Negative { .. } | TableFault::AboveBound { .. } => {
+                placed.hint("logarithms need `# spectra: 1` and `# unit: log10` above the header")
+            }
+            _ => placed,
+        }
     })?;
     let logarithms = table.meta.scale() == Scale::Log10;
     if logarithms != (file.reading == ReadingFile::Log10) {
         let says = if logarithms { "log10" } else { "linear" };
-        return Err(params.fault(&format!("{at}.reading"), format!("{}: its front matter says {says}", found.name)));
+        let fault = params.fault(&format!("{at}.reading"), format!("{}: its front matter says {says}", found.name));
+        return Err(fault.into());
     }
     let column = match &file.column {
         None if table.columns.len() == 1 => 0,
         None => {
-            return Err(fault(format!("{} has several columns", found.name)).hint(columns(&table)));
+            return Err(fault(format!("{} has several columns", found.name)).hint(columns(&table)).into());
         }
         Some(column) => table.columns.iter().position(|c| c == column).ok_or_else(|| {
             let text = format!("{} has no column `{column}`", found.name);
@@ -432,24 +463,24 @@ fn columns(table: &Table) -> String {
     format!("`column`: {}", table.columns.join(", "))
 }
 
-/// The file `name` that a stock's file names: beside it, bundled where the stock is, else as the scene finds it.
-fn beside(params: &Params, name: &str, resources: &dyn Resources) -> Result<Resource, ResourceError> {
+/// The file `name` that a value of a stock's file names: beside that file, bundled where the stock is, else as the scene
+/// finds it.
+fn read_beside(written: &Node, name: &str, resources: &dyn Resources) -> Result<Resource, ResourceError> {
     let read = |path: &str| resources.read(path, &[super::FOLDER], &[], MAX_BYTES);
-    let Some(folder) = params.base_dir() else {
+    if written.file.folder().is_none() {
         let path = format!("{}/{name}", super::FOLDER);
         let bundled = |bytes| Resource { name: format!("bundled:{path}"), folder: None, bytes: Cow::Borrowed(bytes) };
         return spectra_data::get(&path).map_or_else(|| read(name), |bytes| Ok(bundled(bytes)));
-    };
-    // The scene may lie in another folder, and a relative path would be taken as relative to that.
-    if let Ok(path) = std::path::absolute(folder.join(name))
-        && let Some(path) = path.to_str()
-    {
-        match read(path) {
-            Err(ResourceError::NotFound(_)) => {}
-            other => return other,
-        }
     }
-    read(name)
+    read(&beside(written, name))
+}
+
+/// The name of a spectrum, of a file beside the one that names it if there is such a file; its column stays.
+fn beside_spectrum(written: &Node, name: &str) -> String {
+    match name.rsplit_once('#') {
+        Some((file, column)) => format!("{}#{column}", beside(written, file)),
+        None => beside(written, name),
+    }
 }
 
 fn developments(params: &Params, at: &str, files: &[CurveFile], iso: Option<f64>) -> Result<Vec<Development>, Faults> {

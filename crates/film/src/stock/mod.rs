@@ -1,6 +1,7 @@
 //! Film stocks: what a maker's sheet says, each value with its source; what is unknown is absent.
 
 mod file;
+mod like;
 mod material;
 mod reciprocity;
 mod sensitivity;

@@ -2,13 +2,15 @@
 //!
 //! An aperture is flat: it looks at x and y of the point where the light meets its surface, in the surface's frame.
 
+mod drawing;
 mod iris;
 mod mask;
 mod params;
 
+pub use drawing::{Drawing, FLATNESS_MM, FillRule, Painted};
 pub use iris::{Iris, Opening};
 pub use mask::Mask;
-pub(crate) use params::{ApertureForm, read};
+pub use params::{ApertureForm, read};
 
 use spectra_core::RayBatch;
 use spectra_core::loss::{ALIVE, Loss};
@@ -54,6 +56,8 @@ pub enum Shape {
     Iris(Iris),
     /// A picture: white passes, black stops, gray passes in part.
     Mask(Mask),
+    /// A drawing: outlines that pass.
+    Drawing(Drawing),
 }
 
 impl Aperture {
@@ -77,6 +81,7 @@ impl Aperture {
             Shape::Polygon(corners) => f64::from(is_inside(corners, x, y)),
             Shape::Iris(iris) => f64::from(semi_diameter_mm.is_none_or(|size| iris.opening(size).contains(x, y))),
             Shape::Mask(mask) => mask.transmittance(x, y),
+            Shape::Drawing(drawing) => drawing.transmittance(x, y),
         };
         if self.obscures { 1.0 - inside } else { inside }
     }
@@ -101,6 +106,7 @@ impl Aperture {
             Shape::Polygon(corners) => corners.iter().map(|[x, y]| (x * x + y * y).sqrt()).fold(0.0, f64::max),
             Shape::Iris(_) => f64::INFINITY,
             Shape::Mask(mask) => mask.reach_mm(),
+            Shape::Drawing(drawing) => drawing.reach_mm(),
         };
         reach + (x * x + y * y).sqrt()
     }

@@ -1,12 +1,12 @@
 //! Apertures as a lens file writes them.
 
-use super::{Aperture, Iris, Mask, Shape};
+use super::{Aperture, Iris, Mask, Shape, drawing};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
 use spectra_core::params::{
     Angle, Faults, Kinds, Length, LengthOrInfinity, Params, Positive, StageNode, Value, nearest,
 };
-use spectra_core::resources::Resources;
+use spectra_core::resources::{Resources, beside};
 use std::sync::Arc;
 
 /// Keys of every aperture; the others belong to its shape.
@@ -66,14 +66,18 @@ struct IrisParams {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct MaskParams {
-    /// A picture (PNG, JPEG, TIFF): white passes, black stops.
+    /// A picture (PNG, JPEG, TIFF): white passes, black stops. Or a drawing (SVG): what is filled passes.
     file: String,
-    /// Width of the picture, mm if bare.
-    width: Positive<Length>,
+    /// Width of the picture or of the drawing's page, mm if bare; of a drawing it may be left out, if it states one itself.
+    width: Option<Positive<Length>>,
+    /// Of a drawing: `filled`, whatever is painted passes (the default); or `white`, as of a picture: white passes, black
+    /// stops, gray passes in part.
+    #[schemars(extend("enum" = ["filled", "white", null]))]
+    open: Option<String>,
 }
 
 /// What an aperture is written as: one, or a list.
-pub(crate) struct ApertureForm;
+pub struct ApertureForm;
 
 impl JsonSchema for ApertureForm {
     fn schema_name() -> std::borrow::Cow<'static, str> {
@@ -107,8 +111,11 @@ const MAX_MASK_BYTES: u64 = 64 << 20;
 const MAX_MASK_SIDE: u32 = 8192;
 const MAX_CORNERS: usize = 10_000;
 
-/// Reads one aperture or a list of them.
-pub(crate) fn read(node: &StageNode, resources: &dyn Resources) -> Result<Vec<Aperture>, Faults> {
+/// Reads one aperture or a list of them, as lens files and scenes write them.
+///
+/// # Errors
+/// What is wrong with them, placed; what is wrong with a drawing, placed in it.
+pub fn read(node: &StageNode, resources: &dyn Resources) -> Result<Vec<Aperture>, Faults> {
     let Value::Seq(items) = &node.node().value else {
         return one(&Params::section(node.node().clone(), node.path())?, resources).map(|a| vec![a]);
     };
@@ -184,11 +191,33 @@ fn iris(params: &Params) -> Result<Shape, Faults> {
 
 fn mask(params: &Params, resources: &dyn Resources) -> Result<Shape, Faults> {
     let p: MaskParams = params.parse()?;
-    let fail = |text: String| Faults::from(params.fault("file", text).hint("a PNG, JPEG or TIFF beside the lens file"));
-    let beside = params.base_dir().map(|folder| folder.join(&p.file)).filter(|path| path.is_file());
-    let path = beside.map_or_else(|| p.file.clone(), |path| path.to_string_lossy().into_owned());
-    let found =
-        resources.read(&path, &["lenses"], &[], MAX_MASK_BYTES).map_err(|e| fail(format!("`{}`: {e}", p.file)))?;
+    let fail =
+        |text: String| Faults::from(params.fault("file", text).hint("a PNG, JPEG, TIFF or SVG beside the lens file"));
+    let open = match p.open.as_deref() {
+        None => None,
+        Some("filled") => Some(drawing::Open::Filled),
+        Some("white") => Some(drawing::Open::White),
+        Some(other) => {
+            let fault = params.fault("open", format!("unknown: `{other}`"));
+            return Err(fault.hint("filled (whatever is painted passes) or white (white passes, black stops)").into());
+        }
+    };
+    let path = beside(params.node(), &p.file);
+    let found = resources
+        .read(&path, &["lenses", "scenes"], &[], MAX_MASK_BYTES)
+        .map_err(|e| fail(format!("`{}`: {e}", p.file)))?;
+    if p.file.rsplit_once('.').is_some_and(|(_, ending)| ending.eq_ignore_ascii_case("svg")) {
+        let drawn = drawing::read(&found.name, &found.bytes, p.width.map(|w| w.mm()), open);
+        return drawn.map(Shape::Drawing).map_err(|faults| params.place_at("file", faults));
+    }
+    if open == Some(drawing::Open::Filled) {
+        let fault = params.fault("open", "of a picture the white passes: nothing in it is filled");
+        return Err(fault.hint("leave `open` out, or draw an SVG").into());
+    }
+    let Some(width) = p.width else {
+        let fault = params.fault_here("how large is the picture? `width` is missing");
+        return Err(fault.hint("`width: 24 mm`").into());
+    };
     let mut reader = image::ImageReader::new(std::io::Cursor::new(&found.bytes[..]))
         .with_guessed_format()
         .map_err(|e| fail(format!("`{}`: {e}", p.file)))?;
@@ -196,7 +225,7 @@ fn mask(params: &Params, resources: &dyn Resources) -> Result<Shape, Faults> {
     (limits.max_image_width, limits.max_image_height) = (Some(MAX_MASK_SIDE), Some(MAX_MASK_SIDE));
     reader.limits(limits);
     let picture = reader.decode().map_err(|e| fail(format!("`{}`: {e}", p.file)))?.into_luma16();
-    let (width, height) = picture.dimensions();
+    let (width_px, height_px) = picture.dimensions();
     let values: Arc<[f32]> = picture.as_raw().iter().map(|v| f32::from(*v) / 65535.0).collect();
-    Ok(Shape::Mask(Mask::new(width as usize, height as usize, p.width.mm(), values)))
+    Ok(Shape::Mask(Mask::new(width_px as usize, height_px as usize, width.mm(), values)))
 }

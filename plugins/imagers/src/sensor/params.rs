@@ -184,9 +184,8 @@ impl SensorParams {
         let mut tables = Vec::new();
         for (channel, text) in wanted {
             let found = find_sensitivity_in(&text, context.resources);
-            tables.extend(faults.take(
-                found.map(|s| (channel, s.on_grid(grid))).map_err(|e| params.fault("sensitivity", e.to_string())),
-            ));
+            let found = found.map_err(|e| e.faults(|text| params.fault("sensitivity", text)));
+            tables.extend(faults.take(found.map(|s| (channel, s.on_grid(grid)))));
         }
         faults.into_result(())?;
         // Photons per joule go with the wavelength: electrons a photon are sensitivity over wavelength.
@@ -266,7 +265,7 @@ impl SensorParams {
             Pattern::Monochrome => None,
             Pattern::Bayer(_) => {
                 let found = find_emission_in(light, context.resources)
-                    .map_err(|e| params.fault("white-balance", e.to_string()));
+                    .map_err(|e| e.faults(|text| params.fault("white-balance", text)));
                 faults.take(found).and_then(|light| {
                     let color = CameraColor::fit(channels, &light, &context.grid);
                     let blind =

@@ -88,6 +88,15 @@ pub const CHARTS: &[ChartEntry] = &[
     },
 ];
 
+/// The name of a chart of the user's own patches.
+pub const OWN_PATCHES: &str = "patches";
+
+/// A chart of `count` patches ([`Ink::Own`](super::Ink::Own)) in a block on a black frame, `width_mm` wide.
+#[must_use]
+pub fn own_patches(count: u16, width_mm: f64) -> Chart {
+    designs::patches(count).finish(OWN_PATCHES, width_mm)
+}
+
 /// Draws the chart `name`, `width_mm` wide or in the size of its design.
 ///
 /// ```

@@ -39,6 +39,8 @@ pub enum Ink {
     Patch(&'static str),
     /// Spectrally neutral reflectance: the same linear factor, 0 to 1, at every wavelength.
     Gray(f64),
+    /// A patch whose reflectance the user brings, by number from 0.
+    Own(u16),
 }
 
 impl Ink {

@@ -19,7 +19,7 @@ mod ink;
 mod shape;
 mod sheet;
 
-pub use catalogue::{CHARTS, ChartEntry, ChartError, chart};
+pub use catalogue::{CHARTS, ChartEntry, ChartError, OWN_PATCHES, chart, own_patches};
 pub use ink::{Ink, PATCHES};
 pub use sheet::{Chart, Landmark, NO_INK};
 

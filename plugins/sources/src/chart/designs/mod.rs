@@ -3,6 +3,7 @@
 mod color_checker;
 mod grid;
 mod parts;
+mod patches;
 mod resolution;
 mod siemens;
 mod slanted_edge;
@@ -13,6 +14,7 @@ mod uniform;
 
 pub(super) use color_checker::color_checker;
 pub(super) use grid::grid;
+pub(super) use patches::patches;
 pub(super) use resolution::resolution;
 pub(super) use siemens::siemens;
 pub(super) use slanted_edge::slanted_edge;

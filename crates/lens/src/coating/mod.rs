@@ -5,13 +5,19 @@
 //! T = 4 eta eta' / ((eta + eta')^2 cos^2(delta) + (eta eta' / eta_1 + eta_1)^2 sin^2(delta)). It is the same from both
 //! sides, and without a layer (delta = 0) it is Fresnel's.
 
-use schemars::JsonSchema;
-use serde::Deserialize;
+mod measured;
+mod params;
+mod stack;
+
+pub use measured::MeasuredCoating;
+pub use params::{CoatingForm, OneLayer, StackParams, read_coating};
+pub use stack::{Stack, StackLayer};
+
 use spectra_core::math;
-use spectra_core::params::{Faults, Params, StageNode, Wavelength};
+use std::sync::Arc;
 
 /// Coating of a refracting surface.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub enum Coating {
     /// Everything passes.
     #[default]
@@ -25,6 +31,10 @@ pub enum Coating {
         /// Its thickness, nm.
         thickness_nm: f64,
     },
+    /// Any number of layers.
+    Stack(Arc<Stack>),
+    /// What was measured of it, at every angle alike.
+    Measured(Arc<MeasuredCoating>),
 }
 
 /// Transmittance by polarization: parts of the power.
@@ -57,7 +67,7 @@ impl Coating {
     /// Transmittance from a medium of index `n` into one of index `n_after`, at this cosine of the angle of incidence
     /// (0 to 1) and wavelength in air, nm. Nothing passes on total reflection; `Ideal` passes everything else.
     #[must_use]
-    pub fn transmittance(self, n: f64, n_after: f64, cos_incidence: f64, wavelength_nm: f64) -> Transmittance {
+    pub fn transmittance(&self, n: f64, n_after: f64, cos_incidence: f64, wavelength_nm: f64) -> Transmittance {
         let sine = n * (1.0 - cos_incidence * cos_incidence).max(0.0).sqrt();
         let cos_square = 1.0 - sine * sine / (n_after * n_after);
         if cos_square <= 0.0 {
@@ -67,7 +77,9 @@ impl Coating {
         match self {
             Self::Ideal => Transmittance::FULL,
             Self::Bare => bare([n, n_after], cosines),
-            Self::Layer { index, thickness_nm } => layer([n, n_after], cosines, index, thickness_nm / wavelength_nm),
+            Self::Layer { index, thickness_nm } => layer([n, n_after], cosines, *index, thickness_nm / wavelength_nm),
+            Self::Stack(stack) => stack.transmittance([n, n_after], cosines, wavelength_nm),
+            Self::Measured(measured) => measured.transmittance(wavelength_nm),
         }
     }
 }
@@ -131,78 +143,11 @@ pub(crate) fn layer([n, n_after]: [f64; 2], [c, c_after]: [f64; 2], index: f64, 
     Transmittance { s: pass(n * c, n_after * c_after, 1.0), p: pass(c / n, c_after / n_after, index * index) }
 }
 
-/// A layer as a file writes it.
-#[derive(Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub struct LayerParams {
-    /// Refractive index of the layer.
-    layer: f64,
-    /// Thickness, nm if bare.
-    thickness: Option<Wavelength>,
-    /// Wavelength at which it is a quarter of a wave thick, nm if bare.
-    quarter_wave_at: Option<Wavelength>,
-}
-
-/// What a coating is written as.
-#[derive(JsonSchema)]
-#[serde(untagged)]
-pub enum CoatingForm {
-    /// By name.
-    Named(CoatingName),
-    /// One layer.
-    Layer(LayerParams),
-}
-
-/// A coating by name.
-#[derive(JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum CoatingName {
-    /// All light passes.
-    Ideal,
-    /// None: Fresnel's formulas.
-    Bare,
-}
-
-const HINT: &str = "ideal, bare, or such as {layer: 1.38, quarter-wave-at: 550 nm}";
-
-/// Reads `ideal`, `bare`, or a layer.
-///
-/// # Errors
-/// What is wrong with it, placed.
-pub fn read_coating(node: &StageNode) -> Result<Coating, Faults> {
-    match node.node().as_str() {
-        Some("ideal") => return Ok(Coating::Ideal),
-        Some("bare") => return Ok(Coating::Bare),
-        Some(other) => return Err(node.fault(format!("unknown coating `{other}`")).hint(HINT).into()),
-        None => {}
-    }
-    let params = Params::section(node.node().clone(), node.path())?;
-    let p: LayerParams = params.parse()?;
-    if !(1.0..=5.0).contains(&p.layer) {
-        let fault = params.fault("layer", format!("a layer of index {}", p.layer));
-        return Err(fault.hint("from 1 to 5; magnesium fluoride has 1.38").into());
-    }
-    match (p.thickness, p.quarter_wave_at) {
-        (Some(thickness), None) if thickness.nm() <= 1e5 => {
-            Ok(Coating::Layer { index: p.layer, thickness_nm: thickness.nm() })
-        }
-        (None, Some(wave)) if wave.nm() <= 1e5 => Ok(Coating::quarter_wave(p.layer, wave.nm())),
-        (Some(_), Some(_)) | (None, None) => Err(params
-            .fault_here("a layer has either a `thickness` or is `quarter-wave-at` a wavelength")
-            .hint(HINT)
-            .into()),
-        (thickness, _) => {
-            let key = if thickness.is_some() { "thickness" } else { "quarter-wave-at" };
-            Err(params.fault(key, "more than 100 um is no thin layer").into())
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn reflectance(coating: Coating, n: f64, angle_deg: f64, wavelength_nm: f64) -> (f64, f64) {
+    fn reflectance(coating: &Coating, n: f64, angle_deg: f64, wavelength_nm: f64) -> (f64, f64) {
         let t = coating.transmittance(1.0, n, math::cos(angle_deg.to_radians()), wavelength_nm);
         (1.0 - t.s, 1.0 - t.p)
     }
@@ -217,10 +162,10 @@ mod tests {
             (60.0, 0.176571, 0.001802),
             (80.0, 0.538595, 0.236814),
         ] {
-            let got = reflectance(Coating::Bare, 1.5, angle, 550.0);
+            let got = reflectance(&Coating::Bare, 1.5, angle, 550.0);
             assert!((got.0 - s).abs() < 1e-6 && (got.1 - p).abs() < 1e-6, "{angle}: {got:?}");
         }
-        assert!(reflectance(Coating::Bare, 1.5, math::atan(1.5).to_degrees(), 550.0).1.abs() < 1e-15);
+        assert!(reflectance(&Coating::Bare, 1.5, math::atan(1.5).to_degrees(), 550.0).1.abs() < 1e-15);
     }
 
     /// Normal incidence: (n - 1)^2 / (n + 1)^2, (n1^2 - n)^2 / (n1^2 + n)^2 for a quarter wave, and Airy's sum for 99.6 nm.
@@ -230,11 +175,11 @@ mod tests {
         let thin = Coating::Layer { index: 1.38, thickness_nm: 99.6 };
         for (coating, n, wavelength_nm, want) in [
             (Coating::Bare, 1.5168, 587.56, 0.042_164_6),
-            (quarter, 1.5168, 587.56, 0.012_835_4),
+            (quarter.clone(), 1.5168, 587.56, 0.012_835_4),
             (Coating::Bare, 1.518522, 550.0, 0.042_388),
             (thin, 1.518522, 550.0, 0.012_708_8),
         ] {
-            let (s, p) = reflectance(coating, n, 0.0, wavelength_nm);
+            let (s, p) = reflectance(&coating, n, 0.0, wavelength_nm);
             assert!((s - want).abs() < 5e-7 && (p - want).abs() < 5e-7, "{coating:?}: {s} {p} {want}");
         }
     }

@@ -1,0 +1,144 @@
+//! A user's own glass, in a file beside the scene or lens that names it.
+//!
+//! | file | holds |
+//! |---|---|
+//! | `mine.yaml` | a formula with its coefficients, a table of n, or nd and Vd, with absorption where it is known ([`yaml`](self)); or a page of the refractiveindex.info database as it stands there |
+//! | `mine.csv` | columns `wavelength_nm` (or `wavelength_um`), `n` and, where it is known, `k` |
+//! | `mine.agf#N-BK7` | one glass of a catalogue file of an optical design program; the name may be left out where the file has one |
+
+mod csv;
+mod database;
+mod yaml;
+
+pub use yaml::{GlassFile, InternalTransmittance, from_params};
+
+use crate::{Catalogue, FindError, Glass, Medium, agf};
+use spectra_core::params::{Fault, Faults, Params, nearest};
+use spectra_core::resources::{ResourceError, Resources, beside};
+
+/// Largest table or catalogue file that is read, bytes.
+const MAX_BYTES: u64 = 16 << 20;
+
+/// Whether a name is that of a file, and not one of the catalogue.
+#[must_use]
+pub fn is_file(name: &str) -> bool {
+    let (file, _) = parts(name);
+    ["yaml", "yml", "csv", "agf"].iter().any(|ending| has_ending(file, ending))
+}
+
+/// The file, and the glass in it.
+fn parts(name: &str) -> (&str, Option<&str>) {
+    match name.rsplit_once('#') {
+        Some((file, glass)) => (file.trim(), Some(glass.trim())),
+        None => (name.trim(), None),
+    }
+}
+
+fn has_ending(file: &str, ending: &str) -> bool {
+    file.rsplit_once('.').is_some_and(|(_, e)| e.eq_ignore_ascii_case(ending))
+}
+
+/// The medium that the value of a key names: a file of the user's (beside the file in which the key is written first), or
+/// a medium of the bundled catalogue.
+///
+/// # Errors
+/// What is wrong with the glass's file, placed there; a name that nothing or too much has, placed at the key.
+pub fn medium(name: &str, params: &Params, key: &str, resources: &dyn Resources) -> Result<Medium, Faults> {
+    if is_file(name) {
+        let (file, glass) = parts(name);
+        let path = params.node().at_path(key).map_or_else(|| file.to_owned(), |node| beside(node, file));
+        let read = read(&path, file, glass, resources);
+        return read.map(Medium::from).map_err(|faults| params.place_at(key, faults));
+    }
+    Catalogue::bundled().medium(name).map_err(|e| params.fault(key, e.to_string()).hint(hint(&e)).into())
+}
+
+/// What to write in place of a name that was not found.
+#[must_use]
+pub fn hint(error: &FindError) -> String {
+    let near = match error {
+        FindError::Unknown { nearest, .. } => nearest.first().map(|c| format!("did you mean `{}`?", c.full_name)),
+        FindError::Ambiguous { candidates, .. } => candidates.first().map(|c| format!("for example `{}`", c.full_name)),
+    };
+    near.unwrap_or_else(|| "or a file of your own, such as `my-glass.yaml`".to_owned())
+}
+
+/// The glass of a file; see [`is_file`].
+///
+/// # Errors
+/// All that is wrong with the file, with places; without one where the file itself is not found.
+pub fn load(name: &str, resources: &dyn Resources) -> Result<Glass, Faults> {
+    let (file, glass) = parts(name);
+    read(file, file, glass, resources)
+}
+
+fn read(path: &str, shown: &str, glass: Option<&str>, resources: &dyn Resources) -> Result<Glass, Faults> {
+    if has_ending(path, "agf") {
+        return from_agf(path, shown, glass, resources);
+    }
+    if let Some(glass) = glass {
+        let fault = Fault::new(format!("`{shown}` holds one glass; there is no `#{glass}`"));
+        return Err(fault.hint(format!("write `{shown}`")).into());
+    }
+    if has_ending(path, "csv") {
+        let found = bytes(path, shown, resources)?;
+        return csv::read(&found.name, &found.bytes);
+    }
+    let params = resources.document(path, &[], &[])?;
+    if database::is_one(&params) { database::from_params(&params) } else { yaml::from_file(&params, resources) }
+}
+
+fn bytes(path: &str, shown: &str, resources: &dyn Resources) -> Result<spectra_core::resources::Resource, Faults> {
+    resources.read(path, &[], &[], MAX_BYTES).map_err(|error| {
+        let fault = Fault::new(format!("`{shown}`: {error}"));
+        match &error {
+            ResourceError::NotFound(near) if !near.is_empty() => fault.hint(format!("did you mean `{}`?", near[0])),
+            _ => fault,
+        }
+        .into()
+    })
+}
+
+fn from_agf(path: &str, shown: &str, glass: Option<&str>, resources: &dyn Resources) -> Result<Glass, Faults> {
+    let found = bytes(path, shown, resources)?;
+    let stem = shown.rsplit(['/', '\\']).next().unwrap_or(shown);
+    let maker = stem.rsplit_once('.').map_or(stem, |(stem, _)| stem);
+    let mut glasses = agf::read(&found.bytes, maker).glasses;
+    let Some(name) = glass else {
+        return match glasses.len() {
+            1 => Ok(glasses.remove(0)),
+            0 => Err(Fault::new(format!("`{shown}`: no glass in it"))
+                .hint("a glass catalogue (AGF) has lines `NM ...` and `CD ...`")
+                .into()),
+            many => Err(Fault::new(format!("`{shown}` holds {many} glasses"))
+                .hint(format!("write which, such as `{shown}#{}`", glasses[0].name))
+                .into()),
+        };
+    };
+    if let Some(at) = glasses.iter().position(|g| g.name.eq_ignore_ascii_case(name)) {
+        return Ok(glasses.remove(at));
+    }
+    let fault = Fault::new(format!("`{shown}` has no glass `{name}`"));
+    Err(match nearest(name, glasses.iter().map(|g| g.name.as_str())) {
+        Some(near) => fault.hint(format!("did you mean `{shown}#{near}`?")),
+        None => fault.hint(format!("it holds {} glasses", glasses.len())),
+    }
+    .into())
+}
+
+/// A glass without a maker is called by its name alone in reports.
+const OWN_MAKER: &str = "own";
+
+/// Refuses an index that is none somewhere in the range; says where.
+fn sensible(glass: &Glass) -> Result<(), String> {
+    let (from, to) = glass.range_nm;
+    const STEPS: u32 = 64;
+    for i in 0..=STEPS {
+        let nm = from + (to - from) * f64::from(i) / f64::from(STEPS);
+        let n = glass.index(nm);
+        if !(1.0..=10.0).contains(&n) {
+            return Err(format!("an index of {n:.4} at {nm:.1} nm"));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,261 @@
+//! A glass in YAML.
+
+use super::{MAX_BYTES, OWN_MAKER, csv, sensible};
+use crate::{Category, Extinction, Formula, Glass, LineTriple, ModelGlass, NumberedFormula, Table};
+use schemars::JsonSchema;
+use serde::Deserialize;
+use spectra_core::params::{Fault, Faults, Length, NonNegative, Params, Positive, Wavelength, nearest};
+use spectra_core::resources::{Resources, beside};
+
+/// A glass as a file writes it.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct GlassFile {
+    /// Version of the format.
+    spectra: Option<f64>,
+    /// Name for people.
+    name: Option<String>,
+    /// Who makes it.
+    maker: Option<String>,
+    /// Where the figures come from.
+    source: Option<String>,
+    /// Terms under which they came.
+    #[expect(dead_code, reason = "for the reader of the file")]
+    licence: Option<String>,
+    /// What else is worth knowing.
+    #[expect(dead_code, reason = "for the reader of the file")]
+    remark: Option<String>,
+    /// Name of a dispersion formula.
+    formula: Option<String>,
+    /// Its coefficients, of the formula in micrometers.
+    coefficients: Option<Vec<f64>>,
+    /// Measured indices: wavelength, nm if bare, and n.
+    table: Option<Vec<(Wavelength, f64)>>,
+    /// The same as a CSV file beside this one, with k where it is known.
+    file: Option<String>,
+    /// First and last wavelength of the data, nm if bare; 350 to 830 nm if absent.
+    range: Option<[Wavelength; 2]>,
+    /// Index at the d line: alone with `vd` the whole glass; beside a formula or a table it is held against that.
+    nd: Option<f64>,
+    /// Abbe number at d, F and C.
+    vd: Option<f64>,
+    /// Temperature of the data, degrees Celsius.
+    temperature: Option<f64>,
+    /// Extinction: wavelength, nm if bare, and k of the complex index n - i k.
+    extinction: Option<Vec<(Wavelength, NonNegative<f64>)>>,
+    /// Absorption as makers print it.
+    internal_transmittance: Option<InternalTransmittance>,
+}
+
+/// Transmittance inside of the glass, without reflections.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct InternalTransmittance {
+    /// Thickness for which it is stated, mm if bare.
+    thickness: Positive<Length>,
+    /// Wavelength, nm if bare, and transmittance, above 0 and at most 1.
+    table: Vec<(Wavelength, f64)>,
+}
+
+/// How a formula is made of its coefficients: name, fewest and most of them.
+type Maker = (&'static str, usize, usize, fn(&[f64]) -> Option<Formula>);
+
+/// Coefficients, zeros behind the last one written.
+fn all<const N: usize>(c: &[f64]) -> [f64; N] {
+    std::array::from_fn(|i| c.get(i).copied().unwrap_or(0.0))
+}
+
+macro_rules! numbered {
+    ($name:literal, $number:literal) => {
+        ($name, 1, 41, |c| NumberedFormula::new($number, c).map(Formula::Numbered))
+    };
+}
+
+/// The formulas by name, with their counts of coefficients.
+const FORMULAS: [Maker; 25] = [
+    ("constant", 1, 1, |c| Some(Formula::Constant(c[0]))),
+    ("cauchy", 1, 8, |c| Some(Formula::Cauchy(c.to_vec()))),
+    ("conrady", 3, 3, |c| Some(Formula::Conrady(all(c)))),
+    ("schott", 2, 6, |c| Some(Formula::Schott(all(c)))),
+    ("extended", 2, 8, |c| Some(Formula::Extended(all(c)))),
+    ("extended-2", 2, 8, |c| Some(Formula::Extended2(all(c)))),
+    ("extended-3", 2, 9, |c| Some(Formula::Extended3(all(c)))),
+    ("handbook-1", 4, 4, |c| Some(Formula::Handbook1(all(c)))),
+    ("handbook-2", 4, 4, |c| Some(Formula::Handbook2(all(c)))),
+    ("herzberger", 2, 6, |c| Some(Formula::Herzberger(all(c)))),
+    ("sellmeier-1", 6, 6, |c| Some(Formula::Sellmeier1(all(c)))),
+    ("sellmeier-2", 5, 5, |c| Some(Formula::Sellmeier2(all(c)))),
+    ("sellmeier-3", 8, 8, |c| Some(Formula::Sellmeier3(all(c)))),
+    ("sellmeier-4", 5, 5, |c| Some(Formula::Sellmeier4(all(c)))),
+    ("sellmeier-5", 10, 10, |c| Some(Formula::Sellmeier5(all(c)))),
+    ("buchdahl", 4, 4, |c| Some(Formula::Buchdahl(all(c)))),
+    numbered!("refractiveindex-1", 1),
+    numbered!("refractiveindex-2", 2),
+    numbered!("refractiveindex-3", 3),
+    numbered!("refractiveindex-4", 4),
+    numbered!("refractiveindex-5", 5),
+    numbered!("refractiveindex-6", 6),
+    numbered!("refractiveindex-7", 7),
+    numbered!("refractiveindex-8", 8),
+    numbered!("refractiveindex-9", 9),
+];
+
+/// Where a stated nd and that of the data differ by more, one of them is a slip.
+const TOLERANCE_ND: f64 = 5e-4;
+/// The same for Vd.
+const TOLERANCE_VD: f64 = 0.5;
+
+/// The glass of a parsed file: named after it, unless it says so itself.
+pub(super) fn from_file(params: &Params, resources: &dyn Resources) -> Result<Glass, Faults> {
+    let file = &params.node().file.name;
+    let stem = file.rsplit(['/', '\\']).next().unwrap_or(file);
+    let stem = stem.rsplit_once('.').map_or(stem, |(stem, _)| stem).to_owned();
+    from_params(params, &stem, resources)
+}
+
+/// The glass of a map with the keys of a glass file; `called` where it states no name.
+///
+/// # Errors
+/// All that is wrong with it, with places.
+pub fn from_params(params: &Params, called: &str, resources: &dyn Resources) -> Result<Glass, Faults> {
+    let p: GlassFile = params.parse()?;
+    let mut faults = Faults::new();
+    if p.spectra.is_some_and(|v| v != 1.0) {
+        faults.push(params.fault("spectra", "the format of a glass file that this program reads is 1"));
+    }
+    let range_nm = p.range.map(|r| r.map(|w| w.nm()));
+    if range_nm.is_some_and(|[from, to]| !(from < to && to <= 1e6)) {
+        faults.push(params.fault("range", "two wavelengths, the shorter one first").hint("[365 nm, 1014 nm]"));
+    }
+    let base = faults.take(base(params, &p, resources));
+    let extinction = faults.take(extinction(params, &p));
+    let (Some(base), Some(extinction)) = (base, extinction) else { return Err(faults) };
+    let own_range = base.range_nm;
+    let range = range_nm.map_or(own_range, |[from, to]| (from, to));
+    let mut glass = Glass {
+        maker: p.maker.as_deref().unwrap_or(OWN_MAKER).into(),
+        name: p.name.clone().unwrap_or_else(|| called.to_owned()),
+        range_nm: range,
+        temperature_c: p.temperature,
+        source: p.source.as_deref().unwrap_or_default().into(),
+        ..base
+    };
+    glass.extinction = extinction.or(glass.extinction);
+    if !faults.is_empty() {
+        return Err(faults);
+    }
+    if let Err(text) = sensible(&glass) {
+        let key = ["coefficients", "table", "nd"].into_iter().find(|key| params.get(key).is_some()).unwrap_or("file");
+        let hint = "coefficients are those of the formula in micrometers; `range` is where they hold";
+        return Err(params.fault(key, text).hint(hint).into());
+    }
+    for (key, stated, own, tolerance) in
+        [("nd", p.nd, glass.nd(), TOLERANCE_ND), ("vd", p.vd, glass.vd(), TOLERANCE_VD)]
+    {
+        if let Some(stated) = stated
+            && !((stated - own).abs() <= tolerance)
+        {
+            let fault = params.fault(key, format!("{key} is stated as {stated}, but the data give {own:.5}"));
+            faults.push(fault.hint("the figures contradict each other: which one is the slip?"));
+        }
+    }
+    (glass.listed_nd, glass.listed_vd) = (p.nd, p.vd);
+    faults.into_result(glass)
+}
+
+/// The glass as far as its index goes.
+fn base(params: &Params, p: &GlassFile, resources: &dyn Resources) -> Result<Glass, Faults> {
+    const BAND: (f64, f64) = (350.0, 830.0);
+    let plain = |formula, range| Glass::new("", "", Category::User, formula, range);
+    let forms = [("formula", p.formula.is_some()), ("table", p.table.is_some()), ("file", p.file.is_some())];
+    let given: Vec<&str> = forms.iter().filter(|(_, is)| *is).map(|(key, _)| *key).collect();
+    if given.len() > 1 {
+        let text = format!("the index is given by `{}` and again by `{}`", given[0], given[1]);
+        return Err(params.fault(given[1], text).hint("one of `formula`, `table` and `file`").into());
+    }
+    if p.coefficients.is_some() && p.formula.is_none() {
+        let fault = params.fault("coefficients", "coefficients of which formula?");
+        return Err(fault.hint("`formula: sellmeier-1`, or another").into());
+    }
+    if let Some(name) = &p.formula {
+        return Ok(plain(formula(params, p, name)?, BAND));
+    }
+    if let Some(table) = &p.table {
+        let points: Vec<(f64, f64)> = table.iter().map(|(w, n)| (w.nm(), *n)).collect();
+        let table = Table::new(&points).map_err(|e| params.fault("table", e.to_string()))?;
+        let range = table.range_nm();
+        return Ok(plain(Formula::Table(table.into()), range));
+    }
+    if let Some(file) = &p.file {
+        let path = params.get("file").map_or_else(|| file.clone(), |node| beside(node, file));
+        let found = resources.read(&path, &[], &[], MAX_BYTES);
+        let found = found.map_err(|e| params.fault("file", format!("`{file}`: {e}")))?;
+        return csv::read(&found.name, &found.bytes).map_err(|faults| params.place_at("file", faults));
+    }
+    match (p.nd, p.vd) {
+        (Some(nd), vd) => {
+            let formula = match vd {
+                None => Some(Formula::Constant(nd)),
+                Some(vd) => ModelGlass::new(nd, vd, LineTriple::FDC).map(Formula::Model),
+            };
+            let fault = || params.fault("nd", format!("no glass has nd {nd} and vd {}", vd.unwrap_or_default()));
+            Ok(plain(formula.ok_or_else(fault)?, BAND))
+        }
+        (None, _) => {
+            let fault = params.fault_here("the glass has no index");
+            Err(fault.hint("`formula` and `coefficients`, a `table`, a CSV `file`, or `nd` and `vd`").into())
+        }
+    }
+}
+
+fn formula(params: &Params, p: &GlassFile, name: &str) -> Result<Formula, Fault> {
+    let names = || FORMULAS.iter().map(|(name, ..)| *name);
+    let Some((_, least, most, make)) = FORMULAS.iter().find(|(n, ..)| *n == name) else {
+        let known = names().collect::<Vec<_>>().join(", ");
+        let fault = params.fault("formula", format!("unknown formula `{name}`"));
+        return Err(match nearest(name, names()) {
+            Some(near) => fault.hint(format!("did you mean `{near}`? Known: {known}")),
+            None => fault.hint(format!("known: {known}")),
+        });
+    };
+    let Some(c) = &p.coefficients else {
+        return Err(params.fault("formula", "a formula needs its `coefficients`").hint("a list of numbers"));
+    };
+    let counts = if least == most { format!("{least}") } else { format!("{least} to {most}") };
+    let fault = |text: String| params.fault("coefficients", text).hint(format!("`{name}` has {counts}"));
+    if !(*least..=*most).contains(&c.len()) {
+        return Err(fault(format!("{} coefficients", c.len())));
+    }
+    if c.iter().any(|c| !c.is_finite()) {
+        return Err(fault("a coefficient is no finite number".to_owned()));
+    }
+    make(c).ok_or_else(|| fault(format!("{} coefficients do not fit the form", c.len())))
+}
+
+fn extinction(params: &Params, p: &GlassFile) -> Result<Option<Extinction>, Fault> {
+    let (key, rows): (&str, Vec<(f64, f64)>) = match (&p.extinction, &p.internal_transmittance) {
+        (None, None) => return Ok(None),
+        (Some(_), Some(_)) => {
+            let fault = params.fault("internal-transmittance", "absorption is given twice");
+            return Err(fault.hint("either `extinction` or `internal-transmittance`"));
+        }
+        (Some(rows), None) => ("extinction", rows.iter().map(|(w, k)| (w.nm(), k.get())).collect()),
+        (None, Some(given)) => {
+            let mm = given.thickness.mm();
+            let mut rows = Vec::new();
+            for (i, (w, tau)) in given.table.iter().enumerate() {
+                if !(*tau > 0.0 && *tau <= 1.0) {
+                    let at = format!("internal-transmittance.table[{i}]");
+                    return Err(params.fault(&at, format!("a transmittance of {tau}")).hint("above 0, at most 1"));
+                }
+                // tau = exp(-4 pi k d / lambda); + 0 makes the -0 of a clear row 0.
+                let k = -libm::log(*tau) * w.nm() * 1e-6 / (4.0 * std::f64::consts::PI * mm) + 0.0;
+                rows.push((w.nm(), k));
+            }
+            ("internal-transmittance", rows)
+        }
+    };
+    let (wavelengths, k): (Vec<f64>, Vec<f64>) = rows.into_iter().unzip();
+    let fault = || params.fault(key, "wavelengths must rise, and there is at least one");
+    Extinction::new(wavelengths.into(), k).map(Some).ok_or_else(fault)
+}

@@ -1,0 +1,226 @@
+//! Coatings as lens files, scenes and files of their own write them.
+
+use super::{Coating, MeasuredCoating, Stack, StackLayer};
+use schemars::JsonSchema;
+use serde::Deserialize;
+use spectra_core::params::{Fault, Faults, NonNegative, Params, StageNode, Wavelength};
+use spectra_core::resources::{Resources, beside};
+use spectra_glass::Medium;
+use spectra_glass::file;
+use std::sync::Arc;
+
+/// A layer as a file writes it.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct OneLayer {
+    /// Refractive index of the layer.
+    layer: f64,
+    /// Thickness, nm if bare.
+    thickness: Option<Wavelength>,
+    /// Wavelength at which it is a quarter of a wave thick, nm if bare.
+    quarter_wave_at: Option<Wavelength>,
+}
+
+/// A stack, written out or in a file of its own.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct StackParams {
+    /// Version of the format.
+    spectra: Option<f64>,
+    /// Name for people.
+    #[expect(dead_code, reason = "for the reader of the file")]
+    name: Option<String>,
+    /// Where the figures come from.
+    #[expect(dead_code, reason = "for the reader of the file")]
+    source: Option<String>,
+    /// Terms under which they came.
+    #[expect(dead_code, reason = "for the reader of the file")]
+    licence: Option<String>,
+    /// What else is worth knowing.
+    #[expect(dead_code, reason = "for the reader of the file")]
+    remark: Option<String>,
+    /// The layers, the one next to the air first.
+    #[schemars(with = "Vec<LayerOfStack>")]
+    layers: Vec<StageNode>,
+}
+
+/// A layer of a stack.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct LayerOfStack {
+    /// A medium of the catalogue, or a glass file.
+    material: Option<String>,
+    /// Refractive index in place of a material, the same at all wavelengths.
+    index: Option<f64>,
+    /// Extinction coefficient beside `index`.
+    k: Option<NonNegative<f64>>,
+    /// Thickness, nm if bare.
+    thickness: Option<Wavelength>,
+    /// Wavelength at which it is a quarter of a wave thick, nm if bare.
+    quarter_wave_at: Option<Wavelength>,
+}
+
+/// What a coating is written as.
+#[derive(JsonSchema)]
+#[serde(untagged)]
+pub enum CoatingForm {
+    /// `ideal` (all light passes), `bare` (Fresnel's formulas), or a file: `my-stack.yaml`, `my-coating.csv`.
+    Named(String),
+    /// One layer.
+    Layer(OneLayer),
+    /// Several layers.
+    Stack(StackParams),
+}
+
+const HINT: &str =
+    "ideal, bare, {layer: 1.38, quarter-wave-at: 550 nm}, {layers: [...]}, or a file: my-stack.yaml, my-coating.csv";
+/// Most layers of a stack.
+const MAX_LAYERS: usize = 500;
+/// Thickest layer, nm.
+const MAX_NM: f64 = 1e5;
+/// Largest measurement that is read, bytes.
+const MAX_BYTES: u64 = 4 << 20;
+
+/// Reads `ideal`, `bare`, a layer, a stack of layers, or the name of a file: `my-stack.yaml` with layers, or
+/// `my-coating.csv` with a measured reflectance or transmittance.
+///
+/// # Errors
+/// What is wrong with it, placed; what is wrong with the file, placed there.
+pub fn read_coating(node: &StageNode, resources: &dyn Resources) -> Result<Coating, Faults> {
+    match node.node().as_str() {
+        Some("ideal") => return Ok(Coating::Ideal),
+        Some("bare") => return Ok(Coating::Bare),
+        Some(name) => return named(name, node, resources),
+        None => {}
+    }
+    let params = Params::section(node.node().clone(), node.path())?;
+    if params.get("layers").is_some() {
+        return stack(&params, resources);
+    }
+    let p: OneLayer = params.parse()?;
+    if !(1.0..=5.0).contains(&p.layer) {
+        let fault = params.fault("layer", format!("a layer of index {}", p.layer));
+        return Err(fault.hint("from 1 to 5; magnesium fluoride has 1.38").into());
+    }
+    let thickness_nm = thickness(&params, "", p.thickness, p.quarter_wave_at, |_| p.layer)?;
+    Ok(Coating::Layer { index: p.layer, thickness_nm })
+}
+
+/// Thickness, nm; `at` is the path of the layer.
+fn thickness(
+    params: &Params,
+    at: &str,
+    stated: Option<Wavelength>,
+    quarter_wave: Option<Wavelength>,
+    index: impl Fn(f64) -> f64,
+) -> Result<f64, Fault> {
+    let key = |name: &str| if at.is_empty() { name.to_owned() } else { format!("{at}.{name}") };
+    let (given, nm, name) = match (stated, quarter_wave) {
+        (Some(thickness), None) => (thickness, thickness.nm(), "thickness"),
+        (None, Some(wave)) => (wave, 0.25 * wave.nm() / index(wave.nm()), "quarter-wave-at"),
+        _ => {
+            let text = "a layer has either a `thickness` or is `quarter-wave-at` a wavelength";
+            let fault = if at.is_empty() { params.fault_here(text) } else { params.fault(at, text) };
+            return Err(fault.hint("such as {layer: 1.38, quarter-wave-at: 550 nm}"));
+        }
+    };
+    if !(nm <= MAX_NM && given.nm() <= MAX_NM) {
+        return Err(params.fault(&key(name), "more than 100 um is no thin layer"));
+    }
+    Ok(nm)
+}
+
+/// The coating of a file.
+fn named(name: &str, node: &StageNode, resources: &dyn Resources) -> Result<Coating, Faults> {
+    let (path, column) = match name.rsplit_once('#') {
+        Some((file, column)) => (file.trim(), Some(column.trim())),
+        None => (name, None),
+    };
+    let ending = path.rsplit_once('.').map(|(_, ending)| ending.to_ascii_lowercase());
+    let found = beside(node.node(), path);
+    match ending.as_deref() {
+        Some("yaml" | "yml") => {
+            let params = resources.document(&found, &[], &[]).map_err(|faults| placed(faults, node))?;
+            stack(&params, resources)
+        }
+        Some("csv") => {
+            let fault = |text: String| node.fault(text);
+            let file = resources.read(&found, &[], &[], MAX_BYTES);
+            let file = file.map_err(|e| fault(format!("`{path}`: {e}")))?;
+            let measured = MeasuredCoating::from_table(&file.name, &file.bytes, column);
+            measured.map(|m| Coating::Measured(Arc::new(m))).map_err(|e| e.faults(fault))
+        }
+        _ => Err(node.fault(format!("unknown coating `{name}`")).hint(HINT).into()),
+    }
+}
+
+/// A file that is not found has no place: the value that names it has.
+fn placed(faults: Faults, node: &StageNode) -> Faults {
+    let place = |fault: Fault| {
+        if fault.place.is_some() {
+            return fault;
+        }
+        Fault { hint: fault.hint, ..node.fault(fault.message) }
+    };
+    faults.into_iter().map(place).collect::<Vec<_>>().into()
+}
+
+fn stack(params: &Params, resources: &dyn Resources) -> Result<Coating, Faults> {
+    let p: StackParams = params.parse()?;
+    let mut faults = Faults::new();
+    if p.spectra.is_some_and(|v| v != 1.0) {
+        faults.push(params.fault("spectra", "the format of a coating file that this program reads is 1"));
+    }
+    if p.layers.is_empty() || p.layers.len() > MAX_LAYERS {
+        let fault = params.fault("layers", format!("{} layers", p.layers.len()));
+        return Err(fault.hint(format!("1 to {MAX_LAYERS}; without any it is `bare`")).into());
+    }
+    let layers = p.layers.iter().enumerate().filter_map(|(i, node)| faults.take(layer(params, i, node, resources)));
+    let layers: Vec<StackLayer> = layers.collect();
+    faults.into_result(Coating::Stack(Arc::new(Stack::new(layers))))
+}
+
+fn layer(params: &Params, i: usize, node: &StageNode, resources: &dyn Resources) -> Result<StackLayer, Faults> {
+    let p: LayerOfStack = node.parse()?;
+    let at = format!("layers[{i}]");
+    match (&p.material, p.index) {
+        (Some(name), None) => {
+            if p.k.is_some() {
+                return Err(params.fault(&format!("{at}.k"), "a material has its own k").hint("leave it out").into());
+            }
+            let medium = file::medium(name, params, &format!("{at}.material"), resources)?;
+            let n_and_k = n_and_k(&medium);
+            let thickness_nm = thickness(params, &at, p.thickness, p.quarter_wave_at, |nm| n_and_k(nm)[0])?;
+            Ok(StackLayer::dispersive(thickness_nm, n_and_k))
+        }
+        (None, Some(index)) => {
+            if !(0.01..=10.0).contains(&index) {
+                let fault = params.fault(&format!("{at}.index"), format!("a layer of index {index}"));
+                return Err(fault.hint("0.01 to 10; magnesium fluoride has 1.38").into());
+            }
+            let thickness_nm = thickness(params, &at, p.thickness, p.quarter_wave_at, |_| index)?;
+            Ok(StackLayer::constant(thickness_nm, index, p.k.map_or(0.0, |k| k.get())))
+        }
+        _ => {
+            let fault = params.fault(&at, "a layer has either a `material` or an `index`");
+            Err(fault
+                .hint("{material: magnesium fluoride, thickness: 99.6 nm}, or {index: 1.38, thickness: 99.6 nm}")
+                .into())
+        }
+    }
+}
+
+/// n and k of a medium, held at the ends of what is known of it.
+fn n_and_k(medium: &Medium) -> impl Fn(f64) -> [f64; 2] + '_ {
+    move |nm| {
+        let n = medium.range_nm().map_or(nm, |(from, to)| nm.clamp(from, to));
+        let k = match medium {
+            Medium::Glass(glass) => glass.extinction.as_ref().and_then(|k| {
+                let (from, to) = k.range_nm();
+                k.at(nm.clamp(from, to))
+            }),
+            _ => None,
+        };
+        [medium.index(n), k.unwrap_or(0.0)]
+    }
+}

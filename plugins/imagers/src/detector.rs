@@ -1,0 +1,84 @@
+//! `imager: detector`: a plane with any registered response; and what all planes share that record by themselves.
+
+use crate::params::imager_params;
+use crate::plane::Plane;
+use spectra_core::frame::{DisplayPicture, ExposureFrame, FrameSize};
+use spectra_core::params::{Faults, Params, Positive, StageNode, Time};
+use spectra_core::registry::{self, Context, StageOf};
+use spectra_core::spectral::Channel;
+use spectra_core::stage::{Imager, Launch, Receive, Response};
+
+imager_params! {
+    /// A frame of detectors that see what a `response` says: sensitivities from files, a light meter, the eye at night.
+    ///
+    /// # Example
+    /// ```yaml
+    /// kind: detector
+    /// format: 135
+    /// resolution: [600, 400]
+    /// response: {kind: sensitivities, channels: {gray: "gaussian:550,40"}}
+    /// ```
+    DetectorParams {
+        /// What it sees.
+        #[schemars(with = "StageOf<dyn Response>")]
+        response: StageNode,
+        /// Exposure time, s if bare. With it the channels are multiplied by it.
+        #[serde(default)]
+        exposure: Option<Positive<Time>>,
+    }
+}
+
+/// A plane whose pixels all see alike.
+#[derive(Clone, Debug)]
+pub struct DetectorPlane<R> {
+    pub(crate) plane: Plane,
+    pub(crate) response: R,
+    pub(crate) exposure_time_s: Option<f64>,
+}
+
+impl<R: Response> DetectorPlane<R> {
+    /// Detectors of that response on that frame; with an exposure time, s, they add up light over it.
+    #[must_use]
+    pub fn of(plane: Plane, response: R, exposure_time_s: Option<f64>) -> Self {
+        Self { plane, response, exposure_time_s }
+    }
+}
+
+impl<R: Response> Imager for DetectorPlane<R> {
+    fn size(&self) -> FrameSize {
+        self.plane.size()
+    }
+
+    fn channels(&self) -> Option<Vec<Channel>> {
+        let timed = self.exposure_time_s.is_some();
+        let named = |c: Channel| if timed { Channel { unit: format!("{} s", c.unit), ..c } } else { c };
+        Some(self.response.channels().into_iter().map(named).collect())
+    }
+
+    fn receive(&self) -> Option<&dyn Receive> {
+        Some(&self.plane)
+    }
+
+    fn launch(&self) -> Option<&dyn Launch> {
+        Some(&self.plane)
+    }
+
+    fn display(&self, exposure: &ExposureFrame) -> Option<DisplayPicture> {
+        self.response.display(exposure)
+    }
+
+    fn exposure_time_s(&self) -> Option<f64> {
+        self.exposure_time_s
+    }
+}
+
+fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Imager>, Faults> {
+    let parsed: DetectorParams = params.parse()?;
+    let mut faults = Faults::new();
+    let plane = faults.take(parsed.frame().plane(params, context));
+    let response = parsed.response.params().and_then(|p| registry::build::<dyn Response>(&p, context));
+    let (Some(plane), Some(response)) = (plane, faults.take(response)) else { return Err(faults) };
+    Ok(Box::new(DetectorPlane::of(plane, response, parsed.exposure.map(|t| t.s()))))
+}
+
+spectra_core::register!(imager "detector": DetectorParams, build);

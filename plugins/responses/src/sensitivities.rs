@@ -1,0 +1,159 @@
+//! `kind: sensitivities`: channels by their spectral sensitivities.
+
+use crate::shown::show;
+use schemars::JsonSchema;
+use serde::Deserialize;
+use spectra_core::frame::{DisplayPicture, ExposureFrame};
+use spectra_core::params::{Faults, Params, Positive, StageNode, Value};
+use spectra_core::registry::Context;
+use spectra_core::spectral::Channel;
+use spectra_core::stage::Response;
+use spectra_spectrum::{find_emission_in, find_sensitivity_in};
+use std::collections::BTreeMap;
+
+/// A detector by the spectral sensitivities of its channels: files beside the scene, bundled names, or spectra written out.
+///
+/// A channel holds the integral of irradiance times sensitivity: W m^-2 where the sensitivity is a number without unit.
+/// The picture has the channels as red, green and blue (three channels) or gray (one); otherwise a `matrix` says how.
+///
+/// # Example
+/// ```yaml
+/// kind: sensitivities
+/// channels: {green: "rectangle:500,580", red: "rectangle:600,680", infrared: "rectangle:720,820"}
+/// matrix: [[0, 0, 1], [0, 1, 0], [1, 0, 0]]
+/// ```
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct SensitivitiesParams {
+    /// Sensitivities by the names of the channels, 1 to 64: each a file beside the scene (`mine.csv`, `mine.csv#red`), a
+    /// bundled name, or a spectrum written out (`gaussian:550,20`).
+    #[schemars(with = "BTreeMap<String, String>")]
+    pub channels: StageNode,
+    /// Linear red, green and blue (sRGB primaries) of the picture: three rows, each with a factor a channel. It works on
+    /// channels that are 1 in `balance`.
+    pub matrix: Option<Vec<Vec<f64>>>,
+    /// The light in which every channel counts as 1, so that white is white; D65 if absent.
+    pub balance: Option<String>,
+    /// How much of the light of `balance` the picture shows as white, W m^-2 over the band (J m^-2 on a detector with an
+    /// exposure time); automatic if absent.
+    pub white: Option<Positive<f64>>,
+}
+
+/// Most channels.
+const MAX_CHANNELS: usize = 64;
+
+/// Channels, and the picture of them.
+#[derive(Clone, Debug)]
+pub struct Sensitivities {
+    channels: Vec<Channel>,
+    /// Rows of linear red, green and blue, from the channels.
+    rgb_from_channels: [Vec<f64>; 3],
+    white: Option<f64>,
+}
+
+impl Response for Sensitivities {
+    fn channels(&self) -> Vec<Channel> {
+        self.channels.clone()
+    }
+
+    fn display(&self, exposure: &ExposureFrame) -> Option<DisplayPicture> {
+        let planes: Option<Vec<&[f32]>> =
+            self.channels.iter().map(|c| exposure.channel(&c.name).map(|plane| &plane.values[..])).collect();
+        let planes = planes?;
+        let sum = |row: &[f64], pixel: usize| -> f64 {
+            row.iter().zip(&planes).map(|(factor, plane)| factor * f64::from(plane[pixel])).sum()
+        };
+        show(exposure, self.white, |pixel| self.rgb_from_channels.each_ref().map(|row| sum(row, pixel)))
+    }
+}
+
+fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Response>, Faults> {
+    let p: SensitivitiesParams = params.parse()?;
+    let mut faults = Faults::new();
+    let channels = faults.take(channels(params, &p.channels, context));
+    let light = p.balance.as_deref().unwrap_or("D65");
+    let found = find_emission_in(light, context.resources);
+    let light = faults.take(found.map_err(|e| e.faults(|text| params.fault("balance", text))));
+    let (Some(channels), Some(light)) = (channels, light) else { return Err(faults) };
+    let power = light.to_power(&context.grid);
+    let total = power.seen_by(&vec![1.0; context.grid.count]);
+    let rows = faults.take(rows(params, &p, &channels));
+    let mut scale = Vec::new();
+    for channel in &channels {
+        let seen = power.seen_by(&channel.response);
+        if !(seen > 0.0) {
+            let key = format!("channels.{}", channel.name);
+            faults.push(params.fault(&key, "it sees nothing of the light of `balance`").hint("another `balance`"));
+        }
+        // One watt of that light, whatever its own power.
+        scale.push(total / seen);
+    }
+    let Some(rows) = faults.into_result(rows)? else { return Err(Faults::new()) };
+    let rgb_from_channels = rows.map(|row| row.iter().zip(&scale).map(|(factor, s)| factor * s).collect());
+    Ok(Box::new(Sensitivities { channels, rgb_from_channels, white: p.white.map(|w| w.get()) }))
+}
+
+/// The channels in the order of the scene.
+fn channels(params: &Params, node: &StageNode, context: &Context<'_>) -> Result<Vec<Channel>, Faults> {
+    let Value::Map(entries) = &node.node().value else {
+        let fault = node.fault("a map of channels is wanted here");
+        return Err(fault.hint("{red: my-red.csv, green: \"gaussian:540,40\"}").into());
+    };
+    if !(1..=MAX_CHANNELS).contains(&entries.len()) {
+        let fault = node.fault(format!("{} channels", entries.len()));
+        return Err(fault.hint(format!("1 to {MAX_CHANNELS}")).into());
+    }
+    let mut faults = Faults::new();
+    let mut channels = Vec::new();
+    for (key, value) in entries {
+        let name = &key.text;
+        let fault = |text: String| value.fault(text).path(format!("{}.channels.{name}", params.path()));
+        // A channel is part of an EXR's, where a dot parts layers.
+        let letter = |c: char| c.is_alphanumeric() || "-_".contains(c);
+        if name.is_empty() || name.len() > 64 || !name.chars().all(letter) {
+            faults.push(fault(format!("`{name}` is no name of a channel")).hint("letters, digits, - and _"));
+            continue;
+        }
+        let Some(text) = value.as_str() else {
+            faults.push(fault("a spectrum's name is wanted here".into()).hint("my-red.csv, or \"gaussian:540,40\""));
+            continue;
+        };
+        let found = find_sensitivity_in(text, context.resources).map_err(|e| e.faults(fault));
+        let Some(sensitivity) = faults.take(found) else { continue };
+        let response = sensitivity.on_grid(&context.grid);
+        if response.iter().all(|v| *v == 0.0) {
+            faults.push(fault(format!("`{text}` sees nothing of the band")));
+        }
+        channels.push(Channel { name: name.clone(), unit: "W.m^-2".into(), response });
+    }
+    faults.into_result(channels)
+}
+
+/// The rows of the picture.
+fn rows(params: &Params, p: &SensitivitiesParams, channels: &[Channel]) -> Result<[Vec<f64>; 3], Faults> {
+    let count = channels.len();
+    let unit = |of: usize| (0..count).map(|k| f64::from(u8::from(k == of))).collect::<Vec<f64>>();
+    let Some(matrix) = &p.matrix else {
+        return match count {
+            1 => Ok([unit(0), unit(0), unit(0)]),
+            3 => Ok([unit(0), unit(1), unit(2)]),
+            _ => {
+                let fault = params.fault("channels", format!("how is a picture made of {count} channels?"));
+                Err(fault.hint("`matrix`: three rows for red, green and blue, each with a factor a channel").into())
+            }
+        };
+    };
+    let [red, green, blue] = &matrix[..] else {
+        let fault = params.fault("matrix", format!("{} rows", matrix.len()));
+        return Err(fault.hint("three: for red, green and blue").into());
+    };
+    for (i, row) in matrix.iter().enumerate() {
+        if row.len() != count || row.iter().any(|v| !v.is_finite()) {
+            let fault = params.fault(&format!("matrix[{i}]"), format!("{} factors for {count} channels", row.len()));
+            return Err(fault.hint("a finite factor a channel, in the order of `channels`").into());
+        }
+    }
+    Ok([red.clone(), green.clone(), blue.clone()])
+}
+
+spectra_core::register!(response "sensitivities": SensitivitiesParams, build);

@@ -1,0 +1,24 @@
+//! Pictures of linear light in sRGB primaries.
+
+use spectra_core::frame::{DisplayPicture, ExposureChannel, ExposureFrame};
+use spectra_film::display::{White, show_xyz};
+use spectra_spectrum::{Gamut, RgbSpace};
+
+/// Shows a linear red, green and blue a pixel; where luminance reaches `white` the picture is white, without one automatic
+/// exposure shows its 99th percentile as 0.9.
+pub(crate) fn show(
+    exposure: &ExposureFrame,
+    white: Option<f64>,
+    rgb: impl Fn(usize) -> [f64; 3],
+) -> Option<DisplayPicture> {
+    let space = RgbSpace::srgb();
+    let xyz: Vec<[f64; 3]> = (0..exposure.size.pixels()).map(|pixel| space.to_xyz(rgb(pixel))).collect();
+    let channel = |(k, name): (usize, &str)| ExposureChannel {
+        name: name.into(),
+        unit: String::new(),
+        values: xyz.iter().map(|v| v[k] as f32).collect(),
+    };
+    let channels = ["X", "Y", "Z"].into_iter().enumerate().map(channel).collect();
+    let frame = ExposureFrame { size: exposure.size, channels };
+    show_xyz(&frame, white.map_or_else(White::default, White::Stated), Gamut::Desaturate).ok()
+}
