@@ -27,7 +27,7 @@ fn block(node: &Node, indent: usize, out: &mut String) {
         Value::Map(entries) if !entries.is_empty() => {
             for (key, value) in entries {
                 out.push_str(&" ".repeat(indent));
-                out.push_str(&text(&key.text, false));
+                out.push_str(&key_text(&key.text));
                 out.push(':');
                 value_behind(value, indent, out);
             }
@@ -71,7 +71,7 @@ fn flow(node: &Node, out: &mut String) {
         Value::Null => out.push_str("null"),
         Value::Bool(value) => out.push_str(if *value { "true" } else { "false" }),
         Value::Number(number) => out.push_str(&number.text),
-        Value::String(value) => out.push_str(&text(value, node.is_quoted())),
+        Value::String(value) => out.push_str(&text(value)),
         Value::Seq(elements) => {
             out.push('[');
             for (i, element) in elements.iter().enumerate() {
@@ -84,7 +84,7 @@ fn flow(node: &Node, out: &mut String) {
             out.push('{');
             for (i, (key, value)) in entries.iter().enumerate() {
                 out.push_str(if i > 0 { ", " } else { "" });
-                out.push_str(&text(&key.text, false));
+                out.push_str(&key_text(&key.text));
                 out.push_str(": ");
                 flow(value, out);
             }
@@ -94,16 +94,26 @@ fn flow(node: &Node, out: &mut String) {
 }
 
 /// A text as YAML: plain where that reads as the same text, else in double quotes.
-fn text(value: &str, quoted: bool) -> String {
-    let inner = |c: char| c.is_alphanumeric() || "/._-+%()^°'".contains(c) || c == ' ';
-    let plain = value.starts_with(|c: char| c.is_alphanumeric() || c == '/' || c == '.')
-        && !value.ends_with(' ')
-        && value.chars().all(inner)
-        && !quoted
-        && matches!(Value::from_plain(value), Value::String(_));
-    if plain {
-        return value.to_owned();
+fn text(value: &str) -> String {
+    if is_plain(value) && matches!(Value::from_plain(value), Value::String(_)) {
+        value.to_owned()
+    } else {
+        quoted(value)
     }
+}
+
+/// A key, which is a text whatever it looks like.
+fn key_text(value: &str) -> String {
+    if is_plain(value) { value.to_owned() } else { quoted(value) }
+}
+
+fn is_plain(value: &str) -> bool {
+    value.starts_with(|c: char| c.is_alphanumeric() || c == '/' || c == '.')
+        && !value.ends_with(' ')
+        && value.chars().all(|c| c.is_alphanumeric() || "/._-+%()^\u{b0}' ".contains(c))
+}
+
+fn quoted(value: &str) -> String {
     let mut out = String::from('"');
     for c in value.chars() {
         match c {

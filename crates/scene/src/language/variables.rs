@@ -432,7 +432,7 @@ mod tests {
             ("{aperture: 2}", "$apertur", "t.yaml:2:4: no variable is called `apertur` (did you mean `$aperture`?)"),
             ("{}", "$a", "no variable is called `a` (the scene defines none)"),
             ("{a: 1}", "[1, $zzz]", "t.yaml:2:8: no variable is called `zzz` (known: a)"),
-            ("{a: $b, b: $c, c: $b}", "$a", "t.yaml:1:32: the variable `b` is made of itself (b -> c -> b)"),
+            ("{a: $b, b: $c, c: $b}", "$a", "t.yaml:1:30: the variable `b` is made of itself (b -> c -> b)"),
             ("{a: 'x${a}'}", "$a", "the variable `a` is made of itself (a -> a)"),
             (
                 "{a: [1]}",
@@ -463,10 +463,10 @@ mod tests {
     fn growth_is_bounded() {
         let doubled = |value: &dyn Fn(usize) -> String| {
             let mut text = String::from("variables:\n  v0: 1\n");
-            for i in 1..60 {
+            for i in 1..25 {
                 let _ = writeln!(text, "  v{i}: {}", value(i - 1));
             }
-            text + "x: $v59\n"
+            text + "x: $v24\n"
         };
         let lists = filled(&doubled(&|i| format!("[$v{i}, $v{i}]"))).expect_err("too many");
         assert!(lists.contains("more than 200000 values"), "{lists}");
