@@ -2,7 +2,7 @@
 
 use crate::filters;
 use crate::lens_section::{LensSection, lens_of};
-use crate::{ConePattern, Direction, NumberFamily, Output, RenderSettings, Scene, films, output, yaml};
+use crate::{ConePattern, Direction, NumberFamily, Output, RenderSettings, Scene, films, language, output, yaml};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::numbers::seed_of_frame;
@@ -12,6 +12,7 @@ use spectra_core::resources::Resources;
 use spectra_core::spectral::{BAND, Channel, Grid};
 use spectra_core::stage::{Film, Imager, Source, WavelengthSampler};
 use spectra_lens::{Lens, MATTE_BOX};
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -51,17 +52,21 @@ pub(crate) struct SceneFile {
     #[schemars(with = "Option<Vec<output::OutputForm>>")]
     output: Option<Vec<StageNode>>,
     // What follows is used up before a scene is assembled; named here, so that a slip in one of them is told.
-    /// Scenes that this one comes on top of: a file or a list of files.
+    /// Scenes that this one comes on top of: a file or a list of files. Maps merge, what is said here wins.
     #[serde(default)]
+    #[schemars(with = "Option<language::IncludeForm>")]
     include: Option<StageNode>,
-    /// Values with a name, for `$name`.
+    /// Values with a name: `$name` is one of them as it is, `${name}` its text inside of another.
     #[serde(default)]
+    #[schemars(with = "Option<BTreeMap<String, StageNode>>")]
     variables: Option<StageNode>,
-    /// Values that are tried one after the other.
+    /// Values that are tried, a picture each: paths with their values, every one with every other; or a list of maps.
     #[serde(default)]
+    #[schemars(with = "Option<language::SweepForm>")]
     sweep: Option<StageNode>,
-    /// Values that change over frames.
+    /// Frames, and the values that change over them.
     #[serde(default)]
+    #[schemars(with = "Option<language::AnimationForm>")]
     animation: Option<StageNode>,
 }
 

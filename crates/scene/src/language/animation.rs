@@ -3,8 +3,10 @@
 use super::law::{LAWS, Law, Track};
 use super::sweep::{Setting, check_path};
 use super::variables::Variables;
+use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{Fault, Faults, Key, Node, StageNode, Value, nearest};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// The key.
@@ -17,9 +19,9 @@ const LAST: f64 = 9_999_999.0;
 const INTERPOLATION: &str = "interpolation";
 
 /// The section as written.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
-struct Section {
+pub(crate) struct Section {
     /// How many frames.
     frames: f64,
     /// Number of the first one; 1 if left out.
@@ -27,8 +29,11 @@ struct Section {
     /// Frames a second; 24 if left out.
     rate: Option<f64>,
     /// `each`: every frame has noise and grain of its own; `fixed`: all have the same.
+    #[schemars(extend("enum" = ["each", "fixed"]))]
     seed: Option<String>,
-    /// Paths and their keyframes.
+    /// Paths as of `--set`, each with its keyframes: numbers of frames with values, and beside them `interpolation`, one
+    /// of `linear`, `smooth`, `hold`, `logarithmic`, `reciprocal`.
+    #[schemars(with = "Option<BTreeMap<String, BTreeMap<String, StageNode>>>")]
     animate: Option<StageNode>,
 }
 

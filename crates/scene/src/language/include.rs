@@ -2,6 +2,7 @@
 
 use super::merge::merge;
 use crate::yaml;
+use schemars::JsonSchema;
 use spectra_core::params::{Fault, Faults, Node, Params, Value, nearest};
 use std::collections::BTreeSet;
 use std::path::{Component, Path, PathBuf};
@@ -12,6 +13,17 @@ const MAX_DEPTH: usize = 16;
 const MAX_FILES: usize = 256;
 /// The key.
 pub(super) const INCLUDE: &str = "include";
+
+/// The key as written, for the schema.
+#[derive(JsonSchema)]
+#[serde(untagged)]
+#[expect(dead_code, reason = "its form is all that is wanted of it")]
+pub(crate) enum Form {
+    /// A file.
+    One(String),
+    /// Files, later ones on top.
+    Several(Vec<String>),
+}
 
 /// A scene with what it includes below it, and which files it is made of.
 pub(super) struct Included {

@@ -39,6 +39,10 @@ mod series;
 mod sweep;
 mod variables;
 
+pub(crate) use animation::Section as AnimationForm;
+pub(crate) use include::Form as IncludeForm;
+pub(crate) use sweep::Form as SweepForm;
+
 pub use series::{Member, Series, SeriesKind, SweptAxis, load, load_series};
 
 use spectra_core::params::{Node, Value};

@@ -2,8 +2,10 @@
 
 use super::law::{LAWS, Law, Track};
 use super::variables::Variables;
+use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{Fault, Faults, Key, Node, StageNode, Value, nearest, steps};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// The key.
@@ -32,10 +34,34 @@ pub(super) enum Sweep {
     Together(Vec<Setting>),
 }
 
+/// The section as written, for the schema.
+#[derive(JsonSchema)]
+#[serde(untagged)]
+#[expect(dead_code, reason = "its form is all that is wanted of it")]
+pub(crate) enum Form {
+    /// Every value of each path with every value of the others; the last path changes fastest.
+    Product(BTreeMap<String, AxisForm>),
+    /// Values that go together.
+    Together(Vec<BTreeMap<String, StageNode>>),
+}
+
+/// Values of one path, for the schema.
+#[derive(JsonSchema)]
+#[serde(untagged)]
+#[expect(dead_code, reason = "its form is all that is wanted of it")]
+pub(crate) enum AxisForm {
+    /// A variable that is a list.
+    Variable(String),
+    /// One after the other.
+    List(Vec<StageNode>),
+    /// From one to another.
+    Range(Range),
+}
+
 /// Values from one to another, as a sweep writes them.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
-struct Range {
+pub(crate) struct Range {
     /// The first value.
     from: StageNode,
     /// The last value.
@@ -43,6 +69,7 @@ struct Range {
     /// How many values, both ends counted.
     steps: f64,
     /// `linear`, `logarithmic` or `reciprocal`.
+    #[schemars(extend("enum" = ["linear", "logarithmic", "reciprocal"]))]
     spacing: Option<String>,
 }
 
