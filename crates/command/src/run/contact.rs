@@ -3,6 +3,7 @@
 use super::picture::Developed;
 use crate::outcome::Failure;
 use spectra_core::frame::DisplayPicture;
+use spectra_core::math::log10;
 use spectra_core::params::{Dimension, Reading};
 use spectra_plot::{Canvas, Color, Paint, Picture, Rect, TextStyle, text_width};
 use spectra_scene::{Member, SweptAxis};
@@ -241,7 +242,7 @@ fn rounded(value: &str) -> String {
     /// Shorter ones are shown as they were written.
     const SHORT: usize = 9;
     let figures = |v: f64| {
-        let digits = (3 - v.abs().log10().floor() as i64).clamp(0, 12) as usize;
+        let digits = (3 - log10(v.abs()).floor() as i64).clamp(0, 12) as usize;
         let text = format!("{v:.digits$}");
         if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
     };

@@ -92,6 +92,11 @@ impl Progress {
         }
     }
 
+    /// No picture is rendered any more.
+    pub(crate) fn no_picture(&mut self) {
+        self.place = None;
+    }
+
     /// `3 of 6: `, where there are several.
     fn place(&self) -> String {
         self.place.map_or(String::new(), |place| format!("{} of {}: ", place.index + 1, place.of))

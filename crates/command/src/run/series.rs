@@ -84,6 +84,7 @@ pub(super) fn render(series: &Series, arguments: &Run, threads: usize, isa: Isa,
             break;
         }
     }
+    progress.no_picture();
     // What is done is kept and told of, also where the next one failed.
     let paths = work.finish(result.as_ref().is_ok_and(|whole| *whole));
     let whole = result?;

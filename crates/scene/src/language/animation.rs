@@ -239,7 +239,7 @@ mod tests {
                 "unknown interpolation `linar` (did you mean `linear`?",
             ),
             ("{frames: 2, animate: {a: {1: x, 2: y}}}", "nothing lies between the text `x`"),
-            ("{frames: 2, animate: {a: {1: 2 m, 2: 1 s}}}", "found time, and `2 m` beside it"),
+            ("{frames: 2, animate: {a: {1: 2 m, 2: 1 s}}}", "`1 s` and `2 m` are of different kinds"),
             ("{frames: 2, animate: {sweep.a: {1: 2 m}}}", "`sweep` is no part of a picture"),
             ("{frames: 2, animate: {a: {1: $q}}}", "no variable is called `q`"),
         ] {

@@ -145,13 +145,11 @@ fn scalars(nodes: &[Node], law: Law) -> Result<Values, Fault> {
                 Unit::find("").map_or(value, |whole| whole.convert(value, unit))
             }
             (Some((first, unit)), own) => {
-                let found = own.map_or("a bare number", |own| own.dimension.noun());
-                let first = first.as_str().unwrap_or_default();
-                let fault = node.fault(format!(
-                    "found {found}, and `{first}` beside it, which is of another kind: {}",
-                    unit.dimension.noun()
-                ));
-                return Err(fault.hint("values that others lie between have units of one kind"));
+                let found = own.map_or("bare number", |own| own.dimension.noun());
+                let [this, first] = [node, first].map(|n| n.as_str().unwrap_or_default());
+                let wanted = unit.dimension.noun();
+                let fault = node.fault(format!("`{this}` and `{first}` are of different kinds: {found} and {wanted}"));
+                return Err(fault.hint("values that others lie between measure the same"));
             }
         });
     }
@@ -258,6 +256,14 @@ mod tests {
         }
     }
 
+    /// A stop is a factor of the root of two: a quarter of the way from f/2 to f/8 is f/2.828.
+    #[test]
+    fn equal_ratios_are_stops() {
+        let text = at("[f/2, f/8]", Law::Logarithmic, 2.0);
+        let value: f64 = text.trim_start_matches("f/").parse().expect("a number");
+        assert!((value / (2.0 * std::f64::consts::SQRT_2) - 1.0).abs() < 4.0 * f64::EPSILON, "{text}");
+    }
+
     /// Slopes by Fritsch and Butland as scipy.interpolate.PchipInterpolator has them inside, 0 at the ends; values by
     /// scipy.interpolate.CubicHermiteSpline with those slopes.
     #[test]
@@ -282,9 +288,9 @@ mod tests {
     #[test]
     fn what_has_nothing_between_is_refused() {
         for (values, law, said) in [
-            ("[2 m, 3 s]", Law::Linear, "t.yaml:1:7: found time, and `2 m` beside it"),
-            ("[2 m, 3]", Law::Linear, "found a bare number, and `2 m` beside it"),
-            ("[3, 2 m]", Law::Linear, "t.yaml:1:2: found a bare number"),
+            ("[2 m, 3 s]", Law::Linear, "t.yaml:1:7: `3 s` and `2 m` are of different kinds: time and length"),
+            ("[2 m, 3]", Law::Linear, "t.yaml:1:7: `3` and `2 m` are of different kinds: bare number and length"),
+            ("[3, 2 m]", Law::Linear, "t.yaml:1:2: `3` and `2 m` are of different kinds"),
             ("[a, b]", Law::Linear, "nothing lies between the text `a`"),
             ("[true, 1]", Law::Linear, "nothing lies between this value"),
             ("[{a: 1}, {a: 2}]", Law::Linear, "nothing lies between this value"),
