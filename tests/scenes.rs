@@ -27,8 +27,12 @@ fn every_scene_loads() {
     let scenes = files(&root().join("scenes"), "yaml");
     assert!(scenes.len() >= 6, "{scenes:?}");
     for path in scenes {
-        if let Err(faults) = spectra_scene::load(&path, &[]) {
-            panic!("{}: {faults}", path.display());
+        let series =
+            spectra_scene::load_series(&path, &[]).unwrap_or_else(|faults| panic!("{}: {faults}", path.display()));
+        for index in [0, series.count() - 1] {
+            if let Err(faults) = series.scene(index) {
+                panic!("{}: {faults}", path.display());
+            }
         }
     }
 }

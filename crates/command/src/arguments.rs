@@ -5,6 +5,7 @@ use crate::film::FilmArguments;
 use crate::glass::GlassArguments;
 use crate::new::NewArguments;
 use crate::quantity::parse;
+use crate::run::Frames;
 use crate::spectrum::SpectrumArguments;
 use crate::version;
 use clap::{Args, Parser, Subcommand};
@@ -74,7 +75,10 @@ pub(crate) enum Command {
         float) and SCENE.png or SCENE.tiff (what a person looks at), named like the scene file, and render.json (time, \
         rays, where light was lost, versions). Files appear under their names only when they are whole.\n\n\
         Ctrl-C stops within a second and writes what there is, marked as partial (exit code 130); a second Ctrl-C gives \
-        it up at once.",
+        it up at once.\n\n\
+        A scene with a `sweep` gives numbered pictures SCENE-001.png ... and a contact sheet SCENE-contact.png, one with an \
+        `animation` frames SCENE.0001.exr ...; series.json says of each what it is. All of them are checked before any light \
+        is traced; of several pictures only whole ones are written, also when stopped.",
     after_long_help = "Example: a quick look at the Biotar wide open, into the folder `try`\n  \
         spectra run scenes/biotar-ortho.yaml --samples 16 --set lens.f-number=f/1.4 --output try"
 )]
@@ -100,7 +104,14 @@ pub(crate) struct Run {
     /// Stop after this time (30s, 5min), counted from the start of the program, and write what there is.
     #[arg(long, value_name = "TIME", value_parser = parse::<Positive<Time>>)]
     pub time_limit: Option<Positive<Time>>,
-    /// One JSON object a line on standard output for each event: start, progress, warning, written, done, error.
+    /// Render these frames of an animation only: 17, 10-20, 10-, or several of them with commas.
+    #[arg(long, value_name = "FRAMES", value_parser = <Frames as std::str::FromStr>::from_str)]
+    pub frames: Option<Frames>,
+    /// Leave out pictures of a sweep or an animation whose files are all there, whatever they were made of.
+    #[arg(long)]
+    pub skip_existing: bool,
+    /// One JSON object a line on standard output for each event: start, progress, warning, written, done, error; for
+    /// several pictures also series and end.
     #[arg(long, conflicts_with = "quiet")]
     pub json: bool,
     /// Say nothing but errors.

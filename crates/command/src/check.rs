@@ -2,12 +2,12 @@
 
 use crate::arguments::Check;
 use crate::console;
-use crate::outcome::{BAD_INPUT, DONE, Outcome};
+use crate::outcome::{BAD_INPUT, DONE, Failure, Outcome};
+use crate::run;
 use serde_json::json;
 use spectra_core::Isa;
 use spectra_core::params::{Fault, Faults};
-use spectra_render::Renderer;
-use spectra_scene::{Scene, diagnostics};
+use spectra_scene::{SeriesKind, diagnostics};
 use std::path::Path;
 
 /// Checks all scenes; a faulty one does not keep the others from being looked at.
@@ -18,19 +18,27 @@ pub(crate) fn check(arguments: &Check, isa: Isa) -> Outcome {
         let result = check_one(path, &arguments.set.overrides, isa);
         faulty += usize::from(result.is_err());
         if arguments.json {
-            let (faults, warnings) = match &result {
-                Ok(warnings) => (json!([]), warnings.clone()),
-                Err(faults) => (diagnostics::to_json(faults), Vec::new()),
+            let scene = path.display().to_string();
+            let mut said = match &result {
+                Ok(good) => json!({ "scene": scene, "ok": true, "faults": [], "warnings": good.warnings }),
+                Err(faults) => {
+                    json!({ "scene": scene, "ok": false, "faults": diagnostics::to_json(faults), "warnings": [] })
+                }
             };
-            results.push(json!({ "scene": path.display().to_string(), "ok": result.is_ok(), "faults": faults, "warnings": warnings }));
+            if let Some(pictures) = result.as_ref().ok().and_then(|good| good.pictures) {
+                said["pictures"] = pictures.into();
+            }
+            results.push(said);
             continue;
         }
         match &result {
-            Ok(warnings) => {
-                for warning in warnings {
+            Ok(good) => {
+                for warning in &good.warnings {
                     console::warning(&format!("{}: {warning}", path.display()));
                 }
-                console::out(&format!("{}: good\n", path.display()))?;
+                let pictures =
+                    good.pictures.map_or(String::new(), |n| format!(", {n} picture{}", if n == 1 { "" } else { "s" }));
+                console::out(&format!("{}: good{pictures}\n", path.display()))?;
             }
             Err(faults) => console::faults(faults),
         }
@@ -43,10 +51,30 @@ pub(crate) fn check(arguments: &Check, isa: Isa) -> Outcome {
     Ok(if faulty > 0 { BAD_INPUT } else { DONE })
 }
 
+/// A scene in which nothing is wrong.
+struct Good {
+    warnings: Vec<String>,
+    /// How many pictures a sweep or an animation has.
+    pictures: Option<usize>,
+}
+
 /// The warnings of a good scene, or all faults.
-fn check_one(path: &Path, overrides: &[String], isa: Isa) -> Result<Vec<String>, Faults> {
-    let scene: Scene = spectra_scene::load(path, overrides)?;
-    // What shows only once the stages are put together, such as a lens without any aperture.
-    Renderer::new(&scene, isa).map_err(|error| Fault::new(format!("{}: {error}", path.display())))?;
-    Ok(scene.warnings)
+fn check_one(path: &Path, overrides: &[String], isa: Isa) -> Result<Good, Faults> {
+    let series = spectra_scene::load_series(path, overrides)?;
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let all: Vec<usize> = (0..series.count()).collect();
+    let of_each = run::checked(&series, &all, isa, threads, &|_, scene| Ok(scene.warnings));
+    let of_each = of_each.map_err(|failure| match failure {
+        Failure::Faults(faults) => faults,
+        // What shows only once the stages are put together, such as a lens without any aperture.
+        Failure::Input(text) | Failure::Failed(text) => Fault::new(format!("{}: {text}", path.display())).into(),
+        Failure::ReaderGone => Faults::new(),
+    })?;
+    let mut warnings: Vec<String> = Vec::new();
+    for warning in series.warnings().iter().chain(of_each.iter().flatten()) {
+        if !warnings.contains(warning) {
+            warnings.push(warning.clone());
+        }
+    }
+    Ok(Good { warnings, pictures: (series.kind() != SeriesKind::Single).then_some(all.len()) })
 }

@@ -60,6 +60,13 @@ pub fn mix64(mut x: u64) -> u64 {
 
 const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
 
+/// The seed of a frame of an animation, from the seed of the whole: a pure function of both, so that a frame alone has
+/// the numbers that it has among the others.
+#[must_use]
+pub fn seed_of_frame(seed: u64, frame: u64) -> u64 {
+    mix64(mix64(seed.wrapping_add(GOLDEN)) ^ mix64(frame.wrapping_mul(GOLDEN)).rotate_left(32))
+}
+
 /// The upper 52 bits as a number in [0, 1): the same bits on every tier, no integer conversion needed.
 #[inline(always)]
 fn unit_from_u64(x: u64) -> f64 {

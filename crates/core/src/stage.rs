@@ -145,6 +145,10 @@ pub trait Imager: Send + Sync {
     fn raw(&self, _exposure: &ExposureFrame) -> Option<RawFrame> {
         None
     }
+
+    /// From now on it is the imager of this frame of an animation: its noise is another one than that of other frames, by
+    /// its own seed and the number ([`crate::numbers::seed_of_frame`]).
+    fn set_frame(&mut self, _frame: u64) {}
 }
 
 /// What a detector sees of the light that falls on it, and the picture that it makes of that: the part of an imager that
@@ -206,6 +210,10 @@ pub trait Film: Send + Sync {
     /// # Errors
     /// A text that says which channel is missing.
     fn develop(&self, exposure: &ExposureFrame) -> Result<DisplayPicture, String>;
+
+    /// From now on it is the piece of film of this frame of an animation: its grains are others than those of other
+    /// frames, by its own seed and the number ([`crate::numbers::seed_of_frame`]).
+    fn set_frame(&mut self, _frame: u64) {}
 
     /// What a person wants to know of it, for the log and the EXR.
     fn describe(&self) -> String;

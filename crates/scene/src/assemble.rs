@@ -2,15 +2,17 @@
 
 use crate::filters;
 use crate::lens_section::{LensSection, lens_of};
-use crate::{ConePattern, Direction, FileResources, NumberFamily, Output, RenderSettings, Scene, films, output, yaml};
+use crate::{ConePattern, Direction, NumberFamily, Output, RenderSettings, Scene, films, language, output, yaml};
 use schemars::JsonSchema;
 use serde::Deserialize;
+use spectra_core::numbers::seed_of_frame;
 use spectra_core::params::{Fault, Faults, Node, Params, StageNode, Value, Wavelength};
 use spectra_core::registry::{self, Context, StageOf};
 use spectra_core::resources::Resources;
 use spectra_core::spectral::{BAND, Channel, Grid};
 use spectra_core::stage::{Film, Imager, Source, WavelengthSampler};
 use spectra_lens::{Lens, MATTE_BOX};
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -68,6 +70,23 @@ pub(crate) struct SceneFile {
     #[serde(default)]
     #[schemars(with = "Option<Vec<output::OutputForm>>")]
     output: Option<Vec<StageNode>>,
+    // What follows is used up before a scene is assembled; named here, so that a slip in one of them is told.
+    /// Scenes that this one comes on top of: a file or a list of files. Maps merge, what is said here wins.
+    #[serde(default)]
+    #[schemars(with = "Option<language::IncludeForm>")]
+    include: Option<StageNode>,
+    /// Values with a name: `$name` is one of them as it is, `${name}` its text inside of another.
+    #[serde(default)]
+    #[schemars(with = "Option<BTreeMap<String, StageNode>>")]
+    variables: Option<StageNode>,
+    /// Values that are tried, a picture each: paths with their values, every one with every other; or a list of maps.
+    #[serde(default)]
+    #[schemars(with = "Option<language::SweepForm>")]
+    sweep: Option<StageNode>,
+    /// Frames, and the values that change over them.
+    #[serde(default)]
+    #[schemars(with = "Option<language::AnimationForm>")]
+    animation: Option<StageNode>,
 }
 
 /// The `wavelengths` section's own keys; the others are the sampler's.
@@ -95,6 +114,8 @@ struct RenderSection {
     /// Seed of all random numbers, a whole number, 0 or more; 1 if absent. Same scene, same seed: same picture.
     #[schemars(range(min = 0))]
     seed: Option<f64>,
+    /// Number of a frame: every frame has numbers, noise and grain of its own, by the seeds and this.
+    frame: Option<f64>,
     /// Rays that are traced together, a whole number from 8 to 65536; 256 if absent. It changes the speed, not the
     /// picture.
     #[schemars(range(min = 8, max = 65_536))]
@@ -112,26 +133,8 @@ const DEFAULT_BATCH: f64 = 256.0;
 /// Forward rays a pixel and sample asked for, where `rays` is not given: a forward ray lands anywhere.
 const FORWARD_RAYS_A_SAMPLE: f64 = 4.0;
 
-/// Reads and assembles a scene. `overrides` are texts `path=value`, as given by `--set`.
-///
-/// # Errors
-/// Everything that is wrong with it, each with its place.
-pub fn load(path: &Path, overrides: &[String]) -> Result<Scene, Faults> {
-    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let resources = FileResources::beside(folder);
-    let name = path.file_stem().map_or_else(|| "scene".to_owned(), |s| s.to_string_lossy().into_owned());
-    let mut root = read(path)?;
-    let mut faults = Faults::new();
-    for text in overrides {
-        faults.take(yaml::parse_override(text).and_then(|o| o.apply(&mut root).map_err(Faults::from)));
-    }
-    faults.into_result(())?;
-    let text = record(&root.file.text, overrides);
-    assemble(&name, text, &Params::section(root, "")?, &resources)
-}
-
 /// The scene file, or the bundled scene of that name.
-fn read(path: &Path) -> Result<Node, Faults> {
+pub(crate) fn read(path: &Path) -> Result<Node, Faults> {
     if !path.exists() {
         let name = path.to_string_lossy();
         for bundled in [format!("scenes/{name}"), format!("scenes/{name}.yaml")] {
@@ -145,7 +148,7 @@ fn read(path: &Path) -> Result<Node, Faults> {
 
 /// The scene as written, with the overrides below it. What changes no picture is left out, so that the
 /// record in a picture file does not change with it either.
-fn record(text: &str, overrides: &[String]) -> String {
+pub(crate) fn record(text: &str, overrides: &[String]) -> String {
     let mut record = text.to_owned();
     if !record.is_empty() && !record.ends_with('\n') {
         record.push('\n');
@@ -158,7 +161,11 @@ fn record(text: &str, overrides: &[String]) -> String {
     record
 }
 
-fn assemble(name: &str, text: String, params: &Params, resources: &dyn Resources) -> Result<Scene, Faults> {
+/// All stages of a scene, from a tree that holds nothing of the language above it.
+///
+/// # Errors
+/// Everything that is wrong with it, each with its place.
+pub(crate) fn assemble(name: &str, text: String, params: &Params, resources: &dyn Resources) -> Result<Scene, Faults> {
     let mut faults = Faults::new();
     // Several films are no single stage: their section is read apart.
     let (several, others) = match params.get("film").map(|node| &node.value) {
@@ -234,6 +241,11 @@ fn assemble(name: &str, text: String, params: &Params, resources: &dyn Resources
     else {
         return Err(Fault::new("the scene is incomplete").into());
     };
+    let (mut films, mut imager) = (films.unwrap_or_default(), imager);
+    if let Some(frame) = render.frame {
+        imager.set_frame(frame);
+        films.iter_mut().for_each(|film| film.film.set_frame(frame));
+    }
     let mut channels = channels;
     if let Some(transmittance) = filters {
         filters::fold(&mut channels, &transmittance);
@@ -248,7 +260,7 @@ fn assemble(name: &str, text: String, params: &Params, resources: &dyn Resources
         sampler,
         lens,
         imager,
-        films: films.unwrap_or_default(),
+        films,
         channels,
         render,
         output,
@@ -285,6 +297,7 @@ fn render_settings(
     let rays = s.rays.unwrap_or(samples * FORWARD_RAYS_A_SAMPLE * imager.size().pixels() as f64);
     let rays = whole("rays", Some(rays), 0.0, 1.0, 1e15);
     let seed = whole("seed", s.seed, 1.0, 0.0, 9_007_199_254_740_992.0);
+    let frame = s.frame.map(|frame| whole("frame", Some(frame), 0.0, 0.0, 9_007_199_254_740_992.0) as u64);
     let batch = whole("batch", s.batch, DEFAULT_BATCH, 8.0, 65_536.0);
     let mut one_of = |key: &str, value: Option<&str>, known: &[&str]| -> usize {
         let Some(value) = value else { return 0 };
@@ -317,7 +330,8 @@ fn render_settings(
         direction,
         samples: samples as u32,
         rays: rays as u64,
-        seed: seed as u64,
+        seed: frame.map_or(seed as u64, |frame| seed_of_frame(seed as u64, frame)),
+        frame,
         batch: batch as usize,
         numbers: [NumberFamily::Sobol, NumberFamily::Random, NumberFamily::Stratified][numbers],
         cone: [ConePattern::Disk, ConePattern::Rings, ConePattern::Random][cone],

@@ -1,12 +1,13 @@
 //! Scene files: YAML with places, assembly of stages, diagnostics.
 //!
 //! [`load`] reads a scene, finds every fault of it at once, and gives a [`Scene`]: all stages built, the
-//! lens focused and stopped, nothing traced yet.
+//! lens focused and stopped, nothing traced yet. [`load_series`] does so for a file that stands for several pictures.
 
 mod assemble;
 pub mod diagnostics;
 mod films;
 mod filters;
+mod language;
 mod lens_section;
 mod output;
 mod resources;
@@ -15,7 +16,7 @@ mod schema;
 
 pub use spectra_yaml as yaml;
 
-pub use assemble::load;
+pub use language::{Member, Series, SeriesKind, SweptAxis, load, load_series};
 pub use resources::FileResources;
 pub use scene::{ConePattern, Direction, NumberFamily, Output, RaysFigure, RenderSettings, Scene, SceneFilm};
 pub use schema::{FileKind, file_documentation, file_schema, shared_documentation};

@@ -11,17 +11,48 @@ use std::path::{Path, PathBuf};
 /// Largest YAML document, bytes.
 const MAX_DOCUMENT: u64 = 4 << 20;
 
-/// Looks beside a file, then among the bundled data.
+/// Looks beside a file, then beside others, then among the bundled data.
 #[derive(Clone, Debug)]
 pub struct FileResources {
     folder: PathBuf,
+    /// Folders that are looked through behind that one.
+    others: Vec<PathBuf>,
 }
 
 impl FileResources {
     /// Files in and under `folder`; absolute paths are taken as they are.
     #[must_use]
     pub fn beside(folder: &Path) -> Self {
-        Self { folder: folder.to_owned() }
+        Self { folder: folder.to_owned(), others: Vec::new() }
+    }
+
+    /// The same, and where a file is not there, in and under `folders`, in this order: those of the files that a scene
+    /// includes.
+    #[must_use]
+    pub fn and_beside(mut self, folders: &[PathBuf]) -> Self {
+        for folder in folders {
+            if *folder != self.folder && !self.others.contains(folder) {
+                self.others.push(folder.clone());
+            }
+        }
+        self
+    }
+
+    /// All folders on disk, in the order in which they are looked through.
+    fn folders(&self) -> impl Iterator<Item = &PathBuf> {
+        std::iter::once(&self.folder).chain(&self.others)
+    }
+
+    /// Where a file was looked for, in words; nothing where there is one folder only.
+    fn looked(&self) -> String {
+        if self.others.is_empty() {
+            return String::new();
+        }
+        let shown = |folder: &PathBuf| {
+            if folder.as_os_str().is_empty() { ".".to_owned() } else { folder.display().to_string() }
+        };
+        let folders: Vec<String> = self.folders().map(shown).collect();
+        format!(" (looked in {}, and among the bundled data)", folders.join(", "))
     }
 }
 
@@ -34,12 +65,14 @@ impl Resources for FileResources {
         limit_bytes: u64,
     ) -> Result<Resource, ResourceError> {
         let endings = || std::iter::once("").chain(endings.iter().copied());
-        for ending in endings() {
-            let on_disk = plain(&self.folder.join(format!("{path}{ending}")));
-            if on_disk.is_file() {
-                let bytes = read_file(&on_disk, limit_bytes)?;
-                let folder = on_disk.parent().map(Path::to_owned);
-                return Ok(Resource { name: on_disk.display().to_string(), folder, bytes: Cow::Owned(bytes) });
+        for folder in self.folders() {
+            for ending in endings() {
+                let on_disk = plain(&folder.join(format!("{path}{ending}")));
+                if on_disk.is_file() {
+                    let bytes = read_file(&on_disk, limit_bytes)?;
+                    let folder = on_disk.parent().map(Path::to_owned);
+                    return Ok(Resource { name: on_disk.display().to_string(), folder, bytes: Cow::Owned(bytes) });
+                }
             }
         }
         for folder in folders {
@@ -58,10 +91,11 @@ impl Resources for FileResources {
         let foreign = Format::of_name(path).filter(|_| folders.contains(&"lenses"));
         let limit = if foreign.is_some() { spectra_exchange::MAX_BYTES } else { MAX_DOCUMENT };
         let resource = self.read(path, folders, endings, limit).map_err(|e| match e {
-            ResourceError::NotFound(near) if near.is_empty() => Fault::new(format!("`{path}`: no such file")),
-            ResourceError::NotFound(near) => {
-                Fault::new(format!("`{path}`: no such file")).hint(format!("did you mean {}?", list(&near)))
+            ResourceError::NotFound(near) if near.is_empty() => {
+                Fault::new(format!("`{path}`: no such file{}", self.looked()))
             }
+            ResourceError::NotFound(near) => Fault::new(format!("`{path}`: no such file{}", self.looked()))
+                .hint(format!("did you mean {}?", list(&near))),
             other => Fault::new(format!("`{path}`: {other}")),
         })?;
         let node = match foreign {
@@ -90,10 +124,12 @@ impl FileResources {
                     .collect::<Vec<_>>()
             })
             .collect();
-        let wanted = self.folder.join(path);
         let here = |folder: &Path| if folder.as_os_str().is_empty() { PathBuf::from(".") } else { folder.to_owned() };
-        if let Some(entries) = wanted.parent().and_then(|folder| std::fs::read_dir(here(folder)).ok()) {
-            names.extend(entries.take(10_000).flatten().filter_map(|e| e.file_name().into_string().ok()));
+        for folder in self.folders() {
+            let wanted = folder.join(path);
+            if let Some(entries) = wanted.parent().and_then(|folder| std::fs::read_dir(here(folder)).ok()) {
+                names.extend(entries.take(10_000).flatten().filter_map(|e| e.file_name().into_string().ok()));
+            }
         }
         nearest(path, names.iter().map(String::as_str)).map(str::to_owned).into_iter().collect()
     }

@@ -49,8 +49,10 @@ pub struct RenderSettings {
     pub samples: u32,
     /// Forward: rays in all.
     pub rays: u64,
-    /// Seed of all numbers.
+    /// Seed of all numbers: of a frame of an animation its own.
     pub seed: u64,
+    /// Number of the frame, where each has numbers of its own.
+    pub frame: Option<u64>,
     /// Rays a batch.
     pub batch: usize,
     /// Family of the numbers.

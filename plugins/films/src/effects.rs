@@ -4,6 +4,7 @@ use crate::stock::StockParams;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::frame::FrameSize;
+use spectra_core::numbers::seed_of_frame;
 use spectra_core::params::{Faults, Length, Params, Positive};
 use spectra_film::grain::Grain;
 use spectra_film::halation::{Halation, HalationBase};
@@ -68,6 +69,11 @@ impl Effects {
         }
         let halation = halation(p, params, stock, &mut faults);
         faults.into_result(Self { mtf, halation, rms, seed: p.grain_seed })
+    }
+
+    /// Other grains for each frame of an animation.
+    pub(crate) fn set_frame(&mut self, frame: u64) {
+        self.seed = seed_of_frame(self.seed, frame);
     }
 
     /// Where the pixels of a frame lie on the film.

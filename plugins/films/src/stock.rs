@@ -258,6 +258,10 @@ impl Film for StockFilm {
         Ok(DisplayPicture { width_px: size.width_px, height_px: size.height_px, rgb })
     }
 
+    fn set_frame(&mut self, frame: u64) {
+        self.effects.set_frame(frame);
+    }
+
     fn describe(&self) -> String {
         let named = |l: &spectra_film::stock::Layer| l.development(&self.development).is_some_and(|d| d.assumed);
         let assumed = self.stock.layers.iter().any(named);

@@ -1,26 +1,35 @@
 //! The folder that results go to.
 
-use super::picture::{attributes, pictures};
+use super::picture::{Developed, attributes, pictures};
 use super::rays;
 use super::report::Report;
 use crate::outcome::Failure;
 use spectra_film::write::{write_atomically, write_dng, write_exr, write_png8, write_tiff16};
 use spectra_plot::PlotError;
-use spectra_scene::{Output, RaysFigure, Scene};
+use spectra_scene::{Member, Output, RaysFigure, Scene};
 use std::fmt::Display;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// The folder, known to take files, and what goes into it.
+/// What goes into the folder of one picture, which is known to take files.
+#[derive(Clone, Debug)]
 pub(crate) struct Folder {
     files: Vec<(Output, PathBuf)>,
-    report: PathBuf,
+}
+
+/// What was made of one picture.
+pub(crate) struct Written {
+    /// The files.
+    pub paths: Vec<PathBuf>,
+    /// The pictures of it, where they were developed.
+    pub pictures: Option<Vec<Developed>>,
 }
 
 impl Folder {
-    /// Makes the folder where it does not exist, and sees to it that files can be written there.
-    pub(crate) fn prepare(folder: &Path, scene: &Scene) -> Result<Self, Failure> {
+    /// Makes the folder where it does not exist, and sees to it that the files of the picture, and `report`, can be
+    /// written there.
+    pub(crate) fn prepare(folder: &Path, scene: &Scene, member: &Member, report: &Path) -> Result<Self, Failure> {
         std::fs::create_dir_all(folder).map_err(|error| refuse(folder, &error))?;
         let mut files: Vec<(Output, PathBuf)> = Vec::new();
         for output in &scene.output {
@@ -28,11 +37,11 @@ impl Folder {
             let films = if of_each_film { scene.films.iter().map(|f| f.name.as_deref()).collect() } else { vec![None] };
             for film in films {
                 let film = film.map_or(String::new(), |name| format!("-{name}"));
-                files.push((*output, folder.join(format!("{}{film}{}", scene.name, ending(*output)))));
+                let (part, ending) = ending(*output);
+                files.push((*output, folder.join(format!("{}{ending}", member.stem(&format!("{film}{part}"))))));
             }
         }
-        let report = folder.join("render.json");
-        for path in files.iter().map(|(_, path)| path).chain([&report]) {
+        for path in files.iter().map(|(_, path)| path.as_path()).chain([report]) {
             if path.is_dir() {
                 return Err(refuse(path, &"a folder of that name is in the way"));
             }
@@ -41,21 +50,31 @@ impl Folder {
         let attempt = folder.join(format!(".spectra-{}.tmp", std::process::id()));
         std::fs::write(&attempt, b"spectra").map_err(|error| refuse(folder, &error))?;
         std::fs::remove_file(&attempt).map_err(|error| refuse(folder, &error))?;
-        Ok(Self { files, report })
+        Ok(Self { files })
     }
 
-    /// Writes all that the scene asks for; gives the paths.
-    pub(crate) fn write(&self, report: &Report<'_>) -> Result<Vec<PathBuf>, Failure> {
-        std::thread::scope(|scope| {
+    /// The files of the picture.
+    pub(crate) fn paths(&self) -> Vec<PathBuf> {
+        self.files.iter().map(|(_, path)| path.clone()).collect()
+    }
+
+    /// The files that hold what a person looks at, one for each film.
+    pub(crate) fn shown(&self) -> Vec<PathBuf> {
+        let of =
+            |kind: Output| self.files.iter().filter(move |(output, _)| *output == kind).map(|(_, path)| path.clone());
+        let png: Vec<PathBuf> = of(Output::Png).collect();
+        if png.is_empty() { of(Output::Tiff).collect() } else { png }
+    }
+
+    /// Writes all that the scene asks for. The picture is developed where it asks for one, or where `develop` does.
+    pub(crate) fn write(&self, report: &Report<'_>, develop: bool) -> Result<Written, Failure> {
+        let pictures = std::thread::scope(|scope| {
             // The picture is developed and packed while the light behind it is.
             let exposure = scope.spawn(|| self.write_exposure(report));
-            let pictures = self.write_pictures(report);
+            let pictures = self.write_pictures(report, develop);
             exposure.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)).and(pictures)
         })?;
-        let paths: Vec<PathBuf> = self.files.iter().map(|(_, path)| path).chain([&self.report]).cloned().collect();
-        let text = format!("{:#}\n", report.to_json(&paths));
-        write_atomically(&self.report, |file| Ok(file.write_all(text.as_bytes())?))?;
-        Ok(paths)
+        Ok(Written { paths: self.paths(), pictures })
     }
 
     fn write_exposure(&self, report: &Report<'_>) -> Result<(), Failure> {
@@ -67,7 +86,7 @@ impl Folder {
         Ok(())
     }
 
-    fn write_pictures(&self, report: &Report<'_>) -> Result<(), Failure> {
+    fn write_pictures(&self, report: &Report<'_>, develop: bool) -> Result<Option<Vec<Developed>>, Failure> {
         for (output, path) in &self.files {
             if let Output::Rays(figure) = output {
                 rays::draw(report.scene, figure, report.isa)?.write_at(path, 1.0).map_err(|e| match e {
@@ -83,11 +102,17 @@ impl Folder {
                 write_dng(path, &raw)?;
             }
         }
-        if !self.files.iter().any(|(output, _)| matches!(output, Output::Png | Output::Tiff)) {
-            return Ok(());
+        let is_wanted = self.files.iter().any(|(output, _)| matches!(output, Output::Png | Output::Tiff));
+        if !is_wanted && !develop {
+            return Ok(None);
         }
         let begun = Instant::now();
-        let pictures = pictures(report).map_err(Failure::Failed)?;
+        let pictures = match pictures(report) {
+            Ok(pictures) => pictures,
+            // Not every imager has something to show, and nobody has asked for it.
+            Err(_) if !is_wanted => return Ok(None),
+            Err(text) => return Err(Failure::Failed(text)),
+        };
         tracing::debug!(seconds = begun.elapsed().as_secs_f64(), "pictures developed");
         // Files and pictures come in the same order: for each kind of file, film after film.
         for kind in [Output::Png, Output::Tiff] {
@@ -100,18 +125,25 @@ impl Folder {
             }
         }
         tracing::debug!(seconds = begun.elapsed().as_secs_f64(), "pictures written");
-        Ok(())
+        Ok(Some(pictures))
     }
 }
 
-fn ending(output: Output) -> &'static str {
+/// Writes a report of what was rendered.
+pub(crate) fn write_report(path: &Path, report: &serde_json::Value) -> Result<(), Failure> {
+    let text = format!("{report:#}\n");
+    Ok(write_atomically(path, |file| Ok(file.write_all(text.as_bytes())?))?)
+}
+
+/// What tells a file from the others of its picture, and its ending.
+fn ending(output: Output) -> (&'static str, &'static str) {
     match output {
-        Output::Exr => ".exr",
-        Output::Png => ".png",
-        Output::Tiff => ".tiff",
-        Output::Dng => ".dng",
-        Output::Rays(RaysFigure { svg: false, .. }) => "-rays.png",
-        Output::Rays(RaysFigure { svg: true, .. }) => "-rays.svg",
+        Output::Exr => ("", ".exr"),
+        Output::Png => ("", ".png"),
+        Output::Tiff => ("", ".tiff"),
+        Output::Dng => ("", ".dng"),
+        Output::Rays(RaysFigure { svg: false, .. }) => ("-rays", ".png"),
+        Output::Rays(RaysFigure { svg: true, .. }) => ("-rays", ".svg"),
     }
 }
 

@@ -4,15 +4,26 @@ use crate::console;
 use crate::outcome::INTERRUPTED;
 use spectra_render::Control;
 use std::path::Path;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering::SeqCst};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// How often the person at the keyboard (or the system, by SIGTERM or SIGHUP) asked for an end.
 pub(crate) struct Interrupt {
     count: Arc<AtomicU32>,
+    /// The render that goes on.
+    control: Arc<Mutex<Arc<Control>>>,
 }
 
 impl Interrupt {
+    /// From now on it is this render that is to stop.
+    pub(crate) fn stops(&self, control: &Arc<Control>) {
+        *self.control.lock().unwrap_or_else(PoisonError::into_inner) = Arc::clone(control);
+        // Who asked while nothing could hear it asked all the same.
+        if self.happened() {
+            control.stop();
+        }
+    }
+
     /// Whether an end was asked for.
     pub(crate) fn happened(&self) -> bool {
         self.count.load(SeqCst) > 0
@@ -22,10 +33,11 @@ impl Interrupt {
 /// Listens from now on. Given up, nothing half written stays in `folder`.
 pub(crate) fn listen(control: &Arc<Control>, folder: &Path) -> Interrupt {
     let count = Arc::new(AtomicU32::new(0));
-    let (counter, control, folder) = (Arc::clone(&count), Arc::clone(control), folder.to_owned());
+    let control = Arc::new(Mutex::new(Arc::clone(control)));
+    let (counter, current, folder) = (Arc::clone(&count), Arc::clone(&control), folder.to_owned());
     let listening = ctrlc::set_handler(move || {
         if counter.fetch_add(1, SeqCst) == 0 {
-            control.stop();
+            current.lock().unwrap_or_else(PoisonError::into_inner).stop();
         } else {
             remove_temporary(&folder);
             std::process::exit(i32::from(INTERRUPTED));
@@ -34,7 +46,7 @@ pub(crate) fn listen(control: &Arc<Control>, folder: &Path) -> Interrupt {
     if let Err(error) = listening {
         console::warning(&format!("Ctrl-C will not keep what was rendered: {error}"));
     }
-    Interrupt { count }
+    Interrupt { count, control }
 }
 
 /// Removes the files that this process was writing: `.NAME.PROCESS-NUMBER.tmp`.

@@ -1,22 +1,27 @@
 //! `spectra run`: from a scene file to pictures.
 
+mod contact;
 mod folder;
+mod frames;
 mod interrupt;
 mod picture;
 mod progress;
 mod rays;
 mod report;
+mod series;
 
 use crate::arguments::Run;
 use crate::console;
 use crate::outcome::{DONE, Failure, INTERRUPTED, Outcome};
-use folder::Folder;
+use folder::{Folder, write_report};
+pub(crate) use frames::Frames;
 use progress::Progress;
 use report::Report;
 use serde_json::json;
+pub(crate) use series::checked;
 use spectra_core::Isa;
 use spectra_render::{Control, RenderError, Renderer, Rendering};
-use spectra_scene::{Scene, diagnostics};
+use spectra_scene::{Scene, SeriesKind, diagnostics};
 use std::sync::Arc;
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::time::{Duration, Instant};
@@ -42,15 +47,22 @@ pub(crate) fn run(arguments: &Run, isa: Isa, started: Instant) -> Outcome {
 }
 
 fn render_scene(arguments: &Run, isa: Isa, started: Instant) -> Outcome {
-    let scene = spectra_scene::load(&arguments.scene, &overrides(arguments))?;
-    tracing::debug!(seconds = started.elapsed().as_secs_f64(), "scene loaded");
-    // Before any light is traced: an hour's picture must not end without a place to go.
-    let folder = Folder::prepare(&arguments.output, &scene)?;
+    let series = spectra_scene::load_series(&arguments.scene, &overrides(arguments))?;
     let limit_s = arguments.time_limit.map(f64::from);
     let deadline = limit_s.and_then(|s| started.checked_add(Duration::try_from_secs_f64(s).ok()?));
+    let threads = arguments.threads.map_or_else(processors, usize::from);
+    if series.kind() != SeriesKind::Single {
+        return series::render(&series, arguments, threads, isa, deadline);
+    }
+    frames::refuse_without_series(arguments)?;
+    let mut scene = series.scene(0)?;
+    scene.warnings.splice(0..0, series.warnings().iter().cloned());
+    tracing::debug!(seconds = started.elapsed().as_secs_f64(), "scene loaded");
+    // Before any light is traced: an hour's picture must not end without a place to go.
+    let report_path = arguments.output.join("render.json");
+    let folder = Folder::prepare(&arguments.output, &scene, &series.member(0), &report_path)?;
     let control = Arc::new(deadline.map_or_else(Control::new, Control::until));
     let interrupt = interrupt::listen(&control, &arguments.output);
-    let threads = arguments.threads.map_or_else(processors, usize::from);
     let mut progress = Progress::new(arguments, deadline);
     for warning in &scene.warnings {
         progress.warning(warning);
@@ -63,8 +75,11 @@ fn render_scene(arguments: &Run, isa: Isa, started: Instant) -> Outcome {
         watch(&renderer, threads, &control, || progress.tick(&control, interrupt.happened())).map_err(failed)?;
     let seconds = begun.elapsed().as_secs_f64();
     progress.finish();
-    let report = Report { scene: &scene, arguments, rendering: &rendering, seconds, threads, isa };
-    for path in folder.write(&report)? {
+    let report = Report { scene: &scene, arguments, rendering: &rendering, seconds, threads, isa, attributes: &[] };
+    let mut paths = folder.write(&report, false)?.paths;
+    paths.push(report_path.clone());
+    write_report(&report_path, &report.to_json(&paths))?;
+    for path in paths {
         progress.written(&path);
     }
     let interrupted = rendering.partial && interrupt.happened();

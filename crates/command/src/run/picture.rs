@@ -4,8 +4,11 @@ use super::report::Report;
 use spectra_core::frame::DisplayPicture;
 use spectra_scene::{Scene, SceneFilm};
 
+/// A picture, with the name of its film where there are several.
+pub(crate) type Developed = (Option<String>, DisplayPicture);
+
 /// The pictures of the frame: by each film, with its name where there are several, or else by the imager.
-pub(crate) fn pictures(report: &Report<'_>) -> Result<Vec<(Option<String>, DisplayPicture)>, String> {
+pub(crate) fn pictures(report: &Report<'_>) -> Result<Vec<Developed>, String> {
     let (scene, exposure) = (report.scene, &report.rendering.exposure);
     let developed = |film: &SceneFilm| match &film.name {
         // A film alone has the frame for itself.
@@ -53,5 +56,6 @@ pub(crate) fn attributes(report: &Report<'_>) -> Vec<(String, String)> {
     let partial =
         report.rendering.partial.then(|| ("spectra:partial", "true: stopped before all samples were taken".to_owned()));
     all.extend([patent, source, film, partial].into_iter().flatten());
-    all.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
+    let all = all.into_iter().map(|(name, value)| (name.to_owned(), value));
+    all.chain(report.attributes.iter().cloned()).collect()
 }

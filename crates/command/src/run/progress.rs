@@ -32,6 +32,19 @@ pub(crate) struct Progress {
     begun: Instant,
     said: Instant,
     stopping: bool,
+    /// Of several pictures, which one is rendered.
+    place: Option<Place>,
+}
+
+/// A picture among several.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Place {
+    /// Its number: in the sweep, or of the frame.
+    pub number: u32,
+    /// How many are rendered before it.
+    pub index: usize,
+    /// How many there are.
+    pub of: usize,
 }
 
 /// One JSON event in this time.
@@ -68,13 +81,50 @@ impl Progress {
         } else {
             Listener::Lines
         };
-        Self { listener, deadline, begun: Instant::now(), said: Instant::now(), stopping: false }
+        Self { listener, deadline, begun: Instant::now(), said: Instant::now(), stopping: false, place: None }
+    }
+
+    /// From now on it is this one of several pictures.
+    pub(crate) fn picture(&mut self, place: Place) {
+        self.place = Some(place);
+        if let Listener::Bar(bar) = &self.listener {
+            bar.reset();
+        }
+    }
+
+    /// No picture is rendered any more.
+    pub(crate) fn no_picture(&mut self) {
+        self.place = None;
+    }
+
+    /// `3 of 6: `, where there are several.
+    fn place(&self) -> String {
+        self.place.map_or(String::new(), |place| format!("{} of {}: ", place.index + 1, place.of))
+    }
+
+    /// An event; a reader that has gone away misses it, and the picture is finished all the same.
+    fn event(&self, mut value: Value) {
+        if let (Some(place), Value::Object(map)) = (self.place, &mut value) {
+            map.insert("number".to_owned(), place.number.into());
+            map.insert("picture".to_owned(), (place.index + 1).into());
+            map.insert("pictures".to_owned(), place.of.into());
+        }
+        let _ = console::json(&value);
+    }
+
+    /// A remark on what is going to be made, or was.
+    pub(crate) fn series(&self, text: &str, event: Value) {
+        match &self.listener {
+            Listener::Json => self.event(event),
+            Listener::Quiet => {}
+            Listener::Bar(_) | Listener::Lines => console::note(text),
+        }
     }
 
     /// What a person should know before believing the picture.
     pub(crate) fn warning(&self, text: &str) {
         match &self.listener {
-            Listener::Json => event(json!({ "event": "warning", "message": text })),
+            Listener::Json => self.event(json!({ "event": "warning", "message": text })),
             Listener::Quiet => {}
             Listener::Bar(_) | Listener::Lines => console::warning(text),
         }
@@ -86,7 +136,7 @@ impl Progress {
         self.said = self.begun;
         let size = scene.imager.size();
         match &self.listener {
-            Listener::Json => event(json!({
+            Listener::Json => self.event(json!({
                 "event": "start",
                 "scene": scene.name,
                 "lens": scene.lens.name,
@@ -102,7 +152,8 @@ impl Progress {
                 let film = films(scene).map_or(String::new(), |films| format!(", {films}"));
                 let plural = if threads == 1 { "" } else { "s" };
                 console::note(&format!(
-                    "{}: {} x {} pixels through {}{film}; {} on {threads} thread{plural}",
+                    "{}{}: {} x {} pixels through {}{film}; {} on {threads} thread{plural}",
+                    self.place(),
                     scene.name,
                     size.width_px,
                     size.height_px,
@@ -117,7 +168,10 @@ impl Progress {
     pub(crate) fn tick(&mut self, control: &Control, interrupted: bool) {
         if interrupted && !self.stopping {
             self.stopping = true;
-            self.say("stopping: what there is will be written; Ctrl-C again gives it up");
+            self.say(match self.place {
+                None => "stopping: what there is will be written; Ctrl-C again gives it up",
+                Some(_) => "stopping: the pictures that are finished are kept",
+            });
         }
         let state = self.state(control);
         let elapsed = self.said.elapsed();
@@ -125,11 +179,11 @@ impl Progress {
             Listener::Bar(bar) => {
                 bar.set_position((state.fraction().max(self.time_used()) * f64::from(BAR_STEPS)) as u64);
                 let left = state.seconds_left.map_or(String::new(), |s| format!(", {} left", words::duration(s)));
-                bar.set_message(format!("{}{left}", words::rate(state.rays_per_second)));
+                bar.set_message(format!("{}{}{left}", self.place(), words::rate(state.rays_per_second)));
             }
             Listener::Json if elapsed >= JSON_EVERY => {
                 self.said = Instant::now();
-                event(json!({
+                self.event(json!({
                     "event": "progress",
                     "rays": state.rays,
                     "total_rays": state.total,
@@ -143,7 +197,8 @@ impl Progress {
                 self.said = Instant::now();
                 let left = state.seconds_left.map_or(String::new(), |s| format!(", {} left", words::duration(s)));
                 console::note(&format!(
-                    "{:.0} %, {}{left}",
+                    "{}{:.0} %, {}{left}",
+                    self.place(),
                     100.0 * state.fraction(),
                     words::rate(state.rays_per_second)
                 ));
@@ -179,7 +234,7 @@ impl Progress {
             // Above the bar, which is drawn again below it.
             Listener::Bar(bar) => bar.suspend(|| console::note(text)),
             Listener::Lines => console::note(text),
-            Listener::Json => event(json!({ "event": "stopping", "message": text })),
+            Listener::Json => self.event(json!({ "event": "stopping", "message": text })),
             Listener::Quiet => {}
         }
     }
@@ -194,7 +249,7 @@ impl Progress {
     /// A file is complete.
     pub(crate) fn written(&self, path: &Path) {
         match &self.listener {
-            Listener::Json => event(json!({ "event": "written", "path": path.display().to_string() })),
+            Listener::Json => self.event(json!({ "event": "written", "path": path.display().to_string() })),
             Listener::Quiet => {}
             // A reader that has gone away misses the names, not the files.
             Listener::Bar(_) | Listener::Lines => drop(console::out(&format!("wrote {}\n", path.display()))),
@@ -205,7 +260,7 @@ impl Progress {
     pub(crate) fn done(&self, report: &Report<'_>, interrupted: bool) {
         let rendering = report.rendering;
         match &self.listener {
-            Listener::Json => event(json!({
+            Listener::Json => self.event(json!({
                 "event": "done",
                 "seconds": report.seconds,
                 "rays": rendering.rays,
@@ -225,11 +280,6 @@ fn bar() -> ProgressBar {
     let style = ProgressStyle::with_template("[{bar:32}] {percent:>3} %  {msg}").expect("the template is a constant");
     bar.set_style(style.progress_chars("=> "));
     bar
-}
-
-/// An event; a reader that has gone away misses it, and the picture is finished all the same.
-fn event(value: Value) {
-    let _ = console::json(&value);
 }
 
 /// `157 286 400 rays in 41 s, 3.8 million rays/s; 61 % lost: vignetted 55 %, missed 6.0 %`.

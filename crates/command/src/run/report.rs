@@ -18,6 +18,8 @@ pub(crate) struct Report<'a> {
     pub seconds: f64,
     pub threads: usize,
     pub isa: Isa,
+    /// What the header of the EXR says beside what it says of every picture: names and texts.
+    pub attributes: &'a [(String, String)],
 }
 
 impl Report<'_> {

@@ -13,7 +13,8 @@ use std::path::Path;
 
 /// Writes the frame as OpenEXR: 32-bit floats, scanlines in increasing order, lossless (zip), a channel
 /// of the file for each of the frame under its name, `attributes` (name, text) in the header beside each
-/// channel's unit (`unit NAME`). The same frame and attributes give the same bytes.
+/// channel's unit (`unit NAME`). An attribute `framesPerSecond` with a value such as `24/1` is written as the rational
+/// number that OpenEXR has for it. The same frame and attributes give the same bytes.
 ///
 /// # Errors
 /// [`WriteError`]: the system refuses, the frame has no channel, or an attribute has a name that is empty,
@@ -44,6 +45,12 @@ fn image_of(
     let mut layer = LayerAttributes::default();
     let units = frame.channels.iter().map(|c| (format!("unit {}", c.name), c.unit.clone()));
     for (name, value) in units.chain(attributes.iter().cloned()) {
+        if name == "framesPerSecond"
+            && let Some(rate) = rational(&value)
+        {
+            layer.frames_per_second = Some(rate);
+            continue;
+        }
         // The bytes as they are: OpenEXR leaves the encoding open, and its tools take UTF-8.
         let value = AttributeValue::Text(Text::from_slice_unchecked(value.as_bytes()));
         if layer.other.insert(Text::from_slice_unchecked(name.as_bytes()), value).is_some() {
@@ -70,6 +77,12 @@ fn image_of(
     let mut shared = ImageAttributes::new(IntegerBounds::from_dimensions(size));
     shared.pixel_aspect = (pixel_width / pixel_height) as f32;
     Ok(Image { attributes: shared, layer_data: Layer::new(size, layer, encoding, channels) })
+}
+
+/// A number such as `24000/1001`.
+fn rational(text: &str) -> Option<(i32, u32)> {
+    let (above, below) = text.split_once('/')?;
+    Some((above.parse().ok()?, below.parse().ok()?))
 }
 
 /// Sorts the attributes of the header by name, in place: the library writes those of one's own in the
@@ -169,6 +182,18 @@ mod tests {
         }
         assert_eq!(layer.attributes.other.len(), 12 + 3);
         assert_eq!(image.attributes.pixel_aspect, (36.0 / 70.0 / (24.0 / 50.0)) as f32);
+    }
+
+    #[test]
+    fn the_rate_of_a_sequence_is_the_standard_attribute() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("frame.exr");
+        let rate = |value: &str| {
+            write_exr(&path, &frame(), &[("framesPerSecond".into(), value.into())]).expect("written");
+            let meta = exr::meta::MetaData::read_from_file(&path, true).expect("readable");
+            meta.headers[0].own_attributes.frames_per_second
+        };
+        assert_eq!(rate("24000/1001"), Some((24000, 1001)));
     }
 
     #[test]

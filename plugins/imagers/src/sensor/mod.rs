@@ -22,6 +22,7 @@ use spectra_core::batch::{Columns, pixel_and_channel, tag_of};
 use spectra_core::frame::{DisplayPicture, ExposureFrame, FrameSize, RawFrame};
 use spectra_core::isa::Isa;
 use spectra_core::loss::ALIVE;
+use spectra_core::numbers::seed_of_frame;
 use spectra_core::spectral::Channel;
 use spectra_core::stage::{Imager, Launch, Receive};
 use spectra_core::{Loss, RayBatch};
@@ -197,6 +198,10 @@ impl Imager for Sensor {
 
     fn raw(&self, exposure: &ExposureFrame) -> Option<RawFrame> {
         Some(self.converter.convert(exposure))
+    }
+
+    fn set_frame(&mut self, frame: u64) {
+        self.converter.noise = self.converter.noise.map(|seed| seed_of_frame(seed, frame));
     }
 }
 

@@ -1,0 +1,250 @@
+//! `animation`: one scene, a sequence of frames over which values change.
+
+use super::law::{LAWS, Law, Track};
+use super::sweep::{Setting, check_path};
+use super::variables::Variables;
+use schemars::JsonSchema;
+use serde::Deserialize;
+use spectra_core::params::{Fault, Faults, Key, Node, StageNode, Value, nearest};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// The key.
+pub(super) const ANIMATION: &str = "animation";
+/// Most frames of one animation: 400 s of film at 25 frames a second.
+const MAX_FRAMES: f64 = 10_000.0;
+/// Largest number of a frame.
+const LAST: f64 = 9_999_999.0;
+/// The key beside keyframes that names their law.
+const INTERPOLATION: &str = "interpolation";
+
+/// The section as written.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub(crate) struct Section {
+    /// How many frames.
+    frames: f64,
+    /// Number of the first one; 1 if left out.
+    first: Option<f64>,
+    /// Frames a second; 24 if left out.
+    rate: Option<f64>,
+    /// `each`: every frame has noise and grain of its own; `fixed`: all have the same.
+    #[schemars(extend("enum" = ["each", "fixed"]))]
+    seed: Option<String>,
+    /// Paths as of `--set`, each with its keyframes: numbers of frames with values, and beside them `interpolation`, one
+    /// of `linear`, `smooth`, `hold`, `logarithmic`, `reciprocal`.
+    #[schemars(with = "Option<BTreeMap<String, BTreeMap<String, StageNode>>>")]
+    animate: Option<StageNode>,
+}
+
+/// Frames, and what changes over them.
+#[derive(Clone, Debug)]
+pub(super) struct Animation {
+    /// Number of the first frame.
+    pub first: u32,
+    /// How many.
+    pub frames: u32,
+    /// Frames a second.
+    pub rate: f64,
+    /// Whether every frame has numbers of its own.
+    pub is_alive: bool,
+    tracks: Vec<(String, Track)>,
+    /// What a person should know: keyframes beyond the frames.
+    pub warnings: Vec<String>,
+}
+
+impl Animation {
+    /// Reads the section. `$name` in it stands for the scene's own variables.
+    ///
+    /// # Errors
+    /// Everything that is wrong with it.
+    pub(super) fn read(section: &Node, variables: &Variables) -> Result<Self, Faults> {
+        let filled = variables.put_into_part(section)?;
+        let node = StageNode::new(filled, ANIMATION);
+        let read: Section = node.parse()?;
+        let mut faults = Faults::new();
+        let fault = |key: &str, text: String| {
+            node.node().get(key).unwrap_or(node.node()).fault(text).path(format!("{ANIMATION}.{key}"))
+        };
+        let mut whole = |key: &str, value: f64, min: f64, max: f64| {
+            if value.fract() != 0.0 || !(min..=max).contains(&value) {
+                faults.push(fault(key, format!("`{key}` must be a whole number from {min} to {max}")));
+            }
+            value as u32
+        };
+        let frames = whole("frames", read.frames, 1.0, MAX_FRAMES);
+        let first = whole("first", read.first.unwrap_or(1.0), 0.0, LAST - MAX_FRAMES);
+        let rate = read.rate.unwrap_or(24.0);
+        if !(rate > 0.0 && rate <= 1e6) {
+            faults.push(fault("rate", "`rate` must be a number of frames a second, up to 1000000".to_owned()));
+        }
+        let is_alive = match read.seed.as_deref() {
+            None | Some("each") => true,
+            Some("fixed") => false,
+            Some(other) => {
+                let hint = "`each`: every frame has noise and grain of its own; `fixed`: all have the same";
+                faults.push(fault("seed", format!("unknown seed `{other}`")).hint(hint));
+                true
+            }
+        };
+        let (mut tracks, mut warnings) = (Vec::new(), Vec::new());
+        let last = f64::from(first) + f64::from(frames) - 1.0;
+        if let Some(animate) = &read.animate {
+            let Value::Map(entries) = &animate.node().value else {
+                let fault = animate.fault("`animate` is a map of paths and keyframes");
+                faults.push(fault.hint("such as `animate: {lens.focus: {1: 2 m, 48: 0.6 m}}`"));
+                return Err(faults);
+            };
+            for (key, node) in entries {
+                faults.take(check_path(key, node, "animation.animate"));
+                let Some((track, at)) = faults.take(track(key, node)) else { continue };
+                if let Some(beyond) = at.iter().find(|at| !(f64::from(first)..=last).contains(at)) {
+                    let words =
+                        format!("the keyframe {beyond} of `{}` lies beyond the frames {first} to {last}", key.text);
+                    warnings.push(node.fault(words).to_string());
+                }
+                tracks.push((key.text.clone(), track));
+            }
+        }
+        faults.into_result(Self { first, frames, rate, is_alive, tracks, warnings })
+    }
+
+    /// What is set for a frame.
+    pub(super) fn setting(&self, frame: u32) -> Setting {
+        self.tracks.iter().map(|(path, track)| (path.clone(), track.value_at(f64::from(frame)))).collect()
+    }
+}
+
+/// The keyframes of one path, and their numbers.
+fn track(key: &Key, node: &Node) -> Result<(Track, Vec<f64>), Faults> {
+    let path = format!("{ANIMATION}.animate.{}", key.text);
+    let example = "such as `{1: 2 m, 48: 0.6 m, interpolation: smooth}`";
+    let Value::Map(entries) = &node.value else {
+        return Err(node
+            .fault("an animated path has keyframes: numbers of frames, and values")
+            .path(path)
+            .hint(example)
+            .into());
+    };
+    let mut faults = Faults::new();
+    let mut law = Law::default();
+    let mut keyframes: Vec<(f64, Node)> = Vec::new();
+    for (key, value) in entries {
+        if key.text == INTERPOLATION {
+            let known: Vec<&str> = LAWS.iter().map(|(name, _)| *name).collect();
+            let named = value.as_str().unwrap_or_default();
+            match LAWS.iter().find(|(name, _)| *name == named) {
+                Some((_, found)) => law = *found,
+                None => {
+                    let near = nearest(named, known.iter().copied())
+                        .map_or(String::new(), |n| format!("did you mean `{n}`? "));
+                    let fault =
+                        value.fault(format!("unknown interpolation `{}`", named.chars().take(48).collect::<String>()));
+                    faults.push(
+                        fault
+                            .path(format!("{path}.{INTERPOLATION}"))
+                            .hint(format!("{near}One of {}", known.join(", "))),
+                    );
+                }
+            }
+            continue;
+        }
+        let frame = key.text.parse::<u32>().ok().filter(|frame| f64::from(*frame) <= LAST);
+        let Some(frame) = frame else {
+            let fault =
+                Fault::new(format!("`{}` is no number of a frame", key.text.chars().take(48).collect::<String>()));
+            faults.push(fault.at(Arc::clone(&value.file), key.span).path(&path).hint(example));
+            continue;
+        };
+        if keyframes.iter().any(|(at, _)| *at == f64::from(frame)) {
+            let fault = Fault::new(format!("frame {frame} comes twice"));
+            faults.push(fault.at(Arc::clone(&value.file), key.span).path(&path));
+        }
+        keyframes.push((f64::from(frame), value.clone()));
+    }
+    if keyframes.is_empty() && faults.is_empty() {
+        faults.push(node.fault("there is no keyframe").path(&path).hint(example));
+    }
+    faults.into_result(())?;
+    keyframes.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let (at, nodes): (Vec<f64>, Vec<Node>) = keyframes.into_iter().unzip();
+    let track = Track::new(&at, &nodes, law).map_err(|fault| fault.path(path))?;
+    Ok((track, at))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::language::flat::one_line;
+    use crate::yaml::parse;
+    use spectra_core::params::SourceFile;
+
+    fn animation(text: &str) -> Result<Animation, String> {
+        let root = parse(SourceFile::new("t.yaml", text)).unwrap_or_else(|faults| panic!("{faults}\n{text}"));
+        let variables = Variables::of(root.get("variables")).expect("variables");
+        Animation::read(root.get(ANIMATION).expect("an animation"), &variables).map_err(|faults| faults.to_string())
+    }
+
+    fn at(animation: &Animation, frame: u32) -> String {
+        let words = animation
+            .setting(frame)
+            .iter()
+            .map(|(path, node)| format!("{path}={}", one_line(node)))
+            .collect::<Vec<_>>();
+        words.join(" ")
+    }
+
+    #[test]
+    fn values_lie_between_keyframes_whatever_their_order() {
+        let text = "variables: {near: 50 cm}\nanimation:\n  frames: 5\n  first: 0\n  animate:\n    lens.focus: {4: $near, 0: inf, interpolation: reciprocal}\n    a: {2: x, 1: y, interpolation: hold}\n    b: {1: 5}\n";
+        let found = animation(text).expect("good");
+        assert_eq!((found.first, found.frames, found.rate, found.is_alive), (0, 5, 24.0, true));
+        let all: Vec<String> = (0..5).map(|frame| at(&found, frame)).collect();
+        assert_eq!(
+            all,
+            [
+                "lens.focus=inf a=y b=5",
+                "lens.focus=200 cm a=y b=5",
+                "lens.focus=100 cm a=x b=5",
+                "lens.focus=66.66666666666667 cm a=x b=5",
+                "lens.focus=50 cm a=x b=5",
+            ]
+        );
+        assert!(found.warnings.is_empty());
+    }
+
+    #[test]
+    fn keyframes_beyond_the_frames_are_warned_of() {
+        let found = animation("animation: {frames: 48, seed: fixed, animate: {a: {1: 1, 480: 2}}}").expect("good");
+        assert!(!found.is_alive);
+        assert_eq!(found.warnings, ["t.yaml:1:51: the keyframe 480 of `a` lies beyond the frames 1 to 48"]);
+    }
+
+    #[test]
+    fn what_is_wrong_is_told_at_its_place() {
+        for (text, said) in [
+            ("{}", "missing key `frames`"),
+            ("{frames: 0}", "t.yaml:1:21: `frames` must be a whole number from 1 to 10000"),
+            ("{frames: 1e12}", "`frames` must be"),
+            ("{frames: 2, first: -1}", "`first` must be a whole number from 0"),
+            ("{frames: 2, rate: 0}", "`rate` must be"),
+            ("{frames: 2, seed: 3}", "unknown seed `3`"),
+            ("{frames: 2, animate: [1]}", "`animate` is a map"),
+            ("{frames: 2, animate: {a: 3}}", "an animated path has keyframes"),
+            ("{frames: 2, animate: {a: {}}}", "there is no keyframe"),
+            ("{frames: 2, animate: {a: {x: 3}}}", "t.yaml:1:38: `x` is no number of a frame"),
+            ("{frames: 2, animate: {a: {1: 3, 01: 4}}}", "frame 1 comes twice"),
+            (
+                "{frames: 2, animate: {a: {1: 3, interpolation: linar}}}",
+                "unknown interpolation `linar` (did you mean `linear`?",
+            ),
+            ("{frames: 2, animate: {a: {1: x, 2: y}}}", "nothing lies between the text `x`"),
+            ("{frames: 2, animate: {a: {1: 2 m, 2: 1 s}}}", "`1 s` and `2 m` are of different kinds"),
+            ("{frames: 2, animate: {sweep.a: {1: 2 m}}}", "`sweep` is no part of a picture"),
+            ("{frames: 2, animate: {a: {1: $q}}}", "no variable is called `q`"),
+        ] {
+            let error = animation(&format!("animation: {text}\n")).map(|_| ()).expect_err(said);
+            assert!(error.contains(said), "{error}");
+        }
+    }
+}

@@ -1,0 +1,338 @@
+//! A scene file as the pictures that it stands for: one, the members of a sweep, the frames of an animation.
+
+use super::animation::{ANIMATION, Animation};
+use super::flat;
+use super::include::{self, INCLUDE};
+use super::sweep::{Axis, SWEEP, Setting, Sweep};
+use super::variables::{self, VARIABLES, Variables};
+use crate::assemble::{assemble, read, record};
+use crate::{FileResources, Scene, yaml};
+use spectra_core::params::{Fault, Faults, Key, Node, Number, Params, Value};
+use std::path::Path;
+use std::sync::Arc;
+
+/// What a scene file stands for.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SeriesKind {
+    /// One picture.
+    Single,
+    /// Pictures that differ in named values.
+    Sweep {
+        /// Of a product, its paths with the values along each, in order; empty where values go together.
+        axes: Vec<SweptAxis>,
+    },
+    /// Frames.
+    Animation {
+        /// Number of the first one.
+        first: u32,
+        /// Frames a second.
+        rate: f64,
+    },
+}
+
+/// A path of a sweep's product.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SweptAxis {
+    /// The path, such as `lens.f-number`.
+    pub path: String,
+    /// What is put there, one after the other, as it is written.
+    pub values: Vec<String>,
+}
+
+/// One picture of a series.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Member {
+    /// Number in the sweep, from 1, or of the frame.
+    pub number: u32,
+    /// Paths and values that are its own, as they are written.
+    pub values: Vec<(String, String)>,
+    /// Name of the scene.
+    base: String,
+    /// What tells it from the others, in the names of files: `-001` or `.0001`, nothing of a picture alone.
+    mark: String,
+    is_frame: bool,
+}
+
+impl Member {
+    /// The name of its files without their ending. `part` is what tells several files of one picture apart, such as the
+    /// name of a film: a sequence of frames ends with the number, a picture of a sweep begins with it.
+    #[must_use]
+    pub fn stem(&self, part: &str) -> String {
+        let Self { base, mark, .. } = self;
+        if self.is_frame { format!("{base}{part}{mark}") } else { format!("{base}{mark}{part}") }
+    }
+
+    /// Its values in a line: `lens.f-number = f/2, film.stock = kodak-tri-x-400`.
+    #[must_use]
+    pub fn words(&self) -> String {
+        self.values.iter().map(|(path, value)| format!("{path} = {value}")).collect::<Vec<_>>().join(", ")
+    }
+}
+
+/// A scene file, read, with all that it includes; no stage is built yet.
+#[derive(Clone, Debug)]
+pub struct Series {
+    name: String,
+    /// The tree, variables still in it.
+    root: Node,
+    /// What stands in the record of a scene that is one picture, written out.
+    plain: Option<String>,
+    resources: FileResources,
+    /// The files that it is made of.
+    files: Vec<String>,
+    going: Going,
+    warnings: Vec<String>,
+}
+
+#[derive(Clone, Debug)]
+enum Going {
+    Single,
+    Sweep { axes: Vec<Axis>, settings: Vec<Setting> },
+    Animation(Animation),
+}
+
+/// Reads and assembles a scene that is one picture. `overrides` are texts `path=value`, as given by `--set`.
+///
+/// # Errors
+/// Everything that is wrong with it, each with its place; and a scene that stands for several pictures.
+pub fn load(path: &Path, overrides: &[String]) -> Result<Scene, Faults> {
+    let series = load_series(path, overrides)?;
+    if let Some(key) = series.key() {
+        let fault =
+            series.root.fault(format!("this scene stands for {} pictures, and one is wanted here", series.count()));
+        return Err(fault.path(key).hint(format!("take the series out with `--set {key}=`")).into());
+    }
+    series.scene(0)
+}
+
+/// Reads a scene file, with what it includes, and finds out which pictures it stands for.
+///
+/// # Errors
+/// Everything that is wrong with files, `--set`, `include`, `sweep` and `animation`; what is wrong with a picture is told
+/// by [`Series::scene`].
+pub fn load_series(path: &Path, overrides: &[String]) -> Result<Series, Faults> {
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let name = path.file_stem().map_or_else(|| "scene".to_owned(), |s| s.to_string_lossy().into_owned());
+    let mut root = read(path)?;
+    let text = Arc::clone(&root.file);
+    let mut faults = Faults::new();
+    let is_include = |text: &&String| text.split_once('=').is_some_and(|(path, _)| path.trim() == INCLUDE);
+    for text in overrides.iter().filter(is_include) {
+        faults.take(yaml::parse_override(text).and_then(|o| o.apply(&mut root).map_err(Faults::from)));
+    }
+    faults.into_result(())?;
+    let is_plain = [INCLUDE, VARIABLES, SWEEP, ANIMATION].iter().all(|key| root.get(key).is_none());
+    let files = vec![root.file.name.clone()];
+    let included = include::resolve(root)?;
+    let (mut root, mut references) = (included.root, included.references);
+    let mut faults = Faults::new();
+    let mut set = Vec::new();
+    for text in overrides.iter().filter(|text| !is_include(text)) {
+        let Some(over) = faults.take(yaml::parse_override(text)) else { continue };
+        variables::references(&over.node, &mut references);
+        variables::open(&mut root, &over.path);
+        set.push(over.path.clone());
+        faults.take(over.apply(&mut root));
+    }
+    faults.into_result(())?;
+    // `--set` may have brought the language in.
+    let is_plain = is_plain && [VARIABLES, SWEEP, ANIMATION].iter().all(|key| root.get(key).is_none());
+    let resources = FileResources::beside(folder).and_beside(&included.folders);
+    let files = [files, included.files].concat();
+    let plain = is_plain.then(|| record(&text.text, overrides));
+    let series = Series { name, root, plain, resources, files, going: Going::Single, warnings: Vec::new() };
+    if is_plain { Ok(series) } else { series.unfolded(&set, &references) }
+}
+
+impl Series {
+    /// Takes `sweep` and `animation` out of the tree.
+    fn unfolded(mut self, set: &[String], references: &std::collections::BTreeSet<String>) -> Result<Self, Faults> {
+        let mut faults = Faults::new();
+        let variables = faults.take(Variables::of(self.root.get(VARIABLES)));
+        let mut take = |key: &str| {
+            let Value::Map(entries) = &mut self.root.value else { return None };
+            let at = entries.iter().position(|(k, _)| k.text == key)?;
+            let (key, node) = entries.remove(at);
+            (!matches!(node.value, Value::Null)).then_some((key, node))
+        };
+        let (sweep, animation) = (take(SWEEP), take(ANIMATION));
+        let Some(variables) = variables else { return Err(faults) };
+        if let (Some((_, sweep)), Some((key, node))) = (&sweep, &animation) {
+            let fault =
+                Fault::new("a scene has a sweep or an animation, not both").at(Arc::clone(&node.file), key.span);
+            let place = sweep.fault("").place_text().unwrap_or_default();
+            faults.push(fault.path(ANIMATION).hint(format!(
+                "the sweep is at {place}; render the animation once for each value, with `--set sweep= --set lens.f-number=f/4`"
+            )));
+        }
+        self.warnings = variables.unused(references);
+        let mut own: Vec<String> = Vec::new();
+        if let Some((_, node)) = sweep
+            && let Some(sweep) = faults.take(Sweep::read(&node, &variables))
+        {
+            let settings = sweep.settings();
+            own = settings.iter().flatten().map(|(path, _)| path.clone()).collect();
+            let axes = if let Sweep::Product(axes) = sweep { axes } else { Vec::new() };
+            self.going = Going::Sweep { axes, settings };
+        }
+        if let Some((_, node)) = animation
+            && let Some(animation) = faults.take(Animation::read(&node, &variables))
+        {
+            self.warnings.extend(animation.warnings.iter().cloned());
+            own = animation.setting(animation.first).into_iter().map(|(path, _)| path).collect();
+            self.going = Going::Animation(animation);
+        }
+        let below = |set: &str, own: &str| {
+            set.strip_prefix(own).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
+        };
+        for set in set.iter().filter(|set| own.iter().any(|own| below(set, own))) {
+            let key = self.key().unwrap_or_default();
+            self.warnings.push(format!("`--set {set}` has no effect: the {key} sets it for each picture"));
+        }
+        faults.into_result(self)
+    }
+
+    /// The section that makes several pictures of it.
+    fn key(&self) -> Option<&'static str> {
+        match self.going {
+            Going::Single => None,
+            Going::Sweep { .. } => Some(SWEEP),
+            Going::Animation(_) => Some(ANIMATION),
+        }
+    }
+
+    /// Name of the scene: the file's name without its ending.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// What it stands for.
+    #[must_use]
+    pub fn kind(&self) -> SeriesKind {
+        match &self.going {
+            Going::Single => SeriesKind::Single,
+            Going::Sweep { axes, .. } => {
+                let shown = |a: &Axis| SweptAxis {
+                    path: a.path.clone(),
+                    values: a.values.iter().map(flat::one_line).collect(),
+                };
+                SeriesKind::Sweep { axes: axes.iter().map(shown).collect() }
+            }
+            Going::Animation(animation) => SeriesKind::Animation { first: animation.first, rate: animation.rate },
+        }
+    }
+
+    /// How many pictures there are.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        match &self.going {
+            Going::Single => 1,
+            Going::Sweep { settings, .. } => settings.len(),
+            Going::Animation(animation) => animation.frames as usize,
+        }
+    }
+
+    /// What a person should know: variables that nothing uses, values that have no effect.
+    #[must_use]
+    pub fn warnings(&self) -> &[String] {
+        &self.warnings
+    }
+
+    /// The files that it is made of: the scene, then what it includes.
+    #[must_use]
+    pub fn files(&self) -> &[String] {
+        &self.files
+    }
+
+    fn setting(&self, index: usize) -> Setting {
+        match &self.going {
+            Going::Single => Setting::new(),
+            Going::Sweep { settings, .. } => settings.get(index).cloned().unwrap_or_default(),
+            Going::Animation(animation) => animation.setting(animation.first + index as u32),
+        }
+    }
+
+    /// A picture by its place in the series, from 0.
+    #[must_use]
+    pub fn member(&self, index: usize) -> Member {
+        let values = self.setting(index).iter().map(|(path, node)| (path.clone(), flat::one_line(node))).collect();
+        let (number, mark) = match &self.going {
+            Going::Single => (1, String::new()),
+            Going::Sweep { settings, .. } => {
+                let digits = settings.len().to_string().len().max(3);
+                (index as u32 + 1, format!("-{:0digits$}", index + 1))
+            }
+            Going::Animation(animation) => {
+                let frame = animation.first + index as u32;
+                let digits = (animation.first + animation.frames - 1).to_string().len().max(4);
+                (frame, format!(".{frame:0digits$}"))
+            }
+        };
+        let is_frame = matches!(self.going, Going::Animation(_));
+        Member { number, values, base: self.name.clone(), mark, is_frame }
+    }
+
+    /// Assembles a picture by its place in the series, from 0.
+    ///
+    /// # Errors
+    /// Everything that is wrong with it, each with its place; of a value that came through a variable both places.
+    pub fn scene(&self, index: usize) -> Result<Scene, Faults> {
+        let member = self.member(index);
+        let name = member.stem("");
+        if let Some(text) = &self.plain {
+            return assemble(&name, text.clone(), &Params::section(self.root.clone(), "")?, &self.resources);
+        }
+        let mut root = self.root.clone();
+        let mut faults = Faults::new();
+        for (path, node) in self.setting(index) {
+            variables::open(&mut root, &path);
+            faults.take(root.set_path(&path, node));
+        }
+        if let Going::Animation(animation) = &self.going
+            && animation.is_alive
+        {
+            let number = Value::Number(Number { value: f64::from(member.number), text: member.number.to_string() });
+            variables::open(&mut root, "render.frame");
+            faults.take(root.set_path("render.frame", Node { value: number, ..self.root.clone() }));
+        }
+        let variables = faults.take(Variables::of(root.get(VARIABLES)));
+        faults.into_result(())?;
+        drop(without(&mut root, VARIABLES));
+        let mut uses = Vec::new();
+        let root = variables.unwrap_or_default().put_into(&root, &mut uses)?;
+        let text = self.record(&member, &root);
+        let scene = Params::section(root, "").and_then(|params| assemble(&name, text, &params, &self.resources));
+        scene.map_err(|faults| variables::told(faults, &uses))
+    }
+
+    /// The scene as set for one picture, as a scene of its own.
+    fn record(&self, member: &Member, root: &Node) -> String {
+        let mut root = root.clone();
+        // What changes no picture does not change the record in its file either.
+        if let Value::Map(entries) = &mut root.value
+            && let Some((_, render)) = entries.iter_mut().find(|(key, _)| key.text == "render")
+        {
+            drop(without(render, "batch"));
+        }
+        let file =
+            |name: &String| Path::new(name).file_name().map_or(name.clone(), |n| n.to_string_lossy().into_owned());
+        let files: Vec<String> = self.files.iter().map(file).collect();
+        let what = match &self.going {
+            Going::Single => String::new(),
+            Going::Sweep { settings, .. } => {
+                format!("# picture {} of {}: {}\n", member.number, settings.len(), member.words())
+            }
+            Going::Animation(_) => format!("# frame {}: {}\n", member.number, member.words()),
+        };
+        let what: String = what.chars().map(|c| if c.is_control() && c != '\n' { ' ' } else { c }).collect();
+        format!("# made of {}\n{what}{}", files.join(", "), flat::document(&root))
+    }
+}
+
+/// Takes a key out of a map.
+fn without(node: &mut Node, key: &str) -> Option<(Key, Node)> {
+    let Value::Map(entries) = &mut node.value else { return None };
+    let at = entries.iter().position(|(k, _)| k.text == key)?;
+    Some(entries.remove(at))
+}

@@ -1,0 +1,292 @@
+//! `sweep`: one scene, several pictures that differ in named values.
+
+use super::law::{LAWS, Law, Track};
+use super::variables::Variables;
+use schemars::JsonSchema;
+use serde::Deserialize;
+use spectra_core::params::{Fault, Faults, Key, Node, StageNode, Value, nearest, steps};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// The key.
+pub(super) const SWEEP: &str = "sweep";
+/// Most pictures of one sweep.
+pub(super) const MAX_PICTURES: usize = 1000;
+/// Sections that a path cannot lead into: they say what is made, and are used up before it is.
+const RESERVED: [&str; 3] = ["include", SWEEP, super::animation::ANIMATION];
+
+/// One picture's own values: paths and what is put there, in order.
+pub(super) type Setting = Vec<(String, Node)>;
+
+/// Values along one path.
+#[derive(Clone, Debug)]
+pub(super) struct Axis {
+    pub path: String,
+    pub values: Vec<Node>,
+}
+
+/// What a sweep goes through.
+#[derive(Clone, Debug)]
+pub(super) enum Sweep {
+    /// Every value of each path with every value of the others; the last one changes fastest.
+    Product(Vec<Axis>),
+    /// Values that go together.
+    Together(Vec<Setting>),
+}
+
+/// The section as written, for the schema.
+#[derive(JsonSchema)]
+#[serde(untagged)]
+#[expect(dead_code, reason = "its form is all that is wanted of it")]
+pub(crate) enum Form {
+    /// Every value of each path with every value of the others; the last path changes fastest.
+    Product(BTreeMap<String, AxisForm>),
+    /// Values that go together.
+    Together(Vec<BTreeMap<String, StageNode>>),
+}
+
+/// Values of one path, for the schema.
+#[derive(JsonSchema)]
+#[serde(untagged)]
+#[expect(dead_code, reason = "its form is all that is wanted of it")]
+pub(crate) enum AxisForm {
+    /// A variable that is a list.
+    Variable(String),
+    /// One after the other.
+    List(Vec<StageNode>),
+    /// From one to another.
+    Range(Range),
+}
+
+/// Values from one to another, as a sweep writes them.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub(crate) struct Range {
+    /// The first value.
+    from: StageNode,
+    /// The last value.
+    to: StageNode,
+    /// How many values, both ends counted.
+    steps: f64,
+    /// `linear`, `logarithmic` or `reciprocal`.
+    #[schemars(extend("enum" = ["linear", "logarithmic", "reciprocal"]))]
+    spacing: Option<String>,
+}
+
+impl Sweep {
+    /// Reads the section. `$name` in it stands for the scene's own variables.
+    ///
+    /// # Errors
+    /// Everything that is wrong with it; more than [`MAX_PICTURES`].
+    pub(super) fn read(section: &Node, variables: &Variables) -> Result<Self, Faults> {
+        match &section.value {
+            Value::Map(entries) if !entries.is_empty() => product(section, entries, variables),
+            Value::Seq(items) if !items.is_empty() => together(section, items),
+            _ => {
+                let fault = section.fault("a sweep says which values are tried").path(SWEEP);
+                Err(fault.hint("such as `sweep: {lens.f-number: [f/2, f/4, f/8]}`").into())
+            }
+        }
+    }
+
+    /// The settings of all pictures, in order.
+    pub(super) fn settings(&self) -> Vec<Setting> {
+        match self {
+            Self::Together(settings) => settings.clone(),
+            Self::Product(axes) => axes.iter().fold(vec![Setting::new()], |settings, axis| {
+                let with = |setting: &Setting, value: &Node| {
+                    setting.iter().cloned().chain([(axis.path.clone(), value.clone())]).collect()
+                };
+                settings.iter().flat_map(|setting| axis.values.iter().map(move |value| with(setting, value))).collect()
+            }),
+        }
+    }
+}
+
+/// Whether a path can be set; the key that it stands in is blamed.
+pub(super) fn check_path(key: &Key, value: &Node, section: &str) -> Result<(), Fault> {
+    let fault = |text: String| Fault::new(text).at(Arc::clone(&value.file), key.span).path(section);
+    let found = steps(&key.text).map_err(|text| fault(text).hint("a path as of `--set`, such as `lens.f-number`"))?;
+    match found.first() {
+        Some(spectra_core::params::Step::Key(first)) if RESERVED.contains(first) => {
+            Err(fault(format!("`{first}` is no part of a picture"))
+                .hint("a path leads into a stage, `render` or `variables`"))
+        }
+        _ => Ok(()),
+    }
+}
+
+fn product(section: &Node, entries: &[(Key, Node)], variables: &Variables) -> Result<Sweep, Faults> {
+    let mut faults = Faults::new();
+    let mut axes = Vec::new();
+    let mut pictures = Some(1_usize);
+    for (key, node) in entries {
+        faults.take(check_path(key, node, SWEEP));
+        let Some(values) = faults.take(axis(key, node, variables)) else { continue };
+        pictures = pictures.and_then(|n| n.checked_mul(values.len()));
+        axes.push(Axis { path: key.text.clone(), values });
+    }
+    if pictures.is_none_or(|n| n > MAX_PICTURES) {
+        let many = pictures.map_or("too many".to_owned(), |n| n.to_string());
+        faults.push(too_many(section, &many));
+    }
+    faults.into_result(Sweep::Product(axes))
+}
+
+fn too_many(section: &Node, pictures: &str) -> Fault {
+    let fault =
+        section.fault(format!("the sweep has {pictures} pictures, at most {MAX_PICTURES} are made")).path(SWEEP);
+    fault.hint("fewer values; or values that go together, as a list of maps: `sweep: [{a: 1, b: 2}, ...]`")
+}
+
+/// The values along one path.
+fn axis(key: &Key, node: &Node, variables: &Variables) -> Result<Vec<Node>, Faults> {
+    let path = format!("{SWEEP}.{}", key.text);
+    // A list that is a variable is wanted now; what stands in a list written out is each picture's own.
+    let opened = match &node.value {
+        Value::String(_) => variables.put_into_part(node)?,
+        _ => node.clone(),
+    };
+    match &opened.value {
+        Value::Seq(items) if !items.is_empty() && items.len() <= MAX_PICTURES => Ok(items.clone()),
+        Value::Seq(items) if items.len() > MAX_PICTURES => {
+            Err(too_many(node, &items.len().to_string()).path(path).into())
+        }
+        Value::Map(entries) if !entries.is_empty() => {
+            let range = variables.put_into_part(&opened)?;
+            steps_of(&StageNode::new(range, path))
+        }
+        _ => {
+            let fault = node.fault("a swept path has a list of values, or a range").path(path);
+            Err(fault.hint("such as `[f/2, f/4]` or `{from: f/2, to: f/8, steps: 5, spacing: logarithmic}`").into())
+        }
+    }
+}
+
+fn steps_of(node: &StageNode) -> Result<Vec<Node>, Faults> {
+    let range: Range = node.parse()?;
+    let fault = |key: &str, text: String| {
+        node.node().get(key).unwrap_or(node.node()).fault(text).path(format!("{}.{key}", node.path()))
+    };
+    let mut faults = Faults::new();
+    if range.steps.fract() != 0.0 || !(2.0..=MAX_PICTURES as f64).contains(&range.steps) {
+        faults.push(fault("steps", format!("`steps` must be a whole number from 2 to {MAX_PICTURES}")));
+    }
+    let spacings = || LAWS.iter().filter(|(_, law)| !matches!(law, Law::Hold | Law::Smooth));
+    let law = match range.spacing.as_deref() {
+        None => Some(Law::Linear),
+        Some(name) => {
+            let found = spacings().find(|(n, _)| *n == name).map(|(_, law)| *law);
+            if found.is_none() {
+                let known: Vec<&str> = spacings().map(|(name, _)| *name).collect();
+                let near =
+                    nearest(name, known.iter().copied()).map_or(String::new(), |n| format!("did you mean `{n}`? "));
+                faults.push(
+                    fault("spacing", format!("unknown spacing `{name}`"))
+                        .hint(format!("{near}One of {}", known.join(", "))),
+                );
+            }
+            found
+        }
+    };
+    let ends = [range.from.node().clone(), range.to.node().clone()];
+    let last = range.steps - 1.0;
+    let track =
+        law.and_then(|law| faults.take(Track::new(&[0.0, last], &ends, law).map_err(|fault| fault.path(node.path()))));
+    let Some(track) = faults.into_result(track)? else { return Ok(Vec::new()) };
+    Ok((0..range.steps as usize).map(|i| track.value_at(i as f64)).collect())
+}
+
+fn together(section: &Node, items: &[Node]) -> Result<Sweep, Faults> {
+    let mut faults = Faults::new();
+    if items.len() > MAX_PICTURES {
+        faults.push(too_many(section, &items.len().to_string()));
+    }
+    let mut settings = Vec::new();
+    for (at, item) in items.iter().enumerate() {
+        let Value::Map(entries) = &item.value else {
+            let fault =
+                item.fault("each entry of such a sweep is a map of paths and values").path(format!("{SWEEP}[{at}]"));
+            faults.push(
+                fault.hint("such as `[{film.stock: a, lens.f-number: f/2}, {film.stock: b, lens.f-number: f/4}]`"),
+            );
+            continue;
+        };
+        for (key, value) in entries {
+            faults.take(check_path(key, value, &format!("{SWEEP}[{at}]")));
+        }
+        settings.push(entries.iter().map(|(key, value)| (key.text.clone(), value.clone())).collect());
+    }
+    faults.into_result(Sweep::Together(settings))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::language::flat::one_line;
+    use crate::yaml::parse;
+    use spectra_core::params::SourceFile;
+
+    fn settings(text: &str) -> Result<Vec<String>, String> {
+        let root = parse(SourceFile::new("t.yaml", text)).unwrap_or_else(|faults| panic!("{faults}\n{text}"));
+        let variables = Variables::of(root.get("variables")).expect("variables");
+        let sweep =
+            Sweep::read(root.get("sweep").expect("a sweep"), &variables).map_err(|faults| faults.to_string())?;
+        let words = |s: &Setting| {
+            s.iter().map(|(path, node)| format!("{path}={}", one_line(node))).collect::<Vec<_>>().join(" ")
+        };
+        Ok(sweep.settings().iter().map(words).collect())
+    }
+
+    #[test]
+    fn the_last_path_of_a_product_changes_fastest() {
+        let all = settings("sweep: {a.b: [x, y], c: [1, 2, 3]}").expect("good");
+        assert_eq!(all, ["a.b=x c=1", "a.b=x c=2", "a.b=x c=3", "a.b=y c=1", "a.b=y c=2", "a.b=y c=3"]);
+    }
+
+    #[test]
+    fn values_can_go_together() {
+        let all = settings("sweep: [{a: 1, b: {c: 2}}, {a: 2}]").expect("good");
+        assert_eq!(all, ["a=1 b={c: 2}", "a=2"]);
+    }
+
+    #[test]
+    fn ranges_end_where_they_say() {
+        for (range, wanted) in [
+            ("{from: f/2, to: f/8, steps: 3, spacing: logarithmic}", "f/2 f/4 f/8"),
+            ("{from: 1 m, to: 20 cm, steps: 3}", "1 m 0.6 m 20 cm"),
+            ("{from: inf, to: 1 m, steps: 3, spacing: reciprocal}", "inf 2 m 1 m"),
+            ("{from: $near, to: 3 m, steps: 2}", "1 m 3 m"),
+            ("$list", "1 2"),
+        ] {
+            let all =
+                settings(&format!("variables: {{near: 1 m, list: [1, 2]}}\nsweep: {{a: {range}}}\n")).expect(range);
+            assert_eq!(all.join(" ").replace("a=", ""), wanted, "{range}");
+        }
+    }
+
+    #[test]
+    fn what_is_wrong_is_told_at_its_place() {
+        let many = format!("{{a: [{}], b: {{from: 1, to: 2, steps: 51}}}}", "1, ".repeat(20));
+        for (sweep, said) in [
+            ("{}", "a sweep says which values are tried"),
+            ("3", "t.yaml:1:8: a sweep says"),
+            ("{a: 3}", "t.yaml:1:12: a swept path has a list of values"),
+            ("{a: []}", "a swept path has a list of values"),
+            ("{a..b: [1]}", "t.yaml:1:9: `a..b` is not a path: a key is empty"),
+            ("{animation.frames: [1]}", "`animation` is no part of a picture"),
+            ("{a: {from: 1, to: 2}}", "missing key `steps`"),
+            ("{a: {from: 1, to: 2, stops: 3}}", "unknown key `stops` (did you mean `steps`?)"),
+            ("{a: {from: 1, to: 2, steps: 1}}", "t.yaml:1:36: `steps` must be a whole number from 2 to 1000"),
+            ("{a: {from: 1, to: 2, steps: 1e9}}", "`steps` must be"),
+            ("{a: {from: 1, to: 2, steps: 3, spacing: log}}", "unknown spacing `log`"),
+            ("{a: {from: 1 m, to: 2 s, steps: 3}}", "`2 s` and `1 m` are of different kinds"),
+            (&many, "the sweep has 1020 pictures, at most 1000 are made"),
+            ("[3]", "t.yaml:1:9: each entry of such a sweep is a map"),
+            ("[{sweep: 1}]", "`sweep` is no part of a picture"),
+        ] {
+            let error = settings(&format!("sweep: {sweep}\n")).expect_err(said);
+            assert!(error.contains(said), "{error}");
+        }
+    }
+}
