@@ -11,6 +11,7 @@ pub mod loss;
 pub mod math;
 pub mod numbers;
 pub mod params;
+pub mod picture_file;
 pub mod prelude;
 pub mod registry;
 pub mod resources;

@@ -4,6 +4,16 @@ use crate::{Output, RaysFigure};
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::Deserialize;
 use spectra_core::params::{Fault, Faults, Kinds, Length, Params, Positive, StageNode, nearest};
+use spectra_core::picture_file;
+
+/// `kind: exr`: the linear exposure.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct ExrParams {
+    /// In tiles, for viewers that read a part of a large file; needs a program built with OpenImageIO.
+    #[serde(default)]
+    tiled: bool,
+}
 
 /// `kind: rays`: the light's way through the lens, as a figure.
 #[derive(Debug, Deserialize, JsonSchema)]
@@ -59,6 +69,7 @@ impl JsonSchema for OutputForm {
 
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
         let kinds = KINDS.iter().map(|kind| match *kind {
+            "exr" => (*kind, ExrParams::json_schema(generator)),
             "rays" => (*kind, RaysParams::json_schema(generator)),
             _ => (*kind, NoParams::json_schema(generator)),
         });
@@ -77,7 +88,7 @@ pub(crate) fn read(items: Option<&[StageNode]>) -> Result<Vec<Output>, Faults> {
     for item in items {
         let Some(params) = faults.take(item.params()) else { continue };
         let own = match params.kind() {
-            Some("exr") => nothing_more(&params).map(|()| Output::Exr),
+            Some("exr") => exr(&params),
             Some("png") => nothing_more(&params).map(|()| Output::Png),
             Some("tiff") => nothing_more(&params).map(|()| Output::Tiff),
             Some("dng") => nothing_more(&params).map(|()| Output::Dng),
@@ -95,6 +106,11 @@ pub(crate) fn read(items: Option<&[StageNode]>) -> Result<Vec<Output>, Faults> {
         };
         found.extend(faults.take(own));
     }
+    if found.contains(&Output::Exr) && found.contains(&Output::TiledExr) {
+        let fault = items.iter().filter_map(|item| item.params().ok()).find(|params| params.get("tiled").is_some());
+        let fault = fault.map(|params| params.fault("tiled", "the same file is asked for in rows and in tiles"));
+        faults.push(fault.unwrap_or_else(|| Fault::new("one file in rows and in tiles")).hint("leave one `exr` out"));
+    }
     let mut once: Vec<Output> = Vec::new();
     for output in found {
         if !once.iter().any(|o| std::mem::discriminant(o) == std::mem::discriminant(&output)) {
@@ -110,6 +126,18 @@ struct NoParams {}
 
 fn nothing_more(params: &Params) -> Result<(), Faults> {
     params.parse::<NoParams>().map(|_| ())
+}
+
+fn exr(params: &Params) -> Result<Output, Faults> {
+    let p: ExrParams = params.parse()?;
+    if !p.tiled {
+        return Ok(Output::Exr);
+    }
+    if picture_file::library().is_none() {
+        let fault = params.fault("tiled", "tiled OpenEXR files are written by OpenImageIO only");
+        return Err(fault.hint(picture_file::WITHOUT).into());
+    }
+    Ok(Output::TiledExr)
 }
 
 fn rays(params: &Params) -> Result<RaysFigure, Faults> {

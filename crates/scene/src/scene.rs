@@ -66,6 +66,8 @@ pub struct RenderSettings {
 pub enum Output {
     /// Linear exposure per channel.
     Exr,
+    /// The same in tiles, by a library of picture formats.
+    TiledExr,
     /// The picture.
     Png,
     /// The picture with 16 bits a channel.

@@ -62,8 +62,10 @@ struct LayersParams {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct LayerParams {
-    /// An OpenEXR, PNG, JPEG, TIFF or Radiance HDR file, beside the scene; at most 1 GiB.
+    /// A picture file, as for `kind: picture`, beside the scene; at most 1 GiB.
     file: String,
+    /// How code values are encoded, as for `kind: picture`.
+    transfer: Option<String>,
     /// The layer of an OpenEXR file; its plain R, G and B if absent.
     layer: Option<String>,
     /// Distance of its plane from the first vertex, mm if bare; farther than that of the layer before it.
@@ -114,7 +116,12 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
             faults.push(own.fault("center", "a center lies at a finite place"));
         }
         let Some(resource) = faults.take(find(&layer.file, &own, context)) else { continue };
-        let choice = Choice { layer: layer.layer.as_deref(), depth: None };
+        let choice = Choice {
+            name: &layer.file,
+            transfer: layer.transfer.as_deref(),
+            layer: layer.layer.as_deref(),
+            depth: None,
+        };
         let linear = decode(&resource.bytes, choice).map_err(|e| trouble(&layer.file, &e, &own));
         let (Some(mut linear), Some(model)) = (faults.take(linear), &model) else { continue };
         let luminance = layer.luminance.unwrap_or(p.luminance).cd_per_m2();

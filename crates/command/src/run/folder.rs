@@ -4,7 +4,7 @@ use super::picture::{Developed, attributes, pictures};
 use super::rays;
 use super::report::Report;
 use crate::outcome::Failure;
-use spectra_film::write::{write_atomically, write_dng, write_exr, write_png8, write_tiff16};
+use spectra_film::write::{write_atomically, write_dng, write_exr, write_png8, write_tiff16, write_tiled_exr};
 use spectra_plot::PlotError;
 use spectra_scene::{Member, Output, RaysFigure, Scene};
 use std::fmt::Display;
@@ -78,9 +78,10 @@ impl Folder {
     }
 
     fn write_exposure(&self, report: &Report<'_>) -> Result<(), Failure> {
-        for (_, path) in self.files.iter().filter(|(output, _)| *output == Output::Exr) {
+        for (output, path) in self.files.iter().filter(|(o, _)| matches!(o, Output::Exr | Output::TiledExr)) {
             let begun = Instant::now();
-            write_exr(path, &report.rendering.exposure, &attributes(report))?;
+            let write = if *output == Output::Exr { write_exr } else { write_tiled_exr };
+            write(path, &report.rendering.exposure, &attributes(report))?;
             tracing::debug!(seconds = begun.elapsed().as_secs_f64(), "exposure written");
         }
         Ok(())
@@ -138,7 +139,7 @@ pub(crate) fn write_report(path: &Path, report: &serde_json::Value) -> Result<()
 /// What tells a file from the others of its picture, and its ending.
 fn ending(output: Output) -> (&'static str, &'static str) {
     match output {
-        Output::Exr => ("", ".exr"),
+        Output::Exr | Output::TiledExr => ("", ".exr"),
         Output::Png => ("", ".png"),
         Output::Tiff => ("", ".tiff"),
         Output::Dng => ("", ".dng"),

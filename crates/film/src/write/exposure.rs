@@ -34,6 +34,22 @@ fn fault(error: exr::error::Error) -> WriteFault {
     }
 }
 
+/// Each channel's unit, and what is said besides.
+pub(super) fn all_attributes(
+    frame: &ExposureFrame,
+    attributes: &[(String, String)],
+) -> impl Iterator<Item = (String, String)> {
+    let units = frame.channels.iter().map(|c| (format!("unit {}", c.name), c.unit.clone()));
+    units.chain(attributes.iter().cloned())
+}
+
+/// Width over height of a pixel.
+pub(super) fn pixel_aspect(frame: &ExposureFrame) -> f32 {
+    let pixel_width = frame.size.width_mm / f64::from(frame.size.width_px);
+    let pixel_height = frame.size.height_mm / f64::from(frame.size.height_px);
+    (pixel_width / pixel_height) as f32
+}
+
 fn image_of(
     frame: &ExposureFrame,
     attributes: &[(String, String)],
@@ -43,8 +59,7 @@ fn image_of(
         return Err(WriteFault::Format("the frame has no channel".into()));
     }
     let mut layer = LayerAttributes::default();
-    let units = frame.channels.iter().map(|c| (format!("unit {}", c.name), c.unit.clone()));
-    for (name, value) in units.chain(attributes.iter().cloned()) {
+    for (name, value) in all_attributes(frame, attributes) {
         if name == "framesPerSecond"
             && let Some(rate) = rational(&value)
         {
@@ -72,10 +87,8 @@ fn image_of(
     // The lossless presets of the library leave the order of the chunks to the threads.
     let encoding =
         Encoding { compression: Compression::ZIP16, blocks: Blocks::ScanLines, line_order: LineOrder::Increasing };
-    let pixel_width = frame.size.width_mm / f64::from(frame.size.width_px);
-    let pixel_height = frame.size.height_mm / f64::from(frame.size.height_px);
     let mut shared = ImageAttributes::new(IntegerBounds::from_dimensions(size));
-    shared.pixel_aspect = (pixel_width / pixel_height) as f32;
+    shared.pixel_aspect = pixel_aspect(frame);
     Ok(Image { attributes: shared, layer_data: Layer::new(size, layer, encoding, channels) })
 }
 

@@ -4,11 +4,13 @@ mod atomically;
 mod dng;
 mod exposure;
 mod picture;
+mod tiled;
 
 pub use atomically::write_atomically;
 pub use dng::write_dng;
 pub use exposure::write_exr;
 pub use picture::{write_png8, write_png16, write_tiff16};
+pub use tiled::write_tiled_exr;
 
 use std::path::PathBuf;
 

@@ -110,7 +110,7 @@ impl Depth {
             None => None,
             Some(file) => {
                 let resource = find(file, &self.params, context)?;
-                let choice = Choice { layer: None, depth: Some(self.name()) };
+                let choice = Choice { depth: Some(self.name()), ..Choice::default() };
                 let read = decode::depth(&resource.bytes, choice);
                 let read = read.map_err(|e| Faults::from(trouble(file, &e, &self.params)))?;
                 if (read.width, read.height) != (picture.width, picture.height) {

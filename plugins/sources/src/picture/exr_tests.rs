@@ -91,7 +91,7 @@ fn layers_are_chosen_by_part_and_by_prefix() {
             layer(Some("lights"), (2, 1), planes)
         }],
     );
-    let read = |layer: Option<&str>| decode(&bytes, Choice { layer, depth: None });
+    let read = |layer: Option<&str>| decode(&bytes, Choice { layer, ..Choice::default() });
     for (name, want) in [("beauty", 1.0), ("fill", 2.0), ("lights", 3.0), ("lights.key", 0.5)] {
         assert_eq!(read(Some(name)).unwrap().rgb[1], [want; 3], "{name}");
     }
@@ -107,10 +107,10 @@ fn alpha_and_depth_come_along() {
     let mut planes = rgb((2, 1), |_| [0.25; 3], floats);
     planes.extend([("A", halves(&[0.5, 1.0])), ("Z", floats(&[1.5, 1e10]))]);
     let bytes = file(window(2, 1), vec![layer(None, (2, 1), planes)]);
-    let read = decode(&bytes, Choice { layer: None, depth: Some("Z") }).unwrap();
+    let read = decode(&bytes, Choice { depth: Some("Z"), ..Choice::default() }).unwrap();
     assert_eq!(read.alpha.unwrap(), [0.5, 1.0]);
     assert_eq!(read.depth.unwrap(), [1.5, 1e10]);
-    let missing = trouble(decode(&bytes, Choice { layer: None, depth: Some("depth.Z") }));
+    let missing = trouble(decode(&bytes, Choice { depth: Some("depth.Z"), ..Choice::default() }));
     assert_eq!(missing.key, "depth");
     assert!(missing.hint.unwrap().contains("`Z`"));
 }
@@ -124,7 +124,7 @@ fn depth_of_another_size_is_refused() {
             layer(Some("depth"), (2, 1), vec![("Z", floats(&[1.0, 2.0]))]),
         ],
     );
-    let fault = trouble(decode(&bytes, Choice { layer: Some("color"), depth: Some("depth.Z") }));
+    let fault = trouble(decode(&bytes, Choice { layer: Some("color"), depth: Some("depth.Z"), ..Choice::default() }));
     assert_eq!(fault.key, "depth");
     assert!(fault.text.contains("2 x 1") && fault.text.contains("2 x 2"), "{}", fault.text);
 }

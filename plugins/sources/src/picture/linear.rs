@@ -21,9 +21,13 @@ pub(crate) struct Linear {
     pub clipped_at: Option<f32>,
 }
 
-/// What is chosen of a file of several layers.
+/// What is known of a file, and chosen of one of several layers.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Choice<'a> {
+    /// What the file is called: its ending tells formats that its content does not.
+    pub name: &'a str,
+    /// How its code values are encoded, by name; as the file says, or else as its format has it, if absent.
+    pub transfer: Option<&'a str>,
     /// The layer; the file's plain R, G, B if absent.
     pub layer: Option<&'a str>,
     /// The channel that holds depth, where depth is wanted.
@@ -33,7 +37,7 @@ pub(crate) struct Choice<'a> {
 /// What is wrong with a picture file.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Trouble {
-    /// The key whose value is to be changed: `file`, `layer` or `depth`.
+    /// The key whose value is to be changed: `file`, `layer`, `depth` or `transfer`.
     pub key: &'static str,
     pub text: String,
     pub hint: Option<String>,

@@ -3,10 +3,14 @@
 pub(crate) mod decode;
 mod deep;
 mod depth;
+mod encoding;
 mod exr;
 #[cfg(test)]
 mod exr_tests;
 mod field;
+mod foreign;
+#[cfg(all(test, feature = "oiio"))]
+mod foreign_tests;
 mod highlights;
 pub(crate) mod linear;
 pub(crate) mod map;
@@ -63,8 +67,12 @@ const MAX_BYTES: u64 = 1 << 30;
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct PictureParams {
-    /// An OpenEXR, PNG, JPEG, TIFF or Radiance HDR file, beside the scene; at most 1 GiB.
+    /// An OpenEXR, PNG, JPEG, TIFF or Radiance HDR file, beside the scene; built with OpenImageIO any that it reads. At
+    /// most 1 GiB.
     file: String,
+    /// How code values are encoded: linear, srgb, rec709 or cineon; as the file says, or else srgb of integers and linear
+    /// of floating point, if absent.
+    transfer: Option<String>,
     /// The layer of an OpenEXR file; its plain R, G and B if absent.
     layer: Option<String>,
     /// Distance of its plane from the first vertex, mm if bare.
@@ -122,7 +130,12 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
     let said = p.depth.is_some();
     let depth = p.depth.as_ref().and_then(|node| faults.take(Depth::read(node)));
     let linear = resource.and_then(|file| {
-        let choice = Choice { layer: p.layer.as_deref(), depth: depth.as_ref().and_then(Depth::channel) };
+        let choice = Choice {
+            name: &p.file,
+            transfer: p.transfer.as_deref(),
+            layer: p.layer.as_deref(),
+            depth: depth.as_ref().and_then(Depth::channel),
+        };
         faults.take(decode::decode(&file.bytes, choice).map_err(|e| trouble(&p.file, &e, params)))
     });
     let linear = linear.and_then(|mut linear| {

@@ -1,0 +1,41 @@
+//! OpenEXR of the linear exposure, in tiles.
+
+use super::exposure::{all_attributes, pixel_aspect};
+use super::{WriteError, WriteFault, write_atomically};
+use spectra_core::frame::ExposureFrame;
+use spectra_core::picture_file::{self, TiledExr};
+use std::path::Path;
+
+/// Side of a tile, pixels: what texture tools use.
+const TILE_PX: u32 = 64;
+
+/// Writes the frame as [`super::write_exr`] does, in tiles of 64 pixels a side, by the library of picture formats that
+/// the program is linked with. The same frame and attributes give the same bytes.
+///
+/// # Errors
+/// [`WriteError`]: the system refuses, there is no such library, the frame has no channel or too few values, or an
+/// attribute is given twice.
+pub fn write_tiled_exr(path: &Path, frame: &ExposureFrame, attributes: &[(String, String)]) -> Result<(), WriteError> {
+    write_atomically(path, |file| {
+        let Some(library) = picture_file::library() else {
+            return Err(WriteFault::Format(picture_file::WITHOUT.to_owned()));
+        };
+        let attributes: Vec<(String, String)> = all_attributes(frame, attributes).collect();
+        for (i, (name, _)) in attributes.iter().enumerate() {
+            if name.is_empty() || attributes[..i].iter().any(|(other, _)| other == name) {
+                return Err(WriteFault::Format(format!("the attribute `{name}` has no name, or is given twice")));
+            }
+        }
+        let channels: Vec<(&str, &[f32])> =
+            frame.channels.iter().map(|c| (c.name.as_str(), c.values.as_slice())).collect();
+        let picture = TiledExr {
+            width_px: frame.size.width_px,
+            height_px: frame.size.height_px,
+            pixel_aspect: pixel_aspect(frame),
+            tile_px: TILE_PX,
+            channels: &channels,
+            attributes: &attributes,
+        };
+        library.write_tiled_exr(file, &picture).map_err(WriteFault::Format)
+    })
+}

@@ -1,0 +1,213 @@
+// Calls OpenImageIO for bridge.rs. Every fault leaves as a std::exception, which cxx turns into an `Err`.
+
+#include "spectra-plugin-oiio/src/bridge.h"
+#include "spectra-plugin-oiio/src/bridge.rs.h"
+
+#include <OpenImageIO/oiioversion.h>
+#if OIIO_VERSION < 20400
+#    error "spectra needs OpenImageIO 2.4 or later (Debian 12 and later: libopenimageio-dev)"
+#endif
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imagebufalgo.h>
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+#include <mutex>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace spectra {
+namespace {
+
+namespace Filesystem = OIIO::Filesystem;
+
+std::string own(rust::Str text) { return std::string(text.data(), text.size()); }
+std::string own(const rust::String &text) { return std::string(text.data(), text.size()); }
+
+// Names and texts come from files, which may hold anything.
+rust::String lossy(const std::string &text) { return rust::String::lossy(text.data(), text.size()); }
+
+[[noreturn]] void fail(std::string cause, const char *otherwise) {
+    while (!cause.empty() && (cause.back() == '\n' || cause.back() == ' '))
+        cause.pop_back();
+    throw std::runtime_error(cause.empty() ? otherwise : cause);
+}
+
+// What is no std::exception would end the program at the border.
+template<class F> auto guarded(F body) {
+    try {
+        return body();
+    } catch (const std::exception &) {
+        throw;
+    } catch (...) {
+        throw std::runtime_error("OpenImageIO failed without a word");
+    }
+}
+
+// Hands what the library writes to Rust.
+class ToRust final : public Filesystem::IOProxy {
+public:
+    explicit ToRust(Sink &sink) : IOProxy("", Write), m_sink(sink) {}
+    const char *proxytype() const override { return "spectra"; }
+    std::size_t write(const void *buffer, std::size_t size) override {
+        const std::size_t done = pwrite(buffer, size, m_pos);
+        m_pos += std::int64_t(done);
+        return done;
+    }
+    std::size_t pwrite(const void *buffer, std::size_t size, std::int64_t offset) override {
+        const std::lock_guard<std::mutex> lock(m_mutex);
+        const auto *bytes = static_cast<const std::uint8_t *>(buffer);
+        return m_sink.write_at(rust::Slice<const std::uint8_t>(bytes, size), offset) ? size : 0;
+    }
+    std::size_t size() const override { return std::size_t(m_sink.size()); }
+
+private:
+    Sink &m_sink;
+    std::mutex m_mutex;
+};
+
+OIIO::ImageSpec spec_of(const Plan &plan) {
+    OIIO::ImageSpec spec(plan.width, plan.height, int(plan.channels.size()), OIIO::TypeDesc(own(plan.samples)));
+    spec.channelnames.clear();
+    spec.alpha_channel = -1;
+    for (std::size_t i = 0; i < plan.channels.size(); ++i) {
+        spec.channelnames.push_back(own(plan.channels[i]));
+        if (spec.channelnames.back() == "A")
+            spec.alpha_channel = int(i);
+    }
+    spec.tile_width = spec.tile_height = plan.tile;
+    spec.tile_depth = plan.tile > 0 ? 1 : 0;
+    if (plan.pixel_aspect > 0.0F)
+        spec.attribute("PixelAspectRatio", plan.pixel_aspect);
+    for (std::size_t i = 0; i < plan.names.size(); ++i)
+        spec.attribute(own(plan.names[i]), own(plan.texts[i]));
+    for (std::size_t i = 0; i < plan.integer_names.size(); ++i)
+        spec.attribute(own(plan.integer_names[i]), int(plan.integers[i]));
+    return spec;
+}
+
+std::vector<float> rows_of(const Plan &plan, const Pixels &pixels, int first, int end) {
+    std::vector<float> rows(std::size_t(end - first) * std::size_t(plan.width) * plan.channels.size());
+    pixels.fill(first, rust::Slice<float>(rows.data(), rows.size()));
+    return rows;
+}
+
+Header header_of(const OIIO::ImageSpec &spec) {
+    Header header;
+    header.data = { spec.x, spec.y, spec.width, spec.height };
+    header.display = { spec.full_x, spec.full_y, spec.full_width, spec.full_height };
+    header.slices = std::max(spec.depth, 1);
+    header.deep = spec.deep;
+    for (int channel = 0; channel < spec.nchannels; ++channel)
+        header.channels.push_back(lossy(std::string(spec.channel_name(channel))));
+    header.alpha = spec.alpha_channel;
+    header.integers = !spec.format.is_floating_point();
+    // Of a DPX file's transfer characteristics the library names but a few as a color space.
+    const auto transfer = spec.get_string_attribute("dpx:Transfer");
+    header.color_space = lossy(std::string(spec.get_string_attribute("oiio:ColorSpace", transfer)));
+    header.orientation = spec.get_int_attribute("Orientation", 1);
+    header.pixel_aspect = spec.get_float_attribute("PixelAspectRatio", 1.0F);
+    header.straight = spec.get_int_attribute("oiio:UnassociatedAlpha", 0) != 0;
+    return header;
+}
+
+void read_opened(OIIO::ImageInput &input, const OIIO::ImageSpec &spec, Receiver &receiver) {
+    const Header header = header_of(spec);
+    const Wanted wanted = receiver.begin(header);
+    rust::Slice<float> samples = receiver.samples();
+    const auto needed = std::uint64_t(spec.width) * std::uint64_t(spec.height) * std::uint64_t(wanted.end - wanted.first);
+    if (needed != samples.size())
+        throw std::logic_error("the picture's size changed while it was read");
+    if (!input.read_image(0, 0, wanted.first, wanted.end, OIIO::TypeDesc::FLOAT, samples.data()))
+        fail(input.geterror(), "the pixels cannot be read");
+}
+
+} // namespace
+
+rust::String version() { return lossy(OIIO::get_string_attribute("version", OIIO_VERSION_STRING)); }
+
+rust::String endings() {
+    return guarded([] {
+        std::string all;
+        // Formats that are only written have endings too.
+        const auto formats = OIIO::Strutil::splits(OIIO::get_string_attribute("input_format_list"), ",");
+        for (const auto &entry : OIIO::Strutil::splits(OIIO::get_string_attribute("extension_list"), ";")) {
+            const auto format = entry.substr(0, entry.find(':'));
+            if (std::find(formats.begin(), formats.end(), format) != formats.end())
+                all += (all.empty() ? "" : ";") + entry;
+        }
+        return lossy(all);
+    });
+}
+
+bool reads_memory(rust::Str format) {
+    return guarded([&] {
+        auto input = OIIO::ImageInput::create(own(format));
+        if (!input)
+            fail(OIIO::geterror(), "no such format");
+        return input->supports("ioproxy") != 0;
+    });
+}
+
+void read(rust::Str format, rust::Str path, bool from_memory, rust::Slice<const std::uint8_t> bytes, Receiver &receiver) {
+    guarded([&] {
+        Filesystem::IOMemReader memory(const_cast<std::uint8_t *>(bytes.data()), bytes.size());
+        auto input = OIIO::ImageInput::create(own(format));
+        if (!input)
+            fail(OIIO::geterror(), "no such format");
+        OIIO::ImageSpec wish, spec;
+        // Cover multiplied into code values, which the library would do, darkens edges.
+        wish.attribute("oiio:UnassociatedAlpha", 1);
+        if (from_memory)
+            input->set_ioproxy(&memory);
+        if (!input->open(own(path), spec, wish))
+            fail(input->geterror(), "the file cannot be opened");
+        read_opened(*input, spec, receiver);
+        input->close();
+    });
+}
+
+void write(const Plan &plan, const Pixels &pixels, Sink &sink) {
+    guarded([&] {
+        ToRust proxy(sink);
+        auto output = OIIO::ImageOutput::create(own(plan.format));
+        if (!output)
+            fail(OIIO::geterror(), "no such format");
+        if (!output->supports("ioproxy"))
+            throw std::runtime_error("the format cannot be written to an open file");
+        output->set_ioproxy(&proxy);
+        const OIIO::ImageSpec spec = spec_of(plan);
+        if (!output->open(own(plan.path), spec))
+            fail(output->geterror(), "the file cannot be begun");
+        const int step = plan.tile > 0 ? plan.tile : 64;
+        for (int first = 0; first < plan.height; first += step) {
+            const int end = std::min(first + step, plan.height);
+            const auto rows = rows_of(plan, pixels, first, end);
+            const bool good = plan.tile > 0
+                                  ? output->write_tiles(0, plan.width, first, end, 0, 1, OIIO::TypeDesc::FLOAT, rows.data())
+                                  : output->write_scanlines(first, end, 0, OIIO::TypeDesc::FLOAT, rows.data());
+            if (!good)
+                fail(output->geterror(), "the pixels cannot be written");
+        }
+        if (!output->close())
+            fail(output->geterror(), "the file cannot be completed");
+    });
+}
+
+void make_texture(const Plan &plan, const Pixels &pixels, rust::Str path) {
+    guarded([&] {
+        const OIIO::ImageSpec spec = spec_of(plan);
+        OIIO::ImageBuf buffer(spec);
+        const auto rows = rows_of(plan, pixels, 0, plan.height);
+        if (!buffer.set_pixels(OIIO::ROI::All(), OIIO::TypeDesc::FLOAT, rows.data()))
+            fail(buffer.geterror(), "the pixels cannot be taken");
+        OIIO::ImageSpec wish;
+        wish.attribute("maketx:filtername", "box");
+        if (!OIIO::ImageBufAlgo::make_texture(OIIO::ImageBufAlgo::MakeTxTexture, buffer, own(path), wish))
+            fail(OIIO::geterror(), "the texture cannot be written");
+    });
+}
+
+} // namespace spectra

@@ -1,0 +1,34 @@
+//! OpenImageIO, registered.
+
+use crate::bridge::ffi;
+use crate::{reading, writing};
+use spectra_core::picture_file::{FilePicture, PictureLibrary, PictureLibraryEntry, PictureLimits, TiledExr};
+use std::fs::File;
+
+/// The library OpenImageIO (Larry Gritz and others, <https://openimageio.org>).
+#[derive(Clone, Copy, Debug)]
+pub struct OpenImageIo;
+
+impl OpenImageIo {
+    /// Endings of the files that it reads, without the dot.
+    #[must_use]
+    pub fn endings() -> Vec<String> {
+        reading::endings()
+    }
+}
+
+impl PictureLibrary for OpenImageIo {
+    fn name(&self) -> String {
+        format!("OpenImageIO {}", ffi::version())
+    }
+
+    fn read(&self, ending: &str, bytes: &[u8], limits: PictureLimits) -> Result<FilePicture, String> {
+        reading::read(ending, bytes, limits)
+    }
+
+    fn write_tiled_exr(&self, to: &mut File, picture: &TiledExr<'_>) -> Result<(), String> {
+        writing::tiled_exr(to, picture)
+    }
+}
+
+inventory::submit! { PictureLibraryEntry(&OpenImageIo) }

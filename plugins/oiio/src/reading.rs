@@ -1,0 +1,199 @@
+//! From the library's pixels to a [`FilePicture`].
+
+use crate::bridge::ffi::{self, Header, Wanted};
+use crate::stated;
+use spectra_core::picture_file::{FilePicture, PictureLimits};
+use std::io::Write;
+
+/// Formats that are no still pictures of light: pictures made up from the file's name, depth, films, volumes.
+const NO_PICTURES: [&str; 5] = ["null", "zfile", "ffmpeg", "openvdb", "term"];
+/// Formats that may say of a million pixels in a few bytes that they are all alike.
+const DENSE: [&str; 3] = ["webp", "jpeg2000", "heif"];
+/// No other packs more pixels into a byte: deflate ends near 1 032 to 1, at one bit a pixel or more.
+const MAX_PIXELS_PER_BYTE: u64 = 1_100 * 8;
+
+/// Name of the format that has this ending.
+fn format_of(ending: &str) -> Result<String, String> {
+    let all = ffi::endings().map_err(|e| e.to_string())?;
+    let mut formats = all.split(';').filter_map(|entry| entry.split_once(':'));
+    let found = formats.find(|(_, endings)| endings.split(',').any(|own| own.eq_ignore_ascii_case(ending)));
+    let Some((format, _)) = found else {
+        return Err(format!("OpenImageIO {} reads no `.{ending}` files", ffi::version()));
+    };
+    if NO_PICTURES.contains(&format) {
+        return Err(format!("a `.{ending}` file is no still picture"));
+    }
+    Ok(format.to_owned())
+}
+
+/// Endings of all files that are read, in the library's order.
+pub(crate) fn endings() -> Vec<String> {
+    let all = ffi::endings().unwrap_or_default();
+    let formats = all.split(';').filter_map(|entry| entry.split_once(':'));
+    let pictures = formats.filter(|(format, _)| !NO_PICTURES.contains(format));
+    pictures.flat_map(|(_, endings)| endings.split(',').map(str::to_owned)).collect()
+}
+
+pub(crate) fn read(ending: &str, bytes: &[u8], limits: PictureLimits) -> Result<FilePicture, String> {
+    let format = format_of(ending)?;
+    let text = |cause: cxx::Exception| tidy(cause.what());
+    let mut receiver = Receiver::new(&format, limits, bytes.len() as u64);
+    if let Some([width, height]) = stated::size(&format, bytes) {
+        receiver.check([width, height])?;
+    }
+    if ffi::reads_memory(&format).map_err(text)? {
+        ffi::read(&format, &format!("picture.{ending}"), true, bytes, &mut receiver).map_err(text)?;
+    } else {
+        // These readers take a path only.
+        let system = |cause: std::io::Error| format!("a temporary copy cannot be written: {cause}");
+        let mut copy = tempfile::Builder::new().suffix(&format!(".{ending}")).tempfile().map_err(system)?;
+        copy.write_all(bytes).map_err(system)?;
+        copy.flush().map_err(system)?;
+        let Some(path) = copy.path().to_str() else {
+            return Err("the folder of temporary files has a name that is no UTF-8".to_owned());
+        };
+        let known = |cause: cxx::Exception| tidy(&cause.what().replace(path, "the file"));
+        ffi::read(&format, path, false, &[], &mut receiver).map_err(known)?;
+    }
+    receiver.picture()
+}
+
+/// One line of what the library says, however much that is.
+fn tidy(said: &str) -> String {
+    let mut words = said.split_whitespace().collect::<Vec<_>>().join(" ");
+    if let Some((end, _)) = words.char_indices().nth(400) {
+        words.truncate(end);
+    }
+    words.trim_end_matches('.').to_owned()
+}
+
+/// What of the header is needed once the pixels are there.
+struct Begun {
+    header: Header,
+    /// Channels of red, green and blue among those read.
+    rgb: [usize; 3],
+    alpha: Option<usize>,
+    /// How many are read.
+    step: usize,
+}
+
+/// Takes the header, judges it, and makes room for the pixels.
+pub(crate) struct Receiver {
+    format: String,
+    limits: PictureLimits,
+    /// Bytes of the file, where that bounds the pixels.
+    file_bytes: Option<u64>,
+    begun: Option<Begun>,
+    samples: Vec<f32>,
+}
+
+impl Receiver {
+    fn new(format: &str, limits: PictureLimits, bytes: u64) -> Self {
+        let file_bytes = (!DENSE.contains(&format)).then_some(bytes);
+        Self { format: format.to_owned(), limits, file_bytes, begun: None, samples: Vec::new() }
+    }
+
+    fn check(&self, [width, height]: [u64; 2]) -> Result<(), String> {
+        let PictureLimits { side_px, pixels } = self.limits;
+        if width == 0 || height == 0 {
+            return Err("the picture has no pixels".to_owned());
+        }
+        if width.max(height) > u64::from(side_px) || width * height > pixels {
+            return Err(format!("{width} x {height} pixels; at most {pixels} in all and {side_px} a side are read"));
+        }
+        match self.file_bytes {
+            Some(bytes) if width * height > bytes.saturating_mul(MAX_PIXELS_PER_BYTE) => {
+                Err(format!("the header says {width} x {height} pixels, which {bytes} bytes cannot hold"))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Called by the bridge once the file is open: says which channels are wanted.
+    pub(crate) fn begin(&mut self, header: &Header) -> Result<Wanted, String> {
+        let mut size = [0_u64; 2];
+        for window in [header.display, header.data] {
+            size = [2, 3].map(|i| u64::try_from(window[i]).unwrap_or(0));
+            self.check(size)?;
+        }
+        if header.deep || header.slices != 1 {
+            return Err("it holds a volume, or several samples a pixel, and no flat picture".to_owned());
+        }
+        if self.format == "dpx" && header.orientation > 4 {
+            // OpenImageIO 2.4 takes its rows for as long as its columns are.
+            return Err("a DPX file stored column by column is not read".to_owned());
+        }
+        let place = |name: &str| header.channels.iter().position(|own| own.eq_ignore_ascii_case(name));
+        let alpha = usize::try_from(header.alpha).ok().filter(|at| *at < header.channels.len());
+        let rgb = match (place("R"), place("G"), place("B")) {
+            (Some(r), Some(g), Some(b)) => [r, g, b],
+            _ => {
+                let colors: Vec<usize> = (0..header.channels.len()).filter(|at| Some(*at) != alpha).collect();
+                let [gray] = colors[..] else {
+                    let names: Vec<String> = header.channels.iter().take(12).map(|c| format!("`{c}`")).collect();
+                    return Err(format!("no channels R, G and B, nor a single one, but {}", names.join(", ")));
+                };
+                [gray; 3]
+            }
+        };
+        let all = rgb.into_iter().chain(alpha);
+        let (first, last) = all.fold((usize::MAX, 0), |(first, last), at| (first.min(at), last.max(at)));
+        let step = last + 1 - first;
+        // Channels between the wanted ones are read with them.
+        if step > 16 {
+            return Err("the channels of color lie too far apart".to_owned());
+        }
+        self.samples = vec![0.0; size[0] as usize * size[1] as usize * step];
+        self.begun = Some(Begun {
+            header: header.clone(),
+            rgb: rgb.map(|at| at - first),
+            alpha: alpha.map(|at| at - first),
+            step,
+        });
+        Ok(Wanted { first: first as i32, end: last as i32 + 1 })
+    }
+
+    /// Where the bridge puts the pixels: row by row, channel by channel within a pixel.
+    pub(crate) fn samples(&mut self) -> &mut [f32] {
+        &mut self.samples
+    }
+
+    /// The picture on its display window, black where nothing is stored.
+    fn picture(self) -> Result<FilePicture, String> {
+        let Some(Begun { header, rgb, alpha, step }) = self.begun else {
+            return Err("the library gave no picture".to_owned());
+        };
+        let [x, y, width, height] = header.display;
+        let [own_x, own_y, own_width, own_height] = header.data;
+        let pixel = |column: i64, row: i64| -> Option<&[f32]> {
+            let (c, r) = (x.checked_add(column)?.checked_sub(own_x)?, y.checked_add(row)?.checked_sub(own_y)?);
+            let inside = c >= 0 && r >= 0 && c < own_width && r < own_height;
+            inside.then(|| &self.samples[(r * own_width + c) as usize * step..][..step])
+        };
+        let count = width as usize * height as usize;
+        let mut colors = Vec::with_capacity(count);
+        let mut cover = Vec::with_capacity(if alpha.is_some() { count } else { 0 });
+        for row in 0..height {
+            for column in 0..width {
+                let pixel = pixel(column, row);
+                colors.push(pixel.map_or([0.0; 3], |p| rgb.map(|at| p[at])));
+                if let Some(at) = alpha {
+                    cover.push(pixel.map_or(0.0, |p| p[at]));
+                }
+            }
+        }
+        let pixel_aspect = f64::from(header.pixel_aspect);
+        Ok(FilePicture {
+            width_px: width as u32,
+            height_px: height as u32,
+            pixel_aspect: if (0.05..=20.0).contains(&pixel_aspect) { pixel_aspect } else { 1.0 },
+            rgb: colors,
+            alpha: alpha.map(|_| cover),
+            multiplied: !header.straight,
+            integers: header.integers,
+            color_space: (!header.color_space.is_empty()).then_some(header.color_space),
+            orientation: u8::try_from(header.orientation).ok().filter(|o| (1..=8).contains(o)).unwrap_or(1),
+            format: self.format,
+        })
+    }
+}

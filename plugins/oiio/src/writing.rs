@@ -1,0 +1,185 @@
+//! Pictures out: any format that the library writes, and textures.
+
+use crate::bridge::ffi::{self, Plan};
+use spectra_core::picture_file::TiledExr;
+use std::fs::File;
+use std::io::{self, Seek, SeekFrom, Write};
+use std::path::Path;
+
+/// How a sample is stored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Samples {
+    /// 8 bits: 255 is 1.
+    U8,
+    /// 16 bits, or fewer where the attribute `oiio:BitsPerSample` says so: the largest is 1.
+    U16,
+    /// 16-bit floating point.
+    F16,
+    /// 32-bit floating point.
+    F32,
+}
+
+impl Samples {
+    fn name(self) -> &'static str {
+        match self {
+            Self::U8 => "uint8",
+            Self::U16 => "uint16",
+            Self::F16 => "half",
+            Self::F32 => "float",
+        }
+    }
+}
+
+/// A picture to be written by [`write()`] or [`make_texture`].
+#[derive(Clone, Debug)]
+pub struct Written<'a> {
+    /// Name of the format, such as `jpeg2000`.
+    pub format: &'a str,
+    /// Ending of such files, such as `jp2`, which may tell variants of the format.
+    pub ending: &'a str,
+    /// Width, pixels.
+    pub width_px: u32,
+    /// Height, pixels.
+    pub height_px: u32,
+    /// Width over height of a pixel, where it is to be said.
+    pub pixel_aspect: Option<f32>,
+    /// How samples are stored.
+    pub samples: Samples,
+    /// Side of a tile, pixels; rows if `None`.
+    pub tile_px: Option<u32>,
+    /// Name and values, row by row from the top, of each channel, in the order of the file.
+    pub channels: &'a [(&'a str, &'a [f32])],
+    /// Attributes of text.
+    pub texts: &'a [(String, String)],
+    /// Attributes that are whole numbers.
+    pub integers: &'a [(String, i32)],
+}
+
+impl Written<'_> {
+    fn plan(&self) -> Result<Plan, String> {
+        let pixels = u64::from(self.width_px) * u64::from(self.height_px);
+        if pixels == 0 || self.channels.is_empty() {
+            return Err("a picture without pixels or channels".to_owned());
+        }
+        for (name, values) in self.channels {
+            if values.len() as u64 != pixels {
+                return Err(format!("channel `{name}` has {} values for {pixels} pixels", values.len()));
+            }
+        }
+        let side = |px: u32| i32::try_from(px).map_err(|_| format!("a side of {px} pixels"));
+        Ok(Plan {
+            format: self.format.to_owned(),
+            path: format!("picture.{}", self.ending),
+            width: side(self.width_px)?,
+            height: side(self.height_px)?,
+            channels: self.channels.iter().map(|(name, _)| (*name).to_owned()).collect(),
+            samples: self.samples.name().to_owned(),
+            tile: side(self.tile_px.unwrap_or(0))?,
+            pixel_aspect: self.pixel_aspect.unwrap_or(0.0),
+            names: self.texts.iter().map(|(name, _)| name.clone()).collect(),
+            texts: self.texts.iter().map(|(_, text)| text.clone()).collect(),
+            integer_names: self.integers.iter().map(|(name, _)| name.clone()).collect(),
+            integers: self.integers.iter().map(|(_, value)| *value).collect(),
+        })
+    }
+}
+
+/// Writes a picture in a format that takes an open file; it must be empty.
+///
+/// # Errors
+/// What the system or the library says.
+pub fn write(to: &mut File, picture: &Written<'_>) -> Result<(), String> {
+    let plan = picture.plan()?;
+    let mut sink = Sink { file: to, fault: None };
+    let written = ffi::write(&plan, &Pixels::new(picture), &mut sink);
+    match (sink.fault, written) {
+        // The system's word is the cause of what the library says.
+        (Some(fault), _) => Err(fault.to_string()),
+        (None, written) => written.map_err(|e| e.what().trim().to_owned()),
+    }
+}
+
+/// Writes a texture as `maketx` does: tiled, with all sizes down to one pixel. The format is told by the ending
+/// of the path, `tx` or `exr`.
+///
+/// # Errors
+/// What the library says.
+pub fn make_texture(path: &Path, picture: &Written<'_>) -> Result<(), String> {
+    let plan = picture.plan()?;
+    let path = path.to_str().ok_or("the path is no UTF-8")?;
+    ffi::make_texture(&plan, &Pixels::new(picture), path).map_err(|e| e.what().trim().to_owned())
+}
+
+/// See [`spectra_core::picture_file::PictureLibrary::write_tiled_exr`].
+pub(crate) fn tiled_exr(to: &mut File, picture: &TiledExr<'_>) -> Result<(), String> {
+    let mut texts = picture.attributes.to_vec();
+    let said = |name: &str, text: &str| (name.to_owned(), text.to_owned());
+    // In the order of rows, so that threads do not show in the file; and the library would write the time of day.
+    texts.extend([said("compression", "zip"), said("openexr:lineOrder", "increasingY"), said("DateTime", "")]);
+    write(
+        to,
+        &Written {
+            format: "openexr",
+            ending: "exr",
+            width_px: picture.width_px,
+            height_px: picture.height_px,
+            pixel_aspect: Some(picture.pixel_aspect),
+            samples: Samples::F32,
+            tile_px: Some(picture.tile_px),
+            channels: picture.channels,
+            texts: &texts,
+            integers: &[],
+        },
+    )
+}
+
+/// The pixels of a picture, some rows at a time.
+pub(crate) struct Pixels<'a> {
+    width: usize,
+    channels: &'a [(&'a str, &'a [f32])],
+}
+
+impl<'a> Pixels<'a> {
+    fn new(picture: &Written<'a>) -> Self {
+        Self { width: picture.width_px as usize, channels: picture.channels }
+    }
+
+    /// Called by the bridge: whole rows from `first` on, channel by channel within a pixel.
+    pub(crate) fn fill(&self, first: i32, to: &mut [f32]) {
+        let start = first as usize * self.width;
+        for (pixel, to) in to.chunks_exact_mut(self.channels.len()).enumerate() {
+            for (to, (_, values)) in to.iter_mut().zip(self.channels) {
+                *to = values[start + pixel];
+            }
+        }
+    }
+}
+
+/// The file that the library writes to.
+pub(crate) struct Sink<'a> {
+    file: &'a mut File,
+    fault: Option<io::Error>,
+}
+
+impl Sink<'_> {
+    /// Called by the bridge: whether the bytes are written.
+    pub(crate) fn write_at(&mut self, bytes: &[u8], offset: i64) -> bool {
+        let mut attempt = || -> io::Result<()> {
+            let offset = u64::try_from(offset).map_err(|_| io::ErrorKind::InvalidInput)?;
+            self.file.seek(SeekFrom::Start(offset))?;
+            self.file.write_all(bytes)
+        };
+        match attempt() {
+            Ok(()) => true,
+            Err(fault) => {
+                self.fault.get_or_insert(fault);
+                false
+            }
+        }
+    }
+
+    /// Called by the bridge: bytes written so far.
+    pub(crate) fn size(&self) -> i64 {
+        self.file.metadata().map_or(0, |data| data.len() as i64)
+    }
+}
