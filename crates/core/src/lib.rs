@@ -10,6 +10,7 @@ pub mod isa;
 pub mod loss;
 pub mod math;
 pub mod numbers;
+pub mod one_layer;
 pub mod params;
 pub mod picture_file;
 pub mod prelude;
