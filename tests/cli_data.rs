@@ -256,7 +256,7 @@ fn an_aperture() {
                 - {kind: sphere, radius: -100, thickness: 2}\n  - {kind: stop, thickness: 95, semi-diameter: 10}\n";
     let svg = r#"<svg xmlns="http://www.w3.org/2000/svg" width="20mm" viewBox="0 0 200 200"><rect x="60.3665" y="60.3665" width="79.267" height="79.267"/></svg>"#;
     let folder =
-        folder(&[("stop.svg", svg), ("single.yaml", lens), ("s.yaml", &SHEET.replace("samples: 64", "samples: 1024"))]);
+        folder(&[("stop.svg", svg), ("single.yaml", lens), ("s.yaml", &SHEET.replace("samples: 64", "samples: 4096"))]);
     let light = |aperture: &str| {
         let mut arguments = vec!["run", "s.yaml", "--output", "out"];
         let set = format!("lens.aperture={aperture}");

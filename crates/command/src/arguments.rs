@@ -237,7 +237,7 @@ pub(crate) struct Bench {
     after_long_help = "Example: which sources are there?\n  spectra list source"
 )]
 pub(crate) struct List {
-    /// Only this stage: source, color, wavelengths, surface, imager, film; or lens, stock.
+    /// Only this stage: source, color, wavelengths, surface, imager, response, film; or lens, stock.
     #[arg(value_name = "STAGE")]
     pub stage: Option<String>,
     /// A JSON list on standard output.

@@ -72,10 +72,12 @@ fn allow_figures(schema: &mut Value) {
             let free = !["pattern", "enum", "const"].iter().any(|key| map.contains_key(*key));
             match map.get_mut("type") {
                 Some(kind @ Value::String(_)) if free && kind == "string" => *kind = json!(["string", "number"]),
-                Some(Value::Array(kinds)) if free && kinds.iter().any(|k| k == "string") => {
-                    if !kinds.iter().any(|k| k == "number") && !kinds.iter().any(|k| k == "object") {
-                        kinds.push("number".into());
-                    }
+                Some(Value::Array(kinds))
+                    if free
+                        && kinds.iter().any(|k| k == "string")
+                        && !kinds.iter().any(|k| k == "number" || k == "object") =>
+                {
+                    kinds.push("number".into());
                 }
                 _ => {}
             }

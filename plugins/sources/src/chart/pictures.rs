@@ -46,6 +46,7 @@ fn linear(ink: Ink) -> [f64; 3] {
     match ink {
         Ink::Gray(reflectance) => [reflectance; 3],
         Ink::Rgb(rgb) => rgb.map(decoded),
+        Ink::Own(number) => panic!("no drawn chart has the user's patch {number}"),
         Ink::Patch(name) => {
             let index = PATCHES.iter().position(|&known| known == name).expect("patches have listed names");
             PATCH_SRGB[index].map(|v| decoded(f64::from(v) / 255.0))

@@ -83,7 +83,7 @@ fn property<'a>(node: Node<'a, '_>, sheet: &StyleSheet<'a>, name: &str) -> Optio
         .and_then(|style| DeclarationTokenizer::from(style).filter(|d| d.name == name).map(|d| d.value).last());
     let in_sheet = || {
         let matching = sheet.rules.iter().filter(|rule| rule.selector.matches(&Element(node)));
-        matching.flat_map(|rule| &rule.declarations).filter(|d| d.name == name).map(|d| d.value).last()
+        matching.flat_map(|rule| &rule.declarations).filter(|d| d.name == name).map(|d| d.value).next_back()
     };
     declared.or_else(in_sheet).or_else(|| node.attribute(name)).map(str::trim)
 }
