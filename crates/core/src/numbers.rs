@@ -396,8 +396,7 @@ mod tests {
         const DRAWS: u64 = 40_000;
         let numbers = Numbers::random(7);
         for (stream, mean) in [0.1, 2.0, 40.0, 499.0, 501.0, 1e4].into_iter().enumerate() {
-            let counts: Vec<f64> =
-                (0..DRAWS).map(|i| poisson(mean, numbers.one(stream as u64, i, 0))).collect();
+            let counts: Vec<f64> = (0..DRAWS).map(|i| poisson(mean, numbers.one(stream as u64, i, 0))).collect();
             let n = DRAWS as f64;
             let average = counts.iter().sum::<f64>() / n;
             let variance = counts.iter().map(|c| (c - average) * (c - average)).sum::<f64>() / n;
@@ -411,7 +410,6 @@ mod tests {
         assert_eq!([poisson(0.0, 0.9), poisson(-1.0, 0.9), poisson(f64::NAN, 0.9)], [0.0; 3]);
         assert_eq!(poisson(2.0, 0.0), 0.0);
     }
-
 
     #[test]
     fn numbers_do_not_depend_on_the_cut_or_the_tier() {

@@ -293,4 +293,17 @@ mod tests {
         ]);
         assert_eq!(to_json(&all), expected);
     }
+
+    /// Whatever is wrong with a text, a person reads it, and a program counts as many faults.
+    #[test]
+    fn hostile_texts_are_shown() {
+        for text in
+            ["a: [", "\t- x", "{a: 1, a: 2}", "? \u{feff}", "a: \"\\x", "&a [*a]", "%YAML 9", "a: !t 1", "\u{1}: \u{2}"]
+        {
+            if let Err(faults) = crate::yaml::parse(spectra_core::params::SourceFile::new("x.yaml", text)) {
+                assert!(!render(&faults, true).is_empty(), "{text:?}");
+                assert_eq!(to_json(&faults).as_array().map_or(0, Vec::len), faults.len(), "{text:?}");
+            }
+        }
+    }
 }

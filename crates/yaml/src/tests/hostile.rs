@@ -167,8 +167,5 @@ fn sound(bytes: &[u8]) -> Result<(), TestCaseError> {
             }
         }
     }
-    prop_assert!(!crate::diagnostics::render(&faults, true).is_empty());
-    let count = crate::diagnostics::to_json(&faults).as_array().map_or(0, Vec::len);
-    prop_assert_eq!(count, faults.len());
     Ok(())
 }
