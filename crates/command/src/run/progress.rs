@@ -87,9 +87,6 @@ impl Progress {
     /// From now on it is this one of several pictures.
     pub(crate) fn picture(&mut self, place: Place) {
         self.place = Some(place);
-        if let Listener::Bar(bar) = &self.listener {
-            bar.reset();
-        }
     }
 
     /// No picture is rendered any more.
@@ -161,6 +158,11 @@ impl Progress {
                     direction(scene)
                 ));
             }
+        }
+        // The bar of the picture before is gone; below the words about this one it begins anew.
+        if let (Listener::Bar(bar), Some(_)) = (&self.listener, self.place) {
+            bar.set_message(self.place());
+            bar.reset();
         }
     }
 
