@@ -147,7 +147,7 @@ mod tests {
             assert!(packages.iter().any(|(name, path)| name == "spectra-core" && path.ends_with("crates/core")));
             assert!(packages.iter().any(|(name, path)| name == "spectra-plugins" && path.ends_with("plugins/all")));
         }
-        assert!(Sources::find(Some(&root.join("crates/scene")), never).is_err());
+        assert!(Sources::find(Some(&root.join("crates")), never).is_err());
         assert!(Sources::find(Some(Path::new("no/such/folder")), never).is_err());
     }
 }

@@ -12,6 +12,8 @@ pub struct Pixel {
     pub index: u64,
     /// Its area on the film, mm^2.
     pub area_mm2: f64,
+    /// Number of the frame of an animation; 0 of a single picture.
+    pub frame: u64,
 }
 
 /// A film of one layer: a spectral response, an exposure time, and the color that an exposure becomes.
@@ -29,6 +31,7 @@ pub struct OneLayer<T> {
     channel: Channel,
     exposure_time_s: f64,
     tone: T,
+    frame: u64,
 }
 
 impl<T: Fn(f64, Pixel) -> [f64; 3] + Send + Sync> OneLayer<T> {
@@ -46,7 +49,7 @@ impl<T: Fn(f64, Pixel) -> [f64; 3] + Send + Sync> OneLayer<T> {
     ) -> Self {
         let response = context.grid.wavelengths_nm().map(sees).collect();
         let channel = Channel { name: name.to_owned(), unit: unit.to_owned(), response };
-        Self { channel, exposure_time_s, tone }
+        Self { channel, exposure_time_s, tone, frame: 0 }
     }
 }
 
@@ -63,10 +66,15 @@ impl<T: Fn(f64, Pixel) -> [f64; 3] + Send + Sync> Film for OneLayer<T> {
         let (size, values) = (exposure.size, exposure.values(&self.channel.name)?);
         let area_mm2 = size.pixel_area_mm2();
         let color = |(index, value): (usize, &f32)| {
-            (self.tone)(f64::from(*value), Pixel { index: index as u64, area_mm2 }).map(|c| c as f32)
+            let pixel = Pixel { index: index as u64, area_mm2, frame: self.frame };
+            (self.tone)(f64::from(*value), pixel).map(|c| c as f32)
         };
         let rgb = values.iter().enumerate().map(color).collect();
         Ok(DisplayPicture { width_px: size.width_px, height_px: size.height_px, rgb })
+    }
+
+    fn set_frame(&mut self, frame: u64) {
+        self.frame = frame;
     }
 
     fn describe(&self) -> String {

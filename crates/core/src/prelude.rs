@@ -7,6 +7,8 @@ pub use crate::params::{
 };
 pub use crate::registry::Context;
 pub use crate::spectral::{Channel, Grid, Line, SpectralPower, SystemResponse};
-pub use crate::stage::{Emit, Film, Imager, Launch, Radiance, Receive, Source, WavelengthDensity, WavelengthSampler};
+pub use crate::stage::{
+    Emit, Film, Imager, Launch, Radiance, Receive, Response, Source, WavelengthDensity, WavelengthSampler,
+};
 pub use crate::surface::{FromSag, PerRay, SagShape, Surface};
 pub use crate::{Isa, Loss, RayBatch};

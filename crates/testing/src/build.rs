@@ -4,7 +4,7 @@ use spectra_core::params::{Fault, Faults, Params, SourceFile};
 use spectra_core::registry::{self, Context, Stage};
 use spectra_core::resources::{Resource, ResourceError, Resources};
 use spectra_core::spectral::BAND;
-use spectra_core::stage::{ColorModel, Film, Imager, Source, WavelengthSampler};
+use spectra_core::stage::{ColorModel, Film, Imager, Response, Source, WavelengthSampler};
 use spectra_core::surface::Surface;
 use std::borrow::Cow;
 use std::path::Path;
@@ -78,6 +78,7 @@ builders! {
     wavelengths, dyn WavelengthSampler, "wavelength sampler", "{kind: uniform}";
     surface, dyn Surface, "surface", "{kind: sphere, radius: 50}";
     imager, dyn Imager, "imager", "{kind: xyz, format: 135, resolution: [96, 64]}";
+    response, dyn Response, "response", "{kind: photopic}";
     film, dyn Film, "film", "{stock: ilford-ortho-plus, exposure: 1/60 s}";
 }
 
@@ -93,6 +94,7 @@ pub fn assert_fault(stage: &str, yaml: &str, key: &str) {
         "wavelengths" => try_build::<dyn WavelengthSampler>(yaml).err(),
         "surface" => try_build::<dyn Surface>(yaml).err(),
         "imager" => try_build::<dyn Imager>(yaml).err(),
+        "response" => try_build::<dyn Response>(yaml).err(),
         "film" => try_build::<dyn Film>(yaml).err(),
         other => panic!("no stage is called `{other}`"),
     };

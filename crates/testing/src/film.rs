@@ -30,7 +30,7 @@ impl Default for FilmLaws {
     }
 }
 
-const SIZE: FrameSize = FrameSize { width_px: 9, height_px: 5, width_mm: 36.0, height_mm: 20.0 };
+pub(crate) const SIZE: FrameSize = FrameSize { width_px: 9, height_px: 5, width_mm: 36.0, height_mm: 20.0 };
 /// Exposures between the least and the most.
 const STEPS: usize = 24;
 
@@ -95,7 +95,7 @@ impl FilmLaws {
     }
 }
 
-fn frame(channels: &[Channel], value: impl Fn(usize, usize) -> f32) -> ExposureFrame {
+pub(crate) fn frame(channels: &[Channel], value: impl Fn(usize, usize) -> f32) -> ExposureFrame {
     let plane = |(at, channel): (usize, &Channel)| ExposureChannel {
         name: channel.name.clone(),
         unit: channel.unit.clone(),

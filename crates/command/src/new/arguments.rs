@@ -74,6 +74,8 @@ pub(crate) enum Stage {
     Sampler,
     /// What records light.
     Imager,
+    /// What a detector sees, by channel.
+    Response,
 }
 
 impl Stage {
@@ -85,6 +87,7 @@ impl Stage {
             Self::Source => "source",
             Self::Sampler => "wavelengths",
             Self::Imager => "imager",
+            Self::Response => "response",
         }
     }
 

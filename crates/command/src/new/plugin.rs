@@ -23,6 +23,9 @@ fn templates(stage: Stage) -> (&'static str, &'static str, Option<&'static str>)
         Stage::Sampler => {
             (include_str!("templates/wavelengths/lib.rs"), include_str!("templates/wavelengths/scene.yaml"), None)
         }
+        Stage::Response => {
+            (include_str!("templates/response/lib.rs"), include_str!("templates/response/scene.yaml"), None)
+        }
         Stage::Imager => (include_str!("templates/imager/lib.rs"), include_str!("templates/imager/scene.yaml"), None),
     }
 }

@@ -32,7 +32,8 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Film>, Faults
     let efficiency = |nm: f64| 0.35 / (1.0 + exp((450.0 - nm) / 15.0)) / (1.0 + exp((nm - 890.0) / 8.0));
     let sees = move |nm: f64| efficiency(nm) * nm / 1.986_445_857e-16;
     let screen = move |electrons_per_m2: f64, pixel: Pixel| {
-        let sparks = poisson(1e-6 * electrons_per_m2 * pixel.area_mm2, Numbers::random(1).one(pixel.index, 0, 0));
+        let sparks =
+            poisson(1e-6 * electrons_per_m2 * pixel.area_mm2, Numbers::random(pixel.frame).one(pixel.index, 0, 0));
         [0.23, 1.0, 0.03].map(|green| green * (1.0 - exp(-sparks / p.full.get())))
     };
     Ok(Box::new(OneLayer::new("night vision", "m^-2", context, sees, p.exposure.s(), screen)))
