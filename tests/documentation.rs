@@ -190,6 +190,10 @@ fn build(stage: &str, example: &str, folder: &Path) -> Result<(), String> {
         "film" => {
             scene_with(folder, &[("imager", "{kind: film, format: 135, resolution: [12, 8]}"), ("film", example)])
         }
+        "response" => {
+            let imager = format!("kind: detector\nformat: 135\nresolution: [12, 8]\n{}", section("response", example));
+            scene_with(folder, &[("imager", &imager)])
+        }
         // A stage that stands in another: its YAML is read, and its own tests build it.
         _ => parsed(folder, "example.yaml", example).map(|_| ()),
     }

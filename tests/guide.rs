@@ -1,6 +1,6 @@
 //! Every command of the guide is run, in order, each chapter in an empty folder with only the program on the path.
 //!
-//! A block ```` ```console ```` holds commands (lines that start with `$ `), each followed by what it prints; `...` stands for
+//! A block ```` ```console ```` holds commands (lines that start with `$ `), each followed by what it prints if that matters; `...` stands for
 //! any lines, and within a line for anything. A block of any language with `file=NAME` is written to that file; `same-as=PATH`
 //! says that it is the same as a file of the repository. `console fails`
 //! says that its last command must fail.
@@ -130,7 +130,7 @@ fn run(chapter: &str, folder: &Path) {
             assert_eq!(output.status.success(), !fails, "{}: `{command}`\n{said}", place(block.line));
             let lines: Vec<&str> = said.lines().collect();
             assert!(
-                matches(expected, &lines),
+                expected.is_empty() || matches(expected, &lines),
                 "{}: `{command}` printed\n{said}\nand the guide has\n{}",
                 place(block.line),
                 expected.join("\n")

@@ -9,7 +9,10 @@ use spectra_core::spectral::Channel;
 use spectra_core::stage::{Imager, Launch, Receive, Response};
 
 imager_params! {
-    /// A frame of detectors that see what a `response` says: sensitivities from files, a light meter, the eye at night.
+    /// A frame of detectors that see what a `response` says.
+    ///
+    /// For detectors of your own (sensitivities from files), a light meter, the eye at night. Each channel holds the
+    /// integral of irradiance times response, and with an exposure time that times the seconds.
     ///
     /// # Example
     /// ```yaml

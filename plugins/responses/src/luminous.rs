@@ -16,6 +16,9 @@ const SCOTOPIC_EFFICACY_LM_PER_W: f64 = 1700.0;
 
 /// A light meter: illuminance by V(lambda), in lux; the picture is gray.
 ///
+/// What a luxmeter in the image plane would read, pixel by pixel: for the fall of light toward the corners, or the light
+/// of a lamp on a wall.
+///
 /// # Example
 /// ```yaml
 /// {kind: photopic, white: 500}

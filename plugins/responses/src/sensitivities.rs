@@ -11,8 +11,9 @@ use spectra_core::stage::Response;
 use spectra_spectrum::{find_emission_in, find_sensitivity_in};
 use std::collections::BTreeMap;
 
-/// A detector by the spectral sensitivities of its channels: files beside the scene, bundled names, or spectra written out.
+/// A detector by the spectral sensitivities of its channels.
 ///
+/// Sensitivities are files beside the scene, bundled names, or spectra written out.
 /// A channel holds the integral of irradiance times sensitivity: W m^-2 where the sensitivity is a number without unit.
 /// The picture has the channels as red, green and blue (three channels) or gray (one); otherwise a `matrix` says how.
 ///

@@ -8,8 +8,9 @@ use super::{Development, FilterFactor, Layer, Process, Reading, SensitivityError
 use crate::curve::{
     AVERAGE_GRADIENT_SPAN, CharacteristicCurve, CurveError, SPEED_POINT_DENSITY, TabulatedCurve, ToeShoulder,
 };
-use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::Deserialize;
+use serde_json::{Value, json};
 use spectra_core::math::log10;
 use spectra_core::params::{Fault, Faults, Node, Params, Positive};
 use spectra_core::resources::{Resource, ResourceError, Resources, beside};
@@ -218,20 +219,17 @@ struct FilterFactorFile {
 
 /// The schema of a stock file.
 pub(super) fn schema(generator: &mut SchemaGenerator) -> Schema {
-    let whole = StockFile::json_schema(generator);
-    // What a stock that is like another one states is a part of this, key by key.
-    json_schema!({
-        "if": { "type": "object", "required": ["like"] },
-        "then": {
-            "type": "object",
-            "properties": {
-                "like": { "type": "string", "description": "The stock whose keys hold where this file states none." },
-                "name": { "type": "string", "description": "Name that people know it by." },
-            },
-            "required": ["like", "name"],
-        },
-        "else": whole,
-    })
+    let mut whole = StockFile::json_schema(generator);
+    if let Some(Value::Object(keys)) = whole.get_mut("properties") {
+        let text = "The stock whose keys hold where this file states none: a bundled one, or a file beside this.";
+        keys.insert("like".to_owned(), json!({ "type": "string", "description": text }));
+    }
+    // A stock that is like another one states a part of this.
+    let required = whole.remove("required").unwrap_or_else(|| json!([]));
+    whole.insert("if".to_owned(), json!({ "required": ["like"] }));
+    whole.insert("then".to_owned(), json!({ "required": ["like", "name"] }));
+    whole.insert("else".to_owned(), json!({ "required": required }));
+    whole
 }
 
 /// Reads and checks the whole file; every fault of it in one go.

@@ -28,15 +28,14 @@ spectra_core::register!(film "night-vision": NightVisionParams, build);
 
 fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Film>, Faults> {
     let p: NightVisionParams = params.parse()?;
-    // Electrons a joule: quantum efficiency, a plateau with soft ends, over the energy of a photon.
+    // Electrons mm^-2 of J m^-2: quantum efficiency, a plateau with soft ends, over the energy of a photon.
     let efficiency = |nm: f64| 0.35 / (1.0 + exp((450.0 - nm) / 15.0)) / (1.0 + exp((nm - 890.0) / 8.0));
-    let sees = move |nm: f64| efficiency(nm) * nm / 1.986_445_857e-16;
-    let screen = move |electrons_per_m2: f64, pixel: Pixel| {
-        let sparks =
-            poisson(1e-6 * electrons_per_m2 * pixel.area_mm2, Numbers::random(pixel.frame).one(pixel.index, 0, 0));
+    let sees = move |nm: f64| efficiency(nm) * nm / 1.986_445_857e-10;
+    let screen = move |per_mm2: f64, pixel: Pixel| {
+        let sparks = poisson(per_mm2 * pixel.area_mm2, Numbers::random(pixel.frame).one(pixel.index, 0, 0));
         [0.23, 1.0, 0.03].map(|green| green * (1.0 - exp(-sparks / p.full.get())))
     };
-    Ok(Box::new(OneLayer::new("night vision", "m^-2", context, sees, p.exposure.s(), screen)))
+    Ok(Box::new(OneLayer::new("night vision", "mm^-2", context, sees, p.exposure.s(), screen)))
 }
 
 #[cfg(test)]
@@ -50,9 +49,9 @@ mod tests {
     #[test]
     fn electrons_are_counted() {
         let size = FrameSize { width_px: 200, height_px: 100, width_mm: 2.0, height_mm: 1.0 };
-        let values = vec![(5.0 / (1e-6 * size.pixel_area_mm2())) as f32; size.pixels()];
+        let values = vec![(5.0 / size.pixel_area_mm2()) as f32; size.pixels()];
         let name = film(FILM).channels()[0].name.clone();
-        let channels = vec![ExposureChannel { name, unit: "m^-2".into(), values }];
+        let channels = vec![ExposureChannel { name, unit: "mm^-2".into(), values }];
         let picture = film(FILM).develop(&ExposureFrame { size, channels }).unwrap();
         let dark = picture.rgb.iter().filter(|c| c[1] == 0.0).count() as f64;
         let expected = 20_000.0 * (-5.0_f64).exp();
