@@ -62,7 +62,99 @@ pub fn file_schema(kind: FileKind) -> Value {
         }
     }
     allow_figures(&mut whole);
+    if kind == FileKind::Scene {
+        allow_variables(&mut whole);
+        whole = or_part(whole);
+    }
     whole
+}
+
+/// A text that stands for a value with a name, see [`crate::load_series`].
+const VARIABLE: &str = r"^\$[A-Za-z_{]";
+
+/// Wherever a value is wanted, `$name` may stand for it.
+fn allow_variables(schema: &mut Value) {
+    let Value::Object(map) = schema else {
+        if let Value::Array(items) = schema {
+            items.iter_mut().for_each(allow_variables);
+        }
+        return;
+    };
+    for (key, inside) in map.iter_mut() {
+        allow_variables(inside);
+        match (key.as_str(), inside) {
+            ("properties", Value::Object(properties)) => properties.values_mut().for_each(or_variable),
+            ("items", items @ Value::Object(_)) => or_variable(items),
+            _ => {}
+        }
+    }
+}
+
+fn or_variable(schema: &mut Value) {
+    let Value::Object(map) = schema else { return };
+    if map.contains_key("const") {
+        return;
+    }
+    if let Some(Value::String(pattern)) = map.get_mut("pattern") {
+        *pattern = format!("{pattern}|{VARIABLE}");
+        return;
+    }
+    let description = map.get("description").cloned();
+    let mut either = json!({ "if": { "type": "string", "pattern": VARIABLE }, "else": schema.take() });
+    if let Some(description) = description {
+        either["description"] = description;
+    }
+    *schema = either;
+}
+
+/// A scene that includes others states a part of what a scene needs: for it nothing is required.
+fn or_part(mut whole: Value) -> Value {
+    let Some(definitions) = whole.as_object_mut().and_then(|map| map.remove("$defs")) else { return whole };
+    let head = json!({ "$schema": whole["$schema"].take(), "title": whole["title"].take() });
+    if let Some(map) = whole.as_object_mut() {
+        map.retain(|key, _| key != "$schema" && key != "title");
+    }
+    let mut all = serde_json::Map::new();
+    if let Value::Object(definitions) = definitions {
+        for (name, definition) in definitions {
+            let mut part = definition.clone();
+            make_part(&mut part);
+            all.insert(format!("part-{name}"), part);
+            all.insert(name, definition);
+        }
+    }
+    let mut part = whole.clone();
+    make_part(&mut part);
+    all.insert("part-scene".to_owned(), part);
+    all.insert("scene".to_owned(), whole);
+    let mut schema = head;
+    schema["if"] = json!({ "type": "object", "required": ["include"] });
+    schema["then"] = json!({ "$ref": "#/$defs/part-scene" });
+    schema["else"] = json!({ "$ref": "#/$defs/scene" });
+    schema["$defs"] = Value::Object(all);
+    schema
+}
+
+/// Takes away what is required, but where it decides between kinds.
+fn make_part(schema: &mut Value) {
+    match schema {
+        Value::Object(map) => {
+            let decides = map.get("required").is_some() && map.get("properties").is_some_and(is_one_const);
+            if !decides && map.contains_key("properties") {
+                map.remove("required");
+            }
+            if let Some(Value::String(to)) = map.get_mut("$ref") {
+                *to = to.replace("#/$defs/", "#/$defs/part-");
+            }
+            map.values_mut().for_each(make_part);
+        }
+        Value::Array(items) => items.iter_mut().for_each(make_part),
+        _ => {}
+    }
+}
+
+fn is_one_const(properties: &Value) -> bool {
+    properties.as_object().is_some_and(|map| map.len() == 1 && map.values().all(|p| p.get("const").is_some()))
 }
 
 /// A text that is all digits (`format: 135`) is a number to other readers of YAML.
@@ -162,7 +254,7 @@ mod tests {
             references(&schema, &mut wanted);
             for name in wanted {
                 // No plugin is linked into this test: the stages' definitions come with them.
-                let stage = ["source", "color", "wavelengths", "surface", "imager", "film"].contains(&name.as_str());
+                let stage = ["source", "color", "wavelengths", "surface", "imager", "film"].contains(&name.trim_start_matches("part-"));
                 assert!(stage || schema["$defs"].get(&name).is_some(), "{}: {name}", kind.name());
             }
         }

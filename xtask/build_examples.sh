@@ -1,0 +1,30 @@
+#!/usr/bin/env bash
+# Tests, builds in and renders the plugins of plugins/examples, each copied out of the repository first: as a stranger's
+# crates. Needs the program: SPECTRA names it, or it is built. The profile is dev, so that dependencies are built once.
+set -euo pipefail
+root=$(cd "$(dirname "$0")/.." && pwd)
+target=${CARGO_TARGET_DIR:-$root/target}
+program=${SPECTRA:-$target/debug/spectra}
+[ -x "$program" ] || (cd "$root" && cargo build --locked)
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+export CARGO_TARGET_DIR=$target
+with=()
+for example in "$root"/plugins/examples/*/; do
+    name=$(basename "$example")
+    cp -r "$example" "$work/$name"
+    # Outside of the repository the path of the patch is another one.
+    sed -i "s|path = \"../../../crates|path = \"$root/crates|" "$work/$name/Cargo.toml"
+    cp "$root/Cargo.lock" "$work/$name/Cargo.lock"
+    (cd "$work/$name" && cargo clippy --all-targets -- -D warnings && cargo test)
+    with+=(--with "$work/$name")
+done
+cd "$work"
+SPECTRA_CACHE=$work/cache "$program" build "${with[@]}" --core "$root" --profile dev -o spectra-mine
+python3 "$root/xtask/validate_schemas.py" ./spectra-mine
+for name in axicon night-vision lenslets; do
+    ./spectra-mine run "$name/scene.yaml" --samples 16 --output "out/$name" --quiet
+    test -s "out/$name/scene.png"
+done
+echo "$(ls out | wc -l) pictures"
+if [ -n "${PICTURES:-}" ]; then cp -r out/. "$PICTURES"; fi
