@@ -235,20 +235,20 @@ fn fitted_terms_are_a_spectrum_like_any_other() {
     }
 }
 
-/// Bad files end in an error that names file, row and column.
+/// Bad files end in an error that names file, line and column.
 #[test]
 fn bad_files_are_refused_with_their_place() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("bad.csv");
     let head = |kind: &str| format!("# spectra: 1\n# kind: {kind}\nwavelength_nm,p\n");
     for (text, place, word) in [
-        (format!("{}400,1\n390,1\n", head("emission")), "row 5, column 1", "wavelengths must increase"),
-        (format!("{}400,1\n410,-1\n", head("emission")), "row 5, column 2 (p)", "cannot be negative"),
-        (format!("{}400,NaN\n", head("emission")), "row 4, column 2 (p)", "not a finite number"),
-        (format!("{}400,87\n", head("sensitivity")), "row 4, column 2 (p)", "percent"),
-        (format!("{}400;87\n", head("sensitivity")), "row 4, column 1", "fields"),
-        (String::new(), "bad.csv", "holds no data"),
-        (head("emission"), "bad.csv", "holds no data"),
+        (format!("{}400,1\n390,1\n", head("emission")), "bad.csv:5:1", "wavelengths must increase"),
+        (format!("{}400,1\n410,-1\n", head("emission")), "bad.csv:5:5", "cannot be negative"),
+        (format!("{}400,NaN\n", head("emission")), "bad.csv:4:5", "not a finite number"),
+        (format!("{}400,87\n", head("sensitivity")), "bad.csv:4:5", "percent"),
+        (format!("{}400;87\n", head("sensitivity")), "bad.csv:4:1", "fields"),
+        (String::new(), "bad.csv:1:1", "holds no data"),
+        (head("emission"), "bad.csv:1:1", "holds no data"),
     ] {
         std::fs::write(&path, &text).expect("written");
         let message = refused(&["info", shown(&path)]);

@@ -94,7 +94,7 @@ fn each_fault_names_its_key() {
 }
 
 #[test]
-fn faulty_tables_are_told_with_row_and_column() {
+fn faulty_tables_are_told_with_line_and_column() {
     let text = load(SOUND, "wavelength_nm,sensitivity\n400,1\n500,x\n").unwrap_err();
     assert!(text.contains("tables/pan.csv:3:5: `x` is not a number"), "{text}");
     let text = load(SOUND, "wavelength_nm,sensitivity\n700,1\n1000,1\n").map(|_| ()).err();

@@ -226,7 +226,7 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
     let reference_nm = lines::by_name(&file.reference_line).map_or_else(
         || {
             let fault = params.fault("reference-line", format!("unknown spectral line `{}`", file.reference_line));
-            faults.push(fault.hint("d, D and e are usual"));
+            faults.push(fault.hint("d, D and e are usual; any of i h g F' F e d D C' C r A' s t"));
             lines::D.wavelength_nm
         },
         |line| line.wavelength_nm,
@@ -242,13 +242,14 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
         ..Lens::empty("")
     };
     if file.surfaces.is_empty() {
-        faults.push(params.fault("surfaces", "a lens has at least one surface"));
+        let fault = params.fault("surfaces", "a lens has at least one surface");
+        faults.push(fault.hint("such as `- {kind: sphere, radius: 50, thickness: 5, glass: SCHOTT/N-BK7}`"));
     }
     let context = Context { resources, grid: BAND, illuminant: None };
     let mut medium_before = 0;
     let mut along = true;
     let mut breaks = Vec::new();
-    for node in &file.surfaces {
+    for (at, node) in file.surfaces.iter().enumerate() {
         let Some(params) = faults.take(node.params()) else { continue };
         if params.kind() == Some(BREAK) {
             let own = faults.take(params.parse::<BreakParams>());
@@ -285,6 +286,12 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
         if stated.mirror {
             along = !along;
         }
+        // A break of the axis that follows states the distance itself.
+        let distance_follows = file.surfaces.get(at + 1).is_none_or(|next| kind_of(next) == Some(BREAK));
+        if stated.thickness.is_none() && medium_after != 0 && medium_after != medium_before && !distance_follows {
+            let fault = place.fault("thickness", "missing key `thickness`: a glass begins here and has no thickness");
+            faults.push(fault.hint("add `thickness: ...`, the distance to the next surface; 0 where they touch"));
+        }
         let thickness_mm = stated.thickness.map_or(0.0, |t| t.mm());
         // Behind a mirror light runs the other way; between two planes in air the step may be imagined.
         if thickness_mm < 0.0 && along && medium_after != medium_before {
@@ -309,6 +316,19 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
         element.chamfer_mm = stated.chamfer.map_or(0.0, Length::mm);
         element.apertures = apertures.and_then(|read| faults.take(read)).unwrap_or_default();
         element.stop |= stated.stop;
+        if element.stop
+            && let Some(first) = lens.elements.iter().position(|e| e.stop)
+        {
+            let fault = place.fault_here(format!("a second stop: surface {} is one already", first + 1));
+            faults.push(fault.hint("a lens has one; elsewhere a `semi-diameter` or an `aperture` limits the light"));
+        }
+        if let Some(semi_diameter_mm) = semi_diameter_mm.filter(|s| *s > 0.0)
+            && let Some(reach_mm) = reach_mm(&*element.surface, semi_diameter_mm)
+        {
+            let text =
+                format!("the surface ends {reach_mm} mm from its axis: it has no point at {semi_diameter_mm} mm");
+            faults.push(place.fault("semi-diameter", text).hint("a smaller semi-diameter, or a longer radius"));
+        }
         element.coating = stated.coating.as_ref().and_then(|node| faults.take(read_coating(node, resources)));
         element.reflectance = stated.reflectance.map_or(1.0, Ratio::number);
         if stated.reflectance.is_some() && !stated.mirror {
@@ -344,10 +364,6 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
         }
     }
     lens.arrange();
-    let stops = lens.elements.iter().filter(|e| e.stop).count();
-    if stops > 1 {
-        faults.push(params.fault("surfaces", format!("{stops} surfaces are stops; a lens has one")));
-    }
     faults.into_result(lens)
 }
 
@@ -432,6 +448,30 @@ fn group(node: &StageNode, surfaces: usize) -> Result<Group, Faults> {
     })
 }
 
+/// The kind that an item of the list names.
+fn kind_of(node: &StageNode) -> Option<&str> {
+    node.node().get("kind").unwrap_or(node.node()).as_str()
+}
+
+/// By how much a semi-diameter may exceed the surface: published tables round that of a hemisphere up (the Minolta
+/// fisheye's by 0.7 %).
+const BEYOND: f64 = 0.02;
+
+/// Where a surface ends, mm from its axis, if that is before `semi_diameter_mm` along both x and y.
+fn reach_mm(surface: &dyn Surface, semi_diameter_mm: f64) -> Option<f64> {
+    let reaches = |r: f64| surface.sag_mm(r, 0.0).is_some() || surface.sag_mm(0.0, r).is_some();
+    if reaches(semi_diameter_mm * (1.0 - BEYOND)) || !reaches(0.0) {
+        return None;
+    }
+    let (mut inside, mut outside) = (0.0, semi_diameter_mm);
+    for _ in 0..50 {
+        let middle = 0.5 * (inside + outside);
+        if reaches(middle) { inside = middle } else { outside = middle }
+    }
+    // As a person writes it.
+    Some((outside * 1e4).round() / 1e4)
+}
+
 /// The medium that a surface states, or `None` for air.
 fn medium(
     stated: &Place,
@@ -441,22 +481,25 @@ fn medium(
     warnings: &mut Vec<String>,
 ) -> Result<Option<LensMedium>, Faults> {
     let by_figures = |nd: f64, vd: Option<f64>, key: &str| -> Result<Medium, Fault> {
-        let refuse = |what: String| Err(place.fault(key, what).hint("nd lies between 1 and 4, vd between 5 and 200"));
+        let at = |figure: &str| if key == "glass" { format!("glass.{figure}") } else { figure.to_owned() };
         if !(1.0..=4.0).contains(&nd) {
-            return refuse(format!("an index of {nd}"));
+            return Err(place.fault(&at("nd"), format!("no glass has an index of {nd}")).hint("from 1 to 4"));
         }
         match vd {
             None => Ok(Medium::Constant(nd)),
             Some(vd) if (5.0..=200.0).contains(&vd) => {
-                Medium::from_nd_vd(nd, vd).ok_or_else(|| place.fault(key, format!("no glass has nd {nd} and vd {vd}")))
+                let fault = || place.fault(&at("vd"), format!("no glass has nd {nd} and vd {vd}"));
+                Medium::from_nd_vd(nd, vd).ok_or_else(|| fault().hint("an index near 1 has no such dispersion"))
             }
-            Some(vd) => refuse(format!("an Abbe number of {vd}")),
+            Some(vd) => {
+                Err(place.fault(&at("vd"), format!("no glass has an Abbe number of {vd}")).hint("from 5 to 200"))
+            }
         }
     };
     let Some(glass) = &stated.glass else {
         let Some(nd) = stated.nd else {
             if stated.vd.is_some() {
-                return Err(place.fault("vd", "`vd` without `nd` says nothing").into());
+                return Err(place.fault("vd", "`vd` without `nd` says nothing").hint("add `nd: ...`").into());
             }
             return Ok(None);
         };
@@ -468,10 +511,10 @@ fn medium(
             return Ok(None);
         }
         let medium = match stated.nd.filter(|_| !file::is_file(name)) {
-            Some(nd) => Catalogue::bundled().find_with(name, nd, stated.vd).map(Medium::from).map_err(|e| {
-                let hint = file::hint(&e);
-                place.fault("glass", e.to_string()).hint(hint)
-            })?,
+            Some(nd) => Catalogue::bundled()
+                .find_with(name, nd, stated.vd)
+                .map(Medium::from)
+                .map_err(|e| place.fault("glass", e.message()).hint(e.hint()))?,
             None => file::medium(name, place, "glass", resources)?,
         };
         let own = medium.index(lines::D.wavelength_nm);

@@ -1,5 +1,8 @@
 //! Why a scene cannot be rendered.
 
+use spectra_core::params::{Fault, Faults};
+use spectra_scene::Scene;
+
 /// Why a scene cannot be rendered as asked.
 #[derive(Debug, thiserror::Error)]
 pub enum RenderError {
@@ -30,4 +33,32 @@ pub enum RenderError {
     /// No threads to be had.
     #[error("cannot start threads: {0}")]
     Threads(String),
+}
+
+impl RenderError {
+    /// The same as a fault of the scene, at the section that has it; `None` for what is not the scene's doing.
+    #[must_use]
+    pub fn faults(&self, scene: &Scene) -> Option<Faults> {
+        let at = |key: &str, text: &str, hint: &str| -> Option<Faults> {
+            let key =
+                key.split_once('.').filter(|(section, _)| scene.params.get(section).is_none()).map_or(key, |(s, _)| s);
+            let fault: Fault = scene.params.fault(key, text).hint(hint);
+            Some(fault.into())
+        };
+        let text = self.to_string();
+        match self {
+            Self::CannotEmit | Self::CannotReceive => at("render.direction", &text, "`direction: backward`"),
+            Self::CannotLaunch | Self::NoRadiance => at("render.direction", &text, "`direction: forward`"),
+            Self::NoAperture => {
+                at("lens", &text, "state `semi-diameter` in the lens file, at least of the first surface")
+            }
+            // The strategy says in one text what is wrong and what to take.
+            Self::Sampler(text) => match text.split_once("; ") {
+                Some((text, hint)) => at("wavelengths", text, hint),
+                None => at("wavelengths", text, "leave `wavelengths` out for the usual strategy"),
+            },
+            Self::Lens(text) => at("lens", text, "another glass, or another `wavelengths: {band: ...}`"),
+            Self::Overflow | Self::Threads(_) => None,
+        }
+    }
 }

@@ -1,12 +1,13 @@
 //! From a scene file to a [`Scene`], with every fault in one go.
 
+use crate::advice::{self, FileIs};
 use crate::filters;
 use crate::lens_section::{LensSection, lens_of};
 use crate::{ConePattern, Direction, NumberFamily, Output, RenderSettings, Scene, films, language, output, yaml};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::numbers::seed_of_frame;
-use spectra_core::params::{Fault, Faults, Node, Params, StageNode, Value, Wavelength};
+use spectra_core::params::{Fault, Faults, Node, Params, StageNode, Value, Wavelength, nearest};
 use spectra_core::registry::{self, Context, StageOf};
 use spectra_core::resources::Resources;
 use spectra_core::spectral::{BAND, Channel, Grid};
@@ -143,7 +144,7 @@ pub(crate) fn read(path: &Path) -> Result<Node, Faults> {
             }
         }
     }
-    yaml::read(path)
+    yaml::read(path).map_err(|faults| advice::unreadable(faults, path))
 }
 
 /// The scene as written, with the overrides below it. What changes no picture is left out, so that the
@@ -166,6 +167,13 @@ pub(crate) fn record(text: &str, overrides: &[String]) -> String {
 /// # Errors
 /// Everything that is wrong with it, each with its place.
 pub(crate) fn assemble(name: &str, text: String, params: &Params, resources: &dyn Resources) -> Result<Scene, Faults> {
+    if let Some(fault) = advice::other_file(params.node(), FileIs::Scene) {
+        return Err(Fault { message: fault.message, hint: fault.hint, ..params.fault_here("") }.into());
+    }
+    all_stages(name, text, params, resources).map_err(|faults| advice::advised(faults, params))
+}
+
+fn all_stages(name: &str, text: String, params: &Params, resources: &dyn Resources) -> Result<Scene, Faults> {
     let mut faults = Faults::new();
     // Several films are no single stage: their section is read apart.
     let (several, others) = match params.get("film").map(|node| &node.value) {
@@ -194,7 +202,7 @@ pub(crate) fn assemble(name: &str, text: String, params: &Params, resources: &dy
     if let (Some(place), Some(lens), Some(source)) = (lens_place, &lens, &source)
         && lens.elements.first().is_some_and(|e| e.kind == MATTE_BOX && e.vertex_z_mm() <= -source.distance_mm())
     {
-        let fault = place.fault("matte-box", "the source stands between the matte box and the lens");
+        let fault = place.fault("matte-box.distance", "the source stands between the matte box and the lens");
         faults.push(fault.hint(format!("nearer to the lens than {} mm", source.distance_mm())));
     }
     let imager = imager.and_then(|p| faults.take(registry::build::<dyn Imager>(&p, &context)));
@@ -228,7 +236,13 @@ pub(crate) fn assemble(name: &str, text: String, params: &Params, resources: &dy
         && wanted.contains(&Output::Dng)
         && !imager.has_converter()
     {
-        let fault = params.fault("output", "this imager has no converter: there are no raw numbers");
+        let is_dng = |item: &Node| matches!(item.get("kind").unwrap_or(item).as_str(), Some("dng"));
+        let at = match params.get("output").map(|node| &node.value) {
+            Some(Value::Seq(items)) => items.iter().position(is_dng),
+            _ => None,
+        };
+        let key = at.map_or_else(|| "output".to_owned(), |at| format!("output[{at}]"));
+        let fault = params.fault(&key, "this imager has no converter: there are no raw numbers");
         faults.push(fault.hint("`imager: {kind: sensor, ...}`, or leave `dng` out"));
     }
     let settings = match (&settings, &source, &imager) {
@@ -265,6 +279,7 @@ pub(crate) fn assemble(name: &str, text: String, params: &Params, resources: &dy
         render,
         output,
         warnings,
+        params: params.clone(),
     })
 }
 
@@ -289,7 +304,10 @@ fn render_settings(
     let mut whole = |key: &str, value: Option<f64>, default: f64, min: f64, max: f64| -> f64 {
         let value = value.unwrap_or(default);
         if value.fract() != 0.0 || !(value >= min && value <= max) {
-            faults.push(params.fault(key, format!("`{key}` must be a whole number from {min} to {max}")));
+            let fault = params.fault(key, format!("found {value}, expected a whole number"));
+            faults.push(fault.hint(format!("from {min} to {max}")));
+            // Nothing is told of what follows from it.
+            return min;
         }
         value
     };
@@ -303,7 +321,11 @@ fn render_settings(
         let Some(value) = value else { return 0 };
         known.iter().position(|k| *k == value).unwrap_or_else(|| {
             let fault = params.fault(key, format!("unknown {key} `{value}`"));
-            faults.push(fault.hint(format!("one of {}", known.join(", "))));
+            let one_of = format!("one of {}", known.join(", "));
+            faults.push(fault.hint(match nearest(value, known.iter().copied()) {
+                Some(near) => format!("did you mean `{near}`? Known: {}", known.join(", ")),
+                None => one_of,
+            }));
             0
         })
     };

@@ -7,10 +7,12 @@ use crate::filters::FilterForm;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{
-    Angle, FNumber, Faults, Length, OrInfinity, Params, Positive, SpatialFrequency, StageNode, Value, Wavelength,
+    Angle, FNumber, Fault, Faults, Length, OrInfinity, Params, Positive, SpatialFrequency, StageNode, Value, Wavelength,
 };
 use spectra_core::resources::Resources;
-use spectra_lens::{ApertureForm, CoatingForm, Criterion, FocusSearch, Lens, MatteBox, Misalignment, Shape};
+use spectra_lens::{
+    ApertureError, ApertureForm, CoatingForm, Criterion, FocusError, FocusSearch, Lens, MatteBox, Misalignment, Shape,
+};
 
 /// The `lens` section.
 #[derive(Debug, Deserialize, JsonSchema)]
@@ -124,6 +126,14 @@ struct Focus {
 /// The lens of a scene, set.
 pub(crate) fn lens_of(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults> {
     let mut faults = Faults::new();
+    if let Some(kind) = params.kind() {
+        let fault = params.fault("kind", "a lens has no kinds: its file is named by `file`");
+        return Err(match params.get("file") {
+            Some(_) => fault.hint("leave `kind` out"),
+            None => fault.hint(format!("write `lens: {{file: {kind}}}`")).path("lens"),
+        }
+        .into());
+    }
     let section = faults.take(params.parse::<LensSection>());
     // The lens is read even where another key of this section is faulty: all faults in one go.
     let file = params.get("file").and_then(|node| node.as_str());
@@ -141,7 +151,7 @@ pub(crate) fn lens_of(params: &Params, resources: &dyn Resources) -> Result<Lens
     lens.absorption = section.absorption.unwrap_or(lens.absorption);
     if let Some(f_number) = section.f_number {
         let stopped = lens.clone().at_f_number(f_number.number());
-        lens = faults.take(stopped.map_err(|e| params.fault("f-number", e.to_string()))).unwrap_or(lens);
+        lens = faults.take(stopped.map_err(|e| aperture_fault(params, &e))).unwrap_or(lens);
     }
     if let Some(node) = section.aperture {
         lens = faults.take(with_aperture(&lens, &node, resources)).unwrap_or(lens);
@@ -149,14 +159,14 @@ pub(crate) fn lens_of(params: &Params, resources: &dyn Resources) -> Result<Lens
     let focus = section.focus.and_then(|node| faults.take(focus_of(&node, lens.reference_nm)));
     if let Some(focus) = &focus {
         let focused = lens.clone().focused_at(focus.distance_mm);
-        lens = faults.take(focused.map_err(|e| params.fault("focus", e.to_string()))).unwrap_or(lens);
+        lens = faults.take(focused.map_err(|e| focus_fault(params, &e))).unwrap_or(lens);
     }
     for node in &section.adjust {
         lens = faults.take(adjusted(&lens, node)).unwrap_or(lens);
     }
     if let (Some(search), true) = (focus.and_then(|f| f.search), faults.is_empty()) {
         let found = lens.clone().focused_by(&search);
-        lens = faults.take(found.map_err(|e| params.fault("focus", e.to_string()))).unwrap_or(lens);
+        lens = faults.take(found.map_err(|e| focus_fault(params, &e))).unwrap_or(lens);
     }
     if let Some(node) = section.matte_box
         && let Some(p) = faults.take(node.parse::<MatteBoxParams>())
@@ -180,6 +190,33 @@ fn with_aperture(lens: &Lens, node: &StageNode, resources: &dyn Resources) -> Re
     }
     stop.apertures.extend(apertures);
     Ok(lens)
+}
+
+/// A fault at `f-number`.
+fn aperture_fault(params: &Params, error: &ApertureError) -> Fault {
+    let hint = match error {
+        ApertureError::TooFast { widest, .. } => {
+            format!("f/{:.2} or slower; leave `f-number` out for wide open", (widest * 100.0).ceil() / 100.0)
+        }
+        ApertureError::NoStop => "mark one in the lens file: `- {kind: stop, thickness: ...}`".to_owned(),
+        ApertureError::Unlimited => "state `semi-diameter` in the lens file".to_owned(),
+        ApertureError::NoRay(_) | ApertureError::Medium(_) => "leave `f-number` out for wide open".to_owned(),
+    };
+    params.fault("f-number", error.to_string()).hint(hint)
+}
+
+/// A fault at `focus`, or at its `distance`.
+fn focus_fault(params: &Params, error: &FocusError) -> Fault {
+    let key =
+        if params.get("focus").is_some_and(|node| node.get("distance").is_some()) { "focus.distance" } else { "focus" };
+    let hint = match error {
+        FocusError::TooNear { nearest_mm } => format!("farther than {nearest_mm:.1} mm, or `infinity`"),
+        FocusError::BeyondTable { nearest_mm, farthest_mm, .. } => {
+            format!("from {nearest_mm} to {farthest_mm} mm; or extend the table in the lens file")
+        }
+        _ => "another distance, or `infinity`".to_owned(),
+    };
+    params.fault(key, error.to_string()).hint(hint)
 }
 
 fn focus_of(node: &StageNode, reference_nm: f64) -> Result<Focus, Faults> {

@@ -3,6 +3,7 @@
 //! [`load`] reads a scene, finds every fault of it at once, and gives a [`Scene`]: all stages built, the
 //! lens focused and stopped, nothing traced yet. [`load_series`] does so for a file that stands for several pictures.
 
+mod advice;
 mod assemble;
 pub mod diagnostics;
 mod films;

@@ -1,5 +1,6 @@
 //! Files for stages: beside the scene first, then among the bundled data.
 
+use crate::advice::{FileIs, other_file};
 use crate::yaml;
 use spectra_core::params::{Fault, Faults, Params, SourceFile, nearest};
 use spectra_core::resources::{Resource, ResourceError, Resources};
@@ -71,7 +72,8 @@ impl Resources for FileResources {
                 if on_disk.is_file() {
                     let bytes = read_file(&on_disk, limit_bytes)?;
                     let folder = on_disk.parent().map(Path::to_owned);
-                    return Ok(Resource { name: on_disk.display().to_string(), folder, bytes: Cow::Owned(bytes) });
+                    let name = from_here(&on_disk).display().to_string();
+                    return Ok(Resource { name, folder, bytes: Cow::Owned(bytes) });
                 }
             }
         }
@@ -83,6 +85,9 @@ impl Resources for FileResources {
                 }
             }
         }
+        if plain(&self.folder.join(path)).is_dir() {
+            return Err(ResourceError::Io("this is a folder; a file is wanted".to_owned()));
+        }
         Err(ResourceError::NotFound(self.near(path, folders)))
     }
 
@@ -90,13 +95,18 @@ impl Resources for FileResources {
         // A lens of another program is read as the lens file that its import would write.
         let foreign = Format::of_name(path).filter(|_| folders.contains(&"lenses"));
         let limit = if foreign.is_some() { spectra_exchange::MAX_BYTES } else { MAX_DOCUMENT };
-        let resource = self.read(path, folders, endings, limit).map_err(|e| match e {
+        let resource = self.read(path, folders, endings, limit).map_err(|e| match &e {
             ResourceError::NotFound(near) if near.is_empty() => {
-                Fault::new(format!("`{path}`: no such file{}", self.looked()))
+                let hint = match folders {
+                    ["lenses"] => format!("a file beside the scene, or one of the bundled {}", self.bundled("lenses")),
+                    _ => "a file is looked for beside the scene, then among the bundled ones".to_owned(),
+                };
+                Fault::new(format!("`{path}`: no such file{}", self.looked())).hint(hint)
             }
             ResourceError::NotFound(near) => Fault::new(format!("`{path}`: no such file{}", self.looked()))
-                .hint(format!("did you mean {}?", list(&near))),
-            other => Fault::new(format!("`{path}`: {other}")),
+                .hint(format!("did you mean {}?", list(near))),
+            ResourceError::TooLarge(..) => Fault::new(format!("`{path}`: {e}")).hint("is this the right file?"),
+            ResourceError::Io(_) => Fault::new(format!("`{path}`: {e}")).hint("name a file that can be read"),
         })?;
         let node = match foreign {
             None => yaml::parse_bytes(&resource.name, &resource.bytes)?,
@@ -107,11 +117,26 @@ impl Resources for FileResources {
                 yaml::parse(SourceFile::new(resource.name, text))?
             }
         };
-        Params::section(node, "")
+        let wanted = match folders {
+            ["lenses"] => Some(FileIs::Lens),
+            ["spectra/film"] => Some(FileIs::Stock),
+            _ => None,
+        };
+        match wanted.and_then(|wanted| other_file(&node, wanted)) {
+            Some(fault) => Err(fault.into()),
+            None => Params::section(node, ""),
+        }
     }
 }
 
 impl FileResources {
+    /// The names of a bundled folder.
+    fn bundled(&self, folder: &str) -> String {
+        let names = spectra_data::list(folder).filter_map(|name| name.strip_prefix(folder)?.strip_prefix('/'));
+        let stems = names.filter(|name| !name.contains('/')).filter_map(|name| name.strip_suffix(".yaml"));
+        stems.collect::<Vec<_>>().join(", ")
+    }
+
     /// The nearest names, bundled or on disk.
     fn near(&self, path: &str, folders: &[&str]) -> Vec<String> {
         let mut names: Vec<String> = folders
@@ -131,7 +156,21 @@ impl FileResources {
                 names.extend(entries.take(10_000).flatten().filter_map(|e| e.file_name().into_string().ok()));
             }
         }
-        nearest(path, names.iter().map(String::as_str)).map(str::to_owned).into_iter().collect()
+        if let Some(near) = nearest(path, names.iter().map(String::as_str)) {
+            return vec![near.to_owned()];
+        }
+        // `a\b.png` names a file of a folder on one system only; `biotar-50` is a part of a name.
+        let slashed = path.replace('\\', "/");
+        if slashed != path && self.folder.join(&slashed).is_file() {
+            return vec![slashed];
+        }
+        let part = path.to_lowercase();
+        let mut holding: Vec<String> =
+            names.into_iter().filter(|n| part.len() >= 4 && n.to_lowercase().contains(&part)).collect();
+        holding.sort_unstable();
+        holding.dedup();
+        holding.truncate(4);
+        holding
     }
 }
 
@@ -153,6 +192,11 @@ fn read_file(path: &Path, limit_bytes: u64) -> Result<Vec<u8>, ResourceError> {
         return Err(ResourceError::TooLarge(bytes.len() as u64, limit_bytes));
     }
     Ok(bytes)
+}
+
+/// The path as a person who stands in the working folder would name it.
+fn from_here(path: &Path) -> &Path {
+    std::env::current_dir().ok().and_then(|here| path.strip_prefix(here).ok()).unwrap_or(path)
 }
 
 /// The same path without `.` in it, and from the working folder where it lies in that: as a person would write it.

@@ -427,7 +427,7 @@ fn of_node(node: &StageNode, wanted: Kind, loader: &Loader<'_>) -> Result<Piece,
     match node.node().as_str() {
         Some(name) => loader.piece(name, wanted).map_err(|e| match e {
             SpectrumError::Document(faults) => faults,
-            other => node.fault(other.to_string()).into(),
+            other => other.faults(|text| node.fault(text)),
         }),
         None => {
             loader.count("this file").map_err(|e| node.fault(e.to_string()))?;
@@ -530,7 +530,8 @@ fn lengths(params: &Params, keys: [&str; 2], [found, wanted]: [usize; 2], what: 
         return Err(params.fault(keys[0], format!("more than {MAX_ROWS} points")));
     }
     if found == 0 || found != wanted {
-        return Err(params.fault(keys[1], format!("{found} {}, but {what} asks for {wanted}", keys[1])));
+        let fault = params.fault(keys[1], format!("{found} {}, but {what} asks for {wanted}", keys[1]));
+        return Err(fault.hint("each has its own, in the same order"));
     }
     Ok(())
 }
@@ -550,7 +551,8 @@ fn table(params: &Params, wanted: Kind) -> Result<Piece, Faults> {
             }
             _ => continue,
         };
-        faults.push(params.fault(&format!("values[{i}]"), text));
+        let hint = if *value < 0.0 { "write 0 where nothing was measured" } else { "is the `scale` another one?" };
+        faults.push(params.fault(&format!("values[{i}]"), text).hint(hint));
     }
     faults.into_result(())?;
     let outside = match p.outside {
@@ -572,7 +574,8 @@ fn histogram(params: &Params) -> Result<Piece, Faults> {
     let mut faults = Faults::new();
     rising(params, "edges", &p.edges, &mut faults);
     for (i, count) in p.counts.iter().enumerate().filter(|(_, c)| **c < 0.0) {
-        faults.push(params.fault(&format!("counts[{i}]"), format!("a count cannot be negative: {count}")));
+        let fault = params.fault(&format!("counts[{i}]"), format!("a count cannot be negative: {count}"));
+        faults.push(fault.hint("write 0 where nothing was counted"));
     }
     faults.into_result(())?;
     let edges: Vec<f64> = p.edges.iter().map(|w| w.nm()).collect();

@@ -93,14 +93,54 @@ pub enum SpectrumError {
 }
 
 impl SpectrumError {
-    /// What is wrong with a file, placed in that file; else one fault that `at` makes of the text, at the key that named
-    /// the spectrum.
-    pub fn faults(self, at: impl FnOnce(String) -> Fault) -> Faults {
+    /// The same as faults: what is wrong within a file, there; everything else as `here` places a message, with what to
+    /// do about it.
+    #[must_use]
+    pub fn faults(&self, here: impl FnOnce(String) -> Fault) -> Faults {
         match self {
-            Self::Document(faults) => faults,
-            Self::Table(error) if error.place.row > 0 => error.fault().into(),
-            other => at(other.to_string()).into(),
+            Self::Document(faults) => faults.clone(),
+            Self::Table(error) => error.fault().into(),
+            Self::Unknown { name, candidates } => {
+                let fault = here(format!("no spectrum is called `{name}`"));
+                fault.hint(hint_for_unknown(name, candidates)).into()
+            }
+            Self::Inline { text, wanted } => here(format!("`{text}` is not understood")).hint(*wanted).into(),
+            Self::Ambiguous { name, columns } => {
+                let fault = here(format!("`{name}` holds {} spectra, and one is wanted", columns.len()));
+                let first = columns.first().map_or("name", String::as_str);
+                fault.hint(format!("pick one, such as `{name}#{first}`: {}", columns.join(", "))).into()
+            }
+            Self::NoColumn { name, column, columns } => {
+                let fault = here(format!("`{name}` has no column `{column}`"));
+                fault.hint(format!("its columns: {}", columns.join(", "))).into()
+            }
+            Self::WrongKind { name, found, wanted } => {
+                let fault = here(format!("`{name}` is of kind {found}, but {wanted} is wanted here"));
+                fault.hint(format!("`spectra spectrum list` shows what is of kind {wanted}")).into()
+            }
+            Self::NotTogether { .. } => here(self.to_string())
+                .hint("light times filters, or like plus like: `D65 * wratten-15`, `A + line:e`")
+                .into(),
+            Self::Io { name, cause } => here(format!("cannot read `{name}`: {cause}")).into(),
+            Self::TooMany(_) => here(self.to_string()).hint("a spectrum cannot be a part of itself").into(),
+            Self::NothingToScale(_) => here(self.to_string()).hint("light that is somewhere more than 0").into(),
+            Self::OutOfRange { wanted, .. } => here(self.to_string()).hint(*wanted).into(),
         }
+    }
+}
+
+/// What a person may have meant by a name that nothing bears.
+fn hint_for_unknown(name: &str, candidates: &[String]) -> String {
+    match candidates {
+        [one] => format!("did you mean `{one}`?"),
+        [first, others @ ..] => format!("did you mean `{first}`? Near it: {}", others.join(", ")),
+        [] if name.contains(['*', '+']) => {
+            "a sum or a product has spaces around its signs and a spectrum behind each: `0.5 * D65 + line:e`".to_owned()
+        }
+        [] if name.contains(['/', '\\']) || name.contains('.') => {
+            "a file is looked for beside the one that names it, then among the bundled ones".to_owned()
+        }
+        [] => "`spectra spectrum list` shows all names; or a file such as `lamp.csv`, or `blackbody:3200`".to_owned(),
     }
 }
 

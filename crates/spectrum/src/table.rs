@@ -27,6 +27,8 @@ pub const MAX_ROWS: usize = 100_000;
 pub const MAX_COLUMNS: usize = 256;
 /// Largest file that is read, bytes.
 pub const MAX_BYTES: u64 = 32 << 20;
+/// A table that ends below this was not given in nanometres, nm.
+const SHORTEST_NM: f64 = 20.0;
 
 /// What is wrong with a table, and where.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -42,11 +44,15 @@ impl TableError {
     /// The same as a fault of the table's file, at its line and field.
     #[must_use]
     pub fn fault(&self) -> Fault {
-        let fault = Fault::new(self.cause.to_string());
-        if self.place.row == 0 {
-            return Fault::new(self.to_string());
+        let fault = Fault::new(self.cause.to_string()).path(self.place.column_name.clone()).hint(self.cause.hint());
+        if self.cause == TableFault::NotText {
+            return Fault { message: self.to_string(), ..fault };
         }
-        fault.at(Arc::clone(&self.place.text), self.place.span()).path(self.place.column_name.clone())
+        // Of a row with a field too many or too few the row is shown.
+        let row = matches!(self.cause, TableFault::FieldCount { .. } | TableFault::Header(_));
+        let place = Place { column: if row { 0 } else { self.place.column }, ..(*self.place).clone() };
+        let span = if place.row == 0 { Span::default() } else { place.span() };
+        fault.at(Arc::clone(&self.place.text), span)
     }
 }
 
@@ -153,6 +159,9 @@ pub enum TableFault {
     /// A wavelength that is not positive.
     #[error("a wavelength is a positive number of nanometres, not {0}")]
     Wavelength(f64),
+    /// A table whose wavelengths are all below any light.
+    #[error("{0} nm is no light")]
+    NoLight(f64),
     /// A wavelength that is not larger than the one above it.
     #[error("{found} nm does not come after {before} nm: wavelengths must increase")]
     OutOfOrder {
@@ -183,6 +192,36 @@ pub enum TableFault {
     /// A logarithm to base 10 that is no plausible one.
     #[error("{0} as a logarithm to base 10 is beyond belief")]
     Logarithm(f64),
+}
+
+impl TableFault {
+    /// What to do about it.
+    #[must_use]
+    pub fn hint(&self) -> &'static str {
+        match self {
+            Self::Empty => "a header such as `wavelength_nm,power`, then one row a wavelength, such as `400,0.5`",
+            Self::NotText => "save it as CSV in UTF-8",
+            Self::TooManyRows | Self::TooManyColumns => "is this a table of a spectrum? Thin it out, or split it",
+            Self::UnknownKey(_) => "keep other remarks under `# note: ...`",
+            Self::FrontMatter { .. } | Self::NotKeyValue => "`# key: value`, as in the files under spectra/",
+            Self::NoKind => "or name it where one kind is wanted",
+            Self::Header(found) if found.contains(';') || found.contains('\t') => "separate the columns with commas",
+            Self::Header(_) => "put a row with the names of the columns first; wavelengths are in nm",
+            Self::ColumnName(_) => "each column has a name of its own",
+            Self::FieldCount { found, expected } if found > expected => {
+                "separate columns with commas, and write a decimal point in numbers"
+            }
+            Self::FieldCount { .. } => "each row has a value for each column",
+            Self::NotANumber(_) | Self::NotFinite(_) => "write a number with a decimal point, such as 0.5 or 1e-3",
+            Self::Wavelength(_) => "such as 550",
+            Self::NoLight(_) => "given in micrometres? Multiply by 1000",
+            Self::OutOfOrder { .. } => "sort the rows by wavelength, each wavelength once",
+            Self::Negative { .. } => "write 0 where nothing was measured",
+            Self::AboveBound { .. } => "a part of 1, not of 100",
+            Self::Sprague => "leave `interpolation` out, or space the wavelengths equally",
+            Self::Logarithm(_) => "is the column linear? Then write `# unit: 1`",
+        }
+    }
 }
 
 /// A table as a file holds it.
@@ -304,10 +343,15 @@ impl<'a> Reader<'a> {
             self.read_row(row, line, kind, meta.scale(), &mut wavelengths, &mut values)?;
         }
         let (Some(kind), false) = (kind, wavelengths.is_empty()) else {
-            return Err(whole(self.file, TableFault::Empty));
+            return Err(self.fault(0, 0, TableFault::Empty));
         };
+        if let Some(last) = wavelengths.last().filter(|last| **last < SHORTEST_NM) {
+            let row =
+                self.text.lines().position(|line| line.starts_with(|c: char| c.is_ascii_digit())).map_or(0, |i| i + 1);
+            return Err(self.fault(row, 1, TableFault::NoLight(wavelengths.first().copied().unwrap_or(*last))));
+        }
         if meta.interpolation == Interpolation::Sprague && !sprague::applies(&wavelengths) {
-            return Err(whole(self.file, TableFault::Sprague));
+            return Err(self.fault(0, 0, TableFault::Sprague));
         }
         Ok(Table {
             file: self.file.into(),

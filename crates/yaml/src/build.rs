@@ -4,9 +4,9 @@
 //! nothing until it is expanded; [`tree`] makes nodes of it.
 
 use super::reports::{Reports, Stop, fault, too_deep, too_many, written};
-use super::syntax;
+use super::slips;
 use super::tree;
-use super::{MAX_DEPTH, MAX_NODES, behind};
+use super::{MAX_DEPTH, MAX_NODES};
 use serde_saphyr::granit_parser::{Event, Marker, Parser, ScalarStyle, Span as Range, options};
 use spectra_core::params::{Faults, Node, SourceFile, Span, Value};
 use std::collections::HashMap;
@@ -80,10 +80,11 @@ impl Builder<'_> {
         for event in Parser::new_from_str_with_options(self.text, options) {
             let (event, range) = event.map_err(|error| {
                 let place = self.point(*error.marker());
-                let before = self.file.text[..place.offset].rsplit('\n').next().unwrap_or("");
-                let (message, hint) = syntax::message(error.kind(), before);
-                let place = if syntax::is_tab(error.kind()) { self.tab_behind(place) } else { place };
-                fault(self.file, place, message, hint)
+                let bracket =
+                    |open: &Open| self.file.text[self.items[open.index].span.offset..].starts_with(['{', '[']);
+                let open = self.open.iter().find(|open| bracket(open)).map(|open| self.items[open.index].span);
+                let slip = slips::behind_error(error.kind(), self.file, place, open);
+                fault(self.file, slip.place, slip.message, slip.hint.as_deref())
             })?;
             self.event(event, range)?;
         }
@@ -214,12 +215,6 @@ impl Builder<'_> {
             },
             Item::Scalar(_) | Item::Alias(_) => {}
         }
-    }
-
-    /// The first tab at or behind a place; the place itself if there is none.
-    fn tab_behind(&self, place: Span) -> Span {
-        let rest = &self.file.text[place.offset..];
-        rest.find('\t').map_or(place, |tab| Span { len: 1, ..behind(place, &rest[..tab]) })
     }
 
     fn point(&self, marker: Marker) -> Span {

@@ -7,6 +7,7 @@
 
 mod build;
 mod reports;
+mod slips;
 mod syntax;
 #[cfg(test)]
 mod tests;
@@ -79,6 +80,8 @@ fn too_large(bytes: u64) -> Fault {
 fn not_utf8(name: &str, bytes: &[u8], valid: usize) -> Fault {
     let hint = match bytes {
         [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => "it looks like UTF-16: save it as UTF-8",
+        _ if is_picture(bytes) => "it is a picture: a scene names it under `source: {kind: picture, file: ...}`",
+        [b'P', b'K', 3, 4, ..] | [0x1f, 0x8b, ..] => "it is an archive: unpack it first",
         _ => "save it as UTF-8",
     };
     let text = String::from_utf8_lossy(bytes).into_owned();
@@ -86,6 +89,12 @@ fn not_utf8(name: &str, bytes: &[u8], valid: usize) -> Fault {
     let before = text.get(..valid).unwrap_or("");
     let span = Span { len: '\u{fffd}'.len_utf8(), ..behind(Span::default(), before) };
     Fault::new("this byte is not UTF-8").at(Arc::new(SourceFile::new(name, text)), span).hint(hint)
+}
+
+/// Whether the bytes begin as PNG, JPEG, OpenEXR, TIFF or GIF files do.
+fn is_picture(bytes: &[u8]) -> bool {
+    const MAGIC: [&[u8]; 6] = [b"\x89PNG", b"\xff\xd8\xff", b"\x76\x2f\x31\x01", b"II*\0", b"MM\0*", b"GIF8"];
+    MAGIC.iter().any(|magic| bytes.starts_with(magic))
 }
 
 /// The place behind `skipped`, which starts at `place`. Lines end as the parser ends them: LF, CR, or both.

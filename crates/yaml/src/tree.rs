@@ -4,7 +4,7 @@ use super::build::{Item, Placed};
 use super::reports::{Reports, Stop, fault, too_deep, too_many, written};
 use super::{MAX_DEPTH, MAX_NODES};
 use spectra_core::params::{Fault, Faults, Key, Node, SourceFile, Span, Value};
-use std::collections::HashSet;
+use std::collections::HashMap;
 use std::sync::Arc;
 
 /// The tree below `root`; an empty file is nothing, at `start`.
@@ -70,16 +70,18 @@ impl Tree<'_> {
 
     fn map(&mut self, entries: &[(usize, usize)], depth: usize) -> Result<Vec<(Key, Node)>, Stop> {
         let mut nodes = Vec::with_capacity(entries.len());
-        let mut seen = HashSet::with_capacity(entries.len());
+        let mut seen: HashMap<String, usize> = HashMap::with_capacity(entries.len());
         for &(key, value) in entries {
             let span = self.items[key].span;
             let text = self.key(key);
             let node = self.node(value, Some(span), depth + 1)?;
             let Some(text) = text else { continue };
-            if seen.insert(text.clone()) {
-                nodes.push((Key { text, span }, node));
+            if let Some(first) = seen.get(&text) {
+                let hint = format!("remove one of them: the first is on line {first}");
+                self.report(span, format!("the key `{}` comes twice", written(self.file, span)), &hint);
             } else {
-                self.report(span, format!("the key `{}` comes twice", written(self.file, span)), "remove one of them");
+                seen.insert(text.clone(), span.line);
+                nodes.push((Key { text, span }, node));
             }
         }
         Ok(nodes)

@@ -224,8 +224,8 @@ fn place_at(faults: Faults, params: &Params, key: &str, name: &str) -> Faults {
         let known: Vec<&str> = Stock::bundled().collect();
         let hint = match (nearest(name, known.iter().copied()), fault.hint) {
             (Some(near), _) => format!("did you mean `{near}`?"),
-            (None, Some(hint)) => hint,
-            (None, None) => format!("bundled stocks: {}", known.join(", ")),
+            (None, Some(hint)) if hint.starts_with("did you mean") || name.contains('.') => hint,
+            (None, _) => format!("bundled stocks: {}", known.join(", ")),
         };
         params.fault(key, fault.message).hint(hint)
     };

@@ -170,6 +170,5 @@ fn on_paper(p: &StockParams, params: &Params, stock: &Stock, film: &Emulsion, gr
 }
 
 fn emission(params: &Params, key: &str, name: &str, resources: &dyn Resources) -> Result<Emission, Faults> {
-    let place = |text: String| params.fault(key, text).hint("a light such as D55 or blackbody:3200");
-    find_emission_in(name, resources).map_err(|error| error.faults(place))
+    find_emission_in(name, resources).map_err(|error| error.faults(|text| params.fault(key, text)))
 }

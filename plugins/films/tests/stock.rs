@@ -85,7 +85,7 @@ fn parameters_are_checked() {
         ("stock: kodak-vision-2383\nmetering: average\n", "no camera film"),
         ("stock: kodak-ektachrome-100d\nmetering: average\nview: print\n", "positive already"),
         ("stock: kodak-vision3-250d-5207\nmetering: average\nprint: kodak-2383\n", "did you mean"),
-        ("stock: ilford-ortho-plus\nmetering: average\nlight: D5500\n", "light"),
+        ("stock: ilford-ortho-plus\nmetering: average\nlight: D5500\n", "did you mean `D55`?"),
         ("stock: ilford-ortho-plus\nmetering: average\ngrain: true\n", "granularity"),
         ("stock: ilford-ortho-plus\nmetering: average\nscatter: true\n", "modulation"),
         ("stock: kodak-tri-x-400\nmetering: average\nhalation: {entering: 0.2, transmittance: 0.5}\n", "thickness"),

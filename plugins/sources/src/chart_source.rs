@@ -95,17 +95,30 @@ fn luminance() -> Positive<Luminance> {
 spectra_core::register!(source "chart": ChartParams, build);
 
 fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faults> {
-    let p: ChartParams = params.parse()?;
     let mut faults = Faults::new();
+    let named = |name: &str, width_mm: Option<f64>, seed: u64| {
+        chart::chart(name, width_mm, seed).map_err(|error| {
+            let (message, hint) = error.parts();
+            params.fault("chart", message).hint(hint)
+        })
+    };
+    let Some(p) = faults.take(params.parse::<ChartParams>()) else {
+        // Whatever else is wrong, an unknown chart or light is said in the same go.
+        let text = |key: &str| params.get(key).and_then(|node| node.as_str());
+        faults.take(
+            text("chart")
+                .filter(|name| *name != chart::OWN_PATCHES)
+                .map_or(Ok(()), |name| named(name, None, 0).map(|_| ())),
+        );
+        faults.take(text("illuminant").map_or(Ok(()), |name| white::illuminant(name, params, context).map(|_| ())));
+        return Err(faults);
+    };
     let light = faults.take(white::illuminant(&p.illuminant, params, context));
     let own = faults.take(own_reflectances(&p, params, context)).unwrap_or_default();
-    let chart =
-        match p.chart.as_str() {
-            chart::OWN_PATCHES => Some(chart::own_patches(own.len() as u16, p.width.mm())),
-            name => faults.take(chart::chart(name, Some(p.width.mm()), p.seed).map_err(|e| {
-                params.fault("chart", e.to_string()).hint("or `patches`, with `reflectances` of your own")
-            })),
-        };
+    let chart = match p.chart.as_str() {
+        chart::OWN_PATCHES => Some(chart::own_patches(own.len() as u16, p.width.mm())),
+        name => faults.take(named(name, Some(p.width.mm()), p.seed)),
+    };
     let spectra = match (&light, &chart) {
         (Some(light), Some(chart)) => {
             let inner = Context { illuminant: Some(light), ..*context };

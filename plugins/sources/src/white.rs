@@ -11,7 +11,8 @@ pub(crate) fn illuminant(name: &str, params: &Params, context: &Context<'_>) -> 
     if luminance_cd_m2(&power) > 0.0 {
         Ok(power)
     } else {
-        Err(params.fault("illuminant", format!("`{name}` has no visible light")).into())
+        let fault = params.fault("illuminant", format!("`{name}` has no visible light, so no luminance can be set"));
+        Err(fault.hint("a light with a part between 380 and 780 nm, such as D65").into())
     }
 }
 
@@ -21,7 +22,10 @@ pub(crate) fn light(key: &str, name: &str, params: &Params, context: &Context<'_
         .map_err(|e| e.faults(|text| params.fault(key, text)))?;
     let power = found.to_power(&context.grid);
     if power.is_dark() {
-        return Err(params.fault(key, format!("`{name}` has no light in the band")).into());
+        let fault = params.fault(key, format!("`{name}` has no light in the band"));
+        let (first, last) = (context.grid.start_nm, context.grid.end_nm());
+        let hint = format!("the band is {first} to {last} nm: another light, or another `wavelengths: {{band: ...}}`");
+        return Err(fault.hint(hint).into());
     }
     Ok(power)
 }

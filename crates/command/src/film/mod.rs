@@ -9,7 +9,7 @@ pub(crate) use arguments::FilmArguments;
 use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
 use arguments::{FilmCommand, FilmPlot};
-use spectra_core::params::nearest;
+use spectra_core::params::{Fault, nearest};
 use spectra_film::stock::Stock;
 use spectra_plot::{Format, PlotError};
 use spectra_scene::FileResources;
@@ -32,7 +32,7 @@ fn load(name: &str) -> Result<Stock, Failure> {
             Some(near) => format!("did you mean `{near}`?"),
             None => format!("known: {}", known.join(", ")),
         };
-        return Err(Failure::Input(format!("no film stock is called `{name}`; {hint}")));
+        return Err(Failure::Faults(Fault::new(format!("no film stock is called `{name}`")).hint(hint).into()));
     }
     Ok(Stock::load(name, &FileResources::beside(Path::new("")))?)
 }

@@ -5,9 +5,10 @@ use super::{catalogue, named, own_file};
 use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
 use serde::{Serialize, Serializer};
+use spectra_core::params::Fault;
 use spectra_glass::air::{self, AirConditions, CATALOGUE_AIR};
 use spectra_glass::interface::{brewster_angle, critical_angle, fresnel};
-use spectra_glass::{Catalogue, Glass, LineTriple, Medium, lines};
+use spectra_glass::{Catalogue, FindError, Glass, LineTriple, Medium, lines};
 use std::fmt::Write;
 
 /// Thickness for which internal transmittances are stated.
@@ -79,6 +80,10 @@ pub(crate) fn info(arguments: &GlassInfo) -> Outcome {
     Ok(DONE)
 }
 
+fn unknown(error: FindError) -> Failure {
+    Failure::Faults(Fault::new(error.message()).hint(error.hint()).into())
+}
+
 fn medium(arguments: &GlassInfo, catalogue: &Catalogue) -> Result<Medium, Failure> {
     let melt = arguments.nd.zip(arguments.vd);
     let refuse = |(nd, vd): (f64, f64)| Failure::Input(format!("no glass has nd {nd} and Vd {vd}"));
@@ -93,7 +98,7 @@ fn medium(arguments: &GlassInfo, catalogue: &Catalogue) -> Result<Medium, Failur
         (Some(name), Some(melt)) => {
             let glass = match own_file(name)? {
                 Some(glass) => glass,
-                None => catalogue.find_with(name, melt.0, Some(melt.1)).map_err(|e| Failure::Input(e.to_string()))?,
+                None => catalogue.find_with(name, melt.0, Some(melt.1)).map_err(unknown)?,
             };
             glass.melt(melt.0, melt.1).map(Medium::from).ok_or_else(|| refuse(melt))
         }

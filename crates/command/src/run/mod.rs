@@ -58,6 +58,9 @@ fn render_scene(arguments: &Run, isa: Isa, started: Instant) -> Outcome {
     let mut scene = series.scene(0)?;
     scene.warnings.splice(0..0, series.warnings().iter().cloned());
     tracing::debug!(seconds = started.elapsed().as_secs_f64(), "scene loaded");
+    // What cannot be rendered leaves no folder behind.
+    let renderer = Renderer::new(&scene, isa).map_err(|error| refused(error, &scene))?;
+    tracing::debug!(seconds = started.elapsed().as_secs_f64(), "ready to render");
     // Before any light is traced: an hour's picture must not end without a place to go.
     let report_path = arguments.output.join("render.json");
     let folder = Folder::prepare(&arguments.output, &scene, &series.member(0), &report_path)?;
@@ -67,8 +70,6 @@ fn render_scene(arguments: &Run, isa: Isa, started: Instant) -> Outcome {
     for warning in &scene.warnings {
         progress.warning(warning);
     }
-    let renderer = Renderer::new(&scene, isa).map_err(failed)?;
-    tracing::debug!(seconds = started.elapsed().as_secs_f64(), "ready to render");
     progress.start(&scene, threads, isa);
     let begun = Instant::now();
     let rendering =
@@ -98,6 +99,11 @@ fn overrides(arguments: &Run) -> Vec<String> {
 /// Processors that this process may use.
 fn processors() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
+}
+
+/// What the scene cannot have is a fault of the scene.
+fn refused(error: RenderError, scene: &Scene) -> Failure {
+    error.faults(scene).map_or_else(|| failed(error), Failure::Faults)
 }
 
 fn failed(error: RenderError) -> Failure {

@@ -5,7 +5,7 @@ use super::folder::{Folder, write_report};
 use super::interrupt::{self, Interrupt};
 use super::progress::{Place, Progress};
 use super::report::Report;
-use super::{failed, watch};
+use super::{failed, refused, watch};
 use crate::arguments::Run;
 use crate::outcome::{DONE, Failure, INTERRUPTED, Outcome};
 use crate::{version, words};
@@ -141,7 +141,7 @@ pub(crate) fn checked<T: Send>(
     let check = |index: usize| -> Result<T, Failure> {
         let scene = series.scene(index)?;
         // What shows only once the stages are put together.
-        Renderer::new(&scene, isa).map_err(failed)?;
+        Renderer::new(&scene, isa).map_err(|error| refused(error, &scene))?;
         keep(index, scene)
     };
     std::thread::scope(|scope| {

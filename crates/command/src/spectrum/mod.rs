@@ -12,6 +12,7 @@ pub(crate) use arguments::SpectrumArguments;
 
 use crate::outcome::{Failure, Outcome};
 use arguments::SpectrumCommand;
+use spectra_core::params::Fault;
 use spectra_scene::FileResources;
 use spectra_spectrum::{Emission, Found, SpectrumError, find_emission_in, find_in};
 use std::path::Path;
@@ -38,14 +39,10 @@ fn load(name: &str) -> Result<Found, Failure> {
 }
 
 fn load_illuminant(name: &str) -> Result<Emission, Failure> {
-    find_emission_in(name, &files()).map_err(|error| Failure::Input(format!("--illuminant: {error}")))
+    find_emission_in(name, &files())
+        .map_err(|e| Failure::Faults(e.faults(|text| Fault::new(format!("--illuminant: {text}")))))
 }
 
 fn refuse(error: SpectrumError) -> Failure {
-    let hint = match &error {
-        SpectrumError::Document(faults) => return Failure::Faults(faults.clone()),
-        SpectrumError::Unknown { candidates, .. } if candidates.is_empty() => "; see `spectra spectrum list`",
-        _ => "",
-    };
-    Failure::Input(format!("{error}{hint}"))
+    Failure::Faults(error.faults(Fault::new))
 }

@@ -39,7 +39,11 @@ impl Params {
             }
             _ => {
                 let message = format!("found {}, expected a map such as {{kind: ...}}", found(&node));
-                return Err(node.fault(message).path(path).into());
+                let hint = match &node.value {
+                    Value::Seq(_) => "one map: leave out `- ` and brackets",
+                    _ => "name its `kind` there, and what else that wants",
+                };
+                return Err(node.fault(message).path(path).hint(hint).into());
             }
         };
         if let Some((_, name)) = &kind
@@ -58,9 +62,14 @@ impl Params {
     pub fn section(node: Node, path: &str) -> Result<Self, Faults> {
         match &node.value {
             Value::Map(_) => Ok(Self { node, kind: None, path: path.to_owned() }),
+            Value::Null if path.is_empty() => Err(node
+                .fault("the file is empty")
+                .hint("a scene starts with `spectra: 1`, a lens or a stock with its `name`; see `spectra doc scene`, `lens`, `stock`")
+                .into()),
             _ => Err(node
                 .fault(format!("found {}, expected a map such as {{key: value}}", found(&node)))
                 .path(path)
+                .hint("write `key: value`, one a line, or {key: value, ...}")
                 .into()),
         }
     }

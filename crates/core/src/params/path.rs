@@ -84,11 +84,14 @@ impl Node {
     /// The path is ill-formed, or leads through what is no map or no list; the tree is unchanged then.
     pub fn set_path(&mut self, path: &str, node: Node) -> Result<(), Fault> {
         let steps = steps(path).map_err(|message| node.fault(message))?;
-        self.settable(&steps).map_err(|message| node.fault(message).path(shown(path)))?;
         let file = Arc::clone(&node.file);
         // The key that this writes stands in the argument; the value behind it has the exact place.
         let whole = Span { len: file.text.find('=').unwrap_or(0), ..Span::default() };
         let made = if file.is_argument() { whole } else { node.span };
+        self.settable(&steps).map_err(|message| {
+            let hint = "a path names keys and, in brackets, entries from 0: `film.exposure`, `output[0]`";
+            Fault::new(message).at(Arc::clone(&file), made).path(shown(path)).hint(hint)
+        })?;
         let empty = |value| Node::new(value, made, Arc::clone(&file));
         let mut target = self;
         for (i, &step) in steps.iter().enumerate() {

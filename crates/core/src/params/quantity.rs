@@ -96,15 +96,22 @@ pub trait Quantity: Copy {
                 Err(format!("found {}, expected {expected}{}", found_text(text), units_hint::<Self>()))
             }
             Reading::Infinity(false) if Self::INFINITY => Ok(Self::from_bare(f64::INFINITY)),
-            Reading::Infinity(_) | Reading::NotANumber => Err(format!("found {}, expected {expected}", shown(text))),
-            Reading::TooLarge => Err(format!("found {}, which is too large; expected {expected}", shown(text))),
+            Reading::Infinity(_) | Reading::NotANumber => {
+                Err(format!("found {}, expected {expected}\nhint: write it as in `{}`", shown(text), Self::EXAMPLE))
+            }
+            Reading::TooLarge => Err(format!(
+                "found {}, which is too large; expected {expected}\nhint: write it as in `{}`",
+                shown(text),
+                Self::EXAMPLE
+            )),
             Reading::DecimalComma => Err(format!(
                 "found the text `{}`, expected {expected}\nhint: write a decimal point, not a comma",
                 shown(text)
             )),
             Reading::UnknownUnit(unit) => {
                 let units = Self::DIMENSION.units();
-                let hint = match nearest(unit, units.iter().copied()) {
+                let usual = usual_symbol(unit).filter(|symbol| units.contains(symbol));
+                let hint = match usual.or_else(|| nearest(unit, units.iter().copied())) {
                     Some(near) => format!("\nhint: did you mean `{near}`?"),
                     None => units_hint::<Self>(),
                 };
@@ -115,6 +122,26 @@ pub trait Quantity: Copy {
             }
         }
     }
+}
+
+/// The symbol of a unit that is written out, or as another field writes it.
+fn usual_symbol(unit: &str) -> Option<&'static str> {
+    Some(match unit.to_ascii_lowercase().as_str() {
+        "th" | "sec" | "secs" | "second" | "seconds" => "s",
+        "minute" | "minutes" => "min",
+        "hour" | "hours" => "h",
+        "meter" | "meters" | "metre" | "metres" | "mtr" => "m",
+        "millimeter" | "millimeters" | "millimetre" | "millimetres" => "mm",
+        "nanometer" | "nanometers" | "nanometre" | "nanometres" => "nm",
+        "micron" | "microns" => "um",
+        "inch" | "inches" | "\"" => "in",
+        "foot" | "feet" | "'" => "ft",
+        "degree" | "degrees" => "deg",
+        "kelvin" => "K",
+        "lux" => "lx",
+        "nit" | "nits" => "cd/m2",
+        _ => return None,
+    })
 }
 
 /// The right form in words: `a positive length such as 50 mm`.
@@ -143,7 +170,19 @@ fn text_hint<Q: Quantity>(text: &str) -> String {
         let figure = text.trim_start_matches(['f', 'F', '/', ' ']);
         return format!("\nhint: write `f/{}`", shown(figure));
     }
+    if Q::INFINITY && nearest(text, ["infinity"]).is_some() {
+        return "\nhint: did you mean `infinity`?".to_owned();
+    }
     format!("\nhint: write a number with its unit, as in `{}`", Q::EXAMPLE)
+}
+
+/// Says which values are allowed, on a line of its own.
+fn range_hint<Q: Quantity>() -> String {
+    match Q::BOUND {
+        Bound::Positive => format!("\nhint: greater than 0, as in `{}`", Q::EXAMPLE),
+        Bound::NonNegative => format!("\nhint: 0 or more, as in `{}`", Q::EXAMPLE),
+        Bound::Any => String::new(),
+    }
 }
 
 /// The quantity, if it obeys its bound.
@@ -154,7 +193,9 @@ fn checked<Q: Quantity>(quantity: Q, written: &str) -> Result<Q, String> {
         Ok(quantity)
     } else {
         let large = if allowed && !finite { ", which is too large" } else { "" };
-        Err(format!("found {}{large}, expected {}", shown(written), expected::<Q>()))
+        let hint =
+            if large.is_empty() { range_hint::<Q>() } else { format!("\nhint: write it as in `{}`", Q::EXAMPLE) };
+        Err(format!("found {}{large}, expected {}{hint}", shown(written), expected::<Q>()))
     }
 }
 

@@ -292,7 +292,9 @@ fn unknown_kind(params: &Params, stage: &str, names: &[&str]) -> Fault {
             };
             params.fault("kind", format!("unknown {stage} `{kind}`")).hint(hint)
         }
-        None => params.fault("kind", format!("which {stage}? `kind` is missing")).hint(format!("known: {known}")),
+        None => params
+            .fault("kind", format!("which {stage}? `kind` is missing"))
+            .hint(format!("add `kind: ...`, one of {known}")),
     }
 }
 

@@ -138,7 +138,9 @@ fn break_keys(axis: &CoordinateBreak) -> Vec<String> {
 
 fn surface_keys(surface: &Surface) -> Vec<String> {
     let mut keys = shape_keys(&surface.shape);
-    if surface.thickness_mm != 0.0 {
+    // A lens file states how thick a glass is, also where it is not.
+    let begins_glass = !surface.mirror && !matches!(surface.medium, Medium::Air);
+    if surface.thickness_mm != 0.0 || begins_glass {
         keys.push(format!("thickness: {}", shortest(surface.thickness_mm)));
     }
     if surface.mirror {

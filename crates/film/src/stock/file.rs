@@ -242,7 +242,8 @@ pub(super) fn read(params: &Params, resources: &dyn Resources) -> Result<Stock, 
     }
     let reference = faults.take(reference(params, &file.reference_illuminant, resources));
     if file.layers.is_empty() {
-        faults.push(params.fault("layers", "a film has at least one layer"));
+        let fault = params.fault("layers", "a film has at least one layer");
+        faults.push(fault.hint("each with `name`, `sensitivity` and `curves`; the bundled stocks are examples"));
     }
     let process = match file.process {
         ProcessFile::Negative => Process::Negative,
@@ -355,7 +356,12 @@ fn filter_factor(file: FilterFactorFile) -> FilterFactor {
 fn reference(params: &Params, name: &str, resources: &dyn Resources) -> Result<Emission, Faults> {
     let key = "reference-illuminant";
     let hint = "the sheets of films mean iso-7589-sensitometric-daylight";
-    light(params, key, name, resources).map_err(|error| error.faults(|text| params.fault(key, text).hint(hint)))
+    light(params, key, name, resources).map_err(|error| {
+        let near = matches!(&error, SpectrumError::Unknown { candidates, .. } if !candidates.is_empty());
+        let faults = error.faults(|text| params.fault(key, text));
+        let hinted = |fault: Fault| if near || fault.path != key { fault } else { fault.hint(hint) };
+        Faults(faults.into_iter().map(hinted).collect())
+    })
 }
 
 /// The light that a key of the stock's file names: a bundled one, or a file beside the stock's.
@@ -380,8 +386,7 @@ fn sensitivity(
         "equal-energy" => Ok(None),
         name => light(params, &key, name, resources).map(Some),
     };
-    let hint = "`equal-energy`, or an illuminant";
-    let light = faults.take(light.map_err(|error| error.faults(|text| params.fault(&key, text).hint(hint))));
+    let light = faults.take(light.map_err(|error| error.faults(|text| params.fault(&key, text))));
     let reading = match (file.reading, file.floor) {
         (ReadingFile::Log10, floor) => Reading::Log10 { floor },
         (ReadingFile::Linear, None) => Reading::Linear,
@@ -428,9 +433,15 @@ fn points(
     };
     let fault = |text: String| params.fault(&format!("{at}.file"), text);
     let written = params.node().at_path(&format!("{at}.file")).unwrap_or(params.node());
-    let found = read_beside(written, name, resources).map_err(|error| fault(format!("`{name}`: {error}")))?;
+    let found = read_beside(written, name, resources).map_err(|error| {
+        let hint = match &error {
+            ResourceError::NotFound(near) if !near.is_empty() => format!("did you mean `{}`?", near.join("` or `")),
+            _ => "a table is looked for beside the stock's file".to_owned(),
+        };
+        fault(format!("`{name}`: {error}")).hint(hint)
+    })?;
     let table = Table::parse_bytes(&found.name, &found.bytes, Some(Kind::Sensitivity)).map_err(|e| {
-        let placed = if e.place.row > 0 { e.fault() } else { fault(e.to_string()) };
+        let placed = e.fault();
         match e.cause {
             TableFault::Negative { .. } | TableFault::AboveBound { .. } => {
                 placed.hint("logarithms need `# spectra: 1` and `# unit: log10` above the header")
@@ -516,9 +527,16 @@ fn curve(params: &Params, at: &str, file: &CurveFile, iso: Option<f64>) -> Resul
         if let Some((key, _)) = shape.iter().find(|(_, v)| v.is_some()) {
             return Err(params.fault(&format!("{at}.{key}"), "a curve given by `points` has no other shape"));
         }
-        return TabulatedCurve::new(points)
-            .map(Into::into)
-            .map_err(|error| params.fault(&format!("{at}.points"), error.to_string()));
+        return TabulatedCurve::new(points).map(Into::into).map_err(|error| {
+            let (key, hint) = match &error {
+                CurveError::Order { index, .. } => (
+                    format!("{at}.points[{}]", index.saturating_sub(1)),
+                    "pairs of log10 exposure (lx s), increasing, and density, which only rises or only falls",
+                ),
+                _ => (format!("{at}.points"), "two or more pairs of log10 exposure (lx s) and density"),
+            };
+            params.fault(&key, error.to_string()).hint(hint)
+        });
     }
     let missing: Vec<&str> = shape.iter().filter(|(_, v)| v.is_none()).map(|(key, _)| *key).collect();
     let [Some(gradient), Some(maximum), Some(toe), Some(shoulder)] = shape.map(|(_, v)| v) else {

@@ -50,6 +50,34 @@ pub enum FindError {
     },
 }
 
+impl FindError {
+    /// What is wrong, without the names.
+    #[must_use]
+    pub fn message(&self) -> String {
+        match self {
+            Self::Unknown { name, .. } => format!("no glass `{name}`"),
+            Self::Ambiguous { name, candidates } => format!("`{name}` is the name of {} glasses", candidates.len()),
+        }
+    }
+
+    /// What to write instead.
+    #[must_use]
+    pub fn hint(&self) -> String {
+        match self {
+            Self::Unknown { name, .. } if name.parse::<f64>().is_ok_and(|nd| (1.0..=4.0).contains(&nd)) => {
+                format!("an index alone is `nd: {name}`; with its Abbe number, `glass: {{nd: {name}, vd: ...}}`")
+            }
+            Self::Unknown { nearest, .. } => match nearest.as_slice() {
+                [] => "a glass of a catalogue, such as SCHOTT/N-BK7, or a file of your own, such as `my-glass.yaml`"
+                    .to_owned(),
+                [one] => format!("did you mean `{}`?", one.full_name),
+                [first, others @ ..] => format!("did you mean `{}`? Near it: {}", first.full_name, list(others)),
+            },
+            Self::Ambiguous { candidates, .. } => format!("write one of {}", list(candidates)),
+        }
+    }
+}
+
 fn list(candidates: &[Candidate]) -> String {
     candidates.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
 }

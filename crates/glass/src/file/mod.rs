@@ -12,7 +12,7 @@ mod yaml;
 
 pub use yaml::{GlassFile, InternalTransmittance, from_params};
 
-use crate::{Catalogue, FindError, Glass, Medium, agf};
+use crate::{Catalogue, Glass, Medium, agf};
 use spectra_core::params::{Fault, Faults, Params, nearest};
 use spectra_core::resources::{ResourceError, Resources, beside};
 
@@ -50,17 +50,7 @@ pub fn medium(name: &str, params: &Params, key: &str, resources: &dyn Resources)
         let read = read(&path, file, glass, resources);
         return read.map(Medium::from).map_err(|faults| params.place_at(key, faults));
     }
-    Catalogue::bundled().medium(name).map_err(|e| params.fault(key, e.to_string()).hint(hint(&e)).into())
-}
-
-/// What to write in place of a name that was not found.
-#[must_use]
-pub fn hint(error: &FindError) -> String {
-    let near = match error {
-        FindError::Unknown { nearest, .. } => nearest.first().map(|c| format!("did you mean `{}`?", c.full_name)),
-        FindError::Ambiguous { candidates, .. } => candidates.first().map(|c| format!("for example `{}`", c.full_name)),
-    };
-    near.unwrap_or_else(|| "or a file of your own, such as `my-glass.yaml`".to_owned())
+    Catalogue::bundled().medium(name).map_err(|e| params.fault(key, e.message()).hint(e.hint()).into())
 }
 
 /// The glass of a file; see [`is_file`].

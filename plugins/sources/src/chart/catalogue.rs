@@ -136,6 +136,22 @@ pub enum ChartError {
     },
 }
 
+impl ChartError {
+    /// The same as a message and what to do about it.
+    #[must_use]
+    pub(crate) fn parts(&self) -> (String, String) {
+        match self {
+            Self::Unknown { name, nearest } => {
+                let own = std::iter::once(OWN_PATCHES);
+                let known: Vec<&str> = CHARTS.iter().map(|entry| entry.name).chain(own).collect();
+                let name: String = name.chars().take(48).collect();
+                (format!("unknown chart `{name}`"), format!("did you mean `{nearest}`? Known: {}", known.join(", ")))
+            }
+            Self::Width { .. } => (self.to_string(), "such as 1.5 m".to_owned()),
+        }
+    }
+}
+
 impl fmt::Display for ChartError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

@@ -19,6 +19,9 @@ const MAX_PIXELS_PER_BYTE: u64 = 1_100 * 8;
 /// # Errors
 /// What is wrong with the file.
 pub(crate) fn decode(bytes: &[u8], choice: Choice<'_>) -> Result<Linear, Trouble> {
+    if bytes.is_empty() {
+        return Err(Trouble::file("the file is empty"));
+    }
     let said = choice.transfer.map(Encoding::named).transpose()?;
     if bytes.starts_with(&exr::MAGIC) {
         if said.is_some() {

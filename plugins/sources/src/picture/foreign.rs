@@ -30,6 +30,7 @@ pub(super) fn decode(bytes: &[u8], name: &str, said: Option<Encoding>) -> Result
             Trouble::file(format!("`.{ending}` files are read by OpenImageIO only")).hint(picture_file::WITHOUT)
         } else {
             Trouble::file("this is no OpenEXR, PNG, JPEG, TIFF or Radiance HDR file")
+                .hint("what counts is what is in it, not the ending of its name: save it as one of these")
         });
     };
     if ending.is_empty() {

@@ -199,17 +199,23 @@ pub(crate) fn color_model(
 
 /// A fault of a picture file, at the key that it belongs to.
 pub(crate) fn trouble(file: &str, trouble: &Trouble, params: &Params) -> Fault {
-    let fault = params.fault(trouble.key, format!("picture `{file}`: {}", trouble.text));
-    match &trouble.hint {
-        Some(hint) => fault.hint(hint.as_str()),
-        None => fault,
-    }
+    let named = trouble.key == "depth" && trouble.text.starts_with("the file has no depth channel");
+    let key = match trouble.key {
+        "depth" if named && params.get("channel").is_some() => "channel",
+        "depth" if named && params.get("depth").is_some_and(|depth| depth.get("channel").is_some()) => "depth.channel",
+        key => key,
+    };
+    let fault = params.fault(key, format!("picture `{file}`: {}", trouble.text));
+    fault.hint(
+        trouble.hint.as_deref().unwrap_or("is the file complete? Save it again as OpenEXR, PNG, JPEG, TIFF or HDR"),
+    )
 }
 
 pub(crate) fn find(file: &str, params: &Params, context: &Context<'_>) -> Result<Resource, Fault> {
     context.resources.read(file, &["scenes"], &[], MAX_BYTES).map_err(|e| {
         let hint = match &e {
             ResourceError::NotFound(near) if !near.is_empty() => format!("did you mean `{}`?", near.join("` or `")),
+            ResourceError::NotFound(_) if file.contains('\\') => "write `/` between folders and file".to_owned(),
             ResourceError::NotFound(_) => "paths are relative to the folder of the scene".to_owned(),
             _ => "OpenEXR, PNG, JPEG, TIFF and Radiance HDR files are read".to_owned(),
         };

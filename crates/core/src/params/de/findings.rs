@@ -34,6 +34,20 @@ impl Standin {
     }
 }
 
+/// What a key that cannot be one was meant to be: a decimal comma within braces, an `=` in place of the colon.
+fn slip(key: &Key, value: &Node, fields: &[&'static str]) -> Option<String> {
+    if !matches!(value.value, Value::Null) {
+        return None;
+    }
+    if let Some((name, given)) = key.text.split_once('=')
+        && let Some(near) = nearest(name.trim(), fields.iter().copied())
+    {
+        return Some(format!("write `{near}: {}`, with a colon", shown(given.trim())));
+    }
+    let is_fraction = key.text.starts_with(|c: char| c.is_ascii_digit());
+    is_fraction.then(|| "is this a decimal comma? Write a decimal point: the comma ends a value".to_owned())
+}
+
 /// Address of a node. Nodes are borrowed for all walks, so it names a node.
 pub(super) fn address(node: &Node) -> usize {
     std::ptr::from_ref(node) as usize
@@ -125,6 +139,7 @@ impl<'n> Findings<'n> {
                 }
                 None => hint_for(&key.text, "key", fields),
             };
+            let hint = slip(key, value, fields).unwrap_or(hint);
             let fault = Fault::new(format!("unknown key `{}`", shown(&key.text)))
                 .at(std::sync::Arc::clone(&value.file), key.span)
                 .path(joined(&map_path(), Step::Key(&key.text)))

@@ -4,7 +4,7 @@ use super::super::node::{Node, Number, Value};
 use super::super::path::{Step, joined};
 use super::super::quantity::{QUANTITY, finite};
 use super::super::stage_node;
-use super::super::text::{found, listed};
+use super::super::text::{found, listed, shown};
 use super::NODE;
 use super::access::{EnumWalk, MapWalk, SeqWalk};
 use super::error::{Cause, Culprit, NodeError};
@@ -79,8 +79,18 @@ impl<'n, 'p> Walker<'n, 'p> {
     fn mismatch(&self, expected: &str) -> NodeError {
         let quoted_number = self.node.is_quoted()
             && matches!(&self.node.value, Value::String(text) if matches!(Value::from_plain(text), Value::Number(_) | Value::Bool(_)));
+        // `10 000`, `10_000` and `10'000` are numbers to a person.
+        let joined = match &self.node.value {
+            Value::String(text) if text.starts_with(|c: char| c.is_ascii_digit()) && expected.contains("number") => {
+                let joined: String = text.chars().filter(|c| !matches!(c, ' ' | '_' | '\'' | '\u{a0}')).collect();
+                matches!(Value::from_plain(&joined), Value::Number(_)).then_some(joined)
+            }
+            _ => None,
+        };
         let hint = match expected.split_once(" such as ") {
+            _ if joined.is_some() && !quoted_number => joined.map(|joined| format!("write `{}`", shown(&joined))),
             _ if quoted_number => Some("remove the quotes".to_owned()),
+            _ if matches!(self.node.value, Value::Null) => Some(NO_VALUE.to_owned()),
             Some((_, example)) => Some(format!("write it as in `{example}`")),
             None => None,
         };
@@ -129,6 +139,20 @@ fn whole(number: &Number) -> Option<i128> {
     }
     let exact = number.value.abs() <= EXACT && number.value.floor() == number.value;
     exact.then_some(number.value as i128)
+}
+
+/// What helps where a key has no value.
+const NO_VALUE: &str = "write the value behind the `:`, or leave the key out";
+
+/// How to write a list of `len` values that was written as a text, such as `960x640`.
+fn list_hint(text: &str, len: usize) -> String {
+    let parts: Vec<&str> =
+        text.split(['x', 'X', '\u{d7}', '*', ',', ';', '/', ' ']).filter(|p| !p.is_empty()).collect();
+    if parts.len() == len && parts.iter().all(|p| matches!(Value::from_plain(p), Value::Number(_))) {
+        format!("write `[{}]`", listed(parts))
+    } else {
+        format!("write {len} values in brackets, separated by commas")
+    }
 }
 
 fn with_hint(error: NodeError, hint: String) -> NodeError {
@@ -255,20 +279,33 @@ impl<'n, 'p> Deserializer<'n> for Walker<'n, 'p> {
             (QUANTITY, Value::Number(Number { text, .. }) | Value::String(text)) => visitor.visit_str(text),
             (QUANTITY, _) => {
                 let found = found(me.node);
-                Err(NodeError::invalid_type(serde::de::Unexpected::Other(&found), &visitor))
+                let error = NodeError::invalid_type(serde::de::Unexpected::Other(&found), &visitor);
+                Err(match &me.node.value {
+                    Value::Null => with_hint(error, NO_VALUE.to_owned()),
+                    Value::Seq(_) => with_hint(error, "one value, without brackets".to_owned()),
+                    _ => error,
+                })
             }
             _ => visitor.visit_newtype_struct(me),
         }
 
         fn deserialize_seq(me, visitor) match &me.node.value {
             Value::Seq(elements) => visitor.visit_seq(SeqWalk::new(me, elements)),
+            Value::String(text) => Err(with_hint(me.mismatch("a list"), format!("put it in brackets: `[{}]`", shown(text)))),
+            Value::Number(number) => Err(with_hint(me.mismatch("a list"), format!("put it in brackets: `[{}]`", shown(&number.text)))),
+            Value::Map(_) => Err(with_hint(me.mismatch("a list"), "put it in brackets, or start each entry with `- `".to_owned())),
             _ => Err(me.mismatch("a list such as [1, 2]")),
         }
 
         fn deserialize_tuple(me, visitor, len: usize) match &me.node.value {
             Value::Seq(elements) if elements.len() == len => visitor.visit_seq(SeqWalk::new(me, elements)),
-            Value::Seq(elements) => Err(NodeError::text(&format!("found a list of {}, expected a list of {len}", elements.len()))),
-            _ => Err(me.mismatch(&format!("a list of {len}"))),
+            Value::Seq(elements) => Err(NodeError::text(&format!(
+                "found a list of {}, expected a list of {len}\nhint: write {len} values in brackets, separated by commas",
+                elements.len()
+            ))),
+            Value::Null => Err(me.mismatch(&format!("a list of {len}"))),
+            Value::String(text) => Err(with_hint(me.mismatch(&format!("a list of {len}")), list_hint(text, len))),
+            _ => Err(with_hint(me.mismatch(&format!("a list of {len}")), list_hint("", len))),
         }
 
         fn deserialize_tuple_struct(me, visitor, _name: &'static str, len: usize) me.deserialize_tuple(len, visitor)

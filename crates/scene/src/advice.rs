@@ -1,0 +1,135 @@
+//! What only the scene as a whole can say of its faults: a file in the wrong place, a section under another one, a
+//! section that is a bare name; and the order in which faults are told.
+
+use spectra_core::params::{Fault, Faults, Node, Params, SourceFile, Value, nearest};
+use std::path::Path;
+use std::sync::Arc;
+
+/// Sections of a scene that somebody may write under another one.
+const SECTIONS: [&str; 8] = ["source", "wavelengths", "lens", "imager", "film", "render", "output", "spectra"];
+
+/// What a file of ours is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum FileIs {
+    Scene,
+    Lens,
+    Stock,
+}
+
+impl FileIs {
+    /// What a tree is by its keys; `None` where they do not tell.
+    fn of(node: &Node) -> Option<Self> {
+        let has = |key: &str| node.get(key).is_some();
+        if has("surfaces") {
+            Some(Self::Lens)
+        } else if has("layers") && !has("source") {
+            Some(Self::Stock)
+        } else if ["source", "lens", "imager", "film", "render", "output"].iter().filter(|key| has(key)).count() >= 2 {
+            Some(Self::Scene)
+        } else {
+            None
+        }
+    }
+
+    const fn noun(self) -> &'static str {
+        match self {
+            Self::Scene => "scene",
+            Self::Lens => "lens",
+            Self::Stock => "film stock",
+        }
+    }
+}
+
+/// The fault of a file that is not what is wanted, without a place.
+pub(crate) fn other_file(node: &Node, wanted: FileIs) -> Option<Fault> {
+    let found = FileIs::of(node).filter(|found| *found != wanted)?;
+    let name = &node.file.name;
+    let fault = Fault::new(format!("`{name}` is a {}, not a {}", found.noun(), wanted.noun()));
+    Some(fault.hint(match found {
+        FileIs::Scene => format!("name a {} here; a scene is rendered by `spectra run {name}`", wanted.noun()),
+        FileIs::Lens => format!("a scene names a lens under `lens: {{file: {name}}}`; `spectra lens info {name}` shows it"),
+        FileIs::Stock => {
+            format!("a scene names a stock under `film: {{stock: {name}, exposure: 1/60 s}}`; `spectra film info {name}` shows it")
+        }
+    }))
+}
+
+/// The faults of a scene file that cannot be read, with what stands in its place.
+pub(crate) fn unreadable(faults: Faults, path: &Path) -> Faults {
+    let name = path.display();
+    let names = |folder: &Path| -> Vec<String> {
+        let entries = std::fs::read_dir(folder).into_iter().flatten().take(10_000).flatten();
+        let mut names: Vec<String> = entries.filter_map(|entry| entry.file_name().into_string().ok()).collect();
+        names.retain(|name| name.ends_with(".yaml") || name.ends_with(".yml"));
+        names.sort_unstable();
+        names
+    };
+    if path.is_dir() {
+        let inside = names(path);
+        let hint = match inside.first() {
+            Some(first) => format!("name a scene in it, such as `{}`", path.join(first).display()),
+            None => "name a scene file".to_owned(),
+        };
+        return Fault::new(format!("`{name}` is a directory, not a scene file")).hint(hint).into();
+    }
+    if path.exists() {
+        return faults;
+    }
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let wanted = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    let bundled = spectra_data::list("scenes/").filter_map(|name| name.strip_prefix("scenes/")?.strip_suffix(".yaml"));
+    let beside = names(folder);
+    let hint = match nearest(&wanted, beside.iter().map(String::as_str).chain(bundled)) {
+        Some(near) => format!("did you mean `{}`?", path.with_file_name(near).display()),
+        None => "a path of a scene file, or the name of a bundled scene, such as `gray-card`".to_owned(),
+    };
+    Fault::new(format!("`{name}`: no such file")).hint(hint).into()
+}
+
+/// The faults of a scene with what the scene as a whole knows of them, in the order of its file; then those of other
+/// files, one file after the other.
+pub(crate) fn advised(faults: Faults, scene: &Params) -> Faults {
+    let mut all: Vec<Fault> = faults.into_iter().map(|fault| advise(fault, scene)).collect();
+    // Files in the order in which they came up, the scene's own first.
+    let mut files: Vec<Arc<SourceFile>> = vec![Arc::clone(&scene.node().file)];
+    for (file, _) in all.iter().filter_map(|fault| fault.place.as_ref()) {
+        if !files.contains(file) {
+            files.push(Arc::clone(file));
+        }
+    }
+    all.sort_by_key(|fault| match &fault.place {
+        Some((file, span)) => (files.iter().position(|f| f == file).unwrap_or(files.len()), span.offset),
+        None => (files.len(), 0),
+    });
+    Faults(all)
+}
+
+fn advise(fault: Fault, scene: &Params) -> Fault {
+    if fault.message.starts_with("missing key") {
+        let example = match fault.path.as_str() {
+            "spectra" => "add `spectra: 1` as the first line",
+            "source" => "add `source: {kind: chart, chart: resolution, distance: 2 m, width: 1.5 m}`",
+            "lens" => "add `lens: {file: zeiss-biotar-50-f1.4}`",
+            "imager" => "add `imager: {kind: film, format: 135, resolution: [960, 640]}`",
+            _ => return fault,
+        };
+        return fault.hint(example);
+    }
+    if fault.message.starts_with("unknown key")
+        && let Some((section, key)) = fault.path.split_once('.')
+        && SECTIONS.contains(&section)
+        && SECTIONS.contains(&key)
+        && scene.get(key).is_none()
+    {
+        let hint = format!("`{key}` is a section of its own: start it in the same column as `{section}:`");
+        return fault.hint(hint);
+    }
+    // A bare name is the name of a kind; of a film it will be that of a stock.
+    if fault.path == "film.kind"
+        && fault.message.starts_with("unknown")
+        && let Some(Value::String(name)) = scene.get("film").map(|node| &node.value)
+    {
+        return fault.hint(format!("a stock is named by `film: {{stock: {name}, exposure: 1/60 s}}`"));
+    }
+    fault
+}

@@ -1,0 +1,181 @@
+//! The slip behind an error of the parser: what it stumbles over often stands behind what is wrong.
+
+use super::behind;
+use super::syntax;
+use serde_saphyr::granit_parser::ErrorKind;
+use spectra_core::params::{SourceFile, Span};
+
+/// A slip as a person is told it.
+pub(super) struct Slip {
+    pub place: Span,
+    pub message: String,
+    pub hint: Option<String>,
+}
+
+/// The slip behind an error at `place`; `open` is the outermost bracket that is open there.
+pub(super) fn behind_error(kind: &ErrorKind, file: &SourceFile, place: Span, open: Option<Span>) -> Slip {
+    let lines = Lines::around(&file.text, place);
+    if syntax::is_tab(kind) {
+        let (message, hint) = syntax::message(kind, "");
+        let place = lines.first_tab().unwrap_or_else(|| lines.tab_behind(place));
+        return Slip { place, message, hint: hint.map(str::to_owned) };
+    }
+    never_closed(file, &lines, place, open)
+        .or_else(|| no_space(kind, &lines, place))
+        .or_else(|| no_comma(kind, &lines))
+        .or_else(|| uneven(kind, &lines))
+        .unwrap_or_else(|| {
+            let (message, hint) = syntax::message(kind, &lines.line[..lines.at]);
+            Slip { place, message, hint: hint.map(str::to_owned) }
+        })
+}
+
+/// A bracket that was to be closed above: what follows starts where the line of the bracket starts, or left of it.
+fn never_closed(file: &SourceFile, lines: &Lines<'_>, place: Span, open: Option<Span>) -> Option<Slip> {
+    let open = open.filter(|open| open.line < place.line)?;
+    let indent = |line: &str| line.len() - line.trim_start_matches(' ').len();
+    let of_open = Lines::around(&file.text, open);
+    if lines.line.trim().is_empty() || indent(lines.line) > indent(of_open.line) {
+        return None;
+    }
+    let (bracket, closing) = if file.text[open.offset..].starts_with('{') { ('{', '}') } else { ('[', ']') };
+    Some(Slip {
+        place: Span { len: 1, ..open },
+        message: format!("`{bracket}` is never closed"),
+        hint: Some(format!("add `{closing}` behind its last entry; the next key starts on line {}", place.line)),
+    })
+}
+
+/// `key:value`.
+fn no_space(kind: &ErrorKind, lines: &Lines<'_>, place: Span) -> Option<Slip> {
+    if !matches!(kind, ErrorKind::SimpleKeyExpected | ErrorKind::InvalidSimpleKey) {
+        return None;
+    }
+    let text = lines.line[lines.at..].trim_end();
+    let (key, value) = text.split_once(':')?;
+    let is_slip = !key.is_empty() && !key.contains(' ') && !value.is_empty() && !value.starts_with([' ', '/']);
+    is_slip.then(|| Slip {
+        place: Span { len: text.len(), ..place },
+        message: "`:` without a space behind it".to_owned(),
+        hint: Some(format!("write `{}: {}`", short(key), short(value))),
+    })
+}
+
+/// A pair that no comma separates from the one before it: `{a: 1 b: 2}`.
+fn no_comma(kind: &ErrorKind, lines: &Lines<'_>) -> Option<Slip> {
+    let before = &lines.line[..lines.at];
+    if !matches!(kind, ErrorKind::ExpectedFlowMappingSeparator) || !lines.line[lines.at..].starts_with(':') {
+        return None;
+    }
+    let key = before.rsplit([' ', ',', '{']).next().filter(|key| !key.is_empty())?;
+    let place = behind(lines.start, &before[..before.len() - key.len()]);
+    Some(Slip {
+        place: Span { len: key.len(), ..place },
+        message: format!("expected `,` or `}}` before `{}`", short(key)),
+        hint: Some("separate `key: value` pairs with commas".to_owned()),
+    })
+}
+
+/// A key that is read as more of the text above it: it is indented deeper, or that line lacks its colon.
+fn uneven(kind: &ErrorKind, lines: &Lines<'_>) -> Option<Slip> {
+    let is_colon = matches!(kind, ErrorKind::MappingValueNotAllowed | ErrorKind::InvalidColonPlacement);
+    let before = &lines.line[..lines.at];
+    let (above, above_place) = lines.above?;
+    if !is_colon || before.contains(": ") || before.trim().is_empty() {
+        return None;
+    }
+    let indent = |line: &str| line.len() - line.trim_start().len();
+    if indent(lines.line) > indent(above) {
+        let place = behind(lines.start, &before[..indent(before)]);
+        return Some(Slip {
+            place: Span { len: before.trim().len(), ..place },
+            message: "this line is indented deeper than the one above it".to_owned(),
+            hint: Some(format!(
+                "keys of one map start in the same column: this one in column {}, the one above in column {}",
+                place.column,
+                indent(above) + 1
+            )),
+        });
+    }
+    if above.contains(": ") || above.trim_end().ends_with(':') {
+        return None;
+    }
+    let place = behind(above_place, &above[..indent(above)]);
+    if let Some((key, value)) = above.trim().split_once(':').filter(|(key, _)| !key.contains(' ')) {
+        return Some(Slip {
+            place: Span { len: above.trim().len(), ..place },
+            message: "`:` without a space behind it".to_owned(),
+            hint: Some(format!("write `{}: {}`", short(key), short(value))),
+        });
+    }
+    Some(Slip {
+        place: Span { len: above.trim().len(), ..place },
+        message: "a key without its `:`".to_owned(),
+        hint: Some("write `key: value`".to_owned()),
+    })
+}
+
+/// A text of bounded length.
+fn short(text: &str) -> String {
+    text.chars().take(40).filter(|c| !c.is_control()).collect()
+}
+
+/// The line of a place, and what stands above it.
+struct Lines<'a> {
+    text: &'a str,
+    line: &'a str,
+    /// Where the line starts.
+    start: Span,
+    /// Bytes of the line before the place.
+    at: usize,
+    /// The nearest line above it that is neither empty nor a remark, with its start.
+    above: Option<(&'a str, Span)>,
+}
+
+impl<'a> Lines<'a> {
+    fn around(text: &'a str, place: Span) -> Self {
+        let ends = ['\n', '\r'];
+        let start = text[..place.offset].rfind(ends).map_or(0, |newline| newline + 1);
+        let end = text[place.offset..].find(ends).map_or(text.len(), |newline| place.offset + newline);
+        let line = &text[start..end];
+        let mut above = None;
+        let (mut upper, mut number) = (start, place.line);
+        // Far enough for any remark between two keys.
+        for _ in 0..100 {
+            let Some(last) = upper.checked_sub(1) else { break };
+            let last = if text[..upper].ends_with("\r\n") { last - 1 } else { last };
+            upper = text[..last].rfind(ends).map_or(0, |newline| newline + 1);
+            number = number.saturating_sub(1);
+            let candidate = &text[upper..last];
+            if !candidate.trim().is_empty() && !candidate.trim_start().starts_with('#') {
+                above = Some((candidate, Span { line: number, column: 1, offset: upper, len: 0 }));
+                break;
+            }
+        }
+        let at = (place.offset - start).min(line.len());
+        Self { text, line, start: Span { line: place.line, column: 1, offset: start, len: 0 }, at, above }
+    }
+
+    /// The first tab of the lines indented with tabs that end with this one.
+    fn first_tab(&self) -> Option<Span> {
+        let tab = |line: &str| line[..line.len() - line.trim_start_matches([' ', '\t']).len()].find('\t');
+        let mut found = None;
+        let (mut line, mut start) = (self.line, self.start);
+        while let Some(at) = tab(line) {
+            found = Some(Span { column: at + 1, offset: start.offset + at, len: 1, ..start });
+            let Some(upper) = start.offset.checked_sub(1).filter(|upper| self.text[*upper..].starts_with('\n')) else {
+                break;
+            };
+            let above = self.text[..upper].rfind('\n').map_or(0, |newline| newline + 1);
+            line = &self.text[above..upper];
+            start = Span { line: start.line.saturating_sub(1), offset: above, ..start };
+        }
+        found
+    }
+
+    /// The first tab at or behind a place; the place itself if there is none.
+    fn tab_behind(&self, place: Span) -> Span {
+        let rest = &self.text[place.offset..];
+        rest.find('\t').map_or(place, |tab| Span { len: 1, ..behind(place, &rest[..tab]) })
+    }
+}
