@@ -110,7 +110,7 @@ pub fn make_texture(path: &Path, picture: &Written<'_>) -> Result<(), String> {
     ffi::make_texture(&plan, &Pixels::new(picture), path).map_err(|e| e.what().trim().to_owned())
 }
 
-/// See [`spectra_core::picture_file::PictureLibrary::write_tiled_exr`].
+/// See `spectra_core::picture_file::PictureLibrary::write_tiled_exr`.
 pub(crate) fn tiled_exr(to: &mut File, picture: &TiledExr<'_>) -> Result<(), String> {
     let mut texts = picture.attributes.to_vec();
     let said = |name: &str, text: &str| (name.to_owned(), text.to_owned());
