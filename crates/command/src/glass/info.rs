@@ -1,14 +1,13 @@
 //! `spectra glass info`.
 
 use super::arguments::GlassInfo;
-use super::{catalogue, named, own_file};
+use super::{catalogue, named, own_file, unknown};
 use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
 use serde::{Serialize, Serializer};
-use spectra_core::params::Fault;
 use spectra_glass::air::{self, AirConditions, CATALOGUE_AIR};
 use spectra_glass::interface::{brewster_angle, critical_angle, fresnel};
-use spectra_glass::{Catalogue, FindError, Glass, LineTriple, Medium, lines};
+use spectra_glass::{Catalogue, Glass, LineTriple, Medium, lines};
 use std::fmt::Write;
 
 /// Thickness for which internal transmittances are stated.
@@ -78,10 +77,6 @@ pub(crate) fn info(arguments: &GlassInfo) -> Outcome {
         report.warnings.iter().for_each(|warning| console::warning(warning));
     }
     Ok(DONE)
-}
-
-fn unknown(error: FindError) -> Failure {
-    Failure::Faults(Fault::new(error.message()).hint(error.hint()).into())
 }
 
 fn medium(arguments: &GlassInfo, catalogue: &Catalogue) -> Result<Medium, Failure> {

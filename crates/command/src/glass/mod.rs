@@ -12,8 +12,8 @@ pub(crate) use arguments::GlassArguments;
 use crate::console;
 use crate::outcome::{Failure, Outcome};
 use arguments::{GlassCommand, OwnCatalogues};
-use spectra_core::params::nearest as near_words;
-use spectra_glass::{Catalogue, Glass, Medium, agf, file};
+use spectra_core::params::{Fault, nearest as near_words};
+use spectra_glass::{Catalogue, FindError, Glass, Medium, agf, file};
 use spectra_scene::FileResources;
 use std::borrow::Cow;
 use std::io::Read;
@@ -56,8 +56,13 @@ fn catalogue(own: &OwnCatalogues) -> Result<Cow<'static, Catalogue>, Failure> {
 fn named(name: &str, catalogue: &Catalogue) -> Result<Medium, Failure> {
     match own_file(name)? {
         Some(glass) => Ok(glass.into()),
-        None => catalogue.medium(name).map_err(|e| Failure::Input(e.to_string())),
+        None => catalogue.medium(name).map_err(unknown),
     }
+}
+
+/// A name that is nobody's, or that of several.
+fn unknown(error: FindError) -> Failure {
+    Failure::Faults(Fault::new(error.message()).hint(error.hint()).into())
 }
 
 /// The glass of a file in the working folder; `None` for a name of the catalogue.

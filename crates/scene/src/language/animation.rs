@@ -68,7 +68,8 @@ impl Animation {
         };
         let mut whole = |key: &str, value: f64, min: f64, max: f64| {
             if value.fract() != 0.0 || !(min..=max).contains(&value) {
-                faults.push(fault(key, format!("`{key}` must be a whole number from {min} to {max}")));
+                let text = format!("`{key}` must be a whole number from {min} to {max}");
+                faults.push(fault(key, text).hint(format!("such as `{key}: 24`")));
             }
             value as u32
         };
