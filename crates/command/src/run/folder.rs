@@ -10,6 +10,7 @@ use spectra_scene::{Member, Output, RaysFigure, Scene};
 use std::fmt::Display;
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
 /// What goes into the folder of one picture, which is known to take files.
@@ -47,7 +48,10 @@ impl Folder {
             }
         }
         // Rights, read-only disks, quotas: only the attempt tells.
-        let attempt = folder.join(format!(".spectra-{}.tmp", std::process::id()));
+        // Several pictures of a series try at the same time.
+        static ATTEMPTS: AtomicU64 = AtomicU64::new(0);
+        let number = ATTEMPTS.fetch_add(1, Ordering::Relaxed);
+        let attempt = folder.join(format!(".spectra-{}-{number}.tmp", std::process::id()));
         std::fs::write(&attempt, b"spectra").map_err(|error| refuse(folder, &error))?;
         std::fs::remove_file(&attempt).map_err(|error| refuse(folder, &error))?;
         Ok(Self { files })
