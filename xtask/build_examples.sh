@@ -21,7 +21,7 @@ for example in "$root"/plugins/examples/*/; do
 done
 cd "$work"
 SPECTRA_CACHE=$work/cache "$program" build "${with[@]}" --core "$root" --profile dev -o spectra-mine
-python3 "$root/xtask/validate_schemas.py" ./spectra-mine
+"${PYTHON:-python3}" "$root/xtask/validate_schemas.py" ./spectra-mine
 for name in axicon night-vision lenslets; do
     ./spectra-mine run "$name/scene.yaml" --samples 16 --output "out/$name" --quiet
     test -s "out/$name/scene.png"
