@@ -114,7 +114,7 @@ mod with {
         assert!(!a.attributes.other.is_empty());
         for (name, value) in &a.attributes.other {
             // The scene's own text says what it is written to.
-            if name.to_string() != "spectra:scene" {
+            if name != "spectra:scene" {
                 assert_eq!(b.attributes.other.get(name), Some(value), "{name}");
             }
         }

@@ -18,4 +18,4 @@ pub use library::OpenImageIo;
 pub use writing::{Samples, Written, make_texture, write};
 
 #[cfg(test)]
-mod tests;
+mod oiio_tests;
