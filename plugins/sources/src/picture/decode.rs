@@ -20,7 +20,8 @@ const MAX_PIXELS_PER_BYTE: u64 = 1_100 * 8;
 /// What is wrong with the file.
 pub(crate) fn decode(bytes: &[u8], choice: Choice<'_>) -> Result<Linear, Trouble> {
     if bytes.is_empty() {
-        return Err(Trouble::file("the file is empty"));
+        return Err(Trouble::file("the file is empty")
+            .hint("is the file complete? Save it again as OpenEXR, PNG, JPEG, TIFF or HDR"));
     }
     let said = choice.transfer.map(Encoding::named).transpose()?;
     if bytes.starts_with(&exr::MAGIC) {
