@@ -2,6 +2,7 @@
 
 use super::plugin::Metadata;
 use super::program::Program;
+use crate::console;
 use crate::outcome::Failure;
 use crate::sources::{Sources, plain};
 use serde_json::Value;
@@ -99,7 +100,10 @@ impl Cargo {
     /// Builds the program; cargo's words go to standard error as they come.
     pub(super) fn build(&self, program: &Program, profile: &str) -> Result<PathBuf, Failure> {
         let mut command = self.command("build", &program.manifest);
-        command.args(["--profile", profile, "--message-format", "json-render-diagnostics"]);
+        // The compiler's words come as JSON, so that it is known whose they are, and are shown as they are.
+        let colored = console::stderr_is_colored();
+        let format = if colored { "json-diagnostic-rendered-ansi" } else { "json" };
+        command.args(["--profile", profile, "--message-format", format]);
         if std::env::var_os("CARGO_TARGET_DIR").is_none_or(|folder| folder.is_empty()) {
             command.arg("--target-dir").arg(&program.target);
         } else if let Some(folder) = std::env::var_os("CARGO_TARGET_DIR") {
@@ -143,7 +147,13 @@ impl Report {
             Some("compiler-artifact") if target == program => {
                 self.executable = message["executable"].as_str().map(PathBuf::from).or(self.executable.take());
             }
-            Some("compiler-message") if message["message"]["level"] == "error" => {
+            Some("compiler-message") => {
+                if let Some(words) = message["message"]["rendered"].as_str() {
+                    console::note(words.trim_end());
+                }
+                if message["message"]["level"] != "error" {
+                    return;
+                }
                 let name = format!("`{}`", target.replace('_', "-"));
                 if !self.faulty.contains(&name) {
                     self.faulty.push(name);
