@@ -11,8 +11,9 @@ ZIP compressed, as OpenEXR's "File Layout" describes. Needs nothing but Python 3
 import math
 import pathlib
 import random
-import struct
-import zlib
+
+
+import half_exr
 
 WIDTH, HEIGHT = 720, 480
 PLANE, ACROSS = 2.0, 1.7  # m: the picture is this wide on a plane at this distance
@@ -119,53 +120,11 @@ def pixel(column, row):
     return min((hit for hit in (cone(d), ball(d), post(d), table(d), wall(d)) if hit), key=lambda hit: hit[0])
 
 
-def attribute(name, kind, value):
-    return name.encode() + b"\0" + kind.encode() + b"\0" + struct.pack("<i", len(value)) + value
-
-
-def compressed(raw):
-    """OpenEXR's ZIP: bytes apart by parity, differences plus 128, deflate."""
-    halves = raw[0::2] + raw[1::2]
-    differences = bytearray(halves[:1])
-    differences += bytes((b - a + 128) & 255 for a, b in zip(halves, halves[1:]))
-    packed = zlib.compress(bytes(differences), 9)
-    return packed if len(packed) < len(raw) else raw
-
-
 def main():
     rows = [[pixel(c, r) for c in range(WIDTH)] for r in range(HEIGHT)]
-    channels = b"".join(n.encode() + b"\0" + struct.pack("<iBxxxii", 1, 0, 1, 1) for n in "BGRZ") + b"\0"
-    window = struct.pack("<4i", 0, 0, WIDTH - 1, HEIGHT - 1)
-    header = struct.pack("<ii", 20000630, 2) + b"".join(
-        [
-            attribute("channels", "chlist", channels),
-            attribute("comments", "string", b"Synthetic, by xtask/depth_still_life.py; CC0-1.0"),
-            attribute("compression", "compression", bytes([3])),
-            attribute("dataWindow", "box2i", window),
-            attribute("displayWindow", "box2i", window),
-            attribute("lineOrder", "lineOrder", bytes([0])),
-            attribute("pixelAspectRatio", "float", struct.pack("<f", 1)),
-            attribute("screenWindowCenter", "v2f", struct.pack("<ff", 0, 0)),
-            attribute("screenWindowWidth", "float", struct.pack("<f", 1)),
-            b"\0",
-        ]
-    )
-    blocks = []
-    for first in range(0, HEIGHT, 16):
-        raw = b""
-        for row in rows[first : first + 16]:
-            for of in (lambda p: p[1][2], lambda p: p[1][1], lambda p: p[1][0], lambda p: p[0]):
-                raw += struct.pack(f"<{WIDTH}e", *map(of, row))
-        packed = compressed(raw)
-        blocks.append(struct.pack("<ii", first, len(packed)) + packed)
-    at = len(header) + 8 * len(blocks)
-    table_of_blocks = b""
-    for block in blocks:
-        table_of_blocks += struct.pack("<Q", at)
-        at += len(block)
+    rows = [[(color[2], color[1], color[0], depth) for depth, color in row] for row in rows]
     out = pathlib.Path(__file__).resolve().parent.parent / "scenes" / "depth-still-life.exr"
-    out.write_bytes(header + table_of_blocks + b"".join(blocks))
-    print(out, out.stat().st_size, "bytes")
+    half_exr.write(out, "Synthetic, by xtask/depth_still_life.py; CC0-1.0", "BGRZ", rows)
 
 
 if __name__ == "__main__":
