@@ -12,7 +12,6 @@ import math
 import pathlib
 import random
 
-
 import half_exr
 
 WIDTH, HEIGHT = 720, 480

@@ -1,5 +1,7 @@
 //! Frames: what is recorded, and what a person sees of it.
 
+use crate::spectral::Channel;
+
 /// Size of the recorded frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrameSize {
@@ -77,6 +79,12 @@ impl ExposureFrame {
     #[must_use]
     pub fn channel(&self, name: &str) -> Option<&ExposureChannel> {
         self.channels.iter().find(|c| c.name == name)
+    }
+
+    /// The values of these channels, in their order; `None` where one is missing.
+    #[must_use]
+    pub fn planes(&self, channels: &[Channel]) -> Option<Vec<&[f32]>> {
+        channels.iter().map(|c| self.channel(&c.name).map(|plane| &plane.values[..])).collect()
     }
 
     /// The values of the channel of that name, as many as the frame has pixels.

@@ -96,9 +96,7 @@ impl Response for Bands {
 
     /// The colors of the bands, as an eye sees them, under automatic exposure.
     fn display(&self, exposure: &ExposureFrame) -> Option<DisplayPicture> {
-        let planes: Option<Vec<&[f32]>> =
-            self.channels.iter().map(|c| exposure.channel(&c.name).map(|plane| &plane.values[..])).collect();
-        let planes = planes?;
+        let planes = exposure.planes(&self.channels)?;
         let channels = ["X", "Y", "Z"].into_iter().enumerate().map(|(k, name)| ExposureChannel {
             name: name.into(),
             unit: "lx".into(),

@@ -58,9 +58,7 @@ impl Response for Sensitivities {
     }
 
     fn display(&self, exposure: &ExposureFrame) -> Option<DisplayPicture> {
-        let planes: Option<Vec<&[f32]>> =
-            self.channels.iter().map(|c| exposure.channel(&c.name).map(|plane| &plane.values[..])).collect();
-        let planes = planes?;
+        let planes = exposure.planes(&self.channels)?;
         let sum = |row: &[f64], pixel: usize| -> f64 {
             row.iter().zip(&planes).map(|(factor, plane)| factor * f64::from(plane[pixel])).sum()
         };
