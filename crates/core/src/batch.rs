@@ -83,10 +83,10 @@ pub struct RayBatch {
     index: Column<f64>,
     weight: Column<f64>,
     state: Column<u64>,
+    optical_path_mm: Option<Column<f64>>,
     line: Vec<u32>,
     tag: Vec<u32>,
     surface: u32,
-    sequential: bool,
     scratch: Scratch,
 }
 
@@ -135,6 +135,8 @@ pub struct Columns<'a> {
     pub line: &'a mut [u32],
     /// Row, path or pixel.
     pub tag: &'a mut [u32],
+    /// Optical path since [`RayBatch::restart`], mm; empty unless the batch carries it.
+    pub optical_path_mm: &'a mut [f64],
 }
 
 impl RayBatch {
@@ -155,10 +157,10 @@ impl RayBatch {
             index: column(),
             weight: column(),
             state: Column::new(capacity),
+            optical_path_mm: None,
             line: vec![CONTINUUM; capacity],
             tag: vec![0; capacity],
             surface: 0,
-            sequential: true,
             scratch: Scratch {
                 radius2: column(),
                 radius2_is_true: false,
@@ -166,6 +168,13 @@ impl RayBatch {
                 valid: column(),
             },
         }
+    }
+
+    /// The same, with a column for the optical path: the sum of index times distance (negative where a surface lies behind the
+    /// one before), mm.
+    #[must_use]
+    pub fn with_optical_path(capacity: usize) -> Self {
+        Self { optical_path_mm: Some(Column::new(capacity)), ..Self::new(capacity) }
     }
 
     /// Starts over with `len` rays, all alive, of weight 1 in air, on no line; positions, directions
@@ -182,6 +191,7 @@ impl RayBatch {
         c.weight.fill(1.0);
         c.state.fill(ALIVE);
         c.line.fill(CONTINUUM);
+        c.optical_path_mm.fill(0.0);
     }
 
     /// Number of rays, the ended ones included.
@@ -212,17 +222,6 @@ impl RayBatch {
     /// Sets the surface that the living rays left last.
     pub fn set_surface(&mut self, surface: u32) {
         self.surface = surface;
-    }
-
-    /// Whether the rays go from surface to surface in the order of the prescription.
-    #[must_use]
-    pub fn is_sequential(&self) -> bool {
-        self.sequential
-    }
-
-    /// Marks the batch as (not) following the order of the prescription.
-    pub fn set_sequential(&mut self, sequential: bool) {
-        self.sequential = sequential;
     }
 
     /// All columns at once, writable.
@@ -261,6 +260,7 @@ impl RayBatch {
             state: self.state.slice_mut(len),
             line: &mut self.line[..len],
             tag: &mut self.tag[..len],
+            optical_path_mm: self.optical_path_mm.as_mut().map_or(&mut [], |column| column.slice_mut(len)),
         };
         let scratch = ScratchColumns {
             radius2: self.scratch.radius2.slice_mut(len),
@@ -298,6 +298,12 @@ impl RayBatch {
     #[must_use]
     pub fn states(&self) -> &[u64] {
         self.state.slice(self.len)
+    }
+
+    /// Optical path since [`RayBatch::restart`], mm, if the batch carries it ([`RayBatch::with_optical_path`]).
+    #[must_use]
+    pub fn optical_path_mm(&self) -> Option<&[f64]> {
+        self.optical_path_mm.as_ref().map(|column| column.slice(self.len))
     }
 
     /// Spectral lines drawn, or [`CONTINUUM`].
@@ -341,6 +347,9 @@ impl RayBatch {
             c.weight[to] = c.weight[from];
             c.line[to] = c.line[from];
             c.tag[to] = c.tag[from];
+            if let Some(path) = c.optical_path_mm.get(from).copied() {
+                c.optical_path_mm[to] = path;
+            }
             let state = c.state[from];
             c.state[to] = state;
             to += usize::from(state == ALIVE);

@@ -14,8 +14,10 @@ mod field;
 mod first_order;
 mod focus;
 mod group;
+mod ledger;
 mod lens;
 mod matte_box;
+mod path;
 mod pose;
 mod prescription;
 mod reverse;
@@ -29,7 +31,8 @@ pub use aperture::read as read_apertures;
 pub use aperture::{Aperture, ApertureForm, Drawing, FLATNESS_MM, FillRule, Iris, Mask, Opening, Painted, Shape};
 pub use beam::{Beam, ObjectPoint};
 pub use coating::{
-    Coating, CoatingForm, MeasuredCoating, OneLayer, Stack, StackLayer, StackParams, Transmittance, read_coating,
+    Coating, CoatingForm, MeasuredCoating, OneLayer, Reflectance, Stack, StackLayer, StackParams, Transmittance,
+    read_coating,
 };
 pub use element::Element;
 pub use f_number::{ApertureError, MarginalRay};
@@ -37,11 +40,13 @@ pub use field::{ChiefRay, FieldLimit};
 pub use first_order::{FirstOrder, Section};
 pub use focus::{Criterion, FocusError, FocusLaw, FocusSearch, FocusTable, GroupTravel};
 pub use group::{Group, Misalignment};
+pub use ledger::{Ledger, StepLedger};
 pub use lens::{Lens, LensMedium};
 pub use matte_box::{MATTE_BOX, MatteBox};
+pub use path::{Act, Path, PathError, PathStep};
 pub use pose::{AxisBreak, Displacement, Pose};
 pub use prescription::{load, parse, unknown_group};
 pub use reverse::ReverseError;
 pub use schema::{lens_schema, surface_keys};
 pub use spectra_core::surface::Travel;
-pub use tracer::{Indices, RayPath, Tracer, Work};
+pub use tracer::{Indices, RayPath, Route, Tracer, Work};

@@ -1,6 +1,8 @@
-//! Sequential tracing of whole batches, in either sense.
+//! Tracing of whole batches along a path: straight through the lens in either direction, or by reflections.
 
 use crate::aperture::Shape;
+use crate::ledger::{Booked, Ledger, StepLedger, living};
+use crate::path::{Act, Path, PathStep};
 use crate::pose::Pose;
 use crate::transmission::{Absorption, Before, Passage};
 use crate::{Element, Lens};
@@ -33,8 +35,9 @@ pub struct Tracer {
     elements: Vec<Element>,
     /// Square of the radius at which each clips, mm^2.
     clips: Vec<f64>,
-    forward: Vec<Step>,
-    backward: Vec<Step>,
+    image_pose: Pose,
+    forward: Route,
+    backward: Route,
     media: Vec<Dispersion>,
     /// What each surface does to the weight of light.
     passages: Vec<Passage>,
@@ -45,14 +48,14 @@ pub struct Tracer {
 
 /// How rays come from one frame into the next.
 #[derive(Clone, Copy, Debug)]
-enum Step {
+enum Move {
     /// Both stand alike on one line along z: the next origin lies this far, mm.
     Shift(f64),
     /// Anything else: the pose of the frame they are in, seen from the next one.
     Turn(Pose),
 }
 
-impl Step {
+impl Move {
     fn between(from: &Pose, to: &Pose) -> Self {
         let aside = from.origin_mm - to.origin_mm;
         if from.rotation == to.rotation && from.rotation == DMat3::IDENTITY && aside.x == 0.0 && aside.y == 0.0 {
@@ -60,11 +63,36 @@ impl Step {
         }
         Self::Turn(to.inverse().then(from))
     }
+}
 
-    /// The steps along a list of frames.
-    fn along<'a>(frames: impl Iterator<Item = &'a Pose> + Clone) -> Vec<Self> {
-        frames.clone().zip(frames.skip(1)).map(|(from, to)| Self::between(from, to)).collect()
-    }
+/// A path made ready: where each surface stands seen from the one before, what it does, and between which media.
+#[derive(Clone, Debug)]
+pub struct Route {
+    legs: Vec<Leg>,
+    /// Into the frame in which the light leaves.
+    out: Move,
+    /// The medium that it leaves into.
+    outside: usize,
+}
+
+/// One step of a [`Route`].
+#[derive(Clone, Copy, Debug)]
+struct Leg {
+    /// The element, also the place of its booking.
+    at: usize,
+    /// Into the frame of the surface.
+    into: Move,
+    action: Action,
+    /// Whether a refracting surface reflects.
+    turns: bool,
+    /// Direction of travel along the surface's own z.
+    travel: Travel,
+    /// Media: the one that the light comes through, the one that it goes on in, and the one on the other side.
+    before: usize,
+    after: usize,
+    beyond: usize,
+    /// Whether the way here lies within the lens, where glass absorbs.
+    inside: bool,
 }
 
 /// What one thread needs to trace: index columns, and what was lost.
@@ -74,8 +102,25 @@ pub struct Work {
     /// Rays lost so far, by cause and surface.
     pub losses: LossCounts,
     compact: bool,
-    /// Of a lens that does not pass everything.
+    capacity: usize,
+    /// Of a lens that does not pass everything, and of batches that carry their optical path.
     before: Option<Before>,
+    /// Where light goes, if somebody asks.
+    ledger: Option<(Ledger, Booked)>,
+}
+
+impl Work {
+    /// From now on books where the light of a path goes. One ledger serves one path: see [`Work::take_ledger`].
+    #[must_use]
+    pub fn with_ledger(mut self) -> Self {
+        self.ledger = Some((Ledger::default(), Booked::new(self.capacity)));
+        self
+    }
+
+    /// The ledger so far, which begins anew; `None` if none is kept.
+    pub fn take_ledger(&mut self) -> Option<Ledger> {
+        self.ledger.as_mut().map(|(ledger, _)| std::mem::take(ledger))
+    }
 }
 
 /// One ray, surface by surface.
@@ -109,11 +154,6 @@ impl Tracer {
                 }
             })
             .collect::<Result<_, _>>()?;
-        let own = std::iter::once(&Pose::IDENTITY);
-        let frames: Vec<&Pose> =
-            own.chain(lens.elements.iter().map(|e| &e.pose)).chain(std::iter::once(&lens.image_pose)).collect();
-        let forward = Step::along(frames.iter().copied());
-        let backward = Step::along(frames.iter().rev().copied());
         let clips = lens.elements.iter().map(round_clip2_mm2).collect();
         let passages = lens.elements.iter().map(|e| Passage::of(lens, e)).collect();
         let (min_nm, max_nm) = match indices {
@@ -124,7 +164,19 @@ impl Tracer {
         let absorption = |medium: &Medium| Absorption::of(medium, min_nm, max_nm).filter(|_| lens.absorption);
         let absorptions = lens.media.iter().map(|m| absorption(&m.medium)).collect();
         let elements = lens.elements.clone();
-        Ok(Self { elements, clips, forward, backward, media, passages, absorptions, isa })
+        let image_pose = lens.image_pose;
+        let way = |travel| route(&elements, &image_pose, &Path::through(elements.len(), travel));
+        let (forward, backward) = (way(Travel::Forward), way(Travel::Backward));
+        Ok(Self { elements, clips, image_pose, forward, backward, media, passages, absorptions, isa })
+    }
+
+    /// Makes a path ready, once for all batches that follow it.
+    ///
+    /// # Panics
+    /// If the path names an element that the lens does not have.
+    #[must_use]
+    pub fn route(&self, path: &Path) -> Route {
+        route(&self.elements, &self.image_pose, path)
     }
 
     /// The instruction set in use.
@@ -150,7 +202,7 @@ impl Tracer {
     pub fn work(&self, capacity: usize) -> Work {
         let media = self.media.iter().map(|medium| IndexColumnPair::new(medium, capacity)).collect();
         let before = (!self.is_ideal()).then(|| Before::new(capacity));
-        Work { media, losses: LossCounts::default(), compact: true, before }
+        Work { media, losses: LossCounts::default(), compact: true, capacity, before, ledger: None }
     }
 
     /// The same, but no ray leaves its place in the batch.
@@ -159,33 +211,46 @@ impl Tracer {
         Work { compact: false, ..self.work(capacity) }
     }
 
-    /// Traces a batch through the whole lens. Forward, it enters in the frame of the lens and leaves
-    /// in that of the image plane; backward the other way round.
+    /// Traces a batch straight through the lens. Forward, it enters in the frame of the lens and leaves in that of the image
+    /// plane; backward the other way round.
     pub fn trace(&self, rays: &mut RayBatch, work: &mut Work, travel: Travel) {
+        self.follow(if travel == Travel::Forward { &self.forward } else { &self.backward }, rays, work);
+    }
+
+    /// Traces a batch along a path. At the front rays enter and leave in the frame of the lens, at the rear in that of the image
+    /// plane.
+    pub fn follow(&self, route: &Route, rays: &mut RayBatch, work: &mut Work) {
         self.refractive_indices(rays, work);
-        let steps = if travel == Travel::Forward { &self.forward } else { &self.backward };
+        if rays.optical_path_mm().is_some() && work.before.is_none() {
+            work.before = Some(Before::new(work.capacity));
+        }
+        if let Some((ledger, booked)) = &mut work.ledger {
+            ledger.steps.resize(route.legs.len(), StepLedger::default());
+            ledger.launched += living(rays);
+            booked.note(rays);
+        }
         let mut alive = rays.len();
-        for (step, into) in steps[..self.elements.len()].iter().enumerate() {
-            let at = if travel == Travel::Forward { step } else { self.elements.len() - 1 - step };
-            let ended = self.interact(rays, work, at, into, travel, self.isa, step == 0);
+        for (step, leg) in route.legs.iter().enumerate() {
+            let ended = self.interact(rays, work, leg, step, self.isa);
             if ended > 0 {
-                self.count(rays, at as u32 + 1, &mut work.losses);
+                self.count(rays, leg.at as u32 + 1, &mut work.losses);
                 alive -= ended;
                 if work.compact && alive * 2 < rays.len() {
                     rays.compact();
                     self.refractive_indices(rays, work);
+                    if let Some((_, booked)) = &mut work.ledger {
+                        booked.note(rays);
+                    }
                 }
             }
         }
-        let outside = match travel {
-            Travel::Forward => self.elements.last().map_or(0, |e| e.medium_after),
-            Travel::Backward => self.elements.first().map_or(0, |e| e.medium_before),
-        };
-        let len = rays.len();
-        let index = work.media[outside].n.slice(len);
-        let shift_mm = match steps[self.elements.len()] {
-            Step::Shift(shift_mm) => shift_mm,
-            Step::Turn(pose) => {
+        if let Some((ledger, _)) = &mut work.ledger {
+            ledger.arrived += living(rays);
+        }
+        let index = work.media[route.outside].n.slice(rays.len());
+        let shift_mm = match route.out {
+            Move::Shift(shift_mm) => shift_mm,
+            Move::Turn(pose) => {
                 self.isa.run(Reframe { rays, pose });
                 0.0
             }
@@ -193,52 +258,62 @@ impl Tracer {
         self.isa.run(Leave { rays, index, shift_mm: -shift_mm });
     }
 
-    /// Brings a batch onto element `at` and through it; says how many rays ended there. What lies in front of the
-    /// `first` one is not part of the lens and absorbs nothing.
-    fn interact(
-        &self,
-        rays: &mut RayBatch,
-        work: &mut Work,
-        at: usize,
-        into: &Step,
-        travel: Travel,
-        isa: Isa,
-        first: bool,
-    ) -> usize {
-        let element = &self.elements[at];
-        let shift_mm = match into {
-            Step::Shift(shift_mm) => *shift_mm,
-            Step::Turn(pose) => {
+    /// Brings a batch along one leg and through its element; says how many rays ended there.
+    fn interact(&self, rays: &mut RayBatch, work: &mut Work, leg: &Leg, step: usize, isa: Isa) -> usize {
+        let element = &self.elements[leg.at];
+        let shift_mm = match &leg.into {
+            Move::Shift(shift_mm) => *shift_mm,
+            Move::Turn(pose) => {
                 isa.run(Reframe { rays, pose: *pose });
                 0.0
             }
-        };
-        let (before, after) = match travel {
-            Travel::Forward => (element.medium_before, element.medium_after),
-            Travel::Backward => (element.medium_after, element.medium_before),
         };
         let len = rays.len();
         if let Some(noted) = &mut work.before {
             noted.note(rays);
         }
         let interface = Interface {
-            number: at as u32 + 1,
+            number: leg.at as u32 + 1,
             shift_mm,
-            clip_radius2_mm2: self.clips[at],
-            action: element.action,
-            travel: sense(element, travel),
-            before: columns(&work.media[before], len),
-            after: columns(&work.media[after], len),
+            clip_radius2_mm2: self.clips[leg.at],
+            action: leg.action,
+            travel: leg.travel,
+            before: columns(&work.media[leg.before], len),
+            after: columns(&work.media[leg.after], len),
         };
         let mut ended = element.surface.interact(rays, &interface, isa);
+        if let Some((ledger, booked)) = &mut work.ledger {
+            booked.settle(rays, &mut ledger.steps[step], |s| &mut s.absorbed);
+        }
         if let Some(noted) = &work.before {
-            if let (Some(absorption), false) = (&self.absorptions[before], first) {
+            noted.lengthen(rays, interface.before.n, shift_mm);
+            if let (Some(absorption), true) = (&self.absorptions[leg.before], leg.inside) {
                 noted.absorb(rays, absorption, shift_mm);
+                if let Some((ledger, booked)) = &mut work.ledger {
+                    booked.settle(rays, &mut ledger.steps[step], |s| &mut s.absorbed);
+                }
             }
-            noted.pass(rays, &self.passages[at], interface.before.n, interface.after.n, isa);
+            let passage = &self.passages[leg.at];
+            if leg.turns {
+                let beyond = columns(&work.media[leg.beyond], len);
+                noted.reflect(rays, passage, interface.before.n, beyond.n);
+            } else {
+                noted.pass(rays, passage, interface.before.n, interface.after.n, isa);
+            }
+            if let Some((ledger, booked)) = &mut work.ledger {
+                let mirror = matches!(passage, Passage::Mirror(_));
+                booked.settle(
+                    rays,
+                    &mut ledger.steps[step],
+                    |s| if mirror { &mut s.absorbed } else { &mut s.elsewhere },
+                );
+            }
         }
         for aperture in &element.apertures {
             ended += aperture.clip(rays, interface.number, element.semi_diameter_mm);
+        }
+        if let Some((ledger, booked)) = &mut work.ledger {
+            booked.settle(rays, &mut ledger.steps[step], |s| &mut s.absorbed);
         }
         rays.set_surface(interface.number);
         ended
@@ -258,8 +333,9 @@ impl Tracer {
         let mut work = self.work_in_place(1);
         self.refractive_indices(&rays, &mut work);
         let mut path = RayPath { points: vec![position], direction, end: None };
-        for (at, (element, into)) in self.elements.iter().zip(&self.forward).enumerate() {
-            self.interact(&mut rays, &mut work, at, into, Travel::Forward, Isa::Baseline, at == 0);
+        for (step, leg) in self.forward.legs.iter().enumerate() {
+            let element = &self.elements[leg.at];
+            self.interact(&mut rays, &mut work, leg, step, Isa::Baseline);
             let ([x, y, z], [l, m, n]) = (rays.positions(), rays.directions());
             path.end = rays.loss(0);
             if path.end.is_none_or(|(cause, _)| cause == Loss::Vignetted) {
@@ -330,6 +406,35 @@ impl Vectorized for Evaluate<'_> {
     fn run(self) {
         self.medium.index_and_inverse(self.wavelength_nm, self.n, self.inverse);
     }
+}
+
+fn route(elements: &[Element], image_pose: &Pose, path: &Path) -> Route {
+    let end = |at_front: bool| if at_front { &Pose::IDENTITY } else { image_pose };
+    let mut frame = end(path.enters() == Travel::Forward);
+    let mut outside = 0;
+    let mut legs = Vec::with_capacity(path.steps().len());
+    for PathStep { element: at, act, travel } in path.steps() {
+        let element = &elements[*at];
+        let (before, beyond) = match travel {
+            Travel::Forward => (element.medium_before, element.medium_after),
+            Travel::Backward => (element.medium_after, element.medium_before),
+        };
+        let turns = *act == Act::Reflect && element.action == Action::Refract;
+        let after = if turns { before } else { beyond };
+        legs.push(Leg {
+            at: *at,
+            into: Move::between(frame, &element.pose),
+            action: if turns { Action::Reflect } else { element.action },
+            turns,
+            travel: sense(element, *travel),
+            before,
+            after,
+            beyond,
+            inside: !legs.is_empty(),
+        });
+        (frame, outside) = (&element.pose, after);
+    }
+    Route { legs, out: Move::between(frame, end(path.leaves() == Travel::Backward)), outside }
 }
 
 /// The sense in which light meets a surface, along the surface's own z: behind a mirror, or where the surface is turned

@@ -148,6 +148,37 @@ impl Before {
         }
     }
 
+    /// Adds the way since the note to the optical path of batches that carry it, in a medium of these indices.
+    pub(crate) fn lengthen(&self, rays: &mut RayBatch, index: &[f64], shift_mm: f64) {
+        let len = rays.len();
+        let [x, y, z] = self.position.each_ref().map(|column| column.slice(len));
+        let [l, m, n] = self.direction.each_ref().map(|column| column.slice(len));
+        let c = rays.columns_mut();
+        for (i, path) in c.optical_path_mm.iter_mut().enumerate() {
+            let way_mm = (c.x[i] - x[i]) * l[i] + (c.y[i] - y[i]) * m[i] + (c.z[i] - (z[i] - shift_mm)) * n[i];
+            *path += index[i] * way_mm;
+        }
+    }
+
+    /// Weighs rays by what a refracting surface reflects; `n_beyond` are the indices on its other side.
+    pub(crate) fn reflect(&self, rays: &mut RayBatch, passage: &Passage, n: &[f64], n_beyond: &[f64]) {
+        let Passage::Coated(coating) = passage else {
+            return rays.columns_mut().weight.fill(0.0);
+        };
+        let len = rays.len();
+        let before = self.direction.each_ref().map(|column| column.slice(len));
+        let c = rays.columns_mut();
+        for i in 0..len {
+            if c.state[i] != ALIVE {
+                continue;
+            }
+            // Incidence and reflection differ by twice the cosine along the normal.
+            let turn = [c.l[i] - before[0][i], c.m[i] - before[1][i], c.n[i] - before[2][i]];
+            let cosine = 0.5 * (turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2]).sqrt();
+            c.weight[i] *= coating.reflectance(n[i], n_beyond[i], cosine.min(1.0), c.wavelength_nm[i]).mean();
+        }
+    }
+
     /// Weighs rays by what a surface passes.
     pub(crate) fn pass(&self, rays: &mut RayBatch, passage: &Passage, n: &[f64], n_after: &[f64], isa: Isa) {
         let len = rays.len();

@@ -37,7 +37,7 @@ pub enum Coating {
     Measured(Arc<MeasuredCoating>),
 }
 
-/// Transmittance by polarization: parts of the power.
+/// Transmittance (or reflectance) by polarization: parts of the power.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Transmittance {
     /// Electric field perpendicular to the plane of incidence.
@@ -45,6 +45,9 @@ pub struct Transmittance {
     /// Electric field in the plane of incidence.
     pub p: f64,
 }
+
+/// Reflectance by polarization: parts of the power.
+pub type Reflectance = Transmittance;
 
 impl Transmittance {
     /// Everything.
@@ -80,6 +83,31 @@ impl Coating {
             Self::Layer { index, thickness_nm } => layer([n, n_after], cosines, *index, thickness_nm / wavelength_nm),
             Self::Stack(stack) => stack.transmittance([n, n_after], cosines, wavelength_nm),
             Self::Measured(measured) => measured.transmittance(wavelength_nm),
+        }
+    }
+}
+
+impl Coating {
+    /// Reflectance, in the same terms as [`Coating::transmittance`]: 1 on total reflection, else what neither passes nor is
+    /// absorbed in the coating. Of a measured coating all that does not pass is reflected.
+    #[must_use]
+    pub fn reflectance(&self, n: f64, n_after: f64, cos_incidence: f64, wavelength_nm: f64) -> Reflectance {
+        let sine = n * (1.0 - cos_incidence * cos_incidence).max(0.0).sqrt();
+        let cos_square = 1.0 - sine * sine / (n_after * n_after);
+        if cos_square <= 0.0 {
+            return Reflectance { s: 1.0, p: 1.0 };
+        }
+        let (c, c_after) = (cos_incidence, cos_square.sqrt());
+        match self {
+            Self::Bare => {
+                let part = |a: f64, b: f64| ((a - b) / (a + b)) * ((a - b) / (a + b));
+                Reflectance { s: part(n * c, n_after * c_after), p: part(n_after * c, n * c_after) }
+            }
+            Self::Stack(stack) => stack.reflectance([n, n_after], [c, c_after], wavelength_nm),
+            lossless => {
+                let passes = lossless.transmittance(n, n_after, c, wavelength_nm);
+                Reflectance { s: 1.0 - passes.s, p: 1.0 - passes.p }
+            }
         }
     }
 }

@@ -6,7 +6,7 @@
 //! plane of incidence and N / cos(theta) in it. (B, C) is the product of all matrices times (1, eta'), and
 //! T = 4 eta eta' / |eta B + C|^2. It is the same from both sides, absorbing layers included.
 
-use super::Transmittance;
+use super::{Reflectance, Transmittance};
 use spectra_core::math;
 use std::ops::{Add, Div, Mul};
 
@@ -78,13 +78,51 @@ impl Stack {
     #[must_use]
     pub fn transmittance(&self, [n, n_after]: [f64; 2], [c, c_after]: [f64; 2], wavelength_nm: f64) -> Transmittance {
         let tangential = n * n * (1.0 - c * c);
-        let real = |re: f64| Complex { re, im: 0.0 };
         // Light that comes out of the glass meets the last layer first; what passes is the same either way.
         let (n, c, n_after, c_after) = if n <= n_after { (n, c, n_after, c_after) } else { (n_after, c_after, n, c) };
-        let (ends_s, ends_p) = ([n * c, n_after * c_after], [n / c.max(1e-12), n_after / c_after.max(1e-12)]);
+        let (front, back) = (ends(n, c), ends(n_after, c_after));
+        let Some([s, p]) = self.admittance(self.layers.iter().rev(), tangential, back, wavelength_nm) else {
+            return Transmittance { s: 0.0, p: 0.0 };
+        };
+        let through = |[b, c]: [Complex; 2], eta: f64, eta_after: f64| {
+            let down = b * real(eta) + c;
+            4.0 * eta * eta_after / down.size2()
+        };
+        Transmittance { s: through(s, front[0], back[0]), p: through(p, front[1], back[1]) }
+    }
+
+    /// Reflectance for light that arrives in the medium of index `n`, in the terms of [`Stack::transmittance`]: an absorbing stack
+    /// reflects differently by side.
+    #[must_use]
+    pub fn reflectance(&self, [n, n_after]: [f64; 2], [c, c_after]: [f64; 2], wavelength_nm: f64) -> Reflectance {
+        let tangential = n * n * (1.0 - c * c);
+        let (front, back) = (ends(n, c), ends(n_after, c_after));
+        // The layers from the far side on; the one next to the air is the first.
+        let sums = if n <= n_after {
+            self.admittance(self.layers.iter().rev(), tangential, back, wavelength_nm)
+        } else {
+            self.admittance(self.layers.iter(), tangential, back, wavelength_nm)
+        };
+        // An opaque layer: what lies behind it does not matter, and its own admittance would be needed. It is black here.
+        let Some([s, p]) = sums else { return Reflectance { s: 0.0, p: 0.0 } };
+        let back = |[b, c]: [Complex; 2], eta: f64| {
+            let (up, down) = (b * real(eta) + c * real(-1.0), b * real(eta) + c);
+            up.size2() / down.size2()
+        };
+        Reflectance { s: back(s, front[0]), p: back(p, front[1]) }
+    }
+
+    /// (B, C) of both polarizations in front of the layers, which are given from the far side on; `None` where one is opaque.
+    fn admittance<'a>(
+        &self,
+        layers: impl Iterator<Item = &'a StackLayer>,
+        tangential: f64,
+        back: [f64; 2],
+        wavelength_nm: f64,
+    ) -> Option<[[Complex; 2]; 2]> {
         let start = |eta: f64| [real(1.0), real(eta)];
-        let (mut s, mut p) = (start(ends_s[1]), start(ends_p[1]));
-        for layer in self.layers.iter().rev() {
+        let (mut s, mut p) = (start(back[0]), start(back[1]));
+        for layer in layers {
             let index = layer.at(wavelength_nm);
             let square = index * index;
             // N cos(theta): the sign of the root does not matter, since all that follows is even in it.
@@ -92,7 +130,7 @@ impl Stack {
             let turn = std::f64::consts::TAU * layer.thickness_nm / wavelength_nm;
             let delta = Complex { re: along.re * turn, im: along.im * turn };
             if !(delta.im.abs() < OPAQUE) {
-                return Transmittance { s: 0.0, p: 0.0 };
+                return None;
             }
             let (cos, sin) = delta.cos_sin();
             // sin(delta) / (N cos(theta)), which stays finite at the critical angle of the layer.
@@ -100,12 +138,17 @@ impl Stack {
             s = pass(s, cos, over, sin * along);
             p = pass(p, cos, sin * along / square, over * square);
         }
-        let through = |[b, c]: [Complex; 2], [eta, eta_after]: [f64; 2]| {
-            let down = b * real(eta) + c;
-            4.0 * eta * eta_after / down.size2()
-        };
-        Transmittance { s: through(s, ends_s), p: through(p, ends_p) }
+        Some([s, p])
     }
+}
+
+/// Admittances of a medium of index `n` for a ray of this cosine: s and p.
+fn ends(n: f64, c: f64) -> [f64; 2] {
+    [n * c, n / c.max(1e-12)]
+}
+
+fn real(re: f64) -> Complex {
+    Complex { re, im: 0.0 }
 }
 
 /// The matrix of a layer times (B, C): `over` is sin(delta) / eta, `times` is eta sin(delta).

@@ -1,0 +1,171 @@
+//! A way of light through a lens, as data: which element comes after which, and what the light does there.
+
+use crate::Travel;
+
+/// What light does at an element of its path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Act {
+    /// What the prescription says: a glass surface refracts, a mirror reflects, a stop lets pass.
+    AsBuilt,
+    /// A refracting surface reflects: light that the designer did not want.
+    Reflect,
+}
+
+/// One step of a [`Path`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PathStep {
+    /// The element: index into [`crate::Lens::elements`].
+    pub element: usize,
+    /// What the light does there.
+    pub act: Act,
+    /// Whether it arrives in the order of the prescription ([`Travel::Forward`]) or against it.
+    pub travel: Travel,
+}
+
+/// A way of light through a lens: straight through, or by reflections at refracting surfaces.
+///
+/// It enters at the front (in the frame of the lens) or at the rear (in the frame of the image plane), and leaves where its last
+/// step leads.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Path {
+    enters: Travel,
+    leaves: Travel,
+    steps: Vec<PathStep>,
+}
+
+/// Why a list of reflections is no path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum PathError {
+    /// The lens has no such element.
+    #[error("the lens has {elements} surfaces, there is no surface {}", .element + 1)]
+    NoElement {
+        /// Index of the element asked for.
+        element: usize,
+        /// Number of elements.
+        elements: usize,
+    },
+    /// Light that was turned back cannot reach the next reflection.
+    #[error("light reflected by surface {} does not come to surface {} next", .from + 1, .to + 1)]
+    OutOfReach {
+        /// Index of the element that reflects.
+        from: usize,
+        /// Index of the one that should reflect next.
+        to: usize,
+    },
+}
+
+impl Path {
+    /// Straight through a lens of this many elements.
+    #[must_use]
+    pub fn through(elements: usize, travel: Travel) -> Self {
+        let step = |element| PathStep { element, act: Act::AsBuilt, travel };
+        let steps = match travel {
+            Travel::Forward => (0..elements).map(step).collect(),
+            Travel::Backward => (0..elements).rev().map(step).collect(),
+        };
+        Self { enters: travel, leaves: travel, steps }
+    }
+
+    /// By these reflections, in their order, through a lens of this many elements: `[7, 3]` enters at the front, is reflected by
+    /// element 7 and by element 3, and leaves at the rear. An odd number of reflections leaves where it entered; none is
+    /// [`Path::through`].
+    ///
+    /// # Errors
+    /// The reflections do not follow from one another.
+    pub fn reflected(elements: usize, enters: Travel, reflections: &[usize]) -> Result<Self, PathError> {
+        let mut steps = Vec::new();
+        let mut travel = enters;
+        // The element to come next; beyond either end the light is out.
+        let mut next = if travel == Travel::Forward { 0 } else { elements as isize - 1 };
+        let mut from = None;
+        for &to in reflections {
+            if to >= elements {
+                return Err(PathError::NoElement { element: to, elements });
+            }
+            let ahead = if travel == Travel::Forward { to as isize - next } else { next - to as isize };
+            if let (Some(from), true) = (from, ahead < 0) {
+                return Err(PathError::OutOfReach { from, to });
+            }
+            let step = |element, act| PathStep { element, act, travel };
+            let way = if travel == Travel::Forward { 1 } else { -1 };
+            while next != to as isize {
+                steps.push(step(next as usize, Act::AsBuilt));
+                next += way;
+            }
+            steps.push(step(to, Act::Reflect));
+            (travel, next, from) = (turned(travel), to as isize - way, Some(to));
+        }
+        let rest = match travel {
+            Travel::Forward => next.max(0)..elements as isize,
+            Travel::Backward => 0..next + 1,
+        };
+        let rest = rest.map(|element| PathStep { element: element as usize, act: Act::AsBuilt, travel });
+        match travel {
+            Travel::Forward => steps.extend(rest),
+            Travel::Backward => steps.extend(rest.rev()),
+        }
+        Ok(Self { enters, leaves: travel, steps })
+    }
+
+    /// The steps, in the order of the light.
+    #[must_use]
+    pub fn steps(&self) -> &[PathStep] {
+        &self.steps
+    }
+
+    /// The elements at which it is reflected although they refract, in order.
+    pub fn reflections(&self) -> impl Iterator<Item = usize> + '_ {
+        self.steps.iter().filter(|s| s.act == Act::Reflect).map(|s| s.element)
+    }
+
+    /// Where it enters: forward at the front, backward at the rear.
+    #[must_use]
+    pub fn enters(&self) -> Travel {
+        self.enters
+    }
+
+    /// In which direction it leaves: forward at the rear, backward at the front.
+    #[must_use]
+    pub fn leaves(&self) -> Travel {
+        self.leaves
+    }
+}
+
+fn turned(travel: Travel) -> Travel {
+    match travel {
+        Travel::Forward => Travel::Backward,
+        Travel::Backward => Travel::Forward,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn elements(path: &Path) -> Vec<usize> {
+        path.steps().iter().map(|s| s.element).collect()
+    }
+
+    #[test]
+    fn reflections_turn_the_light_back() {
+        let ghost = Path::reflected(5, Travel::Forward, &[3, 1]).unwrap();
+        assert_eq!(elements(&ghost), [0, 1, 2, 3, 2, 1, 2, 3, 4]);
+        assert_eq!(ghost.reflections().collect::<Vec<_>>(), [3, 1]);
+        assert_eq!((ghost.enters(), ghost.leaves()), (Travel::Forward, Travel::Forward));
+        let once = Path::reflected(5, Travel::Forward, &[0]).unwrap();
+        assert_eq!((elements(&once), once.leaves()), (vec![0], Travel::Backward));
+        let back = Path::reflected(3, Travel::Backward, &[1, 2]).unwrap();
+        assert_eq!(elements(&back), [2, 1, 2, 1, 0]);
+        for travel in [Travel::Forward, Travel::Backward] {
+            assert_eq!(Path::reflected(4, travel, &[]).unwrap(), Path::through(4, travel));
+        }
+    }
+
+    #[test]
+    fn light_cannot_jump() {
+        let wrong = |reflections: &[usize]| Path::reflected(5, Travel::Forward, reflections).unwrap_err();
+        assert_eq!(wrong(&[1, 3]), PathError::OutOfReach { from: 1, to: 3 });
+        assert_eq!(wrong(&[3, 3]), PathError::OutOfReach { from: 3, to: 3 });
+        assert_eq!(wrong(&[5]), PathError::NoElement { element: 5, elements: 5 });
+    }
+}
