@@ -356,13 +356,6 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
         }
         lens.focus_laws.extend(law);
     }
-    if lens.absorption {
-        for medium in &lens.media {
-            if medium.medium.internal_transmittance(lens.reference_nm, 1.0).is_none() {
-                lens.warnings.push(format!("{}: no absorption is known; none is taken", medium.label));
-            }
-        }
-    }
     lens.arrange();
     faults.into_result(lens)
 }
