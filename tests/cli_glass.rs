@@ -74,16 +74,35 @@ fn melts_and_glasses_of_figures_alone() {
     assert_eq!(melt["status"], "melt");
     let model = json(&["info", "--nd", "1.5168", "--vd", "64.17"]);
     assert!((number(&model["vd"]) - 64.17).abs() < 1e-9 && model["maker"].is_null());
+    // By nd and Vd alone: the partial dispersion of an ordinary glass, 0.6438 - 0.001682 Vd.
+    for vd in [25.4, 36.4, 60.2] {
+        let model = json(&["info", "--nd", "1.62", "--vd", &vd.to_string()]);
+        let n = |line: &str| number(&model["n"][line]);
+        let partial = (n("g") - n("F")) / (n("F") - n("C"));
+        assert!((partial - (0.6438 - 0.001_682 * vd)).abs() < 2e-4, "{vd}: {partial}");
+    }
+    // N-BK7 by ne and Ve.
+    let e = json(&["info", "--nd", "1.518722", "--vd", "63.96", "--line", "e"]);
+    assert!((number(&e["nd"]) - 1.5168).abs() < 2e-6 && (number(&e["vd"]) - 64.17).abs() < 0.02, "{e}");
     assert!(refused(&["info", "--nd", "9", "--vd", "64"]).contains("no glass has nd 9"));
     assert!(refused(&["info", "--nd", "1.5"]).contains("--vd"));
 }
 
 #[test]
 fn ambiguous_and_unknown_names_are_refused_with_candidates() {
-    let message = refused(&["info", "F2"]);
+    // Of several glasses of a name the usual maker's is taken, and the others are told; measurements are not guessed at.
+    let output = run(&["glass", "info", "F2"]);
+    assert!(output.status.success() && text(&output.stdout).starts_with("SCHOTT/F2"));
     for candidate in ["SCHOTT/F2", "HOYA/F2", "CDGM/F2"] {
-        assert!(message.contains(candidate), "{message}");
+        assert!(text(&output.stderr).contains(candidate), "{}", text(&output.stderr));
     }
+    assert!(text(&run(&["glass", "info", "BK7"]).stdout).starts_with("SCHOTT/BK7"));
+    assert!(refused(&["info", "H2O"]).contains("H2O/Daimon-20.0C"));
+    let plastic = refused(&["info", "COC"]);
+    assert!(
+        plastic.contains("no data of this plastic") && plastic.contains("PMMA") && !plastic.contains("HOYA"),
+        "{plastic}"
+    );
     assert!(refused(&["info", "N-BK8"]).contains("SCHOTT/N-BK7"));
     assert!(refused(&["plot", "N-BK8"]).contains("SCHOTT/N-BK7"));
     assert!(refused(&["match", "--nd", "1.5", "--maker", "SHOTT"]).contains("did you mean SCHOTT"));
@@ -191,6 +210,47 @@ fn fits_of_seven_materials() {
     let bad = folder.path().join("bad.csv");
     std::fs::write(&bad, "wavelength_nm,n\n486,1.52\n589,x\n").expect("written");
     assert!(refused(&["fit", shown(&bad)]).contains("bad.csv:3: `x` is no index"));
+}
+
+/// What `fit` reads, `info` and `plot` read too: a material of a file with several.
+#[test]
+fn one_reader_of_tables() {
+    let tables = repository("crates/glass/tests/data/cauchy-tables.csv");
+    let named = |material: &str| format!("{}#{material}", shown(&tables));
+    let info = json(&["info", &named("zinc-crown"), "--wavelength-nm", "589"]);
+    assert_eq!(number(&info["n_at"]), 1.517);
+    // The same table stands in the catalogue, with its source.
+    let bundled = json(&["info", "dispersion-study/zinc-crown", "--wavelength-nm", "589"]);
+    assert!(
+        number(&bundled["n_at"]) == 1.517 && bundled["source"].as_str().is_some_and(|s| s.contains("CRC Handbook"))
+    );
+    let folder = tempfile::tempdir().expect("a folder");
+    let svg = folder.path().join("n.svg");
+    good(&["glass", "plot", &named("heavy-flint"), &named("zinc-crown"), "-o", shown(&svg)]);
+    assert!(std::fs::read_to_string(&svg).expect("written").contains("heavy-flint"));
+    assert!(refused(&["info", shown(&tables)]).contains("7 materials"));
+    assert!(refused(&["plot", &named("zink-crown")]).contains("zinc-crown"));
+    // And what `plot` reads, k and all, `fit` reads.
+    let own = folder.path().join("own.csv");
+    std::fs::write(&own, "wavelength_um;n;k\n0.486;1.522;1e-8\n0.588;1.517;1e-8\n0.656;1.514;1e-8\n").expect("written");
+    assert!(json(&["fit", shown(&own)])[0]["samples"] == 3 && number(&json(&["info", shown(&own)])["nd"]) > 1.516);
+}
+
+#[test]
+fn lists_by_fragment_and_category() {
+    let names = |arguments: &[&str]| -> Vec<String> {
+        let list = json(&[&["list"], arguments].concat());
+        list.as_array().expect("a list").iter().map(|row| row["name"].as_str().expect("a name").to_owned()).collect()
+    };
+    let bk7 = names(&["bk7"]);
+    assert!(["SCHOTT/BK7", "SCHOTT/N-BK7"].iter().all(|name| bk7.iter().any(|n| n == name)), "{bk7:?}");
+    let plastics = names(&["--category", "plastic"]);
+    assert!(plastics.len() > 20 && plastics.iter().any(|n| n == "polystyrene/Sultanova"), "{plastics:?}");
+    assert!(names(&["sf", "--maker", "LZOS"]).iter().all(|n| n.starts_with("LZOS/")));
+    assert!(good(&["glass", "list", "--category", "plastic"]).contains("polycarbonate/Sultanova"));
+    assert!(refused(&["list", "--category", "stone"]).contains("plastic"));
+    let none = run(&["glass", "list", "no such glass"]);
+    assert!(none.status.success() && text(&none.stderr).contains("glass match"));
 }
 
 /// At least 99 % of what makers list comes out of their coefficients; the others are named.

@@ -14,6 +14,7 @@ Sources, in the order in which they are asked:
   opticalglass     table V of P. N. Robb and R. I. Mercado, "Calculation of refractive indices using Buchdahl's
                    chromatic coordinate", Applied Optics 22, 1198 (1983), as typed in by that package (BSD-3):
                    historical glasses of Schott, Ohara, Hoya, Corning-France and Chance
+  the repository   the tables of the CRC Handbook (1990), typed in: crates/glass/tests/data/cauchy-tables.csv
 Only numbers are taken. The format is described in spectra/glass/README.md.
 """
 
@@ -60,6 +61,7 @@ SOURCES = {
     "sumita": "SUMITA moulding and optical glass data, March 2013, SUMITA's file as carried by ZemaxGlass 1.0 (MIT)",
     "lzos": "LZOS clear optical glass constants, as carried by ZemaxGlass 1.0 (MIT)",
     "robb": "P. N. Robb and R. I. Mercado, Applied Optics 22, 1198 (1983), table V, typed in by opticalglass 1.1.1 (BSD-3)",
+    "crc": "CRC Handbook of Chemistry and Physics, D. R. Lide (ed.), 1990; crates/glass/tests/data/cauchy-tables.csv",
 }
 # Everyday names of media, each with the measurement that it stands for.
 ALIASES = {
@@ -78,7 +80,31 @@ ALIASES = {
     "PMMA": "poly_methyl_methacrylate/Sultanova",
     "polycarbonate": "polycarbonate/Sultanova",
     "polystyrene": "polystyrene/Sultanova",
-    "BK7": "SCHOTT/N-BK7",
+    "PC": "polycarbonate/Sultanova",
+    "PS": "polystyrene/Sultanova",
+    "PET": "polyethylene_terephthalate/Zhang",
+    "PEI": "polyetherimide/Zhang",
+    "PVC": "polyvinil_chloride/Zhang",
+    "polyvinyl chloride": "polyvinil_chloride/Zhang",
+    "PVA": "polyvinyl_alcohol/Schnepf",
+    "PDMS": "polydimethylsiloxane/Gupta",
+    "silicone": "polydimethylsiloxane/Gupta",
+    "PLA": "polylactic_acid/Bodurov",
+    "COP": "ZeonexE48R/Sultanova",
+    "Zeonex": "ZeonexE48R/Sultanova",
+    "E48R": "ZeonexE48R/Sultanova",
+    "NAS": "NAS-21/Sultanova",
+    "Optorez": "Optorez1330/Sultanova",
+    "ice": "H2O/Warren-2008",
+    "heavy water": "H2O/Kedenburg-D2O",
+    "ethanol": "ethanol/Sani-formula",
+    "alcohol": "ethanol/Sani-formula",
+    "glycerin": "glycerol/Gupta",
+    "MgF2": "MgF2/Dodge-o",
+    "barium fluoride": "CRYSTRAN/BaF2",
+    "soda-lime": "soda-lime/Rubin-clear",
+    "window glass": "soda-lime/Rubin-clear",
+    "BK7HT": "SCHOTT/N-BK7HT",
 }
 
 
@@ -436,6 +462,29 @@ def from_robb(catalogue, text):
     return count
 
 
+def from_handbook(catalogue, path):
+    """The handbook's tables of seven materials, on which the dispersion study rests, as they stand there."""
+    rows = [line.split(",") for line in path.read_text(encoding="utf-8").splitlines() if line and line[0] != "#"][1:]
+    tables = {}
+    for material, wavelength, n in rows:
+        tables.setdefault(material, []).append((float(wavelength), float(n)))
+    for material, points in tables.items():
+        category = "inorganic" if material.startswith("water") else "technical glass"
+        fields = {
+            "type": "T",
+            "range": f"{number(points[0][0])} {number(points[-1][0])}",
+            "listed": "",
+            "status": "",
+            "first": None,
+            "last": None,
+            "coefficients": " ".join(f"{number(w)} {number(n)}" for w, n in points),
+            "thermal": "20" if material.endswith("20c") else "",
+            "extinction": "",
+        }
+        catalogue.add("dispersion-study", category, "crc", material, fields)
+    return len(tables)
+
+
 def main():
     if len(sys.argv) != 2:
         raise SystemExit(__doc__)
@@ -453,6 +502,7 @@ def main():
     with zipfile.ZipFile(next(downloads.glob("opticalglass-1.1.1*.whl"))) as archive:
         with archive.open("opticalglass/data/robb1983_data_final.txt") as file:
             counts["robb"] = from_robb(catalogue, io.TextIOWrapper(file, encoding="utf-8").read())
+    counts["crc"] = from_handbook(catalogue, pathlib.Path("crates/glass/tests/data/cauchy-tables.csv"))
     total = catalogue.write(OUTPUT)
     for alias, target in ALIASES.items():
         maker, _, name = target.partition("/")

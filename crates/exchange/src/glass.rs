@@ -117,7 +117,9 @@ pub(crate) fn model(nd: f64, vd: f64) -> Found {
 /// The glass of a name, and what a person should know of the choice.
 fn find(name: &str, stated: Option<(f64, f64)>, makers: &[&str]) -> Option<(Glass, Option<(bool, String)>)> {
     let catalogue = Catalogue::bundled();
+    // A name that nobody has is asked for again and again in some files: what is near it is not looked for.
     let by = |full: &str| match stated {
+        _ if !catalogue.knows(full) => Err(FindError::Unknown { name: full.to_owned(), nearest: Vec::new() }),
         Some((nd, vd)) => catalogue.find_with(full, nd, (vd > 0.0).then_some(vd)),
         None => catalogue.find(full),
     };

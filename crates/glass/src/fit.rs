@@ -11,7 +11,7 @@
 
 mod cauchy;
 mod linear_forms;
-mod samples;
+pub(crate) mod samples;
 mod sellmeier;
 
 pub use cauchy::{CauchyRows, cauchy_by_rows, cauchy_least_squares};

@@ -49,6 +49,13 @@ impl Category {
         }
     }
 
+    /// Whether its names are those of glass types, and not of substances and measurements.
+    #[must_use]
+    pub fn is_glass(self) -> bool {
+        use Category::*;
+        matches!(self, OpticalGlass | TechnicalGlass | InfraredGlass | FilterGlass | User)
+    }
+
     /// The category of that name.
     #[must_use]
     pub fn by_name(name: &str) -> Option<Category> {

@@ -204,6 +204,84 @@ fn a_users_glass_joins_and_replaces() {
     assert!(Catalogue::empty().find("N-BK7").is_err());
 }
 
+/// Usual abbreviations, and one default each of what has several measurements.
+#[test]
+fn everyday_names() {
+    for (name, full_name) in [
+        ("PC", "polycarbonate/Sultanova"),
+        ("ps", "polystyrene/Sultanova"),
+        ("PET", "polyethylene_terephthalate/Zhang"),
+        ("PEI", "polyetherimide/Zhang"),
+        ("PVC", "polyvinil_chloride/Zhang"),
+        ("COP", "ZeonexE48R/Sultanova"),
+        ("PMMA", "poly_methyl_methacrylate/Sultanova"),
+        ("ice", "H2O/Warren-2008"),
+        ("ethanol", "ethanol/Sani-formula"),
+        ("soda-lime", "soda-lime/Rubin-clear"),
+        ("MgF2", "MgF2/Dodge-o"),
+        // Case tells the crystal from the barium flint.
+        ("BaF2", "CRYSTRAN/BaF2"),
+        ("BK7HT", "SCHOTT/N-BK7HT"),
+        ("dispersion-study/zinc-crown", "dispersion-study/zinc-crown"),
+    ] {
+        assert_eq!(find(name).full_name(), full_name, "{name}");
+    }
+    assert!(matches!(Catalogue::bundled().find("BAF2"), Err(FindError::Ambiguous { .. })));
+    // The handbook's table at its own rows.
+    assert_eq!(find("dispersion-study/heavy-flint").index(589.0), 1.65);
+}
+
+/// A hint does not send a plastic to a phosphate crown, nor a glass to a liquid.
+#[test]
+fn hints_stay_in_their_category() {
+    let near = |name: &str| match Catalogue::bundled().find(name) {
+        Err(FindError::Unknown { nearest, .. }) => nearest,
+        other => panic!("{name}: {other:?}"),
+    };
+    for name in ["COC", "CR39", "CR-39", "cr39"] {
+        let error = Catalogue::bundled().find(name).expect_err("not held");
+        let names: Vec<_> = near(name).into_iter().map(|c| c.full_name).collect();
+        assert!(names.iter().any(|n| n == "PMMA") && names.iter().all(|n| !n.contains('/')), "{name}: {names:?}");
+        assert!(error.hint().contains("no data of this plastic"), "{}", error.hint());
+    }
+    for (wrong, right) in
+        [("polycarbonat", "polycarbonate"), ("watr", "water"), ("sapphir", "sapphire"), ("ZERODOR", "SCHOTT/ZERODUR")]
+    {
+        let names: Vec<_> = near(wrong).into_iter().map(|c| c.full_name).collect();
+        assert_eq!(names.first().map(String::as_str), Some(right), "{wrong}: {names:?}");
+    }
+    let glasses = near("N-BK8");
+    assert!(glasses.iter().all(|c| c.nd > 1.4 && c.vd < 100.0), "{glasses:?}");
+    assert!(near("hamburger").is_empty() && near("xyzzy").is_empty());
+}
+
+#[test]
+fn fragments_find_names() {
+    let names =
+        |fragment: &str| Catalogue::bundled().search(fragment).into_iter().map(|g| g.full_name()).collect::<Vec<_>>();
+    let bk7 = names("bk7");
+    for name in ["SCHOTT/N-BK7", "SCHOTT/BK7", "HIKARI/J-BK7A"] {
+        assert!(bk7.iter().any(|n| n == name), "{bk7:?}");
+    }
+    assert!(names("schott/nbk").iter().all(|n| n.starts_with("SCHOTT/N-BK")) && !names("schott/nbk").is_empty());
+    assert!(names("pmma").iter().any(|n| n.starts_with("poly_methyl")));
+    assert!(names("no such thing").is_empty());
+}
+
+/// Names that nobody has cost little: a file of 400 of them is read at once.
+#[test]
+fn unknown_names_are_cheap() {
+    let catalogue = Catalogue::bundled();
+    assert!(!catalogue.knows("first of all"));
+    let start = Instant::now();
+    for i in 0..400 {
+        assert!(!catalogue.knows(&format!("NOBODYS{i}")));
+    }
+    let each = start.elapsed() / 400;
+    println!("{each:?} each");
+    assert!(each < Duration::from_millis(1), "{each:?}");
+}
+
 /// The catalogue costs less than 5 ms at the start, and a glass some microseconds.
 #[test]
 fn start_up_is_short() {

@@ -11,7 +11,8 @@ use spectra_core::registry::{self, Context};
 use spectra_core::resources::Resources;
 use spectra_core::spectral::BAND;
 use spectra_core::surface::{Action, Surface};
-use spectra_glass::{Catalogue, Medium, file, lines};
+use spectra_glass::file::{self, Figures};
+use spectra_glass::{Beside, Catalogue, Line, LineTriple, Medium, ModelGlass, lines};
 use std::sync::Arc;
 
 /// A lens: its prescription, surface by surface, and where it comes from.
@@ -193,18 +194,6 @@ fn displacement(decenter: Option<[Length; 2]>, tilt: Option<[Angle; 3]>) -> Disp
     }
 }
 
-/// A glass by its figures.
-#[derive(Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub(crate) struct ModelFigures {
-    /// Index at the d line, 1 to 4.
-    #[schemars(range(min = 1, max = 4))]
-    nd: f64,
-    /// Abbe number, 5 to 200; without one the glass has no dispersion.
-    #[schemars(range(min = 5, max = 200))]
-    vd: Option<f64>,
-}
-
 /// Where a stated index and the glass's own differ by more, a person is told.
 const INDEX_TOLERANCE: f64 = 0.002;
 
@@ -223,14 +212,12 @@ pub fn load(name: &str, resources: &dyn Resources) -> Result<Lens, Faults> {
 pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults> {
     let file: LensFile = params.parse()?;
     let mut faults = Faults::new();
-    let reference_nm = lines::by_name(&file.reference_line).map_or_else(
-        || {
-            let fault = params.fault("reference-line", format!("unknown spectral line `{}`", file.reference_line));
-            faults.push(fault.hint("d, D and e are usual; any of i h g F' F e d D C' C r A' s t"));
-            lines::D.wavelength_nm
-        },
-        |line| line.wavelength_nm,
-    );
+    let reference = lines::by_name(&file.reference_line).unwrap_or_else(|| {
+        let fault = params.fault("reference-line", format!("unknown spectral line `{}`", file.reference_line));
+        faults.push(fault.hint("d, D and e are usual; any of i h g F' F e d D C' C r A' s t"));
+        lines::D
+    });
+    let reference_nm = reference.wavelength_nm;
     let mut lens = Lens {
         name: file.name,
         year: file.year,
@@ -274,7 +261,7 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
         let medium_after = if stated.mirror || (surface.is_stop() && !medium_is_stated) {
             medium_before // a stop stands in the medium that is there
         } else {
-            match medium(&stated, &place, number, resources, &mut lens.warnings) {
+            match medium(&stated, &place, number, resources, reference, &mut lens) {
                 Ok(Some(medium)) => remember(&mut lens.media, medium),
                 Ok(None) => 0,
                 Err(more) => {
@@ -355,13 +342,6 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
             faults.push(node.fault(format!("group `{name}` moves by two laws")).hint("one law a group"));
         }
         lens.focus_laws.extend(law);
-    }
-    if lens.absorption {
-        for medium in &lens.media {
-            if medium.medium.internal_transmittance(lens.reference_nm, 1.0).is_none() {
-                lens.warnings.push(format!("{}: no absorption is known; none is taken", medium.label));
-            }
-        }
     }
     lens.arrange();
     faults.into_result(lens)
@@ -472,30 +452,16 @@ fn reach_mm(surface: &dyn Surface, semi_diameter_mm: f64) -> Option<f64> {
     Some((outside * 1e4).round() / 1e4)
 }
 
-/// The medium that a surface states, or `None` for air.
+/// The medium that a surface states, or `None` for air. `nd` and `vd` of a surface hold for the reference line.
 fn medium(
     stated: &Place,
     place: &Params,
     number: usize,
     resources: &dyn Resources,
-    warnings: &mut Vec<String>,
+    reference: Line,
+    lens: &mut Lens,
 ) -> Result<Option<LensMedium>, Faults> {
-    let by_figures = |nd: f64, vd: Option<f64>, key: &str| -> Result<Medium, Fault> {
-        let at = |figure: &str| if key == "glass" { format!("glass.{figure}") } else { figure.to_owned() };
-        if !(1.0..=4.0).contains(&nd) {
-            return Err(place.fault(&at("nd"), format!("no glass has an index of {nd}")).hint("from 1 to 4"));
-        }
-        match vd {
-            None => Ok(Medium::Constant(nd)),
-            Some(vd) if (5.0..=200.0).contains(&vd) => {
-                let fault = || place.fault(&at("vd"), format!("no glass has nd {nd} and vd {vd}"));
-                Medium::from_nd_vd(nd, vd).ok_or_else(|| fault().hint("an index near 1 has no such dispersion"))
-            }
-            Some(vd) => {
-                Err(place.fault(&at("vd"), format!("no glass has an Abbe number of {vd}")).hint("from 5 to 200"))
-            }
-        }
-    };
+    let triple = LineTriple::of_reference(reference).unwrap_or(LineTriple { mid: reference, ..LineTriple::FDC });
     let Some(glass) = &stated.glass else {
         let Some(nd) = stated.nd else {
             if stated.vd.is_some() {
@@ -503,42 +469,64 @@ fn medium(
             }
             return Ok(None);
         };
+        if !(1.0..=4.0).contains(&nd) {
+            return Err(place.fault("nd", format!("no glass has an index of {nd}")).hint("from 1 to 4").into());
+        }
+        let medium = match stated.vd {
+            None => Medium::Constant(nd),
+            Some(vd) if (5.0..=200.0).contains(&vd) => {
+                let fault = || place.fault("vd", format!("no glass has nd {nd} and vd {vd}"));
+                let model = ModelGlass::new(nd, vd, triple).map(Medium::Model);
+                model.ok_or_else(|| fault().hint("an index near 1 has no such dispersion"))?
+            }
+            Some(vd) => {
+                let fault = place.fault("vd", format!("no glass has an Abbe number of {vd}"));
+                return Err(fault.hint("from 5 to 200").into());
+            }
+        };
         let label = stated.vd.map_or(format!("n = {nd}"), |vd| format!("nd = {nd}, vd = {vd}"));
-        return Ok(Some(LensMedium { medium: by_figures(nd, stated.vd, "nd")?, stated_nd: Some(nd), label }));
+        return Ok(Some(LensMedium { medium, stated_nd: Some(nd), label }));
     };
     if let Some(name) = glass.node().as_str() {
         if name == "air" {
             return Ok(None);
         }
-        let medium = match stated.nd.filter(|_| !file::is_file(name)) {
-            Some(nd) => Catalogue::bundled()
-                .find_with(name, nd, stated.vd)
-                .map(Medium::from)
-                .map_err(|e| place.fault("glass", e.message()).hint(e.hint()))?,
-            None => file::medium(name, place, "glass", resources)?,
+        let medium = if file::is_file(name) || name.eq_ignore_ascii_case("vacuum") {
+            file::medium(name, place, "glass", resources)?
+        } else {
+            let beside = Beside {
+                figures: stated.nd.map(|n| (n, stated.vd, triple)),
+                maker: lens.maker.as_deref(),
+                year: lens.year,
+            };
+            let chosen = Catalogue::bundled().choose(name, beside);
+            let chosen = chosen.map_err(|e| place.fault("glass", e.message()).hint(e.hint()))?;
+            lens.warnings.extend(chosen.note.map(|note| format!("surface {number}: {note}")));
+            Medium::from(chosen.glass)
         };
-        let own = medium.index(lines::D.wavelength_nm);
-        if let Some(nd) = stated.nd.filter(|nd| (nd - own).abs() > INDEX_TOLERANCE) {
-            warnings.push(format!("surface {number}: {name} has nd {own:.5}, the prescription states {nd}"));
+        let own = medium.index(reference.wavelength_nm);
+        if let Some(n) = stated.nd.filter(|n| (n - own).abs() > INDEX_TOLERANCE) {
+            let line = reference.name;
+            lens.warnings.push(format!("surface {number}: {name} has n{line} {own:.5}, the prescription states {n}"));
         }
         return Ok(Some(LensMedium { medium, stated_nd: stated.nd.or(Some(own)), label: name.to_owned() }));
     }
-    // A glass written out where it stands, with the keys of a glass file; one of two figures is a model.
+    let params = Params::section(glass.node().clone(), glass.path())?;
+    // A glass written out where it stands, with the keys of a glass file; one of figures alone is a model.
     if ["formula", "table", "file", "name"].iter().any(|key| glass.node().get(key).is_some()) {
-        let params = Params::section(glass.node().clone(), glass.path())?;
         let called = format!("surface {number}");
         let medium = Medium::from(file::from_params(&params, &called, resources)?);
         let label = medium.name();
         return Ok(Some(LensMedium {
-            stated_nd: Some(stated.nd.unwrap_or(medium.index(lines::D.wavelength_nm))),
+            stated_nd: Some(stated.nd.unwrap_or(medium.index(reference.wavelength_nm))),
             medium,
             label,
         }));
     }
-    let figures: ModelFigures = glass.parse()?;
-    let medium = by_figures(figures.nd, figures.vd, "glass")?;
-    let label = figures.vd.map_or(format!("n = {}", figures.nd), |vd| format!("nd = {}, vd = {vd}", figures.nd));
-    Ok(Some(LensMedium { medium, stated_nd: stated.nd.or(Some(figures.nd)), label }))
+    let figures: Figures = params.parse()?;
+    let (medium, label) = figures.medium(&params)?;
+    let stated_nd = stated.nd.or(figures.index_at(reference.wavelength_nm));
+    Ok(Some(LensMedium { stated_nd: stated_nd.or(Some(medium.index(reference.wavelength_nm))), medium, label }))
 }
 
 /// Number of a medium: that of an equal one, or a new one.

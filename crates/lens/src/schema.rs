@@ -1,6 +1,6 @@
 //! JSON Schema of a lens file, for editors.
 
-use crate::prescription::{BreakParams, LensFile, ModelFigures, Place};
+use crate::prescription::{BreakParams, LensFile, Place};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde_json::json;
 use spectra_core::params::Kinds;
@@ -54,7 +54,7 @@ pub(crate) enum GlassForm {
     /// A name of the catalogue, `air`, or a glass file.
     Named(String),
     /// Its figures.
-    Figures(ModelFigures),
+    Figures(Box<spectra_glass::file::Figures>),
     /// Written out with the keys of a glass file.
     Own(Box<spectra_glass::file::GlassFile>),
 }

@@ -94,6 +94,8 @@ pub struct LensReport {
     pub stop_semi_diameter_mm: Option<f64>,
     /// The surfaces, in the order of the light.
     pub surfaces: Vec<SurfaceReport>,
+    /// Media of which something is assumed.
+    pub assumed_media: Vec<super::media::AssumedMedium>,
     /// What a person should know of the file.
     pub warnings: Vec<String>,
 }
@@ -175,6 +177,7 @@ impl LensReport {
             image_distance_mm: lens.image_gap_mm(),
             stop_semi_diameter_mm: lens.stop().and_then(|stop| lens.elements[stop].semi_diameter_mm),
             surfaces: surfaces(&held),
+            assumed_media: super::media::assumed(lens),
             warnings: lens.warnings.clone(),
         }
     }

@@ -37,6 +37,7 @@ impl fmt::Display for LensReport {
         self.field(f)?;
         self.room(f)?;
         self.prescription(f)?;
+        super::media::write(&self.assumed_media, f)?;
         for warning in &self.warnings {
             writeln!(f, "warning: {warning}")?;
         }

@@ -7,7 +7,7 @@ use crate::outcome::{DONE, Failure, Outcome};
 use serde::{Serialize, Serializer};
 use spectra_glass::air::{self, AirConditions, CATALOGUE_AIR};
 use spectra_glass::interface::{brewster_angle, critical_angle, fresnel};
-use spectra_glass::{Catalogue, Glass, LineTriple, Medium, lines};
+use spectra_glass::{Catalogue, Glass, LineTriple, Medium, ModelGlass, lines};
 use std::fmt::Write;
 
 /// Thickness for which internal transmittances are stated.
@@ -87,7 +87,8 @@ fn medium(arguments: &GlassInfo, catalogue: &Catalogue) -> Result<Medium, Failur
             if !(1.0..=4.0).contains(&melt.0) {
                 return Err(refuse(melt));
             }
-            Medium::from_nd_vd(melt.0, melt.1).ok_or_else(|| refuse(melt))
+            let model = ModelGlass::new(melt.0, melt.1, arguments.line).map(Medium::Model);
+            model.ok_or_else(|| refuse(melt))
         }
         (Some(name), None) => named(name, catalogue),
         (Some(name), Some(melt)) => {
@@ -135,7 +136,7 @@ fn report(medium: &Medium, arguments: &GlassInfo) -> Report {
         years: glass.and_then(|g| g.years),
         formula: match medium {
             Medium::Glass(glass) => Some(glass.formula.name()),
-            Medium::Model(_) => Some("from index and Abbe number"),
+            Medium::Model(_) => Some("normal lines of partial dispersion, from index and Abbe number"),
             Medium::Air | Medium::Vacuum => Some("Ciddor 1996"),
             Medium::Constant(_) => Some("constant"),
         },

@@ -4,6 +4,7 @@ mod arguments;
 mod check;
 mod fit;
 mod info;
+mod list;
 mod nearest;
 mod plot;
 
@@ -13,7 +14,7 @@ use crate::console;
 use crate::outcome::{Failure, Outcome};
 use arguments::{GlassCommand, OwnCatalogues};
 use spectra_core::params::{Fault, nearest as near_words};
-use spectra_glass::{Catalogue, FindError, Glass, Medium, agf, file};
+use spectra_glass::{Beside, Catalogue, FindError, Glass, Medium, agf, file};
 use spectra_scene::FileResources;
 use std::borrow::Cow;
 use std::io::Read;
@@ -23,6 +24,7 @@ use std::path::Path;
 pub(crate) fn glass(command: &GlassCommand) -> Outcome {
     match command {
         GlassCommand::Info(arguments) => info::info(arguments),
+        GlassCommand::List(arguments) => list::list(arguments),
         GlassCommand::Plot(arguments) => plot::plot(arguments),
         GlassCommand::Match(arguments) => nearest::nearest(arguments),
         GlassCommand::Fit(arguments) => fit::fit(arguments),
@@ -56,7 +58,16 @@ fn catalogue(own: &OwnCatalogues) -> Result<Cow<'static, Catalogue>, Failure> {
 fn named(name: &str, catalogue: &Catalogue) -> Result<Medium, Failure> {
     match own_file(name)? {
         Some(glass) => Ok(glass.into()),
-        None => catalogue.medium(name).map_err(unknown),
+        None if ["air", "vacuum"].iter().any(|medium| name.trim().eq_ignore_ascii_case(medium)) => {
+            catalogue.medium(name).map_err(unknown)
+        }
+        None => {
+            let chosen = catalogue.choose(name, Beside::default()).map_err(unknown)?;
+            if let Some(note) = &chosen.note {
+                console::note(note);
+            }
+            Ok(chosen.glass.into())
+        }
     }
 }
 

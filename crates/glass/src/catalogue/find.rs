@@ -1,11 +1,13 @@
 //! Finding a medium by name.
 
+use std::collections::HashMap;
 use std::fmt;
 
 use thiserror::Error;
 
 use super::{Catalogue, Place};
-use crate::glass::Glass;
+use crate::glass::{Category, Glass};
+use crate::lines::LineTriple;
 use crate::medium::Medium;
 
 /// A medium that was meant, perhaps.
@@ -33,7 +35,7 @@ impl fmt::Display for Candidate {
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum FindError {
     /// Nothing has this name.
-    #[error("no glass `{name}`; nearest names: {}", list(nearest))]
+    #[error("no glass `{name}`{}", if nearest.is_empty() { String::new() } else { format!("; nearest names: {}", list(nearest)) })]
     Unknown {
         /// The name asked for.
         name: String,
@@ -67,6 +69,11 @@ impl FindError {
             Self::Unknown { name, .. } if name.parse::<f64>().is_ok_and(|nd| (1.0..=4.0).contains(&nd)) => {
                 format!("an index alone is `nd: {name}`; with its Abbe number, `glass: {{nd: {name}, vd: ...}}`")
             }
+            Self::Unknown { name, nearest }
+                if PLASTICS_NOT_HELD.iter().any(|p| p.eq_ignore_ascii_case(name.trim())) =>
+            {
+                format!("the catalogue has no data of this plastic; plastics it has: {}", list(nearest))
+            }
             Self::Unknown { nearest, .. } => match nearest.as_slice() {
                 [] => "a glass of a catalogue, such as SCHOTT/N-BK7, or a file of your own, such as `my-glass.yaml`"
                     .to_owned(),
@@ -96,10 +103,39 @@ const MAKERS: [(&str, &str); 7] = [
     ("SCHOTT-GLAS", "SCHOTT"),
 ];
 
+/// Usual plastics of which the catalogue has no data: what looks like their names is something else.
+const PLASTICS_NOT_HELD: [&str; 9] = ["COC", "CR39", "CR-39", "PES", "PP", "PE", "ABS", "PTFE", "PSU"];
+
+/// Makers in the order in which they are meant where a name has several and nothing else tells.
+const USUAL: [&str; 9] = ["SCHOTT", "OHARA", "HOYA", "HIKARI", "CDGM", "SUMITA", "NHG", "LZOS", "CORNING"];
+/// Year of the oldest list of the catalogue; what stands in it was there before, too.
+const OLDEST_LIST: u16 = 1983;
+
+/// What is known beside the name of a glass.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Beside<'a> {
+    /// Index and perhaps Abbe number, for the lines that belong to them.
+    pub figures: Option<(f64, Option<f64>, LineTriple)>,
+    /// Who made the lens, or the glass.
+    pub maker: Option<&'a str>,
+    /// Year of the lens.
+    pub year: Option<i32>,
+}
+
+/// A glass that was chosen by its name and what is known beside it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Chosen {
+    /// The glass.
+    pub glass: Glass,
+    /// What a person should know, where several were as likely.
+    pub note: Option<String>,
+}
+
 impl Catalogue {
     /// The medium of that name: `SCHOTT/N-BK7`, or `N-BK7` where one maker only has it; an everyday name such as
-    /// `water`; or the substance alone where there is one measurement. Upper and lower case are the same; where
-    /// nothing else fits hyphens, underscores, blanks and dots do not count. `LZ_LF5` is `LZOS/LF5`.
+    /// `water` or `PC`; or the substance alone where there is one measurement. Upper and lower case are the same unless
+    /// they tell two apart (`BaF2` is the crystal, `BAF2` a flint); where nothing else fits hyphens, underscores,
+    /// blanks and dots do not count. `LZ_LF5` is `LZOS/LF5`.
     ///
     /// # Errors
     /// A name that nothing or more than one medium has, with the candidates.
@@ -107,9 +143,15 @@ impl Catalogue {
         let places = self.places(name);
         match places[..] {
             [place] => Ok(self.glass(place)),
-            [] => Err(FindError::Unknown { name: name.to_owned(), nearest: self.nearest_names(name) }),
-            _ => Err(FindError::Ambiguous { name: name.to_owned(), candidates: self.candidates(&places) }),
+            [] => Err(self.unknown(name)),
+            _ => Err(self.ambiguous(name, &places)),
         }
+    }
+
+    /// Whether one medium or more has the name; finds no near ones, so that it is quick.
+    #[must_use]
+    pub fn knows(&self, name: &str) -> bool {
+        !self.places(name).is_empty()
     }
 
     /// As [`Catalogue::find`], with `air` and `vacuum` as the media that they are in a lens (air is 1).
@@ -132,41 +174,131 @@ impl Catalogue {
     /// As [`Catalogue::find`]; ambiguous too if none of several is that near.
     pub fn find_with(&self, name: &str, nd: f64, vd: Option<f64>) -> Result<Glass, FindError> {
         let places = self.places(name);
-        if places.len() < 2 {
-            return self.find(name);
-        }
-        let far = |glass: &Glass| {
-            let n = (glass.nd() - nd).abs() / 0.002;
-            let v = vd.map_or(0.0, |vd| (glass.vd() - vd).abs() / (0.02 * vd));
-            n.max(v)
-        };
-        let best = places.iter().map(|&p| self.glass(p)).map(|g| (far(&g), g)).min_by(|a, b| a.0.total_cmp(&b.0));
-        match best {
-            Some((distance, glass)) if distance <= 1.0 => Ok(glass),
-            _ => Err(FindError::Ambiguous { name: name.to_owned(), candidates: self.candidates(&places) }),
+        match places[..] {
+            [place] => Ok(self.glass(place)),
+            [] => Err(self.unknown(name)),
+            _ => self.nearest_of(&places, nd, vd, LineTriple::FDC).ok_or_else(|| self.ambiguous(name, &places)),
         }
     }
 
+    /// The one rule for a name that several glasses have: what has the stated figures, as in [`Catalogue::find_with`];
+    /// else that of the lens's maker, if it made glass; else the only one of the lens's time; else that of the usual
+    /// maker, with a note.
+    ///
+    /// # Errors
+    /// A name that nothing has; one of several of which none has the stated figures; several measurements of a substance.
+    pub fn choose(&self, name: &str, beside: Beside<'_>) -> Result<Chosen, FindError> {
+        let places = self.places(name);
+        let quiet = |glass: Glass| Ok(Chosen { glass, note: None });
+        match places[..] {
+            [place] => return quiet(self.glass(place)),
+            [] => return Err(self.unknown(name)),
+            _ => {}
+        }
+        if let Some((n, v, lines)) = beside.figures {
+            let near = self.nearest_of(&places, n, v, lines);
+            return near.map_or_else(|| Err(self.ambiguous(name, &places)), quiet);
+        }
+        let glasses: Vec<Glass> = places.iter().map(|place| self.glass(*place)).collect();
+        if glasses.iter().any(|glass| !glass.category.is_glass()) {
+            return Err(self.ambiguous(name, &places));
+        }
+        let words = beside.maker.unwrap_or_default().to_uppercase();
+        let by_maker =
+            words.split(|c: char| !c.is_alphanumeric() && c != '-').filter(|word| !word.is_empty()).find_map(|word| {
+                let maker = our_maker(word);
+                glasses.iter().find(|glass| same_name(&glass.maker, &maker))
+            });
+        if let Some(glass) = by_maker {
+            return quiet(glass.clone());
+        }
+        if let Some(year) = beside.year {
+            let listed = |glass: &&Glass| {
+                glass.years.is_some_and(|(first, last)| {
+                    i32::from(first) <= year.max(i32::from(OLDEST_LIST))
+                        && year <= i32::from(last).max(i32::from(OLDEST_LIST))
+                })
+            };
+            let mut of_time = glasses.iter().filter(listed);
+            if let (Some(glass), None) = (of_time.next(), of_time.next()) {
+                return quiet(glass.clone());
+            }
+        }
+        let rank = |glass: &Glass| USUAL.iter().position(|maker| same_name(maker, &glass.maker)).unwrap_or(USUAL.len());
+        let Some(glass) = glasses.iter().min_by_key(|glass| rank(glass)) else { return Err(self.unknown(name)) };
+        let others: Vec<String> =
+            glasses.iter().filter(|other| *other != glass).map(|other| candidate(other).to_string()).collect();
+        let note = format!(
+            "`{name}` is the name of {} glasses: {} is taken; write the maker if another is meant: {}",
+            glasses.len(),
+            candidate(glass),
+            others.join(", ")
+        );
+        Ok(Chosen { glass: glass.clone(), note: Some(note) })
+    }
+
+    /// All media whose name, maker or everyday name has this fragment, by name. Case, hyphens and blanks do not count.
+    #[must_use]
+    pub fn search(&self, fragment: &str) -> Vec<Glass> {
+        let (maker, fragment) = fragment.split_once('/').map_or((None, fragment), |(maker, rest)| (Some(maker), rest));
+        let (maker, wanted) = (maker.map(squeeze), squeeze(fragment));
+        let has = |place: Place| {
+            let own_maker = squeeze(self.maker_of(place));
+            let in_name = squeeze(self.name_of(place)).contains(&wanted);
+            maker.as_ref().map_or(in_name || own_maker.contains(&wanted), |maker| own_maker.contains(maker) && in_name)
+        };
+        let mut found: Vec<Place> = self.index.iter().map(|(_, place)| *place).filter(|place| has(*place)).collect();
+        for (alias, target) in self.bundle.aliases() {
+            if maker.is_none() && squeeze(alias).contains(&wanted) {
+                let more = self.places(target);
+                found.extend(more.into_iter().filter(|place| !found.contains(place)).collect::<Vec<_>>());
+            }
+        }
+        found.into_iter().map(|place| self.glass(place)).collect()
+    }
+
+    fn unknown(&self, name: &str) -> FindError {
+        FindError::Unknown { name: name.to_owned(), nearest: self.nearest_names(name) }
+    }
+
+    fn ambiguous(&self, name: &str, places: &[Place]) -> FindError {
+        FindError::Ambiguous { name: name.to_owned(), candidates: self.candidates(places) }
+    }
+
+    fn nearest_of(&self, places: &[Place], n: f64, v: Option<f64>, lines: LineTriple) -> Option<Glass> {
+        let far = |glass: &Glass| {
+            let n = (glass.index(lines.mid.wavelength_nm) - n).abs() / 0.002;
+            let v = v.map_or(0.0, |v| (glass.abbe_number(lines) - v).abs() / (0.02 * v));
+            n.max(v)
+        };
+        let best = places.iter().map(|&p| self.glass(p)).map(|g| (far(&g), g)).min_by(|a, b| a.0.total_cmp(&b.0))?;
+        (best.0 <= 1.0).then_some(best.1)
+    }
+
     fn places(&self, name: &str) -> Vec<Place> {
-        let name = name.trim();
-        let name = self.bundle.alias(name).unwrap_or(name);
-        let (maker, name) = split_maker(name);
-        let maker = maker.map(|m| {
-            let m = m.to_uppercase();
-            MAKERS.iter().find(|(alias, _)| *alias == m).map_or(m, |(_, maker)| (*maker).to_owned())
-        });
-        let of_maker = |place: &Place| maker.as_ref().is_none_or(|m| self.maker_of(*place).to_uppercase() == *m);
+        let asked = name.trim();
+        let (maker, name) = split_maker(asked);
+        let maker = maker.map(our_maker);
+        let of_maker = |place: &Place| maker.as_ref().is_none_or(|m| same_name(self.maker_of(*place), m));
         let upper = name.to_uppercase();
         let start = self.index.partition_point(|(n, _)| n.as_ref() < upper.as_str());
         let same = self.index[start..].iter().take_while(|(n, _)| n.as_ref() == upper).map(|(_, place)| *place);
         let exact: Vec<Place> = same.filter(of_maker).collect();
+        // Where case tells some of them apart it counts.
+        let to_the_letter: Vec<Place> = exact.iter().copied().filter(|place| self.name_of(*place) == name).collect();
+        if !to_the_letter.is_empty() {
+            return to_the_letter;
+        }
         if !exact.is_empty() {
             return exact;
+        }
+        if let Some(target) = self.bundle.alias(asked) {
+            return self.places(target);
         }
         // A substance without the name of a measurement.
         if maker.is_none() {
             let all: Vec<Place> =
-                self.index.iter().map(|(_, p)| *p).filter(|p| self.maker_of(*p).to_uppercase() == upper).collect();
+                self.index.iter().map(|(_, p)| *p).filter(|p| same_name(self.maker_of(*p), &upper)).collect();
             if !all.is_empty() {
                 return all;
             }
@@ -175,28 +307,102 @@ impl Catalogue {
         if squeezed.is_empty() {
             return Vec::new();
         }
-        self.index.iter().filter(|(n, p)| squeeze(n) == squeezed && of_maker(p)).map(|(_, place)| *place).collect()
+        let all = self.squeezed.get_or_init(|| {
+            let mut all: HashMap<String, Vec<Place>> = HashMap::new();
+            for (name, place) in &self.index {
+                all.entry(squeeze(name)).or_default().push(*place);
+            }
+            all
+        });
+        all.get(&squeezed).into_iter().flatten().copied().filter(of_maker).collect()
     }
 
     fn candidates(&self, places: &[Place]) -> Vec<Candidate> {
         places.iter().map(|&place| candidate(&self.glass(place))).collect()
     }
 
-    /// The names with the smallest edit distance; those of the maker that was named come first.
+    /// The names with the smallest edit distance, of what could have been meant: glasses for what looks like a glass,
+    /// substances and everyday names for a word. Those of the maker that was named come first.
     fn nearest_names(&self, name: &str) -> Vec<Candidate> {
-        let (maker, bare) = split_maker(name.trim());
-        let maker = maker.map(str::to_uppercase);
+        let asked = name.trim();
+        let (maker, bare) = split_maker(asked);
+        let maker = maker.map(our_maker);
         let bare: Vec<char> = bare.to_uppercase().chars().take(64).collect();
-        let mut scored: Vec<(usize, bool, usize)> = (self.index.iter().enumerate())
-            .map(|(i, (candidate, place))| {
-                let other_maker = maker.as_ref().is_some_and(|m| self.maker_of(*place).to_uppercase() != *m);
-                (edit_distance(&bare, candidate), other_maker, i)
-            })
-            .collect();
+        if maker.is_none() && PLASTICS_NOT_HELD.iter().any(|plastic| plastic.eq_ignore_ascii_case(asked)) {
+            let plastics = self.bundle.aliases().filter_map(|(alias, target)| {
+                let &[place] = &self.places(target)[..] else { return None };
+                let glass = self.glass(place);
+                let short = alias.chars().all(|c| c.is_ascii_uppercase());
+                (glass.category == Category::Plastic && short)
+                    .then(|| Candidate { full_name: alias.to_owned(), ..candidate(&glass) })
+            });
+            return plastics.take(LISTED).collect();
+        }
+        let farthest = (bare.len() / 3).clamp(1, 4);
+        let is_code = bare.iter().any(char::is_ascii_digit);
+        let mut scored: Vec<(usize, bool, usize)> = Vec::new();
+        for (i, (candidate, place)) in self.index.iter().enumerate() {
+            // The name of a measurement is its author's: nobody means it who does not name the substance.
+            let category = self.category_of(*place);
+            if maker.is_none() && (!category.is_glass() || candidate.bytes().any(|b| b.is_ascii_digit()) != is_code) {
+                continue;
+            }
+            let other_maker = maker.as_ref().is_some_and(|m| !same_name(self.maker_of(*place), m));
+            if other_maker && !category.is_glass() {
+                continue;
+            }
+            let distance = edit_distance(&bare, candidate);
+            if distance <= farthest {
+                scored.push((distance, other_maker, i));
+            }
+        }
         scored.sort_unstable();
         scored.truncate(LISTED);
-        scored.iter().map(|&(_, _, i)| candidate(&self.glass(self.index[i].1))).collect()
+        let mut near: Vec<(usize, Candidate)> =
+            scored.iter().map(|&(distance, _, i)| (distance, candidate(&self.glass(self.index[i].1)))).collect();
+        if maker.is_none() {
+            near.extend(self.near_words(&bare, farthest));
+            near.sort_by_key(|(distance, _)| *distance);
+            near.truncate(LISTED);
+        }
+        near.into_iter().map(|(_, candidate)| candidate).collect()
     }
+
+    /// Everyday names and substances near a word.
+    fn near_words(&self, word: &[char], farthest: usize) -> Vec<(usize, Candidate)> {
+        let mut near: Vec<(usize, Candidate)> = Vec::new();
+        for (alias, target) in self.bundle.aliases() {
+            let distance = edit_distance(word, &alias.to_uppercase());
+            if let (true, &[place]) = (distance <= farthest, &self.places(target)[..]) {
+                near.push((distance, Candidate { full_name: alias.to_owned(), ..candidate(&self.glass(place)) }));
+            }
+        }
+        let mut substances: Vec<(&str, Place)> =
+            self.index.iter().map(|(_, place)| (self.maker_of(*place), *place)).collect();
+        substances.retain(|(_, place)| !self.category_of(*place).is_glass());
+        substances.sort_by_key(|(substance, _)| *substance);
+        substances.dedup_by_key(|(substance, _)| *substance);
+        for (substance, place) in substances {
+            let distance = edit_distance(word, &substance.to_uppercase());
+            if distance <= farthest {
+                near.push((distance, candidate(&self.glass(place))));
+            }
+        }
+        near.sort_by_key(|(distance, _)| *distance);
+        near.truncate(LISTED);
+        near
+    }
+}
+
+/// A maker as this catalogue calls it, upper case.
+fn our_maker(name: &str) -> String {
+    let upper = name.to_uppercase();
+    MAKERS.iter().find(|(alias, _)| *alias == upper).map_or(upper, |(_, maker)| (*maker).to_owned())
+}
+
+/// The same but for upper and lower case.
+fn same_name(a: &str, b: &str) -> bool {
+    if a.is_ascii() && b.is_ascii() { a.eq_ignore_ascii_case(b) } else { a.to_uppercase() == b.to_uppercase() }
 }
 
 fn candidate(glass: &Glass) -> Candidate {

@@ -5,20 +5,23 @@
 mod check;
 mod era;
 mod find;
+mod lender;
 mod nearest;
 mod text;
 
 pub use check::{Deviation, LISTED_TOLERANCE_ND, LISTED_TOLERANCE_VD, ListedCheck};
 pub use era::{Era, EraError};
-pub use find::{Candidate, FindError};
+pub use find::{Beside, Candidate, Chosen, FindError};
+pub use lender::{Absorption, Lender};
 pub use nearest::{Match, Query};
 
 use std::borrow::Cow;
+use std::collections::HashMap;
 use std::sync::{Arc, OnceLock};
 
 use thiserror::Error;
 
-use crate::glass::Glass;
+use crate::glass::{Category, Glass};
 use text::Bundle;
 
 /// A line of a catalogue file that cannot be read.
@@ -32,7 +35,7 @@ pub struct CatalogueError {
 }
 
 /// Where the record of an indexed name is.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 enum Place {
     /// Record of the text.
     Text(u32),
@@ -47,6 +50,8 @@ pub struct Catalogue {
     own: Vec<Glass>,
     /// Upper-case names, sorted, with their places.
     index: Vec<(Cow<'static, str>, Place)>,
+    /// The same without hyphens and blanks; made when first asked for.
+    squeezed: OnceLock<HashMap<String, Vec<Place>>>,
 }
 
 impl Catalogue {
@@ -70,17 +75,18 @@ impl Catalogue {
         let bundle = Bundle::new(text)?;
         let mut index: Vec<_> = (0..bundle.len()).map(|i| (upper(bundle.name(i)), Place::Text(i as u32))).collect();
         index.sort_unstable_by(|a, b| a.0.cmp(&b.0));
-        Ok(Catalogue { bundle: Arc::new(bundle), own: Vec::new(), index })
+        Ok(Catalogue { bundle: Arc::new(bundle), own: Vec::new(), index, squeezed: OnceLock::new() })
     }
 
     /// An empty catalogue, for a user's own glasses alone.
     #[must_use]
     pub fn empty() -> Catalogue {
-        Catalogue { bundle: Arc::default(), own: Vec::new(), index: Vec::new() }
+        Catalogue { bundle: Arc::default(), own: Vec::new(), index: Vec::new(), squeezed: OnceLock::new() }
     }
 
     /// Adds glasses (of a user's AGF file, say). One with the same maker and name as an earlier one replaces it.
     pub fn add(&mut self, glasses: impl IntoIterator<Item = Glass>) {
+        self.squeezed = OnceLock::new();
         for glass in glasses {
             let name = glass.name.to_uppercase();
             let maker = glass.maker.to_uppercase();
@@ -149,6 +155,13 @@ impl Catalogue {
         match place {
             Place::Own(i) => &self.own[i as usize].maker,
             Place::Text(i) => self.bundle.maker(i as usize),
+        }
+    }
+
+    fn category_of(&self, place: Place) -> Category {
+        match place {
+            Place::Own(i) => self.own[i as usize].category,
+            Place::Text(i) => self.bundle.category(i as usize),
         }
     }
 

@@ -89,6 +89,20 @@ impl Bundle {
         &self.blocks[self.records[i].block as usize].maker
     }
 
+    /// Whether record `i` has a column of extinction.
+    pub(super) fn has_extinction(&self, i: usize) -> bool {
+        self.records[i].rest.split('|').nth(6).is_some_and(|column| !column.is_empty())
+    }
+
+    pub(super) fn category(&self, i: usize) -> Category {
+        self.blocks[self.records[i].block as usize].category
+    }
+
+    /// Everyday names with what they stand for.
+    pub(super) fn aliases(&self) -> impl Iterator<Item = (&'static str, &'static str)> + '_ {
+        self.aliases.iter().copied()
+    }
+
     /// What an everyday name stands for.
     pub(super) fn alias(&self, name: &str) -> Option<&'static str> {
         self.aliases.iter().find(|(alias, _)| alias.eq_ignore_ascii_case(name)).map(|(_, target)| *target)

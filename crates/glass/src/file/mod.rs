@@ -3,13 +3,15 @@
 //! | file | holds |
 //! |---|---|
 //! | `mine.yaml` | a formula with its coefficients, a table of n, or nd and Vd, with absorption where it is known ([`yaml`](self)); or a page of the refractiveindex.info database as it stands there |
-//! | `mine.csv` | columns `wavelength_nm` (or `wavelength_um`), `n` and, where it is known, `k` |
+//! | `mine.csv` | columns `wavelength_nm` (or `wavelength_um`), `n` and, where it is known, `k`; `mine.csv#NAME` where a column `material` names several |
 //! | `mine.agf#N-BK7` | one glass of a catalogue file of an optical design program; the name may be left out where the file has one |
 
 mod csv;
 mod database;
+mod figures;
 mod yaml;
 
+pub use figures::Figures;
 pub use yaml::{GlassFile, InternalTransmittance, from_params};
 
 use crate::{Catalogue, Glass, Medium, agf};
@@ -66,13 +68,13 @@ fn read(path: &str, shown: &str, glass: Option<&str>, resources: &dyn Resources)
     if has_ending(path, "agf") {
         return from_agf(path, shown, glass, resources);
     }
+    if has_ending(path, "csv") {
+        let found = bytes(path, shown, resources)?;
+        return csv::read(&found.name, &found.bytes, glass);
+    }
     if let Some(glass) = glass {
         let fault = Fault::new(format!("`{shown}` holds one glass; there is no `#{glass}`"));
         return Err(fault.hint(format!("write `{shown}`")).into());
-    }
-    if has_ending(path, "csv") {
-        let found = bytes(path, shown, resources)?;
-        return csv::read(&found.name, &found.bytes);
     }
     let params = resources.document(path, &[], &[])?;
     if database::is_one(&params) { database::from_params(&params) } else { yaml::from_file(&params, resources) }

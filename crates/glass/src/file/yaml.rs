@@ -1,7 +1,7 @@
 //! A glass in YAML.
 
-use super::{MAX_BYTES, OWN_MAKER, csv, sensible};
-use crate::{Category, Extinction, Formula, Glass, LineTriple, ModelGlass, NumberedFormula, Table};
+use super::{Figures, MAX_BYTES, OWN_MAKER, csv, sensible};
+use crate::{Category, Extinction, Formula, Glass, Medium, NumberedFormula, Table};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{Fault, Faults, Length, NonNegative, Params, Positive, Wavelength, nearest};
@@ -35,10 +35,43 @@ pub struct GlassFile {
     file: Option<String>,
     /// First and last wavelength of the data, nm if bare; 350 to 830 nm if absent.
     range: Option<[Wavelength; 2]>,
-    /// Index at the d line: alone with `vd` the whole glass; beside a formula or a table it is held against that.
+    /// Index at the d line: with `vd`, or with indices at more lines, the whole glass; beside a formula or a table it is
+    /// held against that, as every figure is.
     nd: Option<f64>,
     /// Abbe number at d, F and C.
     vd: Option<f64>,
+    /// Index at the e line.
+    ne: Option<f64>,
+    /// Abbe number at e, F' and C'.
+    ve: Option<f64>,
+    /// Index at the sodium line D.
+    #[serde(rename = "nD")]
+    n_sodium: Option<f64>,
+    /// Abbe number at D, F and C.
+    #[serde(rename = "vD")]
+    v_sodium: Option<f64>,
+    /// Index at the i line.
+    ni: Option<f64>,
+    /// Index at the h line.
+    nh: Option<f64>,
+    /// Index at the g line.
+    ng: Option<f64>,
+    /// Index at the F' line.
+    #[serde(rename = "nF'")]
+    n_f_prime: Option<f64>,
+    /// Index at the F line.
+    #[serde(rename = "nF")]
+    n_f: Option<f64>,
+    /// Index at the C' line.
+    #[serde(rename = "nC'")]
+    n_c_prime: Option<f64>,
+    /// Index at the C line.
+    #[serde(rename = "nC")]
+    n_c: Option<f64>,
+    /// Index at the r line.
+    nr: Option<f64>,
+    /// Index at the s line.
+    ns: Option<f64>,
     /// Temperature of the data, degrees Celsius.
     temperature: Option<f64>,
     /// Extinction: wavelength, nm if bare, and k of the complex index n - i k.
@@ -100,10 +133,12 @@ const FORMULAS: [Maker; 25] = [
     numbered!("refractiveindex-9", 9),
 ];
 
-/// Where a stated nd and that of the data differ by more, one of them is a slip.
-const TOLERANCE_ND: f64 = 5e-4;
-/// The same for Vd.
-const TOLERANCE_VD: f64 = 0.5;
+impl GlassFile {
+    fn figures(&self) -> Figures {
+        let &Self { nd, vd, ne, ve, n_sodium, v_sodium, ni, nh, ng, n_f_prime, n_f, n_c_prime, n_c, nr, ns, .. } = self;
+        Figures { nd, vd, ne, ve, n_sodium, v_sodium, ni, nh, ng, n_f_prime, n_f, n_c_prime, n_c, nr, ns }
+    }
+}
 
 /// The glass of a parsed file: named after it, unless it says so itself.
 pub(super) fn from_file(params: &Params, resources: &dyn Resources) -> Result<Glass, Faults> {
@@ -149,12 +184,9 @@ pub fn from_params(params: &Params, called: &str, resources: &dyn Resources) -> 
         let hint = "coefficients are those of the formula in micrometers; `range` is where they hold";
         return Err(params.fault(key, text).hint(hint).into());
     }
-    for (key, stated, own, tolerance) in
-        [("nd", p.nd, glass.nd(), TOLERANCE_ND), ("vd", p.vd, glass.vd(), TOLERANCE_VD)]
-    {
-        if let Some(stated) = stated
-            && !((stated - own).abs() <= tolerance)
-        {
+    let figures = p.figures();
+    for (key, stated, own, tolerance) in figures.against(|nm| glass.index(nm)) {
+        if !((stated - own).abs() <= tolerance) {
             let fault = params.fault(key, format!("{key} is stated as {stated}, but the data give {own:.5}"));
             faults.push(fault.hint("the figures contradict each other: which one is the slip?"));
         }
@@ -187,25 +219,22 @@ fn base(params: &Params, p: &GlassFile, resources: &dyn Resources) -> Result<Gla
         return Ok(plain(Formula::Table(table.into()), range));
     }
     if let Some(file) = &p.file {
-        let path = params.get("file").map_or_else(|| file.clone(), |node| beside(node, file));
+        let (file, material) = super::parts(file);
+        let path = params.get("file").map_or_else(|| file.to_owned(), |node| beside(node, file));
         let found = resources.read(&path, &[], &[], MAX_BYTES);
         let found = found.map_err(|e| params.fault("file", format!("`{file}`: {e}")))?;
-        return csv::read(&found.name, &found.bytes).map_err(|faults| params.place_at("file", faults));
+        return csv::read(&found.name, &found.bytes, material).map_err(|faults| params.place_at("file", faults));
     }
-    match (p.nd, p.vd) {
-        (Some(nd), vd) => {
-            let formula = match vd {
-                None => Some(Formula::Constant(nd)),
-                Some(vd) => ModelGlass::new(nd, vd, LineTriple::FDC).map(Formula::Model),
-            };
-            let fault = || params.fault("nd", format!("no glass has nd {nd} and vd {}", vd.unwrap_or_default()));
-            Ok(plain(formula.ok_or_else(fault)?, BAND))
-        }
-        (None, _) => {
-            let fault = params.fault_here("the glass has no index");
-            Err(fault.hint("`formula` and `coefficients`, a `table`, a CSV `file`, or `nd` and `vd`").into())
-        }
+    let figures = p.figures();
+    if figures.is_empty() {
+        let fault = params.fault_here("the glass has no index");
+        return Err(fault.hint("`formula` and `coefficients`, a `table`, a CSV `file`, or `nd` and `vd`").into());
     }
+    let formula = match figures.medium(params)?.0 {
+        Medium::Model(model) => Formula::Model(model),
+        medium => Formula::Constant(medium.index(crate::lines::D.wavelength_nm)),
+    };
+    Ok(plain(formula, BAND))
 }
 
 fn formula(params: &Params, p: &GlassFile, name: &str) -> Result<Formula, Fault> {

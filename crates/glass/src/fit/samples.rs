@@ -42,7 +42,93 @@ struct Columns {
     wavelength: usize,
     unit_nm: f64,
     index: usize,
+    extinction: Option<usize>,
     material: Option<usize>,
+}
+
+/// A row of a table of indices.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Row {
+    pub(crate) wavelength_nm: f64,
+    pub(crate) n: f64,
+    pub(crate) k: Option<f64>,
+    /// Where its wavelength stands.
+    pub(crate) place: Place,
+}
+
+/// Where a value stands in the text.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Place {
+    /// Line, from 1.
+    pub(crate) line: usize,
+    /// Bytes from the start of the text.
+    pub(crate) offset: usize,
+    /// Characters from the start of the line, from 1.
+    pub(crate) column: usize,
+    /// Bytes.
+    pub(crate) len: usize,
+}
+
+/// A table that cannot be read.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct RowError {
+    pub(crate) place: Place,
+    pub(crate) message: String,
+    pub(crate) hint: Option<&'static str>,
+}
+
+/// The rows of one material: its name where the file has a column for it, and the rows in the order of the file.
+pub(crate) type Material = (Option<String>, Vec<Row>);
+
+/// What stands in a head.
+const HEAD: &str = "columns `wavelength_nm` (or `wavelength_um`), `n` and, where they are known, `k` and `material`";
+
+/// The one reader of tables of indices; see [`read_csv`] for what it takes.
+pub(crate) fn read_rows(text: &str) -> Result<Vec<Material>, RowError> {
+    let mut columns: Option<Columns> = None;
+    let mut found: Vec<Material> = Vec::new();
+    let mark = text.len() - text.strip_prefix('\u{feff}').unwrap_or(text).len();
+    let mut offset = mark;
+    for (i, whole) in text[mark..].split_inclusive('\n').enumerate() {
+        let start = offset;
+        offset += whole.len();
+        let line = whole.trim_end();
+        if line.trim().is_empty() || line.trim_start().starts_with('#') {
+            continue;
+        }
+        let values = split(line);
+        let place = |at: usize| {
+            let (from, len) = values
+                .get(at)
+                .map_or((line.len(), 0), |value| (value.as_ptr() as usize - line.as_ptr() as usize, value.len()));
+            Place { line: i + 1, offset: start + from, column: line[..from].chars().count() + 1, len }
+        };
+        let number = |at: usize| values.get(at).and_then(|v| v.parse::<f64>().ok());
+        let fail =
+            |(at, message, hint): (usize, String, Option<&'static str>)| RowError { place: place(at), message, hint };
+        if columns.is_none() {
+            if number(0).is_some() && number(1).is_some() {
+                columns = Some(Columns { wavelength: 0, unit_nm: 1.0, index: 1, extinction: None, material: None });
+            } else {
+                columns = Some(head(&values).map_err(|message| fail((0, message, Some(HEAD))))?);
+                continue;
+            }
+        }
+        let Some(columns) = &columns else { continue };
+        let (wavelength_nm, n, k) = row(columns, &values).map_err(fail)?;
+        let row = Row { wavelength_nm, n, k, place: place(columns.wavelength) };
+        let name = columns.material.map(|at| values.get(at).copied().unwrap_or_default().to_owned());
+        match found.iter_mut().find(|(other, _)| *other == name) {
+            Some((_, rows)) => rows.push(row),
+            None => found.push((name, vec![row])),
+        }
+    }
+    if found.is_empty() {
+        let message = "no samples: a table has columns `wavelength_nm` and `n`".to_owned();
+        let place = Place { line: text.lines().count().max(1), offset: text.len(), column: 1, len: 0 };
+        return Err(RowError { place, message, hint: Some(HEAD) });
+    }
+    Ok(found)
 }
 
 /// Reads a table of wavelengths and indices: columns `wavelength_nm` (or `wavelength_um`) and `n`, found by name, and
@@ -52,36 +138,10 @@ struct Columns {
 /// # Errors
 /// The first line that cannot be read; a file without samples.
 pub fn read_csv(text: &str) -> Result<Vec<NamedSamples>, SamplesError> {
-    let mut columns: Option<Columns> = None;
-    let mut found: Vec<NamedSamples> = Vec::new();
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    for (i, line) in text.lines().enumerate() {
-        let line = line.trim();
-        if line.is_empty() || line.starts_with('#') {
-            continue;
-        }
-        let fail = |message: String| SamplesError { line: i + 1, message };
-        let values = split(line);
-        let number = |at: usize| values.get(at).and_then(|v| v.parse::<f64>().ok());
-        let Some(columns) = &columns else {
-            let head = if number(0).is_some() && number(1).is_some() {
-                Columns { wavelength: 0, unit_nm: 1.0, index: 1, material: None }
-            } else {
-                head(&values).map_err(fail)?
-            };
-            if number(0).is_some() {
-                push(&mut found, &head, &values).map_err(fail)?;
-            }
-            columns = Some(head);
-            continue;
-        };
-        push(&mut found, columns, &values).map_err(fail)?;
-    }
-    if found.is_empty() {
-        let message = "no samples: a table has columns `wavelength_nm` and `n`".to_owned();
-        return Err(SamplesError { line: text.lines().count().max(1), message });
-    }
-    Ok(found)
+    let found = read_rows(text).map_err(|e| SamplesError { line: e.place.line, message: e.message })?;
+    let sample = |row: Row| Sample { wavelength_nm: row.wavelength_nm, n: row.n };
+    let material = |(name, rows): Material| NamedSamples { name, samples: rows.into_iter().map(sample).collect() };
+    Ok(found.into_iter().map(material).collect())
 }
 
 fn split(line: &str) -> Vec<&str> {
@@ -97,35 +157,36 @@ fn head(names: &[&str]) -> Result<Columns, String> {
     let place = |known: &[&str]| lower.iter().position(|n| known.contains(&n.as_str()));
     let wavelength = WAVELENGTH.iter().find_map(|(name, unit)| Some((place(&[name])?, *unit)));
     let (Some((wavelength, unit_nm)), Some(index)) = (wavelength, place(&INDEX)) else {
-        let found = names.join(", ");
+        let found = names.join(", ").chars().take(60).collect::<String>();
         return Err(format!("columns `wavelength_nm` (or `wavelength_um`) and `n` are needed; found: {found}"));
     };
-    Ok(Columns { wavelength, unit_nm, index, material: place(&MATERIAL) })
+    Ok(Columns { wavelength, unit_nm, index, extinction: place(&["k"]), material: place(&MATERIAL) })
 }
 
-fn push(found: &mut Vec<NamedSamples>, columns: &Columns, values: &[&str]) -> Result<(), String> {
+/// Column, what is wrong with it, and what to do.
+type Wrong = (usize, String, Option<&'static str>);
+
+fn row(columns: &Columns, values: &[&str]) -> Result<(f64, f64, Option<f64>), Wrong> {
     let number = |at: usize, what: &str| {
         let text = values.get(at).copied().unwrap_or_default();
         let value = text.parse::<f64>().ok().filter(|v| v.is_finite());
-        value.ok_or_else(|| format!("`{text}` is no {what}"))
+        value.ok_or_else(|| (at, format!("`{text}` is no {what}"), None))
     };
     let wavelength_nm = number(columns.wavelength, "wavelength")? * columns.unit_nm;
     if !SENSIBLE_NM.contains(&wavelength_nm) {
-        return Err(format!(
-            "a wavelength of {wavelength_nm} nm; name the column `wavelength_um` where it is in micrometres"
-        ));
+        let hint = "name the column `wavelength_um` where it is in micrometers";
+        let message = format!("a wavelength of {wavelength_nm} nm; {hint}");
+        return Err((columns.wavelength, message, None));
     }
     let n = number(columns.index, "index")?;
     if !(1.0..=10.0).contains(&n) {
-        return Err(format!("an index of {n}: it lies between 1 and 10"));
+        return Err((columns.index, format!("an index of {n}: it lies between 1 and 10"), None));
     }
-    let name = columns.material.map(|at| values.get(at).copied().unwrap_or_default().to_owned());
-    let sample = Sample { wavelength_nm, n };
-    match found.iter_mut().find(|group| group.name == name) {
-        Some(group) => group.samples.push(sample),
-        None => found.push(NamedSamples { name, samples: vec![sample] }),
+    let k = columns.extinction.map(|at| number(at, "extinction coefficient")).transpose()?;
+    if let (Some(at), Some(k)) = (columns.extinction, k.filter(|k| *k < 0.0)) {
+        return Err((at, format!("k is {k}"), Some("k is 0 or more")));
     }
-    Ok(())
+    Ok((wavelength_nm, n, k))
 }
 
 #[cfg(test)]

@@ -59,7 +59,7 @@ pub enum Formula {
     Numbered(NumberedFormula),
     /// Buchdahl's quadratic model: n = N0 + v1 w + v2 w^2 with w = (L - L0) / (1 + 2.5 (L - L0)); L0 N0 v1 v2.
     Buchdahl([f64; 4]),
-    /// n = A + B / (L^2 - 0.014), from an index and an Abbe number.
+    /// On the normal lines of partial dispersion, from an index and an Abbe number.
     Model(ModelGlass),
     /// A catalogue glass as one melt of it was measured.
     Melt(Box<Melt>),

@@ -1,0 +1,68 @@
+//! What is assumed of the media of a lens: dispersion of those known by figures, absorption that is borrowed.
+
+use serde::Serialize;
+use spectra_glass::{Lender, Medium};
+use spectra_lens::Lens;
+use std::fmt;
+
+/// A medium of which something is assumed.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct AssumedMedium {
+    /// As the lens file names it.
+    pub medium: String,
+    /// At how many lines its index is stated, where no formula is known: its dispersion is then that of ordinary glasses
+    /// with these figures. `None` where a formula is known.
+    pub modeled_from_lines: Option<usize>,
+    /// The glass whose absorption stands in; `None` where its own is known, or none is near.
+    pub absorption_of: Option<String>,
+    /// Index and Abbe number of that glass less its own.
+    pub absorption_delta: Option<[f64; 2]>,
+}
+
+/// The media of a lens of which something is assumed, in the order of the light.
+pub(super) fn assumed(lens: &Lens) -> Vec<AssumedMedium> {
+    let each = lens.media.iter().filter_map(|m| {
+        let modeled = match &m.medium {
+            Medium::Model(model) => Some(model.stated_lines()),
+            Medium::Glass(glass) => match &glass.formula {
+                spectra_glass::Formula::Model(model) => Some(model.stated_lines()),
+                _ => None,
+            },
+            _ => None,
+        };
+        let lender: Option<Lender> = m.medium.absorption(lens.year).and_then(|a| a.lender).filter(|_| lens.absorption);
+        (modeled.is_some() || lender.is_some()).then(|| AssumedMedium {
+            medium: m.label.clone(),
+            modeled_from_lines: modeled,
+            absorption_delta: lender.as_ref().map(|l| [l.delta_nd, l.delta_vd]),
+            absorption_of: lender.map(|l| l.full_name),
+        })
+    });
+    each.collect()
+}
+
+/// The lines of the report on them; none where nothing is assumed.
+pub(super) fn write(media: &[AssumedMedium], f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    let list = |media: Vec<String>| media.join("; ");
+    let modeled: Vec<String> =
+        (media.iter().filter(|m| m.modeled_from_lines == Some(1))).map(|m| m.medium.clone()).collect();
+    if !modeled.is_empty() {
+        writeln!(f, "modeled dispersion: {}", list(modeled))?;
+        writeln!(
+            f,
+            "  on the normal lines of partial dispersion: of ten glasses nine lie within 0.0002 at r, 0.0003 at g,"
+        )?;
+        writeln!(f, "  0.0006 at h, 0.0015 at i; dense and short flints, fluor and phosphate crowns farther off")?;
+    }
+    let through: Vec<String> =
+        media.iter().filter(|m| m.modeled_from_lines.is_some_and(|n| n > 1)).map(|m| m.medium.clone()).collect();
+    if !through.is_empty() {
+        writeln!(f, "modeled dispersion, through the lines that are stated: {}", list(through))?;
+    }
+    let borrowed: Vec<String> =
+        media.iter().filter_map(|m| Some(format!("{} from {}", m.medium, m.absorption_of.as_ref()?))).collect();
+    if !borrowed.is_empty() {
+        writeln!(f, "absorption borrowed from the nearest glass that has it (assumed): {}", list(borrowed))?;
+    }
+    Ok(())
+}

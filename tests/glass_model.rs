@@ -1,0 +1,129 @@
+//! Lenses of which only nd and Vd are known, and what glass takes from the light.
+
+use spectra_glass::lines;
+use spectra_lens::{Coating, Indices, Lens};
+use spectra_plugins as _;
+use spectra_scene::FileResources;
+use std::path::Path;
+
+fn text(lens: &str) -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("lenses/{lens}.yaml"));
+    std::fs::read_to_string(path).expect("a bundled lens")
+}
+
+fn parse(text: &str) -> Lens {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("lens.yaml");
+    std::fs::write(&path, text).expect("written");
+    spectra_lens::load(&path.to_string_lossy(), &FileResources::beside(Path::new(".")))
+        .unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// Paraxial focus at h against that at d, um: in brackets that of the real glasses.
+fn violet_focus_um(lens: &Lens) -> f64 {
+    let bfl = |line: lines::Line| lens.first_order(line.wavelength_nm).bfl_mm;
+    (bfl(lines::H) - bfl(lines::D)) * 1e3
+}
+
+/// The file with its glasses struck out: nd and Vd are left.
+fn without_names(text: &str) -> String {
+    let strike = |line: &str| match (line.split_once("glass: "), line.contains("nd:")) {
+        (Some((before, after)), true) => {
+            let (_, rest) = after.split_once(", ").expect("more keys");
+            format!("{before}{rest}")
+        }
+        _ => line.to_owned(),
+    };
+    text.lines().map(strike).collect::<Vec<_>>().join("\n")
+}
+
+#[test]
+fn the_secondary_spectrum_is_that_of_real_glass() {
+    for (name, real, within) in [
+        ("double-gauss-100-f5", 173.0, 40.0),
+        ("zeiss-biotar-50-f1.4", -78.0, 30.0),
+        ("canon-35-f1.8", -12.0, 50.0),
+        ("asahi-takumar-100-f1.2", 80.0, 220.0),
+    ] {
+        let text = text(name);
+        let named = violet_focus_um(&parse(&text));
+        assert!((named - real).abs() < 1.0, "{name}: {named} with its glasses");
+        let lens = parse(&without_names(&text));
+        assert!(lens.media.iter().skip(1).all(|m| m.label.starts_with("nd = ")), "{name}");
+        let by_figures = violet_focus_um(&lens);
+        println!("{name}: {named:+.1} um, by nd and Vd {by_figures:+.1} um");
+        assert!((by_figures - real).abs() < within, "{name}: {by_figures}");
+    }
+}
+
+/// A patent that states e for all it states, or more lines beside d.
+#[test]
+fn more_lines_of_a_patent() {
+    let plate = |head: &str, glass: &str| {
+        parse(&format!(
+            "name: p\n{head}surfaces:\n  - {{kind: plane, thickness: 5, {glass}}}\n  - {{kind: plane, thickness: 1}}\n"
+        ))
+    };
+    let index = |lens: &Lens, line: lines::Line| lens.index(1, line.wavelength_nm);
+    // N-BK7 by ne and Ve, both ways of saying so.
+    for lens in [plate("reference-line: e\n", "nd: 1.518722, vd: 63.96"), plate("", "glass: {ne: 1.518722, ve: 63.96}")]
+    {
+        assert!((index(&lens, lines::D) - 1.5168).abs() < 2e-6 && (index(&lens, lines::E) - 1.518_722).abs() < 1e-12);
+        assert!((index(&lens, lines::G) - 1.526_685).abs() < 5e-5);
+    }
+    // SF6: nd and Vd alone miss h by 8e-4; with ng they do not.
+    let plain = plate("", "glass: {nd: 1.80518, vd: 25.43}");
+    let more = plate("", "glass: {nd: 1.80518, vd: 25.43, ng: 1.847073}");
+    let lines_alone = plate("", "glass: {nd: 1.80518, nF: 1.827752, nC: 1.796092, ng: 1.847073}");
+    assert!((index(&plain, lines::H) - 1.864_365).abs() > 5e-4);
+    for lens in [&more, &lines_alone] {
+        assert!((index(lens, lines::H) - 1.864_365).abs() < 1e-4, "{}", index(lens, lines::H));
+    }
+    assert_eq!(more.media[1].label, "nd = 1.80518, ng = 1.847073, vd = 25.43");
+}
+
+/// D6: the exact name first; where several have it the maker or the time of the lens; else the usual one, and a note.
+#[test]
+fn one_rule_for_names() {
+    let plate = |head: &str, glass: &str| {
+        let lens = parse(&format!(
+            "name: p\n{head}surfaces:\n  - {{kind: plane, thickness: 5, glass: {glass}}}\n  - {{kind: plane, thickness: 1}}\n"
+        ));
+        (lens.media[1].medium.name(), lens.warnings)
+    };
+    let (name, notes) = plate("", "BK7");
+    assert_eq!(name, "SCHOTT/BK7");
+    assert!(notes.len() == 1 && notes[0].contains("surface 1: `BK7` is the name of 2 glasses"), "{notes:?}");
+    assert_eq!(plate("maker: Nikon\n", "F2"), ("HIKARI/F2".to_owned(), Vec::new()));
+    assert_eq!(plate("maker: Hoya\n", "F2"), ("HOYA/F2".to_owned(), Vec::new()));
+    assert_eq!(plate("", "N-BK7"), ("SCHOTT/N-BK7".to_owned(), Vec::new()));
+    let (name, notes) = plate("", "F2");
+    assert!(name == "SCHOTT/F2" && notes[0].contains("HOYA/F2"), "{name} {notes:?}");
+}
+
+/// Lenses whose glasses have no published transmittance absorb by that of near ones, and say of which.
+#[test]
+fn absorption_counts_in_every_lens() {
+    for name in [
+        "minolta-fisheye-16-f2.7",
+        "canon-ef-70-200-f2.8-at-72",
+        "nikkor-100-f1.4",
+        "canon-35-f1.8",
+        "schneider-anamorphic-60",
+    ] {
+        let mut lens = parse(&text(name)).with_coating(Coating::Ideal);
+        let marginal = lens.marginal_ray().ok();
+        let passed = |lens: &Lens, nm: f64| lens.axial_transmittance(Indices::At(nm), marginal).expect("light");
+        lens.absorption = false;
+        let clear = passed(&lens, 420.0);
+        lens.absorption = true;
+        let (violet, green) = (passed(&lens, 420.0), passed(&lens, 550.0));
+        println!("{name}: clear {clear:.4}, 420 nm {violet:.4}, 550 nm {green:.4}");
+        assert!(violet < 0.99 * clear && violet < green && green <= clear, "{name}");
+        let borrowed = lens.borrowed_absorption();
+        assert!(!borrowed.is_empty());
+        for (label, lender) in borrowed {
+            assert!(lender.full_name.contains('/') && lender.distance < 10.0, "{name}: {label} from {lender}");
+        }
+    }
+}
