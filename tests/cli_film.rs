@@ -17,6 +17,13 @@ fn info_shows_what_the_sheet_says() {
     assert!(ortho["granularity"].is_null() && ortho["layers"][0]["cycles_per_mm_and_response"].is_null());
     let speed = ortho["layers"][0]["daylight_over_tungsten_speed"].as_f64().expect("a number");
     assert!((speed - 1.73).abs() < 0.01, "{speed}");
+    assert_eq!(tri_x["speed_kind"], "iso");
+    assert!(good(&["film", "info", "kodak-tri-x-400"]).contains("stops from the stated speed"));
+    assert!(
+        good(&["film", "info", "kodak-double-x-5222"])
+            .contains("EI 250, in tungsten light 200; the maker's exposure index")
+    );
+    assert!(good(&["film", "info", "blue-sensitive-plate"]).contains("ISO 25 (assumed)"));
     for name in ["kodak-vision3-250d-5207", "kodak-vision-2383", "technicolor-iv", "panchromatic-plate"] {
         assert!(good(&["film", "info", name]).contains("log10 sensitivity"), "{name}");
     }

@@ -2,7 +2,7 @@
 """Writes the film stocks under spectra/film/ and the Wratten filters under spectra/transmittances/.
 
 Run from the root of the repository, with the unpacked wheel of spectral-film-lut 0.18.13 (MIT, Copyright 2026 Jan
-Lohse; https://pypi.org/project/spectral-film-lut/) beside it; only its tables are read, none of its code is used:
+Lohse) beside it; only its tables are read, none of its code is used:
 
     python3 -m venv VENV
     VENV/bin/pip install numpy
@@ -163,9 +163,12 @@ def tri_x(folder):
         name="Kodak Tri-X 400",
         maker="Eastman Kodak",
         source=f"Kodak Professional Tri-X 320 and 400 Films, technical data F-4017, 2007, {CARRIED}",
-        remark="Panchromatic. Developments are minutes of the sheet's figure; 6 min is the pictorial one: there "
-        "0.8/400 lx s lies within 0.03 of the exposure that gives 0.1 over base and fog.",
-        head=["", "process: negative", "density: visual", "iso: 400",
+        remark="Panchromatic. In 135 since 1954; the figures are those of 2007. Developments are minutes of the sheet's figure. "
+        "6 min, the usual one here, is chosen: it is where the curves have the stated speed (0.8/400 lx s lies within 0.03 of "
+        "the exposure that gives 0.1 over base and fog) and a contrast index of 0.54, what one prints with diffuse light. It is "
+        "softer than ISO 6 asks for. At the contrast of ISO 6, after more than 7 min, the same curves are a third of a stop "
+        "faster than stated; meters take the stated 400.",
+        head=["", "process: negative", "density: visual", "year: 1954", "iso: 400",
               "reference-illuminant: iso-7589-sensitometric-daylight",
               "granularity: {rms: 17, aperture: 0.048 mm, density: 1}",
               "reciprocity: {table: [[1, 2], [10, 50], [100, 1200]], above: 0.1 s}"],
@@ -183,9 +186,11 @@ def double_x(folder):
         name="Kodak Double-X 5222",
         maker="Eastman Kodak",
         source=f"Eastman Double-X Negative Film 5222/7222, technical data H-1-5222, {CARRIED}",
-        remark="Panchromatic motion-picture negative; the speed is Kodak's exposure index in daylight, not an ISO 6 speed. "
-        "The sheet's sensitivity begins at 400 nm: what it sees below is unknown, and taken as nothing.",
-        head=["", "process: negative", "density: visual", "iso: 250", "iso-tungsten: 200",
+        remark="Panchromatic motion-picture negative. The speed is Kodak's exposure index in daylight, what a meter is set to, "
+        "not an ISO 6 speed: the curves at the contrast of ISO 6, which is about that of 6 min, give about 300. The index asks "
+        "for a quarter of a stop more. The sheet's sensitivity begins at 400 nm: what it sees below is unknown, and taken as nothing.",
+        head=["", "process: negative", "density: visual", "year: 1959", "iso: 250", "iso-tungsten: 200",
+              "speed: exposure-index",
               "reference-illuminant: iso-7589-sensitometric-daylight",
               "granularity: {rms: 14, aperture: 0.048 mm, density: 1}"],
         layers=[layer("panchromatic", pairs(data.log_sensitivity[0]),
@@ -223,7 +228,7 @@ def color_negative(folder):
         "sheet's curves are Status M densities of neutral exposures, counted in stops from the normal exposure, taken here as "
         "10/S lx s of the reference light. The mask is in the minimum density only: what of it goes where dye forms is not in "
         "the sheet, nor are the effects of one layer's development on another.",
-        head=["", "process: negative", "density: status-m", "iso: 250",
+        head=["", "process: negative", "density: status-m", "year: 2009", "iso: 250", "speed: exposure-index",
               "reference-illuminant: iso-7589-sensitometric-daylight",
               "print: kodak-vision-2383",
               f"minimum-density:\n  table:{flow(pairs(data.d_min_sd), '    ')}"],
@@ -250,7 +255,7 @@ def color_print(folder):
         source=f"Kodak Vision Color Print Film 2383/3383, technical data H-1-2383, {CARRIED}",
         remark="Print film for projection. The exposures of its curves are relative to the printing light, which is set "
         "for each negative; no speed is stated.",
-        head=["", "process: print", "density: status-a",
+        head=["", "process: print", "density: status-a", "year: 1998",
               "reference-illuminant: blackbody:3200", flat_minimum(*minima(data))],
         layers=color_layers(data, rising=True),
     )
@@ -284,7 +289,7 @@ def reversal(folder):
         source=f"Kodak Ektachrome 100D Color Reversal Film 5294/7294, technical data, {CARRIED}",
         remark="Color reversal film for daylight. The sheet's curves are Status A densities of neutral exposures; effects of "
         "one layer's development on another are not in it.",
-        head=["", "process: reversal", "density: status-a", "iso: 100",
+        head=["", "process: reversal", "density: status-a", "year: 2018", "iso: 100",
               "reference-illuminant: iso-7589-sensitometric-daylight", flat_minimum(*low)],
         layers=color_layers(data, rising=False),
     )
@@ -306,11 +311,20 @@ PLATE_CURVE = [
 GLASS = ['bases:', '  - {formats: "plate", material: glass, thickness: 1.3 mm, index: 1.52, assumed: true}']
 
 
-def plate(slug, name, remark, iso, layer_name, points, sensitivity_remark, source):
+# How a plate is metered.
+PLATE_METER = (
+    " The meter weighs light as the plate does, like the actinometers of the time, which darkened bromide paper. Set by "
+    "a photopic meter, behind a lens that absorbs nothing, the plate would get {d55} of a stop too much in D55 and {a} too "
+    "little in A."
+)
+
+
+def plate(slug, name, remark, iso, layer_name, points, sensitivity_remark, source, d55, a, year=None):
     lines = layer(layer_name, points, [], assumed_sensitivity=True, sensitivity_remark=sensitivity_remark)
     stock(
-        slug, name=name, maker=None, source=source, remark=remark,
-        head=["", "process: negative", "density: visual", f"iso: {iso}",
+        slug, name=name, maker=None, source=source, remark=remark + PLATE_METER.format(d55=d55, a=a),
+        head=["", "process: negative", "density: visual", *([f"year: {year}"] if year else []), f"iso: {iso}",
+              "speed: assumed", "meter: film",
               "reference-illuminant: iso-7589-sensitometric-daylight"],
         layers=[lines[:-1] + PLATE_CURVE],
         tail=["", "# Thin plate glass; thickness and index vary from maker to maker.", *GLASS],
@@ -329,7 +343,7 @@ def plates(folder):
         "The natural sensitivity of silver halide as measured on a modern unsensitized emulsion (Eastman Kodak print film 2302), "
         "whose sheet begins at 383 nm; held below, where gelatin absorbs little down to 300 nm (C. E. K. Mees and T. H. James, "
         "The Theory of the Photographic Process, 3rd edition, 1966). Plates with more iodide reached some 20 nm further.",
-        natural_source,
+        natural_source, "0.5", "1.3 stops",
     )
     # Natural sensitivity, and two bands of sensitizing dye. Optical sensitization of pinaverdol (520-570 nm) and pinacyanol
     # (with maxima near 580 and 640 nm, to 690 nm).
@@ -359,7 +373,7 @@ def plates(folder):
         "The natural sensitivity of silver halide (as blue-sensitive-plate) plus the bands of pinaverdol, near 550 nm, and "
         "pinacyanol, near 590 and 640 nm (where they sensitize: C. E. K. Mees and T. H. James, The Theory of the Photographic "
         "Process, 3rd edition, 1966). Assumed are the heights, 0.6 to 0.75 below the peak in the violet, and the widths.",
-        natural_source + "; bands of dye by Mees and James (1966), heights assumed",
+        natural_source + "; bands of dye by Mees and James (1966), heights assumed", "0.3", "0.4", 1906,
     )
     return natural
 
@@ -381,7 +395,7 @@ def three_strip(folder, natural):
         remark="Imbibition print of three separation negatives. The package calls its figures very experimental and "
         "unreliable; the curve is the same for all three matrices. Not a print stock for an integral negative: use it by the "
         "film process `three-strip`.",
-        head=["", "process: print", "density: status-a", "reference-illuminant: blackbody:2850"],
+        head=["", "process: print", "density: status-a", "year: 1932", "reference-illuminant: blackbody:2850"],
         layers=layers,
     )
     del low

@@ -130,20 +130,51 @@ pub struct RawFrame {
     pub black_level: u16,
     /// Value from which on nothing is told apart.
     pub white_level: u16,
-    /// Rows give the camera's red, green and blue from XYZ, under [`RawFrame::illuminant`].
-    pub camera_from_xyz: [[f64; 3]; 3],
+    /// What the filters' colors mean, for one light or for two, the one of lower color temperature first; none without
+    /// filters.
+    pub colors: Vec<RawColor>,
     /// The camera's red, green and blue of white; the largest is 1.
     pub neutral: [f64; 3],
-    /// The light that white was measured in: its EXIF number (`LightSource`), such as 21 for D65.
+    /// The light of white: its EXIF number (`LightSource`), such as 21 for D65; 255 is any other.
     pub illuminant: u16,
+    /// Noise of the values; `None` where there is none.
+    pub noise: Option<RawNoise>,
+    /// By how many stops a converter should brighten (above 0) or darken the picture, so that an exposure by the meter at
+    /// [`RawFrame::iso`] looks as it should.
+    pub baseline_exposure_stops: f64,
+    /// Width and height of a pixel, mm.
+    pub pixel_mm: [f64; 2],
     /// Maker for the file.
     pub maker: String,
     /// Model for the file.
     pub model: String,
+    /// What sets cameras of other colors apart, for programs that keep color profiles by name.
+    pub unique_model: String,
     /// Exposure time, s.
     pub exposure_time_s: f64,
     /// ISO setting.
     pub iso: f64,
+}
+
+/// What a camera's colors mean in one light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RawColor {
+    /// The light: its EXIF number (`LightSource`), such as 17 for A and 21 for D65.
+    pub illuminant: u16,
+    /// Rows give the camera's red, green and blue from XYZ of the scene.
+    pub camera_from_xyz: [[f64; 3]; 3],
+    /// Rows give XYZ as it looks the same under D50, white (0.9643, 1, 0.8251), from the camera's red, green and blue,
+    /// each divided by that of white.
+    pub d50_from_balanced: [[f64; 3]; 3],
+}
+
+/// Noise of a raw value. With x = (value - black) / (white - black) on average, x has the variance scale x + offset.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RawNoise {
+    /// What photons add.
+    pub scale: f64,
+    /// What reading and rounding add.
+    pub offset: f64,
 }
 
 #[cfg(test)]

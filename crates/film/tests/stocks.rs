@@ -121,6 +121,29 @@ fn speed_points_lie_where_the_speed_says() {
     }
 }
 
+/// What the speeds are, and what the curves say of them at the contrast of ISO 6 (by a separate computation with straight
+/// lines between the points of the sheets, 505 for Tri-X and 300 for Double-X): the stated one of Tri-X is a third of a stop
+/// below, the exposure index of Double-X a quarter.
+#[test]
+fn iso_speeds_are_told_from_exposure_indices() {
+    for (name, text, wanted) in [
+        ("kodak-tri-x-400", "ISO 400", Some((505.0, 7.0..9.0))),
+        ("kodak-double-x-5222", "EI 250", Some((300.0, 6.0..6.5))),
+        ("kodak-vision3-250d-5207", "EI 250", None),
+        ("blue-sensitive-plate", "ISO 25 (assumed)", None),
+        ("ilford-ortho-plus", "ISO 80", None),
+    ] {
+        let s = stock(name);
+        assert_eq!(s.speed_text().as_deref(), Some(text), "{name}");
+        let found = s.iso_6();
+        assert_eq!(found.is_some(), wanted.is_some(), "{name}: {found:?}");
+        if let (Some(found), Some((speed, minutes))) = (found, wanted) {
+            assert!((found.speed / speed - 1.0).abs() < 0.03 && minutes.contains(&found.minutes), "{name}: {found:?}");
+        }
+    }
+    assert_eq!(stock("kodak-2302").speed_text(), None);
+}
+
 /// Filter factors of Ortho Plus with Wratten 8, 15, 47 and 58 in place of Ilford's 104, 109, 304 and 404: within a stop of
 /// the sheet's, and what an independent computation from the same tables gave (2.56/1.91, 4.67/3.12, 4.97/6.78, 5.32/3.95).
 #[test]

@@ -3,7 +3,9 @@
 use crate::advice::{self, FileIs};
 use crate::filters;
 use crate::lens_section::{LensSection, lens_of};
-use crate::{ConePattern, Direction, NumberFamily, Output, RenderSettings, Scene, films, language, output, yaml};
+use crate::{
+    ConePattern, Direction, NumberFamily, Output, RenderSettings, Scene, films, lamps, language, output, yaml,
+};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::numbers::seed_of_frame;
@@ -266,6 +268,7 @@ fn all_stages(name: &str, text: String, params: &Params, resources: &dyn Resourc
     }
     let channels: Arc<[Channel]> = channels.into();
     let warnings = warnings(&lens, grid);
+    let notes = lamps::notes(params);
     Ok(Scene {
         name: name.to_owned(),
         text,
@@ -279,6 +282,7 @@ fn all_stages(name: &str, text: String, params: &Params, resources: &dyn Resourc
         render,
         output,
         warnings,
+        notes,
         params: params.clone(),
     })
 }

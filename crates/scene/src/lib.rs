@@ -8,6 +8,7 @@ mod assemble;
 pub mod diagnostics;
 mod films;
 mod filters;
+mod lamps;
 mod language;
 mod lens_section;
 mod output;

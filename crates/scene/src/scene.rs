@@ -149,6 +149,8 @@ pub struct Scene {
     pub output: Vec<Output>,
     /// What a person should know: a glass off its listed range, and so on.
     pub warnings: Vec<String>,
+    /// What to bear in mind of the data that it uses, though nothing about the scene is wrong.
+    pub notes: Vec<String>,
     /// The scene as it was read, for faults that show once the stages are put together.
     pub params: Params,
 }

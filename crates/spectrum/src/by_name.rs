@@ -170,6 +170,12 @@ pub fn meta_in(name: &str, files: &dyn Resources) -> Option<Meta> {
     table(file, Some(files), Kind::Emission).ok().map(|table| table.meta)
 }
 
+/// The same of a bundled spectrum alone, whatever lies in the working directory.
+#[must_use]
+pub fn bundled_meta(name: &str) -> Option<Meta> {
+    table(name, None, Kind::Emission).ok().map(|table| table.meta)
+}
+
 /// Loads spectra that may be made of others, and bounds how many.
 pub(crate) struct Loader<'a> {
     files: Option<&'a dyn Resources>,

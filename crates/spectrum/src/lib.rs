@@ -58,8 +58,8 @@ mod truncated;
 
 pub use adaptation::Adaptation;
 pub use by_name::{
-    Found, bundled_spectra, find, find_emission, find_emission_in, find_in, find_reflectance, find_reflectance_in,
-    find_sensitivity, find_sensitivity_in, find_transmittance, find_transmittance_in, meta_in,
+    Found, bundled_meta, bundled_spectra, find, find_emission, find_emission_in, find_in, find_reflectance,
+    find_reflectance_in, find_sensitivity, find_sensitivity_in, find_transmittance, find_transmittance_in, meta_in,
 };
 pub use cct::{Cct, cct, uv_1960};
 pub use cie::{Observer, v_lambda, v_prime};
@@ -75,7 +75,7 @@ pub use gaussian::{GaussianFit, GaussianFitReport, GaussianMixture, GaussianTerm
 pub use illuminants::{daylight, daylight_xy, illuminant, illuminant_names};
 pub use line_color::LineColor;
 pub use lines::{LINE_SETS, NAMED_LINES, NamedLine, balmer, line_set, named_line};
-pub use meta::{Interpolation, Kind, Meta, Outside, Scale};
+pub use meta::{Interpolation, Kind, Meta, Outside, Scale, Strengths};
 pub use planck::planck_radiance;
 pub use primaries::{srgb_light, srgb_primaries};
 pub use rgb::{RgbSpace, Transfer, from_u8, to_u8, xyz_of_xy};

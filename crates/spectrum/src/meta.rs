@@ -160,6 +160,35 @@ impl Interpolation {
     }
 }
 
+/// Where the strengths of a lamp's lines come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Strengths {
+    /// Measured: they compare as powers.
+    Measured,
+    /// Computed from a model of the discharge: they compare as far as the model holds.
+    Computed,
+    /// Observers' estimates: neighboring lines compare, lines far apart do not.
+    Estimated,
+}
+
+impl Strengths {
+    /// The word that stands in files.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Measured => "measured",
+            Self::Computed => "computed",
+            Self::Estimated => "estimated",
+        }
+    }
+
+    /// The strengths of that word.
+    #[must_use]
+    pub fn from_word(word: &str) -> Option<Self> {
+        [Self::Measured, Self::Computed, Self::Estimated].into_iter().find(|s| s.word() == word)
+    }
+}
+
 /// Front matter. A file of one's own may leave all of it out; a bundled file has every field but `notes`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Meta {
@@ -177,6 +206,8 @@ pub struct Meta {
     pub licence: Option<String>,
     /// Conditions of the measurement.
     pub conditions: Option<String>,
+    /// Of `kind: lines`: where their strengths come from.
+    pub strengths: Option<Strengths>,
     /// First and last wavelength, nm.
     pub range_nm: Option<(f64, f64)>,
     /// What holds beyond the ends.
@@ -189,7 +220,7 @@ pub struct Meta {
 
 impl Meta {
     /// Keys in the order in which files write them.
-    pub const KEYS: [&'static str; 12] = [
+    pub const KEYS: [&'static str; 13] = [
         "spectra",
         "name",
         "kind",
@@ -198,6 +229,7 @@ impl Meta {
         "source",
         "licence",
         "conditions",
+        "strengths",
         "interpolation",
         "outside",
         "range",
@@ -215,6 +247,7 @@ impl Meta {
             ("source", self.source.is_some()),
             ("licence", self.licence.is_some()),
             ("conditions", self.conditions.is_some()),
+            ("strengths", self.strengths.is_some() || self.kind != Some(Kind::Lines)),
             ("range", self.range_nm.is_some()),
         ];
         present.into_iter().filter(|(_, has)| !has).map(|(key, _)| key).collect()
@@ -251,6 +284,9 @@ impl Meta {
             }
             "interpolation" => {
                 self.interpolation = Interpolation::from_word(value).ok_or(Some("linear or sprague"))?;
+            }
+            "strengths" => {
+                self.strengths = Some(Strengths::from_word(value).ok_or(Some("measured, computed or estimated"))?);
             }
             "range" => self.range_nm = Some(range(value).ok_or(Some("two wavelengths, such as 380-780 nm"))?),
             _ => return Err(None),

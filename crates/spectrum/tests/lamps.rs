@@ -1,6 +1,8 @@
 //! Lines of the bundled lamps against what makers of glass and laboratories state.
 
-use spectra_spectrum::{Observer, balmer, chromaticity, dominant_wavelength, find_emission, named_line};
+use spectra_spectrum::{
+    Observer, Strengths, balmer, bundled_meta, chromaticity, dominant_wavelength, find_emission, named_line,
+};
 
 fn nearest(lamp: &str, wavelength_nm: f64) -> f64 {
     let light = find_emission(lamp).expect("bundled");
@@ -52,4 +54,37 @@ fn lamps_have_the_color_that_one_sees() {
     for lamp in ["mercury", "hydrogen", "helium", "argon", "krypton", "xenon", "cadmium"] {
         assert!(find_emission(lamp).expect("bundled").luminance() > 0.0, "{lamp}");
     }
+}
+
+/// Mercury's strengths are those of a measured lamp: power by groups of lines as summed by hand from the 5 nm values of the
+/// lamp H38HT-100 over a straight base (violet, blue, green, yellow), and the chromaticity of these lines computed apart. The
+/// observers' estimates have half as much green as blue, at (0.234, 0.225).
+#[test]
+fn mercury_shines_as_it_was_measured() {
+    let lamp = find_emission("mercury").expect("bundled");
+    let between = |low: f64, high: f64| -> f64 {
+        lamp.lines().iter().filter(|l| (low..high).contains(&l.wavelength_nm)).map(|l| l.power).sum()
+    };
+    let green = between(540.0, 550.0);
+    for (low, high, want) in [(400.0, 410.0, 0.390), (430.0, 440.0, 0.792), (570.0, 590.0, 0.894)] {
+        assert!((between(low, high) / green - want).abs() < 0.001, "{low}: {}", between(low, high) / green);
+    }
+    let xy = chromaticity(Observer::cie_1931_2deg().xyz(&lamp)).expect("light");
+    assert!((xy[0] - 0.3154).abs() < 2e-4 && (xy[1] - 0.3882).abs() < 2e-4, "{xy:?}");
+}
+
+/// Every lamp says what its strengths are worth.
+#[test]
+fn lamps_say_where_their_strengths_come_from() {
+    for (lamp, want) in [
+        ("mercury", Strengths::Measured),
+        ("he-ne", Strengths::Measured),
+        ("neon", Strengths::Computed),
+        ("sodium", Strengths::Computed),
+        ("hydrogen", Strengths::Estimated),
+        ("krypton", Strengths::Estimated),
+    ] {
+        assert_eq!(bundled_meta(lamp).expect("bundled").strengths, Some(want), "{lamp}");
+    }
+    assert_eq!(bundled_meta("D65").expect("bundled").strengths, None);
 }

@@ -9,7 +9,7 @@ use spectra_film::print::metered_exposure_lx_s;
 use spectra_spectrum::constants::LUMINOUS_EFFICACY_LM_PER_W;
 use spectra_spectrum::v_lambda;
 
-/// The channel that the meter reads: photometric lux-seconds, whatever the film sees.
+/// The channel that the meter reads: photometric lux-seconds, or those of the film where the stock says so.
 pub(crate) const METER: &str = "meter";
 
 /// `metering` as written in a scene.
@@ -91,14 +91,14 @@ impl Meter {
         Ok(Self { metering, spot, target_lx_s })
     }
 
-    /// The channel that it needs beside the film's.
-    pub(crate) fn channel(&self, grid: &Grid) -> Option<Channel> {
+    /// The channel that it needs beside the film's: photopic, or with the response of the film's `own`.
+    pub(crate) fn channel(&self, grid: &Grid, own: Option<&Channel>) -> Option<Channel> {
         let v = v_lambda();
-        let response = || grid.wavelengths_nm().map(|w| LUMINOUS_EFFICACY_LM_PER_W * v.at(w)).collect();
+        let photopic = || grid.wavelengths_nm().map(|w| LUMINOUS_EFFICACY_LM_PER_W * v.at(w)).collect();
         (self.metering != Metering::Manual).then(|| Channel {
             name: METER.into(),
             unit: "lx s".into(),
-            response: response(),
+            response: own.map_or_else(photopic, |own| own.response.clone()),
         })
     }
 

@@ -16,7 +16,7 @@ use spectra_film::display::channel;
 use spectra_film::emulsion::Emulsion;
 use spectra_film::print::{Print, metered_exposure_lx_s};
 use spectra_film::push::pushed;
-use spectra_film::stock::{Process, Stock};
+use spectra_film::stock::{MeterResponse, Process, Stock};
 
 /// Film from a data file, developed, and printed, scanned or projected.
 ///
@@ -26,8 +26,10 @@ use spectra_film::stock::{Process, Stock};
 /// emulsion spreads and the base throws back acts before the curve, grain after it, where the stock's file states what
 /// they are.
 ///
-/// The exposure is that of the scene (`exposure`), or the camera meters: what is metered, by a perfect photometer, gets
-/// the 10/S lx s of a mid gray, S being the ISO speed. `spectra film info NAME` shows what a stock's file holds, and
+/// The exposure is that of the scene (`exposure`), or the camera meters: what is metered gets the 10/S lx s of a mid
+/// gray. S is the speed that the stock's file states, which `spectra film info` shows with its kind: an ISO speed, its
+/// maker's exposure index (EI), or assumed. The meter is a perfect photometer, unless the file says `meter: film`, as
+/// those of plates do: then it sees as the film does. `spectra film info NAME` shows what a stock's file holds, and
 /// `spectra list stock` the bundled stocks.
 ///
 /// # Example
@@ -68,8 +70,8 @@ pub struct StockParams {
     /// Stops by which a metered frame is exposed more than the meter says, -10 to 10; 0 if left out.
     #[schemars(range(min = -10, max = 10))]
     pub compensation: Option<f64>,
-    /// The ISO speed that the meter, and whoever prints, takes the film for, more than 0; the stock's, times two for
-    /// each stop pushed, if left out.
+    /// The speed (ISO or EI) that the meter, and whoever prints, takes the film for, more than 0; the stock's, times two
+    /// for each stop pushed, if left out.
     pub iso: Option<Positive<f64>>,
     /// How the film is developed: a name from the stock's file; the first one there if left out.
     pub development: Option<String>,
@@ -144,7 +146,8 @@ impl StockFilm {
         let effects = faults.take(Effects::new(&p, params, &stock));
         let Some(effects) = faults.into_result(effects)? else { return Err(Faults::new()) };
         let seen = seen(&p, params, context.resources, &stock, &emulsion, metered_exposure_lx_s(speed))?;
-        channels.extend(meter.channel(&context.grid));
+        let own = channels.first().filter(|_| stock.meter == MeterResponse::Film).cloned();
+        channels.extend(meter.channel(&context.grid, own.as_ref()));
         let exposure_time_s = p.exposure.map_or(1.0, |t| t.s());
         let (picture, words) = (seen.picture, seen.words);
         Ok(Self { stock, development, emulsion, channels, exposure_time_s, meter, effects, picture, words })
@@ -266,7 +269,7 @@ impl Film for StockFilm {
         let named = |l: &spectra_film::stock::Layer| l.development(&self.development).is_some_and(|d| d.assumed);
         let assumed = self.stock.layers.iter().any(named);
         let curve = if assumed { " (curve assumed)" } else { "" };
-        let iso = self.stock.iso.map_or(String::new(), |iso| format!(", ISO {iso}"));
+        let iso = self.stock.speed_text().map_or(String::new(), |speed| format!(", {speed}"));
         format!(
             "{}{iso}, {} development{curve}, exposed for {} s, {}",
             self.stock.name, self.development, self.exposure_time_s, self.words

@@ -172,7 +172,7 @@ impl ThreeStrip {
             channels.extend(faults.take(record.channel(&balance, params, context)));
         }
         faults.into_result(())?;
-        channels.extend(meter.channel(&context.grid));
+        channels.extend(meter.channel(&context.grid, None));
         let layers: Vec<&str> = print.layers.iter().map(|l| l.name.as_str()).collect();
         if layers != RECORDS {
             let fault = params.fault("print", format!("{} has no dyes for three records", print.name));

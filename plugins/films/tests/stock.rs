@@ -119,6 +119,26 @@ fn frame_of(names: &[&str], planes: &[Vec<f32>]) -> ExposureFrame {
     ExposureFrame { size, channels: names.iter().zip(planes).map(channel).collect() }
 }
 
+/// A metered gray card prints as 18 % on a plate, whatever the light: its meter weighs light as it does. A photopic meter
+/// gives the unsensitized plate half a stop too much in D55 and 1.3 too little in A; and panchromatic film its due, more or
+/// less.
+#[test]
+fn a_metered_gray_is_gray_on_a_plate_in_any_light() {
+    for (stock, tolerance) in [("blue-sensitive-plate", 1e-4), ("panchromatic-plate", 1e-4), ("kodak-tri-x-400", 0.06)]
+    {
+        let film = build(&format!("stock: {stock}\nmetering: average\n")).expect("sound");
+        for light in ["D55", "D65", "A", "iso-7589-sensitometric-daylight"] {
+            let power = spectra_spectrum::find_emission(light).expect("bundled").to_power(&BAND);
+            let channels = film.channels();
+            let names: Vec<&str> = channels.iter().map(|c| c.name.as_str()).collect();
+            let planes: Vec<Vec<f32>> = channels.iter().map(|c| vec![power.seen_by(&c.response) as f32; 4]).collect();
+            let shown = film.develop(&frame_of(&names, &planes)).expect("complete").rgb[0][0];
+            println!("{stock} in {light}: {shown:.4}");
+            assert!((shown - 0.18).abs() < tolerance, "{stock} in {light}: {shown}");
+        }
+    }
+}
+
 /// The meter makes the mean of what it sees a mid gray of 10/S lx s, whatever the scene's own time; compensation is in stops.
 #[test]
 fn a_metered_frame_gets_the_meters_exposure() {

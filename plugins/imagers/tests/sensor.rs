@@ -7,9 +7,9 @@ use spectra_core::resources::Resources;
 use spectra_core::spectral::{BAND, Channel, SpectralPower};
 use spectra_core::stage::Imager;
 use spectra_plugin_imagers::Plane;
-use spectra_plugin_imagers::sensor::CameraColor;
+use spectra_plugin_imagers::sensor::{CameraColor, PATCHES};
 use spectra_scene::FileResources;
-use spectra_spectrum::{Observer, ciede2000, find_emission, find_reflectance, lab};
+use spectra_spectrum::{Adaptation, Observer, ciede2000, find_emission, find_reflectance, lab};
 
 fn build(yaml: &str) -> Result<Box<dyn Imager>, Faults> {
     // Names the crate, so that it is linked and its entries with it.
@@ -85,7 +85,13 @@ fn photon_transfer_gives_back_gain_and_read_noise() {
         let wanted = (f64::from(mean) + 16.0) / (gain * gain) + 1.0 / 12.0;
         assert!((got - want).abs() < 5.0 * (wanted / n).sqrt(), "{mean}: mean {got} {want}");
         assert!((variance / wanted - 1.0).abs() < 5.0 * (2.3 / n).sqrt(), "{mean}: variance {variance} {wanted}");
+        // The same as a raw file says it, in shares of the range.
+        let (noise, range) = (raw.noise.expect("noisy"), 16_383.0 - 500.0);
+        let said = noise.scale * want / range + noise.offset;
+        assert!((said * range * range / wanted - 1.0).abs() < 1e-9, "{mean}: {said}");
     }
+    let quiet = sensor("noise: false\n");
+    assert!(quiet.raw(&flat(&*quiet, 1.0)).expect("a converter").noise.is_none());
 }
 
 #[test]
@@ -115,6 +121,7 @@ fn the_matrix_gives_colors_back() {
     let raw = imager.raw(&flat(&*imager, 1.0)).expect("a converter");
     assert_eq!(raw.neutral, color.neutral.to_array());
     assert_eq!(raw.illuminant, 21);
+    assert_eq!(raw.colors.iter().map(|c| c.illuminant).collect::<Vec<_>>(), [17, 21]);
     let power = light.to_power(&BAND);
     let observer = Observer::cie_1931_2deg().on_grid(&BAND);
     let largest = channels.iter().map(|c| power.seen_by(&c.response)).fold(0.0, f64::max);
@@ -145,6 +152,68 @@ fn the_matrix_gives_colors_back() {
     let mean = errors.iter().sum::<f64>() / errors.len() as f64;
     println!("CIEDE2000 mean {mean:.2}, all {errors:.2?}");
     assert!(mean < 2.0 && errors.iter().all(|e| *e < 6.0), "{errors:?}");
+}
+
+/// What raw converters take from the file for A and for D65, whatever light white is balanced for: the camera's colors, each
+/// over that of white, become XYZ under D50, white exactly, the ColorChecker to 1.5 of CIEDE2000 on average.
+#[test]
+fn raw_files_carry_matrices_for_two_lights() {
+    let imager = sensor("white-balance: FL11\nmodel: Mine\n");
+    let raw = imager.raw(&flat(&*imager, 1.0)).expect("a converter");
+    assert_eq!((raw.illuminant, raw.unique_model.as_str()), (255, "spectra Mine nikon-d5100"));
+    let d50 = [0.3457 / 0.3585, 1.0, 0.2958 / 0.3585];
+    let observer = Observer::cie_1931_2deg().on_grid(&BAND);
+    let channels = channels(&*imager);
+    for (name, color) in ["A", "D65"].into_iter().zip(&raw.colors) {
+        let light = find_emission(name).expect("bundled").to_power(&BAND);
+        let of = |matrix: [[f64; 3]; 3], v: [f64; 3]| matrix.map(|r| r[0] * v[0] + r[1] * v[1] + r[2] * v[2]);
+        let white = of(color.d50_from_balanced, [1.0; 3]);
+        assert!(white.iter().zip(d50).all(|(a, b)| (a - b).abs() < 1e-12), "{name}: {white:?}");
+        let camera = |p: &SpectralPower| [0, 1, 2].map(|i: usize| p.seen_by(&channels[i].response));
+        let eye = |p: &SpectralPower| [0, 1, 2].map(|i: usize| p.seen_by(&observer[i]));
+        let (camera_white, eye_white) = (camera(&light), eye(&light));
+        let adapt = Adaptation::Bradford.matrix(eye_white.map(|v| v / eye_white[1]), d50);
+        let errors: Vec<f64> = PATCHES
+            .iter()
+            .map(|patch| {
+                let patch = find_reflectance(&format!("colorchecker#{patch}")).expect("bundled");
+                let lit = light.continuum.iter().zip(BAND.wavelengths_nm()).map(|(p, w)| p * patch.at(w)).collect();
+                let lit = SpectralPower { continuum: lit, ..light.clone() };
+                let balanced: Vec<f64> = camera(&lit).iter().zip(camera_white).map(|(c, w)| c / w).collect();
+                let got = of(color.d50_from_balanced, [balanced[0], balanced[1], balanced[2]]);
+                let want = of(adapt, eye(&lit).map(|v| v / eye_white[1]));
+                ciede2000(lab(got, d50), lab(want, d50))
+            })
+            .collect();
+        let mean = errors.iter().sum::<f64>() / errors.len() as f64;
+        println!("{name}: CIEDE2000 mean {mean:.3}");
+        assert!(errors.len() == 24 && mean < 1.5, "{name}: {mean}");
+    }
+    // Three colors of D65 white through the file's other matrix are that white's.
+    let power = find_emission("D65").expect("bundled").to_power(&BAND);
+    let white = [0, 1, 2].map(|i: usize| power.seen_by(&observer[i]));
+    let seen = raw.colors[1].camera_from_xyz.map(|r| (0..3).map(|i| r[i] * white[i] / white[1]).sum::<f64>());
+    let want = [0, 1, 2].map(|i: usize| power.seen_by(&channels[i].response));
+    let largest = want.iter().fold(0.0, |a: f64, v| a.max(*v));
+    assert!(seen.iter().zip(want).all(|(s, w)| (s - w / largest).abs() < 1e-12), "{seen:?}");
+}
+
+/// The file says how far its numbers reach beyond an exposure by ISO 12232: a full well at 78/S lx s of daylight is even.
+#[test]
+fn the_baseline_exposure_is_that_of_a_saturation_based_speed() {
+    let stops = |more: &str| {
+        let imager = sensor(more);
+        imager.raw(&flat(&*imager, 1.0)).expect("a converter").baseline_exposure_stops
+    };
+    let even = stops("");
+    let channels = channels(&*sensor(""));
+    let power = find_emission("D65").expect("bundled").to_power(&BAND);
+    let y = power.seen_by(&Observer::cie_1931_2deg().on_grid(&BAND)[1]);
+    let largest = channels.iter().map(|c| power.seen_by(&c.response)).fold(0.0, f64::max);
+    let saturation_lx_s = 30_000.0 / (largest / (683.0 * y));
+    assert!((even - libm::log2(saturation_lx_s * 100.0 / 78.0)).abs() < 1e-9, "{even}");
+    // Twice the well is a stop more; a higher setting cuts the range by as much as it asks for.
+    assert!((stops("full-well: 60000\n") - even - 1.0).abs() < 1e-9 && (stops("iso: 400\n") - even).abs() < 1e-9);
 }
 
 /// A gray card is shown gray: the picture of white light has three equal values.

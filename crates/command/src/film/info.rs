@@ -9,7 +9,7 @@ use spectra_core::math::log10;
 use spectra_core::spectral::BAND;
 use spectra_film::curve::{AVERAGE_GRADIENT_SPAN, CharacteristicCurve};
 use spectra_film::print::metered_exposure_lx_s;
-use spectra_film::stock::{Layer, Process, Reciprocity, Stock};
+use spectra_film::stock::{ISO_6_SPAN, Layer, MeterResponse, Process, Reciprocity, SpeedKind, Stock};
 use spectra_spectrum::illuminant;
 use std::fmt::Write;
 
@@ -63,7 +63,7 @@ fn daylight_over_tungsten(layer: &Layer) -> Option<f64> {
 }
 
 fn to_json(stock: &Stock) -> Value {
-    let layers: Vec<Value> = stock.layers.iter().map(layer_json).collect();
+    let layers: Vec<Value> = stock.layers.iter().map(|layer| layer_json(stock, layer)).collect();
     let reciprocity = stock.reciprocity.as_ref().map(|r| match r {
         Reciprocity::PowerLaw { exponent, above_s } => json!({ "exponent": exponent, "above_s": above_s }),
         Reciprocity::Table { above_s, rows } => json!({ "above_s": above_s, "metered_and_adjusted_s": rows }),
@@ -84,10 +84,14 @@ fn to_json(stock: &Stock) -> Value {
     json!({
         "name": stock.name,
         "maker": stock.maker,
+        "year": stock.year,
         "process": process(stock),
         "densitometry": stock.densitometry.name(),
         "iso": stock.iso,
         "iso_tungsten": stock.iso_tungsten,
+        "speed_kind": stock.iso.map(|_| stock.speed_kind.name()),
+        "meter": stock.iso.map(|_| stock.meter.name()),
+        "iso_6": stock.iso_6().map(|at| json!({ "speed": at.speed, "minutes": at.minutes })),
         "reference_illuminant": stock.reference_illuminant,
         "mid_gray_lx_s": stock.iso.map(metered_exposure_lx_s),
         "layers": layers,
@@ -110,7 +114,7 @@ fn to_json(stock: &Stock) -> Value {
     })
 }
 
-fn layer_json(layer: &Layer) -> Value {
+fn layer_json(stock: &Stock, layer: &Layer) -> Value {
     let developments: Vec<Value> = layer
         .developments
         .iter()
@@ -124,7 +128,9 @@ fn layer_json(layer: &Layer) -> Value {
                 "minimum_density": low,
                 "maximum_density": high,
                 "speed_point_log10_lx_s": d.curve.speed_point(),
+                "speed": silver_negative(stock).then(|| d.speed()),
                 "average_gradient": d.curve.average_gradient(AVERAGE_GRADIENT_SPAN),
+                "average_gradient_iso_6": d.curve.average_gradient(ISO_6_SPAN),
                 "log10_lx_s_and_density": points(&d.curve, 0.1),
             })
         })
@@ -143,6 +149,28 @@ fn layer_json(layer: &Layer) -> Value {
     })
 }
 
+/// Whether the speed point of ISO 6 means anything on its curves.
+fn silver_negative(stock: &Stock) -> bool {
+    stock.process == Process::Negative && stock.layers.len() == 1
+}
+
+/// The speed, what kind it is, and what that means.
+fn speed(stock: &Stock) -> Option<String> {
+    let tungsten = stock.iso_tungsten.map_or(String::new(), |t| format!(", in tungsten light {t}"));
+    let kind = match stock.speed_kind {
+        SpeedKind::Iso | SpeedKind::Assumed => "",
+        SpeedKind::ExposureIndex => "; the maker's exposure index, which meters are set to",
+    };
+    stock.speed_text().map(|speed| format!("{speed}{tungsten}{kind}"))
+}
+
+/// The speed of the curves by ISO 6, against the stated one.
+fn iso_6(stock: &Stock) -> Option<String> {
+    let (stated, found) = (stock.iso?, stock.iso_6()?);
+    let stops = log10(found.speed / stated) / log10(2.0);
+    Some(format!("{:.0}, after {:.1} min: {stops:+.2} stops from the stated speed", found.speed, found.minutes))
+}
+
 fn text(stock: &Stock) -> String {
     let mut out = format!("{}: {} film, {} layer(s)\n\n", stock.name, process(stock), stock.layers.len());
     let mut row = |name: &str, value: Option<String>| {
@@ -152,7 +180,12 @@ fn text(stock: &Stock) -> String {
         }
     };
     row("maker", stock.maker.clone());
-    row("ISO", stock.iso.map(|iso| stock.iso_tungsten.map_or(format!("{iso}"), |t| format!("{iso} (tungsten {t})"))));
+    row("year", stock.year.map(|year| year.to_string()));
+    row("speed", speed(stock));
+    row("by ISO 6", iso_6(stock));
+    if stock.meter == MeterResponse::Film {
+        row("metered", Some("by the film's own sensitivity".to_owned()));
+    }
     row("mid gray", stock.iso.map(|iso| format!("{:.4} lx s", metered_exposure_lx_s(iso))));
     row("lux-seconds of", Some(stock.reference_illuminant.clone()));
     row("densities", Some(stock.densitometry.name().to_owned()));
@@ -188,14 +221,17 @@ fn text(stock: &Stock) -> String {
         if let Some(ratio) = daylight_over_tungsten(layer).filter(|_| stock.process != Process::Print) {
             let _ = writeln!(out, "  speed in daylight over tungsten (ISO 7589): {ratio:.2}");
         }
-        let _ = writeln!(out, "  development   speed point/log lx s   average gradient   Dmin   Dmax");
+        let silver = silver_negative(stock);
+        let speeds = if silver { "   0.8/Hm" } else { "" };
+        let _ = writeln!(out, "  development   speed point/log lx s{speeds}   average gradient   Dmin   Dmax");
         for d in &layer.developments {
             let (low, high) = d.curve.density_range();
             let number = |v: Option<f64>| v.map_or("-".to_owned(), |v| format!("{v:.2}"));
             let (point, gradient) =
                 (number(d.curve.speed_point()), number(d.curve.average_gradient(AVERAGE_GRADIENT_SPAN)));
             let assumed = if d.assumed { "  (assumed)" } else { "" };
-            let _ = writeln!(out, "  {:<14}{point:>20}{gradient:>19}{low:>7.2}{high:>7.2}{assumed}", d.name);
+            let speed = d.speed().filter(|_| silver).map_or(String::new(), |s| format!("{s:>9.0}"));
+            let _ = writeln!(out, "  {:<14}{point:>20}{speed}{gradient:>19}{low:>7.2}{high:>7.2}{assumed}", d.name);
         }
     }
     let _ = writeln!(out, "\nlog10 sensitivity to equal energy, 0 at the peak");

@@ -4,7 +4,7 @@ use super::picture::{Developed, attributes, pictures};
 use super::rays;
 use super::report::Report;
 use crate::outcome::Failure;
-use spectra_film::write::{write_atomically, write_dng, write_exr, write_png8, write_tiff16, write_tiled_exr};
+use spectra_film::write::{RawLens, write_atomically, write_dng, write_exr, write_png8, write_tiff16, write_tiled_exr};
 use spectra_plot::PlotError;
 use spectra_scene::{Member, Output, RaysFigure, Scene};
 use std::fmt::Display;
@@ -104,7 +104,7 @@ impl Folder {
             if *output == Output::Dng {
                 let raw = report.scene.imager.raw(&report.rendering.exposure);
                 let raw = raw.ok_or_else(|| Failure::Failed("this imager has no converter".to_owned()))?;
-                write_dng(path, &raw)?;
+                write_dng(path, &raw, &raw_lens(report.scene))?;
             }
         }
         let is_wanted = self.files.iter().any(|(output, _)| matches!(output, Output::Png | Output::Tiff));
@@ -131,6 +131,17 @@ impl Folder {
         }
         tracing::debug!(seconds = begun.elapsed().as_secs_f64(), "pictures written");
         Ok(Some(pictures))
+    }
+}
+
+/// The lens as a raw file names it, focal length and f-number as they are set.
+fn raw_lens(scene: &Scene) -> RawLens {
+    let lens = &scene.lens;
+    RawLens {
+        model: Some(lens.name.clone()),
+        maker: lens.maker.clone(),
+        focal_length_mm: Some(lens.first_order(lens.reference_nm).efl_mm.abs()),
+        f_number: lens.marginal_ray().ok().map(|ray| ray.f_number()),
     }
 }
 

@@ -70,6 +70,9 @@ fn render_scene(arguments: &Run, isa: Isa, started: Instant) -> Outcome {
     for warning in &scene.warnings {
         progress.warning(warning);
     }
+    for note in &scene.notes {
+        progress.note(note);
+    }
     progress.start(&scene, threads, isa);
     let begun = Instant::now();
     let rendering =

@@ -53,9 +53,10 @@ pub(crate) fn attributes(report: &Report<'_>) -> Vec<(String, String)> {
     let patent = lens.patent.clone().map(|patent| ("spectra:lens patent", patent));
     let source = lens.source.clone().map(|source| ("spectra:lens source", source));
     let film = films(scene).map(|films| ("spectra:film", films));
+    let notes = (!scene.notes.is_empty()).then(|| ("spectra:notes", scene.notes.join("; ")));
     let partial =
         report.rendering.partial.then(|| ("spectra:partial", "true: stopped before all samples were taken".to_owned()));
-    all.extend([patent, source, film, partial].into_iter().flatten());
+    all.extend([patent, source, film, notes, partial].into_iter().flatten());
     let all = all.into_iter().map(|(name, value)| (name.to_owned(), value));
     all.chain(report.attributes.iter().cloned()).collect()
 }

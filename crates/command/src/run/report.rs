@@ -64,6 +64,7 @@ impl Report<'_> {
             "film": films(scene),
             "versions": version::to_json(),
             "warnings": scene.warnings,
+            "notes": scene.notes,
         })
     }
 

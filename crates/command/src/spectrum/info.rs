@@ -6,8 +6,8 @@ use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
 use serde::Serialize;
 use spectra_spectrum::{
-    Adaptation, BAND, Dominant, Emission, Found, Gamut, Observer, RgbSpace, cct, chromaticity, dominant_wavelength,
-    into_gamut, lab, meta_in, to_u8, xyz_of_light, xyz_of_reflectance, xyz_of_transmittance,
+    Adaptation, BAND, Dominant, Emission, Found, Gamut, Observer, RgbSpace, Strengths, cct, chromaticity,
+    dominant_wavelength, into_gamut, lab, meta_in, to_u8, xyz_of_light, xyz_of_reflectance, xyz_of_transmittance,
 };
 use std::fmt::Write;
 
@@ -19,6 +19,10 @@ struct Report {
     title: Option<String>,
     source: Option<String>,
     licence: Option<String>,
+    conditions: Option<String>,
+    /// Of a lamp's lines: measured, computed or estimated.
+    strengths: Option<&'static str>,
+    notes: Vec<String>,
     range_nm: Option<[f64; 2]>,
     observer: &'static str,
     /// The light that matter is seen in, and the white of `lab`, `dominant_wavelength_nm` and `purity`.
@@ -63,6 +67,9 @@ pub(crate) fn info(arguments: &SpectrumInfo) -> Outcome {
         title: meta.name,
         source: meta.source,
         licence: meta.licence,
+        conditions: meta.conditions,
+        strengths: meta.strengths.map(Strengths::word),
+        notes: meta.notes,
         range_nm: meta.range_nm.map(|(from, to)| [from, to]),
         observer: observer.name(),
         illuminant: arguments.illuminant.trim().to_owned(),
@@ -150,6 +157,9 @@ fn peak_nm(found: &Found) -> Option<f64> {
     }
 }
 
+/// What estimated strengths of lines are good for.
+const ESTIMATED: &str = "estimated by observers: lines far apart do not compare, and what follows of color is a guess";
+
 /// The report as a person reads it.
 fn text(report: &Report, found: &Found) -> String {
     let matter = matches!(found, Found::Transmittance(_) | Found::Reflectance(_));
@@ -163,6 +173,9 @@ fn text(report: &Report, found: &Found) -> String {
     };
     row("source", report.source.clone());
     row("licence", report.licence.clone());
+    row("conditions", report.conditions.clone());
+    row("strengths", report.strengths.map(|s| if s == Strengths::Estimated.word() { ESTIMATED } else { s }.to_owned()));
+    report.notes.iter().for_each(|note| row("note", Some(note.clone())));
     row("range", report.range_nm.map(|[from, to]| format!("{from} to {to} nm")));
     row("peak", report.peak_nm.map(|nm| format!("{nm} nm")));
     if report.xyz.is_some() {

@@ -3,6 +3,7 @@
 use super::like::inherited;
 use super::material::{DyeFile, MinimumDensityFile, densitometry};
 use super::reciprocity::ReciprocityFile;
+use super::speed::{MeterResponse, SpeedKind};
 use super::structure::{BaseFile, GranularityFile, HalationFile, mtf};
 use super::{Development, FilterFactor, Layer, Process, Reading, SensitivityError, SpectralSensitivity, Stock};
 use crate::curve::{
@@ -77,10 +78,20 @@ struct StockFile {
     /// (negatives with dyes).
     #[serde(default)]
     density: DensityFile,
-    /// ISO speed in daylight; what is no `process: print` must state it.
+    /// Year in which it was first sold; not known if absent.
+    year: Option<i32>,
+    /// Speed in daylight, which meters are set to; what is no `process: print` must state it.
     iso: Option<Positive<f64>>,
-    /// ISO speed in tungsten light; for the record. Not known if absent.
+    /// Speed in tungsten light; for the record. Not known if absent.
     iso_tungsten: Option<Positive<f64>>,
+    /// What these speeds are: `iso` (the default; of a standard), `exposure-index` (what the maker says to set the meter
+    /// to) or `assumed`.
+    #[serde(default)]
+    speed: SpeedKind,
+    /// What a meter for it weighs light by: `photopic` (the default; as the eye does) or `film` (the film's own
+    /// sensitivity, as the actinometers for plates did). A film of several layers has the first.
+    #[serde(default)]
+    meter: MeterResponse,
     /// The light whose exposure is counted in photometric lux-seconds, by name: mostly
     /// `iso-7589-sensitometric-daylight`.
     reference_illuminant: String,
@@ -254,6 +265,10 @@ pub(super) fn read(params: &Params, resources: &dyn Resources) -> Result<Stock, 
         let fault = params.fault("iso", "a camera film has a speed");
         faults.push(fault.hint("`iso: 100`; what has none is a `process: print`"));
     }
+    if file.meter == MeterResponse::Film && file.layers.len() > 1 {
+        let fault = params.fault("meter", "a meter that sees as the film does is for a film of one layer");
+        faults.push(fault.hint("`meter: photopic`, or leave it out"));
+    }
     let layers = layers(params, &file, reference.as_ref(), resources, &mut faults);
     faults.extend(unlike_developments(params, &file.layers));
     let densitometry = faults.take(densitometry(params, file.density, file.layers.len()));
@@ -288,7 +303,10 @@ pub(super) fn read(params: &Params, resources: &dyn Resources) -> Result<Stock, 
         remark: file.remark,
         process,
         densitometry,
+        year: file.year,
         iso: file.iso.map(|v| v.get()),
+        speed_kind: file.speed,
+        meter: file.meter,
         iso_tungsten: file.iso_tungsten.map(|v| v.get()),
         reference_illuminant: file.reference_illuminant,
         reference,

@@ -5,11 +5,13 @@ mod like;
 mod material;
 mod reciprocity;
 mod sensitivity;
+mod speed;
 mod structure;
 
 pub use material::{Densitometry, Dye, MinimumDensity, SpectralDensity};
 pub use reciprocity::Reciprocity;
 pub use sensitivity::{Reading, SensitivityError, SpectralSensitivity};
+pub use speed::{ISO_6_SPAN, Iso6, MeterResponse, SpeedKind};
 pub use structure::{Base, Granularity, Halation};
 
 use crate::curve::CharacteristicCurve;
@@ -50,9 +52,15 @@ pub struct Stock {
     pub process: Process,
     /// How the densities of its curves were measured.
     pub densitometry: Densitometry,
-    /// ISO speed in daylight (arithmetic); `None` for a print stock alone.
+    /// Year in which it was first sold, where known.
+    pub year: Option<i32>,
+    /// Speed in daylight (arithmetic), what meters are set to; `None` for a print stock alone.
     pub iso: Option<f64>,
-    /// ISO speed in tungsten light, where the sheet prints one.
+    /// What that speed is.
+    pub speed_kind: SpeedKind,
+    /// What a meter for it weighs light by.
+    pub meter: MeterResponse,
+    /// The same in tungsten light, where the sheet prints one.
     pub iso_tungsten: Option<f64>,
     /// Name of the illuminant under which the unit of the curves' axis is photometric lux-seconds.
     pub reference_illuminant: String,

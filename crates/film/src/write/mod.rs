@@ -4,10 +4,11 @@ mod atomically;
 mod dng;
 mod exposure;
 mod picture;
+mod tiff;
 mod tiled;
 
 pub use atomically::write_atomically;
-pub use dng::write_dng;
+pub use dng::{RawLens, write_dng};
 pub use exposure::write_exr;
 pub use picture::{write_png8, write_png16, write_tiff16};
 pub use tiled::write_tiled_exr;

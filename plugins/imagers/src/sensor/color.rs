@@ -2,10 +2,14 @@
 
 use glam::{DMat3, DVec3};
 use spectra_core::spectral::{Channel, Grid, SpectralPower};
-use spectra_spectrum::{Emission, Observer, find_reflectance};
+use spectra_spectrum::constants::LUMINOUS_EFFICACY_LM_PER_W;
+use spectra_spectrum::{Adaptation, Emission, Observer, find_reflectance};
 
-/// The patches that the matrix is fitted to: ISO 17321-1.
-const PATCHES: [&str; 24] = [
+/// XYZ of D50, x 0.3457, y 0.3585: white of the space that converters work in (Adobe, Digital Negative Specification 1.4).
+const D50: [f64; 3] = [0.3457 / 0.3585, 1.0, (1.0 - 0.3457 - 0.3585) / 0.3585];
+
+/// The patches of the ColorChecker that matrices are fitted to: ISO 17321-1.
+pub const PATCHES: [&str; 24] = [
     "dark-skin",
     "light-skin",
     "blue-sky",
@@ -32,7 +36,7 @@ const PATCHES: [&str; 24] = [
     "black",
 ];
 
-/// Matrix and white of a camera under a light.
+/// Matrices and white of a camera under a light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraColor {
     /// The camera's red, green and blue, of which those of white have 1 as the largest, from XYZ, of which white has Y 1.
@@ -41,11 +45,17 @@ pub struct CameraColor {
     pub neutral: DVec3,
     /// XYZ of white, Y 1.
     pub white_xyz: DVec3,
+    /// XYZ adapted to D50 (Bradford) from the camera's red, green and blue, each divided by that of white.
+    pub d50_from_balanced: DMat3,
+    /// What the channel that sees most records of white for one lux second.
+    pub largest_per_lx_s: f64,
 }
 
 impl CameraColor {
-    /// Fits the matrix to the ColorChecker's patches under a light, by least squares; white is met exactly by what is
-    /// left over, shared out along white. `None` for sensitivities that are blind to one of three colors.
+    /// Fits the matrices to the ColorChecker's patches under a light, by least squares; white is met exactly: by what is
+    /// left over, shared out along white, in the matrix from XYZ, and as a condition of the fit in the matrix to D50
+    /// (G. D. Finlayson, M. S. Drew, J. Electron. Imaging 6, 484 (1997)). `None` for sensitivities that are blind to one
+    /// of three colors.
     #[must_use]
     pub fn fit(channels: &[Channel], light: &Emission, grid: &Grid) -> Option<Self> {
         let [red, green, blue] = channels else { return None };
@@ -61,7 +71,11 @@ impl CameraColor {
         if !(camera_white.min_element() > 0.0 && y > 0.0) {
             return None;
         }
+        let (neutral, white_xyz) = (camera_white / largest, white / y);
+        let to_d50 = Adaptation::Bradford.matrix(white_xyz.to_array(), D50);
+        let to_d50 = DMat3::from_cols_array_2d(&to_d50).transpose();
         let (mut products, mut squares) = (DMat3::ZERO, DMat3::ZERO);
+        let (mut adapted_products, mut balanced_squares) = (DMat3::ZERO, DMat3::ZERO);
         for patch in PATCHES {
             let reflectance = find_reflectance(&format!("colorchecker#{patch}")).ok()?;
             let continuum =
@@ -75,14 +89,29 @@ impl CameraColor {
             let (camera, xyz) = (camera / largest, xyz / y);
             // Every patch counts alike, the dark ones too.
             let weight = 1.0 / (xyz.y * xyz.y);
-            products += DMat3::from_cols(camera * xyz.x, camera * xyz.y, camera * xyz.z) * weight;
-            squares += DMat3::from_cols(xyz * xyz.x, xyz * xyz.y, xyz * xyz.z) * weight;
+            products += outer(camera, xyz) * weight;
+            squares += outer(xyz, xyz) * weight;
+            let balanced = camera / neutral;
+            adapted_products += outer(to_d50 * xyz, balanced) * weight;
+            balanced_squares += outer(balanced, balanced) * weight;
         }
-        let (neutral, white_xyz) = (camera_white / largest, white / y);
         let fitted = products * squares.inverse();
         let missing = neutral - fitted * white_xyz;
         let along = white_xyz / white_xyz.length_squared();
-        let camera_from_xyz = fitted + DMat3::from_cols(missing * along.x, missing * along.y, missing * along.z);
-        camera_from_xyz.inverse().is_finite().then_some(Self { camera_from_xyz, neutral, white_xyz })
+        let camera_from_xyz = fitted + outer(missing, along);
+        let inverse = balanced_squares.inverse();
+        let fitted = adapted_products * inverse;
+        // Lagrange: of all matrices that take (1, 1, 1) to white, the one of the least squares.
+        let along = inverse * DVec3::ONE;
+        let missing = DVec3::from_array(D50) - fitted * DVec3::ONE;
+        let d50_from_balanced = fitted + outer(missing, along / along.element_sum());
+        let largest_per_lx_s = largest / (LUMINOUS_EFFICACY_LM_PER_W * y);
+        let found = Self { camera_from_xyz, neutral, white_xyz, d50_from_balanced, largest_per_lx_s };
+        (camera_from_xyz.inverse().is_finite() && d50_from_balanced.is_finite()).then_some(found)
     }
+}
+
+/// The matrix a b^T.
+fn outer(a: DVec3, b: DVec3) -> DMat3 {
+    DMat3::from_cols(a * b.x, a * b.y, a * b.z)
 }

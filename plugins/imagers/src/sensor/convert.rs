@@ -6,7 +6,7 @@ use super::noise::PixelNumbers;
 use super::pattern::Pattern;
 use glam::DVec3;
 use rayon::prelude::*;
-use spectra_core::frame::{DisplayPicture, ExposureChannel, ExposureFrame, FrameSize, RawFrame};
+use spectra_core::frame::{DisplayPicture, ExposureChannel, ExposureFrame, FrameSize, RawColor, RawFrame, RawNoise};
 use spectra_film::display::{White, show_xyz};
 use spectra_spectrum::{Adaptation, Gamut, RgbSpace};
 
@@ -35,9 +35,16 @@ pub struct Converter {
     pub color: Option<CameraColor>,
     /// EXIF number of the light of white.
     pub illuminant: u16,
+    /// Matrices for raw converters: lights by their EXIF numbers, the one of lower color temperature first.
+    pub calibrations: Vec<(u16, CameraColor)>,
     /// Name for the file.
     pub model: String,
+    /// Name that sets sensors of other colors apart.
+    pub unique_model: String,
 }
+
+/// Lux seconds that fill the well at ISO 1, by the saturation-based speed of ISO 12232.
+const SATURATION_LX_S: f64 = 78.0;
 
 /// What each well holds on average: the sum of the channels.
 #[must_use]
@@ -68,11 +75,16 @@ impl Converter {
             value.round().min(f64::from(self.white_level)) as u16
         };
         let values = electrons(exposure).par_iter().enumerate().with_min_len(1 << 12).map(one).collect();
-        let color = self.color.as_ref();
-        let rows = |c: &CameraColor| [0, 1, 2].map(|row| c.camera_from_xyz.row(row).to_array());
+        let rows = |matrix: glam::DMat3| [0, 1, 2].map(|row| matrix.row(row).to_array());
+        let color = |(illuminant, c): &(u16, CameraColor)| RawColor {
+            illuminant: *illuminant,
+            camera_from_xyz: rows(c.camera_from_xyz),
+            d50_from_balanced: rows(c.d50_from_balanced),
+        };
+        let FrameSize { width_px, height_px, width_mm, height_mm } = exposure.size;
         RawFrame {
-            width_px: exposure.size.width_px,
-            height_px: exposure.size.height_px,
+            width_px,
+            height_px,
             values,
             pattern: match self.pattern {
                 Pattern::Monochrome => None,
@@ -80,14 +92,41 @@ impl Converter {
             },
             black_level: self.black_level,
             white_level: self.white_level,
-            camera_from_xyz: color.map_or([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], rows),
-            neutral: color.map_or([1.0; 3], |c| c.neutral.to_array()),
+            colors: self.calibrations.iter().map(color).collect(),
+            neutral: self.color.as_ref().map_or([1.0; 3], |c| c.neutral.to_array()),
             illuminant: self.illuminant,
+            noise: self.noise_profile(),
+            baseline_exposure_stops: self.baseline_exposure_stops(),
+            pixel_mm: [width_mm / f64::from(width_px), height_mm / f64::from(height_px)],
             maker: "spectra".to_owned(),
             model: self.model.clone(),
+            unique_model: self.unique_model.clone(),
             exposure_time_s: self.exposure_time_s,
             iso: self.iso,
         }
+    }
+
+    /// Electrons that give the largest number.
+    fn largest_electrons(&self) -> f64 {
+        self.electrons_per_number * (f64::from(self.white_level) - f64::from(self.black_level))
+    }
+
+    /// Photons, of which the variance is the mean; reading; and rounding, 1/12 of a number.
+    fn noise_profile(&self) -> Option<RawNoise> {
+        self.noise?;
+        let largest = self.largest_electrons();
+        let rounding = self.electrons_per_number * self.electrons_per_number / 12.0;
+        let offset = (self.read_noise * self.read_noise + rounding) / (largest * largest);
+        Some(RawNoise { scale: 1.0 / largest, offset })
+    }
+
+    /// By how much the numbers reach beyond what a sensor of that ISO speed records of daylight, stops.
+    fn baseline_exposure_stops(&self) -> f64 {
+        let daylight = self.calibrations.last();
+        daylight.map_or(0.0, |(_, color)| {
+            let saturation_lx_s = self.largest_electrons() / color.largest_per_lx_s;
+            libm::log2(saturation_lx_s * self.iso / SATURATION_LX_S)
+        })
     }
 
     /// A picture of a raw frame: missing colors filled in, white made white, matrix, automatic exposure.

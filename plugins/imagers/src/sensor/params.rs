@@ -12,20 +12,23 @@ use spectra_core::spectral::Channel;
 use spectra_core::stage::Imager;
 use spectra_glass::Catalogue;
 use spectra_spectrum::constants::{LIGHT_M_PER_S, PLANCK_J_S};
-use spectra_spectrum::{find_emission_in, find_sensitivity_in};
+use spectra_spectrum::{find_emission, find_emission_in, find_sensitivity_in};
 
 imager_params! {
     /// A chip of pixels with color filters: electrons, noise, raw files.
     ///
     /// Light becomes electrons by the sensitivities of the filters and pixels, electrons scatter as photons do
     /// (Poisson) and as reading does (normal), a well holds so many of them, and a converter makes whole numbers: those
-    /// go into a DNG file (`output: [dng]`), and a picture is developed from them, demosaicked and balanced. The color
-    /// matrix is fitted to the 24 patches of a ColorChecker.
+    /// go into a DNG file (`output: [dng]`), and a picture is developed from them, demosaicked and balanced. Color
+    /// matrices are fitted to the 24 patches of a ColorChecker; the DNG file carries those for A and for D65, the noise,
+    /// exposure and lens. It carries no date, since the same scene gives the same bytes.
     ///
     /// With `photosite` light that comes at a slant lands beside the middle of its pixel, by the height of the stack,
     /// and goes on sideways in the silicon: at the edge of the frame of a wide-angle lens colors mix and shift. What is
     /// not known of a sensor (quantum efficiency, full well, read noise) has a default that is an assumption, and says
-    /// so.
+    /// so. One peak quantum efficiency serves all colors, so how red and blue compare with green, and with it the numbers
+    /// of white before balancing and the noise of each color, is what the table says: that of the bundled sensor was
+    /// measured color by color, and its colors are set to each other by what the camera answers to D65.
     ///
     /// `resolution` is the number of pixels across and down; where their shape differs from that of the frame, pixels
     /// are not square. The frame stands in the image plane of the lens unless it is shifted or tilted (as on a view
@@ -144,6 +147,9 @@ const SILICON: &str = "Si/Green-2008";
 /// EXIF numbers (`LightSource`) of lights; 255 is any other.
 const LIGHT_SOURCES: [(&str, u16); 7] =
     [("A", 17), ("B", 18), ("C", 19), ("D55", 20), ("D65", 21), ("D75", 22), ("D50", 23)];
+
+/// The two lights of which raw files carry matrices, the warmer one first.
+const CALIBRATION_LIGHTS: [&str; 2] = ["A", "D65"];
 
 impl SensorParams {
     fn pattern(&self, params: &Params) -> Result<Pattern, Fault> {
@@ -274,6 +280,23 @@ impl SensorParams {
                 })
             }
         };
+        let number_of = |light: &str| LIGHT_SOURCES.iter().find(|(name, _)| *name == light).map_or(255, |(_, n)| *n);
+        let calibrations = match (pattern, &color) {
+            (Pattern::Monochrome, _) | (_, None) => Vec::new(),
+            (Pattern::Bayer(_), Some(white)) => {
+                let fitted = CALIBRATION_LIGHTS.iter().map(|name| {
+                    let light = find_emission(name).ok()?;
+                    CameraColor::fit(channels, &light, &context.grid).map(|color| (number_of(name), color))
+                });
+                // A band in which one of the two lights shows no colors has that of white.
+                fitted.collect::<Option<Vec<_>>>().unwrap_or_else(|| vec![(number_of(light), *white)])
+            }
+        };
+        let model = self.model.clone().unwrap_or_else(|| "sensor".to_owned());
+        let unique_model = match self.sensitivity.as_deref().unwrap_or(DEFAULT_SENSITIVITY) {
+            name if model.contains(name) => format!("spectra {model}"),
+            name => format!("spectra {model} {name}"),
+        };
         let full_well = self.full_well.map_or(DEFAULT_FULL_WELL, |w| w.bare());
         let range = f64::from(white_level) - f64::from(black.min(u32::from(white_level) - 1));
         faults.into_result(Converter {
@@ -287,8 +310,10 @@ impl SensorParams {
             noise: self.noise.unwrap_or(true).then_some(u64::from(self.noise_seed.unwrap_or(1))),
             iso,
             color,
-            illuminant: LIGHT_SOURCES.iter().find(|(name, _)| *name == light).map_or(255, |(_, number)| *number),
-            model: self.model.clone().unwrap_or_else(|| "sensor".to_owned()),
+            illuminant: number_of(light),
+            calibrations,
+            model,
+            unique_model,
         })
     }
 }

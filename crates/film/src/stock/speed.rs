@@ -1,0 +1,109 @@
+//! What the speed of a stock is: by a standard, by its maker's advice, or a guess; and what its curves say of it.
+
+use super::{Development, Process, Stock};
+use schemars::JsonSchema;
+use serde::Deserialize;
+use spectra_core::math::pow;
+
+/// Exposure of the speed point of a film of ISO 1, lx s (ISO 6:1993).
+const SPEED_POINT_LX_S: f64 = 0.8;
+/// How far right of the speed point ISO 6:1993 sets the contrast of the development, log10 of exposure.
+pub const ISO_6_SPAN: f64 = 1.3;
+/// The density that lies over that of the speed point there, by the span.
+const ISO_6_GRADIENT: f64 = 0.8 / ISO_6_SPAN;
+
+/// What a stock's speed is.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+pub enum SpeedKind {
+    /// An ISO speed.
+    #[default]
+    Iso,
+    /// An exposure index: what its maker says to set the meter to.
+    ExposureIndex,
+    /// Nobody measured it.
+    Assumed,
+}
+
+impl SpeedKind {
+    /// Its name in a stock file.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Iso => "iso",
+            Self::ExposureIndex => "exposure-index",
+            Self::Assumed => "assumed",
+        }
+    }
+}
+
+/// What a meter for a stock weighs light by.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+pub enum MeterResponse {
+    /// The eye: V(lambda).
+    #[default]
+    Photopic,
+    /// The film's own sensitivity, in lux-seconds of its reference illuminant.
+    Film,
+}
+
+impl MeterResponse {
+    /// Its name in a stock file.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Photopic => "photopic",
+            Self::Film => "film",
+        }
+    }
+}
+
+/// The speed that the curves of a negative give when it is developed as ISO 6 asks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Iso6 {
+    /// Arithmetic speed.
+    pub speed: f64,
+    /// Time in the developer, min.
+    pub minutes: f64,
+}
+
+impl Stock {
+    /// Its speed with what kind it is, such as `ISO 400`, `EI 250` or `ISO 25 (assumed)`; `None` where it has none.
+    #[must_use]
+    pub fn speed_text(&self) -> Option<String> {
+        self.iso.map(|iso| match self.speed_kind {
+            SpeedKind::Iso => format!("ISO {iso}"),
+            SpeedKind::ExposureIndex => format!("EI {iso}"),
+            SpeedKind::Assumed => format!("ISO {iso} (assumed)"),
+        })
+    }
+
+    /// The speed of the curves at the contrast that ISO 6 asks for (0.80 over the speed point, 1.30 to its right), between
+    /// the two developments whose contrasts lie around it. `None` for what is no silver negative, and where no two do.
+    #[must_use]
+    pub fn iso_6(&self) -> Option<Iso6> {
+        let [layer] = &self.layers[..] else { return None };
+        if self.process != Process::Negative {
+            return None;
+        }
+        let measured = |d: &Development| {
+            Some((d.curve.average_gradient(ISO_6_SPAN)?, d.minutes.filter(|_| !d.assumed)?, d.curve.speed_point()?))
+        };
+        let mut all: Vec<(f64, f64, f64)> = layer.developments.iter().filter_map(measured).collect();
+        all.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let pair = all.windows(2).find(|w| w[0].0 <= ISO_6_GRADIENT && ISO_6_GRADIENT < w[1].0)?;
+        let share = (ISO_6_GRADIENT - pair[0].0) / (pair[1].0 - pair[0].0);
+        let between = |a: f64, b: f64| a + share * (b - a);
+        let speed = SPEED_POINT_LX_S / pow(10.0, between(pair[0].2, pair[1].2));
+        Some(Iso6 { speed, minutes: between(pair[0].1, pair[1].1) })
+    }
+}
+
+impl Development {
+    /// The speed that its curve gives by the speed point of ISO 6, whatever its contrast.
+    #[must_use]
+    pub fn speed(&self) -> Option<f64> {
+        Some(SPEED_POINT_LX_S / pow(10.0, self.curve.speed_point()?))
+    }
+}
