@@ -39,11 +39,11 @@ impl<T: bytemuck::Pod> Column<T> {
 /// The line number of a ray whose wavelength was drawn from a continuum.
 pub const CONTINUUM: u32 = u32::MAX;
 
-/// Bits of a tag that number a pixel. Those above them name the only channel that the ray adds to, counted from 1; 0 there:
-/// all channels.
+/// Bits of a tag that hold the pixel's number. The bits above them name the one channel that the ray adds to, counted from 1;
+/// 0 means all channels.
 pub const PIXEL_BITS: u32 = 28;
 
-/// The tag of a ray that adds to one channel of a pixel only: its light passed that channel's filter, of a mosaic.
+/// The tag of a ray that adds to one channel of a pixel only, because its light passed that channel's filter of a mosaic.
 #[inline(always)]
 #[must_use]
 pub fn tag_of(pixel: u32, only_channel: u32) -> u32 {
@@ -57,7 +57,7 @@ pub fn pixel_and_channel(tag: u32) -> (u32, Option<u32>) {
     (tag & ((1 << PIXEL_BITS) - 1), (tag >> PIXEL_BITS).checked_sub(1))
 }
 
-/// A batch of rays. Columns lie behind accessors, so that later ones need no change in a plugin.
+/// A batch of rays, one array a column. Columns are reached through methods, so new ones can be added without touching a plugin.
 ///
 /// | column | unit | meaning |
 /// |---|---|---|
@@ -66,7 +66,7 @@ pub fn pixel_and_channel(tag: u32) -> (u32, Option<u32>) {
 /// | `wavelength_nm` | nm | vacuum-equal air wavelength, as glass catalogues use it |
 /// | `line` | | number of the source's spectral line that was drawn, or [`CONTINUUM`] |
 /// | `index` | 1 | refractive index of the medium that the ray is in |
-/// | `weight` | stage's | flux forward, throughput backward; `W` or `W nm^-1` and so on, as the stage states |
+/// | `weight` | see [`crate::stage`] | flux forward, throughput backward |
 /// | `state` | | [`ALIVE`], or cause and surface of the loss ([`Loss::state`]) |
 /// | `tag` | | the input row, path or pixel that the ray belongs to |
 #[derive(Clone, Debug)]
@@ -90,10 +90,10 @@ pub struct RayBatch {
     scratch: Scratch,
 }
 
-/// What the loops of a surface hand to each other.
+/// What the two loops of a surface pass to each other.
 #[derive(Clone, Debug)]
 struct Scratch {
-    /// x^2 + y^2, mm^2; stays true from surface to surface while nobody else writes positions.
+    /// x^2 + y^2, mm^2; stays valid from surface to surface until somebody else writes positions.
     radius2: Column<f64>,
     radius2_is_true: bool,
     /// Between the loops the cosine of incidence; afterwards how far the ray is from ending.
@@ -177,11 +177,11 @@ impl RayBatch {
         Self { optical_path_mm: Some(Column::new(capacity)), ..Self::new(capacity) }
     }
 
-    /// Starts over with `len` rays, all alive, of weight 1 in air, on no line; positions, directions
-    /// and wavelengths hold whatever was there and are to be written.
+    /// Starts over with `len` rays: alive, of weight 1, in air, on no spectral line. Positions, directions and wavelengths
+    /// keep old values; the caller writes them.
     ///
     /// # Panics
-    /// If `len` exceeds the capacity: the holder sized the batch.
+    /// If `len` exceeds the capacity, which the caller chose.
     pub fn restart(&mut self, len: usize) {
         assert!(len <= self.capacity, "a batch of {} rays cannot hold {len}", self.capacity);
         self.len = len;
@@ -194,14 +194,14 @@ impl RayBatch {
         c.optical_path_mm.fill(0.0);
     }
 
-    /// Number of rays, the ended ones included.
+    /// Number of rays, including those that have ended.
     #[inline(always)]
     #[must_use]
     pub fn len(&self) -> usize {
         self.len
     }
 
-    /// Whether no ray is held.
+    /// Whether the batch holds no rays.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len == 0
@@ -213,13 +213,13 @@ impl RayBatch {
         self.capacity
     }
 
-    /// The number (1-based) of the surface that the living rays left last; 0 before the first.
+    /// Number (from 1) of the surface that the living rays passed last; 0 before the first.
     #[must_use]
     pub fn surface(&self) -> u32 {
         self.surface
     }
 
-    /// Sets the surface that the living rays left last.
+    /// Sets the surface that the living rays passed last.
     pub fn set_surface(&mut self, surface: u32) {
         self.surface = surface;
     }
@@ -231,7 +231,7 @@ impl RayBatch {
         self.split().0
     }
 
-    /// All columns, and those that the loops of a surface share, with x^2 + y^2 made true.
+    /// All columns, and those that the loops of a surface share, with x^2 + y^2 up to date.
     #[inline(always)]
     pub(crate) fn columns_and_scratch_mut(&mut self) -> (Columns<'_>, ScratchColumns<'_>) {
         if !self.scratch.radius2_is_true {
@@ -330,7 +330,7 @@ impl RayBatch {
         self.states().iter().filter(|s| **s == ALIVE).count()
     }
 
-    /// Drops the ended rays; the order of the others stays. Returns how many are left.
+    /// Drops the rays that have ended and keeps the order of the rest. Returns how many are left.
     pub fn compact(&mut self) -> usize {
         let len = self.len;
         let c = self.columns_mut();

@@ -1,4 +1,4 @@
-//! Frames: what is recorded, and what a person sees of it.
+//! Frames: what is recorded, and the pictures made from it.
 
 use crate::spectral::Channel;
 
@@ -28,9 +28,8 @@ impl FrameSize {
         self.width_mm / f64::from(self.width_px) * (self.height_mm / f64::from(self.height_px))
     }
 
-    /// The pixel (row-major, first row on top of the upright picture) at a point of the film, or
-    /// `None` beside the frame. A lens turns the picture by half a turn, so the column falls with x
-    /// and the row rises with y.
+    /// The pixel (row-major, from the top row of the upright picture) at a point on the film, or `None` outside the
+    /// frame. A lens rotates its image by half a turn, so columns count against x and rows count along y.
     #[inline(always)]
     #[must_use]
     pub fn pixel_at(&self, x_mm: f64, y_mm: f64) -> Option<u32> {
@@ -41,7 +40,7 @@ impl FrameSize {
         inside.then(|| row as u32 * self.width_px + column as u32)
     }
 
-    /// The point of the film at (`u`, `v`) in [0, 1]^2 of a pixel, mm; inverse of [`FrameSize::pixel_at`].
+    /// The point on the film, mm, at (`u`, `v`) in [0, 1]^2 of a pixel; the inverse of [`FrameSize::pixel_at`].
     #[inline(always)]
     #[must_use]
     pub fn point_of(&self, pixel: u32, u: f64, v: f64) -> (f64, f64) {
@@ -54,12 +53,12 @@ impl FrameSize {
     }
 }
 
-/// Linear exposure per channel and pixel: what light left, before any curve.
+/// Linear exposure per channel and pixel, before any characteristic curve.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExposureFrame {
     /// Size.
     pub size: FrameSize,
-    /// One plane a channel, row-major, upright.
+    /// One plane per channel, row-major, upright.
     pub channels: Vec<ExposureChannel>,
 }
 
@@ -81,41 +80,41 @@ impl ExposureFrame {
         self.channels.iter().find(|c| c.name == name)
     }
 
-    /// The values of these channels, in their order; `None` where one is missing.
+    /// The values of these channels, in this order; `None` if one is missing.
     #[must_use]
     pub fn planes(&self, channels: &[Channel]) -> Option<Vec<&[f32]>> {
         channels.iter().map(|c| self.channel(&c.name).map(|plane| &plane.values[..])).collect()
     }
 
-    /// The values of the channel of that name, as many as the frame has pixels.
+    /// The values of the channel of that name, one per pixel.
     ///
     /// # Errors
-    /// A text that says which channel is missing, as [`crate::stage::Film::develop`] wants it.
+    /// The name of the missing channel, in the form that [`crate::stage::Film::develop`] returns.
     pub fn values(&self, name: &str) -> Result<&[f32], String> {
         self.channel(name).map(|c| &c.values[..]).ok_or_else(|| format!("the exposure has no channel `{name}`"))
     }
 }
 
-/// A picture for a screen: linear light, sRGB primaries, 1 is the screen's white.
+/// A picture for a screen: linear light in sRGB primaries; 1 is the screen's white.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DisplayPicture {
     /// Pixels across.
     pub width_px: u32,
     /// Pixels down.
     pub height_px: u32,
-    /// Row-major, upright, (red, green, blue); values outside of [0, 1] are clipped when written.
+    /// Red, green, blue; row-major, upright. Values outside [0, 1] are clipped when written.
     pub rgb: Vec<[f32; 3]>,
 }
 
 impl DisplayPicture {
-    /// A picture of a frame, from the values of one of its channels: each makes a color (linear light, sRGB primaries).
+    /// A picture of one channel of a frame: `color` turns each value into linear light in sRGB primaries.
     #[must_use]
     pub fn of(size: FrameSize, values: &[f32], color: impl FnMut(&f32) -> [f32; 3]) -> Self {
         Self { width_px: size.width_px, height_px: size.height_px, rgb: values.iter().map(color).collect() }
     }
 }
 
-/// What a sensor's converter gives: one number a pixel, and what a raw converter must know to make a picture of them.
+/// What a sensor's analog-to-digital converter delivers: one number per pixel, and what a raw converter needs to develop them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RawFrame {
     /// Pixels across.
@@ -128,7 +127,7 @@ pub struct RawFrame {
     pub pattern: Option<[u8; 4]>,
     /// Value without light.
     pub black_level: u16,
-    /// Value from which on nothing is told apart.
+    /// Value at which the converter saturates.
     pub white_level: u16,
     /// What the filters' colors mean, for one light or for two, the one of lower color temperature first; none without
     /// filters.

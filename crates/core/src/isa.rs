@@ -1,16 +1,16 @@
 //! Instruction sets, chosen once at run time: one source, three compilations.
 //!
-//! A kernel is plain scalar code over slices, marked `#[inline(always)]` and wrapped in a
-//! [`Vectorized`] value; [`Isa::run`] compiles it once per tier and the compiler vectorises each.
-//! Rust never contracts `a * b + c`, so every tier gives the same bits.
+//! A kernel is plain scalar code over slices, marked `#[inline(always)]` and wrapped in a [`Vectorized`] value. [`Isa::run`]
+//! compiles it once per tier, and the compiler vectorises each copy. Rust never fuses `a * b + c`, so every tier gives the same
+//! bits.
 //!
-//! This is the one module of the workspace that may hold `unsafe` code.
+//! No other module of the workspace may hold `unsafe` code.
 #![allow(unsafe_code)]
 
 /// An instruction-set tier that kernels are compiled for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Isa {
-    /// What every machine of the target has (x86-64: SSE2).
+    /// What every machine of the target architecture has (x86-64: SSE2).
     Baseline,
     /// 256-bit vectors.
     Avx2,
@@ -18,8 +18,8 @@ pub enum Isa {
     Avx512,
 }
 
-/// Work that [`Isa::run`] compiles for each tier. `run` and all it calls must be `#[inline(always)]`,
-/// or the tier's instructions do not reach it.
+/// Work that [`Isa::run`] compiles for each tier. `run` and everything it calls must be `#[inline(always)]`, or it is compiled
+/// for the baseline only.
 pub trait Vectorized {
     /// What the work returns.
     type Output;
@@ -47,10 +47,10 @@ impl Isa {
         Self::Baseline
     }
 
-    /// Reads a tier's name, `baseline`, `avx2` or `avx512`, as `SPECTRA_ISA` holds it.
+    /// The tier of this name: `baseline`, `avx2` or `avx512`, as in `SPECTRA_ISA`.
     ///
     /// # Errors
-    /// The name is unknown, or this machine lacks the tier; the text says which.
+    /// The name is unknown, or this machine lacks that tier.
     pub fn by_name(name: &str) -> Result<Self, String> {
         let isa = match name {
             "baseline" => Self::Baseline,
@@ -115,10 +115,10 @@ fn run_avx512<V: Vectorized>(work: V) -> V::Output {
     work.run()
 }
 
-/// Asks the memory for numbers that will be read soon: a hint, without any effect on what is computed.
+/// Fetches numbers into the cache that will be read soon. A hint: it changes no result.
 ///
-/// For work that streams over arrays far larger than the caches while a batch is traced in between: the pause is long
-/// enough for the processor to forget that it was streaming.
+/// For work that streams over arrays far larger than the caches but traces a batch between accesses, which is long enough for
+/// the hardware prefetcher to lose track.
 #[inline]
 pub fn prefetch(soon: &[f64]) {
     #[cfg(target_arch = "x86_64")]

@@ -1,8 +1,14 @@
 //! The vocabulary of the spectral camera: rays in batches, stage traits, registry, typed parameters.
 //!
-//! This crate depends on no other crate of the workspace; every plugin depends on it. Units are
-//! millimetres, nanometres, radians and seconds; +z runs from the object toward the imager, +y is
-//! up; a radius is positive where its centre lies at larger z.
+//! Every plugin depends on this crate; it depends on no other crate of the workspace.
+//!
+//! # Conventions
+//! - Lengths are in millimetres, wavelengths in nanometres, angles in radians, times in seconds. A bare `f64` that
+//!   crosses a public border carries its unit in its name.
+//! - +z runs from the object toward the imager, +y is up. A radius of curvature is positive where its centre lies at larger z.
+//! - A lens's frame has its origin at the vertex of the first surface; a surface's own frame has it at that surface's vertex.
+//! - Everything that travels with light does so in batches ([`RayBatch`]), so a call through a trait object costs nothing per ray.
+//! - Random numbers, files and the instruction set reach a stage only through its arguments.
 
 pub mod batch;
 pub mod frame;

@@ -1,18 +1,18 @@
-//! Light lost is light explained: why a ray ended, where, and how many did.
+//! Where light is lost: why a ray ended, at which surface, and how many rays did.
 
 /// Why a ray ended before it reached the other side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum Loss {
-    /// The ray does not meet the surface.
+    /// The ray does not hit the surface.
     Missed = 1,
-    /// It meets the surface outside of its clear aperture.
+    /// It hits the surface outside its clear aperture.
     Vignetted = 2,
-    /// Total internal reflection where the lens refracts.
+    /// Total internal reflection at a surface that should refract.
     TotalReflection = 3,
-    /// Swallowed: a black surface, a filter.
+    /// Absorbed by a black surface or a filter.
     Absorbed = 4,
-    /// It passed the lens and lands beside the frame of the imager.
+    /// It passed the lens but missed the imager's frame.
     OutOfFrame = 5,
 }
 
@@ -50,15 +50,15 @@ impl Loss {
     }
 }
 
-/// How many rays ended, by surface and cause. Adding two is exact and in any order.
+/// How many rays ended, by surface and cause. Counts add up exactly, in any order.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct LossCounts {
-    /// One row a surface number (0: no surface), one column a cause.
+    /// One row per surface number (0: no surface), one column per cause.
     rows: Vec<[u64; 6]>,
 }
 
 impl LossCounts {
-    /// Counts `many` rays that ended for `cause` at `surface`.
+    /// Counts `many` rays that ended at `surface` because of `cause`.
     pub fn add(&mut self, cause: Loss, surface: u32, many: u64) {
         let row = surface as usize;
         if self.rows.len() <= row {
@@ -67,7 +67,7 @@ impl LossCounts {
         self.rows[row][cause as usize] += many;
     }
 
-    /// Counts the ended rays among `states`.
+    /// Counts the rays in `states` that have ended.
     pub fn add_states(&mut self, states: &[u64]) {
         for &state in states {
             if let Some((cause, surface)) = Loss::of_state(state) {
@@ -93,13 +93,13 @@ impl LossCounts {
         })
     }
 
-    /// All rays of one cause.
+    /// Number of rays lost to one cause, over all surfaces.
     #[must_use]
     pub fn of_cause(&self, cause: Loss) -> u64 {
         self.rows.iter().map(|row| row[cause as usize]).sum()
     }
 
-    /// All rays that ended.
+    /// Number of rays that ended.
     #[must_use]
     pub fn total(&self) -> u64 {
         self.rows.iter().flatten().sum()

@@ -1,7 +1,7 @@
-//! Functions that must give the same bits on every machine, and in every vector width.
+//! Functions that give the same bits on every machine and at every vector width.
 //!
-//! `exp`, `sin` and the like differ between platforms' libraries, so all go through the pure-Rust
-//! `libm`, re-exported here. The few that run once per ray have branch-free forms of our own.
+//! `exp`, `sin` and the like differ between platforms' libraries, so everything uses the pure-Rust `libm`, re-exported here.
+//! The few that run once per ray have branch-free forms of our own.
 
 pub use libm::{acos, asin, atan, atan2, cbrt, cos, erf, erfc, exp, expm1, log, log1p, log2, log10, pow, sin, tan};
 

@@ -5,14 +5,14 @@ use crate::registry::Context;
 use crate::spectral::Channel;
 use crate::stage::Film;
 
-/// A pixel of a frame, for what differs from one to the next: noise.
+/// A pixel of a frame: what noise that differs from pixel to pixel is made from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pixel {
-    /// Its number, row-major from the upper left of the upright picture.
+    /// Its number, row-major from the top left of the upright picture.
     pub index: u64,
     /// Its area on the film, mm^2.
     pub area_mm2: f64,
-    /// Number of the frame of an animation; 0 of a single picture.
+    /// Frame number in an animation; 0 for a single picture.
     pub frame: u64,
 }
 
@@ -21,7 +21,7 @@ pub struct Pixel {
 /// ```
 /// # use spectra_core::{one_layer::OneLayer, registry::Context, stage::Film};
 /// # fn build(context: &Context<'_>) -> Box<dyn Film> {
-/// // Sees a band of 100 nm around 450 nm; 1e-3 J m^-2 make it half as bright as it gets.
+/// // Sees 400 to 500 nm; an exposure of 1e-3 J m^-2 gives half the greatest brightness.
 /// let sees = |nm: f64| if (nm - 450.0).abs() < 50.0 { 1.0 } else { 0.0 };
 /// let tone = |joule_per_m2: f64, _| [joule_per_m2 / (joule_per_m2 + 1e-3); 3];
 /// Box::new(OneLayer::new("blue film", "J m^-2", context, sees, 1.0 / 60.0, tone))
@@ -35,9 +35,9 @@ pub struct OneLayer<T> {
 }
 
 impl<T: Fn(f64, Pixel) -> [f64; 3] + Send + Sync> OneLayer<T> {
-    /// A film by its name. `sees` is its response to spectral irradiance (W m^-2 nm^-1) at a wavelength (nm), so that its
-    /// integral over the band, times `exposure_time_s`, is the exposure, in `unit`. `tone` makes linear light (sRGB
-    /// primaries, 1 is the screen's white) of the exposure of a pixel.
+    /// A film called `name`. `sees` is its response to spectral irradiance (W m^-2 nm^-1) at a wavelength (nm): the integral
+    /// of irradiance times response, times `exposure_time_s`, is the exposure in `unit`. `tone` turns the exposure of a pixel
+    /// into linear light (sRGB primaries; 1 is the screen's white).
     #[must_use]
     pub fn new(
         name: &str,

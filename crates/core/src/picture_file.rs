@@ -1,55 +1,54 @@
-//! Picture files beyond those that the program reads and writes by itself: a library for them registers here.
+//! Where a library registers that reads or writes more picture formats than the program does by itself.
 //!
-//! Nothing is registered in a plain build. What asks for a library that is not there says how to get it
-//! ([`WITHOUT`]).
+//! A plain build has none. Code that needs one tells the user how to get it ([`WITHOUT`]).
 
 use std::fs::File;
 
-/// How to get the formats of a library, where none is linked.
+/// What to tell the user where no library is linked.
 pub const WITHOUT: &str = "this program was built without OpenImageIO: `cargo build --release --features oiio`";
 
-/// Largest picture that a reader may unpack.
+/// The largest picture that a reader may unpack.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PictureLimits {
     /// Largest side, pixels.
     pub side_px: u32,
-    /// Largest number of pixels in all.
+    /// Largest number of pixels.
     pub pixels: u64,
 }
 
-/// A picture as its file has it: code values, not yet light.
+/// A picture as stored in its file: code values, not yet linear light.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FilePicture {
-    /// Width, pixels, before the picture is turned as `orientation` says.
+    /// Width, pixels, before `orientation` is applied.
     pub width_px: u32,
     /// Height, pixels.
     pub height_px: u32,
-    /// Width over height of a pixel.
+    /// Width of a pixel over its height.
     pub pixel_aspect: f64,
-    /// Red, green and blue, row by row from the top as stored; integers are scaled so that the largest is 1.
+    /// Red, green and blue, row by row from the top as stored; integers are scaled so that their maximum is 1.
     pub rgb: Vec<[f32; 3]>,
-    /// Cover, 0 to 1; `None` where all of it is opaque.
+    /// Opacity, 0 to 1; `None` where everything is opaque.
     pub alpha: Option<Vec<f32>>,
     /// Whether `rgb` is already multiplied by `alpha`, as code values.
     pub multiplied: bool,
     /// Whether the file holds integers, which are clipped at 1.
     pub integers: bool,
-    /// What the file says about its encoding, in the words of the library, such as `sRGB`; `None` where it is silent.
+    /// The color encoding that the file states, as the library names it, such as `sRGB`; `None` if it states none.
     pub color_space: Option<String>,
-    /// How it must be turned to be upright, 1 to 8, as the tag `Orientation` of TIFF 6.0 has it; 1 is upright.
+    /// Orientation, 1 to 8 as the TIFF 6.0 tag `Orientation` defines it; 1 is upright.
     pub orientation: u8,
-    /// The format, in the words of the library, such as `dpx`.
+    /// The format as the library names it, such as `dpx`.
     pub format: String,
 }
 
-/// Linear channels that are to be written as a tiled OpenEXR file.
+/// Linear channels to write as a tiled OpenEXR file.
 #[derive(Clone, Copy, Debug)]
 pub struct TiledExr<'a> {
     /// Width, pixels.
     pub width_px: u32,
     /// Height, pixels.
     pub height_px: u32,
-    /// Width over height of a pixel.
+    /// Width of a pixel over its height.
     pub pixel_aspect: f32,
     /// Width and height of a tile, pixels, a multiple of 16.
     pub tile_px: u32,
@@ -61,28 +60,28 @@ pub struct TiledExr<'a> {
 
 /// A library of picture formats.
 pub trait PictureLibrary: Sync {
-    /// Name and version, for people.
+    /// Name and version, for display.
     fn name(&self) -> String;
 
-    /// Reads the first picture of a file by its ending (`dpx`, without the dot) and content.
+    /// Reads the first picture of a file, given its extension (`dpx`, without the dot) and content.
     ///
     /// # Errors
-    /// What is wrong with the file, in a sentence without a full stop: not of that format, broken, larger than `limits`.
+    /// What is wrong with the file, without a full stop: another format, broken, larger than `limits`.
     fn read(&self, ending: &str, bytes: &[u8], limits: PictureLimits) -> Result<FilePicture, String>;
 
     /// Writes a tiled OpenEXR file: 32-bit floats, lossless. The same picture gives the same bytes.
     ///
     /// # Errors
-    /// What the system or the library says.
+    /// The error of the system or the library.
     fn write_tiled_exr(&self, to: &mut File, picture: &TiledExr<'_>) -> Result<(), String>;
 }
 
-/// A library on offer, to be handed to `inventory::submit!`.
+/// A library as it is registered by `inventory::submit!`.
 pub struct PictureLibraryEntry(pub &'static dyn PictureLibrary);
 
 inventory::collect!(PictureLibraryEntry);
 
-/// The library that this program is linked with, if any; of several the first by name.
+/// The library that this program is linked with, if any; the first by name if there are several.
 #[must_use]
 pub fn library() -> Option<&'static dyn PictureLibrary> {
     inventory::iter::<PictureLibraryEntry>.into_iter().map(|entry| entry.0).min_by_key(|library| library.name())

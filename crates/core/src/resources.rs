@@ -1,4 +1,4 @@
-//! Files that a stage may ask for, by name: beside the scene first, then among the bundled data.
+//! Files that a stage asks for by name: looked up beside the scene first, then among the bundled data.
 
 use crate::params::{Faults, Node, Params};
 use std::borrow::Cow;
@@ -7,11 +7,11 @@ use std::path::PathBuf;
 /// What went wrong with a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ResourceError {
-    /// No such file, neither beside the scene nor bundled; holds near names.
+    /// No such file, neither beside the scene nor bundled; holds similar names.
     NotFound(Vec<String>),
-    /// It is larger than the asker wants to read, bytes: (found, limit).
+    /// It is larger than the caller's limit, bytes: (found, limit).
     TooLarge(u64, u64),
-    /// The system's word.
+    /// The operating system's error.
     Io(String),
 }
 
@@ -30,11 +30,11 @@ impl std::error::Error for ResourceError {}
 /// A file that was found.
 #[derive(Clone, Debug)]
 pub struct Resource {
-    /// How to name it to a person: a path, or `bundled:...`.
+    /// Its name in messages: a path, or `bundled:...`.
     pub name: String,
-    /// Its folder on disk, for paths that it holds; `None` when bundled.
+    /// Its folder on disk, against which paths inside it are resolved; `None` when bundled.
     pub folder: Option<PathBuf>,
-    /// Content.
+    /// The content.
     pub bytes: Cow<'static, [u8]>,
 }
 
@@ -51,13 +51,13 @@ pub trait Resources: Send + Sync {
     /// Reads and parses a YAML document (a lens, a film stock), found as by [`Resources::read`].
     ///
     /// # Errors
-    /// What is wrong with the file or its syntax, with its place in that file; where the file itself is
-    /// not found the fault has no place: put it at the key that named it.
+    /// What is wrong with the file or its syntax, with the place in that file. If the file itself is not found the fault has
+    /// no place: attach it to the key that named the file.
     fn document(&self, path: &str, folders: &[&str], endings: &[&str]) -> Result<Params, Faults>;
 }
 
-/// The path by which [`Resources::read`] finds the file `path` that the value `node` names: beside the file in which the
-/// value is written, where there is one; else as it is written, which is beside the scene.
+/// The path to give to [`Resources::read`] for a file that the value `node` names: relative to the file in which the value is
+/// written, if that is on disk; else as written, which is relative to the scene.
 #[must_use]
 pub fn beside(node: &Node, path: &str) -> String {
     let there = node.file.folder().map(|folder| folder.join(path)).filter(|there| there.is_file());

@@ -1,8 +1,8 @@
-//! Light over the band, as one stage hands it to the next.
+//! Spectra as one stage hands them to the next: sampled over the band.
 
 use std::sync::Arc;
 
-/// Where light is computed unless a scene says otherwise: 350 to 830 nm, by 1 nm.
+/// The default band: 350 to 830 nm in steps of 1 nm.
 pub const BAND: Grid = Grid { start_nm: 350.0, step_nm: 1.0, count: 481 };
 
 /// A uniform grid of wavelengths.
@@ -10,7 +10,7 @@ pub const BAND: Grid = Grid { start_nm: 350.0, step_nm: 1.0, count: 481 };
 pub struct Grid {
     /// First wavelength, nm.
     pub start_nm: f64,
-    /// Distance of neighbors, nm.
+    /// Step between neighbors, nm.
     pub step_nm: f64,
     /// Number of wavelengths, at least 2.
     pub count: usize,
@@ -40,7 +40,7 @@ impl Grid {
         wavelength_nm >= self.start_nm && wavelength_nm <= self.end_nm()
     }
 
-    /// Value at `wavelength_nm` of a table on this grid, linear between points, 0 outside of it.
+    /// Value of a table on this grid at `wavelength_nm`: linear between points, 0 outside the band.
     #[inline(always)]
     #[must_use]
     pub fn interpolate(&self, table: &[f64], wavelength_nm: f64) -> f64 {
@@ -90,7 +90,7 @@ pub struct SpectralPower {
     pub grid: Grid,
     /// Power per nanometre at each point, linear between them.
     pub continuum: Vec<f64>,
-    /// Lines; those outside of the band are nobody's business here.
+    /// Spectral lines; those outside the band are ignored.
     pub lines: Vec<Line>,
 }
 
@@ -101,7 +101,7 @@ impl SpectralPower {
         Self { grid, continuum: vec![0.0; grid.count], lines: Vec::new() }
     }
 
-    /// All of it times `factor`.
+    /// This power times `factor`.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         Self {
@@ -118,14 +118,14 @@ impl SpectralPower {
         self.grid.integrate_product(&self.continuum, response) + lines
     }
 
-    /// Whether no power is held.
+    /// Whether there is no power at all.
     #[must_use]
     pub fn is_dark(&self) -> bool {
         self.continuum.iter().all(|v| *v == 0.0) && self.lines.iter().all(|l| l.power == 0.0)
     }
 }
 
-/// One channel of what is recorded: X of XYZ, a layer of a film.
+/// One recorded channel, such as X of XYZ or a layer of a film.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Channel {
     /// Short name; names the channel in the EXR.
@@ -137,19 +137,19 @@ pub struct Channel {
     pub response: Vec<f64>,
 }
 
-/// What a wavelength sampler must know of the whole.
+/// What a wavelength sampler needs to know about the system.
 #[derive(Clone, Debug)]
 pub struct SystemResponse {
     /// The band and its grid.
     pub grid: Grid,
-    /// What the source emits into the lens, in any common scale.
+    /// What the source emits into the lens, on any scale.
     pub source: SpectralPower,
-    /// What is recorded.
+    /// The recorded channels.
     pub channels: Arc<[Channel]>,
 }
 
 impl SystemResponse {
-    /// Sum of the channels' responses, each scaled to a peak of 1, so that none is forgotten.
+    /// Sum of the channels' responses, each scaled to a peak of 1 so that every channel counts.
     #[must_use]
     pub fn summed_response(&self) -> Vec<f64> {
         let mut sum = vec![0.0; self.grid.count];

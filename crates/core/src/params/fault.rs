@@ -1,19 +1,19 @@
-//! One thing wrong in a user's file, and all of them.
+//! Faults in a user's files.
 
 use super::node::{SourceFile, Span};
 use std::fmt;
 use std::sync::Arc;
 
-/// One thing wrong: what was found and expected, where, and what to do about it.
+/// One fault: what was found and expected, where, and what to write instead.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fault {
-    /// What is wrong, one line.
+    /// What is wrong, on one line.
     pub message: String,
-    /// Where; `None` for what has no place, such as a file that does not exist.
+    /// Where; `None` if it has no place, such as a missing file.
     pub place: Option<(Arc<SourceFile>, Span)>,
     /// Path of the key, such as `source.color.R` or `surfaces[3].radius`; may be empty.
     pub path: String,
-    /// What to do about it.
+    /// What to write instead, or what to do.
     pub hint: Option<String>,
 }
 
@@ -42,7 +42,7 @@ impl Fault {
         Self { path: path.into(), ..self }
     }
 
-    /// Its place as a person reads it: `file:line:column`, or the argument of the command line.
+    /// Its place for display: `file:line:column`, or the command-line argument.
     #[must_use]
     pub fn place_text(&self) -> Option<String> {
         self.place.as_ref().map(|(file, span)| {
@@ -67,12 +67,12 @@ impl fmt::Display for Fault {
 
 impl std::error::Error for Fault {}
 
-/// Everything wrong, in the order it was found.
+/// All faults, in the order in which they were found.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Faults(pub Vec<Fault>);
 
 impl Faults {
-    /// None yet.
+    /// No faults yet.
     #[must_use]
     pub const fn new() -> Self {
         Self(Vec::new())
@@ -100,7 +100,7 @@ impl Faults {
         self.0.iter()
     }
 
-    /// The value of a result; its faults are kept here, so that the next part can be checked too.
+    /// The value of a result, if it has one; its faults are kept here, so that the next part can be checked too.
     pub fn take<T>(&mut self, result: Result<T, impl Into<Self>>) -> Option<T> {
         result.map_err(|faults| self.0.extend(faults.into().0)).ok()
     }

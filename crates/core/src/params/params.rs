@@ -12,7 +12,7 @@ use std::path::Path;
 /// The key that names a stage.
 const KIND: &str = "kind";
 
-/// The parameters of one stage: a map, its `kind` apart, with its places and its path in the file.
+/// The parameters of one stage: a map without its `kind`, with its places and its path in the file.
 #[derive(Clone, Debug)]
 pub struct Params {
     /// A map without `kind`.
@@ -22,8 +22,7 @@ pub struct Params {
 }
 
 impl Params {
-    /// The parameters of a stage at a path: a map with or without `kind`; or a text, which is the name of
-    /// a kind with nothing else said.
+    /// The parameters of a stage at a path: a map with or without `kind`, or just the name of a kind.
     ///
     /// # Errors
     /// It is neither, or its `kind` is not a name.
@@ -55,7 +54,7 @@ impl Params {
         Ok(Self { node, kind, path: path.to_owned() })
     }
 
-    /// The parameters of what has no kinds: a file, a section of it. `kind` is a key like any other here.
+    /// The parameters of something that has no kinds, such as a file or a section. `kind` is an ordinary key here.
     ///
     /// # Errors
     /// It is not a map.
@@ -123,8 +122,8 @@ impl Params {
         de::parse(&self.node, &self.path)
     }
 
-    /// A fault placed at the value of a key (`radius`, `color.R`, `blades[2]`); or at the map, where there
-    /// is no such key. For what a type cannot say: ranges, combinations.
+    /// A fault placed at the value of a key (`radius`, `color.R`, `blades[2]`), or at the map if there is no such key. For what a
+    /// type cannot express, such as combinations of keys.
     #[must_use]
     pub fn fault(&self, key: &str, message: impl Into<String>) -> Fault {
         let node = match &self.kind {

@@ -1,4 +1,4 @@
-//! Parts of a map: one key's stage, some keys apart from the others.
+//! Parts of a map: the stage under a key, or some keys separated from the rest.
 
 use super::fault::{Fault, Faults};
 use super::node::{Node, Value};
@@ -9,20 +9,20 @@ impl Params {
     /// The stage under a key, if the key is there.
     ///
     /// # Errors
-    /// What is there is no stage.
+    /// What is there cannot be a stage.
     pub fn stage_at(&self, key: &str) -> Result<Option<Self>, Faults> {
         self.get(key).map(|node| Self::stage(node.clone(), &self.path_of(key))).transpose()
     }
 
-    /// A stage of which nothing is said: the registry's default kind with its default parameters.
-    /// Faults in it are placed at this map.
+    /// A stage that the scene does not mention: the registry's default kind with its default parameters. Its faults are placed at
+    /// this map.
     #[must_use]
     pub fn nothing_said(&self, key: &str) -> Self {
         let map = Node::new(Value::Map(Vec::new()), self.node().span, Arc::clone(&self.node().file));
         self.with_node(map, &self.path_of(key)).without_kind()
     }
 
-    /// The parameters under `keys`, and all others (with the kind).
+    /// The parameters under `keys`, and the rest (with the kind).
     #[must_use]
     pub fn split(&self, keys: &[&str]) -> (Self, Self) {
         let (mut inside, mut outside) = (Vec::new(), Vec::new());
@@ -39,7 +39,7 @@ impl Params {
         (with(inside), with(outside))
     }
 
-    /// Puts those faults that have no place yet (a file that was not found) at the value of a key.
+    /// Places the faults that have no place yet, such as a missing file, at the value of a key.
     #[must_use]
     pub fn place_at(&self, key: &str, faults: Faults) -> Faults {
         Faults(faults.0.into_iter().map(|fault| self.placed(key, fault)).collect())

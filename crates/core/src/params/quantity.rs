@@ -1,4 +1,4 @@
-//! How a quantity is read: a bare number in a stated unit, or a text with a unit, checked by dimension.
+//! How a quantity is read: a bare number in a stated unit, or a text with a unit whose dimension is checked.
 
 use super::node::Number;
 use super::text::{found_text, nearest, shown, with_article};
@@ -22,7 +22,7 @@ pub enum Bound {
 }
 
 impl Bound {
-    /// Whether a value obeys it; NaN never does.
+    /// Whether a value satisfies it; NaN never does.
     #[must_use]
     pub fn allows(self, value: f64) -> bool {
         match self {
@@ -51,15 +51,15 @@ impl Bound {
     }
 }
 
-/// A typed quantity of a scene file. The constants are what documentation and schemas are made from.
+/// A typed quantity in a scene file. Its constants feed messages, documentation and schemas.
 pub trait Quantity: Copy {
     /// What it measures.
     const DIMENSION: Dimension;
     /// What it is called, without an article.
     const NOUN: &'static str = Self::DIMENSION.noun();
-    /// The unit of a bare number; empty where there is none.
+    /// The unit of a bare number; empty if it has none.
     const BARE_UNIT: &'static str;
-    /// An example of the right form.
+    /// An example of how to write it.
     const EXAMPLE: &'static str;
     /// Which signs it may have.
     const BOUND: Bound = Bound::Any;
@@ -84,7 +84,7 @@ pub trait Quantity: Copy {
     /// Reads a text such as `50 mm`; a number without a unit is in [`Self::BARE_UNIT`].
     ///
     /// # Errors
-    /// What was found and what is expected; a line that starts with `hint: ` may follow.
+    /// What was found and what is expected, perhaps followed by a line that starts with `hint: `.
     fn from_text(text: &str) -> Result<Self, String> {
         let expected = expected::<Self>();
         match Reading::of(text) {

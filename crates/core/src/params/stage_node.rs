@@ -19,11 +19,10 @@ pub(super) fn hand_over(node: Node, path: String) {
     HANDED_OVER.with(|slot| *slot.borrow_mut() = Some(StageNode { node, path }));
 }
 
-/// A part of a scene as it was written, with its places: a field of a parameter struct for a nested
-/// `{kind: x, ...}`, or for a value whose form is decided later.
+/// A part of a scene as it was written, with its places: the field of a parameter struct for a nested `{kind: x, ...}`, or for a
+/// value whose form is decided later.
 ///
-/// It does not work inside of serde's untagged, internally tagged or flattened types, which buffer
-/// values without their places.
+/// It does not work inside serde's untagged, internally tagged or flattened types, which buffer values without their places.
 #[derive(Clone, Debug)]
 pub struct StageNode {
     node: Node,

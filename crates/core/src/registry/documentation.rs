@@ -1,4 +1,4 @@
-//! What a person reads about a stage, taken from the schema of its parameters.
+//! The documentation of a stage, taken from the schema of its parameters.
 
 use super::SchemaOf;
 use schemars::SchemaGenerator;
@@ -10,11 +10,11 @@ use serde_json::{Map, Value};
 pub struct Documentation {
     /// The first paragraph.
     pub summary: String,
-    /// What follows, without examples and references; Markdown.
+    /// The rest of the text, without examples and references; Markdown.
     pub text: String,
-    /// Blocks of YAML, each as it could stand in a file.
+    /// Blocks of YAML, each valid in a file as it stands.
     pub examples: Vec<String>,
-    /// Where formulas and data come from.
+    /// Sources of formulas and data.
     pub references: Vec<String>,
     /// Its parameters, in the order of their declaration.
     pub parameters: Vec<Parameter>,
@@ -23,16 +23,16 @@ pub struct Documentation {
 /// One parameter.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Parameter {
-    /// Its key; `.` leads into a map, `[]` into a list.
+    /// Its key; `.` goes into a map, `[]` into a list.
     pub key: String,
-    /// What it is written as, in words.
+    /// How it is written, in words.
     #[serde(rename = "type")]
     pub kind: String,
-    /// Unit of a bare number; empty where there is none.
+    /// Unit of a bare number; empty if it has none.
     pub unit: String,
-    /// Which values are allowed, in words; empty where any of the type are.
+    /// Allowed values, in words; empty if the type allows all.
     pub range: String,
-    /// What is taken where it is left out; `None` where it must be given, or where leaving it out is a value of its own.
+    /// Its default; `None` if it must be given, or if leaving it out has a meaning of its own.
     pub default: Option<Value>,
     /// Whether it must be given.
     pub required: bool,
@@ -43,7 +43,7 @@ pub struct Parameter {
 }
 
 impl Documentation {
-    /// Of parameters with this schema.
+    /// The documentation of parameters with this schema.
     #[must_use]
     pub fn of(schema: SchemaOf) -> Self {
         let mut generator = SchemaGenerator::default();

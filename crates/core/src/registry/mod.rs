@@ -40,11 +40,11 @@
 //! # assert_eq!(spectra_core::registry::list()[0].documentation().summary, "A paraboloid.");
 //! ```
 //!
-//! What a person reads about a stage comes from the doc comments of its parameters ([`Documentation`]), what an editor
-//! completes from their types ([`definitions`]).
+//! The documentation of a stage comes from the doc comments of its parameters ([`Documentation`]), and what an editor completes
+//! comes from their types ([`definitions`]).
 //!
-//! The order of submission differs between builds and a name could come twice: [`check`] sorts and
-//! refuses, and the command calls it before anything else.
+//! The order of registration differs between builds, and two crates may register the same name. [`check`] refuses that, and the
+//! command calls it before anything else.
 
 mod documentation;
 mod schema;
@@ -62,10 +62,10 @@ use schemars::{JsonSchema, Schema, SchemaGenerator};
 #[doc(hidden)] // for `register!`
 pub use inventory;
 
-/// What a builder may ask for.
+/// What a builder may use besides its parameters.
 #[derive(Clone, Copy)]
 pub struct Context<'a> {
-    /// Files.
+    /// Files by name.
     pub resources: &'a dyn Resources,
     /// The band that light is computed on.
     pub grid: Grid,
@@ -81,15 +81,15 @@ pub type SchemaOf = fn(&mut SchemaGenerator) -> Schema;
 
 /// One registered stage; see [`crate::register!`].
 pub struct Entry<S: ?Sized + 'static> {
-    /// Name in a scene (`kind: name`), kebab-case.
+    /// Its name in a scene (`kind: name`), kebab-case.
     pub name: &'static str,
-    /// The crate that it comes from.
+    /// The crate that registers it.
     pub package: &'static str,
     /// That crate's version.
     pub version: &'static str,
-    /// Whether it is taken where a scene names no kind.
+    /// Whether it is the default where a scene names no kind.
     pub default: bool,
-    /// What its parameters are written in, with their documentation.
+    /// The schema of its parameters, with their documentation.
     pub schema: SchemaOf,
     /// Builds it.
     pub build: Build<S>,
@@ -111,10 +111,10 @@ impl<S: ?Sized> Entry<S> {
 
 /// Registers a stage: `register!(surface "axicon": AxiconParams, build);`.
 ///
-/// The stages are `source`, `color`, `wavelengths`, `surface`, `imager`, `response` and `film`. The parameters' type implements
-/// `Deserialize` and `JsonSchema`, and its doc comment is what `spectra doc` shows: first the summary, then text, then
-/// (optional) `# Example` with a block of YAML, and `# References`. `build` is a [`registry::Build`](crate::registry::Build).
-/// A name followed by `(default)` is taken where a scene names no kind.
+/// The stages are `source`, `color`, `wavelengths`, `surface`, `imager`, `response` and `film`. The type of the parameters
+/// implements `Deserialize` and `JsonSchema`; its doc comment is what `spectra doc` shows: a summary, more text, and optionally
+/// `# Example` with a block of YAML and `# References`. `build` is a [`registry::Build`](crate::registry::Build). Write
+/// `(default)` after the name of the kind that a scene gets if it names none.
 #[macro_export]
 macro_rules! register {
     ($stage:ident $name:literal (default): $params:ty, $build:expr) => {
@@ -154,7 +154,7 @@ macro_rules! register {
 pub trait Stage: 'static {
     /// Its name in messages and in `spectra list`.
     const NAME: &'static str;
-    /// All entries, in the order of the link.
+    /// All entries, in the order in which the linker placed them.
     fn entries() -> Vec<&'static Entry<Self>>;
 }
 
@@ -229,10 +229,10 @@ impl Listed {
     }
 }
 
-/// Tests the registry: no name twice, none ill-formed, one default at most.
+/// Checks the registry: no name registered twice, none malformed, at most one default per stage.
 ///
 /// # Errors
-/// One text a fault; a duplicate names both crates.
+/// One line per fault; a duplicate names both crates.
 pub fn check() -> Result<(), Vec<String>> {
     check_list(&list())
 }
@@ -266,7 +266,7 @@ fn check_list(all: &[Listed]) -> Result<(), Vec<String>> {
 /// Builds the stage that `params` name by their `kind` (or the default one).
 ///
 /// # Errors
-/// Unknown kind, with the nearest known ones; or what the stage's own parameters have wrong.
+/// The kind is unknown (the nearest known ones are named), or the stage's own parameters are wrong.
 pub fn build<S: Stage + ?Sized>(params: &Params, context: &Context<'_>) -> Result<Box<S>, Faults> {
     let mut entries = S::entries();
     entries.sort_by_key(|e| e.name);

@@ -1,10 +1,10 @@
-//! Snell's law in vector form: d' = mu d + push N, for the unit direction d, the unit normal N of
-//! either sense and mu the index before over the index after. A mirror is mu = 1, push = -2 d . N.
+//! Snell's law in vector form: d' = mu d + push N, with the unit direction d, the unit normal N pointing either way, and mu the
+//! index before over the index after. A mirror has mu = 1, push = -2 d . N.
 
-/// The push along the normal for a ray that comes at `cosine` = d . N, and the square of the cosine
-/// behind the surface: negative (or NaN) where the ray is totally reflected.
+/// The push along the normal for a ray that arrives at `cosine` = d . N, and the square of the cosine after the surface, which is
+/// negative (or NaN) where the ray is totally reflected.
 ///
-/// `POSITIVE` says the sign of the cosine, which the ray keeps.
+/// `POSITIVE` states the sign of the cosine, which refraction keeps.
 #[inline(always)]
 pub(super) fn snell<const POSITIVE: bool>(cosine: f64, mu: f64) -> (f64, f64) {
     let along = mu * cosine;
@@ -13,8 +13,8 @@ pub(super) fn snell<const POSITIVE: bool>(cosine: f64, mu: f64) -> (f64, f64) {
     (if POSITIVE { root - along } else { -root - along }, k)
 }
 
-/// The same for a normal of any length, whose square is `length2`: `along` is d . N, and the square of the cosine is
-/// that square times `length2`.
+/// The same for a normal whose squared length is `length2`: `along` is d . N, and the returned square of the cosine is
+/// multiplied by `length2`.
 #[inline(always)]
 pub(super) fn snell_of_length<const POSITIVE: bool>(along: f64, mu: f64, length2: f64) -> (f64, f64) {
     let along = mu * along;

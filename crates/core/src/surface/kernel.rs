@@ -6,20 +6,19 @@ use crate::isa::{Isa, Vectorized};
 use crate::loss::{ALIVE, Loss};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// The numbers that a kernel computes with: `f64` in the tracer; any other type that has these
-/// operations (single precision, a dual number for derivatives) may take its place.
+/// The arithmetic that a kernel needs. The tracer uses `f64`; tolerances of the shapes are chosen for it.
 pub trait Real:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
     /// A constant.
     fn constant(value: f64) -> Self;
-    /// Square root; of a negative number NaN.
+    /// Square root; NaN for a negative number.
     fn sqrt(self) -> Self;
-    /// Its size.
+    /// Absolute value.
     fn abs(self) -> Self;
-    /// The smaller; `other` if this one is NaN.
+    /// The smaller of the two; `other` if this one is NaN.
     fn min(self, other: Self) -> Self;
-    /// `chosen` where this is zero or more, `otherwise` where it is negative or NaN.
+    /// `chosen` if this is zero or more, `otherwise` if it is negative or NaN.
     fn choose(self, chosen: Self, otherwise: Self) -> Self;
 }
 
@@ -46,72 +45,71 @@ impl Real for f64 {
     }
 }
 
-/// A ray in the frame of the surface, of a batch that travels toward the imager (`FORWARD`) or away from it.
+/// A ray in the frame of the surface, in a batch that travels toward the imager (`FORWARD`) or away from it.
 #[derive(Clone, Copy, Debug)]
 pub struct Ray<R, const FORWARD: bool> {
-    /// A point of it, mm.
+    /// A point on it, mm.
     pub position: [R; 3],
     /// Unit direction.
     pub direction: [R; 3],
-    /// Square of the position's distance from the axis, mm^2: already at hand.
+    /// x^2 + y^2 of the position, mm^2.
     pub radius2: R,
 }
 
 impl<R: Real, const FORWARD: bool> Ray<R, FORWARD> {
-    /// A size with the sign of the sense of travel: positive forward. Two square roots of opposite sign solve most
-    /// intersections; this one is on the side that the light comes from.
+    /// `size` with the sign of the direction of travel: positive forward. Most intersections are solved by a square root of
+    /// either sign; this picks the one on the side that the light comes from.
     #[inline(always)]
     pub fn along(&self, size: R) -> R {
         if FORWARD { size } else { -size }
     }
 }
 
-/// Where a ray meets a surface.
+/// Where a ray hits a surface.
 #[derive(Clone, Copy, Debug)]
 pub struct Hit<R> {
     /// Distance along the ray, mm; may be negative.
     pub distance: R,
-    /// Direction . normal, for the normal that points toward +z at the vertex: positive forward, negative backward.
-    /// Read only of shapes whose normal is of unit length.
+    /// Direction . normal, with the normal that points toward +z at the vertex: positive forward, negative backward.
+    /// Read only for shapes whose normal has unit length.
     pub cosine: R,
-    /// Negative or NaN where the ray does not meet the surface, or runs against the sense of travel.
+    /// Negative or NaN where the ray misses the surface or runs against the direction of travel.
     pub valid: R,
 }
 
-/// A surface by branch-free code. Mark the methods `#[inline(always)]`.
+/// A surface in branch-free code. Mark its methods `#[inline(always)]`.
 pub trait KernelShape: Send + Sync + std::fmt::Debug {
-    /// Where the ray meets the surface: for a ray along the axis, the vertex.
+    /// Where the ray hits the surface; for a ray along the axis, the vertex.
     fn hit<R: Real, const FORWARD: bool>(&self, ray: Ray<R, FORWARD>) -> Hit<R>;
-    /// How many times [`KernelShape::refine`] runs over the batch between `hit` and `finish`: for a shape that is met by
-    /// iteration, whose `hit` is a first guess. Each step is a loop over the batch of its own: in one loop the steps of a
-    /// ray wait for each other, apart those of several rays are under way at once. Such a shape has no `UNIT_NORMAL`, and
-    /// `cosine` carries what it likes from step to step.
+    /// How often [`KernelShape::refine`] runs over the batch between `hit` and `finish`, for a shape that is intersected by
+    /// iteration and whose `hit` is a first guess. Each step is its own loop over the batch: within one loop the steps of a
+    /// ray would wait for each other, while separate loops keep several rays in flight. Such a shape has no `UNIT_NORMAL`, and
+    /// may keep whatever it needs between steps in `cosine`.
     const ROUNDS: usize = 0;
-    /// A better hit, from the one before.
+    /// A better hit than the one before.
     #[inline(always)]
     fn refine<R: Real, const FORWARD: bool>(&self, _ray: Ray<R, FORWARD>, hit: Hit<R>) -> Hit<R> {
         hit
     }
-    /// The last one.
+    /// The final hit.
     #[inline(always)]
     fn finish<R: Real, const FORWARD: bool>(&self, _ray: Ray<R, FORWARD>, hit: Hit<R>) -> Hit<R> {
         hit
     }
-    /// Normal at a point of the surface, toward +z at the vertex; of unit length unless [`KernelShape::UNIT_NORMAL`]
-    /// says that it is not.
+    /// Normal at a point of the surface, toward +z at the vertex; of unit length if [`KernelShape::UNIT_NORMAL`] says so.
     fn normal<R: Real>(&self, point: [R; 3]) -> [R; 3];
-    /// Whether the normal is of unit length. Where that would cost a square root it need not be: Snell's law holds for
-    /// a normal of any length, at the price of a division.
+    /// Whether the normal has unit length. It need not where that would cost a square root: Snell's law works with any length,
+    /// at the price of a division.
     const UNIT_NORMAL: bool = true;
-    /// Whether rays that [`KernelShape::hit`] calls invalid are asked for again, by [`KernelShape::search`]. Then the
-    /// distance of an invalid hit must be 0.
+    /// Whether [`KernelShape::search`] tries again for rays that [`KernelShape::hit`] calls invalid. The distance of an invalid
+    /// hit must then be 0.
     const SEARCHES: bool = false;
-    /// The distance, mm, along a ray of which `hit` was not sure: by slow and patient code. `None` where it misses.
+    /// Distance, mm, along a ray that `hit` could not settle, by slower and safer code; `None` if the ray misses.
     fn search(&self, _position: [f64; 3], _direction: [f64; 3], _travel: Travel) -> Option<f64> {
         None
     }
-    /// `mu * direction + push * normal(point)`: the direction behind the surface. A shape whose normal
-    /// is linear in the point may save a few operations here. Used of unit normals only.
+    /// The direction after the surface, `mu * direction + push * normal(point)`. A shape whose normal is linear in the point
+    /// can save a few operations here. Used with unit normals only.
     #[inline(always)]
     fn bend<R: Real>(&self, point: [R; 3], direction: [R; 3], mu: R, push: R) -> [R; 3] {
         let normal = self.normal(point);
@@ -131,7 +129,7 @@ pub trait KernelShape: Send + Sync + std::fmt::Debug {
     }
 }
 
-/// Makes a [`Surface`] of a [`KernelShape`].
+/// Turns a [`KernelShape`] into a [`Surface`].
 #[derive(Clone, Debug)]
 pub struct Kernel<S>(pub S);
 
@@ -170,11 +168,10 @@ const REFRACT: u8 = 0;
 const REFLECT: u8 = 1;
 const PASS: u8 = 2;
 
-/// Intersection and bending run as two loops over the batch. In one loop the two square roots and the
-/// division wait for each other, and what waits behind them fills the processor's schedulers; apart,
-/// several rays' roots are under way at once (measured: 1.3 times the rays a second). What both need
-/// travels in scratch columns: loads and stores are free here, arithmetic is not. Why a ray ended is
-/// asked only where one did.
+/// Intersection and bending run as two loops over the batch. In a single loop the two square roots and the division wait for
+/// each other and the work behind them fills the processor's schedulers; apart, the roots of several rays overlap (measured:
+/// 1.3 times the rays per second). Values that both need go through scratch columns: loads and stores are free here,
+/// arithmetic is not. The cause of a loss is worked out only where a ray ended.
 #[inline]
 fn interact_along<S: KernelShape, const ACTION: u8, const FORWARD: bool>(
     shape: &S,
@@ -189,8 +186,8 @@ fn interact_along<S: KernelShape, const ACTION: u8, const FORWARD: bool>(
     isa.run(Bend::<S, ACTION, FORWARD> { shape, rays, interface })
 }
 
-/// Moves every ray to the surface; leaves cosine and validity behind. Says, of shapes that search, whether any living
-/// ray may have missed.
+/// Moves every ray to the surface and leaves cosine and validity in the scratch columns. For shapes that search, returns
+/// whether any living ray may have missed.
 struct Intersect<'a, S, const FORWARD: bool> {
     shape: &'a S,
     rays: &'a mut RayBatch,
@@ -218,7 +215,7 @@ impl<S: KernelShape, const FORWARD: bool> Vectorized for Intersect<'_, S, FORWAR
     }
 }
 
-/// Bends every ray at its point of the surface and books those that end.
+/// Bends every ray at its point on the surface and books those that end.
 struct Bend<'a, S, const ACTION: u8, const FORWARD: bool> {
     shape: &'a S,
     rays: &'a mut RayBatch,
@@ -238,7 +235,7 @@ impl<S: KernelShape, const ACTION: u8, const FORWARD: bool> Vectorized for Bend<
     }
 }
 
-/// Asks again for the living rays that the fast code was not sure of.
+/// Searches again for the living rays that the fast code could not settle.
 #[cold]
 fn search<S: KernelShape>(shape: &S, rays: &mut RayBatch, travel: Travel) {
     let (c, s) = rays.columns_and_scratch_mut();
@@ -253,8 +250,8 @@ fn search<S: KernelShape>(shape: &S, rays: &mut RayBatch, travel: Travel) {
     }
 }
 
-/// Columns come as arguments of their own: so the compiler knows that none overlaps another, and
-/// need not compare their addresses at every call.
+/// Columns are separate arguments, so the compiler knows that none overlaps another and need not compare addresses at every
+/// call.
 #[inline(always)]
 fn intersect_loop<S: KernelShape, const FORWARD: bool>(
     shape: &S,
@@ -269,7 +266,7 @@ fn intersect_loop<S: KernelShape, const FORWARD: bool>(
     valid: &mut [f64],
 ) -> bool {
     let len = x.len();
-    // Equal lengths, said once, take the bounds checks out of the loop.
+    // Stating the equal lengths once removes the bounds checks from the loop.
     let (y, z, cosine, valid) = (&mut y[..len], &mut z[..len], &mut cosine[..len], &mut valid[..len]);
     let (l, m, n, radius2, state) = (&l[..len], &m[..len], &n[..len], &mut radius2[..len], &state[..len]);
     if S::ROUNDS > 0 {
@@ -291,8 +288,8 @@ fn intersect_loop<S: KernelShape, const FORWARD: bool>(
     unsure
 }
 
-/// The same for a shape that is met by iteration. The column of x^2 + y^2, which bending writes anew, holds the distance
-/// between the steps.
+/// The same for a shape intersected by iteration. Between the steps the column of x^2 + y^2, which bending rewrites, holds the
+/// distance.
 #[inline(always)]
 fn iterate<S: KernelShape, const FORWARD: bool>(
     shape: &S,
@@ -341,7 +338,7 @@ fn iterate<S: KernelShape, const FORWARD: bool>(
     unsure
 }
 
-/// Bends every ray at its point of the surface; says whether any living one ended.
+/// Bends every ray at its point on the surface; returns whether any living ray ended.
 #[inline(always)]
 fn bend_all<S: KernelShape, const ACTION: u8, const FORWARD: bool>(
     shape: &S,
@@ -422,8 +419,8 @@ fn ends(margin: f64) -> bool {
     !(margin >= 0.0)
 }
 
-/// Books the rays that ended here, in the order of the light: a ray that misses cannot be clipped,
-/// one that is clipped not reflected. Returns how many.
+/// Books the rays that ended here, in the order of the light: a ray that misses cannot be clipped, and a clipped one cannot be
+/// totally reflected. Returns how many ended.
 #[inline(always)]
 fn book(rays: &mut RayBatch, at: &Interface<'_>) -> usize {
     let missed = Loss::Missed.state(at.number);

@@ -1,4 +1,4 @@
-//! The plain tier: one ray at a time, as a person would write it.
+//! The plain tier: one ray at a time, in ordinary scalar code.
 
 use super::{Action, Interface, Surface, Travel, bend};
 use crate::RayBatch;
@@ -11,7 +11,7 @@ use glam::DVec3;
 pub struct Intersection {
     /// Distance along the ray, mm; may be negative.
     pub distance_mm: f64,
-    /// Normal of any length but zero, of either sense.
+    /// Normal: any length but zero, pointing either way.
     pub normal: DVec3,
 }
 
@@ -22,21 +22,21 @@ pub struct Bending {
     pub point: DVec3,
     /// Unit direction before.
     pub direction: DVec3,
-    /// Unit normal; it points to where the ray goes (`direction . normal` is not negative).
+    /// Unit normal on the side that the ray goes to (`direction . normal` is not negative).
     pub normal: DVec3,
-    /// Wavelength in vacuum-equal air, nm.
+    /// Wavelength in air, nm.
     pub wavelength_nm: f64,
     /// Refractive index of the medium that the ray comes from.
     pub n_before: f64,
-    /// Refractive index of the medium behind the surface, in the sense of travel.
+    /// Refractive index of the medium that the ray would enter.
     pub n_after: f64,
-    /// What happens here: never [`Action::Pass`], which leaves the direction alone.
+    /// What happens here; never [`Action::Pass`], which leaves the direction alone.
     pub action: Action,
-    /// Sense of travel along z.
+    /// Direction of travel along z.
     pub travel: Travel,
 }
 
-/// A surface by scalar code.
+/// A surface in scalar code.
 pub trait ScalarShape: Send + Sync + std::fmt::Debug {
     /// Where the ray through `position` (mm, frame of the surface) along the unit `direction` meets
     /// the surface; `None` where it does not.
@@ -50,8 +50,8 @@ pub trait ScalarShape: Send + Sync + std::fmt::Debug {
         let (x, y) = self.vertex_curvature_per_mm();
         ((n_after - n_before) * x, (n_after - n_before) * y)
     }
-    /// The unit direction behind the surface, or why the ray ends, where the surface bends light by another law than
-    /// Snell's: an ideal lens, a grating. By default `None`: refracted or reflected as the action says.
+    /// For surfaces that bend light by another law than Snell's, such as an ideal lens or a grating: the unit direction after
+    /// the surface, or why the ray ends. `None`, the default, refracts or reflects as the action says.
     fn redirect(&self, _at: &Bending) -> Option<Result<DVec3, Loss>> {
         None
     }
@@ -65,7 +65,7 @@ pub trait ScalarShape: Send + Sync + std::fmt::Debug {
     }
 }
 
-/// Makes a [`Surface`] of a [`ScalarShape`].
+/// Turns a [`ScalarShape`] into a [`Surface`].
 #[derive(Clone, Debug)]
 pub struct PerRay<S>(pub S);
 

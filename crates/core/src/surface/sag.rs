@@ -1,4 +1,4 @@
-//! The smallest thing that makes a surface: its sag.
+//! The least that makes a surface: its sag.
 
 use super::search::nearest_crossing;
 use super::{Intersection, ScalarShape, Travel};
@@ -9,8 +9,8 @@ pub trait SagShape: Send + Sync + std::fmt::Debug {
     /// Sag at a point, mm from the vertex plane; `None` where the surface does not reach.
     fn sag_mm(&self, x_mm: f64, y_mm: f64) -> Option<f64>;
 
-    /// Slopes dz/dx and dz/dy. Derived from the sag by differences unless given: give them where
-    /// they are known, the tracing gets faster and exact.
+    /// Slopes dz/dx and dz/dy. By default taken from the sag by differences; give them where you know them, and tracing is
+    /// faster and exact.
     fn slope(&self, x_mm: f64, y_mm: f64) -> Option<(f64, f64)> {
         // Rounding of the sag over the step, and the fourth power of the step, meet near 1e-11 here.
         let h = 1e-3;
@@ -24,7 +24,7 @@ pub trait SagShape: Send + Sync + std::fmt::Debug {
         Some((along(h, 0.0)?, along(0.0, h)?))
     }
 
-    /// As [`super::Surface::vertex_curvature_per_mm`]; by differences unless given.
+    /// As [`super::Surface::vertex_curvature_per_mm`]; by default from differences of the sag.
     fn vertex_curvature_per_mm(&self) -> (f64, f64) {
         let h = 1e-3;
         let second = |dx: f64, dy: f64| {
@@ -35,7 +35,7 @@ pub trait SagShape: Send + Sync + std::fmt::Debug {
     }
 }
 
-/// Makes a [`ScalarShape`] of a [`SagShape`]: a ray meets it where it crosses the sag in its sense along z.
+/// Turns a [`SagShape`] into a [`ScalarShape`]: a ray hits it where it crosses the sag in its direction of travel.
 #[derive(Clone, Debug)]
 pub struct FromSag<S>(pub S);
 

@@ -1,20 +1,20 @@
-//! Where a ray crosses a surface that is given by its sag: a few steps of Newton's method where they plainly lead
-//! home, a patient search where they do not.
+//! Where a ray crosses a surface given by its sag: a few steps of Newton's method where they clearly converge, a bracketed search
+//! where they do not.
 
 use super::Travel;
 use glam::DVec3;
 
 /// Steps of Newton's method before the search takes over; each about doubles the digits.
 const NEWTON_STEPS: usize = 12;
-/// A step counts as shorter than the one before if it is this part of it. Below one half, no other crossing can lie
-/// between the start and the point that the steps tend to (the condition of Kantorovich's theorem on Newton's method).
+/// A step counts as converging if it is at most this fraction of the one before. Below one half, no other crossing can lie between
+/// the start and the limit of the steps (the condition of Kantorovich's theorem on Newton's method).
 const SHORTER: f64 = 0.4;
 /// Steps below this, mm, may be rounding, or the noise of slopes taken by differences.
 const NOISE_MM: f64 = 1e-8;
-/// Where a step is smaller than this, mm, the ray has arrived.
+/// Once a step is smaller than this, mm, the ray has arrived.
 const ARRIVED_MM: f64 = 1e-13;
 
-/// First step of the search, as a part of the distance between ray and vertex.
+/// First step of the search, as a fraction of the distance between ray and vertex.
 const FIRST_STEP: f64 = 0.01;
 /// Least such distance, mm.
 const SMALLEST_MM: f64 = 0.1;
@@ -29,12 +29,12 @@ const EXTREMUM_HALVINGS: usize = 30;
 /// Steps within a bracket, each at least a halving.
 const BRACKET_STEPS: usize = 120;
 
-/// The distance, mm, at which the ray crosses z = sag(x, y) in the sense of travel: forward from smaller z to larger.
-/// Where it does so more than once, the crossing nearest to `start_mm` (or, if the search has to begin elsewhere, to
-/// the point of the ray nearest to the vertex).
+/// The distance, mm, at which the ray crosses z = sag(x, y) in its direction of travel (forward: from smaller z to larger). If it
+/// does so more than once, the crossing nearest to `start_mm` or, if the search has to start elsewhere, nearest to the point of
+/// the ray that is closest to the vertex.
 ///
-/// `height` gives z - sag at a distance along the ray and the derivative of that along the ray; `None` where the
-/// surface does not reach.
+/// `height` returns z - sag at a distance along the ray, and its derivative along the ray; `None` where the surface does not
+/// reach.
 pub fn nearest_crossing(
     height: impl Fn(f64) -> Option<(f64, f64)>,
     position: DVec3,
@@ -76,7 +76,7 @@ fn newton(height: &impl Fn(f64) -> Option<(f64, f64)>, start: f64, sense: f64) -
             return (slope * sense > 0.0).then_some(t);
         }
     }
-    // Slopes by differences end in a dance of rounding, which is as good as arrived.
+    // With slopes by differences the steps end in rounding noise, which is as good as arrived.
     let (_, slope) = height(t)?;
     (last <= 10.0 * ARRIVED_MM + 10.0 * f64::EPSILON * t.abs() && slope * sense > 0.0).then_some(t)
 }
