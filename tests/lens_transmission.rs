@@ -138,7 +138,7 @@ fn both_ways_and_all_tiers_alike() {
 fn glass_absorbs_along_the_path() {
     let plate = |absorption: bool| {
         written(&format!(
-            "name: p\nabsorption: {absorption}\nsurfaces:\n  - {{kind: plane, thickness: 40, glass: SCHOTT/N-SF11}}\n  \
+            "name: p\ncoating: ideal\nabsorption: {absorption}\nsurfaces:\n  - {{kind: plane, thickness: 40, glass: SCHOTT/N-SF11}}\n  \
              - {{kind: plane, thickness: 10}}\n"
         ))
     };

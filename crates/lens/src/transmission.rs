@@ -68,6 +68,7 @@ impl Lens {
     #[must_use]
     pub fn with_coating(mut self, coating: Coating) -> Self {
         self.coating = coating;
+        self.coating_assumed = false;
         for e in &mut self.elements {
             e.coating = None;
         }

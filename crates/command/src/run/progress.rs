@@ -127,6 +127,15 @@ impl Progress {
         }
     }
 
+    /// What is worth knowing of how the scene is taken.
+    pub(crate) fn note(&self, text: &str) {
+        match &self.listener {
+            Listener::Json => self.event(json!({ "event": "note", "message": text })),
+            Listener::Quiet => {}
+            Listener::Bar(_) | Listener::Lines => console::note(&format!("note: {text}")),
+        }
+    }
+
     /// Light is traced from now on.
     pub(crate) fn start(&mut self, scene: &Scene, threads: usize, isa: Isa) {
         self.begun = Instant::now();

@@ -1,0 +1,31 @@
+//! What is taken of a lens's losses, in words: beside every T-number.
+
+use crate::{Coating, Lens};
+use spectra_core::surface::Action;
+
+impl Lens {
+    /// What coatings and absorption are counted, and what of it is assumed: `bare (assumed for 1927), glass absorbs`.
+    #[must_use]
+    pub fn losses(&self) -> String {
+        let refracts = |e: &&crate::Element| e.action == Action::Refract && e.medium_before != e.medium_after;
+        let own = self.elements.iter().filter(refracts).filter(|e| e.coating.is_some()).count();
+        let all = self.elements.iter().filter(refracts).count();
+        let mut coating = match own {
+            0 => self.coating.words(),
+            _ if own == all => "each surface coated as stated".to_owned(),
+            _ => format!("{}, {own} of {all} surfaces as stated", self.coating.words()),
+        };
+        if self.coating_assumed && own < all {
+            coating += &self.year.map_or(" (assumed: no year is stated)".to_owned(), |y| format!(" (assumed for {y})"));
+        }
+        let absorption = if self.absorption { "glass absorbs" } else { "no absorption" };
+        format!("{coating}, {absorption}")
+    }
+
+    /// Whether nothing is lost at surfaces or in glass, by assumption.
+    #[must_use]
+    pub fn is_lossless(&self) -> bool {
+        let ideal = |e: &crate::Element| e.coating.as_ref().unwrap_or(&self.coating) == &Coating::Ideal;
+        !self.absorption && self.elements.iter().filter(|e| e.action == Action::Refract).all(ideal)
+    }
+}
