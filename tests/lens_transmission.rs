@@ -85,7 +85,7 @@ fn a_layer_reflects_less() {
 fn surfaces_multiply() {
     let lens = biotar();
     let layer = Coating::quarter_wave(1.38, 520.0);
-    for coating in [Coating::Bare, layer] {
+    for coating in [Coating::Bare, layer, Coating::three_layer()] {
         let coated = lens.clone().with_coating(coating.clone());
         let rays = fan(200);
         let mut compared = 0;
@@ -115,7 +115,7 @@ fn surfaces_multiply() {
 #[test]
 fn both_ways_and_all_tiers_alike() {
     let rays = fan(300);
-    for coating in [Coating::Ideal, Coating::Bare, Coating::quarter_wave(1.38, 550.0)] {
+    for coating in [Coating::Ideal, Coating::Bare, Coating::quarter_wave(1.38, 550.0), Coating::three_layer()] {
         let mut lens = biotar().with_coating(coating.clone());
         lens.absorption = coating != Coating::Ideal;
         let there = trace(&lens, &rays, Travel::Forward, Isa::Baseline);

@@ -66,7 +66,7 @@ def means(path):
 
 def render(program, scene, sets):
     text = scene.read_text(encoding="utf-8")
-    more = [f"{key}=null" for key in ("sweep", "animation") if f"\n{key}:" in text]
+    more = ["output=[exr]"] + [f"{key}=null" for key in ("sweep", "animation") if f"\n{key}:" in text]
     with tempfile.TemporaryDirectory() as folder:
         command = [program, "run", str(scene), "-q", "--samples", "8", "-o", folder]
         for text in [*sets, *more, "render.rays=300000", "imager.resolution=[60, 40]"]:

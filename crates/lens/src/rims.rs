@@ -7,8 +7,11 @@ use spectra_core::surface::Action;
 const STEPS: usize = 64;
 /// Halvings between two of them.
 const HALVINGS: usize = 40;
-/// Surfaces may overlap by this much at their rims, mm: edges that touch are ground, and tables are rounded.
-const TOUCH_MM: f64 = 0.05;
+/// Surfaces may meet at their very rims, this part of the semi-diameter and beyond: published semi-diameters are rounded up
+/// (those of three library lenses by 2 to 3 %), and edges that touch are ground.
+const RIM: f64 = 0.95;
+/// Gaps are compared with this slack, mm.
+const TOUCH_MM: f64 = 1e-6;
 
 impl Lens {
     /// What looks like a slip in the prescription, each with a hint: neighbors that meet within their clear semi-diameters,
@@ -49,8 +52,8 @@ impl Lens {
     fn meeting_mm(&self, front: usize, rear: usize) -> Option<f64> {
         let (front, rear) = (&self.elements[front], &self.elements[rear]);
         let rim = match (front.semi_diameter_mm, rear.semi_diameter_mm) {
-            (Some(a), Some(b)) => a.min(b),
-            (one, other) => one.or(other)?,
+            (Some(a), Some(b)) => RIM * a.min(b),
+            (one, other) => RIM * one.or(other)?,
         };
         let z = |e: &Element, x: f64, y: f64| {
             let sense = if e.reversed { -1.0 } else { 1.0 };
