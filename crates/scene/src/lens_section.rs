@@ -193,6 +193,11 @@ fn with_aperture(lens: &Lens, node: &StageNode, resources: &dyn Resources) -> Re
     Ok(lens)
 }
 
+/// Whether it says that the lens does not reach the f-number asked for.
+pub(crate) fn is_too_fast(fault: &Fault) -> bool {
+    fault.path == "lens.f-number" && fault.message.contains(" is faster than the lens")
+}
+
 /// A fault at `f-number`.
 fn aperture_fault(params: &Params, error: &ApertureError) -> Fault {
     let hint = match error {
