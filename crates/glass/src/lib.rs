@@ -33,8 +33,8 @@ pub mod lines;
 mod medium;
 
 pub use catalogue::{
-    Candidate, Catalogue, CatalogueError, Deviation, Era, EraError, FindError, LISTED_TOLERANCE_ND,
-    LISTED_TOLERANCE_VD, ListedCheck, Match, Query,
+    Absorption, Candidate, Catalogue, CatalogueError, Deviation, Era, EraError, FindError, LISTED_TOLERANCE_ND,
+    LISTED_TOLERANCE_VD, Lender, ListedCheck, Match, Query,
 };
 pub use dispersion::{Dispersion, DispersionError, Rational};
 pub use formula::{Formula, Melt, ModelGlass, NumberedFormula, Table, TableError};

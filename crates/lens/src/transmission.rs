@@ -5,14 +5,14 @@
 //! before and after, whatever the kind of surface.
 
 use crate::coating::{self, Coating};
-use crate::{Element, Lens};
+use crate::{Element, Lens, LensMedium};
 use spectra_core::RayBatch;
 use spectra_core::batch::Column;
 use spectra_core::isa::{Isa, Vectorized};
 use spectra_core::loss::ALIVE;
 use spectra_core::math;
 use spectra_core::surface::Action;
-use spectra_glass::Medium;
+use spectra_glass::{Lender, Medium};
 
 /// Indices that differ by less let everything pass: reflectance is below 1e-17 there.
 const SAME_INDEX: f64 = 1e-8;
@@ -64,6 +64,14 @@ impl Lens {
         }
     }
 
+    /// The media whose absorption is borrowed, each with its label and the glass that lends; whether or not glass absorbs
+    /// now.
+    #[must_use]
+    pub fn borrowed_absorption(&self) -> Vec<(&str, Lender)> {
+        let lender = |m: &LensMedium| m.medium.absorption(self.year)?.lender;
+        self.media.iter().filter_map(|m| Some((m.label.as_str(), lender(m)?))).collect()
+    }
+
     /// The same lens with this coating everywhere, whatever its surfaces state.
     #[must_use]
     pub fn with_coating(mut self, coating: Coating) -> Self {
@@ -84,10 +92,10 @@ pub(crate) struct Absorption {
 }
 
 impl Absorption {
-    /// Of a medium; `None` where it absorbs nothing, as far as is known. Beyond its data the nearest of them holds.
-    pub(crate) fn of(medium: &Medium, min_nm: f64, max_nm: f64) -> Option<Self> {
-        let Medium::Glass(glass) = medium else { return None };
-        let k = glass.extinction.as_ref()?;
+    /// Of a medium of a lens of that year, by its own data or borrowed ones ([`Medium::absorption`]); `None` where it
+    /// absorbs nothing, as far as is known. Beyond the data the nearest of them holds.
+    pub(crate) fn of(medium: &Medium, year: Option<i32>, min_nm: f64, max_nm: f64) -> Option<Self> {
+        let k = medium.absorption(year)?.extinction;
         let (first, last) = k.range_nm();
         let count = ((max_nm - min_nm) / STEP_NM).ceil() as usize + 2;
         let at = |i: usize| {

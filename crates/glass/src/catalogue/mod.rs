@@ -5,12 +5,14 @@
 mod check;
 mod era;
 mod find;
+mod lender;
 mod nearest;
 mod text;
 
 pub use check::{Deviation, LISTED_TOLERANCE_ND, LISTED_TOLERANCE_VD, ListedCheck};
 pub use era::{Era, EraError};
 pub use find::{Candidate, FindError};
+pub use lender::{Absorption, Lender};
 pub use nearest::{Match, Query};
 
 use std::borrow::Cow;

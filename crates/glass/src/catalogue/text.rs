@@ -89,6 +89,11 @@ impl Bundle {
         &self.blocks[self.records[i].block as usize].maker
     }
 
+    /// Whether record `i` has a column of extinction.
+    pub(super) fn has_extinction(&self, i: usize) -> bool {
+        self.records[i].rest.split('|').nth(6).is_some_and(|column| !column.is_empty())
+    }
+
     /// What an everyday name stands for.
     pub(super) fn alias(&self, name: &str) -> Option<&'static str> {
         self.aliases.iter().find(|(alias, _)| alias.eq_ignore_ascii_case(name)).map(|(_, target)| *target)

@@ -1,0 +1,181 @@
+//! Absorption for glasses of which none is published: that of the nearest glass that has it.
+//!
+//! Makers print internal transmittance for what they sell today; of most older glasses, and of a glass known by its nd
+//! and Vd, nothing is published. Blue and violet absorption follows the ultraviolet edge, and that follows index and
+//! dispersion, so that the neighbor in the Abbe diagram is a better guess than perfect clarity.
+
+use std::fmt;
+use std::sync::OnceLock;
+
+use super::{Catalogue, Place};
+use crate::formula::ModelGlass;
+use crate::glass::{Category, Extinction, Glass};
+use crate::lines::{D, LineTriple};
+use crate::medium::Medium;
+
+/// One unit of distance in the index.
+const UNIT_ND: f64 = 0.01;
+/// One unit of distance in the Abbe number.
+const UNIT_VD: f64 = 1.0;
+/// What another maker's glass, and one of another time, count in addition.
+const ANOTHER: f64 = 1.0;
+/// Farther away there is no likeness: 0.1 in nd, or 10 in Vd.
+const FARTHEST: f64 = 10.0;
+/// Last year of the list of lead and arsenic glasses, the oldest one of the catalogue.
+const OLD_LIST: u16 = 1983;
+/// Until about then lenses were made of these.
+const OLD_UNTIL: i32 = 1990;
+
+/// A glass whose absorption stands in for that of another.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Lender {
+    /// `MAKER/NAME`.
+    pub full_name: String,
+    /// Its index less that of the borrower, d line.
+    pub delta_nd: f64,
+    /// Its Abbe number less that of the borrower, lines d, F and C.
+    pub delta_vd: f64,
+    /// Both in one number, see [`Medium::absorption`].
+    pub distance: f64,
+}
+
+impl fmt::Display for Lender {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} (nd {:+.4}, Vd {:+.1})", self.full_name, self.delta_nd, self.delta_vd)
+    }
+}
+
+/// How a medium absorbs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Absorption {
+    /// The extinction coefficient.
+    pub extinction: Extinction,
+    /// Whose it is; `None`: its own.
+    pub lender: Option<Lender>,
+}
+
+/// What is asked for.
+struct Borrower<'a> {
+    nd: f64,
+    vd: f64,
+    category: Category,
+    maker: Option<&'a str>,
+    /// Whether it is of the time of the oldest list; `None` where that is not known.
+    old: Option<bool>,
+}
+
+/// A glass that could lend.
+struct Candidate {
+    place: Place,
+    nd: f64,
+    vd: f64,
+    category: Category,
+    old: Option<bool>,
+}
+
+impl Medium {
+    /// How it absorbs: by its own data, or by those of the nearest medium of the bundled catalogue that has any.
+    /// `year` is that of the lens, where known; it counts for media of no catalogue.
+    ///
+    /// Nearest is the smallest hypot(dnd / 0.01, dVd / 1), to which another maker adds 1 and another time 1: one of the
+    /// two was listed by 1983 (or is of a lens built by 1990), when flints held lead, the other was not. Glasses borrow
+    /// from optical and technical glasses, plastics from plastics.
+    ///
+    /// `None`, so clear: air, vacuum, media known by an index alone, and where nothing lies within a distance of 10.
+    /// Crystals, liquids and filter glasses borrow nothing either: a neighbor in index says nothing of their absorption.
+    #[must_use]
+    pub fn absorption(&self, year: Option<i32>) -> Option<Absorption> {
+        let of_year = year.map(|year| year <= OLD_UNTIL);
+        let borrower = match self {
+            Medium::Air | Medium::Vacuum | Medium::Constant(_) => return None,
+            Medium::Model(model) => borrower_of(model, of_year),
+            Medium::Glass(glass) => {
+                if let Some(own) = &glass.extinction {
+                    return Some(Absorption { extinction: own.clone(), lender: None });
+                }
+                let own = old(glass).or_else(|| of_year.filter(|_| glass.category == Category::User));
+                Borrower {
+                    nd: glass.nd(),
+                    vd: glass.vd(),
+                    category: glass.category,
+                    maker: Some(&*glass.maker),
+                    old: own,
+                }
+            }
+        };
+        Catalogue::bundled().lender(&borrower)
+    }
+}
+
+fn borrower_of(model: &ModelGlass, old: Option<bool>) -> Borrower<'static> {
+    let vd = LineTriple::FDC.abbe_number(|w| model.index(w));
+    Borrower { nd: model.index(D.wavelength_nm), vd, category: Category::OpticalGlass, maker: None, old }
+}
+
+/// Whether a glass stands in the oldest list; not known where it has no years.
+fn old(glass: &Glass) -> Option<bool> {
+    glass.years.map(|(first, _)| first <= OLD_LIST)
+}
+
+fn lends_to(lender: Category, borrower: Category) -> bool {
+    use Category::{OpticalGlass, Plastic, TechnicalGlass, User};
+    match borrower {
+        OpticalGlass | TechnicalGlass | User => matches!(lender, OpticalGlass | TechnicalGlass),
+        Plastic => lender == Plastic,
+        _ => false,
+    }
+}
+
+impl Catalogue {
+    fn lender(&self, borrower: &Borrower<'_>) -> Option<Absorption> {
+        let distance = |candidate: &Candidate| {
+            let (dn, dv) = ((candidate.nd - borrower.nd) / UNIT_ND, (candidate.vd - borrower.vd) / UNIT_VD);
+            let near = (dn * dn + dv * dv).sqrt();
+            let maker = borrower.maker.is_some_and(|maker| !maker.eq_ignore_ascii_case(self.maker_of(candidate.place)));
+            let time = borrower.old.zip(candidate.old).is_some_and(|(a, b)| a != b);
+            (near <= FARTHEST).then_some(near + ANOTHER * (f64::from(u8::from(maker)) + f64::from(u8::from(time))))
+        };
+        let (best, at) = (self.lenders())
+            .iter()
+            .filter(|candidate| lends_to(candidate.category, borrower.category))
+            .filter_map(|candidate| Some((distance(candidate)?, candidate)))
+            .min_by(|a, b| a.0.total_cmp(&b.0))?;
+        let glass = self.glass(at.place);
+        let lender = Lender {
+            full_name: glass.full_name(),
+            delta_nd: at.nd - borrower.nd,
+            delta_vd: at.vd - borrower.vd,
+            distance: best,
+        };
+        Some(Absorption { extinction: glass.extinction?, lender: Some(lender) })
+    }
+
+    /// The glasses with absorption, by name; looked for once.
+    fn lenders(&self) -> &'static [Candidate] {
+        static LENDERS: OnceLock<Vec<Candidate>> = OnceLock::new();
+        LENDERS.get_or_init(|| {
+            let catalogue = Catalogue::bundled();
+            let candidate = |place: Place| {
+                let glass = catalogue.with_absorption(place)?;
+                let seen = glass.extinction.as_ref()?.range_nm();
+                let lends = lends_to(glass.category, glass.category) && seen.0 <= 440.0 && seen.1 >= 640.0;
+                lends.then(|| Candidate {
+                    place,
+                    nd: glass.nd(),
+                    vd: glass.vd(),
+                    category: glass.category,
+                    old: old(&glass),
+                })
+            };
+            catalogue.index.iter().filter_map(|(_, place)| candidate(*place)).collect()
+        })
+    }
+
+    /// The glass there, if its record has a column of absorption.
+    fn with_absorption(&self, place: Place) -> Option<Glass> {
+        match place {
+            Place::Text(i) if !self.bundle.has_extinction(i as usize) => None,
+            _ => Some(self.glass(place)),
+        }
+    }
+}

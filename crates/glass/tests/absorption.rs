@@ -1,0 +1,56 @@
+//! Absorption of glasses of which none is published: borrowed, and said so.
+
+use spectra_glass::{Catalogue, Medium};
+
+fn medium(name: &str) -> Medium {
+    Catalogue::bundled().medium(name).unwrap_or_else(|e| panic!("{e}"))
+}
+
+#[test]
+fn own_data_come_first() {
+    let glass = medium("SCHOTT/SF6");
+    let own = glass.absorption(Some(1927)).expect("known");
+    assert_eq!(own.lender, None);
+    let tau = |nm: f64| libm::exp(-4.0e7 * std::f64::consts::PI * own.extinction.at(nm).expect("in range") / nm);
+    let same = glass.internal_transmittance(420.0, 10.0).expect("known");
+    assert!((tau(420.0) - same).abs() < 1e-12);
+}
+
+/// The barium crown of old lenses borrows from its own kind, near by, and the lender is named.
+#[test]
+fn old_glasses_borrow_from_near_ones() {
+    for name in ["SCHOTT/SK16", "SCHOTT/BAF9", "SCHOTT/SK10", "SCHOTT/SF55", "SCHOTT/LAK8", "SCHOTT/LAK31"] {
+        let absorption = medium(name).absorption(None).unwrap_or_else(|| panic!("{name} borrows nothing"));
+        let lender = absorption.lender.unwrap_or_else(|| panic!("{name} has absorption of its own"));
+        println!("{name}: {lender}, distance {:.2}", lender.distance);
+        assert!(lender.delta_nd.abs() < 0.03 && lender.delta_vd.abs() < 4.0, "{name}: {lender}");
+        // Of 10 mm no old glass passes everything at h, and none is a filter at d.
+        let tau = |nm: f64| libm::exp(-4.0e7 * std::f64::consts::PI * absorption.extinction.at(nm).unwrap_or(0.0) / nm);
+        assert!(tau(404.7) < 0.995 && tau(404.7) > 0.3 && tau(587.6) > 0.97, "{name}: {} {}", tau(404.7), tau(587.6));
+    }
+}
+
+/// Without lead SF6 absorbs more in the violet: a lens of 1960 does not borrow from N-SF6.
+#[test]
+fn time_counts_for_figures_alone() {
+    let figures = Medium::from_nd_vd(1.8052, 25.4).expect("a glass");
+    let lender = |year| figures.absorption(year).and_then(|a| a.lender).expect("borrowed").full_name;
+    let (old, new) = (lender(Some(1960)), lender(Some(2015)));
+    println!("1960: {old}, 2015: {new}");
+    let lead_free = |name: &str| name.contains("/N-") || name.contains("/S-") || name.contains("/J-");
+    assert!(!lead_free(&old) && lead_free(&new), "{old} {new}");
+}
+
+#[test]
+fn what_is_no_glass_borrows_nothing() {
+    for medium in [Medium::Air, Medium::Vacuum, Medium::Constant(1.5)] {
+        assert_eq!(medium.absorption(None), None);
+    }
+    // No glass is near a gas, nor near nd 1.5 with Vd 5.
+    for (nd, vd) in [(1.0003, 89.0), (1.5, 5.0)] {
+        assert_eq!(Medium::from_nd_vd(nd, vd).expect("a medium").absorption(None), None);
+    }
+    // A crystal is as clear as it is, whatever glass has its index.
+    let clear = medium("CaF2/Malitson");
+    assert!(clear.absorption(None).is_none_or(|a| a.lender.is_none()));
+}
