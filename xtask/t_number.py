@@ -7,8 +7,8 @@ against (tests/cli_lens.rs, figures in tests/data/t-numbers.csv).
 Rays of an object at infinity on the axis, rings of equal area over the pupil; at each surface Snell's law by the angle to the
 normal and Fresnel's equations for both polarizations (of a bare lens; cement between glasses included). The marginal ray is the
 highest one that passes all semi-diameters; N = 1 / (2 sin theta'), T = N / sqrt(mean of what passes). Indices at the line d are
-those that the program's own `glass info` gives; with a third argument, a JSON file {surface: internal transmittance of 10 mm},
-glass absorbs too.
+those that the program's own `glass info` gives. With a third argument, `absorbing`, glass absorbs too: by the internal transmittance of
+10 mm that `glass info` gives for it or, where it has none, for the glass that `lens info` names as the lender.
 """
 
 import json
@@ -18,6 +18,7 @@ import subprocess
 import sys
 
 RINGS = 2000
+LINE_D_NM = 587.5618
 
 
 def surfaces(path):
@@ -46,6 +47,12 @@ def index(program, glass):
         return float(glass.split(",")[0])
     out = subprocess.run([program, "glass", "info", glass, "--json"], check=True, capture_output=True, text=True).stdout
     return json.loads(out)["nd"]
+
+
+def per_mm(program, glass):
+    command = [program, "glass", "info", glass, "--wavelength-nm", str(LINE_D_NM), "--json"]
+    out = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+    return -math.log(json.loads(out)["internal_transmittance_10mm_at"]) / 10.0
 
 
 def fresnel(n, m, cos_i, cos_t):
@@ -116,8 +123,9 @@ def main():
     indices = {name: index(program, name) for name in names}
     absorption = {}
     if len(sys.argv) > 3:
-        with open(sys.argv[3], encoding="utf-8") as file:
-            absorption = {glass: -math.log(tau) / 10.0 for glass, tau in json.load(file).items()}
+        out = subprocess.run([program, "lens", "info", sys.argv[1], "--json"], check=True, capture_output=True, text=True).stdout
+        lenders = {entry["medium"]: entry["lender"] for entry in json.loads(out)["borrowed_absorption"]}
+        absorption = {name: per_mm(program, lenders.get(name, name)) for name in names}
     f_number, passed, t_number = numbers(rows, indices, absorption)
     print(f"f/{f_number:.5f}, passes {passed:.5f}, T/{t_number:.5f}")
 

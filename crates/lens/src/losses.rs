@@ -2,6 +2,7 @@
 
 use crate::{Coating, Lens};
 use spectra_core::surface::Action;
+use spectra_glass::Medium;
 
 impl Lens {
     /// What coatings and absorption are counted, and what of it is assumed: `bare (assumed for 1927), glass absorbs`.
@@ -18,8 +19,25 @@ impl Lens {
         if self.coating_assumed && own < all {
             coating += &self.year.map_or(" (assumed: no year is stated)".to_owned(), |y| format!(" (assumed for {y})"));
         }
-        let absorption = if self.absorption { "glass absorbs" } else { "no absorption" };
-        format!("{coating}, {absorption}")
+        format!("{coating}, {}", self.absorption_words())
+    }
+
+    /// Whether glass absorbs, by how much of what is known.
+    fn absorption_words(&self) -> String {
+        if !self.absorption {
+            return "no absorption".to_owned();
+        }
+        let glasses = self.media.iter().filter(|m| !matches!(m.medium, Medium::Air | Medium::Vacuum));
+        let known: Vec<bool> = glasses.map(|m| m.medium.absorption(self.year).is_some()).collect();
+        let (all, clear) = (known.len(), known.iter().filter(|known| !**known).count());
+        let parts = [(self.borrowed_absorption().len(), "borrowed"), (clear, "unknown: taken as clear")];
+        let parts: Vec<String> = parts.iter().filter(|(n, _)| *n > 0).map(|(n, what)| format!("{n} {what}")).collect();
+        match (all, parts.is_empty()) {
+            (0, _) => "no glass".to_owned(),
+            (_, true) => "glass absorbs".to_owned(),
+            (1, false) => format!("glass absorbs (its transmittance {})", parts.join(", ").trim_start_matches("1 ")),
+            (_, false) => format!("glass absorbs (of {all} transmittances {})", parts.join(", ")),
+        }
     }
 
     /// Whether nothing is lost at surfaces or in glass, by assumption.

@@ -9,4 +9,4 @@ mod table;
 pub use compare::{Compared, Comparison};
 pub use field::{FieldReport, LimitReport};
 pub use mounts::{Glass, MOUNTS, Mount, MountReport, cleared};
-pub use report::{LensReport, SurfaceReport};
+pub use report::{Borrowed, LensReport, SurfaceReport};

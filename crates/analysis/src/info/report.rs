@@ -7,6 +7,7 @@ use glam::DVec3;
 use serde::Serialize;
 use spectra_core::Isa;
 use spectra_core::surface::Action;
+use spectra_glass::Lender;
 use spectra_lens::{Criterion, Element, FirstOrder, Indices, Lens, MarginalRay, Section, Tracer};
 
 /// A lens in figures, all in one light. Places along the axis (`..._z_mm`) are measured from the first
@@ -47,6 +48,8 @@ pub struct LensReport {
     pub transmittance: Option<f64>,
     /// What of coatings and absorption is counted, and what of it is assumed, in words.
     pub losses: String,
+    /// The media whose absorption is not known, and the glass whose it is taken to be.
+    pub borrowed_absorption: Vec<Borrowed>,
     /// The f-number in its name.
     pub nominal_f_number: Option<f64>,
     /// Entrance pupil, paraxial.
@@ -106,6 +109,19 @@ pub struct LensReport {
     pub warnings: Vec<String>,
 }
 
+/// A medium that borrows its absorption.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Borrowed {
+    /// The medium, as the file names it.
+    pub medium: String,
+    /// The glass whose absorption it is taken to have.
+    pub lender: String,
+    /// Index of that glass less its own, d line.
+    pub delta_nd: f64,
+    /// Abbe number of that glass less its own.
+    pub delta_vd: f64,
+}
+
 /// One surface.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SurfaceReport {
@@ -160,6 +176,7 @@ impl LensReport {
             t_number: f_number.zip(transmittance).map(|(n, t)| n / t.sqrt()).filter(|n| n.is_finite()),
             transmittance,
             losses: lens.losses(),
+            borrowed_absorption: borrowed(lens),
             nominal_f_number: lens.nominal_f_number,
             entrance_pupil_z_mm: first_order.entrance_pupil_z_mm.filter(|z| z.is_finite()),
             entrance_pupil_diameter_mm: marginal.map(|ray| 2.0 * ray.height_mm),
@@ -190,6 +207,18 @@ impl LensReport {
             warnings: lens.warnings.clone(),
         }
     }
+}
+
+/// None where glass does not absorb.
+fn borrowed(lens: &Lens) -> Vec<Borrowed> {
+    let all = if lens.absorption { lens.borrowed_absorption() } else { Vec::new() };
+    let one = |(medium, lender): (&str, Lender)| Borrowed {
+        medium: medium.to_owned(),
+        lender: lender.full_name,
+        delta_nd: lender.delta_nd,
+        delta_vd: lender.delta_vd,
+    };
+    all.into_iter().map(one).collect()
 }
 
 /// At infinity everything is imaged without size.

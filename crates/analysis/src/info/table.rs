@@ -1,6 +1,6 @@
 //! The report as a person reads it.
 
-use super::{LensReport, MountReport};
+use super::{Borrowed, LensReport, MountReport};
 use std::fmt;
 
 /// A length, or why there is none.
@@ -37,6 +37,11 @@ impl fmt::Display for LensReport {
         self.field(f)?;
         self.room(f)?;
         self.prescription(f)?;
+        if !self.borrowed_absorption.is_empty() {
+            let one = |b: &Borrowed| format!("{} from {}", b.medium, b.lender);
+            let all: Vec<String> = self.borrowed_absorption.iter().map(one).collect();
+            writeln!(f, "transmittances borrowed from the nearest glass that has one: {}", all.join("; "))?;
+        }
         for note in &self.notes {
             writeln!(f, "note: {note}")?;
         }
