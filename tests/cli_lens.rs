@@ -113,8 +113,7 @@ fn the_report_is_whole() {
     ] {
         figure(&biotar, key);
     }
-    // Ideal coatings by default; nodal points are the principal ones in air; nothing is anamorphic.
-    assert_eq!(biotar["t_number"], biotar["f_number"]);
+    // Nodal points are the principal ones in air; nothing is anamorphic.
     assert!((figure(&biotar, "front_nodal_z_mm") - figure(&biotar, "front_principal_z_mm")).abs() < 1e-9);
     assert!((figure(&biotar, "rear_nodal_z_mm") - figure(&biotar, "rear_principal_z_mm")).abs() < 1e-9);
     assert!(biotar.get("efl_x_mm").is_none());
@@ -147,6 +146,147 @@ fn focus_is_given_in_either_form() {
     assert_eq!(both.status.code(), Some(2));
 }
 
+/// The Biotar of 1927, line d: f/1.438 and T/1.836, by a tracer of its own (`xtask/t_number.py`, figures kept beside the test).
+#[test]
+fn t_number_of_the_biotar_is_that_of_an_independent_script() {
+    for row in rows("t-numbers.csv") {
+        let number = |at: usize| row[at].parse::<f64>().expect("a number");
+        let found = info(&row[0], &["--coating", "bare", "--absorption", "false", "--line", "d"]);
+        for (key, want) in [("f_number", number(1)), ("transmittance", number(2)), ("t_number", number(3))] {
+            assert!((figure(&found, key) / want - 1.0).abs() < 0.003, "{} {key}: {} {want}", row[0], found[key]);
+        }
+    }
+    let biotar = info("zeiss-biotar-50-f1.4", &[]);
+    assert!(figure(&biotar, "t_number") > 1.83, "{}", biotar["t_number"]);
+    assert!(biotar["losses"].as_str().is_some_and(|l| l.starts_with("bare (assumed for 1927), glass absorbs")), "{biotar}");
+    let ideal = info("zeiss-biotar-50-f1.4", &["--coating", "ideal", "--absorption", "false"]);
+    assert_eq!(ideal["t_number"], ideal["f_number"]);
+    assert_eq!(ideal["losses"], "no reflections, no absorption");
+}
+
+/// Bare before 1940 and where no year is known, one layer before 1970, then three; the T-number says so.
+#[test]
+fn coatings_are_those_of_the_time() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("lens.yaml");
+    let losses = |more: &str| {
+        let text = format!(
+            "name: Singlet\n{more}absorption: false\nsurfaces:\n  - {{kind: plane, thickness: 5, glass: SCHOTT/N-BK7, \
+             semi-diameter: 5}}\n  - {{kind: sphere, radius: -50, thickness: 96, semi-diameter: 5}}\n"
+        );
+        std::fs::write(&file, text).expect("written");
+        let info = info(shown(&file), &[]);
+        (info["losses"].as_str().expect("words").to_owned(), 1.0 - figure(&info, "transmittance"))
+    };
+    for (more, words, least, most) in [
+        ("", "bare (assumed: no year is stated), no absorption", 0.08, 0.09),
+        ("year: 1938\n", "bare (assumed for 1938), no absorption", 0.08, 0.09),
+        ("year: 1955\n", "a single layer of MgF2 (assumed for 1955), no absorption", 0.02, 0.03),
+        ("year: 1985\n", "three layers (assumed for 1985), no absorption", 0.0, 0.01),
+        ("year: 1985\ncoating: bare\n", "bare, no absorption", 0.08, 0.09),
+        ("coating: {kind: single-layer, assumed: true}\n", "a single layer of MgF2 (assumed: no year is stated), no absorption", 0.02, 0.03),
+    ] {
+        let (found, lost) = losses(more);
+        assert_eq!(found, words);
+        assert!(lost > least && lost < most, "{more}: {lost}");
+    }
+}
+
+/// A lens fits its own mount, whose mirror box its rear glass may enter; what it does not fit is not listed.
+#[test]
+fn lenses_fit_their_own_mounts() {
+    let mounts = |name: &str| -> Vec<String> {
+        let info = info(name, &[]);
+        let all = info["mounts"].as_array().expect("a list").iter();
+        all.map(|m| m["name"].as_str().expect("a name").to_owned()).collect()
+    };
+    for (lens, own, other) in [
+        // 32.7 mm of back focus: behind the flange of FD, and too near the film for any deeper mirror.
+        ("canon-fd-50-f1.8", "Canon FD", "Canon EF"),
+        ("helios-44-58-f2", "M42", "Leica R"),
+        ("minolta-fisheye-16-f2.7", "Minolta SR", "M42"),
+        ("canon-ef-70-200-f2.8-at-72", "Canon EF", "T2"),
+        // Made for rangefinders: no mirror swings behind them.
+        ("canon-35-f1.8", "C-mount", "Canon FD"),
+        ("zeiss-biotar-50-f1.4", "Leica M", "M42"),
+        ("zeiss-biotar-50-f1.4", "Leica M", "Minolta SR"),
+    ] {
+        let found = mounts(lens);
+        assert!(found.iter().any(|m| m == own), "{lens}: {found:?}");
+        assert!(!found.iter().any(|m| m == other), "{lens}: {found:?}");
+    }
+    assert!(good(&["lens", "info", "canon-fd-50-f1.8"]).contains("Canon FD 42 (9.3 behind the flange)"));
+}
+
+/// The number in a lens's name is its full aperture, on every bundled lens that has one; a note says where that is rounded.
+#[test]
+fn nominal_f_numbers_mean_wide_open() {
+    let mut noted = 0;
+    for entry in std::fs::read_dir(common::repository("lenses")).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        let name = path.file_stem().expect("a name").to_string_lossy().into_owned();
+        let plain = path.is_file().then(|| info(&name, &[]));
+        let Some(plain) = plain.filter(|info| info["nominal_f_number"].is_number()) else { continue };
+        let nominal = figure(&plain, "nominal_f_number");
+        let set = info(&name, &["--f-number", &format!("f/{nominal}")]);
+        let (set_number, real) = (figure(&set, "f_number"), figure(&plain, "f_number"));
+        assert!((set_number - nominal.max(real)).abs() < 0.03 * nominal, "{name}: {set_number} {real} {nominal}");
+        noted += usize::from(!set["notes"].as_array().expect("a list").is_empty());
+    }
+    assert_eq!(noted, 4, "Biotar 50, Takumar, Canon 35, the zoom");
+    let output = run(&["lens", "info", "zeiss-biotar-50-f1.4", "--f-number", "f/1.35"]);
+    let told = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(told.contains("the rim of surface") && told.contains("would need r ="), "{told}");
+}
+
+/// A digit copied wrong, a sign: said in words that name the surfaces. No bundled lens is doubted.
+#[test]
+fn slips_of_typing_are_seen_in_the_shape() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("lens.yaml");
+    let biotar = std::fs::read_to_string(common::repository("lenses/zeiss-biotar-50-f1.4.yaml")).expect("the lens");
+    let doubts = |from: &str, to: &str| {
+        assert!(biotar.contains(from), "{from}");
+        std::fs::write(&file, biotar.replacen(from, to, 1)).expect("written");
+        info(shown(&file), &[])["warnings"].to_string()
+    };
+    assert_eq!(doubts("name: Zeiss", "name: Z"), "[]");
+    // 4 mm behind the stop, of 19.25 mm of radius: 0.4 mm are missing a digit.
+    let meet = doubts("{kind: stop, thickness: 4}", "{kind: stop, thickness: -1}");
+    assert!(meet.contains("surfaces 5 and 7 meet"), "{meet}");
+    let thin = doubts("radius: -26.6, thickness: 0.485", "radius: 26.6, thickness: 0.485");
+    assert!(thin.contains("meet") || thin.contains("wrong sign"), "{thin}");
+    let sign = doubts("radius: 14.15", "radius: -14.15");
+    assert!(sign.contains("wrong sign"), "{sign}");
+    for folder in ["lenses", "lenses/surfaces"] {
+        for entry in std::fs::read_dir(common::repository(folder)).expect("a folder") {
+            let path = entry.expect("an entry").path();
+            if path.is_file() {
+                let warnings = info(shown(&path), &[])["warnings"].to_string();
+                assert!(!warnings.contains("meet") && !warnings.contains("in front of the last"), "{path:?}: {warnings}");
+            }
+        }
+    }
+}
+
+/// Side by side; what one lens cannot reach does not stop the other.
+#[test]
+fn lenses_are_compared() {
+    let table = good(&["lens", "compare", "zeiss-biotar-50-f1.4", "helios-44-58-f2", "--f-number", "f/1.4"]);
+    for word in ["Zeiss Biotar 50 mm f/1.4", "Helios-44 58 mm f/2", "f/1.438", "f/2.039", "T/", "contrast", "distortion", "wide open"] {
+        assert!(table.contains(word), "{word}: {table}");
+    }
+    let json: Value =
+        serde_json::from_str(&good(&["lens", "compare", "cooke-triplet-50-f5", "tessar-50-f4.5", "--json"])).expect("JSON");
+    let lenses = json["lenses"].as_array().expect("a list");
+    for compared in lenses {
+        assert!((0.1..=1.0).contains(&figure(compared, "axial_contrast")), "{compared}");
+        assert!(figure(compared, "distortion").abs() < 0.05 && figure(compared, "image_circle_mm") > 20.0);
+    }
+    assert_eq!(run(&["lens", "compare", "cooke-triplet-50-f5"]).status.code(), Some(2));
+}
+
 /// The T-number of a bare singlet, small aperture: N / T^(1/2), T = (1 - R)^2, R = ((n - 1) / (n + 1))^2.
 #[test]
 fn t_number_counts_reflections() {
@@ -160,7 +300,7 @@ fn t_number_counts_reflections() {
         std::fs::write(&file, text).expect("written");
         info(shown(&file), &["--nd"])
     };
-    let (ideal, bare) = (write(""), write("coating: bare\n"));
+    let (ideal, bare) = (write("coating: ideal\n"), write("coating: bare\n"));
     let coated = write("coating: {layer: 1.38, quarter-wave-at: 587.5618 nm}\n");
     assert_eq!(ideal["t_number"], ideal["f_number"]);
     for (info, reflectance) in [(bare, 0.042_164_6), (coated, 0.012_835_4)] {
@@ -182,7 +322,9 @@ fn people_get_a_table() {
         "SCHOTT/BAF9",
         "stop",
         "f/1.4",
-        "T/1.4",
+        "T/1.8",
+        "bare (assumed for 1927)",
+        "open",
         "Leica M",
         "largest field",
         "smallest spot",

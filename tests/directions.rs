@@ -102,18 +102,18 @@ fn gray_card_stopped_down_with_independent_numbers_and_rings() {
 }
 
 /// On the axis the illuminance is pi L tau / (4 N^2 (1 + m/P)^2), with N of the real marginal ray at infinity, m the
-/// magnification and P the pupil magnification (1.32 for this lens); nothing is absorbed.
+/// magnification and P the pupil magnification (1.32 for this lens); nothing is reflected or absorbed.
 #[test]
 fn gray_card_has_the_illuminance_of_the_camera_equation() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/gray-card.yaml");
-    let scene =
-        spectra_scene::load(&path, &["lens.f-number=f/4".to_owned()]).unwrap_or_else(|faults| panic!("{faults}"));
+    let lossless = ["lens.f-number=f/4", "lens.coating=ideal", "lens.absorption=false"];
+    let scene = spectra_scene::load(&path, &lossless.map(str::to_owned)).unwrap_or_else(|faults| panic!("{faults}"));
     let n = scene.lens.marginal_ray().expect("stopped down").f_number();
     assert!((n - 4.0).abs() < 1e-6, "{n}");
     let m = scene.lens.paraxial_magnification(2000.0, scene.lens.reference_nm).abs();
     let luminance = 300.0 * 0.18;
     let want = std::f64::consts::PI * luminance / (4.0 * n * n * (1.0 + m / 1.32) * (1.0 + m / 1.32));
-    let frame = render(&["lens.f-number=f/4", "imager.resolution=[36, 24]", "render.samples=1024"]);
+    let frame = render(&[&lossless[..], &["imager.resolution=[36, 24]", "render.samples=1024"]].concat());
     let y = &frame.channel("Y").expect("XYZ").values;
     let axis: f64 =
         [11 * 36 + 17, 11 * 36 + 18, 12 * 36 + 17, 12 * 36 + 18].iter().map(|p| f64::from(y[*p]) / 4.0).sum();

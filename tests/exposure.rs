@@ -21,7 +21,7 @@ fn scene(lens: &str, f_number: &str, object: &str) -> Scene {
     // The card reaches well beyond the field in either case.
     let (distance, width) = if object == "infinity" { ("10 km", "16 km") } else { (object, "3.4 m") };
     let overrides = [
-        format!("lens={{file: {lens}, f-number: {f_number}, focus: {object}}}"),
+        format!("lens={{file: {lens}, f-number: {f_number}, focus: {object}, coating: ideal, absorption: false}}"),
         format!("source={{kind: chart, chart: white, distance: {distance}, width: {width}, luminance: {LUMINANCE}}}"),
         format!("imager.resolution=[{WIDTH}, {HEIGHT}]"),
         "render.samples=8192".to_owned(),

@@ -47,7 +47,7 @@ fn a_gray_filter_halves_everything() {
 fn a_color_filter_does_what_its_table_says() {
     let light = find_emission("D65").expect("bundled");
     let observer = Observer::cie_1931_2deg();
-    let common = [SMALL, "render.samples=256"];
+    let common = [SMALL, "render.samples=256", "lens.coating=ideal", "lens.absorption=false"];
     let open = render(&common);
     for name in ["wratten-25", "wratten-58"] {
         let set = format!("lens.filters=[{name}, constant:0.8, {{file: {name}}}]");

@@ -83,9 +83,9 @@ fn a_layer_reflects_less() {
 /// The whole lens is the product of its surfaces, each at the angle to its own normal.
 #[test]
 fn surfaces_multiply() {
-    let lens = biotar();
+    let lens = Lens { absorption: false, ..biotar() };
     let layer = Coating::quarter_wave(1.38, 520.0);
-    for coating in [Coating::Bare, layer] {
+    for coating in [Coating::Bare, layer, Coating::three_layer()] {
         let coated = lens.clone().with_coating(coating.clone());
         let rays = fan(200);
         let mut compared = 0;
@@ -115,7 +115,7 @@ fn surfaces_multiply() {
 #[test]
 fn both_ways_and_all_tiers_alike() {
     let rays = fan(300);
-    for coating in [Coating::Ideal, Coating::Bare, Coating::quarter_wave(1.38, 550.0)] {
+    for coating in [Coating::Ideal, Coating::Bare, Coating::quarter_wave(1.38, 550.0), Coating::three_layer()] {
         let mut lens = biotar().with_coating(coating.clone());
         lens.absorption = coating != Coating::Ideal;
         let there = trace(&lens, &rays, Travel::Forward, Isa::Baseline);
@@ -138,7 +138,7 @@ fn both_ways_and_all_tiers_alike() {
 fn glass_absorbs_along_the_path() {
     let plate = |absorption: bool| {
         written(&format!(
-            "name: p\nabsorption: {absorption}\nsurfaces:\n  - {{kind: plane, thickness: 40, glass: SCHOTT/N-SF11}}\n  \
+            "name: p\ncoating: ideal\nabsorption: {absorption}\nsurfaces:\n  - {{kind: plane, thickness: 40, glass: SCHOTT/N-SF11}}\n  \
              - {{kind: plane, thickness: 10}}\n"
         ))
     };

@@ -139,7 +139,7 @@ fn every_lens_draws() {
     }
 }
 
-/// A gray card behind every lens at f/8: on the axis the film has pi L / (4 N^2), within 2 % (the rim of the exit pupil as
+/// A gray card behind every lens at f/8, without losses: on the axis the film has pi L / (4 N^2), within 2 % (the rim of the exit pupil as
 /// it is seen from the film, instead of the marginal ray of a lens with spherical aberration, over all wavelengths).
 #[test]
 fn every_lens_renders_the_illuminance_of_its_f_number() {
@@ -149,6 +149,8 @@ fn every_lens_renders_the_illuminance_of_its_f_number() {
             &format!("lens.file={name}"),
             "lens.focus=infinity",
             "lens.f-number=f/8",
+            "lens.coating=ideal",
+            "lens.absorption=false",
             "source.distance=5 m",
             "source.width=20 m",
             "imager={kind: xyz, width: 0.9, height: 0.6, resolution: [6, 4]}",

@@ -11,6 +11,8 @@ Run from the root of the repository, with the program itself for the choice of g
 - Radii, thicknesses, nd and Vd are copied; a lens of unit focal length is scaled, figure by figure.
 - A catalogue glass is named where one of the time agrees within 0.0005 in nd and 0.5 in Vd (`spectra glass match`);
   elsewhere nd and Vd stand alone.
+- The f-number of a lens's name is its nominal one. No source states coatings: those of the time stand in the files, as
+  assumed (see `coating`).
 - Semi-diameters are copied where they are clear apertures. Where the source has none, or says that they are not
   reliable, they are computed here by tracing real rays: the stop by the axial beam at the stated f-number, the others
   to pass that beam, and of the beam at the edge of the format the middle half.
@@ -19,6 +21,7 @@ Run from the root of the repository, with the program itself for the choice of g
 import csv
 import json
 import math
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -232,6 +235,17 @@ class System:
         return [round(axial[i], 4) if i == stop else math.ceil(20 * need[i] + 1) / 20 for i in range(len(need))]
 
 
+def coating(year):
+    """What lenses of a year had as a rule: none before 1940 (or where no year is known), one layer before 1970, then three."""
+    return "bare" if not year or year < 1940 else "single-layer" if year < 1970 else "three-layer"
+
+
+def nominal_f_number(name):
+    """The f-number in a lens's name."""
+    found = re.search(r"f/([0-9.]+)", name)
+    return found.group(1) if found else None
+
+
 def glass(program, surface, entry, seen):
     """The catalogue's glass for nd and Vd, by the first maker that has one near enough; None if none has."""
     key = (surface.nd_text, surface.v)
@@ -293,7 +307,9 @@ def write(name, entry, table, program):
     for key in ("year", "maker", "patent"):
         if entry.get(key):
             lines.append(f"{key}: {entry[key]}")
-    lines += ["reference-line: d", f"source: {entry['source']}"]
+    if nominal_f_number(entry["name"]):
+        lines.append(f"f-number: {nominal_f_number(entry['name'])}")
+    lines += ["reference-line: d", f"coating: {{kind: {coating(entry.get('year'))}, assumed: true}}", f"source: {entry['source']}"]
     body = []
     for i, s in enumerate(surfaces):
         if s.cylinder:

@@ -259,6 +259,8 @@ pub(crate) struct LensArguments {
 pub(crate) enum LensCommand {
     /// Show a lens in figures: focal lengths, pupils, f-number, prescription.
     Info(LensInfo),
+    /// Show lenses side by side: figures, field, contrast, distortion.
+    Compare(LensCompare),
     /// Draw a lens: glass, stop, rays of several fields in their spectral colors.
     Draw(LensDraw),
     /// Trace rays through a lens: CSV in, CSV out.
@@ -267,6 +269,29 @@ pub(crate) enum LensCommand {
     Import(LensImport),
     /// Write a lens for another program, as .zmx.
     Export(LensExport),
+}
+
+/// `spectra lens compare`.
+#[derive(Debug, Args)]
+#[command(
+    long_about = "Show lenses side by side: focal length, f-number, T-number, field, size, contrast on the axis and in the field, \
+        distortion.\n\n\
+        Contrast is that of geometrical optics at 30 lp/mm, in the plane where it is highest on the axis. The field is the same \
+        for all: 0.7 of what the narrowest of them covers. A lens that does not reach --f-number stays wide open, and a note says \
+        so.",
+    after_long_help = "Example: both at f/2\n  spectra lens compare zeiss-biotar-50-f1.4 helios-44-58-f2 --f-number f/2"
+)]
+pub(crate) struct LensCompare {
+    /// Two or more lens files, or names of bundled lenses (see `spectra list lens`).
+    #[arg(value_name = "LENS", num_args = 2.., required = true)]
+    pub lenses: Vec<String>,
+    #[command(flatten)]
+    pub options: LensOptions,
+    #[command(flatten)]
+    pub light: OneLight,
+    /// A JSON object on standard output.
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// `spectra lens draw`.
@@ -282,9 +307,9 @@ pub(crate) enum LensCommand {
 pub(crate) struct LensDraw {
     #[command(flatten)]
     pub setting: LensSetting,
-    /// File to write: .svg or .png.
+    /// File to write: .svg or .png; NAME.svg after the lens if not given.
     #[arg(short, long, value_name = "FILE")]
-    pub output: PathBuf,
+    pub output: Option<PathBuf>,
     /// Field angles in degrees; if not given, the axis, and 0.6 and 0.95 of the largest field that passes (up to 85).
     #[arg(long, value_name = "DEG,DEG,...", value_delimiter = ',', allow_negative_numbers = true)]
     pub fields: Vec<f64>,
@@ -330,6 +355,13 @@ pub(crate) struct LensSetting {
     /// A lens file, or the name of a bundled lens (see `spectra list lens`).
     #[arg(value_name = "LENS")]
     pub lens: String,
+    #[command(flatten)]
+    pub options: LensOptions,
+}
+
+/// How a lens is set.
+#[derive(Debug, Args)]
+pub(crate) struct LensOptions {
     /// Focus at this distance from the first surface (2m, 77cm, inf); as the file has it if not given.
     #[arg(long, value_name = "DISTANCE", value_parser = parse::<OrInfinity<Positive<Length>>>)]
     pub focus: Option<OrInfinity<Positive<Length>>>,
@@ -339,6 +371,12 @@ pub(crate) struct LensSetting {
     /// Set the stop to this f-number (f/2), by the real marginal ray; as the file has it if not given.
     #[arg(long, value_name = "F/N", value_parser = parse::<FNumber>)]
     pub f_number: Option<FNumber>,
+    /// Coating of all surfaces: ideal (nothing is reflected), bare, single-layer or three-layer; as the file has it if not given.
+    #[arg(long, value_name = "COATING", value_parser = ["ideal", "bare", "single-layer", "three-layer"])]
+    pub coating: Option<String>,
+    /// Whether glass absorbs: true or false; as the file has it if not given.
+    #[arg(long, value_name = "BOOL")]
+    pub absorption: Option<bool>,
 }
 
 /// One light for all.
@@ -371,7 +409,8 @@ fn line(name: &str) -> Result<f64, String> {
         mounts that it leaves room for, and prescription.\n\n\
         At the reference line of its patent unless a light is given. f-number and pupil diameters are those of the real \
         marginal ray; the places of planes and pupils are paraxial; focus shifts, the largest field and the chief rays \
-        are those of real rays. The T-number counts what the lens file states of coatings, mirrors and absorption.",
+        are those of real rays. The T-number counts coatings, mirrors and absorption, and says beside it which, and what of it is \
+        assumed: coatings of the lens's time, unless its file or --coating says otherwise.",
     after_long_help = "Example: the same lens in blue light\n  spectra lens info zeiss-biotar-50-f1.4 --line g"
 )]
 pub(crate) struct LensInfo {

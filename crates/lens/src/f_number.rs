@@ -3,8 +3,9 @@
 //! N = 1 / (2 sin theta'), where theta' is the angle at which the marginal ray of an axial object at
 //! infinity leaves the lens. With the tangent of a paraxial ray instead, f/1.4 is 11 % off in exposure.
 
-use crate::{Indices, Lens, Tracer, Travel};
+use crate::{Indices, Lens, RayPath, Tracer, Travel};
 use glam::DVec3;
+use spectra_core::Loss;
 use spectra_core::loss::ALIVE;
 use spectra_core::surface::Action;
 use spectra_core::{Isa, RayBatch, math};
@@ -36,12 +37,14 @@ pub enum ApertureError {
     #[error("the lens states no clear semi-diameter that limits the axial beam, so its full aperture is unknown")]
     Unlimited,
     /// Faster than the lens is.
-    #[error("f/{asked:.3} is faster than the lens, which is f/{widest:.3} wide open")]
+    #[error("f/{asked:.3} is faster than the lens, which is f/{widest:.3} wide open{}", limited(.rim, *.asked))]
     TooFast {
         /// Wanted f-number.
         asked: f64,
         /// The lens's own.
         widest: f64,
+        /// What limits it, where a rim does.
+        rim: Option<LimitingRim>,
     },
     /// No stop to set.
     #[error("the lens has no `stop` surface to set")]
@@ -53,6 +56,33 @@ pub enum ApertureError {
     #[error("no axial ray leaves the lens at f/{0:.3}")]
     NoRay(f64),
 }
+
+/// The rim that limits the axial beam.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LimitingRim {
+    /// Its surface, from 1.
+    pub surface: u32,
+    /// Its clear semi-diameter, mm.
+    pub semi_diameter_mm: f64,
+    /// The one that the f-number asked for would need there, mm; `None` where no ray leaves so steeply whatever the rims.
+    pub needed_mm: Option<f64>,
+}
+
+/// What limits the aperture, as the end of a sentence.
+fn limited(rim: &Option<LimitingRim>, asked: f64) -> String {
+    let Some(rim) = rim else { return String::new() };
+    let needed = match rim.needed_mm {
+        Some(r) => format!("f/{asked:.3} would need r = {r:.2} mm there"),
+        None => format!("no ray leaves the lens at f/{asked:.3}, whatever the rims"),
+    };
+    format!(": the rim of surface {} limits it, r = {:.2} mm; {needed}", rim.surface, rim.semi_diameter_mm)
+}
+
+/// By how much the real f-number of a full aperture may exceed the nominal one: makers round, and a patent's figures are not
+/// always those of the lens that was built.
+const NOMINAL: f64 = 1.06;
+/// By how much an f-number may be faster than the lens and still mean its full aperture: f/1.4 of a lens that is f/1.41.
+const ROUNDED: f64 = 1.02;
 
 /// Halvings of the height: an interval of 100 mm ends below 1e-13 mm.
 const HALVINGS: usize = 50;
@@ -135,11 +165,27 @@ impl Lens {
         Ok(sum / if round { RINGS as f64 } else { f64::from(passed.max(1)) })
     }
 
-    /// The same lens with its stop set so that the real marginal ray leaves at this f-number.
+    /// The rim that ends the first ray above the marginal one; `open` is the ray of the asked f-number without any rims.
+    fn limiting_rim(&self, widest: MarginalRay, open: Option<&RayPath>) -> Option<LimitingRim> {
+        let round = self.clone().with_round_stop();
+        let tracer = Tracer::new(&round, Indices::At(self.reference_nm), Isa::Baseline).ok()?;
+        let above = DVec3::new(0.0, widest.height_mm * (1.0 + 1e-9) + 1e-9, 0.0);
+        let (cause, surface) = tracer.path(above, DVec3::Z, self.reference_nm).end?;
+        let element = self.elements.get((surface as usize).checked_sub(1)?)?;
+        let semi_diameter_mm = element.semi_diameter_mm.filter(|_| cause == Loss::Vignetted)?;
+        let needed_mm = open.and_then(|path| {
+            let local = element.pose.local_point(*path.points.get(surface as usize)?);
+            Some(local.truncate().length())
+        });
+        Some(LimitingRim { surface, semi_diameter_mm, needed_mm })
+    }
+
+    /// The same lens with its stop set so that the real marginal ray leaves at this f-number. The f-number in the lens's
+    /// name, and whatever lies between it and the real one, is its full aperture: a note says so.
     ///
     /// # Errors
     /// [`ApertureError`]: no stop, or faster than the lens.
-    pub fn at_f_number(self, f_number: f64) -> Result<Self, ApertureError> {
+    pub fn at_f_number(mut self, f_number: f64) -> Result<Self, ApertureError> {
         self.stop().ok_or(ApertureError::NoStop)?;
         let sine = 0.5 / f_number;
         // Without the stop's own size: a lens may state its stop at some other f-number.
@@ -166,11 +212,19 @@ impl Lens {
             unset.elements[stop].semi_diameter_mm = None;
         }
         if let Ok(widest) = unset.marginal_ray() {
-            // A nominal f-number is rounded: f/1.4 of a lens that is f/1.41 is its full aperture.
-            if widest.f_number() > f_number * 1.02 {
-                return Err(ApertureError::TooFast { asked: f_number, widest: widest.f_number() });
+            let real = widest.f_number();
+            let in_name = self.nominal_f_number.is_some_and(|n| f_number >= n * (1.0 - 1e-9) && real <= n * NOMINAL);
+            if real > f_number * ROUNDED && !in_name {
+                let path = ray.as_ref().ok().map(|ray| {
+                    tracer.path(DVec3::new(0.0, ray.height_mm, 0.0), DVec3::Z, self.reference_nm)
+                });
+                let rim = unset.limiting_rim(widest, path.as_ref());
+                return Err(ApertureError::TooFast { asked: f_number, widest: real, rim });
             }
-            if widest.f_number() >= f_number {
+            if real >= f_number {
+                if real > f_number * ROUNDED {
+                    self.notes.push(format!("f/{f_number} is taken as wide open: the lens is f/{real:.3} by its real rays"));
+                }
                 return match widest.stop_height_mm {
                     Some(height) => Ok(self.with_stop_semi_diameter_mm(height)),
                     None => Err(ApertureError::NoStop),

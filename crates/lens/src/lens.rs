@@ -35,6 +35,8 @@ pub struct Lens {
     pub name: String,
     /// Year of design, where known.
     pub year: Option<i32>,
+    /// The f-number in its name: full aperture, as makers round it.
+    pub nominal_f_number: Option<f64>,
     /// Patent and example, where known.
     pub patent: Option<String>,
     /// Maker, where known.
@@ -61,8 +63,12 @@ pub struct Lens {
     pub media: Vec<LensMedium>,
     /// Coating of every surface that states none of its own.
     pub coating: Coating,
+    /// Whether that coating is assumed, as of lenses of the time, and not known.
+    pub coating_assumed: bool,
     /// Whether glass absorbs, where its catalogue says how much.
     pub absorption: bool,
+    /// What is worth knowing of how it is set; nothing that one should mend.
+    pub notes: Vec<String>,
     /// What a person should know of the file: a glass that disagrees with the stated index, and so on.
     pub warnings: Vec<String>,
 }
@@ -74,6 +80,7 @@ impl Lens {
         Self {
             name: name.to_owned(),
             year: None,
+            nominal_f_number: None,
             patent: None,
             maker: None,
             source: None,
@@ -87,7 +94,9 @@ impl Lens {
             image_pose: Pose::IDENTITY,
             media: vec![LensMedium::air()],
             coating: Coating::Ideal,
+            coating_assumed: false,
             absorption: false,
+            notes: Vec::new(),
             warnings: Vec::new(),
         }
     }

@@ -21,21 +21,23 @@ mod path;
 mod pose;
 mod prescription;
 mod reverse;
+mod rims;
 mod schema;
 mod symmetry;
 mod tracer;
 mod transmission;
+mod losses;
 
 pub use aim::{AimPattern, AimRegion, FrontPupil, RearPupil};
 pub use aperture::read as read_apertures;
 pub use aperture::{Aperture, ApertureForm, Drawing, FLATNESS_MM, FillRule, Iris, Mask, Opening, Painted, Shape};
 pub use beam::{Beam, ObjectPoint};
 pub use coating::{
-    Coating, CoatingForm, MeasuredCoating, OneLayer, Reflectance, Stack, StackLayer, StackParams, Transmittance,
-    read_coating,
+    Coating, CoatingForm, MeasuredCoating, NamedCoating, OneLayer, Reflectance, Stack, StackLayer, StackParams,
+    StatedCoating, Transmittance, read_coating, read_stated_coating,
 };
 pub use element::Element;
-pub use f_number::{ApertureError, MarginalRay};
+pub use f_number::{ApertureError, LimitingRim, MarginalRay};
 pub use field::{ChiefRay, FieldLimit};
 pub use first_order::{FirstOrder, Section};
 pub use focus::{Criterion, FocusError, FocusLaw, FocusSearch, FocusTable, GroupTravel};

@@ -1,12 +1,12 @@
 //! Lens files: a prescription in YAML, and where it comes from.
 
 use crate::{
-    AxisBreak, CoatingForm, Displacement, Element, FocusLaw, FocusTable, Group, GroupTravel, Lens, LensMedium,
-    aperture, read_coating, schema,
+    AxisBreak, Coating, CoatingForm, Displacement, Element, FocusLaw, FocusTable, Group, GroupTravel, Lens, LensMedium,
+    aperture, read_coating, read_stated_coating, schema,
 };
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::params::{Angle, Fault, Faults, Length, OrInfinity, Params, Positive, Ratio, StageNode, nearest};
+use spectra_core::params::{Angle, FNumber, Fault, Faults, Length, OrInfinity, Params, Positive, Ratio, StageNode, nearest};
 use spectra_core::registry::{self, Context};
 use spectra_core::resources::Resources;
 use spectra_core::spectral::BAND;
@@ -48,6 +48,9 @@ pub(crate) struct LensFile {
     name: String,
     /// Year of design; not known if absent.
     year: Option<i32>,
+    /// F-number in its name, as makers round it: `f-number: f/1.4` in a scene then means full aperture, also where that is
+    /// f/1.44. None if absent.
+    f_number: Option<FNumber>,
     /// Maker; not known if absent.
     maker: Option<String>,
     /// Patent and example; none if absent.
@@ -70,12 +73,18 @@ pub(crate) struct LensFile {
     #[serde(default)]
     #[schemars(with = "Vec<FocusParams>")]
     focus: Vec<StageNode>,
-    /// Coating of all surfaces that state none: `ideal` (the default), `bare`, or a layer.
+    /// Coating of all surfaces that state none: `ideal`, `bare`, `single-layer`, `three-layer`, a layer or a stack; with
+    /// `assumed: true` where it is not known. What lenses of the `year` had if absent: `bare` before 1940 or without a year,
+    /// `single-layer` before 1970, then `three-layer`.
     #[schemars(with = "Option<CoatingForm>")]
     coating: Option<StageNode>,
     /// Whether glass absorbs as its catalogue says.
-    #[serde(default)]
+    #[serde(default = "yes")]
     absorption: bool,
+}
+
+fn yes() -> bool {
+    true
 }
 
 fn line_d() -> String {
@@ -221,6 +230,7 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
     let mut lens = Lens {
         name: file.name,
         year: file.year,
+        nominal_f_number: file.f_number.map(FNumber::number),
         patent: file.patent,
         maker: file.maker,
         source: file.source,
@@ -329,8 +339,11 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
         medium_before = medium_after;
     }
     lens.image_breaks = breaks;
-    lens.coating =
-        file.coating.as_ref().and_then(|node| faults.take(read_coating(node, resources))).unwrap_or_default();
+    let coating = file.coating.as_ref().map(|node| faults.take(read_stated_coating(node, resources)));
+    (lens.coating, lens.coating_assumed) = match coating {
+        None => (Coating::of_year(lens.year), true),
+        Some(stated) => stated.map_or((Coating::Bare, false), |stated| (stated.coating, stated.assumed)),
+    };
     lens.absorption = file.absorption;
     for node in &file.groups {
         lens.groups.extend(faults.take(group(node, lens.elements.len())));
@@ -344,6 +357,10 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
         lens.focus_laws.extend(law);
     }
     lens.arrange();
+    if faults.is_empty() {
+        let doubts = lens.doubts();
+        lens.warnings.extend(doubts);
+    }
     faults.into_result(lens)
 }
 

@@ -76,6 +76,7 @@ impl Lens {
     #[must_use]
     pub fn with_coating(mut self, coating: Coating) -> Self {
         self.coating = coating;
+        self.coating_assumed = false;
         for e in &mut self.elements {
             e.coating = None;
         }
@@ -208,19 +209,52 @@ impl Before {
                     self.tunnel(rays, n, n_after, index, thickness_nm);
                 }
             }
-            Passage::Coated(coating) => self.pass_one_by_one(rays, coating, n, n_after),
+            Passage::Coated(coating @ Coating::Stack(stack)) => {
+                if let Some(layers) = stack.clear_layers::<3>() {
+                    self.pass_layers(rays, isa, coating, &layers, n, n_after);
+                } else if let Some(layers) = stack.clear_layers::<2>() {
+                    self.pass_layers(rays, isa, coating, &layers, n, n_after);
+                } else {
+                    self.pass_one_by_one(rays, coating, n, n_after, |_, _| true);
+                }
+            }
+            Passage::Coated(coating) => self.pass_one_by_one(rays, coating, n, n_after, |_, _| true),
         }
     }
 
-    /// Weighs rays by a coating without a kernel of its own.
-    fn pass_one_by_one(&self, rays: &mut RayBatch, coating: &Coating, n: &[f64], n_after: &[f64]) {
+    /// Weighs rays by a stack of clear layers.
+    fn pass_layers<const N: usize>(
+        &self,
+        rays: &mut RayBatch,
+        isa: Isa,
+        coating: &Coating,
+        layers: &[[f64; 2]; N],
+        n: &[f64],
+        n_after: &[f64],
+    ) {
+        let len = rays.len();
+        let before = self.direction.each_ref().map(|column| column.slice(len));
+        if isa.run(PassLayers { rays: &mut *rays, before, n, n_after, layers }) {
+            self.pass_one_by_one(rays, coating, n, n_after, |n, c| !(coating::least_square(layers, n, c) > 0.0));
+        }
+    }
+
+    /// Weighs rays by a coating without a kernel of its own; only those that `which` picks by index and cosine of incidence.
+    fn pass_one_by_one(
+        &self,
+        rays: &mut RayBatch,
+        coating: &Coating,
+        n: &[f64],
+        n_after: &[f64],
+        which: impl Fn(f64, f64) -> bool,
+    ) {
         let len = rays.len();
         let before = self.direction.each_ref().map(|column| column.slice(len));
         let c = rays.columns_mut();
         for i in 0..len {
             let indices = [n[i], n_after[i]];
             let (size, cosines) = angles(indices, before.map(|column| column[i]), [c.l[i], c.m[i], c.n[i]]);
-            if c.state[i] != ALIVE || size < SAME_INDEX {
+            if c.state[i] != ALIVE || size < SAME_INDEX || !which(n[i], cosines[0]) {
                 continue;
             }
             let passes = match coating {
@@ -294,6 +328,40 @@ impl<const LAYER: bool> Vectorized for Pass<'_, LAYER> {
                 coating::bare(indices, cosines).mean()
             };
             weight[i] *= if usable { passes } else { 1.0 };
+        }
+        decays
+    }
+}
+
+/// Says whether any ray does not run in one of the layers.
+struct PassLayers<'a, const N: usize> {
+    rays: &'a mut RayBatch,
+    before: [&'a [f64]; 3],
+    n: &'a [f64],
+    n_after: &'a [f64],
+    layers: &'a [[f64; 2]; N],
+}
+
+impl<const N: usize> Vectorized for PassLayers<'_, N> {
+    type Output = bool;
+    #[inline(always)]
+    fn run(self) -> bool {
+        let c = self.rays.columns_mut();
+        let len = c.weight.len();
+        let [bl, bm, bn] = self.before.map(|column| &column[..len]);
+        let (l, m, nz, wavelength_nm) = (&c.l[..len], &c.m[..len], &c.n[..len], &c.wavelength_nm[..len]);
+        let (n, n_after, state) = (&self.n[..len], &self.n_after[..len], &c.state[..len]);
+        let weight = &mut c.weight[..len];
+        let layers = *self.layers;
+        let mut decays = false;
+        for i in 0..len {
+            let indices = [n[i], n_after[i]];
+            let (size, cosines) = angles(indices, [bl[i], bm[i], bn[i]], [l[i], m[i], nz[i]]);
+            let here = (size >= SAME_INDEX) & (state[i] == ALIVE);
+            let runs = coating::least_square(&layers, n[i], cosines[0]) > 0.0;
+            decays |= here & !runs;
+            let passes = coating::running_layers(indices, cosines, &layers, wavelength_nm[i]).mean();
+            weight[i] *= if here & runs { passes } else { 1.0 };
         }
         decays
     }

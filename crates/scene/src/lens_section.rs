@@ -24,12 +24,13 @@ pub(crate) struct LensSection {
     /// Whether it is mounted the other way round.
     #[serde(default)]
     reverse: bool,
-    /// Coating of all surfaces, in place of what the lens file states: `ideal`, `bare`, or a layer.
+    /// Coating of all surfaces, in place of what the lens file states or what lenses of its year had: `ideal` (nothing is
+    /// reflected), `bare`, `single-layer`, `three-layer`, a layer or a stack.
     #[schemars(with = "Option<CoatingForm>")]
     coating: Option<StageNode>,
-    /// Whether glass absorbs; as the lens file says if absent.
+    /// Whether glass absorbs; as the lens file says if absent, which is yes unless it says otherwise.
     absorption: Option<bool>,
-    /// Aperture, set by the real marginal ray; as the lens file says if absent.
+    /// Aperture, set by the real marginal ray; as the lens file says if absent. The f-number in the lens's name means wide open.
     f_number: Option<FNumber>,
     /// What limits the light at the stop beside its round opening: blades, a mask; one or a list, as in a lens file.
     #[schemars(with = "Option<ApertureForm>")]
@@ -190,6 +191,11 @@ fn with_aperture(lens: &Lens, node: &StageNode, resources: &dyn Resources) -> Re
     }
     stop.apertures.extend(apertures);
     Ok(lens)
+}
+
+/// Whether it says that the lens does not reach the f-number asked for.
+pub(crate) fn is_too_fast(fault: &Fault) -> bool {
+    fault.path == "lens.f-number" && fault.message.contains(" is faster than the lens")
 }
 
 /// A fault at `f-number`.

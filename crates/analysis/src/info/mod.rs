@@ -1,12 +1,14 @@
 //! A lens in figures.
 
+mod compare;
 mod field;
 mod media;
 mod mounts;
 mod report;
 mod table;
 
+pub use compare::{Compared, Comparison};
 pub use field::{FieldReport, LimitReport};
 pub use media::AssumedMedium;
-pub use mounts::{MOUNTS, Mount, MountReport, cleared};
+pub use mounts::{Glass, MOUNTS, Mount, MountReport, cleared};
 pub use report::{LensReport, SurfaceReport};

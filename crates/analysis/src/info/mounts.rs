@@ -1,9 +1,17 @@
-//! Lens mounts of cameras, and which of them a lens leaves room for.
+//! Lens mounts of cameras, and which of them a lens fits through.
 //!
 //! Flange focal distances (mounting flange to image plane) are the makers' nominal figures; screw mounts give the diameter of
-//! their thread, bayonets the diameter of the throat where the maker states one. C and CS: 0.69 inch and 5 mm less, thread
-//! 1 inch. ARRI PL and LPL: ARRI's mount drawings; Canon, Nikon Z, Sony E, L-Mount, Fujifilm X and G: the makers' system
-//! pages; the others as the makers' manuals give them, collected in the camera-wiki's and Wikipedia's lists of mounts.
+//! their thread, bayonets the diameter of the throat. C and CS: 0.69 inch and 5 mm less, thread 1 inch. ARRI PL and LPL: ARRI's
+//! mount drawings; Canon, Nikon Z, Sony E, L-Mount, Fujifilm X and G: the makers' system pages; the others as the makers'
+//! manuals give them, collected in the camera-wiki's and Wikipedia's lists of mounts and, for throats, in N. Mansurov, "What is
+//! a lens mount" (photographylife.com) and "Lens mounts: a reference for using adapters" (photobuilds.com). Minolta SR: 43.50 mm
+//! by most lists; 43.72 mm, which some give, is within the play of its adapters and changes no answer here.
+//!
+//! Glass may stand behind the flange of a reflex camera, as far as the mirror lets it. No maker publishes where the mirror sweeps;
+//! what is known is how near the film the glass of their own lenses comes. Canon FD: 32.7 mm (JP 1988-081312, 50 mm f/1.8), M42:
+//! 38.0 mm (Helios-44), Minolta SR: 37.3 mm (US 4256373 at 16 mm), rounded down to half millimeters. Other mounts for 24 x 36 mm
+//! with a mirror are taken to clear 37.5 mm, as M42 does. In mounts without a mirror, and of other formats, glass is kept in front of the flange:
+//! nothing is known of their shutters and baffles here.
 
 use serde::Serialize;
 
@@ -16,15 +24,26 @@ pub struct Mount {
     pub flange_mm: f64,
     /// Diameter of throat or thread, mm; `None` where none is published.
     pub throat_mm: Option<f64>,
+    /// How near the image plane the swinging mirror lets glass come, mm; `None` where glass is kept in front of the flange.
+    pub mirror_mm: Option<f64>,
 }
 
 const fn mount(name: &'static str, flange_mm: f64, throat_mm: f64) -> Mount {
-    Mount { name, flange_mm, throat_mm: Some(throat_mm) }
+    Mount { name, flange_mm, throat_mm: Some(throat_mm), mirror_mm: None }
 }
 
 const fn flange(name: &'static str, flange_mm: f64) -> Mount {
-    Mount { name, flange_mm, throat_mm: None }
+    Mount { name, flange_mm, throat_mm: None, mirror_mm: None }
 }
+
+const fn reflex(name: &'static str, flange_mm: f64, throat_mm: f64, mirror_mm: f64) -> Mount {
+    Mount { name, flange_mm, throat_mm: Some(throat_mm), mirror_mm: Some(mirror_mm) }
+}
+
+/// How near the film glass may come in a 24 x 36 mm reflex camera of whose own lenses none is known here, mm.
+const MIRROR_MM: f64 = 37.5;
+/// What the barrel takes of the throat all round, mm.
+const BARREL_MM: f64 = 1.5;
 
 /// Mounts, by falling flange distance.
 pub const MOUNTS: [Mount; 36] = [
@@ -38,18 +57,18 @@ pub const MOUNTS: [Mount; 36] = [
     mount("ARRI PL", 52.00, 54.0),
     flange("B4", 48.00),
     flange("Leica R", 47.00),
-    mount("Nikon F", 46.50, 44.0),
+    reflex("Nikon F", 46.50, 44.0, MIRROR_MM),
     flange("Olympus OM", 46.00),
-    flange("Contax/Yashica", 45.50),
-    mount("M42", 45.46, 42.0),
-    flange("Pentax K", 45.46),
+    reflex("Contax/Yashica", 45.50, 48.0, MIRROR_MM),
+    reflex("M42", 45.46, 42.0, MIRROR_MM),
+    reflex("Pentax K", 45.46, 44.0, MIRROR_MM),
     flange("Exakta", 44.70),
-    flange("Minolta/Sony A", 44.50),
-    mount("Canon EF", 44.00, 54.0),
+    reflex("Minolta/Sony A", 44.50, 49.7, MIRROR_MM),
+    reflex("Canon EF", 44.00, 54.0, MIRROR_MM),
     mount("ARRI LPL", 44.00, 62.0),
-    flange("Sigma SA", 44.00),
-    flange("Minolta SR", 43.50),
-    mount("Canon FD", 42.00, 48.0),
+    reflex("Sigma SA", 44.00, 44.0, MIRROR_MM),
+    reflex("Minolta SR", 43.50, 44.7, 37.0),
+    reflex("Canon FD", 42.00, 48.0, 32.5),
     flange("Four Thirds", 38.67),
     flange("Contax G", 29.00),
     mount("Leica L39", 28.80, 39.0),
@@ -66,7 +85,7 @@ pub const MOUNTS: [Mount; 36] = [
     mount("CS-mount", 12.526, 25.4),
 ];
 
-/// A mount that a lens leaves room for: its rearmost glass stands in front of the flange.
+/// A mount that a lens fits.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MountReport {
     /// The mount.
@@ -75,26 +94,45 @@ pub struct MountReport {
     pub flange_mm: f64,
     /// Diameter of throat or thread.
     pub throat_mm: Option<f64>,
-    /// From the rearmost glass to the flange.
+    /// From the rearmost glass to the flange; negative where glass stands behind it, in the mirror box.
     pub clearance_mm: f64,
 }
 
-/// The mounts that a back focal distance (rearmost glass to image plane, mm) clears.
+/// One surface of glass, as a mount sees it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Glass {
+    /// From its rearmost point, vertex or rim, to the image plane, mm.
+    pub nearest_mm: f64,
+    /// Its semi-diameter, mm; 0 where it is not known.
+    pub semi_diameter_mm: f64,
+}
+
+/// The mounts that a lens with these surfaces fits: no glass nearer the image than the mirror (or the flange) lets it, and what
+/// stands behind the flange goes through the throat with its barrel.
 #[must_use]
-pub fn cleared(back_focal_distance_mm: f64) -> Vec<MountReport> {
-    let fits = MOUNTS.iter().filter(|m| m.flange_mm <= back_focal_distance_mm);
-    fits.map(|m| MountReport {
+pub fn cleared(glass: &[Glass]) -> Vec<MountReport> {
+    let nearest_mm = glass.iter().map(|g| g.nearest_mm).fold(f64::INFINITY, f64::min);
+    let fits = |m: &&Mount| {
+        let behind = glass.iter().filter(|g| g.nearest_mm < m.flange_mm);
+        let widest_mm = behind.map(|g| 2.0 * (g.semi_diameter_mm + BARREL_MM)).fold(0.0, f64::max);
+        nearest_mm >= m.mirror_mm.unwrap_or(m.flange_mm) && m.throat_mm.is_none_or(|throat| widest_mm <= throat)
+    };
+    let report = |m: &Mount| MountReport {
         name: m.name,
         flange_mm: m.flange_mm,
         throat_mm: m.throat_mm,
-        clearance_mm: back_focal_distance_mm - m.flange_mm,
-    })
-    .collect()
+        clearance_mm: nearest_mm - m.flange_mm,
+    };
+    if glass.is_empty() { Vec::new() } else { MOUNTS.iter().filter(fits).map(report).collect() }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn names(glass: &[Glass]) -> Vec<&'static str> {
+        cleared(glass).iter().map(|m| m.name).collect()
+    }
 
     #[test]
     fn the_table_is_in_order_and_names_are_unique() {
@@ -105,13 +143,30 @@ mod tests {
         assert_eq!(names.len(), MOUNTS.len());
         // A screw of 42 mm does not go through a flange of 39.
         assert!(MOUNTS.iter().all(|m| m.throat_mm.is_none_or(|t| t > 10.0 && t < 100.0)));
+        // A mirror stands behind the flange, and glass that passes it goes through a throat that is known.
+        assert!(MOUNTS.iter().all(|m| m.mirror_mm.is_none_or(|mirror| mirror < m.flange_mm && m.throat_mm.is_some())));
     }
 
     #[test]
-    fn what_clears_a_mirror_clears_all_shallower_mounts() {
-        let slr = cleared(46.5);
-        assert_eq!(slr.first().map(|m| (m.name, m.clearance_mm)), Some(("Nikon F", 0.0)));
-        assert_eq!(slr.len(), MOUNTS.iter().filter(|m| m.flange_mm <= 46.5).count());
-        assert!(cleared(10.0).is_empty());
+    fn what_stands_in_front_of_a_flange_clears_all_shallower_mounts() {
+        let at = |nearest_mm: f64| [Glass { nearest_mm, semi_diameter_mm: 10.0 }];
+        let slr = cleared(&at(46.5));
+        let shown = |name: &str| slr.iter().find(|m| m.name == name).map(|m| m.clearance_mm);
+        assert_eq!((shown("Nikon F"), shown("Leica R")), (Some(0.0), None));
+        assert!(MOUNTS.iter().filter(|m| m.flange_mm <= 46.5).all(|m| shown(m.name).is_some()));
+        assert!(cleared(&at(10.0)).is_empty() && cleared(&[]).is_empty());
+    }
+
+    /// Glass in the mirror box: as far as the mirror, and only through the throat.
+    #[test]
+    fn glass_dips_as_far_as_the_mirror_and_through_the_throat() {
+        let rear = |nearest_mm: f64, semi_diameter_mm: f64| [Glass { nearest_mm, semi_diameter_mm }];
+        assert!(names(&rear(38.0, 13.0)).contains(&"M42") && !names(&rear(37.4, 13.0)).contains(&"M42"));
+        assert!(names(&rear(32.6, 14.0)).contains(&"Canon FD") && !names(&rear(32.4, 14.0)).contains(&"Canon FD"));
+        // 45 mm of glass do not go through a throat of 48 with a barrel round them, nor 42 through M42.
+        assert!(!names(&rear(40.0, 23.0)).contains(&"Canon FD") && !names(&rear(40.0, 21.0)).contains(&"M42"));
+        // A wide front does not matter: it stands in front of the flange.
+        let both = [rear(60.0, 40.0)[0], rear(38.5, 12.0)[0]];
+        assert!(names(&both).contains(&"M42") && names(&both).contains(&"Canon EF"));
     }
 }

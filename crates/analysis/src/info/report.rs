@@ -1,13 +1,13 @@
 //! First-order figures, pupils and prescription of a lens.
 
 use super::field::{FREQUENCY_PER_MM, FieldReport, LimitReport, field, focus_shift_mm};
-use super::mounts::{MountReport, cleared};
+use super::mounts::{Glass, MountReport, cleared};
 use crate::Light;
 use glam::DVec3;
 use serde::Serialize;
 use spectra_core::Isa;
 use spectra_core::surface::Action;
-use spectra_lens::{Criterion, FirstOrder, Indices, Lens, MarginalRay, Section, Tracer};
+use spectra_lens::{Criterion, Element, FirstOrder, Indices, Lens, MarginalRay, Section, Tracer};
 
 /// A lens in figures, all in one light. Places along the axis (`..._z_mm`) are measured from the first
 /// vertex, +z toward the image. What a lens does not have (a pupil without a stop, a focal length
@@ -45,6 +45,10 @@ pub struct LensReport {
     pub t_number: Option<f64>,
     /// Part of the light of the axial beam that reaches the image: coatings, mirrors, absorption, obstructions.
     pub transmittance: Option<f64>,
+    /// What of coatings and absorption is counted, and what of it is assumed, in words.
+    pub losses: String,
+    /// The f-number in its name.
+    pub nominal_f_number: Option<f64>,
     /// Entrance pupil, paraxial.
     pub entrance_pupil_z_mm: Option<f64>,
     /// Diameter of the beam that the lens takes in from an axial object at infinity: twice the height of
@@ -82,7 +86,7 @@ pub struct LensReport {
     pub max_field_limit: Option<LimitReport>,
     /// Chief rays: real ones through the center of the stop, from the axis to the largest field.
     pub chief_ray_exit_angle_deg: Vec<FieldReport>,
-    /// Mounts that the back focus clears.
+    /// Mounts that it fits, by the distances of its glass from the image plane.
     pub mounts: Vec<MountReport>,
     /// First vertex to image plane.
     pub total_track_mm: f64,
@@ -90,12 +94,16 @@ pub struct LensReport {
     pub vertex_length_mm: f64,
     /// Last vertex to image plane.
     pub image_distance_mm: f64,
-    /// Clear semi-diameter of the stop, as it is set.
+    /// Whether it has a stop.
+    pub has_stop: bool,
+    /// Clear semi-diameter of the stop, as it is set; `None` where it is open, and rims alone limit the light.
     pub stop_semi_diameter_mm: Option<f64>,
     /// The surfaces, in the order of the light.
     pub surfaces: Vec<SurfaceReport>,
     /// Media of which something is assumed.
     pub assumed_media: Vec<super::media::AssumedMedium>,
+    /// What is worth knowing of how it is set.
+    pub notes: Vec<String>,
     /// What a person should know of the file.
     pub warnings: Vec<String>,
 }
@@ -153,6 +161,8 @@ impl LensReport {
             f_number,
             t_number: f_number.zip(transmittance).map(|(n, t)| n / t.sqrt()).filter(|n| n.is_finite()),
             transmittance,
+            losses: lens.losses(),
+            nominal_f_number: lens.nominal_f_number,
             entrance_pupil_z_mm: first_order.entrance_pupil_z_mm.filter(|z| z.is_finite()),
             entrance_pupil_diameter_mm: marginal.map(|ray| 2.0 * ray.height_mm),
             exit_pupil_z_mm,
@@ -171,13 +181,15 @@ impl LensReport {
             max_field_deg,
             max_field_limit,
             chief_ray_exit_angle_deg: chief_rays,
-            mounts: back_focal_distance_mm(lens).map(cleared).unwrap_or_default(),
+            mounts: glass(lens).map(|glass| cleared(&glass)).unwrap_or_default(),
             total_track_mm: lens.image_z_mm(),
             vertex_length_mm: lens.elements.last().map_or(0.0, |e| e.along_axis_mm),
             image_distance_mm: lens.image_gap_mm(),
+            has_stop: lens.stop().is_some(),
             stop_semi_diameter_mm: lens.stop().and_then(|stop| lens.elements[stop].semi_diameter_mm),
             surfaces: surfaces(&held),
             assumed_media: super::media::assumed(lens),
+            notes: lens.notes.clone(),
             warnings: lens.warnings.clone(),
         }
     }
@@ -188,15 +200,20 @@ fn magnification(held: &Lens) -> f64 {
     if held.focused_mm == f64::INFINITY { 0.0 } else { held.paraxial_magnification(held.focused_mm, held.reference_nm) }
 }
 
-/// From the rearmost glass, vertex or rim, to the image plane; `None` where the axis is folded.
-fn back_focal_distance_mm(lens: &Lens) -> Option<f64> {
-    let last = lens.elements.iter().rfind(|e| e.action != Action::Pass)?;
+/// The surfaces of glass, as a mount sees them; `None` where the axis is folded.
+fn glass(lens: &Lens) -> Option<Vec<Glass>> {
     if !lens.image_pose.is_on_axis() || lens.elements.iter().any(|e| e.action == Action::Reflect) {
         return None;
     }
-    let sense = if last.reversed { -1.0 } else { 1.0 };
-    let rim = last.semi_diameter_mm.and_then(|r| last.surface.sag_mm(0.0, r)).map_or(0.0, |sag| sense * sag);
-    Some(lens.image_z_mm() - last.vertex_z_mm() - rim.max(0.0))
+    let seen = |e: &Element| {
+        let sense = if e.reversed { -1.0 } else { 1.0 };
+        let rim = e.semi_diameter_mm.and_then(|r| e.surface.sag_mm(0.0, r)).map_or(0.0, |sag| sense * sag);
+        Glass {
+            nearest_mm: lens.image_z_mm() - e.vertex_z_mm() - rim.max(0.0),
+            semi_diameter_mm: e.semi_diameter_mm.unwrap_or(0.0),
+        }
+    };
+    Some(lens.elements.iter().filter(|e| e.action != Action::Pass).map(seen).collect())
 }
 
 fn pupil_magnification(first_order: &FirstOrder) -> Option<f64> {

@@ -1,6 +1,6 @@
 //! The report as a person reads it.
 
-use super::LensReport;
+use super::{LensReport, MountReport};
 use std::fmt;
 
 /// A length, or why there is none.
@@ -38,6 +38,9 @@ impl fmt::Display for LensReport {
         self.room(f)?;
         self.prescription(f)?;
         super::media::write(&self.assumed_media, f)?;
+        for note in &self.notes {
+            writeln!(f, "note: {note}")?;
+        }
         for warning in &self.warnings {
             writeln!(f, "warning: {warning}")?;
         }
@@ -53,10 +56,19 @@ impl LensReport {
         let limit =
             self.max_field_limit.map_or(String::new(), |l| format!("then {} at surface {}", l.cause, l.surface));
         let contrast = format!("where contrast at {} lp/mm is highest", self.contrast_frequency_per_mm);
+        let (stop, stop_remark) = match (self.has_stop, self.stop_semi_diameter_mm) {
+            (_, Some(_)) => (mm(self.stop_semi_diameter_mm), "semi-diameter"),
+            (true, None) => ("open".to_owned(), "the file gives it no semi-diameter: rims limit the light"),
+            (false, None) => ("none".to_owned(), ""),
+        };
+        let f_remark = match self.nominal_f_number {
+            Some(nominal) => format!("by the real marginal ray; f/{nominal} in its name"),
+            None => "by the real marginal ray".to_owned(),
+        };
         let rows = [
             ("focal length", mm(Some(self.efl_mm)), ""),
-            ("f-number", f_number, "by the real marginal ray"),
-            ("T-number", t_number, "with coatings and glass as stated"),
+            ("f-number", f_number, &f_remark),
+            ("T-number", t_number, &self.losses),
             ("back focal length", mm(Some(self.bfl_mm)), "from the last vertex"),
             ("front focal length", mm(Some(self.ffl_mm)), "from the first vertex"),
             ("front principal plane", mm(Some(self.front_principal_z_mm)), "from the first vertex"),
@@ -67,7 +79,7 @@ impl LensReport {
             ("  its diameter", mm(self.entrance_pupil_diameter_mm), "by the real marginal ray"),
             ("exit pupil", mm(self.exit_pupil_z_mm), "from the first vertex"),
             ("  its diameter", mm(self.exit_pupil_diameter_mm), "by the real marginal ray"),
-            ("stop", mm(self.stop_semi_diameter_mm), "semi-diameter"),
+            ("stop", stop, stop_remark),
             ("length", mm(Some(self.vertex_length_mm)), "first vertex to last"),
             ("image plane", mm(Some(self.image_distance_mm)), "from the last vertex"),
             ("total track", mm(Some(self.total_track_mm)), "first vertex to image plane"),
@@ -100,9 +112,11 @@ impl LensReport {
     }
 
     fn room(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let mounts: Vec<String> = self.mounts.iter().map(|m| format!("{} {}", m.name, m.flange_mm)).collect();
+        let dips = |m: &MountReport| (m.clearance_mm < 0.0).then(|| format!(" ({:.1} behind the flange)", -m.clearance_mm));
+        let words = |m: &MountReport| format!("{} {}{}", m.name, m.flange_mm, dips(m).unwrap_or_default());
+        let mounts: Vec<String> = self.mounts.iter().map(words).collect();
         if !mounts.is_empty() {
-            writeln!(f, "clears the flange of (mm): {}", mounts.join(", "))?;
+            writeln!(f, "fits the mounts (flange to image in mm): {}", mounts.join(", "))?;
             writeln!(f)?;
         }
         Ok(())

@@ -8,6 +8,7 @@ use spectra_analysis::draw::{Fans, Ground, Sheet, View};
 use spectra_analysis::fan::FanFinder;
 use spectra_lens::{Lens, Section};
 use spectra_plot::{Format, PlotError};
+use std::path::{Path, PathBuf};
 
 /// Fields beyond this are drawn only when asked for, degrees.
 const WIDEST_DEG: f64 = 85.0;
@@ -17,7 +18,8 @@ const PARTS: [f64; 2] = [0.6, 0.95];
 /// Draws a lens.
 pub(crate) fn draw(arguments: &LensDraw) -> Outcome {
     // Before anything is computed: a wrong ending is found out at once.
-    Format::of(&arguments.output).map_err(failure)?;
+    let output = arguments.output.clone().unwrap_or_else(|| default_name(&arguments.setting.lens));
+    Format::of(&output).map_err(failure)?;
     let lens = load(&arguments.setting)?;
     let section = match arguments.section {
         CutArgument::X => Section::X,
@@ -44,9 +46,16 @@ pub(crate) fn draw(arguments: &LensDraw) -> Outcome {
         caption: caption(&lens),
         image: true,
     };
-    sheet.draw(&lens, &rays).write(&arguments.output).map_err(failure)?;
-    console::note(&format!("wrote {}", arguments.output.display()));
+    sheet.draw(&lens, &rays).write(&output).map_err(failure)?;
+    console::note(&format!("wrote {}", output.display()));
     Ok(DONE)
+}
+
+/// `helios.svg` of `lenses/helios.yaml`: in the folder that one is in.
+fn default_name(lens: &str) -> PathBuf {
+    let name = Path::new(lens).file_name().map_or_else(|| "lens".into(), |name| name.to_string_lossy().into_owned());
+    let stem = [".yaml", ".yml", ".zmx", ".seq", ".csv"].iter().find_map(|ending| name.strip_suffix(ending));
+    PathBuf::from(format!("{}.svg", stem.unwrap_or(&name)))
 }
 
 fn fields_deg(arguments: &LensDraw, lens: &Lens, section: Section) -> Result<Vec<f64>, Failure> {

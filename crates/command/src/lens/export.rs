@@ -4,7 +4,7 @@ use super::exchanged::{deliver, target};
 use crate::arguments::LensExport;
 use crate::outcome::{Failure, Outcome};
 use spectra_core::resources::Resources;
-use spectra_exchange::{Format, yaml, zmx};
+use spectra_exchange::{Format, SystemAperture, yaml, zmx};
 use spectra_scene::FileResources;
 use std::path::Path;
 
@@ -19,8 +19,14 @@ pub(crate) fn export(arguments: &LensExport) -> Outcome {
     let resources = FileResources::beside(Path::new(""));
     let document = resources.document(&arguments.lens, &["lenses"], &[".yaml"])?;
     // All that is wrong with the lens is found here.
-    spectra_lens::parse(&document, &resources)?;
-    let lens = yaml::read(&document)?;
+    let real = spectra_lens::parse(&document, &resources)?;
+    let mut lens = yaml::read(&document)?;
+    let states_stop = lens.surfaces().any(|surface| surface.stop && surface.semi_diameter_mm.is_some());
+    if lens.system_aperture.is_none() && !states_stop {
+        // Rims limit the light: other programs take the beam by its width in front of the lens.
+        let width = real.marginal_ray().ok().map(|ray| 2.0 * ray.height_mm);
+        lens.system_aperture = width.map(SystemAperture::EntrancePupilDiameter);
+    }
     let written = zmx::write(&lens);
     let bytes = zmx::encode(&written.text);
     deliver(&lens.name, lens.surfaces().count(), output, &bytes, &written.left_out, arguments.json)

@@ -1,5 +1,6 @@
 //! `spectra lens`: the lens as an optical engineer looks at it.
 
+mod compare;
 mod draw;
 mod exchanged;
 mod export;
@@ -7,17 +8,19 @@ mod import;
 mod info;
 mod trace;
 
-use crate::arguments::{LensCommand, LensSetting, OneLight};
+use crate::arguments::{LensCommand, LensOptions, LensSetting, OneLight};
 use crate::outcome::{Failure, Outcome};
 use spectra_analysis::Light;
 use spectra_core::Isa;
-use spectra_lens::Lens;
+use spectra_core::params::FNumber;
+use spectra_lens::{Coating, Lens};
 use spectra_scene::FileResources;
 use std::path::Path;
 
 /// Runs a command on a lens.
 pub(crate) fn lens(command: &LensCommand, isa: Isa) -> Outcome {
     match command {
+        LensCommand::Compare(compare) => compare::compare(compare),
         LensCommand::Draw(draw) => draw::draw(draw),
         LensCommand::Info(info) => info::info(info),
         LensCommand::Trace(trace) => trace::trace(trace, isa),
@@ -26,14 +29,39 @@ pub(crate) fn lens(command: &LensCommand, isa: Isa) -> Outcome {
     }
 }
 
-/// The lens, focused and stopped as asked.
+/// The lens, coated, stopped and focused as asked.
 fn load(setting: &LensSetting) -> Result<Lens, Failure> {
-    let mut lens = spectra_lens::load(&setting.lens, &FileResources::beside(Path::new("")))?;
-    let refuse = |error: String| Failure::Input(format!("{}: {error}", setting.lens));
+    set(load_file(&setting.lens)?, &setting.lens, &Setting::of(&setting.options))
+}
+
+/// The lens as its file has it.
+fn load_file(name: &str) -> Result<Lens, Failure> {
+    Ok(spectra_lens::load(name, &FileResources::beside(Path::new("")))?)
+}
+
+/// What is asked of a lens.
+struct Setting<'a> {
+    options: &'a LensOptions,
+    f_number: Option<FNumber>,
+}
+
+impl<'a> Setting<'a> {
+    fn of(options: &'a LensOptions) -> Self {
+        Self { options, f_number: options.f_number }
+    }
+}
+
+fn set(mut lens: Lens, name: &str, setting: &Setting<'_>) -> Result<Lens, Failure> {
+    let refuse = |error: String| Failure::Input(format!("{name}: {error}"));
+    let options = setting.options;
+    if let Some(coating) = options.coating.as_deref().and_then(Coating::by_name) {
+        lens = lens.with_coating(coating);
+    }
+    lens.absorption = options.absorption.unwrap_or(lens.absorption);
     if let Some(f_number) = setting.f_number {
         lens = lens.at_f_number(f_number.number()).map_err(|e| refuse(format!("--f-number: {e}")))?;
     }
-    if let Some(focus) = setting.focus.or(setting.focus_mm) {
+    if let Some(focus) = options.focus.or(options.focus_mm) {
         lens = lens.focused_at(focus.mm()).map_err(|e| refuse(format!("--focus: {e}")))?;
     }
     Ok(lens)

@@ -25,6 +25,9 @@ pub(crate) fn trace(arguments: &LensTrace, isa: Isa) -> Outcome {
         None => run(&mut io::stdout().lock()).map_err(|error| failure(error, None))?,
         Some(path) => to_file(path, run)?,
     };
+    for note in &lens.notes {
+        console::note(&format!("note: {note}"));
+    }
     for warning in lens.warnings.iter().chain(&summary.warnings) {
         console::warning(warning);
     }
@@ -39,6 +42,9 @@ fn open(path: &Path) -> Result<(Box<dyn Read>, String), Failure> {
         return Ok((Box::new(io::stdin().lock()), "standard input".to_owned()));
     }
     let name = path.display().to_string();
+    if path.is_dir() {
+        return Err(Failure::Input(format!("{name}: is a folder; --rays takes a CSV file, or - for standard input")));
+    }
     let file = File::open(path).map_err(|error| Failure::Input(format!("{name}: cannot be read: {error}")))?;
     Ok((Box::new(file), name))
 }

@@ -67,6 +67,9 @@ fn render_scene(arguments: &Run, isa: Isa, started: Instant) -> Outcome {
     let control = Arc::new(deadline.map_or_else(Control::new, Control::until));
     let interrupt = interrupt::listen(&control, &arguments.output);
     let mut progress = Progress::new(arguments, deadline);
+    for note in &scene.lens.notes {
+        progress.note(note);
+    }
     for warning in &scene.warnings {
         progress.warning(warning);
     }

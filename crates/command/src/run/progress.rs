@@ -127,7 +127,7 @@ impl Progress {
         }
     }
 
-    /// What a person should bear in mind, though nothing is wrong.
+    /// What is worth knowing of how the scene is taken.
     pub(crate) fn note(&self, text: &str) {
         match &self.listener {
             Listener::Json => self.event(json!({ "event": "note", "message": text })),

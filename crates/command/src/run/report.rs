@@ -60,7 +60,7 @@ impl Report<'_> {
             "exposure_time_s": scene.exposure_time_s(),
             "metered_time_s": self.metered_times_s(),
             "source": scene.source.describe(),
-            "lens": { "name": scene.lens.name, "patent": scene.lens.patent },
+            "lens": { "name": scene.lens.name, "patent": scene.lens.patent, "losses": scene.lens.losses(), "notes": scene.lens.notes },
             "film": films(scene),
             "versions": version::to_json(),
             "warnings": scene.warnings,

@@ -23,8 +23,14 @@ pub fn read(params: &Params) -> Result<Prescription, Faults> {
     for key in ["source", "remark"] {
         lens.remarks.extend(value::<String>(params, key)?);
     }
-    let known = ["name", "maker", "patent", "year", "reference-line", "source", "remark", "surfaces"];
+    let known = [
+        "name", "maker", "patent", "year", "f-number", "reference-line", "source", "remark", "surfaces", "coating", "absorption",
+    ];
     note_others(params, &known, "", &mut lens);
+    // What is assumed of a lens's time is no loss; what is stated dims the light, and bends nothing.
+    if let Some(coating) = params.get("coating").filter(|node| node.get("assumed").is_none()) {
+        lens.leave_out(coating.span.line, false, "the coating");
+    }
     let mut faults = Faults::new();
     let nodes: Vec<StageNode> = value(params, "surfaces")?.unwrap_or_default();
     for (at, node) in nodes.iter().enumerate() {

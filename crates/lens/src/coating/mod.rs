@@ -8,9 +8,11 @@
 mod measured;
 mod params;
 mod stack;
+mod standard;
 
 pub use measured::MeasuredCoating;
-pub use params::{CoatingForm, OneLayer, StackParams, read_coating};
+pub use params::{CoatingForm, NamedCoating, OneLayer, StackParams, StatedCoating, read_coating, read_stated_coating};
+pub(crate) use stack::{least_square, running_layers};
 pub use stack::{Stack, StackLayer};
 
 use spectra_core::math;

@@ -19,6 +19,22 @@ pub struct OneLayer {
     thickness: Option<Wavelength>,
     /// Wavelength at which it is a quarter of a wave thick, nm if bare.
     quarter_wave_at: Option<Wavelength>,
+    /// Whether it is assumed of the lens, not known.
+    #[serde(default)]
+    assumed: bool,
+}
+
+/// A coating by its name, as a map.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct NamedCoating {
+    /// `ideal` (all light passes), `bare` (Fresnel's formulas), `single-layer` (a quarter wave of magnesium fluoride at 550 nm)
+    /// or `three-layer` (a quarter wave of index 1.38, half a wave of 2.10, a quarter wave of 1.72, at 515 nm).
+    #[schemars(extend("enum" = ["ideal", "bare", "single-layer", "three-layer"]))]
+    kind: String,
+    /// Whether it is assumed of the lens, not known.
+    #[serde(default)]
+    assumed: bool,
 }
 
 /// A stack, written out or in a file of its own.
@@ -39,6 +55,9 @@ pub struct StackParams {
     /// What else is worth knowing.
     #[expect(dead_code, reason = "for the reader of the file")]
     remark: Option<String>,
+    /// Whether it is assumed of the lens, not known.
+    #[serde(default)]
+    assumed: bool,
     /// The layers, the one next to the air first.
     #[schemars(with = "Vec<LayerOfStack>")]
     layers: Vec<StageNode>,
@@ -64,8 +83,11 @@ struct LayerOfStack {
 #[derive(JsonSchema)]
 #[serde(untagged)]
 pub enum CoatingForm {
-    /// `ideal` (all light passes), `bare` (Fresnel's formulas), or a file: `my-stack.yaml`, `my-coating.csv`.
+    /// `ideal` (all light passes), `bare` (Fresnel's formulas), `single-layer` (magnesium fluoride), `three-layer`, or a file:
+    /// `my-stack.yaml`, `my-coating.csv`.
     Named(String),
+    /// By name, and whether it is assumed.
+    Kind(NamedCoating),
     /// One layer.
     Layer(OneLayer),
     /// Several layers.
@@ -73,7 +95,7 @@ pub enum CoatingForm {
 }
 
 const HINT: &str =
-    "ideal, bare, {layer: 1.38, quarter-wave-at: 550 nm}, {layers: [...]}, or a file: my-stack.yaml, my-coating.csv";
+    "ideal, bare, single-layer, three-layer, {layer: 1.38, quarter-wave-at: 550 nm}, {layers: [...]}, or a file: my-stack.yaml, my-coating.csv";
 /// Most layers of a stack.
 const MAX_LAYERS: usize = 500;
 /// Thickest layer, nm.
@@ -81,21 +103,41 @@ const MAX_NM: f64 = 1e5;
 /// Largest measurement that is read, bytes.
 const MAX_BYTES: u64 = 4 << 20;
 
-/// Reads `ideal`, `bare`, a layer, a stack of layers, or the name of a file: `my-stack.yaml` with layers, or
-/// `my-coating.csv` with a measured reflectance or transmittance.
+/// A coating, and whether it is known of the lens.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StatedCoating {
+    /// The coating.
+    pub coating: Coating,
+    /// Whether it is assumed, as of lenses of the time.
+    pub assumed: bool,
+}
+
+/// Reads a name (`ideal`, `bare`, `single-layer`, `three-layer`), a layer, a stack of layers, or the name of a file:
+/// `my-stack.yaml` with layers, or `my-coating.csv` with a measured reflectance or transmittance.
 ///
 /// # Errors
 /// What is wrong with it, placed; what is wrong with the file, placed there.
 pub fn read_coating(node: &StageNode, resources: &dyn Resources) -> Result<Coating, Faults> {
-    match node.node().as_str() {
-        Some("ideal") => return Ok(Coating::Ideal),
-        Some("bare") => return Ok(Coating::Bare),
-        Some(name) => return named(name, node, resources),
-        None => {}
+    Ok(read_stated_coating(node, resources)?.coating)
+}
+
+/// The same, with what is said of how it is known.
+///
+/// # Errors
+/// As [`read_coating`].
+pub fn read_stated_coating(node: &StageNode, resources: &dyn Resources) -> Result<StatedCoating, Faults> {
+    if let Some(name) = node.node().as_str() {
+        let coating = Coating::by_name(name).map_or_else(|| named(name, node, resources), Ok)?;
+        return Ok(StatedCoating { coating, assumed: false });
     }
     let params = Params::section(node.node().clone(), node.path())?;
     if params.get("layers").is_some() {
         return stack(&params, resources);
+    }
+    if params.get("kind").is_some() {
+        let p: NamedCoating = params.parse()?;
+        let unknown = || params.fault("kind", format!("unknown coating `{}`", p.kind)).hint(HINT);
+        return Ok(StatedCoating { coating: Coating::by_name(&p.kind).ok_or_else(unknown)?, assumed: p.assumed });
     }
     let p: OneLayer = params.parse()?;
     if !(1.0..=5.0).contains(&p.layer) {
@@ -103,7 +145,7 @@ pub fn read_coating(node: &StageNode, resources: &dyn Resources) -> Result<Coati
         return Err(fault.hint("from 1 to 5; magnesium fluoride has 1.38").into());
     }
     let thickness_nm = thickness(&params, "", p.thickness, p.quarter_wave_at, |_| p.layer)?;
-    Ok(Coating::Layer { index: p.layer, thickness_nm })
+    Ok(StatedCoating { coating: Coating::Layer { index: p.layer, thickness_nm }, assumed: p.assumed })
 }
 
 /// Thickness, nm; `at` is the path of the layer.
@@ -141,7 +183,7 @@ fn named(name: &str, node: &StageNode, resources: &dyn Resources) -> Result<Coat
     match ending.as_deref() {
         Some("yaml" | "yml") => {
             let params = resources.document(&found, &[], &[]).map_err(|faults| placed(faults, node))?;
-            stack(&params, resources)
+            Ok(stack(&params, resources)?.coating)
         }
         Some("csv") => {
             let fault = |text: String| node.fault(text);
@@ -165,7 +207,7 @@ fn placed(faults: Faults, node: &StageNode) -> Faults {
     faults.into_iter().map(place).collect::<Vec<_>>().into()
 }
 
-fn stack(params: &Params, resources: &dyn Resources) -> Result<Coating, Faults> {
+fn stack(params: &Params, resources: &dyn Resources) -> Result<StatedCoating, Faults> {
     let p: StackParams = params.parse()?;
     let mut faults = Faults::new();
     if p.spectra.is_some_and(|v| v != 1.0) {
@@ -177,7 +219,7 @@ fn stack(params: &Params, resources: &dyn Resources) -> Result<Coating, Faults> 
     }
     let layers = p.layers.iter().enumerate().filter_map(|(i, node)| faults.take(layer(params, i, node, resources)));
     let layers: Vec<StackLayer> = layers.collect();
-    faults.into_result(Coating::Stack(Arc::new(Stack::new(layers))))
+    faults.into_result(StatedCoating { coating: Coating::Stack(Arc::new(Stack::new(layers))), assumed: p.assumed })
 }
 
 fn layer(params: &Params, i: usize, node: &StageNode, resources: &dyn Resources) -> Result<StackLayer, Faults> {

@@ -6,6 +6,7 @@ use super::include::{self, INCLUDE};
 use super::sweep::{Axis, SWEEP, Setting, Sweep};
 use super::variables::{self, VARIABLES, Variables};
 use crate::assemble::{assemble, read, record};
+use crate::lens_section::is_too_fast;
 use crate::{FileResources, Scene, yaml};
 use spectra_core::params::{Fault, Faults, Key, Node, Number, Params, Value};
 use std::path::Path;
@@ -302,8 +303,34 @@ impl Series {
         let mut uses = Vec::new();
         let root = variables.unwrap_or_default().put_into(&root, &mut uses)?;
         let text = self.record(&member, &root);
-        let scene = Params::section(root, "").and_then(|params| assemble(&name, text, &params, &self.resources));
+        let built = |root: &Node, text: &str| {
+            Params::section(root.clone(), "")
+                .and_then(|params| assemble(&name, text.to_owned(), &params, &self.resources))
+        };
+        let scene = built(&root, &text).or_else(|faults| match self.wide_open_instead(index, &root, &faults) {
+            Some((open, warning)) => built(&open, &self.record(&member, &open)).map(|mut scene| {
+                scene.warnings.push(warning);
+                scene
+            }),
+            None => Err(faults),
+        });
         scene.map_err(|faults| variables::told(faults, &uses))
+    }
+
+    /// Of a sweep over lenses, where all that is wrong is that one of them does not reach the f-number of the others: the scene
+    /// without it, and what to say.
+    fn wide_open_instead(&self, index: usize, root: &Node, faults: &Faults) -> Option<(Node, String)> {
+        let is_sweep = matches!(self.going, Going::Sweep { .. });
+        let lens = self.setting(index).iter().any(|(path, _)| path == "lens.file" || path == "lens");
+        let [fault] = &faults.0[..] else { return None };
+        if !(is_sweep && lens && is_too_fast(fault)) {
+            return None;
+        }
+        let mut open = root.clone();
+        let Value::Map(entries) = &mut open.value else { return None };
+        let (_, lens) = entries.iter_mut().find(|(key, _)| key.text == "lens")?;
+        without(lens, "f-number")?;
+        Some((open, format!("picture {} is taken wide open: {}", index + 1, fault.message)))
     }
 
     /// The scene as set for one picture, as a scene of its own.

@@ -1,0 +1,131 @@
+//! Several lenses side by side.
+
+use super::LensReport;
+use super::field::FREQUENCY_PER_MM;
+use crate::Light;
+use serde::Serialize;
+use spectra_lens::{Beam, Lens, ObjectPoint};
+use std::fmt;
+
+/// Lenses side by side, in the order that they were named.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Comparison {
+    /// Each of them.
+    pub lenses: Vec<Compared>,
+    /// Spatial frequency of the contrasts, line pairs a mm.
+    pub contrast_frequency_per_mm: f64,
+    /// Field angle of the contrasts and of distortion beside the axis: the same for all, 0.7 of the smallest of their largest
+    /// fields; `None` where a lens has none.
+    pub field_deg: Option<f64>,
+}
+
+/// One lens among others.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Compared {
+    /// All that `lens info` says of it.
+    pub info: LensReport,
+    /// Diameter of the picture that the largest field draws.
+    pub image_circle_mm: Option<f64>,
+    /// Geometrical contrast on the axis where it is highest.
+    pub axial_contrast: Option<f64>,
+    /// Geometrical contrast at the field in the same plane.
+    pub field_contrast: Option<f64>,
+    /// Image height at the field over that of a picture without distortion, less one.
+    pub distortion: Option<f64>,
+}
+
+/// Part of the field that all lenses cover at which they are compared.
+const PART: f64 = 0.7;
+/// Rays across the beam of a contrast.
+const CELLS: usize = 96;
+
+impl Comparison {
+    /// Looks at lenses, as they are focused and stopped, each at its own reference line or all in one light.
+    #[must_use]
+    pub fn of(lenses: &[Lens], light: Option<Light>) -> Self {
+        let light = |lens: &Lens| light.unwrap_or(Light::Wavelength(lens.reference_nm));
+        let reports: Vec<LensReport> = lenses.iter().map(|lens| LensReport::of(lens, light(lens))).collect();
+        let largest: Option<Vec<f64>> = reports.iter().map(|r| r.max_field_deg).collect();
+        let field_deg = largest.and_then(|all| all.into_iter().reduce(f64::min)).map(|deg| PART * deg);
+        let each = lenses.iter().zip(reports).map(|(lens, info)| {
+            let held = light(lens).hold(lens.clone());
+            let beam = |field_rad: f64| {
+                let point = ObjectPoint::on_plane(&held, held.focused_mm, field_rad);
+                Beam::of(&held, point, &[(held.reference_nm, 1.0)], CELLS).ok().flatten()
+            };
+            let axis = beam(0.0);
+            let z_mm = axis.as_ref().and_then(|b| b.best_contrast_z_mm(FREQUENCY_PER_MM));
+            let contrast = |beam: Option<&Beam>| Some(beam?.contrast(z_mm?, FREQUENCY_PER_MM));
+            let field_rad = field_deg.map(f64::to_radians);
+            let chief = field_rad.and_then(|field| held.chief_rays(held.focused_mm, &[field]).ok()?.into_iter().next()?);
+            let ideal = field_rad.filter(|_| held.focused_mm == f64::INFINITY);
+            let ideal = ideal.map(|field| info.efl_mm * spectra_core::math::tan(field));
+            Compared {
+                image_circle_mm: info.chief_ray_exit_angle_deg.last().map(|ray| 2.0 * ray.image_height_mm.abs()),
+                axial_contrast: contrast(axis.as_ref()),
+                field_contrast: contrast(field_rad.and_then(beam).as_ref()),
+                distortion: chief.zip(ideal).map(|(ray, ideal)| (ray.image_mm[1] / ideal).abs() - 1.0),
+                info,
+            }
+        });
+        Self { lenses: each.collect(), contrast_frequency_per_mm: FREQUENCY_PER_MM, field_deg }
+    }
+}
+
+/// A row of the table: what it says, and how a lens answers.
+type Row = (String, Box<dyn Fn(&Compared) -> String>);
+
+impl fmt::Display for Comparison {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fn row(name: &str, answer: impl Fn(&Compared) -> Option<String> + 'static) -> Row {
+            (name.to_owned(), Box::new(move |lens| answer(lens).unwrap_or_else(|| "-".to_owned())))
+        }
+        fn mm(value: Option<f64>) -> Option<String> {
+            value.filter(|v| v.is_finite()).map(|v| format!("{v:.2} mm"))
+        }
+        let per_mm = self.contrast_frequency_per_mm;
+        let mut rows: Vec<Row> = vec![
+            row("year", |l| l.info.year.map(|y| y.to_string())),
+            row("focal length", |l| mm(Some(l.info.efl_mm))),
+            row("f-number", |l| l.info.f_number.map(|n| format!("f/{n:.3}"))),
+            row("T-number", |l| l.info.t_number.map(|n| format!("T/{n:.3}"))),
+            row("  counted", |l| Some(l.info.losses.clone())),
+            row("entrance pupil", |l| mm(l.info.entrance_pupil_diameter_mm)),
+            row("largest field", |l| l.info.max_field_deg.map(|deg| format!("{deg:.1} deg"))),
+            row("image circle", |l| mm(l.image_circle_mm)),
+            row("last surface to image", |l| mm(Some(l.info.image_distance_mm))),
+            row("length", |l| mm(Some(l.info.vertex_length_mm))),
+            row("surfaces", |l| Some(l.info.surfaces.len().to_string())),
+            row(&format!("contrast at {per_mm} lp/mm, axis"), |l| l.axial_contrast.map(|c| format!("{c:.3}"))),
+        ];
+        if let Some(deg) = self.field_deg {
+            rows.push(row(&format!("  at {deg:.1} deg"), |l| l.field_contrast.map(|c| format!("{c:.3}"))));
+            rows.push(row(&format!("distortion at {deg:.1} deg"), |l| l.distortion.map(|d| format!("{:+.2} %", 100.0 * d))));
+        }
+        let first = rows.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0);
+        let columns: Vec<Vec<String>> = self
+            .lenses
+            .iter()
+            .map(|lens| std::iter::once(lens.info.name.clone()).chain(rows.iter().map(|(_, answer)| answer(lens))).collect())
+            .collect();
+        let widths: Vec<usize> =
+            columns.iter().map(|c| c.iter().map(|cell| cell.chars().count()).max().unwrap_or(0)).collect();
+        let names = std::iter::once("").chain(rows.iter().map(|(name, _)| name.as_str()));
+        for (at, name) in names.enumerate() {
+            let mut line = format!("{name:<first$}");
+            for (column, width) in columns.iter().zip(&widths) {
+                line += &format!("   {:<width$}", column[at], width = *width);
+            }
+            writeln!(f, "{}", line.trim_end())?;
+        }
+        for lens in &self.lenses {
+            for note in &lens.info.notes {
+                writeln!(f, "note: {}: {note}", lens.info.name)?;
+            }
+            for warning in &lens.info.warnings {
+                writeln!(f, "warning: {}: {warning}", lens.info.name)?;
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,49 @@
+//! What is taken of a lens's losses, in words: beside every T-number.
+
+use crate::{Coating, Lens};
+use spectra_core::surface::Action;
+use spectra_glass::Medium;
+
+impl Lens {
+    /// What coatings and absorption are counted, and what of it is assumed: `bare (assumed for 1927), glass absorbs`.
+    #[must_use]
+    pub fn losses(&self) -> String {
+        let refracts = |e: &&crate::Element| e.action == Action::Refract && e.medium_before != e.medium_after;
+        let own = self.elements.iter().filter(refracts).filter(|e| e.coating.is_some()).count();
+        let all = self.elements.iter().filter(refracts).count();
+        let mut coating = match own {
+            0 => self.coating.words(),
+            _ if own == all => "each surface coated as stated".to_owned(),
+            _ => format!("{}, {own} of {all} surfaces as stated", self.coating.words()),
+        };
+        if self.coating_assumed && own < all {
+            coating += &self.year.map_or(" (assumed: no year is stated)".to_owned(), |y| format!(" (assumed for {y})"));
+        }
+        format!("{coating}, {}", self.absorption_words())
+    }
+
+    /// Whether glass absorbs, by how much of what is known.
+    fn absorption_words(&self) -> String {
+        if !self.absorption {
+            return "no absorption".to_owned();
+        }
+        let glasses = self.media.iter().filter(|m| !matches!(m.medium, Medium::Air | Medium::Vacuum));
+        let known: Vec<bool> = glasses.map(|m| m.medium.absorption(self.year).is_some()).collect();
+        let (all, clear) = (known.len(), known.iter().filter(|known| !**known).count());
+        let parts = [(self.borrowed_absorption().len(), "borrowed"), (clear, "unknown: taken as clear")];
+        let parts: Vec<String> = parts.iter().filter(|(n, _)| *n > 0).map(|(n, what)| format!("{n} {what}")).collect();
+        match (all, parts.is_empty()) {
+            (0, _) => "no glass".to_owned(),
+            (_, true) => "glass absorbs".to_owned(),
+            (1, false) => format!("glass absorbs (its transmittance {})", parts.join(", ").trim_start_matches("1 ")),
+            (_, false) => format!("glass absorbs (of {all} transmittances {})", parts.join(", ")),
+        }
+    }
+
+    /// Whether nothing is lost at surfaces or in glass, by assumption.
+    #[must_use]
+    pub fn is_lossless(&self) -> bool {
+        let ideal = |e: &crate::Element| e.coating.as_ref().unwrap_or(&self.coating) == &Coating::Ideal;
+        !self.absorption && self.elements.iter().filter(|e| e.action == Action::Refract).all(ideal)
+    }
+}
