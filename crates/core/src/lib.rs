@@ -5,6 +5,7 @@
 //! up; a radius is positive where its centre lies at larger z.
 
 pub mod batch;
+pub mod cover;
 pub mod frame;
 pub mod isa;
 pub mod loss;
