@@ -89,7 +89,7 @@ fn a_point_is_sharp_through_plates() {
 /// The same backward: a patch too small to see, its image 4 um wide.
 #[test]
 fn plates_are_in_focus_in_both_directions() {
-    let patch = "source={kind: chart, chart: white, distance: 1 m, width: 0.08 mm, illuminant: 'line:d'}";
+    let patch = "source={kind: chart, chart: white, distance: 1 m, width: 0.08 mm, illuminant: 'line:d', color: {kind: smooth}}";
     let imager = "imager={kind: xyz, width: 0.06 mm, height: 0.03 mm, resolution: [60, 30]}";
     let common = [patch, imager, "lens.focus=1 m", "lens.f-number=f/5.6", COVER, LOW_PASS];
     let seen = |direction: &[&str]| width_of_98_percent(&render(&[&common[..], direction].concat()));
@@ -158,8 +158,11 @@ fn the_default_focus_is_where_contrast_is_highest() {
     ] {
         let scene = load(name, set).expect("a scene");
         let FocusBy::Contrast { per_mm } = scene.focus.by else { panic!("{name}: {}", scene.focus) };
-        let system =
-            SystemResponse { grid: scene.grid, source: scene.source.spectrum().clone(), channels: scene.channels.clone() };
+        let system = SystemResponse {
+            grid: scene.grid,
+            source: scene.source.spectrum().clone(),
+            channels: scene.channels.clone(),
+        };
         let response = system.summed_response();
         let light: Vec<(f64, f64)> = (0..60)
             .map(|i| scene.grid.start_nm + (f64::from(i) + 0.5) * (scene.grid.end_nm() - scene.grid.start_nm) / 60.0)
@@ -167,6 +170,13 @@ fn the_default_focus_is_where_contrast_is_highest() {
                 let at = |table: &[f64]| scene.grid.interpolate(table, nm);
                 (nm, at(&system.source.continuum) * at(&response))
             })
+            .chain(
+                system
+                    .source
+                    .lines
+                    .iter()
+                    .map(|l| (l.wavelength_nm, l.power * scene.grid.interpolate(&response, l.wavelength_nm))),
+            )
             .filter(|(_, weight)| *weight > 0.0)
             .collect();
         let object_mm = scene.focus.distance_mm.expect("focused");

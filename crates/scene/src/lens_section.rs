@@ -193,11 +193,12 @@ pub(crate) fn lens_of(
                 Ok((found, remark)) => (lens, focus.remark) = (found, remark),
                 Err(error @ (FocusError::NoLight { .. } | FocusError::NoTravel { .. })) if wanted.plain => {
                     focus.by = FocusBy::Paraxial;
-                    focus.remark = Some(format!("contrast cannot be had: {error}"));
+                    focus.remark =
+                        Some(format!("contrast cannot be had ({error}); write `by: paraxial` to do without"));
                 }
                 Err(error) => faults.push(focus_fault(params, &error)),
             }
-            warnings.extend(focus.remark.as_ref().map(|remark| format!("`lens.focus`: {focus_by}: {remark}", focus_by = focus.by.name())));
+            warnings.extend(focus.remark.as_ref().map(|remark| format!("`lens.focus`: {remark}")));
         }
     }
     if let Some(node) = section.matte_box
@@ -215,7 +216,8 @@ fn by_rays(lens: &Lens, wanted: &Wanted) -> Result<(Lens, Option<String>), Focus
     let found = lens.clone().focused_by(search)?;
     let apart = found.sections_apart_mm(search)?.map(|mm| {
         format!(
-            "lines along x and lines along y are sharp {:.2} mm apart; the mean of their contrasts is highest here",
+            "lines along x and lines along y are sharp {:.2} mm apart; the mean of their contrasts is highest here; \
+             stop down for more of both",
             mm.abs()
         )
     });
