@@ -32,7 +32,7 @@ fn centroid(frame: &ExposureFrame, channel: &str) -> (f64, f64) {
 /// tangent of the field times the image distance, within the distortion and coma of the lens (5 %).
 #[test]
 fn a_point_lands_upright_and_unmirrored() {
-    let small = ["imager.resolution=[240, 160]", "render.rays=400000"];
+    let small = ["imager={kind: xyz, format: 135, resolution: [240, 160]}", "render.rays=400000"];
     let frame = render("biotar-spot.yaml", &small).exposure;
     let (column, row) = centroid(&frame, "Y");
     let (x, y) = ((column - 0.5) * 36.0, (0.5 - row) * 24.0);

@@ -35,7 +35,7 @@ SIZES = {"135": (36, 24), "6x4.5": (56, 41.5), "6x9": (84, 56), "academy": (22, 
 
 SCENE = """spectra: 1
 source: {{kind: chart, chart: resolution, distance: {distance} mm, width: {width} mm, illuminant: D65, luminance: 300 cd/m2}}
-lens: {{file: {name}, focus: {focus}}}
+lens: {{file: {name}, focus: {{distance: {focus}, by: paraxial}}}}
 imager: {{kind: xyz, format: {format}, resolution: [{columns}, {rows}]}}
 render: {{samples: 256, seed: 1}}
 output: [png]

@@ -24,6 +24,8 @@ impl Light {
             };
             medium.medium = Medium::Constant(index);
         }
+        let nm = self.wavelength_nm().unwrap_or(reference_nm);
+        lens.cover = lens.cover.map(|cover| cover.held_at(nm));
         lens
     }
 

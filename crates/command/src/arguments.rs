@@ -10,6 +10,7 @@ use crate::spectrum::SpectrumArguments;
 use crate::version;
 use clap::{Args, Parser, Subcommand};
 use spectra_core::params::{FNumber, Length, OrInfinity, Positive, Time, Wavelength};
+use spectra_lens::Criterion;
 use std::path::PathBuf;
 
 /// The open spectral camera: light with a spectrum, through real glass, onto a measured film.
@@ -368,6 +369,9 @@ pub(crate) struct LensOptions {
     /// The same, as a bare number of millimeters.
     #[arg(long, value_name = "MM", value_parser = parse::<OrInfinity<Positive<Length>>>, conflicts_with = "focus")]
     pub focus_mm: Option<OrInfinity<Positive<Length>>>,
+    /// What --focus makes best, in the light of the lens's reference line, on the axis and at the aperture set.
+    #[arg(long, value_name = "MEASURE", value_enum, default_value_t = FocusMeasure::Contrast)]
+    pub focus_by: FocusMeasure,
     /// Set the stop to this f-number (f/2), by the real marginal ray; as the file has it if not given.
     #[arg(long, value_name = "F/N", value_parser = parse::<FNumber>)]
     pub f_number: Option<FNumber>,
@@ -377,6 +381,29 @@ pub(crate) struct LensOptions {
     /// Whether glass absorbs: true or false; as the file has it if not given.
     #[arg(long, value_name = "BOOL")]
     pub absorption: Option<bool>,
+}
+
+/// What a focused lens is best at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum FocusMeasure {
+    /// Contrast at 30 line pairs a mm, by real rays, as a scene focuses a 135 frame.
+    Contrast,
+    /// The smallest spot, root mean square, by real rays.
+    #[value(alias = "rms")]
+    Spot,
+    /// The image of first-order optics.
+    Paraxial,
+}
+
+impl FocusMeasure {
+    /// What real rays are searched by.
+    pub(crate) fn criterion(self) -> Option<Criterion> {
+        match self {
+            Self::Contrast => Some(Criterion::Contrast { per_mm: 30.0 }),
+            Self::Spot => Some(Criterion::Rms),
+            Self::Paraxial => None,
+        }
+    }
 }
 
 /// One light for all.

@@ -11,6 +11,7 @@
 //! - Random numbers, files and the instruction set reach a stage only through its arguments.
 
 pub mod batch;
+pub mod cover;
 pub mod frame;
 pub mod isa;
 pub mod loss;

@@ -7,6 +7,7 @@
 //! by the probability with which wavelength and places were drawn.
 
 use crate::RayBatch;
+use crate::cover::CoverStack;
 use crate::frame::{DisplayPicture, ExposureFrame, FrameSize, RawFrame};
 use crate::isa::Isa;
 use crate::spectral::{Channel, SpectralPower, SystemResponse};
@@ -128,6 +129,12 @@ pub trait Imager: Send + Sync {
         None
     }
 
+    /// The plates that stand right before it, if there are any. A camera puts its frame where they put the image: the lens
+    /// is focused through them, and the nominal image plane (z = 0) stands as much farther back.
+    fn cover(&self) -> Option<CoverStack> {
+        None
+    }
+
     /// A picture of what it recorded by itself; `None` where a film makes it.
     fn display(&self, exposure: &ExposureFrame) -> Option<DisplayPicture>;
 
@@ -195,6 +202,12 @@ pub trait Launch: Send + Sync {
 pub trait Film: Send + Sync {
     /// Its channels: responses per spectral irradiance, in lux (times seconds of exposure).
     fn channels(&self) -> Vec<Channel>;
+
+    /// How many of its channels, the first ones, the picture is made of; those behind them only tell the camera something,
+    /// as a light meter does.
+    fn picture_channels(&self) -> usize {
+        self.channels().len()
+    }
 
     /// Exposure time that the light is recorded for, s.
     fn exposure_time_s(&self) -> f64;

@@ -2,6 +2,7 @@
 
 use crate::{Indices, Lens, Tracer, Travel, Work};
 use glam::DVec3;
+use spectra_core::cover::CoverStack;
 use spectra_core::loss::ALIVE;
 use spectra_core::{Isa, Loss, RayBatch};
 use spectra_glass::DispersionError;
@@ -121,7 +122,7 @@ impl Window {
     }
 
     /// Solid angle (for a far point: area) of a cell there, over that of a cell in the middle.
-    fn share(&self, [a, b]: [f64; 2]) -> f64 {
+    pub(crate) fn share(&self, [a, b]: [f64; 2]) -> f64 {
         match self.point {
             ObjectPoint::Toward(_) => 1.0,
             ObjectPoint::At(p) => {
@@ -187,12 +188,13 @@ impl Window {
     }
 }
 
-/// Rays of one object point behind a lens, in the frame of the image plane.
+/// Rays of one object point behind a lens, in the frame of the image plane. Through plates before the frame they land
+/// elsewhere: as the frame moves back by z the plates move with it, so that a ray meets it at `x_mm + z * slope_x`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Beam {
-    /// Where each crosses the plane z = 0, mm.
+    /// Where each meets a frame at z = 0, mm.
     pub x_mm: Vec<f64>,
-    /// Where each crosses the plane z = 0, mm.
+    /// Where each meets a frame at z = 0, mm.
     pub y_mm: Vec<f64>,
     /// dx/dz.
     pub slope_x: Vec<f64>,
@@ -239,18 +241,20 @@ impl Beam {
                 let mut work = tracer.work(cells * cells);
                 window.trace(&tracer, &mut rays, &mut work, cut, cells, *wavelength_nm);
                 let area = (cut.max[0] - cut.min[0]) * (cut.max[1] - cut.min[1]);
-                beam.take(&rays, weight * area);
+                beam.take(&rays, weight * area, lens.cover.as_ref());
             }
         }
         Ok((!beam.weight.is_empty()).then_some(beam))
     }
 
     /// Adds the living rays of a batch in the frame of the image plane.
-    fn take(&mut self, rays: &RayBatch, weight: f64) {
+    fn take(&mut self, rays: &RayBatch, weight: f64, cover: Option<&CoverStack>) {
         let ([x, y, z], [l, m, n]) = (rays.positions(), rays.directions());
         for i in 0..rays.len() {
             let (u, v) = (l[i] / n[i], m[i] / n[i]);
-            let (px, py) = (x[i] - z[i] * u, y[i] - z[i] * v);
+            let depth_mm = cover.map_or(0.0, |c| c.depth_mm((u * u + v * v).sqrt(), rays.wavelengths_nm()[i]));
+            let back_mm = z[i] + depth_mm;
+            let (px, py) = (x[i] - back_mm * u, y[i] - back_mm * v);
             if rays.states()[i] == ALIVE && px.is_finite() && py.is_finite() {
                 self.x_mm.push(px);
                 self.y_mm.push(py);
@@ -309,24 +313,44 @@ impl Beam {
     /// the plane `z_mm` behind the image plane.
     #[must_use]
     pub fn contrast(&self, z_mm: f64, per_mm: f64) -> f64 {
-        let total: f64 = self.weight.iter().sum();
-        let one = |places: &[f64], slopes: &[f64], center: f64| {
-            let (mut re, mut im) = (0.0, 0.0);
-            for i in 0..self.weight.len() {
-                let periods = (places[i] + slopes[i] * z_mm - center) * per_mm;
+        let [across, along] = self.contrasts(z_mm, per_mm, 1);
+        0.5 * (across + along)
+    }
+
+    /// Contrast in x (of lines along y) and in y, of every `stride`th ray.
+    fn contrasts(&self, z_mm: f64, per_mm: f64, stride: usize) -> [f64; 2] {
+        let one = |places: &[f64], slopes: &[f64]| {
+            let (mut re, mut im, mut total) = (0.0, 0.0, 0.0);
+            for i in (0..self.weight.len()).step_by(stride) {
+                let periods = (places[i] + slopes[i] * z_mm - places[0]) * per_mm;
                 let (sin, cos) = spectra_core::math::sin_cos_turns(periods - periods.floor());
                 re += self.weight[i] * cos;
                 im += self.weight[i] * sin;
+                total += self.weight[i];
             }
             (re * re + im * im).sqrt() / total
         };
-        let [x, y] = [self.x_mm[0], self.y_mm[0]];
-        0.5 * (one(&self.x_mm, &self.slope_x, x) + one(&self.y_mm, &self.slope_y, y))
+        [one(&self.x_mm, &self.slope_x), one(&self.y_mm, &self.slope_y)]
     }
 
     /// The plane on which that is largest, mm behind the image plane; `None` for parallel rays.
     #[must_use]
     pub fn best_contrast_z_mm(&self, per_mm: f64) -> Option<f64> {
+        let mean = |[x, y]: [f64; 2]| 0.5 * (x + y);
+        self.highest_contrast(per_mm, mean).map(|(z, _)| z)
+    }
+
+    /// The planes on which the lines along y and those along x have the most contrast, mm behind the image plane, where
+    /// neither plane holds half of the other's contrast: no plane is sharp for both.
+    pub(crate) fn sections_z_mm(&self, per_mm: f64) -> Option<[f64; 2]> {
+        let best = [0, 1].map(|k| self.highest_contrast(per_mm, move |both| both[k]));
+        let [(zx, cx), (zy, cy)] = [best[0]?, best[1]?];
+        let lost = self.contrasts(zy, per_mm, 1)[0] < 0.5 * cx && self.contrasts(zx, per_mm, 1)[1] < 0.5 * cy;
+        lost.then_some([zx, zy])
+    }
+
+    /// Where some mean of the contrasts in x and y is largest, and that mean.
+    fn highest_contrast(&self, per_mm: f64, of: impl Fn([f64; 2]) -> f64) -> Option<(f64, f64)> {
         let m = self.moments();
         let offsets = (0..self.weight.len())
             .map(|i| [self.x_mm[i] - m.x, self.y_mm[i] - m.y, self.slope_x[i] - m.u, self.slope_y[i] - m.v]);
@@ -335,27 +359,64 @@ impl Beam {
             return None;
         }
         // Rays cross the middle one between these planes, and somewhere there the light is most together.
-        let crossings = offsets.filter(|[.., u, v]| u * u + v * v > 0.01 * steepest2);
+        let crossings = offsets.filter(|[.., u, v]| u * u + v * v > STEEP2 * steepest2);
         let crossings = crossings.map(|[x, y, u, v]| -(x * u + y * v) / (u * u + v * v));
-        let (mut low, mut high) = crossings.fold((f64::INFINITY, -f64::INFINITY), |(a, b), z| (a.min(z), b.max(z)));
-        let period = 1.0 / (per_mm * steepest2.sqrt());
-        (low, high) = (low - 0.5 * period, high + 0.5 * period);
-        let steps = ((high - low) / period * 8.0).clamp(40.0, 400.0).ceil();
-        let step = (high - low) / steps;
-        let places = (0..=steps as usize).map(|i| low + step * i as f64);
-        let scored = places.map(|z| (self.contrast(z, per_mm), z));
-        let (_, best) = scored.fold((-1.0, low), |best, next| if next.0 > best.0 { next } else { best });
-        Some(golden_section(best - step, best + step, |z| -self.contrast(z, per_mm)))
+        let stride = (self.weight.len() / SCANNED_RAYS).max(1);
+        let coarse = |z: f64| of(self.contrasts(z, per_mm, stride));
+        let fine = |z: f64| of(self.contrasts(z, per_mm, 1));
+        highest(crossings, 1.0 / (per_mm * steepest2.sqrt()), coarse, fine)
     }
+}
+
+/// Squares of slopes over the largest: rays that are flatter do not say where they cross the middle one.
+pub(crate) const STEEP2: f64 = 0.01;
+/// About as many rays are looked at on every plane; the best planes are looked at with all.
+const SCANNED_RAYS: usize = 2000;
+/// Planes looked at.
+const PLANES: std::ops::RangeInclusive<f64> = 40.0..=400.0;
+/// Planes in the depth over which the steepest ray goes a period aside.
+const PLANES_A_PERIOD: f64 = 8.0;
+/// Peaks of the first look that are looked at with all rays.
+const PEAKS: usize = 3;
+
+/// Where contrast is highest, and how high it is: somewhere between the places where rays cross the middle one, give or
+/// take half of the depth (mm) over which the steepest ray goes a period aside. Over depth it has many peaks: the planes
+/// there are looked at one by one, then the best of them closely.
+pub(crate) fn highest(
+    crossings: impl Iterator<Item = f64>,
+    period_mm: f64,
+    coarse: impl Fn(f64) -> f64,
+    fine: impl Fn(f64) -> f64,
+) -> Option<(f64, f64)> {
+    let (low, high) = crossings.fold((f64::INFINITY, -f64::INFINITY), |(a, b), z| (a.min(z), b.max(z)));
+    let (low, high) = (low - 0.5 * period_mm, high + 0.5 * period_mm);
+    if !(low < high && (high - low).is_finite()) {
+        return None;
+    }
+    let steps = ((high - low) / period_mm * PLANES_A_PERIOD).clamp(*PLANES.start(), *PLANES.end()).ceil();
+    let step = (high - low) / steps;
+    let scores: Vec<f64> = (0..=steps as usize).map(|i| coarse(low + step * i as f64)).collect();
+    let at = |i: usize| scores.get(i).copied().unwrap_or(f64::NEG_INFINITY);
+    let is_peak = |i: &usize| at(*i) >= at(i.wrapping_sub(1)) && at(*i) >= at(i + 1);
+    let mut peaks: Vec<usize> = (0..scores.len()).filter(is_peak).collect();
+    peaks.sort_by(|a, b| at(*b).total_cmp(&at(*a)).then(a.cmp(b)));
+    let found = peaks.into_iter().take(PEAKS).map(|i| {
+        let middle = low + step * i as f64;
+        let z = golden_section(middle - step, middle + step, |z| -fine(z));
+        (z, fine(z))
+    });
+    found.reduce(|best, next| if next.1 > best.1 { next } else { best })
 }
 
 /// Where a function with one valley between `low` and `high` is least: the golden section (J. Kiefer, Proc. Amer. Math.
 /// Soc. 4 (1953), 502).
 pub(crate) fn golden_section(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
     const PART: f64 = 0.618_033_988_749_894_9;
+    const GOLDEN_STEPS: usize = 28;
     let mut inner = [high - PART * (high - low), low + PART * (high - low)];
     let mut values = inner.map(&f);
-    for _ in 0..36 {
+    // A thousandth of a thousandth of what is looked at is left.
+    for _ in 0..GOLDEN_STEPS {
         if values[0] <= values[1] {
             high = inner[1];
             inner = [high - PART * (high - low), inner[0]];

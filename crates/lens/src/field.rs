@@ -224,6 +224,10 @@ impl Chief<'_> {
         let image = &self.lens.image_pose;
         let (p, d) = (image.local_point(last), image.local_direction(path.direction));
         let t = -p.z / d.z;
+        // Through the plates before the frame it lands as if that lay nearer.
+        let slope = (d.x * d.x + d.y * d.y).sqrt() / d.z.abs();
+        let depth_mm = self.lens.cover.as_ref().map_or(0.0, |c| c.depth_mm(slope, self.lens.reference_nm));
+        let t = t - depth_mm / d.z;
         let image_mm = [p.x + t * d.x, p.y + t * d.y];
         let finite = image_mm.iter().all(|c| c.is_finite());
         finite.then_some(ChiefRay { field_rad, start_mm, direction, image_mm, exit_direction: d })

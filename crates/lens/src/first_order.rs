@@ -105,7 +105,7 @@ impl Lens {
     }
 
     /// Whether light that runs forward leaves the lens toward +z: 1; else -1.
-    fn sense_behind(&self) -> f64 {
+    pub(crate) fn sense_behind(&self) -> f64 {
         let mirrors = self.elements.iter().filter(|e| e.action == Action::Reflect).count();
         if mirrors.is_multiple_of(2) { 1.0 } else { -1.0 }
     }

@@ -6,6 +6,7 @@ use crate::focus::FocusLaw;
 use crate::group::Group;
 use crate::pose::{AxisBreak, Pose};
 use crate::{Element, symmetry};
+use spectra_core::cover::CoverStack;
 use spectra_core::surface::Action;
 use spectra_glass::Medium;
 
@@ -57,6 +58,8 @@ pub struct Lens {
     pub focused_mm: f64,
     /// Bends of the axis between the last surface and the image plane.
     pub image_breaks: Vec<AxisBreak>,
+    /// The plates right before the frame of the camera that it is on, if there are any: see [`Lens::with_cover`].
+    pub cover: Option<CoverStack>,
     /// Where the image plane stands; follows from the above, see [`Lens::arrange`].
     pub image_pose: Pose,
     /// The media; number 0 is air.
@@ -91,6 +94,7 @@ impl Lens {
             focus_laws: Vec::new(),
             focused_mm: f64::INFINITY,
             image_breaks: Vec::new(),
+            cover: None,
             image_pose: Pose::IDENTITY,
             media: vec![LensMedium::air()],
             coating: Coating::Ideal,

@@ -8,6 +8,7 @@ mod aim;
 mod aperture;
 mod beam;
 mod coating;
+mod cover;
 mod element;
 mod f_number;
 mod field;

@@ -2,7 +2,8 @@
 
 use crate::advice::{self, FileIs};
 use crate::filters;
-use crate::lens_section::{LensSection, lens_of};
+use crate::focus::FocusLight;
+use crate::lens_section::{LensSection, SetLens, lens_of};
 use crate::{
     ConePattern, Direction, NumberFamily, Output, RenderSettings, Scene, films, lamps, language, output, yaml,
 };
@@ -199,34 +200,28 @@ fn all_stages(name: &str, text: String, params: &Params, resources: &dyn Resourc
     let source = source.and_then(|p| faults.take(registry::build::<dyn Source>(&p, &context)));
     let sampler = faults.take(registry::build::<dyn WavelengthSampler>(&sampler, &context));
     let filters = lens.as_ref().and_then(|p| faults.take(filters::filters_of(p, grid, resources))).flatten();
-    let lens_place = lens.clone();
-    let lens = lens.and_then(|p| faults.take(lens_of(&p, resources)));
-    if let (Some(place), Some(lens), Some(source)) = (lens_place, &lens, &source)
-        && lens.elements.first().is_some_and(|e| e.kind == MATTE_BOX && e.vertex_z_mm() <= -source.distance_mm())
-    {
-        let fault = place.fault("matte-box.distance", "the source stands between the matte box and the lens");
-        faults.push(fault.hint(format!("nearer to the lens than {} mm", source.distance_mm())));
-    }
-    let imager = imager.and_then(|p| faults.take(registry::build::<dyn Imager>(&p, &context)));
+    // The lens is looked at last, since focus wants to know the others; its faults are told in their place.
+    let mut behind = Faults::new();
+    let imager = imager.and_then(|p| behind.take(registry::build::<dyn Imager>(&p, &context)));
     let films = match several {
-        Some(items) => faults.take(films::several(items, params, &context)),
-        None => film.and_then(|p| faults.take(registry::build::<dyn Film>(&p, &context))).map(films::one),
+        Some(items) => behind.take(films::several(items, params, &context)),
+        None => film.and_then(|p| behind.take(registry::build::<dyn Film>(&p, &context))).map(films::one),
     };
     let render = render.unwrap_or_else(|| params.nothing_said("render"));
-    let settings = faults.take(render.parse::<RenderSection>());
-    let output = file.as_ref().and_then(|f| faults.take(output::read(f.output.as_deref())));
-    let channels = imager.as_ref().and_then(|imager| match (imager.channels(), &films) {
+    let settings = behind.take(render.parse::<RenderSection>());
+    let output = file.as_ref().and_then(|f| behind.take(output::read(f.output.as_deref())));
+    let mut channels = imager.as_ref().and_then(|imager| match (imager.channels(), &films) {
         (Some(own), None) => Some(own),
         (None, Some(films)) => Some(films::channels(films)),
         (Some(_), Some(_)) => {
             let fault = params.fault("film", "this imager records by itself, no film lies on it");
-            faults.push(fault.hint("write `imager: {kind: film, ...}`, or leave the film out"));
+            behind.push(fault.hint("write `imager: {kind: film, ...}`, or leave the film out"));
             None
         }
         // A film that failed to build has been reported.
         (None, None) if film_is_wanted => None,
         (None, None) => {
-            faults.push(
+            behind.push(
                 params
                     .fault("imager", "a film imager needs a `film`")
                     .hint("such as `film: {stock: ilford-ortho-plus, exposure: 1/60 s}`"),
@@ -234,6 +229,26 @@ fn all_stages(name: &str, text: String, params: &Params, resources: &dyn Resourc
             None
         }
     });
+    if let (Some(channels), Some(transmittance)) = (&mut channels, &filters) {
+        filters::fold(channels, transmittance);
+    }
+    // The lens is focused in the light of the scene, as the film or the imager sees it.
+    let focus_light = match (&source, &imager, &channels) {
+        (Some(source), Some(imager), Some(channels)) => {
+            let pictured = films::pictured(films.as_deref().unwrap_or_default(), channels);
+            Some(FocusLight::of(&**source, &**imager, pictured))
+        }
+        _ => None,
+    };
+    let lens_place = lens.clone();
+    let lens = lens.and_then(|p| faults.take(lens_of(&p, resources, focus_light.as_ref())));
+    if let (Some(place), Some(SetLens { lens, .. }), Some(source)) = (lens_place, &lens, &source)
+        && lens.elements.first().is_some_and(|e| e.kind == MATTE_BOX && e.vertex_z_mm() <= -source.distance_mm())
+    {
+        let fault = place.fault("matte-box.distance", "the source stands between the matte box and the lens");
+        faults.push(fault.hint(format!("nearer to the lens than {} mm", source.distance_mm())));
+    }
+    faults.extend(behind);
     if let (Some(imager), Some(wanted)) = (&imager, &output)
         && wanted.contains(&Output::Dng)
         && !imager.has_converter()
@@ -262,12 +277,10 @@ fn all_stages(name: &str, text: String, params: &Params, resources: &dyn Resourc
         imager.set_frame(frame);
         films.iter_mut().for_each(|film| film.film.set_frame(frame));
     }
-    let mut channels = channels;
-    if let Some(transmittance) = filters {
-        filters::fold(&mut channels, &transmittance);
-    }
     let channels: Arc<[Channel]> = channels.into();
-    let warnings = warnings(&lens, grid);
+    let SetLens { lens, focus, warnings: of_focus } = lens;
+    let mut warnings = warnings(&lens, grid);
+    warnings.extend(of_focus);
     let notes = lamps::notes(params);
     Ok(Scene {
         name: name.to_owned(),
@@ -276,6 +289,7 @@ fn all_stages(name: &str, text: String, params: &Params, resources: &dyn Resourc
         source,
         sampler,
         lens,
+        focus,
         imager,
         films,
         channels,

@@ -8,6 +8,7 @@ use spectra_core::registry::{self, Context};
 use spectra_core::spectral::Channel;
 use spectra_core::stage::Film;
 use std::borrow::Cow;
+use std::sync::Arc;
 
 /// What the section is written as: a film, or a list.
 pub(crate) struct FilmForm;
@@ -106,4 +107,13 @@ pub(crate) fn channels(films: &[SceneFilm]) -> Vec<Channel> {
         }
     }
     all
+}
+
+/// Those channels that pictures are made of: not a meter's. All of an imager that records by itself.
+pub(crate) fn pictured(films: &[SceneFilm], channels: &[Channel]) -> Arc<[Channel]> {
+    if films.is_empty() {
+        return channels.into();
+    }
+    let own = |f: &SceneFilm| f.channels.start..f.channels.start + f.film.picture_channels();
+    films.iter().flat_map(|f| channels.get(own(f)).unwrap_or_default()).cloned().collect()
 }

@@ -2,7 +2,8 @@
 //!
 //! A filter acts on a ray as often as it passes, which is once, and by the wavelength alone; so it is folded into the
 //! response of the channels: both directions, every source and the choice of wavelengths see it, and so does whatever
-//! meters the exposure. Filters are taken at normal incidence, and shift no focus.
+//! meters the exposure. Filters are taken at normal incidence, and shift no focus by their thickness; the light that they
+//! leave is the light that the lens is focused in.
 
 use schemars::JsonSchema;
 use serde::Deserialize;

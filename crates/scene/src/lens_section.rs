@@ -1,9 +1,11 @@
 //! The `lens` section of a scene: which lens, and how it is set.
 //!
 //! In this order: the lens is turned round, coated, stopped and focused as its maker meant it; then groups go out of place;
-//! a focus by real rays, as a camera finds it, sees them so; a matte box comes last.
+//! a focus by real rays, as a camera finds it, sees them so; a matte box comes last. The frame stands as much farther back
+//! as the plates before it set the image back, whether a distance is focused or not.
 
 use crate::filters::FilterForm;
+use crate::focus::{Focus, FocusBy, FocusLight};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{
@@ -35,8 +37,9 @@ pub(crate) struct LensSection {
     /// What limits the light at the stop beside its round opening: blades, a mask; one or a list, as in a lens file.
     #[schemars(with = "Option<ApertureForm>")]
     aperture: Option<StageNode>,
-    /// Distance that is in focus, from the first vertex, mm if bare, or `infinity`; the lens file's focus if absent. Or
-    /// a map with what to focus by.
+    /// Distance that is in focus, from the first vertex, mm if bare, or `infinity`; the lens file's focus if absent. What
+    /// lies there on the axis is as sharp as it gets: its contrast is highest, in the light and at the aperture of the
+    /// scene. Or a map with what to focus by.
     #[schemars(with = "Option<FocusForm>")]
     focus: Option<StageNode>,
     /// Groups out of place: misalignment. None if absent.
@@ -70,20 +73,22 @@ struct MatteBoxParams {
 struct FocusParams {
     /// Distance that is in focus, from the first vertex, mm if bare, or `infinity`.
     distance: OrInfinity<Positive<Length>>,
-    /// What is sharpest: `paraxial` (by first order; the default), `rms` (the smallest spot) or `contrast` (at a
-    /// spatial frequency).
-    #[schemars(extend("enum" = ["paraxial", "rms", "contrast"]))]
+    /// What is sharpest: `contrast` (the highest at a spatial frequency; the default), `spot` (the smallest, root mean
+    /// square; `rms` says the same) or `paraxial` (by first order at the reference line of the lens).
+    #[schemars(extend("enum" = ["contrast", "spot", "rms", "paraxial"]))]
     by: Option<String>,
     /// Field angle that is in focus, degrees if bare, within 89; on the axis if absent.
     #[schemars(extend("minimum" = -89, "maximum" = 89))]
     field: Option<Angle>,
-    /// Wavelength that is in focus, 200 to 2500 nm, nm if bare; the reference line of the lens if absent. Or else
-    /// `spectrum`.
+    /// Wavelength that is in focus, 200 to 2500 nm, nm if bare; if absent the light of the scene, weighed by what the
+    /// film or the imager sees of it. Or else `spectrum`.
     wavelength: Option<Wavelength>,
     /// In place of `wavelength`, 1 to 64 of them, nm if bare, each with its weight, more than 0.
     #[schemars(length(min = 1, max = 64))]
     spectrum: Option<Vec<(Wavelength, f64)>>,
-    /// With `by: contrast`: the spatial frequency whose contrast counts, line pairs a mm if bare; 30 if absent.
+    /// With `by: contrast`: the spatial frequency whose contrast counts, line pairs a mm if bare; if absent 30 on a 135
+    /// frame, and as much more or less on another one as its diagonal is shorter or longer (on frames smaller than
+    /// super 8 as on that).
     frequency: Option<Positive<SpatialFrequency>>,
 }
 
@@ -113,19 +118,33 @@ struct AdjustParams {
     shift: Option<Length>,
 }
 
-/// Spatial frequency that counts where none is said, line pairs a mm: that of a sharp 35 mm negative.
-const DEFAULT_FREQUENCY: f64 = 30.0;
 /// Field angles of a plane, degrees.
 const MAX_FIELD_DEG: f64 = 89.0;
 
-/// What is in focus, and by what.
-struct Focus {
+/// What is to be in focus, and by what.
+struct Wanted {
     distance_mm: f64,
+    by: FocusBy,
     search: Option<FocusSearch>,
+    /// Whether only the distance was said.
+    plain: bool,
 }
 
-/// The lens of a scene, set.
-pub(crate) fn lens_of(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults> {
+/// A lens as a scene sets it.
+pub(crate) struct SetLens {
+    pub(crate) lens: Lens,
+    pub(crate) focus: Focus,
+    /// What a person should know of how it is set.
+    pub(crate) warnings: Vec<String>,
+}
+
+/// The lens of a scene, set. Without the light, where another section is faulty, it is focused by first order, so that its
+/// own faults are found.
+pub(crate) fn lens_of(
+    params: &Params,
+    resources: &dyn Resources,
+    light: Option<&FocusLight>,
+) -> Result<SetLens, Faults> {
     let mut faults = Faults::new();
     if let Some(kind) = params.kind() {
         let fault = params.fault("kind", "a lens has no kinds: its file is named by `file`");
@@ -157,17 +176,31 @@ pub(crate) fn lens_of(params: &Params, resources: &dyn Resources) -> Result<Lens
     if let Some(node) = section.aperture {
         lens = faults.take(with_aperture(&lens, &node, resources)).unwrap_or(lens);
     }
-    let focus = section.focus.and_then(|node| faults.take(focus_of(&node, lens.reference_nm)));
-    if let Some(focus) = &focus {
-        let focused = lens.clone().focused_at(focus.distance_mm);
+    lens = lens.with_cover(light.and_then(|light| light.cover.clone()));
+    let wanted = section.focus.and_then(|node| faults.take(focus_of(&node, lens.reference_nm, light)));
+    if let Some(wanted) = &wanted {
+        let focused = lens.clone().focused_at(wanted.distance_mm);
         lens = faults.take(focused.map_err(|e| focus_fault(params, &e))).unwrap_or(lens);
     }
     for node in &section.adjust {
         lens = faults.take(adjusted(&lens, node)).unwrap_or(lens);
     }
-    if let (Some(search), true) = (focus.and_then(|f| f.search), faults.is_empty()) {
-        let found = lens.clone().focused_by(&search);
-        lens = faults.take(found.map_err(|e| focus_fault(params, &e))).unwrap_or(lens);
+    let mut focus = Focus { distance_mm: None, by: FocusBy::File, remark: None };
+    let mut warnings = Vec::new();
+    if let Some(wanted) = wanted {
+        focus = Focus { distance_mm: Some(wanted.distance_mm), by: wanted.by, remark: None };
+        if faults.is_empty() {
+            match by_rays(&lens, &wanted) {
+                Ok((found, remark)) => (lens, focus.remark) = (found, remark),
+                Err(error @ (FocusError::NoLight { .. } | FocusError::NoTravel { .. })) if wanted.plain => {
+                    focus.by = FocusBy::Paraxial;
+                    focus.remark =
+                        Some(format!("contrast cannot be had ({error}); write `by: paraxial` to do without"));
+                }
+                Err(error) => faults.push(focus_fault(params, &error)),
+            }
+            warnings.extend(focus.remark.as_ref().map(|remark| format!("`lens.focus`: {remark}")));
+        }
     }
     if let Some(node) = section.matte_box
         && let Some(p) = faults.take(node.parse::<MatteBoxParams>())
@@ -175,7 +208,21 @@ pub(crate) fn lens_of(params: &Params, resources: &dyn Resources) -> Result<Lens
         let opening = MatteBox { distance_mm: p.distance.mm(), width_mm: p.width.mm(), height_mm: p.height.mm() };
         lens = lens.behind_matte_box(&opening);
     }
-    faults.into_result(lens)
+    faults.into_result(SetLens { lens, focus, warnings })
+}
+
+/// The lens moved on to where real rays find it best, where that is asked for, and what is to be said of it.
+fn by_rays(lens: &Lens, wanted: &Wanted) -> Result<(Lens, Option<String>), FocusError> {
+    let Some(search) = &wanted.search else { return Ok((lens.clone(), None)) };
+    let found = lens.clone().focused_by(search)?;
+    let apart = found.sections_apart_mm(search)?.map(|mm| {
+        format!(
+            "lines along x and lines along y are sharp {:.2} mm apart; the mean of their contrasts is highest here; \
+             stop down for more of both",
+            mm.abs()
+        )
+    });
+    Ok((found, apart))
 }
 
 /// The lens with more at its stop.
@@ -225,23 +272,37 @@ fn focus_fault(params: &Params, error: &FocusError) -> Fault {
     params.fault(key, error.to_string()).hint(hint)
 }
 
-fn focus_of(node: &StageNode, reference_nm: f64) -> Result<Focus, Faults> {
+fn focus_of(node: &StageNode, reference_nm: f64, light: Option<&FocusLight>) -> Result<Wanted, Faults> {
+    // Where nothing is seen of the source there is the reference line still.
+    let seen = light.map_or(&[][..], |light| &light.light);
+    let seen = if seen.is_empty() { vec![(reference_nm, 1.0)] } else { seen.to_vec() };
+    let default_per_mm = light.map_or(30.0, |light| light.per_mm);
     if !matches!(node.node().value, Value::Map(_)) {
         let distance: OrInfinity<Positive<Length>> = node.parse()?;
-        return Ok(Focus { distance_mm: distance.mm(), search: None });
+        let (object_mm, criterion) = (distance.mm(), Criterion::Contrast { per_mm: default_per_mm });
+        let search = light.map(|_| FocusSearch { object_mm, field_rad: 0.0, criterion, light: seen });
+        let by = FocusBy::Contrast { per_mm: default_per_mm };
+        return Ok(Wanted { distance_mm: object_mm, by, search, plain: true });
     }
     let params = Params::section(node.node().clone(), node.path())?;
     let p: FocusParams = params.parse()?;
     let mut faults = Faults::new();
-    let criterion = match p.by.as_deref() {
-        None | Some("paraxial") => None,
-        Some("rms") => Some(Criterion::Rms),
-        Some("contrast") => Some(Criterion::Contrast { per_mm: p.frequency.map_or(DEFAULT_FREQUENCY, |f| f.per_mm()) }),
+    let by = match p.by.as_deref() {
+        None | Some("contrast") => {
+            FocusBy::Contrast { per_mm: p.frequency.map_or(default_per_mm, |frequency| frequency.per_mm()) }
+        }
+        Some("spot" | "rms") => FocusBy::Spot,
+        Some("paraxial") => FocusBy::Paraxial,
         Some(other) => {
             let fault = params.fault("by", format!("no way to focus by `{other}`"));
-            faults.push(fault.hint("paraxial, rms or contrast"));
-            None
+            faults.push(fault.hint("contrast, spot or paraxial"));
+            FocusBy::Paraxial
         }
+    };
+    let criterion = match by {
+        FocusBy::Contrast { per_mm } => Some(Criterion::Contrast { per_mm }),
+        FocusBy::Spot => Some(Criterion::Rms),
+        FocusBy::Paraxial | FocusBy::File => None,
     };
     let by_rays = criterion.is_some();
     let is_contrast = matches!(criterion, Some(Criterion::Contrast { .. }));
@@ -252,7 +313,7 @@ fn focus_of(node: &StageNode, reference_nm: f64) -> Result<Focus, Faults> {
         ("frequency", p.frequency.is_some(), is_contrast),
     ] {
         if given && !used && faults.is_empty() {
-            let needed = if key == "frequency" { "`by: contrast`" } else { "`by: rms` or `by: contrast`" };
+            let needed = if key == "frequency" { "`by: contrast`" } else { "`by: contrast` or `by: spot`" };
             faults.push(params.fault(key, format!("`{key}` matters only with {needed}")));
         }
     }
@@ -262,7 +323,7 @@ fn focus_of(node: &StageNode, reference_nm: f64) -> Result<Focus, Faults> {
         faults.push(fault.hint(format!("between {} and {MAX_FIELD_DEG} degrees", -MAX_FIELD_DEG)));
     }
     let light = match (p.wavelength, p.spectrum) {
-        (None, None) => vec![(reference_nm, 1.0)],
+        (None, None) => seen,
         (Some(wavelength), None) => vec![(wavelength.nm(), 1.0)],
         (None, Some(spectrum)) => {
             let light: Vec<(f64, f64)> = spectrum.iter().map(|(w, weight)| (w.nm(), *weight)).collect();
@@ -284,7 +345,7 @@ fn focus_of(node: &StageNode, reference_nm: f64) -> Result<Focus, Faults> {
     }
     let object_mm = p.distance.mm();
     let search = criterion.map(|criterion| FocusSearch { object_mm, field_rad, criterion, light });
-    faults.into_result(Focus { distance_mm: object_mm, search })
+    faults.into_result(Wanted { distance_mm: object_mm, by, search, plain: false })
 }
 
 fn adjusted(lens: &Lens, node: &StageNode) -> Result<Lens, Faults> {

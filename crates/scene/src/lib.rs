@@ -8,6 +8,7 @@ mod assemble;
 pub mod diagnostics;
 mod films;
 mod filters;
+mod focus;
 mod lamps;
 mod language;
 mod lens_section;
@@ -18,6 +19,7 @@ mod schema;
 
 pub use spectra_yaml as yaml;
 
+pub use focus::{Focus, FocusBy};
 pub use language::{Member, Series, SeriesKind, SweptAxis, load, load_series};
 pub use resources::FileResources;
 pub use scene::{ConePattern, Direction, NumberFamily, Output, RaysFigure, RenderSettings, Scene, SceneFilm};

@@ -1,5 +1,6 @@
 //! A scene, assembled: every stage built, the lens focused and stopped, nothing traced yet.
 
+use crate::Focus;
 use spectra_core::frame::{ExposureChannel, ExposureFrame};
 use spectra_core::params::Params;
 use spectra_core::spectral::{Channel, Grid};
@@ -137,6 +138,8 @@ pub struct Scene {
     pub sampler: Box<dyn WavelengthSampler>,
     /// The lens, focused and stopped.
     pub lens: Lens,
+    /// How it was focused.
+    pub focus: Focus,
     /// The imager.
     pub imager: Box<dyn Imager>,
     /// The film on it, or several side by side in the same light; none on an imager that records by itself.

@@ -1,7 +1,7 @@
 //! `film: stock`, film from a data file: exposed, developed, and printed, scanned or projected.
 
 use crate::effects::{Effects, HalationParams};
-use crate::metering::{Meter, Metering, SpotParams};
+use crate::metering::{METER, Meter, Metering, SpotParams};
 use crate::view::{PaperParams, Picture, View, seen};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -238,6 +238,10 @@ fn place_at(faults: Faults, params: &Params, key: &str, name: &str) -> Faults {
 impl Film for StockFilm {
     fn channels(&self) -> Vec<Channel> {
         self.channels.clone()
+    }
+
+    fn picture_channels(&self) -> usize {
+        self.channels.iter().filter(|c| c.name != METER).count()
     }
 
     fn exposure_time_s(&self) -> f64 {

@@ -1,6 +1,6 @@
 //! `film: three-strip`, three separation negatives behind a beam splitter, printed by dye transfer.
 
-use crate::metering::{Meter, Metering, SpotParams};
+use crate::metering::{METER, Meter, Metering, SpotParams};
 use crate::stock::load_stock;
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -258,6 +258,10 @@ impl Record {
 impl Film for ThreeStrip {
     fn channels(&self) -> Vec<Channel> {
         self.channels.clone()
+    }
+
+    fn picture_channels(&self) -> usize {
+        self.channels.iter().filter(|c| c.name != METER).count()
     }
 
     fn exposure_time_s(&self) -> f64 {

@@ -2,6 +2,7 @@
 
 use crate::params::imager_params;
 use crate::plane::Plane;
+use spectra_core::cover::CoverStack;
 use spectra_core::frame::{DisplayPicture, ExposureFrame, FrameSize};
 use spectra_core::params::{Faults, Params, Positive, StageNode, Time};
 use spectra_core::registry::{self, Context, StageOf};
@@ -64,6 +65,10 @@ impl<R: Response> Imager for DetectorPlane<R> {
 
     fn launch(&self) -> Option<&dyn Launch> {
         Some(&self.plane)
+    }
+
+    fn cover(&self) -> Option<CoverStack> {
+        self.plane.cover()
     }
 
     fn display(&self, exposure: &ExposureFrame) -> Option<DisplayPicture> {

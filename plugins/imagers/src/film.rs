@@ -2,6 +2,7 @@
 
 use crate::params::imager_params;
 use crate::plane::Plane;
+use spectra_core::cover::CoverStack;
 use spectra_core::frame::{DisplayPicture, ExposureFrame, FrameSize};
 use spectra_core::params::{Faults, Params};
 use spectra_core::registry::Context;
@@ -62,6 +63,10 @@ impl Imager for FilmPlane {
 
     fn launch(&self) -> Option<&dyn Launch> {
         Some(&self.plane)
+    }
+
+    fn cover(&self) -> Option<CoverStack> {
+        self.plane.cover()
     }
 
     fn display(&self, _exposure: &ExposureFrame) -> Option<DisplayPicture> {

@@ -44,8 +44,8 @@ macro_rules! imager_params {
             /// The bend of a frame that is not flat.
             #[serde(default)]
             pub curvature: Option<$crate::params::Curvature>,
-            /// Plates of glass before a flat frame: cover glass, filters against ultraviolet and infrared. None if left
-            /// out.
+            /// Plates of glass before a flat frame: cover glass, filters against ultraviolet and infrared. The frame
+            /// stands where they put the image, and the lens is focused through them. None if left out.
             #[serde(default)]
             pub cover: Option<Vec<$crate::params::CoverParams>>,
             /// Plates of a crystal before a flat frame that split every point in two, against false colors. None if left

@@ -4,6 +4,7 @@
 use crate::plates::Plates;
 use crate::standing::Standing;
 use glam::{DVec2, DVec3};
+use spectra_core::cover::CoverStack;
 use spectra_core::frame::FrameSize;
 use spectra_core::isa::{Isa, Vectorized};
 use spectra_core::loss::ALIVE;
@@ -59,6 +60,11 @@ impl Plane {
     #[must_use]
     pub fn size(&self) -> FrameSize {
         self.size
+    }
+
+    /// The plates before it, as focus sees them.
+    pub(crate) fn cover(&self) -> Option<CoverStack> {
+        self.plates.as_ref().map(|plates| plates.cover())
     }
 
     /// Where a ray that travels along `way` meets it, see [`Standing::meet`]; through the plates, if there are any.

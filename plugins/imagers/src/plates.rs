@@ -10,6 +10,7 @@
 //! points.
 
 use glam::{DVec2, DVec3};
+use spectra_core::cover::{CoverPlate, CoverStack};
 use spectra_core::numbers::mix64;
 use spectra_core::spectral::Grid;
 use spectra_glass::Medium;
@@ -89,6 +90,14 @@ impl Plates {
         self.plates.iter().map(|p| p.thickness_mm * (1.0 - 1.0 / p.index[p.index.len() / 2])).sum()
     }
 
+    /// The same as focus sees it. The extraordinary rays of crystals count as ordinary ones: what sets them apart is moved
+    /// aside, and as sharp.
+    #[must_use]
+    pub fn cover(&self) -> CoverStack {
+        let plate = |p: &Plate| CoverPlate { thickness_mm: p.thickness_mm, index: p.index.clone() };
+        CoverStack::new(&self.grid, self.plates.iter().map(plate).collect())
+    }
+
     /// For light of direction `way` (unit, in the axes of the frame, z away from the lens): how far beside its straight
     /// continuation it lands, mm, and the share that passes.
     #[must_use]
@@ -149,6 +158,14 @@ mod tests {
         let (beside, _) = plates.pass(DVec3::new(0.0, -libm::sin(angle), libm::cos(angle)), nm);
         let want = 2.0 * (libm::tan(angle) - libm::tan(inside));
         assert!((beside.y - want).abs() < 2e-5, "{} {want}", beside.y);
+        // What focus is told is the same.
+        let cover = plates.cover();
+        assert!((cover.shift_mm(nm) + beside_of(&plates, 1e-4, nm) / 1e-4).abs() < 1e-8);
+        assert!((cover.depth_mm(0.8, nm) + beside_of(&plates, 0.8, nm) / 0.8).abs() < 1e-13);
+    }
+
+    fn beside_of(plates: &Plates, slope: f64, nm: f64) -> f64 {
+        plates.pass(DVec3::new(slope, 0.0, 1.0).normalize(), nm).0.x
     }
 
     /// Two plates, two thicknesses: they add, whatever their order.

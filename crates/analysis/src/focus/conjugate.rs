@@ -29,7 +29,8 @@ const REACH: f64 = 1.6;
 const PARALLEL: f64 = 1e-14;
 
 /// The object that is in best focus (least RMS distance of real rays) at an image point, in the direction that belongs to
-/// it: `image_mm` is in the frame of the image plane, so that z is not 0 on an imager that is tilted or shifted.
+/// it: `image_mm` is in the frame of the image plane, so that z is not 0 on an imager that is tilted or shifted. Plates
+/// before the frame are looked through; they stand parallel to the image plane.
 /// `None` where no light reaches that point.
 ///
 /// # Errors
@@ -52,7 +53,11 @@ pub fn conjugate(lens: &Lens, light: Light, image_mm: DVec3) -> Result<Option<Co
         for (i, [x, y]) in places.iter().enumerate() {
             let way = DVec3::new(*x, *y, vertex.z) - image_mm;
             let d = way.normalize();
-            (c.x[i], c.y[i], c.z[i]) = (*x, *y, vertex.z);
+            // Before the plates the ray runs as if it had started nearer to the lens.
+            let slope = (d.x * d.x + d.y * d.y).sqrt() / d.z.abs();
+            let depth_mm = held.cover.as_ref().map_or(0.0, |c| c.depth_mm(slope, held.reference_nm));
+            let nearer = depth_mm / d.z.abs();
+            (c.x[i], c.y[i], c.z[i]) = (*x - d.x * nearer, *y - d.y * nearer, vertex.z);
             (c.l[i], c.m[i], c.n[i]) = d.into();
             c.wavelength_nm[i] = held.reference_nm;
             // Solid angle of the cell.

@@ -143,7 +143,7 @@ impl LensReport {
         let indices = light.wavelength_nm().map_or(Indices::Stated, Indices::At);
         let transmittance = lens.axial_transmittance(indices, marginal).ok();
         let (max_field_deg, max_field_limit, chief_rays) = field(&held);
-        let paraxial = held.paraxial_image_gap_mm(held.focused_mm, held.reference_nm) - held.image_gap_mm();
+        let paraxial = held.paraxial_defocus_mm(held.focused_mm);
         let exit_pupil_z_mm = first_order.exit_pupil_z_mm.filter(|z| z.is_finite());
         Self {
             name: lens.name.clone(),

@@ -13,7 +13,7 @@ use crate::outcome::{Failure, Outcome};
 use spectra_analysis::Light;
 use spectra_core::Isa;
 use spectra_core::params::FNumber;
-use spectra_lens::{Coating, Lens};
+use spectra_lens::{Coating, FocusSearch, Lens};
 use spectra_scene::FileResources;
 use std::path::Path;
 
@@ -62,7 +62,14 @@ fn set(mut lens: Lens, name: &str, setting: &Setting<'_>) -> Result<Lens, Failur
         lens = lens.at_f_number(f_number.number()).map_err(|e| refuse(format!("--f-number: {e}")))?;
     }
     if let Some(focus) = options.focus.or(options.focus_mm) {
-        lens = lens.focused_at(focus.mm()).map_err(|e| refuse(format!("--focus: {e}")))?;
+        let object_mm = focus.mm();
+        lens = lens.focused_at(object_mm).map_err(|e| refuse(format!("--focus: {e}")))?;
+        if let Some(criterion) = options.focus_by.criterion() {
+            let light = vec![(lens.reference_nm, 1.0)];
+            let search = FocusSearch { object_mm, field_rad: 0.0, criterion, light };
+            let hint = "`--focus-by paraxial` needs no light";
+            lens = lens.focused_by(&search).map_err(|e| refuse(format!("--focus: {e}\nhint: {hint}")))?;
+        }
     }
     Ok(lens)
 }

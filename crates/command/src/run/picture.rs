@@ -47,6 +47,7 @@ pub(crate) fn attributes(report: &Report<'_>) -> Vec<(String, String)> {
         ("spectra:source", scene.source.describe()),
         ("spectra:lens", lens.name.clone()),
         ("spectra:lens losses", lens.losses()),
+        ("spectra:focus", scene.focus.to_string()),
         ("spectra:film size", format!("{} x {} mm", size.width_mm, size.height_mm)),
         ("spectra:film coordinates", COORDINATES.to_owned()),
         ("spectra:exposure time", format!("{} s", scene.exposure_time_s())),

@@ -7,7 +7,7 @@ use crate::version;
 use serde_json::{Map, Value, json};
 use spectra_core::{Isa, Loss};
 use spectra_render::Rendering;
-use spectra_scene::Scene;
+use spectra_scene::{FocusBy, Scene};
 use std::path::PathBuf;
 
 /// All there is to say of a render.
@@ -60,6 +60,7 @@ impl Report<'_> {
             "exposure_time_s": scene.exposure_time_s(),
             "metered_time_s": self.metered_times_s(),
             "source": scene.source.describe(),
+            "focus": focus(scene),
             "lens": { "name": scene.lens.name, "patent": scene.lens.patent, "losses": scene.lens.losses(), "notes": scene.lens.notes },
             "film": films(scene),
             "versions": version::to_json(),
@@ -117,4 +118,14 @@ impl Report<'_> {
         }
         row
     }
+}
+
+/// How the lens was focused; a distance of `null` is infinity, or none where it stands as its file has it.
+fn focus(scene: &Scene) -> Value {
+    let focus = &scene.focus;
+    let per_mm = match focus.by {
+        FocusBy::Contrast { per_mm } => Some(per_mm),
+        _ => None,
+    };
+    json!({ "distance_mm": focus.distance_mm, "by": focus.by.name(), "frequency_per_mm": per_mm, "remark": focus.remark })
 }

@@ -6,6 +6,7 @@
 //! too, and groups move until the paraxial image is as far from it as it was at infinity.
 
 mod law;
+mod rings;
 mod search;
 mod travel;
 

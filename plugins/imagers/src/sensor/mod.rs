@@ -19,6 +19,7 @@ pub use photosite::Photosite;
 use crate::plane::{Met, Plane};
 use glam::DVec3;
 use spectra_core::batch::{Columns, pixel_and_channel, tag_of};
+use spectra_core::cover::CoverStack;
 use spectra_core::frame::{DisplayPicture, ExposureFrame, FrameSize, RawFrame};
 use spectra_core::isa::Isa;
 use spectra_core::loss::ALIVE;
@@ -182,6 +183,10 @@ impl Imager for Sensor {
 
     fn launch(&self) -> Option<&dyn Launch> {
         Some(&self.pixels)
+    }
+
+    fn cover(&self) -> Option<CoverStack> {
+        self.pixels.plane.cover()
     }
 
     fn display(&self, exposure: &ExposureFrame) -> Option<DisplayPicture> {

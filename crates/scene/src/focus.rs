@@ -1,0 +1,182 @@
+//! What focus must know of the rest of a scene: which light, how fine, through which plates; and how it was done, for the
+//! record.
+
+use spectra_core::cover::CoverStack;
+use spectra_core::spectral::{Channel, SpectralPower, SystemResponse};
+use spectra_core::stage::{Imager, Source};
+use std::fmt;
+use std::sync::Arc;
+
+/// Spatial frequency that counts on a 135 frame, line pairs a mm: that of a sharp negative.
+const FREQUENCY_135_PER_MM: f64 = 30.0;
+/// Diagonal of that frame, 36 x 24 mm.
+const DIAGONAL_135_MM: f64 = 43.266_615_305_567_87;
+/// Diagonal of the smallest frame that film is cut for, super 8. What is smaller is taken as a part of a picture, looked
+/// at closely: the lens is not focused any finer for that.
+const SMALLEST_DIAGONAL_MM: f64 = 7.516;
+/// Wavelengths that stand for the light.
+const WAVELENGTHS: usize = 12;
+
+/// The camera and the light that a lens is focused in.
+pub(crate) struct FocusLight {
+    /// The plates before the frame.
+    pub(crate) cover: Option<CoverStack>,
+    /// The spatial frequency whose contrast counts, line pairs a mm.
+    pub(crate) per_mm: f64,
+    /// Wavelengths, nm, with their weights: the source times the summed response; none where nothing of it is seen.
+    pub(crate) light: Vec<(f64, f64)>,
+}
+
+impl FocusLight {
+    /// Of a source, an imager and those channels that the picture is made of.
+    pub(crate) fn of(source: &dyn Source, imager: &dyn Imager, pictured: Arc<[Channel]>) -> Self {
+        let size = imager.size();
+        let diagonal_mm = (size.width_mm * size.width_mm + size.height_mm * size.height_mm).sqrt();
+        let source = source.spectrum().clone();
+        let system = SystemResponse { grid: source.grid, source, channels: pictured };
+        Self {
+            cover: imager.cover(),
+            per_mm: FREQUENCY_135_PER_MM * (DIAGONAL_135_MM / diagonal_mm.max(SMALLEST_DIAGONAL_MM)),
+            light: representatives(&system.source, &system.summed_response(), WAVELENGTHS),
+        }
+    }
+}
+
+/// Wavelengths that stand for light seen through a response: each for an equal part of it, in the middle of that part.
+/// A line that holds several parts is named once, with their sum.
+fn representatives(light: &SpectralPower, response: &[f64], count: usize) -> Vec<(f64, f64)> {
+    let grid = light.grid;
+    // Pieces of the band in order: from, to, and the light in it; a line has no width.
+    let seen: Vec<f64> = light.continuum.iter().zip(response).map(|(p, r)| p * r).collect();
+    let mut pieces: Vec<[f64; 3]> = (1..grid.count)
+        .map(|i| {
+            let power = 0.5 * (seen[i - 1] + seen[i]) * grid.step_nm;
+            [grid.wavelength_nm(i - 1), grid.wavelength_nm(i), power]
+        })
+        .collect();
+    let line = |l: &spectra_core::spectral::Line| {
+        [l.wavelength_nm, l.wavelength_nm, l.power * grid.interpolate(response, l.wavelength_nm)]
+    };
+    pieces.extend(light.lines.iter().map(line));
+    pieces.sort_by(|a, b| (a[0] + a[1]).total_cmp(&(b[0] + b[1])));
+    let total: f64 = pieces.iter().map(|p| p[2]).sum();
+    if !(total > 0.0 && total.is_finite()) {
+        return Vec::new();
+    }
+    let mut all: Vec<(f64, f64)> = Vec::new();
+    let mut before = 0.0;
+    let mut next = 0;
+    for [from, to, power] in pieces {
+        while next < count {
+            let wanted = total * (next as f64 + 0.5) / count as f64;
+            if !(wanted < before + power) {
+                break;
+            }
+            let nm = from + (to - from) * ((wanted - before) / power);
+            match all.last_mut() {
+                Some(last) if last.0 == nm => last.1 += 1.0,
+                _ => all.push((nm, 1.0)),
+            }
+            next += 1;
+        }
+        before += power;
+    }
+    all
+}
+
+/// By what a lens was focused.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FocusBy {
+    /// Not at all: it stands as its file has it.
+    File,
+    /// First-order optics.
+    Paraxial,
+    /// The smallest spot, root mean square.
+    Spot,
+    /// The highest contrast at this spatial frequency.
+    Contrast {
+        /// Line pairs a mm.
+        per_mm: f64,
+    },
+}
+
+impl FocusBy {
+    /// As a scene names it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::File => "lens file",
+            Self::Paraxial => "paraxial",
+            Self::Spot => "spot",
+            Self::Contrast { .. } => "contrast",
+        }
+    }
+}
+
+/// How the lens of a scene was focused.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Focus {
+    /// Distance in front of the first vertex, mm, that was asked for, if one was.
+    pub distance_mm: Option<f64>,
+    /// By what.
+    pub by: FocusBy,
+    /// Why it is not as asked, where it is not.
+    pub remark: Option<String>,
+}
+
+/// A distance as a photographer says it.
+fn distance(mm: f64) -> String {
+    if mm >= 1000.0 && mm.is_finite() { format!("{} m", mm / 1000.0) } else { format!("{mm} mm") }
+}
+
+impl fmt::Display for Focus {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.distance_mm {
+            None => return write!(f, "as the lens file has it"),
+            Some(f64::INFINITY) => write!(f, "infinity")?,
+            Some(mm) => write!(f, "{}", distance(mm))?,
+        }
+        match self.by {
+            FocusBy::File => {}
+            FocusBy::Paraxial => write!(f, ", paraxial")?,
+            FocusBy::Spot => write!(f, ", by the smallest spot")?,
+            FocusBy::Contrast { per_mm } => write!(f, ", by contrast at {} lp/mm", (per_mm * 100.0).round() / 100.0)?,
+        }
+        self.remark.as_ref().map_or(Ok(()), |remark| write!(f, " ({remark})"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use spectra_core::spectral::{Grid, Line};
+
+    /// Equal parts of a flat spectrum; two lines of 1 and 3 beside it; one line alone.
+    #[test]
+    fn wavelengths_stand_for_equal_parts_of_the_light() {
+        let grid = Grid { start_nm: 400.0, step_nm: 100.0, count: 5 };
+        let flat = SpectralPower { continuum: vec![1.0; 5], ..SpectralPower::dark(grid) };
+        let seen = representatives(&flat, &[1.0; 5], 4);
+        for ((nm, weight), want) in seen.iter().zip([450.0, 550.0, 650.0, 750.0]) {
+            assert!((nm - want).abs() < 1e-9 && *weight == 1.0, "{seen:?}");
+        }
+        let lines = [(450.0, 1.0), (610.0, 3.0)].map(|(wavelength_nm, power)| Line { wavelength_nm, power });
+        let lamp = SpectralPower { lines: lines.to_vec(), ..SpectralPower::dark(grid) };
+        assert_eq!(representatives(&lamp, &[1.0; 5], 8), [(450.0, 2.0), (610.0, 6.0)]);
+        assert_eq!(representatives(&lamp, &[0.0, 0.0, 1.0, 1.0, 0.0], 8), [(610.0, 8.0)]);
+        assert_eq!(representatives(&lamp, &[0.0; 5], 8), []);
+        let both = SpectralPower { continuum: vec![0.01; 5], ..lamp };
+        let seen = representatives(&both, &[1.0; 5], 8);
+        assert!(seen.iter().any(|l| *l == (450.0, 1.0)) && seen.iter().any(|l| *l == (610.0, 3.0)), "{seen:?}");
+        assert_eq!(seen.iter().map(|l| l.1).sum::<f64>(), 8.0);
+    }
+
+    #[test]
+    fn a_focus_reads_as_it_was_set() {
+        let focus = |distance_mm, by| Focus { distance_mm, by, remark: None }.to_string();
+        assert_eq!(focus(Some(2500.0), FocusBy::Contrast { per_mm: 30.0 }), "2.5 m, by contrast at 30 lp/mm");
+        assert_eq!(focus(Some(f64::INFINITY), FocusBy::Paraxial), "infinity, paraxial");
+        assert_eq!(focus(Some(770.0), FocusBy::Spot), "770 mm, by the smallest spot");
+        assert_eq!(focus(None, FocusBy::File), "as the lens file has it");
+    }
+}
