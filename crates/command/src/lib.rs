@@ -15,6 +15,7 @@ mod glass;
 mod lens;
 mod licences;
 mod list;
+mod memory;
 mod new;
 mod outcome;
 mod quantity;
