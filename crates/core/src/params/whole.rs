@@ -120,15 +120,13 @@ struct WholeVisitor<const MIN: u64, const MAX: u64>;
 impl<const MIN: u64, const MAX: u64> WholeVisitor<MIN, MAX> {
     fn of<E: Error>(written: &str) -> Result<Whole<MIN, MAX>, E> {
         match Exact::of(written) {
-            Exact::Is(value) => u64::try_from(value)
-                .ok()
-                .and_then(Whole::new)
-                .ok_or_else(|| E::custom(out_of_range(written, MIN, MAX))),
+            Exact::Is(value) => {
+                u64::try_from(value).ok().and_then(Whole::new).ok_or_else(|| E::custom(out_of_range(written, MIN, MAX)))
+            }
             Exact::Beyond => Err(E::custom(out_of_range(written, MIN, MAX))),
-            Exact::Not => Err(E::custom(format!(
-                "found {}, expected a whole number\nhint: from {MIN} to {MAX}",
-                shown(written)
-            ))),
+            Exact::Not => {
+                Err(E::custom(format!("found {}, expected a whole number\nhint: from {MIN} to {MAX}", shown(written))))
+            }
         }
     }
 }

@@ -274,7 +274,10 @@ mod tests {
             ("{animation.frames: [1]}", "`animation` is no part of a picture"),
             ("{a: {from: 1, to: 2}}", "missing key `steps`"),
             ("{a: {from: 1, to: 2, stops: 3}}", "unknown key `stops` (did you mean `steps`?)"),
-            ("{a: {from: 1, to: 2, steps: 1}}", "t.yaml:1:36: found 1, which is out of range (a whole number from 2 to 1000)"),
+            (
+                "{a: {from: 1, to: 2, steps: 1}}",
+                "t.yaml:1:36: found 1, which is out of range (a whole number from 2 to 1000)",
+            ),
             ("{a: {from: 1, to: 2, steps: 1e9}}", "found 1e9, which is out of range"),
             ("{a: {from: 1, to: 2, steps: 3, spacing: log}}", "unknown spacing `log`"),
             ("{a: {from: 1 m, to: 2 s, steps: 3}}", "`2 s` and `1 m` are of different kinds"),
