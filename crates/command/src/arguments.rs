@@ -187,7 +187,7 @@ pub(crate) struct SchemaOf {
 #[command(
     long_about = "Compare ways to draw wavelengths: error against samples and time.\n\n\
         Each strategy draws for the scene's source, channels and lens. Measured are the spectral integral alone (the \
-        exposure of each channel, against exact quadrature; 50 times as many seeds) and the scene itself (every pixel, \
+        exposure of each channel, against exact quadrature; 50 times as many seeds, unless it is all that is measured) and the scene itself (every pixel, \
         against a reference of 16 times the most samples). Errors are relative RMS errors of linear exposure over seeds; \
         95 % intervals by bootstrap over the seeds. `= samples` and `= time` relate a strategy to the first one at the \
         most samples; `bias/se` is the mean's largest distance from the truth in standard errors.\n\n\
@@ -202,9 +202,9 @@ pub(crate) struct Bench {
     pub scene: PathBuf,
     #[command(flatten)]
     pub set: Set,
-    /// Seeds of each render.
-    #[arg(long, value_name = "N", default_value = "20", value_parser = clap::value_parser!(u16).range(2..=10_000))]
-    pub seeds: u16,
+    /// Seeds of each render, 20 if not given; where the integral alone is measured, seeds of that, 1000 if not given.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(2..=10_000))]
+    pub seeds: Option<u16>,
     /// Numbers of samples, from 1 to 1048576: of the integral, and of a pixel of the scene.
     #[arg(long, value_name = "N,N,...", value_delimiter = ',', default_value = "1,4,16,64,256",
         value_parser = clap::value_parser!(u32).range(1..=1_048_576))]

@@ -12,6 +12,8 @@ use spectra_spectrum::{SpectrumError, find_sensitivity_in};
 use std::io::Write as _;
 use std::path::Path;
 
+/// Seeds of each render, where none are asked for.
+const SEEDS: usize = 20;
 /// Seeds of the integral a seed of the render: it costs next to nothing.
 const INTEGRAL_SEEDS: usize = 50;
 
@@ -21,11 +23,15 @@ pub(crate) fn bench(arguments: &Bench, isa: Isa) -> Outcome {
         Some(list) => parse_list(list)?,
         None => Vec::new(),
     };
-    let seeds = usize::from(arguments.seeds);
+    let asked = arguments.seeds.map(usize::from);
+    let seeds = asked.unwrap_or(SEEDS);
+    // Where nothing else is measured, the seeds that are asked for are those of the integral.
+    let integral_only = arguments.integral_only || !arguments.response.is_empty();
+    let integral_seeds = asked.filter(|_| integral_only).unwrap_or(seeds * INTEGRAL_SEEDS);
     let threads = arguments.threads.map(usize::from);
     let settings = Settings {
         seeds,
-        integral_seeds: seeds * INTEGRAL_SEEDS,
+        integral_seeds,
         samples: arguments.samples.clone(),
         strategies,
         render: !arguments.integral_only,

@@ -2,6 +2,7 @@
 
 use crate::arguments::Check;
 use crate::console;
+use crate::memory;
 use crate::outcome::{BAD_INPUT, DONE, Failure, Outcome};
 use crate::run;
 use serde_json::json;
@@ -20,7 +21,9 @@ pub(crate) fn check(arguments: &Check, isa: Isa) -> Outcome {
         if arguments.json {
             let scene = path.display().to_string();
             let mut said = match &result {
-                Ok(good) => json!({ "scene": scene, "ok": true, "faults": [], "warnings": good.warnings }),
+                Ok(good) => json!({
+                    "scene": scene, "ok": true, "faults": [], "warnings": good.warnings, "memory_bytes": good.memory_bytes
+                }),
                 Err(faults) => {
                     json!({ "scene": scene, "ok": false, "faults": diagnostics::to_json(faults), "warnings": [] })
                 }
@@ -38,7 +41,8 @@ pub(crate) fn check(arguments: &Check, isa: Isa) -> Outcome {
                 }
                 let pictures =
                     good.pictures.map_or(String::new(), |n| format!(", {n} picture{}", if n == 1 { "" } else { "s" }));
-                console::out(&format!("{}: good{pictures}\n", path.display()))?;
+                let memory = memory::worth_saying(good.memory_bytes).map_or(String::new(), |text| format!(", {text}"));
+                console::out(&format!("{}: good{pictures}{memory}\n", path.display()))?;
             }
             Err(faults) => console::faults(faults),
         }
@@ -56,6 +60,8 @@ struct Good {
     warnings: Vec<String>,
     /// How many pictures a sweep or an animation has.
     pictures: Option<usize>,
+    /// What the largest picture takes beyond the scene itself.
+    memory_bytes: u64,
 }
 
 /// The warnings of a good scene, or all faults.
@@ -63,7 +69,9 @@ fn check_one(path: &Path, overrides: &[String], isa: Isa) -> Result<Good, Faults
     let series = spectra_scene::load_series(path, overrides)?;
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let all: Vec<usize> = (0..series.count()).collect();
-    let of_each = run::checked(&series, &all, isa, threads, &|_, scene| Ok(scene.warnings));
+    let of_each = run::checked(&series, &all, isa, threads, &|_, scene| {
+        Ok((spectra_render::memory_needed(&scene), scene.warnings))
+    });
     let of_each = of_each.map_err(|failure| match failure {
         Failure::Faults(faults) => faults,
         // What shows only once the stages are put together, such as a lens without any aperture.
@@ -71,10 +79,11 @@ fn check_one(path: &Path, overrides: &[String], isa: Isa) -> Result<Good, Faults
         Failure::ReaderGone => Faults::new(),
     })?;
     let mut warnings: Vec<String> = Vec::new();
-    for warning in series.warnings().iter().chain(of_each.iter().flatten()) {
+    for warning in series.warnings().iter().chain(of_each.iter().flat_map(|(_, warnings)| warnings)) {
         if !warnings.contains(warning) {
             warnings.push(warning.clone());
         }
     }
-    Ok(Good { warnings, pictures: (series.kind() != SeriesKind::Single).then_some(all.len()) })
+    let pictures = (series.kind() != SeriesKind::Single).then_some(all.len());
+    Ok(Good { warnings, pictures, memory_bytes: of_each.iter().map(|(bytes, _)| *bytes).max().unwrap_or(0) })
 }

@@ -15,6 +15,7 @@ mod glass;
 mod lens;
 mod licences;
 mod list;
+mod memory;
 mod new;
 mod outcome;
 mod quantity;
@@ -83,7 +84,11 @@ fn dispatch(arguments: &Arguments, unpack: Unpack, started: Instant) -> Outcome 
 fn instruction_set() -> Result<Isa, Failure> {
     match std::env::var_os("SPECTRA_ISA") {
         Some(name) if !name.is_empty() => {
-            Isa::by_name(&name.to_string_lossy()).map_err(|error| Failure::Input(format!("SPECTRA_ISA: {error}")))
+            let isa = Isa::by_name(&name.to_string_lossy())
+                .map_err(|error| Failure::Input(format!("SPECTRA_ISA: {error}")))?;
+            // Also what is not handed a tier obeys: film, searches, plugins.
+            isa.limit();
+            Ok(isa)
         }
         _ => Ok(Isa::detect()),
     }

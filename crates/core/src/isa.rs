@@ -7,6 +7,9 @@
 //! No other module of the workspace may hold `unsafe` code.
 #![allow(unsafe_code)]
 
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicU8, Ordering::Relaxed};
+
 /// An instruction-set tier that kernels are compiled for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Isa {
@@ -27,10 +30,38 @@ pub trait Vectorized {
     fn run(self) -> Self::Output;
 }
 
+/// The widest tier that this process may use, as a number; [`UNLIMITED`] until [`Isa::limit`] is called.
+static LIMIT: AtomicU8 = AtomicU8::new(UNLIMITED);
+const UNLIMITED: u8 = u8::MAX;
+
 impl Isa {
-    /// The widest tier that this machine has.
+    /// The widest tier that this machine has and this process may use: see [`Isa::limit`].
     #[must_use]
     pub fn detect() -> Self {
+        Self::Avx512.allowed()
+    }
+
+    /// From now on nothing in this process runs on a wider tier, whatever tier its code asks for. The command calls it
+    /// once, at its start, with what `SPECTRA_ISA` says.
+    pub fn limit(self) {
+        LIMIT.store(self as u8, Relaxed);
+    }
+
+    /// This tier, or the widest narrower one that the machine has and the process may use.
+    #[inline]
+    #[must_use]
+    pub fn allowed(self) -> Self {
+        static MACHINE: OnceLock<Isa> = OnceLock::new();
+        let widest = (*MACHINE.get_or_init(Isa::of_machine)).min(self);
+        match LIMIT.load(Relaxed) {
+            limit if limit >= widest as u8 => widest,
+            0 => Self::Baseline,
+            _ => Self::Avx2,
+        }
+    }
+
+    /// The widest tier that the machine has.
+    fn of_machine() -> Self {
         #[cfg(target_arch = "x86_64")]
         {
             if std::arch::is_x86_feature_detected!("avx512f")
@@ -58,8 +89,9 @@ impl Isa {
             "avx512" => Self::Avx512,
             _ => return Err(format!("`{name}` is no instruction set; known are baseline, avx2, avx512")),
         };
-        if isa > Self::detect() {
-            return Err(format!("this machine does not have `{name}`; its widest is {}", Self::detect().name()));
+        let widest = Self::of_machine();
+        if isa > widest {
+            return Err(format!("this machine does not have `{name}`; its widest is {}", widest.name()));
         }
         Ok(isa)
     }
@@ -74,7 +106,7 @@ impl Isa {
         }
     }
 
-    /// All tiers of this machine, narrowest first.
+    /// All tiers that this machine has and this process may use, narrowest first.
     #[must_use]
     pub fn available() -> Vec<Self> {
         [Self::Baseline, Self::Avx2, Self::Avx512].into_iter().filter(|isa| *isa <= Self::detect()).collect()
@@ -83,24 +115,16 @@ impl Isa {
     /// Runs `work`, compiled for this tier.
     #[inline]
     pub fn run<V: Vectorized>(self, work: V) -> V::Output {
-        // A tier can be named only through `detect` or `by_name`, or by its variant: check the latter too.
         #[cfg(target_arch = "x86_64")]
-        match self {
-            // SAFETY: the guard saw that the machine has the features of this tier.
-            Self::Avx512 if detected() >= Self::Avx512 => return unsafe { run_avx512(work) },
+        match self.allowed() {
+            // SAFETY: `allowed` gives only tiers whose features the machine has.
+            Self::Avx512 => return unsafe { run_avx512(work) },
             // SAFETY: as above.
-            Self::Avx2 | Self::Avx512 if detected() >= Self::Avx2 => return unsafe { run_avx2(work) },
-            _ => {}
+            Self::Avx2 => return unsafe { run_avx2(work) },
+            Self::Baseline => {}
         }
         work.run()
     }
-}
-
-#[cfg(target_arch = "x86_64")]
-#[inline]
-fn detected() -> Isa {
-    static DETECTED: std::sync::OnceLock<Isa> = std::sync::OnceLock::new();
-    *DETECTED.get_or_init(Isa::detect)
 }
 
 #[cfg(target_arch = "x86_64")]

@@ -14,6 +14,8 @@ pub enum Loss {
     Absorbed = 4,
     /// It passed the lens but missed the imager's frame.
     OutOfFrame = 5,
+    /// No light comes along it: backward, it passes beside the picture in front of the lens, or meets black.
+    Unlit = 6,
 }
 
 /// State of a ray that is alive.
@@ -21,7 +23,8 @@ pub const ALIVE: u64 = 0;
 
 impl Loss {
     /// All causes.
-    pub const ALL: [Self; 5] = [Self::Missed, Self::Vignetted, Self::TotalReflection, Self::Absorbed, Self::OutOfFrame];
+    pub const ALL: [Self; 6] =
+        [Self::Missed, Self::Vignetted, Self::TotalReflection, Self::Absorbed, Self::OutOfFrame, Self::Unlit];
 
     /// The short name used in tables and JSON.
     #[must_use]
@@ -32,6 +35,7 @@ impl Loss {
             Self::TotalReflection => "tir",
             Self::Absorbed => "absorbed",
             Self::OutOfFrame => "out_of_frame",
+            Self::Unlit => "unlit",
         }
     }
 
@@ -54,7 +58,7 @@ impl Loss {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct LossCounts {
     /// One row per surface number (0: no surface), one column per cause.
-    rows: Vec<[u64; 6]>,
+    rows: Vec<[u64; 7]>,
 }
 
 impl LossCounts {
@@ -62,7 +66,7 @@ impl LossCounts {
     pub fn add(&mut self, cause: Loss, surface: u32, many: u64) {
         let row = surface as usize;
         if self.rows.len() <= row {
-            self.rows.resize(row + 1, [0; 6]);
+            self.rows.resize(row + 1, [0; 7]);
         }
         self.rows[row][cause as usize] += many;
     }

@@ -6,7 +6,9 @@ use crate::{
 };
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::params::{Angle, FNumber, Fault, Faults, Length, OrInfinity, Params, Positive, Ratio, StageNode, nearest};
+use spectra_core::params::{
+    Angle, FNumber, Fault, Faults, Length, OrInfinity, Params, Positive, Ratio, StageNode, Whole, nearest,
+};
 use spectra_core::registry::{self, Context};
 use spectra_core::resources::Resources;
 use spectra_core::spectral::BAND;
@@ -422,7 +424,7 @@ struct GroupParams {
     /// Its name.
     name: String,
     /// First and last surface, by number from 1 (a bend of the axis does not count).
-    surfaces: [f64; 2],
+    surfaces: [Whole<1, { u32::MAX as u64 }>; 2],
     /// Shift of the group along x and y, mm if bare; none if absent.
     decenter: Option<[Length; 2]>,
     /// Tilt of the group about the vertex of its first surface, about x, y and z, degrees if bare; none if absent.
@@ -432,15 +434,15 @@ struct GroupParams {
 fn group(node: &StageNode, surfaces: usize) -> Result<Group, Faults> {
     let params = Params::section(node.node().clone(), node.path())?;
     let p: GroupParams = params.parse()?;
-    let [first, last] = p.surfaces;
-    if first.fract() != 0.0 || last.fract() != 0.0 || !(first >= 1.0 && last >= first && last <= surfaces as f64) {
+    let [first, last] = p.surfaces.map(Whole::size);
+    if last < first || last > surfaces {
         let fault = params.fault("surfaces", format!("no surfaces {first} to {last} in this lens"));
         return Err(fault.hint(format!("two numbers from 1 to {surfaces}, the smaller one first")).into());
     }
     Ok(Group {
         name: p.name,
-        elements: first as usize - 1..last as usize,
-        about: first as usize - 1,
+        elements: first - 1..last,
+        about: first - 1,
         displacement: displacement(p.decenter, p.tilt),
     })
 }

@@ -1,5 +1,6 @@
 //! Backward: each pixel asks, through the rear of the lens, what light arrives.
 
+use crate::blame::{Blame, Step};
 use crate::error::RenderError;
 use crate::pipeline::{Pipeline, ThreadState};
 use crate::sums::ExactSums;
@@ -61,6 +62,19 @@ impl<'a> Backward<'a> {
         first: u32,
         count: usize,
     ) {
+        self.steps(state, pixels, first, count, &mut |_, _| {});
+    }
+
+    /// The same, with a look at the rays after each step.
+    #[inline(always)]
+    pub(crate) fn steps(
+        &self,
+        state: &mut ThreadState,
+        pixels: impl Iterator<Item = u32> + Clone,
+        first: u32,
+        count: usize,
+        look: &mut impl FnMut(Step, &RayBatch),
+    ) {
         let isa = self.pipeline.isa;
         let mut len = 0;
         for pixel in pixels.clone() {
@@ -72,23 +86,32 @@ impl<'a> Backward<'a> {
             len += count;
         }
         state.draw_wavelengths(&self.pipeline, len);
+        look(Step::Wavelengths, &state.rays);
         let c = state.rays.columns_mut();
         for (chunk, pixel) in c.tag.chunks_mut(count).zip(pixels) {
             chunk.fill(pixel);
         }
         let [_, u, v, a, b] = &state.numbers;
         self.launch.place(&mut state.rays, u.slice(len), v.slice(len), isa);
+        look(Step::Imager, &state.rays);
         let dark = self.rear.aim(&mut state.rays, a.slice(len), b.slice(len), isa);
         state.drop_dark(dark);
+        look(Step::Pupil, &state.rays);
         self.launch.admit(&mut state.rays, isa);
         let ended = state.rays.len() - state.rays.alive();
         state.drop_dark(ended);
+        look(Step::Imager, &state.rays);
         self.pipeline.tracer.trace(&mut state.rays, &mut state.work, Travel::Backward);
+        look(Step::Lens, &state.rays);
         self.radiance.radiance(&mut state.rays, isa);
-        state.silence_ended(isa);
+        look(Step::Source, &state.rays);
+        state.settle(isa);
     }
 
     /// Adds samples `first .. first + samples` of pixels `begin .. end` to the sums.
+    ///
+    /// # Errors
+    /// A contribution is no number, or does not fit; then nothing of the unit is added.
     pub(crate) fn unit(
         &self,
         state: &mut ThreadState,
@@ -98,7 +121,7 @@ impl<'a> Backward<'a> {
         samples: u32,
         scale: f64,
         sums: &ExactSums,
-    ) {
+    ) -> Result<(), RenderError> {
         let channels = state.integers.len();
         let mut local = vec![0_i64; (end - begin) as usize * channels];
         let capacity = state.rays.capacity() as u32;
@@ -113,7 +136,9 @@ impl<'a> Backward<'a> {
                 let count = part.min(first + samples - sample);
                 self.batch(state, pixel..upto, sample, count as usize);
                 if !state.contributions(&self.pipeline, scale) {
-                    sums.mark_overflow();
+                    let mut blame = Blame::default();
+                    self.steps(state, pixel..upto, sample, count as usize, &mut |step, rays| blame.look(step, rays));
+                    return Err(blame.error(&self.pipeline, state, scale));
                 }
                 for (i, tag) in state.rays.tags().iter().enumerate() {
                     let (pixel, only) = pixel_and_channel(*tag);
@@ -132,6 +157,7 @@ impl<'a> Backward<'a> {
         for (i, value) in local.iter().enumerate() {
             sums.add(base + i, *value);
         }
+        Ok(())
     }
 }
 

@@ -1,5 +1,8 @@
 //! Why a scene cannot be rendered.
 
+use crate::Rendering;
+use crate::blame::NoNumber;
+use crate::memory::bytes;
 use spectra_core::params::{Fault, Faults};
 use spectra_scene::Scene;
 
@@ -27,9 +30,23 @@ pub enum RenderError {
     /// A medium of the lens has no index in the band.
     #[error("lens: {0}")]
     Lens(String),
+    /// A stage gave a number that no light can have.
+    #[error("{0}")]
+    NoNumber(NoNumber),
     /// A sum or a contribution did not fit.
-    #[error("the sums overflowed: some light is more than 2^20 times brighter than a pilot run saw")]
-    Overflow,
+    #[error(
+        "the sums overflowed: a ray was {times:.1e} times as bright as the brightest of the {} that were tried before",
+        crate::renderer::PILOT_RAYS
+    )]
+    Overflow {
+        /// How much brighter than the brightest ray of the pilot run.
+        times: f64,
+        /// The light of all rays before, marked as partial.
+        so_far: Option<Box<Rendering>>,
+    },
+    /// The sums of the picture do not fit into memory.
+    #[error("the picture needs {} of memory, which the system refused", bytes(*.0))]
+    Memory(u64),
     /// No threads to be had.
     #[error("cannot start threads: {0}")]
     Threads(String),
@@ -58,7 +75,13 @@ impl RenderError {
                 None => at("wavelengths", text, "leave `wavelengths` out for the usual strategy"),
             },
             Self::Lens(text) => at("lens", text, "another glass, or another `wavelengths: {band: ...}`"),
-            Self::Overflow | Self::Threads(_) => None,
+            Self::NoNumber(found) => at(
+                found.step.section(),
+                &text,
+                "a fault of that stage or of the data that it reads: try another one, or another `wavelengths: {band: ...}`",
+            ),
+            Self::Memory(_) => at("imager.resolution", &text, "fewer pixels, or fewer channels"),
+            Self::Overflow { .. } | Self::Threads(_) => None,
         }
     }
 }

@@ -1,10 +1,11 @@
 //! Forward: paths from the source, splatted where they land.
 
+use crate::blame::{Blame, Step};
 use crate::error::RenderError;
 use crate::pipeline::{Pipeline, ThreadState};
 use crate::sums::ExactSums;
 use glam::DVec3;
-use spectra_core::Loss;
+use spectra_core::RayBatch;
 use spectra_core::batch::pixel_and_channel;
 use spectra_core::numbers::{Dimension, Numbers};
 use spectra_core::stage::{Emit, Receive};
@@ -62,6 +63,18 @@ impl<'a> Forward<'a> {
 
     /// Traces paths `first .. first + len`; what arrived is left in the batch, pixels in the tags.
     pub(crate) fn batch(&self, state: &mut ThreadState, first: u64, len: usize) {
+        self.steps(state, first, len, &mut |_, _| {});
+    }
+
+    /// The same, with a look at the rays after each step.
+    #[inline(always)]
+    pub(crate) fn steps(
+        &self,
+        state: &mut ThreadState,
+        first: u64,
+        len: usize,
+        look: &mut impl FnMut(Step, &RayBatch),
+    ) {
         let isa = self.pipeline.isa;
         for (dimension, column) in state.numbers.iter_mut().enumerate() {
             let numbers = if dimension >= Dimension::PupilU as usize { &self.cone } else { &self.numbers };
@@ -69,27 +82,37 @@ impl<'a> Forward<'a> {
             numbers.fill_rotated(isa, STREAM, first, group, dimension as u32, column.slice_mut(len));
         }
         state.draw_wavelengths(&self.pipeline, len);
+        look(Step::Wavelengths, &state.rays);
         let [_, u, v, a, b] = &state.numbers;
         self.emit.place(&mut state.rays, u.slice(len), v.slice(len), isa);
+        look(Step::Source, &state.rays);
         let rings = self.pipeline.scene.render.cone == ConePattern::Rings;
         let pattern = if rings { AimPattern::Rings } else { AimPattern::Disk };
         if let Some(pupil) = &self.pupil {
             let dark = pupil.aim(&mut state.rays, a.slice(len), b.slice(len), pattern, isa);
             state.drop_dark(dark);
+            look(Step::Pupil, &state.rays);
         }
         self.emit.radiate(&mut state.rays, isa);
+        look(Step::Source, &state.rays);
         self.pipeline.tracer.trace(&mut state.rays, &mut state.work, Travel::Forward);
+        look(Step::Lens, &state.rays);
         self.receive.receive(&mut state.rays, isa);
-        // What the lens ended is in the books already.
-        for cause in [Loss::OutOfFrame, Loss::Absorbed] {
-            let ended = state.rays.states().iter().filter(|s| **s == cause.state(0)).count();
-            state.work.losses.add(cause, 0, ended as u64);
-        }
+        look(Step::Imager, &state.rays);
+        state.settle(isa);
         state.rays.compact();
     }
 
-    /// Adds a unit of paths to the sums.
-    pub(crate) fn unit(&self, state: &mut ThreadState, first: u64, paths: u64, scale: f64, sums: &ExactSums) {
+    /// Adds a unit of paths to the sums. Gives the number of paths added, and why they are not all, where a contribution is
+    /// no number or does not fit.
+    pub(crate) fn unit(
+        &self,
+        state: &mut ThreadState,
+        first: u64,
+        paths: u64,
+        scale: f64,
+        sums: &ExactSums,
+    ) -> (u64, Option<RenderError>) {
         let batch = state.rays.capacity() as u64;
         let channels = state.integers.len();
         let mut at = first;
@@ -97,7 +120,9 @@ impl<'a> Forward<'a> {
             let len = batch.min(first + paths - at);
             self.batch(state, at, len as usize);
             if !state.contributions(&self.pipeline, scale) {
-                sums.mark_overflow();
+                let mut blame = Blame::default();
+                self.steps(state, at, len as usize, &mut |step, rays| blame.look(step, rays));
+                return (at - first, Some(blame.error(&self.pipeline, state, scale)));
             }
             for (i, tag) in state.rays.tags().iter().enumerate() {
                 let (pixel, only) = pixel_and_channel(*tag);
@@ -110,6 +135,7 @@ impl<'a> Forward<'a> {
             }
             at += len;
         }
+        (paths, None)
     }
 }
 

@@ -5,14 +5,21 @@
 //! what was finished.
 
 mod backward;
+mod blame;
 mod control;
 mod error;
 mod forward;
+mod landing;
+mod memory;
 mod pipeline;
+mod remarks;
 mod renderer;
 mod response;
 mod sums;
 
+pub use blame::{NoNumber, Step};
 pub use control::Control;
 pub use error::RenderError;
+pub use landing::Landing;
+pub use memory::{bytes, fits, memory_needed};
 pub use renderer::{Renderer, Rendering};

@@ -9,7 +9,7 @@ use spectra_core::loss::ALIVE;
 use spectra_core::numbers::{Dimension, Numbers};
 use spectra_core::spectral::SystemResponse;
 use spectra_core::stage::WavelengthDensity;
-use spectra_core::{Isa, RayBatch};
+use spectra_core::{Isa, Loss, RayBatch};
 use spectra_lens::{Indices, Tracer, Work};
 use spectra_scene::{NumberFamily, Scene};
 
@@ -62,6 +62,8 @@ pub(crate) struct ThreadState {
     pub numbers: [Column<f64>; 5],
     pub values: Vec<f64>,
     pub integers: Vec<Vec<i64>>,
+    /// Rays that brought light to the imager.
+    pub detected: u64,
 }
 
 impl ThreadState {
@@ -72,6 +74,7 @@ impl ThreadState {
             numbers: std::array::from_fn(|_| Column::new(capacity)),
             values: vec![0.0; capacity],
             integers: vec![vec![0; capacity]; pipeline.responses.channels()],
+            detected: 0,
         }
     }
 
@@ -83,10 +86,21 @@ impl ThreadState {
         pipeline.density.draw(u, c.wavelength_nm, c.line, c.weight, pipeline.isa);
     }
 
-    /// Takes the weight from the rays that ended.
-    pub(crate) fn silence_ended(&mut self, isa: Isa) {
+    /// Takes the weight from the rays that ended. Books those that ended at no surface of the lens (the lens has booked its
+    /// own), and those that carry no light; counts the others as detected.
+    pub(crate) fn settle(&mut self, isa: Isa) {
         let c = self.rays.columns_mut();
-        isa.run(Silence { state: c.state, weight: c.weight });
+        let Settled { lit, alive, beside_lens } = isa.run(Settle { state: c.state, weight: c.weight });
+        self.detected += lit;
+        if lit < alive {
+            self.work.losses.add(Loss::Unlit, 0, alive - lit);
+        }
+        if beside_lens > 0 {
+            for cause in Loss::ALL {
+                let ended = self.rays.states().iter().filter(|s| **s == cause.state(0)).count();
+                self.work.losses.add(cause, 0, ended as u64);
+            }
+        }
     }
 
     /// Books and drops the rays that were not even aimed: nothing passes from where they start.
@@ -132,17 +146,34 @@ impl ThreadState {
     }
 }
 
-struct Silence<'a> {
+/// How many rays of a batch are what.
+struct Settled {
+    /// Alive, with a weight.
+    lit: u64,
+    alive: u64,
+    /// Ended, at no surface of the lens.
+    beside_lens: u64,
+}
+
+struct Settle<'a> {
     state: &'a [u64],
     weight: &'a mut [f64],
 }
 
-impl Vectorized for Silence<'_> {
-    type Output = ();
+impl Vectorized for Settle<'_> {
+    type Output = Settled;
     #[inline(always)]
-    fn run(self) {
+    fn run(self) -> Settled {
+        let (mut lit, mut alive, mut beside_lens) = (0, 0, 0);
         for (state, weight) in self.state.iter().zip(self.weight) {
-            *weight = if *state == ALIVE { *weight } else { 0.0 };
+            let is_alive = *state == ALIVE;
+            let kept = if is_alive { *weight } else { 0.0 };
+            *weight = kept;
+            lit += u64::from(kept != 0.0);
+            alive += u64::from(is_alive);
+            // Cause in the low byte, surface above it.
+            beside_lens += u64::from((*state != ALIVE) & (*state < 0x100));
         }
+        Settled { lit, alive, beside_lens }
     }
 }

@@ -1,14 +1,19 @@
 //! The renderer: units of work, handed to threads, summed exactly.
 
 use crate::backward::{Backward, PIXELS_PER_UNIT, SAMPLES_PER_PASS};
+use crate::blame::{Blame, Step};
 use crate::forward::{Forward, PATHS_PER_UNIT};
+use crate::landing::Landing;
+use crate::memory::memory_needed;
 use crate::pipeline::{Pipeline, ThreadState};
-use crate::sums::{ExactSums, scale_for};
+use crate::remarks::remarks;
+use crate::sums::{ExactSums, LARGEST_CONTRIBUTION, LARGEST_EXPECTED, scale_for};
 use crate::{Control, RenderError};
 use spectra_core::frame::{ExposureChannel, ExposureFrame};
-use spectra_core::{Isa, LossCounts};
+use spectra_core::{Isa, LossCounts, RayBatch};
 use spectra_scene::{Direction, Scene};
-use std::sync::atomic::{AtomicU32, AtomicU64, Ordering::Relaxed};
+use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering::Relaxed};
+use std::sync::{Mutex, PoisonError};
 
 /// What a render gives.
 #[derive(Clone, Debug)]
@@ -19,8 +24,12 @@ pub struct Rendering {
     pub rays: u64,
     /// What was lost, by cause and surface.
     pub losses: LossCounts,
+    /// Rays that brought light to the imager: with those that were lost, all that were launched.
+    pub detected: u64,
     /// Whether it was stopped before its end.
     pub partial: bool,
+    /// What a person should know before believing the picture, and what to write.
+    pub warnings: Vec<String>,
 }
 
 enum Way<'a> {
@@ -39,7 +48,7 @@ pub struct Renderer<'a> {
 /// renders of the same scene with other seeds add.
 const PILOT_SEED: u64 = 0x5ca1e;
 /// Rays of a pilot batch.
-const PILOT_RAYS: u32 = 4096;
+pub(crate) const PILOT_RAYS: u32 = 4096;
 /// Batches tried before a scene is taken to be dark.
 const PILOT_BATCHES: u32 = 64;
 
@@ -50,7 +59,7 @@ impl<'a> Renderer<'a> {
     /// [`RenderError`]: a stage lacks the ability that the direction needs.
     pub fn new(scene: &'a Scene, isa: Isa) -> Result<Self, RenderError> {
         let pilot = Self::way(scene, isa, PILOT_SEED)?;
-        let largest = Self::pilot(scene, &pilot);
+        let largest = Self::pilot(scene, &pilot)?;
         let scale = scale_for(largest * scene.source.peak_over_mean().max(1.0));
         Ok(Self { scene, way: pilot.reseeded(scene.render.seed), scale })
     }
@@ -64,29 +73,54 @@ impl<'a> Renderer<'a> {
     }
 
     /// The largest contribution among some thousand rays.
-    fn pilot(scene: &Scene, way: &Way<'_>) -> f64 {
+    fn pilot(scene: &Scene, way: &Way<'_>) -> Result<f64, RenderError> {
         let mut state = ThreadState::new(way.pipeline(), PILOT_RAYS as usize);
         for batch in 0..PILOT_BATCHES {
+            let mut blame = Blame::default();
+            let look = &mut |step: Step, rays: &RayBatch| blame.look(step, rays);
             match way {
-                Way::Forward(forward) => forward.batch(&mut state, u64::from(batch * PILOT_RAYS), PILOT_RAYS as usize),
+                Way::Forward(forward) => {
+                    forward.steps(&mut state, u64::from(batch * PILOT_RAYS), PILOT_RAYS as usize, look);
+                }
                 Way::Backward(backward) => {
                     let pixels = scene.imager.size().pixels() as u64;
                     let spread = (0..PILOT_RAYS).map(|i| (u64::from(i) * pixels / u64::from(PILOT_RAYS)) as u32);
-                    backward.batch(&mut state, spread, batch, 1);
+                    backward.steps(&mut state, spread, batch, 1, look);
                 }
+            }
+            // A stage that is broken shows before any light is traced, if a few thousand rays find it.
+            if let Some(error) = blame.no_number(way.pipeline()) {
+                return Err(error);
             }
             let largest = state.largest(way.pipeline());
             if largest > 0.0 {
-                return largest;
+                return Ok(largest);
             }
         }
-        0.0
+        Ok(0.0)
+    }
+
+    /// Where the light of the source lands in the plane of the imager, whichever way the scene is rendered; `None` where
+    /// the source cannot emit, or nothing passes the lens.
+    #[must_use]
+    pub fn landing(&self) -> Option<Landing> {
+        let pipeline = Pipeline::new(self.scene, self.way.pipeline().isa).ok()?;
+        let forward = Forward::new(pipeline, PILOT_SEED).ok()?;
+        let mut state = ThreadState::new(&forward.pipeline, PILOT_RAYS as usize);
+        let mut landing = None;
+        forward.steps(&mut state, 0, PILOT_RAYS as usize, &mut |step, rays| {
+            if step == Step::Lens {
+                landing = Landing::of(self.scene, rays, forward.pipeline.isa);
+            }
+        });
+        landing
     }
 
     /// Renders on `threads` threads until the end, or until `control` says stop.
     ///
     /// # Errors
-    /// [`RenderError::Overflow`], [`RenderError::Threads`].
+    /// [`RenderError::Memory`], [`RenderError::Threads`]; and as soon as a ray shows it, [`RenderError::NoNumber`] or
+    /// [`RenderError::Overflow`].
     pub fn run(&self, threads: usize, control: &Control) -> Result<Rendering, RenderError> {
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(threads.max(1))
@@ -94,7 +128,14 @@ impl<'a> Renderer<'a> {
             .map_err(|e| RenderError::Threads(e.to_string()))?;
         let size = self.scene.imager.size();
         let channels = self.scene.channels.len();
-        let sums = ExactSums::new(size.pixels() * channels);
+        let too_large = || RenderError::Memory(memory_needed(self.scene));
+        let sums = ExactSums::new(size.pixels() * channels).ok_or_else(too_large)?;
+        let failure: Mutex<Option<RenderError>> = Mutex::new(None);
+        let failed = AtomicBool::new(false);
+        let fail = |error: RenderError| {
+            failed.store(true, Relaxed);
+            failure.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
+        };
         let plan = Plan::new(&self.way, self.scene);
         control.expect(plan.rays);
         let next = AtomicU64::new(0);
@@ -102,7 +143,7 @@ impl<'a> Renderer<'a> {
         let samples_done: Vec<AtomicU32> = (0..plan.tiles).map(|_| AtomicU32::new(0)).collect();
         let losses = pool.broadcast(|_| {
             let mut state = ThreadState::new(self.way.pipeline(), self.scene.render.batch);
-            while !control.should_stop() {
+            while !control.should_stop() && !failed.load(Relaxed) {
                 let unit = next.fetch_add(1, Relaxed);
                 if unit >= plan.units {
                     break;
@@ -111,9 +152,10 @@ impl<'a> Renderer<'a> {
                     Way::Forward(forward) => {
                         let first = unit * PATHS_PER_UNIT;
                         let paths = PATHS_PER_UNIT.min(plan.rays - first);
-                        forward.unit(&mut state, first, paths, self.scale, &sums);
-                        paths_done.fetch_add(paths, Relaxed);
-                        paths
+                        let (done, error) = forward.unit(&mut state, first, paths, self.scale, &sums);
+                        paths_done.fetch_add(done, Relaxed);
+                        error.into_iter().for_each(fail);
+                        done
                     }
                     Way::Backward(backward) => {
                         let (tile, pass) = ((unit % plan.tiles) as u32, (unit / plan.tiles) as u32);
@@ -121,20 +163,35 @@ impl<'a> Renderer<'a> {
                         let end = (begin + PIXELS_PER_UNIT).min(size.pixels() as u32);
                         let first = pass * SAMPLES_PER_PASS;
                         let samples = SAMPLES_PER_PASS.min(self.scene.render.samples - first);
-                        backward.unit(&mut state, begin, end, first, samples, self.scale, &sums);
-                        samples_done[tile as usize].fetch_add(samples, Relaxed);
-                        u64::from(end - begin) * u64::from(samples)
+                        match backward.unit(&mut state, begin, end, first, samples, self.scale, &sums) {
+                            Ok(()) => {
+                                samples_done[tile as usize].fetch_add(samples, Relaxed);
+                                u64::from(end - begin) * u64::from(samples)
+                            }
+                            Err(error) => {
+                                fail(error);
+                                0
+                            }
+                        }
                     }
                 };
                 control.launched(rays);
+                if sums.overflowed() {
+                    // A pixel's sum: so many contributions that none of them is to blame.
+                    fail(RenderError::Overflow { times: LARGEST_CONTRIBUTION / LARGEST_EXPECTED, so_far: None });
+                }
             }
-            state.work.losses
+            (state.work.losses, state.detected)
         });
-        if sums.overflowed() {
-            return Err(RenderError::Overflow);
+        let failure = failure.into_inner().unwrap_or_else(PoisonError::into_inner);
+        if let Some(error @ RenderError::NoNumber(_)) = failure {
+            return Err(error);
         }
-        let mut all = LossCounts::default();
-        losses.iter().for_each(|l| all.merge(l));
+        let (mut all, mut detected) = (LossCounts::default(), 0);
+        for (losses, lit) in &losses {
+            all.merge(losses);
+            detected += lit;
+        }
         // What one unit of the sums is worth: exposure over the number of samples.
         let paths = paths_done.load(Relaxed);
         let forward_weight = self.scene.exposure_time_s() / self.scale / size.pixel_area_mm2() / (paths.max(1) as f64);
@@ -146,17 +203,36 @@ impl<'a> Renderer<'a> {
                 backward_weight / f64::from(done.max(1))
             }
         };
-        let planes = self.scene.channels.iter().enumerate().map(|(at, channel)| ExposureChannel {
-            name: channel.name.clone(),
-            unit: channel.unit.clone(),
-            values: (0..size.pixels()).map(|p| (sums.get(p * channels + at) as f64 * weight(p)) as f32).collect(),
-        });
-        Ok(Rendering {
-            exposure: ExposureFrame { size, channels: planes.collect() },
+        let mut planes = Vec::with_capacity(channels);
+        for (at, channel) in self.scene.channels.iter().enumerate() {
+            let mut values = Vec::new();
+            values.try_reserve_exact(size.pixels()).map_err(|_| too_large())?;
+            values.extend((0..size.pixels()).map(|p| (sums.get(p * channels + at) as f64 * weight(p)) as f32));
+            planes.push(ExposureChannel { name: channel.name.clone(), unit: channel.unit.clone(), values });
+        }
+        drop(sums);
+        let mut rendering = Rendering {
+            exposure: ExposureFrame { size, channels: planes },
             rays: control.rays(),
             losses: all,
+            detected,
             partial: control.rays() < plan.rays,
-        })
+            warnings: Vec::new(),
+        };
+        rendering.warnings = remarks(self, &rendering);
+        match failure {
+            Some(RenderError::Overflow { times, .. }) => {
+                rendering.partial = true;
+                Err(RenderError::Overflow { times, so_far: Some(Box::new(rendering)) })
+            }
+            Some(error) => Err(error),
+            None => Ok(rendering),
+        }
+    }
+
+    /// The scene.
+    pub(crate) fn scene(&self) -> &'a Scene {
+        self.scene
     }
 }
 

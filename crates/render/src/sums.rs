@@ -6,6 +6,8 @@ use std::sync::atomic::{AtomicBool, AtomicI64, Ordering::Relaxed};
 /// Bits given to the largest contribution that a pilot run saw. With 2^32 of them in one pixel the
 /// sum stays inside of 62 bits; rounding is 2^-30 of that contribution.
 const BITS_OF_LARGEST: i32 = 29;
+/// The largest contribution that is expected, scaled.
+pub(crate) const LARGEST_EXPECTED: f64 = (1_u64 << BITS_OF_LARGEST) as f64;
 /// The sum of a cell must stay below this.
 const LIMIT: u64 = 1 << 62;
 /// One contribution must stay below this for its rounding to be exact.
@@ -52,8 +54,12 @@ pub(crate) struct ExactSums {
 }
 
 impl ExactSums {
-    pub(crate) fn new(cells: usize) -> Self {
-        Self { cells: (0..cells).map(|_| AtomicI64::new(0)).collect(), overflow: AtomicBool::new(false) }
+    /// `None` where memory does not suffice.
+    pub(crate) fn new(cells: usize) -> Option<Self> {
+        let mut all = Vec::new();
+        all.try_reserve_exact(cells).ok()?;
+        all.extend((0..cells).map(|_| AtomicI64::new(0)));
+        Some(Self { cells: all, overflow: AtomicBool::new(false) })
     }
 
     #[inline(always)]
@@ -66,10 +72,6 @@ impl ExactSums {
 
     pub(crate) fn get(&self, cell: usize) -> i64 {
         self.cells[cell].load(Relaxed)
-    }
-
-    pub(crate) fn mark_overflow(&self) {
-        self.overflow.store(true, Relaxed);
     }
 
     pub(crate) fn overflowed(&self) -> bool {
@@ -109,7 +111,7 @@ mod tests {
 
     #[test]
     fn overflow_is_noticed() {
-        let sums = ExactSums::new(1);
+        let sums = ExactSums::new(1).expect("memory");
         // Four of them reach the limit exactly; the next one finds the sum there.
         for _ in 0..4 {
             sums.add(0, 1 << 60);

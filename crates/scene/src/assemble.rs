@@ -10,7 +10,7 @@ use crate::{
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::numbers::seed_of_frame;
-use spectra_core::params::{Fault, Faults, Node, Params, StageNode, Value, Wavelength, nearest};
+use spectra_core::params::{Fault, Faults, Node, Params, StageNode, Value, Wavelength, Whole, nearest};
 use spectra_core::registry::{self, Context, StageOf};
 use spectra_core::resources::Resources;
 use spectra_core::spectral::{BAND, Channel, Grid};
@@ -110,20 +110,16 @@ struct RenderSection {
     #[schemars(extend("enum" = ["auto", "forward", "backward"]))]
     direction: Option<String>,
     /// Backward: samples a pixel, a whole number from 1 to 4194304; 64 if absent.
-    #[schemars(range(min = 1, max = 4_194_304))]
-    samples: Option<f64>,
+    samples: Option<Whole<1, MAX_SAMPLES>>,
     /// Forward: rays in all, a whole number from 1 to 1e15; four times pixels times samples if absent.
-    #[schemars(range(min = 1))]
-    rays: Option<f64>,
-    /// Seed of all random numbers, a whole number, 0 or more; 1 if absent. Same scene, same seed: same picture.
-    #[schemars(range(min = 0))]
-    seed: Option<f64>,
+    rays: Option<Whole<1, MAX_RAYS>>,
+    /// Seed of all random numbers, a whole number from 0 to 18446744073709551615; 1 if absent. Same scene, same seed: same picture.
+    seed: Option<Whole<0, { u64::MAX }>>,
     /// Number of a frame: every frame has numbers, noise and grain of its own, by the seeds and this.
-    frame: Option<f64>,
+    frame: Option<Whole<0, { u64::MAX }>>,
     /// Rays that are traced together, a whole number from 8 to 65536; 256 if absent. It changes the speed, not the
     /// picture.
-    #[schemars(range(min = 8, max = 65_536))]
-    batch: Option<f64>,
+    batch: Option<Whole<8, 65_536>>,
     /// Where numbers come from: `sobol` (the default; evenest), `random` or `stratified`.
     #[schemars(extend("enum" = ["sobol", "random", "stratified"]))]
     numbers: Option<String>,
@@ -132,10 +128,15 @@ struct RenderSection {
     cone: Option<String>,
 }
 
-const DEFAULT_SAMPLES: f64 = 64.0;
-const DEFAULT_BATCH: f64 = 256.0;
+/// Most samples of a pixel.
+const MAX_SAMPLES: u64 = 4_194_304;
+/// Most rays of a picture.
+const MAX_RAYS: u64 = 1_000_000_000_000_000;
+const DEFAULT_SAMPLES: u64 = 64;
+const DEFAULT_BATCH: usize = 256;
+const DEFAULT_SEED: u64 = 1;
 /// Forward rays a pixel and sample asked for, where `rays` is not given: a forward ray lands anywhere.
-const FORWARD_RAYS_A_SAMPLE: f64 = 4.0;
+const FORWARD_RAYS_A_SAMPLE: u64 = 4;
 
 /// The scene file, or the bundled scene of that name.
 pub(crate) fn read(path: &Path) -> Result<Node, Faults> {
@@ -319,22 +320,11 @@ fn render_settings(
     imager: &dyn Imager,
 ) -> Result<RenderSettings, Faults> {
     let mut faults = Faults::new();
-    let mut whole = |key: &str, value: Option<f64>, default: f64, min: f64, max: f64| -> f64 {
-        let value = value.unwrap_or(default);
-        if value.fract() != 0.0 || !(value >= min && value <= max) {
-            let fault = params.fault(key, format!("found {value}, expected a whole number"));
-            faults.push(fault.hint(format!("from {min} to {max}")));
-            // Nothing is told of what follows from it.
-            return min;
-        }
-        value
-    };
-    let samples = whole("samples", s.samples, DEFAULT_SAMPLES, 1.0, 4_194_304.0);
-    let rays = s.rays.unwrap_or(samples * FORWARD_RAYS_A_SAMPLE * imager.size().pixels() as f64);
-    let rays = whole("rays", Some(rays), 0.0, 1.0, 1e15);
-    let seed = whole("seed", s.seed, 1.0, 0.0, 9_007_199_254_740_992.0);
-    let frame = s.frame.map(|frame| whole("frame", Some(frame), 0.0, 0.0, 9_007_199_254_740_992.0) as u64);
-    let batch = whole("batch", s.batch, DEFAULT_BATCH, 8.0, 65_536.0);
+    let samples = s.samples.map_or(DEFAULT_SAMPLES, Whole::get);
+    // 2^22 samples of 2^28 pixels, four times: 2^52.
+    let rays = s.rays.map_or(samples * FORWARD_RAYS_A_SAMPLE * imager.size().pixels() as u64, Whole::get);
+    let seed = s.seed.map_or(DEFAULT_SEED, Whole::get);
+    let frame = s.frame.map(Whole::get);
     let mut one_of = |key: &str, value: Option<&str>, known: &[&str]| -> usize {
         let Some(value) = value else { return 0 };
         known.iter().position(|k| *k == value).unwrap_or_else(|| {
@@ -366,13 +356,17 @@ fn render_settings(
         let fault = params.fault("direction", "this source cannot be rendered forward");
         faults.push(fault.hint("write `direction: backward`, or leave it to `auto`"));
     }
+    if direction == Direction::Forward && rays > MAX_RAYS {
+        let fault = params.fault("samples", format!("so many samples are {rays} rays, at most {MAX_RAYS} are traced"));
+        faults.push(fault.hint("fewer samples or pixels, or write `rays`"));
+    }
     faults.into_result(RenderSettings {
         direction,
         samples: samples as u32,
-        rays: rays as u64,
-        seed: frame.map_or(seed as u64, |frame| seed_of_frame(seed as u64, frame)),
+        rays,
+        seed: frame.map_or(seed, |frame| seed_of_frame(seed, frame)),
         frame,
-        batch: batch as usize,
+        batch: s.batch.map_or(DEFAULT_BATCH, Whole::size),
         numbers: [NumberFamily::Sobol, NumberFamily::Random, NumberFamily::Stratified][numbers],
         cone: [ConePattern::Disk, ConePattern::Rings, ConePattern::Random][cone],
     })

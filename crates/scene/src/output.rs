@@ -3,7 +3,7 @@
 use crate::{Output, RaysFigure};
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::Deserialize;
-use spectra_core::params::{Fault, Faults, Kinds, Length, Params, Positive, StageNode, nearest};
+use spectra_core::params::{Fault, Faults, Kinds, Length, Params, Positive, StageNode, Whole, nearest};
 use spectra_core::picture_file;
 
 /// `kind: exr`: the linear exposure.
@@ -21,18 +21,15 @@ struct ExrParams {
 struct RaysParams {
     /// Width and height, pixels, each 64 to 8192.
     #[serde(default = "rays_size")]
-    #[schemars(inner(range(min = 64, max = 8192)))]
-    size: [f64; 2],
+    size: [Whole<64, 8192>; 2],
     /// Width of what is shown, mm if bare; fitted to the lens if absent.
     view: Option<Positive<Length>>,
     /// Rays across the beam for each wavelength, 1 to 1001.
     #[serde(default = "rays_across")]
-    #[schemars(range(min = 1, max = 1001))]
-    rays: f64,
+    rays: Whole<1, 1001>,
     /// Wavelengths over a continuous spectrum, 1 to 4001.
     #[serde(default = "rays_wavelengths")]
-    #[schemars(range(min = 1, max = 4001))]
-    wavelengths: f64,
+    wavelengths: Whole<1, 4001>,
     /// How bright colors are: `full` (the default; all alike) or `true` (relative to the brightest).
     #[schemars(extend("enum" = ["full", "true"]))]
     intensity: Option<String>,
@@ -47,16 +44,16 @@ struct RaysParams {
     screen: bool,
 }
 
-fn rays_size() -> [f64; 2] {
-    [800.0, 600.0]
+fn rays_size() -> [Whole<64, 8192>; 2] {
+    [Whole::known(800), Whole::known(600)]
 }
 
-fn rays_across() -> f64 {
-    1.0
+fn rays_across() -> Whole<1, 1001> {
+    Whole::known(1)
 }
 
-fn rays_wavelengths() -> f64 {
-    64.0
+fn rays_wavelengths() -> Whole<1, 4001> {
+    Whole::known(64)
 }
 
 /// What an item of the section is written as.
@@ -143,15 +140,8 @@ fn exr(params: &Params) -> Result<Output, Faults> {
 fn rays(params: &Params) -> Result<RaysFigure, Faults> {
     let p: RaysParams = params.parse()?;
     let mut faults = Faults::new();
-    let mut whole = |key: &str, value: f64, min: f64, max: f64| {
-        if value.fract() != 0.0 || !(min..=max).contains(&value) {
-            faults.push(params.fault(key, format!("`{key}` must be a whole number from {min} to {max}")));
-        }
-        value as u32
-    };
-    let [width_px, height_px] = [whole("size[0]", p.size[0], 64.0, 8192.0), whole("size[1]", p.size[1], 64.0, 8192.0)];
-    let rays = whole("rays", p.rays, 1.0, 1001.0);
-    let wavelengths = whole("wavelengths", p.wavelengths, 1.0, 4001.0);
+    let [width_px, height_px] = p.size.map(Whole::get_u32);
+    let (rays, wavelengths) = (p.rays.get_u32(), p.wavelengths.get_u32());
     let mut second_of = |key: &str, value: &Option<String>, known: [&str; 2]| match value.as_deref() {
         None => false,
         Some(v) if v == known[0] => false,

@@ -4,7 +4,7 @@ use crate::detector::DetectorPlane;
 use crate::params::imager_params;
 use crate::plane::Plane;
 use spectra_core::frame::{DisplayPicture, ExposureChannel, ExposureFrame};
-use spectra_core::params::{Faults, Params, Wavelength};
+use spectra_core::params::{Faults, Params, Wavelength, Whole};
 use spectra_core::registry::Context;
 use spectra_core::spectral::{Channel, Grid};
 use spectra_core::stage::{Imager, Response};
@@ -35,8 +35,7 @@ imager_params! {
     ///   Techniques 10 (2021).
     SpectralParams {
         /// Number of bands of equal width, a whole number from 1 to 256.
-        #[schemars(range(min = 1, max = 256))]
-        bands: f64,
+        bands: Whole<1, MAX_BANDS>,
         /// First and last wavelength, nm if bare; 380 to 780 nm if absent.
         #[serde(default)]
         range: Option<[Wavelength; 2]>,
@@ -44,7 +43,7 @@ imager_params! {
 }
 
 /// Most bands.
-const MAX_BANDS: usize = 256;
+const MAX_BANDS: u64 = 256;
 
 /// A spectrograph. A channel is named by the middle of its band as the spectral OpenEXR convention has it
 /// (A. Fichet, R. Pacanowski, A. Wilkie, "An OpenEXR layout for spectral images", J. Computer Graphics Techniques 10, 2021):
@@ -116,14 +115,10 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Imager>, Faul
     let mut faults = Faults::new();
     let plane = faults.take(parsed.frame().plane(params, context));
     let SpectralParams { bands, range, .. } = parsed;
-    if bands.fract() != 0.0 || !(1.0..=MAX_BANDS as f64).contains(&bands) {
-        faults.push(
-            params.fault("bands", format!("{bands} bands")).hint(format!("a whole number from 1 to {MAX_BANDS}")),
-        );
-    }
+    let bands = bands.get();
     let [first, last] = range.map_or([380.0, 780.0], |range| range.map(|w| w.nm()));
     let grid = &context.grid;
-    if !(first >= grid.start_nm && last <= grid.end_nm() && last - first >= bands * grid.step_nm) {
+    if !(first >= grid.start_nm && last <= grid.end_nm() && last - first >= bands as f64 * grid.step_nm) {
         let fault = params.fault("range", format!("no {bands} bands between {first} and {last} nm"));
         faults.push(fault.hint(format!(
             "within the band of the scene, {} to {} nm, each band at least {} nm wide",

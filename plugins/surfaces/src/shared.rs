@@ -43,6 +43,9 @@ impl ConicSection {
     /// Sag, mm, and its derivative by r^2, 1/mm, at a square of the radius, mm^2; `None` beyond the rim.
     pub(crate) fn sag_and_slope(&self, radius2: f64) -> Option<(f64, f64)> {
         let c = self.curvature_per_mm;
+        if c == 0.0 {
+            return Some((0.0, 0.0));
+        }
         let square = 1.0 - self.one_plus_conic * c * c * radius2;
         if !(square >= 0.0) {
             return None;

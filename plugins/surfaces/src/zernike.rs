@@ -134,9 +134,31 @@ impl SagShape for Zernike {
     }
 
     fn slope(&self, x_mm: f64, y_mm: f64) -> Option<(f64, f64)> {
-        let (_, conic) = self.section.sag_and_slope(x_mm * x_mm + y_mm * y_mm)?;
-        let (_, by_x, by_y) = self.sum(x_mm * self.per_mm, y_mm * self.per_mm);
-        Some((2.0 * conic * x_mm + by_x * self.per_mm, 2.0 * conic * y_mm + by_y * self.per_mm))
+        self.sag_and_slope(x_mm, y_mm).map(|(_, slope)| slope)
+    }
+
+    fn sag_and_slope(&self, x_mm: f64, y_mm: f64) -> Option<(f64, (f64, f64))> {
+        let (sag, conic) = self.section.sag_and_slope(x_mm * x_mm + y_mm * y_mm)?;
+        let (sum, by_x, by_y) = self.sum(x_mm * self.per_mm, y_mm * self.per_mm);
+        let slope = (2.0 * conic * x_mm + by_x * self.per_mm, 2.0 * conic * y_mm + by_y * self.per_mm);
+        Some((sag + sum, slope))
+    }
+
+    /// The conic is steepest at the rim; of the polynomials all powers add up there.
+    fn extent_mm(&self, radius_mm: f64) -> Option<[f64; 2]> {
+        let rim = self.section.sag_mm(radius_mm * radius_mm)?;
+        let rho = radius_mm * self.per_mm;
+        let mut power = 1.0;
+        let mut most = 0.0;
+        for both in &self.orders {
+            let all = both.iter().map(|sum| {
+                let sizes = sum.iter().rev();
+                sizes.fold(0.0, |total, c| total * rho * rho + c.abs())
+            });
+            most += power * all.sum::<f64>();
+            power *= rho;
+        }
+        Some([rim.min(0.0) - most, rim.max(0.0) + most])
     }
 
     /// From the terms of x^2 and y^2: those of (r/R)^2, and of the cosine of twice the angle.

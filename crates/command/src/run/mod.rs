@@ -12,6 +12,7 @@ mod series;
 
 use crate::arguments::Run;
 use crate::console;
+use crate::memory;
 use crate::outcome::{DONE, Failure, INTERRUPTED, Outcome};
 use folder::{Folder, write_report};
 pub(crate) use frames::Frames;
@@ -61,6 +62,7 @@ fn render_scene(arguments: &Run, isa: Isa, started: Instant) -> Outcome {
     // What cannot be rendered leaves no folder behind.
     let renderer = Renderer::new(&scene, isa).map_err(|error| refused(error, &scene))?;
     tracing::debug!(seconds = started.elapsed().as_secs_f64(), "ready to render");
+    memory::suffices_for(&scene)?;
     // Before any light is traced: an hour's picture must not end without a place to go.
     let report_path = arguments.output.join("render.json");
     let folder = Folder::prepare(&arguments.output, &scene, &series.member(0), &report_path)?;
@@ -78,10 +80,21 @@ fn render_scene(arguments: &Run, isa: Isa, started: Instant) -> Outcome {
     }
     progress.start(&scene, threads, isa);
     let begun = Instant::now();
-    let rendering =
-        watch(&renderer, threads, &control, || progress.tick(&control, interrupt.happened())).map_err(failed)?;
+    let rendered = watch(&renderer, threads, &control, || progress.tick(&control, interrupt.happened()));
     let seconds = begun.elapsed().as_secs_f64();
     progress.finish();
+    let (rendering, failure) = match rendered {
+        Ok(rendering) => (rendering, None),
+        // What was computed before is worth keeping: it may be hours.
+        Err(RenderError::Overflow { times, so_far: Some(so_far) }) => {
+            let error = RenderError::Overflow { times, so_far: None };
+            (*so_far, Some(format!("{error}; what is written is the light before it, without that ray")))
+        }
+        Err(error) => return Err(refused(error, &scene)),
+    };
+    for warning in &rendering.warnings {
+        progress.warning(warning);
+    }
     let report = Report { scene: &scene, arguments, rendering: &rendering, seconds, threads, isa, attributes: &[] };
     let mut paths = folder.write(&report, false)?.paths;
     paths.push(report_path.clone());
@@ -91,6 +104,9 @@ fn render_scene(arguments: &Run, isa: Isa, started: Instant) -> Outcome {
     }
     let interrupted = rendering.partial && interrupt.happened();
     progress.done(&report, interrupted);
+    if let Some(text) = failure {
+        return Err(Failure::Failed(text));
+    }
     Ok(if interrupted { INTERRUPTED } else { DONE })
 }
 

@@ -45,6 +45,7 @@ impl Report<'_> {
             "seconds": self.seconds,
             "rays": rendering.rays,
             "rays_per_second": self.rays_per_second(),
+            "detected": rendering.detected,
             "lost": self.lost(),
             "seed": settings.seed,
             "direction": direction(scene),
@@ -64,7 +65,7 @@ impl Report<'_> {
             "lens": { "name": scene.lens.name, "patent": scene.lens.patent, "losses": scene.lens.losses(), "notes": scene.lens.notes },
             "film": films(scene),
             "versions": version::to_json(),
-            "warnings": scene.warnings,
+            "warnings": scene.warnings.iter().chain(&rendering.warnings).collect::<Vec<_>>(),
             "notes": scene.notes,
         })
     }
@@ -85,7 +86,7 @@ impl Report<'_> {
     }
 
     /// Rays that ended on the way, by cause, and by surface with its causes. A surface number of `null` is none of the
-    /// lens's: beside the frame.
+    /// lens's: forward, beside the frame; backward, at or beside the source.
     fn lost(&self) -> Value {
         let losses = &self.rendering.losses;
         let by_cause: Map<String, Value> =
@@ -110,7 +111,11 @@ impl Report<'_> {
         let element = (number as usize).checked_sub(1).and_then(|at| lens.elements.get(at));
         let mut row = Map::new();
         row.insert("surface".to_owned(), element.map(|_| number).into());
-        row.insert("kind".to_owned(), element.map_or("imager", |e| e.kind.as_str()).into());
+        let beside = match self.scene.render.direction {
+            spectra_scene::Direction::Forward => "imager",
+            spectra_scene::Direction::Backward => "source",
+        };
+        row.insert("kind".to_owned(), element.map_or(beside, |e| e.kind.as_str()).into());
         if let Some(element) = element {
             let (before, after) = (&lens.media[element.medium_before].label, &lens.media[element.medium_after].label);
             row.insert("from".to_owned(), before.as_str().into());

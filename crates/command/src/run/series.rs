@@ -8,7 +8,7 @@ use super::report::Report;
 use super::{failed, refused, watch};
 use crate::arguments::Run;
 use crate::outcome::{DONE, Failure, INTERRUPTED, Outcome};
-use crate::{version, words};
+use crate::{memory, version, words};
 use serde_json::{Map, Value, json};
 use spectra_core::Isa;
 use spectra_core::params::{Fault, Faults};
@@ -142,6 +142,7 @@ pub(crate) fn checked<T: Send>(
         let scene = series.scene(index)?;
         // What shows only once the stages are put together.
         Renderer::new(&scene, isa).map_err(|error| refused(error, &scene))?;
+        memory::suffices_for(&scene)?;
         keep(index, scene)
     };
     std::thread::scope(|scope| {
@@ -251,11 +252,14 @@ impl Work<'_> {
         progress.start(&scene, self.threads, self.isa);
         let begun = Instant::now();
         let rendering = watch(&renderer, self.threads, &control, || progress.tick(&control, self.interrupt.happened()))
-            .map_err(failed)?;
+            .map_err(|error| refused(error, &scene))?;
         let seconds = begun.elapsed().as_secs_f64();
         progress.finish();
         if rendering.partial {
             return Ok(false);
+        }
+        for warning in &rendering.warnings {
+            progress.warning(warning);
         }
         let attributes = attributes(self.series, &picture.member);
         let report = Report {

@@ -50,6 +50,11 @@ pub trait ScalarShape: Send + Sync + std::fmt::Debug {
         let (x, y) = self.vertex_curvature_per_mm();
         ((n_after - n_before) * x, (n_after - n_before) * y)
     }
+    /// Least and largest sag within a radius of the axis, mm, or bounds of them: rays that pass beside that part of space end
+    /// as vignetted before anybody solves for where they meet the surface. `None` (the default) where nothing is known.
+    fn extent_mm(&self, _radius_mm: f64) -> Option<[f64; 2]> {
+        None
+    }
     /// For surfaces that bend light by another law than Snell's, such as an ideal lens or a grating: the unit direction after
     /// the surface, or why the ray ends. `None`, the default, refracts or reflects as the action says.
     fn redirect(&self, _at: &Bending) -> Option<Result<DVec3, Loss>> {
@@ -88,12 +93,19 @@ impl<S: ScalarShape> Surface for PerRay<S> {
     fn interact(&self, rays: &mut RayBatch, interface: &Interface<'_>, _isa: Isa) -> usize {
         let c = rays.columns_mut();
         let mut lost = 0;
+        let clip2 = interface.clip_radius2_mm2;
+        let extent = if clip2.is_finite() { self.0.extent_mm(clip2.sqrt()) } else { None };
         for i in 0..c.x.len() {
             if c.state[i] != ALIVE {
                 continue;
             }
             let position = DVec3::new(c.x[i], c.y[i], c.z[i] - interface.shift_mm);
             let direction = DVec3::new(c.l[i], c.m[i], c.n[i]);
+            if extent.is_some_and(|extent| passes_beside(position, direction, clip2, extent)) {
+                c.state[i] = Loss::Vignetted.state(interface.number);
+                lost += 1;
+                continue;
+            }
             match one(&self.0, position, direction, c.wavelength_nm[i], interface, i) {
                 Ok((at, toward)) => {
                     (c.x[i], c.y[i], c.z[i]) = (at.x, at.y, at.z);
@@ -107,6 +119,24 @@ impl<S: ScalarShape> Surface for PerRay<S> {
         }
         lost
     }
+}
+
+/// Whether a ray passes beside the cylinder around the axis that holds the clear part of a surface.
+#[inline]
+fn passes_beside(p: DVec3, d: DVec3, clip_radius2_mm2: f64, [low, high]: [f64; 2]) -> bool {
+    /// What rounding may take from the bounds.
+    const SLACK: f64 = 1e-9;
+    if d.z == 0.0 {
+        return false;
+    }
+    let slack = SLACK * (1.0 + low.abs().max(high.abs()));
+    let (a, b) = ((low - slack - p.z) / d.z, (high + slack - p.z) / d.z);
+    let across2 = d.x * d.x + d.y * d.y;
+    // Nearest to the axis between the two ends.
+    let nearest = -(p.x * d.x + p.y * d.y) / across2;
+    let t = if across2 > 0.0 { nearest.clamp(a.min(b), a.max(b)) } else { a };
+    let (x, y) = (p.x + t * d.x, p.y + t * d.y);
+    x * x + y * y > clip_radius2_mm2 * (1.0 + SLACK) + SLACK
 }
 
 #[inline]

@@ -24,6 +24,16 @@ pub trait SagShape: Send + Sync + std::fmt::Debug {
         Some((along(h, 0.0)?, along(0.0, h)?))
     }
 
+    /// Sag and slopes at once: give it where both cost less together than apart.
+    fn sag_and_slope(&self, x_mm: f64, y_mm: f64) -> Option<(f64, (f64, f64))> {
+        Some((self.sag_mm(x_mm, y_mm)?, self.slope(x_mm, y_mm)?))
+    }
+
+    /// As [`ScalarShape::extent_mm`]: give it where the sag is costly, and most rays of a search pass beside the surface.
+    fn extent_mm(&self, _radius_mm: f64) -> Option<[f64; 2]> {
+        None
+    }
+
     /// As [`super::Surface::vertex_curvature_per_mm`]; by default from differences of the sag.
     fn vertex_curvature_per_mm(&self) -> (f64, f64) {
         let h = 1e-3;
@@ -50,8 +60,7 @@ impl<S: SagShape> ScalarShape for FromSag<S> {
         let origin = position + to_plane * direction;
         let height = |t: f64| {
             let p = origin + t * direction;
-            let sag = self.0.sag_mm(p.x, p.y)?;
-            let (sx, sy) = self.0.slope(p.x, p.y)?;
+            let (sag, (sx, sy)) = self.0.sag_and_slope(p.x, p.y)?;
             Some((p.z - sag, direction.z - direction.x * sx - direction.y * sy))
         };
         let t = nearest_crossing(height, origin, direction, travel, 0.0)?;
@@ -64,5 +73,8 @@ impl<S: SagShape> ScalarShape for FromSag<S> {
     }
     fn vertex_curvature_per_mm(&self) -> (f64, f64) {
         self.0.vertex_curvature_per_mm()
+    }
+    fn extent_mm(&self, radius_mm: f64) -> Option<[f64; 2]> {
+        self.0.extent_mm(radius_mm)
     }
 }

@@ -4,7 +4,7 @@ use super::{Aperture, Iris, Mask, Shape, drawing};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
 use spectra_core::params::{
-    Angle, Faults, Kinds, Length, LengthOrInfinity, Params, Positive, StageNode, Value, nearest,
+    Angle, Faults, Kinds, Length, LengthOrInfinity, Params, Positive, StageNode, Value, Whole, nearest,
 };
 use spectra_core::resources::{Resources, beside};
 use std::sync::Arc;
@@ -55,7 +55,7 @@ struct PolygonParams {
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct IrisParams {
     /// Number of blades.
-    blades: f64,
+    blades: Whole<3, 100>,
     /// Radius of each blade's edge, mm if bare; straight if absent.
     blade_radius: Option<Positive<Length>>,
     /// Turn of the opening, degrees if bare.
@@ -179,11 +179,8 @@ fn polygon(params: &Params) -> Result<Shape, Faults> {
 
 fn iris(params: &Params) -> Result<Shape, Faults> {
     let p: IrisParams = params.parse()?;
-    if p.blades.fract() != 0.0 || !(3.0..=100.0).contains(&p.blades) {
-        return Err(params.fault("blades", format!("{} blades", p.blades)).hint("a whole number from 3 to 100").into());
-    }
     Ok(Shape::Iris(Iris {
-        blades: p.blades as u32,
+        blades: p.blades.get_u32(),
         blade_radius_mm: p.blade_radius.map_or(f64::INFINITY, |r| r.mm()),
         rotation_rad: p.rotation.map_or(0.0, Angle::rad),
     }))

@@ -5,16 +5,18 @@ use super::sweep::{Setting, check_path};
 use super::variables::Variables;
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::params::{Fault, Faults, Key, Node, StageNode, Value, nearest};
+use spectra_core::params::{Fault, Faults, Key, Node, StageNode, Value, Whole, nearest};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// The key.
 pub(super) const ANIMATION: &str = "animation";
 /// Most frames of one animation: 400 s of film at 25 frames a second.
-const MAX_FRAMES: f64 = 10_000.0;
-/// Largest number of a frame.
-const LAST: f64 = 9_999_999.0;
+const MAX_FRAMES: u64 = 10_000;
+/// Largest number of a frame: seven digits.
+const LAST: u64 = 9_999_999;
+/// Largest number of a first frame.
+const LAST_FIRST: u64 = LAST - MAX_FRAMES;
 /// The key beside keyframes that names their law.
 const INTERPOLATION: &str = "interpolation";
 
@@ -23,9 +25,9 @@ const INTERPOLATION: &str = "interpolation";
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) struct Section {
     /// How many frames.
-    frames: f64,
+    frames: Whole<1, MAX_FRAMES>,
     /// Number of the first one; 1 if left out.
-    first: Option<f64>,
+    first: Option<Whole<0, LAST_FIRST>>,
     /// Frames a second; 24 if left out.
     rate: Option<f64>,
     /// `each`: every frame has noise and grain of its own; `fixed`: all have the same.
@@ -66,15 +68,8 @@ impl Animation {
         let fault = |key: &str, text: String| {
             node.node().get(key).unwrap_or(node.node()).fault(text).path(format!("{ANIMATION}.{key}"))
         };
-        let mut whole = |key: &str, value: f64, min: f64, max: f64| {
-            if value.fract() != 0.0 || !(min..=max).contains(&value) {
-                let text = format!("`{key}` must be a whole number from {min} to {max}");
-                faults.push(fault(key, text).hint(format!("such as `{key}: 24`")));
-            }
-            value as u32
-        };
-        let frames = whole("frames", read.frames, 1.0, MAX_FRAMES);
-        let first = whole("first", read.first.unwrap_or(1.0), 0.0, LAST - MAX_FRAMES);
+        let frames = read.frames.get_u32();
+        let first = read.first.map_or(1, Whole::get_u32);
         let rate = read.rate.unwrap_or(24.0);
         if !(rate > 0.0 && rate <= 1e6) {
             faults.push(fault("rate", "`rate` must be a number of frames a second, up to 1000000".to_owned()));
@@ -150,7 +145,7 @@ fn track(key: &Key, node: &Node) -> Result<(Track, Vec<f64>), Faults> {
             }
             continue;
         }
-        let frame = key.text.parse::<u32>().ok().filter(|frame| f64::from(*frame) <= LAST);
+        let frame = key.text.parse::<u32>().ok().filter(|frame| u64::from(*frame) <= LAST);
         let Some(frame) = frame else {
             let fault =
                 Fault::new(format!("`{}` is no number of a frame", key.text.chars().take(48).collect::<String>()));
@@ -225,9 +220,10 @@ mod tests {
     fn what_is_wrong_is_told_at_its_place() {
         for (text, said) in [
             ("{}", "missing key `frames`"),
-            ("{frames: 0}", "t.yaml:1:21: `frames` must be a whole number from 1 to 10000"),
-            ("{frames: 1e12}", "`frames` must be"),
-            ("{frames: 2, first: -1}", "`first` must be a whole number from 0"),
+            ("{frames: 0}", "t.yaml:1:21: found 0, which is out of range (a whole number from 1 to 10000)"),
+            ("{frames: 1e12}", "found 1e12, which is out of range"),
+            ("{frames: 2.5}", "found 2.5, expected a whole number"),
+            ("{frames: 2, first: -1}", "found -1, which is out of range (a whole number from 0"),
             ("{frames: 2, rate: 0}", "`rate` must be"),
             ("{frames: 2, seed: 3}", "unknown seed `3`"),
             ("{frames: 2, animate: [1]}", "`animate` is a map"),

@@ -105,7 +105,7 @@ imager_params! {
         noise: Option<bool>,
         /// Seed of the noise, 0 or more; 1 if left out.
         #[serde(default)]
-        noise_seed: Option<u32>,
+        noise_seed: Option<u64>,
         /// The light that is shown as white: the name of a spectrum, or a file beside the scene; D65 if left out.
         #[serde(default)]
         white_balance: Option<String>,
@@ -307,7 +307,7 @@ impl SensorParams {
             electrons_per_number: full_well * base_iso / iso / range,
             black_level: black as u16,
             white_level,
-            noise: self.noise.unwrap_or(true).then_some(u64::from(self.noise_seed.unwrap_or(1))),
+            noise: self.noise.unwrap_or(true).then_some(self.noise_seed.unwrap_or(1)),
             iso,
             color,
             illuminant: number_of(light),

@@ -5,6 +5,7 @@ use super::super::path::{Step, joined};
 use super::super::quantity::{QUANTITY, finite};
 use super::super::stage_node;
 use super::super::text::{found, listed, shown};
+use super::super::whole::{Exact, WHOLE, whole_of};
 use super::NODE;
 use super::access::{EnumWalk, MapWalk, SeqWalk};
 use super::error::{Cause, Culprit, NodeError};
@@ -106,14 +107,9 @@ impl<'n, 'p> Walker<'n, 'p> {
 
     /// A whole number between two limits.
     fn integer(&self, least: i128, most: i128) -> Result<i128, NodeError> {
-        let Value::Number(number) = &self.node.value else { return Err(self.mismatch("a whole number such as 16")) };
-        let Some(value) = whole(number) else { return Err(self.mismatch("a whole number such as 16")) };
-        if value < least {
-            Err(self.mismatch(&format!("a whole number of at least {least}")))
-        } else if value > most {
-            Err(self.mismatch(&format!("a whole number of at most {most}")))
-        } else {
-            Ok(value)
+        match whole_of(self.node, least, most) {
+            Some(value) => value.map_err(|message| NodeError::text(&message)),
+            None => Err(self.mismatch("a whole number such as 16")),
         }
     }
 
@@ -127,18 +123,6 @@ impl<'n, 'p> Walker<'n, 'p> {
             _ => Err(self.mismatch("a text")),
         }
     }
-}
-
-/// A number's whole value, exact; also where it is written as `1e6`.
-fn whole(number: &Number) -> Option<i128> {
-    /// Up to here an f64 holds every integer.
-    const EXACT: f64 = 9_007_199_254_740_992.0;
-    let plus = number.text.strip_prefix('+').unwrap_or(&number.text);
-    if let Ok(value) = plus.parse() {
-        return Some(value);
-    }
-    let exact = number.value.abs() <= EXACT && number.value.floor() == number.value;
-    exact.then_some(number.value as i128)
 }
 
 /// What helps where a key has no value.
@@ -207,8 +191,8 @@ impl<'n, 'p> Deserializer<'n> for Walker<'n, 'p> {
         fn deserialize_any(me, visitor) match &me.node.value {
             Value::Null => visitor.visit_unit(),
             Value::Bool(value) => visitor.visit_bool(*value),
-            Value::Number(number) => match whole(number) {
-                Some(value) if !number.text.contains(['.', 'e', 'E']) => match (u64::try_from(value), i64::try_from(value)) {
+            Value::Number(number) => match Exact::of(&number.text) {
+                Exact::Is(value) if !number.text.contains(['.', 'e', 'E']) => match (u64::try_from(value), i64::try_from(value)) {
                     (Ok(value), _) => visitor.visit_u64(value),
                     (_, Ok(value)) => visitor.visit_i64(value),
                     _ => visitor.visit_f64(number.value),
@@ -275,6 +259,8 @@ impl<'n, 'p> Deserializer<'n> for Walker<'n, 'p> {
                 stage_node::hand_over(me.node.clone(), me.path());
                 visitor.visit_unit()
             }
+            (WHOLE, Value::Number(number)) => visitor.visit_str(&number.text),
+            (WHOLE, _) => Err(me.mismatch("a whole number such as 16")),
             (QUANTITY, Value::Number(number)) if number.value.is_finite() => visitor.visit_f64(number.value),
             (QUANTITY, Value::Number(Number { text, .. }) | Value::String(text)) => visitor.visit_str(text),
             (QUANTITY, _) => {

@@ -1,0 +1,235 @@
+//! Whole numbers, read from their digits: an f64 would change those above 2^53 without a word.
+
+use super::node::{Node, Value, decimal_end};
+use super::text::shown;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::de::{Deserializer, Error, Unexpected, Visitor};
+use serde::{Deserialize, Serialize, Serializer};
+use std::borrow::Cow;
+use std::fmt;
+
+/// Name by which a whole number asks the deserializer of nodes for its digits.
+pub(super) const WHOLE: &str = "spectra::whole";
+
+/// A whole number from `MIN` to `MAX`, both included: `16`, `2e6`, `0x10`. Exact up to 2^64 - 1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Whole<const MIN: u64, const MAX: u64>(u64);
+
+impl<const MIN: u64, const MAX: u64> Whole<MIN, MAX> {
+    /// The number, if it lies within the range.
+    #[must_use]
+    pub const fn new(value: u64) -> Option<Self> {
+        if MIN <= value && value <= MAX { Some(Self(value)) } else { None }
+    }
+
+    /// A number that is known when the program is compiled.
+    ///
+    /// # Panics
+    /// It lies outside of the range.
+    #[must_use]
+    pub const fn known(value: u64) -> Self {
+        assert!(MIN <= value && value <= MAX, "outside of the range");
+        Self(value)
+    }
+
+    /// The number.
+    #[must_use]
+    pub const fn get(self) -> u64 {
+        self.0
+    }
+
+    /// The number as a size; a range that exceeds the machine's sizes is cut.
+    #[must_use]
+    pub fn size(self) -> usize {
+        usize::try_from(self.0).unwrap_or(usize::MAX)
+    }
+
+    /// The number in 32 bits.
+    #[must_use]
+    pub const fn get_u32(self) -> u32 {
+        const { assert!(MAX <= u32::MAX as u64, "the range exceeds 32 bits") };
+        self.0 as u32
+    }
+}
+
+/// What a spelling is, as a whole number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Exact {
+    /// This one.
+    Is(i128),
+    /// One that 128 bits do not hold.
+    Beyond,
+    /// It has a fraction, or is no number.
+    Not,
+}
+
+impl Exact {
+    /// The value of a number's spelling by the core schema of YAML: digits are taken as they are, and `2.5e3` is 2500.
+    pub(super) fn of(text: &str) -> Self {
+        for (prefix, radix) in [("0x", 16), ("0o", 8)] {
+            if let Some(digits) = text.strip_prefix(prefix) {
+                return match i128::from_str_radix(digits, radix) {
+                    Ok(value) => Self::Is(value),
+                    Err(_) if !digits.is_empty() && digits.chars().all(|c| c.is_digit(radix)) => Self::Beyond,
+                    Err(_) => Self::Not,
+                };
+            }
+        }
+        let unsigned = text.strip_prefix(['+', '-']).unwrap_or(text);
+        if decimal_end(unsigned).is_none_or(|(end, _)| end != unsigned.len()) {
+            return Self::Not;
+        }
+        let (figure, exponent) = unsigned.split_once(['e', 'E']).unwrap_or((unsigned, "0"));
+        let (whole, fraction) = figure.split_once('.').unwrap_or((figure, ""));
+        let digits = format!("{whole}{fraction}");
+        let kept = digits.trim_end_matches('0');
+        // Its value is `significant` times ten to the power of `zeros`.
+        let significant = kept.trim_start_matches('0');
+        if significant.is_empty() {
+            return Self::Is(0);
+        }
+        // An exponent that i64 does not hold is beyond all digits that a file can have.
+        let beyond = if exponent.starts_with('-') { i64::MIN / 2 } else { i64::MAX / 2 };
+        let zeros = exponent.parse::<i64>().unwrap_or(beyond).clamp(i64::MIN / 2, i64::MAX / 2)
+            + (digits.len() - kept.len()) as i64
+            - fraction.len() as i64;
+        if zeros < 0 {
+            return Self::Not;
+        }
+        let value = u32::try_from(zeros).ok().and_then(|zeros| 10_i128.checked_pow(zeros)).and_then(|power| {
+            let value = significant.parse::<i128>().ok()?.checked_mul(power)?;
+            Some(if text.starts_with('-') { -value } else { value })
+        });
+        value.map_or(Self::Beyond, Self::Is)
+    }
+}
+
+/// The fault of a number outside of a range, with a hint on a line of its own.
+pub(super) fn out_of_range(written: &str, least: impl fmt::Display, most: impl fmt::Display) -> String {
+    format!("found {}, which is out of range\nhint: a whole number from {least} to {most}", shown(written))
+}
+
+impl<'de, const MIN: u64, const MAX: u64> Deserialize<'de> for Whole<MIN, MAX> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_newtype_struct(WHOLE, WholeVisitor)
+    }
+}
+
+struct WholeVisitor<const MIN: u64, const MAX: u64>;
+
+impl<const MIN: u64, const MAX: u64> WholeVisitor<MIN, MAX> {
+    fn of<E: Error>(written: &str) -> Result<Whole<MIN, MAX>, E> {
+        match Exact::of(written) {
+            Exact::Is(value) => {
+                u64::try_from(value).ok().and_then(Whole::new).ok_or_else(|| E::custom(out_of_range(written, MIN, MAX)))
+            }
+            Exact::Beyond => Err(E::custom(out_of_range(written, MIN, MAX))),
+            Exact::Not => {
+                Err(E::custom(format!("found {}, expected a whole number\nhint: from {MIN} to {MAX}", shown(written))))
+            }
+        }
+    }
+}
+
+impl<'de, const MIN: u64, const MAX: u64> Visitor<'de> for WholeVisitor<MIN, MAX> {
+    type Value = Whole<MIN, MAX>;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "a whole number such as {}", MIN.max(16).min(MAX))
+    }
+
+    /// Other formats than nodes, and what serde has buffered.
+    fn visit_newtype_struct<D: Deserializer<'de>>(self, deserializer: D) -> Result<Self::Value, D::Error> {
+        deserializer.deserialize_any(self)
+    }
+
+    /// The spelling of a number; a text is refused before it comes here.
+    fn visit_str<E: Error>(self, written: &str) -> Result<Self::Value, E> {
+        Self::of(written)
+    }
+
+    fn visit_u64<E: Error>(self, value: u64) -> Result<Self::Value, E> {
+        Self::of(&value.to_string())
+    }
+
+    fn visit_i64<E: Error>(self, value: i64) -> Result<Self::Value, E> {
+        Self::of(&value.to_string())
+    }
+
+    fn visit_f64<E: Error>(self, value: f64) -> Result<Self::Value, E> {
+        Self::of(&value.to_string())
+    }
+
+    fn visit_bool<E: Error>(self, value: bool) -> Result<Self::Value, E> {
+        Err(E::invalid_type(Unexpected::Bool(value), &self))
+    }
+}
+
+impl<const MIN: u64, const MAX: u64> Serialize for Whole<MIN, MAX> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_u64(self.0)
+    }
+}
+
+impl<const MIN: u64, const MAX: u64> JsonSchema for Whole<MIN, MAX> {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> Cow<'static, str> {
+        format!("Whole_{MIN}_{MAX}").into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        let mut schema = json_schema!({"type": "integer", "minimum": MIN});
+        // The full range of 64 bits is no bound that a person has to know.
+        if MAX < u64::MAX {
+            schema.insert("maximum".to_owned(), MAX.into());
+        }
+        schema
+    }
+}
+
+/// The exact whole number that a node holds, if it is one of `least ..= most`.
+pub(super) fn whole_of(node: &Node, least: i128, most: i128) -> Option<Result<i128, String>> {
+    let Value::Number(number) = &node.value else { return None };
+    match Exact::of(&number.text) {
+        Exact::Is(value) if (least..=most).contains(&value) => Some(Ok(value)),
+        Exact::Is(_) | Exact::Beyond => Some(Err(out_of_range(&number.text, least, most))),
+        Exact::Not => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn digits_are_taken_as_they_are() {
+        for (text, value) in [
+            ("9007199254740993", 9_007_199_254_740_993),
+            ("18446744073709551615", u64::MAX.into()),
+            ("18446744073709551616", 1_i128 << 64),
+            ("-1", -1),
+            ("+7", 7),
+            ("2e6", 2_000_000),
+            ("2.5e3", 2500),
+            ("1.50e+1", 15),
+            ("1e18", 1_000_000_000_000_000_000),
+            ("1800e-2", 18),
+            ("16.000", 16),
+            ("-0.0", 0),
+            ("0e99999999999999999999", 0),
+            ("0x10", 16),
+            ("0o17", 15),
+        ] {
+            assert_eq!(Exact::of(text), Exact::Is(value), "{text}");
+        }
+        for text in ["1e300", "-1e39", "1e99999999999999999999", "0xffffffffffffffffffffffffffffffffff"] {
+            assert_eq!(Exact::of(text), Exact::Beyond, "{text}");
+        }
+        for text in ["1.5", "1e-1", "1e-99999999999999999999", "x", "", ".inf", ".nan", "0x", "1e", "1 2"] {
+            assert_eq!(Exact::of(text), Exact::Not, "{text}");
+        }
+    }
+}

@@ -1,0 +1,62 @@
+//! Where light lands in the plane of the imager, on the frame or beside it.
+
+use glam::DVec3;
+use spectra_core::loss::ALIVE;
+use spectra_core::{Isa, RayBatch};
+use spectra_scene::Scene;
+
+/// Where the light of a source lands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Landing {
+    /// The middle of it, mm on the nominal image plane: what `imager.shift` counts in.
+    pub middle_mm: [f64; 2],
+    /// Share of it that lands on the frame.
+    pub on_frame: f64,
+}
+
+impl Landing {
+    /// Of rays that have left the lens; `None` where none meets the plane of the imager.
+    pub(crate) fn of(scene: &Scene, rays: &RayBatch, isa: Isa) -> Option<Self> {
+        let (middle, across, down) = frame(scene, isa);
+        let normal = across.cross(down);
+        let ([x, y, z], [l, m, n]) = (rays.positions(), rays.directions());
+        let mut places: [Vec<f64>; 2] = [Vec::new(), Vec::new()];
+        let mut on_frame = 0_usize;
+        for i in (0..rays.len()).filter(|i| rays.states()[*i] == ALIVE) {
+            let (from, way) = (DVec3::new(x[i], y[i], z[i]), DVec3::new(l[i], m[i], n[i]));
+            let at = from + way * ((middle - from).dot(normal) / way.dot(normal));
+            if !at.is_finite() {
+                continue;
+            }
+            let beside = at - middle;
+            let inside = |half: DVec3| beside.dot(half).abs() <= half.length_squared();
+            on_frame += usize::from(inside(across) && inside(down));
+            places[0].push(at.x);
+            places[1].push(at.y);
+        }
+        let many = places[0].len();
+        let middle_mm = places.map(|mut along| {
+            along.sort_by(f64::total_cmp);
+            along.get(many / 2).copied()
+        });
+        let [Some(x), Some(y)] = middle_mm else { return None };
+        Some(Self { middle_mm: [x, y], on_frame: on_frame as f64 / many as f64 })
+    }
+}
+
+/// The middle of the frame, and half of it across and down, mm on the nominal image plane.
+fn frame(scene: &Scene, isa: Isa) -> (DVec3, DVec3, DVec3) {
+    let size = scene.imager.size();
+    let (width, height) = (DVec3::X * 0.5 * size.width_mm, DVec3::Y * 0.5 * size.height_mm);
+    let Some(launch) = scene.imager.launch() else { return (DVec3::ZERO, width, height) };
+    // Its corners: those of its first and last row and column.
+    let (columns, rows) = (size.width_px, size.height_px);
+    let last = rows * columns - columns;
+    let mut rays = RayBatch::new(4);
+    rays.restart(4);
+    rays.columns_mut().tag.copy_from_slice(&[0, columns - 1, last, last + columns - 1]);
+    launch.place(&mut rays, &[0.0, 1.0, 0.0, 1.0], &[0.0, 0.0, 1.0, 1.0], isa);
+    let [x, y, z] = rays.positions();
+    let [a, b, c, d]: [DVec3; 4] = std::array::from_fn(|i| DVec3::new(x[i], y[i], z[i]));
+    ((a + b + c + d) * 0.25, (b + d - a - c) * 0.25, (c + d - a - b) * 0.25)
+}

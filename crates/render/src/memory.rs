@@ -1,0 +1,78 @@
+//! How much memory a picture takes: known before any light is traced.
+
+use spectra_core::params::Faults;
+use spectra_scene::{Output, Scene};
+
+/// Bytes of a sum and of an exposure: one of each, a pixel and channel.
+const SUM: u64 = 8;
+const EXPOSURE: u64 = 4;
+/// Bytes a pixel that developing a film takes beside the exposure: planes that are convolved, densities, the picture.
+const DEVELOPING: u64 = 40;
+/// Bytes a pixel of a picture that an imager shows by itself, and of packing it into a file.
+const SHOWING: u64 = 16;
+
+/// Bytes that rendering and writing a scene takes beyond what the scene holds already.
+#[must_use]
+pub fn memory_needed(scene: &Scene) -> u64 {
+    let pixels = scene.imager.size().pixels() as u64;
+    let channels = scene.channels.len() as u64;
+    let is_shown = scene.output.iter().any(|o| matches!(o, Output::Png | Output::Tiff | Output::Dng));
+    let traced = channels * (SUM + EXPOSURE);
+    // Sums are gone by then. Of several films each is developed from a copy of its own channels.
+    let picture = if scene.films.is_empty() { SHOWING } else { DEVELOPING + 3 * EXPOSURE * scene.films.len() as u64 };
+    let written = channels * EXPOSURE + if is_shown { picture } else { channels * EXPOSURE };
+    pixels.saturating_mul(traced.max(written))
+}
+
+/// A size for people: `3.5 GB`.
+#[must_use]
+pub fn bytes(bytes: u64) -> String {
+    let mut size = bytes as f64;
+    let mut units = ["bytes", "kB", "MB", "GB", "TB", "PB"].into_iter().peekable();
+    let mut unit = units.next().unwrap_or_default();
+    while size >= 1000.0 && units.peek().is_some() {
+        size /= 1000.0;
+        unit = units.next().unwrap_or_default();
+    }
+    if size < 10.0 && unit != "bytes" { format!("{size:.1} {unit}") } else { format!("{size:.0} {unit}") }
+}
+
+/// Whether a scene fits into so many bytes.
+///
+/// # Errors
+/// A fault at what makes it large: the bands, or else the resolution.
+pub fn fits(scene: &Scene, available: u64) -> Result<(), Faults> {
+    let needed = memory_needed(scene);
+    if needed <= available {
+        return Ok(());
+    }
+    let size = scene.imager.size();
+    let per = scene.channels.len();
+    let imager = scene.params.get("imager");
+    let key = ["bands", "resolution"].into_iter().find(|key| imager.is_some_and(|node| node.get(key).is_some()));
+    let key = key.map_or_else(|| "imager".to_owned(), |key| format!("imager.{key}"));
+    let side = (available as f64 / needed as f64).sqrt();
+    let smaller = [size.width_px, size.height_px].map(|px| ((f64::from(px) * side) as u32).max(1));
+    let text = format!(
+        "{} x {} pixels of {per} channel{} need {} of memory, and {} are available",
+        size.width_px,
+        size.height_px,
+        if per == 1 { "" } else { "s" },
+        bytes(needed),
+        bytes(available)
+    );
+    let fewer = if key.ends_with("bands") { "fewer bands, or " } else { "" };
+    let hint = format!("{fewer}`resolution: [{}, {}]`, or a machine with more memory", smaller[0], smaller[1]);
+    Err(scene.params.fault(&key, text).hint(hint).into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::bytes;
+
+    #[test]
+    fn sizes_are_said_in_their_unit() {
+        let said = [0, 999, 1000, 35_000_000, 3_539_000_000, u64::MAX].map(bytes);
+        assert_eq!(said, ["0 bytes", "999 bytes", "1.0 kB", "35 MB", "3.5 GB", "18447 PB"]);
+    }
+}
