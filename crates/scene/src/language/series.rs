@@ -6,6 +6,7 @@ use super::include::{self, INCLUDE};
 use super::sweep::{Axis, SWEEP, Setting, Sweep};
 use super::variables::{self, VARIABLES, Variables};
 use crate::assemble::{assemble, read, record};
+use crate::earlier::Earlier;
 use crate::{FileResources, Scene, yaml};
 use spectra_core::params::{Fault, Faults, Key, Node, Number, Params, Value};
 use std::path::Path;
@@ -165,6 +166,8 @@ impl Series {
                 "the sweep is at {place}; render the animation once for each value, with `--set sweep= --set lens.f-number=f/4`"
             )));
         }
+        // A circle closes for whoever sets one of its variables otherwise: what nothing uses is looked at, too.
+        faults.take(variables.check_circles());
         self.warnings = variables.unused(references);
         let mut own: Vec<String> = Vec::new();
         if let Some((_, node)) = sweep
@@ -278,10 +281,32 @@ impl Series {
     /// # Errors
     /// Everything that is wrong with it, each with its place; of a value that came through a variable both places.
     pub fn scene(&self, index: usize) -> Result<Scene, Faults> {
+        self.assembled(index, Earlier::default())
+    }
+
+    /// The same, with the stages of another picture of the series where the scene says the same of them; nothing else is
+    /// left of that one.
+    ///
+    /// # Errors
+    /// As [`Series::scene`].
+    pub fn scene_after(&self, index: usize, other: Option<Scene>) -> Result<Scene, Faults> {
+        self.assembled(index, Earlier::of(other, false))
+    }
+
+    /// A picture to be looked at, not to be rendered: noise and grain need not be those of its frame. So that all the
+    /// stages of another such picture serve again, where the scene says the same of them.
+    ///
+    /// # Errors
+    /// As [`Series::scene`].
+    pub fn looked_at(&self, index: usize, other: Option<Scene>) -> Result<Scene, Faults> {
+        self.assembled(index, Earlier::of(other, true))
+    }
+
+    fn assembled(&self, index: usize, earlier: Earlier) -> Result<Scene, Faults> {
         let member = self.member(index);
         let name = member.stem("");
         if let Some(text) = &self.plain {
-            return assemble(&name, text.clone(), &Params::section(self.root.clone(), "")?, &self.resources);
+            return assemble(&name, text.clone(), &Params::section(self.root.clone(), "")?, &self.resources, earlier);
         }
         let mut root = self.root.clone();
         let mut faults = Faults::new();
@@ -302,7 +327,7 @@ impl Series {
         let mut uses = Vec::new();
         let root = variables.unwrap_or_default().put_into(&root, &mut uses)?;
         let text = self.record(&member, &root);
-        let scene = Params::section(root, "").and_then(|params| assemble(&name, text, &params, &self.resources));
+        let scene = Params::section(root, "").and_then(|params| assemble(&name, text, &params, &self.resources, earlier));
         scene.map_err(|faults| variables::told(faults, &uses))
     }
 
