@@ -365,7 +365,8 @@ fn each_film_gets_its_own_time() {
     let scene = shown(&repository("scenes/three-films.yaml")).to_owned();
     let all: Vec<&str> = ["run", &scene, "-o", shown(folder.path()), "-q"].into_iter().chain(TINY).collect();
     good(&all);
-    let (report, planes) = (json(&folder.path().join("three-films.json")), planes(&folder.path().join("three-films.exr")));
+    let (report, planes) =
+        (json(&folder.path().join("three-films.json")), planes(&folder.path().join("three-films.exr")));
     let times = report["metered_time_s"].as_object().expect("by name");
     assert_eq!(&report["exposure_time_s"], &report["metered_time_s"]);
     for (name, speed) in [("ortho", 80.0), ("panchromatic", 400.0), ("color", 250.0)] {
@@ -442,7 +443,8 @@ fn list_and_licenses_show_what_is_there() {
     assert!(surfaces.contains("sphere") && !surfaces.contains("chart"));
     let licenses = good(&["--licenses"]);
     assert!(licenses.contains("MIT OR Apache-2.0") && licenses.contains("spectra/illuminants/D65.csv"));
-    for wanted in ["miette ", "clap ", "exr ", "BSD-3-Clause: ", "Unicode-3.0: ", "Zlib: ", "THE SOFTWARE IS PROVIDED"] {
+    for wanted in ["miette ", "clap ", "exr ", "BSD-3-Clause: ", "Unicode-3.0: ", "Zlib: ", "THE SOFTWARE IS PROVIDED"]
+    {
         assert!(licenses.contains(wanted), "{wanted}");
     }
 }

@@ -427,6 +427,20 @@ fn finished_frames_are_left_out_only_when_asked() {
     assert!(wanted[2] == bytes(&out.join("scene.0003.exr")) && wanted[1] == bytes(&out.join("scene.0002.exr")));
 }
 
+/// Stages that are the same in many frames are made once, and each frame is looked at all the same.
+#[test]
+fn a_fault_in_one_frame_of_a_thousand_is_found() {
+    let film = format!("{SMALL}film: {{stock: kodak-tri-x-400, exposure: null, metering: average}}\n");
+    let animation = "animation:\n  frames: 1000\n  animate:\n    lens.focus: {1: 1 m, 1000: 3 m}\n    \
+                     lens.f-number: {1: f/2, 776: f/4, 777: f/1, 778: f/4, 1000: f/8}\n";
+    let folder = files(&[("scene.yaml", &format!("{film}{animation}"))]);
+    let output = spectra().args(["check", shown(&folder.path().join("scene.yaml"))]).output().expect("it starts");
+    assert_eq!(output.status.code(), Some(2));
+    let said = text(&output.stderr);
+    assert!(said.contains("faster than the lens") && said.contains("frame 777"), "{said}");
+    assert!(!said.contains("more"), "{said}");
+}
+
 #[cfg(unix)]
 #[test]
 fn ctrl_c_keeps_the_pictures_that_are_finished() {

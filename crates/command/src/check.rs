@@ -8,7 +8,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::json;
 use spectra_core::Isa;
 use spectra_core::params::{Fault, Faults};
-use spectra_scene::{SeriesKind, diagnostics};
+use spectra_scene::{Scene, SeriesKind, diagnostics};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -66,9 +66,10 @@ fn check_one(path: &Path, overrides: &[String], isa: Isa, is_shown: bool) -> Res
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let all: Vec<usize> = (0..series.count()).collect();
     let mut shown = Shown::new(is_shown);
-    let of_each = run::checked(&series, &all, isa, threads, &|_, scene| Ok(scene.warnings.clone()), &mut |checking| {
-        shown.tick(checking);
-    });
+    let of_each =
+        run::checked(&series, &all, isa, threads, &|_, scene: &Scene| Ok(scene.warnings.clone()), &mut |checking| {
+            shown.tick(checking);
+        });
     shown.end();
     let of_each = of_each.map_err(|failure| match failure {
         Failure::Faults(faults) => faults,
@@ -110,7 +111,8 @@ impl Shown {
         match &self.bar {
             Some(bar) => bar.set_position(checking.done as u64),
             None if console::stderr_moves() && elapsed >= SHOWN_AFTER => {
-                let bar = ProgressBar::with_draw_target(Some(checking.of as u64), ProgressDrawTarget::stderr_with_hz(10));
+                let bar =
+                    ProgressBar::with_draw_target(Some(checking.of as u64), ProgressDrawTarget::stderr_with_hz(10));
                 let style = ProgressStyle::with_template("[{bar:32}] {pos} of {len} pictures checked");
                 bar.set_style(style.expect("the template is a constant").progress_chars("=> "));
                 self.bar = Some(bar);

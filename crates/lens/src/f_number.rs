@@ -30,8 +30,8 @@ impl MarginalRay {
 }
 
 /// An f-number in words.
-fn stop(number: f64) -> String {
-    if (1e-3..1e6).contains(&number) { format!("f/{number:.3}") } else { format!("f/{number:e}") }
+fn stop(number: &f64) -> String {
+    if (1e-3..1e6).contains(number) { format!("f/{number:.3}") } else { format!("f/{number:e}") }
 }
 
 /// Why an f-number cannot be set.
@@ -41,7 +41,7 @@ pub enum ApertureError {
     #[error("the lens states no clear semi-diameter that limits the axial beam, so its full aperture is unknown")]
     Unlimited,
     /// Faster than the lens is.
-    #[error("{} is faster than the lens, which is {} wide open", stop(*asked), stop(*widest))]
+    #[error("{} is faster than the lens, which is {} wide open", stop(.asked), stop(.widest))]
     TooFast {
         /// Wanted f-number.
         asked: f64,
@@ -55,7 +55,7 @@ pub enum ApertureError {
     #[error(transparent)]
     Medium(#[from] DispersionError),
     /// No marginal ray found.
-    #[error("no axial ray leaves the lens at {}", stop(*.0))]
+    #[error("no axial ray leaves the lens at {}", stop(.0))]
     NoRay(f64),
 }
 

@@ -83,7 +83,10 @@ mod tests {
 
     #[test]
     fn sections_are_the_same_where_they_say_the_same() {
-        let file = SourceFile::new("t.yaml", "a: {x: [1, two, null, true]}\nb: {x: [1, two, null, true]}\nc: {x: [1, two, null, false]}\nd: {y: [1, two, null, true]}\ne: {x: [1.0, two, null, true]}\n");
+        let file = SourceFile::new(
+            "t.yaml",
+            "a: {x: [1, two, null, true]}\nb: {x: [1, two, null, true]}\nc: {x: [1, two, null, false]}\nd: {y: [1, two, null, true]}\ne: {x: [1.0, two, null, true]}\n",
+        );
         let root = yaml::parse(file).unwrap_or_else(|faults| panic!("{faults}"));
         let node = |key: &str| root.get(key).expect("there");
         assert!(same_node(node("a"), node("b")));

@@ -99,7 +99,10 @@ fn is_ours(path: &Path) -> bool {
     let mut head = [0; 4];
     let is_program = |head: &[u8; 4]| {
         // ELF; Mach-O of 64 bits, and of several machines; Windows.
-        matches!(head, [0x7f, b'E', b'L', b'F'] | [0xcf, 0xfa, 0xed, 0xfe] | [0xca, 0xfe, 0xba, 0xbe] | [b'M', b'Z', ..])
+        matches!(
+            head,
+            [0x7f, b'E', b'L', b'F'] | [0xcf, 0xfa, 0xed, 0xfe] | [0xca, 0xfe, 0xba, 0xbe] | [b'M', b'Z', ..]
+        )
     };
     let Ok(mut file) = std::fs::File::open(path) else { return false };
     if !path.is_file() || file.read_exact(&mut head).is_err() || !is_program(&head) {

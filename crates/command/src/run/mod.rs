@@ -89,8 +89,16 @@ fn render_scene(arguments: &Run, isa: Isa, started: Instant) -> Outcome {
     let seconds = begun.elapsed().as_secs_f64();
     progress.finish();
     let times = scene.film_times(&rendering.exposure);
-    let report =
-        Report { scene: &scene, arguments, rendering: &rendering, times: &times, seconds, threads, isa, attributes: &[] };
+    let report = Report {
+        scene: &scene,
+        arguments,
+        rendering: &rendering,
+        times: &times,
+        seconds,
+        threads,
+        isa,
+        attributes: &[],
+    };
     let mut paths = folder.write(&report, false)?.paths;
     if let Some(report_path) = report_path {
         paths.push(report_path.clone());

@@ -116,7 +116,9 @@ impl Progress {
         match &self.listener {
             Listener::Json => self.event(event),
             Listener::Quiet => {}
-            Listener::Bar(_) | Listener::Lines => console::note(text),
+            // Above the bar, which is drawn again below it.
+            Listener::Bar(bar) => bar.suspend(|| console::note(text)),
+            Listener::Lines => console::note(text),
         }
     }
 
@@ -125,7 +127,8 @@ impl Progress {
         match &self.listener {
             Listener::Json => self.event(json!({ "event": "warning", "message": text })),
             Listener::Quiet => {}
-            Listener::Bar(_) | Listener::Lines => console::warning(text),
+            Listener::Bar(bar) => bar.suspend(|| console::warning(text)),
+            Listener::Lines => console::warning(text),
         }
     }
 

@@ -9,8 +9,11 @@ use std::path::PathBuf;
 
 /// Causes that say something of a picture. What the lens itself stops is none: rays are aimed at a region a little larger
 /// than its pupil, so that none is forgotten, and those beside the pupil end there.
-const TELLING: [(Loss, &str); 3] =
-    [(Loss::TotalReflection, "totally reflected"), (Loss::Absorbed, "absorbed"), (Loss::OutOfFrame, "beside the frame")];
+const TELLING: [(Loss, &str); 3] = [
+    (Loss::TotalReflection, "totally reflected"),
+    (Loss::Absorbed, "absorbed"),
+    (Loss::OutOfFrame, "beside the frame"),
+];
 
 /// `Zeiss Biotar 50 mm f/1.4 at f/2, focus 2 m, Kodak Tri-X 400 at 1/700 s (metered); 1 228 800 rays in 0.8 s, 1.5 million
 /// rays/s, 39 % of them through the lens`.

@@ -103,7 +103,9 @@ mod tests {
         std::fs::write(at("notes.txt"), "").expect("written");
         std::fs::write(at("old.png"), "").expect("written");
         std::fs::create_dir(at("folder.png")).expect("made");
-        for (name, is_file) in [("new.png", true), ("old.png", true), ("a/b.TIF", true), ("folder.png", false), ("out", false)] {
+        for (name, is_file) in
+            [("new.png", true), ("old.png", true), ("a/b.TIF", true), ("folder.png", false), ("out", false)]
+        {
             assert_eq!(Target::of(&at(name)).expect(name).is_file(), is_file, "{name}");
         }
         assert!(Target::of(&at("notes.txt")).is_err());

@@ -282,7 +282,9 @@ mod tests {
         write_half_exr(&path, &frame, &gains, &[]).expect("written");
         for channel in read().into_iter().filter(|c| c.name.to_string() == "X") {
             let FlatSamples::F16(values) = &channel.sample_data else { panic!("16-bit floats") };
-            assert!(values.iter().enumerate().all(|(i, v)| (v.to_f32() - wanted("X", i)).abs() <= 0.0005 * wanted("X", i)));
+            assert!(
+                values.iter().enumerate().all(|(i, v)| (v.to_f32() - wanted("X", i)).abs() <= 0.0005 * wanted("X", i))
+            );
         }
     }
 

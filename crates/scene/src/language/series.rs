@@ -327,7 +327,8 @@ impl Series {
         let mut uses = Vec::new();
         let root = variables.unwrap_or_default().put_into(&root, &mut uses)?;
         let text = self.record(&member, &root);
-        let scene = Params::section(root, "").and_then(|params| assemble(&name, text, &params, &self.resources, earlier));
+        let scene =
+            Params::section(root, "").and_then(|params| assemble(&name, text, &params, &self.resources, earlier));
         scene.map_err(|faults| variables::told(faults, &uses))
     }
 

@@ -202,7 +202,9 @@ impl Variables {
 
     /// Follows a variable to those that it is made of; `open` are those that lead to it.
     fn follow(&self, name: &str, open: &mut Vec<String>, done: &mut BTreeSet<String>, faults: &mut Faults) {
-        let Some(node) = self.get(name).filter(|_| !done.contains(name)) else { return };
+        // What is nested deeper is refused where it is used.
+        let known = self.get(name).filter(|_| !done.contains(name) && open.len() < MAX_DEPTH);
+        let Some(node) = known else { return };
         open.push(name.to_owned());
         let mut used = BTreeSet::new();
         references(node, &mut used);
