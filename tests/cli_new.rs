@@ -186,6 +186,16 @@ fn plugins_that_cannot_be_built_in_are_refused_at_once() {
     assert!(text(&output.stderr).contains("https://rustup.rs"), "{}", text(&output.stderr));
     let taken = refused(at, &["build", "--with", &program, "--core", &core, "-o", "empty"]);
     assert!(taken.contains("that is a folder"), "{taken}");
+    // What is no program of ours stays as it is; the program of these tests is one.
+    let manifest = at.join("program/Cargo.toml");
+    let before = read(&manifest);
+    let taken = refused(at, &["build", "--with", &program, "--core", &core, "-o", shown(&manifest)]);
+    assert!(taken.contains("no program") && taken.contains("--force"), "{taken}");
+    assert_eq!(read(&manifest), before);
+    let own = at.join(format!("own{}", std::env::consts::EXE_SUFFIX));
+    std::fs::copy(env!("CARGO_BIN_EXE_spectra"), &own).expect("copied");
+    let other = refused(at, &["build", "--with", &program, "--core", &core, "--offline", "-o", shown(&own)]);
+    assert!(other.contains("has no library") && !other.contains("--force"), "{other}");
     assert!(!at.join("spectra-mine").exists());
 }
 

@@ -51,9 +51,9 @@ fn three_files_are_written_and_say_what_they_are() {
         .map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned())
         .collect();
     names.sort();
-    assert_eq!(names, ["biotar-ortho.exr", "biotar-ortho.png", "render.json"]);
+    assert_eq!(names, ["biotar-ortho.exr", "biotar-ortho.json", "biotar-ortho.png"]);
 
-    let report = json(&out.join("render.json"));
+    let report = json(&out.join("biotar-ortho.json"));
     assert_eq!(report["rays"], 48 * 32 * 4);
     assert_eq!((&report["seed"], &report["threads"], &report["partial"]), (&7.into(), &1.into(), &false.into()));
     assert!(report["seconds"].as_f64().is_some_and(|s| s > 0.0));
@@ -127,7 +127,7 @@ fn quiet_is_quiet() {
     let output = spectra().args(tiny(folder.path(), &["--quiet"])).output().expect("the program starts");
     assert!(output.status.success());
     assert!(output.stdout.is_empty() && output.stderr.is_empty(), "{}", text(&output.stderr));
-    assert!(folder.path().join("render.json").is_file());
+    assert!(folder.path().join("biotar-ortho.json").is_file());
 }
 
 #[test]
@@ -137,7 +137,7 @@ fn pipes_get_plain_lines() {
     for stream in [&output.stdout, &output.stderr] {
         assert!(stream.iter().all(|byte| *byte >= b' ' || *byte == b'\n'), "{}", text(stream));
     }
-    assert_eq!(text(&output.stdout).lines().filter(|line| line.starts_with("wrote ")).count(), 3);
+    assert_eq!(text(&output.stdout).lines().filter(|line| line.starts_with("wrote ")).count(), 1);
     assert!(text(&output.stderr).contains("rays/s"));
 }
 
@@ -161,20 +161,40 @@ fn endless(output: &Path, more: &[&str]) -> (Child, BufReader<std::process::Chil
 }
 
 #[cfg(unix)]
+fn signal(child: &Child, name: &str) {
+    let killed = std::process::Command::new("sh").args(["-c", &format!("kill -{name} {}", child.id())]).status();
+    assert!(killed.expect("a shell").success());
+}
+
+/// 128 + the number of the signal, as shells and batch systems have it; what there is, is kept by all of them.
+#[cfg(unix)]
+#[test]
+fn exit_codes_tell_signals_apart() {
+    for (name, code) in [("TERM", 143), ("HUP", 129)] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let (mut child, mut events) = endless(folder.path(), &[]);
+        signal(&child, name);
+        let mut rest = String::new();
+        events.read_to_string(&mut rest).expect("UTF-8");
+        assert_eq!(child.wait().expect("it ends").code(), Some(code), "{name}");
+        assert!(folder.path().join("biotar-ortho.exr").is_file());
+    }
+}
+
+#[cfg(unix)]
 #[test]
 fn ctrl_c_keeps_what_there_is_within_a_second() {
     let folder = tempfile::tempdir().expect("a folder");
     let (mut child, mut events) = endless(folder.path(), &[]);
     let begun = Instant::now();
-    let killed = std::process::Command::new("sh").args(["-c", &format!("kill -INT {}", child.id())]).status();
-    assert!(killed.expect("a shell").success());
+    signal(&child, "INT");
     let mut rest = String::new();
     events.read_to_string(&mut rest).expect("UTF-8");
     let status = child.wait().expect("it ends");
     assert!(begun.elapsed() < Duration::from_secs(1), "{:?}", begun.elapsed());
     assert_eq!(status.code(), Some(130));
     assert!(rest.contains("\"interrupted\":true"), "{rest}");
-    let report = json(&folder.path().join("render.json"));
+    let report = json(&folder.path().join("biotar-ortho.json"));
     assert_eq!(report["partial"], true);
     assert!(report["rays"].as_u64().is_some_and(|rays| rays > 0));
     assert!(attributes(&folder.path().join("biotar-ortho.exr")).contains_key("spectra:partial"));
@@ -189,10 +209,174 @@ fn a_time_limit_ends_in_a_partial_picture_and_no_error() {
     events.read_to_string(&mut rest).expect("UTF-8");
     assert_eq!(child.wait().expect("it ends").code(), Some(0));
     assert!(rest.contains("\"interrupted\":false") && rest.contains("\"partial\":true"), "{rest}");
-    let report = json(&folder.path().join("render.json"));
+    let report = json(&folder.path().join("biotar-ortho.json"));
     assert_eq!(report["partial"], true);
     let seconds = report["seconds"].as_f64().expect("a number");
     assert!((0.2..1.6).contains(&seconds), "{seconds}");
+}
+
+/// Before light is traced there is nothing to write: said, and no folder is left behind.
+#[test]
+fn a_time_limit_that_is_over_before_light_says_so() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("out");
+    let output = spectra().args(tiny(&out, &["--time-limit", "1 us"])).output().expect("the program starts");
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    assert!(text(&output.stderr).contains("before any light was traced"), "{}", text(&output.stderr));
+    assert!(!out.exists());
+}
+
+/// The folder goes while light is traced: it is made again.
+#[test]
+fn a_folder_that_vanishes_is_made_again() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("a/out");
+    let (mut child, mut events) = endless(&out, &["--time-limit", "2500 ms"]);
+    std::fs::remove_dir_all(folder.path().join("a")).expect("removed");
+    let mut rest = String::new();
+    events.read_to_string(&mut rest).expect("UTF-8");
+    assert_eq!(child.wait().expect("it ends").code(), Some(0), "{rest}");
+    for name in ["biotar-ortho.exr", "biotar-ortho.png", "biotar-ortho.json"] {
+        assert!(out.join(name).is_file(), "{name}");
+    }
+}
+
+/// Where nothing can be written any more, the light is kept in the folder for temporary files, and the failure says where.
+#[test]
+fn light_that_cannot_be_written_is_kept_elsewhere() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let kept = folder.path().join("kept");
+    std::fs::create_dir(&kept).expect("made");
+    let out = folder.path().join("out");
+    let scene = ortho();
+    let mut child = spectra()
+        .args(["run", &scene, "--output", shown(&out), "--json", "--samples", "4000000", "--time-limit", "2500 ms"])
+        .env("TMPDIR", &kept)
+        .env("TEMP", &kept)
+        .env("TMP", &kept)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    let mut events = BufReader::new(child.stdout.take().expect("piped"));
+    let mut line = String::new();
+    while !line.contains("\"progress\"") {
+        line.clear();
+        assert!(events.read_line(&mut line).expect("UTF-8") > 0, "ended before any progress");
+    }
+    // A file in the way of the folder: it cannot be made again.
+    std::fs::remove_dir_all(&out).expect("removed");
+    std::fs::write(&out, "").expect("written");
+    let mut rest = String::new();
+    events.read_to_string(&mut rest).expect("UTF-8");
+    assert_eq!(child.wait().expect("it ends").code(), Some(1), "{rest}");
+    let files: Vec<_> = std::fs::read_dir(&kept).expect("a folder").map(|e| e.expect("an entry").path()).collect();
+    let [file] = &files[..] else { panic!("{files:?}") };
+    assert!(rest.contains(shown(file)), "{rest}");
+    assert!(attributes(file).contains_key("spectra:partial"));
+}
+
+/// Two scenes, one folder, no mixing; and a picture by its name, and nothing else.
+#[test]
+fn outputs_bear_the_name_of_their_scene_or_their_own() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = folder.path();
+    let names = |folder: &Path| {
+        let entries = std::fs::read_dir(folder).expect("a folder");
+        let mut names: Vec<String> =
+            entries.map(|e| e.expect("an entry").file_name().to_string_lossy().into_owned()).collect();
+        names.sort();
+        names
+    };
+    for name in ["a.yaml", "b.yaml"] {
+        std::fs::copy(ortho(), at.join(name)).expect("copied");
+        let scene = at.join(name);
+        let out = at.join("out");
+        let more = ["run", shown(&scene), "-o", shown(&out), "-q", "-q"];
+        good(&more.into_iter().chain(TINY).collect::<Vec<_>>());
+    }
+    assert_eq!(names(&at.join("out")), ["a.exr", "a.json", "a.png", "b.exr", "b.json", "b.png"]);
+    for name in ["x.png", "x.exr", "x.tif"] {
+        let file = at.join("new/folder").join(name);
+        let said = spectra().args(tiny(&file, &[])).output().expect("the program starts");
+        assert!(said.status.success(), "{}", text(&said.stderr));
+        assert!(text(&said.stdout).contains(shown(&file)), "{}", text(&said.stdout));
+    }
+    assert_eq!(names(&at.join("new/folder")), ["x.exr", "x.png", "x.tif"]);
+    let raw = spectra().args(tiny(&at.join("x.dng"), &[])).output().expect("the program starts");
+    assert!(raw.status.code() == Some(2) && text(&raw.stderr).contains("no converter"), "{}", text(&raw.stderr));
+    let taken = spectra().args(tiny(&at.join("a.yaml"), &[])).output().expect("the program starts");
+    assert!(taken.status.code() == Some(1) && text(&taken.stderr).contains("is a file"), "{}", text(&taken.stderr));
+    assert_eq!(std::fs::read(at.join("a.yaml")).expect("there"), std::fs::read(ortho()).expect("there"));
+}
+
+/// Planes of an EXR by their names.
+fn planes(path: &Path) -> BTreeMap<String, Vec<f32>> {
+    let reader = exr::prelude::read().no_deep_data().largest_resolution_level().all_channels().first_valid_layer();
+    let image = reader.all_attributes().from_file(path).expect("an EXR");
+    let all = image.layer_data.channel_data.list.into_iter();
+    all.map(|c| (c.name.to_string(), c.sample_data.values_as_f32().collect())).collect()
+}
+
+/// What a metered scene writes is what the film got: the same as with that time stated, as its sum is drawn from the same
+/// wavelengths (`uniform`; the usual strategy looks at the meter's channel, too, so that the noise is another one).
+#[test]
+fn a_metered_scene_is_that_of_the_metered_time() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = shown(&repository("scenes/biotar-trix.yaml")).to_owned();
+    let render = |name: &str, film: &[&str]| {
+        let out = folder.path().join(name);
+        let sets = film.iter().flat_map(|set| ["--set", *set]);
+        let common = ["run", &scene, "-o", shown(&out), "--set", "wavelengths={kind: uniform}"];
+        let output = spectra().args(common).args(TINY).args(sets).output().expect("the program starts");
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        let report = json(&out.join("biotar-trix.json"));
+        let exr = out.join("biotar-trix.exr");
+        (report, planes(&exr), attributes(&exr), text(&output.stderr))
+    };
+    let (report, metered, header, said) = render("metered", &[]);
+    let time_s = report["metered_time_s"].as_f64().expect("a number");
+    assert!((0.0..0.5).contains(&time_s), "{time_s}");
+    assert_eq!(report["exposure_time_s"].as_f64(), Some(time_s));
+    assert_eq!(header["spectra:exposure time"], format!("{time_s} s"));
+    let words = spectra_core::shutter::words(time_s);
+    assert!(words.starts_with("1/") && said.contains(&format!("at {words} (metered)")), "{words}: {said}");
+    // The meter's mean is the 10/S lx s of a mid gray.
+    let mean = metered["meter"].iter().map(|v| f64::from(*v)).sum::<f64>() / metered["meter"].len() as f64;
+    assert!((mean / 0.025 - 1.0).abs() < 1e-6, "{mean}");
+    let exposure = format!("film.exposure={time_s} s");
+    for film in [&[exposure.as_str(), "film.metering=manual"][..], &[exposure.as_str()]] {
+        let (_, stated, header, said) = render("stated", film);
+        assert_eq!(header["spectra:exposure time"], format!("{time_s} s"));
+        // Beside a meter an exposure time has no effect, and that is said.
+        assert_eq!(said.contains("`exposure` has no effect"), film.len() == 1, "{said}");
+        for (name, plane) in &stated {
+            for (a, b) in plane.iter().zip(&metered[name]) {
+                assert!((a - b).abs() <= 1e-6 * a.abs(), "{name}: {a} against {b}");
+            }
+        }
+    }
+}
+
+/// Several films in one light: each one's planes are of its own time.
+#[test]
+fn each_film_gets_its_own_time() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = shown(&repository("scenes/three-films.yaml")).to_owned();
+    let all: Vec<&str> = ["run", &scene, "-o", shown(folder.path()), "-q"].into_iter().chain(TINY).collect();
+    good(&all);
+    let (report, planes) =
+        (json(&folder.path().join("three-films.json")), planes(&folder.path().join("three-films.exr")));
+    let times = report["metered_time_s"].as_object().expect("by name");
+    assert_eq!(&report["exposure_time_s"], &report["metered_time_s"]);
+    for (name, speed) in [("ortho", 80.0), ("panchromatic", 400.0), ("color", 250.0)] {
+        let meter = &planes[&format!("{name}.meter")];
+        let mean = meter.iter().map(|v| f64::from(*v)).sum::<f64>() / meter.len() as f64;
+        assert!((mean / (10.0 / speed) - 1.0).abs() < 1e-5, "{name}: {mean}");
+    }
+    // The meter sees the same light for all of them: times are as one over speeds.
+    let time = |name: &str| times[name].as_f64().expect("a number");
+    assert!((time("panchromatic") / time("color") - 250.0 / 400.0).abs() < 1e-5, "{times:?}");
 }
 
 #[test]
@@ -259,6 +443,10 @@ fn list_and_licenses_show_what_is_there() {
     assert!(surfaces.contains("sphere") && !surfaces.contains("chart"));
     let licenses = good(&["--licenses"]);
     assert!(licenses.contains("MIT OR Apache-2.0") && licenses.contains("spectra/illuminants/D65.csv"));
+    for wanted in ["miette ", "clap ", "exr ", "BSD-3-Clause: ", "Unicode-3.0: ", "Zlib: ", "THE SOFTWARE IS PROVIDED"]
+    {
+        assert!(licenses.contains(wanted), "{wanted}");
+    }
 }
 
 #[test]

@@ -101,7 +101,7 @@ fn a_picture_of_a_sweep_is_that_of_the_scene_with_its_values_set() {
         ("plain.yaml", SMALL),
     ]);
     let out = rendered(folder.path(), "out", &[]);
-    let report = json(&out.join("series.json"));
+    let report = json(&out.join("scene-series.json"));
     assert_eq!((&report["kind"], &report["count"], &report["complete"]), (&"sweep".into(), &4.into(), &true.into()));
     let pictures = report["pictures"].as_array().expect("a list");
     let sheet = rgb(&out.join("scene-contact.png"));
@@ -140,7 +140,7 @@ fn a_focus_pull_records_each_frames_focus_and_a_frame_alone_is_the_same() {
     let animation = "animation:\n  frames: 3\n  rate: 23.976\n  animate:\n    lens.focus: {1: 1 m, 3: 3 m, interpolation: reciprocal}\n";
     let folder = files(&[("scene.yaml", &format!("{SMALL}{animation}"))]);
     let out = rendered(folder.path(), "out", &[]);
-    let report = json(&out.join("series.json"));
+    let report = json(&out.join("scene-series.json"));
     assert_eq!((&report["kind"], &report["frames_per_second"]), (&"animation".into(), &23.976.into()));
     for (at, wanted_mm) in [1000.0, 1500.0, 3000.0].into_iter().enumerate() {
         let recorded = &report["pictures"][at];
@@ -436,11 +436,25 @@ fn finished_frames_are_left_out_only_when_asked() {
     };
     assert_eq!((numbers("kept"), numbers("start")), (vec![1, 3], vec![2]));
     assert_eq!(bytes(&out.join("scene.0003.exr")), b"kept as it is");
-    let report = json(&out.join("series.json"));
+    let report = json(&out.join("scene-series.json"));
     assert_eq!(report["pictures"].as_array().map(Vec::len), Some(3));
     assert!(report["pictures"][0]["kept"] == true && report["pictures"][0]["rays"] == 48 * 32 * 4, "{report}");
     rendered(folder.path(), "out", &[]);
     assert!(wanted[2] == bytes(&out.join("scene.0003.exr")) && wanted[1] == bytes(&out.join("scene.0002.exr")));
+}
+
+/// Stages that are the same in many frames are made once, and each frame is looked at all the same.
+#[test]
+fn a_fault_in_one_frame_of_a_thousand_is_found() {
+    let film = format!("{SMALL}film: {{stock: kodak-tri-x-400, exposure: null, metering: average}}\n");
+    let animation = "animation:\n  frames: 1000\n  animate:\n    lens.focus: {1: 1 m, 1000: 3 m}\n    \
+                     lens.f-number: {1: f/2, 776: f/4, 777: f/1, 778: f/4, 1000: f/8}\n";
+    let folder = files(&[("scene.yaml", &format!("{film}{animation}"))]);
+    let output = spectra().args(["check", shown(&folder.path().join("scene.yaml"))]).output().expect("it starts");
+    assert_eq!(output.status.code(), Some(2));
+    let said = text(&output.stderr);
+    assert!(said.contains("faster than the lens") && said.contains("frame 777"), "{said}");
+    assert!(!said.contains("more"), "{said}");
 }
 
 #[cfg(unix)]
@@ -472,7 +486,7 @@ fn ctrl_c_keeps_the_pictures_that_are_finished() {
         .map(|e| e.expect("an entry").file_name().into_string().expect("plain"))
         .collect();
     names.sort();
-    assert_eq!(names, ["scene-001.exr", "scene-001.png", "scene-contact.png", "series.json"]);
-    let report = json(&out.join("series.json"));
+    assert_eq!(names, ["scene-001.exr", "scene-001.png", "scene-contact.png", "scene-series.json"]);
+    let report = json(&out.join("scene-series.json"));
     assert_eq!((&report["complete"], report["pictures"].as_array().map(Vec::len)), (&false.into(), Some(1)));
 }

@@ -23,7 +23,7 @@ use std::path::PathBuf;
     after_help = "Start with: spectra run scenes/biotar-ortho.yaml",
     after_long_help = "Start with:\n  spectra run scenes/biotar-ortho.yaml\n\n\
         Exit codes: 0 done, or stopped by --time-limit; 1 something failed (a full disk, a render error); \
-        2 the input is wrong; 130 interrupted by Ctrl-C.\n\n\
+        2 the input is wrong; 130 interrupted by Ctrl-C, 143 by SIGTERM, 129 by SIGHUP.\n\n\
         Environment: SPECTRA_ISA=baseline|avx2|avx512 forces an instruction set (the picture is the same bit by bit); \
         NO_COLOR turns colors off."
 )]
@@ -73,12 +73,12 @@ pub(crate) enum Command {
 #[command(
     long_about = "Render a scene: the picture, and the light behind it.\n\n\
         Writes, as the scene's `output` asks, SCENE.exr (linear exposure, one channel each of the imager or film, 32-bit \
-        float) and SCENE.png or SCENE.tiff (what a person looks at), named like the scene file, and render.json (time, \
-        rays, where light was lost, versions). Files appear under their names only when they are whole.\n\n\
+        float) and SCENE.png or SCENE.tiff (what a person looks at), named like the scene file, and SCENE.json (time, \
+        rays, where light was lost, versions). --output x.png (.tiff, .exr, .dng) writes that picture alone. Files appear under their names only when they are whole.\n\n\
         Ctrl-C stops within a second and writes what there is, marked as partial (exit code 130); a second Ctrl-C gives \
         it up at once.\n\n\
         A scene with a `sweep` gives numbered pictures SCENE-001.png ... and a contact sheet SCENE-contact.png, one with an \
-        `animation` frames SCENE.0001.exr ...; series.json says of each what it is. All of them are checked before any light \
+        `animation` frames SCENE.0001.exr ...; SCENE-series.json says of each what it is. All of them are checked before any light \
         is traced; of several pictures only whole ones are written, also when stopped.",
     after_long_help = "Example: a quick look at the Biotar wide open, into the folder `try`\n  \
         spectra run scenes/biotar-ortho.yaml --samples 16 --set lens.f-number=f/1.4 --output try"
@@ -87,8 +87,8 @@ pub(crate) struct Run {
     /// The scene file.
     #[arg(value_name = "SCENE")]
     pub scene: PathBuf,
-    /// Folder to write to; it is made where it does not exist.
-    #[arg(short, long, value_name = "DIR", default_value = "out")]
+    /// Folder to write to, which is made where it does not exist; or one picture by its name: x.png, .tiff, .exr, .dng.
+    #[arg(short, long, value_name = "DIR|FILE", default_value = "out")]
     pub output: PathBuf,
     #[command(flatten)]
     pub set: Set,
@@ -102,7 +102,8 @@ pub(crate) struct Run {
     /// launches rays in proportion.
     #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub samples: Option<u32>,
-    /// Stop after this time (30s, 5min), counted from the start of the program, and write what there is.
+    /// Stop after this time (30s, 5min), counted from the start of the program, and write what there is; nothing, where the
+    /// scene is not ready for light by then.
     #[arg(long, value_name = "TIME", value_parser = parse::<Positive<Time>>)]
     pub time_limit: Option<Positive<Time>>,
     /// Render these frames of an animation only: 17, 10-20, 10-, or several of them with commas.
@@ -112,11 +113,11 @@ pub(crate) struct Run {
     #[arg(long)]
     pub skip_existing: bool,
     /// One JSON object a line on standard output for each event: start, progress, warning, written, done, error; for
-    /// several pictures also series and end.
+    /// several pictures also check, series and end.
     #[arg(long, conflicts_with = "quiet")]
     pub json: bool,
     /// Say nothing but errors.
-    #[arg(short, long)]
+    #[arg(short, long, overrides_with = "quiet")]
     pub quiet: bool,
 }
 

@@ -1,7 +1,7 @@
 //! The `spectra` command: arguments in, pictures and figures out.
 //!
 //! Exit codes: 0 done (or stopped by `--time-limit`); 1 something failed on the way, such as a full disk;
-//! 2 the input is wrong; 130 interrupted by Ctrl-C. What a person asked for goes to standard output, what is
+//! 2 the input is wrong; 130 interrupted by Ctrl-C, 143 by SIGTERM, 129 by SIGHUP. What a person asked for goes to standard output, what is
 //! said about it (progress, warnings, errors) to standard error.
 
 mod arguments;

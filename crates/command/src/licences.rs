@@ -4,6 +4,9 @@ use crate::console;
 use crate::outcome::{DONE, Outcome};
 use std::fmt::Write;
 
+/// The crates that are linked in, and their licences; written by `xtask/notices.py`.
+const NOTICES: &str = include_str!("notices.txt");
+
 /// Shows them.
 pub(crate) fn show() -> Outcome {
     console::out(&text())?;
@@ -23,5 +26,11 @@ fn text() -> String {
             let _ = writeln!(out, "    {file}");
         }
     }
+    let _ = write!(
+        out,
+        "\nThe Rust standard library: MIT OR Apache-2.0, https://www.rust-lang.org\n\nCrates in this program, with their \
+         notices (a program made by `spectra build` holds its plugins beside them, under their own terms):\n\n{}",
+        NOTICES.split_once('\n').map_or(NOTICES, |(_, rest)| rest.trim_start())
+    );
     out
 }

@@ -11,8 +11,6 @@ pub(crate) const DONE: u8 = 0;
 pub(crate) const FAILED: u8 = 1;
 /// The input is wrong.
 pub(crate) const BAD_INPUT: u8 = 2;
-/// Interrupted by the person at the keyboard: 128 + SIGINT, as shells have it.
-pub(crate) const INTERRUPTED: u8 = 130;
 
 /// An exit code, or why the command could not do what it should.
 pub(crate) type Outcome = Result<u8, Failure>;

@@ -33,11 +33,15 @@ impl Sources {
         let cache = cache()?;
         let mut data = spectra_data::list("").filter_map(|name| Some((name, spectra_data::get(name)?)));
         let folder = unpack(&cache, &mut data).map_err(|error| {
-            if error.kind() == io::ErrorKind::NotFound {
+            // The system's own word for a folder that cannot be made is the same, and comes with a number.
+            if error.kind() == io::ErrorKind::NotFound && error.raw_os_error().is_none() {
                 let fault = Fault::new(error.to_string());
                 return Failure::from(fault.hint("name a checkout of the same version: --core PATH"));
             }
-            Failure::Failed(format!("{}: the sources cannot be unpacked: {error}", cache.display()))
+            Failure::Failed(format!(
+                "{}: the sources cannot be unpacked: {error} (SPECTRA_CACHE names another folder)",
+                cache.display()
+            ))
         })?;
         Ok(Self { folder: plain(&folder) })
     }

@@ -11,16 +11,38 @@ pub(crate) const VERSION: &str = env!("CARGO_PKG_VERSION");
 pub(crate) fn long() -> &'static str {
     static TEXT: LazyLock<String> = LazyLock::new(|| {
         format!(
-            "{VERSION}\ncommit: {}\ncompiler: {}\ntarget: {}\nprofile: {}\ninstruction set: {}",
+            "{VERSION}\ncommit: {}\ncompiler: {}\ntarget: {}\nprofile: {}\ninstruction set: {}{}",
             COMMIT.unwrap_or("unknown"),
             env!("SPECTRA_RUSTC"),
             env!("SPECTRA_TARGET"),
             if cfg!(debug_assertions) { "debug" } else { "release" },
-            Isa::detect().name()
+            Isa::detect().name(),
+            plugins()
         )
     });
     &TEXT
 }
+
+/// Crates in this program that are not its own, with the stages that they bring.
+fn plugins() -> String {
+    let mut text = String::new();
+    for one in registry::list().iter().filter(|l| !BUILT_IN.contains(&l.package)) {
+        text.push_str(&format!("\nplugin: {} {}: {} `{}`", one.package, one.version, one.stage, one.name));
+    }
+    text
+}
+
+/// The crates of the built-in stages.
+const BUILT_IN: [&str; 8] = [
+    "spectra-plugin-colors",
+    "spectra-plugin-films",
+    "spectra-plugin-imagers",
+    "spectra-plugin-oiio",
+    "spectra-plugin-responses",
+    "spectra-plugin-samplers",
+    "spectra-plugin-sources",
+    "spectra-plugin-surfaces",
+];
 
 /// Commit that it was built from, where that is known.
 const COMMIT: Option<&str> = option_env!("SPECTRA_COMMIT");

@@ -23,6 +23,7 @@ pub mod picture_file;
 pub mod prelude;
 pub mod registry;
 pub mod resources;
+pub mod shutter;
 pub mod spectral;
 pub mod stage;
 pub mod surface;

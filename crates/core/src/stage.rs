@@ -154,7 +154,7 @@ pub trait Imager: Send + Sync {
     }
 
     /// From now on it is the imager of this frame of an animation: its noise is another one than that of other frames, by
-    /// its own seed and the number ([`crate::numbers::seed_of_frame`]).
+    /// its own seed and the number ([`crate::numbers::seed_of_frame`]), whichever frame was set before.
     fn set_frame(&mut self, _frame: u64) {}
 }
 
@@ -218,14 +218,30 @@ pub trait Film: Send + Sync {
         self.exposure_time_s()
     }
 
-    /// Develops the frame (exposure in lx s per channel) into a picture.
+    /// Whether a meter in the camera chooses the exposure time, by the frame.
+    fn is_metered(&self) -> bool {
+        false
+    }
+
+    /// What a person should know before believing the picture: what was stated and has no effect, and so on.
+    fn warnings(&self) -> Vec<String> {
+        Vec::new()
+    }
+
+    /// What it is called, in a few words.
+    fn name(&self) -> String {
+        self.describe()
+    }
+
+    /// Develops the frame into a picture. Its exposure, in lx s per channel, is that of [`Film::exposure_time_s`]: what a
+    /// meter makes of it is the film's own business.
     ///
     /// # Errors
     /// A text that says which channel is missing.
     fn develop(&self, exposure: &ExposureFrame) -> Result<DisplayPicture, String>;
 
     /// From now on it is the piece of film of this frame of an animation: its grains are others than those of other
-    /// frames, by its own seed and the number ([`crate::numbers::seed_of_frame`]).
+    /// frames, by its own seed and the number ([`crate::numbers::seed_of_frame`]), whichever frame was set before.
     fn set_frame(&mut self, _frame: u64) {}
 
     /// What a person wants to know of it, for the log and the EXR.

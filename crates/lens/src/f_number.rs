@@ -30,6 +30,11 @@ impl MarginalRay {
     }
 }
 
+/// An f-number in words.
+fn stop(number: &f64) -> String {
+    if (1e-3..1e6).contains(number) { format!("f/{number:.3}") } else { format!("f/{number:e}") }
+}
+
 /// Why an f-number cannot be set.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ApertureError {
@@ -37,7 +42,7 @@ pub enum ApertureError {
     #[error("the lens states no clear semi-diameter that limits the axial beam, so its full aperture is unknown")]
     Unlimited,
     /// Faster than the lens is.
-    #[error("f/{asked:.3} is faster than the lens, which is f/{widest:.3} wide open{}", limited(.rim, *.asked))]
+    #[error("{} is faster than the lens, which is {} wide open{}", stop(.asked), stop(.widest), limited(.rim, *.asked))]
     TooFast {
         /// Wanted f-number.
         asked: f64,
@@ -53,7 +58,7 @@ pub enum ApertureError {
     #[error(transparent)]
     Medium(#[from] DispersionError),
     /// No marginal ray found.
-    #[error("no axial ray leaves the lens at f/{0:.3}")]
+    #[error("no axial ray leaves the lens at {}", stop(.0))]
     NoRay(f64),
 }
 

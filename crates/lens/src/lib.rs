@@ -29,7 +29,7 @@ mod tracer;
 mod transmission;
 mod losses;
 
-pub use aim::{AimPattern, AimRegion, FrontPupil, RearPupil};
+pub use aim::{AimPattern, AimRegion, FrontPupil, RearPupil, has_sizes};
 pub use aperture::read as read_apertures;
 pub use aperture::{Aperture, ApertureForm, Drawing, FLATNESS_MM, FillRule, Iris, Mask, Opening, Painted, Shape};
 pub use beam::{Beam, ObjectPoint};

@@ -7,7 +7,8 @@ use crate::{
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{
-    Angle, FNumber, Fault, Faults, Length, OrInfinity, Params, Positive, Ratio, StageNode, Whole, nearest,
+    Angle, FNumber, Fault, Faults, Length, Node, OrInfinity, Params, Positive, Quantity, Ratio, StageNode, Value, Whole,
+    nearest,
 };
 use spectra_core::registry::{self, Context};
 use spectra_core::resources::Resources;
@@ -208,6 +209,20 @@ fn displacement(decenter: Option<[Length; 2]>, tilt: Option<[Angle; 3]>) -> Disp
 /// Where a stated index and the glass's own differ by more, a person is told.
 const INDEX_TOLERANCE: f64 = 0.002;
 
+/// Longer is no lens, but a slip of the exponent; 1000 km.
+const LONGEST_MM: f64 = 1e9;
+/// A shorter radius is less than a wavelength.
+const SHORTEST_RADIUS_MM: f64 = 1e-6;
+
+/// A length as it is written, where it is one.
+fn length_mm(node: &Node) -> Option<f64> {
+    match &node.value {
+        Value::Number(number) => Some(number.value),
+        Value::String(text) => Length::from_text(text).ok().map(Length::mm),
+        _ => None,
+    }
+}
+
 /// Reads a lens by the path of its file, or by its name among the bundled ones.
 ///
 /// # Errors
@@ -292,6 +307,16 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
             faults.push(fault.hint("add `thickness: ...`, the distance to the next surface; 0 where they touch"));
         }
         let thickness_mm = stated.thickness.map_or(0.0, |t| t.mm());
+        let radius_mm = shape.get("radius").and_then(length_mm).map_or(f64::INFINITY, f64::abs);
+        let sizes = [("thickness", thickness_mm.abs()), ("semi-diameter", semi_diameter_mm.unwrap_or(0.0))];
+        for (key, mm) in sizes.into_iter().filter(|(_, mm)| *mm > LONGEST_MM) {
+            let fault = place.fault(key, format!("{mm:e} mm is no size of a lens"));
+            faults.push(fault.hint(format!("up to {LONGEST_MM:e} mm")));
+        }
+        if radius_mm > 0.0 && radius_mm < SHORTEST_RADIUS_MM {
+            let fault = shape.fault("radius", format!("{radius_mm:e} mm is no radius of a lens"));
+            faults.push(fault.hint(format!("from {SHORTEST_RADIUS_MM:e} mm on; 0 for a plane")));
+        }
         // Behind a mirror light runs the other way; between two planes in air the step may be imagined.
         if thickness_mm < 0.0 && along && medium_after != medium_before {
             let fault = place.fault("thickness", format!("the thickness is negative: {thickness_mm} mm"));

@@ -11,6 +11,7 @@ use crate::sums::{ExactSums, LARGEST_CONTRIBUTION, LARGEST_EXPECTED, scale_for};
 use crate::{Control, RenderError};
 use spectra_core::frame::{ExposureChannel, ExposureFrame};
 use spectra_core::{Isa, LossCounts, RayBatch};
+use spectra_lens::Travel;
 use spectra_scene::{Direction, Scene};
 use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering::Relaxed};
 use std::sync::{Mutex, PoisonError};
@@ -62,6 +63,28 @@ impl<'a> Renderer<'a> {
         let largest = Self::pilot(scene, &pilot)?;
         let scale = scale_for(largest * scene.source.peak_over_mean().max(1.0));
         Ok(Self { scene, way: pilot.reseeded(scene.render.seed), scale })
+    }
+
+    /// Looks whether a scene can be made ready: all that [`Renderer::new`] refuses, without its search for pupils.
+    ///
+    /// # Errors
+    /// As [`Renderer::new`].
+    pub fn check(scene: &Scene, isa: Isa) -> Result<(), RenderError> {
+        Pipeline::new(scene, isa)?;
+        let sized = |travel| spectra_lens::has_sizes(&scene.lens, travel);
+        let is_open = match scene.render.direction {
+            Direction::Forward => {
+                let emit = scene.source.emit().ok_or(RenderError::CannotEmit)?;
+                scene.imager.receive().ok_or(RenderError::CannotReceive)?;
+                emit.is_directed() || sized(Travel::Forward)
+            }
+            Direction::Backward => {
+                scene.imager.launch().ok_or(RenderError::CannotLaunch)?;
+                scene.source.radiance().ok_or(RenderError::NoRadiance)?;
+                sized(Travel::Backward)
+            }
+        };
+        if is_open { Ok(()) } else { Err(RenderError::NoAperture) }
     }
 
     fn way(scene: &'a Scene, isa: Isa, seed: u64) -> Result<Way<'a>, RenderError> {

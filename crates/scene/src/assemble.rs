@@ -1,6 +1,7 @@
 //! From a scene file to a [`Scene`], with every fault in one go.
 
 use crate::advice::{self, FileIs};
+use crate::earlier::Earlier;
 use crate::filters;
 use crate::focus::FocusLight;
 use crate::lens_section::{LensSection, SetLens, lens_of};
@@ -170,15 +171,28 @@ pub(crate) fn record(text: &str, overrides: &[String]) -> String {
 ///
 /// # Errors
 /// Everything that is wrong with it, each with its place.
-pub(crate) fn assemble(name: &str, text: String, params: &Params, resources: &dyn Resources) -> Result<Scene, Faults> {
+pub(crate) fn assemble(
+    name: &str,
+    text: String,
+    params: &Params,
+    resources: &dyn Resources,
+    earlier: Earlier,
+) -> Result<Scene, Faults> {
     if let Some(fault) = advice::other_file(params.node(), FileIs::Scene) {
         return Err(Fault { message: fault.message, hint: fault.hint, ..params.fault_here("") }.into());
     }
-    all_stages(name, text, params, resources).map_err(|faults| advice::advised(faults, params))
+    all_stages(name, text, params, resources, earlier).map_err(|faults| advice::advised(faults, params))
 }
 
-fn all_stages(name: &str, text: String, params: &Params, resources: &dyn Resources) -> Result<Scene, Faults> {
+fn all_stages(
+    name: &str,
+    text: String,
+    params: &Params,
+    resources: &dyn Resources,
+    earlier: Earlier,
+) -> Result<Scene, Faults> {
     let mut faults = Faults::new();
+    let earlier = earlier.fitting(params);
     // Several films are no single stage: their section is read apart.
     let (several, others) = match params.get("film").map(|node| &node.value) {
         Some(Value::Seq(items)) => (Some(items), params.split(&["film"]).1),
@@ -198,13 +212,23 @@ fn all_stages(name: &str, text: String, params: &Params, resources: &dyn Resourc
     let (band, sampler) = wavelengths.unwrap_or_else(|| params.nothing_said("wavelengths")).split(&["band"]);
     let grid = faults.take(band.parse::<BandSection>().and_then(|b| grid_of(&b, &band))).unwrap_or(BAND);
     let context = Context { resources, grid, illuminant: None };
-    let source = source.and_then(|p| faults.take(registry::build::<dyn Source>(&p, &context)));
-    let sampler = faults.take(registry::build::<dyn WavelengthSampler>(&sampler, &context));
+    let source = match earlier.source {
+        Some(source) => Some(source),
+        None => source.and_then(|p| faults.take(registry::build::<dyn Source>(&p, &context))),
+    };
+    let sampler = match earlier.sampler {
+        Some(sampler) => Some(sampler),
+        None => faults.take(registry::build::<dyn WavelengthSampler>(&sampler, &context)),
+    };
     let filters = lens.as_ref().and_then(|p| faults.take(filters::filters_of(p, grid, resources))).flatten();
     // The lens is looked at last, since focus wants to know the others; its faults are told in their place.
     let mut behind = Faults::new();
-    let imager = imager.and_then(|p| behind.take(registry::build::<dyn Imager>(&p, &context)));
+    let imager = match earlier.imager {
+        Some(imager) => Some(imager),
+        None => imager.and_then(|p| behind.take(registry::build::<dyn Imager>(&p, &context))),
+    };
     let films = match several {
+        _ if earlier.films.is_some() => earlier.films,
         Some(items) => behind.take(films::several(items, params, &context)),
         None => film.and_then(|p| behind.take(registry::build::<dyn Film>(&p, &context))).map(films::one),
     };
@@ -274,7 +298,7 @@ fn all_stages(name: &str, text: String, params: &Params, resources: &dyn Resourc
         return Err(Fault::new("the scene is incomplete").into());
     };
     let (mut films, mut imager) = (films.unwrap_or_default(), imager);
-    if let Some(frame) = render.frame {
+    if let Some(frame) = render.frame.filter(|_| !earlier.is_check) {
         imager.set_frame(frame);
         films.iter_mut().for_each(|film| film.film.set_frame(frame));
     }
@@ -282,6 +306,10 @@ fn all_stages(name: &str, text: String, params: &Params, resources: &dyn Resourc
     let SetLens { lens, focus, warnings: of_focus } = lens;
     let mut warnings = warnings(&lens, grid);
     warnings.extend(of_focus);
+    for film in &films {
+        let named = |text: String| film.name.as_ref().map_or_else(|| text.clone(), |name| format!("{name}: {text}"));
+        warnings.extend(film.film.warnings().into_iter().map(named));
+    }
     let notes = lamps::notes(params);
     Ok(Scene {
         name: name.to_owned(),

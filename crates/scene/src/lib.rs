@@ -6,6 +6,7 @@
 mod advice;
 mod assemble;
 pub mod diagnostics;
+mod earlier;
 mod films;
 mod filters;
 mod focus;
@@ -22,5 +23,5 @@ pub use spectra_yaml as yaml;
 pub use focus::{Focus, FocusBy};
 pub use language::{Member, Series, SeriesKind, SweptAxis, load, load_series};
 pub use resources::FileResources;
-pub use scene::{ConePattern, Direction, NumberFamily, Output, RaysFigure, RenderSettings, Scene, SceneFilm};
+pub use scene::{ConePattern, Direction, FilmTime, NumberFamily, Output, RaysFigure, RenderSettings, Scene, SceneFilm};
 pub use schema::{FileKind, file_documentation, file_schema, shared_documentation};

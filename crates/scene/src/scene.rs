@@ -124,6 +124,23 @@ impl SceneFilm {
     }
 }
 
+/// How long a film was exposed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FilmTime {
+    /// Name of the film, where there are several.
+    pub name: Option<String>,
+    /// What it is called, in a few words.
+    pub film: String,
+    /// Exposure time, s: the meter's, where the camera meters.
+    pub time_s: f64,
+    /// That over the time that the frame was recorded for.
+    pub gain: f64,
+    /// Whether the meter chose it.
+    pub is_metered: bool,
+    /// The channels of the scene that are the film's own.
+    pub channels: Range<usize>,
+}
+
 /// A scene, ready to render.
 pub struct Scene {
     /// Name of its outputs: the file's name without its ending.
@@ -167,5 +184,28 @@ impl Scene {
             Some(first) => first.film.exposure_time_s(),
             None => self.imager.exposure_time_s().unwrap_or(1.0),
         }
+    }
+
+    /// How long each film was exposed that is on the imager while the frame `exposure` of the scene is recorded. The
+    /// exposure that a film got is that of the frame times its gain.
+    #[must_use]
+    pub fn film_times(&self, exposure: &ExposureFrame) -> Vec<FilmTime> {
+        let time = |film: &SceneFilm| {
+            let recorded_s = film.film.exposure_time_s();
+            let time_s = match &film.name {
+                // A film alone has the frame for itself.
+                None => film.film.metered_time_s(exposure),
+                Some(_) => film.film.metered_time_s(&film.exposure(exposure)),
+            };
+            FilmTime {
+                name: film.name.clone(),
+                film: film.film.name(),
+                time_s,
+                gain: time_s / recorded_s,
+                is_metered: film.film.is_metered() || time_s != recorded_s,
+                channels: film.channels.clone(),
+            }
+        };
+        self.films.iter().map(time).collect()
     }
 }

@@ -37,6 +37,9 @@ pub(crate) struct Effects {
     halation: Option<HalationBase>,
     /// RMS granularity at 48 um and the density 1.
     rms: Option<f64>,
+    /// Which piece of film it is.
+    piece: u64,
+    /// Seed of the grains, by the piece and the frame.
     seed: u64,
 }
 
@@ -68,12 +71,12 @@ impl Effects {
             faults.push(params.fault("stock", format!("{}: {error}", stock.name)));
         }
         let halation = halation(p, params, stock, &mut faults);
-        faults.into_result(Self { mtf, halation, rms, seed: p.grain_seed })
+        faults.into_result(Self { mtf, halation, rms, piece: p.grain_seed, seed: p.grain_seed })
     }
 
     /// Other grains for each frame of an animation.
     pub(crate) fn set_frame(&mut self, frame: u64) {
-        self.seed = seed_of_frame(self.seed, frame);
+        self.seed = seed_of_frame(self.piece, frame);
     }
 
     /// Where the pixels of a frame lie on the film.

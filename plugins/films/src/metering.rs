@@ -3,7 +3,8 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::frame::ExposureFrame;
-use spectra_core::params::{Fault, Params};
+use spectra_core::params::{Fault, Params, Positive, Time};
+use spectra_core::shutter;
 use spectra_core::spectral::{Channel, Grid};
 use spectra_film::print::metered_exposure_lx_s;
 use spectra_spectrum::constants::LUMINOUS_EFFICACY_LM_PER_W;
@@ -45,6 +46,21 @@ fn center() -> [f64; 2] {
 
 fn diameter() -> f64 {
     0.1
+}
+
+/// The time, s, that light is recorded for: the scene's, or 1 s where the camera meters. The meter's time does not depend on
+/// it. And whether a stated time has no effect.
+pub(crate) fn recorded_time_s(exposure: Option<Positive<Time>>, metering: Metering) -> (f64, bool) {
+    match (exposure, metering) {
+        (Some(time), Metering::Manual) => (time.s(), false),
+        (stated, _) => (1.0, stated.is_some()),
+    }
+}
+
+/// What is said where an exposure time is stated that the meter overrules.
+pub(crate) fn overruled(is_overruled: bool) -> Vec<String> {
+    let text = "film: the camera meters, so `exposure` has no effect; leave one of them out, `metering` or `exposure`";
+    if is_overruled { vec![text.to_owned()] } else { Vec::new() }
 }
 
 /// A meter, set for a speed.
@@ -89,6 +105,20 @@ impl Meter {
         }
         let target_lx_s = metered_exposure_lx_s(speed) * spectra_core::math::pow(2.0, stops);
         Ok(Self { metering, spot, target_lx_s })
+    }
+
+    /// Whether it chooses the exposure time.
+    pub(crate) fn is_on(&self) -> bool {
+        self.metering != Metering::Manual
+    }
+
+    /// How the film is exposed, where `exposure_time_s` is the scene's time.
+    pub(crate) fn words(&self, exposure_time_s: f64) -> String {
+        match self.metering {
+            Metering::Manual => format!("exposed for {}", shutter::words(exposure_time_s)),
+            Metering::Average => "metered (average)".to_owned(),
+            Metering::Spot => "metered (spot)".to_owned(),
+        }
     }
 
     /// The channel that it needs beside the film's: photopic, or with the response of the film's `own`.

@@ -1,7 +1,7 @@
 //! `film: stock`, film from a data file: exposed, developed, and printed, scanned or projected.
 
 use crate::effects::{Effects, HalationParams};
-use crate::metering::{METER, Meter, Metering, SpotParams};
+use crate::metering::{METER, Meter, Metering, SpotParams, overruled, recorded_time_s};
 use crate::view::{PaperParams, Picture, View, seen};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -59,7 +59,7 @@ use spectra_film::stock::{MeterResponse, Process, Stock};
 pub struct StockParams {
     /// Name of a bundled stock, such as `ilford-ortho-plus`, or a YAML file beside the scene.
     pub stock: String,
-    /// Exposure time, s if bare; may be left out where the camera meters.
+    /// Exposure time, s if bare; to be left out where the camera meters, which would not heed it.
     pub exposure: Option<Positive<Time>>,
     /// How the camera finds its exposure: `manual`, `average` or `spot`. A metered frame is exposed so much longer or
     /// shorter that what is metered gets the 10/S lx s of a mid gray.
@@ -111,6 +111,8 @@ pub struct StockFilm {
     emulsion: Emulsion,
     channels: Vec<Channel>,
     exposure_time_s: f64,
+    /// An exposure time was stated, and the camera meters.
+    is_overruled: bool,
     meter: Meter,
     effects: Effects,
     picture: Picture,
@@ -148,9 +150,20 @@ impl StockFilm {
         let seen = seen(&p, params, context.resources, &stock, &emulsion, metered_exposure_lx_s(speed))?;
         let own = channels.first().filter(|_| stock.meter == MeterResponse::Film).cloned();
         channels.extend(meter.channel(&context.grid, own.as_ref()));
-        let exposure_time_s = p.exposure.map_or(1.0, |t| t.s());
+        let (exposure_time_s, is_overruled) = recorded_time_s(p.exposure, p.metering);
         let (picture, words) = (seen.picture, seen.words);
-        Ok(Self { stock, development, emulsion, channels, exposure_time_s, meter, effects, picture, words })
+        Ok(Self {
+            stock,
+            development,
+            emulsion,
+            channels,
+            exposure_time_s,
+            is_overruled,
+            meter,
+            effects,
+            picture,
+            words,
+        })
     }
 
     /// The stock.
@@ -252,6 +265,18 @@ impl Film for StockFilm {
         self.exposure_time_s * self.meter.factor(exposure)
     }
 
+    fn is_metered(&self) -> bool {
+        self.meter.is_on()
+    }
+
+    fn warnings(&self) -> Vec<String> {
+        overruled(self.is_overruled)
+    }
+
+    fn name(&self) -> String {
+        self.stock.name.clone()
+    }
+
     fn develop(&self, exposure: &ExposureFrame) -> Result<DisplayPicture, String> {
         let planes = self.developed(exposure)?;
         let planes: Vec<&[f32]> = planes.iter().map(Vec::as_slice).collect();
@@ -275,8 +300,11 @@ impl Film for StockFilm {
         let curve = if assumed { " (curve assumed)" } else { "" };
         let iso = self.stock.speed_text().map_or(String::new(), |speed| format!(", {speed}"));
         format!(
-            "{}{iso}, {} development{curve}, exposed for {} s, {}",
-            self.stock.name, self.development, self.exposure_time_s, self.words
+            "{}{iso}, {} development{curve}, {}, {}",
+            self.stock.name,
+            self.development,
+            self.meter.words(self.exposure_time_s),
+            self.words
         )
     }
 }

@@ -1,6 +1,6 @@
 //! `film: three-strip`, three separation negatives behind a beam splitter, printed by dye transfer.
 
-use crate::metering::{METER, Meter, Metering, SpotParams};
+use crate::metering::{METER, Meter, Metering, SpotParams, overruled, recorded_time_s};
 use crate::stock::load_stock;
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -43,7 +43,7 @@ use spectra_spectrum::{Emission, Transmittance, find_emission_in, find_transmitt
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct ThreeStripParams {
-    /// Exposure time, s if bare; may be left out where the camera meters.
+    /// Exposure time, s if bare; to be left out where the camera meters, which would not heed it.
     pub exposure: Option<AboveZero<Time>>,
     /// How the camera finds its exposure: `manual`, `average` or `spot`. A metered frame is exposed so much longer or
     /// shorter that what is metered gets the 10/S lx s of a mid gray.
@@ -126,6 +126,8 @@ pub struct ThreeStrip {
     film: Emulsion,
     channels: Vec<Channel>,
     exposure_time_s: f64,
+    /// An exposure time was stated, and the camera meters.
+    is_overruled: bool,
     meter: Meter,
     positive: Positive,
     words: String,
@@ -192,8 +194,8 @@ impl ThreeStrip {
         let positive = positive.map_err(|e| params.fault("print", e.to_string()))?;
         let stocks: Vec<&str> = records.iter().map(|r| r.name.as_str()).collect();
         let words = format!("three-strip camera, ISO {iso} ({}), printed as {}", stocks.join(", "), print.name);
-        let exposure_time_s = p.exposure.map_or(1.0, |t| t.s());
-        Ok(Self { film, channels, exposure_time_s, meter, positive, words })
+        let (exposure_time_s, is_overruled) = recorded_time_s(p.exposure, p.metering);
+        Ok(Self { film, channels, exposure_time_s, is_overruled, meter, positive, words })
     }
 }
 
@@ -272,6 +274,18 @@ impl Film for ThreeStrip {
         self.exposure_time_s * self.meter.factor(exposure)
     }
 
+    fn is_metered(&self) -> bool {
+        self.meter.is_on()
+    }
+
+    fn warnings(&self) -> Vec<String> {
+        overruled(self.is_overruled)
+    }
+
+    fn name(&self) -> String {
+        "three-strip film".to_owned()
+    }
+
     fn develop(&self, exposure: &ExposureFrame) -> Result<DisplayPicture, String> {
         let factor = self.meter.factor(exposure);
         let negatives = RECORDS.iter().enumerate().map(|(i, name)| {
@@ -287,7 +301,7 @@ impl Film for ThreeStrip {
     }
 
     fn describe(&self) -> String {
-        format!("{}, exposed for {} s", self.words, self.exposure_time_s)
+        format!("{}, {}", self.words, self.meter.words(self.exposure_time_s))
     }
 }
 

@@ -24,6 +24,9 @@ pub(crate) struct BuildArguments {
     /// The program to write.
     #[arg(short, long, value_name = "FILE", default_value = "./spectra-mine")]
     pub output: PathBuf,
+    /// Write over a file that is no program with spectra in it.
+    #[arg(long)]
+    pub force: bool,
     /// A checkout of spectra to build with, in place of the sources in this program.
     #[arg(long, value_name = "PATH")]
     pub core: Option<PathBuf>,

@@ -24,7 +24,7 @@ use std::time::Instant;
 
 /// Builds it.
 pub(crate) fn build(arguments: &BuildArguments, unpack: Unpack, started: Instant) -> Outcome {
-    let output = output(&arguments.output)?;
+    let output = output(&arguments.output, arguments.force)?;
     let sources = Sources::find(arguments.core.as_deref(), unpack)?;
     let cargo = Cargo::find(arguments.offline)?;
     let plugins = plugins(&arguments.with, &cargo, &sources)?;
@@ -37,7 +37,8 @@ pub(crate) fn build(arguments: &BuildArguments, unpack: Unpack, started: Instant
         console::out(&format!("{} {}: {}\n", plugin.package, plugin.version, stages.join(", ")))?;
     }
     let took = crate::words::duration(started.elapsed().as_secs_f64());
-    console::out(&format!("{} is ready ({took}); it does what spectra does\n", output.display()))?;
+    let all: Vec<&str> = added.iter().flatten().map(String::as_str).collect();
+    console::out(&format!("{} is ready ({took}): all of spectra, and {}\n", output.display(), all.join(", ")))?;
     Ok(DONE)
 }
 
@@ -67,7 +68,7 @@ fn plugins(with: &[PathBuf], cargo: &Cargo, sources: &Sources) -> Result<Vec<Plu
 }
 
 /// Where the program goes; on Windows with its ending.
-fn output(path: &Path) -> Result<PathBuf, Failure> {
+fn output(path: &Path, force: bool) -> Result<PathBuf, Failure> {
     let mut path = path.to_owned();
     let ending = std::env::consts::EXE_EXTENSION;
     if !ending.is_empty() && path.extension().is_none() {
@@ -83,7 +84,35 @@ fn output(path: &Path) -> Result<PathBuf, Failure> {
     if !folder.is_dir() || path.file_name().is_none() {
         return fault("there is no such folder", "make it first");
     }
+    if !force && path.exists() && !is_ours(&path) {
+        return fault("that is no program that `spectra build` made", "another name, or --force to write over it");
+    }
     Ok(path)
+}
+
+/// What every program of ours holds: its version, and this.
+const MARK: &[u8] = b"spectra-program-made-by-spectra-build";
+
+/// Whether a file is a program with spectra in it. It is not run: nobody knows what it does.
+fn is_ours(path: &Path) -> bool {
+    use std::io::Read;
+    let mut head = [0; 4];
+    let is_program = |head: &[u8; 4]| {
+        // ELF; Mach-O of 64 bits, and of several machines; Windows.
+        matches!(
+            head,
+            [0x7f, b'E', b'L', b'F'] | [0xcf, 0xfa, 0xed, 0xfe] | [0xca, 0xfe, 0xba, 0xbe] | [b'M', b'Z', ..]
+        )
+    };
+    let Ok(mut file) = std::fs::File::open(path) else { return false };
+    if !path.is_file() || file.read_exact(&mut head).is_err() || !is_program(&head) {
+        return false;
+    }
+    let mut bytes = Vec::new();
+    // A program of ours is some ten MB.
+    let read = file.take(1 << 30).read_to_end(&mut bytes);
+    // The mark as it stands in this program's data is what is looked for.
+    read.is_ok() && bytes.windows(MARK.len()).any(|window| window == std::hint::black_box(MARK))
 }
 
 /// Gives the program its name, once it is whole.

@@ -25,7 +25,7 @@ const OURS: [(&str, &str); 3] = [
 ];
 
 /// Crates that no program holds: cargo would warn of a patch that it does not use.
-const NOT_IN_PROGRAMS: [&str; 1] = ["spectra-testing"];
+const NOT_IN_PROGRAMS: [&str; 2] = ["spectra-testing", "spectra-plugin-oiio"];
 
 impl Program {
     /// Writes it to the cache, one folder a set of plugins; what is there already and equal is left alone, so that cargo

@@ -93,7 +93,8 @@ fn manifest(name: &str, stage: Stage, sources: &Sources) -> Result<String, Failu
          [dev-dependencies]\n\
          spectra-testing = \"{wanted}\"\n\
          \n\
-         # Where this crate's own tests find spectra. `spectra build` brings its own and does not look here.\n\
+         # Where this crate's own tests find spectra on this machine: another path on another one. `spectra build` brings its\n\
+         # own sources and does not look here.\n\
          [patch.crates-io]\n\
          spectra-core = {{ path = {core} }}\n\
          spectra-testing = {{ path = {testing} }}\n\

@@ -3,8 +3,12 @@
 use super::picture::{Developed, attributes, pictures};
 use super::rays;
 use super::report::Report;
+use super::rescue;
+use super::target::Target;
 use crate::outcome::Failure;
-use spectra_film::write::{RawLens, write_atomically, write_dng, write_exr, write_png8, write_tiff16, write_tiled_exr};
+use spectra_film::write::{
+    RawLens, WriteError, write_atomically, write_dng, write_exr_times, write_png8, write_tiff16, write_tiled_exr_times,
+};
 use spectra_plot::PlotError;
 use spectra_scene::{Member, Output, RaysFigure, Scene};
 use std::fmt::Display;
@@ -16,7 +20,30 @@ use std::time::Instant;
 /// What goes into the folder of one picture, which is known to take files.
 #[derive(Clone, Debug)]
 pub(crate) struct Folder {
+    folder: PathBuf,
     files: Vec<(Output, PathBuf)>,
+}
+
+/// Why a file was not written.
+enum Trouble {
+    /// The system refused: the light is worth keeping elsewhere.
+    System(WriteError),
+    Other(Failure),
+}
+
+impl From<WriteError> for Trouble {
+    fn from(error: WriteError) -> Self {
+        match error {
+            WriteError::Io { .. } => Self::System(error),
+            WriteError::Format { .. } => Self::Other(error.into()),
+        }
+    }
+}
+
+impl From<Failure> for Trouble {
+    fn from(failure: Failure) -> Self {
+        Self::Other(failure)
+    }
 }
 
 /// What was made of one picture.
@@ -30,7 +57,13 @@ pub(crate) struct Written {
 impl Folder {
     /// Makes the folder where it does not exist, and sees to it that the files of the picture, and `report`, can be
     /// written there.
-    pub(crate) fn prepare(folder: &Path, scene: &Scene, member: &Member, report: &Path) -> Result<Self, Failure> {
+    pub(crate) fn prepare(
+        target: &Target,
+        scene: &Scene,
+        member: &Member,
+        report: Option<&Path>,
+    ) -> Result<Self, Failure> {
+        let folder = target.folder.as_path();
         std::fs::create_dir_all(folder).map_err(|error| refuse(folder, &error))?;
         let mut files: Vec<(Output, PathBuf)> = Vec::new();
         for output in &scene.output {
@@ -39,7 +72,7 @@ impl Folder {
             for film in films {
                 let film = film.map_or(String::new(), |name| format!("-{name}"));
                 let (part, ending) = ending(*output);
-                files.push((*output, folder.join(format!("{}{ending}", member.stem(&format!("{film}{part}"))))));
+                files.push((*output, target.path(member, &format!("{film}{part}"), ending)));
             }
         }
         for path in files.iter().map(|(_, path)| path.as_path()).chain([report]) {
@@ -54,7 +87,7 @@ impl Folder {
         let attempt = folder.join(format!(".spectra-{}-{number}.tmp", std::process::id()));
         std::fs::write(&attempt, b"spectra").map_err(|error| refuse(folder, &error))?;
         std::fs::remove_file(&attempt).map_err(|error| refuse(folder, &error))?;
-        Ok(Self { files })
+        Ok(Self { folder: folder.to_owned(), files })
     }
 
     /// The files of the picture.
@@ -70,33 +103,49 @@ impl Folder {
         if png.is_empty() { of(Output::Tiff).collect() } else { png }
     }
 
-    /// Writes all that the scene asks for. The picture is developed where it asks for one, or where `develop` does.
+    /// Writes all that the scene asks for. The picture is developed where it asks for one, or where `develop` does. Where
+    /// the system refuses, the light is kept elsewhere, and the failure says where.
     pub(crate) fn write(&self, report: &Report<'_>, develop: bool) -> Result<Written, Failure> {
-        let pictures = std::thread::scope(|scope| {
+        make_again(&self.folder);
+        let (exposure, pictures) = std::thread::scope(|scope| {
             // The picture is developed and packed while the light behind it is.
             let exposure = scope.spawn(|| self.write_exposure(report));
             let pictures = self.write_pictures(report, develop);
-            exposure.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)).and(pictures)
-        })?;
-        Ok(Written { paths: self.paths(), pictures })
+            (exposure.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)), pictures)
+        });
+        let has_light = matches!(exposure, Ok(true));
+        match exposure.and(pictures) {
+            Ok(pictures) => Ok(Written { paths: self.paths(), pictures }),
+            Err(Trouble::Other(failure)) => Err(failure),
+            Err(Trouble::System(error)) if has_light => Err(error.into()),
+            Err(Trouble::System(error)) => {
+                let path = match &error {
+                    WriteError::Io { path, .. } | WriteError::Format { path, .. } => path.clone(),
+                };
+                Err(Failure::Failed(format!("{error}; {}", rescue::keep(report, &path))))
+            }
+        }
     }
 
-    fn write_exposure(&self, report: &Report<'_>) -> Result<(), Failure> {
+    /// Writes the exposure; false where the scene does not ask for it.
+    fn write_exposure(&self, report: &Report<'_>) -> Result<bool, Trouble> {
+        let mut is_written = false;
         for (output, path) in self.files.iter().filter(|(o, _)| matches!(o, Output::Exr | Output::TiledExr)) {
             let begun = Instant::now();
-            let write = if *output == Output::Exr { write_exr } else { write_tiled_exr };
-            write(path, &report.rendering.exposure, &attributes(report))?;
+            let write = if *output == Output::Exr { write_exr_times } else { write_tiled_exr_times };
+            write(path, &report.rendering.exposure, &report.gains(), &attributes(report))?;
+            is_written = true;
             tracing::debug!(seconds = begun.elapsed().as_secs_f64(), "exposure written");
         }
-        Ok(())
+        Ok(is_written)
     }
 
-    fn write_pictures(&self, report: &Report<'_>, develop: bool) -> Result<Option<Vec<Developed>>, Failure> {
+    fn write_pictures(&self, report: &Report<'_>, develop: bool) -> Result<Option<Vec<Developed>>, Trouble> {
         for (output, path) in &self.files {
             if let Output::Rays(figure) = output {
                 rays::draw(report.scene, figure, report.isa)?.write_at(path, 1.0).map_err(|e| match e {
-                    PlotError::Write(error) => error.into(),
-                    PlotError::Ending { .. } => Failure::Failed(e.to_string()),
+                    PlotError::Write(error) => Trouble::from(error),
+                    PlotError::Ending { .. } => Failure::Failed(e.to_string()).into(),
                 })?;
             }
         }
@@ -116,7 +165,7 @@ impl Folder {
             Ok(pictures) => pictures,
             // Not every imager has something to show, and nobody has asked for it.
             Err(_) if !is_wanted => return Ok(None),
-            Err(text) => return Err(Failure::Failed(text)),
+            Err(text) => return Err(Failure::Failed(text).into()),
         };
         tracing::debug!(seconds = begun.elapsed().as_secs_f64(), "pictures developed");
         // Files and pictures come in the same order: for each kind of file, film after film.
@@ -147,8 +196,17 @@ fn raw_lens(scene: &Scene) -> RawLens {
 
 /// Writes a report of what was rendered.
 pub(crate) fn write_report(path: &Path, report: &serde_json::Value) -> Result<(), Failure> {
+    if let Some(folder) = path.parent() {
+        make_again(folder);
+    }
     let text = format!("{report:#}\n");
     Ok(write_atomically(path, |file| Ok(file.write_all(text.as_bytes())?))?)
+}
+
+/// Makes a folder that was there when the render began, and has gone since. Where it cannot be made, the file that does not
+/// find it says so.
+fn make_again(folder: &Path) {
+    let _ = std::fs::create_dir_all(folder);
 }
 
 /// What tells a file from the others of its picture, and its ending.

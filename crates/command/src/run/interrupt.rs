@@ -1,15 +1,20 @@
 //! Ctrl-C: once to stop and keep what there is, twice to give it up.
 
+use super::leftover;
 use crate::console;
-use crate::outcome::INTERRUPTED;
 use spectra_render::Control;
 use std::path::Path;
-use std::sync::atomic::{AtomicU32, Ordering::SeqCst};
+use std::sync::atomic::{AtomicU8, AtomicU32, Ordering::SeqCst};
 use std::sync::{Arc, Mutex, PoisonError};
+
+/// SIGINT, as Ctrl-C sends it.
+const CTRL_C: u8 = 2;
 
 /// How often the person at the keyboard (or the system, by SIGTERM or SIGHUP) asked for an end.
 pub(crate) struct Interrupt {
     count: Arc<AtomicU32>,
+    /// The signal that asked first.
+    signal: Arc<AtomicU8>,
     /// The render that goes on.
     control: Arc<Mutex<Arc<Control>>>,
 }
@@ -28,55 +33,46 @@ impl Interrupt {
     pub(crate) fn happened(&self) -> bool {
         self.count.load(SeqCst) > 0
     }
+
+    /// The exit code of what was interrupted: 128 + the signal, as shells have it.
+    pub(crate) fn code(&self) -> u8 {
+        128 + self.signal.load(SeqCst)
+    }
 }
 
 /// Listens from now on. Given up, nothing half written stays in `folder`.
 pub(crate) fn listen(control: &Arc<Control>, folder: &Path) -> Interrupt {
-    let count = Arc::new(AtomicU32::new(0));
+    let (count, first) = (Arc::new(AtomicU32::new(0)), Arc::new(AtomicU8::new(CTRL_C)));
     let control = Arc::new(Mutex::new(Arc::clone(control)));
-    let (counter, current, folder) = (Arc::clone(&count), Arc::clone(&control), folder.to_owned());
-    let listening = ctrlc::set_handler(move || {
-        if counter.fetch_add(1, SeqCst) == 0 {
+    let (counter, said, current, folder) =
+        (Arc::clone(&count), Arc::clone(&first), Arc::clone(&control), folder.to_owned());
+    let listening = on_signal(move |signal| {
+        if counter.load(SeqCst) == 0 {
+            said.store(signal, SeqCst);
+            counter.store(1, SeqCst);
             current.lock().unwrap_or_else(PoisonError::into_inner).stop();
         } else {
-            remove_temporary(&folder);
-            std::process::exit(i32::from(INTERRUPTED));
+            leftover::remove_own(&folder);
+            std::process::exit(i32::from(128 + signal));
         }
     });
     if let Err(error) = listening {
         console::warning(&format!("Ctrl-C will not keep what was rendered: {error}"));
     }
-    Interrupt { count, control }
+    Interrupt { count, signal: first, control }
 }
 
-/// Removes the files that this process was writing: `.NAME.PROCESS-NUMBER.tmp`.
-fn remove_temporary(folder: &Path) {
-    let mark = format!(".{}-", std::process::id());
-    for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
-        let name = entry.file_name();
-        let name = name.to_string_lossy();
-        if name.starts_with('.') && name.ends_with(".tmp") && name.contains(&mark) {
-            // The process ends here; there is nobody to tell.
-            let _ = std::fs::remove_file(entry.path());
-        }
-    }
+/// Calls `heard` with the number of each signal that asks for an end, on a thread of its own.
+#[cfg(unix)]
+fn on_signal(mut heard: impl FnMut(u8) + Send + 'static) -> std::io::Result<()> {
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+    let mut signals = signal_hook::iterator::Signals::new([SIGINT, SIGTERM, SIGHUP])?;
+    let listen = move || signals.forever().for_each(|signal| heard(u8::try_from(signal).unwrap_or(CTRL_C)));
+    std::thread::Builder::new().name("signals".to_owned()).spawn(listen).map(drop)
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn only_own_temporary_files_are_removed() {
-        let folder = std::env::temp_dir().join(format!("spectra-interrupt-{}", std::process::id()));
-        std::fs::create_dir_all(&folder).expect("a folder");
-        let own = format!(".a.exr.{}-0.tmp", std::process::id());
-        let names = [own.as_str(), ".a.exr.1-0.tmp", "a.exr", "a.tmp"];
-        for name in names {
-            std::fs::write(folder.join(name), "").expect("written");
-        }
-        remove_temporary(&folder);
-        assert_eq!(names.map(|name| folder.join(name).exists()), [false, true, true, true]);
-        std::fs::remove_dir_all(&folder).expect("removed");
-    }
+/// Calls `heard` where the person at the keyboard asks for an end, on a thread of its own.
+#[cfg(not(unix))]
+fn on_signal(mut heard: impl FnMut(u8) + Send + 'static) -> Result<(), ctrlc::Error> {
+    ctrlc::set_handler(move || heard(CTRL_C))
 }

@@ -4,28 +4,35 @@ mod contact;
 mod folder;
 mod frames;
 mod interrupt;
+mod leftover;
+mod limit;
 mod picture;
 mod progress;
 mod rays;
 mod report;
+mod rescue;
 mod series;
+mod summary;
+mod target;
 
 use crate::arguments::Run;
 use crate::console;
 use crate::memory;
-use crate::outcome::{DONE, Failure, INTERRUPTED, Outcome};
+use crate::outcome::{DONE, Failure, Outcome};
 use folder::{Folder, write_report};
 pub(crate) use frames::Frames;
+use limit::SetUp;
 use progress::Progress;
 use report::Report;
 use serde_json::json;
-pub(crate) use series::checked;
+pub(crate) use series::{Checking, checked};
 use spectra_core::Isa;
 use spectra_render::{Control, RenderError, Renderer, Rendering};
 use spectra_scene::{Scene, SeriesKind, diagnostics};
 use std::sync::Arc;
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::time::{Duration, Instant};
+use target::Target;
 
 /// How often the progress is looked at, and Ctrl-C with it.
 const TICK: Duration = Duration::from_millis(50);
@@ -48,26 +55,31 @@ pub(crate) fn run(arguments: &Run, isa: Isa, started: Instant) -> Outcome {
 }
 
 fn render_scene(arguments: &Run, isa: Isa, started: Instant) -> Outcome {
-    let series = spectra_scene::load_series(&arguments.scene, &overrides(arguments))?;
     let limit_s = arguments.time_limit.map(f64::from);
     let deadline = limit_s.and_then(|s| started.checked_add(Duration::try_from_secs_f64(s).ok()?));
+    let set_up = SetUp::watched(deadline, limit_s.unwrap_or_default(), arguments.json, arguments.quiet);
+    let target = Target::of(&arguments.output)?;
+    let series = spectra_scene::load_series(&arguments.scene, &overrides(arguments))?;
     let threads = arguments.threads.map_or_else(processors, usize::from);
     if series.kind() != SeriesKind::Single {
-        return series::render(&series, arguments, threads, isa, deadline);
+        return series::render(&series, arguments, &target, threads, isa, deadline, set_up);
     }
     frames::refuse_without_series(arguments)?;
     let mut scene = series.scene(0)?;
     scene.warnings.splice(0..0, series.warnings().iter().cloned());
+    target.narrow(&mut scene)?;
     tracing::debug!(seconds = started.elapsed().as_secs_f64(), "scene loaded");
     // What cannot be rendered leaves no folder behind.
     let renderer = Renderer::new(&scene, isa).map_err(|error| refused(error, &scene))?;
     tracing::debug!(seconds = started.elapsed().as_secs_f64(), "ready to render");
     memory::suffices_for(&scene)?;
     // Before any light is traced: an hour's picture must not end without a place to go.
-    let report_path = arguments.output.join("render.json");
-    let folder = Folder::prepare(&arguments.output, &scene, &series.member(0), &report_path)?;
+    set_up.done();
+    let report_path = target.report(&series.member(0).stem(""));
+    let folder = Folder::prepare(&target, &scene, &series.member(0), report_path.as_deref())?;
+    leftover::sweep(&target.folder, series.name());
     let control = Arc::new(deadline.map_or_else(Control::new, Control::until));
-    let interrupt = interrupt::listen(&control, &arguments.output);
+    let interrupt = interrupt::listen(&control, &target.folder);
     let mut progress = Progress::new(arguments, deadline);
     for note in &scene.lens.notes {
         progress.note(note);
@@ -95,19 +107,29 @@ fn render_scene(arguments: &Run, isa: Isa, started: Instant) -> Outcome {
     for warning in &rendering.warnings {
         progress.warning(warning);
     }
-    let report = Report { scene: &scene, arguments, rendering: &rendering, seconds, threads, isa, attributes: &[] };
+    let times = scene.film_times(&rendering.exposure);
+    let report = Report {
+        scene: &scene,
+        arguments,
+        rendering: &rendering,
+        times: &times,
+        seconds,
+        threads,
+        isa,
+        attributes: &[],
+    };
     let mut paths = folder.write(&report, false)?.paths;
-    paths.push(report_path.clone());
-    write_report(&report_path, &report.to_json(&paths))?;
-    for path in paths {
-        progress.written(&path);
+    if let Some(report_path) = report_path {
+        paths.push(report_path.clone());
+        write_report(&report_path, &report.to_json(&paths))?;
     }
+    progress.written(&paths);
     let interrupted = rendering.partial && interrupt.happened();
     progress.done(&report, interrupted);
     if let Some(text) = failure {
         return Err(Failure::Failed(text));
     }
-    Ok(if interrupted { INTERRUPTED } else { DONE })
+    Ok(if interrupted { interrupt.code() } else { DONE })
 }
 
 /// All that is set on the command line, as texts `path=value`; the options come after what `--set` says.

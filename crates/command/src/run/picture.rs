@@ -2,7 +2,7 @@
 
 use super::report::Report;
 use spectra_core::frame::DisplayPicture;
-use spectra_scene::{Scene, SceneFilm};
+use spectra_scene::{FilmTime, Scene, SceneFilm};
 
 /// A picture, with the name of its film where there are several.
 pub(crate) type Developed = (Option<String>, DisplayPicture);
@@ -31,6 +31,18 @@ pub(crate) fn films(scene: &Scene) -> Option<String> {
     (!all.is_empty()).then(|| all.join("; "))
 }
 
+/// How long light fell on the film, s with all digits; of several films one each, by their names.
+fn exposure_times(report: &Report<'_>) -> String {
+    if report.times.is_empty() {
+        return format!("{} s", report.scene.exposure_time_s());
+    }
+    let one = |time: &FilmTime| match &time.name {
+        None => format!("{} s", time.time_s),
+        Some(name) => format!("{name}: {} s", time.time_s),
+    };
+    report.times.iter().map(one).collect::<Vec<_>>().join(", ")
+}
+
 /// Where a pixel lies on the film, for whoever measures in the EXR.
 const COORDINATES: &str = "upright picture; +x of the film is to the left, +y is down: column = (0.5 - x / width) * columns, \
                            row = (0.5 + y / height) * rows";
@@ -50,7 +62,7 @@ pub(crate) fn attributes(report: &Report<'_>) -> Vec<(String, String)> {
         ("spectra:focus", scene.focus.to_string()),
         ("spectra:film size", format!("{} x {} mm", size.width_mm, size.height_mm)),
         ("spectra:film coordinates", COORDINATES.to_owned()),
-        ("spectra:exposure time", format!("{} s", scene.exposure_time_s())),
+        ("spectra:exposure time", exposure_times(report)),
     ];
     let patent = lens.patent.clone().map(|patent| ("spectra:lens patent", patent));
     let source = lens.source.clone().map(|source| ("spectra:lens source", source));

@@ -3,14 +3,16 @@
 use super::direction;
 use super::picture::films;
 use super::report::Report;
+use super::series::Checking;
+use super::summary;
 use crate::arguments::Run;
 use crate::{console, words};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::{Value, json};
-use spectra_core::{Isa, Loss};
+use spectra_core::Isa;
 use spectra_render::Control;
 use spectra_scene::Scene;
-use std::path::Path;
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 /// Who listens.
@@ -114,7 +116,9 @@ impl Progress {
         match &self.listener {
             Listener::Json => self.event(event),
             Listener::Quiet => {}
-            Listener::Bar(_) | Listener::Lines => console::note(text),
+            // Above the bar, which is drawn again below it.
+            Listener::Bar(bar) => bar.suspend(|| console::note(text)),
+            Listener::Lines => console::note(text),
         }
     }
 
@@ -123,7 +127,28 @@ impl Progress {
         match &self.listener {
             Listener::Json => self.event(json!({ "event": "warning", "message": text })),
             Listener::Quiet => {}
-            Listener::Bar(_) | Listener::Lines => console::warning(text),
+            Listener::Bar(bar) => bar.suspend(|| console::warning(text)),
+            Listener::Lines => console::warning(text),
+        }
+    }
+
+    /// How far the check of all pictures is, before any is rendered.
+    pub(crate) fn checking(&mut self, checking: Checking) {
+        let elapsed = self.said.elapsed();
+        match &self.listener {
+            Listener::Bar(bar) => {
+                bar.set_position((checking.done as u64 * u64::from(BAR_STEPS)) / checking.of.max(1) as u64);
+                bar.set_message(format!("{} of {} pictures checked", checking.done, checking.of));
+            }
+            Listener::Json if elapsed >= JSON_EVERY => {
+                self.said = Instant::now();
+                self.event(json!({ "event": "check", "done": checking.done, "of": checking.of }));
+            }
+            Listener::Lines if elapsed >= LINE_EVERY => {
+                self.said = Instant::now();
+                console::note(&format!("{} of {} pictures checked", checking.done, checking.of));
+            }
+            Listener::Json | Listener::Lines | Listener::Quiet => {}
         }
     }
 
@@ -257,13 +282,20 @@ impl Progress {
         }
     }
 
-    /// A file is complete.
-    pub(crate) fn written(&self, path: &Path) {
+    /// Files are complete.
+    pub(crate) fn written(&self, paths: &[PathBuf]) {
         match &self.listener {
-            Listener::Json => self.event(json!({ "event": "written", "path": path.display().to_string() })),
+            Listener::Json => {
+                for path in paths {
+                    self.event(json!({ "event": "written", "path": path.display().to_string() }));
+                }
+            }
             Listener::Quiet => {}
             // A reader that has gone away misses the names, not the files.
-            Listener::Bar(_) | Listener::Lines => drop(console::out(&format!("wrote {}\n", path.display()))),
+            Listener::Bar(_) | Listener::Lines if !paths.is_empty() => {
+                drop(console::out(&format!("wrote {}\n", summary::files(paths))));
+            }
+            Listener::Bar(_) | Listener::Lines => {}
         }
     }
 
@@ -281,7 +313,7 @@ impl Progress {
                 "interrupted": interrupted,
             })),
             Listener::Quiet => {}
-            Listener::Bar(_) | Listener::Lines => console::note(&summary(report)),
+            Listener::Bar(_) | Listener::Lines => console::note(&summary::of(report)),
         }
     }
 }
@@ -291,30 +323,4 @@ fn bar() -> ProgressBar {
     let style = ProgressStyle::with_template("[{bar:32}] {percent:>3} %  {msg}").expect("the template is a constant");
     bar.set_style(style.progress_chars("=> "));
     bar
-}
-
-/// `157 286 400 rays in 41 s, 3.8 million rays/s; 61 % lost: vignetted 55 %, missed 6.0 %`.
-fn summary(report: &Report<'_>) -> String {
-    let rendering = report.rendering;
-    let mut text = format!(
-        "{} rays in {}, {}",
-        words::count(rendering.rays),
-        words::duration(report.seconds),
-        words::rate(report.rays_per_second())
-    );
-    let mut causes: Vec<(u64, &str)> = Loss::ALL.iter().map(|c| (rendering.losses.of_cause(*c), c.name())).collect();
-    causes.retain(|(many, _)| *many > 0);
-    causes.sort_by_key(|(many, _)| std::cmp::Reverse(*many));
-    if !causes.is_empty() {
-        let parts: Vec<String> = causes
-            .iter()
-            .map(|(many, name)| format!("{} {}", name.replace('_', " "), words::percent(*many, rendering.rays)))
-            .collect();
-        let lost = words::percent(rendering.losses.total(), rendering.rays);
-        text.push_str(&format!("; {lost} ended on the way: {}", parts.join(", ")));
-    }
-    if rendering.partial {
-        text.push_str("\npartial: stopped before all samples were taken");
-    }
-    text
 }

@@ -1,4 +1,4 @@
-//! `render.json`: how a picture came about.
+//! `SCENE.json`: how a picture came about.
 
 use super::direction;
 use super::picture::films;
@@ -7,7 +7,7 @@ use crate::version;
 use serde_json::{Map, Value, json};
 use spectra_core::{Isa, Loss};
 use spectra_render::Rendering;
-use spectra_scene::{FocusBy, Scene};
+use spectra_scene::{FilmTime, FocusBy, Scene};
 use std::path::PathBuf;
 
 /// All there is to say of a render.
@@ -15,6 +15,8 @@ pub(crate) struct Report<'a> {
     pub scene: &'a Scene,
     pub arguments: &'a Run,
     pub rendering: &'a Rendering,
+    /// How long each film was exposed.
+    pub times: &'a [FilmTime],
     pub seconds: f64,
     pub threads: usize,
     pub isa: Isa,
@@ -28,7 +30,16 @@ impl Report<'_> {
         if self.seconds > 0.0 { self.rendering.rays as f64 / self.seconds } else { 0.0 }
     }
 
-    /// The content of `render.json`.
+    /// By what the values of each channel are to be multiplied, to be what the films got.
+    pub(crate) fn gains(&self) -> Vec<f64> {
+        let mut gains = vec![1.0; self.rendering.exposure.channels.len()];
+        for time in self.times {
+            gains[time.channels.clone()].fill(time.gain);
+        }
+        gains
+    }
+
+    /// The content of `SCENE.json`.
     pub(crate) fn to_json(&self, files: &[PathBuf]) -> Value {
         let Self { scene, rendering, .. } = self;
         let settings = &scene.render;
@@ -58,8 +69,8 @@ impl Report<'_> {
             "width_mm": size.width_mm,
             "height_mm": size.height_mm,
             "channels": channels,
-            "exposure_time_s": scene.exposure_time_s(),
-            "metered_time_s": self.metered_times_s(),
+            "exposure_time_s": self.exposure_time_s(),
+            "metered_time_s": self.film_times_s(|time| Some(time.time_s)),
             "source": scene.source.describe(),
             "focus": focus(scene),
             "lens": { "name": scene.lens.name, "patent": scene.lens.patent, "losses": scene.lens.losses(), "notes": scene.lens.notes },
@@ -70,16 +81,18 @@ impl Report<'_> {
         })
     }
 
-    /// What the camera's meter chose: a number, of several films one each by their names.
-    fn metered_times_s(&self) -> Value {
-        let exposure = &self.rendering.exposure;
+    /// How long light fell on the film: a number, of several films one each by their names.
+    fn exposure_time_s(&self) -> Value {
+        if self.times.is_empty() { self.scene.exposure_time_s().into() } else { self.film_times_s(|t| Some(t.time_s)) }
+    }
+
+    /// A figure of the films: a number, of several films one each by their names; null where there is no film.
+    fn film_times_s(&self, figure: impl Fn(&FilmTime) -> Option<f64>) -> Value {
         let mut by_name = Map::new();
-        for film in &self.scene.films {
-            match &film.name {
-                None => return film.film.metered_time_s(exposure).into(),
-                Some(name) => {
-                    by_name.insert(name.clone(), film.film.metered_time_s(&film.exposure(exposure)).into());
-                }
+        for time in self.times {
+            match &time.name {
+                None => return figure(time).into(),
+                Some(name) => drop(by_name.insert(name.clone(), figure(time).into())),
             }
         }
         if by_name.is_empty() { Value::Null } else { by_name.into() }

@@ -3,11 +3,14 @@
 use super::contact::Contact;
 use super::folder::{Folder, write_report};
 use super::interrupt::{self, Interrupt};
+use super::leftover;
+use super::limit::SetUp;
 use super::progress::{Place, Progress};
 use super::report::Report;
+use super::target::Target;
 use super::{failed, refused, watch};
 use crate::arguments::Run;
-use crate::outcome::{DONE, Failure, INTERRUPTED, Outcome};
+use crate::outcome::{DONE, Failure, Outcome};
 use crate::{memory, version, words};
 use serde_json::{Map, Value, json};
 use spectra_core::Isa;
@@ -17,10 +20,13 @@ use spectra_scene::{Member, Scene, Series, SeriesKind};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::ScopedJoinHandle;
 use std::time::{Duration, Instant};
 
-/// `series.json` is brought up to date in this time, so that little of it is lost with the machine.
+/// `SCENE-series.json` is brought up to date in this time, so that little of it is lost with the machine.
 const REPORT_EVERY: Duration = Duration::from_secs(10);
+/// How often it is said how far the check of a series is.
+const LOOK_EVERY: Duration = Duration::from_millis(5);
 /// Most scenes that are assembled at one time.
 const AT_ONCE: usize = 8;
 
@@ -36,19 +42,33 @@ struct Planned {
 }
 
 /// Renders all pictures of a series that are asked for.
-pub(super) fn render(series: &Series, arguments: &Run, threads: usize, isa: Isa, deadline: Option<Instant>) -> Outcome {
+pub(super) fn render(
+    series: &Series,
+    arguments: &Run,
+    target: &Target,
+    threads: usize,
+    isa: Isa,
+    deadline: Option<Instant>,
+    set_up: SetUp,
+) -> Outcome {
     let chosen = chosen(series, arguments)?;
-    let report_path = arguments.output.join("series.json");
+    let Some(report_path) = target.report(&format!("{}-series", series.name())) else {
+        let text = format!("--output {}: that is one picture", arguments.output.display());
+        return Err(Failure::Input(format!("{text}, and this scene stands for {}: name a folder", series.count())));
+    };
     let mut progress = Progress::new(arguments, deadline);
-    let plan = |index: usize, scene: Scene| -> Result<Planned, Failure> {
+    let plan = |index: usize, scene: &Scene| -> Result<Planned, Failure> {
         let member = series.member(index);
-        let folder = Folder::prepare(&arguments.output, &scene, &member, &report_path)?;
+        let folder = Folder::prepare(target, scene, &member, Some(&report_path))?;
         let size = scene.imager.size();
         let films: Vec<Option<String>> = scene.films.iter().map(|film| film.name.clone()).collect();
         let films = if films.is_empty() { vec![None] } else { films };
-        Ok(Planned { index, member, folder, size_px: [size.width_px, size.height_px], films, warnings: scene.warnings })
+        let warnings = scene.warnings.clone();
+        Ok(Planned { index, member, folder, size_px: [size.width_px, size.height_px], films, warnings })
     };
-    let planned = checked(series, &chosen, isa, threads, &plan)?;
+    let planned = checked(series, &chosen, isa, threads, &plan, &mut |checking| progress.checking(checking))?;
+    set_up.done();
+    leftover::sweep(&target.folder, series.name());
     let mut said: Vec<&String> = Vec::new();
     for warning in series.warnings().iter().chain(planned.iter().flat_map(|p| &p.warnings)) {
         if !said.contains(&warning) {
@@ -57,7 +77,7 @@ pub(super) fn render(series: &Series, arguments: &Run, threads: usize, isa: Isa,
         }
     }
     let control = Arc::new(deadline.map_or_else(Control::new, Control::until));
-    let interrupt = interrupt::listen(&control, &arguments.output);
+    let interrupt = interrupt::listen(&control, &target.folder);
     progress.series(
         &format!("{}: {}", series.name(), what(series, planned.len())),
         json!({ "event": "series", "scene": series.name(), "count": series.count(), "pictures": planned.len() }),
@@ -72,6 +92,8 @@ pub(super) fn render(series: &Series, arguments: &Run, threads: usize, isa: Isa,
         earlier: if arguments.skip_existing { earlier(&report_path) } else { Map::new() },
         contact: contact(series, &planned),
         done: Vec::new(),
+        folder: target.folder.clone(),
+        other: None,
         report_path,
         reported: Instant::now(),
         begun: Instant::now(),
@@ -88,16 +110,14 @@ pub(super) fn render(series: &Series, arguments: &Run, threads: usize, isa: Isa,
     // What is done is kept and told of, also where the next one failed.
     let paths = work.finish(result.as_ref().is_ok_and(|whole| *whole));
     let whole = result?;
-    for path in paths? {
-        progress.written(&path);
-    }
+    progress.written(&paths?);
     let stopped = !whole && interrupt.happened();
     let (done, of) = (work.done.len(), planned.len());
     progress.series(
         &format!("{done} of {of} pictures in {}", words::duration(work.begun.elapsed().as_secs_f64())),
         json!({ "event": "end", "done": done, "of": of, "interrupted": stopped }),
     );
-    Ok(if stopped { INTERRUPTED } else { DONE })
+    Ok(if stopped { interrupt.code() } else { DONE })
 }
 
 /// Places in the series of the pictures that are asked for.
@@ -125,7 +145,17 @@ fn what(series: &Series, pictures: usize) -> String {
     }
 }
 
-/// Assembles and checks every picture, on several threads, and gives what `keep` makes of each.
+/// How far the check of a series is.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Checking {
+    /// Pictures that were looked at.
+    pub done: usize,
+    /// How many there are.
+    pub of: usize,
+}
+
+/// Assembles and checks every picture, on several threads, and gives what `keep` makes of each. `tick` is called now and
+/// then meanwhile.
 ///
 /// # Errors
 /// Everything that is wrong with any of them; a fault that several have is told once.
@@ -134,27 +164,39 @@ pub(crate) fn checked<T: Send>(
     indices: &[usize],
     isa: Isa,
     threads: usize,
-    keep: &(impl Fn(usize, Scene) -> Result<T, Failure> + Sync),
+    keep: &(impl Fn(usize, &Scene) -> Result<T, Failure> + Sync),
+    tick: &mut dyn FnMut(Checking),
 ) -> Result<Vec<T>, Failure> {
     let results: Vec<Mutex<Option<Result<T, Failure>>>> = indices.iter().map(|_| Mutex::new(None)).collect();
-    let next = AtomicUsize::new(0);
-    let check = |index: usize| -> Result<T, Failure> {
-        let scene = series.scene(index)?;
+    let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
+    // Pictures of a series mostly differ in little: what they share is made once a thread.
+    let check = |index: usize, other: &mut Option<Scene>| -> Result<T, Failure> {
+        let scene = series.looked_at(index, other.take())?;
         // What shows only once the stages are put together.
-        Renderer::new(&scene, isa).map_err(|error| refused(error, &scene))?;
+        Renderer::check(&scene, isa).map_err(|error| refused(error, &scene))?;
         memory::suffices_for(&scene)?;
-        keep(index, scene)
+        let kept = keep(index, &scene);
+        *other = Some(scene);
+        kept
     };
     std::thread::scope(|scope| {
-        for _ in 0..threads.clamp(1, AT_ONCE.min(indices.len().max(1))) {
-            scope.spawn(|| {
-                while let Some((index, result)) = {
-                    let at = next.fetch_add(1, Relaxed);
-                    indices.get(at).zip(results.get(at))
-                } {
-                    *result.lock().unwrap_or_else(PoisonError::into_inner) = Some(check(*index));
-                }
-            });
+        let workers: Vec<_> = (0..threads.clamp(1, AT_ONCE.min(indices.len().max(1))))
+            .map(|_| {
+                scope.spawn(|| {
+                    let mut other = None;
+                    while let Some((index, result)) = {
+                        let at = next.fetch_add(1, Relaxed);
+                        indices.get(at).zip(results.get(at))
+                    } {
+                        *result.lock().unwrap_or_else(PoisonError::into_inner) = Some(check(*index, &mut other));
+                        done.fetch_add(1, Relaxed);
+                    }
+                })
+            })
+            .collect();
+        while !workers.iter().all(ScopedJoinHandle::is_finished) {
+            std::thread::sleep(LOOK_EVERY);
+            tick(Checking { done: done.load(Relaxed), of: indices.len() });
         }
     });
     let mut kept = Vec::with_capacity(indices.len());
@@ -221,7 +263,10 @@ struct Work<'a> {
     interrupt: &'a Interrupt,
     earlier: Map<String, Value>,
     contact: Option<Contact>,
-    /// What is said of each picture in `series.json`.
+    folder: PathBuf,
+    /// The picture before: what the next one shares with it is not made again.
+    other: Option<Scene>,
+    /// What is said of each picture in `SCENE-series.json`.
     done: Vec<Value>,
     report_path: PathBuf,
     reported: Instant,
@@ -245,7 +290,7 @@ impl Work<'_> {
             return Ok(true);
         }
         // Not kept from the check: a thousand scenes would not fit into memory.
-        let scene = self.series.scene(picture.index)?;
+        let scene = self.series.scene_after(picture.index, self.other.take())?;
         let control = Arc::new(self.deadline.map_or_else(Control::new, Control::until));
         self.interrupt.stops(&control);
         let renderer = Renderer::new(&scene, self.isa).map_err(failed)?;
@@ -262,10 +307,12 @@ impl Work<'_> {
             progress.warning(warning);
         }
         let attributes = attributes(self.series, &picture.member);
+        let times = scene.film_times(&rendering.exposure);
         let report = Report {
             scene: &scene,
             arguments: self.arguments,
             rendering: &rendering,
+            times: &times,
             seconds,
             threads: self.threads,
             isa: self.isa,
@@ -281,10 +328,10 @@ impl Work<'_> {
         if let (Some(contact), Some(pictures)) = (&mut self.contact, &written.pictures) {
             contact.put(place.index, pictures);
         }
-        for path in &written.paths {
-            progress.written(path);
-        }
+        progress.written(&written.paths);
         progress.done(&report, false);
+        drop(renderer);
+        self.other = Some(scene);
         if self.reported.elapsed() >= REPORT_EVERY {
             self.reported = Instant::now();
             write_report(&self.report_path, &self.report(&[], false))?;
@@ -307,7 +354,7 @@ impl Work<'_> {
         }
     }
 
-    /// The content of `series.json`.
+    /// The content of `SCENE-series.json`.
     fn report(&self, contact: &[PathBuf], whole: bool) -> Value {
         let mut report = json!({
             "scene": self.series.name(),
@@ -348,7 +395,7 @@ impl Work<'_> {
         if let Some(contact) = &self.contact {
             for film in contact.films() {
                 let part = film.as_ref().map_or(String::new(), |film| format!("-{film}"));
-                let path = self.arguments.output.join(format!("{}-contact{part}.png", self.series.name()));
+                let path = self.folder.join(format!("{}-contact{part}.png", self.series.name()));
                 contact.write(film.as_deref(), &path, &format!("{}: contact sheet", self.series.name()))?;
                 paths.push(path);
             }

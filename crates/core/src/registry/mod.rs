@@ -288,7 +288,9 @@ fn unknown_kind(params: &Params, stage: &str, names: &[&str]) -> Fault {
             let near = crate::params::nearest(kind, names.iter().copied());
             let hint = match near {
                 Some(near) => format!("did you mean `{near}`? Known: {known}"),
-                None => format!("known: {known}"),
+                None => format!(
+                    "known: {known}. Is it a plugin's? `spectra build --with FOLDER` makes a program that has it"
+                ),
             };
             params.fault("kind", format!("unknown {stage} `{kind}`")).hint(hint)
         }

@@ -20,8 +20,58 @@ use std::path::Path;
 /// [`WriteError`]: the system refuses, the frame has no channel, or an attribute has a name that is empty,
 /// longer than 255 bytes, given twice, or reserved by OpenEXR.
 pub fn write_exr(path: &Path, frame: &ExposureFrame, attributes: &[(String, String)]) -> Result<(), WriteError> {
+    write_exr_times(path, frame, &[], attributes)
+}
+
+/// The same with the values of each channel times a gain, in the order of the channels; 1 where there is none.
+///
+/// # Errors
+/// As [`write_exr`].
+pub fn write_exr_times(
+    path: &Path,
+    frame: &ExposureFrame,
+    gains: &[f64],
+    attributes: &[(String, String)],
+) -> Result<(), WriteError> {
+    write(path, frame, attributes, &|at, values| FlatSamples::F32(times(values, gain(gains, at))))
+}
+
+/// The same with 16 bits a value, in half the space: three digits, up to 65 504 (more becomes infinite).
+///
+/// # Errors
+/// As [`write_exr`].
+pub fn write_half_exr(
+    path: &Path,
+    frame: &ExposureFrame,
+    gains: &[f64],
+    attributes: &[(String, String)],
+) -> Result<(), WriteError> {
+    let half = |value: f32| exr::prelude::f16::from_f32(value);
+    write(path, frame, attributes, &|at, values| {
+        FlatSamples::F16(times(values, gain(gains, at)).into_iter().map(half).collect())
+    })
+}
+
+fn gain(gains: &[f64], channel: usize) -> f64 {
+    gains.get(channel).copied().unwrap_or(1.0)
+}
+
+/// Values times a gain; with a gain of 1 they keep every bit.
+pub(super) fn times(values: &[f32], gain: f64) -> Vec<f32> {
+    if gain == 1.0 { values.to_vec() } else { values.iter().map(|v| (f64::from(*v) * gain) as f32).collect() }
+}
+
+/// Makes the samples of a file of a channel's number and values.
+type Samples<'a> = &'a dyn Fn(usize, &[f32]) -> FlatSamples;
+
+fn write(
+    path: &Path,
+    frame: &ExposureFrame,
+    attributes: &[(String, String)],
+    samples: Samples<'_>,
+) -> Result<(), WriteError> {
     write_atomically(path, |file| {
-        let image = image_of(frame, attributes)?;
+        let image = image_of(frame, attributes, samples)?;
         image.write().to_unbuffered(&mut *file).map_err(fault)?;
         sort_header(file)
     })
@@ -53,6 +103,7 @@ pub(super) fn pixel_aspect(frame: &ExposureFrame) -> f32 {
 fn image_of(
     frame: &ExposureFrame,
     attributes: &[(String, String)],
+    samples: Samples<'_>,
 ) -> Result<Image<Layer<AnyChannels<FlatSamples>>>, WriteFault> {
     let size = Vec2(frame.size.width_px as usize, frame.size.height_px as usize);
     if frame.channels.is_empty() {
@@ -72,7 +123,7 @@ fn image_of(
             return Err(WriteFault::Format(format!("the attribute `{name}` is given twice")));
         }
     }
-    let channels = frame.channels.iter().map(|channel| {
+    let channels = frame.channels.iter().enumerate().map(|(at, channel)| {
         let name = Text::from_slice_unchecked(channel.name.as_bytes());
         if channel.values.len() != frame.size.pixels() {
             let (found, wanted) = (channel.values.len(), frame.size.pixels());
@@ -81,7 +132,7 @@ fn image_of(
                 channel.name
             )));
         }
-        Ok(AnyChannel::new(name, FlatSamples::F32(channel.values.clone())))
+        Ok(AnyChannel::new(name, samples(at, &channel.values)))
     });
     let channels = AnyChannels::sort(channels.collect::<Result<_, _>>()?);
     // The lossless presets of the library leave the order of the chunks to the threads.
@@ -207,6 +258,34 @@ mod tests {
             meta.headers[0].own_attributes.frames_per_second
         };
         assert_eq!(rate("24000/1001"), Some((24000, 1001)));
+    }
+
+    /// Every channel has a gain of its own; half floats keep three digits.
+    #[test]
+    fn gains_multiply_the_values() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("frame.exr");
+        let (frame, gains) = (frame(), [0.125, 3.0, 1.0]);
+        let read = || {
+            let read = exr::prelude::read().no_deep_data().largest_resolution_level().all_channels();
+            read.first_valid_layer().all_attributes().from_file(&path).expect("readable").layer_data.channel_data.list
+        };
+        let wanted = |name: &str, i: usize| {
+            let at = frame.channels.iter().position(|c| c.name == name).expect("of that name");
+            (f64::from(frame.channels[at].values[i]) * gains[at]) as f32
+        };
+        write_exr_times(&path, &frame, &gains, &[]).expect("written");
+        for channel in read() {
+            let FlatSamples::F32(values) = &channel.sample_data else { panic!("32-bit floats") };
+            assert!(values.iter().enumerate().all(|(i, v)| *v == wanted(&channel.name.to_string(), i)));
+        }
+        write_half_exr(&path, &frame, &gains, &[]).expect("written");
+        for channel in read().into_iter().filter(|c| c.name.to_string() == "X") {
+            let FlatSamples::F16(values) = &channel.sample_data else { panic!("16-bit floats") };
+            assert!(
+                values.iter().enumerate().all(|(i, v)| (v.to_f32() - wanted("X", i)).abs() <= 0.0005 * wanted("X", i))
+            );
+        }
     }
 
     #[test]

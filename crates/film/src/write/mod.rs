@@ -9,9 +9,9 @@ mod tiled;
 
 pub use atomically::write_atomically;
 pub use dng::{RawLens, write_dng};
-pub use exposure::write_exr;
+pub use exposure::{write_exr, write_exr_times, write_half_exr};
 pub use picture::{write_png8, write_png16, write_tiff16};
-pub use tiled::write_tiled_exr;
+pub use tiled::{write_tiled_exr, write_tiled_exr_times};
 
 use std::path::PathBuf;
 

@@ -1,6 +1,6 @@
 //! OpenEXR of the linear exposure, in tiles.
 
-use super::exposure::{all_attributes, pixel_aspect};
+use super::exposure::{all_attributes, pixel_aspect, times};
 use super::{WriteError, WriteFault, write_atomically};
 use spectra_core::frame::ExposureFrame;
 use spectra_core::picture_file::{self, TiledExr};
@@ -16,6 +16,19 @@ const TILE_PX: u32 = 64;
 /// [`WriteError`]: the system refuses, there is no such library, the frame has no channel or too few values, or an
 /// attribute is given twice.
 pub fn write_tiled_exr(path: &Path, frame: &ExposureFrame, attributes: &[(String, String)]) -> Result<(), WriteError> {
+    write_tiled_exr_times(path, frame, &[], attributes)
+}
+
+/// The same with the values of each channel times a gain, in the order of the channels; 1 where there is none.
+///
+/// # Errors
+/// As [`write_tiled_exr`].
+pub fn write_tiled_exr_times(
+    path: &Path,
+    frame: &ExposureFrame,
+    gains: &[f64],
+    attributes: &[(String, String)],
+) -> Result<(), WriteError> {
     write_atomically(path, |file| {
         let Some(library) = picture_file::library() else {
             return Err(WriteFault::Format(picture_file::WITHOUT.to_owned()));
@@ -26,8 +39,11 @@ pub fn write_tiled_exr(path: &Path, frame: &ExposureFrame, attributes: &[(String
                 return Err(WriteFault::Format(format!("the attribute `{name}` has no name, or is given twice")));
             }
         }
+        let gain = |at: usize| gains.get(at).copied().unwrap_or(1.0);
+        let values: Vec<Vec<f32>> =
+            frame.channels.iter().enumerate().map(|(at, c)| times(&c.values, gain(at))).collect();
         let channels: Vec<(&str, &[f32])> =
-            frame.channels.iter().map(|c| (c.name.as_str(), c.values.as_slice())).collect();
+            frame.channels.iter().zip(&values).map(|(c, values)| (c.name.as_str(), values.as_slice())).collect();
         let picture = TiledExr {
             width_px: frame.size.width_px,
             height_px: frame.size.height_px,

@@ -23,3 +23,11 @@ mod table;
 pub use front::{AimRegion, FrontPupil};
 pub use rear::RearPupil;
 pub use table::AimPattern;
+
+use crate::{Lens, Travel};
+
+/// Whether any surface states a size, so that there is something to aim at.
+#[must_use]
+pub fn has_sizes(lens: &Lens, travel: Travel) -> bool {
+    search::Sphere::around(lens, travel).is_some()
+}

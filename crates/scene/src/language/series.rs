@@ -6,6 +6,7 @@ use super::include::{self, INCLUDE};
 use super::sweep::{Axis, SWEEP, Setting, Sweep};
 use super::variables::{self, VARIABLES, Variables};
 use crate::assemble::{assemble, read, record};
+use crate::earlier::Earlier;
 use crate::lens_section::is_too_fast;
 use crate::{FileResources, Scene, yaml};
 use spectra_core::params::{Fault, Faults, Key, Node, Number, Params, Value};
@@ -166,6 +167,8 @@ impl Series {
                 "the sweep is at {place}; render the animation once for each value, with `--set sweep= --set lens.f-number=f/4`"
             )));
         }
+        // A circle closes for whoever sets one of its variables otherwise: what nothing uses is looked at, too.
+        faults.take(variables.check_circles());
         self.warnings = variables.unused(references);
         let mut own: Vec<String> = Vec::new();
         if let Some((_, node)) = sweep
@@ -279,10 +282,32 @@ impl Series {
     /// # Errors
     /// Everything that is wrong with it, each with its place; of a value that came through a variable both places.
     pub fn scene(&self, index: usize) -> Result<Scene, Faults> {
+        self.assembled(index, Earlier::default())
+    }
+
+    /// The same, with the stages of another picture of the series where the scene says the same of them; nothing else is
+    /// left of that one.
+    ///
+    /// # Errors
+    /// As [`Series::scene`].
+    pub fn scene_after(&self, index: usize, other: Option<Scene>) -> Result<Scene, Faults> {
+        self.assembled(index, Earlier::of(other, false))
+    }
+
+    /// A picture to be looked at, not to be rendered: noise and grain need not be those of its frame. So that all the
+    /// stages of another such picture serve again, where the scene says the same of them.
+    ///
+    /// # Errors
+    /// As [`Series::scene`].
+    pub fn looked_at(&self, index: usize, other: Option<Scene>) -> Result<Scene, Faults> {
+        self.assembled(index, Earlier::of(other, true))
+    }
+
+    fn assembled(&self, index: usize, earlier: Earlier) -> Result<Scene, Faults> {
         let member = self.member(index);
         let name = member.stem("");
         if let Some(text) = &self.plain {
-            return assemble(&name, text.clone(), &Params::section(self.root.clone(), "")?, &self.resources);
+            return assemble(&name, text.clone(), &Params::section(self.root.clone(), "")?, &self.resources, earlier);
         }
         let mut root = self.root.clone();
         let mut faults = Faults::new();
@@ -303,12 +328,13 @@ impl Series {
         let mut uses = Vec::new();
         let root = variables.unwrap_or_default().put_into(&root, &mut uses)?;
         let text = self.record(&member, &root);
-        let built = |root: &Node, text: &str| {
+        let is_check = earlier.is_check;
+        let built = |root: &Node, text: &str, earlier: Earlier| {
             Params::section(root.clone(), "")
-                .and_then(|params| assemble(&name, text.to_owned(), &params, &self.resources))
+                .and_then(|params| assemble(&name, text.to_owned(), &params, &self.resources, earlier))
         };
-        let scene = built(&root, &text).or_else(|faults| match self.wide_open_instead(index, &root, &faults) {
-            Some((open, warning)) => built(&open, &self.record(&member, &open)).map(|mut scene| {
+        let scene = built(&root, &text, earlier).or_else(|faults| match self.wide_open_instead(index, &root, &faults) {
+            Some((open, warning)) => built(&open, &self.record(&member, &open), Earlier::of(None, is_check)).map(|mut scene| {
                 scene.warnings.push(warning);
                 scene
             }),

@@ -118,6 +118,19 @@ pub(super) fn references(node: &Node, into: &mut BTreeSet<String>) {
     }
 }
 
+/// The text that refers to a variable.
+fn reference<'a>(node: &'a Node, name: &str) -> Option<&'a Node> {
+    match &node.value {
+        Value::Seq(items) => items.iter().find_map(|item| reference(item, name)),
+        Value::Map(entries) => entries.iter().find_map(|(_, item)| reference(item, name)),
+        _ => {
+            let mut used = BTreeSet::new();
+            references(node, &mut used);
+            used.contains(name).then_some(node)
+        }
+    }
+}
+
 /// Puts the map of a variable in the place of its name, as far as a path leads through it: so that `lens.focus` can be
 /// set where the scene says `lens: $prime`.
 pub(super) fn open(root: &mut Node, path: &str) {
@@ -172,6 +185,41 @@ impl Variables {
 
     fn get(&self, name: &str) -> Option<&Node> {
         self.entries.iter().find(|(key, _)| key.text == name).map(|(_, node)| node)
+    }
+
+    /// Variables that are made of themselves, whether anything uses them or not; each circle is told once.
+    ///
+    /// # Errors
+    /// All of them, at the place that closes the circle.
+    pub(super) fn check_circles(&self) -> Result<(), Faults> {
+        let mut faults = Faults::new();
+        let (mut open, mut done) = (Vec::new(), BTreeSet::new());
+        for (key, _) in &self.entries {
+            self.follow(&key.text, &mut open, &mut done, &mut faults);
+        }
+        faults.into_result(())
+    }
+
+    /// Follows a variable to those that it is made of; `open` are those that lead to it.
+    fn follow(&self, name: &str, open: &mut Vec<String>, done: &mut BTreeSet<String>, faults: &mut Faults) {
+        // What is nested deeper is refused where it is used.
+        let known = self.get(name).filter(|_| !done.contains(name) && open.len() < MAX_DEPTH);
+        let Some(node) = known else { return };
+        open.push(name.to_owned());
+        let mut used = BTreeSet::new();
+        references(node, &mut used);
+        for next in &used {
+            if let Some(at) = open.iter().position(|n| n == next) {
+                let place = reference(node, next).unwrap_or(node);
+                let fault = place.fault(format!("the variable `{next}` is made of itself"));
+                let chain: Vec<&str> = open[at..].iter().map(String::as_str).chain([next.as_str()]).collect();
+                faults.push(fault.path(format!("{VARIABLES}.{name}")).hint(chain.join(" -> ")));
+            } else {
+                self.follow(next, open, done, faults);
+            }
+        }
+        open.pop();
+        done.insert(name.to_owned());
     }
 
     /// What a person should know: definitions that nothing refers to.
@@ -405,6 +453,27 @@ mod tests {
         let variables = Variables::of(root.get(VARIABLES)).map_err(|f| f.to_string())?;
         let body = root.get("x").expect("a body");
         variables.put_into(body, &mut Vec::new()).map(|node| one_line(&node)).map_err(|f| f.to_string())
+    }
+
+    #[test]
+    fn circles_are_faults_even_where_nothing_uses_them() {
+        let circles = |text: &str| {
+            let root = tree(&format!("variables: {text}\n"));
+            let variables = Variables::of(root.get(VARIABLES)).expect("variables");
+            variables.check_circles().map_err(|faults| faults.to_string())
+        };
+        for good in ["{}", "{a: 1, b: $a, c: {x: [$a, $b]}}", "{a: $missing}"] {
+            assert_eq!(circles(good), Ok(()), "{good}");
+        }
+        for (bad, place, chain) in [
+            ("{a: $a}", "t.yaml:1:16", "a -> a"),
+            ("{a: $b, b: $a}", "t.yaml:1:23", "a -> b -> a"),
+            ("{c: $a, a: [1, {x: 'f/${b}'}], b: $a}", "t.yaml:1:46", "a -> b -> a"),
+        ] {
+            let told = circles(bad).expect_err(bad);
+            assert!(told.contains(place) && told.contains(chain), "{bad}: {told}");
+            assert_eq!(told.matches("made of itself").count(), 1, "{told}");
+        }
     }
 
     #[test]

@@ -1,0 +1,66 @@
+//! `--time-limit` before any light is traced.
+
+use crate::console;
+use crate::outcome::DONE;
+use crate::words;
+use serde_json::json;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU8, Ordering::SeqCst};
+use std::time::Instant;
+
+const SETTING_UP: u8 = 0;
+const TRACING: u8 = 1;
+const OVER: u8 = 2;
+
+/// Ends the program where its time is over before light is traced: nothing has been written then, and nothing is lost.
+pub(crate) struct SetUp {
+    state: Arc<AtomicU8>,
+}
+
+impl SetUp {
+    /// Watches from now on until `deadline`, `limit_s` after the start of the program.
+    pub(crate) fn watched(deadline: Option<Instant>, limit_s: f64, is_json: bool, is_quiet: bool) -> Self {
+        let state = Arc::new(AtomicU8::new(SETTING_UP));
+        if let Some(deadline) = deadline {
+            let state = Arc::clone(&state);
+            // Where no thread can be had, the limit holds once light is traced.
+            let _ = std::thread::Builder::new().name("time limit".to_owned()).spawn(move || {
+                std::thread::sleep(deadline.saturating_duration_since(Instant::now()));
+                if state.compare_exchange(SETTING_UP, OVER, SeqCst, SeqCst).is_ok() {
+                    say(limit_s, is_json, is_quiet);
+                    std::process::exit(i32::from(DONE));
+                }
+            });
+        }
+        Self { state }
+    }
+
+    /// From now on light is traced.
+    pub(crate) fn done(&self) {
+        if self.state.compare_exchange(SETTING_UP, TRACING, SeqCst, SeqCst) == Err(OVER) {
+            // The program is ending.
+            loop {
+                std::thread::park();
+            }
+        }
+    }
+}
+
+impl Drop for SetUp {
+    /// A scene that cannot be rendered says so, also at the last moment.
+    fn drop(&mut self) {
+        self.done();
+    }
+}
+
+fn say(limit_s: f64, is_json: bool, is_quiet: bool) {
+    let text = format!(
+        "the time limit of {} was over before any light was traced: nothing is written",
+        words::duration(limit_s)
+    );
+    if is_json {
+        let _ = console::json(&json!({ "event": "stopping", "message": text }));
+    } else if !is_quiet {
+        console::warning(&text);
+    }
+}

@@ -1,0 +1,91 @@
+//! Exposure times as a photographer writes them.
+
+/// Largest relative distance of 1/t from a whole number that still counts as that number.
+const WHOLE: f64 = 1e-6;
+
+/// An exposure time in words: `1/125 s`, `1/700 s`, `0.4 s`, `2 s`. One over a whole number is shown as it is, any other
+/// time rounded to what a shutter can tell apart (two digits below 0.3 s, three above).
+#[must_use]
+pub fn words(seconds: f64) -> String {
+    if !(1e-5..1e5).contains(&seconds) {
+        return match seconds {
+            0.0 => "0 s".to_owned(),
+            s if s.is_finite() => format!("{} s", short(&format!("{s:.2e}"))),
+            s => format!("{s} s"),
+        };
+    }
+    let below = 1.0 / seconds;
+    if seconds < 1.0 && (below - below.round()).abs() <= WHOLE * below {
+        return format!("1/{} s", below.round());
+    }
+    if seconds >= 0.3 {
+        return format!("{} s", digits(seconds, 3));
+    }
+    let rounded = if below < 10.0 { below.round() } else { digits(below, 2) };
+    // Between 1/3 and 1/10 s a fraction may be too coarse.
+    if (rounded - below).abs() <= 0.03 * below || below >= 10.0 {
+        format!("1/{rounded} s")
+    } else {
+        format!("{} s", digits(seconds, 2))
+    }
+}
+
+/// A number rounded to so many digits that count.
+fn digits(value: f64, count: usize) -> f64 {
+    format!("{value:.*e}", count - 1).parse().unwrap_or(value)
+}
+
+/// `1.20e-9` as `1.2e-9`.
+fn short(text: &str) -> String {
+    match text.split_once('e') {
+        Some((number, power)) => format!("{}e{power}", number.trim_end_matches('0').trim_end_matches('.')),
+        None => text.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_are_those_of_a_shutter() {
+        let times = [
+            1.0 / 125.0,
+            1.0 / 137.0,
+            0.00143,
+            0.00978,
+            0.0433,
+            0.14,
+            0.135,
+            1.0 / 3.0,
+            0.5,
+            0.4,
+            1.0,
+            1.25,
+            2.0,
+            1234.0,
+            0.0,
+            1.2e-9,
+        ];
+        let wanted = [
+            "1/125 s", "1/137 s", "1/700 s", "1/100 s", "1/23 s", "1/7 s", "0.14 s", "1/3 s", "1/2 s", "0.4 s", "1 s",
+            "1.25 s", "2 s", "1230 s", "0 s", "1.2e-9 s",
+        ];
+        assert_eq!(times.map(words), wanted);
+    }
+
+    /// A word is never farther from the time than a third of a third-stop.
+    #[test]
+    fn words_stay_near_the_time() {
+        for i in 0..4000 {
+            let seconds = 1e-5 * crate::math::pow(1e9, f64::from(i) / 4000.0);
+            let text = words(seconds);
+            let number = text.trim_end_matches(" s");
+            let said = match number.split_once('/') {
+                Some((_, below)) => 1.0 / below.parse::<f64>().expect("a number"),
+                None => number.parse().expect("a number"),
+            };
+            assert!((said / seconds - 1.0).abs() < 0.051, "{seconds}: {text}");
+        }
+    }
+}
