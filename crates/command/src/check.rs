@@ -6,7 +6,7 @@ use crate::outcome::{BAD_INPUT, DONE, Failure, Outcome};
 use crate::run;
 use serde_json::json;
 use spectra_core::Isa;
-use spectra_core::params::{Fault, Faults};
+use spectra_core::params::{Fault, Faults, Warning};
 use spectra_scene::{SeriesKind, diagnostics};
 use std::path::Path;
 
@@ -20,7 +20,7 @@ pub(crate) fn check(arguments: &Check, isa: Isa) -> Outcome {
         if arguments.json {
             let scene = path.display().to_string();
             let mut said = match &result {
-                Ok(good) => json!({ "scene": scene, "ok": true, "faults": [], "warnings": good.warnings }),
+                Ok(good) => json!({ "scene": scene, "ok": true, "faults": [], "warnings": diagnostics::warnings_to_json(&good.warnings) }),
                 Err(faults) => {
                     json!({ "scene": scene, "ok": false, "faults": diagnostics::to_json(faults), "warnings": [] })
                 }
@@ -34,7 +34,7 @@ pub(crate) fn check(arguments: &Check, isa: Isa) -> Outcome {
         match &result {
             Ok(good) => {
                 for warning in &good.warnings {
-                    console::warning(&format!("{}: {warning}", path.display()));
+                    console::said(warning, Some(path));
                 }
                 let pictures =
                     good.pictures.map_or(String::new(), |n| format!(", {n} picture{}", if n == 1 { "" } else { "s" }));
@@ -53,7 +53,7 @@ pub(crate) fn check(arguments: &Check, isa: Isa) -> Outcome {
 
 /// A scene in which nothing is wrong.
 struct Good {
-    warnings: Vec<String>,
+    warnings: Vec<Warning>,
     /// How many pictures a sweep or an animation has.
     pictures: Option<usize>,
 }
@@ -70,7 +70,7 @@ fn check_one(path: &Path, overrides: &[String], isa: Isa) -> Result<Good, Faults
         Failure::Input(text) | Failure::Failed(text) => Fault::new(format!("{}: {text}", path.display())).into(),
         Failure::ReaderGone => Faults::new(),
     })?;
-    let mut warnings: Vec<String> = Vec::new();
+    let mut warnings: Vec<Warning> = Vec::new();
     for warning in series.warnings().iter().chain(of_each.iter().flatten()) {
         if !warnings.contains(warning) {
             warnings.push(warning.clone());

@@ -19,6 +19,7 @@ pub mod resources;
 pub mod spectral;
 pub mod stage;
 pub mod surface;
+pub mod view;
 
 pub use batch::RayBatch;
 pub use glam;

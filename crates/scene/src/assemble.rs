@@ -3,11 +3,11 @@
 use crate::advice::{self, FileIs};
 use crate::filters;
 use crate::lens_section::{LensSection, lens_of};
-use crate::{ConePattern, Direction, NumberFamily, Output, RenderSettings, Scene, films, language, output, yaml};
+use crate::{ConePattern, Direction, NumberFamily, Output, RenderSettings, Scene, films, language, output, sight, yaml};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::numbers::seed_of_frame;
-use spectra_core::params::{Fault, Faults, Node, Params, StageNode, Value, Wavelength, nearest};
+use spectra_core::params::{Fault, Faults, Node, Params, StageNode, Value, Warnings, Wavelength, nearest};
 use spectra_core::registry::{self, Context, StageOf};
 use spectra_core::resources::Resources;
 use spectra_core::spectral::{BAND, Channel, Grid};
@@ -193,19 +193,24 @@ fn all_stages(name: &str, text: String, params: &Params, resources: &dyn Resourc
     }
     let (band, sampler) = wavelengths.unwrap_or_else(|| params.nothing_said("wavelengths")).split(&["band"]);
     let grid = faults.take(band.parse::<BandSection>().and_then(|b| grid_of(&b, &band))).unwrap_or(BAND);
-    let context = Context { resources, grid, illuminant: None };
-    let source = source.and_then(|p| faults.take(registry::build::<dyn Source>(&p, &context)));
+    let warnings = Warnings::new();
+    let context = Context { warnings: Some(&warnings), ..Context::new(resources, grid) };
     let sampler = faults.take(registry::build::<dyn WavelengthSampler>(&sampler, &context));
     let filters = lens.as_ref().and_then(|p| faults.take(filters::filters_of(p, grid, resources))).flatten();
     let lens_place = lens.clone();
     let lens = lens.and_then(|p| faults.take(lens_of(&p, resources)));
+    let imager = imager.and_then(|p| faults.take(registry::build::<dyn Imager>(&p, &context)));
+    let seen = lens.as_ref().zip(imager.as_ref()).and_then(|(lens, imager)| sight::seen(lens, &**imager));
+    let source = source.and_then(|p| {
+        let context = Context { view: seen.as_ref().map(|seen| &seen.view), ..context };
+        faults.take(registry::build::<dyn Source>(&p, &context))
+    });
     if let (Some(place), Some(lens), Some(source)) = (lens_place, &lens, &source)
         && lens.elements.first().is_some_and(|e| e.kind == MATTE_BOX && e.vertex_z_mm() <= -source.distance_mm())
     {
         let fault = place.fault("matte-box.distance", "the source stands between the matte box and the lens");
         faults.push(fault.hint(format!("nearer to the lens than {} mm", source.distance_mm())));
     }
-    let imager = imager.and_then(|p| faults.take(registry::build::<dyn Imager>(&p, &context)));
     let films = match several {
         Some(items) => faults.take(films::several(items, params, &context)),
         None => film.and_then(|p| faults.take(registry::build::<dyn Film>(&p, &context))).map(films::one),
@@ -265,7 +270,11 @@ fn all_stages(name: &str, text: String, params: &Params, resources: &dyn Resourc
         filters::fold(&mut channels, &transmittance);
     }
     let channels: Arc<[Channel]> = channels.into();
-    let warnings = warnings(&lens, grid);
+    about_lens(&lens, grid, params, &warnings);
+    if let Some(dark) = seen.and_then(|seen| seen.dark) {
+        about_dark(&dark, params, &warnings);
+    }
+    let warnings = warnings.into_vec();
     Ok(Scene {
         name: name.to_owned(),
         text,
@@ -360,14 +369,16 @@ fn render_settings(
     })
 }
 
-/// What a person should know before believing the picture.
-fn warnings(lens: &Lens, grid: Grid) -> Vec<String> {
-    let mut all = lens.warnings.clone();
+/// What the lens says of itself, and glass that was not measured where there is light.
+fn about_lens(lens: &Lens, grid: Grid, params: &Params, warnings: &Warnings) {
+    for text in &lens.warnings {
+        warnings.push(params.fault("lens.file", text));
+    }
     for medium in &lens.media {
         if let Some((min, max)) =
             medium.medium.range_nm().filter(|_| !medium.medium.covers(grid.start_nm, grid.end_nm()))
         {
-            all.push(format!(
+            warnings.push(format!(
                 "{} was measured from {min:.0} to {max:.0} nm; between {:.0} and {:.0} nm its formula is extrapolated",
                 medium.label,
                 grid.start_nm,
@@ -375,5 +386,19 @@ fn warnings(lens: &Lens, grid: Grid) -> Vec<String> {
             ));
         }
     }
-    all
+}
+
+/// A frame that is larger than what the lens draws.
+fn about_dark(dark: &sight::Dark, params: &Params, warnings: &Warnings) {
+    let Some(circle_mm) = dark.circle_mm else { return };
+    let key = if params.get("imager").is_some_and(|imager| imager.get("format").is_some()) { "format" } else { "width" };
+    let text = format!(
+        "this lens draws a circle of about {circle_mm:.0} mm; the frame's diagonal is {:.0} mm, and {:.0} % of it stays dark",
+        dark.diagonal_mm,
+        (100.0 * dark.share).max(1.0)
+    );
+    let hint = format!(
+        "a frame of at most {circle_mm:.0} mm across the corners, or a lens that covers this one (`spectra list lens`)"
+    );
+    warnings.push(params.fault(&format!("imager.{key}"), text).hint(hint));
 }

@@ -14,6 +14,7 @@ mod output;
 mod resources;
 mod scene;
 mod schema;
+mod sight;
 
 pub use spectra_yaml as yaml;
 

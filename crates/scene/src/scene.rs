@@ -1,7 +1,7 @@
 //! A scene, assembled: every stage built, the lens focused and stopped, nothing traced yet.
 
 use spectra_core::frame::{ExposureChannel, ExposureFrame};
-use spectra_core::params::Params;
+use spectra_core::params::{Params, Warning};
 use spectra_core::spectral::{Channel, Grid};
 use spectra_core::stage::{Film, Imager, Source, WavelengthSampler};
 use spectra_lens::Lens;
@@ -148,7 +148,7 @@ pub struct Scene {
     /// What to write.
     pub output: Vec<Output>,
     /// What a person should know: a glass off its listed range, and so on.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Warning>,
     /// The scene as it was read, for faults that show once the stages are put together.
     pub params: Params,
 }

@@ -63,7 +63,7 @@ impl Report<'_> {
             "lens": { "name": scene.lens.name, "patent": scene.lens.patent },
             "film": films(scene),
             "versions": version::to_json(),
-            "warnings": scene.warnings,
+            "warnings": scene.warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
         })
     }
 

@@ -11,7 +11,7 @@ use crate::outcome::{DONE, Failure, INTERRUPTED, Outcome};
 use crate::{version, words};
 use serde_json::{Map, Value, json};
 use spectra_core::Isa;
-use spectra_core::params::{Fault, Faults};
+use spectra_core::params::{Fault, Faults, Warning};
 use spectra_render::{Control, Renderer};
 use spectra_scene::{Member, Scene, Series, SeriesKind};
 use std::path::{Path, PathBuf};
@@ -32,7 +32,7 @@ struct Planned {
     folder: Folder,
     size_px: [u32; 2],
     films: Vec<Option<String>>,
-    warnings: Vec<String>,
+    warnings: Vec<Warning>,
 }
 
 /// Renders all pictures of a series that are asked for.
@@ -49,7 +49,7 @@ pub(super) fn render(series: &Series, arguments: &Run, threads: usize, isa: Isa,
         Ok(Planned { index, member, folder, size_px: [size.width_px, size.height_px], films, warnings: scene.warnings })
     };
     let planned = checked(series, &chosen, isa, threads, &plan)?;
-    let mut said: Vec<&String> = Vec::new();
+    let mut said: Vec<&Warning> = Vec::new();
     for warning in series.warnings().iter().chain(planned.iter().flat_map(|p| &p.warnings)) {
         if !said.contains(&warning) {
             said.push(warning);

@@ -79,6 +79,7 @@ mod stage_node;
 mod tests;
 mod text;
 mod units;
+mod warning;
 
 pub use fault::{Fault, Faults};
 pub use node::{Key, MAX_DEPTH, Node, Number, SourceFile, Span, Value};
@@ -93,3 +94,4 @@ pub use schema::{Kinds, schema_of};
 pub use stage_node::StageNode;
 pub use text::nearest;
 pub use units::{Dimension, Reading, Unit};
+pub use warning::{Warning, Warnings};

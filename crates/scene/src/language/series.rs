@@ -7,7 +7,7 @@ use super::sweep::{Axis, SWEEP, Setting, Sweep};
 use super::variables::{self, VARIABLES, Variables};
 use crate::assemble::{assemble, read, record};
 use crate::{FileResources, Scene, yaml};
-use spectra_core::params::{Fault, Faults, Key, Node, Number, Params, Value};
+use spectra_core::params::{Fault, Faults, Key, Node, Number, Params, Value, Warning};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -81,7 +81,7 @@ pub struct Series {
     /// The files that it is made of.
     files: Vec<String>,
     going: Going,
-    warnings: Vec<String>,
+    warnings: Vec<Warning>,
 }
 
 #[derive(Clone, Debug)]
@@ -187,7 +187,8 @@ impl Series {
         };
         for set in set.iter().filter(|set| own.iter().any(|own| below(set, own))) {
             let key = self.key().unwrap_or_default();
-            self.warnings.push(format!("`--set {set}` has no effect: the {key} sets it for each picture"));
+            let text = format!("`--set {set}` has no effect: the {key} sets it for each picture");
+            self.warnings.push(text.into());
         }
         faults.into_result(self)
     }
@@ -235,7 +236,7 @@ impl Series {
 
     /// What a person should know: variables that nothing uses, values that have no effect.
     #[must_use]
-    pub fn warnings(&self) -> &[String] {
+    pub fn warnings(&self) -> &[Warning] {
         &self.warnings
     }
 
