@@ -18,6 +18,9 @@ pub enum RenderError {
     /// The source has no backward ability.
     #[error("this source cannot be looked at: render it forward")]
     NoRadiance,
+    /// What the source reads is broken.
+    #[error("{0}")]
+    Source(Faults),
     /// No surface states a size.
     #[error("no surface of the lens states a semi-diameter: nothing says where light may enter")]
     NoAperture,
@@ -58,6 +61,7 @@ impl RenderError {
                 None => at("wavelengths", text, "leave `wavelengths` out for the usual strategy"),
             },
             Self::Lens(text) => at("lens", text, "another glass, or another `wavelengths: {band: ...}`"),
+            Self::Source(faults) => Some(faults.clone()),
             Self::Overflow | Self::Threads(_) => None,
         }
     }

@@ -141,7 +141,7 @@ pub(crate) fn checked<T: Send>(
     let check = |index: usize| -> Result<T, Failure> {
         let scene = series.scene(index)?;
         // What shows only once the stages are put together.
-        Renderer::new(&scene, isa).map_err(|error| refused(error, &scene))?;
+        Renderer::check(&scene, isa).map_err(|error| refused(error, &scene))?;
         keep(index, scene)
     };
     std::thread::scope(|scope| {
@@ -247,7 +247,7 @@ impl Work<'_> {
         let scene = self.series.scene(picture.index)?;
         let control = Arc::new(self.deadline.map_or_else(Control::new, Control::until));
         self.interrupt.stops(&control);
-        let renderer = Renderer::new(&scene, self.isa).map_err(failed)?;
+        let renderer = Renderer::new(&scene, self.isa).map_err(|error| refused(error, &scene))?;
         progress.start(&scene, self.threads, self.isa);
         let begun = Instant::now();
         let rendering = watch(&renderer, self.threads, &control, || progress.tick(&control, self.interrupt.happened()))
