@@ -3,7 +3,7 @@
 use crate::advice::{self, FileIs};
 use crate::filters;
 use crate::lens_section::{LensSection, lens_of};
-use crate::{ConePattern, Direction, NumberFamily, Output, RenderSettings, Scene, films, language, output, sight, yaml};
+use crate::{ConePattern, Direction, NumberFamily, Output, RenderSettings, Scene, doubts, films, language, output, sight, yaml};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::numbers::seed_of_frame;
@@ -176,12 +176,14 @@ pub(crate) fn assemble(name: &str, text: String, params: &Params, resources: &dy
 fn all_stages(name: &str, text: String, params: &Params, resources: &dyn Resources) -> Result<Scene, Faults> {
     let mut faults = Faults::new();
     // Several films are no single stage: their section is read apart.
+    // A key whose value is null is not there: `--set film=null` takes the film away.
     let (several, others) = match params.get("film").map(|node| &node.value) {
         Some(Value::Seq(items)) => (Some(items), params.split(&["film"]).1),
         _ => (None, params.clone()),
     };
     let file: Option<SceneFile> = faults.take(others.parse());
     // Even where a section is missing or unknown, the others are looked at: all faults in one go.
+    let others = others.without_nulls();
     let section = |key: &str, faults: &mut Faults| faults.take(others.stage_at(key)).flatten();
     let parts = ["wavelengths", "source", "lens", "imager", "film", "render"].map(|key| section(key, &mut faults));
     let [wavelengths, source, lens, imager, film, render] = parts;
@@ -270,10 +272,8 @@ fn all_stages(name: &str, text: String, params: &Params, resources: &dyn Resourc
         filters::fold(&mut channels, &transmittance);
     }
     let channels: Arc<[Channel]> = channels.into();
-    about_lens(&lens, grid, params, &warnings);
-    if let Some(dark) = seen.and_then(|seen| seen.dark) {
-        about_dark(&dark, params, &warnings);
-    }
+    let whole = doubts::Whole { params, lens: &lens, source: &*source, channels: &channels, grid };
+    whole.doubt(seen.and_then(|seen| seen.dark).as_ref(), &warnings);
     let warnings = warnings.into_vec();
     Ok(Scene {
         name: name.to_owned(),
@@ -367,38 +367,4 @@ fn render_settings(
         numbers: [NumberFamily::Sobol, NumberFamily::Random, NumberFamily::Stratified][numbers],
         cone: [ConePattern::Disk, ConePattern::Rings, ConePattern::Random][cone],
     })
-}
-
-/// What the lens says of itself, and glass that was not measured where there is light.
-fn about_lens(lens: &Lens, grid: Grid, params: &Params, warnings: &Warnings) {
-    for text in &lens.warnings {
-        warnings.push(params.fault("lens.file", text));
-    }
-    for medium in &lens.media {
-        if let Some((min, max)) =
-            medium.medium.range_nm().filter(|_| !medium.medium.covers(grid.start_nm, grid.end_nm()))
-        {
-            warnings.push(format!(
-                "{} was measured from {min:.0} to {max:.0} nm; between {:.0} and {:.0} nm its formula is extrapolated",
-                medium.label,
-                grid.start_nm,
-                grid.end_nm()
-            ));
-        }
-    }
-}
-
-/// A frame that is larger than what the lens draws.
-fn about_dark(dark: &sight::Dark, params: &Params, warnings: &Warnings) {
-    let Some(circle_mm) = dark.circle_mm else { return };
-    let key = if params.get("imager").is_some_and(|imager| imager.get("format").is_some()) { "format" } else { "width" };
-    let text = format!(
-        "this lens draws a circle of about {circle_mm:.0} mm; the frame's diagonal is {:.0} mm, and {:.0} % of it stays dark",
-        dark.diagonal_mm,
-        (100.0 * dark.share).max(1.0)
-    );
-    let hint = format!(
-        "a frame of at most {circle_mm:.0} mm across the corners, or a lens that covers this one (`spectra list lens`)"
-    );
-    warnings.push(params.fault(&format!("imager.{key}"), text).hint(hint));
 }

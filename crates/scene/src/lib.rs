@@ -6,6 +6,7 @@
 mod advice;
 mod assemble;
 pub mod diagnostics;
+mod doubts;
 mod films;
 mod filters;
 mod language;

@@ -1,7 +1,7 @@
 //! What the frame sees through the lens: real rays from points all over it, traced backward at the lens's reference line.
 //!
 //! From each point a bundle is aimed at the paraxial exit pupil and somewhat beyond it; where nothing of that passes (a wide
-//! angle, a fold, a corner that is cut off), at all of the last surface. What passes is a line of sight.
+//! angle, a fold, a corner that is cut off), at the real one, which takes longer to find. What passes is a line of sight.
 
 use spectra_core::frame::FrameSize;
 use spectra_core::glam::DVec3;
@@ -9,14 +9,14 @@ use spectra_core::loss::ALIVE;
 use spectra_core::stage::Imager;
 use spectra_core::view::{Sight, View};
 use spectra_core::{Isa, RayBatch};
-use spectra_lens::{Indices, Lens, Tracer, Travel};
+use spectra_lens::{Indices, Lens, RearPupil, Tracer, Travel};
 
 /// Points a side of the frame, its edges among them.
 const SIDE: usize = 13;
 /// Radius of what is aimed at first, in radii of the paraxial exit pupil: on a fast lens the real one is larger.
 const BEYOND: f64 = 1.15;
-/// Rays a side over the last surface, where those at the pupil were lost.
-const CELLS: usize = 21;
+/// Rays a side over the real exit pupil.
+const CELLS: usize = 12;
 /// Halvings of the way from the middle of the frame to a corner, in search of where the light ends.
 const HALVINGS: usize = 7;
 
@@ -44,9 +44,12 @@ pub(crate) fn seen(lens: &Lens, imager: &dyn Imager) -> Option<Seen> {
     let points = points(imager, &grid())?;
     let mut found = aim.sights(&points);
     let lost: Vec<usize> = (0..points.len()).filter(|point| found[*point].is_empty()).collect();
-    let again = aim.by_last_surface(&lost.iter().map(|i| points[*i]).collect::<Vec<_>>());
-    for (point, sights) in lost.iter().zip(again) {
-        found[*point] = sights;
+    let pupil = if lost.is_empty() { None } else { Some(aim.pupil(&points)?) };
+    if let Some(pupil) = &pupil {
+        let again = aim.through(pupil, &lost.iter().map(|i| points[*i]).collect::<Vec<_>>());
+        for (point, sights) in lost.iter().zip(again) {
+            found[*point] = sights;
+        }
     }
     let (mut sights, mut beside) = (Vec::new(), Vec::new());
     for (point, of_point) in found.iter().enumerate() {
@@ -56,8 +59,8 @@ pub(crate) fn seen(lens: &Lens, imager: &dyn Imager) -> Option<Seen> {
         sights.extend(of_point.iter().flatten().map(|sight| Sight { point, ..*sight }));
     }
     let unlit = found.iter().filter(|sights| sights.is_empty()).count();
-    let dark = (unlit > 0).then(|| Dark {
-        circle_mm: circle_mm(&aim, imager),
+    let dark = pupil.filter(|_| unlit > 0).map(|pupil| Dark {
+        circle_mm: circle_mm(&aim, &pupil, imager),
         diagonal_mm: diagonal_mm(imager.size()),
         share: unlit as f64 / points.len() as f64,
     });
@@ -99,10 +102,10 @@ fn points(imager: &dyn Imager, places: &[[f64; 2]]) -> Option<Vec<DVec3>> {
 
 /// Diameter of the circle that the lens draws about its axis, mm: from the middle of the frame toward each corner, to where
 /// the light ends.
-fn circle_mm(aim: &Aim<'_>, imager: &dyn Imager) -> Option<f64> {
+fn circle_mm(aim: &Aim<'_>, pupil: &RearPupil, imager: &dyn Imager) -> Option<f64> {
     let passes = |places: &[[f64; 2]]| -> Option<Vec<(bool, f64)>> {
         let points = points(imager, places)?;
-        let lit = aim.by_last_surface(&points);
+        let lit = aim.through(pupil, &points);
         let beside = |p: &DVec3| (p.x * p.x + p.y * p.y).sqrt();
         Some(lit.iter().zip(&points).map(|(sights, p)| (!sights.is_empty(), beside(p))).collect())
     };
@@ -164,18 +167,30 @@ impl<'a> Aim<'a> {
         self.traced(points, &targets)
     }
 
-    /// The same by way of all of the last surface.
-    fn by_last_surface(&self, points: &[DVec3]) -> Vec<Sights> {
-        let last = self.lens.elements.last();
-        let radius_mm = last.and_then(|e| e.semi_diameter_mm).or_else(|| self.lens.largest_semi_diameter_mm());
-        let (Some(last), Some(radius_mm)) = (last, radius_mm) else { return points.iter().map(|_| Vec::new()).collect() };
-        let step = |k: usize| 2.0 * (k as f64 + 0.5) / CELLS as f64 - 1.0;
-        let places = (0..CELLS * CELLS).map(|i| [step(i % CELLS), step(i / CELLS)]);
-        let inside = places.filter(|[x, y]| x * x + y * y <= 1.0);
-        let target = |[x, y]: [f64; 2]| {
-            self.lens.image_pose.local_point(last.pose.point(DVec3::new(x * radius_mm, y * radius_mm, 0.0)))
+    /// The real exit pupil, as points of the imager see it.
+    fn pupil(&self, points: &[DVec3]) -> Option<RearPupil> {
+        RearPupil::search(self.lens, &self.tracer, points, self.lens.reference_nm, self.lens.reference_nm)
+    }
+
+    /// Lines of sight of each point by way of the real exit pupil.
+    fn through(&self, pupil: &RearPupil, points: &[DVec3]) -> Vec<Sights> {
+        let step = |k: usize| (k as f64 + 0.5) / CELLS as f64;
+        let (u, v): (Vec<f64>, Vec<f64>) = (0..CELLS * CELLS).map(|i| (step(i % CELLS), step(i / CELLS))).unzip();
+        let mut rays = RayBatch::new(u.len());
+        let mut work = self.tracer.work_in_place(u.len());
+        let one = |point: &DVec3| {
+            rays.restart(u.len());
+            let c = rays.columns_mut();
+            for i in 0..u.len() {
+                (c.x[i], c.y[i], c.z[i]) = (*point).into();
+                (c.l[i], c.m[i], c.n[i]) = (0.0, 0.0, -1.0);
+            }
+            c.wavelength_nm.fill(self.lens.reference_nm);
+            pupil.aim(&mut rays, &u, &v, Isa::Baseline);
+            self.tracer.trace(&mut rays, &mut work, Travel::Backward);
+            sights(&rays)
         };
-        self.traced(points, &inside.map(target).collect::<Vec<_>>())
+        points.iter().map(one).collect()
     }
 
     fn traced(&self, points: &[DVec3], targets: &[DVec3]) -> Vec<Sights> {
@@ -193,16 +208,20 @@ impl<'a> Aim<'a> {
                 c.wavelength_nm[i] = self.lens.reference_nm;
             }
             self.tracer.trace(&mut rays, &mut work, Travel::Backward);
-            let ([x, y, z], [l, m, n]) = (rays.positions(), rays.directions());
-            let alive = (0..rays.len()).filter(|i| rays.states()[*i] == ALIVE);
-            let sight = |i: usize| {
-                let slope = [l[i] / -n[i], m[i] / -n[i]];
-                let start_mm = [x[i] + z[i] * slope[0], y[i] + z[i] * slope[1]];
-                let is_ahead = n[i] < 0.0 && slope.iter().chain(&start_mm).all(|v| v.is_finite());
-                is_ahead.then_some(Sight { point: 0, start_mm, slope })
-            };
-            alive.map(sight).collect()
+            sights(&rays)
         };
         points.iter().map(one).collect()
     }
+}
+
+/// The lines of sight of the rays that passed.
+fn sights(rays: &RayBatch) -> Sights {
+    let ([x, y, z], [l, m, n]) = (rays.positions(), rays.directions());
+    let sight = |i: usize| {
+        let slope = [l[i] / -n[i], m[i] / -n[i]];
+        let start_mm = [x[i] + z[i] * slope[0], y[i] + z[i] * slope[1]];
+        let is_ahead = n[i] < 0.0 && slope.iter().chain(&start_mm).all(|v| v.is_finite());
+        is_ahead.then_some(Sight { point: 0, start_mm, slope })
+    };
+    (0..rays.len()).filter(|i| rays.states()[*i] == ALIVE).map(sight).collect()
 }

@@ -94,4 +94,4 @@ pub use schema::{Kinds, schema_of};
 pub use stage_node::StageNode;
 pub use text::nearest;
 pub use units::{Dimension, Reading, Unit};
-pub use warning::{Warning, Warnings};
+pub use warning::{DataEnd, Warning, Warnings};
