@@ -45,6 +45,7 @@ fn orthochromatic_negatives_have_dark_reds_and_light_blues() {
             &[
                 &format!("film.stock={stock}"),
                 &format!("source.illuminant={illuminant}"),
+                "source.width=0.6 m",
                 "imager.resolution=[150, 100]",
                 "render.samples=64",
             ],

@@ -157,6 +157,7 @@ impl<'a> Run<'a> {
         settings: &'a Settings,
         samples: Vec<u32>,
     ) -> Result<Self, BenchError> {
+        scene.source.prepare()?;
         let source = scene.source.spectrum().clone();
         let channels: Arc<[Channel]> = match &settings.response {
             Some(response) if response.iter().any(|c| c.response.len() != scene.grid.count) => {

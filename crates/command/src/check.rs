@@ -8,7 +8,7 @@ use crate::run::{self, Checking};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::json;
 use spectra_core::Isa;
-use spectra_core::params::{Fault, Faults};
+use spectra_core::params::{Fault, Faults, Warning};
 use spectra_scene::{Scene, SeriesKind, diagnostics};
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -24,7 +24,7 @@ pub(crate) fn check(arguments: &Check, isa: Isa) -> Outcome {
             let scene = path.display().to_string();
             let mut said = match &result {
                 Ok(good) => json!({
-                    "scene": scene, "ok": true, "faults": [], "warnings": good.warnings, "memory_bytes": good.memory_bytes
+                    "scene": scene, "ok": true, "faults": [], "warnings": diagnostics::warnings_to_json(&good.warnings), "memory_bytes": good.memory_bytes
                 }),
                 Err(faults) => {
                     json!({ "scene": scene, "ok": false, "faults": diagnostics::to_json(faults), "warnings": [] })
@@ -39,7 +39,7 @@ pub(crate) fn check(arguments: &Check, isa: Isa) -> Outcome {
         match &result {
             Ok(good) => {
                 for warning in &good.warnings {
-                    console::warning(&format!("{}: {warning}", path.display()));
+                    console::said(warning, Some(path));
                 }
                 let pictures =
                     good.pictures.map_or(String::new(), |n| format!(", {n} picture{}", if n == 1 { "" } else { "s" }));
@@ -59,7 +59,7 @@ pub(crate) fn check(arguments: &Check, isa: Isa) -> Outcome {
 
 /// A scene in which nothing is wrong.
 struct Good {
-    warnings: Vec<String>,
+    warnings: Vec<Warning>,
     /// How many pictures a sweep or an animation has.
     pictures: Option<usize>,
     /// What the largest picture takes beyond the scene itself.
@@ -83,7 +83,7 @@ fn check_one(path: &Path, overrides: &[String], isa: Isa, is_shown: bool) -> Res
         Failure::Input(text) | Failure::Failed(text) => Fault::new(format!("{}: {text}", path.display())).into(),
         Failure::ReaderGone => Faults::new(),
     })?;
-    let mut warnings: Vec<String> = Vec::new();
+    let mut warnings: Vec<Warning> = Vec::new();
     for warning in series.warnings().iter().chain(of_each.iter().flat_map(|(_, warnings)| warnings)) {
         if !warnings.contains(warning) {
             warnings.push(warning.clone());

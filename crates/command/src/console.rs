@@ -1,8 +1,9 @@
 //! The two streams to a person or a program. Nothing here panics when the other end is closed.
 
-use spectra_core::params::Faults;
+use spectra_core::params::{Fault, Faults, Warning};
 use spectra_scene::diagnostics;
 use std::io::{self, IsTerminal, Write};
+use std::path::Path;
 
 /// Writes a text to standard output.
 ///
@@ -39,6 +40,15 @@ pub(crate) fn note(line: &str) {
 /// A warning, on standard error.
 pub(crate) fn warning(text: &str) {
     note(&format!("warning: {text}"));
+}
+
+/// A warning about a scene, on standard error: its place (or else the scene) and the text, then what to do about it.
+pub(crate) fn said(warning: &Warning, scene: Option<&Path>) {
+    let Fault { message, hint, .. } = &warning.0;
+    let place = warning.0.place_text().or_else(|| scene.map(|path| path.display().to_string()));
+    let place = place.map_or_else(String::new, |place| format!("{place}: "));
+    let hint = hint.as_ref().map_or_else(String::new, |hint| format!("\n  help: {hint}"));
+    crate::console::warning(&format!("{place}{message}{hint}"));
 }
 
 /// An error, on standard error.

@@ -27,6 +27,7 @@ pub mod shutter;
 pub mod spectral;
 pub mod stage;
 pub mod surface;
+pub mod view;
 
 pub use batch::RayBatch;
 pub use glam;

@@ -2,6 +2,7 @@
 
 use crate::params::{Faults, Node, Params};
 use std::borrow::Cow;
+use std::io::{BufRead, BufReader, Cursor, Read, Seek};
 use std::path::PathBuf;
 
 /// What went wrong with a file.
@@ -38,6 +39,75 @@ pub struct Resource {
     pub bytes: Cow<'static, [u8]>,
 }
 
+/// A file that was found and not read.
+#[derive(Clone, Debug)]
+pub struct Found {
+    /// How to name it to a person: a path, or `bundled:...`.
+    pub name: String,
+    content: Content,
+}
+
+#[derive(Clone, Debug)]
+enum Content {
+    OnDisk(PathBuf),
+    Bytes(Cow<'static, [u8]>),
+}
+
+/// What a decoder reads from.
+pub trait ReadSeek: BufRead + Seek + Send {}
+
+impl<R: BufRead + Seek + Send> ReadSeek for R {}
+
+impl Found {
+    /// A file on disk.
+    #[must_use]
+    pub fn on_disk(name: String, path: PathBuf) -> Self {
+        Self { name, content: Content::OnDisk(path) }
+    }
+
+    /// Bytes that are there already.
+    #[must_use]
+    pub fn bytes(name: String, bytes: Cow<'static, [u8]>) -> Self {
+        Self { name, content: Content::Bytes(bytes) }
+    }
+
+    /// Its size, bytes.
+    ///
+    /// # Errors
+    /// [`ResourceError::Io`].
+    pub fn size_bytes(&self) -> Result<u64, ResourceError> {
+        match &self.content {
+            Content::OnDisk(path) => std::fs::metadata(path).map(|data| data.len()).map_err(io),
+            Content::Bytes(bytes) => Ok(bytes.len() as u64),
+        }
+    }
+
+    /// For reading parts of it.
+    ///
+    /// # Errors
+    /// [`ResourceError::Io`].
+    pub fn open(&self) -> Result<Box<dyn ReadSeek + '_>, ResourceError> {
+        Ok(match &self.content {
+            Content::OnDisk(path) => Box::new(BufReader::new(std::fs::File::open(path).map_err(io)?)),
+            Content::Bytes(bytes) => Box::new(Cursor::new(&**bytes)),
+        })
+    }
+
+    /// All of it, or as much of its start.
+    ///
+    /// # Errors
+    /// [`ResourceError::Io`].
+    pub fn read(&self, at_most_bytes: u64) -> Result<Vec<u8>, ResourceError> {
+        let mut bytes = Vec::with_capacity(self.size_bytes()?.min(at_most_bytes) as usize);
+        self.open()?.take(at_most_bytes).read_to_end(&mut bytes).map_err(io)?;
+        Ok(bytes)
+    }
+}
+
+fn io(error: std::io::Error) -> ResourceError {
+    ResourceError::Io(error.to_string())
+}
+
 /// Finds files for stages.
 pub trait Resources: Send + Sync {
     /// Reads `path`: as given relative to the scene's folder, else bundled under one of `folders`
@@ -47,6 +117,14 @@ pub trait Resources: Send + Sync {
     /// [`ResourceError`].
     fn read(&self, path: &str, folders: &[&str], endings: &[&str], limit_bytes: u64)
     -> Result<Resource, ResourceError>;
+
+    /// Finds a file as [`Resources::read`] does, without reading it: for large ones.
+    ///
+    /// # Errors
+    /// [`ResourceError`].
+    fn find(&self, path: &str, folders: &[&str], endings: &[&str], limit_bytes: u64) -> Result<Found, ResourceError> {
+        self.read(path, folders, endings, limit_bytes).map(|read| Found::bytes(read.name, read.bytes))
+    }
 
     /// Reads and parses a YAML document (a lens, a film stock), found as by [`Resources::read`].
     ///

@@ -10,10 +10,20 @@ use crate::RayBatch;
 use crate::cover::CoverStack;
 use crate::frame::{DisplayPicture, ExposureFrame, FrameSize, RawFrame};
 use crate::isa::Isa;
+use crate::params::Faults;
 use crate::spectral::{Channel, SpectralPower, SystemResponse};
 
 /// What is emitted. It can emit rays, answer for the radiance along them, or both.
 pub trait Source: Send + Sync {
+    /// Reads what is large, once, before any light is traced: what a check of the scene can do without. Until then a source
+    /// may stand in for itself, such as a white card for a picture.
+    ///
+    /// # Errors
+    /// What is wrong with the files, with the places of the keys that name them.
+    fn prepare(&self) -> Result<(), Faults> {
+        Ok(())
+    }
+
     /// Light that goes into the lens, summed over the source, in any scale: what the wavelength
     /// sampler weighs. Its lines are those that [`RayBatch::lines`] numbers.
     fn spectrum(&self) -> &SpectralPower;

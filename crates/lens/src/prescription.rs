@@ -259,7 +259,7 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
         let fault = params.fault("surfaces", "a lens has at least one surface");
         faults.push(fault.hint("such as `- {kind: sphere, radius: 50, thickness: 5, glass: SCHOTT/N-BK7}`"));
     }
-    let context = Context { resources, grid: BAND, illuminant: None };
+    let context = Context::new(resources, BAND);
     let mut medium_before = 0;
     let mut along = true;
     let mut breaks = Vec::new();

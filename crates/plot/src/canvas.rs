@@ -7,6 +7,9 @@ use crate::raster::{Pixels, Raster};
 use crate::stroke::{Cap, Stroke};
 use crate::text::{TextStyle, plain};
 
+/// Pixels a side of one of the picture, where light is added up.
+const FINER: u32 = 3;
+
 /// A drawing. Later parts cover earlier ones.
 #[derive(Clone, Debug)]
 pub struct Canvas {
@@ -113,6 +116,16 @@ impl Canvas {
     /// The drawing on pixels, `scale` of them a unit.
     #[must_use]
     pub fn to_pixels(&self, scale: f64) -> Pixels {
+        // Light on light soon is white also where it covers a part of a pixel only, and edges turn into stairs: it is drawn
+        // on finer pixels, whose means are taken once all is added up.
+        let shines = |part: &Part| matches!(&part.kind, PartKind::Line { stroke, .. } if stroke.is_light);
+        if self.parts.iter().any(shines) {
+            return self.on_pixels(scale * f64::from(FINER)).shrunk(FINER);
+        }
+        self.on_pixels(scale)
+    }
+
+    fn on_pixels(&self, scale: f64) -> Pixels {
         let mut raster = Raster::new(self.width, self.height, scale, self.background);
         for part in &self.parts {
             match &part.kind {

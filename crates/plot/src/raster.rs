@@ -18,6 +18,27 @@ pub struct Pixels {
     pub rgb: Vec<[u8; 3]>,
 }
 
+impl Pixels {
+    /// Each pixel the mean of `by` by `by`; what is left over at the right and lower rim is left out.
+    pub(crate) fn shrunk(&self, by: u32) -> Self {
+        let (width_px, height_px) = ((self.width_px / by).max(1), (self.height_px / by).max(1));
+        let mean = |i: u32| {
+            let (column, row) = (i % width_px * by, i / width_px * by);
+            let mut sum = [0_u32; 3];
+            let mut count = 0;
+            for r in row..(row + by).min(self.height_px) {
+                for c in column..(column + by).min(self.width_px) {
+                    let pixel = self.rgb[r as usize * self.width_px as usize + c as usize];
+                    sum.iter_mut().zip(pixel).for_each(|(sum, v)| *sum += u32::from(v));
+                    count += 1;
+                }
+            }
+            sum.map(|v| ((v + count / 2) / count) as u8)
+        };
+        Self { width_px, height_px, rgb: (0..width_px * height_px).map(mean).collect() }
+    }
+}
+
 /// A picture while it is drawn; code values are kept as floats, so that many thin layers do not round away.
 pub(crate) struct Raster {
     width: usize,

@@ -21,6 +21,9 @@ pub enum RenderError {
     /// The source has no backward ability.
     #[error("this source cannot be looked at: render it forward")]
     NoRadiance,
+    /// What the source reads is broken.
+    #[error("{0}")]
+    Source(Faults),
     /// No surface states a size.
     #[error("no surface of the lens states a semi-diameter: nothing says where light may enter")]
     NoAperture,
@@ -81,6 +84,7 @@ impl RenderError {
                 "a fault of that stage or of the data that it reads: try another one, or another `wavelengths: {band: ...}`",
             ),
             Self::Memory(_) => at("imager.resolution", &text, "fewer pixels, or fewer channels"),
+            Self::Source(faults) => Some(faults.clone()),
             Self::Overflow { .. } | Self::Threads(_) => None,
         }
     }

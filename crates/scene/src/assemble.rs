@@ -4,14 +4,15 @@ use crate::advice::{self, FileIs};
 use crate::earlier::Earlier;
 use crate::filters;
 use crate::focus::FocusLight;
-use crate::lens_section::{LensSection, SetLens, lens_of};
+use crate::lens_section::{LensSection, SetLens, held_lens};
 use crate::{
-    ConePattern, Direction, NumberFamily, Output, RenderSettings, Scene, films, lamps, language, output, yaml,
+    ConePattern, Direction, NumberFamily, Output, RenderSettings, Scene, doubts, films, lamps, language, output, sight,
+    yaml,
 };
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::numbers::seed_of_frame;
-use spectra_core::params::{Fault, Faults, Node, Params, StageNode, Value, Wavelength, Whole, nearest};
+use spectra_core::params::{Fault, Faults, Node, Params, StageNode, Value, Warnings, Wavelength, Whole, nearest};
 use spectra_core::registry::{self, Context, StageOf};
 use spectra_core::resources::Resources;
 use spectra_core::spectral::{BAND, Channel, Grid};
@@ -194,12 +195,14 @@ fn all_stages(
     let mut faults = Faults::new();
     let earlier = earlier.fitting(params);
     // Several films are no single stage: their section is read apart.
+    // A key whose value is null is not there: `--set film=null` takes the film away.
     let (several, others) = match params.get("film").map(|node| &node.value) {
         Some(Value::Seq(items)) => (Some(items), params.split(&["film"]).1),
         _ => (None, params.clone()),
     };
     let file: Option<SceneFile> = faults.take(others.parse());
     // Even where a section is missing or unknown, the others are looked at: all faults in one go.
+    let others = others.without_nulls();
     let section = |key: &str, faults: &mut Faults| faults.take(others.stage_at(key)).flatten();
     let parts = ["wavelengths", "source", "lens", "imager", "film", "render"].map(|key| section(key, &mut faults));
     let [wavelengths, source, lens, imager, film, render] = parts;
@@ -211,21 +214,29 @@ fn all_stages(
     }
     let (band, sampler) = wavelengths.unwrap_or_else(|| params.nothing_said("wavelengths")).split(&["band"]);
     let grid = faults.take(band.parse::<BandSection>().and_then(|b| grid_of(&b, &band))).unwrap_or(BAND);
-    let context = Context { resources, grid, illuminant: None };
-    let source = match earlier.source {
-        Some(source) => Some(source),
-        None => source.and_then(|p| faults.take(registry::build::<dyn Source>(&p, &context))),
-    };
+    let warnings = Warnings::new();
+    let context = Context { warnings: Some(&warnings), ..Context::new(resources, grid) };
     let sampler = match earlier.sampler {
         Some(sampler) => Some(sampler),
         None => faults.take(registry::build::<dyn WavelengthSampler>(&sampler, &context)),
     };
     let filters = lens.as_ref().and_then(|p| faults.take(filters::filters_of(p, grid, resources))).flatten();
-    // The lens is looked at last, since focus wants to know the others; its faults are told in their place.
-    let mut behind = Faults::new();
+    // Focus wants to know all others, and a source what the lens sees; faults are told in the order of the sections.
+    let (mut of_lens, mut behind) = (Faults::new(), Faults::new());
     let imager = match earlier.imager {
         Some(imager) => Some(imager),
         None => imager.and_then(|p| behind.take(registry::build::<dyn Imager>(&p, &context))),
+    };
+    let lens_place = lens.clone();
+    let cover = imager.as_ref().and_then(|imager| imager.cover());
+    let held = lens.and_then(|p| of_lens.take(held_lens(&p, resources, cover)));
+    let (source, seen) = match earlier.source {
+        Some(source) => (Some(source), None),
+        None => {
+            let seen = held.as_ref().zip(imager.as_ref()).and_then(|(held, imager)| sight::seen(&held.lens, &**imager));
+            let context = Context { view: seen.as_ref().map(|seen| &seen.view), ..context };
+            (source.and_then(|p| faults.take(registry::build::<dyn Source>(&p, &context))), seen)
+        }
     };
     let films = match several {
         _ if earlier.films.is_some() => earlier.films,
@@ -265,8 +276,8 @@ fn all_stages(
         }
         _ => None,
     };
-    let lens_place = lens.clone();
-    let lens = lens.and_then(|p| faults.take(lens_of(&p, resources, focus_light.as_ref())));
+    let lens = held.and_then(|held| of_lens.take(held.focused(focus_light.as_ref())));
+    faults.extend(of_lens);
     if let (Some(place), Some(SetLens { lens, .. }), Some(source)) = (lens_place, &lens, &source)
         && lens.elements.first().is_some_and(|e| e.kind == MATTE_BOX && e.vertex_z_mm() <= -source.distance_mm())
     {
@@ -304,12 +315,14 @@ fn all_stages(
     }
     let channels: Arc<[Channel]> = channels.into();
     let SetLens { lens, focus, warnings: of_focus } = lens;
-    let mut warnings = warnings(&lens, grid);
-    warnings.extend(of_focus);
+    let whole = doubts::Whole { params, lens: &lens, source: &*source, channels: &channels, grid };
+    whole.doubt(seen.and_then(|seen| seen.dark).as_ref(), &warnings);
+    of_focus.into_iter().for_each(|fault| warnings.push(fault));
     for film in &films {
         let named = |text: String| film.name.as_ref().map_or_else(|| text.clone(), |name| format!("{name}: {text}"));
-        warnings.extend(film.film.warnings().into_iter().map(named));
+        film.film.warnings().into_iter().for_each(|text| warnings.push(params.fault("film", named(text))));
     }
+    let warnings = warnings.into_vec();
     let notes = lamps::notes(params);
     Ok(Scene {
         name: name.to_owned(),
@@ -398,22 +411,4 @@ fn render_settings(
         numbers: [NumberFamily::Sobol, NumberFamily::Random, NumberFamily::Stratified][numbers],
         cone: [ConePattern::Disk, ConePattern::Rings, ConePattern::Random][cone],
     })
-}
-
-/// What a person should know before believing the picture.
-fn warnings(lens: &Lens, grid: Grid) -> Vec<String> {
-    let mut all = lens.warnings.clone();
-    for medium in &lens.media {
-        if let Some((min, max)) =
-            medium.medium.range_nm().filter(|_| !medium.medium.covers(grid.start_nm, grid.end_nm()))
-        {
-            all.push(format!(
-                "{} was measured from {min:.0} to {max:.0} nm; between {:.0} and {:.0} nm its formula is extrapolated",
-                medium.label,
-                grid.start_nm,
-                grid.end_nm()
-            ));
-        }
-    }
-    all
 }

@@ -8,7 +8,7 @@ use miette::{
     SourceSpan, SpanContents,
 };
 use serde_json::{Value, json};
-use spectra_core::params::{Fault, Faults, SourceFile, Span};
+use spectra_core::params::{Fault, Faults, SourceFile, Span, Warning};
 use std::fmt;
 
 /// Columns that a message is wrapped to.
@@ -49,18 +49,31 @@ pub fn render(faults: &Faults, color: bool) -> String {
 /// fault lacks is null.
 #[must_use]
 pub fn to_json(faults: &Faults) -> Value {
-    let one = |fault: &Fault| {
-        let (file, span) = fault.place.as_ref().map(|(file, span)| (file, span)).unzip();
-        json!({
-            "file": file.map(|file| file.name.as_str()),
-            "line": span.map(|span| span.line),
-            "column": span.map(|span| span.column),
-            "path": (!fault.path.is_empty()).then_some(fault.path.as_str()),
-            "message": fault.message,
-            "hint": fault.hint,
-        })
-    };
-    Value::Array(faults.iter().map(one).collect())
+    Value::Array(faults.iter().map(one_to_json).collect())
+}
+
+/// Warnings in the same form.
+#[must_use]
+pub fn warnings_to_json(warnings: &[Warning]) -> Value {
+    Value::Array(warnings.iter().map(warning_to_json).collect())
+}
+
+/// One of them.
+#[must_use]
+pub fn warning_to_json(warning: &Warning) -> Value {
+    one_to_json(&warning.0)
+}
+
+fn one_to_json(fault: &Fault) -> Value {
+    let (file, span) = fault.place.as_ref().map(|(file, span)| (file, span)).unzip();
+    json!({
+        "file": file.map(|file| file.name.as_str()),
+        "line": span.map(|span| span.line),
+        "column": span.map(|span| span.column),
+        "path": (!fault.path.is_empty()).then_some(fault.path.as_str()),
+        "message": fault.message,
+        "hint": fault.hint,
+    })
 }
 
 /// A fault in the form that the renderer takes.

@@ -40,7 +40,10 @@ impl Earlier {
         if !same("wavelengths") {
             return Self { is_check: self.is_check, ..Self::default() };
         }
-        let (source, imager, films) = (same("source"), same("imager"), same("film"));
+        let (imager, films) = (same("imager"), same("film"));
+        // A source that fills the frame has its size from the lens and the imager.
+        let fills = params.get("source").is_some_and(fills_the_frame);
+        let source = same("source") && (!fills || (imager && same("lens")));
         Self {
             source: self.source.filter(|_| source),
             // An imager with noise is the imager of its frame.
@@ -55,6 +58,17 @@ fn same_section(a: &Params, b: &Params, key: &str) -> bool {
     match (a.get(key), b.get(key)) {
         (None, None) => true,
         (Some(a), Some(b)) => same_node(a, b),
+        _ => false,
+    }
+}
+
+/// Whether a width within is `fill`.
+fn fills_the_frame(node: &Node) -> bool {
+    match &node.value {
+        Value::Map(entries) => {
+            entries.iter().any(|(key, value)| (key.text == "width" && value.as_str() == Some("fill")) || fills_the_frame(value))
+        }
+        Value::Seq(items) => items.iter().any(fills_the_frame),
         _ => false,
     }
 }

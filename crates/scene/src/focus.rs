@@ -1,7 +1,5 @@
-//! What focus must know of the rest of a scene: which light, how fine, through which plates; and how it was done, for the
-//! record.
+//! What focus must know of the rest of a scene: which light, and how fine; and how it was done, for the record.
 
-use spectra_core::cover::CoverStack;
 use spectra_core::spectral::{Channel, SpectralPower, SystemResponse};
 use spectra_core::stage::{Imager, Source};
 use std::fmt;
@@ -17,10 +15,8 @@ const SMALLEST_DIAGONAL_MM: f64 = 7.516;
 /// Wavelengths that stand for the light.
 const WAVELENGTHS: usize = 12;
 
-/// The camera and the light that a lens is focused in.
+/// The light that a lens is focused in, and how finely.
 pub(crate) struct FocusLight {
-    /// The plates before the frame.
-    pub(crate) cover: Option<CoverStack>,
     /// The spatial frequency whose contrast counts, line pairs a mm.
     pub(crate) per_mm: f64,
     /// Wavelengths, nm, with their weights: the source times the summed response; none where nothing of it is seen.
@@ -35,7 +31,6 @@ impl FocusLight {
         let source = source.spectrum().clone();
         let system = SystemResponse { grid: source.grid, source, channels: pictured };
         Self {
-            cover: imager.cover(),
             per_mm: FREQUENCY_135_PER_MM * (DIAGONAL_135_MM / diagonal_mm.max(SMALLEST_DIAGONAL_MM)),
             light: representatives(&system.source, &system.summed_response(), WAVELENGTHS),
         }

@@ -8,6 +8,7 @@ use crate::filters::FilterForm;
 use crate::focus::{Focus, FocusBy, FocusLight};
 use schemars::JsonSchema;
 use serde::Deserialize;
+use spectra_core::cover::CoverStack;
 use spectra_core::params::{
     Angle, FNumber, Fault, Faults, Length, OrInfinity, Params, Positive, SpatialFrequency, StageNode, Value, Wavelength,
 };
@@ -135,16 +136,23 @@ pub(crate) struct SetLens {
     pub(crate) lens: Lens,
     pub(crate) focus: Focus,
     /// What a person should know of how it is set.
-    pub(crate) warnings: Vec<String>,
+    pub(crate) warnings: Vec<Fault>,
 }
 
-/// The lens of a scene, set. Without the light, where another section is faulty, it is focused by first order, so that its
-/// own faults are found.
-pub(crate) fn lens_of(
+/// A lens set in all but its focus by real rays, which rests on the light of the scene: it is focused by first order.
+pub(crate) struct HeldLens {
+    pub(crate) lens: Lens,
+    params: Params,
+    focus: Option<StageNode>,
+    matte_box: Option<MatteBox>,
+}
+
+/// The lens of a scene, set before plates that stand so in front of the frame.
+pub(crate) fn held_lens(
     params: &Params,
     resources: &dyn Resources,
-    light: Option<&FocusLight>,
-) -> Result<SetLens, Faults> {
+    cover: Option<CoverStack>,
+) -> Result<HeldLens, Faults> {
     let mut faults = Faults::new();
     if let Some(kind) = params.kind() {
         let fault = params.fault("kind", "a lens has no kinds: its file is named by `file`");
@@ -176,8 +184,8 @@ pub(crate) fn lens_of(
     if let Some(node) = section.aperture {
         lens = faults.take(with_aperture(&lens, &node, resources)).unwrap_or(lens);
     }
-    lens = lens.with_cover(light.and_then(|light| light.cover.clone()));
-    let wanted = section.focus.and_then(|node| faults.take(focus_of(&node, lens.reference_nm, light)));
+    lens = lens.with_cover(cover);
+    let wanted = section.focus.as_ref().and_then(|node| faults.take(focus_of(node, lens.reference_nm, None)));
     if let Some(wanted) = &wanted {
         let focused = lens.clone().focused_at(wanted.distance_mm);
         lens = faults.take(focused.map_err(|e| focus_fault(params, &e))).unwrap_or(lens);
@@ -185,30 +193,41 @@ pub(crate) fn lens_of(
     for node in &section.adjust {
         lens = faults.take(adjusted(&lens, node)).unwrap_or(lens);
     }
-    let mut focus = Focus { distance_mm: None, by: FocusBy::File, remark: None };
-    let mut warnings = Vec::new();
-    if let Some(wanted) = wanted {
-        focus = Focus { distance_mm: Some(wanted.distance_mm), by: wanted.by, remark: None };
-        if faults.is_empty() {
+    let matte_box = section.matte_box.and_then(|node| faults.take(node.parse::<MatteBoxParams>()));
+    let matte_box = matte_box.map(|p| MatteBox {
+        distance_mm: p.distance.mm(),
+        width_mm: p.width.mm(),
+        height_mm: p.height.mm(),
+    });
+    faults.into_result(HeldLens { lens, params: params.clone(), focus: section.focus, matte_box })
+}
+
+impl HeldLens {
+    /// The lens focused in the light of the scene. Without it, where another section is faulty, it stays as it is.
+    pub(crate) fn focused(self, light: Option<&FocusLight>) -> Result<SetLens, Faults> {
+        let Self { mut lens, params, focus: node, matte_box } = self;
+        let mut focus = Focus { distance_mm: None, by: FocusBy::File, remark: None };
+        let mut warnings = Vec::new();
+        if let Some(node) = node {
+            let wanted = focus_of(&node, lens.reference_nm, light)?;
+            focus = Focus { distance_mm: Some(wanted.distance_mm), by: wanted.by, remark: None };
             match by_rays(&lens, &wanted) {
+                _ if light.is_none() => {}
                 Ok((found, remark)) => (lens, focus.remark) = (found, remark),
                 Err(error @ (FocusError::NoLight { .. } | FocusError::NoTravel { .. })) if wanted.plain => {
                     focus.by = FocusBy::Paraxial;
-                    focus.remark =
-                        Some(format!("contrast cannot be had ({error}); write `by: paraxial` to do without"));
+                    focus.remark = Some(format!("contrast cannot be had ({error}); write `by: paraxial` to do without"));
                 }
-                Err(error) => faults.push(focus_fault(params, &error)),
+                Err(error) => return Err(focus_fault(&params, &error).into()),
             }
-            warnings.extend(focus.remark.as_ref().map(|remark| format!("`lens.focus`: {remark}")));
+            let say = |remark: &String| params.fault("focus", remark);
+            warnings.extend(focus.remark.as_ref().map(say));
         }
+        if let Some(opening) = matte_box {
+            lens = lens.behind_matte_box(&opening);
+        }
+        Ok(SetLens { lens, focus, warnings })
     }
-    if let Some(node) = section.matte_box
-        && let Some(p) = faults.take(node.parse::<MatteBoxParams>())
-    {
-        let opening = MatteBox { distance_mm: p.distance.mm(), width_mm: p.width.mm(), height_mm: p.height.mm() };
-        lens = lens.behind_matte_box(&opening);
-    }
-    faults.into_result(SetLens { lens, focus, warnings })
 }
 
 /// The lens moved on to where real rays find it best, where that is asked for, and what is to be said of it.

@@ -6,6 +6,7 @@
 mod advice;
 mod assemble;
 pub mod diagnostics;
+mod doubts;
 mod earlier;
 mod films;
 mod filters;
@@ -17,6 +18,7 @@ mod output;
 mod resources;
 mod scene;
 mod schema;
+mod sight;
 
 pub use spectra_yaml as yaml;
 

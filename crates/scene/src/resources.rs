@@ -3,7 +3,7 @@
 use crate::advice::{FileIs, other_file};
 use crate::yaml;
 use spectra_core::params::{Fault, Faults, Params, SourceFile, nearest};
-use spectra_core::resources::{Resource, ResourceError, Resources};
+use spectra_core::resources::{Found, Resource, ResourceError, Resources};
 use spectra_exchange::Format;
 use std::borrow::Cow;
 use std::io::Read;
@@ -89,6 +89,24 @@ impl Resources for FileResources {
             return Err(ResourceError::Io("this is a folder; a file is wanted".to_owned()));
         }
         Err(ResourceError::NotFound(self.near(path, folders)))
+    }
+
+    fn find(&self, path: &str, folders: &[&str], endings: &[&str], limit_bytes: u64) -> Result<Found, ResourceError> {
+        for folder in self.folders() {
+            for ending in std::iter::once("").chain(endings.iter().copied()) {
+                let on_disk = plain(&folder.join(format!("{path}{ending}")));
+                if on_disk.is_file() {
+                    let found = Found::on_disk(from_here(&on_disk).display().to_string(), on_disk);
+                    let size = found.size_bytes()?;
+                    if size > limit_bytes {
+                        return Err(ResourceError::TooLarge(size, limit_bytes));
+                    }
+                    found.open()?;
+                    return Ok(found);
+                }
+            }
+        }
+        self.read(path, folders, endings, limit_bytes).map(|read| Found::bytes(read.name, read.bytes))
     }
 
     fn document(&self, path: &str, folders: &[&str], endings: &[&str]) -> Result<Params, Faults> {

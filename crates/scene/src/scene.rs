@@ -2,7 +2,7 @@
 
 use crate::Focus;
 use spectra_core::frame::{ExposureChannel, ExposureFrame};
-use spectra_core::params::Params;
+use spectra_core::params::{Params, Warning};
 use spectra_core::spectral::{Channel, Grid};
 use spectra_core::stage::{Film, Imager, Source, WavelengthSampler};
 use spectra_lens::Lens;
@@ -168,7 +168,7 @@ pub struct Scene {
     /// What to write.
     pub output: Vec<Output>,
     /// What a person should know: a glass off its listed range, and so on.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Warning>,
     /// What to bear in mind of the data that it uses, though nothing about the scene is wrong.
     pub notes: Vec<String>,
     /// The scene as it was read, for faults that show once the stages are put together.

@@ -124,6 +124,12 @@ impl Emission {
         Self::new(Some(Shape::histogram(edges_nm, contents)?), Vec::new())
     }
 
+    /// First and last wavelength that was measured, nm, of a table that goes on flat beyond them; `None` of anything else.
+    #[must_use]
+    pub fn flat_beyond_nm(&self) -> Option<(f64, f64)> {
+        self.continuum.as_ref().and_then(Shape::flat_beyond_nm)
+    }
+
     /// The continuum, per nanometre; `None` where there are lines only.
     #[must_use]
     pub fn continuum(&self) -> Option<&Shape> {

@@ -11,6 +11,7 @@ use crate::cell;
 use crate::error::{SpectrumError, check};
 use crate::gaussian::{GaussianMixture, GaussianTerm};
 use crate::planck::planck_radiance;
+use crate::meta::Outside;
 use crate::tabulated::Tabulated;
 
 /// A function of the wavelength: constant, rectangle, Gaussian, signed sum of Gaussians, black body, table, histogram,
@@ -136,6 +137,16 @@ impl Shape {
     #[must_use]
     pub fn tabulated(table: Tabulated) -> Self {
         Self(Node::Tabulated(table))
+    }
+
+    /// First and last wavelength of a table that goes on flat beyond them, nm; `None` of anything else.
+    #[must_use]
+    pub fn flat_beyond_nm(&self) -> Option<(f64, f64)> {
+        match &self.0 {
+            Node::Tabulated(table) if table.outside() == Outside::Constant => Some(table.range_nm()),
+            Node::Scaled(_, shape) => shape.flat_beyond_nm(),
+            _ => None,
+        }
     }
 
     /// A histogram as a detector measures it: `contents[i]` of power between `edges_nm[i]` and `edges_nm[i + 1]`.

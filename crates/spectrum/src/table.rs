@@ -325,7 +325,8 @@ impl<'a> Reader<'a> {
                 continue;
             }
             if line.starts_with('#') {
-                if strict {
+                // What lies beyond the rows may be said in any file: nothing else about it is in the numbers.
+                if strict || key_value(line).is_some_and(|(key, _)| key == "outside") {
                     self.front_matter(&mut meta, row, line)?;
                 }
                 continue;

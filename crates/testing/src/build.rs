@@ -49,7 +49,7 @@ impl Resources for Files {
 
 fn try_build<S: Stage + ?Sized>(yaml: &str) -> Result<Box<S>, Faults> {
     let node = spectra_yaml::parse(SourceFile::new("test.yaml", yaml))?;
-    let context = Context { resources: &Files, grid: BAND, illuminant: None };
+    let context = Context::new(&Files, BAND);
     registry::build(&Params::stage(node, S::NAME)?, &context)
 }
 

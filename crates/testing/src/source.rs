@@ -48,6 +48,7 @@ impl SourceLaws {
     /// # Panics
     /// With the first case that breaks a law.
     pub fn hold(&self, source: &dyn Source) {
+        source.prepare().unwrap_or_else(|faults| panic!("it cannot be made ready: {faults}"));
         let spectrum = source.spectrum();
         assert_eq!(spectrum.continuum.len(), spectrum.grid.count, "the spectrum has not as many values as its grid");
         for (power, nm) in spectrum.continuum.iter().zip(spectrum.grid.wavelengths_nm()) {

@@ -30,7 +30,7 @@ fn model(kind: &str, light: Option<&SpectralPower>) -> Box<dyn ColorModel> {
     let entries = vec![(Key { text: "kind".to_owned(), span: span(0, 4) }, value)];
     let node = Node::new(Value::Map(entries), span(0, text.len()), file);
     let params = Params::stage(node, "source.color").expect("a stage");
-    let context = Context { resources: &NoFiles, grid: BAND, illuminant: light };
+    let context = Context { illuminant: light, ..Context::new(&NoFiles, BAND) };
     build::<dyn ColorModel>(&params, &context).unwrap_or_else(|e| panic!("{kind}: {e}"))
 }
 

@@ -14,7 +14,7 @@ fn with_params<T>(yaml: &str, use_them: impl FnOnce(&Params, &Context<'_>) -> T)
     std::fs::write(folder.path().join("film.yaml"), yaml).expect("written");
     let resources = FileResources::beside(folder.path());
     let params = resources.document("film.yaml", &[], &[]).expect("YAML");
-    use_them(&params, &Context { resources: &resources, grid: BAND, illuminant: None })
+    use_them(&params, &Context::new(&resources, BAND))
 }
 
 fn build(yaml: &str) -> Result<StockFilm, Faults> {

@@ -15,7 +15,7 @@ fn build(yaml: &str) -> Result<ThreeStrip, Faults> {
     std::fs::write(folder.path().join("film.yaml"), yaml).expect("written");
     let resources = FileResources::beside(folder.path());
     let params: Params = resources.document("film.yaml", &[], &[]).expect("YAML");
-    ThreeStrip::build(&params, &Context { resources: &resources, grid: BAND, illuminant: None })
+    ThreeStrip::build(&params, &Context::new(&resources, BAND))
 }
 
 fn shown(film: &ThreeStrip, blue: f32, green: f32, red: f32) -> [f32; 3] {

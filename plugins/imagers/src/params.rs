@@ -7,7 +7,7 @@ use crate::standing::{Bend, Standing};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::frame::FrameSize;
-use spectra_core::params::{Angle, Fault, Faults, Length, NonNegative, Params, Positive, nearest};
+use spectra_core::params::{Angle, Fault, Faults, Length, NonNegative, Params, Positive, StageNode, Value, nearest};
 use spectra_core::registry::Context;
 use spectra_glass::Catalogue;
 use spectra_spectrum::find_transmittance_in;
@@ -29,9 +29,15 @@ macro_rules! imager_params {
             /// Height of the frame, 0.001 mm to 100 m, mm if bare.
             #[serde(default)]
             pub height: Option<spectra_core::params::Positive<spectra_core::params::Length>>,
-            /// Pixels across and down, 1 to 32768 each and at most 200 million.
-            #[schemars(inner(range(min = 1, max = 32768)))]
-            pub resolution: [u32; 2],
+            /// The largest part of the frame of this shape, such as `16:9` or 1.85 (width over height), about its center; all
+            /// of it if left out.
+            #[serde(default)]
+            #[schemars(with = "Option<crate::params::CropForm>")]
+            pub crop: Option<spectra_core::params::StageNode>,
+            /// Pixels across and down, 1 to 32768 each and at most 200 million; or those across alone, and as many down as
+            /// make them square.
+            #[schemars(with = "crate::params::ResolutionForm")]
+            pub resolution: spectra_core::params::StageNode,
             /// Where the center of the frame lies in the image plane, along x and y, mm if bare; +y is up. The image is
             /// upside down: a frame moved up shows more of what is below. On the axis if left out.
             #[serde(default)]
@@ -62,7 +68,8 @@ macro_rules! imager_params {
                     format: self.format.clone(),
                     width: self.width,
                     height: self.height,
-                    resolution: self.resolution,
+                    crop: self.crop.clone(),
+                    resolution: self.resolution.clone(),
                     shift: self.shift,
                     tilt: self.tilt,
                     curvature: self.curvature.clone(),
@@ -74,6 +81,28 @@ macro_rules! imager_params {
     };
 }
 pub(crate) use imager_params;
+
+/// `resolution` as written in a scene.
+#[derive(JsonSchema)]
+#[serde(untagged)]
+#[expect(dead_code, reason = "states what is allowed; `Frame` reads it")]
+pub enum ResolutionForm {
+    /// Pixels across.
+    Across(#[schemars(range(min = 1, max = 32768))] u32),
+    /// Pixels across and down.
+    Both(#[schemars(inner(range(min = 1, max = 32768)))] [u32; 2]),
+}
+
+/// `crop` as written in a scene.
+#[derive(JsonSchema)]
+#[serde(untagged)]
+#[expect(dead_code, reason = "states what is allowed; `Frame` reads it")]
+pub enum CropForm {
+    /// Width over height.
+    Ratio(#[schemars(extend("exclusiveMinimum" = 0))] f64),
+    /// Width and height, such as `16:9`.
+    Words(String),
+}
 
 /// How a frame is curved, as written in a scene.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -123,7 +152,8 @@ pub(crate) struct Frame {
     pub(crate) format: Option<String>,
     pub(crate) width: Option<Positive<Length>>,
     pub(crate) height: Option<Positive<Length>>,
-    pub(crate) resolution: [u32; 2],
+    pub(crate) crop: Option<StageNode>,
+    pub(crate) resolution: StageNode,
     pub(crate) shift: Option<[Length; 2]>,
     pub(crate) tilt: Option<[Angle; 2]>,
     pub(crate) curvature: Option<Curvature>,
@@ -143,6 +173,9 @@ impl Frame {
     pub(crate) fn plane(&self, params: &Params, context: &Context<'_>) -> Result<Plane, Faults> {
         let mut faults = Faults::new();
         let size = faults.take(self.size(params));
+        if let Some(size) = &size {
+            self.warn_unless_square(size, params, context);
+        }
         let standing = faults.take(self.standing(params, size));
         let plates = faults.take(self.plates(params, context));
         match (size, standing, plates) {
@@ -203,11 +236,42 @@ impl Frame {
     /// Its size.
     fn size(&self, params: &Params) -> Result<FrameSize, Faults> {
         let mut faults = Faults::new();
+        let crop = faults.take(self.crop.as_ref().map(ratio).transpose());
         let size_mm = faults.take(self.size_mm(params));
-        faults.extend(self.resolution_faults(params));
-        let [width_px, height_px] = self.resolution;
-        let (width_mm, height_mm) = size_mm.unwrap_or_default();
+        let (width_mm, height_mm) = match (size_mm.unwrap_or((1.0, 1.0)), crop.flatten()) {
+            ((width, height), Some(ratio)) if width > height * ratio => (height * ratio, height),
+            ((width, _), Some(ratio)) => (width, width / ratio),
+            (size, None) => size,
+        };
+        let resolution = if matches!(self.resolution.node().value, Value::Number(_)) {
+            let across = faults.take(self.resolution.parse::<u32>());
+            across.map(|across| [across, square_px(across, height_mm / width_mm)])
+        } else {
+            faults.take(self.resolution.parse::<[u32; 2]>())
+        };
+        let Some([width_px, height_px]) = resolution else { return Err(faults) };
+        faults.extend(resolution_faults([width_px, height_px], params));
         faults.into_result(FrameSize { width_px, height_px, width_mm, height_mm })
+    }
+
+    /// Pixels that are not square are rarely meant: the picture looks squeezed.
+    fn warn_unless_square(&self, size: &FrameSize, params: &Params, context: &Context<'_>) {
+        let [across, down] = [size.width_px, size.height_px];
+        let ratio = size.height_mm / size.width_mm;
+        // As near to square as whole numbers of pixels come is square.
+        if down.abs_diff(square_px(across, ratio)) <= 1 || across.abs_diff(square_px(down, 1.0 / ratio)) <= 1 {
+            return;
+        }
+        let aspect = size.width_mm / f64::from(across) / (size.height_mm / f64::from(down));
+        let text = format!("pixels are not square, but {aspect:.2} times as wide as high: the picture will look squeezed");
+        let common = gcd(across, down);
+        let hint = format!(
+            "`resolution: [{across}, {}]`, or `crop: {}:{}` for a frame of that shape",
+            square_px(across, ratio),
+            across / common,
+            down / common
+        );
+        context.warn(params.fault("resolution", text).hint(hint));
     }
 
     fn size_mm(&self, params: &Params) -> Result<(f64, f64), Fault> {
@@ -267,22 +331,46 @@ impl Frame {
         let bend = self.curvature.as_ref().and_then(|c| faults.take(bend(c, params, size))).unwrap_or(Bend::Flat);
         faults.into_result(Standing::new(shift_mm, tilt_rad, bend))
     }
+}
 
-    fn resolution_faults(&self, params: &Params) -> Vec<Fault> {
-        let mut faults = Vec::new();
-        for (i, px) in self.resolution.into_iter().enumerate() {
-            if !(1..=MAX_SIDE_PX).contains(&px) {
-                let text = format!("{px} pixels is no side of a picture");
-                faults.push(params.fault(&format!("resolution[{i}]"), text).hint(format!("1 to {MAX_SIDE_PX}")));
-            }
+/// Pixels down that are square, for those across and height over width of the frame.
+fn square_px(across: u32, ratio: f64) -> u32 {
+    (f64::from(across) * ratio).round().clamp(1.0, f64::from(u32::MAX)) as u32
+}
+
+fn gcd(a: u32, b: u32) -> u32 {
+    if b == 0 { a.max(1) } else { gcd(b, a % b) }
+}
+
+/// Width over height: a number, or two with a colon between them.
+fn ratio(node: &StageNode) -> Result<f64, Fault> {
+    let found = match &node.node().value {
+        Value::Number(number) => Some(number.value),
+        Value::String(text) => text.split_once(':').and_then(|(width, height)| {
+            let [width, height] = [width, height].map(|side| side.trim().parse::<f64>().ok());
+            Some(width? / height?)
+        }),
+        _ => None,
+    };
+    found.filter(|ratio| (0.01..=100.0).contains(ratio)).ok_or_else(|| {
+        node.fault("no shape of a frame").hint("width to height, as in `crop: 16:9`, or their ratio, as in `crop: 1.85`")
+    })
+}
+
+fn resolution_faults(resolution: [u32; 2], params: &Params) -> Vec<Fault> {
+    let mut faults = Vec::new();
+    for (i, px) in resolution.into_iter().enumerate() {
+        if !(1..=MAX_SIDE_PX).contains(&px) {
+            let text = format!("{px} pixels is no side of a picture");
+            faults.push(params.fault(&format!("resolution[{i}]"), text).hint(format!("1 to {MAX_SIDE_PX}")));
         }
-        let [width, height] = self.resolution.map(u64::from);
-        if faults.is_empty() && width * height > MAX_PIXELS {
-            let text = format!("{width} x {height} are {} megapixels", width * height / 1_000_000);
-            faults.push(params.fault("resolution", text).hint(format!("at most {}", MAX_PIXELS / 1_000_000)));
-        }
-        faults
     }
+    let [width, height] = resolution.map(u64::from);
+    if faults.is_empty() && width * height > MAX_PIXELS {
+        let text = format!("{width} x {height} are {} megapixels", width * height / 1_000_000);
+        faults.push(params.fault("resolution", text).hint(format!("at most {}", MAX_PIXELS / 1_000_000)));
+    }
+    faults
 }
 
 /// The bend, which must leave the frame well within a half of the cylinder or sphere.

@@ -19,7 +19,7 @@ fn build(kind: &str, yaml: &str) -> Result<Box<dyn Imager>, Faults> {
     let params = resources.document("imager.yaml", &[], &[]).expect("YAML");
     let entries = <dyn Imager as Stage>::entries();
     let entry = entries.iter().find(|e| e.name == kind).expect("registered");
-    (entry.build)(&params, &Context { resources: &resources, grid: BAND, illuminant: None })
+    (entry.build)(&params, &Context::new(&resources, BAND))
 }
 
 #[test]

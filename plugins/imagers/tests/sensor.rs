@@ -21,7 +21,7 @@ fn build(yaml: &str) -> Result<Box<dyn Imager>, Faults> {
     let params = resources.document("imager.yaml", &[], &[]).expect("YAML");
     let entries = <dyn Imager as Stage>::entries();
     let entry = entries.iter().find(|e| e.name == "sensor").expect("registered");
-    (entry.build)(&params, &Context { resources: &resources, grid: BAND, illuminant: None })
+    (entry.build)(&params, &Context::new(&resources, BAND))
 }
 
 const FRAME: &str = "width: 1 mm\nheight: 1 mm\nresolution: [200, 200]\nexposure: 1/100 s\n";

@@ -2,6 +2,7 @@
 
 use crate::chart::{self, Chart, Ink};
 use crate::flat::{Flat, Places, Texture};
+use crate::frame::{Edge, Placed, Width, WidthForm};
 use crate::palette::Palette;
 use crate::white;
 use schemars::JsonSchema;
@@ -52,8 +53,14 @@ struct ChartParams {
     reflectances: Option<StageNode>,
     /// Distance of its plane from the first vertex, mm if bare.
     distance: Positive<Length>,
-    /// Width of the chart, mm if bare; the height follows.
-    width: Positive<Length>,
+    /// Width of the chart, mm if bare; the height follows. Or `fill`: 2 % more than what the frame sees there through this
+    /// lens; what does not fit into the frame's shape is cut off.
+    #[schemars(with = "WidthForm")]
+    width: StageNode,
+    /// What lies beyond the chart: `black`, nothing; `clamp`, what its border shows; `mirror`, the chart mirrored. `black`
+    /// if absent, with a warning where the frame sees it. With `clamp` and `mirror` light is traced backward only.
+    #[schemars(extend("enum" = ["black", "clamp", "mirror"]))]
+    edge: Option<String>,
     /// The light that falls on it: the name of a spectrum, a file beside the scene, or an expression such as
     /// `blackbody:3200`.
     #[serde(default = "daylight")]
@@ -115,10 +122,19 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
     };
     let light = faults.take(white::illuminant(&p.illuminant, params, context));
     let own = faults.take(own_reflectances(&p, params, context)).unwrap_or_default();
-    let chart = match p.chart.as_str() {
-        chart::OWN_PATCHES => Some(chart::own_patches(own.len() as u16, p.width.mm())),
-        name => faults.take(named(name, Some(p.width.mm()), p.seed)),
+    let width = faults.take(Width::read(&p.width));
+    let edge = faults.take(Edge::read(p.edge.as_deref(), params));
+    let distance_mm = p.distance.mm();
+    let drawn = |width_mm: f64| match p.chart.as_str() {
+        chart::OWN_PATCHES => Ok(chart::own_patches(own.len() as u16, width_mm)),
+        name => named(name, Some(width_mm), p.seed),
     };
+    // Drawn at any width, it has its shape.
+    let chart = faults.take(drawn(distance_mm)).zip(width.as_ref()).and_then(|(any, width)| {
+        let aspect = any.width_mm() / any.height_mm();
+        let width_mm = faults.take(width.mm(aspect, distance_mm, [0.0; 2], context.view))?;
+        faults.take(drawn(width_mm))
+    });
     let spectra = match (&light, &chart) {
         (Some(light), Some(chart)) => {
             let inner = Context { illuminant: Some(light), ..*context };
@@ -132,14 +148,19 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
         }
         _ => None,
     };
-    let (Some(chart), Some((spectra, white))) = faults.into_result((chart, spectra))? else {
+    let (Some(chart), Some((spectra, white)), Some(edge)) = faults.into_result((chart, spectra, edge))? else {
         return Err(Faults::new());
     };
+    if p.edge.is_none() && !width.is_some_and(|width| width.is_fill()) {
+        let (width_mm, height_mm) = (chart.width_mm(), chart.height_mm());
+        let placed = Placed { width_mm, height_mm, distance_mm, center_mm: [0.0; 2] };
+        placed.warn_unless_filled("the chart", params, context);
+    }
     let scale = p.luminance.cd_per_m2() / white::luminance_cd_m2(&white);
     let spectra: Vec<SpectralPower> = spectra.iter().map(|s| s.scaled(scale)).collect();
     let palette = Palette::new(context.grid, &spectra);
-    let texture = ChartTexture::new(chart, palette, &spectra);
-    Ok(Box::new(Flat { texture, distance_mm: p.distance.mm() }))
+    let texture = ChartTexture { edge, ..ChartTexture::new(chart, palette, &spectra) };
+    Ok(Box::new(Flat { texture, distance_mm }))
 }
 
 /// The reflectances that the user brings.
@@ -275,6 +296,7 @@ struct ChartTexture {
     palette: Palette,
     mean: SpectralPower,
     peak_over_mean: f64,
+    edge: Edge,
 }
 
 impl ChartTexture {
@@ -295,17 +317,29 @@ impl ChartTexture {
         let peak = spectra.iter().map(white::luminance_cd_m2).fold(0.0, f64::max);
         let average = white::luminance_cd_m2(&mean);
         let peak_over_mean = if average > 0.0 { peak / average } else { 1.0 };
-        Self { chart, palette, mean, peak_over_mean }
+        Self { chart, palette, mean, peak_over_mean, edge: Edge::Black }
     }
 }
 
 impl Texture for ChartTexture {
     fn shine(&self, at: Places<'_>, weight: &mut [f64], isa: Isa) {
         let mut inks = [0_u16; 256];
+        let mut folded = [[0.0_f64; 256]; 2];
+        let sides = [self.chart.width_mm(), self.chart.height_mm()];
         for start in (0..weight.len()).step_by(256) {
             let end = (start + 256).min(weight.len());
             let inks = &mut inks[..end - start];
-            self.chart.ink_at_batch(&at.x_mm[start..end], &at.y_mm[start..end], inks);
+            let mut places = [&at.x_mm[start..end], &at.y_mm[start..end]];
+            if self.edge != Edge::Black {
+                let [x, y] = &mut folded;
+                for ((out, place), side) in [x, y].into_iter().zip(&mut places).zip(sides) {
+                    for (out, at) in out.iter_mut().zip(*place) {
+                        *out = self.edge.place(at + 0.5 * side, side).map_or(f64::NAN, |at| at - 0.5 * side);
+                    }
+                    *place = &out[..end - start];
+                }
+            }
+            self.chart.ink_at_batch(places[0], places[1], inks);
             let part = Places {
                 x_mm: &at.x_mm[start..end],
                 y_mm: &at.y_mm[start..end],
@@ -321,6 +355,10 @@ impl Texture for ChartTexture {
         ((u - 0.5) * width, (v - 0.5) * height, width * height)
     }
 
+    fn is_bounded(&self) -> bool {
+        self.edge == Edge::Black
+    }
+
     fn spectrum(&self) -> &SpectralPower {
         &self.mean
     }
@@ -330,7 +368,7 @@ impl Texture for ChartTexture {
     }
 
     fn describe(&self) -> String {
-        format!("chart {} ({} x {} mm)", self.chart.name(), self.chart.width_mm(), self.chart.height_mm())
+        format!("chart {} ({:.1} x {:.1} mm)", self.chart.name(), self.chart.width_mm(), self.chart.height_mm())
     }
 }
 

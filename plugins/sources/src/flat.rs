@@ -15,6 +15,11 @@ pub(crate) trait Texture: Send + Sync {
     /// fair sample (one over the density), mm^2.
     fn draw(&self, u: f64, v: f64) -> (f64, f64, f64);
 
+    /// Whether there is nothing beyond its border: what has none cannot emit from all of it.
+    fn is_bounded(&self) -> bool {
+        true
+    }
+
     /// Light summed over the picture, in any scale.
     fn spectrum(&self) -> &SpectralPower;
 
@@ -51,7 +56,7 @@ impl<T: Texture> Source for Flat<T> {
         self.distance_mm
     }
     fn emit(&self) -> Option<&dyn Emit> {
-        Some(self)
+        self.texture.is_bounded().then_some(self as &dyn Emit)
     }
     fn radiance(&self) -> Option<&dyn Radiance> {
         Some(self)

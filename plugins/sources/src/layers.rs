@@ -4,10 +4,11 @@
 //! already) times what the ones in front of it let pass (T. Porter and T. Duff, "Compositing digital images", SIGGRAPH
 //! 1984). Nothing is guessed: what a layer hides, the one behind it knows.
 
-use crate::picture::decode::decode;
-use crate::picture::linear::Choice;
+use crate::frame::{Edge, Placed, Width, WidthForm};
+use crate::lazy::Lazy;
+use crate::picture::header::Header;
 use crate::picture::map::PictureMap;
-use crate::picture::{assemble, color_model, find, trouble};
+use crate::picture::{Making, PictureFile, color_model, find};
 use crate::white;
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -34,7 +35,7 @@ use spectra_core::{Isa, RayBatch};
 /// layers:
 ///   - {file: leaves.png, distance: 80 cm, width: 50 cm}
 ///   - {file: portrait.png, distance: 2 m, width: 1.4 m, center: [10 cm, 0]}
-///   - {file: holiday.png, distance: 20 m, width: 18 m, luminance: 2000 cd/m2}
+///   - {file: holiday.png, distance: 20 m, width: fill, luminance: 2000 cd/m2}
 /// luminance: 300 cd/m2
 /// ```
 /// # References
@@ -70,8 +71,12 @@ struct LayerParams {
     layer: Option<String>,
     /// Distance of its plane from the first vertex, mm if bare; farther than that of the layer before it.
     distance: Positive<Length>,
-    /// Width of the picture on that plane, mm if bare; the height follows.
-    width: Positive<Length>,
+    /// Width of the picture on that plane, mm if bare; the height follows. Or `fill`, as for `kind: picture`.
+    #[schemars(with = "WidthForm")]
+    width: StageNode,
+    /// What lies beyond it, its cover as its color: `black` (nothing, the default), `clamp` or `mirror`.
+    #[schemars(extend("enum" = ["black", "clamp", "mirror"]))]
+    edge: Option<String>,
     /// Its center on that plane (to the photographer's right, up), mm if bare; on the axis if absent.
     center: Option<[Length; 2]>,
     /// Luminance of its white, cd/m2 if bare; that of all layers if absent.
@@ -100,9 +105,9 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
     }
     let light = faults.take(white::illuminant(&p.illuminant, params, context));
     let model = light.and_then(|light| faults.take(color_model(p.color, &light, params, context)));
-    let mut layers: Vec<Layer> = Vec::new();
+    let mut layers: Vec<Pending> = Vec::new();
     let mut before_mm = 0.0;
-    for node in &p.layers {
+    for (i, node) in p.layers.iter().enumerate() {
         let Some(own) = faults.take(Params::section(node.node().clone(), node.path())) else { continue };
         let Some(layer) = faults.take(own.parse::<LayerParams>()) else { continue };
         let distance_mm = layer.distance.mm();
@@ -115,22 +120,62 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
         if !center_mm.iter().all(|c| c.is_finite()) {
             faults.push(own.fault("center", "a center lies at a finite place"));
         }
-        let Some(resource) = faults.take(find(&layer.file, &own, context)) else { continue };
-        let choice = Choice {
-            name: &layer.file,
-            transfer: layer.transfer.as_deref(),
-            layer: layer.layer.as_deref(),
+        let width = faults.take(Width::read(&layer.width));
+        let edge = faults.take(Edge::read(layer.edge.as_deref(), &own));
+        let Some(found) = faults.take(find(&layer.file, &own, context)) else { continue };
+        let file = PictureFile {
+            found,
+            name: layer.file.clone(),
+            transfer: layer.transfer.clone(),
+            layer: layer.layer.clone(),
             depth: None,
+            params: own.clone(),
         };
-        let linear = decode(&resource.bytes, choice).map_err(|e| trouble(&layer.file, &e, &own));
-        let (Some(mut linear), Some(model)) = (faults.take(linear), &model) else { continue };
-        let luminance = layer.luminance.unwrap_or(p.luminance).cd_per_m2();
-        let cover = linear.alpha.take();
-        let map = assemble(&linear, &layer.file, layer.width.mm(), std::sync::Arc::clone(model), luminance);
-        layers.push(Layer { map, cover, distance_mm, center_mm });
+        let header = faults.take(file.header());
+        let (Some(header), Some(model), Some(width), Some(edge)) = (header, &model, width, edge) else { continue };
+        let wide = width.mm(header.aspect(), distance_mm, center_mm, context.view).map_err(Faults::from);
+        let Some(width_mm) = faults.take(wide) else { continue };
+        let luminance_cd_m2 = layer.luminance.unwrap_or(p.luminance).cd_per_m2();
+        let making = Making { model: std::sync::Arc::clone(model), width_mm, luminance_cd_m2, edge };
+        // What is in front need not fill the frame; nothing is behind the last.
+        if i + 1 == p.layers.len() && layer.edge.is_none() && !width.is_fill() && faults.is_empty() {
+            let placed = Placed { width_mm, height_mm: width_mm / header.aspect(), distance_mm, center_mm };
+            placed.warn_unless_filled("the last layer", &own, context);
+        }
+        file.warn(&header, context);
+        layers.push(Pending { file, header, making, distance_mm, center_mm });
     }
     faults.into_result(())?;
-    Ok(Box::new(Layers::new(layers)))
+    let stand_in = Layers::new(layers.iter().map(Pending::white).collect());
+    Ok(Box::new(Lazy::new(Box::new(stand_in), false, move || {
+        let mut faults = Faults::new();
+        let read: Vec<Layer> = layers.iter().filter_map(|layer| faults.take(layer.read())).collect();
+        faults.into_result(())?;
+        Ok(Box::new(Layers::new(read)))
+    })))
+}
+
+/// A layer whose file was not read yet.
+struct Pending {
+    file: PictureFile,
+    header: Header,
+    making: Making,
+    distance_mm: f64,
+    center_mm: [f64; 2],
+}
+
+impl Pending {
+    fn white(&self) -> Layer {
+        let map = self.making.white(&self.header, &self.file.name);
+        Layer { map, cover: None, distance_mm: self.distance_mm, center_mm: self.center_mm }
+    }
+
+    fn read(&self) -> Result<Layer, Faults> {
+        let mut linear = self.file.read()?;
+        let cover = linear.alpha.take();
+        let map = self.making.map(linear, &self.file.name);
+        Ok(Layer { map, cover, distance_mm: self.distance_mm, center_mm: self.center_mm })
+    }
 }
 
 struct Layer {

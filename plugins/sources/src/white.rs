@@ -1,6 +1,6 @@
 //! The light that makes white: illuminant and luminance, as every source of pictures states them.
 
-use spectra_core::params::{Faults, Params};
+use spectra_core::params::{DataEnd, Faults, Params};
 use spectra_core::registry::Context;
 use spectra_core::spectral::SpectralPower;
 use spectra_spectrum::{Observer, constants};
@@ -21,6 +21,9 @@ pub(crate) fn light(key: &str, name: &str, params: &Params, context: &Context<'_
     let found = spectra_spectrum::find_emission_in(name, context.resources)
         .map_err(|e| e.faults(|text| params.fault(key, text)))?;
     let power = found.to_power(&context.grid);
+    if let (Some((first, last)), Some(warnings)) = (found.flat_beyond_nm(), context.warnings) {
+        warnings.push_end(DataEnd { place: params.fault(key, name), measured_nm: [first, last] });
+    }
     if power.is_dark() {
         let fault = params.fault(key, format!("`{name}` has no light in the band"));
         let (first, last) = (context.grid.start_nm, context.grid.end_nm());

@@ -22,7 +22,7 @@ fn surface(line: &str) -> Result<Box<dyn Surface>, Faults> {
     let resources = FileResources::beside(folder.path());
     let params = resources.document("surface.yaml", &[], &[])?;
     let params = spectra_core::params::Params::stage(params.node().clone(), "").expect("a map");
-    build::<dyn Surface>(&params, &Context { resources: &resources, grid: BAND, illuminant: None })
+    build::<dyn Surface>(&params, &Context::new(&resources, BAND))
 }
 
 #[test]

@@ -7,7 +7,8 @@ use super::rescue;
 use super::target::Target;
 use crate::outcome::Failure;
 use spectra_film::write::{
-    RawLens, WriteError, write_atomically, write_dng, write_exr_times, write_png8, write_tiff16, write_tiled_exr_times,
+    RawLens, WriteError, write_atomically, write_dng, write_exr_times, write_png8_of_pixels, write_tiff16,
+    write_tiled_exr_times,
 };
 use spectra_plot::PlotError;
 use spectra_scene::{Member, Output, RaysFigure, Scene};
@@ -174,7 +175,7 @@ impl Folder {
             for (path, (_, picture)) in paths.zip(&pictures) {
                 match kind {
                     Output::Tiff => write_tiff16(path, picture)?,
-                    _ => write_png8(path, picture)?,
+                    _ => write_png8_of_pixels(path, picture, pixel_aspect(report))?,
                 }
             }
         }
@@ -226,4 +227,12 @@ fn refuse(path: &Path, reason: &dyn Display) -> Failure {
         "cannot write to `{}`: {reason} (nothing was rendered; choose another folder with --output)",
         path.display()
     ))
+}
+
+/// Width over height of a pixel of the frame.
+fn pixel_aspect(report: &Report<'_>) -> f64 {
+    let size = report.scene.imager.size();
+    let aspect = size.width_mm / f64::from(size.width_px) / (size.height_mm / f64::from(size.height_px));
+    // As near to square as whole numbers of pixels come.
+    if (aspect - 1.0).abs() < 0.005 { 1.0 } else { aspect }
 }

@@ -27,6 +27,7 @@ use report::Report;
 use serde_json::json;
 pub(crate) use series::{Checking, checked};
 use spectra_core::Isa;
+use spectra_core::params::Warning;
 use spectra_render::{Control, RenderError, Renderer, Rendering};
 use spectra_scene::{Scene, SeriesKind, diagnostics};
 use std::sync::Arc;
@@ -105,7 +106,7 @@ fn render_scene(arguments: &Run, isa: Isa, started: Instant) -> Outcome {
         Err(error) => return Err(refused(error, &scene)),
     };
     for warning in &rendering.warnings {
-        progress.warning(warning);
+        progress.warning(&Warning::from(warning.clone()));
     }
     let times = scene.film_times(&rendering.exposure);
     let report = Report {

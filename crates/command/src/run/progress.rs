@@ -10,8 +10,9 @@ use crate::{console, words};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::{Value, json};
 use spectra_core::Isa;
+use spectra_core::params::Warning;
 use spectra_render::Control;
-use spectra_scene::Scene;
+use spectra_scene::{Scene, diagnostics};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
@@ -123,12 +124,15 @@ impl Progress {
     }
 
     /// What a person should know before believing the picture.
-    pub(crate) fn warning(&self, text: &str) {
+    pub(crate) fn warning(&self, warning: &Warning) {
         match &self.listener {
-            Listener::Json => self.event(json!({ "event": "warning", "message": text })),
+            Listener::Json => {
+                let mut event = diagnostics::warning_to_json(warning);
+                event["event"] = "warning".into();
+                self.event(event);
+            }
             Listener::Quiet => {}
-            Listener::Bar(bar) => bar.suspend(|| console::warning(text)),
-            Listener::Lines => console::warning(text),
+            Listener::Bar(_) | Listener::Lines => console::said(warning, None),
         }
     }
 

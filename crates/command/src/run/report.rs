@@ -47,6 +47,8 @@ impl Report<'_> {
         let channels: Vec<Value> =
             rendering.exposure.channels.iter().map(|c| json!({ "name": c.name, "unit": c.unit })).collect();
         let forward = settings.direction == spectra_scene::Direction::Forward;
+        let warnings: Vec<String> =
+            scene.warnings.iter().map(ToString::to_string).chain(rendering.warnings.iter().cloned()).collect();
         json!({
             "scene": scene.name,
             "scene_file": self.arguments.scene.display().to_string(),
@@ -76,7 +78,7 @@ impl Report<'_> {
             "lens": { "name": scene.lens.name, "patent": scene.lens.patent, "losses": scene.lens.losses(), "notes": scene.lens.notes },
             "film": films(scene),
             "versions": version::to_json(),
-            "warnings": scene.warnings.iter().chain(&rendering.warnings).collect::<Vec<_>>(),
+            "warnings": warnings,
             "notes": scene.notes,
         })
     }

@@ -14,7 +14,7 @@ use crate::outcome::{DONE, Failure, Outcome};
 use crate::{memory, version, words};
 use serde_json::{Map, Value, json};
 use spectra_core::Isa;
-use spectra_core::params::{Fault, Faults};
+use spectra_core::params::{Fault, Faults, Warning};
 use spectra_render::{Control, Renderer};
 use spectra_scene::{Member, Scene, Series, SeriesKind};
 use std::path::{Path, PathBuf};
@@ -38,7 +38,7 @@ struct Planned {
     folder: Folder,
     size_px: [u32; 2],
     films: Vec<Option<String>>,
-    warnings: Vec<String>,
+    warnings: Vec<Warning>,
 }
 
 /// Renders all pictures of a series that are asked for.
@@ -69,7 +69,7 @@ pub(super) fn render(
     let planned = checked(series, &chosen, isa, threads, &plan, &mut |checking| progress.checking(checking))?;
     set_up.done();
     leftover::sweep(&target.folder, series.name());
-    let mut said: Vec<&String> = Vec::new();
+    let mut said: Vec<&Warning> = Vec::new();
     for warning in series.warnings().iter().chain(planned.iter().flat_map(|p| &p.warnings)) {
         if !said.contains(&warning) {
             said.push(warning);
@@ -293,7 +293,7 @@ impl Work<'_> {
         let scene = self.series.scene_after(picture.index, self.other.take())?;
         let control = Arc::new(self.deadline.map_or_else(Control::new, Control::until));
         self.interrupt.stops(&control);
-        let renderer = Renderer::new(&scene, self.isa).map_err(failed)?;
+        let renderer = Renderer::new(&scene, self.isa).map_err(|error| refused(error, &scene))?;
         progress.start(&scene, self.threads, self.isa);
         let begun = Instant::now();
         let rendering = watch(&renderer, self.threads, &control, || progress.tick(&control, self.interrupt.happened()))
@@ -304,7 +304,7 @@ impl Work<'_> {
             return Ok(false);
         }
         for warning in &rendering.warnings {
-            progress.warning(warning);
+            progress.warning(&Warning::from(warning.clone()));
         }
         let attributes = attributes(self.series, &picture.member);
         let times = scene.film_times(&rendering.exposure);

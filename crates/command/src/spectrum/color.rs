@@ -41,7 +41,7 @@ fn models(wanted: &[String], illuminant: &str) -> Result<Vec<Model>, Failure> {
         };
         let node = yaml::parse(SourceFile::new("--model", text))?;
         let params = Params::stage(node, "color")?;
-        let context = Context { resources: &files, grid: BAND, illuminant: Some(&light) };
+        let context = Context { illuminant: Some(&light), ..Context::new(&files, BAND) };
         let model = registry::build::<dyn ColorModel>(&params, &context)?;
         let default = entries().iter().any(|e| e.default && e.name == name);
         Ok(Model { name, model, default })

@@ -79,6 +79,7 @@ mod stage_node;
 mod tests;
 mod text;
 mod units;
+mod warning;
 mod whole;
 
 pub use fault::{Fault, Faults};
@@ -94,4 +95,5 @@ pub use schema::{Kinds, schema_of};
 pub use stage_node::StageNode;
 pub use text::nearest;
 pub use units::{Dimension, Reading, Unit};
+pub use warning::{DataEnd, Warning, Warnings};
 pub use whole::Whole;

@@ -83,6 +83,16 @@ impl Params {
         Self { kind: None, ..self }
     }
 
+    /// The same without the keys whose value is null.
+    #[must_use]
+    pub fn without_nulls(&self) -> Self {
+        let mut node = self.node.clone();
+        if let Value::Map(entries) = &mut node.value {
+            entries.retain(|(_, value)| !matches!(value.value, Value::Null));
+        }
+        Self { node, ..self.clone() }
+    }
+
     /// The `kind`, if one is named.
     #[must_use]
     pub fn kind(&self) -> Option<&str> {

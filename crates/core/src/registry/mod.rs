@@ -52,11 +52,12 @@ mod schema;
 pub use documentation::{Documentation, Parameter};
 pub use schema::{StageOf, definitions};
 
-use crate::params::{Fault, Faults, Params};
+use crate::params::{Fault, Faults, Params, Warning, Warnings};
 use crate::resources::Resources;
 use crate::spectral::{Grid, SpectralPower};
 use crate::stage::{ColorModel, Film, Imager, Response, Source, WavelengthSampler};
 use crate::surface::Surface;
+use crate::view::View;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 
 #[doc(hidden)] // for `register!`
@@ -71,6 +72,25 @@ pub struct Context<'a> {
     pub grid: Grid,
     /// For a color model: the light that the source's colors are seen under.
     pub illuminant: Option<&'a SpectralPower>,
+    /// For a source: what the frame sees in front of the lens; `None` where there is no lens, or none that is sound.
+    pub view: Option<&'a View>,
+    /// Where warnings go, if anywhere; see [`Context::warn`].
+    pub warnings: Option<&'a Warnings>,
+}
+
+impl<'a> Context<'a> {
+    /// Of files and a band; nothing else is known.
+    #[must_use]
+    pub const fn new(resources: &'a dyn Resources, grid: Grid) -> Self {
+        Self { resources, grid, illuminant: None, view: None, warnings: None }
+    }
+
+    /// Says what a person should know before believing a picture: a [`Fault`] with its place and a hint, or a text.
+    pub fn warn(&self, warning: impl Into<Warning>) {
+        if let Some(warnings) = self.warnings {
+            warnings.push(warning);
+        }
+    }
 }
 
 /// How a stage is built from its parameters.

@@ -10,7 +10,7 @@ mod tiled;
 pub use atomically::write_atomically;
 pub use dng::{RawLens, write_dng};
 pub use exposure::{write_exr, write_exr_times, write_half_exr};
-pub use picture::{write_png8, write_png16, write_tiff16};
+pub use picture::{write_png8, write_png8_of_pixels, write_png16, write_tiff16};
 pub use tiled::{write_tiled_exr, write_tiled_exr_times};
 
 use std::path::PathBuf;

@@ -17,7 +17,16 @@ use std::path::Path;
 /// [`WriteError`].
 pub fn write_png8(path: &Path, picture: &DisplayPicture) -> Result<(), WriteError> {
     let bytes = encoded(picture, |code| [to_u8(code)]);
-    write_png(path, picture, &bytes, ExtendedColorType::Rgb8)
+    write_png(path, picture, &bytes, ExtendedColorType::Rgb8, 1.0)
+}
+
+/// The same of a picture whose pixels are `pixel_aspect` times as wide as high; where that is not 1, the file says so.
+///
+/// # Errors
+/// [`WriteError`].
+pub fn write_png8_of_pixels(path: &Path, picture: &DisplayPicture, pixel_aspect: f64) -> Result<(), WriteError> {
+    let bytes = encoded(picture, |code| [to_u8(code)]);
+    write_png(path, picture, &bytes, ExtendedColorType::Rgb8, pixel_aspect)
 }
 
 /// Writes a 16-bit PNG: sRGB encoding, 1 is 65535, values outside of [0, 1] clipped.
@@ -25,7 +34,7 @@ pub fn write_png8(path: &Path, picture: &DisplayPicture) -> Result<(), WriteErro
 /// # Errors
 /// [`WriteError`].
 pub fn write_png16(path: &Path, picture: &DisplayPicture) -> Result<(), WriteError> {
-    write_png(path, picture, &encoded(picture, code16), ExtendedColorType::Rgb16)
+    write_png(path, picture, &encoded(picture, code16), ExtendedColorType::Rgb16, 1.0)
 }
 
 /// Writes a 16-bit TIFF, uncompressed: sRGB encoding, 1 is 65535, values outside of [0, 1] clipped.
@@ -43,15 +52,49 @@ pub fn write_tiff16(path: &Path, picture: &DisplayPicture) -> Result<(), WriteEr
     })
 }
 
-fn write_png(path: &Path, picture: &DisplayPicture, bytes: &[u8], color: ExtendedColorType) -> Result<(), WriteError> {
+fn write_png(
+    path: &Path,
+    picture: &DisplayPicture,
+    bytes: &[u8],
+    color: ExtendedColorType,
+    pixel_aspect: f64,
+) -> Result<(), WriteError> {
     write_atomically(path, |file| {
         check(picture)?;
         let mut to = BufWriter::new(file);
-        PngEncoder::new_with_quality(&mut to, CompressionType::Default, FilterType::Adaptive)
+        let mut png = Vec::new();
+        PngEncoder::new_with_quality(&mut png, CompressionType::Default, FilterType::Adaptive)
             .write_image(bytes, picture.width_px, picture.height_px, color)
             .map_err(fault)?;
+        // Signature and IHDR come first (PNG, third edition, 5.6): pHYs may follow at once.
+        let (head, rest) = png.split_at(8 + 25);
+        to.write_all(head)?;
+        if pixel_aspect != 1.0 && (0.001..1000.0).contains(&pixel_aspect) {
+            to.write_all(&physical_dimensions(pixel_aspect))?;
+        }
+        to.write_all(rest)?;
         Ok(to.flush()?)
     })
+}
+
+/// The chunk pHYs (PNG, third edition, 11.3.4.3) of pixels of this width over height, without a unit.
+fn physical_dimensions(pixel_aspect: f64) -> [u8; 21] {
+    const ACROSS: u32 = 1_000_000;
+    let down = (f64::from(ACROSS) * pixel_aspect).round() as u32;
+    let mut chunk = [0; 21];
+    chunk[..4].copy_from_slice(&9_u32.to_be_bytes());
+    chunk[4..8].copy_from_slice(b"pHYs");
+    chunk[8..12].copy_from_slice(&ACROSS.to_be_bytes());
+    chunk[12..16].copy_from_slice(&down.to_be_bytes());
+    let check = crc32(&chunk[4..17]);
+    chunk[17..].copy_from_slice(&check.to_be_bytes());
+    chunk
+}
+
+/// The check of a chunk (PNG, third edition, annex D).
+fn crc32(bytes: &[u8]) -> u32 {
+    let step = |crc: u32| if crc & 1 == 1 { 0xedb8_8320 ^ (crc >> 1) } else { crc >> 1 };
+    !bytes.iter().fold(u32::MAX, |crc, byte| (0..8).fold(crc ^ u32::from(*byte), |crc, _| step(crc)))
 }
 
 /// The encoders panic where the number of pixels is not that of the size.

@@ -5,7 +5,7 @@ use super::sweep::{Setting, check_path};
 use super::variables::Variables;
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::params::{Fault, Faults, Key, Node, StageNode, Value, Whole, nearest};
+use spectra_core::params::{Fault, Faults, Key, Node, StageNode, Value, Warning, Whole, nearest};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -52,7 +52,7 @@ pub(super) struct Animation {
     pub is_alive: bool,
     tracks: Vec<(String, Track)>,
     /// What a person should know: keyframes beyond the frames.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Warning>,
 }
 
 impl Animation {
@@ -97,7 +97,7 @@ impl Animation {
                 if let Some(beyond) = at.iter().find(|at| !(f64::from(first)..=last).contains(at)) {
                     let words =
                         format!("the keyframe {beyond} of `{}` lies beyond the frames {first} to {last}", key.text);
-                    warnings.push(node.fault(words).to_string());
+                    warnings.push(node.fault(words).into());
                 }
                 tracks.push((key.text.clone(), track));
             }
@@ -213,7 +213,7 @@ mod tests {
     fn keyframes_beyond_the_frames_are_warned_of() {
         let found = animation("animation: {frames: 48, seed: fixed, animate: {a: {1: 1, 480: 2}}}").expect("good");
         assert!(!found.is_alive);
-        assert_eq!(found.warnings, ["t.yaml:1:51: the keyframe 480 of `a` lies beyond the frames 1 to 48"]);
+        assert_eq!(found.warnings[0].to_string(), "t.yaml:1:51: the keyframe 480 of `a` lies beyond the frames 1 to 48");
     }
 
     #[test]

@@ -9,7 +9,7 @@ use crate::assemble::{assemble, read, record};
 use crate::earlier::Earlier;
 use crate::lens_section::is_too_fast;
 use crate::{FileResources, Scene, yaml};
-use spectra_core::params::{Fault, Faults, Key, Node, Number, Params, Value};
+use spectra_core::params::{Fault, Faults, Key, Node, Number, Params, Value, Warning};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -83,7 +83,7 @@ pub struct Series {
     /// The files that it is made of.
     files: Vec<String>,
     going: Going,
-    warnings: Vec<String>,
+    warnings: Vec<Warning>,
 }
 
 #[derive(Clone, Debug)]
@@ -191,7 +191,8 @@ impl Series {
         };
         for set in set.iter().filter(|set| own.iter().any(|own| below(set, own))) {
             let key = self.key().unwrap_or_default();
-            self.warnings.push(format!("`--set {set}` has no effect: the {key} sets it for each picture"));
+            let text = format!("`--set {set}` has no effect: the {key} sets it for each picture");
+            self.warnings.push(text.into());
         }
         faults.into_result(self)
     }
@@ -239,7 +240,7 @@ impl Series {
 
     /// What a person should know: variables that nothing uses, values that have no effect.
     #[must_use]
-    pub fn warnings(&self) -> &[String] {
+    pub fn warnings(&self) -> &[Warning] {
         &self.warnings
     }
 
@@ -335,7 +336,7 @@ impl Series {
         };
         let scene = built(&root, &text, earlier).or_else(|faults| match self.wide_open_instead(index, &root, &faults) {
             Some((open, warning)) => built(&open, &self.record(&member, &open), Earlier::of(None, is_check)).map(|mut scene| {
-                scene.warnings.push(warning);
+                scene.warnings.push(warning.into());
                 scene
             }),
             None => Err(faults),

@@ -2,7 +2,7 @@
 
 use super::count;
 use crate::yaml::MAX_NODES;
-use spectra_core::params::{Fault, Faults, Key, MAX_DEPTH, Node, SourceFile, Span, Value, nearest};
+use spectra_core::params::{Fault, Faults, Key, MAX_DEPTH, Node, SourceFile, Span, Value, Warning, nearest};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
@@ -223,13 +223,13 @@ impl Variables {
     }
 
     /// What a person should know: definitions that nothing refers to.
-    pub(super) fn unused(&self, references: &BTreeSet<String>) -> Vec<String> {
+    pub(super) fn unused(&self, references: &BTreeSet<String>) -> Vec<Warning> {
         let unused = self.entries.iter().filter(|(key, _)| !references.contains(&key.text));
         let words = unused.map(|(key, node)| {
             let fault = node.fault(format!("the variable `{}` is not used", key.text));
             match nearest(&key.text, references.iter().map(String::as_str)) {
-                Some(near) => fault.hint(format!("`${near}` is")).to_string(),
-                None => fault.to_string(),
+                Some(near) => fault.hint(format!("`${near}` is")).into(),
+                None => fault.into(),
             }
         });
         words.collect()
@@ -575,7 +575,7 @@ mod tests {
         let variables = Variables::of(root.get(VARIABLES)).expect("good");
         let mut known = BTreeSet::new();
         references(&root, &mut known);
-        let told = variables.unused(&known);
+        let told: Vec<String> = variables.unused(&known).iter().map(ToString::to_string).collect();
         assert_eq!(
             told,
             [

@@ -10,7 +10,7 @@ use spectra_scene::{FileResources, yaml};
 fn build(text: &str) -> Result<Box<dyn WavelengthSampler>, Faults> {
     let files = FileResources::beside("/nowhere".as_ref());
     let params = Params::stage(yaml::parse_bytes("scene.yaml", text.as_bytes())?, "wavelengths")?;
-    registry::build(&params, &Context { resources: &files, grid: BAND, illuminant: None })
+    registry::build(&params, &Context::new(&files, BAND))
 }
 
 #[test]

@@ -2,11 +2,12 @@
 
 use super::encoding::Encoding;
 use super::linear::{Choice, Linear, MAX_SIDE, Trouble, check_size, clean};
-use super::{exr, foreign};
+use super::header::Header;
+use super::{exr, foreign, jpeg};
 use image::metadata::Orientation;
-use image::{DynamicImage, ImageDecoder, ImageError, ImageReader, Limits};
+use image::{ColorType, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
 use spectra_spectrum::Transfer;
-use std::io::Cursor;
+use std::io::{BufRead, Cursor, Seek};
 
 /// No picture format packs more pixels into a byte: deflate ends near 1 032 to 1, at one byte a pixel or less.
 const MAX_PIXELS_PER_BYTE: u64 = 1_100 * 8;
@@ -19,16 +20,45 @@ const MAX_PIXELS_PER_BYTE: u64 = 1_100 * 8;
 /// # Errors
 /// What is wrong with the file.
 pub(crate) fn decode(bytes: &[u8], choice: Choice<'_>) -> Result<Linear, Trouble> {
-    if bytes.is_empty() {
+    let said = choice.transfer.map(Encoding::named).transpose()?;
+    match kind(bytes, choice)? {
+        Kind::Exr => exr::decode(bytes, choice, true),
+        Kind::Native(ImageFormat::Jpeg) if !jpeg::is_whole(bytes) => Err(Trouble::file("the file breaks off before its end")
+            .hint("copy or download it once more, or save it again: what is missing would be gray")),
+        Kind::Native(format) => match native(Cursor::new(bytes), format, bytes.len() as u64, said) {
+            Ok(linear) => Ok(linear),
+            Err(NotRead::Trouble(trouble)) => Err(trouble),
+            Err(NotRead::Unsupported(why)) => {
+                foreign::decode(bytes, choice.name, said).map_err(|trouble| foreign::also(&why, trouble))
+            }
+        },
+        Kind::Foreign => foreign::decode(bytes, choice.name, said),
+    }
+}
+
+/// Who reads a file.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Kind {
+    Exr,
+    Native(ImageFormat),
+    Foreign,
+}
+
+/// Tells it by the first bytes, and whether the choice suits it.
+///
+/// # Errors
+/// An empty file; a layer, a depth or a transfer that a file of its kind cannot have.
+pub(super) fn kind(beginning: &[u8], choice: Choice<'_>) -> Result<Kind, Trouble> {
+    if beginning.is_empty() {
         return Err(Trouble::file("the file is empty")
             .hint("is the file complete? Save it again as OpenEXR, PNG, JPEG, TIFF or HDR"));
     }
     let said = choice.transfer.map(Encoding::named).transpose()?;
-    if bytes.starts_with(&exr::MAGIC) {
+    if beginning.starts_with(&exr::MAGIC) {
         if said.is_some() {
             return Err(Trouble::at("transfer", "an OpenEXR file holds linear light").hint("leave `transfer` out"));
         }
-        return exr::decode(bytes, choice, true);
+        return Ok(Kind::Exr);
     }
     if choice.layer.is_some() {
         return Err(Trouble::at("layer", "only an OpenEXR file has layers").hint("leave `layer` out"));
@@ -37,18 +67,8 @@ pub(crate) fn decode(bytes: &[u8], choice: Choice<'_>) -> Result<Linear, Trouble
         return Err(Trouble::at("depth", "only an OpenEXR file has a depth channel")
             .hint("name a file that has it: `depth: {file: ..., channel: Z}`"));
     }
-    let reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format();
-    let reader = reader.map_err(|e| Trouble::file(e.to_string()))?;
-    if !reader.format().is_some_and(|format| format.reading_enabled()) {
-        return foreign::decode(bytes, choice.name, said);
-    }
-    match native(reader, bytes.len() as u64) {
-        Ok((picture, orientation)) => Ok(linear(picture, orientation, said)),
-        Err(NotRead::Trouble(trouble)) => Err(trouble),
-        Err(NotRead::Unsupported(why)) => {
-            foreign::decode(bytes, choice.name, said).map_err(|trouble| foreign::also(&why, trouble))
-        }
-    }
+    let format = image::guess_format(beginning).ok().filter(ImageFormat::reading_enabled);
+    Ok(format.map_or(Kind::Foreign, Kind::Native))
 }
 
 /// Why a file of a known kind is not read.
@@ -73,23 +93,60 @@ impl From<ImageError> for NotRead {
     }
 }
 
-fn native(reader: ImageReader<Cursor<&[u8]>>, bytes: u64) -> Result<(DynamicImage, Orientation), NotRead> {
-    let mut decoder = reader.into_decoder()?;
+/// A decoder that has read the header of a file of `bytes` bytes.
+fn decoder<'a>(
+    reader: impl BufRead + Seek + 'a,
+    format: ImageFormat,
+    bytes: u64,
+) -> Result<impl ImageDecoder + 'a, NotRead> {
+    let decoder = ImageReader::with_format(reader, format).into_decoder()?;
     let (width, height) = decoder.dimensions();
     check_size(u64::from(width), u64::from(height))?;
     if u64::from(width) * u64::from(height) > bytes * MAX_PIXELS_PER_BYTE {
         let text = format!("the header says {width} x {height} pixels, which {bytes} bytes cannot hold");
         return Err(Trouble::file(text).into());
     }
+    Ok(decoder)
+}
+
+/// The header of a file of `bytes` bytes, from its beginning; `None` of a variant that is not known here.
+pub(super) fn native_header<'a>(
+    reader: impl BufRead + Seek + 'a,
+    format: ImageFormat,
+    bytes: u64,
+) -> Result<Option<Header>, Trouble> {
+    let mut decoder = match decoder(reader, format, bytes) {
+        Ok(decoder) => decoder,
+        Err(NotRead::Trouble(trouble)) => return Err(trouble),
+        Err(NotRead::Unsupported(_)) => return Ok(None),
+    };
+    let (width, height) = decoder.dimensions();
+    let turned = (5..=8).contains(&orientation(&mut decoder));
+    let [width, height] = if turned { [height, width] } else { [width, height] };
+    let clips = !matches!(decoder.color_type(), ColorType::Rgb32F | ColorType::Rgba32F);
+    Ok(Some(Header { width, height, pixel_aspect: 1.0, clips, is_jpeg: format == ImageFormat::Jpeg }))
+}
+
+/// As TIFF 6.0 numbers it. A file that says nothing sound of it lies as it is.
+fn orientation(decoder: &mut impl ImageDecoder) -> u8 {
+    decoder.orientation().unwrap_or(Orientation::NoTransforms).to_exif()
+}
+
+fn native(
+    reader: Cursor<&[u8]>,
+    format: ImageFormat,
+    bytes: u64,
+    said: Option<Encoding>,
+) -> Result<Linear, NotRead> {
+    let mut decoder = decoder(reader, format, bytes)?;
     let mut limits = Limits::default();
     limits.max_image_width = Some(MAX_SIDE);
     limits.max_image_height = Some(MAX_SIDE);
     // As much as the picture needs, twice over, and something for the decoder.
     limits.max_alloc = Some(decoder.total_bytes().saturating_mul(2).saturating_add(64 << 20));
     decoder.set_limits(limits)?;
-    // A file that says nothing sound of it lies as it is.
-    let orientation = decoder.orientation().unwrap_or(Orientation::NoTransforms);
-    Ok((DynamicImage::from_decoder(decoder)?, orientation))
+    let orientation = orientation(&mut decoder);
+    linear(decoder, orientation, said)
 }
 
 /// The depth channel alone of an OpenEXR file, which need not hold light.
@@ -103,53 +160,98 @@ pub(crate) fn depth(bytes: &[u8], choice: Choice<'_>) -> Result<Linear, Trouble>
     exr::decode(bytes, choice, false)
 }
 
-fn linear(mut picture: DynamicImage, orientation: Orientation, said: Option<Encoding>) -> Linear {
-    picture.apply_orientation(orientation);
-    let of_integers = said.unwrap_or(Encoding::Curve(Transfer::Srgb));
-    let of_floats = |v: f32| clean(said.map_or(v, |encoding| encoding.decode(f64::from(v)) as f32));
-    let has_alpha = picture.color().has_alpha();
-    let mut alpha = Vec::new();
-    let (rgb, clipped_at): (Vec<[f32; 3]>, _) = match &picture {
-        DynamicImage::ImageRgb32F(_) => (picture.to_rgb32f().pixels().map(|p| p.0.map(of_floats)).collect(), None),
-        DynamicImage::ImageRgba32F(rgba) => {
-            alpha.extend(rgba.pixels().map(|p| clean(p.0[3]).min(1.0)));
-            (rgba.pixels().map(|p| [0, 1, 2].map(|c| of_floats(p.0[c]))).collect(), None)
-        }
-        DynamicImage::ImageLuma16(_)
-        | DynamicImage::ImageLumaA16(_)
-        | DynamicImage::ImageRgb16(_)
-        | DynamicImage::ImageRgba16(_) => {
-            let table = of_integers.table(65_536);
-            if has_alpha {
-                alpha.extend(picture.to_rgba16().pixels().map(|p| f32::from(p.0[3]) / 65_535.0));
-            }
-            let rgb = picture.to_rgb16().pixels().map(|p| p.0.map(|v| table[usize::from(v)])).collect();
-            (rgb, Some(of_integers.clipped_at()))
-        }
-        _ => {
-            let table = of_integers.table(256);
-            if has_alpha {
-                alpha.extend(picture.to_rgba8().pixels().map(|p| f32::from(p.0[3]) / 255.0));
-            }
-            let rgb = picture.to_rgb8().pixels().map(|p| p.0.map(|v| table[usize::from(v)])).collect();
-            (rgb, Some(of_integers.clipped_at()))
-        }
+/// How a decoder lays out a pixel.
+#[derive(Clone, Copy)]
+enum Samples {
+    Bytes,
+    Shorts,
+    Floats,
+}
+
+/// The picture of a decoder in linear light. Its code values are read into the end of the memory that the light will take
+/// and spread out from there, so that a picture takes 12 bytes a pixel and no more; one that is to be turned takes its code
+/// values besides while it is.
+fn linear(decoder: impl ImageDecoder, orientation: u8, said: Option<Encoding>) -> Result<Linear, NotRead> {
+    const LIGHT: usize = size_of::<[f32; 3]>();
+    let color = decoder.color_type();
+    let samples = match color {
+        ColorType::L8 | ColorType::La8 | ColorType::Rgb8 | ColorType::Rgba8 => Samples::Bytes,
+        ColorType::L16 | ColorType::La16 | ColorType::Rgb16 | ColorType::Rgba16 => Samples::Shorts,
+        ColorType::Rgb32F | ColorType::Rgba32F => Samples::Floats,
+        other => return Err(NotRead::Unsupported(format!("pixels of the kind {other:?} are not read"))),
     };
-    let mut rgb = rgb;
-    if clipped_at.is_some() {
-        for (pixel, cover) in rgb.iter_mut().zip(&alpha) {
-            *pixel = pixel.map(|v| v * cover);
+    let (size, count) = (usize::from(color.bytes_per_pixel()), usize::from(color.channel_count()));
+    let (width, height) = decoder.dimensions();
+    let pixels = width as usize * height as usize;
+    let of_integers = said.unwrap_or(Encoding::Curve(Transfer::Srgb));
+    let table = match samples {
+        Samples::Bytes => of_integers.table(256),
+        Samples::Shorts => of_integers.table(65_536),
+        Samples::Floats => Vec::new(),
+    };
+    // The light of a pixel, and its cover.
+    let light = |pixel: &[u8]| -> ([f32; 3], f32) {
+        let short = |c: usize| u16::from_ne_bytes([pixel[2 * c], pixel[2 * c + 1]]);
+        let float = |c: usize| f32::from_ne_bytes([pixel[4 * c], pixel[4 * c + 1], pixel[4 * c + 2], pixel[4 * c + 3]]);
+        let gray = count < 3;
+        let rgb = [0, 1, 2].map(|c| {
+            let c = if gray { 0 } else { c };
+            match samples {
+                Samples::Bytes => table[usize::from(pixel[c])],
+                Samples::Shorts => table[usize::from(short(c))],
+                Samples::Floats => {
+                    clean(said.map_or(float(c), |encoding| encoding.decode(f64::from(float(c))) as f32))
+                }
+            }
+        });
+        let cover = match samples {
+            _ if count % 2 == 1 => return (rgb, 1.0),
+            Samples::Bytes => f32::from(pixel[count - 1]) / 255.0,
+            Samples::Shorts => f32::from(short(count - 1)) / 65_535.0,
+            Samples::Floats => return (rgb, clean(float(count - 1)).min(1.0)),
+        };
+        (rgb.map(|v| v * cover), cover)
+    };
+    let mut rgb: Vec<[f32; 3]> = vec![[0.0; 3]; pixels];
+    let mut alpha = if count % 2 == 0 { vec![0.0_f32; pixels] } else { Vec::new() };
+    let memory: &mut [u8] = bytemuck::cast_slice_mut(&mut rgb);
+    let mut beside = Vec::new();
+    let start = if size <= LIGHT {
+        let start = pixels * (LIGHT - size);
+        decoder.read_image(&mut memory[start..])?;
+        if orientation != 1 {
+            beside = memory[start..].to_vec();
+        }
+        start
+    } else {
+        beside = vec![0; pixels * size];
+        decoder.read_image(&mut beside)?;
+        0
+    };
+    let mut pixel = [0_u8; 16];
+    for i in 0..pixels {
+        let stored = if orientation == 1 { i } else { foreign::stored(i, [width as usize, height as usize], orientation) };
+        pixel[..size].copy_from_slice(if beside.is_empty() {
+            &memory[start + stored * size..][..size]
+        } else {
+            &beside[stored * size..][..size]
+        });
+        let (light, cover) = light(&pixel[..size]);
+        memory[i * LIGHT..][..LIGHT].copy_from_slice(bytemuck::bytes_of(&light));
+        if let Some(at) = alpha.get_mut(i) {
+            *at = cover;
         }
     }
-    Linear {
-        width: picture.width(),
-        height: picture.height(),
+    let turned = (5..=8).contains(&orientation);
+    Ok(Linear {
+        width: if turned { height } else { width },
+        height: if turned { width } else { height },
         pixel_aspect: 1.0,
         rgb,
         alpha: (!alpha.is_empty()).then_some(alpha),
         depth: None,
-        clipped_at,
-    }
+        clipped_at: (!matches!(samples, Samples::Floats)).then(|| of_integers.clipped_at()),
+    })
 }
 
 #[cfg(test)]

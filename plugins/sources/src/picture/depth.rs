@@ -1,11 +1,12 @@
 //! The depth of a picture, from what a file says to millimetres along the axis.
 
-use super::linear::{Choice, Linear};
+use super::linear::{Choice, Linear, Trouble};
 use super::{decode, find, trouble};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{Faults, Length, Params, Positive, Ratio, StageNode};
 use spectra_core::registry::Context;
+use spectra_core::resources::Found;
 
 /// `depth` of a picture.
 #[derive(Debug, Deserialize, JsonSchema)]
@@ -43,13 +44,15 @@ pub(super) struct Depth {
     pub along_ray: bool,
     pub edge: f64,
     pub eye_mm: f64,
+    /// The file of its own.
+    found: Option<Found>,
 }
 
 /// Millimetres of the units that depth channels come in.
 const UNITS: [(&str, f64); 5] = [("mm", 1.0), ("cm", 10.0), ("m", 1000.0), ("in", 25.4), ("ft", 304.8)];
 
 impl Depth {
-    pub(super) fn read(node: &StageNode) -> Result<Self, Faults> {
+    pub(super) fn read(node: &StageNode, context: &Context<'_>) -> Result<Self, Faults> {
         let params = Params::section(node.node().clone(), node.path())?;
         let p: DepthParams = params.parse()?;
         let mut faults = Faults::new();
@@ -84,8 +87,9 @@ impl Depth {
         if !eye_mm.is_finite() {
             faults.push(params.fault("eye", "the center of projection is at a finite place"));
         }
+        let found = p.file.as_ref().and_then(|file| faults.take(find(file, &params, context)));
         faults.into_result(())?;
-        Ok(Self { unit_mm: unit.unwrap_or(1.0) * scale, along_ray, edge, eye_mm, params, p })
+        Ok(Self { unit_mm: unit.unwrap_or(1.0) * scale, along_ray, edge, eye_mm, found, params, p })
     }
 
     /// The channel, where the picture's own file holds it.
@@ -104,14 +108,13 @@ impl Depth {
         picture: &Linear,
         plane_mm: f64,
         width_mm: f64,
-        context: &Context<'_>,
     ) -> Result<Vec<f32>, Faults> {
-        let own = match &self.p.file {
-            None => None,
-            Some(file) => {
-                let resource = find(file, &self.params, context)?;
+        let own = match (&self.p.file, &self.found) {
+            (None, _) | (_, None) => None,
+            (Some(file), Some(found)) => {
                 let choice = Choice { depth: Some(self.name()), ..Choice::default() };
-                let read = decode::depth(&resource.bytes, choice);
+                let bytes = found.read(super::MAX_BYTES).map_err(|e| Trouble::file(e.to_string()));
+                let read = bytes.and_then(|bytes| decode::depth(&bytes, choice));
                 let read = read.map_err(|e| Faults::from(trouble(file, &e, &self.params)))?;
                 if (read.width, read.height) != (picture.width, picture.height) {
                     let [a, b] = [(read.width, read.height), (picture.width, picture.height)];

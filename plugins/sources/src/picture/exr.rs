@@ -6,12 +6,15 @@
 //! format's documentation says, which sRGB shares.
 
 use super::linear::{Choice, Linear, Trouble, check_size, clean};
-use exr::image::{AnyChannels, FlatImage, FlatSamples, Layer};
-use exr::meta::attribute::Chromaticities;
+use exr::block::UncompressedBlock;
+use exr::block::lines::LineRef;
+use exr::block::reader::ChunksReader;
+use exr::meta::MetaData;
+use exr::meta::attribute::{Chromaticities, SampleType};
 use exr::meta::header::Header;
-use exr::prelude::{ReadChannels, ReadLayers, read};
+use exr::prelude::{Vec2, f16};
 use spectra_spectrum::{Adaptation, RgbSpace, Transfer};
-use std::io::Cursor;
+use std::io::{BufRead, Cursor, Seek};
 
 /// First bytes of a file.
 pub(super) const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
@@ -45,12 +48,18 @@ impl Group {
     }
 }
 
-/// Reads what is chosen of a file; without `lit` its depth only, and no light.
-pub(super) fn decode(bytes: &[u8], choice: Choice<'_>, lit: bool) -> Result<Linear, Trouble> {
-    let said = |e: exr::error::Error| Trouble::file(e.to_string());
-    let headers = exr::block::read(Cursor::new(bytes), false).map_err(said)?.headers().to_vec();
-    check(&headers, bytes.len() as u64)?;
-    let groups = groups(&headers);
+/// The channels that are chosen of a file, each by its part and its number there.
+struct Chosen {
+    /// Red, green and blue, or gray; none where no light is wanted.
+    light: Vec<(usize, usize)>,
+    alpha: Option<(usize, usize)>,
+    depth: Option<(usize, usize)>,
+}
+
+/// Headers of a file of `bytes` bytes, and what is chosen of it; without `lit` its depth only, and no light.
+fn chosen(headers: &[Header], bytes: u64, choice: Choice<'_>, lit: bool) -> Result<Chosen, Trouble> {
+    check(headers, bytes)?;
+    let groups = groups(headers);
     let (chosen, light) = if lit {
         let chosen = choose(&groups, choice.layer)?;
         let Some(light) = chosen.light() else { return Err(no_light(chosen, &groups)) };
@@ -59,7 +68,7 @@ pub(super) fn decode(bytes: &[u8], choice: Choice<'_>, lit: bool) -> Result<Line
         (groups.first().ok_or_else(|| Trouble::file("the picture has no channels"))?, Vec::new())
     };
     let depth = choice.depth.map(|name| depth_channel(&groups, chosen, name)).transpose()?;
-    let alpha = chosen.channel("A");
+    let alpha = chosen.channel("A").filter(|_| lit);
     for &(part, at) in light.iter().chain(&alpha).chain(&depth) {
         let channel = &headers[part].channels.list[at];
         if channel.sampling.0 != 1 || channel.sampling.1 != 1 {
@@ -76,39 +85,102 @@ pub(super) fn decode(bytes: &[u8], choice: Choice<'_>, lit: bool) -> Result<Line
             return Err(Trouble::at("depth", text).hint("both must cover the same window"));
         }
     }
-    let image: FlatImage = read()
-        .no_deep_data()
-        .largest_resolution_level()
-        .all_channels()
-        .all_layers()
-        .all_attributes()
-        .from_buffered(Cursor::new(bytes))
-        .map_err(said)?;
-    let window = image.attributes.display_window;
-    let (width, height) = (window.size.0 as u32, window.size.1 as u32);
-    let place = |(part, at): (usize, usize), empty: f32| -> Result<Vec<f32>, Trouble> {
-        let name = &headers[part].channels.list[at].name;
-        let layer = image.layer_data.get(part).filter(|layer| layer.channel_data.list.get(at).is_some());
-        let layer = layer.ok_or_else(|| Trouble::file(format!("channel `{name}` cannot be read")))?;
-        Ok(on_window(layer, at, [window.position.0, window.position.1], [width, height], empty))
+    Ok(Chosen { light, alpha, depth })
+}
+
+/// Size in pixels, and width over height of a pixel.
+fn shape(headers: &[Header]) -> ([u32; 2], f64) {
+    let shared = &headers[0].shared_attributes;
+    let size = shared.display_window.size;
+    let aspect = f64::from(shared.pixel_aspect);
+    ([size.0 as u32, size.1 as u32], if (0.05..=20.0).contains(&aspect) { aspect } else { 1.0 })
+}
+
+fn said(e: exr::error::Error) -> Trouble {
+    Trouble::file(e.to_string())
+}
+
+/// What the header of a file of `bytes` bytes says.
+pub(super) fn header(reader: impl BufRead + Seek, bytes: u64, choice: Choice<'_>) -> Result<super::Header, Trouble> {
+    let headers = exr::block::read(reader, false).map_err(said)?.headers().to_vec();
+    chosen(&headers, bytes, choice, true)?;
+    let ([width, height], pixel_aspect) = shape(&headers);
+    Ok(super::Header { width, height, pixel_aspect, clips: false, is_jpeg: false })
+}
+
+/// Reads what is chosen of a file; without `lit` its depth only, and no light. Block after block goes to where it is
+/// wanted: what is not chosen takes no memory.
+pub(super) fn decode(bytes: &[u8], choice: Choice<'_>, lit: bool) -> Result<Linear, Trouble> {
+    let reader = exr::block::read(Cursor::new(bytes), false).map_err(said)?;
+    let headers = reader.headers().to_vec();
+    let Chosen { light, alpha: alpha_at, depth: depth_at } = chosen(&headers, bytes.len() as u64, choice, lit)?;
+    let ([width, height], pixel_aspect) = shape(&headers);
+    let pixels = width as usize * height as usize;
+    // Where a file holds nothing of the window there is no light, and nothing near.
+    let mut rgb = vec![[0.0_f32; 3]; if lit { pixels } else { 0 }];
+    let mut alpha = alpha_at.map(|_| vec![0.0_f32; pixels]);
+    let mut depth = depth_at.map(|_| vec![f32::INFINITY; pixels]);
+    let wanted: Vec<(usize, usize)> = light.iter().chain(&alpha_at).chain(&depth_at).copied().collect();
+    let chunks = reader.filter_chunks(false, |_, _, block| {
+        block.level == Vec2(0, 0) && wanted.iter().any(|(part, _)| *part == block.layer)
+    });
+    let window = headers[0].shared_attributes.display_window.position;
+    let take = |_: &MetaData, block: UncompressedBlock| {
+        let part = block.index.layer;
+        let header = &headers[part];
+        let offset = [
+            i64::from(header.own_attributes.layer_position.0) - i64::from(window.0),
+            i64::from(header.own_attributes.layer_position.1) - i64::from(window.1),
+        ];
+        for line in block.lines(&header.channels) {
+            let at = (part, line.location.channel);
+            if !wanted.contains(&at) {
+                continue;
+            }
+            let samples = samples(&line, header.channels.list[at.1].sample_type)?;
+            let row = line.location.position.1 as i64 + offset[1];
+            let from = line.location.position.0 as i64 + offset[0];
+            if !(0..i64::from(height)).contains(&row) {
+                continue;
+            }
+            for (i, value) in samples.into_iter().enumerate() {
+                let column = from + i as i64;
+                if !(0..i64::from(width)).contains(&column) {
+                    continue;
+                }
+                let pixel = row as usize * width as usize + column as usize;
+                for (channel, _) in light.iter().enumerate().filter(|(_, own)| **own == at) {
+                    let value = if value.is_finite() { value } else { 0.0 };
+                    if light.len() == 1 { rgb[pixel] = [value; 3] } else { rgb[pixel][channel] = value }
+                }
+                if let Some(alpha) = alpha.as_mut().filter(|_| alpha_at == Some(at)) {
+                    alpha[pixel] = if value.is_finite() { value.clamp(0.0, 1.0) } else { 0.0 };
+                }
+                if let Some(depth) = depth.as_mut().filter(|_| depth_at == Some(at)) {
+                    depth[pixel] = value;
+                }
+            }
+        }
+        Ok(())
     };
-    let planes = light.iter().map(|channel| place(*channel, 0.0)).collect::<Result<Vec<_>, _>>()?;
-    let to_srgb = image.attributes.chromaticities.filter(|_| planes.len() == 3).map(matrix).transpose()?.flatten();
-    let pixel = |i: usize| -> [f32; 3] {
-        let rgb = if planes.len() == 3 { [0, 1, 2].map(|c| planes[c][i]) } else { [planes[0][i]; 3] };
-        let rgb = rgb.map(|v| if v.is_finite() { v } else { 0.0 });
+    chunks.and_then(|chunks| chunks.decompress_parallel(false, take)).map_err(said)?;
+    let chromaticities = headers[0].shared_attributes.chromaticities;
+    let to_srgb = chromaticities.filter(|_| light.len() == 3).map(matrix).transpose()?.flatten();
+    for pixel in &mut rgb {
         let converted = to_srgb
-            .map_or(rgb, |m| m.map(|row| row.iter().zip(rgb).map(|(a, b)| a * f64::from(b)).sum::<f64>() as f32));
-        converted.map(clean)
-    };
-    let pixels = if lit { width as usize * height as usize } else { 0 };
-    let rgb = (0..pixels).map(pixel).collect();
-    let cover = |v: f32| if v.is_finite() { v.clamp(0.0, 1.0) } else { 0.0 };
-    let alpha = alpha.map(|at| place(at, 0.0)).transpose()?.map(|a| a.into_iter().map(cover).collect());
-    let depth = depth.map(|at| place(at, f32::INFINITY)).transpose()?;
-    let pixel_aspect = f64::from(image.attributes.pixel_aspect);
-    let pixel_aspect = if (0.05..=20.0).contains(&pixel_aspect) { pixel_aspect } else { 1.0 };
+            .map_or(*pixel, |m| m.map(|row| row.iter().zip(*pixel).map(|(a, b)| a * f64::from(b)).sum::<f64>() as f32));
+        *pixel = converted.map(clean);
+    }
     Ok(Linear { width, height, pixel_aspect, rgb, alpha, depth, clipped_at: None })
+}
+
+/// The samples of a line as single precision.
+fn samples(line: &LineRef<'_>, kind: SampleType) -> exr::error::Result<Vec<f32>> {
+    match kind {
+        SampleType::F16 => line.read_samples::<f16>().map(|v| v.map(f16::to_f32)).collect(),
+        SampleType::F32 => line.read_samples::<f32>().collect(),
+        SampleType::U32 => line.read_samples::<u32>().map(|v| v.map(|v| v as f32)).collect(),
+    }
 }
 
 /// Sizes, before anything is allocated.
@@ -215,38 +287,6 @@ fn depth_channel(groups: &[Group], chosen: &Group, name: &str) -> Result<(usize,
         let trouble = Trouble::at("depth", format!("the file has no depth channel `{name}`"));
         trouble.hint(format!("its channels are {}; name one with `depth: {{channel: ...}}`", all.join(", ")))
     })
-}
-
-/// The samples of a channel on the display window.
-fn on_window(
-    layer: &Layer<AnyChannels<FlatSamples>>,
-    channel: usize,
-    window: [i32; 2],
-    [width, height]: [u32; 2],
-    empty: f32,
-) -> Vec<f32> {
-    let samples = &layer.channel_data.list[channel].sample_data;
-    let position = layer.attributes.layer_position;
-    let offset = [i64::from(window[0]) - i64::from(position.0), i64::from(window[1]) - i64::from(position.1)];
-    let (own_width, own_height) = (layer.size.0 as i64, layer.size.1 as i64);
-    let mut out = Vec::with_capacity(width as usize * height as usize);
-    for row in 0..i64::from(height) {
-        for column in 0..i64::from(width) {
-            let (c, r) = (column + offset[0], row + offset[1]);
-            let inside = c >= 0 && r >= 0 && c < own_width && r < own_height;
-            let at = (r * own_width + c) as usize;
-            out.push(if !inside {
-                empty
-            } else {
-                match samples {
-                    FlatSamples::F16(values) => values[at].to_f32(),
-                    FlatSamples::F32(values) => values[at],
-                    FlatSamples::U32(values) => values[at] as f32,
-                }
-            });
-        }
-    }
-    out
 }
 
 /// From the file's primaries to those of sRGB, white to white (Bradford); `None` where they are the same.

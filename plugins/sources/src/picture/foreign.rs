@@ -126,25 +126,25 @@ fn upright<T: Copy>(stored: Vec<T>, [width, height]: [usize; 2], orientation: u8
     if orientation == 1 {
         return stored;
     }
-    let turned = (5..=8).contains(&orientation);
-    let [columns, rows] = if turned { [height, width] } else { [width, height] };
+    (0..stored.len()).map(|i| stored[self::stored(i, [width, height], orientation)]).collect()
+}
+
+/// Where a pixel of the upright picture is stored, both row by row.
+pub(super) fn stored(i: usize, [width, height]: [usize; 2], orientation: u8) -> usize {
+    let columns = if (5..=8).contains(&orientation) { height } else { width };
     let (last_column, last_row) = (width - 1, height - 1);
-    let mut out = Vec::with_capacity(stored.len());
-    for y in 0..rows {
-        for x in 0..columns {
-            let [column, row] = match orientation {
-                2 => [last_column - x, y],
-                3 => [last_column - x, last_row - y],
-                4 => [x, last_row - y],
-                5 => [y, x],
-                6 => [y, last_row - x],
-                7 => [last_column - y, last_row - x],
-                _ => [last_column - y, x],
-            };
-            out.push(stored[row * width + column]);
-        }
-    }
-    out
+    let (x, y) = (i % columns, i / columns);
+    let [column, row] = match orientation {
+        2 => [last_column - x, y],
+        3 => [last_column - x, last_row - y],
+        4 => [x, last_row - y],
+        5 => [y, x],
+        6 => [y, last_row - x],
+        7 => [last_column - y, last_row - x],
+        8 => [last_column - y, x],
+        _ => [x, y],
+    };
+    row * width + column
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! A picture in linear light as a texture: smooth between pixels, sampled where it is bright.
 
 use crate::flat::{Places, Texture};
+use crate::frame::Edge;
 use spectra_core::Isa;
 use spectra_core::spectral::SpectralPower;
 use spectra_core::stage::ColorModel;
@@ -21,6 +22,8 @@ pub(crate) struct PictureMap {
     pub peak_over_mean: f64,
     pub importance: Importance,
     pub name: String,
+    /// What lies beyond its border.
+    pub edge: Edge,
 }
 
 /// Four pixels, and how far a place lies from the upper left one of them toward the others.
@@ -42,12 +45,11 @@ impl Spot {
 }
 
 impl PictureMap {
-    /// Column and row of a point, pixels from the upper left; `None` beside the picture.
+    /// Column and row of a point, pixels from the upper left; `None` where nothing is.
     pub(crate) fn place(&self, x_mm: f64, y_mm: f64) -> Option<[f64; 2]> {
         let column = (x_mm / self.width_mm + 0.5) * self.width_px as f64;
         let row = (0.5 - y_mm / self.height_mm) * self.height_px as f64;
-        let inside = column >= 0.0 && row >= 0.0 && column <= self.width_px as f64 && row <= self.height_px as f64;
-        inside.then_some([column, row])
+        Some([self.edge.place(column, self.width_px as f64)?, self.edge.place(row, self.height_px as f64)?])
     }
 
     /// The four pixels around a place in the picture; at its rim those of the rim.
@@ -91,6 +93,10 @@ impl Texture for PictureMap {
         (x, y, inverse * self.width_mm * self.height_mm)
     }
 
+    fn is_bounded(&self) -> bool {
+        self.edge == Edge::Black
+    }
+
     fn spectrum(&self) -> &SpectralPower {
         &self.mean
     }
@@ -101,23 +107,44 @@ impl Texture for PictureMap {
 
     fn describe(&self) -> String {
         format!(
-            "picture {} ({} x {} pixels, {} x {} mm)",
+            "picture {} ({} x {} pixels, {:.1} x {:.1} mm)",
             self.name, self.width_px, self.height_px, self.width_mm, self.height_mm
         )
     }
 }
 
+/// Most cells of an [`Importance`]: those of a larger picture hold several pixels.
+const MAX_CELLS: usize = 1 << 22;
+
 /// Draws places in proportion to brightness, row first, then column: monotone, so strata stay strata.
 pub(crate) struct Importance {
-    width: usize,
+    /// Pixels of the picture, across and down.
+    size_px: [f64; 2],
+    /// Pixels a side of a cell.
+    cell_px: f64,
     rows: Cumulative,
     columns: Vec<Cumulative>,
 }
 
 impl Importance {
-    /// From the brightness of each pixel. A pixel's weight is the mean of its neighborhood, since
+    /// From the brightness of each pixel.
+    pub(super) fn new(width: usize, height: usize, brightness: impl Fn(usize) -> f32) -> Self {
+        let mut cell = 1;
+        while width.div_ceil(cell) * height.div_ceil(cell) > MAX_CELLS {
+            cell += 1;
+        }
+        let cells = [width.div_ceil(cell), height.div_ceil(cell)];
+        let mut sums = vec![0.0_f32; cells[0] * cells[1]];
+        for i in 0..width * height {
+            sums[i / width / cell * cells[0] + i % width / cell] += brightness(i);
+        }
+        let size_px = [width as f64, height as f64];
+        Self { size_px, cell_px: cell as f64, ..Self::of_cells(cells, &sums) }
+    }
+
+    /// From the brightness of each cell. A cell's weight is the mean of its neighborhood, since
     /// light is smooth between pixels: where any light is, the density is positive.
-    pub(super) fn new(width: usize, height: usize, brightness: &[f32]) -> Self {
+    fn of_cells([width, height]: [usize; 2], brightness: &[f32]) -> Self {
         let mut columns = Vec::with_capacity(height);
         let mut sums = Vec::with_capacity(height);
         let mut line = vec![0.0_f64; width];
@@ -136,7 +163,7 @@ impl Importance {
             sums.push(line.iter().sum());
             columns.push(Cumulative::new(&line));
         }
-        Self { width, rows: Cumulative::new(&sums), columns }
+        Self { size_px: [width as f64, height as f64], cell_px: 1.0, rows: Cumulative::new(&sums), columns }
     }
 
     /// Column and row (pixels, fractional) and one over the density relative to uniform.
@@ -144,7 +171,10 @@ impl Importance {
         let (row, row_density) = self.rows.draw(v);
         let index = (row as usize).min(self.columns.len() - 1);
         let (column, column_density) = self.columns[index].draw(u);
-        (column.min(self.width as f64), row, 1.0 / (row_density * column_density))
+        // Cells at the right and lower rim may reach beyond the picture, where nothing shines: densities count all of them.
+        let all = self.columns.len() as f64 * self.columns[index].cells() as f64 * self.cell_px * self.cell_px;
+        let share = all / (self.size_px[0] * self.size_px[1]);
+        (column * self.cell_px, row * self.cell_px, share / (row_density * column_density))
     }
 }
 
@@ -181,6 +211,10 @@ impl Cumulative {
         Self { sums, guide }
     }
 
+    fn cells(&self) -> usize {
+        self.sums.len() - 1
+    }
+
     /// A place in [0, cells), and the density there relative to uniform.
     fn draw(&self, u: f64) -> (f64, f64) {
         let cells = self.sums.len() - 1;
@@ -208,7 +242,7 @@ mod tests {
         brightness[3] = 5.0;
         brightness[2 * width + 6] = 0.01;
         brightness[4 * width] = 1.0;
-        let importance = Importance::new(width, height, &brightness);
+        let importance = Importance::new(width, height, |i| brightness[i]);
         let f = |column: f64, row: f64| {
             let (c, r) = ((column as usize).min(width - 1), (row as usize).min(height - 1));
             f64::from(brightness[r * width + c])

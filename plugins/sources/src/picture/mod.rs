@@ -11,22 +11,28 @@ mod field;
 mod foreign;
 #[cfg(all(test, feature = "oiio"))]
 mod foreign_tests;
+pub(crate) mod header;
 mod highlights;
+mod jpeg;
 pub(crate) mod linear;
 pub(crate) mod map;
 
 use crate::flat::Flat;
+use crate::frame::{Edge, Placed, Width, WidthForm};
+use crate::lazy::Lazy;
 use crate::white;
+use decode::decode;
 use deep::DeepPicture;
 use depth::Depth;
 use field::HeightField;
+use header::Header;
 use linear::{Choice, Linear, Trouble};
 use map::{Importance, PictureMap};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{Fault, Faults, Length, Luminance, Params, Positive, Quantity, StageNode};
 use spectra_core::registry::{Context, StageOf, build as build_stage};
-use spectra_core::resources::{Resource, ResourceError};
+use spectra_core::resources::{Found, ResourceError};
 use spectra_core::spectral::SpectralPower;
 use spectra_core::stage::{ColorModel, Source};
 use std::sync::Arc;
@@ -47,7 +53,7 @@ const MAX_BYTES: u64 = 1 << 30;
 ///
 /// # Example
 /// ```yaml
-/// {kind: picture, file: holiday.png, distance: 3 m, width: 4 m, illuminant: D55, luminance: 1000 cd/m2}
+/// {kind: picture, file: holiday.png, distance: 3 m, width: fill, illuminant: D55, luminance: 1000 cd/m2}
 /// ```
 /// ```yaml
 /// kind: picture
@@ -77,8 +83,14 @@ struct PictureParams {
     layer: Option<String>,
     /// Distance of its plane from the first vertex, mm if bare.
     distance: Positive<Length>,
-    /// Width of the picture on that plane, mm if bare; the height follows.
-    width: Positive<Length>,
+    /// Width of the picture on that plane, mm if bare; the height follows. Or `fill`: 2 % more than what the frame sees
+    /// there through this lens, so that no border shows; what does not fit into the frame's shape is cut off.
+    #[schemars(with = "WidthForm")]
+    width: StageNode,
+    /// What lies beyond the picture: `black`, nothing; `clamp`, the color of its border; `mirror`, the picture mirrored.
+    /// `black` if absent, with a warning where the frame sees it. With `clamp` and `mirror` light is traced backward only.
+    #[schemars(extend("enum" = ["black", "clamp", "mirror"]))]
+    edge: Option<String>,
     /// The light that white has the chromaticity of: the name of a spectrum, a file beside the scene, or an expression
     /// such as `blackbody:3200`.
     #[serde(default = "daylight")]
@@ -126,64 +138,150 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
         return Err(faults);
     };
     let light = faults.take(white::illuminant(&p.illuminant, params, context));
-    let resource = faults.take(find(&p.file, params, context));
-    let said = p.depth.is_some();
-    let depth = p.depth.as_ref().and_then(|node| faults.take(Depth::read(node)));
-    let linear = resource.and_then(|file| {
-        let choice = Choice {
-            name: &p.file,
-            transfer: p.transfer.as_deref(),
-            layer: p.layer.as_deref(),
-            depth: depth.as_ref().and_then(Depth::channel),
-        };
-        faults.take(decode::decode(&file.bytes, choice).map_err(|e| trouble(&p.file, &e, params)))
+    let found = faults.take(find(&p.file, params, context));
+    let depth = p.depth.as_ref().and_then(|node| faults.take(Depth::read(node, context)));
+    let width = faults.take(Width::read(&p.width));
+    let edge = faults.take(Edge::read(p.edge.as_deref(), params));
+    if p.depth.is_some() && edge.is_some_and(|edge| edge != Edge::Black) {
+        let fault = params.fault("edge", "nobody knows how deep a picture with `depth` is beyond its border");
+        faults.push(fault.hint("leave `edge` out, and take a `width` that fills the frame"));
+    }
+    let file = found.map(|found| PictureFile {
+        found,
+        name: p.file.clone(),
+        transfer: p.transfer.clone(),
+        layer: p.layer.clone(),
+        depth: depth.as_ref().and_then(Depth::channel).map(str::to_owned),
+        params: params.clone(),
     });
-    let linear = linear.and_then(|mut linear| {
-        let Some(recover) = &p.recover_highlights else { return Some(linear) };
+    let header = file.as_ref().and_then(|file| faults.take(file.header()));
+    let recover_stops = p.recover_highlights.as_ref().map(|recover| recover.stops);
+    if let (Some(stops), Some(header)) = (recover_stops, &header) {
         let key = "recover-highlights";
-        let Some(clipped_at) = linear.clipped_at else {
+        if !header.clips {
             let fault = params.fault(key, format!("`{}` holds floating point, which clips nothing", p.file));
             faults.push(fault.hint("leave `recover-highlights` out"));
-            return None;
-        };
-        if !(recover.stops > 0.0 && recover.stops <= 12.0) {
-            faults.push(params.fault(key, format!("{} stops", recover.stops)).hint("above 0, at most 12"));
-            return None;
+        } else if !(stops > 0.0 && stops <= 12.0) {
+            faults.push(params.fault(key, format!("{stops} stops")).hint("above 0, at most 12"));
         }
-        highlights::recover(&mut linear.rgb, linear.width as usize, clipped_at, recover.stops);
-        Some(linear)
-    });
-    let model = light.and_then(|light| faults.take(color_model(p.color, &light, params, context)));
-    let (width_mm, distance_mm) = (p.width.mm(), p.distance.mm());
-    let deep = match (&linear, depth) {
-        (Some(linear), Some(depth)) => {
-            let plane_mm = distance_mm + depth.eye_mm;
-            if plane_mm > 0.0 {
-                let all = faults.take(depth.of(linear, plane_mm, width_mm, context));
-                all.map(|all| (depth, plane_mm, all))
-            } else {
-                faults.push(params.fault("distance", "the center of projection lies behind the picture's plane"));
-                None
-            }
-        }
-        _ => None,
-    };
-    let parts = faults.into_result((linear, model))?;
-    let (Some(linear), Some(model)) = parts else { return Err(Faults::new()) };
-    let texture = assemble(&linear, &p.file, width_mm, model, p.luminance.cd_per_m2());
-    if !said {
-        return Ok(Box::new(Flat { texture, distance_mm }));
     }
-    let Some((depth, plane_mm, all)) = deep else { return Err(Faults::new()) };
-    let ends = all.iter().fold([f32::INFINITY, 0.0_f32], |[a, b], d| [a.min(*d), b.max(*d)]);
-    Ok(Box::new(DeepPicture {
-        field: HeightField::new(texture.width_px, texture.height_px, &all, depth.edge),
-        map: texture,
-        plane_mm,
-        eye_mm: depth.eye_mm,
-        nearest_mm: f64::from(ends[0]),
-        farthest_mm: f64::from(ends[1]),
-    }))
+    let model = light.and_then(|light| faults.take(color_model(p.color, &light, params, context)));
+    let distance_mm = p.distance.mm();
+    let aspect = header.as_ref().map_or(1.0, Header::aspect);
+    // A picture in its own perspective is as wide for its camera as the plane is for it.
+    let eye_mm = depth.as_ref().map_or(0.0, |depth| depth.eye_mm);
+    let width_mm = width.as_ref().and_then(|width| {
+        let width_mm = width.mm(aspect, distance_mm, [0.0; 2], context.view).map_err(Faults::from);
+        faults.take(width_mm)
+    });
+    if depth.is_some() && distance_mm + eye_mm <= 0.0 {
+        faults.push(params.fault("distance", "the center of projection lies behind the picture's plane"));
+    }
+    let (Some(file), Some(header), Some(model), Some(width_mm), Some(edge)) =
+        faults.into_result((file, header, model, width_mm, edge))?
+    else {
+        return Err(Faults::new());
+    };
+    if p.edge.is_none() && !width.is_some_and(|width| width.is_fill()) {
+        let placed = Placed { width_mm, height_mm: width_mm / aspect, distance_mm, center_mm: [0.0; 2] };
+        placed.warn_unless_filled("the picture", params, context);
+    }
+    file.warn(&header, context);
+    let making = Making { model, width_mm, luminance_cd_m2: p.luminance.cd_per_m2(), edge };
+    let stand_in = Flat { texture: making.white(&header, &file.name), distance_mm };
+    let emits = depth.is_none() && edge == Edge::Black;
+    Ok(Box::new(Lazy::new(Box::new(stand_in), emits, move || {
+        let mut linear = file.read()?;
+        if let (Some(stops), Some(clipped_at)) = (recover_stops, linear.clipped_at) {
+            highlights::recover(&mut linear.rgb, linear.width as usize, clipped_at, stops);
+        }
+        let Some(depth) = &depth else {
+            return Ok(Box::new(Flat { texture: making.map(linear, &file.name), distance_mm }));
+        };
+        let plane_mm = distance_mm + depth.eye_mm;
+        let all = depth.of(&linear, plane_mm, width_mm)?;
+        let map = making.map(linear, &file.name);
+        let ends = all.iter().fold([f32::INFINITY, 0.0_f32], |[a, b], d| [a.min(*d), b.max(*d)]);
+        Ok(Box::new(DeepPicture {
+            field: HeightField::new(map.width_px, map.height_px, &all, depth.edge),
+            map,
+            plane_mm,
+            eye_mm: depth.eye_mm,
+            nearest_mm: f64::from(ends[0]),
+            farthest_mm: f64::from(ends[1]),
+        }))
+    })))
+}
+
+/// A picture file that was found, with what a scene says of it.
+pub(crate) struct PictureFile {
+    pub found: Found,
+    pub name: String,
+    pub transfer: Option<String>,
+    pub layer: Option<String>,
+    /// The channel that holds depth, where depth is wanted.
+    pub depth: Option<String>,
+    /// Where its keys are.
+    pub params: Params,
+}
+
+impl PictureFile {
+    fn choice(&self) -> Choice<'_> {
+        Choice {
+            name: &self.name,
+            transfer: self.transfer.as_deref(),
+            layer: self.layer.as_deref(),
+            depth: self.depth.as_deref(),
+        }
+    }
+
+    /// What its beginning says.
+    pub(crate) fn header(&self) -> Result<Header, Faults> {
+        header::read(&self.found, self.choice()).map_err(|e| trouble(&self.name, &e, &self.params).into())
+    }
+
+    /// All of it, in linear light.
+    pub(crate) fn read(&self) -> Result<Linear, Faults> {
+        let bytes = self.found.read(MAX_BYTES).map_err(|e| Trouble::file(e.to_string()));
+        bytes.and_then(|bytes| decode(&bytes, self.choice())).map_err(|e| trouble(&self.name, &e, &self.params).into())
+    }
+
+    /// Warns of a photograph whose code values are taken as light.
+    pub(crate) fn warn(&self, header: &Header, context: &Context<'_>) {
+        if header.is_jpeg && self.transfer.as_deref() == Some("linear") {
+            let text = format!("`{}` is a JPEG, whose code values are sRGB: as linear light it is far too pale", self.name);
+            context.warn(self.params.fault("transfer", text).hint("leave `transfer` out"));
+        }
+    }
+}
+
+/// What makes light of a picture's pixels.
+pub(crate) struct Making {
+    pub model: Arc<dyn ColorModel>,
+    pub width_mm: f64,
+    pub luminance_cd_m2: f64,
+    pub edge: Edge,
+}
+
+impl Making {
+    /// A white picture of that shape.
+    pub(crate) fn white(&self, header: &Header, name: &str) -> PictureMap {
+        let pixel = Linear {
+            width: 1,
+            height: 1,
+            pixel_aspect: header.aspect(),
+            rgb: vec![[1.0; 3]],
+            alpha: None,
+            depth: None,
+            clipped_at: None,
+        };
+        self.map(pixel, name)
+    }
+
+    /// The picture on its plane; its pixels are turned into what the color model needs of them where they lie.
+    pub(crate) fn map(&self, linear: Linear, name: &str) -> PictureMap {
+        assemble(linear, name, self)
+    }
 }
 
 /// The color model under `color`, for this light.
@@ -211,8 +309,8 @@ pub(crate) fn trouble(file: &str, trouble: &Trouble, params: &Params) -> Fault {
     )
 }
 
-pub(crate) fn find(file: &str, params: &Params, context: &Context<'_>) -> Result<Resource, Fault> {
-    context.resources.read(file, &["scenes"], &[], MAX_BYTES).map_err(|e| {
+pub(crate) fn find(file: &str, params: &Params, context: &Context<'_>) -> Result<Found, Fault> {
+    context.resources.find(file, &["scenes"], &[], MAX_BYTES).map_err(|e| {
         let hint = match &e {
             ResourceError::NotFound(near) if !near.is_empty() => format!("did you mean `{}`?", near.join("` or `")),
             ResourceError::NotFound(_) if file.contains('\\') => "write `/` between folders and file".to_owned(),
@@ -228,36 +326,36 @@ fn brightness([r, g, b]: [f32; 3]) -> f32 {
     0.2126 * r + 0.7152 * g + 0.0722 * b
 }
 
-pub(crate) fn assemble(
-    linear: &Linear,
-    name: &str,
-    width_mm: f64,
-    model: Arc<dyn ColorModel>,
-    luminance_cd_m2: f64,
-) -> PictureMap {
+fn assemble(linear: Linear, name: &str, making: &Making) -> PictureMap {
     let (width, height) = (linear.width as usize, linear.height as usize);
-    let scale = luminance_cd_m2 / white::luminance_cd_m2(&model.spectrum([1.0; 3]));
-    let bright: Vec<f32> = linear.rgb.iter().map(|p| brightness(*p)).collect();
-    let pixels = linear.rgb.len() as f64;
+    let model = &making.model;
+    let scale = making.luminance_cd_m2 / white::luminance_cd_m2(&model.spectrum([1.0; 3]));
+    let mut rgb = linear.rgb;
+    let pixels = rgb.len() as f64;
     let mut mean = [0.0_f64; 3];
-    for pixel in &linear.rgb {
+    for pixel in &rgb {
         for (sum, value) in mean.iter_mut().zip(pixel) {
             *sum += f64::from(*value) / pixels;
         }
     }
-    let mean_brightness = bright.iter().map(|b| f64::from(*b)).sum::<f64>() / pixels;
-    let peak = bright.iter().fold(0.0_f32, |a, b| a.max(*b));
+    let mean_brightness = rgb.iter().map(|p| f64::from(brightness(*p))).sum::<f64>() / pixels;
+    let peak = rgb.iter().fold(0.0_f32, |a, p| a.max(brightness(*p)));
+    let importance = Importance::new(width, height, |i| brightness(rgb[i]));
+    for pixel in &mut rgb {
+        *pixel = model.coefficients(pixel.map(f64::from));
+    }
     PictureMap {
         width_px: width,
         height_px: height,
-        width_mm,
-        height_mm: width_mm * height as f64 / (width as f64 * linear.pixel_aspect),
-        coefficients: linear.rgb.iter().map(|p| model.coefficients(p.map(f64::from))).collect(),
+        width_mm: making.width_mm,
+        height_mm: making.width_mm * height as f64 / (width as f64 * linear.pixel_aspect),
+        coefficients: rgb,
         mean: model.spectrum(mean).scaled(scale),
         peak_over_mean: if mean_brightness > 0.0 { f64::from(peak) / mean_brightness } else { 1.0 },
-        importance: Importance::new(width, height, &bright),
+        importance,
         scale,
-        model,
+        model: Arc::clone(model),
         name: name.to_owned(),
+        edge: making.edge,
     }
 }

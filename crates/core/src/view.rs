@@ -1,0 +1,106 @@
+//! What the frame of a camera sees in front of the lens.
+
+/// A line of sight, frame of the lens: where it crosses the plane z = 0, and how far it goes aside for each mm in front
+/// of that plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sight {
+    /// The point of the frame that it comes from: a number of its own for each.
+    pub point: usize,
+    /// x and y on the plane z = 0, mm.
+    pub start_mm: [f64; 2],
+    /// mm aside for a mm toward the object.
+    pub slope: [f64; 2],
+}
+
+impl Sight {
+    /// Where it crosses the plane `distance_mm` in front of the first vertex, mm.
+    #[must_use]
+    pub fn at_mm(&self, distance_mm: f64) -> [f64; 2] {
+        [0, 1].map(|k| self.start_mm[k] + self.slope[k] * distance_mm)
+    }
+}
+
+/// The lines of sight from points all over a frame through all that the lens passes, at its reference wavelength: for a
+/// source that is to fill the frame.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct View {
+    sights: Vec<Sight>,
+    /// Points of the frame that look at nothing a plane could show, since a line of sight of theirs runs backward.
+    beside: Vec<usize>,
+}
+
+impl View {
+    /// From its lines of sight; those of one point follow each other. `beside`: the points with a line of sight at 90
+    /// degrees to the axis or more.
+    #[must_use]
+    pub fn new(sights: Vec<Sight>, beside: Vec<usize>) -> Self {
+        Self { sights, beside }
+    }
+
+    /// Whether a plane across the axis can fill the frame: not where the lens looks to the side or behind.
+    #[must_use]
+    pub fn fits_a_plane(&self) -> bool {
+        self.beside.is_empty() && !self.sights.is_empty()
+    }
+
+    /// Half of the width and height, mm, of the smallest rectangle about a center (mm) on the plane `distance_mm` in front
+    /// of the first vertex that holds all that the frame sees there. `None` where no rectangle does.
+    #[must_use]
+    pub fn half_size_mm(&self, distance_mm: f64, center_mm: [f64; 2]) -> Option<[f64; 2]> {
+        if !self.fits_a_plane() {
+            return None;
+        }
+        let mut half = [0.0_f64; 2];
+        for sight in &self.sights {
+            let at = sight.at_mm(distance_mm);
+            for k in 0..2 {
+                half[k] = half[k].max((at[k] - center_mm[k]).abs());
+            }
+        }
+        half.iter().all(|h| h.is_finite()).then_some(half)
+    }
+
+    /// The share of the points of the frame which the lens shows anything at all that get half of their light or more from
+    /// where `is_seen` says no; `None` without any point.
+    #[must_use]
+    pub fn share_missed(&self, is_seen: impl Fn(&Sight) -> bool) -> Option<f64> {
+        let (mut points, mut missed) = (0_usize, 0_usize);
+        for of_point in self.sights.chunk_by(|a, b| a.point == b.point) {
+            let seen = of_point.iter().filter(|sight| is_seen(sight)).count();
+            points += 1;
+            missed += usize::from(2 * seen <= of_point.len());
+        }
+        (points > 0).then(|| missed as f64 / points as f64)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A pinhole at z = 0 of 20 mm over 36 x 24 mm sees 1.8 x 1.2 m at 1 m.
+    fn pinhole() -> View {
+        let mut sights = Vec::new();
+        for (point, [x, y]) in [[-18.0, -12.0], [18.0, -12.0], [0.0, 0.0], [18.0, 12.0]].into_iter().enumerate() {
+            sights.push(Sight { point, start_mm: [0.0; 2], slope: [x / 20.0, y / 20.0] });
+        }
+        View::new(sights, Vec::new())
+    }
+
+    #[test]
+    fn what_the_frame_sees_grows_with_the_distance() {
+        assert_eq!(pinhole().half_size_mm(1000.0, [0.0; 2]), Some([900.0, 600.0]));
+        assert_eq!(pinhole().half_size_mm(2000.0, [100.0, 0.0]), Some([1900.0, 1200.0]));
+        let behind = View { beside: vec![4], ..pinhole() };
+        assert_eq!(behind.half_size_mm(1000.0, [0.0; 2]), None);
+        assert_eq!(View::default().half_size_mm(1000.0, [0.0; 2]), None);
+    }
+
+    #[test]
+    fn points_that_see_beside_it_are_counted() {
+        let inside = |half_mm: f64| move |s: &Sight| s.at_mm(1000.0)[0].abs() <= half_mm;
+        assert_eq!(pinhole().share_missed(inside(900.0)), Some(0.0));
+        assert_eq!(pinhole().share_missed(inside(899.0)), Some(0.75));
+        assert_eq!(View::default().share_missed(inside(1.0)), None);
+    }
+}

@@ -1,0 +1,206 @@
+//! What is probably not meant, and what makes a picture less true than it looks: seen only once a scene is put together.
+//!
+//! A bare number has a unit that its key states, and slips there make a picture, only a wrong one: each rule here asks for
+//! a number without a unit, or for what no camera does.
+
+use crate::sight::Dark;
+use spectra_core::params::{Length, Node, OrInfinity, Params, Positive, Value, Warnings};
+use spectra_core::spectral::{Channel, Grid};
+use spectra_core::stage::Source;
+use spectra_lens::Lens;
+
+/// Seconds from which an exposure without a unit is doubted: `125` is meant as 1/125 s.
+const LONG_S: f64 = 8.0;
+/// A source nearer than this part of the focal length is doubted, where its distance has no unit: `2` is meant as 2 m.
+const NEAR: f64 = 0.5;
+/// Share of the exposure that data which were not measured may carry without a word.
+const UNMEASURED: f64 = 0.01;
+/// The same for the glass of a bundled lens: what is known of it stands in its file, and nobody can add to it.
+const UNMEASURED_BUNDLED: f64 = 0.25;
+
+/// A scene whose parts are there.
+pub(crate) struct Whole<'a> {
+    pub params: &'a Params,
+    pub lens: &'a Lens,
+    pub source: &'a dyn Source,
+    pub channels: &'a [Channel],
+    pub grid: Grid,
+}
+
+impl Whole<'_> {
+    /// Says all that is doubtful.
+    pub(crate) fn doubt(&self, dark: Option<&Dark>, warnings: &Warnings) {
+        for text in &self.lens.warnings {
+            warnings.push(self.params.fault("lens.file", text));
+        }
+        self.distances(warnings);
+        self.focus(warnings);
+        self.exposures(warnings);
+        if let Some(dark) = dark {
+            self.dark(dark, warnings);
+        }
+        self.light(warnings);
+        self.glass(warnings);
+    }
+
+    /// A source close to the lens.
+    fn distances(&self, warnings: &Warnings) {
+        let efl_mm = self.lens.first_order(self.lens.reference_nm).efl_mm.abs();
+        let source = self.params.get("source");
+        let layers = source.and_then(|source| source.get("layers")).map_or(0, |layers| match &layers.value {
+            Value::Seq(items) => items.len(),
+            _ => 0,
+        });
+        let keys = (0..layers).map(|i| format!("source.layers[{i}].distance"));
+        for key in std::iter::once("source.distance".to_owned()).chain(keys) {
+            let Some(mm) = self.at(&key).and_then(bare) else { continue };
+            if efl_mm.is_finite() && mm < NEAR * efl_mm {
+                let fault = self.params.fault(&key, format!("{mm} mm in front of the lens"));
+                warnings.push(fault.hint(format!("a bare number is in mm: did you mean {mm} m? Else write `{mm} mm`")));
+            }
+        }
+    }
+
+    /// A focus so near that the picture is larger than what it shows.
+    fn focus(&self, warnings: &Warnings) {
+        let key = if self.at("lens.focus.distance").is_some() { "lens.focus.distance" } else { "lens.focus" };
+        let Some(node) = self.at(key) else { return };
+        let Ok(distance) = node.parse::<OrInfinity<Positive<Length>>>() else { return };
+        let mm = distance.mm();
+        let first = self.lens.first_order(self.lens.reference_nm);
+        let magnification = self.lens.paraxial_magnification(mm, self.lens.reference_nm).abs();
+        if !(mm.is_finite() && first.efl_mm.is_finite() && magnification > 1.0) {
+            return;
+        }
+        let text = if mm <= -first.ffl_mm {
+            format!("focused at {mm} mm, which is inside of the focal length: no picture falls on the film")
+        } else {
+            format!("focused at {mm} mm: the picture on the film is {magnification:.1} times as large as what it shows")
+        };
+        let hint = match bare(node) {
+            Some(number) => format!("a bare number is in mm: did you mean {number} m?"),
+            None => "a focus counts from the first vertex of the lens, such as `focus: 2 m`".to_owned(),
+        };
+        warnings.push(self.params.fault(key, text).hint(hint));
+    }
+
+    /// Exposures of many seconds.
+    fn exposures(&self, warnings: &Warnings) {
+        let films = match self.params.get("film").map(|film| &film.value) {
+            Some(Value::Seq(items)) => (0..items.len()).map(|i| format!("film[{i}].exposure")).collect(),
+            _ => vec!["film.exposure".to_owned()],
+        };
+        for key in films.into_iter().chain(["imager.exposure".to_owned()]) {
+            let Some(seconds) = self.at(&key).and_then(bare).filter(|s| *s >= LONG_S && s.is_finite()) else { continue };
+            let fault = self.params.fault(&key, format!("an exposure of {seconds} seconds"));
+            warnings.push(fault.hint(format!("did you mean `1/{seconds} s`? Else write `{seconds} s`")));
+        }
+    }
+
+    /// A frame that is larger than what the lens draws.
+    fn dark(&self, dark: &Dark, warnings: &Warnings) {
+        let Some(circle_mm) = dark.circle_mm else { return };
+        let key = if self.at("imager.format").is_some() { "imager.format" } else { "imager.width" };
+        let text = format!(
+            "this lens draws a circle of about {circle_mm:.0} mm; the frame's diagonal is {:.0} mm, and {:.0} % of it \
+             stays dark",
+            dark.diagonal_mm,
+            (100.0 * dark.share).max(1.0)
+        );
+        let hint = format!(
+            "a frame of at most {circle_mm:.0} mm across the corners, or a lens that covers this one (`spectra list lens`)"
+        );
+        warnings.push(self.params.fault(key, text).hint(hint));
+    }
+
+    /// Light that is continued flat beyond what was measured.
+    fn light(&self, warnings: &Warnings) {
+        for end in warnings.ends() {
+            let [first, last] = end.measured_nm;
+            let share = self.share(|nm| nm < first || nm > last);
+            if share > UNMEASURED {
+                let text = format!(
+                    "`{}` has rows from {first:.0} to {last:.0} nm: beyond them its ends go on flat, and that is {:.0} % of \
+                     the exposure",
+                    end.place.message,
+                    100.0 * share
+                );
+                let fault = spectra_core::params::Fault { message: text, ..end.place };
+                let hint = "where there is no light, end it with rows of 0, or write `# outside: zero` at the top of a CSV file \
+                            (`outside: zero` of a table in YAML)";
+                warnings.push(fault.hint(hint));
+            }
+        }
+    }
+
+    /// Glass whose formula is used where nobody measured it.
+    fn glass(&self, warnings: &Warnings) {
+        let file = self.at("lens.file").and_then(Node::as_str).unwrap_or_default();
+        let is_bundled = spectra_data::get(&format!("lenses/{file}.yaml")).is_some();
+        let may = if is_bundled { UNMEASURED_BUNDLED } else { UNMEASURED };
+        let (from_nm, to_nm) = (self.grid.start_nm, self.grid.end_nm());
+        let beyond = self.lens.media.iter().filter(|medium| !medium.medium.covers(from_nm, to_nm));
+        let ranges: Vec<(&str, (f64, f64))> =
+            beyond.filter_map(|medium| Some((medium.label.as_str(), medium.medium.range_nm()?))).collect();
+        let share = self.share(|nm| ranges.iter().any(|(_, (first, last))| nm < *first || nm > *last));
+        if share > may {
+            let named: Vec<String> =
+                ranges.iter().map(|(label, (first, last))| format!("{label} from {first:.0} to {last:.0} nm")).collect();
+            let text = format!(
+                "{:.0} % of the exposure is light in which the lens's glass was not measured, and its formula is \
+                 extrapolated: {}",
+                100.0 * share,
+                named.join(", ")
+            );
+            let hint = "a glass that was measured there, or `wavelengths: {band: [400 nm, 700 nm]}`";
+            warnings.push(self.params.fault("lens.file", text).hint(hint));
+        }
+    }
+
+    /// The share of the exposure, summed over all channels, that light of some wavelengths carries.
+    fn share(&self, is_counted: impl Fn(f64) -> bool) -> f64 {
+        let spectrum = self.source.spectrum();
+        let (mut counted, mut all) = (0.0, 0.0);
+        let mut add = |nm: f64, exposure: f64| {
+            all += exposure;
+            counted += if is_counted(nm) { exposure } else { 0.0 };
+        };
+        for (i, (nm, power)) in self.grid.wavelengths_nm().zip(&spectrum.continuum).enumerate() {
+            let response: f64 = self.channels.iter().filter_map(|c| c.response.get(i)).map(|r| r.max(0.0)).sum();
+            add(nm, power * response * self.grid.step_nm);
+        }
+        for line in &spectrum.lines {
+            let i = ((line.wavelength_nm - self.grid.start_nm) / self.grid.step_nm).round();
+            if i >= 0.0 {
+                let response: f64 =
+                    self.channels.iter().filter_map(|c| c.response.get(i as usize)).map(|r| r.max(0.0)).sum();
+                add(line.wavelength_nm, line.power * response);
+            }
+        }
+        if all > 0.0 { counted / all } else { 0.0 }
+    }
+
+    /// The value at a path.
+    fn at(&self, path: &str) -> Option<&Node> {
+        let mut node = self.params.node();
+        for step in path.split('.') {
+            let (key, index) = match step.split_once('[') {
+                Some((key, index)) => (key, index.trim_end_matches(']').parse::<usize>().ok()),
+                None => (step, None),
+            };
+            node = node.get(key)?;
+            if let Some(index) = index {
+                node = node.element(index)?;
+            }
+        }
+        Some(node)
+    }
+}
+
+/// A number that was written without a unit.
+fn bare(node: &Node) -> Option<f64> {
+    match &node.value {
+        Value::Number(number) => Some(number.value),
+        _ => None,
+    }
+}

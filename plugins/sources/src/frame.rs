@@ -1,0 +1,205 @@
+//! How wide a flat source is, what lies beyond its border, and whether it fills the frame.
+
+use schemars::JsonSchema;
+use spectra_core::params::{Fault, Faults, Length, Node, Params, Positive, StageNode, Value, nearest};
+use spectra_core::registry::Context;
+use spectra_core::view::{Sight, View};
+
+/// `width: fill` makes a source this much larger than what the frame sees of it, so that no border shows between the
+/// points of the frame that were looked from.
+const MARGIN: f64 = 1.02;
+/// A share of the frame that sees nothing and is not worth a word.
+const NOTHING: f64 = 0.01;
+
+/// `width` as written.
+#[derive(JsonSchema)]
+#[serde(untagged)]
+#[expect(dead_code, reason = "states what is allowed; `Width::read` reads it")]
+pub(crate) enum WidthForm {
+    /// As wide as the frame sees there.
+    Fill(FillWord),
+    /// A width, mm if bare.
+    Width(Positive<Length>),
+}
+
+/// The word.
+#[derive(JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+#[expect(dead_code, reason = "states what is allowed")]
+pub(crate) enum FillWord {
+    /// As wide as the frame sees there.
+    Fill,
+}
+
+const FILL: &str = "fill";
+
+/// A width, as written.
+pub(crate) enum Width<'a> {
+    Fill(&'a StageNode),
+    Mm(f64),
+}
+
+impl<'a> Width<'a> {
+    pub(crate) fn read(node: &'a StageNode) -> Result<Self, Faults> {
+        match node.node().as_str() {
+            Some(FILL) => Ok(Self::Fill(node)),
+            Some(word) if nearest(word, [FILL]).is_some() => {
+                Err(node.fault(format!("found the text `{word}`, expected a width")).hint("did you mean `fill`?").into())
+            }
+            _ => node.parse::<Positive<Length>>().map(|width| Self::Mm(width.mm())),
+        }
+    }
+
+    /// The width, mm, of a picture whose width is `aspect` times its height and whose center is at `center_mm` on the plane
+    /// `distance_mm` in front of the first vertex. To fill the frame is to hold all that it sees on that plane, by real rays
+    /// through all that the lens passes, and 2 % more. Where no lens is known a source is as wide as it is far.
+    pub(crate) fn mm(
+        &self,
+        aspect: f64,
+        distance_mm: f64,
+        center_mm: [f64; 2],
+        view: Option<&View>,
+    ) -> Result<f64, Fault> {
+        match self {
+            Self::Mm(mm) => Ok(*mm),
+            Self::Fill(node) => match view {
+                None => Ok(distance_mm),
+                Some(view) => needed_mm(view, aspect, distance_mm, center_mm).ok_or_else(|| {
+                    node.fault("this lens looks to the side: no plane fills its frame").hint("write a width, such as `5 m`")
+                }),
+            },
+        }
+    }
+
+    pub(crate) fn is_fill(&self) -> bool {
+        matches!(self, Self::Fill(_))
+    }
+}
+
+/// The width that fills the frame, mm.
+pub(crate) fn needed_mm(view: &View, aspect: f64, distance_mm: f64, center_mm: [f64; 2]) -> Option<f64> {
+    let [x, y] = view.half_size_mm(distance_mm, center_mm)?;
+    Some(2.0 * MARGIN * x.max(y * aspect)).filter(|mm| *mm > 0.0)
+}
+
+/// What lies beyond the border of a flat source.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) enum Edge {
+    /// Nothing.
+    #[default]
+    Black,
+    /// What its border shows.
+    Clamp,
+    /// Itself, mirrored there, again and again.
+    Mirror,
+}
+
+impl Edge {
+    pub(crate) fn read(word: Option<&str>, params: &Params) -> Result<Self, Fault> {
+        match word {
+            None | Some("black") => Ok(Self::Black),
+            Some("clamp") => Ok(Self::Clamp),
+            Some("mirror") => Ok(Self::Mirror),
+            Some(other) => {
+                let fault = params.fault("edge", format!("no edge is called `{other}`"));
+                let known = ["black", "clamp", "mirror"];
+                Err(fault.hint(match nearest(other, known) {
+                    Some(near) => format!("did you mean `{near}`? Known: black, clamp, mirror"),
+                    None => "black, clamp or mirror".to_owned(),
+                }))
+            }
+        }
+    }
+
+    /// A place along a side from 0 to `size`, brought to where something is; `None` where nothing is.
+    pub(crate) fn place(self, at: f64, size: f64) -> Option<f64> {
+        if at >= 0.0 && at <= size {
+            return Some(at);
+        }
+        match self {
+            Self::Clamp if !at.is_nan() => Some(at.clamp(0.0, size)),
+            Self::Mirror if at.is_finite() => {
+                let folded = at.rem_euclid(2.0 * size);
+                Some(if folded > size { 2.0 * size - folded } else { folded })
+            }
+            _ => None,
+        }
+    }
+}
+
+/// A flat source on its plane.
+pub(crate) struct Placed {
+    pub width_mm: f64,
+    pub height_mm: f64,
+    pub distance_mm: f64,
+    pub center_mm: [f64; 2],
+}
+
+impl Placed {
+    fn holds(&self, sight: &Sight) -> bool {
+        let [x, y] = sight.at_mm(self.distance_mm);
+        (x - self.center_mm[0]).abs() <= 0.5 * self.width_mm && (y - self.center_mm[1]).abs() <= 0.5 * self.height_mm
+    }
+
+    /// Warns where part of the frame sees nothing of a source that has a border and does not say that it is meant.
+    /// `what` is what it is called, such as `the picture`.
+    pub(crate) fn warn_unless_filled(&self, what: &str, params: &Params, context: &Context<'_>) {
+        let Some(view) = context.view else { return };
+        let Some(missed) = view.share_missed(|sight| self.holds(sight)).filter(|missed| *missed >= NOTHING) else { return };
+        let aspect = self.width_mm / self.height_mm;
+        let Some(needed_mm) = needed_mm(view, aspect, self.distance_mm, self.center_mm) else { return };
+        let text = format!("the frame is not filled: {:.0} % of it sees nothing of {what}", (100.0 * missed).max(1.0));
+        let hint = match bare(params.get("width")) {
+            // 1.5 for 1.5 m: a bare number is in mm.
+            Some(mm) if (0.2..5.0).contains(&(1000.0 * mm / needed_mm)) => {
+                format!("{mm} mm wide: did you mean {mm} m? Or `width: fill`")
+            }
+            _ => format!("`width: fill`, or at least {}; `edge: black` where the border is meant", length(needed_mm)),
+        };
+        context.warn(params.fault("width", text).hint(hint));
+    }
+}
+
+/// A number that was written without a unit.
+fn bare(node: Option<&Node>) -> Option<f64> {
+    match node.map(|node| &node.value) {
+        Some(Value::Number(number)) => Some(number.value),
+        _ => None,
+    }
+}
+
+/// A length as one would write it, of two or three digits and not less than it is.
+fn length(mm: f64) -> String {
+    let (value, unit) = match mm {
+        mm if mm >= 1e6 => (mm / 1e6, "km"),
+        mm if mm >= 1000.0 => (mm / 1000.0, "m"),
+        mm if mm >= 1.0 => (mm, "mm"),
+        mm => (mm * 1000.0, "um"),
+    };
+    let step = if value >= 100.0 { 10.0 } else if value >= 10.0 { 1.0 } else { 0.1 };
+    let value = (value / step).ceil() * step;
+    if step < 1.0 { format!("{value:.1} {unit}") } else { format!("{value:.0} {unit}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn beyond_the_border_is_what_the_edge_says() {
+        assert_eq!((Edge::Black.place(-0.1, 4.0), Edge::Black.place(4.0, 4.0)), (None, Some(4.0)));
+        assert_eq!((Edge::Clamp.place(-3.0, 4.0), Edge::Clamp.place(9.0, 4.0)), (Some(0.0), Some(4.0)));
+        let mirrored: Vec<_> = [-1.0, 5.0, 9.0, -9.0].iter().map(|at| Edge::Mirror.place(*at, 4.0)).collect();
+        assert_eq!(mirrored, [Some(1.0), Some(3.0), Some(1.0), Some(1.0)]);
+        for edge in [Edge::Black, Edge::Clamp, Edge::Mirror] {
+            assert_eq!(edge.place(f64::NAN, 4.0), None);
+        }
+    }
+
+    #[test]
+    fn lengths_are_written_to_be_typed_and_never_too_small() {
+        for (mm, written) in [(1831.0, "1.9 m"), (12_345.0, "13 m"), (187.2, "190 mm"), (0.02, "20 um"), (3.0, "3.0 mm")] {
+            assert_eq!(length(mm), written);
+        }
+    }
+}

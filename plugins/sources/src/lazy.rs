@@ -1,0 +1,62 @@
+//! A source whose large files are read when light is traced, not when a scene is checked.
+
+use spectra_core::params::Faults;
+use spectra_core::spectral::SpectralPower;
+use spectra_core::stage::{Emit, Radiance, Source};
+use std::sync::OnceLock;
+
+/// How the source itself is made.
+type Reader = Box<dyn Fn() -> Result<Box<dyn Source>, Faults> + Send + Sync>;
+
+/// A white source of the same size and place until [`Source::prepare`] is called, then the real one.
+pub(crate) struct Lazy {
+    stand_in: Box<dyn Source>,
+    reader: Reader,
+    read: OnceLock<Box<dyn Source>>,
+    /// Whether the real one emits rays.
+    emits: bool,
+}
+
+impl Lazy {
+    /// `stand_in` answers for radiance, and emits rays if it `emits`, as the real one does.
+    pub(crate) fn new(
+        stand_in: Box<dyn Source>,
+        emits: bool,
+        reader: impl Fn() -> Result<Box<dyn Source>, Faults> + Send + Sync + 'static,
+    ) -> Self {
+        Self { stand_in, reader: Box::new(reader), read: OnceLock::new(), emits }
+    }
+
+    fn now(&self) -> &dyn Source {
+        &**self.read.get().unwrap_or(&self.stand_in)
+    }
+}
+
+impl Source for Lazy {
+    fn prepare(&self) -> Result<(), Faults> {
+        if self.read.get().is_none() {
+            let source = (self.reader)()?;
+            // Where two threads read it at once, one of two equal ones is kept.
+            let _ = self.read.set(source);
+        }
+        Ok(())
+    }
+    fn spectrum(&self) -> &SpectralPower {
+        self.now().spectrum()
+    }
+    fn peak_over_mean(&self) -> f64 {
+        self.now().peak_over_mean()
+    }
+    fn distance_mm(&self) -> f64 {
+        self.now().distance_mm()
+    }
+    fn emit(&self) -> Option<&dyn Emit> {
+        self.now().emit().filter(|_| self.emits)
+    }
+    fn radiance(&self) -> Option<&dyn Radiance> {
+        self.now().radiance()
+    }
+    fn describe(&self) -> String {
+        self.now().describe()
+    }
+}

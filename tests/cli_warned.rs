@@ -1,0 +1,101 @@
+//! A corpus of slips that make a picture, only not the one that was meant: what a user is told of each, word for word.
+//!
+//! `tests/warned/NAME.yaml` is a scene that can be rendered and should not be believed; `tests/warned/NAME.txt` is what
+//! `spectra check` says. `SPECTRA_BLESS=1 cargo test --test cli_warned` writes these anew. As in `tests/broken`, each case
+//! states in comments what is doubtful, `# doubtful: TEXT`, and one warning starts at this text, with a hint; there are no
+//! others.
+//!
+//! The bundled scenes are the counter-examples: no word about any of them.
+
+mod common;
+
+use common::{repository, spectra, text};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Fewer cases than this, and some were lost.
+const LEAST: usize = 12;
+
+/// Bundled scenes of which something has to be said, and why.
+const EXCEPTIONS: [(&str, &str); 0] = [];
+
+fn yaml(folder: &Path) -> Vec<PathBuf> {
+    let mut files: Vec<PathBuf> = fs::read_dir(folder)
+        .expect("a folder")
+        .map(|entry| entry.expect("readable").path())
+        .filter(|path| path.extension().is_some_and(|e| e == "yaml"))
+        .collect();
+    files.sort();
+    files
+}
+
+#[test]
+fn each_doubt_is_told_where_it_is_and_what_to_do() {
+    let folder = repository("tests/warned");
+    let bless = std::env::var_os("SPECTRA_BLESS").is_some();
+    let cases = yaml(&folder);
+    assert!(cases.len() >= LEAST, "{} cases", cases.len());
+    let mut wrong = Vec::new();
+    for case in &cases {
+        let name = case.file_name().and_then(|name| name.to_str()).expect("plain names");
+        let scene = fs::read_to_string(case).expect("a scene");
+        let output = spectra().current_dir(&folder).args(["check", name]).output().expect("the program starts");
+        let said = text(&output.stderr);
+        if output.status.code() != Some(0) {
+            wrong.push(format!("{name}: ends with {:?}:\n{said}", output.status.code()));
+        }
+        let expected = case.with_extension("txt");
+        if bless {
+            fs::write(&expected, &said).expect("written");
+        } else if fs::read_to_string(&expected).unwrap_or_default() != said {
+            wrong.push(format!("{name}: the text is another one (SPECTRA_BLESS=1 writes it anew):\n{said}"));
+        }
+        let mut wanted: Vec<&str> = scene.lines().filter_map(|line| line.split_once("# doubtful: ")).map(|l| l.1).collect();
+        for warning in said.split("warning: ").skip(1) {
+            if !warning.contains("\n  help: ") {
+                wrong.push(format!("{name}: no hint:\n{warning}"));
+            }
+            let mut place = warning.strip_prefix(name).unwrap_or("").split(':').skip(1);
+            let mut number = || place.next().and_then(|text| text.parse::<usize>().ok());
+            let (Some(line), Some(column)) = (number(), number()) else {
+                wrong.push(format!("{name}: no place:\n{warning}"));
+                continue;
+            };
+            let rest: String = scene.lines().nth(line - 1).unwrap_or("").chars().skip(column - 1).collect();
+            match wanted.iter().position(|token| rest.starts_with(token)) {
+                Some(at) => drop(wanted.remove(at)),
+                None => wrong.push(format!("{name}: {line}:{column} is not what is doubtful, but `{rest}`:\n{warning}")),
+            }
+        }
+        wrong.extend(wanted.iter().map(|token| format!("{name}: nothing is said about `{token}`:\n{said}")));
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n\n"));
+}
+
+/// `check` and a small render of every bundled scene: not one warning.
+#[test]
+fn nothing_is_said_about_bundled_scenes() {
+    let root = repository("scenes");
+    let mut wrong = Vec::new();
+    for path in yaml(&root).into_iter().chain(yaml(&root.join("surfaces"))) {
+        let name = path.strip_prefix(&root).expect("below").with_extension("");
+        let name = name.to_str().expect("plain names").replace('\\', "/");
+        let exception = EXCEPTIONS.iter().any(|(scene, _)| *scene == name);
+        let out = tempfile::tempdir().expect("a folder");
+        let size = "imager.resolution=[24, 16]";
+        let tall = "imager.resolution=[16, 48]";
+        let size = if name.starts_with("prism") { tall } else { size };
+        let few = ["--samples", "1", "--set", "render.rays=2000", "--set", size, "--threads", "2"];
+        for arguments in [vec!["check"], [&["run", "-o", out.path().to_str().expect("plain")], &few[..]].concat()] {
+            if arguments[0] == "run" && name == "biotar-spot" {
+                continue; // a point in a frame of few pixels may well be missed by few rays
+            }
+            let output = spectra().args(&arguments).arg(&path).output().expect("the program starts");
+            let said = text(&output.stderr);
+            if output.status.code() != Some(0) || said.contains("warning") != exception {
+                wrong.push(format!("{name}, {}: {:?}\n{said}", arguments[0], output.status.code()));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n\n"));
+}
