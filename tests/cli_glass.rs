@@ -83,7 +83,7 @@ fn melts_and_glasses_of_figures_alone() {
     }
     // N-BK7 by ne and Ve.
     let e = json(&["info", "--nd", "1.518722", "--vd", "63.96", "--line", "e"]);
-    assert!((number(&e["nd"]) - 1.5168).abs() < 2e-6 && (number(&e["vd"]) - 64.17).abs() < 0.02, "{e}");
+    assert!((number(&e["nd"]) - 1.5168).abs() < 2e-6 && (number(&e["vd"]) - 64.17).abs() < 0.03, "{e}");
     assert!(refused(&["info", "--nd", "9", "--vd", "64"]).contains("no glass has nd 9"));
     assert!(refused(&["info", "--nd", "1.5"]).contains("--vd"));
 }

@@ -21,7 +21,7 @@ fn old_glasses_by_their_figures() {
     }
 }
 
-/// What `lens info` and the guide say of the model: of ten optical glasses nine lie within 2e-4 at r, 3e-4 at g, 6e-4 at
+/// What `lens info` and the guide say of the model: of ten optical glasses nine lie within 2e-4 at r, 4e-4 at g, 9e-4 at
 /// h.
 #[test]
 fn nine_of_ten_glasses_are_near() {
@@ -39,7 +39,7 @@ fn nine_of_ten_glasses_are_near() {
         }
         assert!((model.index(F.wavelength_nm) - glass.index(F.wavelength_nm)).abs() < 1e-3, "{}", glass.full_name());
     }
-    for (mut errors, most) in errors.into_iter().zip([2e-4, 3e-4, 6e-4]) {
+    for (mut errors, most) in errors.into_iter().zip([2e-4, 4e-4, 9e-4]) {
         errors.sort_by(f64::total_cmp);
         let ninth = errors[errors.len() * 9 / 10];
         println!("{} glasses, nine of ten within {ninth:.6}", errors.len());

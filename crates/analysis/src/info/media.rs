@@ -50,9 +50,9 @@ pub(super) fn write(media: &[AssumedMedium], f: &mut fmt::Formatter<'_>) -> fmt:
         writeln!(f, "modeled dispersion: {}", list(modeled))?;
         writeln!(
             f,
-            "  on the normal lines of partial dispersion: of ten glasses nine lie within 0.0002 at r, 0.0003 at g,"
+            "  on the normal lines of partial dispersion: of ten glasses nine lie within 0.0002 at r, 0.0004 at g,"
         )?;
-        writeln!(f, "  0.0006 at h, 0.0015 at i; dense and short flints, fluor and phosphate crowns farther off")?;
+        writeln!(f, "  0.0009 at h; dense and short flints, fluor and phosphate crowns farther off")?;
     }
     let through: Vec<String> =
         media.iter().filter(|m| m.modeled_from_lines.is_some_and(|n| n > 1)).map(|m| m.medium.clone()).collect();

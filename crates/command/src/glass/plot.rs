@@ -21,7 +21,12 @@ pub(crate) fn plot(arguments: &GlassPlot) -> Outcome {
     // Before anything is computed: a wrong ending is found out at once.
     Format::of(&output).map_err(failure)?;
     let catalogue = catalogue(&arguments.own)?;
-    let find = |name: &String| Ok((name.trim().to_owned(), named(name, &catalogue)?));
+    // One of several materials of a file is known by its own name.
+    let label = |name: &str| match name.rsplit_once('#') {
+        Some((_, material)) if spectra_glass::file::is_file(name) => material.trim().to_owned(),
+        _ => name.trim().to_owned(),
+    };
+    let find = |name: &String| Ok((label(name), named(name, &catalogue)?));
     let media = arguments.names.iter().map(find).collect::<Result<Vec<_>, Failure>>()?;
     let canvas =
         if arguments.abbe { abbe(arguments, &catalogue, &media)? } else { dispersion(&media, arguments.range_nm)? };
