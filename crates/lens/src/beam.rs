@@ -361,7 +361,8 @@ impl Beam {
         // Rays cross the middle one between these planes, and somewhere there the light is most together.
         let crossings = offsets.filter(|[.., u, v]| u * u + v * v > STEEP2 * steepest2);
         let crossings = crossings.map(|[x, y, u, v]| -(x * u + y * v) / (u * u + v * v));
-        let stride = (self.weight.len() / SCANNED_RAYS).max(1);
+        // Odd, so that no column of the grid is left out.
+        let stride = (self.weight.len() / SCANNED_RAYS) | 1;
         let coarse = |z: f64| of(self.contrasts(z, per_mm, stride));
         let fine = |z: f64| of(self.contrasts(z, per_mm, 1));
         highest(crossings, 1.0 / (per_mm * steepest2.sqrt()), coarse, fine)
