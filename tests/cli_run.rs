@@ -351,8 +351,10 @@ fn a_metered_scene_is_that_of_the_metered_time() {
         // Beside a meter an exposure time has no effect, and that is said.
         assert_eq!(said.contains("`exposure` has no effect"), film.len() == 1, "{said}");
         for (name, plane) in &stated {
+            // Pixels next to black are known to the step of the sums only, which the meter's channel may change.
+            let mean = plane.iter().sum::<f32>() / plane.len() as f32;
             for (a, b) in plane.iter().zip(&metered[name]) {
-                assert!((a - b).abs() <= 1e-6 * a.abs(), "{name}: {a} against {b}");
+                assert!((a - b).abs() <= 1e-6 * a.abs().max(mean), "{name}: {a} against {b}");
             }
         }
     }

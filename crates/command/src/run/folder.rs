@@ -76,7 +76,7 @@ impl Folder {
                 files.push((*output, target.path(member, &format!("{film}{part}"), ending)));
             }
         }
-        for path in files.iter().map(|(_, path)| path.as_path()).chain([report]) {
+        for path in files.iter().map(|(_, path)| path.as_path()).chain(report) {
             if path.is_dir() {
                 return Err(refuse(path, &"a folder of that name is in the way"));
             }

@@ -46,11 +46,6 @@ impl Target {
         Ok(whole)
     }
 
-    /// Whether one file is asked for.
-    pub(crate) fn is_file(&self) -> bool {
-        self.only.is_some()
-    }
-
     /// Makes the scene write what is asked for.
     ///
     /// # Errors
@@ -106,7 +101,7 @@ mod tests {
         for (name, is_file) in
             [("new.png", true), ("old.png", true), ("a/b.TIF", true), ("folder.png", false), ("out", false)]
         {
-            assert_eq!(Target::of(&at(name)).expect(name).is_file(), is_file, "{name}");
+            assert_eq!(Target::of(&at(name)).expect(name).only.is_some(), is_file, "{name}");
         }
         assert!(Target::of(&at("notes.txt")).is_err());
     }
