@@ -20,7 +20,9 @@ pub(crate) fn check(arguments: &Check, isa: Isa) -> Outcome {
         if arguments.json {
             let scene = path.display().to_string();
             let mut said = match &result {
-                Ok(good) => json!({ "scene": scene, "ok": true, "faults": [], "warnings": diagnostics::warnings_to_json(&good.warnings) }),
+                Ok(good) => {
+                    json!({ "scene": scene, "ok": true, "faults": [], "warnings": diagnostics::warnings_to_json(&good.warnings) })
+                }
                 Err(faults) => {
                     json!({ "scene": scene, "ok": false, "faults": diagnostics::to_json(faults), "warnings": [] })
                 }

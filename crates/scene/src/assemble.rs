@@ -3,7 +3,9 @@
 use crate::advice::{self, FileIs};
 use crate::filters;
 use crate::lens_section::{LensSection, lens_of};
-use crate::{ConePattern, Direction, NumberFamily, Output, RenderSettings, Scene, doubts, films, language, output, sight, yaml};
+use crate::{
+    ConePattern, Direction, NumberFamily, Output, RenderSettings, Scene, doubts, films, language, output, sight, yaml,
+};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::numbers::seed_of_frame;

@@ -4,7 +4,9 @@ use super::picture::{Developed, attributes, pictures};
 use super::rays;
 use super::report::Report;
 use crate::outcome::Failure;
-use spectra_film::write::{write_atomically, write_dng, write_exr, write_png8_of_pixels, write_tiff16, write_tiled_exr};
+use spectra_film::write::{
+    write_atomically, write_dng, write_exr, write_png8_of_pixels, write_tiff16, write_tiled_exr,
+};
 use spectra_plot::PlotError;
 use spectra_scene::{Member, Output, RaysFigure, Scene};
 use std::fmt::Display;
