@@ -17,7 +17,8 @@ use std::path::{Path, PathBuf};
 const LEAST: usize = 12;
 
 /// Bundled scenes of which something has to be said, and why.
-const EXCEPTIONS: [(&str, &str); 0] = [];
+const EXCEPTIONS: [(&str, &str); 1] =
+    [("false-color", "it is about light beyond 700 nm, and nobody measured the glass of its lens there")];
 
 fn yaml(folder: &Path) -> Vec<PathBuf> {
     let mut files: Vec<PathBuf> = fs::read_dir(folder)
@@ -50,7 +51,8 @@ fn each_doubt_is_told_where_it_is_and_what_to_do() {
         } else if fs::read_to_string(&expected).unwrap_or_default() != said {
             wrong.push(format!("{name}: the text is another one (SPECTRA_BLESS=1 writes it anew):\n{said}"));
         }
-        let mut wanted: Vec<&str> = scene.lines().filter_map(|line| line.split_once("# doubtful: ")).map(|l| l.1).collect();
+        let mut wanted: Vec<&str> =
+            scene.lines().filter_map(|line| line.split_once("# doubtful: ")).map(|l| l.1).collect();
         for warning in said.split("warning: ").skip(1) {
             if !warning.contains("\n  help: ") {
                 wrong.push(format!("{name}: no hint:\n{warning}"));
@@ -64,7 +66,9 @@ fn each_doubt_is_told_where_it_is_and_what_to_do() {
             let rest: String = scene.lines().nth(line - 1).unwrap_or("").chars().skip(column - 1).collect();
             match wanted.iter().position(|token| rest.starts_with(token)) {
                 Some(at) => drop(wanted.remove(at)),
-                None => wrong.push(format!("{name}: {line}:{column} is not what is doubtful, but `{rest}`:\n{warning}")),
+                None => {
+                    wrong.push(format!("{name}: {line}:{column} is not what is doubtful, but `{rest}`:\n{warning}"))
+                }
             }
         }
         wrong.extend(wanted.iter().map(|token| format!("{name}: nothing is said about `{token}`:\n{said}")));

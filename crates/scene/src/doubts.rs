@@ -91,7 +91,9 @@ impl Whole<'_> {
             _ => vec!["film.exposure".to_owned()],
         };
         for key in films.into_iter().chain(["imager.exposure".to_owned()]) {
-            let Some(seconds) = self.at(&key).and_then(bare).filter(|s| *s >= LONG_S && s.is_finite()) else { continue };
+            let Some(seconds) = self.at(&key).and_then(bare).filter(|s| *s >= LONG_S && s.is_finite()) else {
+                continue;
+            };
             let fault = self.params.fault(&key, format!("an exposure of {seconds} seconds"));
             warnings.push(fault.hint(format!("did you mean `1/{seconds} s`? Else write `{seconds} s`")));
         }
@@ -144,8 +146,10 @@ impl Whole<'_> {
             beyond.filter_map(|medium| Some((medium.label.as_str(), medium.medium.range_nm()?))).collect();
         let share = self.share(|nm| ranges.iter().any(|(_, (first, last))| nm < *first || nm > *last));
         if share > may {
-            let named: Vec<String> =
-                ranges.iter().map(|(label, (first, last))| format!("{label} from {first:.0} to {last:.0} nm")).collect();
+            let named: Vec<String> = ranges
+                .iter()
+                .map(|(label, (first, last))| format!("{label} from {first:.0} to {last:.0} nm"))
+                .collect();
             let text = format!(
                 "{:.0} % of the exposure is light in which the lens's glass was not measured, and its formula is \
                  extrapolated: {}",

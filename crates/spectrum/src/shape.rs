@@ -10,8 +10,8 @@ use spectra_core::spectral::{BAND, Grid};
 use crate::cell;
 use crate::error::{SpectrumError, check};
 use crate::gaussian::{GaussianMixture, GaussianTerm};
-use crate::planck::planck_radiance;
 use crate::meta::Outside;
+use crate::planck::planck_radiance;
 use crate::tabulated::Tabulated;
 
 /// A function of the wavelength: constant, rectangle, Gaussian, signed sum of Gaussians, black body, table, histogram,

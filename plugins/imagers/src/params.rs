@@ -263,7 +263,12 @@ impl Frame {
             return;
         }
         let aspect = size.width_mm / f64::from(across) / (size.height_mm / f64::from(down));
-        let text = format!("pixels are not square, but {aspect:.2} times as wide as high: the picture will look squeezed");
+        // Nobody sees 1 %.
+        if (aspect - 1.0).abs() < 0.01 {
+            return;
+        }
+        let text =
+            format!("pixels are not square, but {aspect:.2} times as wide as high: the picture will look squeezed");
         let common = gcd(across, down);
         let hint = format!(
             "`resolution: [{across}, {}]`, or `crop: {}:{}` for a frame of that shape",
@@ -353,7 +358,8 @@ fn ratio(node: &StageNode) -> Result<f64, Fault> {
         _ => None,
     };
     found.filter(|ratio| (0.01..=100.0).contains(ratio)).ok_or_else(|| {
-        node.fault("no shape of a frame").hint("width to height, as in `crop: 16:9`, or their ratio, as in `crop: 1.85`")
+        node.fault("no shape of a frame")
+            .hint("width to height, as in `crop: 16:9`, or their ratio, as in `crop: 1.85`")
     })
 }
 

@@ -43,9 +43,10 @@ impl<'a> Width<'a> {
     pub(crate) fn read(node: &'a StageNode) -> Result<Self, Faults> {
         match node.node().as_str() {
             Some(FILL) => Ok(Self::Fill(node)),
-            Some(word) if nearest(word, [FILL]).is_some() => {
-                Err(node.fault(format!("found the text `{word}`, expected a width")).hint("did you mean `fill`?").into())
-            }
+            Some(word) if nearest(word, [FILL]).is_some() => Err(node
+                .fault(format!("found the text `{word}`, expected a width"))
+                .hint("did you mean `fill`?")
+                .into()),
             _ => node.parse::<Positive<Length>>().map(|width| Self::Mm(width.mm())),
         }
     }
@@ -65,7 +66,8 @@ impl<'a> Width<'a> {
             Self::Fill(node) => match view {
                 None => Ok(distance_mm),
                 Some(view) => needed_mm(view, aspect, distance_mm, center_mm).ok_or_else(|| {
-                    node.fault("this lens looks to the side: no plane fills its frame").hint("write a width, such as `5 m`")
+                    node.fault("this lens looks to the side: no plane fills its frame")
+                        .hint("write a width, such as `5 m`")
                 }),
             },
         }
@@ -145,7 +147,9 @@ impl Placed {
     /// `what` is what it is called, such as `the picture`.
     pub(crate) fn warn_unless_filled(&self, what: &str, params: &Params, context: &Context<'_>) {
         let Some(view) = context.view else { return };
-        let Some(missed) = view.share_missed(|sight| self.holds(sight)).filter(|missed| *missed >= NOTHING) else { return };
+        let Some(missed) = view.share_missed(|sight| self.holds(sight)).filter(|missed| *missed >= NOTHING) else {
+            return;
+        };
         let aspect = self.width_mm / self.height_mm;
         let Some(needed_mm) = needed_mm(view, aspect, self.distance_mm, self.center_mm) else { return };
         let text = format!("the frame is not filled: {:.0} % of it sees nothing of {what}", (100.0 * missed).max(1.0));
@@ -176,7 +180,13 @@ fn length(mm: f64) -> String {
         mm if mm >= 1.0 => (mm, "mm"),
         mm => (mm * 1000.0, "um"),
     };
-    let step = if value >= 100.0 { 10.0 } else if value >= 10.0 { 1.0 } else { 0.1 };
+    let step = if value >= 100.0 {
+        10.0
+    } else if value >= 10.0 {
+        1.0
+    } else {
+        0.1
+    };
     let value = (value / step).ceil() * step;
     if step < 1.0 { format!("{value:.1} {unit}") } else { format!("{value:.0} {unit}") }
 }
@@ -198,7 +208,9 @@ mod tests {
 
     #[test]
     fn lengths_are_written_to_be_typed_and_never_too_small() {
-        for (mm, written) in [(1831.0, "1.9 m"), (12_345.0, "13 m"), (187.2, "190 mm"), (0.02, "20 um"), (3.0, "3.0 mm")] {
+        for (mm, written) in
+            [(1831.0, "1.9 m"), (12_345.0, "13 m"), (187.2, "190 mm"), (0.02, "20 um"), (3.0, "3.0 mm")]
+        {
             assert_eq!(length(mm), written);
         }
     }

@@ -213,7 +213,10 @@ mod tests {
     fn keyframes_beyond_the_frames_are_warned_of() {
         let found = animation("animation: {frames: 48, seed: fixed, animate: {a: {1: 1, 480: 2}}}").expect("good");
         assert!(!found.is_alive);
-        assert_eq!(found.warnings[0].to_string(), "t.yaml:1:51: the keyframe 480 of `a` lies beyond the frames 1 to 48");
+        assert_eq!(
+            found.warnings[0].to_string(),
+            "t.yaml:1:51: the keyframe 480 of `a` lies beyond the frames 1 to 48"
+        );
     }
 
     #[test]

@@ -1,8 +1,8 @@
 //! From the bytes of a picture file to linear light, hostile files included.
 
 use super::encoding::Encoding;
-use super::linear::{Choice, Linear, MAX_SIDE, Trouble, check_size, clean};
 use super::header::Header;
+use super::linear::{Choice, Linear, MAX_SIDE, Trouble, check_size, clean};
 use super::{exr, foreign, jpeg};
 use image::metadata::Orientation;
 use image::{ColorType, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
@@ -23,8 +23,10 @@ pub(crate) fn decode(bytes: &[u8], choice: Choice<'_>) -> Result<Linear, Trouble
     let said = choice.transfer.map(Encoding::named).transpose()?;
     match kind(bytes, choice)? {
         Kind::Exr => exr::decode(bytes, choice, true),
-        Kind::Native(ImageFormat::Jpeg) if !jpeg::is_whole(bytes) => Err(Trouble::file("the file breaks off before its end")
-            .hint("copy or download it once more, or save it again: what is missing would be gray")),
+        Kind::Native(ImageFormat::Jpeg) if !jpeg::is_whole(bytes) => {
+            Err(Trouble::file("the file breaks off before its end")
+                .hint("copy or download it once more, or save it again: what is missing would be gray"))
+        }
         Kind::Native(format) => match native(Cursor::new(bytes), format, bytes.len() as u64, said) {
             Ok(linear) => Ok(linear),
             Err(NotRead::Trouble(trouble)) => Err(trouble),
@@ -132,12 +134,7 @@ fn orientation(decoder: &mut impl ImageDecoder) -> u8 {
     decoder.orientation().unwrap_or(Orientation::NoTransforms).to_exif()
 }
 
-fn native(
-    reader: Cursor<&[u8]>,
-    format: ImageFormat,
-    bytes: u64,
-    said: Option<Encoding>,
-) -> Result<Linear, NotRead> {
+fn native(reader: Cursor<&[u8]>, format: ImageFormat, bytes: u64, said: Option<Encoding>) -> Result<Linear, NotRead> {
     let mut decoder = decoder(reader, format, bytes)?;
     let mut limits = Limits::default();
     limits.max_image_width = Some(MAX_SIDE);
@@ -199,9 +196,7 @@ fn linear(decoder: impl ImageDecoder, orientation: u8, said: Option<Encoding>) -
             match samples {
                 Samples::Bytes => table[usize::from(pixel[c])],
                 Samples::Shorts => table[usize::from(short(c))],
-                Samples::Floats => {
-                    clean(said.map_or(float(c), |encoding| encoding.decode(f64::from(float(c))) as f32))
-                }
+                Samples::Floats => clean(said.map_or(float(c), |encoding| encoding.decode(f64::from(float(c))) as f32)),
             }
         });
         let cover = match samples {
@@ -230,7 +225,8 @@ fn linear(decoder: impl ImageDecoder, orientation: u8, said: Option<Encoding>) -
     };
     let mut pixel = [0_u8; 16];
     for i in 0..pixels {
-        let stored = if orientation == 1 { i } else { foreign::stored(i, [width as usize, height as usize], orientation) };
+        let stored =
+            if orientation == 1 { i } else { foreign::stored(i, [width as usize, height as usize], orientation) };
         pixel[..size].copy_from_slice(if beside.is_empty() {
             &memory[start + stored * size..][..size]
         } else {

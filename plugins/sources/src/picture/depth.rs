@@ -103,12 +103,7 @@ impl Depth {
 
     /// Depth of each pixel along the axis from the center of projection, mm. `plane_mm` is the distance of the plane from
     /// there on which the picture measures `width_mm`.
-    pub(super) fn of(
-        &self,
-        picture: &Linear,
-        plane_mm: f64,
-        width_mm: f64,
-    ) -> Result<Vec<f32>, Faults> {
+    pub(super) fn of(&self, picture: &Linear, plane_mm: f64, width_mm: f64) -> Result<Vec<f32>, Faults> {
         let own = match (&self.p.file, &self.found) {
             (None, _) | (_, None) => None,
             (Some(file), Some(found)) => {

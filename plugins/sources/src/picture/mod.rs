@@ -249,7 +249,8 @@ impl PictureFile {
     /// Warns of a photograph whose code values are taken as light.
     pub(crate) fn warn(&self, header: &Header, context: &Context<'_>) {
         if header.is_jpeg && self.transfer.as_deref() == Some("linear") {
-            let text = format!("`{}` is a JPEG, whose code values are sRGB: as linear light it is far too pale", self.name);
+            let text =
+                format!("`{}` is a JPEG, whose code values are sRGB: as linear light it is far too pale", self.name);
             context.warn(self.params.fault("transfer", text).hint("leave `transfer` out"));
         }
     }
