@@ -15,6 +15,7 @@ mod first_order;
 mod focus;
 mod group;
 mod lens;
+mod losses;
 mod matte_box;
 mod pose;
 mod prescription;
@@ -24,7 +25,6 @@ mod schema;
 mod symmetry;
 mod tracer;
 mod transmission;
-mod losses;
 
 pub use aim::{AimPattern, AimRegion, FrontPupil, RearPupil};
 pub use aperture::read as read_apertures;

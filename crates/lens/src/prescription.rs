@@ -6,7 +6,9 @@ use crate::{
 };
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::params::{Angle, FNumber, Fault, Faults, Length, OrInfinity, Params, Positive, Ratio, StageNode, nearest};
+use spectra_core::params::{
+    Angle, FNumber, Fault, Faults, Length, OrInfinity, Params, Positive, Ratio, StageNode, nearest,
+};
 use spectra_core::registry::{self, Context};
 use spectra_core::resources::Resources;
 use spectra_core::spectral::BAND;

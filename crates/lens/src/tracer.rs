@@ -121,9 +121,8 @@ impl Tracer {
             Indices::Stated => (lens.reference_nm, lens.reference_nm),
             Indices::At(wavelength_nm) => (wavelength_nm, wavelength_nm),
         };
-        let absorption = |medium: &Medium| {
-            lens.absorption.then(|| Absorption::of(medium, lens.year, min_nm, max_nm)).flatten()
-        };
+        let absorption =
+            |medium: &Medium| lens.absorption.then(|| Absorption::of(medium, lens.year, min_nm, max_nm)).flatten();
         let absorptions = lens.media.iter().map(|m| absorption(&m.medium)).collect();
         let elements = lens.elements.clone();
         Ok(Self { elements, clips, forward, backward, media, passages, absorptions, isa })

@@ -112,7 +112,8 @@ impl ModelGlass {
         }
         // Unknown: nd - 1, n_F - n_C, and the departures of the three partial dispersions, times n_F - n_C.
         let (intercept, slope) = (series(INTERCEPT), series(SLOPE));
-        let units: [[f64; 4]; 3] = std::array::from_fn(|k| series(std::array::from_fn(|i| f64::from(u8::from(i == k + 1)))));
+        let units: [[f64; 4]; 3] =
+            std::array::from_fn(|k| series(std::array::from_fn(|i| f64::from(u8::from(i == k + 1)))));
         let at = |line: Line| -> [f64; 5] {
             let of = |shape: &[f64; 4]| difference(shape, line, D);
             [1.0 + of(&slope), of(&intercept), of(&units[0]), of(&units[1]), of(&units[2])]
