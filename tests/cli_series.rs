@@ -48,7 +48,8 @@ fn bytes(path: &Path) -> Vec<u8> {
 /// One lens that does not reach the f-number of a sweep over lenses is taken wide open, with a warning; alone it is refused.
 #[test]
 fn a_sweep_over_lenses_goes_on_wide_open() {
-    let sweep = format!("{SMALL}lens: {{f-number: f/1.5}}\nsweep:\n  lens.file: [zeiss-biotar-50-f1.4, helios-44-58-f2]\n");
+    let sweep =
+        format!("{SMALL}lens: {{f-number: f/1.5}}\nsweep:\n  lens.file: [zeiss-biotar-50-f1.4, helios-44-58-f2]\n");
     let folder = files(&[("scene.yaml", &sweep)]);
     let series = load_series(&folder.path().join("scene.yaml"), &[]).unwrap_or_else(|faults| panic!("{faults}"));
     let scenes = [0, 1].map(|i| series.scene(i).unwrap_or_else(|faults| panic!("{faults}")));
@@ -56,7 +57,8 @@ fn a_sweep_over_lenses_goes_on_wide_open() {
     assert!((f_number(0) - 1.5).abs() < 1e-6 && (f_number(1) - 2.039).abs() < 1e-3, "{} {}", f_number(0), f_number(1));
     let told = |i: usize| scenes[i].warnings.iter().filter(|w| w.contains("wide open")).count();
     assert_eq!((told(0), told(1)), (0, 1), "{:?}", scenes[1].warnings);
-    let alone = load_series(&folder.path().join("scene.yaml"), &["sweep=null".into(), "lens.file=helios-44-58-f2".into()]);
+    let alone =
+        load_series(&folder.path().join("scene.yaml"), &["sweep=null".into(), "lens.file=helios-44-58-f2".into()]);
     let alone = alone.unwrap_or_else(|faults| panic!("{faults}"));
     assert!(alone.scene(0).is_err_and(|faults| faults.to_string().contains("is faster than the lens")));
 }

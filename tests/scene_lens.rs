@@ -54,7 +54,13 @@ fn a_lens_may_be_turned_coated_and_bent() {
 fn coatings_dim_the_picture() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/gray-card.yaml");
     let middle = |set: &[&str]| {
-        let common = ["imager.resolution=[12, 8]", "lens.absorption=false", "lens.f-number=f/4", "render.samples=512", "render.rays=400000"];
+        let common = [
+            "imager.resolution=[12, 8]",
+            "lens.absorption=false",
+            "lens.f-number=f/4",
+            "render.samples=512",
+            "render.rays=400000",
+        ];
         let overrides: Vec<String> = common.iter().chain(set).map(|s| (*s).to_owned()).collect();
         let scene = load(&path, &overrides).unwrap_or_else(|faults| panic!("{faults}"));
         let frame = Renderer::new(&scene, Isa::detect()).expect("a scene").run(2, &Control::new()).expect("rendered");

@@ -220,15 +220,17 @@ impl Lens {
             let real = widest.f_number();
             let in_name = self.nominal_f_number.is_some_and(|n| f_number >= n * (1.0 - 1e-9) && real <= n * NOMINAL);
             if real > f_number * ROUNDED && !in_name {
-                let path = ray.as_ref().ok().map(|ray| {
-                    tracer.path(DVec3::new(0.0, ray.height_mm, 0.0), DVec3::Z, self.reference_nm)
-                });
+                let path = ray
+                    .as_ref()
+                    .ok()
+                    .map(|ray| tracer.path(DVec3::new(0.0, ray.height_mm, 0.0), DVec3::Z, self.reference_nm));
                 let rim = unset.limiting_rim(widest, path.as_ref());
                 return Err(ApertureError::TooFast { asked: f_number, widest: real, rim });
             }
             if real >= f_number {
                 if real > f_number * ROUNDED {
-                    self.notes.push(format!("f/{f_number} is taken as wide open: the lens is f/{real:.3} by its real rays"));
+                    self.notes
+                        .push(format!("f/{f_number} is taken as wide open: the lens is f/{real:.3} by its real rays"));
                 }
                 return match widest.stop_height_mm {
                     Some(height) => Ok(self.with_stop_semi_diameter_mm(height)),

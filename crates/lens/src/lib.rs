@@ -17,6 +17,7 @@ mod focus;
 mod group;
 mod ledger;
 mod lens;
+mod losses;
 mod matte_box;
 mod path;
 mod pose;
@@ -27,7 +28,6 @@ mod schema;
 mod symmetry;
 mod tracer;
 mod transmission;
-mod losses;
 
 pub use aim::{AimPattern, AimRegion, FrontPupil, RearPupil, has_sizes};
 pub use aperture::read as read_apertures;

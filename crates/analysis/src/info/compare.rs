@@ -57,7 +57,8 @@ impl Comparison {
             let z_mm = axis.as_ref().and_then(|b| b.best_contrast_z_mm(FREQUENCY_PER_MM));
             let contrast = |beam: Option<&Beam>| Some(beam?.contrast(z_mm?, FREQUENCY_PER_MM));
             let field_rad = field_deg.map(f64::to_radians);
-            let chief = field_rad.and_then(|field| held.chief_rays(held.focused_mm, &[field]).ok()?.into_iter().next()?);
+            let chief =
+                field_rad.and_then(|field| held.chief_rays(held.focused_mm, &[field]).ok()?.into_iter().next()?);
             let ideal = field_rad.filter(|_| held.focused_mm == f64::INFINITY);
             let ideal = ideal.map(|field| info.efl_mm * spectra_core::math::tan(field));
             Compared {
@@ -100,13 +101,17 @@ impl fmt::Display for Comparison {
         ];
         if let Some(deg) = self.field_deg {
             rows.push(row(&format!("  at {deg:.1} deg"), |l| l.field_contrast.map(|c| format!("{c:.3}"))));
-            rows.push(row(&format!("distortion at {deg:.1} deg"), |l| l.distortion.map(|d| format!("{:+.2} %", 100.0 * d))));
+            rows.push(row(&format!("distortion at {deg:.1} deg"), |l| {
+                l.distortion.map(|d| format!("{:+.2} %", 100.0 * d))
+            }));
         }
         let first = rows.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0);
         let columns: Vec<Vec<String>> = self
             .lenses
             .iter()
-            .map(|lens| std::iter::once(lens.info.name.clone()).chain(rows.iter().map(|(_, answer)| answer(lens))).collect())
+            .map(|lens| {
+                std::iter::once(lens.info.name.clone()).chain(rows.iter().map(|(_, answer)| answer(lens))).collect()
+            })
             .collect();
         let widths: Vec<usize> =
             columns.iter().map(|c| c.iter().map(|cell| cell.chars().count()).max().unwrap_or(0)).collect();

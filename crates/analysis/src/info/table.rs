@@ -112,7 +112,8 @@ impl LensReport {
     }
 
     fn room(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let dips = |m: &MountReport| (m.clearance_mm < 0.0).then(|| format!(" ({:.1} behind the flange)", -m.clearance_mm));
+        let dips =
+            |m: &MountReport| (m.clearance_mm < 0.0).then(|| format!(" ({:.1} behind the flange)", -m.clearance_mm));
         let words = |m: &MountReport| format!("{} {}{}", m.name, m.flange_mm, dips(m).unwrap_or_default());
         let mounts: Vec<String> = self.mounts.iter().map(words).collect();
         if !mounts.is_empty() {

@@ -24,7 +24,17 @@ pub fn read(params: &Params) -> Result<Prescription, Faults> {
         lens.remarks.extend(value::<String>(params, key)?);
     }
     let known = [
-        "name", "maker", "patent", "year", "f-number", "reference-line", "source", "remark", "surfaces", "coating", "absorption",
+        "name",
+        "maker",
+        "patent",
+        "year",
+        "f-number",
+        "reference-line",
+        "source",
+        "remark",
+        "surfaces",
+        "coating",
+        "absorption",
     ];
     note_others(params, &known, "", &mut lens);
     // What is assumed of a lens's time is no loss; what is stated dims the light, and bends nothing.

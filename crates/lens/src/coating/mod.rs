@@ -12,8 +12,8 @@ mod standard;
 
 pub use measured::MeasuredCoating;
 pub use params::{CoatingForm, NamedCoating, OneLayer, StackParams, StatedCoating, read_coating, read_stated_coating};
-pub(crate) use stack::{least_square, running_layers};
 pub use stack::{Stack, StackLayer};
+pub(crate) use stack::{least_square, running_layers};
 
 use spectra_core::math;
 use std::sync::Arc;

@@ -94,8 +94,7 @@ pub enum CoatingForm {
     Stack(StackParams),
 }
 
-const HINT: &str =
-    "ideal, bare, single-layer, three-layer, {layer: 1.38, quarter-wave-at: 550 nm}, {layers: [...]}, or a file: my-stack.yaml, my-coating.csv";
+const HINT: &str = "ideal, bare, single-layer, three-layer, {layer: 1.38, quarter-wave-at: 550 nm}, {layers: [...]}, or a file: my-stack.yaml, my-coating.csv";
 /// Most layers of a stack.
 const MAX_LAYERS: usize = 500;
 /// Thickest layer, nm.
