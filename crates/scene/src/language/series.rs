@@ -112,8 +112,13 @@ pub fn load(path: &Path, overrides: &[String]) -> Result<Scene, Faults> {
 /// by [`Series::scene`].
 pub fn load_series(path: &Path, overrides: &[String]) -> Result<Series, Faults> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let name = path.file_stem().map_or_else(|| "scene".to_owned(), |s| s.to_string_lossy().into_owned());
     let mut root = read(path)?;
+    // A bundled scene is called by its whole name, however it was named.
+    let called = match root.file.name.strip_prefix("bundled:") {
+        Some(bundled) => Path::new(bundled),
+        None => path,
+    };
+    let name = called.file_stem().map_or_else(|| "scene".to_owned(), |s| s.to_string_lossy().into_owned());
     let text = Arc::clone(&root.file);
     let mut faults = Faults::new();
     let is_include = |text: &&String| text.split_once('=').is_some_and(|(path, _)| path.trim() == INCLUDE);
