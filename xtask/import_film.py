@@ -2,7 +2,7 @@
 """Writes the film stocks under spectra/film/ and the Wratten filters under spectra/transmittances/.
 
 Run from the root of the repository, with the unpacked wheel of spectral-film-lut 0.18.13 (MIT, Copyright 2026 Jan
-Lohse; https://pypi.org/project/spectral-film-lut/) beside it; only its tables are read, none of its code is used:
+Lohse) beside it; only its tables are read, none of its code is used:
 
     python3 -m venv VENV
     VENV/bin/pip install numpy

@@ -1,6 +1,7 @@
 //! `spectra lens draw`.
 
 use super::load;
+use crate::words::figure_of;
 use crate::arguments::{CutArgument, LensDraw};
 use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
@@ -17,7 +18,8 @@ const PARTS: [f64; 2] = [0.6, 0.95];
 /// Draws a lens.
 pub(crate) fn draw(arguments: &LensDraw) -> Outcome {
     // Before anything is computed: a wrong ending is found out at once.
-    Format::of(&arguments.output).map_err(failure)?;
+    let output = arguments.output.clone().unwrap_or_else(|| figure_of(&arguments.setting.lens));
+    Format::of(&output).map_err(failure)?;
     let lens = load(&arguments.setting)?;
     let section = match arguments.section {
         CutArgument::X => Section::X,
@@ -44,8 +46,8 @@ pub(crate) fn draw(arguments: &LensDraw) -> Outcome {
         caption: caption(&lens),
         image: true,
     };
-    sheet.draw(&lens, &rays).write(&arguments.output).map_err(failure)?;
-    console::note(&format!("wrote {}", arguments.output.display()));
+    sheet.draw(&lens, &rays).write(&output).map_err(failure)?;
+    console::note(&format!("wrote {}", output.display()));
     Ok(DONE)
 }
 
