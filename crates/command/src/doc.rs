@@ -148,6 +148,21 @@ fn keys(name: &str) -> Result<Page, Vec<String>> {
     }
 }
 
+/// The unit of a bare number at a path of a scene, where all pages agree on it.
+pub(crate) fn unit_of(path: &str) -> Option<String> {
+    let wanted = plain_path(path);
+    let mut units: Vec<String> = Vec::new();
+    for page in pages().into_iter().filter(|page| !["lens", "stock", "spectrum"].contains(&page.page.as_str())) {
+        let at = |p: &Parameter| plain_path(&format!("{}{}", page.at, p.key)) == wanted;
+        units.extend(page.parameters.iter().filter(|p| at(p)).map(|p| p.unit.clone()));
+    }
+    units.dedup();
+    match &units[..] {
+        [unit] if !unit.is_empty() => Some(unit.clone()),
+        _ => None,
+    }
+}
+
 /// A stage or a key that a search has found.
 struct Hit {
     page: String,

@@ -250,6 +250,29 @@ impl Series {
         &self.files
     }
 
+    /// Where a variable is used: paths of values with their texts, such as `source.distance` and `$far`.
+    #[must_use]
+    pub fn uses_of_variable(&self, name: &str) -> Vec<(String, String)> {
+        fn search(node: &Node, path: &str, wanted: &[String; 2], found: &mut Vec<(String, String)>) {
+            match &node.value {
+                Value::Map(entries) => {
+                    for (key, item) in entries {
+                        let inner = if path.is_empty() { key.text.clone() } else { format!("{path}.{}", key.text) };
+                        search(item, &inner, wanted, found);
+                    }
+                }
+                Value::Seq(items) => items.iter().for_each(|item| search(item, path, wanted, found)),
+                Value::String(text) if *text == wanted[0] || text.contains(&wanted[1]) => {
+                    found.push((path.to_owned(), text.clone()));
+                }
+                Value::String(_) | Value::Null | Value::Bool(_) | Value::Number(_) => {}
+            }
+        }
+        let mut found = Vec::new();
+        search(&self.root, "", &[format!("${name}"), format!("${{{name}}}")], &mut found);
+        found
+    }
+
     fn setting(&self, index: usize) -> Setting {
         match &self.going {
             Going::Single => Setting::new(),
