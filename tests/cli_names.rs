@@ -42,7 +42,9 @@ fn bundled_scenes_run_from_anywhere_under_every_name() {
 /// A hint never repeats what was typed.
 #[test]
 fn no_hint_suggests_what_was_typed() {
-    for typed in ["scenes/biotar-orto", "scenes/biotar-orto.yaml", "biotar-orto", "gray-crad.yaml", "scenes/nothing-like-it"] {
+    for typed in
+        ["scenes/biotar-orto", "scenes/biotar-orto.yaml", "biotar-orto", "gray-crad.yaml", "scenes/nothing-like-it"]
+    {
         let said = refused(&["run", typed]);
         assert!(said.contains("help: ") && !said.contains(&format!("did you mean `{typed}`")), "{said}");
         let Some((_, rest)) = said.split_once("did you mean `") else { continue };
@@ -100,7 +102,10 @@ fn lists_have_the_words_that_one_chooses_by() {
     for (arguments, words) in [
         (&["list", "lens"][..], &["helios-44-58-f2", "58 mm", "f/2.0", "1958", "deg", "Helios-44 58 mm f/2"][..]),
         (&["list", "lenses", "100"], &["zeiss-biotar-100-f1.4"]),
-        (&["list", "stock"], &["kodak-tri-x-400", "ISO 400", "black-and-white negative", "sheet of 2007", "print stock\n"]),
+        (
+            &["list", "stock"],
+            &["kodak-tri-x-400", "ISO 400", "black-and-white negative", "sheet of 2007", "print stock\n"],
+        ),
         (&["list", "scene"], &["biotar-ortho", "A resolution chart", "surfaces/zernike"]),
         (&["list", "spectrum", "wratten"], &["wratten-12", "transmittance"]),
         (&["list", "glass", "BK7"], &["SCHOTT/N-BK7", "nd 1.5168", "Vd 64.1"]),
@@ -157,12 +162,14 @@ fn any_key_has_its_page() {
 fn pages_do_not_repeat_themselves() {
     for page in ["scene", "lens", "surface", "stock", "film/stock"] {
         let said = good(&["doc", page]);
-        let keys = said.lines().filter(|l| l.starts_with("  ") && !l.starts_with("   ")).filter_map(|l| l.split_once(": "));
+        let keys =
+            said.lines().filter(|l| l.starts_with("  ") && !l.starts_with("   ")).filter_map(|l| l.split_once(": "));
         let mut seen: BTreeMap<&str, usize> = BTreeMap::new();
         for (key, _) in keys {
             *seen.entry(key.trim()).or_default() += 1;
         }
-        let twice: Vec<_> = seen.iter().filter(|(key, n)| **n > 1 && !key.contains(' ') && **key != "spectra").collect();
+        let twice: Vec<_> =
+            seen.iter().filter(|(key, n)| **n > 1 && !key.contains(' ') && **key != "spectra").collect();
         assert!(twice.is_empty(), "{page}: {twice:?}");
         assert!(said.matches("The layers, the one next to the air first.").count() <= 1, "{page}");
     }
@@ -293,8 +300,10 @@ fn commands(of: &[String], found: &mut Vec<Vec<String>>) {
 }
 
 /// Examples that are no part of this test, and why.
-const LEFT_OUT: [(&str, &str); 2] =
-    [("spectra build ", "compiles for minutes; the guide's test builds"), ("./spectra-mine ", "what `spectra build` made")];
+const LEFT_OUT: [(&str, &str); 2] = [
+    ("spectra build ", "compiles for minutes; the guide's test builds"),
+    ("./spectra-mine ", "what `spectra build` made"),
+];
 
 /// Every example of every `--help`, run by a shell in one empty folder, with the files that examples name as a person's own.
 #[test]
@@ -309,7 +318,8 @@ fn every_example_of_the_help_works() {
             let arguments: Vec<&str> = command.iter().map(String::as_str).chain([flag]).collect();
             let help = good(&arguments);
             let lines = help.lines().map(str::trim);
-            let started = lines.clone().filter_map(|l| l.strip_prefix("Start with: ")).map(|l| l.split(" (").next().unwrap_or(l));
+            let started =
+                lines.clone().filter_map(|l| l.strip_prefix("Start with: ")).map(|l| l.split(" (").next().unwrap_or(l));
             for line in lines.filter(|l| l.starts_with("spectra ") || l.starts_with("./spectra")).chain(started) {
                 if !line.contains("...") && !examples.iter().any(|known| known == line) {
                     examples.push(line.to_owned());
@@ -319,7 +329,10 @@ fn every_example_of_the_help_works() {
     }
     let own = |name: &str, content: &str| fs::write(folder.path().join(name), content).expect("written");
     own("rays.csv", "x_mm,y_mm,z_mm,l,m,n\n0,1,-10,0,0,1\n");
-    own("melt.csv", "wavelength_nm,n\n404.66,1.53024\n435.83,1.52668\n486.13,1.52238\n546.07,1.51872\n587.56,1.51680\n656.27,1.51432\n706.52,1.51289\n");
+    own(
+        "melt.csv",
+        "wavelength_nm,n\n404.66,1.53024\n435.83,1.52668\n486.13,1.52238\n546.07,1.51872\n587.56,1.51680\n656.27,1.51432\n706.52,1.51289\n",
+    );
     let exported = run_in(folder.path(), &["lens", "export", "tessar-50-f4.5", "-o", "tessar.zmx"]);
     assert!(exported.status.success(), "{}", text(&exported.stderr));
     let program = Path::new(env!("CARGO_BIN_EXE_spectra")).parent().expect("a folder").to_owned();
@@ -333,7 +346,8 @@ fn every_example_of_the_help_works() {
             continue;
         }
         // A picture in full takes a minute: that it begins is enough.
-        let short = if example.starts_with("spectra run ") { format!("{example} --time-limit 1s") } else { example.clone() };
+        let short =
+            if example.starts_with("spectra run ") { format!("{example} --time-limit 1s") } else { example.clone() };
         let output = Command::new("sh").args(["-c", &short]).current_dir(folder.path()).env("PATH", &path);
         let output = output.env_remove("SPECTRA_ISA").stdin(Stdio::null()).output().expect("a shell");
         assert!(output.status.success(), "{example}: {}", text(&output.stderr));
@@ -358,7 +372,8 @@ fn told(said: &str) -> Option<Told> {
     let number = |part: Option<&str>| part.and_then(|n| n.parse::<usize>().ok());
     let (column, line) = (number(parts.next())?, number(parts.next())?);
     let file = parts.next()?.to_owned();
-    let underline = said.lines().find(|l| l.trim_start().starts_with('\u{b7}') && l.contains(['\u{252c}', '\u{25b2}']))?;
+    let underline =
+        said.lines().find(|l| l.trim_start().starts_with('\u{b7}') && l.contains(['\u{252c}', '\u{25b2}']))?;
     let letters = underline.chars().filter(|c| matches!(c, '\u{2500}' | '\u{252c}' | '\u{25b2}')).count();
     let (_, meant) = said.split_once("did you mean `")?;
     Some(Told { message, place: (file, line, column), letters, meant: meant.split('`').next()?.to_owned() })
@@ -375,7 +390,9 @@ fn every_recorded_did_you_mean_works() {
     for path in texts {
         let said = fs::read_to_string(&path).expect("text");
         // Of several faults each has its own; one is enough to see that the word can be written.
-        let Some(told) = said.split("\n\n").find_map(told).filter(|told| !told.place.0.starts_with("--")) else { continue };
+        let Some(told) = said.split("\n\n").find_map(told).filter(|told| !told.place.0.starts_with("--")) else {
+            continue;
+        };
         let name = path.file_stem().and_then(|s| s.to_str()).expect("plain names");
         let case = root.join(name);
         let folder = tempfile::tempdir().expect("a folder");
@@ -418,7 +435,8 @@ fn every_recorded_did_you_mean_works() {
 #[test]
 fn scenes_of_the_readme_are_there() {
     let readme = fs::read_to_string(repository("README.md")).expect("there");
-    let named: Vec<&str> = readme.split('`').filter(|word| word.starts_with("scenes/") && word.ends_with(".yaml")).collect();
+    let named: Vec<&str> =
+        readme.split('`').filter(|word| word.starts_with("scenes/") && word.ends_with(".yaml")).collect();
     assert!(named.len() > 5);
     for scene in named {
         assert!(Path::new(shown(&repository(scene))).is_file(), "{scene}");

@@ -119,7 +119,9 @@ fn keys(name: &str) -> Result<Page, Vec<String>> {
             let full = |p: &Parameter| plain_path(&format!("{}{}", page.at, p.key));
             let heads: Vec<String> = page.parameters.iter().map(full).filter(|path| fits(path)).collect();
             let below = |path: &str| {
-                heads.iter().any(|head| path.strip_prefix(head.as_str()).is_some_and(|r| r.is_empty() || r.starts_with('.')))
+                heads
+                    .iter()
+                    .any(|head| path.strip_prefix(head.as_str()).is_some_and(|r| r.is_empty() || r.starts_with('.')))
             };
             let of_page: Vec<Parameter> = page.parameters.iter().filter(|p| below(&full(p))).cloned().collect();
             if !of_page.is_empty() {
@@ -144,7 +146,9 @@ fn keys(name: &str) -> Result<Page, Vec<String>> {
     match names::find(&wanted, last.iter().map(String::as_str)) {
         Match::One(key) => keys(key),
         Match::Several(several) => Err(several.into_iter().map(str::to_owned).collect()),
-        Match::Nothing => Err(params::nearest(&wanted, last.iter().map(String::as_str)).map(str::to_owned).into_iter().collect()),
+        Match::Nothing => {
+            Err(params::nearest(&wanted, last.iter().map(String::as_str)).map(str::to_owned).into_iter().collect())
+        }
     }
 }
 

@@ -85,7 +85,7 @@ fn kind(typed: &str, kinds: &[&'static str]) -> Result<&'static str, Fault> {
         "lens" | "glass" => format!("{kind}es"),
         kind => format!("{kind}s"),
     };
-    if let Some(kind) = kinds.iter().find(|kind| key == **kind || key == several(kind)) {
+    if let Some(kind) = kinds.iter().copied().find(|kind| key == *kind || key == several(kind)) {
         return Ok(kind);
     }
     let fault = Fault::new(format!("no list is called `{typed}`"));
@@ -130,7 +130,9 @@ fn items_of(kind: &str) -> Vec<Item> {
             camera.sort_by(|a, b| a.name.cmp(&b.name));
             camera.into_iter().chain(print).collect()
         }
-        "spectrum" => spectra_spectrum::bundled_spectra().filter_map(|(name, path)| spectrum("spectrum", name, path)).collect(),
+        "spectrum" => {
+            spectra_spectrum::bundled_spectra().filter_map(|(name, path)| spectrum("spectrum", name, path)).collect()
+        }
         "sensor" => {
             let all = spectra_spectrum::bundled_spectra().filter(|(_, path)| path.starts_with("spectra/sensors/"));
             all.filter_map(|(name, path)| spectrum("sensor", name, path)).collect()
@@ -147,7 +149,10 @@ const COATINGS: [(&str, &str); 4] = [
     ("ideal", "All light passes."),
     ("bare", "Glass as it is: Fresnel's formulas."),
     ("{layer: 1.38, quarter-wave-at: 550 nm}", "One layer, here of magnesium fluoride."),
-    ("{layers: [...]}", "A stack of layers; or a file of one (my-stack.yaml), or of what was measured (my-coating.csv)."),
+    (
+        "{layers: [...]}",
+        "A stack of layers; or a file of one (my-stack.yaml), or of what was measured (my-coating.csv).",
+    ),
 ];
 
 fn plain(stage: &'static str, name: &str, summary: &str) -> Item {
@@ -248,10 +253,8 @@ fn spectrum(stage: &'static str, name: &'static str, path: &'static str) -> Opti
         "source": table.meta.source,
         "licence": table.meta.licence,
     });
-    let columns = vec![
-        table.kind.word().to_owned(),
-        range.map_or(String::new(), |(from, to)| format!("{from:.0}-{to:.0} nm")),
-    ];
+    let columns =
+        vec![table.kind.word().to_owned(), range.map_or(String::new(), |(from, to)| format!("{from:.0}-{to:.0} nm"))];
     let mut summary = table.meta.name.unwrap_or_default();
     if !columns_in.is_empty() {
         let shown: Vec<&str> = columns_in.iter().take(6).map(String::as_str).collect();

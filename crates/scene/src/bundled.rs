@@ -115,7 +115,11 @@ pub fn other_kind(typed: &str, wanted: Bundled) -> Option<String> {
         Bundled::Lens => format!(" (in a scene: `lens: {{file: {name}}}`)"),
         Bundled::Scene | Bundled::Spectrum | Bundled::Glass => String::new(),
     };
-    Some(format!("`{name}` is {}{place}; where {article} is wanted, take a name from `{}`", kind.noun(), wanted.listed_by()))
+    Some(format!(
+        "`{name}` is {}{place}; where {article} is wanted, take a name from `{}`",
+        kind.noun(),
+        wanted.listed_by()
+    ))
 }
 
 /// The bundled file of a scene that is called `typed`, as `biotar-ortho`, `scenes/biotar-ortho.yaml` or a part of one name.
@@ -144,8 +148,14 @@ mod tests {
 
     #[test]
     fn scenes_are_found_as_people_write_them() {
-        for typed in ["biotar-ortho", "biotar-ortho.yaml", "scenes/biotar-ortho", "./scenes/biotar-ortho.yaml",
-            "scenes\\biotar-ortho.yaml", "Biotar Ortho"] {
+        for typed in [
+            "biotar-ortho",
+            "biotar-ortho.yaml",
+            "scenes/biotar-ortho",
+            "./scenes/biotar-ortho.yaml",
+            "scenes\\biotar-ortho.yaml",
+            "Biotar Ortho",
+        ] {
             assert_eq!(scene_file(typed), Ok("scenes/biotar-ortho.yaml".to_owned()), "{typed}");
         }
         assert_eq!(scene_file("zernike"), Ok("scenes/surfaces/zernike.yaml".to_owned()));

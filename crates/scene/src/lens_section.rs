@@ -7,8 +7,8 @@ use crate::filters::FilterForm;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{
-    Angle, Dimension, FNumber, Fault, Faults, Length, OrInfinity, Params, Positive, Reading, SpatialFrequency, StageNode,
-    Value, Wavelength,
+    Angle, Dimension, FNumber, Fault, Faults, Length, OrInfinity, Params, Positive, Reading, SpatialFrequency,
+    StageNode, Value, Wavelength,
 };
 use spectra_core::resources::Resources;
 use spectra_lens::{

@@ -103,11 +103,16 @@ impl Resources for FileResources {
         let limit = if foreign.is_some() { spectra_exchange::MAX_BYTES } else { MAX_DOCUMENT };
         let resource = self.read(path, folders, endings, limit).map_err(|e| match &e {
             ResourceError::NotFound(near) if near.is_empty() => {
-                let hint = named(path, folders, endings).and_then(|kind| other_kind(path, kind)).unwrap_or_else(|| match folders {
-                    ["lenses"] => {
-                        format!("a file beside the scene, or one of the bundled {}", Bundled::Lens.names().join(", "))
+                let hint = named(path, folders, endings).and_then(|kind| other_kind(path, kind)).unwrap_or_else(|| {
+                    match folders {
+                        ["lenses"] => {
+                            format!(
+                                "a file beside the scene, or one of the bundled {}",
+                                Bundled::Lens.names().join(", ")
+                            )
+                        }
+                        _ => "a file is looked for beside the scene, then among the bundled ones".to_owned(),
                     }
-                    _ => "a file is looked for beside the scene, then among the bundled ones".to_owned(),
                 });
                 Fault::new(format!("`{path}`: no such file{}", self.looked())).hint(hint)
             }

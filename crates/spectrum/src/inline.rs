@@ -39,9 +39,9 @@ pub(crate) fn single(text: &str) -> Option<Result<Piece, SpectrumError>> {
     let two = |help| wavelengths(arguments).and_then(|n| <[f64; 2]>::try_from(n).ok()).ok_or_else(|| fault(help));
     let light = |light| Piece::Typed(Found::Emission(light));
     Some(match head.trim().to_ascii_lowercase().as_str() {
-        "blackbody" => kelvin("write a temperature in kelvin, such as blackbody:5800")
-            .and_then(Emission::blackbody)
-            .map(light),
+        "blackbody" => {
+            kelvin("write a temperature in kelvin, such as blackbody:5800").and_then(Emission::blackbody).map(light)
+        }
         "daylight" => kelvin("write a temperature in kelvin, such as daylight:5500").and_then(daylight).map(light),
         "line" => line_nm(arguments)
             .ok_or_else(|| fault("write a letter or a wavelength in nm, such as line:C' or line:632.8"))

@@ -400,7 +400,10 @@ impl<'a> Reader<'a> {
                 self.front_matter(&mut meta, i + 1, line.trim())?;
             }
         } else if let Some((_, row)) = self.rows().find(|(_, row)| row.starts_with(is_of_number)) {
-            self.separator = Separator::of(row);
+            // A row with one field says nothing of what separates several.
+            let single = Separator::of(row).fields(row).len() < 2;
+            let header = self.rows().map(|(_, line)| line).next().filter(|_| single);
+            self.separator = Separator::of(header.unwrap_or(row));
         }
         let mut rows = self.rows().peekable();
         let Some(&(first, line)) = rows.peek() else { return Err(self.fault(0, 0, TableFault::Empty)) };

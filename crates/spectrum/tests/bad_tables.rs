@@ -134,11 +134,17 @@ fn tables_are_read_as_people_have_them() {
         ),
     ] {
         let table = Table::parse("mine.txt", text, Some(Kind::Emission)).unwrap_or_else(|e| panic!("{text}{e}"));
-        assert_eq!((&*table.wavelengths_nm, &*table.values[0]), (&[400.0, 410.0, 420.0][..], &[0.5, 1.0, 0.25][..]), "{text}");
+        assert_eq!(
+            (&*table.wavelengths_nm, &*table.values[0]),
+            (&[400.0, 410.0, 420.0][..], &[0.5, 1.0, 0.25][..]),
+            "{text}"
+        );
         assert_eq!((table.columns, &table.notes[..]), (vec![column.to_owned()], notes), "{text}");
     }
     // A table that says that it is written as ours are is held to that.
-    for text in ["400,1\n410,1\n", "wavelength_nm;p\n400;1\n", "wavelength_nm,p\n410,1\n400,1\n", "wavelength_nm,p\n0.4,1\n"] {
+    for text in
+        ["400,1\n410,1\n", "wavelength_nm;p\n400;1\n", "wavelength_nm,p\n410,1\n400,1\n", "wavelength_nm,p\n0.4,1\n"]
+    {
         let strict = format!("# spectra: 1\n# kind: emission\n{text}");
         assert!(Table::parse("ours.csv", &strict, None).is_err(), "{text}");
     }

@@ -97,9 +97,7 @@ pub(crate) fn seen(
         _ => {}
     }
     let (Some(light), Some(lamp)) = faults.into_result((light, lamp))? else { return Err(Faults::new()) };
-    let unfit = |error: PositiveError| {
-        Faults::from(params.fault("stock", format!("{}: {error}", stock.name)))
-    };
+    let unfit = |error: PositiveError| Faults::from(params.fault("stock", format!("{}: {error}", stock.name)));
     let positive = |picture: Positive, words: String| Seen { picture: Picture::Positive(Box::new(picture)), words };
     match view {
         View::Print => print(p, params, resources, stock, film, gray_lx_s, &light, lamp.as_ref()),

@@ -7,8 +7,8 @@ mod info;
 pub(crate) use arguments::FilmArguments;
 
 use crate::console;
-use crate::words::figure_of;
 use crate::outcome::{DONE, Failure, Outcome};
+use crate::words::figure_of;
 use arguments::{FilmCommand, FilmPlot};
 use spectra_core::params::{Fault, nearest};
 use spectra_film::stock::Stock;

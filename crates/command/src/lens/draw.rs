@@ -1,10 +1,10 @@
 //! `spectra lens draw`.
 
 use super::load;
-use crate::words::figure_of;
 use crate::arguments::{CutArgument, LensDraw};
 use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
+use crate::words::figure_of;
 use spectra_analysis::draw::{Fans, Ground, Sheet, View};
 use spectra_analysis::fan::FanFinder;
 use spectra_lens::{Lens, Section};

@@ -197,7 +197,8 @@ fn told(series: &Series, fault: Fault, members: &[usize], all: usize) -> Fault {
 fn unit_of(series: &Series, path: &str) -> Option<String> {
     let Some(name) = path.strip_prefix("variables.") else { return doc::unit_of(path) };
     series.uses_of_variable(name).into_iter().find_map(|(path, text)| {
-        let is_temperature = ["blackbody:", "daylight:"].iter().any(|head| text.contains(&format!("{head}${{{name}}}")));
+        let is_temperature =
+            ["blackbody:", "daylight:"].iter().any(|head| text.contains(&format!("{head}${{{name}}}")));
         let is_whole = text == format!("${name}") || text == format!("${{{name}}}");
         match () {
             () if is_temperature => Some("K".to_owned()),

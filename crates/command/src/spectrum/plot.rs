@@ -7,7 +7,8 @@ use crate::outcome::{DONE, Failure, Outcome};
 use crate::words::figure_of;
 use spectra_plot::{Format, PlotError, figure};
 use spectra_spectrum::{
-    BAND, Emission, Found, Observer, chromaticity, find_in, function_in, xyz_of_light, xyz_of_reflectance, xyz_of_transmittance,
+    BAND, Emission, Found, Observer, chromaticity, find_in, function_in, xyz_of_light, xyz_of_reflectance,
+    xyz_of_transmittance,
 };
 
 /// Draws spectra, or their chromaticities.
