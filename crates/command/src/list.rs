@@ -12,7 +12,7 @@ use spectra_core::registry::{self, Documentation};
 use spectra_film::stock::{Process, Stock};
 use spectra_glass::Catalogue;
 use spectra_lens::Section;
-use spectra_scene::bundled::{self, Bundled};
+use spectra_scene::bundled::Bundled;
 use spectra_scene::{FileKind, FileResources, file_schema};
 use spectra_spectrum::table::Table;
 use std::fmt::Write;
