@@ -146,7 +146,7 @@ fn bad_arguments_are_told_with_code_2() {
         (&["run", "a.yaml", "--time-limit", "3 m"], "expected a positive time"),
         (&["run", "no-such-scene.yaml"], "no-such-scene.yaml"),
         (&["run", "."], "directory"),
-        (&["list", "sources"], "did you mean `source`?"),
+        (&["list", "sorce"], "did you mean `source`?"),
         (&["frobnicate"], "frobnicate"),
     ] {
         let output = run(arguments);

@@ -20,8 +20,8 @@ use std::path::PathBuf;
     version = version::VERSION,
     long_version = version::long(),
     arg_required_else_help = true,
-    after_help = "Start with: spectra run scenes/biotar-ortho.yaml",
-    after_long_help = "Start with:\n  spectra run scenes/biotar-ortho.yaml\n\n\
+    after_help = "Start with: spectra run biotar-ortho (`spectra list scene` shows what else comes with the program)",
+    after_long_help = "Start with:\n  spectra run biotar-ortho\n  spectra list scene\n\n\
         Exit codes: 0 done, or stopped by --time-limit; 1 something failed (a full disk, a render error); \
         2 the input is wrong; 130 interrupted by Ctrl-C, 143 by SIGTERM, 129 by SIGHUP.\n\n\
         Environment: SPECTRA_ISA=baseline|avx2|avx512 forces an instruction set (the picture is the same bit by bit); \
@@ -66,6 +66,25 @@ pub(crate) enum Command {
     New(NewArguments),
     /// Build a program with your plugins in it.
     Build(BuildArguments),
+    /// Write the completions of commands and options for a shell.
+    Completions(Completions),
+    /// Write the man page.
+    Man,
+}
+
+/// `spectra completions`.
+#[derive(Debug, Args)]
+#[command(
+    long_about = "Write the completions of commands and options for a shell to standard output.",
+    after_long_help = "Example:\n  spectra completions bash\n\n\
+        To have them in every new shell, write them to where it looks: \
+        ~/.local/share/bash-completion/completions/spectra for bash, a file _spectra in a folder of $fpath for zsh, \
+        ~/.config/fish/completions/spectra.fish for fish."
+)]
+pub(crate) struct Completions {
+    /// Which shell.
+    #[arg(value_name = "SHELL", value_enum)]
+    pub shell: clap_complete::Shell,
 }
 
 /// `spectra run`.
@@ -80,11 +99,12 @@ pub(crate) enum Command {
         A scene with a `sweep` gives numbered pictures SCENE-001.png ... and a contact sheet SCENE-contact.png, one with an \
         `animation` frames SCENE.0001.exr ...; SCENE-series.json says of each what it is. All of them are checked before any light \
         is traced; of several pictures only whole ones are written, also when stopped.",
-    after_long_help = "Example: a quick look at the Biotar wide open, into the folder `try`\n  \
-        spectra run scenes/biotar-ortho.yaml --samples 16 --set lens.f-number=f/1.4 --output try"
+    after_long_help = "Examples: a scene that comes with the program; a quick look at it stopped down, into the folder `try`\n  \
+        spectra run biotar-ortho\n  \
+        spectra run biotar-ortho --samples 16 --set lens.f-number=f/4 --output try"
 )]
 pub(crate) struct Run {
-    /// The scene file.
+    /// A scene file, or the name of a scene that comes with the program (see `spectra list scene`).
     #[arg(value_name = "SCENE")]
     pub scene: PathBuf,
     /// Folder to write to, which is made where it does not exist; or one picture by its name: x.png, .tiff, .exr, .dng.
@@ -100,7 +120,7 @@ pub(crate) struct Run {
     pub seed: Option<u64>,
     /// Samples a pixel, in place of the scene's: four times as many make half the noise. A scene that is rendered forward
     /// launches rays in proportion.
-    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(short, long, value_name = "N", value_parser = samples)]
     pub samples: Option<u32>,
     /// Stop after this time (30s, 5min), counted from the start of the program, and write what there is; nothing, where the
     /// scene is not ready for light by then.
@@ -134,15 +154,24 @@ pub(crate) struct Set {
     pub overrides: Vec<String>,
 }
 
+/// The number of `--samples`.
+fn samples(text: &str) -> Result<u32, String> {
+    let wanted = "expected a whole number from 1 to 4194304, such as 64";
+    match text.trim().parse::<u32>() {
+        Ok(samples) if (1..=4_194_304).contains(&samples) => Ok(samples),
+        _ => Err(wanted.to_owned()),
+    }
+}
+
 /// `spectra check`.
 #[derive(Debug, Args)]
 #[command(
     long_about = "Find every fault of scenes without rendering them.\n\n\
         Each fault is shown with file, line and column and, where there is one, a hint. Exit code 2 if there is any.",
-    after_long_help = "Example:\n  spectra check scenes/*.yaml"
+    after_long_help = "Example:\n  spectra check biotar-ortho gray-card"
 )]
 pub(crate) struct Check {
-    /// Scene files.
+    /// Scene files, or names of bundled scenes.
     #[arg(value_name = "SCENE", required = true)]
     pub scenes: Vec<PathBuf>,
     #[command(flatten)]
@@ -157,12 +186,17 @@ pub(crate) struct Check {
 #[command(
     long_about = "Show what a stage does, and what is written in it: parameters with types, units, ranges and defaults, \
         examples, references.",
-    after_long_help = "Examples:\n  spectra doc surface/even-asphere\n  spectra doc surface\n  spectra doc scene"
+    after_long_help = "Examples:\n  spectra doc surface/even-asphere\n  spectra doc surface\n  spectra doc scene\n  \
+        spectra doc render\n  spectra doc film.exposure\n  spectra doc f-number\n  spectra doc --search halo"
 )]
 pub(crate) struct Doc {
-    /// A stage (surface/sphere), a kind of stage (surface), or a file (scene, lens, stock, spectrum).
-    #[arg(value_name = "STAGE/NAME")]
-    pub name: String,
+    /// A stage (surface/sphere), a kind of stage (surface), a file (scene, lens, stock, spectrum), or any key or path of
+    /// these (render, film.exposure, f-number).
+    #[arg(value_name = "NAME", required_unless_present = "search")]
+    pub name: Option<String>,
+    /// Show every stage and key whose name or text holds this word.
+    #[arg(long, value_name = "WORD", conflicts_with = "name")]
+    pub search: Option<String>,
     /// One JSON object on standard output.
     #[arg(long)]
     pub json: bool,
@@ -194,11 +228,11 @@ pub(crate) struct SchemaOf {
         most samples; `bias/se` is the mean's largest distance from the truth in standard errors.\n\n\
         Writes SCENE-sampling.csv, .svg and .png; the table goes to standard output.",
     after_long_help = "Example: three strategies under a fluorescent lamp\n  \
-        spectra bench scenes/bench/sampling-fl11-ortho.yaml --strategies \
+        spectra bench bench/sampling-fl11-ortho --seeds 4 --samples 1,4,16 --integral-only --strategies \
         'source-times-response, uniform, truncated-gaussian{center: 500, sigma: 60}'"
 )]
 pub(crate) struct Bench {
-    /// The scene file.
+    /// A scene file, or the name of a bundled scene.
     #[arg(value_name = "SCENE")]
     pub scene: PathBuf,
     #[command(flatten)]
@@ -235,13 +269,21 @@ pub(crate) struct Bench {
 /// `spectra list`.
 #[derive(Debug, Args)]
 #[command(
-    long_about = "List what can be written in a scene: the registered stages, and the bundled lenses and film stocks.",
-    after_long_help = "Example: which sources are there?\n  spectra list source"
+    long_about = "List what can be named: the registered stages, and what comes with the program.\n\n\
+        Lenses are listed with focal length, f-number, half the field and year; film stocks with speed, process and the \
+        year of their sheet, print stocks apart; spectra with kind and range; glasses with nd and Vd; formats with their \
+        size. Wherever such a name is wanted a part of it that no other name has is enough: `tri-x`, `helios`.",
+    after_long_help = "Examples: which sources are there? Which lenses have 50 mm, which glasses BK7 in their name?\n  \
+        spectra list source\n  spectra list lens 50\n  spectra list glass BK7"
 )]
 pub(crate) struct List {
-    /// Only this stage: source, color, wavelengths, surface, imager, response, film; or lens, stock.
-    #[arg(value_name = "STAGE")]
+    /// Only these: source, color, wavelengths, surface, imager, response, film; or scene, lens, stock, spectrum, coating,
+    /// glass, sensor, format.
+    #[arg(value_name = "KIND")]
     pub stage: Option<String>,
+    /// Only those that hold all of these words.
+    #[arg(value_name = "WORD", requires = "stage")]
+    pub words: Vec<String>,
     /// A JSON list on standard output.
     #[arg(long)]
     pub json: bool,
@@ -309,7 +351,7 @@ pub(crate) struct LensCompare {
 pub(crate) struct LensDraw {
     #[command(flatten)]
     pub setting: LensSetting,
-    /// File to write: .svg or .png; NAME.svg after the lens if not given.
+    /// File to write: .svg or .png; LENS.svg if not given.
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
     /// Field angles in degrees; if not given, the axis, and 0.6 and 0.95 of the largest field that passes (up to 85).

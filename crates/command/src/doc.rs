@@ -4,7 +4,8 @@ use crate::arguments::Doc;
 use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
 use serde_json::{Value, json};
-use spectra_core::params::nearest;
+use spectra_core::names::{self, Match};
+use spectra_core::params::{self, Fault};
 use spectra_core::registry::{self, Documentation, Listed, Parameter};
 use spectra_scene::{FileKind, file_documentation, shared_documentation};
 use std::fmt::Write;
@@ -14,7 +15,16 @@ const WIDTH: usize = 100;
 
 /// Shows a page.
 pub(crate) fn doc(arguments: &Doc) -> Outcome {
-    let page = find(&arguments.name)?;
+    if let Some(word) = &arguments.search {
+        let hits = search(word)?;
+        if arguments.json {
+            console::pretty_json(&hits.iter().map(Hit::to_json).collect::<Vec<_>>())?;
+        } else {
+            console::out(&hits.iter().map(Hit::text).collect::<String>())?;
+        }
+        return Ok(DONE);
+    }
+    let page = find(arguments.name.as_deref().unwrap_or_default().trim())?;
     if arguments.json {
         console::pretty_json(&page.to_json())?;
     } else {
@@ -31,6 +41,171 @@ enum Page {
     Kind(&'static str, Vec<Listed>),
     /// A file.
     File(FileKind),
+    /// A key by its name or its path, on every page that has it; with it the keys below.
+    Keys(String, Vec<(String, Vec<Parameter>)>),
+}
+
+/// Parameters of a page under the paths that a scene has them at.
+struct Keys {
+    /// What `spectra doc` calls the page.
+    page: String,
+    /// Where the parameters stand: `film.` in a scene.
+    at: &'static str,
+    summary: String,
+    parameters: Vec<Parameter>,
+}
+
+/// All pages with their keys: files, then stages, each kind's shared keys before its members.
+fn pages() -> Vec<Keys> {
+    let mut all: Vec<Keys> = Vec::new();
+    for kind in FileKind::ALL {
+        let documentation = file_documentation(kind);
+        let (summary, parameters) = (documentation.summary, documentation.parameters);
+        all.push(Keys { page: kind.name().to_owned(), at: "", summary, parameters });
+    }
+    let mut before = "";
+    for stage in registry::list() {
+        let at = match stage.stage {
+            "source" => "source.",
+            "color" => "source.color.",
+            "wavelengths" => "wavelengths.",
+            "surface" => "surfaces[].",
+            "imager" => "imager.",
+            "response" => "imager.response.",
+            "film" => "film.",
+            _ => "",
+        };
+        if stage.stage != before {
+            before = stage.stage;
+            if let Some(shared) = shared_documentation(stage.stage) {
+                let (summary, parameters) = (shared.summary, shared.parameters);
+                all.push(Keys { page: stage.stage.to_owned(), at, summary, parameters });
+            }
+        }
+        let Documentation { summary, parameters, .. } = stage.documentation();
+        all.push(Keys { page: format!("{}/{}", stage.stage, stage.name), at, summary, parameters });
+    }
+    all
+}
+
+/// A path without what tells kinds and lists apart: `output(rays)[].size` is `output.size`.
+fn plain_path(path: &str) -> String {
+    let mut out = String::new();
+    let mut inside = false;
+    for c in path.trim().to_lowercase().chars() {
+        match c {
+            '(' => inside = true,
+            ')' => inside = false,
+            '[' | ']' => {}
+            '_' | ' ' => out.push('-'),
+            c if !inside => out.push(c),
+            _ => {}
+        }
+    }
+    out
+}
+
+/// The key of that path or name on all pages: by the first of whole path, end of a path, part of one key's name.
+fn keys(name: &str) -> Result<Page, Vec<String>> {
+    let pages = pages();
+    let wanted = plain_path(name);
+    if wanted.is_empty() {
+        return Err(Vec::new());
+    }
+    let end = format!(".{wanted}");
+    let collect = |fits: &dyn Fn(&str) -> bool| -> Vec<(String, Vec<Parameter>)> {
+        let mut found: Vec<(String, Vec<Parameter>)> = Vec::new();
+        for page in &pages {
+            let full = |p: &Parameter| plain_path(&format!("{}{}", page.at, p.key));
+            let heads: Vec<String> = page.parameters.iter().map(full).filter(|path| fits(path)).collect();
+            let below = |path: &str| {
+                heads
+                    .iter()
+                    .any(|head| path.strip_prefix(head.as_str()).is_some_and(|r| r.is_empty() || r.starts_with('.')))
+            };
+            let of_page: Vec<Parameter> = page.parameters.iter().filter(|p| below(&full(p))).cloned().collect();
+            if !of_page.is_empty() {
+                found.push((page.page.clone(), of_page));
+            }
+        }
+        found
+    };
+    let found = collect(&|path| path == wanted);
+    let found = if found.is_empty() { collect(&|path| path.ends_with(&end)) } else { found };
+    if !found.is_empty() {
+        return Ok(Page::Keys(wanted, found));
+    }
+    let mut last: Vec<String> = Vec::new();
+    for parameter in pages.iter().flat_map(|page| &page.parameters) {
+        let path = plain_path(&parameter.key);
+        let key = path.rsplit('.').next().unwrap_or(&path).to_owned();
+        if !last.contains(&key) {
+            last.push(key);
+        }
+    }
+    match names::find(&wanted, last.iter().map(String::as_str)) {
+        Match::One(key) => keys(key),
+        Match::Several(several) => Err(several.into_iter().map(str::to_owned).collect()),
+        Match::Nothing => {
+            Err(params::nearest(&wanted, last.iter().map(String::as_str)).map(str::to_owned).into_iter().collect())
+        }
+    }
+}
+
+/// The unit of a bare number at a path of a scene, where all pages agree on it.
+pub(crate) fn unit_of(path: &str) -> Option<String> {
+    let wanted = plain_path(path);
+    let mut units: Vec<String> = Vec::new();
+    for page in pages().into_iter().filter(|page| !["lens", "stock", "spectrum"].contains(&page.page.as_str())) {
+        let at = |p: &Parameter| plain_path(&format!("{}{}", page.at, p.key)) == wanted;
+        units.extend(page.parameters.iter().filter(|p| at(p)).map(|p| p.unit.clone()));
+    }
+    units.dedup();
+    match &units[..] {
+        [unit] if !unit.is_empty() => Some(unit.clone()),
+        _ => None,
+    }
+}
+
+/// A stage or a key that a search has found.
+struct Hit {
+    page: String,
+    /// Empty for the page itself.
+    key: String,
+    text: String,
+}
+
+impl Hit {
+    fn to_json(&self) -> Value {
+        json!({ "page": self.page, "key": self.key, "text": self.text })
+    }
+
+    fn text(&self) -> String {
+        let mut out = if self.key.is_empty() { self.page.clone() } else { format!("{}  {}", self.page, self.key) };
+        out.push('\n');
+        wrapped(&mut out, &self.text, 6, 6);
+        out
+    }
+}
+
+/// Every page and key whose name or text holds the word.
+fn search(word: &str) -> Result<Vec<Hit>, Failure> {
+    let wanted = word.trim().to_lowercase();
+    let holds = |text: &str| !wanted.is_empty() && text.to_lowercase().contains(&wanted);
+    let mut hits = Vec::new();
+    for page in pages() {
+        if page.page.contains('/') && (holds(&page.page) || holds(&page.summary)) {
+            hits.push(Hit { page: page.page.clone(), key: String::new(), text: page.summary.clone() });
+        }
+        for p in page.parameters.iter().filter(|p| holds(&p.key) || holds(&p.description)) {
+            hits.push(Hit { page: page.page.clone(), key: p.key.clone(), text: p.description.clone() });
+        }
+    }
+    if hits.is_empty() {
+        let fault = Fault::new(format!("no stage and no key speaks of `{word}`"));
+        return Err(fault.hint("try a shorter word; `spectra list` shows what there is").into());
+    }
+    Ok(hits)
 }
 
 /// A stage as `surface/sphere`, or by its name alone where only one has it; a kind of stage; a kind of file.
@@ -54,14 +229,26 @@ fn find(name: &str) -> Result<Page, Failure> {
     match wanted[..] {
         [one] => Ok(Page::Stage(*one)),
         [] => {
+            let near_keys = match keys(name) {
+                Ok(page) => return Ok(page),
+                Err(near) => near,
+            };
             let mut names: Vec<String> = all.iter().map(full).collect();
             names.extend(all.iter().map(|l| l.stage.to_owned()));
             names.extend(all.iter().map(|l| l.name.to_owned()));
             names.extend(FileKind::ALL.map(|kind| kind.name().to_owned()));
-            let near = nearest(name, names.iter().map(String::as_str));
-            let hint = near
-                .map_or_else(|| "`spectra list` shows what there is".to_owned(), |n| format!("did you mean `{n}`?"));
-            Err(Failure::Input(format!("nothing is called `{name}` ({hint})")))
+            let fault = Fault::new(format!("nothing is called `{name}`"));
+            if let Match::One(one) = names::find(name, names.iter().map(String::as_str)) {
+                return find(one);
+            }
+            let near = params::nearest(name, names.iter().map(String::as_str)).map(str::to_owned);
+            let hint = match (near, near_keys.as_slice()) {
+                (Some(near), _) => format!("did you mean `{near}`?"),
+                (None, [one]) => format!("did you mean `{one}`?"),
+                (None, [_, ..]) => format!("which one? {}", near_keys.join(", ")),
+                (None, []) => "`spectra list` shows what there is, `spectra doc --search WORD` finds a word".to_owned(),
+            };
+            Err(fault.hint(hint).into())
         }
         _ => {
             let names: Vec<String> = wanted.into_iter().map(full).collect();
@@ -93,6 +280,10 @@ impl Page {
                 "shared": shared_documentation(kind),
             }),
             Self::File(kind) => json!({ "file": kind.name(), "documentation": file_documentation(*kind) }),
+            Self::Keys(key, found) => json!({
+                "key": key,
+                "found": found.iter().map(|(page, all)| json!({ "page": page, "parameters": all })).collect::<Vec<_>>(),
+            }),
         }
     }
 
@@ -130,6 +321,13 @@ impl Page {
                 let _ = writeln!(out, "{} file\n", kind.name());
                 body(&mut out, &file_documentation(*kind));
             }
+            Self::Keys(_, found) => {
+                for (at, (page, all)) in found.iter().enumerate() {
+                    let gap = if at == 0 { "" } else { "\n" };
+                    let _ = writeln!(out, "{gap}{page} (the whole page: `spectra doc {page}`)");
+                    parameters(&mut out, all);
+                }
+            }
         }
         out
     }
@@ -161,8 +359,43 @@ fn body(out: &mut String, doc: &Documentation) {
     }
 }
 
+/// Fewer keys than these are written out again.
+const WORTH_A_REFERENCE: usize = 3;
+
+/// The keys below the one at `at`, by their paths from there.
+fn below<'a>(all: &'a [Parameter], at: usize) -> Vec<(&'a str, &'a Parameter)> {
+    let head = all[at].key.as_str();
+    let inside = all[at + 1..].iter().map_while(|p| Some((p.key.strip_prefix(head)?, p)));
+    let inside = inside.take_while(|(rest, _)| rest.starts_with(['.', '[', '(']));
+    // Of a list and of a single map the keys are the same.
+    inside.map(|(rest, p)| (rest.trim_start_matches("[]"), p)).collect()
+}
+
+/// Parameters in the order of their declaration: a key that several kinds share is said once, and so are the keys of a map
+/// that stands in several places.
 fn parameters(out: &mut String, all: &[Parameter]) {
-    for p in all {
+    let mut told: Vec<usize> = Vec::new();
+    let mut skip = 0;
+    for (at, p) in all.iter().enumerate() {
+        if skip > 0 {
+            skip -= 1;
+            continue;
+        }
+        // A key that several forms of a map have was said with the first of them.
+        if all[..at].iter().any(|other| other.key == p.key) {
+            continue;
+        }
+        let forms: Vec<&Parameter> = all[at..].iter().filter(|other| other.key == p.key).collect();
+        let own = below(all, at);
+        let alike = |a: &(&str, &Parameter), b: &(&str, &Parameter)| a.0 == b.0 && a.1.description == b.1.description;
+        let equal = |other: &usize| {
+            let theirs = below(all, *other);
+            theirs.len() == own.len() && theirs.iter().zip(&own).all(|(a, b)| alike(a, b))
+        };
+        let before = told.iter().copied().find(|other| own.len() >= WORTH_A_REFERENCE && equal(other));
+        told.push(at);
+        skip = if before.is_some() { own.len() } else { 0 };
+        let reference = before.map(|other| format!(" Its keys are those of `{}`, above.", all[other].key));
         let mut words = vec![p.kind.clone()];
         if !p.unit.is_empty() && p.unit != "f/" && !p.description.contains("if bare") {
             words.push(format!("in {} if bare", p.unit));
@@ -170,7 +403,7 @@ fn parameters(out: &mut String, all: &[Parameter]) {
         if !p.range.is_empty() {
             words.push(p.range.clone());
         }
-        match (&p.default, p.required) {
+        match (&p.default, forms.iter().all(|form| form.required)) {
             (_, true) => words.push("required".to_owned()),
             (Some(default), _) => words.push(format!("default {}", plain(default))),
             (None, false) => {}
@@ -181,6 +414,12 @@ fn parameters(out: &mut String, all: &[Parameter]) {
         if let (Some(example), false) = (p.examples.first(), p.kind == "number" || said.contains("if bare")) {
             let _ = write!(said, " Such as {}.", plain(example));
         }
+        for form in &forms[1..] {
+            if !said.contains(&form.description) {
+                let _ = write!(said, " Or: {}", form.description);
+            }
+        }
+        said.push_str(&reference.unwrap_or_default());
         wrapped(out, said.trim(), 6, 6);
     }
 }

@@ -8,10 +8,12 @@ mod arguments;
 mod bench;
 mod build;
 mod check;
+mod completions;
 mod console;
 mod doc;
 mod film;
 mod glass;
+mod guess;
 mod lens;
 mod licences;
 mod list;
@@ -41,7 +43,10 @@ pub fn main(unpack: Unpack) -> ExitCode {
         Ok(arguments) => arguments,
         Err(error) => {
             // Help and version come this way too, with code 0. A reader that has gone away is no failure.
-            let _ = error.print();
+            let _ = match guess::meant(&error) {
+                Some(hint) => Ok(console::faults(&hint.into())),
+                None => error.print(),
+            };
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(outcome::BAD_INPUT));
         }
     };
@@ -75,6 +80,8 @@ fn dispatch(arguments: &Arguments, unpack: Unpack, started: Instant) -> Outcome 
         Some(Command::Glass(glass)) => glass::glass(&glass.command),
         Some(Command::New(arguments)) => new::new(arguments, unpack),
         Some(Command::Build(arguments)) => build::build(arguments, unpack, started),
+        Some(Command::Completions(arguments)) => completions::completions(arguments),
+        Some(Command::Man) => completions::man(),
         // The parser shows help where neither a command nor a flag stands.
         None => Ok(outcome::DONE),
     }

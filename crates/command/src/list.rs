@@ -1,14 +1,24 @@
-//! `spectra list`: what can be written in a scene.
+//! `spectra list`: what can be named, with the words that one chooses by.
 
 use crate::arguments::List;
 use crate::console;
-use crate::outcome::{DONE, Failure, Outcome};
+use crate::outcome::{DONE, Outcome};
 use serde::Serialize;
-use spectra_core::params;
+use serde_json::{Map, Value, json};
+use spectra_analysis::fan::FanFinder;
+use spectra_core::names;
+use spectra_core::params::{self, Fault};
 use spectra_core::registry::{self, Documentation};
+use spectra_film::stock::{Process, Stock};
+use spectra_glass::Catalogue;
+use spectra_lens::Section;
+use spectra_scene::bundled::Bundled;
+use spectra_scene::{FileKind, FileResources, file_schema};
+use spectra_spectrum::table::Table;
 use std::fmt::Write;
+use std::path::Path;
 
-/// Something that a scene can name.
+/// Something that can be named.
 #[derive(Debug, Serialize)]
 struct Item {
     stage: &'static str,
@@ -18,73 +28,303 @@ struct Item {
     default: bool,
     /// Of a registered stage.
     documentation: Option<Documentation>,
+    /// What one chooses by: figures with their units in their names.
+    #[serde(flatten)]
+    figures: Map<String, Value>,
+    /// The same in columns.
+    #[serde(skip)]
+    columns: Vec<String>,
+    /// What it is, in a line.
+    summary: String,
 }
 
-/// Bundled files that a scene names: what they are called here, and where they lie.
-const BUNDLED: [(&str, &str); 1] = [("lens", "lenses/")];
+/// Kinds of things beside the registered stages, in the order of the list.
+const KINDS: [&str; 8] = ["scene", "lens", "stock", "spectrum", "coating", "glass", "sensor", "format"];
+/// Those that are too many to be listed among all others.
+const LONG: [&str; 2] = ["spectrum", "glass"];
+/// Fields beyond this are not searched for, degrees.
+const WIDEST_DEG: f64 = 85.0;
 
 /// Shows the list.
 pub(crate) fn list(arguments: &List) -> Outcome {
-    let mut items = items();
-    if let Some(stage) = &arguments.stage {
-        let mut stages: Vec<&str> = items.iter().map(|item| item.stage).collect();
-        stages.dedup();
-        if !stages.contains(&stage.as_str()) {
-            let near = params::nearest(stage, stages.iter().copied());
-            let hint = near.map_or(String::new(), |near| format!("did you mean `{near}`? "));
-            return Err(Failure::Input(format!("no stage is called `{stage}` ({hint}known: {})", stages.join(", "))));
-        }
-        items.retain(|item| item.stage == stage);
+    let mut kinds: Vec<&str> = registry::list().iter().map(|l| l.stage).collect();
+    kinds.dedup();
+    kinds.extend(KINDS);
+    let wanted = match &arguments.stage {
+        Some(typed) => vec![kind(typed, &kinds)?],
+        None => kinds.iter().copied().filter(|kind| !LONG.contains(kind)).collect(),
+    };
+    let mut items: Vec<Item> = wanted.iter().flat_map(|kind| items(kind)).collect();
+    if !arguments.words.is_empty() {
+        let words: Vec<String> = arguments.words.iter().map(|word| names::normalized(word)).collect();
+        items.retain(|item| {
+            let said = names::normalized(&format!("{} {} {}", item.name, item.columns.join(" "), item.summary));
+            words.iter().all(|word| said.contains(word.as_str()))
+        });
     }
     if arguments.json {
         console::pretty_json(&items)?;
     } else {
-        console::out(&table(&items))?;
+        let mut out = table(&items);
+        if arguments.stage.is_none() {
+            for kind in LONG {
+                // Writing to a String cannot fail.
+                let _ = writeln!(out, "\n{kind}\n  {} of them: `spectra list {kind}`", items_of(kind).len());
+            }
+        }
+        console::out(&out)?;
     }
     Ok(DONE)
 }
 
-fn items() -> Vec<Item> {
-    let registered = registry::list().into_iter().map(|l| Item {
-        stage: l.stage,
-        name: l.name.to_owned(),
-        package: l.package,
-        version: l.version,
-        default: l.default,
-        documentation: Some(l.documentation()),
+/// The kind that is meant: `lens`, `lenses`, `stocks`, `spectra`.
+fn kind(typed: &str, kinds: &[&'static str]) -> Result<&'static str, Fault> {
+    let key = names::normalized(typed);
+    let several = |kind: &str| match kind {
+        "spectrum" => "spectra".to_owned(),
+        "lens" | "glass" => format!("{kind}es"),
+        kind => format!("{kind}s"),
+    };
+    if let Some(kind) = kinds.iter().copied().find(|kind| key == *kind || key == several(kind)) {
+        return Ok(kind);
+    }
+    let fault = Fault::new(format!("no list is called `{typed}`"));
+    if let Some(near) = params::nearest(&key, kinds.iter().copied()) {
+        return Err(fault.hint(format!("did you mean `{near}`? Known: {}", kinds.join(", "))));
+    }
+    let named = Bundled::ALL.into_iter().find_map(|kind| Some((kind, kind.find(typed).ok()?)));
+    Err(fault.hint(match named {
+        Some((kind, name)) => format!("`{name}` is {}: `{}` lists its like", kind.noun(), kind.listed_by()),
+        None => format!("known: {}", kinds.join(", ")),
+    }))
+}
+
+fn items(kind: &str) -> Vec<Item> {
+    let registered = registry::list().into_iter().filter(|l| l.stage == kind).map(|l| {
+        let documentation = l.documentation();
+        Item {
+            stage: l.stage,
+            name: l.name.to_owned(),
+            package: l.package,
+            version: l.version,
+            default: l.default,
+            columns: vec![format!("{} {}", l.package, l.version)],
+            summary: documentation.summary.clone(),
+            documentation: Some(documentation),
+            figures: Map::new(),
+        }
     });
-    let bundled = |stage, name: &str| Item {
+    registered.chain(items_of(kind)).collect()
+}
+
+fn items_of(kind: &str) -> Vec<Item> {
+    match kind {
+        "scene" => Bundled::Scene.names().iter().filter_map(|name| scene(name)).collect(),
+        "lens" => Bundled::Lens.names().iter().filter_map(|name| lens(name)).collect(),
+        "stock" => {
+            let mut all: Vec<Item> = Stock::bundled().filter_map(stock).collect();
+            // Print stocks stand apart: no scene is exposed on one.
+            all.sort_by_key(|item| item.stage);
+            all.reverse();
+            let (mut camera, print): (Vec<Item>, Vec<Item>) = all.into_iter().partition(|item| item.stage == "stock");
+            camera.sort_by(|a, b| a.name.cmp(&b.name));
+            camera.into_iter().chain(print).collect()
+        }
+        "spectrum" => {
+            spectra_spectrum::bundled_spectra().filter_map(|(name, path)| spectrum("spectrum", name, path)).collect()
+        }
+        "sensor" => {
+            let all = spectra_spectrum::bundled_spectra().filter(|(_, path)| path.starts_with("spectra/sensors/"));
+            all.filter_map(|(name, path)| spectrum("sensor", name, path)).collect()
+        }
+        "coating" => COATINGS.iter().map(|(name, summary)| plain("coating", name, summary)).collect(),
+        "glass" => Catalogue::bundled().glasses().map(|glass| glass_item(&glass)).collect(),
+        "format" => formats(),
+        _ => Vec::new(),
+    }
+}
+
+/// What a lens file or a scene can write at `coating`.
+const COATINGS: [(&str, &str); 4] = [
+    ("ideal", "All light passes."),
+    ("bare", "Glass as it is: Fresnel's formulas."),
+    ("{layer: 1.38, quarter-wave-at: 550 nm}", "One layer, here of magnesium fluoride."),
+    (
+        "{layers: [...]}",
+        "A stack of layers; or a file of one (my-stack.yaml), or of what was measured (my-coating.csv).",
+    ),
+];
+
+fn plain(stage: &'static str, name: &str, summary: &str) -> Item {
+    Item {
         stage,
         name: name.to_owned(),
         package: "bundled",
         version: crate::version::VERSION,
         default: false,
         documentation: None,
+        figures: Map::new(),
+        columns: Vec::new(),
+        summary: summary.to_owned(),
+    }
+}
+
+/// A scene, by the comment at its head.
+fn scene(name: &str) -> Option<Item> {
+    let text = spectra_data::text(&format!("scenes/{name}.yaml"))?;
+    let head: Vec<&str> = text.lines().map_while(|line| line.strip_prefix('#')).map(str::trim).collect();
+    Some(plain("scene", name, &first_sentence(&head.join(" "))))
+}
+
+fn first_sentence(text: &str) -> String {
+    let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    text.split_once(". ").map_or(text.clone(), |(first, _)| format!("{first}."))
+}
+
+fn lens(name: &str) -> Option<Item> {
+    let lens = spectra_lens::load(name, &FileResources::beside(Path::new(""))).ok()?;
+    let f_mm = Some(lens.first_order(lens.reference_nm).efl_mm.abs()).filter(|f| f.is_finite());
+    let f_number = lens.marginal_ray().ok().map(|ray| ray.f_number()).filter(|n| n.is_finite());
+    let finder = FanFinder::new(&lens, Section::Y, lens.reference_nm).ok();
+    let field = finder.and_then(|finder| finder.largest_field_rad(f64::INFINITY, WIDEST_DEG.to_radians()));
+    let field_deg = field.map(f64::to_degrees);
+    let rounded = |value: f64, digits: i32| {
+        let scale = 10_f64.powi(digits);
+        (value * scale).round() / scale
     };
-    let files = BUNDLED.into_iter().flat_map(|(stage, folder)| {
-        let names = spectra_data::list(folder).filter_map(move |path| path.strip_prefix(folder)?.strip_suffix(".yaml"));
-        names.map(move |name| bundled(stage, name))
+    let figures = json!({
+        "focal_length_mm": f_mm.map(|f| rounded(f, 3)),
+        "f_number": f_number.map(|n| rounded(n, 3)),
+        "field_deg": field_deg.map(|deg| rounded(deg, 1)),
+        "year": lens.year,
     });
-    let stocks = spectra_film::stock::Stock::bundled().map(|name| bundled("stock", name));
-    registered.chain(files).chain(stocks).collect()
+    let column = |value: Option<String>| value.unwrap_or_default();
+    let columns = vec![
+        column(f_mm.map(|f| format!("{f:.0} mm"))),
+        column(f_number.map(|n| format!("f/{n:.2}"))),
+        column(field_deg.map(|deg| format!("+-{deg:.0} deg"))),
+        column(lens.year.map(|year| year.to_string())),
+    ];
+    Some(Item { figures: map(figures), columns, ..plain("lens", name, &lens.name) })
+}
+
+fn stock(name: &'static str) -> Option<Item> {
+    let stock = Stock::load(name, &FileResources::beside(Path::new(""))).ok()?;
+    let process = match (stock.process, stock.layers.len()) {
+        (Process::Negative, 1) => "black-and-white negative",
+        (Process::Negative, _) => "color negative",
+        (Process::Reversal, _) => "reversal (slides)",
+        (Process::Print, _) => "print stock",
+    };
+    let year = year(&stock.source);
+    let figures = json!({
+        "process": process,
+        "iso": stock.iso,
+        "iso_tungsten": stock.iso_tungsten,
+        "layers": stock.layers.len(),
+        "year": year,
+        "maker": stock.maker,
+        "print": stock.print,
+    });
+    let columns = vec![
+        stock.iso.map_or(String::new(), |iso| format!("ISO {iso}")),
+        process.to_owned(),
+        year.map_or(String::new(), |year| format!("sheet of {year}")),
+    ];
+    let stage = if stock.process == Process::Print { "print stock" } else { "stock" };
+    Some(Item { figures: map(figures), columns, ..plain(stage, name, &stock.name) })
+}
+
+/// The year that a source was published in: the last one that it states.
+fn year(source: &str) -> Option<u32> {
+    let words = source.split(|c: char| !c.is_ascii_digit()).filter(|word| word.len() == 4);
+    words.filter_map(|word| word.parse().ok()).rfind(|year| (1850..2100).contains(year))
+}
+
+fn spectrum(stage: &'static str, name: &'static str, path: &'static str) -> Option<Item> {
+    let table = Table::parse_bytes(path, spectra_data::get(path)?, None).ok()?;
+    let columns_in = if table.columns.len() > 1 { table.columns } else { Vec::new() };
+    let range = table.meta.range_nm;
+    let figures = json!({
+        "kind": table.kind.word(),
+        "title": table.meta.name,
+        "range_nm": range.map(|(from, to)| [from, to]),
+        "columns": columns_in,
+        "source": table.meta.source,
+        "licence": table.meta.licence,
+    });
+    let columns =
+        vec![table.kind.word().to_owned(), range.map_or(String::new(), |(from, to)| format!("{from:.0}-{to:.0} nm"))];
+    let mut summary = table.meta.name.unwrap_or_default();
+    if !columns_in.is_empty() {
+        let shown: Vec<&str> = columns_in.iter().take(6).map(String::as_str).collect();
+        let more = if columns_in.len() > shown.len() { ", ..." } else { "" };
+        summary = format!("{summary} (#{}{more})", shown.join(", #"));
+    }
+    Some(Item { figures: map(figures), columns, ..plain(stage, name, summary.trim()) })
+}
+
+fn glass_item(glass: &spectra_glass::Glass) -> Item {
+    let (nd, vd) = (glass.nd(), glass.vd());
+    let known = |value: f64| Some(value).filter(|v| v.is_finite());
+    let figures = json!({ "nd": known(nd), "vd": known(vd) });
+    let column = |value: f64, text: String| known(value).map_or(String::new(), |_| text);
+    let columns = vec![column(nd, format!("nd {nd:.5}")), column(vd, format!("Vd {vd:.2}"))];
+    Item { figures: map(figures), columns, ..plain("glass", &glass.full_name(), "") }
+}
+
+/// The formats that imagers know, from their schema.
+fn formats() -> Vec<Item> {
+    fn search(value: &Value) -> Option<&Vec<Value>> {
+        match value {
+            Value::Object(map) => match map.get("x-formats") {
+                Some(Value::Array(all)) => Some(all),
+                _ => map.values().find_map(search),
+            },
+            Value::Array(items) => items.iter().find_map(search),
+            _ => None,
+        }
+    }
+    let schema = file_schema(FileKind::Scene);
+    let item = |format: &Value| {
+        let name = format.get("name")?.as_str()?;
+        let mm = |key: &str| format.get(key).and_then(Value::as_f64);
+        let (width, height) = (mm("width_mm")?, mm("height_mm")?);
+        let source = format.get("source").and_then(Value::as_str).unwrap_or_default();
+        let figures = json!({ "width_mm": width, "height_mm": height });
+        let columns = vec![format!("{width} x {height} mm")];
+        Some(Item { figures: map(figures), columns, ..plain("format", name, source) })
+    };
+    search(&schema).into_iter().flatten().filter_map(item).collect()
+}
+
+fn map(value: Value) -> Map<String, Value> {
+    match value {
+        Value::Object(map) => map,
+        _ => Map::new(),
+    }
 }
 
 fn table(items: &[Item]) -> String {
     let mut out = String::new();
-    let width = |of: fn(&Item) -> usize| items.iter().map(of).max().unwrap_or(0);
-    let (names, origins) = (width(|item| item.name.len()), width(|item| origin(item).len()));
     let mut stage = "";
-    for item in items {
+    for (at, item) in items.iter().enumerate() {
         if item.stage != stage {
             let gap = if stage.is_empty() { "" } else { "\n" };
             stage = item.stage;
             // Writing to a String cannot fail.
             let _ = writeln!(out, "{gap}{stage}");
         }
-        let mut line = format!("  {:<names$}  {:<origins$}", item.name, origin(item));
-        if let Some(documentation) = &item.documentation {
-            let _ = write!(line, "  {}", documentation.summary);
+        // The columns of one group are as wide as its widest entry.
+        let group = items[at..].iter().chain(&items[..at]).filter(|other| other.stage == stage);
+        let group: Vec<&Item> = group.collect();
+        let width = |of: &dyn Fn(&Item) -> usize| group.iter().map(|item| of(item)).max().unwrap_or(0);
+        let mut line = format!("  {:<1$}", item.name, width(&|item| item.name.len()));
+        for (i, column) in item.columns.iter().enumerate() {
+            let width = width(&|item| item.columns.get(i).map_or(0, |c| c.chars().count()));
+            let _ = write!(line, "  {column:<width$}");
         }
+        let _ = write!(line, "  {}", item.summary);
         if item.default {
             line.push_str(" (default)");
         }
@@ -93,25 +333,13 @@ fn table(items: &[Item]) -> String {
     out
 }
 
-/// Where it comes from: crate and version.
-fn origin(item: &Item) -> String {
-    format!("{} {}", item.package, item.version)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     fn item(stage: &'static str, name: &str, package: &'static str, default: bool) -> Item {
-        let documentation = Documentation {
-            summary: "A thing.".to_owned(),
-            text: String::new(),
-            examples: Vec::new(),
-            references: Vec::new(),
-            parameters: Vec::new(),
-        };
-        let documentation = Some(documentation);
-        Item { stage, name: name.to_owned(), package, version: "1.2.3", default, documentation }
+        let columns = vec![format!("{package} 1.2.3")];
+        Item { package, default, columns, ..plain(stage, name, "A thing.") }
     }
 
     #[test]
@@ -123,13 +351,32 @@ mod tests {
         ];
         let wanted = [
             "source",
-            "  chart     spectra-plugin-sources 1.2.3   A thing.",
-            "  far-lamp  lamps 1.2.3                    A thing.",
+            "  chart     spectra-plugin-sources 1.2.3  A thing.",
+            "  far-lamp  lamps 1.2.3                   A thing.",
             "",
             "surface",
-            "  sphere    spectra-plugin-surfaces 1.2.3  A thing. (default)",
+            "  sphere  spectra-plugin-surfaces 1.2.3  A thing. (default)",
             "",
         ];
         assert_eq!(table(&items), wanted.join("\n"));
+    }
+
+    #[test]
+    fn kinds_are_found_in_the_plural_too() {
+        let kinds = ["source", "lens", "stock", "spectrum", "glass"];
+        for (typed, wanted) in
+            [("lens", "lens"), ("lenses", "lens"), ("Stocks", "stock"), ("spectra", "spectrum"), ("glasses", "glass")]
+        {
+            assert_eq!(kind(typed, &kinds).ok(), Some(wanted), "{typed}");
+        }
+        let hint = |typed: &str| kind(typed, &kinds).err().and_then(|fault| fault.hint).unwrap_or_default();
+        assert!(hint("sourc").starts_with("did you mean `source`?"));
+        assert!(hint("tri-x").starts_with("`kodak-tri-x-400` is a film stock: `spectra list stock`"));
+    }
+
+    #[test]
+    fn sources_tell_their_year() {
+        assert_eq!(year("Kodak F-4017, 2007, as digitized by spectral-film-lut 0.18.13"), Some(2007));
+        assert_eq!(year("measured by myself"), None);
     }
 }

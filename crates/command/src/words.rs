@@ -1,4 +1,6 @@
-//! Numbers and times as a person reads them.
+//! Numbers, times and names as a person reads them.
+
+use std::path::{Path, PathBuf};
 
 /// A count with thin groups: `157 286 400`.
 pub(crate) fn count(value: u64) -> String {
@@ -41,6 +43,14 @@ pub(crate) fn percent(part: u64, whole: u64) -> String {
     if percent < 9.95 { format!("{percent:.1} %") } else { format!("{percent:.0} %") }
 }
 
+/// The file that a figure of `name` goes to where none is given: `NAME.svg` in the working folder.
+pub(crate) fn figure_of(name: &str) -> PathBuf {
+    let file = Path::new(name.trim()).file_name().map_or("figure".into(), |name| name.to_string_lossy());
+    let stem = file.strip_suffix(".yaml").or(file.strip_suffix(".yml")).or(file.strip_suffix(".csv")).unwrap_or(&file);
+    let plain = |c: char| if c.is_alphanumeric() || matches!(c, '-' | '_' | '.') { c } else { '-' };
+    PathBuf::from(format!("{}.svg", stem.chars().map(plain).collect::<String>()))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -57,6 +67,19 @@ mod tests {
     fn durations_keep_what_matters() {
         let shown = [0.84, 41.2, 59.7, 123.0, 3900.0, f64::INFINITY].map(duration);
         assert_eq!(shown, ["0.8 s", "41 s", "1 min 00 s", "2 min 03 s", "1 h 05 min", "1000000 h 00 min"]);
+    }
+
+    #[test]
+    fn figures_are_called_by_what_they_show() {
+        for (name, file) in [
+            ("zeiss-biotar-50-f1.4", "zeiss-biotar-50-f1.4.svg"),
+            ("my/lens.yaml", "lens.svg"),
+            ("colorchecker#red", "colorchecker-red.svg"),
+            ("blackbody:5800", "blackbody-5800.svg"),
+            ("", "figure.svg"),
+        ] {
+            assert_eq!(figure_of(name), Path::new(file), "{name}");
+        }
     }
 
     #[test]

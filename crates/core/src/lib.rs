@@ -16,6 +16,7 @@ pub mod frame;
 pub mod isa;
 pub mod loss;
 pub mod math;
+pub mod names;
 pub mod numbers;
 pub mod one_layer;
 pub mod params;

@@ -1,6 +1,7 @@
 //! What only the scene as a whole can say of its faults: a file in the wrong place, a section under another one, a
 //! section that is a bare name; and the order in which faults are told.
 
+use crate::bundled::{self, Bundled};
 use spectra_core::params::{Fault, Faults, Node, Params, SourceFile, Value, nearest};
 use std::path::Path;
 use std::sync::Arc;
@@ -77,13 +78,31 @@ pub(crate) fn unreadable(faults: Faults, path: &Path) -> Faults {
     }
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let wanted = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-    let bundled = spectra_data::list("scenes/").filter_map(|name| name.strip_prefix("scenes/")?.strip_suffix(".yaml"));
-    let beside = names(folder);
-    let hint = match nearest(&wanted, beside.iter().map(String::as_str).chain(bundled)) {
-        Some(near) => format!("did you mean `{}`?", path.with_file_name(near).display()),
-        None => "a path of a scene file, or the name of a bundled scene, such as `gray-card`".to_owned(),
+    let typed = path.to_string_lossy();
+    let several = bundled::scene_file(&typed).err().unwrap_or_default();
+    let scenes = Bundled::Scene.names();
+    let stem = wanted.strip_suffix(".yaml").unwrap_or(&wanted);
+    let (beside, bundled) = (names(folder), scenes.iter().map(String::as_str));
+    // A file beside it is named with its folder, a bundled scene by its name alone: each works as it is written here.
+    let near = match nearest(&wanted, beside.iter().map(String::as_str)) {
+        Some(near) => Some(path.with_file_name(near).display().to_string()),
+        None => nearest(stem, bundled).map(str::to_owned),
+    };
+    let hint = if !several.is_empty() {
+        format!("which one? {}", list(&several))
+    } else if let Some(near) = near.filter(|near| *near != typed) {
+        format!("did you mean `{near}`?")
+    } else if let Some(other) = bundled::other_kind(&typed, Bundled::Scene) {
+        other
+    } else {
+        "a path of a scene file, or a bundled scene such as `gray-card`: `spectra list scene` shows them".to_owned()
     };
     Fault::new(format!("`{name}`: no such file")).hint(hint).into()
+}
+
+fn list(names: &[String]) -> String {
+    let shown: Vec<String> = names.iter().take(8).map(|name| format!("`{name}`")).collect();
+    shown.join(", ") + if names.len() > shown.len() { " ..." } else { "" }
 }
 
 /// The faults of a scene with what the scene as a whole knows of them, in the order of its file; then those of other

@@ -140,15 +140,13 @@ const DEFAULT_SEED: u64 = 1;
 /// Forward rays a pixel and sample asked for, where `rays` is not given: a forward ray lands anywhere.
 const FORWARD_RAYS_A_SAMPLE: u64 = 4;
 
-/// The scene file, or the bundled scene of that name.
+/// The scene file, or where there is none the bundled scene of that name.
 pub(crate) fn read(path: &Path) -> Result<Node, Faults> {
-    if !path.exists() {
-        let name = path.to_string_lossy();
-        for bundled in [format!("scenes/{name}"), format!("scenes/{name}.yaml")] {
-            if let Some(bytes) = spectra_data::get(&bundled) {
-                return yaml::parse_bytes(&format!("bundled:{bundled}"), bytes);
-            }
-        }
+    if !path.exists()
+        && let Ok(bundled) = crate::bundled::scene_file(&path.to_string_lossy())
+        && let Some(bytes) = spectra_data::get(&bundled)
+    {
+        return yaml::parse_bytes(&format!("bundled:{bundled}"), bytes);
     }
     yaml::read(path).map_err(|faults| advice::unreadable(faults, path))
 }

@@ -10,7 +10,8 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::cover::CoverStack;
 use spectra_core::params::{
-    Angle, FNumber, Fault, Faults, Length, OrInfinity, Params, Positive, SpatialFrequency, StageNode, Value, Wavelength,
+    Angle, Dimension, FNumber, Fault, Faults, Length, OrInfinity, Params, Positive, Reading, SpatialFrequency,
+    StageNode, Value, Wavelength,
 };
 use spectra_core::resources::Resources;
 use spectra_lens::{
@@ -246,6 +247,13 @@ fn by_rays(lens: &Lens, wanted: &Wanted) -> Result<(Lens, Option<String>), Focus
 
 /// The lens with more at its stop.
 fn with_aperture(lens: &Lens, node: &StageNode, resources: &dyn Resources) -> Result<Lens, Faults> {
+    // A photographer's aperture is the f-number; the optical engineer's is what stands at the stop.
+    if let Some(text) = node.node().as_str()
+        && let Some(figure) = f_number_in(text)
+    {
+        let fault = node.fault("an aperture is what limits the light beside the stop's round opening, such as blades");
+        return Err(fault.hint(format!("did you mean `f-number: f/{figure}`?")).into());
+    }
     let apertures = spectra_lens::read_apertures(node, resources)?;
     let mut lens = lens.clone();
     let Some(stop) = lens.elements.iter_mut().find(|e| e.stop) else {
@@ -265,6 +273,15 @@ pub(crate) fn is_too_fast(fault: &Fault) -> bool {
 }
 
 /// A fault at `f-number`.
+/// The figure of `f/4` or `4`.
+fn f_number_in(text: &str) -> Option<f64> {
+    match Reading::of(text) {
+        Reading::Bare(figure) => Some(figure),
+        Reading::Quantity { value, unit } if unit.dimension == Dimension::FNumber => Some(value),
+        _ => None,
+    }
+}
+
 fn aperture_fault(params: &Params, error: &ApertureError) -> Fault {
     let hint = match error {
         ApertureError::TooFast { widest, .. } => {

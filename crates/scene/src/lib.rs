@@ -5,6 +5,7 @@
 
 mod advice;
 mod assemble;
+pub mod bundled;
 pub mod diagnostics;
 mod doubts;
 mod earlier;

@@ -1,6 +1,7 @@
 //! Files for stages: beside the scene first, then among the bundled data.
 
 use crate::advice::{FileIs, other_file};
+use crate::bundled::{Bundled, other_kind};
 use crate::yaml;
 use spectra_core::params::{Fault, Faults, Params, SourceFile, nearest};
 use spectra_core::resources::{Found, Resource, ResourceError, Resources};
@@ -77,13 +78,18 @@ impl Resources for FileResources {
                 }
             }
         }
-        for folder in folders {
-            for ending in endings() {
-                let name = format!("{folder}/{path}{ending}");
-                if let Some(bytes) = spectra_data::get(&name) {
-                    return Ok(Resource { name: format!("bundled:{name}"), folder: None, bytes: Cow::Borrowed(bytes) });
+        if let Some(found) = bundled(path, folders, &endings().collect::<Vec<_>>()) {
+            return Ok(found);
+        }
+        // A part of a name, or the name in another spelling.
+        match named(path, folders, &endings().collect::<Vec<_>>()).map(|kind| kind.find(path)) {
+            Some(Ok(name)) => {
+                if let Some(found) = bundled(&name, folders, &endings().collect::<Vec<_>>()) {
+                    return Ok(found);
                 }
             }
+            Some(Err(several)) if !several.is_empty() => return Err(ResourceError::NotFound(several)),
+            Some(Err(_)) | None => {}
         }
         if plain(&self.folder.join(path)).is_dir() {
             return Err(ResourceError::Io("this is a folder; a file is wanted".to_owned()));
@@ -115,10 +121,17 @@ impl Resources for FileResources {
         let limit = if foreign.is_some() { spectra_exchange::MAX_BYTES } else { MAX_DOCUMENT };
         let resource = self.read(path, folders, endings, limit).map_err(|e| match &e {
             ResourceError::NotFound(near) if near.is_empty() => {
-                let hint = match folders {
-                    ["lenses"] => format!("a file beside the scene, or one of the bundled {}", self.bundled("lenses")),
-                    _ => "a file is looked for beside the scene, then among the bundled ones".to_owned(),
-                };
+                let hint = named(path, folders, endings).and_then(|kind| other_kind(path, kind)).unwrap_or_else(|| {
+                    match folders {
+                        ["lenses"] => {
+                            format!(
+                                "a file beside the scene, or one of the bundled {}",
+                                Bundled::Lens.names().join(", ")
+                            )
+                        }
+                        _ => "a file is looked for beside the scene, then among the bundled ones".to_owned(),
+                    }
+                });
                 Fault::new(format!("`{path}`: no such file{}", self.looked())).hint(hint)
             }
             ResourceError::NotFound(near) => Fault::new(format!("`{path}`: no such file{}", self.looked()))
@@ -148,13 +161,6 @@ impl Resources for FileResources {
 }
 
 impl FileResources {
-    /// The names of a bundled folder.
-    fn bundled(&self, folder: &str) -> String {
-        let names = spectra_data::list(folder).filter_map(|name| name.strip_prefix(folder)?.strip_prefix('/'));
-        let stems = names.filter(|name| !name.contains('/')).filter_map(|name| name.strip_suffix(".yaml"));
-        stems.collect::<Vec<_>>().join(", ")
-    }
-
     /// The nearest names, bundled or on disk.
     fn near(&self, path: &str, folders: &[&str]) -> Vec<String> {
         let mut names: Vec<String> = folders
@@ -193,7 +199,35 @@ impl FileResources {
 }
 
 fn list(names: &[String]) -> String {
-    names.iter().map(|n| format!("`{n}`")).collect::<Vec<_>>().join(" or ")
+    const MOST: usize = 6;
+    let shown: Vec<String> = names.iter().take(MOST).map(|n| format!("`{n}`")).collect();
+    shown.join(" or ") + if names.len() > MOST { " or one of the others" } else { "" }
+}
+
+/// What `path` can be the name of, where it is none of a file.
+fn named(path: &str, folders: &[&str], endings: &[&str]) -> Option<Bundled> {
+    if !endings.contains(&".yaml") {
+        return None;
+    }
+    // `f1.4` ends a name of a lens, `.yaml` one of a file.
+    let ending = Path::new(path).extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+    if path.contains(['/', '\\']) || ending.starts_with(|c: char| c.is_ascii_alphabetic()) {
+        return None;
+    }
+    folders.iter().find_map(|folder| Bundled::in_folder(folder))
+}
+
+/// The bundled file of exactly this name.
+fn bundled(path: &str, folders: &[&str], endings: &[&str]) -> Option<Resource> {
+    for folder in folders {
+        for ending in endings {
+            let name = format!("{folder}/{path}{ending}");
+            if let Some(bytes) = spectra_data::get(&name) {
+                return Some(Resource { name: format!("bundled:{name}"), folder: None, bytes: Cow::Borrowed(bytes) });
+            }
+        }
+    }
+    None
 }
 
 /// Reads a file whose size is checked before and while it is read.

@@ -2,9 +2,10 @@
 //!
 //! | written | means |
 //! |---|---|
-//! | `D65`, `mercury`, `v-lambda-1924` | a bundled file; case, spaces, hyphens and underscores do not matter |
+//! | `D65`, `mercury`, `v-lambda-1924` | a bundled file; case, spaces, hyphens and underscores do not matter, a part is enough (`printer`) |
 //! | `colorchecker#dark-skin` | a column of a file of several |
-//! | `spectra/illuminants/A.csv`, `mine.csv`, `mine.csv#red` | a file, beside the scene first, then bundled |
+//! | `spectra/illuminants/A.csv`, `mine.csv`, `mine.csv#red` | a file, beside the scene first, then bundled; also `.txt`, `.dat`, `.tsv` |
+//! | `5600 K`, `3200K` | light of that color temperature: a black body below 5000 K, CIE daylight from there on |
 //! | `blackbody:5800` | radiance of a black body of that many kelvin |
 //! | `daylight:5500` | CIE daylight of that correlated color temperature, K |
 //! | `line:C'`, `line:632.8` | one line, by its letter or its wavelength in nm |
@@ -22,6 +23,7 @@ use std::cell::Cell;
 use std::fs;
 use std::io::Read as _;
 
+use spectra_core::names::{self, Match};
 use spectra_core::resources::{ResourceError, Resources};
 use spectra_core::spectral::Line;
 
@@ -35,6 +37,7 @@ use crate::names::{candidates, normalized};
 use crate::piece::Piece;
 use crate::shape::Shape;
 use crate::table::{MAX_BYTES, Table};
+use crate::tabulated::Tabulated;
 
 /// A spectrum of any kind.
 #[derive(Clone, Debug, PartialEq)]
@@ -100,6 +103,42 @@ pub fn find(name: &str) -> Result<Found, SpectrumError> {
 /// As [`find`].
 pub fn find_in(name: &str, files: &dyn Resources) -> Result<Found, SpectrumError> {
     load(name, Some(files), Kind::Emission)
+}
+
+/// The spectrum `name` as one of a kind: that of a file which does not say what it is.
+///
+/// # Errors
+/// As [`find`], and [`SpectrumError::WrongKind`] for a spectrum that is of another kind.
+pub fn find_as_in(name: &str, kind: Kind, files: &dyn Resources) -> Result<Found, SpectrumError> {
+    let found = load(name, Some(files), kind)?;
+    let same = found.kind() == kind || (kind == Kind::Lines && found.kind() == Kind::Emission);
+    if same {
+        return Ok(found);
+    }
+    Err(SpectrumError::WrongKind { name: name.into(), found: found.kind().word(), wanted: kind.word() })
+}
+
+/// A column of a table that is no light, matter or detector: a color-matching function with negative values, or a
+/// component that spectra are summed of. `None` where `name` is none.
+#[must_use]
+pub fn function_in(name: &str, files: &dyn Resources) -> Option<(Kind, Tabulated)> {
+    let (file, column) = name.trim().rsplit_once('#')?;
+    let table = table(file.trim(), Some(files), Kind::Emission).ok()?;
+    let is_function = matches!(table.kind, Kind::ColorMatching | Kind::Components);
+    let key = normalized(column);
+    let at = table.columns.iter().position(|c| normalized(c) == key).filter(|_| is_function)?;
+    Some((table.kind, table.column_at(at)))
+}
+
+/// What was made of the table `name`, which is not written as the bundled ones are; see [`Table::notes`].
+#[must_use]
+pub fn notes_in(name: &str, files: &dyn Resources) -> Vec<&'static str> {
+    let name = name.trim();
+    let file = name.rsplit_once('#').map_or(name, |(file, _)| file.trim());
+    if !is_table(file) {
+        return Vec::new();
+    }
+    table(file, Some(files), Kind::Emission).map_or_else(|_| Vec::new(), |table| table.notes)
 }
 
 macro_rules! typed {
@@ -283,17 +322,30 @@ fn is_yaml(name: &str) -> bool {
     ending.is_some_and(|e| e == "yaml" || e == "yml")
 }
 
+/// Whether it is the name of a file with a table in it.
+fn is_table(name: &str) -> bool {
+    const ENDINGS: [&str; 6] = ["csv", "txt", "dat", "tsv", "asc", "prn"];
+    let ending = name.rsplit_once('.').map(|(_, ending)| ending.to_ascii_lowercase());
+    ending.is_some_and(|ending| ENDINGS.contains(&ending.as_str())) || name.contains(['/', '\\'])
+}
+
 /// The table of a bundled name, or of a file.
 fn table(name: &str, files: Option<&dyn Resources>, wanted: Kind) -> Result<Table, SpectrumError> {
-    let is_file = name.ends_with(".csv") || name.contains(['/', '\\']);
-    if !is_file {
+    if !is_table(name) {
         let key = normalized(name);
         let fluorescent = key.strip_prefix('f').filter(|n| n.starts_with(|c: char| c.is_ascii_digit()));
-        let key = fluorescent.map_or(key.clone(), |n| format!("fl{n}"));
-        if let Some((_, path)) = bundled_spectra().find(|(n, _)| normalized(n) == key) {
-            return Ok(Table::parse_bytes(path, spectra_data::get(path).unwrap_or_default(), None)?);
-        }
-        return Err(unknown(name));
+        let key = fluorescent.map_or_else(|| name.to_owned(), |n| format!("fl{n}"));
+        return match names::find(&key, bundled_spectra().map(|(name, _)| name)) {
+            Match::One(found) => {
+                let path = bundled_spectra().find(|(name, _)| *name == found).map_or("", |(_, path)| path);
+                Ok(Table::parse_bytes(path, spectra_data::get(path).unwrap_or_default(), None)?)
+            }
+            Match::Several(several) => Err(SpectrumError::Unknown {
+                name: name.chars().take(80).collect(),
+                candidates: several.into_iter().take(8).map(str::to_owned).collect(),
+            }),
+            Match::Nothing => Err(unknown(name)),
+        };
     }
     let (shown, bytes) = match files {
         Some(files) => read_resource(name, files)?,

@@ -116,7 +116,7 @@ impl SpectrumError {
             }
             Self::WrongKind { name, found, wanted } => {
                 let fault = here(format!("`{name}` is of kind {found}, but {wanted} is wanted here"));
-                fault.hint(format!("`spectra spectrum list` shows what is of kind {wanted}")).into()
+                fault.hint(format!("`spectra list spectrum` shows what is of kind {wanted}")).into()
             }
             Self::NotTogether { .. } => here(self.to_string())
                 .hint("light times filters, or like plus like: `D65 * wratten-15`, `A + line:e`")
@@ -140,7 +140,7 @@ fn hint_for_unknown(name: &str, candidates: &[String]) -> String {
         [] if name.contains(['/', '\\']) || name.contains('.') => {
             "a file is looked for beside the one that names it, then among the bundled ones".to_owned()
         }
-        [] => "`spectra spectrum list` shows all names; or a file such as `lamp.csv`, or `blackbody:3200`".to_owned(),
+        [] => "`spectra list spectrum` shows all names; or a file such as `lamp.csv`, or `blackbody:3200`".to_owned(),
     }
 }
 

@@ -1,5 +1,6 @@
 //! Spectra written out in one line: `blackbody:5800`, `0.5 * D65 + line:e`.
 
+use spectra_core::params::{Dimension, Reading, Unit};
 use spectra_core::spectral::Line;
 
 use crate::by_name::Found;
@@ -27,19 +28,21 @@ pub(crate) fn single(text: &str) -> Option<Result<Piece, SpectrumError>> {
     if text.eq_ignore_ascii_case("constant") {
         return Some(Shape::constant(1.0).map(Piece::Bare));
     }
+    if let Some(kelvin) = color_temperature(text) {
+        return Some(of_color_temperature(kelvin).map(|light| Piece::Typed(Found::Emission(light))));
+    }
     let (head, arguments) = text.split_once(':')?;
     let arguments = arguments.trim();
     let fault = |wanted| SpectrumError::Inline { text: text.chars().take(80).collect(), wanted };
+    let kelvin = |help| measure(arguments, "K").ok_or_else(|| fault(help));
     let one = |help| numbers(arguments).and_then(|n| <[f64; 1]>::try_from(n).ok()).ok_or_else(|| fault(help));
-    let two = |help| numbers(arguments).and_then(|n| <[f64; 2]>::try_from(n).ok()).ok_or_else(|| fault(help));
+    let two = |help| wavelengths(arguments).and_then(|n| <[f64; 2]>::try_from(n).ok()).ok_or_else(|| fault(help));
     let light = |light| Piece::Typed(Found::Emission(light));
     Some(match head.trim().to_ascii_lowercase().as_str() {
-        "blackbody" => one("write a temperature in kelvin, such as blackbody:5800")
-            .and_then(|[k]| Emission::blackbody(k))
-            .map(light),
-        "daylight" => {
-            one("write a temperature in kelvin, such as daylight:5500").and_then(|[k]| daylight(k)).map(light)
+        "blackbody" => {
+            kelvin("write a temperature in kelvin, such as blackbody:5800").and_then(Emission::blackbody).map(light)
         }
+        "daylight" => kelvin("write a temperature in kelvin, such as daylight:5500").and_then(daylight).map(light),
         "line" => line_nm(arguments)
             .ok_or_else(|| fault("write a letter or a wavelength in nm, such as line:C' or line:632.8"))
             .and_then(|nm| Emission::line(nm, 1.0))
@@ -67,7 +70,37 @@ pub(crate) fn single(text: &str) -> Option<Result<Piece, SpectrumError>> {
 /// A line by its letter, or a number of nm.
 fn line_nm(text: &str) -> Option<f64> {
     let text = text.trim();
-    named_line(text).map(|l| l.nominal_nm).or_else(|| number(text))
+    named_line(text).map(|l| l.nominal_nm).or_else(|| measure(text, "nm"))
+}
+
+/// The temperature of `5600 K`.
+fn color_temperature(text: &str) -> Option<f64> {
+    match Reading::of(text) {
+        Reading::Quantity { value, unit } if unit.dimension == Dimension::Temperature => Some(value),
+        _ => None,
+    }
+}
+
+/// The light that a color temperature alone stands for: a black body below 5000 K, CIE daylight from there on, as CIE
+/// 13.3-1995 (5.3) chooses the reference of a lamp.
+fn of_color_temperature(kelvin: f64) -> Result<Emission, SpectrumError> {
+    if kelvin < 5000.0 { Emission::blackbody(kelvin) } else { daylight(kelvin) }
+}
+
+/// A number with or without its unit, in that unit.
+fn measure(text: &str, unit: &str) -> Option<f64> {
+    let wanted = Unit::find(unit)?;
+    let value = match Reading::of(text) {
+        Reading::Bare(value) => value,
+        Reading::Quantity { value, unit } if unit.dimension == wanted.dimension => unit.convert(value, wanted),
+        _ => return None,
+    };
+    value.is_finite().then_some(value)
+}
+
+/// Wavelengths with or without their unit, nm.
+fn wavelengths(text: &str) -> Option<Vec<f64>> {
+    text.split(',').map(|text| measure(text, "nm")).collect()
 }
 
 fn weighted_line(text: &str) -> Option<Line> {

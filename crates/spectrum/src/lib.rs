@@ -58,8 +58,9 @@ mod truncated;
 
 pub use adaptation::Adaptation;
 pub use by_name::{
-    Found, bundled_meta, bundled_spectra, find, find_emission, find_emission_in, find_in, find_reflectance,
-    find_reflectance_in, find_sensitivity, find_sensitivity_in, find_transmittance, find_transmittance_in, meta_in,
+    Found, bundled_meta, bundled_spectra, find, find_as_in, find_emission, find_emission_in, find_in, find_reflectance,
+    find_reflectance_in, find_sensitivity, find_sensitivity_in, find_transmittance, find_transmittance_in, function_in,
+    meta_in, notes_in,
 };
 pub use cct::{Cct, cct, uv_1960};
 pub use cie::{Observer, v_lambda, v_prime};

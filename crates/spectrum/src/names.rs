@@ -1,10 +1,6 @@
 //! Names as people type them.
 
-/// Lower case, without spaces, hyphens and underscores.
-#[must_use]
-pub(crate) fn normalized(name: &str) -> String {
-    name.chars().filter(|c| !matches!(c, ' ' | '-' | '_')).flat_map(char::to_lowercase).collect()
-}
+pub(crate) use spectra_core::names::normalized;
 
 /// Number of characters to insert, delete, replace or swap with their neighbor to get from `a` to `b`.
 fn distance(a: &[char], b: &[char]) -> usize {

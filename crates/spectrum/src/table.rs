@@ -1,8 +1,12 @@
 //! Reads the CSV files in which spectra are kept.
 //!
 //! Front matter of `# key: value` lines (see [`Meta`]), a header row `wavelength_nm,<columns>`, then one row a
-//! wavelength, in increasing order. Without `# spectra: 1` on the first line, lines that begin with `#` are plain
-//! comments, and the reader is told the kind.
+//! wavelength, in increasing order.
+//!
+//! Without `# spectra: 1` on the first line the table is read as people have it: lines that begin with `#` are plain
+//! comments, the reader is told the kind, and [`Table::notes`] says what was made of the rest. Columns are separated by
+//! commas, semicolons, tabs or blanks (all but the first with decimal commas, too), the header may be missing, wavelengths
+//! may be in micrometers, and may fall.
 //!
 //! ```
 //! use spectra_spectrum::table::Table;
@@ -15,7 +19,7 @@
 use std::fmt;
 use std::sync::Arc;
 
-use spectra_core::params::{Fault, SourceFile, Span};
+use spectra_core::params::{Fault, SourceFile, Span, Unit};
 
 use crate::meta::{Interpolation, Kind, Meta, Scale};
 use crate::sprague;
@@ -27,8 +31,10 @@ pub const MAX_ROWS: usize = 100_000;
 pub const MAX_COLUMNS: usize = 256;
 /// Largest file that is read, bytes.
 pub const MAX_BYTES: u64 = 32 << 20;
-/// A table that ends below this was not given in nanometres, nm.
+/// A table that ends below this was not given in nanometers, nm.
 const SHORTEST_NM: f64 = 20.0;
+/// Words of which one stands in the name of a column of wavelengths.
+const WAVELENGTH_WORDS: [&str; 8] = ["wave", "lambda", "\u{3bb}", "nm", "nano", "um", "\u{b5}m", "micro"];
 
 /// What is wrong with a table, and where.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -69,6 +75,65 @@ pub struct Place {
     pub column_name: String,
     /// The whole text.
     pub text: Arc<SourceFile>,
+    /// What stands between its fields.
+    pub separator: Separator,
+}
+
+/// What stands between the fields of a row.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Separator {
+    /// `,`: numbers have a decimal point.
+    #[default]
+    Comma,
+    /// `;`.
+    Semicolon,
+    /// A tab.
+    Tab,
+    /// One blank or more.
+    Blanks,
+}
+
+impl Separator {
+    /// Its name.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Comma => "commas",
+            Self::Semicolon => "semicolons",
+            Self::Tab => "tabs",
+            Self::Blanks => "blanks",
+        }
+    }
+
+    /// That of a row of numbers.
+    fn of(row: &str) -> Self {
+        let row = row.trim();
+        let has_decimal_comma =
+            |word: &str| word.split(',').count() <= 2 && word.split(',').all(|part| part.starts_with(is_of_number));
+        let mut words = row.split_whitespace();
+        match () {
+            () if row.contains(';') => Self::Semicolon,
+            () if row.contains('\t') => Self::Tab,
+            // `400 0,5`, but not `400, 0.5`.
+            () if row.contains(',') && words.clone().count() > 1 && words.all(has_decimal_comma) => Self::Blanks,
+            () if row.contains(',') => Self::Comma,
+            () => Self::Blanks,
+        }
+    }
+
+    /// The fields of a row.
+    fn fields(self, row: &str) -> Vec<&str> {
+        match self {
+            Self::Comma => row.split(',').collect(),
+            Self::Semicolon => row.split(';').collect(),
+            Self::Tab => row.split('\t').collect(),
+            Self::Blanks => row.split_whitespace().collect(),
+        }
+    }
+}
+
+fn is_of_number(c: char) -> bool {
+    c.is_ascii_digit() || matches!(c, '+' | '-' | '.')
 }
 
 impl Place {
@@ -80,7 +145,8 @@ impl Place {
         let start: usize = text.split_inclusive('\n').take(self.row.saturating_sub(1)).map(str::len).sum();
         let trimmed = line.trim_end();
         let (mut from, mut to) = (0, trimmed.len());
-        if let Some(field) = self.column.checked_sub(1).and_then(|i| trimmed.split(',').nth(i)) {
+        let field = self.column.checked_sub(1).and_then(|i| self.separator.fields(trimmed).get(i).copied());
+        if let Some(field) = field {
             from = field.as_ptr() as usize - trimmed.as_ptr() as usize;
             to = from + field.trim_end().len();
             from += field.len() - field.trim_start().len();
@@ -205,16 +271,15 @@ impl TableFault {
             Self::UnknownKey(_) => "keep other remarks under `# note: ...`",
             Self::FrontMatter { .. } | Self::NotKeyValue => "`# key: value`, as in the files under spectra/",
             Self::NoKind => "or name it where one kind is wanted",
-            Self::Header(found) if found.contains(';') || found.contains('\t') => "separate the columns with commas",
-            Self::Header(_) => "put a row with the names of the columns first; wavelengths are in nm",
+            Self::Header(_) => "call the first column `wavelength_nm`, or leave the header out; wavelengths are in nm",
             Self::ColumnName(_) => "each column has a name of its own",
             Self::FieldCount { found, expected } if found > expected => {
-                "separate columns with commas, and write a decimal point in numbers"
+                "write a decimal point in numbers, or separate the columns with semicolons"
             }
             Self::FieldCount { .. } => "each row has a value for each column",
             Self::NotANumber(_) | Self::NotFinite(_) => "write a number with a decimal point, such as 0.5 or 1e-3",
             Self::Wavelength(_) => "such as 550",
-            Self::NoLight(_) => "given in micrometres? Multiply by 1000",
+            Self::NoLight(_) => "given in micrometers? Multiply by 1000",
             Self::OutOfOrder { .. } => "sort the rows by wavelength, each wavelength once",
             Self::Negative { .. } => "write 0 where nothing was measured",
             Self::AboveBound { .. } => "a part of 1, not of 100",
@@ -237,6 +302,8 @@ pub struct Table {
     pub columns: Vec<String>,
     /// Wavelengths in air, nm, increasing.
     pub wavelengths_nm: Arc<[f64]>,
+    /// What was made of a table that is not written as the bundled ones are: `no header`, `wavelengths in micrometers`.
+    pub notes: Vec<&'static str>,
     /// Values by column, then by row, in the unit of the front matter.
     pub values: Vec<Arc<[f64]>>,
 }
@@ -289,7 +356,8 @@ impl Table {
 
 fn whole(file: &str, cause: TableFault) -> TableError {
     let text = Arc::new(SourceFile::new(file, ""));
-    let place = Place { file: file.into(), row: 0, column: 0, column_name: String::new(), text };
+    let separator = Separator::Comma;
+    let place = Place { file: file.into(), row: 0, column: 0, column_name: String::new(), text, separator };
     TableError { place: Box::new(place), cause }
 }
 
@@ -297,59 +365,92 @@ struct Reader<'a> {
     file: &'a str,
     text: &'a str,
     kind: Option<Kind>,
-    header: Vec<&'a str>,
+    /// Whether the table is written as the bundled ones are.
+    strict: bool,
+    separator: Separator,
+    header: Vec<String>,
+    notes: Vec<&'static str>,
 }
 
 impl<'a> Reader<'a> {
     fn new(file: &'a str, text: &'a str, kind: Option<Kind>) -> Self {
-        Self { file, text, kind, header: Vec::new() }
+        let strict = text.lines().next().is_some_and(|l| key_value(l).is_some_and(|(k, _)| k == "spectra"));
+        let separator = Separator::Comma;
+        Self { file, text, kind, strict, separator, header: Vec::new(), notes: Vec::new() }
     }
 
     fn fault(&self, row: usize, column: usize, cause: TableFault) -> TableError {
-        let name = column.checked_sub(1).and_then(|i| self.header.get(i)).copied().unwrap_or_default();
+        let name = column.checked_sub(1).and_then(|i| self.header.get(i)).cloned().unwrap_or_default();
         let text = Arc::new(SourceFile::new(self.file, self.text));
-        let place = Place { file: self.file.into(), row, column, column_name: name.into(), text };
+        let separator = self.separator;
+        let place = Place { file: self.file.into(), row, column, column_name: name, text, separator };
         TableError { place: Box::new(place), cause }
+    }
+
+    /// Lines with something on them that is no comment, by their number from 1.
+    fn rows(&self) -> impl Iterator<Item = (usize, &'a str)> + use<'a> {
+        let lines = self.text.lines().enumerate().map(|(i, line)| (i + 1, line.trim()));
+        lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'))
     }
 
     fn read(mut self) -> Result<Table, TableError> {
         let mut meta = Meta::default();
-        let strict = self.text.lines().next().is_some_and(|l| key_value(l).is_some_and(|(k, _)| k == "spectra"));
-        let mut kind = None;
-        let mut wavelengths: Vec<f64> = Vec::new();
-        let mut values: Vec<Vec<f64>> = Vec::new();
-        for (i, line) in self.text.lines().enumerate() {
-            let row = i + 1;
-            let line = line.trim();
-            if line.is_empty() {
-                continue;
-            }
-            if line.starts_with('#') {
-                // What lies beyond the rows may be said in any file: nothing else about it is in the numbers.
-                if strict || key_value(line).is_some_and(|(key, _)| key == "outside") {
-                    self.front_matter(&mut meta, row, line)?;
-                }
-                continue;
-            }
-            if self.header.is_empty() {
-                self.read_header(row, line)?;
-                kind = Some(meta.kind.or(self.kind).ok_or_else(|| self.fault(row, 0, TableFault::NoKind))?);
-                values = vec![Vec::new(); self.header.len() - 1];
-                continue;
-            }
+        // What lies beyond the rows may be said in any file: nothing else about it is in the numbers.
+        let is_meant = |line: &str| {
+            line.starts_with('#') && (self.strict || key_value(line).is_some_and(|(key, _)| key == "outside"))
+        };
+        let comments: Vec<(usize, &str)> =
+            self.text.lines().map(str::trim).enumerate().filter(|(_, line)| is_meant(line)).collect();
+        for (i, line) in comments {
+            self.front_matter(&mut meta, i + 1, line)?;
+        }
+        if !self.strict
+            && let Some((_, row)) = self.rows().find(|(_, row)| row.starts_with(is_of_number))
+        {
+            // A row with one field says nothing of what separates several.
+            let single = Separator::of(row).fields(row).len() < 2;
+            let header = self.rows().map(|(_, line)| line).next().filter(|_| single);
+            self.separator = Separator::of(header.unwrap_or(row));
+        }
+        let mut rows = self.rows().peekable();
+        let Some(&(first, line)) = rows.peek() else { return Err(self.fault(0, 0, TableFault::Empty)) };
+        if self.strict || !line.starts_with(is_of_number) {
+            self.read_header(first, line)?;
+            rows.next();
+        } else {
+            self.name_columns(first, self.separator.fields(line).len())?;
+        }
+        let kind = meta.kind.or(self.kind).ok_or_else(|| self.fault(first, 0, TableFault::NoKind))?;
+        let mut values: Vec<Vec<f64>> = vec![Vec::new(); self.header.len() - 1];
+        let (mut numbers, mut wavelengths): (Vec<usize>, Vec<f64>) = (Vec::new(), Vec::new());
+        for (row, line) in rows {
             if wavelengths.len() == MAX_ROWS {
                 return Err(self.fault(row, 0, TableFault::TooManyRows));
             }
-            let kind = kind.expect("set with the header");
-            self.read_row(row, line, kind, meta.scale(), &mut wavelengths, &mut values)?;
+            wavelengths.push(self.read_row(row, line, kind, meta.scale(), &mut values)?);
+            numbers.push(row);
         }
-        let (Some(kind), false) = (kind, wavelengths.is_empty()) else {
+        let (Some(&begin), Some(&end)) = (wavelengths.first(), wavelengths.last()) else {
             return Err(self.fault(0, 0, TableFault::Empty));
         };
-        if let Some(last) = wavelengths.last().filter(|last| **last < SHORTEST_NM) {
-            let row =
-                self.text.lines().position(|line| line.starts_with(|c: char| c.is_ascii_digit())).map_or(0, |i| i + 1);
-            return Err(self.fault(row, 1, TableFault::NoLight(wavelengths.first().copied().unwrap_or(*last))));
+        if begin > end && !self.strict {
+            self.notes.push("falling wavelengths");
+            numbers.reverse();
+            wavelengths.reverse();
+            values.iter_mut().for_each(|column| column.reverse());
+        }
+        for i in 1..wavelengths.len() {
+            let (before, found) = (wavelengths[i - 1], wavelengths[i]);
+            if found <= before {
+                return Err(self.fault(numbers[i], 1, TableFault::OutOfOrder { before, found }));
+            }
+        }
+        if begin.max(end) < SHORTEST_NM {
+            let Some((um, nm)) = Unit::find("um").zip(Unit::find("nm")).filter(|_| !self.strict) else {
+                return Err(self.fault(numbers[0], 1, TableFault::NoLight(begin)));
+            };
+            self.notes.push("wavelengths in micrometers");
+            wavelengths.iter_mut().for_each(|w| *w = um.convert(*w, nm));
         }
         if meta.interpolation == Interpolation::Sprague && !sprague::applies(&wavelengths) {
             return Err(self.fault(0, 0, TableFault::Sprague));
@@ -357,8 +458,9 @@ impl<'a> Reader<'a> {
         Ok(Table {
             file: self.file.into(),
             kind,
-            columns: self.header[1..].iter().map(|c| (*c).to_owned()).collect(),
+            columns: self.header.split_off(1),
             wavelengths_nm: wavelengths.into(),
+            notes: self.notes,
             values: values.into_iter().map(Into::into).collect(),
             meta,
         })
@@ -375,9 +477,19 @@ impl<'a> Reader<'a> {
         })
     }
 
-    fn read_header(&mut self, row: usize, line: &'a str) -> Result<(), TableError> {
-        let header: Vec<&str> = line.split(',').map(str::trim).collect();
-        if header[0] != "wavelength_nm" || header.len() < 2 {
+    fn read_header(&mut self, row: usize, line: &str) -> Result<(), TableError> {
+        let header: Vec<&str> = self.separator.fields(line).into_iter().map(bare).collect();
+        let first = header[0].to_lowercase();
+        let of_wavelengths = !self.strict && WAVELENGTH_WORDS.iter().any(|word| first.contains(word));
+        if self.separator == Separator::Blanks && of_wavelengths {
+            // Blanks also stand within names: `Wavelength [nm]   Power [W]`.
+            let next = self.rows().find(|(_, line)| line.starts_with(is_of_number));
+            let fields = next.map_or(header.len(), |(_, line)| self.separator.fields(line).len());
+            if fields != header.len() {
+                return self.name_columns(row, fields);
+            }
+        }
+        if !(header[0] == "wavelength_nm" || of_wavelengths) || header.len() < 2 {
             return Err(self.fault(row, 1, TableFault::Header(shorten(line))));
         }
         if header.len() - 1 > MAX_COLUMNS {
@@ -388,36 +500,57 @@ impl<'a> Reader<'a> {
                 return Err(self.fault(row, i + 1, TableFault::ColumnName(shorten(name))));
             }
         }
-        self.header = header;
+        self.header = header.into_iter().map(str::to_owned).collect();
         Ok(())
     }
 
+    /// Names of columns that have none: `value`, or their numbers where there are several.
+    fn name_columns(&mut self, row: usize, fields: usize) -> Result<(), TableError> {
+        if fields < 2 {
+            return Err(self.fault(row, 0, TableFault::FieldCount { found: fields, expected: 2 }));
+        }
+        if fields - 1 > MAX_COLUMNS {
+            return Err(self.fault(row, MAX_COLUMNS + 2, TableFault::TooManyColumns));
+        }
+        self.notes.push("no names of columns");
+        let names = (1..fields).map(|i| if fields == 2 { "value".to_owned() } else { i.to_string() });
+        self.header = std::iter::once("wavelength_nm".to_owned()).chain(names).collect();
+        Ok(())
+    }
+
+    /// Puts the values of a row behind those of their columns, and gives its wavelength as it is written.
     fn read_row(
         &self,
         row: usize,
         line: &str,
         kind: Kind,
         scale: Scale,
-        wavelengths: &mut Vec<f64>,
         values: &mut [Vec<f64>],
-    ) -> Result<(), TableError> {
-        let found = line.split(',').count();
-        if found != self.header.len() {
-            let cause = TableFault::FieldCount { found, expected: self.header.len() };
-            return Err(self.fault(row, found.min(self.header.len()), cause));
+    ) -> Result<f64, TableError> {
+        let fields = self.separator.fields(line);
+        if fields.len() != self.header.len() {
+            let cause = TableFault::FieldCount { found: fields.len(), expected: self.header.len() };
+            return Err(self.fault(row, fields.len().min(self.header.len()), cause));
         }
-        for (i, field) in line.split(',').enumerate() {
-            let value = number(field).map_err(|cause| self.fault(row, i + 1, cause))?;
-            if i == 0 {
-                check_wavelength(value, wavelengths.last().copied()).map_err(|cause| self.fault(row, 1, cause))?;
-                wavelengths.push(value);
-            } else {
-                check_value(value, kind, scale).map_err(|cause| self.fault(row, i + 1, cause))?;
-                values[i - 1].push(value);
-            }
+        let read = |i: usize| {
+            let has_decimal_comma = self.separator != Separator::Comma && fields[i].contains(',');
+            if has_decimal_comma { number(&fields[i].replacen(',', ".", 1)) } else { number(fields[i]) }
+        };
+        let wavelength = read(0).map_err(|cause| self.fault(row, 1, cause))?;
+        if wavelength <= 0.0 {
+            return Err(self.fault(row, 1, TableFault::Wavelength(wavelength)));
         }
-        Ok(())
+        for i in 1..fields.len() {
+            let value = read(i).and_then(|value| check_value(value, kind, scale).map(|()| value));
+            values[i - 1].push(value.map_err(|cause| self.fault(row, i + 1, cause))?);
+        }
+        Ok(wavelength)
     }
+}
+
+/// A field without its blanks and quotes.
+fn bare(field: &str) -> &str {
+    field.trim().trim_matches('"').trim()
 }
 
 fn key_value(line: &str) -> Option<(&str, &str)> {
@@ -431,17 +564,9 @@ fn shorten(text: &str) -> String {
 }
 
 fn number(field: &str) -> Result<f64, TableFault> {
-    let field = field.trim();
+    let field = bare(field);
     let value: f64 = field.parse().map_err(|_| TableFault::NotANumber(shorten(field)))?;
     if value.is_finite() { Ok(value) } else { Err(TableFault::NotFinite(shorten(field))) }
-}
-
-fn check_wavelength(found: f64, before: Option<f64>) -> Result<(), TableFault> {
-    match before {
-        _ if found <= 0.0 => Err(TableFault::Wavelength(found)),
-        Some(before) if found <= before => Err(TableFault::OutOfOrder { before, found }),
-        _ => Ok(()),
-    }
 }
 
 fn check_value(value: f64, kind: Kind, scale: Scale) -> Result<(), TableFault> {

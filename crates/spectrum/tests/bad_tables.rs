@@ -17,7 +17,7 @@ fn each_fault_has_its_place() {
         ("wavelength_nm,p\n", "bad.csv: holds no data"),
         ("# spectra: 1\n# kind: emission\nwavelength_nm,p\n\n", "bad.csv: holds no data"),
         (
-            "wavelength_nm,p\n400,1\n390,1\n",
+            "wavelength_nm,p\n400,1\n390,1\n410,1\n",
             "bad.csv: row 3, column 1 (wavelength_nm): 390 nm does not come after 400 nm: wavelengths must increase",
         ),
         (
@@ -37,9 +37,11 @@ fn each_fault_has_its_place() {
         ("wavelength_nm,p\n400\n", "bad.csv: row 2, column 1 (wavelength_nm): 1 fields where the header has 2"),
         ("wavelength_nm,p\n400,1,2\n", "bad.csv: row 2, column 2 (p): 3 fields where the header has 2"),
         (
-            "400,1\n410,2\n",
-            "bad.csv: row 1, column 1: a header such as `wavelength_nm,power` is wanted here, not `400,1`",
+            "time,p\n400,1\n",
+            "bad.csv: row 1, column 1: a header such as `wavelength_nm,power` is wanted here, not `time,p`",
         ),
+        ("400\n410\n", "bad.csv: row 1: 1 fields where the header has 2"),
+        ("wavelength_nm;p\n400;1,5,2\n", "bad.csv: row 2, column 2 (p): `1.5,2` is not a number"),
         ("wavelength_nm,p,p\n", "bad.csv: row 1, column 3: column name `p` is empty or appears twice"),
     ] {
         assert_eq!(message(text, emission), want);
@@ -108,6 +110,44 @@ fn windows_files_and_free_comments_are_read() {
         .expect("sound");
     assert_eq!(log.meta.scale(), Scale::Log10);
     assert!((log.column_at(0).at(400.0) - 0.1).abs() < 1e-16);
+}
+
+/// Each of these is the same table: 400 nm 0.5, 410 nm 1, 420 nm 0.25.
+#[test]
+fn tables_are_read_as_people_have_them() {
+    for (text, column, notes) in [
+        ("400,0.5\n410,1\n420,0.25\n", "value", &["no names of columns"][..]),
+        ("wavelength,value\n400,0.5\n410,1\n420,0.25\n", "value", &[]),
+        ("\"Wavelength (nm)\",\"Power\"\n400,0.5\n410,1\n420,0.25\n", "Power", &[]),
+        ("nm;power\n400;0,5\n410;1\n420;0,25\n", "power", &[]),
+        ("400,0;0,5\n410,0;1,0\n420,0;0,25\n", "value", &["no names of columns"]),
+        ("nm\tpower\n400\t0.5\n410\t1\n420\t0,25\n", "power", &[]),
+        ("# lamp\n  400   0.5\n  410   1\n  420   2.5e-1\n", "value", &["no names of columns"]),
+        ("400 0,5\n410 1\n420 0,25\n", "value", &["no names of columns"]),
+        ("Wavelength [nm]  Power [W]\n400 0.5\n410 1\n420 0.25\n", "value", &["no names of columns"]),
+        ("420, 0.25\n410, 1\n400, 0.5\n", "value", &["no names of columns", "falling wavelengths"]),
+        ("um,p\n0.4,0.5\n0.41,1\n0.42,0.25\n", "p", &["wavelengths in micrometers"]),
+        (
+            "0.42 0.25\r\n0.41 1\r\n0.4 0.5\r\n",
+            "value",
+            &["no names of columns", "falling wavelengths", "wavelengths in micrometers"],
+        ),
+    ] {
+        let table = Table::parse("mine.txt", text, Some(Kind::Emission)).unwrap_or_else(|e| panic!("{text}{e}"));
+        assert_eq!(
+            (&*table.wavelengths_nm, &*table.values[0]),
+            (&[400.0, 410.0, 420.0][..], &[0.5, 1.0, 0.25][..]),
+            "{text}"
+        );
+        assert_eq!((table.columns, &table.notes[..]), (vec![column.to_owned()], notes), "{text}");
+    }
+    // A table that says that it is written as ours are is held to that.
+    for text in
+        ["400,1\n410,1\n", "wavelength_nm;p\n400;1\n", "wavelength_nm,p\n410,1\n400,1\n", "wavelength_nm,p\n0.4,1\n"]
+    {
+        let strict = format!("# spectra: 1\n# kind: emission\n{text}");
+        assert!(Table::parse("ours.csv", &strict, None).is_err(), "{text}");
+    }
 }
 
 #[test]

@@ -238,10 +238,11 @@ fn place_at(faults: Faults, params: &Params, key: &str, name: &str) -> Faults {
             return fault;
         }
         let known: Vec<&str> = Stock::bundled().collect();
-        let hint = match (nearest(name, known.iter().copied()), fault.hint) {
-            (Some(near), _) => format!("did you mean `{near}`?"),
-            (None, Some(hint)) if hint.starts_with("did you mean") || name.contains('.') => hint,
-            (None, _) => format!("bundled stocks: {}", known.join(", ")),
+        let generic = |hint: &String| hint.starts_with("a file is looked for") && !name.contains('.');
+        let hint = match (fault.hint.filter(|hint| !generic(hint)), nearest(name, known.iter().copied())) {
+            (Some(hint), _) => hint,
+            (None, Some(near)) => format!("did you mean `{near}`?"),
+            (None, None) => format!("bundled stocks: {}", known.join(", ")),
         };
         params.fault(key, fault.message).hint(hint)
     };

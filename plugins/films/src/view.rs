@@ -7,7 +7,7 @@ use spectra_core::math::log10;
 use spectra_core::params::{Faults, Params, Positive as AboveZero};
 use spectra_core::resources::Resources;
 use spectra_film::emulsion::Emulsion;
-use spectra_film::positive::Positive;
+use spectra_film::positive::{Positive, PositiveError};
 use spectra_film::print::{Paper, Print};
 use spectra_film::stock::{Process, Stock};
 use spectra_spectrum::{Emission, find_emission_in};
@@ -97,9 +97,7 @@ pub(crate) fn seen(
         _ => {}
     }
     let (Some(light), Some(lamp)) = faults.into_result((light, lamp))? else { return Err(Faults::new()) };
-    let unfit = |error: spectra_film::positive::PositiveError| {
-        Faults::from(params.fault("stock", format!("{}: {error}", stock.name)))
-    };
+    let unfit = |error: PositiveError| Faults::from(params.fault("stock", format!("{}: {error}", stock.name)));
     let positive = |picture: Positive, words: String| Seen { picture: Picture::Positive(Box::new(picture)), words };
     match view {
         View::Print => print(p, params, resources, stock, film, gray_lx_s, &light, lamp.as_ref()),
@@ -149,7 +147,18 @@ fn print(
     let emulsion = Emulsion::new(&print_stock, &development).map_err(|e| params.fault(key, e.to_string()))?;
     let lamp = lamp.unwrap_or(&print_stock.reference);
     let positive = Positive::printed(film, gray_lx_s, &print_stock, emulsion, lamp, light);
-    let positive = positive.map_err(|e| params.fault("print", e.to_string()))?;
+    let positive = positive.map_err(|error| {
+        // Where the scene names no print stock, it is the camera film that asks for this one.
+        let key = if p.print.is_some() { "print" } else { "stock" };
+        let fault = params.fault(key, format!("{} cannot be printed on {error}", stock.name));
+        match error {
+            PositiveError::Unbalanced { .. } => {
+                fault.hint("`view: scan` shows the film without a print; or name another print stock at `print`")
+            }
+            PositiveError::NoPrintStock { .. } => fault.hint("`spectra list stock` lists the print stocks apart"),
+            PositiveError::DarkLight | PositiveError::NoGray => fault,
+        }
+    })?;
     Ok(Seen { picture: Picture::Positive(Box::new(positive)), words: format!("printed on {}", print_stock.name) })
 }
 

@@ -58,6 +58,12 @@ pub const FORMATS: [Format; 30] = [
     format("1-inch", 13.2, 8.8, "sensors of that name: image area"),
 ];
 
+/// All formats as a program reads them in the schema of an imager: name, size in mm, source.
+pub fn listed() -> serde_json::Value {
+    let of = |f: &Format| serde_json::json!({ "name": f.name, "width_mm": f.width_mm, "height_mm": f.height_mm, "source": f.source });
+    FORMATS.iter().map(of).collect()
+}
+
 /// The format called `name`; `120 6x6` is `6x6`, `35mm` and `full-frame` are `135`; case does not matter.
 #[must_use]
 pub fn format_named(name: &str) -> Option<&'static Format> {

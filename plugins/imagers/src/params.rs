@@ -22,6 +22,7 @@ macro_rules! imager_params {
         pub struct $name {
             /// Size by name, such as `135` (36 x 24 mm), `6x6` or `super-35`; or else `width` and `height`.
             #[serde(default)]
+            #[schemars(extend("x-formats" = $crate::formats::listed()))]
             pub format: Option<String>,
             /// Width of the frame, 0.001 mm to 100 m, mm if bare; together with `height`, in place of `format`.
             #[serde(default)]

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 #[derive(Debug, Args)]
 #[command(
     long_about = "Look at film stocks: what they see, and how they answer.\n\n\
-        NAME is a bundled stock (see `spectra list stock`) or a YAML file.",
+        NAME is a bundled stock (see `spectra list stock`), a part of its name (`tri-x`), or a YAML file.",
     after_long_help = "Examples:\n  spectra film info kodak-tri-x-400\n  \
         spectra film plot kodak-vision3-250d-5207 -o 5207.svg"
 )]
@@ -54,7 +54,7 @@ pub(crate) struct FilmPlot {
     /// A bundled stock, or a YAML file.
     #[arg(value_name = "NAME")]
     pub name: String,
-    /// File to write: FILE.svg or FILE.png.
+    /// File to write: FILE.svg or FILE.png; NAME.svg if not given.
     #[arg(short, long, value_name = "FILE")]
-    pub output: PathBuf,
+    pub output: Option<PathBuf>,
 }

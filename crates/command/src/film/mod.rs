@@ -8,11 +8,13 @@ pub(crate) use arguments::FilmArguments;
 
 use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
+use crate::words::figure_of;
 use arguments::{FilmCommand, FilmPlot};
 use spectra_core::params::{Fault, nearest};
 use spectra_film::stock::Stock;
 use spectra_plot::{Format, PlotError};
 use spectra_scene::FileResources;
+use spectra_scene::bundled::{Bundled, other_kind};
 use std::path::Path;
 
 /// Runs a command on film stocks.
@@ -25,20 +27,22 @@ pub(crate) fn film(command: &FilmCommand) -> Outcome {
 
 /// A stock file, or a bundled stock.
 fn load(name: &str) -> Result<Stock, Failure> {
-    let known: Vec<&str> = Stock::bundled().collect();
     let is_file = name.ends_with(".yaml") || name.ends_with(".yml") || name.contains(['/', '\\']);
-    if !is_file && !known.contains(&name) {
-        let hint = match nearest(name, known.iter().copied()) {
+    let found = if is_file { Ok(name.to_owned()) } else { Bundled::Stock.find(name) };
+    let name = found.map_err(|several| {
+        let known = Bundled::Stock.names();
+        let hint = match nearest(name, known.iter().map(String::as_str)) {
+            _ if !several.is_empty() => format!("which one? {}", several.join(", ")),
             Some(near) => format!("did you mean `{near}`?"),
-            None => format!("known: {}", known.join(", ")),
+            None => other_kind(name, Bundled::Stock).unwrap_or_else(|| format!("known: {}", known.join(", "))),
         };
-        return Err(Failure::Faults(Fault::new(format!("no film stock is called `{name}`")).hint(hint).into()));
-    }
-    Ok(Stock::load(name, &FileResources::beside(Path::new("")))?)
+        Fault::new(format!("no film stock is called `{name}`")).hint(hint)
+    })?;
+    Ok(Stock::load(&name, &FileResources::beside(Path::new("")))?)
 }
 
 fn plot(arguments: &FilmPlot) -> Outcome {
-    let output = &arguments.output;
+    let output = &arguments.output.clone().unwrap_or_else(|| figure_of(&arguments.name));
     // Before anything is computed: a wrong ending is found out at once.
     Format::of(output).map_err(failure)?;
     let stock = load(&arguments.name)?;

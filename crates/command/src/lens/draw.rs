@@ -4,6 +4,7 @@ use super::load;
 use crate::arguments::{CutArgument, LensDraw};
 use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
+use crate::words::figure_of;
 use spectra_analysis::draw::{Fans, Ground, Sheet, View};
 use spectra_analysis::fan::FanFinder;
 use spectra_lens::{Lens, Section};
@@ -18,7 +19,7 @@ const PARTS: [f64; 2] = [0.6, 0.95];
 /// Draws a lens.
 pub(crate) fn draw(arguments: &LensDraw) -> Outcome {
     // Before anything is computed: a wrong ending is found out at once.
-    let output = arguments.output.clone().unwrap_or_else(|| default_name(&arguments.setting.lens));
+    let output = arguments.output.clone().unwrap_or_else(|| figure_of(&arguments.setting.lens));
     Format::of(&output).map_err(failure)?;
     let lens = load(&arguments.setting)?;
     let section = match arguments.section {
@@ -49,13 +50,6 @@ pub(crate) fn draw(arguments: &LensDraw) -> Outcome {
     sheet.draw(&lens, &rays).write(&output).map_err(failure)?;
     console::note(&format!("wrote {}", output.display()));
     Ok(DONE)
-}
-
-/// `helios.svg` of `lenses/helios.yaml`: in the folder that one is in.
-fn default_name(lens: &str) -> PathBuf {
-    let name = Path::new(lens).file_name().map_or_else(|| "lens".into(), |name| name.to_string_lossy().into_owned());
-    let stem = [".yaml", ".yml", ".zmx", ".seq", ".csv"].iter().find_map(|ending| name.strip_suffix(ending));
-    PathBuf::from(format!("{}.svg", stem.unwrap_or(&name)))
 }
 
 fn fields_deg(arguments: &LensDraw, lens: &Lens, section: Section) -> Result<Vec<f64>, Failure> {

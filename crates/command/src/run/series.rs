@@ -11,12 +11,13 @@ use super::target::Target;
 use super::{failed, refused, watch};
 use crate::arguments::Run;
 use crate::outcome::{DONE, Failure, Outcome};
-use crate::{memory, version, words};
+use crate::{doc, memory, version, words};
 use serde_json::{Map, Value, json};
 use spectra_core::Isa;
-use spectra_core::params::{Fault, Faults, Warning};
+use spectra_core::params::{Fault, Faults, Reading, Warning};
 use spectra_render::{Control, Renderer};
 use spectra_scene::{Member, Scene, Series, SeriesKind};
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -235,10 +236,40 @@ fn told(series: &Series, fault: Fault, members: &[usize], all: usize) -> Fault {
     fault.hint(hint)
 }
 
+/// The unit of a bare number at a path of the scene; that of a variable is known by where it is used.
+fn unit_of(series: &Series, path: &str) -> Option<String> {
+    let Some(name) = path.strip_prefix("variables.") else { return doc::unit_of(path) };
+    series.uses_of_variable(name).into_iter().find_map(|(path, text)| {
+        let is_temperature =
+            ["blackbody:", "daylight:"].iter().any(|head| text.contains(&format!("{head}${{{name}}}")));
+        let is_whole = text == format!("${name}") || text == format!("${{{name}}}");
+        match () {
+            () if is_temperature => Some("K".to_owned()),
+            () if is_whole => doc::unit_of(&path),
+            () => None,
+        }
+    })
+}
+
 /// The contact sheet of a sweep, its cells empty.
 fn contact(series: &Series, planned: &[Planned]) -> Option<Contact> {
-    let SeriesKind::Sweep { axes } = series.kind() else { return None };
-    let members: Vec<Member> = planned.iter().map(|p| p.member.clone()).collect();
+    let SeriesKind::Sweep { mut axes } = series.kind() else { return None };
+    let mut members: Vec<Member> = planned.iter().map(|p| p.member.clone()).collect();
+    // On the sheet a bare number has the unit that it is read in.
+    let mut units: HashMap<String, Option<String>> = HashMap::new();
+    let mut complete = |path: &str, value: &mut String| {
+        if let Reading::Bare(_) = Reading::of(value.trim_matches('"'))
+            && let Some(unit) = units.entry(path.to_owned()).or_insert_with(|| unit_of(series, path))
+        {
+            *value = if unit == "f/" { format!("f/{value}") } else { format!("{value} {unit}") };
+        }
+    };
+    for axis in &mut axes {
+        axis.values.iter_mut().for_each(|value| complete(&axis.path, value));
+    }
+    for (path, value) in members.iter_mut().flat_map(|member| &mut member.values) {
+        complete(path, value);
+    }
     Some(Contact::new(&axes, &members, planned.first()?.size_px))
 }
 

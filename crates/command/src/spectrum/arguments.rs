@@ -7,8 +7,8 @@ use std::path::PathBuf;
 #[derive(Debug, Args)]
 #[command(
     long_about = "Look at spectra: their color in figures, and pictures of them.\n\n\
-        NAME is a bundled spectrum (see `spectra spectrum list`), a column of one (`colorchecker#red`), a CSV or YAML file, \
-        or is written out: blackbody:5800 and daylight:5500 (K), line:C' or line:632.8, lines:404.66=1,e=2 (with powers), \
+        NAME is a bundled spectrum (see `spectra list spectrum`), a column of one (`colorchecker#red`), a table (.csv, .txt, \
+        .dat, .tsv) or YAML file, or is written out: blackbody:5800, daylight:5500 and 5600K (K), line:C' or line:632.8, lines:404.66=1,e=2 (with powers), \
         gaussian:550,20 (center and standard deviation, nm), rectangle:500,600 (nm), constant:1; and sums and products of \
         these with spaces around their signs, such as '0.5 * D65 + line:e' or 'A * gaussian:550,40'.",
     after_long_help = "Examples:\n  spectra spectrum info D65\n  \
@@ -57,6 +57,19 @@ pub(crate) enum ObserverName {
     Cie2015Wide,
 }
 
+/// What a spectrum is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum KindName {
+    /// Light.
+    Emission,
+    /// A filter.
+    Transmittance,
+    /// A surface.
+    Reflectance,
+    /// A detector.
+    Sensitivity,
+}
+
 /// `spectra spectrum info`.
 #[derive(Debug, Args)]
 #[command(
@@ -71,6 +84,9 @@ pub(crate) struct SpectrumInfo {
     /// A bundled spectrum, a CSV file, or a spectrum written out (blackbody:5800).
     #[arg(value_name = "NAME")]
     pub name: String,
+    /// What a file is that does not say so.
+    #[arg(long = "as", value_enum, value_name = "KIND")]
+    pub kind: Option<KindName>,
     /// The observer of XYZ, xy and Lab.
     #[arg(long, value_enum, value_name = "YEAR", default_value = "1931")]
     pub observer: ObserverName,
@@ -94,9 +110,12 @@ pub(crate) struct SpectrumPlot {
     /// Bundled spectra, CSV files, or spectra written out (blackbody:5800).
     #[arg(value_name = "NAME", required = true)]
     pub names: Vec<String>,
-    /// File to write: FILE.svg or FILE.png.
+    /// File to write: FILE.svg or FILE.png; that of the first name, NAME.svg, if not given.
     #[arg(short, long, value_name = "FILE")]
-    pub output: PathBuf,
+    pub output: Option<PathBuf>,
+    /// What files are that do not say so.
+    #[arg(long = "as", value_enum, value_name = "KIND")]
+    pub kind: Option<KindName>,
     /// The chromaticity diagram, not the spectra.
     #[arg(long)]
     pub chromaticity: bool,

@@ -1,15 +1,19 @@
 //! `spectra spectrum info`.
 
 use super::arguments::{ObserverName, SpectrumInfo};
-use super::{files, load, load_illuminant};
+use super::{files, load_as, load_illuminant, tell_reading};
 use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
 use serde::Serialize;
 use spectra_spectrum::{
-    Adaptation, BAND, Dominant, Emission, Found, Gamut, Observer, RgbSpace, Strengths, cct, chromaticity,
-    dominant_wavelength, into_gamut, lab, meta_in, to_u8, xyz_of_light, xyz_of_reflectance, xyz_of_transmittance,
+    Adaptation, BAND, Dominant, Emission, Found, Gamut, Kind, Observer, RgbSpace, Strengths, Tabulated, cct, chromaticity,
+    dominant_wavelength, find_in, function_in, into_gamut, lab, meta_in, to_u8, xyz_of_light, xyz_of_reflectance,
+    xyz_of_transmittance,
 };
 use std::fmt::Write;
+
+/// About the least that an eye sees after an hour in the dark, cd/m2.
+const DARK_CD_M2: f64 = 1e-6;
 
 /// A spectrum in figures. What it does not have is `None`.
 #[derive(Debug, Serialize)]
@@ -46,7 +50,13 @@ struct Report {
 
 /// Shows a spectrum in figures.
 pub(crate) fn info(arguments: &SpectrumInfo) -> Outcome {
-    let found = load(&arguments.name)?;
+    if let Some((kind, function)) = function_in(&arguments.name, &files())
+        && find_in(&arguments.name, &files()).is_err()
+    {
+        return show_function(arguments, kind, &function);
+    }
+    let found = load_as(&arguments.name, arguments.kind)?;
+    tell_reading(&arguments.name);
     let illuminant = load_illuminant(&arguments.illuminant)?;
     let observer = observer(arguments.observer);
     let standard = Observer::cie_1931_2deg();
@@ -91,6 +101,46 @@ pub(crate) fn info(arguments: &SpectrumInfo) -> Outcome {
     } else {
         console::out(&text(&report, &found))?;
     }
+    Ok(DONE)
+}
+
+/// Shows a function of the wavelength that is neither light nor matter nor a detector: where it is highest and lowest.
+fn show_function(arguments: &SpectrumInfo, kind: Kind, function: &Tabulated) -> Outcome {
+    let values = BAND.wavelengths_nm().map(|nm| (nm, function.at(nm)));
+    let values: Vec<(f64, f64)> = values.collect();
+    let by_value = |a: &&(f64, f64), b: &&(f64, f64)| a.1.total_cmp(&b.1);
+    let (Some(highest), Some(lowest)) = (values.iter().max_by(by_value), values.iter().min_by(by_value)) else {
+        return Ok(DONE);
+    };
+    let meta = meta_in(&arguments.name, &files()).unwrap_or_default();
+    let name = arguments.name.trim();
+    if arguments.json {
+        console::pretty_json(&serde_json::json!({
+            "name": name,
+            "kind": kind.word(),
+            "title": meta.name,
+            "source": meta.source,
+            "licence": meta.licence,
+            "range_nm": meta.range_nm.map(|(from, to)| [from, to]),
+            "peak_nm": highest.0,
+            "highest": highest.1,
+            "lowest_nm": lowest.0,
+            "lowest": lowest.1,
+        }))?;
+        return Ok(DONE);
+    }
+    let title = meta.name.map_or(String::new(), |title| format!(" ({title})"));
+    let mut out = format!("{name}{title}: {}\n\n", kind.word());
+    let mut row = |name: &str, value: String| {
+        // Writing to a String cannot fail.
+        let _ = writeln!(out, "  {name:<22}{value}");
+    };
+    row("source", meta.source.unwrap_or_default());
+    row("licence", meta.licence.unwrap_or_default());
+    row("range", meta.range_nm.map_or(String::new(), |(from, to)| format!("{from} to {to} nm")));
+    row("highest", format!("{} at {} nm", significant(highest.1), highest.0));
+    row("lowest", format!("{} at {} nm", significant(lowest.1), lowest.0));
+    console::out(&out)?;
     Ok(DONE)
 }
 
@@ -177,7 +227,7 @@ fn text(report: &Report, found: &Found) -> String {
     row("strengths", report.strengths.map(|s| if s == Strengths::Estimated.word() { ESTIMATED } else { s }.to_owned()));
     report.notes.iter().for_each(|note| row("note", Some(note.clone())));
     row("range", report.range_nm.map(|[from, to]| format!("{from} to {to} nm")));
-    row("peak", report.peak_nm.map(|nm| format!("{nm} nm")));
+    row("peak", report.peak_nm.map(peak_in_words));
     if report.xyz.is_some() {
         let light = if matter { format!(", under {}", report.illuminant) } else { String::new() };
         row("observer", Some(format!("{}{light}", report.observer)));
@@ -190,6 +240,9 @@ fn text(report: &Report, found: &Found) -> String {
     row("dominant wavelength", report.dominant_wavelength_nm.map(|nm| format!("{nm:.2} nm")));
     row("complementary", report.complementary_wavelength_nm.map(|nm| format!("{nm:.2} nm")));
     row("excitation purity", report.purity.map(|p| format!("{:.2} %", 100.0 * p)));
+    // Of a black body the unit is known.
+    let is_dark = report.name.starts_with("blackbody") && report.luminance.is_some_and(|l| l < DARK_CD_M2);
+    row("light", is_dark.then(|| "too little between 350 and 830 nm to see".to_owned()));
     row("luminance", report.luminance.map(|l| format!("{} cd/m2, if its unit is W/(m2 sr nm)", significant(l))));
     let srgb = report.srgb.zip(report.srgb_linear);
     row(
@@ -199,6 +252,15 @@ fn text(report: &Report, found: &Found) -> String {
         }),
     );
     out
+}
+
+/// The peak, or that the band ends before there is one.
+fn peak_in_words(nm: f64) -> String {
+    match nm {
+        nm if nm >= BAND.end_nm() => format!("none: rises to the end of the band, {nm} nm"),
+        nm if nm <= BAND.start_nm => format!("none: falls from the start of the band, {nm} nm"),
+        nm => format!("{nm} nm"),
+    }
 }
 
 fn numbers(values: &[f64], decimals: usize) -> String {
@@ -219,6 +281,14 @@ fn significant(value: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::spectrum::load;
+
+    #[test]
+    fn a_band_may_end_before_the_peak() {
+        assert_eq!(peak_in_words(560.0), "560 nm");
+        assert_eq!(peak_in_words(830.0), "none: rises to the end of the band, 830 nm");
+        assert_eq!(peak_in_words(350.0), "none: falls from the start of the band, 350 nm");
+    }
 
     #[test]
     fn numbers_keep_six_digits() {

@@ -10,11 +10,13 @@ mod plot;
 
 pub(crate) use arguments::SpectrumArguments;
 
+use crate::console;
 use crate::outcome::{Failure, Outcome};
-use arguments::SpectrumCommand;
+use arguments::{KindName, SpectrumCommand};
 use spectra_core::params::Fault;
 use spectra_scene::FileResources;
-use spectra_spectrum::{Emission, Found, SpectrumError, find_emission_in, find_in};
+use spectra_scene::bundled::{Bundled, other_kind};
+use spectra_spectrum::{Emission, Found, Kind, SpectrumError, find_as_in, find_emission_in, find_in, notes_in};
 use std::path::Path;
 
 /// Runs a command on spectra.
@@ -35,7 +37,39 @@ fn files() -> FileResources {
 }
 
 fn load(name: &str) -> Result<Found, Failure> {
-    find_in(name, &files()).map_err(refuse)
+    find_in(name, &files()).map_err(|error| refuse_name(name, error))
+}
+
+/// As what it is said to be on the command line, if anything is.
+fn load_as(name: &str, kind: Option<KindName>) -> Result<Found, Failure> {
+    let Some(kind) = kind else { return load(name) };
+    let kind = match kind {
+        KindName::Emission => Kind::Emission,
+        KindName::Transmittance => Kind::Transmittance,
+        KindName::Reflectance => Kind::Reflectance,
+        KindName::Sensitivity => Kind::Sensitivity,
+    };
+    find_as_in(name, kind, &files()).map_err(|error| refuse_name(name, error))
+}
+
+/// Says what was made of a table that is not written as the bundled ones are.
+fn tell_reading(name: &str) {
+    let notes = notes_in(name, &files());
+    if !notes.is_empty() {
+        console::note(&format!("{}: {}", name.trim(), notes.join(", ")));
+    }
+}
+
+/// A name that is no spectrum's may be that of something else.
+fn refuse_name(name: &str, error: SpectrumError) -> Failure {
+    let other = match &error {
+        SpectrumError::Unknown { candidates, .. } if candidates.is_empty() => other_kind(name, Bundled::Spectrum),
+        _ => None,
+    };
+    match (other, error) {
+        (Some(hint), error) => Failure::Faults(Fault::new(error.to_string()).hint(hint).into()),
+        (None, error) => refuse(error),
+    }
 }
 
 fn load_illuminant(name: &str) -> Result<Emission, Failure> {

@@ -1,21 +1,31 @@
 //! `spectra spectrum plot`.
 
 use super::arguments::SpectrumPlot;
-use super::{load, load_illuminant};
+use super::{files, load_as, load_illuminant, tell_reading};
 use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
+use crate::words::figure_of;
 use spectra_plot::{Format, PlotError, figure};
 use spectra_spectrum::{
-    BAND, Emission, Found, Observer, chromaticity, xyz_of_light, xyz_of_reflectance, xyz_of_transmittance,
+    BAND, Emission, Found, Observer, chromaticity, find_in, function_in, xyz_of_light, xyz_of_reflectance,
+    xyz_of_transmittance,
 };
 
 /// Draws spectra, or their chromaticities.
 pub(crate) fn plot(arguments: &SpectrumPlot) -> Outcome {
-    let output = &arguments.output;
+    let name = arguments.names.first().map_or("", String::as_str);
+    let output = &arguments.output.clone().unwrap_or_else(|| figure_of(name));
     // Before anything is computed: a wrong ending is found out at once.
     Format::of(output).map_err(failure)?;
-    let named = |name: &String| Ok((name.trim().to_owned(), load(name)?));
-    let spectra = arguments.names.iter().map(named).collect::<Result<Vec<_>, Failure>>()?;
+    let (mut spectra, mut functions) = (Vec::new(), Vec::new());
+    for name in &arguments.names {
+        let shown = name.trim().to_owned();
+        match function_in(name, &files()).filter(|_| !arguments.chromaticity && find_in(name, &files()).is_err()) {
+            Some((_, function)) => functions.push((shown, function)),
+            None => spectra.push((shown, load_as(name, arguments.kind)?)),
+        }
+        tell_reading(name);
+    }
     let canvas = if arguments.chromaticity {
         let illuminant = load_illuminant(&arguments.illuminant)?;
         let point = |(name, found): &(String, Found)| Ok((name.clone(), xy(name, found, &illuminant)?));
@@ -25,7 +35,7 @@ pub(crate) fn plot(arguments: &SpectrumPlot) -> Outcome {
         spectra.iter().filter(|(_, found)| is_dark(found)).for_each(|(name, _)| {
             console::warning(&format!("`{name}` is 0 from {} to {} nm", BAND.start_nm, BAND.end_nm()));
         });
-        figure::spectrum(&spectra)
+        figure::spectrum_and_functions(&spectra, &functions)
     };
     canvas.write(output).map_err(failure)?;
     console::note(&format!("wrote {}", output.display()));

@@ -108,6 +108,10 @@ pub trait Quantity: Copy {
                 "found the text `{}`, expected {expected}\nhint: write a decimal point, not a comma",
                 shown(text)
             )),
+            Reading::UnknownUnit(unit) if unit.starts_with('/') => Err(format!(
+                "found {}, expected {expected}\nhint: below the line stands a number greater than 0, as in `1/125`",
+                shown(text)
+            )),
             Reading::UnknownUnit(unit) => {
                 let units = Self::DIMENSION.units();
                 let usual = usual_symbol(unit).filter(|symbol| units.contains(symbol));

@@ -94,10 +94,16 @@ pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Opti
         if other.len() > LONGEST {
             continue;
         }
-        let allowed = (name.len().max(other.len()) / 3).max(1);
+        let allowed = |a: &[char], b: &[char]| (a.len().max(b.len()) / 3).max(1);
         let distance = edit_distance(&name, &other);
+        // `portra-400` is no `tri-x-400`: equal figures do not make up for other words.
+        let words = |text: &[char]| -> Vec<char> { text.iter().copied().filter(|c| !c.is_ascii_digit()).collect() };
+        let (own, others) = (words(&name), words(&other));
+        if distance > allowed(&name, &other) || edit_distance(&own, &others) > allowed(&own, &others) {
+            continue;
+        }
         // A letter must remain: `G` is not a misspelt `R`.
-        let near = distance <= allowed && distance < name.len().max(other.len());
+        let near = distance < name.len().max(other.len());
         if near && best.is_none_or(|(least, _)| distance < least) {
             best = Some((distance, candidate));
         }
@@ -146,6 +152,9 @@ mod tests {
         ] {
             assert_eq!(nearest(typed, known), near, "{typed}");
         }
+        let stocks = ["kodak-tri-x-400", "kodak-double-x-5222"];
+        assert_eq!(nearest("kodak-trix-40", stocks), Some("kodak-tri-x-400"));
+        assert_eq!(nearest("portra-400", stocks), None);
         assert_eq!(nearest(&"x".repeat(1_000_000), known), None);
     }
 

@@ -9,7 +9,7 @@ mod swatches;
 pub use abbe::{AbbeGroup, abbe};
 pub use chromaticity::chromaticity;
 pub use dispersion::{IndexCurve, dispersion};
-pub use spectrum::spectrum;
+pub use spectrum::{spectrum, spectrum_and_functions};
 pub use swatches::swatches;
 
 use crate::canvas::Canvas;

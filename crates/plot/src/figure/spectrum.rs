@@ -9,7 +9,7 @@ use crate::labels::Labels;
 use crate::paint::{Paint, Stop};
 use crate::stroke::Stroke;
 use crate::text::TextStyle;
-use spectra_spectrum::{BAND, Found, Grid, Kind, Line, RgbSpace, spectral_color_linear, to_u8};
+use spectra_spectrum::{BAND, Found, Grid, Kind, Line, RgbSpace, Tabulated, spectral_color_linear, to_u8};
 
 const WIDTH: f64 = 900.0;
 const HEIGHT: f64 = 500.0;
@@ -23,8 +23,25 @@ const GRID: Grid = Grid { start_nm: 350.0, step_nm: 0.5, count: 961 };
 /// a figure of one light says where its strongest lie.
 #[must_use]
 pub fn spectrum(spectra: &[(String, Found)]) -> Canvas {
-    let names: Vec<String> = spectra.iter().map(|(name, _)| shortened(name)).collect();
-    let curves: Vec<Curve> = spectra.iter().map(|(_, found)| Curve::of(found)).collect();
+    spectrum_and_functions(spectra, &[])
+}
+
+/// The same with functions of the wavelength that are neither light nor matter nor a detector, and may be negative: those of
+/// color matching, and components that spectra are summed of. They are shown as they are.
+#[must_use]
+pub fn spectrum_and_functions(spectra: &[(String, Found)], functions: &[(String, Tabulated)]) -> Canvas {
+    let all_names = spectra.iter().map(|(name, _)| name).chain(functions.iter().map(|(name, _)| name));
+    let names: Vec<String> = all_names.map(|name| shortened(name)).collect();
+    let values = |f: &Tabulated| GRID.wavelengths_nm().map(|nm| f.at(nm)).collect();
+    let function = |(_, f): &(String, Tabulated)| Curve { continuum: Some(values(f)), lines: Vec::new() };
+    let curves = spectra.iter().map(|(_, found)| Curve::of(found)).chain(functions.iter().map(function));
+    let curves: Vec<Curve> = curves.collect();
+    let lowest = curves.iter().flat_map(|c| c.continuum.iter().flatten()).copied().fold(0.0, f64::min);
+    let quantity = match (spectra, functions) {
+        (_, []) => quantity(spectra),
+        ([], _) => "value",
+        _ => "relative value",
+    };
     let mut canvas = Canvas::new(WIDTH, HEIGHT, &format!("Spectrum: {}", names.join(", ")));
     let style = TextStyle::new(14.0);
     let (places, rows) = rows(&names, [92.0, 26.0], WIDTH - 24.0, &style);
@@ -32,9 +49,13 @@ pub fn spectrum(spectra: &[(String, Found)]) -> Canvas {
     let axes = Axes::new(
         frame,
         Axis::new("wavelength / nm", BAND.start_nm, BAND.end_nm()).ticks(10, 5),
-        Axis::new(quantity(spectra), 0.0, top(spectra, &curves)).ticks(6, 2),
+        Axis::new(quantity, 1.06 * lowest, top(spectra, &curves)).ticks(6, 2),
     );
     axes.draw_grid(&mut canvas);
+    if lowest < 0.0 {
+        let zero = [axes.at(BAND.start_nm, 0.0), axes.at(BAND.end_nm(), 0.0)];
+        canvas.line(zero[0], zero[1], &Stroke::new(Color::INK, 0.8));
+    }
     canvas.clip(Some(frame));
     let alone = curves.len() == 1;
     fill(&mut canvas, &axes, &curves, if alone { 0.92 } else { 0.4 });

@@ -178,6 +178,9 @@ fn find(name: &str, item: &Node) -> Result<Found, Fault> {
     if let Some(name) = bundled.into_iter().find(|name| spectra_data::get(name).is_some()) {
         return Ok(Found::Bundled(name));
     }
+    if let Ok(name) = crate::bundled::scene_file(name) {
+        return Ok(Found::Bundled(name));
+    }
     let fault = item.fault(format!("`{name}`: no such file")).path(INCLUDE);
     Err(fault.hint(match near(name, item) {
         Some(near) => format!("did you mean `{near}`?"),

@@ -114,8 +114,13 @@ pub fn load(path: &Path, overrides: &[String]) -> Result<Scene, Faults> {
 /// by [`Series::scene`].
 pub fn load_series(path: &Path, overrides: &[String]) -> Result<Series, Faults> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let name = path.file_stem().map_or_else(|| "scene".to_owned(), |s| s.to_string_lossy().into_owned());
     let mut root = read(path)?;
+    // A bundled scene is called by its whole name, however it was named.
+    let called = match root.file.name.strip_prefix("bundled:") {
+        Some(bundled) => Path::new(bundled),
+        None => path,
+    };
+    let name = called.file_stem().map_or_else(|| "scene".to_owned(), |s| s.to_string_lossy().into_owned());
     let text = Arc::clone(&root.file);
     let mut faults = Faults::new();
     let is_include = |text: &&String| text.split_once('=').is_some_and(|(path, _)| path.trim() == INCLUDE);
@@ -248,6 +253,29 @@ impl Series {
     #[must_use]
     pub fn files(&self) -> &[String] {
         &self.files
+    }
+
+    /// Where a variable is used: paths of values with their texts, such as `source.distance` and `$far`.
+    #[must_use]
+    pub fn uses_of_variable(&self, name: &str) -> Vec<(String, String)> {
+        fn search(node: &Node, path: &str, wanted: &[String; 2], found: &mut Vec<(String, String)>) {
+            match &node.value {
+                Value::Map(entries) => {
+                    for (key, item) in entries {
+                        let inner = if path.is_empty() { key.text.clone() } else { format!("{path}.{}", key.text) };
+                        search(item, &inner, wanted, found);
+                    }
+                }
+                Value::Seq(items) => items.iter().for_each(|item| search(item, path, wanted, found)),
+                Value::String(text) if *text == wanted[0] || text.contains(&wanted[1]) => {
+                    found.push((path.to_owned(), text.clone()));
+                }
+                Value::String(_) | Value::Null | Value::Bool(_) | Value::Number(_) => {}
+            }
+        }
+        let mut found = Vec::new();
+        search(&self.root, "", &[format!("${name}"), format!("${{{name}}}")], &mut found);
+        found
     }
 
     fn setting(&self, index: usize) -> Setting {

@@ -1,0 +1,79 @@
+//! What was meant by a word that is no command: `spectra scene.yaml`, `spectra render scene.yaml`.
+
+use clap::error::{ContextKind, ContextValue, ErrorKind};
+use spectra_core::params::Fault;
+use spectra_scene::bundled::Bundled;
+use std::path::Path;
+
+/// Words that people write for a command of ours.
+const OTHERS: [(&str, &str); 11] = [
+    ("render", "run SCENE"),
+    ("open", "run SCENE"),
+    ("view", "run SCENE"),
+    ("validate", "check SCENE"),
+    ("lint", "check SCENE"),
+    ("licenses", "--licenses"),
+    ("licences", "--licenses"),
+    ("completion", "completions bash"),
+    ("init", "new scene NAME"),
+    ("stock", "film info NAME"),
+    ("scenes", "list scene"),
+];
+
+/// What to write in place of an unknown command; `None` for other errors, and where nothing comes to mind.
+pub(crate) fn meant(error: &clap::Error) -> Option<Fault> {
+    if error.kind() != ErrorKind::InvalidSubcommand {
+        return None;
+    }
+    let Some(ContextValue::String(typed)) = error.get(ContextKind::InvalidSubcommand) else { return None };
+    let command = of_word(typed)?;
+    Some(Fault::new(format!("`{typed}` is no command")).hint(format!("did you mean `spectra {command}`?")))
+}
+
+/// The command, without `spectra`.
+fn of_word(typed: &str) -> Option<String> {
+    let typed = typed.trim();
+    if let Some((_, command)) = OTHERS.iter().find(|(word, _)| word.eq_ignore_ascii_case(typed)) {
+        return Some((*command).to_owned());
+    }
+    let ending = Path::new(typed).extension().map(|ending| ending.to_ascii_lowercase());
+    if ending.is_some_and(|ending| ending == "yaml" || ending == "yml") {
+        return Some(format!("run {typed}"));
+    }
+    let kinds = [Bundled::Scene, Bundled::Lens, Bundled::Stock, Bundled::Spectrum];
+    kinds.into_iter().find_map(|kind| {
+        let name = kind.find(typed).ok()?;
+        Some(match kind {
+            Bundled::Scene => format!("run {name}"),
+            Bundled::Lens => format!("lens info {name}"),
+            Bundled::Stock => format!("film info {name}"),
+            Bundled::Spectrum | Bundled::Glass => format!("spectrum info {name}"),
+        })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::arguments::Arguments;
+    use clap::Parser;
+
+    #[test]
+    fn words_that_are_no_command_have_one_behind_them() {
+        for (typed, command) in [
+            ("scene.yaml", "run scene.yaml"),
+            ("render", "run SCENE"),
+            ("biotar-ortho", "run biotar-ortho"),
+            ("helios", "lens info helios-44-58-f2"),
+            ("tri-x", "film info kodak-tri-x-400"),
+            ("D65", "spectrum info D65"),
+        ] {
+            let error = Arguments::try_parse_from(["spectra", typed]).expect_err(typed);
+            let hint = meant(&error).and_then(|fault| fault.hint).unwrap_or_default();
+            assert_eq!(hint, format!("did you mean `spectra {command}`?"));
+        }
+        // The parser's own hint is as good: `spectra lst`.
+        let error = Arguments::try_parse_from(["spectra", "lst"]).expect_err("no command");
+        assert!(meant(&error).is_none() && error.to_string().contains("list"), "{error}");
+    }
+}

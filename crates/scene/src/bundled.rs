@@ -1,0 +1,175 @@
+//! What is bundled and can be named: scenes, lenses, film stocks, spectra, coatings, and media by their catalogue.
+
+use spectra_core::names::{self, Match};
+use spectra_film::stock::Stock;
+use spectra_glass::Catalogue;
+
+/// What a name can be the name of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Bundled {
+    /// A scene.
+    Scene,
+    /// A lens.
+    Lens,
+    /// A film stock, or a print stock.
+    Stock,
+    /// A spectrum.
+    Spectrum,
+    /// A glass, or another medium.
+    Glass,
+}
+
+impl Bundled {
+    /// All of them.
+    pub const ALL: [Self; 5] = [Self::Scene, Self::Lens, Self::Stock, Self::Spectrum, Self::Glass];
+
+    /// What lies in this folder of the bundled data.
+    #[must_use]
+    pub fn in_folder(folder: &str) -> Option<Self> {
+        match folder {
+            "scenes" => Some(Self::Scene),
+            "lenses" => Some(Self::Lens),
+            "spectra/film" => Some(Self::Stock),
+            _ => None,
+        }
+    }
+
+    /// Its noun with its article.
+    #[must_use]
+    pub const fn noun(self) -> &'static str {
+        match self {
+            Self::Scene => "a scene",
+            Self::Lens => "a lens",
+            Self::Stock => "a film stock",
+            Self::Spectrum => "a spectrum",
+            Self::Glass => "a glass",
+        }
+    }
+
+    /// How the names are listed.
+    #[must_use]
+    pub const fn listed_by(self) -> &'static str {
+        match self {
+            Self::Scene => "spectra list scene",
+            Self::Lens => "spectra list lens",
+            Self::Stock => "spectra list stock",
+            Self::Spectrum => "spectra list spectrum",
+            Self::Glass => "spectra list glass",
+        }
+    }
+
+    /// The names, without the endings of their files.
+    #[must_use]
+    pub fn names(self) -> Vec<String> {
+        let files = |folder: &'static str| {
+            let all = spectra_data::list(folder).filter_map(move |path| path.strip_prefix(folder));
+            all.filter_map(|name| name.strip_suffix(".yaml")).map(str::to_owned).collect()
+        };
+        match self {
+            Self::Scene => files("scenes/"),
+            Self::Lens => files("lenses/"),
+            Self::Stock => Stock::bundled().map(str::to_owned).collect(),
+            Self::Spectrum => spectra_spectrum::bundled_spectra().map(|(name, _)| name.to_owned()).collect(),
+            Self::Glass => Catalogue::bundled().full_names().collect(),
+        }
+    }
+
+    /// The one name that `typed` stands for, by the rules of [`spectra_core::names::find`].
+    ///
+    /// # Errors
+    /// All names that it could stand for, where there are several; none where there is none.
+    pub fn find(self, typed: &str) -> Result<String, Vec<String>> {
+        if self == Self::Glass {
+            return match Catalogue::bundled().find(typed) {
+                Ok(glass) => Ok(glass.full_name()),
+                Err(spectra_glass::FindError::Ambiguous { candidates, .. }) => {
+                    Err(candidates.into_iter().map(|c| c.full_name).collect())
+                }
+                Err(_) => Err(Vec::new()),
+            };
+        }
+        let known = self.names();
+        match names::find(typed, known.iter().map(String::as_str)) {
+            Match::One(name) => Ok(name.to_owned()),
+            Match::Several(several) => Err(several.into_iter().map(str::to_owned).collect()),
+            Match::Nothing => Err(Vec::new()),
+        }
+    }
+}
+
+/// What else `typed` is the name of: the others of which it is a whole name or a part of one name only.
+#[must_use]
+pub fn also(typed: &str, than: Bundled) -> Vec<(Bundled, String)> {
+    let others = Bundled::ALL.into_iter().filter(|other| *other != than);
+    others.filter_map(|other| Some((other, other.find(typed).ok()?))).collect()
+}
+
+/// A hint for a name that is of another kind than is wanted: "`kodak-tri-x-400` is a film stock; `spectra list lens` shows
+/// the lenses".
+#[must_use]
+pub fn other_kind(typed: &str, wanted: Bundled) -> Option<String> {
+    let (kind, name) = also(typed, wanted).into_iter().next()?;
+    let article = wanted.noun();
+    let place = match kind {
+        Bundled::Stock => format!(" (in a scene: `film: {{stock: {name}, exposure: 1/60 s}}`)"),
+        Bundled::Lens => format!(" (in a scene: `lens: {{file: {name}}}`)"),
+        Bundled::Scene | Bundled::Spectrum | Bundled::Glass => String::new(),
+    };
+    Some(format!(
+        "`{name}` is {}{place}; where {article} is wanted, take a name from `{}`",
+        kind.noun(),
+        wanted.listed_by()
+    ))
+}
+
+/// The bundled file of a scene that is called `typed`, as `biotar-ortho`, `scenes/biotar-ortho.yaml` or a part of one name.
+///
+/// # Errors
+/// All scenes that it could be, where there are several; none where there is none.
+pub(crate) fn scene_file(typed: &str) -> Result<String, Vec<String>> {
+    let slashed = typed.replace('\\', "/");
+    let inside = slashed.trim_start_matches("./");
+    let inside = inside.strip_prefix("scenes/").unwrap_or(inside);
+    let stem = inside.strip_suffix(".yaml").or(inside.strip_suffix(".yml")).unwrap_or(inside);
+    let whole = format!("scenes/{stem}.yaml");
+    if spectra_data::get(&whole).is_some() {
+        return Ok(whole);
+    }
+    // A path of one's own that is not there is no part of a name.
+    if stem != inside || stem != slashed {
+        return Err(Vec::new());
+    }
+    Bundled::Scene.find(stem).map(|name| format!("scenes/{name}.yaml"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn scenes_are_found_as_people_write_them() {
+        for typed in [
+            "biotar-ortho",
+            "biotar-ortho.yaml",
+            "scenes/biotar-ortho",
+            "./scenes/biotar-ortho.yaml",
+            "scenes\\biotar-ortho.yaml",
+            "Biotar Ortho",
+        ] {
+            assert_eq!(scene_file(typed), Ok("scenes/biotar-ortho.yaml".to_owned()), "{typed}");
+        }
+        assert_eq!(scene_file("zernike"), Ok("scenes/surfaces/zernike.yaml".to_owned()));
+        assert!(scene_file("biotar").is_err_and(|several| several.len() > 3));
+        for typed in ["", "mine.yaml", "scenes/mine", "folder/biotar-ortho"] {
+            assert_eq!(scene_file(typed), Err(Vec::new()), "{typed}");
+        }
+    }
+
+    #[test]
+    fn names_of_another_kind_are_told() {
+        let hint = other_kind("Tri-X", Bundled::Lens).expect("a stock");
+        assert!(hint.starts_with("`kodak-tri-x-400` is a film stock"), "{hint}");
+        assert!(other_kind("helios", Bundled::Stock).is_some_and(|hint| hint.contains("`helios-44-58-f2` is a lens")));
+        assert_eq!(other_kind("no such thing", Bundled::Lens), None);
+    }
+}

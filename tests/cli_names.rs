@@ -1,0 +1,444 @@
+//! Names, lists and hints: what the program tells a person to write works when it is written.
+//!
+//! Examples of `--help` and hints are run in an empty folder, where somebody with an installed program meets them.
+
+mod common;
+
+use common::{good, repository, run, shown, spectra, text};
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+/// Runs `spectra` with these arguments in `folder`.
+fn run_in(folder: &Path, arguments: &[&str]) -> Output {
+    spectra().current_dir(folder).args(arguments).output().expect("the program starts")
+}
+
+/// What a run that must fail says.
+fn refused(arguments: &[&str]) -> String {
+    let folder = tempfile::tempdir().expect("a folder");
+    let output = run_in(folder.path(), arguments);
+    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {}{}", text(&output.stdout), text(&output.stderr));
+    text(&output.stderr)
+}
+
+#[test]
+fn bundled_scenes_run_from_anywhere_under_every_name() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for name in ["gray-card", "scenes/gray-card.yaml", "./scenes/gray-card", "Gray_Card", "gray-c"] {
+        let small = ["--samples", "1", "--set", "imager.resolution=[48, 32]", "-o", "pictures"];
+        let output = run_in(folder.path(), &[&["run", name][..], &small].concat());
+        assert!(output.status.success(), "{name}: {}", text(&output.stderr));
+        let file = folder.path().join("pictures/gray-card.png");
+        assert!(file.is_file(), "{name}");
+        fs::remove_dir_all(folder.path().join("pictures")).expect("removed");
+    }
+    assert!(refused(&["check", "biotar"]).contains("which one? `biotar-"));
+    assert!(refused(&["check", "kodak-tri-x-400"]).contains("is a film stock"));
+}
+
+/// A hint never repeats what was typed.
+#[test]
+fn no_hint_suggests_what_was_typed() {
+    for typed in
+        ["scenes/biotar-orto", "scenes/biotar-orto.yaml", "biotar-orto", "gray-crad.yaml", "scenes/nothing-like-it"]
+    {
+        let said = refused(&["run", typed]);
+        assert!(said.contains("help: ") && !said.contains(&format!("did you mean `{typed}`")), "{said}");
+        let Some((_, rest)) = said.split_once("did you mean `") else { continue };
+        let meant = rest.split('`').next().expect("a name");
+        let folder = tempfile::tempdir().expect("a folder");
+        let output = run_in(folder.path(), &["check", meant]);
+        assert!(output.status.success(), "{typed} -> {meant}: {}", text(&output.stderr));
+    }
+}
+
+#[test]
+fn parts_of_names_are_enough() {
+    for arguments in [
+        &["lens", "info", "helios"][..],
+        &["lens", "info", "Biotar 50"],
+        &["film", "info", "Tri-X"],
+        &["film", "info", "5207"],
+        &["spectrum", "info", "d 65"],
+        &["spectrum", "info", "5600 K"],
+        &["spectrum", "info", "blackbody:2000K"],
+        &["spectrum", "info", "line:632.8 nm"],
+        &["check", "gray-card", "--set", "lens.file=helios", "--set", "lens.focus=2 m"],
+        &["check", "biotar-ortho", "--set", "film.stock=tri-x"],
+        &["check", "biotar-ortho", "--set", "source.illuminant=5600K"],
+    ] {
+        let output = run(arguments);
+        assert!(output.status.success(), "{arguments:?}: {}", text(&output.stderr));
+    }
+    for (arguments, word) in [
+        (&["lens", "info", "canon"][..], "canon-35-f1.8"),
+        (&["lens", "info", "tri-x"], "`kodak-tri-x-400` is a film stock"),
+        (&["film", "info", "helios"], "`helios-44-58-f2` is a lens"),
+        (&["film", "info", "kodak"], "which one? "),
+        (&["spectrum", "info", "helios"], "`helios-44-58-f2` is a lens"),
+        (&["film", "info", "portra-400"], "known: "),
+        (&["run", "helios"], "is a lens"),
+    ] {
+        let said = refused(arguments);
+        assert!(said.contains(word), "{arguments:?}: {said}");
+    }
+}
+
+/// A color temperature is a black body below 5000 K and daylight from there on: CIE 13.3.
+#[test]
+fn color_temperatures_are_lights() {
+    let of = |name: &str| {
+        let report: Value = serde_json::from_str(&good(&["spectrum", "info", name, "--json"])).expect("JSON");
+        report["xy"].to_string()
+    };
+    assert_eq!([of("3200K"), of("5600 K")], [of("blackbody:3200"), of("daylight:5600")]);
+}
+
+#[test]
+fn lists_have_the_words_that_one_chooses_by() {
+    for (arguments, words) in [
+        (&["list", "lens"][..], &["helios-44-58-f2", "58 mm", "f/2.0", "1958", "deg", "Helios-44 58 mm f/2"][..]),
+        (&["list", "lenses", "100"], &["zeiss-biotar-100-f1.4"]),
+        (
+            &["list", "stock"],
+            &["kodak-tri-x-400", "ISO 400", "black-and-white negative", "sheet of 2007", "print stock\n"],
+        ),
+        (&["list", "scene"], &["biotar-ortho", "A resolution chart", "surfaces/zernike"]),
+        (&["list", "spectrum", "wratten"], &["wratten-12", "transmittance"]),
+        (&["list", "glass", "BK7"], &["SCHOTT/N-BK7", "nd 1.5168", "Vd 64.1"]),
+        (&["list", "coating"], &["bare", "ideal", "quarter-wave-at"]),
+        (&["list", "sensor"], &["nikon-d5100", "#red"]),
+        (&["list", "format"], &["135", "36 x 24 mm", "super-35"]),
+    ] {
+        let said = good(arguments);
+        for word in words {
+            assert!(said.contains(word), "{arguments:?} lacks `{word}`:\n{said}");
+        }
+    }
+    let lenses = good(&["list", "lens", "50"]);
+    assert!(!lenses.contains("helios"), "{lenses}");
+    let stocks = good(&["list", "stock"]);
+    let (camera, print) = stocks.split_once("print stock\n").expect("print stocks stand apart");
+    assert!(print.contains("kodak-vision-2383") && !camera.contains("kodak-vision-2383"), "{stocks}");
+    let stocks: Value = serde_json::from_str(&good(&["list", "stock", "--json"])).expect("JSON");
+    let tri_x = stocks.as_array().expect("a list").iter().find(|s| s["name"] == "kodak-tri-x-400").expect("there");
+    assert_eq!((tri_x["iso"].as_f64(), tri_x["year"].as_u64()), (Some(400.0), Some(2007)));
+    let lenses: Value = serde_json::from_str(&good(&["list", "lens", "--json"])).expect("JSON");
+    for lens in lenses.as_array().expect("a list") {
+        let keys = ["focal_length_mm", "f_number", "field_deg", "year"];
+        assert!(keys.iter().all(|key| lens.get(key).is_some()), "{lens}");
+    }
+}
+
+#[test]
+fn any_key_has_its_page() {
+    for (name, words) in [
+        ("render", &["render.samples", "render.seed"][..]),
+        ("output", &["output[].kind", "exr"]),
+        ("focus", &["lens.focus", "lens.focus.by"]),
+        ("f-number", &["lens.f-number"]),
+        ("film.exposure", &["film/stock", "exposure"]),
+        ("halation", &["halation"]),
+        ("lens.coating.layer", &["Refractive index of the layer."]),
+        ("film/stock", &["push"]),
+    ] {
+        let said = good(&["doc", name]);
+        for word in words {
+            assert!(said.contains(word), "{name} lacks `{word}`:\n{said}");
+        }
+    }
+    let halo = good(&["doc", "--search", "halo"]);
+    assert!(halo.contains("film/stock") || halo.contains("stock  halation"), "{halo}");
+    assert!(refused(&["doc", "rendr"]).contains("did you mean `render`?"));
+    let json: Value = serde_json::from_str(&good(&["doc", "film.exposure", "--json"])).expect("JSON");
+    assert!(json["found"].as_array().is_some_and(|found| !found.is_empty()), "{json}");
+}
+
+/// What is said of a key is said once on a page.
+#[test]
+fn pages_do_not_repeat_themselves() {
+    for page in ["scene", "lens", "surface", "stock", "film/stock"] {
+        let said = good(&["doc", page]);
+        let keys =
+            said.lines().filter(|l| l.starts_with("  ") && !l.starts_with("   ")).filter_map(|l| l.split_once(": "));
+        let mut seen: BTreeMap<&str, usize> = BTreeMap::new();
+        for (key, _) in keys {
+            *seen.entry(key.trim()).or_default() += 1;
+        }
+        let twice: Vec<_> =
+            seen.iter().filter(|(key, n)| **n > 1 && !key.contains(' ') && **key != "spectra").collect();
+        assert!(twice.is_empty(), "{page}: {twice:?}");
+        assert!(said.matches("The layers, the one next to the air first.").count() <= 1, "{page}");
+    }
+}
+
+/// Every column of every bundled spectrum has figures and a picture.
+#[test]
+fn every_bundled_spectrum_can_be_shown() {
+    let list: Value = serde_json::from_str(&good(&["list", "spectrum", "--json"])).expect("JSON");
+    let mut names: Vec<String> = Vec::new();
+    for item in list.as_array().expect("a list") {
+        let name = item["name"].as_str().expect("a name");
+        match item["columns"].as_array().expect("a list").as_slice() {
+            [] => names.push(name.to_owned()),
+            columns => names.extend(columns.iter().map(|c| format!("{name}#{}", c.as_str().expect("a name")))),
+        }
+    }
+    assert!(names.len() > 130 && names.contains(&"cie-rgb-1931#r".to_owned()), "{} spectra", names.len());
+    let folder = tempfile::tempdir().expect("a folder");
+    for name in &names {
+        let output = run_in(folder.path(), &["spectrum", "info", name]);
+        assert!(output.status.success(), "{name}: {}", text(&output.stderr));
+    }
+    for some in names.chunks(24) {
+        let mut arguments = vec!["spectrum", "plot", "-o", "all.svg"];
+        arguments.extend(some.iter().map(String::as_str));
+        let output = run_in(folder.path(), &arguments);
+        assert!(output.status.success(), "{some:?}: {}", text(&output.stderr));
+    }
+    println!("{} bundled spectra are shown", names.len());
+}
+
+#[test]
+fn tables_are_read_as_people_have_them() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let same = [
+        ("plain.csv", "wavelength_nm,power\n400,0.5\n500,1\n600,0.25\n"),
+        ("no-header.csv", "400,0.5\n500,1\n600,0.25\n"),
+        ("other-header.csv", "wavelength,value\n400,0.5\n500,1\n600,0.25\n"),
+        ("semicolons.csv", "nm;power\n400;0,5\n500;1\n600;0,25\n"),
+        ("blanks.txt", "400 0.5\n500 1\n600 0.25\n"),
+        ("tabs.dat", "nm\tpower\n400\t0,5\n500\t1\n600\t0,25\n"),
+        ("micrometers.csv", "um,power\n0.4,0.5\n0.5,1\n0.6,0.25\n"),
+        ("falling.txt", "600 0.25\n500 1\n400 0.5\n"),
+    ];
+    let mut first: Option<Value> = None;
+    for (name, content) in same {
+        fs::write(folder.path().join(name), content).expect("written");
+        let output = run_in(folder.path(), &["spectrum", "info", name, "--json"]);
+        assert!(output.status.success(), "{name}: {}", text(&output.stderr));
+        let report: Value = serde_json::from_str(&text(&output.stdout)).expect("JSON");
+        let xyz = report["xyz"].clone();
+        assert_eq!(*first.get_or_insert(xyz.clone()), xyz, "{name}");
+        let told = text(&output.stderr);
+        match name {
+            "falling.txt" => assert!(told.contains("falling wavelengths"), "{told}"),
+            "micrometers.csv" => assert!(told.contains("wavelengths in micrometers"), "{told}"),
+            "plain.csv" | "tabs.dat" => assert!(told.is_empty(), "{told}"),
+            _ => {}
+        }
+    }
+    fs::write(folder.path().join("paint.csv"), "nm,paint,other\n400,0.2,0.1\n700,0.6,0.1\n").expect("written");
+    let output = run_in(folder.path(), &["spectrum", "info", "paint.csv#paint", "--as", "reflectance"]);
+    assert!(output.status.success() && text(&output.stdout).contains(": reflectance"), "{}", text(&output.stdout));
+    assert!(!text(&output.stdout).contains("cd/m2"), "{}", text(&output.stdout));
+    assert!(text(&output.stdout).contains("rises to the end of the band"), "{}", text(&output.stdout));
+    assert!(good(&["spectrum", "info", "blackbody:20"]).contains("too little"));
+}
+
+#[test]
+fn words_that_are_no_commands_have_one_behind_them() {
+    for (typed, hint) in [
+        ("scene.yaml", "did you mean `spectra run scene.yaml`?"),
+        ("render", "did you mean `spectra run SCENE`?"),
+        ("licenses", "did you mean `spectra --licenses`?"),
+        ("helios", "did you mean `spectra lens info helios-44-58-f2`?"),
+    ] {
+        let said = refused(&[typed]);
+        assert!(said.contains(hint), "{said}");
+    }
+    for (arguments, word) in [
+        (&["run", "a.yaml", "--samples", "0"][..], "expected a whole number from 1 to 4194304"),
+        (&["run", "a.yaml", "--samples", "abc"], "expected a whole number from 1 to 4194304"),
+    ] {
+        let said = refused(arguments);
+        assert!(said.contains(word), "{said}");
+    }
+}
+
+#[test]
+fn completions_and_man_page_know_every_command() {
+    let bash = good(&["completions", "bash"]);
+    let man = good(&["man"]);
+    for command in ["run", "check", "list", "doc", "lens", "film", "bench", "spectrum", "glass", "new", "build"] {
+        assert!(bash.contains(command), "{command}");
+        assert!(man.contains(&format!("SPECTRA {}", command.to_uppercase())), "{command}");
+    }
+}
+
+/// Figures go to NAME.svg where no file is given.
+#[test]
+fn figures_have_a_name_of_their_own() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (arguments, file) in [
+        (&["lens", "draw", "helios-44-58-f2", "--rays", "1"][..], "helios-44-58-f2.svg"),
+        (&["film", "plot", "kodak-tri-x-400"], "kodak-tri-x-400.svg"),
+        (&["spectrum", "plot", "cie-rgb-1931#r"], "cie-rgb-1931-r.svg"),
+    ] {
+        let output = run_in(folder.path(), arguments);
+        assert!(output.status.success(), "{arguments:?}: {}", text(&output.stderr));
+        assert!(folder.path().join(file).is_file(), "{file}");
+    }
+}
+
+/// All commands, each as the words behind `spectra`.
+fn commands(of: &[String], found: &mut Vec<Vec<String>>) {
+    let arguments: Vec<&str> = of.iter().map(String::as_str).chain(["--help"]).collect();
+    let help = good(&arguments);
+    found.push(of.to_vec());
+    let Some((_, list)) = help.split_once("\nCommands:\n") else { return };
+    for line in list.lines().take_while(|line| line.starts_with("  ")) {
+        let Some(name) = line.split_whitespace().next().filter(|name| *name != "help") else { continue };
+        if line.starts_with("   ") {
+            continue;
+        }
+        commands(&[of, &[name.to_owned()]].concat(), found);
+    }
+}
+
+/// Examples that are no part of this test, and why.
+const LEFT_OUT: [(&str, &str); 2] = [
+    ("spectra build ", "compiles for minutes; the guide's test builds"),
+    ("./spectra-mine ", "what `spectra build` made"),
+];
+
+/// Every example of every `--help`, run by a shell in one empty folder, with the files that examples name as a person's own.
+#[test]
+#[cfg(unix)]
+fn every_example_of_the_help_works() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut all = Vec::new();
+    commands(&[], &mut all);
+    let mut examples: Vec<String> = Vec::new();
+    for command in &all {
+        for flag in ["-h", "--help"] {
+            let arguments: Vec<&str> = command.iter().map(String::as_str).chain([flag]).collect();
+            let help = good(&arguments);
+            let lines = help.lines().map(str::trim);
+            let started =
+                lines.clone().filter_map(|l| l.strip_prefix("Start with: ")).map(|l| l.split(" (").next().unwrap_or(l));
+            for line in lines.filter(|l| l.starts_with("spectra ") || l.starts_with("./spectra")).chain(started) {
+                if !line.contains("...") && !examples.iter().any(|known| known == line) {
+                    examples.push(line.to_owned());
+                }
+            }
+        }
+    }
+    let own = |name: &str, content: &str| fs::write(folder.path().join(name), content).expect("written");
+    own("rays.csv", "x_mm,y_mm,z_mm,l,m,n\n0,1,-10,0,0,1\n");
+    own(
+        "melt.csv",
+        "wavelength_nm,n\n404.66,1.53024\n435.83,1.52668\n486.13,1.52238\n546.07,1.51872\n587.56,1.51680\n656.27,1.51432\n706.52,1.51289\n",
+    );
+    let exported = run_in(folder.path(), &["lens", "export", "tessar-50-f4.5", "-o", "tessar.zmx"]);
+    assert!(exported.status.success(), "{}", text(&exported.stderr));
+    let program = Path::new(env!("CARGO_BIN_EXE_spectra")).parent().expect("a folder").to_owned();
+    let path = std::env::join_paths(
+        std::iter::once(program).chain(std::env::split_paths(&std::env::var_os("PATH").unwrap_or_default())),
+    );
+    let path = path.expect("a path");
+    let mut done = 0;
+    for example in &examples {
+        if LEFT_OUT.iter().any(|(start, _)| example.starts_with(start)) {
+            continue;
+        }
+        // A picture in full takes a minute: that it begins is enough.
+        let short =
+            if example.starts_with("spectra run ") { format!("{example} --time-limit 1s") } else { example.clone() };
+        let output = Command::new("sh").args(["-c", &short]).current_dir(folder.path()).env("PATH", &path);
+        let output = output.env_remove("SPECTRA_ISA").stdin(Stdio::null()).output().expect("a shell");
+        assert!(output.status.success(), "{example}: {}", text(&output.stderr));
+        done += 1;
+    }
+    assert!(done >= 30, "{done} examples: {examples:#?}");
+    println!("{done} examples of --help work; left out: {LEFT_OUT:?}");
+}
+
+/// A fault as it is told: what it says, where, how many letters are underlined, and the word to write instead.
+struct Told {
+    message: String,
+    place: (String, usize, usize),
+    letters: usize,
+    meant: String,
+}
+
+fn told(said: &str) -> Option<Told> {
+    let message = said.lines().find_map(|l| l.trim_start().strip_prefix("\u{d7} "))?.to_owned();
+    let place = said.lines().find_map(|l| l.trim_start().strip_prefix("\u{256d}\u{2500}["))?.strip_suffix(']')?;
+    let mut parts = place.rsplitn(3, ':');
+    let number = |part: Option<&str>| part.and_then(|n| n.parse::<usize>().ok());
+    let (column, line) = (number(parts.next())?, number(parts.next())?);
+    let file = parts.next()?.to_owned();
+    let underline =
+        said.lines().find(|l| l.trim_start().starts_with('\u{b7}') && l.contains(['\u{252c}', '\u{25b2}']))?;
+    let letters = underline.chars().filter(|c| matches!(c, '\u{2500}' | '\u{252c}' | '\u{25b2}')).count();
+    let (_, meant) = said.split_once("did you mean `")?;
+    Some(Told { message, place: (file, line, column), letters, meant: meant.split('`').next()?.to_owned() })
+}
+
+/// Each "did you mean" that `tests/broken` records is written in place of what is underlined, and the fault is gone.
+#[test]
+fn every_recorded_did_you_mean_works() {
+    let root = repository("tests/broken");
+    let mut done = 0;
+    let mut texts: Vec<PathBuf> = fs::read_dir(&root).expect("a folder").map(|e| e.expect("readable").path()).collect();
+    texts.retain(|path| path.extension().is_some_and(|ending| ending == "txt"));
+    texts.sort();
+    for path in texts {
+        let said = fs::read_to_string(&path).expect("text");
+        // Of several faults each has its own; one is enough to see that the word can be written.
+        let Some(told) = said.split("\n\n").find_map(told).filter(|told| !told.place.0.starts_with("--")) else {
+            continue;
+        };
+        let name = path.file_stem().and_then(|s| s.to_str()).expect("plain names");
+        let case = root.join(name);
+        let folder = tempfile::tempdir().expect("a folder");
+        let mut arguments = vec!["check".to_owned(), format!("{name}.yaml")];
+        if case.is_dir() {
+            for entry in fs::read_dir(&case).expect("a folder") {
+                let from = entry.expect("readable").path();
+                if from.is_file() {
+                    fs::copy(&from, folder.path().join(from.file_name().expect("a name"))).expect("copied");
+                }
+            }
+            let own = fs::read_to_string(case.join("args")).unwrap_or_else(|_| "check\nscene.yaml".to_owned());
+            arguments = own.lines().filter(|l| !l.starts_with('#')).map(str::to_owned).collect();
+        } else {
+            fs::copy(root.join(format!("{name}.yaml")), folder.path().join(format!("{name}.yaml"))).expect("copied");
+        }
+        let (file, line, column) = &told.place;
+        let file = folder.path().join(file);
+        let Ok(content) = fs::read_to_string(&file) else { continue };
+        let corrected = content.lines().enumerate().map(|(i, text)| {
+            if i + 1 != *line {
+                return text.to_owned();
+            }
+            let head: String = text.chars().take(column - 1).collect();
+            let tail: String = text.chars().skip(column - 1 + told.letters).collect();
+            // Of a map such as `{kind: axicon}` the name alone is underlined.
+            format!("{head}{}{tail}", told.meant)
+        });
+        fs::write(&file, corrected.collect::<Vec<_>>().join("\n")).expect("written");
+        let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
+        let now = text(&run_in(folder.path(), &words).stderr);
+        assert!(!now.contains(&told.message), "{name}: `{}` does not help:\n{now}", told.meant);
+        done += 1;
+    }
+    assert!(done >= 15, "{done} hints");
+    println!("{done} recorded hints `did you mean` work");
+}
+
+/// The README's paths of scenes are names of scenes that are there.
+#[test]
+fn scenes_of_the_readme_are_there() {
+    let readme = fs::read_to_string(repository("README.md")).expect("there");
+    let named: Vec<&str> =
+        readme.split('`').filter(|word| word.starts_with("scenes/") && word.ends_with(".yaml")).collect();
+    assert!(named.len() > 5);
+    for scene in named {
+        assert!(Path::new(shown(&repository(scene))).is_file(), "{scene}");
+    }
+}
