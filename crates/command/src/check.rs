@@ -72,10 +72,16 @@ fn check_one(path: &Path, overrides: &[String], isa: Isa, is_shown: bool) -> Res
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let all: Vec<usize> = (0..series.count()).collect();
     let mut shown = Shown::new(is_shown);
-    let of_each =
-        run::checked(&series, &all, isa, threads, &|_, scene: &Scene| Ok((spectra_render::memory_needed(scene), scene.warnings.clone())), &mut |checking| {
+    let of_each = run::checked(
+        &series,
+        &all,
+        isa,
+        threads,
+        &|_, scene: &Scene| Ok((spectra_render::memory_needed(scene), scene.warnings.clone())),
+        &mut |checking| {
             shown.tick(checking);
-        });
+        },
+    );
     shown.end();
     let of_each = of_each.map_err(|failure| match failure {
         Failure::Faults(faults) => faults,

@@ -7,8 +7,8 @@ use crate::{
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{
-    Angle, FNumber, Fault, Faults, Length, Node, OrInfinity, Params, Positive, Quantity, Ratio, StageNode, Value, Whole,
-    nearest,
+    Angle, FNumber, Fault, Faults, Length, Node, OrInfinity, Params, Positive, Quantity, Ratio, StageNode, Value,
+    Whole, nearest,
 };
 use spectra_core::registry::{self, Context};
 use spectra_core::resources::Resources;

@@ -60,25 +60,14 @@ impl<'a> Renderer<'a> {
     /// [`RenderError`]: a stage lacks the ability that the direction needs, or the source's files are broken.
     pub fn new(scene: &'a Scene, isa: Isa) -> Result<Self, RenderError> {
         scene.source.prepare().map_err(RenderError::Source)?;
-        Self::put_together(scene, isa)
-    }
-
-    /// Whether a scene can be made ready, as far as that can be told without reading large files of its source.
-    ///
-    /// # Errors
-    /// As [`Renderer::new`].
-    pub fn check(scene: &'a Scene, isa: Isa) -> Result<(), RenderError> {
-        Self::put_together(scene, isa).map(drop)
-    }
-
-    fn put_together(scene: &'a Scene, isa: Isa) -> Result<Self, RenderError> {
         let pilot = Self::way(scene, isa, PILOT_SEED)?;
         let largest = Self::pilot(scene, &pilot)?;
         let scale = scale_for(largest * scene.source.peak_over_mean().max(1.0));
         Ok(Self { scene, way: pilot.reseeded(scene.render.seed), scale })
     }
 
-    /// Looks whether a scene can be made ready: all that [`Renderer::new`] refuses, without its search for pupils.
+    /// Looks whether a scene can be made ready: what [`Renderer::new`] refuses, as far as that shows without
+    /// its search for pupils, its pilot and the large files of a source.
     ///
     /// # Errors
     /// As [`Renderer::new`].

@@ -17,7 +17,7 @@ use spectra_core::registry::{self, Context, StageOf};
 use spectra_core::resources::Resources;
 use spectra_core::spectral::{BAND, Channel, Grid};
 use spectra_core::stage::{Film, Imager, Source, WavelengthSampler};
-use spectra_lens::{Lens, MATTE_BOX};
+use spectra_lens::MATTE_BOX;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;

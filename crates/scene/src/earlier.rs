@@ -65,9 +65,9 @@ fn same_section(a: &Params, b: &Params, key: &str) -> bool {
 /// Whether a width within is `fill`.
 fn fills_the_frame(node: &Node) -> bool {
     match &node.value {
-        Value::Map(entries) => {
-            entries.iter().any(|(key, value)| (key.text == "width" && value.as_str() == Some("fill")) || fills_the_frame(value))
-        }
+        Value::Map(entries) => entries
+            .iter()
+            .any(|(key, value)| (key.text == "width" && value.as_str() == Some("fill")) || fills_the_frame(value)),
         Value::Seq(items) => items.iter().any(fills_the_frame),
         _ => false,
     }

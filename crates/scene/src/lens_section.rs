@@ -195,11 +195,8 @@ pub(crate) fn held_lens(
         lens = faults.take(adjusted(&lens, node)).unwrap_or(lens);
     }
     let matte_box = section.matte_box.and_then(|node| faults.take(node.parse::<MatteBoxParams>()));
-    let matte_box = matte_box.map(|p| MatteBox {
-        distance_mm: p.distance.mm(),
-        width_mm: p.width.mm(),
-        height_mm: p.height.mm(),
-    });
+    let matte_box =
+        matte_box.map(|p| MatteBox { distance_mm: p.distance.mm(), width_mm: p.width.mm(), height_mm: p.height.mm() });
     faults.into_result(HeldLens { lens, params: params.clone(), focus: section.focus, matte_box })
 }
 
@@ -217,7 +214,8 @@ impl HeldLens {
                 Ok((found, remark)) => (lens, focus.remark) = (found, remark),
                 Err(error @ (FocusError::NoLight { .. } | FocusError::NoTravel { .. })) if wanted.plain => {
                     focus.by = FocusBy::Paraxial;
-                    focus.remark = Some(format!("contrast cannot be had ({error}); write `by: paraxial` to do without"));
+                    focus.remark =
+                        Some(format!("contrast cannot be had ({error}); write `by: paraxial` to do without"));
                 }
                 Err(error) => return Err(focus_fault(&params, &error).into()),
             }

@@ -9,7 +9,6 @@ use spectra_analysis::draw::{Fans, Ground, Sheet, View};
 use spectra_analysis::fan::FanFinder;
 use spectra_lens::{Lens, Section};
 use spectra_plot::{Format, PlotError};
-use std::path::{Path, PathBuf};
 
 /// Fields beyond this are drawn only when asked for, degrees.
 const WIDEST_DEG: f64 = 85.0;

@@ -8,7 +8,7 @@ use super::limit::SetUp;
 use super::progress::{Place, Progress};
 use super::report::Report;
 use super::target::Target;
-use super::{failed, refused, watch};
+use super::{refused, watch};
 use crate::arguments::Run;
 use crate::outcome::{DONE, Failure, Outcome};
 use crate::{doc, memory, version, words};

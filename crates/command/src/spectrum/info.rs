@@ -6,9 +6,9 @@ use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
 use serde::Serialize;
 use spectra_spectrum::{
-    Adaptation, BAND, Dominant, Emission, Found, Gamut, Kind, Observer, RgbSpace, Strengths, Tabulated, cct, chromaticity,
-    dominant_wavelength, find_in, function_in, into_gamut, lab, meta_in, to_u8, xyz_of_light, xyz_of_reflectance,
-    xyz_of_transmittance,
+    Adaptation, BAND, Dominant, Emission, Found, Gamut, Kind, Observer, RgbSpace, Strengths, Tabulated, cct,
+    chromaticity, dominant_wavelength, find_in, function_in, into_gamut, lab, meta_in, to_u8, xyz_of_light,
+    xyz_of_reflectance, xyz_of_transmittance,
 };
 use std::fmt::Write;
 

@@ -362,13 +362,16 @@ impl Series {
             Params::section(root.clone(), "")
                 .and_then(|params| assemble(&name, text.to_owned(), &params, &self.resources, earlier))
         };
-        let scene = built(&root, &text, earlier).or_else(|faults| match self.wide_open_instead(index, &root, &faults) {
-            Some((open, warning)) => built(&open, &self.record(&member, &open), Earlier::of(None, is_check)).map(|mut scene| {
-                scene.warnings.push(warning.into());
-                scene
-            }),
-            None => Err(faults),
-        });
+        let scene =
+            built(&root, &text, earlier).or_else(|faults| match self.wide_open_instead(index, &root, &faults) {
+                Some((open, warning)) => {
+                    built(&open, &self.record(&member, &open), Earlier::of(None, is_check)).map(|mut scene| {
+                        scene.warnings.push(warning.into());
+                        scene
+                    })
+                }
+                None => Err(faults),
+            });
         scene.map_err(|faults| variables::told(faults, &uses))
     }
 
