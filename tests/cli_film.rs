@@ -45,7 +45,7 @@ fn plots_are_written_as_their_ending_says() {
 #[test]
 fn what_is_wrong_is_said() {
     for (arguments, word) in [
-        (["film", "info", "kodak-trix-400", "--json"], "did you mean `kodak-tri-x-400`?"),
+        (["film", "info", "kodak-try-x-400", "--json"], "did you mean `kodak-tri-x-400`?"),
         (["film", "plot", "kodak-tri-x-400", "-o=x.pdf"], ".svg or .png"),
         (["film", "info", "none.yaml", "--json"], "none.yaml"),
     ] {

@@ -143,7 +143,7 @@ fn people_read_a_table() {
 fn unknown_names_are_refused_with_near_ones() {
     assert!(refused(&["info", "D66"]).contains("D65"));
     assert!(refused(&["info", "mercurry"]).contains("mercury"));
-    assert!(refused(&["info", "qqqqqqqqqq"]).contains("spectra spectrum list"));
+    assert!(refused(&["info", "qqqqqqqqqq"]).contains("spectra list spectrum"));
     assert!(refused(&["info", "gaussian:550"]).contains("gaussian:550,20"));
     assert!(refused(&["info", "colorchecker"]).contains("colorchecker#"));
     assert!(refused(&["info", "D65", "--illuminant", "D66"]).contains("--illuminant"));

@@ -105,7 +105,7 @@ fn plain_path(path: &str) -> String {
     out
 }
 
-/// The key of that path or name on all pages: by the first of whole path, end of a path, part of one key's name.
+/// The key of that path or name on all pages: by the first of whole path, name or end of a path, part of one key's name.
 fn keys(name: &str) -> Result<Page, Vec<String>> {
     let pages = pages();
     let wanted = plain_path(name);
@@ -130,8 +130,9 @@ fn keys(name: &str) -> Result<Page, Vec<String>> {
         }
         found
     };
-    let found = collect(&|path| path == wanted);
-    let found = if found.is_empty() { collect(&|path| path.ends_with(&end)) } else { found };
+    // A path is the whole one where there is such; a bare name is meant wherever it stands.
+    let found = if wanted.contains('.') { collect(&|path| path == wanted) } else { Vec::new() };
+    let found = if found.is_empty() { collect(&|path| path == wanted || path.ends_with(&end)) } else { found };
     if !found.is_empty() {
         return Ok(Page::Keys(wanted, found));
     }

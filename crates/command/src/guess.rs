@@ -2,7 +2,7 @@
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use spectra_core::params::Fault;
-use spectra_scene::bundled::Bundled;
+use spectra_scene::bundled::{self, Bundled};
 use std::path::Path;
 
 /// Words that people write for a command of ours.
@@ -40,15 +40,12 @@ fn of_word(typed: &str) -> Option<String> {
     if ending.is_some_and(|ending| ending == "yaml" || ending == "yml") {
         return Some(format!("run {typed}"));
     }
-    let kinds = [Bundled::Scene, Bundled::Lens, Bundled::Stock, Bundled::Spectrum];
-    kinds.into_iter().find_map(|kind| {
-        let name = kind.find(typed).ok()?;
-        Some(match kind {
-            Bundled::Scene => format!("run {name}"),
-            Bundled::Lens => format!("lens info {name}"),
-            Bundled::Stock => format!("film info {name}"),
-            Bundled::Spectrum | Bundled::Glass => format!("spectrum info {name}"),
-        })
+    let (kind, name) = bundled::meanings(typed).into_iter().find(|(kind, _)| *kind != Bundled::Glass)?;
+    Some(match kind {
+        Bundled::Scene => format!("run {name}"),
+        Bundled::Lens => format!("lens info {name}"),
+        Bundled::Stock => format!("film info {name}"),
+        Bundled::Spectrum | Bundled::Glass => format!("spectrum info {name}"),
     })
 }
 

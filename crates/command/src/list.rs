@@ -12,7 +12,7 @@ use spectra_core::registry::{self, Documentation};
 use spectra_film::stock::{Process, Stock};
 use spectra_glass::Catalogue;
 use spectra_lens::Section;
-use spectra_scene::bundled::Bundled;
+use spectra_scene::bundled::{self, Bundled};
 use spectra_scene::{FileKind, FileResources, file_schema};
 use spectra_spectrum::table::Table;
 use std::fmt::Write;
@@ -92,7 +92,7 @@ fn kind(typed: &str, kinds: &[&'static str]) -> Result<&'static str, Fault> {
     if let Some(near) = params::nearest(&key, kinds.iter().copied()) {
         return Err(fault.hint(format!("did you mean `{near}`? Known: {}", kinds.join(", "))));
     }
-    let named = Bundled::ALL.into_iter().find_map(|kind| Some((kind, kind.find(typed).ok()?)));
+    let named = bundled::meanings(typed).into_iter().next();
     Err(fault.hint(match named {
         Some((kind, name)) => format!("`{name}` is {}: `{}` lists its like", kind.noun(), kind.listed_by()),
         None => format!("known: {}", kinds.join(", ")),

@@ -97,18 +97,22 @@ impl Bundled {
     }
 }
 
-/// What else `typed` is the name of: the others of which it is a whole name or a part of one name only.
+/// What `typed` is the name of, or a part of one name of its kind only, the likeliest first: whole names before parts, and
+/// scenes last, which are called after what stands in them.
 #[must_use]
-pub fn also(typed: &str, than: Bundled) -> Vec<(Bundled, String)> {
-    let others = Bundled::ALL.into_iter().filter(|other| *other != than);
-    others.filter_map(|other| Some((other, other.find(typed).ok()?))).collect()
+pub fn meanings(typed: &str) -> Vec<(Bundled, String)> {
+    let mut found: Vec<(Bundled, String)> =
+        Bundled::ALL.into_iter().filter_map(|kind| Some((kind, kind.find(typed).ok()?))).collect();
+    let key = names::normalized(typed.trim());
+    found.sort_by_key(|(kind, name)| (names::normalized(name) != key, *kind == Bundled::Scene));
+    found
 }
 
 /// A hint for a name that is of another kind than is wanted: "`kodak-tri-x-400` is a film stock; `spectra list lens` shows
 /// the lenses".
 #[must_use]
 pub fn other_kind(typed: &str, wanted: Bundled) -> Option<String> {
-    let (kind, name) = also(typed, wanted).into_iter().next()?;
+    let (kind, name) = meanings(typed).into_iter().find(|(kind, _)| *kind != wanted)?;
     let article = wanted.noun();
     let place = match kind {
         Bundled::Stock => format!(" (in a scene: `film: {{stock: {name}, exposure: 1/60 s}}`)"),
@@ -169,6 +173,7 @@ mod tests {
     fn names_of_another_kind_are_told() {
         let hint = other_kind("Tri-X", Bundled::Lens).expect("a stock");
         assert!(hint.starts_with("`kodak-tri-x-400` is a film stock"), "{hint}");
+        assert!(other_kind("biotar-ortho", Bundled::Lens).is_some_and(|hint| hint.contains("is a scene")));
         assert!(other_kind("helios", Bundled::Stock).is_some_and(|hint| hint.contains("`helios-44-58-f2` is a lens")));
         assert_eq!(other_kind("no such thing", Bundled::Lens), None);
     }

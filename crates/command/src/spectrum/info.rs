@@ -189,21 +189,26 @@ impl Color {
     }
 }
 
-/// Wavelength of the highest value on the band, by whole nanometres; of the strongest line where there is no continuum.
-fn peak_nm(found: &Found) -> Option<f64> {
-    let highest = |values: Vec<f64>| {
-        let best =
-            BAND.wavelengths_nm().zip(values).fold((0.0, 0.0), |best, now| if now.1 > best.1 { now } else { best });
-        (best.1 > 0.0).then_some(best.0)
-    };
+/// Values on the band, by whole nanometres; of light the continuum.
+fn on_band(found: &Found) -> Vec<f64> {
     match found {
+        Found::Emission(light) => light.on_grid(&BAND),
+        Found::Transmittance(filter) => filter.on_grid(&BAND),
+        Found::Reflectance(surface) => surface.on_grid(&BAND),
+        Found::Sensitivity(detector) => detector.on_grid(&BAND),
+    }
+}
+
+/// Wavelength of the highest value on the band, the first of equals; of the strongest line where there is no continuum.
+fn peak_nm(found: &Found) -> Option<f64> {
+    let values = on_band(found);
+    let best = BAND.wavelengths_nm().zip(values).fold((0.0, 0.0), |best, now| if now.1 > best.1 { now } else { best });
+    match found {
+        _ if best.1 > 0.0 => Some(best.0),
         Found::Emission(light) => {
-            let strongest = || light.lines().iter().max_by(|a, b| a.power.total_cmp(&b.power)).map(|l| l.wavelength_nm);
-            highest(light.on_grid(&BAND)).or_else(strongest)
+            light.lines().iter().max_by(|a, b| a.power.total_cmp(&b.power)).map(|l| l.wavelength_nm)
         }
-        Found::Transmittance(filter) => highest(filter.on_grid(&BAND)),
-        Found::Reflectance(surface) => highest(surface.on_grid(&BAND)),
-        Found::Sensitivity(detector) => highest(detector.on_grid(&BAND)),
+        _ => None,
     }
 }
 
@@ -227,7 +232,7 @@ fn text(report: &Report, found: &Found) -> String {
     row("strengths", report.strengths.map(|s| if s == Strengths::Estimated.word() { ESTIMATED } else { s }.to_owned()));
     report.notes.iter().for_each(|note| row("note", Some(note.clone())));
     row("range", report.range_nm.map(|[from, to]| format!("{from} to {to} nm")));
-    row("peak", report.peak_nm.map(peak_in_words));
+    row("peak", report.peak_nm.map(|nm| peak_in_words(nm, &on_band(found))));
     if report.xyz.is_some() {
         let light = if matter { format!(", under {}", report.illuminant) } else { String::new() };
         row("observer", Some(format!("{}{light}", report.observer)));
@@ -254,10 +259,14 @@ fn text(report: &Report, found: &Found) -> String {
     out
 }
 
-/// The peak, or that the band ends before there is one.
-fn peak_in_words(nm: f64) -> String {
+/// The peak of the values on the band, or that the band ends before there is one, or that nothing rises above the rest.
+fn peak_in_words(nm: f64, values: &[f64]) -> String {
+    let highest = values.iter().copied().fold(0.0, f64::max);
+    let stays = highest > 0.0 && values.last() == Some(&highest);
     match nm {
+        _ if stays && values.iter().all(|value| *value == highest) => "none: the same over the whole band".to_owned(),
         nm if nm >= BAND.end_nm() => format!("none: rises to the end of the band, {nm} nm"),
+        nm if stays && nm > BAND.start_nm => format!("none: rises to {nm} nm and stays there to the end of the band"),
         nm if nm <= BAND.start_nm => format!("none: falls from the start of the band, {nm} nm"),
         nm => format!("{nm} nm"),
     }
@@ -285,9 +294,16 @@ mod tests {
 
     #[test]
     fn a_band_may_end_before_the_peak() {
-        assert_eq!(peak_in_words(560.0), "560 nm");
-        assert_eq!(peak_in_words(830.0), "none: rises to the end of the band, 830 nm");
-        assert_eq!(peak_in_words(350.0), "none: falls from the start of the band, 350 nm");
+        assert_eq!(peak_in_words(560.0, &[0.0, 1.0, 0.0]), "560 nm");
+        assert_eq!(peak_in_words(830.0, &[0.0, 0.5, 1.0]), "none: rises to the end of the band, 830 nm");
+        assert_eq!(
+            peak_in_words(700.0, &[0.0, 1.0, 1.0]),
+            "none: rises to 700 nm and stays there to the end of the band"
+        );
+        assert_eq!(peak_in_words(350.0, &[1.0, 0.5, 0.0]), "none: falls from the start of the band, 350 nm");
+        assert_eq!(peak_in_words(350.0, &[1.0, 1.0, 1.0]), "none: the same over the whole band");
+        // Of lines alone there is no continuum.
+        assert_eq!(peak_in_words(546.0, &[0.0, 0.0, 0.0]), "546 nm");
     }
 
     #[test]

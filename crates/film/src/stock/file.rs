@@ -101,7 +101,7 @@ struct StockFile {
     minimum_density: Option<MinimumDensityFile>,
     /// Granularity of its silver; no grain if absent.
     granularity: Option<GranularityFile>,
-    /// What the base throws back; nothing if absent.
+    /// What the base throws back, a halo around bright lights; nothing if absent.
     halation: Option<HalationFile>,
     /// Its layers, one or more; each a channel of the exposure.
     layers: Vec<LayerFile>,
