@@ -305,8 +305,10 @@ fn every_member_is_checked_before_any_light_is_traced() {
     let output = run(&["run", shown(&folder.path().join("scene.yaml")), "--json", "-o", shown(&out)]);
     assert_eq!((output.status.code(), out.exists()), (Some(2), false));
     let events = text(&output.stdout);
-    assert_eq!(events.lines().count(), 1, "{events}");
-    let event: Value = serde_json::from_str(&events).expect("JSON");
+    // On a busy machine the check takes long enough to say how far it is.
+    let faulty: Vec<&str> = events.lines().filter(|line| !line.contains("\"event\":\"check\"")).collect();
+    assert_eq!(faulty.len(), 1, "{events}");
+    let event: Value = serde_json::from_str(faulty[0]).expect("JSON");
     assert_eq!(event["faults"].as_array().map(Vec::len), Some(1), "{events}");
 }
 

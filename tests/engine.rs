@@ -30,7 +30,7 @@ fn json(path: &Path) -> Value {
     serde_json::from_slice(&std::fs::read(path).expect("a file")).expect("JSON")
 }
 
-/// The gray card with these settings, its `render.json` and what was said on standard error.
+/// The gray card with these settings, its report and what was said on standard error.
 fn card(overrides: &[&str]) -> (Value, String) {
     let folder = tempfile::tempdir().expect("a folder");
     let scene = repository("scenes/gray-card.yaml");
@@ -42,7 +42,7 @@ fn card(overrides: &[&str]) -> (Value, String) {
     let output = command.output().expect("the program starts");
     let said = text(&output.stderr);
     assert!(output.status.success(), "{said}");
-    (json(&folder.path().join("render.json")), said)
+    (json(&folder.path().join("gray-card.json")), said)
 }
 
 #[test]
@@ -53,7 +53,7 @@ fn a_seed_is_taken_to_its_last_digit() {
         let output = shown(folder.path());
         let run = run(&["run", shown(&scene), "-s", "1", "--seed", seed, "--set", SMALL, "-q", "-o", output]);
         assert!(run.status.success(), "{}", text(&run.stderr));
-        let report = json(&folder.path().join("render.json"));
+        let report = json(&folder.path().join("gray-card.json"));
         assert_eq!(report["seed"].as_u64(), seed.parse().ok());
         std::fs::read(folder.path().join("gray-card.png")).expect("a picture")
     };
@@ -73,7 +73,8 @@ fn memory_is_asked_for_before_it_is_used() {
         assert!(said.contains("16000 x 12000 pixels of 256 channels need 590 GB of memory"), "{said}");
         assert!(said.contains("fewer bands"), "{said}");
     }
-    let output = run(&["check", "--json", shown(&repository("scenes/gray-card.yaml"))]);
+    let card = repository("scenes/gray-card.yaml");
+    let output = run(&["check", "--json", shown(&card), "--set", "imager.resolution=[300, 200]"]);
     let report: Value = serde_json::from_slice(&output.stdout).expect("JSON");
     assert_eq!(report["scenes"][0]["memory_bytes"], 300 * 200 * 36);
 }
