@@ -12,6 +12,8 @@ mod common;
 use common::{repository, spectra, text};
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Fewer cases than this, and some were lost.
 const LEAST: usize = 12;
@@ -76,30 +78,47 @@ fn each_doubt_is_told_where_it_is_and_what_to_do() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n\n"));
 }
 
+/// Points of light in the dark, which one ray for a pixel may well miss: with more.
+const POINTS: [&str; 2] = ["biotar-spot", "low-pass"];
+
 /// `check` and a small render of every bundled scene: not one warning.
 #[test]
 fn nothing_is_said_about_bundled_scenes() {
     let root = repository("scenes");
+    let scenes: Vec<PathBuf> = yaml(&root).into_iter().chain(yaml(&root.join("surfaces"))).collect();
+    let (next, wrong) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
+    let work = || {
+        while let Some(path) = scenes.get(next.fetch_add(1, Ordering::Relaxed)) {
+            let said = said_about(&root, path);
+            wrong.lock().expect("no thread panics").extend(said);
+        }
+    };
+    std::thread::scope(|scope| {
+        for _ in 0..std::thread::available_parallelism().map_or(1, usize::from) {
+            scope.spawn(work);
+        }
+    });
+    let wrong = wrong.into_inner().expect("no thread panics");
+    assert!(wrong.is_empty(), "{}", wrong.join("\n\n"));
+}
+
+/// What is wrong about what is said of a scene below `root`.
+fn said_about(root: &Path, path: &Path) -> Vec<String> {
     let mut wrong = Vec::new();
-    for path in yaml(&root).into_iter().chain(yaml(&root.join("surfaces"))) {
-        let name = path.strip_prefix(&root).expect("below").with_extension("");
-        let name = name.to_str().expect("plain names").replace('\\', "/");
-        let exception = EXCEPTIONS.iter().any(|(scene, _)| *scene == name);
-        let out = tempfile::tempdir().expect("a folder");
-        let size = "imager.resolution=[24, 16]";
-        let tall = "imager.resolution=[16, 48]";
-        let size = if name.starts_with("prism") { tall } else { size };
-        let few = ["--samples", "1", "--set", "render.rays=2000", "--set", size, "--threads", "2"];
-        for arguments in [vec!["check"], [&["run", "-o", out.path().to_str().expect("plain")], &few[..]].concat()] {
-            if arguments[0] == "run" && name == "biotar-spot" {
-                continue; // a point in a frame of few pixels may well be missed by few rays
-            }
-            let output = spectra().args(&arguments).arg(&path).output().expect("the program starts");
-            let said = text(&output.stderr);
-            if output.status.code() != Some(0) || said.contains("warning") != exception {
-                wrong.push(format!("{name}, {}: {:?}\n{said}", arguments[0], output.status.code()));
-            }
+    let name = path.strip_prefix(root).expect("below").with_extension("");
+    let name = name.to_str().expect("plain names").replace('\\', "/");
+    let exception = EXCEPTIONS.iter().any(|(scene, _)| *scene == name);
+    let out = tempfile::tempdir().expect("a folder");
+    let [samples, rays] =
+        if POINTS.contains(&&*name) { ["64", "render.rays=100000"] } else { ["1", "render.rays=2000"] };
+    // The height follows from the frame's shape.
+    let few = ["--samples", samples, "--set", rays, "--set", "imager.resolution=24", "--threads", "1"];
+    for arguments in [vec!["check"], [&["run", "-o", out.path().to_str().expect("plain")], &few[..]].concat()] {
+        let output = spectra().args(&arguments).arg(path).output().expect("the program starts");
+        let said = text(&output.stderr);
+        if output.status.code() != Some(0) || said.contains("warning") != exception {
+            wrong.push(format!("{name}, {}: {:?}\n{said}", arguments[0], output.status.code()));
         }
     }
-    assert!(wrong.is_empty(), "{}", wrong.join("\n\n"));
+    wrong
 }

@@ -192,7 +192,8 @@ fn faults_of_depth_say_where_and_what_to_do() {
              lens: {{file: zeiss-biotar-50-f1.4}}\nimager: {{kind: xyz, format: 135, resolution: [6, 4]}}\n"
         );
         std::fs::write(&scene, text).expect("written");
-        spectra_scene::load(&scene, &[]).map(|_| ()).map_err(|faults| faults.to_string())
+        // Numbers of the scene are judged when it is loaded, pixels when light is traced.
+        spectra_scene::load(&scene, &[]).and_then(|scene| scene.source.prepare()).map_err(|faults| faults.to_string())
     };
     for (file, depth, words) in [
         ("flat.exr", "{unit: m}", ["no depth channel `Z`", "`R`"]),

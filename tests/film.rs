@@ -75,7 +75,7 @@ fn orthochromatic_negatives_have_dark_reds_and_light_blues() {
 }
 
 /// A metered gray card is shown as 18 % on every film that makes a picture: its light is the balance of the film, so it is
-/// neutral too; and what the scene's own exposure time is does not matter.
+/// neutral too, behind a lens that colors nothing; and what the scene's own exposure time is does not matter.
 #[test]
 fn a_metered_gray_card_is_a_mid_gray() {
     for (film, most) in [
@@ -91,6 +91,8 @@ fn a_metered_gray_card_is_a_mid_gray() {
                 &format!("film={film}"),
                 "source.illuminant=iso-7589-sensitometric-daylight",
                 "render.samples=1024",
+                "lens.coating=ideal",
+                "lens.absorption=false",
             ],
         );
         let frame = render(&scene);

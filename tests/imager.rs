@@ -53,7 +53,9 @@ fn casts(frame: &ExposureFrame) -> [[f64; 2]; 2] {
 }
 
 const PHOTOSITE: &str = "imager.photosite={stack: 3 um, microlens: 60 %, well: 3 um}";
-const COMMON: [&str; 3] = ["imager.resolution=[120, 80]", "render.samples=256", PHOTOSITE];
+/// The sensor's cast alone: glass and coatings color oblique light, too.
+const COMMON: [&str; 5] =
+    ["imager.resolution=[120, 80]", "render.samples=256", PHOTOSITE, "lens.coating=ideal", "lens.absorption=false"];
 
 /// The slant of the light makes colors mix: behind the symmetric Hologon, whose corners see 55 degrees, the cast rises
 /// toward the corner; behind a retrofocus lens, and on the Hologon without a stack, there is none.
