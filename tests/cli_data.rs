@@ -194,7 +194,7 @@ fn a_film_stock() {
     assert!(light("red.csv", "kodak") > 0.0);
     for (broken, said_of_it) in [
         (TRI_X_MY_WAY.replace("iso: 200", "izo: 200"), "mine.yaml:3:1"),
-        (TRI_X_MY_WAY.replace("tri-x-400", "trix-400"), "did you mean `kodak-tri-x-400`?"),
+        (TRI_X_MY_WAY.replace("tri-x-400", "try-x-400"), "did you mean `kodak-tri-x-400`?"),
         (TRI_X_MY_WAY.replace("kodak-tri-x-400", "mine.yaml"), "like itself"),
     ] {
         write(folder.path(), "stocks/mine.yaml", &broken);
@@ -236,7 +236,7 @@ fn a_light_a_filter_and_paints() {
     for (name, content, place) in [
         ("paints.csv", "wavelength_nm,gray\n350,0.25\n830,25\n", "paints.csv:3:5"),
         ("paints.csv", "wavelength_nm,gray,gray\n350,1,1\n", "paints.csv:1:20"),
-        ("lamp.csv", "wavelength_nm,power\n350,1\n340,1\n", "lamp.csv:3:1"),
+        ("lamp.csv", "wavelength_nm,power\n350,1\n360,1\n340,1\n", "lamp.csv:4:1"),
     ] {
         let before = std::fs::read_to_string(folder.path().join(name)).expect("there");
         write(folder.path(), name, content);

@@ -433,7 +433,9 @@ impl<'a> Reader<'a> {
         let (Some(&begin), Some(&end)) = (wavelengths.first(), wavelengths.last()) else {
             return Err(self.fault(0, 0, TableFault::Empty));
         };
-        if begin > end && !self.strict {
+        // A table that falls, but for a row that stands wrongly: that row is told, not every other one.
+        let falls = wavelengths.windows(2).filter(|pair| pair[0] > pair[1]).count();
+        if 2 * falls + 1 > wavelengths.len() && !self.strict {
             self.notes.push("falling wavelengths");
             numbers.reverse();
             wavelengths.reverse();

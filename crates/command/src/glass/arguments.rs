@@ -152,7 +152,7 @@ pub(crate) struct GlassPlot {
         nearest glasses to each medium of a lens.",
     after_long_help = "Examples:\n  spectra glass match --nd 1.64329 --vd 48 --maker SCHOTT --era 1927\n  \
         spectra glass match --nd 1.6242 --vd 53.1 --line e --era modern\n  \
-        spectra glass match --lens lenses/zeiss-biotar-50-f1.4.yaml --limit 3"
+        spectra glass match --lens zeiss-biotar-50-f1.4 --limit 3"
 )]
 pub(crate) struct GlassMatch {
     /// Index at the reference line.

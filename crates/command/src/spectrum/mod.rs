@@ -15,7 +15,7 @@ use crate::outcome::{Failure, Outcome};
 use arguments::{KindName, SpectrumCommand};
 use spectra_core::params::Fault;
 use spectra_scene::FileResources;
-use spectra_scene::bundled::{Bundled, other_kind};
+use spectra_scene::bundled::{Bundled, meanings, other_kind};
 use spectra_spectrum::{Emission, Found, Kind, SpectrumError, find_as_in, find_emission_in, find_in, notes_in};
 use std::path::Path;
 
@@ -63,12 +63,16 @@ fn tell_reading(name: &str) {
 /// A name that is no spectrum's may be that of something else.
 fn refuse_name(name: &str, error: SpectrumError) -> Failure {
     let other = match &error {
-        SpectrumError::Unknown { candidates, .. } if candidates.is_empty() => other_kind(name, Bundled::Spectrum),
+        SpectrumError::Unknown { candidates, .. } => {
+            // Names of glasses are short: a near spectrum is the likelier one.
+            let is_glass = meanings(name).first().is_some_and(|(kind, _)| *kind == Bundled::Glass);
+            other_kind(name, Bundled::Spectrum).filter(|_| candidates.is_empty() || !is_glass)
+        }
         _ => None,
     };
-    match (other, error) {
-        (Some(hint), error) => Failure::Faults(Fault::new(error.to_string()).hint(hint).into()),
-        (None, error) => refuse(error),
+    match other {
+        Some(hint) => Failure::Faults(Fault::new(format!("no spectrum is called `{name}`")).hint(hint).into()),
+        None => refuse(error),
     }
 }
 
