@@ -129,7 +129,8 @@ fn spot_and_contrast_differ_on_fast_lenses() {
             let sharp = lens.best_focus_shift_mm(&contrast(f64::INFINITY, field_deg, 30.0)).expect("light");
             let point = ObjectPoint::on_plane(&lens, f64::INFINITY, f64::to_radians(field_deg));
             let beam = Beam::of(&lens, point, &[(lens.reference_nm, 1.0)], 96).expect("media").expect("light");
-            // On the axis the search integrates rings; a grid of 96 rays across, cut at the rim, differs from that.
+            // On the axis the search integrates rings, to 1e-5 um; a grid cut at the rim scatters about that: the contrast of
+            // the Primoplan is 0.235, 0.240, 0.237 and 0.238 by 96, 192, 384 and 768 rays across.
             let (grid_mm, grid) = if field_deg == 0.0 { (1e-5, 1e-3) } else { (1e-12, 1e-9) };
             for step in -200..=200 {
                 let z = 0.01 * f64::from(step);

@@ -364,7 +364,7 @@ fn body(out: &mut String, doc: &Documentation) {
 const WORTH_A_REFERENCE: usize = 3;
 
 /// The keys below the one at `at`, by their paths from there.
-fn below<'a>(all: &'a [Parameter], at: usize) -> Vec<(&'a str, &'a Parameter)> {
+fn below(all: &[Parameter], at: usize) -> Vec<(&str, &Parameter)> {
     let head = all[at].key.as_str();
     let inside = all[at + 1..].iter().map_while(|p| Some((p.key.strip_prefix(head)?, p)));
     let inside = inside.take_while(|(rest, _)| rest.starts_with(['.', '[', '(']));

@@ -43,10 +43,10 @@ pub fn main(unpack: Unpack) -> ExitCode {
         Ok(arguments) => arguments,
         Err(error) => {
             // Help and version come this way too, with code 0. A reader that has gone away is no failure.
-            let _ = match guess::meant(&error) {
-                Some(hint) => Ok(console::faults(&hint.into())),
-                None => error.print(),
-            };
+            match guess::meant(&error) {
+                Some(hint) => console::faults(&hint.into()),
+                None => drop(error.print()),
+            }
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(outcome::BAD_INPUT));
         }
     };

@@ -12,8 +12,10 @@ use std::sync::Arc;
 
 const WAVELENGTH_NM: f64 = 587.56;
 
-/// A lens by its surfaces: shape, index behind it, thickness, clear semi-diameter (mm).
-fn lens(surfaces: Vec<(Arc<dyn Surface>, f64, f64, Option<f64>)>) -> Lens {
+/// A surface: shape, index behind it, thickness, clear semi-diameter (mm).
+type Row = (Arc<dyn Surface>, f64, f64, Option<f64>);
+
+fn lens(surfaces: Vec<Row>) -> Lens {
     let mut lens = Lens::empty("by hand");
     let mut before = 0;
     for (surface, index, thickness_mm, semi_diameter_mm) in surfaces {

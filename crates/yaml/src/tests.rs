@@ -167,8 +167,8 @@ fn signs_and_infinities_are_checked() {
 fn types_say_what_was_found_and_expected() {
     check(&[
         ("seed: 1.5", &[(1, 7, "found the number 1.5, expected a whole number such as 16", "")]),
-        ("seed: -1", &[(1, 7, "found the number -1, expected a whole number of at least 0", "")]),
-        ("blades: 300", &[(1, 9, "expected a whole number of at most 255", "")]),
+        ("seed: -1", &[(1, 7, "found -1, which is out of range", "a whole number from 0 to 18446744073709551615")]),
+        ("blades: 300", &[(1, 9, "found 300, which is out of range", "a whole number from 0 to 255")]),
         ("seed: many", &[(1, 7, "found the text `many`, expected a whole number", "")]),
         ("conic: '1.5'", &[(1, 8, "found the text `1.5`, expected a number", "remove the quotes")]),
         ("mirror: yes", &[(1, 9, "found the text `yes`, expected true or false", "write `true`")]),

@@ -77,7 +77,7 @@ impl Stack {
     /// Index and thickness, nm, of each layer where there are `N`, none of which absorbs or disperses.
     pub(crate) fn clear_layers<const N: usize>(&self) -> Option<[[f64; 2]; N]> {
         let clear = |layer: &StackLayer| match layer.index[..] {
-            [[n, k]] if k == 0.0 => Some([n, layer.thickness_nm]),
+            [[n, 0.0]] => Some([n, layer.thickness_nm]),
             _ => None,
         };
         let layers: Vec<[f64; 2]> = self.layers.iter().map(clear).collect::<Option<_>>()?;

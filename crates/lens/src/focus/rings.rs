@@ -28,8 +28,9 @@ const PROBES: [usize; 2] = [64, 1024];
 const PARTS: usize = 32;
 /// So many looks find an edge to 32^-5 of a probe's distance.
 const LOOKS: usize = 5;
-/// Rings of each zone that passes: nodes of Gauss's rule over its area.
-const NODES: usize = 24;
+/// Rings of each zone that passes: nodes of Gauss's rule over its area. At f/1.5 with much spherical aberration 24 of them leave
+/// the best contrast 8 um off, 48 of them 5 um, 96 none.
+const NODES: usize = 96;
 
 impl Rings {
     /// The light of a point on the axis, `object_mm` in front of the first vertex (infinity allowed), at wavelengths (nm)
@@ -189,7 +190,7 @@ fn gauss_legendre(count: usize) -> Vec<(f64, f64)> {
 mod tests {
     use super::*;
 
-    /// 24 nodes integrate x^46 exactly.
+    /// So many nodes integrate x^46 exactly.
     #[test]
     fn gauss_is_exact() {
         let nodes = gauss_legendre(NODES);
