@@ -50,7 +50,6 @@ fn faulty_frames_are_told_at_their_keys() {
         ("format: 135\nresolution: [960, 40000]", "2:19", "1 to 32768"),
         ("format: 135\nresolution: [32768, 32768]", "2:13", "megapixels"),
         ("format: 135\nresolution: [960.5, 640]", "2:14", "960.5"),
-        ("format: 135\nresolution: 960", "2:13", "960"),
         ("format: 135\nresolution: [960, 640]\npitch: 3 um", "3:1", "pitch"),
         ("format: 135\nresolution: [9, 6]\ntilt: [5 deg, 85 deg]", "3:15", "at most 80"),
         ("format: 135\nresolution: [9, 6]\ntilt: 5 deg", "3:7", "list of 2"),
@@ -68,6 +67,13 @@ fn faulty_frames_are_told_at_their_keys() {
             assert!(text.contains(&format!("imager.yaml:{place}:")) && text.contains(word), "{yaml}: {text}");
         }
     }
+}
+
+/// One number is the width; the other side follows, so that pixels are square.
+#[test]
+fn a_width_in_pixels_is_enough() {
+    let size = build("xyz", "format: 135\nresolution: 960").expect("sound").size();
+    assert_eq!((size.width_px, size.height_px), (960, 640));
 }
 
 #[test]

@@ -246,7 +246,7 @@ fn faulty_keys_are_told_at_their_places() {
         ("pattern: rgbg", "did you mean"),
         ("peak-quantum-efficiency: 140 %", "at most 100 %"),
         ("fill-factor: 2", "at most 100 %"),
-        ("sensitivity: nikon-d51", "nikon-d5100"),
+        ("sensitivity: nikon-d5010", "nikon-d5100"),
         ("sensitivity: colorchecker", "red"),
         ("pattern: monochrome", "needs its sensitivity"),
         ("bits: 20", "8 to 16"),
