@@ -216,29 +216,22 @@ fn stock(name: &'static str) -> Option<Item> {
         (Process::Reversal, _) => "reversal (slides)",
         (Process::Print, _) => "print stock",
     };
-    let year = year(&stock.source);
     let figures = json!({
         "process": process,
         "iso": stock.iso,
         "iso_tungsten": stock.iso_tungsten,
         "layers": stock.layers.len(),
-        "year": year,
+        "year": stock.year,
         "maker": stock.maker,
         "print": stock.print,
     });
     let columns = vec![
-        stock.iso.map_or(String::new(), |iso| format!("ISO {iso}")),
+        stock.speed_text().unwrap_or_default(),
         process.to_owned(),
-        year.map_or(String::new(), |year| format!("sheet of {year}")),
+        stock.year.map_or(String::new(), |year| year.to_string()),
     ];
     let stage = if stock.process == Process::Print { "print stock" } else { "stock" };
     Some(Item { figures: map(figures), columns, ..plain(stage, name, &stock.name) })
-}
-
-/// The year that a source was published in: the last one that it states.
-fn year(source: &str) -> Option<u32> {
-    let words = source.split(|c: char| !c.is_ascii_digit()).filter(|word| word.len() == 4);
-    words.filter_map(|word| word.parse().ok()).rfind(|year| (1850..2100).contains(year))
 }
 
 fn spectrum(stage: &'static str, name: &'static str, path: &'static str) -> Option<Item> {
