@@ -1,4 +1,4 @@
-//! Plane-parallel plates right before a frame, as focus sees them.
+//! Plane-parallel plates directly in front of a frame, and how they shift the focus.
 
 use crate::spectral::Grid;
 
@@ -7,15 +7,16 @@ use crate::spectral::Grid;
 pub struct CoverPlate {
     /// Thickness, mm.
     pub thickness_mm: f64,
-    /// Index of refraction at each point of the stack's grid.
+    /// Refractive index at each point of the stack's grid.
     pub index: Vec<f64>,
 }
 
-/// Cover glass, filters, low-pass plates: all that stands before a frame and parallel to it. Gaps between plates change
-/// nothing, nor does their order.
+/// Cover glass, filters, low-pass plates: everything parallel to the frame and in front of it. The gaps between plates and their
+/// order make no difference.
 ///
-/// Through a plate of thickness t and index n a ray goes on in its direction and lands t (tan i - tan i') nearer to where
-/// it pointed from (i' by Snell's law): near the axis the image moves t (1 - 1/n) away from the lens.
+/// A ray leaves a plate of thickness t and index n in the direction in which it entered, but lands t (tan i - tan i') short of
+/// where it was heading, toward where it came from (i' from Snell's law). Near the axis the image moves t (1 - 1/n) away from the
+/// lens.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CoverStack {
     grid: Grid,
@@ -23,28 +24,28 @@ pub struct CoverStack {
 }
 
 impl CoverStack {
-    /// Plates whose indices are given on a grid.
+    /// Plates with their indices on a grid.
     #[must_use]
     pub fn new(grid: &Grid, plates: Vec<CoverPlate>) -> Self {
         Self { grid: *grid, plates }
     }
 
-    /// The same with every index held at what it is at a wavelength, nm.
+    /// The same plates, with every index fixed at its value at one wavelength, nm.
     #[must_use]
     pub fn held_at(&self, wavelength_nm: f64) -> Self {
         let held = |p: &CoverPlate| CoverPlate { index: vec![self.index(p, wavelength_nm); self.grid.count], ..*p };
         Self { grid: self.grid, plates: self.plates.iter().map(held).collect() }
     }
 
-    /// How far it moves the image near the axis, mm away from the lens, at a wavelength, nm.
+    /// How far the plates move the image near the axis, mm away from the lens, at a wavelength, nm.
     #[must_use]
     pub fn shift_mm(&self, wavelength_nm: f64) -> f64 {
         self.depth_mm(0.0, wavelength_nm)
     }
 
-    /// For light whose slope to the normal of the frame is `slope` (the tangent of the angle): how far beyond the place
-    /// where it would meet the frame without the plates it meets it with them, mm along the normal. It lands `slope` times
-    /// as far beside, toward where it came from.
+    /// How far the plates move the point where light meets the frame, mm along the normal and away from the lens, for light whose
+    /// slope to the normal is `slope` (the tangent of the angle). On the frame it lands `slope` times this distance to the side,
+    /// toward where it came from.
     #[must_use]
     pub fn depth_mm(&self, slope: f64, wavelength_nm: f64) -> f64 {
         let cos2 = 1.0 / (1.0 + slope * slope);
@@ -56,7 +57,7 @@ impl CoverStack {
         self.plates.iter().map(one).sum()
     }
 
-    /// Beyond the band, that of its end.
+    /// Outside the band, the value at its end.
     fn index(&self, plate: &CoverPlate, wavelength_nm: f64) -> f64 {
         let inside = wavelength_nm.clamp(self.grid.start_nm, self.grid.end_nm());
         self.grid.interpolate(&plate.index, inside).max(1.0)

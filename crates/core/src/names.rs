@@ -1,4 +1,4 @@
-//! The one finder of names: what a person typed, held against the names there are.
+//! Finds the name that a person means. All look-ups of names go through here.
 //!
 //! ```
 //! use spectra_core::names::{Match, find};
@@ -9,31 +9,31 @@
 //! assert_eq!(find("portra-400", stocks), Match::Nothing);
 //! ```
 
-/// Shortest part of a name that may stand for it, in letters and digits.
+/// Shortest part of a name that can stand for it, in letters and digits.
 const SHORTEST: usize = 3;
-/// Longer texts are not the name of anything.
+/// Longer texts are never names.
 const LONGEST: usize = 120;
 
-/// What a typed name means.
+/// What a typed name stands for.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Match<'a> {
     /// This name.
     One(&'a str),
-    /// All of these hold what was typed, in the order in which they were given.
+    /// All of these contain what was typed, in the order in which they were given.
     Several(Vec<&'a str>),
     /// None of them.
     Nothing,
 }
 
-/// Lower case, without spaces, hyphens and underscores: names that differ in these only are the same.
+/// Lower case without spaces, hyphens and underscores; names that differ only in these are the same.
 #[must_use]
 pub fn normalized(name: &str) -> String {
     name.chars().filter(|c| !matches!(c, ' ' | '-' | '_')).flat_map(char::to_lowercase).collect()
 }
 
-/// The name among `known` that `typed` stands for, by the first of these rules that finds any: the very name; the same
-/// but for case, spaces, hyphens and underscores; names that hold every word of `typed` (`helios`, `canon 50`), each word
-/// of at least two letters or digits, all together of at least three.
+/// Finds the name among `known` that `typed` stands for. The first of these rules that finds any applies: the exact name; the
+/// same name but for case, spaces, hyphens and underscores; names that contain every word of `typed` (`helios`, `canon 50`),
+/// where each word has at least two letters or digits and all of them together at least three.
 pub fn find<'a>(typed: &str, known: impl IntoIterator<Item = &'a str>) -> Match<'a> {
     let typed = typed.trim();
     if typed.is_empty() || typed.len() > LONGEST {
@@ -105,7 +105,7 @@ mod tests {
         }
     }
 
-    /// A whole name is meant where others hold it too.
+    /// A whole name wins even if other names contain it.
     #[test]
     fn the_whole_name_wins() {
         assert_eq!(find("colorchecker", ["colorchecker-babelcolor", "colorchecker"]), Match::One("colorchecker"));

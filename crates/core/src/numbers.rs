@@ -1,42 +1,42 @@
 //! Numbers for sampling: a pure function of (seed, stream, sample, dimension).
 //!
-//! Backward, the stream is the pixel and the sample its i-th; forward, there is one stream and the
-//! sample is the path. No state is carried, so any cut of the work gives the same numbers.
+//! Backward, the stream is the pixel and the sample counts within it; forward, there is one stream and the sample is the path.
+//! There is no state, so the numbers are the same however the work is divided.
 //!
 //! [`Numbers::sobol`] draws from Owen-scrambled Sobol points: direction numbers by S. Joe and F. Y. Kuo,
 //! "Constructing Sobol sequences with better two-dimensional projections", SIAM J. Sci. Comput. 30
 //! (2008); hash-based nested scrambling by S. Laine and T. Karras (2011) with the constants of
 //! B. Burley, "Practical hash-based Owen scrambling", J. Computer Graphics Techniques 9 (2020).
-//! [`Numbers::random`] draws independent numbers by the SplitMix64 finalizer, [`Numbers::stratified`] jittered ones: one in each
-//! of n equal parts, in an order of its own in each dimension.
+//! [`Numbers::random`] draws independent numbers with the SplitMix64 finalizer; [`Numbers::stratified`] draws jittered numbers,
+//! one in each of n equal parts, in a separate order for each dimension.
 
 use crate::isa::{Isa, Vectorized};
 
-/// Which dimension of a path a number decides. The wavelength owns one, so that strategies can be
-/// compared at equal numbers elsewhere.
+/// The dimensions of a path, by what their numbers decide. The wavelength has a dimension of its own, so that strategies can be
+/// compared with equal numbers everywhere else.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub enum Dimension {
     /// The wavelength.
     Wavelength = 0,
-    /// Horizontal place in the pixel, or on the source.
+    /// Horizontal position in the pixel, or on the source.
     PlaceU = 1,
-    /// Vertical place.
+    /// Vertical position in the pixel, or on the source.
     PlaceV = 2,
-    /// Place on the pupil.
+    /// First coordinate on the pupil.
     PupilU = 3,
-    /// Place on the pupil.
+    /// Second coordinate on the pupil.
     PupilV = 4,
 }
 
-/// Dimensions that Sobol points cover; any beyond are independent random numbers.
+/// Number of dimensions that have Sobol points; later ones are independent random numbers.
 pub const SOBOL_DIMENSIONS: usize = 8;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     Random,
     Sobol,
-    /// In as many strata, 1 at least.
+    /// Jittered, in this many strata, at least 1.
     Stratified(u32),
 }
 
@@ -60,14 +60,14 @@ pub fn mix64(mut x: u64) -> u64 {
 
 const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
 
-/// The seed of a frame of an animation, from the seed of the whole: a pure function of both, so that a frame alone has
-/// the numbers that it has among the others.
+/// The seed of one frame of an animation, from the seed of the whole. It depends on nothing else, so a frame rendered alone has
+/// the same numbers as in the sequence.
 #[must_use]
 pub fn seed_of_frame(seed: u64, frame: u64) -> u64 {
     mix64(mix64(seed.wrapping_add(GOLDEN)) ^ mix64(frame.wrapping_mul(GOLDEN)).rotate_left(32))
 }
 
-/// The upper 52 bits as a number in [0, 1): the same bits on every tier, no integer conversion needed.
+/// The upper 52 bits as a number in [0, 1): the same bits on every tier, without converting integers.
 #[inline(always)]
 fn unit_from_u64(x: u64) -> f64 {
     f64::from_bits((x >> 12) | 0x3ff0_0000_0000_0000) - 1.0
@@ -79,7 +79,7 @@ fn unit_from_u32(x: u32) -> f64 {
     f64::from_bits((u64::from(x) << 20) | 0x3ff0_0000_0008_0000) - 1.0
 }
 
-/// Nested uniform scrambling of the bits of `x`, given bit-reversed; the result is in usual order.
+/// Nested uniform scrambling of the bits of `x`, which are given in reverse; the result is in the usual order.
 #[inline(always)]
 fn owen_scramble_reversed(x: u32, seed: u32) -> u32 {
     let mut x = x ^ x.wrapping_mul(0x3d20_adea);
@@ -173,17 +173,17 @@ impl Numbers {
         Self::new(Kind::Random, seed)
     }
 
-    /// Jittered strata: of each `strata` samples in a row (from a multiple of it on) one lies in each of as many equal
-    /// parts of [0, 1), at an independent place, in an order that is another one in each dimension and stream.
+    /// Jittered strata: of every `strata` consecutive samples (from a multiple of it on), one lies in each of that many equal
+    /// parts of [0, 1), at an independent position. The order differs between dimensions and streams.
     ///
-    /// A number depends on (seed, stream, sample, dimension), and on how many strata there are: they are best as many as
-    /// the samples of a stream. 0 counts as 1, which is independent numbers.
+    /// A number depends on (seed, stream, sample, dimension) and on the number of strata, which is best equal to the number of
+    /// samples in a stream. 0 counts as 1, which gives independent numbers.
     #[must_use]
     pub fn stratified(seed: u64, strata: u32) -> Self {
         Self::new(Kind::Stratified(strata.max(1)), seed)
     }
 
-    /// The same seed with independent numbers: for the parts of a path that must not be even.
+    /// Independent numbers with the same seed, for the parts of a path that must not be stratified.
     #[must_use]
     pub fn as_random(&self) -> Self {
         Self { kind: Kind::Random, ..self.clone() }
@@ -219,10 +219,9 @@ impl Numbers {
         }
     }
 
-    /// Writes numbers of which `group` samples at a time share one, rotated: sample i has that of i / group, moved on by
-    /// (i mod group) / group around [0, 1). A group covers [0, 1) evenly, each of its numbers is as uniform as the one
-    /// shared, and a number is still a function of (seed, stream, sample, dimension). A group of 1 (or 0) is
-    /// [`Numbers::fill`].
+    /// Writes numbers that `group` consecutive samples share, rotated: sample i has the number of i / group, shifted by (i mod
+    /// group) / group around [0, 1). A group covers [0, 1) evenly, each of its numbers is as uniform as the shared one, and each
+    /// is still a function of (seed, stream, sample, dimension). A group of 1 (or 0) is [`Numbers::fill`].
     pub fn fill_rotated(&self, isa: Isa, stream: u64, first: u64, group: u32, dimension: u32, out: &mut [f64]) {
         if group <= 1 {
             return self.fill(isa, stream, first, dimension, out);
@@ -239,7 +238,7 @@ impl Numbers {
         }
     }
 
-    /// One number: the same as [`Numbers::fill`] gives.
+    /// One number, the same as from [`Numbers::fill`].
     #[must_use]
     pub fn one(&self, stream: u64, sample: u64, dimension: u32) -> f64 {
         let mut out = [0.0];
@@ -247,16 +246,16 @@ impl Numbers {
         out[0]
     }
 
-    /// A generator for one sample, for code that draws by `rand` and `rand_distr`: independent
-    /// numbers of the dimensions from `dimension` on.
+    /// A generator for one sample, for code that uses `rand` and `rand_distr`: independent numbers, from dimension `dimension`
+    /// on.
     #[must_use]
     pub fn generator(&self, stream: u64, sample: u64, dimension: u32) -> SampleRng {
         SampleRng { state: mix64(self.key(stream, dimension) ^ mix64(sample.wrapping_mul(GOLDEN))) }
     }
 }
 
-/// A count of mean `mean` by Poisson's law: the one that the number `u` in [0, 1) falls on. Above a mean of 500 the law is
-/// as good as normal, and so is its count (Abramowitz and Stegun 26.2.23 inverts the normal law, within 4.5e-4).
+/// A Poisson count of mean `mean`, chosen by the number `u` in [0, 1). Above a mean of 500 the normal distribution is close
+/// enough and is used instead (its inverse is Abramowitz and Stegun 26.2.23, within 4.5e-4).
 #[must_use]
 pub fn poisson(mean: f64, u: f64) -> f64 {
     if !(mean > 0.0) {
@@ -281,7 +280,7 @@ pub fn poisson(mean: f64, u: f64) -> f64 {
     count
 }
 
-/// One number in each of `strata` parts, block after block.
+/// One number in each of `strata` parts, block by block.
 fn fill_strata(key: u64, first: u64, strata: u32, out: &mut [f64]) {
     const BELOW_ONE: f64 = 1.0 - 0.5 * f64::EPSILON;
     let many = u64::from(strata);
@@ -299,10 +298,9 @@ fn fill_strata(key: u64, first: u64, strata: u32, out: &mut [f64]) {
     }
 }
 
-/// Where `at` of `many` stands in an order that `key` decides: a different place for each.
-///
-/// Invertible steps on as many bits as `many` needs, gone through again while the place is beyond the last one: such walks
-/// stay on one cycle of a permutation, so no place comes twice.
+/// The position of item `at` of `many` in a permutation that `key` selects; no two items get the same position.
+/// Applies invertible steps on as many bits as `many` needs, and repeats them while the position is beyond the last one. Such a
+/// walk stays on one cycle of a permutation, so no position occurs twice.
 fn shuffled(at: u32, many: u32, key: u64) -> u32 {
     let bits = 32 - (many - 1).leading_zeros();
     if bits == 0 {
@@ -390,7 +388,7 @@ impl rand::rand_core::TryRng for SampleRng {
 mod tests {
     use super::*;
 
-    /// Counts have the mean and the variance of Poisson's law, and its share of zeros; tolerance: four standard errors.
+    /// Counts have the mean, the variance and the share of zeros of the Poisson distribution; tolerance: four standard errors.
     #[test]
     fn counts_are_poisson() {
         const DRAWS: u64 = 40_000;
@@ -430,7 +428,7 @@ mod tests {
         }
     }
 
-    /// One of n in each of n strata, whatever n, block after block and in every dimension.
+    /// One of n numbers in each of n strata, for any n, in every block and every dimension.
     #[test]
     fn strata_hold_one_number_each() {
         for strata in [1, 2, 3, 7, 64, 100, 1000] {
@@ -447,8 +445,8 @@ mod tests {
         }
     }
 
-    /// Every stratum is as likely for the first sample as for any other, and dimensions do not know of each other: over
-    /// 20 000 streams, chi-square of 16 strata below its 0.999 quantile (37.7), and correlation within four standard errors.
+    /// Every stratum is equally likely for every sample, and dimensions are independent: over 20 000 streams, chi-square of 16
+    /// strata below its 0.999 quantile (37.7), and correlation within four standard errors.
     #[test]
     fn orders_of_strata_are_random() {
         let numbers = Numbers::stratified(11, 16);
@@ -470,7 +468,7 @@ mod tests {
         assert!((c + 1.0 / 15.0).abs() < 4.0 / n.sqrt(), "{c}");
     }
 
-    /// Rotated numbers are a function of the sample alone, and a group is a regular comb.
+    /// Rotated numbers depend on the sample alone, and a group is evenly spaced.
     #[test]
     fn rotated_numbers_do_not_depend_on_the_cut_and_cover_evenly() {
         for numbers in [Numbers::sobol(7), Numbers::random(7)] {
@@ -500,7 +498,7 @@ mod tests {
         Numbers::sobol(1).fill_rotated(Isa::Baseline, 0, 5, 4, 0, &mut []);
     }
 
-    /// A (0, m, 1)-net in base 2: one point of 2^m in each of 2^m equal intervals, also after scrambling.
+    /// A (0, m, 1)-net in base 2: of 2^m points, one lies in each of 2^m equal intervals, also after scrambling.
     #[test]
     fn sobol_points_are_stratified_in_each_dimension() {
         for stream in 0..20 {
@@ -515,7 +513,7 @@ mod tests {
         }
     }
 
-    /// The first two dimensions form a (0, 2, 2)-net: every elementary interval of 2^m points holds one.
+    /// The first two dimensions form a (0, 2, 2)-net: every elementary interval of 2^m points contains one.
     #[test]
     fn first_pair_is_a_net() {
         let numbers = Numbers::sobol(9);
@@ -532,7 +530,7 @@ mod tests {
         }
     }
 
-    /// Mean and variance of a uniform variate, and no correlation of neighboring streams and dimensions.
+    /// Mean and variance of a uniform variate, and no correlation between neighboring streams and dimensions.
     #[test]
     fn random_numbers_are_uniform_and_uncorrelated() {
         let n = 200_000;

@@ -1,14 +1,13 @@
-//! What the frame of a camera sees in front of the lens.
+//! What a camera's frame sees in front of the lens.
 
-/// A line of sight, frame of the lens: where it crosses the plane z = 0, and how far it goes aside for each mm in front
-/// of that plane.
+/// A line of sight, in the frame of the lens: where it crosses the plane z = 0, and its slope in front of that plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sight {
-    /// The point of the frame that it comes from: a number of its own for each.
+    /// The point of the frame that it comes from, as a number that differs from point to point.
     pub point: usize,
     /// x and y on the plane z = 0, mm.
     pub start_mm: [f64; 2],
-    /// mm aside for a mm toward the object.
+    /// Sideways shift, mm, per mm toward the object.
     pub slope: [f64; 2],
 }
 
@@ -20,31 +19,31 @@ impl Sight {
     }
 }
 
-/// The lines of sight from points all over a frame through all that the lens passes, at its reference wavelength: for a
-/// source that is to fill the frame.
+/// The lines of sight from points all over a frame through the whole opening of the lens, at its reference wavelength. Used for a
+/// source that has to fill the frame.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct View {
     sights: Vec<Sight>,
-    /// Points of the frame that look at nothing a plane could show, since a line of sight of theirs runs backward.
+    /// Points of the frame with a line of sight that runs backward, so that they cannot see a plane.
     beside: Vec<usize>,
 }
 
 impl View {
-    /// From its lines of sight; those of one point follow each other. `beside`: the points with a line of sight at 90
-    /// degrees to the axis or more.
+    /// From its lines of sight, those of one point in a row. `beside`: the points with a line of sight at 90 degrees to the axis
+    /// or more.
     #[must_use]
     pub fn new(sights: Vec<Sight>, beside: Vec<usize>) -> Self {
         Self { sights, beside }
     }
 
-    /// Whether a plane across the axis can fill the frame: not where the lens looks to the side or behind.
+    /// Whether a plane across the axis can fill the frame. It cannot if the lens looks to the side or behind.
     #[must_use]
     pub fn fits_a_plane(&self) -> bool {
         self.beside.is_empty() && !self.sights.is_empty()
     }
 
-    /// Half of the width and height, mm, of the smallest rectangle about a center (mm) on the plane `distance_mm` in front
-    /// of the first vertex that holds all that the frame sees there. `None` where no rectangle does.
+    /// Half the width and height, mm, of the smallest rectangle centered on a point (mm) of the plane `distance_mm` in front of
+    /// the first vertex that contains everything the frame sees there. `None` if there is no such rectangle.
     #[must_use]
     pub fn half_size_mm(&self, distance_mm: f64, center_mm: [f64; 2]) -> Option<[f64; 2]> {
         if !self.fits_a_plane() {
@@ -60,8 +59,8 @@ impl View {
         half.iter().all(|h| h.is_finite()).then_some(half)
     }
 
-    /// The share of the points of the frame which the lens shows anything at all that get half of their light or more from
-    /// where `is_seen` says no; `None` without any point.
+    /// Among the points of the frame that see anything through the lens, the share that gets half of its light or more from
+    /// places where `is_seen` is false; `None` if there are no such points.
     #[must_use]
     pub fn share_missed(&self, is_seen: impl Fn(&Sight) -> bool) -> Option<f64> {
         let (mut points, mut missed) = (0_usize, 0_usize);

@@ -1,11 +1,11 @@
-//! The tree that a scene file becomes: values with the place where each was written.
+//! The tree that a scene file is read into: values, each with the place where it was written.
 
 use super::fault::Fault;
 use std::fmt;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Deepest nesting of maps and lists that is read or built: recursion over a [`Node`] is bounded by it.
+/// Deepest nesting of maps and lists that is read or built. It limits recursion over a [`Node`].
 pub const MAX_DEPTH: usize = 64;
 
 /// A place in a file.
@@ -17,7 +17,7 @@ pub struct Span {
     pub column: usize,
     /// Offset in bytes, from 0.
     pub offset: usize,
-    /// Length in bytes; 0 where nothing was written.
+    /// Length in bytes; 0 if nothing was written.
     pub len: usize,
 }
 
@@ -29,7 +29,7 @@ impl Default for Span {
 }
 
 impl Span {
-    /// The part of it on its first line: what a message points at when a value covers many lines.
+    /// The part of it on its first line; messages point there when a value spans several lines.
     #[must_use]
     pub fn first_line(self, text: &str) -> Self {
         let covered = text.get(self.offset..).unwrap_or("");
@@ -39,10 +39,10 @@ impl Span {
     }
 }
 
-/// A text that values were read from.
+/// A text that values were read from: a file or an argument.
 #[derive(Clone, PartialEq, Eq)]
 pub struct SourceFile {
-    /// How it is named to a person: a path, `bundled:...`, or the argument `--set path=value`.
+    /// Its name in messages: a path, `bundled:...`, or the argument `--set path=value`.
     pub name: String,
     /// Content.
     pub text: String,
@@ -55,14 +55,14 @@ impl SourceFile {
         Self { name: name.into(), text: text.into() }
     }
 
-    /// Whether it is an argument of the command line and no file; then lines and columns say nothing to a person.
+    /// Whether it is an argument of the command line instead of a file; then messages give no line and column.
     #[must_use]
     pub fn is_argument(&self) -> bool {
         self.name.starts_with("--")
     }
 
-    /// Folder that relative paths in it are relative to: empty (the working folder) for an argument,
-    /// `None` for what has no folder on disk.
+    /// The folder that relative paths in it start from: empty (the working folder) for an argument, `None` for a text without a
+    /// folder on disk.
     #[must_use]
     pub fn folder(&self) -> Option<&Path> {
         if self.is_argument() {
@@ -76,18 +76,18 @@ impl SourceFile {
 }
 
 impl fmt::Debug for SourceFile {
-    /// The name only: every node holds its file.
+    /// Prints the name only, because every node refers to its file.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "SourceFile({})", self.name)
     }
 }
 
-/// A number as it was written.
+/// A number as written.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Number {
-    /// Its value; infinite also where the digits exceed an f64.
+    /// Its value; infinite if it is too large for an f64.
     pub value: f64,
-    /// Its spelling: integers keep all digits, and a name such as `135` stays a name.
+    /// Its spelling, so that integers keep all digits and a name such as `135` stays a name.
     pub text: String,
 }
 
@@ -96,11 +96,11 @@ pub struct Number {
 pub struct Key {
     /// Its text.
     pub text: String,
-    /// Where it stands, in the same file as its value.
+    /// Its place, in the same file as its value.
     pub span: Span,
 }
 
-/// What a node holds.
+/// The content of a node.
 #[derive(Clone, Debug)]
 pub enum Value {
     /// Nothing, `null` or `~`.
@@ -109,17 +109,17 @@ pub enum Value {
     Bool(bool),
     /// A number without a unit.
     Number(Number),
-    /// A text, and so a number with a unit.
+    /// A text; this includes numbers with a unit.
     String(String),
     /// A list.
     Seq(Vec<Node>),
-    /// A map, in the order of the file; no key comes twice.
+    /// A map, in the order of the file, without duplicate keys.
     Map(Vec<(Key, Node)>),
 }
 
 impl Value {
-    /// The value of an unquoted scalar by the core schema of YAML 1.2 (section 10.3.2), with strict
-    /// booleans: only `true` and `false`.
+    /// The value of an unquoted scalar by the core schema of YAML 1.2 (section 10.3.2), with strict booleans: only `true` and
+    /// `false`.
     #[must_use]
     pub fn from_plain(text: &str) -> Self {
         match text {
@@ -134,7 +134,7 @@ impl Value {
     }
 }
 
-/// The value of a number's spelling by the core schema; an overflow is infinite.
+/// The value of a number's spelling by the core schema; infinite on overflow.
 fn plain_number(text: &str) -> Option<f64> {
     if let Some(digits) = text.strip_prefix("0x") {
         return radix(digits, 16);
@@ -163,8 +163,8 @@ fn radix(digits: &str, base: u32) -> Option<f64> {
     digits.chars().try_fold(0.0, |sum: f64, c| Some(sum * f64::from(base) + f64::from(c.to_digit(base)?)))
 }
 
-/// Where the decimal number at the start of `text` (without a sign) ends, in bytes, and whether it is
-/// written as an integer; `None` if there is none.
+/// Where the decimal number at the start of `text` (without a sign) ends, in bytes, and whether it is written as an integer;
+/// `None` if there is no number.
 pub(super) fn decimal_end(text: &str) -> Option<(usize, bool)> {
     let bytes = text.as_bytes();
     let digits = |from: usize| bytes[from..].iter().take_while(|b| b.is_ascii_digit()).count();
@@ -195,11 +195,11 @@ pub(super) fn decimal_end(text: &str) -> Option<(usize, bool)> {
 /// A value with its place.
 #[derive(Clone, Debug)]
 pub struct Node {
-    /// What it holds.
+    /// Its content.
     pub value: Value,
     /// Where it was written.
     pub span: Span,
-    /// In which file.
+    /// The file that it was written in.
     pub file: Arc<SourceFile>,
 }
 
@@ -216,7 +216,7 @@ impl Node {
         self.entry(key).map(|(_, node)| node)
     }
 
-    /// The key and value under a key, if this is a map that has it.
+    /// The key and the value under it, if this is a map that has it.
     #[must_use]
     pub fn entry(&self, key: &str) -> Option<(&Key, &Node)> {
         match &self.value {
@@ -225,7 +225,7 @@ impl Node {
         }
     }
 
-    /// The element of a list.
+    /// An element of a list.
     #[must_use]
     pub fn element(&self, index: usize) -> Option<&Node> {
         match &self.value {
@@ -234,7 +234,7 @@ impl Node {
         }
     }
 
-    /// Its text, if it is one; a number counts by its spelling.
+    /// Its text, if it is one; for a number, its spelling.
     #[must_use]
     pub fn as_str(&self) -> Option<&str> {
         match &self.value {
@@ -250,13 +250,13 @@ impl Node {
         matches!(self.file.text.as_bytes().get(self.span.offset), Some(b'"' | b'\'')) && self.span.len > 1
     }
 
-    /// Where a message about it points: the part of it on its first line.
+    /// The place that messages about it point to: the part of it on its first line.
     #[must_use]
     pub fn place(&self) -> (Arc<SourceFile>, Span) {
         (Arc::clone(&self.file), self.span.first_line(&self.file.text))
     }
 
-    /// A fault placed here.
+    /// A fault at this place.
     #[must_use]
     pub fn fault(&self, message: impl Into<String>) -> Fault {
         Fault { place: Some(self.place()), ..Fault::new(message) }

@@ -8,16 +8,16 @@ use std::sync::Arc;
 /// One step of a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Step<'a> {
-    /// Into a map.
+    /// A key of a map.
     Key(&'a str),
-    /// Into a list.
+    /// An index of a list.
     Index(usize),
 }
 
 /// The steps of a path such as `surfaces[3].radius`.
 ///
 /// # Errors
-/// What is wrong with it.
+/// What is wrong with the path.
 pub fn steps(path: &str) -> Result<Vec<Step<'_>>, String> {
     let mut steps = Vec::new();
     for part in path.split('.') {
@@ -44,7 +44,7 @@ pub fn steps(path: &str) -> Result<Vec<Step<'_>>, String> {
     Ok(steps)
 }
 
-/// `path` with a step behind it.
+/// `path` with one more step.
 pub(super) fn joined(path: &str, step: Step<'_>) -> String {
     match step {
         Step::Key(key) if path.is_empty() => shown(key),
@@ -54,7 +54,7 @@ pub(super) fn joined(path: &str, step: Step<'_>) -> String {
 }
 
 impl Node {
-    /// The node at a path, if there is one; an ill-formed path leads nowhere.
+    /// The node at a path, if there is one; `None` also for an ill-formed path.
     #[must_use]
     pub fn at_path(&self, path: &str) -> Option<&Node> {
         steps(path).ok()?.into_iter().try_fold(self, Node::step)
@@ -67,7 +67,7 @@ impl Node {
         }
     }
 
-    /// As far along a path as there are nodes.
+    /// Follows a path as far as there are nodes.
     pub(super) fn nearest_at(&self, path: &str) -> &Node {
         let mut node = self;
         for step in steps(path).unwrap_or_default() {
@@ -77,11 +77,11 @@ impl Node {
         node
     }
 
-    /// Puts a node at a path, as `--set path=value` does: replaces what is there, creates maps that are
-    /// missing. `[i]` must exist, or be the first index beyond the end, which appends.
+    /// Puts a node at a path, as `--set path=value` does: replaces an existing value and creates missing maps. `[i]` must exist
+    /// or be the first index after the end, which appends.
     ///
     /// # Errors
-    /// The path is ill-formed, or leads through what is no map or no list; the tree is unchanged then.
+    /// The path is ill-formed, or leads through something that is neither a map nor a list; the tree is then unchanged.
     pub fn set_path(&mut self, path: &str, node: Node) -> Result<(), Fault> {
         let steps = steps(path).map_err(|message| node.fault(message))?;
         let file = Arc::clone(&node.file);
@@ -130,7 +130,7 @@ impl Node {
         Ok(())
     }
 
-    /// Whether a path can be set; a text says why not.
+    /// Whether a path can be set; if not, the text says why.
     fn settable(&self, steps: &[Step<'_>]) -> Result<(), String> {
         let mut node = Some(self);
         let mut path = String::new();

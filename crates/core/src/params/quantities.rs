@@ -1,4 +1,4 @@
-//! The quantities that scene, lens and stock files are written in.
+//! The quantities used in scene, lens and stock files.
 
 use super::quantity::{Bound, Quantity, deserialize};
 use super::units::{Dimension, Unit};
@@ -18,7 +18,7 @@ impl Quantity for f64 {
     }
 }
 
-/// The type, its constructor and accessor in the unit that it is kept in.
+/// Defines the type, its constructor and its accessor in the unit in which it is stored.
 macro_rules! newtype {
     ($(#[$doc:meta])* $name:ident, $from:ident, $get:ident, $unit:literal) => {
         $(#[$doc])*
@@ -54,7 +54,7 @@ macro_rules! newtype {
     };
 }
 
-/// A quantity that is kept in the unit of its bare number.
+/// Defines a quantity that is stored in the unit of its bare number.
 macro_rules! quantity {
     ($(#[$doc:meta])* $name:ident { $noun:literal, $dimension:ident, $bare:literal, $example:literal, $bound:ident } $from:ident, $get:ident, $unit:literal) => {
         newtype!($(#[$doc])* $name, $from, $get, $unit);

@@ -1,13 +1,13 @@
-//! Words for messages: what was found, quoted safely, and the nearest known name.
+//! Wording for messages: what was found, quoted safely, and the nearest known name.
 
 use super::node::{Node, Value};
 use super::units::Reading;
 use std::fmt::Write;
 
-/// Longest piece of a user's text that a message repeats, in characters.
+/// Longest part of a user's text that a message repeats, in characters.
 const SHOWN: usize = 48;
 
-/// A user's text as a message repeats it: one line, no control characters, of bounded length.
+/// A user's text as messages quote it: on one line, without control characters, of limited length.
 pub(super) fn shown(text: &str) -> String {
     let mut out = String::new();
     for (i, c) in text.chars().enumerate() {
@@ -31,7 +31,7 @@ pub(super) fn with_article(noun: &str) -> String {
     format!("{} {noun}", if vowel { "an" } else { "a" })
 }
 
-/// What a text is: a quantity by its dimension, or just a text.
+/// Describes a text: as a quantity of some dimension, or as just a text.
 pub(super) fn found_text(text: &str) -> String {
     match Reading::of(text) {
         Reading::Quantity { unit, .. } => with_article(unit.dimension.noun()),
@@ -39,7 +39,7 @@ pub(super) fn found_text(text: &str) -> String {
     }
 }
 
-/// What a node is, for `found ...`.
+/// Describes a node, for `found ...`.
 pub(super) fn found(node: &Node) -> String {
     match &node.value {
         Value::Null => "nothing".to_owned(),
@@ -52,7 +52,7 @@ pub(super) fn found(node: &Node) -> String {
     }
 }
 
-/// Names in a row: `a, b, c`.
+/// Names as a list: `a, b, c`.
 pub(super) fn listed<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     let mut out = String::new();
     for name in names {
@@ -73,12 +73,12 @@ pub(super) fn hint_for(name: &str, what: &str, known: &[&str]) -> String {
     }
 }
 
-/// The known name that is nearest to `name` by edit distance (insertions, deletions, replacements,
-/// swaps of neighbors; case, `_` and `-` count as equal), if it is near enough to be meant: one edit for short
-/// names, a third of the length for long ones. The first of equals.
+/// The known name nearest to `name` by edit distance (insertions, deletions, replacements, swaps of neighbors; case is ignored,
+/// and `_` equals `-`), if it is near enough: one edit for short names, a third of the length for long ones. The first one if
+/// several are equally near.
 #[must_use]
 pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    /// No key is this long; the distance costs the product of both lengths.
+    /// No key is longer than this. Limits the work, which grows with the product of both lengths.
     const LONGEST: usize = 64;
     let letters = |text: &str| -> Vec<char> {
         let fold = |c: char| if c == '_' || c == ' ' { '-' } else { c.to_ascii_lowercase() };

@@ -1,7 +1,7 @@
-//! Units, and texts with a unit: `50 mm`, `1/125 s`, `f/2.8`, `50 %`.
+//! Units, and texts that contain a unit: `50 mm`, `1/125 s`, `f/2.8`, `50 %`.
 //!
-//! Factors are exact by definition: the SI Brochure (9th edition, 2019, tables 7 and 8) for the prefixes
-//! and the units of time and angle; the international yard and pound agreement of 1959 for inch and foot.
+//! Factors are exact by definition: prefixes and the units of time and angle from the SI Brochure (9th edition, 2019, tables 7
+//! and 8), inch and foot from the international yard and pound agreement of 1959.
 
 use super::node::decimal_end;
 use std::borrow::Cow;
@@ -11,15 +11,15 @@ use std::borrow::Cow;
 pub enum Dimension {
     /// A number without a unit.
     Number,
-    /// A part of a whole, in per cent or as a number.
+    /// A fraction of a whole, in per cent or as a number.
     Ratio,
-    /// Length; wavelengths too.
+    /// Length, including wavelength.
     Length,
     /// Time.
     Time,
     /// Plane angle.
     Angle,
-    /// Thermodynamic temperature; color temperature too.
+    /// Thermodynamic or color temperature.
     Temperature,
     /// Luminance.
     Luminance,
@@ -31,13 +31,13 @@ pub enum Dimension {
     Power,
     /// Radiant intensity.
     RadiantIntensity,
-    /// Luminous flux; known so that a message can name it.
+    /// Luminous flux; known only so that messages can name it.
     LuminousFlux,
-    /// Luminous intensity; known so that a message can name it.
+    /// Luminous intensity; known only so that messages can name it.
     LuminousIntensity,
     /// Spatial frequency: cycles, line pairs or grooves per length.
     SpatialFrequency,
-    /// Frequency; known so that a message can name it.
+    /// Frequency; known only so that messages can name it.
     Frequency,
     /// Focal length over the diameter of the entrance pupil.
     FNumber,
@@ -67,7 +67,7 @@ impl Dimension {
         }
     }
 
-    /// The spellings of its units, the first of each unit.
+    /// All spellings of its units; each unit's preferred spelling comes first.
     #[must_use]
     pub fn units(self) -> Vec<&'static str> {
         UNITS.iter().filter(|u| u.dimension == self).map(|u| u.symbols[0]).collect()
@@ -77,11 +77,11 @@ impl Dimension {
 /// A unit.
 #[derive(Debug, PartialEq)]
 pub struct Unit {
-    /// Its spellings; the first is the one that messages use.
+    /// Its spellings; messages use the first.
     pub symbols: &'static [&'static str],
     /// What it measures.
     pub dimension: Dimension,
-    /// Its size in a reference of the dimension, chosen so that sizes are whole numbers.
+    /// Its size relative to a reference of the dimension that makes sizes whole numbers.
     size: f64,
 }
 
@@ -90,15 +90,15 @@ impl Unit {
         Self { symbols, dimension, size }
     }
 
-    /// The unit with this spelling (`µ` and `μ` count as `u`, superscripts as digits, a raised dot as a space).
+    /// The unit with this spelling (`µ` and `μ` are read as `u`, superscripts as digits, a raised dot as a space).
     #[must_use]
     pub fn find(spelling: &str) -> Option<&'static Self> {
         let spelling = normal_spelling(spelling);
         UNITS.iter().find(|u| u.symbols.contains(&spelling.as_ref()))
     }
 
-    /// How many `other` make one of these times `value`; both of one dimension. Divides rather than
-    /// multiplies by a rounded inverse, so that `550 nm` is 550 nm and `5 um` is the f64 nearest to 0.005 mm.
+    /// How many `other` equal `value` of this unit; both must have the same dimension. Divides instead of multiplying by a
+    /// rounded inverse, so that `550 nm` is 550 nm and `5 um` is the f64 nearest to 0.005 mm.
     #[must_use]
     pub fn convert(&self, value: f64, other: &Self) -> f64 {
         if self.size >= other.size { value * (self.size / other.size) } else { value / (other.size / self.size) }
@@ -155,7 +155,7 @@ pub(super) static UNITS: &[Unit] = &[
     Unit::new(&["f/"], D::FNumber, 1.0),
 ];
 
-/// One spelling for what is written in several ways.
+/// Replaces characters that can be written in several ways by one spelling.
 fn normal_spelling(text: &str) -> Cow<'_, str> {
     let text = text.trim();
     if text.is_ascii() && !text.contains("  ") && !text.contains('\t') {
@@ -174,7 +174,7 @@ fn normal_spelling(text: &str) -> Cow<'_, str> {
     Cow::Owned(out.split(' ').filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" "))
 }
 
-/// What a text says, read as a quantity.
+/// A text, read as a quantity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Reading<'a> {
     /// A number without a unit.
@@ -186,25 +186,25 @@ pub enum Reading<'a> {
         /// The unit.
         unit: &'static Unit,
     },
-    /// A number with a unit that nobody knows.
+    /// A number with an unknown unit.
     UnknownUnit(&'a str),
-    /// `inf`, `.inf`, `infinity` or the sign; true where it is negative.
+    /// `inf`, `.inf`, `infinity` or the infinity sign; true if negative.
     Infinity(bool),
     /// `nan`.
     NotANumber,
-    /// Digits beyond the range of an f64.
+    /// A number beyond the range of an f64.
     TooLarge,
     /// A number with a decimal comma.
     DecimalComma,
-    /// Something else.
+    /// Anything else.
     Text,
 }
 
 impl<'a> Reading<'a> {
-    /// Reads a text. Longer ones than any quantity are texts.
+    /// Reads a text. One that is too long for a quantity is plain text.
     #[must_use]
     pub fn of(text: &'a str) -> Self {
-        /// Digits of the longest f64 written out, and a unit.
+        /// Length of the longest f64 written out, with a unit.
         const LONGEST: usize = 1200;
         let text = text.trim();
         if text.len() > LONGEST {
@@ -254,7 +254,7 @@ impl<'a> Reading<'a> {
     }
 }
 
-/// The decimal number at the start of a text, and what follows.
+/// The decimal number at the start of a text, and the rest of the text.
 fn number(text: &str) -> Option<(f64, &str)> {
     let unsigned = text.strip_prefix(['+', '-']).unwrap_or(text);
     let (end, _) = decimal_end(unsigned)?;

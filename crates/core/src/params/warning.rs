@@ -1,11 +1,11 @@
-//! What a person should know before believing a picture.
+//! Warnings: what a person should know before trusting a picture.
 
 use super::Fault;
 use std::cell::RefCell;
 use std::fmt;
 
-/// Something that is probably not what was meant, or that makes a picture less true than it looks: worded, placed and
-/// hinted like a [`Fault`], but nothing that keeps a scene from being rendered.
+/// Something that was probably not intended, or that makes a picture less accurate than it looks. It has a message, a place and a
+/// hint like a [`Fault`], but the scene can still be rendered.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Warning(pub Fault);
 
@@ -29,17 +29,18 @@ impl fmt::Display for Warning {
     }
 }
 
-/// Warnings as they come up while stages are built: a builder only borrows what it is told.
+/// Collects warnings while stages are built; builders only need a shared reference to it.
 #[derive(Debug, Default)]
 pub struct Warnings {
     all: RefCell<Vec<Warning>>,
     ends: RefCell<Vec<DataEnd>>,
 }
 
-/// A table of light that is continued flat beyond its rows. Whether that matters shows once it is known who sees the light.
+/// A table of light that is extended at a constant value beyond its rows. Whether that matters is known only once the film or
+/// sensor is.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DataEnd {
-    /// Where it is named, with its name as the message.
+    /// Where the table is named; the message is its name.
     pub place: Fault,
     /// First and last wavelength of its rows, nm.
     pub measured_nm: [f64; 2],
@@ -52,7 +53,7 @@ impl Warnings {
         Self { all: RefCell::new(Vec::new()), ends: RefCell::new(Vec::new()) }
     }
 
-    /// Adds one, unless the same has been said.
+    /// Adds one, unless it is there already.
     pub fn push(&self, warning: impl Into<Warning>) {
         let warning = warning.into();
         let mut all = self.all.borrow_mut();
@@ -61,18 +62,18 @@ impl Warnings {
         }
     }
 
-    /// All, in the order in which they came.
+    /// All warnings, in the order in which they were added.
     #[must_use]
     pub fn into_vec(self) -> Vec<Warning> {
         self.all.into_inner()
     }
 
-    /// Adds a table whose ends may have to be warned of.
+    /// Adds a table that may need a warning about its ends.
     pub fn push_end(&self, end: DataEnd) {
         self.ends.borrow_mut().push(end);
     }
 
-    /// These tables.
+    /// The tables added so far.
     #[must_use]
     pub fn ends(&self) -> Vec<DataEnd> {
         self.ends.borrow().clone()

@@ -1,4 +1,4 @@
-//! Whole numbers, read from their digits: an f64 would change those above 2^53 without a word.
+//! Whole numbers, read from their digits, because an f64 would silently change those above 2^53.
 
 use super::node::{Node, Value, decimal_end};
 use super::text::shown;
@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize, Serializer};
 use std::borrow::Cow;
 use std::fmt;
 
-/// Name by which a whole number asks the deserializer of nodes for its digits.
+/// The name by which a whole number asks the nodes' deserializer for its digits.
 pub(super) const WHOLE: &str = "spectra::whole";
 
 /// A whole number from `MIN` to `MAX`, both included: `16`, `2e6`, `0x10`. Exact up to 2^64 - 1.
@@ -16,16 +16,16 @@ pub(super) const WHOLE: &str = "spectra::whole";
 pub struct Whole<const MIN: u64, const MAX: u64>(u64);
 
 impl<const MIN: u64, const MAX: u64> Whole<MIN, MAX> {
-    /// The number, if it lies within the range.
+    /// The number, if it is within the range.
     #[must_use]
     pub const fn new(value: u64) -> Option<Self> {
         if MIN <= value && value <= MAX { Some(Self(value)) } else { None }
     }
 
-    /// A number that is known when the program is compiled.
+    /// A number known at compile time.
     ///
     /// # Panics
-    /// It lies outside of the range.
+    /// If the number is outside the range.
     #[must_use]
     pub const fn known(value: u64) -> Self {
         assert!(MIN <= value && value <= MAX, "outside of the range");
@@ -38,13 +38,13 @@ impl<const MIN: u64, const MAX: u64> Whole<MIN, MAX> {
         self.0
     }
 
-    /// The number as a size; a range that exceeds the machine's sizes is cut.
+    /// The number as a `usize`, clamped to the largest one that the machine has.
     #[must_use]
     pub fn size(self) -> usize {
         usize::try_from(self.0).unwrap_or(usize::MAX)
     }
 
-    /// The number in 32 bits.
+    /// The number as 32 bits.
     #[must_use]
     pub const fn get_u32(self) -> u32 {
         const { assert!(MAX <= u32::MAX as u64, "the range exceeds 32 bits") };
@@ -52,19 +52,19 @@ impl<const MIN: u64, const MAX: u64> Whole<MIN, MAX> {
     }
 }
 
-/// What a spelling is, as a whole number.
+/// A spelling, read as a whole number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Exact {
-    /// This one.
+    /// This number.
     Is(i128),
-    /// One that 128 bits do not hold.
+    /// Too large for 128 bits.
     Beyond,
-    /// It has a fraction, or is no number.
+    /// It has a fraction or is not a number.
     Not,
 }
 
 impl Exact {
-    /// The value of a number's spelling by the core schema of YAML: digits are taken as they are, and `2.5e3` is 2500.
+    /// The value of a number's spelling by the core schema of YAML: digits are read exactly, and `2.5e3` is 2500.
     pub(super) fn of(text: &str) -> Self {
         for (prefix, radix) in [("0x", 16), ("0o", 8)] {
             if let Some(digits) = text.strip_prefix(prefix) {
@@ -104,7 +104,7 @@ impl Exact {
     }
 }
 
-/// The fault of a number outside of a range, with a hint on a line of its own.
+/// The fault for a number outside a range, with a hint on its own line.
 pub(super) fn out_of_range(written: &str, least: impl fmt::Display, most: impl fmt::Display) -> String {
     format!("found {}, which is out of range\nhint: a whole number from {least} to {most}", shown(written))
 }
@@ -138,12 +138,12 @@ impl<'de, const MIN: u64, const MAX: u64> Visitor<'de> for WholeVisitor<MIN, MAX
         write!(f, "a whole number such as {}", MIN.max(16).min(MAX))
     }
 
-    /// Other formats than nodes, and what serde has buffered.
+    /// For formats other than nodes, and for values that serde has buffered.
     fn visit_newtype_struct<D: Deserializer<'de>>(self, deserializer: D) -> Result<Self::Value, D::Error> {
         deserializer.deserialize_any(self)
     }
 
-    /// The spelling of a number; a text is refused before it comes here.
+    /// The spelling of a number; texts have been refused before this is called.
     fn visit_str<E: Error>(self, written: &str) -> Result<Self::Value, E> {
         Self::of(written)
     }
@@ -190,7 +190,7 @@ impl<const MIN: u64, const MAX: u64> JsonSchema for Whole<MIN, MAX> {
     }
 }
 
-/// The exact whole number that a node holds, if it is one of `least ..= most`.
+/// The exact whole number in a node, if it is one in `least ..= most`.
 pub(super) fn whole_of(node: &Node, least: i128, most: i128) -> Option<Result<i128, String>> {
     let Value::Number(number) = &node.value else { return None };
     match Exact::of(&number.text) {
