@@ -20,21 +20,21 @@ use std::path::PathBuf;
     version = version::VERSION,
     long_version = version::long(),
     arg_required_else_help = true,
-    after_help = "Start with: spectra run biotar-ortho (`spectra list scene` shows what else comes with the program)",
+    after_help = "Start with: spectra run biotar-ortho (`spectra list scene` lists the other bundled scenes)",
     after_long_help = "Start with:\n  spectra run biotar-ortho\n  spectra list scene\n\n\
-        Exit codes: 0 done, or stopped by --time-limit; 1 something failed (a full disk, a render error); \
-        2 the input is wrong; 130 interrupted by Ctrl-C, 143 by SIGTERM, 129 by SIGHUP.\n\n\
-        Environment: SPECTRA_ISA=baseline|avx2|avx512 forces an instruction set (the picture is the same bit by bit); \
+        Exit codes: 0 success, or stopped by --time-limit; 1 failure (a full disk, a render error); \
+        2 invalid input; 130 interrupted by Ctrl-C, 143 by SIGTERM, 129 by SIGHUP.\n\n\
+        Environment: SPECTRA_ISA=baseline|avx2|avx512 forces an instruction set (the picture is bit-for-bit the same); \
         NO_COLOR turns colors off."
 )]
 pub(crate) struct Arguments {
-    /// What to do.
+    /// The command to run.
     #[command(subcommand)]
     pub command: Option<Command>,
-    /// Show the terms of the program and of the data in it.
+    /// Show the licenses of the program and of its bundled data.
     #[arg(long, exclusive = true)]
     pub licenses: bool,
-    /// Say on standard error what is going on inside.
+    /// Log details to standard error.
     #[arg(short, long, global = true)]
     pub verbose: bool,
 }
@@ -42,31 +42,31 @@ pub(crate) struct Arguments {
 /// The commands.
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// Render a scene: the picture, and the light behind it.
+    /// Render a scene to a picture and to linear exposure data.
     Run(Run),
-    /// Find every fault of scenes without rendering them.
+    /// Check scenes for errors without rendering them.
     Check(Check),
-    /// List what can be written in a scene.
+    /// List the stages, lenses, film stocks and other data that scenes can use.
     List(List),
-    /// Show what a stage does, and what is written in it.
+    /// Show what a stage does and which parameters it takes.
     Doc(Doc),
     /// Write the JSON Schema of scenes, lenses, stocks or spectra.
     Schema(SchemaOf),
-    /// Look at a lens as an optical engineer does.
+    /// Analyze, compare, draw, trace, import and export lenses.
     Lens(LensArguments),
-    /// Look at film stocks: sensitivities, curves, dyes.
+    /// Inspect film stocks: sensitivities, curves, dyes.
     Film(FilmArguments),
-    /// Compare ways to draw wavelengths: error against samples and time.
+    /// Compare wavelength sampling strategies: error against samples and time.
     Bench(Bench),
-    /// Look at spectra: their color in figures, and pictures of them.
+    /// Inspect spectra: color values, plots, fits, color models.
     Spectrum(SpectrumArguments),
-    /// Look at glass: refractive index, Abbe diagram, nearest glass, fits.
+    /// Inspect glass: refractive index, Abbe diagram, nearest glass, fits.
     Glass(GlassArguments),
-    /// Start a plugin, a scene or a lens of your own.
+    /// Create a plugin, a scene or a lens of your own.
     New(NewArguments),
-    /// Build a program with your plugins in it.
+    /// Build a version of the program that includes your plugins.
     Build(BuildArguments),
-    /// Write the completions of commands and options for a shell.
+    /// Write a shell completion script.
     Completions(Completions),
     /// Write the man page.
     Man,
@@ -75,14 +75,14 @@ pub(crate) enum Command {
 /// `spectra completions`.
 #[derive(Debug, Args)]
 #[command(
-    long_about = "Write the completions of commands and options for a shell to standard output.",
+    long_about = "Write a shell completion script for the commands and options to standard output.",
     after_long_help = "Example:\n  spectra completions bash\n\n\
-        To have them in every new shell, write them to where it looks: \
-        ~/.local/share/bash-completion/completions/spectra for bash, a file _spectra in a folder of $fpath for zsh, \
-        ~/.config/fish/completions/spectra.fish for fish."
+        To load it in every new shell, save it where the shell looks for completions: \
+        ~/.local/share/bash-completion/completions/spectra for bash, a file named _spectra in a folder of $fpath for \
+        zsh, ~/.config/fish/completions/spectra.fish for fish."
 )]
 pub(crate) struct Completions {
-    /// Which shell.
+    /// The shell to write completions for.
     #[arg(value_name = "SHELL", value_enum)]
     pub shell: clap_complete::Shell,
 }
@@ -90,53 +90,55 @@ pub(crate) struct Completions {
 /// `spectra run`.
 #[derive(Debug, Args)]
 #[command(
-    long_about = "Render a scene: the picture, and the light behind it.\n\n\
-        Writes, as the scene's `output` asks, SCENE.exr (linear exposure, one channel each of the imager or film, 32-bit \
-        float) and SCENE.png or SCENE.tiff (what a person looks at), named like the scene file, and SCENE.json (time, \
-        rays, where light was lost, versions). --output x.png (.tiff, .exr, .dng) writes that picture alone. Files appear under their names only when they are whole.\n\n\
-        Ctrl-C stops within a second and writes what there is, marked as partial (exit code 130); a second Ctrl-C gives \
-        it up at once.\n\n\
-        A scene with a `sweep` gives numbered pictures SCENE-001.png ... and a contact sheet SCENE-contact.png, one with an \
-        `animation` frames SCENE.0001.exr ...; SCENE-series.json says of each what it is. All of them are checked before any light \
-        is traced; of several pictures only whole ones are written, also when stopped.",
-    after_long_help = "Examples: a scene that comes with the program; a quick look at it stopped down, into the folder `try`\n  \
+    long_about = "Render a scene to a picture and to linear exposure data.\n\n\
+        The scene's `output` selects the files: SCENE.exr (linear exposure, one image channel for each channel of the \
+        imager or film, 32-bit float) and SCENE.png or SCENE.tiff (the picture for viewing), named after the scene \
+        file. SCENE.json holds the time, rays, light losses and versions. --output x.png (.tiff, .exr, .dng) writes \
+        only that picture. A file appears under its final name only once it is complete.\n\n\
+        Ctrl-C stops within a second and writes the picture so far, marked as partial (exit code 130); a second \
+        Ctrl-C quits immediately.\n\n\
+        A scene with a `sweep` produces numbered pictures SCENE-001.png ... and a contact sheet SCENE-contact.png; a \
+        scene with an `animation` produces frames SCENE.0001.exr ...; SCENE-series.json describes each of them. All \
+        are checked before rendering starts. In a sweep or an animation only complete pictures are written, even if \
+        it is stopped early.",
+    after_long_help = "Examples: a bundled scene; a quick preview of it stopped down, written to the folder `try`\n  \
         spectra run biotar-ortho\n  \
         spectra run biotar-ortho --samples 16 --set lens.f-number=f/4 --output try"
 )]
 pub(crate) struct Run {
-    /// A scene file, or the name of a scene that comes with the program (see `spectra list scene`).
+    /// A scene file, or the name of a bundled scene (see `spectra list scene`).
     #[arg(value_name = "SCENE")]
     pub scene: PathBuf,
-    /// Folder to write to, which is made where it does not exist; or one picture by its name: x.png, .tiff, .exr, .dng.
+    /// Output folder, created if it does not exist; or the name of a single picture file: x.png, .tiff, .exr, .dng.
     #[arg(short, long, value_name = "DIR|FILE", default_value = "out")]
     pub output: PathBuf,
     #[command(flatten)]
     pub set: Set,
-    /// Threads to render on: all processors if not given. The picture does not depend on it.
+    /// Number of render threads; all processors if not given. It does not affect the picture.
     #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
-    /// Seed of the random numbers, in place of the scene's.
+    /// Random seed, overriding the scene's.
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,
-    /// Samples a pixel, in place of the scene's: four times as many make half the noise. A scene that is rendered forward
-    /// launches rays in proportion.
+    /// Samples per pixel, overriding the scene's; four times as many halve the noise. For a scene rendered forward, the
+    /// number of rays scales in proportion.
     #[arg(short, long, value_name = "N", value_parser = samples)]
     pub samples: Option<u32>,
-    /// Stop after this time (30s, 5min), counted from the start of the program, and write what there is; nothing, where the
-    /// scene is not ready for light by then.
+    /// Stop after this time (30s, 5min), counted from the start of the program, and write the picture so far; nothing
+    /// is written if the scene is not ready to render by then.
     #[arg(long, value_name = "TIME", value_parser = parse::<Positive<Time>>)]
     pub time_limit: Option<Positive<Time>>,
-    /// Render these frames of an animation only: 17, 10-20, 10-, or several of them with commas.
+    /// Render only these frames of an animation: 17, 10-20, 10-, or several of these separated by commas.
     #[arg(long, value_name = "FRAMES", value_parser = <Frames as std::str::FromStr>::from_str)]
     pub frames: Option<Frames>,
-    /// Leave out pictures of a sweep or an animation whose files are all there, whatever they were made of.
+    /// Skip pictures of a sweep or an animation whose files all exist, without checking what they were made from.
     #[arg(long)]
     pub skip_existing: bool,
-    /// One JSON object a line on standard output for each event: start, progress, warning, written, done, error; for
-    /// several pictures also check, series and end.
+    /// Write one JSON object per line to standard output for each event: start, progress, warning, written, done,
+    /// error; for several pictures also check, series and end.
     #[arg(long, conflicts_with = "quiet")]
     pub json: bool,
-    /// Say nothing but errors.
+    /// Print errors only.
     #[arg(short, long, overrides_with = "quiet")]
     pub quiet: bool,
 }
@@ -144,11 +146,11 @@ pub(crate) struct Run {
 /// `--set`.
 #[derive(Debug, Args)]
 pub(crate) struct Set {
-    /// Set a value of the scene, as if it stood in the file; may be given again.
+    /// Set a value in the scene, as if it were written in the file; can be repeated.
     #[arg(
         long = "set",
         value_name = "PATH=VALUE",
-        long_help = "Set a value of the scene, as if it stood in the file; may be given again.\n\
+        long_help = "Set a value in the scene, as if it were written in the file; can be repeated.\n\
             Examples: --set film.exposure=\"1/125 s\"  --set lens.f-number=f/4  --set output=[exr]"
     )]
     pub overrides: Vec<String>,
@@ -166,8 +168,8 @@ fn samples(text: &str) -> Result<u32, String> {
 /// `spectra check`.
 #[derive(Debug, Args)]
 #[command(
-    long_about = "Find every fault of scenes without rendering them.\n\n\
-        Each fault is shown with file, line and column and, where there is one, a hint. Exit code 2 if there is any.",
+    long_about = "Check scenes for errors without rendering them.\n\n\
+        Each error is shown with file, line, column and, if available, a hint. The exit code is 2 if there are any.",
     after_long_help = "Example:\n  spectra check biotar-ortho gray-card"
 )]
 pub(crate) struct Check {
@@ -176,7 +178,7 @@ pub(crate) struct Check {
     pub scenes: Vec<PathBuf>,
     #[command(flatten)]
     pub set: Set,
-    /// One JSON object on standard output: scenes, each with its faults and warnings.
+    /// Write a JSON object to standard output: scenes, each with its faults and warnings.
     #[arg(long)]
     pub json: bool,
 }
@@ -184,20 +186,20 @@ pub(crate) struct Check {
 /// `spectra doc`.
 #[derive(Debug, Args)]
 #[command(
-    long_about = "Show what a stage does, and what is written in it: parameters with types, units, ranges and defaults, \
+    long_about = "Show what a stage does and which parameters it takes, with types, units, ranges and defaults, \
         examples, references.",
     after_long_help = "Examples:\n  spectra doc surface/even-asphere\n  spectra doc surface\n  spectra doc scene\n  \
         spectra doc render\n  spectra doc film.exposure\n  spectra doc f-number\n  spectra doc --search halo"
 )]
 pub(crate) struct Doc {
-    /// A stage (surface/sphere), a kind of stage (surface), a file (scene, lens, stock, spectrum), or any key or path of
-    /// these (render, film.exposure, f-number).
+    /// A stage (surface/sphere), a kind of stage (surface), a file (scene, lens, stock, spectrum), or any key or path
+    /// in one of these (render, film.exposure, f-number).
     #[arg(value_name = "NAME", required_unless_present = "search")]
     pub name: Option<String>,
-    /// Show every stage and key whose name or text holds this word.
+    /// Show every stage and key whose name or description contains this word.
     #[arg(long, value_name = "WORD", conflicts_with = "name")]
     pub search: Option<String>,
-    /// One JSON object on standard output.
+    /// Write a JSON object to standard output.
     #[arg(long)]
     pub json: bool,
 }
@@ -206,13 +208,14 @@ pub(crate) struct Doc {
 #[derive(Debug, Args)]
 #[command(
     long_about = "Write the JSON Schema (2020-12) of scenes, lenses, stocks or spectra to standard output.\n\n\
-        It has every stage of this program, plugins included. Editors that know YAML complete and check files by it.",
+        It covers every stage of this program, including plugins. Editors with YAML support use it to complete and \
+        check files.",
     after_long_help = "Example:\n  spectra schema scene > spectra-scene.json\n\n\
-        and as the first line of a scene, for the YAML language server of most editors:\n  \
+        Then put this in the first line of a scene, for the YAML language server used by most editors:\n  \
         # yaml-language-server: $schema=spectra-scene.json"
 )]
 pub(crate) struct SchemaOf {
-    /// Which files.
+    /// The kind of file.
     #[arg(value_name = "KIND", default_value = "scene", value_parser = ["scene", "lens", "stock", "spectrum"])]
     pub kind: String,
 }
@@ -220,12 +223,14 @@ pub(crate) struct SchemaOf {
 /// `spectra bench`.
 #[derive(Debug, Args)]
 #[command(
-    long_about = "Compare ways to draw wavelengths: error against samples and time.\n\n\
-        Each strategy draws for the scene's source, channels and lens. Measured are the spectral integral alone (the \
-        exposure of each channel, against exact quadrature; 50 times as many seeds, unless it is all that is measured) and the scene itself (every pixel, \
-        against a reference of 16 times the most samples). Errors are relative RMS errors of linear exposure over seeds; \
-        95 % intervals by bootstrap over the seeds. `= samples` and `= time` relate a strategy to the first one at the \
-        most samples; `bias/se` is the mean's largest distance from the truth in standard errors.\n\n\
+    long_about = "Compare wavelength sampling strategies: error against samples and time.\n\n\
+        Each strategy samples wavelengths for the scene's source, channels and lens. Two things are measured: the \
+        spectral integral alone (the exposure of each channel, against exact quadrature; with 50 times as many seeds, \
+        unless only the integral is measured) and the scene itself (every pixel, against a reference with 16 times \
+        the largest number of samples). Errors are relative RMS errors of linear exposure over seeds, with 95 % \
+        intervals by bootstrap over the seeds. `= samples` and `= time` compare a strategy with the first one at the \
+        largest number of samples; `bias/se` is the largest deviation of the mean from the true value, in standard \
+        errors.\n\n\
         Writes SCENE-sampling.csv, .svg and .png; the table goes to standard output.",
     after_long_help = "Example: three strategies under a fluorescent lamp\n  \
         spectra bench bench/sampling-fl11-ortho --seeds 4 --samples 1,4,16 --integral-only --strategies \
@@ -237,31 +242,32 @@ pub(crate) struct Bench {
     pub scene: PathBuf,
     #[command(flatten)]
     pub set: Set,
-    /// Seeds of each render, 20 if not given; where the integral alone is measured, seeds of that, 1000 if not given.
+    /// Number of seeds per render, 20 if not given; if only the integral is measured, seeds for that, 1000 if not
+    /// given.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(2..=10_000))]
     pub seeds: Option<u16>,
-    /// Numbers of samples, from 1 to 1048576: of the integral, and of a pixel of the scene.
+    /// Numbers of samples to test, from 1 to 1048576: for the integral, and per pixel for the scene.
     #[arg(long, value_name = "N,N,...", value_delimiter = ',', default_value = "1,4,16,64,256",
         value_parser = clap::value_parser!(u32).range(1..=1_048_576))]
     pub samples: Vec<u32>,
-    /// Strategies, as NAME or NAME{key: value, ...}; the others are related to the first. All registered ones if not
-    /// given, with the scene's keys for its own strategy.
+    /// Strategies, as NAME or NAME{key: value, ...}; the first is the baseline for the others. If not given, all
+    /// registered ones; the scene's own strategy keeps its keys.
     #[arg(long, value_name = "A,B,...")]
     pub strategies: Option<String>,
-    /// Record by this sensitivity in place of the scene's imager, and measure the integral only: a bundled spectrum, a
-    /// file (of several columns: a channel each), or one written out (gaussian:540,40). Can be given several times.
+    /// Record with this sensitivity instead of the scene's imager, and measure only the integral: a bundled spectrum, a
+    /// file (one channel per column), or an expression (gaussian:540,40). Can be repeated.
     #[arg(long, value_name = "NAME")]
     pub response: Vec<String>,
-    /// Measure the spectral integral only.
+    /// Measure only the spectral integral.
     #[arg(long)]
     pub integral_only: bool,
-    /// Threads to render on: all processors if not given.
+    /// Number of render threads; all processors if not given.
     #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
-    /// Folder to write to; it is made where it does not exist.
+    /// Output folder, created if it does not exist.
     #[arg(short, long, value_name = "DIR", default_value = "out")]
     pub output: PathBuf,
-    /// A JSON object on standard output, in place of the table.
+    /// Write a JSON object to standard output instead of the table.
     #[arg(long)]
     pub json: bool,
 }
@@ -269,22 +275,23 @@ pub(crate) struct Bench {
 /// `spectra list`.
 #[derive(Debug, Args)]
 #[command(
-    long_about = "List what can be named: the registered stages, and what comes with the program.\n\n\
-        Lenses are listed with focal length, f-number, half the field and year; film stocks with speed, process and the \
-        year of their sheet, print stocks apart; spectra with kind and range; glasses with nd and Vd; formats with their \
-        size. Wherever such a name is wanted a part of it that no other name has is enough: `tri-x`, `helios`.",
-    after_long_help = "Examples: which sources are there? Which lenses have 50 mm, which glasses BK7 in their name?\n  \
+    long_about = "List the names that can be used: the registered stages and the bundled data.\n\n\
+        Lenses are listed with focal length, f-number, half field angle and year; film stocks with speed, process and \
+        the year of their data sheet, print stocks separately; spectra with kind and range; glasses with nd and Vd; \
+        formats with their size. Wherever a name is expected, any part of it that is unique is enough: `tri-x`, \
+        `helios`.",
+    after_long_help = "Examples: all light sources; lenses with 50 and glasses with BK7 in their names\n  \
         spectra list source\n  spectra list lens 50\n  spectra list glass BK7"
 )]
 pub(crate) struct List {
-    /// Only these: source, color, wavelengths, surface, imager, response, film; or scene, lens, stock, spectrum, coating,
-    /// glass, sensor, format.
+    /// List only this kind: source, color, wavelengths, surface, imager, response, film; or scene, lens, stock,
+    /// spectrum, coating, glass, sensor, format.
     #[arg(value_name = "KIND")]
     pub stage: Option<String>,
-    /// Only those that hold all of these words.
+    /// List only entries that contain all of these words.
     #[arg(value_name = "WORD", requires = "stage")]
     pub words: Vec<String>,
-    /// A JSON list on standard output.
+    /// Write a JSON list to standard output.
     #[arg(long)]
     pub json: bool,
 }
@@ -293,7 +300,7 @@ pub(crate) struct List {
 #[derive(Debug, Args)]
 #[command(after_long_help = "Example:\n  spectra lens info zeiss-biotar-50-f1.4")]
 pub(crate) struct LensArguments {
-    /// What to do with it.
+    /// The command to run.
     #[command(subcommand)]
     pub command: LensCommand,
 }
@@ -301,28 +308,28 @@ pub(crate) struct LensArguments {
 /// The commands on lenses.
 #[derive(Debug, Subcommand)]
 pub(crate) enum LensCommand {
-    /// Show a lens in figures: focal lengths, pupils, f-number, prescription.
+    /// Show the data of a lens: focal lengths, pupils, f-number, prescription.
     Info(LensInfo),
-    /// Show lenses side by side: figures, field, contrast, distortion.
+    /// Compare lenses side by side: focal length, f-number, field, contrast, distortion.
     Compare(LensCompare),
-    /// Draw a lens: glass, stop, rays of several fields in their spectral colors.
+    /// Draw a lens: glass, stop, and rays from several field angles in their spectral colors.
     Draw(LensDraw),
     /// Trace rays through a lens: CSV in, CSV out.
     Trace(LensTrace),
-    /// Make a lens file of one of another program: .zmx, .seq or .csv.
+    /// Convert a lens file from another program: .zmx, .seq or .csv.
     Import(LensImport),
-    /// Write a lens for another program, as .zmx.
+    /// Export a lens for other programs, as .zmx.
     Export(LensExport),
 }
 
 /// `spectra lens compare`.
 #[derive(Debug, Args)]
 #[command(
-    long_about = "Show lenses side by side: focal length, f-number, T-number, field, size, contrast on the axis and in the field, \
-        distortion.\n\n\
-        Contrast is that of geometrical optics at 30 lp/mm, in the plane where it is highest on the axis. The field is the same \
-        for all: 0.7 of what the narrowest of them covers. A lens that does not reach --f-number stays wide open, and a note says \
-        so.",
+    long_about = "Compare lenses side by side: focal length, f-number, T-number, field, size, contrast on axis and \
+        off axis, distortion.\n\n\
+        Contrast is geometrical, at 30 lp/mm, in the plane where it is highest on axis. The off-axis field is the \
+        same for all lenses: 0.7 of the field of the narrowest one. A lens that cannot reach --f-number stays wide \
+        open, with a note.",
     after_long_help = "Example: both at f/2\n  spectra lens compare zeiss-biotar-50-f1.4 helios-44-58-f2 --f-number f/2"
 )]
 pub(crate) struct LensCompare {
@@ -333,7 +340,7 @@ pub(crate) struct LensCompare {
     pub options: LensOptions,
     #[command(flatten)]
     pub light: OneLight,
-    /// A JSON object on standard output.
+    /// Write a JSON object to standard output.
     #[arg(long)]
     pub json: bool,
 }
@@ -341,38 +348,39 @@ pub(crate) struct LensCompare {
 /// `spectra lens draw`.
 #[derive(Debug, Args)]
 #[command(
-    long_about = "Draw a lens: glass tinted by its index and dispersion, stop, image plane, and rays of several fields in the \
-        colors of their wavelengths.\n\n\
-        Every ray is traced; a fan holds rays evenly over what really passes at its field. An element whose prescription \
-        states no size is drawn as large as the light on it.",
-    after_long_help = "Example: the Biotar at f/4, three fields\n  \
+    long_about = "Draw a lens: glass tinted by its index and dispersion, stop, image plane, and rays from several \
+        field angles in the colors of their wavelengths.\n\n\
+        Every ray is traced; the rays of a fan are spaced evenly over the beam that actually passes at that field \
+        angle. An element with no size in the prescription is drawn as large as the beam on it.",
+    after_long_help = "Example: the Biotar at f/4, three field angles\n  \
         spectra lens draw zeiss-biotar-50-f1.4 --f-number f/4 --fields 0,10,20 -o biotar.svg"
 )]
 pub(crate) struct LensDraw {
     #[command(flatten)]
     pub setting: LensSetting,
-    /// File to write: .svg or .png; LENS.svg if not given.
+    /// Output file, .svg or .png; LENS.svg if not given.
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
-    /// Field angles in degrees; if not given, the axis, and 0.6 and 0.95 of the largest field that passes (up to 85).
+    /// Field angles in degrees; if not given, the axis, and 0.6 and 0.95 of the largest field angle that passes (up to
+    /// 85).
     #[arg(long, value_name = "DEG,DEG,...", value_delimiter = ',', allow_negative_numbers = true)]
     pub fields: Vec<f64>,
-    /// Wavelengths (550nm) or lines (C').
+    /// Wavelengths (550nm) or spectral lines (C').
     #[arg(long, value_name = "NM,NM,...", value_delimiter = ',', default_value = "F',e,C'", value_parser = wavelength_or_line)]
     pub wavelengths: Vec<f64>,
-    /// Rays a fan and wavelength.
+    /// Number of rays per fan and wavelength.
     #[arg(long, value_name = "N", default_value = "5", value_parser = clap::value_parser!(u16).range(0..=1001))]
     pub rays: u16,
     /// Distance of the object from the first surface (2m, inf).
     #[arg(long, value_name = "DISTANCE", default_value = "inf", value_parser = parse::<OrInfinity<Positive<Length>>>)]
     pub object: OrInfinity<Positive<Length>>,
-    /// The cut: y-z or x-z.
+    /// Plane of the cross-section: y-z or x-z.
     #[arg(long, value_enum, default_value_t = CutArgument::Y)]
     pub section: CutArgument,
-    /// Width of the drawing (of a .png, in half pixels).
+    /// Width of the drawing; a .png is twice as many pixels wide.
     #[arg(long, value_name = "UNITS", default_value = "900", value_parser = clap::value_parser!(u16).range(100..=8000))]
     pub width: u16,
-    /// White glass and added light on a black ground.
+    /// White glass and additively blended rays on a black background.
     #[arg(long)]
     pub dark: bool,
 }
@@ -380,9 +388,9 @@ pub(crate) struct LensDraw {
 /// The plane of a drawing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum CutArgument {
-    /// y upward.
+    /// y points up.
     Y,
-    /// x upward.
+    /// x points up.
     X,
 }
 
@@ -406,22 +414,22 @@ pub(crate) struct LensSetting {
 /// How a lens is set.
 #[derive(Debug, Args)]
 pub(crate) struct LensOptions {
-    /// Focus at this distance from the first surface (2m, 77cm, inf); as the file has it if not given.
+    /// Focus at this distance from the first surface (2m, 77cm, inf); as in the file if not given.
     #[arg(long, value_name = "DISTANCE", value_parser = parse::<OrInfinity<Positive<Length>>>)]
     pub focus: Option<OrInfinity<Positive<Length>>>,
-    /// The same, as a bare number of millimeters.
+    /// Focus distance as a plain number in millimeters.
     #[arg(long, value_name = "MM", value_parser = parse::<OrInfinity<Positive<Length>>>, conflicts_with = "focus")]
     pub focus_mm: Option<OrInfinity<Positive<Length>>>,
-    /// What --focus makes best, in the light of the lens's reference line, on the axis and at the aperture set.
+    /// What --focus optimizes, at the lens's reference line, on axis and at the chosen aperture.
     #[arg(long, value_name = "MEASURE", value_enum, default_value_t = FocusMeasure::Contrast)]
     pub focus_by: FocusMeasure,
-    /// Set the stop to this f-number (f/2), by the real marginal ray; as the file has it if not given.
+    /// Set the stop to this f-number (f/2), measured with the real marginal ray; as in the file if not given.
     #[arg(long, value_name = "F/N", value_parser = parse::<FNumber>)]
     pub f_number: Option<FNumber>,
-    /// Coating of all surfaces: ideal (nothing is reflected), bare, single-layer or three-layer; as the file has it if not given.
+    /// Coating of all surfaces: ideal (no reflection), bare, single-layer or three-layer; as in the file if not given.
     #[arg(long, value_name = "COATING", value_parser = ["ideal", "bare", "single-layer", "three-layer"])]
     pub coating: Option<String>,
-    /// Whether glass absorbs: true or false; as the file has it if not given.
+    /// Whether glass absorbs light: true or false; as in the file if not given.
     #[arg(long, value_name = "BOOL")]
     pub absorption: Option<bool>,
 }
@@ -429,12 +437,12 @@ pub(crate) struct LensOptions {
 /// What a focused lens is best at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum FocusMeasure {
-    /// Contrast at 30 line pairs a mm, by real rays, as a scene focuses a 135 frame.
+    /// Highest contrast at 30 line pairs per mm, with real rays, as scenes on a 135 frame are focused.
     Contrast,
-    /// The smallest spot, root mean square, by real rays.
+    /// Smallest RMS spot, with real rays.
     #[value(alias = "rms")]
     Spot,
-    /// The image of first-order optics.
+    /// The paraxial (first-order) image.
     Paraxial,
 }
 
@@ -453,13 +461,13 @@ impl FocusMeasure {
 #[derive(Debug, Args)]
 #[group(multiple = false)]
 pub(crate) struct OneLight {
-    /// Look at this spectral line: i, h, g, F', F, e, d, D, C', C, r, A', s or t.
+    /// Use this spectral line: i, h, g, F', F, e, d, D, C', C, r, A', s or t.
     #[arg(long, value_name = "LINE", value_parser = line)]
     pub line: Option<f64>,
-    /// Look at this wavelength in air.
+    /// Use this wavelength in air.
     #[arg(long, value_name = "NM", value_parser = parse::<Wavelength>)]
     pub wavelength_nm: Option<Wavelength>,
-    /// Hold every glass at the index that the prescription states.
+    /// Use the index stated in the prescription for every glass.
     #[arg(long)]
     pub nd: bool,
 }
@@ -475,12 +483,13 @@ fn line(name: &str) -> Result<f64, String> {
 /// `spectra lens info`.
 #[derive(Debug, Args)]
 #[command(
-    long_about = "Show a lens in figures: focal lengths, principal planes, pupils, f-number, T-number, focus, field, the \
-        mounts that it leaves room for, and prescription.\n\n\
-        At the reference line of its patent unless a light is given. f-number and pupil diameters are those of the real \
-        marginal ray; the places of planes and pupils are paraxial; focus shifts, the largest field and the chief rays \
-        are those of real rays. The T-number counts coatings, mirrors and absorption, and says beside it which, and what of it is \
-        assumed: coatings of the lens's time, unless its file or --coating says otherwise.",
+    long_about = "Show the data of a lens: focal lengths, principal planes, pupils, f-number, T-number, focus, field, \
+        the mounts it leaves room for, and prescription.\n\n\
+        Values are for the reference line of the lens's patent, unless a line or wavelength is given. The f-number \
+        and pupil diameters come from the real marginal ray; the positions of planes and pupils are paraxial; focus \
+        shifts, the largest field and the chief rays come from real rays. The T-number includes coatings, mirrors and \
+        absorption; a note beside it lists these and what is assumed: coatings typical of the lens's time, unless its \
+        file or --coating says otherwise.",
     after_long_help = "Example: the same lens in blue light\n  spectra lens info zeiss-biotar-50-f1.4 --line g"
 )]
 pub(crate) struct LensInfo {
@@ -488,7 +497,7 @@ pub(crate) struct LensInfo {
     pub setting: LensSetting,
     #[command(flatten)]
     pub light: OneLight,
-    /// A JSON object on standard output.
+    /// Write a JSON object to standard output.
     #[arg(long)]
     pub json: bool,
 }
@@ -497,13 +506,13 @@ pub(crate) struct LensInfo {
 #[derive(Debug, Args)]
 #[command(
     long_about = "Trace rays through a lens: CSV in, CSV out.\n\n\
-        In: columns x_mm,y_mm,z_mm (a point of the ray before the first surface, whose vertex is the origin; +z runs toward \
-        the image), l,m,n (unit direction) and, unless one light is given for all, wavelength_nm; found by name, in any \
-        order.\n\n\
-        Out, a row for each: status,surface,x_mm,y_mm,z_mm,l,m,n. A `hit` is where the ray meets the image plane, in the \
-        same frame; a ray that ended on the way is `missed`, `vignetted`, `tir` or `absorbed`, with the number of the \
-        surface from 1. Surfaces clip at stated semi-diameters only, unless --f-number sets the stop; nothing is \
-        refocused unless --focus is given.",
+        Input columns: x_mm,y_mm,z_mm (a point on the ray before the first surface, whose vertex is the origin; +z \
+        runs toward the image), l,m,n (unit direction) and wavelength_nm, unless one line or wavelength is given for \
+        all rays. Columns are found by name, in any order.\n\n\
+        Output, one row per ray: status,surface,x_mm,y_mm,z_mm,l,m,n. A `hit` is where the ray meets the image plane, \
+        in the same coordinates; a ray that ends earlier is `missed`, `vignetted`, `tir` or `absorbed`, with the \
+        number of the surface, counted from 1. Surfaces clip only at stated semi-diameters, unless --f-number sets \
+        the stop; the lens is not refocused unless --focus is given.",
     after_long_help = "Example:\n  spectra lens trace zeiss-biotar-50-f1.4 --rays rays.csv --nd -o hits.csv"
 )]
 pub(crate) struct LensTrace {
@@ -511,13 +520,13 @@ pub(crate) struct LensTrace {
     pub setting: LensSetting,
     #[command(flatten)]
     pub light: OneLight,
-    /// The rays; `-` reads standard input.
+    /// CSV file of rays; `-` reads standard input.
     #[arg(long, value_name = "FILE")]
     pub rays: PathBuf,
-    /// File to write to; standard output if not given, or `-`.
+    /// Output file; standard output if not given, or if `-`.
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
-    /// One JSON object a ray and line, in place of CSV.
+    /// Write one JSON object per line for each ray, instead of CSV.
     #[arg(long)]
     pub json: bool,
 }
@@ -525,24 +534,24 @@ pub(crate) struct LensTrace {
 /// `spectra lens import`.
 #[derive(Debug, Args)]
 #[command(
-    long_about = "Make a lens file of one of another program: .zmx (Zemax OpticStudio, sequential), .seq (CODE V) or .csv (a row \
-        a surface).\n\n\
-        What cannot be carried is listed on standard error and stands in the file as comments; what makes light go another way \
-        is marked with `!`. Entrance pupil, f-number, fields and wavelengths become a remark. Every command that takes a \
-        lens reads these files too, without importing them first.",
+    long_about = "Convert a lens file from another program: .zmx (Zemax OpticStudio, sequential), .seq (CODE V) or \
+        .csv (one row per surface).\n\n\
+        Anything that cannot be converted is listed on standard error and kept in the file as comments; anything that \
+        changes the path of light is marked with `!`. Entrance pupil, f-number, fields and wavelengths become a \
+        remark. Every command that takes a lens also reads these files directly, without importing them first.",
     after_long_help = "Example:\n  spectra lens import tessar.zmx -o tessar.yaml"
 )]
 pub(crate) struct LensImport {
-    /// The file of the other program.
+    /// The file to convert.
     #[arg(value_name = "FILE")]
     pub file: PathBuf,
-    /// Lens file to write; standard output if not given, or `-`.
+    /// Output lens file; standard output if not given, or if `-`.
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
-    /// Write over a file that exists.
+    /// Overwrite an existing file.
     #[arg(long)]
     pub force: bool,
-    /// A JSON object on standard output: what was read, and what was left out; needs -o.
+    /// Write a JSON object to standard output: what was read, and what was left out; needs -o.
     #[arg(long, requires = "output")]
     pub json: bool,
 }
@@ -550,21 +559,22 @@ pub(crate) struct LensImport {
 /// `spectra lens export`.
 #[derive(Debug, Args)]
 #[command(
-    long_about = "Write a lens for another program, as .zmx (Zemax OpticStudio and what reads its files).\n\n\
-        Glasses go by the names of their catalogues, others by nd and Vd. What cannot be carried is listed on standard error.",
+    long_about = "Export a lens for other programs, as .zmx (Zemax OpticStudio and programs that read its files).\n\n\
+        Catalogue glasses are written by name, others by nd and Vd. Anything that cannot be converted is listed on \
+        standard error.",
     after_long_help = "Example:\n  spectra lens export zeiss-biotar-50-f1.4 -o biotar.zmx"
 )]
 pub(crate) struct LensExport {
     /// A lens file, or the name of a bundled lens.
     #[arg(value_name = "LENS")]
     pub lens: String,
-    /// File to write, its name ending with .zmx; standard output if not given, or `-`.
+    /// Output file, with a name ending in .zmx; standard output if not given, or if `-`.
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
-    /// Write over a file that exists.
+    /// Overwrite an existing file.
     #[arg(long)]
     pub force: bool,
-    /// A JSON object on standard output: what was written, and what was left out; needs -o.
+    /// Write a JSON object to standard output: what was written, and what was left out; needs -o.
     #[arg(long, requires = "output")]
     pub json: bool,
 }

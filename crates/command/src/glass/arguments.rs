@@ -9,17 +9,18 @@ use std::path::PathBuf;
 /// `spectra glass`.
 #[derive(Debug, Args)]
 #[command(
-    long_about = "Look at glass: refractive index, Abbe diagram, nearest glass to a patent's figures, fits.\n\n\
-        NAME is MAKER/NAME (SCHOTT/N-BK7), or the name alone where one maker has it; a substance or an everyday name (water, \
-        fused silica, PMMA, air); or a file of your own: FILE.yaml (a formula, a table, nd and vd), FILE.csv (wavelength_nm,n,k), \
-        FILE.agf#NAME. Indices are relative to air at 20 C and 101 325 Pa, wavelengths are those in air.",
+    long_about = "Inspect glass: refractive index, Abbe diagram, nearest glass to the values in a patent, fits.\n\n\
+        NAME is MAKER/NAME (SCHOTT/N-BK7), or the name alone if only one maker has it; a substance or a common name \
+        (water, fused silica, PMMA, air); or a file of your own: FILE.yaml (a formula, a table, nd and vd), FILE.csv \
+        (wavelength_nm,n,k), FILE.agf#NAME. Indices are relative to air at 20 C and 101 325 Pa, wavelengths are in \
+        air.",
     after_long_help = "Examples:\n  spectra glass info N-BK7\n  \
         spectra glass match --nd 1.64329 --vd 48 --era 1927\n  \
         spectra glass plot SCHOTT/N-BK7 SCHOTT/F2 water -o index.svg\n  \
         spectra glass plot SCHOTT/SK16 --abbe --makers SCHOTT,OHARA -o abbe.png"
 )]
 pub(crate) struct GlassArguments {
-    /// What to do.
+    /// The command to run.
     #[command(subcommand)]
     pub command: GlassCommand,
 }
@@ -27,24 +28,24 @@ pub(crate) struct GlassArguments {
 /// The commands on glass.
 #[derive(Debug, Subcommand)]
 pub(crate) enum GlassCommand {
-    /// Show a glass in figures: indices, Abbe numbers, transmittance.
+    /// Show the data of a glass: indices, Abbe numbers, transmittance.
     Info(GlassInfo),
-    /// List glasses and other media by a fragment of their names, by maker and by category.
+    /// List glasses and other media by part of a name, maker or category.
     List(GlassList),
-    /// Draw n(lambda) of several media, or an Abbe diagram.
+    /// Plot n(lambda) of several media, or an Abbe diagram.
     Plot(GlassPlot),
-    /// Find the real glass behind an index and an Abbe number.
+    /// Find the real glasses closest to an index and an Abbe number.
     Match(GlassMatch),
     /// Fit a dispersion formula to a table of wavelengths and indices.
     Fit(GlassFit),
-    /// Hold the catalogue's computed nd and Vd against those that makers list.
+    /// Compare the catalogue's computed nd and Vd with the values that makers list.
     Check(GlassCheck),
 }
 
 /// `--catalogue`.
 #[derive(Debug, Args)]
 pub(crate) struct OwnCatalogues {
-    /// A glass catalogue file (AGF) of one's own; its name is the maker of its glasses. May be given again.
+    /// Your own glass catalogue file (AGF); the file name is used as the maker of its glasses. Can be repeated.
     #[arg(long = "catalogue", visible_alias = "catalog", value_name = "FILE.agf")]
     pub files: Vec<PathBuf>,
 }
@@ -52,10 +53,11 @@ pub(crate) struct OwnCatalogues {
 /// `spectra glass info`.
 #[derive(Debug, Args)]
 #[command(
-    long_about = "Show a glass in figures: index at spectral lines, Abbe numbers, internal transmittance of 10 mm, reflection.\n\n\
-        With --nd and --vd after a name: the melt of that glass with these figures. Without a name: a glass of which \
-        nothing else is known, with the partial dispersions of ordinary glasses of its Abbe number; of ten glasses nine lie within \
-        0.0002 of it at r, 0.0004 at g, 0.0009 at h.",
+    long_about = "Show the data of a glass: index at spectral lines, Abbe numbers, internal transmittance of 10 mm, \
+        reflection.\n\n\
+        With a name, --nd and --vd give the measured values of a melt of that glass. Without a name, they describe an \
+        unknown glass, which gets the partial dispersions of an ordinary glass with the same Abbe number; nine out of \
+        ten glasses are within 0.0002 of it at r, 0.0004 at g, 0.0009 at h.",
     after_long_help = "Examples:\n  spectra glass info SCHOTT/SF6 --temperature-c 40 --absolute\n  \
         spectra glass info N-BK7 --nd 1.51712 --vd 64.01 --wavelength-nm 632.8 --json"
 )]
@@ -63,27 +65,27 @@ pub(crate) struct GlassInfo {
     /// Name of the glass or medium.
     #[arg(value_name = "NAME", required_unless_present = "nd")]
     pub name: Option<String>,
-    /// Index at the d line, or at that of --line; of a melt at d.
+    /// Index at the d line, or at the line given by --line; for a melt always at d.
     #[arg(long, visible_alias = "n", value_name = "N", requires = "vd")]
     pub nd: Option<f64>,
-    /// Abbe number that belongs to it.
+    /// Abbe number that goes with --nd.
     #[arg(long, visible_alias = "v", value_name = "V", requires = "nd")]
     pub vd: Option<f64>,
     /// Reference line of --nd and --vd without a name: d and D go with F and C, e with F' and C'.
     #[arg(long, value_name = "d|D|e", default_value = "d", value_parser = reference, conflicts_with = "name")]
     pub line: LineTriple,
-    /// Show the index at this wavelength in air, too.
+    /// Also show the index at this wavelength in air.
     #[arg(long, value_name = "NM", value_parser = parse::<Wavelength>)]
     pub wavelength_nm: Option<Wavelength>,
-    /// Temperature of glass and air, degrees Celsius; that of the catalogue if not given.
+    /// Temperature of glass and air in degrees Celsius; the catalogue's if not given.
     #[arg(long, value_name = "C", allow_hyphen_values = true, value_parser = temperature)]
     pub temperature_c: Option<f64>,
-    /// Indices relative to vacuum.
+    /// Show indices relative to vacuum.
     #[arg(long)]
     pub absolute: bool,
     #[command(flatten)]
     pub own: OwnCatalogues,
-    /// A JSON object on standard output; what is not known is null.
+    /// Write a JSON object to standard output; unknown values are null.
     #[arg(long)]
     pub json: bool,
 }
@@ -91,8 +93,9 @@ pub(crate) struct GlassInfo {
 /// `spectra glass list`.
 #[derive(Debug, Args)]
 #[command(
-    long_about = "List glasses and other media, by name: nd, Vd, what they are, years of the catalogues they stand in.\n\n\
-        FRAGMENT is a part of a name, a maker or an everyday name; upper and lower case, hyphens and blanks do not count.",
+    long_about = "List glasses and other media by name, with nd, Vd, kind, and the years of the catalogues that list \
+        them.\n\n\
+        FRAGMENT is part of a name, a maker or a common name; case, hyphens and spaces are ignored.",
     after_long_help = "Examples:\n  spectra glass list bk7\n  spectra glass list --category plastic\n  \
         spectra glass list schott/sf"
 )]
@@ -100,16 +103,16 @@ pub(crate) struct GlassList {
     /// Part of a name, or MAKER/PART.
     #[arg(value_name = "FRAGMENT")]
     pub fragment: Option<String>,
-    /// Only media of this category: optical, technical, infrared or filter (glass), crystal, plastic, organic, inorganic,
-    /// mixed.
+    /// List only media of this category: optical, technical, infrared or filter (glass), crystal, plastic, organic,
+    /// inorganic, mixed.
     #[arg(long, value_name = "CATEGORY", value_parser = category)]
     pub category: Option<Category>,
-    /// Only media of this maker; may be given again.
+    /// List only media of this maker; can be repeated.
     #[arg(long = "maker", value_name = "MAKER", value_delimiter = ',')]
     pub makers: Vec<String>,
     #[command(flatten)]
     pub own: OwnCatalogues,
-    /// A JSON list on standard output.
+    /// Write a JSON list to standard output.
     #[arg(long)]
     pub json: bool,
 }
@@ -117,27 +120,28 @@ pub(crate) struct GlassList {
 /// `spectra glass plot`.
 #[derive(Debug, Args)]
 #[command(
-    long_about = "Draw n(lambda) of several media; with --abbe, nd against Vd of all optical glasses, the named ones marked.\n\n\
-        Outside of a glass's measured range its curve is dashed.",
+    long_about = "Plot n(lambda) of several media; with --abbe, plot nd against Vd for all optical glasses and mark \
+        the named ones.\n\n\
+        A curve is dashed outside the glass's measured range.",
     after_long_help = "Example:\n  spectra glass plot --abbe --makers SCHOTT,LZOS --era 1983 -o abbe.svg"
 )]
 pub(crate) struct GlassPlot {
     /// Names of glasses or media.
     #[arg(value_name = "NAME", required_unless_present = "abbe")]
     pub names: Vec<String>,
-    /// File to write: FILE.svg or FILE.png; dispersion.svg or abbe.svg if not given.
+    /// Output file, FILE.svg or FILE.png; dispersion.svg or abbe.svg if not given.
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
-    /// The Abbe diagram.
+    /// Plot the Abbe diagram.
     #[arg(long)]
     pub abbe: bool,
-    /// Only these makers in the Abbe diagram, each in its color.
+    /// Show only these makers in the Abbe diagram, each in its own color.
     #[arg(long, value_name = "A,B,...", value_delimiter = ',', requires = "abbe")]
     pub makers: Vec<String>,
-    /// Only glasses of this time in the Abbe diagram: historical, modern, or a year.
+    /// Show only glasses of this era in the Abbe diagram: historical, modern, or a year.
     #[arg(long, value_name = "ERA", requires = "abbe")]
     pub era: Option<Era>,
-    /// Wavelengths of the drawing, nm.
+    /// Wavelength range of the plot, nm.
     #[arg(long, value_name = "FROM,TO", default_value = "350,830", value_parser = range, conflicts_with = "abbe")]
     pub range_nm: (f64, f64),
     #[command(flatten)]
@@ -147,9 +151,9 @@ pub(crate) struct GlassPlot {
 /// `spectra glass match`.
 #[derive(Debug, Args)]
 #[command(
-    long_about = "Find the real glass behind an index and an Abbe number, the nearest first.\n\n\
-        The distance is in units of a catalogue's usual tolerance: 1 is 0.0005 in n, or 0.5 % in V. With --lens, the \
-        nearest glasses to each medium of a lens.",
+    long_about = "Find the real glasses closest to an index and an Abbe number, nearest first.\n\n\
+        The distance is in units of the usual catalogue tolerance: 1 is 0.0005 in n, or 0.5 % in V. With --lens, it \
+        lists the nearest glasses for each medium of a lens.",
     after_long_help = "Examples:\n  spectra glass match --nd 1.64329 --vd 48 --maker SCHOTT --era 1927\n  \
         spectra glass match --nd 1.6242 --vd 53.1 --line e --era modern\n  \
         spectra glass match --lens zeiss-biotar-50-f1.4 --limit 3"
@@ -158,30 +162,30 @@ pub(crate) struct GlassMatch {
     /// Index at the reference line.
     #[arg(long, visible_alias = "n", value_name = "N", required_unless_present = "lens")]
     pub nd: Option<f64>,
-    /// Abbe number; without it the index alone decides.
+    /// Abbe number; if not given, only the index is compared.
     #[arg(long, visible_alias = "v", value_name = "V")]
     pub vd: Option<f64>,
-    /// Every medium of a lens, by its stated index and Abbe number.
+    /// Match every medium of this lens, by its stated index and Abbe number.
     #[arg(long, value_name = "LENS", conflicts_with_all = ["nd", "vd", "line"])]
     pub lens: Option<String>,
     /// Reference line of both: d and D go with F and C, e with F' and C'.
     #[arg(long, value_name = "d|D|e", default_value = "d", value_parser = reference)]
     pub line: LineTriple,
-    /// Only glasses of this maker; may be given again.
+    /// Only glasses of this maker; can be repeated.
     #[arg(long = "maker", value_name = "MAKER", value_delimiter = ',')]
     pub makers: Vec<String>,
-    /// Only glasses of this time: historical (listed by 1983), modern, or a year; before 1940 without rare earths.
+    /// Only glasses of this era: historical (listed by 1983), modern, or a year; before 1940 without rare earths.
     #[arg(long, value_name = "ERA")]
     pub era: Option<Era>,
-    /// Plastics, crystals, filters and other media too.
+    /// Include plastics, crystals, filters and other media.
     #[arg(long)]
     pub all_media: bool,
-    /// How many to list: 10 if not given, 3 a medium of a lens.
+    /// Number of glasses to list; if not given 10, or with --lens 3 per medium.
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u16).range(1..=10_000))]
     pub limit: Option<u16>,
     #[command(flatten)]
     pub own: OwnCatalogues,
-    /// A JSON object on standard output.
+    /// Write a JSON object to standard output.
     #[arg(long)]
     pub json: bool,
 }
@@ -189,7 +193,7 @@ pub(crate) struct GlassMatch {
 /// Formulas that can be fitted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Model {
-    /// n = A + B / L^2, by neighboring rows and their means.
+    /// n = A + B / L^2, from pairs of neighboring rows, averaged.
     Cauchy,
     /// n = A + B / L^2 + C / L^4 ..., by least squares.
     CauchyLs,
@@ -207,34 +211,34 @@ pub(crate) enum Model {
 #[derive(Debug, Args)]
 #[command(
     long_about = "Fit a dispersion formula to a table of wavelengths and indices.\n\n\
-        The table has columns wavelength_nm (or wavelength_um) and n, and `material` where it holds several. Shown are \
-        the coefficients and how far the formula is from the rows: mean, root mean square and largest deviation. Without \
-        --model, Cauchy's formula by neighboring rows and by least squares.",
+        The table has columns wavelength_nm (or wavelength_um) and n, and `material` if it holds several. The output \
+        is the coefficients and the deviations of the formula from the rows: mean, root mean square and largest. \
+        Without --model, Cauchy's formula is fitted both from neighboring rows and by least squares.",
     after_long_help = "Example:\n  spectra glass fit melt.csv --model sellmeier --terms 2"
 )]
 pub(crate) struct GlassFit {
-    /// The table; `-` reads standard input.
+    /// CSV file of the table; `-` reads standard input.
     #[arg(value_name = "FILE.csv")]
     pub file: PathBuf,
-    /// The formula; may be given again.
+    /// The formula to fit; can be repeated.
     #[arg(long = "model", value_enum, value_name = "MODEL", value_delimiter = ',')]
     pub models: Vec<Model>,
-    /// Terms of Cauchy's (1 to 6, by least squares) and of Sellmeier's formula (1 to 3): 2 and 3 if not given.
+    /// Number of terms: for Cauchy by least squares 1 to 6, 2 if not given; for Sellmeier 1 to 3, 3 if not given.
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u8).range(1..=6))]
     pub terms: Option<u8>,
-    /// A JSON list on standard output, one object a material.
+    /// Write a JSON list to standard output, one object per material.
     #[arg(long)]
     pub json: bool,
 }
 
 /// `spectra glass check`.
 #[derive(Debug, Args)]
-#[command(long_about = "Hold the catalogue's computed nd and Vd against those that makers list.\n\n\
-        Listed are all media where they differ by more than 1e-4 in nd or 0.1 in Vd.")]
+#[command(long_about = "Compare the catalogue's computed nd and Vd with the values that makers list.\n\n\
+        All media that differ by more than 1e-4 in nd or 0.1 in Vd are listed.")]
 pub(crate) struct GlassCheck {
     #[command(flatten)]
     pub own: OwnCatalogues,
-    /// A JSON object on standard output.
+    /// Write a JSON object to standard output.
     #[arg(long)]
     pub json: bool,
 }

@@ -9,7 +9,7 @@ use std::path::PathBuf;
     after_long_help = "Example: a surface of your own, in the folder ripple\n  spectra new plugin ripple --stage surface"
 )]
 pub(crate) struct NewArguments {
-    /// What to make.
+    /// What to create.
     #[command(subcommand)]
     pub command: NewCommand,
 }
@@ -17,35 +17,35 @@ pub(crate) struct NewArguments {
 /// What can be made.
 #[derive(Debug, Subcommand)]
 pub(crate) enum NewCommand {
-    /// Start a plugin: a crate with one source file, its tests and a scene.
+    /// Create a plugin: a crate with one source file, its tests and a scene.
     Plugin(NewPlugin),
-    /// Start a scene file that renders as it is.
+    /// Create a scene file that is ready to render.
     Scene(NewFile),
-    /// Start a lens file that works as it is.
+    /// Create a lens file that is ready to use.
     Lens(NewFile),
 }
 
 /// `spectra new plugin`.
 #[derive(Debug, Args)]
 #[command(
-    long_about = "Start a plugin: a crate with one source file, its tests and a scene.\n\n\
-        What is made compiles, passes its tests and renders as it is: a surface is a cubic phase plate, a film a tintype, a \
-        source a ring lamp, a sampler an exponential density, an imager a radiometer. Change it into what you have in mind. \
-        Nothing of spectra has to be downloaded: its sources come out of this program.",
+    long_about = "Create a plugin: a crate with one source file, its tests and a scene.\n\n\
+        The new plugin compiles, passes its tests and renders without changes: a surface is a cubic phase plate, a \
+        film a tintype, a source a ring lamp, a sampler an exponential density, an imager a radiometer. Edit it to do \
+        what you want. There is no source code to download: the program includes its own.",
     after_long_help = "Example:\n  spectra new plugin ripple --stage surface\n  cd ripple\n  \
         cargo test\n  spectra build --with . -o ./spectra-mine\n  ./spectra-mine run scene.yaml"
 )]
 pub(crate) struct NewPlugin {
-    /// Its name: that of the crate, and `kind` in a scene. Lower-case letters, digits and hyphens.
+    /// Name of the crate, and its `kind` in a scene: lower-case letters, digits and hyphens.
     #[arg(value_name = "NAME")]
     pub name: String,
-    /// What it is.
+    /// Kind of stage to create.
     #[arg(long, value_enum)]
     pub stage: Stage,
-    /// Folder to make it in.
+    /// Folder to create it in.
     #[arg(long, value_name = "FOLDER", default_value = ".")]
     pub path: PathBuf,
-    /// A checkout of spectra to test against, in place of the sources in this program.
+    /// A checkout of spectra to test against, instead of the sources included in this program.
     #[arg(long, value_name = "PATH")]
     pub core: Option<PathBuf>,
 }
@@ -53,10 +53,10 @@ pub(crate) struct NewPlugin {
 /// `spectra new scene`, `spectra new lens`.
 #[derive(Debug, Args)]
 pub(crate) struct NewFile {
-    /// Its name; `.yaml` is added.
+    /// Name of the file; `.yaml` is added.
     #[arg(value_name = "NAME")]
     pub name: String,
-    /// Folder to make it in.
+    /// Folder to create it in.
     #[arg(long, value_name = "FOLDER", default_value = ".")]
     pub path: PathBuf,
 }
@@ -68,13 +68,13 @@ pub(crate) enum Stage {
     Surface,
     /// A film process.
     Film,
-    /// What shines.
+    /// A light source.
     Source,
-    /// A way to draw wavelengths.
+    /// A wavelength sampling strategy.
     Sampler,
-    /// What records light.
+    /// An imager, which records light.
     Imager,
-    /// What a detector sees, by channel.
+    /// The spectral response of a detector, per channel.
     Response,
 }
 

@@ -6,11 +6,12 @@ use std::path::PathBuf;
 /// `spectra spectrum`.
 #[derive(Debug, Args)]
 #[command(
-    long_about = "Look at spectra: their color in figures, and pictures of them.\n\n\
-        NAME is a bundled spectrum (see `spectra list spectrum`), a column of one (`colorchecker#red`), a table (.csv, .txt, \
-        .dat, .tsv) or YAML file, or is written out: blackbody:5800, daylight:5500 and 5600K (K), line:C' or line:632.8, lines:404.66=1,e=2 (with powers), \
-        gaussian:550,20 (center and standard deviation, nm), rectangle:500,600 (nm), constant:1; and sums and products of \
-        these with spaces around their signs, such as '0.5 * D65 + line:e' or 'A * gaussian:550,40'.",
+    long_about = "Inspect spectra: color values, plots, fits, color models.\n\n\
+        NAME is a bundled spectrum (see `spectra list spectrum`), a column of one (`colorchecker#red`), a table \
+        (.csv, .txt, .dat, .tsv) or YAML file, or an expression: blackbody:5800, daylight:5500 and 5600K (K), line:C' \
+        or line:632.8, lines:404.66=1,e=2 (with powers), gaussian:550,20 (center and standard deviation, nm), \
+        rectangle:500,600 (nm), constant:1; and sums and products of these with spaces around the operators, such as \
+        '0.5 * D65 + line:e' or 'A * gaussian:550,40'.",
     after_long_help = "Examples:\n  spectra spectrum info D65\n  \
         spectra spectrum plot A D65 blackbody:5800 -o lights.svg\n  \
         spectra spectrum plot D50 LED-B3 line:e --chromaticity -o diagram.png\n  \
@@ -18,7 +19,7 @@ use std::path::PathBuf;
         spectra spectrum color 255 128 64"
 )]
 pub(crate) struct SpectrumArguments {
-    /// What to do.
+    /// The command to run.
     #[command(subcommand)]
     pub command: SpectrumCommand,
 }
@@ -26,15 +27,15 @@ pub(crate) struct SpectrumArguments {
 /// The commands on spectra.
 #[derive(Debug, Subcommand)]
 pub(crate) enum SpectrumCommand {
-    /// Show a spectrum in figures: color, temperature, dominant wavelength.
+    /// Show the color values of a spectrum: color, temperature, dominant wavelength.
     Info(SpectrumInfo),
-    /// Draw spectra, or their chromaticities.
+    /// Plot spectra, or their chromaticities.
     Plot(SpectrumPlot),
     /// Fit signed Gaussian terms to a spectrum.
     Fit(SpectrumFit),
-    /// Show a color as a spectrum, by each color model, and what comes back.
+    /// Convert a color to a spectrum with each color model, and back to a color.
     Color(SpectrumColor),
-    /// Measure how well colors survive each color model.
+    /// Measure how well each color model preserves colors.
     Models(SpectrumModels),
     /// List the bundled spectra.
     List(SpectrumList),
@@ -73,27 +74,27 @@ pub(crate) enum KindName {
 /// `spectra spectrum info`.
 #[derive(Debug, Args)]
 #[command(
-    long_about = "Show a spectrum in figures: color, temperature, dominant wavelength.\n\n\
+    long_about = "Show the color values of a spectrum: color, temperature, dominant wavelength.\n\n\
         A light is shown at Y = 100; a transmittance or a reflectance under an illuminant whose white has Y = 100; a \
-        sensitivity has no color. Lab, dominant wavelength and purity are against the white of the illuminant, for lights \
-        too. Correlated color temperature, dominant wavelength, purity and sRGB are those of the CIE 1931 observer, \
-        whichever is asked for.",
+        sensitivity has no color. Lab, dominant wavelength and purity are relative to the white of the illuminant, \
+        even for lights. Correlated color temperature, dominant wavelength, purity and sRGB always use the CIE 1931 \
+        observer, whatever --observer says.",
     after_long_help = "Example: a patch in the light of a lamp\n  spectra spectrum info colorchecker#red --illuminant A"
 )]
 pub(crate) struct SpectrumInfo {
-    /// A bundled spectrum, a CSV file, or a spectrum written out (blackbody:5800).
+    /// A bundled spectrum, a CSV file, or an expression (blackbody:5800).
     #[arg(value_name = "NAME")]
     pub name: String,
-    /// What a file is that does not say so.
+    /// Kind of spectrum, if the file does not state it.
     #[arg(long = "as", value_enum, value_name = "KIND")]
     pub kind: Option<KindName>,
-    /// The observer of XYZ, xy and Lab.
+    /// Observer for XYZ, xy and Lab.
     #[arg(long, value_enum, value_name = "YEAR", default_value = "1931")]
     pub observer: ObserverName,
-    /// The light on a surface or behind a filter, and the white that Lab refers to.
+    /// The light on a surface or behind a filter, and the reference white for Lab.
     #[arg(long, value_name = "NAME", default_value = "D65")]
     pub illuminant: String,
-    /// A JSON object on standard output; what a spectrum does not have is null.
+    /// Write a JSON object to standard output; values that do not apply to the spectrum are null.
     #[arg(long)]
     pub json: bool,
 }
@@ -101,22 +102,22 @@ pub(crate) struct SpectrumInfo {
 /// `spectra spectrum plot`.
 #[derive(Debug, Args)]
 #[command(
-    long_about = "Draw spectra over 350-830 nm, with the colors of the wavelengths under them.\n\n\
-        With --chromaticity, draw the CIE 1931 diagram with the points of the spectra, the gamuts of sRGB, Rec. 2020 and \
-        ACEScg, and the chromaticities of black bodies.",
+    long_about = "Plot spectra over 350-830 nm, with the colors of the wavelengths below the curves.\n\n\
+        With --chromaticity, plot the spectra as points in the CIE 1931 diagram, with the gamuts of sRGB, Rec. 2020 \
+        and ACEScg, and the chromaticities of black bodies.",
     after_long_help = "Example:\n  spectra spectrum plot mercury -o mercury.png"
 )]
 pub(crate) struct SpectrumPlot {
-    /// Bundled spectra, CSV files, or spectra written out (blackbody:5800).
+    /// Bundled spectra, CSV files, or expressions (blackbody:5800).
     #[arg(value_name = "NAME", required = true)]
     pub names: Vec<String>,
-    /// File to write: FILE.svg or FILE.png; that of the first name, NAME.svg, if not given.
+    /// Output file, FILE.svg or FILE.png; if not given, NAME.svg after the first name.
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
-    /// What files are that do not say so.
+    /// Kind of spectrum, for files that do not state it.
     #[arg(long = "as", value_enum, value_name = "KIND")]
     pub kind: Option<KindName>,
-    /// The chromaticity diagram, not the spectra.
+    /// Plot the chromaticity diagram instead of the spectra.
     #[arg(long)]
     pub chromaticity: bool,
     /// The light on surfaces and behind filters in the chromaticity diagram.
@@ -127,30 +128,31 @@ pub(crate) struct SpectrumPlot {
 /// `spectra spectrum fit`.
 #[derive(Debug, Args)]
 #[command(
-    long_about = "Fit signed Gaussian terms to a spectrum by least squares, and show how well they stand for it: relative \
-        L2 error, largest error, error of the integral, smallest value, and kappa, the sum of the terms' absolute integrals \
-        over that of their signed ones.\n\nThe file that -o writes is a spectrum like any other: a scene, a strategy and \
-        these commands take it by its name. Spectral lines are no part of the fit; the file has them beside the terms.",
+    long_about = "Fit signed Gaussian terms to a spectrum by least squares, and show how good the fit is: relative L2 \
+        error, largest error, error of the integral, smallest value, and kappa, the sum of the terms' absolute \
+        integrals divided by the sum of their signed ones.\n\nThe file that -o writes is an ordinary spectrum: \
+        scenes, strategies and these commands accept it by name. Spectral lines are not fitted; the file lists them \
+        along with the terms.",
     after_long_help = "Example:\n  spectra spectrum fit D65 --terms 8 -o d65-terms.yaml\n  \
         spectra spectrum plot D65 d65-terms.yaml -o both.png"
 )]
 pub(crate) struct SpectrumFit {
-    /// A bundled spectrum, a file, or a spectrum written out (blackbody:5800).
+    /// A bundled spectrum, a file, or an expression (blackbody:5800).
     #[arg(value_name = "NAME")]
     pub name: String,
     /// Number of terms, 1 to 32.
     #[arg(long, value_name = "N", default_value_t = 6, value_parser = clap::value_parser!(u8).range(1..=32))]
     pub terms: u8,
-    /// Where it is fitted, nm.
+    /// Wavelength range of the fit, nm.
     #[arg(long, value_name = "FROM,TO", value_delimiter = ',', num_args = 1..=2, default_value = "350,830")]
     pub band: Vec<f64>,
-    /// Distance of the points that are fitted, nm.
+    /// Spacing of the fitted points, nm.
     #[arg(long, value_name = "NM", default_value_t = 1.0)]
     pub step: f64,
-    /// File to write: FILE.yaml.
+    /// Output file, FILE.yaml.
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
-    /// A JSON object on standard output.
+    /// Write a JSON object to standard output.
     #[arg(long)]
     pub json: bool,
 }
@@ -158,22 +160,22 @@ pub(crate) struct SpectrumFit {
 /// `spectra spectrum color`.
 #[derive(Debug, Args)]
 #[command(
-    long_about = "Show a color as a spectrum, by each color model, and what comes back: the spectrum seen by the CIE 1931 \
-        observer, as sRGB.",
+    long_about = "Convert a color to a spectrum with each color model, and back: the color of that spectrum for the \
+        CIE 1931 observer, as sRGB.",
     after_long_help = "Examples:\n  spectra spectrum color 255 128 64\n  \
         spectra spectrum color '#ff8040' --model 'fraunhofer{secondary: [F, D]}'"
 )]
 pub(crate) struct SpectrumColor {
-    /// Red, green and blue of 0 to 255, or #ff8040.
+    /// Red, green and blue from 0 to 255, or #ff8040.
     #[arg(value_name = "COLOR", required = true, num_args = 1..=3)]
     pub color: Vec<String>,
-    /// A color model, with its keys in braces where it has any; all of them if left out. Can be given several times.
+    /// A color model, with its keys in braces if it has any; all models if not given. Can be repeated.
     #[arg(long, value_name = "NAME", default_value = "all")]
     pub model: Vec<String>,
-    /// The light whose color is white.
+    /// The light that counts as white.
     #[arg(long, value_name = "NAME", default_value = "D65")]
     pub illuminant: String,
-    /// A JSON object on standard output.
+    /// Write a JSON object to standard output.
     #[arg(long)]
     pub json: bool,
 }
@@ -181,25 +183,25 @@ pub(crate) struct SpectrumColor {
 /// `spectra spectrum models`.
 #[derive(Debug, Args)]
 #[command(
-    long_about = "Measure how well colors survive each color model: over all 8-bit colors in steps, the largest and the \
-        mean difference of what comes back, and how much green a pure red has then. -o draws colors as they are given, and \
-        as each model brings them back.",
+    long_about = "Measure how well each color model preserves colors: the largest and the mean difference after \
+        conversion to a spectrum and back, over a grid of 8-bit colors, and how much green a pure red has afterwards. \
+        -o plots the original colors next to the result of each model.",
     after_long_help = "Example:\n  spectra spectrum models --model smooth --model 'fraunhofer{secondary: [F, D]}' -o colors.png"
 )]
 pub(crate) struct SpectrumModels {
-    /// A color model, with its keys in braces where it has any; all of them if left out. Can be given several times.
+    /// A color model, with its keys in braces if it has any; all models if not given. Can be repeated.
     #[arg(long, value_name = "NAME", default_value = "all")]
     pub model: Vec<String>,
-    /// The light whose color is white.
+    /// The light that counts as white.
     #[arg(long, value_name = "NAME", default_value = "D65")]
     pub illuminant: String,
-    /// Distance of the colors, 1 to 255.
+    /// Step between colors, 1 to 255.
     #[arg(long, value_name = "N", default_value_t = 15, value_parser = clap::value_parser!(u8).range(1..=255))]
     pub step: u8,
-    /// Picture to write: FILE.svg or FILE.png.
+    /// Output picture, FILE.svg or FILE.png.
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
-    /// A JSON object on standard output.
+    /// Write a JSON object to standard output.
     #[arg(long)]
     pub json: bool,
 }
@@ -207,7 +209,7 @@ pub(crate) struct SpectrumModels {
 /// `spectra spectrum list`.
 #[derive(Debug, Args)]
 pub(crate) struct SpectrumList {
-    /// A JSON list on standard output.
+    /// Write a JSON list to standard output.
     #[arg(long)]
     pub json: bool,
 }
