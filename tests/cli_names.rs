@@ -102,10 +102,7 @@ fn lists_have_the_words_that_one_chooses_by() {
     for (arguments, words) in [
         (&["list", "lens"][..], &["helios-44-58-f2", "58 mm", "f/2.0", "1958", "deg", "Helios-44 58 mm f/2"][..]),
         (&["list", "lenses", "100"], &["zeiss-biotar-100-f1.4"]),
-        (
-            &["list", "stock"],
-            &["kodak-tri-x-400", "ISO 400", "black-and-white negative", "1954", "print stock\n"],
-        ),
+        (&["list", "stock"], &["kodak-tri-x-400", "ISO 400", "black-and-white negative", "1954", "print stock\n"]),
         (&["list", "scene"], &["biotar-ortho", "A resolution chart", "surfaces/zernike"]),
         (&["list", "spectrum", "wratten"], &["wratten-12", "transmittance"]),
         (&["list", "glass", "BK7"], &["SCHOTT/N-BK7", "nd 1.5168", "Vd 64.1"]),
