@@ -366,10 +366,4 @@ mod tests {
         assert!(hint("sourc").starts_with("did you mean `source`?"));
         assert!(hint("tri-x").starts_with("`kodak-tri-x-400` is a film stock: `spectra list stock`"));
     }
-
-    #[test]
-    fn sources_tell_their_year() {
-        assert_eq!(year("Kodak F-4017, 2007, as digitized by spectral-film-lut 0.18.13"), Some(2007));
-        assert_eq!(year("measured by myself"), None);
-    }
 }
