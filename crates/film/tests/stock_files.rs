@@ -82,7 +82,7 @@ fn each_fault_names_its_key() {
         ("points: [[-3, 0.3], [-2.3, 0.5], [0, 2.4]]", "assumed: true", "remark"),
         ("points: [[-3, 0.3], [-2.3, 0.5], [0, 2.4]]", "toe: 0.2", "average-gradient"),
         ("[0, 2.4]]", "[0, 2.4]]\n        toe: 1", "no other shape"),
-        ("iso: 100", "iso: 100\nreciprocity: {exponent: 0.5, above: 1 s}", "exponent"),
+        ("iso: 100", "iso: 100\nreciprocity: {exponent: 0.5, above: 1 s}", "from 1 to 10"),
         ("iso: 100", "iso: 100\nbases: [{formats: sheet, thickness: 0.1 s}]", "positive length"),
     ];
     for (from, to, word) in broken {
@@ -116,8 +116,8 @@ fn assumed_curves_are_checked() {
     assert!(push.assumed);
     assert!((push.curve.average_gradient(1.5).expect("there") - 0.6).abs() < 1e-12);
     for (numbers, key) in [
-        ("average-gradient: 0.6\n        toe: 3\n        shoulder: 4\n        maximum-density: 2.2", "toe"),
-        ("average-gradient: 0.6\n        toe: 0.2\n        shoulder: 0\n        maximum-density: 2.2", "shoulder"),
+        ("average-gradient: 0.6\n        toe: 3\n        shoulder: 4\n        maximum-density: 2.2", "up to 2"),
+        ("average-gradient: 0.6\n        toe: 0.2\n        shoulder: 0\n        maximum-density: 2.2", "from 1 to 64"),
         ("average-gradient: -1\n        toe: 0.2\n        shoulder: 4\n        maximum-density: 2.2", "second point"),
         (
             "average-gradient: 0.6\n        toe: 0.2\n        shoulder: 4\n        maximum-density: 0.9",
@@ -150,7 +150,10 @@ fn layers_that_do_not_fit_are_told() {
             format!("{head}minimum-density: {{table: [[400, 0.2]]}}\nlayers:\n{}", layer("red", "", curve)),
             "base and fog",
         ),
-        (format!("{head}halation: {{scattered: 2, backing: 0.1}}\nlayers:\n{}", layer("red", "", curve)), "share"),
+        (
+            format!("{head}halation: {{scattered: 2, backing: 0.1}}\nlayers:\n{}", layer("red", "", curve)),
+            "from 0 to 1",
+        ),
         (format!("{head}reciprocity: {{above: 1 s}}\nlayers:\n{}", layer("red", "", curve)), "`exponent` or a `table`"),
         (
             format!("{head}layers:\n{}", layer("red", "", curve))

@@ -12,7 +12,7 @@ use crate::{
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::numbers::seed_of_frame;
-use spectra_core::params::{Fault, Faults, Node, Params, StageNode, Value, Warnings, Wavelength, Whole, nearest};
+use spectra_core::params::{Fault, Faults, Node, Params, Part, StageNode, Value, Warnings, Wavelength, Whole, keys_of};
 use spectra_core::registry::{self, Context, StageOf};
 use spectra_core::resources::Resources;
 use spectra_core::spectral::{BAND, Channel, Grid};
@@ -49,50 +49,38 @@ use std::sync::Arc;
 )]
 pub(crate) struct SceneFile {
     /// Version of the format: 1.
-    #[schemars(range(min = 1, max = 1))]
-    spectra: f64,
+    spectra: Whole<1, 1>,
     /// What is in front of the lens.
-    #[schemars(with = "StageOf<dyn Source>")]
-    source: StageNode,
+    source: Part<StageOf<dyn Source>>,
     /// How wavelengths are drawn, and from which band; `source-times-response` over 350 to 830 nm if absent.
     #[serde(default)]
-    #[schemars(with = "Option<StageOf<dyn WavelengthSampler>>")]
-    wavelengths: Option<StageNode>,
+    wavelengths: Option<Part<StageOf<dyn WavelengthSampler>>>,
     /// Which lens, and how it is set.
-    #[schemars(with = "LensSection")]
-    lens: StageNode,
+    lens: Part<LensSection>,
     /// What records the light.
-    #[schemars(with = "StageOf<dyn Imager>")]
-    imager: StageNode,
+    imager: Part<StageOf<dyn Imager>>,
     /// The film on a film imager, or a list of films side by side; of other imagers none.
     #[serde(default)]
-    #[schemars(with = "Option<films::FilmForm>")]
-    film: Option<StageNode>,
+    film: Option<Part<films::FilmForm>>,
     /// How much light is traced, and how.
     #[serde(default)]
-    #[schemars(with = "Option<RenderSection>")]
-    render: Option<StageNode>,
+    render: Option<Part<RenderSection>>,
     /// What is written, into files named after the scene; EXR and PNG if absent.
     #[serde(default)]
-    #[schemars(with = "Option<Vec<output::OutputForm>>")]
-    output: Option<Vec<StageNode>>,
+    output: Option<Vec<Part<output::OutputForm>>>,
     // What follows is used up before a scene is assembled; named here, so that a slip in one of them is told.
     /// Scenes that this one comes on top of: a file or a list of files. Maps merge, what is said here wins.
     #[serde(default)]
-    #[schemars(with = "Option<language::IncludeForm>")]
-    include: Option<StageNode>,
+    include: Option<Part<language::IncludeForm>>,
     /// Values with a name: `$name` is one of them as it is, `${name}` its text inside of another.
     #[serde(default)]
-    #[schemars(with = "Option<BTreeMap<String, StageNode>>")]
-    variables: Option<StageNode>,
+    variables: Option<Part<BTreeMap<String, StageNode>>>,
     /// Values that are tried, a picture each: paths with their values, every one with every other; or a list of maps.
     #[serde(default)]
-    #[schemars(with = "Option<language::SweepForm>")]
-    sweep: Option<StageNode>,
+    sweep: Option<Part<language::SweepForm>>,
     /// Frames, and the values that change over them.
     #[serde(default)]
-    #[schemars(with = "Option<language::AnimationForm>")]
-    animation: Option<StageNode>,
+    animation: Option<Part<language::AnimationForm>>,
 }
 
 /// The `wavelengths` section's own keys; the others are the sampler's.
@@ -100,6 +88,7 @@ pub(crate) struct SceneFile {
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) struct BandSection {
     /// First and last wavelength of the band, nm if bare, from 200 to 2500 nm; 350 and 830 nm if absent.
+    #[schemars(inner(range(min = 200, max = 2500)))]
     band: Option<[Wavelength; 2]>,
 }
 
@@ -109,8 +98,8 @@ pub(crate) struct BandSection {
 struct RenderSection {
     /// Which way rays run: `backward` (from the imager), `forward` (from the source) or `auto` (the default: backward
     /// where source and imager can).
-    #[schemars(extend("enum" = ["auto", "forward", "backward"]))]
-    direction: Option<String>,
+    #[serde(default)]
+    direction: Way,
     /// Backward: samples a pixel, a whole number from 1 to 4194304; 64 if absent.
     samples: Option<Whole<1, MAX_SAMPLES>>,
     /// Forward: rays in all, a whole number from 1 to 1e15; four times pixels times samples if absent.
@@ -123,11 +112,22 @@ struct RenderSection {
     /// picture.
     batch: Option<Whole<8, 65_536>>,
     /// Where numbers come from: `sobol` (the default; evenest), `random` or `stratified`.
-    #[schemars(extend("enum" = ["sobol", "random", "stratified"]))]
-    numbers: Option<String>,
+    #[serde(default)]
+    numbers: NumberFamily,
     /// How rays fill the aperture: `disk` (the default), `rings` (of equal area) or `random`.
-    #[schemars(extend("enum" = ["disk", "rings", "random"]))]
-    cone: Option<String>,
+    #[serde(default)]
+    cone: ConePattern,
+}
+
+/// Which way rays are to run.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+#[schemars(inline)]
+enum Way {
+    #[default]
+    Auto,
+    Forward,
+    Backward,
 }
 
 /// Most samples of a pixel.
@@ -205,12 +205,8 @@ fn all_stages(
     let parts = ["wavelengths", "source", "lens", "imager", "film", "render"].map(|key| section(key, &mut faults));
     let [wavelengths, source, lens, imager, film, render] = parts;
     let film_is_wanted = film.is_some() || several.is_some();
-    if file.as_ref().is_some_and(|f| f.spectra != 1.0) {
-        faults.push(
-            params.fault("spectra", "unknown version of the scene format").hint("this program reads `spectra: 1`"),
-        );
-    }
-    let (band, sampler) = wavelengths.unwrap_or_else(|| params.nothing_said("wavelengths")).split(&["band"]);
+    let (band, sampler) =
+        wavelengths.unwrap_or_else(|| params.nothing_said("wavelengths")).split(&keys_of::<BandSection>());
     let grid = faults.take(band.parse::<BandSection>().and_then(|b| grid_of(&b, &band))).unwrap_or(BAND);
     let warnings = Warnings::new();
     let context = Context { warnings: Some(&warnings), ..Context::new(resources, grid) };
@@ -344,9 +340,9 @@ fn all_stages(
 fn grid_of(section: &BandSection, params: &Params) -> Result<Grid, Faults> {
     let Some([first, last]) = section.band else { return Ok(BAND) };
     let (first, last) = (first.nm(), last.nm());
-    if !(first >= 200.0 && last <= 2500.0 && last - first >= 1.0) {
+    if last - first < 1.0 {
         let fault = params.fault("band", format!("no band of light: {first} to {last} nm"));
-        return Err(fault.hint("two wavelengths from 200 to 2500 nm, the shorter one first").into());
+        return Err(fault.hint("the shorter one first, as in `[380, 780]`, 1 nm apart or more").into());
     }
     let count = (last - first).ceil() as usize + 1;
     Ok(Grid { start_nm: first, step_nm: (last - first) / (count - 1) as f64, count })
@@ -364,28 +360,12 @@ fn render_settings(
     let rays = s.rays.map_or(samples * FORWARD_RAYS_A_SAMPLE * imager.size().pixels() as u64, Whole::get);
     let seed = s.seed.map_or(DEFAULT_SEED, Whole::get);
     let frame = s.frame.map(Whole::get);
-    let mut one_of = |key: &str, value: Option<&str>, known: &[&str]| -> usize {
-        let Some(value) = value else { return 0 };
-        known.iter().position(|k| *k == value).unwrap_or_else(|| {
-            let fault = params.fault(key, format!("unknown {key} `{value}`"));
-            let one_of = format!("one of {}", known.join(", "));
-            faults.push(fault.hint(match nearest(value, known.iter().copied()) {
-                Some(near) => format!("did you mean `{near}`? Known: {}", known.join(", ")),
-                None => one_of,
-            }));
-            0
-        })
-    };
-    let direction = one_of("direction", s.direction.as_deref(), &["auto", "forward", "backward"]);
-    let numbers = one_of("numbers", s.numbers.as_deref(), &["sobol", "random", "stratified"]);
-    let cone = one_of("cone", s.cone.as_deref(), &["disk", "rings", "random"]);
     let can_backward = source.radiance().is_some() && imager.launch().is_some();
     let can_forward = source.emit().is_some() && imager.receive().is_some();
-    let direction = match direction {
-        0 if can_backward => Direction::Backward,
-        0 => Direction::Forward,
-        1 => Direction::Forward,
-        _ => Direction::Backward,
+    let direction = match s.direction {
+        Way::Auto if can_backward => Direction::Backward,
+        Way::Auto | Way::Forward => Direction::Forward,
+        Way::Backward => Direction::Backward,
     };
     if direction == Direction::Backward && !can_backward {
         let fault = params.fault("direction", "this source cannot be rendered backward");
@@ -406,7 +386,7 @@ fn render_settings(
         seed: frame.map_or(seed, |frame| seed_of_frame(seed, frame)),
         frame,
         batch: s.batch.map_or(DEFAULT_BATCH, Whole::size),
-        numbers: [NumberFamily::Sobol, NumberFamily::Random, NumberFamily::Stratified][numbers],
-        cone: [ConePattern::Disk, ConePattern::Rings, ConePattern::Random][cone],
+        numbers: s.numbers,
+        cone: s.cone,
     })
 }

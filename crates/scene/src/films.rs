@@ -2,8 +2,9 @@
 
 use crate::SceneFilm;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::Deserialize;
 use serde_json::json;
-use spectra_core::params::{Fault, Faults, Node, Params};
+use spectra_core::params::{Faults, Node, Params, keys_of};
 use spectra_core::registry::{self, Context};
 use spectra_core::spectral::Channel;
 use spectra_core::stage::Film;
@@ -25,9 +26,8 @@ impl JsonSchema for FilmForm {
 }
 
 /// What every film of a list may state.
-#[derive(JsonSchema)]
-#[schemars(rename_all = "kebab-case")]
-#[expect(dead_code, reason = "states what is allowed; `name` reads it")]
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) struct FilmKeys {
     /// In a list of films: what its pictures are called.
     name: Option<String>,
@@ -52,7 +52,7 @@ pub(crate) fn several(items: &[Node], params: &Params, context: &Context<'_>) ->
     let mut films: Vec<SceneFilm> = Vec::new();
     for (at, item) in items.iter().enumerate() {
         let Some(stage) = faults.take(Params::stage(item.clone(), &format!("film[{at}]"))) else { continue };
-        let (named, own) = stage.split(&["name"]);
+        let (named, own) = stage.split(&keys_of::<FilmKeys>());
         let name = faults.take(name(&named, &own, &films));
         let film = faults.take(registry::build::<dyn Film>(&own, context));
         if let (Some(name), Some(film)) = (name, film) {
@@ -65,9 +65,9 @@ pub(crate) fn several(items: &[Node], params: &Params, context: &Context<'_>) ->
 }
 
 /// A name of a few letters that is part of a file's name, and that no other film has.
-fn name(named: &Params, own: &Params, others: &[SceneFilm]) -> Result<String, Fault> {
+fn name(named: &Params, own: &Params, others: &[SceneFilm]) -> Result<String, Faults> {
     let taken = |name: &str| others.iter().any(|f| f.name.as_deref() == Some(name));
-    let Some(node) = named.get("name") else {
+    let Some(name) = named.parse::<FilmKeys>()?.name else {
         let stock =
             own.get("stock").and_then(|n| n.as_str()).map(|path| path.rsplit(['/', '\\']).next().unwrap_or(path));
         let stock = stock.map(|file| file.trim_end_matches(".yaml").trim_end_matches(".yml"));
@@ -75,18 +75,15 @@ fn name(named: &Params, own: &Params, others: &[SceneFilm]) -> Result<String, Fa
         let numbered = (2..).map(|n| format!("{base}-{n}"));
         return Ok(std::iter::once(base.clone()).chain(numbered).find(|n| !taken(n)).unwrap_or(base));
     };
-    let fault = |text: String| node.fault(text).path(format!("{}.name", own.path()));
-    let Some(name) = node.as_str() else {
-        return Err(fault("the name of a film is a text".to_owned()).hint("such as `name: ortho`"));
-    };
+    let fault = |text: String| named.fault("name", text);
     let good = |c: char| c.is_alphanumeric() || "-_+".contains(c);
     if name.is_empty() || name.len() > 64 || !name.chars().all(good) {
-        return Err(fault(format!("`{name}` cannot be part of a file's name")).hint("letters, digits, - and _"));
+        return Err(fault(format!("`{name}` cannot be part of a file's name")).hint("letters, digits, - and _").into());
     }
-    if taken(name) {
-        return Err(fault(format!("two films are called `{name}`")).hint("each needs a name of its own"));
+    if taken(&name) {
+        return Err(fault(format!("two films are called `{name}`")).hint("each needs a name of its own").into());
     }
-    Ok(name.to_owned())
+    Ok(name)
 }
 
 /// The channels of all films, in order. Of several films each channel bears the film's name before its own, and its

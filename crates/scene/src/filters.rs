@@ -7,7 +7,7 @@
 
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::params::{Faults, Length, Params, Positive, StageNode, Value};
+use spectra_core::params::{Faults, Length, Params, Part, Positive, StageNode, Value, keys_of};
 use spectra_core::resources::Resources;
 use spectra_core::spectral::{Channel, Grid};
 use spectra_glass::Medium;
@@ -19,8 +19,8 @@ use spectra_lens::{Coating, read_coating};
 struct FrontSection {
     /// Filters, in any order: a name of a transmittance, `{file: ...}`, or `{glass: ..., thickness: ...}`.
     #[serde(default)]
-    #[schemars(with = "Vec<FilterForm>")]
-    filters: Vec<StageNode>,
+    #[schemars(length(max = 16))]
+    filters: Vec<Part<FilterForm>>,
 }
 
 /// A measured transmittance.
@@ -40,8 +40,7 @@ pub(crate) struct Plate {
     /// How thick it is, mm if bare.
     thickness: Positive<Length>,
     /// Coating of both faces: `ideal`, `bare`, or a layer; `bare` if absent.
-    #[schemars(with = "Option<spectra_lens::CoatingForm>")]
-    coating: Option<StageNode>,
+    coating: Option<Part<spectra_lens::CoatingForm>>,
 }
 
 /// What a filter is written as.
@@ -57,19 +56,12 @@ pub(crate) enum FilterForm {
     Plate(Plate),
 }
 
-/// More than anybody stacks.
-const MOST: usize = 16;
-
 /// Transmittance on the grid of all filters of a `lens` section together; `None` without one.
 pub(crate) fn filters_of(lens: &Params, grid: Grid, resources: &dyn Resources) -> Result<Option<Vec<f64>>, Faults> {
-    let (front, _) = lens.split(&["filters"]);
+    let (front, _) = lens.split(&keys_of::<FrontSection>());
     let section: FrontSection = front.parse()?;
     if section.filters.is_empty() {
         return Ok(None);
-    }
-    if section.filters.len() > MOST {
-        let fault = front.fault("filters", format!("{} filters", section.filters.len()));
-        return Err(fault.hint(format!("at most {MOST}")).into());
     }
     let mut faults = Faults::new();
     let mut product = vec![1.0; grid.count];

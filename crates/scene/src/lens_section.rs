@@ -10,8 +10,8 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::cover::CoverStack;
 use spectra_core::params::{
-    Angle, Dimension, FNumber, Fault, Faults, Length, OrInfinity, Params, Positive, Reading, SpatialFrequency,
-    StageNode, Value, Wavelength,
+    Angle, Dimension, FNumber, Fault, Faults, Length, OrInfinity, Params, Part, Positive, Reading, SpatialFrequency,
+    StageNode, Wavelength,
 };
 use spectra_core::resources::Resources;
 use spectra_lens::{
@@ -30,31 +30,25 @@ pub(crate) struct LensSection {
     reverse: bool,
     /// Coating of all surfaces, in place of what the lens file states or what lenses of its year had: `ideal` (nothing is
     /// reflected), `bare`, `single-layer`, `three-layer`, a layer or a stack.
-    #[schemars(with = "Option<CoatingForm>")]
-    coating: Option<StageNode>,
+    coating: Option<Part<CoatingForm>>,
     /// Whether glass absorbs; as the lens file says if absent, which is yes unless it says otherwise.
     absorption: Option<bool>,
     /// Aperture, set by the real marginal ray; as the lens file says if absent. The f-number in the lens's name means wide open.
     f_number: Option<FNumber>,
     /// What limits the light at the stop beside its round opening: blades, a mask; one or a list, as in a lens file.
-    #[schemars(with = "Option<ApertureForm>")]
-    aperture: Option<StageNode>,
+    aperture: Option<Part<ApertureForm>>,
     /// Distance that is in focus, from the first vertex, mm if bare, or `infinity`; the lens file's focus if absent. What
     /// lies there on the axis is as sharp as it gets: its contrast is highest, in the light and at the aperture of the
     /// scene. Or a map with what to focus by.
-    #[schemars(with = "Option<FocusForm>")]
-    focus: Option<StageNode>,
+    focus: Option<Part<FocusForm>>,
     /// Groups out of place: misalignment. None if absent.
     #[serde(default)]
-    #[schemars(with = "Vec<AdjustParams>")]
-    adjust: Vec<StageNode>,
+    adjust: Vec<Part<AdjustParams>>,
     /// Filters in front of it, at most 16, each a name of a transmittance or a map; none if absent.
     #[expect(dead_code, reason = "states the key; filters are read by themselves")]
-    #[schemars(with = "Option<Vec<FilterForm>>")]
-    filters: Option<StageNode>,
+    filters: Option<Part<Vec<FilterForm>>>,
     /// A rectangular opening in front of it; none if absent.
-    #[schemars(with = "Option<MatteBoxParams>")]
-    matte_box: Option<StageNode>,
+    matte_box: Option<Part<MatteBoxParams>>,
 }
 
 /// A matte box.
@@ -77,32 +71,49 @@ struct FocusParams {
     distance: OrInfinity<Positive<Length>>,
     /// What is sharpest: `contrast` (the highest at a spatial frequency; the default), `spot` (the smallest, root mean
     /// square; `rms` says the same) or `paraxial` (by first order at the reference line of the lens).
-    #[schemars(extend("enum" = ["contrast", "spot", "rms", "paraxial"]))]
-    by: Option<String>,
+    #[serde(default)]
+    by: By,
     /// Field angle that is in focus, degrees if bare, within 89; on the axis if absent.
-    #[schemars(extend("minimum" = -89, "maximum" = 89))]
+    #[schemars(range(min = -89, max = 89))]
     field: Option<Angle>,
     /// Wavelength that is in focus, 200 to 2500 nm, nm if bare; if absent the light of the scene, weighed by what the
     /// film or the imager sees of it. Or else `spectrum`.
+    #[schemars(range(min = 200, max = 2500))]
     wavelength: Option<Wavelength>,
     /// In place of `wavelength`, 1 to 64 of them, nm if bare, each with its weight, more than 0.
     #[schemars(length(min = 1, max = 64))]
-    spectrum: Option<Vec<(Wavelength, f64)>>,
+    spectrum: Option<Vec<Weighed>>,
     /// With `by: contrast`: the spatial frequency whose contrast counts, line pairs a mm if bare; if absent 30 on a 135
     /// frame, and as much more or less on another one as its diagonal is shorter or longer (on frames smaller than
     /// super 8 as on that).
     frequency: Option<Positive<SpatialFrequency>>,
 }
 
+/// A wavelength, 200 to 2500 nm, and its weight.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[schemars(inline)]
+struct Weighed(#[schemars(range(min = 200, max = 2500))] Wavelength, #[schemars(extend("exclusiveMinimum" = 0))] f64);
+
+/// What is sharpest.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+#[schemars(inline)]
+enum By {
+    #[default]
+    Contrast,
+    Spot,
+    Rms,
+    Paraxial,
+}
+
 /// What a focus is written as.
-#[derive(JsonSchema)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(untagged)]
-#[expect(dead_code, reason = "states what is allowed; `focus_of` reads it")]
 enum FocusForm {
     /// The distance alone.
     Distance(OrInfinity<Positive<Length>>),
     /// What to focus by.
-    By(FocusParams),
+    By(Box<FocusParams>),
 }
 
 /// A group out of place.
@@ -119,9 +130,6 @@ struct AdjustParams {
     /// Shift along the axis toward the image, mm if bare; none if absent.
     shift: Option<Length>,
 }
-
-/// Field angles of a plane, degrees.
-const MAX_FIELD_DEG: f64 = 89.0;
 
 /// What is to be in focus, and by what.
 struct Wanted {
@@ -144,7 +152,7 @@ pub(crate) struct SetLens {
 pub(crate) struct HeldLens {
     pub(crate) lens: Lens,
     params: Params,
-    focus: Option<StageNode>,
+    focus: Option<Part<FocusForm>>,
     matte_box: Option<MatteBox>,
 }
 
@@ -306,32 +314,28 @@ fn focus_fault(params: &Params, error: &FocusError) -> Fault {
     params.fault(key, error.to_string()).hint(hint)
 }
 
-fn focus_of(node: &StageNode, reference_nm: f64, light: Option<&FocusLight>) -> Result<Wanted, Faults> {
+fn focus_of(node: &Part<FocusForm>, reference_nm: f64, light: Option<&FocusLight>) -> Result<Wanted, Faults> {
     // Where nothing is seen of the source there is the reference line still.
     let seen = light.map_or(&[][..], |light| &light.light);
     let seen = if seen.is_empty() { vec![(reference_nm, 1.0)] } else { seen.to_vec() };
     let default_per_mm = light.map_or(30.0, |light| light.per_mm);
-    if !matches!(node.node().value, Value::Map(_)) {
-        let distance: OrInfinity<Positive<Length>> = node.parse()?;
-        let (object_mm, criterion) = (distance.mm(), Criterion::Contrast { per_mm: default_per_mm });
-        let search = light.map(|_| FocusSearch { object_mm, field_rad: 0.0, criterion, light: seen });
-        let by = FocusBy::Contrast { per_mm: default_per_mm };
-        return Ok(Wanted { distance_mm: object_mm, by, search, plain: true });
-    }
+    let p = match node.read()? {
+        FocusForm::By(p) => p,
+        FocusForm::Distance(distance) => {
+            let (object_mm, criterion) = (distance.mm(), Criterion::Contrast { per_mm: default_per_mm });
+            let search = light.map(|_| FocusSearch { object_mm, field_rad: 0.0, criterion, light: seen });
+            let by = FocusBy::Contrast { per_mm: default_per_mm };
+            return Ok(Wanted { distance_mm: object_mm, by, search, plain: true });
+        }
+    };
     let params = Params::section(node.node().clone(), node.path())?;
-    let p: FocusParams = params.parse()?;
     let mut faults = Faults::new();
-    let by = match p.by.as_deref() {
-        None | Some("contrast") => {
+    let by = match p.by {
+        By::Contrast => {
             FocusBy::Contrast { per_mm: p.frequency.map_or(default_per_mm, |frequency| frequency.per_mm()) }
         }
-        Some("spot" | "rms") => FocusBy::Spot,
-        Some("paraxial") => FocusBy::Paraxial,
-        Some(other) => {
-            let fault = params.fault("by", format!("no way to focus by `{other}`"));
-            faults.push(fault.hint("contrast, spot or paraxial"));
-            FocusBy::Paraxial
-        }
+        By::Spot | By::Rms => FocusBy::Spot,
+        By::Paraxial => FocusBy::Paraxial,
     };
     let criterion = match by {
         FocusBy::Contrast { per_mm } => Some(Criterion::Contrast { per_mm }),
@@ -352,31 +356,17 @@ fn focus_of(node: &StageNode, reference_nm: f64, light: Option<&FocusLight>) -> 
         }
     }
     let field_rad = p.field.map_or(0.0, Angle::rad);
-    if field_rad.abs() > MAX_FIELD_DEG.to_radians() {
-        let fault = params.fault("field", "no plane is seen at this angle");
-        faults.push(fault.hint(format!("between {} and {MAX_FIELD_DEG} degrees", -MAX_FIELD_DEG)));
-    }
-    let light = match (p.wavelength, p.spectrum) {
+    let light = match (p.wavelength, &p.spectrum) {
         (None, None) => seen,
         (Some(wavelength), None) => vec![(wavelength.nm(), 1.0)],
         (None, Some(spectrum)) => {
-            let light: Vec<(f64, f64)> = spectrum.iter().map(|(w, weight)| (w.nm(), *weight)).collect();
-            let good = (1..=64).contains(&light.len()) && light.iter().all(|(_, w)| *w > 0.0 && w.is_finite());
-            if !good {
-                let fault = params.fault("spectrum", "1 to 64 wavelengths, each with a positive weight");
-                faults.push(fault.hint("such as [[486, 1], [546, 2], [656, 1]]"));
-            }
-            light
+            spectrum.iter().map(|Weighed(wavelength, weight)| (wavelength.nm(), *weight)).collect()
         }
         (Some(_), Some(_)) => {
             faults.push(params.fault("spectrum", "either `wavelength` or `spectrum`"));
             Vec::new()
         }
     };
-    if light.iter().any(|(nm, _)| !(200.0..=2500.0).contains(nm)) {
-        let key = if p.wavelength.is_some() { "wavelength" } else { "spectrum" };
-        faults.push(params.fault(key, "this is no light").hint("from 200 to 2500 nm"));
-    }
     let object_mm = p.distance.mm();
     let search = criterion.map(|criterion| FocusSearch { object_mm, field_rad, criterion, light });
     faults.into_result(Wanted { distance_mm: object_mm, by, search, plain: false })

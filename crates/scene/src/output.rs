@@ -3,7 +3,7 @@
 use crate::{Output, RaysFigure};
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::Deserialize;
-use spectra_core::params::{Fault, Faults, Kinds, Length, Params, Positive, StageNode, Whole, nearest};
+use spectra_core::params::{Fault, Faults, Kinds, Length, Params, Part, Positive, Whole, nearest};
 use spectra_core::picture_file;
 
 /// `kind: exr`: the linear exposure.
@@ -31,17 +31,44 @@ struct RaysParams {
     #[serde(default = "rays_wavelengths")]
     wavelengths: Whole<1, 4001>,
     /// How bright colors are: `full` (the default; all alike) or `true` (relative to the brightest).
-    #[schemars(extend("enum" = ["full", "true"]))]
-    intensity: Option<String>,
+    #[serde(default)]
+    intensity: Intensity,
     /// What it is drawn on: `dark` (the default) or `light`.
-    #[schemars(extend("enum" = ["dark", "light"]))]
-    ground: Option<String>,
+    #[serde(default)]
+    ground: Ground,
     /// What it is written as: `png` (the default) or `svg`.
-    #[schemars(extend("enum" = ["png", "svg"]))]
-    format: Option<String>,
+    #[serde(default)]
+    format: Format,
     /// Whether the image plane is drawn, and ends the rays.
     #[serde(default)]
     screen: bool,
+}
+
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+#[schemars(inline)]
+enum Intensity {
+    #[default]
+    Full,
+    True,
+}
+
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+#[schemars(inline)]
+enum Ground {
+    #[default]
+    Dark,
+    Light,
+}
+
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+#[schemars(inline)]
+enum Format {
+    #[default]
+    Png,
+    Svg,
 }
 
 fn rays_size() -> [Whole<64, 8192>; 2] {
@@ -78,7 +105,7 @@ impl JsonSchema for OutputForm {
 const KINDS: [&str; 5] = ["exr", "png", "tiff", "dng", "rays"];
 
 /// Reads the section; EXR and PNG where it is absent.
-pub(crate) fn read(items: Option<&[StageNode]>) -> Result<Vec<Output>, Faults> {
+pub(crate) fn read(items: Option<&[Part<OutputForm>]>) -> Result<Vec<Output>, Faults> {
     let Some(items) = items else { return Ok(vec![Output::Exr, Output::Png]) };
     let mut faults = Faults::new();
     let mut found = Vec::new();
@@ -139,34 +166,17 @@ fn exr(params: &Params) -> Result<Output, Faults> {
 
 fn rays(params: &Params) -> Result<RaysFigure, Faults> {
     let p: RaysParams = params.parse()?;
-    let mut faults = Faults::new();
     let [width_px, height_px] = p.size.map(Whole::get_u32);
     let (rays, wavelengths) = (p.rays.get_u32(), p.wavelengths.get_u32());
-    let mut second_of = |key: &str, value: &Option<String>, known: [&str; 2]| match value.as_deref() {
-        None => false,
-        Some(v) if v == known[0] => false,
-        Some(v) if v == known[1] => true,
-        Some(other) => {
-            faults.push(unknown(params, key, other, known));
-            false
-        }
-    };
-    let true_intensity = second_of("intensity", &p.intensity, ["full", "true"]);
-    let light = second_of("ground", &p.ground, ["dark", "light"]);
-    let svg = second_of("format", &p.format, ["png", "svg"]);
-    faults.into_result(RaysFigure {
+    Ok(RaysFigure {
         width_px,
         height_px,
         rays,
         wavelengths,
-        true_intensity,
-        light,
-        svg,
+        true_intensity: p.intensity == Intensity::True,
+        light: p.ground == Ground::Light,
+        svg: p.format == Format::Svg,
         screen: p.screen,
         view_mm: p.view.map(|v| v.mm()),
     })
-}
-
-fn unknown(params: &Params, key: &str, found: &str, known: [&str; 2]) -> Fault {
-    params.fault(key, format!("unknown {key} `{found}`")).hint(format!("{} or {}", known[0], known[1]))
 }

@@ -1,6 +1,8 @@
 //! A scene, assembled: every stage built, the lens focused and stopped, nothing traced yet.
 
 use crate::Focus;
+use schemars::JsonSchema;
+use serde::Deserialize;
 use spectra_core::frame::{ExposureChannel, ExposureFrame};
 use spectra_core::params::{Params, Warning};
 use spectra_core::spectral::{Channel, Grid};
@@ -19,7 +21,9 @@ pub enum Direction {
 }
 
 /// How forward rays are spread over the front of the lens.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+#[schemars(inline)]
 pub enum ConePattern {
     /// Independent random points.
     Random,
@@ -31,7 +35,9 @@ pub enum ConePattern {
 }
 
 /// How the numbers of one stream of samples lie to each other.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+#[schemars(inline)]
 pub enum NumberFamily {
     /// Owen-scrambled Sobol points.
     #[default]

@@ -30,8 +30,8 @@
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
 use spectra_core::params::{
-    Dimension, Fault, Faults, Kinds, Luminance, NonNegative, Params, Positive, Power, Quantity, StageNode, Temperature,
-    Wavelength, nearest, quantity, schema_of,
+    Dimension, Fault, Faults, Kinds, Luminance, NonNegative, Params, Part, Positive, Power, Quantity, StageNode,
+    Temperature, Wavelength, Whole, keys_of, nearest, quantity, schema_of,
 };
 use spectra_core::spectral::Line;
 
@@ -40,7 +40,7 @@ use crate::emission::Emission;
 use crate::error::SpectrumError;
 use crate::gaussian::{GaussianMixture, GaussianTerm};
 use crate::illuminants::daylight;
-use crate::lines::named_line;
+use crate::lines::LineOrWavelength;
 use crate::meta::{Kind, Meta, Outside, Scale};
 use crate::piece::{Piece, of_shape};
 use crate::shape::Shape;
@@ -91,12 +91,11 @@ impl<'de> Deserialize<'de> for Center {
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct Head {
     /// Format of the file: 1; 1 if absent.
-    #[schemars(range(min = 1, max = 1))]
-    spectra: Option<u32>,
+    #[expect(dead_code, reason = "its schema allows one version")]
+    spectra: Option<Whole<1, 1>>,
     /// What it is a spectrum of: `emission`, `transmittance`, `reflectance` or `sensitivity`; what is wanted where it
     /// is named, if absent.
-    #[schemars(extend("enum" = ["emission", "transmittance", "reflectance", "sensitivity"]))]
-    of: Option<String>,
+    of: Option<KindName>,
     /// Name for people.
     name: Option<String>,
     /// Where the figures come from.
@@ -109,7 +108,27 @@ struct Head {
     note: Option<String>,
 }
 
-const HEAD: [&str; 7] = ["spectra", "of", "name", "source", "licence", "conditions", "note"];
+/// What a file is a spectrum of.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+#[schemars(inline)]
+enum KindName {
+    Emission,
+    Transmittance,
+    Reflectance,
+    Sensitivity,
+}
+
+impl From<KindName> for Kind {
+    fn from(name: KindName) -> Self {
+        match name {
+            KindName::Emission => Self::Emission,
+            KindName::Transmittance => Self::Transmittance,
+            KindName::Reflectance => Self::Reflectance,
+            KindName::Sensitivity => Self::Sensitivity,
+        }
+    }
+}
 
 /// Kinds of spectra that a file can hold.
 pub(crate) const KINDS: [&str; 13] = [
@@ -133,8 +152,7 @@ pub(crate) const KINDS: [&str; 13] = [
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct LineParams {
     /// Where it lies: a short name such as `C'`, or a wavelength, nm if bare.
-    #[schemars(with = "LineForm")]
-    wavelength: StageNode,
+    wavelength: LineOrWavelength,
     /// Power of the line, relative or W; 1 if absent.
     power: Option<NonNegative<f64>>,
 }
@@ -144,6 +162,7 @@ struct LineParams {
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct LinesParams {
     /// The lines, one or more.
+    #[schemars(length(min = 1))]
     lines: Vec<LineParams>,
 }
 
@@ -251,6 +270,7 @@ struct TermParams {
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct MixtureParams {
     /// Signed Gaussians, 1 to 4096; where their sum is negative it counts as 0.
+    // More than any fit has, and than a product of several that is written out.
     #[schemars(length(min = 1, max = 4096))]
     terms: Vec<TermParams>,
 }
@@ -261,8 +281,7 @@ struct MixtureParams {
 struct ProductParams {
     /// What is multiplied, one or more: the first is what is wanted, such as a light, the others are filters. By name,
     /// or as maps with their `kind`.
-    #[schemars(with = "Vec<SpectrumForm>")]
-    factors: Vec<StageNode>,
+    factors: Vec<Part<SpectrumForm>>,
 }
 
 /// Spectra added.
@@ -270,8 +289,7 @@ struct ProductParams {
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct SumParams {
     /// What is added, one or more: by name, or as maps with their `kind`.
-    #[schemars(with = "Vec<SpectrumForm>")]
-    parts: Vec<StageNode>,
+    parts: Vec<Part<SpectrumForm>>,
 }
 
 /// A spectrum, brighter or darker.
@@ -279,8 +297,7 @@ struct SumParams {
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct ScaleParams {
     /// What is scaled: by name, or as a map with its `kind`.
-    #[schemars(with = "SpectrumForm")]
-    spectrum: StageNode,
+    spectrum: Part<SpectrumForm>,
     /// What it is multiplied by. One of the four is given.
     factor: Option<NonNegative<f64>>,
     /// Its greatest value afterwards.
@@ -289,17 +306,6 @@ struct ScaleParams {
     power: Option<Power>,
     /// Its luminance afterwards, cd/m2 if bare; of light only.
     luminance: Option<Luminance>,
-}
-
-/// What a line is written as.
-#[derive(JsonSchema)]
-#[serde(untagged)]
-#[expect(dead_code, reason = "states what is allowed; `line` reads it")]
-enum LineForm {
-    /// Where it lies.
-    Wavelength(Wavelength),
-    /// Its short name, such as `C'`.
-    Symbol(String),
 }
 
 /// What stands where a spectrum is wanted: a name or an expression, or a map with its kind.
@@ -383,12 +389,13 @@ fn kinds(generator: &mut SchemaGenerator, shared: Option<&Schema>) -> Schema {
 /// The spectrum of a whole file, as what is wanted unless the file says what it is of; and what it says of itself.
 pub(crate) fn of_file(file: &Params, wanted: Kind, loader: &Loader<'_>) -> Result<(Piece, Meta), Faults> {
     let whole = Params::stage(file.node().clone(), "")?;
-    let (head, _) = whole.split(&HEAD);
+    let keys = keys_of::<Head>();
+    let (head, _) = whole.split(&keys);
     let mut faults = Faults::new();
     let said: Option<Head> = faults.take(head.parse());
-    let of = said.as_ref().and_then(|head| faults.take(of(head, &whole)));
-    let piece = faults.take(of_stage(&whole, of.flatten().unwrap_or(wanted), loader, &HEAD));
-    let (Some(said), Some(of), Some(piece)) = (said, of, piece) else { return Err(faults) };
+    let of = said.as_ref().and_then(|head| head.of).map(Kind::from);
+    let piece = faults.take(of_stage(&whole, of.unwrap_or(wanted), loader, &keys));
+    let (Some(said), Some(piece)) = (said, piece) else { return Err(faults) };
     faults.into_result(())?;
     let piece = match of {
         Some(kind) => {
@@ -406,22 +413,6 @@ pub(crate) fn of_file(file: &Params, wanted: Kind, loader: &Loader<'_>) -> Resul
     Ok((piece, Meta { name, kind: of, source, licence, conditions, notes, ..Meta::default() }))
 }
 
-fn of(head: &Head, whole: &Params) -> Result<Option<Kind>, Fault> {
-    if head.spectra.is_some_and(|format| format != 1) {
-        return Err(whole.fault("spectra", "the format that this program reads is 1"));
-    }
-    let known = [Kind::Emission, Kind::Transmittance, Kind::Reflectance, Kind::Sensitivity];
-    match &head.of {
-        None => Ok(None),
-        Some(word) => match known.into_iter().find(|k| k.word() == word) {
-            Some(kind) => Ok(Some(kind)),
-            None => Err(whole
-                .fault("of", format!("`{}` is no kind of spectrum", word.chars().take(40).collect::<String>()))
-                .hint("emission, transmittance, reflectance or sensitivity")),
-        },
-    }
-}
-
 /// What is written in place of a spectrum: a name, or a map with its kind.
 fn of_node(node: &StageNode, wanted: Kind, loader: &Loader<'_>) -> Result<Piece, Faults> {
     match node.node().as_str() {
@@ -437,7 +428,7 @@ fn of_node(node: &StageNode, wanted: Kind, loader: &Loader<'_>) -> Result<Piece,
 }
 
 /// A map with a kind; `beside` are keys that are somebody else's.
-fn of_stage(params: &Params, wanted: Kind, loader: &Loader<'_>, beside: &[&str]) -> Result<Piece, Faults> {
+fn of_stage(params: &Params, wanted: Kind, loader: &Loader<'_>, beside: &[String]) -> Result<Piece, Faults> {
     let Some(kind) = params.kind() else {
         let fault = params.fault_here("a spectrum names its `kind`");
         return Err(fault.hint(format!("one of {}", KINDS.join(", "))).into());
@@ -450,15 +441,10 @@ fn of_stage(params: &Params, wanted: Kind, loader: &Loader<'_>, beside: &[&str])
         None => Ok(Piece::Bare(shape)),
     };
     match kind {
-        "line" => Emission::new(None, vec![line(&own.parse()?)?]).map(light).map_err(at("wavelength")),
+        "line" => Emission::new(None, vec![line(&own.parse()?)]).map(light).map_err(at("wavelength")),
         "lines" => {
             let LinesParams { lines } = own.parse()?;
-            let mut faults = Faults::new();
-            let lines: Vec<Line> = lines.iter().filter_map(|l| faults.take(line(l))).collect();
-            if lines.is_empty() && faults.is_empty() {
-                faults.push(params.fault("lines", "no line is listed"));
-            }
-            faults.into_result(())?;
+            let lines: Vec<Line> = lines.iter().map(line).collect();
             Emission::new(None, lines).map(light).map_err(at("lines"))
         }
         "constant" => {
@@ -506,12 +492,8 @@ fn of_stage(params: &Params, wanted: Kind, loader: &Loader<'_>, beside: &[&str])
     }
 }
 
-fn line(p: &LineParams) -> Result<Line, Faults> {
-    let wavelength_nm = match p.wavelength.node().as_str().and_then(named_line) {
-        Some(line) => line.nominal_nm,
-        None => p.wavelength.parse::<Wavelength>()?.nm(),
-    };
-    Ok(Line { wavelength_nm, power: p.power.map_or(1.0, NonNegative::get) })
+fn line(p: &LineParams) -> Line {
+    Line { wavelength_nm: p.wavelength.nm(), power: p.power.map_or(1.0, NonNegative::get) }
 }
 
 /// A fault for each value that does not increase.
@@ -584,12 +566,7 @@ fn histogram(params: &Params) -> Result<Piece, Faults> {
 }
 
 fn mixture(params: &Params) -> Result<Piece, Faults> {
-    /// More than any fit has, and than a product of several that is written out.
-    const MOST: usize = 4096;
     let MixtureParams { terms } = params.parse()?;
-    if terms.is_empty() || terms.len() > MOST {
-        return Err(params.fault("terms", format!("{} terms; 1 to {MOST}", terms.len())).into());
-    }
     let mut faults = Faults::new();
     let term = |(i, t): (usize, &TermParams)| {
         let term = GaussianTerm::new(t.amplitude, t.center.0, t.sigma.nm());
@@ -603,7 +580,7 @@ fn mixture(params: &Params) -> Result<Piece, Faults> {
 }
 
 fn together(
-    nodes: &[StageNode],
+    nodes: &[Part<SpectrumForm>],
     wanted: impl Fn(usize) -> Kind,
     loader: &Loader<'_>,
     join: impl Fn(Piece, Piece) -> Result<Piece, SpectrumError>,

@@ -75,7 +75,7 @@ pub use gamut::{Gamut, into_gamut, oklab, xyz_of_oklab};
 pub use gaussian::{GaussianFit, GaussianFitReport, GaussianMixture, GaussianTerm, NoGaussian, fit_gaussians};
 pub use illuminants::{daylight, daylight_xy, illuminant, illuminant_names};
 pub use line_color::LineColor;
-pub use lines::{LINE_SETS, NAMED_LINES, NamedLine, balmer, line_set, named_line};
+pub use lines::{LINE_SETS, LineOrWavelength, NAMED_LINES, NamedLine, balmer, line_set, named_line};
 pub use meta::{Interpolation, Kind, Meta, Outside, Scale, Strengths};
 pub use planck::planck_radiance;
 pub use primaries::{srgb_light, srgb_primaries};

@@ -1,5 +1,11 @@
 //! Spectral lines by the short names of optics, and the lines of hydrogen.
 
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::de::Error;
+use serde::{Deserialize, Deserializer};
+use spectra_core::params::Wavelength;
+use std::borrow::Cow;
+
 use crate::constants::{AIR_INDEX, PROTON_ELECTRON_MASS_RATIO, RYDBERG_PER_M};
 
 /// A spectral line that optics knows by a letter.
@@ -46,6 +52,48 @@ pub const LINE_SETS: [(&str, [&str; 3]); 4] =
 pub fn named_line(symbol: &str) -> Option<&'static NamedLine> {
     let symbol = symbol.trim().replace(['\u{2019}', '\u{2032}'], "'");
     NAMED_LINES.iter().find(|l| l.symbol == symbol)
+}
+
+/// A wavelength as a file writes it: a line by its letter, or a number.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum LineOrWavelength {
+    /// A line.
+    Line(NamedLine),
+    /// Where it lies, nm if bare.
+    Wavelength(Wavelength),
+}
+
+impl LineOrWavelength {
+    /// Where it lies, nm.
+    #[must_use]
+    pub fn nm(self) -> f64 {
+        match self {
+            Self::Line(line) => line.nominal_nm,
+            Self::Wavelength(wavelength) => wavelength.nm(),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for NamedLine {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let symbol = String::deserialize(deserializer)?;
+        named_line(&symbol).copied().ok_or_else(|| D::Error::custom(format!("no line is called `{symbol}`")))
+    }
+}
+
+impl JsonSchema for NamedLine {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> Cow<'static, str> {
+        "NamedLine".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({ "enum": NAMED_LINES.map(|line| line.symbol) })
+    }
 }
 
 /// The three lines of a set such as `F'eC'`, from blue to red.

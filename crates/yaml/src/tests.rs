@@ -1,6 +1,7 @@
 //! Small inputs, each with the exact place and the kernel of what is said about it.
 
 use super::*;
+use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{
     Angle, Exposure, FNumber, Length, LengthOrInfinity, NonNegative, Params, Positive, Ratio, StageNode, Temperature,
@@ -11,7 +12,7 @@ use std::collections::BTreeMap;
 mod hostile;
 
 /// Parameters with one of each kind of field.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 #[allow(dead_code)] // Most fields are there to be deserialized.
 struct Camera {
@@ -59,7 +60,7 @@ struct Camera {
     stop: Option<Stop>,
 }
 
-#[derive(Debug, Deserialize, PartialEq)]
+#[derive(Debug, Deserialize, JsonSchema, PartialEq)]
 #[serde(rename_all = "kebab-case")]
 enum Direction {
     Auto,
@@ -67,7 +68,7 @@ enum Direction {
     Backward,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 #[allow(dead_code)] // As above.
 enum Stop {
@@ -76,7 +77,7 @@ enum Stop {
     FNumber(FNumber),
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 #[allow(dead_code)] // As above.
 struct Surface {
@@ -166,7 +167,7 @@ fn signs_and_infinities_are_checked() {
 #[test]
 fn types_say_what_was_found_and_expected() {
     check(&[
-        ("seed: 1.5", &[(1, 7, "found the number 1.5, expected a whole number such as 16", "")]),
+        ("seed: 1.5", &[(1, 7, "found the number 1.5, expected a whole number such as 16", "from 0 to")]),
         ("seed: -1", &[(1, 7, "found -1, which is out of range", "a whole number from 0 to 18446744073709551615")]),
         ("blades: 300", &[(1, 9, "found 300, which is out of range", "a whole number from 0 to 255")]),
         ("seed: many", &[(1, 7, "found the text `many`, expected a whole number", "")]),
@@ -176,8 +177,8 @@ fn types_say_what_was_found_and_expected() {
         ("mirror: 1", &[(1, 9, "found the number 1, expected true or false", "")]),
         ("name: true", &[(1, 7, "found true, expected a text", "quotes")]),
         ("name: [a]", &[(1, 7, "found a list, expected a text", "")]),
-        ("direction: backwards", &[(1, 12, "unknown value `backwards`", "did you mean `backward`?")]),
-        ("direction: up", &[(1, 12, "unknown value `up`", "known values: auto, forward, backward")]),
+        ("direction: backwards", &[(1, 12, "unknown value `backwards` for `direction`", "did you mean `backward`?")]),
+        ("direction: up", &[(1, 12, "unknown value `up` for `direction`", "known: auto, forward, backward")]),
         ("direction: [up]", &[(1, 12, "found a list, expected one of auto, forward, backward", "")]),
         ("resolution: [1, 2, 3]", &[(1, 13, "found a list of 3, expected a list of 2", "write 2 values")]),
         ("resolution: [1]", &[(1, 13, "found a list of 1, expected a list of 2", "write 2 values")]),
@@ -187,10 +188,10 @@ fn types_say_what_was_found_and_expected() {
         ("surfaces: [3]", &[(1, 12, "found the number 3, expected a map", "known keys: radius, thickness, glass")]),
         ("lines: {g: 436, h: 2 s}", &[(1, 20, "found a time, expected a positive wavelength", "nm")]),
         ("stop: {circle: {radius: 1 s}}", &[(1, 25, "found a time, expected a length", "units")]),
-        ("stop: circle", &[(1, 7, "`circle` needs parameters", "{circle: ...}")]),
-        ("stop: {open: 3}", &[(1, 7, "`open` takes no parameters", "just `open`")]),
+        ("stop: circle", &[(1, 7, "unknown value `circle` for `stop`", "known: open")]),
+        ("stop: {open: 3}", &[(1, 8, "unknown key `open`", "known keys: circle, f-number")]),
         ("stop: {f-number: 2 s}", &[(1, 18, "found a time, expected a positive f-number", "")]),
-        ("stop: {hole: 3}", &[(1, 7, "unknown value `hole`", "known values: open, circle, f-number")]),
+        ("stop: {hole: 3}", &[(1, 8, "unknown key `hole`", "known keys: circle, f-number")]),
         ("[1, 2]", &[(1, 1, "found a list, expected a map", "known keys: focus")]),
         ("", &[(1, 1, "found nothing, expected a map", "known keys: focus")]),
     ]);
@@ -326,7 +327,7 @@ stop: {circle: {radius: 4}}
 
 #[test]
 fn stages_are_taken_with_their_places() {
-    #[derive(Debug, Deserialize)]
+    #[derive(Debug, Deserialize, JsonSchema)]
     struct Scene {
         source: StageNode,
         surfaces: Vec<StageNode>,

@@ -3,10 +3,11 @@
 use crate::Basis;
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::params::{Faults, Params, StageNode, Wavelength};
+use spectra_core::params::{Faults, Params, Wavelength};
 use spectra_core::registry::Context;
 use spectra_core::spectral::{Grid, Line, SpectralPower};
 use spectra_core::stage::ColorModel;
+use spectra_spectrum::LineOrWavelength;
 
 /// Each channel one spectral line, with secondary lines between them if wanted.
 ///
@@ -30,21 +31,17 @@ use spectra_core::stage::ColorModel;
 struct FraunhoferParams {
     /// Line of the red channel: a short name such as `C'`, or a wavelength, nm if bare; C' if left out.
     #[serde(rename = "R")]
-    #[schemars(with = "Option<LineName>")]
-    red: Option<StageNode>,
+    red: Option<LineOrWavelength>,
     /// Line of the green channel: a short name, or a wavelength, nm if bare; e if left out.
     #[serde(rename = "G")]
-    #[schemars(with = "Option<LineName>")]
-    green: Option<StageNode>,
+    green: Option<LineOrWavelength>,
     /// Line of the blue channel: a short name, or a wavelength, nm if bare; g if left out.
     #[serde(rename = "B")]
-    #[schemars(with = "Option<LineName>")]
-    blue: Option<StageNode>,
+    blue: Option<LineOrWavelength>,
     /// Further lines, by name or wavelength, nm if bare; their power is linear between the three and zero at the cuts.
     /// None if left out.
     #[serde(default)]
-    #[schemars(with = "Vec<LineName>")]
-    secondary: Vec<StageNode>,
+    secondary: Vec<LineOrWavelength>,
     /// Where the ultraviolet ends and secondary lines have no power, nm if bare; 380 nm if left out.
     #[serde(rename = "uv-cut")]
     uv_cut: Option<Wavelength>,
@@ -54,17 +51,6 @@ struct FraunhoferParams {
     /// Whether the lines are scaled so that white has the illuminant's chromaticity; if not, each has the power 1.
     #[serde(default = "yes")]
     balance: bool,
-}
-
-/// What a line is written as.
-#[derive(JsonSchema)]
-#[serde(untagged)]
-#[expect(dead_code, reason = "states what is allowed; lines are read by `line_nm`")]
-enum LineName {
-    /// Where it lies.
-    Wavelength(Wavelength),
-    /// Its short name, such as `C'`.
-    Symbol(String),
 }
 
 fn yes() -> bool {
@@ -79,10 +65,9 @@ spectra_core::register!(color "fraunhofer": FraunhoferParams, build);
 fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn ColorModel>, Faults> {
     let p: FraunhoferParams = params.parse()?;
     let mut faults = Faults::new();
-    let primaries = [(p.red, "C'"), (p.green, "e"), (p.blue, "g")]
-        .map(|(node, default)| node.map_or_else(|| Some(named(default)), |node| faults.take(line_nm(&node))));
-    let secondary: Vec<f64> = p.secondary.iter().filter_map(|node| faults.take(line_nm(node))).collect();
-    let [Some(red), Some(green), Some(blue)] = primaries else { return Err(faults) };
+    let nm = |line: Option<LineOrWavelength>, default| line.map_or_else(|| named(default), LineOrWavelength::nm);
+    let [red, green, blue] = [nm(p.red, "C'"), nm(p.green, "e"), nm(p.blue, "g")];
+    let secondary: Vec<f64> = p.secondary.iter().map(|line| line.nm()).collect();
     if !(blue < green && green < red) {
         faults.push(params.fault("R", "the lines must lie in the order blue, green, red"));
     }
@@ -104,18 +89,6 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn ColorModel>, 
 
 fn named(symbol: &str) -> f64 {
     spectra_spectrum::named_line(symbol).map_or(0.0, |line| line.nominal_nm)
-}
-
-fn line_nm(node: &StageNode) -> Result<f64, Faults> {
-    if let Some(line) = node.node().as_str().and_then(spectra_spectrum::named_line) {
-        return Ok(line.nominal_nm);
-    }
-    node.parse::<Wavelength>().map(|w| w.nm()).map_err(|_| {
-        let known: Vec<&str> = spectra_spectrum::NAMED_LINES.iter().map(|l| l.symbol).collect();
-        node.fault("this is no spectral line")
-            .hint(format!("a wavelength such as 546.07 nm, or one of {}", known.join(", ")))
-            .into()
-    })
 }
 
 /// The lines of one channel at full value: its own, and its share of each secondary line.

@@ -86,20 +86,11 @@ impl Meter {
             faults.push(params.fault("spot", "only `metering: spot` has a spot"));
         }
         let spot = spot.unwrap_or(SpotParams { center: center(), diameter: diameter() });
-        if !spot.center.iter().all(|c| (0.0..=1.0).contains(c)) {
-            faults.push(params.fault("spot.center", "the center lies within the frame: two shares from 0 to 1"));
-        }
-        if !(spot.diameter > 0.0 && spot.diameter <= 4.0) {
-            faults.push(params.fault("spot.diameter", "the diameter is a share of the frame's height, above 0 to 4"));
-        }
         if compensation.is_some() && metering == Metering::Manual {
             let fault = params.fault("compensation", "without a meter there is nothing to compensate");
             faults.push(fault.hint("`metering: average`, or another `exposure`"));
         }
         let stops = compensation.unwrap_or(0.0);
-        if !(-10.0..=10.0).contains(&stops) {
-            faults.push(params.fault("compensation", "a compensation is between -10 and 10 stops"));
-        }
         if !faults.is_empty() {
             return Err(faults);
         }

@@ -75,7 +75,7 @@ fn parameters_are_checked() {
         ("stock: ilford-ortho-plus\nexposure: 1 s\nasa: 3\n", "asa"),
         ("stock: ilford-ortho-plus\nexposure: 1 s\ncompensation: 1\n", "meter"),
         ("stock: ilford-ortho-plus\nexposure: 1 s\nspot: {diameter: 0.2}\n", "metering: spot"),
-        ("stock: ilford-ortho-plus\nmetering: spot\nspot: {diameter: 0}\n", "diameter"),
+        ("stock: ilford-ortho-plus\nmetering: spot\nspot: {diameter: 0}\n", "up to 4"),
         ("stock: ilford-ortho-plus\nmetering: average\nview: projection\n", "negative"),
         ("stock: ilford-ortho-plus\nmetering: average\nview: scan\nprint: kodak-2302\n", "view: print"),
         ("stock: ilford-ortho-plus\nmetering: average\nprint: kodak-tri-x-400\n", "no print stock"),
@@ -91,7 +91,7 @@ fn parameters_are_checked() {
         ("stock: kodak-tri-x-400\nmetering: average\nhalation: {entering: 0.2, transmittance: 0.5}\n", "thickness"),
         (
             "stock: ilford-ortho-plus\nmetering: average\nhalation: {entering: 20, transmittance: 0.5, index: 1.48}\n",
-            "entering",
+            "from 0 to 10",
         ),
         ("stock: ilford-ortho-plus\nexposure: 1 s\ndevelopment: lith\n", "pictorial"),
     ] {

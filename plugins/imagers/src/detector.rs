@@ -1,35 +1,39 @@
 //! `imager: detector`: a plane with any registered response; and what all planes share that record by themselves.
 
-use crate::params::imager_params;
+use crate::params::Frame;
 use crate::plane::Plane;
+use schemars::JsonSchema;
+use serde::Deserialize;
 use spectra_core::cover::CoverStack;
 use spectra_core::frame::{DisplayPicture, ExposureFrame, FrameSize};
-use spectra_core::params::{Faults, Params, Positive, StageNode, Time};
+use spectra_core::params::{Faults, Params, Part, Positive, Time};
 use spectra_core::registry::{self, Context, StageOf};
 use spectra_core::spectral::Channel;
 use spectra_core::stage::{Imager, Launch, Receive, Response};
 
-imager_params! {
-    /// A frame of detectors that see what a `response` says.
-    ///
-    /// For detectors of your own (sensitivities from files), a light meter, the eye at night. Each channel holds the
-    /// integral of irradiance times response, and with an exposure time that times the seconds.
-    ///
-    /// # Example
-    /// ```yaml
-    /// kind: detector
-    /// format: 135
-    /// resolution: [600, 400]
-    /// response: {kind: sensitivities, channels: {gray: "gaussian:550,40"}}
-    /// ```
-    DetectorParams {
-        /// What it sees.
-        #[schemars(with = "StageOf<dyn Response>")]
-        response: StageNode,
-        /// Exposure time, s if bare. With it the channels are multiplied by it.
-        #[serde(default)]
-        exposure: Option<Positive<Time>>,
-    }
+/// A frame of detectors that see what a `response` says.
+///
+/// For detectors of your own (sensitivities from files), a light meter, the eye at night. Each channel holds the
+/// integral of irradiance times response, and with an exposure time that times the seconds.
+///
+/// # Example
+/// ```yaml
+/// kind: detector
+/// format: 135
+/// resolution: [600, 400]
+/// response: {kind: sensitivities, channels: {gray: "gaussian:550,40"}}
+/// ```
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+#[schemars(deny_unknown_fields)]
+pub struct DetectorParams {
+    #[serde(flatten)]
+    frame: Frame,
+    /// What it sees.
+    response: Part<StageOf<dyn Response>>,
+    /// Exposure time, s if bare. With it the channels are multiplied by it.
+    #[serde(default)]
+    exposure: Option<Positive<Time>>,
 }
 
 /// A plane whose pixels all see alike.
@@ -83,7 +87,7 @@ impl<R: Response> Imager for DetectorPlane<R> {
 fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Imager>, Faults> {
     let parsed: DetectorParams = params.parse()?;
     let mut faults = Faults::new();
-    let plane = faults.take(parsed.frame().plane(params, context));
+    let plane = faults.take(parsed.frame.plane(params, context));
     let response = parsed.response.params().and_then(|p| registry::build::<dyn Response>(&p, context));
     let (Some(plane), Some(response)) = (plane, faults.take(response)) else { return Err(faults) };
     Ok(Box::new(DetectorPlane::of(plane, response, parsed.exposure.map(|t| t.s()))))

@@ -1,7 +1,9 @@
 //! `imager: film`, a plane that a film lies on: the film decides what is recorded.
 
-use crate::params::imager_params;
+use crate::params::Frame;
 use crate::plane::Plane;
+use schemars::JsonSchema;
+use serde::Deserialize;
 use spectra_core::cover::CoverStack;
 use spectra_core::frame::{DisplayPicture, ExposureFrame, FrameSize};
 use spectra_core::params::{Faults, Params};
@@ -9,29 +11,33 @@ use spectra_core::registry::Context;
 use spectra_core::spectral::Channel;
 use spectra_core::stage::{Imager, Launch, Receive};
 
-imager_params! {
-    /// A frame with a film on it; what it records is the film's.
-    ///
-    /// The section `film` of the scene says which film, and how it is exposed and developed; several films side by side
-    /// record the same light.
-    ///
-    /// `resolution` is the number of pixels across and down; where their shape differs from that of the frame, pixels
-    /// are not square. The frame stands in the image plane of the lens unless it is shifted or tilted (as on a view
-    /// camera), or bent.
-    ///
-    /// # Example
-    /// ```yaml
-    /// {kind: film, format: 135, resolution: [960, 640]}
-    /// ```
-    /// ```yaml
-    /// # A view camera, swung for a tilted plane of focus
-    /// kind: film
-    /// format: 4x5
-    /// resolution: [1000, 800]
-    /// shift: [0, 15 mm]
-    /// tilt: [-4 deg, 0]
-    /// ```
-    FilmPlaneParams {}
+/// A frame with a film on it; what it records is the film's.
+///
+/// The section `film` of the scene says which film, and how it is exposed and developed; several films side by side
+/// record the same light.
+///
+/// `resolution` is the number of pixels across and down; where their shape differs from that of the frame, pixels
+/// are not square. The frame stands in the image plane of the lens unless it is shifted or tilted (as on a view
+/// camera), or bent.
+///
+/// # Example
+/// ```yaml
+/// {kind: film, format: 135, resolution: [960, 640]}
+/// ```
+/// ```yaml
+/// # A view camera, swung for a tilted plane of focus
+/// kind: film
+/// format: 4x5
+/// resolution: [1000, 800]
+/// shift: [0, 15 mm]
+/// tilt: [-4 deg, 0]
+/// ```
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+#[schemars(deny_unknown_fields)]
+pub struct FilmPlaneParams {
+    #[serde(flatten)]
+    frame: Frame,
 }
 
 /// A plane imager without channels of its own.
@@ -75,7 +81,7 @@ impl Imager for FilmPlane {
 }
 
 fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Imager>, Faults> {
-    Ok(Box::new(FilmPlane::new(params.parse::<FilmPlaneParams>()?.frame().plane(params, context)?)))
+    Ok(Box::new(FilmPlane::new(params.parse::<FilmPlaneParams>()?.frame.plane(params, context)?)))
 }
 
 spectra_core::register!(imager "film": FilmPlaneParams, build);

@@ -1,5 +1,8 @@
 //! Sizes of image frames, by the names that photographers use.
 
+use schemars::{JsonSchema, Schema, SchemaGenerator};
+use serde::{Deserialize, Deserializer};
+
 /// A named frame size.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Format {
@@ -57,6 +60,39 @@ pub const FORMATS: [Format; 30] = [
     format("micro-four-thirds", 17.3, 13.0, "Micro Four Thirds System standard: image area"),
     format("1-inch", 13.2, 8.8, "sensors of that name: image area"),
 ];
+
+/// The name of a format as written; `135` is one.
+#[derive(Clone, Debug)]
+pub(crate) struct FormatName(pub(crate) String);
+
+impl<'de> Deserialize<'de> for FormatName {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        #[derive(Deserialize)]
+        #[serde(untagged)]
+        enum Written {
+            Number(u64),
+            Text(String),
+        }
+        Written::deserialize(deserializer).map(|written| match written {
+            Written::Number(number) => Self(number.to_string()),
+            Written::Text(text) => Self(text),
+        })
+    }
+}
+
+impl JsonSchema for FormatName {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        "FormatName".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        String::json_schema(generator)
+    }
+}
 
 /// All formats as a program reads them in the schema of an imager: name, size in mm, source.
 pub fn listed() -> serde_json::Value {

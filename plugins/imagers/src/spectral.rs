@@ -1,8 +1,10 @@
 //! `imager: spectral`: a plane that records the spectrum itself, one channel a band.
 
 use crate::detector::DetectorPlane;
-use crate::params::imager_params;
+use crate::params::Frame;
 use crate::plane::Plane;
+use schemars::JsonSchema;
+use serde::Deserialize;
 use spectra_core::frame::{DisplayPicture, ExposureChannel, ExposureFrame};
 use spectra_core::params::{Faults, Params, Wavelength, Whole};
 use spectra_core::registry::Context;
@@ -12,34 +14,37 @@ use spectra_film::display::{White, show_xyz};
 use spectra_spectrum::constants::LUMINOUS_EFFICACY_LM_PER_W;
 use spectra_spectrum::{Gamut, Observer};
 
-imager_params! {
-    /// A frame that records the spectrum itself: one channel a band, in W m^-2 nm^-1.
-    ///
-    /// For looking at any film, sensor or observer afterwards, and for hyperspectral test data. The value of a channel
-    /// is the mean spectral irradiance of its band. In the OpenEXR file channels are named by the middle of their band,
-    /// as the spectral OpenEXR layout has it: `S0.550,0nm`. The picture shows the colors that an eye sees.
-    ///
-    /// `resolution` is the number of pixels across and down; where their shape differs from that of the frame, pixels
-    /// are not square. The frame stands in the image plane of the lens unless it is shifted or tilted (as on a view
-    /// camera), or bent.
-    ///
-    /// # Example
-    /// ```yaml
-    /// {kind: spectral, format: 135, resolution: [480, 320], bands: 40}
-    /// ```
-    /// ```yaml
-    /// {kind: spectral, format: 6x6, resolution: [256, 256], bands: 16, range: [400 nm, 720 nm]}
-    /// ```
-    /// # References
-    /// - A. Fichet, R. Pacanowski and A. Wilkie, "An OpenEXR layout for spectral images", J. Computer Graphics
-    ///   Techniques 10 (2021).
-    SpectralParams {
-        /// Number of bands of equal width, a whole number from 1 to 256.
-        bands: Whole<1, MAX_BANDS>,
-        /// First and last wavelength, nm if bare; 380 to 780 nm if absent.
-        #[serde(default)]
-        range: Option<[Wavelength; 2]>,
-    }
+/// A frame that records the spectrum itself: one channel a band, in W m^-2 nm^-1.
+///
+/// For looking at any film, sensor or observer afterwards, and for hyperspectral test data. The value of a channel
+/// is the mean spectral irradiance of its band. In the OpenEXR file channels are named by the middle of their band,
+/// as the spectral OpenEXR layout has it: `S0.550,0nm`. The picture shows the colors that an eye sees.
+///
+/// `resolution` is the number of pixels across and down; where their shape differs from that of the frame, pixels
+/// are not square. The frame stands in the image plane of the lens unless it is shifted or tilted (as on a view
+/// camera), or bent.
+///
+/// # Example
+/// ```yaml
+/// {kind: spectral, format: 135, resolution: [480, 320], bands: 40}
+/// ```
+/// ```yaml
+/// {kind: spectral, format: 6x6, resolution: [256, 256], bands: 16, range: [400 nm, 720 nm]}
+/// ```
+/// # References
+/// - A. Fichet, R. Pacanowski and A. Wilkie, "An OpenEXR layout for spectral images", J. Computer Graphics
+///   Techniques 10 (2021).
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+#[schemars(deny_unknown_fields)]
+pub struct SpectralParams {
+    #[serde(flatten)]
+    frame: Frame,
+    /// Number of bands of equal width, a whole number from 1 to 256.
+    bands: Whole<1, MAX_BANDS>,
+    /// First and last wavelength, nm if bare; 380 to 780 nm if absent.
+    #[serde(default)]
+    range: Option<[Wavelength; 2]>,
 }
 
 /// Most bands.
@@ -113,7 +118,7 @@ impl Response for Bands {
 fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Imager>, Faults> {
     let parsed: SpectralParams = params.parse()?;
     let mut faults = Faults::new();
-    let plane = faults.take(parsed.frame().plane(params, context));
+    let plane = faults.take(parsed.frame.plane(params, context));
     let SpectralParams { bands, range, .. } = parsed;
     let bands = bands.get();
     let [first, last] = range.map_or([380.0, 780.0], |range| range.map(|w| w.nm()));

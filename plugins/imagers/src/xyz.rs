@@ -1,8 +1,10 @@
 //! `imager: xyz`, a plane that measures CIE 1931 XYZ in absolute units: a perfect tristimulus colorimeter.
 
 use crate::detector::DetectorPlane;
-use crate::params::imager_params;
+use crate::params::Frame;
 use crate::plane::Plane;
+use schemars::JsonSchema;
+use serde::Deserialize;
 use spectra_core::frame::{DisplayPicture, ExposureFrame};
 use spectra_core::params::{Exposure, Fault, Faults, Illuminance, Params, Positive, Quantity, Time};
 use spectra_core::registry::Context;
@@ -12,38 +14,50 @@ use spectra_film::display::{White, show_xyz};
 use spectra_spectrum::constants::LUMINOUS_EFFICACY_LM_PER_W;
 use spectra_spectrum::{Gamut, Observer};
 
-imager_params! {
-    /// A frame that measures CIE 1931 XYZ in lux, or lux-seconds where it is given an exposure time.
-    ///
-    /// A perfect tristimulus colorimeter at each pixel, without noise: the imager for measuring, and for pictures that
-    /// show what an eye would see there. Y is illuminance on the frame (683 lm/W times V).
-    ///
-    /// `resolution` is the number of pixels across and down; where their shape differs from that of the frame, pixels
-    /// are not square. The frame stands in the image plane of the lens unless it is shifted or tilted (as on a view
-    /// camera), or bent.
-    ///
-    /// # Example
-    /// ```yaml
-    /// {kind: xyz, format: 135, resolution: [960, 640]}
-    /// ```
-    /// ```yaml
-    /// {kind: xyz, width: 24 mm, height: 24 mm, resolution: [512, 512], exposure: 1/60 s, white: 0.4 lx s, gamut: perceptual}
-    /// ```
-    XyzParams {
-        /// Exposure time, s if bare. With it the channels are in lx s, without it in lx.
-        #[serde(default)]
-        exposure: Option<Positive<Time>>,
-        /// The Y that the picture shows as white, with its unit: an illuminance such as `20 lx`, or an exposure such as
-        /// `0.4 lx s` where an exposure time is given. Without it, automatic exposure shows the 99th percentile of Y as
-        /// 0.9.
-        #[serde(default)]
-        white: Option<String>,
-        /// What becomes of colors that a screen cannot show: `desaturate` (luminance stays, the default), `perceptual`
-        /// (hue and lightness as they are seen stay) or `clip` (each of red, green and blue by itself: vivid).
-        #[serde(default)]
-        #[schemars(extend("enum" = ["desaturate", "perceptual", "clip"]))]
-        gamut: Option<String>,
-    }
+/// A frame that measures CIE 1931 XYZ in lux, or lux-seconds where it is given an exposure time.
+///
+/// A perfect tristimulus colorimeter at each pixel, without noise: the imager for measuring, and for pictures that
+/// show what an eye would see there. Y is illuminance on the frame (683 lm/W times V).
+///
+/// `resolution` is the number of pixels across and down; where their shape differs from that of the frame, pixels
+/// are not square. The frame stands in the image plane of the lens unless it is shifted or tilted (as on a view
+/// camera), or bent.
+///
+/// # Example
+/// ```yaml
+/// {kind: xyz, format: 135, resolution: [960, 640]}
+/// ```
+/// ```yaml
+/// {kind: xyz, width: 24 mm, height: 24 mm, resolution: [512, 512], exposure: 1/60 s, white: 0.4 lx s, gamut: perceptual}
+/// ```
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+#[schemars(deny_unknown_fields)]
+pub struct XyzParams {
+    #[serde(flatten)]
+    frame: Frame,
+    /// Exposure time, s if bare. With it the channels are in lx s, without it in lx.
+    #[serde(default)]
+    exposure: Option<Positive<Time>>,
+    /// The Y that the picture shows as white, with its unit: an illuminance such as `20 lx`, or an exposure such as
+    /// `0.4 lx s` where an exposure time is given. Without it, automatic exposure shows the 99th percentile of Y as
+    /// 0.9.
+    #[serde(default)]
+    white: Option<String>,
+    /// What becomes of colors that a screen cannot show: `desaturate` (luminance stays, the default), `perceptual`
+    /// (hue and lightness as they are seen stay) or `clip` (each of red, green and blue by itself: vivid).
+    #[serde(default)]
+    gamut: Option<GamutMapping>,
+}
+
+/// What becomes of colors that a screen cannot show.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+#[schemars(inline)]
+enum GamutMapping {
+    Desaturate,
+    Perceptual,
+    Clip,
 }
 
 /// CIE 1931 XYZ in lux.
@@ -100,21 +114,16 @@ impl XyzPlane {
 fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Imager>, Faults> {
     let parsed: XyzParams = params.parse()?;
     let mut faults = Faults::new();
-    let plane = faults.take(parsed.frame().plane(params, context));
+    let plane = faults.take(parsed.frame.plane(params, context));
     let XyzParams { exposure, white, gamut, .. } = parsed;
     let white = match &white {
         None => Some(White::default()),
         Some(text) => faults.take(stated_white(params, text, exposure.is_some())),
     };
-    let gamut = match gamut.as_deref() {
-        None | Some("desaturate") => Gamut::Desaturate,
-        Some("perceptual") => Gamut::Perceptual,
-        Some("clip") => Gamut::Clip,
-        Some(other) => {
-            let fault = params.fault("gamut", format!("unknown gamut mapping `{other}`"));
-            faults.push(fault.hint("desaturate, perceptual or clip"));
-            Gamut::Desaturate
-        }
+    let gamut = match gamut {
+        None | Some(GamutMapping::Desaturate) => Gamut::Desaturate,
+        Some(GamutMapping::Perceptual) => Gamut::Perceptual,
+        Some(GamutMapping::Clip) => Gamut::Clip,
     };
     let (Some(plane), Some(white)) = (plane, white) else {
         return Err(faults);

@@ -244,8 +244,8 @@ fn white_is_shown_white() {
 fn faulty_keys_are_told_at_their_places() {
     for (yaml, word) in [
         ("pattern: rgbg", "did you mean"),
-        ("peak-quantum-efficiency: 140 %", "at most 100 %"),
-        ("fill-factor: 2", "at most 100 %"),
+        ("peak-quantum-efficiency: 140 %", "up to 1"),
+        ("fill-factor: 2", "up to 1"),
         ("sensitivity: nikon-d5010", "nikon-d5100"),
         ("sensitivity: colorchecker", "red"),
         ("pattern: monochrome", "needs its sensitivity"),

@@ -4,7 +4,7 @@ use crate::shown::show;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::frame::{DisplayPicture, ExposureFrame};
-use spectra_core::params::{Faults, Params, Positive, StageNode, Value};
+use spectra_core::params::{Faults, Params, Part, Positive, StageNode, Value};
 use spectra_core::registry::Context;
 use spectra_core::spectral::Channel;
 use spectra_core::stage::Response;
@@ -28,8 +28,7 @@ use std::collections::BTreeMap;
 pub struct SensitivitiesParams {
     /// Sensitivities by the names of the channels, 1 to 64: each a file beside the scene (`mine.csv`, `mine.csv#red`), a
     /// bundled name, or a spectrum written out (`gaussian:550,20`).
-    #[schemars(with = "BTreeMap<String, String>")]
-    pub channels: StageNode,
+    pub channels: Part<BTreeMap<String, String>>,
     /// Linear red, green and blue (sRGB primaries) of the picture: three rows, each with a factor a channel. It works on
     /// channels that are 1 in `balance`.
     pub matrix: Option<Vec<Vec<f64>>>,

@@ -57,7 +57,7 @@ pub enum Follow {
 pub struct GaussianTermsParams {
     /// Number of terms that are fitted to the source's continuum, 1 to 32; 6 if left out.
     #[serde(default = "usual_terms")]
-    #[schemars(range(min = 1, max = 32))]
+    #[schemars(range(min = 1, max = MOST_TERMS))]
     pub terms: u32,
     /// How a wavelength is drawn from the terms: `collapsed` (the usual), `term-then-wavelength` or `one-term`.
     #[serde(default)]
@@ -67,6 +67,9 @@ pub struct GaussianTermsParams {
     #[serde(default)]
     pub floor: Floor,
 }
+
+/// Most terms.
+const MOST_TERMS: u32 = 32;
 
 fn usual_terms() -> u32 {
     6
@@ -90,7 +93,7 @@ impl GaussianTerms {
     /// As many terms as stated, fitted to the source when it is known; `None` unless they are 1 to 32.
     #[must_use]
     pub fn fitted(terms: usize, follow: Follow, floor: Floor) -> Option<Self> {
-        (1..=32).contains(&terms).then_some(Self { terms: Terms::Fitted(terms), follow, floor })
+        (1..=MOST_TERMS as usize).contains(&terms).then_some(Self { terms: Terms::Fitted(terms), follow, floor })
     }
 
     /// Terms that are known.
@@ -240,8 +243,7 @@ impl Continuum for Signed {
 
 fn build(params: &Params, _context: &Context<'_>) -> Result<Box<dyn WavelengthSampler>, Faults> {
     let GaussianTermsParams { terms, follow, floor } = params.parse()?;
-    let sampler = GaussianTerms::fitted(terms as usize, follow, floor)
-        .ok_or_else(|| params.fault("terms", format!("{terms} is no number of terms")).hint("1 to 32"))?;
+    let sampler = GaussianTerms::fitted(terms as usize, follow, floor).ok_or_else(|| params.fault_here("no terms"))?;
     Ok(Box::new(sampler))
 }
 

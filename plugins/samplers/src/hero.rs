@@ -13,7 +13,7 @@ use crate::SourceTimesResponse;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::isa::Isa;
-use spectra_core::params::{Faults, Params, StageNode};
+use spectra_core::params::{Faults, Params, Part};
 use spectra_core::registry::{self, Context, StageOf};
 use spectra_core::spectral::SystemResponse;
 use spectra_core::stage::{WavelengthDensity, WavelengthSampler};
@@ -41,12 +41,11 @@ use spectra_core::stage::{WavelengthDensity, WavelengthSampler};
 pub struct HeroParams {
     /// Wavelengths of a group, 2 to 1024; 4 if left out.
     #[serde(default = "usual_group")]
-    #[schemars(range(min = 2, max = 1024))]
+    #[schemars(range(min = 2, max = MOST))]
     pub group: u32,
     /// The strategy whose density is drawn from, any but `hero` itself: a name, or a map with its `kind`;
     /// `source-times-response` if left out.
-    #[schemars(with = "Option<StageOf<dyn WavelengthSampler>>")]
-    pub density: Option<StageNode>,
+    pub density: Option<Part<StageOf<dyn WavelengthSampler>>>,
 }
 
 const MOST: u32 = 1024;
@@ -112,9 +111,6 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn WavelengthSam
             _ => faults.take(registry::build::<dyn WavelengthSampler>(&inner, context)),
         }),
     };
-    if !(2..=MOST).contains(&group) {
-        faults.push(params.fault("group", format!("{group} is no size of a group")).hint(format!("2 to {MOST}")));
-    }
     match density.and_then(|density| Hero::new(group, density)) {
         Some(hero) if faults.is_empty() => Ok(Box::new(hero)),
         _ => Err(faults),

@@ -35,7 +35,7 @@ use spectra_core::stage::{WavelengthDensity, WavelengthSampler};
 pub struct StratifiedParams {
     /// Number of strata of the band, 1 to 65536; 64 if left out.
     #[serde(default = "usual_strata")]
-    #[schemars(range(min = 1, max = 65536))]
+    #[schemars(range(min = 1, max = MOST))]
     pub strata: u32,
 }
 
@@ -120,10 +120,9 @@ impl Vectorized for DrawStrata<'_> {
 
 fn build(params: &Params, _context: &Context<'_>) -> Result<Box<dyn WavelengthSampler>, Faults> {
     let StratifiedParams { strata } = params.parse()?;
-    let stratified = Stratified::new(strata).ok_or_else(|| {
-        params.fault("strata", format!("{strata} is no number of strata")).hint(format!("1 to {MOST}"))
-    })?;
-    Ok(Box::new(stratified))
+    Stratified::new(strata)
+        .map(|stratified| Box::new(stratified) as _)
+        .ok_or_else(|| params.fault_here("no strata").into())
 }
 
 spectra_core::register!(wavelengths "stratified": StratifiedParams, build);

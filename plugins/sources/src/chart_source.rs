@@ -2,13 +2,13 @@
 
 use crate::chart::{self, Chart, Ink};
 use crate::flat::{Flat, Places, Texture};
-use crate::frame::{Edge, Placed, Width, WidthForm};
+use crate::frame::{Edge, Placed, Width};
 use crate::palette::Palette;
 use crate::white;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::Isa;
-use spectra_core::params::{Faults, Length, Luminance, Node, Params, Positive, Quantity, StageNode};
+use spectra_core::params::{Faults, Length, Luminance, Params, Part, Positive, Quantity};
 use spectra_core::registry::{Context, StageOf, build as build_stage};
 use spectra_core::spectral::{Line, SpectralPower};
 use spectra_core::stage::{ColorModel, Source};
@@ -49,18 +49,15 @@ struct ChartParams {
     /// Which chart: `resolution`, `color-checker`, `gray-card` and so on; `patches` shows your own `reflectances`.
     chart: String,
     /// Patches of `chart: patches`: a table beside the scene whose columns are reflectances, or a list of reflectances by name.
-    #[schemars(with = "Option<OwnReflectances>")]
-    reflectances: Option<StageNode>,
+    reflectances: Option<OwnReflectances>,
     /// Distance of its plane from the first vertex, mm if bare.
     distance: Positive<Length>,
     /// Width of the chart, mm if bare; the height follows. Or `fill`: 2 % more than what the frame sees there through this
     /// lens; what does not fit into the frame's shape is cut off.
-    #[schemars(with = "WidthForm")]
-    width: StageNode,
+    width: Width,
     /// What lies beyond the chart: `black`, nothing; `clamp`, what its border shows; `mirror`, the chart mirrored. `black`
     /// if absent, with a warning where the frame sees it. With `clamp` and `mirror` light is traced backward only.
-    #[schemars(extend("enum" = ["black", "clamp", "mirror"]))]
-    edge: Option<String>,
+    edge: Option<Edge>,
     /// The light that falls on it: the name of a spectrum, a file beside the scene, or an expression such as
     /// `blackbody:3200`.
     #[serde(default = "daylight")]
@@ -70,17 +67,15 @@ struct ChartParams {
     luminance: Positive<Luminance>,
     /// How RGB becomes a spectrum. If absent, patches have their measured reflectances; if given,
     /// every ink is this model's spectrum of its sRGB color.
-    #[schemars(with = "Option<StageOf<dyn ColorModel>>")]
-    color: Option<StageNode>,
+    color: Option<Part<StageOf<dyn ColorModel>>>,
     /// Seed of charts with anything random in them (`star-field`), 0 or more.
     #[serde(default)]
     seed: u64,
 }
 
 /// `reflectances` as written in a scene.
-#[derive(JsonSchema)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(untagged)]
-#[expect(dead_code, reason = "says which forms there are")]
 enum OwnReflectances {
     /// A table of several.
     Table(String),
@@ -122,17 +117,15 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
     };
     let light = faults.take(white::illuminant(&p.illuminant, params, context));
     let own = faults.take(own_reflectances(&p, params, context)).unwrap_or_default();
-    let width = faults.take(Width::read(&p.width));
-    let edge = faults.take(Edge::read(p.edge.as_deref(), params));
     let distance_mm = p.distance.mm();
     let drawn = |width_mm: f64| match p.chart.as_str() {
         chart::OWN_PATCHES => Ok(chart::own_patches(own.len() as u16, width_mm)),
         name => named(name, Some(width_mm), p.seed),
     };
     // Drawn at any width, it has its shape.
-    let chart = faults.take(drawn(distance_mm)).zip(width.as_ref()).and_then(|(any, width)| {
+    let chart = faults.take(drawn(distance_mm)).and_then(|any| {
         let aspect = any.width_mm() / any.height_mm();
-        let width_mm = faults.take(width.mm(aspect, distance_mm, [0.0; 2], context.view))?;
+        let width_mm = faults.take(p.width.mm(aspect, distance_mm, [0.0; 2], context.view, params))?;
         faults.take(drawn(width_mm))
     });
     let spectra = match (&light, &chart) {
@@ -148,10 +141,10 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
         }
         _ => None,
     };
-    let (Some(chart), Some((spectra, white)), Some(edge)) = faults.into_result((chart, spectra, edge))? else {
+    let (Some(chart), Some((spectra, white))) = faults.into_result((chart, spectra))? else {
         return Err(Faults::new());
     };
-    if p.edge.is_none() && !width.is_some_and(|width| width.is_fill()) {
+    if p.edge.is_none() && !p.width.is_fill() {
         let (width_mm, height_mm) = (chart.width_mm(), chart.height_mm());
         let placed = Placed { width_mm, height_mm, distance_mm, center_mm: [0.0; 2] };
         placed.warn_unless_filled("the chart", params, context);
@@ -159,48 +152,47 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
     let scale = p.luminance.cd_per_m2() / white::luminance_cd_m2(&white);
     let spectra: Vec<SpectralPower> = spectra.iter().map(|s| s.scaled(scale)).collect();
     let palette = Palette::new(context.grid, &spectra);
-    let texture = ChartTexture { edge, ..ChartTexture::new(chart, palette, &spectra) };
+    let texture = ChartTexture { edge: p.edge.unwrap_or_default(), ..ChartTexture::new(chart, palette, &spectra) };
     Ok(Box::new(Flat { texture, distance_mm }))
 }
 
 /// The reflectances that the user brings.
 fn own_reflectances(p: &ChartParams, params: &Params, context: &Context<'_>) -> Result<Vec<Reflectance>, Faults> {
     let is_own = p.chart == chart::OWN_PATCHES;
-    let node = match (&p.reflectances, is_own) {
+    let stated = match (&p.reflectances, is_own) {
         (None, false) => return Ok(Vec::new()),
-        (Some(node), false) => {
-            let fault = node.fault(format!("the chart `{}` has patches of its own", p.chart));
+        (Some(_), false) => {
+            let fault = params.fault("reflectances", format!("the chart `{}` has patches of its own", p.chart));
             return Err(fault.hint("`chart: patches`").into());
         }
         (None, true) => {
             let fault = params.fault("chart", "patches of which `reflectances`?");
             return Err(fault.hint("`reflectances: my-paints.csv`: a column a patch beside wavelength_nm").into());
         }
-        (Some(node), true) => node,
+        (Some(stated), true) => stated,
     };
-    let find = |node: &Node, name: &str| {
-        find_reflectance_in(name, context.resources)
-            .map_err(|e| e.faults(|text| node.fault(text).path(format!("{}.reflectances", params.path()))))
+    let find = |key: &str, name: &str| {
+        find_reflectance_in(name, context.resources).map_err(|e| e.faults(|text| params.fault(key, text)))
     };
     let mut faults = Faults::new();
     let mut found = Vec::new();
-    if let Some(name) = node.node().as_str() {
-        match find_reflectance_in(name, context.resources) {
+    match stated {
+        OwnReflectances::Table(name) => match find_reflectance_in(name, context.resources) {
             Err(SpectrumError::Ambiguous { columns, .. }) => {
                 for column in columns {
-                    found.extend(faults.take(find(node.node(), &format!("{name}#{column}"))));
+                    found.extend(faults.take(find("reflectances", &format!("{name}#{column}"))));
                 }
             }
-            _ => found.extend(faults.take(find(node.node(), name))),
-        }
-    } else {
-        let names: Vec<String> = node.parse()?;
-        for (i, name) in names.iter().enumerate() {
-            found.extend(faults.take(find(node.node().element(i).unwrap_or(node.node()), name)));
+            _ => found.extend(faults.take(find("reflectances", name))),
+        },
+        OwnReflectances::Names(names) => {
+            for (i, name) in names.iter().enumerate() {
+                found.extend(faults.take(find(&format!("reflectances[{i}]"), name)));
+            }
         }
     }
     if faults.is_empty() && !(1..=MAX_PATCHES).contains(&found.len()) {
-        let fault = node.fault(format!("{} patches", found.len()));
+        let fault = params.fault("reflectances", format!("{} patches", found.len()));
         faults.push(fault.hint(format!("1 to {MAX_PATCHES}")));
     }
     faults.into_result(found)

@@ -1,7 +1,8 @@
 //! How wide a flat source is, what lies beyond its border, and whether it fills the frame.
 
 use schemars::JsonSchema;
-use spectra_core::params::{Fault, Faults, Length, Node, Params, Positive, StageNode, Value, nearest};
+use serde::Deserialize;
+use spectra_core::params::{Fault, Length, Node, Params, Positive, Value};
 use spectra_core::registry::Context;
 use spectra_core::view::{Sight, View};
 
@@ -12,10 +13,9 @@ const MARGIN: f64 = 1.02;
 const NOTHING: f64 = 0.01;
 
 /// `width` as written.
-#[derive(JsonSchema)]
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(untagged)]
-#[expect(dead_code, reason = "states what is allowed; `Width::read` reads it")]
-pub(crate) enum WidthForm {
+pub(crate) enum Width {
     /// As wide as the frame sees there.
     Fill(FillWord),
     /// A width, mm if bare.
@@ -23,34 +23,14 @@ pub(crate) enum WidthForm {
 }
 
 /// The word.
-#[derive(JsonSchema)]
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
-#[expect(dead_code, reason = "states what is allowed")]
 pub(crate) enum FillWord {
     /// As wide as the frame sees there.
     Fill,
 }
 
-const FILL: &str = "fill";
-
-/// A width, as written.
-pub(crate) enum Width<'a> {
-    Fill(&'a StageNode),
-    Mm(f64),
-}
-
-impl<'a> Width<'a> {
-    pub(crate) fn read(node: &'a StageNode) -> Result<Self, Faults> {
-        match node.node().as_str() {
-            Some(FILL) => Ok(Self::Fill(node)),
-            Some(word) if nearest(word, [FILL]).is_some() => Err(node
-                .fault(format!("found the text `{word}`, expected a width"))
-                .hint("did you mean `fill`?")
-                .into()),
-            _ => node.parse::<Positive<Length>>().map(|width| Self::Mm(width.mm())),
-        }
-    }
-
+impl Width {
     /// The width, mm, of a picture whose width is `aspect` times its height and whose center is at `center_mm` on the plane
     /// `distance_mm` in front of the first vertex. To fill the frame is to hold all that it sees on that plane, by real rays
     /// through all that the lens passes, and 2 % more. Where no lens is known a source is as wide as it is far.
@@ -60,13 +40,15 @@ impl<'a> Width<'a> {
         distance_mm: f64,
         center_mm: [f64; 2],
         view: Option<&View>,
+        params: &Params,
     ) -> Result<f64, Fault> {
         match self {
-            Self::Mm(mm) => Ok(*mm),
-            Self::Fill(node) => match view {
+            Self::Width(width) => Ok(width.mm()),
+            Self::Fill(_) => match view {
                 None => Ok(distance_mm),
                 Some(view) => needed_mm(view, aspect, distance_mm, center_mm).ok_or_else(|| {
-                    node.fault("this lens looks to the side: no plane fills its frame")
+                    params
+                        .fault("width", "this lens looks to the side: no plane fills its frame")
                         .hint("write a width, such as `5 m`")
                 }),
             },
@@ -85,7 +67,9 @@ pub(crate) fn needed_mm(view: &View, aspect: f64, distance_mm: f64, center_mm: [
 }
 
 /// What lies beyond the border of a flat source.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq)]
+#[serde(rename_all = "kebab-case")]
+#[schemars(inline)]
 pub(crate) enum Edge {
     /// Nothing.
     #[default]
@@ -97,22 +81,6 @@ pub(crate) enum Edge {
 }
 
 impl Edge {
-    pub(crate) fn read(word: Option<&str>, params: &Params) -> Result<Self, Fault> {
-        match word {
-            None | Some("black") => Ok(Self::Black),
-            Some("clamp") => Ok(Self::Clamp),
-            Some("mirror") => Ok(Self::Mirror),
-            Some(other) => {
-                let fault = params.fault("edge", format!("no edge is called `{other}`"));
-                let known = ["black", "clamp", "mirror"];
-                Err(fault.hint(match nearest(other, known) {
-                    Some(near) => format!("did you mean `{near}`? Known: black, clamp, mirror"),
-                    None => "black, clamp or mirror".to_owned(),
-                }))
-            }
-        }
-    }
-
     /// A place along a side from 0 to `size`, brought to where something is; `None` where nothing is.
     pub(crate) fn place(self, at: f64, size: f64) -> Option<f64> {
         if at >= 0.0 && at <= size {

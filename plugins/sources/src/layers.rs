@@ -4,7 +4,7 @@
 //! already) times what the ones in front of it let pass (T. Porter and T. Duff, "Compositing digital images", SIGGRAPH
 //! 1984). Nothing is guessed: what a layer hides, the one behind it knows.
 
-use crate::frame::{Edge, Placed, Width, WidthForm};
+use crate::frame::{Edge, Placed, Width};
 use crate::lazy::Lazy;
 use crate::picture::header::Header;
 use crate::picture::map::PictureMap;
@@ -13,7 +13,7 @@ use crate::white;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::loss::{ALIVE, Loss};
-use spectra_core::params::{Faults, Length, Luminance, Params, Positive, Quantity, StageNode};
+use spectra_core::params::{Faults, Length, Luminance, Params, Part, Positive, Quantity};
 use spectra_core::registry::{Context, StageOf};
 use spectra_core::spectral::SpectralPower;
 use spectra_core::stage::{ColorModel, Radiance, Source};
@@ -44,9 +44,8 @@ use spectra_core::{Isa, RayBatch};
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct LayersParams {
     /// The layers, 1 to 64, from the front to the back.
-    #[schemars(with = "Vec<LayerParams>")]
     #[schemars(length(min = 1, max = 64))]
-    layers: Vec<StageNode>,
+    layers: Vec<Part<LayerParams>>,
     /// The light that white has the chromaticity of: the name of a spectrum, a file beside the scene, or an expression
     /// such as `blackbody:3200`.
     #[serde(default = "daylight")]
@@ -55,8 +54,7 @@ struct LayersParams {
     #[serde(default = "luminance")]
     luminance: Positive<Luminance>,
     /// How RGB becomes a spectrum: a color model; `primaries` if absent.
-    #[schemars(with = "Option<StageOf<dyn ColorModel>>")]
-    color: Option<StageNode>,
+    color: Option<Part<StageOf<dyn ColorModel>>>,
 }
 
 /// One layer.
@@ -72,11 +70,9 @@ struct LayerParams {
     /// Distance of its plane from the first vertex, mm if bare; farther than that of the layer before it.
     distance: Positive<Length>,
     /// Width of the picture on that plane, mm if bare; the height follows. Or `fill`, as for `kind: picture`.
-    #[schemars(with = "WidthForm")]
-    width: StageNode,
+    width: Width,
     /// What lies beyond it, its cover as its color: `black` (nothing, the default), `clamp` or `mirror`.
-    #[schemars(extend("enum" = ["black", "clamp", "mirror"]))]
-    edge: Option<String>,
+    edge: Option<Edge>,
     /// Its center on that plane (to the photographer's right, up), mm if bare; on the axis if absent.
     center: Option<[Length; 2]>,
     /// Luminance of its white, cd/m2 if bare; that of all layers if absent.
@@ -91,18 +87,11 @@ fn luminance() -> Positive<Luminance> {
     Positive::from_bare(100.0)
 }
 
-/// More than anybody paints.
-const MOST: usize = 64;
-
 spectra_core::register!(source "layers": LayersParams, build);
 
 fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faults> {
     let p: LayersParams = params.parse()?;
     let mut faults = Faults::new();
-    if p.layers.is_empty() || p.layers.len() > MOST {
-        faults.push(params.fault("layers", format!("{} layers", p.layers.len())).hint(format!("1 to {MOST}")));
-        return Err(faults);
-    }
     let light = faults.take(white::illuminant(&p.illuminant, params, context));
     let model = light.and_then(|light| faults.take(color_model(p.color, &light, params, context)));
     let mut layers: Vec<Pending> = Vec::new();
@@ -117,11 +106,6 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
         }
         before_mm = distance_mm;
         let center_mm = layer.center.map_or([0.0; 2], |c| c.map(Length::mm));
-        if !center_mm.iter().all(|c| c.is_finite()) {
-            faults.push(own.fault("center", "a center lies at a finite place"));
-        }
-        let width = faults.take(Width::read(&layer.width));
-        let edge = faults.take(Edge::read(layer.edge.as_deref(), &own));
         let Some(found) = faults.take(find(&layer.file, &own, context)) else { continue };
         let file = PictureFile {
             found,
@@ -132,8 +116,9 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
             params: own.clone(),
         };
         let header = faults.take(file.header());
-        let (Some(header), Some(model), Some(width), Some(edge)) = (header, &model, width, edge) else { continue };
-        let wide = width.mm(header.aspect(), distance_mm, center_mm, context.view).map_err(Faults::from);
+        let (Some(header), Some(model)) = (header, &model) else { continue };
+        let (width, edge) = (layer.width, layer.edge.unwrap_or_default());
+        let wide = width.mm(header.aspect(), distance_mm, center_mm, context.view, &own).map_err(Faults::from);
         let Some(width_mm) = faults.take(wide) else { continue };
         let luminance_cd_m2 = layer.luminance.unwrap_or(p.luminance).cd_per_m2();
         let making = Making { model: std::sync::Arc::clone(model), width_mm, luminance_cd_m2, edge };

@@ -212,7 +212,7 @@ struct EvenAsphereParams {
     #[serde(default)]
     conic: f64,
     /// a2, a4, a6, ... in mm^(1 - power): the first is that of r^2. At most 20; missing ones are 0.
-    #[schemars(length(max = 20))]
+    #[schemars(length(max = MOST_COEFFICIENTS))]
     coefficients: Vec<f64>,
 }
 
@@ -222,7 +222,6 @@ fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Surface>, Faults> {
     let p: EvenAsphereParams = params.parse()?;
     let mut faults = Faults::new();
     let c = shared::curvature(params, "radius", p.radius, &mut faults);
-    shared::coefficients(params, &p.coefficients, MOST_COEFFICIENTS, &mut faults);
     if !faults.is_empty() {
         return Err(faults);
     }

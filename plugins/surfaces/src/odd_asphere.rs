@@ -73,7 +73,7 @@ struct OddAsphereParams {
     #[serde(default)]
     conic: f64,
     /// a1, a2, a3, ... in mm^(1 - power): the first is that of r. At most 20; missing ones are 0.
-    #[schemars(length(max = 20))]
+    #[schemars(length(max = MOST_COEFFICIENTS))]
     coefficients: Vec<f64>,
 }
 
@@ -83,7 +83,6 @@ fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Surface>, Faults> {
     let p: OddAsphereParams = params.parse()?;
     let mut faults = Faults::new();
     shared::curvature(params, "radius", p.radius, &mut faults);
-    shared::coefficients(params, &p.coefficients, MOST_COEFFICIENTS, &mut faults);
     let asphere = OddAsphere::new(p.radius.mm(), p.conic, &p.coefficients);
     faults.into_result(Box::new(PerRay(FromSag(asphere))) as Box<dyn Surface>)
 }

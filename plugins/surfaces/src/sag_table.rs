@@ -165,7 +165,7 @@ struct SagTableParams {
     step: Positive<Length>,
     /// Rows of sags, mm: from the smallest y up, each from the smallest x up; 4 to 1024 a side. Or else `file`.
     #[serde(default)]
-    #[schemars(length(min = 4, max = 1024), inner(length(min = 4, max = 1024)))]
+    #[schemars(length(min = FEWEST, max = MOST), inner(length(min = FEWEST, max = MOST)))]
     sag: Option<Vec<Vec<f64>>>,
     /// A CSV file beside the scene with those rows, mm; empty lines and such as start with `#` are passed over. Or else
     /// `sag`.

@@ -15,17 +15,6 @@ pub(crate) fn curvature(params: &Params, key: &str, radius: LengthOrInfinity, fa
     1.0 / radius.mm()
 }
 
-/// Checks that there are at most `most` coefficients.
-pub(crate) fn coefficients(params: &Params, values: &[f64], most: usize, faults: &mut Faults) {
-    if values.len() > most {
-        faults.push(
-            params
-                .fault("coefficients", format!("{} coefficients; this kind takes at most {most}", values.len()))
-                .hint("coefficients stand in order of their powers, the lowest first; missing ones are 0"),
-        );
-    }
-}
-
 /// A surface of revolution of a conic section, z = c r^2 / (1 + sqrt(1 - (1 + k) c^2 r^2)).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ConicSection {

@@ -86,12 +86,5 @@ spectra_core::register!(surface "tilted-plane": TiltedPlaneParams, build);
 
 fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Surface>, Faults> {
     let p: TiltedPlaneParams = params.parse()?;
-    let mut faults = Faults::new();
-    for (key, tilt) in [("tilt-x", p.tilt_x), ("tilt-y", p.tilt_y)] {
-        if !(tilt.rad().abs() < std::f64::consts::FRAC_PI_2) {
-            let text = "a plane that is tilted by 90 degrees or more does not face light along the axis";
-            faults.push(params.fault(key, text));
-        }
-    }
-    faults.into_result(Box::new(Kernel(TiltedPlane::new(p.tilt_x.rad(), p.tilt_y.rad()))) as Box<dyn Surface>)
+    Ok(Box::new(Kernel(TiltedPlane::new(p.tilt_x.rad(), p.tilt_y.rad()))))
 }

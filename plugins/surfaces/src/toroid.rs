@@ -92,7 +92,7 @@ struct ToroidParams {
     conic: f64,
     /// a2, a4, ... of the curve, in mm^(1 - power): the first is that of y^2. At most 20; missing ones are 0.
     #[serde(default)]
-    #[schemars(length(max = 20))]
+    #[schemars(length(max = MOST_COEFFICIENTS))]
     coefficients: Vec<f64>,
     /// Distance from the vertex, mm if bare, not 0, at which the axis of rotation crosses the z axis, positive at
     /// larger z; `inf`: not curved along x.
@@ -106,7 +106,6 @@ fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Surface>, Faults> {
     let mut faults = Faults::new();
     shared::curvature(params, "radius", p.radius, &mut faults);
     shared::curvature(params, "rotation-radius", p.rotation_radius, &mut faults);
-    shared::coefficients(params, &p.coefficients, MOST_COEFFICIENTS, &mut faults);
     let toroid = Toroid::new(p.radius.mm(), p.conic, &p.coefficients, p.rotation_radius.mm());
     faults.into_result(Box::new(PerRay(FromSag(toroid))) as Box<dyn Surface>)
 }

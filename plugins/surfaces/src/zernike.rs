@@ -207,7 +207,7 @@ struct ZernikeParams {
     /// Radius at which the polynomials are normalized, mm if bare, more than 0.
     normalization_radius: Positive<Length>,
     /// c_1, c_2, ... from the first polynomial (piston) on, mm of sag; at most 120, missing ones are 0.
-    #[schemars(length(max = 120))]
+    #[schemars(length(max = MOST))]
     coefficients: Vec<f64>,
     /// How the polynomials are counted and how large they are: `noll` (mean square 1) or `fringe` (1 at the rim).
     ordering: ZernikeOrdering,
@@ -223,7 +223,6 @@ fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Surface>, Faults> {
     let p: ZernikeParams = params.parse()?;
     let mut faults = Faults::new();
     shared::curvature(params, "radius", p.radius, &mut faults);
-    shared::coefficients(params, &p.coefficients, MOST, &mut faults);
     if !faults.is_empty() {
         return Err(faults);
     }

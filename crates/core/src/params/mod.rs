@@ -8,73 +8,65 @@
 //! afterwards and placed with [`Params::fault`]; a nested stage is a [`StageNode`].
 //!
 //! ```
+//! use schemars::JsonSchema;
 //! use serde::Deserialize;
-//! use spectra_core::params::{Faults, Length, LengthOrInfinity, Params, Positive, StageNode};
+//! use spectra_core::params::{Faults, Key, LengthOrInfinity, Length, Node, Params, Positive, SourceFile, Span, Value};
+//! use std::sync::Arc;
 //!
 //! /// Parameters of `kind: bubble` as written in a lens file.
-//! #[derive(Debug, Deserialize)]
+//! #[derive(Debug, Deserialize, JsonSchema)]
 //! #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 //! struct BubbleParams {
 //!     /// Radius of curvature, mm if bare; `inf` is a plane.
 //!     radius: LengthOrInfinity,
-//!     /// Clear semi-diameter, mm if bare.
+//!     /// Clear semi-diameter, at most 1 m, mm if bare.
+//!     #[schemars(range(max = 1000))]
 //!     semi_diameter: Positive<Length>,
-//!     /// Wall thickness, mm if bare.
-//!     #[serde(default)]
-//!     wall: Option<Positive<Length>>,
-//!     /// The color of the film, a stage of its own.
-//!     #[serde(default)]
-//!     color: Option<StageNode>,
 //! }
 //!
 //! fn build(params: &Params) -> Result<BubbleParams, Faults> {
 //!     let bubble: BubbleParams = params.parse()?;
-//!     let mut faults = Faults::new();
 //!     if bubble.semi_diameter.mm() > bubble.radius.mm().abs() {
-//!         faults.push(params.fault("semi-diameter", "the rim lies beyond the sphere").hint("at most the radius"));
+//!         return Err(params.fault("semi-diameter", "the rim lies beyond the sphere").hint("at most the radius").into());
 //!     }
-//!     if let Some(color) = &bubble.color {
-//!         faults.take(color.params()); // goes to the registry from here
-//!     }
-//!     faults.into_result(bubble)
+//!     Ok(bubble)
 //! }
 //!
-//! // A reader of files makes the tree; here by hand, as `{radius: 4 cm, wal: 2 s}`.
-//! # use spectra_core::params::{Key, Node, SourceFile, Span, Value};
-//! # use std::sync::Arc;
-//! let file = Arc::new(SourceFile::new("bubble.yaml", "{radius: 4 cm, wal: 2 s}"));
+//! // A reader of files makes the tree; here by hand, as `{radius: 4 cm, semi-diameter: 2 m}`.
+//! # let file = Arc::new(SourceFile::new("bubble.yaml", "{radius: 4 cm, semi-diameter: 2 m}"));
 //! # let span = |offset, len| Span { line: 1, column: offset + 1, offset, len };
 //! # let entry = |key: &str, at, value: &str, value_at| {
 //! #     let node = Node::new(Value::from_plain(value), span(value_at, value.len()), Arc::clone(&file));
 //! #     (Key { text: key.to_owned(), span: span(at, key.len()) }, node)
 //! # };
-//! # let entries = vec![entry("radius", 1, "4 cm", 9), entry("wal", 15, "2 s", 20)];
+//! # let entries = vec![entry("radius", 1, "4 cm", 9), entry("semi-diameter", 15, "2 m", 30)];
 //! # let node = Node::new(Value::Map(entries), span(0, file.text.len()), Arc::clone(&file));
-//! let params = Params::stage(node, "surfaces[0]")?;
-//! let faults = build(&params).unwrap_err();
+//! let faults = build(&Params::stage(node, "surfaces[0]")?).unwrap_err();
 //! assert_eq!(
 //!     faults.to_string(),
-//!     "bubble.yaml:1:1: missing key `semi-diameter` (add `semi-diameter: ...`)\n\
-//!      bubble.yaml:1:16: unknown key `wal` (did you mean `wall`?)"
+//!     "bubble.yaml:1:31: found 2 m, which is out of range (a length greater than 0, up to 1000 mm)"
 //! );
 //! # Ok::<(), Faults>(())
 //! ```
 //!
-//! A `Deserialize` written by hand may put a hint behind its message, on a line that starts with `hint: `.
-//! serde's `flatten`, `untagged` and internal tags work, but buffer values without their places: a fault
-//! inside of them is placed at the whole value.
+//! All of it rests on one declaration: the struct. `schemars` makes its schema, [`check`] holds the tree against that, and serde reads
+//! what is then known to be right. A check that serde makes (`try_from`, a `Deserialize` by hand) comes last, and is placed at the map around it; it
+//! may put a hint behind its message, on a line that starts with `hint: `.
 
-mod de;
+mod at;
+mod check;
 mod fault;
+mod limits;
 mod node;
 #[allow(clippy::module_inception)] // The type `Params` is the idea of the module `params`.
 mod params;
+mod part;
 mod parts;
 mod path;
 mod quantities;
 pub mod quantity;
+mod reader;
 mod schema;
-mod stage_node;
 #[cfg(test)]
 mod tests;
 mod text;
@@ -85,14 +77,15 @@ mod whole;
 pub use fault::{Fault, Faults};
 pub use node::{Key, MAX_DEPTH, Node, Number, SourceFile, Span, Value};
 pub use params::Params;
+pub use part::{Part, StageNode};
 pub use path::{Step, steps};
 pub use quantities::{
     Angle, Exposure, FNumber, Illuminance, Length, LengthOrInfinity, Luminance, NonNegative, OrInfinity, Positive,
     Power, RadiantIntensity, Ratio, SpatialFrequency, Temperature, Time, Wavelength,
 };
 pub use quantity::{Bound, Quantity};
-pub use schema::{Kinds, schema_of};
-pub use stage_node::StageNode;
+pub use reader::Readable;
+pub use schema::{Kinds, keys_of, schema_of};
 pub use text::nearest;
 pub use units::{Dimension, Reading, Unit};
 pub use warning::{DataEnd, Warning, Warnings};

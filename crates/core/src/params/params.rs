@@ -1,13 +1,11 @@
 //! The parameters of one stage.
 
-use super::de;
 use super::fault::{Fault, Faults};
 use super::node::{Key, Node, Value};
 use super::path::joined;
 use super::path::steps;
+use super::reader::{self, Readable};
 use super::text::{found, shown};
-use serde::de::DeserializeOwned;
-use std::path::Path;
 
 /// The key that names a stage.
 const KIND: &str = "kind";
@@ -117,19 +115,13 @@ impl Params {
         self.node.get(key)
     }
 
-    /// The folder that relative paths in it are relative to; `None` for what has no folder on disk.
-    #[must_use]
-    pub fn base_dir(&self) -> Option<&Path> {
-        self.node.file.folder()
-    }
-
     /// The typed parameters.
     ///
     /// # Errors
     /// Everything that is wrong with this map, in one go: unknown keys, wrong types, units of another dimension,
     /// missing keys.
-    pub fn parse<T: DeserializeOwned>(&self) -> Result<T, Faults> {
-        de::parse(&self.node, &self.path)
+    pub fn parse<T: Readable>(&self) -> Result<T, Faults> {
+        reader::parse(&self.node, &self.path)
     }
 
     /// A fault placed at the value of a key (`radius`, `color.R`, `blades[2]`), or at the map if there is no such key. For what a
@@ -163,7 +155,7 @@ impl Node {
     ///
     /// # Errors
     /// Everything that is wrong with it, in one go.
-    pub fn parse<T: DeserializeOwned>(&self) -> Result<T, Faults> {
-        de::parse(self, "")
+    pub fn parse<T: Readable>(&self) -> Result<T, Faults> {
+        reader::parse(self, "")
     }
 }

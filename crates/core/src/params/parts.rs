@@ -24,11 +24,11 @@ impl Params {
 
     /// The parameters under `keys`, and the rest (with the kind).
     #[must_use]
-    pub fn split(&self, keys: &[&str]) -> (Self, Self) {
+    pub fn split(&self, keys: &[impl AsRef<str>]) -> (Self, Self) {
         let (mut inside, mut outside) = (Vec::new(), Vec::new());
         if let Value::Map(entries) = &self.node().value {
             for (key, value) in entries {
-                let part = if keys.contains(&key.text.as_str()) { &mut inside } else { &mut outside };
+                let part = if keys.iter().any(|k| k.as_ref() == key.text) { &mut inside } else { &mut outside };
                 part.push((key.clone(), value.clone()));
             }
         }

@@ -88,74 +88,63 @@ impl Node {
         // The key that this writes stands in the argument; the value behind it has the exact place.
         let whole = Span { len: file.text.find('=').unwrap_or(0), ..Span::default() };
         let made = if file.is_argument() { whole } else { node.span };
-        self.settable(&steps).map_err(|message| {
+        self.put(&steps, "", made, node).map_err(|message| {
             let hint = "a path names keys and, in brackets, entries from 0: `film.exposure`, `output[0]`";
-            Fault::new(message).at(Arc::clone(&file), made).path(shown(path)).hint(hint)
-        })?;
-        let empty = |value| Node::new(value, made, Arc::clone(&file));
-        let mut target = self;
-        for (i, &step) in steps.iter().enumerate() {
-            target = match step {
-                Step::Key(key) => {
-                    if matches!(target.value, Value::Null) {
-                        target.value = Value::Map(Vec::new());
-                    }
-                    let Value::Map(entries) = &mut target.value else { return Ok(()) };
-                    let index = match entries.iter().position(|(k, _)| k.text == key) {
-                        Some(index) => index,
-                        None => {
-                            entries.push((Key { text: key.to_owned(), span: made }, empty(Value::Null)));
-                            entries.len() - 1
-                        }
-                    };
-                    if i + 1 == steps.len() {
+            Fault::new(message).at(file, made).path(shown(path)).hint(hint)
+        })
+    }
+
+    /// Puts a node where the steps lead, `path` being that of this one. What is made stands at `made`.
+    fn put(&mut self, steps: &[Step<'_>], path: &str, made: Span, node: Node) -> Result<(), String> {
+        let Some((&step, rest)) = steps.split_first() else {
+            *self = node;
+            return Ok(());
+        };
+        let at = || if path.is_empty() { "the file".to_owned() } else { format!("`{path}`") };
+        let what = found(self);
+        let inner = joined(path, step);
+        match (step, &mut self.value) {
+            (_, Value::Null) => self.value = Self::around(node, steps, path, made)?.value,
+            (Step::Key(key), Value::Map(entries)) => match entries.iter_mut().find(|(k, _)| k.text == key) {
+                Some((key, value)) => {
+                    value.put(rest, &inner, made, node)?;
+                    if rest.is_empty() {
                         // A key stands in the file of its value.
-                        entries[index].0.span = made;
+                        key.span = made;
                     }
-                    &mut entries[index].1
                 }
-                Step::Index(index) => {
-                    if matches!(target.value, Value::Null) {
-                        target.value = Value::Seq(Vec::new());
-                    }
-                    let Value::Seq(elements) = &mut target.value else { return Ok(()) };
-                    if index == elements.len() {
-                        elements.push(empty(Value::Null));
-                    }
-                    &mut elements[index]
+                None => {
+                    let value = Self::around(node, rest, &inner, made)?;
+                    entries.push((Key { text: key.to_owned(), span: made }, value));
                 }
-            };
+            },
+            (Step::Key(key), _) => return Err(format!("{} is {what}, which has no key `{}`", at(), shown(key))),
+            (Step::Index(index), Value::Seq(elements)) => {
+                let len = elements.len();
+                match elements.get_mut(index) {
+                    Some(element) => element.put(rest, &inner, made, node)?,
+                    None if index == len => elements.push(Self::around(node, rest, &inner, made)?),
+                    None => return Err(format!("{} has no entry {index}: it has {len}, from 0", at())),
+                }
+            }
+            (Step::Index(_), _) => return Err(format!("{} is {what}, not a list", at())),
         }
-        *target = node;
         Ok(())
     }
 
-    /// Whether a path can be set; if not, the text says why.
-    fn settable(&self, steps: &[Step<'_>]) -> Result<(), String> {
-        let mut node = Some(self);
-        let mut path = String::new();
-        for &step in steps {
-            let at = |path: &str| if path.is_empty() { "the file".to_owned() } else { format!("`{path}`") };
-            node = match (step, node.map(|n| (n, &n.value))) {
-                (Step::Key(_), None | Some((_, Value::Null))) => None,
-                (Step::Key(key), Some((n, Value::Map(_)))) => n.get(key),
-                (Step::Key(key), Some((n, _))) => {
-                    return Err(format!("{} is {}, which has no key `{}`", at(&path), found(n), shown(key)));
-                }
-                (Step::Index(0), None | Some((_, Value::Null))) => None,
-                (Step::Index(index), None | Some((_, Value::Null))) => {
-                    return Err(format!("{} has no entry {index}: it is empty", at(&path)));
-                }
-                (Step::Index(index), Some((n, Value::Seq(elements)))) => {
-                    if index > elements.len() {
-                        return Err(format!("{} has no entry {index}: it has {}, from 0", at(&path), elements.len()));
-                    }
-                    n.element(index)
-                }
-                (Step::Index(_), Some((n, _))) => return Err(format!("{} is {}, not a list", at(&path), found(n))),
-            };
-            path = joined(&path, step);
-        }
-        Ok(())
+    /// A node with the maps and lists around it that the steps to it want.
+    fn around(node: Self, steps: &[Step<'_>], path: &str, made: Span) -> Result<Self, String> {
+        let Some((&step, rest)) = steps.split_first() else { return Ok(node) };
+        let file = Arc::clone(&node.file);
+        let inner = Self::around(node, rest, &joined(path, step), made)?;
+        Ok(Self::new(
+            match step {
+                Step::Key(key) => Value::Map(vec![(Key { text: key.to_owned(), span: made }, inner)]),
+                Step::Index(0) => Value::Seq(vec![inner]),
+                Step::Index(index) => return Err(format!("`{path}` has no entry {index}: it is empty")),
+            },
+            made,
+            file,
+        ))
     }
 }

@@ -1,8 +1,7 @@
 //! The quantities used in scene, lens and stock files.
 
-use super::quantity::{Bound, Quantity, deserialize};
+use super::quantity::{Bound, Quantity};
 use super::units::{Dimension, Unit};
-use serde::{Deserialize, Deserializer};
 
 impl Quantity for f64 {
     const DIMENSION: Dimension = Dimension::Number;
@@ -46,11 +45,6 @@ macro_rules! newtype {
             }
         }
 
-        impl<'de> Deserialize<'de> for $name {
-            fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-                deserialize(deserializer)
-            }
-        }
     };
 }
 
@@ -168,7 +162,7 @@ macro_rules! bounded {
             /// The quantity, if it obeys the bound.
             #[must_use]
             pub fn new(quantity: Q) -> Option<Self> {
-                Bound::$name.allows(quantity.bare()).then_some(Self(quantity))
+                Bound::$name.limits().allow(quantity.bare()).then_some(Self(quantity))
             }
 
             /// The quantity.
@@ -210,12 +204,6 @@ macro_rules! bounded {
 
             fn from_unit(value: f64, unit: &Unit) -> Self {
                 Self(Q::from_unit(value, unit))
-            }
-        }
-
-        impl<'de, Q: Quantity> Deserialize<'de> for $name<Q> {
-            fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-                deserialize(deserializer)
             }
         }
     };
@@ -288,11 +276,5 @@ impl<Q: Quantity> Quantity for OrInfinity<Q> {
 
     fn from_unit(value: f64, unit: &Unit) -> Self {
         Self::Finite(Q::from_unit(value, unit))
-    }
-}
-
-impl<'de, Q: Quantity> Deserialize<'de> for OrInfinity<Q> {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserialize(deserializer)
     }
 }

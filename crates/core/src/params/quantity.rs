@@ -1,14 +1,12 @@
-//! How a quantity is read: a bare number in a stated unit, or a text with a unit whose dimension is checked.
+//! How a quantity is written: a bare number in a stated unit, or a text with a unit whose dimension is checked.
 
-use super::node::Number;
+use super::limits::Limits;
 use super::text::{found_text, nearest, shown, with_article};
 use super::units::{Dimension, Reading, Unit};
-use serde::de::{Deserializer, Error, Unexpected, Visitor};
+use serde::de::{Deserializer, Error, Visitor};
+use serde_json::Value;
 use std::fmt;
 use std::marker::PhantomData;
-
-/// Name by which a quantity asks the deserializer of nodes for its text.
-pub(super) const QUANTITY: &str = "spectra::quantity";
 
 /// Which signs a quantity may have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,16 +20,6 @@ pub enum Bound {
 }
 
 impl Bound {
-    /// Whether a value satisfies it; NaN never does.
-    #[must_use]
-    pub fn allows(self, value: f64) -> bool {
-        match self {
-            Self::Any => !value.is_nan(),
-            Self::NonNegative => value >= 0.0,
-            Self::Positive => value > 0.0,
-        }
-    }
-
     /// The stricter of two.
     #[must_use]
     pub const fn and(self, other: Self) -> Self {
@@ -42,11 +30,11 @@ impl Bound {
         }
     }
 
-    const fn adjective(self) -> &'static str {
+    pub(super) const fn limits(self) -> Limits {
         match self {
-            Self::Any => "",
-            Self::NonNegative => "non-negative ",
-            Self::Positive => "positive ",
+            Self::Any => Limits::ANY,
+            Self::NonNegative => Limits::NOT_NEGATIVE,
+            Self::Positive => Limits::POSITIVE,
         }
     }
 }
@@ -86,45 +74,144 @@ pub trait Quantity: Copy {
     /// # Errors
     /// What was found and what is expected, perhaps followed by a line that starts with `hint: `.
     fn from_text(text: &str) -> Result<Self, String> {
-        let expected = expected::<Self>();
+        let form = Form {
+            noun: Self::NOUN,
+            dimension: Self::DIMENSION,
+            unit: Self::BARE_UNIT,
+            example: Self::EXAMPLE,
+            limits: Self::BOUND.limits(),
+            infinity: Self::INFINITY,
+        };
+        Ok(match form.read(text)? {
+            (value, Some(unit)) => Self::from_unit(value, unit),
+            (value, None) => Self::from_bare(value),
+        })
+    }
+}
+
+/// How a quantity is written and what is allowed: a [`Quantity`] with the limits of one key.
+#[derive(Clone, Copy)]
+pub(super) struct Form<'a> {
+    noun: &'a str,
+    dimension: Dimension,
+    /// The unit of a bare number; empty if it has none.
+    unit: &'a str,
+    example: &'a str,
+    limits: Limits,
+    infinity: bool,
+}
+
+impl<'a> Form<'a> {
+    /// What a schema made by [`super::schema_of`] says, perhaps with narrower limits.
+    pub(super) fn of(schema: &'a Value) -> Option<Self> {
+        let text = |key: &str| schema.get(key).and_then(Value::as_str);
+        let (noun, unit) = (text("x-quantity")?, text("x-unit").unwrap_or_default());
+        // Only what is no number has a unit; per cent is written as one.
+        let dimension = match Unit::find(unit) {
+            Some(found) if noun != Dimension::Number.noun() => found.dimension,
+            _ => Dimension::Number,
+        };
+        let example = schema.get("examples").and_then(|e| e.get(0)?.as_str()).unwrap_or("1.5");
+        Some(Self {
+            noun,
+            dimension,
+            unit,
+            example,
+            limits: Limits::of(schema),
+            infinity: schema.get("x-infinity").is_some(),
+        })
+    }
+
+    pub(super) fn example(&self) -> &'a str {
+        self.example
+    }
+
+    /// The right form in words: `a positive length such as 50 mm`.
+    pub(super) fn expected(&self) -> String {
+        let noun = format!("{}{}", self.limits.adjective(), self.noun);
+        let or_infinity = if self.infinity { " or `inf`" } else { "" };
+        format!("{} such as {}{or_infinity}", with_article(&noun), self.example)
+    }
+
+    /// A text as a number in its unit; in that of a bare number where it has none.
+    pub(super) fn read(&self, text: &str) -> Result<(f64, Option<&'static Unit>), String> {
+        let expected = self.expected();
+        let as_in = format!("write it as in `{}`", self.example);
+        let found = |what: &str, hint: &str| Err(format!("found {what}, expected {expected}\nhint: {hint}"));
         match Reading::of(text) {
-            Reading::Bare(value) => checked(Self::from_bare(value), text),
-            Reading::Quantity { value, unit } if unit.dimension == Self::DIMENSION => {
-                checked(Self::from_unit(value, unit), text)
+            Reading::Bare(value) => self.allowed(value, text).map(|()| (value, None)),
+            Reading::Quantity { value, unit } if unit.dimension == self.dimension => {
+                let bare = Unit::find(self.unit).map_or(value, |bare| unit.convert(value, bare));
+                self.allowed(bare, text).map(|()| (value, Some(unit)))
             }
             Reading::Quantity { .. } => {
-                Err(format!("found {}, expected {expected}{}", found_text(text), units_hint::<Self>()))
+                Err(format!("found {}, expected {expected}{}", found_text(text), self.units_hint()))
             }
-            Reading::Infinity(false) if Self::INFINITY => Ok(Self::from_bare(f64::INFINITY)),
-            Reading::Infinity(_) | Reading::NotANumber => {
-                Err(format!("found {}, expected {expected}\nhint: write it as in `{}`", shown(text), Self::EXAMPLE))
+            Reading::Infinity(false) if self.infinity => Ok((f64::INFINITY, None)),
+            Reading::Infinity(_) | Reading::NotANumber => found(&shown(text), &as_in),
+            Reading::TooLarge => {
+                Err(format!("found {}, which is too large; expected {expected}\nhint: {as_in}", shown(text)))
             }
-            Reading::TooLarge => Err(format!(
-                "found {}, which is too large; expected {expected}\nhint: write it as in `{}`",
-                shown(text),
-                Self::EXAMPLE
-            )),
-            Reading::DecimalComma => Err(format!(
-                "found the text `{}`, expected {expected}\nhint: write a decimal point, not a comma",
-                shown(text)
-            )),
-            Reading::UnknownUnit(unit) if unit.starts_with('/') => Err(format!(
-                "found {}, expected {expected}\nhint: below the line stands a number greater than 0, as in `1/125`",
-                shown(text)
-            )),
+            Reading::DecimalComma => {
+                found(&format!("the text `{}`", shown(text)), "write a decimal point, not a comma")
+            }
+            Reading::UnknownUnit(unit) if unit.starts_with('/') => {
+                found(&shown(text), "below the line stands a number greater than 0, as in `1/125`")
+            }
             Reading::UnknownUnit(unit) => {
-                let units = Self::DIMENSION.units();
+                let units = self.dimension.units();
                 let usual = usual_symbol(unit).filter(|symbol| units.contains(symbol));
                 let hint = match usual.or_else(|| nearest(unit, units.iter().copied())) {
                     Some(near) => format!("\nhint: did you mean `{near}`?"),
-                    None => units_hint::<Self>(),
+                    None => self.units_hint(),
                 };
                 Err(format!("unknown unit `{}`, expected {expected}{hint}", shown(unit)))
             }
-            Reading::Text => {
-                Err(format!("found the text `{}`, expected {expected}{}", shown(text), text_hint::<Self>(text)))
-            }
+            Reading::Text => found(&format!("the text `{}`", shown(text)), &self.text_hint(text)),
         }
+    }
+
+    /// Whether a number in the unit of a bare one is within the limits.
+    pub(super) fn allowed(&self, value: f64, written: &str) -> Result<(), String> {
+        let written = shown(written);
+        if !value.is_finite() {
+            let expected = self.expected();
+            return Err(format!(
+                "found {written}, which is too large, expected {expected}\nhint: write it as in `{}`",
+                self.example
+            ));
+        }
+        if self.limits.allow(value) {
+            return Ok(());
+        }
+        let words = self.limits.words(self.unit);
+        Err(if self.limits.sign_is_wrong(value) {
+            format!("found {written}, expected {}\nhint: {words}, as in `{}`", self.expected(), self.example)
+        } else {
+            format!("found {written}, which is out of range\nhint: {} {words}", with_article(self.noun))
+        })
+    }
+
+    /// Lists the units as a hint, on a line of its own.
+    fn units_hint(&self) -> String {
+        let units: Vec<&str> = self.dimension.units().into_iter().filter(|u| !u.is_empty()).collect();
+        match (units.is_empty() || self.dimension == Dimension::FNumber, self.unit) {
+            (true, _) => String::new(),
+            (false, "") => format!("\nhint: units: {}; or a bare number", units.join(", ")),
+            (false, bare) => format!("\nhint: units: {}; a bare number is in {bare}", units.join(", ")),
+        }
+    }
+
+    fn text_hint(&self, text: &str) -> String {
+        let text = text.trim();
+        let figure = text.trim_start_matches(['f', 'F', '/', ' ']);
+        if self.dimension == Dimension::FNumber && figure.starts_with(|c: char| c.is_ascii_digit()) {
+            return format!("write `f/{}`", shown(figure));
+        }
+        if self.infinity && nearest(text, ["infinity"]).is_some() {
+            return "did you mean `infinity`?".to_owned();
+        }
+        format!("write a number with its unit, as in `{}`", self.example)
     }
 }
 
@@ -148,86 +235,27 @@ fn usual_symbol(unit: &str) -> Option<&'static str> {
     })
 }
 
-/// The right form in words: `a positive length such as 50 mm`.
-#[must_use]
-pub fn expected<Q: Quantity>() -> String {
-    let noun = format!("{}{}", Q::BOUND.adjective(), Q::NOUN);
-    let or_infinity = if Q::INFINITY { " or `inf`" } else { "" };
-    format!("{} such as {}{or_infinity}", with_article(&noun), Q::EXAMPLE)
-}
-
-/// Lists the units as a hint, on a line of its own.
-fn units_hint<Q: Quantity>() -> String {
-    let units: Vec<&str> = Q::DIMENSION.units().into_iter().filter(|u| !u.is_empty()).collect();
-    match (units.is_empty() || Q::DIMENSION == Dimension::FNumber, Q::BARE_UNIT) {
-        (true, _) => String::new(),
-        (false, "") => format!("\nhint: units: {}; or a bare number", units.join(", ")),
-        (false, bare) => format!("\nhint: units: {}; a bare number is in {bare}", units.join(", ")),
-    }
-}
-
-fn text_hint<Q: Quantity>(text: &str) -> String {
-    let text = text.trim();
-    if Q::DIMENSION == Dimension::FNumber
-        && text.trim_start_matches(['f', 'F', '/', ' ']).starts_with(|c: char| c.is_ascii_digit())
-    {
-        let figure = text.trim_start_matches(['f', 'F', '/', ' ']);
-        return format!("\nhint: write `f/{}`", shown(figure));
-    }
-    if Q::INFINITY && nearest(text, ["infinity"]).is_some() {
-        return "\nhint: did you mean `infinity`?".to_owned();
-    }
-    format!("\nhint: write a number with its unit, as in `{}`", Q::EXAMPLE)
-}
-
-/// Says which values are allowed, on a line of its own.
-fn range_hint<Q: Quantity>() -> String {
-    match Q::BOUND {
-        Bound::Positive => format!("\nhint: greater than 0, as in `{}`", Q::EXAMPLE),
-        Bound::NonNegative => format!("\nhint: 0 or more, as in `{}`", Q::EXAMPLE),
-        Bound::Any => String::new(),
-    }
-}
-
-/// The quantity, if it obeys its bound.
-fn checked<Q: Quantity>(quantity: Q, written: &str) -> Result<Q, String> {
-    let value = quantity.bare();
-    let (allowed, finite) = (Q::BOUND.allows(value), value.is_finite() || Q::INFINITY);
-    if allowed && finite {
-        Ok(quantity)
-    } else {
-        let large = if allowed && !finite { ", which is too large" } else { "" };
-        let hint =
-            if large.is_empty() { range_hint::<Q>() } else { format!("\nhint: write it as in `{}`", Q::EXAMPLE) };
-        Err(format!("found {}{large}, expected {}{hint}", shown(written), expected::<Q>()))
-    }
-}
-
-/// Deserializes any quantity: what its `Deserialize` calls.
+/// Deserializes any quantity that has been checked: what its `Deserialize` calls.
 ///
 /// # Errors
 /// What was found and what is expected.
 pub fn deserialize<'de, Q: Quantity, D: Deserializer<'de>>(deserializer: D) -> Result<Q, D::Error> {
-    deserializer.deserialize_newtype_struct(QUANTITY, QuantityVisitor(PhantomData))
+    deserializer.deserialize_any(QuantityVisitor(PhantomData))
 }
 
 struct QuantityVisitor<Q>(PhantomData<Q>);
 
-impl<'de, Q: Quantity> Visitor<'de> for QuantityVisitor<Q> {
+impl<Q: Quantity> Visitor<'_> for QuantityVisitor<Q> {
     type Value = Q;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&expected::<Q>())
-    }
-
-    /// Other formats than nodes.
-    fn visit_newtype_struct<D: Deserializer<'de>>(self, deserializer: D) -> Result<Q, D::Error> {
-        deserializer.deserialize_any(self)
+        f.write_str(Q::NOUN)
     }
 
     fn visit_f64<E: Error>(self, value: f64) -> Result<Q, E> {
-        if value.is_finite() {
-            checked(Q::from_bare(value), &value.to_string()).map_err(E::custom)
+        // The words for a number are those for its text.
+        if value.is_finite() && Q::BOUND.limits().allow(value) {
+            Ok(Q::from_bare(value))
         } else {
             self.visit_str(&value.to_string())
         }
@@ -243,21 +271,5 @@ impl<'de, Q: Quantity> Visitor<'de> for QuantityVisitor<Q> {
 
     fn visit_str<E: Error>(self, text: &str) -> Result<Q, E> {
         Q::from_text(text).map_err(E::custom)
-    }
-
-    fn visit_bool<E: Error>(self, value: bool) -> Result<Q, E> {
-        Err(E::invalid_type(Unexpected::Bool(value), &self))
-    }
-}
-
-/// A number without a unit that may not be infinite: the check of every bare float.
-pub(super) fn finite(number: &Number) -> Result<f64, String> {
-    let text = shown(&number.text);
-    if number.value.is_finite() {
-        Ok(number.value)
-    } else if matches!(Reading::of(&number.text), Reading::TooLarge) {
-        Err(format!("found {text}, which is too large; expected {}", expected::<f64>()))
-    } else {
-        Err(format!("found {text}, expected {}", expected::<f64>()))
     }
 }

@@ -6,11 +6,10 @@ use super::quantities::{
     Angle, Exposure, FNumber, Illuminance, Length, Luminance, NonNegative, OrInfinity, Positive, Power,
     RadiantIntensity, Ratio, SpatialFrequency, Temperature, Time, Wavelength,
 };
-use super::quantity::{Bound, Quantity};
-use super::stage_node::StageNode;
+use super::quantity::{Bound, Quantity, deserialize};
 use super::units::{Dimension, UNITS};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
-use serde::{Serialize, Serializer};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::{Map, Value, json};
 use std::borrow::Cow;
 
@@ -35,6 +34,13 @@ pub fn schema_of<Q: Quantity>() -> Schema {
         Bound::Positive => schema.insert("exclusiveMinimum".to_owned(), 0.into()),
     };
     schema
+}
+
+/// The keys of a map, for [`super::Params::split`].
+#[must_use]
+pub fn keys_of<T: JsonSchema>() -> Vec<String> {
+    let schema = T::json_schema(&mut SchemaGenerator::default());
+    schema.get("properties").and_then(Value::as_object).map_or_else(Vec::new, |all| all.keys().cloned().collect())
 }
 
 /// The texts of a dimension, as a regular expression of the dialect that all validators share.
@@ -163,72 +169,40 @@ fn written<Q: Quantity, S: Serializer>(quantity: Q, serializer: S) -> Result<S::
     }
 }
 
-macro_rules! documented {
-    ($($name:ident)*) => {$(
-        impl JsonSchema for $name {
+/// How a quantity is read, shown and checked: all by its [`Quantity`].
+macro_rules! written {
+    ($($name:ident $(<$inner:ident>)?)*) => {$(
+        impl<'de $(, $inner: Quantity)?> Deserialize<'de> for $name $(<$inner>)? {
+            fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                deserialize(deserializer)
+            }
+        }
+
+        impl $(<$inner: Quantity>)? Serialize for $name $(<$inner>)? {
+            fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+                written(*self, serializer)
+            }
+        }
+
+        impl $(<$inner: Quantity>)? JsonSchema for $name $(<$inner>)? {
             fn inline_schema() -> bool {
                 true
             }
 
             fn schema_name() -> Cow<'static, str> {
-                stringify!($name).into()
+                concat!(stringify!($name), $("_", stringify!($inner))?).into()
             }
 
             fn json_schema(_: &mut SchemaGenerator) -> Schema {
                 schema_of::<Self>()
             }
         }
-
-        impl Serialize for $name {
-            fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-                written(*self, serializer)
-            }
-        }
     )*};
 }
 
-documented! { Length Wavelength Time Temperature Luminance Illuminance Exposure Power RadiantIntensity Ratio SpatialFrequency FNumber Angle }
-
-macro_rules! documented_wrapper {
-    ($($name:ident)*) => {$(
-        impl<Q: Quantity> JsonSchema for $name<Q> {
-            fn inline_schema() -> bool {
-                true
-            }
-
-            fn schema_name() -> Cow<'static, str> {
-                format!(concat!(stringify!($name), "_{}"), Q::NOUN).into()
-            }
-
-            fn json_schema(_: &mut SchemaGenerator) -> Schema {
-                schema_of::<Self>()
-            }
-        }
-
-        impl<Q: Quantity> Serialize for $name<Q> {
-            fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-                written(*self, serializer)
-            }
-        }
-    )*};
-}
-
-documented_wrapper! { Positive NonNegative OrInfinity }
-
-/// Any value: what is there is decided later. Where a key is known to hold a stage, say so:
-/// `#[schemars(with = "Option<StageOf<dyn ColorModel>>")]`, see [`crate::registry::StageOf`].
-impl JsonSchema for StageNode {
-    fn inline_schema() -> bool {
-        true
-    }
-
-    fn schema_name() -> Cow<'static, str> {
-        "Any".into()
-    }
-
-    fn json_schema(_: &mut SchemaGenerator) -> Schema {
-        json_schema!({})
-    }
+written! {
+    Length Wavelength Time Temperature Luminance Illuminance Exposure Power RadiantIntensity Ratio SpatialFrequency FNumber Angle
+    Positive<Q> NonNegative<Q> OrInfinity<Q>
 }
 
 #[cfg(test)]

@@ -1,7 +1,8 @@
 //! What the tree walk does beyond single values, on trees made by hand.
 
 use super::*;
-use serde::{Deserialize, Deserializer};
+use schemars::JsonSchema;
+use serde::Deserialize;
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -134,7 +135,7 @@ fn examples_are_right() {
 
 #[test]
 fn several_missing_and_wrong_keys_come_in_one_go() {
-    #[derive(Debug, Deserialize)]
+    #[derive(Debug, Deserialize, JsonSchema)]
     #[allow(dead_code)]
     struct Inner {
         a: Length,
@@ -145,7 +146,7 @@ fn several_missing_and_wrong_keys_come_in_one_go() {
         f: Option<StageNode>,
         g: StageNode,
     }
-    #[derive(Debug, Deserialize)]
+    #[derive(Debug, Deserialize, JsonSchema)]
     #[allow(dead_code)]
     struct Outer {
         first: Inner,
@@ -171,64 +172,13 @@ fn several_missing_and_wrong_keys_come_in_one_go() {
     assert_eq!(said(tree.parse::<Outer>()), expected);
 }
 
-/// A type that no placeholder satisfies.
-#[derive(Debug)]
-struct Odd;
-
-impl<'de> Deserialize<'de> for Odd {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        match String::deserialize(deserializer)?.as_str() {
-            "odd" => Ok(Self),
-            other => Err(serde::de::Error::custom(format!("found `{other}`, expected `odd`\nhint: write odd"))),
-        }
-    }
-}
-
 #[test]
-fn a_type_that_takes_no_placeholder_hides_no_other_key() {
-    #[derive(Debug, Deserialize)]
-    #[allow(dead_code)]
-    struct Holder {
-        odd: Odd,
-        after: Length,
-    }
-    #[derive(Debug, Deserialize)]
-    #[allow(dead_code)]
-    struct Outer {
-        list: Vec<Holder>,
-        pair: [Odd; 2],
-        last: Time,
-    }
-    let holder = |odd: &str| map(&[("odd", plain(odd)), ("after", plain("1 s"))]);
-    let tree = map(&[
-        ("list", list(&[holder("even"), holder("odd"), map(&[("after", plain("2 s"))])])),
-        ("pair", list(&[plain("a"), plain("b")])),
-        ("last", plain("3 m")),
-    ]);
-    let result = tree.parse::<Outer>();
-    let hinted =
-        result.as_ref().is_err_and(|faults| faults.iter().any(|fault| fault.hint.as_deref() == Some("write odd")));
-    assert!(hinted);
-    let expected = [
-        "last: found a length, expected a time such as 1/125 s",
-        "list[0].after: found a time, expected a length such as 50 mm",
-        "list[0].odd: found `even`, expected `odd`",
-        "list[1].after: found a time, expected a length such as 50 mm",
-        "list[2].after: found a time, expected a length such as 50 mm",
-        "list[2].odd: missing key `odd`",
-        "pair[0]: found `a`, expected `odd`",
-        "pair[1]: found `b`, expected `odd`",
-    ];
-    assert_eq!(said(result), expected);
-}
-
-#[test]
-fn checks_of_a_whole_are_not_made_on_placeholders() {
-    #[derive(Debug, Deserialize)]
+fn checks_of_a_whole_are_made_on_what_is_right() {
+    #[derive(Debug, Deserialize, JsonSchema)]
     #[serde(try_from = "Raw")]
     #[allow(dead_code)]
     struct Range(f64, f64);
-    #[derive(Debug, Deserialize)]
+    #[derive(Debug, Deserialize, JsonSchema)]
     struct Raw {
         from: f64,
         to: f64,
@@ -239,7 +189,7 @@ fn checks_of_a_whole_are_not_made_on_placeholders() {
             if raw.from < raw.to { Ok(Self(raw.from, raw.to)) } else { Err("`from` must be below `to`".to_owned()) }
         }
     }
-    #[derive(Debug, Deserialize)]
+    #[derive(Debug, Deserialize, JsonSchema)]
     #[allow(dead_code)]
     struct Outer {
         range: Range,
@@ -252,24 +202,22 @@ fn checks_of_a_whole_are_not_made_on_placeholders() {
         ])
     };
     let below = ": `from` must be below `to`";
-    assert_eq!(
-        said(tree("x").parse::<Outer>()),
-        [&format!("other{below}"), "range.from: found the text `x`, expected a number such as 1.5"]
-    );
-    assert_eq!(said(tree("3").parse::<Outer>()), [format!("other{below}"), format!("range{below}")]);
+    assert_eq!(said(tree("x").parse::<Outer>()), ["range.from: found the text `x`, expected a number such as 1.5"]);
+    assert_eq!(said(tree("3").parse::<Outer>()), [below]);
+    assert_eq!(said(tree("-1").parse::<Outer>()), [below]);
     assert_eq!(said(map(&[("from", plain("3")), ("to", plain("2"))]).parse::<Range>()), [below]);
 }
 
 #[test]
 fn types_that_hold_themselves_end() {
-    #[derive(Debug, Deserialize)]
+    #[derive(Debug, Deserialize, JsonSchema)]
     #[serde(rename_all = "kebab-case")]
     #[allow(dead_code)]
     enum Expression {
         Sum(Box<Expression>, Box<Expression>),
         Number(f64),
     }
-    #[derive(Debug, Deserialize)]
+    #[derive(Debug, Deserialize, JsonSchema)]
     #[allow(dead_code)]
     struct Holder {
         value: Expression,
@@ -285,27 +233,24 @@ fn types_that_hold_themselves_end() {
 }
 
 #[test]
-fn keys_may_be_typed() {
-    let tree = map(&[("400", plain("1")), ("red", plain("2"))]);
-    let keys = tree.parse::<HashMap<u16, f64>>();
-    assert_eq!(said(keys), ["red: found the key `red`, expected a whole number up to 65535"]);
+fn any_keys() {
     let right = map(&[("550 nm", plain("1")), ("600", plain("2"))]);
-    #[derive(Debug, Deserialize, PartialEq)]
+    #[derive(Debug, Deserialize, JsonSchema, PartialEq)]
     struct Row(String, f64);
     assert_eq!(right.parse::<HashMap<String, f64>>().map(|map| map["550 nm"]), Ok(1.0));
     assert_eq!(list(&[plain("a"), plain("2")]).parse(), Ok(Row("a".to_owned(), 2.0)));
 }
 
 #[test]
-fn untagged_and_flattened_values_are_placed_at_the_whole() {
-    #[derive(Debug, Deserialize)]
+fn a_fault_in_one_of_several_forms_has_its_own_place() {
+    #[derive(Debug, Deserialize, JsonSchema)]
     #[serde(untagged)]
     #[allow(dead_code)]
     enum Glass {
         Name(String),
         Model { nd: f64, vd: f64 },
     }
-    #[derive(Debug, Deserialize)]
+    #[derive(Debug, Deserialize, JsonSchema)]
     #[allow(dead_code)]
     struct Holder {
         glass: Glass,
@@ -316,13 +261,13 @@ fn untagged_and_flattened_values_are_placed_at_the_whole() {
     assert!(map(&[("glass", plain("N-BK7")), ("nd", plain("1"))]).parse::<Holder>().is_ok());
     let wrong = map(&[("glass", model("x")), ("nd", plain("1 s"))]);
     let paths: Vec<String> = wrong.parse::<Holder>().unwrap_err().iter().map(|fault| fault.path.clone()).collect();
-    assert_eq!(paths, ["glass", "nd"]);
+    assert_eq!(paths, ["glass.vd", "nd"]);
 }
 
 #[test]
 fn a_stage_node_does_not_come_from_other_formats() {
     let buffered = map(&[("a", plain("1"))]);
-    #[derive(Debug, Deserialize)]
+    #[derive(Debug, Deserialize, JsonSchema)]
     #[serde(untagged)]
     #[allow(dead_code)]
     enum Either {

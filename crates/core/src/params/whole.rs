@@ -1,15 +1,10 @@
 //! Whole numbers, read from their digits, because an f64 would silently change those above 2^53.
 
-use super::node::{Node, Value, decimal_end};
-use super::text::shown;
+use super::node::decimal_end;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
-use serde::de::{Deserializer, Error, Unexpected, Visitor};
+use serde::de::{Deserializer, Error};
 use serde::{Deserialize, Serialize, Serializer};
 use std::borrow::Cow;
-use std::fmt;
-
-/// The name by which a whole number asks the nodes' deserializer for its digits.
-pub(super) const WHOLE: &str = "spectra::whole";
 
 /// A whole number from `MIN` to `MAX`, both included: `16`, `2e6`, `0x10`. Exact up to 2^64 - 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -104,64 +99,12 @@ impl Exact {
     }
 }
 
-/// The fault for a number outside a range, with a hint on its own line.
-pub(super) fn out_of_range(written: &str, least: impl fmt::Display, most: impl fmt::Display) -> String {
-    format!("found {}, which is out of range\nhint: a whole number from {least} to {most}", shown(written))
-}
-
 impl<'de, const MIN: u64, const MAX: u64> Deserialize<'de> for Whole<MIN, MAX> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_newtype_struct(WHOLE, WholeVisitor)
-    }
-}
-
-struct WholeVisitor<const MIN: u64, const MAX: u64>;
-
-impl<const MIN: u64, const MAX: u64> WholeVisitor<MIN, MAX> {
-    fn of<E: Error>(written: &str) -> Result<Whole<MIN, MAX>, E> {
-        match Exact::of(written) {
-            Exact::Is(value) => {
-                u64::try_from(value).ok().and_then(Whole::new).ok_or_else(|| E::custom(out_of_range(written, MIN, MAX)))
-            }
-            Exact::Beyond => Err(E::custom(out_of_range(written, MIN, MAX))),
-            Exact::Not => {
-                Err(E::custom(format!("found {}, expected a whole number\nhint: from {MIN} to {MAX}", shown(written))))
-            }
-        }
-    }
-}
-
-impl<'de, const MIN: u64, const MAX: u64> Visitor<'de> for WholeVisitor<MIN, MAX> {
-    type Value = Whole<MIN, MAX>;
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "a whole number such as {}", MIN.max(16).min(MAX))
-    }
-
-    /// For formats other than nodes, and for values that serde has buffered.
-    fn visit_newtype_struct<D: Deserializer<'de>>(self, deserializer: D) -> Result<Self::Value, D::Error> {
-        deserializer.deserialize_any(self)
-    }
-
-    /// The spelling of a number; texts have been refused before this is called.
-    fn visit_str<E: Error>(self, written: &str) -> Result<Self::Value, E> {
-        Self::of(written)
-    }
-
-    fn visit_u64<E: Error>(self, value: u64) -> Result<Self::Value, E> {
-        Self::of(&value.to_string())
-    }
-
-    fn visit_i64<E: Error>(self, value: i64) -> Result<Self::Value, E> {
-        Self::of(&value.to_string())
-    }
-
-    fn visit_f64<E: Error>(self, value: f64) -> Result<Self::Value, E> {
-        Self::of(&value.to_string())
-    }
-
-    fn visit_bool<E: Error>(self, value: bool) -> Result<Self::Value, E> {
-        Err(E::invalid_type(Unexpected::Bool(value), &self))
+        let value = u64::deserialize(deserializer)?;
+        Self::new(value).ok_or_else(|| {
+            D::Error::custom(format!("found {value}, which is out of range\nhint: a whole number from {MIN} to {MAX}"))
+        })
     }
 }
 
@@ -190,14 +133,15 @@ impl<const MIN: u64, const MAX: u64> JsonSchema for Whole<MIN, MAX> {
     }
 }
 
-/// The exact whole number in a node, if it is one in `least ..= most`.
-pub(super) fn whole_of(node: &Node, least: i128, most: i128) -> Option<Result<i128, String>> {
-    let Value::Number(number) = &node.value else { return None };
-    match Exact::of(&number.text) {
-        Exact::Is(value) if (least..=most).contains(&value) => Some(Ok(value)),
-        Exact::Is(_) | Exact::Beyond => Some(Err(out_of_range(&number.text, least, most))),
-        Exact::Not => None,
-    }
+/// The limits of a schema of whole numbers.
+pub(super) fn limits_of(schema: &serde_json::Value) -> (i128, i128) {
+    let bits =
+        schema.get("format").and_then(|format| format.as_str()?.trim_start_matches(['u', 'i', 'n', 't']).parse().ok());
+    let stated = |key: &str| schema.get(key).and_then(|v| v.as_i64().map(i128::from).or(v.as_u64().map(i128::from)));
+    let least = stated("minimum").unwrap_or(i64::MIN.into());
+    let highest = if least < 0 { i64::MAX.into() } else { u64::MAX.into() };
+    let of_type = bits.map_or(highest, |bits: u32| (1_i128 << (bits.min(64) - u32::from(least < 0))) - 1);
+    (least, stated("maximum").unwrap_or(of_type).min(of_type))
 }
 
 #[cfg(test)]

@@ -3,8 +3,9 @@
 use crate::prescription::{
     Aperture, ApertureShape, CoordinateBreak, Displacement, Item, Medium, Ordering, Prescription, Shape, Surface,
 };
-use serde::de::DeserializeOwned;
-use spectra_core::params::{Angle, Faults, Length, LengthOrInfinity, Node, Params, SpatialFrequency, StageNode, Value};
+use spectra_core::params::{
+    Angle, Faults, Length, LengthOrInfinity, Node, Params, Readable, SpatialFrequency, StageNode, Value,
+};
 
 /// Reads a lens file. What it holds that no other program knows is noted in `left_out`. The file is expected to be sound: a lens is
 /// loaded before it is written.
@@ -50,7 +51,7 @@ pub fn read(params: &Params) -> Result<Prescription, Faults> {
 }
 
 /// The value under a key.
-fn value<T: DeserializeOwned>(params: &Params, key: &str) -> Result<Option<T>, Faults> {
+fn value<T: Readable>(params: &Params, key: &str) -> Result<Option<T>, Faults> {
     params.get(key).map(|node| StageNode::new(node.clone(), format!("{}.{key}", params.path())).parse()).transpose()
 }
 

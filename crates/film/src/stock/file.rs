@@ -13,7 +13,7 @@ use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::Deserialize;
 use serde_json::{Value, json};
 use spectra_core::math::log10;
-use spectra_core::params::{Fault, Faults, Node, Params, Positive};
+use spectra_core::params::{Fault, Faults, Node, Params, Positive, Whole};
 use spectra_core::resources::{Resource, ResourceError, Resources, beside};
 use spectra_core::spectral::BAND;
 use spectra_spectrum::table::{MAX_BYTES, Table, TableFault};
@@ -58,8 +58,8 @@ use std::borrow::Cow;
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct StockFile {
     /// Format of the file: 1; 1 if absent.
-    #[schemars(range(min = 1, max = 1))]
-    spectra: Option<f64>,
+    #[expect(dead_code, reason = "its schema allows one version")]
+    spectra: Option<Whole<1, 1>>,
     /// Name for people.
     name: String,
     /// Who makes or made it; not known if absent.
@@ -248,9 +248,6 @@ pub(super) fn read(params: &Params, resources: &dyn Resources) -> Result<Stock, 
     let params = &inherited(params, resources)?;
     let file: StockFile = params.parse()?;
     let mut faults = Faults::new();
-    if file.spectra.is_some_and(|v| v != 1.0) {
-        faults.push(params.fault("spectra", "the format of a stock file that this program reads is 1"));
-    }
     let reference = faults.take(reference(params, &file.reference_illuminant, resources));
     if file.layers.is_empty() {
         let fault = params.fault("layers", "a film has at least one layer");
@@ -286,8 +283,8 @@ pub(super) fn read(params: &Params, resources: &dyn Resources) -> Result<Stock, 
         faults.push(fault.hint("leave it out"));
     }
     let granularity = file.granularity.as_ref().map(GranularityFile::read);
-    let halation = file.halation.as_ref().and_then(|h| faults.take(h.read(params)));
-    let bases = file.bases.iter().enumerate().filter_map(|(i, b)| faults.take(b.read(params, i))).collect();
+    let halation = file.halation.as_ref().map(HalationFile::read);
+    let bases = file.bases.iter().map(BaseFile::read).collect();
     let reciprocity = file.reciprocity.as_ref().and_then(|r| faults.take(r.read(params)));
     let Some(densitometry) = densitometry else {
         return Err(faults);

@@ -75,13 +75,7 @@ impl ReciprocityFile {
     pub(super) fn read(&self, params: &Params) -> Result<Reciprocity, Fault> {
         let above_s = self.above.s();
         match (self.exponent, &self.table) {
-            (Some(exponent), None) if (1.0..=10.0).contains(&exponent) => {
-                Ok(Reciprocity::PowerLaw { exponent, above_s })
-            }
-            (Some(exponent), None) => {
-                let text = format!("the exponent is between 1 and 10, not {exponent}");
-                Err(params.fault("reciprocity.exponent", text))
-            }
+            (Some(exponent), None) => Ok(Reciprocity::PowerLaw { exponent, above_s }),
             (None, Some(rows)) => {
                 let mut before = [above_s; 2];
                 for (i, row) in rows.iter().enumerate() {

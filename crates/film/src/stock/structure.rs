@@ -2,7 +2,7 @@
 
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::params::{Fault, Faults, Length, Params, Positive};
+use spectra_core::params::{Fault, Length, Params, Positive};
 
 /// What the emulsion is coated on.
 #[derive(Clone, Debug, PartialEq)]
@@ -60,18 +60,14 @@ pub(super) struct BaseFile {
 }
 
 impl BaseFile {
-    pub(super) fn read(&self, params: &Params, i: usize) -> Result<Base, Fault> {
-        if let Some(index) = self.index.filter(|n| !(1.0..=3.0).contains(n)) {
-            let text = format!("a refractive index is between 1 and 3, not {index}");
-            return Err(params.fault(&format!("bases[{i}].index"), text));
-        }
-        Ok(Base {
+    pub(super) fn read(&self) -> Base {
+        Base {
             formats: self.formats.clone(),
             material: self.material.clone(),
             thickness_mm: self.thickness.mm(),
             index: self.index,
             assumed: self.assumed,
-        })
+        }
     }
 }
 
@@ -113,15 +109,9 @@ pub(super) struct HalationFile {
 }
 
 impl HalationFile {
-    pub(super) fn read(&self, params: &Params) -> Result<Halation, Faults> {
-        let mut faults = Faults::new();
-        for (key, value) in [("scattered", self.scattered), ("backing", self.backing)] {
-            if !(0.0..=1.0).contains(&value) {
-                faults.push(params.fault(&format!("halation.{key}"), format!("a share from 0 to 1, not {value}")));
-            }
-        }
+    pub(super) fn read(&self) -> Halation {
         let Self { scattered, backing, assumed } = *self;
-        faults.into_result(Halation { scattered, backing, assumed })
+        Halation { scattered, backing, assumed }
     }
 }
 

@@ -126,16 +126,6 @@ impl Figures {
     /// No index; a figure that no glass has; figures that contradict each other.
     pub fn medium(&self, params: &Params) -> Result<(Medium, String), Fault> {
         let (indices, abbe) = (self.indices(), self.abbe_numbers());
-        for (key, _, n) in &indices {
-            if !(1.0..=4.0).contains(n) {
-                return Err(params.fault(key, format!("no glass has an index of {n}")).hint("from 1 to 4"));
-            }
-        }
-        for (key, _, v) in &abbe {
-            if !(5.0..=200.0).contains(v) {
-                return Err(params.fault(key, format!("no glass has an Abbe number of {v}")).hint("from 5 to 200"));
-            }
-        }
         let figure = |(key, value): (&str, f64)| format!("{key} = {value}");
         let named = indices.iter().map(|(key, _, n)| (*key, *n)).chain(abbe.iter().map(|(key, _, v)| (*key, *v)));
         let label = match (&indices[..], &abbe[..]) {

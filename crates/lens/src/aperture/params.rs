@@ -4,7 +4,7 @@ use super::{Aperture, Iris, Mask, Shape, drawing};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
 use spectra_core::params::{
-    Angle, Faults, Kinds, Length, LengthOrInfinity, Params, Positive, StageNode, Value, Whole, nearest,
+    Angle, Faults, Kinds, Length, LengthOrInfinity, Params, Positive, StageNode, Value, Whole, keys_of,
 };
 use spectra_core::resources::{Resources, beside};
 use std::sync::Arc;
@@ -14,12 +14,25 @@ use std::sync::Arc;
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct Common {
     /// Its form.
-    shape: String,
+    shape: ShapeName,
     /// Its center, mm if bare.
     center: Option<[Length; 2]>,
     /// Stops what is inside, in place of what is outside.
     #[serde(default)]
     obscures: bool,
+}
+
+/// The form of an aperture.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+#[schemars(inline)]
+enum ShapeName {
+    Ring,
+    Rectangle,
+    Ellipse,
+    Polygon,
+    Iris,
+    Mask,
 }
 
 /// What lies between two circles.
@@ -46,7 +59,8 @@ struct HalfSizes {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct PolygonParams {
-    /// Corners in order, mm if bare.
+    /// Corners in order around it, mm if bare, 3 to 10000.
+    #[schemars(length(min = 3, max = 10_000))]
     points: Vec<[Length; 2]>,
 }
 
@@ -72,8 +86,7 @@ struct MaskParams {
     width: Option<Positive<Length>>,
     /// Of a drawing: `filled`, whatever is painted passes (the default); or `white`, as of a picture: white passes, black
     /// stops, gray passes in part.
-    #[schemars(extend("enum" = ["filled", "white", null]))]
-    open: Option<String>,
+    open: Option<drawing::Open>,
 }
 
 /// What an aperture is written as: one, or a list.
@@ -105,11 +118,8 @@ impl JsonSchema for ApertureForm {
     }
 }
 
-const COMMON: [&str; 3] = ["shape", "center", "obscures"];
-const SHAPES: [&str; 6] = ["ring", "rectangle", "ellipse", "polygon", "iris", "mask"];
 const MAX_MASK_BYTES: u64 = 64 << 20;
 const MAX_MASK_SIDE: u32 = 8192;
-const MAX_CORNERS: usize = 10_000;
 
 /// Reads one aperture or a list of them, as lens files and scenes write them.
 ///
@@ -129,30 +139,21 @@ pub fn read(node: &StageNode, resources: &dyn Resources) -> Result<Vec<Aperture>
 }
 
 fn one(params: &Params, resources: &dyn Resources) -> Result<Aperture, Faults> {
-    let (common, own) = params.split(&COMMON);
+    let (common, own) = params.split(&keys_of::<Common>());
     let common: Common = common.parse()?;
-    let shape = match common.shape.as_str() {
-        "ring" => ring(&own)?,
-        "rectangle" => {
+    let shape = match common.shape {
+        ShapeName::Ring => ring(&own)?,
+        ShapeName::Rectangle => {
             let p: HalfSizes = own.parse()?;
             Shape::Rectangle { half_width_mm: p.half_width.mm(), half_height_mm: p.half_height.mm() }
         }
-        "ellipse" => {
+        ShapeName::Ellipse => {
             let p: HalfSizes = own.parse()?;
             Shape::Ellipse { half_width_mm: p.half_width.mm(), half_height_mm: p.half_height.mm() }
         }
-        "polygon" => polygon(&own)?,
-        "iris" => iris(&own)?,
-        "mask" => mask(&own, resources)?,
-        other => {
-            let fault = params.fault("shape", format!("unknown shape `{other}`"));
-            let known = SHAPES.join(", ");
-            return Err(match nearest(other, SHAPES) {
-                Some(near) => fault.hint(format!("did you mean `{near}`? Known: {known}")),
-                None => fault.hint(format!("known: {known}")),
-            }
-            .into());
-        }
+        ShapeName::Polygon => polygon(&own)?,
+        ShapeName::Iris => iris(&own)?,
+        ShapeName::Mask => mask(&own, resources)?,
     };
     let center_mm = common.center.map_or([0.0; 2], |c| c.map(Length::mm));
     Ok(Aperture { shape, center_mm, obscures: common.obscures })
@@ -170,10 +171,6 @@ fn ring(params: &Params) -> Result<Shape, Faults> {
 
 fn polygon(params: &Params) -> Result<Shape, Faults> {
     let p: PolygonParams = params.parse()?;
-    if !(3..=MAX_CORNERS).contains(&p.points.len()) {
-        let fault = params.fault("points", format!("{} corners make no polygon", p.points.len()));
-        return Err(fault.hint(format!("3 to {MAX_CORNERS}, in order around it")).into());
-    }
     Ok(Shape::Polygon(p.points.into_iter().map(|point| point.map(Length::mm)).collect()))
 }
 
@@ -190,15 +187,7 @@ fn mask(params: &Params, resources: &dyn Resources) -> Result<Shape, Faults> {
     let p: MaskParams = params.parse()?;
     let fail =
         |text: String| Faults::from(params.fault("file", text).hint("a PNG, JPEG, TIFF or SVG beside the lens file"));
-    let open = match p.open.as_deref() {
-        None => None,
-        Some("filled") => Some(drawing::Open::Filled),
-        Some("white") => Some(drawing::Open::White),
-        Some(other) => {
-            let fault = params.fault("open", format!("unknown: `{other}`"));
-            return Err(fault.hint("filled (whatever is painted passes) or white (white passes, black stops)").into());
-        }
-    };
+    let open = p.open;
     let path = beside(params.node(), &p.file);
     let found = resources
         .read(&path, &["lenses", "scenes"], &[], MAX_MASK_BYTES)

@@ -1,9 +1,10 @@
 //! Coatings as lens files, scenes and files of their own write them.
 
+use super::standard::CoatingName;
 use super::{Coating, MeasuredCoating, Stack, StackLayer};
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::params::{Fault, Faults, NonNegative, Params, StageNode, Wavelength};
+use spectra_core::params::{Fault, Faults, NonNegative, Params, Part, StageNode, Wavelength, Whole};
 use spectra_core::resources::{Resources, beside};
 use spectra_glass::Medium;
 use spectra_glass::file;
@@ -13,7 +14,8 @@ use std::sync::Arc;
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct OneLayer {
-    /// Refractive index of the layer.
+    /// Refractive index of the layer, 1 to 5; magnesium fluoride has 1.38.
+    #[schemars(range(min = 1, max = 5))]
     layer: f64,
     /// Thickness, nm if bare.
     thickness: Option<Wavelength>,
@@ -30,8 +32,7 @@ pub struct OneLayer {
 pub struct NamedCoating {
     /// `ideal` (all light passes), `bare` (Fresnel's formulas), `single-layer` (a quarter wave of magnesium fluoride at 550 nm)
     /// or `three-layer` (a quarter wave of index 1.38, half a wave of 2.10, a quarter wave of 1.72, at 515 nm).
-    #[schemars(extend("enum" = ["ideal", "bare", "single-layer", "three-layer"]))]
-    kind: String,
+    kind: CoatingName,
     /// Whether it is assumed of the lens, not known.
     #[serde(default)]
     assumed: bool,
@@ -42,7 +43,8 @@ pub struct NamedCoating {
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct StackParams {
     /// Version of the format.
-    spectra: Option<f64>,
+    #[expect(dead_code, reason = "its schema allows one version")]
+    spectra: Option<Whole<1, 1>>,
     /// Name for people.
     #[expect(dead_code, reason = "for the reader of the file")]
     name: Option<String>,
@@ -58,9 +60,9 @@ pub struct StackParams {
     /// Whether it is assumed of the lens, not known.
     #[serde(default)]
     assumed: bool,
-    /// The layers, the one next to the air first.
-    #[schemars(with = "Vec<LayerOfStack>")]
-    layers: Vec<StageNode>,
+    /// The layers, the one next to the air first, 1 to 500; without any it is `bare`.
+    #[schemars(length(min = 1, max = 500))]
+    layers: Vec<Part<LayerOfStack>>,
 }
 
 /// A layer of a stack.
@@ -69,7 +71,8 @@ pub struct StackParams {
 struct LayerOfStack {
     /// A medium of the catalogue, or a glass file.
     material: Option<String>,
-    /// Refractive index in place of a material, the same at all wavelengths.
+    /// Refractive index in place of a material, 0.01 to 10, the same at all wavelengths.
+    #[schemars(range(min = 0.01, max = 10))]
     index: Option<f64>,
     /// Extinction coefficient beside `index`.
     k: Option<NonNegative<f64>>,
@@ -95,8 +98,6 @@ pub enum CoatingForm {
 }
 
 const HINT: &str = "ideal, bare, single-layer, three-layer, {layer: 1.38, quarter-wave-at: 550 nm}, {layers: [...]}, or a file: my-stack.yaml, my-coating.csv";
-/// Most layers of a stack.
-const MAX_LAYERS: usize = 500;
 /// Thickest layer, nm.
 const MAX_NM: f64 = 1e5;
 /// Largest measurement that is read, bytes.
@@ -135,14 +136,9 @@ pub fn read_stated_coating(node: &StageNode, resources: &dyn Resources) -> Resul
     }
     if params.get("kind").is_some() {
         let p: NamedCoating = params.parse()?;
-        let unknown = || params.fault("kind", format!("unknown coating `{}`", p.kind)).hint(HINT);
-        return Ok(StatedCoating { coating: Coating::by_name(&p.kind).ok_or_else(unknown)?, assumed: p.assumed });
+        return Ok(StatedCoating { coating: p.kind.coating(), assumed: p.assumed });
     }
     let p: OneLayer = params.parse()?;
-    if !(1.0..=5.0).contains(&p.layer) {
-        let fault = params.fault("layer", format!("a layer of index {}", p.layer));
-        return Err(fault.hint("from 1 to 5; magnesium fluoride has 1.38").into());
-    }
     let thickness_nm = thickness(&params, "", p.thickness, p.quarter_wave_at, |_| p.layer)?;
     Ok(StatedCoating { coating: Coating::Layer { index: p.layer, thickness_nm }, assumed: p.assumed })
 }
@@ -209,13 +205,6 @@ fn placed(faults: Faults, node: &StageNode) -> Faults {
 fn stack(params: &Params, resources: &dyn Resources) -> Result<StatedCoating, Faults> {
     let p: StackParams = params.parse()?;
     let mut faults = Faults::new();
-    if p.spectra.is_some_and(|v| v != 1.0) {
-        faults.push(params.fault("spectra", "the format of a coating file that this program reads is 1"));
-    }
-    if p.layers.is_empty() || p.layers.len() > MAX_LAYERS {
-        let fault = params.fault("layers", format!("{} layers", p.layers.len()));
-        return Err(fault.hint(format!("1 to {MAX_LAYERS}; without any it is `bare`")).into());
-    }
     let layers = p.layers.iter().enumerate().filter_map(|(i, node)| faults.take(layer(params, i, node, resources)));
     let layers: Vec<StackLayer> = layers.collect();
     faults.into_result(StatedCoating { coating: Coating::Stack(Arc::new(Stack::new(layers))), assumed: p.assumed })
@@ -235,10 +224,6 @@ fn layer(params: &Params, i: usize, node: &StageNode, resources: &dyn Resources)
             Ok(StackLayer::dispersive(thickness_nm, n_and_k))
         }
         (None, Some(index)) => {
-            if !(0.01..=10.0).contains(&index) {
-                let fault = params.fault(&format!("{at}.index"), format!("a layer of index {index}"));
-                return Err(fault.hint("0.01 to 10; magnesium fluoride has 1.38").into());
-            }
             let thickness_nm = thickness(params, &at, p.thickness, p.quarter_wave_at, |_| index)?;
             Ok(StackLayer::constant(thickness_nm, index, p.k.map_or(0.0, |k| k.get())))
         }

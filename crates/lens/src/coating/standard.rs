@@ -6,6 +6,9 @@
 //! Super-Multi-Coating of 1971).
 
 use super::{Coating, Stack, StackLayer};
+use schemars::JsonSchema;
+use serde::Deserialize;
+use serde::de::value::StrDeserializer;
 use std::sync::Arc;
 
 /// Index of a layer of magnesium fluoride.
@@ -23,6 +26,28 @@ const THREE_NM: f64 = 515.0;
 const SINGLE_FROM: i32 = 1940;
 /// First year of three layers.
 const THREE_FROM: i32 = 1970;
+
+/// The name of a coating in a file.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+#[schemars(inline)]
+pub(super) enum CoatingName {
+    Ideal,
+    Bare,
+    SingleLayer,
+    ThreeLayer,
+}
+
+impl CoatingName {
+    pub(super) fn coating(self) -> Coating {
+        match self {
+            Self::Ideal => Coating::Ideal,
+            Self::Bare => Coating::Bare,
+            Self::SingleLayer => Coating::single_layer(),
+            Self::ThreeLayer => Coating::three_layer(),
+        }
+    }
+}
 
 impl Coating {
     /// A quarter wave of magnesium fluoride at 550 nm: 1.3 % of reflectance on glass of 1.52, 0.4 % on 1.7.
@@ -54,13 +79,8 @@ impl Coating {
     /// The coating of a name: `ideal`, `bare`, `single-layer`, `three-layer`.
     #[must_use]
     pub fn by_name(name: &str) -> Option<Self> {
-        match name {
-            "ideal" => Some(Self::Ideal),
-            "bare" => Some(Self::Bare),
-            "single-layer" => Some(Self::single_layer()),
-            "three-layer" => Some(Self::three_layer()),
-            _ => None,
-        }
+        let name = StrDeserializer::<serde::de::value::Error>::new(name);
+        CoatingName::deserialize(name).ok().map(CoatingName::coating)
     }
 
     /// In a few words: `bare`, `a single layer`, `three layers`.

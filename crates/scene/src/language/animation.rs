@@ -1,11 +1,11 @@
 //! `animation`: one scene, a sequence of frames over which values change.
 
-use super::law::{LAWS, Law, Track};
+use super::law::{Law, Track};
 use super::sweep::{Setting, check_path};
 use super::variables::Variables;
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::params::{Fault, Faults, Key, Node, StageNode, Value, Warning, Whole, nearest};
+use spectra_core::params::{Fault, Faults, Key, Node, Part, StageNode, Value, Warning, Whole};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -29,14 +29,24 @@ pub(crate) struct Section {
     /// Number of the first one; 1 if left out.
     first: Option<Whole<0, LAST_FIRST>>,
     /// Frames a second; 24 if left out.
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e6))]
     rate: Option<f64>,
     /// `each`: every frame has noise and grain of its own; `fixed`: all have the same.
-    #[schemars(extend("enum" = ["each", "fixed"]))]
-    seed: Option<String>,
+    #[serde(default)]
+    seed: FrameSeed,
     /// Paths as of `--set`, each with its keyframes: numbers of frames with values, and beside them `interpolation`, one
     /// of `linear`, `smooth`, `hold`, `logarithmic`, `reciprocal`.
-    #[schemars(with = "Option<BTreeMap<String, BTreeMap<String, StageNode>>>")]
-    animate: Option<StageNode>,
+    animate: Option<Part<BTreeMap<String, BTreeMap<String, StageNode>>>>,
+}
+
+/// Whether every frame has noise and grain of its own.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+#[schemars(inline)]
+enum FrameSeed {
+    #[default]
+    Each,
+    Fixed,
 }
 
 /// Frames, and what changes over them.
@@ -65,24 +75,10 @@ impl Animation {
         let node = StageNode::new(filled, ANIMATION);
         let read: Section = node.parse()?;
         let mut faults = Faults::new();
-        let fault = |key: &str, text: String| {
-            node.node().get(key).unwrap_or(node.node()).fault(text).path(format!("{ANIMATION}.{key}"))
-        };
         let frames = read.frames.get_u32();
         let first = read.first.map_or(1, Whole::get_u32);
         let rate = read.rate.unwrap_or(24.0);
-        if !(rate > 0.0 && rate <= 1e6) {
-            faults.push(fault("rate", "`rate` must be a number of frames a second, up to 1000000".to_owned()));
-        }
-        let is_alive = match read.seed.as_deref() {
-            None | Some("each") => true,
-            Some("fixed") => false,
-            Some(other) => {
-                let hint = "`each`: every frame has noise and grain of its own; `fixed`: all have the same";
-                faults.push(fault("seed", format!("unknown seed `{other}`")).hint(hint));
-                true
-            }
-        };
+        let is_alive = read.seed == FrameSeed::Each;
         let (mut tracks, mut warnings) = (Vec::new(), Vec::new());
         let last = f64::from(first) + f64::from(frames) - 1.0;
         if let Some(animate) = &read.animate {
@@ -127,22 +123,8 @@ fn track(key: &Key, node: &Node) -> Result<(Track, Vec<f64>), Faults> {
     let mut keyframes: Vec<(f64, Node)> = Vec::new();
     for (key, value) in entries {
         if key.text == INTERPOLATION {
-            let known: Vec<&str> = LAWS.iter().map(|(name, _)| *name).collect();
-            let named = value.as_str().unwrap_or_default();
-            match LAWS.iter().find(|(name, _)| *name == named) {
-                Some((_, found)) => law = *found,
-                None => {
-                    let near = nearest(named, known.iter().copied())
-                        .map_or(String::new(), |n| format!("did you mean `{n}`? "));
-                    let fault =
-                        value.fault(format!("unknown interpolation `{}`", named.chars().take(48).collect::<String>()));
-                    faults.push(
-                        fault
-                            .path(format!("{path}.{INTERPOLATION}"))
-                            .hint(format!("{near}One of {}", known.join(", "))),
-                    );
-                }
-            }
+            let named = StageNode::new(value.clone(), format!("{path}.{INTERPOLATION}"));
+            law = faults.take(named.parse()).unwrap_or(law);
             continue;
         }
         let frame = key.text.parse::<u32>().ok().filter(|frame| u64::from(*frame) <= LAST);
@@ -225,10 +207,10 @@ mod tests {
             ("{}", "missing key `frames`"),
             ("{frames: 0}", "t.yaml:1:21: found 0, which is out of range (a whole number from 1 to 10000)"),
             ("{frames: 1e12}", "found 1e12, which is out of range"),
-            ("{frames: 2.5}", "found 2.5, expected a whole number"),
+            ("{frames: 2.5}", "found the number 2.5, expected a whole number"),
             ("{frames: 2, first: -1}", "found -1, which is out of range (a whole number from 0"),
-            ("{frames: 2, rate: 0}", "`rate` must be"),
-            ("{frames: 2, seed: 3}", "unknown seed `3`"),
+            ("{frames: 2, rate: 0}", "found 0, which is out of range"),
+            ("{frames: 2, seed: 3}", "unknown value `3` for `seed`"),
             ("{frames: 2, animate: [1]}", "`animate` is a map"),
             ("{frames: 2, animate: {a: 3}}", "an animated path has keyframes"),
             ("{frames: 2, animate: {a: {}}}", "there is no keyframe"),
@@ -236,7 +218,7 @@ mod tests {
             ("{frames: 2, animate: {a: {1: 3, 01: 4}}}", "frame 1 comes twice"),
             (
                 "{frames: 2, animate: {a: {1: 3, interpolation: linar}}}",
-                "unknown interpolation `linar` (did you mean `linear`?",
+                "unknown value `linar` for `interpolation` (did you mean `linear`?",
             ),
             ("{frames: 2, animate: {a: {1: x, 2: y}}}", "nothing lies between the text `x`"),
             ("{frames: 2, animate: {a: {1: 2 m, 2: 1 s}}}", "`1 s` and `2 m` are of different kinds"),

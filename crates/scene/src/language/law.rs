@@ -1,10 +1,13 @@
 //! Values between values: quantities with their units, by a law.
 
+use schemars::JsonSchema;
+use serde::Deserialize;
 use spectra_core::math::pow;
 use spectra_core::params::{Dimension, Fault, Node, Number, Reading, Unit, Value};
 
 /// How a value goes from one to the next.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
 pub(super) enum Law {
     /// Evenly.
     #[default]
@@ -18,15 +21,6 @@ pub(super) enum Law {
     /// Not at all: each stays until the next.
     Hold,
 }
-
-/// Laws by name.
-pub(super) const LAWS: [(&str, Law); 5] = [
-    ("linear", Law::Linear),
-    ("smooth", Law::Smooth),
-    ("hold", Law::Hold),
-    ("logarithmic", Law::Logarithmic),
-    ("reciprocal", Law::Reciprocal),
-];
 
 /// Values at places along a line, and what lies between them.
 #[derive(Clone, Debug)]

@@ -1,10 +1,10 @@
 //! `sweep`: one scene, several pictures that differ in named values.
 
-use super::law::{LAWS, Law, Track};
+use super::law::{Law, Track};
 use super::variables::Variables;
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::params::{Fault, Faults, Key, Node, StageNode, Value, Whole, nearest, steps};
+use spectra_core::params::{Fault, Faults, Key, Node, StageNode, Value, Whole, steps};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -69,8 +69,19 @@ pub(crate) struct Range {
     /// How many values, both ends counted.
     steps: Whole<2, { MAX_PICTURES as u64 }>,
     /// `linear`, `logarithmic` or `reciprocal`.
-    #[schemars(extend("enum" = ["linear", "logarithmic", "reciprocal"]))]
-    spacing: Option<String>,
+    #[serde(default)]
+    spacing: Spacing,
+}
+
+/// How the values of a range follow each other.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+#[schemars(inline)]
+enum Spacing {
+    #[default]
+    Linear,
+    Logarithmic,
+    Reciprocal,
 }
 
 impl Sweep {
@@ -165,32 +176,14 @@ fn axis(key: &Key, node: &Node, variables: &Variables) -> Result<Vec<Node>, Faul
 
 fn steps_of(node: &StageNode) -> Result<Vec<Node>, Faults> {
     let range: Range = node.parse()?;
-    let fault = |key: &str, text: String| {
-        node.node().get(key).unwrap_or(node.node()).fault(text).path(format!("{}.{key}", node.path()))
-    };
-    let mut faults = Faults::new();
-    let spacings = || LAWS.iter().filter(|(_, law)| !matches!(law, Law::Hold | Law::Smooth));
-    let law = match range.spacing.as_deref() {
-        None => Some(Law::Linear),
-        Some(name) => {
-            let found = spacings().find(|(n, _)| *n == name).map(|(_, law)| *law);
-            if found.is_none() {
-                let known: Vec<&str> = spacings().map(|(name, _)| *name).collect();
-                let near =
-                    nearest(name, known.iter().copied()).map_or(String::new(), |n| format!("did you mean `{n}`? "));
-                faults.push(
-                    fault("spacing", format!("unknown spacing `{name}`"))
-                        .hint(format!("{near}One of {}", known.join(", "))),
-                );
-            }
-            found
-        }
+    let law = match range.spacing {
+        Spacing::Linear => Law::Linear,
+        Spacing::Logarithmic => Law::Logarithmic,
+        Spacing::Reciprocal => Law::Reciprocal,
     };
     let ends = [range.from.node().clone(), range.to.node().clone()];
     let last = (range.steps.get() - 1) as f64;
-    let track =
-        law.and_then(|law| faults.take(Track::new(&[0.0, last], &ends, law).map_err(|fault| fault.path(node.path()))));
-    let Some(track) = faults.into_result(track)? else { return Ok(Vec::new()) };
+    let track = Track::new(&[0.0, last], &ends, law).map_err(|fault| fault.path(node.path()))?;
     Ok((0..range.steps.size()).map(|i| track.value_at(i as f64)).collect())
 }
 
@@ -279,7 +272,7 @@ mod tests {
                 "t.yaml:1:36: found 1, which is out of range (a whole number from 2 to 1000)",
             ),
             ("{a: {from: 1, to: 2, steps: 1e9}}", "found 1e9, which is out of range"),
-            ("{a: {from: 1, to: 2, steps: 3, spacing: log}}", "unknown spacing `log`"),
+            ("{a: {from: 1, to: 2, steps: 3, spacing: log}}", "unknown value `log` for `spacing`"),
             ("{a: {from: 1 m, to: 2 s, steps: 3}}", "`2 s` and `1 m` are of different kinds"),
             (&many, "the sweep has 1020 pictures, at most 1000 are made"),
             ("[3]", "t.yaml:1:9: each entry of such a sweep is a map"),

@@ -19,7 +19,9 @@ use spectra_core::prelude::*;
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct AxiconParams {
-    /// Angle between the cone's side and the plane across the axis, degrees if bare: positive where the side bends toward +z.
+    /// Angle between the cone's side and the plane across the axis, -80 to 80 degrees, degrees if bare: positive where the side
+    /// bends toward +z.
+    #[schemars(range(min = -80, max = 80))]
     angle: Angle,
     /// Roundness of the tip, mm if bare: how far from the axis it passes into the cone; sharp if absent.
     tip: Option<NonNegative<Length>>,
@@ -29,9 +31,6 @@ spectra_core::register!(surface "axicon": AxiconParams, build);
 
 fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Surface>, Faults> {
     let p: AxiconParams = params.parse()?;
-    if p.angle.rad().abs() > 1.4 {
-        return Err(params.fault("angle", "this is a needle").hint("at most 80 degrees to either side").into());
-    }
     Ok(Box::new(PerRay(FromSag(Axicon { slope: tan(p.angle.rad()), tip_mm: p.tip.map_or(0.0, |tip| tip.mm()) }))))
 }
 

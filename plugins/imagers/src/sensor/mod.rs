@@ -13,7 +13,7 @@ pub use convert::{Converter, electrons};
 pub use demosaic::demosaic;
 pub use noise::PixelNumbers;
 pub use params::{PhotositeParams, SensorParams};
-pub use pattern::{PATTERNS, Pattern};
+pub use pattern::{Pattern, PatternName};
 pub use photosite::Photosite;
 
 use crate::plane::{Met, Plane};
@@ -235,7 +235,7 @@ mod tests {
             let mut photosite = Photosite::new(0.005, &silicon, &BAND);
             (photosite.stack_mm, photosite.stack_index, photosite.microlens) = (0.003, 1.46, 0.4);
             let plane = Plane::new(size).standing(standing);
-            let pattern = PATTERNS[2].1;
+            let pattern = PatternName::Grbg.pattern();
             let pixels = Pixels { plane, pattern, open: 0.9, photosite: Some(photosite), coarse };
             let mut rays = RayBatch::new(n);
             rays.restart(n);

@@ -1,12 +1,10 @@
 //! `kind: sensor` as a scene writes it.
 
-use super::{CameraColor, Converter, PATTERNS, Pattern, Photosite, Pixels, Sensor};
-use crate::params::imager_params;
+use super::{CameraColor, Converter, Pattern, PatternName, Photosite, Pixels, Sensor};
+use crate::params::Frame;
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::params::{
-    Fault, Faults, Length, NonNegative, OrInfinity, Params, Positive, Quantity, Ratio, Time, nearest,
-};
+use spectra_core::params::{Faults, Length, NonNegative, OrInfinity, Params, Positive, Quantity, Ratio, Time, Whole};
 use spectra_core::registry::Context;
 use spectra_core::spectral::Channel;
 use spectra_core::stage::Imager;
@@ -14,105 +12,106 @@ use spectra_glass::Catalogue;
 use spectra_spectrum::constants::{LIGHT_M_PER_S, PLANCK_J_S};
 use spectra_spectrum::{find_emission, find_emission_in, find_sensitivity_in};
 
-imager_params! {
-    /// A chip of pixels with color filters: electrons, noise, raw files.
-    ///
-    /// Light becomes electrons by the sensitivities of the filters and pixels, electrons scatter as photons do
-    /// (Poisson) and as reading does (normal), a well holds so many of them, and a converter makes whole numbers: those
-    /// go into a DNG file (`output: [dng]`), and a picture is developed from them, demosaicked and balanced. Color
-    /// matrices are fitted to the 24 patches of a ColorChecker; the DNG file carries those for A and for D65, the noise,
-    /// exposure and lens. It carries no date, since the same scene gives the same bytes.
-    ///
-    /// With `photosite` light that comes at a slant lands beside the middle of its pixel, by the height of the stack,
-    /// and goes on sideways in the silicon: at the edge of the frame of a wide-angle lens colors mix and shift. What is
-    /// not known of a sensor (quantum efficiency, full well, read noise) has a default that is an assumption, and says
-    /// so. One peak quantum efficiency serves all colors, so how red and blue compare with green, and with it the numbers
-    /// of white before balancing and the noise of each color, is what the table says: that of the bundled sensor was
-    /// measured color by color, and its colors are set to each other by what the camera answers to D65.
-    ///
-    /// `resolution` is the number of pixels across and down; where their shape differs from that of the frame, pixels
-    /// are not square. The frame stands in the image plane of the lens unless it is shifted or tilted (as on a view
-    /// camera), or bent.
-    ///
-    /// # Example
-    /// ```yaml
-    /// {kind: sensor, format: 135, resolution: [960, 640], exposure: 1/125 s}
-    /// ```
-    /// ```yaml
-    /// # A small part of a sensor, pixel for pixel, behind its cover glass
-    /// kind: sensor
-    /// width: 2.4 mm
-    /// height: 1.6 mm
-    /// resolution: [400, 267]
-    /// exposure: 1/60 s
-    /// iso: 800
-    /// cover: [{glass: SCHOTT/N-BK7, thickness: 1 mm}]
-    /// photosite: {stack: 0.004 mm, microlens: 0.6, exit-pupil: 80 mm, well: 0.006 mm}
-    /// ```
-    /// # References
-    /// - P. B. Catrysse and B. A. Wandell, J. Opt. Soc. Am. A 19, 1610 (2002): light at a slant in a pixel.
-    /// - M. A. Green, Solar Energy Materials and Solar Cells 92, 1305 (2008): index and absorption of silicon.
-    /// - ISO 17321-1: the patches that the color matrix is fitted to.
-    SensorParams {
-        /// Exposure time, s if bare.
-        exposure: Positive<Time>,
-        /// Color filters from the upper left of the picture: `rggb` (the default), `bggr`, `grbg`, `gbrg`; or
-        /// `monochrome`.
-        #[serde(default)]
-        #[schemars(extend("enum" = ["rggb", "bggr", "grbg", "gbrg", "monochrome"]))]
-        pattern: Option<String>,
-        /// What the pixels see: a bundled table or a file with the columns red, green and blue, relative per power;
-        /// of a monochrome sensor one sensitivity, such as `file#column`. The default is `nikon-d5100`, with filters.
-        #[serde(default)]
-        sensitivity: Option<String>,
-        /// Electrons per photon where that is largest, above 0 to 1: what makes a relative table absolute. 0.5 if left
-        /// out, an assumption.
-        #[serde(default)]
-        #[schemars(extend("maximum" = 1))]
-        peak_quantum_efficiency: Option<Positive<Ratio>>,
-        /// Distance of two pixels of the sensor, mm if bare; that of `resolution` if left out. A picture of fewer pixels
-        /// shows what the sensor's own pixels give.
-        #[serde(default)]
-        pitch: Option<Positive<Length>>,
-        /// Share of a pixel's area that takes in light, its microlens included, above 0 to 1; 1 if left out.
-        #[serde(default)]
-        #[schemars(extend("maximum" = 1))]
-        fill_factor: Option<Positive<Ratio>>,
-        /// What stands before the silicon; without it a pixel takes light from all directions alike.
-        #[serde(default)]
-        photosite: Option<PhotositeParams>,
-        /// Most electrons of a well, more than 0; 30000 if left out, an assumption.
-        #[serde(default)]
-        full_well: Option<Positive<f64>>,
-        /// Standard deviation of reading, electrons, 0 or more; 3 if left out, an assumption.
-        #[serde(default)]
-        read_noise: Option<NonNegative<f64>>,
-        /// ISO setting, `base-iso` or more: numbers end at full well times `base-iso` over `iso`; the base if left out.
-        #[serde(default)]
-        iso: Option<Positive<f64>>,
-        /// The ISO setting at which a full well is the largest number; 100 if left out.
-        #[serde(default)]
-        base_iso: Option<Positive<f64>>,
-        /// Bits of the converter, 8 to 16; 14 if left out.
-        #[serde(default)]
-        #[schemars(range(min = 8, max = 16))]
-        bits: Option<u32>,
-        /// Value without light, below the largest number; a 32nd of the range if left out.
-        #[serde(default)]
-        black_level: Option<u32>,
-        /// Whether photons and reading are noisy; they are if left out.
-        #[serde(default)]
-        noise: Option<bool>,
-        /// Seed of the noise, 0 or more; 1 if left out.
-        #[serde(default)]
-        noise_seed: Option<u64>,
-        /// The light that is shown as white: the name of a spectrum, or a file beside the scene; D65 if left out.
-        #[serde(default)]
-        white_balance: Option<String>,
-        /// Name of the camera in the raw file; `sensor` if left out.
-        #[serde(default)]
-        model: Option<String>,
-    }
+/// A chip of pixels with color filters: electrons, noise, raw files.
+///
+/// Light becomes electrons by the sensitivities of the filters and pixels, electrons scatter as photons do
+/// (Poisson) and as reading does (normal), a well holds so many of them, and a converter makes whole numbers: those
+/// go into a DNG file (`output: [dng]`), and a picture is developed from them, demosaicked and balanced. Color
+/// matrices are fitted to the 24 patches of a ColorChecker; the DNG file carries those for A and for D65, the noise,
+/// exposure and lens. It carries no date, since the same scene gives the same bytes.
+///
+/// With `photosite` light that comes at a slant lands beside the middle of its pixel, by the height of the stack,
+/// and goes on sideways in the silicon: at the edge of the frame of a wide-angle lens colors mix and shift. What is
+/// not known of a sensor (quantum efficiency, full well, read noise) has a default that is an assumption, and says
+/// so. One peak quantum efficiency serves all colors, so how red and blue compare with green, and with it the numbers
+/// of white before balancing and the noise of each color, is what the table says: that of the bundled sensor was
+/// measured color by color, and its colors are set to each other by what the camera answers to D65.
+///
+/// `resolution` is the number of pixels across and down; where their shape differs from that of the frame, pixels
+/// are not square. The frame stands in the image plane of the lens unless it is shifted or tilted (as on a view
+/// camera), or bent.
+///
+/// # Example
+/// ```yaml
+/// {kind: sensor, format: 135, resolution: [960, 640], exposure: 1/125 s}
+/// ```
+/// ```yaml
+/// # A small part of a sensor, pixel for pixel, behind its cover glass
+/// kind: sensor
+/// width: 2.4 mm
+/// height: 1.6 mm
+/// resolution: [400, 267]
+/// exposure: 1/60 s
+/// iso: 800
+/// cover: [{glass: SCHOTT/N-BK7, thickness: 1 mm}]
+/// photosite: {stack: 0.004 mm, microlens: 0.6, exit-pupil: 80 mm, well: 0.006 mm}
+/// ```
+/// # References
+/// - P. B. Catrysse and B. A. Wandell, J. Opt. Soc. Am. A 19, 1610 (2002): light at a slant in a pixel.
+/// - M. A. Green, Solar Energy Materials and Solar Cells 92, 1305 (2008): index and absorption of silicon.
+/// - ISO 17321-1: the patches that the color matrix is fitted to.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+#[schemars(deny_unknown_fields)]
+pub struct SensorParams {
+    #[serde(flatten)]
+    frame: Frame,
+    /// Exposure time, s if bare.
+    exposure: Positive<Time>,
+    /// Color filters from the upper left of the picture: `rggb` (the default), `bggr`, `grbg`, `gbrg`; or
+    /// `monochrome`.
+    #[serde(default)]
+    pattern: PatternName,
+    /// What the pixels see: a bundled table or a file with the columns red, green and blue, relative per power;
+    /// of a monochrome sensor one sensitivity, such as `file#column`. The default is `nikon-d5100`, with filters.
+    #[serde(default)]
+    sensitivity: Option<String>,
+    /// Electrons per photon where that is largest, above 0 to 1: what makes a relative table absolute. 0.5 if left
+    /// out, an assumption.
+    #[serde(default)]
+    #[schemars(extend("maximum" = 1))]
+    peak_quantum_efficiency: Option<Positive<Ratio>>,
+    /// Distance of two pixels of the sensor, mm if bare; that of `resolution` if left out. A picture of fewer pixels
+    /// shows what the sensor's own pixels give.
+    #[serde(default)]
+    pitch: Option<Positive<Length>>,
+    /// Share of a pixel's area that takes in light, its microlens included, above 0 to 1; 1 if left out.
+    #[serde(default)]
+    #[schemars(extend("maximum" = 1))]
+    fill_factor: Option<Positive<Ratio>>,
+    /// What stands before the silicon; without it a pixel takes light from all directions alike.
+    #[serde(default)]
+    photosite: Option<PhotositeParams>,
+    /// Most electrons of a well, more than 0; 30000 if left out, an assumption.
+    #[serde(default)]
+    full_well: Option<Positive<f64>>,
+    /// Standard deviation of reading, electrons, 0 or more; 3 if left out, an assumption.
+    #[serde(default)]
+    read_noise: Option<NonNegative<f64>>,
+    /// ISO setting, `base-iso` or more: numbers end at full well times `base-iso` over `iso`; the base if left out.
+    #[serde(default)]
+    iso: Option<Positive<f64>>,
+    /// The ISO setting at which a full well is the largest number; 100 if left out.
+    #[serde(default)]
+    base_iso: Option<Positive<f64>>,
+    /// Bits of the converter, 8 to 16; 14 if left out.
+    #[serde(default)]
+    bits: Option<Whole<8, 16>>,
+    /// Value without light, below the largest number; a 32nd of the range if left out.
+    #[serde(default)]
+    black_level: Option<Whole<0, 65534>>,
+    /// Whether photons and reading are noisy; they are if left out.
+    #[serde(default)]
+    noise: Option<bool>,
+    /// Seed of the noise, 0 or more; 1 if left out.
+    #[serde(default)]
+    noise_seed: Option<u64>,
+    /// The light that is shown as white: the name of a spectrum, or a file beside the scene; D65 if left out.
+    #[serde(default)]
+    white_balance: Option<String>,
+    /// Name of the camera in the raw file; `sensor` if left out.
+    #[serde(default)]
+    model: Option<String>,
 }
 
 /// `photosite` as written in a scene.
@@ -152,20 +151,6 @@ const LIGHT_SOURCES: [(&str, u16); 7] =
 const CALIBRATION_LIGHTS: [&str; 2] = ["A", "D65"];
 
 impl SensorParams {
-    fn pattern(&self, params: &Params) -> Result<Pattern, Fault> {
-        let Some(name) = &self.pattern else { return Ok(PATTERNS[0].1) };
-        let found = PATTERNS.iter().find(|(known, _)| *known == name.to_ascii_lowercase());
-        found.map(|(_, pattern)| *pattern).ok_or_else(|| {
-            let names = PATTERNS.map(|(name, _)| name);
-            let known = names.join(", ");
-            let fault = params.fault("pattern", format!("unknown pattern `{name}`"));
-            match nearest(name, names) {
-                Some(near) => fault.hint(format!("did you mean `{near}`? One of {known}")),
-                None => fault.hint(format!("one of {known}")),
-            }
-        })
-    }
-
     /// The channels, in electrons for the light of the exposure.
     fn channels(
         &self,
@@ -203,10 +188,6 @@ impl SensorParams {
             return Err(params.fault("sensitivity", format!("`{name}` sees nothing of the band")).into());
         }
         let efficiency = self.peak_quantum_efficiency.map_or(DEFAULT_PEAK, |q| q.number());
-        if efficiency > 1.0 {
-            let text = format!("{efficiency} electrons a photon");
-            return Err(params.fault("peak-quantum-efficiency", text).hint("at most 100 %").into());
-        }
         const M2_PER_MM2: f64 = 1e-6;
         const M_PER_NM: f64 = 1e-9;
         let scale = efficiency / peak * area_mm2 * M2_PER_MM2 * M_PER_NM / (PLANCK_J_S * LIGHT_M_PER_S);
@@ -222,15 +203,7 @@ impl SensorParams {
         let Some(p) = &self.photosite else { return Ok(None) };
         let mut faults = Faults::new();
         let index = p.index.map_or(SILICA, |i| i.bare());
-        if !(1.0..=5.0).contains(&index) {
-            faults.push(
-                params.fault("photosite.index", format!("{index} is no refractive index of a stack")).hint("1 to 5"),
-            );
-        }
         let microlens = p.microlens.map_or(0.0, |m| m.number());
-        if microlens > 1.0 {
-            faults.push(params.fault("photosite.microlens", "gathers more than all").hint("0 to 1"));
-        }
         let silicon = Catalogue::bundled().medium(SILICON).map_err(|e| params.fault("photosite", e.to_string()));
         let Some(silicon) = faults.take(silicon) else { return Err(faults) };
         let mut photosite = Photosite::new(pitch_mm, &silicon, &context.grid);
@@ -250,12 +223,9 @@ impl SensorParams {
         channels: &[Channel],
     ) -> Result<Converter, Faults> {
         let mut faults = Faults::new();
-        let bits = self.bits.unwrap_or(14);
-        if !(8..=16).contains(&bits) {
-            faults.push(params.fault("bits", format!("a converter of {bits} bits")).hint("8 to 16"));
-        }
-        let white_level = ((1_u32 << bits.clamp(8, 16)) - 1) as u16;
-        let black = self.black_level.unwrap_or(u32::from(white_level).div_ceil(32));
+        let bits = self.bits.unwrap_or(Whole::known(14)).get_u32();
+        let white_level = ((1_u32 << bits) - 1) as u16;
+        let black = self.black_level.map_or(u32::from(white_level).div_ceil(32), Whole::get_u32);
         if black >= u32::from(white_level) {
             faults.push(
                 params.fault("black-level", format!("{black} leaves no range")).hint(format!("below {white_level}")),
@@ -321,13 +291,10 @@ impl SensorParams {
 fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Imager>, Faults> {
     let parsed: SensorParams = params.parse()?;
     let mut faults = Faults::new();
-    let plane = faults.take(parsed.frame().plane(params, context));
-    let pattern = faults.take(parsed.pattern(params));
+    let plane = faults.take(parsed.frame.plane(params, context));
     let fill = parsed.fill_factor.map_or(1.0, |f| f.number());
-    if fill > 1.0 {
-        faults.push(params.fault("fill-factor", "more than all of a pixel").hint("at most 100 %"));
-    }
-    let (Some(plane), Some(pattern)) = (plane, pattern) else { return Err(faults) };
+    let pattern = parsed.pattern.pattern();
+    let Some(plane) = plane else { return Err(faults) };
     let size = plane.size();
     let pitch_mm = parsed.pitch.map(|p| p.mm());
     let area_mm2 = pitch_mm.map_or(size.pixel_area_mm2(), |p| p * p);

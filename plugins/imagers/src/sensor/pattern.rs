@@ -1,5 +1,8 @@
 //! Which filter lies over which pixel.
 
+use schemars::JsonSchema;
+use serde::Deserialize;
+
 /// A mosaic of 2 x 2 color filters, or none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pattern {
@@ -9,14 +12,33 @@ pub enum Pattern {
     Bayer([u8; 4]),
 }
 
-/// Names in a scene, with their patterns.
-pub const PATTERNS: [(&str, Pattern); 5] = [
-    ("rggb", Pattern::Bayer([0, 1, 1, 2])),
-    ("bggr", Pattern::Bayer([2, 1, 1, 0])),
-    ("grbg", Pattern::Bayer([1, 0, 2, 1])),
-    ("gbrg", Pattern::Bayer([1, 2, 0, 1])),
-    ("monochrome", Pattern::Monochrome),
-];
+/// A pattern by its name in a scene.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+#[schemars(inline)]
+#[allow(missing_docs, reason = "the letters are the pattern")]
+pub enum PatternName {
+    #[default]
+    Rggb,
+    Bggr,
+    Grbg,
+    Gbrg,
+    Monochrome,
+}
+
+impl PatternName {
+    /// The pattern.
+    #[must_use]
+    pub fn pattern(self) -> Pattern {
+        match self {
+            Self::Rggb => Pattern::Bayer([0, 1, 1, 2]),
+            Self::Bggr => Pattern::Bayer([2, 1, 1, 0]),
+            Self::Grbg => Pattern::Bayer([1, 0, 2, 1]),
+            Self::Gbrg => Pattern::Bayer([1, 2, 0, 1]),
+            Self::Monochrome => Pattern::Monochrome,
+        }
+    }
+}
 
 impl Pattern {
     /// The channel of a pixel.

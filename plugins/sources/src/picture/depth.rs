@@ -17,8 +17,7 @@ pub(super) struct DepthParams {
     /// The channel of the file that holds the depth; `Z` if absent.
     channel: Option<String>,
     /// What its numbers count: `mm`, `cm`, `m`, `in` or `ft`; `mm` if absent.
-    #[schemars(extend("enum" = ["mm", "cm", "m", "in", "ft"]))]
-    unit: Option<String>,
+    unit: Option<DepthUnit>,
     /// What the numbers are multiplied by besides, above 0; 1 if absent.
     #[schemars(extend("exclusiveMinimum" = 0))]
     scale: Option<f64>,
@@ -27,8 +26,7 @@ pub(super) struct DepthParams {
     /// What is farther, or infinitely far, is taken to be there, mm if bare; nothing is moved if absent.
     far: Option<Positive<Length>>,
     /// Along what the numbers count: `z`, the axis, or `ray`, the line of sight; `z` if absent.
-    #[schemars(extend("enum" = ["z", "ray"]))]
-    kind: Option<String>,
+    kind: Option<Along>,
     /// Depths of neighbors that differ by more than this part, 0 to 1, belong to different things; 5 % if absent.
     #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 1))]
     edge: Option<Ratio>,
@@ -48,48 +46,56 @@ pub(super) struct Depth {
     found: Option<Found>,
 }
 
-/// Millimetres of the units that depth channels come in.
-const UNITS: [(&str, f64); 5] = [("mm", 1.0), ("cm", 10.0), ("m", 1000.0), ("in", 25.4), ("ft", 304.8)];
+/// The units that depth channels come in.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+#[schemars(inline)]
+enum DepthUnit {
+    Mm,
+    Cm,
+    M,
+    In,
+    Ft,
+}
+
+impl DepthUnit {
+    /// One of it, mm.
+    fn mm(self) -> f64 {
+        match self {
+            Self::Mm => 1.0,
+            Self::Cm => 10.0,
+            Self::M => 1000.0,
+            Self::In => 25.4,
+            Self::Ft => 304.8,
+        }
+    }
+}
+
+/// Along what depth counts: the axis or the line of sight.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+#[schemars(inline)]
+enum Along {
+    Z,
+    Ray,
+}
 
 impl Depth {
     pub(super) fn read(node: &StageNode, context: &Context<'_>) -> Result<Self, Faults> {
         let params = Params::section(node.node().clone(), node.path())?;
         let p: DepthParams = params.parse()?;
         let mut faults = Faults::new();
-        let name = p.unit.as_deref().unwrap_or("mm");
-        let unit = UNITS.iter().find(|(unit, _)| *unit == name).map(|(_, mm)| *mm);
-        if unit.is_none() {
-            faults.push(params.fault("unit", format!("no unit of depth `{name}`")).hint("mm, cm, m, in or ft"));
-        }
-        let scale = p.scale.unwrap_or(1.0);
-        if !(scale.is_finite() && scale > 0.0) {
-            faults.push(params.fault("scale", format!("a scale of {scale}")).hint("a positive number"));
-        }
-        let along_ray = match p.kind.as_deref() {
-            None | Some("z") => false,
-            Some("ray") => true,
-            Some(other) => {
-                let fault = params.fault("kind", format!("no kind of depth `{other}`"));
-                faults.push(fault.hint("`z` is along the axis, `ray` along the line of sight"));
-                false
-            }
-        };
+        let unit_mm = p.unit.map_or(1.0, DepthUnit::mm) * p.scale.unwrap_or(1.0);
         let edge = p.edge.map_or(0.05, Ratio::number);
-        if !(edge > 0.0 && edge < 1.0) {
-            faults.push(params.fault("edge", "an edge lies between 0 and 100 %").hint("5 % if absent"));
-        }
         if let (Some(near), Some(far)) = (p.near, p.far)
             && near.mm() >= far.mm()
         {
             faults.push(params.fault("far", "`far` must be farther than `near`"));
         }
         let eye_mm = p.eye.map_or(0.0, Length::mm);
-        if !eye_mm.is_finite() {
-            faults.push(params.fault("eye", "the center of projection is at a finite place"));
-        }
         let found = p.file.as_ref().and_then(|file| faults.take(find(file, &params, context)));
         faults.into_result(())?;
-        Ok(Self { unit_mm: unit.unwrap_or(1.0) * scale, along_ray, edge, eye_mm, found, params, p })
+        Ok(Self { unit_mm, along_ray: p.kind == Some(Along::Ray), edge, eye_mm, found, params, p })
     }
 
     /// The channel, where the picture's own file holds it.

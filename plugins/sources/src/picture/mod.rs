@@ -18,7 +18,7 @@ pub(crate) mod linear;
 pub(crate) mod map;
 
 use crate::flat::Flat;
-use crate::frame::{Edge, Placed, Width, WidthForm};
+use crate::frame::{Edge, Placed, Width};
 use crate::lazy::Lazy;
 use crate::white;
 use decode::decode;
@@ -30,7 +30,7 @@ use linear::{Choice, Linear, Trouble};
 use map::{Importance, PictureMap};
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::params::{Fault, Faults, Length, Luminance, Params, Positive, Quantity, StageNode};
+use spectra_core::params::{Fault, Faults, Length, Luminance, Params, Part, Positive, Quantity};
 use spectra_core::registry::{Context, StageOf, build as build_stage};
 use spectra_core::resources::{Found, ResourceError};
 use spectra_core::spectral::SpectralPower;
@@ -85,12 +85,10 @@ struct PictureParams {
     distance: Positive<Length>,
     /// Width of the picture on that plane, mm if bare; the height follows. Or `fill`: 2 % more than what the frame sees
     /// there through this lens, so that no border shows; what does not fit into the frame's shape is cut off.
-    #[schemars(with = "WidthForm")]
-    width: StageNode,
+    width: Width,
     /// What lies beyond the picture: `black`, nothing; `clamp`, the color of its border; `mirror`, the picture mirrored.
     /// `black` if absent, with a warning where the frame sees it. With `clamp` and `mirror` light is traced backward only.
-    #[schemars(extend("enum" = ["black", "clamp", "mirror"]))]
-    edge: Option<String>,
+    edge: Option<Edge>,
     /// The light that white has the chromaticity of: the name of a spectrum, a file beside the scene, or an expression
     /// such as `blackbody:3200`.
     #[serde(default = "daylight")]
@@ -99,11 +97,9 @@ struct PictureParams {
     #[serde(default = "luminance")]
     luminance: Positive<Luminance>,
     /// How RGB becomes a spectrum: a color model; `primaries` if absent.
-    #[schemars(with = "Option<StageOf<dyn ColorModel>>")]
-    color: Option<StageNode>,
+    color: Option<Part<StageOf<dyn ColorModel>>>,
     /// How far each pixel stands, from a depth channel; all on the plane if absent.
-    #[schemars(with = "Option<depth::DepthParams>")]
-    depth: Option<StageNode>,
+    depth: Option<Part<depth::DepthParams>>,
     /// Guesses the light of the clipped highlights of integer files; nothing is guessed if absent.
     recover_highlights: Option<RecoverParams>,
 }
@@ -140,9 +136,8 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
     let light = faults.take(white::illuminant(&p.illuminant, params, context));
     let found = faults.take(find(&p.file, params, context));
     let depth = p.depth.as_ref().and_then(|node| faults.take(Depth::read(node, context)));
-    let width = faults.take(Width::read(&p.width));
-    let edge = faults.take(Edge::read(p.edge.as_deref(), params));
-    if p.depth.is_some() && edge.is_some_and(|edge| edge != Edge::Black) {
+    let edge = p.edge.unwrap_or_default();
+    if p.depth.is_some() && edge != Edge::Black {
         let fault = params.fault("edge", "nobody knows how deep a picture with `depth` is beyond its border");
         faults.push(fault.hint("leave `edge` out, and take a `width` that fills the frame"));
     }
@@ -156,13 +151,11 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
     });
     let header = file.as_ref().and_then(|file| faults.take(file.header()));
     let recover_stops = p.recover_highlights.as_ref().map(|recover| recover.stops);
-    if let (Some(stops), Some(header)) = (recover_stops, &header) {
+    if let (Some(_), Some(header)) = (recover_stops, &header) {
         let key = "recover-highlights";
         if !header.clips {
             let fault = params.fault(key, format!("`{}` holds floating point, which clips nothing", p.file));
             faults.push(fault.hint("leave `recover-highlights` out"));
-        } else if !(stops > 0.0 && stops <= 12.0) {
-            faults.push(params.fault(key, format!("{stops} stops")).hint("above 0, at most 12"));
         }
     }
     let model = light.and_then(|light| faults.take(color_model(p.color, &light, params, context)));
@@ -170,19 +163,16 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
     let aspect = header.as_ref().map_or(1.0, Header::aspect);
     // A picture in its own perspective is as wide for its camera as the plane is for it.
     let eye_mm = depth.as_ref().map_or(0.0, |depth| depth.eye_mm);
-    let width_mm = width.as_ref().and_then(|width| {
-        let width_mm = width.mm(aspect, distance_mm, [0.0; 2], context.view).map_err(Faults::from);
-        faults.take(width_mm)
-    });
+    let width_mm = faults.take(p.width.mm(aspect, distance_mm, [0.0; 2], context.view, params));
     if depth.is_some() && distance_mm + eye_mm <= 0.0 {
         faults.push(params.fault("distance", "the center of projection lies behind the picture's plane"));
     }
-    let (Some(file), Some(header), Some(model), Some(width_mm), Some(edge)) =
-        faults.into_result((file, header, model, width_mm, edge))?
+    let (Some(file), Some(header), Some(model), Some(width_mm)) =
+        faults.into_result((file, header, model, width_mm))?
     else {
         return Err(Faults::new());
     };
-    if p.edge.is_none() && !width.is_some_and(|width| width.is_fill()) {
+    if p.edge.is_none() && !p.width.is_fill() {
         let placed = Placed { width_mm, height_mm: width_mm / aspect, distance_mm, center_mm: [0.0; 2] };
         placed.warn_unless_filled("the picture", params, context);
     }
@@ -287,7 +277,7 @@ impl Making {
 
 /// The color model under `color`, for this light.
 pub(crate) fn color_model(
-    color: Option<StageNode>,
+    color: Option<Part<StageOf<dyn ColorModel>>>,
     light: &SpectralPower,
     params: &Params,
     context: &Context<'_>,

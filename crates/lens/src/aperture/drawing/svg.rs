@@ -8,6 +8,8 @@ use super::outline::{Path, Point, stroked};
 use super::style::{Style, short};
 use super::{Drawing, FLATNESS_MM, FillRule, Painted};
 use roxmltree::{Document, Node, ParsingOptions};
+use schemars::JsonSchema;
+use serde::Deserialize;
 use simplecss::StyleSheet;
 use spectra_core::math;
 use spectra_core::params::{Fault, Faults, SourceFile, Span};
@@ -30,7 +32,9 @@ const MAX_RULES: usize = 1000;
 const SIZES_MM: std::ops::RangeInclusive<f64> = 1e-3..=1e5;
 
 /// What is open.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+#[schemars(inline)]
 pub(in super::super) enum Open {
     /// Whatever is painted, in any color.
     Filled,

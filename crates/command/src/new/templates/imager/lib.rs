@@ -21,7 +21,8 @@ struct MyStageParams {
     width: Positive<Length>,
     /// Height of the frame, mm if bare.
     height: Positive<Length>,
-    /// Pixels across and down.
+    /// Pixels across and down, 1 to 8192 each.
+    #[schemars(inner(range(min = 1, max = 8192)))]
     resolution: [u32; 2],
     /// Powers of ten from black to white.
     #[serde(default = "three")]
@@ -37,12 +38,6 @@ spectra_core::register!(imager "my-stage": MyStageParams, build);
 fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Imager>, Faults> {
     let p: MyStageParams = params.parse()?;
     let [width_px, height_px] = p.resolution;
-    for (i, side) in p.resolution.into_iter().enumerate() {
-        if !(1..=8192).contains(&side) {
-            let fault = params.fault(&format!("resolution[{i}]"), format!("{side} pixels"));
-            return Err(fault.hint("1 to 8192").into());
-        }
-    }
     let size = FrameSize { width_px, height_px, width_mm: p.width.mm(), height_mm: p.height.mm() };
     let response = vec![1.0; context.grid.count];
     let irradiance = Channel { name: "irradiance".into(), unit: "W m^-2".into(), response };

@@ -17,7 +17,8 @@ use spectra_core::prelude::*;
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct MyStageParams {
-    /// Distance over which the density falls by e, nm if bare; 20 nm or more.
+    /// Distance over which the density falls by e, 20 nm to 1 mm, nm if bare.
+    #[schemars(range(min = 20, max = 1e6))]
     length: Wavelength,
 }
 
@@ -25,12 +26,7 @@ spectra_core::register!(wavelengths "my-stage": MyStageParams, build);
 
 fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn WavelengthSampler>, Faults> {
     let p: MyStageParams = params.parse()?;
-    let length_nm = p.length.nm();
-    if !(20.0..=1e6).contains(&length_nm) {
-        let text = format!("{length_nm} nm leaves nothing for long wavelengths");
-        return Err(params.fault("length", text).hint("20 nm to 1 mm").into());
-    }
-    Ok(Box::new(MyStage { length_nm }))
+    Ok(Box::new(MyStage { length_nm: p.length.nm() }))
 }
 
 struct MyStage {

@@ -1,0 +1,44 @@
+//! A node on a walk through its tree, with the way to it.
+
+use super::fault::Fault;
+use super::node::Node;
+use super::path::{Step, joined};
+
+/// A node, the step that led to it, and the node before it. Copied freely: a path is only written out for a fault.
+#[derive(Clone, Copy)]
+pub(super) struct At<'n, 'p> {
+    pub node: &'n Node,
+    /// Path of the node at which the walk began.
+    prefix: &'n str,
+    way: Option<(Step<'n>, &'p At<'n, 'p>)>,
+}
+
+impl<'n, 'p> At<'n, 'p> {
+    pub(super) fn root(node: &'n Node, prefix: &'n str) -> Self {
+        Self { node, prefix, way: None }
+    }
+
+    pub(super) fn child<'q>(&'q self, step: Step<'n>, node: &'n Node) -> At<'n, 'q> {
+        At { node, prefix: self.prefix, way: Some((step, self)) }
+    }
+
+    /// The key under which it stands, if it has one.
+    pub(super) fn key(&self) -> Option<&'n str> {
+        match self.way {
+            Some((Step::Key(key), _)) => Some(key),
+            Some((Step::Index(_), _)) => None,
+            None => self.prefix.rsplit('.').next().filter(|key| !key.is_empty() && !key.ends_with(']')),
+        }
+    }
+
+    pub(super) fn path(&self) -> String {
+        self.way.map_or_else(|| self.prefix.to_owned(), |(step, before)| joined(&before.path(), step))
+    }
+
+    /// A fault here, in words of which a line that starts with `hint: ` is the hint.
+    pub(super) fn fault(&self, words: &str) -> Fault {
+        let (message, hint) =
+            words.split_once("\nhint: ").map_or((words, None), |(m, hint)| (m, Some(hint.to_owned())));
+        Fault { hint, ..self.node.fault(message).path(self.path()) }
+    }
+}

@@ -1,0 +1,72 @@
+//! Limits of a number, as a schema states them.
+
+use serde_json::Value;
+
+/// Limits of a number: the keywords `minimum`, `exclusiveMinimum`, `maximum` and `exclusiveMaximum` of JSON Schema.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Limits {
+    /// The lower one, and whether it is itself allowed.
+    least: Option<(f64, bool)>,
+    /// The upper one, likewise.
+    most: Option<(f64, bool)>,
+}
+
+impl Limits {
+    pub(super) const ANY: Self = Self { least: None, most: None };
+    pub(super) const NOT_NEGATIVE: Self = Self { least: Some((0.0, true)), most: None };
+    pub(super) const POSITIVE: Self = Self { least: Some((0.0, false)), most: None };
+
+    pub(super) fn of(schema: &Value) -> Self {
+        let number = |key: &str, included| Some((schema.get(key)?.as_f64()?, included));
+        let stricter = |one: Option<(f64, bool)>, other: Option<(f64, bool)>, sign: f64| match (one, other) {
+            (Some(a), Some(b)) => Some(if a.0 * sign > b.0 * sign { a } else { b }),
+            (one, other) => one.or(other),
+        };
+        Self {
+            least: stricter(number("minimum", true), number("exclusiveMinimum", false), 1.0),
+            most: stricter(number("maximum", true), number("exclusiveMaximum", false), -1.0),
+        }
+    }
+
+    /// NaN is never allowed.
+    pub(super) fn allow(self, value: f64) -> bool {
+        let above = self.least.is_none_or(|(least, included)| value > least || (included && value == least));
+        let below = self.most.is_none_or(|(most, included)| value < most || (included && value == most));
+        above && below && !value.is_nan()
+    }
+
+    /// `positive `, `non-negative ` or nothing.
+    pub(super) fn adjective(self) -> &'static str {
+        match self.least {
+            Some((least, included)) if least > 0.0 || (least == 0.0 && !included) => "positive ",
+            Some((0.0, _)) => "non-negative ",
+            _ => "",
+        }
+    }
+
+    /// Whether a value has the wrong sign for them: then the adjective says what is wrong.
+    pub(super) fn sign_is_wrong(self, value: f64) -> bool {
+        !self.adjective().is_empty() && value <= 0.0
+    }
+
+    /// `from 1 mm to 5 mm`, `0 or more`, with a unit behind each number (or before it, where it ends in `/`).
+    pub(super) fn words(self, unit: &str) -> String {
+        let number = |value: f64| match unit {
+            _ if value == 0.0 || unit.is_empty() => format!("{value}"),
+            unit if unit.ends_with('/') => format!("{unit}{value}"),
+            unit => format!("{value} {unit}"),
+        };
+        match (self.least.map(|(v, i)| (number(v), i)), self.most.map(|(v, i)| (number(v), i))) {
+            (Some((least, true)), Some((most, true))) if least == most => format!("{least} only"),
+            (Some((least, true)), Some((most, true))) => format!("from {least} to {most}"),
+            (Some((least, true)), Some((most, false))) => format!("from {least} to below {most}"),
+            (Some((least, false)), Some((most, true))) => format!("greater than {least}, up to {most}"),
+            (Some((least, false)), Some((most, false))) => format!("greater than {least} and below {most}"),
+            (Some((least, true)), None) => format!("{least} or more"),
+            (Some((least, false)), None) => format!("greater than {least}"),
+            (None, Some((most, true))) => format!("up to {most}"),
+            (None, Some((most, false))) => format!("below {most}"),
+            (None, None) => "any".to_owned(),
+        }
+    }
+}
