@@ -3,7 +3,7 @@
 use exr::prelude::{AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, WritableImage};
 use spectra_core::Isa;
 use spectra_plugins as _;
-use spectra_render::{Control, Renderer};
+use spectra_render::{Control, Renderer, Threads};
 use std::path::Path;
 
 const SEMI_DIAMETER: f64 = 6.25;
@@ -33,8 +33,8 @@ fn halves(path: &Path, with: impl Fn(bool) -> Vec<(&'static str, f32)>) {
 fn columns(scene: &Path, set: &[&str]) -> Vec<f64> {
     let set: Vec<String> = set.iter().map(|s| (*s).to_owned()).collect();
     let scene = spectra_scene::load(scene, &set).unwrap_or_else(|faults| panic!("{faults}"));
-    let renderer = Renderer::new(&scene, Isa::detect()).expect("the scene can be rendered");
-    let frame = renderer.run(2, &Control::new()).expect("rendered").exposure;
+    let renderer = Renderer::new(scene.clone(), Isa::detect()).expect("the scene can be rendered");
+    let frame = renderer.run(&Threads(2), &Control::new()).expect("rendered").exposure;
     let values = &frame.channel("Y").expect("an XYZ imager").values;
     (0..COLUMNS)
         .map(|c| {

@@ -3,14 +3,14 @@
 use spectra_core::Isa;
 use spectra_lens::{Coating, Indices, Lens};
 use spectra_plugins as _;
-use spectra_render::{Control, Renderer};
+use spectra_render::{Control, Renderer, Threads};
 use spectra_scene::load;
 use std::path::Path;
 
 fn lens(set: &[&str]) -> Result<Lens, String> {
     let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/biotar-ortho.yaml");
     let overrides: Vec<String> = set.iter().map(|s| (*s).to_owned()).collect();
-    load(&scene, &overrides).map(|scene| scene.lens).map_err(|faults| faults.to_string())
+    load(&scene, &overrides).map(|scene| Lens::clone(&scene.lens)).map_err(|faults| faults.to_string())
 }
 
 #[test]
@@ -63,7 +63,7 @@ fn coatings_dim_the_picture() {
         ];
         let overrides: Vec<String> = common.iter().chain(set).map(|s| (*s).to_owned()).collect();
         let scene = load(&path, &overrides).unwrap_or_else(|faults| panic!("{faults}"));
-        let frame = Renderer::new(&scene, Isa::detect()).expect("a scene").run(2, &Control::new()).expect("rendered");
+        let frame = Renderer::new(scene.clone(), Isa::detect()).expect("a scene").run(&Threads(2), &Control::new()).expect("rendered");
         let y = &frame.exposure.channel("Y").expect("XYZ").values;
         let sum: f32 = [3, 4].iter().flat_map(|row| [5, 6].map(|column| y[row * 12 + column])).sum();
         (f64::from(sum), scene.lens)

@@ -2,7 +2,7 @@
 
 use crate::BenchError;
 use spectra_core::params::nearest;
-use spectra_core::registry::{SamplerEntry, Stage};
+use spectra_core::registry::{Entry, Stage};
 use spectra_core::spectral::{BAND, SystemResponse};
 use spectra_core::stage::WavelengthSampler;
 use spectra_scene::{Scene, yaml};
@@ -90,7 +90,7 @@ fn registered() -> Vec<&'static str> {
     names
 }
 
-fn entries() -> Vec<&'static SamplerEntry> {
+fn entries() -> Vec<&'static Entry<dyn WavelengthSampler>> {
     <dyn WavelengthSampler as Stage>::entries()
 }
 

@@ -5,7 +5,7 @@ use crate::film::FilmArguments;
 use crate::glass::GlassArguments;
 use crate::new::NewArguments;
 use crate::quantity::parse;
-use crate::run::Frames;
+use crate::frames::Frames;
 use crate::spectrum::SpectrumArguments;
 use crate::version;
 use clap::{Args, Parser, Subcommand};

@@ -12,6 +12,7 @@ mod completions;
 mod console;
 mod doc;
 mod film;
+mod frames;
 mod glass;
 mod guess;
 mod lens;

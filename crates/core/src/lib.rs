@@ -25,6 +25,7 @@ pub mod prelude;
 pub mod registry;
 pub mod resources;
 pub mod shutter;
+pub mod sink;
 pub mod spectral;
 pub mod stage;
 pub mod surface;

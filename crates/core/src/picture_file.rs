@@ -2,7 +2,7 @@
 //!
 //! A plain build has none. Code that needs one tells the user how to get it ([`WITHOUT`]).
 
-use std::fs::File;
+use crate::sink::Out;
 
 /// What to tell the user where no library is linked.
 pub const WITHOUT: &str = "this program was built without OpenImageIO: `cargo build --release --features oiio`";
@@ -73,7 +73,7 @@ pub trait PictureLibrary: Sync {
     ///
     /// # Errors
     /// The error of the system or the library.
-    fn write_tiled_exr(&self, to: &mut File, picture: &TiledExr<'_>) -> Result<(), String>;
+    fn write_tiled_exr(&self, to: &mut dyn Out, picture: &TiledExr<'_>) -> Result<(), String>;
 }
 
 /// A library as it is registered by `inventory::submit!`.

@@ -2,7 +2,10 @@
 
 use crate::blame::{Blame, Step};
 use crate::error::RenderError;
+use crate::estimator::{Estimator, Scratch, Unit};
+use crate::pilot::{self, PILOT_RAYS, PILOT_SEED};
 use crate::pipeline::{Pipeline, ThreadState};
+use crate::Done;
 use crate::sums::ExactSums;
 use glam::DVec3;
 use spectra_core::Isa;
@@ -12,24 +15,28 @@ use spectra_core::frame::FrameSize;
 use spectra_core::numbers::Numbers;
 use spectra_core::stage::{Launch, Radiance};
 use spectra_lens::{RearPupil, Travel};
+use std::ops::Range;
+use std::sync::Arc;
 
 /// Pixels of a unit of work.
 pub(crate) const PIXELS_PER_UNIT: u32 = 64;
 /// Samples of each pixel in a unit of work.
 pub(crate) const SAMPLES_PER_PASS: u32 = 32;
 
-pub(crate) struct Backward<'a> {
-    pub pipeline: Pipeline<'a>,
-    launch: &'a dyn Launch,
-    radiance: &'a dyn Radiance,
+pub(crate) struct Backward {
+    pipeline: Arc<Pipeline>,
     rear: RearPupil,
     numbers: Numbers,
+    /// Of the sums.
+    scale: f64,
 }
 
-impl<'a> Backward<'a> {
-    pub(crate) fn new(pipeline: Pipeline<'a>, seed: u64) -> Result<Self, RenderError> {
-        let scene = pipeline.scene;
+impl Backward {
+    /// Searches what passes the lens, and finds the scale of the sums.
+    pub(crate) fn new(pipeline: Arc<Pipeline>) -> Result<Self, RenderError> {
+        let scene = &pipeline.scene;
         let launch = scene.imager.launch().ok_or(RenderError::CannotLaunch)?;
+        scene.source.radiance().ok_or(RenderError::NoRadiance)?;
         let mut rays = imager_rays(launch, scene.imager.size(), pipeline.isa);
         let [x, y, z] = rays.positions();
         let points: Vec<DVec3> = (0..rays.len()).map(|i| DVec3::new(x[i], y[i], z[i])).collect();
@@ -39,23 +46,28 @@ impl<'a> Backward<'a> {
             let aside_mm = aside_mm(launch, &rear, &mut rays, grid.start_nm, pipeline.isa);
             if aside_mm > 0.0 { rear.widened(ROOM * aside_mm) } else { rear }
         });
-        Ok(Self {
-            launch,
-            radiance: scene.source.radiance().ok_or(RenderError::NoRadiance)?,
-            rear: rear.ok_or(RenderError::NoAperture)?,
-            numbers: pipeline.numbers(seed),
-            pipeline,
-        })
+        let pixels = scene.imager.size().pixels() as u64;
+        let (rear, seed) = (rear.ok_or(RenderError::NoAperture)?, scene.render.seed);
+        let mut own = Self { rear, numbers: pipeline.numbers(PILOT_SEED), scale: 1.0, pipeline };
+        own.scale = pilot::scale(&own.pipeline, |state, batch, mut look| {
+            let spread = (0..PILOT_RAYS).map(|i| (u64::from(i) * pixels / u64::from(PILOT_RAYS)) as u32);
+            own.steps(state, spread, batch, 1, &mut look);
+        })?;
+        own.numbers = own.pipeline.numbers(seed);
+        Ok(own)
     }
 
-    /// The same with the numbers of another seed.
-    pub(crate) fn reseeded(self, seed: u64) -> Self {
-        Self { numbers: self.pipeline.numbers(seed), ..self }
+    fn launch(&self) -> &dyn Launch {
+        self.pipeline.scene.imager.launch().expect("`new` saw it")
+    }
+
+    fn radiance(&self) -> &dyn Radiance {
+        self.pipeline.scene.source.radiance().expect("`new` saw it")
     }
 
     /// Traces `count` samples, from `first` on, of each of `pixels`: pixel after pixel. Afterwards
     /// the weights are irradiance, and 0 for rays that ended.
-    pub(crate) fn batch(
+    fn batch(
         &self,
         state: &mut ThreadState,
         pixels: impl Iterator<Item = u32> + Clone,
@@ -67,7 +79,7 @@ impl<'a> Backward<'a> {
 
     /// The same, with a look at the rays after each step.
     #[inline(always)]
-    pub(crate) fn steps(
+    fn steps(
         &self,
         state: &mut ThreadState,
         pixels: impl Iterator<Item = u32> + Clone,
@@ -92,18 +104,19 @@ impl<'a> Backward<'a> {
             chunk.fill(pixel);
         }
         let [_, u, v, a, b] = &state.numbers;
-        self.launch.place(&mut state.rays, u.slice(len), v.slice(len), isa);
+        let launch = self.launch();
+        launch.place(&mut state.rays, u.slice(len), v.slice(len), isa);
         look(Step::Imager, &state.rays);
         let dark = self.rear.aim(&mut state.rays, a.slice(len), b.slice(len), isa);
         state.drop_dark(dark);
         look(Step::Pupil, &state.rays);
-        self.launch.admit(&mut state.rays, isa);
+        launch.admit(&mut state.rays, isa);
         let ended = state.rays.len() - state.rays.alive();
         state.drop_dark(ended);
         look(Step::Imager, &state.rays);
         self.pipeline.tracer.trace(&mut state.rays, &mut state.work, Travel::Backward);
         look(Step::Lens, &state.rays);
-        self.radiance.radiance(&mut state.rays, isa);
+        self.radiance().radiance(&mut state.rays, isa);
         look(Step::Source, &state.rays);
         state.settle(isa);
     }
@@ -112,14 +125,13 @@ impl<'a> Backward<'a> {
     ///
     /// # Errors
     /// A contribution is no number, or does not fit; then nothing of the unit is added.
-    pub(crate) fn unit(
+    fn unit(
         &self,
         state: &mut ThreadState,
         begin: u32,
         end: u32,
         first: u32,
         samples: u32,
-        scale: f64,
         sums: &ExactSums,
     ) -> Result<(), RenderError> {
         let channels = state.integers.len();
@@ -135,10 +147,10 @@ impl<'a> Backward<'a> {
             while sample < first + samples {
                 let count = part.min(first + samples - sample);
                 self.batch(state, pixel..upto, sample, count as usize);
-                if !state.contributions(&self.pipeline, scale) {
+                if !state.contributions(&self.pipeline, self.scale) {
                     let mut blame = Blame::default();
                     self.steps(state, pixel..upto, sample, count as usize, &mut |step, rays| blame.look(step, rays));
-                    return Err(blame.error(&self.pipeline, state, scale));
+                    return Err(blame.error(&self.pipeline, state, self.scale));
                 }
                 for (i, tag) in state.rays.tags().iter().enumerate() {
                     let (pixel, only) = pixel_and_channel(*tag);
@@ -158,6 +170,64 @@ impl<'a> Backward<'a> {
             sums.add(base + i, *value);
         }
         Ok(())
+    }
+}
+
+impl Backward {
+    fn tiles(&self) -> u64 {
+        (self.pipeline.scene.imager.size().pixels() as u64).div_ceil(u64::from(PIXELS_PER_UNIT))
+    }
+
+    /// Tile and samples of a unit.
+    fn piece(&self, samples: &Range<u64>, unit: u64) -> (u64, Range<u64>) {
+        let tiles = self.tiles();
+        let first = samples.start + unit / tiles * u64::from(SAMPLES_PER_PASS);
+        (unit % tiles, first..samples.end.min(first + u64::from(SAMPLES_PER_PASS)))
+    }
+}
+
+impl Estimator for Backward {
+    fn name(&self) -> &'static str {
+        "backward"
+    }
+
+    fn units(&self, samples: &Range<u64>) -> u64 {
+        self.tiles() * (samples.end - samples.start).div_ceil(u64::from(SAMPLES_PER_PASS))
+    }
+
+    fn rays(&self, samples: &Range<u64>) -> u64 {
+        self.pipeline.scene.imager.size().pixels() as u64 * (samples.end - samples.start)
+    }
+
+    fn scratch(&self) -> Scratch {
+        Scratch(ThreadState::new(&self.pipeline, self.pipeline.scene.render.batch))
+    }
+
+    fn run(&self, samples: &Range<u64>, unit: u64, scratch: &mut Scratch, sums: &ExactSums) -> Unit {
+        let (tile, samples) = self.piece(samples, unit);
+        let begin = tile as u32 * PIXELS_PER_UNIT;
+        let end = (begin + PIXELS_PER_UNIT).min(self.pipeline.scene.imager.size().pixels() as u32);
+        let count = (samples.end - samples.start) as u32;
+        match self.unit(&mut scratch.0, begin, end, samples.start as u32, count, sums) {
+            Ok(()) => Unit { rays: u64::from(end - begin) * u64::from(count), error: None },
+            Err(error) => Unit { rays: 0, error: Some(error) },
+        }
+    }
+
+    fn weights(&self, done: &Done, _rays: u64, time_s: f64) -> Vec<f64> {
+        let mut of_tile = vec![done.complete(); self.tiles() as usize];
+        if let Some((samples, units)) = done.open() {
+            for unit in units.ranges().flatten() {
+                let (tile, piece) = self.piece(samples, unit);
+                of_tile[tile as usize] += piece.end - piece.start;
+            }
+        }
+        let weight = |pixel: usize| time_s / self.scale / of_tile[pixel / PIXELS_PER_UNIT as usize].max(1) as f64;
+        (0..self.pipeline.scene.imager.size().pixels()).map(weight).collect()
+    }
+
+    fn pipeline(&self) -> &Pipeline {
+        &self.pipeline
     }
 }
 

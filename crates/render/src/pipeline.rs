@@ -12,27 +12,28 @@ use spectra_core::stage::WavelengthDensity;
 use spectra_core::{Isa, Loss, RayBatch};
 use spectra_lens::{Indices, Tracer, Work};
 use spectra_scene::{NumberFamily, Scene};
+use std::sync::Arc;
 
 /// The stages, made ready for one scene.
-pub(crate) struct Pipeline<'a> {
-    pub scene: &'a Scene,
-    pub isa: Isa,
-    pub tracer: Tracer,
-    pub density: Box<dyn WavelengthDensity>,
-    pub responses: Responses,
+pub struct Pipeline {
+    pub(crate) scene: Arc<Scene>,
+    pub(crate) isa: Isa,
+    pub(crate) tracer: Tracer,
+    pub(crate) density: Arc<dyn WavelengthDensity>,
+    pub(crate) responses: Responses,
 }
 
-impl<'a> Pipeline<'a> {
-    pub(crate) fn new(scene: &'a Scene, isa: Isa) -> Result<Self, RenderError> {
-        let system = SystemResponse {
-            grid: scene.grid,
-            source: scene.source.spectrum().clone(),
-            channels: scene.channels.clone(),
-        };
-        let density = scene.sampler.prepare(&system).map_err(RenderError::Sampler)?;
+impl Pipeline {
+    /// With this density of wavelengths, where one is known to fit.
+    pub(crate) fn new(
+        scene: &Arc<Scene>,
+        isa: Isa,
+        density: Option<Arc<dyn WavelengthDensity>>,
+    ) -> Result<Self, RenderError> {
+        let density = density.map_or_else(|| fitted(scene), Ok)?;
         let indices = Indices::Band { min_nm: scene.grid.start_nm, max_nm: scene.grid.end_nm() };
         Ok(Self {
-            scene,
+            scene: Arc::clone(scene),
             isa,
             tracer: Tracer::new(&scene.lens, indices, isa).map_err(|e| RenderError::Lens(e.to_string()))?,
             density,
@@ -55,6 +56,13 @@ impl<'a> Pipeline<'a> {
     }
 }
 
+/// The scene's wavelength strategy, fitted.
+fn fitted(scene: &Scene) -> Result<Arc<dyn WavelengthDensity>, RenderError> {
+    let source = scene.source.spectrum().clone();
+    let system = SystemResponse { grid: scene.grid, source, channels: scene.channels.clone() };
+    scene.sampler.prepare(&system).map(Arc::from).map_err(RenderError::Sampler)
+}
+
 /// Columns of one thread.
 pub(crate) struct ThreadState {
     pub rays: RayBatch,
@@ -67,7 +75,7 @@ pub(crate) struct ThreadState {
 }
 
 impl ThreadState {
-    pub(crate) fn new(pipeline: &Pipeline<'_>, capacity: usize) -> Self {
+    pub(crate) fn new(pipeline: &Pipeline, capacity: usize) -> Self {
         Self {
             rays: RayBatch::new(capacity),
             work: pipeline.tracer.work(capacity),
@@ -79,7 +87,7 @@ impl ThreadState {
     }
 
     /// Draws `len` wavelengths by the first column of numbers, into a batch that starts over.
-    pub(crate) fn draw_wavelengths(&mut self, pipeline: &Pipeline<'_>, len: usize) {
+    pub(crate) fn draw_wavelengths(&mut self, pipeline: &Pipeline, len: usize) {
         self.rays.restart(len);
         let u = self.numbers[Dimension::Wavelength as usize].slice(len);
         let c = self.rays.columns_mut();
@@ -112,7 +120,7 @@ impl ThreadState {
     }
 
     /// The largest contribution of the batch to any channel.
-    pub(crate) fn largest(&mut self, pipeline: &Pipeline<'_>) -> f64 {
+    pub(crate) fn largest(&mut self, pipeline: &Pipeline) -> f64 {
         let len = self.rays.len();
         let mut largest = 0.0_f64;
         for channel in 0..pipeline.responses.channels() {
@@ -129,7 +137,7 @@ impl ThreadState {
     }
 
     /// Writes each ray's contribution to each channel as integers; false where one does not fit.
-    pub(crate) fn contributions(&mut self, pipeline: &Pipeline<'_>, scale: f64) -> bool {
+    pub(crate) fn contributions(&mut self, pipeline: &Pipeline, scale: f64) -> bool {
         let len = self.rays.len();
         let mut good = true;
         for (channel, integers) in self.integers.iter_mut().enumerate() {

@@ -9,7 +9,7 @@ use spectra_scene::{Direction, Scene};
 const SPARSE: f64 = 0.5;
 
 /// What is to be said of a rendering.
-pub(crate) fn remarks(renderer: &Renderer<'_>, rendering: &Rendering) -> Vec<String> {
+pub(crate) fn remarks(renderer: &Renderer, rendering: &Rendering) -> Vec<String> {
     let scene = renderer.scene();
     let mut all = Vec::new();
     if rendering.detected == 0 {
@@ -66,7 +66,7 @@ fn sparse(scene: &Scene, exposure: &ExposureFrame) -> Option<String> {
 }
 
 /// Why the frame is empty, and what would see the light.
-fn nothing_seen(renderer: &Renderer<'_>, rendering: &Rendering) -> String {
+fn nothing_seen(renderer: &Renderer, rendering: &Rendering) -> String {
     let scene = renderer.scene();
     let landing = renderer.landing();
     let beside = landing.filter(|landing| landing.on_frame == 0.0);

@@ -39,7 +39,7 @@ const MAX_FILMS: usize = 16;
 /// A film alone.
 pub(crate) fn one(film: Box<dyn Film>) -> Vec<SceneFilm> {
     let channels = 0..film.channels().len();
-    vec![SceneFilm { name: None, film, channels }]
+    vec![SceneFilm { name: None, film: film.into(), channels }]
 }
 
 /// The films of a list. Each has a name that its pictures bear: its key `name`, or else the name of its stock or kind.
@@ -58,7 +58,7 @@ pub(crate) fn several(items: &[Node], params: &Params, context: &Context<'_>) ->
         if let (Some(name), Some(film)) = (name, film) {
             let first = films.last().map_or(0, |f| f.channels.end);
             let channels = first..first + film.channels().len();
-            films.push(SceneFilm { name: Some(name), film, channels });
+            films.push(SceneFilm { name: Some(name), film: film.into(), channels });
         }
     }
     faults.into_result(films)

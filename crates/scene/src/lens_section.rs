@@ -14,6 +14,7 @@ use spectra_core::params::{
     StageNode, Value, Wavelength,
 };
 use spectra_core::resources::Resources;
+use std::sync::Arc;
 use spectra_lens::{
     ApertureError, ApertureForm, CoatingForm, Criterion, FocusError, FocusSearch, Lens, MatteBox, Misalignment, Shape,
 };
@@ -133,8 +134,9 @@ struct Wanted {
 }
 
 /// A lens as a scene sets it.
+#[derive(Clone)]
 pub(crate) struct SetLens {
-    pub(crate) lens: Lens,
+    pub(crate) lens: Arc<Lens>,
     pub(crate) focus: Focus,
     /// What a person should know of how it is set.
     pub(crate) warnings: Vec<Fault>,
@@ -225,7 +227,7 @@ impl HeldLens {
         if let Some(opening) = matte_box {
             lens = lens.behind_matte_box(&opening);
         }
-        Ok(SetLens { lens, focus, warnings })
+        Ok(SetLens { lens: Arc::new(lens), focus, warnings })
     }
 }
 

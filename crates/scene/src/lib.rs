@@ -16,15 +16,19 @@ mod lamps;
 mod language;
 mod lens_section;
 mod output;
+mod remembered;
 mod resources;
 mod scene;
 mod schema;
+mod shot;
 mod sight;
 
 pub use spectra_yaml as yaml;
 
 pub use focus::{Focus, FocusBy};
-pub use language::{Member, Series, SeriesKind, SweptAxis, load, load_series};
+pub use language::{Member, Series, SeriesKind, SweptAxis, load, load_series, series_of_text, series_of_tree};
+pub use output::{Holds, Output, OutputEntry};
 pub use resources::FileResources;
-pub use scene::{ConePattern, Direction, FilmTime, NumberFamily, Output, RaysFigure, RenderSettings, Scene, SceneFilm};
+pub use scene::{ConePattern, Direction, FilmTime, NumberFamily, RenderSettings, Scene, SceneFilm};
+pub use shot::{Developed, Shot};
 pub use schema::{FileKind, file_documentation, file_schema, shared_documentation};

@@ -5,6 +5,7 @@ use spectra_plugin_films as _;
 use spectra_plugin_imagers as _;
 #[cfg(feature = "oiio")]
 use spectra_plugin_oiio as _;
+use spectra_plugin_outputs as _;
 use spectra_plugin_responses as _;
 use spectra_plugin_samplers as _;
 use spectra_plugin_sources as _;

@@ -3,7 +3,7 @@
 use crate::bridge::ffi;
 use crate::{reading, writing};
 use spectra_core::picture_file::{FilePicture, PictureLibrary, PictureLibraryEntry, PictureLimits, TiledExr};
-use std::fs::File;
+use spectra_core::sink::Out;
 
 /// The library OpenImageIO (Larry Gritz and others, <https://openimageio.org>).
 #[derive(Clone, Copy, Debug)]
@@ -26,7 +26,7 @@ impl PictureLibrary for OpenImageIo {
         reading::read(ending, bytes, limits)
     }
 
-    fn write_tiled_exr(&self, to: &mut File, picture: &TiledExr<'_>) -> Result<(), String> {
+    fn write_tiled_exr(&self, to: &mut dyn Out, picture: &TiledExr<'_>) -> Result<(), String> {
         writing::tiled_exr(to, picture)
     }
 }

@@ -6,7 +6,7 @@ use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
 use serde::Serialize;
 use spectra_core::params::{Params, SourceFile};
-use spectra_core::registry::{self, ColorEntry, Context, Stage};
+use spectra_core::registry::{self, Context, Entry, Stage};
 use spectra_core::stage::ColorModel;
 use spectra_plot::{Format, figure};
 use spectra_scene::yaml;
@@ -20,7 +20,7 @@ struct Model {
     default: bool,
 }
 
-fn entries() -> Vec<&'static ColorEntry> {
+fn entries() -> Vec<&'static Entry<dyn ColorModel>> {
     let mut entries = <dyn ColorModel as Stage>::entries();
     // The one that scenes take by themselves first.
     entries.sort_by_key(|e| (!e.default, e.name));

@@ -62,6 +62,12 @@ impl Warnings {
         }
     }
 
+    /// The warnings added so far.
+    #[must_use]
+    pub fn all(&self) -> Vec<Warning> {
+        self.all.borrow().clone()
+    }
+
     /// All warnings, in the order in which they were added.
     #[must_use]
     pub fn into_vec(self) -> Vec<Warning> {

@@ -1,6 +1,7 @@
 //! A file appears under its name only when it is complete.
 
 use super::{WriteError, WriteFault};
+use spectra_core::sink::{Content, Sink};
 use std::fs::{File, OpenOptions};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -31,6 +32,19 @@ pub fn write_atomically(
         let _ = std::fs::remove_file(&temporary);
         error(fault)
     })
+}
+
+/// A folder on disk that takes files, each written to a temporary name and renamed.
+#[derive(Clone, Debug)]
+pub struct Folder(pub PathBuf);
+
+impl Sink for Folder {
+    fn file(&self, name: &str, content: Content<'_>) -> Result<(), WriteFault> {
+        write_atomically(&self.0.join(name), |file| content(file)).map_err(|error| match error {
+            WriteError::Io { cause, .. } => WriteFault::Io(cause),
+            WriteError::Format { cause, .. } => WriteFault::Format(cause),
+        })
+    }
 }
 
 fn create_beside(path: &Path) -> io::Result<(File, PathBuf)> {

@@ -3,10 +3,10 @@
 use super::tiff::{
     Field, bytes, directory, doubles, exposure, length, longs, rationals, shorts, signed_rationals, text, undefined,
 };
-use super::{WriteError, WriteFault, write_atomically};
+use super::WriteFault;
+use spectra_core::sink::Out;
 use spectra_core::frame::RawFrame;
 use std::io::{BufWriter, Write};
-use std::path::Path;
 
 /// What a raw file says of the lens.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -28,16 +28,14 @@ pub struct RawLens {
 ///
 /// # Errors
 /// [`WriteError`]: the system refuses, or the number of values is not that of the size.
-pub fn write_dng(path: &Path, frame: &RawFrame, lens: &RawLens) -> Result<(), WriteError> {
-    write_atomically(path, |file| {
-        let mut to = BufWriter::new(file);
+pub fn dng(out: &mut dyn Out, frame: &RawFrame, lens: &RawLens) -> Result<(), WriteFault> {
+        let mut to = BufWriter::new(out);
         to.write_all(&head(frame, lens)?)?;
         for row in frame.values.chunks(frame.width_px.max(1) as usize) {
             let bytes: Vec<u8> = row.iter().flat_map(|v| v.to_le_bytes()).collect();
             to.write_all(&bytes)?;
         }
         Ok(to.flush()?)
-    })
 }
 
 const STRIP_OFFSETS: u16 = 273;
@@ -171,6 +169,7 @@ fn exif(frame: &RawFrame, lens: &RawLens) -> Vec<Field> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::io::Cursor;
     use spectra_core::frame::{RawColor, RawNoise};
 
     fn frame() -> RawFrame {
@@ -214,10 +213,9 @@ mod tests {
     /// numbers.
     #[test]
     fn everything_is_where_the_directories_say() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let path = folder.path().join("a.dng");
-        write_dng(&path, &frame(), &lens()).expect("written");
-        let bytes = std::fs::read(&path).expect("there");
+        let mut file = Cursor::new(Vec::new());
+        dng(&mut file, &frame(), &lens()).expect("written");
+        let bytes = file.into_inner();
         let short = |at: usize| u16::from_le_bytes([bytes[at], bytes[at + 1]]);
         let long = |at: usize| u32::from_le_bytes([bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]]);
         assert_eq!((&bytes[..4], long(4)), (&b"II*\0"[..], 8));
@@ -260,9 +258,8 @@ mod tests {
 
     #[test]
     fn frames_of_another_size_are_refused() {
-        let folder = tempfile::tempdir().expect("a folder");
         let mut short = frame();
         short.values.pop();
-        assert!(matches!(write_dng(&folder.path().join("a.dng"), &short, &lens()), Err(WriteError::Format { .. })));
+        assert!(matches!(dng(&mut Cursor::new(Vec::new()), &short, &lens()), Err(WriteFault::Format(_))));
     }
 }

@@ -7,47 +7,48 @@ use exr::prelude::{
     LayerAttributes, LineOrder, Text, Vec2, WritableImage,
 };
 use spectra_core::frame::ExposureFrame;
-use std::fs::File;
-use std::io::{BufReader, Read, Seek, SeekFrom, Write};
+use spectra_core::sink::Out;
+use std::io::{BufReader, Read, SeekFrom};
 use std::path::Path;
 
-/// Writes the frame as OpenEXR: 32-bit floats, scanlines in increasing order, lossless (zip), a channel
+/// Writes the frame as [`exr`] does, to a file.
+///
+/// # Errors
+/// [`WriteError`].
+pub fn write_exr(path: &Path, frame: &ExposureFrame, attributes: &[(String, String)]) -> Result<(), WriteError> {
+    write_atomically(path, |file| exr(file, frame, &[], attributes))
+}
+
+/// Writes the frame, the values of each channel times a gain (in the order of the channels; 1 where there is none), as OpenEXR:
+/// 32-bit floats, scanlines in increasing order, lossless (zip), a channel
 /// of the file for each of the frame under its name, `attributes` (name, text) in the header beside each
 /// channel's unit (`unit NAME`). An attribute `framesPerSecond` with a value such as `24/1` is written as the rational
 /// number that OpenEXR has for it. The same frame and attributes give the same bytes.
 ///
 /// # Errors
-/// [`WriteError`]: the system refuses, the frame has no channel, or an attribute has a name that is empty,
+/// [`WriteFault`]: the system refuses, the frame has no channel, or an attribute has a name that is empty,
 /// longer than 255 bytes, given twice, or reserved by OpenEXR.
-pub fn write_exr(path: &Path, frame: &ExposureFrame, attributes: &[(String, String)]) -> Result<(), WriteError> {
-    write_exr_times(path, frame, &[], attributes)
-}
-
-/// The same with the values of each channel times a gain, in the order of the channels; 1 where there is none.
-///
-/// # Errors
-/// As [`write_exr`].
-pub fn write_exr_times(
-    path: &Path,
+pub fn exr(
+    out: &mut dyn Out,
     frame: &ExposureFrame,
     gains: &[f64],
     attributes: &[(String, String)],
-) -> Result<(), WriteError> {
-    write(path, frame, attributes, &|at, values| FlatSamples::F32(times(values, gain(gains, at))))
+) -> Result<(), WriteFault> {
+    write(out, frame, attributes, &|at, values| FlatSamples::F32(times(values, gain(gains, at))))
 }
 
 /// The same with 16 bits a value, in half the space: three digits, up to 65 504 (more becomes infinite).
 ///
 /// # Errors
-/// As [`write_exr`].
-pub fn write_half_exr(
-    path: &Path,
+/// As [`exr`].
+pub fn half_exr(
+    out: &mut dyn Out,
     frame: &ExposureFrame,
     gains: &[f64],
     attributes: &[(String, String)],
-) -> Result<(), WriteError> {
+) -> Result<(), WriteFault> {
     let half = |value: f32| exr::prelude::f16::from_f32(value);
-    write(path, frame, attributes, &|at, values| {
+    write(out, frame, attributes, &|at, values| {
         FlatSamples::F16(times(values, gain(gains, at)).into_iter().map(half).collect())
     })
 }
@@ -65,16 +66,14 @@ pub(super) fn times(values: &[f32], gain: f64) -> Vec<f32> {
 type Samples<'a> = &'a dyn Fn(usize, &[f32]) -> FlatSamples;
 
 fn write(
-    path: &Path,
+    mut out: &mut dyn Out,
     frame: &ExposureFrame,
     attributes: &[(String, String)],
     samples: Samples<'_>,
-) -> Result<(), WriteError> {
-    write_atomically(path, |file| {
-        let image = image_of(frame, attributes, samples)?;
-        image.write().to_unbuffered(&mut *file).map_err(fault)?;
-        sort_header(file)
-    })
+) -> Result<(), WriteFault> {
+    let image = image_of(frame, attributes, samples)?;
+    image.write().to_unbuffered(&mut out).map_err(fault)?;
+    sort_header(out)
 }
 
 fn fault(error: exr::error::Error) -> WriteFault {
@@ -151,7 +150,7 @@ fn rational(text: &str) -> Option<(i32, u32)> {
 
 /// Sorts the attributes of the header by name, in place: the library writes those of one's own in the
 /// order of a hash table, which differs from run to run. Sizes, and with them all offsets, stay.
-fn sort_header(file: &mut File) -> Result<(), WriteFault> {
+fn sort_header(file: &mut dyn Out) -> Result<(), WriteFault> {
     const START: u64 = 8; // magic number and version
     file.seek(SeekFrom::Start(START))?;
     let mut from = BufReader::new(&mut *file);
@@ -274,12 +273,12 @@ mod tests {
             let at = frame.channels.iter().position(|c| c.name == name).expect("of that name");
             (f64::from(frame.channels[at].values[i]) * gains[at]) as f32
         };
-        write_exr_times(&path, &frame, &gains, &[]).expect("written");
+        write_atomically(&path, |file| exr(file, &frame, &gains, &[])).expect("written");
         for channel in read() {
             let FlatSamples::F32(values) = &channel.sample_data else { panic!("32-bit floats") };
             assert!(values.iter().enumerate().all(|(i, v)| *v == wanted(&channel.name.to_string(), i)));
         }
-        write_half_exr(&path, &frame, &gains, &[]).expect("written");
+        write_atomically(&path, |file| half_exr(file, &frame, &gains, &[])).expect("written");
         for channel in read().into_iter().filter(|c| c.name.to_string() == "X") {
             let FlatSamples::F16(values) = &channel.sample_data else { panic!("16-bit floats") };
             assert!(

@@ -3,15 +3,17 @@
 mod atomically;
 mod dng;
 mod exposure;
+pub mod leftover;
 mod picture;
 mod tiff;
 mod tiled;
 
-pub use atomically::write_atomically;
-pub use dng::{RawLens, write_dng};
-pub use exposure::{write_exr, write_exr_times, write_half_exr};
-pub use picture::{write_png8, write_png8_of_pixels, write_png16, write_tiff16};
-pub use tiled::{write_tiled_exr, write_tiled_exr_times};
+pub use atomically::{Folder, write_atomically};
+pub use dng::{RawLens, dng};
+pub use exposure::{exr, half_exr, write_exr};
+pub use picture::{png8, tiff16, write_png8, write_png16};
+pub use spectra_core::sink::WriteFault;
+pub use tiled::tiled_exr;
 
 use std::path::PathBuf;
 
@@ -34,19 +36,4 @@ pub enum WriteError {
         /// Why.
         cause: String,
     },
-}
-
-/// What went wrong while the content was written; [`write_atomically`] adds the path.
-#[derive(Debug)]
-pub enum WriteFault {
-    /// The system's word.
-    Io(std::io::Error),
-    /// Why the format cannot hold the content.
-    Format(String),
-}
-
-impl From<std::io::Error> for WriteFault {
-    fn from(cause: std::io::Error) -> Self {
-        Self::Io(cause)
-    }
 }

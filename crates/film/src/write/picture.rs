@@ -1,6 +1,7 @@
 //! Pictures for a screen, in the sRGB encoding.
 
 use super::{WriteError, WriteFault, write_atomically};
+use spectra_core::sink::Out;
 use crate::lookup::PIXELS_A_TASK;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::codecs::tiff::TiffEncoder;
@@ -16,17 +17,16 @@ use std::path::Path;
 /// # Errors
 /// [`WriteError`].
 pub fn write_png8(path: &Path, picture: &DisplayPicture) -> Result<(), WriteError> {
-    let bytes = encoded(picture, |code| [to_u8(code)]);
-    write_png(path, picture, &bytes, ExtendedColorType::Rgb8, 1.0)
+    write_atomically(path, |file| png8(file, picture, 1.0))
 }
 
 /// The same of a picture whose pixels are `pixel_aspect` times as wide as high; where that is not 1, the file says so.
 ///
 /// # Errors
 /// [`WriteError`].
-pub fn write_png8_of_pixels(path: &Path, picture: &DisplayPicture, pixel_aspect: f64) -> Result<(), WriteError> {
+pub fn png8(out: &mut dyn Out, picture: &DisplayPicture, pixel_aspect: f64) -> Result<(), WriteFault> {
     let bytes = encoded(picture, |code| [to_u8(code)]);
-    write_png(path, picture, &bytes, ExtendedColorType::Rgb8, pixel_aspect)
+    png(out, picture, &bytes, ExtendedColorType::Rgb8, pixel_aspect)
 }
 
 /// Writes a 16-bit PNG: sRGB encoding, 1 is 65535, values outside of [0, 1] clipped.
@@ -34,34 +34,31 @@ pub fn write_png8_of_pixels(path: &Path, picture: &DisplayPicture, pixel_aspect:
 /// # Errors
 /// [`WriteError`].
 pub fn write_png16(path: &Path, picture: &DisplayPicture) -> Result<(), WriteError> {
-    write_png(path, picture, &encoded(picture, code16), ExtendedColorType::Rgb16, 1.0)
+    write_atomically(path, |file| png(file, picture, &encoded(picture, code16), ExtendedColorType::Rgb16, 1.0))
 }
 
 /// Writes a 16-bit TIFF, uncompressed: sRGB encoding, 1 is 65535, values outside of [0, 1] clipped.
 ///
 /// # Errors
 /// [`WriteError`].
-pub fn write_tiff16(path: &Path, picture: &DisplayPicture) -> Result<(), WriteError> {
+pub fn tiff16(out: &mut dyn Out, picture: &DisplayPicture) -> Result<(), WriteFault> {
     let bytes = encoded(picture, code16);
-    write_atomically(path, |file| {
         check(picture)?;
-        let mut to = BufWriter::new(file);
+        let mut to = BufWriter::new(out);
         let (width, height) = (picture.width_px, picture.height_px);
         TiffEncoder::new(&mut to).write_image(&bytes, width, height, ExtendedColorType::Rgb16).map_err(fault)?;
         Ok(to.flush()?)
-    })
 }
 
-fn write_png(
-    path: &Path,
+fn png(
+    out: &mut dyn Out,
     picture: &DisplayPicture,
     bytes: &[u8],
     color: ExtendedColorType,
     pixel_aspect: f64,
-) -> Result<(), WriteError> {
-    write_atomically(path, |file| {
+) -> Result<(), WriteFault> {
         check(picture)?;
-        let mut to = BufWriter::new(file);
+        let mut to = BufWriter::new(out);
         let mut png = Vec::new();
         PngEncoder::new_with_quality(&mut png, CompressionType::Default, FilterType::Adaptive)
             .write_image(bytes, picture.width_px, picture.height_px, color)
@@ -74,7 +71,6 @@ fn write_png(
         }
         to.write_all(rest)?;
         Ok(to.flush()?)
-    })
 }
 
 /// The chunk pHYs (PNG, third edition, 11.3.4.3) of pixels of this width over height, without a unit.
@@ -149,7 +145,7 @@ mod tests {
         let sixteen = [folder.path().join("b.png"), folder.path().join("c.tif")];
         write_png8(&eight, &picture()).expect("written");
         write_png16(&sixteen[0], &picture()).expect("written");
-        write_tiff16(&sixteen[1], &picture()).expect("written");
+        write_atomically(&sixteen[1], |file| tiff16(file, &picture())).expect("written");
         let read = image::open(&eight).expect("a picture").into_rgb8();
         assert_eq!(read.dimensions(), (4, 3));
         assert_eq!(read.get_pixel(0, 0).0, [0, 118, 255]);

@@ -1,35 +1,26 @@
 //! OpenEXR of the linear exposure, in tiles.
 
 use super::exposure::{all_attributes, pixel_aspect, times};
-use super::{WriteError, WriteFault, write_atomically};
+use super::WriteFault;
 use spectra_core::frame::ExposureFrame;
 use spectra_core::picture_file::{self, TiledExr};
-use std::path::Path;
+use spectra_core::sink::Out;
 
 /// Side of a tile, pixels: what texture tools use.
 const TILE_PX: u32 = 64;
 
-/// Writes the frame as [`super::write_exr`] does, in tiles of 64 pixels a side, by the library of picture formats that
+/// Writes the frame as [`super::exr`] does, in tiles of 64 pixels a side, by the library of picture formats that
 /// the program is linked with. The same frame and attributes give the same bytes.
 ///
 /// # Errors
-/// [`WriteError`]: the system refuses, there is no such library, the frame has no channel or too few values, or an
+/// [`WriteFault`]: the system refuses, there is no such library, the frame has no channel or too few values, or an
 /// attribute is given twice.
-pub fn write_tiled_exr(path: &Path, frame: &ExposureFrame, attributes: &[(String, String)]) -> Result<(), WriteError> {
-    write_tiled_exr_times(path, frame, &[], attributes)
-}
-
-/// The same with the values of each channel times a gain, in the order of the channels; 1 where there is none.
-///
-/// # Errors
-/// As [`write_tiled_exr`].
-pub fn write_tiled_exr_times(
-    path: &Path,
+pub fn tiled_exr(
+    out: &mut dyn Out,
     frame: &ExposureFrame,
     gains: &[f64],
     attributes: &[(String, String)],
-) -> Result<(), WriteError> {
-    write_atomically(path, |file| {
+) -> Result<(), WriteFault> {
         let Some(library) = picture_file::library() else {
             return Err(WriteFault::Format(picture_file::WITHOUT.to_owned()));
         };
@@ -52,6 +43,5 @@ pub fn write_tiled_exr_times(
             channels: &channels,
             attributes: &attributes,
         };
-        library.write_tiled_exr(file, &picture).map_err(WriteFault::Format)
-    })
+        library.write_tiled_exr(out, &picture).map_err(WriteFault::Format)
 }

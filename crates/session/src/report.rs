@@ -1,46 +1,41 @@
 //! `SCENE.json`: how a picture came about.
 
-use super::direction;
-use super::picture::films;
-use crate::arguments::Run;
-use crate::version;
+use crate::header::films;
+use crate::run::Job;
 use serde_json::{Map, Value, json};
-use spectra_core::{Isa, Loss};
+use spectra_core::Loss;
 use spectra_render::Rendering;
 use spectra_scene::{FilmTime, FocusBy, Scene};
-use std::path::PathBuf;
 
 /// All there is to say of a render.
-pub(crate) struct Report<'a> {
+pub struct Report<'a> {
+    pub(crate) job: &'a Job<'a>,
+    /// The scene.
     pub scene: &'a Scene,
-    pub arguments: &'a Run,
+    /// What the render gave.
     pub rendering: &'a Rendering,
     /// How long each film was exposed.
     pub times: &'a [FilmTime],
+    /// How long its light took.
     pub seconds: f64,
-    pub threads: usize,
-    pub isa: Isa,
-    /// What the header of the EXR says beside what it says of every picture: names and texts.
-    pub attributes: &'a [(String, String)],
+    pub(crate) threads: usize,
 }
 
 impl Report<'_> {
+    /// The picture in a few lines, as a photographer would say it.
+    #[must_use]
+    pub fn summary(&self) -> String {
+        crate::summary::of(self)
+    }
+
     /// Rays launched per second of rendering.
-    pub(crate) fn rays_per_second(&self) -> f64 {
+    #[must_use]
+    pub fn rays_per_second(&self) -> f64 {
         if self.seconds > 0.0 { self.rendering.rays as f64 / self.seconds } else { 0.0 }
     }
 
-    /// By what the values of each channel are to be multiplied, to be what the films got.
-    pub(crate) fn gains(&self) -> Vec<f64> {
-        let mut gains = vec![1.0; self.rendering.exposure.channels.len()];
-        for time in self.times {
-            gains[time.channels.clone()].fill(time.gain);
-        }
-        gains
-    }
-
     /// The content of `SCENE.json`.
-    pub(crate) fn to_json(&self, files: &[PathBuf]) -> Value {
+    pub(crate) fn to_json(&self, files: &[String]) -> Value {
         let Self { scene, rendering, .. } = self;
         let settings = &scene.render;
         let size = rendering.exposure.size;
@@ -51,9 +46,9 @@ impl Report<'_> {
             scene.warnings.iter().map(ToString::to_string).chain(rendering.warnings.iter().cloned()).collect();
         json!({
             "scene": scene.name,
-            "scene_file": self.arguments.scene.display().to_string(),
-            "overrides": super::overrides(self.arguments),
-            "files": files.iter().map(|path| path.display().to_string()).collect::<Vec<_>>(),
+            "scene_file": self.job.scene_file,
+            "overrides": self.job.overrides,
+            "files": files,
             "partial": rendering.partial,
             "seconds": self.seconds,
             "rays": rendering.rays,
@@ -61,11 +56,11 @@ impl Report<'_> {
             "detected": rendering.detected,
             "lost": self.lost(),
             "seed": settings.seed,
-            "direction": direction(scene),
+            "direction": settings.direction.name(),
             "samples_per_pixel": (!forward).then_some(settings.samples),
             "batch": settings.batch,
             "threads": self.threads,
-            "isa": self.isa.name(),
+            "isa": self.job.isa.name(),
             "width_px": size.width_px,
             "height_px": size.height_px,
             "width_mm": size.width_mm,
@@ -77,7 +72,7 @@ impl Report<'_> {
             "focus": focus(scene),
             "lens": { "name": scene.lens.name, "patent": scene.lens.patent, "losses": scene.lens.losses(), "notes": scene.lens.notes },
             "film": films(scene),
-            "versions": version::to_json(),
+            "versions": self.job.versions,
             "warnings": warnings,
             "notes": scene.notes,
         })

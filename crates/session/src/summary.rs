@@ -1,11 +1,10 @@
 //! What is said of a picture that is done, as a photographer would say it.
 
-use super::report::Report;
+use crate::Report;
 use crate::words;
 use spectra_core::params::{Node, Value};
 use spectra_core::{Loss, shutter};
 use spectra_scene::FilmTime;
-use std::path::PathBuf;
 
 /// Causes that say something of a picture. What the lens itself stops is none: rays are aimed at a region a little larger
 /// than its pupil, so that none is forgotten, and those beside the pupil end there.
@@ -99,16 +98,6 @@ fn rounded(text: &str) -> String {
     }
 }
 
-/// Files of one picture in a line: `out/a.exr, a-ortho.png, a.json`.
-pub(crate) fn files(paths: &[PathBuf]) -> String {
-    let folder = paths.first().and_then(|path| path.parent());
-    let short = |(at, path): (usize, &PathBuf)| match path.file_name() {
-        Some(name) if at > 0 && path.parent() == folder => name.to_string_lossy().into_owned(),
-        _ => path.display().to_string(),
-    };
-    paths.iter().enumerate().map(short).collect::<Vec<_>>().join(", ")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -117,11 +106,5 @@ mod tests {
     fn numbers_are_short() {
         let texts = ["66.66666666666667 cm", "2 m", "2.3157894", "1.414", "1234567 mm", "infinity"];
         assert_eq!(texts.map(rounded), ["66.67 cm", "2 m", "2.316", "1.414", "1234567 mm", "infinity"]);
-    }
-
-    #[test]
-    fn files_of_a_folder_share_a_line() {
-        let paths = ["out/a.exr", "out/a.png", "else/a.json"].map(PathBuf::from);
-        assert_eq!(files(&paths), "out/a.exr, a.png, else/a.json");
     }
 }

@@ -1,4 +1,4 @@
-//! Temporary files: `.NAME.PROCESS-NUMBER.tmp`, see `spectra_film::write::write_atomically`.
+//! Temporary files that stayed: `.NAME.PROCESS-NUMBER.tmp`, see [`super::write_atomically`].
 
 use std::path::Path;
 use std::time::{Duration, SystemTime};
@@ -7,13 +7,13 @@ use std::time::{Duration, SystemTime};
 const OLD: Duration = Duration::from_secs(600);
 
 /// Removes the files that this process was writing in `folder`.
-pub(crate) fn remove_own(folder: &Path) {
+pub fn remove_own(folder: &Path) {
     remove(folder, |name, _| process_of(name) == Some(std::process::id()));
 }
 
 /// Removes what runs left in `folder` that were killed: files of pictures whose names begin with `stem`, and attempts at
 /// writing.
-pub(crate) fn sweep(folder: &Path, stem: &str) {
+pub fn sweep(folder: &Path, stem: &str) {
     remove(folder, |name, modified| {
         let is_ours = name.strip_prefix('.').is_some_and(|n| n.starts_with(stem) || n.starts_with("spectra"));
         let is_old = SystemTime::now().duration_since(modified).is_ok_and(|age| age > OLD);

@@ -1,14 +1,13 @@
 //! The contact sheet: all pictures of a sweep, small, side by side.
 
-use super::picture::Developed;
-use crate::outcome::Failure;
 use spectra_core::frame::DisplayPicture;
 use spectra_core::math::log10;
 use spectra_core::params::{Dimension, Reading};
-use spectra_plot::{Canvas, Color, Paint, Picture, Rect, TextStyle, text_width};
-use spectra_scene::{Member, SweptAxis};
+use spectra_core::sink::{Out, WriteFault};
+use spectra_plot::{Canvas, Color, Format, Paint, Picture, Rect, TextStyle, text_width};
+use spectra_scene::{Developed, Member, SweptAxis};
 use spectra_spectrum::{Transfer, to_u8};
-use std::path::Path;
+use std::io::Cursor;
 
 /// Space around and between the cells, pixels.
 const GAP: f64 = 18.0;
@@ -100,22 +99,22 @@ impl Contact {
         }
     }
 
-    /// The same from files of earlier, where they can be read; one for each film, in the order of `films`.
-    pub(crate) fn put_files(&mut self, index: usize, films: &[Option<String>], paths: &[std::path::PathBuf]) {
-        for (film, path) in films.iter().zip(paths) {
-            let Ok(reader) = image::ImageReader::open(path).map(|r| r.with_guessed_format()) else { continue };
-            let Some(read) = reader.ok().and_then(|r| r.decode().ok()).map(image::DynamicImage::into_rgb16) else {
-                continue;
-            };
-            let linear = |v: u16| Transfer::Srgb.decode(f64::from(v) / 65535.0) as f32;
-            let picture = DisplayPicture {
-                width_px: read.width(),
-                height_px: read.height(),
-                rgb: read.pixels().map(|p| p.0.map(linear)).collect(),
-            };
-            let small = Thumbnail::of(&picture, self.largest);
-            self.cell(film.as_deref(), index, small);
-        }
+    /// A file that is larger than this is no picture of a sweep.
+    pub(crate) const LARGEST_BYTES: u64 = 4 << 30;
+
+    /// The same from a file of earlier, where it can be read.
+    pub(crate) fn put_file(&mut self, index: usize, film: Option<&str>, bytes: &[u8]) {
+        let reader = image::ImageReader::new(Cursor::new(bytes)).with_guessed_format();
+        let read = reader.ok().and_then(|r| r.decode().ok()).map(image::DynamicImage::into_rgb16);
+        let Some(read) = read else { return };
+        let linear = |v: u16| Transfer::Srgb.decode(f64::from(v) / 65535.0) as f32;
+        let picture = DisplayPicture {
+            width_px: read.width(),
+            height_px: read.height(),
+            rgb: read.pixels().map(|p| p.0.map(linear)).collect(),
+        };
+        let small = Thumbnail::of(&picture, self.largest);
+        self.cell(film, index, small);
     }
 
     fn cell(&mut self, film: Option<&str>, index: usize, small: Thumbnail) {
@@ -210,9 +209,12 @@ impl Contact {
     }
 
     /// Writes the sheet of a film.
-    pub(crate) fn write(&self, film: Option<&str>, path: &Path, title: &str) -> Result<(), Failure> {
+    ///
+    /// # Errors
+    /// What the place that it goes to has.
+    pub(crate) fn write(&self, film: Option<&str>, title: &str, out: &mut dyn Out) -> Result<(), WriteFault> {
         let Some((_, cells)) = self.sheets.iter().find(|(name, _)| name.as_deref() == film) else { return Ok(()) };
-        self.draw(cells, title).write_at(path, 1.0).map_err(|error| Failure::Failed(error.to_string()))
+        Ok(out.write_all(&self.draw(cells, title).to_bytes(Format::Png, 1.0)?)?)
     }
 }
 

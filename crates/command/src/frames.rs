@@ -2,6 +2,7 @@
 
 use crate::arguments::Run;
 use crate::outcome::Failure;
+use spectra_scene::{Series, SeriesKind};
 use std::ops::RangeInclusive;
 use std::str::FromStr;
 
@@ -48,15 +49,25 @@ impl Frames {
     }
 }
 
-/// Refuses arguments that mean something for several pictures only.
-pub(crate) fn refuse_without_series(arguments: &Run) -> Result<(), Failure> {
-    let named = [("--frames", arguments.frames.is_some()), ("--skip-existing", arguments.skip_existing)];
-    match named.into_iter().find(|(_, given)| *given) {
-        Some((name, _)) => {
-            Err(Failure::Input(format!("{name}: this scene is one picture; it has neither `animation` nor `sweep`")))
-        }
-        None => Ok(()),
+/// Places in the series of the pictures that are asked for.
+pub(crate) fn chosen(series: &Series, arguments: &Run) -> Result<Vec<usize>, Failure> {
+    let all = 0..series.count();
+    if series.kind() == SeriesKind::Single {
+        let named = [("--frames", arguments.frames.is_some()), ("--skip-existing", arguments.skip_existing)];
+        return match named.into_iter().find(|(_, given)| *given) {
+            Some((name, _)) => Err(Failure::Input(format!(
+                "{name}: this scene is one picture; it has neither `animation` nor `sweep`"
+            ))),
+            None => Ok(all.collect()),
+        };
     }
+    let Some(frames) = &arguments.frames else { return Ok(all.collect()) };
+    let SeriesKind::Animation { first, .. } = series.kind() else {
+        return Err(Failure::Input("--frames: this scene has a `sweep`, not an `animation`".to_owned()));
+    };
+    let last = first + series.count() as u32 - 1;
+    frames.check(&(first..=last))?;
+    Ok(all.filter(|index| frames.contains(first + *index as u32)).collect())
 }
 
 #[cfg(test)]
