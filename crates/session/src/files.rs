@@ -1,7 +1,7 @@
 //! The files of one picture.
 
 use crate::{Folder, Names, SessionError, rescue};
-use spectra_core::sink::WriteFault;
+use spectra_core::sink::{Sink, WriteFault};
 use spectra_scene::{Holds, Member, Output, Scene, Shot};
 use std::sync::Arc;
 
@@ -54,28 +54,37 @@ impl Files {
         own.map(|file| file.name.clone()).collect()
     }
 
-    /// Writes all of them. Where the system refuses one, the light is kept elsewhere, and the error says where.
-    pub(crate) fn write(&self, shot: &Shot<'_>, folder: &dyn Folder, elsewhere: &dyn Folder) -> Result<(), SessionError> {
+    /// Writes all of them. Where the system refuses one, the light is kept in another folder if there is one, and the error says
+    /// where.
+    pub(crate) fn write(
+        &self,
+        shot: &Shot<'_>,
+        sink: &dyn Sink,
+        folders: Option<[&dyn Folder; 2]>,
+    ) -> Result<(), SessionError> {
         let is_light = |file: &&File| file.output.holds() == Holds::Light;
         // Pictures are developed and packed while the light behind them is.
         let (light, others) = rayon::join(
-            || self.0.iter().filter(is_light).try_for_each(|file| file.write(shot, folder)),
-            || self.0.iter().filter(|file| !is_light(file)).try_for_each(|file| file.write(shot, folder)),
+            || self.0.iter().filter(is_light).try_for_each(|file| file.write(shot, sink)),
+            || self.0.iter().filter(|file| !is_light(file)).try_for_each(|file| file.write(shot, sink)),
         );
         let is_safe = light.is_ok() && self.0.iter().any(|file| is_light(&file));
         light.and(others).map_err(|(file, fault)| {
-            let kept = match &fault {
-                WriteFault::Io(_) if !is_safe => format!("; {}", rescue::keep(shot, &file, folder, elsewhere)),
+            let kept = match (&fault, folders) {
+                (WriteFault::Io(_), Some([folder, elsewhere])) if !is_safe => {
+                    format!("; {}", rescue::keep(shot, &file, folder, elsewhere))
+                }
                 _ => String::new(),
             };
-            SessionError::Unwritten { file: folder.shown(&file), fault, kept }
+            let file = folders.map_or(file.clone(), |[folder, _]| folder.shown(&file));
+            SessionError::Unwritten { file, fault, kept }
         })
     }
 }
 
 impl File {
-    fn write(&self, shot: &Shot<'_>, folder: &dyn Folder) -> Result<(), Unwritten> {
-        let written = folder.file(&self.name, &mut |out| self.output.write(shot, self.film, out));
+    fn write(&self, shot: &Shot<'_>, sink: &dyn Sink) -> Result<(), Unwritten> {
+        let written = sink.file(&self.name, &mut |out| self.output.write(shot, self.film, out));
         written.map_err(|fault| (self.name.clone(), fault))
     }
 }

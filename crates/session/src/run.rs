@@ -77,7 +77,7 @@ fn picture(job: &Job<'_>, host: &dyn Host) -> Result<Ended, SessionError> {
     let times = scene.film_times(exposure);
     let attributes = header::attributes(scene, exposure, &times, taken.rendering.partial, job.version);
     let shot = Shot::new(scene, exposure, &times, &attributes, job.isa);
-    files.write(&shot, host.folder(), host.elsewhere())?;
+    files.write(&shot, host.folder(), Some([host.folder(), host.elsewhere()]))?;
     let Taken { rendering, seconds, .. } = &taken;
     let report = Report { job, scene, rendering, times: &times, seconds: *seconds, threads: host.threads() };
     let shown: Vec<String> = names.iter().map(|name| host.folder().shown(name)).collect();

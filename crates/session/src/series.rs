@@ -201,7 +201,7 @@ impl Work<'_> {
         let mut attributes = header::attributes(&scene, &rendering.exposure, &times, false, job.version);
         attributes.extend(attributes_of(job.series, &picture.member));
         let shot = Shot::new(&scene, &rendering.exposure, &times, &attributes, job.isa);
-        picture.files.write(&shot, host.folder(), host.elsewhere())?;
+        picture.files.write(&shot, host.folder(), Some([host.folder(), host.elsewhere()]))?;
         let report = Report { job, scene: &scene, rendering: &rendering, times: &times, seconds, threads: host.threads() };
         let mut said = entry(&picture.member);
         if let Value::Object(figures) = report.to_json(&shown) {

@@ -1,8 +1,11 @@
 //! One picture of a scene, on its way.
 
-use crate::{Control, Rendering, SessionError, Workers};
+use crate::files::Files;
+use crate::{Control, Names, Rendering, SessionError, Workers, header};
 use spectra_core::params::{Faults, Node, Warning};
 use spectra_core::resources::Resources;
+use spectra_core::sink::Sink;
+use spectra_core::stage::WavelengthDensity;
 use spectra_core::{Isa, frame::ExposureFrame};
 use spectra_render::{Light, Renderer};
 use spectra_scene::{Developed, Scene, Series, Shot, load_series, series_of_text, series_of_tree};
@@ -175,6 +178,27 @@ impl Session {
         let times = self.scene.film_times(&exposure);
         let shot = Shot::new(&self.scene, &exposure, &times, &[], self.isa);
         shot.pictures().map(<[Developed]>::to_vec).map_err(SessionError::Failed)
+    }
+
+    /// The density that wavelengths are drawn by, once the scene is made ready.
+    #[must_use]
+    pub fn density(&self) -> Option<&Arc<dyn WavelengthDensity>> {
+        self.ready.as_ref().map(|(renderer, _)| renderer.density())
+    }
+
+    /// Writes the files that the scene asks for, of the light so far, and says how they are called.
+    ///
+    /// # Errors
+    /// As [`Session::look`]; a file that could not be written.
+    pub fn write(&mut self, sink: &dyn Sink) -> Result<Vec<String>, SessionError> {
+        let rendering = self.look()?;
+        let (scene, exposure) = (&self.scene, &rendering.exposure);
+        let times = scene.film_times(exposure);
+        let attributes = header::attributes(scene, exposure, &times, rendering.partial, env!("CARGO_PKG_VERSION"));
+        let shot = Shot::new(scene, exposure, &times, &attributes, self.isa);
+        let files = Files::of(&Names::of_scene(), scene, &self.member())?;
+        files.write(&shot, sink, None)?;
+        Ok(files.names())
     }
 
     /// Sets a value, as `--set` does: a text `path=value`. Of the stages and the light that is kept which does not rest on it;
