@@ -174,7 +174,7 @@ fn development_traces_no_ray() {
         (
             "biotar-trix",
             &["imager.resolution=[48, 32]", "render.samples=8"],
-            &["film.push=1", "film.halation={base: 130 um}", "film.view=scan"],
+            &["film.push=1", "film.halation={entering: 0.5, transmittance: 0.2, thickness: 130 um, index: 1.5}", "film.view=scan"],
         ),
         (
             "biotar-color-negative",
