@@ -318,46 +318,76 @@ fn planes(path: &Path) -> BTreeMap<String, Vec<f32>> {
     all.map(|c| (c.name.to_string(), c.sample_data.values_as_f32().collect())).collect()
 }
 
-/// What a metered scene writes is what the film got: the same as with that time stated, as its sum is drawn from the same
-/// wavelengths (`uniform`; the usual strategy looks at the meter's channel, too, so that the noise is another one).
+/// What a metered scene writes is what the film got: the same light, sample by sample, as with that time stated and without a
+/// meter, on plates that see no red, on panchromatic film and on color film.
 #[test]
 fn a_metered_scene_is_that_of_the_metered_time() {
     let folder = tempfile::tempdir().expect("a folder");
-    let scene = shown(&repository("scenes/biotar-trix.yaml")).to_owned();
-    let render = |name: &str, film: &[&str]| {
-        let out = folder.path().join(name);
-        let sets = film.iter().flat_map(|set| ["--set", *set]);
-        let common = ["run", &scene, "-o", shown(&out), "--set", "wavelengths={kind: uniform}"];
-        let output = spectra().args(common).args(TINY).args(sets).output().expect("the program starts");
-        assert!(output.status.success(), "{}", text(&output.stderr));
-        let report = json(&out.join("biotar-trix.json"));
-        let exr = out.join("biotar-trix.exr");
-        (report, planes(&exr), attributes(&exr), text(&output.stderr))
-    };
-    let (report, metered, header, said) = render("metered", &[]);
-    let time_s = report["metered_time_s"].as_f64().expect("a number");
-    assert!((0.0..0.5).contains(&time_s), "{time_s}");
-    assert_eq!(report["exposure_time_s"].as_f64(), Some(time_s));
-    assert_eq!(header["spectra:exposure time"], format!("{time_s} s"));
-    let words = spectra_core::shutter::words(time_s);
-    assert!(words.starts_with("1/") && said.contains(&format!("at {words} (metered)")), "{words}: {said}");
-    // The meter's mean is the 10/S lx s of a mid gray.
-    let mean = metered["meter"].iter().map(|v| f64::from(*v)).sum::<f64>() / metered["meter"].len() as f64;
-    assert!((mean / 0.025 - 1.0).abs() < 1e-6, "{mean}");
-    let exposure = format!("film.exposure={time_s} s");
-    for film in [&[exposure.as_str(), "film.metering=manual"][..], &[exposure.as_str()]] {
-        let (_, stated, header, said) = render("stated", film);
+    for (name, lx_s) in
+        [("biotar-blue-plate", None), ("biotar-trix", Some(0.025)), ("biotar-color-negative", Some(0.04))]
+    {
+        let scene = shown(&repository(&format!("scenes/{name}.yaml"))).to_owned();
+        let render = |film: &[&str]| {
+            let out = folder.path().join(name);
+            let sets = film.iter().flat_map(|set| ["--set", *set]);
+            let common = ["run", &scene, "-o", shown(&out)];
+            let output = spectra().args(common).args(TINY).args(sets).output().expect("the program starts");
+            assert!(output.status.success(), "{}", text(&output.stderr));
+            let report = json(&out.join(format!("{name}.json")));
+            let exr = out.join(format!("{name}.exr"));
+            (report, planes(&exr), attributes(&exr), text(&output.stderr))
+        };
+        let (report, metered, header, said) = render(&[]);
+        let time_s = report["metered_time_s"].as_f64().expect("a number");
+        assert_eq!(report["exposure_time_s"].as_f64(), Some(time_s));
         assert_eq!(header["spectra:exposure time"], format!("{time_s} s"));
-        // Beside a meter an exposure time has no effect, and that is said.
-        assert_eq!(said.contains("`exposure` has no effect"), film.len() == 1, "{said}");
-        for (name, plane) in &stated {
-            // Pixels next to black are known to the step of the sums only, which the meter's channel may change.
-            let mean = plane.iter().sum::<f32>() / plane.len() as f32;
-            for (a, b) in plane.iter().zip(&metered[name]) {
-                assert!((a - b).abs() <= 1e-6 * a.abs().max(mean), "{name}: {a} against {b}");
+        let words = spectra_core::shutter::words(time_s);
+        assert!(said.contains(&format!("at {words} (metered)")), "{words}: {said}");
+        // The meter's mean is the 10/S lx s of a mid gray.
+        let mean = metered["meter"].iter().map(|v| f64::from(*v)).sum::<f64>() / metered["meter"].len() as f64;
+        assert!(lx_s.is_none_or(|lx_s| (mean / lx_s - 1.0).abs() < 1e-6), "{mean}");
+        let exposure = format!("film.exposure={time_s} s");
+        for film in [&[exposure.as_str(), "film.metering=manual"][..], &[exposure.as_str()]] {
+            let (_, stated, header, said) = render(film);
+            assert_eq!(header["spectra:exposure time"], format!("{time_s} s"));
+            // Beside a meter an exposure time has no effect, and that is said.
+            assert_eq!(said.contains("`exposure` has no effect"), film.len() == 1, "{said}");
+            assert_eq!(stated.len() + film.len() - 1, metered.len());
+            for (name, plane) in &stated {
+                for (a, b) in plane.iter().zip(&metered[name]) {
+                    assert!((a - b).abs() <= 1e-6 * a.abs(), "{name}: {a} against {b}");
+                }
             }
         }
     }
+}
+
+/// The meter reads the same whatever the threads, the batch and the instructions, and is right to 1/50 stop in the smallest
+/// picture of the fewest samples: both of the whole frame and of a spot, backward and forward.
+#[test]
+fn a_meter_needs_no_samples_of_the_picture() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = shown(&repository("scenes/biotar-trix.yaml")).to_owned();
+    let metered = |isa: &str, more: &[&str]| {
+        let common = ["run", &scene, "-q", "-q", "-o", shown(folder.path()), "--set", "output=[exr]"];
+        let output = spectra().env("SPECTRA_ISA", isa).args(common).args(more).output().expect("the program starts");
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        json(&folder.path().join("biotar-trix.json"))["metered_time_s"].as_f64().expect("a number")
+    };
+    let small = ["--set", "imager.resolution=[48, 32]", "--samples"];
+    let cases: [&[&str]; 3] = [&[], &["--set", "film.metering=spot"], &["--set", "render.direction=forward"]];
+    for film in cases {
+        let with = |isa: &str, more: &[&str]| metered(isa, &[film, &small, more].concat());
+        let few = with("", &["1", "--threads", "2"]);
+        assert_eq!(few, with("baseline", &["1", "--threads", "1", "--set", "render.batch=40"]));
+        let many = with("", &["1024", "--seed", "7"]);
+        let stops = (few / many).log2().abs();
+        assert!(stops < 0.02, "{film:?}: {stops} stops apart");
+    }
+    // A spot between the middles of pixels sees nothing, and that is said.
+    let nowhere = ["--set", "film.metering=spot", "--set", "film.spot={diameter: 0.001}", "-o", shown(folder.path())];
+    let output = spectra().args(["run", &scene]).args(TINY).args(nowhere).output().expect("the program starts");
+    assert!(text(&output.stderr).contains("meter sees no light where it looks, so the film is exposed for 1 s"));
 }
 
 /// Several films in one light: each one's planes are of its own time.

@@ -12,6 +12,7 @@ use spectra_core::frame::FrameSize;
 use spectra_core::numbers::Numbers;
 use spectra_core::stage::{Launch, Radiance};
 use spectra_lens::{RearPupil, Travel};
+use std::sync::Arc;
 
 /// Pixels of a unit of work.
 pub(crate) const PIXELS_PER_UNIT: u32 = 64;
@@ -22,7 +23,7 @@ pub(crate) struct Backward<'a> {
     pub pipeline: Pipeline<'a>,
     launch: &'a dyn Launch,
     radiance: &'a dyn Radiance,
-    rear: RearPupil,
+    rear: Arc<RearPupil>,
     numbers: Numbers,
 }
 
@@ -42,7 +43,7 @@ impl<'a> Backward<'a> {
         Ok(Self {
             launch,
             radiance: scene.source.radiance().ok_or(RenderError::NoRadiance)?,
-            rear: rear.ok_or(RenderError::NoAperture)?,
+            rear: Arc::new(rear.ok_or(RenderError::NoAperture)?),
             numbers: pipeline.numbers(seed),
             pipeline,
         })
@@ -51,6 +52,12 @@ impl<'a> Backward<'a> {
     /// The same with the numbers of another seed.
     pub(crate) fn reseeded(self, seed: u64) -> Self {
         Self { numbers: self.pipeline.numbers(seed), ..self }
+    }
+
+    /// The same for other channels.
+    pub(crate) fn through(&self, pipeline: Pipeline<'a>) -> Self {
+        let (launch, radiance) = (self.launch, self.radiance);
+        Self { launch, radiance, rear: self.rear.clone(), numbers: self.numbers.clone(), pipeline }
     }
 
     /// Traces `count` samples, from `first` on, of each of `pixels`: pixel after pixel. Afterwards
@@ -85,12 +92,23 @@ impl<'a> Backward<'a> {
             }
             len += count;
         }
+        let tags = |tags: &mut [u32]| tags.chunks_mut(count).zip(pixels).for_each(|(chunk, pixel)| chunk.fill(pixel));
+        self.follow(state, len, tags, look);
+    }
+
+    /// Traces `len` rays by the columns of numbers, from the pixels that `tags` writes.
+    #[inline(always)]
+    pub(crate) fn follow(
+        &self,
+        state: &mut ThreadState,
+        len: usize,
+        tags: impl FnOnce(&mut [u32]),
+        look: &mut impl FnMut(Step, &RayBatch),
+    ) {
+        let isa = self.pipeline.isa;
         state.draw_wavelengths(&self.pipeline, len);
         look(Step::Wavelengths, &state.rays);
-        let c = state.rays.columns_mut();
-        for (chunk, pixel) in c.tag.chunks_mut(count).zip(pixels) {
-            chunk.fill(pixel);
-        }
+        tags(state.rays.columns_mut().tag);
         let [_, u, v, a, b] = &state.numbers;
         self.launch.place(&mut state.rays, u.slice(len), v.slice(len), isa);
         look(Step::Imager, &state.rays);
@@ -144,7 +162,7 @@ impl<'a> Backward<'a> {
                     let (pixel, only) = pixel_and_channel(*tag);
                     let cell = (pixel - begin) as usize * channels;
                     for (channel, integers) in state.integers.iter().enumerate() {
-                        if only.is_none_or(|only| only as usize == channel) {
+                        if only.is_none_or(|only| only as usize == self.pipeline.recorded[channel]) {
                             local[cell + channel] += integers[i];
                         }
                     }

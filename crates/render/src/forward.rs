@@ -11,6 +11,7 @@ use spectra_core::numbers::{Dimension, Numbers};
 use spectra_core::stage::{Emit, Receive};
 use spectra_lens::{AimPattern, FrontPupil, Travel};
 use spectra_scene::ConePattern;
+use std::sync::Arc;
 
 /// Paths a unit of work: some milliseconds.
 pub(crate) const PATHS_PER_UNIT: u64 = 1 << 16;
@@ -22,7 +23,7 @@ pub(crate) struct Forward<'a> {
     emit: &'a dyn Emit,
     receive: &'a dyn Receive,
     /// Where light goes in; `None` for a source that sets its directions itself.
-    pupil: Option<FrontPupil>,
+    pupil: Option<Arc<FrontPupil>>,
     numbers: Numbers,
     cone: Numbers,
 }
@@ -42,7 +43,7 @@ impl<'a> Forward<'a> {
             let points = source_points(&pipeline, emit, &numbers);
             let grid = scene.grid;
             let pupil = FrontPupil::search(&scene.lens, &pipeline.tracer, &points, grid.start_nm, grid.end_nm());
-            Some(pupil.ok_or(RenderError::NoAperture)?)
+            Some(Arc::new(pupil.ok_or(RenderError::NoAperture)?))
         };
         Ok(Self { emit, receive, pupil, numbers, cone, pipeline })
     }
@@ -51,6 +52,12 @@ impl<'a> Forward<'a> {
     pub(crate) fn reseeded(self, seed: u64) -> Self {
         let (numbers, cone) = Self::numbers(&self.pipeline, seed);
         Self { numbers, cone, ..self }
+    }
+
+    /// The same for other channels.
+    pub(crate) fn through(&self, pipeline: Pipeline<'a>) -> Self {
+        let (numbers, cone) = (self.numbers.clone(), self.cone.clone());
+        Self { emit: self.emit, receive: self.receive, pupil: self.pupil.clone(), numbers, cone, pipeline }
     }
 
     /// The numbers of a path, and those of its place on the pupil.
@@ -128,7 +135,7 @@ impl<'a> Forward<'a> {
                 let (pixel, only) = pixel_and_channel(*tag);
                 let cell = pixel as usize * channels;
                 for (channel, integers) in state.integers.iter().enumerate() {
-                    if only.is_none_or(|only| only as usize == channel) {
+                    if only.is_none_or(|only| only as usize == self.pipeline.recorded[channel]) {
                         sums.add(cell + channel, integers[i]);
                     }
                 }

@@ -11,6 +11,7 @@ mod error;
 mod forward;
 mod landing;
 mod memory;
+mod meter;
 mod pipeline;
 mod remarks;
 mod renderer;

@@ -12,32 +12,38 @@ use spectra_core::stage::WavelengthDensity;
 use spectra_core::{Isa, Loss, RayBatch};
 use spectra_lens::{Indices, Tracer, Work};
 use spectra_scene::{NumberFamily, Scene};
+use std::sync::Arc;
 
 /// The stages, made ready for one scene.
 pub(crate) struct Pipeline<'a> {
     pub scene: &'a Scene,
     pub isa: Isa,
-    pub tracer: Tracer,
+    pub tracer: Arc<Tracer>,
     pub density: Box<dyn WavelengthDensity>,
     pub responses: Responses,
+    /// Which channels of the scene are recorded, in the order of `responses`.
+    pub recorded: Vec<usize>,
 }
 
 impl<'a> Pipeline<'a> {
     pub(crate) fn new(scene: &'a Scene, isa: Isa) -> Result<Self, RenderError> {
-        let system = SystemResponse {
-            grid: scene.grid,
-            source: scene.source.spectrum().clone(),
-            channels: scene.channels.clone(),
-        };
+        // A meter's channel is none of them: whether a camera meters must not change the picture's samples.
+        let recorded = scene.picture_channels();
+        let system = system(scene, &recorded);
         let density = scene.sampler.prepare(&system).map_err(RenderError::Sampler)?;
         let indices = Indices::Band { min_nm: scene.grid.start_nm, max_nm: scene.grid.end_nm() };
-        Ok(Self {
-            scene,
-            isa,
-            tracer: Tracer::new(&scene.lens, indices, isa).map_err(|e| RenderError::Lens(e.to_string()))?,
-            density,
-            responses: Responses::new(scene.grid, &scene.channels),
-        })
+        let tracer = Tracer::new(&scene.lens, indices, isa).map_err(|e| RenderError::Lens(e.to_string()))?;
+        let responses = Responses::new(scene.grid, &system.channels);
+        Ok(Self { scene, isa, tracer: Arc::new(tracer), density, responses, recorded })
+    }
+
+    /// The same for what the meters see, with a density of their own; `None` where they see nothing of the source.
+    pub(crate) fn of_meters(&self) -> Option<Self> {
+        let recorded = self.scene.meter_channels();
+        let system = system(self.scene, &recorded);
+        let density = self.scene.sampler.prepare(&system).ok()?;
+        let responses = Responses::new(self.scene.grid, &system.channels);
+        Some(Self { scene: self.scene, isa: self.isa, tracer: self.tracer.clone(), density, responses, recorded })
     }
 
     /// The numbers of a seed, as the scene wants them.
@@ -53,6 +59,12 @@ impl<'a> Pipeline<'a> {
     pub(crate) fn group(&self, dimension: usize) -> u32 {
         if dimension == Dimension::Wavelength as usize { self.density.group() } else { 1 }
     }
+}
+
+/// The source, and some of the channels.
+fn system(scene: &Scene, recorded: &[usize]) -> SystemResponse {
+    let channels = recorded.iter().filter_map(|at| scene.channels.get(*at)).cloned().collect();
+    SystemResponse { grid: scene.grid, source: scene.source.spectrum().clone(), channels }
 }
 
 /// Columns of one thread.

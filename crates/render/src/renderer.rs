@@ -5,6 +5,7 @@ use crate::blame::{Blame, Step};
 use crate::forward::{Forward, PATHS_PER_UNIT};
 use crate::landing::Landing;
 use crate::memory::memory_needed;
+use crate::meter;
 use crate::pipeline::{Pipeline, ThreadState};
 use crate::remarks::remarks;
 use crate::sums::{ExactSums, LARGEST_CONTRIBUTION, LARGEST_EXPECTED, scale_for};
@@ -33,7 +34,7 @@ pub struct Rendering {
     pub warnings: Vec<String>,
 }
 
-enum Way<'a> {
+pub(crate) enum Way<'a> {
     Forward(Forward<'a>),
     Backward(Backward<'a>),
 }
@@ -41,6 +42,13 @@ enum Way<'a> {
 /// A scene made ready to render.
 pub struct Renderer<'a> {
     scene: &'a Scene,
+    way: Way<'a>,
+    scale: f64,
+    meter: Option<Meter<'a>>,
+}
+
+/// What the camera's meters see: the same way of the light, other channels.
+struct Meter<'a> {
     way: Way<'a>,
     scale: f64,
 }
@@ -61,9 +69,11 @@ impl<'a> Renderer<'a> {
     pub fn new(scene: &'a Scene, isa: Isa) -> Result<Self, RenderError> {
         scene.source.prepare().map_err(RenderError::Source)?;
         let pilot = Self::way(scene, isa, PILOT_SEED)?;
-        let largest = Self::pilot(scene, &pilot)?;
-        let scale = scale_for(largest * scene.source.peak_over_mean().max(1.0));
-        Ok(Self { scene, way: pilot.reseeded(scene.render.seed), scale })
+        let scale = Self::scale(scene, &pilot)?;
+        let meter = if scene.meter_channels().is_empty() { None } else { pilot.of_meters() };
+        let meter =
+            meter.map(|way| Ok(Meter { scale: Self::scale(scene, &way)?, way: way.reseeded(seed_of_meter(scene)) }));
+        Ok(Self { scene, way: pilot.reseeded(scene.render.seed), scale, meter: meter.transpose()? })
     }
 
     /// Looks whether a scene can be made ready: what [`Renderer::new`] refuses, as far as that shows without
@@ -95,6 +105,11 @@ impl<'a> Renderer<'a> {
             Direction::Forward => Way::Forward(Forward::new(pipeline, seed)?),
             Direction::Backward => Way::Backward(Backward::new(pipeline, seed)?),
         })
+    }
+
+    /// The scale of the sums.
+    fn scale(scene: &Scene, way: &Way<'_>) -> Result<f64, RenderError> {
+        Ok(scale_for(Self::pilot(scene, way)? * scene.source.peak_over_mean().max(1.0)))
     }
 
     /// The largest contribution among some thousand rays.
@@ -152,7 +167,8 @@ impl<'a> Renderer<'a> {
             .build()
             .map_err(|e| RenderError::Threads(e.to_string()))?;
         let size = self.scene.imager.size();
-        let channels = self.scene.channels.len();
+        let recorded = &self.way.pipeline().recorded;
+        let channels = recorded.len();
         let too_large = || RenderError::Memory(memory_needed(self.scene));
         let sums = ExactSums::new(size.pixels() * channels).ok_or_else(too_large)?;
         let failure: Mutex<Option<RenderError>> = Mutex::new(None);
@@ -163,6 +179,11 @@ impl<'a> Renderer<'a> {
         };
         let plan = Plan::new(&self.way, self.scene);
         control.expect(plan.rays);
+        let metered = match &self.meter {
+            Some(Meter { way: Way::Backward(way), .. }) => meter::backward(way, &pool)?,
+            Some(Meter { way: Way::Forward(way), scale }) => meter::forward(way, *scale, &pool)?,
+            None => Vec::new(),
+        };
         let next = AtomicU64::new(0);
         let paths_done = AtomicU64::new(0);
         let samples_done: Vec<AtomicU32> = (0..plan.tiles).map(|_| AtomicU32::new(0)).collect();
@@ -228,11 +249,20 @@ impl<'a> Renderer<'a> {
                 backward_weight / f64::from(done.max(1))
             }
         };
-        let mut planes = Vec::with_capacity(channels);
-        for (at, channel) in self.scene.channels.iter().enumerate() {
+        let of_meter = self.meter.as_ref().map_or(&[][..], |meter| &meter.way.pipeline().recorded);
+        let time_s = self.scene.exposure_time_s();
+        let mut planes = Vec::with_capacity(self.scene.channels.len());
+        for (number, channel) in self.scene.channels.iter().enumerate() {
             let mut values = Vec::new();
             values.try_reserve_exact(size.pixels()).map_err(|_| too_large())?;
-            values.extend((0..size.pixels()).map(|p| (sums.get(p * channels + at) as f64 * weight(p)) as f32));
+            if let Some(at) = recorded.iter().position(|r| *r == number) {
+                values.extend((0..size.pixels()).map(|p| (sums.get(p * channels + at) as f64 * weight(p)) as f32));
+            } else if let Some(at) = of_meter.iter().position(|r| *r == number) {
+                values.extend(metered[at].iter().map(|value| (value * time_s) as f32));
+            } else {
+                // A meter that sees nothing of this source.
+                values.resize(size.pixels(), 0.0);
+            }
             planes.push(ExposureChannel { name: channel.name.clone(), unit: channel.unit.clone(), values });
         }
         drop(sums);
@@ -261,7 +291,20 @@ impl<'a> Renderer<'a> {
     }
 }
 
-impl Way<'_> {
+/// Seed of the meter's numbers: not the picture's.
+fn seed_of_meter(scene: &Scene) -> u64 {
+    scene.render.seed ^ meter::SEED
+}
+
+impl<'a> Way<'a> {
+    /// The same for what the meters see; `None` where they see nothing.
+    fn of_meters(&self) -> Option<Self> {
+        Some(match self {
+            Self::Forward(forward) => Self::Forward(forward.through(forward.pipeline.of_meters()?)),
+            Self::Backward(backward) => Self::Backward(backward.through(backward.pipeline.of_meters()?)),
+        })
+    }
+
     /// The same with the numbers of another seed.
     fn reseeded(self, seed: u64) -> Self {
         match self {
@@ -270,7 +313,7 @@ impl Way<'_> {
         }
     }
 
-    fn pipeline(&self) -> &Pipeline<'_> {
+    fn pipeline(&self) -> &Pipeline<'a> {
         match self {
             Way::Forward(forward) => &forward.pipeline,
             Way::Backward(backward) => &backward.pipeline,
