@@ -381,7 +381,11 @@ impl Series {
         let is_sweep = matches!(self.going, Going::Sweep { .. });
         let lens = self.setting(index).iter().any(|(path, _)| path == "lens.file" || path == "lens");
         let [fault] = &faults.0[..] else { return None };
-        if !(is_sweep && lens && is_too_fast(fault)) {
+        if !(is_sweep && lens && fault.path == "lens.f-number") {
+            return None;
+        }
+        let params = Params::section(root.clone(), "").and_then(|params| params.stage_at("lens")).ok()??;
+        if !is_too_fast(&params, &self.resources) {
             return None;
         }
         let mut open = root.clone();
