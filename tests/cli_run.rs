@@ -276,6 +276,90 @@ fn light_that_cannot_be_written_is_kept_elsewhere() {
     assert!(attributes(file).contains_key("spectra:partial"));
 }
 
+/// A disk that is full, as a limit of the size of files stands for it: what fits in half floats is kept so at its own place; what
+/// does not fit at all ends with a word, and no part of a file stays.
+#[cfg(unix)]
+#[test]
+fn a_full_disk_leaves_half_floats_or_nothing() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let elsewhere = folder.path().join("elsewhere");
+    std::fs::create_dir(&elsewhere).expect("made");
+    let scene = ortho();
+    let more = ["--samples", "4", "--set", "imager.resolution=[192, 128]", "--set", "output=[exr]"];
+    let run = |name: &str, blocks: Option<u64>| {
+        let out = folder.path().join(name);
+        // Blocks of 512 bytes.
+        let limit = blocks.map_or_else(String::new, |blocks| format!("ulimit -f {blocks}; "));
+        let output = std::process::Command::new("sh")
+            .args(["-c", &format!("{limit}exec \"$@\""), "sh", env!("CARGO_BIN_EXE_spectra"), "run", &scene])
+            .args(["-o", shown(&out)])
+            .args(more)
+            .env("TMPDIR", &elsewhere)
+            .output()
+            .expect("a shell");
+        (output, out)
+    };
+    let names = |folder: &Path| {
+        let entries = std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").file_name());
+        entries.map(|name| name.to_string_lossy().into_owned()).collect::<Vec<_>>()
+    };
+    let (output, out) = run("whole", None);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let file = out.join("biotar-ortho.exr");
+    let (whole, bytes) = (planes(&file), std::fs::metadata(&file).expect("there").len());
+    let (output, out) = run("half", Some(bytes * 8 / 10 / 512));
+    let file = out.join("biotar-ortho.exr");
+    let said = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(said.contains(&format!("the light is kept in {}, in half floats", shown(&file))), "{said}");
+    assert_eq!((names(&out), names(&elsewhere)), (vec!["biotar-ortho.exr".to_owned()], vec![]));
+    for (name, plane) in planes(&file) {
+        for (kept, was) in plane.iter().zip(&whole[&name]) {
+            assert!((kept - was).abs() <= 1e-3 * was.abs() + 1e-7, "{name}: {kept} of {was}");
+        }
+    }
+    let (output, out) = run("nothing", Some(4));
+    let said = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(said.contains("cannot be written") && said.contains("neither could the light be kept"), "{said}");
+    assert_eq!((names(&out), names(&elsewhere)), (vec![], vec![]));
+}
+
+/// What is worth knowing of a scene is said by `check` and by a series, too: once, and in one line where several films or lamps
+/// have it.
+#[test]
+fn notes_are_said_once_by_check_run_and_series() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = folder.path().join("notes.yaml");
+    let said = "\
+spectra: 1
+source: {kind: chart, chart: resolution, distance: 2 m, width: fill, illuminant: 0.5 * helium + argon, luminance: 300 cd/m2}
+lens: {file: zeiss-biotar-50-f1.4, f-number: f/1.4, focus: 2 m}
+imager: {kind: film, format: 135, resolution: [24, 16]}
+film:
+  - {name: ortho, stock: ilford-ortho-plus, metering: average, exposure: 1/60 s}
+  - {name: pan, stock: kodak-tri-x-400, metering: average, exposure: 1/60 s}
+render: {samples: 1}
+output: [exr]
+";
+    let sweep = "sweep: {render.seed: [1, 2]}\n";
+    for (command, more) in [("check", ""), ("run", ""), ("check", sweep), ("run", sweep)] {
+        std::fs::write(&scene, format!("{said}{more}")).expect("written");
+        let out = folder.path().join("out");
+        let to: &[&str] = if command == "run" { &["-o", shown(&out)] } else { &[] };
+        let output = spectra().args([command, shown(&scene)]).args(to).output().expect("the program starts");
+        let said = text(&output.stderr);
+        assert!(output.status.success(), "{said}");
+        let once = |words: &str| said.matches(words).count() == 1;
+        assert!(once("f/1.4 is taken as wide open"), "{command}: {said}");
+        assert!(once("the lines of `helium` and `argon` are as strong"), "{command}: {said}");
+        assert!(once("ortho, pan: the camera meters"), "{command}: {said}");
+    }
+    let output = spectra().args(["check", "--json", shown(&scene)]).output().expect("the program starts");
+    let report: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!(report["scenes"][0]["notes"].as_array().expect("a list").len(), 2, "{report}");
+}
+
 /// Two scenes, one folder, no mixing; and a picture by its name, and nothing else.
 #[test]
 fn outputs_bear_the_name_of_their_scene_or_their_own() {

@@ -24,7 +24,7 @@ pub(crate) fn check(arguments: &Check, isa: Isa) -> Outcome {
             let scene = path.display().to_string();
             let mut said = match &result {
                 Ok(good) => json!({
-                    "scene": scene, "ok": true, "faults": [], "warnings": diagnostics::warnings_to_json(&good.warnings), "memory_bytes": good.memory_bytes
+                    "scene": scene, "ok": true, "faults": [], "warnings": diagnostics::warnings_to_json(&good.warnings), "notes": good.notes, "memory_bytes": good.memory_bytes
                 }),
                 Err(faults) => {
                     json!({ "scene": scene, "ok": false, "faults": diagnostics::to_json(faults), "warnings": [] })
@@ -40,6 +40,9 @@ pub(crate) fn check(arguments: &Check, isa: Isa) -> Outcome {
             Ok(good) => {
                 for warning in &good.warnings {
                     console::said(warning, Some(path));
+                }
+                for note in &good.notes {
+                    console::note(&format!("note: {}: {note}", path.display()));
                 }
                 let pictures =
                     good.pictures.map_or(String::new(), |n| format!(", {n} picture{}", if n == 1 { "" } else { "s" }));
@@ -60,6 +63,7 @@ pub(crate) fn check(arguments: &Check, isa: Isa) -> Outcome {
 /// A scene in which nothing is wrong.
 struct Good {
     warnings: Vec<Warning>,
+    notes: Vec<String>,
     /// How many pictures a sweep or an animation has.
     pictures: Option<usize>,
     /// What the largest picture takes beyond the scene itself.
@@ -77,7 +81,10 @@ fn check_one(path: &Path, overrides: &[String], isa: Isa, is_shown: bool) -> Res
         &all,
         isa,
         threads,
-        &|_, scene: &Scene| Ok((spectra_render::memory_needed(scene), scene.warnings.clone())),
+        &|_, scene: &Scene| {
+            let notes: Vec<String> = scene.all_notes().cloned().collect();
+            Ok((spectra_render::memory_needed(scene), scene.warnings.clone(), notes))
+        },
         &mut |checking| {
             shown.tick(checking);
         },
@@ -89,14 +96,11 @@ fn check_one(path: &Path, overrides: &[String], isa: Isa, is_shown: bool) -> Res
         Failure::Input(text) | Failure::Failed(text) => Fault::new(format!("{}: {text}", path.display())).into(),
         Failure::ReaderGone => Faults::new(),
     })?;
-    let mut warnings: Vec<Warning> = Vec::new();
-    for warning in series.warnings().iter().chain(of_each.iter().flat_map(|(_, warnings)| warnings)) {
-        if !warnings.contains(warning) {
-            warnings.push(warning.clone());
-        }
-    }
+    let warnings = run::each_once(series.warnings().iter().chain(of_each.iter().flat_map(|(_, warnings, _)| warnings)));
+    let warnings = warnings.into_iter().cloned().collect();
+    let notes = run::each_once(of_each.iter().flat_map(|(_, _, notes)| notes)).into_iter().cloned().collect();
     let pictures = (series.kind() != SeriesKind::Single).then_some(all.len());
-    Ok(Good { warnings, pictures, memory_bytes: of_each.iter().map(|(bytes, _)| *bytes).max().unwrap_or(0) })
+    Ok(Good { warnings, notes, pictures, memory_bytes: of_each.iter().map(|(bytes, _, _)| *bytes).max().unwrap_or(0) })
 }
 
 /// How far the check of a long series is, on standard error: a line that moves at a terminal, else one now and then.

@@ -313,12 +313,12 @@ fn all_stages(
     }
     let channels: Arc<[Channel]> = channels.into();
     let SetLens { lens, focus, warnings: of_focus } = lens;
-    let whole = doubts::Whole { params, lens: &lens, source: &*source, channels: &channels, grid };
+    let pictured = films::pictured(&films, &channels);
+    let whole = doubts::Whole { params, lens: &lens, source: &*source, channels: &pictured, grid };
     whole.doubt(seen.and_then(|seen| seen.dark).as_ref(), &warnings);
     of_focus.into_iter().for_each(|fault| warnings.push(fault));
-    for film in &films {
-        let named = |text: String| film.name.as_ref().map_or_else(|| text.clone(), |name| format!("{name}: {text}"));
-        film.film.warnings().into_iter().for_each(|text| warnings.push(params.fault("film", named(text))));
+    for text in films::warnings(&films) {
+        warnings.push(params.fault("film", text));
     }
     let warnings = warnings.into_vec();
     let notes = lamps::notes(params);

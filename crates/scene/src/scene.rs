@@ -186,6 +186,11 @@ impl Scene {
         }
     }
 
+    /// All that is worth knowing though nothing is wrong: of how the lens is set, and of the data.
+    pub fn all_notes(&self) -> impl Iterator<Item = &String> {
+        self.lens.notes.iter().chain(&self.notes)
+    }
+
     /// The channels that pictures are made of, as numbers into [`Scene::channels`]: not those of a meter.
     #[must_use]
     pub fn picture_channels(&self) -> Vec<usize> {

@@ -59,7 +59,7 @@ pub(crate) fn recorded_time_s(exposure: Option<Positive<Time>>, metering: Meteri
 
 /// What is said where an exposure time is stated that the meter overrules.
 pub(crate) fn overruled(is_overruled: bool) -> Vec<String> {
-    let text = "film: the camera meters, so `exposure` has no effect; leave one of them out, `metering` or `exposure`";
+    let text = "the camera meters, so `exposure` has no effect; leave one of them out, `metering` or `exposure`";
     if is_overruled { vec![text.to_owned()] } else { Vec::new() }
 }
 

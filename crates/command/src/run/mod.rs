@@ -25,7 +25,7 @@ use limit::SetUp;
 use progress::Progress;
 use report::Report;
 use serde_json::json;
-pub(crate) use series::{Checking, checked};
+pub(crate) use series::{Checking, checked, each_once};
 use spectra_core::Isa;
 use spectra_core::params::Warning;
 use spectra_render::{Control, RenderError, Renderer, Rendering};
@@ -82,13 +82,10 @@ fn render_scene(arguments: &Run, isa: Isa, started: Instant) -> Outcome {
     let control = Arc::new(deadline.map_or_else(Control::new, Control::until));
     let interrupt = interrupt::listen(&control, &target.folder);
     let mut progress = Progress::new(arguments, deadline);
-    for note in &scene.lens.notes {
-        progress.note(note);
-    }
     for warning in &scene.warnings {
         progress.warning(warning);
     }
-    for note in &scene.notes {
+    for note in scene.all_notes() {
         progress.note(note);
     }
     progress.start(&scene, threads, isa);

@@ -40,6 +40,7 @@ struct Planned {
     size_px: [u32; 2],
     films: Vec<Option<String>>,
     warnings: Vec<Warning>,
+    notes: Vec<String>,
 }
 
 /// Renders all pictures of a series that are asked for.
@@ -65,17 +66,17 @@ pub(super) fn render(
         let films: Vec<Option<String>> = scene.films.iter().map(|film| film.name.clone()).collect();
         let films = if films.is_empty() { vec![None] } else { films };
         let warnings = scene.warnings.clone();
-        Ok(Planned { index, member, folder, size_px: [size.width_px, size.height_px], films, warnings })
+        let notes = scene.all_notes().cloned().collect();
+        Ok(Planned { index, member, folder, size_px: [size.width_px, size.height_px], films, warnings, notes })
     };
     let planned = checked(series, &chosen, isa, threads, &plan, &mut |checking| progress.checking(checking))?;
     set_up.done();
     leftover::sweep(&target.folder, series.name());
-    let mut said: Vec<&Warning> = Vec::new();
-    for warning in series.warnings().iter().chain(planned.iter().flat_map(|p| &p.warnings)) {
-        if !said.contains(&warning) {
-            said.push(warning);
-            progress.warning(warning);
-        }
+    for warning in each_once(series.warnings().iter().chain(planned.iter().flat_map(|p| &p.warnings))) {
+        progress.warning(warning);
+    }
+    for note in each_once(planned.iter().flat_map(|p| &p.notes)) {
+        progress.note(note);
     }
     let control = Arc::new(deadline.map_or_else(Control::new, Control::until));
     let interrupt = interrupt::listen(&control, &target.folder);
@@ -119,6 +120,17 @@ pub(super) fn render(
         json!({ "event": "end", "done": done, "of": of, "interrupted": stopped }),
     );
     Ok(if stopped { interrupt.code() } else { DONE })
+}
+
+/// What several pictures have to say, each once.
+pub(crate) fn each_once<'a, T: PartialEq>(all: impl Iterator<Item = &'a T>) -> Vec<&'a T> {
+    let mut once: Vec<&T> = Vec::new();
+    for one in all {
+        if !once.contains(&one) {
+            once.push(one);
+        }
+    }
+    once
 }
 
 /// Places in the series of the pictures that are asked for.
@@ -232,7 +244,10 @@ fn told(series: &Series, fault: Fault, members: &[usize], all: usize) -> Fault {
     let more = if members.len() > 1 { format!(" and {} more", members.len() - 1) } else { String::new() };
     let values = if member.values.is_empty() { String::new() } else { format!(" ({})", member.words()) };
     let note = format!("{what} {}{values}{more}", member.number);
-    let hint = fault.hint.as_ref().map_or_else(|| note.clone(), |hint| format!("{hint}; {note}"));
+    let hint = fault.hint.as_ref().map_or_else(
+        || note.clone(),
+        |hint| if hint.ends_with('?') { format!("{hint} In {note}") } else { format!("{hint}; {note}") },
+    );
     fault.hint(hint)
 }
 
