@@ -30,7 +30,11 @@ fn scene(lens: &str, f_number: &str, object: &str) -> Scene {
 }
 
 fn render(scene: &Scene) -> ExposureFrame {
-    Renderer::new(scene.clone(), Isa::detect()).expect("ready").run(&Threads(2), &Control::new()).expect("rendered").exposure
+    Renderer::new(scene.clone(), Isa::detect())
+        .expect("ready")
+        .run(&Threads(2), &Control::new())
+        .expect("rendered")
+        .exposure
 }
 
 /// Illuminance over luminance at a point of the film: the projected solid angle of all directions from which light comes

@@ -20,7 +20,11 @@ fn load(scene: &str, overrides: &[&str]) -> Result<Scene, String> {
 
 fn render(overrides: &[&str]) -> ExposureFrame {
     let scene = load("biotar-color.yaml", overrides).expect("a scene");
-    Renderer::new(scene.clone(), Isa::detect()).expect("ready").run(&Threads(2), &Control::new()).expect("rendered").exposure
+    Renderer::new(scene.clone(), Isa::detect())
+        .expect("ready")
+        .run(&Threads(2), &Control::new())
+        .expect("rendered")
+        .exposure
 }
 
 /// The light of each column, and where it lies, mm.

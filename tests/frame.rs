@@ -15,7 +15,11 @@ fn load(overrides: &[&str]) -> Scene {
 }
 
 fn render(scene: &Scene) -> ExposureFrame {
-    Renderer::new(scene.clone(), Isa::detect()).expect("ready").run(&Threads(2), &Control::new()).expect("rendered").exposure
+    Renderer::new(scene.clone(), Isa::detect())
+        .expect("ready")
+        .run(&Threads(2), &Control::new())
+        .expect("rendered")
+        .exposure
 }
 
 /// A card that fills the frame makes the same picture as one that is far larger, bit for bit: nothing of its border is seen,

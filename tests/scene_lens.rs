@@ -63,7 +63,10 @@ fn coatings_dim_the_picture() {
         ];
         let overrides: Vec<String> = common.iter().chain(set).map(|s| (*s).to_owned()).collect();
         let scene = load(&path, &overrides).unwrap_or_else(|faults| panic!("{faults}"));
-        let frame = Renderer::new(scene.clone(), Isa::detect()).expect("a scene").run(&Threads(2), &Control::new()).expect("rendered");
+        let frame = Renderer::new(scene.clone(), Isa::detect())
+            .expect("a scene")
+            .run(&Threads(2), &Control::new())
+            .expect("rendered");
         let y = &frame.exposure.channel("Y").expect("XYZ").values;
         let sum: f32 = [3, 4].iter().flat_map(|row| [5, 6].map(|column| y[row * 12 + column])).sum();
         (f64::from(sum), scene.lens)

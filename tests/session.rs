@@ -59,7 +59,8 @@ fn steps_are_a_run_of_their_sum() {
 
 #[test]
 fn numbers_that_do_not_extend_refuse_to_step() {
-    let mut session = session("gray-card", &["imager.resolution=[8, 8]", "render.numbers=stratified", "render.samples=16"]);
+    let mut session =
+        session("gray-card", &["imager.resolution=[8, 8]", "render.numbers=stratified", "render.samples=16"]);
     let error = session.step(4, &Alone, &Control::new()).expect_err("strata are laid out for 16").to_string();
     assert!(error.contains("stratified"), "{error}");
     go(&mut session, 16);
@@ -114,9 +115,8 @@ fn stopped(session: &mut Session, samples: u64) {
 fn estimators_of_one_scene_add() {
     let session = session("gray-card", &["imager.resolution=[16, 12]", "render.samples=64", "render.rays=300000"]);
     let both = [Direction::Forward, Direction::Backward];
-    let renderer = |which: &[Direction]| {
-        Renderer::of(Arc::clone(session.scene()), Isa::detect(), None, which).expect("ready")
-    };
+    let renderer =
+        |which: &[Direction]| Renderer::of(Arc::clone(session.scene()), Isa::detect(), None, which).expect("ready");
     let look = |renderer: &Renderer, light: &Light| -> Vec<f32> {
         let exposure = renderer.look(session.scene(), light).expect("memory").exposure;
         exposure.channels.iter().flat_map(|c| c.values.clone()).collect()
@@ -174,7 +174,11 @@ fn development_traces_no_ray() {
         (
             "biotar-trix",
             &["imager.resolution=[48, 32]", "render.samples=8"],
-            &["film.push=1", "film.halation={entering: 0.5, transmittance: 0.2, thickness: 130 um, index: 1.5}", "film.view=scan"],
+            &[
+                "film.push=1",
+                "film.halation={entering: 0.5, transmittance: 0.2, thickness: 130 um, index: 1.5}",
+                "film.view=scan",
+            ],
         ),
         (
             "biotar-color-negative",
@@ -247,7 +251,8 @@ fn a_change_makes_again_what_rests_on_it() {
     let kept = changed.change("film.stock=kodak-tri-x-400").expect("a stock");
     assert!(!kept.light && !kept.density && kept.source, "{kept:?}");
     go(&mut changed, 8);
-    let mut fresh = session("biotar-ortho", &[&small[..], &["lens.f-number=f/8", "film.stock=kodak-tri-x-400"]].concat());
+    let mut fresh =
+        session("biotar-ortho", &[&small[..], &["lens.f-number=f/8", "film.stock=kodak-tri-x-400"]].concat());
     go(&mut fresh, 8);
     assert_eq!(bits(&mut changed), bits(&mut fresh));
     // A slip leaves all as it was.

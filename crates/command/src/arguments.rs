@@ -2,10 +2,10 @@
 
 use crate::build::BuildArguments;
 use crate::film::FilmArguments;
+use crate::frames::Frames;
 use crate::glass::GlassArguments;
 use crate::new::NewArguments;
 use crate::quantity::parse;
-use crate::frames::Frames;
 use crate::spectrum::SpectrumArguments;
 use crate::version;
 use clap::{Args, Parser, Subcommand};

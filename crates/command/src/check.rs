@@ -26,7 +26,7 @@ pub(crate) fn check(arguments: &Check, isa: Isa) -> Outcome {
             let scene = path.display().to_string();
             let mut said = match &result {
                 Ok(good) => json!({
-                    "scene": scene, "ok": true, "faults": [], "warnings": diagnostics::warnings_to_json(&good.warnings), "memory_bytes": good.memory_bytes
+                    "scene": scene, "ok": true, "faults": [], "warnings": diagnostics::warnings_to_json(&good.warnings), "notes": good.notes, "memory_bytes": good.memory_bytes
                 }),
                 Err(faults) => {
                     json!({ "scene": scene, "ok": false, "faults": diagnostics::to_json(faults), "warnings": [] })
@@ -42,6 +42,9 @@ pub(crate) fn check(arguments: &Check, isa: Isa) -> Outcome {
             Ok(good) => {
                 for warning in &good.warnings {
                     console::said(warning, Some(path));
+                }
+                for note in &good.notes {
+                    console::note(&format!("note: {}: {note}", path.display()));
                 }
                 let pictures =
                     good.pictures.map_or(String::new(), |n| format!(", {n} picture{}", if n == 1 { "" } else { "s" }));
@@ -62,6 +65,7 @@ pub(crate) fn check(arguments: &Check, isa: Isa) -> Outcome {
 /// A scene in which nothing is wrong.
 struct Good {
     warnings: Vec<Warning>,
+    notes: Vec<String>,
     /// How many pictures a sweep or an animation has.
     pictures: Option<usize>,
     /// What the largest picture takes beyond the scene itself.
@@ -76,13 +80,13 @@ fn check_one(path: &Path, overrides: &[String], isa: Isa, is_shown: bool) -> Res
     let (workers, memory_bytes) = (&Threads(run::processors()), memory::available());
     let found = spectra_session::check(&series, Look { isa, workers, memory_bytes, seen: &seen });
     shown.lock().unwrap_or_else(PoisonError::into_inner).end();
-    let Checked { warnings, memory_bytes } = found.map_err(|error| match error {
+    let Checked { warnings, notes, memory_bytes } = found.map_err(|error| match error {
         SessionError::Faults(faults) => faults,
         // What shows only once the stages are put together, such as a lens without any aperture.
         other => Fault::new(format!("{}: {other}", path.display())).into(),
     })?;
     let pictures = (series.kind() != SeriesKind::Single).then(|| series.count());
-    Ok(Good { warnings, pictures, memory_bytes })
+    Ok(Good { warnings, notes, pictures, memory_bytes })
 }
 
 /// How far the check of a long series is, on standard error: a line that moves at a terminal, else one now and then.
@@ -110,8 +114,7 @@ impl Shown {
         match &self.bar {
             Some(bar) => bar.set_position(done as u64),
             None if console::stderr_moves() && elapsed >= SHOWN_AFTER => {
-                let bar =
-                    ProgressBar::with_draw_target(Some(of as u64), ProgressDrawTarget::stderr_with_hz(10));
+                let bar = ProgressBar::with_draw_target(Some(of as u64), ProgressDrawTarget::stderr_with_hz(10));
                 let style = ProgressStyle::with_template("[{bar:32}] {pos} of {len} pictures checked");
                 bar.set_style(style.expect("the template is a constant").progress_chars("=> "));
                 self.bar = Some(bar);

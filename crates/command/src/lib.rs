@@ -17,6 +17,7 @@ mod glass;
 mod guess;
 mod lens;
 mod licences;
+mod limits;
 mod list;
 mod memory;
 mod new;
@@ -54,6 +55,7 @@ pub fn main(unpack: Unpack) -> ExitCode {
     if arguments.verbose {
         log_to_stderr();
     }
+    limits::report_large_files();
     match dispatch(&arguments, unpack, started) {
         Ok(code) => ExitCode::from(code),
         Err(failure) => ExitCode::from(failure.report()),

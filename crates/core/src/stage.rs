@@ -230,6 +230,12 @@ pub trait Film: Send + Sync {
         false
     }
 
+    /// Whether the camera's meter looks at a pixel. The channels beyond [`Film::picture_channels`] are recorded with fewer rays
+    /// than the picture, and only where this is true; elsewhere they are 0.
+    fn is_metered_at(&self, _size: &FrameSize, _pixel: u32) -> bool {
+        true
+    }
+
     /// Warnings about the picture, for example of a setting that has no effect.
     fn warnings(&self) -> Vec<String> {
         Vec::new()

@@ -3,10 +3,11 @@
 use crate::blame::{Blame, Step};
 use crate::error::RenderError;
 use crate::estimator::{Estimator, Scratch, Unit};
+use crate::meter;
 use crate::pilot::{self, PILOT_RAYS, PILOT_SEED};
 use crate::pipeline::{Pipeline, ThreadState};
-use crate::Done;
 use crate::sums::ExactSums;
+use crate::{Done, Workers};
 use glam::DVec3;
 use spectra_core::Isa;
 use spectra_core::RayBatch;
@@ -25,7 +26,7 @@ pub(crate) const SAMPLES_PER_PASS: u32 = 32;
 
 pub(crate) struct Backward {
     pipeline: Arc<Pipeline>,
-    rear: RearPupil,
+    rear: Arc<RearPupil>,
     numbers: Numbers,
     /// Of the sums.
     scale: f64,
@@ -47,7 +48,7 @@ impl Backward {
             if aside_mm > 0.0 { rear.widened(ROOM * aside_mm) } else { rear }
         });
         let pixels = scene.imager.size().pixels() as u64;
-        let (rear, seed) = (rear.ok_or(RenderError::NoAperture)?, scene.render.seed);
+        let (rear, seed) = (Arc::new(rear.ok_or(RenderError::NoAperture)?), scene.render.seed);
         let mut own = Self { rear, numbers: pipeline.numbers(PILOT_SEED), scale: 1.0, pipeline };
         own.scale = pilot::scale(&own.pipeline, |state, batch, mut look| {
             let spread = (0..PILOT_RAYS).map(|i| (u64::from(i) * pixels / u64::from(PILOT_RAYS)) as u32);
@@ -55,6 +56,16 @@ impl Backward {
         })?;
         own.numbers = own.pipeline.numbers(seed);
         Ok(own)
+    }
+
+    /// The same for what the meters see, which has no sums; `None` where they see nothing.
+    fn of_meters(&self) -> Option<Self> {
+        let pipeline = Arc::new(self.pipeline.of_meters()?);
+        Some(Self { pipeline, rear: self.rear.clone(), numbers: self.numbers.clone(), scale: 1.0 })
+    }
+
+    pub(crate) fn pipeline(&self) -> &Arc<Pipeline> {
+        &self.pipeline
     }
 
     fn launch(&self) -> &dyn Launch {
@@ -67,13 +78,7 @@ impl Backward {
 
     /// Traces `count` samples, from `first` on, of each of `pixels`: pixel after pixel. Afterwards
     /// the weights are irradiance, and 0 for rays that ended.
-    fn batch(
-        &self,
-        state: &mut ThreadState,
-        pixels: impl Iterator<Item = u32> + Clone,
-        first: u32,
-        count: usize,
-    ) {
+    fn batch(&self, state: &mut ThreadState, pixels: impl Iterator<Item = u32> + Clone, first: u32, count: usize) {
         self.steps(state, pixels, first, count, &mut |_, _| {});
     }
 
@@ -97,12 +102,23 @@ impl Backward {
             }
             len += count;
         }
+        let tags = |tags: &mut [u32]| tags.chunks_mut(count).zip(pixels).for_each(|(chunk, pixel)| chunk.fill(pixel));
+        self.follow(state, len, tags, look);
+    }
+
+    /// Traces `len` rays by the columns of numbers, from the pixels that `tags` writes.
+    #[inline(always)]
+    pub(crate) fn follow(
+        &self,
+        state: &mut ThreadState,
+        len: usize,
+        tags: impl FnOnce(&mut [u32]),
+        look: &mut impl FnMut(Step, &RayBatch),
+    ) {
+        let isa = self.pipeline.isa;
         state.draw_wavelengths(&self.pipeline, len);
         look(Step::Wavelengths, &state.rays);
-        let c = state.rays.columns_mut();
-        for (chunk, pixel) in c.tag.chunks_mut(count).zip(pixels) {
-            chunk.fill(pixel);
-        }
+        tags(state.rays.columns_mut().tag);
         let [_, u, v, a, b] = &state.numbers;
         let launch = self.launch();
         launch.place(&mut state.rays, u.slice(len), v.slice(len), isa);
@@ -156,7 +172,7 @@ impl Backward {
                     let (pixel, only) = pixel_and_channel(*tag);
                     let cell = (pixel - begin) as usize * channels;
                     for (channel, integers) in state.integers.iter().enumerate() {
-                        if only.is_none_or(|only| only as usize == channel) {
+                        if only.is_none_or(|only| only as usize == self.pipeline.recorded[channel]) {
                             local[cell + channel] += integers[i];
                         }
                     }
@@ -226,8 +242,8 @@ impl Estimator for Backward {
         (0..self.pipeline.scene.imager.size().pixels()).map(weight).collect()
     }
 
-    fn pipeline(&self) -> &Pipeline {
-        &self.pipeline
+    fn metered(&self, workers: &dyn Workers) -> Result<Vec<Vec<f64>>, RenderError> {
+        self.of_meters().map_or(Ok(Vec::new()), |meters| meter::backward(&meters, workers))
     }
 }
 

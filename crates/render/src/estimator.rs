@@ -1,8 +1,8 @@
 //! One way to estimate the exposure.
 
-use crate::pipeline::{Pipeline, ThreadState};
+use crate::pipeline::ThreadState;
 use crate::sums::ExactSums;
-use crate::{Done, RenderError};
+use crate::{Done, RenderError, Workers};
 use std::ops::Range;
 
 /// A way to estimate the exposure, or a part of it: those of one scene add.
@@ -28,8 +28,12 @@ pub trait Estimator: Send + Sync {
     /// What one unit of each pixel's sums is worth, in W/m2 times the exposure time. `rays` were launched in all.
     fn weights(&self, done: &Done, rays: u64, time_s: f64) -> Vec<f64>;
 
-    /// The stages as they are made ready.
-    fn pipeline(&self) -> &Pipeline;
+    /// What the camera's meters see, found with rays of their own by the same way: for each of the scene's meter channels,
+    /// W/m2 at each pixel, 0 where no meter looks. Empty where they see nothing of the source.
+    ///
+    /// # Errors
+    /// As [`Estimator::run`].
+    fn metered(&self, workers: &dyn Workers) -> Result<Vec<Vec<f64>>, RenderError>;
 }
 
 /// What came of a unit.

@@ -3,10 +3,11 @@
 use crate::blame::{Blame, Step};
 use crate::error::RenderError;
 use crate::estimator::{Estimator, Scratch, Unit};
+use crate::meter;
 use crate::pilot::{self, PILOT_RAYS, PILOT_SEED};
 use crate::pipeline::{Pipeline, ThreadState};
-use crate::Done;
 use crate::sums::ExactSums;
+use crate::{Done, Workers};
 use glam::DVec3;
 use spectra_core::RayBatch;
 use spectra_core::batch::pixel_and_channel;
@@ -25,7 +26,7 @@ const STREAM: u64 = 0;
 pub(crate) struct Forward {
     pipeline: Arc<Pipeline>,
     /// Where light goes in; `None` for a source that sets its directions itself.
-    pupil: Option<FrontPupil>,
+    pupil: Option<Arc<FrontPupil>>,
     numbers: Numbers,
     cone: Numbers,
     /// Of the sums.
@@ -39,12 +40,33 @@ impl Forward {
     /// Searches where light goes in, and finds the scale of the sums.
     pub(crate) fn new(pipeline: Arc<Pipeline>) -> Result<Self, RenderError> {
         let seed = pipeline.scene.render.seed;
-        let mut own = Self::aimed(pipeline)?;
-        own.scale = pilot::scale(&own.pipeline, |state, batch, mut look| {
-            own.steps(state, u64::from(batch * PILOT_RAYS), PILOT_RAYS as usize, &mut look);
+        Self::aimed(pipeline)?.scaled(seed)
+    }
+
+    /// With the scale that its pilot finds, and the numbers of a seed.
+    fn scaled(mut self, seed: u64) -> Result<Self, RenderError> {
+        (self.numbers, self.cone) = Self::numbers(&self.pipeline, PILOT_SEED);
+        self.scale = pilot::scale(&self.pipeline, |state, batch, mut look| {
+            self.steps(state, u64::from(batch * PILOT_RAYS), PILOT_RAYS as usize, &mut look);
         })?;
-        (own.numbers, own.cone) = Self::numbers(&own.pipeline, seed);
-        Ok(own)
+        (self.numbers, self.cone) = Self::numbers(&self.pipeline, seed);
+        Ok(self)
+    }
+
+    /// The same for what the meters see; `None` where they see nothing.
+    fn of_meters(&self) -> Option<Result<Self, RenderError>> {
+        let pipeline = Arc::new(self.pipeline.of_meters()?);
+        let (numbers, cone) = (self.numbers.clone(), self.cone.clone());
+        let seed = pipeline.scene.render.seed ^ meter::SEED;
+        Some(Self { pupil: self.pupil.clone(), numbers, cone, scale: 1.0, pipeline }.scaled(seed))
+    }
+
+    pub(crate) fn pipeline(&self) -> &Arc<Pipeline> {
+        &self.pipeline
+    }
+
+    pub(crate) fn scale(&self) -> f64 {
+        self.scale
     }
 
     /// With the numbers of the pilot, and no scale.
@@ -59,7 +81,7 @@ impl Forward {
             let points = source_points(&pipeline, emit, &numbers);
             let grid = scene.grid;
             let pupil = FrontPupil::search(&scene.lens, &pipeline.tracer, &points, grid.start_nm, grid.end_nm());
-            Some(pupil.ok_or(RenderError::NoAperture)?)
+            Some(Arc::new(pupil.ok_or(RenderError::NoAperture)?))
         };
         Ok(Self { pupil, numbers, cone, scale: 1.0, pipeline })
     }
@@ -125,7 +147,7 @@ impl Forward {
 
     /// Adds a unit of paths to the sums. Gives the number of paths added, and why they are not all, where a contribution is
     /// no number or does not fit.
-    fn unit(
+    pub(crate) fn unit(
         &self,
         state: &mut ThreadState,
         first: u64,
@@ -147,7 +169,7 @@ impl Forward {
                 let (pixel, only) = pixel_and_channel(*tag);
                 let cell = pixel as usize * channels;
                 for (channel, integers) in state.integers.iter().enumerate() {
-                    if only.is_none_or(|only| only as usize == channel) {
+                    if only.is_none_or(|only| only as usize == self.pipeline.recorded[channel]) {
                         sums.add(cell + channel, integers[i]);
                     }
                 }
@@ -199,8 +221,8 @@ impl Estimator for Forward {
         vec![time_s / self.scale / size.pixel_area_mm2() / rays.max(1) as f64; size.pixels()]
     }
 
-    fn pipeline(&self) -> &Pipeline {
-        &self.pipeline
+    fn metered(&self, workers: &dyn Workers) -> Result<Vec<Vec<f64>>, RenderError> {
+        self.of_meters().map_or(Ok(Vec::new()), |meters| meter::forward(&meters?, workers))
     }
 }
 

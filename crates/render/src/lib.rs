@@ -14,6 +14,7 @@ mod forward;
 mod landing;
 mod light;
 mod memory;
+mod meter;
 mod pilot;
 mod pipeline;
 mod remarks;

@@ -11,6 +11,8 @@ pub struct Light {
     pub(crate) parts: Vec<Part>,
     pub(crate) losses: LossCounts,
     pub(crate) detected: u64,
+    /// What the meters see, once they have looked: see [`crate::Estimator::metered`].
+    pub(crate) metered: Option<Vec<Vec<f64>>>,
 }
 
 /// The sums of one estimator.
@@ -96,6 +98,11 @@ impl Light {
             form.number(cause.state(surface))?;
             form.number(rays)?;
         }
+        let metered = self.metered.as_deref().unwrap_or_default();
+        form.number(u64::from(self.metered.is_some()) + metered.len() as u64)?;
+        for value in metered.iter().flatten() {
+            form.number(value.to_bits())?;
+        }
         form.number(self.parts.len() as u64)?;
         for Part { sums, done, rays } in &self.parts {
             form.number(*rays)?;
@@ -138,6 +145,15 @@ impl Light {
             let (cause, surface) = Loss::of_state(state).filter(|(_, s)| u64::from(*s) < MANY).ok_or_else(other)?;
             light.losses.add(cause, surface, rays);
         }
+        let of_meters = form.next()?;
+        if of_meters > 1 + renderer.scene().meter_channels().len() as u64 {
+            return Err(other());
+        }
+        if let Some(planes) = of_meters.checked_sub(1) {
+            let pixels = renderer.scene().imager.size().pixels();
+            let mut plane = || (0..pixels).map(|_| form.next().map(f64::from_bits)).collect::<io::Result<Vec<f64>>>();
+            light.metered = Some((0..planes).map(|_| plane()).collect::<io::Result<_>>()?);
+        }
         if form.next()? != light.parts.len() as u64 {
             return Err(other());
         }
@@ -177,6 +193,6 @@ impl Renderer {
             Ok(Part { sums, done: Done::default(), rays: 0 })
         };
         let parts = self.estimators().map(part).collect::<Result<_, RenderError>>()?;
-        Ok(Light { parts, losses: LossCounts::default(), detected: 0 })
+        Ok(Light { parts, losses: LossCounts::default(), detected: 0, metered: None })
     }
 }

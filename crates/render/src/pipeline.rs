@@ -18,9 +18,11 @@ use std::sync::Arc;
 pub struct Pipeline {
     pub(crate) scene: Arc<Scene>,
     pub(crate) isa: Isa,
-    pub(crate) tracer: Tracer,
+    pub(crate) tracer: Arc<Tracer>,
     pub(crate) density: Arc<dyn WavelengthDensity>,
     pub(crate) responses: Responses,
+    /// Which channels of the scene are recorded, in the order of `responses`.
+    pub(crate) recorded: Vec<usize>,
 }
 
 impl Pipeline {
@@ -30,14 +32,30 @@ impl Pipeline {
         isa: Isa,
         density: Option<Arc<dyn WavelengthDensity>>,
     ) -> Result<Self, RenderError> {
-        let density = density.map_or_else(|| fitted(scene), Ok)?;
+        // A meter's channel is none of them: whether a camera meters must not change the picture's samples.
+        let recorded = scene.picture_channels();
+        let system = system(scene, &recorded);
+        let fitted = || scene.sampler.prepare(&system).map(Arc::from).map_err(RenderError::Sampler);
+        let density = density.map_or_else(fitted, Ok)?;
         let indices = Indices::Band { min_nm: scene.grid.start_nm, max_nm: scene.grid.end_nm() };
-        Ok(Self {
-            scene: Arc::clone(scene),
-            isa,
-            tracer: Tracer::new(&scene.lens, indices, isa).map_err(|e| RenderError::Lens(e.to_string()))?,
+        let tracer = Tracer::new(&scene.lens, indices, isa).map_err(|e| RenderError::Lens(e.to_string()))?;
+        let responses = Responses::new(scene.grid, &system.channels);
+        Ok(Self { scene: Arc::clone(scene), isa, tracer: Arc::new(tracer), density, responses, recorded })
+    }
+
+    /// The same for what the meters see, with a density of their own; `None` where they see nothing of the source.
+    pub(crate) fn of_meters(&self) -> Option<Self> {
+        let recorded = self.scene.meter_channels();
+        let system = system(&self.scene, &recorded);
+        let density = self.scene.sampler.prepare(&system).ok()?.into();
+        let responses = Responses::new(self.scene.grid, &system.channels);
+        Some(Self {
+            scene: self.scene.clone(),
+            isa: self.isa,
+            tracer: self.tracer.clone(),
             density,
-            responses: Responses::new(scene.grid, &scene.channels),
+            responses,
+            recorded,
         })
     }
 
@@ -56,11 +74,10 @@ impl Pipeline {
     }
 }
 
-/// The scene's wavelength strategy, fitted.
-fn fitted(scene: &Scene) -> Result<Arc<dyn WavelengthDensity>, RenderError> {
-    let source = scene.source.spectrum().clone();
-    let system = SystemResponse { grid: scene.grid, source, channels: scene.channels.clone() };
-    scene.sampler.prepare(&system).map(Arc::from).map_err(RenderError::Sampler)
+/// The source, and some of the channels.
+fn system(scene: &Scene, recorded: &[usize]) -> SystemResponse {
+    let channels = recorded.iter().filter_map(|at| scene.channels.get(*at)).cloned().collect();
+    SystemResponse { grid: scene.grid, source: scene.source.spectrum().clone(), channels }
 }
 
 /// Columns of one thread.

@@ -2,8 +2,8 @@
 
 use crate::{Renderer, Rendering};
 use spectra_core::frame::ExposureFrame;
-use spectra_core::{Loss, LossCounts};
-use spectra_scene::{Direction, Scene};
+use spectra_core::{Loss, LossCounts, shutter};
+use spectra_scene::{Direction, Scene, SceneFilm};
 
 /// Of the lit pixels, this share beside empty ones tells that rays are too few, and not that the picture is black there.
 const SPARSE: f64 = 0.5;
@@ -19,6 +19,7 @@ pub(crate) fn remarks(renderer: &Renderer, rendering: &Rendering) -> Vec<String>
         }
         return all;
     }
+    all.extend(scene.films.iter().filter_map(|film| blind_meter(film, &rendering.exposure)));
     let planes = &rendering.exposure.channels;
     let pixels = rendering.exposure.size.pixels();
     let infinite = (0..pixels).filter(|p| planes.iter().any(|plane| !plane.values[*p].is_finite())).count();
@@ -37,6 +38,20 @@ pub(crate) fn remarks(renderer: &Renderer, rendering: &Rendering) -> Vec<String>
         all.extend(sparse(scene, &rendering.exposure));
     }
     all
+}
+
+/// A meter that sees no light cannot choose a time.
+fn blind_meter(film: &SceneFilm, exposure: &ExposureFrame) -> Option<String> {
+    let planes = exposure.channels.get(film.channels.clone())?.get(film.film.picture_channels()..)?;
+    let is_blind = !planes.is_empty() && planes.iter().all(|plane| plane.values.iter().all(|value| *value == 0.0));
+    let named = film.name.as_ref().map_or_else(String::new, |name| format!("{name}: "));
+    is_blind.then(|| {
+        format!(
+            "{named}the camera's meter sees no light where it looks, so the film is exposed for {}; state `exposure` in \
+             place of `metering`, or meter another part of the frame",
+            shutter::words(film.film.metered_time_s(exposure))
+        )
+    })
 }
 
 /// Film is no mean: what no ray reached is developed as unexposed, between pixels that rays did reach.

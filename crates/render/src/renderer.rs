@@ -143,10 +143,20 @@ impl Renderer {
         if samples != u64::from(self.scene.render.samples) && self.scene.render.numbers == NumberFamily::Stratified {
             return Err(RenderError::DoesNotExtend("stratified"));
         }
+        if light.metered.is_none() {
+            light.metered = Some(match self.estimators.first() {
+                Some(first) if !self.scene.meter_channels().is_empty() => first.metered(workers)?,
+                _ => Vec::new(),
+            });
+        }
         let spans: Vec<_> = light.parts.iter_mut().map(|part| part.done.next(samples)).collect();
         // What was begun is one piece of work; beyond it lies another.
         let more = light.parts.iter().any(|part| part.done.end() < samples);
-        let rays = self.estimators.iter().zip(&light.parts).map(|(e, part)| e.rays(&(part.done.complete()..samples.max(part.done.end()))));
+        let rays = self
+            .estimators
+            .iter()
+            .zip(&light.parts)
+            .map(|(e, part)| e.rays(&(part.done.complete()..samples.max(part.done.end()))));
         control.expect(rays.sum());
         for (at, span) in spans.into_iter().enumerate() {
             let Some(span) = span else { continue };
@@ -221,18 +231,28 @@ impl Renderer {
     /// [`RenderError::Memory`].
     pub fn look(&self, scene: &Scene, light: &Light) -> Result<Rendering, RenderError> {
         let size = scene.imager.size();
-        let channels = scene.channels.len();
+        let recorded = &self.pipeline.recorded;
+        let (channels, of_meters) = (recorded.len(), scene.meter_channels());
+        let metered = light.metered.as_deref().unwrap_or_default();
         let time_s = scene.exposure_time_s();
         let parts = self.estimators.iter().zip(&light.parts);
         let weights: Vec<Vec<f64>> = parts.map(|(e, part)| e.weights(&part.done, part.rays, time_s)).collect();
-        let mut planes = Vec::with_capacity(channels);
-        for (at, channel) in scene.channels.iter().enumerate() {
+        let mut planes = Vec::with_capacity(scene.channels.len());
+        for (number, channel) in scene.channels.iter().enumerate() {
             let mut values = Vec::new();
             values.try_reserve_exact(size.pixels()).map_err(|_| self.too_large())?;
-            values.extend((0..size.pixels()).map(|p| {
-                let parts = light.parts.iter().zip(&weights);
-                parts.map(|(part, w)| part.sums.get(p * channels + at) as f64 * w[p]).sum::<f64>() as f32
-            }));
+            let seen = of_meters.iter().position(|meter| *meter == number).and_then(|at| metered.get(at));
+            if let Some(at) = recorded.iter().position(|r| *r == number) {
+                values.extend((0..size.pixels()).map(|p| {
+                    let parts = light.parts.iter().zip(&weights);
+                    parts.map(|(part, w)| part.sums.get(p * channels + at) as f64 * w[p]).sum::<f64>() as f32
+                }));
+            } else if let Some(seen) = seen {
+                values.extend(seen.iter().map(|value| (value * time_s) as f32));
+            } else {
+                // A meter that sees nothing of this source.
+                values.resize(size.pixels(), 0.0);
+            }
             planes.push(ExposureChannel { name: channel.name.clone(), unit: channel.unit.clone(), values });
         }
         Ok(Rendering {
@@ -269,7 +289,7 @@ impl Renderer {
 
     /// Sums of one estimator: one a pixel and channel.
     pub(crate) fn cells(&self) -> usize {
-        self.scene.imager.size().pixels() * self.scene.channels.len()
+        self.scene.imager.size().pixels() * self.pipeline.recorded.len()
     }
 
     pub(crate) fn too_large(&self) -> RenderError {

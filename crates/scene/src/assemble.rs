@@ -238,7 +238,10 @@ fn all_stages(
         None => {
             let seen = seen();
             let context = Context { view: seen.as_ref().map(|seen| &seen.view), ..context };
-            (source.and_then(|p| faults.take(registry::build::<dyn Source>(&p, &context))).map(Arc::from), seen.and_then(|seen| seen.dark))
+            (
+                source.and_then(|p| faults.take(registry::build::<dyn Source>(&p, &context))).map(Arc::from),
+                seen.and_then(|seen| seen.dark),
+            )
         }
     };
     let films = match several {
@@ -312,13 +315,13 @@ fn all_stages(
     }
     let channels: Arc<[Channel]> = channels.into();
     let SetLens { lens, focus, warnings: of_focus } = lens;
-    let whole = doubts::Whole { params, lens: &lens, source: &*source, channels: &channels, grid };
+    let pictured = films::pictured(&films, &channels);
+    let whole = doubts::Whole { params, lens: &lens, source: &*source, channels: &pictured, grid };
     let said = Said { warnings: warnings.all(), ends: warnings.ends(), dark };
     whole.doubt(said.dark.as_ref(), &warnings);
     of_focus.iter().for_each(|fault| warnings.push(fault.clone()));
-    for film in &films {
-        let named = |text: String| film.name.as_ref().map_or_else(|| text.clone(), |name| format!("{name}: {text}"));
-        film.film.warnings().into_iter().for_each(|text| warnings.push(params.fault("film", named(text))));
+    for text in films::warnings(&films) {
+        warnings.push(params.fault("film", text));
     }
     let warnings = warnings.into_vec();
     let notes = lamps::notes(params);

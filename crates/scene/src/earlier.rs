@@ -2,8 +2,8 @@
 
 use crate::focus::FocusLight;
 use crate::lens_section::SetLens;
-use crate::{Scene, SceneFilm};
 use crate::sight::Dark;
+use crate::{Scene, SceneFilm};
 use spectra_core::params::{DataEnd, Fault, Node, Params, Value, Warning};
 use spectra_core::stage::{Imager, Source, WavelengthSampler};
 use std::sync::Arc;

@@ -109,6 +109,24 @@ pub(crate) fn channels(films: &[SceneFilm]) -> Vec<Channel> {
     all
 }
 
+/// What a person should know of the films. What several have to say is said once, with the names of those films.
+pub(crate) fn warnings(films: &[SceneFilm]) -> Vec<String> {
+    let mut said: Vec<(String, Vec<&str>)> = Vec::new();
+    for film in films {
+        for text in film.film.warnings() {
+            let name = film.name.as_deref();
+            match said.iter_mut().find(|(known, _)| *known == text) {
+                Some((_, names)) => names.extend(name),
+                None => said.push((text, name.into_iter().collect())),
+            }
+        }
+    }
+    let named = |(text, names): (String, Vec<&str>)| {
+        if names.is_empty() { text } else { format!("{}: {text}", names.join(", ")) }
+    };
+    said.into_iter().map(named).collect()
+}
+
 /// Those channels that pictures are made of: not a meter's. All of an imager that records by itself.
 pub(crate) fn pictured(films: &[SceneFilm], channels: &[Channel]) -> Arc<[Channel]> {
     if films.is_empty() {

@@ -14,10 +14,10 @@ use spectra_core::params::{
     StageNode, Value, Wavelength,
 };
 use spectra_core::resources::Resources;
-use std::sync::Arc;
 use spectra_lens::{
     ApertureError, ApertureForm, CoatingForm, Criterion, FocusError, FocusSearch, Lens, MatteBox, Misalignment, Shape,
 };
+use std::sync::Arc;
 
 /// The `lens` section.
 #[derive(Debug, Deserialize, JsonSchema)]
@@ -172,14 +172,7 @@ pub(crate) fn held_lens(
         faults.take(spectra_lens::load(file, resources).map_err(|faults| params.place_at("file", faults)))
     });
     let (Some(section), Some(mut lens)) = (section, lens) else { return Err(faults) };
-    if section.reverse {
-        let reversed = faults.take(lens.reversed().map_err(|e| params.fault("reverse", e.to_string())));
-        lens = reversed.unwrap_or(lens);
-    }
-    if let Some(coating) = section.coating.and_then(|node| faults.take(spectra_lens::read_coating(&node, resources))) {
-        lens = lens.with_coating(coating);
-    }
-    lens.absorption = section.absorption.unwrap_or(lens.absorption);
+    lens = as_built(lens, &section, params, resources, &mut faults);
     if let Some(f_number) = section.f_number {
         let stopped = lens.clone().at_f_number(f_number.number());
         lens = faults.take(stopped.map_err(|e| aperture_fault(params, &e))).unwrap_or(lens);
@@ -267,12 +260,36 @@ fn with_aperture(lens: &Lens, node: &StageNode, resources: &dyn Resources) -> Re
     Ok(lens)
 }
 
-/// Whether it says that the lens does not reach the f-number asked for.
-pub(crate) fn is_too_fast(fault: &Fault) -> bool {
-    fault.path == "lens.f-number" && fault.message.contains(" is faster than the lens")
+/// The lens before anything is set on it: turned round or not, coated, absorbing.
+fn as_built(
+    mut lens: Lens,
+    section: &LensSection,
+    params: &Params,
+    resources: &dyn Resources,
+    faults: &mut Faults,
+) -> Lens {
+    if section.reverse {
+        let reversed = faults.take(lens.reversed().map_err(|e| params.fault("reverse", e.to_string())));
+        lens = reversed.unwrap_or(lens);
+    }
+    let coating = section.coating.as_ref();
+    if let Some(coating) = coating.and_then(|node| faults.take(spectra_lens::read_coating(node, resources))) {
+        lens = lens.with_coating(coating);
+    }
+    lens.absorption = section.absorption.unwrap_or(lens.absorption);
+    lens
 }
 
-/// A fault at `f-number`.
+/// Whether the lens of a section does not reach the f-number asked for.
+pub(crate) fn is_too_fast(params: &Params, resources: &dyn Resources) -> bool {
+    let Ok(section) = params.parse::<LensSection>() else { return false };
+    let file = params.get("file").and_then(|node| node.as_str());
+    let Some(lens) = file.and_then(|file| spectra_lens::load(file, resources).ok()) else { return false };
+    let lens = as_built(lens, &section, params, resources, &mut Faults::new());
+    let stopped = section.f_number.map(|f_number| lens.at_f_number(f_number.number()));
+    matches!(stopped, Some(Err(ApertureError::TooFast { .. })))
+}
+
 /// The figure of `f/4` or `4`.
 fn f_number_in(text: &str) -> Option<f64> {
     match Reading::of(text) {
@@ -282,6 +299,7 @@ fn f_number_in(text: &str) -> Option<f64> {
     }
 }
 
+/// A fault at `f-number`.
 fn aperture_fault(params: &Params, error: &ApertureError) -> Fault {
     let hint = match error {
         ApertureError::TooFast { widest, .. } => {

@@ -30,5 +30,5 @@ pub use language::{Member, Series, SeriesKind, SweptAxis, load, load_series, ser
 pub use output::{Holds, Output, OutputEntry};
 pub use resources::FileResources;
 pub use scene::{ConePattern, Direction, FilmTime, NumberFamily, RenderSettings, Scene, SceneFilm};
-pub use shot::{Developed, Shot};
 pub use schema::{FileKind, file_documentation, file_schema, shared_documentation};
+pub use shot::{Developed, Shot};

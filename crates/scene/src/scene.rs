@@ -180,6 +180,38 @@ impl Scene {
         }
     }
 
+    /// All that is worth knowing though nothing is wrong: of how the lens is set, and of the data.
+    pub fn all_notes(&self) -> impl Iterator<Item = &String> {
+        self.lens.notes.iter().chain(&self.notes)
+    }
+
+    /// The channels that pictures are made of, as numbers into [`Scene::channels`]: not those of a meter.
+    #[must_use]
+    pub fn picture_channels(&self) -> Vec<usize> {
+        if self.films.is_empty() {
+            return (0..self.channels.len()).collect();
+        }
+        let of = |f: &SceneFilm| f.channels.start..(f.channels.start + f.film.picture_channels()).min(f.channels.end);
+        self.films.iter().flat_map(of).collect()
+    }
+
+    /// The other channels: what the camera's meters see.
+    #[must_use]
+    pub fn meter_channels(&self) -> Vec<usize> {
+        let of = |f: &SceneFilm| (f.channels.start + f.film.picture_channels()).min(f.channels.end)..f.channels.end;
+        self.films.iter().flat_map(of).collect()
+    }
+
+    /// The pixels that a meter looks at, in their order; none where the exposure is set by hand.
+    #[must_use]
+    pub fn metered_pixels(&self) -> Vec<u32> {
+        let size = self.imager.size();
+        let metered: Vec<&SceneFilm> =
+            self.films.iter().filter(|f| f.film.picture_channels() < f.channels.len()).collect();
+        let is_seen = |pixel: &u32| metered.iter().any(|f| f.film.is_metered_at(&size, *pixel));
+        if metered.is_empty() { Vec::new() } else { (0..size.pixels() as u32).filter(is_seen).collect() }
+    }
+
     /// How long each film was exposed that is on the imager while the frame `exposure` of the scene is recorded. The
     /// exposure that a film got is that of the frame times its gain.
     #[must_use]

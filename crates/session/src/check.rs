@@ -29,6 +29,8 @@ pub struct Look<'a> {
 pub struct Checked {
     /// What a person should know before believing its pictures, each once.
     pub warnings: Vec<Warning>,
+    /// What is worth knowing of how they are taken, each once.
+    pub notes: Vec<String>,
     /// Bytes that its largest picture takes beyond the scene itself.
     pub memory_bytes: u64,
 }
@@ -39,16 +41,28 @@ pub struct Checked {
 /// Everything that is wrong with any of them; a fault that several have is told once.
 pub fn check(series: &Series, look: Look<'_>) -> Result<Checked, SessionError> {
     let all: Vec<usize> = (0..series.count()).collect();
-    let keep = |_, scene: &Scene| Ok((spectra_render::memory_needed(scene), scene.warnings.clone()));
+    let keep = |_, scene: &Scene| {
+        let notes: Vec<String> = scene.all_notes().cloned().collect();
+        Ok((spectra_render::memory_needed(scene), scene.warnings.clone(), notes))
+    };
     let of_each = checked(series, &all, look, &keep)?;
-    let mut found = Checked::default();
-    for warning in series.warnings().iter().chain(of_each.iter().flat_map(|(_, warnings)| warnings)) {
-        if !found.warnings.contains(warning) {
-            found.warnings.push(warning.clone());
+    let warnings = each_once(series.warnings().iter().chain(of_each.iter().flat_map(|(_, warnings, _)| warnings)));
+    Ok(Checked {
+        warnings: warnings.into_iter().cloned().collect(),
+        notes: each_once(of_each.iter().flat_map(|(_, _, notes)| notes)).into_iter().cloned().collect(),
+        memory_bytes: of_each.iter().map(|(bytes, _, _)| *bytes).max().unwrap_or(0),
+    })
+}
+
+/// What several pictures have to say, each once.
+pub(crate) fn each_once<'a, T: PartialEq>(all: impl Iterator<Item = &'a T>) -> Vec<&'a T> {
+    let mut once: Vec<&T> = Vec::new();
+    for one in all {
+        if !once.contains(&one) {
+            once.push(one);
         }
     }
-    found.memory_bytes = of_each.iter().map(|(bytes, _)| *bytes).max().unwrap_or(0);
-    Ok(found)
+    once
 }
 
 /// Assembles and checks these pictures, and gives what `keep` makes of each.
@@ -115,6 +129,9 @@ fn told(series: &Series, fault: Fault, members: &[usize], all: usize) -> Fault {
     let more = if members.len() > 1 { format!(" and {} more", members.len() - 1) } else { String::new() };
     let values = if member.values.is_empty() { String::new() } else { format!(" ({})", member.words()) };
     let note = format!("{what} {}{values}{more}", member.number);
-    let hint = fault.hint.as_ref().map_or_else(|| note.clone(), |hint| format!("{hint}; {note}"));
+    let hint = fault.hint.as_ref().map_or_else(
+        || note.clone(),
+        |hint| if hint.ends_with('?') { format!("{hint} In {note}") } else { format!("{hint}; {note}") },
+    );
     fault.hint(hint)
 }

@@ -53,8 +53,7 @@ pub(crate) fn attributes(
     let source = lens.source.clone().map(|source| ("spectra:lens source", source));
     let film = films(scene).map(|films| ("spectra:film", films));
     let notes = (!scene.notes.is_empty()).then(|| ("spectra:notes", scene.notes.join("; ")));
-    let partial =
-        is_partial.then(|| ("spectra:partial", "true: stopped before all samples were taken".to_owned()));
+    let partial = is_partial.then(|| ("spectra:partial", "true: stopped before all samples were taken".to_owned()));
     all.extend([patent, source, film, notes, partial].into_iter().flatten());
     all.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
 }

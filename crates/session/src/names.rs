@@ -36,7 +36,9 @@ impl Names {
         let output = scene.output_of(&format!(".{ending}")).ok_or_else(none)?;
         match output.check(&*scene.imager) {
             Ok(()) => Ok(vec![output]),
-            Err([text, hint]) => Err(SessionError::Request(Fault::new(format!("{stem}.{ending}: {text}")).hint(hint).to_string())),
+            Err([text, hint]) => {
+                Err(SessionError::Request(Fault::new(format!("{stem}.{ending}: {text}")).hint(hint).to_string()))
+            }
         }
     }
 

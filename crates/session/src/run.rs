@@ -63,13 +63,8 @@ fn picture(job: &Job<'_>, host: &dyn Host) -> Result<Ended, SessionError> {
     names.extend(report_file.clone());
     prepare(job, host, &names)?;
     let control = host.control();
-    for note in &session.scene().lens.notes {
-        host.hear(Event::Note(note));
-    }
     session.warnings().for_each(|warning| host.hear(Event::Warning(warning)));
-    for note in &session.scene().notes {
-        host.hear(Event::Note(note));
-    }
+    session.scene().all_notes().for_each(|note| host.hear(Event::Note(note)));
     let mut taken = Taken::of(&mut session, host, &control)?;
     let failure = taken.failure.take();
     let exposure = &taken.rendering.exposure;

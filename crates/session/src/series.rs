@@ -1,6 +1,6 @@
 //! Several pictures of one scene: the members of a sweep, the frames of an animation.
 
-use crate::check::{Look, checked};
+use crate::check::{Look, checked, each_once};
 use crate::contact::Contact;
 use crate::files::{Files, write_report};
 use crate::run::{Taken, prepare};
@@ -23,13 +23,15 @@ struct Planned {
     size_px: [u32; 2],
     films: Vec<Option<String>>,
     warnings: Vec<Warning>,
+    notes: Vec<String>,
 }
 
 /// Renders all pictures of a series that are asked for.
 pub(crate) fn run(job: &Job<'_>, host: &dyn Host) -> Result<Ended, SessionError> {
     let series = job.series;
     let Some(report_file) = job.names.report(&format!("{}-series", series.name())) else {
-        let text = format!("--output: that is one picture, and this scene stands for {}: name a folder", series.count());
+        let text =
+            format!("--output: that is one picture, and this scene stands for {}: name a folder", series.count());
         return Err(SessionError::Request(text));
     };
     let plan = |index: usize, scene: &Scene| -> Result<Planned, SessionError> {
@@ -41,19 +43,18 @@ pub(crate) fn run(job: &Job<'_>, host: &dyn Host) -> Result<Ended, SessionError>
         let size = scene.imager.size();
         let films: Vec<Option<String>> = scene.films.iter().map(|film| film.name.clone()).collect();
         let films = if films.is_empty() { vec![None] } else { films };
-        let warnings = scene.warnings.clone();
-        Ok(Planned { index, member, files, size_px: [size.width_px, size.height_px], films, warnings })
+        let (warnings, notes) = (scene.warnings.clone(), scene.all_notes().cloned().collect());
+        Ok(Planned { index, member, files, size_px: [size.width_px, size.height_px], films, warnings, notes })
     };
     let seen = |done: usize, of: usize| host.hear(Event::Checked { done, of });
     let look = Look { isa: job.isa, workers: host.workers(), memory_bytes: host.memory_bytes(), seen: &seen };
     let planned = checked(series, &job.chosen, look, &plan)?;
     host.hear(Event::Ready);
-    let mut said: Vec<&Warning> = Vec::new();
-    for warning in series.warnings().iter().chain(planned.iter().flat_map(|p| &p.warnings)) {
-        if !said.contains(&warning) {
-            said.push(warning);
-            host.hear(Event::Warning(warning));
-        }
+    for warning in each_once(series.warnings().iter().chain(planned.iter().flat_map(|p| &p.warnings))) {
+        host.hear(Event::Warning(warning));
+    }
+    for note in each_once(planned.iter().flat_map(|p| &p.notes)) {
+        host.hear(Event::Note(note));
     }
     host.hear(Event::Series(
         &format!("{}: {}", series.name(), what(series, planned.len())),
@@ -202,7 +203,8 @@ impl Work<'_> {
         attributes.extend(attributes_of(job.series, &picture.member));
         let shot = Shot::new(&scene, &rendering.exposure, &times, &attributes, job.isa);
         picture.files.write(&shot, host.folder(), Some([host.folder(), host.elsewhere()]))?;
-        let report = Report { job, scene: &scene, rendering: &rendering, times: &times, seconds, threads: host.threads() };
+        let report =
+            Report { job, scene: &scene, rendering: &rendering, times: &times, seconds, threads: host.threads() };
         let mut said = entry(&picture.member);
         if let Value::Object(figures) = report.to_json(&shown) {
             let common = ["scene", "scene_file", "overrides", "versions", "threads", "isa"];
@@ -262,7 +264,7 @@ impl Work<'_> {
             match job.series.kind() {
                 SeriesKind::Sweep { axes } => {
                     let axes: Vec<Value> = axes.iter().map(|a| json!({ "path": a.path, "values": a.values })).collect();
-                                        map.insert("kind".to_owned(), "sweep".into());
+                    map.insert("kind".to_owned(), "sweep".into());
                     map.insert("axes".to_owned(), axes.into());
                     map.insert("contact_sheets".to_owned(), contact.into());
                 }
@@ -287,7 +289,8 @@ impl Work<'_> {
                 let file = format!("{name}-contact{part}.png");
                 let title = format!("{name}: contact sheet");
                 let written = folder.file(&file, &mut |out| contact.write(film.as_deref(), &title, out));
-                let unwritten = |fault| SessionError::Unwritten { file: folder.shown(&file), fault, kept: String::new() };
+                let unwritten =
+                    |fault| SessionError::Unwritten { file: folder.shown(&file), fault, kept: String::new() };
                 written.map_err(unwritten)?;
                 shown.push(folder.shown(&file));
             }

@@ -113,10 +113,7 @@ impl Session {
         Ok(())
     }
 
-    fn made(
-        &self,
-        renderer: Result<Renderer, spectra_render::RenderError>,
-    ) -> Result<(Renderer, Light), SessionError> {
+    fn made(&self, renderer: Result<Renderer, spectra_render::RenderError>) -> Result<(Renderer, Light), SessionError> {
         let made = renderer.and_then(|renderer| renderer.begin().map(|light| (renderer, light)));
         made.map_err(|error| SessionError::of(&error, &self.scene))
     }
@@ -210,12 +207,19 @@ impl Session {
         let series = self.series.with(text)?;
         let before = Arc::clone(&self.scene);
         let scene: Arc<Scene> = series.scene_after(self.index, Some(Arc::clone(&before)))?.into();
-        let same_channels = before.channels.len() == scene.channels.len()
-            && before.channels.iter().zip(&*scene.channels).all(|(a, b)| a.response == b.response);
+        let responses = |scene: &Scene, which: Vec<usize>| -> Vec<Vec<f64>> {
+            which.iter().filter_map(|at| scene.channels.get(*at)).map(|c| c.response.clone()).collect()
+        };
+        let same_channels =
+            responses(&before, before.picture_channels()) == responses(&scene, scene.picture_channels());
+        let same_meters = responses(&before, before.meter_channels()) == responses(&scene, scene.meter_channels())
+            && before.metered_pixels() == scene.metered_pixels();
         let source = Arc::ptr_eq(&before.source, &scene.source);
         let lens = Arc::ptr_eq(&before.lens, &scene.lens);
-        let system = source && same_channels && before.grid == scene.grid && Arc::ptr_eq(&before.sampler, &scene.sampler);
+        let system =
+            source && same_channels && before.grid == scene.grid && Arc::ptr_eq(&before.sampler, &scene.sampler);
         let same_light = system
+            && same_meters
             && lens
             && before.imager.size() == scene.imager.size()
             && Arc::ptr_eq(&before.imager, &scene.imager)

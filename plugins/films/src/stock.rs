@@ -5,7 +5,7 @@ use crate::metering::{METER, Meter, Metering, SpotParams, overruled, recorded_ti
 use crate::view::{PaperParams, Picture, View, seen};
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::frame::{DisplayPicture, ExposureFrame};
+use spectra_core::frame::{DisplayPicture, ExposureFrame, FrameSize};
 use spectra_core::math::pow;
 use spectra_core::params::{Fault, Faults, Params, Positive, Time, nearest};
 use spectra_core::registry::Context;
@@ -268,6 +268,10 @@ impl Film for StockFilm {
 
     fn is_metered(&self) -> bool {
         self.meter.is_on()
+    }
+
+    fn is_metered_at(&self, size: &FrameSize, pixel: u32) -> bool {
+        self.meter.looks_at(size, pixel)
     }
 
     fn warnings(&self) -> Vec<String> {

@@ -4,7 +4,7 @@ use crate::metering::{METER, Meter, Metering, SpotParams, overruled, recorded_ti
 use crate::stock::load_stock;
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::frame::{DisplayPicture, ExposureFrame};
+use spectra_core::frame::{DisplayPicture, ExposureFrame, FrameSize};
 use spectra_core::params::{Faults, Params, Positive as AboveZero, Time};
 use spectra_core::registry::Context;
 use spectra_core::spectral::{BAND, Channel};
@@ -276,6 +276,10 @@ impl Film for ThreeStrip {
 
     fn is_metered(&self) -> bool {
         self.meter.is_on()
+    }
+
+    fn is_metered_at(&self, size: &FrameSize, pixel: u32) -> bool {
+        self.meter.looks_at(size, pixel)
     }
 
     fn warnings(&self) -> Vec<String> {

@@ -139,12 +139,7 @@ const PARTS: [f64; 3] = [0.0, 0.6, 0.95];
 const WIDEST_DEG: f64 = 85.0;
 
 /// A beam's own rays: for each line, or for wavelengths over its continuum.
-fn beam(
-    scene: &Scene,
-    emit: &dyn Emit,
-    figure: &RaysParams,
-    isa: Isa,
-) -> Result<Vec<DrawnRay>, DispersionError> {
+fn beam(scene: &Scene, emit: &dyn Emit, figure: &RaysParams, isa: Isa) -> Result<Vec<DrawnRay>, DispersionError> {
     let spectrum = scene.source.spectrum();
     let visible = |nm: f64| (VISIBLE_NM[0]..=VISIBLE_NM[1]).contains(&nm);
     let lines = spectrum.lines.iter().enumerate().filter(|(_, line)| visible(line.wavelength_nm));
@@ -177,7 +172,8 @@ fn beam(
         }
         let brightest = drawn[first..].iter().map(|r| r.strength).fold(0.0, f64::max);
         for ray in &mut drawn[first..] {
-            ray.strength = if figure.intensity == Intensity::True && brightest > 0.0 { ray.strength / brightest } else { 1.0 };
+            ray.strength =
+                if figure.intensity == Intensity::True && brightest > 0.0 { ray.strength / brightest } else { 1.0 };
         }
     }
     Ok(drawn)

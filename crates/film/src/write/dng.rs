@@ -1,11 +1,11 @@
 //! Raw frames as DNG: what raw converters open.
 
+use super::WriteFault;
 use super::tiff::{
     Field, bytes, directory, doubles, exposure, length, longs, rationals, shorts, signed_rationals, text, undefined,
 };
-use super::WriteFault;
-use spectra_core::sink::Out;
 use spectra_core::frame::RawFrame;
+use spectra_core::sink::Out;
 use std::io::{BufWriter, Write};
 
 /// What a raw file says of the lens.
@@ -29,13 +29,13 @@ pub struct RawLens {
 /// # Errors
 /// [`WriteError`]: the system refuses, or the number of values is not that of the size.
 pub fn dng(out: &mut dyn Out, frame: &RawFrame, lens: &RawLens) -> Result<(), WriteFault> {
-        let mut to = BufWriter::new(out);
-        to.write_all(&head(frame, lens)?)?;
-        for row in frame.values.chunks(frame.width_px.max(1) as usize) {
-            let bytes: Vec<u8> = row.iter().flat_map(|v| v.to_le_bytes()).collect();
-            to.write_all(&bytes)?;
-        }
-        Ok(to.flush()?)
+    let mut to = BufWriter::new(out);
+    to.write_all(&head(frame, lens)?)?;
+    for row in frame.values.chunks(frame.width_px.max(1) as usize) {
+        let bytes: Vec<u8> = row.iter().flat_map(|v| v.to_le_bytes()).collect();
+        to.write_all(&bytes)?;
+    }
+    Ok(to.flush()?)
 }
 
 const STRIP_OFFSETS: u16 = 273;
@@ -169,8 +169,8 @@ fn exif(frame: &RawFrame, lens: &RawLens) -> Vec<Field> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::io::Cursor;
     use spectra_core::frame::{RawColor, RawNoise};
+    use std::io::Cursor;
 
     fn frame() -> RawFrame {
         RawFrame {

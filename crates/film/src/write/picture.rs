@@ -1,13 +1,13 @@
 //! Pictures for a screen, in the sRGB encoding.
 
 use super::{WriteError, WriteFault, write_atomically};
-use spectra_core::sink::Out;
 use crate::lookup::PIXELS_A_TASK;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::codecs::tiff::TiffEncoder;
 use image::{ExtendedColorType, ImageEncoder, ImageError};
 use rayon::prelude::*;
 use spectra_core::frame::DisplayPicture;
+use spectra_core::sink::Out;
 use spectra_spectrum::{Transfer, to_u8};
 use std::io::{BufWriter, Write};
 use std::path::Path;
@@ -43,11 +43,11 @@ pub fn write_png16(path: &Path, picture: &DisplayPicture) -> Result<(), WriteErr
 /// [`WriteError`].
 pub fn tiff16(out: &mut dyn Out, picture: &DisplayPicture) -> Result<(), WriteFault> {
     let bytes = encoded(picture, code16);
-        check(picture)?;
-        let mut to = BufWriter::new(out);
-        let (width, height) = (picture.width_px, picture.height_px);
-        TiffEncoder::new(&mut to).write_image(&bytes, width, height, ExtendedColorType::Rgb16).map_err(fault)?;
-        Ok(to.flush()?)
+    check(picture)?;
+    let mut to = BufWriter::new(out);
+    let (width, height) = (picture.width_px, picture.height_px);
+    TiffEncoder::new(&mut to).write_image(&bytes, width, height, ExtendedColorType::Rgb16).map_err(fault)?;
+    Ok(to.flush()?)
 }
 
 fn png(
@@ -57,20 +57,20 @@ fn png(
     color: ExtendedColorType,
     pixel_aspect: f64,
 ) -> Result<(), WriteFault> {
-        check(picture)?;
-        let mut to = BufWriter::new(out);
-        let mut png = Vec::new();
-        PngEncoder::new_with_quality(&mut png, CompressionType::Default, FilterType::Adaptive)
-            .write_image(bytes, picture.width_px, picture.height_px, color)
-            .map_err(fault)?;
-        // Signature and IHDR come first (PNG, third edition, 5.6): pHYs may follow at once.
-        let (head, rest) = png.split_at(8 + 25);
-        to.write_all(head)?;
-        if pixel_aspect != 1.0 && (0.001..1000.0).contains(&pixel_aspect) {
-            to.write_all(&physical_dimensions(pixel_aspect))?;
-        }
-        to.write_all(rest)?;
-        Ok(to.flush()?)
+    check(picture)?;
+    let mut to = BufWriter::new(out);
+    let mut png = Vec::new();
+    PngEncoder::new_with_quality(&mut png, CompressionType::Default, FilterType::Adaptive)
+        .write_image(bytes, picture.width_px, picture.height_px, color)
+        .map_err(fault)?;
+    // Signature and IHDR come first (PNG, third edition, 5.6): pHYs may follow at once.
+    let (head, rest) = png.split_at(8 + 25);
+    to.write_all(head)?;
+    if pixel_aspect != 1.0 && (0.001..1000.0).contains(&pixel_aspect) {
+        to.write_all(&physical_dimensions(pixel_aspect))?;
+    }
+    to.write_all(rest)?;
+    Ok(to.flush()?)
 }
 
 /// The chunk pHYs (PNG, third edition, 11.3.4.3) of pixels of this width over height, without a unit.

@@ -1,7 +1,7 @@
 //! OpenEXR of the linear exposure, in tiles.
 
-use super::exposure::{all_attributes, pixel_aspect, times};
 use super::WriteFault;
+use super::exposure::{all_attributes, pixel_aspect, times};
 use spectra_core::frame::ExposureFrame;
 use spectra_core::picture_file::{self, TiledExr};
 use spectra_core::sink::Out;
@@ -21,27 +21,26 @@ pub fn tiled_exr(
     gains: &[f64],
     attributes: &[(String, String)],
 ) -> Result<(), WriteFault> {
-        let Some(library) = picture_file::library() else {
-            return Err(WriteFault::Format(picture_file::WITHOUT.to_owned()));
-        };
-        let attributes: Vec<(String, String)> = all_attributes(frame, attributes).collect();
-        for (i, (name, _)) in attributes.iter().enumerate() {
-            if name.is_empty() || attributes[..i].iter().any(|(other, _)| other == name) {
-                return Err(WriteFault::Format(format!("the attribute `{name}` has no name, or is given twice")));
-            }
+    let Some(library) = picture_file::library() else {
+        return Err(WriteFault::Format(picture_file::WITHOUT.to_owned()));
+    };
+    let attributes: Vec<(String, String)> = all_attributes(frame, attributes).collect();
+    for (i, (name, _)) in attributes.iter().enumerate() {
+        if name.is_empty() || attributes[..i].iter().any(|(other, _)| other == name) {
+            return Err(WriteFault::Format(format!("the attribute `{name}` has no name, or is given twice")));
         }
-        let gain = |at: usize| gains.get(at).copied().unwrap_or(1.0);
-        let values: Vec<Vec<f32>> =
-            frame.channels.iter().enumerate().map(|(at, c)| times(&c.values, gain(at))).collect();
-        let channels: Vec<(&str, &[f32])> =
-            frame.channels.iter().zip(&values).map(|(c, values)| (c.name.as_str(), values.as_slice())).collect();
-        let picture = TiledExr {
-            width_px: frame.size.width_px,
-            height_px: frame.size.height_px,
-            pixel_aspect: pixel_aspect(frame),
-            tile_px: TILE_PX,
-            channels: &channels,
-            attributes: &attributes,
-        };
-        library.write_tiled_exr(out, &picture).map_err(WriteFault::Format)
+    }
+    let gain = |at: usize| gains.get(at).copied().unwrap_or(1.0);
+    let values: Vec<Vec<f32>> = frame.channels.iter().enumerate().map(|(at, c)| times(&c.values, gain(at))).collect();
+    let channels: Vec<(&str, &[f32])> =
+        frame.channels.iter().zip(&values).map(|(c, values)| (c.name.as_str(), values.as_slice())).collect();
+    let picture = TiledExr {
+        width_px: frame.size.width_px,
+        height_px: frame.size.height_px,
+        pixel_aspect: pixel_aspect(frame),
+        tile_px: TILE_PX,
+        channels: &channels,
+        attributes: &attributes,
+    };
+    library.write_tiled_exr(out, &picture).map_err(WriteFault::Format)
 }

@@ -8,8 +8,8 @@ use super::variables::{self, VARIABLES, Variables};
 use crate::assemble::{assemble, read, record};
 use crate::earlier::Earlier;
 use crate::lens_section::is_too_fast;
-use crate::{FileResources, Scene, yaml};
 use crate::remembered::Remembered;
+use crate::{FileResources, Scene, yaml};
 use spectra_core::params::{Fault, Faults, Key, Node, Number, Params, SourceFile, Value, Warning};
 use spectra_core::resources::Resources;
 use std::collections::BTreeSet;
@@ -123,9 +123,8 @@ pub fn load_series(path: &Path, overrides: &[String]) -> Result<Series, Faults> 
         None => path,
     };
     let name = called.file_stem().map_or_else(|| "scene".to_owned(), |s| s.to_string_lossy().into_owned());
-    let beside = |folders: &[PathBuf]| -> Arc<dyn Resources> {
-        Arc::new(FileResources::beside(folder).and_beside(folders))
-    };
+    let beside =
+        |folders: &[PathBuf]| -> Arc<dyn Resources> { Arc::new(FileResources::beside(folder).and_beside(folders)) };
     Written::read(name, root, overrides, beside)?.set(overrides)
 }
 
@@ -424,7 +423,13 @@ impl Series {
         let member = self.member(index);
         let name = member.stem("");
         if let Some(text) = &self.plain {
-            return assemble(&name, text.clone(), &Params::section(self.root.clone(), "")?, &*self.written.resources, earlier);
+            return assemble(
+                &name,
+                text.clone(),
+                &Params::section(self.root.clone(), "")?,
+                &*self.written.resources,
+                earlier,
+            );
         }
         let mut root = self.root.clone();
         let mut faults = Faults::new();
@@ -469,7 +474,11 @@ impl Series {
         let is_sweep = matches!(self.going, Going::Sweep { .. });
         let lens = self.setting(index).iter().any(|(path, _)| path == "lens.file" || path == "lens");
         let [fault] = &faults.0[..] else { return None };
-        if !(is_sweep && lens && is_too_fast(fault)) {
+        if !(is_sweep && lens && fault.path == "lens.f-number") {
+            return None;
+        }
+        let params = Params::section(root.clone(), "").and_then(|params| params.stage_at("lens")).ok()??;
+        if !is_too_fast(&params, &*self.written.resources) {
             return None;
         }
         let mut open = root.clone();
