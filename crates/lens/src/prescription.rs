@@ -6,9 +6,9 @@ use crate::{
 };
 use schemars::JsonSchema;
 use serde::Deserialize;
+use spectra_core::names;
 use spectra_core::params::{
-    Angle, FNumber, Fault, Faults, Length, Node, OrInfinity, Params, Positive, Quantity, Ratio, StageNode, Value,
-    Whole, nearest,
+    Angle, FNumber, Fault, Faults, Length, Node, OrInfinity, Params, Positive, Quantity, Ratio, StageNode, Value, Whole,
 };
 use spectra_core::registry::{self, Context};
 use spectra_core::resources::Resources;
@@ -435,11 +435,11 @@ fn focus_law(node: &StageNode, groups: &[Group]) -> Result<FocusLaw, Faults> {
 pub fn unknown_group(params: &Params, key: &str, name: &str, groups: &[Group]) -> Fault {
     let fault = params.fault(key, format!("the lens has no group `{name}`"));
     let known: Vec<&str> = groups.iter().map(|g| g.name.as_str()).collect();
-    match (nearest(name, known.iter().copied()), known.is_empty()) {
-        (_, true) => fault.hint("its file names none under `groups`"),
-        (Some(near), _) => fault.hint(format!("did you mean `{near}`? Known: {}", known.join(", "))),
-        (None, _) => fault.hint(format!("known: {}", known.join(", "))),
-    }
+    fault.hint(if known.is_empty() {
+        "its file defines none: `groups` is missing there".to_owned()
+    } else {
+        names::hint(name, &known, "")
+    })
 }
 
 /// A group of surfaces.

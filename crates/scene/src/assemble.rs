@@ -11,8 +11,9 @@ use crate::{
 };
 use schemars::JsonSchema;
 use serde::Deserialize;
+use spectra_core::names;
 use spectra_core::numbers::seed_of_frame;
-use spectra_core::params::{Fault, Faults, Node, Params, StageNode, Value, Warnings, Wavelength, Whole, nearest};
+use spectra_core::params::{Fault, Faults, Node, Params, StageNode, Value, Warnings, Wavelength, Whole};
 use spectra_core::registry::{self, Context, StageOf};
 use spectra_core::resources::Resources;
 use spectra_core::spectral::{BAND, Channel, Grid};
@@ -368,11 +369,7 @@ fn render_settings(
         let Some(value) = value else { return 0 };
         known.iter().position(|k| *k == value).unwrap_or_else(|| {
             let fault = params.fault(key, format!("unknown {key} `{value}`"));
-            let one_of = format!("one of {}", known.join(", "));
-            faults.push(fault.hint(match nearest(value, known.iter().copied()) {
-                Some(near) => format!("did you mean `{near}`? Known: {}", known.join(", ")),
-                None => one_of,
-            }));
+            faults.push(fault.hint(names::hint(value, known, "")));
             0
         })
     };

@@ -3,7 +3,8 @@
 use crate::{Output, RaysFigure};
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::Deserialize;
-use spectra_core::params::{Fault, Faults, Kinds, Length, Params, Positive, StageNode, Whole, nearest};
+use spectra_core::names;
+use spectra_core::params::{Fault, Faults, Kinds, Length, Params, Positive, StageNode, Whole};
 use spectra_core::picture_file;
 
 /// `kind: exr`: the linear exposure.
@@ -92,12 +93,7 @@ pub(crate) fn read(items: Option<&[StageNode]>) -> Result<Vec<Output>, Faults> {
             Some("rays") => rays(&params).map(Output::Rays),
             Some(other) => {
                 let fault = item.fault(format!("unknown kind of output `{other}`"));
-                let known = KINDS.join(", ");
-                Err(match nearest(other, KINDS) {
-                    Some(near) => fault.hint(format!("did you mean `{near}`? One of {known}")),
-                    None => fault.hint(format!("one of {known}")),
-                }
-                .into())
+                Err(fault.hint(names::hint(other, &KINDS, "")).into())
             }
             None => Err(item.fault("an output needs a kind").hint(format!("one of {}", KINDS.join(", "))).into()),
         };

@@ -108,7 +108,10 @@ impl SpectrumError {
             Self::Ambiguous { name, columns } => {
                 let fault = here(format!("`{name}` holds {} spectra, and one is wanted", columns.len()));
                 let first = columns.first().map_or("name", String::as_str);
-                fault.hint(format!("pick one, such as `{name}#{first}`: {}", columns.join(", "))).into()
+                let all = if name.contains('.') { String::new() } else { format!("spectra list spectrum {name}") };
+                fault
+                    .hint(format!("pick one, such as `{name}#{first}`: {}", spectra_core::names::listed(columns, &all)))
+                    .into()
             }
             Self::NoColumn { name, column, columns } => {
                 let fault = here(format!("`{name}` has no column `{column}`"));

@@ -7,7 +7,8 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::frame::{DisplayPicture, ExposureFrame};
 use spectra_core::math::pow;
-use spectra_core::params::{Fault, Faults, Params, Positive, Time, nearest};
+use spectra_core::names;
+use spectra_core::params::{Fault, Faults, Params, Positive, Time};
 use spectra_core::registry::Context;
 use spectra_core::resources::Resources;
 use spectra_core::spectral::Channel;
@@ -214,7 +215,7 @@ fn develop_as(p: &StockParams, params: &Params, stock: &Stock) -> Result<(Emulsi
     let chosen = p.development.as_deref().or(known.first().copied()).unwrap_or_default();
     if !known.contains(&chosen) {
         let text = format!("{} has no curve for the development `{chosen}`", stock.name);
-        return Err(params.fault("development", text).hint(format!("known: {}", known.join(", "))).into());
+        return Err(params.fault("development", text).hint(names::hint(chosen, &known, "")).into());
     }
     let Some(stops) = p.push else {
         let emulsion = Emulsion::new(stock, chosen).map_err(|e| params.fault("stock", e.to_string()))?;
@@ -239,11 +240,8 @@ fn place_at(faults: Faults, params: &Params, key: &str, name: &str) -> Faults {
         }
         let known: Vec<&str> = Stock::bundled().collect();
         let generic = |hint: &String| hint.starts_with("a file is looked for") && !name.contains('.');
-        let hint = match (fault.hint.filter(|hint| !generic(hint)), nearest(name, known.iter().copied())) {
-            (Some(hint), _) => hint,
-            (None, Some(near)) => format!("did you mean `{near}`?"),
-            (None, None) => format!("bundled stocks: {}", known.join(", ")),
-        };
+        let hint = fault.hint.filter(|hint| !generic(hint));
+        let hint = hint.unwrap_or_else(|| names::hint(name, &known, "spectra list stock"));
         params.fault(key, fault.message).hint(hint)
     };
     faults.into_iter().map(place).collect::<Vec<_>>().into()

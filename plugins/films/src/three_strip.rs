@@ -5,6 +5,7 @@ use crate::stock::load_stock;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::frame::{DisplayPicture, ExposureFrame};
+use spectra_core::names;
 use spectra_core::params::{Faults, Params, Positive as AboveZero, Time};
 use spectra_core::registry::Context;
 use spectra_core::spectral::{BAND, Channel};
@@ -224,7 +225,8 @@ impl Record {
         let Some(development) = development else {
             let known: Vec<&str> = stock.developments().collect();
             let fault = params.fault(&format!("{key}.development"), format!("{} has no such development", stock.name));
-            return Err(fault.hint(format!("known: {}", known.join(", "))).into());
+            let asked = p.development.as_deref().unwrap_or_default();
+            return Err(fault.hint(names::hint(asked, &known, "")).into());
         };
         let mut faults = Faults::new();
         let filters = p.filters.iter().enumerate().filter_map(|(i, name)| {

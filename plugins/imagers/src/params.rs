@@ -7,7 +7,8 @@ use crate::standing::{Bend, Standing};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::frame::FrameSize;
-use spectra_core::params::{Angle, Fault, Faults, Length, NonNegative, Params, Positive, StageNode, Value, nearest};
+use spectra_core::names;
+use spectra_core::params::{Angle, Fault, Faults, Length, NonNegative, Params, Positive, StageNode, Value};
 use spectra_core::registry::Context;
 use spectra_glass::Catalogue;
 use spectra_spectrum::find_transmittance_in;
@@ -285,13 +286,11 @@ impl Frame {
             (Some(name), None, None) => match format_named(name) {
                 Some(format) => Ok((format.width_mm, format.height_mm)),
                 None => {
-                    let names = FORMATS.map(|f| f.name);
-                    let known = names.join(", ");
+                    let known = FORMATS.map(|f| f.name);
                     let fault = params.fault("format", format!("unknown format `{name}`"));
-                    Err(match nearest(name, names) {
-                        Some(near) => fault.hint(format!("did you mean `{near}`? Known: {known}")),
-                        None => fault.hint(format!("known: {known}; or give width and height")),
-                    })
+                    let hint = names::hint(name, &known, "spectra list format");
+                    let other = if hint.starts_with("known: ") { "; or state width and height" } else { "" };
+                    Err(fault.hint(format!("{hint}{other}")))
                 }
             },
             (None, Some(width), Some(height)) => {

@@ -1,6 +1,7 @@
 //! How wide a flat source is, what lies beyond its border, and whether it fills the frame.
 
 use schemars::JsonSchema;
+use spectra_core::names;
 use spectra_core::params::{Fault, Faults, Length, Node, Params, Positive, StageNode, Value, nearest};
 use spectra_core::registry::Context;
 use spectra_core::view::{Sight, View};
@@ -104,11 +105,7 @@ impl Edge {
             Some("mirror") => Ok(Self::Mirror),
             Some(other) => {
                 let fault = params.fault("edge", format!("no edge is called `{other}`"));
-                let known = ["black", "clamp", "mirror"];
-                Err(fault.hint(match nearest(other, known) {
-                    Some(near) => format!("did you mean `{near}`? Known: black, clamp, mirror"),
-                    None => "black, clamp or mirror".to_owned(),
-                }))
+                Err(fault.hint(names::hint(other, &["black", "clamp", "mirror"], "")))
             }
         }
     }

@@ -68,8 +68,8 @@ impl Cargo {
         serde_json::from_slice(&output.stdout).map_err(|error| format!("its answer is not understood: {error}"))
     }
 
-    /// Looks whether all of the program shares one `spectra-core`, ours.
-    pub(super) fn check_graph(&self, program: &Program, sources: &Sources) -> Result<(), Failure> {
+    /// The crates of the program, all of which share one `spectra-core`, ours.
+    pub(super) fn check_graph(&self, program: &Program, sources: &Sources) -> Result<Metadata, Failure> {
         let metadata = self.metadata(&program.manifest, &["--filter-platform", env!("SPECTRA_TARGET")]).map_err(|text| {
             if text.contains("links to the native library `spectra-core`") || text.contains("links to native library `spectra-core`") {
                 let fault = Fault::new(format!("two versions of spectra-core meet in this program\n{text}"));
@@ -88,7 +88,7 @@ impl Cargo {
         let ours = plain(&sources.crate_folder("crates/core/Cargo.toml"));
         let other = metadata.packages.iter().find(|p| p.name == "spectra-core" && plain(&p.manifest_path) != ours);
         match other {
-            None => Ok(()),
+            None => Ok(metadata),
             Some(other) => {
                 let from = other.manifest_path.display();
                 let text = format!("a second spectra-core {} gets into the program, from {from}", other.version);

@@ -6,6 +6,7 @@
 
 mod arguments;
 mod cargo;
+mod notices;
 mod plugin;
 mod program;
 mod stages;
@@ -29,7 +30,16 @@ pub(crate) fn build(arguments: &BuildArguments, unpack: Unpack, started: Instant
     let cargo = Cargo::find(arguments.offline)?;
     let plugins = plugins(&arguments.with, &cargo, &sources)?;
     let program = Program::write(&sources, &plugins)?;
-    cargo.check_graph(&program, &sources)?;
+    let graph = cargo.check_graph(&program, &sources)?;
+    let notices = notices::of(&graph, &program, &sources);
+    if !notices.unlicensed.is_empty() {
+        console::warning(&format!(
+            "no license is stated by {}\n  help: without one, others may not use or pass on the program; its author can \
+             add `license = \"...\"` to its Cargo.toml",
+            notices.unlicensed.join(", ")
+        ));
+    }
+    program.set_notices(&notices.text)?;
     let built = cargo.build(&program, arguments.profile.name())?;
     let added = stages::added(&built, &plugins)?;
     install(&built, &output)?;

@@ -5,7 +5,8 @@ use super::sweep::{Setting, check_path};
 use super::variables::Variables;
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::params::{Fault, Faults, Key, Node, StageNode, Value, Warning, Whole, nearest};
+use spectra_core::names;
+use spectra_core::params::{Fault, Faults, Key, Node, StageNode, Value, Warning, Whole};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -132,15 +133,9 @@ fn track(key: &Key, node: &Node) -> Result<(Track, Vec<f64>), Faults> {
             match LAWS.iter().find(|(name, _)| *name == named) {
                 Some((_, found)) => law = *found,
                 None => {
-                    let near = nearest(named, known.iter().copied())
-                        .map_or(String::new(), |n| format!("did you mean `{n}`? "));
                     let fault =
                         value.fault(format!("unknown interpolation `{}`", named.chars().take(48).collect::<String>()));
-                    faults.push(
-                        fault
-                            .path(format!("{path}.{INTERPOLATION}"))
-                            .hint(format!("{near}One of {}", known.join(", "))),
-                    );
+                    faults.push(fault.path(format!("{path}.{INTERPOLATION}")).hint(names::hint(named, &known, "")));
                 }
             }
             continue;

@@ -4,7 +4,8 @@ use super::law::{LAWS, Law, Track};
 use super::variables::Variables;
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::params::{Fault, Faults, Key, Node, StageNode, Value, Whole, nearest, steps};
+use spectra_core::names;
+use spectra_core::params::{Fault, Faults, Key, Node, StageNode, Value, Whole, steps};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -176,12 +177,7 @@ fn steps_of(node: &StageNode) -> Result<Vec<Node>, Faults> {
             let found = spacings().find(|(n, _)| *n == name).map(|(_, law)| *law);
             if found.is_none() {
                 let known: Vec<&str> = spacings().map(|(name, _)| *name).collect();
-                let near =
-                    nearest(name, known.iter().copied()).map_or(String::new(), |n| format!("did you mean `{n}`? "));
-                faults.push(
-                    fault("spacing", format!("unknown spacing `{name}`"))
-                        .hint(format!("{near}One of {}", known.join(", "))),
-                );
+                faults.push(fault("spacing", format!("unknown spacing `{name}`")).hint(names::hint(name, &known, "")));
             }
             found
         }

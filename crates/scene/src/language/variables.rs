@@ -2,6 +2,7 @@
 
 use super::count;
 use crate::yaml::MAX_NODES;
+use spectra_core::names;
 use spectra_core::params::{Fault, Faults, Key, MAX_DEPTH, Node, SourceFile, Span, Value, Warning, nearest};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -347,7 +348,7 @@ impl Filler<'_> {
             let hint = match nearest(name, known.iter().copied()) {
                 Some(near) => format!("did you mean `${near}`?"),
                 None if known.is_empty() => "the scene defines none".to_owned(),
-                None => format!("known: {}", known.iter().take(20).copied().collect::<Vec<_>>().join(", ")),
+                None => names::hint(name, &known, ""),
             };
             faults.push(node.fault(format!("no variable is called `{}`", shorten(name))).path(path).hint(hint));
             return None;

@@ -4,9 +4,8 @@ use super::{CameraColor, Converter, PATTERNS, Pattern, Photosite, Pixels, Sensor
 use crate::params::imager_params;
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::params::{
-    Fault, Faults, Length, NonNegative, OrInfinity, Params, Positive, Quantity, Ratio, Time, nearest,
-};
+use spectra_core::names;
+use spectra_core::params::{Fault, Faults, Length, NonNegative, OrInfinity, Params, Positive, Quantity, Ratio, Time};
 use spectra_core::registry::Context;
 use spectra_core::spectral::Channel;
 use spectra_core::stage::Imager;
@@ -156,13 +155,9 @@ impl SensorParams {
         let Some(name) = &self.pattern else { return Ok(PATTERNS[0].1) };
         let found = PATTERNS.iter().find(|(known, _)| *known == name.to_ascii_lowercase());
         found.map(|(_, pattern)| *pattern).ok_or_else(|| {
-            let names = PATTERNS.map(|(name, _)| name);
-            let known = names.join(", ");
+            let patterns = PATTERNS.map(|(name, _)| name);
             let fault = params.fault("pattern", format!("unknown pattern `{name}`"));
-            match nearest(name, names) {
-                Some(near) => fault.hint(format!("did you mean `{near}`? One of {known}")),
-                None => fault.hint(format!("one of {known}")),
-            }
+            fault.hint(names::hint(name, &patterns, ""))
         })
     }
 
