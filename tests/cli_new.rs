@@ -157,13 +157,13 @@ fn names_that_cannot_be_are_refused() {
     std::fs::create_dir(at.join("there")).expect("made");
     let said = |name: &str| refused(at, &["new", "plugin", name, "--stage", "surface", "--core", &core]);
     for (name, why) in [
-        ("Ripple", "`R` cannot stand in it"),
-        ("two words", "cannot stand in it"),
-        ("../out", "cannot stand in it"),
-        ("match", "Rust has it"),
-        ("spectra-core", "crates of spectra itself"),
+        ("Ripple", "`R` is not allowed in it"),
+        ("two words", "is not allowed in it"),
+        ("../out", "is not allowed in it"),
+        ("match", "Rust reserves it"),
+        ("spectra-core", "reserved for the crates of spectra"),
         ("sphere", "spectra-plugin-surfaces"),
-        ("there", "is there already"),
+        ("there", "already exists"),
     ] {
         let said = said(name);
         assert!(said.contains(why) && said.contains("help:"), "{name}: {said}");
@@ -174,7 +174,7 @@ fn names_that_cannot_be_are_refused() {
     assert!(elsewhere.contains("there is no such folder"), "{elsewhere}");
     let core = refused(at, &["new", "plugin", "x", "--stage", "film", "--core", "there"]);
     assert!(core.contains("no sources of spectra"), "{core}");
-    assert!(refused(at, &["new", "scene", "a b"]).contains("cannot stand in it"));
+    assert!(refused(at, &["new", "scene", "a b"]).contains("is not allowed in it"));
     assert_eq!(names(at), ["sphere", "there"], "something is left");
 }
 
@@ -205,8 +205,8 @@ fn plugins_that_cannot_be_built_in_are_refused_at_once() {
     let broken = krate(at, "broken", "[dependencies", "", "lib.rs");
     for (with, why, hint) in [
         ("none", "no such folder", "the folder of a plugin's crate"),
-        ("empty", "holds no Cargo.toml", "the folder of a plugin's crate"),
-        ("text", "no crate", "the folder of a plugin's crate"),
+        ("empty", "there is no Cargo.toml", "the folder of a plugin's crate"),
+        ("text", "not a crate", "the folder of a plugin's crate"),
         (&program, "has no library", "src/lib.rs"),
         (&later, "written for spectra-core ^77", "--core PATH"),
         (&other, "the name of a crate of spectra itself", "rename it"),
@@ -229,7 +229,7 @@ fn plugins_that_cannot_be_built_in_are_refused_at_once() {
     let manifest = at.join("program/Cargo.toml");
     let before = read(&manifest);
     let taken = refused(at, &["build", "--with", &program, "--core", &core, "-o", shown(&manifest)]);
-    assert!(taken.contains("no program") && taken.contains("--force"), "{taken}");
+    assert!(taken.contains("was not made by") && taken.contains("--force"), "{taken}");
     assert_eq!(read(&manifest), before);
     let own = at.join(format!("own{}", std::env::consts::EXE_SUFFIX));
     std::fs::copy(env!("CARGO_BIN_EXE_spectra"), &own).expect("copied");
@@ -255,9 +255,12 @@ fn a_program_with_plugins_renders_their_scenes() {
     };
     good(at, &["new", "plugin", "far-surface", "--stage", "surface", "--core", &core]);
     good(at, &["new", "plugin", "far-film", "--stage", "film", "--layers", "3", "--core", &core]);
-    // What a plugin's tests have compiled is not compiled again for the program.
+    // What a plugin's tests have compiled with the same features is not compiled again for the program.
     let mut tests = Command::new("cargo");
-    tests.args(["test", "--offline"]).current_dir(at.join("far-film")).env("CARGO_TARGET_DIR", target);
+    tests
+        .args(["test", "--offline", "--profile", "dev"])
+        .current_dir(at.join("far-film"))
+        .env("CARGO_TARGET_DIR", target);
     let output = tests.output().expect("cargo starts");
     assert!(output.status.success(), "{}{}", text(&output.stdout), text(&output.stderr));
     let manifest = read(&at.join("far-surface/Cargo.toml"));
@@ -268,7 +271,7 @@ fn a_program_with_plugins_renders_their_scenes() {
     let output = build(&both);
     assert!(output.status.success(), "{}", text(&output.stderr));
     let compiled = text(&output.stderr);
-    assert!(!compiled.contains("Compiling spectra-core "), "{compiled}");
+    assert!(!compiled.contains("Compiling spectra-data "), "{compiled}");
     assert!(compiled.contains("warning: no license is stated by far-surface 0.1.0\n  help: "), "{compiled}");
     let said = text(&output.stdout);
     assert!(said.contains("far-surface 0.1.0: surface `far-surface`"), "{said}");

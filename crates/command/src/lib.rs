@@ -67,7 +67,7 @@ pub fn main_with_notices(unpack: Unpack, notices: &'static str) -> ExitCode {
 
 fn dispatch(arguments: &Arguments, unpack: Unpack, notices: &str, started: Instant) -> Outcome {
     registry::check()
-        .map_err(|faults| Failure::Failed(format!("this program is put together wrongly: {}", faults.join("; "))))?;
+        .map_err(|faults| Failure::Failed(format!("the stages of this program conflict: {}", faults.join("; "))))?;
     let isa = instruction_set()?;
     tracing::debug!(isa = isa.name(), "instruction set");
     if arguments.licenses {

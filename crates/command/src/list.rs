@@ -94,7 +94,7 @@ fn kind(typed: &str, kinds: &[&'static str]) -> Result<&'static str, Fault> {
     }
     let named = bundled::meanings(typed).into_iter().next();
     Err(fault.hint(match named {
-        Some((kind, name)) => format!("`{name}` is {}: `{}` lists its like", kind.noun(), kind.listed_by()),
+        Some((kind, name)) => format!("`{name}` is {}; `{}` lists others", kind.noun(), kind.listed_by()),
         None => names::hint(&key, kinds, ""),
     }))
 }

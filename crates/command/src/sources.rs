@@ -96,12 +96,13 @@ pub(crate) fn cache() -> Result<PathBuf, Failure> {
     };
     let folder = stated("SPECTRA_CACHE").or_else(|| platform().map(|cache| cache.join("spectra")));
     let folder = folder.ok_or_else(|| {
-        Failure::from(Fault::new("no folder is known for a cache").hint("set the environment variable SPECTRA_CACHE"))
+        Failure::from(Fault::new("no cache folder is known").hint("set the environment variable SPECTRA_CACHE"))
     })?;
     std::path::absolute(&folder).map_err(|error| unreadable(&folder, &error))
 }
 
-/// Where cargo puts what `spectra build` and the tests of new plugins compile: one folder for all, so that they share it.
+/// Where cargo puts what `spectra build` and the tests of new plugins compile: one folder for all, so that
+/// crates with the same features are compiled once.
 pub(crate) fn target() -> Result<PathBuf, Failure> {
     Ok(cache()?.join("target"))
 }

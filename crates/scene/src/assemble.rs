@@ -249,7 +249,7 @@ fn all_stages(
         (Some(own), None) => Some(own),
         (None, Some(films)) => Some(films::channels(films)),
         (Some(_), Some(_)) => {
-            let fault = params.fault("film", "this imager records by itself, no film lies on it");
+            let fault = params.fault("film", "this imager records light directly and takes no film");
             behind.push(fault.hint("write `imager: {kind: film, ...}`, or leave the film out"));
             None
         }
@@ -281,7 +281,7 @@ fn all_stages(
         && lens.elements.first().is_some_and(|e| e.kind == MATTE_BOX && e.vertex_z_mm() <= -source.distance_mm())
     {
         let fault = place.fault("matte-box.distance", "the source stands between the matte box and the lens");
-        faults.push(fault.hint(format!("nearer to the lens than {} mm", source.distance_mm())));
+        faults.push(fault.hint(format!("closer to the lens than {} mm", source.distance_mm())));
     }
     faults.extend(behind);
     if let (Some(imager), Some(wanted)) = (&imager, &output)
@@ -294,7 +294,7 @@ fn all_stages(
             _ => None,
         };
         let key = at.map_or_else(|| "output".to_owned(), |at| format!("output[{at}]"));
-        let fault = params.fault(&key, "this imager has no converter: there are no raw numbers");
+        let fault = params.fault(&key, "this imager has no A/D converter, so there is no raw data");
         faults.push(fault.hint("`imager: {kind: sensor, ...}`, or leave `dng` out"));
     }
     let settings = match (&settings, &source, &imager) {
@@ -346,7 +346,7 @@ fn grid_of(section: &BandSection, params: &Params) -> Result<Grid, Faults> {
     let Some([first, last]) = section.band else { return Ok(BAND) };
     let (first, last) = (first.nm(), last.nm());
     if !(first >= 200.0 && last <= 2500.0 && last - first >= 1.0) {
-        let fault = params.fault("band", format!("no band of light: {first} to {last} nm"));
+        let fault = params.fault("band", format!("not a band of wavelengths: {first} to {last} nm"));
         return Err(fault.hint("two wavelengths from 200 to 2500 nm, the shorter one first").into());
     }
     let count = (last - first).ceil() as usize + 1;
@@ -393,7 +393,7 @@ fn render_settings(
         faults.push(fault.hint("write `direction: backward`, or leave it to `auto`"));
     }
     if direction == Direction::Forward && rays > MAX_RAYS {
-        let fault = params.fault("samples", format!("so many samples are {rays} rays, at most {MAX_RAYS} are traced"));
+        let fault = params.fault("samples", format!("this makes {rays} rays, at most {MAX_RAYS} are traced"));
         faults.push(fault.hint("fewer samples or pixels, or write `rays`"));
     }
     faults.into_result(RenderSettings {

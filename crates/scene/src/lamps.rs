@@ -22,8 +22,7 @@ fn gather(node: &Node, notes: &mut Vec<String>) {
             let words = node.as_str().unwrap_or_default().split(['+', '*', ' ', '(', ')']);
             for name in words.filter(|word| is_estimated(word)) {
                 let note = format!(
-                    "the lines of `{name}` are as strong as observers estimated: those far apart do not compare, so the \
-                     color of the light is a guess"
+                    "the line strengths of `{name}` were estimated by eye: lines far apart are not comparable, so the color of the light is a guess"
                 );
                 if !notes.contains(&note) {
                     notes.push(note);

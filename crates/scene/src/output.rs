@@ -101,7 +101,7 @@ pub(crate) fn read(items: Option<&[StageNode]>) -> Result<Vec<Output>, Faults> {
     }
     if found.contains(&Output::Exr) && found.contains(&Output::TiledExr) {
         let fault = items.iter().filter_map(|item| item.params().ok()).find(|params| params.get("tiled").is_some());
-        let fault = fault.map(|params| params.fault("tiled", "the same file is asked for in rows and in tiles"));
+        let fault = fault.map(|params| params.fault("tiled", "the same file is requested in rows and in tiles"));
         faults.push(fault.unwrap_or_else(|| Fault::new("one file in rows and in tiles")).hint("leave one `exr` out"));
     }
     let mut once: Vec<Output> = Vec::new();

@@ -92,10 +92,13 @@ fn output(path: &Path, force: bool) -> Result<PathBuf, Failure> {
         return fault("that is a folder", "name the file to write, such as ./spectra-mine");
     }
     if !folder.is_dir() || path.file_name().is_none() {
-        return fault("there is no such folder", "make it first");
+        return fault("there is no such folder", "create it first");
     }
     if !force && path.exists() && !is_ours(&path) {
-        return fault("that is no program that `spectra build` made", "another name, or --force to write over it");
+        return fault(
+            "that file was not made by `spectra build`",
+            "choose another name, or use --force to overwrite it",
+        );
     }
     Ok(path)
 }

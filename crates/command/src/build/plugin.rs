@@ -101,7 +101,7 @@ impl Plugin {
         let manifest = manifest(path)?;
         let metadata = cargo.metadata_alone(&manifest).map_err(|text| {
             let fault = Fault::new(format!("{}: cargo cannot read it: {text}", manifest.display()));
-            fault.hint("a plugin is a crate, as `spectra new plugin NAME --stage surface` makes one")
+            fault.hint("a plugin is a crate such as `spectra new plugin NAME --stage surface` creates")
         })?;
         Self::of(&manifest, metadata, sources)
     }
@@ -112,7 +112,7 @@ impl Plugin {
         let mut names: Vec<String> = metadata.packages.iter().map(|p| format!("`{}`", p.name)).collect();
         let Some(package) = metadata.packages.into_iter().find(|p| plain(&p.manifest_path) == here) else {
             names.sort();
-            let fault = Fault::new(format!("{shown}: a workspace, no crate of its own"));
+            let fault = Fault::new(format!("{shown}: this is a workspace, not a crate"));
             return Err(fault.hint(format!("name the folder of one of its crates: {}", names.join(", "))).into());
         };
         let is_library =
@@ -146,12 +146,12 @@ fn manifest(path: &Path) -> Result<PathBuf, Fault> {
         return if manifest.is_file() {
             Ok(manifest)
         } else {
-            Err(Fault::new(format!("--with {}: no crate; it holds no Cargo.toml", path.display())).hint(hint))
+            Err(Fault::new(format!("--with {}: not a crate: there is no Cargo.toml", path.display())).hint(hint))
         };
     }
     match path.file_name() {
         Some(name) if name == "Cargo.toml" && path.is_file() => Ok(path.to_owned()),
-        _ if path.exists() => Err(Fault::new(format!("--with {}: no crate", path.display())).hint(hint)),
+        _ if path.exists() => Err(Fault::new(format!("--with {}: not a crate", path.display())).hint(hint)),
         _ => Err(Fault::new(format!("--with {}: no such folder", path.display())).hint(hint)),
     }
 }
@@ -164,12 +164,12 @@ fn check_core(core: &Dependency, manifest: &str, sources: &Sources) -> Result<()
         if plain(path) == plain(&sources.crate_folder("crates/core")) {
             return Ok(());
         }
-        let text = format!("{manifest}: its spectra-core comes from {}, the program's does not", path.display());
+        let text = format!("{manifest}: its spectra-core comes from {}, unlike the program's", path.display());
         return Err(Fault::new(text).hint(format!("{write}, or build with that one too: --core {}", path.display())));
     }
     if !core.source.as_deref().is_some_and(|source| source.starts_with(REGISTRY)) {
         let from = core.source.as_deref().unwrap_or("somewhere else");
-        let text = format!("{manifest}: its spectra-core comes from {from}, the program's does not");
+        let text = format!("{manifest}: its spectra-core comes from {from}, unlike the program's");
         return Err(Fault::new(text).hint(write));
     }
     let wanted = VersionReq::parse(&core.req).map_err(|error| Fault::new(format!("{manifest}: {error}")))?;
@@ -178,7 +178,7 @@ fn check_core(core: &Dependency, manifest: &str, sources: &Sources) -> Result<()
     }
     let text = format!("{manifest}: it was written for spectra-core {}, this program has {ours}", core.req);
     Err(Fault::new(text)
-        .hint(format!("{write}, and follow what the compiler says; or build with that version: --core PATH")))
+        .hint(format!("{write}and fix what the compiler reports; or build with that version: --core PATH")))
 }
 
 #[cfg(test)]

@@ -31,7 +31,7 @@ const NOT_IN_PROGRAMS: [&str; 2] = ["spectra-testing", "spectra-plugin-oiio"];
 const NOTICES: &str = "notices.txt";
 
 impl Program {
-    /// Writes it to the cache, one folder a set of plugins; what is there already and equal is left alone, so that cargo
+    /// Writes it to the cache, one folder a set of plugins; what already exists and equal is left alone, so that cargo
     /// finds nothing changed.
     pub(super) fn write(sources: &Sources, plugins: &[Plugin]) -> Result<Self, Failure> {
         let mut key = sources.folder().display().to_string();

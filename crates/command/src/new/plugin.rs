@@ -44,7 +44,7 @@ pub(super) fn plugin(arguments: &NewPlugin, unpack: Unpack) -> Outcome {
     Folder::must_exist(path)?;
     let folder = path.join(name);
     if folder.symlink_metadata().is_ok() {
-        let fault = Fault::new(format!("{} is there already", folder.display()));
+        let fault = Fault::new(format!("{} already exists", folder.display()));
         return Err(fault.hint("choose another name, or another folder by --path").into());
     }
     let sources = Sources::find(core.as_deref(), unpack)?;
@@ -92,7 +92,7 @@ fn manifest(name: &str, stage: Stage, sources: &Sources) -> Result<String, Failu
          edition = \"2024\"\n\
          rust-version = \"{rust}\"\n\
          description = \"{title} for spectra, the open spectral camera\"\n\
-         # Yours to choose: `spectra build` lists it in the `--licenses` of the program.\n\
+         # Choose your own; `spectra build` lists it in the `--licenses` of the program.\n\
          license = \"MIT OR Apache-2.0\"\n\
          publish = false\n\
          \n\
@@ -104,13 +104,13 @@ fn manifest(name: &str, stage: Stage, sources: &Sources) -> Result<String, Failu
          [dev-dependencies]\n\
          spectra-testing = \"{wanted}\"\n\
          \n\
-         # Where this crate's own tests find spectra on this machine: another path on another one. `spectra build` brings its\n\
-         # own sources and does not look here.\n\
+         # Where this crate's own tests find spectra on this machine; other machines need other paths. `spectra build` brings\n\
+         # its own sources and ignores this.\n\
          [patch.crates-io]\n\
          spectra-core = {{ path = {core} }}\n\
          spectra-testing = {{ path = {testing} }}\n\
          \n\
-         # The settings of spectra itself, so that `spectra build` need not compile again what `cargo test --release` has.\n\
+         # The settings of spectra itself, so that `spectra build` can use what `cargo test --release` compiles.\n\
          {profiles}",
         profiles = profiles(&sources.read("Cargo.toml")?),
         rust = env!("CARGO_PKG_RUST_VERSION"),
@@ -118,10 +118,10 @@ fn manifest(name: &str, stage: Stage, sources: &Sources) -> Result<String, Failu
     ))
 }
 
-/// Where cargo builds: beside what `spectra build` builds, so that neither compiles what the other has.
+/// Where cargo builds: the folder of `spectra build`, so that crates with the same features are compiled once.
 fn cargo_config() -> Result<String, Failure> {
     Ok(format!(
-        "# Of this machine alone, so git ignores it: the folder that `spectra build` uses too.\n[build]\ntarget-dir = {}\n",
+        "# The folder that `spectra build` uses too. It exists on this machine only, so git ignores this file.\n[build]\ntarget-dir = {}\n",
         toml_path(&target()?)?
     ))
 }

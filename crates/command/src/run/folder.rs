@@ -78,7 +78,7 @@ impl Folder {
         }
         for path in files.iter().map(|(_, path)| path.as_path()).chain(report) {
             if path.is_dir() {
-                return Err(refuse(path, &"a folder of that name is in the way"));
+                return Err(refuse(path, &"a folder of that name exists"));
             }
         }
         // Rights, read-only disks, quotas: only the attempt tells.
@@ -153,7 +153,7 @@ impl Folder {
         for (output, path) in &self.files {
             if *output == Output::Dng {
                 let raw = report.scene.imager.raw(&report.rendering.exposure);
-                let raw = raw.ok_or_else(|| Failure::Failed("this imager has no converter".to_owned()))?;
+                let raw = raw.ok_or_else(|| Failure::Failed("this imager has no A/D converter".to_owned()))?;
                 write_dng(path, &raw, &raw_lens(report.scene))?;
             }
         }

@@ -101,7 +101,7 @@ fn render_scene(arguments: &Run, isa: Isa, started: Instant) -> Outcome {
         // What was computed before is worth keeping: it may be hours.
         Err(RenderError::Overflow { times, so_far: Some(so_far) }) => {
             let error = RenderError::Overflow { times, so_far: None };
-            (*so_far, Some(format!("{error}; what is written is the light before it, without that ray")))
+            (*so_far, Some(format!("{error}; the files hold the light traced before it, without that ray")))
         }
         Err(error) => return Err(refused(error, &scene)),
     };

@@ -13,11 +13,11 @@ pub(crate) fn keep(report: &Report<'_>, failed: &Path) -> String {
     let (gains, attributes) = (report.gains(), attributes(report));
     let elsewhere: PathBuf = std::env::temp_dir().join(format!("{name}-{}.exr", std::process::id()));
     if write_exr_times(&elsewhere, frame, &gains, &attributes).is_ok() {
-        return format!("the light is kept in {}", elsewhere.display());
+        return format!("the light was saved in {}", elsewhere.display());
     }
     let halved = failed.with_file_name(format!("{name}.exr"));
     if write_half_exr(&halved, frame, &gains, &attributes).is_ok() {
-        return format!("the light is kept in {}, in half floats (three digits)", halved.display());
+        return format!("the light was saved in {}, in half floats (three digits)", halved.display());
     }
-    format!("neither could the light be kept in {}", elsewhere.display())
+    format!("the light could not be saved in {} either", elsewhere.display())
 }

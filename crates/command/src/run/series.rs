@@ -55,7 +55,7 @@ pub(super) fn render(
     let chosen = chosen(series, arguments)?;
     let Some(report_path) = target.report(&format!("{}-series", series.name())) else {
         let text = format!("--output {}: that is one picture", arguments.output.display());
-        return Err(Failure::Input(format!("{text}, and this scene stands for {}: name a folder", series.count())));
+        return Err(Failure::Input(format!("{text}, but this scene makes {}: name a folder", series.count())));
     };
     let mut progress = Progress::new(arguments, deadline);
     let plan = |index: usize, scene: &Scene| -> Result<Planned, Failure> {

@@ -53,7 +53,8 @@ impl Target {
     pub(crate) fn narrow(&self, scene: &mut Scene) -> Result<(), Failure> {
         let Some(only) = &self.only else { return Ok(()) };
         if only.kind == Output::Dng && !scene.imager.has_converter() {
-            let text = format!("{}.{}: this imager has no converter: there are no raw numbers", only.stem, only.ending);
+            let text =
+                format!("{}.{}: this imager has no A/D converter, so there is no raw data", only.stem, only.ending);
             return Err(Failure::Input(format!("{text} (`imager: {{kind: sensor, ...}}` has one)")));
         }
         // Tiles are asked for in the scene.

@@ -69,7 +69,7 @@ pub(super) fn listed<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
 pub(super) fn hint_for(name: &str, what: &str, known: &[&str]) -> String {
     match nearest(name, known.iter().copied()) {
         Some(near) => format!("did you mean `{near}`?"),
-        None if known.is_empty() => format!("no {what} is known here"),
+        None if known.is_empty() => format!("no {what}s are allowed here"),
         None => format!("known {what}s: {}", listed(known.iter().copied())),
     }
 }

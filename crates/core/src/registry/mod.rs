@@ -274,7 +274,7 @@ fn check_list(all: &[Listed]) -> Result<(), Vec<String>> {
                 ));
             } else if a.stage == b.stage && a.default && b.default {
                 faults.push(format!(
-                    "{}: both `{}` of crate {} and `{}` of crate {} want to be the default",
+                    "{}: both `{}` of crate {} and `{}` of crate {} are marked as the default",
                     a.stage, a.name, a.package, b.name, b.package
                 ));
             }

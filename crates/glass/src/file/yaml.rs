@@ -189,7 +189,7 @@ pub fn from_params(params: &Params, called: &str, resources: &dyn Resources) -> 
     for (key, stated, own, tolerance) in figures.against(|nm| glass.index(nm)) {
         if !((stated - own).abs() <= tolerance) {
             let fault = params.fault(key, format!("{key} is stated as {stated}, but the data give {own:.5}"));
-            faults.push(fault.hint("the figures contradict each other: which one is the slip?"));
+            faults.push(fault.hint("the figures contradict each other: which one is wrong?"));
         }
     }
     (glass.listed_nd, glass.listed_vd) = (p.nd, p.vd);
@@ -253,7 +253,7 @@ fn formula(params: &Params, p: &GlassFile, name: &str) -> Result<Formula, Fault>
         return Err(fault(format!("{} coefficients", c.len())));
     }
     if c.iter().any(|c| !c.is_finite()) {
-        return Err(fault("a coefficient is no finite number".to_owned()));
+        return Err(fault("a coefficient is not a finite number".to_owned()));
     }
     make(c).ok_or_else(|| fault(format!("{} coefficients do not fit the form", c.len())))
 }

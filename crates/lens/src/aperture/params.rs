@@ -165,7 +165,7 @@ fn ring(params: &Params) -> Result<Shape, Faults> {
 fn polygon(params: &Params) -> Result<Shape, Faults> {
     let p: PolygonParams = params.parse()?;
     if !(3..=MAX_CORNERS).contains(&p.points.len()) {
-        let fault = params.fault("points", format!("{} corners make no polygon", p.points.len()));
+        let fault = params.fault("points", format!("{} corners do not make a polygon", p.points.len()));
         return Err(fault.hint(format!("3 to {MAX_CORNERS}, in order around it")).into());
     }
     Ok(Shape::Polygon(p.points.into_iter().map(|point| point.map(Length::mm)).collect()))

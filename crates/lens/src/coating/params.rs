@@ -170,7 +170,7 @@ fn thickness(
         }
     };
     if !(nm <= MAX_NM && given.nm() <= MAX_NM) {
-        return Err(params.fault(&key(name), "more than 100 um is no thin layer"));
+        return Err(params.fault(&key(name), "a thin layer is at most 100 um thick"));
     }
     Ok(nm)
 }
