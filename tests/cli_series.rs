@@ -356,7 +356,7 @@ fn warnings_name_what_has_no_effect() {
     for said in [
         "the variable `apertur` is not used",
         "`--set lens.focus` has no effect: the animation sets it for each picture",
-        "the keyframe 9 of `lens.focus` lies beyond the frames 1 to 2",
+        "keyframe 9 of `lens.focus` is outside the frames 1 to 2",
     ] {
         assert!(stderr.contains(said), "{said}: {stderr}");
     }

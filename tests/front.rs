@@ -121,7 +121,7 @@ fn faults_in_front_of_the_lens() {
         ("lens.filters=[D65]", "transmittance"),
         ("lens.filters=[constant:0]", "no light of the band passes"),
         ("lens.filters=[7]", "no spectrum is called `7`"),
-        ("lens.filters=[[1, 2]]", "this is no filter"),
+        ("lens.filters=[[1, 2]]", "this is not a filter"),
         ("lens.filter=[wratten-15]", "did you mean `filters`"),
         ("lens.matte-box={distance: 0, width: 1, height: 1}", "expected a positive length"),
         ("lens.matte-box={distance: 3 m, width: 100, height: 100}", "between the matte box and the lens"),

@@ -183,5 +183,5 @@ fn faulty_films_are_told_at_their_places() {
         assert!(faults.contains(word), "{film}: {faults}");
     }
     let faults = spectra_scene::load(&path, &["output=[dng]".to_owned()]).map(|_| ()).unwrap_err().to_string();
-    assert!(faults.contains("no converter"), "{faults}");
+    assert!(faults.contains("no A/D converter"), "{faults}");
 }

@@ -92,14 +92,16 @@ fn faults_of_the_lens_come_at_once() {
         "lens.adjust=[{group: rear, shift: 0.1}]",
     ])
     .expect_err("bad");
-    for word in ["no way to focus by `eye`", "no plane is seen", "unknown coating `shiny`", "no group `rear`"] {
+    for word in
+        ["unknown criterion of focus `eye`", "no plane is visible", "unknown coating `shiny`", "no group `rear`"]
+    {
         assert!(faults.contains(word), "{word}: {faults}");
     }
     for (set, word) in [
         ("lens.focus={distance: 2 m, by: spot, frequency: 30}", "matters only with"),
         ("lens.focus={distance: 2 m, by: paraxial, wavelength: 500}", "matters only with"),
         ("lens.focus={distance: 2 m, by: rms, spectrum: []}", "1 to 64 wavelengths"),
-        ("lens.focus={distance: 2 m, by: rms, wavelength: 10 nm}", "this is no light"),
+        ("lens.focus={distance: 2 m, by: rms, wavelength: 10 nm}", "this is not a light"),
         ("lens.focus={by: rms}", "missing key `distance`"),
         ("lens.focus=3 kg", "expected a positive length"),
         ("lens.revers=true", "did you mean `reverse`"),

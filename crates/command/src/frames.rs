@@ -15,7 +15,7 @@ impl FromStr for Frames {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let number =
-            |text: &str| text.trim().parse::<u32>().map_err(|_| format!("`{}` is no number of a frame", text.trim()));
+            |text: &str| text.trim().parse::<u32>().map_err(|_| format!("`{}` is not a frame number", text.trim()));
         let part = |part: &str| match part.split_once('-') {
             None => number(part).map(|n| (n, Some(n))),
             Some((first, "")) => Ok((number(first)?, None)),

@@ -40,6 +40,12 @@ use std::time::Instant;
 
 /// Runs the program with the arguments of the process; `unpack` unpacks its sources (`spectra_workspace::unpack`).
 pub fn main(unpack: Unpack) -> ExitCode {
+    main_with_notices(unpack, "")
+}
+
+/// The same, for a program that `spectra build` makes: `notices` are the licenses of its plugins and of the crates that they
+/// bring, which `--licenses` shows after its own.
+pub fn main_with_notices(unpack: Unpack, notices: &'static str) -> ExitCode {
     let started = Instant::now();
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
@@ -56,19 +62,19 @@ pub fn main(unpack: Unpack) -> ExitCode {
         log_to_stderr();
     }
     limits::report_large_files();
-    match dispatch(&arguments, unpack, started) {
+    match dispatch(&arguments, unpack, notices, started) {
         Ok(code) => ExitCode::from(code),
         Err(failure) => ExitCode::from(failure.report()),
     }
 }
 
-fn dispatch(arguments: &Arguments, unpack: Unpack, started: Instant) -> Outcome {
+fn dispatch(arguments: &Arguments, unpack: Unpack, notices: &str, started: Instant) -> Outcome {
     registry::check()
-        .map_err(|faults| Failure::Failed(format!("this program is put together wrongly: {}", faults.join("; "))))?;
+        .map_err(|faults| Failure::Failed(format!("the stages of this program conflict: {}", faults.join("; "))))?;
     let isa = instruction_set()?;
     tracing::debug!(isa = isa.name(), "instruction set");
     if arguments.licenses {
-        return licences::show();
+        return licences::show(notices);
     }
     match &arguments.command {
         Some(Command::Run(run)) => run::run(run, isa, started),

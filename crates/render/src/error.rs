@@ -18,7 +18,7 @@ pub enum RenderError {
     #[error("this imager cannot launch rays: render it forward")]
     CannotLaunch,
     /// The source has no backward ability.
-    #[error("this source cannot be looked at: render it forward")]
+    #[error("this source can only be rendered forward")]
     NoRadiance,
     /// What the source reads is broken.
     #[error("{0}")]

@@ -73,8 +73,7 @@ fn sparse(scene: &Scene, exposure: &ExposureFrame) -> Option<String> {
     let can_backward = scene.source.radiance().is_some() && scene.imager.launch().is_some();
     let instead = if can_backward { ", or `render.direction: backward`" } else { "" };
     Some(format!(
-        "{:.0} % of the pixels got no ray, many of them among pixels that did: film shows them as unexposed, too dark on the \
-         whole; more `render.rays` (now {}){instead} fills them",
+        "{:.0} % of the pixels got no ray, many of them among pixels that did: film shows them as unexposed, too dark overall; more `render.rays` (now {}){instead} fills them",
         100.0 * empty as f64 / lit.len() as f64,
         scene.render.rays
     ))
@@ -90,22 +89,21 @@ fn nothing_seen(renderer: &Renderer, rendering: &Rendering) -> String {
         let [x, y] = landing.middle_mm.map(|mm| format!("{mm:.1} mm"));
         return format!(
             "no light reaches the frame: it lands around x = {x}, y = {y} of the image plane, beside the {} x {} mm that are \
-             recorded; `imager.shift: [{x}, {y}]` would see it",
+             recorded; `imager.shift: [{x}, {y}]` would catch it",
             size.width_mm, size.height_mm
         );
     }
     let why = chief_loss(&rendering.losses);
     match (scene.render.direction, landing) {
         (Direction::Backward, _) if rendering.losses.of_cause(Loss::Unlit) > 0 => {
-            "no light reaches the frame: all that it sees lies beside the picture, or is black; a larger `source`, or a \
-             nearer one, comes into view"
+            "no light reaches the frame: everything in view is beside the picture, or black; make the `source` larger or move it closer"
                 .to_owned()
         }
         (Direction::Forward, Some(_)) => {
-            "no light reaches the frame: of the rays that were traced none met it; more `render.rays` might".to_owned()
+            "no light reaches the frame: none of the traced rays hit it; try more `render.rays`".to_owned()
         }
         _ => format!(
-            "no light reaches the frame: nothing passes the lens{why}; `spectra lens draw` shows what stands in its way"
+            "no light reaches the frame: nothing passes the lens{why}; `spectra lens draw` shows what blocks it"
         ),
     }
 }

@@ -11,8 +11,9 @@ use crate::{
 };
 use schemars::JsonSchema;
 use serde::Deserialize;
+use spectra_core::names;
 use spectra_core::numbers::seed_of_frame;
-use spectra_core::params::{Fault, Faults, Node, Params, StageNode, Value, Warnings, Wavelength, Whole, nearest};
+use spectra_core::params::{Fault, Faults, Node, Params, StageNode, Value, Warnings, Wavelength, Whole};
 use spectra_core::registry::{self, Context, StageOf};
 use spectra_core::resources::Resources;
 use spectra_core::spectral::{BAND, Channel, Grid};
@@ -256,7 +257,7 @@ fn all_stages(
         (Some(own), None) => Some(own),
         (None, Some(films)) => Some(films::channels(films)),
         (Some(_), Some(_)) => {
-            let fault = params.fault("film", "this imager records by itself, no film lies on it");
+            let fault = params.fault("film", "this imager records light directly and takes no film");
             behind.push(fault.hint("write `imager: {kind: film, ...}`, or leave the film out"));
             None
         }
@@ -291,7 +292,7 @@ fn all_stages(
         && lens.elements.first().is_some_and(|e| e.kind == MATTE_BOX && e.vertex_z_mm() <= -source.distance_mm())
     {
         let fault = place.fault("matte-box.distance", "the source stands between the matte box and the lens");
-        faults.push(fault.hint(format!("nearer to the lens than {} mm", source.distance_mm())));
+        faults.push(fault.hint(format!("closer to the lens than {} mm", source.distance_mm())));
     }
     faults.extend(behind);
     if let (Some(imager), Some(outputs)) = (&imager, &output) {
@@ -350,7 +351,7 @@ fn grid_of(section: &BandSection, params: &Params) -> Result<Grid, Faults> {
     let Some([first, last]) = section.band else { return Ok(BAND) };
     let (first, last) = (first.nm(), last.nm());
     if !(first >= 200.0 && last <= 2500.0 && last - first >= 1.0) {
-        let fault = params.fault("band", format!("no band of light: {first} to {last} nm"));
+        let fault = params.fault("band", format!("not a band of wavelengths: {first} to {last} nm"));
         return Err(fault.hint("two wavelengths from 200 to 2500 nm, the shorter one first").into());
     }
     let count = (last - first).ceil() as usize + 1;
@@ -373,11 +374,7 @@ fn render_settings(
         let Some(value) = value else { return 0 };
         known.iter().position(|k| *k == value).unwrap_or_else(|| {
             let fault = params.fault(key, format!("unknown {key} `{value}`"));
-            let one_of = format!("one of {}", known.join(", "));
-            faults.push(fault.hint(match nearest(value, known.iter().copied()) {
-                Some(near) => format!("did you mean `{near}`? Known: {}", known.join(", ")),
-                None => one_of,
-            }));
+            faults.push(fault.hint(names::hint(value, known, "")));
             0
         })
     };
@@ -401,7 +398,7 @@ fn render_settings(
         faults.push(fault.hint("write `direction: backward`, or leave it to `auto`"));
     }
     if direction == Direction::Forward && rays > MAX_RAYS {
-        let fault = params.fault("samples", format!("so many samples are {rays} rays, at most {MAX_RAYS} are traced"));
+        let fault = params.fault("samples", format!("this makes {rays} rays, at most {MAX_RAYS} are traced"));
         faults.push(fault.hint("fewer samples or pixels, or write `rays`"));
     }
     faults.into_result(RenderSettings {

@@ -77,7 +77,7 @@ fn name(named: &Params, own: &Params, others: &[SceneFilm]) -> Result<String, Fa
     };
     let fault = |text: String| node.fault(text).path(format!("{}.name", own.path()));
     let Some(name) = node.as_str() else {
-        return Err(fault("the name of a film is a text".to_owned()).hint("such as `name: ortho`"));
+        return Err(fault("the name of a film must be text".to_owned()).hint("such as `name: ortho`"));
     };
     let good = |c: char| c.is_alphanumeric() || "-_+".contains(c);
     if name.is_empty() || name.len() > 64 || !name.chars().all(good) {

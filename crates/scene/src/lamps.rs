@@ -12,8 +12,8 @@ pub(crate) fn notes(scene: &Params) -> Vec<String> {
     }
     let note = |names: String| {
         format!(
-            "the lines of {names} are as strong as observers estimated: those far apart do not compare, so the color of the \
-             light is a guess"
+            "the line strengths of {names} were estimated by eye: lines far apart are not comparable, so the color of the light \
+             is a guess"
         )
     };
     let quoted: Vec<String> = lamps.iter().map(|name| format!("`{name}`")).collect();

@@ -158,7 +158,7 @@ pub(crate) fn held_lens(
 ) -> Result<HeldLens, Faults> {
     let mut faults = Faults::new();
     if let Some(kind) = params.kind() {
-        let fault = params.fault("kind", "a lens has no kinds: its file is named by `file`");
+        let fault = params.fault("kind", "a lens has no `kind`: name its file with `file`");
         return Err(match params.get("file") {
             Some(_) => fault.hint("leave `kind` out"),
             None => fault.hint(format!("write `lens: {{file: {kind}}}`")).path("lens"),
@@ -210,7 +210,7 @@ impl HeldLens {
                 Err(error @ (FocusError::NoLight { .. } | FocusError::NoTravel { .. })) if wanted.plain => {
                     focus.by = FocusBy::Paraxial;
                     focus.remark =
-                        Some(format!("contrast cannot be had ({error}); write `by: paraxial` to do without"));
+                        Some(format!("contrast cannot be computed ({error}); `by: paraxial` does not need it"));
                 }
                 Err(error) => return Err(focus_fault(&params, &error).into()),
             }
@@ -244,7 +244,7 @@ fn with_aperture(lens: &Lens, node: &StageNode, resources: &dyn Resources) -> Re
     if let Some(text) = node.node().as_str()
         && let Some(figure) = f_number_in(text)
     {
-        let fault = node.fault("an aperture is what limits the light beside the stop's round opening, such as blades");
+        let fault = node.fault("`aperture` describes the shape of the stop, such as its blades");
         return Err(fault.hint(format!("did you mean `f-number: f/{figure}`?")).into());
     }
     let apertures = spectra_lens::read_apertures(node, resources)?;
@@ -253,7 +253,7 @@ fn with_aperture(lens: &Lens, node: &StageNode, resources: &dyn Resources) -> Re
         return Err(node.fault("this lens has no stop").hint("state `aperture` at a surface of its file").into());
     };
     if stop.semi_diameter_mm.is_none() && apertures.iter().any(|a| matches!(a.shape, Shape::Iris(_))) {
-        let fault = node.fault("how far are the blades closed? The stop of this lens has no size");
+        let fault = node.fault("the stop of this lens has no size, so the size of the blades is unknown");
         return Err(fault.hint("`f-number: f/4` beside `aperture`").into());
     }
     stop.apertures.extend(apertures);
@@ -348,7 +348,7 @@ fn focus_of(node: &StageNode, reference_nm: f64, light: Option<&FocusLight>) -> 
         Some("spot" | "rms") => FocusBy::Spot,
         Some("paraxial") => FocusBy::Paraxial,
         Some(other) => {
-            let fault = params.fault("by", format!("no way to focus by `{other}`"));
+            let fault = params.fault("by", format!("unknown criterion of focus `{other}`"));
             faults.push(fault.hint("contrast, spot or paraxial"));
             FocusBy::Paraxial
         }
@@ -373,7 +373,7 @@ fn focus_of(node: &StageNode, reference_nm: f64, light: Option<&FocusLight>) -> 
     }
     let field_rad = p.field.map_or(0.0, Angle::rad);
     if field_rad.abs() > MAX_FIELD_DEG.to_radians() {
-        let fault = params.fault("field", "no plane is seen at this angle");
+        let fault = params.fault("field", "no plane is visible at this angle");
         faults.push(fault.hint(format!("between {} and {MAX_FIELD_DEG} degrees", -MAX_FIELD_DEG)));
     }
     let light = match (p.wavelength, p.spectrum) {
@@ -395,7 +395,7 @@ fn focus_of(node: &StageNode, reference_nm: f64, light: Option<&FocusLight>) -> 
     };
     if light.iter().any(|(nm, _)| !(200.0..=2500.0).contains(nm)) {
         let key = if p.wavelength.is_some() { "wavelength" } else { "spectrum" };
-        faults.push(params.fault(key, "this is no light").hint("from 200 to 2500 nm"));
+        faults.push(params.fault(key, "this is not a light").hint("from 200 to 2500 nm"));
     }
     let object_mm = p.distance.mm();
     let search = criterion.map(|criterion| FocusSearch { object_mm, field_rad, criterion, light });

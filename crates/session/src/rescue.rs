@@ -11,10 +11,10 @@ pub(crate) fn keep(shot: &Shot<'_>, failed: &str, folder: &dyn Folder, elsewhere
     let (frame, gains) = (shot.exposure, shot.gains());
     let there = format!("{name}.exr");
     if elsewhere.file(&there, &mut |out| exr(out, frame, &gains, shot.attributes)).is_ok() {
-        return format!("the light is kept in {}", elsewhere.shown(&there));
+        return format!("the light was saved in {}", elsewhere.shown(&there));
     }
     if folder.file(&there, &mut |out| half_exr(out, frame, &gains, shot.attributes)).is_ok() {
-        return format!("the light is kept in {}, in half floats (three digits)", folder.shown(&there));
+        return format!("the light was saved in {}, in half floats (three digits)", folder.shown(&there));
     }
-    format!("neither could the light be kept in {}", elsewhere.shown(&there))
+    format!("the light could not be saved in {} either", elsewhere.shown(&there))
 }

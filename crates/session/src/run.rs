@@ -123,7 +123,7 @@ impl Taken {
         // What was computed before is worth keeping: it may be hours.
         let failure = match traced {
             Err(SessionError::Failed(text)) if session.has_light() => {
-                Some(format!("{text}; what is written is the light before it, without that ray"))
+                Some(format!("{text}; the files hold the light traced before it, without that ray"))
             }
             traced => traced.map(|()| None)?,
         };

@@ -30,8 +30,7 @@ struct Planned {
 pub(crate) fn run(job: &Job<'_>, host: &dyn Host) -> Result<Ended, SessionError> {
     let series = job.series;
     let Some(report_file) = job.names.report(&format!("{}-series", series.name())) else {
-        let text =
-            format!("--output: that is one picture, and this scene stands for {}: name a folder", series.count());
+        let text = format!("--output: that is one picture, but this scene makes {}: name a folder", series.count());
         return Err(SessionError::Request(text));
     };
     let plan = |index: usize, scene: &Scene| -> Result<Planned, SessionError> {

@@ -416,7 +416,7 @@ fn of(head: &Head, whole: &Params) -> Result<Option<Kind>, Fault> {
         Some(word) => match known.into_iter().find(|k| k.word() == word) {
             Some(kind) => Ok(Some(kind)),
             None => Err(whole
-                .fault("of", format!("`{}` is no kind of spectrum", word.chars().take(40).collect::<String>()))
+                .fault("of", format!("`{}` is not a kind of spectrum", word.chars().take(40).collect::<String>()))
                 .hint("emission, transmittance, reflectance or sensitivity")),
         },
     }
@@ -544,14 +544,14 @@ fn table(params: &Params, wanted: Kind) -> Result<Piece, Faults> {
     rising(params, "wavelengths", &p.wavelengths, &mut faults);
     for (i, value) in p.values.iter().enumerate() {
         let text = match scale {
-            ScaleName::Log10 if value.abs() > 20.0 => format!("{value} as a logarithm to base 10 is beyond belief"),
+            ScaleName::Log10 if value.abs() > 20.0 => format!("{value} is implausible as a logarithm to base 10"),
             ScaleName::Linear if *value < 0.0 => format!("{wanted} cannot be negative: {value}"),
             ScaleName::Linear if wanted.bound().is_some_and(|b| *value > b) => {
                 format!("{value} is more than a {wanted} can be: given as percent? divide by 100")
             }
             _ => continue,
         };
-        let hint = if *value < 0.0 { "write 0 where nothing was measured" } else { "is the `scale` another one?" };
+        let hint = if *value < 0.0 { "write 0 where nothing was measured" } else { "is the `scale` wrong?" };
         faults.push(params.fault(&format!("values[{i}]"), text).hint(hint));
     }
     faults.into_result(())?;

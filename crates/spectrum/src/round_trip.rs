@@ -29,7 +29,7 @@ pub struct RoundTripErrors {
 }
 
 impl<'a> RoundTrip<'a> {
-    /// A model's round trip; `None` where its white is not seen.
+    /// A model's round trip; `None` where its white has no visible light.
     #[must_use]
     pub fn new(model: &'a dyn ColorModel) -> Option<Self> {
         let white = Observer::cie_1931_2deg().xyz_of_power(&model.spectrum([1.0; 3]))[1];

@@ -152,7 +152,7 @@ fn faults_name_file_line_and_column() {
         ("kind: product\nfactors: [D65, A]\n", "a.yaml:2:16: emission and emission have no product"),
         ("kind: product\nfactors: [D65, nothing-of-that-name]\n", "a.yaml:2:16: no spectrum is called"),
         ("kind: scale\nspectrum: D65\n", "a.yaml:1:1: a scale takes one of"),
-        ("kind: constant\nof: light\n", "a.yaml:2:5: `light` is no kind of spectrum"),
+        ("kind: constant\nof: light\n", "a.yaml:2:5: `light` is not a kind of spectrum"),
         (
             "kind: blackbody\nof: reflectance\ntemperature: 3000\n",
             "a.yaml:2:5: what the file holds is of kind emission",
@@ -171,7 +171,7 @@ fn faults_name_file_line_and_column() {
 #[test]
 fn files_that_name_themselves_end() {
     for text in ["{kind: sum, parts: [a.yaml, a.yaml]}", "{kind: scale, factor: 1, spectrum: './a.yaml'}"] {
-        assert!(refused(text).contains("made of too many spectra, or of itself"));
+        assert!(refused(text).contains("refers to too many spectra, or to itself"));
     }
     let many = format!("kind: sum\nparts: [{}]\n", vec!["'constant:1'"; 1500].join(", "));
     assert!(refused(&many).contains("too many"));

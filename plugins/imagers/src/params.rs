@@ -7,7 +7,8 @@ use crate::standing::{Bend, Standing};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::frame::FrameSize;
-use spectra_core::params::{Angle, Fault, Faults, Length, NonNegative, Params, Positive, StageNode, Value, nearest};
+use spectra_core::names;
+use spectra_core::params::{Angle, Fault, Faults, Length, NonNegative, Params, Positive, StageNode, Value};
 use spectra_core::registry::Context;
 use spectra_glass::Catalogue;
 use spectra_spectrum::find_transmittance_in;
@@ -121,11 +122,11 @@ pub struct Curvature {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct CoverParams {
-    /// A glass of the catalogue, such as `SCHOTT/N-BK7`; what it absorbs counts.
+    /// A glass of the catalogue, such as `SCHOTT/N-BK7`; its absorption is included.
     pub glass: String,
     /// Thickness, mm if bare, at most 100 mm.
     pub thickness: Positive<Length>,
-    /// Air between it and what stands behind it, mm if bare: for the record, since it changes nothing.
+    /// Air behind it, mm if bare: for information only, since it changes nothing.
     #[serde(default)]
     pub gap: Option<NonNegative<Length>>,
     /// A further transmittance, by name or from a file beside the scene: a coating against infrared, a dyed layer. None
@@ -285,13 +286,11 @@ impl Frame {
             (Some(name), None, None) => match format_named(name) {
                 Some(format) => Ok((format.width_mm, format.height_mm)),
                 None => {
-                    let names = FORMATS.map(|f| f.name);
-                    let known = names.join(", ");
+                    let known = FORMATS.map(|f| f.name);
                     let fault = params.fault("format", format!("unknown format `{name}`"));
-                    Err(match nearest(name, names) {
-                        Some(near) => fault.hint(format!("did you mean `{near}`? Known: {known}")),
-                        None => fault.hint(format!("known: {known}; or give width and height")),
-                    })
+                    let hint = names::hint(name, &known, "spectra list format");
+                    let other = if hint.starts_with("known: ") { "; or state width and height" } else { "" };
+                    Err(fault.hint(format!("{hint}{other}")))
                 }
             },
             (None, Some(width), Some(height)) => {
@@ -301,7 +300,7 @@ impl Frame {
                 for (key, mm) in [("width", width_mm), ("height", height_mm)] {
                     if !RANGE_MM.contains(&mm) {
                         return Err(params
-                            .fault(key, format!("{mm} mm is no size of an imager"))
+                            .fault(key, format!("{mm} mm is out of range for the size of an imager"))
                             .hint("0.001 mm to 100 m"));
                     }
                 }
@@ -359,8 +358,7 @@ fn ratio(node: &StageNode) -> Result<f64, Fault> {
         _ => None,
     };
     found.filter(|ratio| (0.01..=100.0).contains(ratio)).ok_or_else(|| {
-        node.fault("no shape of a frame")
-            .hint("width to height, as in `crop: 16:9`, or their ratio, as in `crop: 1.85`")
+        node.fault("not a frame shape").hint("width to height, as in `crop: 16:9`, or their ratio, as in `crop: 1.85`")
     })
 }
 
@@ -368,7 +366,7 @@ fn resolution_faults(resolution: [u32; 2], params: &Params) -> Vec<Fault> {
     let mut faults = Vec::new();
     for (i, px) in resolution.into_iter().enumerate() {
         if !(1..=MAX_SIDE_PX).contains(&px) {
-            let text = format!("{px} pixels is no side of a picture");
+            let text = format!("a side of {px} pixels is out of range");
             faults.push(params.fault(&format!("resolution[{i}]"), text).hint(format!("1 to {MAX_SIDE_PX}")));
         }
     }

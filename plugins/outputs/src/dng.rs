@@ -28,7 +28,7 @@ fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Output>, Faults> {
 }
 
 /// What is said of an imager that has no numbers.
-const WITHOUT: &str = "this imager has no converter: there are no raw numbers";
+const WITHOUT: &str = "this imager has no A/D converter, so there is no raw data";
 
 impl Output for Dng {
     fn kind(&self) -> &'static str {

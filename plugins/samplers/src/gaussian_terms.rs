@@ -241,7 +241,7 @@ impl Continuum for Signed {
 fn build(params: &Params, _context: &Context<'_>) -> Result<Box<dyn WavelengthSampler>, Faults> {
     let GaussianTermsParams { terms, follow, floor } = params.parse()?;
     let sampler = GaussianTerms::fitted(terms as usize, follow, floor)
-        .ok_or_else(|| params.fault("terms", format!("{terms} is no number of terms")).hint("1 to 32"))?;
+        .ok_or_else(|| params.fault("terms", format!("{terms} is not a valid number of terms")).hint("1 to 32"))?;
     Ok(Box::new(sampler))
 }
 

@@ -106,14 +106,14 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn WavelengthSam
         None => Some(Box::new(SourceTimesResponse)),
         Some(node) => faults.take(node.params()).and_then(|inner| match inner.kind() {
             Some("hero") => {
-                faults.push(inner.fault("kind", "a group of groups").hint("name another strategy"));
+                faults.push(inner.fault("kind", "a group cannot contain groups").hint("name another strategy"));
                 None
             }
             _ => faults.take(registry::build::<dyn WavelengthSampler>(&inner, context)),
         }),
     };
     if !(2..=MOST).contains(&group) {
-        faults.push(params.fault("group", format!("{group} is no size of a group")).hint(format!("2 to {MOST}")));
+        faults.push(params.fault("group", format!("{group} is not a valid group size")).hint(format!("2 to {MOST}")));
     }
     match density.and_then(|density| Hero::new(group, density)) {
         Some(hero) if faults.is_empty() => Ok(Box::new(hero)),

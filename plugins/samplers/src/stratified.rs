@@ -121,7 +121,7 @@ impl Vectorized for DrawStrata<'_> {
 fn build(params: &Params, _context: &Context<'_>) -> Result<Box<dyn WavelengthSampler>, Faults> {
     let StratifiedParams { strata } = params.parse()?;
     let stratified = Stratified::new(strata).ok_or_else(|| {
-        params.fault("strata", format!("{strata} is no number of strata")).hint(format!("1 to {MOST}"))
+        params.fault("strata", format!("{strata} is not a valid number of strata")).hint(format!("1 to {MOST}"))
     })?;
     Ok(Box::new(stratified))
 }

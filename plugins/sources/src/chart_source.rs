@@ -173,8 +173,8 @@ fn own_reflectances(p: &ChartParams, params: &Params, context: &Context<'_>) -> 
             return Err(fault.hint("`chart: patches`").into());
         }
         (None, true) => {
-            let fault = params.fault("chart", "patches of which `reflectances`?");
-            return Err(fault.hint("`reflectances: my-paints.csv`: a column a patch beside wavelength_nm").into());
+            let fault = params.fault("chart", "`patches` needs `reflectances`");
+            return Err(fault.hint("`reflectances: my-paints.csv`: one column per patch beside wavelength_nm").into());
         }
         (Some(node), true) => node,
     };

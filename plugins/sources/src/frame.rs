@@ -1,6 +1,7 @@
 //! How wide a flat source is, what lies beyond its border, and whether it fills the frame.
 
 use schemars::JsonSchema;
+use spectra_core::names;
 use spectra_core::params::{Fault, Faults, Length, Node, Params, Positive, StageNode, Value, nearest};
 use spectra_core::registry::Context;
 use spectra_core::view::{Sight, View};
@@ -66,7 +67,7 @@ impl<'a> Width<'a> {
             Self::Fill(node) => match view {
                 None => Ok(distance_mm),
                 Some(view) => needed_mm(view, aspect, distance_mm, center_mm).ok_or_else(|| {
-                    node.fault("this lens looks to the side: no plane fills its frame")
+                    node.fault("this lens is turned too far to the side: no plane fills its frame")
                         .hint("write a width, such as `5 m`")
                 }),
             },
@@ -104,11 +105,7 @@ impl Edge {
             Some("mirror") => Ok(Self::Mirror),
             Some(other) => {
                 let fault = params.fault("edge", format!("no edge is called `{other}`"));
-                let known = ["black", "clamp", "mirror"];
-                Err(fault.hint(match nearest(other, known) {
-                    Some(near) => format!("did you mean `{near}`? Known: black, clamp, mirror"),
-                    None => "black, clamp or mirror".to_owned(),
-                }))
+                Err(fault.hint(names::hint(other, &["black", "clamp", "mirror"], "")))
             }
         }
     }
@@ -152,13 +149,13 @@ impl Placed {
         };
         let aspect = self.width_mm / self.height_mm;
         let Some(needed_mm) = needed_mm(view, aspect, self.distance_mm, self.center_mm) else { return };
-        let text = format!("the frame is not filled: {:.0} % of it sees nothing of {what}", (100.0 * missed).max(1.0));
+        let text = format!("the frame is not filled: {:.0} % of it lies outside {what}", (100.0 * missed).max(1.0));
         let hint = match bare(params.get("width")) {
             // 1.5 for 1.5 m: a bare number is in mm.
             Some(mm) if (0.2..5.0).contains(&(1000.0 * mm / needed_mm)) => {
-                format!("{mm} mm wide: did you mean {mm} m? Or `width: fill`")
+                format!("{mm} mm wide: did you mean `{mm} m`? Or `width: fill`")
             }
-            _ => format!("`width: fill`, or at least {}; `edge: black` where the border is meant", length(needed_mm)),
+            _ => format!("`width: fill`, or at least {}; `edge: black` if the border is intended", length(needed_mm)),
         };
         context.warn(params.fault("width", text).hint(hint));
     }

@@ -113,12 +113,12 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
         let distance_mm = layer.distance.mm();
         if distance_mm <= before_mm {
             let text = format!("{distance_mm} mm is not behind the layer before it, at {before_mm} mm");
-            faults.push(own.fault("distance", text).hint("layers go from the front to the back"));
+            faults.push(own.fault("distance", text).hint("list layers from front to back"));
         }
         before_mm = distance_mm;
         let center_mm = layer.center.map_or([0.0; 2], |c| c.map(Length::mm));
         if !center_mm.iter().all(|c| c.is_finite()) {
-            faults.push(own.fault("center", "a center lies at a finite place"));
+            faults.push(own.fault("center", "a center must be finite"));
         }
         let width = faults.take(Width::read(&layer.width));
         let edge = faults.take(Edge::read(layer.edge.as_deref(), &own));

@@ -6,6 +6,7 @@
 
 mod arguments;
 mod cargo;
+mod notices;
 mod plugin;
 mod program;
 mod stages;
@@ -29,7 +30,16 @@ pub(crate) fn build(arguments: &BuildArguments, unpack: Unpack, started: Instant
     let cargo = Cargo::find(arguments.offline)?;
     let plugins = plugins(&arguments.with, &cargo, &sources)?;
     let program = Program::write(&sources, &plugins)?;
-    cargo.check_graph(&program, &sources)?;
+    let graph = cargo.check_graph(&program, &sources)?;
+    let notices = notices::of(&graph, &program, &sources);
+    if !notices.unlicensed.is_empty() {
+        console::warning(&format!(
+            "no license is stated by {}\n  help: without one, others may not use or pass on the program; its author can \
+             add `license = \"...\"` to its Cargo.toml",
+            notices.unlicensed.join(", ")
+        ));
+    }
+    program.set_notices(&notices.text)?;
     let built = cargo.build(&program, arguments.profile.name())?;
     let added = stages::added(&built, &plugins)?;
     install(&built, &output)?;
@@ -82,10 +92,13 @@ fn output(path: &Path, force: bool) -> Result<PathBuf, Failure> {
         return fault("that is a folder", "name the file to write, such as ./spectra-mine");
     }
     if !folder.is_dir() || path.file_name().is_none() {
-        return fault("there is no such folder", "make it first");
+        return fault("there is no such folder", "create it first");
     }
     if !force && path.exists() && !is_ours(&path) {
-        return fault("that is no program that `spectra build` made", "another name, or --force to write over it");
+        return fault(
+            "that file was not made by `spectra build`",
+            "choose another name, or use --force to overwrite it",
+        );
     }
     Ok(path)
 }

@@ -40,7 +40,7 @@ impl Folder {
         if parent.is_dir() {
             return Ok(());
         }
-        Err(Fault::new(format!("--path {}: there is no such folder", parent.display())).hint("make it first").into())
+        Err(Fault::new(format!("--path {}: there is no such folder", parent.display())).hint("create it first").into())
     }
 
     /// Writes all of it under another name, then gives it its own.

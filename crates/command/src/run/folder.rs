@@ -59,7 +59,7 @@ impl Folder for Target {
     fn prepare(&self, name: &str, files: &[&str]) -> Result<(), String> {
         std::fs::create_dir_all(&self.folder).map_err(|error| refused(&self.folder, &error))?;
         if let Some(path) = files.iter().map(|file| self.folder.join(file)).find(|path| path.is_dir()) {
-            return Err(refused(&path, &"a folder of that name is in the way"));
+            return Err(refused(&path, &"a folder of that name exists"));
         }
         // Rights, read-only disks, quotas: only the attempt tells.
         // Several pictures of a series try at the same time.

@@ -201,8 +201,8 @@ impl Progress {
         if interrupted && !self.stopping {
             self.stopping = true;
             self.say(match self.place {
-                None => "stopping: what there is will be written; Ctrl-C again gives it up",
-                Some(_) => "stopping: the pictures that are finished are kept",
+                None => "stopping: the picture so far will be written; Ctrl-C again discards it",
+                Some(_) => "stopping: finished pictures are kept",
             });
         }
         let state = self.state(control);

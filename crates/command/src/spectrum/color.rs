@@ -51,7 +51,7 @@ fn models(wanted: &[String], illuminant: &str) -> Result<Vec<Model>, Failure> {
 
 fn round_trip(model: &Model) -> Result<RoundTrip<'_>, Failure> {
     RoundTrip::new(model.model.as_ref())
-        .ok_or_else(|| Failure::Input(format!("--model {}: its white is not seen", model.name)))
+        .ok_or_else(|| Failure::Input(format!("--model {}: its white has no visible light", model.name)))
 }
 
 /// A color's round trip by one model.
@@ -129,7 +129,7 @@ pub(crate) fn color(arguments: &SpectrumColor) -> Outcome {
 /// `255 128 64`, or `#ff8040`.
 fn rgb(words: &[String]) -> Result<[u8; 3], Failure> {
     let wrong = || {
-        let text = format!("`{}` is no color: write three values of 0 to 255, or #ff8040", words.join(" "));
+        let text = format!("`{}` is not a color: write three values of 0 to 255, or #ff8040", words.join(" "));
         Failure::Input(text)
     };
     match words {

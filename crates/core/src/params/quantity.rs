@@ -109,7 +109,7 @@ pub trait Quantity: Copy {
                 shown(text)
             )),
             Reading::UnknownUnit(unit) if unit.starts_with('/') => Err(format!(
-                "found {}, expected {expected}\nhint: below the line stands a number greater than 0, as in `1/125`",
+                "found {}, expected {expected}\nhint: the denominator must be greater than 0, as in `1/125`",
                 shown(text)
             )),
             Reading::UnknownUnit(unit) => {

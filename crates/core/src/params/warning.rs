@@ -53,7 +53,7 @@ impl Warnings {
         Self { all: RefCell::new(Vec::new()), ends: RefCell::new(Vec::new()) }
     }
 
-    /// Adds one, unless it is there already.
+    /// Adds one, unless it already exists.
     pub fn push(&self, warning: impl Into<Warning>) {
         let warning = warning.into();
         let mut all = self.all.borrow_mut();

@@ -310,7 +310,7 @@ fn check_list(all: &[Listed]) -> Result<(), Vec<String>> {
                 ));
             } else if a.stage == b.stage && a.default && b.default {
                 faults.push(format!(
-                    "{}: both `{}` of crate {} and `{}` of crate {} want to be the default",
+                    "{}: both `{}` of crate {} and `{}` of crate {} are marked as the default",
                     a.stage, a.name, a.package, b.name, b.package
                 ));
             }
@@ -338,15 +338,15 @@ pub fn build<S: Stage + ?Sized>(params: &Params, context: &Context<'_>) -> Resul
 }
 
 fn unknown_kind(params: &Params, stage: &str, names: &[&str]) -> Fault {
-    let known = names.join(", ");
+    let list = format!("spectra list {stage}");
+    let known = crate::names::listed(names, &list);
     match params.kind() {
         Some(kind) => {
-            let near = crate::params::nearest(kind, names.iter().copied());
-            let hint = match near {
-                Some(near) => format!("did you mean `{near}`? Known: {known}"),
-                None => format!(
-                    "known: {known}. Is it a plugin's? `spectra build --with FOLDER` makes a program that has it"
-                ),
+            let hint = crate::names::hint(kind, names, &list);
+            let hint = if hint.starts_with("known: ") {
+                format!("{hint}. If it comes from a plugin, `spectra build --with FOLDER` makes a program that has it")
+            } else {
+                hint
             };
             params.fault("kind", format!("unknown {stage} `{kind}`")).hint(hint)
         }

@@ -25,7 +25,7 @@ pub enum PositiveError {
     #[error("the light is dark to the eye")]
     DarkLight,
     /// A camera film where a print stock is wanted.
-    #[error("{stock} is no print stock")]
+    #[error("{stock} is not a print stock")]
     NoPrintStock {
         /// Its name.
         stock: String,

@@ -79,7 +79,7 @@ impl ReciprocityFile {
                 Ok(Reciprocity::PowerLaw { exponent, above_s })
             }
             (Some(exponent), None) => {
-                let text = format!("the exponent is between 1 and 10, not {exponent}");
+                let text = format!("the exponent must be between 1 and 10, not {exponent}");
                 Err(params.fault("reciprocity.exponent", text))
             }
             (None, Some(rows)) => {

@@ -3,9 +3,8 @@
 use super::{Aperture, Iris, Mask, Shape, drawing};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
-use spectra_core::params::{
-    Angle, Faults, Kinds, Length, LengthOrInfinity, Params, Positive, StageNode, Value, Whole, nearest,
-};
+use spectra_core::names;
+use spectra_core::params::{Angle, Faults, Kinds, Length, LengthOrInfinity, Params, Positive, StageNode, Value, Whole};
 use spectra_core::resources::{Resources, beside};
 use std::sync::Arc;
 
@@ -146,12 +145,7 @@ fn one(params: &Params, resources: &dyn Resources) -> Result<Aperture, Faults> {
         "mask" => mask(&own, resources)?,
         other => {
             let fault = params.fault("shape", format!("unknown shape `{other}`"));
-            let known = SHAPES.join(", ");
-            return Err(match nearest(other, SHAPES) {
-                Some(near) => fault.hint(format!("did you mean `{near}`? Known: {known}")),
-                None => fault.hint(format!("known: {known}")),
-            }
-            .into());
+            return Err(fault.hint(names::hint(other, &SHAPES, "")).into());
         }
     };
     let center_mm = common.center.map_or([0.0; 2], |c| c.map(Length::mm));
@@ -171,7 +165,7 @@ fn ring(params: &Params) -> Result<Shape, Faults> {
 fn polygon(params: &Params) -> Result<Shape, Faults> {
     let p: PolygonParams = params.parse()?;
     if !(3..=MAX_CORNERS).contains(&p.points.len()) {
-        let fault = params.fault("points", format!("{} corners make no polygon", p.points.len()));
+        let fault = params.fault("points", format!("{} corners do not make a polygon", p.points.len()));
         return Err(fault.hint(format!("3 to {MAX_CORNERS}, in order around it")).into());
     }
     Ok(Shape::Polygon(p.points.into_iter().map(|point| point.map(Length::mm)).collect()))

@@ -3,7 +3,8 @@
 use super::{Coating, MeasuredCoating, Stack, StackLayer};
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::params::{Fault, Faults, NonNegative, Params, StageNode, Wavelength};
+use spectra_core::names;
+use spectra_core::params::{Fault, Faults, NonNegative, Params, StageNode, Wavelength, nearest};
 use spectra_core::resources::{Resources, beside};
 use spectra_glass::Medium;
 use spectra_glass::file;
@@ -94,6 +95,8 @@ pub enum CoatingForm {
     Stack(StackParams),
 }
 
+/// Coatings with a name.
+const NAMED: [&str; 4] = ["ideal", "bare", "single-layer", "three-layer"];
 const HINT: &str = "ideal, bare, single-layer, three-layer, {layer: 1.38, quarter-wave-at: 550 nm}, {layers: [...]}, or a file: my-stack.yaml, my-coating.csv";
 /// Most layers of a stack.
 const MAX_LAYERS: usize = 500;
@@ -135,7 +138,8 @@ pub fn read_stated_coating(node: &StageNode, resources: &dyn Resources) -> Resul
     }
     if params.get("kind").is_some() {
         let p: NamedCoating = params.parse()?;
-        let unknown = || params.fault("kind", format!("unknown coating `{}`", p.kind)).hint(HINT);
+        let unknown =
+            || params.fault("kind", format!("unknown coating `{}`", p.kind)).hint(names::hint(&p.kind, &NAMED, ""));
         return Ok(StatedCoating { coating: Coating::by_name(&p.kind).ok_or_else(unknown)?, assumed: p.assumed });
     }
     let p: OneLayer = params.parse()?;
@@ -166,7 +170,7 @@ fn thickness(
         }
     };
     if !(nm <= MAX_NM && given.nm() <= MAX_NM) {
-        return Err(params.fault(&key(name), "more than 100 um is no thin layer"));
+        return Err(params.fault(&key(name), "a thin layer is at most 100 um thick"));
     }
     Ok(nm)
 }
@@ -191,7 +195,12 @@ fn named(name: &str, node: &StageNode, resources: &dyn Resources) -> Result<Coat
             let measured = MeasuredCoating::from_table(&file.name, &file.bytes, column);
             measured.map(|m| Coating::Measured(Arc::new(m))).map_err(|e| e.faults(fault))
         }
-        _ => Err(node.fault(format!("unknown coating `{name}`")).hint(HINT).into()),
+        _ => {
+            let fault = node.fault(format!("unknown coating `{name}`"));
+            Err(fault
+                .hint(nearest(name, NAMED).map_or_else(|| HINT.to_owned(), |near| format!("did you mean `{near}`?")))
+                .into())
+        }
     }
 }
 

@@ -103,8 +103,8 @@ pub fn load(path: &Path, overrides: &[String]) -> Result<Scene, Faults> {
     let series = load_series(path, overrides)?;
     if let Some(key) = series.key() {
         let fault =
-            series.root.fault(format!("this scene stands for {} pictures, and one is wanted here", series.count()));
-        return Err(fault.path(key).hint(format!("take the series out with `--set {key}=`")).into());
+            series.root.fault(format!("this scene makes {} pictures, but one is expected here", series.count()));
+        return Err(fault.path(key).hint(format!("remove the series with `--set {key}=`")).into());
     }
     series.scene(0)
 }

@@ -4,9 +4,8 @@ use super::{CameraColor, Converter, PATTERNS, Pattern, Photosite, Pixels, Sensor
 use crate::params::imager_params;
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::params::{
-    Fault, Faults, Length, NonNegative, OrInfinity, Params, Positive, Quantity, Ratio, Time, nearest,
-};
+use spectra_core::names;
+use spectra_core::params::{Fault, Faults, Length, NonNegative, OrInfinity, Params, Positive, Quantity, Ratio, Time};
 use spectra_core::registry::Context;
 use spectra_core::spectral::Channel;
 use spectra_core::stage::Imager;
@@ -125,11 +124,11 @@ pub struct PhotositeParams {
     #[serde(default)]
     #[schemars(extend("minimum" = 1, "maximum" = 5))]
     pub index: Option<Positive<f64>>,
-    /// How far the microlens gathers light toward the middle, 0 (not at all) to 1 (to a point); 0 if left out.
+    /// How far the microlens concentrates light toward the middle, 0 (not at all) to 1 (to a point); 0 if left out.
     #[serde(default)]
     #[schemars(extend("maximum" = 1))]
     pub microlens: Option<NonNegative<Ratio>>,
-    /// Distance of the exit pupil that the microlenses are shifted for, mm if bare; not shifted if left out.
+    /// Distance of the exit pupil for which the microlenses are shifted, mm if bare; not shifted if left out.
     #[serde(default)]
     pub exit_pupil: Option<OrInfinity<Positive<Length>>>,
     /// Depth of the well, mm if bare; 0 if left out: all is absorbed at the surface.
@@ -156,13 +155,9 @@ impl SensorParams {
         let Some(name) = &self.pattern else { return Ok(PATTERNS[0].1) };
         let found = PATTERNS.iter().find(|(known, _)| *known == name.to_ascii_lowercase());
         found.map(|(_, pattern)| *pattern).ok_or_else(|| {
-            let names = PATTERNS.map(|(name, _)| name);
-            let known = names.join(", ");
+            let patterns = PATTERNS.map(|(name, _)| name);
             let fault = params.fault("pattern", format!("unknown pattern `{name}`"));
-            match nearest(name, names) {
-                Some(near) => fault.hint(format!("did you mean `{near}`? One of {known}")),
-                None => fault.hint(format!("one of {known}")),
-            }
+            fault.hint(names::hint(name, &patterns, ""))
         })
     }
 
@@ -224,7 +219,9 @@ impl SensorParams {
         let index = p.index.map_or(SILICA, |i| i.bare());
         if !(1.0..=5.0).contains(&index) {
             faults.push(
-                params.fault("photosite.index", format!("{index} is no refractive index of a stack")).hint("1 to 5"),
+                params
+                    .fault("photosite.index", format!("{index} is out of range for the refractive index of a stack"))
+                    .hint("1 to 5"),
             );
         }
         let microlens = p.microlens.map_or(0.0, |m| m.number());
@@ -274,8 +271,9 @@ impl SensorParams {
                     .map_err(|e| e.faults(|text| params.fault("white-balance", text)));
                 faults.take(found).and_then(|light| {
                     let color = CameraColor::fit(channels, &light, &context.grid);
-                    let blind =
-                        || params.fault("white-balance", "these sensitivities do not tell colors apart in this light");
+                    let blind = || {
+                        params.fault("white-balance", "these sensitivities cannot distinguish colors under this light")
+                    };
                     faults.take(color.ok_or_else(blind))
                 })
             }

@@ -44,19 +44,19 @@ fn every_kind_is_built_from_a_scene() {
 fn faults_name_the_key_and_the_reason() {
     for (text, wanted) in [
         ("{kind: uniform, strata: 3}", "unknown key `strata`"),
-        ("{kind: stratified, strata: 0}", "0 is no number of strata"),
+        ("{kind: stratified, strata: 0}", "0 is not a valid number of strata"),
         ("{kind: inverse-transform}", "missing key `spectrum`"),
         ("{kind: inverse-transform, spectrum: mercury}", "lines only"),
         ("{kind: inverse-transform, spectrum: nowhere}", "nowhere"),
         ("{kind: inverse-transform, spectrum: D65, floor: 100 %}", "share of the samples"),
         ("{kind: truncated-gaussian, center: 550, sigma: 1e9}", "standard deviation"),
         ("{kind: truncated-gaussian, center: 550, sigma: -1}", "a positive wavelength"),
-        ("{kind: gaussian-terms, terms: 33}", "33 is no number of terms"),
+        ("{kind: gaussian-terms, terms: 33}", "33 is not a valid number of terms"),
         ("{kind: gaussian-terms, follow: two-terms}", "two-terms"),
-        ("{kind: hero, group: 1}", "1 is no size of a group"),
-        ("{kind: hero, density: hero}", "a group of groups"),
+        ("{kind: hero, group: 1}", "1 is not a valid group size"),
+        ("{kind: hero, density: hero}", "a group cannot contain groups"),
         ("{kind: hero, density: unifrom}", "did you mean `uniform`"),
-        ("{kind: hero, density: {kind: stratified, strata: 0}}", "0 is no number of strata"),
+        ("{kind: hero, density: {kind: stratified, strata: 0}}", "0 is not a valid number of strata"),
     ] {
         let faults = build(text).err().unwrap_or_else(|| panic!("{text} was built")).to_string();
         assert!(faults.contains(wanted) && faults.starts_with("scene.yaml:1:"), "{text}: {faults}");

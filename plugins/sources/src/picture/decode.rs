@@ -23,10 +23,8 @@ pub(crate) fn decode(bytes: &[u8], choice: Choice<'_>) -> Result<Linear, Trouble
     let said = choice.transfer.map(Encoding::named).transpose()?;
     match kind(bytes, choice)? {
         Kind::Exr => exr::decode(bytes, choice, true),
-        Kind::Native(ImageFormat::Jpeg) if !jpeg::is_whole(bytes) => {
-            Err(Trouble::file("the file breaks off before its end")
-                .hint("copy or download it once more, or save it again: what is missing would be gray"))
-        }
+        Kind::Native(ImageFormat::Jpeg) if !jpeg::is_whole(bytes) => Err(Trouble::file("the file is truncated")
+            .hint("copy, download or save it again: the missing part would be gray")),
         Kind::Native(format) => match native(Cursor::new(bytes), format, bytes.len() as u64, said) {
             Ok(linear) => Ok(linear),
             Err(NotRead::Trouble(trouble)) => Err(trouble),

@@ -85,7 +85,7 @@ impl Depth {
         }
         let eye_mm = p.eye.map_or(0.0, Length::mm);
         if !eye_mm.is_finite() {
-            faults.push(params.fault("eye", "the center of projection is at a finite place"));
+            faults.push(params.fault("eye", "the center of projection must be finite"));
         }
         let found = p.file.as_ref().and_then(|file| faults.take(find(file, &params, context)));
         faults.into_result(())?;
@@ -162,7 +162,7 @@ impl Depth {
         }
         let nearest = depth.iter().fold(f32::INFINITY, |a, b| a.min(*b));
         if faults.is_empty() && f64::from(nearest) <= self.eye_mm {
-            let text = format!("the nearest depth, {nearest} mm, lies inside of the lens");
+            let text = format!("the nearest depth, {nearest} mm, lies inside the lens");
             faults.push(self.params.fault("unit", text).hint("are its numbers in another unit? `unit: m`"));
         }
         faults.into_result(depth)

@@ -188,7 +188,9 @@ fn check(headers: &[Header], file_bytes: u64) -> Result<(), Trouble> {
     let mut total = 0_u64;
     for header in headers {
         if header.deep {
-            return Err(Trouble::file("deep data (several samples a pixel) are not read").hint("flatten it first"));
+            return Err(
+                Trouble::file("deep data (several samples per pixel) are not supported").hint("flatten it first")
+            );
         }
         for size in [header.layer_size, header.shared_attributes.display_window.size] {
             check_size(size.0 as u64, size.1 as u64)?;

@@ -29,18 +29,18 @@ pub(super) fn decode(bytes: &[u8], name: &str, said: Option<Encoding>) -> Result
         return Err(if known {
             Trouble::file(format!("`.{ending}` files are read by OpenImageIO only")).hint(picture_file::WITHOUT)
         } else {
-            Trouble::file("this is no OpenEXR, PNG, JPEG, TIFF or Radiance HDR file")
-                .hint("what counts is what is in it, not the ending of its name: save it as one of these")
+            Trouble::file("this is not an OpenEXR, PNG, JPEG, TIFF or Radiance HDR file")
+                .hint("the content counts, not the file extension: save it as one of these")
         });
     };
     if ending.is_empty() {
-        let text = "this is no OpenEXR, PNG, JPEG, TIFF or Radiance HDR file, and the name has no ending";
-        return Err(Trouble::file(text).hint("other formats are told by the ending"));
+        let text = "this is not an OpenEXR, PNG, JPEG, TIFF or Radiance HDR file, and the name has no extension";
+        return Err(Trouble::file(text).hint("other formats are recognized by the extension"));
     }
     let limits = PictureLimits { side_px: MAX_SIDE, pixels: MAX_PIXELS };
     let picture = library.read(&ending, bytes, limits).map_err(|cause| {
         let trouble = Trouble::file(format!("{cause} (read as `.{ending}` by {})", library.name()));
-        trouble.hint("is the file whole, and is it what its ending says?")
+        trouble.hint("is the file whole, and does its extension match its content?")
     })?;
     let encoding = encoding(&picture, said)?;
     Ok(linear(picture, encoding))
@@ -70,9 +70,9 @@ fn encoding(picture: &FilePicture, said: Option<Encoding>) -> Result<Encoding, T
     };
     found.ok_or_else(|| {
         let words = picture.color_space.as_deref().unwrap_or("nothing");
-        let text = format!("the file says `{words}` of its encoding, which tells no curve");
+        let text = format!("the file states its encoding as `{words}`, which defines no curve");
         Trouble::file(text)
-            .hint("say it: `transfer: srgb`, linear, rec709, or cineon for the log of a scanned negative")
+            .hint("state it: `transfer: srgb`, linear, rec709, or cineon for the log of a scanned negative")
     })
 }
 

@@ -143,7 +143,7 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
     let width = faults.take(Width::read(&p.width));
     let edge = faults.take(Edge::read(p.edge.as_deref(), params));
     if p.depth.is_some() && edge.is_some_and(|edge| edge != Edge::Black) {
-        let fault = params.fault("edge", "nobody knows how deep a picture with `depth` is beyond its border");
+        let fault = params.fault("edge", "a picture with `depth` has no depth beyond its border");
         faults.push(fault.hint("leave `edge` out, and take a `width` that fills the frame"));
     }
     let file = found.map(|found| PictureFile {

@@ -250,7 +250,7 @@ impl<'n> Findings<'n> {
         let last = if faults.len() > MOST_FAULTS {
             faults.pop()
         } else if self.cut.get() {
-            Some(self.root.fault("the search for faults ends here: the file is large; there may be more"))
+            Some(self.root.fault("the file is large, so the search for faults stops here; there may be more"))
         } else {
             None
         };

@@ -145,7 +145,7 @@ impl Style {
         }
         if let Some(value) = get("stroke-miterlimit") {
             let limit = value.parse::<f64>().ok().filter(|v| *v >= 1.0);
-            style.pen.miter_limit = limit.ok_or_else(|| format!("no miter limit: `{}`", short(value)))?;
+            style.pen.miter_limit = limit.ok_or_else(|| format!("not a miter limit: `{}`", short(value)))?;
         }
         if let Some(value) = get("stroke-width") {
             style.pen.width = super::svg::plain_length(value)?;
@@ -165,7 +165,7 @@ pub(super) fn short(text: &str) -> String {
 fn opacity(text: &str) -> Result<f64, String> {
     let (number, scale) = text.strip_suffix('%').map_or((text, 1.0), |number| (number, 0.01));
     let value = number.trim().parse::<f64>().ok().filter(|v| v.is_finite());
-    value.map(|v| (v * scale).clamp(0.0, 1.0)).ok_or_else(|| format!("no opacity: `{}`", short(text)))
+    value.map(|v| (v * scale).clamp(0.0, 1.0)).ok_or_else(|| format!("not an opacity: `{}`", short(text)))
 }
 
 fn paint(text: &str, current: Color, name: &str) -> Result<Option<Color>, String> {
@@ -181,7 +181,7 @@ fn paint(text: &str, current: Color, name: &str) -> Result<Option<Color>, String
 }
 
 fn color(text: &str) -> Result<Color, String> {
-    svgtypes::Color::from_str(text).map(display).map_err(|_| format!("no color: `{}`", short(text)))
+    svgtypes::Color::from_str(text).map(display).map_err(|_| format!("not a color: `{}`", short(text)))
 }
 
 /// Luminance of an sRGB color on its encoded scale, as a picture mask has it: the weights of Rec. 709.

@@ -57,13 +57,13 @@ pub(in super::super) fn read(
         let at = e.pos();
         let offset = text.split_inclusive('\n').take(at.row.saturating_sub(1) as usize).map(str::len).sum();
         let span = Span { line: at.row as usize, column: at.col as usize, offset, len: 0 };
-        Fault::new(format!("this is no SVG: {e}")).at(Arc::clone(&file), span)
+        Fault::new(format!("this is not an SVG: {e}")).at(Arc::clone(&file), span)
     })?;
     let root = document.root_element();
     let place = |node: Node<'_, '_>| span_of(text, node.range().start);
     let fault = |node: Node<'_, '_>, text: String| Fault::new(text).at(Arc::clone(&file), place(node));
     if root.tag_name().name() != "svg" {
-        return Err(fault(root, format!("this is no SVG, but `{}`", short(root.tag_name().name()))).into());
+        return Err(fault(root, format!("this is not an SVG, but `{}`", short(root.tag_name().name()))).into());
     }
     let page = page(root, width_mm).map_err(|(text, hint)| fault(root, text).hint(hint))?;
     let mut sheet = StyleSheet::new();
@@ -171,7 +171,7 @@ fn length(text: &str) -> Option<(f64, Option<f64>)> {
 /// A length in user units: 96 to the inch.
 pub(super) fn plain_length(text: &str) -> Result<f64, String> {
     let found = length(text).map(|(number, mm)| mm.map_or(number, |mm| number * mm * 96.0 / 25.4));
-    found.filter(|v| v.is_finite()).ok_or_else(|| format!("no length: `{}`", short(text)))
+    found.filter(|v| v.is_finite()).ok_or_else(|| format!("not a length: `{}`", short(text)))
 }
 
 /// The page: how large it is, and where its center lies.
@@ -181,7 +181,7 @@ fn page(root: Node<'_, '_>, width_mm: Option<f64>) -> Result<Page, (String, &'st
     let px = |l: Option<(f64, Option<f64>)>| l.map(|(v, mm)| mm.map_or(v, |mm| v * mm * 96.0 / 25.4));
     let view = match root.attribute("viewBox").map(ViewBox::from_str) {
         Some(Ok(view)) => view,
-        Some(Err(_)) => return Err(("its viewBox is no four numbers".to_owned(), "viewBox=\"0 0 24 24\"")),
+        Some(Err(_)) => return Err(("its viewBox is not four numbers".to_owned(), "viewBox=\"0 0 24 24\"")),
         None => match (px(width), px(height)) {
             (Some(w), Some(h)) => ViewBox { x: 0.0, y: 0.0, w, h },
             _ => return Err(("how large is the drawing? It has no viewBox".to_owned(), "viewBox=\"0 0 24 24\"")),
@@ -287,7 +287,7 @@ impl<'a, 'i> Painter<'a, 'i> {
                     return; // to nothing
                 }
                 if !scale.is_finite() {
-                    return self.fault(node, "it reaches farther than any page".to_owned());
+                    return self.fault(node, "it extends too far".to_owned());
                 }
                 let tolerance = FLATNESS_MM / scale;
                 match self.outline(node, name, tolerance) {
@@ -306,10 +306,11 @@ impl<'a, 'i> Painter<'a, 'i> {
         let id = href.and_then(|text| text.trim().strip_prefix('#'));
         let found = id.and_then(|id| self.document.descendants().find(|n| n.attribute("id") == Some(id)));
         let Some(target) = found else {
-            return self.fault(node, format!("`use` of nothing in this file: `{}`", short(href.unwrap_or_default())));
+            return self
+                .fault(node, format!("`use` refers to nothing in this file: `{}`", short(href.unwrap_or_default())));
         };
         let moved = (self.coordinate(node, "x", 0), self.coordinate(node, "y", 1));
-        let (Ok(x), Ok(y)) = moved else { return self.fault(node, "`use` at no place".to_owned()) };
+        let (Ok(x), Ok(y)) = moved else { return self.fault(node, "`use` has an invalid position".to_owned()) };
         let matrix = matrix.times(Matrix { a: 1.0, b: 0.0, c: 0.0, d: 1.0, e: x, f: y });
         if target.tag_name().name() == "symbol" {
             if target.attribute("viewBox").is_some() {
@@ -328,7 +329,7 @@ impl<'a, 'i> Painter<'a, 'i> {
             let [w, h] = self.page;
             let whole = [w, h, ((w * w + h * h) / 2.0).sqrt()][of];
             let share = number.parse::<f64>().ok().filter(|v| v.is_finite());
-            return share.map(|s| 0.01 * s * whole).ok_or_else(|| format!("no length: `{}`", short(text)));
+            return share.map(|s| 0.01 * s * whole).ok_or_else(|| format!("not a length: `{}`", short(text)));
         }
         plain_length(text).map_err(|e| format!("{name}: {e}"))
     }
@@ -376,7 +377,7 @@ impl<'a, 'i> Painter<'a, 'i> {
                     if i == 0 { path.begin([x, y]) } else { path.line([x, y]) }
                 }
                 if path.parts.is_empty() && !text.trim().is_empty() {
-                    return Err(format!("no points: `{}`", short(text)));
+                    return Err(format!("not a list of points: `{}`", short(text)));
                 }
                 if name == "polygon" {
                     path.close();
@@ -416,7 +417,7 @@ impl<'a, 'i> Painter<'a, 'i> {
             for point in outlines.iter_mut().flatten() {
                 *point = matrix.apply(*point);
                 if !(point[0].abs() < 1e9 && point[1].abs() < 1e9) {
-                    return self.fault(node, "it reaches farther than any page".to_owned());
+                    return self.fault(node, "it extends too far".to_owned());
                 }
             }
             self.shapes.push(Painted { outlines, rule, transmittance: color.luminance, opacity });

@@ -146,12 +146,12 @@ fn what_is_not_understood_is_said_with_its_place() {
         (r#"viewBox="0 0 10 10""#, "<circle r='1'/>", "no width in mm"),
         (r#"width="1e9mm" viewBox="0 0 10 10""#, "<circle r='1'/>", "a page of"),
         ("", "<circle r='1'/>", "no viewBox"),
-        (good, "<circle", "this is no SVG"),
+        (good, "<circle", "this is not an SVG"),
     ] {
         let all = faults(&svg(attributes, body));
         assert!(all.iter().any(|f| f.contains(said)), "{body}: {all:?}");
     }
-    assert!(faults("<html/>")[0].contains("this is no SVG"));
+    assert!(faults("<html/>")[0].contains("this is not an SVG"));
 }
 
 /// Hostile files end soon, with a word.
