@@ -134,7 +134,7 @@ fn lists_have_the_words_that_one_chooses_by() {
 fn any_key_has_its_page() {
     for (name, words) in [
         ("render", &["render.samples", "render.seed"][..]),
-        ("output", &["output[].kind", "exr"]),
+        ("output", &["rays", "exr"]),
         ("focus", &["lens.focus", "lens.focus.by"]),
         ("f-number", &["lens.f-number"]),
         ("film.exposure", &["film/stock", "exposure"]),

@@ -82,7 +82,10 @@ pub trait Host: Sync {
     /// What stops the next picture.
     fn control(&self) -> Arc<Control>;
 
-    /// Whether an end was asked for.
+    /// Whether somebody asked for an end.
+    fn is_interrupted(&self) -> bool;
+
+    /// Whether no picture is to be begun any more: somebody asked for an end, or the time is up.
     fn is_stopped(&self) -> bool;
 
     /// Seconds since any moment.

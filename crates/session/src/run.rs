@@ -36,7 +36,7 @@ pub struct Job<'a> {
 pub enum Ended {
     /// All is done.
     Whole,
-    /// It was stopped; what was done is written.
+    /// Somebody stopped it; what was done is written.
     Stopped,
 }
 
@@ -80,7 +80,7 @@ fn picture(job: &Job<'_>, host: &dyn Host) -> Result<Ended, SessionError> {
         write_report(host.folder(), file, &report.to_json(&shown[..shown.len() - 1]))?;
     }
     host.hear(Event::Written(&shown));
-    let stopped = rendering.partial && host.is_stopped();
+    let stopped = rendering.partial && host.is_interrupted();
     host.hear(Event::Done { report: &report, stopped });
     match failure {
         Some(text) => Err(SessionError::Failed(text)),

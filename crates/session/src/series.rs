@@ -83,7 +83,7 @@ pub(crate) fn run(job: &Job<'_>, host: &dyn Host) -> Result<Ended, SessionError>
     let files = work.finish(result.as_ref().is_ok_and(|whole| *whole));
     let whole = result?;
     host.hear(Event::Written(&files?));
-    let stopped = !whole && host.is_stopped();
+    let stopped = !whole && host.is_interrupted();
     let (done, of) = (work.done.len(), planned.len());
     host.hear(Event::Series(
         &format!("{done} of {of} pictures in {}", words::duration(host.now_s() - work.begun_s)),

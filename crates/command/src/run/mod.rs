@@ -103,10 +103,6 @@ struct Face {
 }
 
 impl Face {
-    fn is_interrupted(&self) -> bool {
-        self.interrupt.get().is_some_and(Interrupt::happened)
-    }
-
     fn is_late(&self) -> bool {
         self.deadline.is_some_and(|deadline| Instant::now() >= deadline)
     }
@@ -155,6 +151,10 @@ impl Host for Face {
             control.stop();
         }
         control
+    }
+
+    fn is_interrupted(&self) -> bool {
+        self.interrupt.get().is_some_and(Interrupt::happened)
     }
 
     fn is_stopped(&self) -> bool {
