@@ -35,7 +35,7 @@ SIZES = {"135": (36, 24), "6x4.5": (56, 41.5), "6x9": (84, 56), "academy": (22, 
 
 SCENE = """spectra: 1
 source: {{kind: chart, chart: resolution, distance: {distance} mm, width: {width} mm, illuminant: D65, luminance: 300 cd/m2}}
-lens: {{file: {name}, focus: {{distance: {focus}, by: paraxial}}}}
+lens: {{file: {name}, focus: {focus}}}
 imager: {{kind: xyz, format: {format}, resolution: [{columns}, {rows}]}}
 render: {{samples: 256, seed: 1}}
 output: [png]
@@ -92,7 +92,7 @@ def page(infos):
         "# The lens library",
         "",
         "Every lens in `lenses/`, with its drawing (rays of the e line on the axis, at 0.6 and at 0.95 of the largest field that passes) and the",
-        "resolution chart through it, wide open, focused at 2 m or forty focal lengths (the anamorphic at 1 km) by the paraxial rule. Focal length and f-number are",
+        "resolution chart through it, wide open, focused at 2 m or forty focal lengths (the anamorphic at 1 km). Focal length and f-number are",
         "those of the reference line, by the real marginal ray. Where each comes from, and what is doubtful, stands in its file;",
         "`tests/lenses.rs` holds them to the figures of their patents. Written by `xtask/lens_sheet.py`.",
         "",
