@@ -6,7 +6,7 @@ use spectra_core::params::{Dimension, Reading};
 use spectra_core::sink::{Out, WriteFault};
 use spectra_plot::{Canvas, Color, Format, Paint, Picture, Rect, TextStyle, text_width};
 use spectra_scene::{Developed, Member, SweptAxis};
-use spectra_spectrum::{Transfer, to_u8};
+use spectra_color::{Transfer, to_u8};
 use std::io::Cursor;
 
 /// Space around and between the cells, pixels.

@@ -1,7 +1,7 @@
 //! Light that could not be written where it was meant to be.
 
 use crate::Folder;
-use spectra_film::write::{exr, half_exr};
+use spectra_pictures::write::{exr, half_exr};
 use spectra_scene::Shot;
 
 /// Keeps the exposure somewhere, where `failed` is the file that should have held it, or would have been beside it: as it is

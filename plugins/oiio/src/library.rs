@@ -2,7 +2,8 @@
 
 use crate::bridge::ffi;
 use crate::{reading, writing};
-use spectra_core::picture_file::{FilePicture, PictureLibrary, PictureLibraryEntry, PictureLimits, TiledExr};
+use spectra_core::resources::Found;
+use spectra_pictures::library::{FilePicture, PictureLibrary, PictureLibraryEntry, PictureLimits, TiledExr};
 use spectra_core::sink::Out;
 
 /// The library OpenImageIO (Larry Gritz and others, <https://openimageio.org>).
@@ -22,8 +23,12 @@ impl PictureLibrary for OpenImageIo {
         format!("OpenImageIO {}", ffi::version())
     }
 
-    fn read(&self, ending: &str, bytes: &[u8], limits: PictureLimits) -> Result<FilePicture, String> {
-        reading::read(ending, bytes, limits)
+    fn read(&self, ending: &str, file: &Found, limits: PictureLimits) -> Result<FilePicture, String> {
+        reading::read(ending, file, limits, true)
+    }
+
+    fn header(&self, ending: &str, file: &Found, limits: PictureLimits) -> Result<FilePicture, String> {
+        reading::read(ending, file, limits, false)
     }
 
     fn write_tiled_exr(&self, to: &mut dyn Out, picture: &TiledExr<'_>) -> Result<(), String> {

@@ -6,7 +6,7 @@ use spectra_core::params::{Faults, Params};
 use spectra_core::registry::Context;
 use spectra_core::sink::{Out, WriteFault};
 use spectra_core::stage::Imager;
-use spectra_film::write::{RawLens, dng};
+use spectra_pictures::write::{RawLens, dng};
 use spectra_scene::{Holds, Output, Scene, Shot};
 
 /// The numbers of a sensor's converter as DNG, for raw converters.

@@ -3,10 +3,10 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{Faults, Params};
-use spectra_core::picture_file;
+use spectra_pictures::library;
 use spectra_core::registry::Context;
 use spectra_core::sink::{Out, WriteFault};
-use spectra_film::write::{exr, tiled_exr};
+use spectra_pictures::write::{exr, tiled_exr};
 use spectra_scene::{Holds, Output, Shot};
 
 /// The linear exposure as OpenEXR, 32-bit floats: a channel for each that was recorded.
@@ -31,9 +31,9 @@ struct Exr {
 
 fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Output>, Faults> {
     let ExrParams { tiled } = params.parse()?;
-    if tiled && picture_file::library().is_none() {
+    if tiled && library::library().is_none() {
         let fault = params.fault("tiled", "tiled OpenEXR files are written by OpenImageIO only");
-        return Err(fault.hint(picture_file::WITHOUT).into());
+        return Err(fault.hint(library::WITHOUT).into());
     }
     Ok(Box::new(Exr { tiled }))
 }

@@ -5,7 +5,7 @@ use serde::Deserialize;
 use spectra_core::params::{Faults, Params};
 use spectra_core::registry::Context;
 use spectra_core::sink::{Out, WriteFault};
-use spectra_film::write::png8;
+use spectra_pictures::write::png8;
 use spectra_scene::{Holds, Output, Shot};
 
 /// The picture as PNG, 8 bits a channel, sRGB.

@@ -14,7 +14,8 @@ use spectra_glass::DispersionError;
 use spectra_lens::{Indices, Section, Tracer};
 use spectra_plot::Format;
 use spectra_scene::{Holds, Output, Scene, Shot};
-use spectra_spectrum::{Observer, RgbSpace};
+use spectra_color::RgbSpace;
+use spectra_spectrum::Observer;
 
 /// The light's way through the lens, as a figure beside the picture.
 ///

@@ -5,7 +5,7 @@ use serde::Deserialize;
 use spectra_core::params::{Faults, Params};
 use spectra_core::registry::Context;
 use spectra_core::sink::{Out, WriteFault};
-use spectra_film::write::tiff16;
+use spectra_pictures::write::tiff16;
 use spectra_scene::{Holds, Output, Shot};
 
 /// The picture as TIFF, 16 bits a channel, sRGB, uncompressed.

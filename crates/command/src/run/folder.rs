@@ -2,7 +2,7 @@
 
 use crate::outcome::Failure;
 use spectra_core::sink::{Content, Sink, WriteFault};
-use spectra_film::write::{self, leftover};
+use spectra_files::{self as files, leftover};
 use spectra_session::{Folder, Names};
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
@@ -51,7 +51,7 @@ impl Sink for Target {
     fn file(&self, name: &str, content: Content<'_>) -> Result<(), WriteFault> {
         // A folder that was there when the render began, and has gone since; where it cannot be made, the file says so.
         let _ = std::fs::create_dir_all(&self.folder);
-        write::Folder(self.folder.clone()).file(name, content)
+        files::Folder(self.folder.clone()).file(name, content)
     }
 }
 
@@ -108,7 +108,7 @@ impl Sink for Temporary {
     fn file(&self, name: &str, content: Content<'_>) -> Result<(), WriteFault> {
         let path = Self::path(name);
         let file = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-        write::Folder(std::env::temp_dir()).file(&file, content)
+        files::Folder(std::env::temp_dir()).file(&file, content)
     }
 }
 

@@ -1,7 +1,7 @@
 //! Ctrl-C: once to stop and keep what there is, twice to give it up.
 
 use crate::console;
-use spectra_film::write::leftover;
+use spectra_files::leftover;
 use spectra_session::Control;
 use std::path::Path;
 use std::sync::atomic::{AtomicU8, AtomicU32, Ordering::SeqCst};
