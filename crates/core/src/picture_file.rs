@@ -2,6 +2,7 @@
 //!
 //! A plain build has none. Code that needs one tells the user how to get it ([`WITHOUT`]).
 
+use crate::resources::Found;
 use std::fs::File;
 
 /// What to tell the user where no library is linked.
@@ -63,11 +64,18 @@ pub trait PictureLibrary: Sync {
     /// Name and version, for display.
     fn name(&self) -> String;
 
-    /// Reads the first picture of a file, given its extension (`dpx`, without the dot) and content.
+    /// Reads the first picture of a file, given its extension (`dpx`, without the dot). It takes the memory of the pixels
+    /// that it returns, and beside them no more than a part of them.
     ///
     /// # Errors
     /// What is wrong with the file, without a full stop: another format, broken, larger than `limits`.
-    fn read(&self, ending: &str, bytes: &[u8], limits: PictureLimits) -> Result<FilePicture, String>;
+    fn read(&self, ending: &str, file: &Found, limits: PictureLimits) -> Result<FilePicture, String>;
+
+    /// What the header says of that picture: as [`PictureLibrary::read`], but without pixels and cover.
+    ///
+    /// # Errors
+    /// As [`PictureLibrary::read`].
+    fn header(&self, ending: &str, file: &Found, limits: PictureLimits) -> Result<FilePicture, String>;
 
     /// Writes a tiled OpenEXR file: 32-bit floats, lossless. The same picture gives the same bytes.
     ///

@@ -116,12 +116,26 @@ Header header_of(const OIIO::ImageSpec &spec) {
 void read_opened(OIIO::ImageInput &input, const OIIO::ImageSpec &spec, Receiver &receiver) {
     const Header header = header_of(spec);
     const Wanted wanted = receiver.begin(header);
-    rust::Slice<float> samples = receiver.samples();
-    const auto needed = std::uint64_t(spec.width) * std::uint64_t(spec.height) * std::uint64_t(wanted.end - wanted.first);
-    if (needed != samples.size())
-        throw std::logic_error("the picture's size changed while it was read");
-    if (!input.read_image(0, 0, wanted.first, wanted.end, OIIO::TypeDesc::FLOAT, samples.data()))
-        fail(input.geterror(), "the pixels cannot be read");
+    if (wanted.end <= wanted.first)
+        return;
+    // Some rows at a time: whole strips or tiles, of 4 MiB or little more.
+    const std::size_t row = std::size_t(spec.width) * std::size_t(wanted.end - wanted.first);
+    const bool tiled = spec.tile_width > 0;
+    const int unit = std::max(tiled ? spec.tile_height : spec.get_int_attribute("tiff:RowsPerStrip", 64), 1);
+    const auto most = std::int64_t((std::size_t(1) << 20) / row) / unit * unit;
+    const int step = int(std::min(std::max(most, std::int64_t(unit)), std::int64_t(spec.height)));
+    std::vector<float> values(row * std::size_t(step));
+    for (int first = 0; first < spec.height; first += step) {
+        const int end = std::min(first + step, spec.height);
+        const bool good
+            = tiled ? input.read_tiles(0, 0, spec.x, spec.x + spec.width, spec.y + first, spec.y + end, spec.z, spec.z + 1,
+                                       wanted.first, wanted.end, OIIO::TypeDesc::FLOAT, values.data())
+                    : input.read_scanlines(0, 0, spec.y + first, spec.y + end, spec.z, wanted.first, wanted.end,
+                                           OIIO::TypeDesc::FLOAT, values.data());
+        if (!good)
+            fail(input.geterror(), "the pixels cannot be read");
+        receiver.rows(first, rust::Slice<const float>(values.data(), row * std::size_t(end - first)));
+    }
 }
 
 } // namespace

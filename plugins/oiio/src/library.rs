@@ -3,6 +3,7 @@
 use crate::bridge::ffi;
 use crate::{reading, writing};
 use spectra_core::picture_file::{FilePicture, PictureLibrary, PictureLibraryEntry, PictureLimits, TiledExr};
+use spectra_core::resources::Found;
 use std::fs::File;
 
 /// The library OpenImageIO (Larry Gritz and others, <https://openimageio.org>).
@@ -22,8 +23,12 @@ impl PictureLibrary for OpenImageIo {
         format!("OpenImageIO {}", ffi::version())
     }
 
-    fn read(&self, ending: &str, bytes: &[u8], limits: PictureLimits) -> Result<FilePicture, String> {
-        reading::read(ending, bytes, limits)
+    fn read(&self, ending: &str, file: &Found, limits: PictureLimits) -> Result<FilePicture, String> {
+        reading::read(ending, file, limits, true)
+    }
+
+    fn header(&self, ending: &str, file: &Found, limits: PictureLimits) -> Result<FilePicture, String> {
+        reading::read(ending, file, limits, false)
     }
 
     fn write_tiled_exr(&self, to: &mut File, picture: &TiledExr<'_>) -> Result<(), String> {

@@ -128,6 +128,7 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
             name: layer.file.clone(),
             transfer: layer.transfer.clone(),
             layer: layer.layer.clone(),
+            cover: true,
             depth: None,
             params: own.clone(),
         };

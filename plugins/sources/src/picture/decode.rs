@@ -3,11 +3,12 @@
 use super::encoding::Encoding;
 use super::header::Header;
 use super::linear::{Choice, Linear, MAX_SIDE, Trouble, check_size, clean};
-use super::{exr, foreign, jpeg};
+use super::{exr, foreign, jpeg, tiff, turn};
 use image::metadata::Orientation;
 use image::{ColorType, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
+use spectra_core::resources::{Found, ResourceError};
 use spectra_spectrum::Transfer;
-use std::io::{BufRead, Cursor, Seek};
+use std::io::{BufRead, Seek};
 
 /// No picture format packs more pixels into a byte: deflate ends near 1 032 to 1, at one byte a pixel or less.
 const MAX_PIXELS_PER_BYTE: u64 = 1_100 * 8;
@@ -19,23 +20,38 @@ const MAX_PIXELS_PER_BYTE: u64 = 1_100 * 8;
 ///
 /// # Errors
 /// What is wrong with the file.
-pub(crate) fn decode(bytes: &[u8], choice: Choice<'_>) -> Result<Linear, Trouble> {
+pub(crate) fn decode(found: &Found, choice: Choice<'_>) -> Result<Linear, Trouble> {
     let said = choice.transfer.map(Encoding::named).transpose()?;
-    match kind(bytes, choice)? {
-        Kind::Exr => exr::decode(bytes, choice, true),
-        Kind::Native(ImageFormat::Jpeg) if !jpeg::is_whole(bytes) => {
+    let bytes = found.size_bytes().map_err(io)?;
+    match kind(&found.read(64).map_err(io)?, choice)? {
+        Kind::Exr => exr::decode(found.open().map_err(io)?, bytes, choice, true),
+        Kind::Native(ImageFormat::Jpeg) if !jpeg::is_whole(&found.read(bytes).map_err(io)?) => {
             Err(Trouble::file("the file breaks off before its end")
                 .hint("copy or download it once more, or save it again: what is missing would be gray"))
         }
-        Kind::Native(format) => match native(Cursor::new(bytes), format, bytes.len() as u64, said) {
+        Kind::Native(format) => match native(found, format, choice.cover, said) {
             Ok(linear) => Ok(linear),
             Err(NotRead::Trouble(trouble)) => Err(trouble),
             Err(NotRead::Unsupported(why)) => {
-                foreign::decode(bytes, choice.name, said).map_err(|trouble| foreign::also(&why, trouble))
+                foreign::decode(found, choice, said).map_err(|trouble| foreign::also(&why, trouble))
             }
         },
-        Kind::Foreign => foreign::decode(bytes, choice.name, said),
+        Kind::Foreign => foreign::decode(found, choice, said),
     }
+}
+
+/// The header of a file that [`decode`] reads by OpenImageIO.
+///
+/// # Errors
+/// What is wrong with it.
+pub(super) fn foreign_header(found: &Found, choice: Choice<'_>, why: Option<&str>) -> Result<Header, Trouble> {
+    let said = choice.transfer.map(Encoding::named).transpose()?;
+    let header = foreign::header(found, choice, said);
+    header.map_err(|trouble| why.map_or(trouble.clone(), |why| foreign::also(why, trouble)))
+}
+
+fn io(error: ResourceError) -> Trouble {
+    Trouble::file(error.to_string())
 }
 
 /// Who reads a file.
@@ -111,22 +127,22 @@ fn decoder<'a>(
     Ok(decoder)
 }
 
-/// The header of a file of `bytes` bytes, from its beginning; `None` of a variant that is not known here.
+/// The header of a file of `bytes` bytes, from its beginning; `Err` within of a variant that is not known here.
 pub(super) fn native_header<'a>(
     reader: impl BufRead + Seek + 'a,
     format: ImageFormat,
     bytes: u64,
-) -> Result<Option<Header>, Trouble> {
+) -> Result<Result<Header, String>, Trouble> {
     let mut decoder = match decoder(reader, format, bytes) {
         Ok(decoder) => decoder,
         Err(NotRead::Trouble(trouble)) => return Err(trouble),
-        Err(NotRead::Unsupported(_)) => return Ok(None),
+        Err(NotRead::Unsupported(why)) => return Ok(Err(why)),
     };
     let (width, height) = decoder.dimensions();
-    let turned = (5..=8).contains(&orientation(&mut decoder));
+    let turned = turn::is_on_its_side(orientation(&mut decoder));
     let [width, height] = if turned { [height, width] } else { [width, height] };
     let clips = !matches!(decoder.color_type(), ColorType::Rgb32F | ColorType::Rgba32F);
-    Ok(Some(Header { width, height, pixel_aspect: 1.0, clips, is_jpeg: format == ImageFormat::Jpeg }))
+    Ok(Ok(Header { width, height, pixel_aspect: 1.0, clips, is_jpeg: format == ImageFormat::Jpeg }))
 }
 
 /// As TIFF 6.0 numbers it. A file that says nothing sound of it lies as it is.
@@ -134,27 +150,29 @@ fn orientation(decoder: &mut impl ImageDecoder) -> u8 {
     decoder.orientation().unwrap_or(Orientation::NoTransforms).to_exif()
 }
 
-fn native(reader: Cursor<&[u8]>, format: ImageFormat, bytes: u64, said: Option<Encoding>) -> Result<Linear, NotRead> {
-    let mut decoder = decoder(reader, format, bytes)?;
+fn native(found: &Found, format: ImageFormat, cover: bool, said: Option<Encoding>) -> Result<Linear, NotRead> {
+    let mut decoder = decoder(found.open().map_err(io)?, format, found.size_bytes().map_err(io)?)?;
     let mut limits = Limits::default();
     limits.max_image_width = Some(MAX_SIDE);
     limits.max_image_height = Some(MAX_SIDE);
     // As much as the picture needs, twice over, and something for the decoder.
-    limits.max_alloc = Some(decoder.total_bytes().saturating_mul(2).saturating_add(64 << 20));
+    let spare_bytes = decoder.total_bytes().saturating_add(64 << 20);
+    limits.max_alloc = Some(decoder.total_bytes().saturating_add(spare_bytes));
     decoder.set_limits(limits)?;
     let orientation = orientation(&mut decoder);
-    linear(decoder, orientation, said)
+    let plain = tiff::Plain::new(found.open().map_err(io)?, &decoder, format, spare_bytes)?;
+    linear(decoder, plain, orientation, cover, said)
 }
 
 /// The depth channel alone of an OpenEXR file, which need not hold light.
 ///
 /// # Errors
 /// What is wrong with the file.
-pub(crate) fn depth(bytes: &[u8], choice: Choice<'_>) -> Result<Linear, Trouble> {
-    if !bytes.starts_with(&exr::MAGIC) {
+pub(crate) fn depth(found: &Found, choice: Choice<'_>) -> Result<Linear, Trouble> {
+    if !found.read(64).map_err(io)?.starts_with(&exr::MAGIC) {
         return Err(Trouble::file("only an OpenEXR file has a depth channel"));
     }
-    exr::decode(bytes, choice, false)
+    exr::decode(found.open().map_err(io)?, found.size_bytes().map_err(io)?, choice, false)
 }
 
 /// How a decoder lays out a pixel.
@@ -166,9 +184,16 @@ enum Samples {
 }
 
 /// The picture of a decoder in linear light. Its code values are read into the end of the memory that the light will take
-/// and spread out from there, so that a picture takes 12 bytes a pixel and no more; one that is to be turned takes its code
-/// values besides while it is.
-fn linear(decoder: impl ImageDecoder, orientation: u8, said: Option<Encoding>) -> Result<Linear, NotRead> {
+/// and spread out from there, so that a picture takes 12 bytes a pixel and no more (and 4 for cover, where that is wanted).
+/// What is stored on its side is brought upright there too: code values in the room before them, if they have it, or else
+/// the light.
+fn linear<R: BufRead + Seek>(
+    decoder: impl ImageDecoder,
+    plain: Option<tiff::Plain<R>>,
+    orientation: u8,
+    cover: bool,
+    said: Option<Encoding>,
+) -> Result<Linear, NotRead> {
     const LIGHT: usize = size_of::<[f32; 3]>();
     let color = decoder.color_type();
     let samples = match color {
@@ -208,37 +233,55 @@ fn linear(decoder: impl ImageDecoder, orientation: u8, said: Option<Encoding>) -
         (rgb.map(|v| v * cover), cover)
     };
     let mut rgb: Vec<[f32; 3]> = vec![[0.0; 3]; pixels];
-    let mut alpha = if count % 2 == 0 { vec![0.0_f32; pixels] } else { Vec::new() };
+    let mut alpha = if count % 2 == 0 && cover { vec![0.0_f32; pixels] } else { Vec::new() };
     let memory: &mut [u8] = bytemuck::cast_slice_mut(&mut rgb);
-    let mut beside = Vec::new();
-    let start = if size <= LIGHT {
-        let start = pixels * (LIGHT - size);
-        decoder.read_image(&mut memory[start..])?;
-        if orientation != 1 {
-            beside = memory[start..].to_vec();
-        }
-        start
-    } else {
-        beside = vec![0; pixels * size];
-        decoder.read_image(&mut beside)?;
-        0
-    };
-    let mut pixel = [0_u8; 16];
-    for i in 0..pixels {
-        let stored =
-            if orientation == 1 { i } else { foreign::stored(i, [width as usize, height as usize], orientation) };
-        pixel[..size].copy_from_slice(if beside.is_empty() {
-            &memory[start + stored * size..][..size]
-        } else {
-            &beside[stored * size..][..size]
-        });
-        let (light, cover) = light(&pixel[..size]);
+    let stored_size = [width as usize, height as usize];
+    let mut keep = |memory: &mut [u8], i: usize, pixel: &[u8]| {
+        let (light, cover) = light(pixel);
         memory[i * LIGHT..][..LIGHT].copy_from_slice(bytemuck::bytes_of(&light));
         if let Some(at) = alpha.get_mut(i) {
             *at = cover;
         }
+    };
+    let mut is_upright = orientation == 1;
+    if size <= LIGHT {
+        let start = pixels * (LIGHT - size);
+        match plain {
+            Some(plain) => plain.read(&mut memory[start..])?,
+            None => decoder.read_image(&mut memory[start..])?,
+        }
+        if !is_upright && 2 * size <= LIGHT {
+            let (before, codes) = memory.split_at_mut(start);
+            let room = start - codes.len();
+            for (i, pixel) in before[room..].chunks_exact_mut(size).enumerate() {
+                pixel.copy_from_slice(&codes[turn::stored(i, stored_size, orientation) * size..][..size]);
+            }
+            memory.copy_within(room..start, start);
+            is_upright = true;
+        }
+        let mut pixel = [0_u8; LIGHT];
+        for i in 0..pixels {
+            pixel[..size].copy_from_slice(&memory[start + i * size..][..size]);
+            keep(memory, i, &pixel[..size]);
+        }
+    } else if let Some(plain) = plain {
+        plain.runs(width as usize, size, |first, codes| {
+            for (i, pixel) in codes.chunks_exact(size).enumerate() {
+                keep(memory, first + i, pixel);
+            }
+        })?;
+    } else {
+        let mut codes = vec![0; pixels * size];
+        decoder.read_image(&mut codes)?;
+        for (i, pixel) in codes.chunks_exact(size).enumerate() {
+            keep(memory, i, pixel);
+        }
     }
-    let turned = (5..=8).contains(&orientation);
+    if !is_upright {
+        turn::upright(&mut rgb, stored_size, orientation);
+        turn::upright(alpha.as_chunks_mut::<1>().0, stored_size, orientation);
+    }
+    let turned = turn::is_on_its_side(orientation);
     Ok(Linear {
         width: if turned { height } else { width },
         height: if turned { width } else { height },
@@ -250,10 +293,18 @@ fn linear(decoder: impl ImageDecoder, orientation: u8, said: Option<Encoding>) -
     })
 }
 
+/// [`decode`] of bytes.
+#[cfg(test)]
+pub(super) fn decode_bytes(bytes: &[u8], choice: Choice<'_>) -> Result<Linear, Trouble> {
+    decode(&Found::bytes("a file".to_owned(), bytes.to_vec().into()), choice)
+}
+
 #[cfg(test)]
 mod tests {
+    use super::decode_bytes as decode;
     use super::*;
     use image::{ImageFormat, Rgb, RgbImage};
+    use std::io::Cursor;
 
     fn png(picture: &RgbImage) -> Vec<u8> {
         let mut bytes = Cursor::new(Vec::new());

@@ -1,6 +1,6 @@
 //! The depth of a picture, from what a file says to millimetres along the axis.
 
-use super::linear::{Choice, Linear, Trouble};
+use super::linear::{Choice, Linear};
 use super::{decode, find, trouble};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -108,9 +108,7 @@ impl Depth {
             (None, _) | (_, None) => None,
             (Some(file), Some(found)) => {
                 let choice = Choice { depth: Some(self.name()), ..Choice::default() };
-                let bytes = found.read(super::MAX_BYTES).map_err(|e| Trouble::file(e.to_string()));
-                let read = bytes.and_then(|bytes| decode::depth(&bytes, choice));
-                let read = read.map_err(|e| Faults::from(trouble(file, &e, &self.params)))?;
+                let read = decode::depth(found, choice).map_err(|e| Faults::from(trouble(file, &e, &self.params)))?;
                 if (read.width, read.height) != (picture.width, picture.height) {
                     let [a, b] = [(read.width, read.height), (picture.width, picture.height)];
                     let text = format!("the depth has {} x {} pixels, the picture {} x {}", a.0, a.1, b.0, b.1);

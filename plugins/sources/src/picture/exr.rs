@@ -14,7 +14,7 @@ use exr::meta::attribute::{Chromaticities, SampleType};
 use exr::meta::header::Header;
 use exr::prelude::{Vec2, f16};
 use spectra_spectrum::{Adaptation, RgbSpace, Transfer};
-use std::io::{BufRead, Cursor, Seek};
+use std::io::{BufRead, Seek};
 
 /// First bytes of a file.
 pub(super) const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
@@ -68,7 +68,7 @@ fn chosen(headers: &[Header], bytes: u64, choice: Choice<'_>, lit: bool) -> Resu
         (groups.first().ok_or_else(|| Trouble::file("the picture has no channels"))?, Vec::new())
     };
     let depth = choice.depth.map(|name| depth_channel(&groups, chosen, name)).transpose()?;
-    let alpha = chosen.channel("A").filter(|_| lit);
+    let alpha = chosen.channel("A").filter(|_| lit && choice.cover);
     for &(part, at) in light.iter().chain(&alpha).chain(&depth) {
         let channel = &headers[part].channels.list[at];
         if channel.sampling.0 != 1 || channel.sampling.1 != 1 {
@@ -110,10 +110,15 @@ pub(super) fn header(reader: impl BufRead + Seek, bytes: u64, choice: Choice<'_>
 
 /// Reads what is chosen of a file; without `lit` its depth only, and no light. Block after block goes to where it is
 /// wanted: what is not chosen takes no memory.
-pub(super) fn decode(bytes: &[u8], choice: Choice<'_>, lit: bool) -> Result<Linear, Trouble> {
-    let reader = exr::block::read(Cursor::new(bytes), false).map_err(said)?;
+pub(super) fn decode(
+    reader: impl BufRead + Seek + Send,
+    bytes: u64,
+    choice: Choice<'_>,
+    lit: bool,
+) -> Result<Linear, Trouble> {
+    let reader = exr::block::read(reader, false).map_err(said)?;
     let headers = reader.headers().to_vec();
-    let Chosen { light, alpha: alpha_at, depth: depth_at } = chosen(&headers, bytes.len() as u64, choice, lit)?;
+    let Chosen { light, alpha: alpha_at, depth: depth_at } = chosen(&headers, bytes, choice, lit)?;
     let ([width, height], pixel_aspect) = shape(&headers);
     let pixels = width as usize * height as usize;
     // Where a file holds nothing of the window there is no light, and nothing near.

@@ -1,6 +1,6 @@
 //! OpenEXR files, written by the `exr` crate and read back.
 
-use super::decode::decode;
+use super::decode::decode_bytes as decode;
 use super::linear::{Choice, Linear, Trouble};
 use exr::meta::attribute::Chromaticities;
 use exr::prelude::{
@@ -107,7 +107,7 @@ fn alpha_and_depth_come_along() {
     let mut planes = rgb((2, 1), |_| [0.25; 3], floats);
     planes.extend([("A", halves(&[0.5, 1.0])), ("Z", floats(&[1.5, 1e10]))]);
     let bytes = file(window(2, 1), vec![layer(None, (2, 1), planes)]);
-    let read = decode(&bytes, Choice { depth: Some("Z"), ..Choice::default() }).unwrap();
+    let read = decode(&bytes, Choice { depth: Some("Z"), cover: true, ..Choice::default() }).unwrap();
     assert_eq!(read.alpha.unwrap(), [0.5, 1.0]);
     assert_eq!(read.depth.unwrap(), [1.5, 1e10]);
     let missing = trouble(decode(&bytes, Choice { depth: Some("depth.Z"), ..Choice::default() }));

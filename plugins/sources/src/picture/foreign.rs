@@ -5,8 +5,11 @@
 //! all others are taken as sRGB.
 
 use super::encoding::Encoding;
-use super::linear::{Linear, MAX_PIXELS, MAX_SIDE, Trouble, clean};
+use super::header::Header;
+use super::linear::{Choice, Linear, MAX_PIXELS, MAX_SIDE, Trouble, clean};
+use super::turn;
 use spectra_core::picture_file::{self, FilePicture, PictureLimits};
+use spectra_core::resources::Found;
 use spectra_spectrum::Transfer;
 
 /// Endings of files that the library reads, beyond those that are read without it.
@@ -22,7 +25,20 @@ fn ending(name: &str) -> String {
 }
 
 /// Reads by the library.
-pub(super) fn decode(bytes: &[u8], name: &str, said: Option<Encoding>) -> Result<Linear, Trouble> {
+pub(super) fn decode(found: &Found, choice: Choice<'_>, said: Option<Encoding>) -> Result<Linear, Trouble> {
+    let (picture, encoding) = read(found, choice.name, said, true)?;
+    let linear = linear(picture, encoding);
+    Ok(Linear { alpha: linear.alpha.filter(|_| choice.cover), ..linear })
+}
+
+/// What the library says of a file before it reads its pixels.
+pub(super) fn header(found: &Found, choice: Choice<'_>, said: Option<Encoding>) -> Result<Header, Trouble> {
+    let (picture, _) = read(found, choice.name, said, false)?;
+    let ([width, height], pixel_aspect) = seen(&picture);
+    Ok(Header { width, height, pixel_aspect, clips: picture.integers, is_jpeg: false })
+}
+
+fn read(found: &Found, name: &str, said: Option<Encoding>, pixels: bool) -> Result<(FilePicture, Encoding), Trouble> {
     let ending = ending(name);
     let known = ENDINGS.split(' ').any(|own| own == ending);
     let Some(library) = picture_file::library() else {
@@ -38,12 +54,13 @@ pub(super) fn decode(bytes: &[u8], name: &str, said: Option<Encoding>) -> Result
         return Err(Trouble::file(text).hint("other formats are told by the ending"));
     }
     let limits = PictureLimits { side_px: MAX_SIDE, pixels: MAX_PIXELS };
-    let picture = library.read(&ending, bytes, limits).map_err(|cause| {
+    let read = if pixels { library.read(&ending, found, limits) } else { library.header(&ending, found, limits) };
+    let picture = read.map_err(|cause| {
         let trouble = Trouble::file(format!("{cause} (read as `.{ending}` by {})", library.name()));
         trouble.hint("is the file whole, and is it what its ending says?")
     })?;
     let encoding = encoding(&picture, said)?;
-    Ok(linear(picture, encoding))
+    Ok((picture, encoding))
 }
 
 /// What the library says, where a file of a known kind is of a variant that only it may know.
@@ -107,67 +124,35 @@ fn linear(mut picture: FilePicture, encoding: Encoding) -> Linear {
             *pixel = pixel.map(|v| v * cover);
         }
     }
+    let ([width, height], pixel_aspect) = seen(&picture);
     let (size, orientation) = ([picture.width_px as usize, picture.height_px as usize], picture.orientation);
-    let turned = (5..=8).contains(&orientation);
+    turn::upright(&mut picture.rgb, size, orientation);
+    if let Some(alpha) = &mut picture.alpha {
+        turn::upright(alpha.as_chunks_mut::<1>().0, size, orientation);
+    }
     Linear {
-        width: if turned { picture.height_px } else { picture.width_px },
-        height: if turned { picture.width_px } else { picture.height_px },
-        pixel_aspect: if turned { 1.0 / picture.pixel_aspect } else { picture.pixel_aspect },
-        rgb: upright(picture.rgb, size, orientation),
-        alpha: picture.alpha.map(|alpha| upright(alpha, size, orientation)),
+        width,
+        height,
+        pixel_aspect,
+        rgb: picture.rgb,
+        alpha: picture.alpha,
         depth: None,
         clipped_at: picture.integers.then(|| encoding.clipped_at()),
     }
 }
 
-/// The pixels as they are seen. TIFF 6.0, `Orientation`: which sides of the picture the first row and the first column
-/// stored are: 1 top left, 2 top right, 3 bottom right, 4 bottom left, 5 left top, 6 right top, 7 right bottom, 8 left bottom.
-fn upright<T: Copy>(stored: Vec<T>, [width, height]: [usize; 2], orientation: u8) -> Vec<T> {
-    if orientation == 1 {
-        return stored;
+/// Pixels across and down, and width over height of one, as the picture is seen.
+fn seen(picture: &FilePicture) -> ([u32; 2], f64) {
+    if turn::is_on_its_side(picture.orientation) {
+        ([picture.height_px, picture.width_px], 1.0 / picture.pixel_aspect)
+    } else {
+        ([picture.width_px, picture.height_px], picture.pixel_aspect)
     }
-    (0..stored.len()).map(|i| stored[self::stored(i, [width, height], orientation)]).collect()
-}
-
-/// Where a pixel of the upright picture is stored, both row by row.
-pub(super) fn stored(i: usize, [width, height]: [usize; 2], orientation: u8) -> usize {
-    let columns = if (5..=8).contains(&orientation) { height } else { width };
-    let (last_column, last_row) = (width - 1, height - 1);
-    let (x, y) = (i % columns, i / columns);
-    let [column, row] = match orientation {
-        2 => [last_column - x, y],
-        3 => [last_column - x, last_row - y],
-        4 => [x, last_row - y],
-        5 => [y, x],
-        6 => [y, last_row - x],
-        7 => [last_column - y, last_row - x],
-        8 => [last_column - y, x],
-        _ => [x, y],
-    };
-    row * width + column
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// TIFF 6.0, page 36: where the corner stored first is seen, and in which direction the row goes on from there.
-    #[test]
-    fn corners_come_to_lie_where_tiff_says() {
-        let stored: Vec<u8> = vec![1, 2, 3, 4, 5, 6]; // three columns, two rows
-        for (orientation, want) in [
-            (1, [1, 2, 3, 4, 5, 6]),
-            (2, [3, 2, 1, 6, 5, 4]),
-            (3, [6, 5, 4, 3, 2, 1]),
-            (4, [4, 5, 6, 1, 2, 3]),
-            (5, [1, 4, 2, 5, 3, 6]),
-            (6, [4, 1, 5, 2, 6, 3]),
-            (7, [6, 3, 5, 2, 4, 1]),
-            (8, [3, 6, 2, 5, 1, 4]),
-        ] {
-            assert_eq!(upright(stored.clone(), [3, 2], orientation), want, "{orientation}");
-        }
-    }
 
     fn file_picture(code: f32, cover: f32, multiplied: bool, integers: bool) -> FilePicture {
         FilePicture {

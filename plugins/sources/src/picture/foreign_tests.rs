@@ -1,6 +1,6 @@
 //! Files of other formats, written by OpenImageIO and by hand, against what was written.
 
-use super::decode::decode;
+use super::decode::decode_bytes as decode;
 use super::foreign::ENDINGS;
 use super::linear::{Choice, Linear, Trouble};
 use spectra_plugin_oiio::{OpenImageIo, Samples, Written, make_texture, write};
@@ -104,7 +104,7 @@ fn jpeg_2000() -> Vec<u8> {
 }
 
 fn read(bytes: &[u8], name: &str) -> Result<Linear, Trouble> {
-    decode(bytes, Choice { name, ..Choice::default() })
+    decode(bytes, Choice { name, cover: true, ..Choice::default() })
 }
 
 /// Largest difference of light to that of the ramps by `curve`, where a code value may be off by `step`. In units of

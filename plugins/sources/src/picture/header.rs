@@ -1,8 +1,8 @@
 //! What the beginning of a picture file says: enough to place it, without its pixels.
 
 use super::decode::{self, Kind};
+use super::exr;
 use super::linear::{Choice, Trouble};
-use super::{MAX_BYTES, exr};
 use spectra_core::resources::{Found, ResourceError};
 
 /// The beginning of a JPEG that its decoder is shown: it reads all that it is given, and the size stands before the pixels.
@@ -28,7 +28,7 @@ impl Header {
     }
 }
 
-/// Reads the header of a file; of formats that only a library reads, all of it.
+/// Reads the header of a file, and no pixels: those formats apart that a library unpacks as it opens them.
 ///
 /// # Errors
 /// What is wrong with it.
@@ -47,17 +47,7 @@ pub(crate) fn read(found: &Found, choice: Choice<'_>) -> Result<Header, Trouble>
                 decode::native_header(found.open().map_err(io)?, format, bytes)?
             }
         }
-        Kind::Foreign => None,
+        Kind::Foreign => return decode::foreign_header(found, choice, None),
     };
-    if let Some(header) = header {
-        return Ok(header);
-    }
-    let linear = decode::decode(&found.read(MAX_BYTES).map_err(io)?, choice)?;
-    Ok(Header {
-        width: linear.width,
-        height: linear.height,
-        pixel_aspect: linear.pixel_aspect,
-        clips: linear.clipped_at.is_some(),
-        is_jpeg: false,
-    })
+    header.or_else(|why| decode::foreign_header(found, choice, Some(&why)))
 }

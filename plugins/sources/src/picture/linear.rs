@@ -13,7 +13,7 @@ pub(crate) struct Linear {
     pub pixel_aspect: f64,
     /// Light, 0 or more; where the picture is not opaque, times alpha.
     pub rgb: Vec<[f32; 3]>,
-    /// Cover, 0 to 1; `None` where all of it is opaque.
+    /// Cover, 0 to 1; `None` where all of it is opaque, or none was asked for.
     pub alpha: Option<Vec<f32>>,
     /// The depth channel as the file has it, if one was asked for.
     pub depth: Option<Vec<f32>>,
@@ -28,6 +28,8 @@ pub(crate) struct Choice<'a> {
     pub name: &'a str,
     /// How its code values are encoded, by name; as the file says, or else as its format has it, if absent.
     pub transfer: Option<&'a str>,
+    /// Whether cover is wanted beside light.
+    pub cover: bool,
     /// The layer; the file's plain R, G, B if absent.
     pub layer: Option<&'a str>,
     /// The channel that holds depth, where depth is wanted.

@@ -16,6 +16,10 @@ mod highlights;
 mod jpeg;
 pub(crate) mod linear;
 pub(crate) mod map;
+#[cfg(all(test, target_os = "linux"))]
+mod memory_tests;
+mod tiff;
+mod turn;
 
 use crate::flat::Flat;
 use crate::frame::{Edge, Placed, Width, WidthForm};
@@ -151,6 +155,7 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
         name: p.file.clone(),
         transfer: p.transfer.clone(),
         layer: p.layer.clone(),
+        cover: false,
         depth: depth.as_ref().and_then(Depth::channel).map(str::to_owned),
         params: params.clone(),
     });
@@ -219,6 +224,8 @@ pub(crate) struct PictureFile {
     pub name: String,
     pub transfer: Option<String>,
     pub layer: Option<String>,
+    /// Whether cover is wanted beside light.
+    pub cover: bool,
     /// The channel that holds depth, where depth is wanted.
     pub depth: Option<String>,
     /// Where its keys are.
@@ -230,6 +237,7 @@ impl PictureFile {
         Choice {
             name: &self.name,
             transfer: self.transfer.as_deref(),
+            cover: self.cover,
             layer: self.layer.as_deref(),
             depth: self.depth.as_deref(),
         }
@@ -242,8 +250,7 @@ impl PictureFile {
 
     /// All of it, in linear light.
     pub(crate) fn read(&self) -> Result<Linear, Faults> {
-        let bytes = self.found.read(MAX_BYTES).map_err(|e| Trouble::file(e.to_string()));
-        bytes.and_then(|bytes| decode(&bytes, self.choice())).map_err(|e| trouble(&self.name, &e, &self.params).into())
+        decode(&self.found, self.choice()).map_err(|e| trouble(&self.name, &e, &self.params).into())
     }
 
     /// Warns of a photograph whose code values are taken as light.
