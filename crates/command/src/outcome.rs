@@ -2,7 +2,7 @@
 
 use crate::console;
 use spectra_core::params::{Fault, Faults};
-use spectra_film::write::WriteError;
+use spectra_files::WriteError;
 use std::io;
 
 /// Done, or stopped when its time was up.

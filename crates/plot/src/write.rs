@@ -3,7 +3,7 @@
 use crate::canvas::Canvas;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder, ImageError};
-use spectra_film::write::{WriteError, WriteFault, write_atomically};
+use spectra_files::{WriteError, WriteFault, write_atomically};
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 

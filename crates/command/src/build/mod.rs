@@ -19,6 +19,7 @@ use cargo::Cargo;
 use plugin::Plugin;
 use program::Program;
 use spectra_core::params::{Fault, Faults};
+use spectra_files::copy_atomically;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -117,13 +118,5 @@ fn is_ours(path: &Path) -> bool {
 
 /// Gives the program its name, once it is whole.
 fn install(built: &Path, output: &Path) -> Result<(), Failure> {
-    let mut hidden = std::ffi::OsString::from(".");
-    hidden.push(output.file_name().unwrap_or_default());
-    hidden.push(format!(".{}.tmp", std::process::id()));
-    let temporary = output.with_file_name(hidden);
-    std::fs::copy(built, &temporary).and_then(|_| std::fs::rename(&temporary, output)).map_err(|error| {
-        // What removal says adds nothing to the fault that is reported.
-        let _ = std::fs::remove_file(&temporary);
-        Failure::Failed(format!("{}: cannot be written: {error}", output.display()))
-    })
+    Ok(copy_atomically(built, output)?)
 }

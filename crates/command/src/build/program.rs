@@ -106,7 +106,7 @@ fn write_if_other(path: &Path, text: &str) -> Result<(), Failure> {
     if std::fs::read_to_string(path).is_ok_and(|old| old == text) {
         return Ok(());
     }
-    spectra_film::write::write_atomically(path, |file| Ok(std::io::Write::write_all(file, text.as_bytes())?))?;
+    spectra_files::write_atomically(path, |file| Ok(std::io::Write::write_all(file, text.as_bytes())?))?;
     Ok(())
 }
 

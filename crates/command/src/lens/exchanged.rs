@@ -4,7 +4,7 @@ use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
 use serde_json::json;
 use spectra_exchange::Note;
-use spectra_film::write::write_atomically;
+use spectra_files::write_atomically;
 use std::io::Write;
 use std::path::Path;
 

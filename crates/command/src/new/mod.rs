@@ -48,6 +48,6 @@ fn file(arguments: &NewFile, template: &str) -> Result<String, Failure> {
     }
     Folder::must_exist(&arguments.path)?;
     let text = filled(template, name);
-    spectra_film::write::write_atomically(&path, |file| Ok(std::io::Write::write_all(file, text.as_bytes())?))?;
+    spectra_files::write_atomically(&path, |file| Ok(std::io::Write::write_all(file, text.as_bytes())?))?;
     Ok(files::typed(&path))
 }

@@ -6,9 +6,9 @@ use super::report::Report;
 use super::rescue;
 use super::target::Target;
 use crate::outcome::Failure;
+use spectra_files::{WriteError, write_atomically};
 use spectra_film::write::{
-    RawLens, WriteError, write_atomically, write_dng, write_exr_times, write_png8_of_pixels, write_tiff16,
-    write_tiled_exr_times,
+    RawLens, write_dng, write_exr_times, write_png8_of_pixels, write_tiff16, write_tiled_exr_times,
 };
 use spectra_plot::PlotError;
 use spectra_scene::{Member, Output, RaysFigure, Scene};

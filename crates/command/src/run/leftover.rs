@@ -1,4 +1,4 @@
-//! Temporary files: `.NAME.PROCESS-NUMBER.tmp`, see `spectra_film::write::write_atomically`.
+//! Temporary files: `.NAME.PROCESS-NUMBER.tmp`, see `spectra_files::write_atomically`.
 
 use std::path::Path;
 use std::time::{Duration, SystemTime};

@@ -5,7 +5,7 @@ use super::load;
 use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
 use serde::Serialize;
-use spectra_film::write::write_atomically;
+use spectra_files::write_atomically;
 use spectra_spectrum::{Found, GaussianFit, GaussianMixture, Grid, Line, fit_gaussians};
 use std::fmt::Write as _;
 use std::io::Write as _;

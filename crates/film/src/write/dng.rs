@@ -3,8 +3,8 @@
 use super::tiff::{
     Field, bytes, directory, doubles, exposure, length, longs, rationals, shorts, signed_rationals, text, undefined,
 };
-use super::{WriteError, WriteFault, write_atomically};
 use spectra_core::frame::RawFrame;
+use spectra_files::{WriteError, WriteFault, write_atomically};
 use std::io::{BufWriter, Write};
 use std::path::Path;
 

@@ -1,12 +1,12 @@
 //! OpenEXR of the linear exposure.
 
-use super::{WriteError, WriteFault, write_atomically};
 use exr::meta::attribute::AttributeValue;
 use exr::prelude::{
     AnyChannel, AnyChannels, Blocks, Compression, Encoding, FlatSamples, Image, ImageAttributes, IntegerBounds, Layer,
     LayerAttributes, LineOrder, Text, Vec2, WritableImage,
 };
 use spectra_core::frame::ExposureFrame;
+use spectra_files::{WriteError, WriteFault, write_atomically};
 use std::fs::File;
 use std::io::{BufReader, Read, Seek, SeekFrom, Write};
 use std::path::Path;

@@ -1,12 +1,12 @@
 //! Pictures for a screen, in the sRGB encoding.
 
-use super::{WriteError, WriteFault, write_atomically};
 use crate::lookup::PIXELS_A_TASK;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::codecs::tiff::TiffEncoder;
 use image::{ExtendedColorType, ImageEncoder, ImageError};
 use rayon::prelude::*;
 use spectra_core::frame::DisplayPicture;
+use spectra_files::{WriteError, WriteFault, write_atomically};
 use spectra_spectrum::{Transfer, to_u8};
 use std::io::{BufWriter, Write};
 use std::path::Path;

@@ -1,9 +1,9 @@
 //! OpenEXR of the linear exposure, in tiles.
 
 use super::exposure::{all_attributes, pixel_aspect, times};
-use super::{WriteError, WriteFault, write_atomically};
 use spectra_core::frame::ExposureFrame;
 use spectra_core::picture_file::{self, TiledExr};
+use spectra_files::{WriteError, WriteFault, write_atomically};
 use std::path::Path;
 
 /// Side of a tile, pixels: what texture tools use.

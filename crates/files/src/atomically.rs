@@ -1,10 +1,9 @@
 //! A file appears under its name only when it is complete.
 
-use super::{WriteError, WriteFault};
+use crate::temporary::create_beside;
+use crate::{WriteError, WriteFault};
 use std::fs::{File, OpenOptions};
-use std::io;
-use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::path::Path;
 
 /// Lets `write` fill a temporary file in the folder of `path`, then gives it that name. Where `write` or
 /// the system fails, an older file of that name stays as it was and the temporary one is removed.
@@ -19,7 +18,8 @@ pub fn write_atomically(
         WriteFault::Io(cause) => WriteError::Io { path: path.into(), cause },
         WriteFault::Format(cause) => WriteError::Format { path: path.into(), cause },
     };
-    let (mut file, temporary) = create_beside(path).map_err(|e| error(e.into()))?;
+    let create = |name: &Path| OpenOptions::new().read(true).write(true).create_new(true).open(name);
+    let (mut file, temporary) = create_beside(path, create).map_err(|e| error(e.into()))?;
     let written = write(&mut file).and_then(|()| {
         // On the disk before the name is: a machine that stops between leaves the old file.
         file.sync_all()?;
@@ -33,23 +33,15 @@ pub fn write_atomically(
     })
 }
 
-fn create_beside(path: &Path) -> io::Result<(File, PathBuf)> {
-    static COUNT: AtomicU64 = AtomicU64::new(0);
-    let Some(name) = path.file_name() else {
-        return Err(io::Error::new(io::ErrorKind::InvalidInput, "a file name is missing"));
-    };
-    loop {
-        let mut hidden = std::ffi::OsString::from(".");
-        hidden.push(name);
-        hidden.push(format!(".{}-{}.tmp", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed)));
-        let temporary = path.with_file_name(hidden);
-        match OpenOptions::new().read(true).write(true).create_new(true).open(&temporary) {
-            Ok(file) => return Ok((file, temporary)),
-            // Left by a process of the same number that was killed: take the next name.
-            Err(e) if e.kind() == io::ErrorKind::AlreadyExists => {}
-            Err(e) => return Err(e),
-        }
-    }
+/// Copies a file with its rights to `path`, as [`write_atomically`] writes one.
+///
+/// # Errors
+/// [`WriteError`], which names `path`.
+pub fn copy_atomically(from: &Path, path: &Path) -> Result<(), WriteError> {
+    write_atomically(path, |file| {
+        std::io::copy(&mut File::open(from)?, file)?;
+        Ok(file.set_permissions(std::fs::metadata(from)?.permissions())?)
+    })
 }
 
 #[cfg(test)]
@@ -82,5 +74,20 @@ mod tests {
         let path = folder.path().join("missing/a.txt");
         let text = write_atomically(&path, |_| Ok(())).unwrap_err().to_string();
         assert!(text.contains("missing/a.txt"), "{text}");
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn a_copy_has_the_rights_of_the_file() {
+        use std::os::unix::fs::PermissionsExt;
+        let folder = tempfile::tempdir().expect("a folder");
+        let [from, to] = ["a", "b"].map(|name| folder.path().join(name));
+        std::fs::write(&from, b"a program").expect("written");
+        std::fs::set_permissions(&from, std::fs::Permissions::from_mode(0o750)).expect("set");
+        copy_atomically(&from, &to).expect("copied");
+        assert_eq!(std::fs::read(&to).expect("there"), b"a program");
+        assert_eq!(std::fs::metadata(&to).expect("there").permissions().mode() & 0o777, 0o750);
+        assert!(copy_atomically(&folder.path().join("c"), &to).is_err());
+        assert_eq!(std::fs::read(&to).expect("still there"), b"a program");
     }
 }
