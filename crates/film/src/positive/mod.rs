@@ -156,15 +156,6 @@ impl Positive {
         }
     }
 
-    /// Amounts in the print of a place; `None` where nothing is printed.
-    #[must_use]
-    pub fn print_amounts(&self, amounts: &[f64]) -> Option<Vec<f64>> {
-        match &self.way {
-            Way::Print(printing) => Some(printing.printed(&self.film, amounts)),
-            _ => None,
-        }
-    }
-
     /// The picture of a whole film: one plane of amounts a layer, of equal length. Within a code value of 8 bits of
     /// [`Positive::shown`] for each place.
     #[must_use]
