@@ -20,7 +20,6 @@ pub mod names;
 pub mod numbers;
 pub mod one_layer;
 pub mod params;
-pub mod picture_file;
 pub mod prelude;
 pub mod registry;
 pub mod resources;

@@ -4,7 +4,7 @@ use crate::{Output, RaysFigure};
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::Deserialize;
 use spectra_core::params::{Fault, Faults, Kinds, Length, Params, Positive, StageNode, Whole, nearest};
-use spectra_core::picture_file;
+use spectra_pictures::library;
 
 /// `kind: exr`: the linear exposure.
 #[derive(Debug, Deserialize, JsonSchema)]
@@ -130,9 +130,9 @@ fn exr(params: &Params) -> Result<Output, Faults> {
     if !p.tiled {
         return Ok(Output::Exr);
     }
-    if picture_file::library().is_none() {
+    if library::library().is_none() {
         let fault = params.fault("tiled", "tiled OpenEXR files are written by OpenImageIO only");
-        return Err(fault.hint(picture_file::WITHOUT).into());
+        return Err(fault.hint(library::WITHOUT).into());
     }
     Ok(Output::TiledExr)
 }

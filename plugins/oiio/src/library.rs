@@ -2,8 +2,8 @@
 
 use crate::bridge::ffi;
 use crate::{reading, writing};
-use spectra_core::picture_file::{FilePicture, PictureLibrary, PictureLibraryEntry, PictureLimits, TiledExr};
 use spectra_core::resources::Found;
+use spectra_pictures::library::{FilePicture, PictureLibrary, PictureLibraryEntry, PictureLimits, TiledExr};
 use std::fs::File;
 
 /// The library OpenImageIO (Larry Gritz and others, <https://openimageio.org>).

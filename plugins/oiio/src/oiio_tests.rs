@@ -1,8 +1,8 @@
 //! What the picture sources and the program do not see: files that fill disks, repetitions, limits.
 
 use crate::{OpenImageIo, Samples, Written, write};
-use spectra_core::picture_file::{FilePicture, PictureLibrary, PictureLimits, TiledExr, library};
 use spectra_core::resources::Found;
+use spectra_pictures::library::{FilePicture, PictureLibrary, PictureLimits, TiledExr, library};
 use std::fs::File;
 use std::io::{Read, Seek};
 

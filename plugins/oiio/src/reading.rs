@@ -2,8 +2,8 @@
 
 use crate::bridge::ffi::{self, Header, Wanted};
 use crate::stated;
-use spectra_core::picture_file::{FilePicture, PictureLimits};
 use spectra_core::resources::{Found, ResourceError};
+use spectra_pictures::library::{FilePicture, PictureLimits};
 use std::io::Write;
 use std::path::Path;
 

@@ -1,7 +1,7 @@
 //! Pictures out: any format that the library writes, and textures.
 
 use crate::bridge::ffi::{self, Plan};
-use spectra_core::picture_file::TiledExr;
+use spectra_pictures::library::TiledExr;
 use std::fs::File;
 use std::io::{self, Seek, SeekFrom, Write};
 use std::path::Path;
@@ -110,7 +110,7 @@ pub fn make_texture(path: &Path, picture: &Written<'_>) -> Result<(), String> {
     ffi::make_texture(&plan, &Pixels::new(picture), path).map_err(|e| e.what().trim().to_owned())
 }
 
-/// See `spectra_core::picture_file::PictureLibrary::write_tiled_exr`.
+/// See `spectra_pictures::library::PictureLibrary::write_tiled_exr`.
 pub(crate) fn tiled_exr(to: &mut File, picture: &TiledExr<'_>) -> Result<(), String> {
     let mut texts = picture.attributes.to_vec();
     let said = |name: &str, text: &str| (name.to_owned(), text.to_owned());

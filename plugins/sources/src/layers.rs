@@ -6,7 +6,6 @@
 
 use crate::frame::{Edge, Placed, Width, WidthForm};
 use crate::lazy::Lazy;
-use crate::picture::header::Header;
 use crate::picture::map::PictureMap;
 use crate::picture::{Making, PictureFile, color_model, find};
 use crate::white;
@@ -18,6 +17,7 @@ use spectra_core::registry::{Context, StageOf};
 use spectra_core::spectral::SpectralPower;
 use spectra_core::stage::{ColorModel, Radiance, Source};
 use spectra_core::{Isa, RayBatch};
+use spectra_pictures::read::Header;
 
 /// Picture files one behind the other, with cover: what is hidden is known.
 ///

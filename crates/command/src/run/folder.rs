@@ -7,7 +7,7 @@ use super::rescue;
 use super::target::Target;
 use crate::outcome::Failure;
 use spectra_files::{WriteError, write_atomically};
-use spectra_film::write::{
+use spectra_pictures::write::{
     RawLens, write_dng, write_exr_times, write_png8_of_pixels, write_tiff16, write_tiled_exr_times,
 };
 use spectra_plot::PlotError;

@@ -2,7 +2,7 @@
 
 use super::picture::attributes;
 use super::report::Report;
-use spectra_film::write::{write_exr_times, write_half_exr};
+use spectra_pictures::write::{write_exr_times, write_half_exr};
 use std::path::{Path, PathBuf};
 
 /// Keeps the exposure somewhere, where `failed` is the file that should have held it, or would have been beside it: as it is

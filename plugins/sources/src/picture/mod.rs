@@ -1,36 +1,18 @@
 //! `kind: picture`: a picture file on a plane at a distance, or with the depth that it states.
 
-pub(crate) mod decode;
 mod deep;
 mod depth;
-mod encoding;
-mod exr;
-#[cfg(test)]
-mod exr_tests;
 mod field;
-mod foreign;
-#[cfg(all(test, feature = "oiio"))]
-mod foreign_tests;
-pub(crate) mod header;
 mod highlights;
-mod jpeg;
-pub(crate) mod linear;
 pub(crate) mod map;
-#[cfg(all(test, target_os = "linux"))]
-mod memory_tests;
-mod tiff;
-mod turn;
 
 use crate::flat::Flat;
 use crate::frame::{Edge, Placed, Width, WidthForm};
 use crate::lazy::Lazy;
 use crate::white;
-use decode::decode;
 use deep::DeepPicture;
 use depth::Depth;
 use field::HeightField;
-use header::Header;
-use linear::{Choice, Linear, Trouble};
 use map::{Importance, PictureMap};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -39,6 +21,7 @@ use spectra_core::registry::{Context, StageOf, build as build_stage};
 use spectra_core::resources::{Found, ResourceError};
 use spectra_core::spectral::SpectralPower;
 use spectra_core::stage::{ColorModel, Source};
+use spectra_pictures::read::{self, Choice, Header, Linear, Trouble};
 use std::sync::Arc;
 
 /// Largest picture file, bytes.
@@ -245,12 +228,12 @@ impl PictureFile {
 
     /// What its beginning says.
     pub(crate) fn header(&self) -> Result<Header, Faults> {
-        header::read(&self.found, self.choice()).map_err(|e| trouble(&self.name, &e, &self.params).into())
+        read::header(&self.found, self.choice()).map_err(|e| trouble(&self.name, &e, &self.params).into())
     }
 
     /// All of it, in linear light.
     pub(crate) fn read(&self) -> Result<Linear, Faults> {
-        decode(&self.found, self.choice()).map_err(|e| trouble(&self.name, &e, &self.params).into())
+        read::decode(&self.found, self.choice()).map_err(|e| trouble(&self.name, &e, &self.params).into())
     }
 
     /// Warns of a photograph whose code values are taken as light.

@@ -1,8 +1,8 @@
 //! OpenEXR of the linear exposure, in tiles.
 
 use super::exposure::{all_attributes, pixel_aspect, times};
+use crate::library::{self, TiledExr};
 use spectra_core::frame::ExposureFrame;
-use spectra_core::picture_file::{self, TiledExr};
 use spectra_files::{WriteError, WriteFault, write_atomically};
 use std::path::Path;
 
@@ -30,8 +30,8 @@ pub fn write_tiled_exr_times(
     attributes: &[(String, String)],
 ) -> Result<(), WriteError> {
     write_atomically(path, |file| {
-        let Some(library) = picture_file::library() else {
-            return Err(WriteFault::Format(picture_file::WITHOUT.to_owned()));
+        let Some(own) = library::library() else {
+            return Err(WriteFault::Format(library::WITHOUT.to_owned()));
         };
         let attributes: Vec<(String, String)> = all_attributes(frame, attributes).collect();
         for (i, (name, _)) in attributes.iter().enumerate() {
@@ -52,6 +52,6 @@ pub fn write_tiled_exr_times(
             channels: &channels,
             attributes: &attributes,
         };
-        library.write_tiled_exr(file, &picture).map_err(WriteFault::Format)
+        own.write_tiled_exr(file, &picture).map_err(WriteFault::Format)
     })
 }

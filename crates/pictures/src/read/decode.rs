@@ -20,7 +20,7 @@ const MAX_PIXELS_PER_BYTE: u64 = 1_100 * 8;
 ///
 /// # Errors
 /// What is wrong with the file.
-pub(crate) fn decode(found: &Found, choice: Choice<'_>) -> Result<Linear, Trouble> {
+pub fn decode(found: &Found, choice: Choice<'_>) -> Result<Linear, Trouble> {
     let said = choice.transfer.map(Encoding::named).transpose()?;
     let bytes = found.size_bytes().map_err(io)?;
     match kind(&found.read(64).map_err(io)?, choice)? {
@@ -168,7 +168,7 @@ fn native(found: &Found, format: ImageFormat, cover: bool, said: Option<Encoding
 ///
 /// # Errors
 /// What is wrong with the file.
-pub(crate) fn depth(found: &Found, choice: Choice<'_>) -> Result<Linear, Trouble> {
+pub fn depth(found: &Found, choice: Choice<'_>) -> Result<Linear, Trouble> {
     if !found.read(64).map_err(io)?.starts_with(&exr::MAGIC) {
         return Err(Trouble::file("only an OpenEXR file has a depth channel"));
     }
@@ -375,7 +375,7 @@ mod tests {
 
     #[test]
     fn without_a_library_other_formats_say_how_to_get_it() {
-        if spectra_core::picture_file::library().is_some() {
+        if crate::library::library().is_some() {
             return;
         }
         for (bytes, name) in [(&b"SDPX"[..], "scan.DPX"), (b"GIF89a\0\0\0\0", "dance.gif")] {

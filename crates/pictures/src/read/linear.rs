@@ -1,13 +1,16 @@
 //! A picture in linear light, and what can be wrong with a picture file.
 
 /// Largest side of a picture, pixels.
-pub(crate) const MAX_SIDE: u32 = 65_535;
+pub(super) const MAX_SIDE: u32 = 65_535;
 /// Largest picture, pixels: as linear light it takes 12 bytes each.
-pub(crate) const MAX_PIXELS: u64 = 120_000_000;
+pub(super) const MAX_PIXELS: u64 = 120_000_000;
 
 /// A picture in linear light, sRGB primaries, upright, row by row from the top.
-pub(crate) struct Linear {
+#[derive(Clone, Debug, PartialEq)]
+pub struct Linear {
+    /// Pixels across.
     pub width: u32,
+    /// Pixels down.
     pub height: u32,
     /// Width over height of a pixel.
     pub pixel_aspect: f64,
@@ -23,7 +26,7 @@ pub(crate) struct Linear {
 
 /// What is known of a file, and chosen of one of several layers.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Choice<'a> {
+pub struct Choice<'a> {
     /// What the file is called: its ending tells formats that its content does not.
     pub name: &'a str,
     /// How its code values are encoded, by name; as the file says, or else as its format has it, if absent.
@@ -38,29 +41,31 @@ pub(crate) struct Choice<'a> {
 
 /// What is wrong with a picture file.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Trouble {
+pub struct Trouble {
     /// The key whose value is to be changed: `file`, `layer`, `depth` or `transfer`.
     pub key: &'static str,
+    /// What is wrong.
     pub text: String,
+    /// What to do about it.
     pub hint: Option<String>,
 }
 
 impl Trouble {
-    pub(crate) fn file(text: impl Into<String>) -> Self {
+    pub(super) fn file(text: impl Into<String>) -> Self {
         Self { key: "file", text: text.into(), hint: None }
     }
 
-    pub(crate) fn at(key: &'static str, text: impl Into<String>) -> Self {
+    pub(super) fn at(key: &'static str, text: impl Into<String>) -> Self {
         Self { key, text: text.into(), hint: None }
     }
 
-    pub(crate) fn hint(self, hint: impl Into<String>) -> Self {
+    pub(super) fn hint(self, hint: impl Into<String>) -> Self {
         Self { hint: Some(hint.into()), ..self }
     }
 }
 
 /// Whether a picture of that size is read at all.
-pub(crate) fn check_size(width: u64, height: u64) -> Result<(), Trouble> {
+pub(super) fn check_size(width: u64, height: u64) -> Result<(), Trouble> {
     if width == 0 || height == 0 {
         return Err(Trouble::file("the picture has no pixels"));
     }

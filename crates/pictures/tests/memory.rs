@@ -1,22 +1,22 @@
 //! What a picture costs: the peak of a process of its own that reads it, as the system counts it.
 
-use super::decode::decode;
-use super::header;
-use super::linear::Choice;
+#![cfg(target_os = "linux")]
+
 use image::codecs::jpeg::JpegEncoder;
 use image::{ExtendedColorType, ImageEncoder};
 use spectra_core::resources::Found;
+use spectra_pictures::read::{Choice, decode, header};
 use std::fs::File;
 use std::path::Path;
 use std::process::Command;
 use tiff::encoder::{TiffEncoder, colortype};
 use tiff::tags::Tag;
 
-const WIDTH: u32 = 4096;
-const HEIGHT: u32 = 2730;
+const WIDTH: u32 = 2896;
+const HEIGHT: u32 = 1930;
 const PIXELS: f64 = (WIDTH * HEIGHT) as f64;
 /// For decoders and what they unpack at a time.
-const SPARE_BYTES: f64 = (16 << 20) as f64;
+const SPARE_BYTES: f64 = (12 << 20) as f64;
 
 /// Largest memory of this process so far, bytes (proc(5), `VmHWM`).
 fn peak_bytes() -> f64 {
@@ -34,7 +34,7 @@ fn reader() {
     let name = path.to_string_lossy();
     let choice = Choice { name: &name, transfer: name.ends_with(".dpx").then_some("srgb"), ..Choice::default() };
     let before = peak_bytes();
-    let header = header::read(&found, choice).unwrap_or_else(|trouble| panic!("{name}: {}", trouble.text));
+    let header = header(&found, choice).unwrap_or_else(|trouble| panic!("{name}: {}", trouble.text));
     let of_header = peak_bytes() - before;
     let read = decode(&found, choice).unwrap_or_else(|trouble| panic!("{name}: {}", trouble.text));
     println!("cost {} {}", of_header, peak_bytes() - before);
@@ -102,7 +102,7 @@ fn a_picture_costs_twelve_bytes_a_pixel_and_its_header_none() {
         write(&path);
         let own = std::env::current_exe().expect("this program");
         let mut reader = Command::new(own);
-        reader.args(["--exact", "picture::memory_tests::reader", "--ignored", "--nocapture", "--test-threads", "1"]);
+        reader.args(["--exact", "reader", "--ignored", "--nocapture", "--test-threads", "1"]);
         let output = reader.env("SPECTRA_TEST_PICTURE", &path).output().expect("it runs");
         let text = String::from_utf8_lossy(&output.stdout);
         assert!(output.status.success(), "{name}: {text}{}", String::from_utf8_lossy(&output.stderr));

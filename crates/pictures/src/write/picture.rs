@@ -1,6 +1,5 @@
 //! Pictures for a screen, in the sRGB encoding.
 
-use crate::lookup::PIXELS_A_TASK;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::codecs::tiff::TiffEncoder;
 use image::{ExtendedColorType, ImageEncoder, ImageError};
@@ -10,6 +9,9 @@ use spectra_files::{WriteError, WriteFault, write_atomically};
 use spectra_spectrum::{Transfer, to_u8};
 use std::io::{BufWriter, Write};
 use std::path::Path;
+
+/// Pixels that a thread encodes at a time.
+const PIXELS_A_TASK: usize = 8192;
 
 /// Writes an 8-bit PNG: sRGB encoding, 1 is 255, values outside of [0, 1] clipped, no dithering.
 ///

@@ -101,11 +101,15 @@ fn said(e: exr::error::Error) -> Trouble {
 }
 
 /// What the header of a file of `bytes` bytes says.
-pub(super) fn header(reader: impl BufRead + Seek, bytes: u64, choice: Choice<'_>) -> Result<super::Header, Trouble> {
+pub(super) fn header(
+    reader: impl BufRead + Seek,
+    bytes: u64,
+    choice: Choice<'_>,
+) -> Result<super::header::Header, Trouble> {
     let headers = exr::block::read(reader, false).map_err(said)?.headers().to_vec();
     chosen(&headers, bytes, choice, true)?;
     let ([width, height], pixel_aspect) = shape(&headers);
-    Ok(super::Header { width, height, pixel_aspect, clips: false, is_jpeg: false })
+    Ok(super::header::Header { width, height, pixel_aspect, clips: false, is_jpeg: false })
 }
 
 /// Reads what is chosen of a file; without `lit` its depth only, and no light. Block after block goes to where it is

@@ -8,12 +8,12 @@ use super::encoding::Encoding;
 use super::header::Header;
 use super::linear::{Choice, Linear, MAX_PIXELS, MAX_SIDE, Trouble, clean};
 use super::turn;
-use spectra_core::picture_file::{self, FilePicture, PictureLimits};
+use crate::library::{self, FilePicture, PictureLimits};
 use spectra_core::resources::Found;
 use spectra_spectrum::Transfer;
 
 /// Endings of files that the library reads, beyond those that are read without it.
-pub(super) const ENDINGS: &str = "tx env sm vsm bmp dib cin dds dcm dpx fits gif heic heif heics avif ico iff z jp2 j2k \
+pub const ENDINGS: &str = "tx env sm vsm bmp dib cin dds dcm dpx fits gif heic heif heics avif ico iff z jp2 j2k \
     j2c ppm pgm pbm pnm pfm psd pdd psb bay bmq cr2 cr3 crw cs1 dc2 dcr dng erf fff k25 kdc mdc mos mrw nef orf pef pxn \
     raf raw rdc sr2 srf x3f arw 3fr cine ia kc2 mef nrw qtk rw2 sti rwl srw drf dsc ptx cap iiq rwz rla sgi rgb rgba bw \
     int inta pic tga tpic webp";
@@ -41,9 +41,9 @@ pub(super) fn header(found: &Found, choice: Choice<'_>, said: Option<Encoding>) 
 fn read(found: &Found, name: &str, said: Option<Encoding>, pixels: bool) -> Result<(FilePicture, Encoding), Trouble> {
     let ending = ending(name);
     let known = ENDINGS.split(' ').any(|own| own == ending);
-    let Some(library) = picture_file::library() else {
+    let Some(own) = library::library() else {
         return Err(if known {
-            Trouble::file(format!("`.{ending}` files are read by OpenImageIO only")).hint(picture_file::WITHOUT)
+            Trouble::file(format!("`.{ending}` files are read by OpenImageIO only")).hint(library::WITHOUT)
         } else {
             Trouble::file("this is no OpenEXR, PNG, JPEG, TIFF or Radiance HDR file")
                 .hint("what counts is what is in it, not the ending of its name: save it as one of these")
@@ -54,9 +54,9 @@ fn read(found: &Found, name: &str, said: Option<Encoding>, pixels: bool) -> Resu
         return Err(Trouble::file(text).hint("other formats are told by the ending"));
     }
     let limits = PictureLimits { side_px: MAX_SIDE, pixels: MAX_PIXELS };
-    let read = if pixels { library.read(&ending, found, limits) } else { library.header(&ending, found, limits) };
+    let read = if pixels { own.read(&ending, found, limits) } else { own.header(&ending, found, limits) };
     let picture = read.map_err(|cause| {
-        let trouble = Trouble::file(format!("{cause} (read as `.{ending}` by {})", library.name()));
+        let trouble = Trouble::file(format!("{cause} (read as `.{ending}` by {})", own.name()));
         trouble.hint("is the file whole, and is it what its ending says?")
     })?;
     let encoding = encoding(&picture, said)?;
@@ -65,8 +65,8 @@ fn read(found: &Found, name: &str, said: Option<Encoding>, pixels: bool) -> Resu
 
 /// What the library says, where a file of a known kind is of a variant that only it may know.
 pub(super) fn also(why: &str, trouble: Trouble) -> Trouble {
-    if picture_file::library().is_none() {
-        return Trouble::file(why).hint(picture_file::WITHOUT);
+    if library::library().is_none() {
+        return Trouble::file(why).hint(library::WITHOUT);
     }
     Trouble { text: format!("{why}; {}", trouble.text), ..trouble }
 }

@@ -2,7 +2,7 @@
 //!
 //! A plain build has none. Code that needs one tells the user how to get it ([`WITHOUT`]).
 
-use crate::resources::Found;
+use spectra_core::resources::Found;
 use std::fs::File;
 
 /// What to tell the user where no library is linked.

@@ -10,20 +10,23 @@ const BEGINNING_BYTES: u64 = 4 << 20;
 
 /// Shape and kind of a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Header {
-    /// Pixels across and down, as the picture is seen.
+pub struct Header {
+    /// Pixels across, as the picture is seen.
     pub width: u32,
+    /// Pixels down.
     pub height: u32,
     /// Width over height of a pixel.
     pub pixel_aspect: f64,
     /// Whether its values are integers, which clip.
     pub clips: bool,
+    /// Whether it is a JPEG.
     pub is_jpeg: bool,
 }
 
 impl Header {
     /// Width over height of the picture.
-    pub(crate) fn aspect(&self) -> f64 {
+    #[must_use]
+    pub fn aspect(&self) -> f64 {
         f64::from(self.width) * self.pixel_aspect / f64::from(self.height)
     }
 }
@@ -32,7 +35,7 @@ impl Header {
 ///
 /// # Errors
 /// What is wrong with it.
-pub(crate) fn read(found: &Found, choice: Choice<'_>) -> Result<Header, Trouble> {
+pub fn header(found: &Found, choice: Choice<'_>) -> Result<Header, Trouble> {
     let io = |error: ResourceError| Trouble::file(error.to_string());
     let bytes = found.size_bytes().map_err(io)?;
     let beginning = found.read(64).map_err(io)?;

@@ -1,8 +1,9 @@
 //! Files of other formats, written by OpenImageIO and by hand, against what was written.
 
-use super::decode::decode_bytes as decode;
-use super::foreign::ENDINGS;
-use super::linear::{Choice, Linear, Trouble};
+#![cfg(feature = "oiio")]
+
+use spectra_core::resources::Found;
+use spectra_pictures::read::{self, Choice, ENDINGS, Linear, Trouble};
 use spectra_plugin_oiio::{OpenImageIo, Samples, Written, make_texture, write};
 use std::io::{Read, Seek};
 
@@ -97,6 +98,10 @@ impl<'a> File<'a> {
         file.read_to_end(&mut bytes).expect("read");
         bytes
     }
+}
+
+fn decode(bytes: &[u8], choice: Choice<'_>) -> Result<Linear, Trouble> {
+    read::decode(&Found::bytes("a file".to_owned(), bytes.to_vec().into()), choice)
 }
 
 fn jpeg_2000() -> Vec<u8> {
