@@ -5,7 +5,8 @@ use super::{files, load_as, load_illuminant, tell_reading};
 use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
 use crate::words::figure_of;
-use spectra_plot::{Format, PlotError, figure};
+use spectra_analysis::figure;
+use spectra_plot::{Format, PlotError};
 use spectra_spectrum::{
     BAND, Emission, Found, Observer, chromaticity, find_in, function_in, xyz_of_light, xyz_of_reflectance,
     xyz_of_transmittance,

@@ -1,6 +1,6 @@
 //! Writes a spectrum plot and a chromaticity diagram into the folder given (here if none is).
 
-use spectra_plot::figure;
+use spectra_analysis::figure;
 use spectra_spectrum::{Found, Observer, chromaticity, find, xyz_of_light};
 use std::error::Error;
 use std::path::PathBuf;

@@ -1,13 +1,7 @@
 //! The Abbe diagram: index against Abbe number.
 
 use super::{entry_disc, rows, shortened};
-use crate::axes::{Axes, Axis};
-use crate::canvas::Canvas;
-use crate::color::Color;
-use crate::geometry::{Point, Rect};
-use crate::labels::Labels;
-use crate::stroke::Stroke;
-use crate::text::TextStyle;
+use spectra_plot::{Axes, Axis, Canvas, Color, Labels, Point, Rect, Stroke, TextStyle};
 
 const WIDTH: f64 = 980.0;
 const HEIGHT: f64 = 740.0;

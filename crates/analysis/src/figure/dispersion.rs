@@ -1,12 +1,7 @@
 //! Refractive index against wavelength.
 
 use super::{entry, rows, shortened};
-use crate::axes::{Axes, Axis};
-use crate::canvas::Canvas;
-use crate::color::Color;
-use crate::geometry::{Point, Rect};
-use crate::stroke::Stroke;
-use crate::text::TextStyle;
+use spectra_plot::{Axes, Axis, Canvas, Color, Point, Rect, Stroke, TextStyle};
 
 const WIDTH: f64 = 900.0;
 const HEIGHT: f64 = 560.0;

@@ -12,11 +12,7 @@ pub use dispersion::{IndexCurve, dispersion};
 pub use spectrum::{spectrum, spectrum_and_functions};
 pub use swatches::swatches;
 
-use crate::canvas::Canvas;
-use crate::color::Color;
-use crate::geometry::{Point, Rect};
-use crate::stroke::Stroke;
-use crate::text::{TextStyle, text_width};
+use spectra_plot::{Canvas, Color, Point, Rect, Stroke, TextStyle, text_width};
 
 /// Longest name in a legend, letters; more would push the others off the sheet.
 const LONGEST_NAME: usize = 48;
@@ -73,7 +69,7 @@ fn sheet(canvas: &mut Canvas, rect: Rect) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::raster::Pixels;
+    use spectra_plot::Pixels;
     use spectra_spectrum::{Found, find};
 
     fn pixel(pixels: &Pixels, at: Point) -> [i32; 3] {

@@ -1,10 +1,6 @@
 //! Rows of patches, to compare colors by eye.
 
-use crate::canvas::Canvas;
-use crate::color::Color;
-use crate::geometry::Rect;
-use crate::stroke::Stroke;
-use crate::text::TextStyle;
+use spectra_plot::{Canvas, Color, Rect, Stroke, TextStyle};
 
 const WIDTH: f64 = 900.0;
 const LEFT: f64 = 24.0;

@@ -1,14 +1,7 @@
 //! The spectrum plot.
 
 use super::{entry, rows, shortened};
-use crate::axes::{Axes, Axis};
-use crate::canvas::Canvas;
-use crate::color::Color;
-use crate::geometry::{Point, Rect};
-use crate::labels::Labels;
-use crate::paint::{Paint, Stop};
-use crate::stroke::Stroke;
-use crate::text::TextStyle;
+use spectra_plot::{Axes, Axis, Canvas, Color, Labels, Paint, Point, Rect, Stop, Stroke, TextStyle};
 use spectra_spectrum::{BAND, Found, Grid, Kind, Line, RgbSpace, Tabulated, spectral_color_linear, to_u8};
 
 const WIDTH: f64 = 900.0;

@@ -1,14 +1,7 @@
 //! The chromaticity diagram.
 
 use super::{SAMPLE, entry, sheet, shortened};
-use crate::axes::{Axes, Axis};
-use crate::canvas::Canvas;
-use crate::color::Color;
-use crate::geometry::{Point, Rect};
-use crate::labels::Labels;
-use crate::paint::{Paint, Picture};
-use crate::stroke::Stroke;
-use crate::text::{TextStyle, text_width};
+use spectra_plot::{Axes, Axis, Canvas, Color, Labels, Paint, Picture, Point, Rect, Stroke, TextStyle, text_width};
 use spectra_spectrum::{Emission, Observer, RgbSpace, chromaticity as chromaticity_of, to_u8, xyz_of_xy};
 
 /// A unit of x is as long as one of y.
