@@ -31,7 +31,7 @@ mod transmission;
 
 pub use aim::{AimPattern, AimRegion, FrontPupil, RearPupil, has_sizes};
 pub use aperture::read as read_apertures;
-pub use aperture::{Aperture, ApertureForm, Drawing, FLATNESS_MM, FillRule, Iris, Mask, Opening, Painted, Shape};
+pub use aperture::{Aperture, ApertureForm, Iris, Mask, Opening, Shape};
 pub use beam::{Beam, ObjectPoint};
 pub use coating::{
     Coating, CoatingForm, MeasuredCoating, NamedCoating, OneLayer, Reflectance, Stack, StackLayer, StackParams,

@@ -1,12 +1,13 @@
 //! Apertures as a lens file writes them.
 
-use super::{Aperture, Iris, Mask, Shape, drawing};
+use super::{Aperture, Iris, Mask, Shape};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
 use spectra_core::params::{
     Angle, Faults, Kinds, Length, LengthOrInfinity, Params, Positive, StageNode, Value, Whole, nearest,
 };
 use spectra_core::resources::{Resources, beside};
+use spectra_masks::Open;
 use std::sync::Arc;
 
 /// Keys of every aperture; the others belong to its shape.
@@ -192,8 +193,8 @@ fn mask(params: &Params, resources: &dyn Resources) -> Result<Shape, Faults> {
         |text: String| Faults::from(params.fault("file", text).hint("a PNG, JPEG, TIFF or SVG beside the lens file"));
     let open = match p.open.as_deref() {
         None => None,
-        Some("filled") => Some(drawing::Open::Filled),
-        Some("white") => Some(drawing::Open::White),
+        Some("filled") => Some(Open::Filled),
+        Some("white") => Some(Open::White),
         Some(other) => {
             let fault = params.fault("open", format!("unknown: `{other}`"));
             return Err(fault.hint("filled (whatever is painted passes) or white (white passes, black stops)").into());
@@ -204,10 +205,10 @@ fn mask(params: &Params, resources: &dyn Resources) -> Result<Shape, Faults> {
         .read(&path, &["lenses", "scenes"], &[], MAX_MASK_BYTES)
         .map_err(|e| fail(format!("`{}`: {e}", p.file)))?;
     if p.file.rsplit_once('.').is_some_and(|(_, ending)| ending.eq_ignore_ascii_case("svg")) {
-        let drawn = drawing::read(&found.name, &found.bytes, p.width.map(|w| w.mm()), open);
+        let drawn = spectra_masks::read(&found.name, &found.bytes, p.width.map(|w| w.mm()), open);
         return drawn.map(Shape::Drawing).map_err(|faults| params.place_at("file", faults));
     }
-    if open == Some(drawing::Open::Filled) {
+    if open == Some(Open::Filled) {
         let fault = params.fault("open", "of a picture the white passes: nothing in it is filled");
         return Err(fault.hint("leave `open` out, or draw an SVG").into());
     }

@@ -4,7 +4,7 @@ mod outline;
 mod style;
 mod svg;
 
-pub(super) use svg::{Open, read};
+pub use svg::{Open, read};
 
 use std::sync::Arc;
 

@@ -31,7 +31,7 @@ const SIZES_MM: std::ops::RangeInclusive<f64> = 1e-3..=1e5;
 
 /// What is open.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in super::super) enum Open {
+pub enum Open {
     /// Whatever is painted, in any color.
     Filled,
     /// What is white; gray passes in part.
@@ -42,12 +42,7 @@ pub(in super::super) enum Open {
 ///
 /// # Errors
 /// All that is wrong with it, with line and column.
-pub(in super::super) fn read(
-    name: &str,
-    bytes: &[u8],
-    width_mm: Option<f64>,
-    open: Option<Open>,
-) -> Result<Drawing, Faults> {
+pub fn read(name: &str, bytes: &[u8], width_mm: Option<f64>, open: Option<Open>) -> Result<Drawing, Faults> {
     let text = std::str::from_utf8(bytes).map_err(|_| Fault::new(format!("{name}: is not UTF-8 text")))?;
     let file = Arc::new(SourceFile::new(name, text));
     let options = ParsingOptions { allow_dtd: false, nodes_limit: MAX_NODES, ..ParsingOptions::default() };
