@@ -1,7 +1,8 @@
 //! Writes a spectrum plot and a chromaticity diagram into the folder given (here if none is).
 
 use spectra_analysis::figure;
-use spectra_spectrum::{Found, Observer, chromaticity, find, xyz_of_light};
+use spectra_color::{chromaticity, xyz_of_light};
+use spectra_spectrum::{Found, Observer, find};
 use std::error::Error;
 use std::path::PathBuf;
 

@@ -3,10 +3,10 @@
 use crate::Basis;
 use schemars::JsonSchema;
 use serde::Deserialize;
+use spectra_color::srgb_primaries;
 use spectra_core::params::{Faults, Params};
 use spectra_core::registry::Context;
 use spectra_core::stage::ColorModel;
-use spectra_spectrum::srgb_primaries;
 
 /// The sum of three smooth spectra that have exactly the colors of the sRGB primaries.
 ///

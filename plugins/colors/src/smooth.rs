@@ -13,12 +13,13 @@
 
 use schemars::JsonSchema;
 use serde::Deserialize;
+use spectra_color::{RgbSpace, chromaticity, matrix};
 use spectra_core::batch::CONTINUUM;
 use spectra_core::params::{Faults, Params};
 use spectra_core::registry::Context;
 use spectra_core::spectral::{BAND, Line, SpectralPower};
 use spectra_core::stage::ColorModel;
-use spectra_spectrum::{Observer, RgbSpace, chromaticity, illuminant, matrix};
+use spectra_spectrum::{Observer, illuminant};
 use std::sync::OnceLock;
 
 /// A smooth reflectance for each color, under the illuminant.

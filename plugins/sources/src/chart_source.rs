@@ -7,12 +7,13 @@ use crate::palette::Palette;
 use crate::white;
 use schemars::JsonSchema;
 use serde::Deserialize;
+use spectra_color::{RgbSpace, Transfer};
 use spectra_core::Isa;
 use spectra_core::params::{Faults, Length, Luminance, Node, Params, Positive, Quantity, StageNode};
 use spectra_core::registry::{Context, StageOf, build as build_stage};
 use spectra_core::spectral::{Line, SpectralPower};
 use spectra_core::stage::{ColorModel, Source};
-use spectra_spectrum::{Observer, Reflectance, RgbSpace, SpectrumError, Transfer, find_reflectance_in};
+use spectra_spectrum::{Observer, Reflectance, SpectrumError, find_reflectance_in};
 
 /// A test chart drawn by the program: resolution, color patches, gray card, star.
 ///

@@ -2,9 +2,9 @@
 
 use super::{DrawnRay, Outlines, Solid, View, outlines, reach_mm};
 use glam::DVec3;
+use spectra_color::spectral_color_srgb8;
 use spectra_lens::Lens;
 use spectra_plot::{Anchor, Canvas, Color, Point, Rect, Stroke, TextStyle};
-use spectra_spectrum::spectral_color_srgb8;
 
 /// Paper or darkness.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

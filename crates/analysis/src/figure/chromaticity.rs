@@ -1,8 +1,9 @@
 //! The chromaticity diagram.
 
 use super::{SAMPLE, entry, sheet, shortened};
+use spectra_color::{RgbSpace, chromaticity as chromaticity_of, to_u8, xyz_of_xy};
 use spectra_plot::{Axes, Axis, Canvas, Color, Labels, Paint, Picture, Point, Rect, Stroke, TextStyle, text_width};
-use spectra_spectrum::{Emission, Observer, RgbSpace, chromaticity as chromaticity_of, to_u8, xyz_of_xy};
+use spectra_spectrum::{Emission, Observer};
 
 /// A unit of x is as long as one of y.
 const UNIT: f64 = 800.0;

@@ -1,8 +1,9 @@
 //! The spectrum plot.
 
 use super::{entry, rows, shortened};
+use spectra_color::{RgbSpace, spectral_color_linear, to_u8};
 use spectra_plot::{Axes, Axis, Canvas, Color, Labels, Paint, Point, Rect, Stop, Stroke, TextStyle};
-use spectra_spectrum::{BAND, Found, Grid, Kind, Line, RgbSpace, Tabulated, spectral_color_linear, to_u8};
+use spectra_spectrum::{BAND, Found, Grid, Kind, Line, Tabulated};
 
 const WIDTH: f64 = 900.0;
 const HEIGHT: f64 = 500.0;

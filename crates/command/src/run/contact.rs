@@ -2,12 +2,12 @@
 
 use super::picture::Developed;
 use crate::outcome::Failure;
+use spectra_color::{Transfer, to_u8};
 use spectra_core::frame::DisplayPicture;
 use spectra_core::math::log10;
 use spectra_core::params::{Dimension, Reading};
 use spectra_plot::{Canvas, Color, Paint, Picture, Rect, TextStyle, text_width};
 use spectra_scene::{Member, SweptAxis};
-use spectra_spectrum::{Transfer, to_u8};
 use std::path::Path;
 
 /// Space around and between the cells, pixels.

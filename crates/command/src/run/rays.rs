@@ -4,12 +4,13 @@ use crate::outcome::Failure;
 use glam::DVec3;
 use spectra_analysis::draw::{DrawnRay, Fans, Ground, Sheet, View};
 use spectra_analysis::fan::FanFinder;
+use spectra_color::RgbSpace;
 use spectra_core::stage::Emit;
 use spectra_core::{Isa, RayBatch};
 use spectra_lens::{Indices, Section, Tracer};
 use spectra_plot::Canvas;
 use spectra_scene::{RaysFigure, Scene};
-use spectra_spectrum::{Observer, RgbSpace};
+use spectra_spectrum::Observer;
 
 /// Light that a screen can show, nm.
 const VISIBLE_NM: [f64; 2] = [390.0, 710.0];

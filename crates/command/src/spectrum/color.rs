@@ -6,12 +6,13 @@ use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
 use serde::Serialize;
 use spectra_analysis::figure;
+use spectra_color::{RgbSpace, RoundTrip, from_u8, to_u8};
 use spectra_core::params::{Params, SourceFile};
 use spectra_core::registry::{self, ColorEntry, Context, Stage};
 use spectra_core::stage::ColorModel;
 use spectra_plot::Format;
 use spectra_scene::yaml;
-use spectra_spectrum::{BAND, LineColor, Observer, RgbSpace, RoundTrip, from_u8, named_line, to_u8};
+use spectra_spectrum::{BAND, LineColor, Observer, named_line};
 use std::fmt::Write as _;
 
 /// A model by the name under which it is shown.
@@ -90,7 +91,7 @@ pub(crate) fn color(arguments: &SpectrumColor) -> Outcome {
             srgb: back.map(|v| to_u8(v / 255.0)),
             srgb_linear: trip.linear(linear),
             largest_difference: back.iter().zip(rgb).map(|(b, v)| (b - f64::from(v)).abs()).fold(0.0, f64::max),
-            xy: spectra_spectrum::chromaticity(Observer::cie_1931_2deg().xyz_of_power(&power)),
+            xy: spectra_color::chromaticity(Observer::cie_1931_2deg().xyz_of_power(&power)),
             peak_nm: peak.0,
             lines: power.lines.iter().filter(|l| l.power > 0.0).count(),
         });

@@ -5,11 +5,11 @@ use super::{files, load_as, load_illuminant, tell_reading};
 use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
 use serde::Serialize;
-use spectra_spectrum::{
-    Adaptation, BAND, Dominant, Emission, Found, Gamut, Kind, Observer, RgbSpace, Strengths, Tabulated, cct,
-    chromaticity, dominant_wavelength, find_in, function_in, into_gamut, lab, meta_in, to_u8, xyz_of_light,
-    xyz_of_reflectance, xyz_of_transmittance,
+use spectra_color::{
+    Adaptation, Dominant, Gamut, RgbSpace, cct, chromaticity, dominant_wavelength, into_gamut, lab, to_u8,
+    xyz_of_light, xyz_of_reflectance, xyz_of_transmittance,
 };
+use spectra_spectrum::{BAND, Emission, Found, Kind, Observer, Strengths, Tabulated, find_in, function_in, meta_in};
 use std::fmt::Write;
 
 /// About the least that an eye sees after an hour in the dark, cd/m2.

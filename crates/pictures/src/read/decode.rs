@@ -6,8 +6,8 @@ use super::linear::{Choice, Linear, MAX_SIDE, Trouble, check_size, clean};
 use super::{exr, foreign, jpeg, tiff, turn};
 use image::metadata::Orientation;
 use image::{ColorType, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
+use spectra_color::Transfer;
 use spectra_core::resources::{Found, ResourceError};
-use spectra_spectrum::Transfer;
 use std::io::{BufRead, Seek};
 
 /// No picture format packs more pixels into a byte: deflate ends near 1 032 to 1, at one byte a pixel or less.

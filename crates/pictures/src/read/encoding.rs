@@ -1,7 +1,7 @@
 //! From code values to linear light.
 
 use super::linear::Trouble;
-use spectra_spectrum::Transfer;
+use spectra_color::Transfer;
 
 /// How code values stand for light.
 #[derive(Clone, Copy, Debug, PartialEq)]

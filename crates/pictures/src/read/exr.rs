@@ -13,7 +13,7 @@ use exr::meta::MetaData;
 use exr::meta::attribute::{Chromaticities, SampleType};
 use exr::meta::header::Header;
 use exr::prelude::{Vec2, f16};
-use spectra_spectrum::{Adaptation, RgbSpace, Transfer};
+use spectra_color::{Adaptation, RgbSpace, Transfer};
 use std::io::{BufRead, Seek};
 
 /// First bytes of a file.

@@ -9,8 +9,8 @@ use super::header::Header;
 use super::linear::{Choice, Linear, MAX_PIXELS, MAX_SIDE, Trouble, clean};
 use super::turn;
 use crate::library::{self, FilePicture, PictureLimits};
+use spectra_color::Transfer;
 use spectra_core::resources::Found;
-use spectra_spectrum::Transfer;
 
 /// Endings of files that the library reads, beyond those that are read without it.
 pub const ENDINGS: &str = "tx env sm vsm bmp dib cin dds dcm dpx fits gif heic heif heics avif ico iff z jp2 j2k \

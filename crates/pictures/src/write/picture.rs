@@ -4,9 +4,9 @@ use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::codecs::tiff::TiffEncoder;
 use image::{ExtendedColorType, ImageEncoder, ImageError};
 use rayon::prelude::*;
+use spectra_color::{Transfer, to_u8};
 use spectra_core::frame::DisplayPicture;
 use spectra_files::{WriteError, WriteFault, write_atomically};
-use spectra_spectrum::{Transfer, to_u8};
 use std::io::{BufWriter, Write};
 use std::path::Path;
 

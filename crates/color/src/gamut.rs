@@ -96,7 +96,7 @@ fn perceptual(rgb: [f64; 3], space: &RgbSpace) -> [f64; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Observer;
+    use spectra_spectrum::Observer;
 
     const METHODS: [Gamut; 3] = [Gamut::Clip, Gamut::Desaturate, Gamut::Perceptual];
 

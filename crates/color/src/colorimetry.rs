@@ -1,10 +1,7 @@
 //! Color values of light and of matter.
 
 use spectra_core::spectral::{BAND, Line};
-
-use crate::cie::Observer;
-use crate::emission::Emission;
-use crate::filter::{Reflectance, Transmittance};
+use spectra_spectrum::{Emission, Observer, Reflectance, Transmittance};
 
 /// Chromaticity x, y; `None` for no light.
 #[must_use]

@@ -1,7 +1,7 @@
 //! The color in which a screen shows a single wavelength.
 
-use crate::cie::Observer;
 use crate::rgb::{RgbSpace, to_u8};
+use spectra_spectrum::Observer;
 
 /// Linear RGB of monochromatic light: the matrix of `space` on the CIE 1931 functions, negative channels set to 0,
 /// scaled so that the brightest is 1. Black where the observer sees nothing.

@@ -1,8 +1,7 @@
 //! RGB color spaces: matrices from their primaries, transfer curves.
 
-use std::sync::OnceLock;
-
 use crate::matrix::{Matrix, apply, inverse};
+use std::sync::OnceLock;
 
 /// Curve from linear light to the code value of a picture file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -197,7 +196,7 @@ mod tests {
     /// The sRGB matrix on the 1931 functions at 575 nm, computed independently.
     #[test]
     fn srgb_of_575_nm() {
-        let rgb = RgbSpace::srgb().from_xyz(crate::Observer::cie_1931_2deg().at(575.0));
+        let rgb = RgbSpace::srgb().from_xyz(spectra_spectrum::Observer::cie_1931_2deg().at(575.0));
         for (got, want) in rgb.into_iter().zip([1.3222, 0.9009, -0.1379]) {
             assert!((got - want).abs() < 0.005, "{rgb:?}");
         }

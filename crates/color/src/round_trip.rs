@@ -1,9 +1,8 @@
 //! From a color to a spectrum and back to the color that an eye sees: how far a model is off.
 
-use spectra_core::stage::ColorModel;
-
-use crate::cie::Observer;
 use crate::rgb::{RgbSpace, from_u8};
+use spectra_core::stage::ColorModel;
+use spectra_spectrum::Observer;
 
 /// A model whose colors can be looked at: its spectra, seen by the CIE 1931 observer, as sRGB in which its own white has a
 /// luminance of 1.

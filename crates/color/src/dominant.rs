@@ -1,8 +1,7 @@
 //! Dominant wavelength and excitation purity.
 
+use spectra_spectrum::Observer;
 use std::sync::OnceLock;
-
-use crate::cie::Observer;
 
 /// The spectral color that, mixed with white, gives a color.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,7 +72,8 @@ pub fn dominant_wavelength(xy: [f64; 2], white_xy: [f64; 2]) -> Option<Dominant>
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Emission, chromaticity};
+    use crate::chromaticity;
+    use spectra_spectrum::Emission;
 
     const E: [f64; 2] = [1.0 / 3.0, 1.0 / 3.0];
     const D65: [f64; 2] = [0.3127, 0.3290];

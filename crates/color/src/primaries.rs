@@ -8,16 +8,10 @@
 //! nowhere negative either. That is a quadratic program of 135 unknowns with nine equations, solved to roundoff by
 //! holding at 0 what would fall below, and letting go what would rise.
 
-use std::sync::OnceLock;
-
-use spectra_core::spectral::BAND;
-
-use crate::cie::Observer;
-use crate::emission::Emission;
-use crate::error::SpectrumError;
-use crate::meta::{Outside, Scale};
 use crate::rgb::RgbSpace;
-use crate::tabulated::Tabulated;
+use spectra_core::spectral::BAND;
+use spectra_spectrum::{Emission, Observer, Outside, Scale, SpectrumError, Tabulated};
+use std::sync::OnceLock;
 
 /// Distance of knots, nm, and number of splines that lie on the band as a whole.
 const KNOT_NM: f64 = 10.0;

@@ -1,11 +1,8 @@
 //! Correlated color temperature.
 
-use std::sync::OnceLock;
-
 use spectra_core::spectral::{BAND, SpectralPower};
-
-use crate::cie::Observer;
-use crate::planck::planck_radiance;
+use spectra_spectrum::{Observer, planck_radiance};
+use std::sync::OnceLock;
 
 /// Correlated color temperature and the distance from the Planckian locus.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -83,7 +80,8 @@ pub fn cct(xy: [f64; 2]) -> Option<Cct> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Emission, chromaticity};
+    use crate::chromaticity;
+    use spectra_spectrum::Emission;
 
     /// Planckian chromaticities, 1 nm sums 360-830 nm, computed independently.
     #[test]
