@@ -46,6 +46,13 @@ template<class F> auto guarded(F body) {
     }
 }
 
+// The library lists its formats when it is first asked for one, and hands out the list so far to who asks meanwhile for it:
+// one thread waits for the other here.
+void know_formats() {
+    static std::once_flag once;
+    std::call_once(once, [] { OIIO::ImageInput::create("openexr"); });
+}
+
 // Hands what the library writes to Rust.
 class ToRust final : public Filesystem::IOProxy {
 public:
@@ -144,6 +151,7 @@ rust::String version() { return lossy(OIIO::get_string_attribute("version", OIIO
 
 rust::String endings() {
     return guarded([] {
+        know_formats();
         std::string all;
         // Formats that are only written have endings too.
         const auto formats = OIIO::Strutil::splits(OIIO::get_string_attribute("input_format_list"), ",");
@@ -158,6 +166,7 @@ rust::String endings() {
 
 bool reads_memory(rust::Str format) {
     return guarded([&] {
+        know_formats();
         auto input = OIIO::ImageInput::create(own(format));
         if (!input)
             fail(OIIO::geterror(), "no such format");
@@ -167,6 +176,7 @@ bool reads_memory(rust::Str format) {
 
 void read(rust::Str format, rust::Str path, bool from_memory, rust::Slice<const std::uint8_t> bytes, Receiver &receiver) {
     guarded([&] {
+        know_formats();
         Filesystem::IOMemReader memory(const_cast<std::uint8_t *>(bytes.data()), bytes.size());
         auto input = OIIO::ImageInput::create(own(format));
         if (!input)
@@ -185,6 +195,7 @@ void read(rust::Str format, rust::Str path, bool from_memory, rust::Slice<const 
 
 void write(const Plan &plan, const Pixels &pixels, Sink &sink) {
     guarded([&] {
+        know_formats();
         ToRust proxy(sink);
         auto output = OIIO::ImageOutput::create(own(plan.format));
         if (!output)
@@ -212,6 +223,7 @@ void write(const Plan &plan, const Pixels &pixels, Sink &sink) {
 
 void make_texture(const Plan &plan, const Pixels &pixels, rust::Str path) {
     guarded([&] {
+        know_formats();
         const OIIO::ImageSpec spec = spec_of(plan);
         OIIO::ImageBuf buffer(spec);
         const auto rows = rows_of(plan, pixels, 0, plan.height);
