@@ -173,7 +173,7 @@ fn dpx_comes_back_in_whole_steps_of_its_bits() {
 #[test]
 fn a_dpx_file_that_says_nothing_is_not_guessed() {
     let bytes = File::new("dpx", Samples::U16).bits(10).text("oiio:ColorSpace", "").bytes();
-    let trouble = read(&bytes, "a.dpx").err().expect("refused");
+    let trouble = read(&bytes, "a.dpx").expect_err("refused");
     assert!(trouble.text.contains("Undefined") && trouble.hint.is_some_and(|h| h.contains("transfer: srgb")));
     let said = decode(&bytes, Choice { name: "a.dpx", transfer: Some("srgb"), ..Choice::default() }).unwrap();
     assert!(worst(&said, 1023, srgb, 1.0 / 65_535.0) <= 1.0);
@@ -366,7 +366,7 @@ fn the_endings_are_those_of_the_library() {
         assert!(listed, "{ending} is read, too");
     }
     for name in ["a.null", "a.mov", "a.xyz", "a"] {
-        let trouble = read(b"some bytes", name).err().expect("refused");
+        let trouble = read(b"some bytes", name).expect_err("refused");
         assert!(trouble.hint.is_some(), "{name}: {}", trouble.text);
     }
 }

@@ -347,7 +347,7 @@ mod tests {
         assert_eq!(said("linear").unwrap().rgb[0], [0.0, 0.2, 1.0]);
         // ITU-R BT.709: ((0.2 + 0.099) / 1.099)^(1/0.45) = 0.05543.
         assert!((said("rec709").unwrap().rgb[0][1] - 0.055_43).abs() < 1e-4);
-        let trouble = said("srbg").err().expect("not known");
+        let trouble = said("srbg").expect_err("not known");
         assert_eq!((trouble.key, trouble.hint.is_some()), ("transfer", true));
         let exr = exr::MAGIC.to_vec();
         assert_eq!(decode(&exr, Choice { transfer: Some("srgb"), ..Choice::default() }).err().unwrap().key, "transfer");
@@ -379,12 +379,12 @@ mod tests {
             return;
         }
         for (bytes, name) in [(&b"SDPX"[..], "scan.DPX"), (b"GIF89a\0\0\0\0", "dance.gif")] {
-            let trouble = decode(bytes, Choice { name, ..Choice::default() }).err().expect("not read");
+            let trouble = decode(bytes, Choice { name, ..Choice::default() }).expect_err("not read");
             assert!(trouble.hint.is_some_and(|hint| hint.contains("--features oiio")), "{name}: {}", trouble.text);
         }
         // What no library reads, or what is broken, is not to be had by one.
         for name in ["notes.txt", "broken.png", "nothing"] {
-            let trouble = decode(b"some text", Choice { name, ..Choice::default() }).err().expect("not read");
+            let trouble = decode(b"some text", Choice { name, ..Choice::default() }).expect_err("not read");
             assert!(trouble.hint.is_none_or(|hint| !hint.contains("oiio")), "{name}");
         }
     }

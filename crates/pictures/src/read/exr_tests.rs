@@ -42,7 +42,7 @@ fn rgb(size: (usize, usize), of: impl Fn(usize) -> [f32; 3], make: fn(&[f32]) ->
 }
 
 fn trouble(result: Result<Linear, Trouble>) -> Trouble {
-    result.err().expect("the file has a fault")
+    result.expect_err("the file has a fault")
 }
 
 #[test]
