@@ -2,8 +2,8 @@
 
 use crate::console;
 use spectra_core::params::{Fault, Faults};
-use spectra_session::SessionError;
 use spectra_files::WriteError;
+use spectra_session::SessionError;
 use std::io;
 
 /// Done, or stopped when its time was up.

@@ -1,12 +1,12 @@
 //! The contact sheet: all pictures of a sweep, small, side by side.
 
+use spectra_color::{Transfer, to_u8};
 use spectra_core::frame::DisplayPicture;
 use spectra_core::math::log10;
 use spectra_core::params::{Dimension, Reading};
 use spectra_core::sink::{Out, WriteFault};
 use spectra_plot::{Canvas, Color, Format, Paint, Picture, Rect, TextStyle, text_width};
 use spectra_scene::{Developed, Member, SweptAxis};
-use spectra_color::{Transfer, to_u8};
 use std::io::Cursor;
 
 /// Space around and between the cells, pixels.

@@ -54,8 +54,8 @@ fn picture(job: &Job<'_>, host: &dyn Host) -> Result<Ended, SessionError> {
     let member = session.member();
     let files = Files::of(&job.names, session.scene(), &member)?;
     // What cannot be rendered leaves no folder behind.
-    session.prepare()?;
     fits(&session, host)?;
+    session.prepare()?;
     host.hear(Event::Ready);
     // Before any light is traced: an hour's picture must not end without a place to go.
     let report_file = job.names.report(&member.stem(""));

@@ -3,8 +3,8 @@
 use crate::bridge::ffi;
 use crate::{reading, writing};
 use spectra_core::resources::Found;
-use spectra_pictures::library::{FilePicture, PictureLibrary, PictureLibraryEntry, PictureLimits, TiledExr};
 use spectra_core::sink::Out;
+use spectra_pictures::library::{FilePicture, PictureLibrary, PictureLibraryEntry, PictureLimits, TiledExr};
 
 /// The library OpenImageIO (Larry Gritz and others, <https://openimageio.org>).
 #[derive(Clone, Copy, Debug)]

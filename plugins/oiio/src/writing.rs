@@ -1,8 +1,8 @@
 //! Pictures out: any format that the library writes, and textures.
 
 use crate::bridge::ffi::{self, Plan};
-use spectra_pictures::library::TiledExr;
 use spectra_core::sink::Out;
+use spectra_pictures::library::TiledExr;
 use std::io::{self, Seek, SeekFrom, Write};
 use std::path::Path;
 

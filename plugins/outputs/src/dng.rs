@@ -9,7 +9,10 @@ use spectra_core::stage::Imager;
 use spectra_pictures::write::{RawLens, dng};
 use spectra_scene::{Holds, Output, Scene, Shot};
 
-/// The numbers of a sensor's converter as DNG, for raw converters.
+/// The numbers of a sensor's converter as DNG.
+///
+/// For raw converters: mosaic, black and white level, color matrices for two illuminants, noise profile and exposure are in the file. Only an
+/// imager with a converter (`imager: {kind: sensor, ...}`) has such numbers.
 ///
 /// # Example
 /// ```yaml

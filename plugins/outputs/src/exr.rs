@@ -3,13 +3,16 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{Faults, Params};
-use spectra_pictures::library;
 use spectra_core::registry::Context;
 use spectra_core::sink::{Out, WriteFault};
+use spectra_pictures::library;
 use spectra_pictures::write::{exr, tiled_exr};
 use spectra_scene::{Holds, Output, Shot};
 
-/// The linear exposure as OpenEXR, 32-bit floats: a channel for each that was recorded.
+/// The linear exposure as OpenEXR: a channel for each that was recorded.
+///
+/// Nothing that was computed is lost in it: 32-bit floats in lux seconds (or what the channel's unit says), with the scene and how it was
+/// rendered in the header. For compositing, for measuring, and to keep the light of a long render.
 ///
 /// # Example
 /// ```yaml

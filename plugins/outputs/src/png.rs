@@ -8,7 +8,10 @@ use spectra_core::sink::{Out, WriteFault};
 use spectra_pictures::write::png8;
 use spectra_scene::{Holds, Output, Shot};
 
-/// The picture as PNG, 8 bits a channel, sRGB.
+/// The picture as PNG.
+///
+/// 8 bits a channel in sRGB, as any viewer and web page shows it; of films side by side a file each. For grading take `tiff`, for numbers
+/// `exr`.
 ///
 /// # Example
 /// ```yaml

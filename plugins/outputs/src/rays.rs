@@ -5,6 +5,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_analysis::draw::{DrawnRay, Fans, Ground, Sheet, View};
 use spectra_analysis::fan::FanFinder;
+use spectra_color::RgbSpace;
 use spectra_core::params::{Faults, Length, Params, Positive, Whole};
 use spectra_core::registry::Context;
 use spectra_core::sink::{Out, WriteFault};
@@ -14,10 +15,12 @@ use spectra_glass::DispersionError;
 use spectra_lens::{Indices, Section, Tracer};
 use spectra_plot::Format;
 use spectra_scene::{Holds, Output, Scene, Shot};
-use spectra_color::RgbSpace;
 use spectra_spectrum::Observer;
 
 /// The light's way through the lens, as a figure beside the picture.
+///
+/// A section of the lens with the rays of the scene's own light: a beam's rays in its colors, or fans over the field for a source that shines
+/// everywhere. For papers and pages that explain a picture, and for looking what a lens does with a prism's light.
 ///
 /// # Example
 /// ```yaml

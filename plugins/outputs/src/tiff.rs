@@ -8,7 +8,9 @@ use spectra_core::sink::{Out, WriteFault};
 use spectra_pictures::write::tiff16;
 use spectra_scene::{Holds, Output, Shot};
 
-/// The picture as TIFF, 16 bits a channel, sRGB, uncompressed.
+/// The picture as TIFF with 16 bits a channel.
+///
+/// sRGB, uncompressed; of films side by side a file each. For photo editors: enough steps to lighten shadows without bands.
 ///
 /// # Example
 /// ```yaml

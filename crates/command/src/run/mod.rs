@@ -16,6 +16,7 @@ use serde_json::json;
 use spectra_core::Isa;
 use spectra_scene::diagnostics;
 use spectra_session::{Control, Ended, Event, Folder, Host, Job, Threads, Workers};
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
@@ -68,6 +69,7 @@ fn render_scene(arguments: &Run, isa: Isa, started: Instant) -> Outcome {
         set_up,
         progress: Mutex::new(Progress::new(arguments, deadline)),
         control: Mutex::default(),
+        is_tracing: AtomicBool::new(false),
         interrupt: OnceLock::new(),
     };
     let ended = spectra_session::run(&job, &face)?;
@@ -99,6 +101,8 @@ struct Face {
     progress: Mutex<Progress>,
     /// Of the picture that is rendered.
     control: Mutex<Arc<Control>>,
+    /// Whether light is traced at this moment.
+    is_tracing: AtomicBool,
     interrupt: OnceLock<Interrupt>,
 }
 
@@ -112,7 +116,9 @@ impl Face {
         if self.is_late() {
             control.stop();
         }
-        self.progress.lock().unwrap_or_else(PoisonError::into_inner).tick(&control, self.is_interrupted());
+        if self.is_tracing.load(Relaxed) {
+            self.progress.lock().unwrap_or_else(PoisonError::into_inner).tick(&control, self.is_interrupted());
+        }
     }
 }
 
@@ -178,8 +184,11 @@ impl Host for Face {
     }
 
     fn hear(&self, event: Event<'_>) {
-        if matches!(event, Event::Ready) {
-            self.set_up.done();
+        match event {
+            Event::Ready => self.set_up.done(),
+            Event::Start(_) => self.is_tracing.store(true, Relaxed),
+            Event::Traced => self.is_tracing.store(false, Relaxed),
+            _ => {}
         }
         self.progress.lock().unwrap_or_else(PoisonError::into_inner).hear(event, self.threads, self.isa);
     }

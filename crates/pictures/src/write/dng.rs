@@ -1,11 +1,11 @@
 //! Raw frames as DNG: what raw converters open.
 
-use spectra_files::WriteFault;
 use super::tiff::{
     Field, bytes, directory, doubles, exposure, length, longs, rationals, shorts, signed_rationals, text, undefined,
 };
 use spectra_core::frame::RawFrame;
 use spectra_core::sink::Out;
+use spectra_files::WriteFault;
 use std::io::{BufWriter, Write};
 
 /// What a raw file says of the lens.

@@ -1,10 +1,10 @@
 //! OpenEXR of the linear exposure, in tiles.
 
-use spectra_files::WriteFault;
 use super::exposure::{all_attributes, pixel_aspect, times};
-use spectra_core::frame::ExposureFrame;
 use crate::library::{self, TiledExr};
+use spectra_core::frame::ExposureFrame;
 use spectra_core::sink::Out;
+use spectra_files::WriteFault;
 
 /// Side of a tile, pixels: what texture tools use.
 const TILE_PX: u32 = 64;
