@@ -9,7 +9,7 @@ use spectra_core::Isa;
 use spectra_core::RayBatch;
 use spectra_core::batch::pixel_and_channel;
 use spectra_core::frame::FrameSize;
-use spectra_core::numbers::Numbers;
+use spectra_core::numbers::{Numbers, StageKey};
 use spectra_core::stage::{Launch, Radiance};
 use spectra_lens::{RearPupil, Travel};
 
@@ -17,6 +17,9 @@ use spectra_lens::{RearPupil, Travel};
 pub(crate) const PIXELS_PER_UNIT: u32 = 64;
 /// Samples of each pixel in a unit of work.
 pub(crate) const SAMPLES_PER_PASS: u32 = 32;
+
+/// What numbers of its own stages draw by.
+const ESTIMATOR: &str = "backward";
 
 pub(crate) struct Backward<'a> {
     pub pipeline: Pipeline<'a>,
@@ -27,25 +30,24 @@ pub(crate) struct Backward<'a> {
 }
 
 impl<'a> Backward<'a> {
-    pub(crate) fn new(pipeline: Pipeline<'a>, seed: u64) -> Result<Self, RenderError> {
+    pub(crate) fn new(mut pipeline: Pipeline<'a>, seed: u64) -> Result<Self, RenderError> {
         let scene = pipeline.scene;
         let launch = scene.imager.launch().ok_or(RenderError::CannotLaunch)?;
+        let radiance = scene.source.radiance().ok_or(RenderError::NoRadiance)?;
+        pipeline.draws |= launch.draws() || radiance.draws();
+        let numbers = pipeline.numbers(seed);
         let mut rays = imager_rays(launch, scene.imager.size(), pipeline.isa);
         let [x, y, z] = rays.positions();
         let points: Vec<DVec3> = (0..rays.len()).map(|i| DVec3::new(x[i], y[i], z[i])).collect();
         let grid = scene.grid;
         let rear = RearPupil::search(&scene.lens, &pipeline.tracer, &points, grid.start_nm, grid.end_nm());
         let rear = rear.map(|rear| {
-            let aside_mm = aside_mm(launch, &rear, &mut rays, grid.start_nm, pipeline.isa);
+            rays.columns_mut().wavelength_nm.fill(grid.start_nm);
+            rays.number(0, &numbers, ESTIMATOR, 0, 0);
+            let aside_mm = aside_mm(launch, &rear, &rays, pipeline.isa);
             if aside_mm > 0.0 { rear.widened(ROOM * aside_mm) } else { rear }
         });
-        Ok(Self {
-            launch,
-            radiance: scene.source.radiance().ok_or(RenderError::NoRadiance)?,
-            rear: rear.ok_or(RenderError::NoAperture)?,
-            numbers: pipeline.numbers(seed),
-            pipeline,
-        })
+        Ok(Self { launch, radiance, rear: rear.ok_or(RenderError::NoAperture)?, numbers, pipeline })
     }
 
     /// The same with the numbers of another seed.
@@ -87,10 +89,11 @@ impl<'a> Backward<'a> {
         }
         state.draw_wavelengths(&self.pipeline, len);
         look(Step::Wavelengths, &state.rays);
-        let c = state.rays.columns_mut();
-        for (chunk, pixel) in c.tag.chunks_mut(count).zip(pixels) {
-            chunk.fill(pixel);
+        for (from, pixel) in (0..).step_by(count).zip(pixels) {
+            state.rays.columns_mut().tag[from..from + count].fill(pixel);
+            state.rays.number(from, &self.numbers, ESTIMATOR, u64::from(pixel), u64::from(first));
         }
+        state.rays.set_stage(StageKey::IMAGER);
         let [_, u, v, a, b] = &state.numbers;
         self.launch.place(&mut state.rays, u.slice(len), v.slice(len), isa);
         look(Step::Imager, &state.rays);
@@ -103,6 +106,7 @@ impl<'a> Backward<'a> {
         look(Step::Imager, &state.rays);
         self.pipeline.tracer.trace(&mut state.rays, &mut state.work, Travel::Backward);
         look(Step::Lens, &state.rays);
+        state.rays.set_stage(StageKey::SOURCE);
         self.radiance.radiance(&mut state.rays, isa);
         look(Step::Source, &state.rays);
         state.settle(isa);
@@ -165,7 +169,7 @@ impl<'a> Backward<'a> {
 /// search of the pupil needs it.
 fn imager_rays(launch: &dyn Launch, size: FrameSize, isa: Isa) -> RayBatch {
     const SIDE: u32 = 65;
-    let mut rays = RayBatch::new((SIDE * SIDE) as usize);
+    let mut rays = RayBatch::new((SIDE * SIDE) as usize).with_numbers();
     rays.restart((SIDE * SIDE) as usize);
     // Pixel and place in it, from one edge of the frame to the other.
     let split = |k: u32, pixels: u32| {
@@ -188,16 +192,16 @@ fn imager_rays(launch: &dyn Launch, size: FrameSize, isa: Isa) -> RayBatch {
 /// What was measured on some rays may be exceeded by others: this much room is left.
 const ROOM: f64 = 1.25;
 
-/// How far an imager moves rays aside after they were aimed, mm: the most of rays from all over it, the shortest wavelength
-/// in the middle and at four sides of the pupil.
-fn aside_mm(launch: &dyn Launch, rear: &RearPupil, points: &mut RayBatch, wavelength_nm: f64, isa: Isa) -> f64 {
+/// How far an imager moves rays aside after they were aimed, mm: the most of rays from all over it, in the middle and at four
+/// sides of the pupil.
+fn aside_mm(launch: &dyn Launch, rear: &RearPupil, points: &RayBatch, isa: Isa) -> f64 {
     let mut most = 0.0_f64;
     for (u, v) in [(0.5, 0.5), (0.02, 0.5), (0.98, 0.5), (0.5, 0.02), (0.5, 0.98)] {
         let mut rays = points.clone();
         let n = rays.len();
-        rays.columns_mut().wavelength_nm.fill(wavelength_nm);
         rear.aim(&mut rays, &vec![u; n], &vec![v; n], isa);
         let before = rays.clone();
+        rays.set_stage(StageKey::IMAGER);
         launch.admit(&mut rays, isa);
         let at = |rays: &RayBatch, i: usize| DVec3::from_array(rays.positions().map(|c| c[i]));
         for i in (0..n).filter(|i| before.loss(*i).is_none()) {

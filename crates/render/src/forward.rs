@@ -7,7 +7,7 @@ use crate::sums::ExactSums;
 use glam::DVec3;
 use spectra_core::RayBatch;
 use spectra_core::batch::pixel_and_channel;
-use spectra_core::numbers::{Dimension, Numbers};
+use spectra_core::numbers::{Dimension, Numbers, StageKey};
 use spectra_core::stage::{Emit, Receive};
 use spectra_lens::{AimPattern, FrontPupil, Travel};
 use spectra_scene::ConePattern;
@@ -16,6 +16,8 @@ use spectra_scene::ConePattern;
 pub(crate) const PATHS_PER_UNIT: u64 = 1 << 16;
 /// All forward paths form one stream of numbers.
 const STREAM: u64 = 0;
+/// What numbers of its own stages draw by.
+const ESTIMATOR: &str = "forward";
 
 pub(crate) struct Forward<'a> {
     pub pipeline: Pipeline<'a>,
@@ -31,10 +33,11 @@ pub(crate) struct Forward<'a> {
 const SOURCE_POINTS: usize = 4096;
 
 impl<'a> Forward<'a> {
-    pub(crate) fn new(pipeline: Pipeline<'a>, seed: u64) -> Result<Self, RenderError> {
+    pub(crate) fn new(mut pipeline: Pipeline<'a>, seed: u64) -> Result<Self, RenderError> {
         let scene = pipeline.scene;
         let emit = scene.source.emit().ok_or(RenderError::CannotEmit)?;
         let receive = scene.imager.receive().ok_or(RenderError::CannotReceive)?;
+        pipeline.draws |= emit.draws() || receive.draws();
         let (numbers, cone) = Self::numbers(&pipeline, seed);
         let pupil = if emit.is_directed() {
             None
@@ -83,6 +86,8 @@ impl<'a> Forward<'a> {
         }
         state.draw_wavelengths(&self.pipeline, len);
         look(Step::Wavelengths, &state.rays);
+        state.rays.number(0, &self.numbers, ESTIMATOR, STREAM, first);
+        state.rays.set_stage(StageKey::SOURCE);
         let [_, u, v, a, b] = &state.numbers;
         self.emit.place(&mut state.rays, u.slice(len), v.slice(len), isa);
         look(Step::Source, &state.rays);
@@ -97,6 +102,7 @@ impl<'a> Forward<'a> {
         look(Step::Source, &state.rays);
         self.pipeline.tracer.trace(&mut state.rays, &mut state.work, Travel::Forward);
         look(Step::Lens, &state.rays);
+        state.rays.set_stage(StageKey::IMAGER);
         self.receive.receive(&mut state.rays, isa);
         look(Step::Imager, &state.rays);
         state.settle(isa);
@@ -147,6 +153,8 @@ fn source_points(pipeline: &Pipeline<'_>, emit: &dyn Emit, numbers: &Numbers) ->
         numbers.fill(isa, STREAM, 0, dimension as u32, column.slice_mut(SOURCE_POINTS));
     }
     state.draw_wavelengths(pipeline, SOURCE_POINTS);
+    state.rays.number(0, numbers, ESTIMATOR, STREAM, 0);
+    state.rays.set_stage(StageKey::SOURCE);
     let [_, u, v, _, _] = &state.numbers;
     emit.place(&mut state.rays, u.slice(SOURCE_POINTS), v.slice(SOURCE_POINTS), isa);
     let [x, y, z] = state.rays.positions();

@@ -20,6 +20,8 @@ pub(crate) struct Pipeline<'a> {
     pub tracer: Tracer,
     pub density: Box<dyn WavelengthDensity>,
     pub responses: Responses,
+    /// Whether a stage on the way draws numbers of its own, for which batches carry what it needs.
+    pub draws: bool,
 }
 
 impl<'a> Pipeline<'a> {
@@ -37,6 +39,7 @@ impl<'a> Pipeline<'a> {
             tracer: Tracer::new(&scene.lens, indices, isa).map_err(|e| RenderError::Lens(e.to_string()))?,
             density,
             responses: Responses::new(scene.grid, &scene.channels),
+            draws: scene.lens.elements.iter().any(|e| e.surface.draws()),
         })
     }
 
@@ -68,8 +71,9 @@ pub(crate) struct ThreadState {
 
 impl ThreadState {
     pub(crate) fn new(pipeline: &Pipeline<'_>, capacity: usize) -> Self {
+        let rays = RayBatch::new(capacity);
         Self {
-            rays: RayBatch::new(capacity),
+            rays: if pipeline.draws { rays.with_numbers() } else { rays },
             work: pipeline.tracer.work(capacity),
             numbers: std::array::from_fn(|_| Column::new(capacity)),
             values: vec![0.0; capacity],
