@@ -42,9 +42,8 @@ fn estimate(direction: &str, count: &str) -> Vec<(f64, f64)> {
     (0..runs[0].len()).map(of).collect()
 }
 
-/// The 216 pixels' differences in standard errors have a mean square of 1 (of Student's t with some 30 degrees of freedom:
-/// 30/28, good to a tenth), none is beyond the 3 sigma level of 216 together (4.6 with so few degrees), and the sums over
-/// card and halo agree within 3 standard errors.
+/// The 150 pixels' differences in standard errors have a mean square of 30/28 (Student's t of 30 degrees of freedom; good to 0.13),
+/// none is beyond what t exceeds in one of 370 such pictures, and the sums over card and halo agree within 3 standard errors.
 #[test]
 fn both_directions_are_equal() {
     let (backward, forward) = (estimate("backward", "samples=1024"), estimate("forward", "rays=2000000"));
@@ -65,9 +64,13 @@ fn both_directions_are_equal() {
     println!("mean square {mean_square:.3}, at most {most:.2} standard errors");
     for (name, [difference, variance, light]) in ["card", "halo"].into_iter().zip(parts) {
         let errors = difference / variance.sqrt();
-        println!("{name}: {:+.5} of the light, {errors:+.2} standard errors of {:.5}", difference / light, variance.sqrt() / light);
+        println!(
+            "{name}: {:+.5} of the light, {errors:+.2} standard errors of {:.5}",
+            difference / light,
+            variance.sqrt() / light
+        );
         assert!(errors.abs() < 3.0 && light > 0.0, "{name}");
     }
     assert!(parts[1][2] > 0.02 * parts[0][2], "no halo");
-    assert!((0.7..1.45).contains(&mean_square) && most < 4.6);
+    assert!((0.7..1.45).contains(&mean_square) && most < 5.0);
 }

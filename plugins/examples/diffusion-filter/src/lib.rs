@@ -166,9 +166,8 @@ mod tests {
     fn lobes_have_the_moments_of_their_widths() {
         let n = RAYS as f64;
         for (veil_share, width_deg) in [(0.0, 0.5_f64), (1.0, 4.0)] {
-            let yaml = format!(
-                "{{kind: diffusion-filter, share: 1, glow: 0.5 deg, veil: 4 deg, veil-share: {veil_share}}}"
-            );
+            let yaml =
+                format!("{{kind: diffusion-filter, share: 1, glow: 0.5 deg, veil: 4 deg, veil-share: {veil_share}}}");
             for from in [DVec3::Z, DVec3::new(0.4, 0.2, -1.0).normalize()] {
                 let (steps, _) = steps(&yaml, from);
                 let s = width_deg.to_radians().sin();
