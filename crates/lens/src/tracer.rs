@@ -9,6 +9,7 @@ use crate::{Element, Lens};
 use glam::{DMat3, DVec3};
 use spectra_core::batch::Column;
 use spectra_core::isa::{Isa, Vectorized};
+use spectra_core::numbers::StageKey;
 use spectra_core::surface::{Action, IndexColumns, Interface, Travel};
 use spectra_core::{Loss, LossCounts, RayBatch};
 use spectra_glass::{Dispersion, DispersionError, Medium};
@@ -93,6 +94,8 @@ struct Leg {
     beyond: usize,
     /// Whether the way here lies within the lens, where glass absorbs.
     inside: bool,
+    /// What the surface draws its numbers by, if it does.
+    stage: Option<StageKey>,
 }
 
 /// What one thread needs to trace: index columns, and what was lost.
@@ -192,6 +195,12 @@ impl Tracer {
         self.elements.len()
     }
 
+    /// As far as light of this direction comes before a surface draws its numbers; straight through where none does.
+    pub(crate) fn certain(&self, travel: Travel) -> Route {
+        let path = Path::through(self.elements.len(), travel);
+        self.route(&path.up_to(|at| self.elements[at].surface.draws()))
+    }
+
     /// Whether light keeps its weight through it.
     fn is_ideal(&self) -> bool {
         self.passages.iter().all(|p| *p == Passage::All) && self.absorptions.iter().all(Option::is_none)
@@ -282,6 +291,9 @@ impl Tracer {
             before: columns(&work.media[leg.before], len),
             after: columns(&work.media[leg.after], len),
         };
+        if let Some(stage) = leg.stage {
+            rays.set_stage(stage);
+        }
         let mut ended = element.surface.interact(rays, &interface, isa);
         if let Some((ledger, booked)) = &mut work.ledger {
             booked.settle(rays, &mut ledger.steps[step], |s| &mut s.absorbed);
@@ -413,7 +425,7 @@ fn route(elements: &[Element], image_pose: &Pose, path: &Path) -> Route {
     let end = |at_front: bool| if at_front { &Pose::IDENTITY } else { image_pose };
     let mut frame = end(path.enters() == Travel::Forward);
     let mut outside = 0;
-    let mut legs = Vec::with_capacity(path.steps().len());
+    let mut legs: Vec<Leg> = Vec::with_capacity(path.steps().len());
     for PathStep { element: at, act, travel } in path.steps() {
         let element = &elements[*at];
         let (before, beyond) = match travel {
@@ -432,6 +444,11 @@ fn route(elements: &[Element], image_pose: &Pose, path: &Path) -> Route {
             after,
             beyond,
             inside: !legs.is_empty(),
+            stage: element.surface.draws().then(|| {
+                let same = elements[..*at].iter().filter(|e| e.surface.draws() && e.kind == element.kind).count();
+                let visits = legs.iter().filter(|leg| leg.at == *at).count();
+                StageKey::new(&element.kind, (visits as u64) << 32 | same as u64)
+            }),
         });
         (frame, outside) = (&element.pose, after);
     }

@@ -40,8 +40,8 @@ impl Passage {
             Action::Reflect if element.reflectance == 1.0 => Self::All,
             Action::Reflect => Self::Mirror(element.reflectance),
             Action::Refract if element.medium_before == element.medium_after => Self::All,
-            // What a grating sends into its order is not a matter of Fresnel's equations.
-            Action::Refract if element.surface.is_directional() => Self::All,
+            // What a grating sends into its order, or a surface scatters, is not a matter of Fresnel's equations.
+            Action::Refract if element.surface.is_directional() || element.surface.draws() => Self::All,
             Action::Refract => match lens.coating_of(element) {
                 Coating::Ideal => Self::All,
                 coating => Self::Coated(coating),

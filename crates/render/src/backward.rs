@@ -13,7 +13,7 @@ use spectra_core::Isa;
 use spectra_core::RayBatch;
 use spectra_core::batch::pixel_and_channel;
 use spectra_core::frame::FrameSize;
-use spectra_core::numbers::Numbers;
+use spectra_core::numbers::{Numbers, StageKey};
 use spectra_core::stage::{Launch, Radiance};
 use spectra_lens::{RearPupil, Travel};
 use std::ops::Range;
@@ -23,6 +23,9 @@ use std::sync::Arc;
 pub(crate) const PIXELS_PER_UNIT: u32 = 64;
 /// Samples of each pixel in a unit of work.
 pub(crate) const SAMPLES_PER_PASS: u32 = 32;
+
+/// What numbers of its own stages draw by.
+pub(crate) const ESTIMATOR: &str = "backward";
 
 pub(crate) struct Backward {
     pipeline: Arc<Pipeline>,
@@ -43,13 +46,16 @@ impl Backward {
         let points: Vec<DVec3> = (0..rays.len()).map(|i| DVec3::new(x[i], y[i], z[i])).collect();
         let grid = scene.grid;
         let rear = RearPupil::search(&scene.lens, &pipeline.tracer, &points, grid.start_nm, grid.end_nm());
+        let numbers = pipeline.numbers(PILOT_SEED);
         let rear = rear.map(|rear| {
-            let aside_mm = aside_mm(launch, &rear, &mut rays, grid.start_nm, pipeline.isa);
+            rays.columns_mut().wavelength_nm.fill(grid.start_nm);
+            rays.number(0, &numbers, ESTIMATOR, 0, 0);
+            let aside_mm = aside_mm(launch, &rear, &rays, pipeline.isa);
             if aside_mm > 0.0 { rear.widened(ROOM * aside_mm) } else { rear }
         });
         let pixels = scene.imager.size().pixels() as u64;
         let (rear, seed) = (Arc::new(rear.ok_or(RenderError::NoAperture)?), scene.render.seed);
-        let mut own = Self { rear, numbers: pipeline.numbers(PILOT_SEED), scale: 1.0, pipeline };
+        let mut own = Self { rear, numbers, scale: 1.0, pipeline };
         own.scale = pilot::scale(&own.pipeline, |state, batch, mut look| {
             let spread = (0..PILOT_RAYS).map(|i| (u64::from(i) * pixels / u64::from(PILOT_RAYS)) as u32);
             own.steps(state, spread, batch, 1, &mut look);
@@ -102,23 +108,29 @@ impl Backward {
             }
             len += count;
         }
-        let tags = |tags: &mut [u32]| tags.chunks_mut(count).zip(pixels).for_each(|(chunk, pixel)| chunk.fill(pixel));
-        self.follow(state, len, tags, look);
+        let start = |rays: &mut RayBatch| {
+            for (from, pixel) in (0..).step_by(count).zip(pixels) {
+                rays.columns_mut().tag[from..from + count].fill(pixel);
+                rays.number(from, &self.numbers, ESTIMATOR, u64::from(pixel), u64::from(first));
+            }
+        };
+        self.follow(state, len, start, look);
     }
 
-    /// Traces `len` rays by the columns of numbers, from the pixels that `tags` writes.
+    /// Traces `len` rays by the columns of numbers, from the pixels that `start` writes, with the numbers of their own that it gives.
     #[inline(always)]
     pub(crate) fn follow(
         &self,
         state: &mut ThreadState,
         len: usize,
-        tags: impl FnOnce(&mut [u32]),
+        start: impl FnOnce(&mut RayBatch),
         look: &mut impl FnMut(Step, &RayBatch),
     ) {
         let isa = self.pipeline.isa;
         state.draw_wavelengths(&self.pipeline, len);
         look(Step::Wavelengths, &state.rays);
-        tags(state.rays.columns_mut().tag);
+        start(&mut state.rays);
+        state.rays.set_stage(StageKey::IMAGER);
         let [_, u, v, a, b] = &state.numbers;
         let launch = self.launch();
         launch.place(&mut state.rays, u.slice(len), v.slice(len), isa);
@@ -132,6 +144,7 @@ impl Backward {
         look(Step::Imager, &state.rays);
         self.pipeline.tracer.trace(&mut state.rays, &mut state.work, Travel::Backward);
         look(Step::Lens, &state.rays);
+        state.rays.set_stage(StageKey::SOURCE);
         self.radiance().radiance(&mut state.rays, isa);
         look(Step::Source, &state.rays);
         state.settle(isa);
@@ -251,7 +264,7 @@ impl Estimator for Backward {
 /// search of the pupil needs it.
 fn imager_rays(launch: &dyn Launch, size: FrameSize, isa: Isa) -> RayBatch {
     const SIDE: u32 = 65;
-    let mut rays = RayBatch::new((SIDE * SIDE) as usize);
+    let mut rays = RayBatch::new((SIDE * SIDE) as usize).with_numbers();
     rays.restart((SIDE * SIDE) as usize);
     // Pixel and place in it, from one edge of the frame to the other.
     let split = |k: u32, pixels: u32| {
@@ -274,16 +287,16 @@ fn imager_rays(launch: &dyn Launch, size: FrameSize, isa: Isa) -> RayBatch {
 /// What was measured on some rays may be exceeded by others: this much room is left.
 const ROOM: f64 = 1.25;
 
-/// How far an imager moves rays aside after they were aimed, mm: the most of rays from all over it, the shortest wavelength
-/// in the middle and at four sides of the pupil.
-fn aside_mm(launch: &dyn Launch, rear: &RearPupil, points: &mut RayBatch, wavelength_nm: f64, isa: Isa) -> f64 {
+/// How far an imager moves rays aside after they were aimed, mm: the most of rays from all over it, in the middle and at four
+/// sides of the pupil.
+fn aside_mm(launch: &dyn Launch, rear: &RearPupil, points: &RayBatch, isa: Isa) -> f64 {
     let mut most = 0.0_f64;
     for (u, v) in [(0.5, 0.5), (0.02, 0.5), (0.98, 0.5), (0.5, 0.02), (0.5, 0.98)] {
         let mut rays = points.clone();
         let n = rays.len();
-        rays.columns_mut().wavelength_nm.fill(wavelength_nm);
         rear.aim(&mut rays, &vec![u; n], &vec![v; n], isa);
         let before = rays.clone();
+        rays.set_stage(StageKey::IMAGER);
         launch.admit(&mut rays, isa);
         let at = |rays: &RayBatch, i: usize| DVec3::from_array(rays.positions().map(|c| c[i]));
         for i in (0..n).filter(|i| before.loss(*i).is_none()) {

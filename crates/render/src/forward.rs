@@ -11,7 +11,7 @@ use crate::{Done, Workers};
 use glam::DVec3;
 use spectra_core::RayBatch;
 use spectra_core::batch::pixel_and_channel;
-use spectra_core::numbers::{Dimension, Numbers};
+use spectra_core::numbers::{Dimension, Numbers, StageKey};
 use spectra_core::stage::{Emit, Receive};
 use spectra_lens::{AimPattern, FrontPupil, Travel};
 use spectra_scene::ConePattern;
@@ -22,6 +22,9 @@ use std::sync::Arc;
 pub(crate) const PATHS_PER_UNIT: u64 = 1 << 16;
 /// All forward paths form one stream of numbers.
 const STREAM: u64 = 0;
+
+/// What numbers of its own stages draw by.
+const ESTIMATOR: &str = "forward";
 
 pub(crate) struct Forward {
     pipeline: Arc<Pipeline>,
@@ -124,6 +127,8 @@ impl Forward {
         }
         state.draw_wavelengths(&self.pipeline, len);
         look(Step::Wavelengths, &state.rays);
+        state.rays.number(0, &self.numbers, ESTIMATOR, STREAM, first);
+        state.rays.set_stage(StageKey::SOURCE);
         let [_, u, v, a, b] = &state.numbers;
         let emit = self.emit();
         emit.place(&mut state.rays, u.slice(len), v.slice(len), isa);
@@ -139,6 +144,7 @@ impl Forward {
         look(Step::Source, &state.rays);
         self.pipeline.tracer.trace(&mut state.rays, &mut state.work, Travel::Forward);
         look(Step::Lens, &state.rays);
+        state.rays.set_stage(StageKey::IMAGER);
         self.receive().receive(&mut state.rays, isa);
         look(Step::Imager, &state.rays);
         state.settle(isa);
@@ -234,6 +240,8 @@ fn source_points(pipeline: &Pipeline, emit: &dyn Emit, numbers: &Numbers) -> Vec
         numbers.fill(isa, STREAM, 0, dimension as u32, column.slice_mut(SOURCE_POINTS));
     }
     state.draw_wavelengths(pipeline, SOURCE_POINTS);
+    state.rays.number(0, numbers, ESTIMATOR, STREAM, 0);
+    state.rays.set_stage(StageKey::SOURCE);
     let [_, u, v, _, _] = &state.numbers;
     emit.place(&mut state.rays, u.slice(SOURCE_POINTS), v.slice(SOURCE_POINTS), isa);
     let [x, y, z] = state.rays.positions();

@@ -4,7 +4,7 @@
 //! channel, by numbers of their own. Where there are fewer rays than pixels that it looks at, neighbors share one.
 
 use crate::Workers;
-use crate::backward::Backward;
+use crate::backward::{Backward, ESTIMATOR};
 use crate::blame::{Blame, Step};
 use crate::error::RenderError;
 use crate::forward::{Forward, PATHS_PER_UNIT};
@@ -109,10 +109,12 @@ fn unit(
                 let out = column.slice_mut(len);
                 numbers.fill_rotated(pipeline.isa, stream, first as u64, group, dimension as u32, out);
             }
-            let tags = |tags: &mut [u32]| {
-                tags.iter_mut().zip(first..).for_each(|(tag, at)| *tag = places[at / samples].pixel);
+            let start = |rays: &mut RayBatch| {
+                let tags = rays.columns_mut().tag.iter_mut();
+                tags.zip(first..).for_each(|(tag, at)| *tag = places[at / samples].pixel);
+                rays.number(0, numbers, ESTIMATOR, stream, first as u64);
             };
-            backward.follow(state, len, tags, &mut |step, rays| look(step, rays));
+            backward.follow(state, len, start, &mut |step, rays| look(step, rays));
         };
         trace(state, &mut |_, _| {});
         for channel in 0..channels {

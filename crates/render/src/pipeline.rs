@@ -23,6 +23,8 @@ pub struct Pipeline {
     pub(crate) responses: Responses,
     /// Which channels of the scene are recorded, in the order of `responses`.
     pub(crate) recorded: Vec<usize>,
+    /// Whether a stage on the way draws numbers of its own, for which batches carry what it needs.
+    pub(crate) draws: bool,
 }
 
 impl Pipeline {
@@ -40,7 +42,8 @@ impl Pipeline {
         let indices = Indices::Band { min_nm: scene.grid.start_nm, max_nm: scene.grid.end_nm() };
         let tracer = Tracer::new(&scene.lens, indices, isa).map_err(|e| RenderError::Lens(e.to_string()))?;
         let responses = Responses::new(scene.grid, &system.channels);
-        Ok(Self { scene: Arc::clone(scene), isa, tracer: Arc::new(tracer), density, responses, recorded })
+        let draws = draws(scene);
+        Ok(Self { scene: Arc::clone(scene), isa, tracer: Arc::new(tracer), density, responses, recorded, draws })
     }
 
     /// The same for what the meters see, with a density of their own; `None` where they see nothing of the source.
@@ -56,6 +59,7 @@ impl Pipeline {
             density,
             responses,
             recorded,
+            draws: self.draws,
         })
     }
 
@@ -72,6 +76,15 @@ impl Pipeline {
     pub(crate) fn group(&self, dimension: usize) -> u32 {
         if dimension == Dimension::Wavelength as usize { self.density.group() } else { 1 }
     }
+}
+
+/// Whether any stage draws.
+fn draws(scene: &Scene) -> bool {
+    scene.lens.elements.iter().any(|e| e.surface.draws())
+        || scene.source.emit().is_some_and(|emit| emit.draws())
+        || scene.source.radiance().is_some_and(|radiance| radiance.draws())
+        || scene.imager.launch().is_some_and(|launch| launch.draws())
+        || scene.imager.receive().is_some_and(|receive| receive.draws())
 }
 
 /// The source, and some of the channels.
@@ -93,8 +106,9 @@ pub(crate) struct ThreadState {
 
 impl ThreadState {
     pub(crate) fn new(pipeline: &Pipeline, capacity: usize) -> Self {
+        let rays = RayBatch::new(capacity);
         Self {
-            rays: RayBatch::new(capacity),
+            rays: if pipeline.draws { rays.with_numbers() } else { rays },
             work: pipeline.tracer.work(capacity),
             numbers: std::array::from_fn(|_| Column::new(capacity)),
             values: vec![0.0; capacity],
