@@ -102,7 +102,7 @@ mod tests {
         assert!(units.contains(7) && !units.contains(8));
         units.insert(10..12);
         units.insert(2..20);
-        assert_eq!(units.ranges().collect::<Vec<_>>(), [0..20]);
+        assert!(units.ranges().eq(std::iter::once(0..20)));
     }
 
     #[test]
