@@ -145,6 +145,24 @@ pub struct Columns<'a> {
     pub numbers: StageNumbers<'a>,
 }
 
+/// What the weight of a ray may depend on, to read, and the weights, to write: whoever only weighs rays leaves them where they
+/// are, and what is known of their places stays known.
+#[derive(Debug)]
+pub struct Weighing<'a> {
+    /// Positions, mm.
+    pub position: [&'a [f64]; 3],
+    /// Unit directions.
+    pub direction: [&'a [f64]; 3],
+    /// Wavelengths, nm.
+    pub wavelength_nm: &'a [f64],
+    /// Alive, or cause and surface of the loss.
+    pub state: &'a [u64],
+    /// Flux or throughput.
+    pub weight: &'a mut [f64],
+    /// Optical path since [`RayBatch::restart`], mm; empty unless the batch carries it.
+    pub optical_path_mm: &'a mut [f64],
+}
+
 impl RayBatch {
     /// An empty batch with room for `capacity` rays.
     #[must_use]
@@ -262,6 +280,20 @@ impl RayBatch {
     pub fn columns_mut(&mut self) -> Columns<'_> {
         self.scratch.radius2_is_true = false;
         self.split().0
+    }
+
+    /// The weights, writable, and what they may depend on.
+    #[inline(always)]
+    pub fn weighing(&mut self) -> Weighing<'_> {
+        let c = self.split().0;
+        Weighing {
+            position: [c.x, c.y, c.z],
+            direction: [c.l, c.m, c.n],
+            wavelength_nm: c.wavelength_nm,
+            state: c.state,
+            weight: c.weight,
+            optical_path_mm: c.optical_path_mm,
+        }
     }
 
     /// All columns, and those that the loops of a surface share, with x^2 + y^2 up to date.
