@@ -8,6 +8,8 @@
 //! - [`draw`]: a lens as a figure, with rays in the colors of their wavelengths;
 //! - [`figure`]: spectra, their colors, and glasses as figures.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 pub mod draw;
 pub mod fan;
 pub mod figure;

@@ -15,6 +15,8 @@
 //! # Ok::<(), spectra_spectrum::SpectrumError>(())
 //! ```
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod adaptation;
 mod cct;
 mod colorimetry;

@@ -4,6 +4,8 @@
 //! 2 the input is wrong; 130 interrupted by Ctrl-C, 143 by SIGTERM, 129 by SIGHUP. What a person asked for goes to standard output, what is
 //! said about it (progress, warnings, errors) to standard error.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod arguments;
 mod bench;
 mod build;

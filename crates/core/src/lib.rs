@@ -10,6 +10,8 @@
 //! - Everything that travels with light does so in batches ([`RayBatch`]), so a call through a trait object costs nothing per ray.
 //! - Random numbers, files and the instruction set reach a stage only through its arguments.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 pub mod batch;
 pub mod cover;
 pub mod frame;

@@ -261,6 +261,14 @@ pub trait Film: Send + Sync {
         Vec::new()
     }
 
+    /// Checks that a frame of this size can be developed, before any light is traced.
+    ///
+    /// # Errors
+    /// The reason why it cannot, and what to write instead.
+    fn check_frame(&self, _size: &FrameSize) -> Result<(), [String; 2]> {
+        Ok(())
+    }
+
     /// A short name.
     fn name(&self) -> String {
         self.describe()

@@ -8,6 +8,8 @@
 //! - [`mod@print`]: a black-and-white negative on paper; [`positive`]: any film on a print stock, as a scan, projected;
 //! - [`display`]: absolute XYZ to a screen, with automatic exposure as one explicit step.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod convolve;
 mod cube;
 pub mod curve;

@@ -4,6 +4,8 @@
 //! enter a tracer in the frame of the lens (vertex of the first surface at the origin) and leave it
 //! in the frame of the image plane (z = 0 there); backward it is the other way round.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod absorption;
 mod aim;
 mod aperture;

@@ -1,5 +1,7 @@
 //! A drawing as an aperture: outlines, exact at any magnification.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod outline;
 mod style;
 mod svg;

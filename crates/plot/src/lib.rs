@@ -15,6 +15,8 @@
 //! assert!(canvas.to_svg().starts_with("<svg"));
 //! ```
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod axes;
 mod canvas;
 mod color;

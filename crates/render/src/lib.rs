@@ -4,6 +4,8 @@
 //! integers, so neither the order, nor the number of threads, nor a stop in between changes a bit of
 //! what was finished.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod backward;
 mod blame;
 mod control;

@@ -298,6 +298,10 @@ fn all_stages(
     if let (Some(imager), Some(outputs)) = (&imager, &output) {
         faults.extend(output::check(outputs, &**imager, params));
     }
+    if let (Some(imager), Some(films)) = (&imager, &films) {
+        let misfit = films.iter().find_map(|film| film.film.check_frame(&imager.size()).err());
+        faults.extend(misfit.map(|[text, hint]| params.fault("imager.resolution", text).hint(hint)));
+    }
     let settings = match (&settings, &source, &imager) {
         (Some(s), Some(source), Some(imager)) => faults.take(render_settings(s, &render, &**source, &**imager)),
         _ => None,

@@ -3,6 +3,8 @@
 //! [`load`] reads a scene, finds every fault of it at once, and gives a [`Scene`]: all stages built, the
 //! lens focused and stopped, nothing traced yet. [`load_series`] does so for a file that stands for several pictures.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod advice;
 mod assemble;
 pub mod bundled;

@@ -2,6 +2,7 @@
 
 use crate::Report;
 use crate::words;
+use spectra_core::math::log10;
 use spectra_core::params::{Node, Value};
 use spectra_core::{Loss, shutter};
 use spectra_scene::FilmTime;
@@ -89,7 +90,7 @@ fn rounded(text: &str) -> String {
     let (number, rest) = text.split_at(end);
     match number.parse::<f64>() {
         Ok(value) if value > 0.0 && number.len() > 5 => {
-            let digits = (3 - value.log10().floor() as i32).clamp(0, 12) as usize;
+            let digits = (3 - log10(value).floor() as i32).clamp(0, 12) as usize;
             let short = format!("{value:.digits$}");
             let short = if digits > 0 { short.trim_end_matches('0').trim_end_matches('.') } else { &short };
             format!("{short}{rest}")

@@ -17,6 +17,8 @@
 //! 350-830 nm by 1 nm ([`spectra_core::spectral::BAND`]) unless a grid is given; luminance is 683 lm/W times an
 //! integral over V(lambda) ([`constants::LUMINOUS_EFFICACY_LM_PER_W`]).
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod bundled;
 mod by_name;
 mod cell;

@@ -1,5 +1,7 @@
 //! Every built-in plugin, linked into the program: a crate that nobody names registers nothing.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 use spectra_plugin_colors as _;
 use spectra_plugin_films as _;
 use spectra_plugin_imagers as _;

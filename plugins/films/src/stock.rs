@@ -274,6 +274,10 @@ impl Film for StockFilm {
         overruled(self.is_overruled)
     }
 
+    fn check_frame(&self, size: &FrameSize) -> Result<(), [String; 2]> {
+        self.effects.check_frame(size)
+    }
+
     fn name(&self) -> String {
         self.stock.name.clone()
     }

@@ -6,6 +6,8 @@
 //!
 //! What its readers do with a hostile file is the library's own doing: its exceptions become errors, sizes are
 //! checked before pictures are unpacked, but a fault in one of its readers can end the program.
+
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![cfg(feature = "oiio")]
 
 mod bridge;

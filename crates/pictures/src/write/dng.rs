@@ -27,7 +27,7 @@ pub struct RawLens {
 /// gives the same bytes.
 ///
 /// # Errors
-/// [`WriteError`]: the system refuses, or the number of values is not that of the size.
+/// [`WriteFault`]: the system refuses, or the number of values is not that of the size.
 pub fn dng(out: &mut dyn Out, frame: &RawFrame, lens: &RawLens) -> Result<(), WriteFault> {
     let mut to = BufWriter::new(out);
     to.write_all(&head(frame, lens)?)?;

@@ -11,7 +11,7 @@ use spectra_files::{WriteError, WriteFault, write_atomically};
 use std::io::{BufReader, Read, SeekFrom};
 use std::path::Path;
 
-/// Writes the frame as [`exr`] does, to a file.
+/// Writes the frame as [`exr()`] does, to a file.
 ///
 /// # Errors
 /// [`WriteError`].
@@ -40,7 +40,7 @@ pub fn exr(
 /// The same with 16 bits a value, in half the space: three digits, up to 65 504 (more becomes infinite).
 ///
 /// # Errors
-/// As [`exr`].
+/// As [`exr()`].
 pub fn half_exr(
     out: &mut dyn Out,
     frame: &ExposureFrame,

@@ -9,7 +9,7 @@ use spectra_files::WriteFault;
 /// Side of a tile, pixels: what texture tools use.
 const TILE_PX: u32 = 64;
 
-/// Writes the frame as [`super::exr`] does, in tiles of 64 pixels a side, by the library of picture formats that
+/// Writes the frame as [`super::exr()`] does, in tiles of 64 pixels a side, by the library of picture formats that
 /// the program is linked with. The same frame and attributes give the same bytes.
 ///
 /// # Errors
