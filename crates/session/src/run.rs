@@ -133,6 +133,8 @@ impl Taken {
         for warning in &rendering.warnings {
             host.hear(Event::Warning(&Warning::from(warning.clone())));
         }
+        // Developing takes memory of its own.
+        session.forget_light();
         Ok(Self { rendering, seconds, failure })
     }
 }

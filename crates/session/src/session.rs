@@ -249,6 +249,11 @@ impl Session {
         Ok(kept)
     }
 
+    /// Gives the memory of the light back.
+    pub(crate) fn forget_light(&mut self) {
+        self.ready = None;
+    }
+
     /// Writes the light so far, for another process to go on with.
     ///
     /// # Errors
