@@ -320,5 +320,5 @@ fn a_detector() {
         "e.yaml",
         &SHEET.replace("kind: xyz", "kind: detector, response: {kind: sensitivities, channels: {a: D65}}"),
     );
-    assert!(said(&folder, "e.yaml").contains("sensitivity is wanted here"));
+    assert!(said(&folder, "e.yaml").contains("sensitivity is expected here"));
 }

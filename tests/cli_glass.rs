@@ -209,7 +209,7 @@ fn fits_of_seven_materials() {
     let folder = tempfile::tempdir().expect("a folder");
     let bad = folder.path().join("bad.csv");
     std::fs::write(&bad, "wavelength_nm,n\n486,1.52\n589,x\n").expect("written");
-    assert!(refused(&["fit", shown(&bad)]).contains("bad.csv:3: `x` is no index"));
+    assert!(refused(&["fit", shown(&bad)]).contains("bad.csv:3: `x` is not a valid index"));
 }
 
 /// What `fit` reads, `info` and `plot` read too: a material of a file with several.

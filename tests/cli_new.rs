@@ -59,12 +59,12 @@ fn plugins_of_every_stage_are_whole() {
     for (stage, word) in STAGES {
         let name = format!("far-{stage}");
         let said = good(folder.path(), &["new", "plugin", &name, "--stage", stage, "--core", &checkout()]);
-        for next in [&format!("cd {name}"), "cargo test", "spectra build --with . -o ./spectra-mine"] {
+        for next in [&format!("cd {name}"), "cargo test --release", "spectra build --with . -o ./spectra-mine"] {
             assert!(said.contains(next), "{said}");
         }
         let plugin = folder.path().join(&name);
         let mut files =
-            vec![".gitignore", "Cargo.lock", "Cargo.toml", "README.md", "rustfmt.toml", "scene.yaml", "src"];
+            vec![".cargo", ".gitignore", "Cargo.lock", "Cargo.toml", "README.md", "rustfmt.toml", "scene.yaml", "src"];
         if stage == "surface" {
             files.push("lens.yaml");
             files.sort_unstable();
@@ -79,16 +79,55 @@ fn plugins_of_every_stage_are_whole() {
             assert!(!text.contains("my-stage") && !text.contains("MyStage") && !text.contains("{{"), "{text}");
         }
         assert_eq!(read(&plugin.join("Cargo.lock")), read(&repository("Cargo.lock")));
+        // The tests of a plugin and `spectra build` compile with the same settings, in the same folder.
+        let manifest = read(&plugin.join("Cargo.toml"));
+        let (_, profile) = manifest.split_once("[profile.release]\n").expect("a profile");
+        let ours = read(&repository("Cargo.toml"));
+        let (_, wanted) = ours.split_once("[profile.release]\n").expect("a profile");
+        assert_eq!(profile.split("\n\n").next(), wanted.split("\n\n").next());
+        let config = read(&plugin.join(".cargo/config.toml"));
+        let target = folder.path().join("cache").join("target");
+        assert!(config.contains(&format!("target-dir = {:?}", shown(&target))), "{config}");
+        assert!(read(&plugin.join(".gitignore")).contains("/.cargo\n"));
     }
     assert_eq!(names(folder.path()).len(), STAGES.len(), "something is left beside them");
+}
+
+/// A film with as many layers as were asked for; nothing else has layers.
+#[test]
+fn films_start_with_as_many_layers_as_are_asked_for() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = folder.path();
+    let core = checkout();
+    for count in ["1", "3", "16"] {
+        let name = format!("stack-{count}");
+        good(at, &["new", "plugin", &name, "--stage", "film", "--layers", count, "--core", &core]);
+        let source = read(&at.join(&name).join("src/lib.rs"));
+        assert!(source.contains(&format!("const LAYERS: usize = {count};")), "{source}");
+        assert!(source.contains(&format!("register!(film \"{name}\": Stack")), "{source}");
+        assert!(!source.contains("my-stage") && !source.contains("MyStage") && !source.contains("{{"), "{source}");
+        assert!(read(&at.join(&name).join("scene.yaml")).contains(&format!("film: {{kind: {name}, ")));
+    }
+    let said = refused(at, &["new", "plugin", "x", "--stage", "source", "--layers", "3", "--core", &core]);
+    assert!(said.contains("a source has no layers") && said.contains("only with --stage film"), "{said}");
+    for count in ["0", "17", "many"] {
+        refused(at, &["new", "plugin", "x", "--stage", "film", "--layers", count, "--core", &core]);
+    }
+    assert_eq!(names(at), ["stack-1", "stack-16", "stack-3"]);
 }
 
 /// How long the code is that a stranger starts with, without its tests.
 #[test]
 fn sources_are_short() {
-    for (stage, most) in
-        [("surface", 60), ("film", 40), ("source", 130), ("wavelengths", 105), ("imager", 120), ("response", 70)]
-    {
+    for (stage, most) in [
+        ("surface", 60),
+        ("film", 40),
+        ("film-layers", 110),
+        ("source", 130),
+        ("wavelengths", 105),
+        ("imager", 120),
+        ("response", 70),
+    ] {
         let path = repository(&format!("crates/command/src/new/templates/{stage}/lib.rs"));
         let source = read(&path);
         let before = source.split("#[cfg(test)]").next().expect("a first part");
@@ -118,13 +157,13 @@ fn names_that_cannot_be_are_refused() {
     std::fs::create_dir(at.join("there")).expect("made");
     let said = |name: &str| refused(at, &["new", "plugin", name, "--stage", "surface", "--core", &core]);
     for (name, why) in [
-        ("Ripple", "`R` cannot stand in it"),
-        ("two words", "cannot stand in it"),
-        ("../out", "cannot stand in it"),
-        ("match", "Rust has it"),
-        ("spectra-core", "crates of spectra itself"),
+        ("Ripple", "`R` is not allowed in it"),
+        ("two words", "is not allowed in it"),
+        ("../out", "is not allowed in it"),
+        ("match", "Rust reserves it"),
+        ("spectra-core", "reserved for the crates of spectra"),
         ("sphere", "spectra-plugin-surfaces"),
-        ("there", "is there already"),
+        ("there", "already exists"),
     ] {
         let said = said(name);
         assert!(said.contains(why) && said.contains("help:"), "{name}: {said}");
@@ -135,7 +174,7 @@ fn names_that_cannot_be_are_refused() {
     assert!(elsewhere.contains("there is no such folder"), "{elsewhere}");
     let core = refused(at, &["new", "plugin", "x", "--stage", "film", "--core", "there"]);
     assert!(core.contains("no sources of spectra"), "{core}");
-    assert!(refused(at, &["new", "scene", "a b"]).contains("cannot stand in it"));
+    assert!(refused(at, &["new", "scene", "a b"]).contains("is not allowed in it"));
     assert_eq!(names(at), ["sphere", "there"], "something is left");
 }
 
@@ -166,8 +205,8 @@ fn plugins_that_cannot_be_built_in_are_refused_at_once() {
     let broken = krate(at, "broken", "[dependencies", "", "lib.rs");
     for (with, why, hint) in [
         ("none", "no such folder", "the folder of a plugin's crate"),
-        ("empty", "holds no Cargo.toml", "the folder of a plugin's crate"),
-        ("text", "no crate", "the folder of a plugin's crate"),
+        ("empty", "there is no Cargo.toml", "the folder of a plugin's crate"),
+        ("text", "not a crate", "the folder of a plugin's crate"),
         (&program, "has no library", "src/lib.rs"),
         (&later, "written for spectra-core ^77", "--core PATH"),
         (&other, "the name of a crate of spectra itself", "rename it"),
@@ -190,7 +229,7 @@ fn plugins_that_cannot_be_built_in_are_refused_at_once() {
     let manifest = at.join("program/Cargo.toml");
     let before = read(&manifest);
     let taken = refused(at, &["build", "--with", &program, "--core", &core, "-o", shown(&manifest)]);
-    assert!(taken.contains("no program") && taken.contains("--force"), "{taken}");
+    assert!(taken.contains("was not made by") && taken.contains("--force"), "{taken}");
     assert_eq!(read(&manifest), before);
     let own = at.join(format!("own{}", std::env::consts::EXE_SUFFIX));
     std::fs::copy(env!("CARGO_BIN_EXE_spectra"), &own).expect("copied");
@@ -214,12 +253,26 @@ fn a_program_with_plugins_renders_their_scenes() {
         command.args(["build", "--core", &core, "--offline", "--profile", "dev", "-o", "mine"]).args(arguments);
         command.output().expect("the program starts")
     };
-    for stage in ["surface", "film"] {
-        good(at, &["new", "plugin", &format!("far-{stage}"), "--stage", stage, "--core", &core]);
-    }
+    good(at, &["new", "plugin", "far-surface", "--stage", "surface", "--core", &core]);
+    good(at, &["new", "plugin", "far-film", "--stage", "film", "--layers", "3", "--core", &core]);
+    // What a plugin's tests have compiled with the same features is not compiled again for the program.
+    let mut tests = Command::new("cargo");
+    tests
+        .args(["test", "--offline", "--profile", "dev"])
+        .current_dir(at.join("far-film"))
+        .env("CARGO_TARGET_DIR", target);
+    let output = tests.output().expect("cargo starts");
+    assert!(output.status.success(), "{}{}", text(&output.stdout), text(&output.stderr));
+    let manifest = read(&at.join("far-surface/Cargo.toml"));
+    let unlicensed: Vec<&str> = manifest.lines().filter(|line| !line.starts_with("license")).collect();
+    std::fs::write(at.join("far-surface/Cargo.toml"), unlicensed.join("\n")).expect("written");
+    std::fs::write(at.join("far-film/LICENSE"), "The terms of a far film.").expect("written");
     let both = ["--with", "far-surface", "--with", "far-film/Cargo.toml"];
     let output = build(&both);
     assert!(output.status.success(), "{}", text(&output.stderr));
+    let compiled = text(&output.stderr);
+    assert!(!compiled.contains("Compiling spectra-data "), "{compiled}");
+    assert!(compiled.contains("warning: no license is stated by far-surface 0.1.0\n  help: "), "{compiled}");
     let said = text(&output.stdout);
     assert!(said.contains("far-surface 0.1.0: surface `far-surface`"), "{said}");
     assert!(said.contains("far-film 0.1.0: film `far-film`"), "{said}");
@@ -238,6 +291,12 @@ fn a_program_with_plugins_renders_their_scenes() {
         let output = run(&["run", &scene, "--samples", "2", "--set", "imager.resolution=[72, 48]", "-q", "-o", stage]);
         assert!(output.status.success(), "{scene}: {}", text(&output.stderr));
         assert!(at.join(stage).join("scene.png").is_file());
+    }
+    let licenses = text(&run(&["--licenses"]).stdout);
+    for line in
+        ["far-film 0.1.0: MIT OR Apache-2.0\n", "far-surface 0.1.0: states no license\n", "The terms of a far film."]
+    {
+        assert!(licenses.contains(line), "{line}");
     }
     // It is a whole spectra: it makes and builds plugins itself, out of its own sources.
     let output = run(&["new", "plugin", "third", "--stage", "source"]);

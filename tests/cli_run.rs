@@ -222,7 +222,7 @@ fn a_time_limit_that_is_over_before_light_says_so() {
     let out = folder.path().join("out");
     let output = spectra().args(tiny(&out, &["--time-limit", "1 us"])).output().expect("the program starts");
     assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
-    assert!(text(&output.stderr).contains("before any light was traced"), "{}", text(&output.stderr));
+    assert!(text(&output.stderr).contains("ended before rendering began"), "{}", text(&output.stderr));
     assert!(!out.exists());
 }
 
@@ -276,6 +276,90 @@ fn light_that_cannot_be_written_is_kept_elsewhere() {
     assert!(attributes(file).contains_key("spectra:partial"));
 }
 
+/// A disk that is full, as a limit of the size of files stands for it: what fits in half floats is kept so at its own place; what
+/// does not fit at all ends with a word, and no part of a file stays.
+#[cfg(unix)]
+#[test]
+fn a_full_disk_leaves_half_floats_or_nothing() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let elsewhere = folder.path().join("elsewhere");
+    std::fs::create_dir(&elsewhere).expect("made");
+    let scene = ortho();
+    let more = ["--samples", "4", "--set", "imager.resolution=[192, 128]", "--set", "output=[exr]"];
+    let run = |name: &str, blocks: Option<u64>| {
+        let out = folder.path().join(name);
+        // Blocks of 512 bytes.
+        let limit = blocks.map_or_else(String::new, |blocks| format!("ulimit -f {blocks}; "));
+        let output = std::process::Command::new("sh")
+            .args(["-c", &format!("{limit}exec \"$@\""), "sh", env!("CARGO_BIN_EXE_spectra"), "run", &scene])
+            .args(["-o", shown(&out)])
+            .args(more)
+            .env("TMPDIR", &elsewhere)
+            .output()
+            .expect("a shell");
+        (output, out)
+    };
+    let names = |folder: &Path| {
+        let entries = std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").file_name());
+        entries.map(|name| name.to_string_lossy().into_owned()).collect::<Vec<_>>()
+    };
+    let (output, out) = run("whole", None);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let file = out.join("biotar-ortho.exr");
+    let (whole, bytes) = (planes(&file), std::fs::metadata(&file).expect("there").len());
+    let (output, out) = run("half", Some(bytes * 8 / 10 / 512));
+    let file = out.join("biotar-ortho.exr");
+    let said = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(said.contains(&format!("the light was saved in {}, in half floats", shown(&file))), "{said}");
+    assert_eq!((names(&out), names(&elsewhere)), (vec!["biotar-ortho.exr".to_owned()], vec![]));
+    for (name, plane) in planes(&file) {
+        for (kept, was) in plane.iter().zip(&whole[&name]) {
+            assert!((kept - was).abs() <= 1e-3 * was.abs() + 1e-7, "{name}: {kept} of {was}");
+        }
+    }
+    let (output, out) = run("nothing", Some(4));
+    let said = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(said.contains("cannot be written") && said.contains("neither could the light be kept"), "{said}");
+    assert_eq!((names(&out), names(&elsewhere)), (vec![], vec![]));
+}
+
+/// What is worth knowing of a scene is said by `check` and by a series, too: once, and in one line where several films or lamps
+/// have it.
+#[test]
+fn notes_are_said_once_by_check_run_and_series() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = folder.path().join("notes.yaml");
+    let said = "\
+spectra: 1
+source: {kind: chart, chart: resolution, distance: 2 m, width: fill, illuminant: 0.5 * helium + argon, luminance: 300 cd/m2}
+lens: {file: zeiss-biotar-50-f1.4, f-number: f/1.4, focus: 2 m}
+imager: {kind: film, format: 135, resolution: [24, 16]}
+film:
+  - {name: ortho, stock: ilford-ortho-plus, metering: average, exposure: 1/60 s}
+  - {name: pan, stock: kodak-tri-x-400, metering: average, exposure: 1/60 s}
+render: {samples: 1}
+output: [exr]
+";
+    let sweep = "sweep: {render.seed: [1, 2]}\n";
+    for (command, more) in [("check", ""), ("run", ""), ("check", sweep), ("run", sweep)] {
+        std::fs::write(&scene, format!("{said}{more}")).expect("written");
+        let out = folder.path().join("out");
+        let to: &[&str] = if command == "run" { &["-o", shown(&out)] } else { &[] };
+        let output = spectra().args([command, shown(&scene)]).args(to).output().expect("the program starts");
+        let said = text(&output.stderr);
+        assert!(output.status.success(), "{said}");
+        let once = |words: &str| said.matches(words).count() == 1;
+        assert!(once("f/1.4 is taken as wide open"), "{command}: {said}");
+        assert!(once("the line strengths of `helium` and `argon` were estimated"), "{command}: {said}");
+        assert!(once("ortho, pan: the camera meters"), "{command}: {said}");
+    }
+    let output = spectra().args(["check", "--json", shown(&scene)]).output().expect("the program starts");
+    let report: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!(report["scenes"][0]["notes"].as_array().expect("a list").len(), 2, "{report}");
+}
+
 /// Two scenes, one folder, no mixing; and a picture by its name, and nothing else.
 #[test]
 fn outputs_bear_the_name_of_their_scene_or_their_own() {
@@ -304,7 +388,7 @@ fn outputs_bear_the_name_of_their_scene_or_their_own() {
     }
     assert_eq!(names(&at.join("new/folder")), ["x.exr", "x.png", "x.tif"]);
     let raw = spectra().args(tiny(&at.join("x.dng"), &[])).output().expect("the program starts");
-    assert!(raw.status.code() == Some(2) && text(&raw.stderr).contains("no converter"), "{}", text(&raw.stderr));
+    assert!(raw.status.code() == Some(2) && text(&raw.stderr).contains("no A/D converter"), "{}", text(&raw.stderr));
     let taken = spectra().args(tiny(&at.join("a.yaml"), &[])).output().expect("the program starts");
     assert!(taken.status.code() == Some(1) && text(&taken.stderr).contains("is a file"), "{}", text(&taken.stderr));
     assert_eq!(std::fs::read(at.join("a.yaml")).expect("there"), std::fs::read(ortho()).expect("there"));
@@ -318,46 +402,76 @@ fn planes(path: &Path) -> BTreeMap<String, Vec<f32>> {
     all.map(|c| (c.name.to_string(), c.sample_data.values_as_f32().collect())).collect()
 }
 
-/// What a metered scene writes is what the film got: the same as with that time stated, as its sum is drawn from the same
-/// wavelengths (`uniform`; the usual strategy looks at the meter's channel, too, so that the noise is another one).
+/// What a metered scene writes is what the film got: the same light, sample by sample, as with that time stated and without a
+/// meter, on plates that see no red, on panchromatic film and on color film.
 #[test]
 fn a_metered_scene_is_that_of_the_metered_time() {
     let folder = tempfile::tempdir().expect("a folder");
-    let scene = shown(&repository("scenes/biotar-trix.yaml")).to_owned();
-    let render = |name: &str, film: &[&str]| {
-        let out = folder.path().join(name);
-        let sets = film.iter().flat_map(|set| ["--set", *set]);
-        let common = ["run", &scene, "-o", shown(&out), "--set", "wavelengths={kind: uniform}"];
-        let output = spectra().args(common).args(TINY).args(sets).output().expect("the program starts");
-        assert!(output.status.success(), "{}", text(&output.stderr));
-        let report = json(&out.join("biotar-trix.json"));
-        let exr = out.join("biotar-trix.exr");
-        (report, planes(&exr), attributes(&exr), text(&output.stderr))
-    };
-    let (report, metered, header, said) = render("metered", &[]);
-    let time_s = report["metered_time_s"].as_f64().expect("a number");
-    assert!((0.0..0.5).contains(&time_s), "{time_s}");
-    assert_eq!(report["exposure_time_s"].as_f64(), Some(time_s));
-    assert_eq!(header["spectra:exposure time"], format!("{time_s} s"));
-    let words = spectra_core::shutter::words(time_s);
-    assert!(words.starts_with("1/") && said.contains(&format!("at {words} (metered)")), "{words}: {said}");
-    // The meter's mean is the 10/S lx s of a mid gray.
-    let mean = metered["meter"].iter().map(|v| f64::from(*v)).sum::<f64>() / metered["meter"].len() as f64;
-    assert!((mean / 0.025 - 1.0).abs() < 1e-6, "{mean}");
-    let exposure = format!("film.exposure={time_s} s");
-    for film in [&[exposure.as_str(), "film.metering=manual"][..], &[exposure.as_str()]] {
-        let (_, stated, header, said) = render("stated", film);
+    for (name, lx_s) in
+        [("biotar-blue-plate", None), ("biotar-trix", Some(0.025)), ("biotar-color-negative", Some(0.04))]
+    {
+        let scene = shown(&repository(&format!("scenes/{name}.yaml"))).to_owned();
+        let render = |film: &[&str]| {
+            let out = folder.path().join(name);
+            let sets = film.iter().flat_map(|set| ["--set", *set]);
+            let common = ["run", &scene, "-o", shown(&out)];
+            let output = spectra().args(common).args(TINY).args(sets).output().expect("the program starts");
+            assert!(output.status.success(), "{}", text(&output.stderr));
+            let report = json(&out.join(format!("{name}.json")));
+            let exr = out.join(format!("{name}.exr"));
+            (report, planes(&exr), attributes(&exr), text(&output.stderr))
+        };
+        let (report, metered, header, said) = render(&[]);
+        let time_s = report["metered_time_s"].as_f64().expect("a number");
+        assert_eq!(report["exposure_time_s"].as_f64(), Some(time_s));
         assert_eq!(header["spectra:exposure time"], format!("{time_s} s"));
-        // Beside a meter an exposure time has no effect, and that is said.
-        assert_eq!(said.contains("`exposure` has no effect"), film.len() == 1, "{said}");
-        for (name, plane) in &stated {
-            // Pixels next to black are known to the step of the sums only, which the meter's channel may change.
-            let mean = plane.iter().sum::<f32>() / plane.len() as f32;
-            for (a, b) in plane.iter().zip(&metered[name]) {
-                assert!((a - b).abs() <= 1e-6 * a.abs().max(mean), "{name}: {a} against {b}");
+        let words = spectra_core::shutter::words(time_s);
+        assert!(said.contains(&format!("at {words} (metered)")), "{words}: {said}");
+        // The meter's mean is the 10/S lx s of a mid gray.
+        let mean = metered["meter"].iter().map(|v| f64::from(*v)).sum::<f64>() / metered["meter"].len() as f64;
+        assert!(lx_s.is_none_or(|lx_s| (mean / lx_s - 1.0).abs() < 1e-6), "{mean}");
+        let exposure = format!("film.exposure={time_s} s");
+        for film in [&[exposure.as_str(), "film.metering=manual"][..], &[exposure.as_str()]] {
+            let (_, stated, header, said) = render(film);
+            assert_eq!(header["spectra:exposure time"], format!("{time_s} s"));
+            // Beside a meter an exposure time has no effect, and that is said.
+            assert_eq!(said.contains("`exposure` has no effect"), film.len() == 1, "{said}");
+            assert_eq!(stated.len() + film.len() - 1, metered.len());
+            for (name, plane) in &stated {
+                for (a, b) in plane.iter().zip(&metered[name]) {
+                    assert!((a - b).abs() <= 1e-6 * a.abs(), "{name}: {a} against {b}");
+                }
             }
         }
     }
+}
+
+/// The meter reads the same whatever the threads, the batch and the instructions, and is right to 1/50 stop in the smallest
+/// picture of the fewest samples: both of the whole frame and of a spot, backward and forward.
+#[test]
+fn a_meter_needs_no_samples_of_the_picture() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = shown(&repository("scenes/biotar-trix.yaml")).to_owned();
+    let metered = |isa: &str, more: &[&str]| {
+        let common = ["run", &scene, "-q", "-q", "-o", shown(folder.path()), "--set", "output=[exr]"];
+        let output = spectra().env("SPECTRA_ISA", isa).args(common).args(more).output().expect("the program starts");
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        json(&folder.path().join("biotar-trix.json"))["metered_time_s"].as_f64().expect("a number")
+    };
+    let small = ["--set", "imager.resolution=[48, 32]", "--samples"];
+    let cases: [&[&str]; 3] = [&[], &["--set", "film.metering=spot"], &["--set", "render.direction=forward"]];
+    for film in cases {
+        let with = |isa: &str, more: &[&str]| metered(isa, &[film, &small, more].concat());
+        let few = with("", &["1", "--threads", "2"]);
+        assert_eq!(few, with("baseline", &["1", "--threads", "1", "--set", "render.batch=40"]));
+        let many = with("", &["1024", "--seed", "7"]);
+        let stops = (few / many).log2().abs();
+        assert!(stops < 0.02, "{film:?}: {stops} stops apart");
+    }
+    // A spot between the middles of pixels sees nothing, and that is said.
+    let nowhere = ["--set", "film.metering=spot", "--set", "film.spot={diameter: 0.001}", "-o", shown(folder.path())];
+    let output = spectra().args(["run", &scene]).args(TINY).args(nowhere).output().expect("the program starts");
+    assert!(text(&output.stderr).contains("meter sees no light where it looks, so the film is exposed for 1 s"));
 }
 
 /// Several films in one light: each one's planes are of its own time.

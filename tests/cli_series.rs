@@ -356,7 +356,7 @@ fn warnings_name_what_has_no_effect() {
     for said in [
         "the variable `apertur` is not used",
         "`--set lens.focus` has no effect: the animation sets it for each picture",
-        "the keyframe 9 of `lens.focus` lies beyond the frames 1 to 2",
+        "keyframe 9 of `lens.focus` is outside the frames 1 to 2",
     ] {
         assert!(stderr.contains(said), "{said}: {stderr}");
     }
@@ -422,7 +422,7 @@ fn a_scene_for_one_picture_is_wanted_where_only_one_is_taken() {
     let folder = files(&[("scene.yaml", &format!("{SMALL}sweep: {{render.seed: [1, 2]}}\n"))]);
     let path = folder.path().join("scene.yaml");
     let said = spectra_scene::load(&path, &[]).map(|_| ()).expect_err("two pictures").to_string();
-    assert!(said.contains("stands for 2 pictures") && said.contains("--set sweep="), "{said}");
+    assert!(said.contains("makes 2 pictures") && said.contains("--set sweep="), "{said}");
     assert!(spectra_scene::load(&path, &["sweep=".to_owned()]).is_ok());
 }
 

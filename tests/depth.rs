@@ -3,7 +3,7 @@
 use exr::prelude::{AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, WritableImage};
 use spectra_core::Isa;
 use spectra_plugins as _;
-use spectra_render::{Control, Renderer};
+use spectra_render::{Control, Renderer, Threads};
 use std::path::Path;
 
 const SEMI_DIAMETER: f64 = 6.25;
@@ -33,8 +33,8 @@ fn halves(path: &Path, with: impl Fn(bool) -> Vec<(&'static str, f32)>) {
 fn columns(scene: &Path, set: &[&str]) -> Vec<f64> {
     let set: Vec<String> = set.iter().map(|s| (*s).to_owned()).collect();
     let scene = spectra_scene::load(scene, &set).unwrap_or_else(|faults| panic!("{faults}"));
-    let renderer = Renderer::new(&scene, Isa::detect()).expect("the scene can be rendered");
-    let frame = renderer.run(2, &Control::new()).expect("rendered").exposure;
+    let renderer = Renderer::new(scene.clone(), Isa::detect()).expect("the scene can be rendered");
+    let frame = renderer.run(&Threads(2), &Control::new()).expect("rendered").exposure;
     let values = &frame.channel("Y").expect("an XYZ imager").values;
     (0..COLUMNS)
         .map(|c| {
@@ -200,9 +200,10 @@ fn faults_of_depth_say_where_and_what_to_do() {
         ("zero.exr", "{unit: m}", ["0 or less at column 1, row 0", "`far`"]),
         ("nan.exr", "{unit: m}", ["not a number at column 0, row 1", "`far`"]),
         ("sky.exr", "{unit: m}", ["infinite at column 1, row 1", "far: 1 km"]),
-        ("sky.exr", "{unit: yard, scale: 0}", ["no unit of depth `yard`", "a scale of 0"]),
+        ("sky.exr", "{unit: yard, scale: 0}", ["unknown value `yard` for `unit`", "found 0, which is out of range"]),
         ("flat.exr", "{file: small.exr}", ["2 x 1 pixels, the picture 2 x 2", "same size"]),
-        ("sky.exr", "{kind: radial, far: 1 m, near: 2 m}", ["no kind of depth `radial`", "farther than `near`"]),
+        ("sky.exr", "{kind: radial}", ["unknown value `radial` for `kind`", "known: z, ray"]),
+        ("sky.exr", "{far: 1 m, near: 2 m}", ["farther than `near`", "source.depth.far"]),
     ] {
         let faults = load(file, depth).expect_err(file);
         assert!(words.iter().all(|word| faults.contains(word)), "{file} {depth}: {faults}");

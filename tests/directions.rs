@@ -3,7 +3,7 @@
 use spectra_core::Isa;
 use spectra_core::frame::ExposureFrame;
 use spectra_plugins as _;
-use spectra_render::{Control, Renderer};
+use spectra_render::{Control, Renderer, Threads};
 use std::path::Path;
 
 const COLUMNS: usize = 5;
@@ -14,8 +14,8 @@ fn render(overrides: &[&str]) -> ExposureFrame {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/gray-card.yaml");
     let overrides: Vec<String> = overrides.iter().map(|s| (*s).to_owned()).collect();
     let scene = spectra_scene::load(&path, &overrides).unwrap_or_else(|faults| panic!("{faults}"));
-    let renderer = Renderer::new(&scene, Isa::detect()).expect("the scene can be rendered");
-    renderer.run(2, &Control::new()).expect("rendered").exposure
+    let renderer = Renderer::new(scene.clone(), Isa::detect()).expect("the scene can be rendered");
+    renderer.run(&Threads(2), &Control::new()).expect("rendered").exposure
 }
 
 /// Mean illuminance of each of the 20 regions of the frame.

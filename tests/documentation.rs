@@ -95,6 +95,9 @@ fn what_the_code_cites_the_page_cites() {
                 let code = std::fs::read_to_string(&path).expect("text");
                 for line in code.lines().filter_map(|line| line.strip_prefix("spectra_core::register!(")) {
                     let (stage, rest) = line.split_once(' ').expect("register!(stage \"name\"");
+                    // A kind of stage that another crate declares is named by its entry.
+                    let entry = stage.rsplit("::").next().and_then(|entry| entry.strip_suffix("Entry,"));
+                    let stage = entry.map_or_else(|| stage.to_owned(), str::to_lowercase);
                     let name = rest.split('"').nth(1).expect("a name");
                     let listed = list().into_iter().find(|l| l.stage == stage && l.name == name);
                     let Some(listed) = listed else { panic!("{stage}/{name} is registered but not linked") };
@@ -183,6 +186,10 @@ fn build(stage: &str, example: &str, folder: &Path) -> Result<(), String> {
             scene_with(folder, &[("source", &source)])
         }
         "source" | "wavelengths" => scene_with(folder, &[(stage, example)]),
+        "output" => {
+            let imager = "{kind: sensor, format: 135, resolution: [12, 8], exposure: 1/60 s}";
+            scene_with(folder, &[("imager", imager), ("output", &format!("[{example}]"))])
+        }
         "imager" if example.contains("kind: film") => {
             scene_with(folder, &[("imager", example), ("film", "{stock: ilford-ortho-plus, exposure: 1/60 s}")])
         }

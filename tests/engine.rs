@@ -9,7 +9,7 @@ use spectra_core::spectral::SpectralPower;
 use spectra_core::stage::{Radiance, Source};
 use spectra_core::{Isa, Loss, RayBatch};
 use spectra_plugins as _;
-use spectra_render::{Control, RenderError, Renderer, Rendering};
+use spectra_render::{Control, RenderError, Renderer, Rendering, Threads};
 use spectra_scene::Scene;
 use std::path::Path;
 use std::sync::Arc;
@@ -23,7 +23,7 @@ fn load(scene: &str, overrides: &[&str]) -> Scene {
 }
 
 fn render(scene: &Scene) -> Rendering {
-    Renderer::new(scene, Isa::detect()).expect("ready").run(2, &Control::new()).expect("rendered")
+    Renderer::new(scene.clone(), Isa::detect()).expect("ready").run(&Threads(2), &Control::new()).expect("rendered")
 }
 
 fn json(path: &Path) -> Value {
@@ -103,7 +103,7 @@ fn a_limit_of_memory_is_a_sentence_and_no_abort() {
 
 /// A source that behaves until it is told not to.
 struct Broken {
-    sound: Box<dyn Source>,
+    sound: Arc<dyn Source>,
     /// Bits of what the radiance above 700 nm is multiplied by.
     factor: Arc<AtomicU64>,
 }
@@ -136,35 +136,29 @@ impl Radiance for Broken {
     }
 }
 
-/// The gray card, lit by a source that is broken by this factor: at once, or only after the pilot run.
-fn broken(factor: f64, at_once: bool) -> Result<Rendering, (RenderError, u64)> {
-    struct Dark;
-    impl Source for Dark {
-        fn spectrum(&self) -> &SpectralPower {
-            unreachable!("replaced before anybody asks")
-        }
-        fn distance_mm(&self) -> f64 {
-            f64::INFINITY
-        }
-        fn describe(&self) -> String {
-            String::new()
-        }
-    }
+/// The gray card, lit by a source that is broken by this factor: at once, or only after the pilot run. What becomes of it, and
+/// the light before.
+fn broken(factor: f64, at_once: bool) -> (Result<(), RenderError>, Option<Rendering>) {
     let mut scene = load("gray-card.yaml", &["imager.resolution=[96, 64]", "render.samples=4096"]);
     let bits = Arc::new(AtomicU64::new(if at_once { factor } else { 1.0 }.to_bits()));
-    let sound = std::mem::replace(&mut scene.source, Box::new(Dark));
-    scene.source = Box::new(Broken { sound, factor: Arc::clone(&bits) });
-    let renderer = Renderer::new(&scene, Isa::detect()).map_err(|error| (error, 0))?;
+    let sound = Arc::clone(&scene.source);
+    scene.source = Arc::new(Broken { sound, factor: Arc::clone(&bits) });
+    let renderer = match Renderer::new(scene.clone(), Isa::detect()) {
+        Ok(renderer) => renderer,
+        Err(error) => return (Err(error), None),
+    };
     bits.store(factor.to_bits(), Relaxed);
-    let control = Control::new();
-    renderer.run(2, &control).map_err(|error| (error, control.rays()))
+    let mut light = renderer.begin().expect("memory");
+    let traced = renderer.advance(&mut light, 4096, &Threads(2), &Control::new());
+    (traced, Some(renderer.look(&scene, &light).expect("memory")))
 }
 
 #[test]
 fn a_number_that_is_none_is_found_at_once_and_its_stage_named() {
     for at_once in [true, false] {
         for (factor, what) in [(f64::NAN, "not a number"), (f64::INFINITY, "infinite")] {
-            let (error, rays) = broken(factor, at_once).expect_err("a broken source");
+            let (traced, light) = broken(factor, at_once);
+            let (error, rays) = (traced.expect_err("a broken source"), light.map_or(0, |light| light.rays));
             let said = error.to_string();
             assert!(said.starts_with(&format!("source `chart` gave a radiance that is {what}, at 7")), "{said}");
             // Of 25 million.
@@ -173,17 +167,19 @@ fn a_number_that_is_none_is_found_at_once_and_its_stage_named() {
     }
     // Where it belongs: in the section of the source.
     let scene = load("gray-card.yaml", &[]);
-    let (error, _) = broken(f64::NAN, false).expect_err("a broken source");
+    let error = broken(f64::NAN, false).0.expect_err("a broken source");
     let fault = error.faults(&scene).expect("a fault of the scene").to_string();
     assert!(fault.contains("gray-card.yaml:") && fault.contains("source `chart`"), "{fault}");
 }
 
 #[test]
 fn an_overflow_stops_at_once_and_keeps_the_light_before_it() {
-    let (error, rays) = broken(1e30, false).expect_err("too bright");
-    let RenderError::Overflow { times, so_far: Some(so_far) } = &error else { panic!("{error}") };
-    assert!(*times > 1e6 && rays < 20_000, "{times} {rays}");
-    assert!(so_far.partial && so_far.rays == rays);
+    let (traced, light) = broken(1e30, false);
+    let error = traced.expect_err("too bright");
+    let RenderError::Overflow { times } = &error else { panic!("{error}") };
+    let light = light.expect("the light before");
+    assert!(*times > 1e6 && light.rays < 20_000, "{times} {}", light.rays);
+    assert!(light.partial);
     assert!(error.to_string().contains("times as bright as the brightest"), "{error}");
 }
 

@@ -4,7 +4,7 @@ use spectra_core::frame::ExposureFrame;
 use spectra_core::{Isa, RayBatch};
 use spectra_lens::{Indices, Lens, Tracer, Travel};
 use spectra_plugins as _;
-use spectra_render::{Control, Renderer};
+use spectra_render::{Control, Renderer, Threads};
 use spectra_scene::Scene;
 use std::f64::consts::PI;
 use std::path::Path;
@@ -30,7 +30,11 @@ fn scene(lens: &str, f_number: &str, object: &str) -> Scene {
 }
 
 fn render(scene: &Scene) -> ExposureFrame {
-    Renderer::new(scene, Isa::detect()).expect("ready").run(2, &Control::new()).expect("rendered").exposure
+    Renderer::new(scene.clone(), Isa::detect())
+        .expect("ready")
+        .run(&Threads(2), &Control::new())
+        .expect("rendered")
+        .exposure
 }
 
 /// Illuminance over luminance at a point of the film: the projected solid angle of all directions from which light comes

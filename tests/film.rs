@@ -5,7 +5,7 @@ use spectra_core::frame::{ExposureFrame, FrameSize};
 use spectra_film::emulsion::Emulsion;
 use spectra_film::stock::Stock;
 use spectra_plugins as _;
-use spectra_render::{Control, Renderer};
+use spectra_render::{Control, Renderer, Threads};
 use spectra_scene::{FileResources, Scene};
 use std::path::Path;
 
@@ -19,8 +19,8 @@ fn load(scene: &str, overrides: &[&str]) -> Scene {
 }
 
 fn render(scene: &Scene) -> ExposureFrame {
-    let renderer = Renderer::new(scene, Isa::detect()).expect("the scene can be rendered");
-    renderer.run(2, &Control::new()).expect("rendered").exposure
+    let renderer = Renderer::new(scene.clone(), Isa::detect()).expect("the scene can be rendered");
+    renderer.run(&Threads(2), &Control::new()).expect("rendered").exposure
 }
 
 /// Mean over the middle of a patch of the ColorChecker of `biotar-trix.yaml` and its like: 0.6 m wide, 282 units of which

@@ -8,7 +8,7 @@ use spectra_core::frame::ExposureFrame;
 use spectra_core::spectral::SystemResponse;
 use spectra_lens::{Beam, ObjectPoint};
 use spectra_plugins as _;
-use spectra_render::{Control, Renderer};
+use spectra_render::{Control, Renderer, Threads};
 use spectra_scene::{FocusBy, Scene};
 use std::path::Path;
 
@@ -20,7 +20,11 @@ fn load(scene: &str, overrides: &[&str]) -> Result<Scene, String> {
 
 fn render(overrides: &[&str]) -> ExposureFrame {
     let scene = load("biotar-color.yaml", overrides).expect("a scene");
-    Renderer::new(&scene, Isa::detect()).expect("ready").run(2, &Control::new()).expect("rendered").exposure
+    Renderer::new(scene.clone(), Isa::detect())
+        .expect("ready")
+        .run(&Threads(2), &Control::new())
+        .expect("rendered")
+        .exposure
 }
 
 /// The light of each column, and where it lies, mm.

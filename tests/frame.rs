@@ -3,7 +3,7 @@
 use spectra_core::Isa;
 use spectra_core::frame::ExposureFrame;
 use spectra_plugins as _;
-use spectra_render::{Control, Renderer};
+use spectra_render::{Control, Renderer, Threads};
 use spectra_scene::Scene;
 use std::path::Path;
 
@@ -15,7 +15,11 @@ fn load(overrides: &[&str]) -> Scene {
 }
 
 fn render(scene: &Scene) -> ExposureFrame {
-    Renderer::new(scene, Isa::detect()).expect("ready").run(2, &Control::new()).expect("rendered").exposure
+    Renderer::new(scene.clone(), Isa::detect())
+        .expect("ready")
+        .run(&Threads(2), &Control::new())
+        .expect("rendered")
+        .exposure
 }
 
 /// A card that fills the frame makes the same picture as one that is far larger, bit for bit: nothing of its border is seen,

@@ -3,7 +3,7 @@
 use spectra_core::Isa;
 use spectra_core::frame::ExposureFrame;
 use spectra_plugins as _;
-use spectra_render::{Control, Renderer};
+use spectra_render::{Control, Renderer, Threads};
 use spectra_scene::Scene;
 use spectra_spectrum::{Observer, find_emission, find_transmittance};
 use std::path::Path;
@@ -16,8 +16,8 @@ fn load(set: &[&str]) -> Result<Scene, String> {
 
 fn render(set: &[&str]) -> ExposureFrame {
     let scene = load(set).unwrap_or_else(|faults| panic!("{faults}"));
-    let renderer = Renderer::new(&scene, Isa::detect()).expect("the scene can be rendered");
-    renderer.run(2, &Control::new()).expect("rendered").exposure
+    let renderer = Renderer::new(scene.clone(), Isa::detect()).expect("the scene can be rendered");
+    renderer.run(&Threads(2), &Control::new()).expect("rendered").exposure
 }
 
 fn mean(frame: &ExposureFrame, channel: &str) -> f64 {
@@ -121,7 +121,7 @@ fn faults_in_front_of_the_lens() {
         ("lens.filters=[D65]", "transmittance"),
         ("lens.filters=[constant:0]", "no light of the band passes"),
         ("lens.filters=[7]", "no spectrum is called `7`"),
-        ("lens.filters=[[1, 2]]", "this is no filter"),
+        ("lens.filters=[[1, 2]]", "this is not a filter"),
         ("lens.filter=[wratten-15]", "did you mean `filters`"),
         ("lens.matte-box={distance: 0, width: 1, height: 1}", "expected a positive length"),
         ("lens.matte-box={distance: 3 m, width: 100, height: 100}", "between the matte box and the lens"),

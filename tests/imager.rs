@@ -3,7 +3,7 @@
 use spectra_core::Isa;
 use spectra_core::frame::ExposureFrame;
 use spectra_plugins as _;
-use spectra_render::{Control, Renderer};
+use spectra_render::{Control, Renderer, Threads};
 use std::path::Path;
 
 fn load(scene: &str, overrides: &[&str]) -> spectra_scene::Scene {
@@ -13,9 +13,9 @@ fn load(scene: &str, overrides: &[&str]) -> spectra_scene::Scene {
 }
 
 fn render(scene: &spectra_scene::Scene) -> ExposureFrame {
-    Renderer::new(scene, Isa::detect())
+    Renderer::new(scene.clone(), Isa::detect())
         .expect("the scene can be rendered")
-        .run(2, &Control::new())
+        .run(&Threads(2), &Control::new())
         .expect("rendered")
         .exposure
 }
@@ -183,5 +183,5 @@ fn faulty_films_are_told_at_their_places() {
         assert!(faults.contains(word), "{film}: {faults}");
     }
     let faults = spectra_scene::load(&path, &["output=[dng]".to_owned()]).map(|_| ()).unwrap_err().to_string();
-    assert!(faults.contains("no converter"), "{faults}");
+    assert!(faults.contains("no A/D converter"), "{faults}");
 }

@@ -6,7 +6,7 @@ use common::{good, shown};
 use spectra_core::Isa;
 use spectra_lens::{Lens, Section};
 use spectra_plugins as _;
-use spectra_render::{Control, Renderer};
+use spectra_render::{Control, Renderer, Threads};
 use spectra_scene::FileResources;
 use std::path::Path;
 
@@ -163,8 +163,8 @@ fn every_lens_renders_the_illuminance_of_its_f_number() {
             .unwrap_or_else(|faults| panic!("{name}: {faults}"));
         let n = scene.lens.marginal_ray().unwrap_or_else(|e| panic!("{name}: {e}")).f_number();
         assert!((n - 8.0).abs() < 1e-6, "{name}: f/{n}");
-        let renderer = Renderer::new(&scene, Isa::detect()).expect("the scene can be rendered");
-        let frame = renderer.run(2, &Control::new()).expect("rendered").exposure;
+        let renderer = Renderer::new(scene.clone(), Isa::detect()).expect("the scene can be rendered");
+        let frame = renderer.run(&Threads(2), &Control::new()).expect("rendered").exposure;
         let y = &frame.channel("Y").expect("XYZ").values;
         let mean = y.iter().map(|v| f64::from(*v)).sum::<f64>() / y.len() as f64;
         // The card is of 18 % and its white of 300 cd/m2.

@@ -11,7 +11,7 @@ use spectra_core::spectral::Grid;
 use spectra_core::stage::{ColorModel, Film, Imager, Response, Source, WavelengthSampler};
 use spectra_core::surface::Surface;
 use spectra_plugins as _;
-use spectra_scene::FileResources;
+use spectra_scene::{FileResources, Output};
 use std::path::{Path, PathBuf};
 
 /// A value just outside of what a schema allows, and where it stands.
@@ -92,6 +92,7 @@ fn built(stage: &str, params: &Params, context: &Context<'_>) -> Vec<Fault> {
         "film" => registry::build::<dyn Film>(params, context).err(),
         "response" => registry::build::<dyn Response>(params, context).err(),
         "color" => registry::build::<dyn ColorModel>(params, context).err(),
+        "output" => registry::build::<dyn Output>(params, context).err(),
         other => panic!("a kind of stage that this test does not know: {other}"),
     };
     faults.map(|faults| faults.0).unwrap_or_default()

@@ -147,9 +147,9 @@ mod with {
         std::fs::write(folder.path().join("a.ppm"), pixmap).unwrap();
         let rgb = codes
             .chunks_exact(3)
-            .map(|c| [0, 1, 2].map(|i| spectra_spectrum::Transfer::Srgb.decode(f64::from(c[i]) / 255.0) as f32));
+            .map(|c| [0, 1, 2].map(|i| spectra_color::Transfer::Srgb.decode(f64::from(c[i]) / 255.0) as f32));
         let picture = spectra_core::frame::DisplayPicture { width_px: 60, height_px: 40, rgb: rgb.collect() };
-        spectra_film::write::write_png8(&folder.path().join("a.png"), &picture).unwrap();
+        spectra_pictures::write::write_png8(&folder.path().join("a.png"), &picture).unwrap();
         for (name, file, more) in [("ppm", "a.ppm", ""), ("png", "a.png", "  transfer: rec709\n")] {
             std::fs::write(folder.path().join(format!("{name}.yaml")), scene(file, more)).unwrap();
             let done = in_folder(folder.path(), &["run", &format!("{name}.yaml"), "--output", "out"]);

@@ -22,7 +22,7 @@ done
 cd "$work"
 SPECTRA_CACHE=$work/cache "$program" build "${with[@]}" --core "$root" --profile dev -o spectra-mine
 "${PYTHON:-python3}" "$root/xtask/validate_schemas.py" ./spectra-mine
-for name in axicon night-vision lenslets; do
+for name in axicon diffusion-filter night-vision lenslets; do
     ./spectra-mine run "$name/scene.yaml" --samples 16 --output "out/$name" --quiet
     test -s "out/$name/scene.png"
 done

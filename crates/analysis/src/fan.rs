@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 use spectra_core::loss::ALIVE;
+use spectra_core::math::{cos, sin};
 use spectra_core::{Isa, RayBatch};
 use spectra_glass::DispersionError;
 use spectra_lens::{Indices, Lens, RayPath, Section, Tracer, Travel};
@@ -71,7 +72,7 @@ impl<'a> FanFinder<'a> {
     /// Start (mm, frame of the lens) and direction of the ray that crosses the aim's line at `s_mm`.
     #[must_use]
     pub fn ray(&self, field_rad: f64, object_mm: f64, s_mm: f64) -> (DVec3, DVec3) {
-        let (sin, cos) = (field_rad.sin(), field_rad.cos());
+        let (sin, cos) = (sin(field_rad), cos(field_rad));
         let across = |v: f64, z: f64| match self.section {
             Section::X => DVec3::new(v, 0.0, z),
             Section::Y => DVec3::new(0.0, v, z),

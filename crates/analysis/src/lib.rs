@@ -5,10 +5,14 @@
 //! - [`info`]: first-order figures, pupils and prescription, for a program and for a person;
 //! - [`focus`]: what an image point is sharp for;
 //! - [`fan`]: the rays of a field that pass, as a drawing shows them;
-//! - [`draw`]: a lens as a figure, with rays in the colors of their wavelengths.
+//! - [`draw`]: a lens as a figure, with rays in the colors of their wavelengths;
+//! - [`figure`]: spectra, their colors, and glasses as figures.
+
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 pub mod draw;
 pub mod fan;
+pub mod figure;
 pub mod focus;
 pub mod info;
 mod light;

@@ -1,6 +1,6 @@
 //! How far apart two exposures look, where the channels are X, Y and Z.
 
-use spectra_spectrum::{ciede2000, lab};
+use spectra_color::{ciede2000, lab};
 
 /// The channels that are X, Y and Z, by their names; `None` where one is missing.
 pub(crate) fn xyz_channels(names: &[String]) -> Option<[usize; 3]> {

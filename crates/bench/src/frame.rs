@@ -6,7 +6,7 @@ use crate::integral::Measured;
 use crate::statistics::mean_and_variance_of_mean;
 use spectra_core::Isa;
 use spectra_core::frame::ExposureFrame;
-use spectra_render::{Control, Renderer};
+use spectra_render::{Control, Renderer, Threads};
 use spectra_scene::Scene;
 use std::time::Instant;
 
@@ -26,9 +26,9 @@ pub(crate) fn render(
     scene.render.rays = u64::from(samples) * scene.imager.size().pixels() as u64;
     scene.render.seed = seed;
     let failed = |error| BenchError::Render { strategy: strategy.to_owned(), error };
-    let renderer = Renderer::new(scene, isa).map_err(failed)?;
+    let renderer = Renderer::new(scene.clone(), isa).map_err(failed)?;
     let begun = Instant::now();
-    let rendering = renderer.run(threads, &Control::new()).map_err(failed)?;
+    let rendering = renderer.run(&Threads(threads), &Control::new()).map_err(failed)?;
     Ok((rendering.exposure, begun.elapsed().as_secs_f64()))
 }
 

@@ -9,6 +9,8 @@
 //! slopes, are percentiles of a bootstrap over the seeds (B. Efron, Annals of Statistics 7, 1 (1979)): seeds are
 //! independent, pixels and channels are not, so the seed is what is drawn again.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod colors;
 mod csv;
 mod error;

@@ -192,7 +192,7 @@ impl<'a> Run<'a> {
             match scene.sampler.prepare(&system) {
                 Ok(density) => {
                     let density = Shared(density.into());
-                    scene.sampler = Box::new(density.clone());
+                    scene.sampler = Arc::new(density.clone());
                     entrants.push(Entrant { strategy, scene, density });
                 }
                 Err(reason) => left_out.push(LeftOut { strategy: strategy.label(), reason }),

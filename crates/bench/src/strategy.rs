@@ -1,8 +1,7 @@
 //! Which strategies are compared, and with which parameters.
 
 use crate::BenchError;
-use spectra_core::params::nearest;
-use spectra_core::registry::{SamplerEntry, Stage};
+use spectra_core::registry::{Entry, Stage};
 use spectra_core::spectral::{BAND, SystemResponse};
 use spectra_core::stage::WavelengthSampler;
 use spectra_scene::{Scene, yaml};
@@ -46,9 +45,8 @@ pub fn parse_list(text: &str) -> Result<Vec<Strategy>, BenchError> {
             None => (part.trim(), None),
         };
         if !names.contains(&kind) {
-            let near = nearest(kind, names.iter().copied());
-            let near = near.map_or(String::new(), |n| format!("did you mean `{n}`? "));
-            return Err(BenchError::Strategy(format!("unknown strategy `{kind}`; {near}Known: {}", names.join(", "))));
+            let hint = spectra_core::names::hint(kind, &names, "spectra list wavelengths");
+            return Err(BenchError::Strategy(format!("unknown strategy `{kind}`; {hint}")));
         }
         let strategy = Strategy { kind: kind.to_owned(), keys: keys.map(str::to_owned) };
         if found.contains(&strategy) {
@@ -90,7 +88,7 @@ fn registered() -> Vec<&'static str> {
     names
 }
 
-fn entries() -> Vec<&'static SamplerEntry> {
+fn entries() -> Vec<&'static Entry<dyn WavelengthSampler>> {
     <dyn WavelengthSampler as Stage>::entries()
 }
 

@@ -2,10 +2,10 @@
 
 use crate::build::BuildArguments;
 use crate::film::FilmArguments;
+use crate::frames::Frames;
 use crate::glass::GlassArguments;
 use crate::new::NewArguments;
 use crate::quantity::parse;
-use crate::run::Frames;
 use crate::spectrum::SpectrumArguments;
 use crate::version;
 use clap::{Args, Parser, Subcommand};
@@ -476,7 +476,7 @@ pub(crate) struct OneLight {
 fn line(name: &str) -> Result<f64, String> {
     spectra_glass::lines::by_name(name).map(|line| line.wavelength_nm).ok_or_else(|| {
         let known: Vec<&str> = spectra_glass::lines::ALL.iter().map(|line| line.name).collect();
-        format!("no such spectral line; known: {}", known.join(", "))
+        format!("no such spectral line; {}", spectra_core::names::hint(name, &known, ""))
     })
 }
 

@@ -6,7 +6,7 @@ use crate::outcome::{DONE, Failure, Outcome};
 use spectra_bench::{BenchError, Settings, parse_list};
 use spectra_core::Isa;
 use spectra_core::spectral::Channel;
-use spectra_film::write::write_atomically;
+use spectra_files::write_atomically;
 use spectra_scene::FileResources;
 use spectra_spectrum::{SpectrumError, find_sensitivity_in};
 use std::io::Write as _;

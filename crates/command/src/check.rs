@@ -3,14 +3,16 @@
 use crate::arguments::Check;
 use crate::console;
 use crate::memory;
-use crate::outcome::{BAD_INPUT, DONE, Failure, Outcome};
-use crate::run::{self, Checking};
+use crate::outcome::{BAD_INPUT, DONE, Outcome};
+use crate::run;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::json;
 use spectra_core::Isa;
 use spectra_core::params::{Fault, Faults, Warning};
-use spectra_scene::{Scene, SeriesKind, diagnostics};
+use spectra_scene::{SeriesKind, diagnostics};
+use spectra_session::{Checked, Look, SessionError, Threads};
 use std::path::Path;
+use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// Checks all scenes; a faulty one does not keep the others from being looked at.
@@ -24,7 +26,7 @@ pub(crate) fn check(arguments: &Check, isa: Isa) -> Outcome {
             let scene = path.display().to_string();
             let mut said = match &result {
                 Ok(good) => json!({
-                    "scene": scene, "ok": true, "faults": [], "warnings": diagnostics::warnings_to_json(&good.warnings), "memory_bytes": good.memory_bytes
+                    "scene": scene, "ok": true, "faults": [], "warnings": diagnostics::warnings_to_json(&good.warnings), "notes": good.notes, "memory_bytes": good.memory_bytes
                 }),
                 Err(faults) => {
                     json!({ "scene": scene, "ok": false, "faults": diagnostics::to_json(faults), "warnings": [] })
@@ -40,6 +42,9 @@ pub(crate) fn check(arguments: &Check, isa: Isa) -> Outcome {
             Ok(good) => {
                 for warning in &good.warnings {
                     console::said(warning, Some(path));
+                }
+                for note in &good.notes {
+                    console::note(&format!("note: {}: {note}", path.display()));
                 }
                 let pictures =
                     good.pictures.map_or(String::new(), |n| format!(", {n} picture{}", if n == 1 { "" } else { "s" }));
@@ -60,6 +65,7 @@ pub(crate) fn check(arguments: &Check, isa: Isa) -> Outcome {
 /// A scene in which nothing is wrong.
 struct Good {
     warnings: Vec<Warning>,
+    notes: Vec<String>,
     /// How many pictures a sweep or an animation has.
     pictures: Option<usize>,
     /// What the largest picture takes beyond the scene itself.
@@ -69,34 +75,18 @@ struct Good {
 /// The warnings of a good scene, or all faults.
 fn check_one(path: &Path, overrides: &[String], isa: Isa, is_shown: bool) -> Result<Good, Faults> {
     let series = spectra_scene::load_series(path, overrides)?;
-    let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    let all: Vec<usize> = (0..series.count()).collect();
-    let mut shown = Shown::new(is_shown);
-    let of_each = run::checked(
-        &series,
-        &all,
-        isa,
-        threads,
-        &|_, scene: &Scene| Ok((spectra_render::memory_needed(scene), scene.warnings.clone())),
-        &mut |checking| {
-            shown.tick(checking);
-        },
-    );
-    shown.end();
-    let of_each = of_each.map_err(|failure| match failure {
-        Failure::Faults(faults) => faults,
+    let shown = Mutex::new(Shown::new(is_shown));
+    let seen = |done: usize, of: usize| shown.lock().unwrap_or_else(PoisonError::into_inner).tick(done, of);
+    let (workers, memory_bytes) = (&Threads(run::processors()), memory::available());
+    let found = spectra_session::check(&series, Look { isa, workers, memory_bytes, seen: &seen });
+    shown.lock().unwrap_or_else(PoisonError::into_inner).end();
+    let Checked { warnings, notes, memory_bytes } = found.map_err(|error| match error {
+        SessionError::Faults(faults) => faults,
         // What shows only once the stages are put together, such as a lens without any aperture.
-        Failure::Input(text) | Failure::Failed(text) => Fault::new(format!("{}: {text}", path.display())).into(),
-        Failure::ReaderGone => Faults::new(),
+        other => Fault::new(format!("{}: {other}", path.display())).into(),
     })?;
-    let mut warnings: Vec<Warning> = Vec::new();
-    for warning in series.warnings().iter().chain(of_each.iter().flat_map(|(_, warnings)| warnings)) {
-        if !warnings.contains(warning) {
-            warnings.push(warning.clone());
-        }
-    }
-    let pictures = (series.kind() != SeriesKind::Single).then_some(all.len());
-    Ok(Good { warnings, pictures, memory_bytes: of_each.iter().map(|(bytes, _)| *bytes).max().unwrap_or(0) })
+    let pictures = (series.kind() != SeriesKind::Single).then(|| series.count());
+    Ok(Good { warnings, notes, pictures, memory_bytes })
 }
 
 /// How far the check of a long series is, on standard error: a line that moves at a terminal, else one now and then.
@@ -116,23 +106,22 @@ impl Shown {
         Self { bar: None, is_shown, said: Instant::now() }
     }
 
-    fn tick(&mut self, checking: Checking) {
-        if !self.is_shown || checking.of < 2 {
+    fn tick(&mut self, done: usize, of: usize) {
+        if !self.is_shown || of < 2 {
             return;
         }
         let elapsed = self.said.elapsed();
         match &self.bar {
-            Some(bar) => bar.set_position(checking.done as u64),
+            Some(bar) => bar.set_position(done as u64),
             None if console::stderr_moves() && elapsed >= SHOWN_AFTER => {
-                let bar =
-                    ProgressBar::with_draw_target(Some(checking.of as u64), ProgressDrawTarget::stderr_with_hz(10));
+                let bar = ProgressBar::with_draw_target(Some(of as u64), ProgressDrawTarget::stderr_with_hz(10));
                 let style = ProgressStyle::with_template("[{bar:32}] {pos} of {len} pictures checked");
                 bar.set_style(style.expect("the template is a constant").progress_chars("=> "));
                 self.bar = Some(bar);
             }
             None if !console::stderr_moves() && elapsed >= LINE_EVERY => {
                 self.said = Instant::now();
-                console::note(&format!("{} of {} pictures checked", checking.done, checking.of));
+                console::note(&format!("{} of {} pictures checked", done, of));
             }
             None => {}
         }

@@ -203,7 +203,7 @@ fn search(word: &str) -> Result<Vec<Hit>, Failure> {
         }
     }
     if hits.is_empty() {
-        let fault = Fault::new(format!("no stage and no key speaks of `{word}`"));
+        let fault = Fault::new(format!("no stage or key mentions `{word}`"));
         return Err(fault.hint("try a shorter word; `spectra list` shows what there is").into());
     }
     Ok(hits)
@@ -253,7 +253,7 @@ fn find(name: &str) -> Result<Page, Failure> {
         }
         _ => {
             let names: Vec<String> = wanted.into_iter().map(full).collect();
-            Err(Failure::Input(format!("`{name}` is the name of several: {}", names.join(", "))))
+            Err(Failure::Input(format!("`{name}` could be several: {}", names.join(", "))))
         }
     }
 }

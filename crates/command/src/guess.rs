@@ -27,7 +27,7 @@ pub(crate) fn meant(error: &clap::Error) -> Option<Fault> {
     }
     let Some(ContextValue::String(typed)) = error.get(ContextKind::InvalidSubcommand) else { return None };
     let command = of_word(typed)?;
-    Some(Fault::new(format!("`{typed}` is no command")).hint(format!("did you mean `spectra {command}`?")))
+    Some(Fault::new(format!("`{typed}` is not a command")).hint(format!("did you mean `spectra {command}`?")))
 }
 
 /// The command, without `spectra`.

@@ -4,6 +4,8 @@
 //! 2 the input is wrong; 130 interrupted by Ctrl-C, 143 by SIGTERM, 129 by SIGHUP. What a person asked for goes to standard output, what is
 //! said about it (progress, warnings, errors) to standard error.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod arguments;
 mod bench;
 mod build;
@@ -12,10 +14,12 @@ mod completions;
 mod console;
 mod doc;
 mod film;
+mod frames;
 mod glass;
 mod guess;
 mod lens;
 mod licences;
+mod limits;
 mod list;
 mod memory;
 mod new;
@@ -38,6 +42,12 @@ use std::time::Instant;
 
 /// Runs the program with the arguments of the process; `unpack` unpacks its sources (`spectra_workspace::unpack`).
 pub fn main(unpack: Unpack) -> ExitCode {
+    main_with_notices(unpack, "")
+}
+
+/// The same, for a program that `spectra build` makes: `notices` are the licenses of its plugins and of the crates that they
+/// bring, which `--licenses` shows after its own.
+pub fn main_with_notices(unpack: Unpack, notices: &'static str) -> ExitCode {
     let started = Instant::now();
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
@@ -53,19 +63,20 @@ pub fn main(unpack: Unpack) -> ExitCode {
     if arguments.verbose {
         log_to_stderr();
     }
-    match dispatch(&arguments, unpack, started) {
+    limits::report_large_files();
+    match dispatch(&arguments, unpack, notices, started) {
         Ok(code) => ExitCode::from(code),
         Err(failure) => ExitCode::from(failure.report()),
     }
 }
 
-fn dispatch(arguments: &Arguments, unpack: Unpack, started: Instant) -> Outcome {
+fn dispatch(arguments: &Arguments, unpack: Unpack, notices: &str, started: Instant) -> Outcome {
     registry::check()
-        .map_err(|faults| Failure::Failed(format!("this program is put together wrongly: {}", faults.join("; "))))?;
+        .map_err(|faults| Failure::Failed(format!("the stages of this program conflict: {}", faults.join("; "))))?;
     let isa = instruction_set()?;
     tracing::debug!(isa = isa.name(), "instruction set");
     if arguments.licenses {
-        return licences::show();
+        return licences::show(notices);
     }
     match &arguments.command {
         Some(Command::Run(run)) => run::run(run, isa, started),

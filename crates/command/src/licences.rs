@@ -7,13 +7,19 @@ use std::fmt::Write;
 /// The crates that are linked in, and their licences; written by `xtask/notices.py`.
 const NOTICES: &str = include_str!("notices.txt");
 
-/// Shows them.
-pub(crate) fn show() -> Outcome {
-    console::out(&text())?;
+/// Whether this version of a crate is among those that are linked into every program.
+pub(crate) fn has(name: &str, version: &str) -> bool {
+    let head = format!("{name} {version}:");
+    NOTICES.lines().take_while(|line| !line.starts_with("----")).any(|line| line.starts_with(&head))
+}
+
+/// Shows them, those that the plugins brought at the end.
+pub(crate) fn show(of_plugins: &str) -> Outcome {
+    console::out(&text(of_plugins))?;
     Ok(DONE)
 }
 
-fn text() -> String {
+fn text(of_plugins: &str) -> String {
     let mut out = format!(
         "spectra {}: {}\n\nBundled data, by licence and source:\n",
         crate::version::VERSION,
@@ -29,8 +35,14 @@ fn text() -> String {
     let _ = write!(
         out,
         "\nThe Rust standard library: MIT OR Apache-2.0, https://www.rust-lang.org\n\nCrates in this program, with their \
-         notices (a program made by `spectra build` holds its plugins beside them, under their own terms):\n\n{}",
+         notices:\n\n{}",
         NOTICES.split_once('\n').map_or(NOTICES, |(_, rest)| rest.trim_start())
     );
+    if !of_plugins.is_empty() {
+        let _ = write!(
+            out,
+            "\nPlugins in this program, and the crates that they bring, with their notices:\n\n{of_plugins}"
+        );
+    }
     out
 }

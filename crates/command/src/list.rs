@@ -89,13 +89,13 @@ fn kind(typed: &str, kinds: &[&'static str]) -> Result<&'static str, Fault> {
         return Ok(kind);
     }
     let fault = Fault::new(format!("no list is called `{typed}`"));
-    if let Some(near) = params::nearest(&key, kinds.iter().copied()) {
-        return Err(fault.hint(format!("did you mean `{near}`? Known: {}", kinds.join(", "))));
+    if params::nearest(&key, kinds.iter().copied()).is_some() {
+        return Err(fault.hint(names::hint(&key, kinds, "")));
     }
     let named = bundled::meanings(typed).into_iter().next();
     Err(fault.hint(match named {
-        Some((kind, name)) => format!("`{name}` is {}: `{}` lists its like", kind.noun(), kind.listed_by()),
-        None => format!("known: {}", kinds.join(", ")),
+        Some((kind, name)) => format!("`{name}` is {}; `{}` lists others", kind.noun(), kind.listed_by()),
+        None => names::hint(&key, kinds, ""),
     }))
 }
 

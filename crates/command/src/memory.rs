@@ -1,19 +1,9 @@
 //! How much memory this process can still have: the one place that asks the machine.
 
-use spectra_core::params::Faults;
-use spectra_scene::Scene;
 use std::path::Path;
 
 /// From here on a picture is large enough to say what it needs, bytes.
 const LARGE: u64 = 1_000_000_000;
-
-/// Whether there is memory for a picture of the scene, as far as this system tells.
-///
-/// # Errors
-/// A fault of the scene: it needs more.
-pub(crate) fn suffices_for(scene: &Scene) -> Result<(), Faults> {
-    available().map_or(Ok(()), |available| spectra_render::fits(scene, available))
-}
 
 /// `needs 3.5 GB of memory`, where that is much.
 pub(crate) fn worth_saying(bytes: u64) -> Option<String> {
@@ -22,7 +12,7 @@ pub(crate) fn worth_saying(bytes: u64) -> Option<String> {
 
 /// Bytes that can still be had: of the machine, of the control group that the process runs in, and of its own limit of
 /// addresses, the least; `None` where none of them is known.
-fn available() -> Option<u64> {
+pub(crate) fn available() -> Option<u64> {
     [of_machine(), of_control_group(), of_addresses()].into_iter().flatten().min()
 }
 

@@ -2,7 +2,8 @@
 
 use crate::console;
 use spectra_core::params::{Fault, Faults};
-use spectra_film::write::WriteError;
+use spectra_files::WriteError;
+use spectra_session::SessionError;
 use std::io;
 
 /// Done, or stopped when its time was up.
@@ -58,6 +59,16 @@ impl From<Faults> for Failure {
 impl From<Fault> for Failure {
     fn from(fault: Fault) -> Self {
         Self::Faults(fault.into())
+    }
+}
+
+impl From<SessionError> for Failure {
+    fn from(error: SessionError) -> Self {
+        match error {
+            SessionError::Faults(faults) => Self::Faults(faults),
+            SessionError::Request(text) => Self::Input(text),
+            other => Self::Failed(other.to_string()),
+        }
     }
 }
 

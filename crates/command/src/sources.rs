@@ -96,9 +96,31 @@ pub(crate) fn cache() -> Result<PathBuf, Failure> {
     };
     let folder = stated("SPECTRA_CACHE").or_else(|| platform().map(|cache| cache.join("spectra")));
     let folder = folder.ok_or_else(|| {
-        Failure::from(Fault::new("no folder is known for a cache").hint("set the environment variable SPECTRA_CACHE"))
+        Failure::from(Fault::new("no cache folder is known").hint("set the environment variable SPECTRA_CACHE"))
     })?;
     std::path::absolute(&folder).map_err(|error| unreadable(&folder, &error))
+}
+
+/// Where cargo puts what `spectra build` and the tests of new plugins compile: one folder for all, so that
+/// crates with the same features are compiled once.
+pub(crate) fn target() -> Result<PathBuf, Failure> {
+    Ok(cache()?.join("target"))
+}
+
+/// The sections of a manifest that say how to compile.
+pub(crate) fn profiles(manifest: &str) -> String {
+    let mut kept = String::new();
+    let mut in_profile = false;
+    for line in manifest.lines() {
+        if line.starts_with('[') {
+            in_profile = line.starts_with("[profile.");
+        }
+        if in_profile && !line.starts_with('#') {
+            kept.push_str(line);
+            kept.push('\n');
+        }
+    }
+    kept
 }
 
 /// A path as cargo writes it: absolute, without `..`, and without the `\\?\` that Windows puts before it.
@@ -153,5 +175,12 @@ mod tests {
         }
         assert!(Sources::find(Some(&root.join("crates")), never).is_err());
         assert!(Sources::find(Some(Path::new("no/such/folder")), never).is_err());
+    }
+
+    #[test]
+    fn profiles_are_taken_over_and_nothing_else() {
+        let manifest = "[package]\nname = \"x\"\n[profile.dev]\n# why\nopt-level = 1\n\n[profile.dev.package.\"*\"]\nopt-level = 2\n[lints]\nworkspace = true\n[profile.release]\ndebug = false\n";
+        let wanted = "[profile.dev]\nopt-level = 1\n\n[profile.dev.package.\"*\"]\nopt-level = 2\n[profile.release]\ndebug = false\n";
+        assert_eq!(profiles(manifest), wanted);
     }
 }

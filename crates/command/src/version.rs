@@ -33,11 +33,12 @@ fn plugins() -> String {
 }
 
 /// The crates of the built-in stages.
-const BUILT_IN: [&str; 8] = [
+const BUILT_IN: [&str; 9] = [
     "spectra-plugin-colors",
     "spectra-plugin-films",
     "spectra-plugin-imagers",
     "spectra-plugin-oiio",
+    "spectra-plugin-outputs",
     "spectra-plugin-responses",
     "spectra-plugin-samplers",
     "spectra-plugin-sources",

@@ -1,47 +1,7 @@
 //! Numbers, times and names as a person reads them.
 
+pub(crate) use spectra_session::words::*;
 use std::path::{Path, PathBuf};
-
-/// A count with thin groups: `157 286 400`.
-pub(crate) fn count(value: u64) -> String {
-    let digits = value.to_string();
-    let mut out = String::with_capacity(digits.len() + digits.len() / 3);
-    for (at, digit) in digits.chars().enumerate() {
-        if at > 0 && (digits.len() - at).is_multiple_of(3) {
-            out.push(' ');
-        }
-        out.push(digit);
-    }
-    out
-}
-
-/// A rate in few characters: `23.4 million rays/s`.
-pub(crate) fn rate(rays_per_second: f64) -> String {
-    match rays_per_second {
-        r if r >= 1e9 => format!("{:.2} billion rays/s", r / 1e9),
-        r if r >= 1e8 => format!("{:.0} million rays/s", r / 1e6),
-        r if r >= 1e6 => format!("{:.1} million rays/s", r / 1e6),
-        r => format!("{r:.0} rays/s"),
-    }
-}
-
-/// A duration: `0.8 s`, `41 s`, `2 min 03 s`, `1 h 05 min`.
-pub(crate) fn duration(seconds: f64) -> String {
-    // What takes longer than that, nobody waits for.
-    let whole = seconds.clamp(0.0, 3.6e9).round() as u64;
-    match whole {
-        0..10 => format!("{:.1} s", seconds.max(0.0)),
-        10..60 => format!("{whole} s"),
-        60..3600 => format!("{} min {:02} s", whole / 60, whole % 60),
-        _ => format!("{} h {:02} min", whole / 3600, whole % 3600 / 60),
-    }
-}
-
-/// A part of a whole: `12 %`, and `0.3 %` where it is small.
-pub(crate) fn percent(part: u64, whole: u64) -> String {
-    let percent = 100.0 * part as f64 / whole.max(1) as f64;
-    if percent < 9.95 { format!("{percent:.1} %") } else { format!("{percent:.0} %") }
-}
 
 /// The file that a figure of `name` goes to where none is given: `NAME.svg` in the working folder.
 pub(crate) fn figure_of(name: &str) -> PathBuf {
@@ -56,20 +16,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn counts_are_grouped() {
-        assert_eq!(
-            ["0", "999", "1 000", "157 286 400"],
-            [0, 999, 1000, 157_286_400].map(count).each_ref().map(String::as_str)
-        );
-    }
-
-    #[test]
-    fn durations_keep_what_matters() {
-        let shown = [0.84, 41.2, 59.7, 123.0, 3900.0, f64::INFINITY].map(duration);
-        assert_eq!(shown, ["0.8 s", "41 s", "1 min 00 s", "2 min 03 s", "1 h 05 min", "1000000 h 00 min"]);
-    }
-
-    #[test]
     fn figures_are_called_by_what_they_show() {
         for (name, file) in [
             ("zeiss-biotar-50-f1.4", "zeiss-biotar-50-f1.4.svg"),
@@ -80,14 +26,5 @@ mod tests {
         ] {
             assert_eq!(figure_of(name), Path::new(file), "{name}");
         }
-    }
-
-    #[test]
-    fn rates_and_parts_are_short() {
-        assert_eq!(
-            [rate(950.0), rate(3.81e6), rate(1.9e8)],
-            ["950 rays/s", "3.8 million rays/s", "190 million rays/s"]
-        );
-        assert_eq!([percent(1, 8), percent(1, 300), percent(0, 0)], ["12 %", "0.3 %", "0.0 %"]);
     }
 }

@@ -1,6 +1,7 @@
 //! Rays in batches: structure of arrays, aligned to cache lines.
 
 use crate::loss::{ALIVE, Loss};
+use crate::numbers::{Numbers, RayColumns, StageKey, StageNumbers};
 
 /// Eight values on one cache line.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
@@ -69,6 +70,8 @@ pub fn pixel_and_channel(tag: u32) -> (u32, Option<u32>) {
 /// | `weight` | see [`crate::stage`] | flux forward, throughput backward |
 /// | `state` | | [`ALIVE`], or cause and surface of the loss ([`Loss::state`]) |
 /// | `tag` | | the input row, path or pixel that the ray belongs to |
+/// | `optical_path_mm` | mm | on request: [`RayBatch::with_optical_path`] |
+/// | `numbers` | | on request: what stages draw, [`RayBatch::with_numbers`] |
 #[derive(Clone, Debug)]
 pub struct RayBatch {
     len: usize,
@@ -84,6 +87,7 @@ pub struct RayBatch {
     weight: Column<f64>,
     state: Column<u64>,
     optical_path_mm: Option<Column<f64>>,
+    numbers: Option<RayColumns>,
     line: Vec<u32>,
     tag: Vec<u32>,
     surface: u32,
@@ -137,6 +141,26 @@ pub struct Columns<'a> {
     pub tag: &'a mut [u32],
     /// Optical path since [`RayBatch::restart`], mm; empty unless the batch carries it.
     pub optical_path_mm: &'a mut [f64],
+    /// What the stage at work may draw, ray by ray.
+    pub numbers: StageNumbers<'a>,
+}
+
+/// What the weight of a ray may depend on, to read, and the weights, to write: whoever only weighs rays leaves them where they
+/// are, and what is known of their places stays known.
+#[derive(Debug)]
+pub struct Weighing<'a> {
+    /// Positions, mm.
+    pub position: [&'a [f64]; 3],
+    /// Unit directions.
+    pub direction: [&'a [f64]; 3],
+    /// Wavelengths, nm.
+    pub wavelength_nm: &'a [f64],
+    /// Alive, or cause and surface of the loss.
+    pub state: &'a [u64],
+    /// Flux or throughput.
+    pub weight: &'a mut [f64],
+    /// Optical path since [`RayBatch::restart`], mm; empty unless the batch carries it.
+    pub optical_path_mm: &'a mut [f64],
 }
 
 impl RayBatch {
@@ -158,6 +182,7 @@ impl RayBatch {
             weight: column(),
             state: Column::new(capacity),
             optical_path_mm: None,
+            numbers: None,
             line: vec![CONTINUUM; capacity],
             tag: vec![0; capacity],
             surface: 0,
@@ -177,6 +202,29 @@ impl RayBatch {
         Self { optical_path_mm: Some(Column::new(capacity)), ..Self::new(capacity) }
     }
 
+    /// The same, with what a stage needs to draw numbers: two columns more. Rays have numbers once they got their places in a
+    /// sequence, [`RayBatch::number`].
+    #[must_use]
+    pub fn with_numbers(self) -> Self {
+        Self { numbers: Some(RayColumns::new(self.capacity)), ..self }
+    }
+
+    /// Makes rays `from ..` samples `first`, `first + 1`, ... of `stream`, of the estimator of that name: from now on stages draw
+    /// from `numbers` by that place, whatever becomes of the batch. Does nothing in a batch without
+    /// [`RayBatch::with_numbers`].
+    pub fn number(&mut self, from: usize, numbers: &Numbers, estimator: &str, stream: u64, first: u64) {
+        if let Some(columns) = &mut self.numbers {
+            columns.number(from..self.len, numbers, estimator, stream, first);
+        }
+    }
+
+    /// Says which stage draws from now on.
+    pub fn set_stage(&mut self, stage: StageKey) {
+        if let Some(columns) = &mut self.numbers {
+            columns.stage = stage;
+        }
+    }
+
     /// Starts over with `len` rays: alive, of weight 1, in air, on no spectral line. Positions, directions and wavelengths
     /// keep old values; the caller writes them.
     ///
@@ -186,6 +234,9 @@ impl RayBatch {
         assert!(len <= self.capacity, "a batch of {} rays cannot hold {len}", self.capacity);
         self.len = len;
         self.surface = 0;
+        if let Some(columns) = &mut self.numbers {
+            columns.kind = None;
+        }
         let c = self.columns_mut();
         c.index.fill(1.0);
         c.weight.fill(1.0);
@@ -231,6 +282,20 @@ impl RayBatch {
         self.split().0
     }
 
+    /// The weights, writable, and what they may depend on.
+    #[inline(always)]
+    pub fn weighing(&mut self) -> Weighing<'_> {
+        let c = self.split().0;
+        Weighing {
+            position: [c.x, c.y, c.z],
+            direction: [c.l, c.m, c.n],
+            wavelength_nm: c.wavelength_nm,
+            state: c.state,
+            weight: c.weight,
+            optical_path_mm: c.optical_path_mm,
+        }
+    }
+
     /// All columns, and those that the loops of a surface share, with x^2 + y^2 up to date.
     #[inline(always)]
     pub(crate) fn columns_and_scratch_mut(&mut self) -> (Columns<'_>, ScratchColumns<'_>) {
@@ -261,6 +326,7 @@ impl RayBatch {
             line: &mut self.line[..len],
             tag: &mut self.tag[..len],
             optical_path_mm: self.optical_path_mm.as_mut().map_or(&mut [], |column| column.slice_mut(len)),
+            numbers: self.numbers.as_mut().map_or_else(StageNumbers::none, |columns| columns.view(len)),
         };
         let scratch = ScratchColumns {
             radius2: self.scratch.radius2.slice_mut(len),
@@ -333,7 +399,7 @@ impl RayBatch {
     /// Drops the rays that have ended and keeps the order of the rest. Returns how many are left.
     pub fn compact(&mut self) -> usize {
         let len = self.len;
-        let c = self.columns_mut();
+        let mut c = self.columns_mut();
         let mut to = 0;
         for from in 0..len {
             c.x[to] = c.x[from];
@@ -350,6 +416,7 @@ impl RayBatch {
             if let Some(path) = c.optical_path_mm.get(from).copied() {
                 c.optical_path_mm[to] = path;
             }
+            c.numbers.keep(from, to);
             let state = c.state[from];
             c.state[to] = state;
             to += usize::from(state == ALIVE);

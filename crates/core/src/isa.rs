@@ -87,7 +87,7 @@ impl Isa {
             "baseline" => Self::Baseline,
             "avx2" => Self::Avx2,
             "avx512" => Self::Avx512,
-            _ => return Err(format!("`{name}` is no instruction set; known are baseline, avx2, avx512")),
+            _ => return Err(format!("`{name}` is not an instruction set; known: baseline, avx2, avx512")),
         };
         let widest = Self::of_machine();
         if isa > widest {

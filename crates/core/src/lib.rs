@@ -10,6 +10,8 @@
 //! - Everything that travels with light does so in batches ([`RayBatch`]), so a call through a trait object costs nothing per ray.
 //! - Random numbers, files and the instruction set reach a stage only through its arguments.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 pub mod batch;
 pub mod cover;
 pub mod frame;
@@ -20,11 +22,11 @@ pub mod names;
 pub mod numbers;
 pub mod one_layer;
 pub mod params;
-pub mod picture_file;
 pub mod prelude;
 pub mod registry;
 pub mod resources;
 pub mod shutter;
+pub mod sink;
 pub mod spectral;
 pub mod stage;
 pub mod surface;

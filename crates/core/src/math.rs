@@ -46,6 +46,30 @@ pub fn sin_cos_turns(turns: f64) -> (f64, f64) {
     (sin, cos)
 }
 
+/// `e` to the power of `x`, for `x` from -700 to 700, within 4e-16 of it; branch-free. Beyond that range the power of its end.
+///
+/// A power of two times the Taylor series to r^13 of what is left, |r| <= ln(2) / 2: the first term left out is below 5e-18.
+#[inline(always)]
+#[must_use]
+pub fn exp_within_700(x: f64) -> f64 {
+    // Adding 1.5 * 2^52 rounds to whole numbers, and leaves the number in the lowest bits.
+    const ROUND: f64 = 6_755_399_441_055_744.0;
+    // The upper 32 bits of ln(2), so that whole numbers times it are exact, and the rest.
+    const LN2_HIGH: f64 = 6.931_471_803_691_238e-1;
+    const LN2_LOW: f64 = 1.908_214_929_270_587_7e-10;
+    let x = if x > -700.0 { x } else { -700.0 };
+    let x = if x < 700.0 { x } else { 700.0 };
+    let shifted = x * std::f64::consts::LOG2_E + ROUND;
+    let whole = shifted - ROUND;
+    let r = (x - whole * LN2_HIGH) - whole * LN2_LOW;
+    let end = 1.0 / 3_628_800.0 + r * (1.0 / 39_916_800.0 + r * (1.0 / 479_001_600.0 + r * (1.0 / 6_227_020_800.0)));
+    let middle =
+        1.0 / 120.0 + r * (1.0 / 720.0 + r * (1.0 / 5040.0 + r * (1.0 / 40_320.0 + r * (1.0 / 362_880.0 + r * end))));
+    let series = 1.0 + r * (1.0 + r * (1.0 / 2.0 + r * (1.0 / 6.0 + r * (1.0 / 24.0 + r * middle))));
+    let power = f64::from_bits(shifted.to_bits().wrapping_add(1023) << 52);
+    series * power
+}
+
 /// Maps the unit square onto the unit disk, area for area, neighbors to neighbors.
 ///
 /// P. Shirley and K. Chiu, "A low distortion map between disk and square", J. Graphics Tools 2
@@ -88,6 +112,20 @@ mod tests {
             let x = t * std::f64::consts::TAU;
             assert!((s - sin(x)).abs() < 1e-15 && (c - cos(x)).abs() < 1e-15, "{t}");
         }
+    }
+
+    #[test]
+    fn powers_agree_with_libm() {
+        for i in -70_000..=70_000 {
+            let x = f64::from(i) / 100.0;
+            let (got, want) = (exp_within_700(x), exp(x));
+            assert!((got - want).abs() <= 4e-16 * want, "{x}: {got} {want}");
+            let small = f64::from(i) / 1e6;
+            assert!((exp_within_700(small) - exp(small)).abs() <= 4e-16, "{small}");
+        }
+        assert_eq!(exp_within_700(0.0), 1.0);
+        assert_eq!(exp_within_700(-1e9), exp_within_700(-700.0));
+        assert_eq!(exp_within_700(1e9), exp_within_700(700.0));
     }
 
     /// Moments of a uniform unit disk: E r^2 = 1/2, E r^4 = 1/3, E x = 0, E x^2 = 1/4.

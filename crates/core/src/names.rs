@@ -61,6 +61,52 @@ pub fn find<'a>(typed: &str, known: impl IntoIterator<Item = &'a str>) -> Match<
     of(known.into_iter().filter(|name| holds(name)).collect())
 }
 
+/// Most names that a message lists in full.
+const LISTED: usize = 12;
+/// How many of a longer list it names.
+const SHOWN: usize = 10;
+
+/// Names in a message: `a, b, c`. Of more than twelve the first ten, how many more there are, and the command that shows all
+/// of them, such as `spectra list lens`; "" where there is none.
+#[must_use]
+pub fn listed<S: AsRef<str>>(names: &[S], command: &str) -> String {
+    let shown = if names.len() > LISTED { SHOWN } else { names.len() };
+    let mut text = names[..shown].iter().map(AsRef::as_ref).collect::<Vec<_>>().join(", ");
+    if shown < names.len() {
+        text.push_str(&format!(" and {} more", names.len() - shown));
+        if !command.is_empty() {
+            text.push_str(&format!("; `{command}` shows all"));
+        }
+    }
+    text
+}
+
+/// The hint for a name that is none of `known`: the nearest one, those that contain what was typed, or all. `command` is as
+/// for [`listed`].
+///
+/// ```
+/// use spectra_core::names::hint;
+///
+/// let kinds = ["beam", "chart", "picture", "point"];
+/// assert_eq!(hint("pictre", &kinds, ""), "did you mean `picture`? Known: beam, chart, picture, point");
+/// assert_eq!(hint("lamp", &kinds, ""), "known: beam, chart, picture, point");
+/// ```
+#[must_use]
+pub fn hint<S: AsRef<str>>(typed: &str, known: &[S], command: &str) -> String {
+    let all = || listed(known, command);
+    if let Some(near) = crate::params::nearest(typed, known.iter().map(AsRef::as_ref)) {
+        return match known.len() {
+            0..=LISTED => format!("did you mean `{near}`? Known: {}", all()),
+            _ if command.is_empty() => format!("did you mean `{near}`?"),
+            _ => format!("did you mean `{near}`? `{command}` shows all"),
+        };
+    }
+    match find(typed, known.iter().map(AsRef::as_ref)) {
+        Match::Several(several) => format!("which one? {}", listed(&several, command)),
+        _ => format!("known: {}", all()),
+    }
+}
+
 fn of(mut found: Vec<&str>) -> Match<'_> {
     found.dedup();
     match found[..] {
@@ -103,6 +149,22 @@ mod tests {
         for typed in ["", "  ", "f2", "f", "- - -", "canon x", "summicron", &"x".repeat(1_000_000)] {
             assert_eq!(find(typed, LENSES), Match::Nothing, "{typed:.20}");
         }
+    }
+
+    #[test]
+    fn long_lists_are_cut() {
+        let names: Vec<String> = (1..=13).map(|i| format!("n{i}")).collect();
+        assert_eq!(listed(&names[..12], "x"), "n1, n2, n3, n4, n5, n6, n7, n8, n9, n10, n11, n12");
+        assert_eq!(listed(&names, ""), "n1, n2, n3, n4, n5, n6, n7, n8, n9, n10 and 3 more");
+        assert!(listed(&names, "spectra list lens").ends_with("n10 and 3 more; `spectra list lens` shows all"));
+    }
+
+    #[test]
+    fn hints_know_slips_and_parts() {
+        assert_eq!(hint("sfere", &["sphere", "plane"], ""), "did you mean `sphere`? Known: sphere, plane");
+        assert_eq!(hint("asphere", &["even-asphere", "odd-asphere"], ""), "which one? even-asphere, odd-asphere");
+        assert_eq!(hint("grat", &["grating", "plane"], ""), "did you mean `grating`? Known: grating, plane");
+        assert_eq!(hint("lens", &["plane"], ""), "known: plane");
     }
 
     /// A whole name wins even if other names contain it.

@@ -9,6 +9,13 @@
 //! B. Burley, "Practical hash-based Owen scrambling", J. Computer Graphics Techniques 9 (2020).
 //! [`Numbers::random`] draws independent numbers with the SplitMix64 finalizer; [`Numbers::stratified`] draws jittered numbers,
 //! one in each of n equal parts, in a separate order for each dimension.
+//!
+//! A path has five [`Dimension`]s. A stage that chooses draws further ones from the rays themselves, see [`RayNumbers`].
+
+mod stage;
+
+pub(crate) use stage::RayColumns;
+pub use stage::{RayNumbers, StageKey, StageNumbers};
 
 use crate::isa::{Isa, Vectorized};
 
@@ -33,7 +40,7 @@ pub enum Dimension {
 pub const SOBOL_DIMENSIONS: usize = 8;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
+pub(crate) enum Kind {
     Random,
     Sobol,
     /// Jittered, in this many strata, at least 1.
@@ -52,7 +59,7 @@ pub struct Numbers {
 /// The SplitMix64 finalizer (G. Steele, D. Lea, C. Flood, OOPSLA 2014).
 #[inline(always)]
 #[must_use]
-pub fn mix64(mut x: u64) -> u64 {
+pub const fn mix64(mut x: u64) -> u64 {
     x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
     x ^ (x >> 31)
@@ -245,13 +252,6 @@ impl Numbers {
         self.fill(Isa::Baseline, stream, sample, dimension, &mut out);
         out[0]
     }
-
-    /// A generator for one sample, for code that uses `rand` and `rand_distr`: independent numbers, from dimension `dimension`
-    /// on.
-    #[must_use]
-    pub fn generator(&self, stream: u64, sample: u64, dimension: u32) -> SampleRng {
-        SampleRng { state: mix64(self.key(stream, dimension) ^ mix64(sample.wrapping_mul(GOLDEN))) }
-    }
 }
 
 /// A Poisson count of mean `mean`, chosen by the number `u` in [0, 1). Above a mean of 500 the normal distribution is close
@@ -357,7 +357,7 @@ impl Vectorized for FillSobol<'_> {
     }
 }
 
-/// A random generator that belongs to one sample; see [`Numbers::generator`].
+/// A random generator that belongs to one event of one ray; see [`RayNumbers::generator`].
 #[derive(Clone, Debug)]
 pub struct SampleRng {
     state: u64,

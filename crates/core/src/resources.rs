@@ -3,7 +3,7 @@
 use crate::params::{Faults, Node, Params};
 use std::borrow::Cow;
 use std::io::{BufRead, BufReader, Cursor, Read, Seek};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// What went wrong with a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -69,6 +69,15 @@ impl Found {
     #[must_use]
     pub fn bytes(name: String, bytes: Cow<'static, [u8]>) -> Self {
         Self { name, content: Content::Bytes(bytes) }
+    }
+
+    /// Where it lies on disk; `None` of bytes that are there already.
+    #[must_use]
+    pub fn path(&self) -> Option<&Path> {
+        match &self.content {
+            Content::OnDisk(path) => Some(path),
+            Content::Bytes(_) => None,
+        }
     }
 
     /// Its size, bytes.

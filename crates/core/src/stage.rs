@@ -66,6 +66,11 @@ pub trait Emit: Send + Sync {
     /// Called once the directions are set: multiplies the weight by the emission in that direction relative to that of
     /// [`Emit::place`], including the cosine for an emitting plane.
     fn radiate(&self, rays: &mut RayBatch, isa: Isa);
+
+    /// Whether it draws numbers beyond `u` and `v` ([`crate::numbers::RayNumbers`]).
+    fn draws(&self) -> bool {
+        false
+    }
 }
 
 /// Returns the light along rays.
@@ -74,6 +79,11 @@ pub trait Radiance: Send + Sync {
     /// object, its position in the frame of the lens. Radiance is in W m^-2 sr^-1 nm^-1, or in W m^-2 sr^-1 if the wavelength is
     /// that of a line.
     fn radiance(&self, rays: &mut RayBatch, isa: Isa);
+
+    /// Whether it draws numbers from the rays ([`crate::numbers::RayNumbers`]).
+    fn draws(&self) -> bool {
+        false
+    }
 }
 
 /// Turns a color into a spectrum.
@@ -191,6 +201,11 @@ pub trait Receive: Send + Sync {
     /// with the channel if the light adds to one channel only ([`crate::batch::tag_of`]). Rays that miss the frame end as
     /// [`crate::Loss::OutOfFrame`].
     fn receive(&self, rays: &mut RayBatch, isa: Isa);
+
+    /// Whether it draws numbers from the rays ([`crate::numbers::RayNumbers`]).
+    fn draws(&self) -> bool {
+        false
+    }
 }
 
 /// Launches rays.
@@ -203,6 +218,11 @@ pub trait Launch: Send + Sync {
     /// pixels to each ray. It may shift a ray sideways by less than matters at the pupil, change its weight, end it, or name the
     /// one channel that it adds to ([`crate::batch::tag_of`]).
     fn admit(&self, _rays: &mut RayBatch, _isa: Isa) {}
+
+    /// Whether it draws numbers beyond `u` and `v` ([`crate::numbers::RayNumbers`]).
+    fn draws(&self) -> bool {
+        false
+    }
 }
 
 /// The film: which light it responds to, and how it is developed.
@@ -230,9 +250,23 @@ pub trait Film: Send + Sync {
         false
     }
 
+    /// Whether the camera's meter looks at a pixel. The channels beyond [`Film::picture_channels`] are recorded with fewer rays
+    /// than the picture, and only where this is true; elsewhere they are 0.
+    fn is_metered_at(&self, _size: &FrameSize, _pixel: u32) -> bool {
+        true
+    }
+
     /// Warnings about the picture, for example of a setting that has no effect.
     fn warnings(&self) -> Vec<String> {
         Vec::new()
+    }
+
+    /// Checks that a frame of this size can be developed, before any light is traced.
+    ///
+    /// # Errors
+    /// The reason why it cannot, and what to write instead.
+    fn check_frame(&self, _size: &FrameSize) -> Result<(), [String; 2]> {
+        Ok(())
     }
 
     /// A short name.

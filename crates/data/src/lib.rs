@@ -10,6 +10,8 @@
 //! assert!(spectra_data::list("spectra/illuminants/").any(|name| name.ends_with("/D65.csv")));
 //! ```
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod licences;
 
 pub use licences::{Licence, licences};

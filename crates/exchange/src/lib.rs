@@ -22,6 +22,8 @@
 //! # Ok::<(), spectra_core::params::Faults>(())
 //! ```
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 pub mod csv;
 mod decode;
 mod glass;

@@ -8,8 +8,8 @@
 
 use crate::lookup::PIXELS_A_TASK;
 use rayon::prelude::*;
+use spectra_color::{Gamut, RgbSpace, into_gamut};
 use spectra_core::frame::{DisplayPicture, ExposureChannel, ExposureFrame, FrameSize};
-use spectra_spectrum::{Gamut, RgbSpace, into_gamut};
 
 /// Finds the exposure that is shown as white, from the frame alone: the same frame, the same answer.
 #[derive(Clone, Copy, Debug, PartialEq)]

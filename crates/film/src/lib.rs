@@ -1,4 +1,4 @@
-//! Exposure frames, film stocks, development, display and picture files.
+//! Exposure frames, film stocks, development and display.
 //!
 //! What an imager records is linear exposure, channel by channel. From there:
 //!
@@ -6,8 +6,9 @@
 //! - [`curve`]: density over log exposure; [`emulsion`], [`develop`]: exposure to amounts of silver or dye;
 //! - [`deposit`]: what those hold back, wavelength by wavelength;
 //! - [`mod@print`]: a black-and-white negative on paper; [`positive`]: any film on a print stock, as a scan, projected;
-//! - [`display`]: absolute XYZ to a screen, with automatic exposure as one explicit step;
-//! - [`mod@write`]: OpenEXR of the exposure, PNG and TIFF of the picture.
+//! - [`display`]: absolute XYZ to a screen, with automatic exposure as one explicit step.
+
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 mod convolve;
 mod cube;
@@ -25,4 +26,3 @@ pub mod push;
 pub mod raster;
 pub mod scatter;
 pub mod stock;
-pub mod write;

@@ -90,7 +90,7 @@ fn a_gray_scale_stays_gray() {
     for (positive, most) in [(&print, 14.0), (&scan, 6.0)] {
         for step in -30..=20 {
             let amounts = negative.neutral(log10(GRAY_LX_S) + f64::from(step) * 0.1 * log10(2.0));
-            let rgb = spectra_spectrum::RgbSpace::srgb().encode(positive.shown(&amounts)).map(|v| v * 255.0);
+            let rgb = spectra_color::RgbSpace::srgb().encode(positive.shown(&amounts)).map(|v| v * 255.0);
             let spread = rgb.iter().fold(0.0_f64, |a, b| a.max(*b)) - rgb.iter().fold(255.0_f64, |a, b| a.min(*b));
             assert!(spread <= most, "{step}: {rgb:?}");
         }
@@ -175,7 +175,7 @@ fn frames_are_shown_as_their_places_are() {
         let mut worst = 0.0_f64;
         for (i, shown) in positive.picture(&slices).iter().enumerate() {
             let exact = positive.shown(&planes.iter().map(|p| f64::from(p[i])).collect::<Vec<_>>());
-            let code = |v: f64| spectra_spectrum::Transfer::Srgb.encode(v) * 255.0;
+            let code = |v: f64| spectra_color::Transfer::Srgb.encode(v) * 255.0;
             (0..3).for_each(|c| worst = worst.max((code(f64::from(shown[c])) - code(exact[c])).abs()));
         }
         println!("{name}: worst {worst:.3} of 255");

@@ -288,13 +288,6 @@ impl Beam {
         }
     }
 
-    /// Center of the spot on the plane `z_mm` behind the image plane, mm.
-    #[must_use]
-    pub fn centroid_mm(&self, z_mm: f64) -> [f64; 2] {
-        let m = self.moments();
-        [m.x + m.u * z_mm, m.y + m.v * z_mm]
-    }
-
     /// RMS distance of the rays from their centroid on the plane `z_mm` behind the image plane, mm.
     #[must_use]
     pub fn rms_mm(&self, z_mm: f64) -> f64 {

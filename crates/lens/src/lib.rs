@@ -4,6 +4,9 @@
 //! enter a tracer in the frame of the lens (vertex of the first surface at the origin) and leave it
 //! in the frame of the image plane (z = 0 there); backward it is the other way round.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
+mod absorption;
 mod aim;
 mod aperture;
 mod beam;
@@ -31,7 +34,7 @@ mod transmission;
 
 pub use aim::{AimPattern, AimRegion, FrontPupil, RearPupil, has_sizes};
 pub use aperture::read as read_apertures;
-pub use aperture::{Aperture, ApertureForm, Drawing, FLATNESS_MM, FillRule, Iris, Mask, Opening, Painted, Shape};
+pub use aperture::{Aperture, ApertureForm, Iris, Mask, Opening, Shape};
 pub use beam::{Beam, ObjectPoint};
 pub use coating::{
     Coating, CoatingForm, MeasuredCoating, NamedCoating, OneLayer, Reflectance, Stack, StackLayer, StackParams,

@@ -107,6 +107,14 @@ impl Path {
         Ok(Self { enters, leaves: travel, steps })
     }
 
+    /// As far as the first element for which `ends` says so, that one included; all of it if there is none.
+    #[must_use]
+    pub fn up_to(mut self, ends: impl Fn(usize) -> bool) -> Self {
+        let last = self.steps.iter().position(|step| ends(step.element));
+        self.steps.truncate(last.map_or(self.steps.len(), |last| last + 1));
+        self
+    }
+
     /// The steps, in the order of the light.
     #[must_use]
     pub fn steps(&self) -> &[PathStep] {

@@ -6,9 +6,10 @@ use crate::{
 };
 use schemars::JsonSchema;
 use serde::Deserialize;
+use spectra_core::names;
 use spectra_core::params::{
     Angle, FNumber, Fault, Faults, Length, Node, OrInfinity, Params, Part, Positive, Quantity, Ratio, StageNode, Value,
-    Whole, keys_of, nearest,
+    Whole, keys_of,
 };
 use spectra_core::registry::{self, Context};
 use spectra_core::resources::Resources;
@@ -255,8 +256,8 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
         let number = lens.elements.len() + 1;
         let medium_is_stated = stated.glass.is_some() || stated.nd.is_some();
         if stated.mirror && medium_is_stated {
-            let fault = place.fault("mirror", "light does not go behind a mirror: it has no glass of its own");
-            faults.push(fault.hint("the medium in front of it goes on"));
+            let fault = place.fault("mirror", "no light passes behind a mirror, so it has no glass");
+            faults.push(fault.hint("leave the glass out: the medium in front of the mirror continues"));
         }
         let medium_after = if stated.mirror || (surface.is_stop() && !medium_is_stated) {
             medium_before // a stop stands in the medium that is there
@@ -276,25 +277,25 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
         // A break of the axis that follows states the distance itself.
         let distance_follows = file.surfaces.get(at + 1).is_none_or(|next| kind_of(next) == Some(BREAK));
         if stated.thickness.is_none() && medium_after != 0 && medium_after != medium_before && !distance_follows {
-            let fault = place.fault("thickness", "missing key `thickness`: a glass begins here and has no thickness");
+            let fault = place.fault("thickness", "missing key `thickness`: the glass behind this surface needs one");
             faults.push(fault.hint("add `thickness: ...`, the distance to the next surface; 0 where they touch"));
         }
         let thickness_mm = stated.thickness.map_or(0.0, |t| t.mm());
         let radius_mm = shape.get("radius").and_then(length_mm).map_or(f64::INFINITY, f64::abs);
         if radius_mm > 0.0 && radius_mm < SHORTEST_RADIUS_MM {
-            let fault = shape.fault("radius", format!("{radius_mm:e} mm is no radius of a lens"));
-            faults.push(fault.hint(format!("from {SHORTEST_RADIUS_MM:e} mm on; 0 for a plane")));
+            let fault = shape.fault("radius", format!("{radius_mm:e} mm is too small a radius for a lens"));
+            faults.push(fault.hint(format!("at least {SHORTEST_RADIUS_MM:e} mm; 0 for a plane")));
         }
         // Behind a mirror light runs the other way; between two planes in air the step may be imagined.
         if thickness_mm < 0.0 && along && medium_after != medium_before {
             let fault = place.fault("thickness", format!("the thickness is negative: {thickness_mm} mm"));
-            faults.push(fault.hint("distances run in the sense of the light: write it without the minus sign"));
+            faults.push(fault.hint("thicknesses follow the direction of the light: write it without the minus sign"));
         }
         let apertures = stated.aperture.as_ref().map(|node| aperture::read(node, resources));
         let mut element =
             Element::new(shape.kind().unwrap_or("surface"), Arc::from(surface), medium_before, medium_after);
         if stated.mirror && element.stop {
-            faults.push(place.fault("mirror", "a stop bends no light").hint("`kind: plane` with `stop: true`"));
+            faults.push(place.fault("mirror", "a stop does not refract light").hint("`kind: plane` with `stop: true`"));
         } else if stated.mirror {
             element.action = Action::Reflect;
         }
@@ -312,7 +313,9 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
             && let Some(first) = lens.elements.iter().position(|e| e.stop)
         {
             let fault = place.fault_here(format!("a second stop: surface {} is one already", first + 1));
-            faults.push(fault.hint("a lens has one; elsewhere a `semi-diameter` or an `aperture` limits the light"));
+            faults.push(
+                fault.hint("a lens has one stop; other surfaces limit the light by `semi-diameter` or `aperture`"),
+            );
         }
         if let Some(semi_diameter_mm) = semi_diameter_mm.filter(|s| *s > 0.0)
             && let Some(reach_mm) = reach_mm(&*element.surface, semi_diameter_mm)
@@ -324,7 +327,7 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
         element.coating = stated.coating.as_ref().and_then(|node| faults.take(read_coating(node, resources)));
         element.reflectance = stated.reflectance.map_or(1.0, Ratio::number);
         if stated.reflectance.is_some() && !stated.mirror {
-            let fault = place.fault("reflectance", "only a mirror has a reflectance of its own");
+            let fault = place.fault("reflectance", "only a mirror has a `reflectance`");
             faults.push(fault.hint("what a lens surface reflects follows from its `coating`"));
         }
         lens.elements.push(element);
@@ -344,7 +347,7 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
         let law = faults.take(focus_law(node, &lens.groups));
         if let Some(again) = law.as_ref().filter(|law| lens.focus_laws.iter().any(|l| l.group == law.group)) {
             let name = &lens.groups[again.group].name;
-            faults.push(node.fault(format!("group `{name}` moves by two laws")).hint("one law a group"));
+            faults.push(node.fault(format!("group `{name}` moves by two laws")).hint("one law per group"));
         }
         lens.focus_laws.extend(law);
     }
@@ -379,7 +382,7 @@ fn focus_law(node: &StageNode, groups: &[Group]) -> Result<FocusLaw, Faults> {
         (Some(factor), None) if factor.is_finite() && factor != 0.0 => GroupTravel::Factor(factor),
         (Some(_), None) => {
             let fault = params.fault("factor", "a group of factor 0 does not move");
-            return Err(fault.hint("leave its law out").into());
+            return Err(fault.hint("leave out its law").into());
         }
         (None, Some(points)) => {
             let points: Vec<_> = points.iter().map(|(distance, shift)| (distance.mm(), shift.mm())).collect();
@@ -400,11 +403,11 @@ fn focus_law(node: &StageNode, groups: &[Group]) -> Result<FocusLaw, Faults> {
 pub fn unknown_group(params: &Params, key: &str, name: &str, groups: &[Group]) -> Fault {
     let fault = params.fault(key, format!("the lens has no group `{name}`"));
     let known: Vec<&str> = groups.iter().map(|g| g.name.as_str()).collect();
-    match (nearest(name, known.iter().copied()), known.is_empty()) {
-        (_, true) => fault.hint("its file names none under `groups`"),
-        (Some(near), _) => fault.hint(format!("did you mean `{near}`? Known: {}", known.join(", "))),
-        (None, _) => fault.hint(format!("known: {}", known.join(", "))),
-    }
+    fault.hint(if known.is_empty() {
+        "its file defines none: `groups` is missing there".to_owned()
+    } else {
+        names::hint(name, &known, "")
+    })
 }
 
 /// A group of surfaces.
@@ -474,7 +477,7 @@ fn medium(
     let Some(glass) = &stated.glass else {
         let Some(nd) = stated.nd else {
             if stated.vd.is_some() {
-                return Err(place.fault("vd", "`vd` without `nd` says nothing").hint("add `nd: ...`").into());
+                return Err(place.fault("vd", "`vd` needs `nd`").hint("add `nd: ...`").into());
             }
             return Ok(None);
         };

@@ -6,7 +6,7 @@ use spectra_core::surface::Action;
 
 /// A lens with an odd number of mirrors looks back to where its light comes from; turned round it has no front.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("a lens with an odd number of mirrors cannot be turned round: its image lies on the side of the object")]
+#[error("a lens with an odd number of mirrors cannot be reversed: its image is on the object side")]
 pub struct ReverseError;
 
 /// Seen from the other side, half a turn about y away: right is left, front is rear.

@@ -41,7 +41,7 @@ impl Lens {
         let (efl, bfl) = (first_order.efl_mm, first_order.bfl_mm);
         if efl.is_finite() && bfl.is_finite() && efl > 0.0 && bfl < 0.0 {
             all.push(format!(
-                "the image of distant objects lies {:.2} mm in front of the last surface: has a radius a wrong sign?",
+                "the image of distant objects lies {:.2} mm in front of the last surface: does a radius have the wrong sign?",
                 -bfl
             ));
         }

@@ -1,14 +1,16 @@
 //! Tracing of whole batches along a path: straight through the lens in either direction, or by reflections.
 
+use crate::absorption::{Absorption, Grid};
 use crate::aperture::Shape;
 use crate::ledger::{Booked, Ledger, StepLedger, living};
 use crate::path::{Act, Path, PathStep};
 use crate::pose::Pose;
-use crate::transmission::{Absorption, Before, Passage};
+use crate::transmission::{Before, Passage};
 use crate::{Element, Lens};
 use glam::{DMat3, DVec3};
 use spectra_core::batch::Column;
 use spectra_core::isa::{Isa, Vectorized};
+use spectra_core::numbers::StageKey;
 use spectra_core::surface::{Action, IndexColumns, Interface, Travel};
 use spectra_core::{Loss, LossCounts, RayBatch};
 use spectra_glass::{Dispersion, DispersionError, Medium};
@@ -29,6 +31,9 @@ pub enum Indices {
     At(f64),
 }
 
+/// Where indices do not depend on the wavelength, rays may have any down to this, nm.
+const ANY_NM: f64 = 200.0;
+
 /// A lens made ready for one band of light.
 #[derive(Debug)]
 pub struct Tracer {
@@ -43,6 +48,8 @@ pub struct Tracer {
     passages: Vec<Passage>,
     /// What each medium absorbs, where that is asked for.
     absorptions: Vec<Option<Absorption>>,
+    /// Where they are tabulated, if there are any.
+    absorption_grid: Option<Grid>,
     isa: Isa,
 }
 
@@ -93,6 +100,8 @@ struct Leg {
     beyond: usize,
     /// Whether the way here lies within the lens, where glass absorbs.
     inside: bool,
+    /// What the surface draws its numbers by, if it does.
+    stage: Option<StageKey>,
 }
 
 /// What one thread needs to trace: index columns, and what was lost.
@@ -155,20 +164,25 @@ impl Tracer {
             })
             .collect::<Result<_, _>>()?;
         let clips = lens.elements.iter().map(round_clip2_mm2).collect();
-        let passages = lens.elements.iter().map(|e| Passage::of(lens, e)).collect();
+        let shortest_nm = match indices {
+            Indices::Band { min_nm, .. } => min_nm,
+            Indices::Stated | Indices::At(_) => ANY_NM,
+        };
+        let passages = lens.elements.iter().map(|e| Passage::of(lens, e, shortest_nm)).collect();
         let (min_nm, max_nm) = match indices {
             Indices::Band { min_nm, max_nm } => (min_nm, max_nm),
             Indices::Stated => (lens.reference_nm, lens.reference_nm),
             Indices::At(wavelength_nm) => (wavelength_nm, wavelength_nm),
         };
-        let absorption =
-            |medium: &Medium| lens.absorption.then(|| Absorption::of(medium, lens.year, min_nm, max_nm)).flatten();
-        let absorptions = lens.media.iter().map(|m| absorption(&m.medium)).collect();
+        let grid = Grid::over(min_nm, max_nm);
+        let absorption = |medium: &Medium| lens.absorption.then(|| Absorption::of(medium, lens.year, &grid)).flatten();
+        let absorptions: Vec<Option<Absorption>> = lens.media.iter().map(|m| absorption(&m.medium)).collect();
+        let absorption_grid = absorptions.iter().any(Option::is_some).then_some(grid);
         let elements = lens.elements.clone();
         let image_pose = lens.image_pose;
         let way = |travel| route(&elements, &image_pose, &Path::through(elements.len(), travel));
         let (forward, backward) = (way(Travel::Forward), way(Travel::Backward));
-        Ok(Self { elements, clips, image_pose, forward, backward, media, passages, absorptions, isa })
+        Ok(Self { elements, clips, image_pose, forward, backward, media, passages, absorptions, absorption_grid, isa })
     }
 
     /// Makes a path ready, once for all batches that follow it.
@@ -190,6 +204,12 @@ impl Tracer {
     #[must_use]
     pub fn surfaces(&self) -> usize {
         self.elements.len()
+    }
+
+    /// As far as light of this direction comes before a surface draws its numbers; straight through where none does.
+    pub(crate) fn certain(&self, travel: Travel) -> Route {
+        let path = Path::through(self.elements.len(), travel);
+        self.route(&path.up_to(|at| self.elements[at].surface.draws()))
     }
 
     /// Whether light keeps its weight through it.
@@ -270,8 +290,17 @@ impl Tracer {
             }
         };
         let len = rays.len();
+        let passage = &self.passages[leg.at];
+        let absorption = self.absorptions[leg.before].as_ref().filter(|_| leg.inside);
+        let carries_path = rays.optical_path_mm().is_some();
         if let Some(noted) = &mut work.before {
-            noted.note(rays);
+            let needs_way = absorption.is_some() || carries_path;
+            if needs_way {
+                noted.note_positions(rays);
+            }
+            if needs_way || leg.turns || matches!(passage, Passage::Coated(..)) {
+                noted.note_directions(rays);
+            }
         }
         let interface = Interface {
             number: leg.at as u32 + 1,
@@ -282,19 +311,21 @@ impl Tracer {
             before: columns(&work.media[leg.before], len),
             after: columns(&work.media[leg.after], len),
         };
+        if let Some(stage) = leg.stage {
+            rays.set_stage(stage);
+        }
         let mut ended = element.surface.interact(rays, &interface, isa);
         if let Some((ledger, booked)) = &mut work.ledger {
             booked.settle(rays, &mut ledger.steps[step], |s| &mut s.absorbed);
         }
-        if let Some(noted) = &work.before {
+        if let Some(noted) = &mut work.before {
             noted.lengthen(rays, interface.before.n, shift_mm);
-            if let (Some(absorption), true) = (&self.absorptions[leg.before], leg.inside) {
-                noted.absorb(rays, absorption, shift_mm);
+            if let Some(absorption) = absorption {
+                noted.absorb(rays, absorption, shift_mm, isa);
                 if let Some((ledger, booked)) = &mut work.ledger {
                     booked.settle(rays, &mut ledger.steps[step], |s| &mut s.absorbed);
                 }
             }
-            let passage = &self.passages[leg.at];
             if leg.turns {
                 let beyond = columns(&work.media[leg.beyond], len);
                 noted.reflect(rays, passage, interface.before.n, beyond.n);
@@ -358,14 +389,16 @@ impl Tracer {
                 self.isa.run(Evaluate { medium, wavelength_nm: rays.wavelengths_nm(), n, inverse });
             }
         }
+        if let (Some(grid), Some(noted)) = (&self.absorption_grid, &mut work.before) {
+            noted.note_wavelengths(rays, grid, self.isa);
+        }
     }
 
     fn count(&self, rays: &RayBatch, number: u32, losses: &mut LossCounts) {
-        for cause in [Loss::Missed, Loss::Vignetted, Loss::TotalReflection, Loss::Absorbed] {
-            let many = self.isa.run(Count { states: rays.states(), state: cause.state(number) });
-            if many > 0 {
-                losses.add(cause, number, many);
-            }
+        let causes = [Loss::Missed, Loss::Vignetted, Loss::TotalReflection, Loss::Absorbed];
+        let many = self.isa.run(Count { states: rays.states(), wanted: causes.map(|cause| cause.state(number)) });
+        for (cause, many) in causes.into_iter().zip(many).filter(|(_, many)| *many > 0) {
+            losses.add(cause, number, many);
         }
     }
 }
@@ -413,7 +446,7 @@ fn route(elements: &[Element], image_pose: &Pose, path: &Path) -> Route {
     let end = |at_front: bool| if at_front { &Pose::IDENTITY } else { image_pose };
     let mut frame = end(path.enters() == Travel::Forward);
     let mut outside = 0;
-    let mut legs = Vec::with_capacity(path.steps().len());
+    let mut legs: Vec<Leg> = Vec::with_capacity(path.steps().len());
     for PathStep { element: at, act, travel } in path.steps() {
         let element = &elements[*at];
         let (before, beyond) = match travel {
@@ -432,6 +465,11 @@ fn route(elements: &[Element], image_pose: &Pose, path: &Path) -> Route {
             after,
             beyond,
             inside: !legs.is_empty(),
+            stage: element.surface.draws().then(|| {
+                let same = elements[..*at].iter().filter(|e| e.surface.draws() && e.kind == element.kind).count();
+                let visits = legs.iter().filter(|leg| leg.at == *at).count();
+                StageKey::new(&element.kind, (visits as u64) << 32 | same as u64)
+            }),
         });
         (frame, outside) = (&element.pose, after);
     }
@@ -508,15 +546,22 @@ impl Vectorized for Leave<'_> {
     }
 }
 
-struct Count<'a> {
+/// How many rays are in each of these states, in one pass.
+struct Count<'a, const N: usize> {
     states: &'a [u64],
-    state: u64,
+    wanted: [u64; N],
 }
 
-impl Vectorized for Count<'_> {
-    type Output = u64;
+impl<const N: usize> Vectorized for Count<'_, N> {
+    type Output = [u64; N];
     #[inline(always)]
-    fn run(self) -> u64 {
-        self.states.iter().map(|s| u64::from(*s == self.state)).sum()
+    fn run(self) -> [u64; N] {
+        let mut many = [0; N];
+        for state in self.states {
+            for (many, wanted) in many.iter_mut().zip(&self.wanted) {
+                *many += u64::from(state == wanted);
+            }
+        }
+        many
     }
 }

@@ -4,8 +4,7 @@
 //! needed, and areas and lines are put on pixels as an SVG viewer does it.
 //!
 //! - [`Canvas`]: lines, polygons, gradients, pictures and text, in units of a CSS pixel, y downward;
-//! - [`Axes`]: a frame with ticks, labels and a grid, from values to places on the canvas;
-//! - [`figure`]: the spectrum plot and the chromaticity diagram.
+//! - [`Axes`]: a frame with ticks, labels and a grid, from values to places on the canvas.
 //!
 //! ```
 //! use spectra_plot::{Axes, Axis, Canvas, Color, Rect, Stroke};
@@ -16,10 +15,11 @@
 //! assert!(canvas.to_svg().starts_with("<svg"));
 //! ```
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod axes;
 mod canvas;
 mod color;
-pub mod figure;
 pub mod font;
 mod geometry;
 mod labels;

@@ -3,7 +3,7 @@
 use crate::canvas::Canvas;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder, ImageError};
-use spectra_film::write::{WriteError, WriteFault, write_atomically};
+use spectra_files::{WriteError, WriteFault, write_atomically};
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -62,14 +62,22 @@ impl Canvas {
     /// # Errors
     /// [`PlotError`].
     pub fn write_at(&self, path: &Path, scale: f64) -> Result<(), PlotError> {
-        let bytes = match Format::of(path)? {
+        let bytes = self.to_bytes(Format::of(path)?, scale);
+        Ok(write_atomically(path, |file| Ok(file.write_all(&bytes?)?))?)
+    }
+
+    /// The content of such a file, with `scale` pixels a unit in a PNG.
+    ///
+    /// # Errors
+    /// [`WriteFault::Format`]: the picture is too large for the encoder.
+    pub fn to_bytes(&self, format: Format, scale: f64) -> Result<Vec<u8>, WriteFault> {
+        match format {
             Format::Svg => Ok(self.to_svg().into_bytes()),
             Format::Png => {
                 let pixels = self.to_pixels(scale);
-                png(pixels.rgb.as_flattened(), pixels.width_px, pixels.height_px)
+                png(pixels.rgb.as_flattened(), pixels.width_px, pixels.height_px).map_err(fault)
             }
-        };
-        Ok(write_atomically(path, |file| Ok(file.write_all(&bytes.map_err(fault)?)?))?)
+        }
     }
 }
 

@@ -2,72 +2,95 @@
 
 use crate::blame::{Blame, Step};
 use crate::error::RenderError;
+use crate::estimator::{Estimator, Scratch, Unit};
+use crate::meter;
+use crate::pilot::{self, PILOT_RAYS, PILOT_SEED};
 use crate::pipeline::{Pipeline, ThreadState};
 use crate::sums::ExactSums;
+use crate::{Done, Workers};
 use glam::DVec3;
 use spectra_core::Isa;
 use spectra_core::RayBatch;
 use spectra_core::batch::pixel_and_channel;
 use spectra_core::frame::FrameSize;
-use spectra_core::numbers::Numbers;
+use spectra_core::numbers::{Numbers, StageKey};
 use spectra_core::stage::{Launch, Radiance};
 use spectra_lens::{RearPupil, Travel};
+use std::ops::Range;
+use std::sync::Arc;
 
 /// Pixels of a unit of work.
 pub(crate) const PIXELS_PER_UNIT: u32 = 64;
 /// Samples of each pixel in a unit of work.
 pub(crate) const SAMPLES_PER_PASS: u32 = 32;
 
-pub(crate) struct Backward<'a> {
-    pub pipeline: Pipeline<'a>,
-    launch: &'a dyn Launch,
-    radiance: &'a dyn Radiance,
-    rear: RearPupil,
+/// What numbers of its own stages draw by.
+pub(crate) const ESTIMATOR: &str = "backward";
+
+pub(crate) struct Backward {
+    pipeline: Arc<Pipeline>,
+    rear: Arc<RearPupil>,
     numbers: Numbers,
+    /// Of the sums.
+    scale: f64,
 }
 
-impl<'a> Backward<'a> {
-    pub(crate) fn new(pipeline: Pipeline<'a>, seed: u64) -> Result<Self, RenderError> {
-        let scene = pipeline.scene;
+impl Backward {
+    /// Searches what passes the lens, and finds the scale of the sums.
+    pub(crate) fn new(pipeline: Arc<Pipeline>) -> Result<Self, RenderError> {
+        let scene = &pipeline.scene;
         let launch = scene.imager.launch().ok_or(RenderError::CannotLaunch)?;
+        scene.source.radiance().ok_or(RenderError::NoRadiance)?;
         let mut rays = imager_rays(launch, scene.imager.size(), pipeline.isa);
         let [x, y, z] = rays.positions();
         let points: Vec<DVec3> = (0..rays.len()).map(|i| DVec3::new(x[i], y[i], z[i])).collect();
         let grid = scene.grid;
         let rear = RearPupil::search(&scene.lens, &pipeline.tracer, &points, grid.start_nm, grid.end_nm());
+        let numbers = pipeline.numbers(PILOT_SEED);
         let rear = rear.map(|rear| {
-            let aside_mm = aside_mm(launch, &rear, &mut rays, grid.start_nm, pipeline.isa);
+            rays.columns_mut().wavelength_nm.fill(grid.start_nm);
+            rays.number(0, &numbers, ESTIMATOR, 0, 0);
+            let aside_mm = aside_mm(launch, &rear, &rays, pipeline.isa);
             if aside_mm > 0.0 { rear.widened(ROOM * aside_mm) } else { rear }
         });
-        Ok(Self {
-            launch,
-            radiance: scene.source.radiance().ok_or(RenderError::NoRadiance)?,
-            rear: rear.ok_or(RenderError::NoAperture)?,
-            numbers: pipeline.numbers(seed),
-            pipeline,
-        })
+        let pixels = scene.imager.size().pixels() as u64;
+        let (rear, seed) = (Arc::new(rear.ok_or(RenderError::NoAperture)?), scene.render.seed);
+        let mut own = Self { rear, numbers, scale: 1.0, pipeline };
+        own.scale = pilot::scale(&own.pipeline, |state, batch, mut look| {
+            let spread = (0..PILOT_RAYS).map(|i| (u64::from(i) * pixels / u64::from(PILOT_RAYS)) as u32);
+            own.steps(state, spread, batch, 1, &mut look);
+        })?;
+        own.numbers = own.pipeline.numbers(seed);
+        Ok(own)
     }
 
-    /// The same with the numbers of another seed.
-    pub(crate) fn reseeded(self, seed: u64) -> Self {
-        Self { numbers: self.pipeline.numbers(seed), ..self }
+    /// The same for what the meters see, which has no sums; `None` where they see nothing.
+    fn of_meters(&self) -> Option<Self> {
+        let pipeline = Arc::new(self.pipeline.of_meters()?);
+        Some(Self { pipeline, rear: self.rear.clone(), numbers: self.numbers.clone(), scale: 1.0 })
+    }
+
+    pub(crate) fn pipeline(&self) -> &Arc<Pipeline> {
+        &self.pipeline
+    }
+
+    fn launch(&self) -> &dyn Launch {
+        self.pipeline.scene.imager.launch().expect("`new` saw it")
+    }
+
+    fn radiance(&self) -> &dyn Radiance {
+        self.pipeline.scene.source.radiance().expect("`new` saw it")
     }
 
     /// Traces `count` samples, from `first` on, of each of `pixels`: pixel after pixel. Afterwards
     /// the weights are irradiance, and 0 for rays that ended.
-    pub(crate) fn batch(
-        &self,
-        state: &mut ThreadState,
-        pixels: impl Iterator<Item = u32> + Clone,
-        first: u32,
-        count: usize,
-    ) {
+    fn batch(&self, state: &mut ThreadState, pixels: impl Iterator<Item = u32> + Clone, first: u32, count: usize) {
         self.steps(state, pixels, first, count, &mut |_, _| {});
     }
 
     /// The same, with a look at the rays after each step.
     #[inline(always)]
-    pub(crate) fn steps(
+    fn steps(
         &self,
         state: &mut ThreadState,
         pixels: impl Iterator<Item = u32> + Clone,
@@ -85,25 +108,44 @@ impl<'a> Backward<'a> {
             }
             len += count;
         }
+        let start = |rays: &mut RayBatch| {
+            for (from, pixel) in (0..).step_by(count).zip(pixels) {
+                rays.columns_mut().tag[from..from + count].fill(pixel);
+                rays.number(from, &self.numbers, ESTIMATOR, u64::from(pixel), u64::from(first));
+            }
+        };
+        self.follow(state, len, start, look);
+    }
+
+    /// Traces `len` rays by the columns of numbers, from the pixels that `start` writes, with the numbers of their own that it gives.
+    #[inline(always)]
+    pub(crate) fn follow(
+        &self,
+        state: &mut ThreadState,
+        len: usize,
+        start: impl FnOnce(&mut RayBatch),
+        look: &mut impl FnMut(Step, &RayBatch),
+    ) {
+        let isa = self.pipeline.isa;
         state.draw_wavelengths(&self.pipeline, len);
         look(Step::Wavelengths, &state.rays);
-        let c = state.rays.columns_mut();
-        for (chunk, pixel) in c.tag.chunks_mut(count).zip(pixels) {
-            chunk.fill(pixel);
-        }
+        start(&mut state.rays);
+        state.rays.set_stage(StageKey::IMAGER);
         let [_, u, v, a, b] = &state.numbers;
-        self.launch.place(&mut state.rays, u.slice(len), v.slice(len), isa);
+        let launch = self.launch();
+        launch.place(&mut state.rays, u.slice(len), v.slice(len), isa);
         look(Step::Imager, &state.rays);
         let dark = self.rear.aim(&mut state.rays, a.slice(len), b.slice(len), isa);
         state.drop_dark(dark);
         look(Step::Pupil, &state.rays);
-        self.launch.admit(&mut state.rays, isa);
+        launch.admit(&mut state.rays, isa);
         let ended = state.rays.len() - state.rays.alive();
         state.drop_dark(ended);
         look(Step::Imager, &state.rays);
         self.pipeline.tracer.trace(&mut state.rays, &mut state.work, Travel::Backward);
         look(Step::Lens, &state.rays);
-        self.radiance.radiance(&mut state.rays, isa);
+        state.rays.set_stage(StageKey::SOURCE);
+        self.radiance().radiance(&mut state.rays, isa);
         look(Step::Source, &state.rays);
         state.settle(isa);
     }
@@ -112,14 +154,13 @@ impl<'a> Backward<'a> {
     ///
     /// # Errors
     /// A contribution is no number, or does not fit; then nothing of the unit is added.
-    pub(crate) fn unit(
+    fn unit(
         &self,
         state: &mut ThreadState,
         begin: u32,
         end: u32,
         first: u32,
         samples: u32,
-        scale: f64,
         sums: &ExactSums,
     ) -> Result<(), RenderError> {
         let channels = state.integers.len();
@@ -135,16 +176,16 @@ impl<'a> Backward<'a> {
             while sample < first + samples {
                 let count = part.min(first + samples - sample);
                 self.batch(state, pixel..upto, sample, count as usize);
-                if !state.contributions(&self.pipeline, scale) {
+                if !state.contributions(&self.pipeline, self.scale) {
                     let mut blame = Blame::default();
                     self.steps(state, pixel..upto, sample, count as usize, &mut |step, rays| blame.look(step, rays));
-                    return Err(blame.error(&self.pipeline, state, scale));
+                    return Err(blame.error(&self.pipeline, state, self.scale));
                 }
                 for (i, tag) in state.rays.tags().iter().enumerate() {
                     let (pixel, only) = pixel_and_channel(*tag);
                     let cell = (pixel - begin) as usize * channels;
                     for (channel, integers) in state.integers.iter().enumerate() {
-                        if only.is_none_or(|only| only as usize == channel) {
+                        if only.is_none_or(|only| only as usize == self.pipeline.recorded[channel]) {
                             local[cell + channel] += integers[i];
                         }
                     }
@@ -161,11 +202,69 @@ impl<'a> Backward<'a> {
     }
 }
 
+impl Backward {
+    fn tiles(&self) -> u64 {
+        (self.pipeline.scene.imager.size().pixels() as u64).div_ceil(u64::from(PIXELS_PER_UNIT))
+    }
+
+    /// Tile and samples of a unit.
+    fn piece(&self, samples: &Range<u64>, unit: u64) -> (u64, Range<u64>) {
+        let tiles = self.tiles();
+        let first = samples.start + unit / tiles * u64::from(SAMPLES_PER_PASS);
+        (unit % tiles, first..samples.end.min(first + u64::from(SAMPLES_PER_PASS)))
+    }
+}
+
+impl Estimator for Backward {
+    fn name(&self) -> &'static str {
+        "backward"
+    }
+
+    fn units(&self, samples: &Range<u64>) -> u64 {
+        self.tiles() * (samples.end - samples.start).div_ceil(u64::from(SAMPLES_PER_PASS))
+    }
+
+    fn rays(&self, samples: &Range<u64>) -> u64 {
+        self.pipeline.scene.imager.size().pixels() as u64 * (samples.end - samples.start)
+    }
+
+    fn scratch(&self) -> Scratch {
+        Scratch(ThreadState::new(&self.pipeline, self.pipeline.scene.render.batch))
+    }
+
+    fn run(&self, samples: &Range<u64>, unit: u64, scratch: &mut Scratch, sums: &ExactSums) -> Unit {
+        let (tile, samples) = self.piece(samples, unit);
+        let begin = tile as u32 * PIXELS_PER_UNIT;
+        let end = (begin + PIXELS_PER_UNIT).min(self.pipeline.scene.imager.size().pixels() as u32);
+        let count = (samples.end - samples.start) as u32;
+        match self.unit(&mut scratch.0, begin, end, samples.start as u32, count, sums) {
+            Ok(()) => Unit { rays: u64::from(end - begin) * u64::from(count), error: None },
+            Err(error) => Unit { rays: 0, error: Some(error) },
+        }
+    }
+
+    fn weights(&self, done: &Done, _rays: u64, time_s: f64) -> Vec<f64> {
+        let mut of_tile = vec![done.complete(); self.tiles() as usize];
+        if let Some((samples, units)) = done.open() {
+            for unit in units.ranges().flatten() {
+                let (tile, piece) = self.piece(samples, unit);
+                of_tile[tile as usize] += piece.end - piece.start;
+            }
+        }
+        let weight = |pixel: usize| time_s / self.scale / of_tile[pixel / PIXELS_PER_UNIT as usize].max(1) as f64;
+        (0..self.pipeline.scene.imager.size().pixels()).map(weight).collect()
+    }
+
+    fn metered(&self, workers: &dyn Workers) -> Result<Vec<Vec<f64>>, RenderError> {
+        self.of_meters().map_or(Ok(Vec::new()), |meters| meter::backward(&meters, workers))
+    }
+}
+
 /// Points over the whole of an imager, those of its rim and corners among them: its shape, as the
 /// search of the pupil needs it.
 fn imager_rays(launch: &dyn Launch, size: FrameSize, isa: Isa) -> RayBatch {
     const SIDE: u32 = 65;
-    let mut rays = RayBatch::new((SIDE * SIDE) as usize);
+    let mut rays = RayBatch::new((SIDE * SIDE) as usize).with_numbers();
     rays.restart((SIDE * SIDE) as usize);
     // Pixel and place in it, from one edge of the frame to the other.
     let split = |k: u32, pixels: u32| {
@@ -188,16 +287,16 @@ fn imager_rays(launch: &dyn Launch, size: FrameSize, isa: Isa) -> RayBatch {
 /// What was measured on some rays may be exceeded by others: this much room is left.
 const ROOM: f64 = 1.25;
 
-/// How far an imager moves rays aside after they were aimed, mm: the most of rays from all over it, the shortest wavelength
-/// in the middle and at four sides of the pupil.
-fn aside_mm(launch: &dyn Launch, rear: &RearPupil, points: &mut RayBatch, wavelength_nm: f64, isa: Isa) -> f64 {
+/// How far an imager moves rays aside after they were aimed, mm: the most of rays from all over it, in the middle and at four
+/// sides of the pupil.
+fn aside_mm(launch: &dyn Launch, rear: &RearPupil, points: &RayBatch, isa: Isa) -> f64 {
     let mut most = 0.0_f64;
     for (u, v) in [(0.5, 0.5), (0.02, 0.5), (0.98, 0.5), (0.5, 0.02), (0.5, 0.98)] {
         let mut rays = points.clone();
         let n = rays.len();
-        rays.columns_mut().wavelength_nm.fill(wavelength_nm);
         rear.aim(&mut rays, &vec![u; n], &vec![v; n], isa);
         let before = rays.clone();
+        rays.set_stage(StageKey::IMAGER);
         launch.admit(&mut rays, isa);
         let at = |rays: &RayBatch, i: usize| DVec3::from_array(rays.positions().map(|c| c[i]));
         for i in (0..n).filter(|i| before.loss(*i).is_none()) {

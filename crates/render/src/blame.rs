@@ -101,24 +101,24 @@ impl Blame {
     }
 
     /// Whether a number was none.
-    pub(crate) fn no_number(&self, pipeline: &Pipeline<'_>) -> Option<RenderError> {
+    pub(crate) fn no_number(&self, pipeline: &Pipeline) -> Option<RenderError> {
         self.found.map(|found| no_number(pipeline, found))
     }
 
     /// Why the contributions of the batch that was looked at do not fit.
-    pub(crate) fn error(&self, pipeline: &Pipeline<'_>, state: &mut ThreadState, scale: f64) -> RenderError {
+    pub(crate) fn error(&self, pipeline: &Pipeline, state: &mut ThreadState, scale: f64) -> RenderError {
         if let Some(error) = self.no_number(pipeline) {
             return error;
         }
         let largest = state.largest(pipeline);
         if largest.is_finite() && largest * scale >= LARGEST_CONTRIBUTION {
-            return RenderError::Overflow { times: largest * scale / LARGEST_EXPECTED, so_far: None };
+            return RenderError::Overflow { times: largest * scale / LARGEST_EXPECTED };
         }
         no_number(pipeline, (Step::Response, f64::NAN, largest.is_infinite()))
     }
 }
 
-fn no_number(pipeline: &Pipeline<'_>, (step, wavelength_nm, infinite): (Step, f64, bool)) -> RenderError {
+fn no_number(pipeline: &Pipeline, (step, wavelength_nm, infinite): (Step, f64, bool)) -> RenderError {
     let section = pipeline.scene.params.get(step.section());
     let kind = section.and_then(|node| node.get("kind").unwrap_or(node).as_str()).map(str::to_owned);
     RenderError::NoNumber(NoNumber { step, kind, wavelength_nm, infinite })

@@ -1,28 +1,20 @@
 //! What goes on between a running render and the one who started it.
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
-use std::time::Instant;
 
 /// Shared between a render and its watcher: a request to stop one way, progress the other.
 #[derive(Debug, Default)]
 pub struct Control {
     stop: AtomicBool,
-    deadline: Option<Instant>,
     rays: AtomicU64,
     total_rays: AtomicU64,
 }
 
 impl Control {
-    /// No limit of time.
+    /// Nobody has asked for an end.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
-    }
-
-    /// The render stops cleanly at `deadline`.
-    #[must_use]
-    pub fn until(deadline: Instant) -> Self {
-        Self { deadline: Some(deadline), ..Self::default() }
     }
 
     /// Asks the render to stop; it does within one unit of work.
@@ -33,7 +25,7 @@ impl Control {
     /// Whether it should stop now.
     #[must_use]
     pub fn should_stop(&self) -> bool {
-        self.stop.load(Relaxed) || self.deadline.is_some_and(|d| Instant::now() >= d)
+        self.stop.load(Relaxed)
     }
 
     /// Rays launched so far.

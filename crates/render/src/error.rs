@@ -1,6 +1,5 @@
 //! Why a scene cannot be rendered.
 
-use crate::Rendering;
 use crate::blame::NoNumber;
 use crate::memory::bytes;
 use spectra_core::params::{Fault, Faults};
@@ -19,7 +18,7 @@ pub enum RenderError {
     #[error("this imager cannot launch rays: render it forward")]
     CannotLaunch,
     /// The source has no backward ability.
-    #[error("this source cannot be looked at: render it forward")]
+    #[error("this source can only be rendered forward")]
     NoRadiance,
     /// What the source reads is broken.
     #[error("{0}")]
@@ -39,20 +38,18 @@ pub enum RenderError {
     /// A sum or a contribution did not fit.
     #[error(
         "the sums overflowed: a ray was {times:.1e} times as bright as the brightest of the {} that were tried before",
-        crate::renderer::PILOT_RAYS
+        crate::pilot::PILOT_RAYS
     )]
     Overflow {
         /// How much brighter than the brightest ray of the pilot run.
         times: f64,
-        /// The light of all rays before, marked as partial.
-        so_far: Option<Box<Rendering>>,
     },
     /// The sums of the picture do not fit into memory.
     #[error("the picture needs {} of memory, which the system refused", bytes(*.0))]
     Memory(u64),
-    /// No threads to be had.
-    #[error("cannot start threads: {0}")]
-    Threads(String),
+    /// More samples are asked for than the scene states, of numbers that are made for so many.
+    #[error("`numbers: {0}` are laid out for the samples that the scene states; no others can be added to them")]
+    DoesNotExtend(&'static str),
 }
 
 impl RenderError {
@@ -85,7 +82,8 @@ impl RenderError {
             ),
             Self::Memory(_) => at("imager.resolution", &text, "fewer pixels, or fewer channels"),
             Self::Source(faults) => Some(faults.clone()),
-            Self::Overflow { .. } | Self::Threads(_) => None,
+            Self::DoesNotExtend(_) => at("render.numbers", &text, "`numbers: sobol`, which goes on at any length"),
+            Self::Overflow { .. } => None,
         }
     }
 }

@@ -2,59 +2,103 @@
 
 use crate::blame::{Blame, Step};
 use crate::error::RenderError;
+use crate::estimator::{Estimator, Scratch, Unit};
+use crate::meter;
+use crate::pilot::{self, PILOT_RAYS, PILOT_SEED};
 use crate::pipeline::{Pipeline, ThreadState};
 use crate::sums::ExactSums;
+use crate::{Done, Workers};
 use glam::DVec3;
 use spectra_core::RayBatch;
 use spectra_core::batch::pixel_and_channel;
-use spectra_core::numbers::{Dimension, Numbers};
+use spectra_core::numbers::{Dimension, Numbers, StageKey};
 use spectra_core::stage::{Emit, Receive};
 use spectra_lens::{AimPattern, FrontPupil, Travel};
 use spectra_scene::ConePattern;
+use std::ops::Range;
+use std::sync::Arc;
 
 /// Paths a unit of work: some milliseconds.
 pub(crate) const PATHS_PER_UNIT: u64 = 1 << 16;
 /// All forward paths form one stream of numbers.
 const STREAM: u64 = 0;
 
-pub(crate) struct Forward<'a> {
-    pub pipeline: Pipeline<'a>,
-    emit: &'a dyn Emit,
-    receive: &'a dyn Receive,
+/// What numbers of its own stages draw by.
+const ESTIMATOR: &str = "forward";
+
+pub(crate) struct Forward {
+    pipeline: Arc<Pipeline>,
     /// Where light goes in; `None` for a source that sets its directions itself.
-    pupil: Option<FrontPupil>,
+    pupil: Option<Arc<FrontPupil>>,
     numbers: Numbers,
     cone: Numbers,
+    /// Of the sums.
+    scale: f64,
 }
 
 /// Source points that are looked at before the pupil is searched.
 const SOURCE_POINTS: usize = 4096;
 
-impl<'a> Forward<'a> {
-    pub(crate) fn new(pipeline: Pipeline<'a>, seed: u64) -> Result<Self, RenderError> {
-        let scene = pipeline.scene;
+impl Forward {
+    /// Searches where light goes in, and finds the scale of the sums.
+    pub(crate) fn new(pipeline: Arc<Pipeline>) -> Result<Self, RenderError> {
+        let seed = pipeline.scene.render.seed;
+        Self::aimed(pipeline)?.scaled(seed)
+    }
+
+    /// With the scale that its pilot finds, and the numbers of a seed.
+    fn scaled(mut self, seed: u64) -> Result<Self, RenderError> {
+        (self.numbers, self.cone) = Self::numbers(&self.pipeline, PILOT_SEED);
+        self.scale = pilot::scale(&self.pipeline, |state, batch, mut look| {
+            self.steps(state, u64::from(batch * PILOT_RAYS), PILOT_RAYS as usize, &mut look);
+        })?;
+        (self.numbers, self.cone) = Self::numbers(&self.pipeline, seed);
+        Ok(self)
+    }
+
+    /// The same for what the meters see; `None` where they see nothing.
+    fn of_meters(&self) -> Option<Result<Self, RenderError>> {
+        let pipeline = Arc::new(self.pipeline.of_meters()?);
+        let (numbers, cone) = (self.numbers.clone(), self.cone.clone());
+        let seed = pipeline.scene.render.seed ^ meter::SEED;
+        Some(Self { pupil: self.pupil.clone(), numbers, cone, scale: 1.0, pipeline }.scaled(seed))
+    }
+
+    pub(crate) fn pipeline(&self) -> &Arc<Pipeline> {
+        &self.pipeline
+    }
+
+    pub(crate) fn scale(&self) -> f64 {
+        self.scale
+    }
+
+    /// With the numbers of the pilot, and no scale.
+    pub(crate) fn aimed(pipeline: Arc<Pipeline>) -> Result<Self, RenderError> {
+        let scene = &pipeline.scene;
         let emit = scene.source.emit().ok_or(RenderError::CannotEmit)?;
-        let receive = scene.imager.receive().ok_or(RenderError::CannotReceive)?;
-        let (numbers, cone) = Self::numbers(&pipeline, seed);
+        scene.imager.receive().ok_or(RenderError::CannotReceive)?;
+        let (numbers, cone) = Self::numbers(&pipeline, PILOT_SEED);
         let pupil = if emit.is_directed() {
             None
         } else {
             let points = source_points(&pipeline, emit, &numbers);
             let grid = scene.grid;
             let pupil = FrontPupil::search(&scene.lens, &pipeline.tracer, &points, grid.start_nm, grid.end_nm());
-            Some(pupil.ok_or(RenderError::NoAperture)?)
+            Some(Arc::new(pupil.ok_or(RenderError::NoAperture)?))
         };
-        Ok(Self { emit, receive, pupil, numbers, cone, pipeline })
+        Ok(Self { pupil, numbers, cone, scale: 1.0, pipeline })
     }
 
-    /// The same with the numbers of another seed.
-    pub(crate) fn reseeded(self, seed: u64) -> Self {
-        let (numbers, cone) = Self::numbers(&self.pipeline, seed);
-        Self { numbers, cone, ..self }
+    fn emit(&self) -> &dyn Emit {
+        self.pipeline.scene.source.emit().expect("`aimed` saw it")
+    }
+
+    fn receive(&self) -> &dyn Receive {
+        self.pipeline.scene.imager.receive().expect("`aimed` saw it")
     }
 
     /// The numbers of a path, and those of its place on the pupil.
-    fn numbers(pipeline: &Pipeline<'_>, seed: u64) -> (Numbers, Numbers) {
+    fn numbers(pipeline: &Pipeline, seed: u64) -> (Numbers, Numbers) {
         let numbers = pipeline.numbers(seed);
         let random = pipeline.scene.render.cone == ConePattern::Random;
         let cone = if random { numbers.as_random() } else { numbers.clone() };
@@ -62,7 +106,7 @@ impl<'a> Forward<'a> {
     }
 
     /// Traces paths `first .. first + len`; what arrived is left in the batch, pixels in the tags.
-    pub(crate) fn batch(&self, state: &mut ThreadState, first: u64, len: usize) {
+    fn batch(&self, state: &mut ThreadState, first: u64, len: usize) {
         self.steps(state, first, len, &mut |_, _| {});
     }
 
@@ -83,8 +127,11 @@ impl<'a> Forward<'a> {
         }
         state.draw_wavelengths(&self.pipeline, len);
         look(Step::Wavelengths, &state.rays);
+        state.rays.number(0, &self.numbers, ESTIMATOR, STREAM, first);
+        state.rays.set_stage(StageKey::SOURCE);
         let [_, u, v, a, b] = &state.numbers;
-        self.emit.place(&mut state.rays, u.slice(len), v.slice(len), isa);
+        let emit = self.emit();
+        emit.place(&mut state.rays, u.slice(len), v.slice(len), isa);
         look(Step::Source, &state.rays);
         let rings = self.pipeline.scene.render.cone == ConePattern::Rings;
         let pattern = if rings { AimPattern::Rings } else { AimPattern::Disk };
@@ -93,11 +140,12 @@ impl<'a> Forward<'a> {
             state.drop_dark(dark);
             look(Step::Pupil, &state.rays);
         }
-        self.emit.radiate(&mut state.rays, isa);
+        emit.radiate(&mut state.rays, isa);
         look(Step::Source, &state.rays);
         self.pipeline.tracer.trace(&mut state.rays, &mut state.work, Travel::Forward);
         look(Step::Lens, &state.rays);
-        self.receive.receive(&mut state.rays, isa);
+        state.rays.set_stage(StageKey::IMAGER);
+        self.receive().receive(&mut state.rays, isa);
         look(Step::Imager, &state.rays);
         state.settle(isa);
         state.rays.compact();
@@ -110,7 +158,6 @@ impl<'a> Forward<'a> {
         state: &mut ThreadState,
         first: u64,
         paths: u64,
-        scale: f64,
         sums: &ExactSums,
     ) -> (u64, Option<RenderError>) {
         let batch = state.rays.capacity() as u64;
@@ -119,16 +166,16 @@ impl<'a> Forward<'a> {
         while at < first + paths {
             let len = batch.min(first + paths - at);
             self.batch(state, at, len as usize);
-            if !state.contributions(&self.pipeline, scale) {
+            if !state.contributions(&self.pipeline, self.scale) {
                 let mut blame = Blame::default();
                 self.steps(state, at, len as usize, &mut |step, rays| blame.look(step, rays));
-                return (at - first, Some(blame.error(&self.pipeline, state, scale)));
+                return (at - first, Some(blame.error(&self.pipeline, state, self.scale)));
             }
             for (i, tag) in state.rays.tags().iter().enumerate() {
                 let (pixel, only) = pixel_and_channel(*tag);
                 let cell = pixel as usize * channels;
                 for (channel, integers) in state.integers.iter().enumerate() {
-                    if only.is_none_or(|only| only as usize == channel) {
+                    if only.is_none_or(|only| only as usize == self.pipeline.recorded[channel]) {
                         sums.add(cell + channel, integers[i]);
                     }
                 }
@@ -139,14 +186,62 @@ impl<'a> Forward<'a> {
     }
 }
 
+impl Forward {
+    /// The paths of a span of samples: all that the scene states are for all its samples.
+    fn paths(&self, samples: &Range<u64>) -> Range<u64> {
+        let render = &self.pipeline.scene.render;
+        let upto = |sample: u64| {
+            (u128::from(render.rays) * u128::from(sample) / u128::from(render.samples)).min(u64::MAX.into()) as u64
+        };
+        upto(samples.start)..upto(samples.end)
+    }
+}
+
+impl Estimator for Forward {
+    fn name(&self) -> &'static str {
+        "forward"
+    }
+
+    fn units(&self, samples: &Range<u64>) -> u64 {
+        self.rays(samples).div_ceil(PATHS_PER_UNIT)
+    }
+
+    fn rays(&self, samples: &Range<u64>) -> u64 {
+        let paths = self.paths(samples);
+        paths.end - paths.start
+    }
+
+    fn scratch(&self) -> Scratch {
+        Scratch(ThreadState::new(&self.pipeline, self.pipeline.scene.render.batch))
+    }
+
+    fn run(&self, samples: &Range<u64>, unit: u64, scratch: &mut Scratch, sums: &ExactSums) -> Unit {
+        let paths = self.paths(samples);
+        let first = paths.start + unit * PATHS_PER_UNIT;
+        let (rays, error) = self.unit(&mut scratch.0, first, PATHS_PER_UNIT.min(paths.end - first), sums);
+        Unit { rays, error }
+    }
+
+    fn weights(&self, _done: &Done, rays: u64, time_s: f64) -> Vec<f64> {
+        let size = self.pipeline.scene.imager.size();
+        vec![time_s / self.scale / size.pixel_area_mm2() / rays.max(1) as f64; size.pixels()]
+    }
+
+    fn metered(&self, workers: &dyn Workers) -> Result<Vec<Vec<f64>>, RenderError> {
+        self.of_meters().map_or(Ok(Vec::new()), |meters| meter::forward(&meters?, workers))
+    }
+}
+
 /// Some points of a source, as the search of the pupil needs them.
-fn source_points(pipeline: &Pipeline<'_>, emit: &dyn Emit, numbers: &Numbers) -> Vec<DVec3> {
+fn source_points(pipeline: &Pipeline, emit: &dyn Emit, numbers: &Numbers) -> Vec<DVec3> {
     let isa = pipeline.isa;
     let mut state = ThreadState::new(pipeline, SOURCE_POINTS);
     for (dimension, column) in state.numbers.iter_mut().enumerate() {
         numbers.fill(isa, STREAM, 0, dimension as u32, column.slice_mut(SOURCE_POINTS));
     }
     state.draw_wavelengths(pipeline, SOURCE_POINTS);
+    state.rays.number(0, numbers, ESTIMATOR, STREAM, 0);
+    state.rays.set_stage(StageKey::SOURCE);
     let [_, u, v, _, _] = &state.numbers;
     emit.place(&mut state.rays, u.slice(SOURCE_POINTS), v.slice(SOURCE_POINTS), isa);
     let [x, y, z] = state.rays.positions();

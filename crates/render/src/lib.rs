@@ -4,22 +4,36 @@
 //! integers, so neither the order, nor the number of threads, nor a stop in between changes a bit of
 //! what was finished.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod backward;
 mod blame;
 mod control;
+mod done;
 mod error;
+mod estimator;
 mod forward;
 mod landing;
+mod light;
 mod memory;
+mod meter;
+mod pilot;
 mod pipeline;
 mod remarks;
 mod renderer;
 mod response;
 mod sums;
+mod workers;
 
 pub use blame::{NoNumber, Step};
 pub use control::Control;
+pub use done::{Done, Units};
 pub use error::RenderError;
+pub use estimator::{Estimator, Scratch, Unit};
 pub use landing::Landing;
+pub use light::Light;
 pub use memory::{bytes, fits, memory_needed};
+pub use pipeline::Pipeline;
 pub use renderer::{Renderer, Rendering};
+pub use sums::ExactSums;
+pub use workers::{Alone, Threads, Workers};

@@ -1,7 +1,7 @@
 //! How much memory a picture takes: known before any light is traced.
 
 use spectra_core::params::Faults;
-use spectra_scene::{Output, Scene};
+use spectra_scene::{Holds, Scene};
 
 /// Bytes of a sum and of an exposure: one of each, a pixel and channel.
 const SUM: u64 = 8;
@@ -16,7 +16,8 @@ const SHOWING: u64 = 16;
 pub fn memory_needed(scene: &Scene) -> u64 {
     let pixels = scene.imager.size().pixels() as u64;
     let channels = scene.channels.len() as u64;
-    let is_shown = scene.output.iter().any(|o| matches!(o, Output::Png | Output::Tiff | Output::Dng));
+    let is_shown = scene.output.iter().any(|o| matches!(o.holds(), Holds::Picture | Holds::Numbers));
+    // A meter's channels have no sums, but as much for its own figures while it looks.
     let traced = channels * (SUM + EXPOSURE);
     // Sums are gone by then. Of several films each is developed from a copy of its own channels.
     let picture = if scene.films.is_empty() { SHOWING } else { DEVELOPING + 3 * EXPOSURE * scene.films.len() as u64 };

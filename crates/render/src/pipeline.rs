@@ -12,31 +12,54 @@ use spectra_core::stage::WavelengthDensity;
 use spectra_core::{Isa, Loss, RayBatch};
 use spectra_lens::{Indices, Tracer, Work};
 use spectra_scene::{NumberFamily, Scene};
+use std::sync::Arc;
 
 /// The stages, made ready for one scene.
-pub(crate) struct Pipeline<'a> {
-    pub scene: &'a Scene,
-    pub isa: Isa,
-    pub tracer: Tracer,
-    pub density: Box<dyn WavelengthDensity>,
-    pub responses: Responses,
+pub struct Pipeline {
+    pub(crate) scene: Arc<Scene>,
+    pub(crate) isa: Isa,
+    pub(crate) tracer: Arc<Tracer>,
+    pub(crate) density: Arc<dyn WavelengthDensity>,
+    pub(crate) responses: Responses,
+    /// Which channels of the scene are recorded, in the order of `responses`.
+    pub(crate) recorded: Vec<usize>,
+    /// Whether a stage on the way draws numbers of its own, for which batches carry what it needs.
+    pub(crate) draws: bool,
 }
 
-impl<'a> Pipeline<'a> {
-    pub(crate) fn new(scene: &'a Scene, isa: Isa) -> Result<Self, RenderError> {
-        let system = SystemResponse {
-            grid: scene.grid,
-            source: scene.source.spectrum().clone(),
-            channels: scene.channels.clone(),
-        };
-        let density = scene.sampler.prepare(&system).map_err(RenderError::Sampler)?;
+impl Pipeline {
+    /// With this density of wavelengths, where one is known to fit.
+    pub(crate) fn new(
+        scene: &Arc<Scene>,
+        isa: Isa,
+        density: Option<Arc<dyn WavelengthDensity>>,
+    ) -> Result<Self, RenderError> {
+        // A meter's channel is none of them: whether a camera meters must not change the picture's samples.
+        let recorded = scene.picture_channels();
+        let system = system(scene, &recorded);
+        let fitted = || scene.sampler.prepare(&system).map(Arc::from).map_err(RenderError::Sampler);
+        let density = density.map_or_else(fitted, Ok)?;
         let indices = Indices::Band { min_nm: scene.grid.start_nm, max_nm: scene.grid.end_nm() };
-        Ok(Self {
-            scene,
-            isa,
-            tracer: Tracer::new(&scene.lens, indices, isa).map_err(|e| RenderError::Lens(e.to_string()))?,
+        let tracer = Tracer::new(&scene.lens, indices, isa).map_err(|e| RenderError::Lens(e.to_string()))?;
+        let responses = Responses::new(scene.grid, &system.channels);
+        let draws = draws(scene);
+        Ok(Self { scene: Arc::clone(scene), isa, tracer: Arc::new(tracer), density, responses, recorded, draws })
+    }
+
+    /// The same for what the meters see, with a density of their own; `None` where they see nothing of the source.
+    pub(crate) fn of_meters(&self) -> Option<Self> {
+        let recorded = self.scene.meter_channels();
+        let system = system(&self.scene, &recorded);
+        let density = self.scene.sampler.prepare(&system).ok()?.into();
+        let responses = Responses::new(self.scene.grid, &system.channels);
+        Some(Self {
+            scene: self.scene.clone(),
+            isa: self.isa,
+            tracer: self.tracer.clone(),
             density,
-            responses: Responses::new(scene.grid, &scene.channels),
+            responses,
+            recorded,
+            draws: self.draws,
         })
     }
 
@@ -55,6 +78,21 @@ impl<'a> Pipeline<'a> {
     }
 }
 
+/// Whether any stage draws.
+fn draws(scene: &Scene) -> bool {
+    scene.lens.elements.iter().any(|e| e.surface.draws())
+        || scene.source.emit().is_some_and(|emit| emit.draws())
+        || scene.source.radiance().is_some_and(|radiance| radiance.draws())
+        || scene.imager.launch().is_some_and(|launch| launch.draws())
+        || scene.imager.receive().is_some_and(|receive| receive.draws())
+}
+
+/// The source, and some of the channels.
+fn system(scene: &Scene, recorded: &[usize]) -> SystemResponse {
+    let channels = recorded.iter().filter_map(|at| scene.channels.get(*at)).cloned().collect();
+    SystemResponse { grid: scene.grid, source: scene.source.spectrum().clone(), channels }
+}
+
 /// Columns of one thread.
 pub(crate) struct ThreadState {
     pub rays: RayBatch,
@@ -67,9 +105,10 @@ pub(crate) struct ThreadState {
 }
 
 impl ThreadState {
-    pub(crate) fn new(pipeline: &Pipeline<'_>, capacity: usize) -> Self {
+    pub(crate) fn new(pipeline: &Pipeline, capacity: usize) -> Self {
+        let rays = RayBatch::new(capacity);
         Self {
-            rays: RayBatch::new(capacity),
+            rays: if pipeline.draws { rays.with_numbers() } else { rays },
             work: pipeline.tracer.work(capacity),
             numbers: std::array::from_fn(|_| Column::new(capacity)),
             values: vec![0.0; capacity],
@@ -79,7 +118,7 @@ impl ThreadState {
     }
 
     /// Draws `len` wavelengths by the first column of numbers, into a batch that starts over.
-    pub(crate) fn draw_wavelengths(&mut self, pipeline: &Pipeline<'_>, len: usize) {
+    pub(crate) fn draw_wavelengths(&mut self, pipeline: &Pipeline, len: usize) {
         self.rays.restart(len);
         let u = self.numbers[Dimension::Wavelength as usize].slice(len);
         let c = self.rays.columns_mut();
@@ -112,7 +151,7 @@ impl ThreadState {
     }
 
     /// The largest contribution of the batch to any channel.
-    pub(crate) fn largest(&mut self, pipeline: &Pipeline<'_>) -> f64 {
+    pub(crate) fn largest(&mut self, pipeline: &Pipeline) -> f64 {
         let len = self.rays.len();
         let mut largest = 0.0_f64;
         for channel in 0..pipeline.responses.channels() {
@@ -129,7 +168,7 @@ impl ThreadState {
     }
 
     /// Writes each ray's contribution to each channel as integers; false where one does not fit.
-    pub(crate) fn contributions(&mut self, pipeline: &Pipeline<'_>, scale: f64) -> bool {
+    pub(crate) fn contributions(&mut self, pipeline: &Pipeline, scale: f64) -> bool {
         let len = self.rays.len();
         let mut good = true;
         for (channel, integers) in self.integers.iter_mut().enumerate() {

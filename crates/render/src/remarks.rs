@@ -2,14 +2,14 @@
 
 use crate::{Renderer, Rendering};
 use spectra_core::frame::ExposureFrame;
-use spectra_core::{Loss, LossCounts};
-use spectra_scene::{Direction, Scene};
+use spectra_core::{Loss, LossCounts, shutter};
+use spectra_scene::{Direction, Scene, SceneFilm};
 
 /// Of the lit pixels, this share beside empty ones tells that rays are too few, and not that the picture is black there.
 const SPARSE: f64 = 0.5;
 
 /// What is to be said of a rendering.
-pub(crate) fn remarks(renderer: &Renderer<'_>, rendering: &Rendering) -> Vec<String> {
+pub(crate) fn remarks(renderer: &Renderer, rendering: &Rendering) -> Vec<String> {
     let scene = renderer.scene();
     let mut all = Vec::new();
     if rendering.detected == 0 {
@@ -19,6 +19,7 @@ pub(crate) fn remarks(renderer: &Renderer<'_>, rendering: &Rendering) -> Vec<Str
         }
         return all;
     }
+    all.extend(scene.films.iter().filter_map(|film| blind_meter(film, &rendering.exposure)));
     let planes = &rendering.exposure.channels;
     let pixels = rendering.exposure.size.pixels();
     let infinite = (0..pixels).filter(|p| planes.iter().any(|plane| !plane.values[*p].is_finite())).count();
@@ -37,6 +38,20 @@ pub(crate) fn remarks(renderer: &Renderer<'_>, rendering: &Rendering) -> Vec<Str
         all.extend(sparse(scene, &rendering.exposure));
     }
     all
+}
+
+/// A meter that sees no light cannot choose a time.
+fn blind_meter(film: &SceneFilm, exposure: &ExposureFrame) -> Option<String> {
+    let planes = exposure.channels.get(film.channels.clone())?.get(film.film.picture_channels()..)?;
+    let is_blind = !planes.is_empty() && planes.iter().all(|plane| plane.values.iter().all(|value| *value == 0.0));
+    let named = film.name.as_ref().map_or_else(String::new, |name| format!("{name}: "));
+    is_blind.then(|| {
+        format!(
+            "{named}the camera's meter sees no light where it looks, so the film is exposed for {}; state `exposure` in \
+             place of `metering`, or meter another part of the frame",
+            shutter::words(film.film.metered_time_s(exposure))
+        )
+    })
 }
 
 /// Film is no mean: what no ray reached is developed as unexposed, between pixels that rays did reach.
@@ -58,15 +73,14 @@ fn sparse(scene: &Scene, exposure: &ExposureFrame) -> Option<String> {
     let can_backward = scene.source.radiance().is_some() && scene.imager.launch().is_some();
     let instead = if can_backward { ", or `render.direction: backward`" } else { "" };
     Some(format!(
-        "{:.0} % of the pixels got no ray, many of them among pixels that did: film shows them as unexposed, too dark on the \
-         whole; more `render.rays` (now {}){instead} fills them",
+        "{:.0} % of the pixels got no ray, many of them among pixels that did: film shows them as unexposed, too dark overall; more `render.rays` (now {}){instead} fills them",
         100.0 * empty as f64 / lit.len() as f64,
         scene.render.rays
     ))
 }
 
 /// Why the frame is empty, and what would see the light.
-fn nothing_seen(renderer: &Renderer<'_>, rendering: &Rendering) -> String {
+fn nothing_seen(renderer: &Renderer, rendering: &Rendering) -> String {
     let scene = renderer.scene();
     let landing = renderer.landing();
     let beside = landing.filter(|landing| landing.on_frame == 0.0);
@@ -75,22 +89,21 @@ fn nothing_seen(renderer: &Renderer<'_>, rendering: &Rendering) -> String {
         let [x, y] = landing.middle_mm.map(|mm| format!("{mm:.1} mm"));
         return format!(
             "no light reaches the frame: it lands around x = {x}, y = {y} of the image plane, beside the {} x {} mm that are \
-             recorded; `imager.shift: [{x}, {y}]` would see it",
+             recorded; `imager.shift: [{x}, {y}]` would catch it",
             size.width_mm, size.height_mm
         );
     }
     let why = chief_loss(&rendering.losses);
     match (scene.render.direction, landing) {
         (Direction::Backward, _) if rendering.losses.of_cause(Loss::Unlit) > 0 => {
-            "no light reaches the frame: all that it sees lies beside the picture, or is black; a larger `source`, or a \
-             nearer one, comes into view"
+            "no light reaches the frame: everything in view is beside the picture, or black; make the `source` larger or move it closer"
                 .to_owned()
         }
         (Direction::Forward, Some(_)) => {
-            "no light reaches the frame: of the rays that were traced none met it; more `render.rays` might".to_owned()
+            "no light reaches the frame: none of the traced rays hit it; try more `render.rays`".to_owned()
         }
         _ => format!(
-            "no light reaches the frame: nothing passes the lens{why}; `spectra lens draw` shows what stands in its way"
+            "no light reaches the frame: nothing passes the lens{why}; `spectra lens draw` shows what blocks it"
         ),
     }
 }

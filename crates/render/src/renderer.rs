@@ -1,20 +1,23 @@
 //! The renderer: units of work, handed to threads, summed exactly.
 
-use crate::backward::{Backward, PIXELS_PER_UNIT, SAMPLES_PER_PASS};
-use crate::blame::{Blame, Step};
-use crate::forward::{Forward, PATHS_PER_UNIT};
+use crate::backward::Backward;
+use crate::done::Units;
+use crate::estimator::Estimator;
+use crate::forward::Forward;
 use crate::landing::Landing;
 use crate::memory::memory_needed;
+use crate::pilot::PILOT_RAYS;
 use crate::pipeline::{Pipeline, ThreadState};
 use crate::remarks::remarks;
-use crate::sums::{ExactSums, LARGEST_CONTRIBUTION, LARGEST_EXPECTED, scale_for};
-use crate::{Control, RenderError};
+use crate::sums::{LARGEST_CONTRIBUTION, LARGEST_EXPECTED};
+use crate::{Control, Light, RenderError, Workers};
 use spectra_core::frame::{ExposureChannel, ExposureFrame};
-use spectra_core::{Isa, LossCounts, RayBatch};
+use spectra_core::stage::WavelengthDensity;
+use spectra_core::{Isa, LossCounts};
 use spectra_lens::Travel;
-use spectra_scene::{Direction, Scene};
-use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering::Relaxed};
-use std::sync::{Mutex, PoisonError};
+use spectra_scene::{Direction, NumberFamily, Scene};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// What a render gives.
 #[derive(Clone, Debug)]
@@ -33,37 +36,45 @@ pub struct Rendering {
     pub warnings: Vec<String>,
 }
 
-enum Way<'a> {
-    Forward(Forward<'a>),
-    Backward(Backward<'a>),
-}
-
 /// A scene made ready to render.
-pub struct Renderer<'a> {
-    scene: &'a Scene,
-    way: Way<'a>,
-    scale: f64,
+pub struct Renderer {
+    scene: Arc<Scene>,
+    pipeline: Arc<Pipeline>,
+    estimators: Vec<Box<dyn Estimator>>,
 }
 
-/// Seed of the pilot: the scale of the sums must not depend on the seed of the render, so that
-/// renders of the same scene with other seeds add.
-const PILOT_SEED: u64 = 0x5ca1e;
-/// Rays of a pilot batch.
-pub(crate) const PILOT_RAYS: u32 = 4096;
-/// Batches tried before a scene is taken to be dark.
-const PILOT_BATCHES: u32 = 64;
-
-impl<'a> Renderer<'a> {
+impl Renderer {
     /// Makes a scene ready: fits the wavelength density, searches pupils, finds the scale of the sums.
     ///
     /// # Errors
     /// [`RenderError`]: a stage lacks the ability that the direction needs, or the source's files are broken.
-    pub fn new(scene: &'a Scene, isa: Isa) -> Result<Self, RenderError> {
+    pub fn new(scene: impl Into<Arc<Scene>>, isa: Isa) -> Result<Self, RenderError> {
+        let scene = scene.into();
+        let direction = scene.render.direction;
+        Self::of(scene, isa, None, &[direction])
+    }
+
+    /// The same by these estimators, whose light is added, and with a density of wavelengths that is known to fit.
+    ///
+    /// # Errors
+    /// As [`Renderer::new`].
+    pub fn of(
+        scene: Arc<Scene>,
+        isa: Isa,
+        density: Option<Arc<dyn WavelengthDensity>>,
+        estimators: &[Direction],
+    ) -> Result<Self, RenderError> {
         scene.source.prepare().map_err(RenderError::Source)?;
-        let pilot = Self::way(scene, isa, PILOT_SEED)?;
-        let largest = Self::pilot(scene, &pilot)?;
-        let scale = scale_for(largest * scene.source.peak_over_mean().max(1.0));
-        Ok(Self { scene, way: pilot.reseeded(scene.render.seed), scale })
+        let pipeline = Arc::new(Pipeline::new(&scene, isa, density)?);
+        let one = |direction: &Direction| -> Result<Box<dyn Estimator>, RenderError> {
+            let pipeline = Arc::clone(&pipeline);
+            Ok(match direction {
+                Direction::Forward => Box::new(Forward::new(pipeline)?),
+                Direction::Backward => Box::new(Backward::new(pipeline)?),
+            })
+        };
+        let estimators = estimators.iter().map(one).collect::<Result<_, _>>()?;
+        Ok(Self { scene, pipeline, estimators })
     }
 
     /// Looks whether a scene can be made ready: what [`Renderer::new`] refuses, as far as that shows without
@@ -71,8 +82,8 @@ impl<'a> Renderer<'a> {
     ///
     /// # Errors
     /// As [`Renderer::new`].
-    pub fn check(scene: &Scene, isa: Isa) -> Result<(), RenderError> {
-        Pipeline::new(scene, isa)?;
+    pub fn check(scene: &Arc<Scene>, isa: Isa) -> Result<(), RenderError> {
+        Pipeline::new(scene, isa, None)?;
         let sized = |travel| spectra_lens::has_sizes(&scene.lens, travel);
         let is_open = match scene.render.direction {
             Direction::Forward => {
@@ -89,215 +100,199 @@ impl<'a> Renderer<'a> {
         if is_open { Ok(()) } else { Err(RenderError::NoAperture) }
     }
 
-    fn way(scene: &'a Scene, isa: Isa, seed: u64) -> Result<Way<'a>, RenderError> {
-        let pipeline = Pipeline::new(scene, isa)?;
-        Ok(match scene.render.direction {
-            Direction::Forward => Way::Forward(Forward::new(pipeline, seed)?),
-            Direction::Backward => Way::Backward(Backward::new(pipeline, seed)?),
-        })
-    }
-
-    /// The largest contribution among some thousand rays.
-    fn pilot(scene: &Scene, way: &Way<'_>) -> Result<f64, RenderError> {
-        let mut state = ThreadState::new(way.pipeline(), PILOT_RAYS as usize);
-        for batch in 0..PILOT_BATCHES {
-            let mut blame = Blame::default();
-            let look = &mut |step: Step, rays: &RayBatch| blame.look(step, rays);
-            match way {
-                Way::Forward(forward) => {
-                    forward.steps(&mut state, u64::from(batch * PILOT_RAYS), PILOT_RAYS as usize, look);
-                }
-                Way::Backward(backward) => {
-                    let pixels = scene.imager.size().pixels() as u64;
-                    let spread = (0..PILOT_RAYS).map(|i| (u64::from(i) * pixels / u64::from(PILOT_RAYS)) as u32);
-                    backward.steps(&mut state, spread, batch, 1, look);
-                }
-            }
-            // A stage that is broken shows before any light is traced, if a few thousand rays find it.
-            if let Some(error) = blame.no_number(way.pipeline()) {
-                return Err(error);
-            }
-            let largest = state.largest(way.pipeline());
-            if largest > 0.0 {
-                return Ok(largest);
-            }
-        }
-        Ok(0.0)
-    }
-
     /// Where the light of the source lands in the plane of the imager, whichever way the scene is rendered; `None` where
     /// the source cannot emit, or nothing passes the lens.
     #[must_use]
     pub fn landing(&self) -> Option<Landing> {
-        let pipeline = Pipeline::new(self.scene, self.way.pipeline().isa).ok()?;
-        let forward = Forward::new(pipeline, PILOT_SEED).ok()?;
-        let mut state = ThreadState::new(&forward.pipeline, PILOT_RAYS as usize);
+        let forward = Forward::aimed(Arc::clone(&self.pipeline)).ok()?;
+        let mut state = ThreadState::new(&self.pipeline, PILOT_RAYS as usize);
         let mut landing = None;
         forward.steps(&mut state, 0, PILOT_RAYS as usize, &mut |step, rays| {
-            if step == Step::Lens {
-                landing = Landing::of(self.scene, rays, forward.pipeline.isa);
+            if step == crate::Step::Lens {
+                landing = Landing::of(&self.scene, rays, self.pipeline.isa);
             }
         });
         landing
     }
 
-    /// Renders on `threads` threads until the end, or until `control` says stop.
+    /// Renders all samples that the scene states, or until `control` says stop.
     ///
     /// # Errors
-    /// [`RenderError::Memory`], [`RenderError::Threads`]; and as soon as a ray shows it, [`RenderError::NoNumber`] or
-    /// [`RenderError::Overflow`].
-    pub fn run(&self, threads: usize, control: &Control) -> Result<Rendering, RenderError> {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads.max(1))
-            .build()
-            .map_err(|e| RenderError::Threads(e.to_string()))?;
-        let size = self.scene.imager.size();
-        let channels = self.scene.channels.len();
-        let too_large = || RenderError::Memory(memory_needed(self.scene));
-        let sums = ExactSums::new(size.pixels() * channels).ok_or_else(too_large)?;
+    /// As [`Renderer::advance`].
+    pub fn run(&self, workers: &dyn Workers, control: &Control) -> Result<Rendering, RenderError> {
+        let mut light = self.begin()?;
+        self.advance(&mut light, u64::from(self.scene.render.samples), workers, control)?;
+        let mut rendering = self.look(&self.scene, &light)?;
+        rendering.warnings = self.remarks(&rendering);
+        Ok(rendering)
+    }
+
+    /// Goes on until so many samples of each pixel are in the sums, or until `control` says stop. What was begun before is
+    /// ended first, also where that is more.
+    ///
+    /// # Errors
+    /// As soon as a ray shows it, [`RenderError::NoNumber`] or [`RenderError::Overflow`]: then the light of all rays before
+    /// is there. [`RenderError::DoesNotExtend`].
+    pub fn advance(
+        &self,
+        light: &mut Light,
+        samples: u64,
+        workers: &dyn Workers,
+        control: &Control,
+    ) -> Result<(), RenderError> {
+        if samples != u64::from(self.scene.render.samples) && self.scene.render.numbers == NumberFamily::Stratified {
+            return Err(RenderError::DoesNotExtend("stratified"));
+        }
+        if light.metered.is_none() {
+            light.metered = Some(match self.estimators.first() {
+                Some(first) if !self.scene.meter_channels().is_empty() => first.metered(workers)?,
+                _ => Vec::new(),
+            });
+        }
+        let spans: Vec<_> = light.parts.iter_mut().map(|part| part.done.next(samples)).collect();
+        // What was begun is one piece of work; beyond it lies another.
+        let more = light.parts.iter().any(|part| part.done.end() < samples);
+        let rays = self
+            .estimators
+            .iter()
+            .zip(&light.parts)
+            .map(|(e, part)| e.rays(&(part.done.complete()..samples.max(part.done.end()))));
+        control.expect(rays.sum());
+        for (at, span) in spans.into_iter().enumerate() {
+            let Some(span) = span else { continue };
+            self.span(at, &span, light, workers, control)?;
+            if control.should_stop() {
+                return Ok(());
+            }
+        }
+        if more { self.advance(light, samples, workers, control) } else { Ok(()) }
+    }
+
+    /// Does what is left of a span of one estimator.
+    fn span(
+        &self,
+        at: usize,
+        samples: &std::ops::Range<u64>,
+        light: &mut Light,
+        workers: &dyn Workers,
+        control: &Control,
+    ) -> Result<(), RenderError> {
+        let (estimator, part) = (&*self.estimators[at], &light.parts[at]);
+        let units = estimator.units(samples);
+        let known = part.done.open().map(|(_, units)| units.clone()).unwrap_or_default();
+        let (next, failed) = (AtomicU64::new(0), AtomicBool::new(false));
         let failure: Mutex<Option<RenderError>> = Mutex::new(None);
-        let failed = AtomicBool::new(false);
+        let counted = Mutex::new((LossCounts::default(), 0, Units::default(), 0));
         let fail = |error: RenderError| {
             failed.store(true, Relaxed);
             failure.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
         };
-        let plan = Plan::new(&self.way, self.scene);
-        control.expect(plan.rays);
-        let next = AtomicU64::new(0);
-        let paths_done = AtomicU64::new(0);
-        let samples_done: Vec<AtomicU32> = (0..plan.tiles).map(|_| AtomicU32::new(0)).collect();
-        let losses = pool.broadcast(|_| {
-            let mut state = ThreadState::new(self.way.pipeline(), self.scene.render.batch);
+        workers.each(&|| {
+            let mut scratch = estimator.scratch();
+            let (mut done, mut rays) = (Units::default(), 0);
             while !control.should_stop() && !failed.load(Relaxed) {
                 let unit = next.fetch_add(1, Relaxed);
-                if unit >= plan.units {
+                if unit >= units {
                     break;
                 }
-                let rays = match &self.way {
-                    Way::Forward(forward) => {
-                        let first = unit * PATHS_PER_UNIT;
-                        let paths = PATHS_PER_UNIT.min(plan.rays - first);
-                        let (done, error) = forward.unit(&mut state, first, paths, self.scale, &sums);
-                        paths_done.fetch_add(done, Relaxed);
-                        error.into_iter().for_each(fail);
-                        done
-                    }
-                    Way::Backward(backward) => {
-                        let (tile, pass) = ((unit % plan.tiles) as u32, (unit / plan.tiles) as u32);
-                        let begin = tile * PIXELS_PER_UNIT;
-                        let end = (begin + PIXELS_PER_UNIT).min(size.pixels() as u32);
-                        let first = pass * SAMPLES_PER_PASS;
-                        let samples = SAMPLES_PER_PASS.min(self.scene.render.samples - first);
-                        match backward.unit(&mut state, begin, end, first, samples, self.scale, &sums) {
-                            Ok(()) => {
-                                samples_done[tile as usize].fetch_add(samples, Relaxed);
-                                u64::from(end - begin) * u64::from(samples)
-                            }
-                            Err(error) => {
-                                fail(error);
-                                0
-                            }
-                        }
-                    }
-                };
-                control.launched(rays);
-                if sums.overflowed() {
+                if known.contains(unit) {
+                    continue;
+                }
+                let came = estimator.run(samples, unit, &mut scratch, &part.sums);
+                rays += came.rays;
+                control.launched(came.rays);
+                match came.error {
+                    None => done.insert(unit..unit + 1),
+                    Some(error) => fail(error),
+                }
+                if part.sums.overflowed() {
                     // A pixel's sum: so many contributions that none of them is to blame.
-                    fail(RenderError::Overflow { times: LARGEST_CONTRIBUTION / LARGEST_EXPECTED, so_far: None });
+                    fail(RenderError::Overflow { times: LARGEST_CONTRIBUTION / LARGEST_EXPECTED });
                 }
             }
-            (state.work.losses, state.detected)
+            let mut all = counted.lock().unwrap_or_else(PoisonError::into_inner);
+            all.0.merge(&scratch.0.work.losses);
+            all.1 += scratch.0.detected;
+            done.ranges().for_each(|range| all.2.insert(range));
+            all.3 += rays;
         });
-        let failure = failure.into_inner().unwrap_or_else(PoisonError::into_inner);
-        if let Some(error @ RenderError::NoNumber(_)) = failure {
-            return Err(error);
-        }
-        let (mut all, mut detected) = (LossCounts::default(), 0);
-        for (losses, lit) in &losses {
-            all.merge(losses);
-            detected += lit;
-        }
-        // What one unit of the sums is worth: exposure over the number of samples.
-        let paths = paths_done.load(Relaxed);
-        let forward_weight = self.scene.exposure_time_s() / self.scale / size.pixel_area_mm2() / (paths.max(1) as f64);
-        let backward_weight = self.scene.exposure_time_s() / self.scale;
-        let weight = |pixel: usize| match &self.way {
-            Way::Forward(_) => forward_weight,
-            Way::Backward(_) => {
-                let done = samples_done[pixel / PIXELS_PER_UNIT as usize].load(Relaxed);
-                backward_weight / f64::from(done.max(1))
-            }
-        };
-        let mut planes = Vec::with_capacity(channels);
-        for (at, channel) in self.scene.channels.iter().enumerate() {
+        let (losses, detected, done, rays) = counted.into_inner().unwrap_or_else(PoisonError::into_inner);
+        light.losses.merge(&losses);
+        light.detected += detected;
+        let part = &mut light.parts[at];
+        part.rays += rays;
+        part.done.note(&done, units);
+        failure.into_inner().unwrap_or_else(PoisonError::into_inner).map_or(Ok(()), Err)
+    }
+
+    /// The picture so far, as `scene` has it: the scene itself, or one that differs only in what comes after the light.
+    ///
+    /// # Errors
+    /// [`RenderError::Memory`].
+    pub fn look(&self, scene: &Scene, light: &Light) -> Result<Rendering, RenderError> {
+        let size = scene.imager.size();
+        let recorded = &self.pipeline.recorded;
+        let (channels, of_meters) = (recorded.len(), scene.meter_channels());
+        let metered = light.metered.as_deref().unwrap_or_default();
+        let time_s = scene.exposure_time_s();
+        let parts = self.estimators.iter().zip(&light.parts);
+        let weights: Vec<Vec<f64>> = parts.map(|(e, part)| e.weights(&part.done, part.rays, time_s)).collect();
+        let mut planes = Vec::with_capacity(scene.channels.len());
+        for (number, channel) in scene.channels.iter().enumerate() {
             let mut values = Vec::new();
-            values.try_reserve_exact(size.pixels()).map_err(|_| too_large())?;
-            values.extend((0..size.pixels()).map(|p| (sums.get(p * channels + at) as f64 * weight(p)) as f32));
+            values.try_reserve_exact(size.pixels()).map_err(|_| self.too_large())?;
+            let seen = of_meters.iter().position(|meter| *meter == number).and_then(|at| metered.get(at));
+            if let Some(at) = recorded.iter().position(|r| *r == number) {
+                values.extend((0..size.pixels()).map(|p| {
+                    let parts = light.parts.iter().zip(&weights);
+                    parts.map(|(part, w)| part.sums.get(p * channels + at) as f64 * w[p]).sum::<f64>() as f32
+                }));
+            } else if let Some(seen) = seen {
+                values.extend(seen.iter().map(|value| (value * time_s) as f32));
+            } else {
+                // A meter that sees nothing of this source.
+                values.resize(size.pixels(), 0.0);
+            }
             planes.push(ExposureChannel { name: channel.name.clone(), unit: channel.unit.clone(), values });
         }
-        drop(sums);
-        let mut rendering = Rendering {
+        Ok(Rendering {
             exposure: ExposureFrame { size, channels: planes },
-            rays: control.rays(),
-            losses: all,
-            detected,
-            partial: control.rays() < plan.rays,
+            rays: light.rays(),
+            losses: light.losses.clone(),
+            detected: light.detected,
+            partial: light.samples() < u64::from(scene.render.samples),
             warnings: Vec::new(),
-        };
-        rendering.warnings = remarks(self, &rendering);
-        match failure {
-            Some(RenderError::Overflow { times, .. }) => {
-                rendering.partial = true;
-                Err(RenderError::Overflow { times, so_far: Some(Box::new(rendering)) })
-            }
-            Some(error) => Err(error),
-            None => Ok(rendering),
-        }
+        })
+    }
+
+    /// What a person should know of a rendering before believing it.
+    #[must_use]
+    pub fn remarks(&self, rendering: &Rendering) -> Vec<String> {
+        remarks(self, rendering)
     }
 
     /// The scene.
-    pub(crate) fn scene(&self) -> &'a Scene {
-        self.scene
-    }
-}
-
-impl Way<'_> {
-    /// The same with the numbers of another seed.
-    fn reseeded(self, seed: u64) -> Self {
-        match self {
-            Way::Forward(forward) => Way::Forward(forward.reseeded(seed)),
-            Way::Backward(backward) => Way::Backward(backward.reseeded(seed)),
-        }
+    #[must_use]
+    pub fn scene(&self) -> &Arc<Scene> {
+        &self.scene
     }
 
-    fn pipeline(&self) -> &Pipeline<'_> {
-        match self {
-            Way::Forward(forward) => &forward.pipeline,
-            Way::Backward(backward) => &backward.pipeline,
-        }
+    /// The density that its wavelengths are drawn by.
+    #[must_use]
+    pub fn density(&self) -> &Arc<dyn WavelengthDensity> {
+        &self.pipeline.density
     }
-}
 
-/// How the work is cut.
-struct Plan {
-    units: u64,
-    tiles: u64,
-    rays: u64,
-}
+    pub(crate) fn estimators(&self) -> impl Iterator<Item = &dyn Estimator> {
+        self.estimators.iter().map(|e| &**e)
+    }
 
-impl Plan {
-    fn new(way: &Way<'_>, scene: &Scene) -> Self {
-        match way {
-            Way::Forward(_) => {
-                let rays = scene.render.rays;
-                Self { units: rays.div_ceil(PATHS_PER_UNIT), tiles: 0, rays }
-            }
-            Way::Backward(_) => {
-                let pixels = scene.imager.size().pixels() as u64;
-                let tiles = pixels.div_ceil(u64::from(PIXELS_PER_UNIT));
-                let passes = u64::from(scene.render.samples.div_ceil(SAMPLES_PER_PASS));
-                Self { units: tiles * passes, tiles, rays: pixels * u64::from(scene.render.samples) }
-            }
-        }
+    /// Sums of one estimator: one a pixel and channel.
+    pub(crate) fn cells(&self) -> usize {
+        self.scene.imager.size().pixels() * self.pipeline.recorded.len()
+    }
+
+    pub(crate) fn too_large(&self) -> RenderError {
+        RenderError::Memory(memory_needed(&self.scene))
     }
 }

@@ -48,7 +48,7 @@ impl Vectorized for Round<'_> {
 }
 
 /// One integer a pixel and channel, shared by all threads.
-pub(crate) struct ExactSums {
+pub struct ExactSums {
     cells: Vec<AtomicI64>,
     overflow: AtomicBool,
 }
@@ -72,6 +72,11 @@ impl ExactSums {
 
     pub(crate) fn get(&self, cell: usize) -> i64 {
         self.cells[cell].load(Relaxed)
+    }
+
+    /// How many there are.
+    pub(crate) fn cells(&self) -> usize {
+        self.cells.len()
     }
 
     pub(crate) fn overflowed(&self) -> bool {

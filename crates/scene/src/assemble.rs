@@ -1,7 +1,7 @@
 //! From a scene file to a [`Scene`], with every fault in one go.
 
 use crate::advice::{self, FileIs};
-use crate::earlier::Earlier;
+use crate::earlier::{Earlier, Said};
 use crate::filters;
 use crate::focus::FocusLight;
 use crate::lens_section::{LensSection, SetLens, held_lens};
@@ -67,7 +67,7 @@ pub(crate) struct SceneFile {
     render: Option<Part<RenderSection>>,
     /// What is written, into files named after the scene; EXR and PNG if absent.
     #[serde(default)]
-    output: Option<Vec<Part<output::OutputForm>>>,
+    output: Option<Vec<Part<StageOf<dyn Output>>>>,
     // What follows is used up before a scene is assembled; named here, so that a slip in one of them is told.
     /// Scenes that this one comes on top of: a file or a list of files. Maps merge, what is said here wins.
     #[serde(default)]
@@ -191,7 +191,7 @@ fn all_stages(
     earlier: Earlier,
 ) -> Result<Scene, Faults> {
     let mut faults = Faults::new();
-    let earlier = earlier.fitting(params);
+    let mut earlier = earlier.fitting(params);
     // Several films are no single stage: their section is read apart.
     // A key whose value is null is not there: `--set film=null` takes the film away.
     let (several, others) = match params.get("film").map(|node| &node.value) {
@@ -209,42 +209,50 @@ fn all_stages(
         wavelengths.unwrap_or_else(|| params.nothing_said("wavelengths")).split(&keys_of::<BandSection>());
     let grid = faults.take(band.parse::<BandSection>().and_then(|b| grid_of(&b, &band))).unwrap_or(BAND);
     let warnings = Warnings::new();
+    let said = earlier.said();
+    said.warnings.into_iter().for_each(|warning| warnings.push(warning));
+    said.ends.into_iter().for_each(|end| warnings.push_end(end));
     let context = Context { warnings: Some(&warnings), ..Context::new(resources, grid) };
-    let sampler = match earlier.sampler {
+    let sampler = match earlier.sampler.take() {
         Some(sampler) => Some(sampler),
-        None => faults.take(registry::build::<dyn WavelengthSampler>(&sampler, &context)),
+        None => faults.take(registry::build::<dyn WavelengthSampler>(&sampler, &context)).map(Arc::from),
     };
     let filters = lens.as_ref().and_then(|p| faults.take(filters::filters_of(p, grid, resources))).flatten();
     // Focus wants to know all others, and a source what the lens sees; faults are told in the order of the sections.
     let (mut of_lens, mut behind) = (Faults::new(), Faults::new());
-    let imager = match earlier.imager {
+    let imager = match earlier.imager.take() {
         Some(imager) => Some(imager),
-        None => imager.and_then(|p| behind.take(registry::build::<dyn Imager>(&p, &context))),
+        None => imager.and_then(|p| behind.take(registry::build::<dyn Imager>(&p, &context))).map(Arc::from),
     };
     let lens_place = lens.clone();
     let cover = imager.as_ref().and_then(|imager| imager.cover());
     let held = lens.and_then(|p| of_lens.take(held_lens(&p, resources, cover)));
-    let (source, seen) = match earlier.source {
-        Some(source) => (Some(source), None),
+    let seen = || held.as_ref().zip(imager.as_ref()).and_then(|(held, imager)| sight::seen(&held.lens, &**imager));
+    let (source, dark) = match earlier.source.take() {
+        Some(source) if earlier.same_view || earlier.is_check => (Some(source), said.dark),
+        Some(source) => (Some(source), seen().and_then(|seen| seen.dark)),
         None => {
-            let seen = held.as_ref().zip(imager.as_ref()).and_then(|(held, imager)| sight::seen(&held.lens, &**imager));
+            let seen = seen();
             let context = Context { view: seen.as_ref().map(|seen| &seen.view), ..context };
-            (source.and_then(|p| faults.take(registry::build::<dyn Source>(&p, &context))), seen)
+            (
+                source.and_then(|p| faults.take(registry::build::<dyn Source>(&p, &context))).map(Arc::from),
+                seen.and_then(|seen| seen.dark),
+            )
         }
     };
     let films = match several {
-        _ if earlier.films.is_some() => earlier.films,
+        _ if earlier.films.is_some() => earlier.films.take(),
         Some(items) => behind.take(films::several(items, params, &context)),
         None => film.and_then(|p| behind.take(registry::build::<dyn Film>(&p, &context))).map(films::one),
     };
     let render = render.unwrap_or_else(|| params.nothing_said("render"));
     let settings = behind.take(render.parse::<RenderSection>());
-    let output = file.as_ref().and_then(|f| behind.take(output::read(f.output.as_deref())));
+    let output = file.as_ref().and_then(|f| behind.take(output::read(f.output.as_deref(), params, &context)));
     let mut channels = imager.as_ref().and_then(|imager| match (imager.channels(), &films) {
         (Some(own), None) => Some(own),
         (None, Some(films)) => Some(films::channels(films)),
         (Some(_), Some(_)) => {
-            let fault = params.fault("film", "this imager records by itself, no film lies on it");
+            let fault = params.fault("film", "this imager records light directly and takes no film");
             behind.push(fault.hint("write `imager: {kind: film, ...}`, or leave the film out"));
             None
         }
@@ -270,27 +278,24 @@ fn all_stages(
         }
         _ => None,
     };
-    let lens = held.and_then(|held| of_lens.take(held.focused(focus_light.as_ref())));
+    let lens = match earlier.lens_in(focus_light.as_ref()) {
+        Some(lens) => Some(lens),
+        None => held.and_then(|held| of_lens.take(held.focused(focus_light.as_ref()))),
+    };
     faults.extend(of_lens);
     if let (Some(place), Some(SetLens { lens, .. }), Some(source)) = (lens_place, &lens, &source)
         && lens.elements.first().is_some_and(|e| e.kind == MATTE_BOX && e.vertex_z_mm() <= -source.distance_mm())
     {
         let fault = place.fault("matte-box.distance", "the source stands between the matte box and the lens");
-        faults.push(fault.hint(format!("nearer to the lens than {} mm", source.distance_mm())));
+        faults.push(fault.hint(format!("closer to the lens than {} mm", source.distance_mm())));
     }
     faults.extend(behind);
-    if let (Some(imager), Some(wanted)) = (&imager, &output)
-        && wanted.contains(&Output::Dng)
-        && !imager.has_converter()
-    {
-        let is_dng = |item: &Node| matches!(item.get("kind").unwrap_or(item).as_str(), Some("dng"));
-        let at = match params.get("output").map(|node| &node.value) {
-            Some(Value::Seq(items)) => items.iter().position(is_dng),
-            _ => None,
-        };
-        let key = at.map_or_else(|| "output".to_owned(), |at| format!("output[{at}]"));
-        let fault = params.fault(&key, "this imager has no converter: there are no raw numbers");
-        faults.push(fault.hint("`imager: {kind: sensor, ...}`, or leave `dng` out"));
+    if let (Some(imager), Some(outputs)) = (&imager, &output) {
+        faults.extend(output::check(outputs, &**imager, params));
+    }
+    if let (Some(imager), Some(films)) = (&imager, &films) {
+        let misfit = films.iter().find_map(|film| film.film.check_frame(&imager.size()).err());
+        faults.extend(misfit.map(|[text, hint]| params.fault("imager.resolution", text).hint(hint)));
     }
     let settings = match (&settings, &source, &imager) {
         (Some(s), Some(source), Some(imager)) => faults.take(render_settings(s, &render, &**source, &**imager)),
@@ -304,17 +309,19 @@ fn all_stages(
     };
     let (mut films, mut imager) = (films.unwrap_or_default(), imager);
     if let Some(frame) = render.frame.filter(|_| !earlier.is_check) {
-        imager.set_frame(frame);
-        films.iter_mut().for_each(|film| film.film.set_frame(frame));
+        // What another scene holds too is of this frame already.
+        Arc::get_mut(&mut imager).into_iter().for_each(|imager| imager.set_frame(frame));
+        films.iter_mut().filter_map(|film| Arc::get_mut(&mut film.film)).for_each(|film| film.set_frame(frame));
     }
     let channels: Arc<[Channel]> = channels.into();
     let SetLens { lens, focus, warnings: of_focus } = lens;
-    let whole = doubts::Whole { params, lens: &lens, source: &*source, channels: &channels, grid };
-    whole.doubt(seen.and_then(|seen| seen.dark).as_ref(), &warnings);
-    of_focus.into_iter().for_each(|fault| warnings.push(fault));
-    for film in &films {
-        let named = |text: String| film.name.as_ref().map_or_else(|| text.clone(), |name| format!("{name}: {text}"));
-        film.film.warnings().into_iter().for_each(|text| warnings.push(params.fault("film", named(text))));
+    let pictured = films::pictured(&films, &channels);
+    let whole = doubts::Whole { params, lens: &lens, source: &*source, channels: &pictured, grid };
+    let said = Said { warnings: warnings.all(), ends: warnings.ends(), dark };
+    whole.doubt(said.dark.as_ref(), &warnings);
+    of_focus.iter().for_each(|fault| warnings.push(fault.clone()));
+    for text in films::warnings(&films) {
+        warnings.push(params.fault("film", text));
     }
     let warnings = warnings.into_vec();
     let notes = lamps::notes(params);
@@ -326,6 +333,8 @@ fn all_stages(
         sampler,
         lens,
         focus,
+        focused: (focus_light, of_focus),
+        said,
         imager,
         films,
         channels,
@@ -341,8 +350,8 @@ fn grid_of(section: &BandSection, params: &Params) -> Result<Grid, Faults> {
     let Some([first, last]) = section.band else { return Ok(BAND) };
     let (first, last) = (first.nm(), last.nm());
     if last - first < 1.0 {
-        let fault = params.fault("band", format!("no band of light: {first} to {last} nm"));
-        return Err(fault.hint("the shorter one first, as in `[380, 780]`, 1 nm apart or more").into());
+        let fault = params.fault("band", format!("not a band of wavelengths: {first} to {last} nm"));
+        return Err(fault.hint("the shorter one first, as in `[380, 780]`, at least 1 nm apart").into());
     }
     let count = (last - first).ceil() as usize + 1;
     Ok(Grid { start_nm: first, step_nm: (last - first) / (count - 1) as f64, count })
@@ -376,7 +385,7 @@ fn render_settings(
         faults.push(fault.hint("write `direction: backward`, or leave it to `auto`"));
     }
     if direction == Direction::Forward && rays > MAX_RAYS {
-        let fault = params.fault("samples", format!("so many samples are {rays} rays, at most {MAX_RAYS} are traced"));
+        let fault = params.fault("samples", format!("this makes {rays} rays, at most {MAX_RAYS} are traced"));
         faults.push(fault.hint("fewer samples or pixels, or write `rays`"));
     }
     faults.into_result(RenderSettings {

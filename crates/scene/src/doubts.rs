@@ -56,7 +56,11 @@ impl Whole<'_> {
             let Some(mm) = self.at(&key).and_then(bare) else { continue };
             if efl_mm.is_finite() && mm < NEAR * efl_mm {
                 let fault = self.params.fault(&key, format!("{mm} mm in front of the lens"));
-                warnings.push(fault.hint(format!("a bare number is in mm: did you mean {mm} m? Else write `{mm} mm`")));
+                warnings.push(
+                    fault.hint(format!(
+                        "a number without a unit is in mm: did you mean `{mm} m`? If not, write `{mm} mm`"
+                    )),
+                );
             }
         }
     }
@@ -73,13 +77,13 @@ impl Whole<'_> {
             return;
         }
         let text = if mm <= -first.ffl_mm {
-            format!("focused at {mm} mm, which is inside of the focal length: no picture falls on the film")
+            format!("focused at {mm} mm, which is within the focal length: no image is formed on the film")
         } else {
-            format!("focused at {mm} mm: the picture on the film is {magnification:.1} times as large as what it shows")
+            format!("focused at {mm} mm: the image on the film is {magnification:.1} times as large as the subject")
         };
         let hint = match bare(node) {
-            Some(number) => format!("a bare number is in mm: did you mean {number} m?"),
-            None => "a focus counts from the first vertex of the lens, such as `focus: 2 m`".to_owned(),
+            Some(number) => format!("a number without a unit is in mm: did you mean `{number} m`?"),
+            None => "`focus` is measured from the first vertex of the lens, such as `focus: 2 m`".to_owned(),
         };
         warnings.push(self.params.fault(key, text).hint(hint));
     }
@@ -95,7 +99,7 @@ impl Whole<'_> {
                 continue;
             };
             let fault = self.params.fault(&key, format!("an exposure of {seconds} seconds"));
-            warnings.push(fault.hint(format!("did you mean `1/{seconds} s`? Else write `{seconds} s`")));
+            warnings.push(fault.hint(format!("did you mean `1/{seconds} s`? If not, write `{seconds} s`")));
         }
     }
 
@@ -104,13 +108,12 @@ impl Whole<'_> {
         let Some(circle_mm) = dark.circle_mm else { return };
         let key = if self.at("imager.format").is_some() { "imager.format" } else { "imager.width" };
         let text = format!(
-            "this lens draws a circle of about {circle_mm:.0} mm; the frame's diagonal is {:.0} mm, and {:.0} % of it \
-             stays dark",
+            "the image circle of this lens is about {circle_mm:.0} mm; the frame's diagonal is {:.0} mm, so {:.0} % of the frame stays dark",
             dark.diagonal_mm,
             (100.0 * dark.share).max(1.0)
         );
         let hint = format!(
-            "a frame of at most {circle_mm:.0} mm across the corners, or a lens that covers this one (`spectra list lens`)"
+            "use a frame with a diagonal of at most {circle_mm:.0} mm, or a lens that covers this one (`spectra list lens`)"
         );
         warnings.push(self.params.fault(key, text).hint(hint));
     }
@@ -122,13 +125,12 @@ impl Whole<'_> {
             let share = self.share(|nm| nm < first || nm > last);
             if share > UNMEASURED {
                 let text = format!(
-                    "`{}` has rows from {first:.0} to {last:.0} nm: beyond them its ends go on flat, and that is {:.0} % of \
-                     the exposure",
+                    "`{}` has rows from {first:.0} to {last:.0} nm; beyond them its end values are used, which make {:.0} % of the exposure",
                     end.place.message,
                     100.0 * share
                 );
                 let fault = spectra_core::params::Fault { message: text, ..end.place };
-                let hint = "where there is no light, end it with rows of 0, or write `# outside: zero` at the top of a CSV file \
+                let hint = "if there is no light beyond, end the table with a row of 0, or write `# outside: zero` at the top of a CSV file \
                             (`outside: zero` of a table in YAML)";
                 warnings.push(fault.hint(hint));
             }
@@ -151,12 +153,11 @@ impl Whole<'_> {
                 .map(|(label, (first, last))| format!("{label} from {first:.0} to {last:.0} nm"))
                 .collect();
             let text = format!(
-                "{:.0} % of the exposure is light in which the lens's glass was not measured, and its formula is \
-                 extrapolated: {}",
+                "{:.0} % of the exposure lies beyond the wavelengths at which the lens's glass was measured, so its formula is extrapolated: {}",
                 100.0 * share,
                 named.join(", ")
             );
-            let hint = "a glass that was measured there, or `wavelengths: {band: [400 nm, 700 nm]}`";
+            let hint = "use a glass that was measured there, or `wavelengths: {band: [400 nm, 700 nm]}`";
             warnings.push(self.params.fault("lens.file", text).hint(hint));
         }
     }

@@ -1,34 +1,56 @@
-//! What pictures of one series share.
+//! What a picture shares with one that was assembled before it.
 
+use crate::focus::FocusLight;
+use crate::lens_section::SetLens;
+use crate::sight::Dark;
 use crate::{Scene, SceneFilm};
-use spectra_core::params::{Node, Params, Value};
+use spectra_core::params::{DataEnd, Fault, Node, Params, Value, Warning};
 use spectra_core::stage::{Imager, Source, WavelengthSampler};
 use std::sync::Arc;
 
-/// Stages of another picture of the same series: where a section says the same, its stage is taken over.
+/// What stages said when they were built.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Said {
+    pub warnings: Vec<Warning>,
+    pub ends: Vec<DataEnd>,
+    /// The part of the frame that the lens leaves dark.
+    pub dark: Option<Dark>,
+}
+
+/// Stages of another scene: where a section says the same, its stage is taken over.
 #[derive(Default)]
 pub(crate) struct Earlier {
-    pub params: Option<Params>,
-    pub source: Option<Box<dyn Source>>,
-    pub sampler: Option<Box<dyn WavelengthSampler>>,
-    pub imager: Option<Box<dyn Imager>>,
+    params: Option<Params>,
+    pub source: Option<Arc<dyn Source>>,
+    pub sampler: Option<Arc<dyn WavelengthSampler>>,
+    pub imager: Option<Arc<dyn Imager>>,
     pub films: Option<Vec<SceneFilm>>,
+    /// The lens, as it was focused in this light.
+    lens: Option<(SetLens, FocusLight)>,
+    frame: Option<u64>,
+    said: Said,
+    /// Whether lens and imager say the same.
+    pub same_view: bool,
     /// The scene is only looked at: noise and grain need not be those of its frame.
     pub is_check: bool,
 }
 
 impl Earlier {
-    /// The stages of `scene`, of which nothing else is left.
-    pub(crate) fn of(scene: Option<Scene>, is_check: bool) -> Self {
-        let Some(Scene { params, source, sampler, imager, films, .. }) = scene else {
-            return Self { is_check, ..Self::default() };
-        };
+    /// The stages of `scene`. Where nobody else holds it, they are all that is left of it, and may be set for another frame.
+    pub(crate) fn of(scene: Option<Arc<Scene>>, is_check: bool) -> Self {
+        let Some(scene) = scene else { return Self { is_check, ..Self::default() } };
+        let (light, warnings) = scene.focused.clone();
+        let set = SetLens { lens: Arc::clone(&scene.lens), focus: scene.focus.clone(), warnings };
         Self {
-            params: Some(params),
-            source: Some(source),
-            sampler: Some(sampler),
-            imager: Some(imager),
-            films: (!films.is_empty()).then_some(films),
+            params: Some(scene.params.clone()),
+            source: Some(Arc::clone(&scene.source)),
+            sampler: Some(Arc::clone(&scene.sampler)),
+            imager: Some(Arc::clone(&scene.imager)),
+            films: (!scene.films.is_empty()).then(|| scene.films.clone()),
+            lens: light.map(|light| (set, light)),
+            frame: scene.render.frame,
+            said: scene.said.clone(),
+            same_view: false,
             is_check,
         }
     }
@@ -40,17 +62,42 @@ impl Earlier {
         if !same("wavelengths") {
             return Self { is_check: self.is_check, ..Self::default() };
         }
-        let (imager, films) = (same("imager"), same("film"));
+        let (imager, films, lens) = (same("imager"), same("film"), same("lens"));
         // A source that fills the frame has its size from the lens and the imager.
         let fills = params.get("source").is_some_and(fills_the_frame);
-        let source = same("source") && (!fills || (imager && same("lens")));
+        let source = same("source") && (!fills || (imager && lens));
+        // An imager with noise is the imager of its frame, a film with grain the film of it.
+        let frame = params.get("render").and_then(|render| render.get("frame"));
+        let frame = match frame.map(|node| &node.value) {
+            Some(Value::Number(number)) => number.text.parse().ok(),
+            _ => None,
+        };
+        let in_time = self.is_check || self.frame == frame;
+        let is_ours = |film: &SceneFilm| Arc::strong_count(&film.film) == 1;
+        let kept = [("source", source), ("imager", imager), ("film", films), ("wavelengths", true)];
+        let is_kept = |fault: &Fault| kept.iter().any(|(key, kept)| *kept && fault.path.starts_with(key));
+        let mut said = self.said;
+        said.warnings.retain(|warning| is_kept(&warning.0));
+        said.ends.retain(|end| is_kept(&end.place));
         Self {
             source: self.source.filter(|_| source),
-            // An imager with noise is the imager of its frame.
-            imager: self.imager.filter(|_| imager && self.is_check),
-            films: self.films.filter(|_| films),
+            imager: self.imager.filter(|_| imager && in_time),
+            films: self.films.filter(|all| films && (in_time || all.iter().all(is_ours))),
+            lens: self.lens.filter(|_| lens && imager),
+            said,
+            same_view: lens && imager,
             ..self
         }
+    }
+
+    /// The lens, where it was focused in this light already.
+    pub(crate) fn lens_in(&mut self, light: Option<&FocusLight>) -> Option<SetLens> {
+        self.lens.take().filter(|(_, before)| light == Some(before)).map(|(lens, _)| lens)
+    }
+
+    /// What was said of the stages that are left.
+    pub(crate) fn said(&mut self) -> Said {
+        std::mem::take(&mut self.said)
     }
 }
 
@@ -75,7 +122,7 @@ fn fills_the_frame(node: &Node) -> bool {
 
 /// Whether two trees say the same, in the same files (a name of a file counts from there).
 fn same_node(a: &Node, b: &Node) -> bool {
-    Arc::ptr_eq(&a.file, &b.file)
+    (Arc::ptr_eq(&a.file, &b.file) || (a.file.name == b.file.name && a.file.text == b.file.text))
         && match (&a.value, &b.value) {
             (Value::Null, Value::Null) => true,
             (Value::Bool(a), Value::Bool(b)) => a == b,

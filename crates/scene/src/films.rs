@@ -39,7 +39,7 @@ const MAX_FILMS: usize = 16;
 /// A film alone.
 pub(crate) fn one(film: Box<dyn Film>) -> Vec<SceneFilm> {
     let channels = 0..film.channels().len();
-    vec![SceneFilm { name: None, film, channels }]
+    vec![SceneFilm { name: None, film: film.into(), channels }]
 }
 
 /// The films of a list. Each has a name that its pictures bear: its key `name`, or else the name of its stock or kind.
@@ -58,7 +58,7 @@ pub(crate) fn several(items: &[Node], params: &Params, context: &Context<'_>) ->
         if let (Some(name), Some(film)) = (name, film) {
             let first = films.last().map_or(0, |f| f.channels.end);
             let channels = first..first + film.channels().len();
-            films.push(SceneFilm { name: Some(name), film, channels });
+            films.push(SceneFilm { name: Some(name), film: film.into(), channels });
         }
     }
     faults.into_result(films)
@@ -104,6 +104,24 @@ pub(crate) fn channels(films: &[SceneFilm]) -> Vec<Channel> {
         }
     }
     all
+}
+
+/// What a person should know of the films. What several have to say is said once, with the names of those films.
+pub(crate) fn warnings(films: &[SceneFilm]) -> Vec<String> {
+    let mut said: Vec<(String, Vec<&str>)> = Vec::new();
+    for film in films {
+        for text in film.film.warnings() {
+            let name = film.name.as_deref();
+            match said.iter_mut().find(|(known, _)| *known == text) {
+                Some((_, names)) => names.extend(name),
+                None => said.push((text, name.into_iter().collect())),
+            }
+        }
+    }
+    let named = |(text, names): (String, Vec<&str>)| {
+        if names.is_empty() { text } else { format!("{}: {text}", names.join(", ")) }
+    };
+    said.into_iter().map(named).collect()
 }
 
 /// Those channels that pictures are made of: not a meter's. All of an imager that records by itself.

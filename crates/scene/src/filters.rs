@@ -95,7 +95,7 @@ fn one(node: &StageNode, grid: Grid, resources: &dyn Resources) -> Result<Vec<f6
     }
     if !matches!(node.node().value, Value::Map(_)) {
         let hint = "such as `wratten-15`, `{file: gel.csv}` or `{glass: SCHOTT/N-BK7, thickness: 2 mm}`";
-        return Err(node.fault("this is no filter").hint(hint).into());
+        return Err(node.fault("this is not a filter").hint(hint).into());
     }
     if node.node().get("glass").is_none() {
         return named(&node.parse::<Measured>()?.file);
@@ -105,7 +105,7 @@ fn one(node: &StageNode, grid: Grid, resources: &dyn Resources) -> Result<Vec<f6
     let medium = spectra_glass::file::medium(&p.glass, &params, "glass", resources)?;
     let coating = p.coating.as_ref().map_or(Ok(Coating::Bare), |node| read_coating(node, resources))?;
     plate(&medium, p.thickness.mm(), &coating, grid).ok_or_else(|| {
-        let fault = params.fault("glass", format!("how much {} absorbs is not known", medium.name()));
+        let fault = params.fault("glass", format!("the absorption of {} is not known", medium.name()));
         fault.hint("give its transmittance as a table: `{file: ...}`").into()
     })
 }

@@ -16,6 +16,7 @@ const SMALLEST_DIAGONAL_MM: f64 = 7.516;
 const WAVELENGTHS: usize = 12;
 
 /// The light that a lens is focused in, and how finely.
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct FocusLight {
     /// The spatial frequency whose contrast counts, line pairs a mm.
     pub(crate) per_mm: f64,

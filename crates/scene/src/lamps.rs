@@ -3,30 +3,37 @@
 use spectra_core::params::{Node, Params, Value};
 use spectra_spectrum::{Strengths, bundled_meta, bundled_spectra};
 
-/// A note for each bundled lamp that the source names and whose line strengths are estimates: light and color of the scene
+/// A note of the bundled lamps that the source names and whose line strengths are estimates: light and color of the scene
 /// are no better than these.
 pub(crate) fn notes(scene: &Params) -> Vec<String> {
-    let mut notes = Vec::new();
+    let mut lamps = Vec::new();
     if let Some(source) = scene.get("source") {
-        gather(source, &mut notes);
+        gather(source, &mut lamps);
     }
-    notes
+    let note = |names: String| {
+        format!(
+            "the line strengths of {names} were estimated by eye: lines far apart are not comparable, so the color of the light \
+             is a guess"
+        )
+    };
+    let quoted: Vec<String> = lamps.iter().map(|name| format!("`{name}`")).collect();
+    match &quoted[..] {
+        [] => Vec::new(),
+        [one] => vec![note(one.clone())],
+        [others @ .., last] => vec![note(format!("{} and {last}", others.join(", ")))],
+    }
 }
 
-fn gather(node: &Node, notes: &mut Vec<String>) {
+fn gather(node: &Node, lamps: &mut Vec<String>) {
     match &node.value {
-        Value::Map(entries) => entries.iter().for_each(|(_, value)| gather(value, notes)),
-        Value::Seq(items) => items.iter().for_each(|item| gather(item, notes)),
+        Value::Map(entries) => entries.iter().for_each(|(_, value)| gather(value, lamps)),
+        Value::Seq(items) => items.iter().for_each(|item| gather(item, lamps)),
         _ => {
             // A light may be made of others: `0.5 * neon + D65`.
             let words = node.as_str().unwrap_or_default().split(['+', '*', ' ', '(', ')']);
             for name in words.filter(|word| is_estimated(word)) {
-                let note = format!(
-                    "the lines of `{name}` are as strong as observers estimated: those far apart do not compare, so the \
-                     color of the light is a guess"
-                );
-                if !notes.contains(&note) {
-                    notes.push(note);
+                if !lamps.iter().any(|known: &String| known.eq_ignore_ascii_case(name)) {
+                    lamps.push(name.to_owned());
                 }
             }
         }

@@ -17,6 +17,7 @@ use spectra_core::resources::Resources;
 use spectra_lens::{
     ApertureError, ApertureForm, CoatingForm, Criterion, FocusError, FocusSearch, Lens, MatteBox, Misalignment, Shape,
 };
+use std::sync::Arc;
 
 /// The `lens` section.
 #[derive(Debug, Deserialize, JsonSchema)]
@@ -141,8 +142,9 @@ struct Wanted {
 }
 
 /// A lens as a scene sets it.
+#[derive(Clone)]
 pub(crate) struct SetLens {
-    pub(crate) lens: Lens,
+    pub(crate) lens: Arc<Lens>,
     pub(crate) focus: Focus,
     /// What a person should know of how it is set.
     pub(crate) warnings: Vec<Fault>,
@@ -164,7 +166,7 @@ pub(crate) fn held_lens(
 ) -> Result<HeldLens, Faults> {
     let mut faults = Faults::new();
     if let Some(kind) = params.kind() {
-        let fault = params.fault("kind", "a lens has no kinds: its file is named by `file`");
+        let fault = params.fault("kind", "a lens has no `kind`: name its file with `file`");
         return Err(match params.get("file") {
             Some(_) => fault.hint("leave `kind` out"),
             None => fault.hint(format!("write `lens: {{file: {kind}}}`")).path("lens"),
@@ -178,14 +180,7 @@ pub(crate) fn held_lens(
         faults.take(spectra_lens::load(file, resources).map_err(|faults| params.place_at("file", faults)))
     });
     let (Some(section), Some(mut lens)) = (section, lens) else { return Err(faults) };
-    if section.reverse {
-        let reversed = faults.take(lens.reversed().map_err(|e| params.fault("reverse", e.to_string())));
-        lens = reversed.unwrap_or(lens);
-    }
-    if let Some(coating) = section.coating.and_then(|node| faults.take(spectra_lens::read_coating(&node, resources))) {
-        lens = lens.with_coating(coating);
-    }
-    lens.absorption = section.absorption.unwrap_or(lens.absorption);
+    lens = as_built(lens, &section, params, resources, &mut faults);
     if let Some(f_number) = section.f_number {
         let stopped = lens.clone().at_f_number(f_number.number());
         lens = faults.take(stopped.map_err(|e| aperture_fault(params, &e))).unwrap_or(lens);
@@ -223,7 +218,7 @@ impl HeldLens {
                 Err(error @ (FocusError::NoLight { .. } | FocusError::NoTravel { .. })) if wanted.plain => {
                     focus.by = FocusBy::Paraxial;
                     focus.remark =
-                        Some(format!("contrast cannot be had ({error}); write `by: paraxial` to do without"));
+                        Some(format!("contrast cannot be computed ({error}); `by: paraxial` does not need it"));
                 }
                 Err(error) => return Err(focus_fault(&params, &error).into()),
             }
@@ -233,7 +228,7 @@ impl HeldLens {
         if let Some(opening) = matte_box {
             lens = lens.behind_matte_box(&opening);
         }
-        Ok(SetLens { lens, focus, warnings })
+        Ok(SetLens { lens: Arc::new(lens), focus, warnings })
     }
 }
 
@@ -257,7 +252,7 @@ fn with_aperture(lens: &Lens, node: &StageNode, resources: &dyn Resources) -> Re
     if let Some(text) = node.node().as_str()
         && let Some(figure) = f_number_in(text)
     {
-        let fault = node.fault("an aperture is what limits the light beside the stop's round opening, such as blades");
+        let fault = node.fault("`aperture` describes the shape of the stop, such as its blades");
         return Err(fault.hint(format!("did you mean `f-number: f/{figure}`?")).into());
     }
     let apertures = spectra_lens::read_apertures(node, resources)?;
@@ -266,19 +261,43 @@ fn with_aperture(lens: &Lens, node: &StageNode, resources: &dyn Resources) -> Re
         return Err(node.fault("this lens has no stop").hint("state `aperture` at a surface of its file").into());
     };
     if stop.semi_diameter_mm.is_none() && apertures.iter().any(|a| matches!(a.shape, Shape::Iris(_))) {
-        let fault = node.fault("how far are the blades closed? The stop of this lens has no size");
+        let fault = node.fault("the stop of this lens has no size, so the size of the blades is unknown");
         return Err(fault.hint("`f-number: f/4` beside `aperture`").into());
     }
     stop.apertures.extend(apertures);
     Ok(lens)
 }
 
-/// Whether it says that the lens does not reach the f-number asked for.
-pub(crate) fn is_too_fast(fault: &Fault) -> bool {
-    fault.path == "lens.f-number" && fault.message.contains(" is faster than the lens")
+/// The lens before anything is set on it: turned round or not, coated, absorbing.
+fn as_built(
+    mut lens: Lens,
+    section: &LensSection,
+    params: &Params,
+    resources: &dyn Resources,
+    faults: &mut Faults,
+) -> Lens {
+    if section.reverse {
+        let reversed = faults.take(lens.reversed().map_err(|e| params.fault("reverse", e.to_string())));
+        lens = reversed.unwrap_or(lens);
+    }
+    let coating = section.coating.as_ref();
+    if let Some(coating) = coating.and_then(|node| faults.take(spectra_lens::read_coating(node, resources))) {
+        lens = lens.with_coating(coating);
+    }
+    lens.absorption = section.absorption.unwrap_or(lens.absorption);
+    lens
 }
 
-/// A fault at `f-number`.
+/// Whether the lens of a section does not reach the f-number asked for.
+pub(crate) fn is_too_fast(params: &Params, resources: &dyn Resources) -> bool {
+    let Ok(section) = params.parse::<LensSection>() else { return false };
+    let file = params.get("file").and_then(|node| node.as_str());
+    let Some(lens) = file.and_then(|file| spectra_lens::load(file, resources).ok()) else { return false };
+    let lens = as_built(lens, &section, params, resources, &mut Faults::new());
+    let stopped = section.f_number.map(|f_number| lens.at_f_number(f_number.number()));
+    matches!(stopped, Some(Err(ApertureError::TooFast { .. })))
+}
+
 /// The figure of `f/4` or `4`.
 fn f_number_in(text: &str) -> Option<f64> {
     match Reading::of(text) {
@@ -288,6 +307,7 @@ fn f_number_in(text: &str) -> Option<f64> {
     }
 }
 
+/// A fault at `f-number`.
 fn aperture_fault(params: &Params, error: &ApertureError) -> Fault {
     let hint = match error {
         ApertureError::TooFast { widest, .. } => {

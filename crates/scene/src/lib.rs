@@ -3,6 +3,8 @@
 //! [`load`] reads a scene, finds every fault of it at once, and gives a [`Scene`]: all stages built, the
 //! lens focused and stopped, nothing traced yet. [`load_series`] does so for a file that stands for several pictures.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod advice;
 mod assemble;
 pub mod bundled;
@@ -16,15 +18,19 @@ mod lamps;
 mod language;
 mod lens_section;
 mod output;
+mod remembered;
 mod resources;
 mod scene;
 mod schema;
+mod shot;
 mod sight;
 
 pub use spectra_yaml as yaml;
 
 pub use focus::{Focus, FocusBy};
-pub use language::{Member, Series, SeriesKind, SweptAxis, load, load_series};
+pub use language::{Member, Series, SeriesKind, SweptAxis, load, load_series, series_of_text, series_of_tree};
+pub use output::{Holds, Output, OutputEntry};
 pub use resources::FileResources;
-pub use scene::{ConePattern, Direction, FilmTime, NumberFamily, Output, RaysFigure, RenderSettings, Scene, SceneFilm};
+pub use scene::{ConePattern, Direction, FilmTime, NumberFamily, RenderSettings, Scene, SceneFilm};
 pub use schema::{FileKind, file_documentation, file_schema, shared_documentation};
+pub use shot::{Developed, Shot};

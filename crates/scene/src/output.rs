@@ -1,182 +1,117 @@
-//! The `output` section: what a scene wants written.
+//! The `output` section: what a scene wants written. Each output is a stage of its own.
 
-use crate::{Output, RaysFigure};
-use schemars::{JsonSchema, Schema, SchemaGenerator};
-use serde::Deserialize;
-use spectra_core::params::{Fault, Faults, Kinds, Length, Params, Part, Positive, Whole, nearest};
-use spectra_core::picture_file;
+use crate::{FileResources, Scene, Shot};
+use spectra_core::params::{Fault, Faults, Node, Params, Part, Value};
+use spectra_core::registry::{self, Context, StageOf};
+use spectra_core::sink::{Out, WriteFault};
+use spectra_core::stage::Imager;
+use std::path::Path;
+use std::sync::Arc;
 
-/// `kind: exr`: the linear exposure.
-#[derive(Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-struct ExrParams {
-    /// In tiles, for viewers that read a part of a large file; needs a program built with OpenImageIO.
-    #[serde(default)]
-    tiled: bool,
+/// A kind of file that is written of a picture.
+pub trait Output: Send + Sync {
+    /// Its name in a scene.
+    fn kind(&self) -> &'static str;
+
+    /// How its files are called: what stands between the name of the picture (of films side by side, with the film's) and the
+    /// ending, mostly nothing, and the ending: `["-rays", ".svg"]`.
+    fn ending(&self) -> [&'static str; 2];
+
+    /// What it holds.
+    fn holds(&self) -> Holds;
+
+    /// Looks whether it can be had of what such an imager records.
+    ///
+    /// # Errors
+    /// Why not, and what to write instead.
+    fn check(&self, _imager: &dyn Imager) -> Result<(), [String; 2]> {
+        Ok(())
+    }
+
+    /// Writes a file; of films side by side, that of the film at a place.
+    ///
+    /// # Errors
+    /// What the place that it goes to has; [`WriteFault::Format`] where the picture has nothing to write.
+    fn write(&self, shot: &Shot<'_>, film: usize, out: &mut dyn Out) -> Result<(), WriteFault>;
 }
 
-/// `kind: rays`: the light's way through the lens, as a figure.
-#[derive(Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-struct RaysParams {
-    /// Width and height, pixels, each 64 to 8192.
-    #[serde(default = "rays_size")]
-    size: [Whole<64, 8192>; 2],
-    /// Width of what is shown, mm if bare; fitted to the lens if absent.
-    view: Option<Positive<Length>>,
-    /// Rays across the beam for each wavelength, 1 to 1001.
-    #[serde(default = "rays_across")]
-    rays: Whole<1, 1001>,
-    /// Wavelengths over a continuous spectrum, 1 to 4001.
-    #[serde(default = "rays_wavelengths")]
-    wavelengths: Whole<1, 4001>,
-    /// How bright colors are: `full` (the default; all alike) or `true` (relative to the brightest).
-    #[serde(default)]
-    intensity: Intensity,
-    /// What it is drawn on: `dark` (the default) or `light`.
-    #[serde(default)]
-    ground: Ground,
-    /// What it is written as: `png` (the default) or `svg`.
-    #[serde(default)]
-    format: Format,
-    /// Whether the image plane is drawn, and ends the rays.
-    #[serde(default)]
-    screen: bool,
-}
-
-#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
-#[serde(rename_all = "kebab-case")]
-#[schemars(inline)]
-enum Intensity {
-    #[default]
-    Full,
-    True,
-}
-
-#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
-#[serde(rename_all = "kebab-case")]
-#[schemars(inline)]
-enum Ground {
-    #[default]
-    Dark,
+/// What a file holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Holds {
+    /// All the light that was recorded: nothing is lost with a picture that has it.
     Light,
+    /// What a person looks at, a file for each film.
+    Picture,
+    /// What is made of the recorded numbers otherwise.
+    Numbers,
+    /// What is drawn of the scene.
+    Figure,
 }
 
-#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
-#[serde(rename_all = "kebab-case")]
-#[schemars(inline)]
-enum Format {
-    #[default]
-    Png,
-    Svg,
+spectra_core::declare!(OutputEntry, dyn Output, "output", "A registered output.");
+
+/// Outputs where a scene names none.
+const USUAL: [&str; 2] = ["exr", "png"];
+
+/// The output of a kind, as it is without parameters.
+fn of_kind(kind: &str, params: &Params, context: &Context<'_>) -> Result<Arc<dyn Output>, Faults> {
+    let name = Node { value: Value::String(kind.to_owned()), ..params.node().clone() };
+    registry::build::<dyn Output>(&Params::stage(name, "output")?, context).map(Arc::from)
 }
-
-fn rays_size() -> [Whole<64, 8192>; 2] {
-    [Whole::known(800), Whole::known(600)]
-}
-
-fn rays_across() -> Whole<1, 1001> {
-    Whole::known(1)
-}
-
-fn rays_wavelengths() -> Whole<1, 4001> {
-    Whole::known(64)
-}
-
-/// What an item of the section is written as.
-pub(crate) struct OutputForm;
-
-impl JsonSchema for OutputForm {
-    fn schema_name() -> std::borrow::Cow<'static, str> {
-        "Output".into()
-    }
-
-    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        let kinds = KINDS.iter().map(|kind| match *kind {
-            "exr" => (*kind, ExrParams::json_schema(generator)),
-            "rays" => (*kind, RaysParams::json_schema(generator)),
-            _ => (*kind, NoParams::json_schema(generator)),
-        });
-        let kinds = kinds.collect();
-        Kinds { key: "kind", kinds, default: None, shared: None, by_name: true }.schema()
-    }
-}
-
-const KINDS: [&str; 5] = ["exr", "png", "tiff", "dng", "rays"];
 
 /// Reads the section; EXR and PNG where it is absent.
-pub(crate) fn read(items: Option<&[Part<OutputForm>]>) -> Result<Vec<Output>, Faults> {
-    let Some(items) = items else { return Ok(vec![Output::Exr, Output::Png]) };
+pub(crate) fn read(
+    items: Option<&[Part<StageOf<dyn Output>>]>,
+    params: &Params,
+    context: &Context<'_>,
+) -> Result<Vec<Arc<dyn Output>>, Faults> {
+    let Some(items) = items else { return USUAL.iter().map(|kind| of_kind(kind, params, context)).collect() };
     let mut faults = Faults::new();
-    let mut found = Vec::new();
+    let mut found: Vec<(Arc<dyn Output>, bool)> = Vec::new();
     for item in items {
-        let Some(params) = faults.take(item.params()) else { continue };
-        let own = match params.kind() {
-            Some("exr") => exr(&params),
-            Some("png") => nothing_more(&params).map(|()| Output::Png),
-            Some("tiff") => nothing_more(&params).map(|()| Output::Tiff),
-            Some("dng") => nothing_more(&params).map(|()| Output::Dng),
-            Some("rays") => rays(&params).map(Output::Rays),
-            Some(other) => {
-                let fault = item.fault(format!("unknown kind of output `{other}`"));
-                let known = KINDS.join(", ");
-                Err(match nearest(other, KINDS) {
-                    Some(near) => fault.hint(format!("did you mean `{near}`? One of {known}")),
-                    None => fault.hint(format!("one of {known}")),
-                }
-                .into())
+        let Some(own) = faults.take(item.params()) else { continue };
+        let Some(output) = faults.take(registry::build::<dyn Output>(&own, context)) else { continue };
+        let is_plain = matches!(&own.node().value, Value::Map(keys) if keys.is_empty());
+        let [part, ending] = output.ending();
+        match found.iter().find(|(other, _)| other.ending() == [part, ending]) {
+            // The same, said twice.
+            Some((_, true)) if is_plain => {}
+            Some(_) => {
+                let fault = item.fault(format!("two outputs write `SCENE{part}{ending}`"));
+                faults.push(fault.hint("leave one of them out"));
             }
-            None => Err(item.fault("an output needs a kind").hint(format!("one of {}", KINDS.join(", "))).into()),
-        };
-        found.extend(faults.take(own));
-    }
-    if found.contains(&Output::Exr) && found.contains(&Output::TiledExr) {
-        let fault = items.iter().filter_map(|item| item.params().ok()).find(|params| params.get("tiled").is_some());
-        let fault = fault.map(|params| params.fault("tiled", "the same file is asked for in rows and in tiles"));
-        faults.push(fault.unwrap_or_else(|| Fault::new("one file in rows and in tiles")).hint("leave one `exr` out"));
-    }
-    let mut once: Vec<Output> = Vec::new();
-    for output in found {
-        if !once.iter().any(|o| std::mem::discriminant(o) == std::mem::discriminant(&output)) {
-            once.push(output);
+            None => found.push((output.into(), is_plain)),
         }
     }
-    faults.into_result(once)
+    faults.into_result(found.into_iter().map(|(output, _)| output).collect())
 }
 
-#[derive(Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-struct NoParams {}
-
-fn nothing_more(params: &Params) -> Result<(), Faults> {
-    params.parse::<NoParams>().map(|_| ())
+/// Faults of outputs that cannot be had of what the imager records, each at its place.
+pub(crate) fn check(outputs: &[Arc<dyn Output>], imager: &dyn Imager, params: &Params) -> Vec<Fault> {
+    let items = match params.get("output").map(|node| &node.value) {
+        Some(Value::Seq(items)) => &items[..],
+        _ => &[],
+    };
+    let fault = |output: &Arc<dyn Output>| {
+        let [text, hint] = output.check(imager).err()?;
+        let at = items.iter().position(|item| item.get("kind").unwrap_or(item).as_str() == Some(output.kind()));
+        let key = at.map_or_else(|| "output".to_owned(), |at| format!("output[{at}]"));
+        Some(params.fault(&key, text).hint(hint))
+    };
+    outputs.iter().filter_map(fault).collect()
 }
 
-fn exr(params: &Params) -> Result<Output, Faults> {
-    let p: ExrParams = params.parse()?;
-    if !p.tiled {
-        return Ok(Output::Exr);
+impl Scene {
+    /// The output whose file has this ending (`.png`), and nothing before it but the picture's name: one of the scene's own, or
+    /// else what is registered.
+    #[must_use]
+    pub fn output_of(&self, ending: &str) -> Option<Arc<dyn Output>> {
+        let is_it = |output: &Arc<dyn Output>| output.ending() == ["", ending];
+        self.output.iter().find(|output| is_it(output)).cloned().or_else(|| {
+            let resources = FileResources::beside(Path::new(""));
+            let context = Context::new(&resources, self.grid);
+            let kinds = registry::list().into_iter().filter(|listed| listed.stage == "output");
+            kinds.filter_map(|listed| of_kind(listed.name, &self.params, &context).ok()).find(is_it)
+        })
     }
-    if picture_file::library().is_none() {
-        let fault = params.fault("tiled", "tiled OpenEXR files are written by OpenImageIO only");
-        return Err(fault.hint(picture_file::WITHOUT).into());
-    }
-    Ok(Output::TiledExr)
-}
-
-fn rays(params: &Params) -> Result<RaysFigure, Faults> {
-    let p: RaysParams = params.parse()?;
-    let [width_px, height_px] = p.size.map(Whole::get_u32);
-    let (rays, wavelengths) = (p.rays.get_u32(), p.wavelengths.get_u32());
-    Ok(RaysFigure {
-        width_px,
-        height_px,
-        rays,
-        wavelengths,
-        true_intensity: p.intensity == Intensity::True,
-        light: p.ground == Ground::Light,
-        svg: p.format == Format::Svg,
-        screen: p.screen,
-        view_mm: p.view.map(|v| v.mm()),
-    })
 }

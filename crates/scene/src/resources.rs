@@ -92,7 +92,7 @@ impl Resources for FileResources {
             Some(Err(_)) | None => {}
         }
         if plain(&self.folder.join(path)).is_dir() {
-            return Err(ResourceError::Io("this is a folder; a file is wanted".to_owned()));
+            return Err(ResourceError::Io("this is a folder; a file is expected".to_owned()));
         }
         Err(ResourceError::NotFound(self.near(path, folders)))
     }

@@ -1,10 +1,13 @@
 //! A scene, assembled: every stage built, the lens focused and stopped, nothing traced yet.
 
 use crate::Focus;
+use crate::Output;
+use crate::earlier::Said;
+use crate::focus::FocusLight;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::frame::{ExposureChannel, ExposureFrame};
-use spectra_core::params::{Params, Warning};
+use spectra_core::params::{Fault, Params, Warning};
 use spectra_core::spectral::{Channel, Grid};
 use spectra_core::stage::{Film, Imager, Source, WavelengthSampler};
 use spectra_lens::Lens;
@@ -18,6 +21,17 @@ pub enum Direction {
     Forward,
     /// From the imager.
     Backward,
+}
+
+impl Direction {
+    /// As a scene names it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Forward => "forward",
+            Self::Backward => "backward",
+        }
+    }
 }
 
 /// How forward rays are spread over the front of the lens.
@@ -69,52 +83,27 @@ pub struct RenderSettings {
     pub cone: ConePattern,
 }
 
-/// What the `output` section asks for.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Output {
-    /// Linear exposure per channel.
-    Exr,
-    /// The same in tiles, by a library of picture formats.
-    TiledExr,
-    /// The picture.
-    Png,
-    /// The picture with 16 bits a channel.
-    Tiff,
-    /// The numbers of a sensor's converter, for raw converters.
-    Dng,
-    /// The light's way through the lens, as a figure.
-    Rays(RaysFigure),
-}
-
-/// A figure of the lens and the light on its way through it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RaysFigure {
-    /// Width, pixels (of an SVG, units).
-    pub width_px: u32,
-    /// Height, pixels.
-    pub height_px: u32,
-    /// Width of what is shown, mm; fitted to the lens if `None`.
-    pub view_mm: Option<f64>,
-    /// Rays across the beam, for each wavelength.
-    pub rays: u32,
-    /// Wavelengths over a continuous spectrum.
-    pub wavelengths: u32,
-    /// Whether each color is as bright as its light, relative to the brightest; else all shine in full.
-    pub true_intensity: bool,
-    /// On white, in place of black.
-    pub light: bool,
-    /// As SVG, in place of PNG.
-    pub svg: bool,
-    /// Whether the image plane is drawn and ends the rays.
-    pub screen: bool,
+impl RenderSettings {
+    /// Whether the same rays are traced, as far as both want as many.
+    #[must_use]
+    pub fn traces_as(&self, other: &Self) -> bool {
+        let free = |settings: &Self| Self { batch: 0, samples: 0, rays: 0, ..*settings };
+        // Forward, so many rays are a sample.
+        let share = |s: &Self| u128::from(s.rays);
+        let as_many = self.direction == Direction::Backward
+            || share(self) * u128::from(other.samples) == share(other) * u128::from(self.samples);
+        let extends = self.numbers != NumberFamily::Stratified || self.samples == other.samples;
+        free(self) == free(other) && as_many && extends
+    }
 }
 
 /// A film on the imager.
+#[derive(Clone)]
 pub struct SceneFilm {
     /// What its pictures are called by, where there are several films.
     pub name: Option<String>,
     /// The film.
-    pub film: Box<dyn Film>,
+    pub film: Arc<dyn Film>,
     /// Which channels of the scene are its own.
     pub channels: Range<usize>,
 }
@@ -147,7 +136,8 @@ pub struct FilmTime {
     pub channels: Range<usize>,
 }
 
-/// A scene, ready to render.
+/// A scene, ready to render. Copies share their stages.
+#[derive(Clone)]
 pub struct Scene {
     /// Name of its outputs: the file's name without its ending.
     pub name: String,
@@ -156,15 +146,19 @@ pub struct Scene {
     /// The band.
     pub grid: Grid,
     /// The source.
-    pub source: Box<dyn Source>,
+    pub source: Arc<dyn Source>,
     /// The wavelength strategy.
-    pub sampler: Box<dyn WavelengthSampler>,
+    pub sampler: Arc<dyn WavelengthSampler>,
     /// The lens, focused and stopped.
-    pub lens: Lens,
+    pub lens: Arc<Lens>,
     /// How it was focused.
     pub focus: Focus,
+    /// The light that it was focused in, and what is to be said of that.
+    pub(crate) focused: (Option<FocusLight>, Vec<Fault>),
+    /// What its stages said when they were built.
+    pub(crate) said: Said,
     /// The imager.
-    pub imager: Box<dyn Imager>,
+    pub imager: Arc<dyn Imager>,
     /// The film on it, or several side by side in the same light; none on an imager that records by itself.
     pub films: Vec<SceneFilm>,
     /// What is recorded: the imager's own channels, or those of all films, one film after the other.
@@ -172,7 +166,7 @@ pub struct Scene {
     /// How to render.
     pub render: RenderSettings,
     /// What to write.
-    pub output: Vec<Output>,
+    pub output: Vec<Arc<dyn Output>>,
     /// What a person should know: a glass off its listed range, and so on.
     pub warnings: Vec<Warning>,
     /// What to bear in mind of the data that it uses, though nothing about the scene is wrong.
@@ -190,6 +184,38 @@ impl Scene {
             Some(first) => first.film.exposure_time_s(),
             None => self.imager.exposure_time_s().unwrap_or(1.0),
         }
+    }
+
+    /// All that is worth knowing though nothing is wrong: of how the lens is set, and of the data.
+    pub fn all_notes(&self) -> impl Iterator<Item = &String> {
+        self.lens.notes.iter().chain(&self.notes)
+    }
+
+    /// The channels that pictures are made of, as numbers into [`Scene::channels`]: not those of a meter.
+    #[must_use]
+    pub fn picture_channels(&self) -> Vec<usize> {
+        if self.films.is_empty() {
+            return (0..self.channels.len()).collect();
+        }
+        let of = |f: &SceneFilm| f.channels.start..(f.channels.start + f.film.picture_channels()).min(f.channels.end);
+        self.films.iter().flat_map(of).collect()
+    }
+
+    /// The other channels: what the camera's meters see.
+    #[must_use]
+    pub fn meter_channels(&self) -> Vec<usize> {
+        let of = |f: &SceneFilm| (f.channels.start + f.film.picture_channels()).min(f.channels.end)..f.channels.end;
+        self.films.iter().flat_map(of).collect()
+    }
+
+    /// The pixels that a meter looks at, in their order; none where the exposure is set by hand.
+    #[must_use]
+    pub fn metered_pixels(&self) -> Vec<u32> {
+        let size = self.imager.size();
+        let metered: Vec<&SceneFilm> =
+            self.films.iter().filter(|f| f.film.picture_channels() < f.channels.len()).collect();
+        let is_seen = |pixel: &u32| metered.iter().any(|f| f.film.is_metered_at(&size, *pixel));
+        if metered.is_empty() { Vec::new() } else { (0..size.pixels() as u32).filter(is_seen).collect() }
     }
 
     /// How long each film was exposed that is on the imager while the frame `exposure` of the scene is recorded. The

@@ -28,6 +28,7 @@ pub(crate) struct Seen {
 }
 
 /// A frame that is larger than the circle which the lens draws.
+#[derive(Clone, Debug)]
 pub(crate) struct Dark {
     /// The circle's diameter, mm; `None` where the middle of the frame is dark.
     pub circle_mm: Option<f64>,

@@ -526,14 +526,14 @@ fn table(params: &Params, wanted: Kind) -> Result<Piece, Faults> {
     rising(params, "wavelengths", &p.wavelengths, &mut faults);
     for (i, value) in p.values.iter().enumerate() {
         let text = match scale {
-            ScaleName::Log10 if value.abs() > 20.0 => format!("{value} as a logarithm to base 10 is beyond belief"),
+            ScaleName::Log10 if value.abs() > 20.0 => format!("{value} is implausible as a logarithm to base 10"),
             ScaleName::Linear if *value < 0.0 => format!("{wanted} cannot be negative: {value}"),
             ScaleName::Linear if wanted.bound().is_some_and(|b| *value > b) => {
                 format!("{value} is more than a {wanted} can be: given as percent? divide by 100")
             }
             _ => continue,
         };
-        let hint = if *value < 0.0 { "write 0 where nothing was measured" } else { "is the `scale` another one?" };
+        let hint = if *value < 0.0 { "write 0 where nothing was measured" } else { "is the `scale` wrong?" };
         faults.push(params.fault(&format!("values[{i}]"), text).hint(hint));
     }
     faults.into_result(())?;

@@ -54,7 +54,7 @@ pub enum SpectrumError {
         columns: Vec<String>,
     },
     /// A spectrum of one kind where another is wanted: a light as a filter.
-    #[error("`{name}` is of kind {found}, but {wanted} is wanted here")]
+    #[error("`{name}` is of kind {found}, but {wanted} is expected here")]
     WrongKind {
         /// The name asked for.
         name: String,
@@ -74,7 +74,7 @@ pub enum SpectrumError {
         operation: &'static str,
     },
     /// A file that names itself, or spectra in such numbers that nobody wrote them.
-    #[error("`{0}` is made of too many spectra, or of itself")]
+    #[error("`{0}` refers to too many spectra, or to itself")]
     TooMany(String),
     /// A YAML file with faults, each with its place.
     #[error("{0}")]
@@ -106,16 +106,19 @@ impl SpectrumError {
             }
             Self::Inline { text, wanted } => here(format!("`{text}` is not understood")).hint(*wanted).into(),
             Self::Ambiguous { name, columns } => {
-                let fault = here(format!("`{name}` holds {} spectra, and one is wanted", columns.len()));
+                let fault = here(format!("`{name}` holds {} spectra, but one is expected", columns.len()));
                 let first = columns.first().map_or("name", String::as_str);
-                fault.hint(format!("pick one, such as `{name}#{first}`: {}", columns.join(", "))).into()
+                let all = if name.contains('.') { String::new() } else { format!("spectra list spectrum {name}") };
+                fault
+                    .hint(format!("pick one, such as `{name}#{first}`: {}", spectra_core::names::listed(columns, &all)))
+                    .into()
             }
             Self::NoColumn { name, column, columns } => {
                 let fault = here(format!("`{name}` has no column `{column}`"));
                 fault.hint(format!("its columns: {}", columns.join(", "))).into()
             }
             Self::WrongKind { name, found, wanted } => {
-                let fault = here(format!("`{name}` is of kind {found}, but {wanted} is wanted here"));
+                let fault = here(format!("`{name}` is of kind {found}, but {wanted} is expected here"));
                 fault.hint(format!("`spectra list spectrum` shows what is of kind {wanted}")).into()
             }
             Self::NotTogether { .. } => here(self.to_string())

@@ -6,7 +6,7 @@ use spectra_core::spectral::Grid;
 
 use crate::error::{SpectrumError, check};
 use crate::gaussian::GaussianMixture;
-use crate::meta::{Kind, Outside, Scale};
+use crate::meta::{Kind, Scale};
 use crate::shape::Shape;
 use crate::tabulated::Tabulated;
 
@@ -128,14 +128,6 @@ fn check_value(kind: Kind, value: f64) -> Result<f64, SpectrumError> {
 }
 
 impl Sensitivity {
-    /// A table of logarithms to base 10, linear between its points, 0 beyond the ends.
-    ///
-    /// # Errors
-    /// [`SpectrumError::OutOfRange`]; see [`Tabulated::new`].
-    pub fn from_log10_points(wavelengths_nm: &[f64], logarithms: &[f64]) -> Result<Self, SpectrumError> {
-        Self::tabulated(Tabulated::new(wavelengths_nm, logarithms, Outside::Zero, Scale::Log10)?)
-    }
-
     /// This times a number.
     ///
     /// # Errors

@@ -72,7 +72,8 @@ pub fn daylight(cct_k: f64) -> Result<Emission, SpectrumError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Observer, chromaticity};
+    use crate::Observer;
+    use spectra_color::chromaticity;
 
     #[test]
     fn names_are_found_however_written() {

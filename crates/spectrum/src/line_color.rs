@@ -102,7 +102,8 @@ fn share(nm: f64, knots: &[(f64, Option<usize>); 5]) -> [f64; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{from_u8, line_set, named_line};
+    use crate::{line_set, named_line};
+    use spectra_color::from_u8;
 
     fn study() -> LineColor {
         let nm = |symbol| named_line(symbol).expect("named").nominal_nm;

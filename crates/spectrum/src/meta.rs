@@ -189,7 +189,7 @@ impl Strengths {
     }
 }
 
-/// Front matter. A file of one's own may leave all of it out; a bundled file has every field but `notes`.
+/// Front matter. A file of your own may leave all of it out; a bundled file has every field but `notes`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Meta {
     /// How people call it.

@@ -203,7 +203,7 @@ pub enum TableFault {
     #[error("the kind is not stated; write `# spectra: 1` and `# kind: emission` (or another) above the header")]
     NoKind,
     /// The first row of the table is no header.
-    #[error("a header such as `wavelength_nm,power` is wanted here, not `{0}`")]
+    #[error("a header such as `wavelength_nm,power` is expected here, not `{0}`")]
     Header(String),
     /// A column name that is empty or appears twice.
     #[error("column name `{0}` is empty or appears twice")]
@@ -226,7 +226,7 @@ pub enum TableFault {
     #[error("a wavelength is a positive number of nanometres, not {0}")]
     Wavelength(f64),
     /// A table whose wavelengths are all below any light.
-    #[error("{0} nm is no light")]
+    #[error("{0} nm is not a wavelength of light")]
     NoLight(f64),
     /// A wavelength that is not larger than the one above it.
     #[error("{found} nm does not come after {before} nm: wavelengths must increase")]
@@ -256,7 +256,7 @@ pub enum TableFault {
     #[error("interpolation: sprague wants at least six equally spaced wavelengths")]
     Sprague,
     /// A logarithm to base 10 that is no plausible one.
-    #[error("{0} as a logarithm to base 10 is beyond belief")]
+    #[error("{0} is implausible as a logarithm to base 10")]
     Logarithm(f64),
 }
 
@@ -265,7 +265,7 @@ impl TableFault {
     #[must_use]
     pub fn hint(&self) -> &'static str {
         match self {
-            Self::Empty => "a header such as `wavelength_nm,power`, then one row a wavelength, such as `400,0.5`",
+            Self::Empty => "a header such as `wavelength_nm,power`, then one row per wavelength, such as `400,0.5`",
             Self::NotText => "save it as CSV in UTF-8",
             Self::TooManyRows | Self::TooManyColumns => "is this a table of a spectrum? Thin it out, or split it",
             Self::UnknownKey(_) => "keep other remarks under `# note: ...`",
@@ -282,7 +282,7 @@ impl TableFault {
             Self::NoLight(_) => "given in micrometers? Multiply by 1000",
             Self::OutOfOrder { .. } => "sort the rows by wavelength, each wavelength once",
             Self::Negative { .. } => "write 0 where nothing was measured",
-            Self::AboveBound { .. } => "a part of 1, not of 100",
+            Self::AboveBound { .. } => "values are fractions of 1, not percentages",
             Self::Sprague => "leave `interpolation` out, or space the wavelengths equally",
             Self::Logarithm(_) => "is the column linear? Then write `# unit: 1`",
         }

@@ -38,7 +38,7 @@ fn each_fault_has_its_place() {
         ("wavelength_nm,p\n400,1,2\n", "bad.csv: row 2, column 2 (p): 3 fields where the header has 2"),
         (
             "time,p\n400,1\n",
-            "bad.csv: row 1, column 1: a header such as `wavelength_nm,power` is wanted here, not `time,p`",
+            "bad.csv: row 1, column 1: a header such as `wavelength_nm,power` is expected here, not `time,p`",
         ),
         ("400\n410\n", "bad.csv: row 1: 1 fields where the header has 2"),
         ("wavelength_nm;p\n400;1,5,2\n", "bad.csv: row 2, column 2 (p): `1.5,2` is not a number"),
@@ -173,7 +173,7 @@ fn what_is_not_there_is_said_with_near_names() {
     }
     assert_eq!(
         find_transmittance("D65").expect_err("a light").to_string(),
-        "`D65` is of kind emission, but transmittance is wanted here"
+        "`D65` is of kind emission, but transmittance is expected here"
     );
 }
 

@@ -2,10 +2,8 @@
 //!
 //! `tests/data/*.csv` are written by `xtask/import_colour_science.py` with colour-science 0.4.7.
 
-use spectra_spectrum::{
-    BAND, Observer, cct, chromaticity, find_reflectance, illuminant, illuminant_names, lab, xyz_of_light,
-    xyz_of_reflectance,
-};
+use spectra_color::{cct, chromaticity, lab, xyz_of_light, xyz_of_reflectance};
+use spectra_spectrum::{BAND, Observer, find_reflectance, illuminant, illuminant_names};
 
 fn rows(text: &'static str) -> impl Iterator<Item = Vec<&'static str>> {
     text.lines().skip(1).map(|l| l.split(',').collect())

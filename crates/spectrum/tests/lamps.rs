@@ -1,8 +1,7 @@
 //! Lines of the bundled lamps against what makers of glass and laboratories state.
 
-use spectra_spectrum::{
-    Observer, Strengths, balmer, bundled_meta, chromaticity, dominant_wavelength, find_emission, named_line,
-};
+use spectra_color::{chromaticity, dominant_wavelength};
+use spectra_spectrum::{Observer, Strengths, balmer, bundled_meta, find_emission, named_line};
 
 fn nearest(lamp: &str, wavelength_nm: f64) -> f64 {
     let light = find_emission(lamp).expect("bundled");

@@ -171,7 +171,7 @@ fn faults_name_file_line_and_column() {
 #[test]
 fn files_that_name_themselves_end() {
     for text in ["{kind: sum, parts: [a.yaml, a.yaml]}", "{kind: scale, factor: 1, spectrum: './a.yaml'}"] {
-        assert!(refused(text).contains("made of too many spectra, or of itself"));
+        assert!(refused(text).contains("refers to too many spectra, or to itself"));
     }
     let many = format!("kind: sum\nparts: [{}]\n", vec!["'constant:1'"; 1500].join(", "));
     assert!(refused(&many).contains("too many"));

@@ -17,6 +17,8 @@
 //! }
 //! ```
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod build;
 mod film;
 mod imager;

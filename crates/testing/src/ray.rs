@@ -3,6 +3,7 @@
 use glam::DVec3;
 use spectra_core::batch::Column;
 use spectra_core::loss::ALIVE;
+use spectra_core::numbers::{Numbers, StageKey};
 use spectra_core::surface::{Action, IndexColumns, Interface, Surface, Travel};
 use spectra_core::{Isa, Loss, RayBatch};
 
@@ -31,12 +32,21 @@ pub struct Rays {
     pub wavelength_nm: f64,
     /// Most rays in a batch.
     pub batch: usize,
+    /// Seed of the numbers that a surface may draw, a sample a ray in order; none are handed out without one.
+    pub seed: Option<u64>,
 }
 
 impl Default for Rays {
-    /// From air into glass of 1.5, nothing clipped, 550 nm, in batches of 256.
+    /// From air into glass of 1.5, nothing clipped, 550 nm, in batches of 256, nothing left to chance.
     fn default() -> Self {
-        Self { indices: (1.0, 1.5), action: Action::Refract, clip_mm: f64::INFINITY, wavelength_nm: 550.0, batch: 256 }
+        Self {
+            indices: (1.0, 1.5),
+            action: Action::Refract,
+            clip_mm: f64::INFINITY,
+            wavelength_nm: 550.0,
+            batch: 256,
+            seed: None,
+        }
     }
 }
 
@@ -53,8 +63,8 @@ impl Rays {
     #[must_use]
     pub fn meet(&self, surface: &dyn Surface, rays: &[Line], isa: Isa) -> Vec<Result<Line, Loss>> {
         let mut out = Vec::with_capacity(rays.len());
-        for part in rays.chunks(self.batch.max(1)) {
-            let mut batch = self.send(part);
+        for (first, part) in (0..).step_by(self.batch.max(1)).zip(rays.chunks(self.batch.max(1))) {
+            let mut batch = self.send(part, first);
             let lost = self.interact(surface, &mut batch, isa);
             assert_eq!(lost, batch.len() - batch.alive(), "`interact` returns {lost}, another number of rays ended");
             out.extend((0..part.len()).map(|i| outcome(&batch, i)));
@@ -62,10 +72,14 @@ impl Rays {
         out
     }
 
-    /// A batch of these rays in front of the surface.
-    pub(crate) fn send(&self, rays: &[Line]) -> RayBatch {
-        let mut batch = RayBatch::new(rays.len());
+    /// A batch of these rays in front of the surface, the samples from `first` on.
+    pub(crate) fn send(&self, rays: &[Line], first: u64) -> RayBatch {
+        let mut batch = RayBatch::new(rays.len()).with_numbers();
         batch.restart(rays.len());
+        batch.set_stage(StageKey::new("surface", 0));
+        if let Some(seed) = self.seed {
+            batch.number(0, &Numbers::sobol(seed), "laws", 0, first);
+        }
         let c = batch.columns_mut();
         for (i, (p, d)) in rays.iter().enumerate() {
             (c.x[i], c.y[i], c.z[i]) = (p.x, p.y, p.z + SHIFT_MM);

@@ -10,6 +10,8 @@
 //! # Ok::<(), std::io::Error>(())
 //! ```
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod unpack;
 
 pub use unpack::{Data, unpack};

@@ -109,7 +109,7 @@ impl Builder<'_> {
                     self.file,
                     place,
                     "a second document in one file",
-                    Some("one document a file: remove `---`"),
+                    Some("one document per file: remove `---`"),
                 ));
             }
             Event::Scalar(text, style, anchor, _) => {

@@ -5,6 +5,8 @@
 //! further documents are faults. What a file may cost is bounded: [`MAX_BYTES`], [`MAX_NODES`] values with
 //! aliases expanded, and [`MAX_DEPTH`] levels.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod build;
 mod reports;
 mod slips;

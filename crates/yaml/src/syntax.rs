@@ -38,7 +38,7 @@ pub(super) fn message(kind: &ErrorKind, before: &str) -> (String, Option<&'stati
             "the lines above are read as one text with this one: a `:` needs a space behind it, and keys of one map start in the same column",
         ),
         E::MismatchedFlowCollectionEnd { open, close } => {
-            return (format!("`{open}` is closed by `{close}`"), Some("close what was opened last first"));
+            return (format!("`{open}` is closed by `{close}`"), Some("close the innermost bracket first"));
         }
         E::InvalidMappingValueWhitespace => ("`:` without a space behind it", "write `key: value`"),
         E::SimpleKeyExpected | E::InvalidSimpleKey => ("a key without its `:`", "write `key: value`"),

@@ -204,7 +204,7 @@ fn keys_are_checked() {
         ("f_number: 2", &[(1, 1, "unknown key `f_number`", "did you mean `f-number`?")]),
         ("zoom: 5", &[(1, 1, "unknown key `zoom`", "known keys: focus, radius, semi-diameter")]),
         ("kind: 5", &[(1, 1, "unknown key `kind`", "known keys")]),
-        ("{radius: 1, rad: 2}", &[(1, 13, "unknown key `rad`", "known keys")]),
+        ("{radius: 1, rad: 2}", &[(1, 13, "unknown key `rad`", "did you mean `radius`?")]),
         ("surfaces:\n  - radius: 5\n", &[(2, 5, "missing key `thickness`", "add `thickness: ...`")]),
         ("surfaces:\n- {radius: 5}\n", &[(2, 3, "missing key `thickness`", "add `thickness: ...`")]),
         ("surfaces:\n- {}\n", &[(2, 3, "missing key `radius`", "add"), (2, 3, "missing key `thickness`", "add")]),
@@ -361,7 +361,7 @@ fn syntax_errors_have_a_place() {
     check(&[
         ("a: [1, 2", &[(1, 4, "`[` is never closed", "add `]`")]),
         ("a: {b: 2", &[(1, 4, "`{` is never closed", "add `}`")]),
-        ("a: [1, {b: 3]", &[(1, 8, "`{` is closed by `]`", "last first")]),
+        ("a: [1, {b: 3]", &[(1, 8, "`{` is closed by `]`", "innermost bracket")]),
         ("a: 1\n\tb: 2", &[(2, 1, "a tab", "spaces")]),
         ("a: b: c", &[(1, 5, "a second `: `", "quotes")]),
         ("a: 1\n b: 2", &[(2, 2, "indented deeper than the one above", "same column")]),

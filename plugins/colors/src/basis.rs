@@ -1,9 +1,10 @@
 //! Color models whose spectrum is a weighted sum of three: one a channel.
 
+use spectra_color::matrix;
 use spectra_core::batch::CONTINUUM;
 use spectra_core::spectral::{Grid, Line, SpectralPower};
 use spectra_core::stage::ColorModel;
-use spectra_spectrum::{Observer, matrix};
+use spectra_spectrum::Observer;
 
 /// Red, green and blue spectra; a color is their sum, weighted by its linear values.
 #[derive(Clone, Debug)]

@@ -9,15 +9,15 @@ use spectra_core::spectral::{Grid, Line, SpectralPower};
 use spectra_core::stage::ColorModel;
 use spectra_spectrum::LineOrWavelength;
 
-/// Each channel one spectral line, with secondary lines between them if wanted.
+/// One spectral line per channel, with optional secondary lines between them.
 ///
-/// A picture of nothing but lines: what a lens does to three wavelengths is seen at once, as three sharp pictures on
-/// one another. The usual lines are C' (643.85 nm), e (546.07 nm) and g (435.84 nm). A line is written by its short
-/// name (`C'` in quotes: `"C'"`) or as a wavelength, and the three must lie in the order blue, green, red.
+/// A picture made of spectral lines only: lateral color shows as three sharp pictures on top of each other. The usual
+/// lines are C' (643.85 nm), e (546.07 nm) and g (435.84 nm). A line is written by its short name (`C'` in quotes:
+/// `"C'"`) or as a wavelength, and the three must lie in the order blue, green, red.
 ///
 /// `secondary` lines fill the gaps: the power of each channel is linear between its own line and those of its
-/// neighbors, and zero at the cuts. They change the colors of a picture: a gray patch gets light between the lines that
-/// sRGB did not ask for.
+/// neighbors, and zero at the cuts. They change the colors of a picture: a gray patch also gets light between the
+/// lines.
 ///
 /// # Example
 /// ```yaml

@@ -19,14 +19,13 @@ struct Bell {
     sigma: Positive<Wavelength>,
 }
 
-/// Each channel one Gaussian, scaled so that white is the illuminant's.
+/// One Gaussian per channel, scaled so that white has the illuminant's chromaticity.
 ///
-/// For displays with narrow primaries, and for seeing what the width of the primaries does on film: exp(-(w - center)^2
-/// / (2 sigma^2)) for red, green and blue, each times its linear value. White has the chromaticity of the source's
-/// illuminant; where no positive mixture of the three has it, the scene is refused.
+/// For displays with narrow primaries, and to study the effect of their width on film: exp(-(w - center)^2 / (2
+/// sigma^2)) for red, green and blue, each times its linear value. White has the chromaticity of the source's
+/// illuminant; if no positive mixture of the three has it, the scene is refused.
 ///
-/// The colors of the Gaussians are not those of sRGB: saturated colors of a picture change, the more the narrower the
-/// Gaussians are.
+/// The colors of the Gaussians are not those of sRGB: saturated colors change, more so with narrower Gaussians.
 ///
 /// # Example
 /// ```yaml
@@ -74,7 +73,7 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn ColorModel>, 
             Some(basis) => Ok(Box::new(basis)),
             None => {
                 let fault = params.fault("R", "no mixture of these Gaussians has the color of the illuminant");
-                Err(fault.hint("move their centres apart, or choose another illuminant").into())
+                Err(fault.hint("move their centers apart, or choose another illuminant").into())
             }
         },
     }

@@ -1,5 +1,7 @@
 //! Built-in models from RGB to a spectrum.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod basis;
 mod fraunhofer;
 mod gaussians;

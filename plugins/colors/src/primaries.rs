@@ -3,19 +3,19 @@
 use crate::Basis;
 use schemars::JsonSchema;
 use serde::Deserialize;
+use spectra_color::srgb_primaries;
 use spectra_core::params::{Faults, Params};
 use spectra_core::registry::Context;
 use spectra_core::stage::ColorModel;
-use spectra_spectrum::srgb_primaries;
 
 /// The sum of three smooth spectra that have exactly the colors of the sRGB primaries.
 ///
-/// The model that is taken where a scene names none. A color is red, green and blue light in the amounts of its linear
-/// sRGB values; each of the three spectra is smooth and non-negative, so pictures come out in their own colors on a
-/// colorimeter and reasonably on film. White has the chromaticity of the source's illuminant: the three are scaled for
-/// that, and an illuminant outside of their triangle is refused.
+/// The default model. A color is red, green and blue light in the amounts of its linear sRGB values; each of the three
+/// spectra is smooth and non-negative, so a colorimeter measures the picture's own colors, and film gives reasonable
+/// ones. White has the chromaticity of the source's illuminant: the three are scaled for that, and an illuminant
+/// outside of their triangle is refused.
 ///
-/// It is a model of light, not of surfaces: a colored thing under another lamp is better described by `kind: smooth`.
+/// It is a model of light, not of surfaces: for a colored object under another lamp, use `kind: smooth`.
 ///
 /// # Example
 /// ```yaml

@@ -13,23 +13,24 @@
 
 use schemars::JsonSchema;
 use serde::Deserialize;
+use spectra_color::{RgbSpace, chromaticity, matrix};
 use spectra_core::batch::CONTINUUM;
 use spectra_core::params::{Faults, Params};
 use spectra_core::registry::Context;
 use spectra_core::spectral::{BAND, Line, SpectralPower};
 use spectra_core::stage::ColorModel;
-use spectra_spectrum::{Observer, RgbSpace, chromaticity, illuminant, matrix};
+use spectra_spectrum::{Observer, illuminant};
 use std::sync::OnceLock;
 
 /// A smooth reflectance for each color, under the illuminant.
 ///
-/// For pictures of things that are lit: each color becomes the reflectance s(a + b t + c t^2), with the sigmoid s(x) =
-/// 1/2 + x / (2 sqrt(1 + x^2)) and t running over the band, whose three numbers are solved for the color that it has
-/// under D65; its light is that reflectance times the illuminant. So grays have the spectrum of the illuminant itself,
-/// lines included, and fluorescent or sodium light does to colors what it does.
+/// For pictures of lit objects: each color becomes the reflectance s(a + b t + c t^2), with the sigmoid s(x) = 1/2 + x
+/// / (2 sqrt(1 + x^2)) and t running over the band, with the three numbers that give the color under D65; its light is
+/// that reflectance times the illuminant. So grays have the spectrum of the illuminant itself, lines included, and
+/// colors change under fluorescent or sodium light as real ones do.
 ///
-/// A color is first scaled to a largest value of 1/2 and its spectrum scaled back, so that there is no color too
-/// bright; the price is that the reflectance of a full and saturated color exceeds 1.
+/// A color is first scaled to a largest value of 1/2 and its spectrum scaled back, so that no color is too bright; as a
+/// result, the reflectance of a bright, saturated color can exceed 1.
 ///
 /// # Example
 /// ```yaml

@@ -1,12 +1,13 @@
 //! RGB to a spectrum to XYZ to sRGB: each model measured over all 8-bit colors in steps of 15 per channel.
 
+use spectra_color::{RgbSpace, from_u8};
 use spectra_core::params::{Faults, Key, Node, Params, SourceFile, Span, Value};
 use spectra_core::registry::{Context, build};
 use spectra_core::resources::{Resource, ResourceError, Resources};
 use spectra_core::spectral::{BAND, SpectralPower};
 use spectra_core::stage::ColorModel;
 use spectra_plugin_colors as _;
-use spectra_spectrum::{Observer, RgbSpace, from_u8, illuminant};
+use spectra_spectrum::{Observer, illuminant};
 use std::sync::Arc;
 
 struct NoFiles;

@@ -43,6 +43,11 @@ pub(crate) struct Effects {
     seed: u64,
 }
 
+/// Width and height of a pixel, mm.
+fn pixel_mm(size: &FrameSize) -> [f64; 2] {
+    [size.width_mm / f64::from(size.width_px), size.height_mm / f64::from(size.height_px)]
+}
+
 impl Effects {
     pub(crate) fn new(p: &StockParams, params: &Params, stock: &Stock) -> Result<Self, Faults> {
         let mut faults = Faults::new();
@@ -79,17 +84,22 @@ impl Effects {
         self.seed = seed_of_frame(self.piece, frame);
     }
 
-    /// Where the pixels of a frame lie on the film.
-    pub(crate) fn raster(&self, size: FrameSize) -> Result<Raster, String> {
-        let across = size.width_mm / f64::from(size.width_px);
-        let down = size.height_mm / f64::from(size.height_px);
+    /// Whether pixels of a frame are square, where anything on the film needs that.
+    pub(crate) fn check_frame(&self, size: &FrameSize) -> Result<(), [String; 2]> {
+        let [across, down] = pixel_mm(size);
         let any = self.halation.is_some() || self.rms.is_some() || self.mtf.iter().any(Option::is_some);
         if any && (across / down - 1.0).abs() > 0.01 {
-            return Err(format!(
-                "scatter, halation and grain need square pixels, not {across:.5} x {down:.5} mm: give a resolution of the \
-                 format's shape, or `scatter: false, grain: false`"
-            ));
+            let text = format!("scatter, halation and grain need square pixels, not {across:.5} x {down:.5} mm");
+            let hint = "a resolution of the format's shape, or `scatter: false, grain: false` for the film";
+            return Err([text, hint.to_owned()]);
         }
+        Ok(())
+    }
+
+    /// Where the pixels of a frame lie on the film.
+    pub(crate) fn raster(&self, size: FrameSize) -> Result<Raster, String> {
+        self.check_frame(&size).map_err(|[text, hint]| format!("{text}: {hint}"))?;
+        let [across, down] = pixel_mm(&size);
         Ok(Raster::new(size.width_px as usize, size.height_px as usize, (across * down).sqrt()))
     }
 

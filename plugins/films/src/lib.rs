@@ -1,5 +1,7 @@
 //! Built-in film processes.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod effects;
 mod metering;
 mod stock;

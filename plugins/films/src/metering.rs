@@ -2,7 +2,7 @@
 
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::frame::ExposureFrame;
+use spectra_core::frame::{ExposureFrame, FrameSize};
 use spectra_core::params::{Fault, Params, Positive, Time};
 use spectra_core::shutter;
 use spectra_core::spectral::{Channel, Grid};
@@ -59,7 +59,7 @@ pub(crate) fn recorded_time_s(exposure: Option<Positive<Time>>, metering: Meteri
 
 /// What is said where an exposure time is stated that the meter overrules.
 pub(crate) fn overruled(is_overruled: bool) -> Vec<String> {
-    let text = "film: the camera meters, so `exposure` has no effect; leave one of them out, `metering` or `exposure`";
+    let text = "the camera meters, so `exposure` has no effect; leave one of them out, `metering` or `exposure`";
     if is_overruled { vec![text.to_owned()] } else { Vec::new() }
 }
 
@@ -123,30 +123,33 @@ impl Meter {
         })
     }
 
+    /// Whether the middle of a pixel lies in what is metered.
+    pub(crate) fn looks_at(&self, size: &FrameSize, pixel: u32) -> bool {
+        match self.metering {
+            Metering::Manual => false,
+            Metering::Average => true,
+            Metering::Spot => {
+                let (column, row) = (pixel % size.width_px, pixel / size.width_px);
+                let x = (f64::from(column) + 0.5) / f64::from(size.width_px) - self.spot.center[0];
+                let y = (f64::from(row) + 0.5) / f64::from(size.height_px) - self.spot.center[1];
+                let x = x * size.width_mm / size.height_mm;
+                x * x + y * y <= 0.25 * self.spot.diameter * self.spot.diameter
+            }
+        }
+    }
+
     /// How many times longer the meter wants the frame exposed; 1 where it sees no light.
     pub(crate) fn factor(&self, exposure: &ExposureFrame) -> f64 {
         if self.metering == Metering::Manual {
             return 1.0;
         }
         let Some(channel) = exposure.channel(METER) else { return 1.0 };
-        let size = exposure.size;
-        let width = size.width_px as usize;
         let (mut sum, mut count) = (0.0, 0_u64);
         // Row by row in their order, in double precision: the same on any machine.
-        for (row, values) in channel.values.chunks(width.max(1)).enumerate() {
-            for (column, value) in values.iter().enumerate() {
-                if self.metering == Metering::Spot {
-                    let x = (column as f64 + 0.5) / f64::from(size.width_px) - self.spot.center[0];
-                    let y = (row as f64 + 0.5) / f64::from(size.height_px) - self.spot.center[1];
-                    let (x, y) = (x * size.width_mm / size.height_mm, y);
-                    if x * x + y * y > 0.25 * self.spot.diameter * self.spot.diameter {
-                        continue;
-                    }
-                }
-                if value.is_finite() {
-                    sum += f64::from(*value);
-                    count += 1;
-                }
+        for (pixel, value) in (0_u32..).zip(&channel.values) {
+            if value.is_finite() && self.looks_at(&exposure.size, pixel) {
+                sum += f64::from(*value);
+                count += 1;
             }
         }
         let mean = sum / count.max(1) as f64;

@@ -5,9 +5,10 @@ use crate::metering::{METER, Meter, Metering, SpotParams, overruled, recorded_ti
 use crate::view::{PaperParams, Picture, View, seen};
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::frame::{DisplayPicture, ExposureFrame};
+use spectra_core::frame::{DisplayPicture, ExposureFrame, FrameSize};
 use spectra_core::math::pow;
-use spectra_core::params::{Fault, Faults, Params, Positive, Time, nearest};
+use spectra_core::names;
+use spectra_core::params::{Fault, Faults, Params, Positive, Time};
 use spectra_core::registry::Context;
 use spectra_core::resources::Resources;
 use spectra_core::spectral::Channel;
@@ -21,16 +22,15 @@ use spectra_film::stock::{MeterResponse, Process, Stock};
 /// Film from a data file, developed, and printed, scanned or projected.
 ///
 /// The light on the frame becomes exposure in lux-seconds by the sensitivity of each layer, density by the
-/// characteristic curve of the development, and a picture by what is done with the film: a negative in black and white
-/// is printed on paper, a color negative on the print stock of its maker, a reversal film is projected. Light that the
-/// emulsion spreads and the base throws back acts before the curve, grain after it, where the stock's file states what
-/// they are.
+/// characteristic curve of the development, and a picture by the way the film is viewed: a black-and-white negative is
+/// printed on paper, a color negative on the print stock of its maker, a reversal film is projected. Scatter in the
+/// emulsion and reflection from the base act before the curve, grain after it, if the stock's file states them.
 ///
-/// The exposure is that of the scene (`exposure`), or the camera meters: what is metered gets the 10/S lx s of a mid
-/// gray. S is the speed that the stock's file states, which `spectra film info` shows with its kind: an ISO speed, its
-/// maker's exposure index (EI), or assumed. The meter is a perfect photometer, unless the file says `meter: film`, as
-/// those of plates do: then it sees as the film does. `spectra film info NAME` shows what a stock's file holds, and
-/// `spectra list stock` the bundled stocks.
+/// The exposure is that of the scene (`exposure`), or the camera meters: the metered area gets 10/S lx s, the exposure
+/// of a mid gray. S is the speed that the stock's file states, which `spectra film info` shows with its kind: an ISO
+/// speed, its maker's exposure index (EI), or assumed. The meter is a perfect photometer, unless the file says `meter:
+/// film`, as those of plates do: then it has the film's own sensitivity. `spectra film info NAME` shows what a stock's
+/// file holds, and `spectra list stock` the bundled stocks.
 ///
 /// # Example
 /// ```yaml
@@ -59,10 +59,10 @@ use spectra_film::stock::{MeterResponse, Process, Stock};
 pub struct StockParams {
     /// Name of a bundled stock, such as `ilford-ortho-plus`, or a YAML file beside the scene.
     pub stock: String,
-    /// Exposure time, s if bare; to be left out where the camera meters, which would not heed it.
+    /// Exposure time, s if bare; leave it out where the camera meters.
     pub exposure: Option<Positive<Time>>,
-    /// How the camera finds its exposure: `manual`, `average` or `spot`. A metered frame is exposed so much longer or
-    /// shorter that what is metered gets the 10/S lx s of a mid gray.
+    /// How the camera finds its exposure: `manual`, `average` or `spot`. A metered frame is exposed so that the metered
+    /// area gets 10/S lx s, the exposure of a mid gray.
     #[serde(default)]
     pub metering: Metering,
     /// The spot of `metering: spot`; a tenth of the height in the middle of the frame if left out.
@@ -70,15 +70,14 @@ pub struct StockParams {
     /// Stops by which a metered frame is exposed more than the meter says, -10 to 10; 0 if left out.
     #[schemars(range(min = -10, max = 10))]
     pub compensation: Option<f64>,
-    /// The speed (ISO or EI) that the meter, and whoever prints, takes the film for, more than 0; the stock's, times two
-    /// for each stop pushed, if left out.
+    /// The speed (ISO or EI) that the meter and the printer are set to, more than 0; the stock's, times two for each
+    /// stop pushed, if left out.
     pub iso: Option<Positive<f64>>,
     /// How the film is developed: a name from the stock's file; the first one there if left out.
     pub development: Option<String>,
-    /// Stops by which it is developed longer, or shorter if negative, within the series of times that the stock's file
-    /// has; 0 if left out.
+    /// Stops of push, or pull if negative, within the series of development times in the stock's file; 0 if left out.
     pub push: Option<f64>,
-    /// How it is looked at: `print`, `negative`, `scan`, or `projection` of a reversal film; `projection` of a reversal
+    /// How it is viewed: `print`, `negative`, `scan`, or `projection` of a reversal film; `projection` of a reversal
     /// film and `print` of any other if left out.
     pub view: Option<View>,
     /// The print stock, by the name of a bundled one or a YAML file beside the scene; the maker's for this film if left
@@ -90,15 +89,15 @@ pub struct StockParams {
     pub paper: Option<PaperParams>,
     /// The printer's lamp: the name of a light or a file; the print stock's reference light if left out.
     pub lamp: Option<String>,
-    /// The light that film and prints are looked at by: the name of a light or a file; D55 if left out.
+    /// The light by which film and prints are viewed: the name of a light or a file; D55 if left out.
     pub light: Option<String>,
-    /// Whether the emulsion spreads light, where the stock's file has its modulation transfer; `true` if left out.
+    /// Whether the emulsion scatters light, if the stock's file states its MTF; `true` if left out.
     pub scatter: Option<bool>,
-    /// What the back of the film throws back; as the stock's file says if left out.
+    /// Reflection from the back of the film; as in the stock's file if left out.
     pub halation: Option<HalationParams>,
-    /// Whether silver is grainy, where the stock's file has its granularity; `true` if left out.
+    /// Whether there is grain, if the stock's file states its granularity; `true` if left out.
     pub grain: Option<bool>,
-    /// Which piece of film it is, 0 or more: another seed, other grains.
+    /// Seed of the grain, 0 or more.
     #[serde(default)]
     pub grain_seed: u64,
 }
@@ -129,7 +128,7 @@ impl StockFilm {
         let stock = load_stock(&p.stock, "stock", params, context.resources)?;
         let mut faults = Faults::new();
         let Some(iso) = stock.iso.filter(|_| stock.process != Process::Print) else {
-            let fault = params.fault("stock", format!("{} is no camera film", stock.name));
+            let fault = params.fault("stock", format!("{} is not a camera film", stock.name));
             return Err(fault.hint("a print stock is named at `print`").into());
         };
         if p.exposure.is_none() && p.metering == Metering::Manual {
@@ -214,7 +213,7 @@ fn develop_as(p: &StockParams, params: &Params, stock: &Stock) -> Result<(Emulsi
     let chosen = p.development.as_deref().or(known.first().copied()).unwrap_or_default();
     if !known.contains(&chosen) {
         let text = format!("{} has no curve for the development `{chosen}`", stock.name);
-        return Err(params.fault("development", text).hint(format!("known: {}", known.join(", "))).into());
+        return Err(params.fault("development", text).hint(names::hint(chosen, &known, "")).into());
     }
     let Some(stops) = p.push else {
         let emulsion = Emulsion::new(stock, chosen).map_err(|e| params.fault("stock", e.to_string()))?;
@@ -239,11 +238,8 @@ fn place_at(faults: Faults, params: &Params, key: &str, name: &str) -> Faults {
         }
         let known: Vec<&str> = Stock::bundled().collect();
         let generic = |hint: &String| hint.starts_with("a file is looked for") && !name.contains('.');
-        let hint = match (fault.hint.filter(|hint| !generic(hint)), nearest(name, known.iter().copied())) {
-            (Some(hint), _) => hint,
-            (None, Some(near)) => format!("did you mean `{near}`?"),
-            (None, None) => format!("bundled stocks: {}", known.join(", ")),
-        };
+        let hint = fault.hint.filter(|hint| !generic(hint));
+        let hint = hint.unwrap_or_else(|| names::hint(name, &known, "spectra list stock"));
         params.fault(key, fault.message).hint(hint)
     };
     faults.into_iter().map(place).collect::<Vec<_>>().into()
@@ -270,8 +266,16 @@ impl Film for StockFilm {
         self.meter.is_on()
     }
 
+    fn is_metered_at(&self, size: &FrameSize, pixel: u32) -> bool {
+        self.meter.looks_at(size, pixel)
+    }
+
     fn warnings(&self) -> Vec<String> {
         overruled(self.is_overruled)
+    }
+
+    fn check_frame(&self, size: &FrameSize) -> Result<(), [String; 2]> {
+        self.effects.check_frame(size)
     }
 
     fn name(&self) -> String {
@@ -285,7 +289,7 @@ impl Film for StockFilm {
             (Picture::Paper(print), [silver]) => print.pictures(silver).into_iter().map(|v| [v; 3]).collect(),
             (Picture::Positive(positive), planes) => positive.picture(planes),
             // `build` makes paper prints of one layer only.
-            (Picture::Paper(_), _) => return Err(format!("{} is no film of one layer", self.stock.name)),
+            (Picture::Paper(_), _) => return Err(format!("{} is not a film with one layer", self.stock.name)),
         };
         let size = exposure.size;
         Ok(DisplayPicture { width_px: size.width_px, height_px: size.height_px, rgb })

@@ -4,7 +4,8 @@ use crate::metering::{METER, Meter, Metering, SpotParams, overruled, recorded_ti
 use crate::stock::load_stock;
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::frame::{DisplayPicture, ExposureFrame};
+use spectra_core::frame::{DisplayPicture, ExposureFrame, FrameSize};
+use spectra_core::names;
 use spectra_core::params::{Faults, Params, Positive as AboveZero, Time};
 use spectra_core::registry::Context;
 use spectra_core::spectral::{BAND, Channel};
@@ -24,8 +25,8 @@ use spectra_spectrum::{Emission, Transmittance, find_emission_in, find_transmitt
 /// that carries its dye (yellow, magenta, cyan) to the print.
 ///
 /// Here each record is any black-and-white stock of one layer behind filters. The three are balanced so that a neutral
-/// subject in the light of `balance` exposes them alike, and each is exposed as its own speed wants it; what the speed
-/// of the whole camera was is said by `iso`.
+/// subject in the light of `balance` exposes them alike, and each is exposed for its own speed; `iso` is the speed of
+/// the whole camera.
 ///
 /// # Example
 /// ```yaml
@@ -43,10 +44,10 @@ use spectra_spectrum::{Emission, Transmittance, find_emission_in, find_transmitt
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct ThreeStripParams {
-    /// Exposure time, s if bare; to be left out where the camera meters, which would not heed it.
+    /// Exposure time, s if bare; leave it out where the camera meters.
     pub exposure: Option<AboveZero<Time>>,
-    /// How the camera finds its exposure: `manual`, `average` or `spot`. A metered frame is exposed so much longer or
-    /// shorter that what is metered gets the 10/S lx s of a mid gray.
+    /// How the camera finds its exposure: `manual`, `average` or `spot`. A metered frame is exposed so that the metered
+    /// area gets 10/S lx s, the exposure of a mid gray.
     #[serde(default)]
     pub metering: Metering,
     /// The spot of `metering: spot`; a tenth of the height in the middle of the frame if left out.
@@ -59,7 +60,7 @@ pub struct ThreeStripParams {
     /// The light in which a neutral subject exposes all three records alike: the name of a light or a file.
     #[serde(default = "daylight")]
     pub balance: String,
-    /// The light that the print is looked at by: the name of a light or a file.
+    /// The light by which the print is viewed: the name of a light or a file.
     #[serde(default = "daylight")]
     pub light: String,
     /// The print, with its dyes and the curves of its matrices: a bundled stock or a YAML file beside the scene, of
@@ -214,7 +215,7 @@ impl Record {
         let at = format!("{key}.stock");
         let stock = load_stock(&p.stock, &at, params, context.resources)?;
         let (Some(iso), [layer]) = (stock.iso, &stock.layers[..]) else {
-            let fault = params.fault(&at, format!("{} is no camera film of one layer", stock.name));
+            let fault = params.fault(&at, format!("{} is not a camera film with one layer", stock.name));
             return Err(fault.hint("a black-and-white negative such as `kodak-double-x-5222`").into());
         };
         let development = match &p.development {
@@ -224,7 +225,8 @@ impl Record {
         let Some(development) = development else {
             let known: Vec<&str> = stock.developments().collect();
             let fault = params.fault(&format!("{key}.development"), format!("{} has no such development", stock.name));
-            return Err(fault.hint(format!("known: {}", known.join(", "))).into());
+            let asked = p.development.as_deref().unwrap_or_default();
+            return Err(fault.hint(names::hint(asked, &known, "")).into());
         };
         let mut faults = Faults::new();
         let filters = p.filters.iter().enumerate().filter_map(|(i, name)| {
@@ -276,6 +278,10 @@ impl Film for ThreeStrip {
 
     fn is_metered(&self) -> bool {
         self.meter.is_on()
+    }
+
+    fn is_metered_at(&self, size: &FrameSize, pixel: u32) -> bool {
+        self.meter.looks_at(size, pixel)
     }
 
     fn warnings(&self) -> Vec<String> {

@@ -77,7 +77,7 @@ pub(crate) fn seen(
         ("lamp", p.lamp.is_some()),
     ] {
         if given && !printed {
-            faults.push(params.fault(key, "only a print is made so").hint("`view: print`"));
+            faults.push(params.fault(key, "this applies to prints only").hint("`view: print`"));
         }
     }
     let light = faults.take(emission(params, "light", p.light.as_deref().unwrap_or("D55"), resources));
@@ -87,11 +87,11 @@ pub(crate) fn seen(
     };
     match (view, stock.process) {
         (View::Print | View::Negative | View::Scan, Process::Reversal) => {
-            let fault = params.fault("view", format!("{} is a positive already", stock.name));
+            let fault = params.fault("view", format!("{} is already a positive", stock.name));
             faults.push(fault.hint("`view: projection`"));
         }
         (View::Projection, Process::Negative) => {
-            let fault = params.fault("view", format!("{} is a negative: projected, it shows one", stock.name));
+            let fault = params.fault("view", format!("{} is a negative, and would be projected as one", stock.name));
             faults.push(fault.hint("`view: print`, `view: scan`, or `view: negative`"));
         }
         _ => {}
@@ -155,7 +155,7 @@ fn print(
             PositiveError::Unbalanced { .. } => {
                 fault.hint("`view: scan` shows the film without a print; or name another print stock at `print`")
             }
-            PositiveError::NoPrintStock { .. } => fault.hint("`spectra list stock` lists the print stocks apart"),
+            PositiveError::NoPrintStock { .. } => fault.hint("`spectra list stock` lists the print stocks separately"),
             PositiveError::DarkLight | PositiveError::NoGray => fault,
         }
     })?;

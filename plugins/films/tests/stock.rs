@@ -2,7 +2,7 @@
 
 use spectra_core::frame::{ExposureChannel, ExposureFrame, FrameSize};
 use spectra_core::params::{Faults, Params};
-use spectra_core::registry::{Context, FilmEntry, Stage};
+use spectra_core::registry::{Context, Entry, Stage};
 use spectra_core::resources::Resources;
 use spectra_core::spectral::BAND;
 use spectra_core::stage::Film;
@@ -30,7 +30,7 @@ fn frame(values: &[f32]) -> ExposureFrame {
 #[test]
 fn is_registered_as_the_default() {
     let entries = <dyn Film as Stage>::entries();
-    let entry: &&FilmEntry = entries.iter().find(|e| e.name == "stock").expect("registered");
+    let entry: &&Entry<dyn Film> = entries.iter().find(|e| e.name == "stock").expect("registered");
     assert!(entry.default);
     let film = with_params("stock: ilford-ortho-plus\nexposure: 1/60 s\n", entry.build).map_err(|e| e.to_string());
     let film = film.expect("sound");

@@ -1,5 +1,7 @@
 //! Built-in imagers: frames of pixels in the image plane, or shifted, tilted, curved.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod detector;
 mod film;
 mod formats;

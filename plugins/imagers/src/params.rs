@@ -7,7 +7,8 @@ use crate::standing::{Bend, Standing};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::frame::FrameSize;
-use spectra_core::params::{Angle, Fault, Faults, Length, NonNegative, Params, Positive, Whole, nearest};
+use spectra_core::names;
+use spectra_core::params::{Angle, Fault, Faults, Length, NonNegative, Params, Positive, Whole};
 use spectra_core::registry::Context;
 use spectra_glass::Catalogue;
 use spectra_spectrum::find_transmittance_in;
@@ -109,12 +110,12 @@ pub enum CurvatureShape {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct CoverParams {
-    /// A glass of the catalogue, such as `SCHOTT/N-BK7`; what it absorbs counts.
+    /// A glass of the catalogue, such as `SCHOTT/N-BK7`; its absorption is included.
     pub glass: String,
     /// Thickness, mm if bare, at most 100 mm.
     #[schemars(range(max = 100))]
     pub thickness: Positive<Length>,
-    /// Air between it and what stands behind it, mm if bare: for the record, since it changes nothing.
+    /// Air behind it, mm if bare: for information only, since it changes nothing.
     #[serde(default)]
     pub gap: Option<NonNegative<Length>>,
     /// A further transmittance, by name or from a file beside the scene: a coating against infrared, a dyed layer. None
@@ -248,13 +249,11 @@ impl Frame {
             (Some(FormatName(name)), None, None) => match format_named(name) {
                 Some(format) => Ok((format.width_mm, format.height_mm)),
                 None => {
-                    let names = FORMATS.map(|f| f.name);
-                    let known = names.join(", ");
+                    let known = FORMATS.map(|f| f.name);
                     let fault = params.fault("format", format!("unknown format `{name}`"));
-                    Err(match nearest(name, names) {
-                        Some(near) => fault.hint(format!("did you mean `{near}`? Known: {known}")),
-                        None => fault.hint(format!("known: {known}; or give width and height")),
-                    })
+                    let hint = names::hint(name, &known, "spectra list format");
+                    let other = if hint.starts_with("known: ") { "; or state width and height" } else { "" };
+                    Err(fault.hint(format!("{hint}{other}")))
                 }
             },
             // Far beyond any camera; keeps areas and their inverses well inside of what a double holds.
@@ -304,7 +303,7 @@ fn ratio(crop: &Crop, params: &Params) -> Result<f64, Fault> {
     };
     ratio.filter(|ratio| (MIN_RATIO..=MAX_RATIO).contains(ratio)).ok_or_else(|| {
         let hint = "width to height, as in `crop: 16:9`, or their ratio, as in `crop: 1.85`";
-        params.fault("crop", "no shape of a frame").hint(hint)
+        params.fault("crop", "not a frame shape").hint(hint)
     })
 }
 
@@ -312,7 +311,7 @@ fn ratio(crop: &Crop, params: &Params) -> Result<f64, Fault> {
 fn resolution_faults([width, height]: [u32; 2], params: &Params) -> Vec<Fault> {
     let pixels = u64::from(width) * u64::from(height);
     let fault = if height > MAX_SIDE_PX {
-        let text = format!("{height} pixels down is no side of a picture");
+        let text = format!("a side of {height} pixels is out of range");
         Some(params.fault("resolution", text).hint(format!("at most {MAX_SIDE_PX}")))
     } else {
         let text = format!("{width} x {height} are {} megapixels", pixels / 1_000_000);

@@ -8,6 +8,7 @@ use spectra_core::cover::CoverStack;
 use spectra_core::frame::FrameSize;
 use spectra_core::isa::{Isa, Vectorized};
 use spectra_core::loss::ALIVE;
+use spectra_core::numbers::RayNumbers;
 use spectra_core::stage::{Launch, Receive};
 use spectra_core::{Loss, RayBatch};
 use std::sync::Arc;
@@ -68,12 +69,17 @@ impl Plane {
     }
 
     /// Where a ray that travels along `way` meets it, see [`Standing::meet`]; through the plates, if there are any.
-    pub(crate) fn meet(&self, from: DVec3, way: DVec3, wavelength_nm: f64) -> Option<Met> {
+    pub(crate) fn meet(&self, from: DVec3, way: DVec3, wavelength_nm: f64, numbers: Option<RayNumbers>) -> Option<Met> {
         let (point, x, y) = self.standing.meet(from, way)?;
         let Some(plates) = &self.plates else { return Some(Met { point, x, y, passed: 1.0 }) };
-        let (beside, passed) = plates.pass(self.axes(x, y).transpose() * way, wavelength_nm);
+        let (beside, passed) = plates.pass(self.axes(x, y).transpose() * way, wavelength_nm, numbers);
         let (x, y) = (x + beside.x, y + beside.y);
         Some(Met { point: self.standing.at(x, y).0, x, y, passed })
+    }
+
+    /// Whether plates before it split points.
+    pub(crate) fn splits(&self) -> bool {
+        self.plates.as_ref().is_some_and(|plates| plates.splits())
     }
 
     /// The axes of its surface at a place, see [`Standing::axes`].
@@ -98,7 +104,7 @@ impl Receive for Plane {
                 continue;
             }
             let (from, way) = (DVec3::new(c.x[i], c.y[i], c.z[i]), DVec3::new(c.l[i], c.m[i], c.n[i]));
-            let met = self.meet(from, way, c.wavelength_nm[i]);
+            let met = self.meet(from, way, c.wavelength_nm[i], c.numbers.of(i));
             match met.and_then(|met| Some((self.size.pixel_at(met.x, met.y)?, met))) {
                 Some((pixel, met)) => {
                     [c.x[i], c.y[i], c.z[i]] = met.point.to_array();
@@ -108,6 +114,10 @@ impl Receive for Plane {
                 None => c.state[i] = Loss::OutOfFrame.state(0),
             }
         }
+    }
+
+    fn draws(&self) -> bool {
+        self.splits()
     }
 }
 
@@ -139,7 +149,7 @@ impl Launch for Plane {
                 continue;
             }
             let way = axes.transpose() * -DVec3::new(c.l[i], c.m[i], c.n[i]);
-            let (beside, passed) = plates.pass(way, c.wavelength_nm[i]);
+            let (beside, passed) = plates.pass(way, c.wavelength_nm[i], c.numbers.of(i));
             // The straight ray crosses the frame `lift_mm` behind the point that it was aimed from.
             let across = -beside - DVec2::new(way.x, way.y) * (lift_mm / way.z);
             let across = axes.x_axis * across.x + axes.y_axis * across.y;
@@ -148,6 +158,10 @@ impl Launch for Plane {
             c.z[i] += across.z;
             c.weight[i] *= passed;
         }
+    }
+
+    fn draws(&self) -> bool {
+        self.splits()
     }
 }
 
@@ -372,8 +386,9 @@ mod tests {
         let plane = Plane::new(size()).standing(standing).behind(Plates::new(&BAND, vec![glass, quartz]));
         let n = 500;
         let (u, v, p, q) = (uniform(0, n), uniform(1, n), uniform(2, n), uniform(3, n));
-        let mut rays = RayBatch::new(n);
+        let mut rays = RayBatch::new(n).with_numbers();
         rays.restart(n);
+        rays.number(0, &Numbers::sobol(1), "backward", 0, 0);
         let c = rays.columns_mut();
         for i in 0..n {
             c.tag[i] = (i as u32 * 614_657) % size().pixels() as u32;
@@ -392,7 +407,8 @@ mod tests {
         let c = rays.columns_mut();
         for i in 0..n {
             let way = -DVec3::new(c.l[i], c.m[i], c.n[i]);
-            let met = plane.meet(DVec3::new(c.x[i], c.y[i], c.z[i]), way, c.wavelength_nm[i]).expect("met");
+            let met =
+                plane.meet(DVec3::new(c.x[i], c.y[i], c.z[i]), way, c.wavelength_nm[i], c.numbers.of(i)).expect("met");
             let (x, y) = size().point_of(pixels[i], u[i], v[i]);
             assert!((met.x - x).abs() + (met.y - y).abs() < 1e-11, "{} {x} {} {y}", met.x, met.y);
             assert!((c.weight[i] - met.passed).abs() < 1e-15 && (met.passed - 0.8).abs() < 0.02);

@@ -5,14 +5,15 @@ use crate::params::Frame;
 use crate::plane::Plane;
 use schemars::JsonSchema;
 use serde::Deserialize;
+use spectra_color::Gamut;
 use spectra_core::frame::{DisplayPicture, ExposureChannel, ExposureFrame};
 use spectra_core::params::{Faults, Params, Wavelength, Whole};
 use spectra_core::registry::Context;
 use spectra_core::spectral::{Channel, Grid};
 use spectra_core::stage::{Imager, Response};
 use spectra_film::display::{White, show_xyz};
+use spectra_spectrum::Observer;
 use spectra_spectrum::constants::LUMINOUS_EFFICACY_LM_PER_W;
-use spectra_spectrum::{Gamut, Observer};
 
 /// A frame that records the spectrum itself: one channel a band, in W m^-2 nm^-1.
 ///

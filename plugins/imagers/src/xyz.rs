@@ -5,14 +5,15 @@ use crate::params::Frame;
 use crate::plane::Plane;
 use schemars::JsonSchema;
 use serde::Deserialize;
+use spectra_color::Gamut;
 use spectra_core::frame::{DisplayPicture, ExposureFrame};
 use spectra_core::params::{Exposure, Fault, Faults, Illuminance, Params, Positive, Quantity, Time};
 use spectra_core::registry::Context;
 use spectra_core::spectral::{Channel, Grid};
 use spectra_core::stage::{Imager, Response};
 use spectra_film::display::{White, show_xyz};
+use spectra_spectrum::Observer;
 use spectra_spectrum::constants::LUMINOUS_EFFICACY_LM_PER_W;
-use spectra_spectrum::{Gamut, Observer};
 
 /// A frame that measures CIE 1931 XYZ in lux, or lux-seconds where it is given an exposure time.
 ///

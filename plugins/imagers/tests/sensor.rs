@@ -1,5 +1,6 @@
 //! The sensor: electrons, noise, colors, and what it says of faulty keys.
 
+use spectra_color::{Adaptation, ciede2000, lab};
 use spectra_core::frame::{ExposureChannel, ExposureFrame};
 use spectra_core::params::Faults;
 use spectra_core::registry::{Context, Stage};
@@ -9,7 +10,7 @@ use spectra_core::stage::Imager;
 use spectra_plugin_imagers::Plane;
 use spectra_plugin_imagers::sensor::{CameraColor, PATCHES};
 use spectra_scene::FileResources;
-use spectra_spectrum::{Adaptation, Observer, ciede2000, find_emission, find_reflectance, lab};
+use spectra_spectrum::{Observer, find_emission, find_reflectance};
 
 fn build(yaml: &str) -> Result<Box<dyn Imager>, Faults> {
     // Names the crate, so that it is linked and its entries with it.

@@ -46,6 +46,13 @@ template<class F> auto guarded(F body) {
     }
 }
 
+// The library lists its formats when it is first asked for one, and hands out the list so far to who asks meanwhile for it:
+// one thread waits for the other here.
+void know_formats() {
+    static std::once_flag once;
+    std::call_once(once, [] { OIIO::ImageInput::create("openexr"); });
+}
+
 // Hands what the library writes to Rust.
 class ToRust final : public Filesystem::IOProxy {
 public:
@@ -116,12 +123,26 @@ Header header_of(const OIIO::ImageSpec &spec) {
 void read_opened(OIIO::ImageInput &input, const OIIO::ImageSpec &spec, Receiver &receiver) {
     const Header header = header_of(spec);
     const Wanted wanted = receiver.begin(header);
-    rust::Slice<float> samples = receiver.samples();
-    const auto needed = std::uint64_t(spec.width) * std::uint64_t(spec.height) * std::uint64_t(wanted.end - wanted.first);
-    if (needed != samples.size())
-        throw std::logic_error("the picture's size changed while it was read");
-    if (!input.read_image(0, 0, wanted.first, wanted.end, OIIO::TypeDesc::FLOAT, samples.data()))
-        fail(input.geterror(), "the pixels cannot be read");
+    if (wanted.end <= wanted.first)
+        return;
+    // Some rows at a time: whole strips or tiles, of 4 MiB or little more.
+    const std::size_t row = std::size_t(spec.width) * std::size_t(wanted.end - wanted.first);
+    const bool tiled = spec.tile_width > 0;
+    const int unit = std::max(tiled ? spec.tile_height : spec.get_int_attribute("tiff:RowsPerStrip", 64), 1);
+    const auto most = std::int64_t((std::size_t(1) << 20) / row) / unit * unit;
+    const int step = int(std::min(std::max(most, std::int64_t(unit)), std::int64_t(spec.height)));
+    std::vector<float> values(row * std::size_t(step));
+    for (int first = 0; first < spec.height; first += step) {
+        const int end = std::min(first + step, spec.height);
+        const bool good
+            = tiled ? input.read_tiles(0, 0, spec.x, spec.x + spec.width, spec.y + first, spec.y + end, spec.z, spec.z + 1,
+                                       wanted.first, wanted.end, OIIO::TypeDesc::FLOAT, values.data())
+                    : input.read_scanlines(0, 0, spec.y + first, spec.y + end, spec.z, wanted.first, wanted.end,
+                                           OIIO::TypeDesc::FLOAT, values.data());
+        if (!good)
+            fail(input.geterror(), "the pixels cannot be read");
+        receiver.rows(first, rust::Slice<const float>(values.data(), row * std::size_t(end - first)));
+    }
 }
 
 } // namespace
@@ -130,6 +151,7 @@ rust::String version() { return lossy(OIIO::get_string_attribute("version", OIIO
 
 rust::String endings() {
     return guarded([] {
+        know_formats();
         std::string all;
         // Formats that are only written have endings too.
         const auto formats = OIIO::Strutil::splits(OIIO::get_string_attribute("input_format_list"), ",");
@@ -144,6 +166,7 @@ rust::String endings() {
 
 bool reads_memory(rust::Str format) {
     return guarded([&] {
+        know_formats();
         auto input = OIIO::ImageInput::create(own(format));
         if (!input)
             fail(OIIO::geterror(), "no such format");
@@ -153,6 +176,7 @@ bool reads_memory(rust::Str format) {
 
 void read(rust::Str format, rust::Str path, bool from_memory, rust::Slice<const std::uint8_t> bytes, Receiver &receiver) {
     guarded([&] {
+        know_formats();
         Filesystem::IOMemReader memory(const_cast<std::uint8_t *>(bytes.data()), bytes.size());
         auto input = OIIO::ImageInput::create(own(format));
         if (!input)
@@ -171,6 +195,7 @@ void read(rust::Str format, rust::Str path, bool from_memory, rust::Slice<const 
 
 void write(const Plan &plan, const Pixels &pixels, Sink &sink) {
     guarded([&] {
+        know_formats();
         ToRust proxy(sink);
         auto output = OIIO::ImageOutput::create(own(plan.format));
         if (!output)
@@ -198,6 +223,7 @@ void write(const Plan &plan, const Pixels &pixels, Sink &sink) {
 
 void make_texture(const Plan &plan, const Pixels &pixels, rust::Str path) {
     guarded([&] {
+        know_formats();
         const OIIO::ImageSpec spec = spec_of(plan);
         OIIO::ImageBuf buffer(spec);
         const auto rows = rows_of(plan, pixels, 0, plan.height);

@@ -34,7 +34,7 @@ pub(crate) mod ffi {
         straight: bool,
     }
 
-    /// Channels to be read: from, and up to without.
+    /// Channels to be read: from, and up to without; none where the header is all that is wanted.
     struct Wanted {
         first: i32,
         end: i32,
@@ -64,7 +64,7 @@ pub(crate) mod ffi {
     extern "Rust" {
         type Receiver;
         fn begin(self: &mut Receiver, header: &Header) -> Result<Wanted>;
-        fn samples(self: &mut Receiver) -> &mut [f32];
+        fn rows(self: &mut Receiver, first: i64, values: &[f32]);
 
         type Pixels<'a>;
         fn fill(self: &Pixels<'_>, first: i32, to: &mut [f32]);

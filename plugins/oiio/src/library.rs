@@ -2,8 +2,9 @@
 
 use crate::bridge::ffi;
 use crate::{reading, writing};
-use spectra_core::picture_file::{FilePicture, PictureLibrary, PictureLibraryEntry, PictureLimits, TiledExr};
-use std::fs::File;
+use spectra_core::resources::Found;
+use spectra_core::sink::Out;
+use spectra_pictures::library::{FilePicture, PictureLibrary, PictureLibraryEntry, PictureLimits, TiledExr};
 
 /// The library OpenImageIO (Larry Gritz and others, <https://openimageio.org>).
 #[derive(Clone, Copy, Debug)]
@@ -22,11 +23,15 @@ impl PictureLibrary for OpenImageIo {
         format!("OpenImageIO {}", ffi::version())
     }
 
-    fn read(&self, ending: &str, bytes: &[u8], limits: PictureLimits) -> Result<FilePicture, String> {
-        reading::read(ending, bytes, limits)
+    fn read(&self, ending: &str, file: &Found, limits: PictureLimits) -> Result<FilePicture, String> {
+        reading::read(ending, file, limits, true)
     }
 
-    fn write_tiled_exr(&self, to: &mut File, picture: &TiledExr<'_>) -> Result<(), String> {
+    fn header(&self, ending: &str, file: &Found, limits: PictureLimits) -> Result<FilePicture, String> {
+        reading::read(ending, file, limits, false)
+    }
+
+    fn write_tiled_exr(&self, to: &mut dyn Out, picture: &TiledExr<'_>) -> Result<(), String> {
         writing::tiled_exr(to, picture)
     }
 }

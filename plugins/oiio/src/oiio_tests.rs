@@ -1,11 +1,16 @@
 //! What the picture sources and the program do not see: files that fill disks, repetitions, limits.
 
 use crate::{OpenImageIo, Samples, Written, write};
-use spectra_core::picture_file::{PictureLibrary, PictureLimits, TiledExr, library};
+use spectra_core::resources::Found;
+use spectra_pictures::library::{FilePicture, PictureLibrary, PictureLimits, TiledExr, library};
 use std::fs::File;
 use std::io::{Read, Seek};
 
 const LIMITS: PictureLimits = PictureLimits { side_px: 65_535, pixels: 120_000_000 };
+
+fn file_of(bytes: &[u8]) -> Found {
+    Found::bytes("a file".to_owned(), bytes.to_vec().into())
+}
 
 fn ramp(pixels: u32) -> Vec<f32> {
     (0..pixels).map(|i| (i * 7919 % 1013) as f32 / 1013.0).collect()
@@ -49,7 +54,7 @@ fn the_same_picture_gives_the_same_bytes() {
     let date = first.windows(8).position(|bytes| bytes == b"capDate\0").expect("written in any case");
     assert_eq!(first[date + 8..][..11], *b"string\0\0\0\0\0", "no time of day");
     // What is read back by the library that wrote it.
-    let read = OpenImageIo.read("exr", &first, LIMITS);
+    let read = OpenImageIo.read("exr", &file_of(&first), LIMITS);
     assert!(read.is_err_and(|cause| cause.contains("`X`")), "X, Y and Z are no red, green and blue");
 }
 
@@ -87,10 +92,12 @@ fn pictures_that_are_none_are_refused_before_the_library_is_asked() {
 fn limits_are_the_askers() {
     let bytes = b"P6\n4 3\n255\n\
         abcdefghijklabcdefghijklabcdefghijkl";
-    let read = |limits| OpenImageIo.read("ppm", bytes, limits);
+    let read = |limits| OpenImageIo.read("ppm", &file_of(bytes), limits);
     let picture = read(LIMITS).expect("read");
     assert_eq!((picture.width_px, picture.height_px, picture.format.as_str()), (4, 3, "pnm"));
     assert_eq!(picture.rgb[0].map(|v| (v * 255.0).round() as u8), *b"abc");
+    let header = OpenImageIo.header("ppm", &file_of(bytes), LIMITS).expect("read");
+    assert_eq!(header, FilePicture { rgb: Vec::new(), ..picture });
     assert!(read(PictureLimits { side_px: 3, ..LIMITS }).is_err_and(|cause| cause.contains("4 x 3")));
     assert!(read(PictureLimits { pixels: 11, ..LIMITS }).is_err_and(|cause| cause.contains("at most 11")));
 }

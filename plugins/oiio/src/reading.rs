@@ -2,8 +2,10 @@
 
 use crate::bridge::ffi::{self, Header, Wanted};
 use crate::stated;
-use spectra_core::picture_file::{FilePicture, PictureLimits};
+use spectra_core::resources::{Found, ResourceError};
+use spectra_pictures::library::{FilePicture, PictureLimits};
 use std::io::Write;
+use std::path::Path;
 
 /// Formats that are no still pictures of light: pictures made up from the file's name, depth, films, volumes.
 const NO_PICTURES: [&str; 5] = ["null", "zfile", "ffmpeg", "openvdb", "term"];
@@ -34,26 +36,40 @@ pub(crate) fn endings() -> Vec<String> {
     pictures.flat_map(|(_, endings)| endings.split(',').map(str::to_owned)).collect()
 }
 
-pub(crate) fn read(ending: &str, bytes: &[u8], limits: PictureLimits) -> Result<FilePicture, String> {
+/// How much of a file's beginning is looked at for the size that it states.
+const BEGINNING_BYTES: u64 = 1 << 20;
+
+/// The first picture of a file; without `pixels` only what its header says.
+pub(crate) fn read(ending: &str, file: &Found, limits: PictureLimits, pixels: bool) -> Result<FilePicture, String> {
     let format = format_of(ending)?;
     let text = |cause: cxx::Exception| tidy(cause.what());
-    let mut receiver = Receiver::new(&format, limits, bytes.len() as u64);
-    if let Some([width, height]) = stated::size(&format, bytes) {
+    let system = |cause: ResourceError| cause.to_string();
+    let mut receiver = Receiver::new(&format, limits, file.size_bytes().map_err(system)?, pixels);
+    if let Some([width, height]) = stated::size(&format, &file.read(BEGINNING_BYTES).map_err(system)?) {
         receiver.check([width, height])?;
     }
+    // The library reads as little of a file on disk as it can.
+    let from = |path: &str, receiver: &mut Receiver| {
+        let known = |cause: cxx::Exception| tidy(&cause.what().replace(path, "the file"));
+        ffi::read(&format, path, false, &[], receiver).map_err(known)
+    };
+    if let Some(path) = file.path().and_then(Path::to_str) {
+        from(path, &mut receiver)?;
+        return receiver.picture();
+    }
+    let bytes = file.read(u64::MAX).map_err(system)?;
     if ffi::reads_memory(&format).map_err(text)? {
-        ffi::read(&format, &format!("picture.{ending}"), true, bytes, &mut receiver).map_err(text)?;
+        ffi::read(&format, &format!("picture.{ending}"), true, &bytes, &mut receiver).map_err(text)?;
     } else {
         // These readers take a path only.
         let system = |cause: std::io::Error| format!("a temporary copy cannot be written: {cause}");
         let mut copy = tempfile::Builder::new().suffix(&format!(".{ending}")).tempfile().map_err(system)?;
-        copy.write_all(bytes).map_err(system)?;
+        copy.write_all(&bytes).map_err(system)?;
         copy.flush().map_err(system)?;
         let Some(path) = copy.path().to_str() else {
             return Err("the folder of temporary files has a name that is no UTF-8".to_owned());
         };
-        let known = |cause: cxx::Exception| tidy(&cause.what().replace(path, "the file"));
-        ffi::read(&format, path, false, &[], &mut receiver).map_err(known)?;
+        from(path, &mut receiver)?;
     }
     receiver.picture()
 }
@@ -75,22 +91,25 @@ struct Begun {
     alpha: Option<usize>,
     /// How many are read.
     step: usize,
+    colors: Vec<[f32; 3]>,
+    cover: Vec<f32>,
 }
 
-/// Takes the header, judges it, and makes room for the pixels.
+/// Takes the header, judges it, makes room for the pixels, and takes them row by row.
 pub(crate) struct Receiver {
     format: String,
     limits: PictureLimits,
     /// Bytes of the file, where that bounds the pixels.
     file_bytes: Option<u64>,
+    /// Whether pixels are wanted.
+    pixels: bool,
     begun: Option<Begun>,
-    samples: Vec<f32>,
 }
 
 impl Receiver {
-    fn new(format: &str, limits: PictureLimits, bytes: u64) -> Self {
+    fn new(format: &str, limits: PictureLimits, bytes: u64, pixels: bool) -> Self {
         let file_bytes = (!DENSE.contains(&format)).then_some(bytes);
-        Self { format: format.to_owned(), limits, file_bytes, begun: None, samples: Vec::new() }
+        Self { format: format.to_owned(), limits, file_bytes, pixels, begun: None }
     }
 
     fn check(&self, [width, height]: [u64; 2]) -> Result<(), String> {
@@ -111,10 +130,8 @@ impl Receiver {
 
     /// Called by the bridge once the file is open: says which channels are wanted.
     pub(crate) fn begin(&mut self, header: &Header) -> Result<Wanted, String> {
-        let mut size = [0_u64; 2];
         for window in [header.display, header.data] {
-            size = [2, 3].map(|i| u64::try_from(window[i]).unwrap_or(0));
-            self.check(size)?;
+            self.check([2, 3].map(|i| u64::try_from(window[i]).unwrap_or(0)))?;
         }
         if header.deep || header.slices != 1 {
             return Err("it holds a volume, or several samples a pixel, and no flat picture".to_owned());
@@ -143,45 +160,47 @@ impl Receiver {
         if step > 16 {
             return Err("the channels of color lie too far apart".to_owned());
         }
-        self.samples = vec![0.0; size[0] as usize * size[1] as usize * step];
+        // Where the file holds nothing of the window that is shown there is no light.
+        let shown = if self.pixels { header.display[2] as usize * header.display[3] as usize } else { 0 };
         self.begun = Some(Begun {
             header: header.clone(),
             rgb: rgb.map(|at| at - first),
             alpha: alpha.map(|at| at - first),
             step,
+            colors: vec![[0.0; 3]; shown],
+            cover: if alpha.is_some() { vec![0.0; shown] } else { Vec::new() },
         });
-        Ok(Wanted { first: first as i32, end: last as i32 + 1 })
+        Ok(Wanted { first: first as i32, end: if self.pixels { last as i32 + 1 } else { first as i32 } })
     }
 
-    /// Where the bridge puts the pixels: row by row, channel by channel within a pixel.
-    pub(crate) fn samples(&mut self) -> &mut [f32] {
-        &mut self.samples
-    }
-
-    /// The picture on its display window, black where nothing is stored.
-    fn picture(self) -> Result<FilePicture, String> {
-        let Some(Begun { header, rgb, alpha, step }) = self.begun else {
-            return Err("the library gave no picture".to_owned());
-        };
+    /// Called by the bridge with whole rows of what the file holds, from its row `first` on, channel by channel within a
+    /// pixel.
+    pub(crate) fn rows(&mut self, first: i64, values: &[f32]) {
+        let Some(Begun { header, rgb, alpha, step, colors, cover }) = &mut self.begun else { return };
         let [x, y, width, height] = header.display;
-        let [own_x, own_y, own_width, own_height] = header.data;
-        let pixel = |column: i64, row: i64| -> Option<&[f32]> {
-            let (c, r) = (x.checked_add(column)?.checked_sub(own_x)?, y.checked_add(row)?.checked_sub(own_y)?);
-            let inside = c >= 0 && r >= 0 && c < own_width && r < own_height;
-            inside.then(|| &self.samples[(r * own_width + c) as usize * step..][..step])
+        let [own_x, own_y, own_width, _] = header.data;
+        let inside = |own: i64, own_start: i64, start: i64, size: i64| {
+            let at = own.checked_add(own_start)?.checked_sub(start)?;
+            (0..size).contains(&at).then_some(at)
         };
-        let count = width as usize * height as usize;
-        let mut colors = Vec::with_capacity(count);
-        let mut cover = Vec::with_capacity(if alpha.is_some() { count } else { 0 });
-        for row in 0..height {
-            for column in 0..width {
-                let pixel = pixel(column, row);
-                colors.push(pixel.map_or([0.0; 3], |p| rgb.map(|at| p[at])));
-                if let Some(at) = alpha {
-                    cover.push(pixel.map_or(0.0, |p| p[at]));
+        for (row, values) in (first..).zip(values.chunks_exact(own_width as usize * *step)) {
+            let Some(row) = inside(row, own_y, y, height) else { continue };
+            for (column, pixel) in (0..).zip(values.chunks_exact(*step)) {
+                let Some(column) = inside(column, own_x, x, width) else { continue };
+                let at = (row * width + column) as usize;
+                colors[at] = rgb.map(|channel| pixel[channel]);
+                if let Some(channel) = *alpha {
+                    cover[at] = pixel[channel];
                 }
             }
         }
+    }
+
+    fn picture(self) -> Result<FilePicture, String> {
+        let Some(Begun { header, alpha, colors, cover, .. }) = self.begun else {
+            return Err("the library gave no picture".to_owned());
+        };
+        let [_, _, width, height] = header.display;
         let pixel_aspect = f64::from(header.pixel_aspect);
         Ok(FilePicture {
             width_px: width as u32,

@@ -1,8 +1,8 @@
 //! Pictures out: any format that the library writes, and textures.
 
 use crate::bridge::ffi::{self, Plan};
-use spectra_core::picture_file::TiledExr;
-use std::fs::File;
+use spectra_core::sink::Out;
+use spectra_pictures::library::TiledExr;
 use std::io::{self, Seek, SeekFrom, Write};
 use std::path::Path;
 
@@ -88,7 +88,7 @@ impl Written<'_> {
 ///
 /// # Errors
 /// What the system or the library says.
-pub fn write(to: &mut File, picture: &Written<'_>) -> Result<(), String> {
+pub fn write(to: &mut dyn Out, picture: &Written<'_>) -> Result<(), String> {
     let plan = picture.plan()?;
     let mut sink = Sink { file: to, fault: None };
     let written = ffi::write(&plan, &Pixels::new(picture), &mut sink);
@@ -110,8 +110,8 @@ pub fn make_texture(path: &Path, picture: &Written<'_>) -> Result<(), String> {
     ffi::make_texture(&plan, &Pixels::new(picture), path).map_err(|e| e.what().trim().to_owned())
 }
 
-/// See `spectra_core::picture_file::PictureLibrary::write_tiled_exr`.
-pub(crate) fn tiled_exr(to: &mut File, picture: &TiledExr<'_>) -> Result<(), String> {
+/// See `spectra_pictures::library::PictureLibrary::write_tiled_exr`.
+pub(crate) fn tiled_exr(to: &mut dyn Out, picture: &TiledExr<'_>) -> Result<(), String> {
     let mut texts = picture.attributes.to_vec();
     let said = |name: &str, text: &str| (name.to_owned(), text.to_owned());
     // In the order of rows, so that threads do not show in the file; and the library would write the time of day.
@@ -157,7 +157,7 @@ impl<'a> Pixels<'a> {
 
 /// The file that the library writes to.
 pub(crate) struct Sink<'a> {
-    file: &'a mut File,
+    file: &'a mut dyn Out,
     fault: Option<io::Error>,
 }
 

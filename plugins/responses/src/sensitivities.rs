@@ -29,7 +29,7 @@ pub struct SensitivitiesParams {
     /// Sensitivities by the names of the channels, 1 to 64: each a file beside the scene (`mine.csv`, `mine.csv#red`), a
     /// bundled name, or a spectrum written out (`gaussian:550,20`).
     pub channels: Part<BTreeMap<String, String>>,
-    /// Linear red, green and blue (sRGB primaries) of the picture: three rows, each with a factor a channel. It works on
+    /// Linear red, green and blue (sRGB primaries) of the picture: three rows, each with one factor per channel. It works on
     /// channels that are 1 in `balance`.
     pub matrix: Option<Vec<Vec<f64>>>,
     /// The light in which every channel counts as 1, so that white is white; D65 if absent.
@@ -94,7 +94,7 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Response>, Fa
 /// The channels in the order of the scene.
 fn channels(params: &Params, node: &StageNode, context: &Context<'_>) -> Result<Vec<Channel>, Faults> {
     let Value::Map(entries) = &node.node().value else {
-        let fault = node.fault("a map of channels is wanted here");
+        let fault = node.fault("a map of channels is expected here");
         return Err(fault.hint("{red: my-red.csv, green: \"gaussian:540,40\"}").into());
     };
     if !(1..=MAX_CHANNELS).contains(&entries.len()) {
@@ -109,11 +109,11 @@ fn channels(params: &Params, node: &StageNode, context: &Context<'_>) -> Result<
         // A channel is part of an EXR's, where a dot parts layers.
         let letter = |c: char| c.is_alphanumeric() || "-_".contains(c);
         if name.is_empty() || name.len() > 64 || !name.chars().all(letter) {
-            faults.push(fault(format!("`{name}` is no name of a channel")).hint("letters, digits, - and _"));
+            faults.push(fault(format!("`{name}` is not a valid name of a channel")).hint("letters, digits, - and _"));
             continue;
         }
         let Some(text) = value.as_str() else {
-            faults.push(fault("a spectrum's name is wanted here".into()).hint("my-red.csv, or \"gaussian:540,40\""));
+            faults.push(fault("a spectrum's name is expected here".into()).hint("my-red.csv, or \"gaussian:540,40\""));
             continue;
         };
         let found = find_sensitivity_in(text, context.resources).map_err(|e| e.faults(fault));
@@ -136,8 +136,8 @@ fn rows(params: &Params, p: &SensitivitiesParams, channels: &[Channel]) -> Resul
             1 => Ok([unit(0), unit(0), unit(0)]),
             3 => Ok([unit(0), unit(1), unit(2)]),
             _ => {
-                let fault = params.fault("channels", format!("how is a picture made of {count} channels?"));
-                Err(fault.hint("`matrix`: three rows for red, green and blue, each with a factor a channel").into())
+                let fault = params.fault("channels", format!("nothing says how {count} channels make a picture"));
+                Err(fault.hint("`matrix`: three rows for red, green and blue, each with one factor per channel").into())
             }
         };
     };
@@ -148,7 +148,7 @@ fn rows(params: &Params, p: &SensitivitiesParams, channels: &[Channel]) -> Resul
     for (i, row) in matrix.iter().enumerate() {
         if row.len() != count || row.iter().any(|v| !v.is_finite()) {
             let fault = params.fault(&format!("matrix[{i}]"), format!("{} factors for {count} channels", row.len()));
-            return Err(fault.hint("a finite factor a channel, in the order of `channels`").into());
+            return Err(fault.hint("one finite factor per channel, in the order of `channels`").into());
         }
     }
     Ok([red.clone(), green.clone(), blue.clone()])

@@ -1,8 +1,8 @@
 //! Pictures of linear light in sRGB primaries.
 
+use spectra_color::{Gamut, RgbSpace};
 use spectra_core::frame::{DisplayPicture, ExposureChannel, ExposureFrame};
 use spectra_film::display::{White, show_xyz};
-use spectra_spectrum::{Gamut, RgbSpace};
 
 /// Shows a linear red, green and blue a pixel; where luminance reaches `white` the picture is white, without one automatic
 /// exposure shows its 99th percentile as 0.9.

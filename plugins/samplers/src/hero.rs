@@ -105,7 +105,7 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn WavelengthSam
         None => Some(Box::new(SourceTimesResponse)),
         Some(node) => faults.take(node.params()).and_then(|inner| match inner.kind() {
             Some("hero") => {
-                faults.push(inner.fault("kind", "a group of groups").hint("name another strategy"));
+                faults.push(inner.fault("kind", "a group cannot contain groups").hint("name another strategy"));
                 None
             }
             _ => faults.take(registry::build::<dyn WavelengthSampler>(&inner, context)),

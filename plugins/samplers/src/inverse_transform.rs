@@ -75,8 +75,7 @@ impl WavelengthSampler for InverseTransform {
             };
             if let Some(i) = (0..grid.count - 1).find(blind) {
                 return Err(format!(
-                    "`{}` is zero at {} nm, where a channel sees: never drawn, that light would be missing; \
-                     give it a floor",
+                    "`{}` is zero at {} nm, where a channel sees: that light would never be sampled; add a `floor`",
                     self.name,
                     grid.wavelength_nm(i)
                 ));

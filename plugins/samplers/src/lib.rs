@@ -18,6 +18,8 @@
 //! term of every factor has no wavelength and can pass no lens: it is no sampler, but [`OneTerm`] does it for
 //! spectral integrals.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod cells;
 mod floor;
 mod followed;

@@ -16,8 +16,8 @@ pub struct Lines;
 impl WavelengthSampler for Lines {
     fn prepare(&self, system: &SystemResponse) -> Result<Box<dyn WavelengthDensity>, String> {
         if system.source.continuum.iter().any(|v| *v != 0.0) {
-            return Err("the source has a continuum, which drawing lines only would forget; \
-                        take `source-times-response`, or give the source a color model of lines"
+            return Err("the source has a continuum, which sampling only lines would miss; \
+                        use `source-times-response`, or give the source a color model of lines"
                 .to_owned());
         }
         let weights: Vec<f64> = system.source.lines.iter().map(|l| l.power.abs()).collect();

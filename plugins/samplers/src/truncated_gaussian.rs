@@ -69,7 +69,7 @@ impl WavelengthSampler for TruncatedGaussianSampler {
             && let Some(nm) = seen.wavelengths_nm(&system.grid).find(|w| !is_drawn(gaussian.density(*w)))
         {
             return Err(format!(
-                "at {nm} nm, where a channel sees, the Gaussian is too far from its center to be drawn; give it a floor"
+                "at {nm} nm, where a channel sees, the Gaussian is too far from its center to be sampled; add a `floor`"
             ));
         }
         let continuum = seen.draws_continuum().then_some(WithFloor { gaussian, floor });

@@ -70,7 +70,7 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
     };
     let angles = p.direction.map_or([0.0; 2], |d| d.map(|a| a.rad()));
     if let Some(bad) = angles.iter().position(|a| a.abs() >= 1.5) {
-        return Err(params.fault(&format!("direction[{bad}]"), "a beam tilted by 86 degrees and more").into());
+        return Err(params.fault(&format!("direction[{bad}]"), "a beam tilted by 86 degrees or more").into());
     }
     let slopes = angles.map(tan);
     let length = (1.0 + slopes[0] * slopes[0] + slopes[1] * slopes[1]).sqrt();

@@ -7,12 +7,13 @@ use crate::palette::Palette;
 use crate::white;
 use schemars::JsonSchema;
 use serde::Deserialize;
+use spectra_color::{RgbSpace, Transfer};
 use spectra_core::Isa;
 use spectra_core::params::{Faults, Length, Luminance, Params, Part, Positive, Quantity};
 use spectra_core::registry::{Context, StageOf, build as build_stage};
 use spectra_core::spectral::{Line, SpectralPower};
 use spectra_core::stage::{ColorModel, Source};
-use spectra_spectrum::{Observer, Reflectance, RgbSpace, SpectrumError, Transfer, find_reflectance_in};
+use spectra_spectrum::{Observer, Reflectance, SpectrumError, find_reflectance_in};
 
 /// A test chart drawn by the program: resolution, color patches, gray card, star.
 ///
@@ -166,8 +167,8 @@ fn own_reflectances(p: &ChartParams, params: &Params, context: &Context<'_>) -> 
             return Err(fault.hint("`chart: patches`").into());
         }
         (None, true) => {
-            let fault = params.fault("chart", "patches of which `reflectances`?");
-            return Err(fault.hint("`reflectances: my-paints.csv`: a column a patch beside wavelength_nm").into());
+            let fault = params.fault("chart", "`patches` needs `reflectances`");
+            return Err(fault.hint("`reflectances: my-paints.csv`: one column per patch beside wavelength_nm").into());
         }
         (Some(stated), true) => stated,
     };

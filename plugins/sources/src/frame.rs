@@ -48,7 +48,7 @@ impl Width {
                 None => Ok(distance_mm),
                 Some(view) => needed_mm(view, aspect, distance_mm, center_mm).ok_or_else(|| {
                     params
-                        .fault("width", "this lens looks to the side: no plane fills its frame")
+                        .fault("width", "this lens is turned too far to the side: no plane fills its frame")
                         .hint("write a width, such as `5 m`")
                 }),
             },
@@ -120,13 +120,13 @@ impl Placed {
         };
         let aspect = self.width_mm / self.height_mm;
         let Some(needed_mm) = needed_mm(view, aspect, self.distance_mm, self.center_mm) else { return };
-        let text = format!("the frame is not filled: {:.0} % of it sees nothing of {what}", (100.0 * missed).max(1.0));
+        let text = format!("the frame is not filled: {:.0} % of it lies outside {what}", (100.0 * missed).max(1.0));
         let hint = match bare(params.get("width")) {
             // 1.5 for 1.5 m: a bare number is in mm.
             Some(mm) if (0.2..5.0).contains(&(1000.0 * mm / needed_mm)) => {
-                format!("{mm} mm wide: did you mean {mm} m? Or `width: fill`")
+                format!("{mm} mm wide: did you mean `{mm} m`? Or `width: fill`")
             }
-            _ => format!("`width: fill`, or at least {}; `edge: black` where the border is meant", length(needed_mm)),
+            _ => format!("`width: fill`, or at least {}; `edge: black` if the border is intended", length(needed_mm)),
         };
         context.warn(params.fault("width", text).hint(hint));
     }

@@ -6,7 +6,6 @@
 
 use crate::frame::{Edge, Placed, Width};
 use crate::lazy::Lazy;
-use crate::picture::header::Header;
 use crate::picture::map::PictureMap;
 use crate::picture::{Making, PictureFile, color_model, find};
 use crate::white;
@@ -18,6 +17,7 @@ use spectra_core::registry::{Context, StageOf};
 use spectra_core::spectral::SpectralPower;
 use spectra_core::stage::{ColorModel, Radiance, Source};
 use spectra_core::{Isa, RayBatch};
+use spectra_pictures::read::Header;
 
 /// Picture files one behind the other, with cover: what is hidden is known.
 ///
@@ -102,7 +102,7 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
         let distance_mm = layer.distance.mm();
         if distance_mm <= before_mm {
             let text = format!("{distance_mm} mm is not behind the layer before it, at {before_mm} mm");
-            faults.push(own.fault("distance", text).hint("layers go from the front to the back"));
+            faults.push(own.fault("distance", text).hint("list layers from front to back"));
         }
         before_mm = distance_mm;
         let center_mm = layer.center.map_or([0.0; 2], |c| c.map(Length::mm));
@@ -112,6 +112,7 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
             name: layer.file.clone(),
             transfer: layer.transfer.clone(),
             layer: layer.layer.clone(),
+            cover: true,
             depth: None,
             params: own.clone(),
         };

@@ -1,5 +1,7 @@
 //! Built-in light sources.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod beam;
 pub mod chart;
 mod chart_source;

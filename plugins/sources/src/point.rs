@@ -63,7 +63,7 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
         (None, Some(field)) => {
             if let Some(bad) = field.iter().position(|a| a.rad().abs() >= 1.5) {
                 return Err(params
-                    .fault(&format!("field[{bad}]"), "a field angle of 86 degrees and more".to_owned())
+                    .fault(&format!("field[{bad}]"), "a field angle of 86 degrees or more".to_owned())
                     .into());
             }
             field.map(|a| distance_mm * spectra_core::math::tan(a.rad()))

@@ -102,7 +102,7 @@ impl ScalarShape for Grating {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct GratingParams {
-    /// Lines a millimeter, 1/mm if bare: `600 lines/mm`. Zero or more.
+    /// Lines per millimeter, 1/mm if bare: `600 lines/mm`. Zero or more.
     lines_per_mm: spectra_core::params::NonNegative<SpatialFrequency>,
     /// Order of diffraction, any sign; 0 is the undiffracted light.
     order: i32,

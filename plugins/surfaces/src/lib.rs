@@ -1,5 +1,7 @@
 //! Built-in optical surfaces.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod biconic;
 mod conic;
 mod cylinder;

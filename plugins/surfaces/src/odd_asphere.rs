@@ -56,7 +56,7 @@ impl SagShape for OddAsphere {
 /// ...]`.
 ///
 /// With a1 the vertex is the tip of a cone; a ray that meets the tip itself sees it as flat, and the paraxial figures
-/// of the lens leave a1 out. Where only even powers are needed take `kind: even-asphere`, which is faster.
+/// of the lens leave a1 out. If only even powers are needed, use `kind: even-asphere`, which is faster.
 ///
 /// # Example
 /// ```yaml

@@ -70,11 +70,11 @@ spectra_core::register!(surface "plane": PlaneParams, build_plane);
 
 /// The aperture stop: it clips, and its size sets the f-number.
 ///
-/// A plane across the axis that bends no light, in the medium that is there. A lens has one stop: either a surface of
-/// this kind, or a glass surface that says `stop: true`. `f-number` of a scene opens or closes it until the real
-/// marginal ray has that f-number; `semi-diameter` is the size that it has where the scene says nothing.
+/// A plane across the axis that does not refract, in the surrounding medium. A lens has one stop: either a surface of
+/// this kind, or a glass surface with `stop: true`. `f-number` of a scene opens or closes it until the real marginal
+/// ray has that f-number; `semi-diameter` is its size unless the scene sets one.
 ///
-/// Blades, or an opening of any other form, are its `aperture`.
+/// Blades, or an opening of any other shape, are given by its `aperture`.
 ///
 /// # Example
 /// ```yaml

@@ -134,11 +134,11 @@ impl SagShape for SagTable {
 /// For a measured surface (an interferogram, a profilometer's scan) or one computed elsewhere. The grid is
 /// square-meshed and centered on the vertex; between its points lies the tensor product of cubic splines, continuous to
 /// the second derivative, so that cubic surfaces are met exactly. There is no surface beyond the outermost points: rays
-/// that pass there are lost as missed.
+/// that pass there count as missed.
 ///
 /// Rows run along x from the smallest to the largest, the first row is that at the smallest y. The sags stand in the
-/// file itself (`sag`) or in a CSV file (`file`), one row a line, numbers separated by commas, lines that begin with
-/// `#` passed over.
+/// file itself (`sag`) or in a CSV file (`file`), one row per line, numbers separated by commas; lines that begin with
+/// `#` are ignored.
 ///
 /// # Example
 /// ```yaml
@@ -167,7 +167,7 @@ struct SagTableParams {
     #[serde(default)]
     #[schemars(length(min = FEWEST, max = MOST), inner(length(min = FEWEST, max = MOST)))]
     sag: Option<Vec<Vec<f64>>>,
-    /// A CSV file beside the scene with those rows, mm; empty lines and such as start with `#` are passed over. Or else
+    /// A CSV file beside the scene with those rows, mm; empty lines and lines that begin with `#` are ignored. Or else
     /// `sag`.
     #[serde(default)]
     file: Option<String>,
@@ -227,7 +227,7 @@ fn read(params: &Params, context: &Context<'_>, file: &str) -> Result<Vec<Vec<f6
             line.split(',').map(|cell| cell.trim().parse().map_err(|_| cell.trim().to_owned())).collect();
         rows.push(row.map_err(|cell| {
             let cell: String = cell.chars().take(40).collect();
-            fault(format!("{}, line {number}: `{cell}` is no number", found.name))
+            fault(format!("{}, line {number}: `{cell}` is not a number", found.name))
         })?);
         if rows.len() > MOST {
             return Err(fault(format!("{}: more than {MOST} rows", found.name)));

@@ -68,12 +68,12 @@ impl KernelShape for Sphere {
 
 /// Part of a sphere.
 ///
-/// The surface that nearly every lens is made of, and the kind that is taken where a lens file names none. Its sag is z
-/// = c r^2 / (1 + sqrt(1 - c^2 r^2)) with the curvature c = 1 / radius and r the distance from the axis.
+/// The surface that nearly every lens is made of, and the default kind in a lens file. Its sag is z = c r^2 / (1 +
+/// sqrt(1 - c^2 r^2)) with the curvature c = 1 / radius and r the distance from the axis.
 ///
 /// The radius is positive where the center of curvature lies at larger z, that is toward the image: a biconvex lens in
 /// air has a positive first and a negative second radius. Only the half that holds the vertex is surface; a ray that
-/// passes outside of it is lost as missed.
+/// passes outside it counts as missed.
 ///
 /// # Example
 /// ```yaml

@@ -59,12 +59,12 @@ impl ScalarShape for ThinLens {
 
 /// An ideal lens without thickness or aberration.
 ///
-/// For a first layout, for a relay or an eyepiece that does not matter, for tests. Every plane across the axis is
-/// imaged sharp and to scale, n'/s' = n/s + 1/f, at any angle: with u the slope of a ray against the axis and h its
-/// height on the lens, n' u' = n u - h / f. The focal length is the same at all wavelengths.
+/// For a first layout, for an idealized relay or eyepiece, for tests. Every plane across the axis is imaged sharp and
+/// to scale, n'/s' = n/s + 1/f, at any angle: with u the slope of a ray against the axis and h its height on the lens,
+/// n' u' = n u - h / f. The focal length is the same at all wavelengths.
 ///
 /// It has no glass of its own: what stands behind it is air unless `glass` says otherwise. With `mirror: true` it is an
-/// ideal mirror, of positive focal length where it gathers light. Coatings and Fresnel losses skip it.
+/// ideal mirror, with a positive focal length if it converges light. Coatings and Fresnel losses skip it.
 ///
 /// # Example
 /// ```yaml
@@ -73,7 +73,7 @@ impl ScalarShape for ThinLens {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct ThinLensParams {
-    /// Focal length in air, mm if bare, not 0: positive gathers light.
+    /// Focal length in air, mm if bare, not 0: a positive one converges light.
     focal_length: Length,
 }
 

@@ -69,8 +69,8 @@ impl SagShape for Toroid {
 
 /// A curve in the y-z plane, rotated about an axis parallel to y.
 ///
-/// For anamorphic and astigmatic elements: barrels, tires and their aspheric kin. The curve is z = g(y) = c y^2 / (1 +
-/// sqrt(1 - (1 + k) c^2 y^2)) + a2 y^2 + a4 y^4 + ..., with c = 1 / radius; rotated about the line at z = R =
+/// For anamorphic and astigmatic elements: barrels, tires and their aspheric variants. The curve is z = g(y) = c y^2 /
+/// (1 + sqrt(1 - (1 + k) c^2 y^2)) + a2 y^2 + a4 y^4 + ..., with c = 1 / radius; rotated about the line at z = R =
 /// `rotation-radius` it is (R - z)^2 + x^2 = (R - g(y))^2. With R = inf it is shifted along x instead of rotated: a
 /// cylinder whose section is the curve.
 ///

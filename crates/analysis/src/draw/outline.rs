@@ -2,6 +2,7 @@
 
 use super::View;
 use glam::DVec3;
+use spectra_core::math::sin;
 use spectra_core::surface::Action;
 use spectra_glass::lines;
 use spectra_lens::{Element, Lens, LensMedium};
@@ -96,7 +97,7 @@ fn sag(e: &Element, height_mm: f64, view: &View) -> f64 {
 fn profile(e: &Element, size_mm: f64, view: &View) -> Vec<DVec3> {
     let points = (0..POINTS).filter_map(|i| {
         // Closer together toward the edges, where steep surfaces bend away.
-        let h = size_mm * (std::f64::consts::PI * (i as f64 / (POINTS - 1) as f64 - 0.5)).sin();
+        let h = size_mm * sin(std::f64::consts::PI * (i as f64 / (POINTS - 1) as f64 - 0.5));
         let local = view.across(h, 0.0);
         e.surface.sag_mm(local.x, local.y).map(|z| e.pose.point(local + DVec3::new(0.0, 0.0, z)))
     });

@@ -2,9 +2,10 @@
 
 use super::{DrawnRay, Outlines, Solid, View, outlines, reach_mm};
 use glam::DVec3;
+use spectra_color::spectral_color_srgb8;
+use spectra_core::math::{log10, pow};
 use spectra_lens::Lens;
 use spectra_plot::{Anchor, Canvas, Color, Point, Rect, Stroke, TextStyle};
-use spectra_spectrum::spectral_color_srgb8;
 
 /// Paper or darkness.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -192,7 +193,7 @@ impl Sheet {
         canvas.polyline(&places, &Stroke::new(self.ink(), 1.8).round());
         let Some(middle) = points.get(points.len() / 2) else { return };
         let (a, b) = (scale.at(self.view.place(*middle)), scale.at(self.view.place(behind)));
-        let length = (b[0] - a[0]).hypot(b[1] - a[1]).max(1e-9);
+        let length = ((b[0] - a[0]).powi(2) + (b[1] - a[1]).powi(2)).sqrt().max(1e-9);
         let out = [(b[0] - a[0]) / length * 6.0, (b[1] - a[1]) / length * 6.0];
         let thin = Stroke::new(self.ink().with_opacity(0.7), 0.7);
         let step = places.len().saturating_sub(1).max(1) as f64 / HATCHES as f64;
@@ -243,7 +244,7 @@ impl Sheet {
         let style = TextStyle { color: self.ink(), ..TextStyle::new(12.0) };
         canvas.text([MARGIN, height - 14.0], &self.caption, &style);
         let most = 0.22 * (self.width - 2.0 * MARGIN) / scale.factor;
-        let power = 10.0_f64.powf(most.log10().floor());
+        let power = pow(10.0, log10(most).floor());
         let length = [5.0, 2.0, 1.0].into_iter().map(|m| m * power).find(|l| *l <= most).unwrap_or(power);
         let (right, y) = (self.width - MARGIN, height - 16.0);
         let left = right - length * scale.factor;

@@ -65,34 +65,37 @@ impl Cargo {
             let text = String::from_utf8_lossy(&output.stderr);
             return Err(text.trim().trim_start_matches("error: ").to_owned());
         }
-        serde_json::from_slice(&output.stdout).map_err(|error| format!("its answer is not understood: {error}"))
+        serde_json::from_slice(&output.stdout).map_err(|error| format!("its output cannot be read: {error}"))
     }
 
-    /// Looks whether all of the program shares one `spectra-core`, ours.
-    pub(super) fn check_graph(&self, program: &Program, sources: &Sources) -> Result<(), Failure> {
+    /// The crates of the program, all of which share one `spectra-core`, ours.
+    pub(super) fn check_graph(&self, program: &Program, sources: &Sources) -> Result<Metadata, Failure> {
         let metadata = self.metadata(&program.manifest, &["--filter-platform", env!("SPECTRA_TARGET")]).map_err(|text| {
             if text.contains("links to the native library `spectra-core`") || text.contains("links to native library `spectra-core`") {
-                let fault = Fault::new(format!("two versions of spectra-core meet in this program\n{text}"));
+                let fault = Fault::new(format!("this program would contain two versions of spectra-core\n{text}"));
                 return Failure::from(fault.hint(format!(
-                    "each would know half of the stages: a plugin, or a crate that it depends on, asks for a spectra-core other than {}",
+                    "each would hold some of the stages: a plugin, or a crate it depends on, requires a spectra-core other than {}",
                     crate::version::VERSION
                 )));
             }
             let hint = if self.offline {
-                "without --offline cargo may fetch what it lacks"
+                "without --offline, cargo can download missing crates"
             } else {
-                "cargo could not find a crate that a plugin depends on, or not one that suits all of them"
+                "cargo could not find a crate that a plugin depends on, or no version of it that suits all of them"
             };
-            Fault::new(format!("the program cannot be put together\n{text}")).hint(hint).into()
+            Fault::new(format!("cargo cannot resolve the program's dependencies\n{text}")).hint(hint).into()
         })?;
         let ours = plain(&sources.crate_folder("crates/core/Cargo.toml"));
         let other = metadata.packages.iter().find(|p| p.name == "spectra-core" && plain(&p.manifest_path) != ours);
         match other {
-            None => Ok(()),
+            None => Ok(metadata),
             Some(other) => {
                 let from = other.manifest_path.display();
-                let text = format!("a second spectra-core {} gets into the program, from {from}", other.version);
-                Err(Fault::new(text).hint("its stages would be missing: a plugin asks for it by path or by git").into())
+                let text =
+                    format!("a second spectra-core {} would be linked into the program, from {from}", other.version);
+                Err(Fault::new(text)
+                    .hint("its stages would be missing: a plugin depends on it by path or by git")
+                    .into())
             }
         }
     }
@@ -121,10 +124,10 @@ impl Cargo {
         match report.executable {
             Some(executable) if status.success() => Ok(executable),
             _ if report.faulty.is_empty() => {
-                Err(Failure::Failed(format!("cargo could not build the program ({status}); its words stand above")))
+                Err(Failure::Failed(format!("cargo could not build the program ({status}); see its output above")))
             }
             _ => Err(Failure::Failed(format!(
-                "{} does not compile; the compiler's words stand above",
+                "{} does not compile; see the compiler's output above",
                 report.faulty.join(", ")
             ))),
         }

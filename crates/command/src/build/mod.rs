@@ -6,6 +6,7 @@
 
 mod arguments;
 mod cargo;
+mod notices;
 mod plugin;
 mod program;
 mod stages;
@@ -19,6 +20,7 @@ use cargo::Cargo;
 use plugin::Plugin;
 use program::Program;
 use spectra_core::params::{Fault, Faults};
+use spectra_files::copy_atomically;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -29,7 +31,16 @@ pub(crate) fn build(arguments: &BuildArguments, unpack: Unpack, started: Instant
     let cargo = Cargo::find(arguments.offline)?;
     let plugins = plugins(&arguments.with, &cargo, &sources)?;
     let program = Program::write(&sources, &plugins)?;
-    cargo.check_graph(&program, &sources)?;
+    let graph = cargo.check_graph(&program, &sources)?;
+    let notices = notices::of(&graph, &program, &sources);
+    if !notices.unlicensed.is_empty() {
+        console::warning(&format!(
+            "no license is stated by {}\n  help: without one, others may not use or pass on the program; its author can \
+             add `license = \"...\"` to its Cargo.toml",
+            notices.unlicensed.join(", ")
+        ));
+    }
+    program.set_notices(&notices.text)?;
     let built = cargo.build(&program, arguments.profile.name())?;
     let added = stages::added(&built, &plugins)?;
     install(&built, &output)?;
@@ -82,10 +93,13 @@ fn output(path: &Path, force: bool) -> Result<PathBuf, Failure> {
         return fault("that is a folder", "name the file to write, such as ./spectra-mine");
     }
     if !folder.is_dir() || path.file_name().is_none() {
-        return fault("there is no such folder", "make it first");
+        return fault("there is no such folder", "create it first");
     }
     if !force && path.exists() && !is_ours(&path) {
-        return fault("that is no program that `spectra build` made", "another name, or --force to write over it");
+        return fault(
+            "that file was not made by `spectra build`",
+            "choose another name, or use --force to overwrite it",
+        );
     }
     Ok(path)
 }
@@ -117,13 +131,5 @@ fn is_ours(path: &Path) -> bool {
 
 /// Gives the program its name, once it is whole.
 fn install(built: &Path, output: &Path) -> Result<(), Failure> {
-    let mut hidden = std::ffi::OsString::from(".");
-    hidden.push(output.file_name().unwrap_or_default());
-    hidden.push(format!(".{}.tmp", std::process::id()));
-    let temporary = output.with_file_name(hidden);
-    std::fs::copy(built, &temporary).and_then(|_| std::fs::rename(&temporary, output)).map_err(|error| {
-        // What removal says adds nothing to the fault that is reported.
-        let _ = std::fs::remove_file(&temporary);
-        Failure::Failed(format!("{}: cannot be written: {error}", output.display()))
-    })
+    Ok(copy_atomically(built, output)?)
 }

@@ -24,13 +24,44 @@ pub(crate) struct Plugin {
 #[derive(Debug, Deserialize)]
 pub(super) struct Metadata {
     pub packages: Vec<Package>,
+    /// What depends on what; not asked for where a manifest is read alone.
+    #[serde(default)]
+    pub resolve: Option<Resolve>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Resolve {
+    pub nodes: Vec<Node>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Node {
+    pub id: String,
+    pub deps: Vec<Link>,
+}
+
+/// A crate that another one depends on.
+#[derive(Debug, Deserialize)]
+pub(super) struct Link {
+    pub pkg: String,
+    pub dep_kinds: Vec<LinkKind>,
+}
+
+/// For what: `None` for the code itself, else tests or the build script.
+#[derive(Debug, Deserialize)]
+pub(super) struct LinkKind {
+    pub kind: Option<String>,
 }
 
 #[derive(Debug, Deserialize)]
 pub(super) struct Package {
+    pub id: String,
     pub name: String,
     pub version: String,
     pub manifest_path: PathBuf,
+    pub license: Option<String>,
+    /// A file with terms of its own, where no usual license is named.
+    pub license_file: Option<PathBuf>,
     #[serde(default)]
     targets: Vec<Target>,
     #[serde(default)]
@@ -41,6 +72,15 @@ pub(super) struct Package {
 struct Target {
     name: String,
     crate_types: Vec<String>,
+    #[serde(default)]
+    kind: Vec<String>,
+}
+
+impl Package {
+    /// Whether its code runs in the compiler and is not linked.
+    pub(super) fn is_macro(&self) -> bool {
+        self.targets.iter().any(|target| target.kind.iter().any(|kind| kind == "proc-macro"))
+    }
 }
 
 #[derive(Debug, Deserialize)]
@@ -61,7 +101,7 @@ impl Plugin {
         let manifest = manifest(path)?;
         let metadata = cargo.metadata_alone(&manifest).map_err(|text| {
             let fault = Fault::new(format!("{}: cargo cannot read it: {text}", manifest.display()));
-            fault.hint("a plugin is a crate, as `spectra new plugin NAME --stage surface` makes one")
+            fault.hint("a plugin is a crate such as `spectra new plugin NAME --stage surface` creates")
         })?;
         Self::of(&manifest, metadata, sources)
     }
@@ -72,7 +112,7 @@ impl Plugin {
         let mut names: Vec<String> = metadata.packages.iter().map(|p| format!("`{}`", p.name)).collect();
         let Some(package) = metadata.packages.into_iter().find(|p| plain(&p.manifest_path) == here) else {
             names.sort();
-            let fault = Fault::new(format!("{shown}: a workspace, no crate of its own"));
+            let fault = Fault::new(format!("{shown}: this is a workspace, not a crate"));
             return Err(fault.hint(format!("name the folder of one of its crates: {}", names.join(", "))).into());
         };
         let is_library =
@@ -106,12 +146,12 @@ fn manifest(path: &Path) -> Result<PathBuf, Fault> {
         return if manifest.is_file() {
             Ok(manifest)
         } else {
-            Err(Fault::new(format!("--with {}: no crate; it holds no Cargo.toml", path.display())).hint(hint))
+            Err(Fault::new(format!("--with {}: not a crate: there is no Cargo.toml", path.display())).hint(hint))
         };
     }
     match path.file_name() {
         Some(name) if name == "Cargo.toml" && path.is_file() => Ok(path.to_owned()),
-        _ if path.exists() => Err(Fault::new(format!("--with {}: no crate", path.display())).hint(hint)),
+        _ if path.exists() => Err(Fault::new(format!("--with {}: not a crate", path.display())).hint(hint)),
         _ => Err(Fault::new(format!("--with {}: no such folder", path.display())).hint(hint)),
     }
 }
@@ -124,12 +164,12 @@ fn check_core(core: &Dependency, manifest: &str, sources: &Sources) -> Result<()
         if plain(path) == plain(&sources.crate_folder("crates/core")) {
             return Ok(());
         }
-        let text = format!("{manifest}: its spectra-core comes from {}, the program's does not", path.display());
+        let text = format!("{manifest}: its spectra-core comes from {}, unlike the program's", path.display());
         return Err(Fault::new(text).hint(format!("{write}, or build with that one too: --core {}", path.display())));
     }
     if !core.source.as_deref().is_some_and(|source| source.starts_with(REGISTRY)) {
         let from = core.source.as_deref().unwrap_or("somewhere else");
-        let text = format!("{manifest}: its spectra-core comes from {from}, the program's does not");
+        let text = format!("{manifest}: its spectra-core comes from {from}, unlike the program's");
         return Err(Fault::new(text).hint(write));
     }
     let wanted = VersionReq::parse(&core.req).map_err(|error| Fault::new(format!("{manifest}: {error}")))?;
@@ -138,7 +178,7 @@ fn check_core(core: &Dependency, manifest: &str, sources: &Sources) -> Result<()
     }
     let text = format!("{manifest}: it was written for spectra-core {}, this program has {ours}", core.req);
     Err(Fault::new(text)
-        .hint(format!("{write}, and follow what the compiler says; or build with that version: --core PATH")))
+        .hint(format!("{write}and fix what the compiler reports; or build with that version: --core PATH")))
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use super::plugin::Plugin;
 use crate::outcome::Failure;
-use crate::sources::{Sources, cache, toml, toml_path};
+use crate::sources::{Sources, cache, profiles, target, toml, toml_path};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -27,8 +27,11 @@ const OURS: [(&str, &str); 3] = [
 /// Crates that no program holds: cargo would warn of a patch that it does not use.
 const NOT_IN_PROGRAMS: [&str; 2] = ["spectra-testing", "spectra-plugin-oiio"];
 
+/// The notices of the crates that the plugins bring, beside `main.rs`.
+const NOTICES: &str = "notices.txt";
+
 impl Program {
-    /// Writes it to the cache, one folder a set of plugins; what is there already and equal is left alone, so that cargo
+    /// Writes it to the cache, one folder a set of plugins; what already exists and equal is left alone, so that cargo
     /// finds nothing changed.
     pub(super) fn write(sources: &Sources, plugins: &[Plugin]) -> Result<Self, Failure> {
         let mut key = sources.folder().display().to_string();
@@ -45,10 +48,19 @@ impl Program {
         let lock = folder.join("Cargo.lock");
         write_if_other(&manifest, &manifest_text(&name, sources, plugins)?)?;
         write_if_other(&source.join("main.rs"), &main_text(plugins))?;
+        let notices = source.join(NOTICES);
+        if !notices.is_file() {
+            write_if_other(&notices, "")?;
+        }
         if !lock.is_file() {
             write_if_other(&lock, &sources.read("Cargo.lock")?)?;
         }
-        Ok(Self { name, manifest, target: cache.join("target") })
+        Ok(Self { name, manifest, target: target()? })
+    }
+
+    /// Gives it the notices of the crates that its plugins bring.
+    pub(super) fn set_notices(&self, text: &str) -> Result<(), Failure> {
+        write_if_other(&self.manifest.with_file_name("src").join(NOTICES), text)
     }
 }
 
@@ -76,28 +88,16 @@ fn manifest_text(name: &str, sources: &Sources, plugins: &[Plugin]) -> Result<St
     Ok(text)
 }
 
-/// The sections of a manifest that say how to compile.
-fn profiles(manifest: &str) -> String {
-    let mut kept = String::new();
-    let mut in_profile = false;
-    for line in manifest.lines() {
-        if line.starts_with('[') {
-            in_profile = line.starts_with("[profile.");
-        }
-        if in_profile && !line.starts_with('#') {
-            kept.push_str(line);
-            kept.push('\n');
-        }
-    }
-    kept
-}
-
 fn main_text(plugins: &[Plugin]) -> String {
     let mut text = String::from("//! Written by `spectra build`; changes are lost.\n\nuse spectra_plugins as _;\n");
     for plugin in plugins {
         let _ = writeln!(text, "use {} as _;", plugin.library);
     }
-    text.push_str("\nfn main() -> std::process::ExitCode {\n    spectra_command::main(spectra_workspace::unpack)\n}\n");
+    let _ = write!(
+        text,
+        "\nfn main() -> std::process::ExitCode {{\n    \
+         spectra_command::main_with_notices(spectra_workspace::unpack, include_str!(\"{NOTICES}\"))\n}}\n"
+    );
     text
 }
 
@@ -106,7 +106,7 @@ fn write_if_other(path: &Path, text: &str) -> Result<(), Failure> {
     if std::fs::read_to_string(path).is_ok_and(|old| old == text) {
         return Ok(());
     }
-    spectra_film::write::write_atomically(path, |file| Ok(std::io::Write::write_all(file, text.as_bytes())?))?;
+    spectra_files::write_atomically(path, |file| Ok(std::io::Write::write_all(file, text.as_bytes())?))?;
     Ok(())
 }
 
@@ -123,12 +123,5 @@ mod tests {
     fn hashes_are_fnv1a() {
         assert_eq!([fnv1a(b""), fnv1a(b"a")], [0xcbf2_9ce4_8422_2325, 0xaf63_dc4c_8601_ec8c]);
         assert_eq!(fnv1a(b"foobar"), 0x8594_4171_f739_67e8);
-    }
-
-    #[test]
-    fn profiles_are_taken_over_and_nothing_else() {
-        let manifest = "[package]\nname = \"x\"\n[profile.dev]\n# why\nopt-level = 1\n\n[profile.dev.package.\"*\"]\nopt-level = 2\n[lints]\nworkspace = true\n[profile.release]\ndebug = false\n";
-        let wanted = "[profile.dev]\nopt-level = 1\n\n[profile.dev.package.\"*\"]\nopt-level = 2\n[profile.release]\ndebug = false\n";
-        assert_eq!(profiles(manifest), wanted);
     }
 }

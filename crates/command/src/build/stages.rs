@@ -26,7 +26,7 @@ pub(super) fn added(program: &Path, plugins: &[Plugin]) -> Result<Vec<Vec<String
         return Err(fault.hint("a stage's name must be its own: rename it in `register!`").into());
     }
     let listed: Vec<Listed> = serde_json::from_slice(&output.stdout)
-        .map_err(|error| Failure::Failed(format!("the answer of {} is not understood: {error}", program.display())))?;
+        .map_err(|error| Failure::Failed(format!("the output of {} cannot be read: {error}", program.display())))?;
     let mut faults = Vec::new();
     let mut all = Vec::new();
     for plugin in plugins {

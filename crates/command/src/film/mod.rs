@@ -10,6 +10,7 @@ use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
 use crate::words::figure_of;
 use arguments::{FilmCommand, FilmPlot};
+use spectra_core::names;
 use spectra_core::params::{Fault, nearest};
 use spectra_film::stock::Stock;
 use spectra_plot::{Format, PlotError};
@@ -31,10 +32,11 @@ fn load(name: &str) -> Result<Stock, Failure> {
     let found = if is_file { Ok(name.to_owned()) } else { Bundled::Stock.find(name) };
     let name = found.map_err(|several| {
         let known = Bundled::Stock.names();
+        let all = Bundled::Stock.listed_by();
         let hint = match nearest(name, known.iter().map(String::as_str)) {
-            _ if !several.is_empty() => format!("which one? {}", several.join(", ")),
+            _ if !several.is_empty() => format!("which one? {}", names::listed(&several, all)),
             Some(near) => format!("did you mean `{near}`?"),
-            None => other_kind(name, Bundled::Stock).unwrap_or_else(|| format!("known: {}", known.join(", "))),
+            None => other_kind(name, Bundled::Stock).unwrap_or_else(|| names::hint(name, &known, all)),
         };
         Fault::new(format!("no film stock is called `{name}`")).hint(hint)
     })?;

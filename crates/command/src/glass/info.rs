@@ -98,7 +98,7 @@ fn medium(arguments: &GlassInfo, catalogue: &Catalogue) -> Result<Medium, Failur
             };
             glass.melt(melt.0, melt.1).map(Medium::from).ok_or_else(|| refuse(melt))
         }
-        (None, None) => Err(Failure::Input("a name, or --nd and --vd, says which glass".into())),
+        (None, None) => Err(Failure::Input("name a glass, or give --nd and --vd".into())),
     }
 }
 
@@ -198,8 +198,7 @@ fn warnings(medium: &Medium, glass: Option<&Glass>, arguments: &GlassInfo) -> Ve
     });
     if arguments.absolute && research {
         warnings.push(format!(
-            "{name}: its data are taken to be relative to air; where their paper has them relative to vacuum (gases), \
-             leave out --absolute"
+            "{name}: its data are assumed relative to air; leave out --absolute if they are relative to vacuum, as for gases"
         ));
     }
     warnings

@@ -42,7 +42,7 @@ pub(crate) fn list(arguments: &GlassList) -> Outcome {
     } else {
         console::out(&text(&rows))?;
         if rows.is_empty() {
-            console::note("nothing has such a name; `spectra glass match --nd N --vd V` finds a glass by its figures");
+            console::note("no glass has such a name; `spectra glass match --nd N --vd V` finds a glass by its figures");
         }
     }
     Ok(DONE)

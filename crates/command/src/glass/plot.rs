@@ -4,8 +4,8 @@ use super::arguments::GlassPlot;
 use super::{catalogue, makers, named};
 use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
+use spectra_analysis::figure::{self, AbbeGroup, IndexCurve};
 use spectra_glass::{Catalogue, Category, LineTriple, Medium, Query, lines};
-use spectra_plot::figure::{self, AbbeGroup, IndexCurve};
 use spectra_plot::{Canvas, Format, PlotError};
 use std::path::PathBuf;
 

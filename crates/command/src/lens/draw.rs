@@ -54,7 +54,7 @@ pub(crate) fn draw(arguments: &LensDraw) -> Outcome {
 fn fields_deg(arguments: &LensDraw, lens: &Lens, section: Section) -> Result<Vec<f64>, Failure> {
     if !arguments.fields.is_empty() {
         return match arguments.fields.iter().find(|f| !(f.abs() < 180.0)) {
-            Some(bad) => Err(Failure::Input(format!("--fields: {bad} degrees is no field angle; -180 to 180"))),
+            Some(bad) => Err(Failure::Input(format!("--fields: {bad} degrees is not a field angle; use -180 to 180"))),
             None => Ok(arguments.fields.clone()),
         };
     }

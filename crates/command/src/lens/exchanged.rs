@@ -4,7 +4,7 @@ use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
 use serde_json::json;
 use spectra_exchange::Note;
-use spectra_film::write::write_atomically;
+use spectra_files::write_atomically;
 use std::io::Write;
 use std::path::Path;
 
@@ -19,7 +19,7 @@ pub(super) fn target(output: Option<&Path>, force: bool) -> Result<Option<&Path>
         && path.exists()
     {
         return Err(Failure::Input(format!(
-            "{} exists: give another name, or --force to write over it",
+            "{} exists: choose another name, or use --force to overwrite it",
             path.display()
         )));
     }
@@ -59,7 +59,7 @@ pub(super) fn deliver(
         return Ok(DONE);
     }
     if !left_out.is_empty() {
-        console::note("not carried (what makes light go another way is marked with !):");
+        console::note("not carried (! marks what changes the path of light):");
         for note in left_out {
             console::note(&format!("  {} {note}", if note.alters { "!" } else { "-" }));
         }

@@ -13,9 +13,7 @@ use std::path::Path;
 pub(crate) fn import(arguments: &LensImport) -> Outcome {
     let name = arguments.file.display().to_string();
     let Some(format) = Format::of_name(&name) else {
-        return Err(Failure::Input(format!(
-            "{name}: the ending says no format that is known; .zmx, .seq and .csv are"
-        )));
+        return Err(Failure::Input(format!("{name}: unknown file extension; .zmx, .seq and .csv can be read")));
     };
     let output = target(arguments.output.as_deref(), arguments.force)?;
     let resources = FileResources::beside(Path::new(""));
@@ -29,7 +27,7 @@ pub(crate) fn import(arguments: &LensImport) -> Outcome {
     let code = deliver(&title, lens.surfaces().count(), output, text.as_bytes(), &lens.left_out, arguments.json)?;
     // A file that was written and cannot be loaded: better told now.
     if let Err(faults) = spectra_lens::load(&name, &resources) {
-        console::warning("the lens file needs a hand before it can be used:");
+        console::warning("the lens file must be completed before it can be used:");
         console::faults(&faults);
     }
     Ok(code)

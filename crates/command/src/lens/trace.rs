@@ -6,7 +6,7 @@ use crate::outcome::{DONE, Failure, Outcome};
 use crate::{console, words};
 use spectra_analysis::trace::{Format, TraceError, TraceSummary, trace as trace_rays};
 use spectra_core::{Isa, Loss};
-use spectra_film::write::{WriteFault, write_atomically};
+use spectra_files::{WriteFault, write_atomically};
 use std::fs::File;
 use std::io::{self, BufReader, BufWriter, Read, Write};
 use std::path::Path;

@@ -30,10 +30,11 @@ pub(crate) enum NewCommand {
 #[command(
     long_about = "Create a plugin: a crate with one source file, its tests and a scene.\n\n\
         The new plugin compiles, passes its tests and renders without changes: a surface is a cubic phase plate, a \
-        film a tintype, a source a ring lamp, a sampler an exponential density, an imager a radiometer. Edit it to do \
+        film a tintype (with --layers, a color film), a source a ring lamp, a sampler an exponential density, an imager a radiometer. Edit it to do \
         what you want. There is no source code to download: the program includes its own.",
     after_long_help = "Example:\n  spectra new plugin ripple --stage surface\n  cd ripple\n  \
-        cargo test\n  spectra build --with . -o ./spectra-mine\n  ./spectra-mine run scene.yaml"
+        cargo test --release\n  spectra build --with . -o ./spectra-mine\n  ./spectra-mine run scene.yaml\n\n\
+        Example: a color film of three layers\n  spectra new plugin tricolor --stage film --layers 3"
 )]
 pub(crate) struct NewPlugin {
     /// Name of the crate, and its `kind` in a scene: lower-case letters, digits and hyphens.
@@ -42,6 +43,9 @@ pub(crate) struct NewPlugin {
     /// Kind of stage to create.
     #[arg(long, value_enum)]
     pub stage: Stage,
+    /// For a film: start from one with this many color layers, 1 to 16.
+    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u8).range(1..=16))]
+    pub layers: Option<u8>,
     /// Folder to create it in.
     #[arg(long, value_name = "FOLDER", default_value = ".")]
     pub path: PathBuf,

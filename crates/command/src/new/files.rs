@@ -3,7 +3,7 @@
 use super::name::camel_case;
 use crate::outcome::Failure;
 use spectra_core::params::Fault;
-use std::io;
+use spectra_files::write_folder;
 use std::path::{Path, PathBuf};
 
 /// A template with a name in place of `my-stage` and `MyStage`.
@@ -40,36 +40,12 @@ impl Folder {
         if parent.is_dir() {
             return Ok(());
         }
-        Err(Fault::new(format!("--path {}: there is no such folder", parent.display())).hint("make it first").into())
+        Err(Fault::new(format!("--path {}: there is no such folder", parent.display())).hint("create it first").into())
     }
 
-    /// Writes all of it under another name, then gives it its own.
+    /// Writes all of it, or nothing.
     pub(super) fn write(self) -> Result<(), Failure> {
-        let name = self.path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let temporary = self.path.with_file_name(format!(".{name}.{}.tmp", std::process::id()));
-        let written = self.write_to(&temporary).and_then(|()| {
-            // Renaming would take the place of an empty folder that somebody has made meanwhile.
-            if self.path.exists() {
-                Err(io::ErrorKind::AlreadyExists.into())
-            } else {
-                std::fs::rename(&temporary, &self.path)
-            }
-        });
-        written.map_err(|error| {
-            // What removal says adds nothing to the fault that is reported.
-            let _ = std::fs::remove_dir_all(&temporary);
-            Failure::Failed(format!("{}: cannot be written: {error}", self.path.display()))
-        })
-    }
-
-    fn write_to(&self, folder: &Path) -> io::Result<()> {
-        std::fs::create_dir(folder)?;
-        for (name, text) in &self.files {
-            let path = folder.join(name);
-            std::fs::create_dir_all(path.parent().unwrap_or(folder))?;
-            std::fs::write(path, text)?;
-        }
-        Ok(())
+        write_folder(&self.path, &self.files).map_err(|error| Failure::Failed(error.to_string()))
     }
 }
 
@@ -80,15 +56,5 @@ mod tests {
     #[test]
     fn paths_are_typed_as_people_do() {
         assert_eq!([typed(Path::new("./a/b.yaml")), typed(Path::new("a b"))], ["a/b.yaml", "'a b'"]);
-    }
-
-    #[test]
-    fn nothing_is_left_of_what_fails() {
-        let parent = tempfile::tempdir().unwrap();
-        let mut folder = Folder::new(parent.path().join("x"));
-        folder.file("a/b", "text".into());
-        folder.file("a", "a folder has that name".into());
-        assert!(folder.write().is_err());
-        assert_eq!(std::fs::read_dir(parent.path()).unwrap().count(), 0);
     }
 }

@@ -43,11 +43,11 @@ fn file(arguments: &NewFile, template: &str) -> Result<String, Failure> {
     name::check(name)?;
     let path = arguments.path.join(format!("{name}.yaml"));
     if path.exists() {
-        let fault = Fault::new(format!("{} is there already", path.display()));
+        let fault = Fault::new(format!("{} already exists", path.display()));
         return Err(fault.hint("choose another name, or remove it first").into());
     }
     Folder::must_exist(&arguments.path)?;
     let text = filled(template, name);
-    spectra_film::write::write_atomically(&path, |file| Ok(std::io::Write::write_all(file, text.as_bytes())?))?;
+    spectra_files::write_atomically(&path, |file| Ok(std::io::Write::write_all(file, text.as_bytes())?))?;
     Ok(files::typed(&path))
 }

@@ -79,19 +79,23 @@ pub(super) fn check(name: &str) -> Result<(), Failure> {
     let shown: String = name.chars().take(LONGEST).collect();
     if name.is_empty() || name.len() > LONGEST {
         return fault(format!(
-            "`{shown}` is no name: it has {} letters, 1 to {LONGEST} are good",
+            "`{shown}` is not a valid name: it has {} characters, 1 to {LONGEST} are allowed",
             name.chars().count()
         ));
     }
     let good = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
     if let Some(bad) = name.chars().find(|c| !good(*c)) {
-        return fault(format!("`{}` is no name: `{}` cannot stand in it", shown.escape_debug(), bad.escape_debug()));
+        return fault(format!(
+            "`{}` is not a valid name: `{}` is not allowed in it",
+            shown.escape_debug(),
+            bad.escape_debug()
+        ));
     }
     if !name.starts_with(|c: char| c.is_ascii_lowercase()) {
-        return fault(format!("`{name}` is no name: it begins with no letter"));
+        return fault(format!("`{name}` is not a valid name: it does not begin with a letter"));
     }
     if name.ends_with('-') || name.contains("--") {
-        return fault(format!("`{name}` is no name: hyphens stand between words"));
+        return fault(format!("`{name}` is not a valid name: hyphens go between words"));
     }
     Ok(())
 }
@@ -100,15 +104,15 @@ pub(super) fn check(name: &str) -> Result<(), Failure> {
 pub(super) fn check_plugin(name: &str, stage: &str) -> Result<(), Failure> {
     check(name)?;
     if RESERVED.contains(&name) {
-        let fault = Fault::new(format!("`{name}` cannot be the name of a crate: Rust has it"));
+        let fault = Fault::new(format!("`{name}` cannot be the name of a crate: Rust reserves it"));
         return Err(fault.hint(format!("such as `my-{name}`")).into());
     }
     if name.starts_with("spectra-") {
-        let fault = Fault::new(format!("`{name}`: crates of spectra itself are called so"));
+        let fault = Fault::new(format!("`{name}`: names like this are reserved for the crates of spectra"));
         return Err(fault.hint(format!("such as `{}`", name.trim_start_matches("spectra-"))).into());
     }
     if let Some(taken) = registry::list().into_iter().find(|l| l.stage == stage && l.name == name) {
-        let text = format!("{stage} `{name}` is there already, in crate {} {}", taken.package, taken.version);
+        let text = format!("{stage} `{name}` already exists, in crate {} {}", taken.package, taken.version);
         return Err(Fault::new(text)
             .hint(format!("choose another name; `spectra doc {stage}/{name}` shows that one"))
             .into());

@@ -1,8 +1,8 @@
 //! Ctrl-C: once to stop and keep what there is, twice to give it up.
 
-use super::leftover;
 use crate::console;
-use spectra_render::Control;
+use spectra_files::leftover;
+use spectra_session::Control;
 use std::path::Path;
 use std::sync::atomic::{AtomicU8, AtomicU32, Ordering::SeqCst};
 use std::sync::{Arc, Mutex, PoisonError};

@@ -54,10 +54,8 @@ impl Drop for SetUp {
 }
 
 fn say(limit_s: f64, is_json: bool, is_quiet: bool) {
-    let text = format!(
-        "the time limit of {} was over before any light was traced: nothing is written",
-        words::duration(limit_s)
-    );
+    let text =
+        format!("the time limit of {} ended before rendering began: nothing was written", words::duration(limit_s));
     if is_json {
         let _ = console::json(&json!({ "event": "stopping", "message": text }));
     } else if !is_quiet {

@@ -1,19 +1,13 @@
 //! What is said while a scene renders.
 
-use super::direction;
-use super::picture::films;
-use super::report::Report;
-use super::series::Checking;
-use super::summary;
 use crate::arguments::Run;
 use crate::{console, words};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::{Value, json};
 use spectra_core::Isa;
 use spectra_core::params::Warning;
-use spectra_render::Control;
 use spectra_scene::{Scene, diagnostics};
-use std::path::PathBuf;
+use spectra_session::{Control, Event, Place, Report, films};
 use std::time::{Duration, Instant};
 
 /// Who listens.
@@ -37,17 +31,6 @@ pub(crate) struct Progress {
     stopping: bool,
     /// Of several pictures, which one is rendered.
     place: Option<Place>,
-}
-
-/// A picture among several.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Place {
-    /// Its number: in the sweep, or of the frame.
-    pub number: u32,
-    /// How many are rendered before it.
-    pub index: usize,
-    /// How many there are.
-    pub of: usize,
 }
 
 /// One JSON event in this time.
@@ -74,7 +57,7 @@ impl State {
 
 impl Progress {
     /// Nothing is said yet.
-    pub(crate) fn new(arguments: &Run, deadline: Option<Instant>) -> Self {
+    pub(super) fn new(arguments: &Run, deadline: Option<Instant>) -> Self {
         let listener = if arguments.quiet {
             Listener::Quiet
         } else if arguments.json {
@@ -87,14 +70,20 @@ impl Progress {
         Self { listener, deadline, begun: Instant::now(), said: Instant::now(), stopping: false, place: None }
     }
 
-    /// From now on it is this one of several pictures.
-    pub(crate) fn picture(&mut self, place: Place) {
-        self.place = Some(place);
-    }
-
-    /// No picture is rendered any more.
-    pub(crate) fn no_picture(&mut self) {
-        self.place = None;
+    /// Says what goes on.
+    pub(super) fn hear(&mut self, event: Event<'_>, threads: usize, isa: Isa) {
+        match event {
+            Event::Checked { done, of } => self.checking(done, of),
+            Event::Ready => {}
+            Event::Warning(warning) => self.warning(warning),
+            Event::Note(text) => self.note(text),
+            Event::Series(text, event) => self.series(text, event.clone()),
+            Event::Picture(place) => self.place = place,
+            Event::Start(scene) => self.start(scene, threads, isa),
+            Event::Traced => self.finish(),
+            Event::Written(files) => self.written(files),
+            Event::Done { report, stopped } => self.done(report, stopped),
+        }
     }
 
     /// `3 of 6: `, where there are several.
@@ -113,7 +102,7 @@ impl Progress {
     }
 
     /// A remark on what is going to be made, or was.
-    pub(crate) fn series(&self, text: &str, event: Value) {
+    fn series(&self, text: &str, event: Value) {
         match &self.listener {
             Listener::Json => self.event(event),
             Listener::Quiet => {}
@@ -124,7 +113,7 @@ impl Progress {
     }
 
     /// What a person should know before believing the picture.
-    pub(crate) fn warning(&self, warning: &Warning) {
+    fn warning(&self, warning: &Warning) {
         match &self.listener {
             Listener::Json => {
                 let mut event = diagnostics::warning_to_json(warning);
@@ -137,27 +126,30 @@ impl Progress {
     }
 
     /// How far the check of all pictures is, before any is rendered.
-    pub(crate) fn checking(&mut self, checking: Checking) {
+    fn checking(&mut self, done: usize, of: usize) {
+        if of < 2 {
+            return;
+        }
         let elapsed = self.said.elapsed();
         match &self.listener {
             Listener::Bar(bar) => {
-                bar.set_position((checking.done as u64 * u64::from(BAR_STEPS)) / checking.of.max(1) as u64);
-                bar.set_message(format!("{} of {} pictures checked", checking.done, checking.of));
+                bar.set_position((done as u64 * u64::from(BAR_STEPS)) / of.max(1) as u64);
+                bar.set_message(format!("{} of {} pictures checked", done, of));
             }
             Listener::Json if elapsed >= JSON_EVERY => {
                 self.said = Instant::now();
-                self.event(json!({ "event": "check", "done": checking.done, "of": checking.of }));
+                self.event(json!({ "event": "check", "done": done, "of": of }));
             }
             Listener::Lines if elapsed >= LINE_EVERY => {
                 self.said = Instant::now();
-                console::note(&format!("{} of {} pictures checked", checking.done, checking.of));
+                console::note(&format!("{} of {} pictures checked", done, of));
             }
             Listener::Json | Listener::Lines | Listener::Quiet => {}
         }
     }
 
     /// What is worth knowing of how the scene is taken.
-    pub(crate) fn note(&self, text: &str) {
+    fn note(&self, text: &str) {
         match &self.listener {
             Listener::Json => self.event(json!({ "event": "note", "message": text })),
             Listener::Quiet => {}
@@ -166,7 +158,7 @@ impl Progress {
     }
 
     /// Light is traced from now on.
-    pub(crate) fn start(&mut self, scene: &Scene, threads: usize, isa: Isa) {
+    fn start(&mut self, scene: &Scene, threads: usize, isa: Isa) {
         self.begun = Instant::now();
         self.said = self.begun;
         let size = scene.imager.size();
@@ -175,7 +167,7 @@ impl Progress {
                 "event": "start",
                 "scene": scene.name,
                 "lens": scene.lens.name,
-                "direction": direction(scene),
+                "direction": scene.render.direction.name(),
                 "width_px": size.width_px,
                 "height_px": size.height_px,
                 "seed": scene.render.seed,
@@ -193,7 +185,7 @@ impl Progress {
                     size.width_px,
                     size.height_px,
                     scene.lens.name,
-                    direction(scene)
+                    scene.render.direction.name()
                 ));
             }
         }
@@ -205,12 +197,12 @@ impl Progress {
     }
 
     /// Called many times a second.
-    pub(crate) fn tick(&mut self, control: &Control, interrupted: bool) {
+    pub(super) fn tick(&mut self, control: &Control, interrupted: bool) {
         if interrupted && !self.stopping {
             self.stopping = true;
             self.say(match self.place {
-                None => "stopping: what there is will be written; Ctrl-C again gives it up",
-                Some(_) => "stopping: the pictures that are finished are kept",
+                None => "stopping: the picture so far will be written; Ctrl-C again discards it",
+                Some(_) => "stopping: finished pictures are kept",
             });
         }
         let state = self.state(control);
@@ -280,31 +272,31 @@ impl Progress {
     }
 
     /// No more light is traced.
-    pub(crate) fn finish(&self) {
+    fn finish(&self) {
         if let Listener::Bar(bar) = &self.listener {
             bar.finish_and_clear();
         }
     }
 
     /// Files are complete.
-    pub(crate) fn written(&self, paths: &[PathBuf]) {
+    fn written(&self, paths: &[String]) {
         match &self.listener {
             Listener::Json => {
                 for path in paths {
-                    self.event(json!({ "event": "written", "path": path.display().to_string() }));
+                    self.event(json!({ "event": "written", "path": path }));
                 }
             }
             Listener::Quiet => {}
             // A reader that has gone away misses the names, not the files.
             Listener::Bar(_) | Listener::Lines if !paths.is_empty() => {
-                drop(console::out(&format!("wrote {}\n", summary::files(paths))));
+                drop(console::out(&format!("wrote {}\n", words::files(paths))));
             }
             Listener::Bar(_) | Listener::Lines => {}
         }
     }
 
     /// The end.
-    pub(crate) fn done(&self, report: &Report<'_>, interrupted: bool) {
+    fn done(&self, report: &Report<'_>, interrupted: bool) {
         let rendering = report.rendering;
         match &self.listener {
             Listener::Json => self.event(json!({
@@ -317,7 +309,7 @@ impl Progress {
                 "interrupted": interrupted,
             })),
             Listener::Quiet => {}
-            Listener::Bar(_) | Listener::Lines => console::note(&summary::of(report)),
+            Listener::Bar(_) | Listener::Lines => console::note(&report.summary()),
         }
     }
 }

@@ -5,12 +5,14 @@ use super::{files, load_illuminant};
 use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
 use serde::Serialize;
+use spectra_analysis::figure;
+use spectra_color::{RgbSpace, RoundTrip, from_u8, to_u8};
 use spectra_core::params::{Params, SourceFile};
-use spectra_core::registry::{self, ColorEntry, Context, Stage};
+use spectra_core::registry::{self, Context, Entry, Stage};
 use spectra_core::stage::ColorModel;
-use spectra_plot::{Format, figure};
+use spectra_plot::Format;
 use spectra_scene::yaml;
-use spectra_spectrum::{BAND, LineColor, Observer, RgbSpace, RoundTrip, from_u8, named_line, to_u8};
+use spectra_spectrum::{BAND, LineColor, Observer, named_line};
 use std::fmt::Write as _;
 
 /// A model by the name under which it is shown.
@@ -20,7 +22,7 @@ struct Model {
     default: bool,
 }
 
-fn entries() -> Vec<&'static ColorEntry> {
+fn entries() -> Vec<&'static Entry<dyn ColorModel>> {
     let mut entries = <dyn ColorModel as Stage>::entries();
     // The one that scenes take by themselves first.
     entries.sort_by_key(|e| (!e.default, e.name));
@@ -51,7 +53,7 @@ fn models(wanted: &[String], illuminant: &str) -> Result<Vec<Model>, Failure> {
 
 fn round_trip(model: &Model) -> Result<RoundTrip<'_>, Failure> {
     RoundTrip::new(model.model.as_ref())
-        .ok_or_else(|| Failure::Input(format!("--model {}: its white is not seen", model.name)))
+        .ok_or_else(|| Failure::Input(format!("--model {}: its white has no visible light", model.name)))
 }
 
 /// A color's round trip by one model.
@@ -89,7 +91,7 @@ pub(crate) fn color(arguments: &SpectrumColor) -> Outcome {
             srgb: back.map(|v| to_u8(v / 255.0)),
             srgb_linear: trip.linear(linear),
             largest_difference: back.iter().zip(rgb).map(|(b, v)| (b - f64::from(v)).abs()).fold(0.0, f64::max),
-            xy: spectra_spectrum::chromaticity(Observer::cie_1931_2deg().xyz_of_power(&power)),
+            xy: spectra_color::chromaticity(Observer::cie_1931_2deg().xyz_of_power(&power)),
             peak_nm: peak.0,
             lines: power.lines.iter().filter(|l| l.power > 0.0).count(),
         });
@@ -129,7 +131,7 @@ pub(crate) fn color(arguments: &SpectrumColor) -> Outcome {
 /// `255 128 64`, or `#ff8040`.
 fn rgb(words: &[String]) -> Result<[u8; 3], Failure> {
     let wrong = || {
-        let text = format!("`{}` is no color: write three values of 0 to 255, or #ff8040", words.join(" "));
+        let text = format!("`{}` is not a color: write three values of 0 to 255, or #ff8040", words.join(" "));
         Failure::Input(text)
     };
     match words {

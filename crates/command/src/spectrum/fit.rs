@@ -5,7 +5,7 @@ use super::load;
 use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
 use serde::Serialize;
-use spectra_film::write::write_atomically;
+use spectra_files::write_atomically;
 use spectra_spectrum::{Found, GaussianFit, GaussianMixture, Grid, Line, fit_gaussians};
 use std::fmt::Write as _;
 use std::io::Write as _;
@@ -103,7 +103,7 @@ fn grid(arguments: &SpectrumFit) -> Result<Grid, Failure> {
     // As many whole steps as fit.
     let count = ((to - from) / step + 1e-9).floor() as usize + 1;
     if count < 2 {
-        return Err(Failure::Input(format!("--band {from},{to} holds no two points {step} nm apart")));
+        return Err(Failure::Input(format!("--band {from},{to} is narrower than the step of {step} nm")));
     }
     Ok(Grid { start_nm: from, step_nm: step, count })
 }

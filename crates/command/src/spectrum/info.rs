@@ -5,11 +5,11 @@ use super::{files, load_as, load_illuminant, tell_reading};
 use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
 use serde::Serialize;
-use spectra_spectrum::{
-    Adaptation, BAND, Dominant, Emission, Found, Gamut, Kind, Observer, RgbSpace, Strengths, Tabulated, cct,
-    chromaticity, dominant_wavelength, find_in, function_in, into_gamut, lab, meta_in, to_u8, xyz_of_light,
-    xyz_of_reflectance, xyz_of_transmittance,
+use spectra_color::{
+    Adaptation, Dominant, Gamut, RgbSpace, cct, chromaticity, dominant_wavelength, into_gamut, lab, to_u8,
+    xyz_of_light, xyz_of_reflectance, xyz_of_transmittance,
 };
+use spectra_spectrum::{BAND, Emission, Found, Kind, Observer, Strengths, Tabulated, find_in, function_in, meta_in};
 use std::fmt::Write;
 
 /// About the least that an eye sees after an hour in the dark, cd/m2.
@@ -61,7 +61,7 @@ pub(crate) fn info(arguments: &SpectrumInfo) -> Outcome {
     let observer = observer(arguments.observer);
     let standard = Observer::cie_1931_2deg();
     let white = |observer| {
-        let none = || Failure::Input(format!("--illuminant: nothing of `{}` is seen", arguments.illuminant));
+        let none = || Failure::Input(format!("--illuminant: `{}` has no visible light", arguments.illuminant));
         xyz_of_light(&illuminant, observer).ok_or_else(none)
     };
     let meta = meta_in(&arguments.name, &files()).unwrap_or_default();
@@ -213,7 +213,7 @@ fn peak_nm(found: &Found) -> Option<f64> {
 }
 
 /// What estimated strengths of lines are good for.
-const ESTIMATED: &str = "estimated by observers: lines far apart do not compare, and what follows of color is a guess";
+const ESTIMATED: &str = "estimated by eye: lines far apart are not comparable, so the colors below are a guess";
 
 /// The report as a person reads it.
 fn text(report: &Report, found: &Found) -> String {

@@ -5,11 +5,10 @@ use super::{files, load_as, load_illuminant, tell_reading};
 use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
 use crate::words::figure_of;
-use spectra_plot::{Format, PlotError, figure};
-use spectra_spectrum::{
-    BAND, Emission, Found, Observer, chromaticity, find_in, function_in, xyz_of_light, xyz_of_reflectance,
-    xyz_of_transmittance,
-};
+use spectra_analysis::figure;
+use spectra_color::{chromaticity, xyz_of_light, xyz_of_reflectance, xyz_of_transmittance};
+use spectra_plot::{Format, PlotError};
+use spectra_spectrum::{BAND, Emission, Found, Observer, find_in, function_in};
 
 /// Draws spectra, or their chromaticities.
 pub(crate) fn plot(arguments: &SpectrumPlot) -> Outcome {

@@ -13,6 +13,7 @@ use super::quantity::Form;
 use super::text::{found, hint_for, listed, nearest, shown};
 use super::units::Reading;
 use super::whole::{Exact, limits_of};
+use crate::names;
 use serde_json::Value as Schema;
 use std::sync::Arc;
 
@@ -168,19 +169,14 @@ impl<'s> Check<'s> {
     }
 
     fn word(&mut self, at: &At<'_, '_>, words: &[&str]) {
-        let all = listed(words.iter().copied());
-        match (at.node.as_str(), words) {
-            (Some(text), _) if words.contains(&text) => {}
-            (Some(text), _) => {
-                let hint = match nearest(text, words.iter().copied()) {
-                    Some(near) if words.len() == 1 => format!("did you mean `{near}`?"),
-                    Some(near) => format!("did you mean `{near}`? Known: {all}"),
-                    None => format!("known: {all}"),
-                };
+        match at.node.as_str() {
+            Some(text) if words.contains(&text) => {}
+            Some(text) => {
+                let hint = names::hint(text, words, "");
                 let of = at.key().map_or_else(String::new, |key| format!(" for `{}`", shown(key)));
                 self.say(at, &format!("unknown value `{}`{of}\nhint: {hint}", shown(text)));
             }
-            (None, _) => self.mismatch(at, &format!("one of {all}"), None),
+            None => self.mismatch(at, &format!("one of {}", names::listed(words, "")), None),
         }
     }
 

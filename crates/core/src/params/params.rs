@@ -37,7 +37,7 @@ impl Params {
             _ => {
                 let message = format!("found {}, expected a map such as {{kind: ...}}", found(&node));
                 let hint = match &node.value {
-                    Value::Seq(_) => "one map: leave out `- ` and brackets",
+                    Value::Seq(_) => "write one map, without `- ` or brackets",
                     _ => "name its `kind` there, and what else that wants",
                 };
                 return Err(node.fault(message).path(path).hint(hint).into());
@@ -66,7 +66,7 @@ impl Params {
             _ => Err(node
                 .fault(format!("found {}, expected a map such as {{key: value}}", found(&node)))
                 .path(path)
-                .hint("write `key: value`, one a line, or {key: value, ...}")
+                .hint("write `key: value`, one per line, or {key: value, ...}")
                 .into()),
         }
     }

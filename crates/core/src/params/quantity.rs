@@ -156,7 +156,7 @@ impl<'a> Form<'a> {
                 found(&format!("the text `{}`", shown(text)), "write a decimal point, not a comma")
             }
             Reading::UnknownUnit(unit) if unit.starts_with('/') => {
-                found(&shown(text), "below the line stands a number greater than 0, as in `1/125`")
+                found(&shown(text), "the denominator must be greater than 0, as in `1/125`")
             }
             Reading::UnknownUnit(unit) => {
                 let units = self.dimension.units();

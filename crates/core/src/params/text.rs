@@ -2,6 +2,7 @@
 
 use super::node::{Node, Value};
 use super::units::Reading;
+use crate::names::Match;
 use std::fmt::Write;
 
 /// Longest part of a user's text that a message repeats, in characters.
@@ -68,14 +69,14 @@ pub(super) fn listed<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
 pub(super) fn hint_for(name: &str, what: &str, known: &[&str]) -> String {
     match nearest(name, known.iter().copied()) {
         Some(near) => format!("did you mean `{near}`?"),
-        None if known.is_empty() => format!("no {what} is known here"),
+        None if known.is_empty() => format!("no {what}s are allowed here"),
         None => format!("known {what}s: {}", listed(known.iter().copied())),
     }
 }
 
 /// The known name nearest to `name` by edit distance (insertions, deletions, replacements, swaps of neighbors; case is ignored,
 /// and `_` equals `-`), if it is near enough: one edit for short names, a third of the length for long ones. The first one if
-/// several are equally near.
+/// several are equally near; else the only one that `name` is a part of ([`crate::names::find`]).
 #[must_use]
 pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     /// No key is longer than this. Limits the work, which grows with the product of both lengths.
@@ -88,8 +89,10 @@ pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Opti
     if name.is_empty() || name.len() > LONGEST {
         return None;
     }
+    let typed: String = name.iter().collect();
+    let known: Vec<&str> = known.into_iter().collect();
     let mut best: Option<(usize, &str)> = None;
-    for candidate in known {
+    for candidate in known.iter().copied() {
         let other = letters(candidate);
         if other.len() > LONGEST {
             continue;
@@ -108,7 +111,13 @@ pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Opti
             best = Some((distance, candidate));
         }
     }
-    best.map(|(_, name)| name)
+    if let Some((_, name)) = best {
+        return Some(name);
+    }
+    match crate::names::find(&typed, known) {
+        Match::One(name) => Some(name),
+        _ => None,
+    }
 }
 
 /// Optimal string alignment distance.
@@ -148,6 +157,7 @@ mod tests {
             ("kn", None),
             ("konik", None),
             ("zzz", None),
+            ("diameter", Some("semi-diameter")),
             ("", None),
         ] {
             assert_eq!(nearest(typed, known), near, "{typed}");

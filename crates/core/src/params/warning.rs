@@ -53,13 +53,19 @@ impl Warnings {
         Self { all: RefCell::new(Vec::new()), ends: RefCell::new(Vec::new()) }
     }
 
-    /// Adds one, unless it is there already.
+    /// Adds one, unless it already exists.
     pub fn push(&self, warning: impl Into<Warning>) {
         let warning = warning.into();
         let mut all = self.all.borrow_mut();
         if !all.contains(&warning) {
             all.push(warning);
         }
+    }
+
+    /// The warnings added so far.
+    #[must_use]
+    pub fn all(&self) -> Vec<Warning> {
+        self.all.borrow().clone()
     }
 
     /// All warnings, in the order in which they were added.

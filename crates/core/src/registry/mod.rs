@@ -58,10 +58,10 @@ use crate::spectral::{Grid, SpectralPower};
 use crate::stage::{ColorModel, Film, Imager, Response, Source, WavelengthSampler};
 use crate::surface::Surface;
 use crate::view::View;
-use schemars::{JsonSchema, Schema, SchemaGenerator};
+use schemars::{Schema, SchemaGenerator};
 
-#[doc(hidden)] // for `register!`
-pub use inventory;
+#[doc(hidden)] // for `register!` and `declare!`
+pub use {inventory, schemars::JsonSchema};
 
 /// What a builder may use besides its parameters.
 #[derive(Clone, Copy)]
@@ -134,7 +134,8 @@ impl<S: ?Sized> Entry<S> {
 /// The stages are `source`, `color`, `wavelengths`, `surface`, `imager`, `response` and `film`. The type of the parameters
 /// implements `Deserialize` and `JsonSchema`; its doc comment is what `spectra doc` shows: a summary, more text, and optionally
 /// `# Example` with a block of YAML and `# References`. `build` is a [`registry::Build`](crate::registry::Build). Write
-/// `(default)` after the name of the kind that a scene gets if it names none.
+/// `(default)` after the name of the kind that a scene gets if it names none. A kind of stage that another crate declares (see
+/// [`declare!`](crate::declare)) is named by its entry: `register!(spectra_scene::OutputEntry, "spots": SpotsParams, build);`.
 #[macro_export]
 macro_rules! register {
     ($stage:ident $name:literal (default): $params:ty, $build:expr) => {
@@ -143,9 +144,15 @@ macro_rules! register {
     ($stage:ident $name:literal: $params:ty, $build:expr) => {
         $crate::register!(@entry $stage, $name, false, $params, $build);
     };
+    ($kind:ty, $name:literal: $params:ty, $build:expr) => {
+        $crate::register!(@of $kind, $name, false, $params, $build);
+    };
     (@entry $stage:ident, $name:literal, $default:literal, $params:ty, $build:expr) => {
+        $crate::register!(@of $crate::register!(@type $stage), $name, $default, $params, $build);
+    };
+    (@of $kind:ty, $name:literal, $default:literal, $params:ty, $build:expr) => {
         $crate::registry::inventory::submit! {
-            <$crate::register!(@type $stage)>::new::<$params>(
+            <$kind>::new::<$params>(
                 $name,
                 env!("CARGO_PKG_NAME"),
                 env!("CARGO_PKG_VERSION"),
@@ -178,40 +185,69 @@ pub trait Stage: 'static {
     fn entries() -> Vec<&'static Entry<Self>>;
 }
 
-macro_rules! stages {
-    ($($alias:ident, $stage:ty, $name:literal, $doc:literal;)*) => {
-        $(
-            #[doc = $doc]
-            pub type $alias = Entry<$stage>;
-            inventory::collect!($alias);
-            impl Stage for $stage {
-                const NAME: &'static str = $name;
-                fn entries() -> Vec<&'static Entry<Self>> {
-                    inventory::iter::<$alias>.into_iter().collect()
-                }
-            }
-        )*
+/// Declares a kind of stage: `declare!(SourceEntry, dyn Source, "source", "A registered source.");`. The crate that owns the trait
+/// does so, once; stages of it are then registered by `register!(path::SourceEntry, "name": Params, build)`.
+#[macro_export]
+macro_rules! declare {
+    ($entry:ident, $stage:ty, $name:literal, $doc:literal) => {
+        #[doc = $doc]
+        pub struct $entry($crate::registry::Entry<$stage>);
 
-        /// Every stage that is registered, sorted by stage and name.
-        #[must_use]
-        pub fn list() -> Vec<Listed> {
-            let mut all = Vec::new();
-            $(all.extend(<$stage as Stage>::entries().into_iter().map(Listed::of));)*
-            all.sort_by_key(|l| (l.stage, l.name, l.package));
-            all
+        impl $entry {
+            /// An entry whose parameters are a `P`; see the fields of [`Entry`]($crate::registry::Entry).
+            #[must_use]
+            pub const fn new<P: $crate::registry::JsonSchema>(
+                name: &'static str,
+                package: &'static str,
+                version: &'static str,
+                default: bool,
+                build: $crate::registry::Build<$stage>,
+            ) -> Self {
+                Self($crate::registry::Entry::new::<P>(name, package, version, default, build))
+            }
         }
+
+        $crate::registry::inventory::collect!($entry);
+
+        impl $crate::registry::Stage for $stage {
+            const NAME: &'static str = $name;
+            fn entries() -> Vec<&'static $crate::registry::Entry<Self>> {
+                $crate::registry::inventory::iter::<$entry>.into_iter().map(|entry| &entry.0).collect()
+            }
+        }
+
+        $crate::registry::inventory::submit! { $crate::registry::Declared::of::<$stage>() }
     };
 }
 
-stages! {
-    SourceEntry, dyn Source, "source", "A registered source.";
-    ColorEntry, dyn ColorModel, "color", "A registered color model.";
-    SamplerEntry, dyn WavelengthSampler, "wavelengths", "A registered wavelength sampler.";
-    SurfaceEntry, dyn Surface, "surface", "A registered surface.";
-    ImagerEntry, dyn Imager, "imager", "A registered imager.";
-    ResponseEntry, dyn Response, "response", "A registered response of a detector.";
-    FilmEntry, dyn Film, "film", "A registered film process.";
+/// A kind of stage that is declared; see [`crate::declare!`].
+pub struct Declared(fn() -> Vec<Listed>);
+
+impl Declared {
+    /// The kind that a trait stands for.
+    #[must_use]
+    pub const fn of<S: Stage + ?Sized>() -> Self {
+        Self(|| S::entries().into_iter().map(Listed::of).collect())
+    }
 }
+
+inventory::collect!(Declared);
+
+/// Every stage that is registered, sorted by stage and name.
+#[must_use]
+pub fn list() -> Vec<Listed> {
+    let mut all: Vec<Listed> = inventory::iter::<Declared>.into_iter().flat_map(|kind| (kind.0)()).collect();
+    all.sort_by_key(|l| (l.stage, l.name, l.package));
+    all
+}
+
+declare!(SourceEntry, dyn Source, "source", "A registered source.");
+declare!(ColorEntry, dyn ColorModel, "color", "A registered color model.");
+declare!(SamplerEntry, dyn WavelengthSampler, "wavelengths", "A registered wavelength sampler.");
+declare!(SurfaceEntry, dyn Surface, "surface", "A registered surface.");
+declare!(ImagerEntry, dyn Imager, "imager", "A registered imager.");
+declare!(ResponseEntry, dyn Response, "response", "A registered response of a detector.");
+declare!(FilmEntry, dyn Film, "film", "A registered film process.");
 
 /// A registered stage without what builds it.
 #[derive(Clone, Copy, Debug)]
@@ -274,7 +310,7 @@ fn check_list(all: &[Listed]) -> Result<(), Vec<String>> {
                 ));
             } else if a.stage == b.stage && a.default && b.default {
                 faults.push(format!(
-                    "{}: both `{}` of crate {} and `{}` of crate {} want to be the default",
+                    "{}: both `{}` of crate {} and `{}` of crate {} are marked as the default",
                     a.stage, a.name, a.package, b.name, b.package
                 ));
             }
@@ -302,15 +338,15 @@ pub fn build<S: Stage + ?Sized>(params: &Params, context: &Context<'_>) -> Resul
 }
 
 fn unknown_kind(params: &Params, stage: &str, names: &[&str]) -> Fault {
-    let known = names.join(", ");
+    let list = format!("spectra list {stage}");
+    let known = crate::names::listed(names, &list);
     match params.kind() {
         Some(kind) => {
-            let near = crate::params::nearest(kind, names.iter().copied());
-            let hint = match near {
-                Some(near) => format!("did you mean `{near}`? Known: {known}"),
-                None => format!(
-                    "known: {known}. Is it a plugin's? `spectra build --with FOLDER` makes a program that has it"
-                ),
+            let hint = crate::names::hint(kind, names, &list);
+            let hint = if hint.starts_with("known: ") {
+                format!("{hint}. If it comes from a plugin, `spectra build --with FOLDER` makes a program that has it")
+            } else {
+                hint
             };
             params.fault("kind", format!("unknown {stage} `{kind}`")).hint(hint)
         }

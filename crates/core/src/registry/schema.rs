@@ -7,15 +7,14 @@ use std::borrow::Cow;
 use std::marker::PhantomData;
 
 /// The schema of any registered stage of a kind: a name, or a map with `kind` and that stage's own parameters. For nested
-/// stages, kept as a `StageNode`:
+/// stages, kept as a [`Part`](crate::params::Part):
 ///
 /// ```
-/// # use {schemars::JsonSchema, spectra_core::{params::StageNode, registry::StageOf, stage::ColorModel}};
+/// # use {schemars::JsonSchema, spectra_core::{params::Part, registry::StageOf, stage::ColorModel}};
 /// #[derive(JsonSchema)]
 /// struct LampParams {
 ///     /// How the lamp's color becomes a spectrum.
-///     #[schemars(with = "Option<StageOf<dyn ColorModel>>")]
-///     color: Option<StageNode>,
+///     color: Option<Part<StageOf<dyn ColorModel>>>,
 /// }
 /// ```
 ///

@@ -95,6 +95,13 @@ pub trait Surface: Send + Sync + std::fmt::Debug {
         false
     }
 
+    /// Whether it draws numbers ([`crate::numbers::RayNumbers`]), as a surface does that scatters a share of the light, or splits
+    /// it. Light may then leave it in another direction than the one that it has where nobody draws, so the search for what passes
+    /// a lens ends here.
+    fn draws(&self) -> bool {
+        false
+    }
+
     /// Moves the living rays of the batch, given in the frame of the surface before, onto this surface in its own frame, and
     /// bends them. Rays that end get their cause and this surface's number. Works in either direction of travel. Returns how
     /// many rays ended here.

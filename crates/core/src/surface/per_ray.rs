@@ -4,6 +4,7 @@ use super::{Action, Interface, Surface, Travel, bend};
 use crate::RayBatch;
 use crate::isa::Isa;
 use crate::loss::{ALIVE, Loss};
+use crate::numbers::RayNumbers;
 use glam::DVec3;
 
 /// Where a ray meets a surface.
@@ -34,6 +35,9 @@ pub struct Bending {
     pub action: Action,
     /// Direction of travel along z.
     pub travel: Travel,
+    /// What a shape that [draws](ScalarShape::draws) may draw for this ray; `None` where nothing is left to chance, as in
+    /// drawings and in the search for focus: then it does what it does to most of the light.
+    pub numbers: Option<RayNumbers>,
 }
 
 /// A surface in scalar code.
@@ -68,6 +72,10 @@ pub trait ScalarShape: Send + Sync + std::fmt::Debug {
     fn is_directional(&self) -> bool {
         false
     }
+    /// As [`Surface::draws`].
+    fn draws(&self) -> bool {
+        false
+    }
 }
 
 /// Turns a [`ScalarShape`] into a [`Surface`].
@@ -90,10 +98,14 @@ impl<S: ScalarShape> Surface for PerRay<S> {
     fn is_directional(&self) -> bool {
         self.0.is_directional()
     }
+    fn draws(&self) -> bool {
+        self.0.draws()
+    }
     fn interact(&self, rays: &mut RayBatch, interface: &Interface<'_>, _isa: Isa) -> usize {
         let c = rays.columns_mut();
         let mut lost = 0;
         let clip2 = interface.clip_radius2_mm2;
+        let draws = self.0.draws();
         let extent = if clip2.is_finite() { self.0.extent_mm(clip2.sqrt()) } else { None };
         for i in 0..c.x.len() {
             if c.state[i] != ALIVE {
@@ -106,7 +118,8 @@ impl<S: ScalarShape> Surface for PerRay<S> {
                 lost += 1;
                 continue;
             }
-            match one(&self.0, position, direction, c.wavelength_nm[i], interface, i) {
+            let numbers = if draws { c.numbers.of(i) } else { None };
+            match one(&self.0, position, direction, c.wavelength_nm[i], numbers, interface, i) {
                 Ok((at, toward)) => {
                     (c.x[i], c.y[i], c.z[i]) = (at.x, at.y, at.z);
                     (c.l[i], c.m[i], c.n[i]) = (toward.x, toward.y, toward.z);
@@ -145,6 +158,7 @@ fn one<S: ScalarShape>(
     p: DVec3,
     d: DVec3,
     wavelength_nm: f64,
+    numbers: Option<RayNumbers>,
     at: &Interface<'_>,
     i: usize,
 ) -> Result<(DVec3, DVec3), Loss> {
@@ -170,6 +184,7 @@ fn one<S: ScalarShape>(
         n_after: at.after.n[i],
         action: at.action,
         travel: at.travel,
+        numbers,
     };
     if let Some(toward) = shape.redirect(&bending) {
         return toward.map(|toward| (q, toward));

@@ -101,7 +101,7 @@ impl<'a> Row<'a, '_> {
             _ => number::parse(&cell.replacen(',', ".", 1)),
         };
         if value.is_none() {
-            self.faults.push(self.source.fault(cell, format!("`{}` is no number", shown(cell))));
+            self.faults.push(self.source.fault(cell, format!("`{}` is not a number", shown(cell))));
         }
         value
     }

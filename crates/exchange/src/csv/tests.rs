@@ -41,7 +41,7 @@ fn faults_have_row_and_column() {
     let message = read("t.csv", text).unwrap_err().to_string();
     for word in [
         "t.csv:1:21: unknown column `colour`",
-        "t.csv:2:4: `x` is no number",
+        "t.csv:2:4: `x` is not a number",
         "t.csv:2:6: an index of 0.3",
         "t.csv:3:5",
         "t.csv:3:15: this cell has no column",

@@ -70,7 +70,7 @@ impl<'a> Reader<'a> {
     fn number(&mut self, word: &str) -> Option<f64> {
         let value = number::parse(word);
         if value.is_none() {
-            self.faults.push(self.source.fault(word, format!("`{}` is no number", shown(word))));
+            self.faults.push(self.source.fault(word, format!("`{}` is not a number", shown(word))));
         }
         value
     }

@@ -107,6 +107,6 @@ fn the_rest_is_told() {
         "{notes:?}"
     );
     let message = read("bad.seq", "RDM\nS 50 5\n K x1\n").unwrap_err().to_string();
-    assert!(message.contains("bad.seq:3:4: `x1` is no number"), "{message}");
+    assert!(message.contains("bad.seq:3:4: `x1` is not a number"), "{message}");
     assert!(read("bad.seq", "").unwrap_err().to_string().contains("no surfaces"));
 }

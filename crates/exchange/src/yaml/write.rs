@@ -23,7 +23,7 @@ pub fn write(lens: &Prescription, source: Option<&str>) -> String {
         line(&format!("# Imported from {}.", comment(source)));
     }
     if !lens.left_out.is_empty() {
-        line("# Not carried (what makes light go another way is marked with !):");
+        line("# Not carried (! marks what changes the path of light):");
         for note in lens.left_out.iter().take(MOST_NOTES) {
             line(&format!("# {} {}", if note.alters { "!" } else { "-" }, comment(&note.to_string())));
         }

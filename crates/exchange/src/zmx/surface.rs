@@ -113,7 +113,7 @@ impl Block {
                 Some(word) => {
                     let value = number::parse(word);
                     if value.is_none() {
-                        faults.push(source.fault(word, format!("{keyword}: `{}` is no number", shown(word))));
+                        faults.push(source.fault(word, format!("{keyword}: `{}` is not a number", shown(word))));
                     }
                     value
                 }

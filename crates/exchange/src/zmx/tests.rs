@@ -172,7 +172,7 @@ fn faults_have_places() {
     let text = "MODE NSC\nSURF 0\nSURF 1\n  CURV 0.0x2\n  DISZ 1..5\nSURF 2\n";
     let message = read("bad.zmx", text).unwrap_err().to_string();
     for word in
-        ["bad.zmx:1:6: the mode NSC is not sequential", "bad.zmx:4:8: CURV: `0.0x2` is no number", "bad.zmx:5:8"]
+        ["bad.zmx:1:6: the mode NSC is not sequential", "bad.zmx:4:8: CURV: `0.0x2` is not a number", "bad.zmx:5:8"]
     {
         assert!(message.contains(word), "{message}");
     }

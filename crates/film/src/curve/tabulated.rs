@@ -33,7 +33,7 @@ impl TabulatedCurve {
                 return Err(CurveError::Order { index: i + 2, wanted: "exposures must increase" });
             }
             if (w[1][1] != w[0][1]) && ((w[1][1] > w[0][1]) != rising) {
-                return Err(CurveError::Order { index: i + 2, wanted: "densities must not turn" });
+                return Err(CurveError::Order { index: i + 2, wanted: "densities must only rise or only fall" });
             }
         }
         let log10_exposure: Vec<f64> = points.iter().map(|p| p[0]).collect();

@@ -84,12 +84,6 @@ impl Grain {
         })
     }
 
-    /// Effective area of a grain, mm^2.
-    #[must_use]
-    pub fn grain_area_mm2(&self) -> f64 {
-        self.selwyn_mm2 / std::f64::consts::LOG10_E
-    }
-
     /// Replaces a plane of density (over base and fog) by that of its grains, in place. The mean stays.
     ///
     /// The result of a pixel depends on its own density and its place on the film alone: any cut into tiles gives the

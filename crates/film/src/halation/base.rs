@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 pub struct HalationBase {
     /// Thickness of the base, mm: 0.125 of acetate roll and 35 mm film.
     pub thickness_mm: f64,
-    /// Refractive index of the base, over 1 up to 4: 1.48 of acetate, 1.64 of polyester (in its plane).
+    /// Refractive index of the base, above 1, up to 4: 1.48 of acetate, 1.64 of polyester (in its plane).
     pub index: f64,
     /// Light that enters the base, over the light that exposes the layer, 0 to 10: what the emulsion lets through.
     pub entering: f64,
@@ -38,7 +38,7 @@ impl HalationBase {
     pub(super) fn check(&self) -> Result<(), HalationError> {
         let checks = [
             ("thickness", self.thickness_mm, (1e-3..=10.0).contains(&self.thickness_mm), "0.001 to 10 mm"),
-            ("index", self.index, self.index > 1.0 && self.index <= 4.0, "over 1 up to 4"),
+            ("index", self.index, self.index > 1.0 && self.index <= 4.0, "above 1, up to 4"),
             ("light entering the base", self.entering, (0.0..=10.0).contains(&self.entering), "0 to 10"),
             ("transmittance", self.transmittance, (0.0..=1.0).contains(&self.transmittance), "0 to 1"),
         ];

@@ -55,7 +55,7 @@ impl Halation {
     pub fn new(base: &HalationBase, raster: &Raster) -> Result<Self, HalationError> {
         base.check()?;
         if !(raster.pitch_mm > 0.0 && raster.pitch_mm.is_finite()) {
-            return Err(HalationError::OutOfRange { what: "pitch", value: raster.pitch_mm, range: "over 0 mm" });
+            return Err(HalationError::OutOfRange { what: "pitch", value: raster.pitch_mm, range: "more than 0 mm" });
         }
         let none = base.returned() == 0.0 || raster.pixels() == 0;
         let spread = (!none).then(|| Spread::new(Level::all(base, raster), 1.0 / (1.0 + base.returned()), raster));

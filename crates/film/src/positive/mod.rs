@@ -25,7 +25,7 @@ pub enum PositiveError {
     #[error("the light is dark to the eye")]
     DarkLight,
     /// A camera film where a print stock is wanted.
-    #[error("{stock} is no print stock")]
+    #[error("{stock} is not a print stock")]
     NoPrintStock {
         /// Its name.
         stock: String,
@@ -153,15 +153,6 @@ impl Positive {
             Way::Look(viewing) => Some(viewing.xyz(&self.film, amounts)),
             Way::Print(printing) => Some(printing.xyz(&self.film, amounts)),
             Way::Scan(_) => None,
-        }
-    }
-
-    /// Amounts in the print of a place; `None` where nothing is printed.
-    #[must_use]
-    pub fn print_amounts(&self, amounts: &[f64]) -> Option<Vec<f64>> {
-        match &self.way {
-            Way::Print(printing) => Some(printing.printed(&self.film, amounts)),
-            _ => None,
         }
     }
 

@@ -5,9 +5,9 @@ use crate::deposit::Deposit;
 use crate::emulsion::Emulsion;
 use crate::print::MID_GRAY;
 use crate::stock::Stock;
+use spectra_color::{Gamut, RgbSpace, into_gamut};
 use spectra_core::math::{exp, log10};
 use spectra_core::spectral::BAND;
-use spectra_spectrum::{Gamut, RgbSpace, into_gamut};
 use std::f64::consts::LN_10;
 
 /// Log10 of exposure on either side of mid gray over which the slope is taken: the span of ISO 6 in all.

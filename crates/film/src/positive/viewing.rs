@@ -1,9 +1,10 @@
 //! Light through a film to an eye: XYZ, and what a screen shows of it.
 
 use crate::deposit::Deposit;
+use spectra_color::matrix::{Matrix, apply, product};
+use spectra_color::{Adaptation, Gamut, RgbSpace, into_gamut};
 use spectra_core::spectral::BAND;
-use spectra_spectrum::matrix::{Matrix, apply, product};
-use spectra_spectrum::{Adaptation, Emission, Gamut, Observer, RgbSpace, into_gamut};
+use spectra_spectrum::{Emission, Observer};
 
 /// Power of a light on the points of the band; a line is split between its two neighbors.
 #[must_use]

@@ -25,7 +25,7 @@ pub(super) struct Fit {
 pub(super) fn fit(mtf: &Mtf, pitch_mm: f64) -> Result<Fit, MtfError> {
     let out_of_range = |range| MtfError::OutOfRange { what: "pitch", value: pitch_mm, range };
     if !(pitch_mm > 0.0 && pitch_mm.is_finite()) {
-        return Err(out_of_range("over 0 mm"));
+        return Err(out_of_range("more than 0 mm"));
     }
     let reach = (mtf.reach_mm() / pitch_mm).ceil().max(REACH.0);
     if reach > REACH.1 {
@@ -62,5 +62,5 @@ pub(super) fn fit(mtf: &Mtf, pitch_mm: f64) -> Result<Fit, MtfError> {
             break;
         }
     }
-    best.ok_or_else(|| out_of_range("over 0 mm"))
+    best.ok_or_else(|| out_of_range("more than 0 mm"))
 }

@@ -263,7 +263,7 @@ pub(super) fn read(params: &Params, resources: &dyn Resources) -> Result<Stock, 
         faults.push(fault.hint("`iso: 100`; what has none is a `process: print`"));
     }
     if file.meter == MeterResponse::Film && file.layers.len() > 1 {
-        let fault = params.fault("meter", "a meter that sees as the film does is for a film of one layer");
+        let fault = params.fault("meter", "a meter with the film's own sensitivity needs a film with one layer");
         faults.push(fault.hint("`meter: photopic`, or leave it out"));
     }
     let layers = layers(params, &file, reference.as_ref(), resources, &mut faults);
@@ -279,7 +279,7 @@ pub(super) fn read(params: &Params, resources: &dyn Resources) -> Result<Stock, 
     }
     let minimum_density = file.minimum_density.as_ref().and_then(|m| faults.take(m.read(params)));
     if file.minimum_density.is_some() && dyes == 0 {
-        let fault = params.fault("minimum-density", "curves of silver hold base and fog already");
+        let fault = params.fault("minimum-density", "curves of silver already include base and fog");
         faults.push(fault.hint("leave it out"));
     }
     let granularity = file.granularity.as_ref().map(GranularityFile::read);
@@ -333,8 +333,8 @@ fn layers(
             faults.push(params.fault(&format!("{at}.name"), "each layer has a name of its own: it names the channel"));
         }
         if layer.sensitivity.assumed && layer.sensitivity.remark.as_ref().is_none_or(|r| r.trim().is_empty()) {
-            let fault = params.fault(&format!("{at}.sensitivity.assumed"), "an assumed sensitivity says why");
-            faults.push(fault.hint("a `remark` says what it rests on"));
+            let fault = params.fault(&format!("{at}.sensitivity.assumed"), "an assumed sensitivity needs a remark");
+            faults.push(fault.hint("add a `remark` that says what it is based on"));
         }
         let sensitivity = faults.take(sensitivity(params, &at, &layer.sensitivity, resources));
         let developments = faults.take(developments(params, &at, &layer.curves, file.iso.map(|v| v.get())));
@@ -370,7 +370,7 @@ fn filter_factor(file: FilterFactorFile) -> FilterFactor {
 
 fn reference(params: &Params, name: &str, resources: &dyn Resources) -> Result<Emission, Faults> {
     let key = "reference-illuminant";
-    let hint = "the sheets of films mean iso-7589-sensitometric-daylight";
+    let hint = "data sheets of films usually mean iso-7589-sensitometric-daylight";
     light(params, key, name, resources).map_err(|error| {
         let near = matches!(&error, SpectrumError::Unknown { candidates, .. } if !candidates.is_empty());
         let faults = error.faults(|text| params.fault(key, text));
@@ -519,8 +519,8 @@ fn developments(params: &Params, at: &str, files: &[CurveFile], iso: Option<f64>
             faults.push(params.fault(&format!("{at}.development"), "each curve has a development of its own"));
         }
         if file.assumed && file.remark.as_ref().is_none_or(|r| r.trim().is_empty()) {
-            let hint = "a `remark` says what it rests on";
-            faults.push(params.fault(&format!("{at}.assumed"), "an assumed curve says why").hint(hint));
+            let hint = "add a `remark` that says what it is based on";
+            faults.push(params.fault(&format!("{at}.assumed"), "an assumed curve needs a remark").hint(hint));
         }
         if let Some(curve) = faults.take(curve(params, &at, file, iso)) {
             let (name, remark) = (file.development.clone(), file.remark.clone());

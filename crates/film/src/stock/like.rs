@@ -18,13 +18,13 @@ fn follow(params: &Params, resources: &dyn Resources, left: usize) -> Result<Par
     let Some(like) = params.get("like") else { return Ok(params.clone()) };
     let Some(name) = like.as_str() else {
         return Err(like
-            .fault("the name of a stock is wanted here")
+            .fault("the name of a stock is expected here")
             .path("like")
             .hint("`like: kodak-tri-x-400`")
             .into());
     };
     if left == 0 {
-        let fault = like.fault(format!("more than {DEEPEST} stocks are like one another, or one is like itself"));
+        let fault = like.fault(format!("more than {DEEPEST} stocks build on each other by `like`, or one on itself"));
         return Err(fault.path("like").into());
     }
     let mut faults = Faults::new();

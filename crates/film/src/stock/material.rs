@@ -28,7 +28,7 @@ impl SpectralDensity {
                 return Err(format!("wavelengths increase: {nm} nm comes after {before} nm"));
             }
             if !(-1.0..=10.0).contains(density) {
-                return Err(format!("{density} at {nm} nm is no density"));
+                return Err(format!("{density} at {nm} nm is not a density"));
             }
             before = *nm;
         }
@@ -147,7 +147,7 @@ pub(super) fn densitometry(params: &Params, file: DensityFile, layers: usize) ->
     match (densitometry, layers) {
         (Densitometry::Visual, 2..) => {
             let fault = params.fault("density", "curves of several layers are measured through three filters");
-            Err(fault.hint("`density: status-m` for negatives, `density: status-a` for what is looked at"))
+            Err(fault.hint("`density: status-m` for negatives, `density: status-a` for positives"))
         }
         (Densitometry::StatusA | Densitometry::StatusM, layers) if layers != 3 => {
             let text = format!("{} densities are of three layers, not {layers}", densitometry.name());
@@ -172,7 +172,7 @@ impl DyeFile {
         let density =
             SpectralDensity::new(&self.table).map_err(|text| params.fault(&format!("{at}.dye.table"), text))?;
         if !self.table.iter().any(|p| p[1] > 0.0) {
-            return Err(params.fault(&format!("{at}.dye.table"), "this dye holds nothing back"));
+            return Err(params.fault(&format!("{at}.dye.table"), "this dye absorbs nothing"));
         }
         Ok(Dye { name: self.name.clone(), density })
     }
@@ -195,8 +195,8 @@ impl MinimumDensityFile {
     pub(super) fn read(&self, params: &Params) -> Result<MinimumDensity, Fault> {
         let density = SpectralDensity::new(&self.table).map_err(|text| params.fault("minimum-density.table", text))?;
         if self.assumed && self.remark.as_ref().is_none_or(|r| r.trim().is_empty()) {
-            let fault = params.fault("minimum-density.assumed", "an assumed density says why");
-            return Err(fault.hint("a `remark` says what it rests on"));
+            let fault = params.fault("minimum-density.assumed", "an assumed density needs a remark");
+            return Err(fault.hint("add a `remark` that says what it is based on"));
         }
         Ok(MinimumDensity { density, assumed: self.assumed, remark: self.remark.clone() })
     }

@@ -25,7 +25,7 @@ pub enum SensitivityError {
     #[error("a sensitivity needs two points or more, of increasing wavelength")]
     Points,
     /// A value that is negative, or no finite number when read as stated.
-    #[error("{value} at {wavelength_nm} nm is no sensitivity")]
+    #[error("{value} at {wavelength_nm} nm is not a sensitivity")]
     Value {
         /// Where, nm.
         wavelength_nm: f64,

@@ -120,7 +120,7 @@ pub(super) fn mtf(params: &Params, at: &str, points: &[[f64; 2]]) -> Result<Vec<
     let mut before = 0.0;
     for (i, [frequency, response]) in points.iter().enumerate() {
         if !(*frequency > before && frequency.is_finite() && (0.0..=2.0).contains(response)) {
-            let text = format!("[{frequency}, {response}] is no point of a modulation transfer");
+            let text = format!("[{frequency}, {response}] is not a point of an MTF");
             let fault = params.fault(&format!("{at}.mtf[{i}]"), text);
             return Err(fault.hint("[cycles/mm, response]: frequencies increase, responses lie between 0 and 2"));
         }

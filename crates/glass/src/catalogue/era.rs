@@ -27,7 +27,7 @@ const RARE_EARTH: u16 = 1940;
 
 /// Not an era.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("`{0}` is no era: historical, modern, or a year from 1880 to 2100")]
+#[error("`{0}` is not an era: use historical, modern, or a year from 1880 to 2100")]
 pub struct EraError(String);
 
 impl FromStr for Era {

@@ -1,5 +1,6 @@
 //! Finding a medium by name.
 
+use spectra_core::names;
 use std::collections::HashMap;
 use std::fmt;
 
@@ -80,7 +81,10 @@ impl FindError {
                 [one] => format!("did you mean `{}`?", one.full_name),
                 [first, others @ ..] => format!("did you mean `{}`? Near it: {}", first.full_name, list(others)),
             },
-            Self::Ambiguous { candidates, .. } => format!("write one of {}", list(candidates)),
+            Self::Ambiguous { name, candidates } => {
+                let names: Vec<String> = candidates.iter().map(ToString::to_string).collect();
+                format!("write one of {}", names::listed(&names, &format!("spectra list glass {}", name.trim())))
+            }
         }
     }
 }
@@ -232,7 +236,7 @@ impl Catalogue {
             "`{name}` is the name of {} glasses: {} is taken; write the maker if another is meant: {}",
             glasses.len(),
             candidate(glass),
-            others.join(", ")
+            names::listed(&others, &format!("spectra list glass {}", name.trim()))
         );
         Ok(Chosen { glass: glass.clone(), note: Some(note) })
     }

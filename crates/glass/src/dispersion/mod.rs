@@ -33,7 +33,7 @@ const CHECKS: usize = 4000;
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum DispersionError {
     /// The band is empty, reversed or not positive.
-    #[error("no band of light: {min_nm} to {max_nm} nm")]
+    #[error("not a band of wavelengths: {min_nm} to {max_nm} nm")]
     Band {
         /// Shortest wavelength, nm.
         min_nm: f64,

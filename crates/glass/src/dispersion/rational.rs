@@ -170,18 +170,6 @@ impl Rational {
         self.degree
     }
 
-    /// Coefficients of P by rising power; those beyond the degree are 0.
-    #[must_use]
-    pub fn numerator(&self) -> &[f64; Rational::MAX_DEGREE + 1] {
-        &self.p
-    }
-
-    /// Coefficients of Q by rising power; those beyond the degree are 0.
-    #[must_use]
-    pub fn denominator(&self) -> &[f64; Rational::MAX_DEGREE + 1] {
-        &self.q
-    }
-
     /// s0, s1 (nm^-1) and s2 (nm^-2) of x = s0 + lambda (s1 + lambda s2).
     #[must_use]
     pub fn scale(&self) -> [f64; 3] {

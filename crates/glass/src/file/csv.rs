@@ -30,7 +30,7 @@ pub(super) fn read(name: &str, bytes: &[u8], material: Option<&str>) -> Result<G
     if let Some(pair) = rows.windows(2).find(|pair| pair[1].wavelength_nm <= pair[0].wavelength_nm) {
         let text = format!("{} nm does not come after the row before", pair[1].wavelength_nm);
         let fault = at(pair[1].place, text);
-        return Err(fault.hint("wavelengths rise; a column `material` parts several tables").into());
+        return Err(fault.hint("wavelengths must rise; a column `material` separates several tables").into());
     }
     let points: Vec<(f64, f64)> = rows.iter().map(|row| (row.wavelength_nm, row.n)).collect();
     let table = Table::new(&points).map_err(|e| Fault::new(format!("{name}: {e}")))?;
@@ -52,7 +52,7 @@ fn rows_of<'a>(found: &'a [Material], material: Option<&str>, shown: &str) -> Re
             let fault = Fault::new(format!("`{shown}` holds {} materials", many.len()));
             let which = names().next().unwrap_or_default();
             let all = names().take(12).collect::<Vec<_>>().join(", ");
-            Err(fault.hint(format!("write which, such as `{shown}#{which}`; it has {all}")))
+            Err(fault.hint(format!("name one, such as `{shown}#{which}`; it has {all}")))
         }
         (Some(wanted), found) => {
             let same = |name: &Option<String>| name.as_deref().is_some_and(|name| name.eq_ignore_ascii_case(wanted));

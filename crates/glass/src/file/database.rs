@@ -15,7 +15,7 @@ pub(super) fn is_one(params: &Params) -> bool {
 /// The glass of a page.
 pub(super) fn from_params(params: &Params) -> Result<Glass, Faults> {
     let Some(Value::Seq(blocks)) = params.get("DATA").map(|node| &node.value) else {
-        return Err(params.fault("DATA", "a list of data is wanted here").into());
+        return Err(params.fault("DATA", "a list of data is expected here").into());
     };
     let file = &params.node().file.name;
     let stem = file.rsplit(['/', '\\']).next().unwrap_or(file);
@@ -52,7 +52,7 @@ pub(super) fn from_params(params: &Params) -> Result<Glass, Faults> {
                 let width = what.len() + 1;
                 let values = numbers("data")?;
                 if !values.len().is_multiple_of(width) {
-                    return Err(fault("data", format!("{} numbers make no rows of {width}", values.len())).into());
+                    return Err(fault("data", format!("{} numbers cannot form rows of {width}", values.len())).into());
                 }
                 let rows: Vec<&[f64]> = values.chunks_exact(width).collect();
                 let nm: Vec<f64> = rows.iter().map(|row| row[0] * 1e3).collect();

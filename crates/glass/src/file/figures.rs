@@ -140,7 +140,7 @@ impl Figures {
                 );
             }
             ([], [(key, ..), ..]) => {
-                return Err(params.fault(key, format!("`{key}` without an index says nothing")).hint("add `nd: ...`"));
+                return Err(params.fault(key, format!("`{key}` needs an index")).hint("add `nd: ...`"));
             }
             ([(_, _, n)], []) => Medium::Constant(*n),
             _ => Medium::Model(self.model(params, &indices, &abbe)?),
@@ -163,7 +163,7 @@ impl Figures {
         let model = ModelGlass::through(&stated, &numbers).ok_or_else(no_such)?;
         let slip = |key: &str, value: f64, own: String| {
             let text = format!("{key} is stated as {value}, but the other figures make it {own}");
-            params.fault(key, text).hint("the figures contradict each other: which one is the slip?")
+            params.fault(key, text).hint("the figures contradict each other: which one is wrong?")
         };
         let off = |(_, line, n): &&(&str, Line, f64)| (model.index(line.wavelength_nm) - n).abs();
         if let Some(worst) = indices.iter().max_by(|a, b| off(a).total_cmp(&off(b)))

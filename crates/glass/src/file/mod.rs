@@ -103,7 +103,7 @@ fn from_agf(path: &str, shown: &str, glass: Option<&str>, resources: &dyn Resour
                 .hint("a glass catalogue (AGF) has lines `NM ...` and `CD ...`")
                 .into()),
             many => Err(Fault::new(format!("`{shown}` holds {many} glasses"))
-                .hint(format!("write which, such as `{shown}#{}`", glasses[0].name))
+                .hint(format!("name one, such as `{shown}#{}`", glasses[0].name))
                 .into()),
         };
     };

@@ -4,7 +4,8 @@ use super::{Figures, MAX_BYTES, OWN_MAKER, csv, sensible};
 use crate::{Category, Extinction, Formula, Glass, Medium, NumberedFormula, Table};
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::params::{Fault, Faults, Length, NonNegative, Params, Positive, Wavelength, nearest};
+use spectra_core::names;
+use spectra_core::params::{Fault, Faults, Length, NonNegative, Params, Positive, Wavelength};
 use spectra_core::resources::{Resources, beside};
 
 /// A glass as a file writes it.
@@ -188,7 +189,7 @@ pub fn from_params(params: &Params, called: &str, resources: &dyn Resources) -> 
     for (key, stated, own, tolerance) in figures.against(|nm| glass.index(nm)) {
         if !((stated - own).abs() <= tolerance) {
             let fault = params.fault(key, format!("{key} is stated as {stated}, but the data give {own:.5}"));
-            faults.push(fault.hint("the figures contradict each other: which one is the slip?"));
+            faults.push(fault.hint("the figures contradict each other: which one is wrong?"));
         }
     }
     (glass.listed_nd, glass.listed_vd) = (p.nd, p.vd);
@@ -238,14 +239,10 @@ fn base(params: &Params, p: &GlassFile, resources: &dyn Resources) -> Result<Gla
 }
 
 fn formula(params: &Params, p: &GlassFile, name: &str) -> Result<Formula, Fault> {
-    let names = || FORMULAS.iter().map(|(name, ..)| *name);
     let Some((_, least, most, make)) = FORMULAS.iter().find(|(n, ..)| *n == name) else {
-        let known = names().collect::<Vec<_>>().join(", ");
+        let known: Vec<&str> = FORMULAS.iter().map(|(name, ..)| *name).collect();
         let fault = params.fault("formula", format!("unknown formula `{name}`"));
-        return Err(match nearest(name, names()) {
-            Some(near) => fault.hint(format!("did you mean `{near}`? Known: {known}")),
-            None => fault.hint(format!("known: {known}")),
-        });
+        return Err(fault.hint(names::hint(name, &known, "")));
     };
     let Some(c) = &p.coefficients else {
         return Err(params.fault("formula", "a formula needs its `coefficients`").hint("a list of numbers"));
@@ -256,7 +253,7 @@ fn formula(params: &Params, p: &GlassFile, name: &str) -> Result<Formula, Fault>
         return Err(fault(format!("{} coefficients", c.len())));
     }
     if c.iter().any(|c| !c.is_finite()) {
-        return Err(fault("a coefficient is no finite number".to_owned()));
+        return Err(fault("a coefficient is not a finite number".to_owned()));
     }
     make(c).ok_or_else(|| fault(format!("{} coefficients do not fit the form", c.len())))
 }

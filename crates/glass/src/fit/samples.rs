@@ -170,7 +170,7 @@ fn row(columns: &Columns, values: &[&str]) -> Result<(f64, f64, Option<f64>), Wr
     let number = |at: usize, what: &str| {
         let text = values.get(at).copied().unwrap_or_default();
         let value = text.parse::<f64>().ok().filter(|v| v.is_finite());
-        value.ok_or_else(|| (at, format!("`{text}` is no {what}"), None))
+        value.ok_or_else(|| (at, format!("`{text}` is not a valid {what}"), None))
     };
     let wavelength_nm = number(columns.wavelength, "wavelength")? * columns.unit_nm;
     if !SENSIBLE_NM.contains(&wavelength_nm) {
@@ -219,8 +219,8 @@ mod tests {
         for (text, line, word) in [
             ("", 1, "no samples"),
             ("wavelength_nm,k\n", 1, "found: wavelength_nm, k"),
-            ("wavelength_nm,n\n486,x\n", 2, "`x` is no index"),
-            ("wavelength_nm,n\n\n486\n", 3, "`` is no index"),
+            ("wavelength_nm,n\n486,x\n", 2, "`x` is not a valid index"),
+            ("wavelength_nm,n\n\n486\n", 3, "`` is not a valid index"),
             ("wavelength_nm,n\n486,0.9\n", 2, "between 1 and 10"),
             ("0.486 1.52\n", 1, "wavelength_um"),
             ("wavelength_nm,n\n486,nan\n", 2, "`nan`"),

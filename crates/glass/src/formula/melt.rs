@@ -33,12 +33,6 @@ impl Melt {
     pub fn base(&self) -> &Formula {
         &self.base
     }
-
-    /// Offset and factor: n = offset + factor n of the catalogue.
-    #[must_use]
-    pub fn offset_and_factor(&self) -> (f64, f64) {
-        (self.offset, self.factor)
-    }
 }
 
 #[cfg(test)]

@@ -8,6 +8,9 @@
 //! direction, near the real pupil, and on it the ellipse or rectangle that holds everything that
 //! passes. [`search`](FrontPupil::search) finds them by tracing.
 //!
+//! Light that a surface scatters leaves it in directions that no search finds. So only the way to the first such surface is
+//! searched, from the side that the rays come from: what reaches it is aimed at, whatever becomes of it there.
+//!
 //! A point shares its rays out evenly over the area of that shape. The weight of each is the solid
 //! angle of its share, area times cosine over distance squared: so the estimate has no bias, whatever
 //! the shape, and light is counted equally per solid angle.

@@ -1,9 +1,10 @@
 //! Rays from one point over a plane, to see which of them pass.
 
-use crate::{Indices, Lens, Tracer, Travel, Work};
+use crate::{Indices, Lens, Route, Tracer, Travel, Work};
 use glam::DVec3;
 use spectra_core::RayBatch;
 use spectra_core::loss::ALIVE;
+use std::borrow::Borrow;
 
 /// Rays of one batch of probes.
 const BATCH: usize = 4096;
@@ -77,19 +78,30 @@ impl Bounds {
 }
 
 /// One lens that probes are sent through.
-struct Stage {
-    tracer: Tracer,
+struct Stage<T> {
+    tracer: T,
     work: Work,
+    /// Up to a surface that scatters: what it lets pass may come from anywhere behind it.
+    route: Route,
+}
+
+impl<T: Borrow<Tracer>> Stage<T> {
+    fn new(tracer: T, travel: Travel) -> Self {
+        let lens: &Tracer = tracer.borrow();
+        Self { work: lens.work_in_place(BATCH), route: lens.certain(travel), tracer }
+    }
+
+    fn trace(&mut self, rays: &mut RayBatch) {
+        self.tracer.borrow().follow(&self.route, rays, &mut self.work);
+    }
 }
 
 /// The lens, and the same lens with its small openings opened: step by step, so that each step passes
 /// all that the next one does. However small the pupil is, it is found by closing in on it.
 pub(super) struct Prober<'a> {
-    travel: Travel,
     wavelengths_nm: [f64; 3],
-    opened: Vec<Stage>,
-    tracer: &'a Tracer,
-    work: Work,
+    opened: Vec<Stage<Tracer>>,
+    whole: Stage<&'a Tracer>,
     rays: RayBatch,
 }
 
@@ -118,16 +130,13 @@ impl<'a> Prober<'a> {
                 }
             }
             let tracer = Tracer::new(&open, Indices::At(middle_nm), tracer.isa()).ok()?;
-            let work = tracer.work_in_place(BATCH);
-            opened.push(Stage { tracer, work });
+            opened.push(Stage::new(tracer, travel));
             opening *= STEP;
         }
         Some(Self {
-            travel,
             wavelengths_nm: [min_nm, middle_nm, max_nm],
             opened,
-            work: tracer.work_in_place(BATCH),
-            tracer,
+            whole: Stage::new(tracer, travel),
             rays: RayBatch::new(BATCH),
         })
     }
@@ -224,8 +233,8 @@ impl<'a> Prober<'a> {
             c.wavelength_nm[i] = wavelength_nm;
         }
         match self.opened.get_mut(level) {
-            Some(stage) => stage.tracer.trace(&mut self.rays, &mut stage.work, self.travel),
-            None => self.tracer.trace(&mut self.rays, &mut self.work, self.travel),
+            Some(stage) => stage.trace(&mut self.rays),
+            None => self.whole.trace(&mut self.rays),
         }
     }
 }

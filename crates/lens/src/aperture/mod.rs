@@ -2,18 +2,17 @@
 //!
 //! An aperture is flat: it looks at x and y of the point where the light meets its surface, in the surface's frame.
 
-mod drawing;
 mod iris;
 mod mask;
 mod params;
 
-pub use drawing::{Drawing, FLATNESS_MM, FillRule, Painted};
 pub use iris::{Iris, Opening};
 pub use mask::Mask;
 pub use params::{ApertureForm, read};
 
 use spectra_core::RayBatch;
 use spectra_core::loss::{ALIVE, Loss};
+use spectra_masks::Drawing;
 
 /// Limits the light at a surface.
 #[derive(Clone, Debug, PartialEq)]

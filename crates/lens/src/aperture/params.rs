@@ -1,12 +1,13 @@
 //! Apertures as a lens file writes them.
 
-use super::{Aperture, Iris, Mask, Shape, drawing};
+use super::{Aperture, Iris, Mask, Shape};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
 use spectra_core::params::{
     Angle, Faults, Kinds, Length, LengthOrInfinity, Params, Positive, StageNode, Value, Whole, keys_of,
 };
 use spectra_core::resources::{Resources, beside};
+use spectra_masks::Open;
 use std::sync::Arc;
 
 /// Keys of every aperture; the others belong to its shape.
@@ -86,7 +87,7 @@ struct MaskParams {
     width: Option<Positive<Length>>,
     /// Of a drawing: `filled`, whatever is painted passes (the default); or `white`, as of a picture: white passes, black
     /// stops, gray passes in part.
-    open: Option<drawing::Open>,
+    open: Option<Open>,
 }
 
 /// What an aperture is written as: one, or a list.
@@ -193,10 +194,10 @@ fn mask(params: &Params, resources: &dyn Resources) -> Result<Shape, Faults> {
         .read(&path, &["lenses", "scenes"], &[], MAX_MASK_BYTES)
         .map_err(|e| fail(format!("`{}`: {e}", p.file)))?;
     if p.file.rsplit_once('.').is_some_and(|(_, ending)| ending.eq_ignore_ascii_case("svg")) {
-        let drawn = drawing::read(&found.name, &found.bytes, p.width.map(|w| w.mm()), open);
+        let drawn = spectra_masks::read(&found.name, &found.bytes, p.width.map(|w| w.mm()), open);
         return drawn.map(Shape::Drawing).map_err(|faults| params.place_at("file", faults));
     }
-    if open == Some(drawing::Open::Filled) {
+    if open == Some(Open::Filled) {
         let fault = params.fault("open", "of a picture the white passes: nothing in it is filled");
         return Err(fault.hint("leave `open` out, or draw an SVG").into());
     }

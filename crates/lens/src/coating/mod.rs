@@ -5,15 +5,16 @@
 //! T = 4 eta eta' / ((eta + eta')^2 cos^2(delta) + (eta eta' / eta_1 + eta_1)^2 sin^2(delta)). It is the same from both
 //! sides, and without a layer (delta = 0) it is Fresnel's.
 
+mod films;
 mod measured;
 mod params;
 mod stack;
 mod standard;
 
+pub(crate) use films::{Films, Sides};
 pub use measured::MeasuredCoating;
 pub use params::{CoatingForm, NamedCoating, OneLayer, StackParams, StatedCoating, read_coating, read_stated_coating};
 pub use stack::{Stack, StackLayer};
-pub(crate) use stack::{least_square, running_layers};
 
 use spectra_core::math;
 use std::sync::Arc;
@@ -115,21 +116,18 @@ impl Coating {
 }
 
 /// Fresnel: indices and cosines on both sides.
-#[inline(always)]
-pub(crate) fn bare([n, n_after]: [f64; 2], [c, c_after]: [f64; 2]) -> Transmittance {
+fn bare([n, n_after]: [f64; 2], [c, c_after]: [f64; 2]) -> Transmittance {
     let pass = |a: f64, b: f64| 4.0 * a * b / ((a + b) * (a + b));
     Transmittance { s: pass(n * c, n_after * c_after), p: pass(n_after * c, n * c_after) }
 }
 
 /// Square of `n_1 cos(theta_1)` in a layer; negative where the light does not run in it but decays.
-#[inline(always)]
-pub(crate) fn layer_square(index: f64, n: f64, c: f64) -> f64 {
+fn layer_square(index: f64, n: f64, c: f64) -> f64 {
     index * index - n * n * (1.0 - c * c)
 }
 
 /// A layer in which the light runs: `in_layer` is n_1 cos(theta_1), `waves` its thickness over the wavelength.
-#[inline(always)]
-pub(crate) fn running_layer(
+fn running_layer(
     [n, n_after]: [f64; 2],
     [c, c_after]: [f64; 2],
     index: f64,
@@ -150,7 +148,7 @@ pub(crate) fn running_layer(
 }
 
 /// A layer of any kind; in a thin one of low index between two glasses the light may decay, and some of it tunnels.
-pub(crate) fn layer([n, n_after]: [f64; 2], [c, c_after]: [f64; 2], index: f64, waves: f64) -> Transmittance {
+fn layer([n, n_after]: [f64; 2], [c, c_after]: [f64; 2], index: f64, waves: f64) -> Transmittance {
     let square = layer_square(index, n, c);
     if square > 0.0 {
         return running_layer([n, n_after], [c, c_after], index, square.sqrt(), waves);

@@ -4,7 +4,7 @@ use super::standard::CoatingName;
 use super::{Coating, MeasuredCoating, Stack, StackLayer};
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::params::{Fault, Faults, NonNegative, Params, Part, StageNode, Wavelength, Whole};
+use spectra_core::params::{Fault, Faults, NonNegative, Params, Part, StageNode, Wavelength, Whole, nearest};
 use spectra_core::resources::{Resources, beside};
 use spectra_glass::Medium;
 use spectra_glass::file;
@@ -97,6 +97,8 @@ pub enum CoatingForm {
     Stack(StackParams),
 }
 
+/// Coatings with a name.
+const NAMED: [&str; 4] = ["ideal", "bare", "single-layer", "three-layer"];
 const HINT: &str = "ideal, bare, single-layer, three-layer, {layer: 1.38, quarter-wave-at: 550 nm}, {layers: [...]}, or a file: my-stack.yaml, my-coating.csv";
 /// Thickest layer, nm.
 const MAX_NM: f64 = 1e5;
@@ -162,7 +164,7 @@ fn thickness(
         }
     };
     if !(nm <= MAX_NM && given.nm() <= MAX_NM) {
-        return Err(params.fault(&key(name), "more than 100 um is no thin layer"));
+        return Err(params.fault(&key(name), "a thin layer is at most 100 um thick"));
     }
     Ok(nm)
 }
@@ -187,7 +189,12 @@ fn named(name: &str, node: &StageNode, resources: &dyn Resources) -> Result<Coat
             let measured = MeasuredCoating::from_table(&file.name, &file.bytes, column);
             measured.map(|m| Coating::Measured(Arc::new(m))).map_err(|e| e.faults(fault))
         }
-        _ => Err(node.fault(format!("unknown coating `{name}`")).hint(HINT).into()),
+        _ => {
+            let fault = node.fault(format!("unknown coating `{name}`"));
+            Err(fault
+                .hint(nearest(name, NAMED).map_or_else(|| HINT.to_owned(), |near| format!("did you mean `{near}`?")))
+                .into())
+        }
     }
 }
 

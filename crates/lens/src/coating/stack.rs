@@ -161,55 +161,6 @@ fn real(re: f64) -> Complex {
     Complex { re, im: 0.0 }
 }
 
-/// Smallest square of N cos(theta) over clear layers: where it is not positive, light does not run in one of them.
-#[inline(always)]
-pub(crate) fn least_square<const N: usize>(layers: &[[f64; 2]; N], n: f64, c: f64) -> f64 {
-    let tangential = n * n * (1.0 - c * c);
-    let mut least = f64::INFINITY;
-    for [index, _] in layers {
-        least = least.min(index * index - tangential);
-    }
-    least
-}
-
-/// [`Stack::transmittance`] for clear layers in all of which the light runs: branch-free.
-#[inline(always)]
-pub(crate) fn running_layers<const N: usize>(
-    [n, n_after]: [f64; 2],
-    [c, c_after]: [f64; 2],
-    layers: &[[f64; 2]; N],
-    wavelength_nm: f64,
-) -> Transmittance {
-    // What passes is the same either way; the first layer lies next to the lower index.
-    let back = n > n_after;
-    let (low, c_low) = if back { (n_after, c_after) } else { (n, c) };
-    let (high, c_high) = if back { (n, c) } else { (n_after, c_after) };
-    let tangential = low * low * (1.0 - c_low * c_low);
-    // Real and imaginary parts of B and C.
-    let mut s = [1.0, 0.0, high * c_high, 0.0];
-    let mut p = [1.0, 0.0, high / c_high.max(1e-12), 0.0];
-    let step = |[b, b_i, c, c_i]: [f64; 4], cos: f64, over: f64, times: f64| {
-        [cos * b - over * c_i, cos * b_i + over * c, cos * c - times * b_i, cos * c_i + times * b]
-    };
-    for k in (0..N).rev() {
-        let [index, thickness_nm] = layers[k];
-        let square = index * index;
-        let along = (square - tangential).sqrt();
-        let turns = along * thickness_nm / wavelength_nm;
-        let (sin, cos) = math::sin_cos_turns(turns - turns.floor());
-        s = step(s, cos, sin / along, sin * along);
-        p = step(p, cos, sin * along / square, sin * square / along);
-    }
-    let through = |[b, b_i, c, c_i]: [f64; 4], eta: f64, eta_after: f64| {
-        let (re, im) = (b * eta + c, b_i * eta + c_i);
-        4.0 * eta * eta_after / (re * re + im * im)
-    };
-    Transmittance {
-        s: through(s, low * c_low, high * c_high),
-        p: through(p, low / c_low.max(1e-12), high / c_high.max(1e-12)),
-    }
-}
-
 /// The matrix of a layer times (B, C): `over` is sin(delta) / eta, `times` is eta sin(delta).
 fn pass([b, c]: [Complex; 2], cos: Complex, over: Complex, times: Complex) -> [Complex; 2] {
     [cos * b + over.turned() * c, times.turned() * b + cos * c]
@@ -297,28 +248,6 @@ mod tests {
                 assert!((bare.s - want.s).abs() < 1e-13 && (bare.p - want.p).abs() < 1e-13);
             }
         }
-    }
-
-    /// Clear layers by the fast form are those by complex numbers, from both sides.
-    #[test]
-    fn clear_layers_by_both_forms() {
-        let quarter = |n: f64| StackLayer::constant(515.0 / 4.0 / n, n, 0.0);
-        let stack = Stack::new(vec![quarter(1.38), StackLayer::constant(122.6, 2.1, 0.0), quarter(1.72)]);
-        let layers = stack.clear_layers::<3>().expect("clear");
-        assert!(stack.clear_layers::<2>().is_none());
-        for (n, n_after) in [(1.0, 1.5168), (1.7, 1.0)] {
-            for step in 0..30 {
-                let c = 1.0 - 0.03 * f64::from(step);
-                let Some(both) = cosines(n, n_after, c) else { continue };
-                for nm in [350.0, 430.0, 550.0, 830.0] {
-                    assert!(least_square(&layers, n, c) > 0.0);
-                    let (fast, slow) =
-                        (running_layers([n, n_after], both, &layers, nm), stack.transmittance([n, n_after], both, nm));
-                    assert!((fast.s - slow.s).abs() < 1e-13 && (fast.p - slow.p).abs() < 1e-13, "{n} {c} {nm}");
-                }
-            }
-        }
-        assert!(Stack::new(vec![StackLayer::constant(20.0, 0.055, 3.32)]).clear_layers::<1>().is_none());
     }
 
     /// Quarter waves: a mirror of p pairs reflects ((1 - Y) / (1 + Y))^2 with Y = (high / low)^(2 p) high^2 / n' where the

@@ -91,8 +91,7 @@ impl Animation {
                 faults.take(check_path(key, node, "animation.animate"));
                 let Some((track, at)) = faults.take(track(key, node)) else { continue };
                 if let Some(beyond) = at.iter().find(|at| !(f64::from(first)..=last).contains(at)) {
-                    let words =
-                        format!("the keyframe {beyond} of `{}` lies beyond the frames {first} to {last}", key.text);
+                    let words = format!("keyframe {beyond} of `{}` is outside the frames {first} to {last}", key.text);
                     warnings.push(node.fault(words).into());
                 }
                 tracks.push((key.text.clone(), track));
@@ -112,11 +111,7 @@ fn track(key: &Key, node: &Node) -> Result<(Track, Vec<f64>), Faults> {
     let path = format!("{ANIMATION}.animate.{}", key.text);
     let example = "such as `{1: 2 m, 48: 0.6 m, interpolation: smooth}`";
     let Value::Map(entries) = &node.value else {
-        return Err(node
-            .fault("an animated path has keyframes: numbers of frames, and values")
-            .path(path)
-            .hint(example)
-            .into());
+        return Err(node.fault("keyframes are frame numbers with values").path(path).hint(example).into());
     };
     let mut faults = Faults::new();
     let mut law = Law::default();
@@ -130,7 +125,7 @@ fn track(key: &Key, node: &Node) -> Result<(Track, Vec<f64>), Faults> {
         let frame = key.text.parse::<u32>().ok().filter(|frame| u64::from(*frame) <= LAST);
         let Some(frame) = frame else {
             let fault =
-                Fault::new(format!("`{}` is no number of a frame", key.text.chars().take(48).collect::<String>()));
+                Fault::new(format!("`{}` is not a frame number", key.text.chars().take(48).collect::<String>()));
             faults.push(fault.at(Arc::clone(&value.file), key.span).path(&path).hint(example));
             continue;
         };
@@ -195,10 +190,7 @@ mod tests {
     fn keyframes_beyond_the_frames_are_warned_of() {
         let found = animation("animation: {frames: 48, seed: fixed, animate: {a: {1: 1, 480: 2}}}").expect("good");
         assert!(!found.is_alive);
-        assert_eq!(
-            found.warnings[0].to_string(),
-            "t.yaml:1:51: the keyframe 480 of `a` lies beyond the frames 1 to 48"
-        );
+        assert_eq!(found.warnings[0].to_string(), "t.yaml:1:51: keyframe 480 of `a` is outside the frames 1 to 48");
     }
 
     #[test]
@@ -212,17 +204,17 @@ mod tests {
             ("{frames: 2, rate: 0}", "found 0, which is out of range"),
             ("{frames: 2, seed: 3}", "unknown value `3` for `seed`"),
             ("{frames: 2, animate: [1]}", "`animate` is a map"),
-            ("{frames: 2, animate: {a: 3}}", "an animated path has keyframes"),
+            ("{frames: 2, animate: {a: 3}}", "keyframes are frame numbers with values"),
             ("{frames: 2, animate: {a: {}}}", "there is no keyframe"),
-            ("{frames: 2, animate: {a: {x: 3}}}", "t.yaml:1:38: `x` is no number of a frame"),
+            ("{frames: 2, animate: {a: {x: 3}}}", "t.yaml:1:38: `x` is not a frame number"),
             ("{frames: 2, animate: {a: {1: 3, 01: 4}}}", "frame 1 comes twice"),
             (
                 "{frames: 2, animate: {a: {1: 3, interpolation: linar}}}",
                 "unknown value `linar` for `interpolation` (did you mean `linear`?",
             ),
-            ("{frames: 2, animate: {a: {1: x, 2: y}}}", "nothing lies between the text `x`"),
+            ("{frames: 2, animate: {a: {1: x, 2: y}}}", "the text `x` cannot be interpolated"),
             ("{frames: 2, animate: {a: {1: 2 m, 2: 1 s}}}", "`1 s` and `2 m` are of different kinds"),
-            ("{frames: 2, animate: {sweep.a: {1: 2 m}}}", "`sweep` is no part of a picture"),
+            ("{frames: 2, animate: {sweep.a: {1: 2 m}}}", "`sweep` cannot change from picture to picture"),
             ("{frames: 2, animate: {a: {1: $q}}}", "no variable is called `q`"),
         ] {
             let error = animation(&format!("animation: {text}\n")).map(|_| ()).expect_err(said);

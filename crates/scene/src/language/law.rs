@@ -143,7 +143,7 @@ fn scalars(nodes: &[Node], law: Law) -> Result<Values, Fault> {
                 let [this, first] = [node, first].map(|n| n.as_str().unwrap_or_default());
                 let wanted = unit.dimension.noun();
                 let fault = node.fault(format!("`{this}` and `{first}` are of different kinds: {found} and {wanted}"));
-                return Err(fault.hint("values that others lie between measure the same"));
+                return Err(fault.hint("interpolated values must have the same dimension"));
             }
         });
     }
@@ -175,18 +175,18 @@ fn quantity(node: &Node, law: Law) -> Result<(f64, Option<&'static Unit>), Fault
         Reading::Infinity(negative) if law == Law::Reciprocal => {
             Ok((if negative { f64::NEG_INFINITY } else { f64::INFINITY }, None))
         }
-        Reading::Infinity(_) => Err(node
-            .fault("nothing lies between infinity and another value by this law")
-            .hint("`reciprocal` does: evenly in one over the value")),
+        Reading::Infinity(_) => {
+            Err(node.fault("this law cannot interpolate to infinity").hint("`reciprocal` can: it is linear in 1/value"))
+        }
         Reading::UnknownUnit(unit) => Err(node.fault(format!("unknown unit `{unit}`"))),
         Reading::DecimalComma => Err(node.fault("a number with a comma").hint("write a decimal point")),
-        Reading::TooLarge | Reading::NotANumber => Err(node.fault("found no finite number")),
+        Reading::TooLarge | Reading::NotANumber => Err(node.fault("found a number that is not finite")),
         Reading::Text => {
             let found = text.map_or_else(
                 || "this value".to_owned(),
                 |text| format!("the text `{}`", text.chars().take(48).collect::<String>()),
             );
-            Err(node.fault(format!("nothing lies between {found} and another value")).hint("numbers, quantities such as `2 m`, and lists of them do; anything goes with `hold`, or in a list of a sweep"))
+            Err(node.fault(format!("{found} cannot be interpolated")).hint("numbers, quantities such as `2 m` and lists of them can; other values need `hold`, or a list in a sweep"))
         }
     }
 }
@@ -285,16 +285,16 @@ mod tests {
             ("[2 m, 3 s]", Law::Linear, "t.yaml:1:7: `3 s` and `2 m` are of different kinds: time and length"),
             ("[2 m, 3]", Law::Linear, "t.yaml:1:7: `3` and `2 m` are of different kinds: bare number and length"),
             ("[3, 2 m]", Law::Linear, "t.yaml:1:2: `3` and `2 m` are of different kinds"),
-            ("[a, b]", Law::Linear, "nothing lies between the text `a`"),
-            ("[true, 1]", Law::Linear, "nothing lies between this value"),
-            ("[{a: 1}, {a: 2}]", Law::Linear, "nothing lies between this value"),
-            ("[inf, 1 m]", Law::Linear, "nothing lies between infinity"),
+            ("[a, b]", Law::Linear, "the text `a` cannot be interpolated"),
+            ("[true, 1]", Law::Linear, "this value cannot be interpolated"),
+            ("[{a: 1}, {a: 2}]", Law::Linear, "this value cannot be interpolated"),
+            ("[inf, 1 m]", Law::Linear, "cannot interpolate to infinity"),
             ("[0, 1]", Law::Logarithmic, "t.yaml:1:2: `logarithmic` takes values above zero"),
             ("[1, -1]", Law::Reciprocal, "t.yaml:1:5: `reciprocal` takes values of one sign"),
             ("[0, 1]", Law::Reciprocal, "t.yaml:1:2: `reciprocal`"),
             ("[[1, 2], [1]]", Law::Linear, "t.yaml:1:10: expected a list of 2 values"),
             ("[[1, 2], 3]", Law::Linear, "expected a list of 2 values"),
-            ("[[1, a], [1, 2]]", Law::Linear, "nothing lies between the text `a`"),
+            ("[[1, a], [1, 2]]", Law::Linear, "the text `a` cannot be interpolated"),
             ("[2 mn, 3 m]", Law::Linear, "unknown unit `mn`"),
             ("['2,5', 3]", Law::Linear, "a number with a comma"),
         ] {

@@ -8,9 +8,12 @@ use super::variables::{self, VARIABLES, Variables};
 use crate::assemble::{assemble, read, record};
 use crate::earlier::Earlier;
 use crate::lens_section::is_too_fast;
+use crate::remembered::Remembered;
 use crate::{FileResources, Scene, yaml};
-use spectra_core::params::{Fault, Faults, Key, Node, Number, Params, Value, Warning};
-use std::path::Path;
+use spectra_core::params::{Fault, Faults, Key, Node, Number, Params, SourceFile, Value, Warning};
+use spectra_core::resources::Resources;
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// What a scene file stands for.
@@ -72,16 +75,15 @@ impl Member {
 }
 
 /// A scene file, read, with all that it includes; no stage is built yet.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct Series {
-    name: String,
+    written: Written,
+    /// What is set on top of it: texts `path=value`.
+    overrides: Vec<String>,
     /// The tree, variables still in it.
     root: Node,
     /// What stands in the record of a scene that is one picture, written out.
     plain: Option<String>,
-    resources: FileResources,
-    /// The files that it is made of.
-    files: Vec<String>,
     going: Going,
     warnings: Vec<Warning>,
 }
@@ -101,8 +103,8 @@ pub fn load(path: &Path, overrides: &[String]) -> Result<Scene, Faults> {
     let series = load_series(path, overrides)?;
     if let Some(key) = series.key() {
         let fault =
-            series.root.fault(format!("this scene stands for {} pictures, and one is wanted here", series.count()));
-        return Err(fault.path(key).hint(format!("take the series out with `--set {key}=`")).into());
+            series.root.fault(format!("this scene makes {} pictures, but one is expected here", series.count()));
+        return Err(fault.path(key).hint(format!("remove the series with `--set {key}=`")).into());
     }
     series.scene(0)
 }
@@ -114,41 +116,107 @@ pub fn load(path: &Path, overrides: &[String]) -> Result<Scene, Faults> {
 /// by [`Series::scene`].
 pub fn load_series(path: &Path, overrides: &[String]) -> Result<Series, Faults> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let mut root = read(path)?;
+    let root = read(path)?;
     // A bundled scene is called by its whole name, however it was named.
     let called = match root.file.name.strip_prefix("bundled:") {
         Some(bundled) => Path::new(bundled),
         None => path,
     };
     let name = called.file_stem().map_or_else(|| "scene".to_owned(), |s| s.to_string_lossy().into_owned());
-    let text = Arc::clone(&root.file);
-    let mut faults = Faults::new();
-    let is_include = |text: &&String| text.split_once('=').is_some_and(|(path, _)| path.trim() == INCLUDE);
-    for text in overrides.iter().filter(is_include) {
-        faults.take(yaml::parse_override(text).and_then(|o| o.apply(&mut root).map_err(Faults::from)));
+    let beside =
+        |folders: &[PathBuf]| -> Arc<dyn Resources> { Arc::new(FileResources::beside(folder).and_beside(folders)) };
+    Written::read(name, root, overrides, beside)?.set(overrides)
+}
+
+/// The same of a text: its stages ask `resources` for files.
+///
+/// # Errors
+/// As [`load_series`].
+pub fn series_of_text(
+    name: &str,
+    text: &str,
+    overrides: &[String],
+    resources: Arc<dyn Resources>,
+) -> Result<Series, Faults> {
+    let root = yaml::parse(SourceFile::new(name, text))?;
+    series_of_tree(name, root, overrides, resources)
+}
+
+/// The same of a tree, as a program may have made it.
+///
+/// # Errors
+/// As [`load_series`].
+pub fn series_of_tree(
+    name: &str,
+    root: Node,
+    overrides: &[String],
+    resources: Arc<dyn Resources>,
+) -> Result<Series, Faults> {
+    let stem = Path::new(name).file_stem().map_or_else(|| name.to_owned(), |s| s.to_string_lossy().into_owned());
+    Written::read(stem, root, overrides, |_| resources)?.set(overrides)
+}
+
+/// A scene as it is written, with all that it includes, before anything is set.
+#[derive(Clone)]
+struct Written {
+    name: String,
+    root: Node,
+    /// The file itself, for the record.
+    text: Arc<SourceFile>,
+    resources: Arc<dyn Resources>,
+    /// The files that it is made of.
+    files: Vec<String>,
+    /// Variables that any of the files refers to.
+    references: BTreeSet<String>,
+    /// Whether nothing of the language above stages is in it.
+    is_plain: bool,
+}
+
+/// Whether a text `path=value` sets what is included.
+fn is_include(text: &str) -> bool {
+    text.split_once('=').is_some_and(|(path, _)| path.trim() == INCLUDE)
+}
+
+impl Written {
+    fn read(
+        name: String,
+        mut root: Node,
+        overrides: &[String],
+        resources: impl FnOnce(&[PathBuf]) -> Arc<dyn Resources>,
+    ) -> Result<Self, Faults> {
+        let text = Arc::clone(&root.file);
+        let mut faults = Faults::new();
+        for text in overrides.iter().filter(|text| is_include(text)) {
+            faults.take(yaml::parse_override(text).and_then(|o| o.apply(&mut root).map_err(Faults::from)));
+        }
+        faults.into_result(())?;
+        let is_plain = [INCLUDE, VARIABLES, SWEEP, ANIMATION].iter().all(|key| root.get(key).is_none());
+        let files = vec![root.file.name.clone()];
+        let include::Included { root, files: included, folders, references } = include::resolve(root)?;
+        let resources = Arc::new(Remembered::new(resources(&folders)));
+        Ok(Self { name, root, text, resources, files: [files, included].concat(), references, is_plain })
     }
-    faults.into_result(())?;
-    let is_plain = [INCLUDE, VARIABLES, SWEEP, ANIMATION].iter().all(|key| root.get(key).is_none());
-    let files = vec![root.file.name.clone()];
-    let included = include::resolve(root)?;
-    let (mut root, mut references) = (included.root, included.references);
-    let mut faults = Faults::new();
-    let mut set = Vec::new();
-    for text in overrides.iter().filter(|text| !is_include(text)) {
-        let Some(over) = faults.take(yaml::parse_override(text)) else { continue };
-        variables::references(&over.node, &mut references);
-        variables::open(&mut root, &over.path);
-        set.push(over.path.clone());
-        faults.take(over.apply(&mut root));
+
+    /// With these texts `path=value` on top.
+    fn set(self, overrides: &[String]) -> Result<Series, Faults> {
+        let (mut root, mut references) = (self.root.clone(), self.references.clone());
+        let mut faults = Faults::new();
+        let mut set = Vec::new();
+        for text in overrides.iter().filter(|text| !is_include(text)) {
+            let Some(over) = faults.take(yaml::parse_override(text)) else { continue };
+            variables::references(&over.node, &mut references);
+            variables::open(&mut root, &over.path);
+            set.push(over.path.clone());
+            faults.take(over.apply(&mut root));
+        }
+        faults.into_result(())?;
+        // `--set` may have brought the language in.
+        let is_plain = self.is_plain && [VARIABLES, SWEEP, ANIMATION].iter().all(|key| root.get(key).is_none());
+        let plain = is_plain.then(|| record(&self.text.text, overrides));
+        let overrides = overrides.to_vec();
+        let series = Series { written: self, overrides, root, plain, going: Going::Single, warnings: Vec::new() };
+        if is_plain { Ok(series) } else { series.unfolded(&set, &references) }
     }
-    faults.into_result(())?;
-    // `--set` may have brought the language in.
-    let is_plain = is_plain && [VARIABLES, SWEEP, ANIMATION].iter().all(|key| root.get(key).is_none());
-    let resources = FileResources::beside(folder).and_beside(&included.folders);
-    let files = [files, included.files].concat();
-    let plain = is_plain.then(|| record(&text.text, overrides));
-    let series = Series { name, root, plain, resources, files, going: Going::Single, warnings: Vec::new() };
-    if is_plain { Ok(series) } else { series.unfolded(&set, &references) }
 }
 
 impl Series {
@@ -211,10 +279,29 @@ impl Series {
         }
     }
 
+    /// The same with one more value set, as `--set` does it: a text `path=value`. No file is read again, but for what is
+    /// included, where that is set.
+    ///
+    /// # Errors
+    /// As [`load_series`].
+    pub fn with(&self, text: &str) -> Result<Self, Faults> {
+        let path = |text: &str| text.split_once('=').map(|(path, _)| path.trim().to_owned());
+        let mut overrides = self.overrides.clone();
+        overrides.retain(|other| path(other) != path(text));
+        overrides.push(text.to_owned());
+        self.written.clone().set(&overrides)
+    }
+
+    /// What is set on top of the scene as it is written: texts `path=value`.
+    #[must_use]
+    pub fn overrides(&self) -> &[String] {
+        &self.overrides
+    }
+
     /// Name of the scene: the file's name without its ending.
     #[must_use]
     pub fn name(&self) -> &str {
-        &self.name
+        &self.written.name
     }
 
     /// What it stands for.
@@ -252,7 +339,7 @@ impl Series {
     /// The files that it is made of: the scene, then what it includes.
     #[must_use]
     pub fn files(&self) -> &[String] {
-        &self.files
+        &self.written.files
     }
 
     /// Where a variable is used: paths of values with their texts, such as `source.distance` and `$far`.
@@ -303,7 +390,7 @@ impl Series {
             }
         };
         let is_frame = matches!(self.going, Going::Animation(_));
-        Member { number, values, base: self.name.clone(), mark, is_frame }
+        Member { number, values, base: self.written.name.clone(), mark, is_frame }
     }
 
     /// Assembles a picture by its place in the series, from 0.
@@ -319,7 +406,7 @@ impl Series {
     ///
     /// # Errors
     /// As [`Series::scene`].
-    pub fn scene_after(&self, index: usize, other: Option<Scene>) -> Result<Scene, Faults> {
+    pub fn scene_after(&self, index: usize, other: Option<Arc<Scene>>) -> Result<Scene, Faults> {
         self.assembled(index, Earlier::of(other, false))
     }
 
@@ -328,7 +415,7 @@ impl Series {
     ///
     /// # Errors
     /// As [`Series::scene`].
-    pub fn looked_at(&self, index: usize, other: Option<Scene>) -> Result<Scene, Faults> {
+    pub fn looked_at(&self, index: usize, other: Option<Arc<Scene>>) -> Result<Scene, Faults> {
         self.assembled(index, Earlier::of(other, true))
     }
 
@@ -336,7 +423,13 @@ impl Series {
         let member = self.member(index);
         let name = member.stem("");
         if let Some(text) = &self.plain {
-            return assemble(&name, text.clone(), &Params::section(self.root.clone(), "")?, &self.resources, earlier);
+            return assemble(
+                &name,
+                text.clone(),
+                &Params::section(self.root.clone(), "")?,
+                &*self.written.resources,
+                earlier,
+            );
         }
         let mut root = self.root.clone();
         let mut faults = Faults::new();
@@ -360,7 +453,7 @@ impl Series {
         let is_check = earlier.is_check;
         let built = |root: &Node, text: &str, earlier: Earlier| {
             Params::section(root.clone(), "")
-                .and_then(|params| assemble(&name, text.to_owned(), &params, &self.resources, earlier))
+                .and_then(|params| assemble(&name, text.to_owned(), &params, &*self.written.resources, earlier))
         };
         let scene =
             built(&root, &text, earlier).or_else(|faults| match self.wide_open_instead(index, &root, &faults) {
@@ -381,7 +474,11 @@ impl Series {
         let is_sweep = matches!(self.going, Going::Sweep { .. });
         let lens = self.setting(index).iter().any(|(path, _)| path == "lens.file" || path == "lens");
         let [fault] = &faults.0[..] else { return None };
-        if !(is_sweep && lens && is_too_fast(fault)) {
+        if !(is_sweep && lens && fault.path == "lens.f-number") {
+            return None;
+        }
+        let params = Params::section(root.clone(), "").and_then(|params| params.stage_at("lens")).ok()??;
+        if !is_too_fast(&params, &*self.written.resources) {
             return None;
         }
         let mut open = root.clone();
@@ -402,7 +499,7 @@ impl Series {
         }
         let file =
             |name: &String| Path::new(name).file_name().map_or(name.clone(), |n| n.to_string_lossy().into_owned());
-        let files: Vec<String> = self.files.iter().map(file).collect();
+        let files: Vec<String> = self.written.files.iter().map(file).collect();
         let what = match &self.going {
             Going::Single => String::new(),
             Going::Sweep { settings, .. } => {

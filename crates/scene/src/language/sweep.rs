@@ -94,7 +94,7 @@ impl Sweep {
             Value::Map(entries) if !entries.is_empty() => product(section, entries, variables),
             Value::Seq(items) if !items.is_empty() => together(section, items),
             _ => {
-                let fault = section.fault("a sweep says which values are tried").path(SWEEP);
+                let fault = section.fault("a sweep lists the values to try").path(SWEEP);
                 Err(fault.hint("such as `sweep: {lens.f-number: [f/2, f/4, f/8]}`").into())
             }
         }
@@ -120,7 +120,7 @@ pub(super) fn check_path(key: &Key, value: &Node, section: &str) -> Result<(), F
     let found = steps(&key.text).map_err(|text| fault(text).hint("a path as of `--set`, such as `lens.f-number`"))?;
     match found.first() {
         Some(spectra_core::params::Step::Key(first)) if RESERVED.contains(first) => {
-            Err(fault(format!("`{first}` is no part of a picture"))
+            Err(fault(format!("`{first}` cannot change from picture to picture"))
                 .hint("a path leads into a stage, `render` or `variables`"))
         }
         _ => Ok(()),
@@ -259,12 +259,12 @@ mod tests {
     fn what_is_wrong_is_told_at_its_place() {
         let many = format!("{{a: [{}], b: {{from: 1, to: 2, steps: 51}}}}", "1, ".repeat(20));
         for (sweep, said) in [
-            ("{}", "a sweep says which values are tried"),
-            ("3", "t.yaml:1:8: a sweep says"),
+            ("{}", "a sweep lists the values to try"),
+            ("3", "t.yaml:1:8: a sweep lists"),
             ("{a: 3}", "t.yaml:1:12: a swept path has a list of values"),
             ("{a: []}", "a swept path has a list of values"),
             ("{a..b: [1]}", "t.yaml:1:9: `a..b` is not a path: a key is empty"),
-            ("{animation.frames: [1]}", "`animation` is no part of a picture"),
+            ("{animation.frames: [1]}", "`animation` cannot change from picture to picture"),
             ("{a: {from: 1, to: 2}}", "missing key `steps`"),
             ("{a: {from: 1, to: 2, stops: 3}}", "unknown key `stops` (did you mean `steps`?)"),
             (
@@ -276,7 +276,7 @@ mod tests {
             ("{a: {from: 1 m, to: 2 s, steps: 3}}", "`2 s` and `1 m` are of different kinds"),
             (&many, "the sweep has 1020 pictures, at most 1000 are made"),
             ("[3]", "t.yaml:1:9: each entry of such a sweep is a map"),
-            ("[{sweep: 1}]", "`sweep` is no part of a picture"),
+            ("[{sweep: 1}]", "`sweep` cannot change from picture to picture"),
         ] {
             let error = settings(&format!("sweep: {sweep}\n")).expect_err(said);
             assert!(error.contains(said), "{error}");

@@ -2,6 +2,7 @@
 
 use super::count;
 use crate::yaml::MAX_NODES;
+use spectra_core::names;
 use spectra_core::params::{Fault, Faults, Key, MAX_DEPTH, Node, SourceFile, Span, Value, Warning, nearest};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -89,7 +90,7 @@ fn parts(text: &str) -> Result<Text<'_>, (String, String)> {
             let name: String =
                 rest.chars().take_while(|c| c.is_ascii_alphanumeric() || matches!(c, '-' | '_')).collect();
             let hint = if is_name(&name) { format!("inside of a text write `${{{name}}}`; ") } else { String::new() };
-            return Err(("a `$` that begins no variable".to_owned(), format!("{hint}for a dollar write `$$`")));
+            return Err(("this `$` does not begin a variable".to_owned(), format!("{hint}for a dollar write `$$`")));
         }
     }
     pieces.push(Piece::Text(rest));
@@ -175,7 +176,7 @@ impl Variables {
         let mut faults = Faults::new();
         for (key, node) in &entries {
             if !is_name(&key.text) {
-                let message = format!("`{}` is no name of a variable", shorten(&key.text));
+                let message = format!("`{}` is not a valid name of a variable", shorten(&key.text));
                 let fault = Fault::new(message).at(Arc::clone(&node.file), key.span).path(VARIABLES);
                 faults.push(fault.hint("letters, digits, `-` and `_`; it begins with a letter"));
             }
@@ -211,7 +212,7 @@ impl Variables {
         for next in &used {
             if let Some(at) = open.iter().position(|n| n == next) {
                 let place = reference(node, next).unwrap_or(node);
-                let fault = place.fault(format!("the variable `{next}` is made of itself"));
+                let fault = place.fault(format!("the variable `{next}` refers to itself"));
                 let chain: Vec<&str> = open[at..].iter().map(String::as_str).chain([next.as_str()]).collect();
                 faults.push(fault.path(format!("{VARIABLES}.{name}")).hint(chain.join(" -> ")));
             } else {
@@ -316,8 +317,11 @@ impl Filler<'_> {
                                 Value::Number(number) => out.push_str(&number.text),
                                 Value::Bool(value) => out.push_str(&value.to_string()),
                                 Value::Null | Value::Seq(_) | Value::Map(_) => {
-                                    let what =
-                                        if matches!(value.value, Value::Null) { "nothing" } else { "no single value" };
+                                    let what = if matches!(value.value, Value::Null) {
+                                        "nothing"
+                                    } else {
+                                        "not a single value"
+                                    };
                                     let fault =
                                         node.fault(format!("`{name}` is {what}, and cannot stand inside of a text"));
                                     faults.push(fault.path(path).hint(format!("a whole value is written `${name}`")));
@@ -347,7 +351,7 @@ impl Filler<'_> {
             let hint = match nearest(name, known.iter().copied()) {
                 Some(near) => format!("did you mean `${near}`?"),
                 None if known.is_empty() => "the scene defines none".to_owned(),
-                None => format!("known: {}", known.iter().take(20).copied().collect::<Vec<_>>().join(", ")),
+                None => names::hint(name, &known, ""),
             };
             faults.push(node.fault(format!("no variable is called `{}`", shorten(name))).path(path).hint(hint));
             return None;
@@ -367,7 +371,7 @@ impl Filler<'_> {
         if self.open.iter().any(|n| n == name) {
             let chain: Vec<&str> =
                 self.open.iter().skip_while(|n| *n != name).map(String::as_str).chain([name]).collect();
-            let fault = node.fault(format!("the variable `{name}` is made of itself")).path(path);
+            let fault = node.fault(format!("the variable `{name}` refers to itself")).path(path);
             faults.push(fault.hint(chain.join(" -> ")));
             return None;
         }
@@ -472,7 +476,7 @@ mod tests {
         ] {
             let told = circles(bad).expect_err(bad);
             assert!(told.contains(place) && told.contains(chain), "{bad}: {told}");
-            assert_eq!(told.matches("made of itself").count(), 1, "{told}");
+            assert_eq!(told.matches("refers to itself").count(), 1, "{told}");
         }
     }
 
@@ -501,22 +505,22 @@ mod tests {
             ("{aperture: 2}", "$apertur", "t.yaml:2:4: no variable is called `apertur` (did you mean `$aperture`?)"),
             ("{}", "$a", "no variable is called `a` (the scene defines none)"),
             ("{a: 1}", "[1, $zzz]", "t.yaml:2:8: no variable is called `zzz` (known: a)"),
-            ("{a: $b, b: $c, c: $b}", "$a", "t.yaml:1:30: the variable `b` is made of itself (b -> c -> b)"),
-            ("{a: 'x${a}'}", "$a", "the variable `a` is made of itself (a -> a)"),
+            ("{a: $b, b: $c, c: $b}", "$a", "t.yaml:1:30: the variable `b` refers to itself (b -> c -> b)"),
+            ("{a: 'x${a}'}", "$a", "the variable `a` refers to itself (a -> a)"),
             (
                 "{a: [1]}",
                 "'1${a}'",
-                "`a` is no single value, and cannot stand inside of a text (a whole value is written `$a`)",
+                "`a` is not a single value, and cannot stand inside of a text (a whole value is written `$a`)",
             ),
             (
                 "{a: 1}",
                 "$a mm",
-                "a `$` that begins no variable (inside of a text write `${a}`; for a dollar write `$$`)",
+                "this `$` does not begin a variable (inside of a text write `${a}`; for a dollar write `$$`)",
             ),
-            ("{a: 1}", "5 $", "a `$` that begins no variable (for a dollar write `$$`)"),
+            ("{a: 1}", "5 $", "this `$` does not begin a variable (for a dollar write `$$`)"),
             ("{a: 1}", "'${a'", "`${` is never closed"),
             ("{a: 1}", "'${a b}'", "`${a b}` names no variable"),
-            ("{2a: 1}", "1", "t.yaml:1:13: `2a` is no name of a variable"),
+            ("{2a: 1}", "1", "t.yaml:1:13: `2a` is not a valid name of a variable"),
             ("[1]", "1", "`variables` is a map of names and values"),
         ] {
             let text = format!("variables: {variables}\nx: {body}\n");

@@ -1,9 +1,10 @@
 //! What the sensor's colors mean: its matrix and its white, from its sensitivities.
 
 use glam::{DMat3, DVec3};
+use spectra_color::Adaptation;
 use spectra_core::spectral::{Channel, Grid, SpectralPower};
 use spectra_spectrum::constants::LUMINOUS_EFFICACY_LM_PER_W;
-use spectra_spectrum::{Adaptation, Emission, Observer, find_reflectance};
+use spectra_spectrum::{Emission, Observer, find_reflectance};
 
 /// XYZ of D50, x 0.3457, y 0.3585: white of the space that converters work in (Adobe, Digital Negative Specification 1.4).
 const D50: [f64; 3] = [0.3457 / 0.3585, 1.0, (1.0 - 0.3457 - 0.3585) / 0.3585];

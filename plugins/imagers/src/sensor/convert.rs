@@ -6,9 +6,9 @@ use super::noise::PixelNumbers;
 use super::pattern::Pattern;
 use glam::DVec3;
 use rayon::prelude::*;
+use spectra_color::{Adaptation, Gamut, RgbSpace};
 use spectra_core::frame::{DisplayPicture, ExposureChannel, ExposureFrame, FrameSize, RawColor, RawFrame, RawNoise};
 use spectra_film::display::{White, show_xyz};
-use spectra_spectrum::{Adaptation, Gamut, RgbSpace};
 
 /// The electronics.
 #[derive(Clone, Debug)]

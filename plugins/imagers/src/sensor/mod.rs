@@ -83,7 +83,8 @@ impl Pixels {
 
     fn receive_one(&self, c: &mut Columns<'_>, i: usize) -> Result<(), (Loss, u32)> {
         let (from, way) = (DVec3::new(c.x[i], c.y[i], c.z[i]), DVec3::new(c.l[i], c.m[i], c.n[i]));
-        let Met { point, x, y, passed } = self.plane.meet(from, way, c.wavelength_nm[i]).ok_or(BESIDE)?;
+        let Met { point, x, y, passed } =
+            self.plane.meet(from, way, c.wavelength_nm[i], c.numbers.of(i)).ok_or(BESIDE)?;
         let pixel = self.plane.size().pixel_at(x, y).ok_or(BESIDE)?;
         let (column, row) = (pixel % self.plane.size().width_px, pixel / self.plane.size().width_px);
         let [at_column, at_row] = self.place(x, y);
@@ -113,7 +114,7 @@ impl Pixels {
             c.tag[i] = self.tag(column, row, well);
             return Ok(());
         }
-        let Met { x, y, .. } = self.plane.meet(at, way, c.wavelength_nm[i]).ok_or(WALLED)?;
+        let Met { x, y, .. } = self.plane.meet(at, way, c.wavelength_nm[i], c.numbers.of(i)).ok_or(WALLED)?;
         let [at_column, at_row] = self.place(x, y);
         let entry = [at_column - f64::from(column) - 0.5, at_row - f64::from(row) - 0.5];
         let [dc, dr] = self.landing(entry, x, y, way, c.wavelength_nm[i])?;
@@ -151,6 +152,10 @@ impl Receive for Pixels {
     fn receive(&self, rays: &mut RayBatch, _isa: Isa) {
         each(rays, |c, i| self.receive_one(c, i));
     }
+
+    fn draws(&self) -> bool {
+        self.plane.splits()
+    }
 }
 
 impl Launch for Pixels {
@@ -165,6 +170,10 @@ impl Launch for Pixels {
     fn admit(&self, rays: &mut RayBatch, isa: Isa) {
         self.plane.admit(rays, isa);
         each(rays, |c, i| self.admit_one(c, i));
+    }
+
+    fn draws(&self) -> bool {
+        self.plane.splits()
     }
 }
 

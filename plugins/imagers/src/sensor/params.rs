@@ -124,11 +124,11 @@ pub struct PhotositeParams {
     #[serde(default)]
     #[schemars(extend("minimum" = 1, "maximum" = 5))]
     pub index: Option<Positive<f64>>,
-    /// How far the microlens gathers light toward the middle, 0 (not at all) to 1 (to a point); 0 if left out.
+    /// How far the microlens concentrates light toward the middle, 0 (not at all) to 1 (to a point); 0 if left out.
     #[serde(default)]
     #[schemars(extend("maximum" = 1))]
     pub microlens: Option<NonNegative<Ratio>>,
-    /// Distance of the exit pupil that the microlenses are shifted for, mm if bare; not shifted if left out.
+    /// Distance of the exit pupil for which the microlenses are shifted, mm if bare; not shifted if left out.
     #[serde(default)]
     pub exit_pupil: Option<OrInfinity<Positive<Length>>>,
     /// Depth of the well, mm if bare; 0 if left out: all is absorbed at the surface.
@@ -244,8 +244,9 @@ impl SensorParams {
                     .map_err(|e| e.faults(|text| params.fault("white-balance", text)));
                 faults.take(found).and_then(|light| {
                     let color = CameraColor::fit(channels, &light, &context.grid);
-                    let blind =
-                        || params.fault("white-balance", "these sensitivities do not tell colors apart in this light");
+                    let blind = || {
+                        params.fault("white-balance", "these sensitivities cannot distinguish colors under this light")
+                    };
                     faults.take(color.ok_or_else(blind))
                 })
             }

@@ -22,7 +22,7 @@ pub struct Photosite {
     pub stack_index: f64,
     /// How far the microlens gathers light toward the middle: 0 not at all, 1 to a point.
     pub microlens: f64,
-    /// Distance of the exit pupil that the microlenses are shifted for, mm; infinity: not shifted.
+    /// Distance of the exit pupil for which the microlenses are shifted, mm; infinity: not shifted.
     pub exit_pupil_mm: f64,
     /// How deep the well is from which charge is collected, mm; 0: all is absorbed at the surface.
     pub well_mm: f64,

@@ -54,7 +54,7 @@ fn faults_name_the_key_and_the_reason() {
         ("{kind: gaussian-terms, terms: 33}", "found 33, which is out of range"),
         ("{kind: gaussian-terms, follow: two-terms}", "two-terms"),
         ("{kind: hero, group: 1}", "found 1, which is out of range"),
-        ("{kind: hero, density: hero}", "a group of groups"),
+        ("{kind: hero, density: hero}", "a group cannot contain groups"),
         ("{kind: hero, density: unifrom}", "did you mean `uniform`"),
         ("{kind: hero, density: {kind: stratified, strata: 0}}", "found 0, which is out of range"),
     ] {

@@ -141,11 +141,11 @@ impl ChartError {
     #[must_use]
     pub(crate) fn parts(&self) -> (String, String) {
         match self {
-            Self::Unknown { name, nearest } => {
+            Self::Unknown { name, .. } => {
                 let own = std::iter::once(OWN_PATCHES);
                 let known: Vec<&str> = CHARTS.iter().map(|entry| entry.name).chain(own).collect();
                 let name: String = name.chars().take(48).collect();
-                (format!("unknown chart `{name}`"), format!("did you mean `{nearest}`? Known: {}", known.join(", ")))
+                (format!("unknown chart `{name}`"), spectra_core::names::hint(&name, &known, ""))
             }
             Self::Width { .. } => (self.to_string(), "such as 1.5 m".to_owned()),
         }

@@ -1,12 +1,12 @@
 //! The depth of a picture, from what a file says to millimetres along the axis.
 
-use super::linear::{Choice, Linear, Trouble};
-use super::{decode, find, trouble};
+use super::{find, trouble};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{Faults, Length, Params, Positive, Ratio, StageNode};
 use spectra_core::registry::Context;
 use spectra_core::resources::Found;
+use spectra_pictures::read::{self, Choice, Linear};
 
 /// `depth` of a picture.
 #[derive(Debug, Deserialize, JsonSchema)]
@@ -114,9 +114,7 @@ impl Depth {
             (None, _) | (_, None) => None,
             (Some(file), Some(found)) => {
                 let choice = Choice { depth: Some(self.name()), ..Choice::default() };
-                let bytes = found.read(super::MAX_BYTES).map_err(|e| Trouble::file(e.to_string()));
-                let read = bytes.and_then(|bytes| decode::depth(&bytes, choice));
-                let read = read.map_err(|e| Faults::from(trouble(file, &e, &self.params)))?;
+                let read = read::depth(found, choice).map_err(|e| Faults::from(trouble(file, &e, &self.params)))?;
                 if (read.width, read.height) != (picture.width, picture.height) {
                     let [a, b] = [(read.width, read.height), (picture.width, picture.height)];
                     let text = format!("the depth has {} x {} pixels, the picture {} x {}", a.0, a.1, b.0, b.1);
@@ -168,7 +166,7 @@ impl Depth {
         }
         let nearest = depth.iter().fold(f32::INFINITY, |a, b| a.min(*b));
         if faults.is_empty() && f64::from(nearest) <= self.eye_mm {
-            let text = format!("the nearest depth, {nearest} mm, lies inside of the lens");
+            let text = format!("the nearest depth, {nearest} mm, lies inside the lens");
             faults.push(self.params.fault("unit", text).hint("are its numbers in another unit? `unit: m`"));
         }
         faults.into_result(depth)

@@ -1,32 +1,18 @@
 //! `kind: picture`: a picture file on a plane at a distance, or with the depth that it states.
 
-pub(crate) mod decode;
 mod deep;
 mod depth;
-mod encoding;
-mod exr;
-#[cfg(test)]
-mod exr_tests;
 mod field;
-mod foreign;
-#[cfg(all(test, feature = "oiio"))]
-mod foreign_tests;
-pub(crate) mod header;
 mod highlights;
-mod jpeg;
-pub(crate) mod linear;
 pub(crate) mod map;
 
 use crate::flat::Flat;
 use crate::frame::{Edge, Placed, Width};
 use crate::lazy::Lazy;
 use crate::white;
-use decode::decode;
 use deep::DeepPicture;
 use depth::Depth;
 use field::HeightField;
-use header::Header;
-use linear::{Choice, Linear, Trouble};
 use map::{Importance, PictureMap};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -35,6 +21,7 @@ use spectra_core::registry::{Context, StageOf, build as build_stage};
 use spectra_core::resources::{Found, ResourceError};
 use spectra_core::spectral::SpectralPower;
 use spectra_core::stage::{ColorModel, Source};
+use spectra_pictures::read::{self, Choice, Header, Linear, Trouble};
 use std::sync::Arc;
 
 /// Largest picture file, bytes.
@@ -138,7 +125,7 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
     let depth = p.depth.as_ref().and_then(|node| faults.take(Depth::read(node, context)));
     let edge = p.edge.unwrap_or_default();
     if p.depth.is_some() && edge != Edge::Black {
-        let fault = params.fault("edge", "nobody knows how deep a picture with `depth` is beyond its border");
+        let fault = params.fault("edge", "a picture with `depth` has no depth beyond its border");
         faults.push(fault.hint("leave `edge` out, and take a `width` that fills the frame"));
     }
     let file = found.map(|found| PictureFile {
@@ -146,6 +133,7 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
         name: p.file.clone(),
         transfer: p.transfer.clone(),
         layer: p.layer.clone(),
+        cover: false,
         depth: depth.as_ref().and_then(Depth::channel).map(str::to_owned),
         params: params.clone(),
     });
@@ -209,6 +197,8 @@ pub(crate) struct PictureFile {
     pub name: String,
     pub transfer: Option<String>,
     pub layer: Option<String>,
+    /// Whether cover is wanted beside light.
+    pub cover: bool,
     /// The channel that holds depth, where depth is wanted.
     pub depth: Option<String>,
     /// Where its keys are.
@@ -220,6 +210,7 @@ impl PictureFile {
         Choice {
             name: &self.name,
             transfer: self.transfer.as_deref(),
+            cover: self.cover,
             layer: self.layer.as_deref(),
             depth: self.depth.as_deref(),
         }
@@ -227,13 +218,12 @@ impl PictureFile {
 
     /// What its beginning says.
     pub(crate) fn header(&self) -> Result<Header, Faults> {
-        header::read(&self.found, self.choice()).map_err(|e| trouble(&self.name, &e, &self.params).into())
+        read::header(&self.found, self.choice()).map_err(|e| trouble(&self.name, &e, &self.params).into())
     }
 
     /// All of it, in linear light.
     pub(crate) fn read(&self) -> Result<Linear, Faults> {
-        let bytes = self.found.read(MAX_BYTES).map_err(|e| Trouble::file(e.to_string()));
-        bytes.and_then(|bytes| decode(&bytes, self.choice())).map_err(|e| trouble(&self.name, &e, &self.params).into())
+        read::decode(&self.found, self.choice()).map_err(|e| trouble(&self.name, &e, &self.params).into())
     }
 
     /// Warns of a photograph whose code values are taken as light.

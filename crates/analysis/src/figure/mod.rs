@@ -1,0 +1,124 @@
+//! Whole figures of spectra, their colors, and of glasses.
+
+mod abbe;
+mod chromaticity;
+mod dispersion;
+mod spectrum;
+mod swatches;
+
+pub use abbe::{AbbeGroup, abbe};
+pub use chromaticity::chromaticity;
+pub use dispersion::{IndexCurve, dispersion};
+pub use spectrum::{spectrum, spectrum_and_functions};
+pub use swatches::swatches;
+
+use spectra_plot::{Canvas, Color, Point, Rect, Stroke, TextStyle, text_width};
+
+/// Longest name in a legend, letters; more would push the others off the sheet.
+const LONGEST_NAME: usize = 48;
+
+fn shortened(name: &str) -> String {
+    if name.chars().count() <= LONGEST_NAME {
+        return name.to_owned();
+    }
+    let start: String = name.chars().take(LONGEST_NAME - 3).collect();
+    format!("{start}...")
+}
+
+/// Entries of a legend in rows from the left, each with a piece of its line: the place of each entry's base line, and
+/// how many rows there are.
+fn rows(names: &[String], start: Point, right: f64, style: &TextStyle) -> (Vec<Point>, usize) {
+    const GAP: f64 = 24.0;
+    let mut at = start;
+    let mut rows = 1;
+    let places = names.iter().map(|name| {
+        let width = SAMPLE + text_width(name, style.size) + GAP;
+        if at[0] > start[0] && at[0] + width - GAP > right {
+            at = [start[0], at[1] + 1.6 * style.size];
+            rows += 1;
+        }
+        let place = at;
+        at[0] += width;
+        place
+    });
+    let places = places.collect();
+    (places, rows)
+}
+
+/// Length of a line's piece in a legend, with the gap to its name.
+const SAMPLE: f64 = 30.0;
+
+fn entry(canvas: &mut Canvas, at: Point, name: &str, stroke: &Stroke, style: &TextStyle) {
+    let y = at[1] - style.half_cap();
+    canvas.line([at[0], y], [at[0] + SAMPLE - 7.0, y], stroke);
+    canvas.text([at[0] + SAMPLE, at[1]], name, style);
+}
+
+/// As [`entry`], with a disc in place of a line.
+fn entry_disc(canvas: &mut Canvas, at: Point, name: &str, color: Color, style: &TextStyle) {
+    canvas.disc([at[0] + 0.5 * (SAMPLE - 7.0), at[1] - style.half_cap()], 4.0, color);
+    canvas.text([at[0] + SAMPLE, at[1]], name, style);
+}
+
+/// A sheet behind a legend.
+fn sheet(canvas: &mut Canvas, rect: Rect) {
+    canvas.rectangle(rect, Color::WHITE.with_opacity(0.85));
+    canvas.outline(&rect.corners(), &Stroke::new(Color::PALE, 0.8));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use spectra_plot::Pixels;
+    use spectra_spectrum::{Found, find};
+
+    fn pixel(pixels: &Pixels, at: Point) -> [i32; 3] {
+        pixels.rgb[at[1] as usize * pixels.width_px as usize + at[0] as usize].map(i32::from)
+    }
+
+    fn found(name: &str) -> (String, Found) {
+        (name.to_owned(), find(name).expect("known"))
+    }
+
+    /// The figure's frame: from x 92 to 876 for 350 to 830 nm, its lower edge at y 434.
+    #[test]
+    fn wavelengths_have_their_colors_under_the_curve() {
+        let pixels = spectrum(&[found("E")]).to_pixels(1.0);
+        let under = |nm: f64| pixel(&pixels, [92.0 + (nm - 350.0) / 480.0 * 784.0, 400.0]);
+        let ([r, g, b], [r1, g1, b1], [r2, g2, b2]) = (under(640.0), under(532.0), under(455.0));
+        assert!(r > 200 && g < 90 && b < 90, "{r} {g} {b}");
+        assert!(g1 > 200 && r1 < 160 && b1 < 120, "{r1} {g1} {b1}");
+        assert!(b2 > 200 && r2 < 150 && g2 < 120, "{r2} {g2} {b2}");
+        // A dark line stands at its wavelength, and there is nothing beside it.
+        let pixels = spectrum(&[found("line:632.8")]).to_pixels(1.0);
+        let at = |nm: f64| pixel(&pixels, [92.0 + (nm - 350.0) / 480.0 * 784.0, 395.0]);
+        assert!(at(632.8)[1] < 120 && at(632.8)[0] > 150, "{:?}", at(632.8));
+        assert!(at(637.0).iter().all(|v| *v > 200), "{:?}", at(637.0));
+    }
+
+    /// 800 units of the canvas a unit of x or y; x -0.08 is at 76, y 0.9 at 22.
+    #[test]
+    fn chromaticities_have_their_colors() {
+        let pixels = chromaticity(&[]).to_pixels(1.0);
+        let at = |x: f64, y: f64| pixel(&pixels, [76.0 + 800.0 * (x + 0.08), 22.0 + 800.0 * (0.9 - y)]);
+        let ([r, g, b], [r1, g1, b1], [r2, g2, b2]) = (at(0.66, 0.32), at(0.20, 0.70), at(0.155, 0.035));
+        assert!(r > 240 && g < 120 && b < 120, "{r} {g} {b}");
+        assert!(g1 > 240 && r1 < 120 && b1 < 160, "{r1} {g1} {b1}");
+        assert!(b2 > 240 && r2 < 160 && g2 < 140, "{r2} {g2} {b2}");
+        // Just on the warm side of sRGB's white: 255, 244, 228 by its matrix and curve.
+        let near = |(a, b): (i32, i32)| (a - b).abs() <= 4;
+        assert!(at(0.33, 0.345).into_iter().zip([255, 244, 228]).all(near), "{:?}", at(0.33, 0.345));
+        // Nothing outside of the locus, and points where they belong.
+        assert_eq!(at(0.53, 0.555), [255; 3]);
+        let pixels = chromaticity(&[("here".to_owned(), [0.53, 0.555])]).to_pixels(1.0);
+        assert!(pixel(&pixels, [76.0 + 800.0 * 0.61, 22.0 + 800.0 * 0.345])[0] < 128);
+    }
+
+    #[test]
+    fn long_legends_take_rows_and_long_names_are_cut() {
+        let names: Vec<String> = (0..9).map(|i| format!("a rather long name of a light, {i}")).collect();
+        let (places, rows) = rows(&names, [90.0, 26.0], 876.0, &TextStyle::new(14.0));
+        assert!(rows > 2 && places.iter().all(|p| p[0] + SAMPLE + text_width(&names[0], 14.0) <= 876.0));
+        assert_eq!(shortened(&"x".repeat(500)).len(), LONGEST_NAME);
+    }
+}

@@ -1,0 +1,157 @@
+//! What to show for a color that the screen cannot show.
+
+use crate::adaptation::Adaptation;
+use crate::matrix::{Matrix, apply, inverse};
+use crate::rgb::RgbSpace;
+
+/// Ways to bring linear RGB into 0 to 1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Gamut {
+    /// Each channel by itself: fast, bends hue and lightness.
+    #[default]
+    Clip,
+    /// Toward the grey of the same luminance until it fits: keeps luminance, bends hue as mixing with white does.
+    Desaturate,
+    /// Toward that grey along constant lightness and hue of Oklab: keeps the hue that one sees.
+    ///
+    /// B. Ottosson, "A perceptual color space for image processing" (2020).
+    Perceptual,
+}
+
+/// XYZ under D65 to cone-like responses, and their cube roots to Oklab (Ottosson 2020).
+const RESPONSES: Matrix = [
+    [0.818_933_010_1, 0.361_866_742_4, -0.128_859_713_7],
+    [0.032_984_543_6, 0.929_311_871_5, 0.036_145_638_7],
+    [0.048_200_301_8, 0.264_366_269_1, 0.633_851_707_0],
+];
+const OKLAB: Matrix = [
+    [0.210_454_255_3, 0.793_617_785_0, -0.004_072_046_8],
+    [1.977_998_495_1, -2.428_592_205_0, 0.450_593_709_9],
+    [0.025_904_037_1, 0.782_771_766_2, -0.808_675_766_0],
+];
+
+/// Oklab of `xyz` under D65, Y of white 1.
+#[must_use]
+pub fn oklab(xyz: [f64; 3]) -> [f64; 3] {
+    apply(&OKLAB, apply(&RESPONSES, xyz).map(libm::cbrt))
+}
+
+/// XYZ under D65 of Oklab.
+#[must_use]
+pub fn xyz_of_oklab(lab: [f64; 3]) -> [f64; 3] {
+    apply(&inverse(&RESPONSES), apply(&inverse(&OKLAB), lab).map(|v| v * v * v))
+}
+
+fn fits(rgb: [f64; 3]) -> bool {
+    // Room for the rounding of a matrix there and back.
+    rgb.iter().all(|v| (-1e-12..=1.0 + 1e-12).contains(v))
+}
+
+fn clip(rgb: [f64; 3]) -> [f64; 3] {
+    rgb.map(|v| if v.is_nan() { 0.0 } else { v.clamp(0.0, 1.0) })
+}
+
+/// Linear RGB of `space` brought into 0 to 1. Colors within are left as they are; NaN becomes 0.
+#[must_use]
+pub fn into_gamut(rgb: [f64; 3], space: &RgbSpace, method: Gamut) -> [f64; 3] {
+    if fits(rgb) || method == Gamut::Clip || rgb.iter().any(|v| !v.is_finite()) {
+        return clip(rgb);
+    }
+    match method {
+        Gamut::Clip => clip(rgb),
+        Gamut::Desaturate => desaturate(rgb, space),
+        Gamut::Perceptual => perceptual(rgb, space),
+    }
+}
+
+fn desaturate(rgb: [f64; 3], space: &RgbSpace) -> [f64; 3] {
+    let grey = space.luminance(rgb).clamp(0.0, 1.0);
+    // The largest share of color that keeps every channel within 0 to 1.
+    let share = rgb.iter().fold(1.0_f64, |share, v| match v - grey {
+        d if d > 0.0 => share.min((1.0 - grey) / d),
+        d if d < 0.0 => share.min(-grey / d),
+        _ => share,
+    });
+    clip(rgb.map(|v| grey + share * (v - grey)))
+}
+
+fn perceptual(rgb: [f64; 3], space: &RgbSpace) -> [f64; 3] {
+    let d65 = RgbSpace::srgb().white_xyz();
+    let white = space.white_xyz();
+    let lab = oklab(Adaptation::Bradford.adapt(space.to_xyz(rgb), white, d65));
+    let lightness = lab[0].clamp(0.0, 1.0);
+    let at = |share: f64| {
+        let xyz = xyz_of_oklab([lightness, share * lab[1], share * lab[2]]);
+        space.from_xyz(Adaptation::Bradford.adapt(xyz, d65, white))
+    };
+    let (mut low, mut high) = (0.0, 1.0);
+    // 40 halvings: a chroma within 1e-12 of the surface of the gamut.
+    for _ in 0..40 {
+        let middle = 0.5 * (low + high);
+        if fits(at(middle)) { low = middle } else { high = middle }
+    }
+    clip(at(low))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use spectra_spectrum::Observer;
+
+    const METHODS: [Gamut; 3] = [Gamut::Clip, Gamut::Desaturate, Gamut::Perceptual];
+
+    /// Values printed by Ottosson (2020) for four XYZ, to three decimals.
+    #[test]
+    fn oklab_of_published_colors() {
+        for (xyz, want) in [
+            ([0.950, 1.000, 1.089], [1.000, 0.000, 0.000]),
+            ([1.000, 0.000, 0.000], [0.450, 1.236, -0.019]),
+            ([0.000, 1.000, 0.000], [0.922, -0.671, 0.263]),
+            ([0.000, 0.000, 1.000], [0.153, -1.415, -0.449]),
+        ] {
+            let got = oklab(xyz);
+            assert!(got.iter().zip(want).all(|(a, b)| (a - b).abs() < 6e-4), "{got:?} {want:?}");
+            assert!(xyz_of_oklab(got).iter().zip(xyz).all(|(a, b)| (a - b).abs() < 1e-12));
+        }
+    }
+
+    #[test]
+    fn colors_within_stay_and_others_come_within() {
+        for space in RgbSpace::all() {
+            for m in METHODS {
+                assert_eq!(into_gamut([0.2, 0.0, 1.0], space, m), [0.2, 0.0, 1.0]);
+                for nm in (380..=720).step_by(5) {
+                    let rgb = space.from_xyz(Observer::cie_1931_2deg().at(f64::from(nm)));
+                    let got = into_gamut(rgb, space, m);
+                    assert!(got.iter().all(|v| (0.0..=1.0).contains(v)), "{nm} {m:?} {got:?}");
+                }
+                for rgb in [[-1.0; 3], [5.0; 3], [f64::NAN, 0.0, 2.0], [f64::INFINITY, 0.0, 0.0]] {
+                    let got = into_gamut(rgb, space, m);
+                    assert!(got.iter().all(|v| (0.0..=1.0).contains(v)), "{rgb:?} {m:?} {got:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn desaturation_keeps_luminance_and_reaches_the_surface() {
+        let space = RgbSpace::srgb();
+        for rgb in [[0.9, 0.5, -0.2], [1.3, 0.2, 0.1], [-0.3, 0.4, 0.5]] {
+            let got = into_gamut(rgb, space, Gamut::Desaturate);
+            assert!((space.luminance(got) - space.luminance(rgb)).abs() < 1e-14, "{got:?}");
+            assert!(got.iter().any(|v| *v < 1e-14 || *v > 1.0 - 1e-14), "{got:?}");
+        }
+    }
+
+    #[test]
+    fn the_perceptual_way_keeps_lightness_and_hue() {
+        let space = RgbSpace::srgb();
+        for rgb in [[0.9, 0.5, -0.2], [-0.3, 0.4, 0.5], [0.1, -0.05, 0.9]] {
+            let before = oklab(space.to_xyz(rgb));
+            let after = oklab(space.to_xyz(into_gamut(rgb, space, Gamut::Perceptual)));
+            assert!((before[0] - after[0]).abs() < 1e-9);
+            let hue = |l: [f64; 3]| libm::atan2(l[2], l[1]);
+            assert!((hue(before) - hue(after)).abs() < 1e-6, "{before:?} {after:?}");
+        }
+    }
+}

@@ -1,0 +1,41 @@
+//! Color: from spectra to what an eye or a screen sees.
+//!
+//! XYZ of lights and of what they fall on, chromaticities, correlated temperature, dominant wavelength, CIE Lab and its
+//! differences, adaptation, spaces of red, green and blue, and how a color is brought into their gamut.
+//!
+//! ```
+//! use spectra_color::{lab, xyz_of_light, xyz_of_reflectance};
+//! use spectra_spectrum::{Observer, find_emission, find_reflectance};
+//! let light = find_emission("D50")?;
+//! let patch = find_reflectance("colorchecker#red")?;
+//! let observer = Observer::cie_1931_2deg();
+//! let white = xyz_of_light(&light, observer).unwrap();
+//! let xyz = xyz_of_reflectance(&patch, &light, observer).unwrap();
+//! assert!((lab(xyz, white)[1] - 56.1).abs() < 0.1);
+//! # Ok::<(), spectra_spectrum::SpectrumError>(())
+//! ```
+
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
+mod adaptation;
+mod cct;
+mod colorimetry;
+mod difference;
+mod dominant;
+mod gamut;
+pub mod matrix;
+mod primaries;
+pub mod rgb;
+mod round_trip;
+mod spectral_color;
+
+pub use adaptation::Adaptation;
+pub use cct::{Cct, cct, uv_1960};
+pub use colorimetry::{chromaticity, lab, xyz_of_lab, xyz_of_light, xyz_of_reflectance, xyz_of_transmittance};
+pub use difference::ciede2000;
+pub use dominant::{Dominant, dominant_wavelength};
+pub use gamut::{Gamut, into_gamut, oklab, xyz_of_oklab};
+pub use primaries::{srgb_light, srgb_primaries};
+pub use rgb::{RgbSpace, Transfer, from_u8, to_u8, xyz_of_xy};
+pub use round_trip::{RoundTrip, RoundTripErrors};
+pub use spectral_color::{spectral_color_encoded, spectral_color_linear, spectral_color_srgb8};

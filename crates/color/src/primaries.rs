@@ -1,0 +1,238 @@
+//! Three emission spectra whose colors are exactly the primaries of sRGB.
+//!
+//! Any spectrum has one color, but a color has many spectra. Here the three are searched together: of all that are
+//! nowhere negative, fall to 0 at both ends of the band and have the XYZ of the primaries, those with the least integral
+//! of squared slope, that of their sum counted threefold, so that white is no comb of three bands but a smooth light.
+//!
+//! The spectra are cubic B-splines with a knot every 10 nm; slopes are taken between neighboring coefficients, which are
+//! nowhere negative either. That is a quadratic program of 135 unknowns with nine equations, solved to roundoff by
+//! holding at 0 what would fall below, and letting go what would rise.
+
+use crate::rgb::RgbSpace;
+use spectra_core::spectral::BAND;
+use spectra_spectrum::{Emission, Observer, Outside, Scale, SpectrumError, Tabulated};
+use std::sync::OnceLock;
+
+/// Distance of knots, nm, and number of splines that lie on the band as a whole.
+const KNOT_NM: f64 = 10.0;
+const SPLINES: usize = 45;
+/// Unknowns: the coefficients of red, green and blue, one after the other; and equations.
+const UNKNOWNS: usize = 3 * SPLINES;
+const EQUATIONS: usize = 9;
+/// How much the slope of the sum counts beside that of each.
+const WEIGHT_OF_SUM: f64 = 3.0;
+/// More rounds than ever needed: 10 are.
+const MAX_ROUNDS: usize = 100;
+
+/// Emission spectra of the red, green and blue primaries of sRGB (CIE 1931, 350-830 nm by 1 nm).
+///
+/// Their sums with linear sRGB values as weights have exactly the color that those values mean, Y of white being 1: see
+/// [`srgb_light`].
+#[must_use]
+pub fn srgb_primaries() -> &'static [Emission; 3] {
+    static ONE: OnceLock<[Emission; 3]> = OnceLock::new();
+    ONE.get_or_init(|| {
+        let wavelengths: Vec<f64> = BAND.wavelengths_nm().collect();
+        spectra(RgbSpace::srgb()).map(|values| {
+            let table = Tabulated::new(&wavelengths, &values, Outside::Zero, Scale::Linear);
+            table.and_then(Emission::tabulated).expect("splines of coefficients that are not negative")
+        })
+    })
+}
+
+/// Light of the color `linear_srgb`: the sum of the three primaries, each times its value.
+///
+/// # Errors
+/// [`SpectrumError::OutOfRange`] if a value is negative or not finite.
+pub fn srgb_light(linear_srgb: [f64; 3]) -> Result<Emission, SpectrumError> {
+    let [red, green, blue] = srgb_primaries();
+    let [r, g, b] = linear_srgb;
+    Ok(red.scaled(r)? + green.scaled(g)? + blue.scaled(b)?)
+}
+
+/// Cubic B-spline of knots 1 apart around 0.
+fn spline(t: f64) -> f64 {
+    let t = t.abs();
+    if t < 1.0 {
+        (4.0 - 6.0 * t * t + 3.0 * t * t * t) / 6.0
+    } else if t < 2.0 {
+        (2.0 - t) * (2.0 - t) * (2.0 - t) / 6.0
+    } else {
+        0.0
+    }
+}
+
+/// Spline `k` on the band.
+fn on_band(k: usize) -> impl Iterator<Item = f64> {
+    // The first rises from the start of the band, two knots below its center.
+    let center = BAND.start_nm + KNOT_NM * (k + 2) as f64;
+    (0..BAND.count).map(move |i| spline((BAND.wavelength_nm(i) - center) / KNOT_NM))
+}
+
+fn spectra(space: &RgbSpace) -> [Vec<f64>; 3] {
+    let functions = Observer::cie_1931_2deg().on_grid(&BAND);
+    // XYZ of each spline, by the sum over the points that defines them.
+    let xyz: Vec<[f64; 3]> = (0..SPLINES)
+        .map(|k| {
+            let seen = |f: &Vec<f64>| on_band(k).zip(f).map(|(b, f)| b * f).sum::<f64>() * BAND.step_nm;
+            [seen(&functions[0]), seen(&functions[1]), seen(&functions[2])]
+        })
+        .collect();
+    let coefficients = program(&xyz, &space.xyz_from_rgb);
+    [0, 1, 2].map(|channel| {
+        let mut values = vec![0.0; BAND.count];
+        for k in 0..SPLINES {
+            let c = coefficients[channel * SPLINES + k];
+            values.iter_mut().zip(on_band(k)).for_each(|(v, b)| *v += c * b);
+        }
+        values
+    })
+}
+
+/// Half the second derivative of the slopes: how coefficients `i` and `j` meet.
+fn roughness(i: usize, j: usize) -> f64 {
+    let (a, b) = (i % SPLINES, j % SPLINES);
+    let neighbors = match a.abs_diff(b) {
+        0 => 2.0,
+        1 => -1.0,
+        _ => 0.0,
+    };
+    let same = if i / SPLINES == j / SPLINES { 1.0 } else { 0.0 };
+    neighbors * (same + WEIGHT_OF_SUM)
+}
+
+/// Coefficients of least roughness whose spectra have the XYZ in the columns of `wanted`.
+fn program(xyz: &[[f64; 3]], wanted: &[[f64; 3]; 3]) -> Vec<f64> {
+    // Equation 3 c + x asks for component x of channel c.
+    let equation = |e: usize, i: usize| if i / SPLINES == e / 3 { xyz[i % SPLINES][e % 3] } else { 0.0 };
+    let mut held = [false; UNKNOWNS];
+    for _ in 0..MAX_ROUNDS {
+        let free: Vec<usize> = (0..UNKNOWNS).filter(|i| !held[*i]).collect();
+        let n = free.len();
+        let mut rows = vec![vec![0.0; n + EQUATIONS + 1]; n + EQUATIONS];
+        for (row, i) in free.iter().enumerate() {
+            for (column, j) in free.iter().enumerate() {
+                rows[row][column] = roughness(*i, *j);
+            }
+            for e in 0..EQUATIONS {
+                rows[row][n + e] = equation(e, *i);
+                rows[n + e][row] = equation(e, *i);
+            }
+        }
+        for e in 0..EQUATIONS {
+            rows[n + e][n + EQUATIONS] = wanted[e % 3][e / 3];
+        }
+        let solution = solve(rows);
+        let mut coefficients = vec![0.0; UNKNOWNS];
+        free.iter().zip(&solution).for_each(|(i, c)| coefficients[*i] = *c);
+        let below: Vec<usize> = (0..UNKNOWNS).filter(|i| coefficients[*i] < 0.0).collect();
+        if !below.is_empty() {
+            below.iter().for_each(|i| held[*i] = true);
+            continue;
+        }
+        // What a held coefficient would cost: negative where it would gain by rising.
+        let cost = |i: usize| {
+            let slope: f64 = (0..UNKNOWNS).map(|j| roughness(i, j) * coefficients[j]).sum();
+            slope + (0..EQUATIONS).map(|e| equation(e, i) * solution[n + e]).sum::<f64>()
+        };
+        let held_now = (0..UNKNOWNS).filter(|i| held[*i]).map(|i| (i, cost(i)));
+        match held_now.min_by(|a, b| a.1.total_cmp(&b.1)) {
+            // Coefficients are about 0.01, so is the cost of a step.
+            Some((i, cost)) if cost < -1e-12 => held[i] = false,
+            _ => return coefficients,
+        }
+    }
+    unreachable!("each round lowers the roughness, or raises the number of those held")
+}
+
+/// Solves by elimination with partial pivoting; the last column is the right side.
+fn solve(mut rows: Vec<Vec<f64>>) -> Vec<f64> {
+    let n = rows.len();
+    for column in 0..n {
+        let pivot = (column..n).max_by(|a, b| rows[*a][column].abs().total_cmp(&rows[*b][column].abs()));
+        rows.swap(column, pivot.expect("there is a row left"));
+        let (above, below) = rows.split_at_mut(column + 1);
+        let pivot = &above[column];
+        for row in below.iter_mut().filter(|row| row[column] != 0.0) {
+            let factor = row[column] / pivot[column];
+            for (value, p) in row[column..].iter_mut().zip(&pivot[column..]) {
+                *value -= factor * p;
+            }
+        }
+    }
+    let mut solution = vec![0.0; n];
+    for i in (0..n).rev() {
+        let known: f64 = (i + 1..n).map(|j| rows[i][j] * solution[j]).sum();
+        solution[i] = (rows[i][n] - known) / rows[i][i];
+    }
+    solution
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::chromaticity;
+
+    /// IEC 61966-2-1: primaries (.64, .33), (.30, .60), (.15, .06), white D65 (.3127, .3290), luminances adding up to 1.
+    #[test]
+    fn primaries_and_white_are_those_of_srgb() {
+        let observer = Observer::cie_1931_2deg();
+        let colors = [
+            ([1.0, 0.0, 0.0], [0.64, 0.33]),
+            ([0.0, 1.0, 0.0], [0.30, 0.60]),
+            ([0.0, 0.0, 1.0], [0.15, 0.06]),
+            ([1.0, 1.0, 1.0], [0.3127, 0.3290]),
+        ];
+        for (rgb, xy) in colors {
+            let got = chromaticity(observer.xyz(&srgb_light(rgb).expect("valid"))).expect("light");
+            assert!((got[0] - xy[0]).abs() < 1e-12 && (got[1] - xy[1]).abs() < 1e-12, "{rgb:?} {got:?}");
+        }
+        let white = observer.xyz(&srgb_light([1.0; 3]).expect("valid"));
+        assert!((white[1] - 1.0).abs() < 1e-12, "{white:?}");
+    }
+
+    /// Linear RGB to light to XYZ and back: 1e-9 everywhere in the cube, and beyond 1.
+    #[test]
+    fn srgb_round_trip_is_exact() {
+        let observer = Observer::cie_1931_2deg();
+        let mut worst = 0.0_f64;
+        let steps = [0.0, 1e-4, 0.02, 0.18, 0.5, 1.0, 40.0];
+        for r in steps {
+            for g in steps {
+                for b in steps {
+                    let light = srgb_light([r, g, b]).expect("valid");
+                    let back = RgbSpace::srgb().from_xyz(observer.xyz(&light));
+                    for (x, y) in back.iter().zip([r, g, b]) {
+                        worst = worst.max((x - y).abs() / (1.0 + y));
+                    }
+                }
+            }
+        }
+        println!("largest difference in linear RGB: {worst:e}");
+        assert!(worst < 1e-9, "{worst:e}");
+    }
+
+    /// Nowhere negative, zero at the ends of the band, and without a jump: at 1 nm never more than 3 % of the peak.
+    #[test]
+    fn primaries_are_smooth_light() {
+        for (light, range) in srgb_primaries().iter().zip([600.0..700.0, 500.0..560.0, 430.0..470.0]) {
+            let values = light.on_grid(&BAND);
+            let peak = values.iter().fold(0.0_f64, |a, v| a.max(*v));
+            let at = values.iter().position(|v| *v == peak).expect("a peak");
+            assert!(range.contains(&BAND.wavelength_nm(at)), "{}", BAND.wavelength_nm(at));
+            assert!(values.iter().all(|v| *v >= 0.0));
+            assert!(values[0] == 0.0 && values[BAND.count - 1] < 1e-15 * peak);
+            assert!(values.windows(2).all(|w| (w[1] - w[0]).abs() < 0.03 * peak));
+        }
+        // Their sum has no gap: within the range that is seen well, never under two thirds of its mean.
+        let white = srgb_light([1.0; 3]).expect("valid").on_grid(&BAND);
+        let seen = &white[70..330];
+        let mean = seen.iter().sum::<f64>() / seen.len() as f64;
+        assert!(seen.iter().all(|v| (0.66 * mean..1.4 * mean).contains(v)));
+    }
+
+    #[test]
+    fn negative_light_is_refused() {
+        assert!(srgb_light([1.0, -0.1, 0.0]).is_err() && srgb_light([f64::NAN, 0.0, 0.0]).is_err());
+    }
+}

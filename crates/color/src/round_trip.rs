@@ -1,0 +1,81 @@
+//! From a color to a spectrum and back to the color that an eye sees: how far a model is off.
+
+use crate::rgb::{RgbSpace, from_u8};
+use spectra_core::stage::ColorModel;
+use spectra_spectrum::Observer;
+
+/// A model whose colors can be looked at: its spectra, seen by the CIE 1931 observer, as sRGB in which its own white has a
+/// luminance of 1.
+pub struct RoundTrip<'a> {
+    model: &'a dyn ColorModel,
+    /// Luminance of white.
+    white: f64,
+}
+
+/// How far a model's colors are off, over a grid of 8-bit colors.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RoundTripErrors {
+    /// Largest difference of a channel, 255ths.
+    pub largest: f64,
+    /// Mean difference of a channel, 255ths.
+    pub mean: f64,
+    /// The color that is furthest off, 8 bits.
+    pub worst: [u8; 3],
+    /// What it comes back as, code values of 0 to 255, clipped.
+    pub worst_back: [f64; 3],
+    /// Largest code value of green, 0 to 255, of a pure red that has none: the phantom.
+    pub phantom_green: f64,
+}
+
+impl<'a> RoundTrip<'a> {
+    /// A model's round trip; `None` where its white has no visible light.
+    #[must_use]
+    pub fn new(model: &'a dyn ColorModel) -> Option<Self> {
+        let white = Observer::cie_1931_2deg().xyz_of_power(&model.spectrum([1.0; 3]))[1];
+        (white > 0.0 && white.is_finite()).then_some(Self { model, white })
+    }
+
+    /// Linear sRGB of what linear sRGB comes back as; negative where it is outside of the gamut.
+    #[must_use]
+    pub fn linear(&self, linear_srgb: [f64; 3]) -> [f64; 3] {
+        let xyz = Observer::cie_1931_2deg().xyz_of_power(&self.model.spectrum(linear_srgb));
+        RgbSpace::srgb().from_xyz(xyz.map(|v| v / self.white))
+    }
+
+    /// Code values of 0 to 255 that an 8-bit color comes back as, clipped as a screen clips, not rounded.
+    #[must_use]
+    pub fn code(&self, rgb: [u8; 3]) -> [f64; 3] {
+        let srgb = RgbSpace::srgb();
+        let back = srgb.encode(self.linear(srgb.decode(rgb.map(from_u8))));
+        back.map(|v| 255.0 * v.clamp(0.0, 1.0))
+    }
+
+    /// Its errors over all 8-bit colors in steps of `step` a channel (1 to 255), 255 included where the steps meet it.
+    #[must_use]
+    pub fn errors(&self, step: u8) -> RoundTripErrors {
+        let levels = || (0..=255_u8).step_by(usize::from(step.max(1)));
+        let mut errors =
+            RoundTripErrors { largest: 0.0, mean: 0.0, worst: [0; 3], worst_back: [0.0; 3], phantom_green: 0.0 };
+        let (mut sum, mut count) = (0.0, 0.0);
+        for r in levels() {
+            for g in levels() {
+                for b in levels() {
+                    let rgb = [r, g, b];
+                    let back = self.code(rgb);
+                    for (back_value, value) in back.iter().zip(rgb) {
+                        let off = (back_value - f64::from(value)).abs();
+                        sum += off;
+                        count += 1.0;
+                        if off > errors.largest {
+                            (errors.largest, errors.worst, errors.worst_back) = (off, rgb, back);
+                        }
+                    }
+                    if g == 0 && b == 0 {
+                        errors.phantom_green = errors.phantom_green.max(back[1]);
+                    }
+                }
+            }
+        }
+        RoundTripErrors { mean: sum / count, ..errors }
+    }
+}

@@ -1,0 +1,57 @@
+//! The color in which a screen shows a single wavelength.
+
+use crate::rgb::{RgbSpace, to_u8};
+use spectra_spectrum::Observer;
+
+/// Linear RGB of monochromatic light: the matrix of `space` on the CIE 1931 functions, negative channels set to 0,
+/// scaled so that the brightest is 1. Black where the observer sees nothing.
+///
+/// Hue is kept, true intensity is not: weigh it by the luminous efficiency where that matters.
+#[must_use]
+pub fn spectral_color_linear(wavelength_nm: f64, space: &RgbSpace) -> [f64; 3] {
+    let rgb = space.from_xyz(Observer::cie_1931_2deg().at(wavelength_nm)).map(|v| v.max(0.0));
+    let brightest = rgb[0].max(rgb[1]).max(rgb[2]);
+    if brightest > 0.0 { rgb.map(|v| v / brightest) } else { [0.0; 3] }
+}
+
+/// The same with the transfer curve of `space`: code values for a picture file.
+#[must_use]
+pub fn spectral_color_encoded(wavelength_nm: f64, space: &RgbSpace) -> [f64; 3] {
+    space.encode(spectral_color_linear(wavelength_nm, space))
+}
+
+/// What a screen shows: sRGB code values of 8 bits.
+#[must_use]
+pub fn spectral_color_srgb8(wavelength_nm: f64) -> [u8; 3] {
+    spectral_color_encoded(wavelength_nm, RgbSpace::srgb()).map(to_u8)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Computed independently from the CIE 1931 functions; the linear column is the table of a published
+    /// dispersion study, which held linear values to be what a screen shows.
+    #[test]
+    fn spectral_colors() {
+        for (nm, linear, shown) in [
+            (436.0, [33, 0, 255], [101, 0, 255]),
+            (547.0, [0, 255, 0], [0, 255, 0]),
+            (577.0, [255, 148, 0], [255, 200, 0]),
+            (579.0, [255, 126, 0], [255, 187, 0]),
+            (620.0, [255, 0, 0], [255, 0, 0]),
+        ] {
+            let got = spectral_color_linear(nm, RgbSpace::srgb()).map(to_u8);
+            let on_screen = spectral_color_srgb8(nm);
+            for i in 0..3 {
+                assert!(got[i].abs_diff(linear[i]) <= 1, "{nm}: {got:?}");
+                assert!(on_screen[i].abs_diff(shown[i]) <= 1, "{nm}: {on_screen:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn invisible_light_is_black() {
+        assert_eq!(spectral_color_linear(f64::NAN, RgbSpace::srgb()), [0.0; 3]);
+    }
+}

@@ -1,0 +1,173 @@
+use super::svg::{Open, read};
+use super::*;
+use spectra_core::math;
+
+const PI: f64 = std::f64::consts::PI;
+
+fn drawing(body: &str, open: Option<Open>) -> Drawing {
+    let text = format!(
+        r#"<svg xmlns="http://www.w3.org/2000/svg" width="20mm" height="10mm" viewBox="0 0 20 10">{body}</svg>"#
+    );
+    read("test.svg", text.as_bytes(), None, open).unwrap_or_else(|faults| panic!("{faults}"))
+}
+
+/// Area where light passes, by rows of points whose ends are found by the drawing itself: within 1e-3 of a mm^2 or so.
+fn area(drawing: &Drawing) -> f64 {
+    let (columns, rows) = (4000, 2000);
+    let at = |i: usize, count: usize, half: f64| ((i as f64 + 0.5) / count as f64 * 2.0 - 1.0) * half;
+    let mut sum = 0.0;
+    for row in 0..rows {
+        for column in 0..columns {
+            sum += drawing.transmittance(at(column, columns, 10.0), at(row, rows, 5.0));
+        }
+    }
+    sum * 200.0 / (columns * rows) as f64
+}
+
+/// Closed forms, in mm^2; 8 million points of 5 um leave some 1e-4 of them.
+#[test]
+fn areas_are_those_of_geometry() {
+    // A pentagram of radius r has the area 5 r^2 sin(36) sin(18) / sin(54); by the even-odd rule without its pentagon, whose
+    // radius is r sin(18) / sin(54).
+    let r = 4.0_f64;
+    let sin = |deg: f64| math::sin(f64::to_radians(deg));
+    let star = 5.0 * r * r * sin(36.0) * sin(18.0) / sin(54.0);
+    let inner = r * sin(18.0) / sin(54.0);
+    let pentagon = 2.5 * inner * inner * sin(72.0);
+    let tips: Vec<String> = (0..5)
+        .map(|k| f64::from(k) * 144.0)
+        .map(|a| format!("{},{}", 10.0 + r * sin(a), 5.0 - r * math::cos(a.to_radians())))
+        .collect();
+    let tips = tips.join(" ");
+    for (body, want) in [
+        (r#"<circle cx="10" cy="5" r="4"/>"#.to_owned(), PI * 16.0),
+        (r#"<ellipse cx="10" cy="5" rx="6" ry="2" transform="rotate(30 10 5)"/>"#.into(), PI * 12.0),
+        (r#"<rect x="2" y="1" width="10" height="6" rx="1"/>"#.into(), 60.0 - (4.0 - PI)),
+        (format!(r#"<polygon points="{tips}"/>"#), star),
+        (format!(r#"<polygon points="{tips}" fill-rule="evenodd"/>"#), star - pentagon),
+        // The area under a parabola is two thirds of its box; half a disk; under a cubic lies the integral of 24 t (1 - t)
+        // times 72 t (1 - t), 1728 / 30.
+        (r#"<path d="M2 8 Q10 -4 18 8 Z"/>"#.into(), 2.0 / 3.0 * 16.0 * 6.0),
+        (r#"<path d="M6 5 A4 4 0 0 1 14 5 z"/>"#.into(), PI * 8.0),
+        (r#"<path d="m4 8 c0-8 12-8 12 0"/>"#.into(), 57.6),
+        // A ring as a line; a cross of lines with square ends; a frame whose corners are mitered.
+        (r#"<circle cx="10" cy="5" r="3" fill="none" stroke="black" stroke-width="1"/>"#.into(), PI * 6.0),
+        (r#"<path d="M6 5H14M10 1v8" fill="none" stroke="gray" stroke-linecap="square"/>"#.into(), 18.0 - 1.0),
+        (r#"<rect x="4" y="2" width="6" height="6" style="fill:none;stroke:red;stroke-width:2"/>"#.into(), 64.0 - 16.0),
+        (r#"<path d="M4 5h6" stroke="black" stroke-width="2" stroke-linecap="round"/>"#.into(), 12.0 + PI),
+        // Two shapes that overlap are open together; a use of one is another.
+        (
+            r##"<defs><circle id="c" r="2"/></defs><use href="#c" x="6" y="5"/><g transform="translate(7 5)"><use href="#c" x="7"/></g>"##.into(),
+            PI * 8.0,
+        ),
+        (r#"<style>.no{display:none} circle{fill:#123}</style><circle class="no" r="9"/><circle cx="10" cy="5" r="1"/>"#.into(), PI),
+    ] {
+        let got = area(&drawing(&body, None));
+        assert!((got - want).abs() < 4e-4 * want + 1e-3, "{body}: {got} {want}");
+    }
+}
+
+/// Exact at the edge: a star's points by the half-planes of its five lines, where they lie farther than a nanometer from
+/// all of them; a circle within its stated flatness.
+#[test]
+fn edges_are_where_they_are_drawn() {
+    let r = 4.0;
+    let tip = |k: u32| {
+        let a = (f64::from(k) * 144.0_f64).to_radians();
+        [r * math::sin(a), r * math::cos(a)]
+    };
+    let points: Vec<String> = (0..5).map(|k| format!("{} {}", 10.0 + tip(k)[0], 5.0 - tip(k)[1])).collect();
+    let star = drawing(&format!(r#"<polygon points="{}"/>"#, points.join(" ")), None);
+    let mut compared = 0;
+    for i in 0..200_000_u32 {
+        // An even spread by the plastic number (M. Roberts, 2018).
+        let (u, v) = (f64::from(i) * 0.754_877_666_246_692_7, f64::from(i) * 0.569_840_290_998_053_2);
+        let (x, y) = ((u.fract() - 0.5) * 9.0, (v.fract() - 0.5) * 9.0);
+        // A pentagram is what lies on the inner side of at least four of its five lines.
+        let side = |k: u32| {
+            let (a, b) = (tip(k), tip(k + 1));
+            let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
+            let cross = |x: f64, y: f64| (dx * (y - a[1]) - dy * (x - a[0])) / (dx * dx + dy * dy).sqrt();
+            cross(x, y) * cross(0.0, 0.0).signum()
+        };
+        let sides: Vec<f64> = (0..5).map(side).collect();
+        if sides.iter().any(|d| d.abs() < 1e-6) {
+            continue;
+        }
+        let inside = sides.iter().filter(|d| **d > 0.0).count() >= 4;
+        assert_eq!(star.transmittance(x, y), f64::from(inside), "{x} {y}");
+        compared += 1;
+    }
+    assert!(compared > 199_000);
+    let circle = drawing(r#"<circle cx="10" cy="5" r="4"/>"#, None);
+    for k in 0..10_000 {
+        let a = f64::from(k) * 0.01;
+        let at = |r: f64| circle.transmittance(r * math::cos(a), r * math::sin(a));
+        assert_eq!((at(4.0 - 1.01 * FLATNESS_MM), at(4.0 + 1e-9)), (1.0, 0.0), "{k}");
+    }
+    assert!((circle.reach_mm() - 4.0).abs() < 1e-4 && (star.reach_mm() - 4.0).abs() < 1e-12);
+}
+
+/// Up is up and right is right; white on black when it is asked for; gray passes in part, and so does what is half opaque.
+#[test]
+fn colors_count_when_they_should() {
+    let body = r##"<rect width="20" height="10"/><rect x="10" width="10" height="5" fill="white"/>
+        <rect x="10" y="5" width="10" height="5" fill="#fff" opacity="0.25"/>"##;
+    let white = drawing(body, Some(Open::White));
+    let at = |x, y| white.transmittance(x, y);
+    assert_eq!((at(5.0, 2.0), at(5.0, -2.0), at(-5.0, 2.0), at(11.0, 0.0)), (1.0, 0.25, 0.0, 0.0));
+    assert_eq!(drawing(body, Some(Open::Filled)).transmittance(-5.0, 2.0), 1.0);
+}
+
+fn faults(text: &str) -> Vec<String> {
+    let faults = read("x.svg", text.as_bytes(), None, None).expect_err(text);
+    faults.iter().map(ToString::to_string).collect()
+}
+
+#[test]
+fn what_is_not_understood_is_said_with_its_place() {
+    let svg = |attributes: &str, body: &str| {
+        format!("<svg xmlns=\"http://www.w3.org/2000/svg\" {attributes}>\n{body}\n</svg>")
+    };
+    let good = r#"width="10mm" viewBox="0 0 10 10""#;
+    for (attributes, body, said) in [
+        (good, "  <text>star</text>", "x.svg:2:3: text is not understood"),
+        (good, "<image/>", "x.svg:2:1: `image` is not understood"),
+        (good, "<circle r='1' fill='url(#g)'/>", "gradient"),
+        (good, "<circle r='1' clip-path='url(#g)'/>", "`clip-path`"),
+        (good, "<path d='M0 0 L 1 x'/>", "its path"),
+        (good, "<circle r='1e400'/>", "r: no length"),
+        (good, "<circle r='-1'/>", "r is -1"),
+        (good, "<circle r='1' transform='scale(1e300)'/>", "farther than any page"),
+        (good, "", "nothing is painted"),
+        (good, "<circle r='1'/><circle r='1' fill='white'/>", "which of them are open"),
+        (good, "<use href='#a'/>", "`use` of nothing"),
+        (good, "<g id='a'><use href='#a'/></g>", "in one another"),
+        (r#"viewBox="0 0 10 10""#, "<circle r='1'/>", "no width in mm"),
+        (r#"width="1e9mm" viewBox="0 0 10 10""#, "<circle r='1'/>", "a page of"),
+        ("", "<circle r='1'/>", "no viewBox"),
+        (good, "<circle", "this is not an SVG"),
+    ] {
+        let all = faults(&svg(attributes, body));
+        assert!(all.iter().any(|f| f.contains(said)), "{body}: {all:?}");
+    }
+    assert!(faults("<html/>")[0].contains("this is not an SVG"));
+}
+
+/// Hostile files end soon, with a word.
+#[test]
+fn too_much_is_refused() {
+    let mut body = String::from(r##"<g id="a0"><circle r="1"/></g>"##);
+    for k in 0..12 {
+        let uses = format!(r##"<use href="#a{k}"/>"##).repeat(10);
+        body.push_str(&format!(r#"<g id="a{}">{uses}</g>"#, k + 1));
+    }
+    let head = r#"<svg xmlns="http://www.w3.org/2000/svg" width="10mm" viewBox="0 0 10 10">"#;
+    assert!(!faults(&format!("{head}{body}</svg>")).is_empty());
+    let curves = "C 1e6 1e6 -1e6 1e6 0 0 ".repeat(20_000);
+    assert!(faults(&format!("{head}<path d=\"M0 0 {curves}\"/></svg>"))[0].contains("corners"));
+    let round = "l 1 1 l -1 1 ".repeat(20_000);
+    let line =
+        format!("{head}<path stroke='red' stroke-width='9000' stroke-linejoin='round' d=\"M0 0 {round}\"/></svg>");
+    assert!(faults(&line)[0].contains("corners"));
+}

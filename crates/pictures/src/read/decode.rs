@@ -1,0 +1,391 @@
+//! From the bytes of a picture file to linear light, hostile files included.
+
+use super::encoding::Encoding;
+use super::header::Header;
+use super::linear::{Choice, Linear, MAX_SIDE, Trouble, check_size, clean};
+use super::{exr, foreign, jpeg, tiff, turn};
+use image::metadata::Orientation;
+use image::{ColorType, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
+use spectra_color::Transfer;
+use spectra_core::resources::{Found, ResourceError};
+use std::io::{BufRead, Seek};
+
+/// No picture format packs more pixels into a byte: deflate ends near 1 032 to 1, at one byte a pixel or less.
+const MAX_PIXELS_PER_BYTE: u64 = 1_100 * 8;
+
+/// Decodes an OpenEXR, PNG, JPEG, TIFF or Radiance HDR file, told by its content, or whatever else OpenImageIO reads,
+/// told by the ending of its name. Where neither the file nor the choice says otherwise, integers are taken as
+/// sRGB-encoded (8 bits: 255 is 1), floating point as linear. Alpha of integers is taken as straight, of
+/// floating point as multiplied in (as OpenEXR has it), unless the file says which.
+///
+/// # Errors
+/// What is wrong with the file.
+pub fn decode(found: &Found, choice: Choice<'_>) -> Result<Linear, Trouble> {
+    let said = choice.transfer.map(Encoding::named).transpose()?;
+    let bytes = found.size_bytes().map_err(io)?;
+    match kind(&found.read(64).map_err(io)?, choice)? {
+        Kind::Exr => exr::decode(found.open().map_err(io)?, bytes, choice, true),
+        Kind::Native(ImageFormat::Jpeg) if !jpeg::is_whole(&found.read(bytes).map_err(io)?) => {
+            Err(Trouble::file("the file is truncated")
+                .hint("copy, download or save it again: the missing part would be gray"))
+        }
+        Kind::Native(format) => match native(found, format, choice.cover, said) {
+            Ok(linear) => Ok(linear),
+            Err(NotRead::Trouble(trouble)) => Err(trouble),
+            Err(NotRead::Unsupported(why)) => {
+                foreign::decode(found, choice, said).map_err(|trouble| foreign::also(&why, trouble))
+            }
+        },
+        Kind::Foreign => foreign::decode(found, choice, said),
+    }
+}
+
+/// The header of a file that [`decode`] reads by OpenImageIO.
+///
+/// # Errors
+/// What is wrong with it.
+pub(super) fn foreign_header(found: &Found, choice: Choice<'_>, why: Option<&str>) -> Result<Header, Trouble> {
+    let said = choice.transfer.map(Encoding::named).transpose()?;
+    let header = foreign::header(found, choice, said);
+    header.map_err(|trouble| why.map_or(trouble.clone(), |why| foreign::also(why, trouble)))
+}
+
+fn io(error: ResourceError) -> Trouble {
+    Trouble::file(error.to_string())
+}
+
+/// Who reads a file.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Kind {
+    Exr,
+    Native(ImageFormat),
+    Foreign,
+}
+
+/// Tells it by the first bytes, and whether the choice suits it.
+///
+/// # Errors
+/// An empty file; a layer, a depth or a transfer that a file of its kind cannot have.
+pub(super) fn kind(beginning: &[u8], choice: Choice<'_>) -> Result<Kind, Trouble> {
+    if beginning.is_empty() {
+        return Err(Trouble::file("the file is empty")
+            .hint("is the file complete? Save it again as OpenEXR, PNG, JPEG, TIFF or HDR"));
+    }
+    let said = choice.transfer.map(Encoding::named).transpose()?;
+    if beginning.starts_with(&exr::MAGIC) {
+        if said.is_some() {
+            return Err(Trouble::at("transfer", "an OpenEXR file holds linear light").hint("leave `transfer` out"));
+        }
+        return Ok(Kind::Exr);
+    }
+    if choice.layer.is_some() {
+        return Err(Trouble::at("layer", "only an OpenEXR file has layers").hint("leave `layer` out"));
+    }
+    if choice.depth.is_some() {
+        return Err(Trouble::at("depth", "only an OpenEXR file has a depth channel")
+            .hint("name a file that has it: `depth: {file: ..., channel: Z}`"));
+    }
+    let format = image::guess_format(beginning).ok().filter(ImageFormat::reading_enabled);
+    Ok(format.map_or(Kind::Foreign, Kind::Native))
+}
+
+/// Why a file of a known kind is not read.
+enum NotRead {
+    Trouble(Trouble),
+    /// A variant of the kind that is sound but not known here.
+    Unsupported(String),
+}
+
+impl From<Trouble> for NotRead {
+    fn from(trouble: Trouble) -> Self {
+        Self::Trouble(trouble)
+    }
+}
+
+impl From<ImageError> for NotRead {
+    fn from(error: ImageError) -> Self {
+        match error {
+            ImageError::Unsupported(why) => Self::Unsupported(why.to_string()),
+            other => Self::Trouble(Trouble::file(other.to_string())),
+        }
+    }
+}
+
+/// A decoder that has read the header of a file of `bytes` bytes.
+fn decoder<'a>(
+    reader: impl BufRead + Seek + 'a,
+    format: ImageFormat,
+    bytes: u64,
+) -> Result<impl ImageDecoder + 'a, NotRead> {
+    let decoder = ImageReader::with_format(reader, format).into_decoder()?;
+    let (width, height) = decoder.dimensions();
+    check_size(u64::from(width), u64::from(height))?;
+    if u64::from(width) * u64::from(height) > bytes * MAX_PIXELS_PER_BYTE {
+        let text = format!("the header says {width} x {height} pixels, which {bytes} bytes cannot hold");
+        return Err(Trouble::file(text).into());
+    }
+    Ok(decoder)
+}
+
+/// The header of a file of `bytes` bytes, from its beginning; `Err` within of a variant that is not known here.
+pub(super) fn native_header<'a>(
+    reader: impl BufRead + Seek + 'a,
+    format: ImageFormat,
+    bytes: u64,
+) -> Result<Result<Header, String>, Trouble> {
+    let mut decoder = match decoder(reader, format, bytes) {
+        Ok(decoder) => decoder,
+        Err(NotRead::Trouble(trouble)) => return Err(trouble),
+        Err(NotRead::Unsupported(why)) => return Ok(Err(why)),
+    };
+    let (width, height) = decoder.dimensions();
+    let turned = turn::is_on_its_side(orientation(&mut decoder));
+    let [width, height] = if turned { [height, width] } else { [width, height] };
+    let clips = !matches!(decoder.color_type(), ColorType::Rgb32F | ColorType::Rgba32F);
+    Ok(Ok(Header { width, height, pixel_aspect: 1.0, clips, is_jpeg: format == ImageFormat::Jpeg }))
+}
+
+/// As TIFF 6.0 numbers it. A file that says nothing sound of it lies as it is.
+fn orientation(decoder: &mut impl ImageDecoder) -> u8 {
+    decoder.orientation().unwrap_or(Orientation::NoTransforms).to_exif()
+}
+
+fn native(found: &Found, format: ImageFormat, cover: bool, said: Option<Encoding>) -> Result<Linear, NotRead> {
+    let mut decoder = decoder(found.open().map_err(io)?, format, found.size_bytes().map_err(io)?)?;
+    let mut limits = Limits::default();
+    limits.max_image_width = Some(MAX_SIDE);
+    limits.max_image_height = Some(MAX_SIDE);
+    // As much as the picture needs, twice over, and something for the decoder.
+    let spare_bytes = decoder.total_bytes().saturating_add(64 << 20);
+    limits.max_alloc = Some(decoder.total_bytes().saturating_add(spare_bytes));
+    decoder.set_limits(limits)?;
+    let orientation = orientation(&mut decoder);
+    let plain = tiff::Plain::new(found.open().map_err(io)?, &decoder, format, spare_bytes)?;
+    linear(decoder, plain, orientation, cover, said)
+}
+
+/// The depth channel alone of an OpenEXR file, which need not hold light.
+///
+/// # Errors
+/// What is wrong with the file.
+pub fn depth(found: &Found, choice: Choice<'_>) -> Result<Linear, Trouble> {
+    if !found.read(64).map_err(io)?.starts_with(&exr::MAGIC) {
+        return Err(Trouble::file("only an OpenEXR file has a depth channel"));
+    }
+    exr::decode(found.open().map_err(io)?, found.size_bytes().map_err(io)?, choice, false)
+}
+
+/// How a decoder lays out a pixel.
+#[derive(Clone, Copy)]
+enum Samples {
+    Bytes,
+    Shorts,
+    Floats,
+}
+
+/// The picture of a decoder in linear light. Its code values are read into the end of the memory that the light will take
+/// and spread out from there, so that a picture takes 12 bytes a pixel and no more (and 4 for cover, where that is wanted).
+/// What is stored on its side is brought upright there too: code values in the room before them, if they have it, or else
+/// the light.
+fn linear<R: BufRead + Seek>(
+    decoder: impl ImageDecoder,
+    plain: Option<tiff::Plain<R>>,
+    orientation: u8,
+    cover: bool,
+    said: Option<Encoding>,
+) -> Result<Linear, NotRead> {
+    const LIGHT: usize = size_of::<[f32; 3]>();
+    let color = decoder.color_type();
+    let samples = match color {
+        ColorType::L8 | ColorType::La8 | ColorType::Rgb8 | ColorType::Rgba8 => Samples::Bytes,
+        ColorType::L16 | ColorType::La16 | ColorType::Rgb16 | ColorType::Rgba16 => Samples::Shorts,
+        ColorType::Rgb32F | ColorType::Rgba32F => Samples::Floats,
+        other => return Err(NotRead::Unsupported(format!("pixels of the kind {other:?} are not read"))),
+    };
+    let (size, count) = (usize::from(color.bytes_per_pixel()), usize::from(color.channel_count()));
+    let (width, height) = decoder.dimensions();
+    let pixels = width as usize * height as usize;
+    let of_integers = said.unwrap_or(Encoding::Curve(Transfer::Srgb));
+    let table = match samples {
+        Samples::Bytes => of_integers.table(256),
+        Samples::Shorts => of_integers.table(65_536),
+        Samples::Floats => Vec::new(),
+    };
+    // The light of a pixel, and its cover.
+    let light = |pixel: &[u8]| -> ([f32; 3], f32) {
+        let short = |c: usize| u16::from_ne_bytes([pixel[2 * c], pixel[2 * c + 1]]);
+        let float = |c: usize| f32::from_ne_bytes([pixel[4 * c], pixel[4 * c + 1], pixel[4 * c + 2], pixel[4 * c + 3]]);
+        let gray = count < 3;
+        let rgb = [0, 1, 2].map(|c| {
+            let c = if gray { 0 } else { c };
+            match samples {
+                Samples::Bytes => table[usize::from(pixel[c])],
+                Samples::Shorts => table[usize::from(short(c))],
+                Samples::Floats => clean(said.map_or(float(c), |encoding| encoding.decode(f64::from(float(c))) as f32)),
+            }
+        });
+        let cover = match samples {
+            _ if count % 2 == 1 => return (rgb, 1.0),
+            Samples::Bytes => f32::from(pixel[count - 1]) / 255.0,
+            Samples::Shorts => f32::from(short(count - 1)) / 65_535.0,
+            Samples::Floats => return (rgb, clean(float(count - 1)).min(1.0)),
+        };
+        (rgb.map(|v| v * cover), cover)
+    };
+    let mut rgb: Vec<[f32; 3]> = vec![[0.0; 3]; pixels];
+    let mut alpha = if count % 2 == 0 && cover { vec![0.0_f32; pixels] } else { Vec::new() };
+    let memory: &mut [u8] = bytemuck::cast_slice_mut(&mut rgb);
+    let stored_size = [width as usize, height as usize];
+    let mut keep = |memory: &mut [u8], i: usize, pixel: &[u8]| {
+        let (light, cover) = light(pixel);
+        memory[i * LIGHT..][..LIGHT].copy_from_slice(bytemuck::bytes_of(&light));
+        if let Some(at) = alpha.get_mut(i) {
+            *at = cover;
+        }
+    };
+    let mut is_upright = orientation == 1;
+    if size <= LIGHT {
+        let start = pixels * (LIGHT - size);
+        match plain {
+            Some(plain) => plain.read(&mut memory[start..])?,
+            None => decoder.read_image(&mut memory[start..])?,
+        }
+        if !is_upright && 2 * size <= LIGHT {
+            let (before, codes) = memory.split_at_mut(start);
+            let room = start - codes.len();
+            for (i, pixel) in before[room..].chunks_exact_mut(size).enumerate() {
+                pixel.copy_from_slice(&codes[turn::stored(i, stored_size, orientation) * size..][..size]);
+            }
+            memory.copy_within(room..start, start);
+            is_upright = true;
+        }
+        let mut pixel = [0_u8; LIGHT];
+        for i in 0..pixels {
+            pixel[..size].copy_from_slice(&memory[start + i * size..][..size]);
+            keep(memory, i, &pixel[..size]);
+        }
+    } else if let Some(plain) = plain {
+        plain.runs(width as usize, size, |first, codes| {
+            for (i, pixel) in codes.chunks_exact(size).enumerate() {
+                keep(memory, first + i, pixel);
+            }
+        })?;
+    } else {
+        let mut codes = vec![0; pixels * size];
+        decoder.read_image(&mut codes)?;
+        for (i, pixel) in codes.chunks_exact(size).enumerate() {
+            keep(memory, i, pixel);
+        }
+    }
+    if !is_upright {
+        turn::upright(&mut rgb, stored_size, orientation);
+        turn::upright(alpha.as_chunks_mut::<1>().0, stored_size, orientation);
+    }
+    let turned = turn::is_on_its_side(orientation);
+    Ok(Linear {
+        width: if turned { height } else { width },
+        height: if turned { width } else { height },
+        pixel_aspect: 1.0,
+        rgb,
+        alpha: (!alpha.is_empty()).then_some(alpha),
+        depth: None,
+        clipped_at: (!matches!(samples, Samples::Floats)).then(|| of_integers.clipped_at()),
+    })
+}
+
+/// [`decode`] of bytes.
+#[cfg(test)]
+pub(super) fn decode_bytes(bytes: &[u8], choice: Choice<'_>) -> Result<Linear, Trouble> {
+    decode(&Found::bytes("a file".to_owned(), bytes.to_vec().into()), choice)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::decode_bytes as decode;
+    use super::*;
+    use image::{ImageFormat, Rgb, RgbImage};
+    use std::io::Cursor;
+
+    fn png(picture: &RgbImage) -> Vec<u8> {
+        let mut bytes = Cursor::new(Vec::new());
+        picture.write_to(&mut bytes, ImageFormat::Png).unwrap();
+        bytes.into_inner()
+    }
+
+    #[test]
+    fn white_of_eight_bits_is_one_and_rows_start_at_the_top() {
+        let mut picture = RgbImage::new(3, 2);
+        picture.put_pixel(2, 0, Rgb([255, 255, 255]));
+        picture.put_pixel(0, 1, Rgb([188, 0, 0]));
+        let linear = decode(&png(&picture), Choice::default()).unwrap();
+        assert_eq!((linear.width, linear.height), (3, 2));
+        assert_eq!(linear.rgb[2], [1.0, 1.0, 1.0]);
+        // IEC 61966-2-1: ((188/255 + 0.055) / 1.055)^2.4 = 0.50289.
+        assert!((linear.rgb[3][0] - 0.502_89).abs() < 1e-5);
+    }
+
+    #[test]
+    fn broken_and_hostile_files_are_refused() {
+        let good = png(&RgbImage::new(64, 64));
+        for cut in [0, 1, 7, 8, 20, 33, 50, good.len() - 13] {
+            assert!(decode(&good[..cut], Choice::default()).is_err(), "cut at {cut}");
+        }
+        // A header that claims 60 000 x 60 000 pixels, and one that claims 2^31 a side.
+        for side in [60_000_u32, 0x7fff_ffff] {
+            let mut bad = good.clone();
+            bad[16..20].copy_from_slice(&side.to_be_bytes());
+            bad[20..24].copy_from_slice(&side.to_be_bytes());
+            assert!(decode(&bad, Choice::default()).is_err());
+        }
+        assert!(decode(b"GIF89a not read", Choice::default()).is_err());
+    }
+
+    #[test]
+    fn the_encoding_that_is_said_is_taken() {
+        let bytes = png(&RgbImage::from_pixel(2, 1, Rgb([0, 51, 255])));
+        let said = |transfer| decode(&bytes, Choice { transfer: Some(transfer), ..Choice::default() });
+        assert_eq!(said("linear").unwrap().rgb[0], [0.0, 0.2, 1.0]);
+        // ITU-R BT.709: ((0.2 + 0.099) / 1.099)^(1/0.45) = 0.05543.
+        assert!((said("rec709").unwrap().rgb[0][1] - 0.055_43).abs() < 1e-4);
+        let trouble = said("srbg").expect_err("not known");
+        assert_eq!((trouble.key, trouble.hint.is_some()), ("transfer", true));
+        let exr = exr::MAGIC.to_vec();
+        assert_eq!(decode(&exr, Choice { transfer: Some("srgb"), ..Choice::default() }).err().unwrap().key, "transfer");
+    }
+
+    /// TIFF 6.0, `Orientation`: 6 says that the first row stored is the right side of the picture.
+    #[test]
+    fn a_picture_lies_as_its_orientation_says() {
+        let mut stored = RgbImage::new(3, 2);
+        stored.put_pixel(0, 0, Rgb([255, 0, 0]));
+        stored.put_pixel(2, 0, Rgb([0, 255, 0]));
+        let mut bytes = Cursor::new(Vec::new());
+        let mut encoder = image::codecs::jpeg::JpegEncoder::new_with_quality(&mut bytes, 100);
+        // TIFF header, one entry: tag 274, short, 6.
+        let exif = b"MM\0\x2a\0\0\0\x08\0\x01\x01\x12\0\x03\0\0\0\x01\0\x06\0\0\0\0\0\0".to_vec();
+        image::ImageEncoder::set_exif_metadata(&mut encoder, exif).unwrap();
+        let stored = image::imageops::resize(&stored, 48, 32, image::imageops::FilterType::Nearest);
+        encoder.encode_image(&stored).unwrap();
+        let upright = decode(&bytes.into_inner(), Choice::default()).unwrap();
+        assert_eq!((upright.width, upright.height), (32, 48));
+        let at = |column: usize, row: usize| upright.rgb[row * 32 + column];
+        assert!(at(28, 4)[0] > 0.9 && at(28, 4)[1] < 0.05, "the first pixel is at the top right");
+        assert!(at(28, 44)[1] > 0.9 && at(4, 4)[0] < 0.05);
+    }
+
+    #[test]
+    fn without_a_library_other_formats_say_how_to_get_it() {
+        if crate::library::library().is_some() {
+            return;
+        }
+        for (bytes, name) in [(&b"SDPX"[..], "scan.DPX"), (b"GIF89a\0\0\0\0", "dance.gif")] {
+            let trouble = decode(bytes, Choice { name, ..Choice::default() }).expect_err("not read");
+            assert!(trouble.hint.is_some_and(|hint| hint.contains("--features oiio")), "{name}: {}", trouble.text);
+        }
+        // What no library reads, or what is broken, is not to be had by one.
+        for name in ["notes.txt", "broken.png", "nothing"] {
+            let trouble = decode(b"some text", Choice { name, ..Choice::default() }).expect_err("not read");
+            assert!(trouble.hint.is_none_or(|hint| !hint.contains("oiio")), "{name}");
+        }
+    }
+}

@@ -1,0 +1,121 @@
+//! From code values to linear light.
+
+use super::linear::Trouble;
+use spectra_color::Transfer;
+
+/// How code values stand for light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Encoding {
+    /// A standard's curve.
+    Curve(Transfer),
+    /// Light is the code value to this power.
+    Gamma(f64),
+    /// Printing density of a scanned negative, see [`cineon`].
+    Cineon,
+}
+
+/// What `transfer` may say. ITU-R BT.709 and BT.2020 share one curve.
+const NAMES: [(&str, Encoding); 4] = [
+    ("linear", Encoding::Curve(Transfer::Linear)),
+    ("srgb", Encoding::Curve(Transfer::Srgb)),
+    ("rec709", Encoding::Curve(Transfer::Rec2020)),
+    ("cineon", Encoding::Cineon),
+];
+
+/// Words of OpenImageIO for the same, in lower case: names of color spaces (of release 3, too), and the transfer
+/// characteristics of SMPTE 268M that it hands on as they are. ITU-R BT.601 has the curve of BT.709; SMPTE 274M has it, too.
+const WORDS: [(&str, &[&str]); 4] = [
+    ("linear", &["linear", "scene_linear", "lin_srgb", "lin_rec709", "lin_rec709_scene"]),
+    ("srgb", &["srgb", "srgb_rec709_scene", "srgb_rec709_display"]),
+    ("rec709", &["rec709", "smpte 274m", "itu-r 709-4", "itu-r 601-5 system b or g", "itu-r 601-5 system m"]),
+    ("cineon", &["kodaklog", "logarithmic", "printing density"]),
+];
+
+impl Encoding {
+    /// By its name in a scene.
+    pub(super) fn named(name: &str) -> Result<Self, Trouble> {
+        NAMES.iter().find(|(own, _)| *own == name).map(|(_, encoding)| *encoding).ok_or_else(|| {
+            let trouble = Trouble::at("transfer", format!("no transfer `{name}` is known"));
+            trouble.hint("linear, srgb, rec709 or cineon")
+        })
+    }
+
+    /// By what a library says of a file; `None` where that is not known here.
+    pub(super) fn of_color_space(words: &str) -> Option<Self> {
+        let words = words.trim().to_ascii_lowercase();
+        if let Some((name, _)) = WORDS.iter().find(|(_, all)| all.contains(&words.as_str())) {
+            return Self::named(name).ok();
+        }
+        let gamma: f64 = words.strip_prefix("gammacorrected").or(words.strip_prefix("gamma"))?.trim().parse().ok()?;
+        (0.2..=5.0).contains(&gamma).then_some(Self::Gamma(gamma))
+    }
+
+    /// Linear light of a code value that is 1 at most where it is an integer.
+    pub(super) fn decode(self, code: f64) -> f64 {
+        match self {
+            Self::Curve(transfer) => transfer.decode(code),
+            Self::Gamma(gamma) => libm::pow(code.max(0.0), gamma),
+            Self::Cineon => cineon(code),
+        }
+    }
+
+    /// Light of all code values of integers.
+    pub(super) fn table(self, levels: usize) -> Vec<f32> {
+        (0..levels).map(|i| self.decode(i as f64 / (levels - 1) as f64).max(0.0) as f32).collect()
+    }
+
+    /// Light of the largest integer.
+    pub(super) fn clipped_at(self) -> f32 {
+        self.decode(1.0) as f32
+    }
+}
+
+/// Light of a code value of a scanned negative: 0.002 of density a step of 10 bits, on film of gamma 0.6, black at code
+/// 95, white (light 1) at code 685 (Eastman Kodak, "Conversion of 10-bit Log Film Data to 8-bit Linear or Video Data",
+/// 1995; G. Kennel and D. Snider, SMPTE Journal 102, 849 (1993)). Light below black is negative.
+fn cineon(code: f64) -> f64 {
+    const DENSITY_PER_CODE: f64 = 0.002;
+    const GAMMA: f64 = 0.6;
+    let relative = |code: f64| libm::pow(10.0, (code - 685.0) * DENSITY_PER_CODE / GAMMA);
+    let black = relative(95.0);
+    (relative(code * 1023.0) - black) / (1.0 - black)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Closed form: 10^(-590 * 0.002 / 0.6) = 0.0107978 is black; a stop is 0.6 * log10(2) / 0.002 = 90.309 codes.
+    #[test]
+    fn cineon_has_its_black_its_white_and_its_stops() {
+        let light = |code: f64| Encoding::Cineon.decode(code / 1023.0);
+        assert!(light(95.0).abs() < 1e-15 && (light(685.0) - 1.0).abs() < 1e-15);
+        let black = 0.010_797_751_623_277_1;
+        let with_black = |code: f64| light(code) * (1.0 - black) + black;
+        for stops in [-2.0, -1.0, 1.0, 2.0, 3.0] {
+            let found = with_black(685.0 + stops * 90.308_998_699_194_36);
+            assert!((found / libm::exp2(stops) - 1.0).abs() < 1e-12, "{stops}: {found}");
+        }
+        // Gray of 18 % as the documentation of the Python package colour-science has it (`log_encoding_Cineon`).
+        assert!((Encoding::Cineon.decode(0.457_319_613_085_418) - 0.18).abs() < 1e-12);
+        assert!((f64::from(Encoding::Cineon.clipped_at()) - 13.524).abs() < 1e-2);
+    }
+
+    #[test]
+    fn words_of_the_library_are_known_and_others_are_not_guessed() {
+        for (words, name) in [
+            ("Linear", "linear"),
+            ("sRGB", "srgb"),
+            ("Rec709", "rec709"),
+            ("KodakLog", "cineon"),
+            ("Printing density", "cineon"),
+        ] {
+            assert_eq!(Encoding::of_color_space(words), Encoding::named(name).ok(), "{words}");
+        }
+        assert_eq!(Encoding::of_color_space("GammaCorrected2.2"), Some(Encoding::Gamma(2.2)));
+        assert_eq!(Encoding::of_color_space("Gamma1.8"), Some(Encoding::Gamma(1.8)));
+        for words in ["AdobeRGB", "ACEScg", "Undefined", "GammaCorrected-1", ""] {
+            assert_eq!(Encoding::of_color_space(words), None, "{words}");
+        }
+    }
+}

@@ -1,0 +1,324 @@
+//! OpenEXR: scene-linear light with its primaries, cover and depth, in one layer of several.
+//!
+//! Layers are what the format has two ways to say: parts of the file with a name, and channels named `layer.R`
+//! (OpenEXR, "Technical Introduction", 2013). The picture is the display window; what a file holds beside it is left out,
+//! and where it holds nothing is black. Without a `chromaticities` attribute the primaries are those of Rec. 709, as the
+//! format's documentation says, which sRGB shares.
+
+use super::linear::{Choice, Linear, Trouble, check_size, clean};
+use exr::block::UncompressedBlock;
+use exr::block::lines::LineRef;
+use exr::block::reader::ChunksReader;
+use exr::meta::MetaData;
+use exr::meta::attribute::{Chromaticities, SampleType};
+use exr::meta::header::Header;
+use exr::prelude::{Vec2, f16};
+use spectra_color::{Adaptation, RgbSpace, Transfer};
+use std::io::{BufRead, Seek};
+
+/// First bytes of a file.
+pub(super) const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
+/// Most bytes that all layers of a file take in memory.
+const MAX_BYTES: u64 = 4 << 30;
+/// No compression of the format packs more into a byte: deflate ends near 1 032 to 1.
+const MAX_RATIO: u64 = 1_100;
+
+/// Channels that belong together.
+struct Group {
+    /// Its name, as `layer` chooses it; empty for the plain channels of a file without names.
+    name: String,
+    part: usize,
+    /// Name within the layer and number in the part.
+    channels: Vec<(String, usize)>,
+}
+
+impl Group {
+    fn channel(&self, name: &str) -> Option<(usize, usize)> {
+        self.channels.iter().find(|(own, _)| own.eq_ignore_ascii_case(name)).map(|(_, at)| (self.part, *at))
+    }
+
+    /// Red, green and blue; or gray.
+    fn light(&self) -> Option<Vec<(usize, usize)>> {
+        let rgb: Vec<_> = ["R", "G", "B"].iter().filter_map(|c| self.channel(c)).collect();
+        if rgb.len() == 3 {
+            return Some(rgb);
+        }
+        let is_luma_chroma = self.channel("RY").is_some() || self.channel("BY").is_some();
+        self.channel("Y").filter(|_| !is_luma_chroma).map(|gray| vec![gray])
+    }
+}
+
+/// The channels that are chosen of a file, each by its part and its number there.
+struct Chosen {
+    /// Red, green and blue, or gray; none where no light is wanted.
+    light: Vec<(usize, usize)>,
+    alpha: Option<(usize, usize)>,
+    depth: Option<(usize, usize)>,
+}
+
+/// Headers of a file of `bytes` bytes, and what is chosen of it; without `lit` its depth only, and no light.
+fn chosen(headers: &[Header], bytes: u64, choice: Choice<'_>, lit: bool) -> Result<Chosen, Trouble> {
+    check(headers, bytes)?;
+    let groups = groups(headers);
+    let (chosen, light) = if lit {
+        let chosen = choose(&groups, choice.layer)?;
+        let Some(light) = chosen.light() else { return Err(no_light(chosen, &groups)) };
+        (chosen, light)
+    } else {
+        (groups.first().ok_or_else(|| Trouble::file("the picture has no channels"))?, Vec::new())
+    };
+    let depth = choice.depth.map(|name| depth_channel(&groups, chosen, name)).transpose()?;
+    let alpha = chosen.channel("A").filter(|_| lit && choice.cover);
+    for &(part, at) in light.iter().chain(&alpha).chain(&depth) {
+        let channel = &headers[part].channels.list[at];
+        if channel.sampling.0 != 1 || channel.sampling.1 != 1 {
+            let text = format!("channel `{}` has fewer samples than the picture has pixels", channel.name);
+            return Err(Trouble::file(text).hint("write it without subsampling"));
+        }
+    }
+    if let Some((part, _)) = depth.filter(|(part, _)| lit && *part != chosen.part) {
+        let window = |part: usize| headers[part].data_window();
+        let (a, b) = (window(chosen.part), window(part));
+        if a != b {
+            let size = |w: exr::meta::attribute::IntegerBounds| format!("{} x {}", w.size.0, w.size.1);
+            let text = format!("the depth has {} pixels, the picture {}, or lies elsewhere", size(b), size(a));
+            return Err(Trouble::at("depth", text).hint("both must cover the same window"));
+        }
+    }
+    Ok(Chosen { light, alpha, depth })
+}
+
+/// Size in pixels, and width over height of a pixel.
+fn shape(headers: &[Header]) -> ([u32; 2], f64) {
+    let shared = &headers[0].shared_attributes;
+    let size = shared.display_window.size;
+    let aspect = f64::from(shared.pixel_aspect);
+    ([size.0 as u32, size.1 as u32], if (0.05..=20.0).contains(&aspect) { aspect } else { 1.0 })
+}
+
+fn said(e: exr::error::Error) -> Trouble {
+    Trouble::file(e.to_string())
+}
+
+/// What the header of a file of `bytes` bytes says.
+pub(super) fn header(
+    reader: impl BufRead + Seek,
+    bytes: u64,
+    choice: Choice<'_>,
+) -> Result<super::header::Header, Trouble> {
+    let headers = exr::block::read(reader, false).map_err(said)?.headers().to_vec();
+    chosen(&headers, bytes, choice, true)?;
+    let ([width, height], pixel_aspect) = shape(&headers);
+    Ok(super::header::Header { width, height, pixel_aspect, clips: false, is_jpeg: false })
+}
+
+/// Reads what is chosen of a file; without `lit` its depth only, and no light. Block after block goes to where it is
+/// wanted: what is not chosen takes no memory.
+pub(super) fn decode(
+    reader: impl BufRead + Seek + Send,
+    bytes: u64,
+    choice: Choice<'_>,
+    lit: bool,
+) -> Result<Linear, Trouble> {
+    let reader = exr::block::read(reader, false).map_err(said)?;
+    let headers = reader.headers().to_vec();
+    let Chosen { light, alpha: alpha_at, depth: depth_at } = chosen(&headers, bytes, choice, lit)?;
+    let ([width, height], pixel_aspect) = shape(&headers);
+    let pixels = width as usize * height as usize;
+    // Where a file holds nothing of the window there is no light, and nothing near.
+    let mut rgb = vec![[0.0_f32; 3]; if lit { pixels } else { 0 }];
+    let mut alpha = alpha_at.map(|_| vec![0.0_f32; pixels]);
+    let mut depth = depth_at.map(|_| vec![f32::INFINITY; pixels]);
+    let wanted: Vec<(usize, usize)> = light.iter().chain(&alpha_at).chain(&depth_at).copied().collect();
+    let chunks = reader.filter_chunks(false, |_, _, block| {
+        block.level == Vec2(0, 0) && wanted.iter().any(|(part, _)| *part == block.layer)
+    });
+    let window = headers[0].shared_attributes.display_window.position;
+    let take = |_: &MetaData, block: UncompressedBlock| {
+        let part = block.index.layer;
+        let header = &headers[part];
+        let offset = [
+            i64::from(header.own_attributes.layer_position.0) - i64::from(window.0),
+            i64::from(header.own_attributes.layer_position.1) - i64::from(window.1),
+        ];
+        for line in block.lines(&header.channels) {
+            let at = (part, line.location.channel);
+            if !wanted.contains(&at) {
+                continue;
+            }
+            let samples = samples(&line, header.channels.list[at.1].sample_type)?;
+            let row = line.location.position.1 as i64 + offset[1];
+            let from = line.location.position.0 as i64 + offset[0];
+            if !(0..i64::from(height)).contains(&row) {
+                continue;
+            }
+            for (i, value) in samples.into_iter().enumerate() {
+                let column = from + i as i64;
+                if !(0..i64::from(width)).contains(&column) {
+                    continue;
+                }
+                let pixel = row as usize * width as usize + column as usize;
+                for (channel, _) in light.iter().enumerate().filter(|(_, own)| **own == at) {
+                    let value = if value.is_finite() { value } else { 0.0 };
+                    if light.len() == 1 { rgb[pixel] = [value; 3] } else { rgb[pixel][channel] = value }
+                }
+                if let Some(alpha) = alpha.as_mut().filter(|_| alpha_at == Some(at)) {
+                    alpha[pixel] = if value.is_finite() { value.clamp(0.0, 1.0) } else { 0.0 };
+                }
+                if let Some(depth) = depth.as_mut().filter(|_| depth_at == Some(at)) {
+                    depth[pixel] = value;
+                }
+            }
+        }
+        Ok(())
+    };
+    chunks.and_then(|chunks| chunks.decompress_parallel(false, take)).map_err(said)?;
+    let chromaticities = headers[0].shared_attributes.chromaticities;
+    let to_srgb = chromaticities.filter(|_| light.len() == 3).map(matrix).transpose()?.flatten();
+    for pixel in &mut rgb {
+        let converted = to_srgb
+            .map_or(*pixel, |m| m.map(|row| row.iter().zip(*pixel).map(|(a, b)| a * f64::from(b)).sum::<f64>() as f32));
+        *pixel = converted.map(clean);
+    }
+    Ok(Linear { width, height, pixel_aspect, rgb, alpha, depth, clipped_at: None })
+}
+
+/// The samples of a line as single precision.
+fn samples(line: &LineRef<'_>, kind: SampleType) -> exr::error::Result<Vec<f32>> {
+    match kind {
+        SampleType::F16 => line.read_samples::<f16>().map(|v| v.map(f16::to_f32)).collect(),
+        SampleType::F32 => line.read_samples::<f32>().collect(),
+        SampleType::U32 => line.read_samples::<u32>().map(|v| v.map(|v| v as f32)).collect(),
+    }
+}
+
+/// Sizes, before anything is allocated.
+fn check(headers: &[Header], file_bytes: u64) -> Result<(), Trouble> {
+    let mut total = 0_u64;
+    for header in headers {
+        if header.deep {
+            return Err(
+                Trouble::file("deep data (several samples per pixel) are not supported").hint("flatten it first")
+            );
+        }
+        for size in [header.layer_size, header.shared_attributes.display_window.size] {
+            check_size(size.0 as u64, size.1 as u64)?;
+        }
+        let samples: u64 = header.channels.list.iter().map(|c| c.sample_type.bytes_per_sample() as u64).sum();
+        total = total.saturating_add(samples.saturating_mul(header.layer_size.area() as u64));
+    }
+    if headers.is_empty() {
+        return Err(Trouble::file("the picture has no layers"));
+    }
+    if total > MAX_BYTES {
+        return Err(Trouble::file(format!("all layers together take {total} bytes; at most {MAX_BYTES} are read")));
+    }
+    if total > file_bytes.saturating_mul(MAX_RATIO) {
+        return Err(Trouble::file(format!("the header says {total} bytes of pixels, which {file_bytes} cannot hold")));
+    }
+    Ok(())
+}
+
+fn groups(headers: &[Header]) -> Vec<Group> {
+    let mut groups: Vec<Group> = Vec::new();
+    for (part, header) in headers.iter().enumerate() {
+        let part_name = header.own_attributes.layer_name.as_ref().map(ToString::to_string).unwrap_or_default();
+        for (at, channel) in header.channels.list.iter().enumerate() {
+            let full = channel.name.to_string();
+            let (prefix, short) = full.rsplit_once('.').unwrap_or(("", &full));
+            // A channel may repeat the name of its part.
+            let name = match (part_name.as_str(), prefix) {
+                (part, "") => part.to_owned(),
+                ("", prefix) => prefix.to_owned(),
+                (part, prefix) if prefix == part || prefix.starts_with(&format!("{part}.")) => prefix.to_owned(),
+                (part, prefix) => format!("{part}.{prefix}"),
+            };
+            match groups.iter_mut().find(|g| g.part == part && g.name == name) {
+                Some(group) => group.channels.push((short.to_owned(), at)),
+                None => groups.push(Group { name, part, channels: vec![(short.to_owned(), at)] }),
+            }
+        }
+    }
+    groups
+}
+
+/// The layers that hold light, for a message.
+fn names(groups: &[Group]) -> String {
+    let names: Vec<_> = groups.iter().filter(|g| g.light().is_some() && !g.name.is_empty()).collect();
+    let shown: Vec<_> = names.iter().take(12).map(|g| format!("`{}`", g.name)).collect();
+    shown.join(", ")
+}
+
+fn choose<'a>(groups: &'a [Group], layer: Option<&str>) -> Result<&'a Group, Trouble> {
+    if let Some(layer) = layer {
+        return groups.iter().find(|g| g.name == layer).ok_or_else(|| {
+            let known = names(groups);
+            let trouble = Trouble::at("layer", format!("the file has no layer `{layer}`"));
+            trouble.hint(if known.is_empty() { "it has no named layers".to_owned() } else { format!("it has {known}") })
+        });
+    }
+    // Plain channels first, then a part whose channels are plain, then whatever is the only one.
+    let with_light: Vec<&Group> = groups.iter().filter(|g| g.light().is_some()).collect();
+    match (with_light.iter().find(|g| g.name.is_empty()), with_light.as_slice()) {
+        (Some(plain), _) => Ok(plain),
+        (None, [only]) => Ok(only),
+        (None, []) => groups.first().ok_or_else(|| Trouble::file("the picture has no channels")),
+        (None, _) => {
+            let trouble = Trouble::at("layer", "the file has several layers, none of them plain R, G, B");
+            Err(trouble.hint(format!("choose one: {}", names(groups))))
+        }
+    }
+}
+
+fn no_light(group: &Group, groups: &[Group]) -> Trouble {
+    let own: Vec<_> = group.channels.iter().take(12).map(|(name, _)| format!("`{name}`")).collect();
+    let of = if group.name.is_empty() { String::new() } else { format!(" in layer `{}`", group.name) };
+    let trouble = Trouble::file(format!("no channels R, G, B or Y{of}, but {}", own.join(", ")));
+    match names(groups) {
+        known if known.is_empty() => trouble.hint("write it with R, G and B"),
+        known => trouble.hint(format!("layers with light are {known}")),
+    }
+}
+
+/// The channel of that name in the layer; or of that full name anywhere; or the only one of that name.
+fn depth_channel(groups: &[Group], chosen: &Group, name: &str) -> Result<(usize, usize), Trouble> {
+    let full = |g: &Group, own: &str| if g.name.is_empty() { own.to_owned() } else { format!("{}.{own}", g.name) };
+    let anywhere = || {
+        groups.iter().find_map(|g| {
+            g.channels.iter().find(|(own, _)| full(g, own).eq_ignore_ascii_case(name)).map(|(_, at)| (g.part, *at))
+        })
+    };
+    let alone = || {
+        let all: Vec<_> = groups.iter().filter_map(|g| g.channel(name)).collect();
+        if let [one] = all.as_slice() { Some(*one) } else { None }
+    };
+    chosen.channel(name).or_else(anywhere).or_else(alone).ok_or_else(|| {
+        let all = groups.iter().flat_map(|g| g.channels.iter().map(move |(own, _)| format!("`{}`", full(g, own))));
+        let all: Vec<_> = all.take(24).collect();
+        let trouble = Trouble::at("depth", format!("the file has no depth channel `{name}`"));
+        trouble.hint(format!("its channels are {}; name one with `depth: {{channel: ...}}`", all.join(", ")))
+    })
+}
+
+/// From the file's primaries to those of sRGB, white to white (Bradford); `None` where they are the same.
+fn matrix(c: Chromaticities) -> Result<Option<[[f64; 3]; 3]>, Trouble> {
+    let xy = [c.red, c.green, c.blue, c.white].map(|v| [f64::from(v.0), f64::from(v.1)]);
+    let [r, g, b, white] = xy;
+    let area = (g[0] - r[0]) * (b[1] - r[1]) - (g[1] - r[1]) * (b[0] - r[0]);
+    // ACES AP0 has a blue primary of negative y (SMPTE ST 2065-1); nothing has one of 0.
+    let sound = xy.iter().all(|[x, y]| x.abs() < 2.0 && y.abs() < 2.0 && y.abs() > 1e-4) && area.abs() > 1e-4;
+    let white_is_sound = (0.1..0.7).contains(&white[0]) && (0.1..0.7).contains(&white[1]);
+    if !(sound && white_is_sound) {
+        return Err(Trouble::file("its `chromaticities` span no colors").hint("remove the attribute for Rec. 709"));
+    }
+    let srgb = RgbSpace::srgb();
+    let primaries = [r, g, b];
+    let near = |a: &[f64; 2], b: &[f64; 2]| (a[0] - b[0]).abs() < 1e-4 && (a[1] - b[1]).abs() < 1e-4;
+    if primaries.iter().zip(&srgb.primaries_xy).all(|(a, b)| near(a, b)) && near(&white, &srgb.white_xy) {
+        return Ok(None);
+    }
+    let own = RgbSpace::new("chromaticities", primaries, white, Transfer::Linear);
+    let columns = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
+        .map(|unit| srgb.from_xyz(Adaptation::Bradford.adapt(own.to_xyz(unit), own.white_xyz(), srgb.white_xyz())));
+    Ok(Some([0, 1, 2].map(|i| [0, 1, 2].map(|j| columns[j][i]))))
+}

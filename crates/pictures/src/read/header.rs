@@ -1,0 +1,56 @@
+//! What the beginning of a picture file says: enough to place it, without its pixels.
+
+use super::decode::{self, Kind};
+use super::exr;
+use super::linear::{Choice, Trouble};
+use spectra_core::resources::{Found, ResourceError};
+
+/// The beginning of a JPEG that its decoder is shown: it reads all that it is given, and the size stands before the pixels.
+const BEGINNING_BYTES: u64 = 4 << 20;
+
+/// Shape and kind of a picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Header {
+    /// Pixels across, as the picture is seen.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// Width over height of a pixel.
+    pub pixel_aspect: f64,
+    /// Whether its values are integers, which clip.
+    pub clips: bool,
+    /// Whether it is a JPEG.
+    pub is_jpeg: bool,
+}
+
+impl Header {
+    /// Width over height of the picture.
+    #[must_use]
+    pub fn aspect(&self) -> f64 {
+        f64::from(self.width) * self.pixel_aspect / f64::from(self.height)
+    }
+}
+
+/// Reads the header of a file, and no pixels: those formats apart that a library unpacks as it opens them.
+///
+/// # Errors
+/// What is wrong with it.
+pub fn header(found: &Found, choice: Choice<'_>) -> Result<Header, Trouble> {
+    let io = |error: ResourceError| Trouble::file(error.to_string());
+    let bytes = found.size_bytes().map_err(io)?;
+    let beginning = found.read(64).map_err(io)?;
+    let header = match decode::kind(&beginning, choice)? {
+        Kind::Exr => return exr::header(found.open().map_err(io)?, bytes, choice),
+        Kind::Native(format) => {
+            let is_jpeg = format == image::ImageFormat::Jpeg;
+            if is_jpeg {
+                let beginning = found.read(BEGINNING_BYTES).map_err(io)?;
+                decode::native_header(std::io::Cursor::new(beginning), format, bytes)?
+            } else {
+                decode::native_header(found.open().map_err(io)?, format, bytes)?
+            }
+        }
+        Kind::Foreign => return decode::foreign_header(found, choice, None),
+    };
+    header.or_else(|why| decode::foreign_header(found, choice, Some(&why)))
+}

@@ -1,0 +1,82 @@
+//! A picture in linear light, and what can be wrong with a picture file.
+
+/// Largest side of a picture, pixels.
+pub(super) const MAX_SIDE: u32 = 65_535;
+/// Largest picture, pixels: as linear light it takes 12 bytes each.
+pub(super) const MAX_PIXELS: u64 = 120_000_000;
+
+/// A picture in linear light, sRGB primaries, upright, row by row from the top.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Linear {
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// Width over height of a pixel.
+    pub pixel_aspect: f64,
+    /// Light, 0 or more; where the picture is not opaque, times alpha.
+    pub rgb: Vec<[f32; 3]>,
+    /// Cover, 0 to 1; `None` where all of it is opaque, or none was asked for.
+    pub alpha: Option<Vec<f32>>,
+    /// The depth channel as the file has it, if one was asked for.
+    pub depth: Option<Vec<f32>>,
+    /// The code value from which on integers are clipped, in linear light; `None` for floating point.
+    pub clipped_at: Option<f32>,
+}
+
+/// What is known of a file, and chosen of one of several layers.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Choice<'a> {
+    /// What the file is called: its ending tells formats that its content does not.
+    pub name: &'a str,
+    /// How its code values are encoded, by name; as the file says, or else as its format has it, if absent.
+    pub transfer: Option<&'a str>,
+    /// Whether cover is wanted beside light.
+    pub cover: bool,
+    /// The layer; the file's plain R, G, B if absent.
+    pub layer: Option<&'a str>,
+    /// The channel that holds depth, where depth is wanted.
+    pub depth: Option<&'a str>,
+}
+
+/// What is wrong with a picture file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Trouble {
+    /// The key whose value is to be changed: `file`, `layer`, `depth` or `transfer`.
+    pub key: &'static str,
+    /// What is wrong.
+    pub text: String,
+    /// What to do about it.
+    pub hint: Option<String>,
+}
+
+impl Trouble {
+    pub(super) fn file(text: impl Into<String>) -> Self {
+        Self { key: "file", text: text.into(), hint: None }
+    }
+
+    pub(super) fn at(key: &'static str, text: impl Into<String>) -> Self {
+        Self { key, text: text.into(), hint: None }
+    }
+
+    pub(super) fn hint(self, hint: impl Into<String>) -> Self {
+        Self { hint: Some(hint.into()), ..self }
+    }
+}
+
+/// Whether a picture of that size is read at all.
+pub(super) fn check_size(width: u64, height: u64) -> Result<(), Trouble> {
+    if width == 0 || height == 0 {
+        return Err(Trouble::file("the picture has no pixels"));
+    }
+    if width > u64::from(MAX_SIDE) || height > u64::from(MAX_SIDE) || width * height > MAX_PIXELS {
+        let text = format!("{width} x {height} pixels; at most {MAX_PIXELS} in all and {MAX_SIDE} a side are read");
+        return Err(Trouble::file(text));
+    }
+    Ok(())
+}
+
+/// Light as the sources take it: infinite, negative and undefined values are none.
+pub(super) fn clean(value: f32) -> f32 {
+    if value.is_finite() { value.max(0.0) } else { 0.0 }
+}

@@ -1,0 +1,18 @@
+//! Picture files to linear light.
+
+mod decode;
+mod encoding;
+mod exr;
+#[cfg(test)]
+mod exr_tests;
+mod foreign;
+mod header;
+mod jpeg;
+mod linear;
+mod tiff;
+mod turn;
+
+pub use decode::{decode, depth};
+pub use foreign::ENDINGS;
+pub use header::{Header, header};
+pub use linear::{Choice, Linear, Trouble};

@@ -1,0 +1,171 @@
+//! Pictures for a screen, in the sRGB encoding.
+
+use image::codecs::png::{CompressionType, FilterType, PngEncoder};
+use image::codecs::tiff::TiffEncoder;
+use image::{ExtendedColorType, ImageEncoder, ImageError};
+use rayon::prelude::*;
+use spectra_color::{Transfer, to_u8};
+use spectra_core::frame::DisplayPicture;
+use spectra_core::sink::Out;
+use spectra_files::{WriteError, WriteFault, write_atomically};
+use std::io::{BufWriter, Write};
+use std::path::Path;
+
+/// Pixels that a thread encodes at a time.
+const PIXELS_A_TASK: usize = 8192;
+
+/// Writes an 8-bit PNG: sRGB encoding, 1 is 255, values outside of [0, 1] clipped, no dithering.
+///
+/// # Errors
+/// [`WriteError`].
+pub fn write_png8(path: &Path, picture: &DisplayPicture) -> Result<(), WriteError> {
+    write_atomically(path, |file| png8(file, picture, 1.0))
+}
+
+/// The same of a picture whose pixels are `pixel_aspect` times as wide as high; where that is not 1, the file says so.
+///
+/// # Errors
+/// [`WriteError`].
+pub fn png8(out: &mut dyn Out, picture: &DisplayPicture, pixel_aspect: f64) -> Result<(), WriteFault> {
+    let bytes = encoded(picture, |code| [to_u8(code)]);
+    png(out, picture, &bytes, ExtendedColorType::Rgb8, pixel_aspect)
+}
+
+/// Writes a 16-bit PNG: sRGB encoding, 1 is 65535, values outside of [0, 1] clipped.
+///
+/// # Errors
+/// [`WriteError`].
+pub fn write_png16(path: &Path, picture: &DisplayPicture) -> Result<(), WriteError> {
+    write_atomically(path, |file| png(file, picture, &encoded(picture, code16), ExtendedColorType::Rgb16, 1.0))
+}
+
+/// Writes a 16-bit TIFF, uncompressed: sRGB encoding, 1 is 65535, values outside of [0, 1] clipped.
+///
+/// # Errors
+/// [`WriteError`].
+pub fn tiff16(out: &mut dyn Out, picture: &DisplayPicture) -> Result<(), WriteFault> {
+    let bytes = encoded(picture, code16);
+    check(picture)?;
+    let mut to = BufWriter::new(out);
+    let (width, height) = (picture.width_px, picture.height_px);
+    TiffEncoder::new(&mut to).write_image(&bytes, width, height, ExtendedColorType::Rgb16).map_err(fault)?;
+    Ok(to.flush()?)
+}
+
+fn png(
+    out: &mut dyn Out,
+    picture: &DisplayPicture,
+    bytes: &[u8],
+    color: ExtendedColorType,
+    pixel_aspect: f64,
+) -> Result<(), WriteFault> {
+    check(picture)?;
+    let mut to = BufWriter::new(out);
+    let mut png = Vec::new();
+    PngEncoder::new_with_quality(&mut png, CompressionType::Default, FilterType::Adaptive)
+        .write_image(bytes, picture.width_px, picture.height_px, color)
+        .map_err(fault)?;
+    // Signature and IHDR come first (PNG, third edition, 5.6): pHYs may follow at once.
+    let (head, rest) = png.split_at(8 + 25);
+    to.write_all(head)?;
+    if pixel_aspect != 1.0 && (0.001..1000.0).contains(&pixel_aspect) {
+        to.write_all(&physical_dimensions(pixel_aspect))?;
+    }
+    to.write_all(rest)?;
+    Ok(to.flush()?)
+}
+
+/// The chunk pHYs (PNG, third edition, 11.3.4.3) of pixels of this width over height, without a unit.
+fn physical_dimensions(pixel_aspect: f64) -> [u8; 21] {
+    const ACROSS: u32 = 1_000_000;
+    let down = (f64::from(ACROSS) * pixel_aspect).round() as u32;
+    let mut chunk = [0; 21];
+    chunk[..4].copy_from_slice(&9_u32.to_be_bytes());
+    chunk[4..8].copy_from_slice(b"pHYs");
+    chunk[8..12].copy_from_slice(&ACROSS.to_be_bytes());
+    chunk[12..16].copy_from_slice(&down.to_be_bytes());
+    let check = crc32(&chunk[4..17]);
+    chunk[17..].copy_from_slice(&check.to_be_bytes());
+    chunk
+}
+
+/// The check of a chunk (PNG, third edition, annex D).
+fn crc32(bytes: &[u8]) -> u32 {
+    let step = |crc: u32| if crc & 1 == 1 { 0xedb8_8320 ^ (crc >> 1) } else { crc >> 1 };
+    !bytes.iter().fold(u32::MAX, |crc, byte| (0..8).fold(crc ^ u32::from(*byte), |crc, _| step(crc)))
+}
+
+/// The encoders panic where the number of pixels is not that of the size.
+fn check(picture: &DisplayPicture) -> Result<(), WriteFault> {
+    let (width, height, found) = (picture.width_px, picture.height_px, picture.rgb.len());
+    if found == 0 || found as u64 != u64::from(width) * u64::from(height) {
+        return Err(WriteFault::Format(format!("{found} pixels for a picture of {width} x {height}")));
+    }
+    Ok(())
+}
+
+fn fault(error: ImageError) -> WriteFault {
+    match error {
+        ImageError::IoError(cause) => WriteFault::Io(cause),
+        other => WriteFault::Format(other.to_string()),
+    }
+}
+
+/// The picture in code values, `N` bytes each, by `code`.
+fn encoded<const N: usize>(picture: &DisplayPicture, code: impl Fn(f64) -> [u8; N] + Sync) -> Vec<u8> {
+    let mut bytes = vec![0; picture.rgb.len() * 3 * N];
+    let rows = bytes.par_chunks_mut(PIXELS_A_TASK * 3 * N).zip(picture.rgb.par_chunks(PIXELS_A_TASK));
+    rows.for_each(|(bytes, rgb)| {
+        for (to, linear) in bytes.chunks_exact_mut(N).zip(rgb.iter().flatten()) {
+            to.copy_from_slice(&code(Transfer::Srgb.encode(f64::from(*linear))));
+        }
+    });
+    bytes
+}
+
+/// A code value in 16 bits, in the order of the machine's bytes, as the encoders take them.
+fn code16(code: f64) -> [u8; 2] {
+    // The cast saturates, and takes NaN to 0.
+    ((code * 65_535.0 + 0.5).floor() as u16).to_ne_bytes()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn picture() -> DisplayPicture {
+        let rgb =
+            (0..12).map(|i| [i as f32 / 11.0, 0.18, if i == 3 { f32::NAN } else { 2.0 - i as f32 * 0.3 }]).collect();
+        DisplayPicture { width_px: 4, height_px: 3, rgb }
+    }
+
+    /// IEC 61966-2-1: linear 0.18 is code 0.46136, so 118 of 255 and 30235 of 65535.
+    #[test]
+    fn pictures_come_back_as_srgb_codes() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let eight = folder.path().join("a.png");
+        let sixteen = [folder.path().join("b.png"), folder.path().join("c.tif")];
+        write_png8(&eight, &picture()).expect("written");
+        write_png16(&sixteen[0], &picture()).expect("written");
+        write_atomically(&sixteen[1], |file| tiff16(file, &picture())).expect("written");
+        let read = image::open(&eight).expect("a picture").into_rgb8();
+        assert_eq!(read.dimensions(), (4, 3));
+        assert_eq!(read.get_pixel(0, 0).0, [0, 118, 255]);
+        assert_eq!(read.get_pixel(3, 2).0, [255, 118, 0]);
+        assert_eq!(read.get_pixel(3, 0).0[2], 0);
+        for path in &sixteen {
+            let read = image::open(path).expect("a picture").into_rgb16();
+            assert_eq!(read.get_pixel(0, 0).0, [0, 30_235, 65_535], "{}", path.display());
+            assert_eq!(read.get_pixel(3, 2).0, [65_535, 30_235, 0], "{}", path.display());
+        }
+    }
+
+    #[test]
+    fn pictures_of_no_pixels_or_no_folder_are_errors() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let none = DisplayPicture { width_px: 0, height_px: 0, rgb: Vec::new() };
+        assert!(write_png8(&folder.path().join("a.png"), &none).is_err());
+        let text = write_png8(&folder.path().join("x/a.png"), &picture()).unwrap_err().to_string();
+        assert!(text.contains("x/a.png"), "{text}");
+    }
+}

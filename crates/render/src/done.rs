@@ -1,0 +1,121 @@
+//! Which samples are in the sums.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+/// What was done of an estimator's work: all samples below a number, and beyond it a span that some units are done of.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Done {
+    complete: u64,
+    open: Option<(Range<u64>, Units)>,
+}
+
+impl Done {
+    /// All samples below this number are in the sums.
+    #[must_use]
+    pub fn complete(&self) -> u64 {
+        self.complete
+    }
+
+    /// The samples that are in the sums or were begun end here.
+    #[must_use]
+    pub fn end(&self) -> u64 {
+        self.open.as_ref().map_or(self.complete, |(samples, _)| samples.end)
+    }
+
+    /// The span that was begun, with its units.
+    #[must_use]
+    pub fn open(&self) -> Option<(&Range<u64>, &Units)> {
+        self.open.as_ref().map(|(samples, units)| (samples, units))
+    }
+
+    /// The span to go on with, to have all samples below `upto`; `None` where they are there.
+    pub(crate) fn next(&mut self, upto: u64) -> Option<Range<u64>> {
+        if self.open.is_none() && self.complete < upto {
+            self.open = Some((self.complete..upto, Units::default()));
+        }
+        self.open.as_ref().map(|(samples, _)| samples.clone())
+    }
+
+    /// Notes more units of the open span, which has `of` units.
+    pub(crate) fn note(&mut self, units: &Units, of: u64) {
+        let Some((samples, known)) = &mut self.open else { return };
+        units.0.iter().for_each(|(begin, end)| known.insert(*begin..*end));
+        if known.covers(of) {
+            self.complete = samples.end;
+            self.open = None;
+        }
+    }
+
+    pub(crate) fn of(complete: u64, open: Option<(Range<u64>, Units)>) -> Self {
+        Self { complete, open }
+    }
+}
+
+/// A set of units of work, as ranges that neither touch nor overlap: begin to end.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Units(BTreeMap<u64, u64>);
+
+impl Units {
+    /// The ranges, in order.
+    pub fn ranges(&self) -> impl Iterator<Item = Range<u64>> + '_ {
+        self.0.iter().map(|(begin, end)| *begin..*end)
+    }
+
+    /// Whether a unit is among them.
+    #[must_use]
+    pub fn contains(&self, unit: u64) -> bool {
+        self.0.range(..=unit).next_back().is_some_and(|(_, end)| unit < *end)
+    }
+
+    /// Whether all units below `of` are.
+    pub(crate) fn covers(&self, of: u64) -> bool {
+        of == 0 || self.0.first_key_value().is_some_and(|(begin, end)| *begin == 0 && *end >= of)
+    }
+
+    pub(crate) fn insert(&mut self, Range { mut start, mut end }: Range<u64>) {
+        // What touches it becomes a part of it.
+        while let Some((begin, upto)) = self.0.range(..=end).next_back().map(|(b, e)| (*b, *e)) {
+            if upto < start {
+                break;
+            }
+            self.0.remove(&begin);
+            (start, end) = (start.min(begin), end.max(upto));
+        }
+        self.0.insert(start, end);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranges_grow_together() {
+        let mut units = Units::default();
+        for unit in [7, 3, 5, 4, 0, 6] {
+            units.insert(unit..unit + 1);
+        }
+        assert_eq!(units.ranges().collect::<Vec<_>>(), [0..1, 3..8]);
+        units.insert(1..3);
+        assert!(units.covers(8) && !units.covers(9));
+        assert!(units.contains(7) && !units.contains(8));
+        units.insert(10..12);
+        units.insert(2..20);
+        assert!(units.ranges().eq(std::iter::once(0..20)));
+    }
+
+    #[test]
+    fn a_span_is_complete_with_its_last_unit() {
+        let mut done = Done::default();
+        assert_eq!(done.next(64), Some(0..64));
+        let mut some = Units::default();
+        some.insert(1..3);
+        done.note(&some, 3);
+        // Whoever asks for more ends first what was begun.
+        assert_eq!((done.complete(), done.end(), done.next(100)), (0, 64, Some(0..64)));
+        some.insert(0..1);
+        done.note(&some, 3);
+        assert_eq!((done.complete(), done.next(64), done.next(100)), (64, None, Some(64..100)));
+    }
+}

@@ -1,0 +1,49 @@
+//! One way to estimate the exposure.
+
+use crate::pipeline::ThreadState;
+use crate::sums::ExactSums;
+use crate::{Done, RenderError, Workers};
+use std::ops::Range;
+
+/// A way to estimate the exposure, or a part of it: those of one scene add.
+///
+/// Samples are numbered from 0; a span of them is cut into units of work, each a pure function of the scene, the seed, the
+/// span and its own number. Units may run in any order on any thread: their results are added as integers.
+pub trait Estimator: Send + Sync {
+    /// What it is called: `forward`, `backward`.
+    fn name(&self) -> &'static str;
+
+    /// Into how many units a span of samples is cut.
+    fn units(&self, samples: &Range<u64>) -> u64;
+
+    /// Rays that a span of samples launches.
+    fn rays(&self, samples: &Range<u64>) -> u64;
+
+    /// The columns that one thread works in.
+    fn scratch(&self) -> Scratch;
+
+    /// Does one unit of a span.
+    fn run(&self, samples: &Range<u64>, unit: u64, scratch: &mut Scratch, sums: &ExactSums) -> Unit;
+
+    /// What one unit of each pixel's sums is worth, in W/m2 times the exposure time. `rays` were launched in all.
+    fn weights(&self, done: &Done, rays: u64, time_s: f64) -> Vec<f64>;
+
+    /// What the camera's meters see, found with rays of their own by the same way: for each of the scene's meter channels,
+    /// W/m2 at each pixel, 0 where no meter looks. Empty where they see nothing of the source.
+    ///
+    /// # Errors
+    /// As [`Estimator::run`].
+    fn metered(&self, workers: &dyn Workers) -> Result<Vec<Vec<f64>>, RenderError>;
+}
+
+/// What came of a unit.
+#[derive(Debug)]
+pub struct Unit {
+    /// Rays whose light is in the sums.
+    pub rays: u64,
+    /// Why these are not all of the unit's.
+    pub error: Option<RenderError>,
+}
+
+/// The columns of one thread, and what it counted in them.
+pub struct Scratch(pub(crate) ThreadState);

@@ -1,0 +1,37 @@
+//! A few thousand rays before all others: how bright the brightest are, and whether a stage is broken.
+
+use crate::RenderError;
+use crate::blame::{Blame, Step};
+use crate::pipeline::{Pipeline, ThreadState};
+use crate::sums::scale_for;
+use spectra_core::RayBatch;
+
+/// Seed of the pilot: the scale of the sums must not depend on the seed of the render, so that
+/// renders of the same scene with other seeds add.
+pub(crate) const PILOT_SEED: u64 = 0x5ca1e;
+/// Rays of a pilot batch.
+pub(crate) const PILOT_RAYS: u32 = 4096;
+/// Batches tried before a scene is taken to be dark.
+const PILOT_BATCHES: u32 = 64;
+
+/// The scale of the sums, by the largest contribution of the first batch that has any light. `trace` traces a batch by its
+/// number, and shows the rays after each step.
+pub(crate) fn scale(
+    pipeline: &Pipeline,
+    trace: impl Fn(&mut ThreadState, u32, &mut dyn FnMut(Step, &RayBatch)),
+) -> Result<f64, RenderError> {
+    let mut state = ThreadState::new(pipeline, PILOT_RAYS as usize);
+    for batch in 0..PILOT_BATCHES {
+        let mut blame = Blame::default();
+        trace(&mut state, batch, &mut |step, rays| blame.look(step, rays));
+        // A stage that is broken shows before any light is traced, if a few thousand rays find it.
+        if let Some(error) = blame.no_number(pipeline) {
+            return Err(error);
+        }
+        let largest = state.largest(pipeline);
+        if largest > 0.0 {
+            return Ok(scale_for(largest * pipeline.scene.source.peak_over_mean().max(1.0)));
+        }
+    }
+    Ok(scale_for(0.0))
+}

@@ -1,0 +1,55 @@
+//! Files that are read once.
+
+use spectra_core::params::{Faults, Params};
+use spectra_core::resources::{Found, Resource, ResourceError, Resources};
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// What was asked for: path, folders, endings.
+type Key = (String, Vec<String>, Vec<String>);
+
+/// Remembers every file that stages read whole, so that a scene that is changed and assembled again reads none twice. Large
+/// files, which stages only look into, are not kept.
+pub(crate) struct Remembered {
+    inner: Arc<dyn Resources>,
+    files: Mutex<HashMap<Key, Resource>>,
+    documents: Mutex<HashMap<Key, Params>>,
+}
+
+fn key(path: &str, folders: &[&str], endings: &[&str]) -> Key {
+    let owned = |all: &[&str]| all.iter().map(|s| (*s).to_owned()).collect();
+    (path.to_owned(), owned(folders), owned(endings))
+}
+
+/// What is known of it, or else what `read` gives, which is known from then on.
+fn once<T: Clone, E>(known: &Mutex<HashMap<Key, T>>, key: Key, read: impl FnOnce() -> Result<T, E>) -> Result<T, E> {
+    let found = known.lock().unwrap_or_else(PoisonError::into_inner).get(&key).cloned();
+    match found {
+        Some(found) => Ok(found),
+        None => read().inspect(|read| {
+            known.lock().unwrap_or_else(PoisonError::into_inner).insert(key, read.clone());
+        }),
+    }
+}
+
+impl Remembered {
+    pub(crate) fn new(inner: Arc<dyn Resources>) -> Self {
+        Self { inner, files: Mutex::default(), documents: Mutex::default() }
+    }
+}
+
+impl Resources for Remembered {
+    fn read(&self, path: &str, folders: &[&str], endings: &[&str], limit: u64) -> Result<Resource, ResourceError> {
+        let read = once(&self.files, key(path, folders, endings), || self.inner.read(path, folders, endings, limit))?;
+        let size = read.bytes.len() as u64;
+        if size > limit { Err(ResourceError::TooLarge(size, limit)) } else { Ok(read) }
+    }
+
+    fn find(&self, path: &str, folders: &[&str], endings: &[&str], limit: u64) -> Result<Found, ResourceError> {
+        self.inner.find(path, folders, endings, limit)
+    }
+
+    fn document(&self, path: &str, folders: &[&str], endings: &[&str]) -> Result<Params, Faults> {
+        once(&self.documents, key(path, folders, endings), || self.inner.document(path, folders, endings))
+    }
+}

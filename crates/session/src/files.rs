@@ -1,0 +1,97 @@
+//! The files of one picture.
+
+use crate::{Folder, Names, SessionError, rescue};
+use spectra_core::sink::{Sink, WriteFault};
+use spectra_scene::{Holds, Member, Output, Scene, Shot};
+use std::sync::Arc;
+
+/// What is written of one picture.
+#[derive(Clone)]
+pub(crate) struct Files(Vec<File>);
+
+#[derive(Clone)]
+struct File {
+    output: Arc<dyn Output>,
+    /// Of films side by side, which one.
+    film: usize,
+    name: String,
+}
+
+/// A file that was not written, and why.
+type Unwritten = (String, WriteFault);
+
+impl Files {
+    /// The files of a picture.
+    ///
+    /// # Errors
+    /// The scene cannot have the one that is asked for.
+    pub(crate) fn of(names: &Names, scene: &Scene, member: &Member) -> Result<Self, SessionError> {
+        let mut files = Vec::new();
+        for output in names.outputs(scene)? {
+            let films: Vec<Option<&str>> = match output.holds() {
+                Holds::Picture if !scene.films.is_empty() => scene.films.iter().map(|f| f.name.as_deref()).collect(),
+                _ => vec![None],
+            };
+            for (film, named) in films.into_iter().enumerate() {
+                let named = named.map_or(String::new(), |name| format!("-{name}"));
+                let [part, ending] = output.ending();
+                let name = names.file(member, &format!("{named}{part}"), ending);
+                files.push(File { output: Arc::clone(&output), film, name });
+            }
+        }
+        Ok(Self(files))
+    }
+
+    /// Their names.
+    pub(crate) fn names(&self) -> Vec<String> {
+        self.0.iter().map(|file| file.name.clone()).collect()
+    }
+
+    /// The files that hold what a person looks at, one for each film.
+    pub(crate) fn shown(&self) -> Vec<String> {
+        let first = self.0.iter().find(|file| file.output.holds() == Holds::Picture).map(|file| file.output.ending());
+        let own = self.0.iter().filter(|file| Some(file.output.ending()) == first);
+        own.map(|file| file.name.clone()).collect()
+    }
+
+    /// Writes all of them. Where the system refuses one, the light is kept in another folder if there is one, and the error says
+    /// where.
+    pub(crate) fn write(
+        &self,
+        shot: &Shot<'_>,
+        sink: &dyn Sink,
+        folders: Option<[&dyn Folder; 2]>,
+    ) -> Result<(), SessionError> {
+        let is_light = |file: &&File| file.output.holds() == Holds::Light;
+        // Pictures are developed and packed while the light behind them is.
+        let (light, others) = rayon::join(
+            || self.0.iter().filter(is_light).try_for_each(|file| file.write(shot, sink)),
+            || self.0.iter().filter(|file| !is_light(file)).try_for_each(|file| file.write(shot, sink)),
+        );
+        let is_safe = light.is_ok() && self.0.iter().any(|file| is_light(&file));
+        light.and(others).map_err(|(file, fault)| {
+            let kept = match (&fault, folders) {
+                (WriteFault::Io(_), Some([folder, elsewhere])) if !is_safe => {
+                    format!("; {}", rescue::keep(shot, &file, folder, elsewhere))
+                }
+                _ => String::new(),
+            };
+            let file = folders.map_or(file.clone(), |[folder, _]| folder.shown(&file));
+            SessionError::Unwritten { file, fault, kept }
+        })
+    }
+}
+
+impl File {
+    fn write(&self, shot: &Shot<'_>, sink: &dyn Sink) -> Result<(), Unwritten> {
+        let written = sink.file(&self.name, &mut |out| self.output.write(shot, self.film, out));
+        written.map_err(|fault| (self.name.clone(), fault))
+    }
+}
+
+/// Writes a report of what was rendered.
+pub(crate) fn write_report(folder: &dyn Folder, file: &str, report: &serde_json::Value) -> Result<(), SessionError> {
+    let text = format!("{report:#}\n");
+    let written = folder.file(file, &mut |out| Ok(out.write_all(text.as_bytes())?));
+    written.map_err(|fault| SessionError::Unwritten { file: folder.shown(file), fault, kept: String::new() })
+}

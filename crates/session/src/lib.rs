@@ -1,0 +1,48 @@
+//! A render as a thing one holds.
+//!
+//! A [`Session`] has one picture of a scene: load it from a path, a text or a tree, let it trace some samples, look at what
+//! there is, change a value and go on with whatever that leaves, save the light and take it up again, develop it and write it
+//! to files. [`run()`] does all of that for every picture of a scene, as `spectra run` does.
+//!
+//! A session has no thread, clock, terminal or disk of its own: a program lends it workers, says when to stop, and takes its
+//! files; what a session has to say comes as values.
+//!
+//! ```no_run
+//! use spectra_session::{Alone, Control, Session};
+//! # fn main() -> Result<(), spectra_session::SessionError> {
+//! let mut session = Session::open("scene.yaml".as_ref(), &[], spectra_core::Isa::detect())?;
+//! session.step(16, &Alone, &Control::new())?;
+//! let picture = session.develop()?.remove(0).1;
+//! let kept = session.change("film.exposure=1/250 s")?;
+//! assert!(kept.light);
+//! # Ok(())
+//! # }
+//! ```
+
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
+mod check;
+mod contact;
+mod error;
+mod files;
+mod header;
+mod host;
+mod names;
+mod report;
+mod rescue;
+mod run;
+mod series;
+mod session;
+mod summary;
+pub mod words;
+
+pub use check::{Checked, Look, check};
+pub use error::SessionError;
+pub use header::films;
+pub use host::{Event, Folder, Host, Place};
+pub use names::Names;
+pub use report::Report;
+pub use run::{Ended, Job, run};
+pub use session::{Kept, Session};
+pub use spectra_render::{Alone, Control, Rendering, Threads, Workers};
+pub use spectra_scene::Developed;

@@ -1,0 +1,57 @@
+//! What files are called.
+
+use crate::SessionError;
+use spectra_core::params::Fault;
+use spectra_scene::{Member, Output, Scene};
+use std::sync::Arc;
+
+/// How the files of a scene are named: by the scene, or as the one that is asked for.
+#[derive(Clone, Debug, Default)]
+pub struct Names {
+    only: Option<[String; 2]>,
+}
+
+impl Names {
+    /// All files that the scene asks for, by its name.
+    #[must_use]
+    pub fn of_scene() -> Self {
+        Self::default()
+    }
+
+    /// One picture alone: its name without the ending, and that without its dot.
+    #[must_use]
+    pub fn only(stem: &str, ending: &str) -> Self {
+        Self { only: Some([stem.to_owned(), ending.to_owned()]) }
+    }
+
+    /// What is written of a scene.
+    ///
+    /// # Errors
+    /// There is no such picture of it.
+    pub(crate) fn outputs(&self, scene: &Scene) -> Result<Vec<Arc<dyn Output>>, SessionError> {
+        let Some([stem, ending]) = &self.only else { return Ok(scene.output.clone()) };
+        let ending = ending.to_ascii_lowercase();
+        let ending = if ending == "tif" { "tiff" } else { &ending };
+        let none = || SessionError::Request(format!("{stem}.{ending}: no picture is written as `.{ending}`"));
+        let output = scene.output_of(&format!(".{ending}")).ok_or_else(none)?;
+        match output.check(&*scene.imager) {
+            Ok(()) => Ok(vec![output]),
+            Err([text, hint]) => {
+                Err(SessionError::Request(Fault::new(format!("{stem}.{ending}: {text}")).hint(hint).to_string()))
+            }
+        }
+    }
+
+    /// The name of a file of a picture; `part` is what tells it from the picture's others.
+    pub(crate) fn file(&self, member: &Member, part: &str, ending: &str) -> String {
+        match &self.only {
+            Some([stem, own]) => format!("{stem}{part}.{own}"),
+            None => format!("{}{ending}", member.stem(part)),
+        }
+    }
+
+    /// The name of a report; none where one file is asked for.
+    pub(crate) fn report(&self, name: &str) -> Option<String> {
+        self.only.is_none().then(|| format!("{name}.json"))
+    }
+}

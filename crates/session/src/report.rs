@@ -1,0 +1,146 @@
+//! `SCENE.json`: how a picture came about.
+
+use crate::header::films;
+use crate::run::Job;
+use serde_json::{Map, Value, json};
+use spectra_core::Loss;
+use spectra_render::Rendering;
+use spectra_scene::{FilmTime, FocusBy, Scene};
+
+/// All there is to say of a render.
+pub struct Report<'a> {
+    pub(crate) job: &'a Job<'a>,
+    /// The scene.
+    pub scene: &'a Scene,
+    /// What the render gave.
+    pub rendering: &'a Rendering,
+    /// How long each film was exposed.
+    pub times: &'a [FilmTime],
+    /// How long its light took.
+    pub seconds: f64,
+    pub(crate) threads: usize,
+}
+
+impl Report<'_> {
+    /// The picture in a few lines, as a photographer would say it.
+    #[must_use]
+    pub fn summary(&self) -> String {
+        crate::summary::of(self)
+    }
+
+    /// Rays launched per second of rendering.
+    #[must_use]
+    pub fn rays_per_second(&self) -> f64 {
+        if self.seconds > 0.0 { self.rendering.rays as f64 / self.seconds } else { 0.0 }
+    }
+
+    /// The content of `SCENE.json`.
+    pub(crate) fn to_json(&self, files: &[String]) -> Value {
+        let Self { scene, rendering, .. } = self;
+        let settings = &scene.render;
+        let size = rendering.exposure.size;
+        let channels: Vec<Value> =
+            rendering.exposure.channels.iter().map(|c| json!({ "name": c.name, "unit": c.unit })).collect();
+        let forward = settings.direction == spectra_scene::Direction::Forward;
+        let warnings: Vec<String> =
+            scene.warnings.iter().map(ToString::to_string).chain(rendering.warnings.iter().cloned()).collect();
+        json!({
+            "scene": scene.name,
+            "scene_file": self.job.scene_file,
+            "overrides": self.job.overrides,
+            "files": files,
+            "partial": rendering.partial,
+            "seconds": self.seconds,
+            "rays": rendering.rays,
+            "rays_per_second": self.rays_per_second(),
+            "detected": rendering.detected,
+            "lost": self.lost(),
+            "seed": settings.seed,
+            "direction": settings.direction.name(),
+            "samples_per_pixel": (!forward).then_some(settings.samples),
+            "batch": settings.batch,
+            "threads": self.threads,
+            "isa": self.job.isa.name(),
+            "width_px": size.width_px,
+            "height_px": size.height_px,
+            "width_mm": size.width_mm,
+            "height_mm": size.height_mm,
+            "channels": channels,
+            "exposure_time_s": self.exposure_time_s(),
+            "metered_time_s": self.film_times_s(|time| Some(time.time_s)),
+            "source": scene.source.describe(),
+            "focus": focus(scene),
+            "lens": { "name": scene.lens.name, "patent": scene.lens.patent, "losses": scene.lens.losses(), "notes": scene.lens.notes },
+            "film": films(scene),
+            "versions": self.job.versions,
+            "warnings": warnings,
+            "notes": scene.notes,
+        })
+    }
+
+    /// How long light fell on the film: a number, of several films one each by their names.
+    fn exposure_time_s(&self) -> Value {
+        if self.times.is_empty() { self.scene.exposure_time_s().into() } else { self.film_times_s(|t| Some(t.time_s)) }
+    }
+
+    /// A figure of the films: a number, of several films one each by their names; null where there is no film.
+    fn film_times_s(&self, figure: impl Fn(&FilmTime) -> Option<f64>) -> Value {
+        let mut by_name = Map::new();
+        for time in self.times {
+            match &time.name {
+                None => return figure(time).into(),
+                Some(name) => drop(by_name.insert(name.clone(), figure(time).into())),
+            }
+        }
+        if by_name.is_empty() { Value::Null } else { by_name.into() }
+    }
+
+    /// Rays that ended on the way, by cause, and by surface with its causes. A surface number of `null` is none of the
+    /// lens's: forward, beside the frame; backward, at or beside the source.
+    fn lost(&self) -> Value {
+        let losses = &self.rendering.losses;
+        let by_cause: Map<String, Value> =
+            Loss::ALL.iter().map(|c| (c.name().to_owned(), losses.of_cause(*c).into())).collect();
+        let mut by_surface: Vec<Map<String, Value>> = Vec::new();
+        let mut last = None;
+        for (surface, cause, rays) in losses.iter() {
+            if last != Some(surface) {
+                last = Some(surface);
+                by_surface.push(self.surface(surface));
+            }
+            if let Some(row) = by_surface.last_mut() {
+                row.insert(cause.name().to_owned(), rays.into());
+            }
+        }
+        json!({ "total": losses.total(), "by_cause": by_cause, "by_surface": by_surface })
+    }
+
+    /// The head of a row of losses: which surface.
+    fn surface(&self, number: u32) -> Map<String, Value> {
+        let lens = &self.scene.lens;
+        let element = (number as usize).checked_sub(1).and_then(|at| lens.elements.get(at));
+        let mut row = Map::new();
+        row.insert("surface".to_owned(), element.map(|_| number).into());
+        let beside = match self.scene.render.direction {
+            spectra_scene::Direction::Forward => "imager",
+            spectra_scene::Direction::Backward => "source",
+        };
+        row.insert("kind".to_owned(), element.map_or(beside, |e| e.kind.as_str()).into());
+        if let Some(element) = element {
+            let (before, after) = (&lens.media[element.medium_before].label, &lens.media[element.medium_after].label);
+            row.insert("from".to_owned(), before.as_str().into());
+            row.insert("to".to_owned(), after.as_str().into());
+        }
+        row
+    }
+}
+
+/// How the lens was focused; a distance of `null` is infinity, or none where it stands as its file has it.
+fn focus(scene: &Scene) -> Value {
+    let focus = &scene.focus;
+    let per_mm = match focus.by {
+        FocusBy::Contrast { per_mm } => Some(per_mm),
+        _ => None,
+    };
+    json!({ "distance_mm": focus.distance_mm, "by": focus.by.name(), "frequency_per_mm": per_mm, "remark": focus.remark })
+}

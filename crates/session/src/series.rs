@@ -1,0 +1,362 @@
+//! Several pictures of one scene: the members of a sweep, the frames of an animation.
+
+use crate::check::{Look, checked, each_once};
+use crate::contact::Contact;
+use crate::files::{Files, write_report};
+use crate::run::{Taken, prepare};
+use crate::{Ended, Event, Host, Job, Place, Report, Session, SessionError, header, words};
+use serde_json::{Map, Value, json};
+use spectra_core::params::{Reading, Warning};
+use spectra_scene::{Member, Scene, Series, SeriesKind, Shot};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// `SCENE-series.json` is brought up to date in this time, s, so that little of it is lost with the machine.
+const REPORT_EVERY_S: f64 = 10.0;
+
+/// A picture that is going to be made.
+struct Planned {
+    /// Its place in the series.
+    index: usize,
+    member: Member,
+    files: Files,
+    size_px: [u32; 2],
+    films: Vec<Option<String>>,
+    warnings: Vec<Warning>,
+    notes: Vec<String>,
+}
+
+/// Renders all pictures of a series that are asked for.
+pub(crate) fn run(job: &Job<'_>, host: &dyn Host) -> Result<Ended, SessionError> {
+    let series = job.series;
+    let Some(report_file) = job.names.report(&format!("{}-series", series.name())) else {
+        let text = format!("--output: that is one picture, but this scene makes {}: name a folder", series.count());
+        return Err(SessionError::Request(text));
+    };
+    let plan = |index: usize, scene: &Scene| -> Result<Planned, SessionError> {
+        let member = series.member(index);
+        let files = Files::of(&job.names, scene, &member)?;
+        let mut names = files.names();
+        names.push(report_file.clone());
+        prepare(job, host, &names)?;
+        let size = scene.imager.size();
+        let films: Vec<Option<String>> = scene.films.iter().map(|film| film.name.clone()).collect();
+        let films = if films.is_empty() { vec![None] } else { films };
+        let (warnings, notes) = (scene.warnings.clone(), scene.all_notes().cloned().collect());
+        Ok(Planned { index, member, files, size_px: [size.width_px, size.height_px], films, warnings, notes })
+    };
+    let seen = |done: usize, of: usize| host.hear(Event::Checked { done, of });
+    let look = Look { isa: job.isa, workers: host.workers(), memory_bytes: host.memory_bytes(), seen: &seen };
+    let planned = checked(series, &job.chosen, look, &plan)?;
+    host.hear(Event::Ready);
+    for warning in each_once(series.warnings().iter().chain(planned.iter().flat_map(|p| &p.warnings))) {
+        host.hear(Event::Warning(warning));
+    }
+    for note in each_once(planned.iter().flat_map(|p| &p.notes)) {
+        host.hear(Event::Note(note));
+    }
+    host.hear(Event::Series(
+        &format!("{}: {}", series.name(), what(series, planned.len())),
+        &json!({ "event": "series", "scene": series.name(), "count": series.count(), "pictures": planned.len() }),
+    ));
+    let mut work = Work {
+        job,
+        host,
+        earlier: if job.skip_existing { earlier(host, &report_file) } else { Map::new() },
+        contact: contact(job, &planned),
+        done: Vec::new(),
+        other: None,
+        report_file,
+        reported_s: host.now_s(),
+        begun_s: host.now_s(),
+    };
+    let mut result = Ok(true);
+    for (at, picture) in planned.iter().enumerate() {
+        let place = Place { number: picture.member.number, index: at, of: planned.len() };
+        result = work.picture(picture, place);
+        if !matches!(result, Ok(true)) {
+            break;
+        }
+    }
+    host.hear(Event::Picture(None));
+    // What is done is kept and told of, also where the next one failed.
+    let files = work.finish(result.as_ref().is_ok_and(|whole| *whole));
+    let whole = result?;
+    host.hear(Event::Written(&files?));
+    let stopped = !whole && host.is_interrupted();
+    let (done, of) = (work.done.len(), planned.len());
+    host.hear(Event::Series(
+        &format!("{done} of {of} pictures in {}", words::duration(host.now_s() - work.begun_s)),
+        &json!({ "event": "end", "done": done, "of": of, "interrupted": stopped }),
+    ));
+    Ok(if stopped { Ended::Stopped } else { Ended::Whole })
+}
+
+/// What a person wants to know before it begins.
+fn what(series: &Series, pictures: usize) -> String {
+    match series.kind() {
+        SeriesKind::Sweep { axes } if !axes.is_empty() => {
+            let axis = axes.iter().map(|axis| format!("{} of {}", axis.values.len(), axis.path));
+            format!("a sweep of {pictures} pictures: {}", axis.collect::<Vec<_>>().join(" x "))
+        }
+        SeriesKind::Sweep { .. } => format!("a sweep of {pictures} pictures"),
+        SeriesKind::Animation { .. } => format!("{pictures} of {} frames", series.count()),
+        SeriesKind::Single => "a picture".to_owned(),
+    }
+}
+
+/// The unit of a bare number at a path of the scene; that of a variable is known by where it is used.
+fn unit_of(job: &Job<'_>, path: &str) -> Option<String> {
+    let Some(name) = path.strip_prefix("variables.") else { return (job.unit_of)(path) };
+    job.series.uses_of_variable(name).into_iter().find_map(|(path, text)| {
+        let is_temperature =
+            ["blackbody:", "daylight:"].iter().any(|head| text.contains(&format!("{head}${{{name}}}")));
+        let is_whole = text == format!("${name}") || text == format!("${{{name}}}");
+        match () {
+            () if is_temperature => Some("K".to_owned()),
+            () if is_whole => (job.unit_of)(&path),
+            () => None,
+        }
+    })
+}
+
+/// The contact sheet of a sweep, its cells empty.
+fn contact(job: &Job<'_>, planned: &[Planned]) -> Option<Contact> {
+    let SeriesKind::Sweep { mut axes } = job.series.kind() else { return None };
+    let mut members: Vec<Member> = planned.iter().map(|p| p.member.clone()).collect();
+    // On the sheet a bare number has the unit that it is read in.
+    let mut units: HashMap<String, Option<String>> = HashMap::new();
+    let mut complete = |path: &str, value: &mut String| {
+        if let Reading::Bare(_) = Reading::of(value.trim_matches('"'))
+            && let Some(unit) = units.entry(path.to_owned()).or_insert_with(|| unit_of(job, path))
+        {
+            *value = if unit == "f/" { format!("f/{value}") } else { format!("{value} {unit}") };
+        }
+    };
+    for axis in &mut axes {
+        axis.values.iter_mut().for_each(|value| complete(&axis.path, value));
+    }
+    for (path, value) in members.iter_mut().flat_map(|member| &mut member.values) {
+        complete(path, value);
+    }
+    Some(Contact::new(&axes, &members, planned.first()?.size_px))
+}
+
+/// What an earlier run said of its pictures, by their numbers.
+fn earlier(host: &dyn Host, report_file: &str) -> Map<String, Value> {
+    /// A larger file is not one of ours.
+    const LARGEST: u64 = 256 << 20;
+    let read = host.folder().read(report_file, LARGEST);
+    let report: Value = read.and_then(|bytes| serde_json::from_slice(&bytes).ok()).unwrap_or_default();
+    let pictures = report["pictures"].as_array().cloned().unwrap_or_default();
+    pictures.into_iter().filter_map(|p| Some((p["number"].as_u64()?.to_string(), p))).collect()
+}
+
+/// The work on a series, and what is done of it.
+struct Work<'a> {
+    job: &'a Job<'a>,
+    host: &'a dyn Host,
+    earlier: Map<String, Value>,
+    contact: Option<Contact>,
+    /// The picture before: what the next one shares with it is not made again.
+    other: Option<Arc<Scene>>,
+    /// What is said of each picture in `SCENE-series.json`.
+    done: Vec<Value>,
+    report_file: String,
+    reported_s: f64,
+    begun_s: f64,
+}
+
+impl Work<'_> {
+    /// Renders a picture and writes its files; false where it was stopped before it was whole.
+    fn picture(&mut self, picture: &Planned, place: Place) -> Result<bool, SessionError> {
+        let Self { job, host, .. } = *self;
+        if host.is_stopped() {
+            return Ok(false);
+        }
+        host.hear(Event::Picture(Some(place)));
+        let names = picture.files.names();
+        let shown: Vec<String> = names.iter().map(|name| host.folder().shown(name)).collect();
+        if job.skip_existing && !names.is_empty() && names.iter().all(|name| host.folder().has(name)) {
+            self.keep(picture, &shown);
+            host.hear(Event::Series(
+                &format!("{} of {}: {} is there", place.index + 1, place.of, picture.member.stem("")),
+                &json!({ "event": "kept", "files": shown }),
+            ));
+            return Ok(true);
+        }
+        // Not kept from the check: a thousand scenes would not fit into memory.
+        let mut session = Session::after(job.series.clone(), picture.index, self.other.take(), job.isa)?;
+        let control = host.control();
+        session.prepare()?;
+        let Taken { rendering, seconds, failure } = Taken::of(&mut session, host, &control)?;
+        if let Some(text) = failure {
+            return Err(SessionError::Failed(text));
+        }
+        if rendering.partial {
+            return Ok(false);
+        }
+        let scene = session.into_scene();
+        let times = scene.film_times(&rendering.exposure);
+        let mut attributes = header::attributes(&scene, &rendering.exposure, &times, false, job.version);
+        attributes.extend(attributes_of(job.series, &picture.member));
+        let shot = Shot::new(&scene, &rendering.exposure, &times, &attributes, job.isa);
+        picture.files.write(&shot, host.folder(), Some([host.folder(), host.elsewhere()]))?;
+        let report =
+            Report { job, scene: &scene, rendering: &rendering, times: &times, seconds, threads: host.threads() };
+        let mut said = entry(&picture.member);
+        if let Value::Object(figures) = report.to_json(&shown) {
+            let common = ["scene", "scene_file", "overrides", "versions", "threads", "isa"];
+            said.extend(figures.into_iter().filter(|(key, _)| !common.contains(&key.as_str())));
+        }
+        self.done.push(said.into());
+        // Not every imager has something to show.
+        if let (Some(contact), Ok(pictures)) = (&mut self.contact, shot.pictures()) {
+            contact.put(place.index, pictures);
+        }
+        host.hear(Event::Written(&shown));
+        host.hear(Event::Done { report: &report, stopped: false });
+        self.other = Some(scene);
+        if host.now_s() - self.reported_s >= REPORT_EVERY_S {
+            self.reported_s = host.now_s();
+            write_report(host.folder(), &self.report_file, &self.report(&[], false))?;
+        }
+        Ok(true)
+    }
+
+    /// Takes a picture as it is on disk.
+    fn keep(&mut self, picture: &Planned, shown: &[String]) {
+        let mut said = entry(&picture.member);
+        if let Some(Value::Object(earlier)) = self.earlier.get(&picture.member.number.to_string()) {
+            // Of other values it may be, but of these files it is all that is known.
+            said.extend(earlier.clone().into_iter().filter(|(key, _)| key != "values"));
+        }
+        said.insert("files".to_owned(), shown.into());
+        said.insert("kept".to_owned(), true.into());
+        self.done.push(said.into());
+        if let Some(contact) = &mut self.contact {
+            let files = picture.films.iter().zip(picture.files.shown());
+            let read = |name: &str| self.host.folder().read(name, Contact::LARGEST_BYTES);
+            files.filter_map(|(film, name)| Some((film, read(&name)?))).for_each(|(film, bytes)| {
+                contact.put_file(picture.index, film.as_deref(), &bytes);
+            });
+        }
+    }
+
+    /// The content of `SCENE-series.json`.
+    fn report(&self, contact: &[String], whole: bool) -> Value {
+        let Self { job, host, .. } = self;
+        let mut report = json!({
+            "scene": job.series.name(),
+            "scene_file": job.scene_file,
+            "made_of": job.series.files(),
+            "overrides": job.overrides,
+            "count": job.series.count(),
+            "complete": whole,
+            "seconds": host.now_s() - self.begun_s,
+            "threads": host.threads(),
+            "isa": job.isa.name(),
+            "versions": job.versions,
+            "pictures": self.done,
+        });
+        if let Value::Object(map) = &mut report {
+            match job.series.kind() {
+                SeriesKind::Sweep { axes } => {
+                    let axes: Vec<Value> = axes.iter().map(|a| json!({ "path": a.path, "values": a.values })).collect();
+                    map.insert("kind".to_owned(), "sweep".into());
+                    map.insert("axes".to_owned(), axes.into());
+                    map.insert("contact_sheets".to_owned(), contact.into());
+                }
+                SeriesKind::Animation { first, rate } => {
+                    map.insert("kind".to_owned(), "animation".into());
+                    map.insert("first_frame".to_owned(), first.into());
+                    map.insert("frames_per_second".to_owned(), rate.into());
+                }
+                SeriesKind::Single => {}
+            }
+        }
+        report
+    }
+
+    /// Writes the contact sheets and the report; says how they are called.
+    fn finish(&self, whole: bool) -> Result<Vec<String>, SessionError> {
+        let (name, folder) = (self.job.series.name(), self.host.folder());
+        let mut shown = Vec::new();
+        if let Some(contact) = &self.contact {
+            for film in contact.films() {
+                let part = film.as_ref().map_or(String::new(), |film| format!("-{film}"));
+                let file = format!("{name}-contact{part}.png");
+                let title = format!("{name}: contact sheet");
+                let written = folder.file(&file, &mut |out| contact.write(film.as_deref(), &title, out));
+                let unwritten =
+                    |fault| SessionError::Unwritten { file: folder.shown(&file), fault, kept: String::new() };
+                written.map_err(unwritten)?;
+                shown.push(folder.shown(&file));
+            }
+        }
+        write_report(folder, &self.report_file, &self.report(&shown, whole))?;
+        shown.push(folder.shown(&self.report_file));
+        Ok(shown)
+    }
+}
+
+/// The head of what is said of a picture.
+fn entry(member: &Member) -> Map<String, Value> {
+    let values: Map<String, Value> =
+        member.values.iter().map(|(path, value)| (path.clone(), value.as_str().into())).collect();
+    let mut said = Map::new();
+    said.insert("number".to_owned(), member.number.into());
+    said.insert("name".to_owned(), member.stem("").into());
+    said.insert("values".to_owned(), values.into());
+    said
+}
+
+/// What the header of an EXR says of its place in the series. Nothing here changes with the frames that are asked for.
+fn attributes_of(series: &Series, member: &Member) -> Vec<(String, String)> {
+    let mut all = Vec::new();
+    match series.kind() {
+        SeriesKind::Sweep { .. } => {
+            all.push(("spectra:picture".to_owned(), format!("{} of {}", member.number, series.count())));
+        }
+        SeriesKind::Animation { rate, .. } => {
+            all.push(("spectra:frame".to_owned(), member.number.to_string()));
+            all.push(("spectra:frames per second".to_owned(), rate.to_string()));
+            all.push(("framesPerSecond".to_owned(), rational(rate)));
+        }
+        SeriesKind::Single => {}
+    }
+    all.push(("spectra:values".to_owned(), member.words()));
+    all
+}
+
+/// A rate as the fraction that it stands for: `24/1`, and `24000/1001` for 23.976.
+fn rational(rate: f64) -> String {
+    let whole = rate.round();
+    if rate == whole {
+        return format!("{whole}/1");
+    }
+    let thousands = (rate * 1001.0 / 1000.0).round();
+    if (thousands * 1000.0 / 1001.0 - rate).abs() < 0.001 {
+        return format!("{}/1001", thousands * 1000.0);
+    }
+    format!("{}/1000", (rate * 1000.0).round())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rates_are_the_fractions_that_they_stand_for() {
+        for (rate, wanted) in [
+            (24.0, "24/1"),
+            (23.976, "24000/1001"),
+            (29.97, "30000/1001"),
+            (59.94, "60000/1001"),
+            (12.5, "12500/1000"),
+            (0.5, "500/1000"),
+        ] {
+            assert_eq!(rational(rate), wanted);
+        }
+    }
+}

@@ -1,0 +1,291 @@
+//! One picture of a scene, on its way.
+
+use crate::files::Files;
+use crate::{Control, Names, Rendering, SessionError, Workers, header};
+use spectra_core::params::{Faults, Node, Warning};
+use spectra_core::resources::Resources;
+use spectra_core::sink::Sink;
+use spectra_core::stage::WavelengthDensity;
+use spectra_core::{Isa, frame::ExposureFrame};
+use spectra_render::{Light, Renderer};
+use spectra_scene::{Developed, Scene, Series, Shot, load_series, series_of_text, series_of_tree};
+use std::io::{self, Read, Write};
+use std::path::Path;
+use std::sync::Arc;
+
+/// What a change of a scene leaves of what was made before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Kept {
+    /// The light: nothing is traced again.
+    pub light: bool,
+    /// The density of wavelengths.
+    pub density: bool,
+    /// The lens, focused.
+    pub lens: bool,
+    /// The source, with its files.
+    pub source: bool,
+}
+
+/// One picture of a scene: its stages, and its light so far.
+pub struct Session {
+    series: Series,
+    index: usize,
+    isa: Isa,
+    scene: Arc<Scene>,
+    /// The scene made ready, once light is asked for, with that light.
+    ready: Option<(Renderer, Light)>,
+}
+
+impl Session {
+    /// The scene of a file, with texts `path=value` on top.
+    ///
+    /// # Errors
+    /// Everything that is wrong with it.
+    pub fn open(path: &Path, overrides: &[String], isa: Isa) -> Result<Self, SessionError> {
+        Self::of_series(load_series(path, overrides)?, 0, isa)
+    }
+
+    /// The scene of a text; its stages ask `resources` for files.
+    ///
+    /// # Errors
+    /// As [`Session::open`].
+    pub fn of_text(name: &str, text: &str, resources: Arc<dyn Resources>, isa: Isa) -> Result<Self, SessionError> {
+        Self::of_series(series_of_text(name, text, &[], resources)?, 0, isa)
+    }
+
+    /// The scene of a tree.
+    ///
+    /// # Errors
+    /// As [`Session::open`].
+    pub fn of_tree(name: &str, root: Node, resources: Arc<dyn Resources>, isa: Isa) -> Result<Self, SessionError> {
+        Self::of_series(series_of_tree(name, root, &[], resources)?, 0, isa)
+    }
+
+    /// A picture by its place in a series, from 0.
+    ///
+    /// # Errors
+    /// As [`Session::open`].
+    pub fn of_series(series: Series, index: usize, isa: Isa) -> Result<Self, SessionError> {
+        Self::after(series, index, None, isa)
+    }
+
+    /// The same, with the stages of another scene where both say the same.
+    pub(crate) fn after(
+        series: Series,
+        index: usize,
+        other: Option<Arc<Scene>>,
+        isa: Isa,
+    ) -> Result<Self, SessionError> {
+        let scene = series.scene_after(index, other)?.into();
+        Ok(Self { series, index, isa, scene, ready: None })
+    }
+
+    /// The scene, assembled.
+    #[must_use]
+    pub fn scene(&self) -> &Arc<Scene> {
+        &self.scene
+    }
+
+    /// The scene alone.
+    pub(crate) fn into_scene(self) -> Arc<Scene> {
+        self.scene
+    }
+
+    /// The picture among those that the scene's file stands for.
+    #[must_use]
+    pub fn member(&self) -> spectra_scene::Member {
+        self.series.member(self.index)
+    }
+
+    /// What a person should know before believing the picture.
+    pub fn warnings(&self) -> impl Iterator<Item = &Warning> {
+        self.series.warnings().iter().chain(&self.scene.warnings)
+    }
+
+    /// Makes the scene ready, if it is not.
+    ///
+    /// # Errors
+    /// What shows only once the stages are put together, as a fault of the scene.
+    pub fn prepare(&mut self) -> Result<(), SessionError> {
+        if self.ready.is_none() {
+            self.ready = Some(self.made(Renderer::new(Arc::clone(&self.scene), self.isa))?);
+        }
+        Ok(())
+    }
+
+    fn made(&self, renderer: Result<Renderer, spectra_render::RenderError>) -> Result<(Renderer, Light), SessionError> {
+        let made = renderer.and_then(|renderer| renderer.begin().map(|light| (renderer, light)));
+        made.map_err(|error| SessionError::of(&error, &self.scene))
+    }
+
+    /// Of each pixel, so many samples are traced.
+    #[must_use]
+    pub fn samples(&self) -> u64 {
+        self.ready.as_ref().map_or(0, |(_, light)| light.samples())
+    }
+
+    /// Traces so many samples of each pixel more; fewer where `control` says stop.
+    ///
+    /// # Errors
+    /// As [`Session::advance`].
+    pub fn step(&mut self, samples: u64, workers: &dyn Workers, control: &Control) -> Result<(), SessionError> {
+        self.advance(self.samples() + samples, workers, control)
+    }
+
+    /// Traces until so many samples of each pixel are there, or `control` says stop.
+    ///
+    /// # Errors
+    /// The scene cannot be rendered; `numbers` that cannot go on beyond the samples of the scene; a stage that gave a number
+    /// that no light can have. The light before stays.
+    pub fn advance(&mut self, samples: u64, workers: &dyn Workers, control: &Control) -> Result<(), SessionError> {
+        self.prepare()?;
+        let Some((renderer, light)) = &mut self.ready else { return Ok(()) };
+        let traced = renderer.advance(light, samples, workers, control);
+        traced.map_err(|error| SessionError::of(&error, &self.scene))
+    }
+
+    /// The light so far, as the scene has it now.
+    ///
+    /// # Errors
+    /// There is no memory for it.
+    pub fn look(&mut self) -> Result<Rendering, SessionError> {
+        self.prepare()?;
+        let Some((renderer, light)) = &self.ready else { return Err(Faults::new().into()) };
+        renderer.look(&self.scene, light).map_err(|error| SessionError::of(&error, &self.scene))
+    }
+
+    /// Whether any ray was traced.
+    #[must_use]
+    pub fn has_light(&self) -> bool {
+        self.ready.as_ref().is_some_and(|(_, light)| light.rays() > 0)
+    }
+
+    /// What a person should know of such a rendering.
+    #[must_use]
+    pub fn remarks(&self, rendering: &Rendering) -> Vec<String> {
+        self.ready.as_ref().map_or_else(Vec::new, |(renderer, _)| renderer.remarks(rendering))
+    }
+
+    /// The pictures of the light so far: one for each film, with its name where there are several.
+    ///
+    /// # Errors
+    /// As [`Session::look`]; the imager has no picture.
+    pub fn develop(&mut self) -> Result<Vec<Developed>, SessionError> {
+        let exposure: ExposureFrame = self.look()?.exposure;
+        let times = self.scene.film_times(&exposure);
+        let shot = Shot::new(&self.scene, &exposure, &times, &[], self.isa);
+        shot.pictures().map(<[Developed]>::to_vec).map_err(SessionError::Failed)
+    }
+
+    /// The density that wavelengths are drawn by, once the scene is made ready.
+    #[must_use]
+    pub fn density(&self) -> Option<&Arc<dyn WavelengthDensity>> {
+        self.ready.as_ref().map(|(renderer, _)| renderer.density())
+    }
+
+    /// Writes the files that the scene asks for, of the light so far, and says how they are called.
+    ///
+    /// # Errors
+    /// As [`Session::look`]; a file that could not be written.
+    pub fn write(&mut self, sink: &dyn Sink) -> Result<Vec<String>, SessionError> {
+        let rendering = self.look()?;
+        let (scene, exposure) = (&self.scene, &rendering.exposure);
+        let times = scene.film_times(exposure);
+        let attributes = header::attributes(scene, exposure, &times, rendering.partial, env!("CARGO_PKG_VERSION"));
+        let shot = Shot::new(scene, exposure, &times, &attributes, self.isa);
+        let files = Files::of(&Names::of_scene(), scene, &self.member())?;
+        files.write(&shot, sink, None)?;
+        Ok(files.names())
+    }
+
+    /// Sets a value, as `--set` does: a text `path=value`. Of the stages and the light that is kept which does not rest on it;
+    /// where something is wrong, all stays as it was.
+    ///
+    /// # Errors
+    /// Everything that is wrong with the scene as it would be.
+    pub fn change(&mut self, text: &str) -> Result<Kept, SessionError> {
+        let series = self.series.with(text)?;
+        let before = Arc::clone(&self.scene);
+        let scene: Arc<Scene> = series.scene_after(self.index, Some(Arc::clone(&before)))?.into();
+        let responses = |scene: &Scene, which: Vec<usize>| -> Vec<Vec<f64>> {
+            which.iter().filter_map(|at| scene.channels.get(*at)).map(|c| c.response.clone()).collect()
+        };
+        let same_channels =
+            responses(&before, before.picture_channels()) == responses(&scene, scene.picture_channels());
+        let same_meters = responses(&before, before.meter_channels()) == responses(&scene, scene.meter_channels())
+            && before.metered_pixels() == scene.metered_pixels();
+        let source = Arc::ptr_eq(&before.source, &scene.source);
+        let lens = Arc::ptr_eq(&before.lens, &scene.lens);
+        let system =
+            source && same_channels && before.grid == scene.grid && Arc::ptr_eq(&before.sampler, &scene.sampler);
+        let same_light = system
+            && same_meters
+            && lens
+            && before.imager.size() == scene.imager.size()
+            && Arc::ptr_eq(&before.imager, &scene.imager)
+            && before.render.traces_as(&scene.render);
+        let mut kept = Kept { light: same_light, density: system, lens, source };
+        self.ready = match self.ready.take() {
+            None => {
+                kept = Kept { light: false, density: false, ..kept };
+                None
+            }
+            Some(ready) if same_light => Some(ready),
+            Some(ready) => {
+                let density = system.then(|| Arc::clone(ready.0.density()));
+                let direction = scene.render.direction;
+                let made = Renderer::of(Arc::clone(&scene), self.isa, density, &[direction]);
+                let made = made.and_then(|renderer| renderer.begin().map(|light| (renderer, light)));
+                match made {
+                    Ok(made) => Some(made),
+                    Err(error) => {
+                        self.ready = Some(ready);
+                        return Err(SessionError::of(&error, &scene));
+                    }
+                }
+            }
+        };
+        (self.series, self.scene) = (series, scene);
+        Ok(kept)
+    }
+
+    /// Gives the memory of the light back.
+    pub(crate) fn forget_light(&mut self) {
+        self.ready = None;
+    }
+
+    /// Writes the light so far, for another process to go on with.
+    ///
+    /// # Errors
+    /// What the stream has; and as [`Session::prepare`].
+    pub fn save(&mut self, out: &mut dyn Write) -> Result<(), SessionError> {
+        self.prepare()?;
+        let Some((_, light)) = &self.ready else { return Ok(()) };
+        let scene = self.scene.text.as_bytes();
+        out.write_all(&(scene.len() as u64).to_le_bytes())?;
+        out.write_all(scene)?;
+        Ok(light.save(out)?)
+    }
+
+    /// Takes up the light that another session of the same scene saved, in place of its own.
+    ///
+    /// # Errors
+    /// What the stream has; light of another scene, which leaves all as it was; and as [`Session::prepare`].
+    pub fn load(&mut self, from: &mut dyn Read) -> Result<(), SessionError> {
+        self.prepare()?;
+        let Some((renderer, light)) = &mut self.ready else { return Ok(()) };
+        let scene = self.scene.text.as_bytes();
+        let mut length = [0; 8];
+        from.read_exact(&mut length)?;
+        let mut known = vec![0; scene.len()];
+        let fits = u64::from_le_bytes(length) == scene.len() as u64;
+        if fits {
+            from.read_exact(&mut known)?;
+        }
+        if known != scene {
+            return Err(io::Error::new(io::ErrorKind::InvalidData, "this light is of another scene").into());
+        }
+        *light = Light::load(renderer, from)?;
+        Ok(())
+    }
+}

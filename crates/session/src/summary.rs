@@ -1,0 +1,111 @@
+//! What is said of a picture that is done, as a photographer would say it.
+
+use crate::Report;
+use crate::words;
+use spectra_core::math::log10;
+use spectra_core::params::{Node, Value};
+use spectra_core::{Loss, shutter};
+use spectra_scene::FilmTime;
+
+/// Causes that say something of a picture. What the lens itself stops is none: rays are aimed at a region a little larger
+/// than its pupil, so that none is forgotten, and those beside the pupil end there.
+const TELLING: [(Loss, &str); 3] = [
+    (Loss::TotalReflection, "totally reflected"),
+    (Loss::Absorbed, "absorbed"),
+    (Loss::OutOfFrame, "beside the frame"),
+];
+
+/// `Zeiss Biotar 50 mm f/1.4 at f/2, focus 2 m, Kodak Tri-X 400 at 1/700 s (metered); 1 228 800 rays in 0.8 s, 1.5 million
+/// rays/s, 39 % of them through the lens`.
+pub(crate) fn of(report: &Report<'_>) -> String {
+    let (scene, rendering) = (report.scene, report.rendering);
+    let lens = scene.params.get("lens");
+    let set = |key: &str| lens.and_then(|lens| lens.get(key));
+    let mut text = scene.lens.name.clone();
+    if let Some(stop) = set("f-number").and_then(f_number) {
+        text.push_str(&format!(" at {stop}"));
+    }
+    if let Some(focus) = set("focus").and_then(|node| quantity(node.get("distance").unwrap_or(node), "mm")) {
+        text.push_str(&format!(", focus {focus}"));
+    }
+    match report.times {
+        [] => {}
+        times => text.push_str(&format!(", {}", times.iter().map(exposed).collect::<Vec<_>>().join(", "))),
+    }
+    text.push_str(&format!(
+        "; {} rays in {}, {}",
+        words::count(rendering.rays),
+        words::duration(report.seconds),
+        words::rate(report.rays_per_second())
+    ));
+    let losses = &rendering.losses;
+    let stopped = losses.of_cause(Loss::Missed) + losses.of_cause(Loss::Vignetted);
+    if stopped > 0 {
+        let through = words::percent(rendering.rays.saturating_sub(stopped), rendering.rays);
+        text.push_str(&format!(", {through} of them through the lens"));
+    }
+    for (cause, words) in TELLING {
+        let many = losses.of_cause(cause);
+        if many * 1000 >= rendering.rays.max(1) {
+            text.push_str(&format!(", {} {words}", words::percent(many, rendering.rays)));
+        }
+    }
+    if rendering.partial {
+        text.push_str("\npartial: stopped before all samples were taken");
+    }
+    text
+}
+
+/// `Kodak Tri-X 400 at 1/700 s (metered)`.
+fn exposed(time: &FilmTime) -> String {
+    let metered = if time.is_metered { " (metered)" } else { "" };
+    let named = time.name.as_ref().map_or(String::new(), |name| format!("{name}: "));
+    format!("{named}{} at {}{metered}", time.film, shutter::words(time.time_s))
+}
+
+/// `f/2.8`.
+fn f_number(node: &Node) -> Option<String> {
+    let text = scalar(node)?;
+    Some(format!("f/{}", rounded(text.trim_start_matches("f/"))))
+}
+
+/// A value with its unit, `unit` where it states none.
+fn quantity(node: &Node, unit: &str) -> Option<String> {
+    let text = scalar(node)?;
+    let is_bare = matches!(node.value, Value::Number(_));
+    Some(if is_bare { format!("{} {unit}", rounded(&text)) } else { rounded(&text) })
+}
+
+fn scalar(node: &Node) -> Option<String> {
+    match &node.value {
+        Value::Number(number) => Some(number.text.clone()),
+        Value::String(text) => Some(text.clone()),
+        _ => None,
+    }
+}
+
+/// The number that a text begins with, to four digits, and what stands behind it.
+fn rounded(text: &str) -> String {
+    let end = text.find(|c: char| !(c.is_ascii_digit() || c == '.')).unwrap_or(text.len());
+    let (number, rest) = text.split_at(end);
+    match number.parse::<f64>() {
+        Ok(value) if value > 0.0 && number.len() > 5 => {
+            let digits = (3 - log10(value).floor() as i32).clamp(0, 12) as usize;
+            let short = format!("{value:.digits$}");
+            let short = if digits > 0 { short.trim_end_matches('0').trim_end_matches('.') } else { &short };
+            format!("{short}{rest}")
+        }
+        _ => text.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short() {
+        let texts = ["66.66666666666667 cm", "2 m", "2.3157894", "1.414", "1234567 mm", "infinity"];
+        assert_eq!(texts.map(rounded), ["66.67 cm", "2 m", "2.316", "1.414", "1234567 mm", "infinity"]);
+    }
+}

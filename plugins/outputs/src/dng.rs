@@ -1,0 +1,69 @@
+//! `kind: dng`.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+use spectra_core::params::{Faults, Params};
+use spectra_core::registry::Context;
+use spectra_core::sink::{Out, WriteFault};
+use spectra_core::stage::Imager;
+use spectra_pictures::write::{RawLens, dng};
+use spectra_scene::{Holds, Output, Scene, Shot};
+
+/// The numbers of a sensor's converter as DNG.
+///
+/// For raw converters: mosaic, black and white level, color matrices for two illuminants, noise profile and exposure are in the file. Only an
+/// imager with a converter (`imager: {kind: sensor, ...}`) has such numbers.
+///
+/// # Example
+/// ```yaml
+/// {kind: dng}
+/// ```
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+struct DngParams {}
+
+spectra_core::register!(spectra_scene::OutputEntry, "dng": DngParams, build);
+
+struct Dng;
+
+fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Output>, Faults> {
+    params.parse::<DngParams>().map(|_| Box::new(Dng) as Box<dyn Output>)
+}
+
+/// What is said of an imager that has no numbers.
+const WITHOUT: &str = "this imager has no A/D converter, so there is no raw data";
+
+impl Output for Dng {
+    fn kind(&self) -> &'static str {
+        "dng"
+    }
+
+    fn ending(&self) -> [&'static str; 2] {
+        ["", ".dng"]
+    }
+
+    fn holds(&self) -> Holds {
+        Holds::Numbers
+    }
+
+    fn check(&self, imager: &dyn Imager) -> Result<(), [String; 2]> {
+        let hint = "`imager: {kind: sensor, ...}`, or leave `dng` out";
+        if imager.has_converter() { Ok(()) } else { Err([WITHOUT.to_owned(), hint.to_owned()]) }
+    }
+
+    fn write(&self, shot: &Shot<'_>, _: usize, out: &mut dyn Out) -> Result<(), WriteFault> {
+        let raw = shot.scene.imager.raw(shot.exposure).ok_or_else(|| WriteFault::Format(WITHOUT.to_owned()))?;
+        dng(out, &raw, &lens(shot.scene))
+    }
+}
+
+/// The lens as a raw file names it, focal length and f-number as they are set.
+fn lens(scene: &Scene) -> RawLens {
+    let lens = &scene.lens;
+    RawLens {
+        model: Some(lens.name.clone()),
+        maker: lens.maker.clone(),
+        focal_length_mm: Some(lens.first_order(lens.reference_nm).efl_mm.abs()),
+        f_number: lens.marginal_ray().ok().map(|ray| ray.f_number()),
+    }
+}

@@ -1,0 +1,9 @@
+//! Built-in outputs: what is written of a picture.
+
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
+mod dng;
+mod exr;
+mod png;
+mod rays;
+mod tiff;

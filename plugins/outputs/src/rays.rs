@@ -1,0 +1,205 @@
+//! `kind: rays`.
+
+use glam::DVec3;
+use schemars::JsonSchema;
+use serde::Deserialize;
+use spectra_analysis::draw::{DrawnRay, Fans, Ground, Sheet, View};
+use spectra_analysis::fan::FanFinder;
+use spectra_color::RgbSpace;
+use spectra_core::params::{Faults, Length, Params, Positive, Whole};
+use spectra_core::registry::Context;
+use spectra_core::sink::{Out, WriteFault};
+use spectra_core::stage::Emit;
+use spectra_core::{Isa, RayBatch};
+use spectra_glass::DispersionError;
+use spectra_lens::{Indices, Section, Tracer};
+use spectra_plot::Format;
+use spectra_scene::{Holds, Output, Scene, Shot};
+use spectra_spectrum::Observer;
+
+/// The light's way through the lens, as a figure beside the picture.
+///
+/// A section of the lens with the rays of the scene's own light: a beam's rays in its colors, or fans over the field for a source that shines
+/// everywhere. For papers and pages that explain a picture, and for looking what a lens does with a prism's light.
+///
+/// # Example
+/// ```yaml
+/// {kind: rays, size: [1200, 400], rays: 9, ground: light}
+/// ```
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct RaysParams {
+    /// Width and height, pixels, each 64 to 8192.
+    #[serde(default = "size")]
+    size: [Whole<64, 8192>; 2],
+    /// Width of what is shown, mm if bare; fitted to the lens if absent.
+    view: Option<Positive<Length>>,
+    /// Rays across the beam for each wavelength, 1 to 1001.
+    #[serde(default = "across")]
+    rays: Whole<1, 1001>,
+    /// Wavelengths over a continuous spectrum, 1 to 4001.
+    #[serde(default = "wavelengths")]
+    wavelengths: Whole<1, 4001>,
+    /// How bright colors are: `full` (the default; all alike) or `true` (relative to the brightest).
+    #[serde(default)]
+    intensity: Intensity,
+    /// What it is drawn on: `dark` (the default) or `light`.
+    #[serde(default)]
+    ground: On,
+    /// What it is written as: `png` (the default) or `svg`.
+    #[serde(default)]
+    format: As,
+    /// Whether the image plane is drawn, and ends the rays.
+    #[serde(default)]
+    screen: bool,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+#[schemars(inline)]
+enum Intensity {
+    #[default]
+    Full,
+    True,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+#[schemars(inline)]
+enum On {
+    #[default]
+    Dark,
+    Light,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+#[schemars(inline)]
+enum As {
+    #[default]
+    Png,
+    Svg,
+}
+
+fn size() -> [Whole<64, 8192>; 2] {
+    [Whole::known(800), Whole::known(600)]
+}
+
+fn across() -> Whole<1, 1001> {
+    Whole::known(1)
+}
+
+fn wavelengths() -> Whole<1, 4001> {
+    Whole::known(64)
+}
+
+spectra_core::register!(spectra_scene::OutputEntry, "rays": RaysParams, build);
+
+fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Output>, Faults> {
+    Ok(Box::new(Rays(params.parse()?)))
+}
+
+struct Rays(RaysParams);
+
+impl Output for Rays {
+    fn kind(&self) -> &'static str {
+        "rays"
+    }
+
+    fn ending(&self) -> [&'static str; 2] {
+        ["-rays", if self.0.format == As::Svg { ".svg" } else { ".png" }]
+    }
+
+    fn holds(&self) -> Holds {
+        Holds::Figure
+    }
+
+    fn write(&self, shot: &Shot<'_>, _: usize, out: &mut dyn Out) -> Result<(), WriteFault> {
+        let (scene, figure) = (shot.scene, &self.0);
+        let failed = |e: DispersionError| WriteFault::Format(e.to_string());
+        let rays = match scene.source.emit().filter(|emit| emit.is_directed()) {
+            Some(emit) => beam(scene, emit, figure, shot.isa).map_err(failed)?,
+            None => fans(scene, figure).map_err(failed)?,
+        };
+        let [width, height] = figure.size.map(|side| f64::from(side.get_u32()));
+        let sheet = Sheet {
+            width,
+            height: Some(height),
+            ground: if figure.ground == On::Light { Ground::Light } else { Ground::Dark },
+            width_mm: figure.view.map(|view| view.mm()),
+            view: View { section: Section::Y },
+            caption: String::new(),
+            image: figure.screen,
+        };
+        let format = if figure.format == As::Svg { Format::Svg } else { Format::Png };
+        Ok(out.write_all(&sheet.draw(&scene.lens, &rays).to_bytes(format, 1.0)?)?)
+    }
+}
+
+/// Light that a screen can show, nm.
+const VISIBLE_NM: [f64; 2] = [390.0, 710.0];
+/// Fields of a source that is not a beam, as parts of the largest that passes.
+const PARTS: [f64; 3] = [0.0, 0.6, 0.95];
+const WIDEST_DEG: f64 = 85.0;
+
+/// A beam's own rays: for each line, or for wavelengths over its continuum.
+fn beam(scene: &Scene, emit: &dyn Emit, figure: &RaysParams, isa: Isa) -> Result<Vec<DrawnRay>, DispersionError> {
+    let spectrum = scene.source.spectrum();
+    let visible = |nm: f64| (VISIBLE_NM[0]..=VISIBLE_NM[1]).contains(&nm);
+    let lines = spectrum.lines.iter().enumerate().filter(|(_, line)| visible(line.wavelength_nm));
+    let lines: Vec<(f64, u32)> = lines.map(|(at, line)| (line.wavelength_nm, at as u32)).collect();
+    let continuum = spectrum.continuum.iter().any(|v| *v > 0.0);
+    let step = (VISIBLE_NM[1] - VISIBLE_NM[0]) / f64::from(figure.wavelengths.get_u32());
+    let wavelengths =
+        (0..figure.wavelengths.get_u32()).filter(|_| continuum).map(|k| VISIBLE_NM[0] + step * (f64::from(k) + 0.5));
+    let wavelengths = wavelengths.map(|nm| (nm, spectra_core::batch::CONTINUUM));
+    let mut drawn = Vec::new();
+    // Lines and continuum have no common measure: each is relative to its own brightest.
+    for group in [lines, wavelengths.collect()] {
+        let first = drawn.len();
+        for (wavelength_nm, line) in group {
+            let n = figure.rays.size();
+            let mut rays = RayBatch::new(n);
+            rays.restart(n);
+            let c = rays.columns_mut();
+            c.wavelength_nm.fill(wavelength_nm);
+            c.line.fill(line);
+            let across: Vec<f64> = (0..n).map(|k| (k as f64 + 0.5) / n as f64).collect();
+            emit.place(&mut rays, &vec![0.5; n], &across, isa);
+            let tracer = Tracer::new(&scene.lens, Indices::At(wavelength_nm), Isa::Baseline)?;
+            for k in 0..n {
+                let [position, direction] =
+                    [rays.positions(), rays.directions()].map(|columns| DVec3::from_array(columns.map(|c| c[k])));
+                let path = tracer.path(position, direction, wavelength_nm);
+                drawn.push(DrawnRay { path, wavelength_nm, strength: rays.weights()[k] * brightness(wavelength_nm) });
+            }
+        }
+        let brightest = drawn[first..].iter().map(|r| r.strength).fold(0.0, f64::max);
+        for ray in &mut drawn[first..] {
+            ray.strength =
+                if figure.intensity == Intensity::True && brightest > 0.0 { ray.strength / brightest } else { 1.0 };
+        }
+    }
+    Ok(drawn)
+}
+
+/// How bright a screen shows one unit of light of a wavelength: the largest channel of its linear sRGB.
+fn brightness(wavelength_nm: f64) -> f64 {
+    let rgb = RgbSpace::srgb().from_xyz(Observer::cie_1931_2deg().at(wavelength_nm));
+    rgb.into_iter().fold(0.0, f64::max)
+}
+
+/// Fans over the field, for a source that shines everywhere.
+fn fans(scene: &Scene, figure: &RaysParams) -> Result<Vec<DrawnRay>, DispersionError> {
+    let object_mm = scene.source.distance_mm();
+    let finder = FanFinder::new(&scene.lens, Section::Y, scene.lens.reference_nm)?;
+    let largest = finder.largest_field_rad(object_mm, f64::to_radians(WIDEST_DEG)).unwrap_or(0.0);
+    let lines = [spectra_glass::lines::F_PRIME, spectra_glass::lines::E, spectra_glass::lines::C_PRIME];
+    let fans = Fans {
+        fields_deg: PARTS.iter().map(|part| part * largest.to_degrees()).collect(),
+        object_mm,
+        rays: figure.rays.size().max(3),
+        wavelengths_nm: lines.map(|line| line.wavelength_nm).to_vec(),
+    };
+    fans.trace(&scene.lens, Section::Y)
+}

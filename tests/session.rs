@@ -1,0 +1,296 @@
+//! A session: what it does to the bits of a picture, and what it makes again.
+
+use spectra_core::params::Faults;
+use spectra_core::resources::{Found, Resource, ResourceError, Resources};
+use spectra_core::sink::Memory;
+use spectra_core::{Isa, params::Params};
+use spectra_plugins as _;
+use spectra_render::{Light, Renderer};
+use spectra_scene::{Direction, FileResources};
+use spectra_session::{Alone, Control, Session, SessionError, Threads, Workers};
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+
+/// Small pictures, each with one more thing that could go wrong: a film that meters, colors, an imager by itself, forward light.
+const SCENES: [(&str, &[&str]); 3] = [
+    ("biotar-ortho", &["imager.resolution=[24, 16]"]),
+    ("gray-card", &["imager.resolution=[24, 16]"]),
+    ("gray-card", &["imager.resolution=[24, 16]", "render.direction=forward"]),
+];
+
+fn session(scene: &str, set: &[&str]) -> Session {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/{scene}.yaml"));
+    let set: Vec<String> = set.iter().map(|s| (*s).to_owned()).collect();
+    Session::open(&path, &set, Isa::detect()).unwrap_or_else(|error| panic!("{scene}: {error}"))
+}
+
+/// Bits of the exposure, channel after channel.
+fn bits(session: &mut Session) -> Vec<u32> {
+    let exposure = session.look().expect("there is memory").exposure;
+    exposure.channels.iter().flat_map(|c| c.values.iter().map(|v| v.to_bits())).collect()
+}
+
+/// Bits of the pictures.
+fn picture(session: &mut Session) -> Vec<u32> {
+    let all = session.develop().expect("a picture");
+    all.iter().flat_map(|(_, p)| p.rgb.as_flattened().iter().map(|v| v.to_bits())).collect()
+}
+
+fn go(session: &mut Session, samples: u64) {
+    session.advance(samples, &Threads(2), &Control::new()).expect("rendered");
+}
+
+/// The picture after some steps is that of a run of so many samples.
+#[test]
+fn steps_are_a_run_of_their_sum() {
+    for (scene, set) in SCENES {
+        let mut stepped = session(scene, set);
+        for samples in [1, 6, 32, 25] {
+            stepped.step(samples, &Threads(2), &Control::new()).expect("rendered");
+        }
+        let all = [set, &["render.samples=64"]].concat();
+        let mut whole = session(scene, &all);
+        go(&mut whole, 64);
+        assert_eq!(bits(&mut stepped), bits(&mut whole), "{scene} {set:?}");
+        assert_eq!(stepped.samples(), 64);
+    }
+}
+
+#[test]
+fn numbers_that_do_not_extend_refuse_to_step() {
+    let mut session =
+        session("gray-card", &["imager.resolution=[8, 8]", "render.numbers=stratified", "render.samples=16"]);
+    let error = session.step(4, &Alone, &Control::new()).expect_err("strata are laid out for 16").to_string();
+    assert!(error.contains("stratified"), "{error}");
+    go(&mut session, 16);
+}
+
+/// Stopped in the midst of the work, saved, taken up by another session, ended: the bits of a run.
+#[test]
+fn light_is_saved_and_taken_up() {
+    for (scene, set) in SCENES {
+        let set = [set, &["render.samples=96"]].concat();
+        let mut whole = session(scene, &set);
+        go(&mut whole, 96);
+        let mut first = session(scene, &set);
+        stopped(&mut first, 96);
+        let mut file = Vec::new();
+        first.save(&mut file).expect("saved");
+        let mut second = session(scene, &set);
+        second.load(&mut file.as_slice()).expect("taken up");
+        assert_eq!(bits(&mut first), bits(&mut second), "{scene}: as far as it was");
+        go(&mut second, 96);
+        assert_eq!(bits(&mut second), bits(&mut whole), "{scene} {set:?}");
+        // What is damaged, or of another scene, leaves all as it was.
+        let last = file.len() - 20;
+        file[last] ^= 1;
+        assert!(matches!(second.load(&mut file.as_slice()), Err(SessionError::Light(_))));
+        let mut other = session(scene, &[&set[..], &["render.seed=5"]].concat());
+        assert!(other.load(&mut file.as_slice()).is_err());
+        assert_eq!(bits(&mut second), bits(&mut whole));
+    }
+}
+
+/// Goes on until about a third is done.
+fn stopped(session: &mut Session, samples: u64) {
+    struct Tired<'a>(&'a Control);
+    impl Workers for Tired<'_> {
+        fn each(&self, work: &(dyn Fn() + Sync)) {
+            std::thread::scope(|scope| {
+                scope.spawn(work);
+                while self.0.total_rays() == 0 || 3 * self.0.rays() < self.0.total_rays() {
+                    std::hint::spin_loop();
+                }
+                self.0.stop();
+            });
+        }
+    }
+    let control = Control::new();
+    session.advance(samples, &Tired(&control), &control).expect("stopped");
+}
+
+/// Two estimators of unequal work in one scene: the light of both is one picture, whenever it was stopped.
+#[test]
+fn estimators_of_one_scene_add() {
+    let session = session("gray-card", &["imager.resolution=[16, 12]", "render.samples=64", "render.rays=300000"]);
+    let both = [Direction::Forward, Direction::Backward];
+    let renderer =
+        |which: &[Direction]| Renderer::of(Arc::clone(session.scene()), Isa::detect(), None, which).expect("ready");
+    let look = |renderer: &Renderer, light: &Light| -> Vec<f32> {
+        let exposure = renderer.look(session.scene(), light).expect("memory").exposure;
+        exposure.channels.iter().flat_map(|c| c.values.clone()).collect()
+    };
+    let whole = renderer(&both);
+    let mut light = whole.begin().expect("memory");
+    whole.advance(&mut light, 64, &Threads(2), &Control::new()).expect("rendered");
+    // Ended before the second estimator began, within it, and anywhere.
+    for rays in [1, 250_000, 301_000, 305_000] {
+        let mut part = whole.begin().expect("memory");
+        let control = Control::new();
+        struct Until<'a>(&'a Control, u64);
+        impl Workers for Until<'_> {
+            fn each(&self, work: &(dyn Fn() + Sync)) {
+                std::thread::scope(|scope| {
+                    let worker = scope.spawn(work);
+                    while self.0.rays() < self.1 && !worker.is_finished() {
+                        std::hint::spin_loop();
+                    }
+                    if self.0.rays() >= self.1 {
+                        self.0.stop();
+                    }
+                });
+            }
+        }
+        whole.advance(&mut part, 64, &Until(&control, rays), &control).expect("stopped");
+        let mut file = Vec::new();
+        part.save(&mut file).expect("saved");
+        let again = renderer(&both);
+        let mut part = Light::load(&again, &mut file.as_slice()).expect("taken up");
+        again.advance(&mut part, 64, &Alone, &Control::new()).expect("ended");
+        assert_eq!(look(&again, &part), look(&whole, &light), "{rays}");
+    }
+    // Each alone gives the whole picture, so both give twice of it: their sums add.
+    let sum = |which: &[Direction]| {
+        let one = renderer(which);
+        let mut light = one.begin().expect("memory");
+        one.advance(&mut light, 64, &Threads(2), &Control::new()).expect("rendered");
+        look(&one, &light).iter().map(|v| f64::from(*v)).sum::<f64>()
+    };
+    let both = look(&whole, &light).iter().map(|v| f64::from(*v)).sum::<f64>();
+    let apart = sum(&[Direction::Forward]) + sum(&[Direction::Backward]);
+    assert!((both / apart - 1.0).abs() < 1e-6, "{both} {apart}");
+}
+
+/// What comes after the light traces nothing, and gives the picture of a fresh run.
+#[test]
+fn development_traces_no_ray() {
+    for (scene, set, changes) in [
+        (
+            "biotar-ortho",
+            &["imager.resolution=[48, 32]", "render.samples=8"][..],
+            &["film.exposure=1/250 s", "film.grain=false", "film.scatter=false", "film.paper={range: 1.0}"][..],
+        ),
+        (
+            "biotar-trix",
+            &["imager.resolution=[48, 32]", "render.samples=8"],
+            &[
+                "film.push=1",
+                "film.halation={entering: 0.5, transmittance: 0.2, thickness: 130 um, index: 1.5}",
+                "film.view=scan",
+            ],
+        ),
+        (
+            "biotar-color-negative",
+            &["imager.resolution=[48, 32]", "render.samples=8"],
+            &["film.compensation=1", "film.view=scan", "film.light=D65"],
+        ),
+    ] {
+        let mut changed = session(scene, set);
+        go(&mut changed, 8);
+        let rays = changed.look().expect("memory").rays;
+        let mut all = set.to_vec();
+        for change in changes {
+            let kept = match changed.change(change) {
+                Ok(kept) => kept,
+                Err(error) => panic!("{scene} {change}: {error}"),
+            };
+            assert!(kept.light && kept.density && kept.lens && kept.source, "{scene} {change}: {kept:?}");
+            all.push(change);
+            assert_eq!(changed.look().expect("memory").rays, rays);
+            let mut fresh = session(scene, &all);
+            go(&mut fresh, 8);
+            assert_eq!(bits(&mut changed), bits(&mut fresh), "{scene} {change}");
+            assert_eq!(picture(&mut changed), picture(&mut fresh), "{scene} {change}");
+        }
+    }
+}
+
+/// Files that are read from disk, counted.
+struct Counting(FileResources, Arc<AtomicUsize>);
+
+impl Resources for Counting {
+    fn read(&self, path: &str, folders: &[&str], endings: &[&str], limit: u64) -> Result<Resource, ResourceError> {
+        self.1.fetch_add(1, Relaxed);
+        self.0.read(path, folders, endings, limit)
+    }
+    fn find(&self, path: &str, folders: &[&str], endings: &[&str], limit: u64) -> Result<Found, ResourceError> {
+        self.1.fetch_add(1, Relaxed);
+        self.0.find(path, folders, endings, limit)
+    }
+    fn document(&self, path: &str, folders: &[&str], endings: &[&str]) -> Result<Params, Faults> {
+        self.1.fetch_add(1, Relaxed);
+        self.0.document(path, folders, endings)
+    }
+}
+
+/// Another stop is focused anew and traced anew, and that is all; another stock sees other light.
+#[test]
+fn a_change_makes_again_what_rests_on_it() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let text = std::fs::read_to_string(root.join("scenes/biotar-ortho.yaml")).expect("there");
+    let small = ["imager.resolution=[24, 16]", "render.samples=8"];
+    let reads = Arc::new(AtomicUsize::new(0));
+    let files = Arc::new(Counting(FileResources::beside(&root.join("scenes")), Arc::clone(&reads)));
+    let mut changed = Session::of_text("biotar-ortho.yaml", &text, files, Isa::detect()).expect("a scene");
+    for set in small {
+        changed.change(set).expect("set");
+    }
+    go(&mut changed, 8);
+    let before = reads.load(Relaxed);
+    let density = |session: &Session| Arc::clone(session.density().expect("ready"));
+    let old = density(&changed);
+    let kept = changed.change("lens.f-number=f/8").expect("a stop");
+    assert!(!kept.light && kept.density && !kept.lens && kept.source, "{kept:?}");
+    assert!(Arc::ptr_eq(&old, &density(&changed)), "the density is the one of before");
+    assert_eq!(reads.load(Relaxed), before, "no file is read for another stop");
+    go(&mut changed, 8);
+    let mut fresh = session("biotar-ortho", &[&small[..], &["lens.f-number=f/8"]].concat());
+    go(&mut fresh, 8);
+    assert_eq!(bits(&mut changed), bits(&mut fresh));
+    let kept = changed.change("film.stock=kodak-tri-x-400").expect("a stock");
+    assert!(!kept.light && !kept.density && kept.source, "{kept:?}");
+    go(&mut changed, 8);
+    let mut fresh =
+        session("biotar-ortho", &[&small[..], &["lens.f-number=f/8", "film.stock=kodak-tri-x-400"]].concat());
+    go(&mut fresh, 8);
+    assert_eq!(bits(&mut changed), bits(&mut fresh));
+    // A slip leaves all as it was.
+    assert!(changed.change("lens.f-number=f/0.1").is_err() && changed.change("film.stock=none-such").is_err());
+    assert_eq!(bits(&mut changed), bits(&mut fresh));
+}
+
+/// One thread, no disk, no clock: files in memory, and the same bits.
+#[test]
+fn it_works_without_threads_and_disk() {
+    let text = "spectra: 1\nsource: {kind: chart, chart: gray-card, distance: 2 m, width: 3 m, illuminant: D65, luminance: 300 cd/m2}\n\
+                lens: {file: zeiss-biotar-50-f1.4, focus: 2 m, f-number: f/4}\n\
+                imager: {kind: film, format: '135', resolution: [24, 16]}\n\
+                film: {stock: kodak-tri-x-400, exposure: 1/125 s}\nrender: {samples: 4}\noutput: [exr, png, tiff]\n";
+    /// Knows nothing but what is bundled.
+    struct Bundled;
+    impl Resources for Bundled {
+        fn read(&self, path: &str, folders: &[&str], endings: &[&str], limit: u64) -> Result<Resource, ResourceError> {
+            FileResources::beside(Path::new("/nowhere/at/all")).read(path, folders, endings, limit)
+        }
+        fn document(&self, path: &str, folders: &[&str], endings: &[&str]) -> Result<Params, Faults> {
+            FileResources::beside(Path::new("/nowhere/at/all")).document(path, folders, endings)
+        }
+    }
+    let made = |workers: &dyn Workers| {
+        let mut session = Session::of_text("card.yaml", text, Arc::new(Bundled), Isa::detect())
+            .unwrap_or_else(|error| panic!("{error}"));
+        session.advance(4, workers, &Control::new()).expect("rendered");
+        let memory = Memory::default();
+        session.write(&memory).expect("written");
+        memory.into_files()
+    };
+    let (alone, threads) = (made(&Alone), made(&Threads(3)));
+    let mut names: Vec<&str> = alone.iter().map(|(name, _)| name.as_str()).collect();
+    names.sort_unstable();
+    assert_eq!(names, ["card.exr", "card.png", "card.tiff"]);
+    for (name, bytes) in &alone {
+        let other = threads.iter().find(|(other, _)| other == name).expect("the same files");
+        assert!(*bytes == other.1, "{name}");
+    }
+}
