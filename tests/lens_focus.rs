@@ -112,7 +112,7 @@ fn faults_of_laws_say_what_to_do() {
         ("coating: bear\n", "unknown coating"),
         ("coating: {layer: 1.38}\n", "either a `thickness`"),
         ("coating: {layer: 0.2, thickness: 100}\n", "a layer of index 0.2"),
-        ("coating: {layer: 1.38, thickness: 1 mm}\n", "no thin layer"),
+        ("coating: {layer: 1.38, thickness: 1 mm}\n", "at most 100 um thick"),
     ] {
         let faults = two_groups(laws).expect_err(laws);
         assert!(faults.contains(word), "{laws}: {faults}");
