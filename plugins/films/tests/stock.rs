@@ -78,7 +78,7 @@ fn parameters_are_checked() {
         ("stock: ilford-ortho-plus\nmetering: spot\nspot: {diameter: 0}\n", "diameter"),
         ("stock: ilford-ortho-plus\nmetering: average\nview: projection\n", "negative"),
         ("stock: ilford-ortho-plus\nmetering: average\nview: scan\nprint: kodak-2302\n", "view: print"),
-        ("stock: ilford-ortho-plus\nmetering: average\nprint: kodak-tri-x-400\n", "no print stock"),
+        ("stock: ilford-ortho-plus\nmetering: average\nprint: kodak-tri-x-400\n", "is not a print stock"),
         ("stock: ilford-ortho-plus\nmetering: average\nprint: kodak-2302\npaper: {range: 1}\n", "paper"),
         ("stock: ilford-ortho-plus\nmetering: average\npush: 1\n", "other times"),
         ("stock: kodak-tri-x-400\nmetering: average\npush: 5\n", "stops"),

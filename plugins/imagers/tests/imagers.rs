@@ -45,7 +45,7 @@ fn faulty_frames_are_told_at_their_keys() {
         ("format: 135\nwidth: 36\nresolution: [960, 640]", "1:9", "twice"),
         ("width: 36\nresolution: [960, 640]", "1:8", "height"),
         ("width: 36\nheight: -3\nresolution: [960, 640]", "2:9", "positive"),
-        ("width: 36\nheight: 1e9\nresolution: [960, 640]", "2:9", "no size"),
+        ("width: 36\nheight: 1e9\nresolution: [960, 640]", "2:9", "out of range"),
         ("format: 135\nresolution: [0, 640]", "2:14", "1 to 32768"),
         ("format: 135\nresolution: [960, 40000]", "2:19", "1 to 32768"),
         ("format: 135\nresolution: [32768, 32768]", "2:13", "megapixels"),
