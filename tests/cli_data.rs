@@ -195,7 +195,7 @@ fn a_film_stock() {
     for (broken, said_of_it) in [
         (TRI_X_MY_WAY.replace("iso: 200", "izo: 200"), "mine.yaml:3:1"),
         (TRI_X_MY_WAY.replace("tri-x-400", "try-x-400"), "did you mean `kodak-tri-x-400`?"),
-        (TRI_X_MY_WAY.replace("kodak-tri-x-400", "mine.yaml"), "like itself"),
+        (TRI_X_MY_WAY.replace("kodak-tri-x-400", "mine.yaml"), "one on itself"),
     ] {
         write(folder.path(), "stocks/mine.yaml", &broken);
         let said = said(&folder, "s.yaml");

@@ -132,7 +132,7 @@ fn what_is_left_out_is_told_and_nothing_is_written_over() {
 
     for (arguments, word) in [
         (&["import", "none.zmx"][..], "no such file"),
-        (&["import", "lens.stl"], "no format that is known"),
+        (&["import", "lens.stl"], "unknown file extension"),
         (&["export", "zeiss-biotar-50-f1.4", "-o", "x.seq"], "only .zmx"),
         (&["export", "zeiss-biotar-50-f1.5"], "zeiss-biotar-50-f1.4"),
     ] {

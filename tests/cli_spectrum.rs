@@ -330,9 +330,9 @@ fn colors_through_each_model() {
     good(&["spectrum", "models", "--step", "255", "-o", shown(&path)]);
     assert!(std::fs::read(&path).expect("written").starts_with(b"\x89PNG"));
     for (arguments, word) in [
-        (&["color", "256", "0", "0"][..], "no color"),
-        (&["color", "#ff80"], "no color"),
-        (&["color", "1", "2"], "no color"),
+        (&["color", "256", "0", "0"][..], "not a color"),
+        (&["color", "#ff80"], "not a color"),
+        (&["color", "1", "2"], "not a color"),
         (&["models", "--model", "smoth"], "did you mean `smooth`"),
         (&["models", "--model", "fraunhofer{secondary: [Q]}"], "no spectral line"),
         (&["models", "--model", "fraunhofer{"], "--model"),

@@ -238,7 +238,7 @@ fn what_cannot_be_focused_by_contrast_is_said() {
     match load("biotar-color.yaml", &[&lens, width]) {
         Ok(scene) => {
             assert_eq!(scene.focus.by, FocusBy::Paraxial);
-            assert!(scene.focus.to_string().contains("contrast cannot be had"), "{}", scene.focus);
+            assert!(scene.focus.to_string().contains("contrast cannot be computed"), "{}", scene.focus);
             assert!(scene.warnings.iter().any(|w| w.0.path == "lens.focus"), "{:?}", scene.warnings);
         }
         Err(faults) => panic!("{faults}"),

@@ -112,7 +112,7 @@ fn faults_of_laws_say_what_to_do() {
         ("coating: bear\n", "unknown coating"),
         ("coating: {layer: 1.38}\n", "either a `thickness`"),
         ("coating: {layer: 0.2, thickness: 100}\n", "found 0.2, which is out of range"),
-        ("coating: {layer: 1.38, thickness: 1 mm}\n", "a thin layer is at most 100 um"),
+        ("coating: {layer: 1.38, thickness: 1 mm}\n", "at most 100 um thick"),
     ] {
         let faults = two_groups(laws).expect_err(laws);
         assert!(faults.contains(word), "{laws}: {faults}");

@@ -133,7 +133,7 @@ mod with {
         let set = "output=[exr, {kind: exr, tiled: true}]";
         let output = spectra().args(["check", shown(&ortho), "--set", set]).output().expect("the program starts");
         assert_eq!(output.status.code(), Some(2));
-        assert!(text(&output.stderr).contains("in rows and in tiles"), "{}", text(&output.stderr));
+        assert!(text(&output.stderr).contains("two outputs write `SCENE.exr`"), "{}", text(&output.stderr));
     }
 
     /// A portable pixmap, which only the library reads, and a PNG of the same codes give the same light to the bit, where

@@ -183,7 +183,7 @@ fn development_traces_no_ray() {
         (
             "biotar-color-negative",
             &["imager.resolution=[48, 32]", "render.samples=8"],
-            &["film.compensation=1", "film.view=scan", "film.light=D65"],
+            &["film.compensation=1", "film.light=D65"],
         ),
     ] {
         let mut changed = session(scene, set);
@@ -229,7 +229,8 @@ impl Resources for Counting {
 fn a_change_makes_again_what_rests_on_it() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let text = std::fs::read_to_string(root.join("scenes/biotar-ortho.yaml")).expect("there");
-    let small = ["imager.resolution=[24, 16]", "render.samples=8"];
+    // A source that fills the frame rests on the lens; this one does not.
+    let small = ["imager.resolution=[24, 16]", "render.samples=8", "source.width=1.5 m"];
     let reads = Arc::new(AtomicUsize::new(0));
     let files = Arc::new(Counting(FileResources::beside(&root.join("scenes")), Arc::clone(&reads)));
     let mut changed = Session::of_text("biotar-ortho.yaml", &text, files, Isa::detect()).expect("a scene");

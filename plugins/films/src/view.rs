@@ -150,7 +150,11 @@ fn print(
     let positive = positive.map_err(|error| {
         // Where the scene names no print stock, it is the camera film that asks for this one.
         let key = if p.print.is_some() { "print" } else { "stock" };
-        let fault = params.fault(key, format!("{} cannot be printed on {error}", stock.name));
+        let text = match &error {
+            PositiveError::NoPrintStock { .. } => error.to_string(),
+            _ => format!("{} cannot be printed on {error}", stock.name),
+        };
+        let fault = params.fault(key, text);
         match error {
             PositiveError::Unbalanced { .. } => {
                 fault.hint("`view: scan` shows the film without a print; or name another print stock at `print`")

@@ -88,8 +88,8 @@ impl KernelShape for Cylinder {
 ///
 /// # Example
 /// ```yaml
-/// # Power in the x-z section, which stretches or squeezes the picture horizontally {kind: cylinder, radius: 80, axis:
-/// y, thickness: 4, glass: SCHOTT/N-BK7, semi-diameter: 20}
+/// # Power in the x-z section, which stretches or squeezes the picture horizontally
+/// {kind: cylinder, radius: 80, axis: y, thickness: 4, glass: SCHOTT/N-BK7, semi-diameter: 20}
 /// ```
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]

@@ -75,7 +75,7 @@ fn blind_densities_are_refused() {
     assert!(mixed.prepare(&daylight).is_ok());
     assert!(y_bar(Floor::NONE).prepare(&daylight).is_ok());
     let narrow = TruncatedGaussianSampler::new(550.0, 5.0, Floor::NONE).expect("in range");
-    assert!(narrow.prepare(&daylight).err().expect("refused").contains("give it a floor"));
+    assert!(narrow.prepare(&daylight).err().expect("refused").contains("add a `floor`"));
     let wide = TruncatedGaussianSampler::new(550.0, 100.0, Floor::NONE).expect("in range");
     assert!(wide.prepare(&daylight).is_ok());
     // 1 - 1.2 exp(...) is below 0 around 520 nm.
