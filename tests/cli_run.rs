@@ -436,8 +436,8 @@ fn a_metered_scene_is_that_of_the_metered_time() {
         for film in [&[exposure.as_str(), "film.metering=manual"][..], &[exposure.as_str()]] {
             let (_, stated, header, said) = render(film);
             // JSON is read back to the last digit but one.
-        let said_s: f64 = header["spectra:exposure time"].trim_end_matches(" s").parse().expect("a time");
-        assert!((said_s / time_s - 1.0).abs() < 1e-15, "{said_s} {time_s}");
+            let said_s: f64 = header["spectra:exposure time"].trim_end_matches(" s").parse().expect("a time");
+            assert!((said_s / time_s - 1.0).abs() < 1e-15, "{said_s} {time_s}");
             // Beside a meter an exposure time has no effect, and that is said.
             assert_eq!(said.contains("`exposure` has no effect"), film.len() == 1, "{said}");
             assert_eq!(stated.len() + film.len() - 1, metered.len());
