@@ -364,6 +364,10 @@ mod tests {
         }
         let hint = |typed: &str| kind(typed, &kinds).err().and_then(|fault| fault.hint).unwrap_or_default();
         assert!(hint("sourc").starts_with("did you mean `source`?"));
-        assert!(hint("tri-x").starts_with("`kodak-tri-x-400` is a film stock; `spectra list stock`"), "{}", hint("tri-x"));
+        assert!(
+            hint("tri-x").starts_with("`kodak-tri-x-400` is a film stock; `spectra list stock`"),
+            "{}",
+            hint("tri-x")
+        );
     }
 }

@@ -145,7 +145,10 @@ fn layers_that_do_not_fit_are_told() {
         (format!("{head}layers:\n{}{}", layer("red", "", curve), layer("green", "", curve)), "a `dye` in each"),
         (format!("{head}density: status-m\nlayers:\n{}", layer("red", dye, curve)), "three layers, not 1"),
         (format!("{head}layers:\n{}", layer("red", "", "      - {development: normal}\n")), "average-gradient"),
-        (format!("{head}layers:\n{}", layer("red", "    mtf: [[20, 0.9], [10, 0.5]]\n", curve)), "not a point of an MTF"),
+        (
+            format!("{head}layers:\n{}", layer("red", "    mtf: [[20, 0.9], [10, 0.5]]\n", curve)),
+            "not a point of an MTF",
+        ),
         (
             format!("{head}minimum-density: {{table: [[400, 0.2]]}}\nlayers:\n{}", layer("red", "", curve)),
             "base and fog",

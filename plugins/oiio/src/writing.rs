@@ -3,7 +3,7 @@
 use crate::bridge::ffi::{self, Plan};
 use spectra_core::sink::Out;
 use spectra_pictures::library::TiledExr;
-use std::io::{self, Seek, SeekFrom, Write};
+use std::io::{self, SeekFrom};
 use std::path::Path;
 
 /// How a sample is stored.
@@ -90,7 +90,7 @@ impl Written<'_> {
 /// What the system or the library says.
 pub fn write(to: &mut dyn Out, picture: &Written<'_>) -> Result<(), String> {
     let plan = picture.plan()?;
-    let mut sink = Sink { file: to, fault: None };
+    let mut sink = Sink { file: to, size: 0, fault: None };
     let written = ffi::write(&plan, &Pixels::new(picture), &mut sink);
     match (sink.fault, written) {
         // The system's word is the cause of what the library says.
@@ -158,6 +158,8 @@ impl<'a> Pixels<'a> {
 /// The file that the library writes to.
 pub(crate) struct Sink<'a> {
     file: &'a mut dyn Out,
+    /// Bytes written so far.
+    size: i64,
     fault: Option<io::Error>,
 }
 
@@ -170,7 +172,10 @@ impl Sink<'_> {
             self.file.write_all(bytes)
         };
         match attempt() {
-            Ok(()) => true,
+            Ok(()) => {
+                self.size = self.size.max(offset.saturating_add_unsigned(bytes.len() as u64));
+                true
+            }
             Err(fault) => {
                 self.fault.get_or_insert(fault);
                 false
@@ -180,6 +185,6 @@ impl Sink<'_> {
 
     /// Called by the bridge: bytes written so far.
     pub(crate) fn size(&self) -> i64 {
-        self.file.metadata().map_or(0, |data| data.len() as i64)
+        self.size
     }
 }

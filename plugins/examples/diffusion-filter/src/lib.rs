@@ -82,7 +82,7 @@ impl DiffusionFilter {
         let numbers = at.numbers?;
         // Below the share it is scattered, and so far below it decides on the lobe.
         let part = numbers.number(WHICH_LOBE) / self.share;
-        if !(part < 1.0) {
+        if part.is_nan() || part >= 1.0 {
             return None;
         }
         let [u, v] = numbers.pair(HOW_FAR);
@@ -115,7 +115,7 @@ impl ScalarShape for DiffusionFilter {
         let n_after = if at.action == Action::Reflect { at.n_before } else { at.n_after };
         let along = (at.n_before * at.direction.truncate() + step) / n_after;
         let square = 1.0 - along.length_squared();
-        if !(square > 0.0) {
+        if square.is_nan() || square <= 0.0 {
             return Some(Err(Loss::Absorbed));
         }
         let away = if at.action == Action::Reflect { -at.normal.z } else { at.normal.z };
