@@ -1,12 +1,13 @@
 //! A glass in YAML.
 
 use super::{Figures, MAX_BYTES, OWN_MAKER, csv, sensible};
-use crate::{Category, Extinction, Formula, Glass, Medium, NumberedFormula, Table};
+use crate::{Category, Extinction, Formula, Glass, Medium, Table};
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::names;
 use spectra_core::params::{Fault, Faults, Length, NonNegative, Params, Positive, Wavelength};
+use spectra_core::registry::{self, Context, NameOf, Stage};
 use spectra_core::resources::{Resources, beside};
+use spectra_core::spectral::BAND;
 
 /// A glass as a file writes it.
 #[derive(Debug, Deserialize, JsonSchema)]
@@ -26,8 +27,8 @@ pub struct GlassFile {
     /// What else is worth knowing.
     #[expect(dead_code, reason = "for the reader of the file")]
     remark: Option<String>,
-    /// Name of a dispersion formula.
-    formula: Option<String>,
+    /// Name of a dispersion formula; see `spectra list formula`.
+    formula: Option<NameOf<Formula>>,
     /// Its coefficients, of the formula in micrometers.
     coefficients: Option<Vec<f64>>,
     /// Measured indices: wavelength, nm if bare, and n.
@@ -90,49 +91,6 @@ pub struct InternalTransmittance {
     /// Wavelength, nm if bare, and transmittance, above 0 and at most 1.
     table: Vec<(Wavelength, f64)>,
 }
-
-/// How a formula is made of its coefficients: name, fewest and most of them.
-type Maker = (&'static str, usize, usize, fn(&[f64]) -> Option<Formula>);
-
-/// Coefficients, zeros behind the last one written.
-fn all<const N: usize>(c: &[f64]) -> [f64; N] {
-    std::array::from_fn(|i| c.get(i).copied().unwrap_or(0.0))
-}
-
-macro_rules! numbered {
-    ($name:literal, $number:literal) => {
-        ($name, 1, 41, |c| NumberedFormula::new($number, c).map(Formula::Numbered))
-    };
-}
-
-/// The formulas by name, with their counts of coefficients.
-const FORMULAS: [Maker; 25] = [
-    ("constant", 1, 1, |c| Some(Formula::Constant(c[0]))),
-    ("cauchy", 1, 8, |c| Some(Formula::Cauchy(c.to_vec()))),
-    ("conrady", 3, 3, |c| Some(Formula::Conrady(all(c)))),
-    ("schott", 2, 6, |c| Some(Formula::Schott(all(c)))),
-    ("extended", 2, 8, |c| Some(Formula::Extended(all(c)))),
-    ("extended-2", 2, 8, |c| Some(Formula::Extended2(all(c)))),
-    ("extended-3", 2, 9, |c| Some(Formula::Extended3(all(c)))),
-    ("handbook-1", 4, 4, |c| Some(Formula::Handbook1(all(c)))),
-    ("handbook-2", 4, 4, |c| Some(Formula::Handbook2(all(c)))),
-    ("herzberger", 2, 6, |c| Some(Formula::Herzberger(all(c)))),
-    ("sellmeier-1", 6, 6, |c| Some(Formula::Sellmeier1(all(c)))),
-    ("sellmeier-2", 5, 5, |c| Some(Formula::Sellmeier2(all(c)))),
-    ("sellmeier-3", 8, 8, |c| Some(Formula::Sellmeier3(all(c)))),
-    ("sellmeier-4", 5, 5, |c| Some(Formula::Sellmeier4(all(c)))),
-    ("sellmeier-5", 10, 10, |c| Some(Formula::Sellmeier5(all(c)))),
-    ("buchdahl", 4, 4, |c| Some(Formula::Buchdahl(all(c)))),
-    numbered!("refractiveindex-1", 1),
-    numbered!("refractiveindex-2", 2),
-    numbered!("refractiveindex-3", 3),
-    numbered!("refractiveindex-4", 4),
-    numbered!("refractiveindex-5", 5),
-    numbered!("refractiveindex-6", 6),
-    numbered!("refractiveindex-7", 7),
-    numbered!("refractiveindex-8", 8),
-    numbered!("refractiveindex-9", 9),
-];
 
 impl GlassFile {
     fn figures(&self) -> Figures {
@@ -198,7 +156,7 @@ pub fn from_params(params: &Params, called: &str, resources: &dyn Resources) -> 
 
 /// The glass as far as its index goes.
 fn base(params: &Params, p: &GlassFile, resources: &dyn Resources) -> Result<Glass, Faults> {
-    const BAND: (f64, f64) = (350.0, 830.0);
+    const BAND_NM: (f64, f64) = (350.0, 830.0);
     let plain = |formula, range| Glass::new("", "", Category::User, formula, range);
     let forms = [("formula", p.formula.is_some()), ("table", p.table.is_some()), ("file", p.file.is_some())];
     let given: Vec<&str> = forms.iter().filter(|(_, is)| *is).map(|(key, _)| *key).collect();
@@ -210,8 +168,8 @@ fn base(params: &Params, p: &GlassFile, resources: &dyn Resources) -> Result<Gla
         let fault = params.fault("coefficients", "coefficients of which formula?");
         return Err(fault.hint("`formula: sellmeier-1`, or another").into());
     }
-    if let Some(name) = &p.formula {
-        return Ok(plain(formula(params, p, name)?, BAND));
+    if p.formula.is_some() {
+        return Ok(plain(formula(params, resources)?, BAND_NM));
     }
     if let Some(table) = &p.table {
         let points: Vec<(f64, f64)> = table.iter().map(|(w, n)| (w.nm(), *n)).collect();
@@ -235,27 +193,14 @@ fn base(params: &Params, p: &GlassFile, resources: &dyn Resources) -> Result<Gla
         Medium::Model(model) => Formula::Model(model),
         medium => Formula::Constant(medium.index(crate::lines::D.wavelength_nm)),
     };
-    Ok(plain(formula, BAND))
+    Ok(plain(formula, BAND_NM))
 }
 
-fn formula(params: &Params, p: &GlassFile, name: &str) -> Result<Formula, Fault> {
-    let Some((_, least, most, make)) = FORMULAS.iter().find(|(n, ..)| *n == name) else {
-        let known: Vec<&str> = FORMULAS.iter().map(|(name, ..)| *name).collect();
-        let fault = params.fault("formula", format!("unknown formula `{name}`"));
-        return Err(fault.hint(names::hint(name, &known, "")));
-    };
-    let Some(c) = &p.coefficients else {
-        return Err(params.fault("formula", "a formula needs its `coefficients`").hint("a list of numbers"));
-    };
-    let counts = if least == most { format!("{least}") } else { format!("{least} to {most}") };
-    let fault = |text: String| params.fault("coefficients", text).hint(format!("`{name}` has {counts}"));
-    if !(*least..=*most).contains(&c.len()) {
-        return Err(fault(format!("{} coefficients", c.len())));
-    }
-    if c.iter().any(|c| !c.is_finite()) {
-        return Err(fault("a coefficient is not a finite number".to_owned()));
-    }
-    make(c).ok_or_else(|| fault(format!("{} coefficients do not fit the form", c.len())))
+/// The formula that the registry knows by its name.
+fn formula(params: &Params, resources: &dyn Resources) -> Result<Formula, Faults> {
+    let (own, _) = params.split(&[Formula::KEY, "coefficients"]);
+    let own = Params::kinded(own.node().clone(), params.path(), Formula::KEY)?;
+    registry::build::<Formula>(&own, &Context::new(resources, BAND)).map(|formula| *formula)
 }
 
 fn extinction(params: &Params, p: &GlassFile) -> Result<Option<Extinction>, Fault> {

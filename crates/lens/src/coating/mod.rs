@@ -6,6 +6,7 @@
 //! sides, and without a layer (delta = 0) it is Fresnel's.
 
 mod films;
+mod layers;
 mod measured;
 mod params;
 mod stack;
@@ -13,7 +14,8 @@ mod standard;
 
 pub(crate) use films::{Films, Sides};
 pub use measured::MeasuredCoating;
-pub use params::{CoatingForm, NamedCoating, OneLayer, StackParams, StatedCoating, read_coating, read_stated_coating};
+pub(crate) use params::CoatingKeys;
+pub use params::{CoatingEntry, CoatingForm, StatedCoating, read_coating, read_stated_coating};
 pub use stack::{Stack, StackLayer};
 
 use spectra_core::math;
