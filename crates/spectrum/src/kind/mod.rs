@@ -39,6 +39,7 @@ mod band;
 mod constant;
 mod gaussian;
 mod histogram;
+mod led;
 mod line;
 mod mixture;
 mod parts;
