@@ -33,6 +33,7 @@ mod buchdahl;
 mod constant;
 mod form;
 mod handbook;
+mod hartmann;
 mod herzberger;
 mod melt;
 mod model;
