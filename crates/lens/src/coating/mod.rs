@@ -11,6 +11,7 @@ mod measured;
 mod params;
 mod stack;
 mod standard;
+mod v_coat;
 
 pub(crate) use films::{Films, Sides};
 pub use measured::MeasuredCoating;
