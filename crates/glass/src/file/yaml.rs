@@ -4,17 +4,19 @@ use super::{Figures, MAX_BYTES, OWN_MAKER, csv, sensible};
 use crate::{Category, Extinction, Formula, Glass, Medium, Table};
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::params::{Fault, Faults, Length, NonNegative, Params, Positive, Wavelength};
+use spectra_core::params::{Fault, Faults, Length, NonNegative, Params, Positive, Wavelength, Whole};
 use spectra_core::registry::{self, Context, NameOf, Stage};
 use spectra_core::resources::{Resources, beside};
 use spectra_core::spectral::BAND;
 
 /// A glass as a file writes it.
 #[derive(Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[serde(rename_all = "kebab-case")]
+#[schemars(deny_unknown_fields)]
 pub struct GlassFile {
     /// Version of the format.
-    spectra: Option<f64>,
+    #[expect(dead_code, reason = "its schema allows one version")]
+    spectra: Option<Whole<1, 1>>,
     /// Name for people.
     name: Option<String>,
     /// Who makes it.
@@ -37,43 +39,10 @@ pub struct GlassFile {
     file: Option<String>,
     /// First and last wavelength of the data, nm if bare; 350 to 830 nm if absent.
     range: Option<[Wavelength; 2]>,
-    /// Index at the d line: with `vd`, or with indices at more lines, the whole glass; beside a formula or a table it is
-    /// held against that, as every figure is.
-    nd: Option<f64>,
-    /// Abbe number at d, F and C.
-    vd: Option<f64>,
-    /// Index at the e line.
-    ne: Option<f64>,
-    /// Abbe number at e, F' and C'.
-    ve: Option<f64>,
-    /// Index at the sodium line D.
-    #[serde(rename = "nD")]
-    n_sodium: Option<f64>,
-    /// Abbe number at D, F and C.
-    #[serde(rename = "vD")]
-    v_sodium: Option<f64>,
-    /// Index at the i line.
-    ni: Option<f64>,
-    /// Index at the h line.
-    nh: Option<f64>,
-    /// Index at the g line.
-    ng: Option<f64>,
-    /// Index at the F' line.
-    #[serde(rename = "nF'")]
-    n_f_prime: Option<f64>,
-    /// Index at the F line.
-    #[serde(rename = "nF")]
-    n_f: Option<f64>,
-    /// Index at the C' line.
-    #[serde(rename = "nC'")]
-    n_c_prime: Option<f64>,
-    /// Index at the C line.
-    #[serde(rename = "nC")]
-    n_c: Option<f64>,
-    /// Index at the r line.
-    nr: Option<f64>,
-    /// Index at the s line.
-    ns: Option<f64>,
+    /// Its figures: with an Abbe number, or at several lines, they are the whole glass; beside a formula or a table they are held against
+    /// that.
+    #[serde(flatten)]
+    figures: Figures,
     /// Temperature of the data, degrees Celsius.
     temperature: Option<f64>,
     /// Extinction: wavelength, nm if bare, and k of the complex index n - i k.
@@ -92,13 +61,6 @@ pub struct InternalTransmittance {
     table: Vec<(Wavelength, f64)>,
 }
 
-impl GlassFile {
-    fn figures(&self) -> Figures {
-        let &Self { nd, vd, ne, ve, n_sodium, v_sodium, ni, nh, ng, n_f_prime, n_f, n_c_prime, n_c, nr, ns, .. } = self;
-        Figures { nd, vd, ne, ve, n_sodium, v_sodium, ni, nh, ng, n_f_prime, n_f, n_c_prime, n_c, nr, ns }
-    }
-}
-
 /// The glass of a parsed file: named after it, unless it says so itself.
 pub(super) fn from_file(params: &Params, resources: &dyn Resources) -> Result<Glass, Faults> {
     let file = &params.node().file.name;
@@ -114,9 +76,6 @@ pub(super) fn from_file(params: &Params, resources: &dyn Resources) -> Result<Gl
 pub fn from_params(params: &Params, called: &str, resources: &dyn Resources) -> Result<Glass, Faults> {
     let p: GlassFile = params.parse()?;
     let mut faults = Faults::new();
-    if p.spectra.is_some_and(|v| v != 1.0) {
-        faults.push(params.fault("spectra", "the format of a glass file that this program reads is 1"));
-    }
     let range_nm = p.range.map(|r| r.map(|w| w.nm()));
     if range_nm.is_some_and(|[from, to]| !(from < to && to <= 1e6)) {
         faults.push(params.fault("range", "two wavelengths, the shorter one first").hint("[365 nm, 1014 nm]"));
@@ -143,14 +102,13 @@ pub fn from_params(params: &Params, called: &str, resources: &dyn Resources) -> 
         let hint = "coefficients are those of the formula in micrometers; `range` is where they hold";
         return Err(params.fault(key, text).hint(hint).into());
     }
-    let figures = p.figures();
-    for (key, stated, own, tolerance) in figures.against(|nm| glass.index(nm)) {
+    for (key, stated, own, tolerance) in p.figures.against(|nm| glass.index(nm)) {
         if !((stated - own).abs() <= tolerance) {
             let fault = params.fault(key, format!("{key} is stated as {stated}, but the data give {own:.5}"));
             faults.push(fault.hint("the figures contradict each other: which one is wrong?"));
         }
     }
-    (glass.listed_nd, glass.listed_vd) = (p.nd, p.vd);
+    (glass.listed_nd, glass.listed_vd) = (p.figures.nd, p.figures.vd);
     faults.into_result(glass)
 }
 
@@ -184,12 +142,11 @@ fn base(params: &Params, p: &GlassFile, resources: &dyn Resources) -> Result<Gla
         let found = found.map_err(|e| params.fault("file", format!("`{file}`: {e}")))?;
         return csv::read(&found.name, &found.bytes, material).map_err(|faults| params.place_at("file", faults));
     }
-    let figures = p.figures();
-    if figures.is_empty() {
+    if p.figures.is_empty() {
         let fault = params.fault_here("the glass has no index");
         return Err(fault.hint("`formula` and `coefficients`, a `table`, a CSV `file`, or `nd` and `vd`").into());
     }
-    let formula = match figures.medium(params)?.0 {
+    let formula = match p.figures.medium(params)?.0 {
         Medium::Model(model) => Formula::Model(model),
         medium => Formula::Constant(medium.index(crate::lines::D.wavelength_nm)),
     };
