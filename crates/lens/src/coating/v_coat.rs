@@ -1,7 +1,7 @@
 //! `kind: v-coat`: two layers that reflect nothing at one wavelength.
 //!
-//! H. A. Macleod, "Thin-Film Optical Filters", section 3.1.2: with indices n1 next to the air and n2 next to the glass n', a stack of
-//! phase thicknesses delta1 and delta2 reflects nothing at normal incidence where
+//! H. A. Macleod, "Thin-Film Optical Filters", chapter 3, antireflection coatings of two layers: with indices n1 next to the air
+//! and n2 next to the glass n', a stack of phase thicknesses delta1 and delta2 reflects nothing at normal incidence where
 //! tan^2 delta1 = (n' - 1) (n2^2 - n') n1^2 / ((n1^2 n' - n2^2) (n' - n1^2)),
 //! tan^2 delta2 = (n' - 1) (n' - n1^2) n2^2 / ((n1^2 n' - n2^2) (n2^2 - n')),
 //! and tan delta1 tan delta2 = n1 n2 (n' - 1) / (n1^2 n' - n2^2) says which of their angles belong together.
@@ -26,7 +26,7 @@ use std::sync::Arc;
 /// ```
 ///
 /// # References
-/// - H. A. Macleod, Thin-Film Optical Filters, section 3.1.2.
+/// - H. A. Macleod, Thin-Film Optical Filters, chapter 3.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct VCoat {

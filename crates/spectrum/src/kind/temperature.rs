@@ -34,7 +34,7 @@ struct Blackbody {
 /// ```
 ///
 /// # References
-/// - CIE 15:2018, Colorimetry, section 4.1.2.
+/// - CIE 15:2004, Colorimetry, section 3.1.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct Daylight {
