@@ -139,7 +139,7 @@ fn any_key_has_its_page() {
         ("f-number", &["lens.f-number"]),
         ("film.exposure", &["film/stock", "exposure"]),
         ("halation", &["halation"]),
-        ("lens.coating.layer", &["Refractive index of the layer."]),
+        ("lens.coating.layer", &["Refractive index of the layer", "1 to 5"]),
         ("film/stock", &["push"]),
     ] {
         let said = good(&["doc", name]);
