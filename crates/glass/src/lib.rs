@@ -30,7 +30,6 @@ pub mod fit;
 mod formula;
 mod glass;
 pub mod interface;
-mod linear;
 pub mod lines;
 mod medium;
 

@@ -37,7 +37,6 @@ mod lines;
 mod meta;
 mod names;
 mod normal;
-mod normal_quantile;
 mod piece;
 mod planck;
 mod shape;

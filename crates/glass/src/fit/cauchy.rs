@@ -2,7 +2,7 @@
 
 use super::{Fit, FitError, Sample, check};
 use crate::formula::CAUCHY;
-use crate::linear;
+use spectra_numerics::linear;
 
 /// Cauchy's A and B from each pair of neighboring rows, and their means.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,7 +2,7 @@
 
 use super::{Fit, FitError, Sample, check};
 use crate::formula::{CONRADY, HERZBERGER, SCHOTT};
-use crate::linear;
+use spectra_numerics::linear;
 
 /// Conrady's n = c0 + c1 / L + c2 / L^3.5 by least squares; three samples or more.
 ///

@@ -3,7 +3,7 @@
 use super::{Fit, FitError, Sample, check};
 use crate::formula::SELLMEIER_1;
 use crate::formula::{Formula, NumberedFormula};
-use crate::linear;
+use spectra_numerics::linear;
 
 /// Poles that fits start from, um^2: two in the ultraviolet, one in the infrared (those of a crown glass).
 const START_POLES: [[f64; 3]; 3] = [[0.012, 0.0, 0.0], [0.010, 100.0, 0.0], [0.006, 0.02, 100.0]];
