@@ -535,7 +535,7 @@ impl Region {
                 / (1.0 - 0.5 * growth[i].abs())
         });
         let line: Vec<[f64; 2]> = if self.shape.ellipse {
-            let around = (0..DIRECTIONS).map(|d| Reach::way(d));
+            let around = (0..DIRECTIONS).map(Reach::way);
             around.map(|[x, y]| [x * a * 1.001, y * b * 1.001]).collect()
         } else {
             vec![[a, b], [-a, b], [-a, -b], [a, -b]]
@@ -641,7 +641,7 @@ impl Lattice {
                 let node = |k: usize| {
                     let measure = most * k as f64 / steps as f64;
                     // Outlines go by the ends of zones.
-                    let colors_nm = if k % 2 == 0 { colors_nm } else { &[] };
+                    let colors_nm = if k.is_multiple_of(2) { colors_nm } else { &[] };
                     task.geometry.node(prober, measure, *depth, turns, grid, colors_nm)
                 };
                 rows.push((0..=steps).map(node).collect());
