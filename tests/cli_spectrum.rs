@@ -334,7 +334,7 @@ fn colors_through_each_model() {
         (&["color", "#ff80"], "not a color"),
         (&["color", "1", "2"], "not a color"),
         (&["models", "--model", "smoth"], "did you mean `smooth`"),
-        (&["models", "--model", "fraunhofer{secondary: [Q]}"], "not a spectral line"),
+        (&["models", "--model", "fraunhofer{secondary: [Q]}"], "or a positive wavelength such as 550 nm"),
         (&["models", "--model", "fraunhofer{"], "--model"),
         (&["models", "-o", "x.jpg"], ".svg or .png"),
         (&["models", "--illuminant", "nowhere"], "--illuminant"),

@@ -219,7 +219,7 @@ fn faults_of_depth_say_where_and_what_to_do() {
         ("sky.exr", "{unit: yard, scale: 0}", ["unknown value `yard` for `unit`", "found 0, which is out of range"]),
         ("flat.exr", "{file: small.exr}", ["2 x 1 pixels, the picture 2 x 2", "same size"]),
         ("sky.exr", "{kind: radial}", ["unknown value `radial` for `kind`", "known: z, ray"]),
-        ("sky.exr", "{far: 1 m, near: 2 m}", ["farther than `near`", "source.depth.far"]),
+        ("sky.exr", "{far: 1 m, near: 2 m}", ["farther than `near`", "2:80"]),
     ] {
         let faults = load(file, depth).expect_err(file);
         assert!(words.iter().all(|word| faults.contains(word)), "{file} {depth}: {faults}");

@@ -10,6 +10,7 @@
 
 use crate::rgb::RgbSpace;
 use spectra_core::spectral::BAND;
+use spectra_numerics::linear;
 use spectra_spectrum::{Emission, Observer, Outside, Scale, SpectrumError, Tabulated};
 use std::sync::OnceLock;
 
@@ -109,20 +110,21 @@ fn program(xyz: &[[f64; 3]], wanted: &[[f64; 3]; 3]) -> Vec<f64> {
     for _ in 0..MAX_ROUNDS {
         let free: Vec<usize> = (0..UNKNOWNS).filter(|i| !held[*i]).collect();
         let n = free.len();
-        let mut rows = vec![vec![0.0; n + EQUATIONS + 1]; n + EQUATIONS];
+        let size = n + EQUATIONS;
+        let (mut matrix, mut right) = (vec![0.0; size * size], vec![0.0; size]);
         for (row, i) in free.iter().enumerate() {
             for (column, j) in free.iter().enumerate() {
-                rows[row][column] = roughness(*i, *j);
+                matrix[row * size + column] = roughness(*i, *j);
             }
-            for e in 0..EQUATIONS {
-                rows[row][n + e] = equation(e, *i);
-                rows[n + e][row] = equation(e, *i);
+            for e in n..size {
+                matrix[row * size + e] = equation(e - n, *i);
+                matrix[e * size + row] = matrix[row * size + e];
             }
         }
         for e in 0..EQUATIONS {
-            rows[n + e][n + EQUATIONS] = wanted[e % 3][e / 3];
+            right[n + e] = wanted[e % 3][e / 3];
         }
-        let solution = solve(rows);
+        let solution = linear::solve(&matrix, &right).expect("three splines a channel are free, and independent");
         let mut coefficients = vec![0.0; UNKNOWNS];
         free.iter().zip(&solution).for_each(|(i, c)| coefficients[*i] = *c);
         let below: Vec<usize> = (0..UNKNOWNS).filter(|i| coefficients[*i] < 0.0).collect();
@@ -143,29 +145,6 @@ fn program(xyz: &[[f64; 3]], wanted: &[[f64; 3]; 3]) -> Vec<f64> {
         }
     }
     unreachable!("each round lowers the roughness, or raises the number of those held")
-}
-
-/// Solves by elimination with partial pivoting; the last column is the right side.
-fn solve(mut rows: Vec<Vec<f64>>) -> Vec<f64> {
-    let n = rows.len();
-    for column in 0..n {
-        let pivot = (column..n).max_by(|a, b| rows[*a][column].abs().total_cmp(&rows[*b][column].abs()));
-        rows.swap(column, pivot.expect("there is a row left"));
-        let (above, below) = rows.split_at_mut(column + 1);
-        let pivot = &above[column];
-        for row in below.iter_mut().filter(|row| row[column] != 0.0) {
-            let factor = row[column] / pivot[column];
-            for (value, p) in row[column..].iter_mut().zip(&pivot[column..]) {
-                *value -= factor * p;
-            }
-        }
-    }
-    let mut solution = vec![0.0; n];
-    for i in (0..n).rev() {
-        let known: f64 = (i + 1..n).map(|j| rows[i][j] * solution[j]).sum();
-        solution[i] = (rows[i][n] - known) / rows[i][i];
-    }
-    solution
 }
 
 #[cfg(test)]

@@ -2,9 +2,9 @@
 
 use crate::arguments::Check;
 use crate::console;
+use crate::limits;
 use crate::memory;
 use crate::outcome::{BAD_INPUT, DONE, Outcome};
-use crate::run;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::json;
 use spectra_core::Isa;
@@ -77,7 +77,7 @@ fn check_one(path: &Path, overrides: &[String], isa: Isa, is_shown: bool) -> Res
     let series = spectra_scene::load_series(path, overrides)?;
     let shown = Mutex::new(Shown::new(is_shown));
     let seen = |done: usize, of: usize| shown.lock().unwrap_or_else(PoisonError::into_inner).tick(done, of);
-    let (workers, memory_bytes) = (&Threads(run::processors()), memory::available());
+    let (workers, memory_bytes) = (&Threads(limits::processors()), memory::available());
     let found = spectra_session::check(&series, Look { isa, workers, memory_bytes, seen: &seen });
     shown.lock().unwrap_or_else(PoisonError::into_inner).end();
     let Checked { warnings, notes, memory_bytes } = found.map_err(|error| match error {

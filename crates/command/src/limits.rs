@@ -1,4 +1,9 @@
-//! Limits that the system sets a process.
+//! What the system gives a process, and where it ends.
+
+/// Processors that this process may use.
+pub(crate) fn processors() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
+}
 
 /// From now on a file beyond the limit of the process (`ulimit -f`) is a write that fails, as on a full disk, and no longer the
 /// end of the process: what was rendered can be kept elsewhere.

@@ -1,5 +1,10 @@
 //! Rays in batches: structure of arrays, aligned to cache lines.
 
+mod polarization;
+
+pub use polarization::Polarization;
+use polarization::PolarizationColumns;
+
 use crate::loss::{ALIVE, Loss};
 use crate::numbers::{Numbers, RayColumns, StageKey, StageNumbers};
 
@@ -71,6 +76,7 @@ pub fn pixel_and_channel(tag: u32) -> (u32, Option<u32>) {
 /// | `state` | | [`ALIVE`], or cause and surface of the loss ([`Loss::state`]) |
 /// | `tag` | | the input row, path or pixel that the ray belongs to |
 /// | `optical_path_mm` | mm | on request: [`RayBatch::with_optical_path`] |
+/// | `polarization` | 1 | on request: Stokes numbers and their axis, [`RayBatch::with_polarization`] |
 /// | `numbers` | | on request: what stages draw, [`RayBatch::with_numbers`] |
 #[derive(Clone, Debug)]
 pub struct RayBatch {
@@ -87,6 +93,7 @@ pub struct RayBatch {
     weight: Column<f64>,
     state: Column<u64>,
     optical_path_mm: Option<Column<f64>>,
+    polarization: Option<PolarizationColumns>,
     numbers: Option<RayColumns>,
     line: Vec<u32>,
     tag: Vec<u32>,
@@ -141,6 +148,8 @@ pub struct Columns<'a> {
     pub tag: &'a mut [u32],
     /// Optical path since [`RayBatch::restart`], mm; empty unless the batch carries it.
     pub optical_path_mm: &'a mut [f64],
+    /// State of polarization; empty unless the batch carries it.
+    pub polarization: Polarization<'a>,
     /// What the stage at work may draw, ray by ray.
     pub numbers: StageNumbers<'a>,
 }
@@ -161,6 +170,8 @@ pub struct Weighing<'a> {
     pub weight: &'a mut [f64],
     /// Optical path since [`RayBatch::restart`], mm; empty unless the batch carries it.
     pub optical_path_mm: &'a mut [f64],
+    /// State of polarization; empty unless the batch carries it.
+    pub polarization: Polarization<'a>,
 }
 
 impl RayBatch {
@@ -182,6 +193,7 @@ impl RayBatch {
             weight: column(),
             state: Column::new(capacity),
             optical_path_mm: None,
+            polarization: None,
             numbers: None,
             line: vec![CONTINUUM; capacity],
             tag: vec![0; capacity],
@@ -200,6 +212,19 @@ impl RayBatch {
     #[must_use]
     pub fn with_optical_path(capacity: usize) -> Self {
         Self { optical_path_mm: Some(Column::new(capacity)), ..Self::new(capacity) }
+    }
+
+    /// The same, with the state of polarization of each ray: unpolarized at first. What a lens passes and reflects then follows
+    /// each ray's own state, and changes it. Without it light is unpolarized at every surface.
+    #[must_use]
+    pub fn with_polarization(self) -> Self {
+        Self { polarization: Some(PolarizationColumns::new(self.capacity)), ..self }
+    }
+
+    /// Whether rays carry a state of polarization.
+    #[must_use]
+    pub fn is_polarized(&self) -> bool {
+        self.polarization.is_some()
     }
 
     /// The same, with what a stage needs to draw numbers: two columns more. Rays have numbers once they got their places in a
@@ -237,12 +262,13 @@ impl RayBatch {
         if let Some(columns) = &mut self.numbers {
             columns.kind = None;
         }
-        let c = self.columns_mut();
+        let mut c = self.columns_mut();
         c.index.fill(1.0);
         c.weight.fill(1.0);
         c.state.fill(ALIVE);
         c.line.fill(CONTINUUM);
         c.optical_path_mm.fill(0.0);
+        c.polarization.clear();
     }
 
     /// Number of rays, including those that have ended.
@@ -293,6 +319,7 @@ impl RayBatch {
             state: c.state,
             weight: c.weight,
             optical_path_mm: c.optical_path_mm,
+            polarization: c.polarization,
         }
     }
 
@@ -326,6 +353,7 @@ impl RayBatch {
             line: &mut self.line[..len],
             tag: &mut self.tag[..len],
             optical_path_mm: self.optical_path_mm.as_mut().map_or(&mut [], |column| column.slice_mut(len)),
+            polarization: self.polarization.as_mut().map_or_else(Polarization::default, |columns| columns.view(len)),
             numbers: self.numbers.as_mut().map_or_else(StageNumbers::none, |columns| columns.view(len)),
         };
         let scratch = ScratchColumns {
@@ -416,6 +444,7 @@ impl RayBatch {
             if let Some(path) = c.optical_path_mm.get(from).copied() {
                 c.optical_path_mm[to] = path;
             }
+            c.polarization.keep(from, to);
             c.numbers.keep(from, to);
             let state = c.state[from];
             c.state[to] = state;

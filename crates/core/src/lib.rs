@@ -1,6 +1,7 @@
 //! The vocabulary of the spectral camera: rays in batches, stage traits, registry, typed parameters.
 //!
-//! Every plugin depends on this crate; it depends on no other crate of the workspace.
+//! Every plugin depends on this crate, and needs no other for what it computes with: mathematics of the same bits everywhere is
+//! handed on from `spectra-numerics`.
 //!
 //! # Conventions
 //! - Lengths are in millimetres, wavelengths in nanometres, angles in radians, times in seconds. A bare `f64` that
@@ -15,9 +16,7 @@
 pub mod batch;
 pub mod cover;
 pub mod frame;
-pub mod isa;
 pub mod loss;
-pub mod math;
 pub mod names;
 pub mod numbers;
 pub mod one_layer;
@@ -36,3 +35,4 @@ pub use batch::RayBatch;
 pub use glam;
 pub use isa::Isa;
 pub use loss::{Loss, LossCounts};
+pub use spectra_numerics::{isa, math};

@@ -17,6 +17,8 @@ mod stage;
 pub(crate) use stage::RayColumns;
 pub use stage::{RayNumbers, StageKey, StageNumbers};
 
+pub use spectra_numerics::poisson::quantile as poisson;
+
 use crate::isa::{Isa, Vectorized};
 
 /// The dimensions of a path, by what their numbers decide. The wavelength has a dimension of its own, so that strategies can be
@@ -254,32 +256,6 @@ impl Numbers {
     }
 }
 
-/// A Poisson count of mean `mean`, chosen by the number `u` in [0, 1). Above a mean of 500 the normal distribution is close
-/// enough and is used instead (its inverse is Abramowitz and Stegun 26.2.23, within 4.5e-4).
-#[must_use]
-pub fn poisson(mean: f64, u: f64) -> f64 {
-    if !(mean > 0.0) {
-        return 0.0;
-    }
-    if mean > 500.0 {
-        let tail = if u < 0.5 { u } else { 1.0 - u }.max(f64::MIN_POSITIVE);
-        let t = (-2.0 * crate::math::log(tail)).sqrt();
-        let rise = 2.515_517 + t * (0.802_853 + t * 0.010_328);
-        let fall = 1.0 + t * (1.432_788 + t * (0.189_269 + t * 0.001_308));
-        let deviations = (t - rise / fall) * if u < 0.5 { -1.0 } else { 1.0 };
-        return (mean + mean.sqrt() * deviations).round().max(0.0);
-    }
-    let (mut count, mut part) = (0.0, crate::math::exp(-mean));
-    let mut below = part;
-    // 30 standard deviations up, where rounding keeps the sum below `u`.
-    while u >= below && count < mean + 30.0 * (1.0 + mean.sqrt()) {
-        count += 1.0;
-        part *= mean / count;
-        below += part;
-    }
-    count
-}
-
 /// One number in each of `strata` parts, block by block.
 fn fill_strata(key: u64, first: u64, strata: u32, out: &mut [f64]) {
     const BELOW_ONE: f64 = 1.0 - 0.5 * f64::EPSILON;
@@ -387,27 +363,6 @@ impl rand::rand_core::TryRng for SampleRng {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// Counts have the mean, the variance and the share of zeros of the Poisson distribution; tolerance: four standard errors.
-    #[test]
-    fn counts_are_poisson() {
-        const DRAWS: u64 = 40_000;
-        let numbers = Numbers::random(7);
-        for (stream, mean) in [0.1, 2.0, 40.0, 499.0, 501.0, 1e4].into_iter().enumerate() {
-            let counts: Vec<f64> = (0..DRAWS).map(|i| poisson(mean, numbers.one(stream as u64, i, 0))).collect();
-            let n = DRAWS as f64;
-            let average = counts.iter().sum::<f64>() / n;
-            let variance = counts.iter().map(|c| (c - average) * (c - average)).sum::<f64>() / n;
-            assert!((average - mean).abs() < 4.0 * (mean / n).sqrt() + 5e-4 * mean.sqrt(), "{mean}: {average}");
-            let spread = ((2.0 * mean * mean + mean) / n).sqrt();
-            assert!((variance - mean).abs() < 4.0 * spread + 2e-3 * mean, "{mean}: {variance}");
-            let none = counts.iter().filter(|c| **c == 0.0).count() as f64 / n;
-            let expected = crate::math::exp(-mean);
-            assert!((none - expected).abs() <= 4.0 * (expected / n).sqrt(), "{mean}: {none}");
-        }
-        assert_eq!([poisson(0.0, 0.9), poisson(-1.0, 0.9), poisson(f64::NAN, 0.9)], [0.0; 3]);
-        assert_eq!(poisson(2.0, 0.0), 0.0);
-    }
 
     #[test]
     fn numbers_do_not_depend_on_the_cut_or_the_tier() {

@@ -1,5 +1,6 @@
 //! Spectra as one stage hands them to the next: sampled over the band.
 
+use spectra_numerics::table;
 use std::sync::Arc;
 
 /// The default band: 350 to 830 nm in steps of 1 nm.
@@ -49,9 +50,7 @@ impl Grid {
         if !(p >= 0.0 && p <= last as f64) {
             return 0.0;
         }
-        let i = (p as usize).min(last - 1);
-        let f = p - i as f64;
-        table[i] + (table[i + 1] - table[i]) * f
+        table::linear(&table[..self.count], p)
     }
 
     /// Integral over the band of the product of two tables, each linear between points; exact.

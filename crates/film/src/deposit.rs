@@ -3,6 +3,7 @@
 use crate::stock::Stock;
 use spectra_core::math::{exp, log10};
 use spectra_core::spectral::BAND;
+use spectra_numerics::linear;
 use std::f64::consts::LN_10;
 
 /// The spectral density of a developed film as a function of the amounts in its layers, on the band of 350-830 nm by 1 nm.
@@ -76,20 +77,16 @@ impl Deposit {
         for _ in 0..STEPS {
             let passes = self.transmittance(&amounts);
             // Rows: derivatives of each receiver's density to the amounts, and what is missing.
-            let mut system: Vec<Vec<f64>> = Vec::with_capacity(n);
+            let (mut slopes, mut missing) = (Vec::with_capacity(n * n), Vec::with_capacity(n));
             for (weight, wanted) in weights.iter().zip(wanted) {
                 let sum: f64 = weight.iter().zip(&passes).map(|(w, t)| w * t).sum();
                 let slope =
                     |d: &Vec<f64>| weight.iter().zip(&passes).zip(d).map(|((w, t), d)| w * t * d).sum::<f64>() / sum;
-                let mut row: Vec<f64> = self.per_unit.iter().map(slope).collect();
-                row.push(wanted + log10(sum));
-                system.push(row);
+                slopes.extend(self.per_unit.iter().map(slope));
+                missing.push(wanted + log10(sum));
             }
-            let step = solve(system)?;
+            let step = linear::solve(&slopes, &missing)?;
             let largest = step.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
-            if !largest.is_finite() {
-                return None;
-            }
             // Far from the answer, no more than half a unit at once.
             let damping = if largest > 0.5 { 0.5 / largest } else { 1.0 };
             amounts.iter_mut().zip(&step).for_each(|(a, s)| *a += damping * s);
@@ -109,36 +106,9 @@ pub(crate) fn third(wavelength_nm: f64) -> usize {
     THIRDS_NM.iter().filter(|edge| wavelength_nm >= **edge).count()
 }
 
-/// Solves a small linear system by Gauss's elimination with pivots; each row ends with its right side.
-pub(crate) fn solve(mut rows: Vec<Vec<f64>>) -> Option<Vec<f64>> {
-    let n = rows.len();
-    for column in 0..n {
-        let pivot = (column..n).max_by(|a, b| rows[*a][column].abs().total_cmp(&rows[*b][column].abs()))?;
-        rows.swap(column, pivot);
-        let head = rows[column].clone();
-        if !(head[column].abs() > 1e-300) {
-            return None;
-        }
-        for (i, row) in rows.iter_mut().enumerate().filter(|(i, _)| *i != column) {
-            debug_assert!(i != column);
-            let factor = row[column] / head[column];
-            row.iter_mut().zip(&head).for_each(|(v, h)| *v -= factor * h);
-        }
-    }
-    Some((0..n).map(|i| rows[i][n] / rows[i][i]).collect())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn linear_systems_are_solved() {
-        let solved = solve(vec![vec![0.0, 2.0, 1.0, 7.0], vec![1.0, 1.0, 1.0, 6.0], vec![2.0, 0.0, -1.0, -1.0]]);
-        let solved = solved.expect("regular");
-        assert!(solved.iter().zip([1.0, 2.0, 3.0]).all(|(a, b)| (a - b).abs() < 1e-14), "{solved:?}");
-        assert_eq!(solve(vec![vec![1.0, 1.0, 1.0], vec![1.0, 1.0, 2.0]]), None);
-    }
 
     /// Dyes that overlap: what Newton finds gives the densities asked for, and narrow receivers read Beer's law.
     #[test]

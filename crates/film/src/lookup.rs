@@ -1,6 +1,7 @@
 //! Smooth functions, sampled once and read off for every pixel of a frame.
 
 use rayon::prelude::*;
+use spectra_numerics::table;
 
 /// Pixels that one task takes at a time.
 pub(crate) const PIXELS_A_TASK: usize = 8192;
@@ -36,9 +37,7 @@ impl Lookup {
     pub(crate) fn at(&self, x: f64) -> f64 {
         let last = self.values.len() - 1;
         let p = ((x - self.low) * self.per_step).max(0.0).min(last as f64);
-        let i = (p as usize).min(last - 1);
-        let (a, b) = (self.values[i], self.values[i + 1]);
-        a + (b - a) * (p - i as f64)
+        table::linear(&self.values, p)
     }
 }
 

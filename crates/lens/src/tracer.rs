@@ -242,7 +242,7 @@ impl Tracer {
     /// plane.
     pub fn follow(&self, route: &Route, rays: &mut RayBatch, work: &mut Work) {
         self.refractive_indices(rays, work);
-        if rays.optical_path_mm().is_some() && work.before.is_none() {
+        if (rays.optical_path_mm().is_some() || rays.is_polarized()) && work.before.is_none() {
             work.before = Some(Before::new(work.capacity));
         }
         if let Some((ledger, booked)) = &mut work.ledger {
@@ -298,7 +298,7 @@ impl Tracer {
             if needs_way {
                 noted.note_positions(rays);
             }
-            if needs_way || leg.turns || matches!(passage, Passage::Coated(..)) {
+            if needs_way || leg.turns || rays.is_polarized() || matches!(passage, Passage::Coated(..)) {
                 noted.note_directions(rays);
             }
         }
@@ -319,15 +319,21 @@ impl Tracer {
             booked.settle(rays, &mut ledger.steps[step], |s| &mut s.absorbed);
         }
         if let Some(noted) = &mut work.before {
-            noted.lengthen(rays, interface.before.n, shift_mm);
+            if carries_path {
+                noted.lengthen(rays, interface.before.n, shift_mm);
+            }
             if let Some(absorption) = absorption {
                 noted.absorb(rays, absorption, shift_mm, isa);
                 if let Some((ledger, booked)) = &mut work.ledger {
                     booked.settle(rays, &mut ledger.steps[step], |s| &mut s.absorbed);
                 }
             }
-            if leg.turns {
-                let beyond = columns(&work.media[leg.beyond], len);
+            let beyond = columns(&work.media[leg.beyond], len);
+            if leg.turns && *passage == Passage::All {
+                rays.weighing().weight.fill(0.0);
+            } else if rays.is_polarized() {
+                noted.polarize(rays, passage, leg.action == Action::Reflect, [interface.before.n, beyond.n]);
+            } else if leg.turns {
                 noted.reflect(rays, passage, interface.before.n, beyond.n);
             } else {
                 noted.pass(rays, passage, interface.before.n, interface.after.n, isa);
@@ -523,6 +529,10 @@ impl Vectorized for Reframe<'_> {
             l[i] = r.x_axis.x * dl + r.y_axis.x * dm + r.z_axis.x * dn;
             m[i] = r.x_axis.y * dl + r.y_axis.y * dm + r.z_axis.y * dn;
             n[i] = r.x_axis.z * dl + r.y_axis.z * dm + r.z_axis.z * dn;
+        }
+        let [ax, ay, az] = c.polarization.axis;
+        for ((x, y), z) in ax.iter_mut().zip(ay).zip(az) {
+            (*x, *y, *z) = (r * DVec3::new(*x, *y, *z)).into();
         }
     }
 }

@@ -5,7 +5,7 @@
 //! before and after, whatever the kind of surface.
 
 use crate::absorption::{Absorption, Grid, Locate};
-use crate::coating::{Coating, Films, Sides};
+use crate::coating::{Amplitudes, Coating, Films, Polarizing, Sides};
 use crate::{Element, Lens, LensMedium};
 use spectra_core::RayBatch;
 use spectra_core::batch::{Column, Weighing};
@@ -19,6 +19,10 @@ use spectra_glass::Lender;
 const SAME_INDEX: f64 = 1e-8;
 /// A medium of a lower index is a gas: a surface between two others is cemented, and no coating lies in it.
 const GAS_INDEX: f64 = 1.05;
+
+/// Sine of the angle between the directions before and after below which light keeps its axis: it meets the surface along the
+/// normal, where s and p are the same.
+const NO_PLANE: f64 = 1e-9;
 
 /// How a coating is worked out for a batch.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -198,9 +202,7 @@ impl Before {
     /// Weighs rays by what a refracting surface reflects; `n_beyond` are the indices on its other side.
     pub(crate) fn reflect(&self, rays: &mut RayBatch, passage: &Passage, n: &[f64], n_beyond: &[f64]) {
         let c = rays.weighing();
-        let Passage::Coated(coating, _) = passage else {
-            return c.weight.fill(0.0);
-        };
+        let Passage::Coated(coating, _) = passage else { return };
         let len = c.weight.len();
         let before = self.direction.each_ref().map(|column| column.slice(len));
         for i in 0..len {
@@ -211,6 +213,57 @@ impl Before {
             let turn: [f64; 3] = std::array::from_fn(|k| c.direction[k][i] - before[k][i]);
             let cosine = 0.5 * (turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2]).sqrt();
             c.weight[i] *= coating.reflectance(n[i], n_beyond[i], cosine.min(1.0), c.wavelength_nm[i]).mean();
+        }
+    }
+
+    /// Weighs polarized rays by what a surface passes, or sends `back`, and gives them the state that they leave it in;
+    /// `n_beyond` are the indices on its other side.
+    pub(crate) fn polarize(&self, rays: &mut RayBatch, passage: &Passage, back: bool, [n, n_beyond]: [&[f64]; 2]) {
+        let mut c = rays.weighing();
+        let amplitudes = match passage {
+            Passage::Coated(coating, _) => Some(Amplitudes::of(coating)),
+            Passage::All | Passage::Mirror(_) => None,
+        };
+        for i in 0..c.weight.len() {
+            if c.state[i] != ALIVE {
+                continue;
+            }
+            let d: [f64; 3] = std::array::from_fn(|k| self.direction[k].slice(i + 1)[i]);
+            let after = c.direction.map(|column| column[i]);
+            let does = match (passage, &amplitudes) {
+                (Passage::Mirror(reflectance), _) => Polarizing::evenly(*reflectance, true),
+                (_, None) => Polarizing::evenly(1.0, back),
+                (_, Some(amplitudes)) if back => {
+                    // Incidence and reflection differ by twice the cosine along the normal.
+                    let turn: [f64; 3] = std::array::from_fn(|k| after[k] - d[k]);
+                    let cosine = (0.5 * dot(turn, turn).sqrt()).min(1.0);
+                    amplitudes.back(n[i], n_beyond[i], cosine, c.wavelength_nm[i])
+                }
+                (_, Some(amplitudes)) => {
+                    let sides = Sides::of(n[i], n_beyond[i], d, after);
+                    if sides.step() < SAME_INDEX {
+                        Polarizing::evenly(1.0, false)
+                    } else {
+                        amplitudes.through(n[i], n_beyond[i], sides.cosine(), c.wavelength_nm[i])
+                    }
+                }
+            };
+            // Across the plane of incidence; where there is none, any axis will do.
+            let across = cross(d, after);
+            let size = dot(across, across).sqrt();
+            if size > NO_PLANE {
+                c.polarization.turn(i, d, across.map(|a| a / size));
+            }
+            let p = &mut c.polarization;
+            let (mean, half) = (0.5 * (does.s + does.p), 0.5 * (does.s - does.p));
+            let left = mean + half * p.q[i];
+            c.weight[i] *= left;
+            if left > 0.0 {
+                let [re, im] = does.mixed;
+                let (u, v) = (p.u[i], p.v[i]);
+                p.q[i] = (half + mean * p.q[i]) / left;
+                (p.u[i], p.v[i]) = ((re * u - im * v) / left, (re * v + im * u) / left);
+            }
         }
     }
 
@@ -237,6 +290,14 @@ impl Before {
             }
         }
     }
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 /// How far a ray ran since it was noted, mm.

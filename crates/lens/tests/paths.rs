@@ -79,8 +79,9 @@ fn from_point(point: DVec3, radius_mm: f64, rays: &mut RayBatch) {
     }
 }
 
-fn ledger(tracer: &Tracer, path: &Path, (point, radius_mm): (DVec3, f64)) -> Ledger {
-    let mut rays = RayBatch::new(RAYS);
+fn ledger(tracer: &Tracer, path: &Path, (point, radius_mm): (DVec3, f64), polarized: bool) -> Ledger {
+    let rays = RayBatch::new(RAYS);
+    let mut rays = if polarized { rays.with_polarization() } else { rays };
     from_point(point, radius_mm, &mut rays);
     let mut work = tracer.work(RAYS).with_ledger();
     tracer.follow(&tracer.route(path), &mut rays, &mut work);
@@ -96,10 +97,13 @@ fn light_of_all_two_bounce_paths_adds_up() {
     let count = lens.elements.len();
     let glass: Vec<usize> = (0..count).filter(|i| *i != STOP).collect();
     let (on_axis, aside) = (DVec3::new(0.0, 0.0, -2000.0), DVec3::new(150.0, -600.0, -2000.0));
-    for bundle in [(on_axis, 18.0), (aside, 18.0), (on_axis, 0.01)] {
+    let bundles = [(on_axis, 18.0), (aside, 18.0), (on_axis, 0.01)];
+    // Reflected light is polarized: what surfaces pass and reflect of it are other parts than of unpolarized light.
+    let mut of_state = [0.0; 2];
+    for (bundle, polarized) in bundles.into_iter().flat_map(|bundle| [(bundle, false), (bundle, true)]) {
         let account = |reflections: &[usize]| {
             let path = Path::reflected(count, Travel::Forward, reflections).expect("a path");
-            let ledger = ledger(&tracer, &path, bundle);
+            let ledger = ledger(&tracer, &path, bundle, polarized);
             let spent = ledger.arrived + ledger.lost_from(0).total();
             assert!(
                 (ledger.launched - 1.0).abs() < 1e-12 && (spent - ledger.launched).abs() < 1e-12,
@@ -124,11 +128,15 @@ fn light_of_all_two_bounce_paths_adds_up() {
         assert_eq!(paths, 45);
         assert!((sum + third - 1.0).abs() < 1e-12, "{:e}", sum + third - 1.0);
         assert!(ghosts > 0.005 && third > 0.0, "{ghosts} {third}");
+        if bundle.0 == aside {
+            of_state[usize::from(polarized)] = ghosts;
+        }
         // Along the axis three reflections at 4 to 6 % and ten surfaces leave 1.6 %.
         if bundle.1 < 1.0 {
             assert!((third - 0.016).abs() < 0.001, "{third}");
         }
     }
+    assert!((of_state[1] / of_state[0] - 1.0).abs() > 1e-3, "{of_state:?}");
 }
 
 /// On the axis the light of a ghost is the product of Fresnel's factors at normal incidence.

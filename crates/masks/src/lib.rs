@@ -2,12 +2,14 @@
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
+mod grid;
 mod outline;
 mod style;
 mod svg;
 
 pub use svg::{Open, read};
 
+use grid::Grid;
 use std::sync::Arc;
 
 /// Largest distance between a curve and the straight pieces that stand for it, mm: 50 nm.
@@ -49,115 +51,80 @@ struct Edge {
     shape: u32,
 }
 
-/// Painted shapes on a page, black where nothing is painted. Beside the page nothing passes.
-///
-/// Which shapes cover a point is told by the edges to its right; the page is cut into bands, each of which knows its edges.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Drawing {
-    half_width_mm: f64,
-    half_height_mm: f64,
-    /// Per shape: rule, transmittance, opacity.
-    paints: Arc<[(FillRule, f64, f64)]>,
-    edges: Arc<[Edge]>,
-    /// Bands per mm.
-    per_mm: f64,
-    /// Where the edges of each band begin in `members`, and the end.
-    starts: Arc<[u32]>,
-    /// Numbers of edges, by band, each band's in the order of the shapes.
-    members: Arc<[u32]>,
+impl Edge {
+    /// Where it is at a height between its ends, mm.
+    fn x_at(&self, y_mm: f64) -> f64 {
+        self.x + self.slope * (y_mm - self.low)
+    }
 }
 
-/// Most bands of a page.
-const MAX_BANDS: usize = 4096;
-/// Most entries of all bands together.
-const MAX_MEMBERS: usize = 1 << 23;
+/// Rule, transmittance and opacity of a shape.
+type Paint = (FillRule, f64, f64);
+
+/// Painted shapes on a page, black where nothing is painted. Beside the page nothing passes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Drawing {
+    half_mm: [f64; 2],
+    reach_mm: f64,
+    paints: Arc<[Paint]>,
+    grid: Grid,
+}
 
 impl Drawing {
     /// A page of this width and height, mm, with shapes from the lowest to the topmost.
     #[must_use]
     pub fn new(width_mm: f64, height_mm: f64, shapes: &[Painted]) -> Self {
         let edges: Vec<Edge> = (0_u32..).zip(shapes).flat_map(|(at, shape)| edges_of(shape, at)).collect();
-        let mut bands = edges.len().clamp(1, MAX_BANDS);
-        let half_height_mm = 0.5 * height_mm;
-        let reach = |edge: &Edge, bands: usize| {
-            let per_mm = bands as f64 / height_mm;
-            let at = |y: f64| band(y, half_height_mm, per_mm, bands);
-            // Only what lies on the page is ever asked for.
-            (edge.high > -half_height_mm && edge.low < half_height_mm).then(|| at(edge.low)..=at(edge.high))
+        let paints: Arc<[Paint]> = shapes.iter().map(|s| (s.rule, s.transmittance, s.opacity)).collect();
+        let half_mm = [0.5 * width_mm, 0.5 * height_mm];
+        let far = |x: f64, y: f64| {
+            let (x, y) = (x.abs().min(half_mm[0]), y.abs().min(half_mm[1]));
+            (x * x + y * y).sqrt()
         };
-        let total = |bands: usize| edges.iter().filter_map(|e| reach(e, bands)).map(|r| r.count()).sum::<usize>();
-        while bands > 1 && total(bands) > MAX_MEMBERS {
-            bands /= 2;
-        }
-        let mut starts = vec![0_u32; bands + 1];
-        for range in edges.iter().filter_map(|e| reach(e, bands)) {
-            for at in range {
-                starts[at + 1] += 1;
-            }
-        }
-        for at in 0..bands {
-            starts[at + 1] += starts[at];
-        }
-        let (mut next, mut members) = (starts.clone(), vec![0_u32; starts[bands] as usize]);
-        for (number, edge) in (0_u32..).zip(&edges) {
-            for at in reach(edge, bands).into_iter().flatten() {
-                members[next[at] as usize] = number;
-                next[at] += 1;
-            }
-        }
-        Self {
-            half_width_mm: 0.5 * width_mm,
-            half_height_mm,
-            paints: shapes.iter().map(|s| (s.rule, s.transmittance, s.opacity)).collect(),
-            edges: edges.into(),
-            per_mm: bands as f64 / height_mm,
-            starts: starts.into(),
-            members: members.into(),
-        }
+        let ends = |e: &Edge| far(e.x, e.low).max(far(e.x_at(e.high), e.high));
+        let reach_mm = edges.iter().map(ends).fold(0.0, f64::max);
+        Self { half_mm, reach_mm, grid: Grid::new(half_mm, &edges, &paints), paints }
     }
 
     /// What passes at a point, mm from the center of the page; 0 beside it.
     #[must_use]
     pub fn transmittance(&self, x_mm: f64, y_mm: f64) -> f64 {
-        if !(x_mm.abs() <= self.half_width_mm && y_mm.abs() <= self.half_height_mm) {
+        if !(x_mm.abs() <= self.half_mm[0] && y_mm.abs() <= self.half_mm[1]) {
             return 0.0;
         }
-        let at = band(y_mm, self.half_height_mm, self.per_mm, self.starts.len() - 1);
-        let members = &self.members[self.starts[at] as usize..self.starts[at + 1] as usize];
-        let (mut passes, mut shape, mut winding) = (0.0, u32::MAX, 0);
-        let settle = |passes: f64, shape: u32, winding: i32| match self.paints.get(shape as usize) {
-            Some((FillRule::NonZero, value, opacity)) if winding != 0 => passes + opacity * (value - passes),
-            Some((FillRule::EvenOdd, value, opacity)) if winding % 2 != 0 => passes + opacity * (value - passes),
-            _ => passes,
-        };
-        for number in members {
-            let edge = &self.edges[*number as usize];
-            if edge.shape != shape {
-                passes = settle(passes, shape, winding);
-                (shape, winding) = (edge.shape, 0);
-            }
-            if y_mm >= edge.low && y_mm < edge.high && edge.x + edge.slope * (y_mm - edge.low) > x_mm {
-                winding += edge.turn;
-            }
-        }
-        settle(passes, shape, winding)
+        let (below, edges) = self.grid.at(x_mm, y_mm);
+        passing(&self.paints, below, edges, [x_mm, y_mm])
     }
 
     /// Radius about the center outside of which nothing passes, mm.
     #[must_use]
     pub fn reach_mm(&self) -> f64 {
-        let far = |x: f64, y: f64| {
-            let (x, y) = (x.abs().min(self.half_width_mm), y.abs().min(self.half_height_mm));
-            (x * x + y * y).sqrt()
-        };
-        let ends = |e: &Edge| far(e.x, e.low).max(far(e.x + e.slope * (e.high - e.low), e.high));
-        self.edges.iter().map(ends).fold(0.0, f64::max)
+        self.reach_mm
     }
 }
 
-/// Number of the band of a height.
-fn band(y_mm: f64, half_height_mm: f64, per_mm: f64, bands: usize) -> usize {
-    (((y_mm + half_height_mm) * per_mm).max(0.0) as usize).min(bands - 1)
+/// What passes at a point, mm, by the edges of shapes in their order, on top of what passes `below` them.
+fn passing<'a>(paints: &[Paint], below: f64, edges: impl Iterator<Item = &'a Edge>, [x_mm, y_mm]: [f64; 2]) -> f64 {
+    let (mut passes, mut shape, mut winding) = (below, u32::MAX, 0);
+    for edge in edges {
+        if edge.shape != shape {
+            passes = settle(paints, passes, shape, winding);
+            (shape, winding) = (edge.shape, 0);
+        }
+        if y_mm >= edge.low && y_mm < edge.high && edge.x_at(y_mm) > x_mm {
+            winding += edge.turn;
+        }
+    }
+    settle(paints, passes, shape, winding)
+}
+
+/// What passes where a shape has been painted, that runs so often around the point.
+fn settle(paints: &[Paint], passes: f64, shape: u32, winding: i32) -> f64 {
+    match paints.get(shape as usize) {
+        Some((FillRule::NonZero, value, opacity)) if winding != 0 => passes + opacity * (value - passes),
+        Some((FillRule::EvenOdd, value, opacity)) if winding % 2 != 0 => passes + opacity * (value - passes),
+        _ => passes,
+    }
 }
 
 fn edges_of(shape: &Painted, number: u32) -> impl Iterator<Item = Edge> + '_ {

@@ -171,3 +171,86 @@ fn too_much_is_refused() {
         format!("{head}<path stroke='red' stroke-width='9000' stroke-linejoin='round' d=\"M0 0 {round}\"/></svg>");
     assert!(faults(&line)[0].contains("corners"));
 }
+
+/// The winding by all edges: what the grid is there to be quicker than.
+fn by_all_edges(size: [f64; 2], shapes: &[Painted], at: [f64; 2]) -> f64 {
+    let paints: Vec<Paint> = shapes.iter().map(|s| (s.rule, s.transmittance, s.opacity)).collect();
+    let edges: Vec<Edge> = (0_u32..).zip(shapes).flat_map(|(number, shape)| edges_of(shape, number)).collect();
+    let is_on = at[0].abs() <= 0.5 * size[0] && at[1].abs() <= 0.5 * size[1];
+    if is_on { passing(&paints, 0.0, edges.iter(), at) } else { 0.0 }
+}
+
+/// The same number, whatever the outlines do: cross themselves, lie on one another, have level edges and corners on the sides of
+/// the page and of the cells, or reach far beyond it.
+#[test]
+fn a_cell_says_what_all_edges_say() {
+    let mut state = 1_u64;
+    let mut number = move || {
+        // Numbers by Marsaglia's shifts (Xorshift RNGs, 2003).
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    for (case, (corners, shapes, reach, snap)) in [
+        (3, 1, 1.0, 0.0),
+        (400, 1, 1.0, 0.0),
+        (60, 12, 1.6, 0.25),
+        (12, 80, 0.7, 0.5),
+        (5, 40, 30.0, 1.0),
+        (200, 3, 1.2, 0.125),
+        (2000, 1, 1.0, 0.0),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let size = [8.0, 3.0];
+        let mut coordinate = |k: usize| {
+            let at: f64 = (number() - 0.5) * size[k] * reach;
+            if snap > 0.0 { (at / snap).round() * snap } else { at }
+        };
+        let painted: Vec<Painted> = (0..shapes)
+            .map(|shape: u32| Painted {
+                outlines: (0..=shape % 2)
+                    .map(|_| (0..corners).map(|_| [coordinate(0), coordinate(1)]).collect())
+                    .collect(),
+                rule: if shape % 3 == 0 { FillRule::EvenOdd } else { FillRule::NonZero },
+                transmittance: f64::from((shape * 7 + 5) % 11) / 10.0,
+                opacity: if shape % 4 == 1 { 1.0 } else { 0.4 },
+            })
+            .collect();
+        let drawing = Drawing::new(size[0], size[1], &painted);
+        let own = painted.iter().flat_map(|shape| shape.outlines.iter().flatten().copied());
+        // Corners themselves, points beside them at their heights, and points anywhere.
+        let mut points: Vec<[f64; 2]> = own.take(700).flat_map(|[x, y]| [[x, y], [x - 0.01, y], [-x, y]]).collect();
+        points.extend((0..3000).map(|_| [coordinate(0), coordinate(1)]));
+        points.extend([[4.0, 1.5], [-4.0, -1.5], [4.0, -1.5], [-4.0, 1.5], [4.1, 0.0]]);
+        for [x, y] in points {
+            let (found, all) = (drawing.transmittance(x, y), by_all_edges(size, &painted, [x, y]));
+            assert_eq!(found.to_bits(), all.to_bits(), "{case}: {x} {y}");
+        }
+    }
+}
+
+/// A cell names few edges, of long ones and of short ones, and all cells together no more than memory is meant for.
+#[test]
+fn few_edges_are_asked() {
+    let at = |i: u32| f64::from(i) * 0.754_877_666_246_692_7;
+    let long = |i: u32| [(at(i).fract() - 0.5) * 40.0, (at(i * i % 9973).fract() - 0.5) * 40.0];
+    let toothed = |i: u32| {
+        let (r, a) = (15.0 + f64::from(i % 2), f64::from(i) * std::f64::consts::TAU / 10_000.0);
+        [r * math::cos(a), r * math::sin(a)]
+    };
+    let corners: [(&dyn Fn(u32) -> [f64; 2], u32, usize); 3] =
+        [(&long, 10_000, 60), (&toothed, 10_000, 10), (&long, 60_000, 2000)];
+    for (corner, count, most) in corners {
+        let outlines = vec![(0..count).map(corner).collect()];
+        let shape = Painted { outlines, rule: FillRule::EvenOdd, transmittance: 1.0, opacity: 1.0 };
+        let drawing = Drawing::new(40.0, 40.0, &[shape]);
+        let place = |i: u32, step: f64| ((f64::from(i) * step).fract() - 0.5) * 36.0;
+        let asked = |i| drawing.grid.at(place(i, 0.754_877_666), place(i, 0.569_840_291)).1.count();
+        let mean = (0..10_000).map(asked).sum::<usize>() / 10_000;
+        assert!(mean <= most, "{count}: {mean}");
+        assert!(drawing.grid.memory_bytes() < 100_000_000);
+    }
+}

@@ -3,6 +3,7 @@
 use crate::SessionError;
 use spectra_core::params::Fault;
 use spectra_scene::{Member, Output, Scene};
+use std::path::Path;
 use std::sync::Arc;
 
 /// How the files of a scene are named: by the scene, or as the one that is asked for.
@@ -11,6 +12,9 @@ pub struct Names {
     only: Option<[String; 2]>,
 }
 
+/// Endings of pictures, by which a name is known to be that of a file.
+const ENDINGS: [&str; 5] = ["png", "tif", "tiff", "exr", "dng"];
+
 impl Names {
     /// All files that the scene asks for, by its name.
     #[must_use]
@@ -18,10 +22,11 @@ impl Names {
         Self::default()
     }
 
-    /// One picture alone: its name without the ending, and that without its dot.
+    /// One picture alone, where `file` ends as pictures do: that file.
     #[must_use]
-    pub fn only(stem: &str, ending: &str) -> Self {
-        Self { only: Some([stem.to_owned(), ending.to_owned()]) }
+    pub fn of_picture(file: &Path) -> Option<Self> {
+        let [stem, ending] = [file.file_stem()?, file.extension()?].map(|part| part.to_string_lossy().into_owned());
+        ENDINGS.contains(&&*ending.to_ascii_lowercase()).then(|| Self { only: Some([stem, ending]) })
     }
 
     /// What is written of a scene.

@@ -11,10 +11,10 @@ use spectra_core::isa::{Isa, Vectorized};
 use crate::cell;
 use crate::error::{SpectrumError, check};
 use crate::normal::{Mass, SQRT_TAU};
-use crate::normal_quantile::{exp_of_negative, far_mills, log, upper_quantile};
+use spectra_numerics::normal::{self, exp_of_negative, far_mills, log, upper_quantile};
 
 /// Where the algorithm for the tail takes over, in standard deviations.
-const FAR: f64 = crate::normal_quantile::FAR;
+const FAR: f64 = normal::FAR;
 
 /// Density exp(-(x - center)^2 / (2 sigma^2)) between two wavelengths, 0 beyond, of integral 1.
 ///

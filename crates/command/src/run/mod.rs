@@ -1,16 +1,13 @@
 //! `spectra run`: from a scene file to pictures.
 
-mod folder;
-mod interrupt;
-mod limit;
 mod progress;
 
 use crate::arguments::Run;
+use crate::folder::{Target, Temporary};
+use crate::interrupt::{self, Interrupt};
 use crate::outcome::{DONE, Failure, Outcome};
-use crate::{console, doc, frames, memory, version};
-use folder::Target;
-use interrupt::Interrupt;
-use limit::SetUp;
+use crate::time_limit::SetUp;
+use crate::{console, doc, frames, limits, memory, version};
 use progress::Progress;
 use serde_json::json;
 use spectra_core::Isa;
@@ -62,7 +59,7 @@ fn render_scene(arguments: &Run, isa: Isa, started: Instant) -> Outcome {
     };
     let face = Face {
         target,
-        threads: arguments.threads.map_or_else(processors, usize::from),
+        threads: arguments.threads.map_or_else(limits::processors, usize::from),
         isa,
         started,
         deadline,
@@ -83,11 +80,6 @@ fn overrides(arguments: &Run) -> Vec<String> {
     all.extend(arguments.seed.map(|seed| format!("render.seed={seed}")));
     all.extend(arguments.samples.map(|samples| format!("render.samples={samples}")));
     all
-}
-
-/// Processors that this process may use.
-pub(crate) fn processors() -> usize {
-    std::thread::available_parallelism().map_or(1, usize::from)
 }
 
 /// The command as the one who has pictures rendered.
@@ -180,7 +172,7 @@ impl Host for Face {
     }
 
     fn elsewhere(&self) -> &dyn Folder {
-        &folder::Temporary
+        &Temporary
     }
 
     fn hear(&self, event: Event<'_>) {

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use spectra_core::Isa;
 use spectra_core::params::Warning;
 use spectra_scene::{Scene, diagnostics};
-use spectra_session::{Control, Event, Place, Report, films};
+use spectra_session::{Control, Event, Pace, Place, Report, films};
 use std::time::{Duration, Instant};
 
 /// Who listens.
@@ -40,20 +40,6 @@ const LINE_EVERY: Duration = Duration::from_secs(10);
 
 /// Length of the bar: finer than any terminal shows it.
 const BAR_STEPS: u32 = 1000;
-
-/// How far a render is.
-struct State {
-    rays: u64,
-    total: u64,
-    rays_per_second: f64,
-    seconds_left: Option<f64>,
-}
-
-impl State {
-    fn fraction(&self) -> f64 {
-        if self.total > 0 { self.rays as f64 / self.total as f64 } else { 0.0 }
-    }
-}
 
 impl Progress {
     /// Nothing is said yet.
@@ -205,51 +191,43 @@ impl Progress {
                 Some(_) => "stopping: finished pictures are kept",
             });
         }
-        let state = self.state(control);
+        let pace = self.pace(control);
         let elapsed = self.said.elapsed();
         match &self.listener {
             Listener::Bar(bar) => {
-                bar.set_position((state.fraction().max(self.time_used()) * f64::from(BAR_STEPS)) as u64);
-                let left = state.seconds_left.map_or(String::new(), |s| format!(", {} left", words::duration(s)));
-                bar.set_message(format!("{}{}{left}", self.place(), words::rate(state.rays_per_second)));
+                bar.set_position((pace.fraction().max(self.time_used()) * f64::from(BAR_STEPS)) as u64);
+                let left = pace.seconds_left.map_or(String::new(), |s| format!(", {} left", words::duration(s)));
+                bar.set_message(format!("{}{}{left}", self.place(), words::rate(pace.rays_per_second)));
             }
             Listener::Json if elapsed >= JSON_EVERY => {
                 self.said = Instant::now();
                 self.event(json!({
                     "event": "progress",
-                    "rays": state.rays,
-                    "total_rays": state.total,
-                    "fraction": state.fraction(),
-                    "rays_per_second": state.rays_per_second,
+                    "rays": pace.rays,
+                    "total_rays": pace.total_rays,
+                    "fraction": pace.fraction(),
+                    "rays_per_second": pace.rays_per_second,
                     "seconds": self.begun.elapsed().as_secs_f64(),
-                    "seconds_left": state.seconds_left,
+                    "seconds_left": pace.seconds_left,
                 }));
             }
             Listener::Lines if elapsed >= LINE_EVERY => {
                 self.said = Instant::now();
-                let left = state.seconds_left.map_or(String::new(), |s| format!(", {} left", words::duration(s)));
+                let left = pace.seconds_left.map_or(String::new(), |s| format!(", {} left", words::duration(s)));
                 console::note(&format!(
                     "{}{:.0} %, {}{left}",
                     self.place(),
-                    100.0 * state.fraction(),
-                    words::rate(state.rays_per_second)
+                    100.0 * pace.fraction(),
+                    words::rate(pace.rays_per_second)
                 ));
             }
             Listener::Json | Listener::Lines | Listener::Quiet => {}
         }
     }
 
-    fn state(&self, control: &Control) -> State {
-        let (rays, total) = (control.rays(), control.total_rays());
-        let seconds = self.begun.elapsed().as_secs_f64();
-        let rays_per_second = if seconds > 0.0 { rays as f64 / seconds } else { 0.0 };
-        let by_work = (rays > 0 && total >= rays).then(|| (total - rays) as f64 / rays_per_second);
-        let by_clock = self.deadline.map(|deadline| deadline.saturating_duration_since(Instant::now()).as_secs_f64());
-        let seconds_left = match (by_work, by_clock) {
-            (Some(work), Some(clock)) => Some(work.min(clock)),
-            (work, clock) => work.or(clock),
-        };
-        State { rays, total, rays_per_second, seconds_left }
+    fn pace(&self, control: &Control) -> Pace {
+        let until = |deadline: Instant| deadline.saturating_duration_since(Instant::now()).as_secs_f64();
+        Pace::of(control, self.begun.elapsed().as_secs_f64(), self.deadline.map(until))
     }
 
     /// How much of the time limit is over, from 0 to 1; 0 without one.

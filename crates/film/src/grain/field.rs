@@ -1,7 +1,7 @@
 //! Standard normal numbers on a lattice of all scales.
 
-use spectra_core::math::{erfc, exp};
 use spectra_core::numbers::mix64;
+use spectra_numerics::normal;
 
 /// The coarsest level: one of its cells is 2^24 of the finest across.
 pub(super) const TOP: u32 = 24;
@@ -44,7 +44,7 @@ impl Field {
     pub(super) fn new(seed: u64, layer: u32) -> Self {
         let key = mix64(mix64(seed.wrapping_add(GOLDEN)) ^ (u64::from(layer) + 1).wrapping_mul(GOLDEN));
         // Quantiles at the middles of equal steps, scaled to the variance 1.
-        let quantiles: Vec<f64> = (0..NORMALS).map(|k| normal_quantile((k as f64 + 0.5) / NORMALS as f64)).collect();
+        let quantiles: Vec<f64> = (0..NORMALS).map(|k| normal::quantile((k as f64 + 0.5) / NORMALS as f64)).collect();
         let variance = quantiles.iter().map(|q| q * q).sum::<f64>() / NORMALS as f64;
         let normals = quantiles.iter().map(|q| (q / variance.sqrt()) as f32).collect();
         Self { key, normals }
@@ -106,40 +106,9 @@ impl Field {
     }
 }
 
-/// Distribution function of the standard normal distribution.
-pub(super) fn normal_below(z: f64) -> f64 {
-    0.5 * erfc(-z * std::f64::consts::FRAC_1_SQRT_2)
-}
-
-/// Its inverse, by Newton's method from the side where it does not overshoot.
-fn normal_quantile(u: f64) -> f64 {
-    if u > 0.5 {
-        return -normal_quantile(1.0 - u);
-    }
-    // Left of the middle the distribution function is convex: Newton's steps from the left come back once, then rise.
-    let mut z = 0.0;
-    for _ in 0..100 {
-        let density = exp(-z * z / 2.0) / (2.0 * std::f64::consts::PI).sqrt();
-        let step = (normal_below(z) - u) / density;
-        z -= step.clamp(-1.0, 1.0);
-        if step.abs() < 1e-14 {
-            break;
-        }
-    }
-    z
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// Table of quantiles: Abramowitz and Stegun 26.5.
-    #[test]
-    fn quantiles_are_the_tables() {
-        for (u, z) in [(0.5, 0.0), (0.9, 1.281_551_566), (0.975, 1.959_963_985), (0.001, -3.090_232_306)] {
-            assert!((normal_quantile(u) - z).abs() < 1e-9, "{u}");
-        }
-    }
 
     #[test]
     fn any_cut_gives_the_same_cells() {

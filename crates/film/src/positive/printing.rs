@@ -2,12 +2,13 @@
 
 use super::PositiveError;
 use super::viewing::{Viewing, on_band};
-use crate::deposit::{Deposit, solve, third};
+use crate::deposit::{Deposit, third};
 use crate::emulsion::Emulsion;
 use crate::print::MID_GRAY;
 use crate::stock::{Process, Stock};
 use spectra_core::math::{log10, pow};
 use spectra_core::spectral::BAND;
+use spectra_numerics::linear;
 use spectra_spectrum::Emission;
 
 /// A negative on its way through the printer.
@@ -71,9 +72,8 @@ impl Printing {
             let needed = amounts.iter().enumerate().map(|(i, a)| Some(pow(10.0, emulsion.log10_exposure_at(i, *a)?)));
             let needed: Vec<f64> =
                 needed.collect::<Option<_>>().ok_or_else(|| unbalanced("its curves do not reach a mid gray"))?;
-            let mut system: Vec<Vec<f64>> = parts.iter().map(|of_layer| negative.seen(gray, of_layer)).collect();
-            system.iter_mut().zip(&needed).for_each(|(row, n)| row.push(*n));
-            let lights = solve(system).filter(|l| l.iter().all(|v| *v > 0.0 && v.is_finite()));
+            let system: Vec<f64> = parts.iter().flat_map(|of_layer| negative.seen(gray, of_layer)).collect();
+            let lights = linear::solve(&system, &needed).filter(|l| l.iter().all(|v| *v > 0.0 && v.is_finite()));
             let lights = lights.ok_or_else(|| unbalanced("no light of its printer passes this negative as a gray"))?;
             let weights = parts.iter().map(|of_layer| {
                 (0..BAND.count).map(|i| of_layer.iter().zip(&lights).map(|(p, l)| p[i] * l).sum()).collect()

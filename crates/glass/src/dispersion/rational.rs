@@ -1,7 +1,7 @@
 //! n as a quotient of two polynomials in the wavelength or its square.
 
-use crate::linear;
 use crate::medium::Medium;
+use spectra_numerics::linear;
 
 /// n = P(x) / Q(x), where x = s0 + s1 lambda + s2 lambda^2 runs from -1 to 1 over a band of light.
 ///

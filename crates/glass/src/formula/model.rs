@@ -7,8 +7,8 @@
 //! h, 2e-4 at r; what departs from the normal lines by design (fluor and phosphate crowns, short flints, dense flints)
 //! is farther off. Indices at more lines, where stated, take the place of the normal lines.
 
-use crate::linear;
 use crate::lines::{C, D, F, G, I, Line, LineTriple, S};
+use spectra_numerics::linear;
 
 /// Partial dispersions of the normal lines over F - C, g - F, C - s, i - g: P = intercept + slope Vd.
 const INTERCEPT: [f64; 4] = [1.0, 0.6438, 0.4029, 1.7241];

@@ -5,15 +5,20 @@
 //! T = 4 eta eta' / ((eta + eta')^2 cos^2(delta) + (eta eta' / eta_1 + eta_1)^2 sin^2(delta)). It is the same from both
 //! sides, and without a layer (delta = 0) it is Fresnel's.
 
+mod amplitude;
 mod films;
+mod layers;
 mod measured;
 mod params;
 mod stack;
 mod standard;
+mod v_coat;
 
+pub(crate) use amplitude::{Amplitudes, Polarizing};
 pub(crate) use films::{Films, Sides};
 pub use measured::MeasuredCoating;
-pub use params::{CoatingForm, NamedCoating, OneLayer, StackParams, StatedCoating, read_coating, read_stated_coating};
+pub(crate) use params::CoatingKeys;
+pub use params::{CoatingEntry, CoatingForm, StatedCoating, read_coating, read_stated_coating};
 pub use stack::{Stack, StackLayer};
 
 use spectra_core::math;

@@ -91,7 +91,7 @@ impl Stack {
         // Light that comes out of the glass meets the last layer first; what passes is the same either way.
         let (n, c, n_after, c_after) = if n <= n_after { (n, c, n_after, c_after) } else { (n_after, c_after, n, c) };
         let (front, back) = (ends(n, c), ends(n_after, c_after));
-        let Some([s, p]) = self.admittance(self.layers.iter().rev(), tangential, back, wavelength_nm) else {
+        let Some([s, p]) = self.admittance(self.layers.iter().rev(), tangential, back.map(real), wavelength_nm) else {
             return Transmittance { s: 0.0, p: 0.0 };
         };
         let through = |[b, c]: [Complex; 2], eta: f64, eta_after: f64| {
@@ -104,9 +104,21 @@ impl Stack {
     /// Reflectance for light that arrives in the medium of index `n`, in the terms of [`Stack::transmittance`]: an absorbing stack
     /// reflects differently by side.
     #[must_use]
-    pub fn reflectance(&self, [n, n_after]: [f64; 2], [c, c_after]: [f64; 2], wavelength_nm: f64) -> Reflectance {
+    pub fn reflectance(&self, indices: [f64; 2], [c, _]: [f64; 2], wavelength_nm: f64) -> Reflectance {
+        let [s, p] = self.amplitudes(indices, c, wavelength_nm).map(|[_, back]| back.size2());
+        Reflectance { s, p }
+    }
+
+    /// What passes and what comes back, of s and of p light that arrives in a medium of index `n` at this cosine: amplitudes of
+    /// the tangential fields, those of what passes scaled so that their squares are parts of the power. Nothing passes on total
+    /// reflection.
+    pub(super) fn amplitudes(&self, [n, n_after]: [f64; 2], c: f64, wavelength_nm: f64) -> [[Complex; 2]; 2] {
         let tangential = n * n * (1.0 - c * c);
-        let (front, back) = (ends(n, c), ends(n_after, c_after));
+        // N cos(theta) behind; where the light only decays, in this direction.
+        let along = real(n_after * n_after - tangential).sqrt().conjugate();
+        let front = ends(n, c);
+        let back =
+            if along.size2() > 0.0 { [along, real(n_after * n_after) / along] } else { ends(n_after, 0.0).map(real) };
         // The layers from the far side on; the one next to the air is the first.
         let sums = if n <= n_after {
             self.admittance(self.layers.iter().rev(), tangential, back, wavelength_nm)
@@ -114,12 +126,13 @@ impl Stack {
             self.admittance(self.layers.iter(), tangential, back, wavelength_nm)
         };
         // An opaque layer: what lies behind it does not matter, and its own admittance would be needed. It is black here.
-        let Some([s, p]) = sums else { return Reflectance { s: 0.0, p: 0.0 } };
-        let back = |[b, c]: [Complex; 2], eta: f64| {
-            let (up, down) = (b * real(eta) + c * real(-1.0), b * real(eta) + c);
-            up.size2() / down.size2()
+        let Some([s, p]) = sums else { return [[real(0.0); 2]; 2] };
+        let of = |[b, c]: [Complex; 2], eta: f64, eta_after: Complex| {
+            let down = b * real(eta) + c;
+            let through = real(2.0 * (eta * eta_after.re.max(0.0)).sqrt()) / down;
+            [through, (b * real(eta) + c.negated()) / down]
         };
-        Reflectance { s: back(s, front[0]), p: back(p, front[1]) }
+        [of(s, front[0], back[0]), of(p, front[1], back[1])]
     }
 
     /// (B, C) of both polarizations in front of the layers, which are given from the far side on; `None` where one is opaque.
@@ -127,10 +140,10 @@ impl Stack {
         &self,
         layers: impl Iterator<Item = &'a StackLayer>,
         tangential: f64,
-        back: [f64; 2],
+        back: [Complex; 2],
         wavelength_nm: f64,
     ) -> Option<[[Complex; 2]; 2]> {
-        let start = |eta: f64| [real(1.0), real(eta)];
+        let start = |eta: Complex| [real(1.0), eta];
         let (mut s, mut p) = (start(back[0]), start(back[1]));
         for layer in layers {
             let index = layer.at(wavelength_nm);
@@ -167,14 +180,22 @@ fn pass([b, c]: [Complex; 2], cos: Complex, over: Complex, times: Complex) -> [C
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Complex {
-    re: f64,
-    im: f64,
+pub(super) struct Complex {
+    pub(super) re: f64,
+    pub(super) im: f64,
 }
 
 impl Complex {
-    fn size2(self) -> f64 {
+    pub(super) fn size2(self) -> f64 {
         self.re * self.re + self.im * self.im
+    }
+
+    pub(super) fn conjugate(self) -> Self {
+        Self { re: self.re, im: -self.im }
+    }
+
+    pub(super) fn negated(self) -> Self {
+        Self { re: -self.re, im: -self.im }
     }
 
     /// Times i.

@@ -1,7 +1,8 @@
 //! Numbers of electrons, with the scatter that nature and electronics give them: counter-based, pixel by pixel.
 
-use spectra_core::math::{cos, exp, log};
+use spectra_core::math::{cos, log};
 use spectra_core::numbers::mix64;
+use spectra_numerics::poisson;
 
 const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
 
@@ -31,66 +32,15 @@ impl PixelNumbers {
         (-2.0 * log(u)).sqrt() * cos(std::f64::consts::TAU * v)
     }
 
-    /// Poisson, exact: by inversion where few are expected, else by W. Hörmann's transformed rejection (PTRS, Insurance:
-    /// Mathematics and Economics 12, 39 (1993)).
+    /// Poisson, exact.
     pub fn poisson(&mut self, mean: f64) -> f64 {
-        if !(mean > 0.0) {
-            return 0.0;
-        }
-        if mean < 10.0 {
-            let (mut count, mut term, u) = (0.0, exp(-mean), self.uniform());
-            let mut sum = term;
-            while u > sum && count < 200.0 {
-                count += 1.0;
-                term *= mean / count;
-                sum += term;
-            }
-            return count;
-        }
-        let root = mean.sqrt();
-        let b = 0.931 + 2.53 * root;
-        let a = -0.059 + 0.02483 * b;
-        let inverse_alpha = 1.1239 + 1.1328 / (b - 3.4);
-        let ratio = 0.9277 - 3.6224 / (b - 2.0);
-        let log_mean = log(mean);
-        loop {
-            let u = self.uniform() - 0.5;
-            let v = self.uniform();
-            let us = 0.5 - u.abs();
-            let k = ((2.0 * a / us + b) * u + mean + 0.43).floor();
-            if us >= 0.07 && v <= ratio {
-                return k;
-            }
-            if k < 0.0 || (us < 0.013 && v > us) {
-                continue;
-            }
-            let left = log(v) + log(inverse_alpha) - log(a / (us * us) + b);
-            if left <= k * log_mean - mean - libm::lgamma(k + 1.0) {
-                return k;
-            }
-        }
+        poisson::draw(mean, || self.uniform())
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// Mean and variance of a Poisson number are its mean, the third central moment too; each within five standard errors
-    /// (those of the moments of a Poisson number, by its cumulants).
-    #[test]
-    fn counts_have_poissons_moments() {
-        let n = 200_000;
-        for mean in [0.3, 4.0, 9.9, 10.1, 60.0, 5000.0] {
-            let counts: Vec<f64> = (0..n).map(|pixel| PixelNumbers::new(7, pixel).poisson(mean)).collect();
-            let moment = |k: i32| counts.iter().map(|c| (c - mean).powi(k)).sum::<f64>() / n as f64;
-            let error = |variance: f64| 5.0 * (variance / n as f64).sqrt();
-            assert!(moment(1).abs() < error(mean), "{mean}: {}", moment(1));
-            assert!((moment(2) - mean).abs() < error(mean + 2.0 * mean * mean), "{mean}: {}", moment(2));
-            let sixth = mean + 25.0 * mean * mean + 15.0 * mean.powi(3);
-            assert!((moment(3) - mean).abs() < error(sixth - mean * mean), "{mean}: {}", moment(3));
-        }
-    }
 
     #[test]
     fn normals_are_normal() {

@@ -17,9 +17,6 @@ pub(crate) struct Target {
     pub names: Names,
 }
 
-/// Endings of pictures, by which a name is known to be that of a file.
-const ENDINGS: [&str; 5] = ["png", "tif", "tiff", "exr", "dng"];
-
 impl Target {
     /// A name that ends as a picture does is that picture, any other one a folder.
     ///
@@ -30,12 +27,9 @@ impl Target {
         if output.is_dir() {
             return Ok(whole);
         }
-        let part = |part: Option<&std::ffi::OsStr>| part.map(|p| p.to_string_lossy().into_owned());
-        if let (Some(stem), Some(ending)) = (part(output.file_stem()), part(output.extension()))
-            && ENDINGS.contains(&&*ending.to_ascii_lowercase())
-        {
+        if let Some(names) = Names::of_picture(output) {
             let folder = output.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or(Path::new("."));
-            return Ok(Self { folder: folder.to_owned(), names: Names::only(&stem, &ending) });
+            return Ok(Self { folder: folder.to_owned(), names });
         }
         if output.is_file() {
             return Err(Failure::Failed(format!(
@@ -95,7 +89,7 @@ fn refused(path: &Path, reason: &dyn Display) -> String {
 }
 
 /// The system's folder for temporary files: names there bear the number of this process.
-pub(super) struct Temporary;
+pub(crate) struct Temporary;
 
 impl Temporary {
     fn path(file: &str) -> PathBuf {

@@ -2,7 +2,8 @@
 
 /// Solves the square system `a x = b` (row-major, `b.len()` unknowns) by elimination with row scaling and partial
 /// pivoting, and one step of iterative refinement. `None` if the matrix is singular.
-pub(crate) fn solve(a: &[f64], b: &[f64]) -> Option<Vec<f64>> {
+#[must_use]
+pub fn solve(a: &[f64], b: &[f64]) -> Option<Vec<f64>> {
     let n = b.len();
     let factors = Factors::new(a, n)?;
     let mut x = factors.apply(b);
@@ -62,7 +63,8 @@ impl Factors {
 
 /// Least-squares solution of `a x = b` with `columns` unknowns, by Householder reflections.
 /// `None` if there are fewer rows than unknowns or the columns are dependent.
-pub(crate) fn least_squares(a: &[f64], b: &[f64], columns: usize) -> Option<Vec<f64>> {
+#[must_use]
+pub fn least_squares(a: &[f64], b: &[f64], columns: usize) -> Option<Vec<f64>> {
     let rows = b.len();
     if rows < columns {
         return None;

@@ -1,11 +1,26 @@
-//! The inverse of the normal distribution, free of branches, of fused operations and of the system's functions.
+//! The normal distribution and its inverse.
+
+use crate::math::erfc;
 
 /// Beyond it, in standard deviations, [`far_mills`] holds; shares of the distribution are about to underflow.
-pub(crate) const FAR: f64 = 25.0;
+pub const FAR: f64 = 25.0;
+
+/// Share of the distribution below `z` standard deviations.
+#[must_use]
+pub fn below(z: f64) -> f64 {
+    0.5 * erfc(-z * std::f64::consts::FRAC_1_SQRT_2)
+}
+
+/// The point below which a share `u` of the distribution lies, from 1e-300 to 1 - 1e-16; relative error about 1e-15.
+#[must_use]
+pub fn quantile(u: f64) -> f64 {
+    if u < 0.5 { -upper_quantile(u) } else { upper_quantile(1.0 - u) }
+}
 
 /// Mills' ratio for `z` beyond [`FAR`], to the last digits: the eighth convergent of its continued fraction.
 #[inline(always)]
-pub(crate) fn far_mills(z: f64) -> f64 {
+#[must_use]
+pub fn far_mills(z: f64) -> f64 {
     let (mut above, mut above_before) = (1.0, 0.0);
     let (mut below, mut below_before) = (z, 1.0);
     let mut k = 1.0;
@@ -21,7 +36,8 @@ pub(crate) fn far_mills(z: f64) -> f64 {
 ///
 /// x = 2^k m with m from sqrt(1/2) to sqrt(2), and log m = 2 artanh((m - 1) / (m + 1)) by its series.
 #[inline(always)]
-pub(crate) fn log(x: f64) -> f64 {
+#[must_use]
+pub fn log(x: f64) -> f64 {
     /// Bits of sqrt(1/2), and what brings it to 1 in the exponent.
     const ROOT_HALF: u64 = 0x3fe6_a09e_667f_3bcd;
     const TO_ONE: u64 = 0x3ff0_0000_0000_0000 - ROOT_HALF;
@@ -52,7 +68,8 @@ pub(crate) fn log(x: f64) -> f64 {
 ///
 /// x = k ln 2 + r with r within half of ln 2, and its series to r^13, whose next term is below 4e-18.
 #[inline(always)]
-pub(crate) fn exp_of_negative(x: f64) -> f64 {
+#[must_use]
+pub fn exp_of_negative(x: f64) -> f64 {
     /// 1.5 * 2^52: added and taken away it rounds to whole numbers, which stand in the low bits in between.
     const ROUND: f64 = 6_755_399_441_055_744.0;
     const LN2_HIGH: f64 = 6.931_471_803_691_238_16e-1;
@@ -80,7 +97,8 @@ pub(crate) fn exp_of_negative(x: f64) -> f64 {
 ///
 /// PPND16 of AS 241, with its three rational approximations side by side.
 #[inline(always)]
-pub(crate) fn upper_quantile(share: f64) -> f64 {
+#[must_use]
+pub fn upper_quantile(share: f64) -> f64 {
     let d = 0.5 - share;
     let root = (-log(share)).sqrt();
     let central = d <= 0.425;
@@ -181,6 +199,14 @@ const AS241_FAR: [[f64; 8]; 2] = [
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Table of quantiles: Abramowitz and Stegun 26.5.
+    #[test]
+    fn quantiles_are_the_tables() {
+        for (u, z) in [(0.5, 0.0), (0.9, 1.281_551_566), (0.975, 1.959_963_985), (0.001, -3.090_232_306)] {
+            assert!((quantile(u) - z).abs() < 1e-9 && (below(z) - u).abs() < 1e-9, "{u}");
+        }
+    }
 
     #[test]
     fn logarithm_is_that_of_libm() {

@@ -1,0 +1,120 @@
+//! Counts by Poisson's law.
+
+use crate::math::{exp, lgamma, log};
+use crate::normal;
+
+/// Beyond this mean the sum of the law's terms is long, and an expansion about the normal distribution exact to 1 in 10^4 of its
+/// standard deviation.
+const MANY: f64 = 500.0;
+
+/// The count of mean `mean` that a share `u`, in [0, 1), of all counts does not reach; 0 where the mean is no positive number.
+///
+/// Above a mean of 500 by the expansion of E. A. Cornish and R. A. Fisher (1938) to the third order.
+#[must_use]
+pub fn quantile(mean: f64, u: f64) -> f64 {
+    if !(mean > 0.0) {
+        return 0.0;
+    }
+    if mean > MANY {
+        let (root, z) = (mean.sqrt(), normal::quantile(u.max(f64::MIN_POSITIVE)));
+        return (mean + root * z + (z * z - 1.0) / 6.0 + (z - z * z * z) / (72.0 * root)).round().max(0.0);
+    }
+    let (mut count, mut part) = (0.0, exp(-mean));
+    let mut below = part;
+    while u >= below {
+        count += 1.0;
+        part *= mean / count;
+        if count > mean && below + part == below {
+            break; // rounding keeps the sum below `u`
+        }
+        below += part;
+    }
+    count
+}
+
+/// A count of mean `mean`, exact for any: [`quantile`] where few are expected, else by W. Hörmann's transformed rejection (PTRS,
+/// Insurance: Mathematics and Economics 12, 39 (1993)). `uniform` gives independent numbers in (0, 1).
+pub fn draw(mean: f64, mut uniform: impl FnMut() -> f64) -> f64 {
+    if !(mean >= 10.0) {
+        return if mean > 0.0 { quantile(mean, uniform()) } else { 0.0 };
+    }
+    let root = mean.sqrt();
+    let b = 0.931 + 2.53 * root;
+    let a = -0.059 + 0.02483 * b;
+    let inverse_alpha = 1.1239 + 1.1328 / (b - 3.4);
+    let ratio = 0.9277 - 3.6224 / (b - 2.0);
+    let log_mean = log(mean);
+    loop {
+        let u = uniform() - 0.5;
+        let v = uniform();
+        let us = 0.5 - u.abs();
+        let k = ((2.0 * a / us + b) * u + mean + 0.43).floor();
+        if us >= 0.07 && v <= ratio {
+            return k;
+        }
+        if k < 0.0 || (us < 0.013 && v > us) {
+            continue;
+        }
+        let left = log(v) + log(inverse_alpha) - log(a / (us * us) + b);
+        if left <= k * log_mean - mean - lgamma(k + 1.0) {
+            return k;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Numbers in (0, 1) by the SplitMix64 generator (G. Steele, D. Lea, C. Flood, OOPSLA 2014).
+    fn uniform(seed: u64) -> impl FnMut() -> f64 {
+        let mut state = seed;
+        move || {
+            state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+            let mut x = state;
+            x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+            x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+            (((x ^ (x >> 31)) >> 12) as f64 + 0.5) / (1_u64 << 52) as f64
+        }
+    }
+
+    /// Mean and variance of a Poisson number are its mean, the third central moment too; each within five standard errors
+    /// (those of the moments of a Poisson number, by its cumulants). A quantile is rounded from the expansion: 1/12 of variance.
+    #[test]
+    fn counts_have_poissons_moments() {
+        let n = 200_000;
+        let mut next = uniform(7);
+        for mean in [0.1, 2.0, 9.9, 10.1, 60.0, 499.0, 501.0, 5000.0] {
+            let quantiles: Vec<f64> = (0..n).map(|_| quantile(mean, next())).collect();
+            let drawn: Vec<f64> = (0..n).map(|_| draw(mean, &mut next)).collect();
+            for (counts, rounded) in [(quantiles, if mean > MANY { 1.0 / 12.0 } else { 0.0 }), (drawn, 0.0)] {
+                let moment = |k: i32| counts.iter().map(|c| (c - mean).powi(k)).sum::<f64>() / f64::from(n);
+                let error = |variance: f64| 5.0 * (variance / f64::from(n)).sqrt();
+                assert!(moment(1).abs() < error(mean), "{mean}: {}", moment(1));
+                assert!((moment(2) - mean - rounded).abs() < error(mean + 2.0 * mean * mean), "{mean}: {}", moment(2));
+                let sixth = mean + 25.0 * mean * mean + 15.0 * mean.powi(3);
+                assert!((moment(3) - mean).abs() < error(sixth - mean * mean), "{mean}: {}", moment(3));
+                let none = counts.iter().filter(|c| **c == 0.0).count() as f64 / f64::from(n);
+                assert!((none - exp(-mean)).abs() <= error(exp(-mean)), "{mean}: {none}");
+            }
+        }
+        assert_eq!([quantile(0.0, 0.9), quantile(-1.0, 0.9), quantile(f64::NAN, 0.9)], [0.0; 3]);
+        assert_eq!([draw(0.0, &mut next), draw(-1.0, &mut next), draw(f64::NAN, &mut next)], [0.0; 3]);
+        assert_eq!(quantile(2.0, 0.0), 0.0);
+    }
+
+    /// On both sides of the border the expansion and the sum give counts that differ by one at most, also far out.
+    #[test]
+    fn the_expansion_joins_the_sum() {
+        for i in 0..2000 {
+            let u = (f64::from(i) + 0.5) / 2000.0;
+            let (below, above) = (quantile(MANY, u), quantile(MANY * (1.0 + 1e-12), u));
+            assert!((below - above).abs() <= 1.0, "{u}: {below} {above}");
+        }
+        for (u, apart) in [(0.0, f64::INFINITY), (1e-12, 2.0), (1.0 - 1e-12, 2.0), (1.0 - 0.5 * f64::EPSILON, 20.0)] {
+            let (below, above) = (quantile(MANY, u), quantile(MANY * (1.0 + 1e-12), u));
+            assert!(above.is_finite() && below < MANY + 10.0 * MANY.sqrt(), "{u}: {below} {above}");
+            assert!((below - above).abs() <= apart, "{u}: {below} {above}");
+        }
+    }
+}
