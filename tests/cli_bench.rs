@@ -183,3 +183,21 @@ fn wrong_requests_are_named() {
         assert!(text_of(&output.stderr).contains(word), "{more:?}: {}", text_of(&output.stderr));
     }
 }
+
+/// Noise of one scene by two directions: a table, and the same figures for programs.
+#[test]
+fn noise_is_measured_between_seeds() {
+    let arguments = ["bench", "noise", "gray-card", "--set", "imager.resolution=[48, 32]", "--seconds", "1"];
+    let arguments = [&arguments[..], &["--threads", "2", "--directions", "auto,forward"]].concat();
+    let rows: Value = serde_json::from_str(&good(&[&arguments[..], &["--json"]].concat())).expect("JSON");
+    let rows = rows.as_array().expect("a list");
+    assert_eq!(rows.len(), 2);
+    for (row, estimator) in rows.iter().zip(["backward", "forward"]) {
+        assert_eq!(row["estimators"], serde_json::json!([estimator]));
+        let [noise, then, clean] = ["noise", "noise_then", "clean_s"].map(|key| number(&row[key][0]));
+        assert!(noise > 0.0 && noise <= number(&row["noise"][1]) && then > 0.0, "{row}");
+        // 1 % takes as much longer as the noise squared is larger.
+        let want = number(&row["seconds"]) * (noise / 0.01) * (noise / 0.01);
+        assert!((clean / want - 1.0).abs() < 1e-9, "{row}");
+    }
+}

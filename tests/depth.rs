@@ -151,6 +151,22 @@ fn a_blurred_edge_of_a_layer_is_the_segment_of_the_pupil() {
     compare(&Files::new(), "layers");
 }
 
+/// The same by rays from what shines: what stands in front shadows what lies behind it, and what is guessed there shines, too.
+#[test]
+fn a_blurred_edge_is_the_same_from_the_source() {
+    let files = Files::new();
+    // Little more than the frame sees: rays that start elsewhere are lost.
+    let forward = |name: &str, width| files.columns(name, &[width, "render.direction=forward", "render.rays=20000000"]);
+    let open = forward("white", "source.width=48 mm");
+    for (name, width) in [("deep", "source.width=48 mm"), ("layers", "source.layers[1].width=48 mm")] {
+        let seen = forward(name, width);
+        for (column, want) in closed_form(FAR).iter().enumerate() {
+            let got = seen[column] / open[column];
+            assert!((got / want - 1.0).abs() < 0.02, "{name} column {column}: {got:.4}, closed form {want:.4}");
+        }
+    }
+}
+
 /// With the foreground in focus its edge is sharp: no background inside of it, and no foreground beside it although much
 /// of what is seen there is hidden from the picture's own point of view.
 #[test]

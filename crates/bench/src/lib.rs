@@ -9,6 +9,9 @@
 //! slopes, are percentiles of a bootstrap over the seeds (B. Efron, Annals of Statistics 7, 1 (1979)): seeds are
 //! independent, pixels and channels are not, so the seed is what is drawn again.
 
+//!
+//! [`noise()`] measures something else: how long the scene takes until it is clean, by each estimator.
+
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 mod colors;
@@ -16,6 +19,7 @@ mod csv;
 mod error;
 mod frame;
 mod integral;
+mod noise;
 mod picture;
 mod report;
 mod runner;
@@ -25,6 +29,7 @@ mod table;
 
 pub use csv::csv;
 pub use error::BenchError;
+pub use noise::{NoiseRow, NoiseSettings, noise, noise_table};
 pub use picture::picture;
 pub use report::{ChannelBias, Interval, LeftOut, Measure, NumberKind, Point, Reference, Report, Series};
 pub use runner::{Settings, bench};

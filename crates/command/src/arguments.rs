@@ -236,10 +236,14 @@ pub(crate) struct SchemaOf {
         spectra bench bench/sampling-fl11-ortho --seeds 4 --samples 1,4,16 --integral-only --strategies \
         'source-times-response, uniform, truncated-gaussian{center: 500, sigma: 60}'"
 )]
+#[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 pub(crate) struct Bench {
+    /// Something else to measure.
+    #[command(subcommand)]
+    pub other: Option<OtherBench>,
     /// A scene file, or the name of a bundled scene.
-    #[arg(value_name = "SCENE")]
-    pub scene: PathBuf,
+    #[arg(value_name = "SCENE", required = true)]
+    pub scene: Option<PathBuf>,
     #[command(flatten)]
     pub set: Set,
     /// Number of seeds per render, 20 if not given; if only the integral is measured, seeds for that, 1000 if not
@@ -268,6 +272,49 @@ pub(crate) struct Bench {
     #[arg(short, long, value_name = "DIR", default_value = "out")]
     pub output: PathBuf,
     /// Write a JSON object to standard output instead of the table.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// What `spectra bench` measures beside wavelength strategies.
+#[derive(Debug, Subcommand)]
+pub(crate) enum OtherBench {
+    /// Measure how long scenes take until they are clean: time to 1 % noise.
+    Noise(BenchNoise),
+}
+
+/// `spectra bench noise`.
+#[derive(Debug, Args)]
+#[command(
+    long_about = "Measure how long scenes take until they are clean: time to 1 % noise, and noise after some time.\n\n\
+        Each scene is rendered with as many samples as there is time for, by independent seeds and by each direction that \
+        it can be rendered in. Noise is the standard deviation between the seeds over the mean, of luminance (of an imager \
+        without it, its first channel), in squares of 8 x 8 pixels: the median of the squares, and what 95 % of them stay \
+        below. The rest follows from its falling with the square root of the time.\n\n\
+        The table (Markdown) goes to standard output.",
+    after_long_help = "Example: the scenes that are made for it, as the program itself chooses the directions\n  \
+        spectra bench noise bench/noise-flat bench/noise-portrait bench/noise-lights bench/noise-night --directions auto"
+)]
+pub(crate) struct BenchNoise {
+    /// Scene files, or names of bundled scenes.
+    #[arg(value_name = "SCENE", required = true)]
+    pub scenes: Vec<PathBuf>,
+    #[command(flatten)]
+    pub set: Set,
+    /// Number of seeds, at least 2.
+    #[arg(long, value_name = "N", default_value = "4", value_parser = clap::value_parser!(u16).range(2..=1000))]
+    pub seeds: u16,
+    /// Seconds of tracing for each seed at most.
+    #[arg(long, value_name = "S", default_value = "10", value_parser = clap::value_parser!(u16).range(1..=36000))]
+    pub seconds: u16,
+    /// Values of `render.direction` to try.
+    #[arg(long, value_name = "A,B,...", value_delimiter = ',', default_value = "auto,backward,forward",
+        value_parser = ["auto", "backward", "forward", "both"])]
+    pub directions: Vec<String>,
+    /// Number of render threads; all processors if not given.
+    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Write a JSON list to standard output instead of the table.
     #[arg(long)]
     pub json: bool,
 }

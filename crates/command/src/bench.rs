@@ -1,9 +1,10 @@
 //! `spectra bench`: wavelength strategies against each other.
 
-use crate::arguments::Bench;
+use crate::arguments::{Bench, BenchNoise, OtherBench};
 use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
-use spectra_bench::{BenchError, Settings, parse_list};
+use crate::version;
+use spectra_bench::{BenchError, NoiseSettings, Settings, parse_list};
 use spectra_core::Isa;
 use spectra_core::spectral::Channel;
 use spectra_files::write_atomically;
@@ -19,6 +20,12 @@ const INTEGRAL_SEEDS: usize = 50;
 
 /// Measures, writes the files, and shows the table, or JSON in its place.
 pub(crate) fn bench(arguments: &Bench, isa: Isa) -> Outcome {
+    if let Some(OtherBench::Noise(arguments)) = &arguments.other {
+        return noise(arguments, isa);
+    }
+    let Some(scene) = &arguments.scene else {
+        return Err(Failure::Input("name a scene, such as `spectra bench bench/sampling-d65-xyz`".to_owned()));
+    };
     let strategies = match &arguments.strategies {
         Some(list) => parse_list(list)?,
         None => Vec::new(),
@@ -35,7 +42,7 @@ pub(crate) fn bench(arguments: &Bench, isa: Isa) -> Outcome {
         samples: arguments.samples.clone(),
         strategies,
         render: !arguments.integral_only,
-        response: response(&arguments.response, &arguments.scene, &arguments.set.overrides)?,
+        response: response(&arguments.response, scene, &arguments.set.overrides)?,
         threads: threads.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from)),
         isa,
     };
@@ -43,7 +50,7 @@ pub(crate) fn bench(arguments: &Bench, isa: Isa) -> Outcome {
     let folder = &arguments.output;
     std::fs::create_dir_all(folder).map_err(|e| Failure::Input(format!("{}: {e}", folder.display())))?;
     let mut tell = |line: &str| console::note(line);
-    let report = spectra_bench::bench(&arguments.scene, &arguments.set.overrides, &settings, &mut tell)?;
+    let report = spectra_bench::bench(scene, &arguments.set.overrides, &settings, &mut tell)?;
     let picture = spectra_bench::picture(&report);
     let file = |ending: &str| folder.join(format!("{}-sampling.{ending}", report.scene));
     write(&file("csv"), &spectra_bench::csv(&report))?;
@@ -57,6 +64,38 @@ pub(crate) fn bench(arguments: &Bench, isa: Isa) -> Outcome {
         console::out(&spectra_bench::table(&report))?;
     }
     Ok(DONE)
+}
+
+/// Measures how long scenes take until they are clean.
+fn noise(arguments: &BenchNoise, isa: Isa) -> Outcome {
+    let threads = arguments.threads.map(usize::from);
+    let settings = NoiseSettings {
+        seeds: arguments.seeds.into(),
+        seconds: arguments.seconds.into(),
+        directions: arguments.directions.clone(),
+        threads: threads.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from)),
+        isa,
+    };
+    let mut rows = Vec::new();
+    for scene in &arguments.scenes {
+        let mut tell = |line: &str| console::note(line);
+        rows.extend(spectra_bench::noise(scene, &arguments.set.overrides, &settings, &mut tell)?);
+    }
+    if arguments.json {
+        console::pretty_json(&rows)?;
+        return Ok(DONE);
+    }
+    let machine =
+        format!("{}, {}, {} threads, commit {}", processor(), isa.name(), settings.threads, version::commit());
+    console::out(&spectra_bench::noise_table(&rows, &settings, &machine))?;
+    Ok(DONE)
+}
+
+/// What the system calls its processor; on a system that does not say, the architecture.
+fn processor() -> String {
+    let known = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let named = known.lines().find_map(|line| line.strip_prefix("model name")?.split_once(':'));
+    named.map_or_else(|| std::env::consts::ARCH.to_owned(), |(_, name)| name.trim().to_owned())
 }
 
 /// Channels by name; `None` where none is asked for.

@@ -23,6 +23,11 @@ pub(crate) fn long() -> &'static str {
     &TEXT
 }
 
+/// The commit that it was built from, if it is known.
+pub(crate) fn commit() -> &'static str {
+    COMMIT.unwrap_or("unknown")
+}
+
 /// Crates in this program that are not its own, with the stages that they bring.
 fn plugins() -> String {
     let mut text = String::new();

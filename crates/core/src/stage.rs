@@ -45,8 +45,25 @@ pub trait Source: Send + Sync {
         None
     }
 
+    /// The source as two, where part of it is much brighter than the rest; `None` where nothing is. Which light belongs to which
+    /// must not depend on what is rendered.
+    fn split(&self) -> Option<Split<'_>> {
+        None
+    }
+
     /// Facts about the source that are worth reporting, for the log and the EXR.
     fn describe(&self) -> String;
+}
+
+/// A source as two whose radiances along any ray add up to that of the whole: each is rendered from the side that finds it.
+#[derive(Clone, Copy)]
+pub struct Split<'a> {
+    /// What is bright, as an emitter: it is rendered forward.
+    pub lights: &'a dyn Source,
+    /// All else, which is asked for radiance: it is rendered backward.
+    pub rest: &'a dyn Source,
+    /// Whether this is expected to give less noise in the same time than asking the whole source for radiance.
+    pub pays: bool,
 }
 
 /// Emits rays.

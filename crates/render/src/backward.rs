@@ -40,7 +40,7 @@ impl Backward {
     pub(crate) fn new(pipeline: Arc<Pipeline>) -> Result<Self, RenderError> {
         let scene = &pipeline.scene;
         let launch = scene.imager.launch().ok_or(RenderError::CannotLaunch)?;
-        scene.source.radiance().ok_or(RenderError::NoRadiance)?;
+        pipeline.source().radiance().ok_or(RenderError::NoRadiance)?;
         let mut rays = imager_rays(launch, scene.imager.size(), pipeline.isa);
         let [x, y, z] = rays.positions();
         let points: Vec<DVec3> = (0..rays.len()).map(|i| DVec3::new(x[i], y[i], z[i])).collect();
@@ -79,7 +79,7 @@ impl Backward {
     }
 
     fn radiance(&self) -> &dyn Radiance {
-        self.pipeline.scene.source.radiance().expect("`new` saw it")
+        self.pipeline.source().radiance().expect("`new` saw it")
     }
 
     /// Traces `count` samples, from `first` on, of each of `pixels`: pixel after pixel. Afterwards

@@ -5,7 +5,7 @@ use crate::error::RenderError;
 use crate::estimator::{Estimator, Scratch, Unit};
 use crate::meter;
 use crate::pilot::{self, PILOT_RAYS, PILOT_SEED};
-use crate::pipeline::{Pipeline, ThreadState};
+use crate::pipeline::{Pipeline, Share, ThreadState};
 use crate::sums::ExactSums;
 use crate::{Done, Workers};
 use glam::DVec3;
@@ -34,7 +34,19 @@ pub(crate) struct Forward {
     cone: Numbers,
     /// Of the sums.
     scale: f64,
+    /// Rays for each sample of all pixels, where the scene does not state how many there are in all.
+    a_sample: Option<u64>,
 }
+
+/// Rays of lights for each sample of a pixel that they reach, where the scene does not state how many there are: as a pixel's
+/// samples backward fill the pupil evenly, and rays that land where they will do not.
+const LIGHTS_A_SAMPLE: f64 = 8.0;
+/// Rays that say where lights land, and the parts of the frame that they are counted in, across and down.
+const CENSUS: usize = 1 << 16;
+const PARTS: [usize; 2] = [48, 32];
+/// Rays of lights for each pixel and sample: at least and at most.
+const LEAST_LIGHTS: f64 = 0.125;
+const MOST_LIGHTS: f64 = 16.0;
 
 /// Source points that are looked at before the pupil is searched.
 const SOURCE_POINTS: usize = 4096;
@@ -43,7 +55,41 @@ impl Forward {
     /// Searches where light goes in, and finds the scale of the sums.
     pub(crate) fn new(pipeline: Arc<Pipeline>) -> Result<Self, RenderError> {
         let seed = pipeline.scene.render.seed;
-        Self::aimed(pipeline)?.scaled(seed)
+        let mut own = Self::aimed(pipeline)?;
+        if own.pipeline.share == Share::Lights && !own.pipeline.scene.render.rays_stated {
+            own.a_sample = Some(own.lights_a_sample());
+        }
+        own.scaled(seed)
+    }
+
+    /// How many rays of lights go with a sample of all pixels: as many as give each that they reach [`LIGHTS_A_SAMPLE`].
+    fn lights_a_sample(&self) -> u64 {
+        let size = self.pipeline.scene.imager.size();
+        let sides = [size.width_px as usize, size.height_px as usize];
+        let parts = [PARTS[0].min(sides[0]), PARTS[1].min(sides[1])];
+        let mut counts = vec![0_u64; parts[0] * parts[1]];
+        let mut state = ThreadState::new(&self.pipeline, PILOT_RAYS as usize);
+        for first in (0..CENSUS).step_by(PILOT_RAYS as usize) {
+            self.batch(&mut state, first as u64, PILOT_RAYS as usize);
+            for (tag, weight) in state.rays.tags().iter().zip(state.rays.weights()) {
+                let pixel = pixel_and_channel(*tag).0 as usize;
+                let (column, row) = (pixel % sides[0] * parts[0] / sides[0], pixel / sides[0] * parts[1] / sides[1]);
+                counts[row * parts[0] + column] += u64::from(*weight != 0.0);
+            }
+        }
+        let landed: u64 = counts.iter().sum();
+        // Two rays in the same part: how likely that is says how many parts they share.
+        let pairs: u64 = counts.iter().map(|n| n * n.saturating_sub(1)).sum();
+        let pixels = size.pixels() as f64;
+        let a_pixel = if landed == 0 {
+            LEAST_LIGHTS
+        } else {
+            let landed = landed as f64;
+            let reached = if pairs > 0 { landed * (landed - 1.0) / pairs as f64 / counts.len() as f64 } else { 1.0 };
+            let each = LIGHTS_A_SAMPLE * reached.min(1.0) * CENSUS as f64 / landed;
+            each.clamp(LEAST_LIGHTS, MOST_LIGHTS)
+        };
+        ((a_pixel * pixels) as u64).max(1)
     }
 
     /// With the scale that its pilot finds, and the numbers of a seed.
@@ -61,7 +107,7 @@ impl Forward {
         let pipeline = Arc::new(self.pipeline.of_meters()?);
         let (numbers, cone) = (self.numbers.clone(), self.cone.clone());
         let seed = pipeline.scene.render.seed ^ meter::SEED;
-        Some(Self { pupil: self.pupil.clone(), numbers, cone, scale: 1.0, pipeline }.scaled(seed))
+        Some(Self { pupil: self.pupil.clone(), numbers, cone, scale: 1.0, pipeline, a_sample: None }.scaled(seed))
     }
 
     pub(crate) fn pipeline(&self) -> &Arc<Pipeline> {
@@ -75,7 +121,7 @@ impl Forward {
     /// With the numbers of the pilot, and no scale.
     pub(crate) fn aimed(pipeline: Arc<Pipeline>) -> Result<Self, RenderError> {
         let scene = &pipeline.scene;
-        let emit = scene.source.emit().ok_or(RenderError::CannotEmit)?;
+        let emit = pipeline.source().emit().ok_or(RenderError::CannotEmit)?;
         scene.imager.receive().ok_or(RenderError::CannotReceive)?;
         let (numbers, cone) = Self::numbers(&pipeline, PILOT_SEED);
         let pupil = if emit.is_directed() {
@@ -86,11 +132,11 @@ impl Forward {
             let pupil = FrontPupil::search(&scene.lens, &pipeline.tracer, &points, grid.start_nm, grid.end_nm());
             Some(Arc::new(pupil.ok_or(RenderError::NoAperture)?))
         };
-        Ok(Self { pupil, numbers, cone, scale: 1.0, pipeline })
+        Ok(Self { pupil, numbers, cone, scale: 1.0, pipeline, a_sample: None })
     }
 
     fn emit(&self) -> &dyn Emit {
-        self.pipeline.scene.source.emit().expect("`aimed` saw it")
+        self.pipeline.source().emit().expect("`aimed` saw it")
     }
 
     fn receive(&self) -> &dyn Receive {
@@ -141,6 +187,8 @@ impl Forward {
             look(Step::Pupil, &state.rays);
         }
         emit.radiate(&mut state.rays, isa);
+        let ended = state.rays.len() - state.rays.alive();
+        state.drop_dark(ended);
         look(Step::Source, &state.rays);
         self.pipeline.tracer.trace(&mut state.rays, &mut state.work, Travel::Forward);
         look(Step::Lens, &state.rays);
@@ -190,6 +238,9 @@ impl Forward {
     /// The paths of a span of samples: all that the scene states are for all its samples.
     fn paths(&self, samples: &Range<u64>) -> Range<u64> {
         let render = &self.pipeline.scene.render;
+        if let Some(rays) = self.a_sample {
+            return samples.start.saturating_mul(rays)..samples.end.saturating_mul(rays);
+        }
         let upto = |sample: u64| {
             (u128::from(render.rays) * u128::from(sample) / u128::from(render.samples)).min(u64::MAX.into()) as u64
         };

@@ -1,7 +1,7 @@
 //! How much memory a picture takes: known before any light is traced.
 
 use spectra_core::params::Faults;
-use spectra_scene::{Holds, Scene};
+use spectra_scene::{Holds, Lights, Scene};
 
 /// Bytes of a sum and of an exposure: one of each, a pixel and channel.
 const SUM: u64 = 8;
@@ -18,7 +18,13 @@ pub fn memory_needed(scene: &Scene) -> u64 {
     let channels = scene.channels.len() as u64;
     let is_shown = scene.output.iter().any(|o| matches!(o.holds(), Holds::Picture | Holds::Numbers));
     // A meter's channels have no sums, but as much for its own figures while it looks.
-    let traced = channels * (SUM + EXPOSURE);
+    // Lights that are rendered apart have sums of their own; before the source is read it is not known whether there are any.
+    let apart = match scene.render.lights {
+        Lights::Same => false,
+        Lights::Auto => scene.source.split().is_some_and(|split| split.pays),
+        Lights::Forward => true,
+    };
+    let traced = channels * (SUM * (1 + u64::from(apart)) + EXPOSURE);
     // Sums are gone by then. Of several films each is developed from a copy of its own channels.
     let picture = if scene.films.is_empty() { SHOWING } else { DEVELOPING + 3 * EXPOSURE * scene.films.len() as u64 };
     let written = channels * EXPOSURE + if is_shown { picture } else { channels * EXPOSURE };

@@ -30,7 +30,7 @@ pub(crate) fn scale(
         }
         let largest = state.largest(pipeline);
         if largest > 0.0 {
-            return Ok(scale_for(largest * pipeline.scene.source.peak_over_mean().max(1.0)));
+            return Ok(scale_for(largest * pipeline.source().peak_over_mean().max(1.0)));
         }
     }
     Ok(scale_for(0.0))

@@ -8,15 +8,39 @@ use spectra_core::isa::Vectorized;
 use spectra_core::loss::ALIVE;
 use spectra_core::numbers::{Dimension, Numbers};
 use spectra_core::spectral::SystemResponse;
-use spectra_core::stage::WavelengthDensity;
+use spectra_core::stage::{Source, WavelengthDensity};
 use spectra_core::{Isa, Loss, RayBatch};
 use spectra_lens::{Indices, Tracer, Work};
 use spectra_scene::{NumberFamily, Scene};
 use std::sync::Arc;
 
+/// Which light of a source is traced.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Share {
+    /// All.
+    Whole,
+    /// That of its lights: see [`spectra_core::stage::Split`].
+    Lights,
+    /// All but that.
+    Rest,
+}
+
+impl Share {
+    /// The source that stands for it.
+    pub(crate) fn of(self, scene: &Scene) -> &dyn Source {
+        match (self, scene.source.split()) {
+            (Self::Lights, Some(split)) => split.lights,
+            (Self::Rest, Some(split)) => split.rest,
+            _ => &*scene.source,
+        }
+    }
+}
+
 /// The stages, made ready for one scene.
 pub struct Pipeline {
     pub(crate) scene: Arc<Scene>,
+    /// Which light of the source is traced.
+    pub(crate) share: Share,
     pub(crate) isa: Isa,
     pub(crate) tracer: Arc<Tracer>,
     pub(crate) density: Arc<dyn WavelengthDensity>,
@@ -36,24 +60,47 @@ impl Pipeline {
     ) -> Result<Self, RenderError> {
         // A meter's channel is none of them: whether a camera meters must not change the picture's samples.
         let recorded = scene.picture_channels();
-        let system = system(scene, &recorded);
+        let system = system(scene, Share::Whole, &recorded);
         let fitted = || scene.sampler.prepare(&system).map(Arc::from).map_err(RenderError::Sampler);
         let density = density.map_or_else(fitted, Ok)?;
         let indices = Indices::Band { min_nm: scene.grid.start_nm, max_nm: scene.grid.end_nm() };
         let tracer = Tracer::new(&scene.lens, indices, isa).map_err(|e| RenderError::Lens(e.to_string()))?;
         let responses = Responses::new(scene.grid, &system.channels);
         let draws = draws(scene);
-        Ok(Self { scene: Arc::clone(scene), isa, tracer: Arc::new(tracer), density, responses, recorded, draws })
+        let (scene, tracer, share) = (Arc::clone(scene), Arc::new(tracer), Share::Whole);
+        Ok(Self { scene, share, isa, tracer, density, responses, recorded, draws })
+    }
+
+    /// The same for a share of the source, with a density of its own where one can be fitted to it.
+    pub(crate) fn of_share(&self, share: Share) -> Self {
+        let system = system(&self.scene, share, &self.recorded);
+        let density = self.scene.sampler.prepare(&system).map_or_else(|_| Arc::clone(&self.density), Arc::from);
+        Self {
+            scene: self.scene.clone(),
+            share,
+            isa: self.isa,
+            tracer: self.tracer.clone(),
+            density,
+            responses: Responses::new(self.scene.grid, &system.channels),
+            recorded: self.recorded.clone(),
+            draws: self.draws,
+        }
+    }
+
+    /// What is traced of the source.
+    pub(crate) fn source(&self) -> &dyn Source {
+        self.share.of(&self.scene)
     }
 
     /// The same for what the meters see, with a density of their own; `None` where they see nothing of the source.
     pub(crate) fn of_meters(&self) -> Option<Self> {
         let recorded = self.scene.meter_channels();
-        let system = system(&self.scene, &recorded);
+        let system = system(&self.scene, self.share, &recorded);
         let density = self.scene.sampler.prepare(&system).ok()?.into();
         let responses = Responses::new(self.scene.grid, &system.channels);
         Some(Self {
             scene: self.scene.clone(),
+            share: self.share,
             isa: self.isa,
             tracer: self.tracer.clone(),
             density,
@@ -88,9 +135,9 @@ fn draws(scene: &Scene) -> bool {
 }
 
 /// The source, and some of the channels.
-fn system(scene: &Scene, recorded: &[usize]) -> SystemResponse {
+fn system(scene: &Scene, share: Share, recorded: &[usize]) -> SystemResponse {
     let channels = recorded.iter().filter_map(|at| scene.channels.get(*at)).cloned().collect();
-    SystemResponse { grid: scene.grid, source: scene.source.spectrum().clone(), channels }
+    SystemResponse { grid: scene.grid, source: share.of(scene).spectrum().clone(), channels }
 }
 
 /// Columns of one thread.

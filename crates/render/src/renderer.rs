@@ -7,7 +7,7 @@ use crate::forward::Forward;
 use crate::landing::Landing;
 use crate::memory::memory_needed;
 use crate::pilot::PILOT_RAYS;
-use crate::pipeline::{Pipeline, ThreadState};
+use crate::pipeline::{Pipeline, Share, ThreadState};
 use crate::remarks::remarks;
 use crate::sums::{LARGEST_CONTRIBUTION, LARGEST_EXPECTED};
 use crate::{Control, Light, RenderError, Workers};
@@ -15,7 +15,7 @@ use spectra_core::frame::{ExposureChannel, ExposureFrame};
 use spectra_core::stage::WavelengthDensity;
 use spectra_core::{Isa, LossCounts};
 use spectra_lens::Travel;
-use spectra_scene::{Direction, NumberFamily, Scene};
+use spectra_scene::{Direction, Lights, NumberFamily, Scene};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -32,6 +32,8 @@ pub struct Rendering {
     pub detected: u64,
     /// Whether it was stopped before its end.
     pub partial: bool,
+    /// The estimators whose light it is: `forward`, `backward`.
+    pub estimators: Vec<&'static str>,
     /// What a person should know before believing the picture, and what to write.
     pub warnings: Vec<String>,
 }
@@ -49,9 +51,36 @@ impl Renderer {
     /// # Errors
     /// [`RenderError`]: a stage lacks the ability that the direction needs, or the source's files are broken.
     pub fn new(scene: impl Into<Arc<Scene>>, isa: Isa) -> Result<Self, RenderError> {
-        let scene = scene.into();
+        Self::with_density(scene.into(), isa, None)
+    }
+
+    /// The same with a density of wavelengths that is known to fit.
+    ///
+    /// Where the source has lights ([`spectra_core::stage::Split`]), and the scene wants it or does not say and it pays, they are
+    /// traced forward and the rest backward.
+    ///
+    /// # Errors
+    /// As [`Renderer::new`].
+    pub fn with_density(
+        scene: Arc<Scene>,
+        isa: Isa,
+        density: Option<Arc<dyn WavelengthDensity>>,
+    ) -> Result<Self, RenderError> {
         let direction = scene.render.direction;
-        Self::of(scene, isa, None, &[direction])
+        let lights = scene.render.lights;
+        if lights == Lights::Same {
+            return Self::of(scene, isa, density, &[direction]);
+        }
+        scene.source.prepare().map_err(RenderError::Source)?;
+        let pays = scene.source.split().map(|split| split.pays);
+        if !pays.is_some_and(|pays| pays || lights == Lights::Forward) {
+            return Self::of(scene, isa, density, &[direction]);
+        }
+        let pipeline = Arc::new(Pipeline::new(&scene, isa, density)?);
+        let share = |share| Arc::new(pipeline.of_share(share));
+        let (rest, lights) = (Backward::new(share(Share::Rest))?, Forward::new(share(Share::Lights))?);
+        let estimators: Vec<Box<dyn Estimator>> = vec![Box::new(rest), Box::new(lights)];
+        Ok(Self { scene, pipeline, estimators })
     }
 
     /// The same by these estimators, whose light is added, and with a density of wavelengths that is known to fit.
@@ -144,10 +173,7 @@ impl Renderer {
             return Err(RenderError::DoesNotExtend("stratified"));
         }
         if light.metered.is_none() {
-            light.metered = Some(match self.estimators.first() {
-                Some(first) if !self.scene.meter_channels().is_empty() => first.metered(workers)?,
-                _ => Vec::new(),
-            });
+            light.metered = Some(self.metered(workers)?);
         }
         let spans: Vec<_> = light.parts.iter_mut().map(|part| part.done.next(samples)).collect();
         // What was begun is one piece of work; beyond it lies another.
@@ -166,6 +192,23 @@ impl Renderer {
             }
         }
         if more { self.advance(light, samples, workers, control) } else { Ok(()) }
+    }
+
+    /// What the meters see of the light of all estimators.
+    fn metered(&self, workers: &dyn Workers) -> Result<Vec<Vec<f64>>, RenderError> {
+        let mut all: Vec<Vec<f64>> = Vec::new();
+        if self.scene.meter_channels().is_empty() {
+            return Ok(all);
+        }
+        for estimator in &self.estimators {
+            let own = estimator.metered(workers)?;
+            if all.is_empty() {
+                all = own;
+            } else {
+                all.iter_mut().flatten().zip(own.iter().flatten()).for_each(|(sum, value)| *sum += value);
+            }
+        }
+        Ok(all)
     }
 
     /// Does what is left of a span of one estimator.
@@ -260,6 +303,7 @@ impl Renderer {
             rays: light.rays(),
             losses: light.losses.clone(),
             detected: light.detected,
+            estimators: self.estimators.iter().map(|e| e.name()).collect(),
             partial: light.samples() < u64::from(scene.render.samples),
             warnings: Vec::new(),
         })

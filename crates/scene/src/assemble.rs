@@ -6,8 +6,8 @@ use crate::filters;
 use crate::focus::FocusLight;
 use crate::lens_section::{LensSection, SetLens, held_lens};
 use crate::{
-    ConePattern, Direction, NumberFamily, Output, RenderSettings, Scene, doubts, films, lamps, language, output, sight,
-    yaml,
+    ConePattern, Direction, Lights, NumberFamily, Output, RenderSettings, Scene, doubts, films, lamps, language,
+    output, sight, yaml,
 };
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -96,13 +96,15 @@ pub(crate) struct BandSection {
 #[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct RenderSection {
-    /// Which way rays run: `backward` (from the imager), `forward` (from the source) or `auto` (the default: backward
-    /// where source and imager can).
+    /// Which way rays run: `backward` (from the imager), `forward` (from the source), `both` (from the source those of its
+    /// lights, which are far brighter than the rest, and from the imager all others) or `auto` (the default: backward where
+    /// source and imager can, and both where that gives much less noise).
     #[serde(default)]
     direction: Way,
     /// Backward: samples a pixel, a whole number from 1 to 4194304; 64 if absent.
     samples: Option<Whole<1, MAX_SAMPLES>>,
-    /// Forward: rays in all, a whole number from 1 to 1e15; four times pixels times samples if absent.
+    /// Forward: rays in all, a whole number from 1 to 1e15; four times pixels times samples if absent. Of both directions
+    /// those of the lights; eight times samples for each pixel that they reach if absent.
     rays: Option<Whole<1, MAX_RAYS>>,
     /// Seed of all random numbers, a whole number from 0 to 18446744073709551615; 1 if absent. Same scene, same seed: same picture.
     seed: Option<Whole<0, { u64::MAX }>>,
@@ -128,6 +130,7 @@ enum Way {
     Auto,
     Forward,
     Backward,
+    Both,
 }
 
 /// Most samples of a pixel.
@@ -374,8 +377,17 @@ fn render_settings(
     let direction = match s.direction {
         Way::Auto if can_backward => Direction::Backward,
         Way::Auto | Way::Forward => Direction::Forward,
-        Way::Backward => Direction::Backward,
+        Way::Backward | Way::Both => Direction::Backward,
     };
+    let lights = match s.direction {
+        Way::Auto if can_backward && can_forward => Lights::Auto,
+        Way::Both => Lights::Forward,
+        _ => Lights::Same,
+    };
+    if lights == Lights::Forward && can_backward && !can_forward {
+        let fault = params.fault("direction", "this source cannot be rendered forward");
+        faults.push(fault.hint("write `direction: backward`, or leave it to `auto`"));
+    }
     if direction == Direction::Backward && !can_backward {
         let fault = params.fault("direction", "this source cannot be rendered backward");
         faults.push(fault.hint("write `direction: forward`, or leave it to `auto`"));
@@ -390,8 +402,10 @@ fn render_settings(
     }
     faults.into_result(RenderSettings {
         direction,
+        lights,
         samples: samples as u32,
         rays,
+        rays_stated: s.rays.is_some(),
         seed: frame.map_or(seed, |frame| seed_of_frame(seed, frame)),
         frame,
         batch: s.batch.map_or(DEFAULT_BATCH, Whole::size),

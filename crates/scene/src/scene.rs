@@ -34,6 +34,17 @@ impl Direction {
     }
 }
 
+/// Whether the lights of a source are rendered forward while the rest of it is rendered backward.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Lights {
+    /// No: all of the source is rendered one way.
+    Same,
+    /// Where that pays.
+    Auto,
+    /// Wherever the source has lights.
+    Forward,
+}
+
 /// How forward rays are spread over the front of the lens.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
@@ -65,12 +76,16 @@ pub enum NumberFamily {
 /// The `render` section.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RenderSettings {
-    /// Sense of travel, decided.
+    /// Sense of travel, decided: of all light but perhaps that of [`RenderSettings::lights`].
     pub direction: Direction,
+    /// Backward: whether what is bright in the source is rendered forward.
+    pub lights: Lights,
     /// Backward: samples a pixel.
     pub samples: u32,
     /// Forward: rays in all.
     pub rays: u64,
+    /// Whether the scene states them.
+    pub rays_stated: bool,
     /// Seed of all numbers: of a frame of an animation its own.
     pub seed: u64,
     /// Number of the frame, where each has numbers of its own.
@@ -90,7 +105,7 @@ impl RenderSettings {
         let free = |settings: &Self| Self { batch: 0, samples: 0, rays: 0, ..*settings };
         // Forward, so many rays are a sample.
         let share = |s: &Self| u128::from(s.rays);
-        let as_many = self.direction == Direction::Backward
+        let as_many = (self.direction == Direction::Backward && self.lights == Lights::Same)
             || share(self) * u128::from(other.samples) == share(other) * u128::from(self.samples);
         let extends = self.numbers != NumberFamily::Stratified || self.samples == other.samples;
         free(self) == free(other) && as_many && extends

@@ -56,7 +56,10 @@ impl Report<'_> {
             "detected": rendering.detected,
             "lost": self.lost(),
             "seed": settings.seed,
-            "direction": settings.direction.name(),
+            "direction": match &rendering.estimators[..] {
+                [_, _, ..] => "both",
+                _ => settings.direction.name(),
+            },
             "samples_per_pixel": (!forward).then_some(settings.samples),
             "batch": settings.batch,
             "threads": self.threads,

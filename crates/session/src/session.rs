@@ -233,8 +233,7 @@ impl Session {
             Some(ready) if same_light => Some(ready),
             Some(ready) => {
                 let density = system.then(|| Arc::clone(ready.0.density()));
-                let direction = scene.render.direction;
-                let made = Renderer::of(Arc::clone(&scene), self.isa, density, &[direction]);
+                let made = Renderer::with_density(Arc::clone(&scene), self.isa, density);
                 let made = made.and_then(|renderer| renderer.begin().map(|light| (renderer, light)));
                 match made {
                     Ok(made) => Some(made),

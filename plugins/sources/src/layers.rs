@@ -4,7 +4,9 @@
 //! already) times what the ones in front of it let pass (T. Porter and T. Duff, "Compositing digital images", SIGGRAPH
 //! 1984). Nothing is guessed: what a layer hides, the one behind it knows.
 
+use crate::flat::Texture;
 use crate::frame::{Edge, Placed, Width};
+use crate::halves::{Half, Halves};
 use crate::lazy::Lazy;
 use crate::picture::map::PictureMap;
 use crate::picture::{Making, PictureFile, color_model, find};
@@ -15,9 +17,10 @@ use spectra_core::loss::{ALIVE, Loss};
 use spectra_core::params::{Faults, Length, Luminance, Params, Part, Positive, Quantity};
 use spectra_core::registry::{Context, StageOf};
 use spectra_core::spectral::SpectralPower;
-use spectra_core::stage::{ColorModel, Radiance, Source};
+use spectra_core::stage::{ColorModel, Emit, Radiance, Source};
 use spectra_core::{Isa, RayBatch};
 use spectra_pictures::read::Header;
+use std::sync::Arc;
 
 /// Picture files one behind the other, with cover: what is hidden is known.
 ///
@@ -26,8 +29,8 @@ use spectra_pictures::read::Header;
 /// shows what it hides, since the layer behind it has it.
 ///
 /// Colors are as of `kind: picture`. Alpha of integer files is taken as straight, of floating point as multiplied in,
-/// as OpenEXR has it; a picture without alpha covers all that is behind it. Layers are rendered from the imager only
-/// (`direction: backward`).
+/// as OpenEXR has it; a picture without alpha covers all that is behind it. Where a layer has an `edge` without end,
+/// light is traced from the imager only (`direction: backward`).
 ///
 /// # Example
 /// ```yaml
@@ -133,11 +136,18 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
     }
     faults.into_result(())?;
     let stand_in = Layers::new(layers.iter().map(Pending::white).collect());
-    Ok(Box::new(Lazy::new(Box::new(stand_in), false, move || {
+    let emits = layers.iter().all(|layer| layer.making.edge == Edge::Black);
+    Ok(Box::new(Lazy::new(Box::new(stand_in), emits, move || {
         let mut faults = Faults::new();
         let read: Vec<Layer> = layers.iter().filter_map(|layer| faults.take(layer.read())).collect();
         faults.into_result(())?;
-        Ok(Box::new(Layers::new(read)))
+        let lights = read.iter().filter_map(|layer| layer.map.lights.as_ref().map(|lights| lights.pays));
+        let Some(pays) = lights.reduce(|a, b| a || b).filter(|_| emits) else {
+            return Ok(Box::new(Layers::new(read)));
+        };
+        let half = |half| Layers::new(read.iter().map(|layer| layer.half(half)).collect());
+        let (lights, rest) = (half(Half::Lights), half(Half::Rest));
+        Ok(Box::new(Halves { lights, rest, whole: Layers::new(read), pays }))
     })))
 }
 
@@ -158,7 +168,7 @@ impl Pending {
 
     fn read(&self) -> Result<Layer, Faults> {
         let mut linear = self.file.read()?;
-        let cover = linear.alpha.take();
+        let cover = linear.alpha.take().map(Arc::new);
         let map = self.making.map(linear, &self.file.name);
         Ok(Layer { map, cover, distance_mm: self.distance_mm, center_mm: self.center_mm })
     }
@@ -167,20 +177,34 @@ impl Pending {
 struct Layer {
     map: PictureMap,
     /// Cover of each pixel; all of it if absent.
-    cover: Option<Vec<f32>>,
+    cover: Option<Arc<Vec<f32>>>,
     distance_mm: f64,
     center_mm: [f64; 2],
 }
 
 impl Layer {
-    /// Coefficients of the light and the cover where a ray meets it.
-    fn at(&self, [x, y, z]: [f64; 3], [l, m, n]: [f64; 3]) -> ([f32; 3], f32) {
+    /// One half of its light; it covers as before.
+    fn half(&self, half: Half) -> Self {
+        Self { map: self.map.half(half), cover: self.cover.clone(), ..*self }
+    }
+
+    /// Coefficients of the light, which part of it is this one's, and the cover where a ray meets it.
+    fn at(&self, [x, y, z]: [f64; 3], [l, m, n]: [f64; 3]) -> ([f32; 3], f32, f32) {
         let t = (-self.distance_mm - z) / n;
         let place = self.map.place(x + t * l - self.center_mm[0], y + t * m - self.center_mm[1]);
-        let Some(place) = place else { return ([0.0; 3], 0.0) };
+        let Some(place) = place else { return ([0.0; 3], 1.0, 0.0) };
         let spot = self.map.spot(place);
         let cover = self.cover.as_ref().map_or(1.0, |cover| spot.mix(|cell| [cover[cell]])[0]);
-        (spot.mix(|cell| self.map.coefficients[cell]), cover)
+        (spot.mix(|cell| self.map.coefficients[cell]), self.map.share(&spot, |cell| cell), cover)
+    }
+
+    /// The cover where a ray meets it.
+    fn cover_at(&self, at: [f64; 3], way: [f64; 3]) -> f32 {
+        let t = (-self.distance_mm - at[2]) / way[2];
+        let place = self.map.place(at[0] + t * way[0] - self.center_mm[0], at[1] + t * way[1] - self.center_mm[1]);
+        let Some(place) = place else { return 0.0 };
+        let spot = self.map.spot(place);
+        self.cover.as_ref().map_or(1.0, |cover| spot.mix(|cell| [cover[cell]])[0])
     }
 }
 
@@ -188,6 +212,8 @@ struct Layers {
     layers: Vec<Layer>,
     spectrum: SpectralPower,
     peak_over_mean: f64,
+    /// Which part of the rays starts on a layer or one before it.
+    sums: Vec<f64>,
 }
 
 impl Layers {
@@ -201,7 +227,17 @@ impl Layers {
             spectrum.lines.iter_mut().zip(&more.lines).for_each(|(a, b)| a.power += b.power);
         }
         let peak_over_mean = layers.iter().map(|l| l.map.peak_over_mean).fold(1.0, f64::max) * layers.len() as f64;
-        Self { layers, spectrum, peak_over_mean }
+        // A layer with little light gets its share, too.
+        let light = |l: &Layer| white::luminance_cd_m2(&l.map.mean).max(0.0) * seen(l);
+        let all: f64 = layers.iter().map(light).sum();
+        let bright = layers.iter().filter(|l| light(l) > 0.0).count().max(1) as f64;
+        let part = |l: &Layer| if light(l) > 0.0 { 0.8 * light(l) / all + 0.2 / bright } else { 0.0 };
+        let mut sum = 0.0;
+        let sums = layers.iter().map(|l| {
+            sum += part(l);
+            sum
+        });
+        Self { sums: sums.collect(), layers, spectrum, peak_over_mean }
     }
 }
 
@@ -214,6 +250,9 @@ impl Source for Layers {
     }
     fn distance_mm(&self) -> f64 {
         self.layers[0].distance_mm
+    }
+    fn emit(&self) -> Option<&dyn Emit> {
+        self.layers.iter().all(|layer| layer.map.is_bounded()).then_some(self as &dyn Emit)
     }
     fn radiance(&self) -> Option<&dyn Radiance> {
         Some(self)
@@ -247,8 +286,9 @@ impl Radiance for Layers {
                 for k in 0..len {
                     if passes[k] > 0.0 {
                         let i = start + k;
-                        let (color, cover) = layer.at([c.x[i], c.y[i], c.z[i]], [c.l[i], c.m[i], c.n[i]]);
+                        let (color, share, cover) = layer.at([c.x[i], c.y[i], c.z[i]], [c.l[i], c.m[i], c.n[i]]);
                         colors[k] = color;
+                        own[k] *= f64::from(share);
                         passes[k] *= 1.0 - f64::from(cover);
                     }
                     own[k] *= layer.map.scale;
@@ -257,6 +297,50 @@ impl Radiance for Layers {
                 sum.iter_mut().zip(&own).take(len).for_each(|(sum, own)| *sum += own);
             }
             c.weight[start..end].iter_mut().zip(&sum).for_each(|(weight, sum)| *weight *= sum);
+        }
+    }
+}
+
+impl Emit for Layers {
+    fn place(&self, rays: &mut RayBatch, u: &[f64], v: &[f64], _: Isa) {
+        let c = rays.columns_mut();
+        let total = self.sums.last().copied().unwrap_or(0.0);
+        for i in 0..c.x.len() {
+            let at = u[i] * total;
+            let k = self.sums.partition_point(|sum| *sum <= at).min(self.sums.len() - 1);
+            let from = if k > 0 { self.sums[k - 1] } else { 0.0 };
+            let part = self.sums[k] - from;
+            let rest = if part > 0.0 { ((at - from) / part).clamp(0.0, 1.0) } else { u[i] };
+            let layer = &self.layers[k];
+            let (x, y, area) = layer.map.draw(rest, v[i]);
+            (c.x[i], c.y[i], c.z[i]) = (x + layer.center_mm[0], y + layer.center_mm[1], -layer.distance_mm);
+            c.weight[i] *= layer.map.scale * if part > 0.0 { area * total / part } else { 0.0 };
+            c.tag[i] = k as u32;
+        }
+    }
+
+    /// What stands before a layer takes its part once the direction is known.
+    fn radiate(&self, rays: &mut RayBatch, _: Isa) {
+        let c = rays.columns_mut();
+        for start in (0..c.x.len()).step_by(CHUNK) {
+            let end = (start + CHUNK).min(c.x.len());
+            let mut colors = [[0.0_f32; 3]; CHUNK];
+            for i in start..end {
+                let (from, way) = ([c.x[i], c.y[i], c.z[i]], [c.l[i], c.m[i], c.n[i]]);
+                let (before, from_layer) = self.layers.split_at(c.tag[i] as usize);
+                let passes = before.iter().fold(1.0, |a, layer| a * (1.0 - f64::from(layer.cover_at(from, way))));
+                if c.state[i] == ALIVE && passes == 0.0 {
+                    c.state[i] = Loss::Absorbed.state(0);
+                }
+                if c.state[i] == ALIVE {
+                    let (color, share, _) = from_layer[0].at(from, way);
+                    colors[i - start] = color;
+                    c.weight[i] *= f64::from(share) * passes * way[2].abs();
+                }
+            }
+            let (wavelength, line) = (&c.wavelength_nm[start..end], &c.line[start..end]);
+            // All layers have one color model.
+            self.layers[0].map.model.evaluate(&colors[..end - start], wavelength, line, &mut c.weight[start..end]);
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use spectra_core::params::Faults;
 use spectra_core::spectral::SpectralPower;
-use spectra_core::stage::{Emit, Radiance, Source};
+use spectra_core::stage::{Emit, Radiance, Source, Split};
 use std::sync::OnceLock;
 
 /// How the source itself is made.
@@ -55,6 +55,9 @@ impl Source for Lazy {
     }
     fn radiance(&self) -> Option<&dyn Radiance> {
         self.now().radiance()
+    }
+    fn split(&self) -> Option<Split<'_>> {
+        self.now().split()
     }
     fn describe(&self) -> String {
         self.now().describe()

@@ -7,6 +7,7 @@ pub mod chart;
 mod chart_source;
 mod flat;
 mod frame;
+mod halves;
 mod layers;
 mod lazy;
 mod palette;

@@ -1,23 +1,33 @@
-//! A picture with depth as a source: what comes against a ray from the lens.
+//! A picture with depth as a source: what comes against a ray from the lens, and what goes toward it.
+//!
+//! Both are the same light: a ray that is emitted carries the light that [`HeightField::hit`] finds along it, and none where
+//! something else stands before the place that it starts from. What can be met are the plane of each pixel and the step between
+//! a pixel and one that stands nearer: where a ray passes there it meets the step, or what is guessed behind it. So rays start on
+//! both, and each ray that meets anything can be drawn in one way.
 
-use super::field::{HeightField, Line};
+use super::field::{HeightField, Hit, Line, Wall};
 use super::map::PictureMap;
+use crate::flat::Texture;
+use crate::halves::Half;
 use spectra_core::loss::{ALIVE, Loss};
 use spectra_core::spectral::SpectralPower;
-use spectra_core::stage::{Radiance, Source};
+use spectra_core::stage::{Emit, Radiance, Source};
 use spectra_core::{Isa, RayBatch};
+use std::sync::{Arc, OnceLock};
 
-/// A picture whose pixels stand at their depths. It answers for radiance only: light is asked for from the imager.
+/// A picture whose pixels stand at their depths.
 pub(super) struct DeepPicture {
     /// Colors; its size is that on the plane at `plane_mm`.
-    pub map: PictureMap,
-    pub field: HeightField,
+    map: PictureMap,
+    field: Arc<HeightField>,
     /// Distance of the plane from the center of projection, mm.
-    pub plane_mm: f64,
+    plane_mm: f64,
     /// The center of projection on the axis, mm behind the first vertex.
-    pub eye_mm: f64,
-    pub nearest_mm: f64,
-    pub farthest_mm: f64,
+    eye_mm: f64,
+    nearest_mm: f64,
+    farthest_mm: f64,
+    /// The steps that rays start on, found when the first does.
+    walls: OnceLock<Walls>,
 }
 
 impl Source for DeepPicture {
@@ -30,6 +40,9 @@ impl Source for DeepPicture {
     fn distance_mm(&self) -> f64 {
         self.nearest_mm - self.eye_mm
     }
+    fn emit(&self) -> Option<&dyn Emit> {
+        (self.field.cells() <= MOST_CELLS && self.map.is_bounded()).then_some(self as &dyn Emit)
+    }
     fn radiance(&self) -> Option<&dyn Radiance> {
         Some(self)
     }
@@ -40,12 +53,28 @@ impl Source for DeepPicture {
 }
 
 impl DeepPicture {
+    /// The nearest and farthest depth are `ends_mm`.
+    pub(super) fn new(
+        map: PictureMap,
+        field: Arc<HeightField>,
+        plane_mm: f64,
+        eye_mm: f64,
+        [nearest_mm, farthest_mm]: [f64; 2],
+    ) -> Self {
+        Self { map, field, plane_mm, eye_mm, nearest_mm, farthest_mm, walls: OnceLock::new() }
+    }
+
+    /// Pixels a mm on the plane, to the right and up (rows count down), and the middle of the picture in pixels.
+    fn lattice(&self) -> [[f64; 2]; 2] {
+        let map = &self.map;
+        let per_mm = [map.width_px as f64 / map.width_mm, -(map.height_px as f64) / map.height_mm];
+        [per_mm, [0.5 * map.width_px as f64, 0.5 * map.height_px as f64]]
+    }
+
     /// The ray through a point in a direction, over the picture.
     fn line(&self, [x, y, z]: [f64; 3], [l, m, n]: [f64; 3]) -> Line {
         let t = (self.eye_mm - z) / n;
-        let map = &self.map;
-        let per_mm = [map.width_px as f64 / map.width_mm, -(map.height_px as f64) / map.height_mm];
-        let middle = [0.5 * map.width_px as f64, 0.5 * map.height_px as f64];
+        let [per_mm, middle] = self.lattice();
         let (slope, at_eye) = ([l / -n, m / -n], [x + t * l, y + t * m]);
         Line {
             at_infinity: [0, 1].map(|k| middle[k] + per_mm[k] * self.plane_mm * slope[k]),
@@ -53,16 +82,33 @@ impl DeepPicture {
         }
     }
 
-    /// The color that a ray meets; black beside the picture.
-    fn color(&self, line: &Line) -> [f32; 3] {
-        let Some(hit) = self.field.hit(line) else { return [0.0; 3] };
+    /// How far right and up of the axis a place of the picture is seen, per unit of depth.
+    fn slopes(&self, place: [f64; 2]) -> [f64; 2] {
+        let [per_mm, middle] = self.lattice();
+        [0, 1].map(|k| (place[k] - middle[k]) / (per_mm[k] * self.plane_mm))
+    }
+
+    /// The point at a place of the picture and a depth, in the frame of the lens.
+    fn point(&self, place: [f64; 2], depth_mm: f64) -> [f64; 3] {
+        let [x, y] = self.slopes(place);
+        [x * depth_mm, y * depth_mm, self.eye_mm - depth_mm]
+    }
+
+    /// The color that a ray meets, and which part of the light there is this picture's.
+    #[inline(always)]
+    fn color(&self, hit: &Hit) -> ([f32; 3], f32) {
         let own = self.map.coefficients[hit.cell];
-        if hit.guessed {
-            return own;
-        }
         // Between pixels of the same thing colors are smooth; others do not count.
         let spot = self.map.spot(hit.place);
-        spot.mix(|cell| if self.field.together(hit.cell, cell) { self.map.coefficients[cell] } else { own })
+        let is_whole = self.map.half == Half::Whole;
+        if hit.guessed {
+            let share = if is_whole { 1.0 } else { self.map.share(&spot, |_| hit.cell) };
+            return (own, share);
+        }
+        let of = |cell| if self.field.together(hit.cell, cell) { cell } else { hit.cell };
+        let color =
+            spot.mix(|cell| if self.field.together(hit.cell, cell) { self.map.coefficients[cell] } else { own });
+        (color, if is_whole { 1.0 } else { self.map.share(&spot, of) })
     }
 }
 
@@ -76,12 +122,161 @@ impl Radiance for DeepPicture {
                 if c.state[i] == ALIVE && !(c.n[i] < 0.0) {
                     c.state[i] = Loss::Absorbed.state(0);
                 }
-                colors[i - start] = if c.state[i] == ALIVE {
-                    self.color(&self.line([c.x[i], c.y[i], c.z[i]], [c.l[i], c.m[i], c.n[i]]))
-                } else {
-                    [0.0; 3]
+                let mut share = 1.0;
+                colors[i - start] = [0.0; 3];
+                if c.state[i] == ALIVE {
+                    let line = self.line([c.x[i], c.y[i], c.z[i]], [c.l[i], c.m[i], c.n[i]]);
+                    // Black beside the picture.
+                    if let Some(hit) = self.field.hit(&line) {
+                        (colors[i - start], share) = self.color(&hit);
+                    }
+                }
+                c.weight[i] *= self.map.scale * f64::from(share);
+            }
+            let (wavelength, line) = (&c.wavelength_nm[start..end], &c.line[start..end]);
+            self.map.model.evaluate(&colors[..end - start], wavelength, line, &mut c.weight[start..end]);
+        }
+    }
+}
+
+/// Pixels that a tag has room for beside side and kind.
+const MOST_CELLS: usize = 1 << 28;
+/// In a tag: the ray starts on a step, on this side of the pixel.
+const IS_WALL: u32 = 1 << 31;
+const SIDE_BITS: u32 = 28;
+/// How far from the axis light enters a lens, mm, as a guess: it decides how many rays start on steps, not what they carry.
+const OFF_AXIS_MM: f64 = 6.0;
+/// At most this part of the rays starts on steps, where planes shine as well.
+const MOST_WALLS: f64 = 0.5;
+
+/// The steps of a picture that rays start on, in proportion to how much light is expected to pass them.
+struct Walls {
+    all: Vec<Wall>,
+    /// Up to and with each; the last is 1.
+    sums: Vec<f64>,
+    /// Which part of the rays starts on them.
+    share: f64,
+}
+
+impl Walls {
+    /// `level` says how bright a pixel is, 0 if it is none of this picture's.
+    fn of(deep: &DeepPicture, level: impl Fn(usize) -> f32) -> Self {
+        let (field, map) = (&deep.field, &deep.map);
+        let [per_mm, _] = deep.lattice();
+        // Places of the background that a step hides, in pixels, for each unit of 1/depth between.
+        let hidden = deep.plane_mm * per_mm[0].abs().max(per_mm[1].abs()) * OFF_AXIS_MM;
+        let around = |cell: usize| {
+            let (column, row) = (cell % map.width_px, cell / map.width_px);
+            let rows = row.saturating_sub(1)..=(row + 1).min(map.height_px - 1);
+            let columns = column.saturating_sub(1)..=(column + 1).min(map.width_px - 1);
+            rows.flat_map(|r| columns.clone().map(move |c| r * map.width_px + c)).map(&level).fold(0.0_f32, f32::max)
+        };
+        let (mut all, mut sums, mut sum, mut planes) = (Vec::new(), Vec::new(), 0.0, 0.0);
+        for cell in 0..field.cells() {
+            planes += f64::from(level(cell));
+            for side in 0..4 {
+                let Some(nearer) = field.beside(cell, side).filter(|beside| field.w(*beside) > field.w(cell)) else {
+                    continue;
                 };
-                c.weight[i] *= self.map.scale;
+                // A step of one thing has the light of its nearer pixel; behind another thing goes on what it hides.
+                let level = if field.together(cell, nearer) { around(nearer) } else { level(cell) };
+                if level > 0.0 {
+                    sum += f64::from(level) * hidden * (field.w(nearer) - field.w(cell));
+                    all.push(Wall { cell: cell as u32, side });
+                    sums.push(sum);
+                }
+            }
+        }
+        let share = if sum > 0.0 { (sum / (sum + planes)).min(MOST_WALLS) } else { 0.0 };
+        sums.iter_mut().for_each(|s| *s /= sum);
+        if let Some(last) = sums.last_mut() {
+            *last = 1.0;
+        }
+        Self { all, sums, share }
+    }
+
+    /// One of them, what is left of the number, and one over its probability.
+    fn draw(&self, u: f64) -> (Wall, f64, f64) {
+        let at = self.sums.partition_point(|sum| *sum <= u).min(self.sums.len() - 1);
+        let from = if at > 0 { self.sums[at - 1] } else { 0.0 };
+        let part = self.sums[at] - from;
+        (self.all[at], ((u - from) / part).clamp(0.0, 1.0), 1.0 / part)
+    }
+}
+
+impl Emit for DeepPicture {
+    fn place(&self, rays: &mut RayBatch, u: &[f64], v: &[f64], _: Isa) {
+        let walls = self.walls.get_or_init(|| match (&self.map.lights, self.map.half) {
+            (Some(lights), Half::Lights) => Walls::of(self, |cell| lights.level[cell]),
+            _ => Walls::of(self, |_| 1.0),
+        });
+        let pixel_mm2 = self.map.width_mm * self.map.height_mm / (self.plane_mm * self.plane_mm);
+        let [per_mm, _] = self.lattice();
+        let last = [self.map.width_px - 1, self.map.height_px - 1];
+        let c = rays.columns_mut();
+        for i in 0..c.x.len() {
+            let (place, depth_mm, area_mm2, tag);
+            if u[i] < walls.share {
+                let (wall, part, inverse) = walls.draw(u[i] / walls.share);
+                let (cell, axis) = (wall.cell as usize, usize::from(wall.side / 2));
+                let w = self.field.w(cell);
+                let range = self.field.beside(cell, wall.side).map_or(0.0, |nearer| self.field.w(nearer) - w);
+                let corner = [cell % self.map.width_px, cell / self.map.width_px].map(|at| at as f64);
+                let mut at = [corner[0] + v[i], corner[1] + v[i]];
+                at[axis] = corner[axis] + f64::from(wall.side % 2);
+                depth_mm = 1.0 / (w + part * range);
+                // Along the step its area grows by depth dD d(slope), and dD is depth^2 dw.
+                let slope = 1.0 / (per_mm[1 - axis].abs() * self.plane_mm);
+                area_mm2 = depth_mm * depth_mm * depth_mm * range * slope * inverse / walls.share;
+                (place, tag) = (at, IS_WALL | u32::from(wall.side) << SIDE_BITS | wall.cell);
+            } else {
+                let (column, row, inverse) = self.map.importance.draw((u[i] - walls.share) / (1.0 - walls.share), v[i]);
+                let cell = (row as usize).min(last[1]) * self.map.width_px + (column as usize).min(last[0]);
+                depth_mm = 1.0 / self.field.w(cell);
+                area_mm2 = pixel_mm2 * depth_mm * depth_mm * inverse / (1.0 - walls.share);
+                (place, tag) = ([column, row], cell as u32);
+            }
+            [c.x[i], c.y[i], c.z[i]] = self.point(place, depth_mm);
+            c.weight[i] *= self.map.scale * area_mm2;
+            c.tag[i] = tag;
+        }
+    }
+
+    /// What a ray carries shows once it has a direction: only then is it known what stands before it.
+    fn radiate(&self, rays: &mut RayBatch, _: Isa) {
+        let c = rays.columns_mut();
+        let mut colors = [[0.0_f32; 3]; 64];
+        for start in (0..c.x.len()).step_by(64) {
+            let end = (start + 64).min(c.x.len());
+            for i in start..end {
+                colors[i - start] = [0.0; 3];
+                if c.state[i] != ALIVE {
+                    continue;
+                }
+                let (tag, way) = (c.tag[i], [c.l[i], c.m[i], c.n[i]]);
+                let hit = self.field.hit(&self.line([c.x[i], c.y[i], c.z[i]], way));
+                let from = Wall { cell: tag & (MOST_CELLS as u32 - 1), side: (tag >> SIDE_BITS & 3) as u8 };
+                let meets = |hit: &Hit| match hit.wall {
+                    None => tag & IS_WALL == 0 && hit.cell == tag as usize,
+                    Some(wall) => tag & IS_WALL != 0 && wall == from,
+                };
+                let Some(hit) = hit.filter(meets) else {
+                    c.state[i] = Loss::Absorbed.state(0);
+                    continue;
+                };
+                let cosine = if tag & IS_WALL == 0 {
+                    way[2]
+                } else {
+                    // The step lies along the lines through the center of projection: its normal is (1, 0, x/depth) or
+                    // (0, 1, y/depth), and the area counts by that vector.
+                    let axis = usize::from(from.side / 2);
+                    let (cell, beyond) = (from.cell as usize, usize::from(from.side % 2));
+                    let border = [cell % self.map.width_px + beyond, cell / self.map.width_px + beyond];
+                    way[axis] + self.slopes(border.map(|at| at as f64))[axis] * way[2]
+                };
+                let (color, share) = self.color(&hit);
+                colors[i - start] = color;
+                c.weight[i] *= cosine.abs() * f64::from(share);
             }
             let (wavelength, line) = (&c.wavelength_nm[start..end], &c.line[start..end]);
             self.map.model.evaluate(&colors[..end - start], wavelength, line, &mut c.weight[start..end]);

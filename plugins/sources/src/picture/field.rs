@@ -44,6 +44,17 @@ pub(super) struct Hit {
     pub cell: usize,
     /// Whether that surface is guessed: a background that goes on behind a foreground.
     pub guessed: bool,
+    /// Where the ray passed from in front of one pixel to behind the next; `None` if it met a pixel's own plane.
+    pub wall: Option<Wall>,
+}
+
+/// The step between a pixel and a neighbor that stands nearer: what a ray meets there, or the guess that goes on from there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Wall {
+    /// The pixel that stands farther: the ray leaves it.
+    pub cell: u32,
+    /// Where the nearer one lies: 0 left, 1 right, 2 above, 3 below.
+    pub side: u8,
 }
 
 /// Steps of w below this part of the largest move nothing by as much as a pixel in any sensible picture.
@@ -59,8 +70,25 @@ impl HeightField {
         Self { width, height, inverse_mm, nearest: f64::from(nearest), farthest: f64::from(farthest), edge }
     }
 
-    fn w(&self, cell: usize) -> f64 {
+    /// One over the depth of a pixel, 1/mm.
+    pub(super) fn w(&self, cell: usize) -> f64 {
         f64::from(self.inverse_mm[cell])
+    }
+
+    /// The pixel beside one, on a side as [`Wall::side`] counts them.
+    pub(super) fn beside(&self, cell: usize, side: u8) -> Option<usize> {
+        let (column, row) = (cell % self.width, cell / self.width);
+        match side {
+            0 => (column > 0).then(|| cell - 1),
+            1 => (column + 1 < self.width).then(|| cell + 1),
+            2 => (row > 0).then(|| cell - self.width),
+            _ => (row + 1 < self.height).then(|| cell + self.width),
+        }
+    }
+
+    /// How many pixels there are.
+    pub(super) fn cells(&self) -> usize {
+        self.inverse_mm.len()
     }
 
     /// Whether two pixels belong to the same thing.
@@ -96,6 +124,9 @@ impl HeightField {
         // The pixel whose surface the ray was last in front of, and whether it still is.
         let mut before: Option<usize> = None;
         let mut in_front = w_in >= self.nearest;
+        // Where it last came behind something, and by which side it came into the pixel where it is.
+        let mut wall = None;
+        let mut side = 0;
         loop {
             let leaves = [0, 1].map(|k| {
                 let border = (cell[k] + usize::from(forward[k])) as f64;
@@ -109,16 +140,19 @@ impl HeightField {
             let surface = self.w(here);
             if w_in >= surface {
                 if w_out <= surface {
-                    return Some(Hit { place: line.at(surface), cell: here, guessed: false });
+                    return Some(Hit { place: line.at(surface), cell: here, guessed: false, wall: None });
                 }
                 (before, in_front) = (Some(here), true);
             } else {
-                if in_front && before.is_none_or(|before| self.together(before, here)) {
-                    return Some(Hit { place: line.at(w_in), cell: here, guessed: false });
+                if in_front {
+                    wall = before.map(|before| Wall { cell: before as u32, side });
+                    if before.is_none_or(|before| self.together(before, here)) {
+                        return Some(Hit { place: line.at(w_in), cell: here, guessed: false, wall });
+                    }
                 }
                 in_front = false;
                 if let Some(before) = before.filter(|before| w_out <= self.w(*before)) {
-                    return Some(Hit { place: line.at(self.w(before)), cell: before, guessed: true });
+                    return Some(Hit { place: line.at(self.w(before)), cell: before, guessed: true, wall });
                 }
             }
             if ends {
@@ -129,6 +163,7 @@ impl HeightField {
                 return None;
             }
             cell[axis] = next;
+            side = 2 * axis as u8 + u8::from(forward[axis]);
             w_in = w_out;
         }
     }

@@ -2,25 +2,32 @@
 
 use crate::flat::{Places, Texture};
 use crate::frame::Edge;
+use crate::halves::Half;
+use crate::picture::lights::Lights;
 use spectra_core::Isa;
 use spectra_core::spectral::SpectralPower;
 use spectra_core::stage::ColorModel;
 use std::sync::Arc;
 
-/// The picture on the plane.
+/// The picture on the plane. Copies share its pixels.
+#[derive(Clone)]
 pub(crate) struct PictureMap {
     pub width_px: usize,
     pub height_px: usize,
     pub width_mm: f64,
     pub height_mm: f64,
     /// What the color model needs of each pixel, times the luminance scale where the model is linear.
-    pub coefficients: Vec<[f32; 3]>,
+    pub coefficients: Arc<Vec<[f32; 3]>>,
     pub model: Arc<dyn ColorModel>,
     /// Radiance per unit of the model.
     pub scale: f64,
     pub mean: SpectralPower,
     pub peak_over_mean: f64,
-    pub importance: Importance,
+    pub importance: Arc<Importance>,
+    /// Its bright pixels, if there are any.
+    pub lights: Option<Arc<Lights>>,
+    /// Which light of it this is.
+    pub half: Half,
     pub name: String,
     /// What lies beyond its border.
     pub edge: Edge,
@@ -64,10 +71,46 @@ impl PictureMap {
         }
     }
 
-    /// Coefficients at a point, linear between the centres of pixels, constant beyond the outermost.
-    fn at(&self, x_mm: f64, y_mm: f64) -> Option<[f32; 3]> {
-        let place = self.place(x_mm, y_mm)?;
-        Some(self.spot(place).mix(|cell| self.coefficients[cell]))
+    /// Coefficients at a point, linear between the centres of pixels, constant beyond the outermost; and which part of the light
+    /// there is this one's.
+    fn at(&self, x_mm: f64, y_mm: f64) -> Option<([f32; 3], f32)> {
+        let spot = self.spot(self.place(x_mm, y_mm)?);
+        Some((spot.mix(|cell| self.coefficients[cell]), self.share(&spot, |cell| cell)))
+    }
+
+    /// Which part of the light at a spot is this one's; `of` says which pixel's light stands at each of the four.
+    #[inline]
+    pub(crate) fn share(&self, spot: &Spot, of: impl Fn(usize) -> usize) -> f32 {
+        let of_lights = || {
+            let lights = self.lights.as_ref().map_or(&[][..], |lights| &lights.level);
+            spot.mix(|cell| [f32::from(u8::from(lights.get(of(cell)).is_some_and(|level| *level > 0.0)))])[0]
+        };
+        match self.half {
+            Half::Whole => 1.0,
+            Half::Nothing => 0.0,
+            Half::Lights => of_lights(),
+            Half::Rest => 1.0 - of_lights(),
+        }
+    }
+
+    /// One half of its light.
+    pub(crate) fn half(&self, half: Half) -> Self {
+        let (half, number) = match (&self.lights, half) {
+            (Some(_), Half::Lights) => (half, 0),
+            (Some(_), Half::Rest) => (half, 1),
+            (None, Half::Lights | Half::Nothing) => {
+                return Self { half: Half::Nothing, mean: self.mean.scaled(0.0), peak_over_mean: 1.0, ..self.clone() };
+            }
+            _ => return self.clone(),
+        };
+        let Some(lights) = &self.lights else { return self.clone() };
+        Self {
+            half,
+            mean: lights.mean[number].clone(),
+            peak_over_mean: lights.peak_over_mean[number],
+            importance: if number == 0 { Arc::clone(&lights.importance) } else { Arc::clone(&self.importance) },
+            ..self.clone()
+        }
     }
 }
 
@@ -77,9 +120,9 @@ impl Texture for PictureMap {
         for start in (0..weight.len()).step_by(64) {
             let end = (start + 64).min(weight.len());
             for i in start..end {
-                let color = self.at(at.x_mm[i], at.y_mm[i]);
-                weight[i] *= if color.is_some() { self.scale } else { 0.0 };
-                colors[i - start] = color.unwrap_or_default();
+                let (color, share) = self.at(at.x_mm[i], at.y_mm[i]).unwrap_or_default();
+                weight[i] *= self.scale * f64::from(share);
+                colors[i - start] = color;
             }
             let (wavelength, line) = (&at.wavelength_nm[start..end], &at.line[start..end]);
             self.model.evaluate(&colors[..end - start], wavelength, line, &mut weight[start..end]);
@@ -142,13 +185,14 @@ impl Importance {
         Self { size_px, cell_px: cell as f64, ..Self::of_cells(cells, &sums) }
     }
 
-    /// From the brightness of each cell. A cell's weight is the mean of its neighborhood, since
-    /// light is smooth between pixels: where any light is, the density is positive.
+    /// From the brightness of each cell. Half of the places are drawn by the mean of a cell's neighborhood, since light is smooth
+    /// between pixels: where any light is, the density is positive. The other half fall evenly on all such cells, so that what
+    /// is dark gets its share, too.
     fn of_cells([width, height]: [usize; 2], brightness: &[f32]) -> Self {
         let mut columns = Vec::with_capacity(height);
         let mut sums = Vec::with_capacity(height);
-        let mut line = vec![0.0_f64; width];
-        for row in 0..height {
+        let mut lines = vec![0.0_f64; width * height];
+        for (row, line) in lines.chunks_exact_mut(width).enumerate() {
             let (above, below) = (row.saturating_sub(1), (row + 1).min(height - 1));
             for (column, cell) in line.iter_mut().enumerate() {
                 let (left, right) = (column.saturating_sub(1), (column + 1).min(width - 1));
@@ -158,16 +202,21 @@ impl Importance {
                         sum += f64::from(brightness[r * width + c]);
                     }
                 }
-                *cell = sum;
+                *cell = sum.max(0.0);
             }
+        }
+        let lit = lines.iter().filter(|cell| **cell > 0.0).count();
+        let even = if lit > 0 { lines.iter().sum::<f64>() / lit as f64 } else { 0.0 };
+        for line in lines.chunks_exact_mut(width) {
+            line.iter_mut().filter(|cell| **cell > 0.0).for_each(|cell| *cell += even);
             sums.push(line.iter().sum());
-            columns.push(Cumulative::new(&line));
+            columns.push(Cumulative::new(line));
         }
         Self { size_px: [width as f64, height as f64], cell_px: 1.0, rows: Cumulative::new(&sums), columns }
     }
 
     /// Column and row (pixels, fractional) and one over the density relative to uniform.
-    fn draw(&self, u: f64, v: f64) -> (f64, f64, f64) {
+    pub(crate) fn draw(&self, u: f64, v: f64) -> (f64, f64, f64) {
         let (row, row_density) = self.rows.draw(v);
         let index = (row as usize).min(self.columns.len() - 1);
         let (column, column_density) = self.columns[index].draw(u);
@@ -187,8 +236,8 @@ struct Cumulative {
 
 impl Cumulative {
     fn new(weights: &[f64]) -> Self {
-        // A cell with any light gets a hundredth of the mean at least, or single precision could lose it.
-        let floor = 0.01 * weights.iter().sum::<f64>() / weights.len() as f64;
+        // A cell with any light gets a little of the mean at least, or single precision could lose it.
+        let floor = 1e-4 * weights.iter().sum::<f64>() / weights.len() as f64;
         let weights: Vec<f64> = weights.iter().map(|w| if *w > 0.0 { w + floor } else { 0.0 }).collect();
         let total: f64 = weights.iter().sum();
         let mut sum = 0.0;

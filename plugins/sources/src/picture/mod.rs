@@ -4,15 +4,18 @@ mod deep;
 mod depth;
 mod field;
 mod highlights;
+pub(crate) mod lights;
 pub(crate) mod map;
 
 use crate::flat::Flat;
 use crate::frame::{Edge, Placed, Width};
+use crate::halves::{Half, Halves};
 use crate::lazy::Lazy;
 use crate::white;
 use deep::DeepPicture;
 use depth::Depth;
 use field::HeightField;
+use lights::Lights;
 use map::{Importance, PictureMap};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -167,28 +170,34 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
     file.warn(&header, context);
     let making = Making { model, width_mm, luminance_cd_m2: p.luminance.cd_per_m2(), edge };
     let stand_in = Flat { texture: making.white(&header, &file.name), distance_mm };
-    let emits = depth.is_none() && edge == Edge::Black;
+    let emits = edge == Edge::Black;
     Ok(Box::new(Lazy::new(Box::new(stand_in), emits, move || {
         let mut linear = file.read()?;
         if let (Some(stops), Some(clipped_at)) = (recover_stops, linear.clipped_at) {
             highlights::recover(&mut linear.rgb, linear.width as usize, clipped_at, stops);
         }
         let Some(depth) = &depth else {
-            return Ok(Box::new(Flat { texture: making.map(linear, &file.name), distance_mm }));
+            let map = making.map(linear, &file.name);
+            return Ok(with_halves(map, emits, |texture| Flat { texture, distance_mm }));
         };
         let plane_mm = distance_mm + depth.eye_mm;
         let all = depth.of(&linear, plane_mm, width_mm)?;
         let map = making.map(linear, &file.name);
         let ends = all.iter().fold([f32::INFINITY, 0.0_f32], |[a, b], d| [a.min(*d), b.max(*d)]);
-        Ok(Box::new(DeepPicture {
-            field: HeightField::new(map.width_px, map.height_px, &all, depth.edge),
-            map,
-            plane_mm,
-            eye_mm: depth.eye_mm,
-            nearest_mm: f64::from(ends[0]),
-            farthest_mm: f64::from(ends[1]),
-        }))
+        let field = Arc::new(HeightField::new(map.width_px, map.height_px, &all, depth.edge));
+        let eye_mm = depth.eye_mm;
+        let ends_mm = ends.map(f64::from);
+        Ok(with_halves(map, emits, |map| DeepPicture::new(map, Arc::clone(&field), plane_mm, eye_mm, ends_mm)))
     })))
+}
+
+/// A source of a picture, as two as well where it has lights and may emit.
+fn with_halves<S: Source + 'static>(map: PictureMap, emits: bool, make: impl Fn(PictureMap) -> S) -> Box<dyn Source> {
+    let Some(pays) = map.lights.as_ref().filter(|_| emits).map(|lights| lights.pays) else {
+        return Box::new(make(map));
+    };
+    let [lights, rest] = [Half::Lights, Half::Rest].map(|half| make(map.half(half)));
+    Box::new(Halves { lights, rest, whole: make(map), pays })
 }
 
 /// A picture file that was found, with what a scene says of it.
@@ -321,7 +330,24 @@ fn assemble(linear: Linear, name: &str, making: &Making) -> PictureMap {
     }
     let mean_brightness = rgb.iter().map(|p| f64::from(brightness(*p))).sum::<f64>() / pixels;
     let peak = rgb.iter().fold(0.0_f32, |a, p| a.max(brightness(*p)));
-    let importance = Importance::new(width, height, |i| brightness(rgb[i]));
+    let importance = Arc::new(Importance::new(width, height, |i| brightness(rgb[i])));
+    let lights = (f64::from(peak) > mean_brightness)
+        .then(|| lights::find(width, &rgb.iter().map(|p| brightness(*p)).collect::<Vec<_>>()))
+        .flatten();
+    let lights = lights.map(|found| {
+        let mut sums = [[0.0_f64; 3]; 2];
+        for (pixel, level) in rgb.iter().zip(&found.level) {
+            let sum = &mut sums[usize::from(*level == 0.0)];
+            sum.iter_mut().zip(pixel).for_each(|(sum, value)| *sum += f64::from(*value) / pixels);
+        }
+        Arc::new(Lights {
+            importance: Arc::new(Importance::new(width, height, |i| found.level[i])),
+            level: found.level,
+            mean: sums.map(|sum| model.spectrum(sum.map(|v| v.max(0.0))).scaled(scale)),
+            peak_over_mean: found.peak_over_mean,
+            pays: found.pays,
+        })
+    });
     for pixel in &mut rgb {
         *pixel = model.coefficients(pixel.map(f64::from));
     }
@@ -330,10 +356,12 @@ fn assemble(linear: Linear, name: &str, making: &Making) -> PictureMap {
         height_px: height,
         width_mm: making.width_mm,
         height_mm: making.width_mm * height as f64 / (width as f64 * linear.pixel_aspect),
-        coefficients: rgb,
+        coefficients: Arc::new(rgb),
         mean: model.spectrum(mean).scaled(scale),
         peak_over_mean: if mean_brightness > 0.0 { f64::from(peak) / mean_brightness } else { 1.0 },
         importance,
+        lights,
+        half: Half::Whole,
         scale,
         model: Arc::clone(model),
         name: name.to_owned(),

@@ -1,0 +1,144 @@
+//! Which pixels of a picture are lights: much brighter than what they stand among, and few.
+//!
+//! Rays from the imager find small bright things by chance, and are noisy where they are out of focus; rays from the bright pixels
+//! find the imager always. So the picture is taken as the sum of two: its light times `share`, and its light times one minus
+//! `share`. `share` is 1 on the pixels of lights, 0 on others, and linear between their centers as the light itself.
+//!
+//! A pixel is a light if it is brighter than [`TIMES`] times the mean of those that are none, and among the brightest
+//! [`MOST`] of all. So are its eight neighbors: between a light and a neighbor all light is then the lights'.
+
+use super::map::Importance;
+use spectra_core::spectral::SpectralPower;
+use std::sync::Arc;
+
+/// How much brighter than the mean of the rest a light is.
+const TIMES: f64 = 8.0;
+/// At most this part of a picture is lights.
+const MOST: f64 = 0.05;
+/// Two directions pay where the variance of a wholly blurred picture falls by this factor at least: they cost up to four times as
+/// much as one.
+const PAYS: f64 = 8.0;
+/// A light that is black is drawn as if it had this part of the mean brightness: its neighborhood may have light.
+const LEAST: f32 = 1e-3;
+
+/// The lights of a picture.
+pub(crate) struct Lights {
+    /// Of each pixel: 0 where it is none, else its brightness, which is above 0.
+    pub level: Vec<f32>,
+    /// Draws places on them.
+    pub importance: Arc<Importance>,
+    /// Light of the lights and of the rest, a mean over the picture.
+    pub mean: [SpectralPower; 2],
+    /// Peak over mean of each, among its own pixels.
+    pub peak_over_mean: [f64; 2],
+    pub pays: bool,
+}
+
+/// What is known of the pixels before their spectra are.
+pub(super) struct Found {
+    pub level: Vec<f32>,
+    pub peak_over_mean: [f64; 2],
+    pub pays: bool,
+}
+
+/// The lights among pixels of this brightness; `None` where there are none.
+pub(super) fn find(width: usize, brightness: &[f32]) -> Option<Found> {
+    let all = brightness.len() as f64;
+    let mean = |limit: f64| {
+        let dark = brightness.iter().map(|b| f64::from(b.max(0.0))).filter(|b| *b <= limit);
+        let (sum, count) = dark.fold((0.0, 0_u64), |(sum, count), b| (sum + b, count + 1));
+        if count > 0 { sum / count as f64 } else { 0.0 }
+    };
+    let peak = brightness.iter().fold(0.0_f32, |a, b| a.max(*b));
+    if !peak.is_finite() {
+        return None;
+    }
+    let mut limit = f64::from(peak);
+    loop {
+        let lower = TIMES * mean(limit);
+        if lower >= limit {
+            break;
+        }
+        limit = lower;
+    }
+    let place = ((1.0 - MOST) * all) as usize;
+    let mut sorted = brightness.to_vec();
+    let (_, quantile, _) = sorted.select_nth_unstable_by(place.min(brightness.len() - 1), f32::total_cmp);
+    let limit = limit.max(f64::from(*quantile)) as f32;
+    drop(sorted);
+    let height = brightness.len() / width;
+    let mut level = vec![0.0_f32; brightness.len()];
+    let mut any = false;
+    for (at, _) in brightness.iter().enumerate().filter(|(_, b)| **b > limit) {
+        any = true;
+        let (column, row) = (at % width, at / width);
+        for r in row.saturating_sub(1)..=(row + 1).min(height - 1) {
+            for c in column.saturating_sub(1)..=(column + 1).min(width - 1) {
+                level[r * width + c] = 1.0;
+            }
+        }
+    }
+    if !any {
+        return None;
+    }
+    // First and second moment, peak, number of pixels: of lights and rest.
+    let mut moments = [[0.0_f64; 4]; 2];
+    for (b, level) in brightness.iter().zip(&level) {
+        let b = f64::from(b.max(0.0));
+        let [first, second, peak, count] = &mut moments[usize::from(*level == 0.0)];
+        (*first, *second, *peak, *count) = (*first + b, *second + b * b, peak.max(b), *count + 1.0);
+    }
+    let [lights, rest] = moments;
+    let of = |sum: f64| sum / all;
+    let square = |x: f64| x * x;
+    // A pixel of the imager that sees all of the picture: backward each sample finds one place of it; forward a light's ray finds
+    // one pixel of all.
+    let one = of(lights[1] + rest[1]) - square(of(lights[0] + rest[0]));
+    let two = of(rest[1]) - square(of(rest[0])) + square(of(lights[0]));
+    let least = LEAST * (lights[0] / lights[3]) as f32;
+    level.iter_mut().zip(brightness).filter(|(level, _)| **level > 0.0).for_each(|(level, b)| *level = b.max(least));
+    let peak_over_mean = moments.map(|[sum, _, peak, count]| if sum > 0.0 { peak * count / sum } else { 1.0 });
+    Some(Found { level, peak_over_mean, pays: one >= PAYS * two })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn picture(lamps: &[(usize, f32)]) -> Vec<f32> {
+        let mut all: Vec<f32> = (0..1200).map(|i| 0.1 + 0.05 * (i % 7) as f32).collect();
+        lamps.iter().for_each(|(at, b)| all[*at] = *b);
+        all
+    }
+
+    #[test]
+    fn lamps_are_found_with_their_neighbors() {
+        let found = find(40, &picture(&[(10 * 40 + 20, 50.0)])).expect("a lamp");
+        let lit: Vec<usize> = (0..1200).filter(|i| found.level[*i] > 0.0).collect();
+        assert_eq!(lit, [379, 380, 381, 419, 420, 421, 459, 460, 461]);
+        assert!(found.pays && found.level[420] == 50.0);
+    }
+
+    #[test]
+    fn a_photograph_has_none_and_glints_do_not_pay() {
+        assert!(find(40, &picture(&[])).is_none());
+        assert!(find(40, &picture(&[(5, 1.0), (70, 0.9)])).is_none());
+        let weak = find(40, &picture(&[(5, 2.5)])).expect("a glint");
+        assert!(!weak.pays);
+    }
+
+    #[test]
+    fn stars_on_black_are_lights_each() {
+        let mut black = vec![0.0_f32; 1200];
+        (black[100], black[700]) = (1.0, 0.5);
+        let found = find(40, &black).expect("stars");
+        assert!(found.pays && found.level[100] > 0.0 && found.level[700] > 0.0 && found.level[101] > 0.0);
+        assert!(found.level[101] < 0.01);
+    }
+
+    #[test]
+    fn what_is_not_few_is_no_light() {
+        let half: Vec<f32> = (0..1200).map(|i| if i % 2 == 0 { 100.0 } else { 0.1 }).collect();
+        assert!(find(40, &half).is_none());
+    }
+}

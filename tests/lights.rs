@@ -1,0 +1,194 @@
+//! Bright parts of a source forward, the rest backward: the same exposure as by one direction alone, of flat pictures, pictures
+//! with depth and layers.
+
+use exr::prelude::{AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, WritableImage};
+use spectra_core::Isa;
+use spectra_core::frame::ExposureFrame;
+use spectra_plugins as _;
+use spectra_render::{Control, Renderer, Threads};
+use std::path::Path;
+
+const COLUMNS: usize = 5;
+const ROWS: usize = 4;
+const SEEDS: u64 = 6;
+const SIZE: (usize, usize) = (48, 32);
+
+/// Lamps: column, row, radius, brightness. The second and third stand at the edge of what is in front.
+const LAMPS: [(f64, f64, f64, f32); 5] = [
+    (8.0, 8.0, 1.5, 60.0),
+    (24.5, 12.5, 1.2, 90.0),
+    (25.5, 22.5, 2.0, 40.0),
+    (40.0, 9.0, 1.0, 120.0),
+    (36.0, 26.0, 0.6, 80.0),
+];
+
+fn brightness(column: usize, row: usize) -> f32 {
+    let at = |c: f64, r: f64| (column as f64 + 0.5 - c).hypot(row as f64 + 0.5 - r);
+    let lamp = LAMPS.iter().find(|(c, r, radius, _)| at(*c, *r) < *radius);
+    lamp.map_or(0.1 + 0.01 * ((column * 7 + row * 3) % 11) as f32, |lamp| lamp.3)
+}
+
+/// What is in front: a post, m away. Its light is dim, but for a lamp of its own.
+fn is_in_front(column: usize, row: usize) -> bool {
+    (12..24).contains(&column) && row >= 6
+}
+
+/// Depth: the post, before a wall that recedes to the right in small steps.
+fn depth(column: usize, row: usize) -> f32 {
+    if is_in_front(column, row) { 0.9 } else { 1.8 + 0.006 * (column as f32) }
+}
+
+fn exr_file(path: &Path, planes: &[(&str, &dyn Fn(usize, usize) -> f32)]) {
+    let plane = |value: &dyn Fn(usize, usize) -> f32| -> Vec<f32> {
+        (0..SIZE.0 * SIZE.1).map(|i| value(i % SIZE.0, i / SIZE.0)).collect()
+    };
+    let channels = planes.iter().map(|(name, of)| AnyChannel::new(*name, FlatSamples::F32(plane(*of)))).collect();
+    let layer = Layer::new(SIZE, LayerAttributes::default(), Encoding::SMALL_LOSSLESS, AnyChannels::sort(channels));
+    Image::from_layer(layer).write().to_file(path).expect("written");
+}
+
+fn scene(folder: &Path, source: &str) -> std::path::PathBuf {
+    let behind = |c: usize, r: usize| brightness(c, r);
+    let all = |c: usize, r: usize| match is_in_front(c, r) {
+        true if c == 15 && r == 20 => 70.0,
+        true => 0.15,
+        false => brightness(c, r),
+    };
+    let cover = |c: usize, r: usize| if is_in_front(c, r) { 1.0 - 0.02 * (r % 5) as f32 } else { 0.0 };
+    let front = |c: usize, r: usize| if is_in_front(c, r) { all(c, r) * cover(c, r) } else { 0.0 };
+    exr_file(&folder.join("flat.exr"), &[("R", &behind), ("G", &behind), ("B", &behind)]);
+    exr_file(&folder.join("deep.exr"), &[("R", &all), ("G", &all), ("B", &all), ("Z", &depth)]);
+    exr_file(&folder.join("front.exr"), &[("R", &front), ("G", &front), ("B", &front), ("A", &cover)]);
+    let path = folder.join("scene.yaml");
+    let text = format!(
+        "spectra: 1\nsource: {source}\nlens: {{file: zeiss-biotar-50-f1.4, focus: {{distance: 1.2 m, by: paraxial}}}}\n\
+         imager: {{kind: xyz, width: 12, height: 8, resolution: [30, 20]}}\nrender: {{samples: 64}}\n"
+    );
+    std::fs::write(&path, text).expect("written");
+    path
+}
+
+const FLAT: &str = "{kind: picture, file: flat.exr, distance: 2 m, width: 52 cm, edge: black}";
+const DEEP: &str = "{kind: picture, file: deep.exr, distance: 2 m, width: 52 cm, depth: {unit: m}, edge: black}";
+const LAYERS: &str = "{kind: layers, layers: [{file: front.exr, distance: 0.9 m, width: 23 cm}, \
+                      {file: flat.exr, distance: 2 m, width: 52 cm, edge: black}]}";
+
+fn render(path: &Path, set: &[&str]) -> (ExposureFrame, Vec<&'static str>) {
+    let set: Vec<String> = set.iter().map(|s| (*s).to_owned()).collect();
+    let scene = spectra_scene::load(path, &set).unwrap_or_else(|faults| panic!("{faults}"));
+    let renderer = Renderer::new(scene, Isa::detect()).expect("the scene can be rendered");
+    let rendering = renderer.run(&Threads(2), &Control::new()).expect("rendered");
+    (rendering.exposure, rendering.estimators)
+}
+
+/// Mean illuminance of the whole frame and each of its 20 regions.
+fn regions(frame: &ExposureFrame) -> Vec<f64> {
+    let y = &frame.channel("Y").expect("an XYZ imager").values;
+    let (width, height) = (frame.size.width_px as usize, frame.size.height_px as usize);
+    let mut sums = [0.0; 1 + COLUMNS * ROWS];
+    for (pixel, value) in y.iter().enumerate() {
+        let region = pixel / width * ROWS / height * COLUMNS + pixel % width * COLUMNS / width;
+        sums[1 + region] += f64::from(*value);
+        sums[0] += f64::from(*value) / (COLUMNS * ROWS) as f64;
+    }
+    sums.to_vec()
+}
+
+/// Mean and standard error of each over independent seeds.
+fn estimate(path: &Path, set: &[&str]) -> Vec<(f64, f64)> {
+    let runs: Vec<Vec<f64>> = (0..SEEDS)
+        .map(|seed| regions(&render(path, &[set, &[&format!("render.seed={}", seed + 5)]].concat()).0))
+        .collect();
+    let n = runs.len() as f64;
+    (0..runs[0].len())
+        .map(|region| {
+            let mean = runs.iter().map(|r| r[region]).sum::<f64>() / n;
+            let variance = runs.iter().map(|r| (r[region] - mean) * (r[region] - mean)).sum::<f64>() / (n - 1.0);
+            (mean, (variance / n).sqrt())
+        })
+        .collect()
+}
+
+/// As in `tests/directions.rs`: three standard errors, which are known from six seeds, of 21 figures.
+const ERRORS: f64 = 3.0 * 1.6;
+
+fn agree(source: &str) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = scene(folder.path(), source);
+    let backward = estimate(&path, &["render.direction=backward", "render.samples=2048"]);
+    for (direction, many) in
+        [("forward", "render.rays=1500000"), ("both", "render.samples=128"), ("both", "render.rays=700000")]
+    {
+        let other = estimate(&path, &[&format!("render.direction={direction}"), many]);
+        for (region, ((b, eb), (o, eo))) in backward.iter().zip(&other).enumerate() {
+            let error = (eb * eb + eo * eo).sqrt();
+            println!("{direction} {region}: backward {b:.5} +- {eb:.5}, {o:.5} +- {eo:.5}, {:.2}", (o - b) / error);
+            assert!(error < 0.01 * b, "region {region}: {b} is known to {error} only");
+            assert!((o - b).abs() < ERRORS * error, "{direction}, region {region}: {o} and {b}, +- {error}");
+        }
+    }
+}
+
+#[test]
+fn lights_of_a_flat_picture() {
+    agree(FLAT);
+}
+
+#[test]
+fn lights_of_a_picture_with_depth() {
+    agree(DEEP);
+}
+
+#[test]
+fn lights_of_layers() {
+    agree(LAYERS);
+}
+
+/// By itself both directions are taken where a picture has lights, and the noise of what they shine on falls.
+#[test]
+fn lights_are_seen_without_being_asked_for() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = scene(folder.path(), DEEP);
+    let (_, estimators) = render(&path, &["render.samples=1"]);
+    assert_eq!(estimators, ["backward", "forward"]);
+    assert_eq!(render(&path, &["render.samples=1", "render.direction=backward"]).1, ["backward"]);
+    let noise = |set: &[&str]| {
+        let frames: Vec<Vec<f32>> = (0..4)
+            .map(|seed| {
+                render(&path, &[set, &[&format!("render.seed={seed}")]].concat())
+                    .0
+                    .channel("Y")
+                    .expect("Y")
+                    .values
+                    .clone()
+            })
+            .collect();
+        let variance = |p: usize| {
+            let mean = frames.iter().map(|f| f64::from(f[p])).sum::<f64>() / 4.0;
+            frames.iter().map(|f| (f64::from(f[p]) - mean).powi(2)).sum::<f64>() / 3.0
+        };
+        let mean = frames[0].iter().map(|v| f64::from(*v)).sum::<f64>() / frames[0].len() as f64;
+        ((0..frames[0].len()).map(variance).sum::<f64>() / frames[0].len() as f64).sqrt() / mean
+    };
+    let (both, backward) = (noise(&["render.samples=32"]), noise(&["render.samples=32", "render.direction=backward"]));
+    println!("noise: both {both}, backward {backward}");
+    assert!(both < 0.25 * backward, "{both} {backward}");
+}
+
+/// The bits of both directions do not depend on threads, batches and instruction sets.
+#[test]
+fn bits_are_the_same_however_it_runs() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = scene(folder.path(), DEEP);
+    let run = |threads: usize, isa: Isa, batch: &str| {
+        let set = ["render.samples=3".to_owned(), format!("render.batch={batch}")];
+        let scene = spectra_scene::load(&path, &set).unwrap_or_else(|faults| panic!("{faults}"));
+        let renderer = Renderer::new(scene, isa).expect("ready");
+        let frame = renderer.run(&Threads(threads), &Control::new()).expect("rendered").exposure;
+        frame.channels.iter().flat_map(|c| c.values.iter().map(|v| v.to_bits())).collect::<Vec<_>>()
+    };
+    let want = run(1, Isa::detect(), "256");
+    for isa in Isa::available() {
+        assert_eq!(run(2, isa, "100"), want);
+    }
+}
