@@ -40,13 +40,7 @@ const FIELD_DEG: f64 = 5.0;
 fn cauchy(nd: f64, vd: f64) -> Medium {
     let (d, f, c) = (0.587_561_8_f64, 0.486_132_7_f64, 0.656_272_5_f64);
     let b = (nd - 1.0) / vd / (1.0 / (f * f) - 1.0 / (c * c));
-    Medium::from(Glass::new(
-        "bench",
-        "cauchy",
-        Category::User,
-        Formula::Cauchy(vec![nd - b / (d * d), b]),
-        (350.0, 830.0),
-    ))
+    Medium::from(Glass::new("bench", "cauchy", Category::User, Formula::cauchy(&[nd - b / (d * d), b]), (350.0, 830.0)))
 }
 
 /// An asphere with eight terms, none of them zero, that stay below 0.1 mm on the Biotar.

@@ -108,7 +108,8 @@ fn what_the_code_cites_the_page_cites() {
             }
         }
     }
-    assert_eq!(looked_at, list().len(), "stages that are registered beside those of the folder `plugins`");
+    let of_plugins = list().iter().filter(|listed| listed.package.starts_with("spectra-plugin-")).count();
+    assert_eq!(looked_at, of_plugins, "stages that are registered beside those of the folder `plugins`");
 }
 
 /// A folder with the files that examples name.
@@ -171,6 +172,9 @@ fn scene_with(folder: &Path, given: &[(&str, &str)]) -> Result<(), String> {
     scene(folder, &format!("spectra: 1\n{text}"))
 }
 
+/// A surface with a size, to which keys can be added.
+const SURFACE: &str = "surfaces:\n  - kind: sphere\n    radius: 50\n    glass: SCHOTT/N-BK7\n    semi-diameter: 10\n";
+
 /// Builds an example where a stage of its kind stands.
 fn build(stage: &str, example: &str, folder: &Path) -> Result<(), String> {
     match stage {
@@ -201,6 +205,22 @@ fn build(stage: &str, example: &str, folder: &Path) -> Result<(), String> {
             let imager = format!("kind: detector\nformat: 135\nresolution: [12, 8]\n{}", section("response", example));
             scene_with(folder, &[("imager", &imager)])
         }
+        "spectrum" => {
+            parsed(folder, "example.yaml", example)?;
+            let resources = FileResources::beside(folder);
+            let found = spectra_spectrum::find_emission_in("example.yaml", &resources);
+            found.map(|_| ()).map_err(|error| error.to_string())
+        }
+        "coating" => lens(folder, &format!("name: example\n{}{SURFACE}", section("coating", example))),
+        "aperture" => {
+            let lines: Vec<String> = example.lines().map(|line| format!("      {line}\n")).collect();
+            lens(folder, &format!("name: example\n{SURFACE}    aperture:\n{}", lines.concat()))
+        }
+        "formula" => {
+            parsed(folder, "example.yaml", example)?;
+            let glass = spectra_glass::file::load("example.yaml", &FileResources::beside(folder));
+            glass.map(|_| ()).map_err(|faults| faults.to_string())
+        }
         // A stage that stands in another: its YAML is read, and its own tests build it.
         _ => parsed(folder, "example.yaml", example).map(|_| ()),
     }
@@ -214,7 +234,7 @@ fn every_example_of_a_stage_builds() {
         for example in &stage.documentation().examples {
             let other = match parsed(folder.path(), "example.yaml", example) {
                 // What names no kind is of the default one.
-                Ok(params) => params.get("kind").map_or(!stage.default, |k| k.as_str() != Some(stage.name)),
+                Ok(params) => params.get(stage.key).map_or(!stage.default, |k| k.as_str() != Some(stage.name)),
                 Err(fault) => {
                     faults.push(format!("{}: {fault}", name(&stage)));
                     continue;
@@ -225,7 +245,9 @@ fn every_example_of_a_stage_builds() {
             }
             faults.extend(build(stage.stage, example, folder.path()).err().map(|f| format!("{}: {f}", name(&stage))));
             // That it builds means something: the builder sees the example's own keys.
-            let wrong = match example.strip_suffix('}').filter(|_| example.contains("{kind") || !example.contains('\n'))
+            let wrong = match example
+                .strip_suffix('}')
+                .filter(|_| example.lines().any(|line| line.starts_with('{')) || !example.contains('\n'))
             {
                 Some(flow) => format!("{flow}, no-such-key: 1}}"),
                 None => format!("{example}\nno-such-key: 1"),

@@ -10,8 +10,11 @@ use spectra_core::resources::Resources;
 use spectra_core::spectral::Grid;
 use spectra_core::stage::{ColorModel, Film, Imager, Response, Source, WavelengthSampler};
 use spectra_core::surface::Surface;
+use spectra_glass::Formula;
+use spectra_lens::{Coating, Shape};
 use spectra_plugins as _;
 use spectra_scene::{FileResources, Output};
+use spectra_spectrum::SpectrumKind;
 use std::path::{Path, PathBuf};
 
 /// A value just outside of what a schema allows, and where it stands.
@@ -93,6 +96,10 @@ fn built(stage: &str, params: &Params, context: &Context<'_>) -> Vec<Fault> {
         "response" => registry::build::<dyn Response>(params, context).err(),
         "color" => registry::build::<dyn ColorModel>(params, context).err(),
         "output" => registry::build::<dyn Output>(params, context).err(),
+        "spectrum" => registry::build::<dyn SpectrumKind>(params, context).err(),
+        "coating" => registry::build::<Coating>(params, context).err(),
+        "aperture" => registry::build::<Shape>(params, context).err(),
+        "formula" => registry::build::<Formula>(params, context).err(),
         other => panic!("a kind of stage that this test does not know: {other}"),
     };
     faults.map(|faults| faults.0).unwrap_or_default()
@@ -110,10 +117,10 @@ fn what_a_schema_allows_is_what_is_checked() {
         let schema = (stage.schema)(&mut generator);
         let definitions = generator.take_definitions(true);
         for Outside { path, mut tree } in all_outside(schema.as_value(), &definitions) {
-            tree["kind"] = stage.name.into();
+            tree[stage.key] = stage.name.into();
             std::fs::write(folder.path().join("t.yaml"), tree.to_string()).expect("written");
             let file = resources.document("t.yaml", &[], &[]).expect("YAML");
-            let params = Params::stage(file.node().clone(), "x").expect("a stage");
+            let params = Params::kinded(file.node().clone(), "x", stage.key).expect("a stage");
             let faults = built(stage.stage, &params, &context);
             let wanted = format!("x.{path}");
             let told = faults.iter().any(|fault| {

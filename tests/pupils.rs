@@ -98,6 +98,8 @@ fn everywhere(point: DVec3, center: DVec3, radius_mm: f64, n: usize, seed: u64) 
 /// Aims `n` rays from `points` in turn by the pupil; the rays of weight 0 keep it.
 fn aimed(points: &[DVec3], n: usize, seed: u64, aim: impl Fn(&mut RayBatch, &[f64], &[f64]) -> usize) -> Vec<Ray> {
     let (u, v) = (numbers(seed, 3, n), numbers(seed, 4, n));
+    // Where a ray goes depends on its wavelength: it gets the one with which it is traced.
+    let colors = numbers(5, 0, BATCH);
     let mut batch = RayBatch::new(BATCH);
     let mut rays = Vec::with_capacity(n);
     while rays.len() < n {
@@ -108,6 +110,7 @@ fn aimed(points: &[DVec3], n: usize, seed: u64, aim: impl Fn(&mut RayBatch, &[f6
         for i in 0..len {
             (c.x[i], c.y[i], c.z[i]) = points[(first + i) % points.len()].into();
             (c.l[i], c.m[i], c.n[i]) = (0.0, 0.0, -1.0);
+            c.wavelength_nm[i] = MIN_NM + colors[i] * (MAX_NM - MIN_NM);
         }
         let dark = aim(&mut batch, &u[first..first + len], &v[first..first + len]);
         assert_eq!(batch.alive(), len - dark);
@@ -131,9 +134,9 @@ fn estimate(tracer: &Tracer, rays: &[Ray], travel: Travel) -> (f64, f64) {
 
 /// Of the aimed rays that have any weight, the share that arrives.
 fn share(tracer: &Tracer, rays: &[Ray]) -> f64 {
-    let aimed: Vec<Ray> = rays.iter().copied().filter(|r| r.2 > 0.0).collect();
-    let arrived = arrive(tracer, &aimed, Travel::Forward);
-    arrived.iter().filter(|a| **a).count() as f64 / aimed.len() as f64
+    let arrived = arrive(tracer, rays, Travel::Forward);
+    let aimed: Vec<bool> = rays.iter().zip(arrived).filter(|(r, _)| r.2 > 0.0).map(|(_, a)| a).collect();
+    aimed.iter().filter(|a| **a).count() as f64 / aimed.len() as f64
 }
 
 /// The share that arrives when all rays are aimed at the disk of the first surface's rim instead.
@@ -338,13 +341,19 @@ fn the_rear_pupil_loses_nothing_for_any_shape_of_imager() {
     }
 }
 
-/// Density of the aimed light per solid angle, from a near point beside the axis: equal in all cells, with weights.
+/// Density of the aimed light per solid angle, from a near point beside the axis: equal in all cells, with weights. In the
+/// whole region without outlines, with them in what passes.
 #[test]
 fn light_is_equal_per_solid_angle() {
     let lens = biotar(1.4);
     let tracer = tracer(&lens);
     let point = DVec3::new(30.0, 20.0, -110.0);
     let pupil = front(&lens, &tracer, &[point]);
+    equal_per_solid_angle(&tracer, point, &pupil.clone().without_outlines(), false);
+    equal_per_solid_angle(&tracer, point, &pupil, true);
+}
+
+fn equal_per_solid_angle(tracer: &Tracer, point: DVec3, pupil: &FrontPupil, outlines: bool) {
     let region = pupil.region(point).expect("searched");
     let axis = (region.center - point).normalize();
     let (a, b) = axis.any_orthonormal_pair();
@@ -352,10 +361,13 @@ fn light_is_equal_per_solid_angle() {
     let edge = |cos: f64| {
         (0..360).all(|k| {
             let (s, c) = spectra_core::math::sin_cos_turns(f64::from(k) / 360.0);
-            region.holds(point, axis * cos + (a * c + b * s) * (1.0 - cos * cos).sqrt())
+            let way = axis * cos + (a * c + b * s) * (1.0 - cos * cos).sqrt();
+            // At all wavelengths.
+            let ray = (point + way * (region.center - point).length(), way, 1.0);
+            region.holds(point, way) && (!outlines || arrive(tracer, &[ray; 16], Travel::Forward).iter().all(|a| *a))
         })
     };
-    let cos = (0..10_000).map(|k| 1.0 - f64::from(k) * 1e-5).take_while(|c| edge(*c)).last().expect("some cap");
+    let cos = (0..500).map(|k| 1.0 - f64::from(k) * 2e-4).take_while(|c| edge(*c)).last().expect("some cap");
     const RINGS: usize = 5;
     const SECTORS: usize = 8;
     let cell_sr = 2.0 * PI * (1.0 - cos) / (RINGS * SECTORS) as f64;

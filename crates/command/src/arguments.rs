@@ -284,8 +284,8 @@ pub(crate) struct Bench {
         spectra list source\n  spectra list lens 50\n  spectra list glass BK7"
 )]
 pub(crate) struct List {
-    /// List only this kind: source, color, wavelengths, surface, imager, response, film; or scene, lens, stock,
-    /// spectrum, coating, glass, sensor, format.
+    /// List only this kind: source, color, wavelengths, surface, imager, response, film, output, coating,
+    /// aperture, formula; or scene, lens, stock, spectrum, glass, sensor, format.
     #[arg(value_name = "KIND")]
     pub stage: Option<String>,
     /// List only entries that contain all of these words.
@@ -426,8 +426,9 @@ pub(crate) struct LensOptions {
     /// Set the stop to this f-number (f/2), measured with the real marginal ray; as in the file if not given.
     #[arg(long, value_name = "F/N", value_parser = parse::<FNumber>)]
     pub f_number: Option<FNumber>,
-    /// Coating of all surfaces: ideal (no reflection), bare, single-layer or three-layer; as in the file if not given.
-    #[arg(long, value_name = "COATING", value_parser = ["ideal", "bare", "single-layer", "three-layer"])]
+    /// Coating of all surfaces: ideal (no reflection), bare, single-layer, three-layer, another of `spectra list coating` that needs
+    /// no more than its name, or a file; as in the lens file if not given.
+    #[arg(long, value_name = "COATING")]
     pub coating: Option<String>,
     /// Whether glass absorbs light: true or false; as in the file if not given.
     #[arg(long, value_name = "BOOL")]

@@ -73,6 +73,8 @@ fn pages() -> Vec<Keys> {
             "imager" => "imager.",
             "response" => "imager.response.",
             "film" => "film.",
+            "coating" => "lens.coating.",
+            "aperture" => "lens.aperture.",
             _ => "",
         };
         if stage.stage != before {
@@ -82,7 +84,11 @@ fn pages() -> Vec<Keys> {
                 all.push(Keys { page: stage.stage.to_owned(), at, summary, parameters });
             }
         }
-        let Documentation { summary, parameters, .. } = stage.documentation();
+        let Documentation { summary, mut parameters, .. } = stage.documentation();
+        // The page of the file has them.
+        if FileKind::ALL.iter().any(|kind| kind.name() == stage.stage) {
+            parameters.clear();
+        }
         all.push(Keys { page: format!("{}/{}", stage.stage, stage.name), at, summary, parameters });
     }
     all

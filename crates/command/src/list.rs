@@ -8,7 +8,7 @@ use serde_json::{Map, Value, json};
 use spectra_analysis::fan::FanFinder;
 use spectra_core::names;
 use spectra_core::params::{self, Fault};
-use spectra_core::registry::{self, Documentation};
+use spectra_core::registry::{self, Documentation, Listed};
 use spectra_film::stock::{Process, Stock};
 use spectra_glass::Catalogue;
 use spectra_lens::Section;
@@ -39,7 +39,7 @@ struct Item {
 }
 
 /// Kinds of things beside the registered stages, in the order of the list.
-const KINDS: [&str; 8] = ["scene", "lens", "stock", "spectrum", "coating", "glass", "sensor", "format"];
+const KINDS: [&str; 7] = ["scene", "lens", "stock", "spectrum", "glass", "sensor", "format"];
 /// Those that are too many to be listed among all others.
 const LONG: [&str; 2] = ["spectrum", "glass"];
 /// Fields beyond this are not searched for, degrees.
@@ -49,12 +49,17 @@ const WIDEST_DEG: f64 = 85.0;
 pub(crate) fn list(arguments: &List) -> Outcome {
     let mut kinds: Vec<&str> = registry::list().iter().map(|l| l.stage).collect();
     kinds.dedup();
+    // Of spectra there are kinds and files.
+    kinds.retain(|kind| !KINDS.contains(kind));
     kinds.extend(KINDS);
     let wanted = match &arguments.stage {
         Some(typed) => vec![kind(typed, &kinds)?],
-        None => kinds.iter().copied().filter(|kind| !LONG.contains(kind)).collect(),
+        None => kinds,
     };
-    let mut items: Vec<Item> = wanted.iter().flat_map(|kind| items(kind)).collect();
+    // Among all others only those are listed of which there are few: of spectra the kinds and not the files.
+    let short = |kind: &str| arguments.stage.is_none() && LONG.contains(&kind);
+    let of = |kind: &&str| if short(kind) { registered(kind) } else { items(kind) };
+    let mut items: Vec<Item> = wanted.iter().flat_map(of).collect();
     if !arguments.words.is_empty() {
         let words: Vec<String> = arguments.words.iter().map(|word| names::normalized(word)).collect();
         items.retain(|item| {
@@ -100,7 +105,14 @@ fn kind(typed: &str, kinds: &[&'static str]) -> Result<&'static str, Fault> {
 }
 
 fn items(kind: &str) -> Vec<Item> {
-    let registered = registry::list().into_iter().filter(|l| l.stage == kind).map(|l| {
+    let mut all = registered(kind);
+    all.extend(items_of(kind));
+    all
+}
+
+fn registered(kind: &str) -> Vec<Item> {
+    let of_kind = registry::list().into_iter().filter(|l| l.stage == kind);
+    let item = |l: Listed| {
         let documentation = l.documentation();
         Item {
             stage: l.stage,
@@ -113,8 +125,8 @@ fn items(kind: &str) -> Vec<Item> {
             documentation: Some(documentation),
             figures: Map::new(),
         }
-    });
-    registered.chain(items_of(kind)).collect()
+    };
+    of_kind.map(item).collect()
 }
 
 fn items_of(kind: &str) -> Vec<Item> {
@@ -137,23 +149,11 @@ fn items_of(kind: &str) -> Vec<Item> {
             let all = spectra_spectrum::bundled_spectra().filter(|(_, path)| path.starts_with("spectra/sensors/"));
             all.filter_map(|(name, path)| spectrum("sensor", name, path)).collect()
         }
-        "coating" => COATINGS.iter().map(|(name, summary)| plain("coating", name, summary)).collect(),
         "glass" => Catalogue::bundled().glasses().map(|glass| glass_item(&glass)).collect(),
         "format" => formats(),
         _ => Vec::new(),
     }
 }
-
-/// What a lens file or a scene can write at `coating`.
-const COATINGS: [(&str, &str); 4] = [
-    ("ideal", "All light passes."),
-    ("bare", "Glass as it is: Fresnel's formulas."),
-    ("{layer: 1.38, quarter-wave-at: 550 nm}", "One layer, here of magnesium fluoride."),
-    (
-        "{layers: [...]}",
-        "A stack of layers; or a file of one (my-stack.yaml), or of what was measured (my-coating.csv).",
-    ),
-];
 
 fn plain(stage: &'static str, name: &str, summary: &str) -> Item {
     Item {

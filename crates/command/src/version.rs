@@ -33,7 +33,9 @@ fn plugins() -> String {
 }
 
 /// The crates of the built-in stages.
-const BUILT_IN: [&str; 9] = [
+const BUILT_IN: [&str; 12] = [
+    "spectra-glass",
+    "spectra-lens",
     "spectra-plugin-colors",
     "spectra-plugin-films",
     "spectra-plugin-imagers",
@@ -43,6 +45,7 @@ const BUILT_IN: [&str; 9] = [
     "spectra-plugin-samplers",
     "spectra-plugin-sources",
     "spectra-plugin-surfaces",
+    "spectra-spectrum",
 ];
 
 /// Commit that it was built from, where that is known.

@@ -7,6 +7,10 @@
 use std::borrow::Cow;
 
 use crate::formula::Formula;
+use crate::formula::{
+    CONRADY, EXTENDED, EXTENDED_2, EXTENDED_3, HANDBOOK_1, HANDBOOK_2, HERZBERGER, SCHOTT, SELLMEIER_1, SELLMEIER_2,
+    SELLMEIER_3, SELLMEIER_4, SELLMEIER_5,
+};
 use crate::glass::{Category, Extinction, Glass, Status, Thermal};
 
 /// A line of an AGF file that was not understood.
@@ -214,27 +218,24 @@ fn value(word: &str) -> Option<f64> {
 
 /// The formulas by their number in AGF files; missing coefficients at the end are 0, but the first must be there.
 fn formula(number: u8, coefficients: &[f64]) -> Option<Formula> {
-    fn take<const N: usize>(c: &[f64]) -> [f64; N] {
-        std::array::from_fn(|i| c.get(i).copied().unwrap_or(0.0))
-    }
     let c = coefficients;
     if c.iter().all(|c| *c == 0.0) {
         return None;
     }
     Some(match number {
-        1 => Formula::Schott(take(c)),
-        2 => Formula::Sellmeier1(take(c)),
-        3 => Formula::Herzberger(take(c)),
-        4 => Formula::Sellmeier2(take(c)),
-        5 => Formula::Conrady(take(c)),
-        6 => Formula::Sellmeier3(take(c)),
-        7 => Formula::Handbook1(take(c)),
-        8 => Formula::Handbook2(take(c)),
-        9 => Formula::Sellmeier4(take(c)),
-        10 => Formula::Extended(take(c)),
-        11 => Formula::Sellmeier5(take(c)),
-        12 => Formula::Extended2(take(c)),
-        13 => Formula::Extended3(take(c)),
+        1 => SCHOTT.with(c),
+        2 => SELLMEIER_1.with(c),
+        3 => HERZBERGER.with(c),
+        4 => SELLMEIER_2.with(c),
+        5 => CONRADY.with(c),
+        6 => SELLMEIER_3.with(c),
+        7 => HANDBOOK_1.with(c),
+        8 => HANDBOOK_2.with(c),
+        9 => SELLMEIER_4.with(c),
+        10 => EXTENDED.with(c),
+        11 => SELLMEIER_5.with(c),
+        12 => EXTENDED_2.with(c),
+        13 => EXTENDED_3.with(c),
         _ => return None,
     })
 }
@@ -299,7 +300,7 @@ mod tests {
     fn broken_coefficient_lines_and_other_numbers() {
         let agf = read(b"NM A 1 0 1,5096 60 0 0\nCD 2.25D0 0\n 1E-2\n 0 0 0\nLD 0.4 0.7\n", "M");
         assert_eq!(agf.problems, []);
-        assert_eq!(agf.glasses[0].formula, Formula::Schott([2.25, 0.0, 0.01, 0.0, 0.0, 0.0]));
+        assert_eq!(agf.glasses[0].formula, SCHOTT.with(&[2.25, 0.0, 0.01, 0.0, 0.0, 0.0]));
         assert_eq!(agf.glasses[0].listed_nd, Some(1.5096));
     }
 

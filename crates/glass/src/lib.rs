@@ -38,7 +38,7 @@ pub use catalogue::{
     LISTED_TOLERANCE_ND, LISTED_TOLERANCE_VD, Lender, ListedCheck, Match, Query,
 };
 pub use dispersion::{Dispersion, DispersionError, Rational};
-pub use formula::{Formula, Melt, ModelGlass, NumberedFormula, Table, TableError};
+pub use formula::{Closed, Form, Formula, FormulaEntry, Melt, ModelGlass, NumberedFormula, Table, TableError};
 pub use glass::{Category, Extinction, Glass, Status, Thermal};
 pub use lines::{Line, LineTriple};
 pub use medium::Medium;

@@ -34,11 +34,11 @@ mod transmission;
 
 pub use aim::{AimPattern, AimRegion, FrontPupil, RearPupil, has_sizes};
 pub use aperture::read as read_apertures;
-pub use aperture::{Aperture, ApertureForm, Iris, Mask, Opening, Shape};
+pub use aperture::{Aperture, ApertureEntry, ApertureForm, Iris, Mask, Opening, Shape};
 pub use beam::{Beam, ObjectPoint};
 pub use coating::{
-    Coating, CoatingForm, MeasuredCoating, NamedCoating, OneLayer, Reflectance, Stack, StackLayer, StackParams,
-    StatedCoating, Transmittance, read_coating, read_stated_coating,
+    Coating, CoatingEntry, CoatingForm, MeasuredCoating, Reflectance, Stack, StackLayer, StatedCoating, Transmittance,
+    read_coating, read_stated_coating,
 };
 pub use element::Element;
 pub use f_number::{ApertureError, LimitingRim, MarginalRay};
@@ -53,6 +53,6 @@ pub use path::{Act, Path, PathError, PathStep};
 pub use pose::{AxisBreak, Displacement, Pose};
 pub use prescription::{load, parse, unknown_group};
 pub use reverse::ReverseError;
-pub use schema::{lens_schema, surface_keys};
+pub use schema::{aperture_keys, coating_keys, lens_schema, surface_keys};
 pub use spectra_core::surface::Travel;
 pub use tracer::{Indices, RayPath, Route, Tracer, Work};

@@ -1,5 +1,7 @@
 //! JSON Schema of a lens file, for editors.
 
+use crate::aperture::ApertureKeys;
+use crate::coating::CoatingKeys;
 use crate::prescription::{BreakParams, LensFile, Place};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde_json::json;
@@ -17,6 +19,18 @@ pub fn lens_schema(generator: &mut SchemaGenerator) -> Schema {
 #[must_use]
 pub fn surface_keys(generator: &mut SchemaGenerator) -> Schema {
     Place::json_schema(generator)
+}
+
+/// What every coating may say beside the parameters of its kind: the schema of a map.
+#[must_use]
+pub fn coating_keys(generator: &mut SchemaGenerator) -> Schema {
+    CoatingKeys::json_schema(generator)
+}
+
+/// What every aperture may say beside the parameters of its shape: the schema of a map.
+#[must_use]
+pub fn aperture_keys(generator: &mut SchemaGenerator) -> Schema {
+    ApertureKeys::json_schema(generator)
 }
 
 /// An item of `surfaces`.

@@ -46,10 +46,8 @@ pub fn file_schema(kind: FileKind) -> Value {
         FileKind::Stock => Stock::schema(&mut generator),
         FileKind::Spectrum => spectra_spectrum::document_schema(&mut generator),
     };
-    if matches!(kind, FileKind::Scene | FileKind::Lens) {
-        let shared = shared(&mut generator);
-        registry::definitions(&mut generator, &shared);
-    }
+    let shared = shared(&mut generator);
+    registry::definitions(&mut generator, &shared);
     let definitions = generator.take_definitions(true);
     let mut whole = json!({
         "$schema": "https://json-schema.org/draft/2020-12/schema",
@@ -196,6 +194,8 @@ pub fn file_documentation(kind: FileKind) -> Documentation {
 pub fn shared_documentation(stage: &str) -> Option<Documentation> {
     Some(Documentation::of(match stage {
         "surface" => spectra_lens::surface_keys,
+        "coating" => spectra_lens::coating_keys,
+        "aperture" => spectra_lens::aperture_keys,
         "wavelengths" => BandSection::json_schema,
         "film" => FilmKeys::json_schema,
         _ => return None,
@@ -206,6 +206,8 @@ pub fn shared_documentation(stage: &str) -> Option<Documentation> {
 fn shared(generator: &mut SchemaGenerator) -> Vec<(&'static str, Schema)> {
     vec![
         ("surface", spectra_lens::surface_keys(generator)),
+        ("coating", spectra_lens::coating_keys(generator)),
+        ("aperture", spectra_lens::aperture_keys(generator)),
         ("wavelengths", BandSection::json_schema(generator)),
         ("film", FilmKeys::json_schema(generator)),
     ]
@@ -254,7 +256,7 @@ mod tests {
             references(&schema, &mut wanted);
             for name in wanted {
                 // No plugin is linked into this test: the stages' definitions come with them.
-                let stage = ["source", "color", "wavelengths", "surface", "imager", "film", "output"]
+                let stage = ["source", "color", "wavelengths", "imager", "film", "output"]
                     .contains(&name.trim_start_matches("part-"));
                 assert!(stage || schema["$defs"].get(&name).is_some(), "{}: {name}", kind.name());
             }

@@ -311,7 +311,7 @@ impl<'a> Loader<'a> {
         };
         let file = files.document(name, &["spectra"], &[]).map_err(SpectrumError::Document)?;
         self.depth.set(depth);
-        let found = document::of_file(&file, wanted, self).map_err(SpectrumError::Document);
+        let found = document::of_file(&file, wanted, self, files).map_err(SpectrumError::Document);
         self.depth.set(depth + 1);
         found
     }
@@ -356,11 +356,12 @@ fn table(name: &str, files: Option<&dyn Resources>, wanted: Kind) -> Result<Tabl
 
 fn unknown(name: &str) -> SpectrumError {
     let head = |text: &'static str| text.split_once(':').map_or(text, |(head, _)| head);
+    let examples = inline::examples();
     let near = match name.split_once(':') {
-        Some((wanted, _)) => candidates(wanted, inline::EXAMPLES.into_iter().map(head)),
-        None => candidates(name, bundled_spectra().map(|(n, _)| n).chain(inline::EXAMPLES.into_iter().map(head))),
+        Some((wanted, _)) => candidates(wanted, examples.iter().copied().map(head)),
+        None => candidates(name, bundled_spectra().map(|(n, _)| n).chain(examples.iter().copied().map(head))),
     };
-    let example = |n: String| inline::EXAMPLES.into_iter().find(|i| head(i) == n).map_or(n, str::to_owned);
+    let example = |n: String| examples.iter().copied().find(|i| head(i) == n).map_or(n, str::to_owned);
     SpectrumError::Unknown {
         name: name.chars().take(80).collect(),
         candidates: near.into_iter().map(example).collect(),

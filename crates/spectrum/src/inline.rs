@@ -1,9 +1,8 @@
 //! Spectra written out in one line: `blackbody:5800`, `0.5 * D65 + line:e`.
 
 use spectra_core::params::{Dimension, Reading, Unit};
-use spectra_core::spectral::Line;
+use spectra_core::registry::inventory;
 
-use crate::by_name::Found;
 use crate::emission::Emission;
 use crate::error::SpectrumError;
 use crate::illuminants::daylight;
@@ -11,17 +10,46 @@ use crate::lines::named_line;
 use crate::piece::Piece;
 use crate::shape::Shape;
 
-/// One of each, for messages.
-pub(crate) const EXAMPLES: [&str; 8] = [
-    "blackbody:5800",
-    "daylight:5500",
-    "line:C'",
-    "lines:404.66=1,435.84=2",
-    "gaussian:550,20",
-    "rectangle:500,600",
-    "constant:1",
-    "constant",
-];
+/// A form in which a spectrum is written out in a line; see [`expression!`](crate::expression).
+pub struct Expression {
+    example: &'static str,
+    wanted: &'static str,
+    read: Read,
+}
+
+/// What stands behind the `:` as a spectrum; `None` if it is not understood.
+type Read = fn(&str) -> Option<Result<Piece, SpectrumError>>;
+
+impl Expression {
+    /// See [`expression!`](crate::expression).
+    #[must_use]
+    pub const fn new(example: &'static str, wanted: &'static str, read: Read) -> Self {
+        Self { example, wanted, read }
+    }
+
+    fn head(&self) -> &'static str {
+        self.example.split_once(':').map_or(self.example, |(head, _)| head)
+    }
+}
+
+inventory::collect!(Expression);
+
+/// Registers how a spectrum is written out in a line: an example such as `gaussian:550,20`, which names it too, how to write it, and
+/// what reads the part behind the `:` (`None` where it is not understood).
+#[macro_export]
+macro_rules! expression {
+    ($example:literal, $wanted:literal, $read:expr $(,)?) => {
+        $crate::inventory::submit! { $crate::Expression::new($example, $wanted, $read) }
+    };
+}
+
+/// One of each, for messages, sorted.
+pub(crate) fn examples() -> Vec<&'static str> {
+    let all = inventory::iter::<Expression>.into_iter().map(|expression| expression.example);
+    let mut all: Vec<&str> = all.chain(["constant"]).collect();
+    all.sort_unstable();
+    all
+}
 
 /// A single spectrum that is written out; `None` if `text` is none.
 pub(crate) fn single(text: &str) -> Option<Result<Piece, SpectrumError>> {
@@ -29,46 +57,18 @@ pub(crate) fn single(text: &str) -> Option<Result<Piece, SpectrumError>> {
         return Some(Shape::constant(1.0).map(Piece::Bare));
     }
     if let Some(kelvin) = color_temperature(text) {
-        return Some(of_color_temperature(kelvin).map(|light| Piece::Typed(Found::Emission(light))));
+        return Some(of_color_temperature(kelvin).map(Piece::from));
     }
     let (head, arguments) = text.split_once(':')?;
-    let arguments = arguments.trim();
-    let fault = |wanted| SpectrumError::Inline { text: text.chars().take(80).collect(), wanted };
-    let kelvin = |help| measure(arguments, "K").ok_or_else(|| fault(help));
-    let one = |help| numbers(arguments).and_then(|n| <[f64; 1]>::try_from(n).ok()).ok_or_else(|| fault(help));
-    let two = |help| wavelengths(arguments).and_then(|n| <[f64; 2]>::try_from(n).ok()).ok_or_else(|| fault(help));
-    let light = |light| Piece::Typed(Found::Emission(light));
-    Some(match head.trim().to_ascii_lowercase().as_str() {
-        "blackbody" => {
-            kelvin("write a temperature in kelvin, such as blackbody:5800").and_then(Emission::blackbody).map(light)
-        }
-        "daylight" => kelvin("write a temperature in kelvin, such as daylight:5500").and_then(daylight).map(light),
-        "line" => line_nm(arguments)
-            .ok_or_else(|| fault("write a letter or a wavelength in nm, such as line:C' or line:632.8"))
-            .and_then(|nm| Emission::line(nm, 1.0))
-            .map(light),
-        "lines" => arguments
-            .split(',')
-            .map(weighted_line)
-            .collect::<Option<Vec<_>>>()
-            .ok_or_else(|| fault("write wavelengths (or letters) with their powers, such as lines:404.66=1,435.84=2"))
-            .and_then(|lines| Emission::new(None, lines))
-            .map(light),
-        "gaussian" => two("write center and standard deviation in nm, such as gaussian:550,20")
-            .and_then(|[center, sigma]| Shape::gaussian(center, sigma))
-            .map(Piece::Bare),
-        "rectangle" => two("write two wavelengths in nm, such as rectangle:500,600")
-            .and_then(|[from, to]| Shape::rectangle(from, to))
-            .map(Piece::Bare),
-        "constant" => {
-            one("write a value, such as constant:0.18").and_then(|[value]| Shape::constant(value)).map(Piece::Bare)
-        }
-        _ => return None,
-    })
+    let head = head.trim();
+    let mut all = inventory::iter::<Expression>.into_iter();
+    let found = all.find(|expression| expression.head().eq_ignore_ascii_case(head))?;
+    let fault = || SpectrumError::Inline { text: text.chars().take(80).collect(), wanted: found.wanted };
+    Some((found.read)(arguments.trim()).unwrap_or_else(|| Err(fault())))
 }
 
 /// A line by its letter, or a number of nm.
-fn line_nm(text: &str) -> Option<f64> {
+pub(crate) fn line_nm(text: &str) -> Option<f64> {
     let text = text.trim();
     named_line(text).map(|l| l.nominal_nm).or_else(|| measure(text, "nm"))
 }
@@ -88,7 +88,7 @@ fn of_color_temperature(kelvin: f64) -> Result<Emission, SpectrumError> {
 }
 
 /// A number with or without its unit, in that unit.
-fn measure(text: &str, unit: &str) -> Option<f64> {
+pub(crate) fn measure(text: &str, unit: &str) -> Option<f64> {
     let wanted = Unit::find(unit)?;
     let value = match Reading::of(text) {
         Reading::Bare(value) => value,
@@ -99,23 +99,15 @@ fn measure(text: &str, unit: &str) -> Option<f64> {
 }
 
 /// Wavelengths with or without their unit, nm.
-fn wavelengths(text: &str) -> Option<Vec<f64>> {
+pub(crate) fn wavelengths(text: &str) -> Option<Vec<f64>> {
     text.split(',').map(|text| measure(text, "nm")).collect()
 }
 
-fn weighted_line(text: &str) -> Option<Line> {
-    let (nm, power) = match text.split_once('=') {
-        Some((nm, power)) => (nm, number(power)?),
-        None => (text, 1.0),
-    };
-    Some(Line { wavelength_nm: line_nm(nm)?, power })
-}
-
-fn number(text: &str) -> Option<f64> {
+pub(crate) fn number(text: &str) -> Option<f64> {
     text.trim().parse().ok().filter(|v: &f64| v.is_finite())
 }
 
-fn numbers(text: &str) -> Option<Vec<f64>> {
+pub(crate) fn numbers(text: &str) -> Option<Vec<f64>> {
     text.split(',').map(number).collect()
 }
 

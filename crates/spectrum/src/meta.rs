@@ -1,5 +1,7 @@
 //! The front matter of a spectrum file: what it holds, and where it comes from.
 
+use schemars::JsonSchema;
+use serde::Deserialize;
 use std::fmt;
 
 /// What a file's columns are.
@@ -93,7 +95,8 @@ impl fmt::Display for Kind {
 }
 
 /// What a table is beyond its first and last wavelength.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
 pub enum Outside {
     /// 0.
     Zero,
@@ -123,7 +126,8 @@ impl Outside {
 }
 
 /// The scale on which values are written.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
 pub enum Scale {
     /// As they are.
     #[default]

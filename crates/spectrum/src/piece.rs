@@ -9,11 +9,18 @@ use crate::shape::Shape;
 
 /// A spectrum whose kind is known, or a shape (a Gaussian, a constant) that can be of any.
 #[derive(Clone, Debug)]
-pub(crate) enum Piece {
+pub enum Piece {
     /// Light, matter or a detector.
     Typed(Found),
     /// A bare function of wavelength.
     Bare(Shape),
+}
+
+impl From<Emission> for Piece {
+    /// Light.
+    fn from(light: Emission) -> Self {
+        Self::Typed(Found::Emission(light))
+    }
 }
 
 impl Piece {
@@ -85,7 +92,7 @@ fn not_together(left: Kind, right: Kind, operation: &'static str) -> SpectrumErr
 }
 
 /// The function of matter and detectors.
-fn shape_of(found: &Found) -> Option<&Shape> {
+pub(crate) fn shape_of(found: &Found) -> Option<&Shape> {
     match found {
         Found::Emission(_) => None,
         Found::Transmittance(filter) => Some(filter.shape()),

@@ -125,8 +125,8 @@ fn sums_and_products_fit_in_a_line() {
 fn faults_name_file_line_and_column() {
     for (text, want) in [
         ("", "a.yaml"),
-        ("spectra: 1\n", "a.yaml:1:1: a spectrum names its `kind`"),
-        ("kind: gausian\ncenter: 5\n", "a.yaml:1:7: no spectrum is of kind `gausian` (did you mean `gaussian`?)"),
+        ("spectra: 1\n", "a.yaml:1:1: which spectrum? `kind` is missing"),
+        ("kind: gausian\ncenter: 5\n", "a.yaml:1:7: unknown spectrum `gausian` (did you mean `gaussian`?"),
         ("kind: gaussian\ncenter: 550\nsigma: 0\n", "a.yaml:3:8: found 0"),
         ("kind: gaussian\ncenter: 550\nsigma: 20\nwidth: 3\n", "a.yaml:4:1: unknown key `width`"),
         (

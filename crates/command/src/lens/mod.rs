@@ -54,8 +54,8 @@ impl<'a> Setting<'a> {
 fn set(mut lens: Lens, name: &str, setting: &Setting<'_>) -> Result<Lens, Failure> {
     let refuse = |error: String| Failure::Input(format!("{name}: {error}"));
     let options = setting.options;
-    if let Some(coating) = options.coating.as_deref().and_then(Coating::by_name) {
-        lens = lens.with_coating(coating);
+    if let Some(name) = &options.coating {
+        lens = lens.with_coating(Coating::named(name, &FileResources::beside(Path::new("")))?);
     }
     lens.absorption = options.absorption.unwrap_or(lens.absorption);
     if let Some(f_number) = setting.f_number {

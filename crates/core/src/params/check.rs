@@ -10,7 +10,7 @@ use super::node::{Key, Node, Value};
 use super::part::PART;
 use super::path::Step;
 use super::quantity::Form;
-use super::text::{found, hint_for, listed, nearest, shown};
+use super::text::{found, nearest, shown};
 use super::units::Reading;
 use super::whole::{Exact, limits_of};
 use crate::names;
@@ -395,7 +395,7 @@ impl<'s> Check<'s> {
         let Value::Map(entries) = &at.node.value else {
             return match (fields.is_empty(), others) {
                 (false, _) => {
-                    self.mismatch(at, "a map such as {key: value}", Some(format!("known keys: {}", listed(fields))))
+                    self.mismatch(at, "a map such as {key: value}", Some(format!("known keys: {}", fields.join(", "))))
                 }
                 (true, Some(Schema::Bool(false))) => self.mismatch(at, "a map without keys, {}", None),
                 _ => self.mismatch(at, "a map such as {key: value}", None),
@@ -425,8 +425,12 @@ impl<'s> Check<'s> {
     fn unknown<'f>(&mut self, at: &At<'_, '_>, key: &Key, map: &Node, fields: &[&'f str]) -> Option<&'f str> {
         let free = fields.iter().copied().filter(|field| map.get(field).is_none());
         let near = nearest(&key.text, free);
-        let hint = slip(key, at.node, fields).or_else(|| near.map(|near| format!("did you mean `{near}`?")));
-        let hint = hint.unwrap_or_else(|| hint_for(&key.text, "key", fields));
+        let named = || near.or_else(|| nearest(&key.text, fields.iter().copied()));
+        let hint = slip(key, at.node, fields).or_else(|| named().map(|near| format!("did you mean `{near}`?")));
+        let hint = hint.unwrap_or_else(|| match fields {
+            [] => "no keys are allowed here".to_owned(),
+            _ => format!("known keys: {}", fields.join(", ")),
+        });
         if self.faults.len() <= MOST_FAULTS {
             let fault = Fault::new(format!("unknown key `{}`", shown(&key.text)));
             self.faults.push(fault.at(Arc::clone(&at.node.file), key.span).path(at.path()).hint(hint));
@@ -440,7 +444,7 @@ fn list_hint(text: &str, len: usize) -> String {
     let parts: Vec<&str> =
         text.split(['x', 'X', '\u{d7}', '*', ',', ';', '/', ' ']).filter(|p| !p.is_empty()).collect();
     if parts.len() == len && parts.iter().all(|p| matches!(Value::from_plain(p), Value::Number(_))) {
-        format!("write `[{}]`", listed(parts))
+        format!("write `[{}]`", parts.join(", "))
     } else {
         format!("write {len} values in brackets, separated by commas")
     }

@@ -152,7 +152,7 @@ fn plain_number(text: &str) -> Option<f64> {
         _ if matches!(text, ".nan" | ".NaN" | ".NAN") => return Some(f64::NAN),
         _ => {}
     }
-    let (end, _) = decimal_end(unsigned)?;
+    let end = decimal_end(unsigned)?;
     if end == unsigned.len() { text.parse().ok() } else { None }
 }
 
@@ -163,20 +163,17 @@ fn radix(digits: &str, base: u32) -> Option<f64> {
     digits.chars().try_fold(0.0, |sum: f64, c| Some(sum * f64::from(base) + f64::from(c.to_digit(base)?)))
 }
 
-/// Where the decimal number at the start of `text` (without a sign) ends, in bytes, and whether it is written as an integer;
-/// `None` if there is no number.
-pub(super) fn decimal_end(text: &str) -> Option<(usize, bool)> {
+/// Where the decimal number at the start of `text` (without a sign) ends, in bytes; `None` if there is no number.
+pub(super) fn decimal_end(text: &str) -> Option<usize> {
     let bytes = text.as_bytes();
     let digits = |from: usize| bytes[from..].iter().take_while(|b| b.is_ascii_digit()).count();
     let whole = digits(0);
     let mut end = whole;
-    let mut integer = true;
     if bytes.get(end) == Some(&b'.') {
         let fraction = digits(end + 1);
         if whole + fraction == 0 {
             return None;
         }
-        integer = false;
         end += 1 + fraction;
     } else if whole == 0 {
         return None;
@@ -185,11 +182,10 @@ pub(super) fn decimal_end(text: &str) -> Option<(usize, bool)> {
         let sign = usize::from(matches!(bytes.get(end + 1), Some(b'+' | b'-')));
         let exponent = digits(end + 1 + sign);
         if exponent > 0 {
-            integer = false;
             end += 1 + sign + exponent;
         }
     }
-    Some((end, integer))
+    Some(end)
 }
 
 /// A value with its place.

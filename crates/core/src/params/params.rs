@@ -24,21 +24,27 @@ impl Params {
     ///
     /// # Errors
     /// It is neither, or its `kind` is not a name.
-    pub fn stage(mut node: Node, path: &str) -> Result<Self, Faults> {
+    pub fn stage(node: Node, path: &str) -> Result<Self, Faults> {
+        Self::kinded(node, path, KIND)
+    }
+
+    /// The same where another key names the kind, such as the `shape` of an aperture.
+    ///
+    /// # Errors
+    /// As [`Params::stage`].
+    pub fn kinded(mut node: Node, path: &str, key: &str) -> Result<Self, Faults> {
         let kind = match &mut node.value {
-            Value::Map(entries) => {
-                entries.iter().position(|(key, _)| key.text == KIND).map(|index| entries.remove(index))
-            }
+            Value::Map(entries) => entries.iter().position(|(k, _)| k.text == key).map(|index| entries.remove(index)),
             Value::String(_) => {
                 let map = Node { value: Value::Map(Vec::new()), ..node.clone() };
                 let name = std::mem::replace(&mut node, map);
-                Some((Key { text: KIND.to_owned(), span: name.span }, name))
+                Some((Key { text: key.to_owned(), span: name.span }, name))
             }
             _ => {
-                let message = format!("found {}, expected a map such as {{kind: ...}}", found(&node));
+                let message = format!("found {}, expected a map such as {{{key}: ...}}", found(&node));
                 let hint = match &node.value {
                     Value::Seq(_) => "write one map, without `- ` or brackets",
-                    _ => "name its `kind` there, and what else that wants",
+                    _ => &format!("name its `{key}` there, and what else that wants"),
                 };
                 return Err(node.fault(message).path(path).hint(hint).into());
             }
@@ -47,7 +53,7 @@ impl Params {
             && name.as_str().is_none()
         {
             let message = format!("found {}, expected the name of a kind", found(name));
-            return Err(name.fault(message).path(join(path, KIND)).into());
+            return Err(name.fault(message).path(join(path, key)).into());
         }
         Ok(Self { node, kind, path: path.to_owned() })
     }
@@ -129,7 +135,7 @@ impl Params {
     #[must_use]
     pub fn fault(&self, key: &str, message: impl Into<String>) -> Fault {
         let node = match &self.kind {
-            Some((_, name)) if key == KIND => name,
+            Some((named, name)) if key == named.text => name,
             _ => self.node.nearest_at(key),
         };
         node.fault(message).path(join(&self.path, key))

@@ -53,27 +53,6 @@ pub(super) fn found(node: &Node) -> String {
     }
 }
 
-/// Names as a list: `a, b, c`.
-pub(super) fn listed<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
-    let mut out = String::new();
-    for name in names {
-        if !out.is_empty() {
-            out.push_str(", ");
-        }
-        out.push_str(name);
-    }
-    out
-}
-
-/// The hint for an unknown name: the nearest known one, or all of them.
-pub(super) fn hint_for(name: &str, what: &str, known: &[&str]) -> String {
-    match nearest(name, known.iter().copied()) {
-        Some(near) => format!("did you mean `{near}`?"),
-        None if known.is_empty() => format!("no {what}s are allowed here"),
-        None => format!("known {what}s: {}", listed(known.iter().copied())),
-    }
-}
-
 /// The known name nearest to `name` by edit distance (insertions, deletions, replacements, swaps of neighbors; case is ignored,
 /// and `_` equals `-`), if it is near enough: one edit for short names, a third of the length for long ones. The first one if
 /// several are equally near; else the only one that `name` is a part of ([`crate::names::find`]).

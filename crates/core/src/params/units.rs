@@ -257,7 +257,7 @@ impl<'a> Reading<'a> {
 /// The decimal number at the start of a text, and the rest of the text.
 fn number(text: &str) -> Option<(f64, &str)> {
     let unsigned = text.strip_prefix(['+', '-']).unwrap_or(text);
-    let (end, _) = decimal_end(unsigned)?;
+    let end = decimal_end(unsigned)?;
     let end = text.len() - unsigned.len() + end;
     Some((text[..end].parse().ok()?, &text[end..]))
 }

@@ -71,7 +71,7 @@ impl Exact {
             }
         }
         let unsigned = text.strip_prefix(['+', '-']).unwrap_or(text);
-        if decimal_end(unsigned).is_none_or(|(end, _)| end != unsigned.len()) {
+        if decimal_end(unsigned) != Some(unsigned.len()) {
             return Self::Not;
         }
         let (figure, exponent) = unsigned.split_once(['e', 'E']).unwrap_or((unsigned, "0"));

@@ -50,7 +50,7 @@ mod documentation;
 mod schema;
 
 pub use documentation::{Documentation, Parameter};
-pub use schema::{StageOf, definitions};
+pub use schema::{NameOf, StageOf, definitions, kinds};
 
 use crate::params::{Fault, Faults, Params, Warning, Warnings};
 use crate::resources::Resources;
@@ -144,6 +144,9 @@ macro_rules! register {
     ($stage:ident $name:literal: $params:ty, $build:expr) => {
         $crate::register!(@entry $stage, $name, false, $params, $build);
     };
+    ($kind:ty, $name:literal (default): $params:ty, $build:expr) => {
+        $crate::register!(@of $kind, $name, true, $params, $build);
+    };
     ($kind:ty, $name:literal: $params:ty, $build:expr) => {
         $crate::register!(@of $kind, $name, false, $params, $build);
     };
@@ -177,19 +180,26 @@ macro_rules! register {
     };
 }
 
-/// A kind of stage, as the registry knows it.
+/// A kind of stage, as the registry knows it: the trait that its stages implement, or the type that they are made into.
 pub trait Stage: 'static {
     /// Its name in messages and in `spectra list`.
     const NAME: &'static str;
+    /// The key that names one of its kinds in a file.
+    const KEY: &'static str;
     /// All entries, in the order in which the linker placed them.
     fn entries() -> Vec<&'static Entry<Self>>;
 }
 
 /// Declares a kind of stage: `declare!(SourceEntry, dyn Source, "source", "A registered source.");`. The crate that owns the trait
-/// does so, once; stages of it are then registered by `register!(path::SourceEntry, "name": Params, build)`.
+/// (or the type that every kind is made into) does so, once; stages of it are then registered by
+/// `register!(path::SourceEntry, "name": Params, build)`. The key that names a kind is `kind`, or what is written last. That crate's
+/// manifest states `links`: two versions of it in one program would be two registries.
 #[macro_export]
 macro_rules! declare {
     ($entry:ident, $stage:ty, $name:literal, $doc:literal) => {
+        $crate::declare!($entry, $stage, $name, $doc, "kind");
+    };
+    ($entry:ident, $stage:ty, $name:literal, $doc:literal, $key:literal) => {
         #[doc = $doc]
         pub struct $entry($crate::registry::Entry<$stage>);
 
@@ -211,6 +221,7 @@ macro_rules! declare {
 
         impl $crate::registry::Stage for $stage {
             const NAME: &'static str = $name;
+            const KEY: &'static str = $key;
             fn entries() -> Vec<&'static $crate::registry::Entry<Self>> {
                 $crate::registry::inventory::iter::<$entry>.into_iter().map(|entry| &entry.0).collect()
             }
@@ -254,6 +265,8 @@ declare!(FilmEntry, dyn Film, "film", "A registered film process.");
 pub struct Listed {
     /// Kind of stage.
     pub stage: &'static str,
+    /// The key that names it in a file.
+    pub key: &'static str,
     /// Name in a scene.
     pub name: &'static str,
     /// Crate.
@@ -270,6 +283,7 @@ impl Listed {
     fn of<S: Stage + ?Sized>(entry: &Entry<S>) -> Self {
         Self {
             stage: S::NAME,
+            key: S::KEY,
             name: entry.name,
             package: entry.package,
             version: entry.version,
@@ -332,12 +346,12 @@ pub fn build<S: Stage + ?Sized>(params: &Params, context: &Context<'_>) -> Resul
     };
     let Some(entry) = found else {
         let names: Vec<&str> = entries.iter().map(|e| e.name).collect();
-        return Err(unknown_kind(params, S::NAME, &names).into());
+        return Err(unknown_kind(params, S::NAME, S::KEY, &names).into());
     };
     (entry.build)(params, context)
 }
 
-fn unknown_kind(params: &Params, stage: &str, names: &[&str]) -> Fault {
+fn unknown_kind(params: &Params, stage: &str, key: &str, names: &[&str]) -> Fault {
     let list = format!("spectra list {stage}");
     let known = crate::names::listed(names, &list);
     match params.kind() {
@@ -348,11 +362,11 @@ fn unknown_kind(params: &Params, stage: &str, names: &[&str]) -> Fault {
             } else {
                 hint
             };
-            params.fault("kind", format!("unknown {stage} `{kind}`")).hint(hint)
+            params.fault(key, format!("unknown {stage} `{kind}`")).hint(hint)
         }
         None => params
-            .fault("kind", format!("which {stage}? `kind` is missing"))
-            .hint(format!("add `kind: ...`, one of {known}")),
+            .fault(key, format!("which {stage}? `{key}` is missing"))
+            .hint(format!("add `{key}: ...`, one of {known}")),
     }
 }
 
@@ -361,7 +375,15 @@ mod tests {
     use super::*;
 
     fn listed(name: &'static str, package: &'static str) -> Listed {
-        Listed { stage: "surface", name, package, version: "1.2.3", default: false, schema: <()>::json_schema }
+        Listed {
+            stage: "surface",
+            key: "kind",
+            name,
+            package,
+            version: "1.2.3",
+            default: false,
+            schema: <()>::json_schema,
+        }
     }
 
     #[test]

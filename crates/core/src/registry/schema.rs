@@ -1,8 +1,9 @@
 //! JSON Schema of what can stand where a stage is wanted.
 
-use super::Stage;
+use super::{Listed, Stage};
 use crate::params::Kinds;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::{Deserialize, Deserializer};
 use std::borrow::Cow;
 use std::marker::PhantomData;
 
@@ -35,19 +36,64 @@ impl<S: Stage + ?Sized> JsonSchema for StageOf<S> {
     }
 }
 
+/// The name of a registered stage of a kind, where a file names it beside other keys: its words are those that are registered.
+#[derive(Clone, Debug)]
+pub struct NameOf<S: ?Sized>(String, PhantomData<fn() -> Box<S>>);
+
+impl<S: ?Sized> NameOf<S> {
+    /// The name.
+    #[must_use]
+    pub fn get(&self) -> &str {
+        &self.0
+    }
+}
+
+impl<'de, S: ?Sized> Deserialize<'de> for NameOf<S> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        String::deserialize(deserializer).map(|name| Self(name, PhantomData))
+    }
+}
+
+impl<S: Stage + ?Sized> JsonSchema for NameOf<S> {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> Cow<'static, str> {
+        format!("{}-name", S::NAME).into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        let names: Vec<&str> = super::list().into_iter().filter(|l| l.stage == S::NAME).map(|l| l.name).collect();
+        json_schema!({ "enum": names })
+    }
+}
+
+/// The schema of a map with one of the registered kinds of a stage. `shared` are keys that all of them take beside their own, and
+/// `by_name` says whether a kind's name alone stands for it.
+pub fn kinds<S: Stage + ?Sized>(generator: &mut SchemaGenerator, shared: Option<&Schema>, by_name: bool) -> Schema {
+    let all: Vec<Listed> = super::list().into_iter().filter(|l| l.stage == S::NAME).collect();
+    of_listed(&all, generator, shared, by_name)
+}
+
+fn of_listed(all: &[Listed], generator: &mut SchemaGenerator, shared: Option<&Schema>, by_name: bool) -> Schema {
+    let kinds = Kinds {
+        key: all.first().map_or("kind", |listed| listed.key),
+        kinds: all.iter().map(|listed| (listed.name, (listed.schema)(generator))).collect(),
+        default: all.iter().find(|listed| listed.default).map(|listed| listed.name),
+        shared,
+        by_name,
+    };
+    kinds.schema()
+}
+
 /// Writes one definition a kind of stage (`source`, `surface`, ...) into a generator, with everything that is registered.
 /// `shared` are keys that all stages of a kind take beside their own: a schema of a map, by kind.
 pub fn definitions(generator: &mut SchemaGenerator, shared: &[(&str, Schema)]) {
-    let all = super::list();
-    for entries in all.chunk_by(|a, b| a.stage == b.stage) {
-        let stage = entries[0].stage;
-        let kinds = Kinds {
-            key: "kind",
-            kinds: entries.iter().map(|entry| (entry.name, (entry.schema)(generator))).collect(),
-            default: entries.iter().find(|e| e.default).map(|e| e.name),
-            shared: shared.iter().find(|(name, _)| *name == stage).map(|(_, schema)| schema),
-            by_name: true,
-        };
-        generator.definitions_mut().insert(stage.to_owned(), kinds.schema().to_value());
+    for all in super::list().chunk_by(|a, b| a.stage == b.stage) {
+        let stage = all[0].stage;
+        let shared = shared.iter().find(|(name, _)| *name == stage).map(|(_, schema)| schema);
+        let schema = of_listed(all, generator, shared, true);
+        generator.definitions_mut().insert(stage.to_owned(), schema.to_value());
     }
 }

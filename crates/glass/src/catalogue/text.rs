@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::CatalogueError;
+use crate::formula::BUCHDAHL;
 use crate::formula::{Formula, ModelGlass, NumberedFormula, Table};
 use crate::glass::{Category, Extinction, Glass, Status, Thermal};
 use crate::lines::LineTriple;
@@ -162,7 +163,8 @@ impl Bundle {
 fn formula(kind: &str, data: &str) -> Result<Formula, &'static str> {
     let c = numbers(data)?;
     match kind {
-        "B" => c.try_into().map(Formula::Buchdahl).map_err(|_| "Buchdahl's model has four coefficients"),
+        "B" if c.len() == 4 => Ok(BUCHDAHL.with(&c)),
+        "B" => Err("Buchdahl's model has four coefficients"),
         "M" => match c[..] {
             [nd, vd] => {
                 ModelGlass::new(nd, vd, LineTriple::FDC).map(Formula::Model).ok_or("no glass has such nd and Vd")

@@ -1,19 +1,22 @@
 //! A glass in YAML.
 
 use super::{Figures, MAX_BYTES, OWN_MAKER, csv, sensible};
-use crate::{Category, Extinction, Formula, Glass, Medium, NumberedFormula, Table};
+use crate::{Category, Extinction, Formula, Glass, Medium, Table};
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::names;
-use spectra_core::params::{Fault, Faults, Length, NonNegative, Params, Positive, Wavelength};
+use spectra_core::params::{Fault, Faults, Length, NonNegative, Params, Positive, Wavelength, Whole};
+use spectra_core::registry::{self, Context, NameOf, Stage};
 use spectra_core::resources::{Resources, beside};
+use spectra_core::spectral::BAND;
 
 /// A glass as a file writes it.
 #[derive(Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[serde(rename_all = "kebab-case")]
+#[schemars(deny_unknown_fields)]
 pub struct GlassFile {
     /// Version of the format.
-    spectra: Option<f64>,
+    #[expect(dead_code, reason = "its schema allows one version")]
+    spectra: Option<Whole<1, 1>>,
     /// Name for people.
     name: Option<String>,
     /// Who makes it.
@@ -26,8 +29,8 @@ pub struct GlassFile {
     /// What else is worth knowing.
     #[expect(dead_code, reason = "for the reader of the file")]
     remark: Option<String>,
-    /// Name of a dispersion formula.
-    formula: Option<String>,
+    /// Name of a dispersion formula; see `spectra list formula`.
+    formula: Option<NameOf<Formula>>,
     /// Its coefficients, of the formula in micrometers.
     coefficients: Option<Vec<f64>>,
     /// Measured indices: wavelength, nm if bare, and n.
@@ -36,43 +39,10 @@ pub struct GlassFile {
     file: Option<String>,
     /// First and last wavelength of the data, nm if bare; 350 to 830 nm if absent.
     range: Option<[Wavelength; 2]>,
-    /// Index at the d line: with `vd`, or with indices at more lines, the whole glass; beside a formula or a table it is
-    /// held against that, as every figure is.
-    nd: Option<f64>,
-    /// Abbe number at d, F and C.
-    vd: Option<f64>,
-    /// Index at the e line.
-    ne: Option<f64>,
-    /// Abbe number at e, F' and C'.
-    ve: Option<f64>,
-    /// Index at the sodium line D.
-    #[serde(rename = "nD")]
-    n_sodium: Option<f64>,
-    /// Abbe number at D, F and C.
-    #[serde(rename = "vD")]
-    v_sodium: Option<f64>,
-    /// Index at the i line.
-    ni: Option<f64>,
-    /// Index at the h line.
-    nh: Option<f64>,
-    /// Index at the g line.
-    ng: Option<f64>,
-    /// Index at the F' line.
-    #[serde(rename = "nF'")]
-    n_f_prime: Option<f64>,
-    /// Index at the F line.
-    #[serde(rename = "nF")]
-    n_f: Option<f64>,
-    /// Index at the C' line.
-    #[serde(rename = "nC'")]
-    n_c_prime: Option<f64>,
-    /// Index at the C line.
-    #[serde(rename = "nC")]
-    n_c: Option<f64>,
-    /// Index at the r line.
-    nr: Option<f64>,
-    /// Index at the s line.
-    ns: Option<f64>,
+    /// Its figures: with an Abbe number, or at several lines, they are the whole glass; beside a formula or a table they are held against
+    /// that.
+    #[serde(flatten)]
+    figures: Figures,
     /// Temperature of the data, degrees Celsius.
     temperature: Option<f64>,
     /// Extinction: wavelength, nm if bare, and k of the complex index n - i k.
@@ -91,56 +61,6 @@ pub struct InternalTransmittance {
     table: Vec<(Wavelength, f64)>,
 }
 
-/// How a formula is made of its coefficients: name, fewest and most of them.
-type Maker = (&'static str, usize, usize, fn(&[f64]) -> Option<Formula>);
-
-/// Coefficients, zeros behind the last one written.
-fn all<const N: usize>(c: &[f64]) -> [f64; N] {
-    std::array::from_fn(|i| c.get(i).copied().unwrap_or(0.0))
-}
-
-macro_rules! numbered {
-    ($name:literal, $number:literal) => {
-        ($name, 1, 41, |c| NumberedFormula::new($number, c).map(Formula::Numbered))
-    };
-}
-
-/// The formulas by name, with their counts of coefficients.
-const FORMULAS: [Maker; 25] = [
-    ("constant", 1, 1, |c| Some(Formula::Constant(c[0]))),
-    ("cauchy", 1, 8, |c| Some(Formula::Cauchy(c.to_vec()))),
-    ("conrady", 3, 3, |c| Some(Formula::Conrady(all(c)))),
-    ("schott", 2, 6, |c| Some(Formula::Schott(all(c)))),
-    ("extended", 2, 8, |c| Some(Formula::Extended(all(c)))),
-    ("extended-2", 2, 8, |c| Some(Formula::Extended2(all(c)))),
-    ("extended-3", 2, 9, |c| Some(Formula::Extended3(all(c)))),
-    ("handbook-1", 4, 4, |c| Some(Formula::Handbook1(all(c)))),
-    ("handbook-2", 4, 4, |c| Some(Formula::Handbook2(all(c)))),
-    ("herzberger", 2, 6, |c| Some(Formula::Herzberger(all(c)))),
-    ("sellmeier-1", 6, 6, |c| Some(Formula::Sellmeier1(all(c)))),
-    ("sellmeier-2", 5, 5, |c| Some(Formula::Sellmeier2(all(c)))),
-    ("sellmeier-3", 8, 8, |c| Some(Formula::Sellmeier3(all(c)))),
-    ("sellmeier-4", 5, 5, |c| Some(Formula::Sellmeier4(all(c)))),
-    ("sellmeier-5", 10, 10, |c| Some(Formula::Sellmeier5(all(c)))),
-    ("buchdahl", 4, 4, |c| Some(Formula::Buchdahl(all(c)))),
-    numbered!("refractiveindex-1", 1),
-    numbered!("refractiveindex-2", 2),
-    numbered!("refractiveindex-3", 3),
-    numbered!("refractiveindex-4", 4),
-    numbered!("refractiveindex-5", 5),
-    numbered!("refractiveindex-6", 6),
-    numbered!("refractiveindex-7", 7),
-    numbered!("refractiveindex-8", 8),
-    numbered!("refractiveindex-9", 9),
-];
-
-impl GlassFile {
-    fn figures(&self) -> Figures {
-        let &Self { nd, vd, ne, ve, n_sodium, v_sodium, ni, nh, ng, n_f_prime, n_f, n_c_prime, n_c, nr, ns, .. } = self;
-        Figures { nd, vd, ne, ve, n_sodium, v_sodium, ni, nh, ng, n_f_prime, n_f, n_c_prime, n_c, nr, ns }
-    }
-}
-
 /// The glass of a parsed file: named after it, unless it says so itself.
 pub(super) fn from_file(params: &Params, resources: &dyn Resources) -> Result<Glass, Faults> {
     let file = &params.node().file.name;
@@ -156,9 +76,6 @@ pub(super) fn from_file(params: &Params, resources: &dyn Resources) -> Result<Gl
 pub fn from_params(params: &Params, called: &str, resources: &dyn Resources) -> Result<Glass, Faults> {
     let p: GlassFile = params.parse()?;
     let mut faults = Faults::new();
-    if p.spectra.is_some_and(|v| v != 1.0) {
-        faults.push(params.fault("spectra", "the format of a glass file that this program reads is 1"));
-    }
     let range_nm = p.range.map(|r| r.map(|w| w.nm()));
     if range_nm.is_some_and(|[from, to]| !(from < to && to <= 1e6)) {
         faults.push(params.fault("range", "two wavelengths, the shorter one first").hint("[365 nm, 1014 nm]"));
@@ -185,20 +102,19 @@ pub fn from_params(params: &Params, called: &str, resources: &dyn Resources) -> 
         let hint = "coefficients are those of the formula in micrometers; `range` is where they hold";
         return Err(params.fault(key, text).hint(hint).into());
     }
-    let figures = p.figures();
-    for (key, stated, own, tolerance) in figures.against(|nm| glass.index(nm)) {
+    for (key, stated, own, tolerance) in p.figures.against(|nm| glass.index(nm)) {
         if !((stated - own).abs() <= tolerance) {
             let fault = params.fault(key, format!("{key} is stated as {stated}, but the data give {own:.5}"));
             faults.push(fault.hint("the figures contradict each other: which one is wrong?"));
         }
     }
-    (glass.listed_nd, glass.listed_vd) = (p.nd, p.vd);
+    (glass.listed_nd, glass.listed_vd) = (p.figures.nd, p.figures.vd);
     faults.into_result(glass)
 }
 
 /// The glass as far as its index goes.
 fn base(params: &Params, p: &GlassFile, resources: &dyn Resources) -> Result<Glass, Faults> {
-    const BAND: (f64, f64) = (350.0, 830.0);
+    const BAND_NM: (f64, f64) = (350.0, 830.0);
     let plain = |formula, range| Glass::new("", "", Category::User, formula, range);
     let forms = [("formula", p.formula.is_some()), ("table", p.table.is_some()), ("file", p.file.is_some())];
     let given: Vec<&str> = forms.iter().filter(|(_, is)| *is).map(|(key, _)| *key).collect();
@@ -210,8 +126,8 @@ fn base(params: &Params, p: &GlassFile, resources: &dyn Resources) -> Result<Gla
         let fault = params.fault("coefficients", "coefficients of which formula?");
         return Err(fault.hint("`formula: sellmeier-1`, or another").into());
     }
-    if let Some(name) = &p.formula {
-        return Ok(plain(formula(params, p, name)?, BAND));
+    if p.formula.is_some() {
+        return Ok(plain(formula(params, resources)?, BAND_NM));
     }
     if let Some(table) = &p.table {
         let points: Vec<(f64, f64)> = table.iter().map(|(w, n)| (w.nm(), *n)).collect();
@@ -226,36 +142,22 @@ fn base(params: &Params, p: &GlassFile, resources: &dyn Resources) -> Result<Gla
         let found = found.map_err(|e| params.fault("file", format!("`{file}`: {e}")))?;
         return csv::read(&found.name, &found.bytes, material).map_err(|faults| params.place_at("file", faults));
     }
-    let figures = p.figures();
-    if figures.is_empty() {
+    if p.figures.is_empty() {
         let fault = params.fault_here("the glass has no index");
         return Err(fault.hint("`formula` and `coefficients`, a `table`, a CSV `file`, or `nd` and `vd`").into());
     }
-    let formula = match figures.medium(params)?.0 {
+    let formula = match p.figures.medium(params)?.0 {
         Medium::Model(model) => Formula::Model(model),
         medium => Formula::Constant(medium.index(crate::lines::D.wavelength_nm)),
     };
-    Ok(plain(formula, BAND))
+    Ok(plain(formula, BAND_NM))
 }
 
-fn formula(params: &Params, p: &GlassFile, name: &str) -> Result<Formula, Fault> {
-    let Some((_, least, most, make)) = FORMULAS.iter().find(|(n, ..)| *n == name) else {
-        let known: Vec<&str> = FORMULAS.iter().map(|(name, ..)| *name).collect();
-        let fault = params.fault("formula", format!("unknown formula `{name}`"));
-        return Err(fault.hint(names::hint(name, &known, "")));
-    };
-    let Some(c) = &p.coefficients else {
-        return Err(params.fault("formula", "a formula needs its `coefficients`").hint("a list of numbers"));
-    };
-    let counts = if least == most { format!("{least}") } else { format!("{least} to {most}") };
-    let fault = |text: String| params.fault("coefficients", text).hint(format!("`{name}` has {counts}"));
-    if !(*least..=*most).contains(&c.len()) {
-        return Err(fault(format!("{} coefficients", c.len())));
-    }
-    if c.iter().any(|c| !c.is_finite()) {
-        return Err(fault("a coefficient is not a finite number".to_owned()));
-    }
-    make(c).ok_or_else(|| fault(format!("{} coefficients do not fit the form", c.len())))
+/// The formula that the registry knows by its name.
+fn formula(params: &Params, resources: &dyn Resources) -> Result<Formula, Faults> {
+    let (own, _) = params.split(&[Formula::KEY, "coefficients"]);
+    let own = Params::kinded(own.node().clone(), params.path(), Formula::KEY)?;
+    registry::build::<Formula>(&own, &Context::new(resources, BAND)).map(|formula| *formula)
 }
 
 fn extinction(params: &Params, p: &GlassFile) -> Result<Option<Extinction>, Fault> {

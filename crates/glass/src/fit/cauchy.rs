@@ -1,7 +1,7 @@
 //! Cauchy's formula from a table.
 
 use super::{Fit, FitError, Sample, check};
-use crate::formula::Formula;
+use crate::formula::CAUCHY;
 use spectra_numerics::linear;
 
 /// Cauchy's A and B from each pair of neighboring rows, and their means.
@@ -40,7 +40,7 @@ pub fn cauchy_by_rows(samples: &[Sample]) -> Result<CauchyRows, FitError> {
     let b_nm2 = mean(&b_rows_nm2);
     let a_rows: Vec<f64> = (0..count).map(|i| samples[i].n - b_nm2 * x(i)).collect();
     let a = mean(&a_rows);
-    let fit = Fit::of(Formula::Cauchy(vec![a, b_nm2 * 1e-6]), samples);
+    let fit = Fit::of(CAUCHY.with(&[a, b_nm2 * 1e-6]), samples);
     Ok(CauchyRows { a, b_nm2, a_rows, b_rows_nm2, fit })
 }
 
@@ -72,7 +72,7 @@ pub fn cauchy_least_squares(samples: &[Sample], terms: usize) -> Result<Fit, Fit
         *c /= scale;
         scale *= largest;
     }
-    Ok(Fit::of(Formula::Cauchy(c), samples))
+    Ok(Fit::of(CAUCHY.with(&c), samples))
 }
 
 #[cfg(test)]
@@ -85,7 +85,7 @@ mod tests {
 
     #[test]
     fn finds_the_coefficients_that_made_the_samples() {
-        let made = Formula::Cauchy(vec![1.5, 0.004, 1e-4, -2e-6]);
+        let made = CAUCHY.with(&[1.5, 0.004, 1e-4, -2e-6]);
         let rows: Vec<_> = [365.0, 405.0, 436.0, 486.0, 546.0, 588.0, 656.0, 852.0].map(|w| (w, made.index(w))).into();
         let fit = cauchy_least_squares(&samples(&rows), 4).expect("determined");
         for (got, expected) in fit.formula.coefficients().iter().zip([1.5, 0.004, 1e-4, -2e-6]) {

@@ -1,7 +1,7 @@
 //! Formulas that are linear in their coefficients, by least squares: Conrady, Schott, Herzberger.
 
 use super::{Fit, FitError, Sample, check};
-use crate::formula::Formula;
+use crate::formula::{CONRADY, HERZBERGER, SCHOTT};
 use spectra_numerics::linear;
 
 /// Conrady's n = c0 + c1 / L + c2 / L^3.5 by least squares; three samples or more.
@@ -11,7 +11,7 @@ use spectra_numerics::linear;
 pub fn conrady_least_squares(samples: &[Sample]) -> Result<Fit, FitError> {
     let basis = |um: f64| [1.0, 1.0 / um, 1.0 / (um * um * um * um.sqrt())];
     let c = solve(samples, basis, |n| (n, 1.0))?;
-    Ok(Fit::of(Formula::Conrady(c), samples))
+    Ok(Fit::of(CONRADY.with(&c), samples))
 }
 
 /// Schott's n^2 = c0 + c1 L^2 + c2 L^-2 + c3 L^-4 + c4 L^-6 + c5 L^-8; six samples or more. The squared index is
@@ -25,7 +25,7 @@ pub fn schott_least_squares(samples: &[Sample]) -> Result<Fit, FitError> {
         [1.0, um * um, x, x * x, x * x * x, x * x * x * x]
     };
     let c = solve(samples, basis, |n| (n * n, 0.5 / n))?;
-    Ok(Fit::of(Formula::Schott(c), samples))
+    Ok(Fit::of(SCHOTT.with(&c), samples))
 }
 
 /// Herzberger's n = A + B l + C l^2 + D L^2 + E L^4 + F L^6 with l = 1 / (L^2 - 0.028) by least squares; six samples or
@@ -40,7 +40,7 @@ pub fn herzberger_least_squares(samples: &[Sample]) -> Result<Fit, FitError> {
         [1.0, l, l * l, square, square * square, square * square * square]
     };
     let c = solve(samples, basis, |n| (n, 1.0))?;
-    Ok(Fit::of(Formula::Herzberger(c), samples))
+    Ok(Fit::of(HERZBERGER.with(&c), samples))
 }
 
 /// Coefficients of a basis (of the wavelength, um) for what `value` makes of an index, with its weight.
@@ -70,6 +70,8 @@ fn solve<const N: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::formula::Formula;
+    use crate::formula::SELLMEIER_1;
 
     fn samples(made: &Formula) -> Vec<Sample> {
         let wavelengths = [334.1, 365.0, 404.7, 435.8, 486.1, 546.1, 587.6, 656.3, 706.5, 852.1, 1014.0];
@@ -80,18 +82,18 @@ mod tests {
     #[test]
     fn makers_coefficients_come_back() {
         let conrady = [1.574_103_27, 0.013_978_614_9, 8.300_451_1e-4];
-        let fit = conrady_least_squares(&samples(&Formula::Conrady(conrady))).expect("determined");
+        let fit = conrady_least_squares(&samples(&CONRADY.with(&conrady))).expect("determined");
         for (got, made) in fit.formula.coefficients().iter().zip(conrady) {
             assert!((got - made).abs() < 1e-12, "{got} {made}");
         }
         let schott = [2.645_77, -0.010_100_029, 0.018_254_281, 7.007_040_1e-4, -3.697_830_4e-5, 3.153_272_2e-6];
-        let fit = schott_least_squares(&samples(&Formula::Schott(schott))).expect("determined");
+        let fit = schott_least_squares(&samples(&SCHOTT.with(&schott))).expect("determined");
         assert!(fit.max_deviation < 1e-13, "{}", fit.max_deviation);
         for (got, made) in fit.formula.coefficients().iter().zip(schott) {
             assert!((got - made).abs() < 1e-8, "{got} {made}");
         }
         let herzberger = [2.268_8, 0.03, 0.001, -0.001, 2e-5, -3e-7];
-        let fit = herzberger_least_squares(&samples(&Formula::Herzberger(herzberger))).expect("determined");
+        let fit = herzberger_least_squares(&samples(&HERZBERGER.with(&herzberger))).expect("determined");
         assert!(fit.max_deviation < 1e-12, "{}", fit.max_deviation);
     }
 
@@ -99,7 +101,7 @@ mod tests {
     #[test]
     fn other_forms_are_met_as_well_as_they_can_be() {
         let n_bk7 = [1.039_612_12, 0.006_000_698_67, 0.231_792_344, 0.020_017_914_4, 1.010_469_45, 103.560_653];
-        let samples = samples(&Formula::Sellmeier1(n_bk7));
+        let samples = samples(&SELLMEIER_1.with(&n_bk7));
         for (fit, deviation) in [
             (schott_least_squares(&samples), 2.4816e-7),
             (herzberger_least_squares(&samples), 5.0498e-6),

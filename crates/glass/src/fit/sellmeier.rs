@@ -1,6 +1,7 @@
 //! Sellmeier's formula from a table.
 
 use super::{Fit, FitError, Sample, check};
+use crate::formula::SELLMEIER_1;
 use crate::formula::{Formula, NumberedFormula};
 use spectra_numerics::linear;
 
@@ -61,7 +62,7 @@ pub fn sellmeier_least_squares(samples: &[Sample], terms: usize) -> Result<Fit, 
     }
     let c = parameters.coefficients(&u, &poles);
     let formula = match terms {
-        3 => Formula::Sellmeier1(std::array::from_fn(|i| c[i])),
+        3 => SELLMEIER_1.with(&c),
         _ => {
             let c: Vec<f64> = std::iter::once(0.0).chain(c).collect();
             Formula::Numbered(NumberedFormula::new(2, &c).ok_or(FitError::Undetermined)?)
@@ -149,7 +150,7 @@ mod tests {
 
     #[test]
     fn three_resonances_of_n_bk7_come_back() {
-        let made = Formula::Sellmeier1(N_BK7);
+        let made = SELLMEIER_1.with(&N_BK7);
         let samples: Vec<Sample> = [
             312.6, 334.1, 365.0, 404.7, 435.8, 486.1, 546.1, 587.6, 656.3, 706.5, 852.1, 1014.0, 1529.6, 1970.1, 2325.4,
         ]

@@ -1,5 +1,157 @@
 //! The nine numbered forms of the refractiveindex.info database.
 
+use super::Formula;
+
+/// Registers a form by its number.
+macro_rules! numbered {
+    ($(#[doc = $doc:literal])* $name:literal, $number:literal) => {
+        const _: () = {
+            $(#[doc = $doc])*
+            #[derive(Debug, serde::Deserialize, schemars::JsonSchema)]
+            #[serde(deny_unknown_fields)]
+            struct Params {
+                /// C1, C2, ... of the form, with lengths in micrometers.
+                #[schemars(length(min = 1, max = 41))]
+                coefficients: Vec<f64>,
+            }
+
+            spectra_core::register!(crate::FormulaEntry, $name: Params, |params, _| {
+                let p: Params = params.parse()?;
+                let formula = NumberedFormula::new($number, &p.coefficients).map(|formula| Box::new(Formula::Numbered(formula)));
+                let text = || format!("{} coefficients do not fit the form", p.coefficients.len());
+                formula.ok_or_else(|| params.fault("coefficients", text()).hint("as refractiveindex.info writes it").into())
+            });
+        };
+    };
+}
+
+numbered! {
+    /// refractiveindex.info 1: n^2 - 1 = C1 + C2 L^2 / (L^2 - C3^2) + ....
+    ///
+    /// Sellmeier with poles as wavelengths; C1 and up to twenty pairs.
+    ///
+    /// # Example
+    /// ```yaml
+    /// {formula: refractiveindex-1, coefficients: [0, 0.6961663, 0.0684043, 0.4079426, 0.1162414, 0.8974794, 9.896161]}
+    /// ```
+    ///
+    /// # References
+    /// - M. N. Polyanskiy, Sci. Data 11, 94 (2024).
+    "refractiveindex-1", 1
+}
+numbered! {
+    /// refractiveindex.info 2: n^2 - 1 = C1 + C2 L^2 / (L^2 - C3) + ....
+    ///
+    /// Sellmeier with poles as squared wavelengths; C1 and up to twenty pairs.
+    ///
+    /// # Example
+    /// ```yaml
+    /// {formula: refractiveindex-2, coefficients: [0, 1.34533359, 0.00997743871, 0.209073176, 0.0470450767, 0.937357162, 111.886764]}
+    /// ```
+    ///
+    /// # References
+    /// - M. N. Polyanskiy, Sci. Data 11, 94 (2024).
+    "refractiveindex-2", 2
+}
+numbered! {
+    /// refractiveindex.info 3: n^2 = C1 + C2 L^C3 + C4 L^C5 + ....
+    ///
+    /// A polynomial in the wavelength with stated powers; C1 and up to twenty pairs.
+    ///
+    /// # Example
+    /// ```yaml
+    /// {formula: refractiveindex-3, coefficients: [2.2181132, -0.005799427, 2, 0.0083470679, -2, 6.5046523e-5, -4]}
+    /// ```
+    ///
+    /// # References
+    /// - M. N. Polyanskiy, Sci. Data 11, 94 (2024).
+    "refractiveindex-3", 3
+}
+numbered! {
+    /// refractiveindex.info 4: n^2 = C1 + two resonances of four coefficients + C10 L^C11 + ....
+    ///
+    /// A resonance is C2 L^C3 / (L^2 - C4^C5). Crystals with unusual powers are given so.
+    ///
+    /// # Example
+    /// ```yaml
+    /// {formula: refractiveindex-4, coefficients: [2.259276, 13.00522, 2, 400, 1, 0.01008956, 0, 0.0129426, 1]}
+    /// ```
+    ///
+    /// # References
+    /// - M. N. Polyanskiy, Sci. Data 11, 94 (2024).
+    "refractiveindex-4", 4
+}
+numbered! {
+    /// refractiveindex.info 5: n = C1 + C2 L^C3 + C4 L^C5 + ....
+    ///
+    /// Cauchy with stated powers; C1 and up to twenty pairs. Liquids and plastics mostly.
+    ///
+    /// # Example
+    /// ```yaml
+    /// {formula: refractiveindex-5, coefficients: [1.35265, 0.00306, -2, 0.00002, -4]}
+    /// ```
+    ///
+    /// # References
+    /// - M. N. Polyanskiy, Sci. Data 11, 94 (2024).
+    "refractiveindex-5", 5
+}
+numbered! {
+    /// refractiveindex.info 6: n - 1 = C1 + C2 / (C3 - L^-2) + ....
+    ///
+    /// For gases; C1 and up to twenty pairs. As the database refractiveindex.info has it.
+    ///
+    /// # Example
+    /// ```yaml
+    /// {formula: refractiveindex-6, coefficients: [0, 0.05792105, 238.0185, 0.00167917, 57.362]}
+    /// ```
+    ///
+    /// # References
+    /// - M. N. Polyanskiy, Sci. Data 11, 94 (2024).
+    "refractiveindex-6", 6
+}
+numbered! {
+    /// refractiveindex.info 7: n = C1 + C2 l + C3 l^2 + C4 L^2 + C5 L^4 + C6 L^6, l = 1 / (L^2 - 0.028).
+    ///
+    /// Herzberger, for media that are clear far into the infrared. As the database refractiveindex.info has it.
+    ///
+    /// # Example
+    /// ```yaml
+    /// {formula: refractiveindex-7, coefficients: [2.2596285, 0.0311097853, 0.0010251756, -0.000594355286, 4.49796618e-7, 0]}
+    /// ```
+    ///
+    /// # References
+    /// - M. N. Polyanskiy, Sci. Data 11, 94 (2024).
+    "refractiveindex-7", 7
+}
+numbered! {
+    /// refractiveindex.info 8: (n^2 - 1) / (n^2 + 2) = C1 + C2 L^2 / (L^2 - C3) + C4 L^2.
+    ///
+    /// Lorentz and Lorenz; four coefficients, for a few salts of silver.
+    ///
+    /// # Example
+    /// ```yaml
+    /// {formula: refractiveindex-8, coefficients: [0.452505, 0.09939, 0.070537, -0.00015]}
+    /// ```
+    ///
+    /// # References
+    /// - M. N. Polyanskiy, Sci. Data 11, 94 (2024).
+    "refractiveindex-8", 8
+}
+numbered! {
+    /// refractiveindex.info 9: n^2 = C1 + C2 / (L^2 - C3) + C4 (L - C5) / ((L - C5)^2 + C6).
+    ///
+    /// Six coefficients, for urea and its like. As the database refractiveindex.info has it.
+    ///
+    /// # Example
+    /// ```yaml
+    /// {formula: refractiveindex-9, coefficients: [2.51527, 0.024, 0.03, 0.02, 1.52, 0.8771]}
+    /// ```
+    ///
+    /// # References
+    /// - M. N. Polyanskiy, Sci. Data 11, 94 (2024).
+    "refractiveindex-9", 9
+}
+
 /// A form of refractiveindex.info, 1 to 9, with its coefficients C1, C2, ... in the database's order.
 ///
 /// Source: M. N. Polyanskiy, "Dispersion formulas", refractiveindex.info; L is the wavelength in micrometres.
@@ -110,7 +262,7 @@ fn power(x: f64, p: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::formula::{Formula, check};
+    use crate::formula::check;
 
     fn form(number: u8, c: &[f64]) -> Formula {
         Formula::Numbered(NumberedFormula::new(number, c).expect("a form"))

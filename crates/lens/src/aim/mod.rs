@@ -11,16 +11,21 @@
 //! Light that a surface scatters leaves it in directions that no search finds. So only the way to the first such surface is
 //! searched, from the side that the rays come from: what reaches it is aimed at, whatever becomes of it there.
 //!
-//! A point shares its rays out evenly over the area of that shape. The weight of each is the solid
-//! angle of its share, area times cosine over distance squared: so the estimate has no bias, whatever
-//! the shape, and light is counted equally per solid angle.
+//! Inside of it, each zone has an outline of what passes, one for each zone of wavelength: a line around the pupil as it is
+//! cut by rims, blades and drawings. Nearly all rays of a point are shared out evenly over the area of that outline, and the
+//! few others over a ring around it: see [`outline`]. The weight of each is the solid angle of its share, area times cosine
+//! over distance squared, so light is counted equally per solid angle, and the estimate has no bias while outline and ring hold
+//! all that passes; random rays beyond the outline check that when it is made.
 
 mod front;
 mod nodes;
+mod outline;
 mod probe;
+mod reach;
 mod rear;
 mod search;
 mod shape;
+mod stopped;
 mod table;
 
 pub use front::{AimRegion, FrontPupil};

@@ -81,8 +81,16 @@ impl Geometry {
         Bounds { low: [low, -across], high: [high, across] }
     }
 
-    /// What passes from one point.
-    pub fn node(&self, prober: &mut Prober<'_>, measure: f64, depth: f64, turns: f64, grid: usize) -> Option<Node> {
+    /// What passes from one point; its edges at each of some wavelengths.
+    pub fn node(
+        &self,
+        prober: &mut Prober<'_>,
+        measure: f64,
+        depth: f64,
+        turns: f64,
+        grid: usize,
+        colors_nm: &[f64],
+    ) -> Option<Node> {
         let point = self.point(measure, depth, turns)?;
         let plane = self.plane(point, turns);
         let start = self.whole(point, &plane);
@@ -90,7 +98,16 @@ impl Geometry {
         let bounds = Bounds::around(&places)?;
         let (sin, cos) = spectra_core::math::sin_cos_turns(turns);
         let local = |p: DVec3| DVec3::new(p.x * cos + p.y * sin, -p.x * sin + p.y * cos, p.z);
+        let many = places.len() as f64;
+        let middle = std::array::from_fn(|i| places.iter().map(|p| p[i]).sum::<f64>() / many);
+        let edges = if colors_nm.is_empty() {
+            Vec::new()
+        } else {
+            prober.edges(point, &plane, middle, &bounds.widened(cell.map(|c| 1.5 * c)), colors_nm)
+        };
+        let edges = edges.into_iter().map(|line| line.into_iter().map(|p| local(plane.at(p))).collect()).collect();
         Some(Node {
+            edges,
             point: local(point),
             targets: hull(&places).into_iter().map(|p| local(plane.at(p))).collect(),
             center: local(plane.at(bounds.center())),
@@ -109,4 +126,6 @@ pub(super) struct Node {
     pub center: DVec3,
     /// Beyond each place, no farther than this, light may pass unseen, mm.
     pub cell: [f64; 2],
+    /// By wavelength, a closed line around what passes; empty where nothing was seen to.
+    pub edges: Vec<Vec<DVec3>>,
 }

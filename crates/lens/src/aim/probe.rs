@@ -111,6 +111,11 @@ const STEP: f64 = 0.4;
 const COARSE: usize = 24;
 /// Grid of a step in which nothing was seen, before it is believed.
 const FINE: usize = 96;
+/// Directions in which the end of what passes is looked for.
+pub(super) const EDGE: usize = 48;
+/// Steps outward in each of them, and halvings of the last one.
+const ROUGH: usize = 8;
+const HALVINGS: usize = 5;
 
 impl<'a> Prober<'a> {
     /// `None` where a medium has no index in the middle of the band.
@@ -139,6 +144,12 @@ impl<'a> Prober<'a> {
             whole: Stage::new(tracer, travel),
             rays: RayBatch::new(BATCH),
         })
+    }
+
+    /// For probes of the lens itself, not for a search.
+    pub fn of(tracer: &'a Tracer, travel: Travel) -> Self {
+        let rays = RayBatch::new(BATCH);
+        Self { wavelengths_nm: [0.0; 3], opened: Vec::new(), whole: Stage::new(tracer, travel), rays }
     }
 
     /// What passes from `point` through `start` on `plane`, at the ends and the middle of the band: its
@@ -209,6 +220,70 @@ impl<'a> Prober<'a> {
             }
             first += len;
         }
+    }
+
+    /// Where what passes ends, in [`EDGE`] directions from a place on the plane, at each of some wavelengths: the farthest
+    /// places beyond which nothing was seen up to `bounds`. Nothing where no probe passes.
+    pub fn edges(
+        &mut self,
+        point: DVec3,
+        plane: &Plane,
+        from: [f64; 2],
+        bounds: &Bounds,
+        colors_nm: &[f64],
+    ) -> Vec<Vec<[f64; 2]>> {
+        let half = bounds.half();
+        // In each direction out to the side of the rectangle; evenly around the ellipse in it.
+        let ways: Vec<[f64; 2]> = (0..EDGE)
+            .map(|k| {
+                let (sin, cos) = spectra_core::math::sin_cos_turns(k as f64 / EDGE as f64);
+                let way = [cos * half[0], sin * half[1]];
+                let to = |i: usize| {
+                    let side = if way[i] > 0.0 { bounds.high[i] } else { bounds.low[i] };
+                    if way[i] == 0.0 { f64::INFINITY } else { ((side - from[i]) / way[i]).max(0.0) }
+                };
+                let out = to(0).min(to(1));
+                way.map(|w| w * out)
+            })
+            .collect();
+        let place = |k: usize, part: f64| [from[0] + part * ways[k][0], from[1] + part * ways[k][1]];
+        let rays = colors_nm.len() * EDGE;
+        let color = |ray: usize| colors_nm[ray / EDGE];
+        // The last step outward at which light passes, then halves of the one after it.
+        let mut low = vec![-1.0_f64; rays];
+        let rough: Vec<(usize, usize)> = (0..rays).flat_map(|ray| (0..=ROUGH).map(move |step| (ray, step))).collect();
+        for chunk in rough.chunks(BATCH) {
+            let probes = chunk
+                .iter()
+                .map(|(ray, step)| (point, plane.at(place(ray % EDGE, *step as f64 / ROUGH as f64)), color(*ray)));
+            let states = self.pass(probes);
+            for ((ray, step), _) in chunk.iter().zip(states).filter(|(_, s)| **s == ALIVE) {
+                low[*ray] = low[*ray].max(*step as f64 / ROUGH as f64);
+            }
+        }
+        let mut high: Vec<f64> =
+            low.iter().map(|l| if *l < 0.0 { 0.0 } else { (l + 1.0 / ROUGH as f64).min(1.0) }).collect();
+        let open: Vec<usize> = (0..rays).filter(|ray| low[*ray] >= 0.0 && low[*ray] < high[*ray]).collect();
+        for _ in 0..HALVINGS {
+            for chunk in open.chunks(BATCH) {
+                let probes = chunk
+                    .iter()
+                    .map(|ray| (point, plane.at(place(ray % EDGE, 0.5 * (low[*ray] + high[*ray]))), color(*ray)));
+                let states = self.pass(probes);
+                for (ray, state) in chunk.iter().zip(states) {
+                    let middle = 0.5 * (low[*ray] + high[*ray]);
+                    *(if *state == ALIVE { &mut low[*ray] } else { &mut high[*ray] }) = middle;
+                }
+            }
+        }
+        let line = |c: usize| {
+            let own = c * EDGE..(c + 1) * EDGE;
+            if low[own.clone()].iter().all(|l| *l < 0.0) {
+                return Vec::new();
+            }
+            own.map(|ray| place(ray % EDGE, high[ray])).collect()
+        };
+        (0..colors_nm.len()).map(line).collect()
     }
 
     /// Which of these probes (point, target, wavelength), at most a batch, pass the lens itself.

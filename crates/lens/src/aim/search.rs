@@ -1,15 +1,17 @@
 //! The search for what passes: zone by zone, then verified.
 
 use super::nodes::{Geometry, Node};
-use super::probe::{Plane, Prober};
+use super::outline::{Colors, Outlines, RING, STRIDE, TURN_STEPS};
+use super::probe::{Bounds, Plane, Prober};
+use super::reach::{DIRECTIONS, Reach};
 use super::shape::Shape;
-use super::table::{Depth, Row, SLOTS, Table, Zone};
-use crate::aperture::{self, Aperture};
+use super::stopped::{self, Seen, Stopped};
+use super::table::{Depth, Drift, Row, SLOTS, Table, Zone};
 use crate::{Indices, Lens, Tracer, Travel};
 use glam::DVec3;
 use spectra_core::Isa;
 use spectra_core::loss::ALIVE;
-use spectra_core::math::atan2;
+use spectra_core::math::{atan2, sin_cos_turns};
 use spectra_core::numbers::Numbers;
 
 /// A sphere.
@@ -57,8 +59,8 @@ const ZONES_WITHOUT_AXIS: usize = 32;
 /// Zones of the azimuth, without one.
 const AZIMUTHS: usize = 24;
 /// Grid over what passes from one point.
-const GRID: usize = 32;
-const GRID_WITHOUT_AXIS: usize = 24;
+const GRID: usize = 24;
+const GRID_WITHOUT_AXIS: usize = 20;
 /// Step in which the end of the field is looked for, in the measure of the angle: under two degrees.
 const STEP: f64 = 0.02;
 /// So far beyond the last light seen, in that measure, no more is looked for: some 15 degrees.
@@ -67,6 +69,18 @@ const GIVE_UP: f64 = 0.2;
 const CHECKS: usize = 1024;
 /// How often a shape is widened before it is given up for the whole surface.
 const ROUNDS: u64 = 8;
+/// Zones of wavelength: of a round lens, of one with an opening that is not, of one without axis.
+const COLORS: usize = 4;
+const COLORS_STOPPED: usize = 4;
+const COLORS_WITHOUT_AXIS: usize = 2;
+/// Room around what the edges of a zone see.
+const MARGIN: f64 = 0.0015;
+/// Random rays beyond each outline, how far beyond, and how often they are sent while one passes beyond the ring.
+const HOLD_CHECKS: usize = 256;
+const HOLD_REACH: f64 = 0.4;
+const HOLD_ROUNDS: u64 = 4;
+/// What reaches out of an outline by less is left to the ring.
+const SLIGHT: f64 = 1.008;
 /// Half-zones on each side between which chief rays are crossed.
 const BASE: usize = 11;
 
@@ -74,51 +88,160 @@ impl Task<'_> {
     /// Searches all zones. `None` where no surface states a size.
     pub fn run(self) -> Option<Table> {
         let [min_nm, max_nm] = self.band_nm;
-        let iris = |a: &Aperture| matches!(a.shape, aperture::Shape::Iris(_));
-        if self.lens.elements.iter().any(|e| e.semi_diameter_mm.is_some() && e.apertures.iter().any(iris)) {
-            let lens = with_round_irises(self.lens);
-            let has_more = lens.elements.iter().any(|e| e.apertures.iter().any(iris));
-            let tracer = Tracer::new(&lens, Indices::Band { min_nm, max_nm }, self.tracer.isa()).ok()?;
-            if !has_more {
-                return Task { lens: &lens, tracer: &tracer, ..self }.run();
-            }
-        }
         let travel = self.geometry.travel;
-        let mut prober = Prober::new(self.lens, self.tracer, travel, min_nm, max_nm)?;
+        if let Some((round, at)) = stopped::split(self.lens) {
+            let tracer = Tracer::new(&round, Indices::Band { min_nm, max_nm }, self.tracer.isa()).ok()?;
+            // Where light scatters before it comes to the opening, there is nothing but the round lens to aim at.
+            let opening = Stopped::new(self.lens, &round, at, travel, self.band_nm);
+            let itself = Prober::of(self.tracer, travel);
+            return Task { lens: &round, tracer: &tracer, ..self }.search(opening.map(|opening| (opening, itself)));
+        }
+        self.search(None)
+    }
+
+    /// The same for a lens as it is, or for the round one around an opening; that and the lens itself come along.
+    fn search<'b>(&'b self, mut stopped: Option<(Stopped, Prober<'b>)>) -> Option<Table> {
+        let travel = self.geometry.travel;
+        let [from_nm, to_nm] = self.band_nm;
+        let mut prober = Prober::new(self.lens, self.tracer, travel, from_nm, to_nm)?;
         let with_axis = self.lens.has_axis_of_revolution();
         let azimuths = if with_axis { 1 } else { AZIMUTHS };
         let zones = if with_axis { ZONES } else { ZONES_WITHOUT_AXIS };
         let most = self.end_of_field(&mut prober, azimuths).min(self.most);
         let scale = if most > 0.0 { zones as f64 / most } else { 0.0 };
-        let mut rows = Vec::new();
-        if most > 0.0 {
-            // Of a zone, its two edges and its middle are looked at; over the azimuth, its edges.
-            let lattice = Lattice::new(&self, &mut prober, azimuths, 2 * zones, most);
-            for depth in 0..self.depth.zones {
-                for azimuth in 0..azimuths {
-                    let row: Vec<Zone> = (0..zones)
-                        .map(|zone| {
-                            let place = ZonePlace { depth, azimuth, zone, azimuths, scale };
-                            self.zone(&mut prober, &lattice, &place)
-                        })
-                        .collect();
-                    rows.push(Row::new(&row));
-                }
-            }
-        } else {
-            rows = vec![Row::new(&[]); self.depth.zones * azimuths];
-        }
-        debug_assert!(zones < SLOTS);
         let surface = if travel == Travel::Forward { 1 } else { self.lens.elements.len() as u32 };
-        Some(Table {
+        let bands = if to_nm <= from_nm {
+            1
+        } else if stopped.is_some() {
+            COLORS_STOPPED
+        } else if with_axis {
+            COLORS
+        } else {
+            COLORS_WITHOUT_AXIS
+        };
+        let colors = Colors { from_nm, to_nm, zones: bands };
+        let mut table = Table {
             eye_z_mm: self.geometry.eye_z_mm,
             angle_scale: scale,
             depth: self.depth,
             azimuths,
-            rows,
+            rows: vec![Row::new(&[]); self.depth.zones * azimuths],
             bound: self.geometry.bound,
             surface,
-        })
+            outlines: None,
+        };
+        if most <= 0.0 {
+            return Some(table);
+        }
+        debug_assert!(zones < SLOTS);
+        let looks = stopped.as_ref().map_or(azimuths, |(opening, _)| opening.azimuths());
+        let turns = stopped.as_ref().map_or(Vec::new(), |_| {
+            let zone = |step: usize| (turns((step as f64 + 0.5) / TURN_STEPS as f64) * looks as f64) as usize;
+            (0..TURN_STEPS).map(|step| zone(step).min(looks - 1) as u16).collect()
+        });
+        let turned = looks > 1;
+        // Of a zone, its two edges and its middle are looked at; over the azimuth, its edges.
+        let lattice = Lattice::new(self, &mut prober, azimuths, 2 * zones, most, &colors.nodes_nm());
+        let stride = STRIDE;
+        let mut corners = vec![[0.0_f32; 2]; self.depth.zones * looks * zones * bands * stride];
+        for depth in 0..self.depth.zones {
+            for azimuth in 0..azimuths {
+                let mut row = vec![Zone::default(); zones];
+                for (zone, own) in row.iter_mut().enumerate() {
+                    let at = ZonePlace { depth, azimuth, zone, azimuths, scale };
+                    let Some(mut region) = self.zone(&mut prober, &lattice, &at) else { continue };
+                    (region.drift, region.shifts) = region.drifts(&lattice, &at, bands);
+                    *own = region.zone(self.geometry.eye_z_mm);
+                    let folds = stopped.as_ref().map_or(1, |(opening, _)| opening.folds);
+                    let views = lattice.views(&at, stopped.as_mut().map(|(opening, _)| opening), &colors);
+                    let each = looks / azimuths / folds;
+                    for look in 0..each {
+                        let sector = Sector {
+                            from: if stopped.is_some() { look as f64 / looks as f64 } else { turns_of(&at).0 },
+                            to: if stopped.is_some() { (look + 1) as f64 / looks as f64 } else { turns_of(&at).1 },
+                            turned,
+                        };
+                        let opening = stopped.as_ref().map(|(opening, _)| opening);
+                        let mut reaches = region.reaches(&lattice, &at, &sector, views.as_deref(), opening, bands);
+                        if !region.fades {
+                            let whole = match &mut stopped {
+                                Some((_, itself)) => itself,
+                                None => &mut prober,
+                            };
+                            self.hold(whole, &region, &at, (look, &sector), &colors, &mut reaches);
+                        }
+                        for (color, reach) in reaches.iter().enumerate() {
+                            let outline = reach.corners();
+                            for fold in 0..folds {
+                                let place = (depth * looks + azimuth + look + fold * each) * zones + zone;
+                                let first = (place * bands + color) * stride;
+                                let (sin, cos) = sin_cos_turns(fold as f64 / folds as f64);
+                                let shifts = region.shifts[color].map(|shift| shift.map(|s| s as f32));
+                                corners[first + outline.len()..first + stride].copy_from_slice(&shifts);
+                                for (corner, [x, y]) in corners[first..].iter_mut().zip(outline) {
+                                    let (x, y) = (f64::from(x), f64::from(y));
+                                    *corner = [(x * cos - y * sin) as f32, (x * sin + y * cos) as f32];
+                                }
+                            }
+                        }
+                    }
+                }
+                table.rows[depth * azimuths + azimuth] = Row::new(&row);
+            }
+        }
+        table.outlines = Some(Outlines { colors, zones, azimuths: looks, turns, turned, corners });
+        Some(table)
+    }
+
+    /// Raises the reach of a zone by wavelength to what random rays find beyond it.
+    fn hold(
+        &self,
+        prober: &mut Prober<'_>,
+        region: &Region,
+        at: &ZonePlace,
+        (look, sector): (usize, &Sector),
+        colors: &Colors,
+        reaches: &mut [Reach],
+    ) {
+        let numbers = Numbers::random(0xa2);
+        let stream = ((at.depth * at.azimuths + at.azimuth) * SLOTS + at.zone) * 64 + look;
+        for round in 0..HOLD_ROUNDS {
+            let columns: [Vec<f64>; 6] = std::array::from_fn(|dimension| {
+                let mut column = vec![0.0; HOLD_CHECKS];
+                let first = round * HOLD_CHECKS as u64;
+                numbers.fill(Isa::Baseline, stream as u64, first, dimension as u32, &mut column);
+                column
+            });
+            let mut probes = Vec::with_capacity(HOLD_CHECKS);
+            for i in 0..HOLD_CHECKS {
+                let [angle, part, azimuth, a, b, color] = std::array::from_fn(|d| columns[d][i]);
+                let nm = colors.from_nm + color * (colors.to_nm - colors.from_nm);
+                let zone = colors.zone(nm);
+                let direction = (a * DIRECTIONS as f64) as usize % DIRECTIONS;
+                // Most of them close to the edge.
+                let r = reaches[zone].at(direction) * (1.0 + HOLD_REACH * b * b);
+                let place = Reach::way(direction).map(|w| w * r);
+                let turns = sector.at(azimuth);
+                let depth = self.depth.from
+                    + (at.depth as f64 + part) * (self.depth.to - self.depth.from) / self.depth.zones as f64;
+                let measure = (at.zone as f64 + angle) / at.scale;
+                let Some(point) = self.geometry.point(measure, depth.min(self.depth.to), turns) else { continue };
+                let parts = [angle - 0.5, colors.at(nm) - zone as f64 - 0.5, part - 0.5];
+                let [along, across] = region.moved(sector.local(place, turns), zone, parts);
+                let local = region.plane.at([region.shape.center[0] + along, region.shape.center[1] + across]);
+                let (sin, cos) = sin_cos_turns(turns);
+                let target = DVec3::new(local.x * cos - local.y * sin, local.x * sin + local.y * cos, local.z);
+                probes.push((zone, place, (point, target, nm)));
+            }
+            let states = prober.pass(probes.iter().map(|p| p.2));
+            let mut beyond = false;
+            for ((zone, place, _), _) in probes.iter().zip(states).filter(|(_, s)| **s == ALIVE) {
+                beyond |= reaches[*zone].raise(*place, SLIGHT, 1.0 + RING);
+            }
+            if !beyond {
+                break;
+            }
+        }
     }
 
     /// The measure of the angle beyond which nothing passes; 0 where nothing does at all.
@@ -132,8 +255,9 @@ impl Task<'_> {
         while STEP * f64::from(step) <= 1.55_f64.min(self.most + STEP) {
             let measure = STEP * f64::from(step);
             let passes = depths.iter().any(|depth| {
-                (0..looks)
-                    .any(|k| self.geometry.node(prober, measure, *depth, turns(k as f64 / looks as f64), 8).is_some())
+                (0..looks).any(|k| {
+                    self.geometry.node(prober, measure, *depth, turns(k as f64 / looks as f64), 8, &[]).is_some()
+                })
             });
             if passes {
                 end = measure + STEP;
@@ -145,9 +269,10 @@ impl Task<'_> {
         end
     }
 
-    fn zone(&self, prober: &mut Prober<'_>, lattice: &Lattice, at: &ZonePlace) -> Zone {
+    /// What holds all that passes in a zone; `None` where nothing does.
+    fn zone(&self, prober: &mut Prober<'_>, lattice: &Lattice, at: &ZonePlace) -> Option<Region> {
         let nodes = lattice.of(at);
-        let Some(plane) = self.plane(lattice, at) else { return Zone::default() };
+        let plane = self.plane(lattice, at)?;
         let fades = nodes.len() < lattice.nodes_a_zone();
         let mut places = Vec::new();
         let mut margin = [0.0_f64; 2];
@@ -161,7 +286,7 @@ impl Task<'_> {
                 }
             }
         }
-        let Some(mut shape) = Shape::around(&places, margin) else { return Zone::default() };
+        let mut shape = Shape::around(&places, margin)?;
         if fades {
             shape.half = shape.half.map(|h| h * 1.25);
         }
@@ -180,14 +305,7 @@ impl Task<'_> {
                 None => break,
             };
         }
-        let center = plane.at(shape.center) - DVec3::new(0.0, 0.0, self.geometry.eye_z_mm);
-        let along = plane.along * shape.half[0];
-        Zone {
-            center: center.into(),
-            half_along: [along.x, along.z],
-            half_across: shape.half[1],
-            ellipse: shape.ellipse,
-        }
+        Some(Region { plane, shape, fades, drift: Drift::default(), shifts: Vec::new() })
     }
 
     /// The plane of a zone: across its chief ray, where the chief rays of the fields around it cross.
@@ -270,26 +388,223 @@ fn turns(share: f64) -> f64 {
     (quarter + atan2(part, 1.0 - part) * std::f64::consts::FRAC_2_PI) * 0.25
 }
 
-/// The lens with each iris in its middle opened to the circle around its corners: it passes all that the
-/// lens does, and blades alone take the axis of revolution from no lens.
-fn with_round_irises(lens: &Lens) -> Lens {
-    let mut round = lens.clone();
-    for e in &mut round.elements {
-        let mut corner_mm = 0.0_f64;
-        e.apertures.retain(|a| match (&a.shape, e.semi_diameter_mm) {
-            (aperture::Shape::Iris(iris), Some(size)) if a.center_mm == [0.0; 2] => {
-                if !a.obscures {
-                    corner_mm = corner_mm.max(iris.opening(size).corner_radius_mm());
-                }
-                false
-            }
-            _ => true,
-        });
-        if corner_mm > 0.0 {
-            e.semi_diameter_mm = Some(corner_mm);
+/// Ends of the azimuth of a zone of a table that has zones of the azimuth, turns.
+fn turns_of(at: &ZonePlace) -> (f64, f64) {
+    let end = |k: usize| if k == at.azimuths { 1.0 } else { turns(k as f64 / at.azimuths as f64) };
+    (end(at.azimuth), end(at.azimuth + 1))
+}
+
+/// A span of the azimuth, turns.
+struct Sector {
+    from: f64,
+    to: f64,
+    /// Whether places are along x and y of the lens, not along and across the plane of the point.
+    turned: bool,
+}
+
+impl Sector {
+    /// The azimuth at a part of the span.
+    fn at(&self, part: f64) -> f64 {
+        (self.from + part * (self.to - self.from)).min(1.0)
+    }
+
+    /// Along and across the plane of a point, of a place.
+    fn local(&self, [x, y]: [f64; 2], turns: f64) -> [f64; 2] {
+        if !self.turned {
+            return [x, y];
+        }
+        let (sin, cos) = sin_cos_turns(turns);
+        [x * cos + y * sin, y * cos - x * sin]
+    }
+
+    /// A place along and across the plane of a point.
+    fn place(&self, [along, across]: [f64; 2], turns: f64) -> [f64; 2] {
+        if !self.turned {
+            return [along, across];
+        }
+        let (sin, cos) = sin_cos_turns(turns);
+        [along * cos - across * sin, along * sin + across * cos]
+    }
+}
+
+/// How an opening is seen from the ends of a zone, by wavelength.
+type Views = Vec<Vec<Option<Seen>>>;
+
+/// The ellipse or rectangle of a zone, on its plane.
+struct Region {
+    plane: Plane,
+    shape: Shape,
+    /// Whether light fades out in the zone.
+    fades: bool,
+    /// How what passes changes over the zone.
+    drift: Drift,
+    /// By zone of wavelength: how it moves along and across from the lower to the upper end of that zone, and of the depth, mm.
+    shifts: Vec<[[f64; 2]; 2]>,
+}
+
+impl Region {
+    fn zone(&self, eye_z_mm: f64) -> Zone {
+        let center = self.plane.at(self.shape.center) - DVec3::new(0.0, 0.0, eye_z_mm);
+        let along = self.plane.along * self.shape.half[0];
+        Zone {
+            center: center.into(),
+            half_along: [along.x, along.z],
+            half_across: self.shape.half[1],
+            ellipse: self.shape.ellipse,
+            drift: self.drift,
         }
     }
-    round
+
+    /// How what passes changes from the lower to the upper ends of the zone, in the mean of them.
+    fn drifts(&self, lattice: &Lattice, at: &ZonePlace, bands: usize) -> (Drift, Vec<[[f64; 2]; 2]>) {
+        let known = || {
+            let ends = lattice.ends(at)?;
+            let depths = ends.len() / lattice.ends_a_depth();
+            let colors = ends.first()?.1.edges.len();
+            // Center along, across, half of each: by end of the angle, by end of the depth, by wavelength.
+            let mut by_angle = [[0.0; 4]; 2];
+            let mut by_depth = [[0.0; 2]; 2];
+            let mut by_color = vec![[0.0; 2]; colors];
+            for (k, (_, node)) in ends.iter().enumerate() {
+                for (line, of_color) in node.edges.iter().zip(&mut by_color) {
+                    let places: Option<Vec<[f64; 2]>> =
+                        line.iter().map(|p| self.plane.project(node.point, *p).map(|(place, _)| place)).collect();
+                    let bounds = Bounds::around(&places?)?;
+                    let ([a, c], [b, d]) = (bounds.center(), bounds.half());
+                    by_angle[k % 2].iter_mut().zip([a, c, b, d]).for_each(|(sum, value)| *sum += value);
+                    let depth = &mut by_depth[k / lattice.ends_a_depth()];
+                    depth.iter_mut().zip([a, c]).for_each(|(sum, value)| *sum += value);
+                    of_color.iter_mut().zip([a, c]).for_each(|(sum, value)| *sum += value);
+                }
+            }
+            let all = (ends.len() * colors) as f64;
+            let [low, high] = by_angle;
+            let shift = [0, 1].map(|i| (high[i] - low[i]) / (0.5 * all));
+            let growth = [2, 3].map(|i| (2.0 * (high[i] - low[i]) / (high[i] + low[i])).clamp(-0.8, 0.8));
+            let of_depth =
+                [0, 1].map(|i| if depths > 1 { (by_depth[1][i] - by_depth[0][i]) / (0.5 * all) } else { 0.0 });
+            let shifts: Vec<[[f64; 2]; 2]> = (0..bands)
+                .map(|band| {
+                    let (from, to) = (by_color[band], by_color[(band + 1).min(colors - 1)]);
+                    [[0, 1].map(|i| (to[i] - from[i]) / ends.len() as f64), of_depth]
+                })
+                .collect();
+            let mut values = shift.iter().chain(&growth).chain(shifts.iter().flatten().flatten());
+            values.all(|v| v.is_finite()).then_some((Drift { shift, growth }, shifts))
+        };
+        let still = (Drift::default(), vec![[[0.0; 2]; 2]; bands]);
+        if self.fades { still } else { known().unwrap_or(still) }
+    }
+
+    /// A place as it is in the middle of the zone, from one at parts of its angle, wavelength and depth, each -0.5 to 0.5.
+    fn still(&self, place: [f64; 2], band: usize, [angle, color, depth]: [f64; 3]) -> [f64; 2] {
+        let [by_color, by_depth] = self.shifts[band];
+        let place = std::array::from_fn(|i| place[i] - color * by_color[i] - depth * by_depth[i]);
+        self.drift.still(place, angle)
+    }
+
+    /// The other way round.
+    fn moved(&self, place: [f64; 2], band: usize, [angle, color, depth]: [f64; 3]) -> [f64; 2] {
+        let [by_color, by_depth] = self.shifts[band];
+        let place = self.drift.moved(place, angle);
+        std::array::from_fn(|i| place[i] + color * by_color[i] + depth * by_depth[i])
+    }
+
+    /// What passes in a sector of the zone, by wavelength; all of the shape where that is not known.
+    fn reaches(
+        &self,
+        lattice: &Lattice,
+        at: &ZonePlace,
+        sector: &Sector,
+        views: Option<&[Vec<Option<Seen>>]>,
+        opening: Option<&Stopped>,
+        bands: usize,
+    ) -> Vec<Reach> {
+        let known = if self.fades { None } else { self.by_edges(lattice, at, sector, views, opening, bands) };
+        known.unwrap_or_else(|| (0..bands).map(|band| self.whole(sector, band)).collect())
+    }
+
+    /// The ellipse or rectangle itself.
+    fn whole(&self, sector: &Sector, band: usize) -> Reach {
+        let mut reach = Reach::EMPTY;
+        // It is to hold the shape wherever the drift takes it.
+        let Drift { shift, growth } = self.drift;
+        let [by_color, by_depth] = self.shifts[band];
+        let [a, b] = [0, 1].map(|i| {
+            (self.shape.half[i] + 0.5 * (shift[i].abs() + by_color[i].abs() + by_depth[i].abs()))
+                / (1.0 - 0.5 * growth[i].abs())
+        });
+        let line: Vec<[f64; 2]> = if self.shape.ellipse {
+            let around = (0..DIRECTIONS).map(|d| Reach::way(d));
+            around.map(|[x, y]| [x * a * 1.001, y * b * 1.001]).collect()
+        } else {
+            vec![[a, b], [-a, b], [-a, -b], [a, -b]]
+        };
+        let parts: &[f64] = if sector.turned { &[0.0, 0.5, 1.0] } else { &[0.0] };
+        for part in parts {
+            let own: Vec<[f64; 2]> = line.iter().map(|p| sector.place(*p, sector.at(*part))).collect();
+            reach.include(&own);
+        }
+        reach
+    }
+
+    /// What the ends of the zone see, by zone of wavelength.
+    fn by_edges(
+        &self,
+        lattice: &Lattice,
+        at: &ZonePlace,
+        sector: &Sector,
+        views: Option<&[Vec<Option<Seen>>]>,
+        opening: Option<&Stopped>,
+        bands: usize,
+    ) -> Option<Vec<Reach>> {
+        let ends = lattice.ends(at)?;
+        let deep = ends.len() > lattice.ends_a_depth();
+        let mut reaches = vec![Reach::EMPTY; bands];
+        for (band, reach) in reaches.iter_mut().enumerate() {
+            for (end, (turns, node)) in ends.iter().enumerate() {
+                // Ends come in pairs, the lower and the upper one; so do depths.
+                let half = |upper: bool| if upper { 0.5 } else { -0.5 };
+                let depth = if deep { half(end >= lattice.ends_a_depth()) } else { 0.0 };
+                for upper in [false, true] {
+                    let color = (band + usize::from(upper)).min(node.edges.len() - 1);
+                    let parts = [half(end % 2 == 1), half(upper), depth];
+                    let on_plane = |line: &[DVec3], turns: f64| -> Option<Vec<[f64; 2]>> {
+                        line.iter()
+                            .map(|p| {
+                                let ([along, across], _) = self.plane.project(node.point, *p)?;
+                                let from_center = [along - self.shape.center[0], across - self.shape.center[1]];
+                                Some(sector.place(self.still(from_center, band, parts), turns))
+                            })
+                            .collect()
+                    };
+                    let edge = &node.edges[color];
+                    if edge.is_empty() {
+                        return None;
+                    }
+                    let Some(opening) = opening else {
+                        reach.include(&on_plane(edge, *turns)?);
+                        continue;
+                    };
+                    let seen = views?[end][color].as_ref()?;
+                    for part in [0.0, 1.0] {
+                        let turns = sector.at(part);
+                        let mut own = Reach::EMPTY;
+                        own.include(&on_plane(&opening.line(seen, turns), turns)?);
+                        let mut rims = Reach::EMPTY;
+                        rims.include(&on_plane(edge, turns)?);
+                        own.limit(&rims);
+                        reach.join(&own);
+                    }
+                }
+            }
+            if reach.is_empty() {
+                return None;
+            }
+            reach.scale(1.0 + MARGIN);
+        }
+        Some(reaches)
+    }
 }
 
 /// Where a zone is among the others.
@@ -310,7 +625,14 @@ struct Lattice {
 }
 
 impl Lattice {
-    fn new(task: &Task<'_>, prober: &mut Prober<'_>, azimuths: usize, steps: usize, most: f64) -> Self {
+    fn new(
+        task: &Task<'_>,
+        prober: &mut Prober<'_>,
+        azimuths: usize,
+        steps: usize,
+        most: f64,
+        colors_nm: &[f64],
+    ) -> Self {
         let grid = if azimuths == 1 { GRID } else { GRID_WITHOUT_AXIS };
         let mut rows = Vec::new();
         for depth in &task.depth_nodes {
@@ -318,7 +640,9 @@ impl Lattice {
                 let turns = turns(azimuth as f64 / azimuths as f64);
                 let node = |k: usize| {
                     let measure = most * k as f64 / steps as f64;
-                    task.geometry.node(prober, measure, *depth, turns, grid)
+                    // Outlines go by the ends of zones.
+                    let colors_nm = if k % 2 == 0 { colors_nm } else { &[] };
+                    task.geometry.node(prober, measure, *depth, turns, grid, colors_nm)
                 };
                 rows.push((0..=steps).map(node).collect());
             }
@@ -341,6 +665,39 @@ impl Lattice {
     fn of(&self, at: &ZonePlace) -> Vec<&Node> {
         let from = 2 * at.zone;
         self.rows_of(at).into_iter().flat_map(|row| row[from..=from + 2].iter().flatten()).collect()
+    }
+
+    /// The nodes at the ends of a zone and their azimuths, turns; `None` where one of them sees nothing.
+    fn ends(&self, at: &ZonePlace) -> Option<Vec<(f64, &Node)>> {
+        let depths = if self.depths > 1 { vec![at.depth, at.depth + 1] } else { vec![0] };
+        let looks = if self.azimuths > 1 { vec![at.azimuth, at.azimuth + 1] } else { vec![0] };
+        let mut ends = Vec::new();
+        for depth in depths {
+            for look in &looks {
+                let row = &self.rows[depth * self.azimuths + look % self.azimuths];
+                let turns = if *look == self.azimuths { 1.0 } else { turns(*look as f64 / self.azimuths as f64) };
+                for k in [2 * at.zone, 2 * at.zone + 2] {
+                    ends.push((turns, row[k].as_ref()?));
+                }
+            }
+        }
+        Some(ends)
+    }
+
+    /// How many of those are at one depth.
+    fn ends_a_depth(&self) -> usize {
+        if self.azimuths > 1 { 4 } else { 2 }
+    }
+
+    /// How an opening is seen from the ends of a zone.
+    fn views(&self, at: &ZonePlace, opening: Option<&mut Stopped>, colors: &Colors) -> Option<Views> {
+        let opening = opening?;
+        let nodes_nm = colors.nodes_nm();
+        let mut of_end = |node: &Node| {
+            let lines = node.edges.iter().zip(&nodes_nm);
+            lines.map(|(line, nm)| (!line.is_empty()).then(|| opening.seen(node, line, *nm)).flatten()).collect()
+        };
+        Some(self.ends(at)?.iter().map(|(_, node)| of_end(node)).collect())
     }
 
     /// A row of nodes over the angle that runs through the zone, the one in which most light is seen.

@@ -1,5 +1,6 @@
 //! The zones of a pupil, and the aiming itself.
 
+use super::outline::{self, Outlines};
 use super::search::Sphere;
 use glam::DVec3;
 use spectra_core::isa::{Isa, Vectorized};
@@ -18,7 +19,7 @@ pub enum AimPattern {
 /// Zones of the angle in one row; the rest of its slots pass nothing. A power of two, so that a
 /// masked index needs no bounds check and the lookup is a vector gather.
 pub(super) const SLOTS: usize = 128;
-const FIELDS: usize = 10;
+const FIELDS: usize = 14;
 
 /// The region of one zone, in the frame of the point: `radial` away from the axis through the point,
 /// `across` at right angles to that and to the axis, `axial` along +z.
@@ -32,6 +33,29 @@ pub(super) struct Zone {
     pub half_across: f64,
     /// An ellipse, or else the rectangle around it.
     pub ellipse: bool,
+    /// How outlines change over the zone.
+    pub drift: Drift,
+}
+
+/// How what passes changes from the lower end of a zone's angle to its upper end.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Drift {
+    /// It moves by this much along and across, mm.
+    pub shift: [f64; 2],
+    /// It grows by this much along and across, in parts of its size in the middle.
+    pub growth: [f64; 2],
+}
+
+impl Drift {
+    /// A place at a part of the zone, -0.5 to 0.5, for one in the middle.
+    pub fn moved(&self, place: [f64; 2], part: f64) -> [f64; 2] {
+        std::array::from_fn(|i| place[i] * (1.0 + part * self.growth[i]) + part * self.shift[i])
+    }
+
+    /// The place in the middle of the zone for one at a part of it.
+    pub fn still(&self, place: [f64; 2], part: f64) -> [f64; 2] {
+        std::array::from_fn(|i| (place[i] - part * self.shift[i]) / (1.0 + part * self.growth[i]))
+    }
 }
 
 impl Zone {
@@ -44,7 +68,7 @@ impl Zone {
 
 /// Zones of one depth and azimuth, a column a field.
 #[derive(Clone, Debug)]
-pub(super) struct Row([[f64; SLOTS]; FIELDS]);
+pub(super) struct Row(pub(super) [[f64; SLOTS]; FIELDS]);
 
 impl Row {
     pub fn new(zones: &[Zone]) -> Self {
@@ -56,7 +80,8 @@ impl Row {
             let (nr, nz) = if length > 0.0 { (-z / length, r / length) } else { (0.0, 1.0) };
             let [cr, ca, cz] = zone.center;
             let flag = if zone.ellipse { 1.0 } else { 0.0 };
-            let fields = [cr, ca, cz, r, z, zone.half_across, nr, nz, zone.area_mm2(), flag];
+            let Drift { shift: [sa, sc], growth: [ga, gc] } = zone.drift;
+            let fields = [cr, ca, cz, r, z, zone.half_across, nr, nz, zone.area_mm2(), flag, sa, sc, ga, gc];
             for (column, value) in row.iter_mut().zip(fields) {
                 column[k] = value;
             }
@@ -112,12 +137,18 @@ pub(super) struct Table {
     pub bound: Sphere,
     /// Number of that surface: light that no zone passes is booked there.
     pub surface: u32,
+    /// What passes in each zone, closer than its ellipse or rectangle.
+    pub outlines: Option<Outlines>,
 }
 
 impl Table {
     /// See [`Row::widened`].
     pub fn widened(self, margin_mm: f64) -> Self {
-        Self { rows: self.rows.iter().map(|row| row.widened(margin_mm)).collect(), ..self }
+        Self {
+            rows: self.rows.iter().map(|row| row.widened(margin_mm)).collect(),
+            outlines: self.outlines.map(|outlines| outlines.widened(margin_mm)),
+            ..self
+        }
     }
 }
 
@@ -170,13 +201,13 @@ impl Table {
         isa: Isa,
     ) -> usize {
         let strays = self.strays::<BACKWARD>(rays, u, v, isa);
-        let dark = match (pattern == AimPattern::Rings, self.rows.len() > 1) {
-            (false, false) => isa.run(Aim::<BACKWARD, false, false> { table: self, u, v, rays }),
-            (false, true) => isa.run(Aim::<BACKWARD, false, true> { table: self, u, v, rays }),
-            (true, false) => isa.run(Aim::<BACKWARD, true, false> { table: self, u, v, rays }),
-            (true, true) => isa.run(Aim::<BACKWARD, true, true> { table: self, u, v, rays }),
-        }
-        .dark;
+        let dark = match (&self.outlines, pattern == AimPattern::Rings, self.rows.len() > 1) {
+            (Some(outlines), ..) => outline::aim::<BACKWARD>(self, outlines, rays, [u, v], pattern, isa),
+            (None, false, false) => isa.run(Aim::<BACKWARD, false, false> { table: self, u, v, rays }).dark,
+            (None, false, true) => isa.run(Aim::<BACKWARD, false, true> { table: self, u, v, rays }).dark,
+            (None, true, false) => isa.run(Aim::<BACKWARD, true, false> { table: self, u, v, rays }).dark,
+            (None, true, true) => isa.run(Aim::<BACKWARD, true, true> { table: self, u, v, rays }).dark,
+        };
         let c = rays.columns_mut();
         let mut revived = 0;
         for stray in strays {
@@ -216,6 +247,19 @@ impl Table {
         if BACKWARD { ahead } else { 1.0 / (radius2 + ahead * ahead).sqrt() }
     }
 
+    /// Where a point lies in its zone of the depth, -0.5 to 0.5.
+    #[inline(always)]
+    pub(super) fn depth_part<const BACKWARD: bool>(&self, x: f64, y: f64, z: f64) -> f64 {
+        let ahead = if BACKWARD { z - self.eye_z_mm } else { self.eye_z_mm - z };
+        let share =
+            (Self::depth_of::<BACKWARD>(x * x + y * y, ahead) - self.depth.from) / (self.depth.to - self.depth.from);
+        let zones = share * self.depth.zones as f64;
+        let at = (zones as usize).min(self.depth.zones - 1);
+        let part = zones - at as f64 - 0.5;
+        // A point that was not searched for is aimed at in another way.
+        if part.abs() <= 0.5 { part } else { 0.0 }
+    }
+
     #[inline(always)]
     fn is_stray<const BACKWARD: bool>(&self, x: f64, y: f64, z: f64) -> bool {
         let ahead = if BACKWARD { z - self.eye_z_mm } else { self.eye_z_mm - z };
@@ -233,28 +277,34 @@ impl Table {
         if self.is_stray::<BACKWARD>(point.x, point.y, point.z) {
             return None;
         }
-        let (row, slot, ex, ey) =
+        let (row, slot, ex, ey, _) =
             self.place::<BACKWARD, true>(self.eye_z_mm, self.angle_scale, point.x, point.y, point.z);
         let f = |field: usize| self.rows[row].0[field][slot];
-        let zone =
-            Zone { center: [f(0), f(1), f(2)], half_along: [f(3), f(4)], half_across: f(5), ellipse: f(9) > 0.0 };
+        let zone = Zone {
+            center: [f(0), f(1), f(2)],
+            half_along: [f(3), f(4)],
+            half_across: f(5),
+            ellipse: f(9) > 0.0,
+            drift: Drift { shift: [f(10), f(11)], growth: [f(12), f(13)] },
+        };
         Some((zone, DVec3::new(ex, ey, 0.0), DVec3::new(-ey, ex, 0.0)))
     }
 
-    /// Row and slot of a point, and the unit vector from the axis to it.
+    /// Row and slot of a point, the unit vector from the axis to it, and its angle in zones.
     #[inline(always)]
-    fn place<const BACKWARD: bool, const MANY: bool>(
+    pub(super) fn place<const BACKWARD: bool, const MANY: bool>(
         &self,
         eye_z_mm: f64,
         angle_scale: f64,
         x: f64,
         y: f64,
         z: f64,
-    ) -> (usize, usize, f64, f64) {
+    ) -> (usize, usize, f64, f64, f64) {
         let radius2 = x * x + y * y;
         let radius = radius2.sqrt();
         let ahead = if BACKWARD { z - eye_z_mm } else { eye_z_mm - z };
-        let slot = (measure(radius, ahead) * angle_scale) as i32;
+        let zones = measure(radius, ahead) * angle_scale;
+        let slot = zones as i32;
         let slot = slot.min(SLOTS as i32 - 1) as usize & (SLOTS - 1);
         // Unit vector away from the axis; on it any will do.
         let on_axis = radius == 0.0;
@@ -271,7 +321,7 @@ impl Table {
                 row += (turn as usize).min(self.azimuths - 1);
             }
         }
-        (row, slot, ex, ey)
+        (row, slot, ex, ey, zones)
     }
 }
 
@@ -350,7 +400,7 @@ fn aim_loop<const BACKWARD: bool, const RINGS: bool, const MANY: bool>(
     let mut dark = 0_u64;
     for i in 0..len {
         let (px, py, pz) = (x[i], y[i], z[i]);
-        let (row, k, ex, ey) = table.place::<BACKWARD, MANY>(eye, scale, px, py, pz);
+        let (row, k, ex, ey, _) = table.place::<BACKWARD, MANY>(eye, scale, px, py, pz);
         let f = if MANY { &table.rows[row].0 } else { only };
         let disk = if RINGS { polar_disk(u[i], v[i]) } else { concentric_disk(u[i], v[i]) };
         let ellipse = f[9][k] > 0.0;

@@ -8,7 +8,8 @@ mod params;
 
 pub use iris::{Iris, Opening};
 pub use mask::Mask;
-pub use params::{ApertureForm, read};
+pub(crate) use params::ApertureKeys;
+pub use params::{ApertureEntry, ApertureForm, read};
 
 use spectra_core::RayBatch;
 use spectra_core::loss::{ALIVE, Loss};

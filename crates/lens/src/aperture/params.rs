@@ -4,18 +4,20 @@ use super::{Aperture, Iris, Mask, Shape};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
 use spectra_core::params::{
-    Angle, Faults, Kinds, Length, LengthOrInfinity, Params, Positive, StageNode, Value, Whole, keys_of,
+    Angle, Faults, Length, LengthOrInfinity, Node, Params, Positive, StageNode, Value, Whole, keys_of,
 };
+use spectra_core::registry::{self, Context, Stage};
 use spectra_core::resources::{Resources, beside};
+use spectra_core::spectral::BAND;
 use spectra_masks::Open;
 use std::sync::Arc;
+
+spectra_core::declare!(ApertureEntry, Shape, "aperture", "A registered shape of apertures.", "shape");
 
 /// Keys of every aperture; the others belong to its shape.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
-struct Common {
-    /// Its form.
-    shape: ShapeName,
+pub(crate) struct ApertureKeys {
     /// Its center, mm if bare.
     center: Option<[Length; 2]>,
     /// Stops what is inside, in place of what is outside.
@@ -23,33 +25,51 @@ struct Common {
     obscures: bool,
 }
 
-/// The form of an aperture.
-#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-#[schemars(inline)]
-enum ShapeName {
-    Ring,
-    Rectangle,
-    Ellipse,
-    Polygon,
-    Iris,
-    Mask,
-}
-
 /// What lies between two circles.
+///
+/// A clear aperture without blades, or, as what `obscures`, the secondary mirror of a telescope.
+///
+/// # Example
+/// ```yaml
+/// {shape: ring, inner: 3 mm, outer: 12 mm}
+/// ```
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
-struct RingParams {
+struct Ring {
     /// Inner radius, mm if bare; 0 if absent.
     inner: Option<Length>,
     /// Outer radius, mm if bare; unlimited if absent.
     outer: Option<LengthOrInfinity>,
 }
 
-/// What lies within a rectangle or an ellipse of this size.
+/// What lies within a rectangle along x and y.
+///
+/// A slit, a gate, a prism cut to size; a tall one squeezes highlights as an anamorphic lens does.
+///
+/// # Example
+/// ```yaml
+/// {shape: rectangle, half-width: 4 mm, half-height: 9 mm}
+/// ```
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
-struct HalfSizes {
+struct Rectangle {
+    /// Half the width, mm if bare.
+    half_width: Positive<Length>,
+    /// Half the height, mm if bare.
+    half_height: Positive<Length>,
+}
+
+/// What lies within an ellipse along x and y.
+///
+/// The opening of lenses whose highlights are oval, and of mirrors at an angle.
+///
+/// # Example
+/// ```yaml
+/// {shape: ellipse, half-width: 4 mm, half-height: 9 mm}
+/// ```
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct Ellipse {
     /// Half the width, mm if bare.
     half_width: Positive<Length>,
     /// Half the height, mm if bare.
@@ -57,18 +77,33 @@ struct HalfSizes {
 }
 
 /// What lies within a polygon.
+///
+/// By the even-odd rule, so a line that crosses itself leaves its middle closed. Stars, arrows and blades of any form.
+///
+/// # Example
+/// ```yaml
+/// {shape: polygon, points: [[-8, -6], [8, -6], [0, 9]]}
+/// ```
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
-struct PolygonParams {
+struct Polygon {
     /// Corners in order around it, mm if bare, 3 to 10000.
     #[schemars(length(min = 3, max = 10_000))]
     points: Vec<[Length; 2]>,
 }
 
-/// What the blades of a diaphragm leave open; its size is that of the stop.
+/// What the blades of a diaphragm leave open.
+///
+/// Its size is that of the stop: it closes with the f-number, and its area is that of the circle which it replaces. Straight blades leave
+/// a polygon; bent ones are round while their radius is that of the opening.
+///
+/// # Example
+/// ```yaml
+/// {shape: iris, blades: 6, blade-radius: 14 mm, rotation: 15 deg}
+/// ```
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
-struct IrisParams {
+struct IrisBlades {
     /// Number of blades.
     blades: Whole<3, 100>,
     /// Radius of each blade's edge, mm if bare; straight if absent.
@@ -77,7 +112,14 @@ struct IrisParams {
     rotation: Option<Angle>,
 }
 
-/// What a picture leaves open.
+/// What a picture or a drawing leaves open.
+///
+/// Highlights out of focus take its form: hearts, stars, the bubbles of a dirty filter. A drawing (SVG) has edges at any magnification.
+///
+/// # Example
+/// ```yaml
+/// {shape: mask, file: leaves.png, width: 24 mm}
+/// ```
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct MaskParams {
@@ -94,28 +136,23 @@ struct MaskParams {
 pub struct ApertureForm;
 
 impl JsonSchema for ApertureForm {
-    fn schema_name() -> std::borrow::Cow<'static, str> {
-        "Aperture".into()
+    fn inline_schema() -> bool {
+        true
     }
 
-    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        let shared = Common::json_schema(generator);
-        let one = Kinds {
-            key: "shape",
-            kinds: vec![
-                ("ring", RingParams::json_schema(generator)),
-                ("rectangle", HalfSizes::json_schema(generator)),
-                ("ellipse", HalfSizes::json_schema(generator)),
-                ("polygon", PolygonParams::json_schema(generator)),
-                ("iris", IrisParams::json_schema(generator)),
-                ("mask", MaskParams::json_schema(generator)),
-            ],
-            default: None,
-            shared: Some(&shared),
-            by_name: false,
-        };
-        let one = one.schema();
-        json_schema!({ "x-words": "map, or list of maps", "if": { "type": "array" }, "then": { "items": one }, "else": one })
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        "ApertureForm".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        let one = json_schema!({ "type": "object", "$ref": "#/$defs/aperture" });
+        json_schema!({
+            "x-words": "map, or list of maps",
+            "x-see": "aperture",
+            "if": { "type": "array" },
+            "then": { "items": one },
+            "else": one,
+        })
     }
 }
 
@@ -128,74 +165,79 @@ const MAX_MASK_SIDE: u32 = 8192;
 /// What is wrong with them, placed; what is wrong with a drawing, placed in it.
 pub fn read(node: &StageNode, resources: &dyn Resources) -> Result<Vec<Aperture>, Faults> {
     let Value::Seq(items) = &node.node().value else {
-        return one(&Params::section(node.node().clone(), node.path())?, resources).map(|a| vec![a]);
+        return one(node.node(), node.path(), resources).map(|aperture| vec![aperture]);
     };
     let mut faults = Faults::new();
     let mut all = Vec::new();
     for (at, item) in items.iter().enumerate() {
-        let params = faults.take(Params::section(item.clone(), &format!("{}[{at}]", node.path())));
-        all.extend(params.and_then(|p| faults.take(one(&p, resources))));
+        all.extend(faults.take(one(item, &format!("{}[{at}]", node.path()), resources)));
     }
     faults.into_result(all)
 }
 
-fn one(params: &Params, resources: &dyn Resources) -> Result<Aperture, Faults> {
-    let (common, own) = params.split(&keys_of::<Common>());
-    let common: Common = common.parse()?;
-    let shape = match common.shape {
-        ShapeName::Ring => ring(&own)?,
-        ShapeName::Rectangle => {
-            let p: HalfSizes = own.parse()?;
-            Shape::Rectangle { half_width_mm: p.half_width.mm(), half_height_mm: p.half_height.mm() }
-        }
-        ShapeName::Ellipse => {
-            let p: HalfSizes = own.parse()?;
-            Shape::Ellipse { half_width_mm: p.half_width.mm(), half_height_mm: p.half_height.mm() }
-        }
-        ShapeName::Polygon => polygon(&own)?,
-        ShapeName::Iris => iris(&own)?,
-        ShapeName::Mask => mask(&own, resources)?,
-    };
-    let center_mm = common.center.map_or([0.0; 2], |c| c.map(Length::mm));
-    Ok(Aperture { shape, center_mm, obscures: common.obscures })
+fn one(node: &Node, path: &str, resources: &dyn Resources) -> Result<Aperture, Faults> {
+    let params = Params::kinded(Params::section(node.clone(), path)?.node().clone(), path, Shape::KEY)?;
+    let (keys, own) = params.split(&keys_of::<ApertureKeys>());
+    let keys: ApertureKeys = keys.parse()?;
+    let shape = registry::build::<Shape>(&own, &Context::new(resources, BAND))?;
+    let center_mm = keys.center.map_or([0.0; 2], |c| c.map(Length::mm));
+    Ok(Aperture { shape: *shape, center_mm, obscures: keys.obscures })
 }
 
-fn ring(params: &Params) -> Result<Shape, Faults> {
-    let p: RingParams = params.parse()?;
+spectra_core::register!(ApertureEntry, "ring": Ring, ring);
+spectra_core::register!(ApertureEntry, "rectangle": Rectangle, rectangle);
+spectra_core::register!(ApertureEntry, "ellipse": Ellipse, ellipse);
+spectra_core::register!(ApertureEntry, "polygon": Polygon, polygon);
+spectra_core::register!(ApertureEntry, "iris": IrisBlades, iris);
+spectra_core::register!(ApertureEntry, "mask": MaskParams, mask);
+
+fn ring(params: &Params, _: &Context<'_>) -> Result<Box<Shape>, Faults> {
+    let p: Ring = params.parse()?;
     let (inner_mm, outer_mm) = (p.inner.map_or(0.0, Length::mm), p.outer.map_or(f64::INFINITY, |o| o.mm()));
     if !(inner_mm >= 0.0 && outer_mm > inner_mm) {
         let fault = params.fault("outer", format!("no ring lies between the radii {inner_mm} and {outer_mm} mm"));
         return Err(fault.hint("0 <= inner < outer").into());
     }
-    Ok(Shape::Ring { inner_mm, outer_mm })
+    Ok(Box::new(Shape::Ring { inner_mm, outer_mm }))
 }
 
-fn polygon(params: &Params) -> Result<Shape, Faults> {
-    let p: PolygonParams = params.parse()?;
-    Ok(Shape::Polygon(p.points.into_iter().map(|point| point.map(Length::mm)).collect()))
+fn rectangle(params: &Params, _: &Context<'_>) -> Result<Box<Shape>, Faults> {
+    let p: Rectangle = params.parse()?;
+    Ok(Box::new(Shape::Rectangle { half_width_mm: p.half_width.mm(), half_height_mm: p.half_height.mm() }))
 }
 
-fn iris(params: &Params) -> Result<Shape, Faults> {
-    let p: IrisParams = params.parse()?;
-    Ok(Shape::Iris(Iris {
+fn ellipse(params: &Params, _: &Context<'_>) -> Result<Box<Shape>, Faults> {
+    let p: Ellipse = params.parse()?;
+    Ok(Box::new(Shape::Ellipse { half_width_mm: p.half_width.mm(), half_height_mm: p.half_height.mm() }))
+}
+
+fn polygon(params: &Params, _: &Context<'_>) -> Result<Box<Shape>, Faults> {
+    let p: Polygon = params.parse()?;
+    Ok(Box::new(Shape::Polygon(p.points.into_iter().map(|point| point.map(Length::mm)).collect())))
+}
+
+fn iris(params: &Params, _: &Context<'_>) -> Result<Box<Shape>, Faults> {
+    let p: IrisBlades = params.parse()?;
+    Ok(Box::new(Shape::Iris(Iris {
         blades: p.blades.get_u32(),
         blade_radius_mm: p.blade_radius.map_or(f64::INFINITY, |r| r.mm()),
         rotation_rad: p.rotation.map_or(0.0, Angle::rad),
-    }))
+    })))
 }
 
-fn mask(params: &Params, resources: &dyn Resources) -> Result<Shape, Faults> {
+fn mask(params: &Params, context: &Context<'_>) -> Result<Box<Shape>, Faults> {
     let p: MaskParams = params.parse()?;
     let fail =
         |text: String| Faults::from(params.fault("file", text).hint("a PNG, JPEG, TIFF or SVG beside the lens file"));
     let open = p.open;
     let path = beside(params.node(), &p.file);
-    let found = resources
+    let found = context
+        .resources
         .read(&path, &["lenses", "scenes"], &[], MAX_MASK_BYTES)
         .map_err(|e| fail(format!("`{}`: {e}", p.file)))?;
     if p.file.rsplit_once('.').is_some_and(|(_, ending)| ending.eq_ignore_ascii_case("svg")) {
         let drawn = spectra_masks::read(&found.name, &found.bytes, p.width.map(|w| w.mm()), open);
-        return drawn.map(Shape::Drawing).map_err(|faults| params.place_at("file", faults));
+        return drawn.map(|drawn| Box::new(Shape::Drawing(drawn))).map_err(|faults| params.place_at("file", faults));
     }
     if open == Some(Open::Filled) {
         let fault = params.fault("open", "of a picture the white passes: nothing in it is filled");
@@ -214,5 +256,5 @@ fn mask(params: &Params, resources: &dyn Resources) -> Result<Shape, Faults> {
     let picture = reader.decode().map_err(|e| fail(format!("`{}`: {e}", p.file)))?.into_luma16();
     let (width_px, height_px) = picture.dimensions();
     let values: Arc<[f32]> = picture.as_raw().iter().map(|v| f32::from(*v) / 65535.0).collect();
-    Ok(Shape::Mask(Mask::new(width_px as usize, height_px as usize, width.mm(), values)))
+    Ok(Box::new(Shape::Mask(Mask::new(width_px as usize, height_px as usize, width.mm(), values))))
 }

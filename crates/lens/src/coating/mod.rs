@@ -7,15 +7,18 @@
 
 mod amplitude;
 mod films;
+mod layers;
 mod measured;
 mod params;
 mod stack;
 mod standard;
+mod v_coat;
 
 pub(crate) use amplitude::{Amplitudes, Polarizing};
 pub(crate) use films::{Films, Sides};
 pub use measured::MeasuredCoating;
-pub use params::{CoatingForm, NamedCoating, OneLayer, StackParams, StatedCoating, read_coating, read_stated_coating};
+pub(crate) use params::CoatingKeys;
+pub use params::{CoatingEntry, CoatingForm, StatedCoating, read_coating, read_stated_coating};
 pub use stack::{Stack, StackLayer};
 
 use spectra_core::math;

@@ -5,10 +5,9 @@
 //! "Triple-layer antireflection coatings on glass for the visible and near infrared", JOSA 52, 1962, 965; Asahi's
 //! Super-Multi-Coating of 1971).
 
-use super::{Coating, Stack, StackLayer};
+use super::{Coating, CoatingEntry, Stack, StackLayer};
 use schemars::JsonSchema;
 use serde::Deserialize;
-use serde::de::value::StrDeserializer;
 use std::sync::Arc;
 
 /// Index of a layer of magnesium fluoride.
@@ -27,26 +26,66 @@ const SINGLE_FROM: i32 = 1940;
 /// First year of three layers.
 const THREE_FROM: i32 = 1970;
 
-/// The name of a coating in a file.
-#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-#[schemars(inline)]
-pub(super) enum CoatingName {
-    Ideal,
-    Bare,
-    SingleLayer,
-    ThreeLayer,
+/// Registers a coating that has no parameters.
+macro_rules! coating {
+    ($(#[$doc:meta])* $name:literal, $params:ident, $coating:expr) => {
+        $(#[$doc])*
+        #[derive(Debug, Deserialize, JsonSchema)]
+        #[serde(deny_unknown_fields)]
+        struct $params {}
+
+        spectra_core::register!(CoatingEntry, $name: $params, |params, _| {
+            params.parse::<$params>().map(|_| Box::new($coating))
+        });
+    };
 }
 
-impl CoatingName {
-    pub(super) fn coating(self) -> Coating {
-        match self {
-            Self::Ideal => Coating::Ideal,
-            Self::Bare => Coating::Bare,
-            Self::SingleLayer => Coating::single_layer(),
-            Self::ThreeLayer => Coating::three_layer(),
-        }
-    }
+coating! {
+    /// All light passes, nothing is reflected.
+    ///
+    /// For a lens whose losses do not matter, and to see what they are worth.
+    ///
+    /// # Example
+    /// ```yaml
+    /// {kind: ideal}
+    /// ```
+    "ideal", Ideal, Coating::Ideal
+}
+coating! {
+    /// Glass as it is: Fresnel's formulas.
+    ///
+    /// What lenses made before 1940 have; 4 % are lost at each surface of ordinary glass, more at heavy flint.
+    ///
+    /// # Example
+    /// ```yaml
+    /// {kind: bare}
+    /// ```
+    "bare", Bare, Coating::Bare
+}
+coating! {
+    /// A quarter wave of magnesium fluoride at 550 nm.
+    ///
+    /// What lenses from 1940 to 1970 have as a rule: 1.3 % are lost at ordinary glass, and the lens shines purple.
+    ///
+    /// # Example
+    /// ```yaml
+    /// {kind: single-layer}
+    /// ```
+    "single-layer", SingleLayer, Coating::single_layer()
+}
+coating! {
+    /// Three layers: a quarter wave of index 1.38, half a wave of 2.10, a quarter wave of 1.72, at 515 nm.
+    ///
+    /// What lenses from 1970 on have as a rule: below 0.5 % of loss from 430 to 650 nm.
+    ///
+    /// # Example
+    /// ```yaml
+    /// {kind: three-layer}
+    /// ```
+    ///
+    /// # References
+    /// - J. T. Cox, G. Hass and A. Thelen, JOSA 52, 965 (1962).
+    "three-layer", ThreeLayer, Coating::three_layer()
 }
 
 impl Coating {
@@ -74,13 +113,6 @@ impl Coating {
             Some(SINGLE_FROM..) => Self::single_layer(),
             _ => Self::Bare,
         }
-    }
-
-    /// The coating of a name: `ideal`, `bare`, `single-layer`, `three-layer`.
-    #[must_use]
-    pub fn by_name(name: &str) -> Option<Self> {
-        let name = StrDeserializer::<serde::de::value::Error>::new(name);
-        CoatingName::deserialize(name).ok().map(CoatingName::coating)
     }
 
     /// In a few words: `bare`, `a single layer`, `three layers`.

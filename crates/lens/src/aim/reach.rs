@@ -1,0 +1,281 @@
+//! How far what passes reaches from a place in each direction, and the corners that stand for it.
+
+use spectra_core::math::{atan2, sin_cos_turns};
+
+/// Directions that a reach is known in.
+pub(super) const DIRECTIONS: usize = 512;
+/// Corners of an outline: as many triangles with the center, of nearly equal areas.
+pub(super) const CORNERS: usize = 64;
+/// A direction in which nothing passes gets this part of the farthest one, so that the outline goes around its center.
+const LEAST: f64 = 0.15;
+/// Directions to each side of a corner between which it shows.
+const NEAR: usize = 4;
+/// A line that turns by more than this from some directions before a place to as many after it has a corner there: the sine of
+/// 25 degrees.
+const SHARP: f64 = 0.42;
+/// More corners than this are roughness.
+const MOST_SHARP: usize = 24;
+
+/// The smallest star-shaped region about the origin of a plane that holds what it was told of: a radius a direction, mm.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Reach([f64; DIRECTIONS]);
+
+impl Reach {
+    /// Holds nothing.
+    pub const EMPTY: Self = Self([0.0; DIRECTIONS]);
+
+    /// Unit vector of a direction.
+    pub fn way(direction: usize) -> [f64; 2] {
+        let (sin, cos) = sin_cos_turns(direction as f64 / DIRECTIONS as f64);
+        [cos, sin]
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.0.iter().all(|r| *r <= 0.0)
+    }
+
+    /// In a direction, mm.
+    pub fn at(&self, direction: usize) -> f64 {
+        self.0[direction]
+    }
+
+    /// Holds a closed line, too.
+    pub fn include(&mut self, line: &[[f64; 2]]) {
+        let polar: Vec<(f64, f64)> = line.iter().map(|p| (share(*p), length(*p))).collect();
+        for (k, from) in line.iter().enumerate() {
+            let next = (k + 1) % line.len();
+            let (a, b) = if (polar[next].0 - polar[k].0).rem_euclid(1.0) <= 0.5 { (k, next) } else { (next, k) };
+            let turn = (polar[b].0 - polar[a].0).rem_euclid(1.0);
+            let first = (polar[a].0 * DIRECTIONS as f64).ceil();
+            let last = ((polar[a].0 + turn) * DIRECTIONS as f64).floor();
+            let (start, edge) = (line[a], [line[b][0] - line[a][0], line[b][1] - line[a][1]]);
+            let most = polar[a].1.max(polar[b].1);
+            let mut direction = first;
+            while direction <= last {
+                let d = direction as usize % DIRECTIONS;
+                let crossed = cross(start, edge) / cross(Self::way(d), edge);
+                // Along the line of sight, the farther end.
+                let r = if crossed.is_finite() && crossed >= 0.0 { crossed.min(most) } else { most };
+                self.0[d] = self.0[d].max(r);
+                direction += 1.0;
+            }
+            // A corner between two directions counts for the nearer one.
+            let d = (share(*from) * DIRECTIONS as f64).round() as usize % DIRECTIONS;
+            self.0[d] = self.0[d].max(polar[k].1);
+        }
+    }
+
+    /// Holds what another one does, too.
+    pub fn join(&mut self, other: &Self) {
+        self.0.iter_mut().zip(other.0).for_each(|(own, other)| *own = own.max(other));
+    }
+
+    /// No farther than another one.
+    pub fn limit(&mut self, other: &Self) {
+        self.0.iter_mut().zip(other.0).for_each(|(own, other)| *own = own.min(other));
+    }
+
+    /// In proportion.
+    pub fn scale(&mut self, by: f64) {
+        self.0.iter_mut().for_each(|r| *r *= by);
+    }
+
+    /// Holds a place that was overlooked and what is close to it, unless it lies within `slight` times the reach. Says whether it
+    /// was farther out than `by` times the reach.
+    pub fn raise(&mut self, place: [f64; 2], slight: f64, by: f64) -> bool {
+        let (middle, r) = ((share(place) * DIRECTIONS as f64).round() as usize, length(place));
+        let own = self.0[middle % DIRECTIONS];
+        if r > slight * own {
+            for d in middle + DIRECTIONS - 1..=middle + DIRECTIONS + 1 {
+                let own = &mut self.0[d % DIRECTIONS];
+                *own = own.max(1.002 * r);
+            }
+        }
+        r > by * own
+    }
+
+    /// The corners of an outline around it, the first one at its end again: those of triangles with the center that have
+    /// nearly equal areas.
+    pub fn corners(&self) -> [[f32; 2]; CORNERS + 1] {
+        let most = self.0.iter().fold(0.0_f64, |a, b| a.max(*b));
+        if most <= 0.0 {
+            return [[0.0; 2]; CORNERS + 1];
+        }
+        let edge: Vec<[f64; 2]> = (0..=DIRECTIONS)
+            .map(|d| {
+                let r = self.0[d % DIRECTIONS].max(LEAST * most);
+                Self::way(d % DIRECTIONS).map(|w| w * r)
+            })
+            .collect();
+        let mut upto = vec![0.0];
+        for pair in edge.windows(2) {
+            upto.push(upto[upto.len() - 1] + cross(pair[0], pair[1]));
+        }
+        let places = shares(&edge, &upto);
+        // A chord may cut what lies between its ends: both are moved out until it does not.
+        let growth: Vec<f64> = (0..CORNERS)
+            .map(|k| {
+                let ((from, a), (to, b)) = (places[k], places[(k + 1) % CORNERS]);
+                let to = if k + 1 == CORNERS { to + DIRECTIONS as f64 } else { to };
+                let chord = [b[0] - a[0], b[1] - a[1]];
+                let between = from.floor() as usize + 1..to.ceil() as usize;
+                between.map(|d| cross(edge[d % DIRECTIONS], chord) / cross(a, chord)).fold(1.0, f64::max)
+            })
+            .collect();
+        // The fan begins in the direction of the first place, so that neighbors begin alike.
+        let first =
+            (0..CORNERS).min_by(|a, b| from_zero(places[*a].0).total_cmp(&from_zero(places[*b].0))).unwrap_or(0);
+        std::array::from_fn(|k| {
+            let k = (k + first) % CORNERS;
+            let by = growth[k].max(growth[(k + CORNERS - 1) % CORNERS]);
+            places[k].1.map(|p| (p * by) as f32)
+        })
+    }
+}
+
+/// How far a direction, counted on beyond a whole turn, is from the first one.
+fn from_zero(direction: f64) -> f64 {
+    let turns = direction / DIRECTIONS as f64;
+    (turns - turns.round()).abs()
+}
+
+/// Directions in which the line has sharp corners, in order.
+fn sharp(edge: &[[f64; 2]]) -> Vec<usize> {
+    let turn = |d: usize| {
+        let [before, here, after] = [DIRECTIONS - NEAR, 0, NEAR].map(|k| edge[(d + k) % DIRECTIONS]);
+        let (a, b) = ([here[0] - before[0], here[1] - before[1]], [after[0] - here[0], after[1] - here[1]]);
+        let backward = a[0] * b[0] + a[1] * b[1] < 0.0;
+        let sine = (cross(a, b) / (length(a) * length(b))).abs();
+        if backward { 2.0 - sine } else { sine }
+    };
+    let turns: Vec<f64> = (0..DIRECTIONS).map(turn).collect();
+    let is_peak = |d: &usize| {
+        let near = |k: usize| turns[(d + DIRECTIONS + k - NEAR) % DIRECTIONS];
+        // Of equal ones the first.
+        turns[*d] > SHARP
+            && (0..NEAR).all(|k| turns[*d] > near(k))
+            && (NEAR + 1..=2 * NEAR).all(|k| turns[*d] >= near(k))
+    };
+    let found: Vec<usize> = (0..DIRECTIONS).filter(is_peak).collect();
+    if found.len() > MOST_SHARP { Vec::new() } else { found }
+}
+
+/// Places on a line around the origin between which the areas are alike, with their directions: sharp corners first, then even
+/// shares of what lies between two of them. `upto` is the area before each direction.
+fn shares(edge: &[[f64; 2]], upto: &[f64]) -> Vec<(f64, [f64; 2])> {
+    let mut ends = sharp(edge);
+    if ends.is_empty() {
+        ends.push(0);
+    }
+    let whole = upto[DIRECTIONS];
+    let area = |k: usize| {
+        let next = if k + 1 < ends.len() { upto[ends[k + 1]] } else { whole + upto[ends[0]] };
+        next - upto[ends[k]]
+    };
+    // One to each, and the others to where they are the largest.
+    let mut counts = vec![1_usize; ends.len()];
+    for _ in ends.len()..CORNERS {
+        let mean = |k: &usize| area(*k) / counts[*k] as f64;
+        let largest = (0..ends.len()).max_by(|a, b| mean(a).total_cmp(&mean(b)).then(b.cmp(a))).unwrap_or(0);
+        counts[largest] += 1;
+    }
+    let mut places = Vec::with_capacity(CORNERS);
+    for (k, count) in counts.iter().enumerate() {
+        for part in 0..*count {
+            if part == 0 {
+                places.push((ends[k] as f64, edge[ends[k]]));
+                continue;
+            }
+            let want = upto[ends[k]] + area(k) * part as f64 / *count as f64;
+            let (want, turn) = if want >= whole { (want - whole, DIRECTIONS as f64) } else { (want, 0.0) };
+            let d = upto.partition_point(|area| *area <= want).clamp(1, DIRECTIONS) - 1;
+            let part = (want - upto[d]) / (upto[d + 1] - upto[d]);
+            let place = std::array::from_fn(|i| edge[d][i] + part * (edge[d + 1][i] - edge[d][i]));
+            places.push((turn + d as f64 + part, place));
+        }
+    }
+    places
+}
+
+fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[1] - a[1] * b[0]
+}
+
+fn length(a: [f64; 2]) -> f64 {
+    (a[0] * a[0] + a[1] * a[1]).sqrt()
+}
+
+/// Azimuth of a place in turns, from 0 up to 1.
+fn share(place: [f64; 2]) -> f64 {
+    let turns = atan2(place[1], place[0]) / std::f64::consts::TAU;
+    if turns < 0.0 { (turns + 1.0).min(1.0 - 1e-12) } else { turns }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn area(corners: &[[f32; 2]; CORNERS + 1]) -> f64 {
+        corners.windows(2).map(|p| 0.5 * cross(p[0].map(f64::from), p[1].map(f64::from))).sum()
+    }
+
+    fn ring(n: usize, center: [f64; 2], r: impl Fn(usize) -> f64) -> Vec<[f64; 2]> {
+        let at = |k: usize| {
+            let (s, c) = sin_cos_turns(k as f64 / n as f64);
+            [center[0] + r(k) * c, center[1] + r(k) * s]
+        };
+        (0..n).map(at).collect()
+    }
+
+    #[test]
+    fn a_circle_and_a_star_keep_their_areas() {
+        let mut circle = Reach::EMPTY;
+        circle.include(&ring(400, [0.3, 0.1], |_| 2.0));
+        let got = area(&circle.corners()) / (4.0 * std::f64::consts::PI);
+        assert!((1.0..1.01).contains(&got), "{got}");
+        let mut star = Reach::EMPTY;
+        let line = ring(10, [0.0; 2], |k| if k % 2 == 0 { 10.0 } else { 3.82 });
+        star.include(&line);
+        let want: f64 = (0..10).map(|k| 0.5 * cross(line[k], line[(k + 1) % 10])).sum();
+        let got = area(&star.corners()) / want;
+        assert!((1.0..1.02).contains(&got), "{got}");
+        // Triangles of a star are alike, too, within a tenth.
+        let corners = star.corners();
+        for pair in corners.windows(2) {
+            let own = 0.5 * cross(pair[0].map(f64::from), pair[1].map(f64::from)) / want * CORNERS as f64;
+            assert!((own - 1.0).abs() < 0.12, "{own}");
+        }
+    }
+
+    #[test]
+    fn the_triangles_are_alike_and_hold_all_directions() {
+        let mut reach = Reach::EMPTY;
+        // A cat's eye beside its center.
+        reach.include(&ring(200, [0.5, 0.0], |k| 1.0 - 0.4 * sin_cos_turns(k as f64 / 200.0).0.abs()));
+        let corners = reach.corners();
+        let mean = area(&corners) / CORNERS as f64;
+        for pair in corners.windows(2) {
+            let [a, b] = [pair[0].map(f64::from), pair[1].map(f64::from)];
+            let own = 0.5 * cross(a, b);
+            assert!(own > 0.9 * mean && own < 1.2 * mean, "{own} {mean}");
+            for d in 0..DIRECTIONS {
+                let way = Reach::way(d);
+                if cross(a, way) >= 0.0 && cross(way, b) >= 0.0 {
+                    let chord = [b[0] - a[0], b[1] - a[1]];
+                    let r = cross(a, chord) / cross(way, chord);
+                    assert!(r >= reach.at(d) * (1.0 - 1e-6), "{d}: {r} {}", reach.at(d));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn what_was_overlooked_is_held() {
+        let mut reach = Reach::EMPTY;
+        reach.include(&ring(100, [0.0; 2], |_| 1.0));
+        assert!(reach.raise([0.0, 1.2], 1.01, 1.06));
+        assert!(!reach.raise([0.0, 1.19], 1.01, 1.0));
+        assert!(!reach.raise([1.005, 0.0], 1.01, 1.06));
+        assert!(reach.at(DIRECTIONS / 4) >= 1.2 && reach.at(0) < 1.001);
+    }
+}

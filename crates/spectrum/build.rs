@@ -1,0 +1,5 @@
+//! Nothing to do: the manifest's `links` needs a build script.
+
+fn main() {
+    println!("cargo:rerun-if-changed=build.rs");
+}

@@ -1,0 +1,41 @@
+//! `kind: rectangle`.
+
+use super::{Making, SpectrumEntry, SpectrumKind, build_kind, times};
+use crate::inline::wavelengths;
+use crate::piece::Piece;
+use crate::shape::Shape;
+use schemars::JsonSchema;
+use serde::Deserialize;
+use spectra_core::params::{Faults, NonNegative, Wavelength};
+
+/// A value between two wavelengths, and nothing outside.
+///
+/// An ideal band-pass filter, or light of a band with sharp ends. In a line: `rectangle:500,600`.
+///
+/// # Example
+/// ```yaml
+/// {kind: rectangle, from: 500 nm, to: 600 nm}
+/// ```
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct Rectangle {
+    /// Where it begins, nm if bare.
+    from: Wavelength,
+    /// Where it ends, nm if bare.
+    to: Wavelength,
+    /// Its value in between; 1 if absent. Outside it is 0.
+    value: Option<NonNegative<f64>>,
+}
+
+spectra_core::register!(SpectrumEntry, "rectangle": Rectangle, build_kind::<Rectangle>);
+crate::expression!("rectangle:500,600", "write two wavelengths in nm, such as rectangle:500,600", |text| {
+    let [from, to] = wavelengths(text)?.try_into().ok()?;
+    Some(Shape::rectangle(from, to).map(Piece::Bare))
+});
+
+impl SpectrumKind for Rectangle {
+    fn make(&self, making: &Making<'_>) -> Result<Piece, Faults> {
+        let shape = Shape::rectangle(self.from.nm(), self.to.nm());
+        shape.and_then(|shape| times(shape, self.value)).map_err(making.at("to"))
+    }
+}

@@ -1,0 +1,36 @@
+//! `kind: constant`.
+
+use super::{Making, SpectrumEntry, SpectrumKind, build_kind};
+use crate::inline::numbers;
+use crate::piece::Piece;
+use crate::shape::Shape;
+use schemars::JsonSchema;
+use serde::Deserialize;
+use spectra_core::params::{Faults, NonNegative};
+
+/// The same at every wavelength.
+///
+/// As light the equal-energy spectrum; as a filter or a surface a neutral gray. In a line: `constant:0.18`, or `constant` for 1.
+///
+/// # Example
+/// ```yaml
+/// {kind: constant, value: 0.18}
+/// ```
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct Constant {
+    /// Its value at every wavelength; 1 if absent.
+    value: Option<NonNegative<f64>>,
+}
+
+spectra_core::register!(SpectrumEntry, "constant": Constant, build_kind::<Constant>);
+crate::expression!("constant:1", "write a value, such as constant:0.18", |text| {
+    let [value] = numbers(text)?.try_into().ok()?;
+    Some(Shape::constant(value).map(Piece::Bare))
+});
+
+impl SpectrumKind for Constant {
+    fn make(&self, making: &Making<'_>) -> Result<Piece, Faults> {
+        Shape::constant(self.value.map_or(1.0, NonNegative::get)).map(Piece::Bare).map_err(making.at("value"))
+    }
+}

@@ -1,0 +1,80 @@
+//! `kind: gaussian`, and a center of Gaussians.
+
+use super::{Making, SpectrumEntry, SpectrumKind, build_kind, times};
+use crate::inline::wavelengths;
+use crate::piece::Piece;
+use crate::shape::Shape;
+use schemars::{JsonSchema, Schema, SchemaGenerator};
+use serde::Deserialize;
+use spectra_core::params::{Dimension, Faults, NonNegative, Positive, Quantity, Wavelength, quantity, schema_of};
+
+/// A place on the axis of wavelengths, of any sign: a Gaussian's center may lie far outside of all light. nm if bare.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Center(pub(super) f64);
+
+impl Quantity for Center {
+    const DIMENSION: Dimension = Dimension::Length;
+    const NOUN: &'static str = "wavelength";
+    const BARE_UNIT: &'static str = "nm";
+    const EXAMPLE: &'static str = "550 nm";
+
+    fn from_bare(value: f64) -> Self {
+        Self(value)
+    }
+
+    fn bare(self) -> f64 {
+        self.0
+    }
+}
+
+impl JsonSchema for Center {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        "Center".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        schema_of::<Self>()
+    }
+}
+
+impl<'de> Deserialize<'de> for Center {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        quantity::deserialize(deserializer)
+    }
+}
+
+/// A bell: peak x exp(-(w - center)^2 / (2 sigma^2)).
+///
+/// An LED, a narrow filter, a band of absorption. In a line: `gaussian:550,20`. Several together are a `mixture`.
+///
+/// # Example
+/// ```yaml
+/// {kind: gaussian, center: 550 nm, sigma: 20 nm}
+/// ```
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct Gaussian {
+    /// Wavelength of the peak, nm if bare; it may lie outside of all light.
+    center: Center,
+    /// Standard deviation, nm if bare.
+    sigma: Positive<Wavelength>,
+    /// Value at the peak; 1 if absent.
+    peak: Option<NonNegative<f64>>,
+}
+
+spectra_core::register!(SpectrumEntry, "gaussian": Gaussian, build_kind::<Gaussian>);
+crate::expression!("gaussian:550,20", "write center and standard deviation in nm, such as gaussian:550,20", |text| {
+    let [center, sigma] = wavelengths(text)?.try_into().ok()?;
+    Some(Shape::gaussian(center, sigma).map(Piece::Bare))
+});
+
+impl SpectrumKind for Gaussian {
+    fn make(&self, making: &Making<'_>) -> Result<Piece, Faults> {
+        let shape = Shape::gaussian(self.center.0, self.sigma.nm());
+        shape.and_then(|shape| times(shape, self.peak)).map_err(making.at("sigma"))
+    }
+}

@@ -1,0 +1,45 @@
+//! `kind: histogram`.
+
+use super::{Making, SpectrumEntry, SpectrumKind, build_kind, lengths, rising};
+use crate::piece::Piece;
+use crate::shape::Shape;
+use schemars::JsonSchema;
+use serde::Deserialize;
+use spectra_core::params::{Faults, Wavelength};
+
+/// What a detector measured in bins.
+///
+/// Counts between neighboring edges, as a spectrometer or a simulation hands them over; each bin keeps its own content.
+///
+/// # Example
+/// ```yaml
+/// {kind: histogram, edges: [400, 500, 600, 700], counts: [3, 8, 5]}
+/// ```
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct Histogram {
+    /// Edges of the bins, nm if bare, increasing.
+    #[schemars(length(min = 2))]
+    edges: Vec<Wavelength>,
+    /// What was measured between neighboring edges, one fewer; 0 or more.
+    counts: Vec<f64>,
+}
+
+spectra_core::register!(SpectrumEntry, "histogram": Histogram, build_kind::<Histogram>);
+
+impl SpectrumKind for Histogram {
+    fn make(&self, making: &Making<'_>) -> Result<Piece, Faults> {
+        let params = making.params();
+        let wanted = [self.counts.len(), self.edges.len().saturating_sub(1)];
+        lengths(params, ["edges", "counts"], wanted, "one between each two edges")?;
+        let mut faults = Faults::new();
+        rising(params, "edges", &self.edges, &mut faults);
+        for (i, count) in self.counts.iter().enumerate().filter(|(_, c)| **c < 0.0) {
+            let fault = params.fault(&format!("counts[{i}]"), format!("a count cannot be negative: {count}"));
+            faults.push(fault.hint("write 0 where nothing was counted"));
+        }
+        faults.into_result(())?;
+        let edges: Vec<f64> = self.edges.iter().map(|w| w.nm()).collect();
+        Shape::histogram(&edges, &self.counts).map(Piece::Bare).map_err(making.at("counts"))
+    }
+}

@@ -1,0 +1,87 @@
+//! `kind: line` and `kind: lines`.
+
+use super::{Making, SpectrumEntry, SpectrumKind, build_kind};
+use crate::emission::Emission;
+use crate::inline::{line_nm, number};
+use crate::lines::LineOrWavelength;
+use crate::piece::Piece;
+use schemars::JsonSchema;
+use serde::Deserialize;
+use spectra_core::params::{Faults, NonNegative};
+use spectra_core::spectral::Line;
+
+/// One spectral line.
+///
+/// A laser, or a line of a lamp that a filter has picked out. A line is drawn as such, at its own wavelength. In a line of text:
+/// `line:632.8`, `line:C'`.
+///
+/// # Example
+/// ```yaml
+/// {kind: line, wavelength: 632.8 nm, power: 2}
+/// ```
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct LineParams {
+    /// Where it lies: a short name such as `C'`, or a wavelength, nm if bare.
+    wavelength: LineOrWavelength,
+    /// Power of the line, relative or W; 1 if absent.
+    power: Option<NonNegative<f64>>,
+}
+
+/// Several spectral lines.
+///
+/// A discharge lamp by its lines and their powers. In a line of text: `lines:404.66=1,435.84=2`.
+///
+/// # Example
+/// ```yaml
+/// {kind: lines, lines: [{wavelength: 435.83 nm, power: 2}, {wavelength: e}]}
+/// ```
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct LinesParams {
+    /// The lines, one or more.
+    #[schemars(length(min = 1))]
+    lines: Vec<LineParams>,
+}
+
+spectra_core::register!(SpectrumEntry, "line": LineParams, build_kind::<LineParams>);
+spectra_core::register!(SpectrumEntry, "lines": LinesParams, build_kind::<LinesParams>);
+crate::expression!("line:C'", "write a letter or a wavelength in nm, such as line:C' or line:632.8", |text| {
+    line_nm(text).map(|nm| Emission::line(nm, 1.0).map(Piece::from))
+});
+crate::expression!(
+    "lines:404.66=1,435.84=2",
+    "write wavelengths (or letters) with their powers, such as lines:404.66=1,435.84=2",
+    |text| {
+        let lines = text.split(',').map(weighted).collect::<Option<Vec<_>>>()?;
+        Some(Emission::new(None, lines).map(Piece::from))
+    }
+);
+
+impl SpectrumKind for LineParams {
+    fn make(&self, making: &Making<'_>) -> Result<Piece, Faults> {
+        Emission::new(None, vec![self.line()]).map(Piece::from).map_err(making.at("wavelength"))
+    }
+}
+
+impl SpectrumKind for LinesParams {
+    fn make(&self, making: &Making<'_>) -> Result<Piece, Faults> {
+        let lines = self.lines.iter().map(LineParams::line).collect();
+        Emission::new(None, lines).map(Piece::from).map_err(making.at("lines"))
+    }
+}
+
+impl LineParams {
+    fn line(&self) -> Line {
+        Line { wavelength_nm: self.wavelength.nm(), power: self.power.map_or(1.0, NonNegative::get) }
+    }
+}
+
+/// A line as an expression has it: `435.84=2`.
+fn weighted(text: &str) -> Option<Line> {
+    let (nm, power) = match text.split_once('=') {
+        Some((nm, power)) => (nm, number(power)?),
+        None => (text, 1.0),
+    };
+    Some(Line { wavelength_nm: line_nm(nm)?, power })
+}

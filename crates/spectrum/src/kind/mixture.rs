@@ -1,0 +1,59 @@
+//! `kind: mixture`.
+
+use super::gaussian::Center;
+use super::{Making, SpectrumEntry, SpectrumKind, build_kind};
+use crate::gaussian::{GaussianMixture, GaussianTerm};
+use crate::piece::Piece;
+use crate::shape::Shape;
+use schemars::JsonSchema;
+use serde::Deserialize;
+use spectra_core::params::{Faults, Positive, Wavelength};
+
+/// A sum of signed Gaussians.
+///
+/// What `spectra spectrum fit` makes of a table: smooth, compact, known at every wavelength.
+///
+/// # Example
+/// ```yaml
+/// kind: mixture
+/// terms:
+///   - {amplitude: 0.9, center: 560, sigma: 300}
+///   - {amplitude: -0.5, center: 520, sigma: 25}
+/// ```
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct Mixture {
+    /// Signed Gaussians, 1 to 4096; where their sum is negative it counts as 0.
+    // More than any fit has, and than a product of several that is written out.
+    #[schemars(length(min = 1, max = 4096))]
+    terms: Vec<Term>,
+}
+
+/// One signed Gaussian.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct Term {
+    /// Value at its center, of either sign.
+    amplitude: f64,
+    /// Wavelength of its center, nm if bare; it may lie outside of all light.
+    center: Center,
+    /// Standard deviation, nm if bare.
+    sigma: Positive<Wavelength>,
+}
+
+spectra_core::register!(SpectrumEntry, "mixture": Mixture, build_kind::<Mixture>);
+
+impl SpectrumKind for Mixture {
+    fn make(&self, making: &Making<'_>) -> Result<Piece, Faults> {
+        let params = making.params();
+        let mut faults = Faults::new();
+        let term = |(i, t): (usize, &Term)| {
+            let term = GaussianTerm::new(t.amplitude, t.center.0, t.sigma.nm());
+            faults.take(term.map_err(|e| params.fault(&format!("terms[{i}]"), e.to_string())))
+        };
+        let terms: Vec<GaussianTerm> = self.terms.iter().enumerate().filter_map(term).collect();
+        faults.into_result(())?;
+        let shape = Shape::positive_mixture(GaussianMixture::new(terms)).map_err(making.at("terms"))?;
+        Ok(Piece::Bare(shape.0))
+    }
+}

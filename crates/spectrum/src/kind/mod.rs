@@ -1,0 +1,189 @@
+//! The kinds of spectra: each is a file of this folder, and a plugin may bring others.
+//!
+//! A kind is a struct of parameters that says what spectrum they make:
+//!
+//! ```
+//! use schemars::JsonSchema;
+//! use serde::Deserialize;
+//! use spectra_core::params::{Faults, Wavelength};
+//! use spectra_spectrum::{Making, Piece, Shape, SpectrumEntry, SpectrumError, SpectrumKind, build_kind};
+//!
+//! /// Two Gaussians of 20 nm, one on each side of a wavelength.
+//! #[derive(Debug, Deserialize, JsonSchema)]
+//! #[serde(deny_unknown_fields)]
+//! struct Pair {
+//!     /// What lies between them, nm if bare.
+//!     center: Wavelength,
+//! }
+//!
+//! spectra_core::register!(SpectrumEntry, "pair": Pair, build_kind::<Pair>);
+//! // What may stand in a line, if anything: `pair:550`.
+//! spectra_spectrum::expression!("pair:550", "write a wavelength in nm, such as pair:550", |text| {
+//!     text.parse().ok().map(two)
+//! });
+//!
+//! fn two(center_nm: f64) -> Result<Piece, SpectrumError> {
+//!     let [low, high] = [Shape::gaussian(center_nm - 50.0, 20.0)?, Shape::gaussian(center_nm + 50.0, 20.0)?];
+//!     Ok(Piece::Bare(low.plus(&high)))
+//! }
+//!
+//! impl SpectrumKind for Pair {
+//!     fn make(&self, making: &Making<'_>) -> Result<Piece, Faults> {
+//!         two(self.center.nm()).map_err(making.at("center"))
+//!     }
+//! }
+//! # assert!((spectra_spectrum::find_emission("pair:550").unwrap().at(500.0) - 1.0).abs() < 1e-5);
+//! ```
+
+mod band;
+mod constant;
+mod gaussian;
+mod histogram;
+mod led;
+mod line;
+mod mixture;
+mod parts;
+mod scale;
+mod table;
+mod temperature;
+
+use crate::by_name::Loader;
+use crate::error::SpectrumError;
+use crate::meta::Kind;
+use crate::piece::Piece;
+use crate::shape::Shape;
+use crate::table::MAX_ROWS;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use spectra_core::params::{Fault, Faults, NonNegative, Params, Readable, StageNode, Wavelength};
+use spectra_core::registry::{self, Context};
+use spectra_core::resources::Resources;
+use spectra_core::spectral::BAND;
+
+spectra_core::declare!(SpectrumEntry, dyn SpectrumKind, "spectrum", "A registered kind of spectrum.");
+
+/// Parameters that say what a spectrum is.
+pub trait SpectrumKind {
+    /// The spectrum.
+    ///
+    /// # Errors
+    /// What is wrong with the parameters, placed.
+    fn make(&self, making: &Making<'_>) -> Result<Piece, Faults>;
+}
+
+/// A kind from its parameters, for [`register!`](spectra_core::register).
+///
+/// # Errors
+/// All that is wrong with them.
+pub fn build_kind<K: SpectrumKind + Readable + 'static>(
+    params: &Params,
+    _: &Context<'_>,
+) -> Result<Box<dyn SpectrumKind>, Faults> {
+    Ok(Box::new(params.parse::<K>()?))
+}
+
+/// What a spectrum is made for, and of which others.
+pub struct Making<'a> {
+    params: &'a Params,
+    wanted: Kind,
+    loader: &'a Loader<'a>,
+    files: &'a dyn Resources,
+}
+
+impl Making<'_> {
+    /// The parameters as they were written, to place faults.
+    #[must_use]
+    pub fn params(&self) -> &Params {
+        self.params
+    }
+
+    /// What is wanted where the spectrum is named; a function of wavelength becomes that.
+    #[must_use]
+    pub fn wanted(&self) -> Kind {
+        self.wanted
+    }
+
+    /// Places an error at a key.
+    pub fn at(&self, key: &'static str) -> impl Fn(SpectrumError) -> Faults {
+        move |error| self.params.fault(key, error.to_string()).into()
+    }
+
+    /// Another spectrum that this one is made of: a name, an expression, or a map with its kind.
+    ///
+    /// # Errors
+    /// What is wrong with it, placed.
+    pub fn part(&self, node: &StageNode, wanted: Kind) -> Result<Piece, Faults> {
+        match node.node().as_str() {
+            Some(name) => self.loader.piece(name, wanted).map_err(|e| match e {
+                SpectrumError::Document(faults) => faults,
+                other => other.faults(|text| node.fault(text)),
+            }),
+            None => {
+                self.loader.count("this file").map_err(|e| node.fault(e.to_string()))?;
+                of_params(&node.params()?, wanted, self.loader, self.files)
+            }
+        }
+    }
+}
+
+/// The spectrum of a map with its kind and that kind's own keys.
+pub(crate) fn of_params(
+    params: &Params,
+    wanted: Kind,
+    loader: &Loader<'_>,
+    files: &dyn Resources,
+) -> Result<Piece, Faults> {
+    let kind = registry::build::<dyn SpectrumKind>(params, &Context::new(files, BAND))?;
+    kind.make(&Making { params, wanted, loader, files })
+}
+
+/// What stands where a spectrum is wanted in a spectrum: a name or an expression, or a map with its kind.
+pub struct SpectrumForm;
+
+impl JsonSchema for SpectrumForm {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        "SpectrumForm".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({
+            "x-words": "name, expression or map",
+            "x-see": "spectrum",
+            "if": { "type": "string" },
+            "else": { "$ref": "#/$defs/spectrum" },
+        })
+    }
+}
+
+/// A shape times a value, if one is stated.
+fn times(shape: Shape, value: Option<NonNegative<f64>>) -> Result<Piece, SpectrumError> {
+    match value {
+        Some(value) => shape.scaled(value.get()).map(Piece::Bare),
+        None => Ok(Piece::Bare(shape)),
+    }
+}
+
+/// A fault for each value that does not increase.
+fn rising(params: &Params, key: &str, nm: &[Wavelength], faults: &mut Faults) {
+    for (i, pair) in nm.windows(2).enumerate() {
+        if pair[1].nm() <= pair[0].nm() {
+            let text = format!("{} nm does not come after {} nm", pair[1].nm(), pair[0].nm());
+            faults.push(params.fault(&format!("{key}[{}]", i + 1), text).hint("wavelengths must increase"));
+        }
+    }
+}
+
+/// Checks lengths before anything is made of them.
+fn lengths(params: &Params, keys: [&str; 2], [found, wanted]: [usize; 2], what: &str) -> Result<(), Fault> {
+    if found > MAX_ROWS || wanted > MAX_ROWS {
+        return Err(params.fault(keys[0], format!("more than {MAX_ROWS} points")));
+    }
+    if found == 0 || found != wanted {
+        let fault = params.fault(keys[1], format!("{found} {}, but {what} asks for {wanted}", keys[1]));
+        return Err(fault.hint("each has its own, in the same order"));
+    }
+    Ok(())
+}

@@ -1,0 +1,64 @@
+//! `kind: blackbody` and `kind: daylight`.
+
+use super::{Making, SpectrumEntry, SpectrumKind, build_kind};
+use crate::emission::Emission;
+use crate::illuminants::daylight;
+use crate::inline::measure;
+use crate::piece::Piece;
+use schemars::JsonSchema;
+use serde::Deserialize;
+use spectra_core::params::{Faults, Temperature};
+
+/// Light of a blackbody by Planck's law, W m^-2 sr^-1 nm^-1.
+///
+/// The light of incandescent lamps, candles and, at 5800 K, roughly of the sun. In a line: `blackbody:2856`.
+///
+/// # Example
+/// ```yaml
+/// {kind: blackbody, temperature: 2856 K}
+/// ```
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct Blackbody {
+    /// Its temperature, K if bare.
+    temperature: Temperature,
+}
+
+/// CIE daylight of a correlated color temperature, relative.
+///
+/// Phases of daylight from 4000 to 25000 K, as D65 is one. In a line: `daylight:5500`.
+///
+/// # Example
+/// ```yaml
+/// {kind: daylight, temperature: 5500 K}
+/// ```
+///
+/// # References
+/// - CIE 15:2004, Colorimetry, section 3.1.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct Daylight {
+    /// Its correlated color temperature, K if bare.
+    temperature: Temperature,
+}
+
+spectra_core::register!(SpectrumEntry, "blackbody": Blackbody, build_kind::<Blackbody>);
+spectra_core::register!(SpectrumEntry, "daylight": Daylight, build_kind::<Daylight>);
+crate::expression!("blackbody:5800", "write a temperature in kelvin, such as blackbody:5800", |text| {
+    measure(text, "K").map(|kelvin| Emission::blackbody(kelvin).map(Piece::from))
+});
+crate::expression!("daylight:5500", "write a temperature in kelvin, such as daylight:5500", |text| {
+    measure(text, "K").map(|kelvin| daylight(kelvin).map(Piece::from))
+});
+
+impl SpectrumKind for Blackbody {
+    fn make(&self, making: &Making<'_>) -> Result<Piece, Faults> {
+        Emission::blackbody(self.temperature.kelvin()).map(Piece::from).map_err(making.at("temperature"))
+    }
+}
+
+impl SpectrumKind for Daylight {
+    fn make(&self, making: &Making<'_>) -> Result<Piece, Faults> {
+        daylight(self.temperature.kelvin()).map(Piece::from).map_err(making.at("temperature"))
+    }
+}
