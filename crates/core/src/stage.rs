@@ -151,8 +151,8 @@ pub trait Imager: Send + Sync {
     /// Its size.
     fn size(&self) -> FrameSize;
 
-    /// The channels that it records by itself; `None` if a film on it determines them.
-    fn channels(&self) -> Option<Vec<Channel>>;
+    /// What it makes of light by itself; `None` if that is up to a film on it.
+    fn response(&self) -> Option<&dyn Response>;
 
     /// The imager as a receiver of rays (forward), if it can be one.
     fn receive(&self) -> Option<&dyn Receive> {
@@ -170,24 +170,6 @@ pub trait Imager: Send + Sync {
         None
     }
 
-    /// A picture of what it recorded by itself; `None` if a film makes the picture.
-    fn display(&self, exposure: &ExposureFrame) -> Option<DisplayPicture>;
-
-    /// Exposure time, s, if the imager has one.
-    fn exposure_time_s(&self) -> Option<f64> {
-        None
-    }
-
-    /// Whether it has an analog-to-digital converter, that is, whether [`Imager::raw`] returns something.
-    fn has_converter(&self) -> bool {
-        false
-    }
-
-    /// The output of its converter, if it has one.
-    fn raw(&self, _exposure: &ExposureFrame) -> Option<RawFrame> {
-        None
-    }
-
     /// Sets the frame of an animation. Each frame has its own noise, which follows from the imager's seed and the frame's number
     /// ([`crate::numbers::seed_of_frame`]), whichever frame was set before.
     fn set_frame(&mut self, _frame: u64) {}
@@ -195,11 +177,21 @@ pub trait Imager: Send + Sync {
 
 /// How a detector responds to light, and the picture that it makes: the part of an imager that does not depend on geometry.
 pub trait Response: Send + Sync {
-    /// Its channels, as responses to irradiance; an imager with an exposure time records irradiance times seconds.
+    /// Its channels, as responses to irradiance, or to irradiance times seconds where it has an exposure time.
     fn channels(&self) -> Vec<Channel>;
+
+    /// Exposure time, s, if it has one.
+    fn exposure_time_s(&self) -> Option<f64> {
+        None
+    }
 
     /// A picture of what these channels recorded, or `None` if there is none.
     fn display(&self, exposure: &ExposureFrame) -> Option<DisplayPicture>;
+
+    /// Its analog-to-digital converter, if it has one.
+    fn digitize(&self) -> Option<&dyn Digitize> {
+        None
+    }
 }
 
 impl<R: Response + ?Sized> Response for Box<R> {
@@ -207,9 +199,23 @@ impl<R: Response + ?Sized> Response for Box<R> {
         (**self).channels()
     }
 
+    fn exposure_time_s(&self) -> Option<f64> {
+        (**self).exposure_time_s()
+    }
+
     fn display(&self, exposure: &ExposureFrame) -> Option<DisplayPicture> {
         (**self).display(exposure)
     }
+
+    fn digitize(&self) -> Option<&dyn Digitize> {
+        (**self).digitize()
+    }
+}
+
+/// Turns what the channels recorded into the numbers of a raw file.
+pub trait Digitize: Send + Sync {
+    /// The numbers.
+    fn raw(&self, exposure: &ExposureFrame) -> RawFrame;
 }
 
 /// Receives rays.

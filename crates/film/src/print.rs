@@ -1,9 +1,9 @@
 //! The positive: a print of a black-and-white negative, looked at as a scan.
 
-use crate::curve::{CharacteristicCurve, CurveError, ToeShoulder};
+use crate::curve::{CurveError, ToeShoulder};
 use crate::lookup::{Lookup, PIXELS_A_TASK};
 use rayon::prelude::*;
-use spectra_core::math::{exp, log10};
+use spectra_core::math::exp;
 use std::f64::consts::LN_10;
 
 /// What a mid gray subject, exposed as the meter says, is shown as in linear light: the reflectance of the
@@ -119,15 +119,6 @@ impl Print {
         let one = |d: &f32| sampled.at(f64::from(*d)) as f32;
         density.par_iter().with_min_len(PIXELS_A_TASK).map(one).collect()
     }
-
-    /// Gradient of the whole: change of log10 of the picture's light per change of log10 of the exposure of
-    /// `film`, at log10 of an exposure in lx s.
-    #[must_use]
-    pub fn system_gradient(&self, film: &CharacteristicCurve, log10_exposure: f64) -> f64 {
-        let step = 1e-4;
-        let at = |x: f64| log10(self.picture(film.density(x)));
-        (at(log10_exposure + step) - at(log10_exposure - step)) / (2.0 * step)
-    }
 }
 
 /// Reflectance relative to the white of the paper.
@@ -138,6 +129,8 @@ fn reflectance(paper: &ToeShoulder, log10_exposure: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::curve::CharacteristicCurve;
+    use spectra_core::math::log10;
 
     fn film() -> CharacteristicCurve {
         ToeShoulder::through([-2.0, 0.1], [-0.5, 1.09], 0.2, 2.5, 4.0).expect("a film's curve").into()
@@ -195,7 +188,10 @@ mod tests {
 
     #[test]
     fn system_gradient_at_mid_gray_is_as_stated() {
-        let gradient = print().system_gradient(&film(), log10(0.125));
+        // Change of log10 of the picture's light per change of log10 of the exposure.
+        let step = 1e-4;
+        let at = |x: f64| log10(print().picture(film().density(x)));
+        let gradient = (at(log10(0.125) + step) - at(log10(0.125) - step)) / (2.0 * step);
         assert!((gradient - 1.3).abs() < 0.01, "{gradient}");
     }
 

@@ -3,7 +3,7 @@
 use crate::aperture::{Aperture, Shape};
 use crate::pose::{AxisBreak, Displacement};
 use crate::{Element, Lens};
-use spectra_core::surface::{Action, Hit, Kernel, KernelShape, Ray, Real};
+use spectra_core::surface::{Action, Kernel, Plane};
 use std::sync::Arc;
 
 /// The `kind` of the element that a matte box is.
@@ -20,39 +20,13 @@ pub struct MatteBox {
     pub height_mm: f64,
 }
 
-/// The plane of the opening.
-#[derive(Clone, Copy, Debug)]
-struct Opening;
-
-impl KernelShape for Opening {
-    #[inline(always)]
-    fn hit<R: Real, const FORWARD: bool>(&self, ray: Ray<R, FORWARD>) -> Hit<R> {
-        let n = ray.direction[2];
-        // A ray along the plane never meets it: 0 is made negative.
-        Hit { distance: -ray.position[2] / n, cosine: n, valid: ray.along(n) - R::constant(f64::MIN_POSITIVE) }
-    }
-
-    #[inline(always)]
-    fn normal<R: Real>(&self, _: [R; 3]) -> [R; 3] {
-        [R::constant(0.0), R::constant(0.0), R::constant(1.0)]
-    }
-
-    fn sag_mm(&self, _: f64, _: f64) -> Option<f64> {
-        Some(0.0)
-    }
-
-    fn vertex_curvature_per_mm(&self) -> (f64, f64) {
-        (0.0, 0.0)
-    }
-}
-
 impl Lens {
     /// The same lens behind a matte box: an element in front of the first, which clips in both directions and which
     /// every search of a pupil sees. All that stood stays where it is, the origin too; numbers of elements rise by one.
     #[must_use]
     pub fn behind_matte_box(mut self, opening: &MatteBox) -> Self {
         let (half_width_mm, half_height_mm) = (0.5 * opening.width_mm, 0.5 * opening.height_mm);
-        let mut element = Element::new(MATTE_BOX, Arc::new(Kernel(Opening)), 0, 0);
+        let mut element = Element::new(MATTE_BOX, Arc::new(Kernel(Plane::refracting())), 0, 0);
         element.action = Action::Pass;
         element.breaks = vec![AxisBreak { displacement: Displacement::NONE, thickness_mm: -opening.distance_mm }];
         element.thickness_mm = opening.distance_mm;

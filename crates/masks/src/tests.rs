@@ -214,7 +214,7 @@ fn a_cell_says_what_all_edges_say() {
                 outlines: (0..=shape % 2)
                     .map(|_| (0..corners).map(|_| [coordinate(0), coordinate(1)]).collect())
                     .collect(),
-                rule: if shape % 3 == 0 { FillRule::EvenOdd } else { FillRule::NonZero },
+                rule: if shape.is_multiple_of(3) { FillRule::EvenOdd } else { FillRule::NonZero },
                 transmittance: f64::from((shape * 7 + 5) % 11) / 10.0,
                 opacity: if shape % 4 == 1 { 1.0 } else { 0.4 },
             })
@@ -241,10 +241,12 @@ fn few_edges_are_asked() {
         let (r, a) = (15.0 + f64::from(i % 2), f64::from(i) * std::f64::consts::TAU / 10_000.0);
         [r * math::cos(a), r * math::sin(a)]
     };
-    let corners: [(&dyn Fn(u32) -> [f64; 2], u32, usize); 3] =
-        [(&long, 10_000, 60), (&toothed, 10_000, 10), (&long, 60_000, 2000)];
-    for (corner, count, most) in corners {
-        let outlines = vec![(0..count).map(corner).collect()];
+    let long_ones = |count: u32| (0..count).map(long).collect::<Vec<_>>();
+    for (corners, most) in
+        [(long_ones(10_000), 60), ((0..10_000).map(toothed).collect(), 10), (long_ones(60_000), 2000)]
+    {
+        let count = corners.len();
+        let outlines = vec![corners];
         let shape = Painted { outlines, rule: FillRule::EvenOdd, transmittance: 1.0, opacity: 1.0 };
         let drawing = Drawing::new(40.0, 40.0, &[shape]);
         let place = |i: u32, step: f64| ((f64::from(i) * step).fract() - 0.5) * 36.0;

@@ -9,8 +9,6 @@ use crate::geometry::Point;
 pub const UNITS_PER_EM: f64 = 20.0;
 /// Height of capitals and figures, units.
 pub const CAP_HEIGHT: f64 = 14.0;
-/// Height of small letters, units.
-pub const X_HEIGHT: f64 = 10.0;
 /// Width of the pen, units.
 pub const PEN: f64 = 1.55;
 

@@ -5,6 +5,7 @@ use crate::earlier::{Earlier, Said};
 use crate::filters;
 use crate::focus::FocusLight;
 use crate::lens_section::{LensSection, SetLens, held_lens};
+use crate::resources::read_yaml;
 use crate::{
     ConePattern, Direction, Lights, NumberFamily, Output, RenderSettings, Scene, doubts, films, lamps, language,
     output, sight, yaml,
@@ -151,7 +152,7 @@ pub(crate) fn read(path: &Path) -> Result<Node, Faults> {
     {
         return yaml::parse_bytes(&format!("bundled:{bundled}"), bytes);
     }
-    yaml::read(path).map_err(|faults| advice::unreadable(faults, path))
+    read_yaml(path).map_err(|faults| advice::unreadable(faults, path))
 }
 
 /// The scene as written, with the overrides below it. What changes no picture is left out, so that the
@@ -251,8 +252,8 @@ fn all_stages(
     let render = render.unwrap_or_else(|| params.nothing_said("render"));
     let settings = behind.take(render.parse::<RenderSection>());
     let output = file.as_ref().and_then(|f| behind.take(output::read(f.output.as_deref(), params, &context)));
-    let mut channels = imager.as_ref().and_then(|imager| match (imager.channels(), &films) {
-        (Some(own), None) => Some(own),
+    let mut channels = imager.as_ref().and_then(|imager| match (imager.response(), &films) {
+        (Some(own), None) => Some(own.channels()),
         (None, Some(films)) => Some(films::channels(films)),
         (Some(_), Some(_)) => {
             let fault = params.fault("film", "this imager records light directly and takes no film");

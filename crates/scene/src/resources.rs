@@ -3,7 +3,7 @@
 use crate::advice::{FileIs, other_file};
 use crate::bundled::{Bundled, other_kind};
 use crate::yaml;
-use spectra_core::params::{Fault, Faults, Params, SourceFile, nearest};
+use spectra_core::params::{Fault, Faults, Node, Params, SourceFile, nearest};
 use spectra_core::resources::{Found, Resource, ResourceError, Resources};
 use spectra_exchange::Format;
 use std::borrow::Cow;
@@ -230,6 +230,16 @@ fn bundled(path: &str, folders: &[&str], endings: &[&str]) -> Option<Resource> {
     None
 }
 
+/// Reads and parses a YAML file.
+pub(crate) fn read_yaml(path: &Path) -> Result<Node, Faults> {
+    let name = path.display().to_string();
+    match read_file(path, yaml::MAX_BYTES as u64) {
+        Ok(bytes) => yaml::parse_bytes(&name, &bytes),
+        Err(ResourceError::TooLarge(bytes, _)) => Err(yaml::too_large(&name, bytes).into()),
+        Err(error) => Err(Fault::new(format!("cannot read {name}: {error}")).into()),
+    }
+}
+
 /// Reads a file whose size is checked before and while it is read.
 fn read_file(path: &Path, limit_bytes: u64) -> Result<Vec<u8>, ResourceError> {
     let io = |e: std::io::Error| ResourceError::Io(e.to_string());
@@ -256,4 +266,21 @@ fn plain(path: &Path) -> PathBuf {
     let here = std::env::current_dir().ok();
     let path = here.and_then(|here| path.strip_prefix(here).ok()).unwrap_or(path);
     path.components().filter(|c| *c != std::path::Component::CurDir).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_that_cannot_be_scenes_are_not_read() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("large.yaml");
+        // A sparse file: its length without its weight.
+        std::fs::File::create(&path).and_then(|file| file.set_len(100_000_000)).expect("written");
+        let said = read_yaml(&path).expect_err("refused").to_string();
+        assert!(said.contains("100000000 bytes, at most 4194304 are read"), "{said}");
+        let said = read_yaml(Path::new("/nowhere/scene.yaml")).expect_err("refused").to_string();
+        assert!(said.starts_with("cannot read /nowhere/scene.yaml: "), "{said}");
+    }
 }

@@ -197,7 +197,7 @@ impl Scene {
         match self.films.first() {
             // Of several films the others' channels hold what their own time is more or less.
             Some(first) => first.film.exposure_time_s(),
-            None => self.imager.exposure_time_s().unwrap_or(1.0),
+            None => self.imager.response().and_then(|own| own.exposure_time_s()).unwrap_or(1.0),
         }
     }
 

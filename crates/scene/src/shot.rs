@@ -73,7 +73,7 @@ impl<'a> Shot<'a> {
             Some(name) => Ok((Some(name.clone()), film.film.develop(&film.exposure(exposure))?)),
         };
         if scene.films.is_empty() {
-            let shown = scene.imager.display(exposure);
+            let shown = scene.imager.response().and_then(|own| own.display(exposure));
             let picture = shown.ok_or_else(|| "this imager shows no picture without a film on it".to_owned())?;
             return Ok(vec![(None, picture)]);
         }

@@ -26,7 +26,7 @@ impl Names {
     #[must_use]
     pub fn of_picture(file: &Path) -> Option<Self> {
         let [stem, ending] = [file.file_stem()?, file.extension()?].map(|part| part.to_string_lossy().into_owned());
-        ENDINGS.contains(&&*ending.to_ascii_lowercase()).then(|| Self { only: Some([stem, ending]) })
+        ENDINGS.contains(&&*ending.to_ascii_lowercase()).then_some(Self { only: Some([stem, ending]) })
     }
 
     /// What is written of a scene.

@@ -46,11 +46,12 @@ impl ImagerLaws {
             size.width_mm,
             size.height_mm
         );
-        if let Some(channels) = imager.channels() {
+        let own = imager.response();
+        if let Some(channels) = own.map(|own| own.channels()) {
             assert!(!channels.is_empty(), "it records by itself, but has no channels");
             check_channels(&channels);
         }
-        if let Some(time) = imager.exposure_time_s() {
+        if let Some(time) = own.and_then(|own| own.exposure_time_s()) {
             assert!(time > 0.0 && time.is_finite(), "its exposure time is {time} s");
         }
         assert!(imager.launch().is_some() || imager.receive().is_some(), "it neither launches nor receives rays");
@@ -140,7 +141,7 @@ impl ImagerLaws {
             }
             receive.receive(&mut rays, isa);
             let mut elsewhere = 0;
-            let channels = imager.channels().map_or(u32::MAX, |c| c.len() as u32);
+            let channels = imager.response().map_or(u32::MAX, |own| own.channels().len() as u32);
             for (i, (pixel, p, _)) in launched.iter().enumerate() {
                 let Some((got, only)) = rays.loss(i).is_none().then(|| pixel_and_channel(rays.tags()[i])) else {
                     elsewhere += 1;

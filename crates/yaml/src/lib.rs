@@ -16,8 +16,6 @@ mod tests;
 mod tree;
 
 use spectra_core::params::{Fault, Faults, MAX_DEPTH, Node, SourceFile, Span};
-use std::io::Read;
-use std::path::Path;
 use std::sync::Arc;
 
 /// Largest file that is read, in bytes.
@@ -32,9 +30,7 @@ pub const MAX_NODES: usize = 200_000;
 /// Everything that is wrong with it up to the first error of syntax, each with its place.
 pub fn parse(mut file: SourceFile) -> Result<Node, Faults> {
     if file.text.len() > MAX_BYTES {
-        let bytes = file.text.len();
-        file.text = String::new();
-        return Err(too_large(bytes as u64).at(Arc::new(file), Span::default()).into());
+        return Err(too_large(&file.name, file.text.len() as u64).into());
     }
     if file.text.starts_with('\u{feff}') {
         file.text.remove(0);
@@ -48,7 +44,7 @@ pub fn parse(mut file: SourceFile) -> Result<Node, Faults> {
 /// As [`parse`]; and where the bytes are not UTF-8.
 pub fn parse_bytes(name: &str, bytes: &[u8]) -> Result<Node, Faults> {
     if bytes.len() > MAX_BYTES {
-        return Err(too_large(bytes.len() as u64).at(Arc::new(SourceFile::new(name, "")), Span::default()).into());
+        return Err(too_large(name, bytes.len() as u64).into());
     }
     match std::str::from_utf8(bytes) {
         Ok(text) => parse(SourceFile::new(name, text)),
@@ -56,26 +52,11 @@ pub fn parse_bytes(name: &str, bytes: &[u8]) -> Result<Node, Faults> {
     }
 }
 
-/// Reads and parses a file.
-///
-/// # Errors
-/// As [`parse`]; and where the file cannot be read, without a place.
-pub fn read(path: &Path) -> Result<Node, Faults> {
-    let name = path.display().to_string();
-    let unreadable = |error: std::io::Error| Fault::new(format!("cannot read {name}: {error}"));
-    let file = std::fs::File::open(path).map_err(unreadable)?;
-    let mut bytes = Vec::new();
-    // A file can grow, and a device has no length: what counts is what is read.
-    file.take(MAX_BYTES as u64 + 1).read_to_end(&mut bytes).map_err(unreadable)?;
-    if bytes.len() > MAX_BYTES {
-        let length = std::fs::metadata(path).map_or(0, |data| data.len()).max(bytes.len() as u64);
-        return Err(too_large(length).at(Arc::new(SourceFile::new(name, "")), Span::default()).into());
-    }
-    parse_bytes(&name, &bytes)
-}
-
-fn too_large(bytes: u64) -> Fault {
+/// That a file has too many bytes.
+#[must_use]
+pub fn too_large(name: &str, bytes: u64) -> Fault {
     Fault::new(format!("the file has {bytes} bytes, at most {MAX_BYTES} are read"))
+        .at(Arc::new(SourceFile::new(name, "")), Span::default())
         .hint("is this a scene, lens or stock file?")
 }
 
@@ -150,7 +131,7 @@ pub fn parse_override(argument: &str) -> Result<Override, Faults> {
     let name = if argument.len() <= SHOWN { format!("--set {argument}") } else { format!("--set {path:.SHOWN$}=...") };
     let file = Arc::new(SourceFile::new(name, argument));
     if argument.len() > MAX_BYTES {
-        return Err(too_large(argument.len() as u64).at(file, Span::default()).into());
+        return Err(too_large(&file.name, argument.len() as u64).into());
     }
     let path = path.trim();
     if let Err(message) = spectra_core::params::steps(path) {

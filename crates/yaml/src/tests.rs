@@ -401,12 +401,6 @@ fn bytes_that_are_no_text_have_a_place() {
     let utf16 = fault(b"\xff\xfea\0:\0");
     assert!(utf16.to_string().contains("UTF-16"), "{utf16}");
     assert!(parse_bytes("t.yaml", b"\xef\xbb\xbfa: 1").unwrap().get("a").is_some());
-    assert!(
-        read(Path::new("/nowhere/scene.yaml"))
-            .unwrap_err()
-            .to_string()
-            .starts_with("cannot read /nowhere/scene.yaml: ")
-    );
 }
 
 #[test]

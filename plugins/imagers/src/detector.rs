@@ -9,7 +9,7 @@ use spectra_core::frame::{DisplayPicture, ExposureFrame, FrameSize};
 use spectra_core::params::{Faults, Params, Part, Positive, Time};
 use spectra_core::registry::{self, Context, StageOf};
 use spectra_core::spectral::Channel;
-use spectra_core::stage::{Imager, Launch, Receive, Response};
+use spectra_core::stage::{Digitize, Imager, Launch, Receive, Response};
 
 /// A frame of detectors that see what a `response` says.
 ///
@@ -57,10 +57,8 @@ impl<R: Response> Imager for DetectorPlane<R> {
         self.plane.size()
     }
 
-    fn channels(&self) -> Option<Vec<Channel>> {
-        let timed = self.exposure_time_s.is_some();
-        let named = |c: Channel| if timed { Channel { unit: format!("{} s", c.unit), ..c } } else { c };
-        Some(self.response.channels().into_iter().map(named).collect())
+    fn response(&self) -> Option<&dyn Response> {
+        Some(self)
     }
 
     fn receive(&self) -> Option<&dyn Receive> {
@@ -74,13 +72,25 @@ impl<R: Response> Imager for DetectorPlane<R> {
     fn cover(&self) -> Option<CoverStack> {
         self.plane.cover()
     }
+}
+
+impl<R: Response> Response for DetectorPlane<R> {
+    fn channels(&self) -> Vec<Channel> {
+        let timed = self.exposure_time_s.is_some();
+        let named = |c: Channel| if timed { Channel { unit: format!("{} s", c.unit), ..c } } else { c };
+        self.response.channels().into_iter().map(named).collect()
+    }
+
+    fn exposure_time_s(&self) -> Option<f64> {
+        self.exposure_time_s
+    }
 
     fn display(&self, exposure: &ExposureFrame) -> Option<DisplayPicture> {
         self.response.display(exposure)
     }
 
-    fn exposure_time_s(&self) -> Option<f64> {
-        self.exposure_time_s
+    fn digitize(&self) -> Option<&dyn Digitize> {
+        self.response.digitize()
     }
 }
 

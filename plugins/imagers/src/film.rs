@@ -5,11 +5,10 @@ use crate::plane::Plane;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::cover::CoverStack;
-use spectra_core::frame::{DisplayPicture, ExposureFrame, FrameSize};
+use spectra_core::frame::FrameSize;
 use spectra_core::params::{Faults, Params};
 use spectra_core::registry::Context;
-use spectra_core::spectral::Channel;
-use spectra_core::stage::{Imager, Launch, Receive};
+use spectra_core::stage::{Imager, Launch, Receive, Response};
 
 /// A frame with a film on it; what it records is the film's.
 ///
@@ -59,7 +58,7 @@ impl Imager for FilmPlane {
         self.plane.size()
     }
 
-    fn channels(&self) -> Option<Vec<Channel>> {
+    fn response(&self) -> Option<&dyn Response> {
         None
     }
 
@@ -73,10 +72,6 @@ impl Imager for FilmPlane {
 
     fn cover(&self) -> Option<CoverStack> {
         self.plane.cover()
-    }
-
-    fn display(&self, _exposure: &ExposureFrame) -> Option<DisplayPicture> {
-        None
     }
 }
 

@@ -1,7 +1,7 @@
 //! The sensor: electrons, noise, colors, and what it says of faulty keys.
 
 use spectra_color::{Adaptation, ciede2000, lab};
-use spectra_core::frame::{ExposureChannel, ExposureFrame};
+use spectra_core::frame::{ExposureChannel, ExposureFrame, RawFrame};
 use spectra_core::params::Faults;
 use spectra_core::registry::{Context, Stage};
 use spectra_core::resources::Resources;
@@ -32,7 +32,12 @@ fn sensor(more: &str) -> Box<dyn Imager> {
 }
 
 fn channels(imager: &dyn Imager) -> Vec<Channel> {
-    imager.channels().expect("its own")
+    imager.response().expect("its own").channels()
+}
+
+/// The numbers of its raw file.
+fn raw(imager: &dyn Imager, exposure: &ExposureFrame) -> RawFrame {
+    imager.response().and_then(|own| own.digitize()).expect("a converter").raw(exposure)
 }
 
 /// The same mean in every well.
@@ -60,7 +65,7 @@ fn electrons_are_photons_times_quantum_efficiency() {
         }
     }
     assert!((peak - 0.4).abs() < 1e-9, "{peak}");
-    assert_eq!(imager.exposure_time_s(), Some(0.01));
+    assert_eq!(imager.response().and_then(|own| own.exposure_time_s()), Some(0.01));
     // The pitch counts, not the pixels of the picture.
     let green = |imager: &dyn Imager| channels(imager)[1].response[200];
     let coarse = sensor("pitch: 10 um\npeak-quantum-efficiency: 40 %\n");
@@ -77,7 +82,7 @@ fn photon_transfer_gives_back_gain_and_read_noise() {
     let imager = sensor("full-well: 20000\nread-noise: 4\niso: 200\nbits: 14\nblack-level: 500\n");
     let gain = 10_000.0 / (16_383.0 - 500.0);
     for mean in [0.0_f32, 2.0, 50.0, 1000.0, 8000.0] {
-        let raw = imager.raw(&flat(&*imager, mean)).expect("a converter");
+        let raw = raw(&*imager, &flat(&*imager, mean));
         let n = raw.values.len() as f64;
         let values = || raw.values.iter().map(|v| f64::from(*v) - 500.0);
         let got = values().sum::<f64>() / n;
@@ -92,13 +97,13 @@ fn photon_transfer_gives_back_gain_and_read_noise() {
         assert!((said * range * range / wanted - 1.0).abs() < 1e-9, "{mean}: {said}");
     }
     let quiet = sensor("noise: false\n");
-    assert!(quiet.raw(&flat(&*quiet, 1.0)).expect("a converter").noise.is_none());
+    assert!(raw(&*quiet, &flat(&*quiet, 1.0)).noise.is_none());
 }
 
 #[test]
 fn wells_and_numbers_end_somewhere() {
     let quiet = sensor("noise: false\nfull-well: 20000\nblack-level: 600\n");
-    let number = |imager: &dyn Imager, electrons| imager.raw(&flat(imager, electrons)).expect("a converter").values[7];
+    let number = |imager: &dyn Imager, electrons| raw(imager, &flat(imager, electrons)).values[7];
     assert_eq!([number(&*quiet, 0.0), number(&*quiet, 20_000.0), number(&*quiet, 1e6)], [600, 16_383, 16_383]);
     assert_eq!(number(&*quiet, 10_000.0), 600 + 7892);
     // At four times the base setting a quarter of the well is the largest number.
@@ -106,8 +111,8 @@ fn wells_and_numbers_end_somewhere() {
     assert_eq!([number(&*fast, 2500.0), number(&*fast, 5000.0)], [600 + 7892, 16_383]);
     let again = sensor("noise-seed: 5\n");
     let frame = flat(&*again, 100.0);
-    assert_eq!(again.raw(&frame), again.raw(&frame));
-    assert_ne!(again.raw(&frame).expect("raw").values, sensor("noise-seed: 6\n").raw(&frame).expect("raw").values);
+    assert_eq!(raw(&*again, &frame), raw(&*again, &frame));
+    assert_ne!(raw(&*again, &frame).values, raw(&*sensor("noise-seed: 6\n"), &frame).values);
 }
 
 /// The matrix, turned round, gives the colors of the ColorChecker back as the eye sees them: CIEDE2000 below 2 on average
@@ -119,7 +124,7 @@ fn the_matrix_gives_colors_back() {
     let light = find_emission("D65").expect("bundled");
     let color = CameraColor::fit(&channels, &light, &BAND).expect("three colors");
     assert!((color.camera_from_xyz * color.white_xyz - color.neutral).length() < 1e-12);
-    let raw = imager.raw(&flat(&*imager, 1.0)).expect("a converter");
+    let raw = raw(&*imager, &flat(&*imager, 1.0));
     assert_eq!(raw.neutral, color.neutral.to_array());
     assert_eq!(raw.illuminant, 21);
     assert_eq!(raw.colors.iter().map(|c| c.illuminant).collect::<Vec<_>>(), [17, 21]);
@@ -160,7 +165,7 @@ fn the_matrix_gives_colors_back() {
 #[test]
 fn raw_files_carry_matrices_for_two_lights() {
     let imager = sensor("white-balance: FL11\nmodel: Mine\n");
-    let raw = imager.raw(&flat(&*imager, 1.0)).expect("a converter");
+    let raw = raw(&*imager, &flat(&*imager, 1.0));
     assert_eq!((raw.illuminant, raw.unique_model.as_str()), (255, "spectra Mine nikon-d5100"));
     let d50 = [0.3457 / 0.3585, 1.0, 0.2958 / 0.3585];
     let observer = Observer::cie_1931_2deg().on_grid(&BAND);
@@ -204,7 +209,7 @@ fn raw_files_carry_matrices_for_two_lights() {
 fn the_baseline_exposure_is_that_of_a_saturation_based_speed() {
     let stops = |more: &str| {
         let imager = sensor(more);
-        imager.raw(&flat(&*imager, 1.0)).expect("a converter").baseline_exposure_stops
+        raw(&*imager, &flat(&*imager, 1.0)).baseline_exposure_stops
     };
     let even = stops("");
     let channels = channels(&*sensor(""));
@@ -234,7 +239,10 @@ fn white_is_shown_white() {
             values: pixels().map(|p| if own(p) { seen } else { 0.0 }).collect(),
         }
     });
-    let picture = imager.display(&ExposureFrame { size, channels: all.collect() }).expect("a picture");
+    let picture = imager
+        .response()
+        .and_then(|own| own.display(&ExposureFrame { size, channels: all.collect() }))
+        .expect("a picture");
     for rgb in [picture.rgb[0], picture.rgb[20_100]] {
         let spread = rgb.iter().fold(0.0_f32, |a, v| a.max((v / rgb[1] - 1.0).abs()));
         assert!(spread < 0.01 && rgb[1] > 0.5, "{rgb:?}");

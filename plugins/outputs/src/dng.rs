@@ -5,7 +5,7 @@ use serde::Deserialize;
 use spectra_core::params::{Faults, Params};
 use spectra_core::registry::Context;
 use spectra_core::sink::{Out, WriteFault};
-use spectra_core::stage::Imager;
+use spectra_core::stage::{Digitize, Imager};
 use spectra_pictures::write::{RawLens, dng};
 use spectra_scene::{Holds, Output, Scene, Shot};
 
@@ -48,13 +48,17 @@ impl Output for Dng {
 
     fn check(&self, imager: &dyn Imager) -> Result<(), [String; 2]> {
         let hint = "`imager: {kind: sensor, ...}`, or leave `dng` out";
-        if imager.has_converter() { Ok(()) } else { Err([WITHOUT.to_owned(), hint.to_owned()]) }
+        converter(imager).map(drop).ok_or_else(|| [WITHOUT.to_owned(), hint.to_owned()])
     }
 
     fn write(&self, shot: &Shot<'_>, _: usize, out: &mut dyn Out) -> Result<(), WriteFault> {
-        let raw = shot.scene.imager.raw(shot.exposure).ok_or_else(|| WriteFault::Format(WITHOUT.to_owned()))?;
-        dng(out, &raw, &lens(shot.scene))
+        let converter = converter(&*shot.scene.imager).ok_or_else(|| WriteFault::Format(WITHOUT.to_owned()))?;
+        dng(out, &converter.raw(shot.exposure), &lens(shot.scene))
     }
+}
+
+fn converter(imager: &dyn Imager) -> Option<&dyn Digitize> {
+    imager.response()?.digitize()
 }
 
 /// The lens as a raw file names it, focal length and f-number as they are set.

@@ -10,11 +10,13 @@
 mod bend;
 mod kernel;
 mod per_ray;
+mod plane;
 mod sag;
 mod search;
 
 pub use kernel::{Hit, Kernel, KernelShape, Ray, Real};
 pub use per_ray::{Bending, Intersection, PerRay, ScalarShape};
+pub use plane::Plane;
 pub use sag::{FromSag, SagShape};
 pub use search::nearest_crossing;
 

@@ -103,29 +103,6 @@ impl Opening {
     pub fn corner_radius_mm(&self) -> f64 {
         self.corner_mm
     }
-
-    /// Its outline, `per_side` points a blade, mm.
-    #[must_use]
-    pub fn outline_mm(&self, per_side: usize) -> Vec<[f64; 2]> {
-        let half = std::f64::consts::PI / self.sides.len() as f64;
-        let mut points = Vec::with_capacity(self.sides.len() * per_side);
-        for [ex, ey] in &self.sides {
-            for k in 0..per_side {
-                let a = half * (2.0 * k as f64 / per_side as f64 - 1.0);
-                // Along the ray at angle `a` from the side's middle, out to where the side is met.
-                let (s, c) = (math::sin(a), math::cos(a));
-                let r = match self.arc {
-                    Some((center, radius)) => {
-                        let along = center * c;
-                        along + (along * along + radius * radius - center * center).max(0.0).sqrt()
-                    }
-                    None => self.apothem_mm / c,
-                };
-                points.push([r * (c * ex - s * ey), r * (c * ey + s * ex)]);
-            }
-        }
-        points
-    }
 }
 
 #[cfg(test)]
@@ -149,13 +126,6 @@ mod tests {
                 let want = std::f64::consts::PI * 25.0;
                 let got = area(&opening, 8.5);
                 assert!((got / want - 1.0).abs() < 2e-3, "{iris:?}: {got} {want}");
-                let outline = opening.outline_mm(200);
-                let shoelace: f64 = outline
-                    .iter()
-                    .zip(outline.iter().cycle().skip(1))
-                    .map(|([x, y], [u, v])| 0.5 * (x * v - u * y))
-                    .sum();
-                assert!((shoelace / want - 1.0).abs() < 1e-3, "{iris:?}: {shoelace} {want}");
             }
         }
     }

@@ -1,6 +1,7 @@
 //! `include`: a scene on top of others.
 
 use super::merge::merge;
+use crate::resources::read_yaml;
 use crate::yaml;
 use schemars::JsonSchema;
 use spectra_core::params::{Fault, Faults, Node, Params, Value, nearest};
@@ -156,7 +157,7 @@ impl Found {
 
     fn read(&self) -> Result<Node, Faults> {
         match self {
-            Self::Disk(path) => yaml::read(path),
+            Self::Disk(path) => read_yaml(path),
             Self::Bundled(name) => yaml::parse_bytes(&self.name(), spectra_data::get(name).unwrap_or_default()),
         }
     }
@@ -235,7 +236,7 @@ mod tests {
             std::fs::create_dir_all(path.parent().expect("a parent")).expect("a folder");
             std::fs::write(path, text).expect("written");
         }
-        let root = yaml::read(&folder.path().join(files[0].0)).map_err(|faults| faults.to_string())?;
+        let root = read_yaml(&folder.path().join(files[0].0)).map_err(|faults| faults.to_string())?;
         let strip = |faults: Faults| faults.to_string().replace(&folder.path().display().to_string(), "");
         resolve(root).map_err(strip).map(|included| (folder, included))
     }

@@ -8,6 +8,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use spectra_color::{Adaptation, Gamut, RgbSpace};
 use spectra_core::frame::{DisplayPicture, ExposureChannel, ExposureFrame, FrameSize, RawColor, RawFrame, RawNoise};
+use spectra_core::stage::Digitize;
 use spectra_film::display::{White, show_xyz};
 
 /// The electronics.
@@ -58,10 +59,9 @@ pub fn electrons(exposure: &ExposureFrame) -> Vec<f64> {
     sum
 }
 
-impl Converter {
+impl Digitize for Converter {
     /// One exposure: photons arrive as they will, wells fill, the amplifier adds its noise, the converter rounds.
-    #[must_use]
-    pub fn convert(&self, exposure: &ExposureFrame) -> RawFrame {
+    fn raw(&self, exposure: &ExposureFrame) -> RawFrame {
         let one = |(pixel, mean): (usize, &f64)| {
             let (counted, read) = match self.noise {
                 None => (*mean, 0.0),
@@ -105,7 +105,9 @@ impl Converter {
             iso: self.iso,
         }
     }
+}
 
+impl Converter {
     /// Electrons that give the largest number.
     fn largest_electrons(&self) -> f64 {
         self.electrons_per_number * (f64::from(self.white_level) - f64::from(self.black_level))

@@ -20,12 +20,12 @@ use crate::plane::{Met, Plane};
 use glam::DVec3;
 use spectra_core::batch::{Columns, pixel_and_channel, tag_of};
 use spectra_core::cover::CoverStack;
-use spectra_core::frame::{DisplayPicture, ExposureFrame, FrameSize, RawFrame};
+use spectra_core::frame::{DisplayPicture, ExposureFrame, FrameSize};
 use spectra_core::isa::Isa;
 use spectra_core::loss::ALIVE;
 use spectra_core::numbers::seed_of_frame;
 use spectra_core::spectral::Channel;
-use spectra_core::stage::{Imager, Launch, Receive};
+use spectra_core::stage::{Digitize, Imager, Launch, Receive, Response};
 use spectra_core::{Loss, RayBatch};
 
 /// A sensor. Its channels are electrons by the filter that their light passed: each pixel's well holds their sum.
@@ -182,8 +182,8 @@ impl Imager for Sensor {
         self.pixels.plane.size()
     }
 
-    fn channels(&self) -> Option<Vec<Channel>> {
-        Some(self.channels.clone())
+    fn response(&self) -> Option<&dyn Response> {
+        Some(self)
     }
 
     fn receive(&self) -> Option<&dyn Receive> {
@@ -198,24 +198,26 @@ impl Imager for Sensor {
         self.pixels.plane.cover()
     }
 
-    fn display(&self, exposure: &ExposureFrame) -> Option<DisplayPicture> {
-        self.converter.show(&self.converter.convert(exposure))
+    fn set_frame(&mut self, frame: u64) {
+        self.converter.noise = self.converter.noise.map(|seed| seed_of_frame(seed, frame));
+    }
+}
+
+impl Response for Sensor {
+    fn channels(&self) -> Vec<Channel> {
+        self.channels.clone()
     }
 
     fn exposure_time_s(&self) -> Option<f64> {
         Some(self.converter.exposure_time_s)
     }
 
-    fn has_converter(&self) -> bool {
-        true
+    fn display(&self, exposure: &ExposureFrame) -> Option<DisplayPicture> {
+        self.converter.show(&self.converter.raw(exposure))
     }
 
-    fn raw(&self, exposure: &ExposureFrame) -> Option<RawFrame> {
-        Some(self.converter.convert(exposure))
-    }
-
-    fn set_frame(&mut self, frame: u64) {
-        self.converter.noise = self.converter.noise.map(|seed| seed_of_frame(seed, frame));
+    fn digitize(&self) -> Option<&dyn Digitize> {
+        Some(&self.converter)
     }
 }
 

@@ -54,14 +54,21 @@ impl Imager for MyStage {
     fn size(&self) -> FrameSize {
         self.size
     }
-    fn channels(&self) -> Option<Vec<Channel>> {
-        Some(vec![self.irradiance.clone()])
+    fn response(&self) -> Option<&dyn Response> {
+        Some(self)
     }
     fn receive(&self) -> Option<&dyn Receive> {
         Some(self)
     }
     fn launch(&self) -> Option<&dyn Launch> {
         Some(self)
+    }
+}
+
+/// What it records by itself, without a film on it.
+impl Response for MyStage {
+    fn channels(&self) -> Vec<Channel> {
+        vec![self.irradiance.clone()]
     }
     fn display(&self, exposure: &ExposureFrame) -> Option<DisplayPicture> {
         let values = exposure.values("irradiance").ok()?;
