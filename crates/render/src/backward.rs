@@ -203,15 +203,21 @@ impl Backward {
 }
 
 impl Backward {
-    fn tiles(&self) -> u64 {
-        (self.pipeline.scene.imager.size().pixels() as u64).div_ceil(u64::from(PIXELS_PER_UNIT))
+    fn pixels(&self) -> usize {
+        self.pipeline.scene.imager.size().pixels()
     }
 
     /// Tile and samples of a unit.
-    fn piece(&self, samples: &Range<u64>, unit: u64) -> (u64, Range<u64>) {
-        let tiles = self.tiles();
-        let first = samples.start + unit / tiles * u64::from(SAMPLES_PER_PASS);
-        (unit % tiles, first..samples.end.min(first + u64::from(SAMPLES_PER_PASS)))
+    fn piece(samples: &Range<u64>, tiles: &[u32], unit: u64) -> (u32, Range<u64>) {
+        let many = tiles.len() as u64;
+        let first = samples.start + unit / many * u64::from(SAMPLES_PER_PASS);
+        (tiles[(unit % many) as usize], first..samples.end.min(first + u64::from(SAMPLES_PER_PASS)))
+    }
+
+    /// Pixels of a tile.
+    fn pixels_of(&self, tile: u32) -> Range<u32> {
+        let begin = tile * PIXELS_PER_UNIT;
+        begin..(begin + PIXELS_PER_UNIT).min(self.pixels() as u32)
     }
 }
 
@@ -220,22 +226,39 @@ impl Estimator for Backward {
         "backward"
     }
 
-    fn units(&self, samples: &Range<u64>) -> u64 {
-        self.tiles() * (samples.end - samples.start).div_ceil(u64::from(SAMPLES_PER_PASS))
+    fn tiles(&self) -> usize {
+        self.pixels().div_ceil(PIXELS_PER_UNIT as usize)
     }
 
-    fn rays(&self, samples: &Range<u64>) -> u64 {
-        self.pipeline.scene.imager.size().pixels() as u64 * (samples.end - samples.start)
+    fn tile_of(&self, pixel: usize) -> usize {
+        pixel / PIXELS_PER_UNIT as usize
+    }
+
+    fn reseeded(&self, seed: u64) -> Box<dyn Estimator> {
+        let numbers = self.pipeline.numbers(seed);
+        Box::new(Self { pipeline: self.pipeline.clone(), rear: self.rear.clone(), numbers, scale: self.scale })
+    }
+
+    fn units(&self, samples: &Range<u64>, tiles: &[u32]) -> u64 {
+        tiles.len() as u64 * (samples.end - samples.start).div_ceil(u64::from(SAMPLES_PER_PASS))
+    }
+
+    fn rays(&self, samples: &Range<u64>, tiles: &[u32]) -> u64 {
+        let pixels = if tiles.len() == self.tiles() {
+            self.pixels() as u64
+        } else {
+            tiles.iter().map(|tile| self.pixels_of(*tile).len() as u64).sum()
+        };
+        pixels * (samples.end - samples.start)
     }
 
     fn scratch(&self) -> Scratch {
         Scratch(ThreadState::new(&self.pipeline, self.pipeline.scene.render.batch))
     }
 
-    fn run(&self, samples: &Range<u64>, unit: u64, scratch: &mut Scratch, sums: &ExactSums) -> Unit {
-        let (tile, samples) = self.piece(samples, unit);
-        let begin = tile as u32 * PIXELS_PER_UNIT;
-        let end = (begin + PIXELS_PER_UNIT).min(self.pipeline.scene.imager.size().pixels() as u32);
+    fn run(&self, samples: &Range<u64>, tiles: &[u32], unit: u64, scratch: &mut Scratch, sums: &ExactSums) -> Unit {
+        let (tile, samples) = Self::piece(samples, tiles, unit);
+        let Range { start: begin, end } = self.pixels_of(tile);
         let count = (samples.end - samples.start) as u32;
         match self.unit(&mut scratch.0, begin, end, samples.start as u32, count, sums) {
             Ok(()) => Unit { rays: u64::from(end - begin) * u64::from(count), error: None },
@@ -244,15 +267,17 @@ impl Estimator for Backward {
     }
 
     fn weights(&self, done: &Done, _rays: u64, time_s: f64) -> Vec<f64> {
-        let mut of_tile = vec![done.complete(); self.tiles() as usize];
+        let tiles = self.tiles();
+        let mut of_tile: Vec<u64> = (0..tiles as u32).map(|tile| done.samples_of(tile)).collect();
         if let Some((samples, units)) = done.open() {
+            let active = done.active(tiles);
             for unit in units.ranges().flatten() {
-                let (tile, piece) = self.piece(samples, unit);
+                let (tile, piece) = Self::piece(samples, &active, unit);
                 of_tile[tile as usize] += piece.end - piece.start;
             }
         }
-        let weight = |pixel: usize| time_s / self.scale / of_tile[pixel / PIXELS_PER_UNIT as usize].max(1) as f64;
-        (0..self.pipeline.scene.imager.size().pixels()).map(weight).collect()
+        let weight = |pixel: usize| time_s / self.scale / of_tile[self.tile_of(pixel)].max(1) as f64;
+        (0..self.pixels()).map(weight).collect()
     }
 
     fn metered(&self, workers: &dyn Workers) -> Result<Vec<Vec<f64>>, RenderError> {

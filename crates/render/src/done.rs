@@ -3,14 +3,39 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-/// What was done of an estimator's work: all samples below a number, and beyond it a span that some units are done of.
+/// What was done of an estimator's work: all samples below a number, and beyond it a span that some units are done of. Tiles
+/// that were clean before have ended with fewer.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Done {
     complete: u64,
     open: Option<(Range<u64>, Units)>,
+    /// Tiles that go on no more, with their samples.
+    ended: BTreeMap<u32, u64>,
 }
 
 impl Done {
+    /// Complete samples of a tile.
+    #[must_use]
+    pub fn samples_of(&self, tile: u32) -> u64 {
+        self.ended.get(&tile).copied().unwrap_or(self.complete)
+    }
+
+    /// Those of `count` tiles that go on.
+    #[must_use]
+    pub fn active(&self, count: usize) -> Vec<u32> {
+        (0..count as u32).filter(|tile| !self.ended.contains_key(tile)).collect()
+    }
+
+    /// Tiles that go on no more, each with its samples.
+    pub(crate) fn ended(&self) -> &BTreeMap<u32, u64> {
+        &self.ended
+    }
+
+    /// From now on a tile gets no more samples than are complete.
+    pub(crate) fn end_tile(&mut self, tile: u32) {
+        self.ended.entry(tile).or_insert(self.complete);
+    }
+
     /// All samples below this number are in the sums.
     #[must_use]
     pub fn complete(&self) -> u64 {
@@ -47,8 +72,8 @@ impl Done {
         }
     }
 
-    pub(crate) fn of(complete: u64, open: Option<(Range<u64>, Units)>) -> Self {
-        Self { complete, open }
+    pub(crate) fn of(complete: u64, open: Option<(Range<u64>, Units)>, ended: BTreeMap<u32, u64>) -> Self {
+        Self { complete, open, ended }
     }
 }
 

@@ -13,17 +13,26 @@ pub trait Estimator: Send + Sync {
     /// What it is called: `forward`, `backward`.
     fn name(&self) -> &'static str;
 
-    /// Into how many units a span of samples is cut.
-    fn units(&self, samples: &Range<u64>) -> u64;
+    /// Parts of the frame that may have samples of their own number; 1 where light lands anywhere.
+    fn tiles(&self) -> usize;
 
-    /// Rays that a span of samples launches.
-    fn rays(&self, samples: &Range<u64>) -> u64;
+    /// The tile of a pixel.
+    fn tile_of(&self, pixel: usize) -> usize;
+
+    /// The same with numbers of another seed.
+    fn reseeded(&self, seed: u64) -> Box<dyn Estimator>;
+
+    /// Into how many units a span of samples of these tiles is cut.
+    fn units(&self, samples: &Range<u64>, tiles: &[u32]) -> u64;
+
+    /// Rays that a span of samples of these tiles launches.
+    fn rays(&self, samples: &Range<u64>, tiles: &[u32]) -> u64;
 
     /// The columns that one thread works in.
     fn scratch(&self) -> Scratch;
 
-    /// Does one unit of a span.
-    fn run(&self, samples: &Range<u64>, unit: u64, scratch: &mut Scratch, sums: &ExactSums) -> Unit;
+    /// Does one unit of a span of samples of these tiles.
+    fn run(&self, samples: &Range<u64>, tiles: &[u32], unit: u64, scratch: &mut Scratch, sums: &ExactSums) -> Unit;
 
     /// What one unit of each pixel's sums is worth, in W/m2 times the exposure time. `rays` were launched in all.
     fn weights(&self, done: &Done, rays: u64, time_s: f64) -> Vec<f64>;

@@ -253,20 +253,34 @@ impl Estimator for Forward {
         "forward"
     }
 
-    fn units(&self, samples: &Range<u64>) -> u64 {
-        self.rays(samples).div_ceil(PATHS_PER_UNIT)
+    fn tiles(&self) -> usize {
+        1
     }
 
-    fn rays(&self, samples: &Range<u64>) -> u64 {
+    fn tile_of(&self, _pixel: usize) -> usize {
+        0
+    }
+
+    fn reseeded(&self, seed: u64) -> Box<dyn Estimator> {
+        let (numbers, cone) = Self::numbers(&self.pipeline, seed);
+        let (pipeline, pupil) = (self.pipeline.clone(), self.pupil.clone());
+        Box::new(Self { pipeline, pupil, numbers, cone, scale: self.scale, a_sample: self.a_sample })
+    }
+
+    fn units(&self, samples: &Range<u64>, tiles: &[u32]) -> u64 {
+        self.rays(samples, tiles).div_ceil(PATHS_PER_UNIT)
+    }
+
+    fn rays(&self, samples: &Range<u64>, tiles: &[u32]) -> u64 {
         let paths = self.paths(samples);
-        paths.end - paths.start
+        if tiles.is_empty() { 0 } else { paths.end - paths.start }
     }
 
     fn scratch(&self) -> Scratch {
         Scratch(ThreadState::new(&self.pipeline, self.pipeline.scene.render.batch))
     }
 
-    fn run(&self, samples: &Range<u64>, unit: u64, scratch: &mut Scratch, sums: &ExactSums) -> Unit {
+    fn run(&self, samples: &Range<u64>, _tiles: &[u32], unit: u64, scratch: &mut Scratch, sums: &ExactSums) -> Unit {
         let paths = self.paths(samples);
         let first = paths.start + unit * PATHS_PER_UNIT;
         let (rays, error) = self.unit(&mut scratch.0, first, PATHS_PER_UNIT.min(paths.end - first), sums);

@@ -4,6 +4,7 @@ use crate::done::Units;
 use crate::sums::ExactSums;
 use crate::{Done, RenderError, Renderer};
 use spectra_core::{Loss, LossCounts};
+use std::collections::BTreeMap;
 use std::io::{self, Read, Write};
 
 /// What was summed of a scene, by each of its estimators, and what was lost meanwhile.
@@ -13,6 +14,10 @@ pub struct Light {
     pub(crate) detected: u64,
     /// What the meters see, once they have looked: see [`crate::Estimator::metered`].
     pub(crate) metered: Option<Vec<Vec<f64>>>,
+    /// Samples of each half after which it was decided last where to go on.
+    pub(crate) judged: u64,
+    /// Halves that each sample of a pixel is one of: two where noise is asked for.
+    pub(crate) halves: u64,
 }
 
 /// The sums of one estimator.
@@ -26,7 +31,7 @@ impl Light {
     /// Of each pixel, so many samples are in the sums: of several estimators, the fewest.
     #[must_use]
     pub fn samples(&self) -> u64 {
-        self.parts.iter().map(|part| part.done.complete()).min().unwrap_or(0)
+        self.halves * self.parts.iter().map(|part| part.done.complete()).min().unwrap_or(0)
     }
 
     /// Rays that were launched for it.
@@ -37,7 +42,7 @@ impl Light {
 }
 
 /// Begins every file of light; its last digit is the version of the form.
-const MAGIC: &[u8; 16] = b"spectra light 1\n";
+const MAGIC: &[u8; 16] = b"spectra light 2\n";
 
 /// Numbers in a row, little endian, with a check sum behind them (FNV-1a of 64 bits: G. Fowler, L. C. Noll, K.-P. Vo).
 struct Form<T> {
@@ -103,6 +108,7 @@ impl Light {
         for value in metered.iter().flatten() {
             form.number(value.to_bits())?;
         }
+        form.number(self.judged)?;
         form.number(self.parts.len() as u64)?;
         for Part { sums, done, rays } in &self.parts {
             form.number(*rays)?;
@@ -115,6 +121,11 @@ impl Light {
             for range in units {
                 form.number(range.start)?;
                 form.number(range.end)?;
+            }
+            form.number(done.ended().len() as u64)?;
+            for (tile, samples) in done.ended() {
+                form.number(u64::from(*tile))?;
+                form.number(*samples)?;
             }
             form.number(sums.cells() as u64)?;
             for cell in 0..sums.cells() {
@@ -154,6 +165,7 @@ impl Light {
             let mut plane = || (0..pixels).map(|_| form.next().map(f64::from_bits)).collect::<io::Result<Vec<f64>>>();
             light.metered = Some((0..planes).map(|_| plane()).collect::<io::Result<_>>()?);
         }
+        light.judged = form.next()?;
         if form.next()? != light.parts.len() as u64 {
             return Err(other());
         }
@@ -169,7 +181,12 @@ impl Light {
                 }
                 units.insert(begin..end);
             }
-            part.done = Done::of(complete, (samples.start < samples.end).then_some((samples, units)));
+            let mut ended = BTreeMap::new();
+            for _ in 0..form.next()?.min(MANY) {
+                let (tile, samples) = (form.next()?, form.next()?);
+                ended.insert(u32::try_from(tile).map_err(|_| other())?, samples);
+            }
+            part.done = Done::of(complete, (samples.start < samples.end).then_some((samples, units)), ended);
             if form.next()? != part.sums.cells() as u64 {
                 return Err(other());
             }
@@ -193,6 +210,7 @@ impl Renderer {
             Ok(Part { sums, done: Done::default(), rays: 0 })
         };
         let parts = self.estimators().map(part).collect::<Result<_, RenderError>>()?;
-        Ok(Light { parts, losses: LossCounts::default(), detected: 0, metered: None })
+        let halves = self.halves();
+        Ok(Light { parts, losses: LossCounts::default(), detected: 0, metered: None, judged: 0, halves })
     }
 }

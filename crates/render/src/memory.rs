@@ -24,7 +24,8 @@ pub fn memory_needed(scene: &Scene) -> u64 {
         Lights::Auto => scene.source.split().is_some_and(|split| split.pays),
         Lights::Forward => true,
     };
-    let traced = channels * (SUM * (1 + u64::from(apart)) + EXPOSURE);
+    let (halves, kinds) = (1 + u64::from(scene.render.noise.is_some()), 1 + u64::from(apart));
+    let traced = channels * (SUM * halves * kinds + EXPOSURE);
     // Sums are gone by then. Of several films each is developed from a copy of its own channels.
     let picture = if scene.films.is_empty() { SHOWING } else { DEVELOPING + 3 * EXPOSURE * scene.films.len() as u64 };
     let written = channels * EXPOSURE + if is_shown { picture } else { channels * EXPOSURE };

@@ -1,12 +1,14 @@
 //! What a person should know of a picture before believing it: nothing on it, too much on it, too little of it.
 
-use crate::{Renderer, Rendering};
+use crate::{Noise, Renderer, Rendering};
 use spectra_core::frame::ExposureFrame;
 use spectra_core::{Loss, LossCounts, shutter};
 use spectra_scene::{Direction, Scene, SceneFilm};
 
 /// Of the lit pixels, this share beside empty ones tells that rays are too few, and not that the picture is black there.
 const SPARSE: f64 = 0.5;
+/// What is clean almost everywhere is not worth a word.
+const CLEAN: f64 = 0.99;
 
 /// What is to be said of a rendering.
 pub(crate) fn remarks(renderer: &Renderer, rendering: &Rendering) -> Vec<String> {
@@ -20,6 +22,7 @@ pub(crate) fn remarks(renderer: &Renderer, rendering: &Rendering) -> Vec<String>
         return all;
     }
     all.extend(scene.films.iter().filter_map(|film| blind_meter(film, &rendering.exposure)));
+    all.extend(rendering.noise.filter(|_| !rendering.partial).and_then(|noise| still_noisy(scene, &noise)));
     let planes = &rendering.exposure.channels;
     let pixels = rendering.exposure.size.pixels();
     let infinite = (0..pixels).filter(|p| planes.iter().any(|plane| !plane.values[*p].is_finite())).count();
@@ -38,6 +41,27 @@ pub(crate) fn remarks(renderer: &Renderer, rendering: &Rendering) -> Vec<String>
         all.extend(sparse(scene, &rendering.exposure));
     }
     all
+}
+
+/// The most samples did not suffice.
+fn still_noisy(scene: &Scene, noise: &Noise) -> Option<String> {
+    (noise.clean < CLEAN).then(|| {
+        format!(
+            "{:.0} % of the frame has more noise than the {} that was asked for, up to {}: `render.samples` (now {}) was the \
+             limit, more of them go on",
+            100.0 * (1.0 - noise.clean),
+            percent(noise.asked),
+            percent(noise.worst),
+            scene.render.samples
+        )
+    })
+}
+
+/// A share to two digits: `1.4 %`.
+#[must_use]
+pub fn percent(share: f64) -> String {
+    let percent = 100.0 * share;
+    if percent < 10.0 { format!("{percent:.1} %") } else { format!("{percent:.0} %") }
 }
 
 /// A meter that sees no light cannot choose a time.

@@ -5,13 +5,16 @@ use crate::done::Units;
 use crate::estimator::Estimator;
 use crate::forward::Forward;
 use crate::landing::Landing;
+use crate::light::Part;
 use crate::memory::memory_needed;
+use crate::noise::{ends_round, next_round};
 use crate::pilot::PILOT_RAYS;
 use crate::pipeline::{Pipeline, Share, ThreadState};
 use crate::remarks::remarks;
 use crate::sums::{LARGEST_CONTRIBUTION, LARGEST_EXPECTED};
-use crate::{Control, Light, RenderError, Workers};
+use crate::{Control, Light, Noise, RenderError, Workers};
 use spectra_core::frame::{ExposureChannel, ExposureFrame};
+use spectra_core::numbers::mix64;
 use spectra_core::stage::WavelengthDensity;
 use spectra_core::{Isa, LossCounts};
 use spectra_lens::Travel;
@@ -32,6 +35,8 @@ pub struct Rendering {
     pub detected: u64,
     /// Whether it was stopped before its end.
     pub partial: bool,
+    /// How noisy it is, where the scene asks.
+    pub noise: Option<Noise>,
     /// The estimators whose light it is: `forward`, `backward`.
     pub estimators: Vec<&'static str>,
     /// What a person should know before believing the picture, and what to write.
@@ -79,8 +84,7 @@ impl Renderer {
         let pipeline = Arc::new(Pipeline::new(&scene, isa, density)?);
         let share = |share| Arc::new(pipeline.of_share(share));
         let (rest, lights) = (Backward::new(share(Share::Rest))?, Forward::new(share(Share::Lights))?);
-        let estimators: Vec<Box<dyn Estimator>> = vec![Box::new(rest), Box::new(lights)];
-        Ok(Self { scene, pipeline, estimators })
+        Ok(Self { estimators: halved(&scene, vec![Box::new(rest), Box::new(lights)]), scene, pipeline })
     }
 
     /// The same by these estimators, whose light is added, and with a density of wavelengths that is known to fit.
@@ -103,7 +107,7 @@ impl Renderer {
             })
         };
         let estimators = estimators.iter().map(one).collect::<Result<_, _>>()?;
-        Ok(Self { scene, pipeline, estimators })
+        Ok(Self { estimators: halved(&scene, estimators), scene, pipeline })
     }
 
     /// Looks whether a scene can be made ready: what [`Renderer::new`] refuses, as far as that shows without
@@ -175,15 +179,55 @@ impl Renderer {
         if light.metered.is_none() {
             light.metered = Some(self.metered(workers)?);
         }
+        let Some(asked) = self.scene.render.noise else { return self.trace(light, samples, workers, control) };
+        let upto = samples.div_ceil(self.halves());
+        loop {
+            let done = light.parts.iter().map(|part| part.done.complete()).min().unwrap_or(0);
+            if ends_round(done) && light.judged < done {
+                self.end_clean(light, asked);
+                light.judged = done;
+            }
+            if done >= upto || self.is_clean(light) || control.should_stop() {
+                return Ok(());
+            }
+            self.trace(light, next_round(done).min(upto), workers, control)?;
+        }
+    }
+
+    /// Halves of the samples, with numbers of their own: two where noise is asked for.
+    pub(crate) fn halves(&self) -> u64 {
+        1 + u64::from(self.scene.render.noise.is_some())
+    }
+
+    /// Estimators that are not another half of one.
+    fn kinds(&self) -> usize {
+        self.estimators.len() / self.halves() as usize
+    }
+
+    /// Whether the noise asked for is reached everywhere.
+    fn is_clean(&self, light: &Light) -> bool {
+        let ended = |(e, part): (&Box<dyn Estimator>, &Part)| part.done.ended().len() == e.tiles();
+        self.halves() == 2 && self.estimators.iter().zip(&light.parts).all(ended)
+    }
+
+    /// Goes on until each estimator has so many samples.
+    fn trace(
+        &self,
+        light: &mut Light,
+        samples: u64,
+        workers: &dyn Workers,
+        control: &Control,
+    ) -> Result<(), RenderError> {
         let spans: Vec<_> = light.parts.iter_mut().map(|part| part.done.next(samples)).collect();
         // What was begun is one piece of work; beyond it lies another.
         let more = light.parts.iter().any(|part| part.done.end() < samples);
-        let rays = self
-            .estimators
-            .iter()
-            .zip(&light.parts)
-            .map(|(e, part)| e.rays(&(part.done.complete()..samples.max(part.done.end()))));
-        control.expect(rays.sum());
+        let rays = self.estimators.iter().zip(&light.parts).map(|(e, part)| {
+            let tiles = part.done.active(e.tiles());
+            e.rays(&(part.done.complete()..samples.max(part.done.end())), &tiles)
+        });
+        let rays = rays.sum::<u64>();
+        // Of rounds, all before count too.
+        control.expect(if self.halves() == 2 { control.rays() + rays } else { rays });
         for (at, span) in spans.into_iter().enumerate() {
             let Some(span) = span else { continue };
             self.span(at, &span, light, workers, control)?;
@@ -191,7 +235,7 @@ impl Renderer {
                 return Ok(());
             }
         }
-        if more { self.advance(light, samples, workers, control) } else { Ok(()) }
+        if more { self.trace(light, samples, workers, control) } else { Ok(()) }
     }
 
     /// What the meters see of the light of all estimators.
@@ -200,7 +244,7 @@ impl Renderer {
         if self.scene.meter_channels().is_empty() {
             return Ok(all);
         }
-        for estimator in &self.estimators {
+        for estimator in self.estimators().take(self.kinds()) {
             let own = estimator.metered(workers)?;
             if all.is_empty() {
                 all = own;
@@ -221,7 +265,8 @@ impl Renderer {
         control: &Control,
     ) -> Result<(), RenderError> {
         let (estimator, part) = (&*self.estimators[at], &light.parts[at]);
-        let units = estimator.units(samples);
+        let tiles = part.done.active(estimator.tiles());
+        let units = estimator.units(samples, &tiles);
         let known = part.done.open().map(|(_, units)| units.clone()).unwrap_or_default();
         let (next, failed) = (AtomicU64::new(0), AtomicBool::new(false));
         let failure: Mutex<Option<RenderError>> = Mutex::new(None);
@@ -241,7 +286,7 @@ impl Renderer {
                 if known.contains(unit) {
                     continue;
                 }
-                let came = estimator.run(samples, unit, &mut scratch, &part.sums);
+                let came = estimator.run(samples, &tiles, unit, &mut scratch, &part.sums);
                 rays += came.rays;
                 control.launched(came.rays);
                 match came.error {
@@ -279,7 +324,9 @@ impl Renderer {
         let metered = light.metered.as_deref().unwrap_or_default();
         let time_s = scene.exposure_time_s();
         let parts = self.estimators.iter().zip(&light.parts);
-        let weights: Vec<Vec<f64>> = parts.map(|(e, part)| e.weights(&part.done, part.rays, time_s)).collect();
+        // Halves are added up; each stands for all light.
+        let share_s = time_s / self.halves() as f64;
+        let weights: Vec<Vec<f64>> = parts.map(|(e, part)| e.weights(&part.done, part.rays, share_s)).collect();
         let mut planes = Vec::with_capacity(scene.channels.len());
         for (number, channel) in scene.channels.iter().enumerate() {
             let mut values = Vec::new();
@@ -303,8 +350,9 @@ impl Renderer {
             rays: light.rays(),
             losses: light.losses.clone(),
             detected: light.detected,
-            estimators: self.estimators.iter().map(|e| e.name()).collect(),
-            partial: light.samples() < u64::from(scene.render.samples),
+            estimators: self.estimators().take(self.kinds()).map(Estimator::name).collect(),
+            partial: light.samples() < u64::from(scene.render.samples) && !self.is_clean(light),
+            noise: self.noise(light),
             warnings: Vec::new(),
         })
     }
@@ -327,6 +375,10 @@ impl Renderer {
         &self.pipeline.density
     }
 
+    pub(crate) fn recorded(&self) -> &[usize] {
+        &self.pipeline.recorded
+    }
+
     pub(crate) fn estimators(&self) -> impl Iterator<Item = &dyn Estimator> {
         self.estimators.iter().map(|e| &**e)
     }
@@ -339,4 +391,16 @@ impl Renderer {
     pub(crate) fn too_large(&self) -> RenderError {
         RenderError::Memory(memory_needed(&self.scene))
     }
+}
+
+/// Estimators as they are; where noise is asked for twice, with numbers that are scrambled independently.
+fn halved(scene: &Scene, estimators: Vec<Box<dyn Estimator>>) -> Vec<Box<dyn Estimator>> {
+    if scene.render.noise.is_none() {
+        return estimators;
+    }
+    let seed = |half: u64| mix64(scene.render.seed ^ mix64(half + 1));
+    let half = |h: u64| estimators.iter().map(|e| e.reseeded(seed(h))).collect::<Vec<_>>();
+    let mut both = half(0);
+    both.extend(half(1));
+    both
 }

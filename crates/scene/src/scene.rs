@@ -80,8 +80,10 @@ pub struct RenderSettings {
     pub direction: Direction,
     /// Backward: whether what is bright in the source is rendered forward.
     pub lights: Lights,
-    /// Backward: samples a pixel.
+    /// Backward: samples a pixel; where noise is asked for, the most.
     pub samples: u32,
+    /// Noise at which a part of the picture is clean, as a part of the light: where it is reached, no more samples are traced.
+    pub noise: Option<f64>,
     /// Forward: rays in all.
     pub rays: u64,
     /// Whether the scene states them.

@@ -54,6 +54,9 @@ impl Report<'_> {
             "rays": rendering.rays,
             "rays_per_second": self.rays_per_second(),
             "detected": rendering.detected,
+            "noise": rendering.noise.map(|n| json!({
+                "asked": n.asked, "median": n.median, "p95": n.p95, "worst": n.worst, "clean": n.clean,
+            })),
             "lost": self.lost(),
             "seed": settings.seed,
             "direction": match &rendering.estimators[..] {

@@ -50,6 +50,10 @@ pub(crate) fn of(report: &Report<'_>) -> String {
             text.push_str(&format!(", {} {words}", words::percent(many, rendering.rays)));
         }
     }
+    if let Some(noise) = rendering.noise {
+        let (median, p95) = (spectra_render::percent(noise.median), spectra_render::percent(noise.p95));
+        text.push_str(&format!(", noise {median} (95 % of the frame below {p95})"));
+    }
     if rendering.partial {
         text.push_str("\npartial: stopped before all samples were taken");
     }

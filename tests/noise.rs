@@ -1,0 +1,119 @@
+//! Stopping where it is clean: what is promised of the noise, without bias, with the same bits on any number of threads.
+
+use spectra_core::Isa;
+use spectra_core::frame::ExposureFrame;
+use spectra_plugins as _;
+use spectra_render::{Renderer, Rendering};
+use spectra_session::{Alone, Control, Session, Threads, Workers};
+use std::path::Path;
+
+const WIDTH: usize = 48;
+const HEIGHT: usize = 32;
+/// Side of the blocks that are judged.
+const BLOCK: usize = 16;
+
+fn settings(more: &[&str]) -> Vec<String> {
+    let fixed = [format!("imager.resolution=[{WIDTH}, {HEIGHT}]"), "render.noise=3 %".to_owned()];
+    fixed.into_iter().chain(more.iter().map(|s| (*s).to_owned())).collect()
+}
+
+fn path(scene: &str) -> std::path::PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/{scene}.yaml"))
+}
+
+fn render(scene: &str, more: &[&str], workers: &dyn Workers) -> Rendering {
+    let scene = spectra_scene::load(&path(scene), &settings(more)).unwrap_or_else(|faults| panic!("{faults}"));
+    Renderer::new(scene, Isa::detect()).expect("ready").run(workers, &Control::new()).expect("rendered")
+}
+
+fn bits(exposure: &ExposureFrame) -> Vec<u32> {
+    exposure.channels.iter().flat_map(|c| c.values.iter().map(|v| v.to_bits())).collect()
+}
+
+/// Mean and variance between seeds of each pixel, luminance or the only layer.
+fn over_seeds(scene: &str, more: &[&str], seeds: u64) -> Vec<(f64, f64)> {
+    let mut sums = vec![(0.0, 0.0); WIDTH * HEIGHT];
+    for seed in 1..=seeds {
+        let seed = format!("render.seed={seed}");
+        let exposure = render(scene, &[more, &[&seed]].concat(), &Threads(2)).exposure;
+        let plane = exposure.channels.iter().find(|c| c.name == "Y").unwrap_or(&exposure.channels[0]);
+        for ((sum, square), value) in sums.iter_mut().zip(&plane.values) {
+            *sum += f64::from(*value);
+            *square += f64::from(*value) * f64::from(*value);
+        }
+    }
+    let n = seeds as f64;
+    sums.into_iter().map(|(sum, square)| (sum / n, (square - sum * sum / n) / (n - 1.0))).collect()
+}
+
+/// The noise between seeds is what was asked for: at most 5 % of the blocks end above 1.2 times of it, and none is much cleaner
+/// than a round makes it. The mean of many pictures that stopped is the mean of pictures that did not: within 4 standard errors.
+#[test]
+fn noise_is_what_was_asked_for() {
+    let set = ["render.batch=256", "lens.f-number=2"];
+    let seeds = 40;
+    let stopped = over_seeds("biotar-ortho", &set, seeds);
+    let (mut above, mut blocks) = (0, 0);
+    for row in 0..HEIGHT / BLOCK {
+        for column in 0..WIDTH / BLOCK {
+            let pixels: Vec<usize> =
+                (0..BLOCK * BLOCK).map(|i| (row * BLOCK + i / BLOCK) * WIDTH + column * BLOCK + i % BLOCK).collect();
+            let mean = pixels.iter().map(|p| stopped[*p].0).sum::<f64>() / pixels.len() as f64;
+            let variance = pixels.iter().map(|p| stopped[*p].1).sum::<f64>() / pixels.len() as f64;
+            let noise = variance.sqrt() / mean;
+            assert!(noise > 0.01 && noise < 0.045, "block {row}, {column}: {noise}");
+            above += usize::from(noise > 1.2 * 0.03);
+            blocks += 1;
+        }
+    }
+    assert!(above * 20 <= blocks, "{above} of {blocks} blocks");
+    let all = over_seeds("biotar-ortho", &[&set[..], &["render.noise=null", "render.samples=256"]].concat(), seeds);
+    let mean = |pixels: &[(f64, f64)]| {
+        let n = pixels.len() as f64;
+        let variance = pixels.iter().map(|p| p.1).sum::<f64>() / (n * n * seeds as f64);
+        (pixels.iter().map(|p| p.0).sum::<f64>() / n, variance)
+    };
+    let ((a, va), (b, vb)) = (mean(&stopped), mean(&all));
+    assert!((a - b).abs() < 4.0 * (va + vb).sqrt(), "{a} {b} +- {}", (va + vb).sqrt());
+}
+
+/// Parts of a picture end after different numbers of samples, and what was reached is said.
+#[test]
+fn dark_and_busy_parts_get_more_samples() {
+    let picture = render("biotar-ortho", &["render.noise=2 %", "render.samples=4096"], &Threads(2));
+    let noise = picture.noise.expect("asked for");
+    assert!(!picture.partial && noise.worst <= noise.asked && noise.clean == 1.0, "{noise:?}");
+    // All blocks have 64 samples at least; if all had as many as the worst, it would be a multiple of the frame.
+    let frame = (WIDTH * HEIGHT) as u64;
+    assert!(picture.rays > 64 * frame && picture.rays % (64 * frame) != 0, "{}", picture.rays);
+    // More are not allowed: it says so.
+    let few = render("biotar-ortho", &["render.samples=64"], &Threads(2));
+    assert!(few.rays == 64 * frame && few.noise.is_some_and(|noise| noise.clean < 0.99));
+    assert!(few.warnings.iter().any(|warning| warning.contains("`render.samples` (now 64)")), "{:?}", few.warnings);
+}
+
+/// The same bits on any number of threads and batch sizes; stopped in between, saved and taken up again.
+#[test]
+fn the_same_bits_however_the_work_is_done() {
+    for scene in ["biotar-ortho", "gray-card"] {
+        let whole = render(scene, &["render.samples=1024"], &Threads(3));
+        let alone = render(scene, &["render.samples=1024", "render.batch=100"], &Alone);
+        assert_eq!(bits(&whole.exposure), bits(&alone.exposure), "{scene}");
+        let open =
+            || Session::open(&path(scene), &settings(&["render.samples=1024"]), Isa::detect()).expect("a session");
+        let mut first = open();
+        first.advance(100, &Threads(2), &Control::new()).expect("rendered");
+        let mut file = Vec::new();
+        first.save(&mut file).expect("saved");
+        let mut second = open();
+        second.load(&mut file.as_slice()).expect("taken up");
+        second.advance(1024, &Threads(2), &Control::new()).expect("rendered");
+        assert_eq!(bits(&second.look().expect("memory").exposure), bits(&whole.exposure), "{scene}: taken up");
+    }
+}
+
+#[test]
+fn strata_cannot_stop() {
+    let faults = spectra_scene::load(&path("gray-card"), &settings(&["render.numbers=stratified"]));
+    assert!(faults.map(drop).expect_err("refused").to_string().contains("`stratified` numbers are laid out"));
+}
