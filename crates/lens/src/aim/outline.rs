@@ -12,10 +12,10 @@ use spectra_core::isa::{Isa, Vectorized};
 use spectra_core::{Loss, RayBatch};
 
 /// Share of the rays that go to the outline itself.
-const INSIDE: f64 = 0.996;
+const INSIDE: f64 = 0.9969;
 /// The ring reaches this much farther than the outline, in proportion.
-pub(super) const RING: f64 = 0.03;
-/// How much of the squared radius a number of the ring stands for. To that of the outline, 1 / `INSIDE`, it is as 15.2 to 1.
+pub(super) const RING: f64 = 0.025;
+/// How much of the squared radius a number of the ring stands for. To that of the outline, 1 / `INSIDE`, it is as 16.3 to 1.
 const STRETCH: f64 = ((1.0 + RING) * (1.0 + RING) - 1.0) / (1.0 - INSIDE);
 /// Corners of one outline, the first one twice, and how it moves and grows over its zones of wavelength and depth.
 pub(super) const STRIDE: usize = CORNERS + 4;

@@ -74,7 +74,7 @@ const COLORS: usize = 4;
 const COLORS_STOPPED: usize = 4;
 const COLORS_WITHOUT_AXIS: usize = 2;
 /// Room around what the edges of a zone see.
-const MARGIN: f64 = 0.0008;
+const MARGIN: f64 = 0.0006;
 /// Random rays beyond each outline, how far beyond, and how often they are sent while one passes beyond the ring.
 const HOLD_CHECKS: usize = 256;
 const HOLD_REACH: f64 = 0.4;
