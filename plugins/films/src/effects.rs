@@ -6,10 +6,12 @@ use serde::Deserialize;
 use spectra_core::frame::FrameSize;
 use spectra_core::numbers::seed_of_frame;
 use spectra_core::params::{Faults, Length, Params, Positive};
+use spectra_film::adjacency::{Adjacency, Edges};
+use spectra_film::emulsion::Emulsion;
 use spectra_film::grain::Grain;
 use spectra_film::halation::{Halation, HalationBase};
 use spectra_film::raster::Raster;
-use spectra_film::scatter::{Mtf, Scatter};
+use spectra_film::scatter::{Modulation, Mtf, Scatter};
 use spectra_film::stock::{Densitometry, Stock};
 
 /// `halation` as written in a scene; see [`HalationBase`].
@@ -32,8 +34,10 @@ pub struct HalationParams {
 /// The effects of one film.
 #[derive(Clone, Debug)]
 pub(crate) struct Effects {
-    /// Of each layer, where it is known.
+    /// How each layer spreads light, where it is known.
     mtf: Vec<Option<Mtf>>,
+    /// How the edges of each layer are developed, where they stand out.
+    adjacency: Vec<Option<Adjacency>>,
     halation: Option<HalationBase>,
     /// RMS granularity at 48 um and the density 1.
     rms: Option<f64>,
@@ -55,12 +59,17 @@ impl Effects {
             let text = format!("{} has no modulation transfer in its file", stock.name);
             faults.push(params.fault("scatter", text).hint("leave it out, or give the stock's layers an `mtf`"));
         }
-        let scatters = p.scatter.unwrap_or(true);
-        let mut mtf = Vec::new();
+        let (mut mtf, mut adjacency) = (Vec::new(), Vec::new());
         for layer in &stock.layers {
-            let measured = (scatters && !layer.mtf.is_empty())
-                .then(|| Mtf::measured(&layer.mtf).map_err(|e| params.fault("stock", format!("{}: {e}", stock.name))));
-            mtf.push(measured.and_then(|m| faults.take(m)));
+            let unfit = |e| params.fault("stock", format!("{}: {e}", stock.name));
+            let parts = (!layer.mtf.is_empty()).then(|| Modulation::measured(&layer.mtf).map_err(unfit));
+            let parts = parts.and_then(|m| faults.take(m));
+            adjacency.push(parts.as_ref().and_then(|m| m.adjacency).filter(|_| p.adjacency.unwrap_or(true)));
+            mtf.push(parts.map(|m| m.mtf).filter(|_| p.scatter.unwrap_or(true)));
+        }
+        if p.adjacency == Some(true) && adjacency.iter().all(Option::is_none) {
+            let text = format!("{} has no modulation transfer above 1 in its file", stock.name);
+            faults.push(params.fault("adjacency", text).hint("leave it out, or give the stock's layers an `mtf`"));
         }
         let grainy = stock.granularity.filter(|_| stock.densitometry == Densitometry::Visual);
         if p.grain == Some(true) && grainy.is_none() {
@@ -76,7 +85,7 @@ impl Effects {
             faults.push(params.fault("stock", format!("{}: {error}", stock.name)));
         }
         let halation = halation(p, params, stock, &mut faults);
-        faults.into_result(Self { mtf, halation, rms, piece: p.grain_seed, seed: p.grain_seed })
+        faults.into_result(Self { mtf, adjacency, halation, rms, piece: p.grain_seed, seed: p.grain_seed })
     }
 
     /// Other grains for each frame of an animation.
@@ -87,10 +96,13 @@ impl Effects {
     /// Whether pixels of a frame are square, where anything on the film needs that.
     pub(crate) fn check_frame(&self, size: &FrameSize) -> Result<(), [String; 2]> {
         let [across, down] = pixel_mm(size);
-        let any = self.halation.is_some() || self.rms.is_some() || self.mtf.iter().any(Option::is_some);
+        let edges = self.adjacency.iter().any(Option::is_some);
+        let any = edges || self.halation.is_some() || self.rms.is_some() || self.mtf.iter().any(Option::is_some);
         if any && (across / down - 1.0).abs() > 0.01 {
-            let text = format!("scatter, halation and grain need square pixels, not {across:.5} x {down:.5} mm");
-            let hint = "a resolution of the format's shape, or `scatter: false, grain: false` for the film";
+            let text =
+                format!("scatter, halation, adjacency and grain need square pixels, not {across:.5} x {down:.5} mm");
+            let hint =
+                "a resolution of the format's shape, or `scatter: false, adjacency: false, grain: false` for the film";
             return Err([text, hint.to_owned()]);
         }
         Ok(())
@@ -112,6 +124,14 @@ impl Effects {
             Halation::new(base, raster).map_err(|e| e.to_string())?.apply(plane);
         }
         Ok(())
+    }
+
+    /// Develops the edges of a layer.
+    pub(crate) fn edges(&self, layer: usize, plane: &mut [f32], emulsion: &Emulsion, raster: &Raster) {
+        if let Some(adjacency) = &self.adjacency[layer] {
+            let unexposed = emulsion.amount(layer, f64::NEG_INFINITY);
+            Edges::new(adjacency, raster).apply(plane, unexposed, emulsion.range(layer));
+        }
     }
 
     /// Turns the densities of a layer into those of its grains; `clear` is that of base and fog, which has none.

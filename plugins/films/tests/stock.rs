@@ -88,6 +88,7 @@ fn parameters_are_checked() {
         ("stock: ilford-ortho-plus\nmetering: average\nlight: D5500\n", "did you mean `D55`?"),
         ("stock: ilford-ortho-plus\nmetering: average\ngrain: true\n", "granularity"),
         ("stock: ilford-ortho-plus\nmetering: average\nscatter: true\n", "modulation"),
+        ("stock: kodak-ektachrome-100d\nmetering: average\nadjacency: true\n", "above 1"),
         ("stock: kodak-tri-x-400\nmetering: average\nhalation: {entering: 0.2, transmittance: 0.5}\n", "thickness"),
         (
             "stock: ilford-ortho-plus\nmetering: average\nhalation: {entering: 20, transmittance: 0.5, index: 1.48}\n",
@@ -170,7 +171,8 @@ fn a_metered_frame_gets_the_meters_exposure() {
 #[test]
 fn a_step_wedge_through_the_stage_recovers_the_curve() {
     for name in ["kodak-tri-x-400", "kodak-double-x-5222", "ilford-ortho-plus"] {
-        let film = build(&format!("stock: {name}\nexposure: 1/60 s\nscatter: false\ngrain: false\n")).expect("sound");
+        let plain = "scatter: false\nadjacency: false\ngrain: false\n";
+        let film = build(&format!("stock: {name}\nexposure: 1/60 s\n{plain}")).expect("sound");
         let layer = &film.stock().layers[0];
         let steps: Vec<f32> = (0..40).map(|i| 1e-4 * 1.3_f32.powi(i)).collect();
         let developed = film.developed(&frame_of(&[&layer.name], std::slice::from_ref(&steps))).expect("complete");
