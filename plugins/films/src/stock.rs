@@ -1,6 +1,6 @@
 //! `film: stock`, film from a data file: exposed, developed, and printed, scanned or projected.
 
-use crate::effects::{Effects, HalationParams};
+use crate::effects::{Assumed, Effects, HalationSetting};
 use crate::metering::{METER, Meter, Metering, SpotParams, overruled, recorded_time_s};
 use crate::view::{PaperParams, Picture, View, seen};
 use schemars::JsonSchema;
@@ -96,10 +96,13 @@ pub struct StockParams {
     pub scatter: Option<bool>,
     /// Whether edges stand out in development, if the MTF in the stock's file exceeds 1; `true` if left out.
     pub adjacency: Option<bool>,
-    /// Reflection from the back of the film; as in the stock's file if left out.
-    pub halation: Option<HalationParams>,
+    /// Reflection from the back of the film, or `off`; as in the stock's file if left out.
+    pub halation: Option<HalationSetting>,
     /// Whether there is grain, if the stock's file states its granularity; `true` if left out.
     pub grain: Option<bool>,
+    /// Whether effects count whose figures are assumed in the stock's file, rather than measured or stated: `on` or `off`.
+    #[serde(default)]
+    pub assumed: Assumed,
     /// Seed of the grain, 0 or more.
     #[serde(default)]
     pub grain_seed: u64,
@@ -322,11 +325,19 @@ impl Film for StockFilm {
 
     fn describe(&self) -> String {
         let named = |l: &spectra_film::stock::Layer| l.development(&self.development).is_some_and(|d| d.assumed);
-        let assumed = self.stock.layers.iter().any(named);
-        let curve = if assumed { " (curve assumed)" } else { "" };
+        let mut assumed = Vec::new();
+        if self.stock.layers.iter().any(named) {
+            assumed.push("curve");
+        }
+        assumed.extend(self.effects.assumed());
+        let assumed = match &assumed[..] {
+            [] => String::new(),
+            [one] => format!(" ({one} assumed)"),
+            [most @ .., last] => format!(" ({} and {last} assumed)", most.join(", ")),
+        };
         let iso = self.stock.speed_text().map_or(String::new(), |speed| format!(", {speed}"));
         format!(
-            "{}{iso}, {} development{curve}, {}, {}",
+            "{}{iso}, {} development{assumed}, {}, {}",
             self.stock.name,
             self.development,
             self.meter.words(self.exposure_time_s),

@@ -63,7 +63,7 @@ fn response(film: &StockFilm, layer: usize, pitch_mm: f64, frequencies: &[f64]) 
 #[test]
 fn edges_are_as_sharp_as_the_sheet_says() {
     for name in ["kodak-tri-x-400", "kodak-double-x-5222"] {
-        let film = build(&format!("stock: {name}\nexposure: 1/60 s\ngrain: false\n"));
+        let film = build(&format!("stock: {name}\nexposure: 1/60 s\ngrain: false\nhalation: off\n"));
         let points: Vec<[f64; 2]> =
             film.stock().layers[0].mtf.iter().copied().filter(|p| (9.0..65.0).contains(&p[0])).collect();
         let frequencies: Vec<f64> = points.iter().map(|p| p[0]).collect();
@@ -83,7 +83,7 @@ fn edges_are_as_sharp_as_the_sheet_says() {
 fn edges_overshoot_and_even_areas_do_not() {
     let gray = metered_exposure_lx_s(400.0);
     let row = |yaml: &str| {
-        let film = build(&format!("stock: kodak-tri-x-400\nexposure: 1/60 s\ngrain: false\n{yaml}"));
+        let film = build(&format!("stock: kodak-tri-x-400\nexposure: 1/60 s\ngrain: false\nhalation: off\n{yaml}"));
         let edge = frame(&film, [400, 200], 0.004, |x, _| gray * if x < 200 { 4.0 } else { 0.25 });
         film.developed(&edge).expect("complete")[0][100 * 400..101 * 400].to_vec()
     };

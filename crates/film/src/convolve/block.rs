@@ -84,9 +84,14 @@ impl Transform {
 
     /// The kernel's spectrum over the number of points, column chunk by column chunk.
     pub(super) fn spectrum(&self, kernel: &Kernel, isa: Isa) -> Vec<f64> {
+        let scale = 1.0 / (self.width() * self.height()) as f64;
+        self.spectrum_with(kernel, &mut Scratch::new(self), scale, isa)
+    }
+
+    /// The kernel's spectrum times `scale`; a kernel as wide as the block wraps around once.
+    pub(super) fn spectrum_with(&self, kernel: &Kernel, scratch: &mut Scratch, scale: f64, isa: Isa) -> Vec<f64> {
         let (width, height) = (self.width(), self.height());
-        let scale = 1.0 / (width * height) as f64;
-        let scratch = &mut Scratch::new(self);
+        scratch.block.iter_mut().for_each(|part| part.fill(0.0));
         // The distance to the origin, around the block.
         let away = |k: usize, length: usize| k.min(length - k);
         for j in 0..height {
@@ -101,6 +106,16 @@ impl Transform {
         isa.run(Forward { transform: self, scratch });
         isa.run(Spectrum { transform: self, scratch, scale, out: &mut spectrum });
         spectrum
+    }
+
+    /// Order of the frequencies across.
+    pub(super) fn order(&self) -> Vec<usize> {
+        self.across.order()
+    }
+
+    /// Where a spectrum holds the place `u` across and `v` down.
+    pub(super) fn at(&self, u: usize, v: usize) -> usize {
+        (v / LANES * self.width() + u) * LANES + v % LANES
     }
 
     /// Convolves the block.

@@ -116,7 +116,6 @@ impl Fft {
     }
 
     /// Which frequency, in cycles per `length`, each place of [`Fft::forward`]'s result holds.
-    #[cfg(test)]
     pub(super) fn order(&self) -> Vec<usize> {
         let mut order = vec![0];
         let mut stride = 1;

@@ -7,8 +7,10 @@
 
 mod block;
 mod fft;
+mod grid;
 mod kernel;
 
+pub(crate) use grid::Grid;
 pub(crate) use kernel::Kernel;
 
 use block::{Scratch, Transform};
