@@ -344,6 +344,23 @@ def color_print(folder):
     )
 
 
+def color_paper(folder):
+    data = load(folder, "print_film.kodak_endura_premier", "KODAK_ENDURA_PREMIER")
+    stock(
+        "kodak-endura-premier",
+        name="Kodak Professional Endura Premier Paper",
+        maker="Eastman Kodak",
+        source=f"Kodak Professional Endura Premier Paper, technical data, {CARRIED}",
+        remark="Color paper (process RA-4) for prints of still negatives. The exposures of its curves are relative to the "
+        "printing light, which is set for each negative; no speed is stated. Densities of reflection are taken as the sums of its "
+        "dyes' densities over the minimum, as the sheet's own spectra of them are. Its curves are as digitized, made for other "
+        "negatives than 5207, which has reddish shadows on it.",
+        head=["", "process: print", "medium: paper", "density: status-a",
+              "reference-illuminant: blackbody:3200", flat_minimum(*minima(data))],
+        layers=color_layers(data, rising=True, kind="paper"),
+    )
+
+
 def bw_print(folder):
     data = load(folder, "bw_print_film.kodak_2302", "KODAK_2302")
     module = "bw_print_film.kodak_2302"
@@ -600,6 +617,7 @@ def main():
     double_x(folder)
     color_negative(folder)
     color_print(folder)
+    color_paper(folder)
     bw_print(folder)
     reversal(folder)
     three_strip(folder, plates(folder))

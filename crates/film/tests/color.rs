@@ -245,6 +245,28 @@ fn a_mid_gray_is_timed_to_the_aim_densities_of_the_print_stock() {
     }
 }
 
+/// A color negative on RA-4 paper: mid gray as the meter has it, whites white, colors that lead. Its curves are the sheet's, made
+/// for other negatives: unlike those of 2383 they are not mended, and from 2 stops
+/// under mid gray to 2 over it a gray scale strays by up to 6 from neutral (reddish shadows).
+#[test]
+fn a_color_negative_prints_on_color_paper() {
+    let (s, film) = usual("kodak-vision3-250d-5207");
+    let (paper, printed) = usual("kodak-endura-premier");
+    let (gray, lamp) = (10.0 / 250.0, paper.reference.clone());
+    let positive = Positive::printed(&film, gray, &paper, printed, &lamp, &d55(), PictureWhite::Film).expect("prints");
+    let chain = Chain { iso: 250.0, film, channels: s.channels(&BAND).expect("seen"), positive };
+    for half in -8..=8 {
+        let stops = f64::from(half) / 2.0;
+        let [l, a, b] = chain.gray(stops);
+        println!("{stops:+.1}: {l:.1} {a:+.2} {b:+.2}");
+        assert!(stops.abs() > 2.0 || (a.abs() <= 6.5 && b.abs() <= 6.5), "{stops:+}: {l:.1} {a:+.2} {b:+.2}");
+    }
+    assert!((chain.gray(0.0)[0] - 49.5).abs() < 0.1 && chain.gray(3.0)[0] > 95.0);
+    let mean = mean_chroma(&chain);
+    println!("mean {mean:.3}");
+    assert!((0.9..=1.4).contains(&mean), "{mean}");
+}
+
 /// Inhibition leaves a neutral subject alone and takes pure colors apart; whole frames get what single places get.
 #[test]
 fn layers_that_inhibit_each_other_leave_a_gray_scale_alone() {

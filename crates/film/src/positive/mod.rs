@@ -13,7 +13,7 @@ pub use viewing::{DARK_TO_AVERAGE, PictureWhite, Viewing, on_band};
 
 use crate::deposit::Deposit;
 use crate::emulsion::Emulsion;
-use crate::stock::{Process, Stock};
+use crate::stock::{Medium, Process, Stock};
 use frame::Tables;
 use printing::Printing;
 use scan::Scan;
@@ -85,7 +85,7 @@ impl Positive {
 
     /// Printed on `print` (developed as `printed`) by a printer whose lamp has the spectrum `lamp`, balanced for a mid gray
     /// subject that left `gray_lx_s` on the negative (to the aim densities of the print stock, where it has such), and
-    /// projected in the dark by `light`.
+    /// looked at in `light`: projected in the dark, or on paper in a lit room.
     ///
     /// # Errors
     /// [`PositiveError`].
@@ -98,7 +98,7 @@ impl Positive {
         light: &Emission,
         white: PictureWhite,
     ) -> Result<Self, PositiveError> {
-        let viewing = Viewing::by(light).ok_or(PositiveError::DarkLight)?.in_the_dark();
+        let viewing = seen(print, light)?;
         let gray = film.neutral(spectra_core::math::log10(gray_lx_s));
         let unexposed = film.neutral(f64::NEG_INFINITY);
         let printing =
@@ -123,7 +123,7 @@ impl Positive {
         if film.layers() != 3 || printed.layers() != 3 {
             return Err(PositiveError::NoPrintStock { stock: print.name.clone() });
         }
-        let viewing = Viewing::by(light).ok_or(PositiveError::DarkLight)?.in_the_dark();
+        let viewing = seen(print, light)?;
         let gray: Vec<f64> =
             gray_lx_s.iter().enumerate().map(|(i, h)| film.amount(i, spectra_core::math::log10(*h))).collect();
         let unexposed = film.neutral(f64::NEG_INFINITY);
@@ -195,4 +195,13 @@ impl Positive {
     pub fn picture(&self, planes: &[&[f32]]) -> Vec<[f32; 3]> {
         self.tables.picture(planes, &self.way)
     }
+}
+
+/// How a print is looked at.
+fn seen(print: &Stock, light: &Emission) -> Result<Viewing, PositiveError> {
+    let viewing = Viewing::by(light).ok_or(PositiveError::DarkLight)?;
+    Ok(match print.medium {
+        Medium::Film => viewing.in_the_dark(),
+        Medium::Paper => viewing,
+    })
 }

@@ -4,6 +4,17 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{Fault, Faults, Params};
 
+/// What a print stock is coated on, and so how it is looked at.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+pub enum Medium {
+    /// A transparent base: projected in the dark.
+    #[default]
+    Film,
+    /// Paper: looked at in a lit room. Densities are of reflection.
+    Paper,
+}
+
 /// Inhibition of one layer's development by what develops in the others.
 ///
 /// With the densities of a neutral subject in all layers nothing changes: their effect on each other is in the sheet's curves

@@ -1,6 +1,6 @@
 //! A stock's YAML file: its keys, and the checks that need more than a type.
 
-use super::color::{AimDensityFile, InterlayerFile};
+use super::color::{AimDensityFile, InterlayerFile, Medium};
 use super::like::inherited;
 use super::material::{DyeFile, MinimumDensityFile, densitometry};
 use super::reciprocity::ReciprocityFile;
@@ -75,6 +75,9 @@ struct StockFile {
     /// a negative, which has no speed).
     #[serde(default)]
     process: ProcessFile,
+    /// What a print stock is coated on: `film` (the default; projected in the dark) or `paper` (looked at in a lit room).
+    #[serde(default)]
+    medium: Medium,
     /// How its densities were measured: `visual` (the default; silver), `status-a` (positives with dyes) or `status-m`
     /// (negatives with dyes).
     #[serde(default)]
@@ -272,6 +275,10 @@ pub(super) fn read(params: &Params, resources: &dyn Resources) -> Result<Stock, 
         let fault = params.fault("meter", "a meter with the film's own sensitivity needs a film with one layer");
         faults.push(fault.hint("`meter: photopic`, or leave it out"));
     }
+    if file.medium == Medium::Paper && process != Process::Print {
+        let fault = params.fault("medium", "paper is what negatives are printed on");
+        faults.push(fault.hint("`process: print`, or leave `medium` out"));
+    }
     let layers = layers(params, &file, reference.as_ref(), resources, &mut faults);
     faults.extend(unlike_developments(params, &file.layers));
     let densitometry = faults.take(densitometry(params, file.density, file.layers.len()));
@@ -317,6 +324,7 @@ pub(super) fn read(params: &Params, resources: &dyn Resources) -> Result<Stock, 
         licence: file.licence,
         remark: file.remark,
         process,
+        medium: file.medium,
         densitometry,
         year: file.year,
         iso: file.iso.map(|v| v.get()),

@@ -9,7 +9,7 @@ mod sensitivity;
 mod speed;
 mod structure;
 
-pub use color::{AimDensity, Interlayer};
+pub use color::{AimDensity, Interlayer, Medium};
 pub use material::{Densitometry, Dye, MinimumDensity, SpectralDensity};
 pub use reciprocity::Reciprocity;
 pub use sensitivity::{Reading, SensitivityError, SpectralSensitivity};
@@ -52,6 +52,8 @@ pub struct Stock {
     pub remark: Option<String>,
     /// What it is for.
     pub process: Process,
+    /// What a print stock is coated on.
+    pub medium: Medium,
     /// How the densities of its curves were measured.
     pub densitometry: Densitometry,
     /// Year in which it was first sold, where known.
