@@ -24,7 +24,7 @@ fn save(folder: &Path, name: &str, width: usize, height: usize, value: impl Fn(u
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let arguments: Vec<String> = std::env::args().collect();
     let folder = Path::new(arguments.get(1).map_or(".", String::as_str));
-    let grain = Grain::calibrated(17.0, 1, 0)?;
+    let grain = Grain::calibrated(17.0, 35.0, 1, 0)?;
     for pitch_um in [0.25, 1.0, 3.0, 6.0, 7.3, 24.0] {
         // An even gray and steps of density, at this zoom.
         let (width, height) = (512, 384);
@@ -69,7 +69,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         timed("prepare", &mut || {
             scatter = Mtf::frieser(0.0147).and_then(|mtf| Scatter::new(&mtf, &raster)).ok();
             halation = Halation::new(&BASE, &raster).ok();
-            grain = Grain::calibrated(17.0, 1, layer as u32).ok();
+            grain = Grain::calibrated(17.0, 35.0, 1, layer as u32).ok();
         });
         let (Some(scatter), Some(halation), Some(grain)) = (scatter, halation, grain) else {
             return Err("an effect has bad values".into());

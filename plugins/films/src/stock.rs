@@ -150,7 +150,7 @@ impl StockFilm {
         let (Some((emulsion, development)), Some(meter), Some(mut channels)) = (developed, meter, channels) else {
             return Err(faults);
         };
-        let effects = faults.take(Effects::new(&p, params, &stock));
+        let effects = faults.take(Effects::new(&p, params, &stock, &emulsion));
         let Some(effects) = faults.into_result(effects)? else { return Err(Faults::new()) };
         let seen = seen(&p, params, context.resources, &stock, &emulsion, metered_exposure_lx_s(speed))?;
         let own = channels.first().filter(|_| stock.meter == MeterResponse::Film).cloned();
@@ -223,8 +223,7 @@ impl StockFilm {
             self.effects.spread(i, &mut plane, &raster)?;
             self.emulsion.develop(i, &mut plane, factor * effect);
             self.effects.edges(i, &mut plane, &self.emulsion, &raster);
-            let clear = self.emulsion.amount(i, f64::NEG_INFINITY);
-            self.effects.grain(i, &mut plane, clear as f32, &raster)?;
+            self.effects.grain(i, &mut plane, self.emulsion.range(i).0, &raster)?;
             Ok(plane)
         });
         layers.collect()

@@ -100,7 +100,7 @@ fn to_json(stock: &Stock) -> Value {
             json!({ "assumed": m.assumed, "remark": m.remark, "wavelength_nm_and_density": m.density.points() })
         }),
         "granularity": stock.granularity.map(|g| {
-            json!({ "rms": g.rms, "aperture_mm": g.aperture_mm, "density": g.density })
+            json!({ "rms": g.rms, "aperture_mm": g.aperture_mm, "density": g.density, "assumed": g.assumed })
         }),
         "halation": stock.halation.as_ref().map(|h| {
             json!({ "scattered": h.scattered, "backing": h.backing, "reflected": h.reflected, "layers": h.layers,
@@ -207,7 +207,10 @@ fn text(stock: &Stock) -> String {
     );
     row(
         "granularity",
-        stock.granularity.map(|g| format!("RMS {} at density {}, aperture {} mm", g.rms, g.density, g.aperture_mm)),
+        stock.granularity.map(|g| {
+            let assumed = if g.assumed { " (assumed)" } else { "" };
+            format!("RMS {} at density {}, aperture {} mm{assumed}", g.rms, g.density, g.aperture_mm)
+        }),
     );
     row(
         "reciprocity",

@@ -72,7 +72,7 @@ pub struct Stock {
     pub bases: Vec<Base>,
     /// What is left where nothing was exposed, over wavelengths; `None` where the curves alone tell it.
     pub minimum_density: Option<MinimumDensity>,
-    /// How grainy it is; `None` where the sheet does not say.
+    /// How grainy its silver is; `None` where the sheet does not say, and of films with dyes.
     pub granularity: Option<Granularity>,
     /// What its back sends back; `None` where nothing is known of it.
     pub halation: Option<Halation>,
@@ -100,6 +100,9 @@ pub struct Layer {
     /// Modulation transfer: (spatial frequency in cycles/mm, response), frequencies increasing; empty where the sheet does
     /// not say. Developing makes edges stand out, so it may exceed 1.
     pub mtf: Vec<[f64; 2]>,
+    /// Of a layer with a dye: density over the minimum, read through the filter of its dye on neutral film, increasing, and 1000
+    /// times the deviation through 48 um; empty where the sheet does not say.
+    pub granularity: Vec<[f64; 2]>,
     /// Its curves by development, the usual one first; at least one.
     pub developments: Vec<Development>,
 }
