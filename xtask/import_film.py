@@ -13,6 +13,8 @@ Lohse) beside it; only its tables are read, none of its code is used:
 The package holds digitizations of figures in makers' data sheets. Numbers are written as they stand there, but for:
   - exposures that the package counts in stops from the normal exposure: log10 lx s = stops x log10(2) + log10(10 / S);
   - densities a few ten-thousandths below 0 are 0;
+  - curves of color film are mended by the few numbers below (NEUTRAL, SHIFT), so that a gray scale prints and projects gray;
+    xtask/fit_film_color.py finds them, and the remark of each curve says by how much it moved;
   - characteristic curves that turn where the pen slipped: running maximum (reversal: minimum), counted in the remark;
   - Wratten filters, given as densities at points of unequal distance: resampled on 2 nm, straight in density between
     points, ends held (beyond a density of 2.9 or so, where the figures end, a straight line goes on down to 5).
@@ -26,13 +28,50 @@ import importlib
 import pathlib
 import sys
 import types
-from math import log10
+from math import exp, log10
 
 FILM = pathlib.Path("spectra/film")
 FILTERS = pathlib.Path("spectra/transmittances")
 LICENCE = "MIT (spectral-film-lut 0.18.13, Copyright 2026 Jan Lohse)"
 CARRIED = "as digitized by spectral-film-lut 0.18.13"
 PACKAGE = "spectral_film_lut"
+
+
+# Found by xtask/fit_film_color.py. Log10 of exposure that a layer (row) loses per unit of dye in another (column); blue, green,
+# red.
+INTERLAYER = {
+    "negative": [[0, 0.07, 0.05], [0.44, 0, 0.39], [0, 0, 0]],
+    "reversal": [[0, 0, 0], [0, 0, 0.03], [0, 0, 0]],
+}
+# Of the negative: p, q of p (u + 1) + q (u^2 - 1), u the decades from mid gray, held beyond 1; of print and reversal film: q of
+# q d/s exp(1 - d/s), d the density over the minimum and s the TOE. Green stays as it is.
+NEUTRAL = {
+    "negative": {"blue": (0.005, 0.032), "red": (-0.015, 0.01)},
+    "print": {"blue": -0.036, "red": -0.017},
+    "reversal": {"blue": -0.034, "red": -0.056},
+}
+TOE = {"print": 0.3, "reversal": 0.5}
+# Of the reversal film: to the right along log10 of exposure.
+SHIFT = {"blue": 0.083, "red": -0.004}
+
+
+def mended(kind, layer, points, gray):
+    """A curve with its correction, and by how much it moved at most, in density and in log10 of exposure."""
+    change = NEUTRAL.get(kind, {}).get(layer)
+    if change is None:
+        return points, 0.0, 0.0
+    low, most = min(y for _, y in points), 0.0
+    shift = SHIFT[layer] if kind == "reversal" else 0.0
+    out = []
+    for x, y in points:
+        if kind == "negative":
+            u = min(max(x - gray, -1), 1)
+            d = change[0] * (u + 1) + change[1] * (u * u - 1)
+        else:
+            d = change * (y - low) / TOE[kind] * exp(1 - (y - low) / TOE[kind])
+        out.append((x + shift, y + d))
+        most = max(most, abs(d))
+    return out, most, shift
 
 
 def load(folder, module, name):
@@ -103,20 +142,31 @@ def folded(text, indent):
     return ">-\n" + "\n".join(indent + l for l in lines)
 
 
-def curves(developments, stops_of, rising, indent):
-    """`curves:` of a layer: [(name, minutes, table)]."""
+def curves(developments, stops_of, rising, indent, mend=None):
+    """`curves:` of a layer: [(name, minutes, table)]; `mend` is (kind, layer), see `mended`."""
     out = [f"{indent}curves:"]
     for name, minutes, table in developments:
         points = pairs(table)
         if stops_of is not None:
             points = [(x * log10(2) + log10(10 / stops_of), y) for x, y in points]
         points, moved, most = monotone(points, rising)
+        remarks = []
+        if moved:
+            kind = "maximum" if rising else "minimum"
+            remarks.append(f"running {kind}; it moved {moved} points of the digitization, by {most:.4f} at most")
+        if mend:
+            points, most, shift = mended(*mend, points, log10(10 / stops_of) if stops_of else None)
+            points, _, _ = monotone(points, rising)
+            if most:
+                along = f" and {abs(shift):.3f} in log10 exposure" if shift else ""
+                remarks.append(f"moved by up to {most:.3f} in density{along}, so that a gray scale is gray (assumed)")
         out.append(f"{indent}  - development: {name}")
         if minutes is not None:
             out.append(f"{indent}    minutes: {minutes}")
-        if moved:
-            kind = "maximum" if rising else "minimum"
-            out.append(f"{indent}    remark: running {kind}; it moved {moved} points of the digitization, by {most:.4f} at most")
+        if remarks:
+            text = "; ".join(remarks)
+            text = folded(text, indent + "      ") if len(indent) + len(text) > 100 else text
+            out.append(f"{indent}    remark: {text}")
         out.append(f"{indent}    points:{flow(points, indent + '      ')}")
     return out
 
@@ -134,7 +184,7 @@ def stock(slug, *, name, maker, source, licence=LICENCE, remark, head, layers, t
 
 
 def layer(name, sensitivity, developments, *, dye=None, mtf=None, stops_of=None, rising=True, sensitivity_remark=None,
-          assumed_sensitivity=False):
+          assumed_sensitivity=False, mend=None):
     """One layer of a stock file."""
     out = [f"  - name: {name}", "    sensitivity:"]
     if assumed_sensitivity:
@@ -147,7 +197,7 @@ def layer(name, sensitivity, developments, *, dye=None, mtf=None, stops_of=None,
         out += ["    dye:", f"      name: {dye[0]}", f"      table:{flow(dye[1], '        ')}"]
     if mtf:
         out.append(f"    mtf:{flow(pairs(mtf), '      ')}")
-    return out + curves(developments, stops_of, rising, "    ")
+    return out + curves(developments, stops_of, rising, "    ", mend)
 
 
 SENSITIVITY_REMARK = (
@@ -171,6 +221,8 @@ def tri_x(folder):
         head=["", "process: negative", "density: visual", "year: 1954", "iso: 400",
               "reference-illuminant: iso-7589-sensitometric-daylight",
               "granularity: {rms: 17, aperture: 0.048 mm, density: 1}",
+              halation(0.35, ENTERS + "The base is gray, with about 0.2 of the density of unexposed film; with a dyed layer under the "
+                       "emulsion 0.35 passes once."), ACETATE,
               "reciprocity: {table: [[1, 2], [10, 50], [100, 1200]], above: 0.1 s}"],
         layers=[layer("panchromatic", pairs(data.log_sensitivity[0]),
                       [(f"{m}-min", m, curve[m]) for m in (6, 7, 9, 11)],
@@ -192,18 +244,40 @@ def double_x(folder):
         head=["", "process: negative", "density: visual", "year: 1959", "iso: 250", "iso-tungsten: 200",
               "speed: exposure-index",
               "reference-illuminant: iso-7589-sensitometric-daylight",
-              "granularity: {rms: 14, aperture: 0.048 mm, density: 1}"],
+              "granularity: {rms: 14, aperture: 0.048 mm, density: 1}",
+              halation(0.45, ENTERS + "The base is gray and there is no black backing (rem-jet), so lamps halate more than on color "
+                       "negatives: 0.45 passes once."), ACETATE],
         layers=[layer("panchromatic", pairs(data.log_sensitivity[0]),
                       [(f"{m}-min", m, curve[m]) for m in (6, 4, 5, 9, 12)],
                       mtf=data.mtf[0], sensitivity_remark=SENSITIVITY_REMARK)],
     )
 
 
+def halation(backing, remark, *, layers=None):
+    """`halation:` of a stock, for `head`: assumed, since no sheet gives figures."""
+    shares = f"\n  layers: {layers}" if layers else ""
+    return (f"halation:\n  scattered: 0.3\n  backing: {backing}\n  reflected: 0.3{shares}\n  assumed: true\n"
+            f"  remark: {folded(remark, '    ')}")
+
+
+# Of cellulose triacetate; five mils, as roll and motion-picture film is usually coated on.
+ACETATE = 'bases:\n  - {formats: "135", material: acetate, thickness: 0.13 mm, index: 1.48, assumed: true}'
+ENTERS = ("Sheets give no figures. Assumed: 0.3 of the light that exposes goes on into the base, and the emulsion throws 0.3 of what "
+          "comes back down again. ")
+DEPTH = ("What comes back meets the red layer first; the layers below take a part from green light on both ways, and the yellow "
+         "filter nearly all of blue, so that halos are red to orange.")
+
 DYES = ("cyan", "magenta", "yellow")
 LAYERS = ("red", "green", "blue")
 
 
-def color_layers(data, *, rising, stops_of=None):
+def interlayer(kind, remark):
+    """`interlayer:` of a color film."""
+    return ("interlayer:\n  assumed: true\n  remark: " + folded(remark, "    ")
+            + f"\n  inhibition: {INTERLAYER[kind]}")
+
+
+def color_layers(data, *, rising, kind, stops_of=None):
     """Layers of a color film, the uppermost (blue) first, as light meets them."""
     out = []
     for i in (2, 1, 0):
@@ -213,7 +287,8 @@ def color_layers(data, *, rising, stops_of=None):
             mtf = data.mtf[i] if len(data.mtf) == 3 else data.mtf[0]
         out.append(layer(LAYERS[i], pairs(data.log_sensitivity[i]),
                          [("normal", None, data.sensiometric_curve[i])],
-                         dye=(DYES[i], pairs(data.spectral_density[i])), mtf=mtf, stops_of=stops_of, rising=rising))
+                         dye=(DYES[i], pairs(data.spectral_density[i])), mtf=mtf, stops_of=stops_of, rising=rising,
+                         mend=(kind, LAYERS[i])))
     return out
 
 
@@ -226,13 +301,19 @@ def color_negative(folder):
         source=f"Kodak Vision3 250D Color Negative Film 5207/7207, technical data H-1-5207, {CARRIED}",
         remark="Color negative for daylight, with a mask of colored couplers; the speed is Kodak's exposure index. The "
         "sheet's curves are Status M densities of neutral exposures, counted in stops from the normal exposure, taken here as "
-        "10/S lx s of the reference light. The mask is in the minimum density only: what of it goes where dye forms is not in "
-        "the sheet, nor are the effects of one layer's development on another.",
+        "10/S lx s of the reference light. The mask goes where dye forms: the sheet's dyes are densities over the minimum, net of "
+        "the colored coupler that each uses up (magenta falls below 0 at 440 nm, which no dye does). The effects of one "
+        "layer's development on another are not in the sheet; they are assumed.",
         head=["", "process: negative", "density: status-m", "year: 2009", "iso: 250", "speed: exposure-index",
               "reference-illuminant: iso-7589-sensitometric-daylight",
               "print: kodak-vision-2383",
-              f"minimum-density:\n  table:{flow(pairs(data.d_min_sd), '    ')}"],
-        layers=color_layers(data, rising=True, stops_of=250),
+              halation(0.3, ENTERS + "The black backing (rem-jet) lets 0.3 pass once, through it and the surfaces before it. " + DEPTH,
+                       layers=[0.01, 0.25, 1]), ACETATE,
+              f"minimum-density:\n  table:{flow(pairs(data.d_min_sd), '    ')}",
+              interlayer("negative", "Fitted so that the 18 chromatic patches of the ColorChecker, printed on 2383, have the "
+                         "hue that the eye sees and about its chroma (xtask/fit_film_color.py). Rows and columns are blue, "
+                         "green, red. No sheet tells it.")],
+        layers=color_layers(data, rising=True, kind="negative", stops_of=250),
     )
 
 
@@ -256,8 +337,10 @@ def color_print(folder):
         remark="Print film for projection. The exposures of its curves are relative to the printing light, which is set "
         "for each negative; no speed is stated.",
         head=["", "process: print", "density: status-a", "year: 1998",
-              "reference-illuminant: blackbody:3200", flat_minimum(*minima(data))],
-        layers=color_layers(data, rising=True),
+              "reference-illuminant: blackbody:3200",
+              "# Kodak's laboratory aim density (LAD) for this stock, Status A.",
+              "aim-density: {red: 1.09, green: 1.06, blue: 1.03}", flat_minimum(*minima(data))],
+        layers=color_layers(data, rising=True, kind="print"),
     )
 
 
@@ -288,10 +371,16 @@ def reversal(folder):
         maker="Eastman Kodak",
         source=f"Kodak Ektachrome 100D Color Reversal Film 5294/7294, technical data, {CARRIED}",
         remark="Color reversal film for daylight. The sheet's curves are Status A densities of neutral exposures; effects of "
-        "one layer's development on another are not in it.",
+        "one layer's development on another are not in it, and assumed. As digitized, a mid gray in the sheet's own light would "
+        "be clearly blue, which no maker balances a film for: blue is moved by a quarter of a stop, and blue and red a "
+        "little in density (more than the digitization errs), until a gray scale is gray.",
         head=["", "process: reversal", "density: status-a", "year: 2018", "iso: 100",
-              "reference-illuminant: iso-7589-sensitometric-daylight", flat_minimum(*low)],
-        layers=color_layers(data, rising=False),
+              "reference-illuminant: iso-7589-sensitometric-daylight",
+              halation(0.3, ENTERS + "A layer of gray silver under the emulsion, bleached in processing, lets 0.3 pass once. " + DEPTH,
+                       layers=[0.01, 0.25, 1]), ACETATE, flat_minimum(*low),
+              interlayer("reversal", "Fitted as that of kodak-vision3-250d-5207 was, and hardly needed. Rows and columns are "
+                         "blue, green, red. No sheet tells it.")],
+        layers=color_layers(data, rising=False, kind="reversal"),
     )
 
 
@@ -325,7 +414,9 @@ def plate(slug, name, remark, iso, layer_name, points, sensitivity_remark, sourc
         slug, name=name, maker=None, source=source, remark=remark + PLATE_METER.format(d55=d55, a=a),
         head=["", "process: negative", "density: visual", *([f"year: {year}"] if year else []), f"iso: {iso}",
               "speed: assumed", "meter: film",
-              "reference-illuminant: iso-7589-sensitometric-daylight"],
+              "reference-illuminant: iso-7589-sensitometric-daylight",
+              halation(0.95, ENTERS + "The plate is not backed, as most were sold: clear glass lets 0.95 pass once, and halos are the "
+                       "largest of all. Plates that were backed with a dark varnish had hardly any: `halation: off`.")],
         layers=[lines[:-1] + PLATE_CURVE],
         tail=["", "# Thin plate glass; thickness and index vary from maker to maker.", *GLASS],
     )

@@ -1,8 +1,8 @@
 //! `film: stock`, film from a data file: exposed, developed, and printed, scanned or projected.
 
-use crate::effects::{Effects, HalationParams};
+use crate::effects::{Assumed, Effects, HalationSetting};
 use crate::metering::{METER, Meter, Metering, SpotParams, overruled, recorded_time_s};
-use crate::view::{PaperParams, Picture, View, seen};
+use crate::view::{PaperParams, Picture, ScanParams, View, WhiteParams, seen};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::frame::{DisplayPicture, ExposureFrame, FrameSize};
@@ -24,7 +24,8 @@ use spectra_film::stock::{MeterResponse, Process, Stock};
 /// The light on the frame becomes exposure in lux-seconds by the sensitivity of each layer, density by the
 /// characteristic curve of the development, and a picture by the way the film is viewed: a black-and-white negative is
 /// printed on paper, a color negative on the print stock of its maker, a reversal film is projected. Scatter in the
-/// emulsion and reflection from the base act before the curve, grain after it, if the stock's file states them.
+/// emulsion and reflection from the base act before the curve, adjacency (edges that stand out in development) and grain
+/// after it, if the stock's file states them.
 ///
 /// The exposure is that of the scene (`exposure`), or the camera meters: the metered area gets 10/S lx s, the exposure
 /// of a mid gray. S is the speed that the stock's file states, which `spectra film info` shows with its kind: an ISO
@@ -38,7 +39,7 @@ use spectra_film::stock::{MeterResponse, Process, Stock};
 /// ```
 /// ```yaml
 /// # A push by one stop, exposed for it
-/// {kind: stock, stock: kodak-tri-x-400, metering: average, iso: 800, push: 1, paper: {range: 1.0}}
+/// {kind: stock, stock: kodak-tri-x-400, metering: average, iso: 800, push: 1, paper: {grade: 3}}
 /// ```
 /// ```yaml
 /// # A color negative, metered on its middle and printed
@@ -91,12 +92,23 @@ pub struct StockParams {
     pub lamp: Option<String>,
     /// The light by which film and prints are viewed: the name of a light or a file; D55 if left out.
     pub light: Option<String>,
+    /// What `view: scan` gives: a `picture` to look at, or for grading and measuring the densities, `log` (on the scale of
+    /// Cineon files) or `density` (a quarter of it); write those with 16 bits. `picture` if left out.
+    pub scan: Option<ScanParams>,
+    /// What is shown as white: `film`, the clear film or print, or `lamp`, the bare light of a print on film, of a
+    /// projection or of three strips, which shows the base as the gray or tint that it is; `film` if left out.
+    pub white: Option<WhiteParams>,
     /// Whether the emulsion scatters light, if the stock's file states its MTF; `true` if left out.
     pub scatter: Option<bool>,
-    /// Reflection from the back of the film; as in the stock's file if left out.
-    pub halation: Option<HalationParams>,
+    /// Whether edges stand out in development, if the MTF in the stock's file exceeds 1; `true` if left out.
+    pub adjacency: Option<bool>,
+    /// Reflection from the back of the film, or `off`; as in the stock's file if left out.
+    pub halation: Option<HalationSetting>,
     /// Whether there is grain, if the stock's file states its granularity; `true` if left out.
     pub grain: Option<bool>,
+    /// Whether effects count whose figures are assumed in the stock's file, rather than measured or stated: `on` or `off`.
+    #[serde(default)]
+    pub assumed: Assumed,
     /// Seed of the grain, 0 or more.
     #[serde(default)]
     pub grain_seed: u64,
@@ -177,13 +189,30 @@ impl StockFilm {
         &self.emulsion
     }
 
-    /// The print on paper that it ends in, if it does.
+    /// The print on paper that it ends in, as metered, if it does.
     #[must_use]
     pub fn print(&self) -> Option<&Print> {
         match &self.picture {
-            Picture::Paper(print) => Some(print),
+            Picture::Paper(print) => Some(&print.metered),
             Picture::Positive(_) => None,
         }
+    }
+
+    /// What the layers are exposed to, lx s, after scatter in the emulsion and reflection from the base: a plane a layer, in
+    /// the order of the stock.
+    ///
+    /// # Errors
+    /// A text that says which channel is missing.
+    pub fn exposed(&self, exposure: &ExposureFrame) -> Result<Vec<Vec<f32>>, String> {
+        let factor = self.meter.factor(exposure) as f32;
+        let raster = self.effects.raster(exposure.size)?;
+        let layers = self.stock.layers.iter().enumerate().map(|(i, layer)| {
+            let mut plane = channel(exposure, &layer.name).map_err(|error| error.to_string())?.values.clone();
+            self.effects.spread(i, &mut plane, &raster)?;
+            plane.iter_mut().for_each(|v| *v *= factor);
+            Ok(plane)
+        });
+        layers.collect()
     }
 
     /// The developed film: a plane of amounts a layer (see [`spectra_film::deposit::Deposit`]), in the order of the stock.
@@ -195,15 +224,19 @@ impl StockFilm {
         let time_s = self.exposure_time_s * factor;
         let effect = self.stock.reciprocity.as_ref().map_or(1.0, |r| r.effect(time_s));
         let raster = self.effects.raster(exposure.size)?;
-        let layers = self.stock.layers.iter().enumerate().map(|(i, layer)| {
+        let exposed = self.stock.layers.iter().enumerate().map(|(i, layer)| {
             let mut plane = channel(exposure, &layer.name).map_err(|error| error.to_string())?.values.clone();
             self.effects.spread(i, &mut plane, &raster)?;
-            self.emulsion.develop(i, &mut plane, factor * effect);
-            let clear = self.emulsion.amount(i, f64::NEG_INFINITY);
-            self.effects.grain(i, &mut plane, clear as f32, &raster)?;
             Ok(plane)
         });
-        layers.collect()
+        let mut planes = exposed.collect::<Result<Vec<_>, String>>()?;
+        self.emulsion.develop_all(&mut planes, factor * effect);
+        for (i, plane) in planes.iter_mut().enumerate() {
+            self.effects.edges(i, plane, &self.emulsion, &raster);
+            let clear = self.emulsion.amount(i, f64::NEG_INFINITY);
+            self.effects.grain(i, plane, clear as f32, &raster)?;
+        }
+        Ok(planes)
     }
 }
 
@@ -286,7 +319,7 @@ impl Film for StockFilm {
         let planes = self.developed(exposure)?;
         let planes: Vec<&[f32]> = planes.iter().map(Vec::as_slice).collect();
         let rgb = match (&self.picture, &planes[..]) {
-            (Picture::Paper(print), [silver]) => print.pictures(silver).into_iter().map(|v| [v; 3]).collect(),
+            (Picture::Paper(print), [silver]) => print.pictures(silver)?.into_iter().map(|v| [v; 3]).collect(),
             (Picture::Positive(positive), planes) => positive.picture(planes),
             // `build` makes paper prints of one layer only.
             (Picture::Paper(_), _) => return Err(format!("{} is not a film with one layer", self.stock.name)),
@@ -301,11 +334,19 @@ impl Film for StockFilm {
 
     fn describe(&self) -> String {
         let named = |l: &spectra_film::stock::Layer| l.development(&self.development).is_some_and(|d| d.assumed);
-        let assumed = self.stock.layers.iter().any(named);
-        let curve = if assumed { " (curve assumed)" } else { "" };
+        let mut assumed = Vec::new();
+        if self.stock.layers.iter().any(named) {
+            assumed.push("curve");
+        }
+        assumed.extend(self.effects.assumed());
+        let assumed = match &assumed[..] {
+            [] => String::new(),
+            [one] => format!(" ({one} assumed)"),
+            [most @ .., last] => format!(" ({} and {last} assumed)", most.join(", ")),
+        };
         let iso = self.stock.speed_text().map_or(String::new(), |speed| format!(", {speed}"));
         format!(
-            "{}{iso}, {} development{curve}, {}, {}",
+            "{}{iso}, {} development{assumed}, {}, {}",
             self.stock.name,
             self.development,
             self.meter.words(self.exposure_time_s),

@@ -99,11 +99,16 @@ fn to_json(stock: &Stock) -> Value {
         "minimum_density": stock.minimum_density.as_ref().map(|m| {
             json!({ "assumed": m.assumed, "remark": m.remark, "wavelength_nm_and_density": m.density.points() })
         }),
+        "interlayer": stock.interlayer.as_ref().map(|i| {
+            json!({ "assumed": i.assumed, "remark": i.remark, "inhibition": i.inhibition })
+        }),
+        "aim_density": stock.aim_density.map(|a| json!({ "red": a.red, "green": a.green, "blue": a.blue })),
         "granularity": stock.granularity.map(|g| {
             json!({ "rms": g.rms, "aperture_mm": g.aperture_mm, "density": g.density })
         }),
-        "halation": stock.halation.map(|h| {
-            json!({ "scattered": h.scattered, "backing": h.backing, "assumed": h.assumed })
+        "halation": stock.halation.as_ref().map(|h| {
+            json!({ "scattered": h.scattered, "backing": h.backing, "reflected": h.reflected, "layers": h.layers,
+                "assumed": h.assumed, "remark": h.remark })
         }),
         "reciprocity": reciprocity,
         "filter_factors": factors,
@@ -195,6 +200,26 @@ fn text(stock: &Stock) -> String {
         let material = base.material.as_deref().unwrap_or("");
         row("base", Some(format!("{} mm {material}{index}, for {}{assumed}", base.thickness_mm, base.formats)));
     }
+    row(
+        "halation",
+        stock.halation.as_ref().map(|h| {
+            let assumed = if h.assumed { " (assumed)" } else { "" };
+            let shares: Vec<String> = h.layers.iter().map(f64::to_string).collect();
+            let layers = if shares.len() > 1 { format!(", by layer {}", shares.join(" : ")) } else { String::new() };
+            format!("{} enters the base, backing passes {}{layers}{assumed}", h.scattered, h.backing)
+        }),
+    );
+    row(
+        "interlayer",
+        stock.interlayer.as_ref().map(|i| {
+            let assumed = if i.assumed { " (assumed)" } else { "" };
+            format!("{:?} log10 exposure per unit of dye{assumed}", i.inhibition)
+        }),
+    );
+    row(
+        "aim density",
+        stock.aim_density.map(|a| format!("red {}, green {}, blue {} for a mid gray", a.red, a.green, a.blue)),
+    );
     row(
         "granularity",
         stock.granularity.map(|g| format!("RMS {} at density {}, aperture {} mm", g.rms, g.density, g.aperture_mm)),

@@ -1,5 +1,6 @@
 //! A stock's YAML file: its keys, and the checks that need more than a type.
 
+use super::color::{AimDensityFile, InterlayerFile};
 use super::like::inherited;
 use super::material::{DyeFile, MinimumDensityFile, densitometry};
 use super::reciprocity::ReciprocityFile;
@@ -99,6 +100,11 @@ struct StockFile {
     print: Option<String>,
     /// Spectrum of base, fog and mask of a film with dyes; nothing if absent.
     minimum_density: Option<MinimumDensityFile>,
+    /// What the layers of a color film do to each other; nothing if absent.
+    interlayer: Option<InterlayerFile>,
+    /// Of a color print stock: the densities that the print of a mid gray is timed to, base included (the laboratory aim
+    /// density, LAD, of Kodak's print films). A mid gray of the picture if absent.
+    aim_density: Option<AimDensityFile>,
     /// Granularity of its silver; no grain if absent.
     granularity: Option<GranularityFile>,
     /// What the base throws back, a halo around bright lights; nothing if absent.
@@ -282,8 +288,20 @@ pub(super) fn read(params: &Params, resources: &dyn Resources) -> Result<Stock, 
         let fault = params.fault("minimum-density", "curves of silver already include base and fog");
         faults.push(fault.hint("leave it out"));
     }
+    if file.interlayer.is_some() && dyes == 0 {
+        let fault = params.fault("interlayer", "one layer of silver has no other to act on");
+        faults.push(fault.hint("leave it out"));
+    }
+    let interlayer = file.interlayer.as_ref().filter(|_| dyes != 0);
+    let interlayer = interlayer.and_then(|i| faults.take(i.read(params, file.layers.len())));
+    if file.aim_density.is_some() && (process != Process::Print || dyes != 3) {
+        let fault = params.fault("aim-density", "what a print is timed to belongs to a print stock of three dyes");
+        faults.push(fault.hint("leave it out"));
+    }
+    let aim_density = file.aim_density.and_then(|aim| faults.take(aim.read(params)));
     let granularity = file.granularity.as_ref().map(GranularityFile::read);
-    let halation = file.halation.as_ref().map(HalationFile::read);
+    let layer_count = file.layers.len();
+    let halation = file.halation.as_ref().and_then(|h| faults.take(h.read(params, layer_count)));
     let bases = file.bases.iter().map(BaseFile::read).collect();
     let reciprocity = file.reciprocity.as_ref().and_then(|r| faults.take(r.read(params)));
     let Some(densitometry) = densitometry else {
@@ -310,6 +328,8 @@ pub(super) fn read(params: &Params, resources: &dyn Resources) -> Result<Stock, 
         layers,
         bases,
         minimum_density,
+        interlayer,
+        aim_density,
         granularity,
         halation,
         print: file.print,

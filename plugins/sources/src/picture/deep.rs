@@ -110,6 +110,10 @@ impl DeepPicture {
         let own = self.map.coefficients[hit.cell];
         let is_whole = self.map.half == Half::Whole;
         if hit.guessed {
+            // A light does not go on behind what stands before it: as far as the guess goes it would shine in place of a background.
+            if self.map.is_light(hit.cell) {
+                return ([0.0; 3], 0.0);
+            }
             let share = if is_whole { 1.0 } else { self.map.share(&spot, |_| hit.cell) };
             return (own, share);
         }
@@ -249,7 +253,11 @@ impl Walls {
                     continue;
                 };
                 // A step of one thing has the light of its nearer pixel; behind another thing goes on what it hides.
-                let level = if field.together(cell, nearer) { around(nearer) } else { level(cell) };
+                let level = match field.together(cell, nearer) {
+                    true => around(nearer),
+                    false if map.is_light(cell) => 0.0,
+                    false => level(cell),
+                };
                 if level > 0.0 {
                     sum += f64::from(level) * hidden * (field.w(nearer) - field.w(cell));
                     all.push(Wall { cell: cell as u32, side });

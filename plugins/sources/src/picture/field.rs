@@ -8,7 +8,8 @@
 //!
 //! What lies behind a foreground no single picture knows. Where a ray passes from in front of one pixel to behind the next,
 //! and the two belong to different things, the background goes on behind the foreground as it was last seen: at the depth
-//! and in the color of the last pixel in front of which the ray was. No light of the foreground leaks into it. Where the
+//! and in the color of the last pixel in front of which the ray was: black, if that is one of the picture's lights, for a lamp
+//! is no background. No light of the foreground leaks into it. Where the
 //! two belong to the same thing the ray meets the step between them. A ray that comes in behind a foreground from
 //! beside the picture sees nothing until it comes out again.
 

@@ -116,6 +116,12 @@ impl PictureMap {
         (color, share)
     }
 
+    /// Whether a pixel is one of the lights.
+    #[inline]
+    pub(crate) fn is_light(&self, cell: usize) -> bool {
+        self.lights.as_ref().and_then(|lights| lights.level.get(cell)).is_some_and(|level| *level > 0.0)
+    }
+
     /// Which part of the light at a spot is this one's; `of` says which pixel's light stands at each of the four.
     #[inline]
     pub(crate) fn share(&self, spot: &Spot, of: impl Fn(usize) -> usize) -> f32 {
