@@ -54,5 +54,5 @@ pub struct Unit {
     pub error: Option<RenderError>,
 }
 
-/// The columns of one thread, and what it counted in them.
+/// The columns of one thread, what it counted in them, and what it summed and has not yet added to the sums of all.
 pub struct Scratch(pub(crate) ThreadState);

@@ -6,7 +6,7 @@ use crate::estimator::{Estimator, Scratch, Unit};
 use crate::meter;
 use crate::pilot::{self, PILOT_RAYS, PILOT_SEED};
 use crate::pipeline::{Pipeline, Share, ThreadState};
-use crate::sums::ExactSums;
+use crate::sums::{ExactSums, OwnSums, each};
 use crate::{Done, Workers};
 use glam::DVec3;
 use spectra_core::RayBatch;
@@ -40,13 +40,13 @@ pub(crate) struct Forward {
 
 /// Rays of lights for each sample of a pixel that they reach, where the scene does not state how many there are: as a pixel's
 /// samples backward fill the pupil evenly, and rays that land where they will do not.
-const LIGHTS_A_SAMPLE: f64 = 8.0;
+const LIGHTS_A_SAMPLE: f64 = 16.0;
 /// Rays that say where lights land, and the parts of the frame that they are counted in, across and down.
 const CENSUS: usize = 1 << 16;
 const PARTS: [usize; 2] = [48, 32];
 /// Rays of lights for each pixel and sample: at least and at most.
 const LEAST_LIGHTS: f64 = 0.125;
-const MOST_LIGHTS: f64 = 16.0;
+const MOST_LIGHTS: f64 = 32.0;
 
 /// Source points that are looked at before the pupil is searched.
 const SOURCE_POINTS: usize = 4096;
@@ -209,7 +209,6 @@ impl Forward {
         sums: &ExactSums,
     ) -> (u64, Option<RenderError>) {
         let batch = state.rays.capacity() as u64;
-        let channels = state.integers.len();
         let mut at = first;
         while at < first + paths {
             let len = batch.min(first + paths - at);
@@ -219,14 +218,10 @@ impl Forward {
                 self.steps(state, at, len as usize, &mut |step, rays| blame.look(step, rays));
                 return (at - first, Some(blame.error(&self.pipeline, state, self.scale)));
             }
-            for (i, tag) in state.rays.tags().iter().enumerate() {
-                let (pixel, only) = pixel_and_channel(*tag);
-                let cell = pixel as usize * channels;
-                for (channel, integers) in state.integers.iter().enumerate() {
-                    if only.is_none_or(|only| only as usize == self.pipeline.recorded[channel]) {
-                        sums.add(cell + channel, integers[i]);
-                    }
-                }
+            let (tags, recorded) = (state.rays.tags(), &self.pipeline.recorded[..]);
+            match &mut state.own {
+                Some(own) => own.add(tags, &state.integers, recorded, sums),
+                None => each(tags, &state.integers, recorded, 0..tags.len(), |cell, value| sums.add(cell, value)),
             }
             at += len;
         }
@@ -277,7 +272,9 @@ impl Estimator for Forward {
     }
 
     fn scratch(&self) -> Scratch {
-        Scratch(ThreadState::new(&self.pipeline, self.pipeline.scene.render.batch))
+        let mut state = ThreadState::new(&self.pipeline, self.pipeline.scene.render.batch);
+        state.own = OwnSums::new(self.pipeline.scene.imager.size().pixels() * self.pipeline.recorded.len());
+        Scratch(state)
     }
 
     fn run(&self, samples: &Range<u64>, _tiles: &[u32], unit: u64, scratch: &mut Scratch, sums: &ExactSums) -> Unit {

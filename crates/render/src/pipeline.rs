@@ -2,7 +2,7 @@
 
 use crate::error::RenderError;
 use crate::response::Responses;
-use crate::sums::Round;
+use crate::sums::{OwnSums, Round};
 use spectra_core::batch::Column;
 use spectra_core::isa::Vectorized;
 use spectra_core::loss::ALIVE;
@@ -148,6 +148,8 @@ pub(crate) struct ThreadState {
     pub numbers: [Column<f64>; 5],
     pub values: Vec<f64>,
     pub integers: Vec<Vec<i64>>,
+    /// What was summed and not yet added to the sums of all threads, of an estimator that sums so.
+    pub own: Option<OwnSums>,
     /// Rays that brought light to the imager.
     pub detected: u64,
 }
@@ -161,6 +163,7 @@ impl ThreadState {
             numbers: std::array::from_fn(|_| Column::new(capacity)),
             values: vec![0.0; capacity],
             integers: vec![vec![0; capacity]; pipeline.responses.channels()],
+            own: None,
             detected: 0,
         }
     }

@@ -206,8 +206,8 @@ impl Renderer {
 
     /// Whether the noise asked for is reached everywhere.
     fn is_clean(&self, light: &Light) -> bool {
-        let ended = |(e, part): (&Box<dyn Estimator>, &Part)| part.done.ended().len() == e.tiles();
-        self.halves() == 2 && self.estimators.iter().zip(&light.parts).all(ended)
+        let ended = |(e, part): (&dyn Estimator, &Part)| part.done.ended().len() == e.tiles();
+        self.halves() == 2 && self.estimators().zip(&light.parts).all(ended)
     }
 
     /// Goes on until each estimator has so many samples.
@@ -295,6 +295,12 @@ impl Renderer {
                 }
                 if part.sums.overflowed() {
                     // A pixel's sum: so many contributions that none of them is to blame.
+                    fail(RenderError::Overflow { times: LARGEST_CONTRIBUTION / LARGEST_EXPECTED });
+                }
+            }
+            if let Some(own) = &mut scratch.0.own {
+                own.give(&part.sums);
+                if part.sums.overflowed() {
                     fail(RenderError::Overflow { times: LARGEST_CONTRIBUTION / LARGEST_EXPECTED });
                 }
             }

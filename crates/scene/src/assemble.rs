@@ -111,7 +111,7 @@ struct RenderSection {
     #[schemars(extend("minimum" = 0.0001, "maximum" = 0.5))]
     noise: Option<Ratio>,
     /// Forward: rays in all, a whole number from 1 to 1e15; four times pixels times samples if absent. Of both directions
-    /// those of the lights; eight times samples for each pixel that they reach if absent.
+    /// those of the lights; sixteen times samples for each pixel that they reach if absent.
     rays: Option<Whole<1, MAX_RAYS>>,
     /// Seed of all random numbers, a whole number from 0 to 18446744073709551615; 1 if absent. Same scene, same seed: same picture.
     seed: Option<Whole<0, { u64::MAX }>>,

@@ -308,7 +308,7 @@ impl Emit for DeepPicture {
                 area_mm2 = depth_mm * depth_mm * depth_mm * range * slope * inverse / walls.share;
                 (place, tag) = (at, IS_WALL | u32::from(wall.side) << SIDE_BITS | wall.cell);
             } else {
-                let (column, row, inverse) = self.map.importance.draw((u[i] - walls.share) / (1.0 - walls.share), v[i]);
+                let (column, row, inverse) = self.map.draw_place((u[i] - walls.share) / (1.0 - walls.share), v[i]);
                 let cell = (row as usize).min(last[1]) * self.map.width_px + (column as usize).min(last[0]);
                 depth_mm = 1.0 / self.field.w(cell);
                 area_mm2 = pixel_mm2 * depth_mm * depth_mm * inverse / (1.0 - walls.share);

@@ -7,9 +7,8 @@
 //! A pixel is a light if it is brighter than [`TIMES`] times the mean of those that are none, and among the brightest
 //! [`MOST`] of all. So are its eight neighbors: between a light and a neighbor all light is then the lights'.
 
-use super::map::Importance;
+use super::places::LightPlaces;
 use spectra_core::spectral::SpectralPower;
-use std::sync::Arc;
 
 /// How much brighter than the mean of the rest a light is.
 const TIMES: f64 = 8.0;
@@ -29,7 +28,7 @@ pub(crate) struct Lights {
     /// none of the lights'.
     pub touched: Vec<bool>,
     /// Draws places on them.
-    pub importance: Arc<Importance>,
+    pub places: LightPlaces,
     /// Light of the lights and of the rest, a mean over the picture.
     pub mean: [SpectralPower; 2],
     /// Peak over mean of each, among its own pixels.

@@ -40,6 +40,19 @@ pub(crate) struct Spot {
 }
 
 impl Spot {
+    /// Around a place in a picture of these sides; at its rim those of the rim.
+    #[inline(always)]
+    pub(super) fn of([column, row]: [f64; 2], [width, height]: [usize; 2]) -> Self {
+        let (c, r) = ((column - 0.5).max(0.0), (row - 0.5).max(0.0));
+        let (c0, r0) = ((c as i32 as usize).min(width - 1), (r as i32 as usize).min(height - 1));
+        let (c1, r1) = ((c0 + 1).min(width - 1), (r0 + 1).min(height - 1));
+        let (upper, lower) = (r0 * width, r1 * width);
+        Self {
+            cells: [upper + c0, upper + c1, lower + c0, lower + c1],
+            part: [(c - c0 as f64) as f32, (r - r0 as f64) as f32],
+        }
+    }
+
     /// Linear between the values of the four pixels.
     #[inline(always)]
     pub(crate) fn mix<const N: usize>(&self, value: impl Fn(usize) -> [f32; N]) -> [f32; N] {
@@ -70,14 +83,15 @@ impl PictureMap {
 
     /// The four pixels around a place in the picture; at its rim those of the rim.
     #[inline(always)]
-    pub(crate) fn spot(&self, [column, row]: [f64; 2]) -> Spot {
-        let (c, r) = ((column - 0.5).max(0.0), (row - 0.5).max(0.0));
-        let (c0, r0) = ((c as i32 as usize).min(self.width_px - 1), (r as i32 as usize).min(self.height_px - 1));
-        let (c1, r1) = ((c0 + 1).min(self.width_px - 1), (r0 + 1).min(self.height_px - 1));
-        let (upper, lower) = (r0 * self.width_px, r1 * self.width_px);
-        Spot {
-            cells: [upper + c0, upper + c1, lower + c0, lower + c1],
-            part: [(c - c0 as f64) as f32, (r - r0 as f64) as f32],
+    pub(crate) fn spot(&self, place: [f64; 2]) -> Spot {
+        Spot::of(place, [self.width_px, self.height_px])
+    }
+
+    /// Draws a place where this light is: column and row (pixels, fractional), and one over the density relative to uniform.
+    pub(crate) fn draw_place(&self, u: f64, v: f64) -> (f64, f64, f64) {
+        match (&self.lights, self.half) {
+            (Some(lights), Half::Lights) => lights.places.draw(u, v),
+            _ => self.importance.draw(u, v),
         }
     }
 
@@ -134,13 +148,7 @@ impl PictureMap {
             _ => return self.clone(),
         };
         let Some(lights) = &self.lights else { return self.clone() };
-        Self {
-            half,
-            mean: lights.mean[number].clone(),
-            peak_over_mean: lights.peak_over_mean[number],
-            importance: if number == 0 { Arc::clone(&lights.importance) } else { Arc::clone(&self.importance) },
-            ..self.clone()
-        }
+        Self { half, mean: lights.mean[number].clone(), peak_over_mean: lights.peak_over_mean[number], ..self.clone() }
     }
 }
 
@@ -160,7 +168,7 @@ impl Texture for PictureMap {
     }
 
     fn draw(&self, u: f64, v: f64) -> (f64, f64, f64) {
-        let (column, row, inverse) = self.importance.draw(u, v);
+        let (column, row, inverse) = self.draw_place(u, v);
         let x = (column / self.width_px as f64 - 0.5) * self.width_mm;
         let y = (0.5 - row / self.height_px as f64) * self.height_mm;
         (x, y, inverse * self.width_mm * self.height_mm)

@@ -7,6 +7,7 @@ mod field;
 mod highlights;
 pub(crate) mod lights;
 pub(crate) mod map;
+mod places;
 
 use crate::flat::Flat;
 use crate::frame::{Edge, Placed, Width};
@@ -18,6 +19,7 @@ use depth::Depth;
 use field::HeightField;
 use lights::Lights;
 use map::{Importance, PictureMap};
+use places::LightPlaces;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{Fault, Faults, Length, Luminance, Params, Part, Positive, Quantity};
@@ -332,9 +334,8 @@ fn assemble(linear: Linear, name: &str, making: &Making) -> PictureMap {
     let mean_brightness = rgb.iter().map(|p| f64::from(brightness(*p))).sum::<f64>() / pixels;
     let peak = rgb.iter().fold(0.0_f32, |a, p| a.max(brightness(*p)));
     let importance = Arc::new(Importance::new(width, height, |i| brightness(rgb[i])));
-    let lights = (f64::from(peak) > mean_brightness)
-        .then(|| lights::find(width, &rgb.iter().map(|p| brightness(*p)).collect::<Vec<_>>()))
-        .flatten();
+    let all = if f64::from(peak) > mean_brightness { rgb.iter().map(|p| brightness(*p)).collect() } else { Vec::new() };
+    let lights = if all.is_empty() { None } else { lights::find(width, &all) };
     let lights = lights.map(|found| {
         let mut sums = [[0.0_f64; 3]; 2];
         for (pixel, level) in rgb.iter().zip(&found.level) {
@@ -342,7 +343,7 @@ fn assemble(linear: Linear, name: &str, making: &Making) -> PictureMap {
             sum.iter_mut().zip(pixel).for_each(|(sum, value)| *sum += f64::from(*value) / pixels);
         }
         Arc::new(Lights {
-            importance: Arc::new(Importance::new(width, height, |i| found.level[i])),
+            places: LightPlaces::new(width, &all, &found.level),
             touched: lights::touched(width, &found.level),
             level: found.level,
             mean: sums.map(|sum| model.spectrum(sum.map(|v| v.max(0.0))).scaled(scale)),
