@@ -13,6 +13,10 @@ names the publication of each; that publication is what `source` states. Numbers
 extended, normalised or cut: `outside` states what a reader does beyond the range, `interpolation` what it does between
 points where that is not a straight line.
 
+Spectra that nothing here was fitted to (`crates/film/tests/data/unseen.csv`): skins and leaves among the 190 training
+spectra of the Academy's rawtoaces, which the package carries: those with the two bands of blood near 545 and 575 nm, and those
+with the band of chlorophyll near 675 nm and the edge behind it.
+
 Expected values (`crates/spectrum/tests/data/`) are computed here, by that package and numpy alone:
   illuminants.csv  x, y of each illuminant: aligned to 360-830 nm by 1 nm (linear, constant ends), summed with the
                    1 nm CIE 1931 functions; CCT and Duv by Ohno (2013) from that chromaticity, where it has one
@@ -180,7 +184,24 @@ def checkers():
     (EXPECTED / "checker-d50.csv").write_text("\n".join(rows) + "\n", encoding="utf-8")
 
 
+UNSEEN = pathlib.Path("crates/film/tests/data/unseen.csv")
+
+
+def unseen():
+    """Skins and leaves that film was not fitted to: patches of the rawtoaces training data, by number."""
+    training = colour.characterisation.read_training_data_rawtoaces_v1()
+    values = np.maximum(training.values, 0)  # zeros of 1e-17 of either sign at 380 nm
+    columns = {f"skin-{i}": values[:, i - 1] for i in range(12, 19)}
+    columns |= {f"leaf-{i}": values[:, i - 1] for i in (80, 81, *range(85, 91))}
+    write(UNSEEN, {
+        "name": "Skins and leaves", "kind": "reflectance", "quantity": "reflectance factor", "unit": "1",
+        "source": "Academy of Motion Picture Arts and Sciences, rawtoaces, training data: 190 patches", "licence": LICENCE,
+        "conditions": "patches 12-18, 80, 81 and 85-90", "outside": "constant",
+    }, training.wavelengths, columns)
+
+
 if __name__ == "__main__":
     observers()
     illuminants()
     checkers()
+    unseen()

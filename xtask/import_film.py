@@ -13,6 +13,8 @@ Lohse) beside it; only its tables are read, none of its code is used:
 The package holds digitizations of figures in makers' data sheets. Numbers are written as they stand there, but for:
   - exposures that the package counts in stops from the normal exposure: log10 lx s = stops x log10(2) + log10(10 / S);
   - densities a few ten-thousandths below 0 are 0;
+  - curves of color film are mended by the few numbers below (NEUTRAL, SHIFT), so that a gray scale prints and projects gray;
+    xtask/fit_film_color.py finds them, and the remark of each curve says by how much it moved;
   - characteristic curves that turn where the pen slipped: running maximum (reversal: minimum), counted in the remark;
   - Wratten filters, given as densities at points of unequal distance: resampled on 2 nm, straight in density between
     points, ends held (beyond a density of 2.9 or so, where the figures end, a straight line goes on down to 5).
@@ -27,13 +29,50 @@ import importlib
 import pathlib
 import sys
 import types
-from math import log10
+from math import exp, log10
 
 FILM = pathlib.Path("spectra/film")
 FILTERS = pathlib.Path("spectra/transmittances")
 LICENCE = "MIT (spectral-film-lut 0.18.13, Copyright 2026 Jan Lohse)"
 CARRIED = "as digitized by spectral-film-lut 0.18.13"
 PACKAGE = "spectral_film_lut"
+
+
+# Found by xtask/fit_film_color.py. Log10 of exposure that a layer (row) loses per unit of dye in another (column); blue, green,
+# red.
+INTERLAYER = {
+    "negative": [[0, 0.07, 0.05], [0.44, 0, 0.39], [0, 0, 0]],
+    "reversal": [[0, 0, 0], [0, 0, 0.03], [0, 0, 0]],
+}
+# Of the negative: p, q of p (u + 1) + q (u^2 - 1), u the decades from mid gray, held beyond 1; of print and reversal film: q of
+# q d/s exp(1 - d/s), d the density over the minimum and s the TOE. Green stays as it is.
+NEUTRAL = {
+    "negative": {"blue": (0.005, 0.032), "red": (-0.015, 0.01)},
+    "print": {"blue": -0.036, "red": -0.017},
+    "reversal": {"blue": -0.034, "red": -0.056},
+}
+TOE = {"print": 0.3, "reversal": 0.5}
+# Of the reversal film: to the right along log10 of exposure.
+SHIFT = {"blue": 0.083, "red": -0.004}
+
+
+def mended(kind, layer, points, gray):
+    """A curve with its correction, and by how much it moved at most, in density and in log10 of exposure."""
+    change = NEUTRAL.get(kind, {}).get(layer)
+    if change is None:
+        return points, 0.0, 0.0
+    low, most = min(y for _, y in points), 0.0
+    shift = SHIFT[layer] if kind == "reversal" else 0.0
+    out = []
+    for x, y in points:
+        if kind == "negative":
+            u = min(max(x - gray, -1), 1)
+            d = change[0] * (u + 1) + change[1] * (u * u - 1)
+        else:
+            d = change * (y - low) / TOE[kind] * exp(1 - (y - low) / TOE[kind])
+        out.append((x + shift, y + d))
+        most = max(most, abs(d))
+    return out, most, shift
 
 
 def load(folder, module, name):
@@ -104,20 +143,31 @@ def folded(text, indent):
     return ">-\n" + "\n".join(indent + l for l in lines)
 
 
-def curves(developments, stops_of, rising, indent):
-    """`curves:` of a layer: [(name, minutes, table)]."""
+def curves(developments, stops_of, rising, indent, mend=None):
+    """`curves:` of a layer: [(name, minutes, table)]; `mend` is (kind, layer), see `mended`."""
     out = [f"{indent}curves:"]
     for name, minutes, table in developments:
         points = pairs(table)
         if stops_of is not None:
             points = [(x * log10(2) + log10(10 / stops_of), y) for x, y in points]
         points, moved, most = monotone(points, rising)
+        remarks = []
+        if moved:
+            kind = "maximum" if rising else "minimum"
+            remarks.append(f"running {kind}; it moved {moved} points of the digitization, by {most:.4f} at most")
+        if mend:
+            points, most, shift = mended(*mend, points, log10(10 / stops_of) if stops_of else None)
+            points, _, _ = monotone(points, rising)
+            if most:
+                along = f" and {abs(shift):.3f} in log10 exposure" if shift else ""
+                remarks.append(f"moved by up to {most:.3f} in density{along}, so that a gray scale is gray (assumed)")
         out.append(f"{indent}  - development: {name}")
         if minutes is not None:
             out.append(f"{indent}    minutes: {minutes}")
-        if moved:
-            kind = "maximum" if rising else "minimum"
-            out.append(f"{indent}    remark: running {kind}; it moved {moved} points of the digitization, by {most:.4f} at most")
+        if remarks:
+            text = "; ".join(remarks)
+            text = folded(text, indent + "      ") if len(indent) + len(text) > 100 else text
+            out.append(f"{indent}    remark: {text}")
         out.append(f"{indent}    points:{flow(points, indent + '      ')}")
     return out
 
@@ -135,7 +185,7 @@ def stock(slug, *, name, maker, source, licence=LICENCE, remark, head, layers, t
 
 
 def layer(name, sensitivity, developments, *, dye=None, mtf=None, granularity=None, stops_of=None, rising=True, sensitivity_remark=None,
-          assumed_sensitivity=False):
+          assumed_sensitivity=False, mend=None):
     """One layer of a stock file."""
     out = [f"  - name: {name}", "    sensitivity:"]
     if assumed_sensitivity:
@@ -150,7 +200,7 @@ def layer(name, sensitivity, developments, *, dye=None, mtf=None, granularity=No
         out.append(f"    mtf:{flow(pairs(mtf), '      ')}")
     if granularity:
         out.append(f"    granularity:{flow(granularity, '      ')}")
-    return out + curves(developments, stops_of, rising, "    ")
+    return out + curves(developments, stops_of, rising, "    ", mend)
 
 
 SENSITIVITY_REMARK = (
@@ -224,6 +274,12 @@ DYES = ("cyan", "magenta", "yellow")
 LAYERS = ("red", "green", "blue")
 
 
+def interlayer(kind, remark):
+    """`interlayer:` of a color film."""
+    return ("interlayer:\n  assumed: true\n  remark: " + folded(remark, "    ")
+            + f"\n  inhibition: {INTERLAYER[kind]}")
+
+
 def granularity(deviations, densities):
     """[density over the least, 1000 x deviation] of two figures of a sheet over the same axis, rising; where several readings
     have the density of the foot, the last."""
@@ -242,7 +298,7 @@ def granularity(deviations, densities):
     return sorted(table.items())
 
 
-def color_layers(data, *, rising, stops_of=None, grainy=False):
+def color_layers(data, *, rising, kind, stops_of=None, grainy=False):
     """Layers of a color film, the uppermost (blue) first, as light meets them."""
     out = []
     for i in (2, 1, 0):
@@ -253,7 +309,8 @@ def color_layers(data, *, rising, stops_of=None, grainy=False):
         rms = granularity(data.rms_curve[i], data.rms_density[i]) if grainy else None
         out.append(layer(LAYERS[i], pairs(data.log_sensitivity[i]),
                          [("normal", None, data.sensiometric_curve[i])], granularity=rms,
-                         dye=(DYES[i], pairs(data.spectral_density[i])), mtf=mtf, stops_of=stops_of, rising=rising))
+                         dye=(DYES[i], pairs(data.spectral_density[i])), mtf=mtf, stops_of=stops_of, rising=rising,
+                         mend=(kind, LAYERS[i])))
     return out
 
 
@@ -266,15 +323,19 @@ def color_negative(folder):
         source=f"Kodak Vision3 250D Color Negative Film 5207/7207, technical data H-1-5207, {CARRIED}",
         remark="Color negative for daylight, with a mask of colored couplers; the speed is Kodak's exposure index. The "
         "sheet's curves are Status M densities of neutral exposures, counted in stops from the normal exposure, taken here as "
-        "10/S lx s of the reference light. The mask is in the minimum density only: what of it goes where dye forms is not in "
-        "the sheet, nor are the effects of one layer's development on another.",
+        "10/S lx s of the reference light. The mask goes where dye forms: the sheet's dyes are densities over the minimum, net of "
+        "the colored coupler that each uses up (magenta falls below 0 at 440 nm, which no dye does). The effects of one "
+        "layer's development on another are not in the sheet; they are assumed.",
         head=["", "process: negative", "density: status-m", "year: 2009", "iso: 250", "speed: exposure-index",
               "reference-illuminant: iso-7589-sensitometric-daylight",
               "print: kodak-vision-2383",
               halation(0.3, ENTERS + "The black backing (rem-jet) lets 0.3 pass once, through it and the surfaces before it. " + DEPTH,
                        layers=[0.01, 0.25, 1]), ACETATE,
-              f"minimum-density:\n  table:{flow(pairs(data.d_min_sd), '    ')}"],
-        layers=color_layers(data, rising=True, stops_of=250, grainy=True),
+              f"minimum-density:\n  table:{flow(pairs(data.d_min_sd), '    ')}",
+              interlayer("negative", "Fitted so that the 18 chromatic patches of the ColorChecker, printed on 2383, have the "
+                         "hue that the eye sees and about its chroma (xtask/fit_film_color.py). Rows and columns are blue, "
+                         "green, red. No sheet tells it.")],
+        layers=color_layers(data, rising=True, kind="negative", stops_of=250, grainy=True),
     )
 
 
@@ -298,8 +359,27 @@ def color_print(folder):
         remark="Print film for projection. The exposures of its curves are relative to the printing light, which is set "
         "for each negative; no speed is stated.",
         head=["", "process: print", "density: status-a", "year: 1998",
+              "reference-illuminant: blackbody:3200",
+              "# Kodak's laboratory aim density (LAD) for this stock, Status A.",
+              "aim-density: {red: 1.09, green: 1.06, blue: 1.03}", flat_minimum(*minima(data))],
+        layers=color_layers(data, rising=True, kind="print"),
+    )
+
+
+def color_paper(folder):
+    data = load(folder, "print_film.kodak_endura_premier", "KODAK_ENDURA_PREMIER")
+    stock(
+        "kodak-endura-premier",
+        name="Kodak Professional Endura Premier Paper",
+        maker="Eastman Kodak",
+        source=f"Kodak Professional Endura Premier Paper, technical data, {CARRIED}",
+        remark="Color paper (process RA-4) for prints of still negatives. The exposures of its curves are relative to the "
+        "printing light, which is set for each negative; no speed is stated. Densities of reflection are taken as the sums of its "
+        "dyes' densities over the minimum, as the sheet's own spectra of them are. Its curves are as digitized, made for other "
+        "negatives than 5207, which has reddish shadows on it.",
+        head=["", "process: print", "medium: paper", "density: status-a",
               "reference-illuminant: blackbody:3200", flat_minimum(*minima(data))],
-        layers=color_layers(data, rising=True),
+        layers=color_layers(data, rising=True, kind="paper"),
     )
 
 
@@ -330,12 +410,16 @@ def reversal(folder):
         maker="Eastman Kodak",
         source=f"Kodak Ektachrome 100D Color Reversal Film 5294/7294, technical data, {CARRIED}",
         remark="Color reversal film for daylight. The sheet's curves are Status A densities of neutral exposures; effects of "
-        "one layer's development on another are not in it.",
+        "one layer's development on another are not in it, and assumed. As digitized, a mid gray in the sheet's own light would "
+        "be clearly blue, which no maker balances a film for: blue is moved by a quarter of a stop, and blue and red a "
+        "little in density (more than the digitization errs), until a gray scale is gray.",
         head=["", "process: reversal", "density: status-a", "year: 2018", "iso: 100",
               "reference-illuminant: iso-7589-sensitometric-daylight",
               halation(0.3, ENTERS + "A layer of gray silver under the emulsion, bleached in processing, lets 0.3 pass once. " + DEPTH,
-                       layers=[0.01, 0.25, 1]), ACETATE, flat_minimum(*low)],
-        layers=color_layers(data, rising=False, grainy=True),
+                       layers=[0.01, 0.25, 1]), ACETATE, flat_minimum(*low),
+              interlayer("reversal", "Fitted as that of kodak-vision3-250d-5207 was, and hardly needed. Rows and columns are "
+                         "blue, green, red. No sheet tells it.")],
+        layers=color_layers(data, rising=False, kind="reversal", grainy=True),
     )
 
 
@@ -558,6 +642,7 @@ def main():
     double_x(folder)
     color_negative(folder)
     color_print(folder)
+    color_paper(folder)
     bw_print(folder)
     reversal(folder)
     three_strip(folder, plates(folder))

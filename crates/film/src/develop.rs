@@ -39,10 +39,13 @@ pub fn develop(
 ) -> Result<Developed, String> {
     let emulsion = Emulsion::new(stock, development).map_err(|e| e.to_string())?;
     let effect = stock.reciprocity.as_ref().map_or(1.0, |r| r.effect(exposure_time_s));
-    let layers = stock.layers.iter().enumerate().map(|(i, layer)| {
-        let mut density = channel(exposure, &layer.name).map_err(|e: MissingChannel| e.to_string())?.values.clone();
-        emulsion.develop(i, &mut density, effect);
-        Ok(DensityLayer { name: layer.name.clone(), density })
+    let planes = stock.layers.iter().map(|layer| {
+        let seen = channel(exposure, &layer.name).map_err(|e: MissingChannel| e.to_string())?;
+        Ok(seen.values.clone())
     });
-    Ok(Developed { size: exposure.size, layers: layers.collect::<Result<_, String>>()? })
+    let mut planes = planes.collect::<Result<Vec<_>, String>>()?;
+    emulsion.develop_all(&mut planes, effect);
+    let layers = stock.layers.iter().zip(planes);
+    let layers = layers.map(|(layer, density)| DensityLayer { name: layer.name.clone(), density }).collect();
+    Ok(Developed { size: exposure.size, layers })
 }

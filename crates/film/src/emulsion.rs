@@ -3,7 +3,7 @@
 use crate::curve::CharacteristicCurve;
 use crate::deposit::Deposit;
 use crate::lookup::{Lookup, PIXELS_A_TASK, from_octaves, octaves};
-use crate::stock::{Densitometry, Stock};
+use crate::stock::{Densitometry, Process, Stock};
 use rayon::prelude::*;
 use spectra_core::math::log10;
 
@@ -36,6 +36,9 @@ pub enum EmulsionError {
 pub struct Emulsion {
     deposit: Deposit,
     curves: Vec<AmountCurve>,
+    /// Log10 of exposure that a layer (row) loses per unit of dye in another (column); empty where layers do not meet. Below
+    /// 0 for a reversal film, whose dye is what did not develop first.
+    inhibition: Vec<Vec<f64>>,
 }
 
 #[derive(Clone, Debug)]
@@ -79,14 +82,16 @@ impl Emulsion {
     ///
     /// Curves of color film are densities of neutral exposures, measured through three filters of which each sees all three
     /// dyes. They are taken apart into amounts: at each exposure, those of which the sheet's dyes make the sheet's densities
-    /// over the minimum. Each layer then answers to its own exposure alone.
+    /// over the minimum. What the layers do to each other is in these curves as far as a neutral subject has it; what else
+    /// there is of it, [`Emulsion::developed`] adds.
     ///
     /// # Errors
     /// [`EmulsionError`].
     pub fn with_curves(stock: &Stock, curves: Vec<CharacteristicCurve>) -> Result<Self, EmulsionError> {
         let deposit = Deposit::of(stock);
         if stock.densitometry == Densitometry::Visual {
-            return Ok(Self { deposit, curves: curves.into_iter().map(AmountCurve::Density).collect() });
+            let curves = curves.into_iter().map(AmountCurve::Density).collect();
+            return Ok(Self { deposit, curves, inhibition: Vec::new() });
         }
         let names: Vec<&str> = stock.layers.iter().map(|l| l.name.as_str()).collect();
         let products = stock.densitometry.products(&names).ok_or(EmulsionError::Layers)?;
@@ -106,14 +111,18 @@ impl Emulsion {
             amounts.iter_mut().zip(&last).for_each(|(all, one)| all.push(*one));
         }
         let table = |values: Vec<f64>| AmountCurve::Amount(Lookup::from_values(low, high, values));
-        Ok(Self { deposit, curves: amounts.into_iter().map(table).collect() })
+        let sign = if stock.process == Process::Reversal { -1.0 } else { 1.0 };
+        let signed = |row: &Vec<f64>| row.iter().map(|v| sign * v).collect();
+        let inhibition = stock.interlayer.as_ref().map_or_else(Vec::new, |i| i.inhibition.iter().map(signed).collect());
+        Ok(Self { deposit, curves: amounts.into_iter().map(table).collect(), inhibition })
     }
 
     /// Three separation negatives of silver, in the order blue, green, red; see
     /// [`crate::positive::Positive::from_separations`].
     #[must_use]
     pub fn separations(curves: [CharacteristicCurve; 3]) -> Self {
-        Self { deposit: Deposit::separations(), curves: curves.into_iter().map(AmountCurve::Density).collect() }
+        let curves = curves.into_iter().map(AmountCurve::Density).collect();
+        Self { deposit: Deposit::separations(), curves, inhibition: Vec::new() }
     }
 
     /// What it holds back.
@@ -128,7 +137,29 @@ impl Emulsion {
         self.curves.len()
     }
 
-    /// Amount in a layer at log10 of its exposure (lx s); -infinity is no exposure.
+    /// Amounts in all layers at log10 of the exposure of each (lx s), with what the layers do to each other.
+    ///
+    /// Each layer i develops as if its log10 exposure x_i were x_i + sum_j K_ij (n_j(x_i) - n_j(x_j)), where n_j is the
+    /// amount that layer j has of a neutral subject: the more the others hold, the less develops. A neutral subject is left as
+    /// it is, by construction (as inhibitors released by couplers work: C. R. Barr, J. R. Thirtle and P. W. Vittum,
+    /// Photogr. Sci. Eng. 13, 74, 1969).
+    #[must_use]
+    pub fn developed(&self, log10_exposures: &[f64]) -> Vec<f64> {
+        let own: Vec<f64> = log10_exposures.iter().enumerate().map(|(j, x)| self.amount(j, *x)).collect();
+        if self.inhibition.is_empty() {
+            return own;
+        }
+        let layer =
+            |(i, x): (usize, &f64)| self.amount(i, x + self.relief(i, *x) - inhibited(&self.inhibition[i], &own));
+        log10_exposures.iter().enumerate().map(layer).collect()
+    }
+
+    /// What a neutral subject of log10 exposure `x` would hold layer `i` back, log10 of exposure.
+    fn relief(&self, i: usize, x: f64) -> f64 {
+        inhibited(&self.inhibition[i], &self.neutral(x))
+    }
+
+    /// Amount that a neutral subject leaves in a layer, at log10 of its exposure (lx s); -infinity is no exposure.
     #[must_use]
     pub fn amount(&self, layer: usize, log10_exposure: f64) -> f64 {
         self.curves[layer].at(log10_exposure)
@@ -168,8 +199,38 @@ impl Emulsion {
         }
     }
 
-    /// Turns the exposures of a layer (lx s) into amounts, in place. `effect` multiplies them first: what a long exposure
-    /// counts (see [`crate::stock::Reciprocity`]). Less than no exposure, and no number, are taken as none.
+    /// Turns the exposures of all layers (lx s; a plane a layer, of equal length) into amounts, in place, as
+    /// [`Emulsion::developed`] does for one place. `effect` multiplies them first: what a long exposure counts (see
+    /// [`crate::stock::Reciprocity`]). Less than no exposure, and no number, are taken as none.
+    pub fn develop_all(&self, planes: &mut [Vec<f32>], effect: f64) {
+        match planes {
+            [a, b, c] if self.inhibition.len() == 3 => self.develop_together([a, b, c], effect),
+            _ => planes.iter_mut().enumerate().for_each(|(i, plane)| self.develop(i, plane, effect)),
+        }
+    }
+
+    fn develop_together(&self, [a, b, c]: [&mut Vec<f32>; 3], effect: f64) {
+        let own = [0, 1, 2].map(|i| per_octave(|x| self.amount(i, x), effect));
+        let held = [0, 1, 2].map(|i| per_octave(|x| x + self.relief(i, x), effect));
+        let clear = self.neutral(f64::NEG_INFINITY);
+        let pixel = |h: [f32; 3]| -> [f32; 3] {
+            let at = h.map(|h| if h > 0.0 { Some(octaves(h)) } else { None });
+            let n = [0, 1, 2].map(|i| at[i].map_or(clear[i], |o| own[i].at(o)));
+            [0, 1, 2].map(|i| {
+                let develops = |o: f64| self.amount(i, held[i].at(o) - inhibited(&self.inhibition[i], &n));
+                at[i].map_or(clear[i], develops) as f32
+            })
+        };
+        let chunks = a.par_chunks_mut(PIXELS_A_TASK).zip(b.par_chunks_mut(PIXELS_A_TASK));
+        chunks.zip(c.par_chunks_mut(PIXELS_A_TASK)).for_each(|((a, b), c)| {
+            for ((a, b), c) in a.iter_mut().zip(b).zip(c) {
+                [*a, *b, *c] = pixel([*a, *b, *c]);
+            }
+        });
+    }
+
+    /// Turns the exposures of a layer (lx s) into amounts, in place, as if the other layers had a neutral subject's beside
+    /// it: [`Emulsion::develop_all`] for one layer.
     pub fn develop(&self, layer: usize, plane: &mut [f32], effect: f64) {
         let curve = &self.curves[layer];
         let sampled = per_octave(|log10_exposure| curve.at(log10_exposure), effect);
@@ -180,6 +241,11 @@ impl Emulsion {
             }
         });
     }
+}
+
+/// By how much a layer is held back whose row this is, log10 of exposure, where the layers hold these amounts.
+fn inhibited(row: &[f64], amounts: &[f64]) -> f64 {
+    row.iter().zip(amounts).map(|(k, n)| k * n).sum()
 }
 
 /// Steps of the sampled curve an octave of exposure. With a second derivative of the density below 1 in octaves

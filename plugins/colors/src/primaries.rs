@@ -10,12 +10,13 @@ use spectra_core::stage::ColorModel;
 
 /// The sum of three smooth spectra that have exactly the colors of the sRGB primaries.
 ///
-/// The default model. A color is red, green and blue light in the amounts of its linear sRGB values; each of the three
+/// A color is red, green and blue light in the amounts of its linear sRGB values; each of the three
 /// spectra is smooth and non-negative, so a colorimeter measures the picture's own colors, and film gives reasonable
 /// ones. White has the chromaticity of the source's illuminant: the three are scaled for that, and an illuminant
 /// outside of their triangle is refused.
 ///
-/// It is a model of light, not of surfaces: for a colored object under another lamp, use `kind: smooth`.
+/// It is a model of light, as of a screen, not of surfaces: film sees leaves as brown and skin as pale, since red, green and blue
+/// light stand where reflected light is smooth. For photographs and renders of objects use `kind: smooth`, the default.
 ///
 /// # Example
 /// ```yaml
@@ -25,7 +26,7 @@ use spectra_core::stage::ColorModel;
 #[serde(deny_unknown_fields)]
 struct PrimariesParams {}
 
-spectra_core::register!(color "primaries" (default): PrimariesParams, build);
+spectra_core::register!(color "primaries": PrimariesParams, build);
 
 fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn ColorModel>, Faults> {
     let PrimariesParams {} = params.parse()?;

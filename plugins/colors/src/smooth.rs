@@ -24,7 +24,7 @@ use std::sync::OnceLock;
 
 /// A smooth reflectance for each color, under the illuminant.
 ///
-/// For pictures of lit objects: each color becomes the reflectance s(a + b t + c t^2), with the sigmoid s(x) = 1/2 + x
+/// The default model, for pictures of lit objects: each color becomes the reflectance s(a + b t + c t^2), with the sigmoid s(x) = 1/2 + x
 /// / (2 sqrt(1 + x^2)) and t running over the band, with the three numbers that give the color under D65; its light is
 /// that reflectance times the illuminant. So grays have the spectrum of the illuminant itself, lines included, and
 /// colors change under fluorescent or sodium light as real ones do.
@@ -44,7 +44,7 @@ use std::sync::OnceLock;
 #[serde(deny_unknown_fields)]
 struct SmoothParams {}
 
-spectra_core::register!(color "smooth": SmoothParams, build);
+spectra_core::register!(color "smooth" (default): SmoothParams, build);
 
 fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn ColorModel>, Faults> {
     let SmoothParams {} = params.parse()?;

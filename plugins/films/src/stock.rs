@@ -2,7 +2,7 @@
 
 use crate::effects::{Assumed, Effects, HalationSetting, OpticsSetting, mtf50, pixel_mm};
 use crate::metering::{METER, Meter, Metering, SpotParams, overruled, recorded_time_s};
-use crate::view::{PaperParams, Picture, View, seen};
+use crate::view::{PaperParams, Picture, ScanParams, View, WhiteParams, seen};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::frame::{DisplayPicture, ExposureFrame, FrameSize};
@@ -40,7 +40,7 @@ use spectra_film::stock::{MeterResponse, Process, Stock};
 /// ```
 /// ```yaml
 /// # A push by one stop, exposed for it
-/// {kind: stock, stock: kodak-tri-x-400, metering: average, iso: 800, push: 1, paper: {range: 1.0}}
+/// {kind: stock, stock: kodak-tri-x-400, metering: average, iso: 800, push: 1, paper: {grade: 3}}
 /// ```
 /// ```yaml
 /// # A color negative, metered on its middle and printed
@@ -93,6 +93,12 @@ pub struct StockParams {
     pub lamp: Option<String>,
     /// The light by which film and prints are viewed: the name of a light or a file; D55 if left out.
     pub light: Option<String>,
+    /// What `view: scan` gives: a `picture` to look at, or for grading and measuring the densities, `log` (on the scale of
+    /// Cineon files) or `density` (a quarter of it); write those with 16 bits. `picture` if left out.
+    pub scan: Option<ScanParams>,
+    /// What is shown as white: `film`, the clear film or print, or `lamp`, the bare light of a print on film, of a
+    /// projection or of three strips, which shows the base as the gray or tint that it is; `film` if left out.
+    pub white: Option<WhiteParams>,
     /// Whether the emulsion scatters light, if the stock's file states its MTF; `true` if left out.
     pub scatter: Option<bool>,
     /// Whether edges stand out in development, if the MTF in the stock's file exceeds 1; `true` if left out.
@@ -190,11 +196,11 @@ impl StockFilm {
         &self.emulsion
     }
 
-    /// The print on paper that it ends in, if it does.
+    /// The print on paper that it ends in, as metered, if it does.
     #[must_use]
     pub fn print(&self) -> Option<&Print> {
         match &self.picture {
-            Picture::Paper(print) => Some(print),
+            Picture::Paper(print) => Some(&print.metered),
             Picture::Positive(_) => None,
         }
     }
@@ -225,15 +231,18 @@ impl StockFilm {
         let time_s = self.exposure_time_s * factor;
         let effect = self.stock.reciprocity.as_ref().map_or(1.0, |r| r.effect(time_s));
         let raster = self.effects.raster(exposure.size)?;
-        let layers = self.stock.layers.iter().enumerate().map(|(i, layer)| {
+        let exposed = self.stock.layers.iter().enumerate().map(|(i, layer)| {
             let mut plane = channel(exposure, &layer.name).map_err(|error| error.to_string())?.values.clone();
             self.effects.spread(i, &mut plane, &raster)?;
-            self.emulsion.develop(i, &mut plane, factor * effect);
-            self.effects.edges(i, &mut plane, &self.emulsion, &raster);
-            self.effects.grain(i, &mut plane, self.emulsion.range(i).0, &raster)?;
             Ok(plane)
         });
-        layers.collect()
+        let mut planes = exposed.collect::<Result<Vec<_>, String>>()?;
+        self.emulsion.develop_all(&mut planes, factor * effect);
+        for (i, plane) in planes.iter_mut().enumerate() {
+            self.effects.edges(i, plane, &self.emulsion, &raster);
+            self.effects.grain(i, plane, self.emulsion.range(i).0, &raster)?;
+        }
+        Ok(planes)
     }
 }
 
@@ -320,7 +329,7 @@ impl Film for StockFilm {
         }
         let planes: Vec<&[f32]> = planes.iter().map(Vec::as_slice).collect();
         let rgb = match (&self.picture, &planes[..]) {
-            (Picture::Paper(print), [silver]) => print.pictures(silver).into_iter().map(|v| [v; 3]).collect(),
+            (Picture::Paper(print), [silver]) => print.pictures(silver)?.into_iter().map(|v| [v; 3]).collect(),
             (Picture::Positive(positive), planes) => positive.picture(planes),
             // `build` makes paper prints of one layer only.
             (Picture::Paper(_), _) => return Err(format!("{} is not a film with one layer", self.stock.name)),

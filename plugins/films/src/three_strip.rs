@@ -2,6 +2,7 @@
 
 use crate::metering::{METER, Meter, Metering, SpotParams, overruled, recorded_time_s};
 use crate::stock::load_stock;
+use crate::view::WhiteParams;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::frame::{DisplayPicture, ExposureFrame, FrameSize};
@@ -37,7 +38,7 @@ use spectra_spectrum::{Emission, Transmittance, find_emission_in, find_transmitt
 /// exposure: 1/50 s
 /// iso: 8
 /// balance: iso-7589-studio-tungsten
-/// blue: {stock: kodak-double-x-5222, development: 9-min, filters: [wratten-47]}
+/// blue: {stock: kodak-double-x-5222, development: 12-min, filters: [wratten-47]}
 /// ```
 /// # References
 /// - J. Ball, "The Technicolor process of three-color cinematography", J. SMPE 25, 127 (1935).
@@ -63,6 +64,9 @@ pub struct ThreeStripParams {
     /// The light by which the print is viewed: the name of a light or a file.
     #[serde(default = "daylight")]
     pub light: String,
+    /// What is shown as white: `film`, the clear print, or `lamp`, the bare light.
+    #[serde(default)]
+    pub white: WhiteParams,
     /// The print, with its dyes and the curves of its matrices: a bundled stock or a YAML file beside the scene, of
     /// layers called blue, green and red.
     #[serde(default = "technicolor")]
@@ -100,17 +104,18 @@ fn record(stock: &str, development: Option<&str>, filters: &[&str]) -> RecordPar
 // As J. Ball described the camera ("The Technicolor process of three-color cinematography", J. SMPE 25, 127, 1935): a green
 // filter before one film; a magenta one before the pair of the others, the front film of which sees blue and is dyed red.
 // The stock of all three is a later one whose sensitivity is known, behind a blue filter where the front film saw blue only:
-// records of one contrast, as the process needs them.
+// records of one contrast, as the process needs them, and the steepest that its sheet has: the print then has the contrast for
+// which the process was known.
 fn red() -> RecordParams {
-    record("kodak-double-x-5222", Some("9-min"), &["wratten-32", "wratten-25"])
+    record("kodak-double-x-5222", Some("12-min"), &["wratten-32", "wratten-25"])
 }
 
 fn green() -> RecordParams {
-    record("kodak-double-x-5222", Some("9-min"), &["wratten-58"])
+    record("kodak-double-x-5222", Some("12-min"), &["wratten-58"])
 }
 
 fn blue() -> RecordParams {
-    record("kodak-double-x-5222", Some("9-min"), &["wratten-47"])
+    record("kodak-double-x-5222", Some("12-min"), &["wratten-47"])
 }
 
 fn daylight() -> String {
@@ -191,7 +196,7 @@ impl ThreeStrip {
             channel.response.iter_mut().for_each(|r| *r *= scale);
         }
         let grays = [0, 1, 2].map(|i| metered_exposure_lx_s(records[i].iso));
-        let positive = Positive::from_separations(&film, &grays, &print, printed, &view);
+        let positive = Positive::from_separations(&film, &grays, &print, printed, &view, p.white.into());
         let positive = positive.map_err(|e| params.fault("print", e.to_string()))?;
         let stocks: Vec<&str> = records.iter().map(|r| r.name.as_str()).collect();
         let words = format!("three-strip camera, ISO {iso} ({}), printed as {}", stocks.join(", "), print.name);

@@ -7,8 +7,8 @@ use spectra_core::math::log10;
 use spectra_core::params::{Faults, Params, Positive as AboveZero};
 use spectra_core::resources::Resources;
 use spectra_film::emulsion::Emulsion;
-use spectra_film::positive::{Positive, PositiveError};
-use spectra_film::print::{Paper, Print};
+use spectra_film::positive::{PictureWhite, Positive, PositiveError, ScanScale};
+use spectra_film::print::{Paper, Print, USUAL_GRADE};
 use spectra_film::stock::{Process, Stock};
 use spectra_spectrum::{Emission, find_emission_in};
 
@@ -26,11 +26,58 @@ pub enum View {
     Projection,
 }
 
+/// `scan` as written in a scene.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+pub enum ScanParams {
+    /// A picture to look at, its highlights under a soft shoulder.
+    #[default]
+    Picture,
+    /// Density over unexposed film as Cineon files hold it: value = (95 + density / 0.002) / 1023.
+    Log,
+    /// Density, base included: value = density / 4.
+    Density,
+}
+
+impl From<ScanParams> for ScanScale {
+    fn from(scan: ScanParams) -> Self {
+        match scan {
+            ScanParams::Picture => Self::Picture,
+            ScanParams::Log => Self::Log,
+            ScanParams::Density => Self::Density,
+        }
+    }
+}
+
+/// `white` as written in a scene.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+pub enum WhiteParams {
+    /// The clear film or print.
+    #[default]
+    Film,
+    /// The bare light.
+    Lamp,
+}
+
+impl From<WhiteParams> for PictureWhite {
+    fn from(white: WhiteParams) -> Self {
+        match white {
+            WhiteParams::Film => Self::Film,
+            WhiteParams::Lamp => Self::Lamp,
+        }
+    }
+}
+
 /// `paper` as written in a scene; see [`Paper`].
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct PaperParams {
-    /// Exposure range, log10 of exposure (the ISO range over 100), more than 0; 1.6, a soft paper, if left out.
+    /// Contrast: 0 (soft) to 5 (hard), of ISO ranges R155, 127, 105, 87, 72 and 57, and straight between; or `auto`, the
+    /// grade and the exposure that bring the darkest and the lightest 0.5 % of this frame just off the paper's black and
+    /// white, if grade 5 can: a flatter frame is printed on grade 2, as metered. 2 if left out.
+    pub grade: Option<Grade>,
+    /// Exposure range, log10 of exposure (the ISO range over 100), more than 0; that of the grade if left out.
     pub range: Option<AboveZero<f64>>,
     /// Maximum density over the paper's white, more than 0; 2.1, a glossy paper, if left out.
     pub maximum_density: Option<AboveZero<f64>>,
@@ -42,11 +89,47 @@ pub struct PaperParams {
     pub shoulder: Option<AboveZero<f64>>,
 }
 
+/// `grade` as written.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema, PartialEq)]
+#[serde(untagged)]
+pub enum Grade {
+    /// As the frame needs it.
+    Auto(AutoWord),
+    /// 0 to 5.
+    Number(f64),
+}
+
+/// The word.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+pub enum AutoWord {
+    /// As the frame needs it.
+    Auto,
+}
+
+/// A print on paper: made for one frame, or for all of the film.
+#[derive(Clone, Debug)]
+pub(crate) struct PaperPrint {
+    /// As the meter says.
+    pub metered: Print,
+    /// The paper, if grade and exposure are chosen for each frame.
+    pub automatic: Option<Paper>,
+}
+
+impl PaperPrint {
+    /// The picture of a negative.
+    pub(crate) fn pictures(&self, density: &[f32]) -> Result<Vec<f32>, String> {
+        let automatic = self.automatic.as_ref().map(|paper| Print::automatic(paper, density));
+        let automatic = automatic.transpose().map_err(|error| error.to_string())?.flatten();
+        Ok(automatic.as_ref().unwrap_or(&self.metered).pictures(density))
+    }
+}
+
 /// The positive that the film ends in.
 #[derive(Clone, Debug)]
 pub(crate) enum Picture {
     /// Paper under silver.
-    Paper(Print),
+    Paper(Box<PaperPrint>),
     /// All else.
     Positive(Box<Positive>),
 }
@@ -80,6 +163,10 @@ pub(crate) fn seen(
             faults.push(params.fault(key, "this applies to prints only").hint("`view: print`"));
         }
     }
+    if p.scan.is_some() && view != View::Scan {
+        faults.push(params.fault("scan", "this applies to scans only").hint("`view: scan`"));
+    }
+    let white = PictureWhite::from(p.white.unwrap_or_default());
     let light = faults.take(emission(params, "light", p.light.as_deref().unwrap_or("D55"), resources));
     let lamp = match p.lamp.as_deref() {
         Some(name) => faults.take(emission(params, "lamp", name, resources)).map(Some),
@@ -100,16 +187,36 @@ pub(crate) fn seen(
     let unfit = |error: PositiveError| Faults::from(params.fault("stock", format!("{}: {error}", stock.name)));
     let positive = |picture: Positive, words: String| Seen { picture: Picture::Positive(Box::new(picture)), words };
     match view {
-        View::Print => print(p, params, resources, stock, film, gray_lx_s, &light, lamp.as_ref()),
-        View::Scan => Ok(positive(Positive::scanned(stock, film, gray_lx_s).map_err(unfit)?, "scanned".into())),
+        View::Print => print(p, params, resources, stock, film, gray_lx_s, &Lights { light, lamp, white }),
+        View::Scan => {
+            let scale = p.scan.unwrap_or_default();
+            let words = match scale {
+                ScanParams::Picture => "scanned",
+                ScanParams::Log => "scanned, logarithmic (Cineon)",
+                ScanParams::Density => "scanned, density / 4",
+            };
+            let scan = Positive::scanned(stock, film, gray_lx_s, scale.into()).map_err(unfit)?;
+            Ok(positive(scan, words.into()))
+        }
         View::Negative => {
-            let table = Positive::transmitted(stock, film, &light).map_err(unfit)?;
+            let table = Positive::transmitted(stock, film, &light, PictureWhite::Lamp).map_err(unfit)?;
             Ok(positive(table, "the negative itself".into()))
         }
         View::Projection => {
-            Ok(positive(Positive::transmitted(stock, film, &light).map_err(unfit)?, "projected".into()))
+            let projected = Positive::transmitted(stock, film, &light, white).map_err(unfit)?;
+            Ok(positive(projected, "projected".into()))
         }
     }
+}
+
+/// The lights of a print.
+struct Lights {
+    /// That it is looked at by.
+    light: Emission,
+    /// The printer's; the print stock's reference light if none is named.
+    lamp: Option<Emission>,
+    /// What is shown as white.
+    white: PictureWhite,
 }
 
 fn print(
@@ -119,8 +226,7 @@ fn print(
     stock: &Stock,
     film: &Emulsion,
     gray_lx_s: f64,
-    light: &Emission,
-    lamp: Option<&Emission>,
+    lights: &Lights,
 ) -> Result<Seen, Faults> {
     let on = match (&p.print, &p.paper, &stock.print) {
         (Some(_), Some(_), _) => {
@@ -145,8 +251,8 @@ fn print(
     };
     let key = if p.print_development.is_some() { "print-development" } else { "print" };
     let emulsion = Emulsion::new(&print_stock, &development).map_err(|e| params.fault(key, e.to_string()))?;
-    let lamp = lamp.unwrap_or(&print_stock.reference);
-    let positive = Positive::printed(film, gray_lx_s, &print_stock, emulsion, lamp, light);
+    let lamp = lights.lamp.as_ref().unwrap_or(&print_stock.reference);
+    let positive = Positive::printed(film, gray_lx_s, &print_stock, emulsion, lamp, &lights.light, lights.white);
     let positive = positive.map_err(|error| {
         // Where the scene names no print stock, it is the camera film that asks for this one.
         let key = if p.print.is_some() { "print" } else { "stock" };
@@ -167,7 +273,24 @@ fn print(
 }
 
 fn on_paper(p: &StockParams, params: &Params, stock: &Stock, film: &Emulsion, gray_lx_s: f64) -> Result<Seen, Faults> {
-    let usual = Paper::default();
+    let grade = p.paper.and_then(|p| p.grade);
+    let stated = match grade {
+        Some(Grade::Number(grade)) => Some(grade),
+        Some(Grade::Auto(_)) | None => None,
+    };
+    let Some(range) = Paper::range_of_grade(stated.unwrap_or(USUAL_GRADE)) else {
+        let text = format!("there is no paper of grade {}", stated.unwrap_or_default());
+        return Err(params.fault("paper.grade", text).hint("0 (soft) to 5 (hard), or `auto`").into());
+    };
+    if grade.is_some() && p.paper.is_some_and(|p| p.range.is_some()) {
+        let fault = params.fault("paper.range", "a grade has its own range");
+        return Err(fault.hint("`grade` or `range`").into());
+    }
+    if p.white.is_some() {
+        let fault = params.fault("white", "the white of a print on paper is the paper");
+        return Err(fault.hint("leave it out, or print on film: `print: kodak-2302`").into());
+    }
+    let usual = Paper { range, ..Paper::default() };
     let given = |value: Option<Option<AboveZero<f64>>>, usual: f64| value.flatten().map_or(usual, AboveZero::get);
     let paper = Paper {
         range: given(p.paper.map(|p| p.range), usual.range),
@@ -179,7 +302,14 @@ fn on_paper(p: &StockParams, params: &Params, stock: &Stock, film: &Emulsion, gr
     let print = Print::balanced(&paper, film.amount(0, f64::NEG_INFINITY), gray);
     let key = if p.paper.is_some() { "paper" } else { "stock" };
     let print = print.map_err(|error| params.fault(key, format!("{}: {error}", stock.name)))?;
-    Ok(Seen { picture: Picture::Paper(print), words: "printed".into() })
+    let automatic = matches!(grade, Some(Grade::Auto(_)));
+    let words = match p.paper.and_then(|p| p.range) {
+        Some(range) => format!("printed on paper of range {}", range.get()),
+        None if automatic => "printed on the grade of paper that suits it".to_owned(),
+        None => format!("printed on paper of grade {}", stated.unwrap_or(USUAL_GRADE)),
+    };
+    let picture = PaperPrint { metered: print, automatic: automatic.then_some(paper) };
+    Ok(Seen { picture: Picture::Paper(Box::new(picture)), words })
 }
 
 fn emission(params: &Params, key: &str, name: &str, resources: &dyn Resources) -> Result<Emission, Faults> {

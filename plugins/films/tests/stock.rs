@@ -87,6 +87,10 @@ fn parameters_are_checked() {
         ("stock: ilford-ortho-plus\nmetering: average\npush: 1\n", "other times"),
         ("stock: kodak-tri-x-400\nmetering: average\npush: 5\n", "stops"),
         ("stock: kodak-vision-2383\nmetering: average\n", "is not a camera film"),
+        ("stock: ilford-ortho-plus\nmetering: average\npaper: {grade: 6}\n", "no paper of grade 6"),
+        ("stock: ilford-ortho-plus\nmetering: average\npaper: {grade: 3, range: 1.2}\n", "its own range"),
+        ("stock: ilford-ortho-plus\nmetering: average\nwhite: lamp\n", "is the paper"),
+        ("stock: ilford-ortho-plus\nmetering: average\nscan: log\n", "view: scan"),
         ("stock: kodak-ektachrome-100d\nmetering: average\nview: print\n", "already a positive"),
         ("stock: kodak-vision3-250d-5207\nmetering: average\nprint: kodak-2383\n", "did you mean"),
         ("stock: ilford-ortho-plus\nmetering: average\nlight: D5500\n", "did you mean `D55`?"),
@@ -129,12 +133,13 @@ fn frame_of(names: &[&str], planes: &[Vec<f32>]) -> ExposureFrame {
 
 /// A metered gray card prints as 18 % on a plate, whatever the light: its meter weighs light as it does. A photopic meter
 /// gives the unsensitized plate half a stop too much in D55 and 1.3 too little in A; and panchromatic film its due, more or
-/// less.
+/// less, as a soft paper shows it.
 #[test]
 fn a_metered_gray_is_gray_on_a_plate_in_any_light() {
     for (stock, tolerance) in [("blue-sensitive-plate", 1e-4), ("panchromatic-plate", 1e-4), ("kodak-tri-x-400", 0.06)]
     {
-        let film = build(&format!("stock: {stock}\nmetering: average\nhalation: off\ngrain: false\n")).expect("sound");
+        let settings = format!("stock: {stock}\nmetering: average\nhalation: off\ngrain: false\npaper: {{range: 1.6}}\n");
+        let film = build(&settings).expect("sound");
         for light in ["D55", "D65", "A", "iso-7589-sensitometric-daylight"] {
             let power = spectra_spectrum::find_emission(light).expect("bundled").to_power(&BAND);
             let channels = film.channels();
@@ -206,17 +211,42 @@ fn long_exposures_count_as_the_sheet_says() {
 /// the red layer alone makes it red.
 #[test]
 fn color_negative_prints_in_color() {
-    for view in ["print", "scan"] {
+    // A print is timed to the aim densities of its stock, a little lighter than 18 %.
+    for (view, mid) in [("print", 0.1869), ("scan", 0.18)] {
         let film = build(&format!("stock: kodak-vision3-250d-5207\nexposure: 1/60 s\nview: {view}\n")).expect("sound");
         let names: Vec<String> = film.channels().iter().map(|c| c.name.clone()).collect();
         assert_eq!(names, ["blue", "green", "red"]);
         let planes = [vec![0.04, 0.02, 0.0], vec![0.04, 0.02, 0.0], vec![0.04, 0.08, 0.0]];
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
         let rgb = film.develop(&frame_of(&names, &planes)).expect("complete").rgb;
-        assert!(rgb[0].iter().all(|v| (v - 0.18).abs() < 2e-3), "{view}: {:?}", rgb[0]);
+        assert!(rgb[0].iter().all(|v| (v - mid).abs() < 2e-3), "{view}: {:?}", rgb[0]);
         assert!(rgb[1][0] > 2.0 * rgb[1][1] && rgb[1][0] > 2.0 * rgb[1][2], "{view}: {:?}", rgb[1]);
         assert!(rgb[2].iter().all(|v| *v < 0.01), "{view}: {:?}", rgb[2]);
     }
+}
+
+/// `grade: auto` prints each frame to the paper's black and white, and a flat one as the meter has it.
+#[test]
+fn an_automatic_print_is_made_for_the_frame() {
+    let automatic =
+        build("stock: kodak-tri-x-400\nexposure: 1/60 s\ngrain: false\nscatter: false\npaper: {grade: auto}\n");
+    let metered = build("stock: kodak-tri-x-400\nexposure: 1/60 s\ngrain: false\nscatter: false\n");
+    let (automatic, metered) = (automatic.expect("sound"), metered.expect("sound"));
+    let shown = |film: &StockFilm, values: &[f32]| -> Vec<f32> {
+        let frame = frame_of(&["panchromatic"], &[values.to_vec()]);
+        film.develop(&frame).expect("complete").rgb.iter().map(|p| p[1]).collect()
+    };
+    let lightness = |y: f32| spectra_color::lab([f64::from(y); 3], [1.0; 3])[0];
+    // Unlit border, black to white in a chart, a highlight.
+    let chart: Vec<f32> = (0..1000).map(|i| if i < 100 { 0.0 } else { 0.025 * 5.0 * i as f32 / 1000.0 }).collect();
+    let mut print = shown(&automatic, &chart);
+    print.sort_by(f32::total_cmp);
+    let (black, white) = (lightness(print[2]), lightness(print[997]));
+    assert!(black <= 1.0 && white >= 99.0, "{black} {white}");
+    let flat: Vec<f32> = (0..1000).map(|i| 0.025 * (0.9 + 0.2 * i as f32 / 1000.0)).collect();
+    assert_eq!(shown(&automatic, &flat), shown(&metered, &flat));
+    assert!(automatic.describe().contains("grade of paper that suits it"), "{}", automatic.describe());
+    assert!(metered.describe().contains("paper of grade 2"), "{}", metered.describe());
 }
 
 fn square(side: u32, side_mm: f64, value: impl Fn(usize, usize) -> f32) -> ExposureFrame {

@@ -47,6 +47,37 @@ fn a_mid_gray_prints_neutral_and_colors_lead() {
     }
 }
 
+/// Exposures of the three records by a mid gray in the light of the balance, lx s.
+fn mid_gray(film: &ThreeStrip) -> [f32; 3] {
+    let light = illuminant("D55").expect("bundled").to_power(&BAND);
+    let v = spectra_spectrum::v_lambda();
+    let luminous: Vec<f64> = BAND.wavelengths_nm().map(|w| 683.0 * v.at(w)).collect();
+    // 10/5 lx s of a mid gray.
+    let scale = 2.0 / light.seen_by(&luminous);
+    [0, 1, 2].map(|i| (light.seen_by(&film.channels()[i].response) * scale) as f32)
+}
+
+/// a*, b* within 2 of neutral from 2 stops under mid gray to 3 over it, white the clear print.
+#[test]
+fn a_gray_scale_is_gray_and_reaches_white() {
+    let film = build("exposure: 1/60 s\n").expect("sound");
+    let [b, g, r] = mid_gray(&film);
+    let srgb = spectra_color::RgbSpace::srgb();
+    for half in -4..=10 {
+        let stops = f64::from(half) / 2.0;
+        let factor = spectra_core::math::pow(2.0, stops) as f32;
+        let shown = shown(&film, b * factor, g * factor, r * factor).map(f64::from);
+        let [l, a, b] = spectra_color::lab(srgb.to_xyz(shown), srgb.white_xyz());
+        println!("{stops:+.1}: {l:.1} {a:+.2} {b:+.2}");
+        assert!(stops > 3.0 || (a.abs() <= 2.0 && b.abs() <= 2.0), "{stops:+}: {l:.1} {a:+.2} {b:+.2}");
+        assert!(stops < 5.0 || l > 95.0, "{stops:+}: {l:.1}");
+    }
+    // The bare light as white: the clear print is a little darker than it.
+    let lamp = build("exposure: 1/60 s\nwhite: lamp\n").expect("sound");
+    let (film, lamp) = ([&film, &lamp]).map(|f| shown(f, b * 32.0, g * 32.0, r * 32.0)[1]).into();
+    assert!(lamp <= film, "{lamp} {film}");
+}
+
 #[test]
 fn parameters_are_checked() {
     for (yaml, word) in [

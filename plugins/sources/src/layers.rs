@@ -56,7 +56,7 @@ struct LayersParams {
     /// Luminance of white (255 of 8 bits, 1.0 of floating point), cd/m2 if bare.
     #[serde(default = "luminance")]
     luminance: Positive<Luminance>,
-    /// How RGB becomes a spectrum: a color model; `primaries` if absent.
+    /// How RGB becomes a spectrum: a color model; `smooth` if absent.
     color: Option<Part<StageOf<dyn ColorModel>>>,
 }
 

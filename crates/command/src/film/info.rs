@@ -100,6 +100,10 @@ fn to_json(stock: &Stock) -> Value {
         "minimum_density": stock.minimum_density.as_ref().map(|m| {
             json!({ "assumed": m.assumed, "remark": m.remark, "wavelength_nm_and_density": m.density.points() })
         }),
+        "interlayer": stock.interlayer.as_ref().map(|i| {
+            json!({ "assumed": i.assumed, "remark": i.remark, "inhibition": i.inhibition })
+        }),
+        "aim_density": stock.aim_density.map(|a| json!({ "red": a.red, "green": a.green, "blue": a.blue })),
         "granularity": stock.granularity.map(|g| {
             json!({ "rms": g.rms, "aperture_mm": g.aperture_mm, "density": g.density, "assumed": g.assumed })
         }),
@@ -215,6 +219,17 @@ fn text(stock: &Stock) -> String {
             let layers = if shares.len() > 1 { format!(", by layer {}", shares.join(" : ")) } else { String::new() };
             format!("{} enters the base, backing passes {}{layers}{assumed}", h.scattered, h.backing)
         }),
+    );
+    row(
+        "interlayer",
+        stock.interlayer.as_ref().map(|i| {
+            let assumed = if i.assumed { " (assumed)" } else { "" };
+            format!("{:?} log10 exposure per unit of dye{assumed}", i.inhibition)
+        }),
+    );
+    row(
+        "aim density",
+        stock.aim_density.map(|a| format!("red {}, green {}, blue {} for a mid gray", a.red, a.green, a.blue)),
     );
     row(
         "granularity",

@@ -8,11 +8,12 @@ mod printing;
 mod scan;
 mod viewing;
 
-pub use viewing::{Viewing, on_band};
+pub use scan::{DENSITY_OF_ONE, ScanScale};
+pub use viewing::{DARK_TO_AVERAGE, PictureWhite, Viewing, on_band};
 
 use crate::deposit::Deposit;
 use crate::emulsion::Emulsion;
-use crate::stock::{Process, Stock};
+use crate::stock::{Medium, Process, Stock};
 use frame::Tables;
 use printing::Printing;
 use scan::Scan;
@@ -59,23 +60,32 @@ enum Way {
 }
 
 impl Positive {
-    /// The film itself in transmitted light: a negative on a light table (the bare light is white), or a slide, projected
-    /// (the clear film is white).
+    /// The film itself in transmitted light: a negative on a light table (the bare light is white), or a slide, projected in
+    /// the dark.
     ///
     /// # Errors
     /// [`PositiveError::DarkLight`].
-    pub fn transmitted(stock: &Stock, film: &Emulsion, light: &Emission) -> Result<Self, PositiveError> {
+    pub fn transmitted(
+        stock: &Stock,
+        film: &Emulsion,
+        light: &Emission,
+        white: PictureWhite,
+    ) -> Result<Self, PositiveError> {
         let mut viewing = Viewing::by(light).ok_or(PositiveError::DarkLight)?;
         if stock.process == Process::Reversal {
-            let clear: Vec<f64> = (0..film.layers()).map(|i| film.range(i).0).collect();
-            let clear = viewing.xyz(film.deposit(), &clear);
-            viewing = viewing.between(0.0, clear);
+            viewing = viewing.in_the_dark();
+            if white == PictureWhite::Film {
+                let clear: Vec<f64> = (0..film.layers()).map(|i| film.range(i).0).collect();
+                let clear = viewing.xyz(film.deposit(), &clear);
+                viewing = viewing.between(0.0, clear);
+            }
         }
         Ok(Self::tabulated(film, Way::Look(viewing)))
     }
 
     /// Printed on `print` (developed as `printed`) by a printer whose lamp has the spectrum `lamp`, balanced for a mid gray
-    /// subject that left `gray_lx_s` on the negative, and looked at in `light`.
+    /// subject that left `gray_lx_s` on the negative (to the aim densities of the print stock, where it has such), and
+    /// looked at in `light`: projected in the dark, or on paper in a lit room.
     ///
     /// # Errors
     /// [`PositiveError`].
@@ -86,11 +96,13 @@ impl Positive {
         printed: Emulsion,
         lamp: &Emission,
         light: &Emission,
+        white: PictureWhite,
     ) -> Result<Self, PositiveError> {
-        let viewing = Viewing::by(light).ok_or(PositiveError::DarkLight)?;
+        let viewing = seen(print, light)?;
         let gray = film.neutral(spectra_core::math::log10(gray_lx_s));
         let unexposed = film.neutral(f64::NEG_INFINITY);
-        let printing = Printing::balanced(film.deposit(), &unexposed, &gray, print, printed, Some(lamp), viewing)?;
+        let printing =
+            Printing::balanced(film.deposit(), &unexposed, &gray, print, printed, Some(lamp), viewing, white)?;
         Ok(Self::tabulated(film, Way::Print(Box::new(printing))))
     }
 
@@ -106,26 +118,28 @@ impl Positive {
         print: &Stock,
         printed: Emulsion,
         light: &Emission,
+        white: PictureWhite,
     ) -> Result<Self, PositiveError> {
         if film.layers() != 3 || printed.layers() != 3 {
             return Err(PositiveError::NoPrintStock { stock: print.name.clone() });
         }
-        let viewing = Viewing::by(light).ok_or(PositiveError::DarkLight)?;
+        let viewing = seen(print, light)?;
         let gray: Vec<f64> =
             gray_lx_s.iter().enumerate().map(|(i, h)| film.amount(i, spectra_core::math::log10(*h))).collect();
         let unexposed = film.neutral(f64::NEG_INFINITY);
-        let printing = Printing::balanced(film.deposit(), &unexposed, &gray, print, printed, None, viewing)?;
+        let printing = Printing::balanced(film.deposit(), &unexposed, &gray, print, printed, None, viewing, white)?;
         Ok(Self::tabulated(film, Way::Print(Box::new(printing))))
     }
 
-    /// Scanned: density through the filters of the stock's densitometry, turned around on the slope of the straight part of
-    /// its curves, mid gray (`gray_lx_s` on the film) shown as such and unexposed film as black. Channels are shown as the
-    /// screen's, unmanaged, as a scanner does without a profile.
+    /// Scanned: density through the filters of the stock's densitometry. [`ScanScale::Picture`] turns it around along the curves
+    /// of a neutral subject, mid gray (`gray_lx_s` on the film) shown as such and unexposed film as black; up to half of white in
+    /// proportion to the light of the scene, above under a shoulder that ends where the film does. Channels are shown as the
+    /// screen's, unmanaged, as a scanner does without a profile. The other scales are for a file: its values are the scale's.
     ///
     /// # Errors
     /// [`PositiveError::NoGray`].
-    pub fn scanned(stock: &Stock, film: &Emulsion, gray_lx_s: f64) -> Result<Self, PositiveError> {
-        let scan = Scan::new(stock, film, gray_lx_s)?;
+    pub fn scanned(stock: &Stock, film: &Emulsion, gray_lx_s: f64, scale: ScanScale) -> Result<Self, PositiveError> {
+        let scan = Scan::new(stock, film, gray_lx_s, scale)?;
         Ok(Self::tabulated(film, Way::Scan(scan)))
     }
 
@@ -156,10 +170,38 @@ impl Positive {
         }
     }
 
+    /// The eye that looks at it: none in a scan.
+    #[must_use]
+    pub fn viewing(&self) -> Option<&Viewing> {
+        match &self.way {
+            Way::Look(viewing) => Some(viewing),
+            Way::Print(printing) => Some(&printing.viewing),
+            Way::Scan(_) => None,
+        }
+    }
+
+    /// Amounts in the print of a place of a negative; `None` where nothing is printed.
+    #[must_use]
+    pub fn print_amounts(&self, amounts: &[f64]) -> Option<Vec<f64>> {
+        match &self.way {
+            Way::Print(printing) => Some(printing.printed(&self.film, amounts)),
+            Way::Look(_) | Way::Scan(_) => None,
+        }
+    }
+
     /// The picture of a whole film: one plane of amounts a layer, of equal length. Within a code value of 8 bits of
     /// [`Positive::shown`] for each place.
     #[must_use]
     pub fn picture(&self, planes: &[&[f32]]) -> Vec<[f32; 3]> {
         self.tables.picture(planes, &self.way)
     }
+}
+
+/// How a print is looked at.
+fn seen(print: &Stock, light: &Emission) -> Result<Viewing, PositiveError> {
+    let viewing = Viewing::by(light).ok_or(PositiveError::DarkLight)?;
+    Ok(match print.medium {
+        Medium::Film => viewing.in_the_dark(),
+        Medium::Paper => viewing,
+    })
 }

@@ -1,11 +1,11 @@
 //! The printing light, and the exposure that a negative leaves of it on a print stock.
 
 use super::PositiveError;
-use super::viewing::{Viewing, on_band};
+use super::viewing::{PictureWhite, Viewing, on_band};
 use crate::deposit::{Deposit, third};
 use crate::emulsion::Emulsion;
 use crate::print::MID_GRAY;
-use crate::stock::{Process, Stock};
+use crate::stock::{AimDensity, Process, Stock};
 use spectra_core::math::{log10, pow};
 use spectra_core::spectral::BAND;
 use spectra_numerics::linear;
@@ -23,8 +23,9 @@ pub(super) struct Printing {
 }
 
 impl Printing {
-    /// Sets the printing light so that a negative of the amounts `gray` prints as a neutral gray that is shown as
-    /// [`MID_GRAY`] between the clear print (white) and the print of a negative of the amounts `unexposed` (black).
+    /// Sets the printing light so that a negative of the amounts `gray` prints as a gray of the color of white: as dense to the
+    /// eye as the aim densities of the print stock are, or else shown as [`MID_GRAY`]. White is the clear print or the lamp,
+    /// black the print of a negative of the amounts `unexposed`.
     ///
     /// A print stock of three layers is printed by an additive lamp house: `lamp` parted at 500 and 590 nm, each part with a
     /// strength of its own; one of a single layer by the whole of `lamp`. Without a lamp, each layer is printed alone, from a
@@ -37,6 +38,7 @@ impl Printing {
         emulsion: Emulsion,
         lamp: Option<&Emission>,
         viewing: Viewing,
+        white: PictureWhite,
     ) -> Result<Self, PositiveError> {
         if stock.process != Process::Print {
             return Err(PositiveError::NoPrintStock { stock: stock.name.clone() });
@@ -56,13 +58,26 @@ impl Printing {
         };
         let parts: Vec<Vec<Vec<f64>>> =
             (0..layers).map(|layer| (0..layers).map(|p| sensitivity(layer, p)).collect()).collect();
-        let clear = viewing.xyz(emulsion.deposit(), &(0..layers).map(|i| emulsion.range(i).0).collect::<Vec<_>>());
+        let clear = match white {
+            PictureWhite::Film => {
+                viewing.xyz(emulsion.deposit(), &(0..layers).map(|i| emulsion.range(i).0).collect::<Vec<_>>())
+            }
+            PictureWhite::Lamp => viewing.white(),
+        };
         let unbalanced = |reason: &'static str| PositiveError::Unbalanced { stock: stock.name.clone(), reason };
+        let aim = match stock.aim_density {
+            Some(aim) => Some(
+                aimed(stock, &emulsion, aim, &viewing)
+                    .ok_or_else(|| unbalanced("its dyes do not reach its aim densities"))?,
+            ),
+            None => None,
+        };
         let mut black = 0.0;
         let mut printing = None;
         // Black depends on the light and the light on black, but little: each pass is some hundred times closer.
         for _ in 0..8 {
-            let share = (black + MID_GRAY * (clear[1] - black)) / clear[1];
+            let shown = black + viewing.share_shown_as(MID_GRAY) * (clear[1] - black);
+            let share = aim.unwrap_or(shown) / clear[1];
             let wanted: Vec<f64> = clear.iter().map(|w| -log10(w * share)).collect();
             let amounts = match layers {
                 1 => emulsion.deposit().amounts_for(&wanted[1..2], &viewing.weights()[1..2], &[0.7]),
@@ -88,11 +103,15 @@ impl Printing {
             }
         }
         let printing = printing.ok_or_else(|| unbalanced("no light was found"))?;
-        let gray_y = printing.viewing.xyz(printing.emulsion.deposit(), &printing.printed(negative, gray))[1];
-        if gray_y <= black + 0.02 * (clear[1] - black) {
+        if printing.gray_luminance(negative, gray) <= black + 0.02 * (clear[1] - black) {
             return Err(unbalanced("its mid gray is hardly denser than unexposed film"));
         }
         Ok(printing)
+    }
+
+    /// What passes a mid gray printed to its aim, to the eye, relative to the bare light.
+    pub(super) fn gray_luminance(&self, negative: &Deposit, gray: &[f64]) -> f64 {
+        self.viewing.xyz(self.emulsion.deposit(), &self.printed(negative, gray))[1]
     }
 
     /// Amounts in the print of a negative.
@@ -105,4 +124,13 @@ impl Printing {
     pub(super) fn xyz(&self, negative: &Deposit, amounts: &[f64]) -> [f64; 3] {
         self.viewing.xyz(self.emulsion.deposit(), &self.printed(negative, amounts))
     }
+}
+
+/// Luminance, relative to the bare light, of a print stock developed to its aim densities.
+fn aimed(stock: &Stock, emulsion: &Emulsion, aim: AimDensity, viewing: &Viewing) -> Option<f64> {
+    let names: Vec<&str> = stock.layers.iter().map(|l| l.name.as_str()).collect();
+    let products = stock.densitometry.products(&names)?;
+    let wanted: Vec<f64> = names.iter().map(|name| aim.of(name)).collect::<Option<_>>()?;
+    let amounts = emulsion.deposit().amounts_for(&wanted, &products, &vec![0.7; names.len()])?;
+    Some(viewing.xyz(emulsion.deposit(), &amounts)[1])
 }

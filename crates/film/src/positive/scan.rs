@@ -1,30 +1,63 @@
-//! A negative, scanned and turned around.
+//! A negative, scanned: its densities, on a linear or a logarithmic scale, or turned around into a picture.
 
 use super::PositiveError;
 use crate::deposit::Deposit;
 use crate::emulsion::Emulsion;
+use crate::lookup::Lookup;
 use crate::print::MID_GRAY;
 use crate::stock::Stock;
-use spectra_color::{Gamut, RgbSpace, into_gamut};
-use spectra_core::math::{exp, log10};
+use spectra_color::{Gamut, RgbSpace, Transfer, into_gamut};
+use spectra_core::math::{exp, log, log10};
 use spectra_core::spectral::BAND;
 use std::f64::consts::LN_10;
 
+/// What a scanner gives.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ScanScale {
+    /// A picture to look at: turned around along the film's own curves, the highlights under a soft shoulder.
+    #[default]
+    Picture,
+    /// Density over unexposed film on the scale of Cineon files: value = (95 + density / 0.002) / 1023.
+    Log,
+    /// Density itself, base included: value = density / 4.
+    Density,
+}
+
+/// Code of unexposed film, density of a code, and the largest code of a Cineon file (G. Kennel, "Conversion of 10-bit Log Film
+/// Data to 8-bit Linear or Video Data for the Cineon Digital Film System", Eastman Kodak, 1995).
+const CINEON: (f64, f64, f64) = (95.0, 0.002, 1023.0);
+
+/// The density that the value 1 stands for on the linear scale.
+pub const DENSITY_OF_ONE: f64 = 4.0;
+
 /// Log10 of exposure on either side of mid gray over which the slope is taken: the span of ISO 6 in all.
 const HALF_SPAN: f64 = 0.65;
+
+/// Below this share of the slope around mid gray a curve is not turned around any more but goes on straight: there is more grain
+/// than tone.
+const LEAST_SLOPE: f64 = 0.25;
+
+/// Steps of the curves that are turned around.
+const STEPS: usize = 2048;
+
+/// Up to here a picture is in proportion to the light of the scene; the shoulder takes what is brighter.
+const KNEE: f64 = 0.5;
 
 /// A scanner, set for one film.
 #[derive(Clone, Debug)]
 pub(super) struct Scan {
     /// Spectral products of the scanner's channels, in the order red, green, blue; one for silver.
     pub weights: Vec<Vec<f64>>,
-    gray: Vec<f64>,
-    slope: Vec<f64>,
+    scale: ScanScale,
+    /// Density of unexposed film.
+    clear: Vec<f64>,
+    turned: Vec<Turned>,
     black: Vec<f64>,
+    shoulder: Shoulder,
 }
 
 impl Scan {
-    pub(super) fn new(stock: &Stock, film: &Emulsion, gray_lx_s: f64) -> Result<Self, PositiveError> {
+    pub(super) fn new(stock: &Stock, film: &Emulsion, gray_lx_s: f64, scale: ScanScale) -> Result<Self, PositiveError> {
         // Silver is neutral: any filter sees its density.
         let weights = match stock.densitometry.products(&["red", "green", "blue"]) {
             Some(products) => products,
@@ -33,19 +66,20 @@ impl Scan {
         let densities = |x: f64| read(film.deposit(), &film.neutral(x), &weights);
         let gray = log10(gray_lx_s);
         let (low, high) = (densities(gray - HALF_SPAN), densities(gray + HALF_SPAN));
-        let slope: Vec<f64> = low.iter().zip(&high).map(|(l, h)| (h - l) / (2.0 * HALF_SPAN)).collect();
-        let gray = densities(gray);
-        if slope.iter().any(|s| s.abs() < 0.05) {
+        let slopes: Vec<f64> = low.iter().zip(&high).map(|(l, h)| (h - l) / (2.0 * HALF_SPAN)).collect();
+        if slopes.iter().any(|s| *s < 0.05) {
             return Err(PositiveError::NoGray);
         }
+        let turned: Vec<Turned> =
+            (0..weights.len()).map(|i| Turned::new(|x| densities(x)[i], gray, LEAST_SLOPE * slopes[i])).collect();
         // What shows as black: no exposure.
-        let unexposed = densities(f64::NEG_INFINITY);
-        let mut scan = Self { weights, gray, slope, black: vec![0.0; 3] };
-        scan.black = (0..unexposed.len()).map(|i| scan.light(i, unexposed[i])).collect();
-        if scan.black.iter().any(|b| *b >= 0.9 * MID_GRAY) {
+        let clear = densities(f64::NEG_INFINITY);
+        let black: Vec<f64> = clear.iter().zip(&turned).map(|(d, t)| t.light(*d)).collect();
+        if black.iter().any(|b| *b >= 0.9 * MID_GRAY) {
             return Err(PositiveError::NoGray);
         }
-        Ok(scan)
+        let brightest = turned.iter().map(|t| t.brightest).fold(2.0, f64::max);
+        Ok(Self { weights, scale, clear, turned, black, shoulder: Shoulder::to(brightest) })
     }
 
     /// Densities of a place through the scanner's filters.
@@ -53,19 +87,110 @@ impl Scan {
         read(film, amounts, &self.weights)
     }
 
-    fn light(&self, channel: usize, density: f64) -> f64 {
-        MID_GRAY * exp(LN_10 * (density - self.gray[channel]) / self.slope[channel])
+    /// What the screen shows of densities: linear light. A scale is written so that the file's values are the scale's.
+    pub(super) fn shown(&self, densities: &[f64]) -> [f64; 3] {
+        let of = |i: usize| i.min(densities.len() - 1);
+        match self.scale {
+            ScanScale::Picture => {
+                let rgb = [0, 1, 2].map(|i| {
+                    let channel = of(i);
+                    let black = self.black[channel];
+                    let light = self.turned[channel].light(densities[channel]);
+                    // Mid gray keeps its place, black goes to 0.
+                    self.shoulder.at((light - black) * MID_GRAY / (MID_GRAY - black))
+                });
+                into_gamut(rgb, RgbSpace::srgb(), Gamut::Desaturate)
+            }
+            ScanScale::Log => {
+                let (foot, step, most) = CINEON;
+                let value = |d: f64, clear: f64| (foot + (d - clear) / step) / most;
+                [0, 1, 2].map(|i| written(value(densities[of(i)], self.clear[of(i)])))
+            }
+            ScanScale::Density => [0, 1, 2].map(|i| written(densities[of(i)] / DENSITY_OF_ONE)),
+        }
+    }
+}
+
+/// The linear light that a picture file holds as `value`.
+fn written(value: f64) -> f64 {
+    Transfer::Srgb.decode(value.clamp(0.0, 1.0))
+}
+
+/// A neutral subject's density, turned around into light: exposure over density, straight on where the curve gets flat.
+#[derive(Clone, Debug)]
+struct Turned {
+    low: f64,
+    high: f64,
+    /// Log10 of light over density between them.
+    table: Lookup,
+    ends: [f64; 2],
+    /// 1 over the slope beyond the ends.
+    least_slope: f64,
+    /// Light of the densest place of the curve.
+    brightest: f64,
+}
+
+impl Turned {
+    /// `density` over log10 exposure, with `gray` shown as mid gray; flatter than `least_slope` it is not turned around.
+    fn new(density: impl Fn(f64) -> f64, gray: f64, least_slope: f64) -> Self {
+        let step = 0.01;
+        let slope = |x: f64| (density(x + step) - density(x - step)) / (2.0 * step);
+        let end = |sign: f64| {
+            let mut x = gray;
+            while (x - gray).abs() < 6.0 && slope(x + sign * step) >= least_slope {
+                x += sign * step;
+            }
+            x
+        };
+        let (first, last) = (end(-1.0), end(1.0));
+        let (low, high) = (density(first), density(last));
+        let light = |d: f64| {
+            let (mut left, mut right) = (first, last);
+            for _ in 0..60 {
+                let middle = 0.5 * (left + right);
+                if density(middle) > d { right = middle } else { left = middle }
+            }
+            right - gray + log10(MID_GRAY)
+        };
+        let values = (0..=STEPS).map(|i| light(low + (high - low) * i as f64 / STEPS as f64)).collect();
+        let ends = [first, last].map(|x| x - gray + log10(MID_GRAY));
+        let turned =
+            Self { low, high, table: Lookup::from_values(low, high, values), ends, least_slope, brightest: 0.0 };
+        Self { brightest: turned.light(density(f64::INFINITY)), ..turned }
     }
 
-    /// What the screen shows of densities.
-    pub(super) fn shown(&self, densities: &[f64]) -> [f64; 3] {
-        let rgb = [0, 1, 2].map(|i| {
-            let channel = i.min(densities.len() - 1);
-            let black = self.black[channel];
-            // Mid gray keeps its place, black goes to 0.
-            (self.light(channel, densities[channel]) - black) * MID_GRAY / (MID_GRAY - black)
-        });
-        into_gamut(rgb, RgbSpace::srgb(), Gamut::Desaturate)
+    fn light(&self, density: f64) -> f64 {
+        let log10_light = if density < self.low {
+            self.ends[0] + (density - self.low) / self.least_slope
+        } else if density > self.high {
+            self.ends[1] + (density - self.high) / self.least_slope
+        } else {
+            self.table.at(density)
+        };
+        exp(LN_10 * log10_light)
+    }
+}
+
+/// Straight up to the knee, logarithmic above, without a break of slope, and 1 at the brightest that the film holds.
+#[derive(Clone, Copy, Debug)]
+struct Shoulder {
+    scale: f64,
+}
+
+impl Shoulder {
+    fn to(brightest: f64) -> Self {
+        // s ln(1 + (brightest - knee) / s) = 1 - knee, which rises with s.
+        let reach = |s: f64| s * log(1.0 + (brightest - KNEE) / s);
+        let (mut left, mut right) = (1e-9, 1e3);
+        for _ in 0..200 {
+            let middle = 0.5 * (left + right);
+            if reach(middle) > 1.0 - KNEE { right = middle } else { left = middle }
+        }
+        Self { scale: right }
+    }
+
+    fn at(self, light: f64) -> f64 {
+        if light <= KNEE { light } else { KNEE + self.scale * log(1.0 + (light - KNEE) / self.scale) }
     }
 }
 

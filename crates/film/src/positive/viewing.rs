@@ -1,10 +1,22 @@
 //! Light through a film to an eye: XYZ, and what a screen shows of it.
 
 use crate::deposit::Deposit;
+use crate::lookup::{Lookup, from_octaves, octaves};
 use spectra_color::matrix::{Matrix, apply, product};
 use spectra_color::{Adaptation, Gamut, RgbSpace, into_gamut};
+use spectra_core::math::pow;
 use spectra_core::spectral::BAND;
 use spectra_spectrum::{Emission, Observer};
+
+/// What is shown as white.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PictureWhite {
+    /// The clear film or print: a picture as one looks at it.
+    #[default]
+    Film,
+    /// The bare light: what the film holds back of it is seen.
+    Lamp,
+}
 
 /// Power of a light on the points of the band; a line is split between its two neighbors.
 #[must_use]
@@ -30,6 +42,37 @@ pub struct Viewing {
     to_rgb: Matrix,
     /// Luminance of what is taken for black, relative to the bare light.
     black: f64,
+    /// Of a picture seen in the dark.
+    surround: Option<Surround>,
+}
+
+/// What a dark surround does to a picture: it looks lighter and softer than the same in a lit room.
+#[derive(Clone, Debug)]
+struct Surround {
+    /// Luminance to what it is multiplied by, over octaves.
+    factor: Lookup,
+}
+
+/// Exponent of luminance by which a picture seen in a dark surround is shown on a screen in a lit one: the ratio of c, the
+/// impact of the surround, 0.525 in the dark to 0.69 in an average surround (CIE 159:2004, CIECAM02, table 1). Chromaticities
+/// stay, as in the system gamma of ITU-R BT.2100.
+pub const DARK_TO_AVERAGE: f64 = 0.525 / 0.69;
+
+/// Octaves under 1 and over 1 at which the surround is sampled, and steps an octave: within 2e-7 of the power.
+const SURROUND_OCTAVES: (f64, f64) = (126.0 - 24.0, 126.0 + 4.0);
+const SURROUND_STEPS: usize = 1024;
+
+impl Surround {
+    fn dark() -> Self {
+        let (low, high) = SURROUND_OCTAVES;
+        let steps = (high - low) as usize * SURROUND_STEPS;
+        let factor = |o: f64| pow(from_octaves(o), DARK_TO_AVERAGE - 1.0);
+        Self { factor: Lookup::new(low, high, steps, factor) }
+    }
+
+    fn factor(&self, luminance: f64) -> f64 {
+        if luminance > 0.0 { self.factor.at(octaves(luminance as f32)) } else { 0.0 }
+    }
 }
 
 impl Viewing {
@@ -45,7 +88,7 @@ impl Viewing {
         let weights: Vec<Vec<f64>> =
             functions.iter().map(|f| f.iter().zip(&power).map(|(f, p)| f * p / sum).collect()).collect();
         let white = [0, 1, 2].map(|i| weights[i].iter().sum());
-        Some(Self { weights, white, to_rgb: to_rgb(white), black: 0.0 })
+        Some(Self { weights, white, to_rgb: to_rgb(white), black: 0.0, surround: None })
     }
 
     /// The same with an eye that takes a film of the XYZ `white` for white, as one does of a slide in the dark and of a
@@ -53,6 +96,18 @@ impl Viewing {
     #[must_use]
     pub fn between(self, black: f64, white: [f64; 3]) -> Self {
         Self { black, white, to_rgb: to_rgb(white), ..self }
+    }
+
+    /// The same, seen in the dark, as projections are: shown with [`DARK_TO_AVERAGE`].
+    #[must_use]
+    pub fn in_the_dark(self) -> Self {
+        Self { surround: Some(Surround::dark()), ..self }
+    }
+
+    /// The luminance, as a share of white over black, that is shown as `shown`, both in linear light.
+    #[must_use]
+    pub fn share_shown_as(&self, shown: f64) -> f64 {
+        if self.surround.is_some() { pow(shown, 1.0 / DARK_TO_AVERAGE) } else { shown }
     }
 
     /// What weighs transmittances into XYZ.
@@ -83,10 +138,18 @@ impl Viewing {
     /// What the screen shows of XYZ: linear light, sRGB primaries, within its gamut.
     #[must_use]
     pub fn shown(&self, xyz: [f64; 3]) -> [f64; 3] {
+        into_gamut(apply(&self.to_rgb, self.seen(xyz)), RgbSpace::srgb(), Gamut::Desaturate)
+    }
+
+    /// XYZ as an eye in an average surround would have to meet them to see the same: black taken off, the surround allowed
+    /// for, white still [`Viewing::white`].
+    #[must_use]
+    pub fn seen(&self, xyz: [f64; 3]) -> [f64; 3] {
         // Taken off as so much of white: black is a veil over the whole picture.
         let veil = self.black / self.white[1];
         let seen = [0, 1, 2].map(|i| (xyz[i] - veil * self.white[i]) / (1.0 - veil));
-        into_gamut(apply(&self.to_rgb, seen), RgbSpace::srgb(), Gamut::Desaturate)
+        let factor = self.surround.as_ref().map_or(1.0, |s| s.factor(seen[1] / self.white[1]));
+        seen.map(|v| v * factor)
     }
 }
 

@@ -1,5 +1,6 @@
 //! A stock's YAML file: its keys, and the checks that need more than a type.
 
+use super::color::{AimDensityFile, InterlayerFile, Medium};
 use super::like::inherited;
 use super::material::{DyeFile, MinimumDensityFile, densitometry};
 use super::reciprocity::ReciprocityFile;
@@ -74,6 +75,9 @@ struct StockFile {
     /// a negative, which has no speed).
     #[serde(default)]
     process: ProcessFile,
+    /// What a print stock is coated on: `film` (the default; projected in the dark) or `paper` (looked at in a lit room).
+    #[serde(default)]
+    medium: Medium,
     /// How its densities were measured: `visual` (the default; silver), `status-a` (positives with dyes) or `status-m`
     /// (negatives with dyes).
     #[serde(default)]
@@ -99,6 +103,11 @@ struct StockFile {
     print: Option<String>,
     /// Spectrum of base, fog and mask of a film with dyes; nothing if absent.
     minimum_density: Option<MinimumDensityFile>,
+    /// What the layers of a color film do to each other; nothing if absent.
+    interlayer: Option<InterlayerFile>,
+    /// Of a color print stock: the densities that the print of a mid gray is timed to, base included (the laboratory aim
+    /// density, LAD, of Kodak's print films). A mid gray of the picture if absent.
+    aim_density: Option<AimDensityFile>,
     /// Granularity of its silver; no grain if absent.
     granularity: Option<GranularityFile>,
     /// What the base throws back, a halo around bright lights; nothing if absent.
@@ -270,6 +279,10 @@ pub(super) fn read(params: &Params, resources: &dyn Resources) -> Result<Stock, 
         let fault = params.fault("meter", "a meter with the film's own sensitivity needs a film with one layer");
         faults.push(fault.hint("`meter: photopic`, or leave it out"));
     }
+    if file.medium == Medium::Paper && process != Process::Print {
+        let fault = params.fault("medium", "paper is what negatives are printed on");
+        faults.push(fault.hint("`process: print`, or leave `medium` out"));
+    }
     let layers = layers(params, &file, reference.as_ref(), resources, &mut faults);
     faults.extend(unlike_developments(params, &file.layers));
     let densitometry = faults.take(densitometry(params, file.density, file.layers.len()));
@@ -286,6 +299,17 @@ pub(super) fn read(params: &Params, resources: &dyn Resources) -> Result<Stock, 
         let fault = params.fault("minimum-density", "curves of silver already include base and fog");
         faults.push(fault.hint("leave it out"));
     }
+    if file.interlayer.is_some() && dyes == 0 {
+        let fault = params.fault("interlayer", "one layer of silver has no other to act on");
+        faults.push(fault.hint("leave it out"));
+    }
+    let interlayer = file.interlayer.as_ref().filter(|_| dyes != 0);
+    let interlayer = interlayer.and_then(|i| faults.take(i.read(params, file.layers.len())));
+    if file.aim_density.is_some() && (process != Process::Print || dyes != 3) {
+        let fault = params.fault("aim-density", "what a print is timed to belongs to a print stock of three dyes");
+        faults.push(fault.hint("leave it out"));
+    }
+    let aim_density = file.aim_density.and_then(|aim| faults.take(aim.read(params)));
     let granularity = file.granularity.as_ref().and_then(|g| faults.take(g.read(params)));
     if file.granularity.is_some() && dyes != 0 {
         let fault = params.fault("granularity", "a film with dyes has a granularity in each layer");
@@ -308,6 +332,7 @@ pub(super) fn read(params: &Params, resources: &dyn Resources) -> Result<Stock, 
         licence: file.licence,
         remark: file.remark,
         process,
+        medium: file.medium,
         densitometry,
         year: file.year,
         iso: file.iso.map(|v| v.get()),
@@ -319,6 +344,8 @@ pub(super) fn read(params: &Params, resources: &dyn Resources) -> Result<Stock, 
         layers,
         bases,
         minimum_density,
+        interlayer,
+        aim_density,
         granularity,
         halation,
         print: file.print,

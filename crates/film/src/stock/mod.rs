@@ -1,5 +1,6 @@
 //! Film stocks: what a maker's sheet says, each value with its source; what is unknown is absent.
 
+mod color;
 mod file;
 mod like;
 mod material;
@@ -8,6 +9,7 @@ mod sensitivity;
 mod speed;
 mod structure;
 
+pub use color::{AimDensity, Interlayer, Medium};
 pub use material::{Densitometry, Dye, MinimumDensity, SpectralDensity};
 pub use reciprocity::Reciprocity;
 pub use sensitivity::{Reading, SensitivityError, SpectralSensitivity};
@@ -50,6 +52,8 @@ pub struct Stock {
     pub remark: Option<String>,
     /// What it is for.
     pub process: Process,
+    /// What a print stock is coated on.
+    pub medium: Medium,
     /// How the densities of its curves were measured.
     pub densitometry: Densitometry,
     /// Year in which it was first sold, where known.
@@ -72,6 +76,10 @@ pub struct Stock {
     pub bases: Vec<Base>,
     /// What is left where nothing was exposed, over wavelengths; `None` where the curves alone tell it.
     pub minimum_density: Option<MinimumDensity>,
+    /// What its layers do to each other; `None` where nothing is known of it.
+    pub interlayer: Option<Interlayer>,
+    /// Of a print stock of three dyes, what the print of a mid gray is timed to; `None` where its maker states none.
+    pub aim_density: Option<AimDensity>,
     /// How grainy its silver is; `None` where the sheet does not say, and of films with dyes.
     pub granularity: Option<Granularity>,
     /// What its back sends back; `None` where nothing is known of it.

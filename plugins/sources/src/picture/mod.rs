@@ -1,5 +1,6 @@
 //! `kind: picture`: a picture file on a plane at a distance, or with the depth that it states.
 
+mod bounds;
 mod deep;
 mod depth;
 mod field;
@@ -86,7 +87,7 @@ struct PictureParams {
     /// Luminance of white (255 of 8 bits, 1.0 of floating point), cd/m2 if bare.
     #[serde(default = "luminance")]
     luminance: Positive<Luminance>,
-    /// How RGB becomes a spectrum: a color model; `primaries` if absent.
+    /// How RGB becomes a spectrum: a color model; `smooth` if absent.
     color: Option<Part<StageOf<dyn ColorModel>>>,
     /// How far each pixel stands, from a depth channel; all on the plane if absent.
     depth: Option<Part<depth::DepthParams>>,
@@ -342,6 +343,7 @@ fn assemble(linear: Linear, name: &str, making: &Making) -> PictureMap {
         }
         Arc::new(Lights {
             importance: Arc::new(Importance::new(width, height, |i| found.level[i])),
+            touched: lights::touched(width, &found.level),
             level: found.level,
             mean: sums.map(|sum| model.spectrum(sum.map(|v| v.max(0.0))).scaled(scale)),
             peak_over_mean: found.peak_over_mean,
