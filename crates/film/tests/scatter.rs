@@ -172,6 +172,31 @@ fn a_point_is_one_round_falling_function_on_pixels_of_any_size() {
     }
 }
 
+/// Against `reference/spread.py`, which integrates in polar coordinates: every pixel down to 1e-6 of the peak, within 3 %.
+#[test]
+fn points_are_those_of_an_independent_program() {
+    let resources = FileResources::beside("/nowhere".as_ref());
+    let all: serde_json::Value = serde_json::from_str(include_str!("reference/spread.json")).expect("JSON");
+    let entries = all.as_array().expect("a list");
+    assert_eq!(entries.len(), 8 * 5);
+    for entry in entries {
+        let (name, layer) = (entry["stock"].as_str().expect("a name"), entry["layer"].as_str().expect("a name"));
+        let pitch = entry["pitch_um"].as_f64().expect("a pitch") / 1e3;
+        let stock = Stock::load(name, &resources).unwrap_or_else(|faults| panic!("{faults}"));
+        let layer = stock.layers.iter().find(|l| l.name == layer).expect("a layer");
+        let mtf = Modulation::measured(&layer.mtf).expect("a curve").mtf;
+        let raster = Raster::new(161, 161, pitch);
+        let mut plane = vec![0.0; raster.pixels()];
+        plane[80 * 161 + 80] = 1.0;
+        Scatter::new(&mtf, &raster).expect("a curve").apply(&mut plane);
+        for point in entry["points"].as_array().expect("points") {
+            let [i, j, want] = [0, 1, 2].map(|k| point[k].as_f64().expect("a number"));
+            let got = f64::from(plane[(80 + j as usize) * 161 + 80 + i as usize]);
+            assert!((got / want - 1.0).abs() < 0.03, "{name} {} {pitch} {i} {j}: {got} {want}", layer.name);
+        }
+    }
+}
+
 /// On fine pixels equal distances along rows and aslant have equal light: (3, 4) and 5, (5, 12) and 13, (8, 15) and 17.
 #[test]
 fn a_point_is_round() {

@@ -9,6 +9,7 @@ use spectra_core::math::log10;
 use spectra_core::spectral::BAND;
 use spectra_film::curve::{AVERAGE_GRADIENT_SPAN, CharacteristicCurve};
 use spectra_film::print::metered_exposure_lx_s;
+use spectra_film::scatter::Modulation;
 use spectra_film::stock::{ISO_6_SPAN, Layer, MeterResponse, Process, Reciprocity, SpeedKind, Stock};
 use spectra_spectrum::illuminant;
 use std::fmt::Write;
@@ -150,8 +151,18 @@ fn layer_json(stock: &Stock, layer: &Layer) -> Value {
         "wavelength_nm_and_log10_sensitivity": sensitivity(layer, 5),
         "dye": layer.dye.as_ref().map(|d| json!({ "name": d.name, "wavelength_nm_and_density": d.density.points() })),
         "cycles_per_mm_and_response": (!layer.mtf.is_empty()).then_some(&layer.mtf),
+        "modulation": modulation(layer).map(|m| {
+            let adjacency = m.adjacency.map(|a| json!({ "gain": a.gain, "length_mm": a.length_mm }));
+            json!({ "spread_mm_and_weight": m.mtf.spread().terms(), "adjacency": adjacency })
+        }),
+        "density_and_granularity": (!layer.granularity.is_empty()).then_some(&layer.granularity),
         "developments": developments,
     })
+}
+
+/// What its emulsion and its developer do to fine detail.
+fn modulation(layer: &Layer) -> Option<Modulation> {
+    Modulation::measured(&layer.mtf).ok()
 }
 
 /// Whether the speed point of ISO 6 means anything on its curves.
@@ -248,6 +259,19 @@ fn text(stock: &Stock) -> String {
         let _ = writeln!(out, "\nlayer {}{dye}: {from} to {to} nm{peak}{assumed}", layer.name);
         if let Some(ratio) = daylight_over_tungsten(layer).filter(|_| stock.process != Process::Print) {
             let _ = writeln!(out, "  speed in daylight over tungsten (ISO 7589): {ratio:.2}");
+        }
+        if let Some(modulation) = modulation(layer) {
+            let at = |f: f64| format!("{:.2} at {f}", modulation.response(f));
+            let edges = modulation.adjacency.map_or(String::new(), |a| {
+                format!("; adjacency adds up to {:.0} %, over {:.0} um", 100.0 * a.gain, 1e3 * a.length_mm)
+            });
+            let _ = writeln!(out, "  modulation: {}, {}, {} cycles/mm{edges}", at(10.0), at(30.0), at(60.0));
+        }
+        if let Some([density, rms]) =
+            layer.granularity.iter().min_by(|a, b| (a[0] - 0.7).abs().total_cmp(&(b[0] - 0.7).abs()))
+        {
+            let _ =
+                writeln!(out, "  granularity: RMS {rms} at {density:.2} over the minimum density, aperture 0.048 mm");
         }
         let silver = silver_negative(stock);
         let speeds = if silver { "   0.8/Hm" } else { "" };
