@@ -111,7 +111,7 @@ fn a_glass() {
     for (broken, place) in [
         (CROWN.replace("nd: 1.5168", "nd: 1.6168"), "crown.yaml:6:5"),
         (CROWN.replace("sellmeier-1", "sellmeyer-1"), "did you mean `sellmeier-1`?"),
-        (CROWN.replace(", 103.560653]", "]"), "`sellmeier-1` has 6"),
+        (CROWN.replace(", 103.560653]", "]"), "found a list of 5, expected a list of 6"),
         (CROWN.replace("0.997", "99.7"), "crown.yaml:8:52"),
     ] {
         write(folder.path(), "glasses/crown.yaml", &broken);

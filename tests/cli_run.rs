@@ -204,7 +204,7 @@ fn ctrl_c_keeps_what_there_is_within_a_second() {
 #[test]
 fn a_time_limit_ends_in_a_partial_picture_and_no_error() {
     let folder = tempfile::tempdir().expect("a folder");
-    let (mut child, mut events) = endless(folder.path(), &["--time-limit", "1500 ms"]);
+    let (mut child, mut events) = endless(folder.path(), &["--time-limit", "5 s"]);
     let mut rest = String::new();
     events.read_to_string(&mut rest).expect("UTF-8");
     assert_eq!(child.wait().expect("it ends").code(), Some(0));
@@ -212,7 +212,7 @@ fn a_time_limit_ends_in_a_partial_picture_and_no_error() {
     let report = json(&folder.path().join("biotar-ortho.json"));
     assert_eq!(report["partial"], true);
     let seconds = report["seconds"].as_f64().expect("a number");
-    assert!((0.2..1.6).contains(&seconds), "{seconds}");
+    assert!((0.2..5.1).contains(&seconds), "{seconds}");
 }
 
 /// Before light is traced there is nothing to write: said, and no folder is left behind.
@@ -504,7 +504,7 @@ fn each_film_gets_its_own_time() {
 #[test]
 fn a_reader_that_leaves_costs_no_picture() {
     let folder = tempfile::tempdir().expect("a folder");
-    let (mut child, events) = endless(folder.path(), &["--time-limit", "1500 ms"]);
+    let (mut child, events) = endless(folder.path(), &["--time-limit", "5 s"]);
     drop(events);
     let mut stderr = String::new();
     child.stderr.take().expect("piped").read_to_string(&mut stderr).expect("UTF-8");

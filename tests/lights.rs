@@ -58,6 +58,8 @@ fn scene(folder: &Path, source: &str) -> std::path::PathBuf {
     let front = |c: usize, r: usize| if is_in_front(c, r) { all(c, r) * cover(c, r) } else { 0.0 };
     exr_file(&folder.join("flat.exr"), &[("R", &behind), ("G", &behind), ("B", &behind)]);
     exr_file(&folder.join("deep.exr"), &[("R", &all), ("G", &all), ("B", &all), ("Z", &depth)]);
+    let far = |c: usize, r: usize| depth(if is_in_front(c, r) { 24 } else { c }, r);
+    exr_file(&folder.join("open.exr"), &[("R", &all), ("G", &all), ("B", &all), ("Z", &far)]);
     exr_file(&folder.join("front.exr"), &[("R", &front), ("G", &front), ("B", &front), ("A", &cover)]);
     let path = folder.join("scene.yaml");
     let text = format!(
@@ -142,6 +144,19 @@ fn lights_of_a_picture_with_depth() {
 #[test]
 fn lights_of_layers() {
     agree(LAYERS);
+}
+
+/// What stands in front of a lamp takes light from it and adds none: a lamp at its edge does not go on behind it.
+#[test]
+fn a_lamp_at_an_edge_is_no_brighter_for_it() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = scene(folder.path(), DEEP);
+    let sharp = ["render.direction=both", "render.samples=64", "lens.focus.distance=0.9 m", "render.rays=1000000"];
+    let seen = regions(&render(&path, &sharp).0);
+    let open = regions(&render(&path, &[&sharp[..], &["source.file=open.exr"]].concat()).0);
+    println!("{seen:?} {open:?}");
+    // The post is brighter by its own lamp, which is sharp now; what is hidden of the others is more.
+    assert!(seen[0] < open[0], "{} {}", seen[0], open[0]);
 }
 
 /// By itself both directions are taken where a picture has lights, and the noise of what they shine on falls.

@@ -221,6 +221,8 @@ def tri_x(folder):
         head=["", "process: negative", "density: visual", "year: 1954", "iso: 400",
               "reference-illuminant: iso-7589-sensitometric-daylight",
               "granularity: {rms: 17, aperture: 0.048 mm, density: 1}",
+              halation(0.35, ENTERS + "The base is gray, with about 0.2 of the density of unexposed film; with a dyed layer under the "
+                       "emulsion 0.35 passes once."), ACETATE,
               "reciprocity: {table: [[1, 2], [10, 50], [100, 1200]], above: 0.1 s}"],
         layers=[layer("panchromatic", pairs(data.log_sensitivity[0]),
                       [(f"{m}-min", m, curve[m]) for m in (6, 7, 9, 11)],
@@ -242,12 +244,28 @@ def double_x(folder):
         head=["", "process: negative", "density: visual", "year: 1959", "iso: 250", "iso-tungsten: 200",
               "speed: exposure-index",
               "reference-illuminant: iso-7589-sensitometric-daylight",
-              "granularity: {rms: 14, aperture: 0.048 mm, density: 1}"],
+              "granularity: {rms: 14, aperture: 0.048 mm, density: 1}",
+              halation(0.45, ENTERS + "The base is gray and there is no black backing (rem-jet), so lamps halate more than on color "
+                       "negatives: 0.45 passes once."), ACETATE],
         layers=[layer("panchromatic", pairs(data.log_sensitivity[0]),
                       [(f"{m}-min", m, curve[m]) for m in (6, 4, 5, 9, 12)],
                       mtf=data.mtf[0], sensitivity_remark=SENSITIVITY_REMARK)],
     )
 
+
+def halation(backing, remark, *, layers=None):
+    """`halation:` of a stock, for `head`: assumed, since no sheet gives figures."""
+    shares = f"\n  layers: {layers}" if layers else ""
+    return (f"halation:\n  scattered: 0.3\n  backing: {backing}\n  reflected: 0.3{shares}\n  assumed: true\n"
+            f"  remark: {folded(remark, '    ')}")
+
+
+# Of cellulose triacetate; five mils, as roll and motion-picture film is usually coated on.
+ACETATE = 'bases:\n  - {formats: "135", material: acetate, thickness: 0.13 mm, index: 1.48, assumed: true}'
+ENTERS = ("Sheets give no figures. Assumed: 0.3 of the light that exposes goes on into the base, and the emulsion throws 0.3 of what "
+          "comes back down again. ")
+DEPTH = ("What comes back meets the red layer first; the layers below take a part from green light on both ways, and the yellow "
+         "filter nearly all of blue, so that halos are red to orange.")
 
 DYES = ("cyan", "magenta", "yellow")
 LAYERS = ("red", "green", "blue")
@@ -289,6 +307,8 @@ def color_negative(folder):
         head=["", "process: negative", "density: status-m", "year: 2009", "iso: 250", "speed: exposure-index",
               "reference-illuminant: iso-7589-sensitometric-daylight",
               "print: kodak-vision-2383",
+              halation(0.3, ENTERS + "The black backing (rem-jet) lets 0.3 pass once, through it and the surfaces before it. " + DEPTH,
+                       layers=[0.01, 0.25, 1]), ACETATE,
               f"minimum-density:\n  table:{flow(pairs(data.d_min_sd), '    ')}",
               interlayer("negative", "Fitted so that the 18 chromatic patches of the ColorChecker, printed on 2383, have the "
                          "hue that the eye sees and about its chroma (xtask/fit_film_color.py). Rows and columns are blue, "
@@ -372,7 +392,9 @@ def reversal(folder):
         "be clearly blue, which no maker balances a film for: blue is moved by a quarter of a stop, and blue and red a "
         "little in density (more than the digitization errs), until a gray scale is gray.",
         head=["", "process: reversal", "density: status-a", "year: 2018", "iso: 100",
-              "reference-illuminant: iso-7589-sensitometric-daylight", flat_minimum(*low),
+              "reference-illuminant: iso-7589-sensitometric-daylight",
+              halation(0.3, ENTERS + "A layer of gray silver under the emulsion, bleached in processing, lets 0.3 pass once. " + DEPTH,
+                       layers=[0.01, 0.25, 1]), ACETATE, flat_minimum(*low),
               interlayer("reversal", "Fitted as that of kodak-vision3-250d-5207 was, and hardly needed. Rows and columns are "
                          "blue, green, red. No sheet tells it.")],
         layers=color_layers(data, rising=False, kind="reversal"),
@@ -409,7 +431,9 @@ def plate(slug, name, remark, iso, layer_name, points, sensitivity_remark, sourc
         slug, name=name, maker=None, source=source, remark=remark + PLATE_METER.format(d55=d55, a=a),
         head=["", "process: negative", "density: visual", *([f"year: {year}"] if year else []), f"iso: {iso}",
               "speed: assumed", "meter: film",
-              "reference-illuminant: iso-7589-sensitometric-daylight"],
+              "reference-illuminant: iso-7589-sensitometric-daylight",
+              halation(0.95, ENTERS + "The plate is not backed, as most were sold: clear glass lets 0.95 pass once, and halos are the "
+                       "largest of all. Plates that were backed with a dark varnish had hardly any: `halation: off`.")],
         layers=[lines[:-1] + PLATE_CURVE],
         tail=["", "# Thin plate glass; thickness and index vary from maker to maker.", *GLASS],
     )

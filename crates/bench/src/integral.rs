@@ -64,6 +64,7 @@ pub(crate) fn measure(
         let seed = draws.first_seed.wrapping_add(seed);
         let numbers = match draws.kind {
             NumberKind::Sobol => Numbers::sobol(seed),
+            NumberKind::Lattice => Numbers::lattice(seed),
             NumberKind::Random => Numbers::random(seed),
             NumberKind::Stratified => Numbers::stratified(seed, draws.samples),
         };

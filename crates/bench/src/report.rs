@@ -29,6 +29,8 @@ impl Measure {
 pub enum NumberKind {
     /// Owen-scrambled Sobol points. In the one dimension of the wavelength, 2^k of them are 2^k jittered strata.
     Sobol,
+    /// A shifted lattice.
+    Lattice,
     /// Independent random numbers.
     Random,
     /// Jittered strata, as many as there are samples.
@@ -41,6 +43,7 @@ impl NumberKind {
     pub fn name(self) -> &'static str {
         match self {
             Self::Sobol => "sobol",
+            Self::Lattice => "lattice",
             Self::Random => "random",
             Self::Stratified => "stratified",
         }

@@ -58,6 +58,7 @@ pub fn bench(
     let mut series = Vec::new();
     let (own, other) = match scene.render.numbers {
         NumberFamily::Sobol => (NumberKind::Sobol, NumberKind::Random),
+        NumberFamily::Lattice => (NumberKind::Lattice, NumberKind::Random),
         NumberFamily::Random => (NumberKind::Random, NumberKind::Sobol),
         NumberFamily::Stratified => (NumberKind::Stratified, NumberKind::Random),
     };

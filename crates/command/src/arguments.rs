@@ -103,7 +103,7 @@ pub(crate) struct Completions {
         it is stopped early.",
     after_long_help = "Examples: a bundled scene; a quick preview of it stopped down, written to the folder `try`\n  \
         spectra run biotar-ortho\n  \
-        spectra run biotar-ortho --samples 16 --set lens.f-number=f/4 --output try"
+        spectra run biotar-ortho --quality preview --set lens.f-number=f/4 --output try"
 )]
 pub(crate) struct Run {
     /// A scene file, or the name of a bundled scene (see `spectra list scene`).
@@ -124,6 +124,14 @@ pub(crate) struct Run {
     /// number of rays scales in proportion.
     #[arg(short, long, value_name = "N", value_parser = samples)]
     pub samples: Option<u32>,
+    /// Stop where the picture is clean: the noise of a pixel (1%), of luminance or of the worst layer; overriding the
+    /// scene's. Samples are then the most that a pixel gets.
+    #[arg(long, value_name = "PERCENT")]
+    pub noise: Option<String>,
+    /// How clean: `preview` is 5 % of noise or 256 samples a pixel, `final` 1 % or 8192, whichever comes first; --noise and
+    /// --samples override these.
+    #[arg(long, value_name = "QUALITY")]
+    pub quality: Option<Quality>,
     /// Stop after this time (30s, 5min), counted from the start of the program, and write the picture so far; nothing
     /// is written if the scene is not ready to render by then.
     #[arg(long, value_name = "TIME", value_parser = parse::<Positive<Time>>)]
@@ -154,6 +162,23 @@ pub(crate) struct Set {
             Examples: --set film.exposure=\"1/125 s\"  --set lens.f-number=f/4  --set output=[exr]"
     )]
     pub overrides: Vec<String>,
+}
+
+/// The word of `--quality`.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+pub(crate) enum Quality {
+    Preview,
+    Final,
+}
+
+impl Quality {
+    /// Noise, and the most samples a pixel.
+    pub fn figures(self) -> (&'static str, u32) {
+        match self {
+            Self::Preview => ("5 %", 256),
+            Self::Final => ("1 %", 8192),
+        }
+    }
 }
 
 /// The number of `--samples`.

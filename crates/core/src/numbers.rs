@@ -7,6 +7,8 @@
 //! "Constructing Sobol sequences with better two-dimensional projections", SIAM J. Sci. Comput. 30
 //! (2008); hash-based nested scrambling by S. Laine and T. Karras (2011) with the constants of
 //! B. Burley, "Practical hash-based Owen scrambling", J. Computer Graphics Techniques 9 (2020).
+//! [`Numbers::lattice`] draws from an extensible rank-1 lattice (F. J. Hickernell, H. S. Hong, P. L'Ecuyer and C. Lemieux,
+//! "Extensible lattice sequences for quasi-Monte Carlo quadrature", SIAM J. Sci. Comput. 22 (2000)), shifted.
 //! [`Numbers::random`] draws independent numbers with the SplitMix64 finalizer; [`Numbers::stratified`] draws jittered numbers,
 //! one in each of n equal parts, in a separate order for each dimension.
 //!
@@ -45,9 +47,15 @@ pub const SOBOL_DIMENSIONS: usize = 8;
 pub(crate) enum Kind {
     Random,
     Sobol,
+    /// A shifted lattice.
+    Lattice,
     /// Jittered, in this many strata, at least 1.
     Stratified(u32),
 }
+
+/// Generator of the lattice, a whole number of 1 / 2^32 a dimension: the best of 79 with random last bits, by the error of random
+/// vignetted integrands at 16 to 256 points.
+const LATTICE: [u32; 5] = [1, 136_980_787, 1_326_550_667, 3_009_221_399, 872_425_555];
 
 /// A family of numbers in [0, 1).
 #[derive(Clone, Debug)]
@@ -176,6 +184,13 @@ impl Numbers {
         Self::new(Kind::Sobol, seed)
     }
 
+    /// A rank-1 lattice in the five [`Dimension`]s, its points in the order of the radical inverse so that every power of two of
+    /// them is a lattice, too; each stream and dimension has a shift of its own. Evener than Sobol points where the light is smooth.
+    #[must_use]
+    pub fn lattice(seed: u64) -> Self {
+        Self::new(Kind::Lattice, seed)
+    }
+
     /// Independent random numbers.
     #[must_use]
     pub fn random(seed: u64) -> Self {
@@ -212,6 +227,12 @@ impl Numbers {
             return;
         }
         let d = dimension as usize;
+        if self.kind == Kind::Lattice {
+            let Some(step) = LATTICE.get(d).copied() else {
+                return isa.run(FillRandom { key: self.key(stream, dimension), first, out });
+            };
+            return isa.run(FillLattice { step, key: self.key(stream, dimension), first, out });
+        }
         let mut at = first;
         let mut rest = out;
         while !rest.is_empty() {
@@ -312,6 +333,26 @@ impl Vectorized for FillRandom<'_> {
         for (i, out) in self.out.iter_mut().enumerate() {
             let sample = self.first.wrapping_add(i as u64);
             *out = unit_from_u64(mix64(self.key.wrapping_add(sample.wrapping_mul(GOLDEN))));
+        }
+    }
+}
+
+struct FillLattice<'a> {
+    step: u32,
+    key: u64,
+    first: u64,
+    out: &'a mut [f64],
+}
+
+impl Vectorized for FillLattice<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run(self) {
+        for (i, out) in self.out.iter_mut().enumerate() {
+            let sample = self.first.wrapping_add(i as u64);
+            // Beyond 2^32 samples: another shift of the same points.
+            let shift = (self.key ^ (sample >> 32).wrapping_mul(GOLDEN)) as u32;
+            *out = unit_from_u32((sample as u32).reverse_bits().wrapping_mul(self.step).wrapping_add(shift));
         }
     }
 }
@@ -426,7 +467,7 @@ mod tests {
     /// Rotated numbers depend on the sample alone, and a group is evenly spaced.
     #[test]
     fn rotated_numbers_do_not_depend_on_the_cut_and_cover_evenly() {
-        for numbers in [Numbers::sobol(7), Numbers::random(7)] {
+        for numbers in [Numbers::sobol(7), Numbers::lattice(7), Numbers::random(7)] {
             for group in [1, 2, 3, 4, 7, 1000] {
                 let mut whole = vec![0.0; 1000];
                 numbers.fill_rotated(Isa::Baseline, 42, 0, group, 0, &mut whole);
@@ -466,6 +507,24 @@ mod tests {
                 assert!(seen.iter().all(|s| *s == 1), "dimension {d}");
             }
         }
+    }
+
+    /// Every power of two of points has one in each of as many equal parts, in each dimension, and each point is uniform over seeds.
+    #[test]
+    fn lattice_points_are_stratified_in_each_dimension() {
+        for stream in 0..20 {
+            for d in 0..LATTICE.len() as u32 {
+                for many in [16_usize, 256, 1024] {
+                    let mut u = vec![0.0; many];
+                    Numbers::lattice(3).fill(Isa::detect(), stream, 4 * many as u64, d, &mut u);
+                    let mut seen = vec![0; many];
+                    u.iter().for_each(|v| seen[(v * many as f64) as usize] += 1);
+                    assert!(seen.iter().all(|s| *s == 1), "dimension {d}");
+                }
+            }
+        }
+        let mean = (0..4096).map(|seed| Numbers::lattice(seed).one(7, 5, 3)).sum::<f64>() / 4096.0;
+        assert!((mean - 0.5).abs() < 4.0 * (1.0_f64 / 12.0 / 4096.0).sqrt(), "{mean}");
     }
 
     /// The first two dimensions form a (0, 2, 2)-net: every elementary interval of 2^m points contains one.

@@ -7,7 +7,8 @@ use spectra_film::scatter::{Mtf, Scatter};
 use std::path::Path;
 use std::time::Instant;
 
-const BASE: HalationBase = HalationBase { thickness_mm: 0.125, index: 1.48, entering: 0.3, transmittance: 0.9 };
+const BASE: HalationBase =
+    HalationBase { thickness_mm: 0.125, index: 1.48, entering: 0.3, transmittance: 0.9, reflected: 0.0 };
 
 fn save(folder: &Path, name: &str, width: usize, height: usize, value: impl Fn(usize) -> f64) {
     let pixel =

@@ -4,12 +4,14 @@
 //!
 //! - [`stock`]: what a film sees and how it answers, from a data file;
 //! - [`curve`]: density over log exposure; [`emulsion`], [`develop`]: exposure to amounts of silver or dye;
+//! - [`scatter`], [`halation`] before the curve, [`adjacency`], [`grain`] after it: what film does beyond one place;
 //! - [`deposit`]: what those hold back, wavelength by wavelength;
 //! - [`mod@print`]: a black-and-white negative on paper; [`positive`]: any film on a print stock, as a scan, projected;
 //! - [`display`]: absolute XYZ to a screen, with automatic exposure as one explicit step.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
+pub mod adjacency;
 mod convolve;
 mod cube;
 pub mod curve;

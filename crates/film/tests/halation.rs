@@ -3,7 +3,8 @@
 use spectra_film::halation::{Halation, HalationBase};
 use spectra_film::raster::Raster;
 
-const ACETATE: HalationBase = HalationBase { thickness_mm: 0.125, index: 1.48, entering: 0.4, transmittance: 0.9 };
+const ACETATE: HalationBase =
+    HalationBase { thickness_mm: 0.125, index: 1.48, entering: 0.4, transmittance: 0.9, reflected: 0.0 };
 
 /// A point of `light` in the pixel (`x`, `y`).
 fn point(base: &HalationBase, raster: &Raster, x: usize, y: usize, light: f32) -> Vec<f32> {

@@ -114,6 +114,7 @@ impl Pipeline {
     pub(crate) fn numbers(&self, seed: u64) -> Numbers {
         match self.scene.render.numbers {
             NumberFamily::Sobol => Numbers::sobol(seed),
+            NumberFamily::Lattice => Numbers::lattice(seed),
             NumberFamily::Random => Numbers::random(seed),
             NumberFamily::Stratified => Numbers::stratified(seed, self.scene.render.samples),
         }

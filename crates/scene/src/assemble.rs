@@ -120,7 +120,7 @@ struct RenderSection {
     /// Rays that are traced together, a whole number from 8 to 65536; 256 if absent. It changes the speed, not the
     /// picture.
     batch: Option<Whole<8, 65_536>>,
-    /// Where numbers come from: `sobol` (the default; evenest), `random` or `stratified`.
+    /// Where numbers come from: `sobol` (the default), `lattice` (evener where light is smooth, not at edges), `random` or `stratified`.
     #[serde(default)]
     numbers: NumberFamily,
     /// How rays fill the aperture: `disk` (the default), `rings` (of equal area) or `random`.

@@ -67,6 +67,8 @@ pub enum NumberFamily {
     /// Owen-scrambled Sobol points.
     #[default]
     Sobol,
+    /// A rank-1 lattice, shifted for each pixel.
+    Lattice,
     /// Independent random numbers.
     Random,
     /// Jittered strata, as many as a pixel has samples (forward: as the scene states `samples`).

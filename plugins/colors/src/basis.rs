@@ -2,6 +2,7 @@
 
 use spectra_color::matrix;
 use spectra_core::batch::CONTINUUM;
+use spectra_core::isa::{Isa, Vectorized};
 use spectra_core::spectral::{Grid, Line, SpectralPower};
 use spectra_core::stage::ColorModel;
 use spectra_spectrum::Observer;
@@ -11,6 +12,8 @@ use spectra_spectrum::Observer;
 pub struct Basis {
     grid: Grid,
     continua: [Vec<f64>; 3],
+    /// The same, side by side at each wavelength.
+    powers: Vec<[f64; 3]>,
     lines_nm: Vec<f64>,
     /// Power of each line at full red, green, blue.
     line_powers: Vec<[f64; 3]>,
@@ -32,7 +35,9 @@ impl Basis {
                 line_powers[at][channel] += line.power;
             }
         }
-        Self { grid: spectra[0].grid, continua: spectra.clone().map(|s| s.continuum), lines_nm, line_powers }
+        let continua = spectra.clone().map(|s| s.continuum);
+        let powers = (0..spectra[0].grid.count).map(|i| continua.each_ref().map(|c| c[i])).collect();
+        Self { grid: spectra[0].grid, continua, powers, lines_nm, line_powers }
     }
 
     /// The same, with each channel scaled so that white, (1, 1, 1), has the chromaticity of `white`.
@@ -77,14 +82,47 @@ impl ColorModel for Basis {
     }
 
     fn evaluate(&self, coefficients: &[[f32; 3]], wavelength_nm: &[f64], line: &[u32], weight: &mut [f64]) {
-        for i in 0..weight.len() {
-            let color = coefficients[i].map(f64::from);
+        Isa::detect().run(Mix { basis: self, coefficients, wavelength_nm, line, weight });
+    }
+}
+
+/// Multiplies weights by the power of colors.
+struct Mix<'a> {
+    basis: &'a Basis,
+    coefficients: &'a [[f32; 3]],
+    wavelength_nm: &'a [f64],
+    line: &'a [u32],
+    weight: &'a mut [f64],
+}
+
+impl Vectorized for Mix<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run(self) {
+        let Self { basis, coefficients, wavelength_nm, line, weight } = self;
+        let (grid, last) = (basis.grid, basis.grid.count - 1);
+        let len = weight.len();
+        let (coefficients, wavelength_nm, line) = (&coefficients[..len], &wavelength_nm[..len], &line[..len]);
+        for i in 0..len {
+            let [r, g, b] = coefficients[i];
             let powers = if line[i] == CONTINUUM {
-                [0, 1, 2].map(|c| self.grid.interpolate(&self.continua[c], wavelength_nm[i]))
+                // As `Grid::interpolate` does, for three tables at once.
+                let place = (wavelength_nm[i] - grid.start_nm) / grid.step_nm;
+                if place >= 0.0 && place <= last as f64 {
+                    let at = (place as i32 as usize).min(last.saturating_sub(1));
+                    let (low, high, part) = (basis.powers[at], basis.powers[(at + 1).min(last)], place - at as f64);
+                    [
+                        low[0] + (high[0] - low[0]) * part,
+                        low[1] + (high[1] - low[1]) * part,
+                        low[2] + (high[2] - low[2]) * part,
+                    ]
+                } else {
+                    [0.0; 3]
+                }
             } else {
-                self.line_powers.get(line[i] as usize).copied().unwrap_or_default()
+                basis.line_powers.get(line[i] as usize).copied().unwrap_or_default()
             };
-            weight[i] *= color[0] * powers[0] + color[1] * powers[1] + color[2] * powers[2];
+            weight[i] *= f64::from(r) * powers[0] + f64::from(g) * powers[1] + f64::from(b) * powers[2];
         }
     }
 }

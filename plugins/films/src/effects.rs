@@ -6,10 +6,12 @@ use serde::Deserialize;
 use spectra_core::frame::FrameSize;
 use spectra_core::numbers::seed_of_frame;
 use spectra_core::params::{Faults, Length, Params, Positive};
+use spectra_film::adjacency::{Adjacency, Edges};
+use spectra_film::emulsion::Emulsion;
 use spectra_film::grain::Grain;
 use spectra_film::halation::{Halation, HalationBase};
 use spectra_film::raster::Raster;
-use spectra_film::scatter::{Mtf, Scatter};
+use spectra_film::scatter::{Modulation, Mtf, Scatter};
 use spectra_film::stock::{Densitometry, Stock};
 
 /// `halation` as written in a scene; see [`HalationBase`].
@@ -27,14 +29,52 @@ pub struct HalationParams {
     /// Refractive index of the base, above 1 to 4; the stock's if left out.
     #[schemars(extend("exclusiveMinimum" = 1, "maximum" = 4))]
     pub index: Option<f64>,
+    /// Share of what comes back that the emulsion throws down again, for another trip, 0 to 0.95; the stock's if left
+    /// out, or 0.
+    #[schemars(range(min = 0, max = 0.95))]
+    pub reflected: Option<f64>,
+}
+
+/// Nothing of it.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Off {
+    /// None.
+    Off,
+}
+
+/// `halation` as written in a scene: figures, or none.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum HalationSetting {
+    /// No halation.
+    Word(Off),
+    /// The film's back.
+    Back(HalationParams),
+}
+
+/// `assumed` as written in a scene.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+pub enum Assumed {
+    /// Assumed figures count.
+    #[default]
+    On,
+    /// Only what is measured or stated counts.
+    Off,
 }
 
 /// The effects of one film.
 #[derive(Clone, Debug)]
 pub(crate) struct Effects {
-    /// Of each layer, where it is known.
+    /// How each layer spreads light, where it is known.
     mtf: Vec<Option<Mtf>>,
-    halation: Option<HalationBase>,
+    /// How the edges of each layer are developed, where they stand out.
+    adjacency: Vec<Option<Adjacency>>,
+    /// Of each layer that light comes back to.
+    halation: Vec<Option<HalationBase>>,
+    /// Which of the effects rest on assumed figures.
+    assumed: Vec<&'static str>,
     /// RMS granularity at 48 um and the density 1.
     rms: Option<f64>,
     /// Which piece of film it is.
@@ -55,12 +95,17 @@ impl Effects {
             let text = format!("{} has no modulation transfer in its file", stock.name);
             faults.push(params.fault("scatter", text).hint("leave it out, or give the stock's layers an `mtf`"));
         }
-        let scatters = p.scatter.unwrap_or(true);
-        let mut mtf = Vec::new();
+        let (mut mtf, mut adjacency) = (Vec::new(), Vec::new());
         for layer in &stock.layers {
-            let measured = (scatters && !layer.mtf.is_empty())
-                .then(|| Mtf::measured(&layer.mtf).map_err(|e| params.fault("stock", format!("{}: {e}", stock.name))));
-            mtf.push(measured.and_then(|m| faults.take(m)));
+            let unfit = |e| params.fault("stock", format!("{}: {e}", stock.name));
+            let parts = (!layer.mtf.is_empty()).then(|| Modulation::measured(&layer.mtf).map_err(unfit));
+            let parts = parts.and_then(|m| faults.take(m));
+            adjacency.push(parts.as_ref().and_then(|m| m.adjacency).filter(|_| p.adjacency.unwrap_or(true)));
+            mtf.push(parts.map(|m| m.mtf).filter(|_| p.scatter.unwrap_or(true)));
+        }
+        if p.adjacency == Some(true) && adjacency.iter().all(Option::is_none) {
+            let text = format!("{} has no modulation transfer above 1 in its file", stock.name);
+            faults.push(params.fault("adjacency", text).hint("leave it out, or give the stock's layers an `mtf`"));
         }
         let grainy = stock.granularity.filter(|_| stock.densitometry == Densitometry::Visual);
         if p.grain == Some(true) && grainy.is_none() {
@@ -76,7 +121,16 @@ impl Effects {
             faults.push(params.fault("stock", format!("{}: {error}", stock.name)));
         }
         let halation = halation(p, params, stock, &mut faults);
-        faults.into_result(Self { mtf, halation, rms, piece: p.grain_seed, seed: p.grain_seed })
+        let mut assumed = Vec::new();
+        if p.halation.is_none() && halation.iter().any(Option::is_some) && halation_is_assumed(stock) {
+            assumed.push("halation");
+        }
+        faults.into_result(Self { mtf, adjacency, halation, assumed, rms, piece: p.grain_seed, seed: p.grain_seed })
+    }
+
+    /// Which of the effects rest on assumed figures.
+    pub(crate) fn assumed(&self) -> &[&'static str] {
+        &self.assumed
     }
 
     /// Other grains for each frame of an animation.
@@ -87,10 +141,15 @@ impl Effects {
     /// Whether pixels of a frame are square, where anything on the film needs that.
     pub(crate) fn check_frame(&self, size: &FrameSize) -> Result<(), [String; 2]> {
         let [across, down] = pixel_mm(size);
-        let any = self.halation.is_some() || self.rms.is_some() || self.mtf.iter().any(Option::is_some);
+        let edges = self.adjacency.iter().any(Option::is_some);
+        let any = edges
+            || self.halation.iter().any(Option::is_some)
+            || self.rms.is_some()
+            || self.mtf.iter().any(Option::is_some);
         if any && (across / down - 1.0).abs() > 0.01 {
-            let text = format!("scatter, halation and grain need square pixels, not {across:.5} x {down:.5} mm");
-            let hint = "a resolution of the format's shape, or `scatter: false, grain: false` for the film";
+            let text =
+                format!("scatter, halation, adjacency and grain need square pixels, not {across:.5} x {down:.5} mm");
+            let hint = "a resolution of the format's shape, or `scatter: false, adjacency: false, halation: off, grain: false` for the film";
             return Err([text, hint.to_owned()]);
         }
         Ok(())
@@ -108,10 +167,18 @@ impl Effects {
         if let Some(mtf) = &self.mtf[layer] {
             Scatter::new(mtf, raster).map_err(|e| e.to_string())?.apply(plane);
         }
-        if let Some(base) = &self.halation {
+        if let Some(base) = &self.halation[layer] {
             Halation::new(base, raster).map_err(|e| e.to_string())?.apply(plane);
         }
         Ok(())
+    }
+
+    /// Develops the edges of a layer.
+    pub(crate) fn edges(&self, layer: usize, plane: &mut [f32], emulsion: &Emulsion, raster: &Raster) {
+        if let Some(adjacency) = &self.adjacency[layer] {
+            let unexposed = emulsion.amount(layer, f64::NEG_INFINITY);
+            Edges::new(adjacency, raster).apply(plane, unexposed, emulsion.range(layer));
+        }
     }
 
     /// Turns the densities of a layer into those of its grains; `clear` is that of base and fog, which has none.
@@ -125,28 +192,48 @@ impl Effects {
     }
 }
 
-fn halation(p: &StockParams, params: &Params, stock: &Stock, faults: &mut Faults) -> Option<HalationBase> {
+/// Whether the stock's own halation, or the base that it is computed with, is assumed.
+fn halation_is_assumed(stock: &Stock) -> bool {
+    stock.halation.as_ref().is_some_and(|h| h.assumed) || stock.bases.first().is_some_and(|b| b.assumed)
+}
+
+/// That of each layer; all `None` where there is none.
+fn halation(p: &StockParams, params: &Params, stock: &Stock, faults: &mut Faults) -> Vec<Option<HalationBase>> {
+    let none = vec![None; stock.layers.len()];
     let base = stock.bases.first();
-    let (entering, transmittance) = match (&p.halation, &stock.halation) {
-        (Some(h), _) => (h.entering, h.transmittance),
-        (None, Some(h)) => (h.scattered, h.backing),
-        (None, None) => return None,
+    let (own, of_stock) = match (p.halation, &stock.halation) {
+        (Some(HalationSetting::Word(Off::Off)), _) | (None, None) => return none,
+        (Some(HalationSetting::Back(h)), of_stock) => (Some(h), of_stock.as_ref()),
+        (None, Some(_)) if p.assumed == Assumed::Off && halation_is_assumed(stock) => return none,
+        (None, Some(h)) => (None, Some(h)),
     };
-    let thickness_mm = p.halation.and_then(|h| h.thickness).map(|t| t.mm()).or_else(|| base.map(|b| b.thickness_mm));
-    let index = p.halation.and_then(|h| h.index).or_else(|| base.and_then(|b| b.index));
+    let figures = match (own, of_stock) {
+        (Some(h), _) => Some((h.entering, h.transmittance)),
+        (None, Some(h)) => Some((h.scattered, h.backing)),
+        (None, None) => None,
+    };
+    let Some((entering, transmittance)) = figures else { return none };
+    let thickness_mm = own.and_then(|h| h.thickness).map(|t| t.mm()).or_else(|| base.map(|b| b.thickness_mm));
+    let index = own.and_then(|h| h.index).or_else(|| base.and_then(|b| b.index));
     let (Some(thickness_mm), Some(index)) = (thickness_mm, index) else {
         let missing = if thickness_mm.is_none() { "thickness" } else { "index" };
         let fault = params.fault("halation", format!("the {missing} of the base of {} is not known", stock.name));
         faults.push(fault.hint("`halation: {entering: 0.2, transmittance: 0.5, thickness: 0.125 mm, index: 1.48}`"));
-        return None;
+        return none;
     };
-    let base = HalationBase { thickness_mm, index, entering, transmittance };
-    // A frame of one pixel is enough to have the values checked.
-    match Halation::new(&base, &Raster::new(1, 1, 1.0)) {
-        Ok(_) => Some(base),
-        Err(error) => {
-            faults.push(params.fault("halation", error.to_string()));
-            None
-        }
+    let reflected = own.and_then(|h| h.reflected).or_else(|| of_stock.map(|h| h.reflected)).unwrap_or(0.0);
+    let share = |layer: usize| of_stock.map_or(1.0, |h| h.layers[layer]);
+    let base = |layer: usize| HalationBase {
+        thickness_mm,
+        index,
+        entering: entering * share(layer),
+        transmittance,
+        reflected,
+    };
+    // A frame of no pixels is enough to have the values checked.
+    if let Err(error) = Halation::new(&base(0), &Raster::new(0, 0, 1.0)) {
+        faults.push(params.fault("halation", error.to_string()));
+        return none;
     }
+    (0..stock.layers.len()).map(|layer| Some(base(layer)).filter(|b| b.entering > 0.0)).collect()
 }

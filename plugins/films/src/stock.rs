@@ -1,6 +1,6 @@
 //! `film: stock`, film from a data file: exposed, developed, and printed, scanned or projected.
 
-use crate::effects::{Effects, HalationParams};
+use crate::effects::{Assumed, Effects, HalationSetting};
 use crate::metering::{METER, Meter, Metering, SpotParams, overruled, recorded_time_s};
 use crate::view::{PaperParams, Picture, ScanParams, View, WhiteParams, seen};
 use schemars::JsonSchema;
@@ -24,7 +24,8 @@ use spectra_film::stock::{MeterResponse, Process, Stock};
 /// The light on the frame becomes exposure in lux-seconds by the sensitivity of each layer, density by the
 /// characteristic curve of the development, and a picture by the way the film is viewed: a black-and-white negative is
 /// printed on paper, a color negative on the print stock of its maker, a reversal film is projected. Scatter in the
-/// emulsion and reflection from the base act before the curve, grain after it, if the stock's file states them.
+/// emulsion and reflection from the base act before the curve, adjacency (edges that stand out in development) and grain
+/// after it, if the stock's file states them.
 ///
 /// The exposure is that of the scene (`exposure`), or the camera meters: the metered area gets 10/S lx s, the exposure
 /// of a mid gray. S is the speed that the stock's file states, which `spectra film info` shows with its kind: an ISO
@@ -99,10 +100,15 @@ pub struct StockParams {
     pub white: Option<WhiteParams>,
     /// Whether the emulsion scatters light, if the stock's file states its MTF; `true` if left out.
     pub scatter: Option<bool>,
-    /// Reflection from the back of the film; as in the stock's file if left out.
-    pub halation: Option<HalationParams>,
+    /// Whether edges stand out in development, if the MTF in the stock's file exceeds 1; `true` if left out.
+    pub adjacency: Option<bool>,
+    /// Reflection from the back of the film, or `off`; as in the stock's file if left out.
+    pub halation: Option<HalationSetting>,
     /// Whether there is grain, if the stock's file states its granularity; `true` if left out.
     pub grain: Option<bool>,
+    /// Whether effects count whose figures are assumed in the stock's file, rather than measured or stated: `on` or `off`.
+    #[serde(default)]
+    pub assumed: Assumed,
     /// Seed of the grain, 0 or more.
     #[serde(default)]
     pub grain_seed: u64,
@@ -192,6 +198,23 @@ impl StockFilm {
         }
     }
 
+    /// What the layers are exposed to, lx s, after scatter in the emulsion and reflection from the base: a plane a layer, in
+    /// the order of the stock.
+    ///
+    /// # Errors
+    /// A text that says which channel is missing.
+    pub fn exposed(&self, exposure: &ExposureFrame) -> Result<Vec<Vec<f32>>, String> {
+        let factor = self.meter.factor(exposure) as f32;
+        let raster = self.effects.raster(exposure.size)?;
+        let layers = self.stock.layers.iter().enumerate().map(|(i, layer)| {
+            let mut plane = channel(exposure, &layer.name).map_err(|error| error.to_string())?.values.clone();
+            self.effects.spread(i, &mut plane, &raster)?;
+            plane.iter_mut().for_each(|v| *v *= factor);
+            Ok(plane)
+        });
+        layers.collect()
+    }
+
     /// The developed film: a plane of amounts a layer (see [`spectra_film::deposit::Deposit`]), in the order of the stock.
     ///
     /// # Errors
@@ -209,6 +232,7 @@ impl StockFilm {
         let mut planes = exposed.collect::<Result<Vec<_>, String>>()?;
         self.emulsion.develop_all(&mut planes, factor * effect);
         for (i, plane) in planes.iter_mut().enumerate() {
+            self.effects.edges(i, plane, &self.emulsion, &raster);
             let clear = self.emulsion.amount(i, f64::NEG_INFINITY);
             self.effects.grain(i, plane, clear as f32, &raster)?;
         }
@@ -310,11 +334,19 @@ impl Film for StockFilm {
 
     fn describe(&self) -> String {
         let named = |l: &spectra_film::stock::Layer| l.development(&self.development).is_some_and(|d| d.assumed);
-        let assumed = self.stock.layers.iter().any(named);
-        let curve = if assumed { " (curve assumed)" } else { "" };
+        let mut assumed = Vec::new();
+        if self.stock.layers.iter().any(named) {
+            assumed.push("curve");
+        }
+        assumed.extend(self.effects.assumed());
+        let assumed = match &assumed[..] {
+            [] => String::new(),
+            [one] => format!(" ({one} assumed)"),
+            [most @ .., last] => format!(" ({} and {last} assumed)", most.join(", ")),
+        };
         let iso = self.stock.speed_text().map_or(String::new(), |speed| format!(", {speed}"));
         format!(
-            "{}{iso}, {} development{curve}, {}, {}",
+            "{}{iso}, {} development{assumed}, {}, {}",
             self.stock.name,
             self.development,
             self.meter.words(self.exposure_time_s),

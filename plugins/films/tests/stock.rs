@@ -12,6 +12,8 @@ use spectra_scene::FileResources;
 fn with_params<T>(yaml: &str, use_them: impl FnOnce(&Params, &Context<'_>) -> T) -> T {
     let folder = tempfile::tempdir().expect("a folder");
     std::fs::write(folder.path().join("film.yaml"), yaml).expect("written");
+    let bare = "spectra: 1\nlike: kodak-tri-x-400\nname: Film of no known base\nbases: []\n";
+    std::fs::write(folder.path().join("bare.yaml"), bare).expect("written");
     let resources = FileResources::beside(folder.path());
     let params = resources.document("film.yaml", &[], &[]).expect("YAML");
     use_them(&params, &Context::new(&resources, BAND))
@@ -44,7 +46,7 @@ fn is_registered_as_the_default() {
 /// exposure on this film, is black; all of it is neutral.
 #[test]
 fn gray_is_gray_and_red_is_black() {
-    let film = build("stock: ilford-ortho-plus\nexposure: 1/60 s\n").expect("sound");
+    let film = build("stock: ilford-ortho-plus\nexposure: 1/60 s\nhalation: off\n").expect("sound");
     let picture = film.develop(&frame(&[0.125, 0.0, 0.125 * 5.0, 100.0])).expect("complete");
     assert!(picture.rgb.iter().all(|p| p[0] == p[1] && p[1] == p[2]));
     let [gray, black, white, burnt] = [0, 1, 2, 3].map(|i| picture.rgb[i][0]);
@@ -92,7 +94,11 @@ fn parameters_are_checked() {
         ("stock: ilford-ortho-plus\nmetering: average\nlight: D5500\n", "did you mean `D55`?"),
         ("stock: ilford-ortho-plus\nmetering: average\ngrain: true\n", "granularity"),
         ("stock: ilford-ortho-plus\nmetering: average\nscatter: true\n", "modulation"),
-        ("stock: kodak-tri-x-400\nmetering: average\nhalation: {entering: 0.2, transmittance: 0.5}\n", "thickness"),
+        ("stock: kodak-ektachrome-100d\nmetering: average\nadjacency: true\n", "above 1"),
+        ("stock: bare.yaml\nmetering: average\n", "thickness"),
+        ("stock: bare.yaml\nmetering: average\nhalation: {entering: 0.2, transmittance: 0.5}\n", "thickness"),
+        ("stock: kodak-tri-x-400\nmetering: average\nhalation: none\n", "known: off"),
+        ("stock: kodak-tri-x-400\nmetering: average\nassumed: false\n", "off"),
         (
             "stock: ilford-ortho-plus\nmetering: average\nhalation: {entering: 20, transmittance: 0.5, index: 1.48}\n",
             "from 0 to 10",
@@ -106,7 +112,7 @@ fn parameters_are_checked() {
 
 #[test]
 fn a_frame_without_its_channel_is_refused() {
-    let film = build("stock: ilford-ortho-plus\nexposure: 1/60 s\n").expect("sound");
+    let film = build("stock: ilford-ortho-plus\nexposure: 1/60 s\nhalation: off\n").expect("sound");
     let mut other = frame(&[1.0]);
     other.channels[0].name = "Y".into();
     assert!(film.develop(&other).unwrap_err().contains("ortho"));
@@ -130,7 +136,8 @@ fn frame_of(names: &[&str], planes: &[Vec<f32>]) -> ExposureFrame {
 fn a_metered_gray_is_gray_on_a_plate_in_any_light() {
     for (stock, tolerance) in [("blue-sensitive-plate", 1e-4), ("panchromatic-plate", 1e-4), ("kodak-tri-x-400", 0.06)]
     {
-        let film = build(&format!("stock: {stock}\nmetering: average\npaper: {{range: 1.6}}\n")).expect("sound");
+        let text = format!("stock: {stock}\nmetering: average\nhalation: off\npaper: {{range: 1.6}}\n");
+        let film = build(&text).expect("sound");
         for light in ["D55", "D65", "A", "iso-7589-sensitometric-daylight"] {
             let power = spectra_spectrum::find_emission(light).expect("bundled").to_power(&BAND);
             let channels = film.channels();
@@ -174,7 +181,8 @@ fn a_metered_frame_gets_the_meters_exposure() {
 #[test]
 fn a_step_wedge_through_the_stage_recovers_the_curve() {
     for name in ["kodak-tri-x-400", "kodak-double-x-5222", "ilford-ortho-plus"] {
-        let film = build(&format!("stock: {name}\nexposure: 1/60 s\nscatter: false\ngrain: false\n")).expect("sound");
+        let plain = "scatter: false\nadjacency: false\nhalation: off\ngrain: false\n";
+        let film = build(&format!("stock: {name}\nexposure: 1/60 s\n{plain}")).expect("sound");
         let layer = &film.stock().layers[0];
         let steps: Vec<f32> = (0..40).map(|i| 1e-4 * 1.3_f32.powi(i)).collect();
         let developed = film.developed(&frame_of(&[&layer.name], std::slice::from_ref(&steps))).expect("complete");

@@ -106,8 +106,9 @@ fn to_json(stock: &Stock) -> Value {
         "granularity": stock.granularity.map(|g| {
             json!({ "rms": g.rms, "aperture_mm": g.aperture_mm, "density": g.density })
         }),
-        "halation": stock.halation.map(|h| {
-            json!({ "scattered": h.scattered, "backing": h.backing, "assumed": h.assumed })
+        "halation": stock.halation.as_ref().map(|h| {
+            json!({ "scattered": h.scattered, "backing": h.backing, "reflected": h.reflected, "layers": h.layers,
+                "assumed": h.assumed, "remark": h.remark })
         }),
         "reciprocity": reciprocity,
         "filter_factors": factors,
@@ -199,6 +200,15 @@ fn text(stock: &Stock) -> String {
         let material = base.material.as_deref().unwrap_or("");
         row("base", Some(format!("{} mm {material}{index}, for {}{assumed}", base.thickness_mm, base.formats)));
     }
+    row(
+        "halation",
+        stock.halation.as_ref().map(|h| {
+            let assumed = if h.assumed { " (assumed)" } else { "" };
+            let shares: Vec<String> = h.layers.iter().map(f64::to_string).collect();
+            let layers = if shares.len() > 1 { format!(", by layer {}", shares.join(" : ")) } else { String::new() };
+            format!("{} enters the base, backing passes {}{layers}{assumed}", h.scattered, h.backing)
+        }),
+    );
     row(
         "interlayer",
         stock.interlayer.as_ref().map(|i| {

@@ -2,7 +2,7 @@
 
 mod progress;
 
-use crate::arguments::Run;
+use crate::arguments::{Quality, Run};
 use crate::folder::{Target, Temporary};
 use crate::interrupt::{self, Interrupt};
 use crate::outcome::{DONE, Failure, Outcome};
@@ -78,7 +78,11 @@ fn render_scene(arguments: &Run, isa: Isa, started: Instant) -> Outcome {
 fn overrides(arguments: &Run) -> Vec<String> {
     let mut all = arguments.set.overrides.clone();
     all.extend(arguments.seed.map(|seed| format!("render.seed={seed}")));
-    all.extend(arguments.samples.map(|samples| format!("render.samples={samples}")));
+    let preset = arguments.quality.map(Quality::figures);
+    let noise = arguments.noise.as_deref().or(preset.map(|(noise, _)| noise));
+    all.extend(noise.map(|noise| format!("render.noise={noise}")));
+    let samples = arguments.samples.or(preset.map(|(_, samples)| samples));
+    all.extend(samples.map(|samples| format!("render.samples={samples}")));
     all
 }
 

@@ -95,7 +95,7 @@ impl RayNumbers {
                 fill_strata(own, self.sample, strata, &mut out);
                 out[0]
             }
-            Kind::Sobol => {
+            Kind::Sobol | Kind::Lattice => {
                 // Beyond 2^32 samples: another scrambling of the same points.
                 let block = (self.sample >> 32).wrapping_mul(GOLDEN);
                 let shuffled = owen_scramble_reversed((self.sample as u32).reverse_bits(), mix64(event ^ block) as u32);

@@ -15,6 +15,9 @@ pub struct HalationBase {
     /// Transmittance of base and backing together, passed once along the normal, 0 to 1. Light passes them twice; along
     /// the angle theta each pass has the transmittance to the power 1/cos(theta).
     pub transmittance: f64,
+    /// Share of the light that arrives at the emulsion from below which it throws down again, 0 to 0.95: what makes a further
+    /// trip.
+    pub reflected: f64,
 }
 
 /// A value that halation cannot be computed with.
@@ -41,6 +44,7 @@ impl HalationBase {
             ("index", self.index, self.index > 1.0 && self.index <= 4.0, "above 1, up to 4"),
             ("light entering the base", self.entering, (0.0..=10.0).contains(&self.entering), "0 to 10"),
             ("transmittance", self.transmittance, (0.0..=1.0).contains(&self.transmittance), "0 to 1"),
+            ("light thrown down again", self.reflected, (0.0..=0.95).contains(&self.reflected), "0 to 0.95"),
         ];
         match checks.into_iter().find(|(_, _, good, _)| !good) {
             Some((what, value, _, range)) => Err(HalationError::OutOfRange { what, value, range }),
@@ -54,7 +58,8 @@ impl HalationBase {
         2.0 * self.thickness_mm / (self.index * self.index - 1.0).sqrt()
     }
 
-    /// Light that returns at the distance `r_mm` from a point, per mm^2, over the light that exposes the point.
+    /// Light that returns at once at the distance `r_mm` from a point, per mm^2, over the light that exposes the point; for
+    /// all of it see [`super::Trips`].
     #[must_use]
     pub fn density_per_mm2(&self, r_mm: f64) -> f64 {
         let t2 = 4.0 * self.thickness_mm * self.thickness_mm;
@@ -76,13 +81,13 @@ impl HalationBase {
         through * internal_reflectance(self.index, u)
     }
 
-    /// Light that returns, over the light that exposes: the integral of [`HalationBase::density_per_mm2`].
+    /// Light that returns at once, over the light that exposes: the integral of [`HalationBase::density_per_mm2`].
     #[must_use]
     pub fn returned(&self) -> f64 {
         self.returned_weighted(|_| 1.0)
     }
 
-    /// Light that returns within the distance `r_mm`, over the light that exposes.
+    /// Light that returns at once within the distance `r_mm`, over the light that exposes.
     #[must_use]
     pub fn returned_within(&self, r_mm: f64) -> f64 {
         let r2 = r_mm * r_mm;
@@ -137,7 +142,8 @@ mod tests {
     use super::*;
     use spectra_core::math::{asin, sin, tan};
 
-    const ACETATE: HalationBase = HalationBase { thickness_mm: 0.125, index: 1.48, entering: 1.0, transmittance: 1.0 };
+    const ACETATE: HalationBase =
+        HalationBase { thickness_mm: 0.125, index: 1.48, entering: 1.0, transmittance: 1.0, reflected: 0.0 };
 
     #[test]
     fn ring_begins_at_total_reflection() {
@@ -202,6 +208,7 @@ mod tests {
             (HalationBase { index: 1.0, ..ACETATE }, "index"),
             (HalationBase { entering: -0.1, ..ACETATE }, "entering"),
             (HalationBase { transmittance: f64::NAN, ..ACETATE }, "transmittance"),
+            (HalationBase { reflected: 1.0, ..ACETATE }, "again"),
         ] {
             assert!(base.check().unwrap_err().to_string().contains(what));
         }

@@ -4,6 +4,7 @@
 //! the ring is computed on the pixels, and each further part on cells of four times the size, up to the frame's diagonal.
 
 use super::base::HalationBase;
+use super::trips::Trips;
 use crate::convolve::Kernel;
 use crate::raster::Raster;
 
@@ -36,9 +37,9 @@ fn fading(r: f64, end: f64) -> f64 {
 impl Level {
     /// All parts, finest first. Together with the light that stays they sum to 1, but for what lies farther away
     /// than the frame is long.
-    pub(super) fn all(base: &HalationBase, raster: &Raster) -> Vec<Self> {
+    pub(super) fn all(base: &HalationBase, trips: &Trips, raster: &Raster) -> Vec<Self> {
         let ring = base.ring_radius_mm();
-        let even = 1.0 / (1.0 + base.returned());
+        let even = 1.0 / (1.0 + trips.returned());
         // Where pixels are far finer than the ring, it is computed on cells that still are.
         let mut cell_px = 1;
         while RINGS * ring / (raster.pitch_mm * cell_px as f64) > REACH.1 {
@@ -53,7 +54,7 @@ impl Level {
             let weight = |r: f64| fading(r, end) - before.map_or(0.0, |b| fading(r, b));
             let cell = raster.pitch_mm * cell_px as f64;
             let radius = (end / cell).ceil() as usize;
-            let density = |r: f64| weight(r) * base.density_per_mm2(r);
+            let density = |r: f64| weight(r) * trips.density_per_mm2(r);
             let kernel = if before.is_none() {
                 let parts = (40.0 * cell / ring).ceil().clamp(4.0, 64.0) as usize;
                 over_pixels(radius, cell, parts, &density)
@@ -67,7 +68,7 @@ impl Level {
                     value(i, j) - (around - 4.0 * value(i, j)) / 6.0
                 })
             };
-            let mass = even * base.returned_weighted(weight);
+            let mass = even * trips.returned_weighted(weight);
             let sum = kernel.sum();
             // A kernel without weight (all absorbed) stays so.
             let mut kernel = kernel.scaled(if sum > 0.0 { mass / sum } else { 0.0 });
@@ -112,19 +113,19 @@ fn over_pixels(radius: usize, pitch: f64, parts: usize, density: &(impl Fn(f64) 
 }
 
 /// A function of the radius, linear between samples.
-struct Table {
+pub(super) struct Table {
     per_step: f64,
     values: Vec<f64>,
 }
 
 impl Table {
-    fn new(end: f64, f: &impl Fn(f64) -> f64) -> Self {
+    pub(super) fn new(end: f64, f: &impl Fn(f64) -> f64) -> Self {
         const STEPS: usize = 65_536;
         let step = end / STEPS as f64;
         Self { per_step: 1.0 / step, values: (0..STEPS + 2).map(|k| f(k as f64 * step)).collect() }
     }
 
-    fn at(&self, r: f64) -> f64 {
+    pub(super) fn at(&self, r: f64) -> f64 {
         let p = r * self.per_step;
         let i = (p as usize).min(self.values.len() - 2);
         self.values[i] + (self.values[i + 1] - self.values[i]) * (p - i as f64)

@@ -11,8 +11,8 @@
 //!
 //! f(r) = R(theta) T^(2/cos(theta)) 4 t^2 / (pi (r^2 + 4 t^2)^2),
 //!
-//! whose integral is the fraction that returns. Light that goes around more than once is left out: it needs a
-//! second reflection at the emulsion, and adds a faint second ring at twice the distance.
+//! whose integral is the fraction that returns. Of that the emulsion throws a share down again, evenly as before, and so on:
+//! [`Trips`] sums all of them. The second adds a faint ring at twice the distance.
 //!
 //! **Energy.** A stock's speed is measured with even light, halation and all. So what arrives is divided by one plus the
 //! returned part: an even, endless exposure stays as it is, and in general the plane's sum after is its sum before less
@@ -21,8 +21,10 @@
 mod base;
 mod kernel;
 mod spread;
+mod trips;
 
 pub use base::{HalationBase, HalationError};
+pub use trips::Trips;
 
 use crate::raster::Raster;
 use kernel::Level;
@@ -33,7 +35,7 @@ use spread::Spread;
 /// ```
 /// use spectra_film::halation::{Halation, HalationBase};
 /// use spectra_film::raster::Raster;
-/// let base = HalationBase { thickness_mm: 0.125, index: 1.48, entering: 0.3, transmittance: 0.9 };
+/// let base = HalationBase { thickness_mm: 0.125, index: 1.48, entering: 0.3, transmittance: 0.9, reflected: 0.2 };
 /// assert!((base.ring_radius_mm() - 0.2291).abs() < 5e-5);
 /// let raster = Raster::new(60, 40, 0.012);
 /// let mut exposure = vec![0.0; raster.pixels()];
@@ -57,8 +59,10 @@ impl Halation {
         if !(raster.pitch_mm > 0.0 && raster.pitch_mm.is_finite()) {
             return Err(HalationError::OutOfRange { what: "pitch", value: raster.pitch_mm, range: "more than 0 mm" });
         }
-        let none = base.returned() == 0.0 || raster.pixels() == 0;
-        let spread = (!none).then(|| Spread::new(Level::all(base, raster), 1.0 / (1.0 + base.returned()), raster));
+        let trips = Trips::new(base);
+        let none = trips.returned() == 0.0 || raster.pixels() == 0;
+        let spread =
+            (!none).then(|| Spread::new(Level::all(base, &trips, raster), 1.0 / (1.0 + trips.returned()), raster));
         Ok(Self { raster: *raster, spread })
     }
 

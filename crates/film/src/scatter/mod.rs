@@ -1,16 +1,28 @@
 //! Scatter of light inside of the emulsion: what a film's modulation transfer function says.
 //!
 //! Turbid gelatin spreads the light of each point over some micrometers; a sine target of the frequency f keeps the part
-//! M(f) of its contrast. The spread is the same in all directions, and negative nowhere: see [`Scatter::new`] for how
-//! exactly it then follows the curve.
+//! M(f) of its contrast. The spread is one function of the distance from the point, a sum of Gaussians: round, falling
+//! and positive whatever the curve, and the same for pixels of any size, which get its integral over each of them.
+//!
+//! A sheet's curve is measured on the developed film, and exceeds 1 where development makes edges stand out. That is not
+//! the light's doing: [`Modulation`] takes the curve apart into the light's spread and [`crate::adjacency`].
 
-mod fit;
+mod modulation;
 mod mtf;
+mod spread;
 
+pub use modulation::Modulation;
 pub use mtf::{Mtf, MtfError};
+pub use spread::PointSpread;
 
 use crate::convolve::Convolver;
 use crate::raster::Raster;
+
+/// Part of the light that may be beyond the kernel.
+const BEYOND: f64 = 1e-9;
+
+/// Pixels that a kernel reaches at most.
+const LONGEST: f64 = 2000.0;
 
 /// The scatter of one layer on planes of one size.
 ///
@@ -29,30 +41,29 @@ use crate::raster::Raster;
 pub struct Scatter {
     raster: Raster,
     convolver: Convolver,
-    residual: f64,
 }
 
 impl Scatter {
     /// Prepares scatter by `mtf` for planes of the size and pitch of `raster`.
     ///
-    /// The kernel is the one of weights from 0 on that comes closest to the curve below 0.8 of the pixels' limit
-    /// (half a cycle a pixel), by projections onto both demands in turn; [`Scatter::residual`] says how close. Pixels of
-    /// 6 um and less follow the curve of a usual film within 0.01. On larger ones most light stays in its pixel, and weights
-    /// from 0 on cannot follow to the limit.
+    /// The light of a pixel spreads from its middle, and each pixel gets the integral of the spread over it. So a sine
+    /// keeps M(f), and the pixels' own loss, sin(pi f p) / (pi f p), once more.
     ///
     /// # Errors
-    /// [`MtfError::OutOfRange`] for a pitch that is not positive and finite, or so fine (under a thousandth of the
-    /// spread) that the kernel would not fit into memory.
+    /// [`MtfError::OutOfRange`] for a pitch that is not positive and finite, or so fine that the spread is over
+    /// 2000 pixels wide.
     pub fn new(mtf: &Mtf, raster: &Raster) -> Result<Self, MtfError> {
-        let fit = fit::fit(mtf, raster.pitch_mm)?;
-        let convolver = Convolver::new(&fit.kernel, raster.width, raster.height);
-        Ok(Self { raster: *raster, convolver, residual: fit.residual })
-    }
-
-    /// Largest difference between the kernel's response and the curve, below 0.8 of the pixels' limit.
-    #[must_use]
-    pub fn residual(&self) -> f64 {
-        self.residual
+        let pitch_mm = raster.pitch_mm;
+        let out_of_range = |range| MtfError::OutOfRange { what: "pitch", value: pitch_mm, range };
+        if !(pitch_mm > 0.0 && pitch_mm.is_finite()) {
+            return Err(out_of_range("more than 0 mm"));
+        }
+        if mtf.spread().reach_mm(BEYOND) / pitch_mm > LONGEST {
+            return Err(out_of_range("at least a 2000th of the spread"));
+        }
+        let kernel = mtf.spread().over_pixels(pitch_mm, BEYOND, LONGEST as usize);
+        let longest = raster.width.max(raster.height);
+        Ok(Self { raster: *raster, convolver: Convolver::new(&kernel.cropped(longest), raster.width, raster.height) })
     }
 
     /// Scatters the light of a plane of exposure (linear; any unit), in place.

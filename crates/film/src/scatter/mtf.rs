@@ -1,19 +1,12 @@
 //! Modulation transfer functions.
 
-use std::f64::consts::{LN_10, PI};
+use super::spread::PointSpread;
+use std::f64::consts::{LN_10, PI, SQRT_2};
 
 /// How much contrast of a fine pattern a film keeps.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mtf {
-    curve: Curve,
-}
-
-#[derive(Clone, Debug, PartialEq)]
-enum Curve {
-    /// Frieser's constant, mm.
-    Frieser(f64),
-    /// Gaussians exp(-(f / g)^2): g in cycles/mm, and its weight, from 0 on; the weights sum to 1.
-    Gaussians(Vec<[f64; 2]>),
+    spread: PointSpread,
 }
 
 /// A curve that is none.
@@ -51,32 +44,40 @@ impl Mtf {
     /// [`MtfError::OutOfRange`].
     pub fn frieser(k_mm: f64) -> Result<Self, MtfError> {
         in_range("Frieser's constant", k_mm, 1e-4, 1.0, "0.0001 to 1 mm")?;
-        Ok(Self { curve: Curve::Frieser(k_mm) })
+        Ok(Self { spread: PointSpread::bessel(k_mm / (2.0 * LN_10)) })
     }
 
     /// A measured curve: spatial frequency (cycles/mm, rising, from 0 on) and response (0 to 2; 1 is all contrast).
     ///
     /// The curve becomes the closest sum of Gaussians of weights from 0 on (least squares at the points): then the spread of a
     /// point is smooth and positive, which straight lines between measured points are not. A response over 1 is the
-    /// developer's work (adjacency), not the light's, and is taken as 1. [`Mtf::deviation`] tells how well it fits.
+    /// developer's work (adjacency), not the light's, and is taken as 1: see [`super::Modulation`]. [`Mtf::deviation`]
+    /// tells how well it fits.
     ///
     /// # Errors
     /// [`MtfError`].
     pub fn measured(points: &[[f64; 2]]) -> Result<Self, MtfError> {
         check(points)?;
-        Ok(Self { curve: Curve::Gaussians(gaussians(points)) })
+        // exp(-(f / g)^2) is the response of a Gaussian of the deviation 1 / (sqrt(2) pi g).
+        let term = |[g, weight]: [f64; 2]| [1.0 / (SQRT_2 * PI * g), weight];
+        Ok(Self { spread: PointSpread::new(gaussians(points).into_iter().map(term).collect()) })
+    }
+
+    /// That of a spread.
+    pub(super) fn of(spread: PointSpread) -> Self {
+        Self { spread }
     }
 
     /// The response at `frequency` cycles/mm: 1 at 0, falling.
     #[must_use]
     pub fn response(&self, frequency: f64) -> f64 {
-        match &self.curve {
-            Curve::Frieser(k_mm) => {
-                let x = PI * k_mm * frequency / LN_10;
-                1.0 / (1.0 + x * x)
-            }
-            Curve::Gaussians(terms) => terms.iter().map(|[g, w]| w * gaussian(frequency, *g)).sum(),
-        }
+        self.spread.response(frequency)
+    }
+
+    /// How it spreads the light of a point.
+    #[must_use]
+    pub fn spread(&self) -> &PointSpread {
+        &self.spread
     }
 
     /// Largest difference from measured points, values over 1 taken as 1.
@@ -84,26 +85,13 @@ impl Mtf {
     pub fn deviation(&self, points: &[[f64; 2]]) -> f64 {
         points.iter().map(|p| (self.response(p[0]) - p[1].min(1.0)).abs()).fold(0.0, f64::max)
     }
-
-    /// How far the light goes, mm: beyond, less than a millionth of it lies.
-    pub(super) fn reach_mm(&self) -> f64 {
-        match &self.curve {
-            // The spread of a point is K0(r / a) with a = k / (2 ln 10): 16 a hold all but 4e-7.
-            Curve::Frieser(k_mm) => 16.0 * k_mm / (2.0 * LN_10),
-            // That of a Gaussian is one of the deviation 1 / (sqrt(2) pi g); beyond r lies exp(-(pi g r)^2).
-            Curve::Gaussians(terms) => {
-                let far = |[g, w]: &[f64; 2]| spectra_core::math::log((w * 1e7).max(1.0)).sqrt() / (PI * g);
-                terms.iter().map(far).fold(0.0, f64::max)
-            }
-        }
-    }
 }
 
 fn gaussian(frequency: f64, g: f64) -> f64 {
     spectra_core::math::exp(-(frequency / g) * (frequency / g))
 }
 
-fn check(points: &[[f64; 2]]) -> Result<(), MtfError> {
+pub(super) fn check(points: &[[f64; 2]]) -> Result<(), MtfError> {
     for point in points {
         in_range("frequency", point[0], 0.0, 1e5, "0 to 100 000 cycles/mm")?;
         in_range("response", point[1], 0.0, 2.0, "0 to 2")?;
@@ -115,6 +103,9 @@ fn check(points: &[[f64; 2]]) -> Result<(), MtfError> {
     if positive < 2 { Err(MtfError::TooFew(positive)) } else { Ok(()) }
 }
 
+/// The widest Gaussian that is sought, cycles/mm: one of the deviation 40 um. What goes farther is not the emulsion's.
+const WIDEST: f64 = 5.6;
+
 /// The sum of Gaussians of a ladder of widths that is closest to the points, weights from 0 on that sum to 1: coordinate
 /// by coordinate (C. L. Lawson and R. J. Hanson, "Solving Least Squares Problems", 1974, pose it).
 fn gaussians(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
@@ -124,7 +115,7 @@ fn gaussians(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     const SUM: f64 = 30.0;
     let first = points.iter().map(|p| p[0]).find(|f| *f > 0.0).unwrap_or(1.0);
     let last = points.iter().map(|p| p[0]).fold(first, f64::max);
-    let (low, high) = (first.max(last / 300.0) * 0.7, last * 6.0);
+    let (low, high) = ((first.max(last / 300.0) * 0.7).max(WIDEST.min(last)), last * 6.0);
     let ladder: Vec<f64> =
         (0..RUNGS).map(|i| low * spectra_core::math::pow(high / low, i as f64 / (RUNGS - 1) as f64)).collect();
     let column =

@@ -307,7 +307,8 @@ pub(super) fn read(params: &Params, resources: &dyn Resources) -> Result<Stock, 
     }
     let aim_density = file.aim_density.and_then(|aim| faults.take(aim.read(params)));
     let granularity = file.granularity.as_ref().map(GranularityFile::read);
-    let halation = file.halation.as_ref().map(HalationFile::read);
+    let layer_count = file.layers.len();
+    let halation = file.halation.as_ref().and_then(|h| faults.take(h.read(params, layer_count)));
     let bases = file.bases.iter().map(BaseFile::read).collect();
     let reciprocity = file.reciprocity.as_ref().and_then(|r| faults.take(r.read(params)));
     let Some(densitometry) = densitometry else {

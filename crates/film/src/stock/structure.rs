@@ -31,14 +31,20 @@ pub struct Granularity {
 }
 
 /// Light that comes back from the film's back.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Halation {
-    /// Share of the exposing light that is scattered on into the base, 0 to 1.
+    /// Share of the exposing light that is scattered on into the base, 0 to 1; of the layer next to the base.
     pub scattered: f64,
     /// Transmittance of the anti-halation backing, passed on the way out and on the way back, 0 to 1.
     pub backing: f64,
+    /// Share of what comes back that the emulsion throws down again, 0 to 0.95.
+    pub reflected: f64,
+    /// What comes back to each layer, in the order of the stock, over what would come back to the layer next to the base.
+    pub layers: Vec<f64>,
     /// Whether this is assumed: sheets hardly ever say.
     pub assumed: bool,
+    /// What it rests on.
+    pub remark: Option<String>,
 }
 
 /// What a film is coated on.
@@ -97,21 +103,41 @@ impl GranularityFile {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(super) struct HalationFile {
-    /// Light that enters the base, over the light that exposes the layer, 0 to 1.
+    /// Light that enters the base, over the light that exposes the layer next to it, 0 to 1.
     #[schemars(range(min = 0, max = 1))]
     scattered: f64,
     /// Transmittance of base and backing, passed once, 0 to 1.
     #[schemars(range(min = 0, max = 1))]
     backing: f64,
-    /// Whether the figures were chosen rather than measured.
+    /// Share of what comes back that the emulsion throws down again, for another trip, 0 to 0.95.
+    #[serde(default)]
+    #[schemars(range(min = 0, max = 0.95))]
+    reflected: f64,
+    /// What comes back to each layer, in their order, over what comes back to the layer next to the base: layers between, and
+    /// a yellow filter, hold it back on both ways. 1 for each if absent.
+    #[schemars(inner(range(min = 0, max = 1)))]
+    layers: Option<Vec<f64>>,
+    /// Whether the figures were chosen rather than measured; then `remark` says why.
     #[serde(default)]
     assumed: bool,
+    /// Doubts and choices, for people.
+    remark: Option<String>,
 }
 
 impl HalationFile {
-    pub(super) fn read(&self) -> Halation {
-        let Self { scattered, backing, assumed } = *self;
-        Halation { scattered, backing, assumed }
+    /// For a film of `layers` layers.
+    pub(super) fn read(&self, params: &Params, layers: usize) -> Result<Halation, Fault> {
+        let Self { scattered, backing, reflected, assumed, .. } = *self;
+        let shares = self.layers.clone().unwrap_or_else(|| vec![1.0; layers]);
+        if shares.len() != layers {
+            let text = format!("{} numbers for a film of {layers}", shares.len());
+            return Err(params.fault("halation.layers", text).hint("one for each layer, in their order"));
+        }
+        if assumed && self.remark.as_ref().is_none_or(|r| r.trim().is_empty()) {
+            let fault = params.fault("halation.assumed", "assumed halation needs a remark");
+            return Err(fault.hint("add a `remark` that says what it is based on"));
+        }
+        Ok(Halation { scattered, backing, reflected, layers: shares, assumed, remark: self.remark.clone() })
     }
 }
 

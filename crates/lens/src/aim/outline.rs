@@ -12,13 +12,13 @@ use spectra_core::isa::{Isa, Vectorized};
 use spectra_core::{Loss, RayBatch};
 
 /// Share of the rays that go to the outline itself.
-const INSIDE: f64 = 0.992;
+const INSIDE: f64 = 0.9969;
 /// The ring reaches this much farther than the outline, in proportion.
-pub(super) const RING: f64 = 0.05;
-/// How much of the squared radius a number of the ring stands for. To that of the outline, 1 / `INSIDE`, it is as 12.7 to 1.
+pub(super) const RING: f64 = 0.025;
+/// How much of the squared radius a number of the ring stands for. To that of the outline, 1 / `INSIDE`, it is as 16.3 to 1.
 const STRETCH: f64 = ((1.0 + RING) * (1.0 + RING) - 1.0) / (1.0 - INSIDE);
-/// Corners of one outline, the first one twice, and how it moves over its zones of wavelength and depth.
-pub(super) const STRIDE: usize = CORNERS + 3;
+/// Corners of one outline, the first one twice, and how it moves and grows over its zones of wavelength and depth.
+pub(super) const STRIDE: usize = CORNERS + 4;
 /// Rays that are aimed at once.
 const CHUNK: usize = 256;
 /// Steps of the azimuth's measure in [`Outlines::turns`].
@@ -78,7 +78,7 @@ pub(super) struct Outlines {
     /// Whether corners are along x and y of the lens, not along and across the plane of the point.
     pub turned: bool,
     /// By depth, azimuth, angle, wavelength: corners about the middle of the zone, then shifts from the lower to the upper end
-    /// of its wavelengths and of its depths, along and across the plane of the point; mm.
+    /// of its wavelengths and of its depths, along and across the plane of the point, mm; then its growth over both, in parts.
     pub corners: Vec<[f32; 2]>,
 }
 
@@ -257,7 +257,8 @@ fn look<const BACKWARD: bool, const RINGS: bool, const MANY: bool>(
         let first = (at * outlines.colors.zones + band) * STRIDE;
         let by_color = shade - band as f64 - 0.5;
         let by_depth = table.depth_part::<BACKWARD>(x[i], y[i], z[i]);
-        let [shift, deeper] = [outlines.corners[first + CORNERS + 1], outlines.corners[first + CORNERS + 2]];
+        let [shift, deeper, grown] = std::array::from_fn(|k| outlines.corners[first + CORNERS + 1 + k]);
+        let size = 1.0 + by_color * f64::from(grown[0]) + by_depth * f64::from(grown[1]);
         for (k, column) in looked.moved.iter_mut().enumerate() {
             column[i] = by_color * f64::from(shift[k]) + by_depth * f64::from(deeper[k]);
         }
@@ -279,8 +280,9 @@ fn look<const BACKWARD: bool, const RINGS: bool, const MANY: bool>(
         let inside = squared < INSIDE;
         let radius2 = if inside { squared * (1.0 / INSIDE) } else { 1.0 + (squared - INSIDE) * STRETCH };
         looked.place[0][i] = along - triangle as f64;
-        looked.place[1][i] = radius2.sqrt();
-        looked.place[2][i] = if inside { 0.5 * CORNERS as f64 / INSIDE } else { 0.5 * CORNERS as f64 * STRETCH };
+        looked.place[1][i] = size * radius2.sqrt();
+        let part = if inside { 0.5 * CORNERS as f64 / INSIDE } else { 0.5 * CORNERS as f64 * STRETCH };
+        looked.place[2][i] = size * size * part;
     }
 }
 

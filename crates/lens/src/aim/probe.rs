@@ -112,10 +112,10 @@ const COARSE: usize = 24;
 /// Grid of a step in which nothing was seen, before it is believed.
 const FINE: usize = 96;
 /// Directions in which the end of what passes is looked for.
-pub(super) const EDGE: usize = 48;
+pub(super) const EDGE: usize = 96;
 /// Steps outward in each of them, and halvings of the last one.
 const ROUGH: usize = 8;
-const HALVINGS: usize = 5;
+const HALVINGS: usize = 8;
 
 impl<'a> Prober<'a> {
     /// `None` where a medium has no index in the middle of the band.

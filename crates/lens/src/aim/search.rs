@@ -74,7 +74,7 @@ const COLORS: usize = 4;
 const COLORS_STOPPED: usize = 4;
 const COLORS_WITHOUT_AXIS: usize = 2;
 /// Room around what the edges of a zone see.
-const MARGIN: f64 = 0.0015;
+const MARGIN: f64 = 0.0006;
 /// Random rays beyond each outline, how far beyond, and how often they are sent while one passes beyond the ring.
 const HOLD_CHECKS: usize = 256;
 const HOLD_REACH: f64 = 0.4;
@@ -150,7 +150,7 @@ impl Task<'_> {
                 for (zone, own) in row.iter_mut().enumerate() {
                     let at = ZonePlace { depth, azimuth, zone, azimuths, scale };
                     let Some(mut region) = self.zone(&mut prober, &lattice, &at) else { continue };
-                    (region.drift, region.shifts) = region.drifts(&lattice, &at, bands);
+                    (region.drift, region.by_band) = region.drifts(&lattice, &at, bands);
                     *own = region.zone(self.geometry.eye_z_mm);
                     let folds = stopped.as_ref().map_or(1, |(opening, _)| opening.folds);
                     let views = lattice.views(&at, stopped.as_mut().map(|(opening, _)| opening), &colors);
@@ -176,8 +176,8 @@ impl Task<'_> {
                                 let place = (depth * looks + azimuth + look + fold * each) * zones + zone;
                                 let first = (place * bands + color) * stride;
                                 let (sin, cos) = sin_cos_turns(fold as f64 / folds as f64);
-                                let shifts = region.shifts[color].map(|shift| shift.map(|s| s as f32));
-                                corners[first + outline.len()..first + stride].copy_from_slice(&shifts);
+                                let drifts = region.by_band[color].columns();
+                                corners[first + outline.len()..first + stride].copy_from_slice(&drifts);
                                 for (corner, [x, y]) in corners[first..].iter_mut().zip(outline) {
                                     let (x, y) = (f64::from(x), f64::from(y));
                                     *corner = [(x * cos - y * sin) as f32, (x * sin + y * cos) as f32];
@@ -305,7 +305,7 @@ impl Task<'_> {
                 None => break,
             };
         }
-        Some(Region { plane, shape, fades, drift: Drift::default(), shifts: Vec::new() })
+        Some(Region { plane, shape, fades, drift: Drift::default(), by_band: Vec::new() })
     }
 
     /// The plane of a zone: across its chief ray, where the chief rays of the fields around it cross.
@@ -380,6 +380,17 @@ impl Task<'_> {
     }
 }
 
+/// How the center moves between two sums of bounds (center along and across, half of each) over so many; mm.
+fn shift(from: &[f64; 4], to: &[f64; 4], count: f64) -> [f64; 2] {
+    [0, 1].map(|i| (to[i] - from[i]) / count)
+}
+
+/// How the size grows between them, in parts of their mean.
+fn growth(from: &[f64; 4], to: &[f64; 4]) -> f64 {
+    let [from, to] = [from, to].map(|sums| sums[2] + sums[3]);
+    (2.0 * (to - from) / (to + from)).clamp(-0.4, 0.4)
+}
+
 /// Turns for a share of the azimuth's measure, both 1 all around.
 fn turns(share: f64) -> f64 {
     let measure = 4.0 * (share - share.floor());
@@ -438,8 +449,36 @@ struct Region {
     fades: bool,
     /// How what passes changes over the zone.
     drift: Drift,
-    /// By zone of wavelength: how it moves along and across from the lower to the upper end of that zone, and of the depth, mm.
-    shifts: Vec<[[f64; 2]; 2]>,
+    /// By zone of wavelength.
+    by_band: Vec<BandDrift>,
+}
+
+/// How what passes changes from the lower to the upper ends of a zone of wavelength, and of its depths.
+#[derive(Clone, Copy, Default)]
+struct BandDrift {
+    /// It moves along and across, mm: with the wavelength, with the depth.
+    shift: [[f64; 2]; 2],
+    /// It grows, in parts of its size in the middle.
+    growth: [f64; 2],
+}
+
+impl BandDrift {
+    fn is_finite(&self) -> bool {
+        self.shift.iter().flatten().chain(&self.growth).all(|v| v.is_finite())
+    }
+
+    /// As an outline keeps it.
+    fn columns(&self) -> [[f32; 2]; 3] {
+        let [color, depth] = self.shift;
+        [color, depth, self.growth].map(|pair| pair.map(|v| v as f32))
+    }
+
+    /// How far it has moved, and its size, at parts of the wavelength and of the depth, each -0.5 to 0.5.
+    fn at(&self, color: f64, depth: f64) -> ([f64; 2], f64) {
+        let [by_color, by_depth] = self.shift;
+        let moved = std::array::from_fn(|i| color * by_color[i] + depth * by_depth[i]);
+        (moved, 1.0 + color * self.growth[0] + depth * self.growth[1])
+    }
 }
 
 impl Region {
@@ -456,58 +495,60 @@ impl Region {
     }
 
     /// How what passes changes from the lower to the upper ends of the zone, in the mean of them.
-    fn drifts(&self, lattice: &Lattice, at: &ZonePlace, bands: usize) -> (Drift, Vec<[[f64; 2]; 2]>) {
+    fn drifts(&self, lattice: &Lattice, at: &ZonePlace, bands: usize) -> (Drift, Vec<BandDrift>) {
         let known = || {
             let ends = lattice.ends(at)?;
             let depths = ends.len() / lattice.ends_a_depth();
             let colors = ends.first()?.1.edges.len();
             // Center along, across, half of each: by end of the angle, by end of the depth, by wavelength.
             let mut by_angle = [[0.0; 4]; 2];
-            let mut by_depth = [[0.0; 2]; 2];
-            let mut by_color = vec![[0.0; 2]; colors];
+            let mut by_depth = [[0.0; 4]; 2];
+            let mut by_color = vec![[0.0; 4]; colors];
             for (k, (_, node)) in ends.iter().enumerate() {
                 for (line, of_color) in node.edges.iter().zip(&mut by_color) {
                     let places: Option<Vec<[f64; 2]>> =
                         line.iter().map(|p| self.plane.project(node.point, *p).map(|(place, _)| place)).collect();
                     let bounds = Bounds::around(&places?)?;
                     let ([a, c], [b, d]) = (bounds.center(), bounds.half());
-                    by_angle[k % 2].iter_mut().zip([a, c, b, d]).for_each(|(sum, value)| *sum += value);
-                    let depth = &mut by_depth[k / lattice.ends_a_depth()];
-                    depth.iter_mut().zip([a, c]).for_each(|(sum, value)| *sum += value);
-                    of_color.iter_mut().zip([a, c]).for_each(|(sum, value)| *sum += value);
+                    for sums in [&mut by_angle[k % 2], &mut by_depth[k / lattice.ends_a_depth()], of_color] {
+                        sums.iter_mut().zip([a, c, b, d]).for_each(|(sum, value)| *sum += value);
+                    }
                 }
             }
-            let all = (ends.len() * colors) as f64;
+            let ends = ends.len() as f64;
+            let half = 0.5 * ends * colors as f64;
             let [low, high] = by_angle;
-            let shift = [0, 1].map(|i| (high[i] - low[i]) / (0.5 * all));
-            let growth = [2, 3].map(|i| (2.0 * (high[i] - low[i]) / (high[i] + low[i])).clamp(-0.8, 0.8));
+            let drift = Drift {
+                shift: shift(&low, &high, half),
+                growth: [2, 3].map(|i| (2.0 * (high[i] - low[i]) / (high[i] + low[i])).clamp(-0.8, 0.8)),
+            };
+            let [near, far] = by_depth;
             let of_depth =
-                [0, 1].map(|i| if depths > 1 { (by_depth[1][i] - by_depth[0][i]) / (0.5 * all) } else { 0.0 });
-            let shifts: Vec<[[f64; 2]; 2]> = (0..bands)
-                .map(|band| {
-                    let (from, to) = (by_color[band], by_color[(band + 1).min(colors - 1)]);
-                    [[0, 1].map(|i| (to[i] - from[i]) / ends.len() as f64), of_depth]
-                })
-                .collect();
-            let mut values = shift.iter().chain(&growth).chain(shifts.iter().flatten().flatten());
-            values.all(|v| v.is_finite()).then_some((Drift { shift, growth }, shifts))
+                if depths > 1 { (shift(&near, &far, half), growth(&near, &far)) } else { Default::default() };
+            let of_band = |band: usize| {
+                let (from, to) = (by_color[band], by_color[(band + 1).min(colors - 1)]);
+                let of_color = (shift(&from, &to, ends), growth(&from, &to));
+                BandDrift { shift: [of_color.0, of_depth.0], growth: [of_color.1, of_depth.1] }
+            };
+            let by_band: Vec<BandDrift> = (0..bands).map(of_band).collect();
+            let is_finite = drift.shift.iter().chain(&drift.growth).all(|v| v.is_finite());
+            (is_finite && by_band.iter().all(BandDrift::is_finite)).then_some((drift, by_band))
         };
-        let still = (Drift::default(), vec![[[0.0; 2]; 2]; bands]);
+        let still = (Drift::default(), vec![BandDrift::default(); bands]);
         if self.fades { still } else { known().unwrap_or(still) }
     }
 
     /// A place as it is in the middle of the zone, from one at parts of its angle, wavelength and depth, each -0.5 to 0.5.
     fn still(&self, place: [f64; 2], band: usize, [angle, color, depth]: [f64; 3]) -> [f64; 2] {
-        let [by_color, by_depth] = self.shifts[band];
-        let place = std::array::from_fn(|i| place[i] - color * by_color[i] - depth * by_depth[i]);
-        self.drift.still(place, angle)
+        let (moved, size) = self.by_band[band].at(color, depth);
+        self.drift.still(std::array::from_fn(|i| place[i] - moved[i]), angle).map(|p| p / size)
     }
 
     /// The other way round.
     fn moved(&self, place: [f64; 2], band: usize, [angle, color, depth]: [f64; 3]) -> [f64; 2] {
-        let [by_color, by_depth] = self.shifts[band];
-        let place = self.drift.moved(place, angle);
-        std::array::from_fn(|i| place[i] + color * by_color[i] + depth * by_depth[i])
+        let (moved, size) = self.by_band[band].at(color, depth);
+        let place = self.drift.moved(place.map(|p| p * size), angle);
+        std::array::from_fn(|i| place[i] + moved[i])
     }
 
     /// What passes in a sector of the zone, by wavelength; all of the shape where that is not known.
@@ -529,10 +570,11 @@ impl Region {
         let mut reach = Reach::EMPTY;
         // It is to hold the shape wherever the drift takes it.
         let Drift { shift, growth } = self.drift;
-        let [by_color, by_depth] = self.shifts[band];
+        let BandDrift { shift: [by_color, by_depth], growth: [of_color, of_depth] } = self.by_band[band];
+        let smallest = 1.0 - 0.5 * (of_color.abs() + of_depth.abs());
         let [a, b] = [0, 1].map(|i| {
             (self.shape.half[i] + 0.5 * (shift[i].abs() + by_color[i].abs() + by_depth[i].abs()))
-                / (1.0 - 0.5 * growth[i].abs())
+                / ((1.0 - 0.5 * growth[i].abs()) * smallest)
         });
         let line: Vec<[f64; 2]> = if self.shape.ellipse {
             let around = (0..DIRECTIONS).map(Reach::way);

@@ -9,6 +9,7 @@ use super::field::{HeightField, Hit, Line, Wall};
 use super::map::PictureMap;
 use crate::flat::Texture;
 use crate::halves::Half;
+use spectra_core::isa::Vectorized;
 use spectra_core::loss::{ALIVE, Loss};
 use spectra_core::spectral::SpectralPower;
 use spectra_core::stage::{Emit, Radiance, Source};
@@ -65,6 +66,7 @@ impl DeepPicture {
     }
 
     /// Pixels a mm on the plane, to the right and up (rows count down), and the middle of the picture in pixels.
+    #[inline(always)]
     fn lattice(&self) -> [[f64; 2]; 2] {
         let map = &self.map;
         let per_mm = [map.width_px as f64 / map.width_mm, -(map.height_px as f64) / map.height_mm];
@@ -72,20 +74,23 @@ impl DeepPicture {
     }
 
     /// The ray through a point in a direction, over the picture.
+    #[inline(always)]
     fn line(&self, [x, y, z]: [f64; 3], [l, m, n]: [f64; 3]) -> Line {
         let t = (self.eye_mm - z) / n;
-        let [per_mm, middle] = self.lattice();
-        let (slope, at_eye) = ([l / -n, m / -n], [x + t * l, y + t * m]);
+        let [[per_x, per_y], [middle_x, middle_y]] = self.lattice();
+        let (slope_x, slope_y) = (l / -n, m / -n);
+        let (per_x, per_y) = (per_x * self.plane_mm, per_y * self.plane_mm);
         Line {
-            at_infinity: [0, 1].map(|k| middle[k] + per_mm[k] * self.plane_mm * slope[k]),
-            per_w: [0, 1].map(|k| per_mm[k] * self.plane_mm * at_eye[k]),
+            at_infinity: [middle_x + per_x * slope_x, middle_y + per_y * slope_y],
+            per_w: [per_x * (x + t * l), per_y * (y + t * m)],
         }
     }
 
     /// How far right and up of the axis a place of the picture is seen, per unit of depth.
-    fn slopes(&self, place: [f64; 2]) -> [f64; 2] {
-        let [per_mm, middle] = self.lattice();
-        [0, 1].map(|k| (place[k] - middle[k]) / (per_mm[k] * self.plane_mm))
+    #[inline(always)]
+    fn slopes(&self, [column, row]: [f64; 2]) -> [f64; 2] {
+        let [[per_x, per_y], [middle_x, middle_y]] = self.lattice();
+        [(column - middle_x) / (per_x * self.plane_mm), (row - middle_y) / (per_y * self.plane_mm)]
     }
 
     /// The point at a place of the picture and a depth, in the frame of the lens.
@@ -97,11 +102,18 @@ impl DeepPicture {
     /// The color that a ray meets, and which part of the light there is this picture's.
     #[inline(always)]
     fn color(&self, hit: &Hit) -> ([f32; 3], f32) {
-        let own = self.map.coefficients[hit.cell];
         // Between pixels of the same thing colors are smooth; others do not count.
         let spot = self.map.spot(hit.place);
+        if !hit.guessed && self.field.is_smooth(hit.cell) {
+            return self.map.color(&spot);
+        }
+        let own = self.map.coefficients[hit.cell];
         let is_whole = self.map.half == Half::Whole;
         if hit.guessed {
+            // A light does not go on behind what stands before it: as far as the guess goes it would shine in place of a background.
+            if self.map.is_light(hit.cell) {
+                return ([0.0; 3], 0.0);
+            }
             let share = if is_whole { 1.0 } else { self.map.share(&spot, |_| hit.cell) };
             return (own, share);
         }
@@ -113,28 +125,90 @@ impl DeepPicture {
 }
 
 impl Radiance for DeepPicture {
-    fn radiance(&self, rays: &mut RayBatch, _: Isa) {
+    fn radiance(&self, rays: &mut RayBatch, isa: Isa) {
         let c = rays.columns_mut();
-        let mut colors = [[0.0_f32; 3]; 64];
-        for start in (0..c.x.len()).step_by(64) {
-            let end = (start + 64).min(c.x.len());
-            for i in start..end {
-                if c.state[i] == ALIVE && !(c.n[i] < 0.0) {
-                    c.state[i] = Loss::Absorbed.state(0);
-                }
-                let mut share = 1.0;
-                colors[i - start] = [0.0; 3];
-                if c.state[i] == ALIVE {
-                    let line = self.line([c.x[i], c.y[i], c.z[i]], [c.l[i], c.m[i], c.n[i]]);
-                    // Black beside the picture.
-                    if let Some(hit) = self.field.hit(&line) {
-                        (colors[i - start], share) = self.color(&hit);
-                    }
-                }
-                c.weight[i] *= self.map.scale * f64::from(share);
+        let mut looked = Looked::new();
+        for start in (0..c.x.len()).step_by(CHUNK) {
+            let r = start..(start + CHUNK).min(c.x.len());
+            isa.run(See {
+                deep: self,
+                position: [&c.x[r.clone()], &c.y[r.clone()], &c.z[r.clone()]],
+                direction: [&c.l[r.clone()], &c.m[r.clone()], &c.n[r.clone()]],
+                state: &mut c.state[r.clone()],
+                weight: &mut c.weight[r.clone()],
+                looked: &mut looked,
+            });
+            let (wavelength, line) = (&c.wavelength_nm[r.clone()], &c.line[r.clone()]);
+            self.map.model.evaluate(&looked.colors[..r.len()], wavelength, line, &mut c.weight[r]);
+        }
+    }
+}
+
+/// Rays that are worked on at a time.
+const CHUNK: usize = 64;
+
+/// What is known of a chunk of rays: their lines over the picture, column and row, and their colors.
+struct Looked {
+    at_infinity: [[f64; CHUNK]; 2],
+    per_w: [[f64; CHUNK]; 2],
+    colors: [[f32; 3]; CHUNK],
+}
+
+impl Looked {
+    fn new() -> Self {
+        Self { at_infinity: [[0.0; CHUNK]; 2], per_w: [[0.0; CHUNK]; 2], colors: [[0.0; 3]; CHUNK] }
+    }
+
+    /// Writes the lines of rays.
+    #[inline(always)]
+    fn lines(&mut self, deep: &DeepPicture, [x, y, z]: [&[f64]; 3], [l, m, n]: [&[f64]; 3]) {
+        let len = x.len().min(CHUNK);
+        let (x, y, z, l, m, n) = (&x[..len], &y[..len], &z[..len], &l[..len], &m[..len], &n[..len]);
+        for i in 0..len {
+            let Line { at_infinity, per_w } = deep.line([x[i], y[i], z[i]], [l[i], m[i], n[i]]);
+            (self.at_infinity[0][i], self.at_infinity[1][i]) = (at_infinity[0], at_infinity[1]);
+            (self.per_w[0][i], self.per_w[1][i]) = (per_w[0], per_w[1]);
+        }
+    }
+
+    #[inline(always)]
+    fn line(&self, i: usize) -> Line {
+        Line {
+            at_infinity: [self.at_infinity[0][i], self.at_infinity[1][i]],
+            per_w: [self.per_w[0][i], self.per_w[1][i]],
+        }
+    }
+}
+
+/// Finds what a chunk of rays from the lens meets.
+struct See<'a> {
+    deep: &'a DeepPicture,
+    position: [&'a [f64]; 3],
+    direction: [&'a [f64]; 3],
+    state: &'a mut [u64],
+    weight: &'a mut [f64],
+    looked: &'a mut Looked,
+}
+
+impl Vectorized for See<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run(self) {
+        let Self { deep, position, direction, state, weight, looked } = self;
+        looked.lines(deep, position, direction);
+        for i in 0..weight.len() {
+            if state[i] == ALIVE && !(direction[2][i] < 0.0) {
+                state[i] = Loss::Absorbed.state(0);
             }
-            let (wavelength, line) = (&c.wavelength_nm[start..end], &c.line[start..end]);
-            self.map.model.evaluate(&colors[..end - start], wavelength, line, &mut c.weight[start..end]);
+            let mut share = 1.0;
+            looked.colors[i] = [0.0; 3];
+            if state[i] == ALIVE {
+                // Black beside the picture.
+                if let Some(hit) = deep.field.hit(&looked.line(i)) {
+                    (looked.colors[i], share) = deep.color(&hit);
+                }
+            }
+            weight[i] *= deep.map.scale * f64::from(share);
         }
     }
 }
@@ -179,7 +253,11 @@ impl Walls {
                     continue;
                 };
                 // A step of one thing has the light of its nearer pixel; behind another thing goes on what it hides.
-                let level = if field.together(cell, nearer) { around(nearer) } else { level(cell) };
+                let level = match field.together(cell, nearer) {
+                    true => around(nearer),
+                    false if map.is_light(cell) => 0.0,
+                    false => level(cell),
+                };
                 if level > 0.0 {
                     sum += f64::from(level) * hidden * (field.w(nearer) - field.w(cell));
                     all.push(Wall { cell: cell as u32, side });
@@ -243,43 +321,72 @@ impl Emit for DeepPicture {
     }
 
     /// What a ray carries shows once it has a direction: only then is it known what stands before it.
-    fn radiate(&self, rays: &mut RayBatch, _: Isa) {
+    fn radiate(&self, rays: &mut RayBatch, isa: Isa) {
         let c = rays.columns_mut();
-        let mut colors = [[0.0_f32; 3]; 64];
-        for start in (0..c.x.len()).step_by(64) {
-            let end = (start + 64).min(c.x.len());
-            for i in start..end {
-                colors[i - start] = [0.0; 3];
-                if c.state[i] != ALIVE {
+        let mut looked = Looked::new();
+        for start in (0..c.x.len()).step_by(CHUNK) {
+            let r = start..(start + CHUNK).min(c.x.len());
+            isa.run(Shine {
+                deep: self,
+                position: [&c.x[r.clone()], &c.y[r.clone()], &c.z[r.clone()]],
+                direction: [&c.l[r.clone()], &c.m[r.clone()], &c.n[r.clone()]],
+                tag: &c.tag[r.clone()],
+                state: &mut c.state[r.clone()],
+                weight: &mut c.weight[r.clone()],
+                looked: &mut looked,
+            });
+            let (wavelength, line) = (&c.wavelength_nm[r.clone()], &c.line[r.clone()]);
+            self.map.model.evaluate(&looked.colors[..r.len()], wavelength, line, &mut c.weight[r]);
+        }
+    }
+}
+
+/// Finds what rays that were emitted carry: light, if they start from the first thing that stands on their line.
+struct Shine<'a> {
+    deep: &'a DeepPicture,
+    position: [&'a [f64]; 3],
+    direction: [&'a [f64]; 3],
+    tag: &'a [u32],
+    state: &'a mut [u64],
+    weight: &'a mut [f64],
+    looked: &'a mut Looked,
+}
+
+impl Vectorized for Shine<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run(self) {
+        let Self { deep, position, direction, tag, state, weight, looked } = self;
+        looked.lines(deep, position, direction);
+        for i in 0..weight.len() {
+            looked.colors[i] = [0.0; 3];
+            if state[i] != ALIVE {
+                continue;
+            }
+            let (tag, way) = (tag[i], [direction[0][i], direction[1][i], direction[2][i]]);
+            let from = Wall { cell: tag & (MOST_CELLS as u32 - 1), side: (tag >> SIDE_BITS & 3) as u8 };
+            let is_wall = tag & IS_WALL != 0;
+            let hit = match deep.field.hit(&looked.line(i)) {
+                Some(hit) if !is_wall && hit.wall.is_none() && hit.cell == tag as usize => hit,
+                Some(hit) if is_wall && hit.wall == Some(from) => hit,
+                _ => {
+                    state[i] = Loss::Absorbed.state(0);
                     continue;
                 }
-                let (tag, way) = (c.tag[i], [c.l[i], c.m[i], c.n[i]]);
-                let hit = self.field.hit(&self.line([c.x[i], c.y[i], c.z[i]], way));
-                let from = Wall { cell: tag & (MOST_CELLS as u32 - 1), side: (tag >> SIDE_BITS & 3) as u8 };
-                let meets = |hit: &Hit| match hit.wall {
-                    None => tag & IS_WALL == 0 && hit.cell == tag as usize,
-                    Some(wall) => tag & IS_WALL != 0 && wall == from,
-                };
-                let Some(hit) = hit.filter(meets) else {
-                    c.state[i] = Loss::Absorbed.state(0);
-                    continue;
-                };
-                let cosine = if tag & IS_WALL == 0 {
-                    way[2]
-                } else {
-                    // The step lies along the lines through the center of projection: its normal is (1, 0, x/depth) or
-                    // (0, 1, y/depth), and the area counts by that vector.
-                    let axis = usize::from(from.side / 2);
-                    let (cell, beyond) = (from.cell as usize, usize::from(from.side % 2));
-                    let border = [cell % self.map.width_px + beyond, cell / self.map.width_px + beyond];
-                    way[axis] + self.slopes(border.map(|at| at as f64))[axis] * way[2]
-                };
-                let (color, share) = self.color(&hit);
-                colors[i - start] = color;
-                c.weight[i] *= cosine.abs() * f64::from(share);
-            }
-            let (wavelength, line) = (&c.wavelength_nm[start..end], &c.line[start..end]);
-            self.map.model.evaluate(&colors[..end - start], wavelength, line, &mut c.weight[start..end]);
+            };
+            let cosine = if is_wall {
+                // The step lies along the lines through the center of projection: its normal is (1, 0, x/depth) or
+                // (0, 1, y/depth), and the area counts by that vector.
+                let axis = usize::from(from.side / 2);
+                let (cell, beyond, width) = (from.cell as usize, usize::from(from.side % 2), deep.map.width_px);
+                let border = [(cell % width + beyond) as f64, (cell / width + beyond) as f64];
+                way[axis] + deep.slopes(border)[axis] * way[2]
+            } else {
+                way[2]
+            };
+            let share;
+            (looked.colors[i], share) = deep.color(&hit);
+            weight[i] *= cosine.abs() * f64::from(share);
         }
     }
 }

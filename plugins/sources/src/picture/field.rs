@@ -3,13 +3,17 @@
 //! The picture is a height field over its own perspective. In the coordinates (column, row, w), w being one over the
 //! depth in front of the center of projection, every straight ray is a straight line (a projective map keeps lines), each
 //! pixel is a flat cell at its w, and w only falls along a ray from the lens: the cells are walked through in order (J.
-//! Amanatides and A. Woo, "A fast voxel traversal algorithm", Eurographics 1987), with no step that could miss one.
+//! Amanatides and A. Woo, "A fast voxel traversal algorithm", Eurographics 1987), with no step that could miss one. What stands
+//! around the line bounds the part of it that has to be walked ([`super::bounds`]); the result is that of walking all of it.
 //!
 //! What lies behind a foreground no single picture knows. Where a ray passes from in front of one pixel to behind the next,
 //! and the two belong to different things, the background goes on behind the foreground as it was last seen: at the depth
-//! and in the color of the last pixel in front of which the ray was. No light of the foreground leaks into it. Where the
+//! and in the color of the last pixel in front of which the ray was: black, if that is one of the picture's lights, for a lamp
+//! is no background. No light of the foreground leaks into it. Where the
 //! two belong to the same thing the ray meets the step between them. A ray that comes in behind a foreground from
 //! beside the picture sees nothing until it comes out again.
+
+use super::bounds::Bounds;
 
 /// One over the depth of each pixel.
 pub(super) struct HeightField {
@@ -17,6 +21,9 @@ pub(super) struct HeightField {
     height: usize,
     /// 1/mm, row by row from the top.
     inverse_mm: Vec<f32>,
+    bounds: Bounds,
+    /// Of each pixel, whether all that touch it belong to the same thing.
+    smooth: Vec<bool>,
     nearest: f64,
     farthest: f64,
     edge: f64,
@@ -30,9 +37,33 @@ pub(super) struct Line {
 }
 
 impl Line {
+    #[inline(always)]
     fn at(&self, w: f64) -> [f64; 2] {
-        [0, 1].map(|k| self.at_infinity[k] + self.per_w[k] * w)
+        let ([a, b], [x, y]) = (self.at_infinity, self.per_w);
+        [a + x * w, b + y * w]
     }
+}
+
+impl Line {
+    /// The w at which it leaves a column (of `axis` 0) or row, coming from large w; nowhere if it runs along.
+    #[inline(always)]
+    fn leaves(&self, at: usize, axis: usize) -> f64 {
+        let border = (at + usize::from(self.per_w[axis] < 0.0)) as f64;
+        let w = (border - self.at_infinity[axis]) / self.per_w[axis];
+        if self.per_w[axis] == 0.0 || w.is_nan() { f64::NEG_INFINITY } else { w }
+    }
+}
+
+/// The smaller of two numbers, or the second.
+#[inline(always)]
+fn less(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+/// The larger of two numbers, or the second.
+#[inline(always)]
+fn more(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
 }
 
 /// What a ray meets.
@@ -59,6 +90,12 @@ pub(super) struct Wall {
 
 /// Steps of w below this part of the largest move nothing by as much as a pixel in any sensible picture.
 const STEP: f64 = 1e-3;
+/// Rounding moves a place by less than this part of its coordinates: some 2^-52 times a few.
+const ROUNDING: f64 = 1e-12;
+/// A line is looked at no more often.
+const MOST_LOOKS: usize = 16;
+/// A closer look is worth its time where the last one left less of the way than this.
+const MUCH_SHORTER: f64 = 0.8;
 
 impl HeightField {
     /// `depth_mm` is positive and finite; neighbors whose depths differ by more than the part `edge` belong to
@@ -67,10 +104,29 @@ impl HeightField {
         let inverse_mm: Vec<f32> = depth_mm.iter().map(|d| 1.0 / d).collect();
         let nearest = inverse_mm.iter().fold(0.0_f32, |a, b| a.max(*b));
         let farthest = inverse_mm.iter().fold(f32::INFINITY, |a, b| a.min(*b));
-        Self { width, height, inverse_mm, nearest: f64::from(nearest), farthest: f64::from(farthest), edge }
+        let (nearest, farthest) = (f64::from(nearest), f64::from(farthest));
+        let bounds = Bounds::new(width, height, &inverse_mm);
+        let mut own = Self { width, height, inverse_mm, bounds, smooth: Vec::new(), nearest, farthest, edge };
+        own.smooth = (0..own.cells()).map(|cell| own.around(cell).all(|beside| own.together(cell, beside))).collect();
+        own
+    }
+
+    /// A pixel and all that touch it.
+    fn around(&self, cell: usize) -> impl Iterator<Item = usize> + use<> {
+        let (column, row, width) = (cell % self.width, cell / self.width, self.width);
+        let columns = column.saturating_sub(1)..=(column + 1).min(width - 1);
+        let rows = row.saturating_sub(1)..=(row + 1).min(self.height - 1);
+        rows.flat_map(move |row| columns.clone().map(move |column| row * width + column))
+    }
+
+    /// Whether all pixels that touch one belong to the same thing as it does.
+    #[inline(always)]
+    pub(super) fn is_smooth(&self, cell: usize) -> bool {
+        self.smooth[cell]
     }
 
     /// One over the depth of a pixel, 1/mm.
+    #[inline(always)]
     pub(super) fn w(&self, cell: usize) -> f64 {
         f64::from(self.inverse_mm[cell])
     }
@@ -92,16 +148,49 @@ impl HeightField {
     }
 
     /// Whether two pixels belong to the same thing.
+    #[inline(always)]
     pub(super) fn together(&self, a: usize, b: usize) -> bool {
         let (a, b) = (self.w(a), self.w(b));
         (a - b).abs() <= (self.edge * a.max(b)).max(STEP * self.nearest)
     }
 
     /// What the ray along a line meets first, coming from the lens.
+    ///
+    /// Code that runs for each ray: it is inlined into what is compiled for each instruction set, hence no closures.
+    #[inline(always)]
     pub(super) fn hit(&self, line: &Line) -> Option<Hit> {
+        let [w_in, w_end] = self.over(line)?;
+        // A ray that comes in from beside the picture may do so behind something: that needs every step of its way.
+        let narrowed = if w_in >= self.nearest { self.narrowed(line, w_in, w_end) } else { None };
+        let (cell, near) = match narrowed {
+            Some((cell, near)) => {
+                // In front of it the ray passed everything, since nothing stands nearer.
+                let here = cell[1] * self.width + cell[0];
+                if self.w(here) == near {
+                    return Some(Hit { place: line.at(near), cell: here, guessed: false, wall: None });
+                }
+                (cell, near)
+            }
+            None => (self.cell_at(line.at(w_in)), w_in),
+        };
+        self.walk::<true>(line, cell, near, w_end)
+    }
+
+    /// Part of a line that lies over the picture, from in front of everything to the farthest: its ends in w.
+    #[inline(always)]
+    fn over(&self, line: &Line) -> Option<[f64; 2]> {
         let size = [self.width as f64, self.height as f64];
-        // From in front of everything to the farthest, as far as the line lies over the picture.
         let (mut w_in, mut w_end) = (self.nearest, self.farthest);
+        let [near, far] = [line.at(w_in), line.at(w_end)];
+        let room = self.room(line);
+        let mut inside = true;
+        for k in 0..2 {
+            inside &= less(near[k], far[k]) > room[k];
+            inside &= more(near[k], far[k]) < size[k] - room[k];
+        }
+        if inside {
+            return Some([w_in, w_end]);
+        }
         for k in 0..2 {
             let (at, slope) = (line.at_infinity[k], line.per_w[k]);
             if slope == 0.0 {
@@ -114,13 +203,99 @@ impl HeightField {
             w_in = w_in.min(a.max(b));
             w_end = w_end.max(a.min(b));
         }
-        if !(w_in >= w_end) {
+        (w_in >= w_end).then_some([w_in, w_end])
+    }
+
+    /// Far more than rounding moves a place on a line, pixels.
+    #[inline(always)]
+    fn room(&self, line: &Line) -> [f64; 2] {
+        let ([a, b], [x, y]) = (line.at_infinity, line.per_w);
+        [ROUNDING * (1.0 + a.abs() + x.abs() * self.nearest), ROUNDING * (1.0 + b.abs() + y.abs() * self.nearest)]
+    }
+
+    /// The pixel of a place, or the nearest one.
+    #[inline(always)]
+    fn cell_at(&self, [column, row]: [f64; 2]) -> [usize; 2] {
+        // Also where it is no number.
+        let (column, row) = (if column > 0.0 { column } else { 0.0 }, if row > 0.0 { row } else { 0.0 });
+        [(column as i32 as usize).min(self.width - 1), (row as i32 as usize).min(self.height - 1)]
+    }
+
+    /// Where a line that comes from in front of everything has anything beside it first: the pixel that it is over there, and w.
+    /// `None` where that is where it begins, or too close to a border for rounding to say which pixel it is over.
+    #[inline(always)]
+    fn narrowed(&self, line: &Line, w_in: f64, w_end: f64) -> Option<([usize; 2], f64)> {
+        let room = self.room(line);
+        let (mut near, mut far) = (w_in, w_end);
+        // How much of what is left is looked at.
+        let mut part = 1.0;
+        for _ in 0..MOST_LOOKS {
+            let upto = if part == 1.0 { far } else { near - part * (near - far) };
+            let (first, last) = self.around_line(line, near, upto, room);
+            let ends = self.bounds.of(first, last);
+            let (nearest, farthest) = (f64::from(ends.nearest), f64::from(ends.farthest));
+            // It runs in front of all that, or meets what is nearest there at the earliest.
+            let next = less(near, more(nearest, upto));
+            // It has met something where what is farthest there lies in front of the end.
+            let end = if farthest > far && farthest >= upto { less(farthest, next) } else { far };
+            let shorter = next - end < MUCH_SHORTER * (near - far);
+            let moved = next < near;
+            (near, far) = (next, end);
+            if near == far {
+                break;
+            }
+            if !shorter {
+                if Bounds::is_small(first, last) {
+                    break;
+                }
+                part *= if moved { 1.0 } else { 0.5 };
+            } else if moved {
+                part = 1.0;
+            }
+        }
+        if near == w_in {
             return None;
         }
-        let [column, row] = line.at(w_in);
+        let place = line.at(near);
+        let cell = self.cell_at(place);
+        let mut is_sure = true;
+        for k in 0..2 {
+            let part = place[k] - cell[k] as f64;
+            is_sure &= part > room[k] && part < 1.0 - room[k];
+        }
+        is_sure.then_some((cell, near))
+    }
+
+    /// The box of pixels that a part of a line is over, first and last column and row, with room for rounding.
+    #[inline(always)]
+    fn around_line(&self, line: &Line, near: f64, far: f64, room: [f64; 2]) -> ([usize; 2], [usize; 2]) {
+        let [a, b] = [line.at(near), line.at(far)];
+        let first = self.cell_at([less(a[0], b[0]) - room[0], less(a[1], b[1]) - room[1]]);
+        let last = self.cell_at([more(a[0], b[0]) + room[0], more(a[1], b[1]) + room[1]]);
+        (first, last)
+    }
+
+    /// Whether a line stays behind all that stands around it between two ends.
+    #[inline(always)]
+    fn stays_behind(&self, line: &Line, near: f64, far: f64) -> bool {
+        let (first, last) = self.around_line(line, near, far, self.room(line));
+        f64::from(self.bounds.of(first, last).farthest) > near
+    }
+
+    /// The same without a look at what stands around the line: what [`HeightField::hit`] is tested by.
+    #[cfg(test)]
+    fn hit_step_by_step(&self, line: &Line) -> Option<Hit> {
+        let [w_in, w_end] = self.over(line)?;
+        self.walk::<false>(line, self.cell_at(line.at(w_in)), w_in, w_end)
+    }
+
+    /// Follows a line pixel by pixel, from a pixel that it is over at `w_in`; `LOOKS` ahead where that may save steps.
+    #[inline(always)]
+    fn walk<const LOOKS: bool>(&self, line: &Line, mut cell: [usize; 2], mut w_in: f64, w_end: f64) -> Option<Hit> {
         let last = [self.width - 1, self.height - 1];
-        let mut cell = [(column.max(0.0) as usize).min(last[0]), (row.max(0.0) as usize).min(last[1])];
-        let forward = line.per_w.map(|slope| slope < 0.0);
+        let forward = [line.per_w[0] < 0.0, line.per_w[1] < 0.0];
+        // Where it leaves the column and the row.
+        let mut leaves = [line.leaves(cell[0], 0), line.leaves(cell[1], 1)];
         // The pixel whose surface the ray was last in front of, and whether it still is.
         let mut before: Option<usize> = None;
         let mut in_front = w_in >= self.nearest;
@@ -128,11 +303,6 @@ impl HeightField {
         let mut wall = None;
         let mut side = 0;
         loop {
-            let leaves = [0, 1].map(|k| {
-                let border = (cell[k] + usize::from(forward[k])) as f64;
-                let w = (border - line.at_infinity[k]) / line.per_w[k];
-                if line.per_w[k] == 0.0 || w.is_nan() { f64::NEG_INFINITY } else { w }
-            });
             let axis = usize::from(leaves[1] > leaves[0]);
             let ends = !(leaves[axis] > w_end);
             let w_out = if ends { w_end } else { leaves[axis].min(w_in) };
@@ -149,6 +319,12 @@ impl HeightField {
                     if before.is_none_or(|before| self.together(before, here)) {
                         return Some(Hit { place: line.at(w_in), cell: here, guessed: false, wall });
                     }
+                    if LOOKS && let Some(cell) = before {
+                        let w = self.w(cell);
+                        if w >= w_end && self.stays_behind(line, w_in, w) {
+                            return Some(Hit { place: line.at(w), cell, guessed: true, wall });
+                        }
+                    }
                 }
                 in_front = false;
                 if let Some(before) = before.filter(|before| w_out <= self.w(*before)) {
@@ -163,6 +339,7 @@ impl HeightField {
                 return None;
             }
             cell[axis] = next;
+            leaves[axis] = line.leaves(cell[axis], axis);
             side = 2 * axis as u8 + u8::from(forward[axis]);
             w_in = w_out;
         }
@@ -229,6 +406,62 @@ mod tests {
             }
         }
         assert!(met > 1900, "{met}");
+    }
+
+    /// With and without a look at what stands around a line, bit by bit: planes, slopes, noise, posts before a wall.
+    #[test]
+    fn narrowing_changes_nothing() {
+        let mut state = 1_u64;
+        let mut draw = move || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        let (mut met, mut walls, mut guessed, mut skipped) = (0, 0, 0, 0);
+        for (width, height) in [(1, 1), (2, 9), (37, 23), (150, 90)] {
+            for kind in 0..6 {
+                let depth: Vec<f32> = (0..width * height)
+                    .map(|i| {
+                        let (c, r) = (i % width, i / width);
+                        match kind {
+                            0 => 1500.0,
+                            1 => 900.0 + 7.0 * c as f32 + 3.0 * r as f32,
+                            2 => 800.0 + 2000.0 * ((i * 7919 % 613) as f32 / 613.0),
+                            3 if c % 23 < 6 && r > 3 => 1000.0,
+                            4 if (c / 9 + r / 7) % 3 == 0 => 1000.0 + c as f32,
+                            _ => 4000.0 + (r % 3) as f32,
+                        }
+                    })
+                    .collect();
+                let field = HeightField::new(width, height, &depth, 0.05);
+                for _ in 0..4000 {
+                    // Through a place over or beside the picture, at a depth in it.
+                    let at = [draw() * 1.2 - 0.1, draw() * 1.2 - 0.1];
+                    let w = field.farthest + (field.nearest - field.farthest) * draw();
+                    let reach = 10.0_f64.powf(4.0 * draw()) / field.nearest.max(1e-9);
+                    let mut per_w = [(draw() - 0.5) * reach, (draw() - 0.5) * reach];
+                    if draw() < 0.1 {
+                        per_w[usize::from(draw() < 0.5)] = 0.0;
+                    }
+                    let mut place = [at[0] * width as f64, at[1] * height as f64];
+                    if draw() < 0.1 {
+                        // On a border.
+                        place = place.map(f64::round);
+                    }
+                    let line = Line { at_infinity: [0, 1].map(|k| place[k] - per_w[k] * w), per_w };
+                    let hit = field.hit(&line);
+                    assert_eq!(hit, field.hit_step_by_step(&line), "{width} x {height}, {kind}: {line:?}");
+                    met += usize::from(hit.is_some());
+                    walls += usize::from(hit.is_some_and(|hit| hit.wall.is_some()));
+                    guessed += usize::from(hit.is_some_and(|hit| hit.guessed));
+                    skipped += usize::from(
+                        field
+                            .over(&line)
+                            .is_some_and(|[a, b]| a >= field.nearest && field.narrowed(&line, a, b).is_some()),
+                    );
+                }
+            }
+        }
+        assert!(met > 20_000 && walls > 2000 && guessed > 1000 && skipped > 5000, "{met} {walls} {guessed} {skipped}");
     }
 
     #[test]

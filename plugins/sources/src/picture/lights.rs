@@ -25,6 +25,9 @@ const LEAST: f32 = 1e-3;
 pub(crate) struct Lights {
     /// Of each pixel: 0 where it is none, else its brightness, which is above 0.
     pub level: Vec<f32>,
+    /// Whether one of the four pixels from this one on, to the right and down, is a light: else light interpolated between them is
+    /// none of the lights'.
+    pub touched: Vec<bool>,
     /// Draws places on them.
     pub importance: Arc<Importance>,
     /// Light of the lights and of the rest, a mean over the picture.
@@ -39,6 +42,14 @@ pub(super) struct Found {
     pub level: Vec<f32>,
     pub peak_over_mean: [f64; 2],
     pub pays: bool,
+}
+
+/// For [`Lights::touched`], by the level of each pixel.
+pub(super) fn touched(width: usize, level: &[f32]) -> Vec<bool> {
+    let height = level.len() / width;
+    let lit = |row: usize, column: usize| level[row.min(height - 1) * width + column.min(width - 1)] > 0.0;
+    let any = |(r, c)| lit(r, c) || lit(r, c + 1) || lit(r + 1, c) || lit(r + 1, c + 1);
+    (0..level.len()).map(|i| any((i / width, i % width))).collect()
 }
 
 /// The lights among pixels of this brightness; `None` where there are none.

@@ -41,13 +41,22 @@ pub(crate) struct Spot {
 
 impl Spot {
     /// Linear between the values of the four pixels.
+    #[inline(always)]
     pub(crate) fn mix<const N: usize>(&self, value: impl Fn(usize) -> [f32; N]) -> [f32; N] {
-        let [a, b, d, e] = self.cells.map(value);
-        std::array::from_fn(|k| {
+        let [a, b, d, e] = self.cells;
+        self.between([value(a), value(b), value(d), value(e)])
+    }
+
+    /// Linear between these values of the four pixels.
+    #[inline(always)]
+    pub(crate) fn between<const N: usize>(&self, [a, b, d, e]: [[f32; N]; 4]) -> [f32; N] {
+        let mut mixed = [0.0; N];
+        for k in 0..N {
             let upper = a[k] + (b[k] - a[k]) * self.part[0];
             let lower = d[k] + (e[k] - d[k]) * self.part[0];
-            upper + (lower - upper) * self.part[1]
-        })
+            mixed[k] = upper + (lower - upper) * self.part[1];
+        }
+        mixed
     }
 }
 
@@ -60,13 +69,14 @@ impl PictureMap {
     }
 
     /// The four pixels around a place in the picture; at its rim those of the rim.
+    #[inline(always)]
     pub(crate) fn spot(&self, [column, row]: [f64; 2]) -> Spot {
         let (c, r) = ((column - 0.5).max(0.0), (row - 0.5).max(0.0));
-        let (c0, r0) = ((c as usize).min(self.width_px - 1), (r as usize).min(self.height_px - 1));
+        let (c0, r0) = ((c as i32 as usize).min(self.width_px - 1), (r as i32 as usize).min(self.height_px - 1));
         let (c1, r1) = ((c0 + 1).min(self.width_px - 1), (r0 + 1).min(self.height_px - 1));
-        let cell = |r: usize, c: usize| r * self.width_px + c;
+        let (upper, lower) = (r0 * self.width_px, r1 * self.width_px);
         Spot {
-            cells: [cell(r0, c0), cell(r0, c1), cell(r1, c0), cell(r1, c1)],
+            cells: [upper + c0, upper + c1, lower + c0, lower + c1],
             part: [(c - c0 as f64) as f32, (r - r0 as f64) as f32],
         }
     }
@@ -74,8 +84,28 @@ impl PictureMap {
     /// Coefficients at a point, linear between the centres of pixels, constant beyond the outermost; and which part of the light
     /// there is this one's.
     fn at(&self, x_mm: f64, y_mm: f64) -> Option<([f32; 3], f32)> {
-        let spot = self.spot(self.place(x_mm, y_mm)?);
-        Some((spot.mix(|cell| self.coefficients[cell]), self.share(&spot, |cell| cell)))
+        Some(self.color(&self.spot(self.place(x_mm, y_mm)?)))
+    }
+
+    /// Coefficients at a spot, and which part of the light there is this one's.
+    #[inline(always)]
+    pub(crate) fn color(&self, spot: &Spot) -> ([f32; 3], f32) {
+        let (all, [a, b, d, e]) = (&self.coefficients[..], spot.cells);
+        let color = spot.between([all[a], all[b], all[d], all[e]]);
+        // Most spots touch no light.
+        let share = match (self.half, &self.lights) {
+            (Half::Whole, _) => 1.0,
+            (Half::Rest, Some(lights)) if !lights.touched[a] => 1.0,
+            (Half::Lights, Some(lights)) if !lights.touched[a] => 0.0,
+            _ => self.share(spot, |cell| cell),
+        };
+        (color, share)
+    }
+
+    /// Whether a pixel is one of the lights.
+    #[inline]
+    pub(crate) fn is_light(&self, cell: usize) -> bool {
+        self.lights.as_ref().and_then(|lights| lights.level.get(cell)).is_some_and(|level| *level > 0.0)
     }
 
     /// Which part of the light at a spot is this one's; `of` says which pixel's light stands at each of the four.

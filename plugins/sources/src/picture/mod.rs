@@ -1,5 +1,6 @@
 //! `kind: picture`: a picture file on a plane at a distance, or with the depth that it states.
 
+mod bounds;
 mod deep;
 mod depth;
 mod field;
@@ -342,6 +343,7 @@ fn assemble(linear: Linear, name: &str, making: &Making) -> PictureMap {
         }
         Arc::new(Lights {
             importance: Arc::new(Importance::new(width, height, |i| found.level[i])),
+            touched: lights::touched(width, &found.level),
             level: found.level,
             mean: sums.map(|sum| model.spectrum(sum.map(|v| v.max(0.0))).scaled(scale)),
             peak_over_mean: found.peak_over_mean,

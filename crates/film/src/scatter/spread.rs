@@ -1,0 +1,120 @@
+//! The spread of a point: a sum of Gaussians, and what of it falls on each pixel.
+
+use crate::convolve::Kernel;
+use spectra_core::math::{exp, log};
+use spectra_numerics::normal;
+use std::f64::consts::PI;
+
+/// How the light of a point is spread: round, falling with the distance, positive; a sum of Gaussians.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PointSpread {
+    /// Standard deviation along an axis, mm, and weight; the weights sum to 1.
+    terms: Vec<[f64; 2]>,
+}
+
+impl PointSpread {
+    /// The sum of Gaussians of standard deviations along an axis (mm) and weights, all above 0; weights are scaled so
+    /// that they sum to 1.
+    pub(crate) fn new(terms: Vec<[f64; 2]>) -> Self {
+        let sum: f64 = terms.iter().map(|t| t[1]).sum();
+        Self { terms: terms.into_iter().map(|[sigma, weight]| [sigma, weight / sum]).collect() }
+    }
+
+    /// That of the response 1 / (1 + (2 pi l f)^2), which is K0(r / l) / (2 pi l^2): what diffuses and is lost on its way, and
+    /// Frieser's scatter.
+    ///
+    /// 1 / (1 + x^2) is the integral of exp(-t (1 + x^2)) over t from 0 on: one Gaussian for each t, taken at even steps of log t,
+    /// where the sum is within 1e-6 of the integral.
+    pub(crate) fn bessel(length_mm: f64) -> Self {
+        const STEP: f64 = 0.5;
+        let term = |k: i32| {
+            let t = exp(f64::from(k) * STEP);
+            // exp(-t (2 pi l f)^2) has the deviation l sqrt(2 t).
+            [length_mm * (2.0 * t).sqrt(), t * exp(-t)]
+        };
+        Self::new((-30..7).map(term).collect())
+    }
+
+    /// Standard deviation along an axis (mm) and weight of each Gaussian; the weights sum to 1.
+    #[must_use]
+    pub fn terms(&self) -> &[[f64; 2]] {
+        &self.terms
+    }
+
+    /// Share of the light a mm^2 at the distance `r_mm` from the point.
+    #[must_use]
+    pub fn per_mm2(&self, r_mm: f64) -> f64 {
+        let term = |[s, w]: &[f64; 2]| w * exp(-r_mm * r_mm / (2.0 * s * s)) / (2.0 * PI * s * s);
+        self.terms.iter().map(term).sum()
+    }
+
+    /// What is left of the contrast of a sine of `frequency` cycles/mm.
+    #[must_use]
+    pub fn response(&self, frequency: f64) -> f64 {
+        let term = |[s, w]: &[f64; 2]| {
+            let x = PI * s * frequency;
+            w * exp(-2.0 * x * x)
+        };
+        self.terms.iter().map(term).sum()
+    }
+
+    /// The distance, mm, beyond which less than `share` of the light lies.
+    pub(crate) fn reach_mm(&self, share: f64) -> f64 {
+        // Beyond r lies exp(-r^2 / (2 s^2)) of a Gaussian.
+        let beyond = |r: f64| self.terms.iter().map(|[s, w]| w * exp(-r * r / (2.0 * s * s))).sum::<f64>();
+        let widest = self.terms.iter().map(|t| t[0]).fold(0.0, f64::max);
+        let (mut left, mut right) = (0.0, widest * (-2.0 * log(share)).sqrt());
+        for _ in 0..30 {
+            let middle = 0.5 * (left + right);
+            if beyond(middle) > share { left = middle } else { right = middle }
+        }
+        right
+    }
+
+    /// What falls on the pixels around one, `pitch_mm` wide, from a point in its middle; all but `share`, and no farther than
+    /// `most` pixels. It sums to 1.
+    pub(crate) fn over_pixels(&self, pitch_mm: f64, share: f64, most: usize) -> Kernel {
+        let radius = ((self.reach_mm(share) / pitch_mm).ceil() as usize).max(1).min(most);
+        // Along an axis, what of each Gaussian falls on pixel i; on the falling side, where nothing cancels.
+        let along = |sigma: f64| -> Vec<f64> {
+            let beyond = |i: usize| normal::below(-(i as f64 + 0.5) * pitch_mm / sigma);
+            (0..=radius).map(|i| if i == 0 { 1.0 - 2.0 * beyond(0) } else { beyond(i - 1) - beyond(i) }).collect()
+        };
+        let all: Vec<(f64, Vec<f64>)> = self.terms.iter().map(|[s, w]| (*w, along(*s))).collect();
+        let kernel = Kernel::new(radius, |i, j| all.iter().map(|(w, a)| w * a[i] * a[j]).sum());
+        let sum = kernel.sum();
+        kernel.scaled(1.0 / sum)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Against the curve it stands for, and K0 by its integral (Abramowitz and Stegun 9.6.24).
+    #[test]
+    fn diffusion_with_loss_is_a_sum_of_gaussians() {
+        let (l, spread) = (0.03, PointSpread::bessel(0.03));
+        for f in [0.0, 0.5, 3.0, 20.0, 100.0] {
+            let x = 2.0 * PI * l * f;
+            assert!((spread.response(f) - 1.0 / (1.0 + x * x)).abs() < 1e-6, "{f}");
+        }
+        for x in [0.1, 0.5, 1.0, 4.0, 8.0] {
+            let cosh = |t: f64| (exp(t) + exp(-t)) / 2.0;
+            let k0: f64 = (0..40_000).map(|i| exp(-x * cosh((f64::from(i) + 0.5) * 5e-4)) * 5e-4).sum();
+            let got = spread.per_mm2(x * l) * 2.0 * PI * l * l;
+            assert!((got / k0 - 1.0).abs() < 1e-4, "{x}: {got} {k0}");
+        }
+    }
+
+    /// Beyond the reach lies the share, by the integral over rings.
+    #[test]
+    fn reach_is_where_the_share_is_left() {
+        let spread = PointSpread::new(vec![[0.003, 3.0], [0.011, 1.0]]);
+        let reach = spread.reach_mm(1e-4);
+        let step = 1e-5;
+        let rings = (0..20_000).map(|i| reach + (f64::from(i) + 0.5) * step);
+        let left: f64 = rings.map(|r| spread.per_mm2(r) * 2.0 * PI * r * step).sum();
+        assert!((left / 1e-4 - 1.0).abs() < 1e-3, "{left}");
+    }
+}
