@@ -18,7 +18,8 @@ The package holds digitizations of figures in makers' data sheets. Numbers are w
   - characteristic curves that turn where the pen slipped: running maximum (reversal: minimum), counted in the remark;
   - Wratten filters, given as densities at points of unequal distance: resampled on 2 nm, straight in density between
     points, ends held (beyond a density of 2.9 or so, where the figures end, a straight line goes on down to 5).
-What the package guesses (granularity of most stocks, by its own comments) is left out. Absolute sensitivities of the
+What the package guesses (RMS granularity of most stocks, by its own comments) is left out; granularity over
+density it takes from figures of the sheets. Absolute sensitivities of the
 sheets are kept in their scale, which no one needs: a layer's exposure is counted in lux-seconds of the reference light.
 
 `ilford-ortho-plus` is not written here: it is a digitization of our own.
@@ -183,7 +184,7 @@ def stock(slug, *, name, maker, source, licence=LICENCE, remark, head, layers, t
     (FILM / f"{slug}.yaml").write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
-def layer(name, sensitivity, developments, *, dye=None, mtf=None, stops_of=None, rising=True, sensitivity_remark=None,
+def layer(name, sensitivity, developments, *, dye=None, mtf=None, granularity=None, stops_of=None, rising=True, sensitivity_remark=None,
           assumed_sensitivity=False, mend=None):
     """One layer of a stock file."""
     out = [f"  - name: {name}", "    sensitivity:"]
@@ -197,6 +198,8 @@ def layer(name, sensitivity, developments, *, dye=None, mtf=None, stops_of=None,
         out += ["    dye:", f"      name: {dye[0]}", f"      table:{flow(dye[1], '        ')}"]
     if mtf:
         out.append(f"    mtf:{flow(pairs(mtf), '      ')}")
+    if granularity:
+        out.append(f"    granularity:{flow(granularity, '      ')}")
     return out + curves(developments, stops_of, rising, "    ", mend)
 
 
@@ -277,7 +280,25 @@ def interlayer(kind, remark):
             + f"\n  inhibition: {INTERLAYER[kind]}")
 
 
-def color_layers(data, *, rising, kind, stops_of=None):
+def granularity(deviations, densities):
+    """[density over the least, 1000 x deviation] of two figures of a sheet over the same axis, rising; where several readings
+    have the density of the foot, the last."""
+    known = pairs(densities)
+
+    def density(x):
+        for (x0, y0), (x1, y1) in zip(known, known[1:]):
+            if x <= x1:
+                return y0 + (y1 - y0) * max(x - x0, 0) / (x1 - x0)
+        return known[-1][1]
+
+    least = min(y for _, y in known)
+    table = {}
+    for x, deviation in pairs(deviations):
+        table[round(density(x) - least, 4)] = 1000 * deviation
+    return sorted(table.items())
+
+
+def color_layers(data, *, rising, kind, stops_of=None, grainy=False):
     """Layers of a color film, the uppermost (blue) first, as light meets them."""
     out = []
     for i in (2, 1, 0):
@@ -285,8 +306,9 @@ def color_layers(data, *, rising, kind, stops_of=None):
         if data.mtf:
             # The package lists red, green, blue, or one for all.
             mtf = data.mtf[i] if len(data.mtf) == 3 else data.mtf[0]
+        rms = granularity(data.rms_curve[i], data.rms_density[i]) if grainy else None
         out.append(layer(LAYERS[i], pairs(data.log_sensitivity[i]),
-                         [("normal", None, data.sensiometric_curve[i])],
+                         [("normal", None, data.sensiometric_curve[i])], granularity=rms,
                          dye=(DYES[i], pairs(data.spectral_density[i])), mtf=mtf, stops_of=stops_of, rising=rising,
                          mend=(kind, LAYERS[i])))
     return out
@@ -313,7 +335,7 @@ def color_negative(folder):
               interlayer("negative", "Fitted so that the 18 chromatic patches of the ColorChecker, printed on 2383, have the "
                          "hue that the eye sees and about its chroma (xtask/fit_film_color.py). Rows and columns are blue, "
                          "green, red. No sheet tells it.")],
-        layers=color_layers(data, rising=True, kind="negative", stops_of=250),
+        layers=color_layers(data, rising=True, kind="negative", stops_of=250, grainy=True),
     )
 
 
@@ -397,7 +419,7 @@ def reversal(folder):
                        layers=[0.01, 0.25, 1]), ACETATE, flat_minimum(*low),
               interlayer("reversal", "Fitted as that of kodak-vision3-250d-5207 was, and hardly needed. Rows and columns are "
                          "blue, green, red. No sheet tells it.")],
-        layers=color_layers(data, rising=False, kind="reversal"),
+        layers=color_layers(data, rising=False, kind="reversal", grainy=True),
     )
 
 
@@ -433,7 +455,10 @@ def plate(slug, name, remark, iso, layer_name, points, sensitivity_remark, sourc
               "speed: assumed", "meter: film",
               "reference-illuminant: iso-7589-sensitometric-daylight",
               halation(0.95, ENTERS + "The plate is not backed, as most were sold: clear glass lets 0.95 pass once, and halos are the "
-                       "largest of all. Plates that were backed with a dark varnish had hardly any: `halation: off`.")],
+                       "largest of all. Plates that were backed with a dark varnish had hardly any: `halation: off`."),
+              "granularity:\n  rms: 14\n  assumed: true\n  remark: >-\n    No figure of such plates is at hand; between fine-grained "
+              "and fast films of the 1960s.\n"
+              "    Through 48 um at the density 1."],
         layers=[lines[:-1] + PLATE_CURVE],
         tail=["", "# Thin plate glass; thickness and index vary from maker to maker.", *GLASS],
     )

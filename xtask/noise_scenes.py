@@ -289,7 +289,7 @@ def street():
 
 
 def main():
-    folder = pathlib.Path(__file__).resolve().parent.parent / "scenes" / "bench"
+    folder = pathlib.Path(__file__).resolve().parent.parent / "scenes"
     comment = "Synthetic, by xtask/noise_scenes.py; CC0-1.0"
     deep = {"noise-portrait": lambda x, y, *_: garden(x, y), "noise-lights": lights()}
     for name, behind in deep.items():

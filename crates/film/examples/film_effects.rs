@@ -1,5 +1,6 @@
-//! How long halation, scatter and grain take on a frame, and what they look like: `film_effects FOLDER [MEGAPIXELS]`.
+//! How long halation, scatter, adjacency and grain take on a frame, and what they look like: `film_effects FOLDER [MEGAPIXELS]`.
 
+use spectra_film::adjacency::{Adjacency, Edges};
 use spectra_film::grain::Grain;
 use spectra_film::halation::{Halation, HalationBase};
 use spectra_film::raster::Raster;
@@ -8,7 +9,7 @@ use std::path::Path;
 use std::time::Instant;
 
 const BASE: HalationBase =
-    HalationBase { thickness_mm: 0.125, index: 1.48, entering: 0.3, transmittance: 0.9, reflected: 0.0 };
+    HalationBase { thickness_mm: 0.125, index: 1.48, entering: 0.3, transmittance: 0.9, reflected: 0.3 };
 
 fn save(folder: &Path, name: &str, width: usize, height: usize, value: impl Fn(usize) -> f64) {
     let pixel =
@@ -24,7 +25,7 @@ fn save(folder: &Path, name: &str, width: usize, height: usize, value: impl Fn(u
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let arguments: Vec<String> = std::env::args().collect();
     let folder = Path::new(arguments.get(1).map_or(".", String::as_str));
-    let grain = Grain::calibrated(17.0, 1, 0)?;
+    let grain = Grain::calibrated(17.0, 35.0, 1, 0)?;
     for pitch_um in [0.25, 1.0, 3.0, 6.0, 7.3, 24.0] {
         // An even gray and steps of density, at this zoom.
         let (width, height) = (512, 384);
@@ -65,17 +66,19 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut planes: Vec<Vec<f32>> =
         (0..3).map(|l| (0..raster.pixels()).map(|k| ((k * 7919 + l) % 1013) as f32 / 700.0).collect()).collect();
     for (layer, plane) in planes.iter_mut().enumerate() {
-        let (mut scatter, mut halation, mut grain) = (None, None, None);
+        let (mut scatter, mut halation, mut edges, mut grain) = (None, None, None, None);
         timed("prepare", &mut || {
             scatter = Mtf::frieser(0.0147).and_then(|mtf| Scatter::new(&mtf, &raster)).ok();
             halation = Halation::new(&BASE, &raster).ok();
-            grain = Grain::calibrated(17.0, 1, layer as u32).ok();
+            edges = Some(Edges::new(&Adjacency { gain: 0.2, length_mm: 0.035 }, &raster));
+            grain = Grain::calibrated(17.0, 35.0, 1, layer as u32).ok();
         });
-        let (Some(scatter), Some(halation), Some(grain)) = (scatter, halation, grain) else {
+        let (Some(scatter), Some(halation), Some(edges), Some(grain)) = (scatter, halation, edges, grain) else {
             return Err("an effect has bad values".into());
         };
         timed("scatter", &mut || scatter.apply(plane));
         timed("halation", &mut || halation.apply(plane));
+        timed("adjacency", &mut || edges.apply(plane, 0.0, (0.0, 2.5)));
         timed("grain", &mut || grain.apply(plane, &raster));
     }
     println!("{} pixels, 3 layers: {total:.1} s on {} threads", raster.pixels(), rayon::current_num_threads());

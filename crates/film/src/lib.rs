@@ -5,6 +5,7 @@
 //! - [`stock`]: what a film sees and how it answers, from a data file;
 //! - [`curve`]: density over log exposure; [`emulsion`], [`develop`]: exposure to amounts of silver or dye;
 //! - [`scatter`], [`halation`] before the curve, [`adjacency`], [`grain`] after it: what film does beyond one place;
+//! - [`optics`]: the lens that a developed film is printed, scanned or projected through;
 //! - [`deposit`]: what those hold back, wavelength by wavelength;
 //! - [`mod@print`]: a black-and-white negative on paper; [`positive`]: any film on a print stock, as a scan, projected;
 //! - [`display`]: absolute XYZ to a screen, with automatic exposure as one explicit step.
@@ -22,6 +23,7 @@ pub mod emulsion;
 pub mod grain;
 pub mod halation;
 mod lookup;
+pub mod optics;
 pub mod positive;
 pub mod print;
 pub mod push;

@@ -1,6 +1,7 @@
 //! What happens inside of the film: light is spread before the curve, silver lies in grains after it.
 
 use crate::stock::StockParams;
+use crate::view::View;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::frame::FrameSize;
@@ -8,11 +9,11 @@ use spectra_core::numbers::seed_of_frame;
 use spectra_core::params::{Faults, Length, Params, Positive};
 use spectra_film::adjacency::{Adjacency, Edges};
 use spectra_film::emulsion::Emulsion;
-use spectra_film::grain::Grain;
+use spectra_film::grain::{ColorGrain, FOG, Grain, GrainError, usual_half_power};
 use spectra_film::halation::{Halation, HalationBase};
 use spectra_film::raster::Raster;
 use spectra_film::scatter::{Modulation, Mtf, Scatter};
-use spectra_film::stock::{Densitometry, Stock};
+use spectra_film::stock::Stock;
 
 /// `halation` as written in a scene; see [`HalationBase`].
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
@@ -53,6 +54,39 @@ pub enum HalationSetting {
     Back(HalationParams),
 }
 
+/// `optics` as written in a scene.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct OpticsParams {
+    /// Spatial frequency on the film at which half of the contrast is left, cycles/mm, 5 to 1000.
+    #[schemars(range(min = 5, max = 1000))]
+    pub mtf50: f64,
+}
+
+/// `optics` as written in a scene: a lens, or none.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum OpticsSetting {
+    /// No loss.
+    Word(Off),
+    /// The lens.
+    Lens(OpticsParams),
+}
+
+/// Where enlargers, printers, scanners and projectors keep half of the contrast, cycles/mm: a good lens at a fourth to a
+/// tenth of its picture's size. Assumed.
+const USUAL_MTF50: f64 = 60.0;
+
+/// That of the lens between the film and its picture; none where the film itself is looked at.
+pub(crate) fn mtf50(p: &StockParams) -> Option<f64> {
+    match p.optics {
+        Some(OpticsSetting::Word(Off::Off)) => None,
+        Some(OpticsSetting::Lens(lens)) => Some(lens.mtf50),
+        None if p.view == Some(View::Negative) => None,
+        None => Some(USUAL_MTF50),
+    }
+}
+
 /// `assumed` as written in a scene.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
@@ -62,6 +96,15 @@ pub enum Assumed {
     On,
     /// Only what is measured or stated counts.
     Off,
+}
+
+/// How grainy the layers are.
+#[derive(Clone, Debug)]
+enum Granularity {
+    /// RMS granularity of silver, at 48 um and the density 1.
+    Silver(f64),
+    /// Of layers of dye.
+    Dyes(ColorGrain),
 }
 
 /// The effects of one film.
@@ -75,8 +118,7 @@ pub(crate) struct Effects {
     halation: Vec<Option<HalationBase>>,
     /// Which of the effects rest on assumed figures.
     assumed: Vec<&'static str>,
-    /// RMS granularity at 48 um and the density 1.
-    rms: Option<f64>,
+    grain: Option<Granularity>,
     /// Which piece of film it is.
     piece: u64,
     /// Seed of the grains, by the piece and the frame.
@@ -84,12 +126,12 @@ pub(crate) struct Effects {
 }
 
 /// Width and height of a pixel, mm.
-fn pixel_mm(size: &FrameSize) -> [f64; 2] {
+pub(crate) fn pixel_mm(size: &FrameSize) -> [f64; 2] {
     [size.width_mm / f64::from(size.width_px), size.height_mm / f64::from(size.height_px)]
 }
 
 impl Effects {
-    pub(crate) fn new(p: &StockParams, params: &Params, stock: &Stock) -> Result<Self, Faults> {
+    pub(crate) fn new(p: &StockParams, params: &Params, stock: &Stock, emulsion: &Emulsion) -> Result<Self, Faults> {
         let mut faults = Faults::new();
         if p.scatter == Some(true) && stock.layers.iter().all(|l| l.mtf.is_empty()) {
             let text = format!("{} has no modulation transfer in its file", stock.name);
@@ -107,25 +149,16 @@ impl Effects {
             let text = format!("{} has no modulation transfer above 1 in its file", stock.name);
             faults.push(params.fault("adjacency", text).hint("leave it out, or give the stock's layers an `mtf`"));
         }
-        let grainy = stock.granularity.filter(|_| stock.densitometry == Densitometry::Visual);
-        if p.grain == Some(true) && grainy.is_none() {
-            let text = format!("{} has no granularity of silver in its file", stock.name);
-            faults.push(params.fault("grain", text).hint("leave it out, or give the stock a `granularity`"));
-        }
-        // At another density the variance goes with the density (Nutting), at another aperture with one over the area (Selwyn).
-        let at_one = |g: spectra_film::stock::Granularity| g.rms * (g.aperture_mm / 0.048) / g.density.sqrt();
-        let rms = grainy.filter(|_| p.grain.unwrap_or(true)).map(at_one);
-        if let Some(rms) = rms
-            && let Err(error) = Grain::calibrated(rms, p.grain_seed, 0)
-        {
-            faults.push(params.fault("stock", format!("{}: {error}", stock.name)));
-        }
+        let grain = granularity(p, params, stock, emulsion, &mut faults);
         let halation = halation(p, params, stock, &mut faults);
         let mut assumed = Vec::new();
         if p.halation.is_none() && halation.iter().any(Option::is_some) && halation_is_assumed(stock) {
             assumed.push("halation");
         }
-        faults.into_result(Self { mtf, adjacency, halation, assumed, rms, piece: p.grain_seed, seed: p.grain_seed })
+        if grain.is_some() && stock.granularity.is_some_and(|g| g.assumed) {
+            assumed.push("grain");
+        }
+        faults.into_result(Self { mtf, adjacency, halation, assumed, grain, piece: p.grain_seed, seed: p.grain_seed })
     }
 
     /// Which of the effects rest on assumed figures.
@@ -144,7 +177,7 @@ impl Effects {
         let edges = self.adjacency.iter().any(Option::is_some);
         let any = edges
             || self.halation.iter().any(Option::is_some)
-            || self.rms.is_some()
+            || self.grain.is_some()
             || self.mtf.iter().any(Option::is_some);
         if any && (across / down - 1.0).abs() > 0.01 {
             let text =
@@ -181,14 +214,58 @@ impl Effects {
         }
     }
 
-    /// Turns the densities of a layer into those of its grains; `clear` is that of base and fog, which has none.
-    pub(crate) fn grain(&self, layer: usize, plane: &mut [f32], clear: f32, raster: &Raster) -> Result<(), String> {
-        let Some(rms) = self.rms else { return Ok(()) };
-        let grain = Grain::calibrated(rms, self.seed, layer as u32).map_err(|e| e.to_string())?;
-        plane.iter_mut().for_each(|d| *d -= clear);
-        grain.apply(plane, raster);
-        plane.iter_mut().for_each(|d| *d += clear);
+    /// Turns the amounts of a layer into those of its grains; `clear` is the least, which has none but fog.
+    pub(crate) fn grain(&self, layer: usize, plane: &mut [f32], clear: f64, raster: &Raster) -> Result<(), String> {
+        let (grain, base) = match &self.grain {
+            None => return Ok(()),
+            Some(Granularity::Silver(rms)) => {
+                (Grain::calibrated(*rms, usual_half_power(*rms), self.seed, layer as u32), clear)
+            }
+            Some(Granularity::Dyes(color)) => (by_dye(color, layer, self.seed), clear - FOG),
+        };
+        let base = base as f32;
+        plane.iter_mut().for_each(|d| *d -= base);
+        grain.map_err(|e| e.to_string())?.apply(plane, raster);
+        plane.iter_mut().for_each(|d| *d += base);
         Ok(())
+    }
+}
+
+/// The grain of a layer of dye. How far its spectrum goes rests on its granularity in the middle of its range.
+fn by_dye(color: &ColorGrain, layer: usize, seed: u64) -> Result<Grain, GrainError> {
+    let most = color.most(layer);
+    let half_power = usual_half_power(color.rms(layer, most / 2.0).max(1.0));
+    Grain::by_density(|amount| color.rms(layer, amount), most, half_power, seed, layer as u32)
+}
+
+fn granularity(
+    p: &StockParams,
+    params: &Params,
+    stock: &Stock,
+    emulsion: &Emulsion,
+    faults: &mut Faults,
+) -> Option<Granularity> {
+    let known = match stock.granularity {
+        // At another density the variance goes with the density (Nutting), at another aperture with one over the area (Selwyn).
+        Some(g) => Some(Granularity::Silver(g.rms * (g.aperture_mm / 0.048) / g.density.sqrt())),
+        None => ColorGrain::new(stock, emulsion).map(Granularity::Dyes),
+    };
+    if p.grain == Some(true) && known.is_none() {
+        let text = format!("{} has no granularity in its file", stock.name);
+        faults.push(params.fault("grain", text).hint("leave it out, or give the stock a `granularity`"));
+    }
+    let left_out = p.assumed == Assumed::Off && stock.granularity.is_some_and(|g| g.assumed);
+    let known = known.filter(|_| p.grain.unwrap_or(true) && !left_out)?;
+    let tried = match &known {
+        Granularity::Silver(rms) => Grain::calibrated(*rms, usual_half_power(*rms), 0, 0),
+        Granularity::Dyes(color) => by_dye(color, 0, 0),
+    };
+    match tried {
+        Ok(_) => Some(known),
+        Err(error) => {
+            faults.push(params.fault("stock", format!("{}: {error}", stock.name)));
+            None
+        }
     }
 }
 

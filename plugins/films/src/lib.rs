@@ -8,7 +8,7 @@ mod stock;
 mod three_strip;
 mod view;
 
-pub use effects::{Assumed, HalationParams, HalationSetting, Off};
+pub use effects::{Assumed, HalationParams, HalationSetting, Off, OpticsParams, OpticsSetting};
 pub use metering::{Metering, SpotParams};
 pub use stock::{StockFilm, StockParams};
 pub use three_strip::{RecordParams, ThreeStrip, ThreeStripParams};

@@ -1,6 +1,6 @@
 //! `film: stock`, film from a data file: exposed, developed, and printed, scanned or projected.
 
-use crate::effects::{Assumed, Effects, HalationSetting};
+use crate::effects::{Assumed, Effects, HalationSetting, OpticsSetting, mtf50, pixel_mm};
 use crate::metering::{METER, Meter, Metering, SpotParams, overruled, recorded_time_s};
 use crate::view::{PaperParams, Picture, ScanParams, View, WhiteParams, seen};
 use schemars::JsonSchema;
@@ -15,6 +15,7 @@ use spectra_core::spectral::Channel;
 use spectra_core::stage::Film;
 use spectra_film::display::channel;
 use spectra_film::emulsion::Emulsion;
+use spectra_film::optics::Optics;
 use spectra_film::print::{Print, metered_exposure_lx_s};
 use spectra_film::push::pushed;
 use spectra_film::stock::{MeterResponse, Process, Stock};
@@ -25,7 +26,7 @@ use spectra_film::stock::{MeterResponse, Process, Stock};
 /// characteristic curve of the development, and a picture by the way the film is viewed: a black-and-white negative is
 /// printed on paper, a color negative on the print stock of its maker, a reversal film is projected. Scatter in the
 /// emulsion and reflection from the base act before the curve, adjacency (edges that stand out in development) and grain
-/// after it, if the stock's file states them.
+/// after it, if the stock's file states them. What the film is printed, scanned or projected through is a lens, too: `optics`.
 ///
 /// The exposure is that of the scene (`exposure`), or the camera meters: the metered area gets 10/S lx s, the exposure
 /// of a mid gray. S is the speed that the stock's file states, which `spectra film info` shows with its kind: an ISO
@@ -106,6 +107,9 @@ pub struct StockParams {
     pub halation: Option<HalationSetting>,
     /// Whether there is grain, if the stock's file states its granularity; `true` if left out.
     pub grain: Option<bool>,
+    /// The lens that the film is printed, scanned or projected through, or `off`; half of the contrast is left at 60 cycles/mm
+    /// if left out, and no lens in `view: negative`.
+    pub optics: Option<OpticsSetting>,
     /// Whether effects count whose figures are assumed in the stock's file, rather than measured or stated: `on` or `off`.
     #[serde(default)]
     pub assumed: Assumed,
@@ -126,6 +130,8 @@ pub struct StockFilm {
     is_overruled: bool,
     meter: Meter,
     effects: Effects,
+    /// Of the lens between film and picture, cycles/mm.
+    mtf50: Option<f64>,
     picture: Picture,
     words: String,
 }
@@ -156,7 +162,7 @@ impl StockFilm {
         let (Some((emulsion, development)), Some(meter), Some(mut channels)) = (developed, meter, channels) else {
             return Err(faults);
         };
-        let effects = faults.take(Effects::new(&p, params, &stock));
+        let effects = faults.take(Effects::new(&p, params, &stock, &emulsion));
         let Some(effects) = faults.into_result(effects)? else { return Err(Faults::new()) };
         let seen = seen(&p, params, context.resources, &stock, &emulsion, metered_exposure_lx_s(speed))?;
         let own = channels.first().filter(|_| stock.meter == MeterResponse::Film).cloned();
@@ -172,6 +178,7 @@ impl StockFilm {
             is_overruled,
             meter,
             effects,
+            mtf50: mtf50(&p),
             picture,
             words,
         })
@@ -233,8 +240,7 @@ impl StockFilm {
         self.emulsion.develop_all(&mut planes, factor * effect);
         for (i, plane) in planes.iter_mut().enumerate() {
             self.effects.edges(i, plane, &self.emulsion, &raster);
-            let clear = self.emulsion.amount(i, f64::NEG_INFINITY);
-            self.effects.grain(i, plane, clear as f32, &raster)?;
+            self.effects.grain(i, plane, self.emulsion.range(i).0, &raster)?;
         }
         Ok(planes)
     }
@@ -316,7 +322,11 @@ impl Film for StockFilm {
     }
 
     fn develop(&self, exposure: &ExposureFrame) -> Result<DisplayPicture, String> {
-        let planes = self.developed(exposure)?;
+        let mut planes = self.developed(exposure)?;
+        if let Some(mtf50) = self.mtf50 {
+            let lens = Optics::new(mtf50, pixel_mm(&exposure.size));
+            planes.iter_mut().for_each(|plane| lens.apply(plane, exposure.size.width_px as usize));
+        }
         let planes: Vec<&[f32]> = planes.iter().map(Vec::as_slice).collect();
         let rgb = match (&self.picture, &planes[..]) {
             (Picture::Paper(print), [silver]) => print.pictures(silver)?.into_iter().map(|v| [v; 3]).collect(),

@@ -14,6 +14,8 @@ fn with_params<T>(yaml: &str, use_them: impl FnOnce(&Params, &Context<'_>) -> T)
     std::fs::write(folder.path().join("film.yaml"), yaml).expect("written");
     let bare = "spectra: 1\nlike: kodak-tri-x-400\nname: Film of no known base\nbases: []\n";
     std::fs::write(folder.path().join("bare.yaml"), bare).expect("written");
+    let grainless = "spectra: 1\nlike: ilford-ortho-plus\nname: Film of no known grain\ngranularity: null\n";
+    std::fs::write(folder.path().join("grainless.yaml"), grainless).expect("written");
     let resources = FileResources::beside(folder.path());
     let params = resources.document("film.yaml", &[], &[]).expect("YAML");
     use_them(&params, &Context::new(&resources, BAND))
@@ -46,7 +48,7 @@ fn is_registered_as_the_default() {
 /// exposure on this film, is black; all of it is neutral.
 #[test]
 fn gray_is_gray_and_red_is_black() {
-    let film = build("stock: ilford-ortho-plus\nexposure: 1/60 s\nhalation: off\n").expect("sound");
+    let film = build("stock: ilford-ortho-plus\nexposure: 1/60 s\nhalation: off\ngrain: false\n").expect("sound");
     let picture = film.develop(&frame(&[0.125, 0.0, 0.125 * 5.0, 100.0])).expect("complete");
     assert!(picture.rgb.iter().all(|p| p[0] == p[1] && p[1] == p[2]));
     let [gray, black, white, burnt] = [0, 1, 2, 3].map(|i| picture.rgb[i][0]);
@@ -92,7 +94,7 @@ fn parameters_are_checked() {
         ("stock: kodak-ektachrome-100d\nmetering: average\nview: print\n", "already a positive"),
         ("stock: kodak-vision3-250d-5207\nmetering: average\nprint: kodak-2383\n", "did you mean"),
         ("stock: ilford-ortho-plus\nmetering: average\nlight: D5500\n", "did you mean `D55`?"),
-        ("stock: ilford-ortho-plus\nmetering: average\ngrain: true\n", "granularity"),
+        ("stock: grainless.yaml\nmetering: average\ngrain: true\n", "granularity"),
         ("stock: ilford-ortho-plus\nmetering: average\nscatter: true\n", "modulation"),
         ("stock: kodak-ektachrome-100d\nmetering: average\nadjacency: true\n", "above 1"),
         ("stock: bare.yaml\nmetering: average\n", "thickness"),
@@ -112,7 +114,7 @@ fn parameters_are_checked() {
 
 #[test]
 fn a_frame_without_its_channel_is_refused() {
-    let film = build("stock: ilford-ortho-plus\nexposure: 1/60 s\nhalation: off\n").expect("sound");
+    let film = build("stock: ilford-ortho-plus\nexposure: 1/60 s\nhalation: off\ngrain: false\n").expect("sound");
     let mut other = frame(&[1.0]);
     other.channels[0].name = "Y".into();
     assert!(film.develop(&other).unwrap_err().contains("ortho"));
@@ -136,8 +138,8 @@ fn frame_of(names: &[&str], planes: &[Vec<f32>]) -> ExposureFrame {
 fn a_metered_gray_is_gray_on_a_plate_in_any_light() {
     for (stock, tolerance) in [("blue-sensitive-plate", 1e-4), ("panchromatic-plate", 1e-4), ("kodak-tri-x-400", 0.06)]
     {
-        let text = format!("stock: {stock}\nmetering: average\nhalation: off\npaper: {{range: 1.6}}\n");
-        let film = build(&text).expect("sound");
+        let settings = format!("stock: {stock}\nmetering: average\nhalation: off\ngrain: false\npaper: {{range: 1.6}}\n");
+        let film = build(&settings).expect("sound");
         for light in ["D55", "D65", "A", "iso-7589-sensitometric-daylight"] {
             let power = spectra_spectrum::find_emission(light).expect("bundled").to_power(&BAND);
             let channels = film.channels();

@@ -104,7 +104,7 @@ fn to_json(stock: &Stock) -> Value {
         }),
         "aim_density": stock.aim_density.map(|a| json!({ "red": a.red, "green": a.green, "blue": a.blue })),
         "granularity": stock.granularity.map(|g| {
-            json!({ "rms": g.rms, "aperture_mm": g.aperture_mm, "density": g.density })
+            json!({ "rms": g.rms, "aperture_mm": g.aperture_mm, "density": g.density, "assumed": g.assumed })
         }),
         "halation": stock.halation.as_ref().map(|h| {
             json!({ "scattered": h.scattered, "backing": h.backing, "reflected": h.reflected, "layers": h.layers,
@@ -222,7 +222,10 @@ fn text(stock: &Stock) -> String {
     );
     row(
         "granularity",
-        stock.granularity.map(|g| format!("RMS {} at density {}, aperture {} mm", g.rms, g.density, g.aperture_mm)),
+        stock.granularity.map(|g| {
+            let assumed = if g.assumed { " (assumed)" } else { "" };
+            format!("RMS {} at density {}, aperture {} mm{assumed}", g.rms, g.density, g.aperture_mm)
+        }),
     );
     row(
         "reciprocity",

@@ -1,32 +1,40 @@
-//! Grain: developed silver as grains that lie at random, calibrated by RMS granularity.
+//! Grain: developed silver, or clouds of dye, that lie at random and in clumps, calibrated by RMS granularity.
 //!
 //! **Model.** P. G. Nutting ("On the absorption of light in heterogeneous media", Philosophical Magazine 26, 1913, 423):
 //! n grains an area, each of the area a, make the density D = log10(e) n a. Grains at random are counted by Poisson's law, so
 //! the density over an area A has the variance log10(e) a D / A: the standard deviation grows with the square root of
 //! the density, and times the square root of the area it is constant (E. W. H. Selwyn, "A theory of graininess",
-//! Photographic Journal 75, 1935, 571). The one constant a comes from the RMS granularity of the maker's sheet: 1000 times
-//! the standard deviation through a circular aperture of 48 um at the density 1. It is an effective area, clumps
-//! and the spread of grain sizes included.
+//! Photographic Journal 75, 1935, 571). The one constant comes from the RMS granularity of the maker's sheet: 1000 times
+//! the standard deviation through a circular aperture of 48 um at the density 1. Where a sheet plots granularity over
+//! density, as of color film, the variance follows that ([`Grain::by_density`]).
 //!
-//! **The same film at every zoom.** The grains lie on a square lattice fixed in the film, of cells as wide as an
-//! effective grain. Each cell has a standard normal number, a pure function of (seed, layer, place), drawn from the top down: a
+//! **Clumps.** Crystals lie in clumps some times their width, so the noise is not white: its Wiener spectrum (variance
+//! times area, over spatial frequency) falls to half at 20 to 60 cycles/mm and on to a foot, which is that of single crystals
+//! (J. H. Altman and H. J. Zweig, "Effect of spread function on the storage of information on photographic emulsions",
+//! Photographic Science and Engineering 7, 1963, 173; C. E. K. Mees and T. H. James, "The Theory of the Photographic Process", 3rd edition,
+//! 1966, on granularity). Here it is the sum of two parts, 0.88 of clumps and 0.12 of crystals a fifth as wide; where it is at
+//! half is a datum. Small apertures see less than Selwyn's law from large ones would have it, as on film.
+//!
+//! **The same film at every zoom.** Clumps and crystals lie on square lattices fixed in the film. Each cell has a standard normal
+//! number, a pure function of (seed, layer, place), drawn from the top down: a
 //! cell's number and three of its own are turned into those of its four quarters by an orthogonal transform, so all
 //! cells of all levels are consistent, and a coarse cell is known without its fine ones. A pixel takes the cells
 //! that it covers by exact areas (a quadratic B-spline a cell, so that no edges show) from the level that suits its size: the
 //! cost is that of pixels, not of cells. Its number of grains is then the quantile of Poisson's law that belongs to its normal
-//! number, with the mean that its density asks for: never negative, skew in the shadows, the mean density unchanged.
+//! number, with the mean that its density and variance ask for: never negative, skew in the shadows, the mean density unchanged.
 //!
-//! **Limits.** Pixels that are much finer than a grain show soft blobs, not the shapes of grains. Counts of
-//! neighboring pixels are tied by their normal numbers, not by splitting one count. So means over 48 um of the same film
-//! at two resolutions are correlated by 0.99 and more at the density 1, but by about 0.97 at the density 0.1, where pixels
-//! finer than grains hold about one each. Layers are independent.
+//! **Limits.** Pixels that are much finer than a crystal show soft blobs, not the shapes of grains. Counts of
+//! neighboring pixels are tied by their normal numbers, not by splitting one count, so two resolutions of the same film agree
+//! less where grains are few. Layers are independent.
 
 mod calibrate;
+mod color;
 mod count;
 mod field;
 mod spline;
 
 pub use calibrate::{APERTURE_MM, GrainError};
+pub use color::{ColorGrain, FOG};
 
 use crate::raster::Raster;
 use count::Counts;
@@ -38,15 +46,30 @@ use spline::Taps;
 /// Side of the tiles that are worked on at once, pixels.
 const TILE: usize = 64;
 
-/// Cells a pixel from which on the next coarser level is taken: the level has between this and twice this.
-const CELLS_A_PIXEL: f64 = 4.0;
+/// Cells a pixel from which on the next coarser level is taken, of clumps and of crystals: the level has between this and
+/// twice this.
+const CELLS_A_PIXEL: [f64; 2] = [4.0, 2.0];
+
+/// RMS granularity and cycles/mm at which the Wiener spectrum of a grainy film is at half, which stands for others: the
+/// finer the grain, the farther the spectrum goes, in proportion. Assumed.
+const USUAL: [f64; 2] = [17.0, 35.0];
+
+/// Steps of the variance over the amount.
+const STEPS: usize = 1024;
+
+/// Where the Wiener spectrum of film of the granularity `rms` is at half, cycles/mm, if nothing is known of it: assumed to be
+/// in inverse proportion, from 35 of Kodak Tri-X 400 (17), and within 20 to 100.
+#[must_use]
+pub fn usual_half_power(rms: f64) -> f64 {
+    (USUAL[0] * USUAL[1] / rms).clamp(20.0, 100.0)
+}
 
 /// The grain of one layer.
 ///
 /// ```
 /// use spectra_film::grain::Grain;
 /// use spectra_film::raster::Raster;
-/// let grain = Grain::calibrated(17.0, 1, 0)?; // Kodak Tri-X 400
+/// let grain = Grain::calibrated(17.0, 35.0, 1, 0)?; // Kodak Tri-X 400
 /// let raster = Raster::new(96, 64, 0.006);
 /// let mut density = vec![1.0; raster.pixels()];
 /// grain.apply(&mut density, &raster);
@@ -57,31 +80,89 @@ const CELLS_A_PIXEL: f64 = 4.0;
 /// # Ok::<(), spectra_film::grain::GrainError>(())
 /// ```
 pub struct Grain {
-    /// Variance of the density 1 over the area 1 mm^2: log10(e) times the grain's area, mm^2.
-    selwyn_mm2: f64,
-    /// Side of a cell of the finest level, mm.
-    cell_mm: f64,
-    field: Field,
+    /// Variance times area of large areas, mm^2, over the amount: of each of [`STEPS`] steps up to the most.
+    per_amount: Vec<f32>,
+    steps_a_unit: f32,
+    parts: [Part; 2],
     counts: Counts,
     isa: Isa,
 }
 
+/// Clumps, or crystals.
+struct Part {
+    /// Share of the variance of large areas.
+    share: f64,
+    /// Side of a cell of the finest level, mm.
+    cell_mm: f64,
+    field: Field,
+}
+
 impl Grain {
     /// Grain whose standard deviation through a circular aperture of 48 um is `rms_granularity` / 1000 at the density 1,
-    /// for instance 17 of Kodak Tri-X 400 or 14 of Eastman Double-X 5222. Layers of a film share the `seed` and differ in
-    /// `layer`. A granularity of 0 is no grain.
+    /// for instance 17 of Kodak Tri-X 400 or 14 of Eastman Double-X 5222, and grows with the root of the density. Its Wiener
+    /// spectrum is at half at `half_power` cycles/mm. Layers of a film share the `seed` and differ in `layer`. A
+    /// granularity of 0 is no grain.
     ///
     /// # Errors
-    /// [`GrainError`] for a granularity beside 0 to 200.
-    pub fn calibrated(rms_granularity: f64, seed: u64, layer: u32) -> Result<Self, GrainError> {
-        let calibration = calibrate::calibrate(rms_granularity)?;
+    /// [`GrainError`] for a granularity beside 0 to 200, or a frequency beside 1 to 1000.
+    pub fn calibrated(rms_granularity: f64, half_power: f64, seed: u64, layer: u32) -> Result<Self, GrainError> {
+        Self::by_density(|density| rms_granularity * density.sqrt(), 1.0, half_power, seed, layer)
+    }
+
+    /// Grain whose deviation through 48 um, times 1000, is `rms(amount)` at an amount of silver or dye over none, up
+    /// to the amount `most`; beyond, it grows with the root of the amount.
+    ///
+    /// # Errors
+    /// [`GrainError`] for a granularity beside 0 to 200, or a frequency beside 1 to 1000.
+    pub fn by_density(
+        rms: impl Fn(f64) -> f64,
+        most: f64,
+        half_power: f64,
+        seed: u64,
+        layer: u32,
+    ) -> Result<Self, GrainError> {
+        let clump_mm = calibrate::clump_mm(half_power)?;
+        let selwyn_mm2 = calibrate::selwyn_mm2(clump_mm);
+        let mut per_amount = Vec::with_capacity(STEPS + 1);
+        for step in 0..STEPS + 1 {
+            // Toward nothing as the root of the amount.
+            let amount = most * (step.max(1) as f64) / STEPS as f64;
+            let rms = rms(amount);
+            if !(0.0..=200.0).contains(&rms) {
+                return Err(GrainError::OutOfRange(rms));
+            }
+            per_amount.push(((rms / 1e3) * (rms / 1e3) * selwyn_mm2 / amount) as f32);
+        }
+        let part =
+            |share: f64, cell_mm: f64, which: u32| Part { share, cell_mm, field: Field::new(seed, layer + which) };
+        let parts = [
+            part(1.0 - calibrate::CRYSTALS, clump_mm, 0),
+            part(calibrate::CRYSTALS, clump_mm / calibrate::CLUMP, 1 << 16),
+        ];
         Ok(Self {
-            selwyn_mm2: calibration.selwyn_mm2,
-            cell_mm: calibration.cell_mm,
-            field: Field::new(seed, layer),
+            per_amount,
+            steps_a_unit: STEPS as f32 / most as f32,
+            parts,
             counts: Counts::new(),
             isa: Isa::detect(),
         })
+    }
+
+    /// The Wiener spectrum at `frequency` cycles/mm along an axis, over its value at 0.
+    #[must_use]
+    pub fn wiener(&self, frequency: f64) -> f64 {
+        calibrate::wiener(frequency * self.parts[0].cell_mm)
+    }
+
+    /// Variance times area of large areas at an amount, mm^2, over the amount.
+    #[inline(always)]
+    fn per_amount(&self, amount: f32) -> f32 {
+        let place = amount * self.steps_a_unit;
+        let k = place as usize;
+        if k >= STEPS {
+            return self.per_amount[STEPS];
+        }
+        self.per_amount[k] + (self.per_amount[k + 1] - self.per_amount[k]) * (place - k as f32)
     }
 
     /// Replaces a plane of density (over base and fog) by that of its grains, in place. The mean stays.
@@ -95,92 +176,119 @@ impl Grain {
     pub fn apply(&self, density: &mut [f32], raster: &Raster) {
         assert_eq!(density.len(), raster.pixels(), "the plane has the size of its raster");
         let good_pitch = raster.pitch_mm > 0.0 && raster.pitch_mm.is_finite();
-        if self.selwyn_mm2 == 0.0 || density.is_empty() || !good_pitch {
+        if self.per_amount.iter().all(|v| *v == 0.0) || density.is_empty() || !good_pitch {
             return;
         }
-        let (level, cells_a_pixel) = self.level(raster.pitch_mm);
-        let columns = Taps::new(raster.offset_px[0], raster.width, cells_a_pixel);
+        let layouts = [0, 1].map(|part| self.layout(part, raster));
+        // Of a pixel, where the variance times the area of large areas is 1 mm^2.
+        let variance: f32 =
+            layouts.iter().map(|l| l.weight * l.weight * l.columns.mean_square() * l.columns.mean_square()).sum();
+        let alone = (variance * (raster.pitch_mm * raster.pitch_mm) as f32).min(1.0);
         density.par_chunks_mut(raster.width * TILE).enumerate().for_each_init(
-            Cells::default,
+            || [Cells::default(), Cells::default()],
             |cells, (strip, plane)| {
                 let first = raster.offset_px[1] + (strip * TILE) as i64;
-                let rows = Taps::new(first, plane.len() / raster.width, cells_a_pixel);
-                self.isa.run(Strip {
-                    grain: self,
-                    level,
-                    cells_a_pixel,
-                    pitch_mm: raster.pitch_mm,
-                    columns: &columns,
-                    rows: &rows,
-                    cells,
-                    plane,
-                });
+                let rows = |l: &Layout| Taps::new(first, plane.len() / raster.width, l.cells_a_pixel);
+                let rows = [rows(&layouts[0]), rows(&layouts[1])];
+                self.isa.run(Strip { grain: self, layouts: &layouts, rows: &rows, variance, alone, cells, plane });
             },
         );
     }
 
-    /// The level whose cells suit a pixel, and how many of them it has along a side.
-    fn level(&self, pitch_mm: f64) -> (u32, f64) {
+    /// The level of a part whose cells suit a pixel, and what each column of pixels takes of them.
+    fn layout(&self, part: usize, raster: &Raster) -> Layout {
+        let Part { share, cell_mm, .. } = &self.parts[part];
         let mut level = 0;
-        let mut cells_a_pixel = pitch_mm / self.cell_mm;
-        while cells_a_pixel >= 2.0 * CELLS_A_PIXEL && level < field::TOP {
+        let mut cells_a_pixel = raster.pitch_mm / cell_mm;
+        while cells_a_pixel >= 2.0 * CELLS_A_PIXEL[part] && level < field::TOP {
             level += 1;
             cells_a_pixel /= 2.0;
         }
-        (level, cells_a_pixel)
+        let cell_mm = raster.pitch_mm / cells_a_pixel;
+        let columns = Taps::new(raster.offset_px[0], raster.width, cells_a_pixel);
+        Layout { level, cells_a_pixel, weight: (share.sqrt() / cell_mm) as f32, columns }
     }
+}
+
+/// How a part's cells lie under the pixels.
+struct Layout {
+    level: u32,
+    cells_a_pixel: f64,
+    /// Root of the part's share over the side of a cell, 1/mm.
+    weight: f32,
+    columns: Taps,
 }
 
 /// Rows of tiles.
 struct Strip<'a> {
     grain: &'a Grain,
-    level: u32,
-    cells_a_pixel: f64,
-    pitch_mm: f64,
-    columns: &'a Taps,
-    rows: &'a Taps,
-    cells: &'a mut Cells,
+    layouts: &'a [Layout; 2],
+    rows: &'a [Taps; 2],
+    /// Of a pixel, where the variance times the area of large areas is 1 mm^2, 1/mm^2; and its part of that of large areas.
+    variance: f32,
+    alone: f32,
+    cells: &'a mut [Cells; 2],
     plane: &'a mut [f32],
+}
+
+/// Sums of the cells of one row of pixels, along the columns of cells.
+#[inline(always)]
+fn down(rows: &Taps, row: usize, cells: &Cells, x: i64, line: &mut [f32]) {
+    line.fill(0.0);
+    let (first, weights) = rows.of(row);
+    for (t, w) in weights.iter().enumerate() {
+        let cells = &cells.row(first + t as i64, x)[..line.len()];
+        for (sum, z) in line.iter_mut().zip(cells) {
+            *sum += w * z;
+        }
+    }
 }
 
 impl Vectorized for Strip<'_> {
     type Output = ();
     #[inline(always)]
     fn run(self) {
-        let Self { grain, columns, rows, cells, plane, .. } = self;
-        let width = columns.len();
-        // Variance of the density 1 over a pixel, were all its cells taken whole.
-        let variance = grain.selwyn_mm2 * (self.cells_a_pixel / self.pitch_mm) * (self.cells_a_pixel / self.pitch_mm);
-        let area = (self.cells_a_pixel * self.cells_a_pixel) as f32;
-        let mut line = Vec::new();
+        let Self { grain, layouts: [clumps, crystals], rows, variance, alone, cells, plane } = self;
+        let deviation = variance.sqrt();
+        let width = clumps.columns.len();
+        let (mut line_a, mut line_b) = (Vec::new(), Vec::new());
+        let [cells_a, cells_b] = cells;
+        let [rows_a, rows_b] = rows;
         for from in (0..width).step_by(TILE) {
             let to = (from + TILE).min(width);
-            let (x, across) = columns.cells(from, to);
-            let (y, down) = rows.cells(0, rows.len());
-            grain.field.fill(self.level, [x, y], [across, down], cells);
-            line.clear();
-            line.resize(across, 0.0_f32);
-            for row in 0..rows.len() {
-                line.fill(0.0);
-                let (first, weights) = rows.of(row);
-                for (t, w) in weights.iter().enumerate() {
-                    let cells = &cells.row(first + t as i64, x)[..across];
-                    for (sum, z) in line.iter_mut().zip(cells) {
-                        *sum += w * z;
-                    }
-                }
+            let fill = |part: &Part, layout: &Layout, rows: &Taps, cells: &mut Cells, line: &mut Vec<f32>| {
+                let (x, across) = layout.columns.cells(from, to);
+                let (y, down) = rows.cells(0, rows.len());
+                part.field.fill(layout.level, [x, y], [across, down], cells);
+                line.clear();
+                line.resize(across, 0.0_f32);
+                x
+            };
+            let xa = fill(&grain.parts[0], clumps, rows_a, cells_a, &mut line_a);
+            let xb = fill(&grain.parts[1], crystals, rows_b, cells_b, &mut line_b);
+            for row in 0..rows_a.len() {
+                down(rows_a, row, cells_a, xa, &mut line_a);
+                down(rows_b, row, cells_b, xb, &mut line_b);
+                let even_a = rows_a.evening(row) * clumps.weight / deviation;
+                let even_b = rows_b.evening(row) * crystals.weight / deviation;
                 for column in from..to {
                     let density = &mut plane[row * width + column];
                     if !(*density > 0.0 && density.is_finite()) {
                         continue;
                     }
-                    let (first, weights) = columns.of(column);
-                    let sum: f32 = weights.iter().zip(&line[(first - x) as usize..]).map(|(w, z)| w * z).sum();
-                    let squares = rows.square(row) * columns.square(column);
+                    let across = |taps: &Taps, x: i64, line: &[f32]| {
+                        let (first, weights) = taps.of(column);
+                        let sum = weights.iter().zip(&line[(first - x) as usize..]).map(|(w, z)| w * z).sum::<f32>();
+                        sum * taps.evening(column)
+                    };
+                    let number =
+                        across(&clumps.columns, xa, &line_a) * even_a + across(&crystals.columns, xb, &line_b) * even_b;
                     // A grain's density in this pixel, and the grains that are expected.
-                    let one = (variance * f64::from(squares)) as f32;
-                    let mean = grain.counts.evened(*density / one, (squares * area).min(1.0));
-                    *density *= grain.counts.quantile(mean, sum / squares.sqrt()) / mean;
+                    let one = grain.per_amount(*density) * variance;
+                    if one > 0.0 {
+                        let mean = grain.counts.evened(*density / one, alone);
+                        *density *= grain.counts.quantile(mean, number) / mean;
+                    }
                 }
             }
         }

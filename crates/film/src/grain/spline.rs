@@ -21,7 +21,23 @@ pub(super) struct Taps {
     taps: usize,
     first: Vec<i64>,
     weights: Vec<f32>,
-    squares: Vec<f32>,
+    /// What makes the variance of each pixel that of the mean pixel: pixels finer than cells have more in a cell's middle than
+    /// between two.
+    evening: Vec<f32>,
+    mean_square: f32,
+}
+
+/// The sum of the squared weights of the pixel from `begin` to `end`, in cells, whose cells begin at `first`.
+fn squares(begin: f64, end: f64, first: f64, taps: usize, mut each: impl FnMut(f64)) -> f64 {
+    let mut sum = 0.0;
+    for t in 0..taps {
+        // Cell i has its center at i + 0.5 and reaches from i - 1 to i + 2.
+        let center = first + t as f64 + 0.5;
+        let weight = (integral(end - center) - integral(begin - center)) / (end - begin);
+        sum += weight * weight;
+        each(weight);
+    }
+    sum
 }
 
 impl Taps {
@@ -32,22 +48,22 @@ impl Taps {
             taps,
             first: Vec::with_capacity(pixels),
             weights: Vec::with_capacity(pixels * taps),
-            squares: Vec::with_capacity(pixels),
+            evening: Vec::with_capacity(pixels),
+            mean_square: 0.0,
         };
+        // Over all places that a pixel can have on the cells.
+        const PHASES: usize = 64;
+        let at = |k: usize| (k as f64 + 0.5) / PHASES as f64;
+        let mean =
+            (0..PHASES).map(|k| squares(at(k), at(k) + cells_a_pixel, -1.0, taps, |_| {})).sum::<f64>() / PHASES as f64;
+        all.mean_square = mean as f32;
         for pixel in 0..pixels as i64 {
             let begin = (offset + pixel) as f64 * cells_a_pixel;
             let end = (offset + pixel + 1) as f64 * cells_a_pixel;
-            // Cell i has its center at i + 0.5 and reaches from i - 1 to i + 2.
             let first = begin.floor() - 1.0;
-            let mut squares = 0.0;
-            for t in 0..taps {
-                let center = first + t as f64 + 0.5;
-                let weight = (integral(end - center) - integral(begin - center)) / cells_a_pixel;
-                squares += weight * weight;
-                all.weights.push(weight as f32);
-            }
+            let square = squares(begin, end, first, taps, |weight| all.weights.push(weight as f32));
             all.first.push(first as i64);
-            all.squares.push(squares as f32);
+            all.evening.push((mean / square).sqrt() as f32);
         }
         all
     }
@@ -62,10 +78,15 @@ impl Taps {
         (self.first[pixel], &self.weights[pixel * self.taps..(pixel + 1) * self.taps])
     }
 
-    /// Sum of a pixel's squared weights.
+    /// What a pixel's sum is multiplied by, so that all pixels have the variance of the mean one.
     #[inline(always)]
-    pub(super) fn square(&self, pixel: usize) -> f32 {
-        self.squares[pixel]
+    pub(super) fn evening(&self, pixel: usize) -> f32 {
+        self.evening[pixel]
+    }
+
+    /// Sum of a pixel's squared weights, in the mean over all places on the cells.
+    pub(super) fn mean_square(&self) -> f32 {
+        self.mean_square
     }
 
     /// First cell and number of the cells of the pixels from `from` to before `to`.

@@ -80,7 +80,7 @@ pub struct Stock {
     pub interlayer: Option<Interlayer>,
     /// Of a print stock of three dyes, what the print of a mid gray is timed to; `None` where its maker states none.
     pub aim_density: Option<AimDensity>,
-    /// How grainy it is; `None` where the sheet does not say.
+    /// How grainy its silver is; `None` where the sheet does not say, and of films with dyes.
     pub granularity: Option<Granularity>,
     /// What its back sends back; `None` where nothing is known of it.
     pub halation: Option<Halation>,
@@ -108,6 +108,9 @@ pub struct Layer {
     /// Modulation transfer: (spatial frequency in cycles/mm, response), frequencies increasing; empty where the sheet does
     /// not say. Developing makes edges stand out, so it may exceed 1.
     pub mtf: Vec<[f64; 2]>,
+    /// Of a layer with a dye: density over the minimum, read through the filter of its dye on neutral film, increasing, and 1000
+    /// times the deviation through 48 um; empty where the sheet does not say.
+    pub granularity: Vec<[f64; 2]>,
     /// Its curves by development, the usual one first; at least one.
     pub developments: Vec<Development>,
 }

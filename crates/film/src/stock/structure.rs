@@ -28,6 +28,8 @@ pub struct Granularity {
     pub aperture_mm: f64,
     /// The density at which it was measured; 1 by custom.
     pub density: f64,
+    /// Whether it is assumed.
+    pub assumed: bool,
 }
 
 /// Light that comes back from the film's back.
@@ -77,7 +79,7 @@ impl BaseFile {
     }
 }
 
-/// How grainy silver is.
+/// How grainy silver is; the layers of a film with dyes say it each for itself.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(super) struct GranularityFile {
@@ -87,15 +89,25 @@ pub(super) struct GranularityFile {
     aperture: Option<Positive<Length>>,
     /// Density that it was measured at; 1 if absent.
     density: Option<Positive<f64>>,
+    /// Whether it was chosen rather than measured; then `remark` says why.
+    #[serde(default)]
+    assumed: bool,
+    /// Doubts and choices, for people.
+    remark: Option<String>,
 }
 
 impl GranularityFile {
-    pub(super) fn read(&self) -> Granularity {
-        Granularity {
+    pub(super) fn read(&self, params: &Params) -> Result<Granularity, Fault> {
+        if self.assumed && self.remark.as_ref().is_none_or(|r| r.trim().is_empty()) {
+            let fault = params.fault("granularity.assumed", "an assumed granularity needs a remark");
+            return Err(fault.hint("add a `remark` that says what it is based on"));
+        }
+        Ok(Granularity {
             rms: self.rms.get(),
             aperture_mm: self.aperture.map_or(0.048, |a| a.mm()),
             density: self.density.map_or(1.0, |d| d.get()),
-        }
+            assumed: self.assumed,
+        })
     }
 }
 
@@ -139,6 +151,21 @@ impl HalationFile {
         }
         Ok(Halation { scattered, backing, reflected, layers: shares, assumed, remark: self.remark.clone() })
     }
+}
+
+/// Checks the granularity of a layer over density.
+pub(super) fn granularity(params: &Params, at: &str, points: &[[f64; 2]]) -> Result<Vec<[f64; 2]>, Fault> {
+    let mut before = f64::NEG_INFINITY;
+    for (i, [density, rms]) in points.iter().enumerate() {
+        if !(*density > before && (0.0..=10.0).contains(density) && (0.0..=200.0).contains(rms)) {
+            let text = format!("[{density}, {rms}] is not a point of granularity over density");
+            let fault = params.fault(&format!("{at}.granularity[{i}]"), text);
+            return Err(fault
+                .hint("[density over the minimum, RMS]: densities increase from 0 to 10, RMS lies between 0 and 200"));
+        }
+        before = *density;
+    }
+    Ok(points.to_vec())
 }
 
 /// Checks a modulation transfer.
