@@ -138,7 +138,8 @@ fn frame_of(names: &[&str], planes: &[Vec<f32>]) -> ExposureFrame {
 fn a_metered_gray_is_gray_on_a_plate_in_any_light() {
     for (stock, tolerance) in [("blue-sensitive-plate", 1e-4), ("panchromatic-plate", 1e-4), ("kodak-tri-x-400", 0.06)]
     {
-        let settings = format!("stock: {stock}\nmetering: average\nhalation: off\ngrain: false\npaper: {{range: 1.6}}\n");
+        let settings =
+            format!("stock: {stock}\nmetering: average\nhalation: off\ngrain: false\npaper: {{range: 1.6}}\n");
         let film = build(&settings).expect("sound");
         for light in ["D55", "D65", "A", "iso-7589-sensitometric-daylight"] {
             let power = spectra_spectrum::find_emission(light).expect("bundled").to_power(&BAND);
