@@ -38,7 +38,10 @@ fn depth(column: usize, row: usize) -> f32 {
     if is_in_front(column, row) { 0.9 } else { 1.8 + 0.006 * (column as f32) }
 }
 
-fn exr_file(path: &Path, planes: &[(&str, &dyn Fn(usize, usize) -> f32)]) {
+/// A channel: its name, and its value by column and row.
+type Plane<'a> = (&'a str, &'a dyn Fn(usize, usize) -> f32);
+
+fn exr_file(path: &Path, planes: &[Plane<'_>]) {
     let plane = |value: &dyn Fn(usize, usize) -> f32| -> Vec<f32> {
         (0..SIZE.0 * SIZE.1).map(|i| value(i % SIZE.0, i / SIZE.0)).collect()
     };

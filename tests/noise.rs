@@ -85,7 +85,7 @@ fn dark_and_busy_parts_get_more_samples() {
     assert!(!picture.partial && noise.worst <= noise.asked && noise.clean == 1.0, "{noise:?}");
     // All blocks have 64 samples at least; if all had as many as the worst, it would be a multiple of the frame.
     let frame = (WIDTH * HEIGHT) as u64;
-    assert!(picture.rays > 64 * frame && picture.rays % (64 * frame) != 0, "{}", picture.rays);
+    assert!(picture.rays > 64 * frame && !picture.rays.is_multiple_of(64 * frame), "{}", picture.rays);
     // More are not allowed: it says so.
     let few = render("biotar-ortho", &["render.samples=64"], &Threads(2));
     assert!(few.rays == 64 * frame && few.noise.is_some_and(|noise| noise.clean < 0.99));
