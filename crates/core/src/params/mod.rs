@@ -49,7 +49,7 @@
 //! # Ok::<(), Faults>(())
 //! ```
 //!
-//! All of it rests on one declaration: the struct. `schemars` makes its schema, [`check`] holds the tree against that, and serde reads
+//! All of it rests on one declaration: the struct. `schemars` makes its schema, `check` holds the tree against that, and serde reads
 //! what is then known to be right. A check that serde makes (`try_from`, a `Deserialize` by hand) comes last, and is placed at the map around it; it
 //! may put a hint behind its message, on a line that starts with `hint: `.
 
