@@ -112,7 +112,7 @@ fn said_about(root: &Path, path: &Path) -> Vec<String> {
     let [samples, rays] =
         if POINTS.contains(&&*name) { ["64", "render.rays=100000"] } else { ["1", "render.rays=2000"] };
     // The height follows from the frame's shape.
-    let few = ["--samples", samples, "--set", rays, "--set", "imager.resolution=24", "--threads", "1"];
+    let few = ["--samples", samples, "--set", rays, "--set", "imager.resolution=48", "--threads", "1"];
     for arguments in [vec!["check"], [&["run", "-o", out.path().to_str().expect("plain")], &few[..]].concat()] {
         let output = spectra().args(&arguments).arg(path).output().expect("the program starts");
         let said = text(&output.stderr);
