@@ -256,7 +256,7 @@ mod tests {
             references(&schema, &mut wanted);
             for name in wanted {
                 // No plugin is linked into this test: the stages' definitions come with them.
-                let stage = ["source", "color", "wavelengths", "imager", "film", "output"]
+                let stage = ["source", "color", "wavelengths", "surface", "imager", "film", "output"]
                     .contains(&name.trim_start_matches("part-"));
                 assert!(stage || schema["$defs"].get(&name).is_some(), "{}: {name}", kind.name());
             }
