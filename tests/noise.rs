@@ -80,7 +80,8 @@ fn noise_is_what_was_asked_for() {
 /// Parts of a picture end after different numbers of samples, and what was reached is said.
 #[test]
 fn dark_and_busy_parts_get_more_samples() {
-    let picture = render("biotar-ortho", &["render.noise=2 %", "render.samples=4096"], &Threads(2));
+    let picture =
+        render("biotar-ortho", &["render.noise=2 %", "render.samples=4096", "lens.f-number=f/4"], &Threads(2));
     let noise = picture.noise.expect("asked for");
     assert!(!picture.partial && noise.worst <= noise.asked && noise.clean == 1.0, "{noise:?}");
     // All blocks have 64 samples at least; if all had as many as the worst, it would be a multiple of the frame.

@@ -372,7 +372,7 @@ fn equal_per_solid_angle(tracer: &Tracer, point: DVec3, pupil: &FrontPupil, outl
     const SECTORS: usize = 8;
     let cell_sr = 2.0 * PI * (1.0 - cos) / (RINGS * SECTORS) as f64;
     for pattern in [AimPattern::Disk, AimPattern::Rings] {
-        let n = 400_000;
+        let n = 1_600_000;
         let rays = aimed(&[point], n, 77, |batch, u, v| pupil.aim(batch, u, v, pattern, Isa::detect()));
         let mut sums = [(0.0, 0.0); RINGS * SECTORS];
         for (_, d, weight) in &rays {
@@ -393,8 +393,9 @@ fn equal_per_solid_angle(tracer: &Tracer, point: DVec3, pupil: &FrontPupil, outl
             let error = ((square - mean * mean) / n).sqrt();
             let sigma = (mean - cell_sr) / error;
             chi2 += sigma * sigma;
+            // Of 160 cells in all one in a hundred runs has one beyond.
             assert!(
-                sigma.abs() < 3.0,
+                sigma.abs() < 4.0,
                 "{pattern:?}, cell {cell}: {mean} sr, it has {cell_sr}; {sigma} standard errors"
             );
         }
