@@ -372,7 +372,7 @@ fn equal_per_solid_angle(tracer: &Tracer, point: DVec3, pupil: &FrontPupil, outl
     const SECTORS: usize = 8;
     let cell_sr = 2.0 * PI * (1.0 - cos) / (RINGS * SECTORS) as f64;
     for pattern in [AimPattern::Disk, AimPattern::Rings] {
-        let n = 1_600_000;
+        let n = 6_400_000;
         let rays = aimed(&[point], n, 77, |batch, u, v| pupil.aim(batch, u, v, pattern, Isa::detect()));
         let mut sums = [(0.0, 0.0); RINGS * SECTORS];
         for (_, d, weight) in &rays {
@@ -393,7 +393,8 @@ fn equal_per_solid_angle(tracer: &Tracer, point: DVec3, pupil: &FrontPupil, outl
             let error = ((square - mean * mean) / n).sqrt();
             let sigma = (mean - cell_sr) / error;
             chi2 += sigma * sigma;
-            // Of 160 cells in all one in a hundred runs has one beyond.
+            // 160 cells are looked at: beyond 3 lies one of them in every third run, beyond 4 in every hundredth. Of so many rays that
+            // is a deviation of 1.3 %; chi-square tells a smaller one of all.
             assert!(
                 sigma.abs() < 4.0,
                 "{pattern:?}, cell {cell}: {mean} sr, it has {cell_sr}; {sigma} standard errors"
