@@ -263,7 +263,8 @@ fn words_that_are_no_commands_have_one_behind_them() {
 fn completions_and_man_page_know_every_command() {
     let bash = good(&["completions", "bash"]);
     let man = good(&["man"]);
-    for command in ["run", "check", "list", "doc", "lens", "film", "bench", "spectrum", "glass", "new", "build"] {
+    for command in ["run", "check", "view", "list", "doc", "lens", "film", "bench", "spectrum", "glass", "new", "build"]
+    {
         assert!(bash.contains(command), "{command}");
         assert!(man.contains(&format!("SPECTRA {}", command.to_uppercase())), "{command}");
     }

@@ -46,6 +46,8 @@ pub(crate) enum Command {
     Run(Run),
     /// Check scenes for errors without rendering them.
     Check(Check),
+    /// View a scene in the browser: the picture follows every change.
+    View(View),
     /// List the stages, lenses, film stocks and other data that scenes can use.
     List(List),
     /// Show what a stage does and which parameters it takes.
@@ -188,6 +190,36 @@ fn samples(text: &str) -> Result<u32, String> {
         Ok(samples) if (1..=4_194_304).contains(&samples) => Ok(samples),
         _ => Err(wanted.to_owned()),
     }
+}
+
+/// `spectra view`.
+#[derive(Debug, Args)]
+#[command(
+    long_about = "View a scene in the browser: the picture follows every change.\n\n\
+        A page opens with the picture, which grows as light is traced, the lens with its rays, and a control for each number and \
+        choice of the scene. What changes development alone (print, push, grain) traces no light again. `Save to the scene` \
+        writes what was changed into the scene file, where it stands, and leaves the rest of the file as it is.\n\n\
+        The address is printed to standard output. It opens once, in one browser, and only on this machine. Ctrl-C ends the \
+        viewer.",
+    after_long_help = "Examples: a bundled scene; one of your own, without opening a browser\n  \
+        spectra view biotar-ortho\n  \
+        spectra view scene.yaml --port 8000 --no-open"
+)]
+pub(crate) struct View {
+    /// A scene file, or the name of a bundled scene (see `spectra list scene`).
+    #[arg(value_name = "SCENE")]
+    pub scene: PathBuf,
+    /// Port of this machine to serve the page at; 0 takes a free one.
+    #[arg(long, value_name = "PORT", default_value_t = 0)]
+    pub port: u16,
+    /// Print the address without opening a browser.
+    #[arg(long)]
+    pub no_open: bool,
+    #[command(flatten)]
+    pub set: Set,
+    /// Number of render threads; all processors if not given. It does not affect the picture.
+    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
 }
 
 /// `spectra check`.

@@ -33,6 +33,7 @@ mod sources;
 mod spectrum;
 mod time_limit;
 mod version;
+mod view;
 mod words;
 
 use arguments::{Arguments, Command};
@@ -84,6 +85,7 @@ fn dispatch(arguments: &Arguments, unpack: Unpack, notices: &str, started: Insta
     match &arguments.command {
         Some(Command::Run(run)) => run::run(run, isa, started),
         Some(Command::Check(check)) => check::check(check, isa),
+        Some(Command::View(arguments)) => view::view(arguments, isa),
         Some(Command::List(list)) => list::list(list),
         Some(Command::Doc(arguments)) => doc::doc(arguments),
         Some(Command::Schema(arguments)) => schema::schema(arguments),

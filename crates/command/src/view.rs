@@ -1,0 +1,48 @@
+//! `spectra view`.
+
+use crate::arguments;
+use crate::console;
+use crate::limits;
+use crate::outcome::{Failure, Outcome};
+use spectra_core::Isa;
+use spectra_view::View;
+use std::process::{Command, Stdio};
+
+/// Serves a scene to a browser until the process ends.
+pub(crate) fn view(arguments: &arguments::View, isa: Isa) -> Outcome {
+    let view = View {
+        scene: arguments.scene.clone(),
+        overrides: arguments.set.overrides.clone(),
+        port: arguments.port,
+        isa,
+        threads: arguments.threads.map_or_else(limits::processors, usize::from),
+    };
+    let ready = |address: &str| {
+        // A reader that has gone away is no failure.
+        let _ = console::out(&format!("{address}\n"));
+        if arguments.no_open {
+            console::note("open this address in a browser; Ctrl-C ends the viewer");
+        } else if open(address) {
+            console::note("the page opens in your browser; Ctrl-C ends the viewer");
+        } else {
+            console::note("no browser could be started: open this address in one; Ctrl-C ends the viewer");
+        }
+    };
+    let ended = spectra_view::view(view, ready);
+    match ended {
+        Ok(never) => match never {},
+        Err(error) => Err(Failure::from(error)),
+    }
+}
+
+/// Asks the system to open an address; whether it could be asked.
+fn open(address: &str) -> bool {
+    let mut command = if cfg!(target_os = "macos") {
+        Command::new("open")
+    } else if cfg!(windows) {
+        Command::new("explorer")
+    } else {
+        Command::new("xdg-open")
+    };
+    command.arg(address).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).spawn().is_ok()
+}

@@ -1,0 +1,366 @@
+//! What a page may turn: a control for each number, choice and switch that the scene's stages declare.
+//!
+//! A page sends numbers, words of a control's own list and switches, never text: the values of a scene are put together here, so no
+//! path of a file comes from a page.
+
+use serde_json::{Value, json};
+use spectra_core::params::{Node, Value as Written};
+use spectra_core::registry::{self, Parameter};
+use spectra_film::stock::{Process, Stock};
+use spectra_scene::bundled::Bundled;
+use spectra_scene::{FileKind, FileResources, file_documentation, shared_documentation};
+use spectra_spectrum::bundled_spectra;
+use std::path::Path;
+
+/// How a value is written.
+#[derive(Clone, Debug, PartialEq)]
+enum Kind {
+    /// A number between these, with this before and behind it.
+    Number { before: &'static str, unit: String, least: Option<f64>, most: Option<f64>, whole: bool },
+    /// Two numbers alike, a list.
+    Pair { unit: String, least: Option<f64>, most: Option<f64> },
+    /// One of these.
+    Choice(Vec<String>),
+    /// True or false.
+    Switch,
+}
+
+/// Something to turn.
+#[derive(Clone, Debug)]
+pub(crate) struct Control {
+    path: String,
+    kind: Kind,
+    /// As the scene has it; null where it is left out.
+    value: Value,
+    help: String,
+    /// Whether it stands in front: the scene says it, or most people look for it.
+    is_in_front: bool,
+    /// What is set in place of the number alone.
+    within: Option<[&'static str; 2]>,
+}
+
+/// Keys that stand in front even where a scene leaves them out.
+const IN_FRONT: [&str; 14] = [
+    "lens.file",
+    "lens.f-number",
+    "lens.focus",
+    "lens.coating",
+    "lens.aperture",
+    "film.stock",
+    "film.exposure",
+    "film.compensation",
+    "film.push",
+    "film.print",
+    "film.paper.grade",
+    "film.grain",
+    "imager.tilt",
+    "imager.shift",
+];
+/// Keys that the viewer sets itself, or that say how the work is cut up and not what the picture is.
+const OWN: [&str; 4] = ["imager.resolution", "imager.crop", "render.batch", "render.frame"];
+const LIGHTS: [&str; 3] = ["illuminant", "lamp", "light"];
+
+/// The controls of a scene, as it is written.
+pub(crate) fn of_scene(root: &Node) -> Vec<Control> {
+    let mut all = Vec::new();
+    let stages = registry::list();
+    let mut section = |prefix: &str, stage: &str| {
+        let Some(node) = root.at_path(prefix).filter(|node| matches!(node.value, Written::Map(_))) else { return };
+        let of_stage = || stages.iter().filter(|listed| listed.stage == stage);
+        let said = of_stage().next().and_then(|listed| node.get(listed.key)).and_then(Node::as_str);
+        let listed = of_stage().find(|listed| said.map_or(listed.default, |name| name == listed.name));
+        let own = listed.map(|listed| listed.documentation().parameters).unwrap_or_default();
+        let shared = shared_documentation(stage).map(|found| found.parameters).unwrap_or_default();
+        for parameter in own.iter().chain(&shared) {
+            all.extend(control(root, &format!("{prefix}.{}", parameter.key), parameter));
+        }
+    };
+    section("film", "film");
+    section("imager", "imager");
+    section("imager.response", "response");
+    section("source", "source");
+    section("wavelengths", "wavelengths");
+    for parameter in file_documentation(FileKind::Scene).parameters {
+        if parameter.key.starts_with("lens.") || parameter.key.starts_with("render.") {
+            all.extend(control(root, &parameter.key, &parameter));
+        }
+    }
+    all.push(blades(root));
+    // Of several declarations of a key the first holds; a map in place of a number has its own controls.
+    let mut seen = std::collections::BTreeSet::new();
+    all.retain(|control| seen.insert(control.path.clone()));
+    all.retain(|control| {
+        let at = root.at_path(&control.path).map(|node| &node.value);
+        control.within.is_some() || !matches!(at, Some(Written::Map(_)))
+    });
+    let of_map = |path: &str| path.rsplit_once('.').map(|(before, _)| before.to_owned());
+    all.retain(|control| {
+        // `lens.focus.distance` where `lens.focus` is a length: it would take the place of it.
+        let is_number =
+            |path: &str| root.at_path(path).is_some_and(|node| !matches!(node.value, Written::Map(_) | Written::Null));
+        of_map(&control.path).is_none_or(|parent| !is_number(&parent))
+    });
+    all
+}
+
+/// The blades of the iris, which stand in a map of their own.
+fn blades(root: &Node) -> Control {
+    let at = root.at_path("lens.aperture.blades").and_then(number);
+    Control {
+        path: if at.is_some() { "lens.aperture.blades" } else { "lens.aperture" }.to_owned(),
+        kind: Kind::Number { before: "", unit: String::new(), least: Some(3.0), most: Some(100.0), whole: true },
+        value: at.as_ref().map_or(Value::Null, |(_, value, _)| json!(value)),
+        help: "Number of blades of the iris; the opening is round if absent.".to_owned(),
+        is_in_front: true,
+        within: at.is_none().then_some(["{shape: iris, blades: ", "}"]),
+    }
+}
+
+/// A control of a parameter; none of what is a list, a map or a text without a list of names.
+fn control(root: &Node, path: &str, parameter: &Parameter) -> Option<Control> {
+    if OWN.contains(&path) || path.contains("[]") || path.ends_with(".kind") {
+        return None;
+    }
+    let node = root.at_path(path).filter(|node| !matches!(node.value, Written::Null));
+    let words = || parameter.kind.split(" | ").map(str::to_owned).collect::<Vec<_>>();
+    let first = parameter.kind.split(',').next().unwrap_or_default();
+    let (least, most) = range(&parameter.range);
+    let written = node.and_then(number);
+    let unit = match (&written, parameter.unit.as_str()) {
+        (Some((_, _, unit)), _) => unit.clone(),
+        // A distance in a photographer's unit.
+        (None, "mm") if path.contains("focus") || path.contains("distance") => "m".to_owned(),
+        (None, "f/") => String::new(),
+        (None, unit) => unit.to_owned(),
+    };
+    let kind = if path == "film.paper.grade" {
+        Kind::Choice(["0", "1", "2", "3", "4", "5", "auto"].map(str::to_owned).into())
+    } else if let Some(names) = names(path) {
+        Kind::Choice(names)
+    } else if parameter.kind == "true or false" {
+        Kind::Switch
+    } else if parameter.kind.contains(" | ") {
+        Kind::Choice(words())
+    } else if let Some(of) = parameter.kind.strip_prefix("list of 2 of ") {
+        if of.contains("number") && parameter.unit.is_empty() {
+            return None;
+        }
+        Kind::Pair { unit: parameter.unit.clone(), least, most }
+    } else if first == "text" || first.contains("list") || first.contains("map") || first.contains("see `") {
+        return None;
+    } else {
+        let before = if parameter.unit == "f/" { "f/" } else { "" };
+        Kind::Number { before, unit, least, most, whole: first == "whole number" }
+    };
+    let value = match (&kind, node) {
+        (Kind::Number { .. }, _) => written.map(|(_, value, _)| json!(value)),
+        (Kind::Pair { .. }, Some(node)) => {
+            let one = |index| node.element(index).and_then(number).map(|(_, value, _)| value);
+            one(0).zip(one(1)).map(|(a, b)| json!([a, b]))
+        }
+        (Kind::Switch, Some(node)) => match node.value {
+            Written::Bool(is_on) => Some(json!(is_on)),
+            _ => None,
+        },
+        (Kind::Choice(_), Some(node)) => match &node.value {
+            Written::String(text) => Some(json!(text)),
+            Written::Number(number) => Some(json!(number.text)),
+            _ => None,
+        },
+        (_, None) => None,
+    };
+    // A number that is written as a word, such as `inf`, is left to whoever wrote it until it is turned.
+    let help = parameter.description.split_whitespace().collect::<Vec<_>>().join(" ");
+    let is_in_front = node.is_some() || IN_FRONT.contains(&path);
+    Some(Control { path: path.to_owned(), kind, value: value.unwrap_or(Value::Null), help, is_in_front, within: None })
+}
+
+/// The names that a text is one of, by its place.
+fn names(path: &str) -> Option<Vec<String>> {
+    let key = path.rsplit('.').next().unwrap_or_default();
+    let stocks = |is_print: bool| {
+        let bundled = FileResources::beside(Path::new(""));
+        let is_wanted = |stock: Stock| (stock.process == Process::Print) == is_print;
+        let all = Stock::bundled().filter(|name| Stock::load(name, &bundled).is_ok_and(is_wanted));
+        all.map(str::to_owned).collect()
+    };
+    Some(match (path, key) {
+        // Those in folders are parts for tests; a word of a page holds no `/`.
+        ("lens.file", _) => Bundled::Lens.names().into_iter().filter(|name| !name.contains('/')).collect(),
+        ("lens.coating", _) => ["ideal", "bare", "single-layer", "three-layer"].map(str::to_owned).into(),
+        ("film.stock", _) => stocks(false),
+        ("film.print", _) => stocks(true),
+        ("film.halation" | "film.optics", _) => vec!["off".to_owned()],
+        (_, key) if LIGHTS.contains(&key) => {
+            let all = bundled_spectra().filter(|(_, path)| path.starts_with("spectra/illuminants/"));
+            all.map(|(name, _)| name.to_owned()).collect()
+        }
+        _ => return None,
+    })
+}
+
+/// Least and largest value by a range in words, as `spectra doc` has it.
+fn range(words: &str) -> (Option<f64>, Option<f64>) {
+    let words = words.trim_start_matches("each ");
+    if let Some((least, most)) = words.split_once(" to ") {
+        return (least.parse().ok(), most.parse().ok());
+    }
+    let (mut least, mut most) = (None, None);
+    for part in words.split(", ") {
+        if let Some(number) = part.strip_prefix(">= ").or_else(|| part.strip_prefix("> ")) {
+            least = number.parse().ok();
+        } else if let Some(number) = part.strip_prefix("<= ").or_else(|| part.strip_prefix("< ")) {
+            most = number.parse().ok();
+        }
+    }
+    (least, most)
+}
+
+/// A number as it is written: what stands before it, its value and its unit.
+fn number(node: &Node) -> Option<(&'static str, f64, String)> {
+    match &node.value {
+        Written::Number(number) if number.value.is_finite() => Some(("", number.value, String::new())),
+        Written::String(text) => {
+            let (before, rest) = match text.strip_prefix("f/") {
+                Some(rest) => ("f/", rest),
+                None => ("", text.as_str()),
+            };
+            let rest = rest.trim();
+            let is_digit = |c: char| c.is_ascii_digit() || matches!(c, '.' | '-' | '+' | '/');
+            let (digits, unit) = rest.split_at(rest.find(|c| !is_digit(c)).unwrap_or(rest.len()));
+            let value = match digits.split_once('/') {
+                Some((a, b)) => a.parse::<f64>().ok()? / b.parse::<f64>().ok()?,
+                None => digits.parse().ok()?,
+            };
+            value.is_finite().then(|| (before, value, unit.trim().to_owned()))
+        }
+        _ => None,
+    }
+}
+
+impl Control {
+    pub(crate) fn path(&self) -> &str {
+        &self.path
+    }
+
+    /// As the page gets it.
+    pub(crate) fn to_json(&self) -> Value {
+        let kind = match &self.kind {
+            Kind::Number { before, unit, least, most, whole } => {
+                json!({"is": "number", "before": before, "unit": unit, "least": least, "most": most, "whole": whole})
+            }
+            Kind::Pair { unit, least, most } => json!({"is": "pair", "unit": unit, "least": least, "most": most}),
+            Kind::Choice(words) => json!({"is": "choice", "words": words}),
+            Kind::Switch => json!({"is": "switch"}),
+        };
+        json!({"path": self.path, "kind": kind, "value": self.value, "help": self.help, "front": self.is_in_front})
+    }
+
+    /// The text `path=value` of a value that a page sent.
+    ///
+    /// # Errors
+    /// Why it is none of this control's.
+    pub(crate) fn text(&self, value: &Value) -> Result<String, String> {
+        let bounded = |value: &Value, least: Option<f64>, most: Option<f64>| match value.as_f64() {
+            Some(number) if !number.is_finite() => Err("no finite number".to_owned()),
+            Some(number) if least.is_some_and(|least| number < least) || most.is_some_and(|most| number > most) => {
+                Err(format!("{number} is outside of its range"))
+            }
+            Some(number) => Ok(number),
+            None => Err("no number".to_owned()),
+        };
+        let with_unit = |unit: &str| if unit.is_empty() { String::new() } else { format!(" {unit}") };
+        let written = match &self.kind {
+            Kind::Number { before, unit, least, most, whole } => {
+                let number = bounded(value, *least, *most)?;
+                if *whole && number.fract() != 0.0 {
+                    return Err("no whole number".to_owned());
+                }
+                format!("{before}{number}{}", with_unit(unit))
+            }
+            Kind::Pair { unit, least, most } => match value.as_array().map(Vec::as_slice) {
+                Some([a, b]) => {
+                    let (a, b, unit) = (bounded(a, *least, *most)?, bounded(b, *least, *most)?, with_unit(unit));
+                    format!("[{a}{unit}, {b}{unit}]")
+                }
+                _ => return Err("not two numbers".to_owned()),
+            },
+            Kind::Choice(words) => match value.as_str() {
+                Some(word) if words.iter().any(|known| known == word) => word.to_owned(),
+                _ => return Err("none of the choices".to_owned()),
+            },
+            Kind::Switch => value.as_bool().ok_or("neither true nor false")?.to_string(),
+        };
+        let [before, behind] = self.within.unwrap_or(["", ""]);
+        Ok(format!("{}={before}{written}{behind}", self.path))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use spectra_plugins as _;
+
+    fn controls(text: &str) -> Vec<Control> {
+        let file = spectra_core::params::SourceFile::new("scene.yaml", text);
+        of_scene(&spectra_yaml::parse(file).expect("YAML"))
+    }
+
+    const SCENE: &str = "source: {kind: chart, chart: resolution, distance: 2 m, luminance: 300 cd/m2}\n\
+        lens: {file: zeiss-biotar-50-f1.4, f-number: f/2, focus: 2 m}\n\
+        imager: {kind: film, format: 135}\nfilm: {stock: ilford-ortho-plus, exposure: 1/80 s}\nrender: {samples: 8}\n";
+
+    fn of(all: &[Control], path: &str) -> Control {
+        all.iter().find(|c| c.path == path).unwrap_or_else(|| panic!("no control {path}")).clone()
+    }
+
+    #[test]
+    fn numbers_keep_their_units_and_their_ranges() {
+        let all = controls(SCENE);
+        assert_eq!(of(&all, "lens.f-number").text(&json!(2.8)), Ok("lens.f-number=f/2.8".to_owned()));
+        assert_eq!(of(&all, "lens.focus").text(&json!(1.5)), Ok("lens.focus=1.5 m".to_owned()));
+        assert_eq!(of(&all, "film.exposure").value, json!(0.0125));
+        assert_eq!(of(&all, "imager.tilt").text(&json!([3, 0])), Ok("imager.tilt=[3 deg, 0 deg]".to_owned()));
+        let blades = of(&all, "lens.aperture");
+        assert_eq!(blades.text(&json!(7)), Ok("lens.aperture={shape: iris, blades: 7}".to_owned()));
+        assert!(blades.text(&json!(2)).is_err() && blades.text(&json!(7.5)).is_err());
+        assert!(of(&all, "imager.tilt").text(&json!([81, 0])).is_err());
+        assert!(all.iter().all(|c| c.path != "imager.resolution" && c.path != "lens.focus.distance"));
+    }
+
+    #[test]
+    fn words_come_from_lists_alone() {
+        let all = controls(SCENE);
+        let lens = of(&all, "lens.file");
+        assert!(lens.text(&json!("nikon-nikkor-50-f1.4")).is_ok() || lens.text(&json!("helios-44-58-f2")).is_ok());
+        for bad in ["../../etc/passwd", "/etc/passwd", "lens.yaml", "a\\b", "", "{}", "[1]"] {
+            assert!(lens.text(&json!(bad)).is_err(), "{bad}");
+        }
+        // Whatever a page may send is one of these lists, and none of their words is a path.
+        for control in &all {
+            if let Kind::Choice(words) = &control.kind {
+                assert!(!words.is_empty(), "{}", control.path);
+                for word in words {
+                    assert!(!word.contains(['/', '\\', '{', '[', '\n']) && !word.contains(".."), "{word}");
+                    assert!(!word.ends_with(".yaml") && !word.ends_with(".csv"), "{word}");
+                }
+            }
+            assert!(control.text(&json!({"a": 1})).is_err() && control.text(&json!("/etc/passwd")).is_err());
+        }
+    }
+
+    #[test]
+    fn each_control_that_is_turned_to_its_own_value_leaves_the_scene_as_it_is() {
+        use spectra_session::Session;
+        let mut session =
+            Session::open("biotar-ortho".as_ref(), &[], spectra_core::Isa::detect()).expect("a bundled scene");
+        let all = of_scene(session.scene().params.node());
+        let mut turned = 0;
+        for control in all.iter().filter(|control| !control.value.is_null()) {
+            let text = control.text(&control.value).unwrap_or_else(|why| panic!("{}: {why}", control.path));
+            session.change(&text).unwrap_or_else(|error| panic!("{text}: {error}"));
+            turned += 1;
+        }
+        assert!(turned >= 9, "{turned} controls");
+    }
+}

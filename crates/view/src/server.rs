@@ -1,0 +1,177 @@
+//! The server: it listens on the loopback address, gives out the page, and passes what the page asks to its desk.
+
+use crate::desk::{Desk, Order};
+use crate::guard::Guard;
+use crate::http::{self, Answer, Request};
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+use std::io;
+use std::net::{Shutdown, TcpListener, TcpStream};
+use std::sync::atomic::{AtomicUsize, Ordering::SeqCst};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+/// Connections at a time; more are turned away.
+const MAX_CONNECTIONS: usize = 64;
+/// Pages at a time; the one that was opened first makes room.
+const MAX_DESKS: usize = 4;
+/// A page that waits for a picture asks again after this.
+const WAIT: Duration = Duration::from_secs(10);
+
+const PAGE: &str = include_str!("../page/index.html");
+const SCRIPT: &str = include_str!("../page/page.js");
+const STYLE: &str = include_str!("../page/page.css");
+
+/// A server that has its port.
+pub(crate) struct Server {
+    listener: TcpListener,
+    guard: Guard,
+    order: Order,
+    desks: Mutex<(u64, BTreeMap<u64, Arc<Desk>>)>,
+    connections: AtomicUsize,
+}
+
+/// A connection among those that are counted.
+struct Counted<'a>(&'a AtomicUsize);
+
+impl Drop for Counted<'_> {
+    fn drop(&mut self) {
+        self.0.fetch_sub(1, SeqCst);
+    }
+}
+
+impl Server {
+    /// Takes a port of this machine's own address; 0 takes a free one.
+    pub(crate) fn bind(port: u16, order: Order) -> io::Result<Self> {
+        let listener = TcpListener::bind(("127.0.0.1", port))?;
+        let guard = Guard::new(listener.local_addr()?.to_string())?;
+        Ok(Self { listener, guard, order, desks: Mutex::default(), connections: AtomicUsize::new(0) })
+    }
+
+    /// What a person opens.
+    pub(crate) fn address(&self) -> String {
+        self.guard.address()
+    }
+
+    /// Answers until the process ends.
+    pub(crate) fn serve(self) -> io::Error {
+        let server = Arc::new(self);
+        loop {
+            let mut stream = match server.listener.accept() {
+                Ok((stream, _)) => stream,
+                // A connection that ended before it was taken, or no more room for one: neither ends the server.
+                Err(_) => {
+                    std::thread::sleep(Duration::from_millis(10));
+                    continue;
+                }
+            };
+            if server.connections.fetch_add(1, SeqCst) >= MAX_CONNECTIONS {
+                server.connections.fetch_sub(1, SeqCst);
+                let _ = stream.set_nonblocking(true);
+                let _ = Answer::refused(503, "too many connections").send(&mut stream);
+                continue;
+            }
+            let own = Arc::clone(&server);
+            let thread = std::thread::Builder::new().name("request".to_owned());
+            let spawned = thread.spawn(move || {
+                let _counted = Counted(&own.connections);
+                own.answer(&mut stream);
+            });
+            if let Err(error) = spawned {
+                // The closure, and the connection with it, are gone.
+                server.connections.fetch_sub(1, SeqCst);
+                if error.kind() != io::ErrorKind::WouldBlock {
+                    return error;
+                }
+            }
+        }
+    }
+
+    fn answer(&self, stream: &mut TcpStream) {
+        let answer = match http::read(stream) {
+            Ok(request) => {
+                self.guard.look(&request).and_then(|()| self.asked(&request)).unwrap_or_else(|refused| refused)
+            }
+            Err(Some(refused)) => refused,
+            Err(None) => return,
+        };
+        // Whoever has gone needs no answer.
+        let _ = answer.send(stream);
+        let _ = stream.shutdown(Shutdown::Write);
+    }
+
+    fn asked(&self, request: &Request) -> Result<Answer, Answer> {
+        let sent = || -> Result<Value, Answer> {
+            serde_json::from_slice(&request.body).map_err(|_| Answer::refused(400, "the body is no JSON"))
+        };
+        match (request.is_post, request.path.as_str()) {
+            (false, "/") => Ok(Answer::new("text/html; charset=utf-8", PAGE)),
+            (false, "/page.js") => Ok(Answer::new("text/javascript; charset=utf-8", SCRIPT)),
+            (false, "/page.css") => Ok(Answer::new("text/css; charset=utf-8", STYLE)),
+            (true, "/open") => self.open(),
+            (true, "/close") => {
+                self.desk(request)?.close();
+                Ok(Answer::nothing())
+            }
+            (true, "/turn") => {
+                let desk = self.desk(request)?;
+                let sent = sent()?;
+                let path = sent["path"].as_str().ok_or_else(|| Answer::refused(400, "no path"))?;
+                desk.turn(path, &sent["value"]).map_err(|why| Answer::refused(400, &why))?;
+                Ok(Answer::nothing())
+            }
+            (true, "/save") => match self.desk(request)?.save() {
+                Ok(count) => Ok(Answer::json(&json!({"saved": count}))),
+                Err(why) => Err(Answer::refused(409, &why)),
+            },
+            (false, "/frame") => {
+                let desk = self.desk(request)?;
+                let frame = desk.frame_after(number(request, "after")?, WAIT);
+                desk.is_asked();
+                Ok(frame.map_or_else(Answer::nothing, |f| Answer::new("application/octet-stream", f.bytes.clone())))
+            }
+            (false, "/controls") => Ok(Answer::json(&self.desk(request)?.controls())),
+            (false, "/pixel") => {
+                let at = |name| number(request, name).map(|v| u32::try_from(v).unwrap_or(u32::MAX));
+                let pixel = self.desk(request)?.pixel(at("x")?, at("y")?);
+                pixel.map(|pixel| Answer::json(&pixel)).ok_or_else(|| Answer::refused(404, "no such pixel"))
+            }
+            (false, "/section") => {
+                let drawn = self.desk(request)?.section(request.asked("ground") == Some("dark"));
+                let drawn = drawn.filter(|svg| !svg.is_empty()).ok_or_else(|| Answer::refused(404, "no drawing"))?;
+                Ok(Answer::new("image/svg+xml", drawn.as_bytes()))
+            }
+            _ => Err(Answer::refused(404, "nothing is here")),
+        }
+    }
+
+    /// The desk of a request.
+    fn desk(&self, request: &Request) -> Result<Arc<Desk>, Answer> {
+        let desks = self.desks.lock().unwrap_or_else(PoisonError::into_inner);
+        let desk = desks.1.get(&number(request, "desk")?).filter(|desk| !desk.is_closed());
+        let desk = desk.ok_or_else(|| Answer::refused(404, "this page is closed: reload it"))?;
+        desk.is_asked();
+        Ok(Arc::clone(desk))
+    }
+
+    /// A page more.
+    fn open(&self) -> Result<Answer, Answer> {
+        let mut desks = self.desks.lock().unwrap_or_else(PoisonError::into_inner);
+        desks.1.retain(|_, desk| !desk.is_closed());
+        while desks.1.len() >= MAX_DESKS {
+            let Some((_, oldest)) = desks.1.pop_first() else { break };
+            oldest.close();
+        }
+        let desk = Desk::open(self.order.clone());
+        let desk = desk.map_err(|error| Answer::refused(503, &format!("no thread for another page: {error}")))?;
+        desks.0 += 1;
+        let number = desks.0;
+        desks.1.insert(number, desk);
+        Ok(Answer::json(&json!({"desk": number})))
+    }
+}
+
+fn number(request: &Request, name: &str) -> Result<u64, Answer> {
+    let text = request.asked(name).filter(|text| text.len() <= 19 && text.bytes().all(|b| b.is_ascii_digit()));
+    text.and_then(|text| text.parse().ok()).ok_or_else(|| Answer::refused(400, &format!("no number `{name}`")))
+}

@@ -1,0 +1,411 @@
+//! The server, over the wire: what a page does, and what others try.
+
+use serde_json::{Value, json};
+use spectra_core::Isa;
+use spectra_plugins as _;
+use spectra_view::{View, view};
+use std::io::{Read, Write};
+use std::net::TcpStream;
+use std::sync::mpsc;
+use std::time::{Duration, Instant};
+
+const SCENE: &str = "spectra: 1\nsource: {kind: chart, chart: resolution, distance: 2 m, luminance: 300 cd/m2, width: fill}\n\
+    lens: {file: zeiss-biotar-50-f1.4, f-number: f/2, focus: 2 m}\nimager: {kind: film, format: 135, resolution: [60, 40]}\n\
+    film: {stock: kodak-tri-x-400, exposure: 1/80 s}\nrender: {samples: 4}\noutput: [png]\n";
+
+struct Browser {
+    host: String,
+    token: String,
+    cookie: String,
+    _folder: tempfile::TempDir,
+    file: std::path::PathBuf,
+}
+
+struct Got {
+    status: u16,
+    head: String,
+    body: Vec<u8>,
+}
+
+impl Got {
+    fn json(&self) -> Value {
+        serde_json::from_slice(&self.body).expect("JSON")
+    }
+}
+
+/// Sends these bytes and reads until the server hangs up; `None` where it hangs up without a word.
+fn raw(host: &str, bytes: &[u8]) -> Option<Got> {
+    let mut stream = TcpStream::connect(host).expect("a server");
+    stream.set_read_timeout(Some(Duration::from_secs(20))).expect("a timeout");
+    // The server may hang up before it has read all.
+    let _ = stream.write_all(bytes);
+    let mut all = Vec::new();
+    let mut some = [0; 65536];
+    while let Ok(count) = stream.read(&mut some) {
+        if count == 0 {
+            break;
+        }
+        all.extend(&some[..count]);
+    }
+    let end = all.windows(4).position(|w| w == b"\r\n\r\n")?;
+    let head = String::from_utf8(all[..end].to_vec()).expect("text");
+    let status = head.split(' ').nth(1)?.parse().ok()?;
+    Some(Got { status, head, body: all[end + 4..].to_vec() })
+}
+
+impl Browser {
+    /// A server with a scene, without its cookie yet.
+    fn start() -> Self {
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = folder.path().join("scene.yaml");
+        std::fs::write(&file, SCENE).expect("written");
+        let (tell, hear) = mpsc::channel();
+        let own = View { scene: file.clone(), overrides: Vec::new(), port: 0, isa: Isa::detect(), threads: 2 };
+        // The thread ends with the process.
+        std::thread::spawn(move || view(own, |address| tell.send(address.to_owned()).expect("heard")));
+        let address = hear.recv_timeout(Duration::from_secs(60)).expect("an address");
+        let (host, token) =
+            address.strip_prefix("http://").and_then(|a| a.split_once("/?token=")).expect("as documented");
+        assert!(host.starts_with("127.0.0.1:") && token.len() == 32, "{address}");
+        Self { host: host.to_owned(), token: token.to_owned(), cookie: String::new(), _folder: folder, file }
+    }
+
+    /// The same after the address was opened.
+    fn let_in() -> Self {
+        let mut browser = Self::start();
+        let got = browser.get(&format!("/?token={}", browser.token)).expect("an answer");
+        assert_eq!(got.status, 303, "{}", got.head);
+        let cookie = got.head.lines().find_map(|line| line.strip_prefix("Set-Cookie: ")).expect("a cookie");
+        assert!(cookie.contains("HttpOnly") && cookie.contains("SameSite=Strict"), "{cookie}");
+        browser.cookie = cookie.split(';').next().expect("a value").to_owned();
+        browser
+    }
+
+    fn get(&self, path: &str) -> Option<Got> {
+        raw(
+            &self.host,
+            format!("GET {path} HTTP/1.1\r\nHost: {}\r\nCookie: {}\r\n\r\n", self.host, self.cookie).as_bytes(),
+        )
+    }
+
+    fn post(&self, path: &str, body: &str) -> Got {
+        let (host, cookie) = (&self.host, &self.cookie);
+        let head = format!(
+            "POST {path} HTTP/1.1\r\nHost: {host}\r\nOrigin: http://{host}\r\nCookie: {cookie}\r\nContent-Length: {}\r\n\r\n{body}",
+            body.len()
+        );
+        raw(host, head.as_bytes()).expect("an answer")
+    }
+
+    fn open(&self) -> u64 {
+        self.post("/open", "").json()["desk"].as_u64().expect("a number")
+    }
+
+    /// Frames from this number on until one pleases: its head and its light.
+    fn frame(&self, desk: u64, mut after: u64, is_wanted: impl Fn(&Value) -> bool) -> (Value, Vec<f32>) {
+        let end = Instant::now() + Duration::from_secs(60);
+        loop {
+            assert!(Instant::now() < end, "no such frame");
+            let got = self.get(&format!("/frame?desk={desk}&after={after}")).expect("an answer");
+            if got.status == 204 {
+                continue;
+            }
+            assert_eq!(got.status, 200, "{}", String::from_utf8_lossy(&got.body));
+            let length = u32::from_le_bytes(got.body[..4].try_into().expect("four")) as usize;
+            let head: Value = serde_json::from_slice(&got.body[4..4 + length]).expect("a head");
+            after = head["frame"].as_u64().expect("a number");
+            if is_wanted(&head) {
+                let floats = got.body[4 + length..].chunks_exact(4);
+                return (head, floats.map(|b| f32::from_le_bytes(b.try_into().expect("four"))).collect());
+            }
+        }
+    }
+
+    fn turn(&self, desk: u64, path: &str, value: Value) -> Got {
+        self.post(&format!("/turn?desk={desk}"), &json!({"path": path, "value": value}).to_string())
+    }
+}
+
+fn is_done(head: &Value) -> bool {
+    head["samples"].is_u64() && head["samples"] == head["of"]
+}
+
+fn mean(light: &[f32]) -> f64 {
+    light.iter().map(|v| f64::from(*v)).sum::<f64>() / light.len() as f64
+}
+
+#[test]
+fn a_picture_follows_what_is_turned_and_is_saved() {
+    let browser = Browser::let_in();
+    for (path, kind) in [("/", "text/html"), ("/page.js", "text/javascript"), ("/page.css", "text/css")] {
+        let got = browser.get(path).expect("an answer");
+        assert!(
+            got.status == 200 && got.head.contains(kind) && got.head.contains("default-src 'none'"),
+            "{}",
+            got.head
+        );
+    }
+    let desk = browser.open();
+    let (head, first) = browser.frame(desk, 0, is_done);
+    assert_eq!((head["width"].as_u64(), head["height"].as_u64()), (Some(480), Some(320)));
+    assert_eq!(first.len(), 3 * 480 * 320);
+    let controls = browser.get(&format!("/controls?desk={desk}")).expect("an answer").json();
+    assert!(controls["controls"].as_array().expect("a list").len() > 40 && controls["name"] == "scene", "{controls}");
+    let section = browser.get(&format!("/section?desk={desk}&ground=dark")).expect("an answer");
+    assert!(section.status == 200 && section.body.starts_with(b"<svg"));
+    let pixel = browser.get(&format!("/pixel?desk={desk}&x=240&y=160")).expect("an answer").json();
+    assert!(
+        pixel["channels"][0]["value"].as_f64().expect("lux seconds") > 0.0 && pixel["channels"][0]["unit"] == "lx s"
+    );
+    assert_eq!(browser.get(&format!("/pixel?desk={desk}&x=480&y=0")).expect("an answer").status, 404);
+
+    // Development alone: the same rays, a lighter print of the denser negative or the other way round.
+    let rays = head["rays"].clone();
+    let at = head["frame"].as_u64().expect("a number");
+    assert_eq!(browser.turn(desk, "film.push", json!(1)).status, 204);
+    let (pushed, light) = browser.frame(desk, at, is_done);
+    assert_eq!(pushed["rays"], rays);
+    assert!((mean(&light) - mean(&first)).abs() > 0.005, "{} {}", mean(&light), mean(&first));
+
+    // What is traced: a stop less light, and the picture of a run with that value, to the bit.
+    assert_eq!(browser.turn(desk, "lens.f-number", json!(4)).status, 204);
+    let (closed, light) = browser.frame(desk, pushed["frame"].as_u64().expect("a number"), is_done);
+    let text = SCENE.replace("[60, 40]", "[480, 320]").replace("f/2", "f/4").replace("1/80 s", "1/80 s, push: 1");
+    let resources = std::sync::Arc::new(spectra_scene::FileResources::beside(".".as_ref()));
+    let mut session =
+        spectra_session::Session::of_text("scene.yaml", &text, resources, Isa::detect()).expect("a scene");
+    session.step(4, &spectra_session::Threads(2), &spectra_session::Control::new()).expect("light");
+    let wanted = session.develop().expect("a picture").remove(0).1;
+    assert!(light == wanted.rgb.concat(), "{closed}");
+
+    // What the scene cannot be is told with its place, and the picture stays.
+    assert_eq!(browser.turn(desk, "lens.f-number", json!(0.01)).status, 204);
+    let (faulty, _) =
+        browser.frame(desk, closed["frame"].as_u64().expect("a number"), |head| head["fault"].is_object());
+    assert_eq!(faulty["fault"]["path"], "lens.f-number");
+    assert!(faulty["fault"]["faults"][0]["message"].as_str().is_some_and(|m| !m.is_empty()), "{faulty}");
+    assert_eq!(browser.turn(desk, "lens.f-number", json!(4)).status, 204);
+    browser.frame(desk, faulty["frame"].as_u64().expect("a number"), |head| head["fault"].is_null() && is_done(head));
+
+    let got = browser.post(&format!("/save?desk={desk}"), "");
+    assert_eq!(got.status, 200, "{}", String::from_utf8_lossy(&got.body));
+    let saved = std::fs::read_to_string(&browser.file).expect("a file");
+    assert_eq!(saved, SCENE.replace("f/2", "f/4").replace("1/80 s", "1/80 s, push: 1"));
+    // The page goes on from there, until somebody else writes to the file.
+    assert_eq!(browser.turn(desk, "film.push", json!(0)).status, 204);
+    let at = browser.frame(desk, 0, |_| true).0["frame"].as_u64().expect("a number");
+    assert_eq!(browser.turn(desk, "film.compensation", json!(0)).status, 204);
+    browser.frame(desk, at, |head| !head["width"].is_null());
+    assert_eq!(browser.post(&format!("/save?desk={desk}"), "").status, 200);
+    assert!(std::fs::read_to_string(&browser.file).expect("a file").contains("push: 0"));
+    assert_eq!(browser.turn(desk, "film.push", json!(1)).status, 204);
+    std::fs::write(&browser.file, SCENE).expect("written by somebody else");
+    assert_eq!(browser.post(&format!("/save?desk={desk}"), "").status, 409);
+    assert_eq!(std::fs::read_to_string(&browser.file).expect("a file"), SCENE);
+
+    assert_eq!(browser.post(&format!("/close?desk={desk}"), "").status, 204);
+    assert_eq!(browser.get(&format!("/frame?desk={desk}&after=0")).expect("an answer").status, 404);
+}
+
+#[test]
+fn pages_do_not_disturb_each_other_and_the_oldest_makes_room() {
+    let browser = Browser::let_in();
+    let (one, two) = (browser.open(), browser.open());
+    assert_eq!(browser.turn(two, "lens.f-number", json!(8)).status, 404 - 4, "no control before the scene is there");
+    let (_, first) = browser.frame(one, 0, is_done);
+    let (before, _) = browser.frame(two, 0, is_done);
+    assert_eq!(browser.turn(two, "lens.f-number", json!(8)).status, 204);
+    let (_, second) = browser.frame(two, before["frame"].as_u64().expect("a number"), is_done);
+    assert!(first != second);
+    let again = browser.get(&format!("/frame?desk={one}&after=0")).expect("an answer");
+    assert!(again.body.ends_with(&first.iter().flat_map(|v| v.to_le_bytes()).collect::<Vec<u8>>()));
+    for _ in 0..3 {
+        browser.open();
+    }
+    assert_eq!(browser.get(&format!("/controls?desk={one}")).expect("an answer").status, 404);
+    assert_eq!(browser.get(&format!("/controls?desk={two}")).expect("an answer").status, 200);
+}
+
+/// Each is refused or dropped, and the server answers the next one.
+#[test]
+fn what_others_try_is_refused() {
+    let browser = Browser::start();
+    let (host, token) = (browser.host.clone(), browser.token.clone());
+    let port = host.rsplit(':').next().expect("a port").to_owned();
+    let field = |name: &str, value: &str| format!("{name}: {value}\r\n");
+    let own = field("Host", &host);
+    let get = |path: &str, fields: &str| format!("GET {path} HTTP/1.1\r\n{fields}\r\n").into_bytes();
+    // Before the address was opened.
+    let mut tries: Vec<(String, Vec<u8>, &[u16])> = Vec::new();
+    for path in [
+        "/",
+        "/page.js",
+        "/controls?desk=1",
+        "/frame?desk=1&after=0",
+        "/?token=",
+        "/?token=00000000000000000000000000000000",
+    ] {
+        tries.push((format!("without a token: {path}"), get(path, &own), &[403]));
+    }
+    tries.push(("token in upper case".into(), get(&format!("/?token={}x", token.to_uppercase()), &own), &[403]));
+    tries.push(("token elsewhere".into(), get(&format!("/page.js?token={token}"), &own), &[403]));
+    tries.push(("token by post".into(), format!("POST /?token={token} HTTP/1.1\r\n{own}\r\n").into_bytes(), &[403]));
+    for name in [
+        "evil.example",
+        "localhost",
+        &format!("localhost:{port}"),
+        "127.0.0.1",
+        &format!("127.0.0.2:{port}"),
+        &format!("{host}.evil.example"),
+        "",
+    ] {
+        tries.push((format!("host {name}"), get(&format!("/?token={token}"), &field("Host", name)), &[403]));
+    }
+    tries.push(("no host".into(), get(&format!("/?token={token}"), ""), &[403]));
+    tries.push(("two hosts".into(), get(&format!("/?token={token}"), &format!("{own}{own}")), &[400]));
+    for (name, bytes, wanted) in &tries {
+        let got = raw(&host, bytes).unwrap_or_else(|| panic!("{name}: no answer"));
+        assert!(wanted.contains(&got.status), "{name}: {}", got.head);
+    }
+    let mut count = tries.len();
+
+    let mut browser = browser;
+    let got = browser.get(&format!("/?token={token}")).expect("an answer");
+    browser.cookie = got
+        .head
+        .lines()
+        .find_map(|l| l.strip_prefix("Set-Cookie: "))
+        .expect("a cookie")
+        .split(';')
+        .next()
+        .expect("one")
+        .to_owned();
+    let desk = browser.open();
+    browser.frame(desk, 0, |head| head["width"].is_u64());
+    let cookie = field("Cookie", &browser.cookie);
+    let mut tries: Vec<(String, Vec<u8>, &[u16])> = Vec::new();
+    tries.push(("the token a second time".into(), get(&format!("/?token={token}"), &own), &[403]));
+    let wrong = browser.cookie.replace(|c: char| c.is_ascii_hexdigit(), "0");
+    tries.push(("a wrong cookie".into(), get("/", &format!("{own}{}", field("Cookie", &wrong))), &[403]));
+    for origin in [
+        "http://evil.example",
+        "null",
+        "https://127.0.0.1",
+        &format!("https://{host}"),
+        &format!("http://localhost:{port}"),
+        &format!("http://{host}.evil.example"),
+    ] {
+        let fields = format!("{own}{cookie}{}", field("Origin", origin));
+        tries.push((format!("get from {origin}"), get("/", &fields), &[403]));
+        tries.push((
+            format!("post from {origin}"),
+            format!("POST /open HTTP/1.1\r\n{fields}\r\n").into_bytes(),
+            &[403],
+        ));
+    }
+    tries.push((
+        "post without an origin".into(),
+        format!("POST /open HTTP/1.1\r\n{own}{cookie}\r\n").into_bytes(),
+        &[403],
+    ));
+    for site in ["cross-site", "same-site"] {
+        tries.push((site.into(), get("/", &format!("{own}{cookie}{}", field("Sec-Fetch-Site", site))), &[403]));
+    }
+    for method in ["PUT", "DELETE", "OPTIONS", "TRACE", "CONNECT", "PATCH", "HEAD"] {
+        tries.push((method.into(), format!("{method} / HTTP/1.1\r\n{own}{cookie}\r\n").into_bytes(), &[405]));
+    }
+    for path in [
+        "/../../etc/passwd",
+        "/%2e%2e/%2e%2e/etc/passwd",
+        "//etc/passwd",
+        "/..\\..\\etc\\passwd",
+        "/page/../page.js",
+        "/page.js/",
+        "/.git/config",
+        "/scene.yaml",
+        "*",
+        "http://evil.example/",
+    ] {
+        tries.push((format!("path {path}"), get(path, &format!("{own}{cookie}")), &[404, 400, 403]));
+    }
+    let post = format!("{own}{cookie}{}", field("Origin", &format!("http://{host}")));
+    let body = |text: &str| {
+        format!("POST /turn?desk={desk} HTTP/1.1\r\n{post}Content-Length: {}\r\n\r\n{text}", text.len()).into_bytes()
+    };
+    for text in [
+        "",
+        "{",
+        "[]",
+        "null",
+        "{\"path\": 1}",
+        "{\"path\": \"lens.file\"}",
+        "{\"path\": \"lens.file\", \"value\": \"../../etc/passwd\"}",
+        "{\"path\": \"lens.file\", \"value\": \"/etc/passwd\"}",
+        "{\"path\": \"lens.file\", \"value\": \"scene.yaml\"}",
+        "{\"path\": \"film.stock\", \"value\": \"a\\\\b\"}",
+        "{\"path\": \"include\", \"value\": \"/etc/passwd\"}",
+        "{\"path\": \"output\", \"value\": \"png\"}",
+        "{\"path\": \"imager.resolution\", \"value\": 100000}",
+        "{\"path\": \"width\", \"value\": 100000}",
+        "{\"path\": \"width\", \"value\": -1}",
+        "{\"path\": \"lens.f-number\", \"value\": \"2]\"}",
+        "{\"path\": \"lens.f-number\", \"value\": 1e999}",
+        "{\"path\": \"render.samples\", \"value\": 1e18}",
+    ] {
+        tries.push((format!("turn {text}"), body(text), &[400]));
+    }
+    tries.push((
+        "a body of a gigabyte".into(),
+        format!("POST /open HTTP/1.1\r\n{post}Content-Length: 1073741824\r\n\r\n").into_bytes(),
+        &[413],
+    ));
+    tries.push((
+        "a length that is none".into(),
+        format!("POST /open HTTP/1.1\r\n{post}Content-Length: -1\r\n\r\n").into_bytes(),
+        &[400],
+    ));
+    tries.push((
+        "two lengths".into(),
+        format!("POST /open HTTP/1.1\r\n{post}Content-Length: 0\r\nContent-Length: 5\r\n\r\n").into_bytes(),
+        &[400],
+    ));
+    tries.push((
+        "chunks".into(),
+        format!("POST /open HTTP/1.1\r\n{post}Transfer-Encoding: chunked\r\n\r\n").into_bytes(),
+        &[501],
+    ));
+    tries.push(("no HTTP".into(), b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03".to_vec(), &[400]));
+    tries.push(("words".into(), b"hello\r\n\r\n".to_vec(), &[400]));
+    tries.push(("a long head".into(), get("/", &field("X", &"y".repeat(1 << 20))), &[431]));
+    tries.push(("many fields".into(), get("/", &field("X", "y").repeat(500)), &[431]));
+    tries.push(("an endless path".into(), get(&format!("/{}", "a".repeat(100_000)), &own), &[431]));
+    tries.push(("a desk that is none".into(), get("/frame?desk=99&after=0", &format!("{own}{cookie}")), &[404]));
+    tries.push(("a desk without a number".into(), get("/frame?desk=../1&after=0", &format!("{own}{cookie}")), &[400]));
+    tries.push((
+        "a frame far away".into(),
+        get("/frame?desk=1&after=99999999999999999999999", &format!("{own}{cookie}")),
+        &[400],
+    ));
+    for (name, bytes, wanted) in &tries {
+        // A server that hangs up while it is still written to may lose its answer on the way.
+        let Some(got) = raw(&host, bytes) else {
+            assert!(bytes.len() > 60_000, "{name}: no answer");
+            continue;
+        };
+        assert!(wanted.contains(&got.status), "{name}: {}", got.head);
+    }
+    count += tries.len();
+    assert!(count >= 60, "{count} tries");
+
+    // Many that say nothing: they are bounded, let go in a few seconds, and the page is answered after that.
+    let idle: Vec<Option<TcpStream>> = (0..1000).map(|_| TcpStream::connect(&host).ok()).collect();
+    let end = Instant::now() + Duration::from_secs(30);
+    let answered = || browser.get("/page.css").is_some_and(|got| got.status == 200);
+    while !answered() {
+        assert!(Instant::now() < end, "the server does not answer any more");
+        std::thread::sleep(Duration::from_millis(200));
+    }
+    drop(idle);
+    browser.frame(desk, 0, |head| head["width"].is_u64());
+    println!("{count} tries refused");
+}
