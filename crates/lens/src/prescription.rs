@@ -241,6 +241,7 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
     let mut medium_before = 0;
     let mut along = true;
     let mut breaks = Vec::new();
+    let usual = registry::list().into_iter().find(|l| l.stage == "surface" && l.default).map_or("surface", |l| l.name);
     for (at, node) in file.surfaces.iter().enumerate() {
         let Some(params) = faults.take(node.params()) else { continue };
         if params.kind() == Some(BREAK) {
@@ -293,7 +294,7 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
         }
         let apertures = stated.aperture.as_ref().map(|node| aperture::read(node, resources));
         let mut element =
-            Element::new(shape.kind().unwrap_or("surface"), Arc::from(surface), medium_before, medium_after);
+            Element::new(shape.kind().unwrap_or(usual), Arc::from(surface), medium_before, medium_after);
         if stated.mirror && element.stop {
             faults.push(place.fault("mirror", "a stop does not refract light").hint("`kind: plane` with `stop: true`"));
         } else if stated.mirror {
