@@ -257,7 +257,7 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
         let number = lens.elements.len() + 1;
         let medium_is_stated = stated.glass.is_some() || stated.nd.is_some();
         if stated.mirror && medium_is_stated {
-            let fault = place.fault("mirror", "no light passes behind a mirror, so it has no glass");
+            let fault = place.fault("mirror", "there is no glass behind a mirror");
             faults.push(fault.hint("leave the glass out: the medium in front of the mirror continues"));
         }
         let medium_after = if stated.mirror || (surface.is_stop() && !medium_is_stated) {
