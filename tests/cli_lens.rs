@@ -370,7 +370,7 @@ fn wrong_settings_are_told() {
     for (arguments, word) in [
         (&["zeiss-biotar-50-f1.5"][..], "zeiss-biotar-50-f1.4"),
         (&["zeiss-biotar-50-f1.4", "--f-number", "f/0.9"], "faster than the lens"),
-        (&["zeiss-biotar-50-f1.4", "--focus", "1 mm"], "has a real image"),
+        (&["zeiss-biotar-50-f1.4", "--focus", "1 mm"], "has no real image"),
         (&["zeiss-biotar-50-f1.4", "--focus", "2 s"], "expected a positive length"),
         (&["zeiss-biotar-50-f1.4", "--line", "q"], "no such spectral line"),
         (&["zeiss-biotar-50-f1.4", "--nd", "--line", "d"], "cannot be used with"),

@@ -13,7 +13,7 @@ use spectra_core::params::{FNumber, Length, OrInfinity, Positive, Time, Waveleng
 use spectra_lens::Criterion;
 use std::path::PathBuf;
 
-/// The open spectral camera: light with a spectrum, through real glass, onto a measured film.
+/// The open spectral camera: light of every wavelength, through real glass, onto measured film.
 #[derive(Debug, Parser)]
 #[command(
     name = "spectra",
@@ -126,11 +126,11 @@ pub(crate) struct Run {
     /// number of rays scales in proportion.
     #[arg(short, long, value_name = "N", value_parser = samples)]
     pub samples: Option<u32>,
-    /// Stop where the picture is clean: the noise of a pixel (1%), of luminance or of the worst layer; overriding the
-    /// scene's. Samples are then the most that a pixel gets.
+    /// Stop when the picture is clean: relative noise of a pixel (1%), of its luminance or of the noisiest film layer,
+    /// overriding the scene's. --samples is then the most that a pixel gets.
     #[arg(long, value_name = "PERCENT")]
     pub noise: Option<String>,
-    /// How clean: `preview` is 5 % of noise or 256 samples a pixel, `final` 1 % or 8192, whichever comes first; --noise and
+    /// Stop at 5 % noise or 256 samples per pixel (`preview`), or at 1 % or 8192 (`final`), whichever comes first; --noise and
     /// --samples override these.
     #[arg(long, value_name = "QUALITY")]
     pub quality: Option<Quality>,
@@ -333,7 +333,7 @@ pub(crate) struct Bench {
     pub json: bool,
 }
 
-/// What `spectra bench` measures beside wavelength strategies.
+/// What else `spectra bench` measures.
 #[derive(Debug, Subcommand)]
 pub(crate) enum OtherBench {
     /// Measure how long scenes take until they are clean: time to 1 % noise.
@@ -344,12 +344,13 @@ pub(crate) enum OtherBench {
 #[derive(Debug, Args)]
 #[command(
     long_about = "Measure how long scenes take until they are clean: time to 1 % noise, and noise after some time.\n\n\
-        Each scene is rendered with as many samples as there is time for, by independent seeds and by each direction that \
-        it can be rendered in. Noise is the standard deviation between the seeds over the mean, of luminance (of an imager \
-        without it, its first channel), in squares of 8 x 8 pixels: the median of the squares, and what 95 % of them stay \
-        below. The rest follows from its falling with the square root of the time.\n\n\
+        Each scene is rendered several times with different seeds, in each direction that is possible, with as many samples \
+        as the time allows. Noise is the standard deviation between the seeds, relative to the mean, of luminance (or of the \
+        first channel of an imager without luminance) in squares of 8 x 8 pixels. The table has the median of the squares \
+        and the value that 95 % of them stay below. Times to other noise levels are extrapolated: noise falls with the \
+        square root of the time.\n\n\
         The table (Markdown) goes to standard output.",
-    after_long_help = "Example: the scenes that are made for it, as the program itself chooses the directions\n  \
+    after_long_help = "Example: the bundled scenes for this measurement, with the direction that the program chooses\n  \
         spectra bench noise bench/noise-flat bench/noise-portrait bench/noise-lights bench/noise-night --directions auto"
 )]
 pub(crate) struct BenchNoise {
@@ -478,7 +479,7 @@ pub(crate) struct LensDraw {
     /// Distance of the object from the first surface (2m, inf).
     #[arg(long, value_name = "DISTANCE", default_value = "inf", value_parser = parse::<OrInfinity<Positive<Length>>>)]
     pub object: OrInfinity<Positive<Length>>,
-    /// Plane of the cross-section: y-z or x-z.
+    /// Plane of the cross-section: `y` is the y-z plane, `x` the x-z plane.
     #[arg(long, value_enum, default_value_t = CutArgument::Y)]
     pub section: CutArgument,
     /// Width of the drawing; a .png is twice as many pixels wide.
@@ -492,9 +493,11 @@ pub(crate) struct LensDraw {
 /// The plane of a drawing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum CutArgument {
-    /// y points up.
+    /// The y-z plane, y up.
+    #[value(alias = "y-z")]
     Y,
-    /// x points up.
+    /// The x-z plane, x up.
+    #[value(alias = "x-z")]
     X,
 }
 
@@ -530,8 +533,8 @@ pub(crate) struct LensOptions {
     /// Set the stop to this f-number (f/2), measured with the real marginal ray; as in the file if not given.
     #[arg(long, value_name = "F/N", value_parser = parse::<FNumber>)]
     pub f_number: Option<FNumber>,
-    /// Coating of all surfaces: ideal (no reflection), bare, single-layer, three-layer, another of `spectra list coating` that needs
-    /// no more than its name, or a file; as in the lens file if not given.
+    /// Coating of all surfaces: ideal (no reflection), bare, single-layer, three-layer, another of `spectra list coating` that
+    /// has no required parameters, or a file; as in the lens file if not given.
     #[arg(long, value_name = "COATING")]
     pub coating: Option<String>,
     /// Whether glass absorbs light: true or false; as in the file if not given.

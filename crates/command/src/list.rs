@@ -184,7 +184,8 @@ fn first_sentence(text: &str) -> String {
 fn lens(name: &str) -> Option<Item> {
     let lens = spectra_lens::load(name, &FileResources::beside(Path::new(""))).ok()?;
     let f_mm = Some(lens.first_order(lens.reference_nm).efl_mm.abs()).filter(|f| f.is_finite());
-    let f_number = lens.marginal_ray().ok().map(|ray| ray.f_number()).filter(|n| n.is_finite());
+    // Without power there is no f-number, only rounding.
+    let f_number = lens.marginal_ray().ok().map(|ray| ray.f_number()).filter(|n| n.is_finite() && f_mm.is_some());
     let finder = FanFinder::new(&lens, Section::Y, lens.reference_nm).ok();
     let field = finder.and_then(|finder| finder.largest_field_rad(f64::INFINITY, WIDEST_DEG.to_radians()));
     let field_deg = field.map(f64::to_degrees);

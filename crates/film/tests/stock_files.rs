@@ -100,7 +100,7 @@ fn faulty_tables_are_told_with_line_and_column() {
     let text = load(SOUND, "wavelength_nm,sensitivity\n700,1\n1000,1\n").map(|_| ()).err();
     assert_eq!(text, None, "seen at the very red end of the reference light");
     let text = load(SOUND, "wavelength_nm,sensitivity\n900,1\n1000,1\n").unwrap_err();
-    assert!(text.contains("does not see the reference"), "{text}");
+    assert!(text.contains("not sensitive to the reference"), "{text}");
 }
 
 /// A curve that is assumed says what it rests on, and cannot be built from impossible numbers.

@@ -78,9 +78,9 @@ fn limited(rim: &Option<LimitingRim>, asked: f64) -> String {
     let Some(rim) = rim else { return String::new() };
     let needed = match rim.needed_mm {
         Some(r) => format!("f/{asked:.3} would need r = {r:.2} mm there"),
-        None => format!("no ray leaves the lens at f/{asked:.3}, whatever the rims"),
+        None => format!("even without rims no ray would leave the lens at f/{asked:.3}"),
     };
-    format!(": the rim of surface {} limits it, r = {:.2} mm; {needed}", rim.surface, rim.semi_diameter_mm)
+    format!(": the rim of surface {} (r = {:.2} mm) limits it; {needed}", rim.surface, rim.semi_diameter_mm)
 }
 
 /// By how much the real f-number of a full aperture may exceed the nominal one: makers round, and a patent's figures are not

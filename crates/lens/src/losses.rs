@@ -30,13 +30,13 @@ impl Lens {
         let glasses = self.media.iter().filter(|m| !matches!(m.medium, Medium::Air | Medium::Vacuum));
         let known: Vec<bool> = glasses.map(|m| m.medium.absorption(self.year).is_some()).collect();
         let (all, clear) = (known.len(), known.iter().filter(|known| !**known).count());
-        let parts = [(self.borrowed_absorption().len(), "borrowed"), (clear, "unknown: taken as clear")];
-        let parts: Vec<String> = parts.iter().filter(|(n, _)| *n > 0).map(|(n, what)| format!("{n} {what}")).collect();
+        let parts = [(self.borrowed_absorption().len(), "from a similar glass"), (clear, "unknown, taken as clear")];
+        let parts: Vec<String> =
+            parts.iter().filter(|(n, _)| *n > 0).map(|(n, what)| format!("{n} of {all} {what}")).collect();
         match (all, parts.is_empty()) {
             (0, _) => "no glass".to_owned(),
             (_, true) => "glass absorbs".to_owned(),
-            (1, false) => format!("glass absorbs (its transmittance {})", parts.join(", ").trim_start_matches("1 ")),
-            (_, false) => format!("glass absorbs (of {all} transmittances {})", parts.join(", ")),
+            (_, false) => format!("glass absorbs (transmittances: {})", parts.join(", ")),
         }
     }
 

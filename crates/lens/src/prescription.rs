@@ -241,6 +241,7 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
     let mut medium_before = 0;
     let mut along = true;
     let mut breaks = Vec::new();
+    let usual = registry::list().into_iter().find(|l| l.stage == "surface" && l.default).map_or("surface", |l| l.name);
     for (at, node) in file.surfaces.iter().enumerate() {
         let Some(params) = faults.take(node.params()) else { continue };
         if params.kind() == Some(BREAK) {
@@ -256,7 +257,7 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
         let number = lens.elements.len() + 1;
         let medium_is_stated = stated.glass.is_some() || stated.nd.is_some();
         if stated.mirror && medium_is_stated {
-            let fault = place.fault("mirror", "no light passes behind a mirror, so it has no glass");
+            let fault = place.fault("mirror", "there is no glass behind a mirror");
             faults.push(fault.hint("leave the glass out: the medium in front of the mirror continues"));
         }
         let medium_after = if stated.mirror || (surface.is_stop() && !medium_is_stated) {
@@ -293,7 +294,7 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
         }
         let apertures = stated.aperture.as_ref().map(|node| aperture::read(node, resources));
         let mut element =
-            Element::new(shape.kind().unwrap_or("surface"), Arc::from(surface), medium_before, medium_after);
+            Element::new(shape.kind().unwrap_or(usual), Arc::from(surface), medium_before, medium_after);
         if stated.mirror && element.stop {
             faults.push(place.fault("mirror", "a stop does not refract light").hint("`kind: plane` with `stop: true`"));
         } else if stated.mirror {

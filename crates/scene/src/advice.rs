@@ -95,9 +95,15 @@ pub(crate) fn unreadable(faults: Faults, path: &Path) -> Faults {
     } else if let Some(other) = bundled::other_kind(&typed, Bundled::Scene) {
         other
     } else {
-        "a path of a scene file, or a bundled scene such as `gray-card`: `spectra list scene` shows them".to_owned()
+        "name a scene file, or a bundled scene such as `gray-card`; `spectra list scene` shows all".to_owned()
     };
-    Fault::new(format!("`{name}`: no such file")).hint(hint).into()
+    let missing = if is_file_name(&typed) { "no such file" } else { "no scene or file of this name" };
+    Fault::new(format!("`{name}`: {missing}")).hint(hint).into()
+}
+
+/// Whether it is written as a file is named, rather than as something bundled.
+pub(crate) fn is_file_name(name: &str) -> bool {
+    [".yaml", ".yml", ".zmx", ".seq", ".csv"].iter().any(|ending| name.to_ascii_lowercase().ends_with(ending))
 }
 
 fn list(names: &[String]) -> String {

@@ -25,14 +25,14 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
-/// A scene: what is in front of the lens, the lens, what records the light, and what is written.
+/// A scene: the subject, the lens, what records the light, and which files to write.
 ///
-/// Each section that names a stage (`source`, `wavelengths`, `imager`, `film`) is a map with the stage's `kind` and its
-/// own keys: `spectra list` shows which there are, `spectra doc STAGE/NAME` what each takes. A value with a unit (`2
-/// m`, `1/125 s`, `f/2.8`, `550 nm`) stands wherever a number does; a bare number has the unit that the key's
-/// documentation names. Files are looked up beside the scene first, then among the bundled ones.
+/// Each section that names a stage (`source`, `wavelengths`, `imager`, `film`) is a map with the `kind` of the stage and
+/// its own keys. `spectra list` lists the kinds, and `spectra doc STAGE/NAME` describes their keys. Any number can have a
+/// unit (`2 m`, `1/125 s`, `f/2.8`, `550 nm`); a bare number has the unit that the description of the key names ("mm if
+/// bare"). Files are looked up beside the scene first, then among the bundled ones.
 ///
-/// `spectra run SCENE` renders it, `spectra check SCENE` finds all of its faults.
+/// `spectra run SCENE` renders a scene, `spectra check SCENE` reports all of its errors.
 ///
 /// # Example
 /// ```yaml
@@ -58,30 +58,30 @@ pub(crate) struct SceneFile {
     /// How wavelengths are drawn, and from which band; `source-times-response` over 350 to 830 nm if absent.
     #[serde(default)]
     wavelengths: Option<Part<StageOf<dyn WavelengthSampler>>>,
-    /// Which lens, and how it is set.
+    /// The lens: its file, f-number, focus and filters.
     lens: Part<LensSection>,
     /// What records the light.
     imager: Part<StageOf<dyn Imager>>,
-    /// The film on a film imager, or a list of films side by side; of other imagers none.
+    /// The film on a film imager, or a list of films that get the same light; other imagers take none.
     #[serde(default)]
     film: Option<Part<films::FilmForm>>,
-    /// How much light is traced, and how.
+    /// How many rays are traced, and how.
     #[serde(default)]
     render: Option<Part<RenderSection>>,
-    /// What is written, into files named after the scene; EXR and PNG if absent.
+    /// The files to write, named after the scene; EXR and PNG if absent.
     #[serde(default)]
     output: Option<Vec<Part<StageOf<dyn Output>>>>,
     // What follows is used up before a scene is assembled; named here, so that a slip in one of them is told.
-    /// Scenes that this one comes on top of: a file or a list of files. Maps merge, what is said here wins.
+    /// Scenes that this one builds on: a file or a list of files. Maps merge, and the values of this scene win.
     #[serde(default)]
     include: Option<Part<language::IncludeForm>>,
-    /// Values with a name: `$name` is one of them as it is, `${name}` its text inside of another.
+    /// Values with names: `$name` stands for the value, `${name}` for its text within another text.
     #[serde(default)]
     variables: Option<Part<BTreeMap<String, StageNode>>>,
-    /// Values that are tried, a picture each: paths with their values, every one with every other; or a list of maps.
+    /// Values to render one picture each of: paths with lists of values, in all combinations; or a list of maps.
     #[serde(default)]
     sweep: Option<Part<language::SweepForm>>,
-    /// Frames, and the values that change over them.
+    /// A sequence of frames, and the values that change over it.
     #[serde(default)]
     animation: Option<Part<language::AnimationForm>>,
 }
@@ -99,28 +99,30 @@ pub(crate) struct BandSection {
 #[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct RenderSection {
-    /// Which way rays run: `backward` (from the imager), `forward` (from the source), `both` (from the source those of its
-    /// lights, which are far brighter than the rest, and from the imager all others) or `auto` (the default: backward where
-    /// source and imager can, and both where that gives much less noise).
+    /// Direction in which rays are traced: `backward` (from the imager), `forward` (from the source), `both` (lights, which
+    /// are far brighter than the rest of the source, from the source, and the rest from the imager) or `auto` (the default:
+    /// backward if source and imager allow it, and both if that gives much less noise).
     #[serde(default)]
     direction: Way,
-    /// Backward: samples a pixel, a whole number from 1 to 4194304; 64 if absent. Where `noise` is stated the most: 8192 if absent.
+    /// Backward: samples per pixel, a whole number from 1 to 4194304; 64 if absent. With `noise`, the most samples that a pixel
+    /// gets; 8192 if absent.
     samples: Option<Whole<1, MAX_SAMPLES>>,
-    /// Stop where it is clean: noise of a pixel as a part of the light around it, 0.01 % to 50 %, of luminance or of the worst
-    /// layer; `samples` are traced everywhere if absent.
+    /// Stop when the picture is clean: standard deviation of a pixel relative to the mean around it, 0.01 % to 50 %, of luminance
+    /// or of the noisiest film layer. If absent, every pixel gets `samples`.
     #[schemars(extend("minimum" = 0.0001, "maximum" = 0.5))]
     noise: Option<Ratio>,
-    /// Forward: rays in all, a whole number from 1 to 1e15; four times pixels times samples if absent. Of both directions
-    /// those of the lights; sixteen times samples for each pixel that they reach if absent.
+    /// Forward: total number of rays, a whole number from 1 to 1e15; 4 x pixels x `samples` if absent. With both directions, the
+    /// rays from the lights; 16 x `samples` for each pixel that they reach if absent.
     rays: Option<Whole<1, MAX_RAYS>>,
-    /// Seed of all random numbers, a whole number from 0 to 18446744073709551615; 1 if absent. Same scene, same seed: same picture.
+    /// Seed of all random numbers, a whole number from 0 to 18446744073709551615; 1 if absent. The same scene with the same seed gives the same picture.
     seed: Option<Whole<0, { u64::MAX }>>,
-    /// Number of a frame: every frame has numbers, noise and grain of its own, by the seeds and this.
+    /// Number of the frame: gives each frame its own random numbers, noise and grain, derived from the seeds.
     frame: Option<Whole<0, { u64::MAX }>>,
     /// Rays that are traced together, a whole number from 8 to 65536; 256 if absent. It changes the speed, not the
     /// picture.
     batch: Option<Whole<8, 65_536>>,
-    /// Where numbers come from: `sobol` (the default), `lattice` (evener where light is smooth, not at edges), `random` or `stratified`.
+    /// Kind of random numbers: `sobol` (the default), `lattice` (less noise where light is smooth, not at edges), `random` or
+    /// `stratified`.
     #[serde(default)]
     numbers: NumberFamily,
     /// How rays fill the aperture: `disk` (the default), `rings` (of equal area) or `random`.
@@ -380,8 +382,8 @@ fn render_settings(
     let samples = s.samples.map_or(default, Whole::get);
     if s.noise.is_some() && s.numbers == NumberFamily::Stratified {
         let fault = params
-            .fault("numbers", "`stratified` numbers are laid out for all samples: they cannot stop where it is clean");
-        faults.push(fault.hint("write `numbers: sobol`, or leave `noise` away"));
+            .fault("numbers", "`stratified` numbers need all of their samples, so rendering cannot stop at a noise");
+        faults.push(fault.hint("write `numbers: sobol`, or leave `noise` out"));
     }
     // 2^22 samples of 2^28 pixels, four times: 2^52.
     let rays = s.rays.map_or(samples * FORWARD_RAYS_A_SAMPLE * imager.size().pixels() as u64, Whole::get);

@@ -26,29 +26,29 @@ pub(crate) struct LensSection {
     /// A lens file beside the scene, or the name of a bundled lens.
     #[expect(dead_code, reason = "states the key; the lens is read even where another key is faulty")]
     file: String,
-    /// Whether it is mounted the other way round.
+    /// Whether the lens is mounted back to front.
     #[serde(default)]
     reverse: bool,
-    /// Coating of all surfaces, in place of what the lens file states or what lenses of its year had: `ideal` (nothing is
-    /// reflected), `bare`, `single-layer`, `three-layer`, a layer or a stack.
+    /// Coating of all surfaces: `ideal` (no reflection), `bare`, `single-layer`, `three-layer`, a layer or a stack. If absent,
+    /// that of the lens file, or else the usual one of the lens's year.
     coating: Option<Part<CoatingForm>>,
-    /// Whether glass absorbs; as the lens file says if absent, which is yes unless it says otherwise.
+    /// Whether glass absorbs light; if absent, as the lens file says, or else true.
     absorption: Option<bool>,
-    /// Aperture, set by the real marginal ray; as the lens file says if absent. The f-number in the lens's name means wide open.
+    /// F-number, set with the real marginal ray; as in the lens file if absent. The f-number in the lens's name means wide open.
     f_number: Option<FNumber>,
-    /// What limits the light at the stop beside its round opening: blades, a mask; one or a list, as in a lens file.
+    /// Shape of the opening at the stop, such as blades or a mask: one or a list, as in a lens file; round if absent.
     aperture: Option<Part<ApertureForm>>,
-    /// Distance that is in focus, from the first vertex, mm if bare, or `infinity`; the lens file's focus if absent. What
-    /// lies there on the axis is as sharp as it gets: its contrast is highest, in the light and at the aperture of the
-    /// scene. Or a map with what to focus by.
+    /// Distance from the first vertex that is in focus, mm if bare, or `infinity`; the lens file's focus if absent. An object
+    /// at this distance on the axis has the highest contrast, in the light and at the aperture of the scene. To focus for
+    /// something else, write a map.
     focus: Option<Part<FocusForm>>,
-    /// Groups out of place: misalignment. None if absent.
+    /// Misalignment: groups of the lens that are displaced or tilted. None if absent.
     #[serde(default)]
     adjust: Vec<Part<AdjustParams>>,
-    /// Filters in front of it, at most 16, each a name of a transmittance or a map; none if absent.
+    /// Filters in front of the lens, at most 16, each a name of a transmittance or a map; none if absent.
     #[expect(dead_code, reason = "states the key; filters are read by themselves")]
     filters: Option<Part<Vec<FilterForm>>>,
-    /// A rectangular opening in front of it; none if absent.
+    /// A matte box: a rectangular opening in front of the lens; none if absent.
     matte_box: Option<Part<MatteBoxParams>>,
 }
 
@@ -60,7 +60,7 @@ struct MatteBoxParams {
     distance: Positive<Length>,
     /// Width of the opening, mm if bare.
     width: Positive<Length>,
-    /// Its height, mm if bare.
+    /// Height of the opening, mm if bare.
     height: Positive<Length>,
 }
 
@@ -68,25 +68,24 @@ struct MatteBoxParams {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct FocusParams {
-    /// Distance that is in focus, from the first vertex, mm if bare, or `infinity`.
+    /// Distance from the first vertex that is in focus, mm if bare, or `infinity`.
     distance: OrInfinity<Positive<Length>>,
-    /// What is sharpest: `contrast` (the highest at a spatial frequency; the default), `spot` (the smallest, root mean
-    /// square; `rms` says the same) or `paraxial` (by first order at the reference line of the lens).
+    /// What is optimized: `contrast` (the highest at a spatial frequency; the default), `spot` (the smallest RMS radius; `rms`
+    /// means the same) or `paraxial` (the first-order image at the reference line of the lens).
     #[serde(default)]
     by: By,
-    /// Field angle that is in focus, degrees if bare, within 89; on the axis if absent.
+    /// Field angle that is in focus, -89 to 89 degrees, degrees if bare; 0, the axis, if absent.
     #[schemars(range(min = -89, max = 89))]
     field: Option<Angle>,
-    /// Wavelength that is in focus, 200 to 2500 nm, nm if bare; if absent the light of the scene, weighed by what the
-    /// film or the imager sees of it. Or else `spectrum`.
+    /// Wavelength that is in focus, 200 to 2500 nm, nm if bare. If this and `spectrum` are absent: the light of the scene,
+    /// weighted by the response of the film or the imager.
     #[schemars(range(min = 200, max = 2500))]
     wavelength: Option<Wavelength>,
-    /// In place of `wavelength`, 1 to 64 of them, nm if bare, each with its weight, more than 0.
+    /// Instead of `wavelength`: 1 to 64 wavelengths, nm if bare, each with a weight greater than 0.
     #[schemars(length(min = 1, max = 64))]
     spectrum: Option<Vec<Weighed>>,
-    /// With `by: contrast`: the spatial frequency whose contrast counts, line pairs a mm if bare; if absent 30 on a 135
-    /// frame, and as much more or less on another one as its diagonal is shorter or longer (on frames smaller than
-    /// super 8 as on that).
+    /// With `by: contrast`: the spatial frequency, line pairs per mm if bare. If absent, 30 on a 135 frame, and inversely
+    /// proportional to the diagonal on other frames (on frames smaller than super 8, the value of super 8).
     frequency: Option<Positive<SpatialFrequency>>,
 }
 
@@ -121,11 +120,11 @@ enum FocusForm {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct AdjustParams {
-    /// Name of the group, one of the lens file.
+    /// Name of the group in the lens file.
     group: String,
-    /// Shift along x and y, mm if bare; as the lens file has it if absent.
+    /// Shift along x and y, mm if bare; as in the lens file if absent.
     decenter: Option<[Length; 2]>,
-    /// Tilts about x, y and z, degrees if bare, about the vertex of its first surface; as the lens file has them if
+    /// Tilts about x, y and z, degrees if bare, about the vertex of its first surface; as in the lens file if
     /// absent.
     tilt: Option<[Angle; 3]>,
     /// Shift along the axis toward the image, mm if bare; none if absent.

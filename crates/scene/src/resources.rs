@@ -118,6 +118,12 @@ impl Resources for FileResources {
     fn document(&self, path: &str, folders: &[&str], endings: &[&str]) -> Result<Params, Faults> {
         // A lens of another program is read as the lens file that its import would write.
         let foreign = Format::of_name(path).filter(|_| folders.contains(&"lenses"));
+        let missing = match folders {
+            _ if crate::advice::is_file_name(path) => "no such file",
+            ["lenses"] => "no lens or file of this name",
+            ["spectra/film"] => "no film stock or file of this name",
+            _ => "no such file",
+        };
         let limit = if foreign.is_some() { spectra_exchange::MAX_BYTES } else { MAX_DOCUMENT };
         let resource = self.read(path, folders, endings, limit).map_err(|e| match &e {
             ResourceError::NotFound(near) if near.is_empty() => {
@@ -125,16 +131,16 @@ impl Resources for FileResources {
                     match folders {
                         ["lenses"] => {
                             format!(
-                                "a file beside the scene, or one of the bundled {}",
+                                "name a file beside the scene, or a bundled lens: {}",
                                 Bundled::Lens.names().join(", ")
                             )
                         }
                         _ => "a file is looked for beside the scene, then among the bundled ones".to_owned(),
                     }
                 });
-                Fault::new(format!("`{path}`: no such file{}", self.looked())).hint(hint)
+                Fault::new(format!("`{path}`: {missing}{}", self.looked())).hint(hint)
             }
-            ResourceError::NotFound(near) => Fault::new(format!("`{path}`: no such file{}", self.looked()))
+            ResourceError::NotFound(near) => Fault::new(format!("`{path}`: {missing}{}", self.looked()))
                 .hint(format!("did you mean {}?", list(near))),
             ResourceError::TooLarge(..) => Fault::new(format!("`{path}`: {e}")).hint("is this the right file?"),
             ResourceError::Io(_) => Fault::new(format!("`{path}`: {e}")).hint("name a file that can be read"),

@@ -21,6 +21,7 @@ pub fn rate(rays_per_second: f64) -> String {
         r if r >= 1e9 => format!("{:.2} billion rays/s", r / 1e9),
         r if r >= 1e8 => format!("{:.0} million rays/s", r / 1e6),
         r if r >= 1e6 => format!("{:.1} million rays/s", r / 1e6),
+        r if r >= 1e5 => format!("{:.2} million rays/s", r / 1e6),
         r => format!("{r:.0} rays/s"),
     }
 }
@@ -84,8 +85,8 @@ mod tests {
     #[test]
     fn rates_and_parts_are_short() {
         assert_eq!(
-            [rate(950.0), rate(3.81e6), rate(1.9e8)],
-            ["950 rays/s", "3.8 million rays/s", "190 million rays/s"]
+            [rate(950.0), rate(699_246.0), rate(3.81e6), rate(1.9e8)],
+            ["950 rays/s", "0.70 million rays/s", "3.8 million rays/s", "190 million rays/s"]
         );
         assert_eq!([percent(1, 8), percent(1, 300), percent(0, 0)], ["12 %", "0.3 %", "0.0 %"]);
     }

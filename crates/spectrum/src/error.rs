@@ -136,7 +136,7 @@ impl SpectrumError {
 fn hint_for_unknown(name: &str, candidates: &[String]) -> String {
     match candidates {
         [one] => format!("did you mean `{one}`?"),
-        [first, others @ ..] => format!("did you mean `{first}`? Near it: {}", others.join(", ")),
+        [first, others @ ..] => format!("did you mean `{first}`? Similar: {}", others.join(", ")),
         [] if name.contains(['*', '+']) => {
             "a sum or a product has spaces around its signs and a spectrum behind each: `0.5 * D65 + line:e`".to_owned()
         }

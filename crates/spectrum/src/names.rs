@@ -30,10 +30,11 @@ pub(crate) fn candidates<'a>(wanted: &str, names: impl Iterator<Item = &'a str>)
     for name in names {
         let other = normalized(name);
         let apart = distance(&letters, &other.chars().collect::<Vec<_>>());
-        let within = letters.len() >= 3 && (other.contains(&key) || key.contains(&other) && other.len() >= 3);
-        if within {
+        let part = letters.len() >= 3 && other.contains(&key);
+        let whole = other.len() >= 3 && key.contains(&other);
+        if part {
             near.push((0, name));
-        } else if apart <= (letters.len() / 3).max(1) {
+        } else if whole || apart <= (letters.len() / 3).max(1) {
             near.push((apart, name));
         }
     }
@@ -58,5 +59,9 @@ mod tests {
         assert_eq!(candidates("mercuri", names.into_iter()), ["mercury"]);
         assert_eq!(candidates("Photographic Daylight", names.into_iter()), ["iso-7589-photographic-daylight"]);
         assert!(candidates("zzzz", names.into_iter()).is_empty());
+        // A slip in a long name is nearer than a short name that it contains.
+        let lights = ["daylight", "iso-7589-photographic-daylight"];
+        let near = candidates("iso-7589-fotographic-daylight", lights.into_iter());
+        assert_eq!(near, ["iso-7589-photographic-daylight", "daylight"]);
     }
 }

@@ -209,7 +209,7 @@ pub enum TableFault {
     #[error("column name `{0}` is empty or appears twice")]
     ColumnName(String),
     /// A row with too few or too many fields.
-    #[error("{found} fields where the header has {expected}")]
+    #[error("number of fields: {found}, but the header has {expected}")]
     FieldCount {
         /// Fields in this row.
         found: usize,

@@ -95,7 +95,7 @@ fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Surface>, Faults> {
     let p: SphereParams = params.parse()?;
     if p.radius.mm() == 0.0 {
         return Err(params
-            .fault("radius", "a radius of 0 is no sphere")
+            .fault("radius", "a sphere cannot have a radius of 0")
             .hint("a plane is `radius: inf` or `kind: plane`")
             .into());
     }

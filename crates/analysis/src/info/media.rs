@@ -47,22 +47,19 @@ pub(super) fn write(media: &[AssumedMedium], f: &mut fmt::Formatter<'_>) -> fmt:
     let modeled: Vec<String> =
         (media.iter().filter(|m| m.modeled_from_lines == Some(1))).map(|m| m.medium.clone()).collect();
     if !modeled.is_empty() {
-        writeln!(f, "modeled dispersion: {}", list(modeled))?;
-        writeln!(
-            f,
-            "  on the normal lines of partial dispersion: of ten glasses nine lie within 0.0002 at r, 0.0004 at g,"
-        )?;
-        writeln!(f, "  0.0009 at h; dense and short flints, fluor and phosphate crowns farther off")?;
+        writeln!(f, "modeled dispersion (ordinary glass of this nd and Vd): {}", list(modeled))?;
+        writeln!(f, "  for nine glasses out of ten the index is right within 0.0002 at r, 0.0004 at g and 0.0009 at h;")?;
+        writeln!(f, "  the error is larger for dense flints, short flints, fluor crowns and phosphate crowns")?;
     }
     let through: Vec<String> =
         media.iter().filter(|m| m.modeled_from_lines.is_some_and(|n| n > 1)).map(|m| m.medium.clone()).collect();
     if !through.is_empty() {
-        writeln!(f, "modeled dispersion, through the lines that are stated: {}", list(through))?;
+        writeln!(f, "modeled dispersion (interpolated between the stated lines): {}", list(through))?;
     }
     let borrowed: Vec<String> =
         media.iter().filter_map(|m| Some(format!("{} from {}", m.medium, m.absorption_of.as_ref()?))).collect();
     if !borrowed.is_empty() {
-        writeln!(f, "absorption borrowed from the nearest glass that has it (assumed): {}", list(borrowed))?;
+        writeln!(f, "absorption taken from a similar glass (assumed): {}", list(borrowed))?;
     }
     Ok(())
 }

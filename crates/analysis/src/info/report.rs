@@ -119,6 +119,8 @@ pub struct SurfaceReport {
     pub z_mm: f64,
     /// Radius of curvature at the vertex (in the y-z plane); `None` where it is flat.
     pub radius_mm: Option<f64>,
+    /// Radius of curvature at the vertex in the x-z plane, where it is curved there by another radius; `None` elsewhere.
+    pub radius_x_mm: Option<f64>,
     /// Distance to the next vertex; of the last surface, to the image plane.
     pub thickness_mm: f64,
     /// Clear semi-diameter; `None` clips nothing.
@@ -139,7 +141,10 @@ impl LensReport {
         let first_order = held.first_order(held.reference_nm);
         let marginal = held.marginal_ray().ok();
         let efl_x_mm = held.first_order_in(Section::X, held.reference_nm).efl_mm;
-        let f_number = marginal.map(|ray| ray.f_number()).filter(|n| n.is_finite());
+        // Without power there is no image: what rounding leaves of its place, and of the f-number, means nothing.
+        let images = first_order.efl_mm.is_finite();
+        let f_number = marginal.map(|ray| ray.f_number()).filter(|n| n.is_finite() && images);
+        let shift_mm = |criterion| focus_shift_mm(&held, criterion).filter(|_| images);
         let indices = light.wavelength_nm().map_or(Indices::Stated, Indices::At);
         let transmittance = lens.axial_transmittance(indices, marginal).ok();
         let (max_field_deg, max_field_limit, chief_rays) = field(&held);
@@ -174,9 +179,10 @@ impl LensReport {
             rear_nodal_z_mm: first_order.rear_nodal_z_mm,
             focus_distance_mm: lens.focused_mm,
             magnification: magnification(&held),
-            paraxial_focus_shift_mm: Some(paraxial).filter(|z| z.is_finite()),
-            rms_focus_shift_mm: focus_shift_mm(&held, Criterion::Rms),
-            contrast_focus_shift_mm: focus_shift_mm(&held, Criterion::Contrast { per_mm: FREQUENCY_PER_MM }),
+            // First order follows the axis; where the image plane stands beside it, the distance to it means nothing.
+            paraxial_focus_shift_mm: Some(paraxial).filter(|z| z.is_finite() && lens.image_pose.is_on_axis()),
+            rms_focus_shift_mm: shift_mm(Criterion::Rms),
+            contrast_focus_shift_mm: shift_mm(Criterion::Contrast { per_mm: FREQUENCY_PER_MM }),
             contrast_frequency_per_mm: FREQUENCY_PER_MM,
             max_field_deg,
             max_field_limit,
@@ -232,12 +238,13 @@ fn diameter_at_mm(held: &Lens, ray: MarginalRay, z_mm: f64) -> Option<f64> {
 
 fn surfaces(held: &Lens) -> Vec<SurfaceReport> {
     let each = held.elements.iter().enumerate().map(|(at, e)| {
-        let (_, curvature) = e.vertex_curvature_per_mm();
+        let (curvature_x, curvature) = e.vertex_curvature_per_mm();
         SurfaceReport {
             number: at + 1,
             kind: e.kind.clone(),
             z_mm: e.vertex_z_mm(),
             radius_mm: (curvature != 0.0).then(|| 1.0 / curvature),
+            radius_x_mm: (curvature_x != 0.0 && curvature_x != curvature).then(|| 1.0 / curvature_x),
             thickness_mm: e.thickness_mm,
             semi_diameter_mm: e.semi_diameter_mm,
             medium: held.media[e.medium_after].label.clone(),

@@ -3,12 +3,15 @@
 use super::{LensReport, MountReport};
 use std::fmt;
 
+/// In place of a figure that the lens does not have.
+const UNKNOWN: &str = "unknown";
+
 /// A length, or why there is none.
 fn mm(value: Option<f64>) -> String {
     match value {
         Some(value) if value.is_finite() => format!("{value:.4} mm"),
         Some(_) => "infinite".to_owned(),
-        None => "unknown".to_owned(),
+        None => UNKNOWN.to_owned(),
     }
 }
 
@@ -27,10 +30,11 @@ impl fmt::Display for LensReport {
             }
         }
         match (self.wavelength_nm, self.line) {
-            (Some(nm), Some(line)) => writeln!(f, "at {nm} nm, the line {line}")?,
-            (Some(nm), None) => writeln!(f, "at {nm} nm")?,
-            (None, _) => writeln!(f, "at the indices that the prescription states")?,
+            (Some(nm), Some(line)) => writeln!(f, "wavelength: {nm} nm (line {line})")?,
+            (Some(nm), None) => writeln!(f, "wavelength: {nm} nm")?,
+            (None, _) => writeln!(f, "wavelength: none; every glass has the index that the prescription states")?,
         }
+        writeln!(f, "distances along the axis are positive toward the image")?;
         writeln!(f)?;
         self.figures(f)?;
         writeln!(f)?;
@@ -50,50 +54,55 @@ impl fmt::Display for LensReport {
 
 impl LensReport {
     fn figures(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let f_number = self.f_number.map_or("unknown".to_owned(), |n| format!("f/{n:.4}"));
-        let t_number = self.t_number.map_or("unknown".to_owned(), |n| format!("T/{n:.4}"));
-        let max_field = self.max_field_deg.map_or("unknown".to_owned(), |field| format!("{field:.3} deg"));
-        let limit =
-            self.max_field_limit.map_or(String::new(), |l| format!("then {} at surface {}", l.cause, l.surface));
-        let contrast = format!("where contrast at {} lp/mm is highest", self.contrast_frequency_per_mm);
+        let f_number = self.f_number.map_or(UNKNOWN.to_owned(), |n| format!("f/{n:.4}"));
+        let t_number = self.t_number.map_or(UNKNOWN.to_owned(), |n| format!("T/{n:.4}"));
+        let max_field = self.max_field_deg.map_or(UNKNOWN.to_owned(), |field| format!("{field:.3} deg"));
+        let limit = self.max_field_limit.map_or("half angle of view".to_owned(), |l| {
+            format!("half angle of view; rays beyond it end at surface {} ({})", l.surface, l.cause)
+        });
+        let contrast =
+            format!("from the image plane; highest contrast at {} lp/mm, real rays", self.contrast_frequency_per_mm);
         let (stop, stop_remark) = match (self.has_stop, self.stop_semi_diameter_mm) {
             (_, Some(_)) => (mm(self.stop_semi_diameter_mm), "semi-diameter"),
-            (true, None) => ("open".to_owned(), "the file gives it no semi-diameter: rims limit the light"),
+            (true, None) => ("open".to_owned(), "no semi-diameter in the file: the rims of the lens limit the light"),
             (false, None) => ("none".to_owned(), ""),
         };
         let f_remark = match self.nominal_f_number {
-            Some(nominal) => format!("by the real marginal ray; f/{nominal} in its name"),
-            None => "by the real marginal ray".to_owned(),
+            Some(nominal) => format!("from the real marginal ray; f/{nominal} in the lens's name"),
+            None => "from the real marginal ray".to_owned(),
         };
-        let rows = [
-            ("focal length", mm(Some(self.efl_mm)), ""),
-            ("f-number", f_number, &f_remark),
+        let efl_remark = self.efl_x_mm.map_or("", |_| "in the y-z section (vertical)");
+        let mut rows = vec![("focal length", mm(Some(self.efl_mm)), efl_remark)];
+        if self.efl_x_mm.is_some() {
+            rows.push(("  across", mm(self.efl_x_mm), "in the x-z section (horizontal)"));
+        }
+        rows.extend([
+            ("f-number", f_number, f_remark.as_str()),
             ("T-number", t_number, &self.losses),
-            ("back focal length", mm(Some(self.bfl_mm)), "from the last vertex"),
-            ("front focal length", mm(Some(self.ffl_mm)), "from the first vertex"),
+            ("largest field", max_field, &limit),
+            ("stop", stop, stop_remark),
+            ("entrance pupil", mm(self.entrance_pupil_z_mm), "from the first vertex"),
+            ("  diameter", mm(self.entrance_pupil_diameter_mm), "from the real marginal ray"),
+            ("exit pupil", mm(self.exit_pupil_z_mm), "from the first vertex"),
+            ("  diameter", mm(self.exit_pupil_diameter_mm), "from the real marginal ray"),
+            ("front focal length", mm(Some(self.ffl_mm)), "front focal point from the first vertex"),
+            ("back focal length", mm(Some(self.bfl_mm)), "rear focal point from the last vertex"),
             ("front principal plane", mm(Some(self.front_principal_z_mm)), "from the first vertex"),
             ("rear principal plane", mm(Some(self.rear_principal_z_mm)), "from the first vertex"),
             ("front nodal point", mm(Some(self.front_nodal_z_mm)), "from the first vertex"),
             ("rear nodal point", mm(Some(self.rear_nodal_z_mm)), "from the first vertex"),
-            ("entrance pupil", mm(self.entrance_pupil_z_mm), "from the first vertex"),
-            ("  its diameter", mm(self.entrance_pupil_diameter_mm), "by the real marginal ray"),
-            ("exit pupil", mm(self.exit_pupil_z_mm), "from the first vertex"),
-            ("  its diameter", mm(self.exit_pupil_diameter_mm), "by the real marginal ray"),
-            ("stop", stop, stop_remark),
-            ("length", mm(Some(self.vertex_length_mm)), "first vertex to last"),
-            ("image plane", mm(Some(self.image_distance_mm)), "from the last vertex"),
+            ("length", mm(Some(self.vertex_length_mm)), "first vertex to last vertex"),
             ("total track", mm(Some(self.total_track_mm)), "first vertex to image plane"),
-            ("focused at", mm(Some(self.focus_distance_mm)), "from the first vertex"),
+            ("image plane", mm(Some(self.image_distance_mm)), "from the last vertex"),
+            ("focused at", mm(Some(self.focus_distance_mm)), "object distance from the first vertex"),
             ("  magnification", format!("{:.6}", self.magnification), ""),
-            ("  paraxial image", mm(self.paraxial_focus_shift_mm), "behind the image plane"),
-            ("  smallest spot", mm(self.rms_focus_shift_mm), "behind it, root mean square, real rays"),
+            ("  paraxial image", mm(self.paraxial_focus_shift_mm), "from the image plane"),
+            ("  smallest spot", mm(self.rms_focus_shift_mm), "from the image plane; RMS radius, real rays"),
             ("  best contrast", mm(self.contrast_focus_shift_mm), &contrast),
-            ("largest field", max_field, &limit),
-        ];
-        if let Some(efl_x_mm) = self.efl_x_mm {
-            writeln!(f, "{:<22} {:>16}   in the x-z section", "focal length", mm(Some(efl_x_mm)))?;
-        }
+        ]);
         for (name, value, remark) in rows {
+            // A remark says how a figure is counted; where there is none, it only misleads. That of T is on the losses.
+            let remark = if value == UNKNOWN && name != "T-number" { "" } else { remark };
             let line = format!("{name:<22} {value:>16}   {remark}");
             writeln!(f, "{}", line.trim_end())?;
         }
@@ -104,7 +113,8 @@ impl LensReport {
         if self.chief_ray_exit_angle_deg.is_empty() {
             return Ok(());
         }
-        writeln!(f, "{:>10} {:>16} {:>16}   chief ray", "field", "exit angle", "image height")?;
+        writeln!(f, "chief rays")?;
+        writeln!(f, "{:>10} {:>16} {:>16}", "field", "exit angle", "image height")?;
         for ray in &self.chief_ray_exit_angle_deg {
             writeln!(f, "{:>8.2} ° {:>14.3} ° {:>13.4} mm", ray.field_deg, ray.angle_deg, ray.image_height_mm)?;
         }
@@ -117,13 +127,15 @@ impl LensReport {
         let words = |m: &MountReport| format!("{} {}{}", m.name, m.flange_mm, dips(m).unwrap_or_default());
         let mounts: Vec<String> = self.mounts.iter().map(words).collect();
         if !mounts.is_empty() {
-            writeln!(f, "fits the mounts (flange to image in mm): {}", mounts.join(", "))?;
+            writeln!(f, "fits these mounts (flange focal distance in mm): {}", mounts.join(", "))?;
             writeln!(f)?;
         }
         Ok(())
     }
 
     fn prescription(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let nm = self.wavelength_nm.map_or(String::new(), |nm| format!("; index at {nm} nm"));
+        writeln!(f, "surfaces (lengths in mm{nm})")?;
         let kinds = self.surfaces.iter().map(|s| s.kind.len()).max().unwrap_or(0).max(7);
         writeln!(
             f,
@@ -134,9 +146,13 @@ impl LensReport {
             let radius = s.radius_mm.map_or("flat".to_owned(), |r| format!("{r:.4}"));
             let semi_diameter = s.semi_diameter_mm.map_or("-".to_owned(), |d| format!("{d:.4}"));
             let medium = if s.mirror { "mirror" } else { &s.medium };
+            let across = match s.radius_x_mm {
+                Some(radius_x_mm) => format!(" (radius in the x-z section: {radius_x_mm:.4})"),
+                None => String::new(),
+            };
             writeln!(
                 f,
-                "{:>3}  {:<kinds$} {radius:>13} {:>11.4} {semi_diameter:>13} {:>10.6}  {medium}",
+                "{:>3}  {:<kinds$} {radius:>13} {:>11.4} {semi_diameter:>13} {:>10.6}  {medium}{across}",
                 s.number, s.kind, s.thickness_mm, s.index
             )?;
         }

@@ -41,7 +41,7 @@ pub enum SensitivityError {
         wavelength_nm: f64,
     },
     /// The layer does not see the reference light at all.
-    #[error("the layer does not see the reference illuminant")]
+    #[error("the layer is not sensitive to the reference illuminant")]
     Blind,
 }
 

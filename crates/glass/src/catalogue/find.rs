@@ -79,7 +79,7 @@ impl FindError {
                 [] => "a glass of a catalogue, such as SCHOTT/N-BK7, or a file of your own, such as `my-glass.yaml`"
                     .to_owned(),
                 [one] => format!("did you mean `{}`?", one.full_name),
-                [first, others @ ..] => format!("did you mean `{}`? Near it: {}", first.full_name, list(others)),
+                [first, others @ ..] => format!("did you mean `{}`? Similar: {}", first.full_name, list(others)),
             },
             Self::Ambiguous { name, candidates } => {
                 let names: Vec<String> = candidates.iter().map(ToString::to_string).collect();

@@ -19,7 +19,7 @@ use crate::Lens;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum FocusError {
     /// The object is at or inside of the front focal point: there is no real image.
-    #[error("nothing nearer than {nearest_mm:.1} mm in front of the first surface has a real image")]
+    #[error("an object nearer than {nearest_mm:.1} mm to the first surface has no real image")]
     TooNear {
         /// The front focal point, mm in front of the first vertex.
         nearest_mm: f64,

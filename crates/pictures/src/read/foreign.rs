@@ -46,7 +46,7 @@ fn read(found: &Found, name: &str, said: Option<Encoding>, pixels: bool) -> Resu
             Trouble::file(format!("`.{ending}` files are read by OpenImageIO only")).hint(library::WITHOUT)
         } else {
             Trouble::file("this is not an OpenEXR, PNG, JPEG, TIFF or Radiance HDR file")
-                .hint("the content counts, not the file extension: save it as one of these")
+                .hint("save it in one of these formats; changing only the file extension is not enough")
         });
     };
     if ending.is_empty() {

@@ -24,18 +24,18 @@ const INTERPOLATION: &str = "interpolation";
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) struct Section {
-    /// How many frames.
+    /// Number of frames.
     frames: Whole<1, MAX_FRAMES>,
-    /// Number of the first one; 1 if left out.
+    /// Number of the first frame; 1 if left out.
     first: Option<Whole<0, LAST_FIRST>>,
-    /// Frames a second; 24 if left out.
+    /// Frames per second; 24 if left out.
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e6))]
     rate: Option<f64>,
-    /// `each`: every frame has noise and grain of its own; `fixed`: all have the same.
+    /// `each`: every frame has its own noise and grain; `fixed`: all have the same.
     #[serde(default)]
     seed: FrameSeed,
-    /// Paths as of `--set`, each with its keyframes: numbers of frames with values, and beside them `interpolation`, one
-    /// of `linear`, `smooth`, `hold`, `logarithmic`, `reciprocal`.
+    /// Paths as for `--set`, each with its keyframes: frame numbers with values, and optionally `interpolation`: `linear`,
+    /// `smooth`, `hold`, `logarithmic` or `reciprocal`.
     animate: Option<Part<BTreeMap<String, BTreeMap<String, StageNode>>>>,
 }
 

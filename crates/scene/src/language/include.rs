@@ -182,7 +182,8 @@ fn find(name: &str, item: &Node) -> Result<Found, Fault> {
     if let Ok(name) = crate::bundled::scene_file(name) {
         return Ok(Found::Bundled(name));
     }
-    let fault = item.fault(format!("`{name}`: no such file")).path(INCLUDE);
+    let missing = if crate::advice::is_file_name(name) { "no such file" } else { "no scene or file of this name" };
+    let fault = item.fault(format!("`{name}`: {missing}")).path(INCLUDE);
     Err(fault.hint(match near(name, item) {
         Some(near) => format!("did you mean `{near}`?"),
         None => "a scene file, relative to the file that includes it, or the name of a bundled scene".to_owned(),
@@ -277,7 +278,7 @@ mod tests {
         let mut bomb: Vec<(&str, &str)> = bomb.iter().map(|(n, t)| (n.as_str(), t.as_str())).collect();
         bomb.push(("f12.yaml", "x: 1\n"));
         for (files, said) in [
-            (vec![("s.yaml", "a: 1\ninclude: [b, 3]\n"), ("basis.yaml", "x: 1")], "/s.yaml:2:11: `b`: no such file"),
+            (vec![("s.yaml", "a: 1\ninclude: [b, 3]\n"), ("basis.yaml", "x: 1")], "/s.yaml:2:11: `b`: no scene or file of this name"),
             (vec![("s.yaml", "include: basi.yaml"), ("basis.yaml", "x: 1")], "did you mean `basis.yaml`?"),
             (vec![("s.yaml", "include: {a: 1}")], "/s.yaml:1:10: an include names a file"),
             (vec![("s.yaml", "include: s.yaml")], "`s.yaml` includes itself (the chain is s.yaml -> s.yaml)"),
