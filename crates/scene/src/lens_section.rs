@@ -42,6 +42,9 @@ pub(crate) struct LensSection {
     /// lies there on the axis is as sharp as it gets: its contrast is highest, in the light and at the aperture of the
     /// scene. Or a map with what to focus by.
     focus: Option<Part<FocusForm>>,
+    /// By how much it squeezes the picture across, 0.1 to 10, for the shape of the pixels in the files; as the lens file says if absent.
+    #[schemars(range(min = 0.1, max = 10))]
+    squeeze: Option<f64>,
     /// Groups out of place: misalignment. None if absent.
     #[serde(default)]
     adjust: Vec<Part<AdjustParams>>,
@@ -285,6 +288,7 @@ fn as_built(
         lens = lens.with_coating(coating);
     }
     lens.absorption = section.absorption.unwrap_or(lens.absorption);
+    lens.squeeze = section.squeeze.unwrap_or(lens.squeeze);
     lens
 }
 

@@ -5,7 +5,9 @@ use crate::metering::{METER, Meter, Metering, SpotParams, overruled, recorded_ti
 use crate::view::{PaperParams, Picture, ScanParams, View, WhiteParams, seen};
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::frame::{DisplayPicture, ExposureFrame, FrameSize};
+use spectra_core::frame::{
+    Beside, DisplayPicture, ExposureChannel, ExposureFrame, Finished, FrameSize, ImageState, Wanted,
+};
 use spectra_core::math::pow;
 use spectra_core::names;
 use spectra_core::params::{Fault, Faults, Params, Positive, Time};
@@ -16,6 +18,7 @@ use spectra_core::stage::Film;
 use spectra_film::display::channel;
 use spectra_film::emulsion::Emulsion;
 use spectra_film::optics::Optics;
+use spectra_film::positive::densities;
 use spectra_film::print::{Print, metered_exposure_lx_s};
 use spectra_film::push::pushed;
 use spectra_film::stock::{MeterResponse, Process, Stock};
@@ -94,7 +97,7 @@ pub struct StockParams {
     /// The light by which film and prints are viewed: the name of a light or a file; D55 if left out.
     pub light: Option<String>,
     /// What `view: scan` gives: a `picture` to look at, or for grading and measuring the densities, `log` (on the scale of
-    /// Cineon files) or `density` (a quarter of it); write those with 16 bits. `picture` if left out.
+    /// Cineon files), `adx` (on that of ADX16) or `density` (a quarter of it); write those with 16 bits. `picture` if left out.
     pub scan: Option<ScanParams>,
     /// What is shown as white: `film`, the clear film or print, or `lamp`, the bare light of a print on film, of a
     /// projection or of three strips, which shows the base as the gray or tint that it is; `film` if left out.
@@ -132,6 +135,8 @@ pub struct StockFilm {
     effects: Effects,
     /// Of the lens between film and picture, cycles/mm.
     mtf50: Option<f64>,
+    /// What it ends in is no picture but a scale of densities.
+    is_data: bool,
     picture: Picture,
     words: String,
 }
@@ -179,6 +184,7 @@ impl StockFilm {
             meter,
             effects,
             mtf50: mtf50(&p),
+            is_data: p.scan.is_some_and(|scan| scan != ScanParams::Picture),
             picture,
             words,
         })
@@ -227,23 +233,46 @@ impl StockFilm {
     /// # Errors
     /// A text that says which channel is missing.
     pub fn developed(&self, exposure: &ExposureFrame) -> Result<Vec<Vec<f32>>, String> {
+        self.planes(exposure, false).map(|planes| planes.amounts)
+    }
+
+    /// The developed film, and where it is `kept` what its layers were exposed to, as layers of a file.
+    fn planes(&self, exposure: &ExposureFrame, kept: bool) -> Result<Planes, String> {
         let factor = self.meter.factor(exposure);
         let time_s = self.exposure_time_s * factor;
         let effect = self.stock.reciprocity.as_ref().map_or(1.0, |r| r.effect(time_s));
         let raster = self.effects.raster(exposure.size)?;
-        let exposed = self.stock.layers.iter().enumerate().map(|(i, layer)| {
+        let mut exposed = Vec::new();
+        let spread = self.stock.layers.iter().enumerate().map(|(i, layer)| {
             let mut plane = channel(exposure, &layer.name).map_err(|error| error.to_string())?.values.clone();
             self.effects.spread(i, &mut plane, &raster)?;
+            if kept {
+                let got = plane.iter().map(|v| *v * factor as f32).collect();
+                exposed.push(layer_of("exposure", &layer.name, "lx s", got));
+            }
             Ok(plane)
         });
-        let mut planes = exposed.collect::<Result<Vec<_>, String>>()?;
-        self.emulsion.develop_all(&mut planes, factor * effect);
-        for (i, plane) in planes.iter_mut().enumerate() {
+        let mut amounts = spread.collect::<Result<Vec<_>, String>>()?;
+        self.emulsion.develop_all(&mut amounts, factor * effect);
+        for (i, plane) in amounts.iter_mut().enumerate() {
             self.effects.edges(i, plane, &self.emulsion, &raster);
             self.effects.grain(i, plane, self.emulsion.range(i).0, &raster)?;
         }
-        Ok(planes)
+        Ok(Planes { amounts, exposed })
     }
+}
+
+/// A developed film.
+struct Planes {
+    /// A plane of amounts a layer.
+    amounts: Vec<Vec<f32>>,
+    /// What the layers were exposed to, if it was kept.
+    exposed: Vec<ExposureChannel>,
+}
+
+/// A layer of a file.
+fn layer_of(group: &str, layer: &str, unit: &str, values: Vec<f32>) -> ExposureChannel {
+    ExposureChannel { name: format!("{group}.{layer}"), unit: unit.to_owned(), values }
 }
 
 /// The emulsion, and the name of its development.
@@ -322,20 +351,43 @@ impl Film for StockFilm {
     }
 
     fn develop(&self, exposure: &ExposureFrame) -> Result<DisplayPicture, String> {
-        let mut planes = self.developed(exposure)?;
+        self.finish(exposure, Wanted::default()).map(|finished| finished.shown)
+    }
+
+    fn finish(&self, exposure: &ExposureFrame, wanted: Wanted) -> Result<Finished, String> {
+        let Planes { mut amounts, exposed } = self.planes(exposure, wanted.layers)?;
+        let mut layers = exposed;
+        if wanted.layers {
+            let planes: Vec<&[f32]> = amounts.iter().map(Vec::as_slice).collect();
+            let density = densities(&self.stock, &self.emulsion, &planes);
+            let named = self.stock.layers.iter().zip(density);
+            layers.extend(named.map(|(layer, values)| layer_of("density", &layer.name, "", values)));
+        }
         if let Some(mtf50) = self.mtf50 {
             let lens = Optics::new(mtf50, pixel_mm(&exposure.size));
-            planes.iter_mut().for_each(|plane| lens.apply(plane, exposure.size.width_px as usize));
+            amounts.iter_mut().for_each(|plane| lens.apply(plane, exposure.size.width_px as usize));
         }
-        let planes: Vec<&[f32]> = planes.iter().map(Vec::as_slice).collect();
-        let rgb = match (&self.picture, &planes[..]) {
-            (Picture::Paper(print), [silver]) => print.pictures(silver)?.into_iter().map(|v| [v; 3]).collect(),
-            (Picture::Positive(positive), planes) => positive.picture(planes),
+        let planes: Vec<&[f32]> = amounts.iter().map(Vec::as_slice).collect();
+        let (shown, open) = match (&self.picture, &planes[..]) {
+            // Paper is a gray between its own black and white: any screen has it.
+            (Picture::Paper(print), [silver]) => (print.pictures(silver)?.into_iter().map(|v| [v; 3]).collect(), None),
+            (Picture::Positive(positive), planes) => {
+                (positive.picture(planes), wanted.open.then(|| positive.open_picture(planes)))
+            }
             // `build` makes paper prints of one layer only.
             (Picture::Paper(_), _) => return Err(format!("{} is not a film with one layer", self.stock.name)),
         };
         let size = exposure.size;
-        Ok(DisplayPicture { width_px: size.width_px, height_px: size.height_px, rgb })
+        let picture = |rgb| DisplayPicture { width_px: size.width_px, height_px: size.height_px, rgb };
+        Ok(Finished { shown: picture(shown), beside: Beside { open: open.map(picture), layers, white: None } })
+    }
+
+    fn image_state(&self) -> ImageState {
+        if self.is_data { ImageState::Data } else { ImageState::DisplayReferred }
+    }
+
+    fn has_layers(&self) -> bool {
+        true
     }
 
     fn set_frame(&mut self, frame: u64) {
