@@ -246,7 +246,14 @@ fn what_cannot_be_focused_by_contrast_is_said() {
     let asked = format!("lens={{file: {}, focus: {{distance: 2 m, by: contrast}}}}", file.display());
     let faults = load("biotar-color.yaml", &[&asked, width]).err().expect("no light");
     assert!(faults.contains("no light"), "{faults}");
-    // An anamorphic lens near by: no plane is sharp in both sections.
-    let near = load("biotar-color.yaml", &["lens={file: schneider-anamorphic-60, focus: 1.5 m}"]).expect("a scene");
+    // An anamorphic lens near by that is moved as a whole: no plane is sharp in both sections.
+    let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/lenses/schneider-anamorphic-60.yaml"))
+        .expect("bundled");
+    std::fs::write(&file, text.split("focus:\n").next().expect("a lens")).expect("a folder");
+    let whole = format!("lens={{file: {}, focus: 1.5 m}}", file.display());
+    let near = load("biotar-color.yaml", &[&whole]).expect("a scene");
     assert!(near.warnings.iter().any(|w| w.0.message.contains("mm apart")), "{:?}", near.warnings);
+    // Its front follows the section across: both are sharp.
+    let near = load("biotar-color.yaml", &["lens={file: schneider-anamorphic-60, focus: 1.5 m}"]).expect("a scene");
+    assert!(!near.warnings.iter().any(|w| w.0.message.contains("mm apart")), "{:?}", near.warnings);
 }

@@ -4,7 +4,7 @@ use glam::DVec3;
 use spectra_core::math::j0;
 use spectra_core::{Isa, RayBatch};
 use spectra_lens::{
-    Beam, Criterion, FocusError, FocusSearch, Indices, Lens, Misalignment, ObjectPoint, Tracer, Travel,
+    Beam, Criterion, FocusError, FocusSearch, Indices, Lens, Misalignment, ObjectPoint, Section, Tracer, Travel,
 };
 use spectra_plugins as _;
 use spectra_scene::FileResources;
@@ -101,12 +101,40 @@ fn groups_follow_their_tables() {
     assert!(matches!(far.focused_at(500.0), Err(FocusError::Collision { surface: 3, .. })));
 }
 
+/// A group that follows the section across: both sections stay as far apart as they are at infinity, and the lens that moves as a
+/// whole pulls them apart by f^2 / distance, whose f differ by the squeeze: by 60.5^2 / 1500 - 31.5^2 / 1500 = 1.8 mm.
+#[test]
+fn both_sections_of_an_anamorphic_lens_are_focused() {
+    let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/lenses/schneider-anamorphic-60.yaml"));
+    let text = text.expect("bundled");
+    let whole = written(text.split("focus:\n").next().expect("a lens")).expect("good");
+    let both = written(&text).expect("good");
+    assert!(both.squeeze == 1.9 && both.focus_laws.len() == 1 && whole.focus_laws.is_empty());
+    let apart = |lens: &Lens, object_mm: f64| {
+        let [x, y] = [Section::X, Section::Y];
+        let gap = |section| lens.paraxial_image_gap_in_mm(section, object_mm, lens.reference_nm);
+        (gap(x) - gap(y), gap(y) - lens.image_gap_mm())
+    };
+    let far = apart(&both, f64::INFINITY);
+    for object_mm in [700.0, 1500.0, 5000.0, 1e5] {
+        let near = both.clone().focused_at(object_mm).expect("focused");
+        let found = apart(&near, object_mm);
+        assert!((found.0 - far.0).abs() < 1e-6 && (found.1 - far.1).abs() < 1e-6, "{object_mm}: {found:?} {far:?}");
+        // The front travels a way that a mount has.
+        let travel = near.elements[2].thickness_mm - both.elements[2].thickness_mm;
+        assert!(travel.abs() < 30.0, "{object_mm}: {travel}");
+    }
+    let split = apart(&whole.clone().focused_at(1500.0).expect("focused"), 1500.0).0 - far.0;
+    assert!((split.abs() / 1.8 - 1.0).abs() < 0.25, "{split}");
+}
+
 #[test]
 fn faults_of_laws_say_what_to_do() {
     for (laws, word) in [
         ("focus: [{group: raer, factor: 1}]\n", "did you mean `rear`"),
         ("focus: [{group: rear}]\n", "either by a `factor` or by a `table`"),
         ("focus: [{group: rear, factor: 0}]\n", "does not move"),
+        ("focus: [{group: rear, factor: 1, section: x}]\n", "follows a section"),
         ("focus: [{group: rear, table: [[500, 1], [inf, 0]]}]\n", "the farthest first"),
         ("focus: [{group: rear, factor: 1}, {group: rear, factor: 2}]\n", "two laws"),
         ("coating: bear\n", "unknown coating"),

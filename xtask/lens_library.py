@@ -71,12 +71,14 @@ LENSES = {
         remark="The patent's unit focal length times 16. The filter before the stop is plane; the transcription writes radii of 9999, which are kept.",
         makers=["OHARA", "HOYA"], era="1978"),
     "schneider-anamorphic-60": dict(
-        csv="schneider-anamorphic", name="Schneider anamorphic 60 mm, squeeze 1.9", year=2001, maker="Schneider", patent="US 6310731",
+        csv="schneider-anamorphic", squeeze=1.9, groups=["{name: front, surfaces: [1, 3]}"], focus=["{group: front, section: x}"],
+        name="Schneider anamorphic 60 mm, squeeze 1.9", year=2001, maker="Schneider", patent="US 6310731",
         source=LENTIL,
         remark="Not compared with the print of the patent; the transcription holds together: across, the cylinders in front are afocal "
         "to 1.3e-5 per mm with a magnification of 0.5195, the images of both sections lie within 0.025 mm of each other, and with "
         "the sign of any of the five radii changed neither is so. The plane before the biconvex cylinder carries no power. "
-        "Nothing is said of the f-number: it is what the stated stop gives.",
+        "Nothing is said of the f-number: it is what the stated stop gives. Nor of how it is focused: here the whole lens moves, and the "
+        "negative cylinders in front by themselves so far that both sections stay together.",
         makers=["SCHOTT", "OHARA", "HIKARI"], era="2001"),
     "zeiss-biotar-50-f1.4": None,  # kept as it is, with the remarks of its own
     "helios-44-58-f2": dict(
@@ -309,6 +311,8 @@ def write(name, entry, table, program):
             lines.append(f"{key}: {entry[key]}")
     if nominal_f_number(entry["name"]):
         lines.append(f"f-number: {nominal_f_number(entry['name'])}")
+    if entry.get("squeeze"):
+        lines.append(f"squeeze: {number(entry['squeeze'])}")
     lines += ["reference-line: d", f"coating: {{kind: {coating(entry.get('year'))}, assumed: true}}", f"source: {entry['source']}"]
     body = []
     for i, s in enumerate(surfaces):
@@ -344,6 +348,9 @@ def write(name, entry, table, program):
         remark += " No catalogue glass of the time has the stated nd and Vd: they stand alone."
     lines += text_block("remark", remark.strip())
     lines.append("surfaces:")
+    for key in ("groups", "focus"):
+        if entry.get(key):
+            body += [f"{key}:"] + [f"  - {item}" for item in entry[key]]
     (ROOT / "lenses" / f"{name}.yaml").write_text("\n".join(lines + body) + "\n", encoding="utf-8")
     print(f"{name}: EFL {efl:.6f} BFL {bfl:.6f}; {len(named)} glasses named, by figures: {plain}")
 

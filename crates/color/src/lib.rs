@@ -17,6 +17,7 @@
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
+mod aces;
 mod adaptation;
 mod cct;
 mod colorimetry;
@@ -29,6 +30,7 @@ pub mod rgb;
 mod round_trip;
 mod spectral_color;
 
+pub use aces::{aces_cct, from_aces_cct};
 pub use adaptation::Adaptation;
 pub use cct::{Cct, cct, uv_1960};
 pub use colorimetry::{chromaticity, lab, xyz_of_lab, xyz_of_light, xyz_of_reflectance, xyz_of_transmittance};

@@ -102,7 +102,16 @@ impl RgbSpace {
         })
     }
 
-    /// All spaces known here.
+    /// Display P3: primaries of the digital cinema (SMPTE RP 431-2) with the white D65 and the curve of sRGB (Apple, 2017).
+    pub fn display_p3() -> &'static Self {
+        static ONE: OnceLock<RgbSpace> = OnceLock::new();
+        ONE.get_or_init(|| {
+            let primaries = [[0.680, 0.320], [0.265, 0.690], [0.150, 0.060]];
+            Self::new("Display P3", primaries, [0.3127, 0.3290], Transfer::Srgb)
+        })
+    }
+
+    /// The spaces of a chromaticity diagram.
     #[must_use]
     pub fn all() -> [&'static Self; 3] {
         [Self::srgb(), Self::rec2020(), Self::aces_cg()]
@@ -191,6 +200,13 @@ mod tests {
             [-0.005_574_649_5, 0.004_060_733_5, 1.010_339_100_3],
         ];
         close(&RgbSpace::aces_cg().xyz_from_rgb, &ap1, 1e-10);
+        // CSS Color Module Level 4 (W3C), Display P3.
+        let p3 = [
+            [0.486_570_948_6, 0.265_667_693_2, 0.198_217_285_2],
+            [0.228_974_564_1, 0.691_738_521_8, 0.079_286_914_1],
+            [0.0, 0.045_113_381_9, 1.043_944_368_9],
+        ];
+        close(&RgbSpace::display_p3().xyz_from_rgb, &p3, 1e-9);
     }
 
     /// The sRGB matrix on the 1931 functions at 575 nm, computed independently.

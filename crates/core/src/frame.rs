@@ -114,6 +114,69 @@ impl DisplayPicture {
     }
 }
 
+/// What the values of a picture stand for (ISO 22028-1 calls it the image state).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ImageState {
+    /// In proportion to the light of the scene.
+    SceneReferred,
+    /// The light that a print, a projection or a screen sends.
+    #[default]
+    DisplayReferred,
+    /// No light: densities on a scale, which no program should take for a color.
+    Data,
+}
+
+impl ImageState {
+    /// In words, for the header of a file.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::SceneReferred => "scene-referred",
+            Self::DisplayReferred => "display-referred",
+            Self::Data => "data",
+        }
+    }
+}
+
+/// What is wanted of a picture beside what a screen shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Wanted {
+    /// The same in no gamut.
+    pub open: bool,
+    /// Exposure and density, layer by layer.
+    pub layers: bool,
+}
+
+/// A finished picture: what a screen shows, and what is known beside it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Finished {
+    /// For a screen.
+    pub shown: DisplayPicture,
+    /// Beside it.
+    pub beside: Beside,
+}
+
+/// What is known of a picture beside what a screen shows.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Beside {
+    /// The same picture, as far as it is known, brought into no gamut: values below 0 are colors that sRGB cannot have, values above 1
+    /// light beyond white. Of [`ImageState::Data`], the values of the scale themselves. `None` where it is not known, or not
+    /// wanted.
+    pub open: Option<DisplayPicture>,
+    /// Layers by their names (`exposure.red`, `density.red`), of the picture's size; none where they are not wanted, or unknown.
+    pub layers: Vec<ExposureChannel>,
+    /// What the value 1 stands for, such as `0.4 lx s`, where it stands for an amount of light.
+    pub white: Option<String>,
+}
+
+impl Finished {
+    /// Of which only what a screen shows is known.
+    #[must_use]
+    pub fn of(shown: DisplayPicture) -> Self {
+        Self { shown, beside: Beside::default() }
+    }
+}
+
 /// What a sensor's analog-to-digital converter delivers: one number per pixel, and what a raw converter needs to develop them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RawFrame {

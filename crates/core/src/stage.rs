@@ -7,7 +7,7 @@
 
 use crate::RayBatch;
 use crate::cover::CoverStack;
-use crate::frame::{DisplayPicture, ExposureFrame, FrameSize, RawFrame};
+use crate::frame::{DisplayPicture, ExposureFrame, Finished, FrameSize, ImageState, RawFrame, Wanted};
 use crate::isa::Isa;
 use crate::params::Faults;
 use crate::spectral::{Channel, SpectralPower, SystemResponse};
@@ -188,6 +188,16 @@ pub trait Response: Send + Sync {
     /// A picture of what these channels recorded, or `None` if there is none.
     fn display(&self, exposure: &ExposureFrame) -> Option<DisplayPicture>;
 
+    /// The same picture with what else is `wanted` of it, as far as it is known.
+    fn finish(&self, exposure: &ExposureFrame, _wanted: Wanted) -> Option<Finished> {
+        self.display(exposure).map(Finished::of)
+    }
+
+    /// What the values of its picture stand for.
+    fn image_state(&self) -> ImageState {
+        ImageState::SceneReferred
+    }
+
     /// Its analog-to-digital converter, if it has one.
     fn digitize(&self) -> Option<&dyn Digitize> {
         None
@@ -205,6 +215,14 @@ impl<R: Response + ?Sized> Response for Box<R> {
 
     fn display(&self, exposure: &ExposureFrame) -> Option<DisplayPicture> {
         (**self).display(exposure)
+    }
+
+    fn finish(&self, exposure: &ExposureFrame, wanted: Wanted) -> Option<Finished> {
+        (**self).finish(exposure, wanted)
+    }
+
+    fn image_state(&self) -> ImageState {
+        (**self).image_state()
     }
 
     fn digitize(&self) -> Option<&dyn Digitize> {
@@ -303,6 +321,24 @@ pub trait Film: Send + Sync {
     /// # Errors
     /// The name of the missing channel, in a sentence.
     fn develop(&self, exposure: &ExposureFrame) -> Result<DisplayPicture, String>;
+
+    /// The same picture with what else is `wanted` of it, as far as it is known.
+    ///
+    /// # Errors
+    /// As [`Film::develop`].
+    fn finish(&self, exposure: &ExposureFrame, _wanted: Wanted) -> Result<Finished, String> {
+        self.develop(exposure).map(Finished::of)
+    }
+
+    /// What the values of its picture stand for.
+    fn image_state(&self) -> ImageState {
+        ImageState::DisplayReferred
+    }
+
+    /// Whether [`Film::finish`] knows exposure and density of its layers.
+    fn has_layers(&self) -> bool {
+        false
+    }
 
     /// Sets the frame of an animation. Each frame has its own grain, which follows from the film's seed and the frame's number
     /// ([`crate::numbers::seed_of_frame`]), whichever frame was set before.

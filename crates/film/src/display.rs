@@ -8,8 +8,9 @@
 
 use crate::lookup::PIXELS_A_TASK;
 use rayon::prelude::*;
+use spectra_color::matrix::{Matrix, apply};
 use spectra_color::{Gamut, RgbSpace, into_gamut};
-use spectra_core::frame::{DisplayPicture, ExposureChannel, ExposureFrame, FrameSize};
+use spectra_core::frame::{Beside, DisplayPicture, ExposureChannel, ExposureFrame, Finished, FrameSize, Wanted};
 
 /// Finds the exposure that is shown as white, from the frame alone: the same frame, the same answer.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -79,6 +80,21 @@ pub fn channel<'a>(frame: &'a ExposureFrame, name: &str) -> Result<&'a ExposureC
 /// # Errors
 /// [`MissingChannel`].
 pub fn show_xyz(frame: &ExposureFrame, white: White, gamut: Gamut) -> Result<DisplayPicture, MissingChannel> {
+    finish_xyz(frame, white, gamut, None, Wanted::default()).map(|finished| finished.shown)
+}
+
+/// The same with what else is `wanted`; `adapted` brings XYZ under the light of the scene to D65 beforehand, and leaves Y of a
+/// gray as it is.
+///
+/// # Errors
+/// [`MissingChannel`].
+pub fn finish_xyz(
+    frame: &ExposureFrame,
+    white: White,
+    gamut: Gamut,
+    adapted: Option<&Matrix>,
+    wanted: Wanted,
+) -> Result<Finished, MissingChannel> {
     let [x, y, z] = [channel(frame, "X")?, channel(frame, "Y")?, channel(frame, "Z")?];
     let white = match white {
         White::Auto(auto) => auto.white(&y.values),
@@ -87,13 +103,21 @@ pub fn show_xyz(frame: &ExposureFrame, white: White, gamut: Gamut) -> Result<Dis
     // A frame without light is black whatever white is.
     let scale = white.map_or(0.0, |white| 1.0 / white);
     let srgb = RgbSpace::srgb();
-    let one = |((x, y), z): ((&f32, &f32), &f32)| {
+    let linear = |((x, y), z): ((&f32, &f32), &f32)| {
         let xyz = [x, y, z].map(|v| f64::from(*v) * scale);
-        into_gamut(srgb.from_xyz(xyz), srgb, gamut).map(|v| v as f32)
+        srgb.from_xyz(adapted.map_or(xyz, |matrix| apply(matrix, xyz)))
     };
-    let pixels = x.values.par_iter().zip(&y.values).zip(&z.values).with_min_len(PIXELS_A_TASK);
     let FrameSize { width_px, height_px, .. } = frame.size;
-    Ok(DisplayPicture { width_px, height_px, rgb: pixels.map(one).collect() })
+    let picture = |of: &(dyn Fn([f64; 3]) -> [f64; 3] + Sync)| {
+        let pixels = x.values.par_iter().zip(&y.values).zip(&z.values).with_min_len(PIXELS_A_TASK);
+        let rgb = pixels.map(|pixel| of(linear(pixel)).map(|v| v as f32)).collect();
+        DisplayPicture { width_px, height_px, rgb }
+    };
+    let shown = picture(&|rgb| into_gamut(rgb, srgb, gamut));
+    let open = wanted.open.then(|| picture(&|rgb| rgb));
+    let unit = &y.unit;
+    let white = white.map(|white| if unit.is_empty() { format!("{white}") } else { format!("{white} {unit}") });
+    Ok(Finished { shown, beside: Beside { open, layers: Vec::new(), white } })
 }
 
 #[cfg(test)]

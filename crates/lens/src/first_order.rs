@@ -178,7 +178,13 @@ impl Lens {
     /// `object_mm` in front of the first vertex (infinity allowed).
     #[must_use]
     pub fn paraxial_image_gap_mm(&self, object_mm: f64, wavelength_nm: f64) -> f64 {
-        let m = self.matrix(0..self.elements.len(), Section::Y, &|medium| self.index(medium, wavelength_nm));
+        self.paraxial_image_gap_in_mm(Section::Y, object_mm, wavelength_nm)
+    }
+
+    /// The same in one section of the lens.
+    #[must_use]
+    pub fn paraxial_image_gap_in_mm(&self, section: Section, object_mm: f64, wavelength_nm: f64) -> f64 {
+        let m = self.matrix(0..self.elements.len(), section, &|medium| self.index(medium, wavelength_nm));
         // A ray from the point with slope s: height object s at the first vertex.
         let (height, slope) =
             if object_mm.is_finite() { (m.a * object_mm + m.b, m.c * object_mm + m.d) } else { (m.a, m.c) };

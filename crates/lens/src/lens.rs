@@ -38,6 +38,8 @@ pub struct Lens {
     pub year: Option<i32>,
     /// The f-number in its name: full aperture, as makers round it.
     pub nominal_f_number: Option<f64>,
+    /// By how much it squeezes the picture across, as makers round it; 1 of any lens that is not anamorphic.
+    pub squeeze: f64,
     /// Patent and example, where known.
     pub patent: Option<String>,
     /// Maker, where known.
@@ -84,6 +86,7 @@ impl Lens {
             name: name.to_owned(),
             year: None,
             nominal_f_number: None,
+            squeeze: 1.0,
             patent: None,
             maker: None,
             source: None,

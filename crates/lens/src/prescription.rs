@@ -55,6 +55,10 @@ pub(crate) struct LensFile {
     /// F-number in its name, as makers round it: `f-number: f/1.4` in a scene then means full aperture, also where that is
     /// f/1.44. None if absent.
     f_number: Option<FNumber>,
+    /// Of an anamorphic lens: by how much it squeezes the picture across, 0.1 to 10, as makers round it. Pixels of its pictures are
+    /// so many times as wide, when they are looked at. 1 if absent.
+    #[schemars(range(min = 0.1, max = 10))]
+    squeeze: Option<f64>,
     /// Maker; not known if absent.
     maker: Option<String>,
     /// Patent and example; none if absent.
@@ -225,6 +229,7 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
         name: file.name,
         year: file.year,
         nominal_f_number: file.f_number.map(FNumber::number),
+        squeeze: file.squeeze.unwrap_or(1.0),
         patent: file.patent,
         maker: file.maker,
         source: file.source,
@@ -371,6 +376,17 @@ struct FocusParams {
     /// Distances of the object (mm if bare, or inf), falling, two or more, each with the shift toward the object (mm if
     /// bare). Or else `factor`.
     table: Option<Vec<(OrInfinity<Positive<Length>>, Length)>>,
+    /// `x`, of a lens with cylinders: as far as it takes to have the x-z section in focus, too, where the other groups, or the whole
+    /// lens, focus the y-z section. In place of both.
+    section: Option<Across>,
+}
+
+/// The section that a group follows.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+#[schemars(inline)]
+enum Across {
+    X,
 }
 
 fn focus_law(node: &StageNode, groups: &[Group]) -> Result<FocusLaw, Faults> {
@@ -380,6 +396,11 @@ fn focus_law(node: &StageNode, groups: &[Group]) -> Result<FocusLaw, Faults> {
         return Err(unknown_group(&params, "group", &p.group, groups).into());
     };
     let travel = match (p.factor, p.table) {
+        (None, None) if p.section.is_some() => GroupTravel::SectionX,
+        (Some(_), _) | (_, Some(_)) if p.section.is_some() => {
+            let fault = params.fault("section", "a group that follows a section has no travel of its own");
+            return Err(fault.hint("leave out `factor` and `table`").into());
+        }
         (Some(factor), None) if factor.is_finite() && factor != 0.0 => GroupTravel::Factor(factor),
         (Some(_), None) => {
             let fault = params.fault("factor", "a group of factor 0 does not move");
@@ -391,7 +412,7 @@ fn focus_law(node: &StageNode, groups: &[Group]) -> Result<FocusLaw, Faults> {
             GroupTravel::Table(FocusTable::new(&points).ok_or_else(|| fault().hint("such as [[inf, 0], [2000, 0.4]]"))?)
         }
         (None, None) | (Some(_), Some(_)) => {
-            let fault = params.fault_here("a group moves either by a `factor` or by a `table`");
+            let fault = params.fault_here("a group moves either by a `factor` or by a `table`, or follows a `section`");
             return Err(fault
                 .hint("{group: rear, factor: 0.6}, or {group: rear, table: [[inf, 0], [500, 1.9]]}")
                 .into());

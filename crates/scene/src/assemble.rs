@@ -305,7 +305,7 @@ fn all_stages(
     }
     faults.extend(behind);
     if let (Some(imager), Some(outputs)) = (&imager, &output) {
-        faults.extend(output::check(outputs, &**imager, params));
+        faults.extend(output::check(outputs, &**imager, films.as_deref().unwrap_or_default(), params));
     }
     if let (Some(imager), Some(films)) = (&imager, &films) {
         let misfit = films.iter().find_map(|film| film.film.check_frame(&imager.size()).err());

@@ -42,6 +42,10 @@ pub(crate) struct LensSection {
     /// at this distance on the axis has the highest contrast, in the light and at the aperture of the scene. To focus for
     /// something else, write a map.
     focus: Option<Part<FocusForm>>,
+    /// By how much the lens squeezes the picture across, 0.1 to 10, for the shape of the pixels in the files; if absent, as the lens file
+    /// says.
+    #[schemars(range(min = 0.1, max = 10))]
+    squeeze: Option<f64>,
     /// Misalignment: groups of the lens that are displaced or tilted. None if absent.
     #[serde(default)]
     adjust: Vec<Part<AdjustParams>>,
@@ -284,6 +288,7 @@ fn as_built(
         lens = lens.with_coating(coating);
     }
     lens.absorption = section.absorption.unwrap_or(lens.absorption);
+    lens.squeeze = section.squeeze.unwrap_or(lens.squeeze);
     lens
 }
 

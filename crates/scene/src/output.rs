@@ -1,10 +1,11 @@
 //! The `output` section: what a scene wants written. Each output is a stage of its own.
 
-use crate::{FileResources, Scene, Shot};
+use crate::{FileResources, Scene, SceneFilm, Shot};
+use spectra_core::frame::Wanted;
 use spectra_core::params::{Fault, Faults, Node, Params, Part, Value};
 use spectra_core::registry::{self, Context, StageOf};
 use spectra_core::sink::{Out, WriteFault};
-use spectra_core::stage::Imager;
+use spectra_core::stage::{Film, Imager};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -26,6 +27,19 @@ pub trait Output: Send + Sync {
     /// Why not, and what to write instead.
     fn check(&self, _imager: &dyn Imager) -> Result<(), [String; 2]> {
         Ok(())
+    }
+
+    /// The same of a film on the imager.
+    ///
+    /// # Errors
+    /// Why not, and what to write instead.
+    fn check_film(&self, _film: &dyn Film) -> Result<(), [String; 2]> {
+        Ok(())
+    }
+
+    /// What it needs of a picture beside what a screen shows.
+    fn wanted(&self) -> Wanted {
+        Wanted::default()
     }
 
     /// Writes a file; of films side by side, that of the film at a place.
@@ -87,13 +101,19 @@ pub(crate) fn read(
 }
 
 /// Faults of outputs that cannot be had of what the imager records, each at its place.
-pub(crate) fn check(outputs: &[Arc<dyn Output>], imager: &dyn Imager, params: &Params) -> Vec<Fault> {
+pub(crate) fn check(
+    outputs: &[Arc<dyn Output>],
+    imager: &dyn Imager,
+    films: &[SceneFilm],
+    params: &Params,
+) -> Vec<Fault> {
     let items = match params.get("output").map(|node| &node.value) {
         Some(Value::Seq(items)) => &items[..],
         _ => &[],
     };
     let fault = |output: &Arc<dyn Output>| {
-        let [text, hint] = output.check(imager).err()?;
+        let films = || films.iter().try_for_each(|film| output.check_film(&*film.film));
+        let [text, hint] = output.check(imager).and_then(|()| films()).err()?;
         let at = items.iter().position(|item| item.get("kind").unwrap_or(item).as_str() == Some(output.kind()));
         let key = at.map_or_else(|| "output".to_owned(), |at| format!("output[{at}]"));
         Some(params.fault(&key, text).hint(hint))
@@ -102,12 +122,15 @@ pub(crate) fn check(outputs: &[Arc<dyn Output>], imager: &dyn Imager, params: &P
 }
 
 impl Scene {
-    /// The output whose file has this ending (`.png`), and nothing before it but the picture's name: one of the scene's own, or
-    /// else what is registered.
+    /// The output whose file has this ending (`.png`), and nothing before it but the picture's name: one of the scene's own, a
+    /// finished picture of the scene's that has the ending, or else what is registered.
     #[must_use]
     pub fn output_of(&self, ending: &str) -> Option<Arc<dyn Output>> {
         let is_it = |output: &Arc<dyn Output>| output.ending() == ["", ending];
-        self.output.iter().find(|output| is_it(output)).cloned().or_else(|| {
+        // A finished picture in light, which stands beside the exposure under a name of its own.
+        let is_picture = |output: &&Arc<dyn Output>| output.holds() == Holds::Picture && output.ending()[1] == ending;
+        let own = self.output.iter().find(|output| is_it(output)).or_else(|| self.output.iter().find(is_picture));
+        own.cloned().or_else(|| {
             let resources = FileResources::beside(Path::new(""));
             let context = Context::new(&resources, self.grid);
             let kinds = registry::list().into_iter().filter(|listed| listed.stage == "output");

@@ -2,7 +2,7 @@
 
 use crate::{FilmTime, Scene, SceneFilm};
 use spectra_core::Isa;
-use spectra_core::frame::{DisplayPicture, ExposureFrame};
+use spectra_core::frame::{Beside, DisplayPicture, ExposureChannel, ExposureFrame, Finished, ImageState, Wanted};
 use spectra_core::sink::WriteFault;
 use std::sync::OnceLock;
 
@@ -21,7 +21,7 @@ pub struct Shot<'a> {
     pub attributes: &'a [(String, String)],
     /// Instruction set to compute figures with.
     pub isa: Isa,
-    pictures: OnceLock<Result<Vec<Developed>, String>>,
+    pictures: OnceLock<Result<(Vec<Developed>, Vec<Beside>), String>>,
 }
 
 impl<'a> Shot<'a> {
@@ -53,7 +53,7 @@ impl<'a> Shot<'a> {
     /// # Errors
     /// Why there is none, in words.
     pub fn pictures(&self) -> Result<&[Developed], String> {
-        self.pictures.get_or_init(|| self.developed()).as_deref().map_err(Clone::clone)
+        self.all().map(|(pictures, _)| &pictures[..])
     }
 
     /// The picture of the film at a place, or the only one.
@@ -61,31 +61,81 @@ impl<'a> Shot<'a> {
     /// # Errors
     /// [`WriteFault::Format`]: why there is none.
     pub fn picture(&self, film: usize) -> Result<&DisplayPicture, WriteFault> {
-        let none = || WriteFault::Format("there is no film at this place".to_owned());
-        self.pictures().map_err(WriteFault::Format)?.get(film).map(|(_, picture)| picture).ok_or_else(none)
+        let (pictures, _) = self.all().map_err(WriteFault::Format)?;
+        pictures.get(film).map(|(_, picture)| picture).ok_or_else(no_film)
     }
 
-    fn developed(&self) -> Result<Vec<Developed>, String> {
-        let Self { scene, exposure, .. } = self;
-        let of = |film: &SceneFilm| match &film.name {
-            // A film alone has the frame for itself.
-            None => Ok((None, film.film.develop(exposure)?)),
-            Some(name) => Ok((Some(name.clone()), film.film.develop(&film.exposure(exposure))?)),
-        };
-        if scene.films.is_empty() {
-            let shown = scene.imager.response().and_then(|own| own.display(exposure));
-            let picture = shown.ok_or_else(|| "this imager shows no picture without a film on it".to_owned())?;
-            return Ok(vec![(None, picture)]);
+    /// What is known of that picture beside it, as far as an output of the scene wants it ([`crate::Output::wanted`]).
+    ///
+    /// # Errors
+    /// [`WriteFault::Format`]: why there is none.
+    pub fn beside(&self, film: usize) -> Result<&Beside, WriteFault> {
+        let (_, beside) = self.all().map_err(WriteFault::Format)?;
+        beside.get(film).ok_or_else(no_film)
+    }
+
+    /// That picture in no gamut, as far as it is known: see [`Beside::open`].
+    ///
+    /// # Errors
+    /// [`WriteFault::Format`]: why there is none.
+    pub fn open(&self, film: usize) -> Result<&DisplayPicture, WriteFault> {
+        match &self.beside(film)?.open {
+            Some(open) => Ok(open),
+            None => self.picture(film),
         }
-        scene.films.iter().map(of).collect()
     }
 
-    /// Width over height of a pixel of the frame.
+    /// What the values of that picture stand for.
+    #[must_use]
+    pub fn image_state(&self, film: usize) -> ImageState {
+        match self.scene.films.get(film) {
+            Some(film) => film.film.image_state(),
+            None => self.scene.imager.response().map_or(ImageState::default(), |own| own.image_state()),
+        }
+    }
+
+    fn all(&self) -> Result<&(Vec<Developed>, Vec<Beside>), String> {
+        self.pictures.get_or_init(|| self.developed()).as_ref().map_err(Clone::clone)
+    }
+
+    fn developed(&self) -> Result<(Vec<Developed>, Vec<Beside>), String> {
+        let Self { scene, exposure, .. } = self;
+        let outputs = scene.output.iter().map(|output| output.wanted());
+        let wanted =
+            outputs.fold(Wanted::default(), |a, b| Wanted { open: a.open || b.open, layers: a.layers || b.layers });
+        if scene.films.is_empty() {
+            let shown = scene.imager.response().and_then(|own| own.finish(exposure, wanted));
+            let Finished { shown, mut beside } =
+                shown.ok_or_else(|| "this imager shows no picture without a film on it".to_owned())?;
+            if wanted.layers {
+                let layers = exposure.channels.iter().cloned();
+                beside.layers = layers.map(|c| ExposureChannel { name: format!("exposure.{}", c.name), ..c }).collect();
+            }
+            return Ok((vec![(None, shown)], vec![beside]));
+        }
+        let of = |film: &SceneFilm| -> Result<(Developed, Beside), String> {
+            let Finished { shown, beside } = match &film.name {
+                // A film alone has the frame for itself.
+                None => film.film.finish(exposure, wanted)?,
+                Some(_) => film.film.finish(&film.exposure(exposure), wanted)?,
+            };
+            Ok(((film.name.clone(), shown), beside))
+        };
+        let all = scene.films.iter().map(of).collect::<Result<Vec<_>, String>>()?;
+        Ok(all.into_iter().unzip())
+    }
+
+    /// Width over height of a pixel of the frame, as it is to be looked at: on the film times the squeeze of the lens.
     #[must_use]
     pub fn pixel_aspect(&self) -> f64 {
         let size = self.exposure.size;
         let aspect = size.width_mm / f64::from(size.width_px) / (size.height_mm / f64::from(size.height_px));
         // As near to square as whole numbers of pixels come.
-        if (aspect - 1.0).abs() < 0.005 { 1.0 } else { aspect }
+        let aspect = if (aspect - 1.0).abs() < 0.005 { 1.0 } else { aspect };
+        aspect * self.scene.lens.squeeze
     }
+}
+
+fn no_film() -> WriteFault {
+    WriteFault::Format("there is no film at this place".to_owned())
 }

@@ -35,6 +35,7 @@ impl Files {
             for (film, named) in films.into_iter().enumerate() {
                 let named = named.map_or(String::new(), |name| format!("-{name}"));
                 let [part, ending] = output.ending();
+                let part = if names.is_one() { "" } else { part };
                 let name = names.file(member, &format!("{named}{part}"), ending);
                 files.push(File { output: Arc::clone(&output), film, name });
             }

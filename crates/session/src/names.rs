@@ -47,6 +47,11 @@ impl Names {
         }
     }
 
+    /// Whether one picture is asked for by its name.
+    pub(crate) fn is_one(&self) -> bool {
+        self.only.is_some()
+    }
+
     /// The name of a file of a picture; `part` is what tells it from the picture's others.
     pub(crate) fn file(&self, member: &Member, part: &str, ending: &str) -> String {
         match &self.only {

@@ -8,12 +8,12 @@ use spectra_scene::Shot;
 /// elsewhere, or in half floats, which take half the space, at its own place. In words, where.
 pub(crate) fn keep(shot: &Shot<'_>, failed: &str, folder: &dyn Folder, elsewhere: &dyn Folder) -> String {
     let name = failed.rsplit_once('.').map_or(failed, |(stem, _)| stem);
-    let (frame, gains) = (shot.exposure, shot.gains());
+    let (frame, gains, squeeze) = (shot.exposure, shot.gains(), shot.scene.lens.squeeze);
     let there = format!("{name}.exr");
-    if elsewhere.file(&there, &mut |out| exr(out, frame, &gains, shot.attributes)).is_ok() {
+    if elsewhere.file(&there, &mut |out| exr(out, frame, &gains, squeeze, shot.attributes)).is_ok() {
         return format!("the light was saved in {}", elsewhere.shown(&there));
     }
-    if folder.file(&there, &mut |out| half_exr(out, frame, &gains, shot.attributes)).is_ok() {
+    if folder.file(&there, &mut |out| half_exr(out, frame, &gains, squeeze, shot.attributes)).is_ok() {
         return format!("the light was saved in {}, in half floats (three digits)", folder.shown(&there));
     }
     format!("the light could not be saved in {} either", elsewhere.shown(&there))

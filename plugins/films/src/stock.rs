@@ -1,11 +1,14 @@
 //! `film: stock`, film from a data file: exposed, developed, and printed, scanned or projected.
 
 use crate::effects::{Assumed, Effects, HalationSetting, OpticsSetting, mtf50, pixel_mm};
+use crate::frame::{FrameEffects, FrameParams, Laid};
 use crate::metering::{METER, Meter, Metering, SpotParams, overruled, recorded_time_s};
 use crate::view::{PaperParams, Picture, ScanParams, View, WhiteParams, seen};
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::frame::{DisplayPicture, ExposureFrame, FrameSize};
+use spectra_core::frame::{
+    Beside, DisplayPicture, ExposureChannel, ExposureFrame, Finished, FrameSize, ImageState, Wanted,
+};
 use spectra_core::math::pow;
 use spectra_core::names;
 use spectra_core::params::{Fault, Faults, Params, Positive, Time};
@@ -16,8 +19,10 @@ use spectra_core::stage::Film;
 use spectra_film::display::channel;
 use spectra_film::emulsion::Emulsion;
 use spectra_film::optics::Optics;
+use spectra_film::positive::{Reach, densities};
 use spectra_film::print::{Print, metered_exposure_lx_s};
 use spectra_film::push::pushed;
+use spectra_film::raster::Raster;
 use spectra_film::stock::{MeterResponse, Process, Stock};
 
 /// Film from a data file, developed, and printed, scanned or projected.
@@ -94,7 +99,7 @@ pub struct StockParams {
     /// The light by which film and prints are viewed: the name of a light or a file; D55 if left out.
     pub light: Option<String>,
     /// What `view: scan` gives: a `picture` to look at, or for grading and measuring the densities, `log` (on the scale of
-    /// Cineon files) or `density` (a quarter of it); write those with 16 bits. `picture` if left out.
+    /// Cineon files), `adx` (on that of ADX16) or `density` (a quarter of it); write those with 16 bits. `picture` if left out.
     pub scan: Option<ScanParams>,
     /// What is shown as white: `film`, the clear film or print, or `lamp`, the bare light of a print on film, of a
     /// projection or of three strips, which shows the base as the gray or tint that it is; `film` if left out.
@@ -113,7 +118,10 @@ pub struct StockParams {
     /// Whether effects count whose figures are assumed in the stock's file, rather than measured or stated: `on` or `off`.
     #[serde(default)]
     pub assumed: Assumed,
-    /// Seed of the grain, 0 or more.
+    /// What becomes of the film in camera and hands: `gate-weave`, `breathing`, `dust`, `scratches`, and a `border` with perforations
+    /// around the frame. None of it if left out.
+    pub frame: Option<FrameParams>,
+    /// Seed of the grain and of all that `frame` draws, 0 or more.
     #[serde(default)]
     pub grain_seed: u64,
 }
@@ -130,8 +138,13 @@ pub struct StockFilm {
     is_overruled: bool,
     meter: Meter,
     effects: Effects,
+    frame: Option<FrameEffects>,
+    /// What a mid gray subject leaves on it.
+    gray_lx_s: f64,
     /// Of the lens between film and picture, cycles/mm.
     mtf50: Option<f64>,
+    /// What it ends in is no picture but a scale of densities.
+    is_data: bool,
     picture: Picture,
     words: String,
 }
@@ -164,7 +177,9 @@ impl StockFilm {
         };
         let effects = faults.take(Effects::new(&p, params, &stock, &emulsion));
         let Some(effects) = faults.into_result(effects)? else { return Err(Faults::new()) };
-        let seen = seen(&p, params, context.resources, &stock, &emulsion, metered_exposure_lx_s(speed))?;
+        let gray_lx_s = metered_exposure_lx_s(speed);
+        let seen = seen(&p, params, context.resources, &stock, &emulsion, gray_lx_s)?;
+        let frame = p.frame.map(|frame| FrameEffects::new(frame, &stock.name, p.grain_seed));
         let own = channels.first().filter(|_| stock.meter == MeterResponse::Film).cloned();
         channels.extend(meter.channel(&context.grid, own.as_ref()));
         let (exposure_time_s, is_overruled) = recorded_time_s(p.exposure, p.metering);
@@ -178,7 +193,10 @@ impl StockFilm {
             is_overruled,
             meter,
             effects,
+            frame,
+            gray_lx_s,
             mtf50: mtf50(&p),
+            is_data: p.scan.is_some_and(|scan| scan != ScanParams::Picture),
             picture,
             words,
         })
@@ -227,23 +245,72 @@ impl StockFilm {
     /// # Errors
     /// A text that says which channel is missing.
     pub fn developed(&self, exposure: &ExposureFrame) -> Result<Vec<Vec<f32>>, String> {
+        self.planes(exposure, false).map(|planes| planes.amounts)
+    }
+
+    /// What a place without film is shown as.
+    fn hole(&self, reach: Reach) -> [f32; 3] {
+        match &self.picture {
+            Picture::Paper(print) => [print.metered.picture(0.0) as f32; 3],
+            Picture::Positive(positive) => positive.hole(reach).map(|v| v as f32),
+        }
+    }
+
+    /// The developed film, and where it is `kept` what its layers were exposed to, as layers of a file.
+    fn planes(&self, exposure: &ExposureFrame, kept: bool) -> Result<Planes, String> {
         let factor = self.meter.factor(exposure);
         let time_s = self.exposure_time_s * factor;
         let effect = self.stock.reciprocity.as_ref().map_or(1.0, |r| r.effect(time_s));
-        let raster = self.effects.raster(exposure.size)?;
-        let exposed = self.stock.layers.iter().enumerate().map(|(i, layer)| {
+        let frame_raster = self.effects.raster(exposure.size)?;
+        let laid = self.frame.as_ref().map(|frame| frame.laid(&frame_raster));
+        let raster = laid.as_ref().map_or(frame_raster, |laid| laid.raster);
+        let breathing = self.frame.as_ref().map_or(1.0, FrameEffects::exposure);
+        let mut exposed = Vec::new();
+        let spread = self.stock.layers.iter().enumerate().map(|(i, layer)| {
             let mut plane = channel(exposure, &layer.name).map_err(|error| error.to_string())?.values.clone();
-            self.effects.spread(i, &mut plane, &raster)?;
+            self.effects.spread(i, &mut plane, &frame_raster)?;
+            if let Some(laid) = &laid {
+                plane = laid.lay(plane, &frame_raster);
+                laid.print(&mut plane, (EDGE_PRINT * self.gray_lx_s / (factor * effect * breathing)) as f32);
+            }
+            if kept {
+                let got = plane.iter().map(|v| *v * (factor * breathing) as f32).collect();
+                exposed.push(layer_of("exposure", &layer.name, "lx s", got));
+            }
             Ok(plane)
         });
-        let mut planes = exposed.collect::<Result<Vec<_>, String>>()?;
-        self.emulsion.develop_all(&mut planes, factor * effect);
-        for (i, plane) in planes.iter_mut().enumerate() {
+        let mut amounts = spread.collect::<Result<Vec<_>, String>>()?;
+        self.emulsion.develop_all(&mut amounts, factor * effect * breathing);
+        for (i, plane) in amounts.iter_mut().enumerate() {
+            let range = self.emulsion.range(i);
             self.effects.edges(i, plane, &self.emulsion, &raster);
-            self.effects.grain(i, plane, self.emulsion.range(i).0, &raster)?;
+            self.effects.grain(i, plane, range.0, &raster)?;
+            if let (Some(frame), Some(laid)) = (&self.frame, &laid) {
+                let clear = self.emulsion.amount(i, f64::NEG_INFINITY);
+                frame.soil(plane, laid, range, clear, self.stock.process == Process::Reversal);
+            }
         }
-        Ok(planes)
+        Ok(Planes { amounts, exposed, raster, laid })
     }
+}
+
+/// Exposure of what stands on a film's edge, over that of a mid gray: dense on any film.
+const EDGE_PRINT: f64 = 30.0;
+
+/// A developed film.
+struct Planes {
+    /// A plane of amounts a layer.
+    amounts: Vec<Vec<f32>>,
+    /// What the layers were exposed to, if it was kept.
+    exposed: Vec<ExposureChannel>,
+    /// Where its pixels lie: with a border it is larger than the frame.
+    raster: Raster,
+    laid: Option<Laid>,
+}
+
+/// A layer of a file.
+fn layer_of(group: &str, layer: &str, unit: &str, values: Vec<f32>) -> ExposureChannel {
+    ExposureChannel { name: format!("{group}.{layer}"), unit: unit.to_owned(), values }
 }
 
 /// The emulsion, and the name of its development.
@@ -314,6 +381,14 @@ impl Film for StockFilm {
     }
 
     fn check_frame(&self, size: &FrameSize) -> Result<(), [String; 2]> {
+        if let Some(frame) = &self.frame {
+            let [across, down] = pixel_mm(size);
+            if (across / down - 1.0).abs() > 0.01 {
+                let text = format!("`frame` needs square pixels, not {across:.5} x {down:.5} mm");
+                return Err([text, "a resolution of the format's shape".to_owned()]);
+            }
+            frame.check(size)?;
+        }
         self.effects.check_frame(size)
     }
 
@@ -322,23 +397,54 @@ impl Film for StockFilm {
     }
 
     fn develop(&self, exposure: &ExposureFrame) -> Result<DisplayPicture, String> {
-        let mut planes = self.developed(exposure)?;
+        self.finish(exposure, Wanted::default()).map(|finished| finished.shown)
+    }
+
+    fn finish(&self, exposure: &ExposureFrame, wanted: Wanted) -> Result<Finished, String> {
+        let Planes { mut amounts, exposed, raster, laid } = self.planes(exposure, wanted.layers)?;
+        let mut layers = exposed;
+        if wanted.layers {
+            let planes: Vec<&[f32]> = amounts.iter().map(Vec::as_slice).collect();
+            let density = densities(&self.stock, &self.emulsion, &planes);
+            let named = self.stock.layers.iter().zip(density);
+            layers.extend(named.map(|(layer, values)| layer_of("density", &layer.name, "", values)));
+        }
         if let Some(mtf50) = self.mtf50 {
             let lens = Optics::new(mtf50, pixel_mm(&exposure.size));
-            planes.iter_mut().for_each(|plane| lens.apply(plane, exposure.size.width_px as usize));
+            amounts.iter_mut().for_each(|plane| lens.apply(plane, raster.width));
         }
-        let planes: Vec<&[f32]> = planes.iter().map(Vec::as_slice).collect();
-        let rgb = match (&self.picture, &planes[..]) {
-            (Picture::Paper(print), [silver]) => print.pictures(silver)?.into_iter().map(|v| [v; 3]).collect(),
-            (Picture::Positive(positive), planes) => positive.picture(planes),
+        let planes: Vec<&[f32]> = amounts.iter().map(Vec::as_slice).collect();
+        let (mut shown, mut open): (Vec<[f32; 3]>, _) = match (&self.picture, &planes[..]) {
+            // Paper is a gray between its own black and white: any screen has it.
+            (Picture::Paper(print), [silver]) => (print.pictures(silver)?.into_iter().map(|v| [v; 3]).collect(), None),
+            (Picture::Positive(positive), planes) => {
+                (positive.picture(planes), wanted.open.then(|| positive.open_picture(planes)))
+            }
             // `build` makes paper prints of one layer only.
             (Picture::Paper(_), _) => return Err(format!("{} is not a film with one layer", self.stock.name)),
         };
-        let size = exposure.size;
-        Ok(DisplayPicture { width_px: size.width_px, height_px: size.height_px, rgb })
+        if let Some(laid) = &laid {
+            laid.punch(&mut shown, self.hole(Reach::Screen));
+            if let Some(open) = &mut open {
+                laid.punch(open, self.hole(Reach::Open));
+            }
+        }
+        let picture = |rgb| DisplayPicture { width_px: raster.width as u32, height_px: raster.height as u32, rgb };
+        Ok(Finished { shown: picture(shown), beside: Beside { open: open.map(picture), layers, white: None } })
+    }
+
+    fn image_state(&self) -> ImageState {
+        if self.is_data { ImageState::Data } else { ImageState::DisplayReferred }
+    }
+
+    fn has_layers(&self) -> bool {
+        true
     }
 
     fn set_frame(&mut self, frame: u64) {
+        if let Some(effects) = &mut self.frame {
+            effects.set_frame(frame);
+        }
         self.effects.set_frame(frame);
     }
 

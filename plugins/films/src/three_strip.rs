@@ -5,7 +5,7 @@ use crate::stock::load_stock;
 use crate::view::WhiteParams;
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::frame::{DisplayPicture, ExposureFrame, FrameSize};
+use spectra_core::frame::{Beside, DisplayPicture, ExposureChannel, ExposureFrame, Finished, FrameSize, Wanted};
 use spectra_core::names;
 use spectra_core::params::{Faults, Params, Positive as AboveZero, Time};
 use spectra_core::registry::Context;
@@ -298,17 +298,40 @@ impl Film for ThreeStrip {
     }
 
     fn develop(&self, exposure: &ExposureFrame) -> Result<DisplayPicture, String> {
+        self.finish(exposure, Wanted::default()).map(|finished| finished.shown)
+    }
+
+    fn finish(&self, exposure: &ExposureFrame, wanted: Wanted) -> Result<Finished, String> {
         let factor = self.meter.factor(exposure);
+        let mut layers = Vec::new();
         let negatives = RECORDS.iter().enumerate().map(|(i, name)| {
             let mut plane = channel(exposure, name).map_err(|error| error.to_string())?.values.clone();
+            if wanted.layers {
+                let values = plane.iter().map(|v| *v * factor as f32).collect();
+                layers.push(ExposureChannel { name: format!("exposure.{name}"), unit: "lx s".into(), values });
+            }
             self.film.develop(i, &mut plane, factor);
             Ok(plane)
         });
         let negatives = negatives.collect::<Result<Vec<_>, String>>()?;
+        if wanted.layers {
+            let density = |(name, plane): (&&str, &Vec<f32>)| ExposureChannel {
+                name: format!("density.{name}"),
+                unit: String::new(),
+                values: plane.clone(),
+            };
+            layers.extend(RECORDS.iter().zip(&negatives).map(density));
+        }
         let planes: Vec<&[f32]> = negatives.iter().map(Vec::as_slice).collect();
-        let rgb = self.positive.picture(&planes);
         let size = exposure.size;
-        Ok(DisplayPicture { width_px: size.width_px, height_px: size.height_px, rgb })
+        let picture = |rgb| DisplayPicture { width_px: size.width_px, height_px: size.height_px, rgb };
+        let open = wanted.open.then(|| picture(self.positive.open_picture(&planes)));
+        let shown = picture(self.positive.picture(&planes));
+        Ok(Finished { shown, beside: Beside { open, layers, white: None } })
+    }
+
+    fn has_layers(&self) -> bool {
+        true
     }
 
     fn describe(&self) -> String {

@@ -35,6 +35,8 @@ pub enum ScanParams {
     Picture,
     /// Density over unexposed film as Cineon files hold it: value = (95 + density / 0.002) / 1023.
     Log,
+    /// Density over unexposed film on the scale of ADX16: value = (1520 + 8000 density) / 65535.
+    Adx,
     /// Density, base included: value = density / 4.
     Density,
 }
@@ -44,6 +46,7 @@ impl From<ScanParams> for ScanScale {
         match scan {
             ScanParams::Picture => Self::Picture,
             ScanParams::Log => Self::Log,
+            ScanParams::Adx => Self::Adx,
             ScanParams::Density => Self::Density,
         }
     }
@@ -193,6 +196,7 @@ pub(crate) fn seen(
             let words = match scale {
                 ScanParams::Picture => "scanned",
                 ScanParams::Log => "scanned, logarithmic (Cineon)",
+                ScanParams::Adx => "scanned, logarithmic (ADX16)",
                 ScanParams::Density => "scanned, density / 4",
             };
             let scan = Positive::scanned(stock, film, gray_lx_s, scale.into()).map_err(unfit)?;

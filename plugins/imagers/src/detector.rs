@@ -5,7 +5,7 @@ use crate::plane::Plane;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::cover::CoverStack;
-use spectra_core::frame::{DisplayPicture, ExposureFrame, FrameSize};
+use spectra_core::frame::{DisplayPicture, ExposureFrame, Finished, FrameSize, ImageState, Wanted};
 use spectra_core::params::{Faults, Params, Part, Positive, Time};
 use spectra_core::registry::{self, Context, StageOf};
 use spectra_core::spectral::Channel;
@@ -87,6 +87,14 @@ impl<R: Response> Response for DetectorPlane<R> {
 
     fn display(&self, exposure: &ExposureFrame) -> Option<DisplayPicture> {
         self.response.display(exposure)
+    }
+
+    fn finish(&self, exposure: &ExposureFrame, wanted: Wanted) -> Option<Finished> {
+        self.response.finish(exposure, wanted)
+    }
+
+    fn image_state(&self) -> ImageState {
+        self.response.image_state()
     }
 
     fn digitize(&self) -> Option<&dyn Digitize> {

@@ -6,12 +6,12 @@ use crate::plane::Plane;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_color::Gamut;
-use spectra_core::frame::{DisplayPicture, ExposureChannel, ExposureFrame};
+use spectra_core::frame::{DisplayPicture, ExposureChannel, ExposureFrame, Finished, Wanted};
 use spectra_core::params::{Faults, Params, Wavelength, Whole};
 use spectra_core::registry::Context;
 use spectra_core::spectral::{Channel, Grid};
 use spectra_core::stage::{Imager, Response};
-use spectra_film::display::{White, show_xyz};
+use spectra_film::display::{White, finish_xyz};
 use spectra_spectrum::Observer;
 use spectra_spectrum::constants::LUMINOUS_EFFICACY_LM_PER_W;
 
@@ -101,6 +101,10 @@ impl Response for Bands {
 
     /// The colors of the bands, as an eye sees them, under automatic exposure.
     fn display(&self, exposure: &ExposureFrame) -> Option<DisplayPicture> {
+        self.finish(exposure, Wanted::default()).map(|finished| finished.shown)
+    }
+
+    fn finish(&self, exposure: &ExposureFrame, wanted: Wanted) -> Option<Finished> {
         let planes = exposure.planes(&self.channels)?;
         let channels = ["X", "Y", "Z"].into_iter().enumerate().map(|(k, name)| ExposureChannel {
             name: name.into(),
@@ -112,7 +116,7 @@ impl Response for Bands {
                 .collect(),
         });
         let frame = ExposureFrame { size: exposure.size, channels: channels.collect() };
-        show_xyz(&frame, White::default(), Gamut::Desaturate).ok()
+        finish_xyz(&frame, White::default(), Gamut::Desaturate, None, wanted).ok()
     }
 }
 

@@ -5,15 +5,16 @@ use crate::params::Frame;
 use crate::plane::Plane;
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_color::Gamut;
-use spectra_core::frame::{DisplayPicture, ExposureFrame};
-use spectra_core::params::{Exposure, Fault, Faults, Illuminance, Params, Positive, Quantity, Time};
+use spectra_color::matrix::Matrix;
+use spectra_color::{Adaptation, Gamut, RgbSpace};
+use spectra_core::frame::{DisplayPicture, ExposureFrame, Finished, Wanted};
+use spectra_core::params::{Exposure, Fault, Faults, Illuminance, Params, Positive, Quantity, Temperature, Time};
 use spectra_core::registry::Context;
-use spectra_core::spectral::{Channel, Grid};
+use spectra_core::spectral::{BAND, Channel, Grid};
 use spectra_core::stage::{Imager, Response};
-use spectra_film::display::{White, show_xyz};
-use spectra_spectrum::Observer;
+use spectra_film::display::{White, finish_xyz};
 use spectra_spectrum::constants::LUMINOUS_EFFICACY_LM_PER_W;
+use spectra_spectrum::{Observer, find_emission_in};
 
 /// A frame that measures CIE 1931 XYZ in lux, or lux-seconds where it is given an exposure time.
 ///
@@ -30,6 +31,9 @@ use spectra_spectrum::constants::LUMINOUS_EFFICACY_LM_PER_W;
 /// ```
 /// ```yaml
 /// {kind: xyz, width: 24 mm, height: 24 mm, resolution: [512, 512], exposure: 1/60 s, white: 0.4 lx s, gamut: perceptual}
+/// ```
+/// ```yaml
+/// {kind: xyz, format: 135, resolution: [960, 640], white-balance: {temperature: 3200 K}}
 /// ```
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
@@ -49,6 +53,65 @@ pub struct XyzParams {
     /// (hue and lightness as they are seen stay) or `clip` (each of red, green and blue by itself: vivid).
     #[serde(default)]
     gamut: Option<GamutMapping>,
+    /// The light that the picture shows as white: the name of a light or a file (`D55`, `A`, `"blackbody:3200"`), a
+    /// `{temperature: 3200 K}` as a camera has it (1000 to 25000 K: a black body below 4000 K, daylight from there on), or
+    /// `auto-gray`, the mean of the frame. The channels stay as they are; without it the picture has the tint of its light.
+    #[serde(default)]
+    white_balance: Option<WhiteBalance>,
+}
+
+/// What is shown as white.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(untagged)]
+#[schemars(inline)]
+enum WhiteBalance {
+    /// A light, or `auto-gray`.
+    Named(String),
+    /// A light of a temperature.
+    Of(OfTemperature),
+}
+
+/// A light by its temperature.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(inline)]
+struct OfTemperature {
+    /// Its correlated color temperature, K if bare.
+    #[schemars(range(min = 1000, max = 25000))]
+    temperature: Temperature,
+}
+
+/// What the eye behind the picture is adapted to.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Balance {
+    /// The screen's white: nothing is balanced.
+    #[default]
+    Screen,
+    /// A white of these XYZ.
+    White([f64; 3]),
+    /// The mean of the frame.
+    AutoGray,
+}
+
+impl Balance {
+    /// From XYZ of the frame to XYZ under D65 (CAT02); `None` where nothing is to be done, or nothing is lit.
+    fn matrix(self, frame: &ExposureFrame) -> Option<Matrix> {
+        let white = match self {
+            Self::Screen => return None,
+            Self::White(white) => white,
+            Self::AutoGray => {
+                let lit = |v: &&f32| v.is_finite() && **v > 0.0;
+                // One after the other: the same sum on any number of threads.
+                let sum = |name: &str| {
+                    Some(frame.channel(name)?.values.iter().filter(lit).fold(0.0, |sum, v| sum + f64::from(*v)))
+                };
+                [sum("X")?, sum("Y")?, sum("Z")?]
+            }
+        };
+        let one = white.map(|v| v / white[1]);
+        let matrix = Adaptation::Cat02.matrix(one, RgbSpace::srgb().white_xyz());
+        matrix.iter().flatten().all(|v| v.is_finite()).then_some(matrix)
+    }
 }
 
 /// What becomes of colors that a screen cannot show.
@@ -67,6 +130,7 @@ pub struct XyzResponse {
     channels: Vec<Channel>,
     white: White,
     gamut: Gamut,
+    balance: Balance,
 }
 
 impl XyzResponse {
@@ -80,7 +144,7 @@ impl XyzResponse {
             response: function.into_iter().map(|v| v * LUMINOUS_EFFICACY_LM_PER_W).collect(),
         };
         let channels = ["X", "Y", "Z"].into_iter().zip(functions).map(channel).collect();
-        Self { channels, white, gamut: Gamut::Desaturate }
+        Self { channels, white, gamut: Gamut::Desaturate, balance: Balance::Screen }
     }
 }
 
@@ -90,7 +154,12 @@ impl Response for XyzResponse {
     }
 
     fn display(&self, exposure: &ExposureFrame) -> Option<DisplayPicture> {
-        show_xyz(exposure, self.white, self.gamut).ok()
+        self.finish(exposure, Wanted::default()).map(|finished| finished.shown)
+    }
+
+    fn finish(&self, exposure: &ExposureFrame, wanted: Wanted) -> Option<Finished> {
+        let adapted = self.balance.matrix(exposure);
+        finish_xyz(exposure, self.white, self.gamut, adapted.as_ref(), wanted).ok()
     }
 }
 
@@ -110,13 +179,20 @@ impl XyzPlane {
         self.response.gamut = gamut;
         self
     }
+
+    /// The same, whose picture shows another light as white.
+    #[must_use]
+    pub fn with_balance(mut self, balance: Balance) -> Self {
+        self.response.balance = balance;
+        self
+    }
 }
 
 fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Imager>, Faults> {
     let parsed: XyzParams = params.parse()?;
     let mut faults = Faults::new();
     let plane = faults.take(parsed.frame.plane(params, context));
-    let XyzParams { exposure, white, gamut, .. } = parsed;
+    let XyzParams { exposure, white, gamut, white_balance, .. } = parsed;
     let white = match &white {
         None => Some(White::default()),
         Some(text) => faults.take(stated_white(params, text, exposure.is_some())),
@@ -126,11 +202,40 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Imager>, Faul
         Some(GamutMapping::Perceptual) => Gamut::Perceptual,
         Some(GamutMapping::Clip) => Gamut::Clip,
     };
-    let (Some(plane), Some(white)) = (plane, white) else {
+    let balance = match &white_balance {
+        None => Some(Balance::Screen),
+        Some(balance) => faults.take(balanced(params, balance, context)),
+    };
+    let (Some(plane), Some(white), Some(balance)) = (plane, white, balance) else {
         return Err(faults);
     };
-    let imager = XyzPlane::new(plane, &context.grid, exposure.map(|t| t.s()), white).with_gamut(gamut);
+    let imager = XyzPlane::new(plane, &context.grid, exposure.map(|t| t.s()), white);
+    let imager = imager.with_gamut(gamut).with_balance(balance);
     faults.into_result(Box::new(imager))
+}
+
+/// Up to here, K, a light of a temperature is that of a black body; CIE 015 has no daylight below it.
+const WARMEST_DAYLIGHT_K: f64 = 4000.0;
+
+/// The light that is shown as white.
+fn balanced(params: &Params, balance: &WhiteBalance, context: &Context<'_>) -> Result<Balance, Faults> {
+    let name = match balance {
+        WhiteBalance::Named(name) if name == "auto-gray" => return Ok(Balance::AutoGray),
+        WhiteBalance::Named(name) => name.clone(),
+        WhiteBalance::Of(OfTemperature { temperature }) => {
+            let kelvin = temperature.kelvin();
+            let kind = if kelvin < WARMEST_DAYLIGHT_K { "blackbody" } else { "daylight" };
+            format!("{kind}:{kelvin}")
+        }
+    };
+    let key = "white-balance";
+    let light = find_emission_in(&name, context.resources).map_err(|e| e.faults(|text| params.fault(key, text)))?;
+    let xyz = Observer::cie_1931_2deg().xyz_of_power(&light.to_power(&BAND));
+    if !(xyz[1] > 0.0 && xyz.iter().all(|v| v.is_finite())) {
+        let fault = params.fault(key, format!("`{name}` is dark to the eye"));
+        return Err(fault.hint("another light, such as D55, or `auto-gray`").into());
+    }
+    Ok(Balance::White(xyz))
 }
 
 /// White in the unit of the channels, whose dimension depends on whether there is an exposure time.

@@ -2,28 +2,101 @@
 
 use schemars::JsonSchema;
 use serde::Deserialize;
+use spectra_core::frame::{ImageState, Wanted};
 use spectra_core::params::{Faults, Params};
 use spectra_core::registry::Context;
 use spectra_core::sink::{Out, WriteFault};
+use spectra_core::stage::{Film, Imager};
 use spectra_pictures::library;
-use spectra_pictures::write::{exr, tiled_exr};
+use spectra_pictures::write::{LinearSpace, exr, picture_exr, tiled_exr};
 use spectra_scene::{Holds, Output, Shot};
 
-/// The linear exposure as OpenEXR: a channel for each that was recorded.
+/// Light as OpenEXR: the linear exposure, a channel for each that was recorded, or the finished picture.
 ///
-/// Nothing that was computed is lost in it: 32-bit floats in lux seconds (or what the channel's unit says), with the scene and how it was
-/// rendered in the header. For compositing, for measuring, and to keep the light of a long render.
+/// Of the exposure nothing that was computed is lost: 32-bit floats in lux seconds (or what the channel's unit says), with the scene
+/// and how it was rendered in the header. For measuring, and to keep the light of a long render.
+///
+/// `holds: picture` is for compositing, `SCENE-picture.exr`: R, G and B of the developed, printed or balanced picture in linear
+/// light, no color clipped by a screen's gamut. 1 is the film's white, or what the imager's picture shows as white. The header says
+/// the primaries (`chromaticities`, `adoptedNeutral`), the name of the space for OpenColorIO (`oiio:ColorSpace`) and for the Color
+/// Interop Forum (`colorInteropID`), and in `spectra:image state` whether the values are scene-referred (imagers that record
+/// by themselves), display-referred (prints and projections) or data (scans on a scale of density: R, G and B are the scale's values).
+/// Of films side by side a file each.
 ///
 /// # Example
 /// ```yaml
 /// {kind: exr}
 /// ```
+/// ```yaml
+/// {kind: exr, holds: picture, space: acescg, layers: [exposures]}
+/// ```
+///
+/// # References
+/// - Academy S-2014-004, ACEScg.
+/// - Color Interop Forum, Color space encodings for texture assets and CG rendering, 2024.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct ExrParams {
     /// In tiles, for viewers that read a part of a large file; needs a program built with OpenImageIO.
     #[serde(default)]
     tiled: bool,
+    /// What is in it: `light`, the exposure (the default), or `picture`.
+    #[serde(default)]
+    holds: Content,
+    /// With `holds: picture`, its colors: `linear-srgb` (the default), `rec2020`, `p3-d65`, `acescg` (white of ACES), or `xyz`, all
+    /// but `acescg` with the white D65; whites are brought together by CAT02.
+    space: Option<Space>,
+    /// With `holds: picture`, layers beside it: `exposures` of each channel, of a film in lux seconds after scatter and halation, as
+    /// `exposure.red`; `densities` of each layer of a film as a densitometer reads them, grain included, as `density.red`.
+    #[schemars(length(max = 2))]
+    layers: Option<Vec<LayerGroup>>,
+    /// With `holds: picture`, whether R, G and B take 16 bits each: half the space, three digits.
+    half: Option<bool>,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+#[schemars(inline)]
+enum Content {
+    #[default]
+    Light,
+    Picture,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, JsonSchema)]
+#[schemars(inline)]
+enum Space {
+    #[default]
+    #[serde(rename = "linear-srgb")]
+    Srgb,
+    #[serde(rename = "rec2020")]
+    Rec2020,
+    #[serde(rename = "p3-d65")]
+    P3D65,
+    #[serde(rename = "acescg")]
+    AcesCg,
+    #[serde(rename = "xyz")]
+    Xyz,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+#[schemars(inline)]
+enum LayerGroup {
+    Exposures,
+    Densities,
+}
+
+impl From<Space> for LinearSpace {
+    fn from(space: Space) -> Self {
+        match space {
+            Space::Srgb => Self::Srgb,
+            Space::Rec2020 => Self::Rec2020,
+            Space::P3D65 => Self::P3D65,
+            Space::AcesCg => Self::AcesCg,
+            Space::Xyz => Self::Xyz,
+        }
+    }
 }
 
 spectra_core::register!(spectra_scene::OutputEntry, "exr": ExrParams, build);
@@ -33,12 +106,26 @@ struct Exr {
 }
 
 fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Output>, Faults> {
-    let ExrParams { tiled } = params.parse()?;
-    if tiled && library::library().is_none() {
+    let p: ExrParams = params.parse()?;
+    let mut faults = Faults::new();
+    if p.tiled && library::library().is_none() {
         let fault = params.fault("tiled", "tiled OpenEXR files are written by OpenImageIO only");
-        return Err(fault.hint(library::WITHOUT).into());
+        faults.push(fault.hint(library::WITHOUT));
     }
-    Ok(Box::new(Exr { tiled }))
+    if p.holds == Content::Picture {
+        if p.tiled {
+            faults.push(params.fault("tiled", "a picture is written without tiles").hint("leave `tiled` out"));
+        }
+        let (space, half) = (p.space.unwrap_or_default().into(), p.half.unwrap_or(false));
+        return faults.into_result(Box::new(PictureExr { space, layers: p.layers.unwrap_or_default(), half }) as _);
+    }
+    for (key, given) in [("space", p.space.is_some()), ("layers", p.layers.is_some()), ("half", p.half.is_some())] {
+        if given {
+            let fault = params.fault(key, format!("`{key}` is for the finished picture, not for the exposure"));
+            faults.push(fault.hint("`holds: picture`"));
+        }
+    }
+    faults.into_result(Box::new(Exr { tiled: p.tiled }) as _)
 }
 
 impl Output for Exr {
@@ -56,6 +143,73 @@ impl Output for Exr {
 
     fn write(&self, shot: &Shot<'_>, _: usize, out: &mut dyn Out) -> Result<(), WriteFault> {
         let write = if self.tiled { tiled_exr } else { exr };
-        write(out, shot.exposure, &shot.gains(), shot.attributes)
+        write(out, shot.exposure, &shot.gains(), shot.scene.lens.squeeze, shot.attributes)
     }
 }
+
+/// The finished picture.
+struct PictureExr {
+    space: LinearSpace,
+    layers: Vec<LayerGroup>,
+    half: bool,
+}
+
+impl PictureExr {
+    /// Whether a layer of this name is asked for.
+    fn takes(&self, name: &str) -> bool {
+        let group = |group: &LayerGroup| match group {
+            LayerGroup::Exposures => "exposure.",
+            LayerGroup::Densities => "density.",
+        };
+        self.layers.iter().any(|asked| name.starts_with(group(asked)))
+    }
+}
+
+impl Output for PictureExr {
+    fn kind(&self) -> &'static str {
+        "exr"
+    }
+
+    fn ending(&self) -> [&'static str; 2] {
+        ["-picture", ".exr"]
+    }
+
+    fn holds(&self) -> Holds {
+        Holds::Picture
+    }
+
+    fn check(&self, imager: &dyn Imager) -> Result<(), [String; 2]> {
+        if imager.response().is_some() && self.layers.contains(&LayerGroup::Densities) {
+            return Err(["there is no density without a film".to_owned(), "`layers: [exposures]`".to_owned()]);
+        }
+        Ok(())
+    }
+
+    fn check_film(&self, film: &dyn Film) -> Result<(), [String; 2]> {
+        if !self.layers.is_empty() && !film.has_layers() {
+            let text = format!("{} does not say what its layers hold", film.name());
+            return Err([text, "leave `layers` out".to_owned()]);
+        }
+        let is_data = film.image_state() == ImageState::Data;
+        if is_data && self.space != LinearSpace::default() {
+            return Err([DENSITIES.to_owned(), "leave `space` out, or `scan: picture`".to_owned()]);
+        }
+        Ok(())
+    }
+
+    fn wanted(&self) -> Wanted {
+        Wanted { open: true, layers: !self.layers.is_empty() }
+    }
+
+    fn write(&self, shot: &Shot<'_>, film: usize, out: &mut dyn Out) -> Result<(), WriteFault> {
+        let beside = shot.beside(film)?;
+        let layers: Vec<_> = beside.layers.iter().filter(|layer| self.takes(&layer.name)).cloned().collect();
+        let mut attributes = shot.attributes.to_vec();
+        attributes.extend(beside.white.as_ref().map(|white| ("spectra:white".to_owned(), format!("1 is {white}"))));
+        let colors = (self.space, shot.image_state(film));
+        picture_exr(out, shot.open(film)?, &layers, colors, self.half, shot.pixel_aspect(), &attributes)
+    }
+}
+
+/// What is said of colors for what has none.
+pub(crate) const DENSITIES: &str = "a scan on a scale of density has no color space";

@@ -7,4 +7,5 @@ mod exr;
 mod npy;
 mod png;
 mod rays;
+mod screen;
 mod tiff;

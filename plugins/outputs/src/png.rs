@@ -1,32 +1,71 @@
 //! `kind: png`.
 
+use crate::screen::{Screen, Space};
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::params::{Faults, Params};
+use spectra_core::frame::Wanted;
+use spectra_core::params::{Faults, Params, Whole};
 use spectra_core::registry::Context;
 use spectra_core::sink::{Out, WriteFault};
-use spectra_pictures::write::png8;
+use spectra_core::stage::Film;
+use spectra_pictures::write::{png8, png16};
 use spectra_scene::{Holds, Output, Shot};
 
 /// The picture as PNG.
 ///
-/// 8 bits a channel in sRGB, as any viewer and web page shows it; of films side by side a file each. For grading take `tiff`, for numbers
-/// `exr`.
+/// 8 bits a channel in sRGB, as any viewer and web page shows it; of films side by side a file each. The file says its colors: cICP,
+/// and for older programs sRGB with gAMA and cHRM, or an ICC profile. What the scans `log`, `adx` and `density` write are no colors,
+/// and are not tagged.
 ///
 /// # Example
 /// ```yaml
 /// {kind: png}
 /// ```
+/// ```yaml
+/// {kind: png, bits: 16, space: display-p3}
+/// ```
+///
+/// # References
+/// - W3C, Portable Network Graphics (PNG) Specification, third edition, 2025.
+/// - ITU-T H.273, Coding-independent code points.
 #[derive(Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-struct PngParams {}
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct PngParams {
+    /// Bits a channel, 8 (the default) or 16.
+    #[serde(default = "eight")]
+    bits: Whole<8, 16>,
+    /// Its colors: `srgb` (the default), `display-p3`, `rec2020` (its primaries under the curve of sRGB), or with 16 bits `acescct`, the
+    /// logarithmic space of ACES, which holds light far beyond white.
+    #[serde(default)]
+    space: Space,
+    /// Whether pixels that are not square (of an anamorphic lens with a `squeeze`, or of the imager) are made square. Otherwise
+    /// the file only says their shape (pHYs), which few viewers heed.
+    #[serde(default)]
+    desqueeze: bool,
+}
+
+fn eight() -> Whole<8, 16> {
+    Whole::known(8)
+}
 
 spectra_core::register!(spectra_scene::OutputEntry, "png": PngParams, build);
 
-struct Png;
+struct Png {
+    is_deep: bool,
+    screen: Screen,
+}
 
 fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Output>, Faults> {
-    params.parse::<PngParams>().map(|_| Box::new(Png) as Box<dyn Output>)
+    let PngParams { bits, space, desqueeze } = params.parse()?;
+    let bits = bits.get();
+    if !matches!(bits, 8 | 16) {
+        return Err(params.fault("bits", format!("a PNG has no {bits} bits a channel")).hint("8 or 16").into());
+    }
+    if space == Space::AcesCct && bits == 8 {
+        let fault = params.fault("space", "8 bits are too few for a logarithmic space");
+        return Err(fault.hint("`bits: 16` beside it").into());
+    }
+    Ok(Box::new(Png { is_deep: bits == 16, screen: Screen { space, desqueeze } }))
 }
 
 impl Output for Png {
@@ -42,7 +81,17 @@ impl Output for Png {
         Holds::Picture
     }
 
+    fn check_film(&self, film: &dyn Film) -> Result<(), [String; 2]> {
+        self.screen.check_film(film)
+    }
+
+    fn wanted(&self) -> Wanted {
+        self.screen.wanted()
+    }
+
     fn write(&self, shot: &Shot<'_>, film: usize, out: &mut dyn Out) -> Result<(), WriteFault> {
-        png8(out, shot.picture(film)?, shot.pixel_aspect())
+        let (picture, space, aspect) = self.screen.of(shot, film)?;
+        let write = if self.is_deep { png16 } else { png8 };
+        write(out, &picture, space, aspect)
     }
 }

@@ -1,31 +1,51 @@
 //! `kind: tiff`.
 
+use crate::screen::{Screen, Space};
 use schemars::JsonSchema;
 use serde::Deserialize;
+use spectra_core::frame::Wanted;
 use spectra_core::params::{Faults, Params};
 use spectra_core::registry::Context;
 use spectra_core::sink::{Out, WriteFault};
+use spectra_core::stage::Film;
 use spectra_pictures::write::tiff16;
 use spectra_scene::{Holds, Output, Shot};
 
 /// The picture as TIFF with 16 bits a channel.
 ///
-/// sRGB, uncompressed; of films side by side a file each. For photo editors: enough steps to lighten shadows without bands.
+/// sRGB, uncompressed, with an ICC profile; of films side by side a file each. For photo editors: enough steps to lighten shadows
+/// without bands. What the scans `log`, `adx` and `density` write are no colors, and have no profile.
 ///
 /// # Example
 /// ```yaml
 /// {kind: tiff}
 /// ```
+/// ```yaml
+/// {kind: tiff, space: acescct}
+/// ```
+///
+/// # References
+/// - ICC.1:2022, Image technology colour management: architecture, profile format and data structure.
+/// - Academy S-2016-001, ACEScct.
 #[derive(Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-struct TiffParams {}
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct TiffParams {
+    /// Its colors: `srgb` (the default), `display-p3`, `rec2020` (its primaries under the curve of sRGB), or `acescct`, the logarithmic
+    /// space of ACES, which holds light far beyond white.
+    #[serde(default)]
+    space: Space,
+    /// Whether pixels that are not square (of an anamorphic lens with a `squeeze`, or of the imager) are made square.
+    #[serde(default)]
+    desqueeze: bool,
+}
 
 spectra_core::register!(spectra_scene::OutputEntry, "tiff": TiffParams, build);
 
-struct Tiff;
+struct Tiff(Screen);
 
 fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Output>, Faults> {
-    params.parse::<TiffParams>().map(|_| Box::new(Tiff) as Box<dyn Output>)
+    let TiffParams { space, desqueeze } = params.parse()?;
+    Ok(Box::new(Tiff(Screen { space, desqueeze })))
 }
 
 impl Output for Tiff {
@@ -41,7 +61,16 @@ impl Output for Tiff {
         Holds::Picture
     }
 
+    fn check_film(&self, film: &dyn Film) -> Result<(), [String; 2]> {
+        self.0.check_film(film)
+    }
+
+    fn wanted(&self) -> Wanted {
+        self.0.wanted()
+    }
+
     fn write(&self, shot: &Shot<'_>, film: usize, out: &mut dyn Out) -> Result<(), WriteFault> {
-        tiff16(out, shot.picture(film)?)
+        let (picture, space, _) = self.0.of(shot, film)?;
+        tiff16(out, &picture, space)
     }
 }

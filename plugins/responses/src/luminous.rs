@@ -1,9 +1,9 @@
 //! `kind: photopic` and `kind: scotopic`: light as bright as an eye sees it.
 
-use crate::shown::show;
+use crate::shown::finish;
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::frame::{DisplayPicture, ExposureFrame};
+use spectra_core::frame::{DisplayPicture, ExposureFrame, Finished, Wanted};
 use spectra_core::params::{Faults, Params, Positive};
 use spectra_core::registry::Context;
 use spectra_core::spectral::{Channel, Grid};
@@ -70,8 +70,12 @@ impl Response for Luminous {
     }
 
     fn display(&self, exposure: &ExposureFrame) -> Option<DisplayPicture> {
+        self.finish(exposure, Wanted::default()).map(|finished| finished.shown)
+    }
+
+    fn finish(&self, exposure: &ExposureFrame, wanted: Wanted) -> Option<Finished> {
         let values = &exposure.channel(&self.channel.name)?.values;
-        show(exposure, self.white, |pixel| [f64::from(values[pixel]); 3])
+        finish(exposure, self.white, wanted, |pixel| [f64::from(values[pixel]); 3])
     }
 }
 

@@ -1,9 +1,9 @@
 //! `kind: sensitivities`: channels by their spectral sensitivities.
 
-use crate::shown::show;
+use crate::shown::finish;
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::frame::{DisplayPicture, ExposureFrame};
+use spectra_core::frame::{DisplayPicture, ExposureFrame, Finished, Wanted};
 use spectra_core::params::{Faults, Params, Part, Positive, StageNode, Value};
 use spectra_core::registry::Context;
 use spectra_core::spectral::Channel;
@@ -57,11 +57,15 @@ impl Response for Sensitivities {
     }
 
     fn display(&self, exposure: &ExposureFrame) -> Option<DisplayPicture> {
+        self.finish(exposure, Wanted::default()).map(|finished| finished.shown)
+    }
+
+    fn finish(&self, exposure: &ExposureFrame, wanted: Wanted) -> Option<Finished> {
         let planes = exposure.planes(&self.channels)?;
         let sum = |row: &[f64], pixel: usize| -> f64 {
             row.iter().zip(&planes).map(|(factor, plane)| factor * f64::from(plane[pixel])).sum()
         };
-        show(exposure, self.white, |pixel| self.rgb_from_channels.each_ref().map(|row| sum(row, pixel)))
+        finish(exposure, self.white, wanted, |pixel| self.rgb_from_channels.each_ref().map(|row| sum(row, pixel)))
     }
 }
 

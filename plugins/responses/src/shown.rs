@@ -1,16 +1,17 @@
 //! Pictures of linear light in sRGB primaries.
 
 use spectra_color::{Gamut, RgbSpace};
-use spectra_core::frame::{DisplayPicture, ExposureChannel, ExposureFrame};
-use spectra_film::display::{White, show_xyz};
+use spectra_core::frame::{ExposureChannel, ExposureFrame, Finished, Wanted};
+use spectra_film::display::{White, finish_xyz};
 
 /// Shows a linear red, green and blue a pixel; where luminance reaches `white` the picture is white, without one automatic
 /// exposure shows its 99th percentile as 0.9.
-pub(crate) fn show(
+pub(crate) fn finish(
     exposure: &ExposureFrame,
     white: Option<f64>,
+    wanted: Wanted,
     rgb: impl Fn(usize) -> [f64; 3],
-) -> Option<DisplayPicture> {
+) -> Option<Finished> {
     let space = RgbSpace::srgb();
     let xyz: Vec<[f64; 3]> = (0..exposure.size.pixels()).map(|pixel| space.to_xyz(rgb(pixel))).collect();
     let channel = |(k, name): (usize, &str)| ExposureChannel {
@@ -20,5 +21,5 @@ pub(crate) fn show(
     };
     let channels = ["X", "Y", "Z"].into_iter().enumerate().map(channel).collect();
     let frame = ExposureFrame { size: exposure.size, channels };
-    show_xyz(&frame, white.map_or_else(White::default, White::Stated), Gamut::Desaturate).ok()
+    finish_xyz(&frame, white.map_or_else(White::default, White::Stated), Gamut::Desaturate, None, wanted).ok()
 }

@@ -1,6 +1,6 @@
 //! Tables by which whole frames go the way of one place.
 
-use super::Way;
+use super::{Reach, Way};
 use crate::cube::Cube;
 use crate::deposit::Deposit;
 use crate::lookup::{Lookup, PIXELS_A_TASK};
@@ -50,7 +50,7 @@ pub(super) struct Dyes {
 impl Tables {
     pub(super) fn new(film: &Deposit, ranges: &[(f64, f64)], way: &Way) -> Self {
         if film.layers() == 1 {
-            return Self::Silver(silver(film, way));
+            return Self::silver(film, way, Reach::Screen);
         }
         let ranges = [0, 1, 2].map(|i| (ranges[i].0 - MARGIN, ranges[i].1 + MARGIN));
         let (weights, printing) = match way {
@@ -79,7 +79,13 @@ impl Tables {
         Self::Dyes(Box::new(Dyes { first: densities(film, ranges, weights), curves, last, bare, light }))
     }
 
-    pub(super) fn picture(&self, planes: &[&[f32]], way: &Way) -> Vec<[f32; 3]> {
+    /// Those of one layer of silver.
+    pub(super) fn silver(film: &Deposit, way: &Way, reach: Reach) -> Self {
+        Self::Silver(silver(film, way, reach))
+    }
+
+    /// The picture; that of silver goes as far as its table was made for.
+    pub(super) fn picture(&self, planes: &[&[f32]], way: &Way, reach: Reach) -> Vec<[f32; 3]> {
         match (self, planes) {
             (Self::Silver(table), [plane]) => {
                 let scale = (SILVER_STEPS as f64 / HIGHEST_DENSITY) as f32;
@@ -93,7 +99,7 @@ impl Tables {
             }
             (Self::Dyes(dyes), [a, b, c]) => {
                 let pixels = a.par_iter().zip(b.par_iter()).zip(c.par_iter()).with_min_len(PIXELS_A_TASK);
-                pixels.map(|((a, b), c)| dyes.shown([*a, *b, *c], way)).collect()
+                pixels.map(|((a, b), c)| dyes.shown([*a, *b, *c], way, reach)).collect()
             }
             // Planes are as many as layers: the film that made the one made the other.
             _ => Vec::new(),
@@ -102,11 +108,11 @@ impl Tables {
 }
 
 impl Dyes {
-    fn shown(&self, amounts: [f32; 3], way: &Way) -> [f32; 3] {
+    fn shown(&self, amounts: [f32; 3], way: &Way, reach: Reach) -> [f32; 3] {
         let first = self.first.at(amounts);
         let (densities, viewing) = match way {
             Way::Look(viewing) => (first, viewing),
-            Way::Scan(scan) => return scan.shown(&first.map(f64::from)).map(|v| v as f32),
+            Way::Scan(scan) => return scan.shown_in(&first.map(f64::from), reach).map(|v| v as f32),
             Way::Print(printing) => {
                 let amount = |i: usize| self.curves[i].at(-f64::from(first[i])) as f32;
                 let densities = match &self.last {
@@ -120,21 +126,30 @@ impl Dyes {
                 (densities, &printing.viewing)
             }
         };
-        viewing.shown(densities.map(|d| self.light.at(f64::from(d)))).map(|v| v as f32)
+        viewing.shown_in(densities.map(|d| self.light.at(f64::from(d))), reach).map(|v| v as f32)
     }
 }
 
-fn silver(film: &Deposit, way: &Way) -> Vec<[f32; 3]> {
+fn silver(film: &Deposit, way: &Way, reach: Reach) -> Vec<[f32; 3]> {
     let one = |i: usize| {
         let amounts = [i as f64 / SILVER_STEPS as f64 * HIGHEST_DENSITY];
         let shown = match way {
-            Way::Look(viewing) => viewing.shown(viewing.xyz(film, &amounts)),
-            Way::Print(printing) => printing.viewing.shown(printing.xyz(film, &amounts)),
-            Way::Scan(scan) => scan.shown(&scan.densities(film, &amounts)),
+            Way::Look(viewing) => viewing.shown_in(viewing.xyz(film, &amounts), reach),
+            Way::Print(printing) => printing.viewing.shown_in(printing.xyz(film, &amounts), reach),
+            Way::Scan(scan) => scan.shown_in(&scan.densities(film, &amounts), reach),
         };
         shown.map(|v| v as f32)
     };
     (0..SILVER_STEPS + 1).into_par_iter().with_min_len(256).map(one).collect()
+}
+
+/// Densities that three receivers see of each place of three dyes.
+pub(super) fn seen(film: &Deposit, ranges: &[(f64, f64)], weights: &[Vec<f64>], planes: [&[f32]; 3]) -> Vec<[f32; 3]> {
+    let ranges = [0, 1, 2].map(|i| (ranges[i].0 - MARGIN, ranges[i].1 + MARGIN));
+    let cube = densities(film, ranges, weights);
+    let [a, b, c] = planes;
+    let pixels = a.par_iter().zip(b.par_iter()).zip(c.par_iter()).with_min_len(PIXELS_A_TASK);
+    pixels.map(|((a, b), c)| cube.at([*a, *b, *c])).collect()
 }
 
 /// Densities that up to three receivers see, over the amounts of three dyes.

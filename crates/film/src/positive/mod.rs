@@ -193,8 +193,59 @@ impl Positive {
     /// [`Positive::shown`] for each place.
     #[must_use]
     pub fn picture(&self, planes: &[&[f32]]) -> Vec<[f32; 3]> {
-        self.tables.picture(planes, &self.way)
+        self.tables.picture(planes, &self.way, Reach::Screen)
     }
+
+    /// The same in no gamut: below 0 what sRGB cannot have, above 1 what is brighter than the film's white. Of a scan on the
+    /// scale of a file, the values of that scale.
+    #[must_use]
+    pub fn open_picture(&self, planes: &[&[f32]]) -> Vec<[f32; 3]> {
+        match self.film.layers() {
+            // Silver is tabulated as it is shown, dyes as densities.
+            1 => Tables::silver(&self.film, &self.way, Reach::Open).picture(planes, &self.way, Reach::Open),
+            _ => self.tables.picture(planes, &self.way, Reach::Open),
+        }
+    }
+
+    /// What a place without any film is shown as: a perforation.
+    #[must_use]
+    pub fn hole(&self, reach: Reach) -> [f64; 3] {
+        match &self.way {
+            Way::Look(viewing) => viewing.shown_in(bare(viewing.weights()), reach),
+            Way::Print(printing) => printing.viewing.shown_in(printing.hole(), reach),
+            Way::Scan(scan) => scan.shown_in(&vec![0.0; scan.weights.len()], reach),
+        }
+    }
+}
+
+/// What receivers see of the bare light.
+fn bare(weights: &[Vec<f64>]) -> [f64; 3] {
+    [0, 1, 2].map(|i| weights[i].iter().sum())
+}
+
+/// Densities of a whole film, of one plane of amounts a layer, as a densitometer reads them through the filters of the stock's
+/// densitometry, each layer through that of its own color; of silver its own.
+#[must_use]
+pub fn densities(stock: &Stock, film: &Emulsion, planes: &[&[f32]]) -> Vec<Vec<f32>> {
+    let names: Vec<&str> = stock.layers.iter().map(|layer| layer.name.as_str()).collect();
+    let products = stock.densitometry.products(&names);
+    match (planes, products) {
+        ([a, b, c], Some(products)) => {
+            let ranges: Vec<(f64, f64)> = (0..film.layers()).map(|i| film.range(i)).collect();
+            let seen = frame::seen(film.deposit(), &ranges, &products, [a, b, c]);
+            (0..3).map(|i| seen.iter().map(|d| d[i]).collect()).collect()
+        }
+        _ => planes.iter().map(|plane| plane.to_vec()).collect(),
+    }
+}
+
+/// How far the values of a picture go.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reach {
+    /// As a screen shows them, within sRGB.
+    Screen,
+    /// As they come.
+    Open,
 }
 
 /// How a print is looked at.

@@ -126,6 +126,15 @@ impl Printing {
     }
 }
 
+impl Printing {
+    /// XYZ of the print of a hole: the whole of the printing light.
+    pub(super) fn hole(&self) -> [f64; 3] {
+        let exposures = self.weights.iter().map(|w| w.iter().sum::<f64>());
+        let amounts: Vec<f64> = exposures.enumerate().map(|(i, h)| self.emulsion.amount(i, log10(h))).collect();
+        self.viewing.xyz(self.emulsion.deposit(), &amounts)
+    }
+}
+
 /// Luminance, relative to the bare light, of a print stock developed to its aim densities.
 fn aimed(stock: &Stock, emulsion: &Emulsion, aim: AimDensity, viewing: &Viewing) -> Option<f64> {
     let names: Vec<&str> = stock.layers.iter().map(|l| l.name.as_str()).collect();

@@ -1,6 +1,6 @@
 //! A negative, scanned: its densities, on a linear or a logarithmic scale, or turned around into a picture.
 
-use super::PositiveError;
+use super::{PositiveError, Reach};
 use crate::deposit::Deposit;
 use crate::emulsion::Emulsion;
 use crate::lookup::Lookup;
@@ -19,6 +19,8 @@ pub enum ScanScale {
     Picture,
     /// Density over unexposed film on the scale of Cineon files: value = (95 + density / 0.002) / 1023.
     Log,
+    /// Density over unexposed film on the scale of ADX16: value = (1520 + 8000 density) / 65535.
+    Adx,
     /// Density itself, base included: value = density / 4.
     Density,
 }
@@ -26,6 +28,10 @@ pub enum ScanScale {
 /// Code of unexposed film, density of a code, and the largest code of a Cineon file (G. Kennel, "Conversion of 10-bit Log Film
 /// Data to 8-bit Linear or Video Data for the Cineon Digital Film System", Eastman Kodak, 1995).
 const CINEON: (f64, f64, f64) = (95.0, 0.002, 1023.0);
+
+/// Code of unexposed film, codes of a unit of density, and the largest code of ADX16 (SMPTE ST 2065-3). There it is the density of
+/// Academy printing; here that of the stock's own densitometry.
+const ADX16: (f64, f64, f64) = (1520.0, 8000.0, 65_535.0);
 
 /// The density that the value 1 stands for on the linear scale.
 pub const DENSITY_OF_ONE: f64 = 4.0;
@@ -89,6 +95,12 @@ impl Scan {
 
     /// What the screen shows of densities: linear light. A scale is written so that the file's values are the scale's.
     pub(super) fn shown(&self, densities: &[f64]) -> [f64; 3] {
+        self.shown_in(densities, Reach::Screen)
+    }
+
+    /// The same, or the values of the scale themselves.
+    pub(super) fn shown_in(&self, densities: &[f64], reach: Reach) -> [f64; 3] {
+        let written = |value: f64| if reach == Reach::Open { value } else { written(value) };
         let of = |i: usize| i.min(densities.len() - 1);
         match self.scale {
             ScanScale::Picture => {
@@ -99,12 +111,16 @@ impl Scan {
                     // Mid gray keeps its place, black goes to 0.
                     self.shoulder.at((light - black) * MID_GRAY / (MID_GRAY - black))
                 });
-                into_gamut(rgb, RgbSpace::srgb(), Gamut::Desaturate)
+                if reach == Reach::Open { rgb } else { into_gamut(rgb, RgbSpace::srgb(), Gamut::Desaturate) }
             }
             ScanScale::Log => {
                 let (foot, step, most) = CINEON;
                 let value = |d: f64, clear: f64| (foot + (d - clear) / step) / most;
                 [0, 1, 2].map(|i| written(value(densities[of(i)], self.clear[of(i)])))
+            }
+            ScanScale::Adx => {
+                let (foot, steps, most) = ADX16;
+                [0, 1, 2].map(|i| written((foot + steps * (densities[of(i)] - self.clear[of(i)])) / most))
             }
             ScanScale::Density => [0, 1, 2].map(|i| written(densities[of(i)] / DENSITY_OF_ONE)),
         }

@@ -1,5 +1,6 @@
 //! Light through a film to an eye: XYZ, and what a screen shows of it.
 
+use super::Reach;
 use crate::deposit::Deposit;
 use crate::lookup::{Lookup, from_octaves, octaves};
 use spectra_color::matrix::{Matrix, apply, product};
@@ -138,7 +139,17 @@ impl Viewing {
     /// What the screen shows of XYZ: linear light, sRGB primaries, within its gamut.
     #[must_use]
     pub fn shown(&self, xyz: [f64; 3]) -> [f64; 3] {
-        into_gamut(apply(&self.to_rgb, self.seen(xyz)), RgbSpace::srgb(), Gamut::Desaturate)
+        self.shown_in(xyz, Reach::Screen)
+    }
+
+    /// The same, within its gamut or not.
+    #[must_use]
+    pub fn shown_in(&self, xyz: [f64; 3], reach: Reach) -> [f64; 3] {
+        let rgb = apply(&self.to_rgb, self.seen(xyz));
+        match reach {
+            Reach::Screen => into_gamut(rgb, RgbSpace::srgb(), Gamut::Desaturate),
+            Reach::Open => rgb,
+        }
     }
 
     /// XYZ as an eye in an average surround would have to meet them to see the same: black taken off, the surround allowed

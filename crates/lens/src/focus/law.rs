@@ -16,6 +16,9 @@ pub enum GroupTravel {
     Factor(f64),
     /// As a table says.
     Table(FocusTable),
+    /// As far as it takes to have lines across in focus, too: the x-z section of a lens with cylinders, where the y-z section is
+    /// in focus by the other groups, or by the whole lens.
+    SectionX,
 }
 
 /// Shift of a group by the distance of the object: a monotone cubic in one over the distance, through every point.

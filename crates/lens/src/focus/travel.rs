@@ -2,6 +2,7 @@
 
 use super::{FocusError, FocusLaw, GroupTravel};
 use crate::Lens;
+use crate::first_order::Section;
 use spectra_core::surface::Action;
 use std::ops::Range;
 
@@ -10,6 +11,9 @@ const STEP: f64 = 1.0 / 200.0;
 /// Longest travel looked at, in focal lengths: twice is life size.
 const FARTHEST: f64 = 3.0;
 const HALVINGS: usize = 80;
+/// Turns in which two sections are focused one after the other, and how near both must come, mm.
+const TURNS: usize = 40;
+const STANDS_MM: f64 = 1e-7;
 
 impl Lens {
     /// Moves elements toward the object (negative: away) along their own axis, mm, and nothing else. To be followed by
@@ -33,7 +37,7 @@ impl Lens {
     pub(super) fn moved_on(&self, travel_mm: f64) -> Result<Self, FocusError> {
         let factor = |law: &FocusLaw| match law.travel {
             GroupTravel::Factor(factor) => Some((law.group, factor * travel_mm)),
-            GroupTravel::Table(_) => None,
+            GroupTravel::Table(_) | GroupTravel::SectionX => None,
         };
         let shifts: Vec<_> = self.focus_laws.iter().filter_map(factor).collect();
         if shifts.is_empty() {
@@ -45,6 +49,11 @@ impl Lens {
     /// Whether some group moves in proportion to a common travel.
     pub(super) fn has_factors(&self) -> bool {
         self.focus_laws.iter().any(|law| matches!(law.travel, GroupTravel::Factor(_)))
+    }
+
+    /// The groups that follow the section across.
+    fn follows_across(&self) -> impl Iterator<Item = usize> {
+        self.focus_laws.iter().filter(|law| law.travel == GroupTravel::SectionX).map(|law| law.group)
     }
 
     fn with_groups_shifted(&self, shifts: &[(usize, f64)]) -> Result<Self, FocusError> {
@@ -88,19 +97,48 @@ impl Lens {
                 shifts.push((law.group, table.shift_mm(object_mm).ok_or(beyond)?));
             }
         }
-        let defocus =
-            |lens: &Self, object_mm| lens.paraxial_image_gap_mm(object_mm, lens.reference_nm) - lens.image_gap_mm();
-        let wanted = defocus(&self, f64::INFINITY);
+        let defocus = |lens: &Self, section, object_mm| {
+            lens.paraxial_image_gap_in_mm(section, object_mm, lens.reference_nm) - lens.image_gap_mm()
+        };
+        let wanted = [Section::Y, Section::X].map(|section| defocus(&self, section, f64::INFINITY));
         let set = self.with_groups_shifted(&shifts)?;
-        if !set.has_factors() || object_mm == f64::INFINITY {
+        let across: Vec<usize> = set.follows_across().collect();
+        if (!set.has_factors() && across.is_empty()) || object_mm == f64::INFINITY {
             return Ok(set);
         }
+        let none = FocusError::NoTravel { object_mm };
+        let along = |lens: &Self| defocus(lens, Section::Y, object_mm) - wanted[0];
+        let mut lens =
+            set.nearest_zero(|lens, travel_mm| lens.moved_on(travel_mm), along).ok_or_else(|| none.clone())?;
+        if across.is_empty() {
+            return Ok(lens);
+        }
+        // Each section moves the other a little: in turns, until both stand.
+        let aside = |lens: &Self| defocus(lens, Section::X, object_mm) - wanted[1];
+        let shifted = |lens: &Self, travel_mm: f64| {
+            lens.with_groups_shifted(&across.iter().map(|group| (*group, travel_mm)).collect::<Vec<_>>())
+        };
+        for _ in 0..TURNS {
+            lens = lens.nearest_zero(shifted, aside).ok_or_else(|| none.clone())?;
+            if along(&lens).abs() < STANDS_MM {
+                return Ok(lens);
+            }
+            lens = lens.nearest_zero(|lens, travel_mm| lens.moved_on(travel_mm), along).ok_or_else(|| none.clone())?;
+        }
+        Err(none)
+    }
+
+    /// The lens moved on to where `miss` is zero, the nearest such place to either side; `None` without one.
+    fn nearest_zero(
+        &self,
+        moved: impl Fn(&Self, f64) -> Result<Self, FocusError>,
+        miss: impl Fn(&Self) -> f64,
+    ) -> Option<Self> {
         let scale_mm = self.first_order(self.reference_nm).efl_mm.abs();
         let miss = |travel_mm: f64| {
-            let lens = set.moved_on(travel_mm).ok()?;
-            Some(defocus(&lens, object_mm) - wanted).filter(|miss| miss.is_finite())
+            let lens = moved(self, travel_mm).ok()?;
+            Some(miss(&lens)).filter(|miss| miss.is_finite())
         };
-        // The nearest zero to either side.
         let mut ends = [(0.0, miss(0.0)), (0.0, miss(0.0))];
         let steps = (FARTHEST / STEP) as usize;
         for step in 1..=steps {
@@ -121,11 +159,11 @@ impl Lens {
                             None => break,
                         }
                     }
-                    return set.moved_on(0.5 * (low + high));
+                    return moved(self, 0.5 * (low + high)).ok();
                 }
                 *end = (next, after);
             }
         }
-        Err(FocusError::NoTravel { object_mm })
+        None
     }
 }

@@ -1,6 +1,6 @@
 //! OpenEXR of the linear exposure.
 
-use exr::meta::attribute::AttributeValue;
+use exr::meta::attribute::{AttributeValue, Chromaticities};
 use exr::prelude::{
     AnyChannel, AnyChannels, Blocks, Compression, Encoding, FlatSamples, Image, ImageAttributes, IntegerBounds, Layer,
     LayerAttributes, LineOrder, Text, Vec2, WritableImage,
@@ -16,14 +16,14 @@ use std::path::Path;
 /// # Errors
 /// [`WriteError`].
 pub fn write_exr(path: &Path, frame: &ExposureFrame, attributes: &[(String, String)]) -> Result<(), WriteError> {
-    write_atomically(path, |file| exr(file, frame, &[], attributes))
+    write_atomically(path, |file| exr(file, frame, &[], 1.0, attributes))
 }
 
 /// Writes the frame, the values of each channel times a gain (in the order of the channels; 1 where there is none), as OpenEXR:
 /// 32-bit floats, scanlines in increasing order, lossless (zip), a channel
 /// of the file for each of the frame under its name, `attributes` (name, text) in the header beside each
-/// channel's unit (`unit NAME`). An attribute `framesPerSecond` with a value such as `24/1` is written as the rational
-/// number that OpenEXR has for it. The same frame and attributes give the same bytes.
+/// channel's unit (`unit NAME`). Pixels are said to be `squeeze` times as wide as on the film, as those of an anamorphic lens are
+/// looked at. An attribute `framesPerSecond` with a value such as `24/1` is written as the rational number that OpenEXR has for it. The same frame and attributes give the same bytes.
 ///
 /// # Errors
 /// [`WriteFault`]: the system refuses, the frame has no channel, or an attribute has a name that is empty,
@@ -32,9 +32,11 @@ pub fn exr(
     out: &mut dyn Out,
     frame: &ExposureFrame,
     gains: &[f64],
+    squeeze: f64,
     attributes: &[(String, String)],
 ) -> Result<(), WriteFault> {
-    write(out, frame, attributes, &|at, values| FlatSamples::F32(times(values, gain(gains, at))))
+    let colors = Colors { chromaticities: None, pixel_aspect: f64::from(pixel_aspect(frame)) * squeeze };
+    write(out, frame, attributes, &colors, &|at, values| FlatSamples::F32(times(values, gain(gains, at))))
 }
 
 /// The same with 16 bits a value, in half the space: three digits, up to 65 504 (more becomes infinite).
@@ -45,10 +47,12 @@ pub fn half_exr(
     out: &mut dyn Out,
     frame: &ExposureFrame,
     gains: &[f64],
+    squeeze: f64,
     attributes: &[(String, String)],
 ) -> Result<(), WriteFault> {
+    let colors = Colors { chromaticities: None, pixel_aspect: f64::from(pixel_aspect(frame)) * squeeze };
     let half = |value: f32| exr::prelude::f16::from_f32(value);
-    write(out, frame, attributes, &|at, values| {
+    write(out, frame, attributes, &colors, &|at, values| {
         FlatSamples::F16(times(values, gain(gains, at)).into_iter().map(half).collect())
     })
 }
@@ -63,15 +67,24 @@ pub(super) fn times(values: &[f32], gain: f64) -> Vec<f32> {
 }
 
 /// Makes the samples of a file of a channel's number and values.
-type Samples<'a> = &'a dyn Fn(usize, &[f32]) -> FlatSamples;
+pub(super) type Samples<'a> = &'a dyn Fn(usize, &[f32]) -> FlatSamples;
 
-fn write(
+/// What the header of a picture says of its colors.
+pub(super) struct Colors {
+    /// Chromaticities of red, green, blue and white, and of what is neutral; none of values that are no colors.
+    pub chromaticities: Option<([[f64; 2]; 4], [f64; 2])>,
+    /// Width over height of a pixel.
+    pub pixel_aspect: f64,
+}
+
+pub(super) fn write(
     mut out: &mut dyn Out,
     frame: &ExposureFrame,
     attributes: &[(String, String)],
+    colors: &Colors,
     samples: Samples<'_>,
 ) -> Result<(), WriteFault> {
-    let image = image_of(frame, attributes, samples)?;
+    let image = image_of(frame, attributes, colors, samples)?;
     image.write().to_unbuffered(&mut out).map_err(fault)?;
     sort_header(out)
 }
@@ -88,7 +101,8 @@ pub(super) fn all_attributes(
     frame: &ExposureFrame,
     attributes: &[(String, String)],
 ) -> impl Iterator<Item = (String, String)> {
-    let units = frame.channels.iter().map(|c| (format!("unit {}", c.name), c.unit.clone()));
+    let stated = frame.channels.iter().filter(|c| !c.unit.is_empty());
+    let units = stated.map(|c| (format!("unit {}", c.name), c.unit.clone()));
     units.chain(attributes.iter().cloned())
 }
 
@@ -102,6 +116,7 @@ pub(super) fn pixel_aspect(frame: &ExposureFrame) -> f32 {
 fn image_of(
     frame: &ExposureFrame,
     attributes: &[(String, String)],
+    colors: &Colors,
     samples: Samples<'_>,
 ) -> Result<Image<Layer<AnyChannels<FlatSamples>>>, WriteFault> {
     let size = Vec2(frame.size.width_px as usize, frame.size.height_px as usize);
@@ -138,7 +153,13 @@ fn image_of(
     let encoding =
         Encoding { compression: Compression::ZIP16, blocks: Blocks::ScanLines, line_order: LineOrder::Increasing };
     let mut shared = ImageAttributes::new(IntegerBounds::from_dimensions(size));
-    shared.pixel_aspect = pixel_aspect(frame);
+    shared.pixel_aspect = colors.pixel_aspect as f32;
+    let place = |xy: [f64; 2]| Vec2(xy[0] as f32, xy[1] as f32);
+    if let Some((all, neutral)) = colors.chromaticities {
+        let [red, green, blue, white] = all.map(place);
+        shared.chromaticities = Some(Chromaticities { red, green, blue, white });
+        layer.adopted_neutral = Some(place(neutral));
+    }
     Ok(Image { attributes: shared, layer_data: Layer::new(size, layer, encoding, channels) })
 }
 
@@ -273,12 +294,12 @@ mod tests {
             let at = frame.channels.iter().position(|c| c.name == name).expect("of that name");
             (f64::from(frame.channels[at].values[i]) * gains[at]) as f32
         };
-        write_atomically(&path, |file| exr(file, &frame, &gains, &[])).expect("written");
+        write_atomically(&path, |file| exr(file, &frame, &gains, 1.0, &[])).expect("written");
         for channel in read() {
             let FlatSamples::F32(values) = &channel.sample_data else { panic!("32-bit floats") };
             assert!(values.iter().enumerate().all(|(i, v)| *v == wanted(&channel.name.to_string(), i)));
         }
-        write_atomically(&path, |file| half_exr(file, &frame, &gains, &[])).expect("written");
+        write_atomically(&path, |file| half_exr(file, &frame, &gains, 1.0, &[])).expect("written");
         for channel in read().into_iter().filter(|c| c.name.to_string() == "X") {
             let FlatSamples::F16(values) = &channel.sample_data else { panic!("16-bit floats") };
             assert!(

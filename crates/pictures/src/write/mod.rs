@@ -2,11 +2,19 @@
 
 mod dng;
 mod exposure;
+mod icc;
+mod linear;
 mod picture;
+mod resample;
+mod space;
 mod tiff;
 mod tiled;
 
 pub use dng::{RawLens, dng};
 pub use exposure::{exr, half_exr, write_exr};
-pub use picture::{png8, tiff16, write_png8, write_png16};
+pub use icc::display_profile;
+pub use linear::{LinearSpace, picture_exr};
+pub use picture::{png8, png16, tiff16, write_png8, write_png16};
+pub use resample::squared;
+pub use space::PictureSpace;
 pub use tiled::tiled_exr;

@@ -1,10 +1,11 @@
-//! Pictures for a screen, in the sRGB encoding.
+//! Pictures for a screen.
 
+use super::space::{PictureSpace, chunk};
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::codecs::tiff::TiffEncoder;
 use image::{ExtendedColorType, ImageEncoder, ImageError};
 use rayon::prelude::*;
-use spectra_color::{Transfer, to_u8};
+use spectra_color::to_u8;
 use spectra_core::frame::DisplayPicture;
 use spectra_core::sink::Out;
 use spectra_files::{WriteError, WriteFault, write_atomically};
@@ -19,16 +20,36 @@ const PIXELS_A_TASK: usize = 8192;
 /// # Errors
 /// [`WriteError`].
 pub fn write_png8(path: &Path, picture: &DisplayPicture) -> Result<(), WriteError> {
-    write_atomically(path, |file| png8(file, picture, 1.0))
+    write_atomically(path, |file| png8(file, picture, PictureSpace::Srgb, 1.0))
 }
 
-/// The same of a picture whose pixels are `pixel_aspect` times as wide as high; where that is not 1, the file says so.
+/// The same, in another space, of a picture whose pixels are `pixel_aspect` times as wide as high; where that is not 1, the file
+/// says so.
 ///
 /// # Errors
-/// [`WriteError`].
-pub fn png8(out: &mut dyn Out, picture: &DisplayPicture, pixel_aspect: f64) -> Result<(), WriteFault> {
-    let bytes = encoded(picture, |code| [to_u8(code)]);
-    png(out, picture, &bytes, ExtendedColorType::Rgb8, pixel_aspect)
+/// [`WriteFault`].
+pub fn png8(
+    out: &mut dyn Out,
+    picture: &DisplayPicture,
+    space: PictureSpace,
+    pixel_aspect: f64,
+) -> Result<(), WriteFault> {
+    let bytes = encoded(picture, space, |code| [to_u8(code)]);
+    png(out, picture, &bytes, ExtendedColorType::Rgb8, space, pixel_aspect)
+}
+
+/// The same with 16 bits: 1 is 65535.
+///
+/// # Errors
+/// [`WriteFault`].
+pub fn png16(
+    out: &mut dyn Out,
+    picture: &DisplayPicture,
+    space: PictureSpace,
+    pixel_aspect: f64,
+) -> Result<(), WriteFault> {
+    let bytes = encoded(picture, space, code16);
+    png(out, picture, &bytes, ExtendedColorType::Rgb16, space, pixel_aspect)
 }
 
 /// Writes a 16-bit PNG: sRGB encoding, 1 is 65535, values outside of [0, 1] clipped.
@@ -36,19 +57,24 @@ pub fn png8(out: &mut dyn Out, picture: &DisplayPicture, pixel_aspect: f64) -> R
 /// # Errors
 /// [`WriteError`].
 pub fn write_png16(path: &Path, picture: &DisplayPicture) -> Result<(), WriteError> {
-    write_atomically(path, |file| png(file, picture, &encoded(picture, code16), ExtendedColorType::Rgb16, 1.0))
+    write_atomically(path, |file| png16(file, picture, PictureSpace::Srgb, 1.0))
 }
 
-/// Writes a 16-bit TIFF, uncompressed: sRGB encoding, 1 is 65535, values outside of [0, 1] clipped.
+/// Writes a 16-bit TIFF, uncompressed: 1 is 65535, values outside of [0, 1] clipped; with a color profile, where the space has
+/// one.
 ///
 /// # Errors
-/// [`WriteError`].
-pub fn tiff16(out: &mut dyn Out, picture: &DisplayPicture) -> Result<(), WriteFault> {
-    let bytes = encoded(picture, code16);
+/// [`WriteFault`].
+pub fn tiff16(out: &mut dyn Out, picture: &DisplayPicture, space: PictureSpace) -> Result<(), WriteFault> {
+    let bytes = encoded(picture, space, code16);
     check(picture)?;
     let mut to = BufWriter::new(out);
     let (width, height) = (picture.width_px, picture.height_px);
-    TiffEncoder::new(&mut to).write_image(&bytes, width, height, ExtendedColorType::Rgb16).map_err(fault)?;
+    let mut encoder = TiffEncoder::new(&mut to);
+    if let Some(profile) = space.profile() {
+        encoder.set_icc_profile(profile).map_err(|error| WriteFault::Format(error.to_string()))?;
+    }
+    encoder.write_image(&bytes, width, height, ExtendedColorType::Rgb16).map_err(fault)?;
     Ok(to.flush()?)
 }
 
@@ -57,6 +83,7 @@ fn png(
     picture: &DisplayPicture,
     bytes: &[u8],
     color: ExtendedColorType,
+    space: PictureSpace,
     pixel_aspect: f64,
 ) -> Result<(), WriteFault> {
     check(picture)?;
@@ -65,9 +92,10 @@ fn png(
     PngEncoder::new_with_quality(&mut png, CompressionType::Default, FilterType::Adaptive)
         .write_image(bytes, picture.width_px, picture.height_px, color)
         .map_err(fault)?;
-    // Signature and IHDR come first (PNG, third edition, 5.6): pHYs may follow at once.
+    // Signature and IHDR come first (PNG, third edition, 5.6): what says the colors, and pHYs, may follow at once.
     let (head, rest) = png.split_at(8 + 25);
     to.write_all(head)?;
+    to.write_all(&space.chunks())?;
     if pixel_aspect != 1.0 && (0.001..1000.0).contains(&pixel_aspect) {
         to.write_all(&physical_dimensions(pixel_aspect))?;
     }
@@ -76,23 +104,10 @@ fn png(
 }
 
 /// The chunk pHYs (PNG, third edition, 11.3.4.3) of pixels of this width over height, without a unit.
-fn physical_dimensions(pixel_aspect: f64) -> [u8; 21] {
+fn physical_dimensions(pixel_aspect: f64) -> Vec<u8> {
     const ACROSS: u32 = 1_000_000;
     let down = (f64::from(ACROSS) * pixel_aspect).round() as u32;
-    let mut chunk = [0; 21];
-    chunk[..4].copy_from_slice(&9_u32.to_be_bytes());
-    chunk[4..8].copy_from_slice(b"pHYs");
-    chunk[8..12].copy_from_slice(&ACROSS.to_be_bytes());
-    chunk[12..16].copy_from_slice(&down.to_be_bytes());
-    let check = crc32(&chunk[4..17]);
-    chunk[17..].copy_from_slice(&check.to_be_bytes());
-    chunk
-}
-
-/// The check of a chunk (PNG, third edition, annex D).
-fn crc32(bytes: &[u8]) -> u32 {
-    let step = |crc: u32| if crc & 1 == 1 { 0xedb8_8320 ^ (crc >> 1) } else { crc >> 1 };
-    !bytes.iter().fold(u32::MAX, |crc, byte| (0..8).fold(crc ^ u32::from(*byte), |crc, _| step(crc)))
+    chunk(b"pHYs", &[&ACROSS.to_be_bytes()[..], &down.to_be_bytes(), &[0]].concat())
 }
 
 /// The encoders panic where the number of pixels is not that of the size.
@@ -111,13 +126,20 @@ fn fault(error: ImageError) -> WriteFault {
     }
 }
 
-/// The picture in code values, `N` bytes each, by `code`.
-fn encoded<const N: usize>(picture: &DisplayPicture, code: impl Fn(f64) -> [u8; N] + Sync) -> Vec<u8> {
+/// The picture in code values of a space, `N` bytes each, by `code`.
+fn encoded<const N: usize>(
+    picture: &DisplayPicture,
+    space: PictureSpace,
+    code: impl Fn(f64) -> [u8; N] + Sync,
+) -> Vec<u8> {
+    let encode = space.encoder();
     let mut bytes = vec![0; picture.rgb.len() * 3 * N];
     let rows = bytes.par_chunks_mut(PIXELS_A_TASK * 3 * N).zip(picture.rgb.par_chunks(PIXELS_A_TASK));
     rows.for_each(|(bytes, rgb)| {
-        for (to, linear) in bytes.chunks_exact_mut(N).zip(rgb.iter().flatten()) {
-            to.copy_from_slice(&code(Transfer::Srgb.encode(f64::from(*linear))));
+        for (to, linear) in bytes.chunks_exact_mut(3 * N).zip(rgb) {
+            for (to, value) in to.chunks_exact_mut(N).zip(encode(*linear)) {
+                to.copy_from_slice(&code(value));
+            }
         }
     });
     bytes
@@ -147,7 +169,7 @@ mod tests {
         let sixteen = [folder.path().join("b.png"), folder.path().join("c.tif")];
         write_png8(&eight, &picture()).expect("written");
         write_png16(&sixteen[0], &picture()).expect("written");
-        write_atomically(&sixteen[1], |file| tiff16(file, &picture())).expect("written");
+        write_atomically(&sixteen[1], |file| tiff16(file, &picture(), PictureSpace::Srgb)).expect("written");
         let read = image::open(&eight).expect("a picture").into_rgb8();
         assert_eq!(read.dimensions(), (4, 3));
         assert_eq!(read.get_pixel(0, 0).0, [0, 118, 255]);

@@ -19,6 +19,7 @@ pub fn tiled_exr(
     out: &mut dyn Out,
     frame: &ExposureFrame,
     gains: &[f64],
+    squeeze: f64,
     attributes: &[(String, String)],
 ) -> Result<(), WriteFault> {
     let Some(own) = library::library() else {
@@ -37,7 +38,7 @@ pub fn tiled_exr(
     let picture = TiledExr {
         width_px: frame.size.width_px,
         height_px: frame.size.height_px,
-        pixel_aspect: pixel_aspect(frame),
+        pixel_aspect: (f64::from(pixel_aspect(frame)) * squeeze) as f32,
         tile_px: TILE_PX,
         channels: &channels,
         attributes: &attributes,

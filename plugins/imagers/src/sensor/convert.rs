@@ -7,9 +7,11 @@ use super::pattern::Pattern;
 use glam::DVec3;
 use rayon::prelude::*;
 use spectra_color::{Adaptation, Gamut, RgbSpace};
-use spectra_core::frame::{DisplayPicture, ExposureChannel, ExposureFrame, FrameSize, RawColor, RawFrame, RawNoise};
+use spectra_core::frame::{
+    DisplayPicture, ExposureChannel, ExposureFrame, Finished, FrameSize, RawColor, RawFrame, RawNoise, Wanted,
+};
 use spectra_core::stage::Digitize;
-use spectra_film::display::{White, show_xyz};
+use spectra_film::display::{White, finish_xyz};
 
 /// The electronics.
 #[derive(Clone, Debug)]
@@ -134,6 +136,12 @@ impl Converter {
     /// A picture of a raw frame: missing colors filled in, white made white, matrix, automatic exposure.
     #[must_use]
     pub fn show(&self, raw: &RawFrame) -> Option<DisplayPicture> {
+        self.finish(raw, Wanted::default()).map(|finished| finished.shown)
+    }
+
+    /// The same with what else is `wanted`.
+    #[must_use]
+    pub fn finish(&self, raw: &RawFrame, wanted: Wanted) -> Option<Finished> {
         let (black, range) = (f32::from(self.black_level), f32::from(self.white_level) - f32::from(self.black_level));
         let linear: Vec<f32> = raw.values.iter().map(|v| (f32::from(*v) - black) / range).collect();
         let (width, height) = (raw.width_px as usize, raw.height_px as usize);
@@ -160,6 +168,6 @@ impl Converter {
         };
         let size = FrameSize { width_px: raw.width_px, height_px: raw.height_px, width_mm: 1.0, height_mm: 1.0 };
         let frame = ExposureFrame { size, channels: vec![plane(0, "X"), plane(1, "Y"), plane(2, "Z")] };
-        show_xyz(&frame, White::default(), Gamut::Desaturate).ok()
+        finish_xyz(&frame, White::default(), Gamut::Desaturate, None, wanted).ok()
     }
 }

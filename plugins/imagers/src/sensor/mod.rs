@@ -20,7 +20,7 @@ use crate::plane::{Met, Plane};
 use glam::DVec3;
 use spectra_core::batch::{Columns, pixel_and_channel, tag_of};
 use spectra_core::cover::CoverStack;
-use spectra_core::frame::{DisplayPicture, ExposureFrame, FrameSize};
+use spectra_core::frame::{DisplayPicture, ExposureFrame, Finished, FrameSize, Wanted};
 use spectra_core::isa::Isa;
 use spectra_core::loss::ALIVE;
 use spectra_core::numbers::seed_of_frame;
@@ -214,6 +214,10 @@ impl Response for Sensor {
 
     fn display(&self, exposure: &ExposureFrame) -> Option<DisplayPicture> {
         self.converter.show(&self.converter.raw(exposure))
+    }
+
+    fn finish(&self, exposure: &ExposureFrame, wanted: Wanted) -> Option<Finished> {
+        self.converter.finish(&self.converter.raw(exposure), wanted)
     }
 
     fn digitize(&self) -> Option<&dyn Digitize> {
