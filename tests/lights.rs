@@ -67,7 +67,8 @@ fn scene(folder: &Path, source: &str) -> std::path::PathBuf {
     let path = folder.join("scene.yaml");
     let text = format!(
         "spectra: 1\nsource: {source}\nlens: {{file: zeiss-biotar-50-f1.4, focus: {{distance: 1.2 m, by: paraxial}}}}\n\
-         imager: {{kind: xyz, width: 12, height: 8, resolution: [30, 20]}}\nrender: {{samples: 64}}\n"
+         imager: {{kind: xyz, width: 12, height: 8, resolution: [30, 20]}}\n\
+         render: {{samples: 64, reflections: {{order: 0}}}}\n"
     );
     std::fs::write(&path, text).expect("written");
     path

@@ -115,6 +115,11 @@ impl Path {
         self
     }
 
+    /// Without its last step.
+    pub(crate) fn truncate_last(&mut self) {
+        self.steps.pop();
+    }
+
     /// The steps, in the order of the light.
     #[must_use]
     pub fn steps(&self) -> &[PathStep] {

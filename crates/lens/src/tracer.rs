@@ -82,6 +82,14 @@ pub struct Route {
     outside: usize,
 }
 
+impl Route {
+    /// How many elements it goes by.
+    #[must_use]
+    pub fn steps(&self) -> usize {
+        self.legs.len()
+    }
+}
+
 /// One step of a [`Route`].
 #[derive(Clone, Copy, Debug)]
 struct Leg {
@@ -100,6 +108,8 @@ struct Leg {
     beyond: usize,
     /// Whether the way here lies within the lens, where glass absorbs.
     inside: bool,
+    /// Whether the light was reflected before, so that it may run away from this surface.
+    turned: bool,
     /// What the surface draws its numbers by, if it does.
     stage: Option<StageKey>,
 }
@@ -206,6 +216,11 @@ impl Tracer {
         self.elements.len()
     }
 
+    /// What a surface does to the weight of light.
+    pub(crate) fn passage(&self, at: usize) -> &Passage {
+        &self.passages[at]
+    }
+
     /// As far as light of this direction comes before a surface draws its numbers; straight through where none does.
     pub(crate) fn certain(&self, travel: Travel) -> Route {
         let path = Path::through(self.elements.len(), travel);
@@ -242,7 +257,8 @@ impl Tracer {
     /// plane.
     pub fn follow(&self, route: &Route, rays: &mut RayBatch, work: &mut Work) {
         self.refractive_indices(rays, work);
-        if (rays.optical_path_mm().is_some() || rays.is_polarized()) && work.before.is_none() {
+        let turns = route.legs.iter().any(|leg| leg.turns);
+        if (turns || rays.optical_path_mm().is_some() || rays.is_polarized()) && work.before.is_none() {
             work.before = Some(Before::new(work.capacity));
         }
         if let Some((ledger, booked)) = &mut work.ledger {
@@ -294,7 +310,7 @@ impl Tracer {
         let absorption = self.absorptions[leg.before].as_ref().filter(|_| leg.inside);
         let carries_path = rays.optical_path_mm().is_some();
         if let Some(noted) = &mut work.before {
-            let needs_way = absorption.is_some() || carries_path;
+            let needs_way = absorption.is_some() || carries_path || leg.turned;
             if needs_way {
                 noted.note_positions(rays);
             }
@@ -315,6 +331,9 @@ impl Tracer {
             rays.set_stage(stage);
         }
         let mut ended = element.surface.interact(rays, &interface, isa);
+        if let (Some(noted), true) = (&work.before, leg.turned) {
+            ended += noted.end_behind(rays, shift_mm, interface.number);
+        }
         if let Some((ledger, booked)) = &mut work.ledger {
             booked.settle(rays, &mut ledger.steps[step], |s| &mut s.absorbed);
         }
@@ -471,6 +490,7 @@ fn route(elements: &[Element], image_pose: &Pose, path: &Path) -> Route {
             after,
             beyond,
             inside: !legs.is_empty(),
+            turned: legs.iter().any(|leg| leg.turns),
             stage: element.surface.draws().then(|| {
                 let same = elements[..*at].iter().filter(|e| e.surface.draws() && e.kind == element.kind).count();
                 let visits = legs.iter().filter(|leg| leg.at == *at).count();

@@ -7,6 +7,7 @@
 use crate::absorption::{Absorption, Grid, Locate};
 use crate::coating::{Amplitudes, Coating, Films, Polarizing, Sides};
 use crate::{Element, Lens, LensMedium};
+use spectra_core::Loss;
 use spectra_core::RayBatch;
 use spectra_core::batch::{Column, Weighing};
 use spectra_core::isa::{Isa, Vectorized};
@@ -19,6 +20,9 @@ use spectra_glass::Lender;
 const SAME_INDEX: f64 = 1e-8;
 /// A medium of a lower index is a gas: a surface between two others is cemented, and no coating lies in it.
 const GAS_INDEX: f64 = 1.05;
+
+/// A way of less than this runs backward: cemented surfaces and rounding are on the other side of it, mm.
+const BEHIND_MM: f64 = -1e-6;
 
 /// Sine of the angle between the directions before and after below which light keeps its axis: it meets the surface along the
 /// normal, where s and p are the same.
@@ -186,6 +190,22 @@ impl Before {
         let position = self.position.each_ref().map(|column| column.slice(len));
         let direction = self.direction.each_ref().map(|column| column.slice(len));
         isa.run(Absorb { rays: rays.weighing(), position, direction, per_mm, shift_mm });
+    }
+
+    /// Ends rays that met a surface behind them: a steep reflection may send light sideways, past the surface that comes next. Says
+    /// how many.
+    pub(crate) fn end_behind(&self, rays: &mut RayBatch, shift_mm: f64, number: u32) -> usize {
+        let len = rays.len();
+        let from = self.position.each_ref().map(|column| column.slice(len));
+        let direction = self.direction.each_ref().map(|column| column.slice(len));
+        let c = rays.weighing();
+        let is_behind = |i: usize| c.state[i] == ALIVE && way_mm(i, from, c.position, direction, shift_mm) < BEHIND_MM;
+        let behind: Vec<usize> = (0..len).filter(|i| is_behind(*i)).collect();
+        if !behind.is_empty() {
+            let c = rays.columns_mut();
+            behind.iter().for_each(|i| c.state[*i] = Loss::Missed.state(number));
+        }
+        behind.len()
     }
 
     /// Adds the way since the note to the optical path of batches that carry it, in a medium of these indices.

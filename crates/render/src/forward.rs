@@ -295,7 +295,7 @@ impl Estimator for Forward {
 }
 
 /// Some points of a source, as the search of the pupil needs them.
-fn source_points(pipeline: &Pipeline, emit: &dyn Emit, numbers: &Numbers) -> Vec<DVec3> {
+pub(crate) fn source_points(pipeline: &Pipeline, emit: &dyn Emit, numbers: &Numbers) -> Vec<DVec3> {
     let isa = pipeline.isa;
     let mut state = ThreadState::new(pipeline, SOURCE_POINTS);
     for (dimension, column) in state.numbers.iter_mut().enumerate() {

@@ -44,6 +44,12 @@ impl Landing {
     }
 }
 
+/// The corners of the frame, mm on the nominal image plane, in order.
+pub(crate) fn corners(scene: &Scene, isa: Isa) -> Vec<[f64; 2]> {
+    let (middle, across, down) = frame(scene, isa);
+    [across + down, across - down, -across - down, down - across].map(|p| [middle.x + p.x, middle.y + p.y]).to_vec()
+}
+
 /// The middle of the frame, and half of it across and down, mm on the nominal image plane.
 fn frame(scene: &Scene, isa: Isa) -> (DVec3, DVec3, DVec3) {
     let size = scene.imager.size();

@@ -87,6 +87,20 @@ impl Pipeline {
         }
     }
 
+    /// The same through a lens that is made ready otherwise.
+    pub(crate) fn with_tracer(&self, tracer: Tracer) -> Self {
+        Self {
+            scene: self.scene.clone(),
+            share: self.share,
+            isa: self.isa,
+            tracer: Arc::new(tracer),
+            density: self.density.clone(),
+            responses: self.responses.clone(),
+            recorded: self.recorded.clone(),
+            draws: self.draws,
+        }
+    }
+
     /// What is traced of the source.
     pub(crate) fn source(&self) -> &dyn Source {
         self.share.of(&self.scene)
@@ -216,6 +230,19 @@ impl ThreadState {
             largest = values.iter().fold(largest, |a, v| a.max(v.abs()));
         }
         largest
+    }
+
+    /// What all rays of the batch contribute to all channels.
+    pub(crate) fn sum(&mut self, pipeline: &Pipeline) -> f64 {
+        let len = self.rays.len();
+        let mut sum = 0.0;
+        for channel in 0..pipeline.responses.channels() {
+            let values = &mut self.values[..len];
+            let (nm, weights) = (self.rays.wavelengths_nm(), self.rays.weights());
+            pipeline.isa.run(pipeline.responses.weigh(channel, nm, weights, values));
+            sum += values.iter().sum::<f64>();
+        }
+        sum
     }
 
     /// Writes each ray's contribution to each channel as integers; false where one does not fit.

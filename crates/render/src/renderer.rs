@@ -4,6 +4,7 @@ use crate::backward::Backward;
 use crate::done::Units;
 use crate::estimator::Estimator;
 use crate::forward::Forward;
+use crate::ghosts::{Ghosts, LightLedger};
 use crate::landing::Landing;
 use crate::light::Part;
 use crate::memory::memory_needed;
@@ -22,6 +23,9 @@ use spectra_scene::{Direction, Lights, NumberFamily, Scene};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, PoisonError};
 
+/// Ghosts matter by themselves where the brightest of them has more than this part of the mean of the frame.
+const MATTERS: f64 = 0.01;
+
 /// What a render gives.
 #[derive(Clone, Debug)]
 pub struct Rendering {
@@ -39,6 +43,8 @@ pub struct Rendering {
     pub noise: Option<Noise>,
     /// The estimators whose light it is: `forward`, `backward`.
     pub estimators: Vec<&'static str>,
+    /// Where the light of the source's lights goes, if ghosts are traced.
+    pub ledger: Option<LightLedger>,
     /// What a person should know before believing the picture, and what to write.
     pub warnings: Vec<String>,
 }
@@ -48,6 +54,7 @@ pub struct Renderer {
     scene: Arc<Scene>,
     pipeline: Arc<Pipeline>,
     estimators: Vec<Box<dyn Estimator>>,
+    ledger: Option<LightLedger>,
 }
 
 impl Renderer {
@@ -73,18 +80,50 @@ impl Renderer {
     ) -> Result<Self, RenderError> {
         let direction = scene.render.direction;
         let lights = scene.render.lights;
-        if lights == Lights::Same {
-            return Self::of(scene, isa, density, &[direction]);
-        }
+        let ghosts = scene.render.reflections.order;
         scene.source.prepare().map_err(RenderError::Source)?;
         let pays = scene.source.split().map(|split| split.pays);
-        if !pays.is_some_and(|pays| pays || lights == Lights::Forward) {
-            return Self::of(scene, isa, density, &[direction]);
+        let apart = lights != Lights::Same && pays.is_some_and(|pays| pays || lights == Lights::Forward);
+        if !apart {
+            let plain = Self::of(scene, isa, density, &[direction])?;
+            return if ghosts.unwrap_or(0) == 0 { Ok(plain) } else { plain.with_ghosts() };
         }
         let pipeline = Arc::new(Pipeline::new(&scene, isa, density)?);
         let share = |share| Arc::new(pipeline.of_share(share));
-        let (rest, lights) = (Backward::new(share(Share::Rest))?, Forward::new(share(Share::Lights))?);
-        Ok(Self { estimators: halved(&scene, vec![Box::new(rest), Box::new(lights)]), scene, pipeline })
+        let of_lights = share(Share::Lights);
+        let (rest, lights) = (Backward::new(share(Share::Rest))?, Forward::new(of_lights.clone())?);
+        let found = if ghosts == Some(0) { None } else { Ghosts::new(&of_lights)? };
+        let found = found.filter(|found| ghosts.is_some() || found.brightest() > MATTERS * rest.mean());
+        let ledger = found.as_ref().map(|found| found.ledger().clone());
+        let mut kinds: Vec<Box<dyn Estimator>> = vec![Box::new(rest), Box::new(lights)];
+        kinds.extend(found.map(|found| Box::new(found) as Box<dyn Estimator>));
+        Ok(Self { estimators: halved(&scene, kinds), scene, pipeline, ledger })
+    }
+
+    /// With the ghosts of its lights, or of all of the source where none of it is brighter than the rest.
+    fn with_ghosts(mut self) -> Result<Self, RenderError> {
+        let share = if self.scene.source.split().is_some() { Share::Lights } else { Share::Whole };
+        let found = match share {
+            Share::Whole => Ghosts::new(&self.pipeline)?,
+            share => Ghosts::new(&self.pipeline.of_share(share))?,
+        };
+        let Some(found) = found else { return Ok(self) };
+        self.ledger = Some(found.ledger().clone());
+        let halves = self.halves() as usize;
+        let mut both = halved(&self.scene, vec![Box::new(found)]).into_iter();
+        // Halves stand behind one another.
+        let kinds = self.estimators.len() / halves;
+        for half in (1..=halves).rev() {
+            let Some(ghosts) = both.next_back() else { break };
+            self.estimators.insert(half * kinds, ghosts);
+        }
+        Ok(self)
+    }
+
+    /// Where the light of lights goes, if ghosts are traced.
+    #[must_use]
+    pub fn ledger(&self) -> Option<&LightLedger> {
+        self.ledger.as_ref()
     }
 
     /// The same by these estimators, whose light is added, and with a density of wavelengths that is known to fit.
@@ -107,7 +146,7 @@ impl Renderer {
             })
         };
         let estimators = estimators.iter().map(one).collect::<Result<_, _>>()?;
-        Ok(Self { estimators: halved(&scene, estimators), scene, pipeline })
+        Ok(Self { estimators: halved(&scene, estimators), scene, pipeline, ledger: None })
     }
 
     /// Looks whether a scene can be made ready: what [`Renderer::new`] refuses, as far as that shows without
@@ -359,6 +398,7 @@ impl Renderer {
             estimators: self.estimators().take(self.kinds()).map(Estimator::name).collect(),
             partial: light.samples() < u64::from(scene.render.samples) && !self.is_clean(light),
             noise: self.noise(light),
+            ledger: self.ledger.clone(),
             warnings: Vec::new(),
         })
     }

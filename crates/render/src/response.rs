@@ -4,7 +4,7 @@ use spectra_core::isa::Vectorized;
 use spectra_core::spectral::{Channel, Grid};
 
 /// The responses of all channels, one table after the other, each linear between points.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Responses {
     grid: Grid,
     inverse_step: f64,

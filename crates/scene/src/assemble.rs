@@ -7,8 +7,8 @@ use crate::focus::FocusLight;
 use crate::lens_section::{LensSection, SetLens, held_lens};
 use crate::resources::read_yaml;
 use crate::{
-    ConePattern, Direction, Lights, NumberFamily, Output, RenderSettings, Scene, doubts, films, lamps, language,
-    output, sight, yaml,
+    ConePattern, Direction, Lights, NumberFamily, Output, Reflections, RenderSettings, Scene, doubts, films, lamps,
+    language, output, sight, yaml,
 };
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -128,7 +128,29 @@ struct RenderSection {
     /// How rays fill the aperture: `disk` (the default), `rings` (of equal area) or `random`.
     #[serde(default)]
     cone: ConePattern,
+    /// Light of the source's lights that surfaces of the lens reflect to the imager: ghosts and flare.
+    #[serde(default)]
+    reflections: ReflectionsSection,
 }
+
+/// Which reflections are traced.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct ReflectionsSection {
+    /// How often light may be reflected on its way to the imager: 0 (no ghosts) or 2. If absent, 2 where lights are so bright that
+    /// the brightest ghost is more than 1 % of the mean of the frame without them, and 0 elsewhere.
+    order: Option<Whole<0, 2>>,
+    /// Part of the light that film or sensor sends back into the lens as a mirror does, from 0 to 1; assumed 0.043 if absent, as of
+    /// gelatin (index 1.52) in air.
+    #[schemars(extend("minimum" = 0, "maximum" = 1))]
+    imager: Option<Ratio>,
+    /// Follow the polarization that light gets at each surface: slower, and truer by some percent at steep angles. Not if absent.
+    #[serde(default)]
+    polarized: bool,
+}
+
+/// Fresnel's reflectance of gelatin of index 1.52 along the normal.
+const GELATIN: f64 = (0.52 / 2.52) * (0.52 / 2.52);
 
 /// Which way rays are to run.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
@@ -389,6 +411,10 @@ fn render_settings(
     let rays = s.rays.map_or(samples * FORWARD_RAYS_A_SAMPLE * imager.size().pixels() as u64, Whole::get);
     let seed = s.seed.map_or(DEFAULT_SEED, Whole::get);
     let frame = s.frame.map(Whole::get);
+    if s.reflections.order.is_some_and(|order| order.get() % 2 == 1) {
+        let fault = params.fault("reflections.order", "light that is reflected once goes back out of the front");
+        faults.push(fault.hint("write `order: 2`, or `order: 0` for no ghosts"));
+    }
     let can_backward = source.radiance().is_some() && imager.launch().is_some();
     let can_forward = source.emit().is_some() && imager.receive().is_some();
     let direction = match s.direction {
@@ -429,5 +455,11 @@ fn render_settings(
         batch: s.batch.map_or(DEFAULT_BATCH, Whole::size),
         numbers: s.numbers,
         cone: s.cone,
+        reflections: Reflections {
+            order: s.reflections.order.map(Whole::get_u32),
+            imager: s.reflections.imager.map_or(GELATIN, Ratio::number),
+            imager_stated: s.reflections.imager.is_some(),
+            polarized: s.reflections.polarized,
+        },
     })
 }

@@ -31,6 +31,8 @@ pub use focus::{Focus, FocusBy};
 pub use language::{Member, Series, SeriesKind, SweptAxis, load, load_series, series_of_text, series_of_tree};
 pub use output::{Holds, Output, OutputEntry};
 pub use resources::FileResources;
-pub use scene::{ConePattern, Direction, FilmTime, Lights, NumberFamily, RenderSettings, Scene, SceneFilm};
+pub use scene::{
+    ConePattern, Direction, FilmTime, Lights, NumberFamily, Reflections, RenderSettings, Scene, SceneFilm,
+};
 pub use schema::{FileKind, file_documentation, file_schema, shared_documentation};
 pub use shot::{Developed, Shot};

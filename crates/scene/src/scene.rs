@@ -45,6 +45,19 @@ pub enum Lights {
     Forward,
 }
 
+/// Light that surfaces of the lens reflect on its way to the imager.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Reflections {
+    /// Reflections on the way: 0 for none, 2, 4 for those of 2 and of 4; `None` for 2 where lights are bright enough to matter.
+    pub order: Option<u32>,
+    /// Part of the light that the imager itself reflects as a mirror does.
+    pub imager: f64,
+    /// Whether the scene states that.
+    pub imager_stated: bool,
+    /// Whether light is polarized by what it passes and is reflected by.
+    pub polarized: bool,
+}
+
 /// How forward rays are spread over the front of the lens.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
@@ -100,6 +113,8 @@ pub struct RenderSettings {
     pub numbers: NumberFamily,
     /// Pattern of the forward cone.
     pub cone: ConePattern,
+    /// What reflections are traced.
+    pub reflections: Reflections,
 }
 
 impl RenderSettings {

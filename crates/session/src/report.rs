@@ -4,7 +4,7 @@ use crate::header::films;
 use crate::run::Job;
 use serde_json::{Map, Value, json};
 use spectra_core::Loss;
-use spectra_render::Rendering;
+use spectra_render::{GhostPath, LightLedger, Rendering};
 use spectra_scene::{FilmTime, FocusBy, Scene};
 
 /// All there is to say of a render.
@@ -58,9 +58,10 @@ impl Report<'_> {
                 "asked": n.asked, "median": n.median, "p95": n.p95, "worst": n.worst, "clean": n.clean,
             })),
             "lost": self.lost(),
+            "ledger": rendering.ledger.as_ref().map(|ledger| self.ledger(ledger)),
             "seed": settings.seed,
             "direction": match &rendering.estimators[..] {
-                [_, _, ..] => "both",
+                all if all.iter().filter(|name| **name != "ghosts").count() > 1 => "both",
                 _ => settings.direction.name(),
             },
             "samples_per_pixel": (!forward).then_some(settings.samples),
@@ -119,6 +120,28 @@ impl Report<'_> {
             }
         }
         json!({ "total": losses.total(), "by_cause": by_cause, "by_surface": by_surface })
+    }
+
+    /// Where the light of the source's lights went, W in the band: emitted = detected + lost + not traced.
+    fn ledger(&self, ledger: &LightLedger) -> Value {
+        let path = |path: &GhostPath| json!({ "surfaces": path.surfaces, "power_w": path.power_w });
+        let imager = self.scene.render.reflections;
+        json!({
+            "order": 2,
+            "emitted": ledger.emitted_w,
+            "detected": ledger.detected_w(),
+            "lost": ledger.lost_w(),
+            "not_traced": ledger.not_traced_w,
+            "detected_by": { "direct": ledger.direct_w, "ghosts": ledger.ghosts_w },
+            "lost_by": {
+                "rims": ledger.rims_w,
+                "absorbed": ledger.absorbed_w,
+                "out_of_the_front": ledger.front_w,
+                "beside_the_frame": ledger.beside_w,
+            },
+            "imager_reflectance": { "value": imager.imager, "assumed": !imager.imager_stated },
+            "paths": ledger.paths.iter().map(path).collect::<Vec<_>>(),
+        })
     }
 
     /// The head of a row of losses: which surface.

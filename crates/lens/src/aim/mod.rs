@@ -30,6 +30,7 @@ mod table;
 
 pub use front::{AimRegion, FrontPupil};
 pub use rear::RearPupil;
+pub(crate) use search::Sphere;
 pub use table::AimPattern;
 
 use crate::{Lens, Travel};

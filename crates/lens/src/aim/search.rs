@@ -16,7 +16,7 @@ use spectra_core::numbers::Numbers;
 
 /// A sphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Sphere {
+pub(crate) struct Sphere {
     pub center: DVec3,
     pub radius_mm: f64,
 }

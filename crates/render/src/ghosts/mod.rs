@@ -1,0 +1,448 @@
+//! Ghosts: light of the source's lights that surfaces of the lens reflect on its way to the imager.
+//!
+//! Forward, as [`crate::forward`], but along paths by two reflections, each traced exactly as the straight one. A pilot run finds for
+//! each path and zone of the source where on the front of the lens its light comes in ([`guide`]), and how much each path needs: rays
+//! are shared out so that the noise of 32 x 32 pixels, as a part of the ghosts' light there, is least. A tenth of every path's rays goes
+//! all over the front, so that no path has a bias whatever the pilot overlooked.
+
+mod account;
+mod guide;
+mod zones;
+
+pub use account::{GhostPath, LightLedger};
+
+use crate::blame::{Blame, Step};
+use crate::error::RenderError;
+use crate::estimator::{Estimator, Scratch, Unit};
+use crate::forward::source_points;
+use crate::pilot::PILOT_SEED;
+use crate::pipeline::{Pipeline, ThreadState};
+use crate::sums::{ExactSums, OwnSums, each, scale_for};
+use crate::{Done, Workers};
+use glam::DVec3;
+use guide::{Aim, Found, Guide};
+use spectra_core::batch::pixel_and_channel;
+use spectra_core::numbers::{Numbers, StageKey, mix64};
+use spectra_core::stage::{Emit, Receive};
+use spectra_core::{Loss, RayBatch};
+use spectra_lens::{FrontOpening, Indices, Path, Route, Tracer};
+use std::ops::Range;
+use std::sync::Arc;
+use zones::Zones;
+
+/// What numbers of its own stages draw by.
+const ESTIMATOR: &str = "ghosts";
+/// Turns the picture's seed into that of the ghosts.
+const SEED: u64 = 0x6768_6f73_7473;
+
+/// Rays for each pixel and sample, and in all of a sample at least for each path.
+const RAYS_A_PIXEL: f64 = 1.0;
+const LEAST_A_PATH: u64 = 64;
+/// Rays of a unit of work: some milliseconds.
+const RAYS_PER_BLOCK: u64 = 1 << 16;
+/// This part of the rays is shared out evenly, whatever the pilot found.
+const FLOOR: u64 = 8;
+/// What a ray costs beside its surfaces, in surfaces.
+const OVERHEAD: f64 = 8.0;
+
+/// Rays of the pilot for each path and round, of one zone and of each further one, and rounds: the last one says how much comes.
+const PILOT: usize = 4096;
+const PILOT_MORE: usize = 1024;
+const ROUNDS: u64 = 3;
+/// Pixels of a block, across and down.
+const BLOCK: usize = 32;
+/// Blocks that have less than this part of the brightest one need not be as clean as those that have more.
+const DIM: f64 = 1e-4;
+/// Room of the sums for rays that the pilot has not seen.
+const HEADROOM: f64 = 4.0;
+
+/// One path.
+struct Way {
+    route: Route,
+    /// By the zones of the source.
+    guides: Vec<Guide>,
+    /// Rays of a block, and what each of them weighs for those of all paths.
+    rays: u64,
+    boost: f64,
+}
+
+/// What was found once for a scene.
+struct Plan {
+    /// Where light enters; `None` of a source that sets its directions itself.
+    opening: Option<FrontOpening>,
+    zones: Zones,
+    ways: Vec<Way>,
+    /// Rays of a block of all paths.
+    rays: u64,
+    blocks_a_sample: u64,
+    /// The brightest block, W/m2 in the mean of its pixels and the sum of its channels.
+    brightest: f64,
+    ledger: LightLedger,
+}
+
+pub(crate) struct Ghosts {
+    pipeline: Arc<Pipeline>,
+    plan: Arc<Plan>,
+    numbers: Numbers,
+    scale: f64,
+}
+
+impl Ghosts {
+    /// Searches the ways of the light of a share of the source, and finds the scale of the sums. `None` where nothing reflects.
+    pub(crate) fn new(pipeline: &Pipeline) -> Result<Option<Self>, RenderError> {
+        let scene = &pipeline.scene;
+        let emit = pipeline.source().emit().ok_or(RenderError::CannotEmit)?;
+        scene.imager.receive().ok_or(RenderError::CannotReceive)?;
+        let reflections = scene.render.reflections;
+        let part = reflections.imager;
+        let corners = crate::landing::corners(scene, pipeline.isa);
+        let lens = spectra_lens::Lens::clone(&scene.lens).with_reflecting_imager(|_| part, corners);
+        let indices = Indices::Band { min_nm: scene.grid.start_nm, max_nm: scene.grid.end_nm() };
+        let tracer = Tracer::new(&lens, indices, pipeline.isa).map_err(|e| RenderError::Lens(e.to_string()))?;
+        let (count, imager) = (lens.elements.len(), lens.elements.len() - 1);
+        let mut surfaces = tracer.reflecting();
+        surfaces.retain(|at| part > 0.0 || *at != imager);
+        if surfaces.is_empty() {
+            return Ok(None);
+        }
+        let pipeline = Arc::new(pipeline.with_tracer(tracer));
+        let opening =
+            if emit.is_directed() { None } else { Some(FrontOpening::of(&lens).ok_or(RenderError::NoAperture)?) };
+        let numbers = pipeline.numbers(PILOT_SEED ^ SEED);
+        let zones = opening.as_ref().map_or_else(Zones::one, |opening| {
+            let points = source_points(&pipeline, emit, &numbers);
+            Zones::new(&points, opening.center(), lens.has_axis_of_revolution())
+        });
+        // What reaches the imager counts, not what it keeps: exposure is incident light.
+        let way = |path: Path| Way {
+            route: pipeline.tracer.route(&path.before(imager)),
+            guides: vec![Guide::everywhere(); zones.count()],
+            rays: 1,
+            boost: 1.0,
+        };
+        let ways: Vec<Way> = Path::ghosts(count, &surfaces, 2).into_iter().map(way).collect();
+        let plan =
+            Plan { opening, zones, ways, rays: 1, blocks_a_sample: 1, brightest: 0.0, ledger: LightLedger::default() };
+        let mut own = Self { pipeline, plan: Arc::new(plan), numbers, scale: 1.0 };
+        own.plan = Arc::new(own.planned(&lens, &surfaces));
+        own.scale = own.pilot_scale()?;
+        own.numbers = own.of_seed(scene.render.seed);
+        Ok(Some(own))
+    }
+
+    fn of_seed(&self, seed: u64) -> Numbers {
+        self.pipeline.numbers(mix64(seed ^ SEED))
+    }
+
+    /// The brightest block of 32 x 32 pixels, W/m2 in the mean of its pixels and the sum of its channels.
+    pub(crate) fn brightest(&self) -> f64 {
+        self.plan.brightest
+    }
+
+    /// Where the light goes.
+    pub(crate) fn ledger(&self) -> &LightLedger {
+        &self.plan.ledger
+    }
+
+    fn emit(&self) -> &dyn Emit {
+        self.pipeline.source().emit().expect("`new` saw it")
+    }
+
+    fn receive(&self) -> &dyn Receive {
+        self.pipeline.scene.imager.receive().expect("`new` saw it")
+    }
+
+    fn state(&self, capacity: usize) -> ThreadState {
+        let mut state = ThreadState::new(&self.pipeline, capacity);
+        if self.pipeline.scene.render.reflections.polarized {
+            state.rays = state.rays.with_polarization();
+        }
+        state
+    }
+
+    /// Starts rays `first .. first + len` of a stream at the front: `aims` gets the zone and the aim of each.
+    fn start(
+        &self,
+        state: &mut ThreadState,
+        guides: &[Guide],
+        (stream, first, len): (u64, u64, usize),
+        mut look: impl FnMut(Step, &RayBatch),
+        mut aimed: impl FnMut(usize, Aim),
+    ) {
+        let isa = self.pipeline.isa;
+        for (dimension, column) in state.numbers.iter_mut().enumerate() {
+            let group = self.pipeline.group(dimension);
+            self.numbers.fill_rotated(isa, stream, first, group, dimension as u32, column.slice_mut(len));
+        }
+        state.draw_wavelengths(&self.pipeline, len);
+        look(Step::Wavelengths, &state.rays);
+        state.rays.number(0, &self.numbers, ESTIMATOR, stream, first);
+        state.rays.set_stage(StageKey::SOURCE);
+        let [_, u, v, a, b] = &state.numbers;
+        let emit = self.emit();
+        emit.place(&mut state.rays, u.slice(len), v.slice(len), isa);
+        look(Step::Source, &state.rays);
+        if let Some(opening) = &self.plan.opening {
+            let (a, b) = (a.slice(len), b.slice(len));
+            let c = state.rays.columns_mut();
+            for i in 0..len {
+                let point = DVec3::new(c.x[i], c.y[i], c.z[i]);
+                let zone = self.plan.zones.of(point);
+                let aim = guides[zone].draw(a[i], b[i]);
+                aimed(zone, aim);
+                let Some(disk) = opening.seen_from(point) else {
+                    // In front of the glass itself: no light of a lens that has room for a subject.
+                    c.state[i] = Loss::Vignetted.state(1);
+                    continue;
+                };
+                let at = disk.center + disk.radial * aim.place[0] + disk.across * aim.place[1];
+                let way = at - point;
+                let distance2 = way.length_squared();
+                let direction = way / distance2.sqrt();
+                (c.x[i], c.y[i], c.z[i]) = at.into();
+                (c.l[i], c.m[i], c.n[i]) = direction.into();
+                // The solid angle that the ray stands for.
+                c.weight[i] *= disk.radial.length_squared() * direction.dot(disk.sight) / (distance2 * aim.density);
+            }
+            look(Step::Pupil, &state.rays);
+        } else {
+            (0..len).for_each(|i| {
+                aimed(0, Aim { place: [2.0 * a.slice(len)[i] - 1.0, 2.0 * b.slice(len)[i] - 1.0], density: 0.25 })
+            });
+        }
+        emit.radiate(&mut state.rays, isa);
+        look(Step::Source, &state.rays);
+    }
+
+    /// From the front to the pixels.
+    fn finish(&self, state: &mut ThreadState, route: &Route, mut look: impl FnMut(Step, &RayBatch)) {
+        let isa = self.pipeline.isa;
+        self.pipeline.tracer.follow(route, &mut state.rays, &mut state.work);
+        look(Step::Lens, &state.rays);
+        state.rays.set_stage(StageKey::IMAGER);
+        self.receive().receive(&mut state.rays, isa);
+        look(Step::Imager, &state.rays);
+        state.settle(isa);
+    }
+
+    /// Traces rays `first .. first + len` of a path; what arrived is left in the batch, pixels in the tags.
+    fn batch(
+        &self,
+        state: &mut ThreadState,
+        at: usize,
+        (first, len): (u64, usize),
+        mut look: impl FnMut(Step, &RayBatch),
+    ) {
+        let way = &self.plan.ways[at];
+        self.start(state, &way.guides, (at as u64 + 1, first, len), &mut look, |_, _| {});
+        self.finish(state, &way.route, &mut look);
+        state.rays.compact();
+        state.rays.weighing().weight.iter_mut().for_each(|weight| *weight *= way.boost);
+    }
+
+    /// What each ray of a batch brings: its tag, and the sum over its channels.
+    fn brought(&self, state: &mut ThreadState) -> Vec<(u32, f64)> {
+        let len = state.rays.len();
+        let mut sums = vec![0.0; len];
+        for channel in 0..self.pipeline.responses.channels() {
+            let values = &mut state.values[..len];
+            let (nm, weights) = (state.rays.wavelengths_nm(), state.rays.weights());
+            self.pipeline.isa.run(self.pipeline.responses.weigh(channel, nm, weights, values));
+            for ((sum, value), tag) in sums.iter_mut().zip(values).zip(state.rays.tags()) {
+                let only = pixel_and_channel(*tag).1;
+                if only.is_none_or(|only| only as usize == self.pipeline.recorded[channel]) {
+                    *sum += *value;
+                }
+            }
+        }
+        state.rays.tags().iter().copied().zip(sums).collect()
+    }
+
+    /// The plan that a pilot run finds.
+    fn planned(&self, lens: &spectra_lens::Lens, surfaces: &[usize]) -> Plan {
+        let zones = self.plan.zones.count();
+        let size = self.pipeline.scene.imager.size();
+        let (width, height) = (size.width_px as usize, size.height_px as usize);
+        let columns = width.div_ceil(BLOCK);
+        let block = |pixel: u32| pixel as usize / width / BLOCK * columns + pixel as usize % width / BLOCK;
+        let rays = PILOT + PILOT_MORE * (zones - 1);
+        let mut light = vec![0.0; columns * height.div_ceil(BLOCK)];
+        let mut state = self.state(PILOT);
+        state.work = self.pipeline.tracer.work_in_place(PILOT);
+        // Of the last round: zone, aim, block and value of each ray that came through.
+        let mut came: Vec<Vec<(usize, Aim, usize, f64)>> = Vec::new();
+        let mut ways: Vec<(Vec<Guide>, f64)> = Vec::new();
+        for (at, way) in self.plan.ways.iter().enumerate() {
+            let mut guides = way.guides.clone();
+            let mut seen = Vec::new();
+            for round in 0..ROUNDS {
+                let mut found: Vec<Found> = guides.iter().map(Found::of).collect();
+                for first in (0..rays).step_by(PILOT) {
+                    let len = PILOT.min(rays - first);
+                    let mut aims = Vec::with_capacity(len);
+                    let span = ((at as u64 + 1) * ROUNDS + round, first as u64, len);
+                    self.start(&mut state, &guides, span, |_, _| {}, |zone, aim| aims.push((zone, aim)));
+                    self.finish(&mut state, &way.route, |_, _| {});
+                    for ((tag, value), (zone, aim)) in self.brought(&mut state).into_iter().zip(aims) {
+                        if value != 0.0 {
+                            // Without what the density makes of it.
+                            let value = value.abs() * aim.density;
+                            found[zone].add(&guides[zone], aim, value);
+                            if round + 1 == ROUNDS {
+                                seen.push((zone, aim, block(pixel_and_channel(tag).0), value));
+                            }
+                        }
+                    }
+                }
+                if round + 1 < ROUNDS {
+                    guides = found.iter().map(Found::closer).collect();
+                }
+            }
+            seen.iter().for_each(|(_, aim, block, value)| light[*block] += value / aim.density / rays as f64);
+            came.push(seen);
+            ways.push((guides, 0.0));
+        }
+        let peak = light.iter().fold(0.0_f64, |a, b| a.max(*b));
+        for ((guides, variance), seen) in ways.iter_mut().zip(&came) {
+            let mut found: Vec<Found> = guides.iter().map(Found::of).collect();
+            for (zone, aim, block, value) in seen {
+                found[*zone].add(&guides[*zone], *aim, value / (light[*block] + DIM * peak));
+            }
+            for (guide, found) in guides.iter_mut().zip(found) {
+                let (best, own) = found.guide(rays as u64);
+                (*guide, *variance) = (best, *variance + own);
+            }
+        }
+        let pixels_of = |block: usize| {
+            let (column, row) = (block % columns * BLOCK, block / columns * BLOCK);
+            ((width - column).min(BLOCK) * (height - row).min(BLOCK)) as f64
+        };
+        let mean = |(block, light): (usize, &f64)| light / (pixels_of(block) * size.pixel_area_mm2());
+        let brightest = light.iter().enumerate().map(mean).fold(0.0, f64::max);
+        self.shared_out(ways, brightest, account::of(self, lens, surfaces))
+    }
+
+    /// The rays of a sample, shared out over the paths.
+    fn shared_out(&self, found: Vec<(Vec<Guide>, f64)>, brightest: f64, ledger: LightLedger) -> Plan {
+        let old = &self.plan;
+        let paths = old.ways.len() as u64;
+        let pixels = self.pipeline.scene.imager.size().pixels() as f64;
+        let a_sample = ((pixels * RAYS_A_PIXEL) as u64).max(paths * LEAST_A_PATH);
+        let blocks_a_sample = a_sample.div_ceil(RAYS_PER_BLOCK);
+        let a_block = a_sample / blocks_a_sample;
+        let floor = (a_block / (FLOOR * paths)).max(1);
+        let needs: Vec<f64> = found
+            .iter()
+            .zip(&old.ways)
+            .map(|((_, variance), way)| (variance / (way.route.steps() as f64 + OVERHEAD)).sqrt())
+            .collect();
+        let sum: f64 = needs.iter().sum();
+        let left = a_block.saturating_sub(floor * paths) as f64;
+        let share = |need: f64| if sum > 0.0 { (left * need / sum) as u64 } else { 0 };
+        let counts: Vec<u64> = needs.iter().map(|need| floor + share(*need)).collect();
+        let rays: u64 = counts.iter().sum();
+        let way = |(((guides, _), way), count): (((Vec<Guide>, f64), &Way), &u64)| Way {
+            route: way.route.clone(),
+            guides,
+            rays: *count,
+            boost: rays as f64 / *count as f64,
+        };
+        let ways = found.into_iter().zip(&old.ways).zip(&counts).map(way).collect();
+        Plan { opening: old.opening, zones: old.zones.clone(), ways, rays, blocks_a_sample, brightest, ledger }
+    }
+
+    /// The scale of the sums, by one block.
+    fn pilot_scale(&self) -> Result<f64, RenderError> {
+        let capacity = self.pipeline.scene.render.batch;
+        let mut largest = 0.0_f64;
+        for at in 0..self.plan.ways.len() {
+            for (first, len) in spans(0..self.plan.ways[at].rays, capacity) {
+                let mut blame = Blame::default();
+                // Places of rays that ended in another batch are nobody's fault.
+                let mut state = self.state(capacity);
+                self.batch(&mut state, at, (first, len), |step, rays| blame.look(step, rays));
+                if let Some(error) = blame.no_number(&self.pipeline) {
+                    return Err(error);
+                }
+                largest = largest.max(state.largest(&self.pipeline));
+            }
+        }
+        Ok(scale_for(largest * HEADROOM * self.pipeline.source().peak_over_mean().max(1.0)))
+    }
+
+    /// Adds a block to the sums.
+    fn block(&self, state: &mut ThreadState, block: u64, sums: &ExactSums) -> Unit {
+        let mut rays = 0;
+        for (at, way) in self.plan.ways.iter().enumerate() {
+            let all = block * way.rays..(block + 1) * way.rays;
+            for (first, len) in spans(all, state.rays.capacity()) {
+                self.batch(state, at, (first, len), |_, _| {});
+                if !state.contributions(&self.pipeline, self.scale) {
+                    let (mut blame, mut again) = (Blame::default(), self.state(state.rays.capacity()));
+                    self.batch(&mut again, at, (first, len), |step, rays| blame.look(step, rays));
+                    return Unit { rays, error: Some(blame.error(&self.pipeline, &mut again, self.scale)) };
+                }
+                let (tags, recorded) = (state.rays.tags(), &self.pipeline.recorded[..]);
+                match &mut state.own {
+                    Some(own) => own.add(tags, &state.integers, recorded, sums),
+                    None => each(tags, &state.integers, recorded, 0..tags.len(), |cell, value| sums.add(cell, value)),
+                }
+                rays += len as u64;
+            }
+        }
+        Unit { rays, error: None }
+    }
+}
+
+/// A span of rays in batches: the first one and the number of each.
+fn spans(rays: Range<u64>, capacity: usize) -> impl Iterator<Item = (u64, usize)> {
+    let end = rays.end;
+    rays.step_by(capacity).map(move |first| (first, capacity.min((end - first) as usize)))
+}
+
+impl Estimator for Ghosts {
+    fn name(&self) -> &'static str {
+        "ghosts"
+    }
+
+    fn tiles(&self) -> usize {
+        1
+    }
+
+    fn tile_of(&self, _pixel: usize) -> usize {
+        0
+    }
+
+    fn reseeded(&self, seed: u64) -> Box<dyn Estimator> {
+        let (pipeline, plan) = (self.pipeline.clone(), self.plan.clone());
+        Box::new(Self { pipeline, plan, numbers: self.of_seed(seed), scale: self.scale })
+    }
+
+    fn units(&self, samples: &Range<u64>, tiles: &[u32]) -> u64 {
+        if tiles.is_empty() { 0 } else { (samples.end - samples.start) * self.plan.blocks_a_sample }
+    }
+
+    fn rays(&self, samples: &Range<u64>, tiles: &[u32]) -> u64 {
+        self.units(samples, tiles) * self.plan.rays
+    }
+
+    fn scratch(&self) -> Scratch {
+        let mut state = self.state(self.pipeline.scene.render.batch);
+        state.own = OwnSums::new(self.pipeline.scene.imager.size().pixels() * self.pipeline.recorded.len());
+        Scratch(state)
+    }
+
+    fn run(&self, samples: &Range<u64>, _tiles: &[u32], unit: u64, scratch: &mut Scratch, sums: &ExactSums) -> Unit {
+        self.block(&mut scratch.0, samples.start * self.plan.blocks_a_sample + unit, sums)
+    }
+
+    fn weights(&self, _done: &Done, rays: u64, time_s: f64) -> Vec<f64> {
+        let size = self.pipeline.scene.imager.size();
+        vec![time_s / self.scale / size.pixel_area_mm2() / rays.max(1) as f64; size.pixels()]
+    }
+
+    /// A camera's meter looks at the subject: ghosts are none of it.
+    fn metered(&self, _workers: &dyn Workers) -> Result<Vec<Vec<f64>>, RenderError> {
+        Ok(Vec::new())
+    }
+}

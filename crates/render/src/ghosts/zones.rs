@@ -1,0 +1,77 @@
+//! Points of a source, sorted by the direction in which the lens sees them.
+
+use glam::DVec3;
+use spectra_core::math::atan2;
+
+/// Zones of the angle to the axis, at most, and how wide they are at least (chord of the unit circle: half a degree).
+const MOST_RINGS: usize = 12;
+const WIDTH: f64 = 0.5 * std::f64::consts::PI / 180.0;
+/// Zones around the axis, in a lens that is not round.
+const SECTORS: usize = 8;
+
+/// Zones that share a guide: the light of a path comes in by nearly the same way from all points of one.
+#[derive(Clone, Debug)]
+pub(super) struct Zones {
+    eye: DVec3,
+    low: f64,
+    step: f64,
+    rings: usize,
+    sectors: usize,
+}
+
+impl Zones {
+    /// For points such as these, seen from `eye`; of a round lens all azimuths are alike.
+    pub fn new(points: &[DVec3], eye: DVec3, is_round: bool) -> Self {
+        let chords = points.iter().map(|p| chord(*p - eye));
+        let (low, high) = chords.fold((2.0_f64, 0.0_f64), |(low, high), c| (low.min(c), high.max(c)));
+        let rings = (((high - low) / WIDTH).ceil() as usize).clamp(1, MOST_RINGS);
+        let step = ((high - low) / rings as f64).max(1e-9);
+        Self { eye, low, step, rings, sectors: if is_round || high < WIDTH { 1 } else { SECTORS } }
+    }
+
+    /// One for all.
+    pub fn one() -> Self {
+        Self { eye: DVec3::ZERO, low: 0.0, step: 2.0, rings: 1, sectors: 1 }
+    }
+
+    pub fn count(&self) -> usize {
+        self.rings * self.sectors
+    }
+
+    /// That of a point.
+    #[inline]
+    pub fn of(&self, point: DVec3) -> usize {
+        if self.count() == 1 {
+            return 0;
+        }
+        let way = point - self.eye;
+        let ring = (((chord(way) - self.low) / self.step) as usize).min(self.rings - 1);
+        if self.sectors == 1 {
+            return ring;
+        }
+        let turn = atan2(way.y, way.x) / std::f64::consts::TAU + 0.5;
+        ring * self.sectors + ((turn * self.sectors as f64) as usize).min(self.sectors - 1)
+    }
+}
+
+/// Distance on the unit sphere of a direction from that along the axis, toward the subject: twice the sine of half the angle.
+fn chord(way: DVec3) -> f64 {
+    let unit = way.normalize_or(DVec3::NEG_Z);
+    (unit - DVec3::NEG_Z).length()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_point_is_one_zone_and_a_wide_field_is_many() {
+        let at = |deg: f64| DVec3::new(deg.to_radians().sin(), 0.0, -deg.to_radians().cos()) * 1e4;
+        assert_eq!(Zones::new(&[at(20.0)], DVec3::ZERO, true).count(), 1);
+        let wide = Zones::new(&[at(0.0), at(30.0)], DVec3::ZERO, true);
+        assert_eq!((wide.count(), wide.of(at(0.0)), wide.of(at(29.9)), wide.of(at(80.0))), (12, 0, 11, 11));
+        let turned = Zones::new(&[at(0.0), at(30.0)], DVec3::ZERO, false);
+        assert_eq!(turned.count(), 96);
+        assert_ne!(turned.of(at(20.0)), turned.of(DVec3::new(-1.0, 1.0, 1.0) * at(20.0)));
+    }
+}
