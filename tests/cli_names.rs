@@ -347,6 +347,11 @@ fn every_example_of_the_help_works() {
         if LEFT_OUT.iter().any(|(start, _)| example.starts_with(start)) {
             continue;
         }
+        if let Some(rest) = example.strip_prefix("spectra view ") {
+            viewed(folder.path(), rest);
+            done += 1;
+            continue;
+        }
         // A picture in full takes a minute: that it begins is enough.
         let short = match example {
             run if run.starts_with("spectra run ") => format!("{run} --time-limit 1s"),
@@ -361,6 +366,22 @@ fn every_example_of_the_help_works() {
     }
     assert!(done >= 30, "{done} examples: {examples:#?}");
     println!("{done} examples of --help work; left out: {LEFT_OUT:?}");
+}
+
+/// Starts the viewer with these arguments, and ends it once it has said where it is.
+#[cfg(unix)]
+fn viewed(folder: &Path, arguments: &str) {
+    let all = ["view"].into_iter().chain(arguments.split(' ').filter(|word| *word != "--no-open")).chain(["--no-open"]);
+    let mut command = spectra();
+    command.args(all).current_dir(folder).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = command.spawn().expect("the program starts");
+    let mut line = String::new();
+    let read =
+        std::io::BufRead::read_line(&mut std::io::BufReader::new(child.stdout.take().expect("piped")), &mut line);
+    child.kill().expect("it runs until it is ended");
+    let ended = child.wait_with_output().expect("it ended");
+    read.expect("a line");
+    assert!(line.starts_with("http://127.0.0.1:") && line.contains("/?token="), "{arguments}: {}", text(&ended.stderr));
 }
 
 /// A fault or a warning: what it says, where, how many letters are underlined, and its hint.

@@ -201,9 +201,9 @@ fn samples(text: &str) -> Result<u32, String> {
         writes what was changed into the scene file, where it stands, and leaves the rest of the file as it is.\n\n\
         The address is printed to standard output. It opens once, in one browser, and only on this machine. Ctrl-C ends the \
         viewer.",
-    after_long_help = "Examples: a bundled scene; one of your own, without opening a browser\n  \
+    after_long_help = "Examples: a bundled scene; another film, and the address alone\n  \
         spectra view biotar-ortho\n  \
-        spectra view scene.yaml --port 8000 --no-open"
+        spectra view biotar-ortho --set film.stock=tri-x --no-open"
 )]
 pub(crate) struct View {
     /// A scene file, or the name of a bundled scene (see `spectra list scene`).
