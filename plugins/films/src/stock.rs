@@ -162,7 +162,7 @@ impl StockFilm {
         let (Some((emulsion, development)), Some(meter), Some(mut channels)) = (developed, meter, channels) else {
             return Err(faults);
         };
-        let effects = faults.take(Effects::new(&p, params, &stock, &emulsion));
+        let effects = faults.take(Effects::new(&(&p).into(), params, &stock, &emulsion));
         let Some(effects) = faults.into_result(effects)? else { return Err(Faults::new()) };
         let seen = seen(&p, params, context.resources, &stock, &emulsion, metered_exposure_lx_s(speed))?;
         let own = channels.first().filter(|_| stock.meter == MeterResponse::Film).cloned();
@@ -178,7 +178,7 @@ impl StockFilm {
             is_overruled,
             meter,
             effects,
-            mtf50: mtf50(&p),
+            mtf50: mtf50(p.optics, p.view),
             picture,
             words,
         })
