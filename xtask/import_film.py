@@ -22,14 +22,15 @@ What the package guesses (RMS granularity of most stocks, by its own comments) i
 density it takes from figures of the sheets. Absolute sensitivities of the
 sheets are kept in their scale, which no one needs: a layer's exposure is counted in lux-seconds of the reference light.
 
-`ilford-ortho-plus` is not written here: it is a digitization of our own.
+Color papers and further color films are written by film_library.py, from the same package. `ilford-ortho-plus` is not: it is
+a digitization of our own.
 """
 
 import importlib
 import pathlib
 import sys
 import types
-from math import exp, log10
+from math import exp, log, log10
 
 FILM = pathlib.Path("spectra/film")
 FILTERS = pathlib.Path("spectra/transmittances")
@@ -366,23 +367,6 @@ def color_print(folder):
     )
 
 
-def color_paper(folder):
-    data = load(folder, "print_film.kodak_endura_premier", "KODAK_ENDURA_PREMIER")
-    stock(
-        "kodak-endura-premier",
-        name="Kodak Professional Endura Premier Paper",
-        maker="Eastman Kodak",
-        source=f"Kodak Professional Endura Premier Paper, technical data, {CARRIED}",
-        remark="Color paper (process RA-4) for prints of still negatives. The exposures of its curves are relative to the "
-        "printing light, which is set for each negative; no speed is stated. Densities of reflection are taken as the sums of its "
-        "dyes' densities over the minimum, as the sheet's own spectra of them are. Its curves are as digitized, made for other "
-        "negatives than 5207, which has reddish shadows on it.",
-        head=["", "process: print", "medium: paper", "density: status-a",
-              "reference-illuminant: blackbody:3200", flat_minimum(*minima(data))],
-        layers=color_layers(data, rising=True, kind="paper"),
-    )
-
-
 def bw_print(folder):
     data = load(folder, "bw_print_film.kodak_2302", "KODAK_2302")
     module = "bw_print_film.kodak_2302"
@@ -439,6 +423,11 @@ PLATE_CURVE = [
 GLASS = ['bases:', '  - {formats: "plate", material: glass, thickness: 1.3 mm, index: 1.52, assumed: true}']
 
 
+PLATE_MTF = (
+    "No figure of such plates is at hand: by Frieser's formula with k = 0.025 mm, half of the contrast at 29 cycles/mm, in the "
+    "coarser half of the 0.005 to 0.04 mm that H. Frieser (Photogr. Sci. Eng. 4, 324, 1960) gives for emulsions, as thick coatings of "
+    "fast emulsions are."
+)
 # How a plate is metered.
 PLATE_METER = (
     " The meter weighs light as the plate does, like the actinometers of the time, which darkened bromide paper. Set by "
@@ -447,13 +436,23 @@ PLATE_METER = (
 )
 
 
+# Spatial frequencies of assumed curves, cycles/mm.
+FREQUENCIES = (2.5, 5, 10, 15, 20, 30, 40, 60, 80, 100)
+
+
+def frieser(k_mm):
+    """Modulation transfer of an emulsion in which the line falls to a tenth over k on both sides together."""
+    return {f: 1 / (1 + (3.141592653589793 * k_mm * f / log(10)) ** 2) for f in FREQUENCIES}
+
+
 def plate(slug, name, remark, iso, layer_name, points, sensitivity_remark, source, d55, a, year=None):
-    lines = layer(layer_name, points, [], assumed_sensitivity=True, sensitivity_remark=sensitivity_remark)
+    lines = layer(layer_name, points, [], assumed_sensitivity=True, sensitivity_remark=sensitivity_remark, mtf=frieser(0.025))
     stock(
         slug, name=name, maker=None, source=source, remark=remark + PLATE_METER.format(d55=d55, a=a),
         head=["", "process: negative", "density: visual", *([f"year: {year}"] if year else []), f"iso: {iso}",
               "speed: assumed", "meter: film",
               "reference-illuminant: iso-7589-sensitometric-daylight",
+              "assumed:\n  mtf: " + folded(PLATE_MTF, "    "),
               halation(0.95, ENTERS + "The plate is not backed, as most were sold: clear glass lets 0.95 pass once, and halos are the "
                        "largest of all. Plates that were backed with a dark varnish had hardly any: `halation: off`."),
               "granularity:\n  rms: 14\n  assumed: true\n  remark: >-\n    No figure of such plates is at hand; between fine-grained "
@@ -642,7 +641,6 @@ def main():
     double_x(folder)
     color_negative(folder)
     color_print(folder)
-    color_paper(folder)
     bw_print(folder)
     reversal(folder)
     three_strip(folder, plates(folder))

@@ -157,6 +157,7 @@ fn layers_that_do_not_fit_are_told() {
             format!("{head}halation: {{scattered: 2, backing: 0.1}}\nlayers:\n{}", layer("red", "", curve)),
             "from 0 to 1",
         ),
+        (format!("{head}assumed: {{mtf: \" \"}}\nlayers:\n{}", layer("red", "", curve)), "needs a reason"),
         (format!("{head}reciprocity: {{above: 1 s}}\nlayers:\n{}", layer("red", "", curve)), "`exponent` or a `table`"),
         (
             format!("{head}layers:\n{}", layer("red", "", curve))

@@ -78,11 +78,11 @@ pub enum OpticsSetting {
 const USUAL_MTF50: f64 = 60.0;
 
 /// That of the lens between the film and its picture; none where the film itself is looked at.
-pub(crate) fn mtf50(p: &StockParams) -> Option<f64> {
-    match p.optics {
+pub(crate) fn mtf50(optics: Option<OpticsSetting>, view: Option<View>) -> Option<f64> {
+    match optics {
         Some(OpticsSetting::Word(Off::Off)) => None,
         Some(OpticsSetting::Lens(lens)) => Some(lens.mtf50),
-        None if p.view == Some(View::Negative) => None,
+        None if view == Some(View::Negative) => None,
         None => Some(USUAL_MTF50),
     }
 }
@@ -96,6 +96,35 @@ pub enum Assumed {
     On,
     /// Only what is measured or stated counts.
     Off,
+}
+
+/// Which effects a scene asks for, of a stock that it names at `key`.
+pub(crate) struct Switches<'a> {
+    /// Where the stock is named.
+    pub key: &'a str,
+    pub scatter: Option<bool>,
+    pub adjacency: Option<bool>,
+    pub halation: Option<HalationSetting>,
+    pub grain: Option<bool>,
+    pub assumed: Assumed,
+    pub grain_seed: u64,
+    /// Number of its first layer among those of the picture: each has grains of its own.
+    pub first_layer: u32,
+}
+
+impl From<&StockParams> for Switches<'static> {
+    fn from(p: &StockParams) -> Self {
+        Self {
+            key: "stock",
+            scatter: p.scatter,
+            adjacency: p.adjacency,
+            halation: p.halation,
+            grain: p.grain,
+            assumed: p.assumed,
+            grain_seed: p.grain_seed,
+            first_layer: 0,
+        }
+    }
 }
 
 /// How grainy the layers are.
@@ -123,6 +152,8 @@ pub(crate) struct Effects {
     piece: u64,
     /// Seed of the grains, by the piece and the frame.
     seed: u64,
+    /// Number of the first layer among those of the picture.
+    first_layer: u32,
 }
 
 /// Width and height of a pixel, mm.
@@ -131,16 +162,19 @@ pub(crate) fn pixel_mm(size: &FrameSize) -> [f64; 2] {
 }
 
 impl Effects {
-    pub(crate) fn new(p: &StockParams, params: &Params, stock: &Stock, emulsion: &Emulsion) -> Result<Self, Faults> {
+    pub(crate) fn new(p: &Switches<'_>, params: &Params, stock: &Stock, emulsion: &Emulsion) -> Result<Self, Faults> {
         let mut faults = Faults::new();
-        if p.scatter == Some(true) && stock.layers.iter().all(|l| l.mtf.is_empty()) {
-            let text = format!("{} has no modulation transfer in its file", stock.name);
+        let counts = p.assumed == Assumed::On || stock.assumed.mtf.is_none();
+        if p.scatter == Some(true) && !(counts && stock.layers.iter().any(|l| !l.mtf.is_empty())) {
+            let measured = if counts { "" } else { "measured " };
+            let text = format!("{} has no {measured}modulation transfer in its file", stock.name);
             faults.push(params.fault("scatter", text).hint("leave it out, or give the stock's layers an `mtf`"));
         }
         let (mut mtf, mut adjacency) = (Vec::new(), Vec::new());
         for layer in &stock.layers {
-            let unfit = |e| params.fault("stock", format!("{}: {e}", stock.name));
-            let parts = (!layer.mtf.is_empty()).then(|| Modulation::measured(&layer.mtf).map_err(unfit));
+            let unfit = |e| params.fault(p.key, format!("{}: {e}", stock.name));
+            let known = counts && !layer.mtf.is_empty();
+            let parts = known.then(|| Modulation::measured(&layer.mtf).map_err(unfit));
             let parts = parts.and_then(|m| faults.take(m));
             adjacency.push(parts.as_ref().and_then(|m| m.adjacency).filter(|_| p.adjacency.unwrap_or(true)));
             mtf.push(parts.map(|m| m.mtf).filter(|_| p.scatter.unwrap_or(true)));
@@ -155,10 +189,14 @@ impl Effects {
         if p.halation.is_none() && halation.iter().any(Option::is_some) && halation_is_assumed(stock) {
             assumed.push("halation");
         }
-        if grain.is_some() && stock.granularity.is_some_and(|g| g.assumed) {
+        if grain.is_some() && granularity_is_assumed(stock) {
             assumed.push("grain");
         }
-        faults.into_result(Self { mtf, adjacency, halation, assumed, grain, piece: p.grain_seed, seed: p.grain_seed })
+        if stock.assumed.mtf.is_some() && mtf.iter().any(Option::is_some) {
+            assumed.push("scatter");
+        }
+        let (piece, first_layer) = (p.grain_seed, p.first_layer);
+        faults.into_result(Self { mtf, adjacency, halation, assumed, grain, piece, seed: piece, first_layer })
     }
 
     /// Which of the effects rest on assumed figures.
@@ -195,11 +233,17 @@ impl Effects {
         Ok(Raster::new(size.width_px as usize, size.height_px as usize, (across * down).sqrt()))
     }
 
-    /// Spreads the light of a layer.
-    pub(crate) fn spread(&self, layer: usize, plane: &mut [f32], raster: &Raster) -> Result<(), String> {
+    /// Spreads light as the emulsion of a layer does.
+    pub(crate) fn scatter(&self, layer: usize, plane: &mut [f32], raster: &Raster) -> Result<(), String> {
         if let Some(mtf) = &self.mtf[layer] {
             Scatter::new(mtf, raster).map_err(|e| e.to_string())?.apply(plane);
         }
+        Ok(())
+    }
+
+    /// Spreads the light of a layer: in its emulsion, and from the back of the film.
+    pub(crate) fn spread(&self, layer: usize, plane: &mut [f32], raster: &Raster) -> Result<(), String> {
+        self.scatter(layer, plane, raster)?;
         if let Some(base) = &self.halation[layer] {
             Halation::new(base, raster).map_err(|e| e.to_string())?.apply(plane);
         }
@@ -219,7 +263,7 @@ impl Effects {
         let (grain, base) = match &self.grain {
             None => return Ok(()),
             Some(Granularity::Silver(rms)) => {
-                (Grain::calibrated(*rms, usual_half_power(*rms), self.seed, layer as u32), clear)
+                (Grain::calibrated(*rms, usual_half_power(*rms), self.seed, self.first_layer + layer as u32), clear)
             }
             Some(Granularity::Dyes(color)) => (by_dye(color, layer, self.seed), clear - FOG),
         };
@@ -239,7 +283,7 @@ fn by_dye(color: &ColorGrain, layer: usize, seed: u64) -> Result<Grain, GrainErr
 }
 
 fn granularity(
-    p: &StockParams,
+    p: &Switches<'_>,
     params: &Params,
     stock: &Stock,
     emulsion: &Emulsion,
@@ -254,7 +298,7 @@ fn granularity(
         let text = format!("{} has no granularity in its file", stock.name);
         faults.push(params.fault("grain", text).hint("leave it out, or give the stock a `granularity`"));
     }
-    let left_out = p.assumed == Assumed::Off && stock.granularity.is_some_and(|g| g.assumed);
+    let left_out = p.assumed == Assumed::Off && granularity_is_assumed(stock);
     let known = known.filter(|_| p.grain.unwrap_or(true) && !left_out)?;
     let tried = match &known {
         Granularity::Silver(rms) => Grain::calibrated(*rms, usual_half_power(*rms), 0, 0),
@@ -263,10 +307,15 @@ fn granularity(
     match tried {
         Ok(_) => Some(known),
         Err(error) => {
-            faults.push(params.fault("stock", format!("{}: {error}", stock.name)));
+            faults.push(params.fault(p.key, format!("{}: {error}", stock.name)));
             None
         }
     }
+}
+
+/// Whether the stock's granularity, of its silver or of its layers, is assumed.
+fn granularity_is_assumed(stock: &Stock) -> bool {
+    stock.granularity.is_some_and(|g| g.assumed) || stock.assumed.granularity.is_some()
 }
 
 /// Whether the stock's own halation, or the base that it is computed with, is assumed.
@@ -275,7 +324,7 @@ fn halation_is_assumed(stock: &Stock) -> bool {
 }
 
 /// That of each layer; all `None` where there is none.
-fn halation(p: &StockParams, params: &Params, stock: &Stock, faults: &mut Faults) -> Vec<Option<HalationBase>> {
+fn halation(p: &Switches<'_>, params: &Params, stock: &Stock, faults: &mut Faults) -> Vec<Option<HalationBase>> {
     let none = vec![None; stock.layers.len()];
     let base = stock.bases.first();
     let (own, of_stock) = match (p.halation, &stock.halation) {

@@ -175,7 +175,7 @@ impl StockFilm {
         let (Some((emulsion, development)), Some(meter), Some(mut channels)) = (developed, meter, channels) else {
             return Err(faults);
         };
-        let effects = faults.take(Effects::new(&p, params, &stock, &emulsion));
+        let effects = faults.take(Effects::new(&(&p).into(), params, &stock, &emulsion));
         let Some(effects) = faults.into_result(effects)? else { return Err(Faults::new()) };
         let gray_lx_s = metered_exposure_lx_s(speed);
         let seen = seen(&p, params, context.resources, &stock, &emulsion, gray_lx_s)?;
@@ -195,7 +195,7 @@ impl StockFilm {
             effects,
             frame,
             gray_lx_s,
-            mtf50: mtf50(&p),
+            mtf50: mtf50(p.optics, p.view),
             is_data: p.scan.is_some_and(|scan| scan != ScanParams::Picture),
             picture,
             words,

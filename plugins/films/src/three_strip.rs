@@ -1,5 +1,6 @@
 //! `film: three-strip`, three separation negatives behind a beam splitter, printed by dye transfer.
 
+use crate::effects::{Assumed, Effects, HalationSetting, Off, OpticsSetting, Switches, mtf50, pixel_mm};
 use crate::metering::{METER, Meter, Metering, SpotParams, overruled, recorded_time_s};
 use crate::stock::load_stock;
 use crate::view::WhiteParams;
@@ -13,6 +14,7 @@ use spectra_core::spectral::{BAND, Channel};
 use spectra_core::stage::Film;
 use spectra_film::display::channel;
 use spectra_film::emulsion::Emulsion;
+use spectra_film::optics::Optics;
 use spectra_film::positive::Positive;
 use spectra_film::print::metered_exposure_lx_s;
 use spectra_film::stock::Stock;
@@ -28,6 +30,10 @@ use spectra_spectrum::{Emission, Transmittance, find_emission_in, find_transmitt
 /// Here each record is any black-and-white stock of one layer behind filters. The three are balanced so that a neutral
 /// subject in the light of `balance` exposes them alike, and each is exposed for its own speed; `iso` is the speed of
 /// the whole camera.
+///
+/// Each record has the scatter, the adjacency, the halation and the grain of its stock's file. The pair lies emulsion to
+/// emulsion: what the red record sees was scattered in the blue one before, which makes it the softest, and behind the blue
+/// one there is no base that would throw light back. `optics` stands for what matrices and transfer lose.
 ///
 /// # Example
 /// ```yaml
@@ -80,6 +86,23 @@ pub struct ThreeStripParams {
     /// The negative of the blue record, and what stands before it; Double-X behind wratten-47 if left out.
     #[serde(default = "blue")]
     pub blue: RecordParams,
+    /// Whether emulsions scatter light, where the file of their stock states its MTF; `true` if left out.
+    pub scatter: Option<bool>,
+    /// Whether edges stand out in development, where the MTF in the file of a stock exceeds 1; `true` if left out.
+    pub adjacency: Option<bool>,
+    /// Reflection from the back of the green and the red record, or `off`; as in the files of their stocks if left out.
+    pub halation: Option<HalationSetting>,
+    /// Whether there is grain, where the file of a stock states its granularity; `true` if left out.
+    pub grain: Option<bool>,
+    /// What the matrices and the transfer of the dyes lose of fine detail, as a lens, or `off`; half of the contrast is left at
+    /// 60 cycles/mm if left out, which is assumed.
+    pub optics: Option<OpticsSetting>,
+    /// Whether effects count whose figures are assumed in the file of a stock, rather than measured or stated: `on` or `off`.
+    #[serde(default)]
+    pub assumed: Assumed,
+    /// Seed of the grain, 0 or more.
+    #[serde(default)]
+    pub grain_seed: u64,
 }
 
 /// One record: a stock behind filters.
@@ -129,13 +152,17 @@ fn technicolor() -> String {
 /// A three-strip camera and its dye-transfer print.
 #[derive(Clone, Debug)]
 pub struct ThreeStrip {
-    film: Emulsion,
     channels: Vec<Channel>,
     exposure_time_s: f64,
     /// An exposure time was stated, and the camera meters.
     is_overruled: bool,
     meter: Meter,
     positive: Positive,
+    /// Each record by itself, in the order of the print's layers.
+    developed: [Emulsion; 3],
+    effects: [Effects; 3],
+    /// Of what the matrices and the transfer lose, cycles/mm.
+    mtf50: Option<f64>,
     words: String,
 }
 
@@ -144,6 +171,9 @@ const SPEED: f64 = 5.0;
 
 /// Records in the order of the print's layers.
 const RECORDS: [&str; 3] = ["blue", "green", "red"];
+/// The front film of the pair, and the one behind it.
+const BLUE: usize = 0;
+const RED: usize = 2;
 
 impl ThreeStrip {
     /// The camera that `params` describe.
@@ -201,7 +231,65 @@ impl ThreeStrip {
         let stocks: Vec<&str> = records.iter().map(|r| r.name.as_str()).collect();
         let words = format!("three-strip camera, ISO {iso} ({}), printed as {}", stocks.join(", "), print.name);
         let (exposure_time_s, is_overruled) = recorded_time_s(p.exposure, p.metering);
-        Ok(Self { film, channels, exposure_time_s, is_overruled, meter, positive, words })
+        let mut developed = Vec::new();
+        let mut effects = Vec::new();
+        for (i, record) in records.iter().enumerate() {
+            let key = format!("{}.stock", record.key);
+            let own = Emulsion::with_curves(&record.stock, vec![record.curve.clone()]);
+            let own = own.map_err(|e| params.fault(&key, e.to_string()))?;
+            let switches = Switches {
+                key: &key,
+                scatter: p.scatter,
+                adjacency: p.adjacency,
+                // The pair lies emulsion to emulsion, blue in front.
+                halation: if i == BLUE { Some(HalationSetting::Word(Off::Off)) } else { p.halation },
+                grain: p.grain,
+                assumed: p.assumed,
+                grain_seed: p.grain_seed,
+                first_layer: i as u32,
+            };
+            effects.push(Effects::new(&switches, params, &record.stock, &own)?);
+            developed.push(own);
+        }
+        let (Ok(developed), Ok(effects)) = (developed.try_into(), effects.try_into()) else {
+            return Err(params.fault_here("three records are expected").into());
+        };
+        let mtf50 = mtf50(p.optics, None);
+        Ok(Self { channels, exposure_time_s, is_overruled, meter, positive, developed, effects, mtf50, words })
+    }
+}
+
+impl ThreeStrip {
+    /// Densities of the three negatives, in the order blue, green, red.
+    ///
+    /// # Errors
+    /// A text that says which channel is missing.
+    pub fn negatives(&self, exposure: &ExposureFrame) -> Result<Vec<Vec<f32>>, String> {
+        self.records(exposure, |_, _, _| ())
+    }
+
+    /// The same; `exposed` sees the light of each record where it fell after scatter, with what the meter makes of it.
+    fn records(
+        &self,
+        exposure: &ExposureFrame,
+        mut exposed: impl FnMut(&str, &[f32], f64),
+    ) -> Result<Vec<Vec<f32>>, String> {
+        let factor = self.meter.factor(exposure);
+        let raster = self.effects[BLUE].raster(exposure.size)?;
+        let negatives = RECORDS.iter().enumerate().map(|(i, name)| {
+            let mut plane = channel(exposure, name).map_err(|error| error.to_string())?.values.clone();
+            let (effects, film) = (&self.effects[i], &self.developed[i]);
+            if i == RED {
+                self.effects[BLUE].scatter(0, &mut plane, &raster)?;
+            }
+            effects.spread(0, &mut plane, &raster)?;
+            exposed(name, &plane, factor);
+            film.develop(0, &mut plane, factor);
+            effects.edges(0, &mut plane, film, &raster);
+            effects.grain(0, &mut plane, film.range(0).0, &raster)?;
+            Ok(plane)
+        });
+        negatives.collect()
     }
 }
 
@@ -293,6 +381,14 @@ impl Film for ThreeStrip {
         overruled(self.is_overruled)
     }
 
+    fn check_frame(&self, size: &FrameSize) -> Result<(), [String; 2]> {
+        self.effects.iter().try_for_each(|effects| effects.check_frame(size))
+    }
+
+    fn set_frame(&mut self, frame: u64) {
+        self.effects.iter_mut().for_each(|effects| effects.set_frame(frame));
+    }
+
     fn name(&self) -> String {
         "three-strip film".to_owned()
     }
@@ -302,18 +398,13 @@ impl Film for ThreeStrip {
     }
 
     fn finish(&self, exposure: &ExposureFrame, wanted: Wanted) -> Result<Finished, String> {
-        let factor = self.meter.factor(exposure);
         let mut layers = Vec::new();
-        let negatives = RECORDS.iter().enumerate().map(|(i, name)| {
-            let mut plane = channel(exposure, name).map_err(|error| error.to_string())?.values.clone();
+        let mut negatives = self.records(exposure, |name, plane, factor| {
             if wanted.layers {
                 let values = plane.iter().map(|v| *v * factor as f32).collect();
                 layers.push(ExposureChannel { name: format!("exposure.{name}"), unit: "lx s".into(), values });
             }
-            self.film.develop(i, &mut plane, factor);
-            Ok(plane)
-        });
-        let negatives = negatives.collect::<Result<Vec<_>, String>>()?;
+        })?;
         if wanted.layers {
             let density = |(name, plane): (&&str, &Vec<f32>)| ExposureChannel {
                 name: format!("density.{name}"),
@@ -321,6 +412,10 @@ impl Film for ThreeStrip {
                 values: plane.clone(),
             };
             layers.extend(RECORDS.iter().zip(&negatives).map(density));
+        }
+        if let Some(mtf50) = self.mtf50 {
+            let lens = Optics::new(mtf50, pixel_mm(&exposure.size));
+            negatives.iter_mut().for_each(|plane| lens.apply(plane, exposure.size.width_px as usize));
         }
         let planes: Vec<&[f32]> = negatives.iter().map(Vec::as_slice).collect();
         let size = exposure.size;
@@ -335,7 +430,11 @@ impl Film for ThreeStrip {
     }
 
     fn describe(&self) -> String {
-        format!("{}, {}", self.words, self.meter.words(self.exposure_time_s))
+        let mut assumed: Vec<&str> = self.effects.iter().flat_map(|e| e.assumed().iter().copied()).collect();
+        assumed.sort_unstable();
+        assumed.dedup();
+        let assumed = if assumed.is_empty() { String::new() } else { format!(" ({} assumed)", assumed.join(" and ")) };
+        format!("{}{assumed}, {}", self.words, self.meter.words(self.exposure_time_s))
     }
 }
 

@@ -48,7 +48,8 @@ fn is_registered_as_the_default() {
 /// exposure on this film, is black; all of it is neutral.
 #[test]
 fn gray_is_gray_and_red_is_black() {
-    let film = build("stock: ilford-ortho-plus\nexposure: 1/60 s\nhalation: off\ngrain: false\n").expect("sound");
+    let film = build("stock: ilford-ortho-plus\nexposure: 1/60 s\nscatter: false\nhalation: off\ngrain: false\n")
+        .expect("sound");
     let picture = film.develop(&frame(&[0.125, 0.0, 0.125 * 5.0, 100.0])).expect("complete");
     assert!(picture.rgb.iter().all(|p| p[0] == p[1] && p[1] == p[2]));
     let [gray, black, white, burnt] = [0, 1, 2, 3].map(|i| picture.rgb[i][0]);
@@ -66,7 +67,7 @@ fn an_unknown_stock_is_told_with_near_names() {
     let text = build("stock: ilford-orto-plus\nexposure: 1/60 s\n").unwrap_err().to_string();
     assert!(text.contains("film.yaml:1:8:") && text.contains("did you mean `ilford-ortho-plus`?"), "{text}");
     let text = build("stock: zzz\nexposure: 1/60 s\n").unwrap_err().to_string();
-    assert!(text.contains("film.yaml:1:8:") && text.contains("ilford-ortho-plus"), "{text}");
+    assert!(text.contains("film.yaml:1:8:") && text.contains("known: blue-sensitive-plate"), "{text}");
 }
 
 #[test]
@@ -95,7 +96,7 @@ fn parameters_are_checked() {
         ("stock: kodak-vision3-250d-5207\nmetering: average\nprint: kodak-2383\n", "did you mean"),
         ("stock: ilford-ortho-plus\nmetering: average\nlight: D5500\n", "did you mean `D55`?"),
         ("stock: grainless.yaml\nmetering: average\ngrain: true\n", "granularity"),
-        ("stock: ilford-ortho-plus\nmetering: average\nscatter: true\n", "modulation"),
+        ("stock: ilford-ortho-plus\nmetering: average\nassumed: off\nscatter: true\n", "modulation"),
         ("stock: kodak-ektachrome-100d\nmetering: average\nadjacency: true\n", "above 1"),
         ("stock: bare.yaml\nmetering: average\n", "thickness"),
         ("stock: bare.yaml\nmetering: average\nhalation: {entering: 0.2, transmittance: 0.5}\n", "thickness"),

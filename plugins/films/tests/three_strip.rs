@@ -60,7 +60,7 @@ fn mid_gray(film: &ThreeStrip) -> [f32; 3] {
 /// a*, b* within 2 of neutral from 2 stops under mid gray to 3 over it, white the clear print.
 #[test]
 fn a_gray_scale_is_gray_and_reaches_white() {
-    let film = build("exposure: 1/60 s\n").expect("sound");
+    let film = build("exposure: 1/60 s\ngrain: false\n").expect("sound");
     let [b, g, r] = mid_gray(&film);
     let srgb = spectra_color::RgbSpace::srgb();
     for half in -4..=10 {
@@ -73,7 +73,7 @@ fn a_gray_scale_is_gray_and_reaches_white() {
         assert!(stops < 5.0 || l > 95.0, "{stops:+}: {l:.1}");
     }
     // The bare light as white: the clear print is a little darker than it.
-    let lamp = build("exposure: 1/60 s\nwhite: lamp\n").expect("sound");
+    let lamp = build("exposure: 1/60 s\ngrain: false\nwhite: lamp\n").expect("sound");
     let (film, lamp) = ([&film, &lamp]).map(|f| shown(f, b * 32.0, g * 32.0, r * 32.0)[1]).into();
     assert!(lamp <= film, "{lamp} {film}");
 }
@@ -91,4 +91,49 @@ fn parameters_are_checked() {
         let text = build(yaml).expect_err(yaml).to_string();
         assert!(text.contains(word), "{yaml}: {text}");
     }
+}
+
+/// A white point in the dark through the records: each spreads it as its stock does, the red one, behind the blue one, most;
+/// green and red halate, blue has no base behind it.
+#[test]
+fn records_spread_light_and_have_grain() {
+    let plain = "exposure: 1/60 s\noptics: off\n";
+    let size = FrameSize { width_px: 101, height_px: 101, width_mm: 0.606, height_mm: 0.606 };
+    let frame = |film: &ThreeStrip, at: f32, around: f32| {
+        let [b, g, r] = mid_gray(film);
+        let plane =
+            |level: f32| (0..101 * 101).map(move |k| if k == 50 * 101 + 50 { at * level } else { around * level });
+        let channel = |(name, level): (&str, f32)| ExposureChannel {
+            name: name.into(),
+            unit: "lx s".into(),
+            values: plane(level).collect(),
+        };
+        ExposureFrame { size, channels: [("blue", b), ("green", g), ("red", r)].map(channel).into() }
+    };
+    let off = "scatter: false\nadjacency: false\nhalation: off\ngrain: false\n";
+    let lamp = |yaml: &str, level: f32| {
+        let film = build(&format!("{plain}{yaml}")).expect("sound");
+        film.negatives(&frame(&film, level, 0.0)).expect("complete")
+    };
+    let point = |yaml: &str| lamp(yaml, 3e3);
+    let along = |planes: &[Vec<f32>], record: usize, k: usize| planes[record][50 * 101 + 50 + k];
+    let none = point(off);
+    let clear = along(&none, 0, 30);
+    assert!((0..3).all(|i| along(&none, i, 1) == clear && along(&none, i, 0) > clear + 1.0));
+    let scattered = point("adjacency: false\nhalation: off\ngrain: false\n");
+    assert!(along(&scattered, 2, 5) > along(&scattered, 1, 5) + 0.01 && along(&scattered, 1, 2) > clear);
+    assert!((along(&scattered, 0, 5) - along(&scattered, 1, 5)).abs() < 0.01);
+    let halo = lamp("scatter: false\nadjacency: false\ngrain: false\n", 1e6);
+    assert!(along(&halo, 0, 40) == clear && along(&halo, 1, 40) > clear && along(&halo, 2, 40) > clear);
+    // Each record has grains of its own, which `grain: false` takes away.
+    let even = |yaml: &str| {
+        let film = build(&format!("{plain}{yaml}")).expect("sound");
+        film.negatives(&frame(&film, 1.0, 1.0)).expect("complete")
+    };
+    let grainy = even("scatter: false\nadjacency: false\nhalation: off\n");
+    assert!((0..3).all(|i| grainy[i].iter().any(|d| (d - grainy[i][0]).abs() > 0.01)) && grainy[0] != grainy[1]);
+    let plane = &even(off)[2];
+    assert!(plane.iter().all(|d| *d == plane[0]));
+    let film = build(plain).expect("sound");
+    assert!(film.describe().contains("halation assumed"), "{}", film.describe());
 }

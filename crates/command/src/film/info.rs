@@ -104,6 +104,7 @@ fn to_json(stock: &Stock) -> Value {
             json!({ "assumed": i.assumed, "remark": i.remark, "inhibition": i.inhibition })
         }),
         "aim_density": stock.aim_density.map(|a| json!({ "red": a.red, "green": a.green, "blue": a.blue })),
+        "assumed": stock.assumed.iter().collect::<std::collections::BTreeMap<_, _>>(),
         "granularity": stock.granularity.map(|g| {
             json!({ "rms": g.rms, "aperture_mm": g.aperture_mm, "density": g.density, "assumed": g.assumed })
         }),
@@ -238,6 +239,9 @@ fn text(stock: &Stock) -> String {
             format!("RMS {} at density {}, aperture {} mm{assumed}", g.rms, g.density, g.aperture_mm)
         }),
     );
+    for (part, text) in stock.assumed.iter() {
+        row("assumed", Some(format!("{part}: {text}")));
+    }
     row(
         "reciprocity",
         stock.reciprocity.as_ref().map(|r| match r {

@@ -18,6 +18,7 @@ use frame::Tables;
 use printing::Printing;
 use scan::Scan;
 use spectra_spectrum::Emission;
+use std::sync::OnceLock;
 
 /// A film that cannot be shown as asked.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -49,7 +50,10 @@ pub enum PositiveError {
 pub struct Positive {
     film: Deposit,
     way: Way,
-    tables: Tables,
+    /// Smallest and largest amount in each layer.
+    ranges: Vec<(f64, f64)>,
+    /// Made for the first whole frame: they take longer than all else that is set up.
+    tables: OnceLock<Tables>,
 }
 
 #[derive(Clone, Debug)]
@@ -80,7 +84,7 @@ impl Positive {
                 viewing = viewing.between(0.0, clear);
             }
         }
-        Ok(Self::tabulated(film, Way::Look(viewing)))
+        Ok(Self::of(film, Way::Look(viewing)))
     }
 
     /// Printed on `print` (developed as `printed`) by a printer whose lamp has the spectrum `lamp`, balanced for a mid gray
@@ -103,7 +107,7 @@ impl Positive {
         let unexposed = film.neutral(f64::NEG_INFINITY);
         let printing =
             Printing::balanced(film.deposit(), &unexposed, &gray, print, printed, Some(lamp), viewing, white)?;
-        Ok(Self::tabulated(film, Way::Print(Box::new(printing))))
+        Ok(Self::of(film, Way::Print(Box::new(printing))))
     }
 
     /// Printed by dye transfer: three separation negatives ([`Emulsion::separations`]), each onto the matrix of one dye of
@@ -128,7 +132,7 @@ impl Positive {
             gray_lx_s.iter().enumerate().map(|(i, h)| film.amount(i, spectra_core::math::log10(*h))).collect();
         let unexposed = film.neutral(f64::NEG_INFINITY);
         let printing = Printing::balanced(film.deposit(), &unexposed, &gray, print, printed, None, viewing, white)?;
-        Ok(Self::tabulated(film, Way::Print(Box::new(printing))))
+        Ok(Self::of(film, Way::Print(Box::new(printing))))
     }
 
     /// Scanned: density through the filters of the stock's densitometry. [`ScanScale::Picture`] turns it around along the curves
@@ -140,14 +144,13 @@ impl Positive {
     /// [`PositiveError::NoGray`].
     pub fn scanned(stock: &Stock, film: &Emulsion, gray_lx_s: f64, scale: ScanScale) -> Result<Self, PositiveError> {
         let scan = Scan::new(stock, film, gray_lx_s, scale)?;
-        Ok(Self::tabulated(film, Way::Scan(scan)))
+        Ok(Self::of(film, Way::Scan(scan)))
     }
 
-    fn tabulated(film: &Emulsion, way: Way) -> Self {
+    fn of(film: &Emulsion, way: Way) -> Self {
         let ranges: Vec<(f64, f64)> = (0..film.layers()).map(|i| film.range(i)).collect();
         let deposit = film.deposit().clone();
-        let tables = Tables::new(&deposit, &ranges, &way);
-        Self { film: deposit, way, tables }
+        Self { film: deposit, way, ranges, tables: OnceLock::new() }
     }
 
     /// What a place of the film with these amounts is shown as: linear light, sRGB primaries.
@@ -190,10 +193,15 @@ impl Positive {
     }
 
     /// The picture of a whole film: one plane of amounts a layer, of equal length. Within a code value of 8 bits of
+    /// Made for the first whole picture: a place alone needs none.
+    fn tables(&self) -> &Tables {
+        self.tables.get_or_init(|| Tables::new(&self.film, &self.ranges, &self.way))
+    }
+
     /// [`Positive::shown`] for each place.
     #[must_use]
     pub fn picture(&self, planes: &[&[f32]]) -> Vec<[f32; 3]> {
-        self.tables.picture(planes, &self.way, Reach::Screen)
+        self.tables().picture(planes, &self.way, Reach::Screen)
     }
 
     /// The same in no gamut: below 0 what sRGB cannot have, above 1 what is brighter than the film's white. Of a scan on the
@@ -203,7 +211,7 @@ impl Positive {
         match self.film.layers() {
             // Silver is tabulated as it is shown, dyes as densities.
             1 => Tables::silver(&self.film, &self.way, Reach::Open).picture(planes, &self.way, Reach::Open),
-            _ => self.tables.picture(planes, &self.way, Reach::Open),
+            _ => self.tables().picture(planes, &self.way, Reach::Open),
         }
     }
 

@@ -5,7 +5,7 @@ use super::like::inherited;
 use super::material::{DyeFile, MinimumDensityFile, densitometry};
 use super::reciprocity::ReciprocityFile;
 use super::speed::{MeterResponse, SpeedKind};
-use super::structure::{BaseFile, GranularityFile, HalationFile, granularity, mtf};
+use super::structure::{Assumptions, AssumptionsFile, BaseFile, GranularityFile, HalationFile, granularity, mtf};
 use super::{Development, FilterFactor, Layer, Process, Reading, SensitivityError, SpectralSensitivity, Stock};
 use crate::curve::{
     AVERAGE_GRADIENT_SPAN, CharacteristicCurve, CurveError, SPEED_POINT_DENSITY, TabulatedCurve, ToeShoulder,
@@ -108,6 +108,8 @@ struct StockFile {
     /// Of a color print stock: the densities that the print of a mid gray is timed to, base included (the laboratory aim
     /// density, LAD, of Kodak's print films). A mid gray of the picture if absent.
     aim_density: Option<AimDensityFile>,
+    /// What was chosen rather than measured in all layers, each with what it rests on; nothing if absent.
+    assumed: Option<AssumptionsFile>,
     /// Granularity of its silver; no grain if absent.
     granularity: Option<GranularityFile>,
     /// What the base throws back, a halo around bright lights; nothing if absent.
@@ -315,6 +317,8 @@ pub(super) fn read(params: &Params, resources: &dyn Resources) -> Result<Stock, 
         let fault = params.fault("granularity", "a film with dyes has a granularity in each layer");
         faults.push(fault.hint("`granularity: [[density over the minimum, RMS], ...]` of each layer"));
     }
+    let assumed = file.assumed.map_or(Some(Assumptions::default()), |a| faults.take(a.read(params)));
+    let assumed = assumed.unwrap_or_default();
     let layer_count = file.layers.len();
     let halation = file.halation.as_ref().and_then(|h| faults.take(h.read(params, layer_count)));
     let bases = file.bases.iter().map(BaseFile::read).collect();
@@ -346,6 +350,7 @@ pub(super) fn read(params: &Params, resources: &dyn Resources) -> Result<Stock, 
         minimum_density,
         interlayer,
         aim_density,
+        assumed,
         granularity,
         halation,
         print: file.print,

@@ -14,7 +14,7 @@ pub use material::{Densitometry, Dye, MinimumDensity, SpectralDensity};
 pub use reciprocity::Reciprocity;
 pub use sensitivity::{Reading, SensitivityError, SpectralSensitivity};
 pub use speed::{ISO_6_SPAN, Iso6, MeterResponse, SpeedKind};
-pub use structure::{Base, Granularity, Halation};
+pub use structure::{Assumptions, Base, Granularity, Halation};
 
 use crate::curve::CharacteristicCurve;
 use schemars::{Schema, SchemaGenerator};
@@ -80,6 +80,8 @@ pub struct Stock {
     pub interlayer: Option<Interlayer>,
     /// Of a print stock of three dyes, what the print of a mid gray is timed to; `None` where its maker states none.
     pub aim_density: Option<AimDensity>,
+    /// What was chosen rather than measured in all of its layers.
+    pub assumed: Assumptions,
     /// How grainy its silver is; `None` where the sheet does not say, and of films with dyes.
     pub granularity: Option<Granularity>,
     /// What its back sends back; `None` where nothing is known of it.

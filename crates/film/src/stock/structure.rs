@@ -2,7 +2,7 @@
 
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::params::{Fault, Length, Params, Positive};
+use spectra_core::params::{Fault, Faults, Length, Params, Positive};
 
 /// What the emulsion is coated on.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,6 +47,52 @@ pub struct Halation {
     pub assumed: bool,
     /// What it rests on.
     pub remark: Option<String>,
+}
+
+/// What was chosen rather than measured in all layers of a stock, each with what it rests on.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Assumptions {
+    /// Of the spectra of its dyes.
+    pub dyes: Option<String>,
+    /// Of the granularity of its layers.
+    pub granularity: Option<String>,
+    /// Of their modulation transfer.
+    pub mtf: Option<String>,
+}
+
+impl Assumptions {
+    /// Each with the key that a stock file has for it, those that there are.
+    pub fn iter(&self) -> impl Iterator<Item = (&'static str, &str)> {
+        let all = [("dyes", &self.dyes), ("granularity", &self.granularity), ("mtf", &self.mtf)];
+        all.into_iter().filter_map(|(key, text)| Some((key, text.as_deref()?)))
+    }
+}
+
+/// What was chosen rather than measured in all layers, each with what it rests on.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub(super) struct AssumptionsFile {
+    /// Of the spectra of the dyes: what they rest on. The sheet has them if absent.
+    dyes: Option<String>,
+    /// Of the granularity of the layers: what it rests on. The sheet has it if absent.
+    granularity: Option<String>,
+    /// Of the modulation transfer of the layers: what it rests on. The sheet has it if absent.
+    mtf: Option<String>,
+}
+
+impl AssumptionsFile {
+    pub(super) fn read(self, params: &Params) -> Result<Assumptions, Faults> {
+        let Self { dyes, granularity, mtf } = self;
+        let assumptions = Assumptions { dyes, granularity, mtf };
+        let mut faults = Faults::new();
+        for (key, text) in assumptions.iter() {
+            if text.trim().is_empty() {
+                let fault = params.fault(&format!("assumed.{key}"), "what is assumed needs a reason");
+                faults.push(fault.hint("a text that says what it rests on"));
+            }
+        }
+        faults.into_result(assumptions)
+    }
 }
 
 /// What a film is coated on.

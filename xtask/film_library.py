@@ -1,0 +1,367 @@
+#!/usr/bin/env python3
+"""Writes the named color films and papers under spectra/film/ that import_film.py does not write itself.
+
+Run from the root of the repository, with the wheel that import_film.py names:
+
+    VENV/bin/python xtask/film_library.py WHEEL
+
+Like import_film.py it reads tables of spectral-film-lut 0.18.13 (MIT), digitizations of figures in makers' data sheets, and none of
+its code. What it does to them:
+  - exposures, running maxima and minima as in import_film.py;
+  - sheets of still negatives print no spectra of single dyes, only of a midscale neutral and of unexposed film: the dyes of
+    Vision3 250D, each scaled wavelength by wavelength by the same factor, so that together they make the sheet's neutral;
+  - granularity over density, where the sheet has none: that of a film of the same kind, times one factor (see GRAIN);
+  - curves are moved by a few numbers, so that a gray scale is gray, and interlayer effects are assumed: xtask/fit_film_library.py
+    finds both and writes them to xtask/film_library.json. The remark of each curve says by how much it moved.
+"""
+
+import json
+import pathlib
+import sys
+from math import log10
+from types import SimpleNamespace
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+import import_film as base  # noqa: E402
+
+NUMBERS = pathlib.Path(__file__).with_name("film_library.json")
+DAYLIGHT = "iso-7589-sensitometric-daylight"
+TUNGSTEN = "iso-7589-sensitometric-studio-tungsten"
+
+# slug: (module, name in it, name for people, maker, sheet, year, speed, light, print, backing)
+KODAK, FUJI = "Eastman Kodak", "Fujifilm"
+ENDURA, CRYSTAL, CINE = "kodak-endura-premier", "fuji-crystal-archive-dpii", "kodak-vision-2383"
+NEGATIVES = {
+    "kodak-portra-160": ("kodak_portra_160", "KODAK_PORTRA_160", "Kodak Portra 160", KODAK,
+                         "Kodak Professional Portra 160 Film, technical data E-4051", 2011, 160, DAYLIGHT, ENDURA),
+    "kodak-portra-400": ("kodak_portra_400", "KODAK_PORTRA_400", "Kodak Portra 400", KODAK,
+                         "Kodak Professional Portra 400 Film, technical data E-4050", 2010, 400, DAYLIGHT, ENDURA),
+    "kodak-portra-800": ("kodak_portra_800", "KODAK_PORTRA_800", "Kodak Portra 800", KODAK,
+                         "Kodak Professional Portra 800 Film, technical data E-4040", 1998, 800, DAYLIGHT, ENDURA),
+    "kodak-ektar-100": ("kodak_ektar_100", "KODAK_EKTAR_100", "Kodak Ektar 100", KODAK,
+                        "Kodak Professional Ektar 100 Film, technical data E-4046", 2008, 100, DAYLIGHT, ENDURA),
+    "kodak-gold-200": ("kodak_gold_200", "KODAK_GOLD_200", "Kodak Gold 200", KODAK,
+                       "Kodak Gold 200 Film, technical data E-7022", 2007, 200, DAYLIGHT, ENDURA),
+    "kodak-ultramax-400": ("kodak_ultramax_400", "KODAK_ULTRAMAX_400", "Kodak UltraMax 400", KODAK,
+                           "Kodak UltraMax 400 Film, technical data E-7023", 2007, 400, DAYLIGHT, ENDURA),
+    "kodak-vericolor-iii": ("kodak_vericolor_iii", "KODAK_VERICOLOR_III", "Kodak Vericolor III", KODAK,
+                            "Kodak Vericolor III Professional Film, technical data", 1983, 160, DAYLIGHT, ENDURA),
+    "fuji-pro-160s": ("fuji_pro_160s", "FUJI_PRO_160S", "Fujicolor Pro 160S", FUJI,
+                      "Fujicolor Pro 160S Professional, data sheet", 2004, 160, DAYLIGHT, CRYSTAL),
+    "fuji-pro-400h": ("fuji_pro_400h", "FUJI_PRO_400H", "Fujicolor Pro 400H", FUJI,
+                      "Fujicolor Pro 400H Professional, data sheet", 2004, 400, DAYLIGHT, CRYSTAL),
+    "fuji-c200": ("fuji_c200", "FUJI_C200", "Fujicolor C200", FUJI, "Fujicolor C200, data sheet", 2017, 200, DAYLIGHT, CRYSTAL),
+    "fuji-superia-reala-100": ("fuji_superia_reala", "FUJI_SUPERIA_REALA", "Fujicolor Superia Reala 100", FUJI,
+                               "Fujicolor Superia Reala, data sheet", 1998, 100, DAYLIGHT, CRYSTAL),
+    "fuji-superia-x-tra-400": ("fuji_superia_xtra_400", "FUJI_SUPERIA_XTRA_400", "Fujicolor Superia X-TRA 400", FUJI,
+                               "Fujicolor Superia X-TRA 400, data sheet", 1998, 400, DAYLIGHT, CRYSTAL),
+    "fuji-natura-1600": ("fuji_natura_1600", "FUJI_NATURA_1600", "Fujicolor Natura 1600", FUJI,
+                         "Fujicolor Natura 1600, data sheet", 2003, 1600, DAYLIGHT, CRYSTAL),
+    "kodak-vision3-50d-5203": ("kodak_5203", "KODAK_5203", "Kodak Vision3 50D 5203", KODAK,
+                               "Kodak Vision3 50D Color Negative Film 5203/7203, technical data H-1-5203", 2011, 50, DAYLIGHT, CINE),
+    "kodak-vision3-200t-5213": ("kodak_5213", "KODAK_5213", "Kodak Vision3 200T 5213", KODAK,
+                                "Kodak Vision3 200T Color Negative Film 5213/7213, technical data H-1-5213", 2010, 200, TUNGSTEN, CINE),
+    "kodak-vision3-500t-5219": ("kodak_5219", "KODAK_5219", "Kodak Vision3 500T 5219", KODAK,
+                                "Kodak Vision3 500T Color Negative Film 5219/7219, technical data H-1-5219", 2007, 500, TUNGSTEN, CINE),
+    "kodak-exr-100t-5248": ("kodak_exr_5248", "KODAK_EXR_5248", "Eastman EXR 100T 5248", KODAK,
+                            "Eastman EXR 100T Color Negative Film 5248/7248, technical data H-1-5248", 1990, 100, TUNGSTEN, CINE),
+    "fuji-eterna-500": ("fuji_eterna_500", "FUJI_ETERNA_500", "Fujicolor Eterna 500", FUJI,
+                        "Fujicolor Negative Film Eterna 500, type 8573, data sheet", 2007, 500, TUNGSTEN, CINE),
+}
+SLIDES = {
+    "fuji-velvia-50": ("fuji_velvia_50", "FUJI_VELVIA_50", "Fujichrome Velvia 50", FUJI,
+                       "Fujichrome Velvia 50, data sheet", 2007, 50),
+    "fuji-provia-100f": ("fuji_provia_100f", "FUJI_PROVIA_100F", "Fujichrome Provia 100F", FUJI,
+                         "Fujichrome Provia 100F, data sheet", 2000, 100),
+    "kodachrome-64": ("kodachrome_64", "KODACHROME_64", "Kodachrome 64", KODAK,
+                      "Kodachrome 64 Professional Film, technical data E-55", 1974, 64),
+}
+# slug: (module, name in it, name for people, maker, sheet, year, medium, lamp, LAD)
+PRINTS = {
+    "kodak-endura-premier": ("kodak_endura_premier", "KODAK_ENDURA_PREMIER", "Kodak Professional Endura Premier Paper", KODAK,
+                             "Kodak Professional Endura Premier Paper, technical data", None, "paper", None),
+    "fuji-crystal-archive-dpii": ("fuji_ca_dpII", "FUJI_CA_DPII", "Fujicolor Crystal Archive DP II", FUJI,
+                                  "Fujicolor Crystal Archive Digital Paper Type DP II, data sheet", 2006, "paper", None),
+    "kodak-vision-premier-2393": ("kodak_2393", "KODAK_2393", "Kodak Vision Premier Color Print Film 2393", KODAK,
+                                  "Kodak Vision Premier Color Print Film 2393, technical data H-1-2393", 1998, "film",
+                                  (1.09, 1.06, 1.03)),
+    "fuji-eterna-cp-3513di": ("fuji_3513di", "FUJI_3513", "Fujicolor Positive Film Eterna-CP 3513DI", FUJI,
+                              "Fujicolor Positive Film Eterna-CP Type 3513DI, data sheet", 2002, "film", None),
+}
+
+# RMS granularity at density 1 over the minimum, as the makers state it; None where they state an index of prints only (Kodak, still
+# negatives) or where the layers have curves of their own.
+GRAIN = {"fuji-pro-160s": 3, "fuji-pro-400h": 4, "fuji-c200": 4, "fuji-superia-reala-100": 4, "fuji-superia-x-tra-400": 4,
+         "fuji-natura-1600": 7, "fuji-eterna-500": 3.5,
+         "fuji-velvia-50": 9, "fuji-provia-100f": 9, "kodachrome-64": 10}
+# Parts of red, green and blue in a visual density.
+VISUAL = {"red": 0.26, "green": 0.57, "blue": 0.17}
+# Visual RMS granularity of Vision3 goes with about this power of its speed: 3.1, 4.7 and 5.5 of 5203, 5213 and 5219.
+BY_SPEED = 0.25
+
+
+def between(points, x):
+    """Straight between points, held beyond."""
+    if x <= points[0][0]:
+        return points[0][1]
+    for (x0, y0), (x1, y1) in zip(points, points[1:]):
+        if x <= x1:
+            return y0 + (y1 - y0) * (x - x0) / (x1 - x0)
+    return points[-1][1]
+
+
+def generic_dyes(folder):
+    data = base.load(folder, "negative_film.kodak_5207", "KODAK_5207")
+    return [base.pairs(t) for t in data.spectral_density]
+
+
+def solve(matrix, right):
+    """A small system of equations, by Gauss."""
+    n = len(right)
+    rows = [list(m) + [r] for m, r in zip(matrix, right)]
+    for i in range(n):
+        pivot = max(range(i, n), key=lambda k: abs(rows[k][i]))
+        rows[i], rows[pivot] = rows[pivot], rows[i]
+        for k in range(n):
+            if k != i:
+                f = rows[k][i] / rows[i][i]
+                rows[k] = [a - f * b for a, b in zip(rows[k], rows[i])]
+    return [rows[i][n] / rows[i][i] for i in range(n)]
+
+
+def dyes_of_neutral(data, generic):
+    """Dyes that make the sheet's midscale neutral together: the generic ones, amounts by least squares, then all times one factor
+    a wavelength, 0.5 to 2, smoothed over 20 nm. Also by how much the factor differs from 1, root mean square."""
+    neutral, clear = base.pairs(data.d_ref_sd), base.pairs(data.d_min_sd)
+    low, high = max(neutral[0][0], clear[0][0]), min(neutral[-1][0], clear[-1][0])
+    grid = [w for w in range(400, 701, 5) if low <= w <= high]
+    wanted = [between(neutral, w) - between(clear, w) for w in grid]
+    shapes = [[between(d, w) for w in grid] for d in generic]
+    matrix = [[sum(a * b for a, b in zip(p, q)) for q in shapes] for p in shapes]
+    amounts = solve(matrix, [sum(a * b for a, b in zip(p, wanted)) for p in shapes])
+    assert all(a > 0 for a in amounts), amounts
+    ratio = [min(max(v / sum(a * s[i] for a, s in zip(amounts, shapes)), 0.5), 2.0) for i, v in enumerate(wanted)]
+    smooth = [sum(ratio[max(i - 2, 0):i + 3]) / len(ratio[max(i - 2, 0):i + 3]) for i in range(len(ratio))]
+    off = (sum((r - 1) ** 2 for r in smooth) / len(smooth)) ** 0.5
+    curve = list(zip(grid, smooth))
+    dyes = []
+    for d in generic:
+        table = {w: between(d, w) * between(curve, w) for w in range(400, 801, 10)}
+        peak = max(table.values())
+        dyes.append({w: v / peak for w, v in table.items()})
+    return dyes, off
+
+
+def prepared(folder, kind, slug):
+    """The tables of a stock, with the dyes of its layers."""
+    row = {"negative": NEGATIVES, "slide": SLIDES, "print": PRINTS}[kind][slug]
+    package = {"negative": "negative_film", "slide": "reversal_film", "print": "print_film"}[kind]
+    data = base.load(folder, f"{package}.{row[0]}", row[1])
+    dyes, off = data.spectral_density, None
+    if not dyes:
+        dyes, off = dyes_of_neutral(data, generic_dyes(folder))
+    return SimpleNamespace(
+        sensiometric_curve=data.sensiometric_curve, log_sensitivity=data.log_sensitivity, mtf=data.mtf,
+        spectral_density=dyes, dyes_off=off, d_min_sd=data.d_min_sd, rms_curve=data.rms_curve, rms_density=data.rms_density,
+        exposure_base=data.exposure_base)
+
+
+def points_of(data, i, iso):
+    """A curve on the axis of log10 lx s."""
+    points = base.pairs(data.sensiometric_curve[i])
+    if data.exposure_base == 2:
+        points = [(x * log10(2) + log10(10 / iso), y) for x, y in points]
+    return points
+
+
+# How the curves move; numbers as xtask/fit_film_library.py finds them.
+def moved(kind, numbers, points, gray):
+    """A curve of blue or red with its correction: see fit_film_library.py."""
+    low = min(y for _, y in points)
+    out, most = [], 0.0
+    for x, y in points:
+        if kind == "negative":
+            u = min(max(x - gray, -1.0), 1.2)
+            d = numbers[0] * (u + 1) + numbers[1] * (u * u - 1) + numbers[2] * (u + 1) * u * (u - 1.2)
+        else:
+            d = sum(n * bump(y - low, at) for n, at in zip(numbers, BUMPS[kind]))
+        out.append((x, y + d))
+        most = max(most, abs(d))
+    shift = numbers[3] if kind == "slide" else 0.0
+    return [(x + shift, y) for x, y in out], most, shift
+
+
+# Densities over the minimum where the corrections of positives are largest.
+BUMPS = {"print": (0.3, 1.0, 2.4), "paper": (0.3, 0.9, 1.9), "slide": (0.4, 1.0, 2.2)}
+
+
+def bump(density, at):
+    t = max(density, 0.0) / at
+    return (t * base.exp(1 - t)) ** 2
+
+
+def grainy(folder, slug, iso, data, kind):
+    """Granularity of the layers, and the remark on it where it is assumed."""
+    own = base.load(folder, "negative_film.kodak_5207", "KODAK_5207")
+    tables = [base.granularity(data.rms_curve[i], data.rms_density[i]) for i in range(3)]
+    copied = kind == "slide" or data.rms_curve == own.rms_curve
+    if not copied and slug not in GRAIN:
+        return tables, None
+    if kind == "slide":
+        like = base.load(folder, "reversal_film.kodak_ektachrome_100d", "KODAK_EKTACHROME_100D")
+        name = "kodak-ektachrome-100d"
+    else:
+        like, name = own, "kodak-vision3-250d-5207"
+    tables = [base.granularity(like.rms_curve[i], like.rms_density[i]) for i in range(3)]
+    visual = sum((VISUAL[base.LAYERS[i]] * between(tables[i], 1.0)) ** 2 for i in range(3)) ** 0.5
+    if slug in GRAIN:
+        factor = GRAIN[slug] / visual
+        remark = (f"The sheet states one figure, RMS {number(GRAIN[slug])} at the density 1 through 48 um. Assumed: the layers have "
+                  f"the curves of {name}, times {factor:.2f}, so that a visual density (0.26 red, 0.57 green, 0.17 blue) has "
+                  "that figure.")
+    else:
+        factor = (iso / 250) ** BY_SPEED
+        remark = (f"The sheet states a Print Grain Index only. Assumed: the curves of {name}, times {factor:.2f}, as the speed to "
+                  f"the power of {BY_SPEED}, by which Vision3 50D, 200T and 500T differ.")
+    return [[(d, r * factor) for d, r in t] for t in tables], remark
+
+
+def number(v):
+    return base.number(float(v))
+
+
+def layers_of(data, kind, iso, numbers, grain):
+    gray = log10(10 / iso) if iso else None
+    out = []
+    for i in (2, 1, 0):
+        layer = base.LAYERS[i]
+        rising = kind != "slide"
+        points, count, worst = base.monotone(points_of(data, i, iso), rising)
+        remarks = []
+        if count:
+            word = "maximum" if rising else "minimum"
+            remarks.append(f"running {word}; it moved {count} points of the digitization, by {worst:.4f} at most")
+        if numbers and any(numbers.get(layer, [])):
+            points, most, shift = moved(kind, numbers[layer], points, gray)
+            points, _, _ = base.monotone(points, rising)
+            along = f" and {abs(shift):.3f} in log10 exposure" if abs(shift) >= 0.0005 else ""
+            if most >= 0.0005 or along:
+                remarks.append(f"moved by up to {most:.3f} in density{along}, so that a gray scale is gray (assumed)")
+        lines = [f"  - name: {layer}", "    sensitivity:", "      reading: log10", "      measured-under: equal-energy",
+                 f"      table:{base.flow(base.pairs(data.log_sensitivity[i]), '        ')}",
+                 "    dye:", f"      name: {base.DYES[i]}",
+                 f"      table:{base.flow(base.pairs(data.spectral_density[i]), '        ')}"]
+        if data.mtf:
+            mtf = data.mtf[i] if len(data.mtf) == 3 else data.mtf[0]
+            lines.append(f"    mtf:{base.flow(base.pairs(mtf), '      ')}")
+        if grain:
+            lines.append(f"    granularity:{base.flow(grain[i], '      ')}")
+        lines += ["    curves:", "      - development: normal"]
+        if remarks:
+            text = "; ".join(remarks)
+            lines.append(f"        remark: {base.folded(text, '          ') if len(text) > 96 else text}")
+        lines.append(f"        points:{base.flow(points, '          ')}")
+        out.append(lines)
+    return out
+
+
+def assumed(parts):
+    """`assumed:` of a stock: what is chosen in all layers, and why."""
+    said = [f"  {key}: {base.folded(text, '    ')}" for key, text in parts if text]
+    return ["assumed:\n" + "\n".join(said)] if said else []
+
+
+def dye_remark(off):
+    return off is not None and (
+        "The sheet has the spectrum of a midscale neutral and of unexposed film, not of single dyes. Assumed: the dyes of "
+        "kodak-vision3-250d-5207, each times one factor a wavelength (0.5 to 2; it differs from 1 by "
+        f"{off:.2f}, root mean square), so that together they make the sheet's neutral.")
+
+
+def mtf_remark(data):
+    return bool(data.mtf) and len(data.mtf) == 1 and "The sheet has one curve for the whole film; assumed for each layer."
+
+
+LAYERS_REMARK = "Rows and columns are blue, green, red. No sheet tells it."
+
+
+def interlayer(numbers, where):
+    text = (f"Fitted so that the 18 chromatic patches of the ColorChecker, {where}, have the hue that the eye sees and about its "
+            f"chroma (xtask/fit_film_library.py). {LAYERS_REMARK}")
+    return f"interlayer:\n  assumed: true\n  remark: {base.folded(text, '    ')}\n  inhibition: {numbers['inhibition']}"
+
+
+def negative(folder, slug, numbers):
+    module, _, name, maker, sheet, year, iso, light, print_stock = NEGATIVES[slug]
+    data = prepared(folder, "negative", slug)
+    grain, grain_remark = grainy(folder, slug, iso, data, "negative")
+    cine = print_stock == CINE
+    speed = "the maker's exposure index" if cine else "an ISO speed"
+    tungsten = " It is balanced for tungsten light: in daylight its prints are blue without an amber filter (Wratten 85) before the lens." if light == TUNGSTEN else ""
+    stops = " counted in stops from the normal exposure, taken here as 10/S lx s of the reference light" if data.exposure_base == 2 else ""
+    back = ("The black backing (rem-jet) lets 0.3 pass once, through it and the surfaces before it. " if cine and maker == KODAK else
+            "A layer of gray silver or of dye under the emulsion, cleared in processing, lets 0.35 pass once. ")
+    remark = (f"Color negative for {'tungsten light' if light == TUNGSTEN else 'daylight'}; the speed is {speed}.{tungsten} The "
+              f"sheet's curves are Status M densities of neutral exposures{stops}.")
+    base.stock(
+        slug, name=name, maker=maker, source=f"{sheet}, {base.CARRIED}", remark=remark,
+        head=["", "process: negative", "density: status-m", f"year: {year}", f"iso: {iso}",
+              *(["speed: exposure-index"] if cine else []), f"reference-illuminant: {light}", f"print: {print_stock}",
+              *assumed([("dyes", dye_remark(data.dyes_off)), ("granularity", grain_remark), ("mtf", mtf_remark(data))]),
+              base.halation(0.3 if cine and maker == KODAK else 0.35, base.ENTERS + back + base.DEPTH, layers=[0.01, 0.25, 1]),
+              base.ACETATE, f"minimum-density:\n  table:{base.flow(base.pairs(data.d_min_sd), '    ')}",
+              *([interlayer(numbers, f"printed on {print_stock}")] if numbers else [])],
+        layers=layers_of(data, "negative", iso, numbers, grain))
+
+
+def slide(folder, slug, numbers):
+    _, _, name, maker, sheet, year, iso = SLIDES[slug]
+    data = prepared(folder, "slide", slug)
+    grain, grain_remark = grainy(folder, slug, iso, data, "slide")
+    back = ("The black backing (rem-jet) lets 0.3 pass once, through it and the surfaces before it. " if slug == "kodachrome-64" else
+            "A layer of gray silver under the emulsion, bleached in processing, lets 0.3 pass once. ")
+    base.stock(
+        slug, name=name, maker=maker, source=f"{sheet}, {base.CARRIED}",
+        remark="Color reversal film for daylight. The sheet's curves are Status A densities of neutral exposures.",
+        head=["", "process: reversal", "density: status-a", f"year: {year}", f"iso: {iso}", f"reference-illuminant: {DAYLIGHT}",
+              *assumed([("granularity", grain_remark), ("mtf", mtf_remark(data))]),
+              base.halation(0.3, base.ENTERS + back + base.DEPTH, layers=[0.01, 0.25, 1]), base.ACETATE,
+              base.flat_minimum(*base.minima(data)),
+              *([interlayer(numbers, "projected")] if numbers else [])],
+        layers=layers_of(data, "slide", iso, numbers, grain))
+
+
+def print_stock(folder, slug, numbers):
+    _, _, name, maker, sheet, year, medium, aim = PRINTS[slug]
+    data = prepared(folder, "print", slug)
+    if medium == "paper":
+        remark = ("Color paper (process RA-4) for prints of still negatives. The exposures of its curves are relative to the printing "
+                  "light, which is set for each negative; no speed is stated. Densities of reflection are taken as the sums of its "
+                  "dyes' densities over the minimum.")
+    else:
+        remark = ("Print film for projection. The exposures of its curves are relative to the printing light, which is set for each "
+                  "negative; no speed is stated.")
+    head = ["", "process: print", *(["medium: paper"] if medium == "paper" else []), "density: status-a",
+            *([f"year: {year}"] if year else []), "reference-illuminant: blackbody:3200"]
+    if aim:
+        head += ["# Kodak's laboratory aim density (LAD) for this stock, Status A.",
+                 "aim-density: {red: %s, green: %s, blue: %s}" % aim]
+    base.stock(slug, name=name, maker=maker, source=f"{sheet}, {base.CARRIED}", remark=remark,
+               head=[*head, base.flat_minimum(*base.minima(data))],
+               layers=layers_of(data, "paper" if medium == "paper" else "print", None, numbers, None))
+
+
+def main():
+    folder = pathlib.Path(sys.argv[1])
+    base.prepare(folder)
+    numbers = json.loads(NUMBERS.read_text(encoding="utf-8")) if NUMBERS.exists() else {}
+    for slug in NEGATIVES:
+        negative(folder, slug, numbers.get(slug))
+    for slug in SLIDES:
+        slide(folder, slug, numbers.get(slug))
+    for slug in PRINTS:
+        print_stock(folder, slug, numbers.get(slug))
+
+
+if __name__ == "__main__":
+    main()
