@@ -89,6 +89,18 @@ PRINTS = {
                               "Fujicolor Positive Film Eterna-CP Type 3513DI, data sheet", 2002, "film", None),
 }
 
+# slug: (name for people, maker, sheet, year, speed, RMS granularity of the sheet or None, Frieser's k in mm, average gradient).
+# No free digitization of these sheets is known: what they state in words is here, all else is of films of their kind.
+SILVER = {
+    "kodak-t-max-100": ("Kodak T-Max 100", KODAK, "Kodak Professional T-Max 100 Film, technical data F-4016", 1986, 100, 8, 0.009, 0.58),
+    "kodak-t-max-400": ("Kodak T-Max 400", KODAK, "Kodak Professional T-Max 400 Film, technical data F-4043, 2007", 1986, 400, 10,
+                        0.011, 0.58),
+    "ilford-fp4-plus": ("Ilford FP4 Plus", "Harman Technology (Ilford Photo)", "Ilford FP4 Plus, technical information", 1990, 125, None,
+                        0.012, 0.62),
+    "ilford-hp5-plus": ("Ilford HP5 Plus", "Harman Technology (Ilford Photo)", "Ilford HP5 Plus, technical information", 1989, 400, None,
+                        0.014, 0.62),
+}
+
 # RMS granularity at density 1 over the minimum, as the makers state it; None where they state an index of prints only (Kodak, still
 # negatives) or where the layers have curves of their own.
 GRAIN = {"fuji-pro-160s": 3, "fuji-pro-400h": 4, "fuji-c200": 4, "fuji-superia-reala-100": 4, "fuji-superia-x-tra-400": 4,
@@ -351,6 +363,36 @@ def print_stock(folder, slug, numbers):
                layers=layers_of(data, "paper" if medium == "paper" else "print", None, numbers, None))
 
 
+def silver(folder, slug):
+    name, maker, sheet, year, iso, rms, k_mm, gradient = SILVER[slug]
+    seen = base.pairs(base.load(folder, "bw_negative_film.kodak_trix_400", "KODAK_TRI_X_400").log_sensitivity[0])
+    lines = base.layer("panchromatic", seen, [], assumed_sensitivity=True, mtf=base.frieser(k_mm), sensitivity_remark=(
+        "No free digitization of the sheet's figure is known: that of Tri-X (F-4017), a panchromatic film, too."))
+    curve = [
+        "    curves:", "      - development: pictorial", "        assumed: true", f"        average-gradient: {gradient}",
+        "        maximum-density: 2.4", "        toe: 0.2", "        shoulder: 4", "        remark: " + base.folded(
+            "No free digitization of the sheet's figure is known: through the ISO speed point with a usual pictorial gradient; "
+            "density over base and fog.", "          ")]
+    if rms:
+        grain = f"granularity: {{rms: {rms}, aperture: 0.048 mm, density: 1}}"
+    else:
+        rms = {125: 11, 400: 16}[iso]
+        grain = f"granularity:\n  rms: {rms}\n  assumed: true\n  remark: " + base.folded(
+            "The sheet states none. Between those of films of its kind and speed: 8 of T-Max 100, 14 of Double-X (EI 250), 17 of Tri-X.",
+            "    ")
+    half = 2.302585 / (3.141593 * k_mm)
+    base.stock(
+        slug, name=name, maker=maker,
+        source=f"{sheet} (speed{', granularity' if SILVER[slug][5] else ''}); sensitivity of Tri-X 400, F-4017, {base.CARRIED}",
+        remark="A film by its published figures, not by its curves: speed" + (" and granularity are" if SILVER[slug][5] else " is")
+        + " as stated; sensitivity, curve, modulation transfer and halation are those of films of its kind.",
+        head=["", "process: negative", "density: visual", f"year: {year}", f"iso: {iso}", f"reference-illuminant: {DAYLIGHT}",
+              *assumed([("mtf", f"By Frieser's formula with k = {k_mm} mm, half of the contrast at {half:.0f} cycles/mm, of the 0.005 to "
+                         "0.04 mm that H. Frieser (Photogr. Sci. Eng. 4, 324, 1960) gives for emulsions.")]),
+              grain, base.halation(0.35, base.ENTERS + "Base and dye under the emulsion as of Tri-X: 0.35 passes once."), base.ACETATE],
+        layers=[[*lines[:-1], *curve]])
+
+
 def main():
     folder = pathlib.Path(sys.argv[1])
     base.prepare(folder)
@@ -359,6 +401,8 @@ def main():
         negative(folder, slug, numbers.get(slug))
     for slug in SLIDES:
         slide(folder, slug, numbers.get(slug))
+    for slug in SILVER:
+        silver(folder, slug)
     for slug in PRINTS:
         print_stock(folder, slug, numbers.get(slug))
 

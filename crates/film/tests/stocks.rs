@@ -109,7 +109,7 @@ fn every_stock_is_whole_and_says_where_it_comes_from() {
     }
 }
 
-/// RMS granularity as the maker's sheet states it, 17 for Tri-X 400, 14 for Double-X; of other camera films of silver it is
+/// RMS granularity as the maker's sheet states it, 17 for Tri-X 400, 14 for Double-X, 8 and 10 for T-Max 100 and 400; of other camera films of silver it is
 /// assumed, and said so; the layers of color film have it over density, as their sheets plot it.
 #[test]
 fn granularity_is_stated_or_assumed() {
@@ -119,6 +119,8 @@ fn granularity_is_stated_or_assumed() {
         match name {
             "kodak-tri-x-400" => assert_eq!(found, Some((17.0, false))),
             "kodak-double-x-5222" => assert_eq!(found, Some((14.0, false))),
+            "kodak-t-max-100" => assert_eq!(found, Some((8.0, false))),
+            "kodak-t-max-400" => assert_eq!(found, Some((10.0, false))),
             _ if stock.process == Process::Print => assert_eq!(found, None, "{name}"),
             _ if stock.layers.len() == 1 => assert!(found.is_some_and(|g| g.1), "{name}"),
             _ => assert!(stock.layers.iter().all(|l| l.granularity.len() > 10), "{name}"),
@@ -137,6 +139,10 @@ fn speed_points_lie_where_the_speed_says() {
         ("ilford-ortho-plus", 1e-9),
         ("blue-sensitive-plate", 1e-9),
         ("panchromatic-plate", 1e-9),
+        ("kodak-t-max-100", 1e-9),
+        ("kodak-t-max-400", 1e-9),
+        ("ilford-fp4-plus", 1e-9),
+        ("ilford-hp5-plus", 1e-9),
     ] {
         let s = stock(name);
         let iso = s.iso.expect("rated");

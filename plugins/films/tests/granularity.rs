@@ -69,6 +69,8 @@ fn silver_is_as_grainy_as_its_figure_at_any_pixel() {
         ("ilford-ortho-plus", 10.0),
         ("blue-sensitive-plate", 14.0),
         ("panchromatic-plate", 14.0),
+        ("kodak-t-max-100", 8.0),
+        ("kodak-t-max-400", 10.0),
     ] {
         let film = build(stock);
         let clear = film.emulsion().range(0).0;

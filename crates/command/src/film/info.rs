@@ -274,8 +274,8 @@ fn text(stock: &Stock) -> String {
         if let Some([density, rms]) =
             layer.granularity.iter().min_by(|a, b| (a[0] - 0.7).abs().total_cmp(&(b[0] - 0.7).abs()))
         {
-            let _ =
-                writeln!(out, "  granularity: RMS {rms} at {density:.2} over the minimum density, aperture 0.048 mm");
+            let text = format!("RMS {rms:.1} at {density:.2} over the minimum density, aperture 0.048 mm");
+            let _ = writeln!(out, "  granularity: {text}");
         }
         let silver = silver_negative(stock);
         let speeds = if silver { "   0.8/Hm" } else { "" };

@@ -1,0 +1,159 @@
+#!/usr/bin/env python3
+"""Writes docs/films.md and docs/images/films: one photograph on each bundled camera film, as its maker wants it printed or projected.
+
+Run from the root of the repository:
+
+    python3 xtask/film_sheet.py target/release/spectra [NAME...]
+
+With names, only the pictures of these films are made anew; `-` makes none. The page is always of all.
+
+The photograph is scenes/bench/noise-portrait.yaml, stopped down to f/4 and metered on its gray card. All films of one light are
+developed of one trace. Films for tungsten light get it: the scene's illuminant is theirs.
+"""
+
+import json
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+STOCKS = ROOT / "spectra" / "film"
+IMAGES = ROOT / "docs" / "images" / "films"
+SIZE = (360, 240)
+ACROSS = 3
+# Films of one trace; the program takes 16.
+TOGETHER = 12
+
+SCENE = """spectra: 1
+include: {portrait}
+source: {{illuminant: {light}}}
+lens: {{f-number: f/4}}
+imager: {{kind: film, format: 135, crop: "3:2", resolution: [{width}, {height}]}}
+film:
+{films}
+render: {{samples: 96, seed: 1}}
+output: [png]
+"""
+# The middle of the gray card.
+SPOT = "{center: [0.845, 0.675], diameter: 0.2}"
+MADE_FOR = {"iso-7589-sensitometric-daylight": "D55", "iso-7589-sensitometric-studio-tungsten": "iso-7589-studio-tungsten"}
+KINDS = (
+    ("Color negatives", lambda s: len(s["layers"]) == 3 and s["process"] == "negative"),
+    ("Color reversal films", lambda s: s["process"] == "reversal"),
+    ("Black and white", lambda s: len(s["layers"]) == 1),
+)
+
+
+def run(*command):
+    done = subprocess.run([str(c) for c in command], capture_output=True, text=True)
+    if done.returncode:
+        raise SystemExit(f"{' '.join(map(str, command))}: {done.stderr}")
+    return done.stdout
+
+
+def shoot(program, stocks, wanted):
+    """A picture of every film that is wanted."""
+    for illuminant, light in MADE_FOR.items():
+        names = [n for n, s in stocks.items() if s["reference_illuminant"] == illuminant]
+        if light == "D55":
+            names.append("three-strip")
+        names = [n for n in names if n in wanted]
+        for k in range(0, len(names), TOGETHER):
+            develop(program, light, names[k:k + TOGETHER])
+
+
+def develop(program, light, names):
+    """Pictures of a few films, of one trace."""
+    what = {n: "kind: three-strip" if n == "three-strip" else f"stock: {n}" for n in names}
+    films = [f"  - {{name: {n}, {what[n]}, metering: spot, spot: {SPOT}}}" for n in names]
+    if films:
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "sheet.yaml"
+            portrait = ROOT / "scenes" / "bench" / "noise-portrait.yaml"
+            path.write_text(SCENE.format(portrait=portrait, light=light, width=SIZE[0], height=SIZE[1], films="\n".join(films)),
+                            encoding="utf-8")
+            run(program, "run", path, "--output", folder, "--quiet")
+            for name in names:
+                (IMAGES / f"{name}.png").write_bytes((Path(folder) / f"sheet-{name}.png").read_bytes())
+
+
+def facts(stock):
+    speed = {"iso": "ISO", "exposure-index": "EI", "assumed": "ISO (assumed)"}[stock["speed_kind"]]
+    light = ", tungsten" if "tungsten" in stock["reference_illuminant"] else ""
+    said = [f"{speed} {stock['iso']:g}{light}"]
+    if stock["year"]:
+        said.append(str(stock["year"]))
+    if stock["print"]:
+        said.append(f"on {stock['print']}")
+    return ", ".join(said)
+
+
+def what_is_assumed(stock):
+    parts = dict(stock["assumed"])
+    if any(layer["assumed"] for layer in stock["layers"]):
+        parts["sensitivity"] = ""
+    if any(d["assumed"] for layer in stock["layers"] for d in layer["developments"]):
+        parts["curve"] = ""
+    for key in ("granularity", "interlayer", "halation", "minimum_density"):
+        if stock.get(key) and stock[key].get("assumed"):
+            parts[key.replace("_", " ")] = ""
+    if any("(assumed)" in (d["remark"] or "") for layer in stock["layers"] for d in layer["developments"]):
+        parts["gray balance"] = ""
+    return sorted(parts)
+
+
+def cells(row, of):
+    row = [of(name) for name in row] + [""] * (ACROSS - len(row))
+    return "| " + " | ".join(row) + " |"
+
+
+def page(stocks, prints):
+    lines = [
+        "# The film library", "",
+        "One photograph on each bundled film, as its maker wants it printed or projected: black and white on paper of grade 2, color",
+        "negatives on the paper or print film that their file names, reversal films projected. The picture is that of",
+        "`scenes/bench/noise-portrait.yaml` (drawn by `xtask/noise_scenes.py`), metered on its gray card in the light that the film is",
+        "made for. Films are small here: 360 pixels of a frame of 36 mm, so that grain is that of the whole frame at arm's length.",
+        "Written by `xtask/film_sheet.py`; where the figures come from stands in each file under `spectra/film/`, with what is assumed",
+        "and why (`spectra film info NAME`).", "",
+    ]
+    for title, belongs in KINDS:
+        names = sorted((n for n, s in stocks.items() if belongs(s)), key=lambda n: stocks[n]["name"])
+        lines += [f"## {title}", ""]
+        rows = [names[i:i + ACROSS] for i in range(0, len(names), ACROSS)]
+        for k, row in enumerate(rows):
+            lines.append(cells(row, lambda n: f"![{stocks[n]['name']}](images/films/{n}.png)"))
+            if k == 0:
+                lines.append("|" + " --- |" * ACROSS)
+            lines.append(cells(row, lambda n: f"**{stocks[n]['name']}**<br>`{n}`<br>{facts(stocks[n])}"))
+        lines.append("")
+    lines += ["## Three strips", "", "The film process `three-strip`: three separation negatives on Double-X, printed by dye transfer.", "",
+              "![Three-strip camera](images/films/three-strip.png)", "", "## What is assumed", "",
+              "| film | source | assumed |", "|---|---|---|"]
+    everything = {**stocks, **prints}
+    for name in sorted(everything):
+        stock = everything[name]
+        lines.append(f"| `{name}` | {stock['source']} | {', '.join(what_is_assumed(stock)) or 'nothing'} |")
+    lines += ["", "## What negatives are printed on", "", "| stock | kind | made for |", "|---|---|---|"]
+    for name, stock in sorted(prints.items()):
+        medium = "paper" if "medium: paper" in (STOCKS / f"{name}.yaml").read_text(encoding="utf-8") else "film"
+        made_for = ", ".join(f"`{n}`" for n, s in sorted(stocks.items()) if s["print"] == name) or "-"
+        lines.append(f"| `{name}` | {stock['name']}, {medium} | {made_for} |")
+    (ROOT / "docs" / "films.md").write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def main():
+    program = Path(sys.argv[1]).resolve()
+    IMAGES.mkdir(parents=True, exist_ok=True)
+    names = sorted(p.stem for p in STOCKS.glob("*.yaml"))
+    infos = {n: json.loads(run(program, "film", "info", n, "--json")) for n in names}
+    stocks = {n: s for n, s in infos.items() if s["process"] != "print"}
+    shoot(program, stocks, sys.argv[2:] or [*stocks, "three-strip"])
+    page(stocks, {n: s for n, s in infos.items() if n not in stocks})
+    total = sum(p.stat().st_size for p in IMAGES.glob("*"))
+    print(f"{len(stocks)} films, {total / 1e6:.2f} MB of pictures")
+
+
+if __name__ == "__main__":
+    main()
