@@ -1,12 +1,13 @@
 //! Ghosts: the light of two reflections in a picture is what an independent random walk of reflections brings there; the books
 //! close; and the bits are the same however the work is done.
 
-use spectra_core::Isa;
 use spectra_core::frame::ExposureFrame;
-use spectra_lens::Lens;
+use spectra_core::{Isa, RayBatch};
+use spectra_lens::{Coating, Indices, Lens, Path as LightPath, Tracer, Travel};
 use spectra_plugins as _;
 use spectra_render::{Control, Light, Renderer, Rendering, Threads};
-use spectra_scene::Scene;
+use spectra_scene::{FileResources, Scene};
+use std::path::Path;
 
 const COLUMNS: usize = 4;
 const ROWS: usize = 3;
@@ -269,6 +270,41 @@ fn ghosts_of_a_fisheye_with_the_light_at_60_degrees() {
     };
     // Little of what the large front takes in comes to the film: the walk knows each region to some percent.
     agrees(&fisheye, 200_000, 0.06);
+}
+
+/// Rays along fifteen paths of two reflections, against another program's: `xtask/ghost_rays.py`.
+#[test]
+fn ghost_rays_are_those_of_optiland() {
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data");
+    let text = std::fs::read_to_string(data.join("ghost-rays.csv")).expect("a table");
+    let (mut compared, mut paths) = (0, std::collections::BTreeSet::new());
+    for row in text.lines().skip(1) {
+        let fields: Vec<&str> = row.split(',').collect();
+        let lens = data.join("lenses").join(format!("{}.yaml", fields[0]));
+        let mut lens =
+            spectra_lens::load(lens.to_str().expect("UTF-8"), &FileResources::beside(Path::new(""))).expect("a lens");
+        lens.elements.iter_mut().for_each(|e| e.semi_diameter_mm = None);
+        let surface = |at: usize| fields[at].parse::<usize>().expect("a number") - 1;
+        let v: Vec<f64> = fields[3..].iter().map(|f| f.parse().expect("a number")).collect();
+        let tracer = Tracer::new(&lens.with_coating(Coating::Bare), Indices::Stated, Isa::detect()).expect("media");
+        let path = LightPath::reflected(tracer.surfaces(), Travel::Forward, &[surface(1), surface(2)]).expect("a path");
+        let mut rays = RayBatch::new(1);
+        rays.restart(1);
+        let c = rays.columns_mut();
+        [c.x[0], c.y[0], c.z[0], c.l[0], c.m[0], c.n[0]] = v[..6].try_into().expect("six");
+        c.wavelength_nm[0] = 587.5618;
+        tracer.follow(&tracer.route(&path), &mut rays, &mut tracer.work_in_place(1));
+        assert_eq!(rays.loss(0), None, "{row}");
+        let ([x, y, z], [l, m, n]) = (rays.positions().map(|p| p[0]), rays.directions().map(|d| d[0]));
+        let way = -z / n;
+        let got = [x + way * l, y + way * m, l, m, n];
+        for (got, want) in got.into_iter().zip(&v[6..]) {
+            assert!((got - want).abs() < 1e-9, "{row}: {got:?}");
+        }
+        compared += 1;
+        paths.insert(fields[..3].join(" "));
+    }
+    assert_eq!((compared, paths.len()), (60, 15));
 }
 
 /// Every watt is booked once, and of a bare lens two reflections leave some 1.6 % of the light along the axis.

@@ -5,6 +5,7 @@
 //! - [`info`]: first-order figures, pupils and prescription, for a program and for a person;
 //! - [`focus`]: what an image point is sharp for;
 //! - [`fan`]: the rays of a field that pass, as a drawing shows them;
+//! - [`ghosts`]: light that two surfaces reflect, path by path;
 //! - [`draw`]: a lens as a figure, with rays in the colors of their wavelengths;
 //! - [`figure`]: spectra, their colors, and glasses as figures.
 
@@ -14,6 +15,7 @@ pub mod draw;
 pub mod fan;
 pub mod figure;
 pub mod focus;
+pub mod ghosts;
 pub mod info;
 mod light;
 pub mod trace;

@@ -419,6 +419,8 @@ pub(crate) enum LensCommand {
     Compare(LensCompare),
     /// Draw a lens: glass, stop, and rays from several field angles in their spectral colors.
     Draw(LensDraw),
+    /// List the ghosts of a lens: energy, focus, size and color of each pair of reflections.
+    Ghosts(LensGhosts),
     /// Trace rays through a lens: CSV in, CSV out.
     Trace(LensTrace),
     /// Convert a lens file from another program: .zmx, .seq or .csv.
@@ -610,6 +612,27 @@ pub(crate) struct LensInfo {
     pub json: bool,
 }
 
+/// `spectra lens ghosts`.
+#[derive(Debug, Args)]
+#[command(
+    long_about = "List the ghosts of a lens: light that two surfaces reflect on its way to the film.\n\n\
+        For light from infinity on the axis, at the reference line: energy relative to the straight light; distance of the ghost's focus \
+        from the image plane, positive beyond it, and its focal length (both paraxial); the diameter of its disk on the image plane; \
+        and its energy at C', e and F' over that at e. Surfaces are counted from 1, in the order in which they reflect. Coatings are those \
+        of the lens file, or typical of its time, unless --coating says otherwise.",
+    after_long_help = "Example: what a single layer does\n  spectra lens ghosts zeiss-biotar-50-f1.4 --coating single-layer"
+)]
+pub(crate) struct LensGhosts {
+    #[command(flatten)]
+    pub setting: LensSetting,
+    /// Show all of them, not only the brightest.
+    #[arg(long)]
+    pub all: bool,
+    /// Write a JSON object to standard output, with all of them.
+    #[arg(long)]
+    pub json: bool,
+}
+
 /// `spectra lens trace`.
 #[derive(Debug, Args)]
 #[command(
@@ -631,6 +654,9 @@ pub(crate) struct LensTrace {
     /// CSV file of rays; `-` reads standard input.
     #[arg(long, value_name = "FILE")]
     pub rays: PathBuf,
+    /// Follow the path that these surfaces reflect, counted from 1, in the order of the light: 7,3 is a ghost.
+    #[arg(long, value_name = "A,B", value_delimiter = ',')]
+    pub path: Vec<usize>,
     /// Output file; standard output if not given, or if `-`.
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,

@@ -111,6 +111,12 @@ impl FrontOpening {
         self.center
     }
 
+    /// Its radius, mm.
+    #[must_use]
+    pub fn radius_mm(&self) -> f64 {
+        self.radius_mm
+    }
+
     /// As seen from a point, mm in the frame of the lens; `None` from inside.
     #[must_use]
     pub fn seen_from(&self, point: DVec3) -> Option<FrontDisk> {

@@ -16,7 +16,7 @@ use glam::DVec3;
 use row::Row;
 use spectra_core::spectral::BAND;
 use spectra_core::{Isa, Loss, LossCounts, RayBatch};
-use spectra_lens::{Indices, Lens, Pose, Tracer, Travel, Work};
+use spectra_lens::{Indices, Lens, Path, Pose, Tracer, Travel, Work};
 use std::io::{BufRead, Write};
 
 pub use row::Format;
@@ -72,14 +72,14 @@ const UNIT_TOLERANCE: f64 = 1e-6;
 const COLUMNS: [&str; 7] = ["x_mm", "y_mm", "z_mm", "l", "m", "n", "wavelength_nm"];
 
 /// Traces the rays of `input` (called `file` in messages) and writes a row for each to `output`, in the
-/// order of the input. Without a `light` each ray has its own wavelength. Memory does not grow with
-/// the number of rays.
+/// order of the input. Without a `light` each ray has its own wavelength; without a `path` rays go straight through. Memory
+/// does not grow with the number of rays.
 ///
 /// # Errors
 /// [`TraceError`]; rows before the faulty one are written.
 pub fn trace(
     lens: &Lens,
-    light: Option<Light>,
+    (light, path): (Option<Light>, Option<&Path>),
     isa: Isa,
     input: impl BufRead,
     file: &str,
@@ -88,7 +88,7 @@ pub fn trace(
 ) -> Result<TraceSummary, TraceError> {
     let wanted = if light.is_some() { &COLUMNS[..6] } else { &COLUMNS[..] };
     let mut rows = NumberRows::new(input, file, wanted)?;
-    let mut bench = Bench::new(lens, light, isa)?;
+    let mut bench = Bench::new(lens, light, path, isa)?;
     let mut text = String::from(format.header());
     let mut more = true;
     while more {
@@ -108,6 +108,7 @@ struct Bench<'a> {
     lens: &'a Lens,
     light: Option<Light>,
     isa: Isa,
+    path: Path,
     tracer: Tracer,
     work: Work,
     rays: RayBatch,
@@ -121,7 +122,7 @@ struct Bench<'a> {
 }
 
 impl<'a> Bench<'a> {
-    fn new(lens: &'a Lens, light: Option<Light>, isa: Isa) -> Result<Self, TraceError> {
+    fn new(lens: &'a Lens, light: Option<Light>, path: Option<&Path>, isa: Isa) -> Result<Self, TraceError> {
         let indices = match light {
             Some(Light::Stated) => Indices::Stated,
             Some(Light::Wavelength(nm)) => Indices::At(nm),
@@ -132,6 +133,7 @@ impl<'a> Bench<'a> {
             lens,
             light,
             isa,
+            path: path.cloned().unwrap_or_else(|| Path::through(tracer.surfaces(), Travel::Forward)),
             work: tracer.work_in_place(BATCH),
             tracer,
             rays: RayBatch::new(BATCH),
@@ -203,7 +205,7 @@ impl<'a> Bench<'a> {
                 c.wavelength_nm[i] = self.lens.reference_nm;
             }
         }
-        self.tracer.trace(&mut self.rays, &mut self.work, Travel::Forward);
+        self.tracer.follow(&self.tracer.route(&self.path), &mut self.rays, &mut self.work);
         let surfaces = self.tracer.surfaces() as u32;
         let image = &self.lens.image_pose;
         let mut rows: Vec<Row> = (0..len).map(|i| row_of(&self.rays, i, surfaces, image)).collect();
@@ -231,7 +233,7 @@ impl<'a> Bench<'a> {
         rays.restart(1);
         let c = rays.columns_mut();
         [c.x[0], c.y[0], c.z[0], c.l[0], c.m[0], c.n[0], c.wavelength_nm[0]] = ray;
-        tracer.trace(&mut rays, &mut tracer.work_in_place(1), Travel::Forward);
+        tracer.follow(&tracer.route(&self.path), &mut rays, &mut tracer.work_in_place(1));
         let row = row_of(&rays, 0, tracer.surfaces() as u32, &self.lens.image_pose);
         self.single = Some((nm, tracer));
         Ok(row)

@@ -4,6 +4,7 @@ mod compare;
 mod draw;
 mod exchanged;
 mod export;
+mod ghosts;
 mod import;
 mod info;
 mod trace;
@@ -22,6 +23,7 @@ pub(crate) fn lens(command: &LensCommand, isa: Isa) -> Outcome {
     match command {
         LensCommand::Compare(compare) => compare::compare(compare),
         LensCommand::Draw(draw) => draw::draw(draw),
+        LensCommand::Ghosts(ghosts) => ghosts::ghosts(ghosts, isa),
         LensCommand::Info(info) => info::info(info),
         LensCommand::Trace(trace) => trace::trace(trace, isa),
         LensCommand::Import(import) => import::import(import),

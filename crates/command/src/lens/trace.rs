@@ -5,8 +5,10 @@ use crate::arguments::LensTrace;
 use crate::outcome::{DONE, Failure, Outcome};
 use crate::{console, words};
 use spectra_analysis::trace::{Format, TraceError, TraceSummary, trace as trace_rays};
+use spectra_core::surface::Action;
 use spectra_core::{Isa, Loss};
 use spectra_files::{WriteFault, write_atomically};
+use spectra_lens::{Lens, Path as LightPath, Travel};
 use std::fs::File;
 use std::io::{self, BufReader, BufWriter, Read, Write};
 use std::path::Path;
@@ -17,8 +19,10 @@ pub(crate) fn trace(arguments: &LensTrace, isa: Isa) -> Outcome {
     let light = one_light(&arguments.light);
     let format = if arguments.json { Format::JsonLines } else { Format::Csv };
     let (input, name) = open(&arguments.rays)?;
+    let path = path_of(&arguments.path, &lens)?;
     let run = |output: &mut dyn Write| {
-        trace_rays(&lens, light, isa, BufReader::new(input), &name, &mut BufWriter::new(output), format)
+        let rays = BufReader::new(input);
+        trace_rays(&lens, (light, path.as_ref()), isa, rays, &name, &mut BufWriter::new(output), format)
     };
     let output = arguments.output.as_deref().filter(|path| *path != Path::new("-"));
     let summary = match output {
@@ -35,6 +39,27 @@ pub(crate) fn trace(arguments: &LensTrace, isa: Isa) -> Outcome {
         console::note(&format!("wrote {}: {}", path.display(), describe(&summary)));
     }
     Ok(DONE)
+}
+
+/// The path by reflections that is asked for.
+fn path_of(surfaces: &[usize], lens: &Lens) -> Result<Option<LightPath>, Failure> {
+    if surfaces.is_empty() {
+        return Ok(None);
+    }
+    let refuse = |text: String| Failure::Input(format!("--path: {text}"));
+    if surfaces.len() % 2 == 1 {
+        return Err(refuse(
+            "an odd number of reflections leads out of the front; name two surfaces, as in 7,3".to_owned(),
+        ));
+    }
+    let count = lens.elements.len();
+    let Some(at) = surfaces.iter().map(|at| at.checked_sub(1)).collect::<Option<Vec<_>>>() else {
+        return Err(refuse("surfaces are counted from 1".to_owned()));
+    };
+    if let Some(other) = at.iter().find(|at| lens.elements.get(**at).is_some_and(|e| e.action != Action::Refract)) {
+        return Err(refuse(format!("surface {} does not refract: nothing is reflected there unwanted", other + 1)));
+    }
+    LightPath::reflected(count, Travel::Forward, &at).map(Some).map_err(|error| refuse(error.to_string()))
 }
 
 fn open(path: &Path) -> Result<(Box<dyn Read>, String), Failure> {
