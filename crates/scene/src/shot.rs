@@ -9,6 +9,9 @@ use std::sync::OnceLock;
 /// A picture, with the name of its film where there are several.
 pub type Developed = (Option<String>, DisplayPicture);
 
+/// All pictures, and what is known beside each.
+type All = (Vec<Developed>, Vec<Beside>);
+
 /// The light that a scene recorded, on its way to files.
 pub struct Shot<'a> {
     /// The scene.
@@ -21,7 +24,7 @@ pub struct Shot<'a> {
     pub attributes: &'a [(String, String)],
     /// Instruction set to compute figures with.
     pub isa: Isa,
-    pictures: OnceLock<Result<(Vec<Developed>, Vec<Beside>), String>>,
+    pictures: OnceLock<Result<All, String>>,
 }
 
 impl<'a> Shot<'a> {
@@ -94,11 +97,11 @@ impl<'a> Shot<'a> {
         }
     }
 
-    fn all(&self) -> Result<&(Vec<Developed>, Vec<Beside>), String> {
+    fn all(&self) -> Result<&All, String> {
         self.pictures.get_or_init(|| self.developed()).as_ref().map_err(Clone::clone)
     }
 
-    fn developed(&self) -> Result<(Vec<Developed>, Vec<Beside>), String> {
+    fn developed(&self) -> Result<All, String> {
         let Self { scene, exposure, .. } = self;
         let outputs = scene.output.iter().map(|output| output.wanted());
         let wanted =

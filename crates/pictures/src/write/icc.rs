@@ -128,7 +128,7 @@ mod tests {
             let entry =
                 (0..long(&bytes, HEADER)).map(|i| HEADER + 4 + i * ENTRY).find(|at| &bytes[*at..at + 4] == name);
             let at = long(&bytes, entry.expect("there") + 4);
-            assert!(at % 4 == 0 && at + long(&bytes, entry.expect("there") + 8) <= bytes.len());
+            assert!(at.is_multiple_of(4) && at + long(&bytes, entry.expect("there") + 8) <= bytes.len());
             at
         };
         let number = |at: usize| f64::from(long(&bytes, at) as u32 as i32) / 65_536.0;
