@@ -335,6 +335,10 @@ fn every_example_of_the_help_works() {
         "melt.csv",
         "wavelength_nm,n\n404.66,1.53024\n435.83,1.52668\n486.13,1.52238\n546.07,1.51872\n587.56,1.51680\n656.27,1.51432\n706.52,1.51289\n",
     );
+    let photo = image::RgbImage::from_fn(48, 32, |x, y| image::Rgb([(5 * x) as u8, (7 * y) as u8, 90]));
+    photo.save(folder.path().join("photo.jpg")).expect("written");
+    fs::create_dir(folder.path().join("plates")).expect("made");
+    photo.save(folder.path().join("plates/plate.0001.png")).expect("written");
     let exported = run_in(folder.path(), &["lens", "export", "tessar-50-f4.5", "-o", "tessar.zmx"]);
     assert!(exported.status.success(), "{}", text(&exported.stderr));
     let program = Path::new(env!("CARGO_BIN_EXE_spectra")).parent().expect("a folder").to_owned();

@@ -90,7 +90,7 @@ fn dispatch(arguments: &Arguments, unpack: Unpack, notices: &str, started: Insta
         Some(Command::Doc(arguments)) => doc::doc(arguments),
         Some(Command::Schema(arguments)) => schema::schema(arguments),
         Some(Command::Lens(lens)) => lens::lens(&lens.command, isa),
-        Some(Command::Film(arguments)) => film::film(&arguments.command),
+        Some(Command::Film(arguments)) => film::film(&arguments.command, isa, started),
         Some(Command::Bench(bench)) => bench::bench(bench, isa),
         Some(Command::Spectrum(spectrum)) => spectrum::spectrum(&spectrum.command),
         Some(Command::Glass(glass)) => glass::glass(&glass.command),

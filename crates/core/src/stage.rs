@@ -11,6 +11,7 @@ use crate::frame::{DisplayPicture, ExposureFrame, Finished, FrameSize, ImageStat
 use crate::isa::Isa;
 use crate::params::Faults;
 use crate::spectral::{Channel, SpectralPower, SystemResponse};
+use std::sync::Arc;
 
 /// A light source. It can emit rays, return the radiance along given rays, or both.
 pub trait Source: Send + Sync {
@@ -51,8 +52,31 @@ pub trait Source: Send + Sync {
         None
     }
 
+    /// The source as a flat picture whose pixels are known, to expose a film to it without a lens; reads its files. `None` where
+    /// it is none.
+    fn still(&self) -> Option<Result<Still, Faults>> {
+        None
+    }
+
     /// Facts about the source that are worth reporting, for the log and the EXR.
     fn describe(&self) -> String;
+}
+
+/// A flat picture, pixel by pixel. A pixel's radiance, W m^-2 sr^-1 nm^-1, is `scale` times the spectrum that `model` gives its
+/// color.
+pub struct Still {
+    /// Pixels across.
+    pub width_px: u32,
+    /// Pixels down.
+    pub height_px: u32,
+    /// Width over height of a pixel.
+    pub pixel_aspect: f64,
+    /// Linear light in sRGB primaries, 0 or more; row by row from the top of the upright picture.
+    pub rgb: Vec<[f32; 3]>,
+    /// How a color becomes a spectrum.
+    pub model: Arc<dyn ColorModel>,
+    /// Radiance per unit of the model's spectra.
+    pub scale: f64,
 }
 
 /// A source as two whose radiances along any ray add up to that of the whole: each is rendered from the side that finds it.

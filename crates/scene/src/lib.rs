@@ -28,7 +28,9 @@ mod sight;
 pub use spectra_yaml as yaml;
 
 pub use focus::{Focus, FocusBy};
-pub use language::{Member, Series, SeriesKind, SweptAxis, load, load_series, series_of_text, series_of_tree};
+pub use language::{
+    Member, Series, SeriesKind, SweptAxis, document, load, load_series, series_of_text, series_of_tree,
+};
 pub use output::{Holds, Output, OutputEntry};
 pub use resources::FileResources;
 pub use scene::{

@@ -23,6 +23,8 @@
 
 mod check;
 mod contact;
+mod cube;
+mod develop;
 mod error;
 mod files;
 mod header;
@@ -34,17 +36,20 @@ mod rescue;
 mod run;
 mod series;
 mod session;
+mod still;
 mod summary;
 pub mod words;
 
 pub use check::{Checked, Look, check};
+pub use cube::{Cube, CubeErrors, CubeFile, RANDOM_COLORS};
+pub use develop::{Develop, Plate, Setting, TRACED_PX, develop};
 pub use error::SessionError;
 pub use header::films;
 pub use host::{Event, Folder, Host, Place};
 pub use names::Names;
 pub use pace::Pace;
 pub use report::Report;
-pub use run::{Ended, Job, run};
+pub use run::{Ended, Job, LightFrom, run};
 pub use session::{Kept, Session};
 pub use spectra_render::{Alone, Control, Rendering, Threads, Workers};
 pub use spectra_scene::Developed;

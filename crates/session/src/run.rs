@@ -5,12 +5,14 @@ use crate::{Event, Host, Names, Report, Session, SessionError, header, series};
 use serde_json::Value;
 use spectra_core::Isa;
 use spectra_core::params::Warning;
-use spectra_scene::{Series, SeriesKind, Shot};
+use spectra_scene::{FilmTime, Series, SeriesKind, Shot};
 
 /// What is to be rendered and written.
 pub struct Job<'a> {
     /// The scene with all its pictures.
     pub series: &'a Series,
+    /// Where the light comes from.
+    pub light: LightFrom,
     /// Of several pictures, the places in the series of those that are wanted.
     pub chosen: Vec<usize>,
     /// Whether pictures whose files are all there are left as they are.
@@ -31,6 +33,16 @@ pub struct Job<'a> {
     pub unit_of: &'a (dyn Fn(&str) -> Option<String> + Sync),
 }
 
+/// Where the light of a picture comes from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LightFrom {
+    /// Rays through the lens.
+    #[default]
+    Rays,
+    /// The pixels of the scene's flat picture, as an ideal lens would image them: no ray is traced.
+    Pixels,
+}
+
 /// How a job ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ended {
@@ -45,17 +57,24 @@ pub enum Ended {
 /// # Errors
 /// [`SessionError`]; of several pictures, those that are done are written.
 pub fn run(job: &Job<'_>, host: &dyn Host) -> Result<Ended, SessionError> {
-    if job.series.kind() == SeriesKind::Single { picture(job, host) } else { series::run(job, host) }
+    if job.series.kind() == SeriesKind::Single {
+        picture(job, host).map(|(ended, _)| ended)
+    } else {
+        series::run(job, host)
+    }
 }
 
-/// A scene that is one picture.
-fn picture(job: &Job<'_>, host: &dyn Host) -> Result<Ended, SessionError> {
+/// A scene that is one picture; and how long its films were exposed.
+pub(crate) fn picture(job: &Job<'_>, host: &dyn Host) -> Result<(Ended, Vec<FilmTime>), SessionError> {
     let mut session = Session::of_series(job.series.clone(), 0, job.isa)?;
     let member = session.member();
     let files = Files::of(&job.names, session.scene(), &member)?;
     // What cannot be rendered leaves no folder behind.
     fits(&session, host)?;
-    session.prepare()?;
+    let exposed = match job.light {
+        LightFrom::Rays => session.prepare().map(|()| None)?,
+        LightFrom::Pixels => Some(session.expose()?),
+    };
     host.hear(Event::Ready);
     // Before any light is traced: an hour's picture must not end without a place to go.
     let report_file = job.names.report(&member.stem(""));
@@ -65,7 +84,10 @@ fn picture(job: &Job<'_>, host: &dyn Host) -> Result<Ended, SessionError> {
     let control = host.control();
     session.warnings().for_each(|warning| host.hear(Event::Warning(warning)));
     session.scene().all_notes().for_each(|note| host.hear(Event::Note(note)));
-    let mut taken = Taken::of(&mut session, host, &control)?;
+    let mut taken = match exposed {
+        Some(rendering) => Taken { rendering, seconds: 0.0, failure: None },
+        None => Taken::of(&mut session, host, &control)?,
+    };
     let failure = taken.failure.take();
     let exposure = &taken.rendering.exposure;
     let scene = session.scene();
@@ -84,8 +106,8 @@ fn picture(job: &Job<'_>, host: &dyn Host) -> Result<Ended, SessionError> {
     host.hear(Event::Done { report: &report, stopped });
     match failure {
         Some(text) => Err(SessionError::Failed(text)),
-        None if stopped => Ok(Ended::Stopped),
-        None => Ok(Ended::Whole),
+        None if stopped => Ok((Ended::Stopped, times)),
+        None => Ok((Ended::Whole, times)),
     }
 }
 

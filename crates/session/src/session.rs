@@ -1,7 +1,7 @@
 //! One picture of a scene, on its way.
 
 use crate::files::Files;
-use crate::{Control, Names, Rendering, SessionError, Workers, header};
+use crate::{Control, Names, Rendering, SessionError, Workers, header, still};
 use spectra_core::params::{Faults, Node, Warning};
 use spectra_core::resources::Resources;
 use spectra_core::sink::Sink;
@@ -152,6 +152,15 @@ impl Session {
         self.prepare()?;
         let Some((renderer, light)) = &self.ready else { return Err(Faults::new().into()) };
         renderer.look(&self.scene, light).map_err(|error| SessionError::of(&error, &self.scene))
+    }
+
+    /// The exposure of the scene's film to its flat picture, pixel by pixel, as by an ideal lens at f/2.8 in place of the scene's: no
+    /// ray is traced, and the light so far stays as it is.
+    ///
+    /// # Errors
+    /// The source is no flat picture, or its file is broken; the film has more pixels than the picture, or another shape.
+    pub fn expose(&self) -> Result<Rendering, SessionError> {
+        still::expose(&self.scene)
     }
 
     /// Whether any ray was traced.

@@ -1,7 +1,6 @@
 //! What is said of a picture that is done, as a photographer would say it.
 
-use crate::Report;
-use crate::words;
+use crate::{LightFrom, Report, words};
 use spectra_core::math::log10;
 use spectra_core::params::{Node, Value};
 use spectra_core::{Loss, shutter};
@@ -19,6 +18,9 @@ const TELLING: [(Loss, &str); 3] = [
 /// rays/s, 39 % of them through the lens`.
 pub(crate) fn of(report: &Report<'_>) -> String {
     let (scene, rendering) = (report.scene, report.rendering);
+    if report.job.light == LightFrom::Pixels {
+        return of_pixels(report);
+    }
     let lens = scene.params.get("lens");
     let set = |key: &str| lens.and_then(|lens| lens.get(key));
     let mut text = scene.lens.name.clone();
@@ -71,6 +73,14 @@ pub(crate) fn of(report: &Report<'_>) -> String {
         text.push_str("\npartial: stopped before all samples were taken");
     }
     text
+}
+
+/// `6000 x 4000 pixels on 36 x 24 mm, no lens, Kodak Tri-X 400 at 1/700 s (metered)`.
+fn of_pixels(report: &Report<'_>) -> String {
+    let size = report.rendering.exposure.size;
+    let times = report.times.iter().map(exposed).collect::<Vec<_>>().join(", ");
+    let [width, height] = [size.width_mm, size.height_mm].map(|mm| rounded(&mm.to_string()));
+    format!("{} x {} pixels on {width} x {height} mm, no lens, {times}", size.width_px, size.height_px)
 }
 
 /// `Kodak Tri-X 400 at 1/700 s (metered)`.

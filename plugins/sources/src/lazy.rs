@@ -2,11 +2,13 @@
 
 use spectra_core::params::Faults;
 use spectra_core::spectral::SpectralPower;
-use spectra_core::stage::{Emit, Radiance, Source, Split};
+use spectra_core::stage::{Emit, Radiance, Source, Split, Still};
 use std::sync::OnceLock;
 
 /// How the source itself is made.
 type Reader = Box<dyn Fn() -> Result<Box<dyn Source>, Faults> + Send + Sync>;
+/// How its pixels are read.
+type StillReader = Box<dyn Fn() -> Result<Still, Faults> + Send + Sync>;
 
 /// A white source of the same size and place until [`Source::prepare`] is called, then the real one.
 pub(crate) struct Lazy {
@@ -15,6 +17,7 @@ pub(crate) struct Lazy {
     read: OnceLock<Box<dyn Source>>,
     /// Whether the real one emits rays.
     emits: bool,
+    still: Option<StillReader>,
 }
 
 impl Lazy {
@@ -24,7 +27,12 @@ impl Lazy {
         emits: bool,
         reader: impl Fn() -> Result<Box<dyn Source>, Faults> + Send + Sync + 'static,
     ) -> Self {
-        Self { stand_in, reader: Box::new(reader), read: OnceLock::new(), emits }
+        Self { stand_in, reader: Box::new(reader), read: OnceLock::new(), emits, still: None }
+    }
+
+    /// The same, a flat picture whose pixels are read by `still`.
+    pub(crate) fn with_still(self, still: impl Fn() -> Result<Still, Faults> + Send + Sync + 'static) -> Self {
+        Self { still: Some(Box::new(still)), ..self }
     }
 
     fn now(&self) -> &dyn Source {
@@ -58,6 +66,9 @@ impl Source for Lazy {
     }
     fn split(&self) -> Option<Split<'_>> {
         self.now().split()
+    }
+    fn still(&self) -> Option<Result<Still, Faults>> {
+        self.still.as_ref().map(|read| read())
     }
     fn describe(&self) -> String {
         self.now().describe()

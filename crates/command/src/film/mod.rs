@@ -1,8 +1,12 @@
-//! `spectra film`: a stock's sensitivities and curves.
+//! `spectra film`: a stock's sensitivities and curves, and pictures developed on it.
 
 mod arguments;
+mod cube;
+mod develop;
 mod figure;
 mod info;
+mod keys;
+mod plates;
 
 pub(crate) use arguments::FilmArguments;
 
@@ -10,27 +14,35 @@ use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
 use crate::words::figure_of;
 use arguments::{FilmCommand, FilmPlot};
-use spectra_core::names;
 use spectra_core::params::{Fault, nearest};
+use spectra_core::{Isa, names};
 use spectra_film::stock::Stock;
 use spectra_plot::{Format, PlotError};
 use spectra_scene::FileResources;
 use spectra_scene::bundled::{Bundled, other_kind};
 use std::path::Path;
+use std::time::Instant;
 
 /// Runs a command on film stocks.
-pub(crate) fn film(command: &FilmCommand) -> Outcome {
+pub(crate) fn film(command: &FilmCommand, isa: Isa, started: Instant) -> Outcome {
     match command {
         FilmCommand::Info(arguments) => info::info(arguments),
         FilmCommand::Plot(arguments) => plot(arguments),
+        FilmCommand::Cube(arguments) => cube::cube(arguments),
+        FilmCommand::Develop(arguments) => develop::develop(arguments, isa, started),
     }
 }
 
 /// A stock file, or a bundled stock.
 fn load(name: &str) -> Result<Stock, Failure> {
+    Ok(Stock::load(&called(name)?, &FileResources::beside(Path::new("")))?)
+}
+
+/// The file, or the whole name of the bundled stock, that `name` stands for.
+fn called(name: &str) -> Result<String, Failure> {
     let is_file = name.ends_with(".yaml") || name.ends_with(".yml") || name.contains(['/', '\\']);
     let found = if is_file { Ok(name.to_owned()) } else { Bundled::Stock.find(name) };
-    let name = found.map_err(|several| {
+    found.map_err(|several| {
         let known = Bundled::Stock.names();
         let all = Bundled::Stock.listed_by();
         let hint = match nearest(name, known.iter().map(String::as_str)) {
@@ -38,9 +50,8 @@ fn load(name: &str) -> Result<Stock, Failure> {
             Some(near) => format!("did you mean `{near}`?"),
             None => other_kind(name, Bundled::Stock).unwrap_or_else(|| names::hint(name, &known, all)),
         };
-        Fault::new(format!("no film stock is called `{name}`")).hint(hint)
-    })?;
-    Ok(Stock::load(&name, &FileResources::beside(Path::new("")))?)
+        Fault::new(format!("no film stock is called `{name}`")).hint(hint).into()
+    })
 }
 
 fn plot(arguments: &FilmPlot) -> Outcome {

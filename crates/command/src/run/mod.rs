@@ -12,7 +12,7 @@ use progress::Progress;
 use serde_json::json;
 use spectra_core::Isa;
 use spectra_scene::diagnostics;
-use spectra_session::{Control, Ended, Event, Folder, Host, Job, Threads, Workers};
+use spectra_session::{Control, Ended, Event, Folder, Host, Job, LightFrom, Threads, Workers};
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
@@ -23,8 +23,12 @@ const TICK: Duration = Duration::from_millis(50);
 
 /// Renders a scene; with `--json` a failure is an event as well.
 pub(crate) fn run(arguments: &Run, isa: Isa, started: Instant) -> Outcome {
-    let outcome = render_scene(arguments, isa, started);
-    if let (true, Err(failure)) = (arguments.json, &outcome) {
+    told(render_scene(arguments, isa, started), arguments.json)
+}
+
+/// With `--json` a failure is an event as well.
+pub(crate) fn told(outcome: Outcome, is_json: bool) -> Outcome {
+    if let (true, Err(failure)) = (is_json, &outcome) {
         let event = match failure {
             Failure::Faults(faults) => {
                 json!({ "event": "error", "message": faults.to_string(), "faults": diagnostics::to_json(faults) })
@@ -48,6 +52,7 @@ fn render_scene(arguments: &Run, isa: Isa, started: Instant) -> Outcome {
     let job = Job {
         chosen: frames::chosen(&series, arguments)?,
         series: &series,
+        light: LightFrom::Rays,
         skip_existing: arguments.skip_existing,
         names: target.names.clone(),
         isa,
@@ -57,21 +62,10 @@ fn render_scene(arguments: &Run, isa: Isa, started: Instant) -> Outcome {
         versions: version::to_json(),
         unit_of: &doc::unit_of,
     };
-    let face = Face {
-        target,
-        threads: arguments.threads.map_or_else(limits::processors, usize::from),
-        isa,
-        started,
-        deadline,
-        set_up,
-        progress: Mutex::new(Progress::new(arguments, deadline)),
-        control: Mutex::default(),
-        is_tracing: AtomicBool::new(false),
-        interrupt: OnceLock::new(),
-    };
+    let speaks = Speaks { json: arguments.json, quiet: arguments.quiet };
+    let face = Face { deadline, set_up, ..Face::new(target, arguments.threads, isa, started, speaks, deadline) };
     let ended = spectra_session::run(&job, &face)?;
-    let code = face.interrupt.get().filter(|_| ended == Ended::Stopped).map(Interrupt::code);
-    Ok(code.unwrap_or(DONE))
+    Ok(face.code(ended))
 }
 
 /// All that is set on the command line, as texts `path=value`; the options come after what `--set` says.
@@ -86,8 +80,15 @@ fn overrides(arguments: &Run) -> Vec<String> {
     all
 }
 
+/// How a command says what goes on.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Speaks {
+    pub json: bool,
+    pub quiet: bool,
+}
+
 /// The command as the one who has pictures rendered.
-struct Face {
+pub(crate) struct Face {
     target: Target,
     threads: usize,
     isa: Isa,
@@ -103,6 +104,34 @@ struct Face {
 }
 
 impl Face {
+    /// For files that go to `target`.
+    pub(crate) fn new(
+        target: Target,
+        threads: Option<u16>,
+        isa: Isa,
+        started: Instant,
+        speaks: Speaks,
+        deadline: Option<Instant>,
+    ) -> Self {
+        Self {
+            target,
+            threads: threads.map_or_else(limits::processors, usize::from),
+            isa,
+            started,
+            deadline: None,
+            set_up: SetUp::watched(None, 0.0, speaks.json, speaks.quiet),
+            progress: Mutex::new(Progress::new(speaks.json, speaks.quiet, deadline)),
+            control: Mutex::default(),
+            is_tracing: AtomicBool::new(false),
+            interrupt: OnceLock::new(),
+        }
+    }
+
+    /// The exit code of a job that ended so.
+    pub(crate) fn code(&self, ended: Ended) -> u8 {
+        self.interrupt.get().filter(|_| ended == Ended::Stopped).map_or(DONE, Interrupt::code)
+    }
+
     fn is_late(&self) -> bool {
         self.deadline.is_some_and(|deadline| Instant::now() >= deadline)
     }

@@ -1,6 +1,5 @@
 //! What is said while a scene renders.
 
-use crate::arguments::Run;
 use crate::{console, words};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::{Value, json};
@@ -43,10 +42,10 @@ const BAR_STEPS: u32 = 1000;
 
 impl Progress {
     /// Nothing is said yet.
-    pub(super) fn new(arguments: &Run, deadline: Option<Instant>) -> Self {
-        let listener = if arguments.quiet {
+    pub(super) fn new(is_json: bool, is_quiet: bool, deadline: Option<Instant>) -> Self {
+        let listener = if is_quiet {
             Listener::Quiet
-        } else if arguments.json {
+        } else if is_json {
             Listener::Json
         } else if console::stderr_moves() {
             Listener::Bar(bar())

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 /// A whole scene in block style; lists and maps of scalars stand on one line. Read again, it is the same tree.
 #[must_use]
-pub(super) fn document(root: &Node) -> String {
+pub fn document(root: &Node) -> String {
     let mut out = String::new();
     block(root, 0, &mut out);
     out

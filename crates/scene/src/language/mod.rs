@@ -43,6 +43,7 @@ pub(crate) use animation::Section as AnimationForm;
 pub(crate) use include::Form as IncludeForm;
 pub(crate) use sweep::Form as SweepForm;
 
+pub use flat::document;
 pub use series::{Member, Series, SeriesKind, SweptAxis, load, load_series, series_of_text, series_of_tree};
 
 use spectra_core::params::{Node, Value};

@@ -26,7 +26,7 @@ use spectra_core::params::{Fault, Faults, Length, Luminance, Params, Part, Posit
 use spectra_core::registry::{Context, StageOf, build as build_stage};
 use spectra_core::resources::{Found, ResourceError};
 use spectra_core::spectral::SpectralPower;
-use spectra_core::stage::{ColorModel, Source};
+use spectra_core::stage::{ColorModel, Source, Still};
 use spectra_pictures::read::{self, Choice, Header, Linear, Trouble};
 use std::sync::Arc;
 
@@ -171,14 +171,27 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
         placed.warn_unless_filled("the picture", params, context);
     }
     file.warn(&header, context);
-    let making = Making { model, width_mm, luminance_cd_m2: p.luminance.cd_per_m2(), edge };
+    let making = Arc::new(Making { model, width_mm, luminance_cd_m2: p.luminance.cd_per_m2(), edge });
     let stand_in = Flat { texture: making.white(&header, &file.name), distance_mm };
     let emits = edge == Edge::Black;
-    Ok(Box::new(Lazy::new(Box::new(stand_in), emits, move || {
-        let mut linear = file.read()?;
-        if let (Some(stops), Some(clipped_at)) = (recover_stops, linear.clipped_at) {
-            highlights::recover(&mut linear.rgb, linear.width as usize, clipped_at, stops);
+    let file = Arc::new(file);
+    let is_flat = depth.is_none();
+    let pixels = {
+        let file = Arc::clone(&file);
+        move || -> Result<Linear, Faults> {
+            let mut linear = file.read()?;
+            if let (Some(stops), Some(clipped_at)) = (recover_stops, linear.clipped_at) {
+                highlights::recover(&mut linear.rgb, linear.width as usize, clipped_at, stops);
+            }
+            Ok(linear)
         }
+    };
+    let still = {
+        let (pixels, making) = (pixels.clone(), Arc::clone(&making));
+        move || pixels().map(|linear| making.still(linear))
+    };
+    let lazy = Lazy::new(Box::new(stand_in), emits, move || {
+        let linear = pixels()?;
         let Some(depth) = &depth else {
             let map = making.map(linear, &file.name);
             return Ok(with_halves(map, emits, |texture| Flat { texture, distance_mm }));
@@ -191,7 +204,8 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
         let eye_mm = depth.eye_mm;
         let ends_mm = ends.map(f64::from);
         Ok(with_halves(map, emits, |map| DeepPicture::new(map, Arc::clone(&field), plane_mm, eye_mm, ends_mm)))
-    })))
+    });
+    Ok(Box::new(if is_flat { lazy.with_still(still) } else { lazy }))
 }
 
 /// A source of a picture, as two as well where it has lights and may emit.
@@ -271,6 +285,18 @@ impl Making {
         self.map(pixel, name)
     }
 
+    /// The radiance of the model's white is that of white.
+    fn scale(&self) -> f64 {
+        self.luminance_cd_m2 / white::luminance_cd_m2(&self.model.spectrum([1.0; 3]))
+    }
+
+    /// The picture pixel by pixel.
+    fn still(&self, linear: Linear) -> Still {
+        let Linear { width, height, pixel_aspect, rgb, .. } = linear;
+        let (model, scale) = (Arc::clone(&self.model), self.scale());
+        Still { width_px: width, height_px: height, pixel_aspect, rgb, model, scale }
+    }
+
     /// The picture on its plane; its pixels are turned into what the color model needs of them where they lie.
     pub(crate) fn map(&self, linear: Linear, name: &str) -> PictureMap {
         assemble(linear, name, self)
@@ -322,7 +348,7 @@ fn brightness([r, g, b]: [f32; 3]) -> f32 {
 fn assemble(linear: Linear, name: &str, making: &Making) -> PictureMap {
     let (width, height) = (linear.width as usize, linear.height as usize);
     let model = &making.model;
-    let scale = making.luminance_cd_m2 / white::luminance_cd_m2(&model.spectrum([1.0; 3]));
+    let scale = making.scale();
     let mut rgb = linear.rgb;
     let pixels = rgb.len() as f64;
     let mut mean = [0.0_f64; 3];

@@ -1,0 +1,52 @@
+//! The keys of a scene's film, as options.
+
+use super::arguments::FilmKeys;
+use super::load;
+use crate::outcome::Failure;
+use spectra_session::Setting;
+use std::path::Path;
+
+/// What an option says at a path of a scene.
+pub(super) fn set(path: &str, option: &str, value: &str) -> Setting {
+    Setting { path: path.to_owned(), value: value.to_owned(), said: format!("{option} {value}") }
+}
+
+/// The same where the value follows from what is written.
+fn following(path: &str, said: String, value: &str) -> Setting {
+    Setting { path: path.to_owned(), value: value.to_owned(), said }
+}
+
+/// What the stock is called in names of files.
+pub(super) fn stem(stock: &str) -> String {
+    Path::new(stock).file_stem().map_or_else(|| stock.to_owned(), |s| s.to_string_lossy().into_owned())
+}
+
+/// The light that the scene is in: gray is gray, as it is to whoever takes the film that suits the light, unless another is named.
+pub(super) fn illuminant(keys: &FilmKeys, said: &str, stock: &str) -> Result<Setting, Failure> {
+    Ok(match &keys.illuminant {
+        Some(light) => set("source.illuminant", "--illuminant", light),
+        None => following("source.illuminant", format!("--stock {said}"), &load(stock)?.reference_illuminant),
+    })
+}
+
+/// What the options say, by the keys of a scene; `said` is how the person named `stock`.
+pub(super) fn settings(keys: &FilmKeys, said: &str, stock: &str) -> Vec<Setting> {
+    let mut all = vec![following("film.stock", format!("--stock {said}"), stock)];
+    for (path, option, value) in [
+        ("film.compensation", "--exposure", &keys.exposure),
+        ("film.iso", "--iso", &keys.iso),
+        ("film.development", "--development", &keys.development),
+        ("film.push", "--push", &keys.push),
+        ("film.view", "--view", &keys.view),
+        ("film.print", "--print", &keys.print),
+        ("film.paper.grade", "--grade", &keys.grade),
+        ("film.scan", "--scan", &keys.scan),
+    ] {
+        all.extend(value.as_ref().map(|value| set(path, option, value)));
+    }
+    // A scale is one of scans.
+    if let (Some(scale), None) = (&keys.scan, &keys.view) {
+        all.push(following("film.view", format!("--scan {scale}"), "scan"));
+    }
+    all
+}

@@ -1,0 +1,220 @@
+//! Which pictures are meant by what is written, and which files become of them.
+
+use crate::folder::Target;
+use crate::outcome::Failure;
+use spectra_core::params::Fault;
+use spectra_session::{Names, Plate};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// Endings of pictures in a folder.
+const ENDINGS: [&str; 8] = ["exr", "png", "jpg", "jpeg", "tif", "tiff", "hdr", "dpx"];
+
+/// A numbered name: `plate.####.exr`, `plate.%04d.exr`.
+struct Numbered {
+    folder: PathBuf,
+    before: String,
+    after: String,
+    /// Least digits of a number.
+    digits: usize,
+}
+
+impl Numbered {
+    /// What a path says, if its last part holds the place of a number.
+    fn of(path: &str) -> Option<Self> {
+        let path = Path::new(path);
+        let name = path.file_name()?.to_str()?;
+        let folder = path.parent().map_or_else(PathBuf::new, Path::to_owned);
+        let of = |from: usize, to: usize, digits: usize| Self {
+            folder: folder.clone(),
+            before: name[..from].to_owned(),
+            after: name[to..].to_owned(),
+            digits,
+        };
+        if let Some(from) = name.find('#') {
+            let count = name[from..].chars().take_while(|c| *c == '#').count();
+            return Some(of(from, from + count, count));
+        }
+        let from = name.find('%')?;
+        let (digits, _) = name[from + 1..].split_once('d')?;
+        let count = digits.trim_start_matches('0');
+        let count = if count.is_empty() { Some(1) } else { count.parse().ok().filter(|n| (1..=20).contains(n)) }?;
+        Some(of(from, from + 2 + digits.len(), count))
+    }
+
+    /// The number of a file that is called so.
+    fn number(&self, name: &str) -> Option<u64> {
+        let digits = name.strip_prefix(self.before.as_str())?.strip_suffix(self.after.as_str())?;
+        let is_number = digits.len() >= self.digits && digits.bytes().all(|b| b.is_ascii_digit());
+        is_number.then(|| digits.parse().ok()).flatten()
+    }
+
+    /// The name of the file of a number.
+    fn name(&self, number: u64) -> String {
+        format!("{}{number:0digits$}{}", self.before, self.after, digits = self.digits)
+    }
+}
+
+/// The number that a name without its ending closes with.
+fn last_number(stem: &str) -> Option<u64> {
+    let digits = stem.len() - stem.trim_end_matches(|c: char| c.is_ascii_digit()).len();
+    stem[stem.len() - digits..].parse().ok()
+}
+
+/// Names of the files in a folder.
+fn names_in(folder: &Path) -> Result<Vec<String>, Failure> {
+    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    let entries =
+        std::fs::read_dir(folder).map_err(|error| Failure::Input(format!("{}: {error}", folder.display())))?;
+    let mut names: Vec<String> = entries.flatten().filter_map(|entry| entry.file_name().into_string().ok()).collect();
+    names.sort_unstable();
+    Ok(names)
+}
+
+/// The files that one argument names, with their numbers; and whether it may name several.
+fn files(argument: &str) -> Result<(Vec<(PathBuf, Option<u64>)>, bool), Failure> {
+    let path = Path::new(argument);
+    if path.is_dir() {
+        let is_picture = |name: &String| {
+            let ending = Path::new(name).extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
+            !name.starts_with('.') && ending.is_some_and(|ending| ENDINGS.contains(&ending.as_str()))
+        };
+        let names: Vec<String> = names_in(path)?.into_iter().filter(is_picture).collect();
+        if names.is_empty() {
+            let fault = Fault::new(format!("there are no pictures in `{argument}`"));
+            return Err(fault.hint(format!("files that end in .{}", ENDINGS.join(", ."))).into());
+        }
+        let all = names.into_iter().map(|name| {
+            let stem = Path::new(&name).file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
+            (path.join(&name), last_number(&stem))
+        });
+        return Ok((all.collect(), true));
+    }
+    let numbered = Numbered::of(argument).filter(|_| !path.exists());
+    let Some(numbered) = numbered else {
+        let stem = path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
+        return Ok((vec![(path.to_owned(), last_number(&stem))], false));
+    };
+    let mut all: Vec<(u64, String)> =
+        names_in(&numbered.folder)?.into_iter().filter_map(|name| Some((numbered.number(&name)?, name))).collect();
+    all.sort();
+    if all.is_empty() {
+        let text = format!("no file is called `{argument}`, with a number in place of the sign");
+        return Err(Fault::new(text)
+            .hint(format!("such as `{}`", numbered.folder.join(numbered.name(1)).display()))
+            .into());
+    }
+    Ok((all.into_iter().map(|(number, name)| (numbered.folder.join(name), Some(number))).collect(), true))
+}
+
+/// Where the files go and which pictures become which of them; `suffix` tells the output of a single picture from it, where no
+/// output is named.
+pub(super) fn of(arguments: &[String], output: Option<&str>, suffix: &str) -> Result<(Target, Vec<Plate>), Failure> {
+    let (mut found, mut several) = (Vec::new(), arguments.len() > 1);
+    for argument in arguments {
+        let (files, many) = files(argument)?;
+        found.extend(files);
+        several |= many;
+    }
+    let stem = |path: &Path| path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
+    let shown = |path: &Path| path.to_string_lossy().into_owned();
+    if let ([(file, _)], false) = (&found[..], several) {
+        let (folder, name) = match output.map(Path::new) {
+            None => (Path::new("."), format!("{}-{suffix}.png", stem(file))),
+            Some(path) if path.is_dir() || shown(path).ends_with('/') => (path, format!("{}.png", stem(file))),
+            Some(path) if Names::of_picture(path).is_some() => {
+                let folder = path.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or(Path::new("."));
+                (folder, path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned()))
+            }
+            Some(path) => return Err(unknown(path)),
+        };
+        let target = Target { folder: folder.to_owned(), names: Names::of_scene() };
+        let plates = vec![Plate { file: shown(file), output: name, number: None }];
+        return apart(target, plates);
+    }
+    // Numbers that do not tell pictures apart are none.
+    let mut known = BTreeMap::new();
+    found.iter().for_each(|(_, number)| *known.entry(*number).or_insert(0) += 1);
+    let is_numbered = !known.contains_key(&None) && known.values().all(|count| *count == 1);
+    let number = |at: usize, number: Option<u64>| number.filter(|_| is_numbered).unwrap_or(at as u64 + 1);
+    let numbered = output.and_then(Numbered::of);
+    let folder = match (&numbered, output) {
+        (Some(numbered), _) => {
+            if Names::of_picture(Path::new(&numbered.name(1))).is_none() {
+                return Err(unknown(Path::new(output.unwrap_or_default())));
+            }
+            let folder = &numbered.folder;
+            if folder.as_os_str().is_empty() { PathBuf::from(".") } else { folder.clone() }
+        }
+        (None, Some(folder)) => {
+            let path = Path::new(folder);
+            if path.is_file() || (!path.is_dir() && Names::of_picture(path).is_some()) {
+                let text = format!("`{folder}` is one picture, and there are {} to develop", found.len());
+                return Err(Fault::new(text).hint("`-o out/`, or a numbered sequence: `-o out/####.png`").into());
+            }
+            path.to_owned()
+        }
+        (None, None) => PathBuf::from("out"),
+    };
+    let name = |at: usize, file: &Path, own: Option<u64>| match &numbered {
+        Some(numbered) => numbered.name(number(at, own)),
+        None => format!("{}.png", stem(file)),
+    };
+    let plates: Vec<Plate> = found
+        .iter()
+        .enumerate()
+        .map(|(at, (file, own))| Plate {
+            file: shown(file),
+            output: name(at, file, *own),
+            number: Some(number(at, *own)),
+        })
+        .collect();
+    let mut outputs = BTreeMap::new();
+    for plate in &plates {
+        if let Some(other) = outputs.insert(&plate.output, &plate.file) {
+            let text = format!("`{other}` and `{}` would both be written as `{}`", plate.file, plate.output);
+            return Err(Fault::new(text).hint("a numbered output: `-o out/####.png`").into());
+        }
+    }
+    apart(Target { folder, names: Names::of_scene() }, plates)
+}
+
+fn unknown(path: &Path) -> Failure {
+    let text = format!("no picture is written as `{}`", path.display());
+    Fault::new(text).hint("name a file that ends in .png, .tiff or .exr, or a folder: `-o out/`").into()
+}
+
+/// No picture is written over one that is read.
+fn apart(target: Target, plates: Vec<Plate>) -> Result<(Target, Vec<Plate>), Failure> {
+    let real = |path: &Path| std::fs::canonicalize(path).ok();
+    for plate in &plates {
+        let written = real(&target.folder.join(&plate.output));
+        if written.is_some() && plates.iter().any(|other| real(Path::new(&other.file)) == written) {
+            let text = format!(
+                "`{}` would be written over a picture that is read",
+                target.folder.join(&plate.output).display()
+            );
+            return Err(Fault::new(text).hint("another folder or file at `-o`").into());
+        }
+    }
+    Ok((target, plates))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_in_names() {
+        let hashes = Numbered::of("a/plate.####.exr").expect("numbered");
+        assert_eq!((hashes.name(7), hashes.folder), ("plate.0007.exr".to_owned(), PathBuf::from("a")));
+        let percent = Numbered::of("p%03d.png").expect("numbered");
+        assert_eq!((percent.name(12), percent.number("p012.png")), ("p012.png".to_owned(), Some(12)));
+        assert_eq!(
+            (percent.number("p1000.png"), percent.number("p12.png"), percent.number("px12.png")),
+            (Some(1000), None, None)
+        );
+        assert!(Numbered::of("100%.png").is_none() && Numbered::of("photo.jpg").is_none());
+        assert_eq!((last_number("dsc_0042"), last_number("holiday"), last_number("12")), (Some(42), None, Some(12)));
+    }
+}

@@ -1,0 +1,297 @@
+//! A film stock as a 3-D look-up table for other programs: from the light of the scene to the picture, color by color.
+//!
+//! What needs a pixel's neighbors cannot be in it: scatter, halation, adjacency, grain, and the lens of the printer or scanner.
+
+use crate::still::F_NUMBER;
+use crate::{SessionError, Setting};
+use rayon::prelude::*;
+use spectra_color::{RgbSpace, ciede2000, lab, xyz_of_reflectance};
+use spectra_core::frame::{ExposureChannel, ExposureFrame, FrameSize};
+use spectra_core::math::{log2, pow};
+use spectra_core::numbers::mix64;
+use spectra_core::params::{Faults, Key, Node, Params, SourceFile, Value};
+use spectra_core::registry::{self, Context};
+use spectra_core::spectral::{BAND, Channel, Line, SpectralPower};
+use spectra_core::stage::{ColorModel, Film};
+use spectra_scene::{FileResources, yaml};
+use spectra_spectrum::{Observer, find_emission_in, find_reflectance, illuminant};
+use std::f64::consts::PI;
+use std::fmt::Write as _;
+use std::path::Path;
+
+/// What is tabulated, and how finely.
+#[derive(Clone, Debug)]
+pub struct Cube {
+    /// What the film section of a scene says, such as `film.stock`.
+    pub settings: Vec<Setting>,
+    /// The light of the scene, by name.
+    pub illuminant: Setting,
+    /// Points along each side.
+    pub size: usize,
+    /// Stops from one end of a side to the other, half of them above mid gray.
+    pub stops: f64,
+}
+
+/// How far a table is from the film that it was made of, CIEDE2000 of the pictures.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CubeErrors {
+    /// Of [`RANDOM_COLORS`] colors of a screen, read as pictures are: mean, 95th percentile, largest.
+    pub colors: [f64; 3],
+    /// Of the 24 patches of a ColorChecker, by their measured reflectances on the film and by their colors in the table: mean,
+    /// largest.
+    pub reflectances: [f64; 2],
+}
+
+/// A table, written out.
+#[derive(Clone, Debug)]
+pub struct CubeFile {
+    /// The content of the `.cube` file.
+    pub text: String,
+    /// What the film is.
+    pub film: String,
+    /// How far it is from the film.
+    pub errors: CubeErrors,
+}
+
+/// Colors by which a table is judged.
+pub const RANDOM_COLORS: usize = 10_000;
+/// Linear light of a mid gray.
+const GRAY: f64 = 0.18;
+/// Luminance of white, cd/m2, as `spectra film develop` has it.
+pub(crate) const WHITE_CD_M2: f64 = 5000.0;
+
+/// The film, and what it gets of colors.
+struct Chain {
+    film: Box<dyn Film>,
+    model: Box<dyn ColorModel>,
+    channels: Vec<Channel>,
+    /// Exposure per integral over the model's spectra.
+    factor: f64,
+    /// What the meter gets of a mid gray.
+    metered: Vec<f64>,
+}
+
+impl Cube {
+    /// Computes the table; `version` is said in its header.
+    ///
+    /// # Errors
+    /// What is wrong with the settings; the film cannot be developed.
+    pub fn file(&self, version: &str) -> Result<CubeFile, SessionError> {
+        let chain = self.chain()?;
+        let side: Vec<f64> = (0..self.size).map(|i| self.linear(i as f64 / (self.size - 1) as f64)).collect();
+        let mut lattice = Vec::with_capacity(self.size * self.size * self.size);
+        // Red runs fastest (the order of `.cube`).
+        for b in &side {
+            for g in &side {
+                lattice.extend(side.iter().map(|r| [*r, *g, *b]));
+            }
+        }
+        let exposures: Vec<Vec<f64>> = lattice.par_iter().map(|rgb| chain.seen(&chain.model.spectrum(*rgb))).collect();
+        let points = chain.shown(&exposures)?;
+        let errors = self.errors(&chain, &points)?;
+        let film = chain.film.describe();
+        let mut text = self.header(&film, version, errors);
+        for [r, g, b] in &points {
+            // Writing to a String cannot fail.
+            let _ = writeln!(text, "{r:.6} {g:.6} {b:.6}");
+        }
+        Ok(CubeFile { text, film, errors })
+    }
+
+    /// Linear light at a place from 0 to 1 along a side.
+    fn linear(&self, place: f64) -> f64 {
+        GRAY * pow(2.0, (place - 0.5) * self.stops)
+    }
+
+    /// Its inverse, within the table.
+    fn place(&self, linear: f64) -> f64 {
+        if linear <= 0.0 { 0.0 } else { (0.5 + log2(linear / GRAY) / self.stops).clamp(0.0, 1.0) }
+    }
+
+    fn chain(&self) -> Result<Chain, Faults> {
+        const MADE: &str = "--made";
+        let resources = FileResources::beside(Path::new(""));
+        let text = "{kind: stock, metering: average, scatter: false, adjacency: false, halation: off, grain: false, optics: off}";
+        let film = yaml::parse(SourceFile::new(MADE, text))?;
+        let entries = vec![(Key { text: "film".to_owned(), span: Default::default() }, film.clone())];
+        let mut root = Node::new(Value::Map(entries), film.span, film.file);
+        let mut faults = Faults::new();
+        for setting in &self.settings {
+            let node = faults.take(yaml::parse(SourceFile::new(setting.said.as_str(), setting.value.as_str())));
+            if let Some(node) = node {
+                if setting.path == "film.paper.grade" && node.as_str() == Some("auto") {
+                    let fault = node.fault("an automatic print suits each frame, and a table is the same for all");
+                    faults.push(fault.hint("a grade from 0 to 5"));
+                }
+                faults.take(root.set_path(&setting.path, node));
+            }
+        }
+        let light = yaml::parse(SourceFile::new(self.illuminant.said.as_str(), self.illuminant.value.as_str()))?;
+        let named = light.as_str().unwrap_or_default();
+        let found = find_emission_in(named, &resources).map_err(|e| e.faults(|text| light.fault(text)));
+        let found = faults.take(found);
+        let Some(found) = faults.into_result(found)? else { return Err(Faults::new()) };
+        let light = found.to_power(&BAND);
+        let context = Context::new(&resources, BAND);
+        let film = root.get("film").cloned().unwrap_or(root);
+        let film = registry::build::<dyn Film>(&Params::stage(film, "film")?, &context)?;
+        let color = Params::stage(yaml::parse(SourceFile::new(MADE, "{kind: smooth}"))?, "source.color")?;
+        let model = registry::build::<dyn ColorModel>(&color, &Context { illuminant: Some(&light), ..context })?;
+        let channels = film.channels();
+        let white = model.spectrum([1.0; 3]);
+        let lux =
+            spectra_spectrum::constants::LUMINOUS_EFFICACY_LM_PER_W * Observer::cie_1931_2deg().xyz_of_power(&white)[1];
+        let factor = WHITE_CD_M2 / lux * PI / (4.0 * F_NUMBER * F_NUMBER) * film.exposure_time_s();
+        let gray = model.spectrum([GRAY; 3]);
+        let mut chain = Chain { film, model, channels, factor, metered: Vec::new() };
+        chain.metered = chain.seen(&gray);
+        Ok(chain)
+    }
+
+    /// Interpolates the table as other programs do: linear along each side.
+    fn at(&self, points: &[[f64; 3]], rgb: [f64; 3]) -> [f64; 3] {
+        let cells = rgb.map(|v| {
+            let p = self.place(v) * (self.size - 1) as f64;
+            let i = (p as usize).min(self.size - 2);
+            (i, p - i as f64)
+        });
+        let mut sum = [0.0; 3];
+        for corner in 0..8_usize {
+            let [r, g, b] = [0, 1, 2].map(|k| (corner >> k) & 1);
+            let weight: f64 =
+                [r, g, b].iter().zip(cells).map(|(up, (_, t))| if *up == 1 { t } else { 1.0 - t }).product();
+            let point = points[((cells[2].0 + b) * self.size + cells[1].0 + g) * self.size + cells[0].0 + r];
+            sum.iter_mut().zip(point).for_each(|(s, p)| *s += weight * p);
+        }
+        sum
+    }
+
+    fn errors(&self, chain: &Chain, points: &[[f64; 3]]) -> Result<CubeErrors, SessionError> {
+        let space = RgbSpace::srgb();
+        let of_code = |code: u64| space.transfer.decode((code & 0xff) as f64 / 255.0);
+        let colors: Vec<[f64; 3]> = (0..RANDOM_COLORS as u64)
+            .map(mix64)
+            .map(|bits| [of_code(bits), of_code(bits >> 8), of_code(bits >> 16)])
+            .collect();
+        let mut off =
+            self.differences(points, &colors, &chain.shown_of(colors.iter().map(|rgb| chain.model.spectrum(*rgb)))?);
+        let mean = |off: &[f64]| off.iter().sum::<f64>() / off.len().max(1) as f64;
+        let of_colors = mean(&off);
+        off.sort_by(f64::total_cmp);
+        let largest = |off: &[f64]| off.iter().copied().fold(0.0, f64::max);
+        let colors = [of_colors, off[off.len() * 95 / 100], largest(&off)];
+
+        let daylight = illuminant("D65").map_err(|e| SessionError::Failed(e.to_string()))?;
+        let observer = Observer::cie_1931_2deg();
+        let white = chain.model.spectrum([1.0; 3]);
+        let (mut seen, mut lights) = (Vec::new(), Vec::new());
+        for patch in PATCHES {
+            let surface =
+                find_reflectance(&format!("colorchecker#{patch}")).map_err(|e| SessionError::Failed(e.to_string()))?;
+            let xyz = xyz_of_reflectance(&surface, &daylight, &observer).unwrap_or_default();
+            seen.push(space.from_xyz(xyz.map(|v| v / 100.0)).map(|v| v.max(0.0)));
+            let lit = white.continuum.iter().zip(surface.on_grid(&BAND)).map(|(p, r)| p * r).collect();
+            let lines = white.lines.iter().map(|l| Line { power: l.power * surface.at(l.wavelength_nm), ..*l });
+            lights.push(SpectralPower { grid: BAND, continuum: lit, lines: lines.collect() });
+        }
+        let off = self.differences(points, &seen, &chain.shown_of(lights.into_iter())?);
+        Ok(CubeErrors { colors, reflectances: [mean(&off), largest(&off)] })
+    }
+
+    /// How much the table's picture of colors differs from another.
+    fn differences(&self, points: &[[f64; 3]], colors: &[[f64; 3]], pictures: &[[f64; 3]]) -> Vec<f64> {
+        let space = RgbSpace::srgb();
+        let look = |encoded: [f64; 3]| lab(space.to_xyz(space.decode(encoded)), space.white_xyz());
+        colors
+            .iter()
+            .zip(pictures)
+            .map(|(rgb, picture)| ciede2000(look(self.at(points, *rgb)), look(*picture)))
+            .collect()
+    }
+
+    fn header(&self, film: &str, version: &str, errors: CubeErrors) -> String {
+        let half = self.stops / 2.0;
+        let low = log2(GRAY) - half;
+        let [mean, p95, most] = errors.colors;
+        let [patches, worst] = errors.reflectances;
+        let title: String = film.chars().map(|c| if c == '"' || c.is_control() { ' ' } else { c }).collect();
+        format!(
+            "TITLE \"{title}\"\n\
+             # spectra {version}: {title}\n\
+             # Input: linear light x of the scene in sRGB (Rec. 709) primaries, 0.18 a mid gray as metered, in a logarithm:\n\
+             #   value = 0.5 + log2(x / 0.18) / {stops}, {half} stops to either side of mid gray. OpenColorIO: a file of this table after\n\
+             #   AllocationTransform {{allocation: lg2, vars: [{low:.6}, {high:.6}]}}.\n\
+             # Scene light: {light}. Output: the picture, sRGB encoded, 0 to 1.\n\
+             # Left out, since it needs the neighbors of a pixel: scatter, halation, adjacency, grain, the lens of printer or scanner.\n\
+             # Error against the film without these, linear interpolation, CIEDE2000: {count} random colors of a screen mean {mean:.2},\n\
+             #   95 % below {p95:.2}, largest {most:.2}; ColorChecker by measured reflectances mean {patches:.2}, largest {worst:.2}.\n\
+             LUT_3D_SIZE {size}\nDOMAIN_MIN 0.0 0.0 0.0\nDOMAIN_MAX 1.0 1.0 1.0\n",
+            stops = self.stops,
+            high = low + self.stops,
+            light = self.illuminant.value,
+            count = RANDOM_COLORS,
+            size = self.size,
+        )
+    }
+}
+
+/// The patches of a ColorChecker.
+const PATCHES: [&str; 24] = [
+    "dark-skin",
+    "light-skin",
+    "blue-sky",
+    "foliage",
+    "blue-flower",
+    "bluish-green",
+    "orange",
+    "purplish-blue",
+    "moderate-red",
+    "purple",
+    "yellow-green",
+    "orange-yellow",
+    "blue",
+    "green",
+    "red",
+    "yellow",
+    "magenta",
+    "cyan",
+    "white",
+    "neutral-8",
+    "neutral-6.5",
+    "neutral-5",
+    "neutral-3.5",
+    "black",
+];
+
+impl Chain {
+    /// The picture of lights, sRGB encoded, 0 to 1.
+    fn shown_of(&self, lights: impl Iterator<Item = SpectralPower>) -> Result<Vec<[f64; 3]>, SessionError> {
+        self.shown(&lights.map(|light| self.seen(&light)).collect::<Vec<_>>())
+    }
+
+    /// What each channel gets of a light.
+    fn seen(&self, light: &SpectralPower) -> Vec<f64> {
+        self.channels.iter().map(|channel| self.factor * light.seen_by(&channel.response)).collect()
+    }
+
+    /// The picture of what each channel got, sRGB encoded, 0 to 1. The meter saw mid gray.
+    fn shown(&self, exposures: &[Vec<f64>]) -> Result<Vec<[f64; 3]>, SessionError> {
+        let pictured = self.film.picture_channels();
+        let plane = |k: usize| -> Vec<f32> {
+            let of_meter = k >= pictured;
+            exposures.iter().map(|got| if of_meter { self.metered[k] as f32 } else { got[k] as f32 }).collect()
+        };
+        let channels = self.channels.iter().enumerate().map(|(k, channel)| ExposureChannel {
+            name: channel.name.clone(),
+            unit: channel.unit.clone(),
+            values: plane(k),
+        });
+        let width = exposures.len() as u32;
+        let size = FrameSize { width_px: width, height_px: 1, width_mm: f64::from(width), height_mm: 1.0 };
+        let frame = ExposureFrame { size, channels: channels.collect() };
+        let picture = self.film.develop(&frame).map_err(SessionError::Failed)?;
+        let space = RgbSpace::srgb();
+        let encoded = |rgb: &[f32; 3]| space.encode(rgb.map(|v| f64::from(v).clamp(0.0, 1.0)));
+        Ok(picture.rgb.iter().map(encoded).collect())
+    }
+}

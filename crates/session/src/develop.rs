@@ -1,0 +1,336 @@
+//! A film developed from a picture file, or from many, without a scene file: the scene is made here.
+//!
+//! The picture fills the frame: of the format's frame the largest part that has the picture's shape. White has a luminance of
+//! 5000 cd/m2, as in daylight under clouds, which is short enough an exposure for any film. The camera meters its average.
+
+use crate::cube::WHITE_CD_M2;
+use crate::run::picture;
+use crate::{Ended, Event, Host, Job, LightFrom, Names, Place, SessionError, still, words};
+use serde_json::{Value, json};
+use spectra_core::Isa;
+use spectra_core::params::{Fault, Faults, Node, Params, SourceFile, Warning};
+use spectra_core::registry::{self, Context};
+use spectra_core::resources::{Found, Resource, ResourceError, Resources};
+use spectra_core::spectral::BAND;
+use spectra_core::stage::Imager;
+use spectra_pictures::read::{Choice, Header, header};
+use spectra_scene::{FileResources, FilmTime, Series, document, series_of_tree, yaml};
+use std::path::Path;
+use std::sync::Arc;
+
+/// A value of the scene that somebody states.
+#[derive(Clone, Debug)]
+pub struct Setting {
+    /// Where it stands in a scene, such as `film.stock`.
+    pub path: String,
+    /// The value as it would be written there.
+    pub value: String,
+    /// What the person wrote, for messages: `--stock tri-x`.
+    pub said: String,
+}
+
+/// A picture to develop, and what becomes of it.
+#[derive(Clone, Debug)]
+pub struct Plate {
+    /// Its file.
+    pub file: String,
+    /// The file that is written, in the folder of the host.
+    pub output: String,
+    /// Its number, where it is one of several: each has grain of its own by it.
+    pub number: Option<u64>,
+}
+
+/// What is to be developed, and how.
+pub struct Develop<'a> {
+    /// The pictures, in their order.
+    pub plates: Vec<Plate>,
+    /// What the scene says. Where it names a lens (`lens.file`), rays are traced through it; otherwise the film gets the
+    /// picture's own pixels.
+    pub settings: Vec<Setting>,
+    /// What is set on top of all that: texts `path=value`.
+    pub overrides: Vec<String>,
+    /// The format that the frame is cut from; 135 if none is said.
+    pub format: Option<Setting>,
+    /// Pixels along the longer side of the frame; those of the picture if none, or at most [`TRACED_PX`] through a lens.
+    pub side_px: Option<u32>,
+    /// Whether each picture is metered; otherwise the first one is, for all.
+    pub meter_each: bool,
+    /// Whether pictures whose files are there are left as they are.
+    pub skip_existing: bool,
+    /// Instruction set.
+    pub isa: Isa,
+    /// For the record: the version of the program.
+    pub version: &'a str,
+    /// For the record: the versions that a result depends on.
+    pub versions: Value,
+    /// The unit that a bare number at a path of a scene is read in.
+    pub unit_of: &'a (dyn Fn(&str) -> Option<String> + Sync),
+}
+
+/// Pixels along the longer side of a frame that rays are traced for, where nobody says how many.
+pub const TRACED_PX: u32 = 1920;
+
+/// What the made scene is called where a value is nobody's.
+const MADE: &str = "--made";
+/// How the made scene names the lens that is none.
+const NO_LENS: &str = "no-lens";
+/// A file of one picture, bytes; the limit of `source: picture`.
+const MAX_BYTES: u64 = 1 << 30;
+/// Keys of the film that find the exposure; where it is known they are left out.
+const METERING: [&str; 3] = ["film.metering", "film.spot", "film.compensation"];
+
+/// Develops all pictures.
+///
+/// # Errors
+/// [`SessionError`]; of several pictures, those that could be are developed all the same.
+pub fn develop(job: &Develop<'_>, host: &dyn Host) -> Result<Ended, SessionError> {
+    match &job.plates[..] {
+        [plate] if plate.number.is_none() => one(job, plate, None, host).map(|(ended, _)| ended),
+        plates => all(job, plates, host),
+    }
+}
+
+/// Develops pictures one by one.
+fn all(job: &Develop<'_>, plates: &[Plate], host: &dyn Host) -> Result<Ended, SessionError> {
+    let begun_s = host.now_s();
+    host.hear(Event::Series(
+        &format!("{} pictures, {}", plates.len(), if job.meter_each { "each metered" } else { "metered on the first" }),
+        &json!({ "event": "series", "pictures": plates.len(), "metered": if job.meter_each { "each" } else { "first" } }),
+    ));
+    let (mut metered, mut done, mut failed) = (None, 0, Vec::new());
+    let mut ended = Ended::Whole;
+    for (index, plate) in plates.iter().enumerate() {
+        if host.is_stopped() {
+            ended = Ended::Stopped;
+            break;
+        }
+        let number = plate.number.unwrap_or(index as u64 + 1);
+        let number = u32::try_from(number).unwrap_or(u32::MAX);
+        host.hear(Event::Picture(Some(Place { number, index, of: plates.len() })));
+        if job.skip_existing && host.folder().has(&plate.output) {
+            let shown = host.folder().shown(&plate.output);
+            host.hear(Event::Series(
+                &format!("{} of {}: {shown} is there", index + 1, plates.len()),
+                &json!({ "event": "kept", "files": [shown] }),
+            ));
+            done += 1;
+            continue;
+        }
+        let exposure = metered.as_ref().filter(|_| !job.meter_each);
+        match one(job, plate, exposure, host) {
+            Ok((Ended::Stopped, _)) => {
+                ended = Ended::Stopped;
+                break;
+            }
+            Ok((Ended::Whole, times)) => {
+                done += 1;
+                metered = metered.or_else(|| times.into_iter().find(|time| time.is_metered));
+            }
+            // What is wrong with the settings is wrong with every picture.
+            Err(SessionError::Faults(faults)) if faults.iter().any(|fault| fault.place.is_some()) => {
+                return Err(faults.into());
+            }
+            Err(error @ SessionError::Request(_)) => return Err(error),
+            Err(error) => {
+                host.hear(Event::Warning(&Warning::from(format!("`{}` is not developed: {error}", plate.file))));
+                failed.push(plate.file.clone());
+            }
+        }
+    }
+    host.hear(Event::Picture(None));
+    let stopped = ended == Ended::Stopped && host.is_interrupted();
+    host.hear(Event::Series(
+        &format!("{done} of {} pictures in {}", plates.len(), words::duration(host.now_s() - begun_s)),
+        &json!({ "event": "end", "done": done, "of": plates.len(), "interrupted": stopped }),
+    ));
+    match &failed[..] {
+        [] => Ok(ended),
+        [first] => Err(SessionError::Failed(format!("`{first}` is not developed"))),
+        [first, ..] => Err(SessionError::Failed(format!("{} pictures are not developed: `{first}` ...", failed.len()))),
+    }
+}
+
+/// Develops a picture, exposed as another one was metered if that is said.
+fn one(
+    job: &Develop<'_>,
+    plate: &Plate,
+    metered: Option<&FilmTime>,
+    host: &dyn Host,
+) -> Result<(Ended, Vec<FilmTime>), SessionError> {
+    let (series, light) = scene(job, plate, metered).map_err(of_nobody)?;
+    let of_picture = Names::of_picture(Path::new(&plate.output));
+    let none = || SessionError::Request(format!("{}: no picture is written with that ending", plate.output));
+    let job = Job {
+        series: &series,
+        light,
+        chosen: vec![0],
+        skip_existing: false,
+        names: of_picture.ok_or_else(none)?,
+        isa: job.isa,
+        scene_file: plate.file.clone(),
+        overrides: series.overrides().to_vec(),
+        version: job.version,
+        versions: job.versions.clone(),
+        unit_of: job.unit_of,
+    };
+    picture(&job, host).map_err(|error| match error {
+        SessionError::Faults(faults) => SessionError::Faults(of_nobody(faults)),
+        other => other,
+    })
+}
+
+/// A value that nobody wrote has no place to show.
+fn of_nobody(faults: Faults) -> Faults {
+    let is_made = |fault: &Fault| fault.place.as_ref().is_some_and(|(file, _)| file.name == MADE);
+    let one = |fault: Fault| if is_made(&fault) { Fault { place: None, ..fault } } else { fault };
+    faults.into_iter().map(one).collect::<Vec<_>>().into()
+}
+
+/// The scene of a picture, and where its light comes from.
+fn scene(job: &Develop<'_>, plate: &Plate, metered: Option<&FilmTime>) -> Result<(Series, LightFrom), Faults> {
+    let files = FileResources::beside(Path::new(""));
+    let is_of_meter = |path: &str| METERING.iter().any(|key| path == *key || path.starts_with(&format!("{key}.")));
+    let is_kept = |path: &str| metered.is_none() || !is_of_meter(path.trim());
+    let path_of = |text: &str| text.split_once('=').map_or("", |(path, _)| path).trim().to_owned();
+    let overrides: Vec<String> = job.overrides.iter().filter(|text| is_kept(&path_of(text))).cloned().collect();
+    let has_lens =
+        job.settings.iter().any(|s| s.path == "lens.file") || overrides.iter().any(|o| path_of(o) == "lens.file");
+    let light = if has_lens { LightFrom::Rays } else { LightFrom::Pixels };
+
+    let layer = overrides.iter().rev().find(|o| path_of(o) == "source.layer");
+    let layer = layer.and_then(|text| text.split_once('=')).map(|(_, layer)| layer.trim());
+    let header = header_of(&plate.file, layer, &files)?;
+    let [width_mm, height_mm] = frame_mm(job.format.as_ref(), &header, &files)?;
+    let [across, down] = pixels(job, &header, has_lens)?;
+    // The pixels are square to the last digit, however whole their numbers are.
+    let height_mm =
+        if job.side_px.is_some() || has_lens { width_mm * f64::from(down) / f64::from(across) } else { height_mm };
+
+    let mut made = vec![
+        ("spectra", "1".to_owned()),
+        ("source.kind", "picture".to_owned()),
+        ("source.distance", "3 m".to_owned()),
+        ("source.width", "fill".to_owned()),
+        ("source.luminance", format!("{WHITE_CD_M2} cd/m2")),
+        ("lens.file", NO_LENS.to_owned()),
+        ("lens.focus", "3 m".to_owned()),
+        ("imager.kind", "film".to_owned()),
+        ("imager.width", format!("{width_mm} mm")),
+        ("imager.height", format!("{height_mm} mm")),
+        ("imager.resolution", format!("[{across}, {down}]")),
+        ("film.kind", "stock".to_owned()),
+    ];
+    match metered {
+        Some(time) => made.push(("film.exposure", format!("{} s", time.time_s))),
+        None => made.push(("film.metering", "average".to_owned())),
+    }
+    if has_lens {
+        made.push(("render.noise", "1 %".to_owned()));
+    }
+    made.extend(plate.number.map(|number| ("render.frame", number.to_string())));
+
+    let nobody = Arc::new(SourceFile::new(MADE, ""));
+    let map = spectra_core::params::Value::Map(Vec::new());
+    let mut root = Node::new(map, Default::default(), Arc::clone(&nobody));
+    let mut faults = Faults::new();
+    for (path, value) in made {
+        faults.take(put(&mut root, path, &value, MADE));
+    }
+    let file = spectra_core::params::Value::String(plate.file.clone());
+    faults.take(root.set_path("source.file", Node::new(file, Default::default(), nobody)));
+    for setting in job.settings.iter().filter(|s| is_kept(&s.path)) {
+        faults.take(put(&mut root, &setting.path, &setting.value, &setting.said));
+    }
+    faults.into_result(())?;
+    // For the record: the scene as somebody would write it.
+    root.file = Arc::new(SourceFile::new(MADE, document(&root)));
+    let diagonal_mm = (width_mm * width_mm + height_mm * height_mm).sqrt();
+    let resources: Arc<dyn Resources> = Arc::new(WithNoLens { files, focal_mm: diagonal_mm });
+    let name = Path::new(&plate.output).file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
+    Ok((series_of_tree(&format!("{name}.yaml"), root, &overrides, resources)?, light))
+}
+
+/// Puts a value, as it is written, at a path.
+fn put(root: &mut Node, path: &str, value: &str, said: &str) -> Result<(), Faults> {
+    let node = yaml::parse(SourceFile::new(said, value))?;
+    Ok(root.set_path(path, node)?)
+}
+
+/// Shape and kind of a picture file.
+fn header_of(file: &str, layer: Option<&str>, files: &dyn Resources) -> Result<Header, Faults> {
+    let found = files.find(file, &["scenes"], &[], MAX_BYTES).map_err(|error| {
+        let hint = match &error {
+            ResourceError::NotFound(near) if !near.is_empty() => format!("did you mean `{}`?", near.join("` or `")),
+            _ => "OpenEXR, PNG, JPEG, TIFF and Radiance HDR files are read".to_owned(),
+        };
+        Fault::new(format!("picture `{file}`: {error}")).hint(hint)
+    })?;
+    let choice = Choice { name: file, layer, ..Choice::default() };
+    header(&found, choice).map_err(|trouble| {
+        let fault = Fault::new(format!("picture `{file}`: {}", trouble.text));
+        trouble.hint.map_or(fault.clone(), |hint| fault.hint(hint)).into()
+    })
+}
+
+/// The largest frame of the picture's shape that a format holds, on its side where the picture stands upright: width and height, mm.
+fn frame_mm(format: Option<&Setting>, header: &Header, files: &dyn Resources) -> Result<[f64; 2], Faults> {
+    let mut node = yaml::parse(SourceFile::new(MADE, "{kind: film, format: 135, resolution: 1}"))?;
+    if let Some(setting) = format {
+        put(&mut node, "format", &setting.value, &setting.said)?;
+    }
+    let params = Params::stage(node, "imager")?;
+    let size = registry::build::<dyn Imager>(&params, &Context::new(files, BAND))?.size();
+    let [long, short] = [size.width_mm.max(size.height_mm), size.width_mm.min(size.height_mm)];
+    let aspect = header.aspect();
+    let [width, height] = if aspect >= 1.0 { [long, short] } else { [short, long] };
+    Ok(if aspect > width / height { [width, width / aspect] } else { [height * aspect, height] })
+}
+
+/// Pixels across and down of the frame.
+fn pixels(job: &Develop<'_>, header: &Header, has_lens: bool) -> Result<[u32; 2], Faults> {
+    let own = [header.width, header.height];
+    if (header.pixel_aspect - 1.0).abs() > 0.01 && !has_lens && job.side_px.is_none() {
+        let text =
+            format!("its pixels are {:.2} times as wide as high, and film needs square ones", header.pixel_aspect);
+        return Err(Fault::new(text).hint("`--side` with fewer pixels than the picture has").into());
+    }
+    let upright = [f64::from(own[0]) * header.pixel_aspect.max(1.0), f64::from(own[1]) / header.pixel_aspect.min(1.0)];
+    let longest = upright[0].max(upright[1]);
+    let side = match job.side_px {
+        Some(side) => f64::from(side),
+        None if has_lens => longest.min(f64::from(TRACED_PX)),
+        None => return Ok(own),
+    };
+    Ok(upright.map(|px| ((px * side / longest).round() as u32).max(1)))
+}
+
+/// Files, and the lens of scenes that have none.
+struct WithNoLens {
+    files: FileResources,
+    focal_mm: f64,
+}
+
+impl Resources for WithNoLens {
+    fn read(&self, path: &str, folders: &[&str], endings: &[&str], most: u64) -> Result<Resource, ResourceError> {
+        self.files.read(path, folders, endings, most)
+    }
+
+    fn find(&self, path: &str, folders: &[&str], endings: &[&str], most: u64) -> Result<Found, ResourceError> {
+        self.files.find(path, folders, endings, most)
+    }
+
+    fn document(&self, path: &str, folders: &[&str], endings: &[&str]) -> Result<Params, Faults> {
+        if path != NO_LENS || folders != ["lenses"] {
+            return self.files.document(path, folders, endings);
+        }
+        let (focal, radius) = (self.focal_mm, self.focal_mm / (2.0 * still::F_NUMBER));
+        let surface = format!(
+            "{{kind: thin-lens, focal-length: {focal}, thickness: {focal}, semi-diameter: {radius}, stop: true}}"
+        );
+        let text = format!(
+            "name: no lens (the picture itself, as an ideal lens at f/{} images it)\nsurfaces: [{surface}]\n",
+            still::F_NUMBER
+        );
+        Params::section(yaml::parse(SourceFile::new(MADE, text))?, "")
+    }
+}

@@ -1,0 +1,300 @@
+//! `spectra film develop`: pictures on film without a scene file.
+
+mod common;
+
+use common::{run, shown, spectra, text};
+use exr::prelude::{ReadChannels, ReadLayers};
+use image::{Rgb, RgbImage};
+use std::path::{Path, PathBuf};
+use std::process::Output;
+
+fn in_folder(folder: &Path, arguments: &[&str]) -> Output {
+    spectra().current_dir(folder).args(["film", "develop"]).args(arguments).output().expect("the program starts")
+}
+
+/// What a run that must succeed says on standard error.
+fn good(folder: &Path, arguments: &[&str]) -> String {
+    let output = in_folder(folder, arguments);
+    assert!(output.status.success(), "{arguments:?}: {}", text(&output.stderr));
+    text(&output.stderr)
+}
+
+fn refused(folder: &Path, arguments: &[&str], code: i32) -> String {
+    let output = in_folder(folder, arguments);
+    let said = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {said}");
+    assert!(!said.contains("panicked"), "{said}");
+    said
+}
+
+fn put(path: PathBuf, width: u32, height: u32, color: impl Fn(u32, u32) -> [u8; 3]) {
+    std::fs::create_dir_all(path.parent().expect("a folder")).expect("a folder");
+    RgbImage::from_fn(width, height, |x, y| Rgb(color(x, y))).save(path).expect("written");
+}
+
+/// Colors of every kind, and a ramp of gray below.
+fn colors(x: u32, y: u32) -> [u8; 3] {
+    if y % 40 < 24 { [(x * 4) as u8, (y * 10) as u8, ((x * 7 + y * 3) % 256) as u8] } else { [(x * 4) as u8; 3] }
+}
+
+fn read(path: PathBuf) -> RgbImage {
+    image::open(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display())).to_rgb8()
+}
+
+/// Mean of all code values.
+fn mean(picture: &RgbImage) -> f64 {
+    picture.as_raw().iter().map(|v| f64::from(*v)).sum::<f64>() / picture.as_raw().len() as f64
+}
+
+/// Channels of an EXR by their names.
+fn channels(path: PathBuf) -> Vec<(String, Vec<f32>)> {
+    let reader = exr::prelude::read().no_deep_data().largest_resolution_level().all_channels().first_valid_layer();
+    let image = reader.all_attributes().from_file(path).expect("an EXR");
+    let all = image.layer_data.channel_data.list;
+    all.iter().map(|c| (c.name.to_string(), c.sample_data.values_as_f32().collect())).collect()
+}
+
+#[test]
+fn a_photograph_is_developed_on_every_kind_of_film() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    put(at("photo.png"), 60, 40, colors);
+    let said = good(folder.path(), &["photo.png", "--stock", "tri-x", "--push", "1", "--grade", "3"]);
+    assert!(said.contains("60 x 40 pixels on 36 x 24 mm, no lens, Kodak Tri-X 400"), "{said}");
+    let gray = read(at("photo-kodak-tri-x-400.png"));
+    assert_eq!(gray.dimensions(), (60, 40));
+    assert!(gray.pixels().all(|p| p[0] == p[1] && p[1] == p[2]));
+    for (stock, name) in [("5207", "negative.tiff"), ("ektachrome", "slide.png")] {
+        good(folder.path(), &["photo.png", "--stock", stock, "-o", name]);
+        let picture = read(at(name));
+        assert!(picture.pixels().any(|p| p[0].abs_diff(p[2]) > 40), "{stock} has colors");
+    }
+    // The settings are those of a scene's film.
+    let plain = mean(&gray);
+    for (more, brighter) in [(["--exposure", "+1"], true), (["--exposure", "-1"], false)] {
+        good(folder.path(), &[&["photo.png", "--stock", "tri-x", "-o", "other.png"][..], &more].concat());
+        assert_eq!(mean(&read(at("other.png"))) > plain, brighter, "{more:?}");
+    }
+    // Any shape fills the frame, upright or not.
+    put(at("tall.png"), 30, 60, colors);
+    let said = good(folder.path(), &["tall.png", "--stock", "tri-x", "--format", "6x7", "-o", "t.png"]);
+    assert!(said.contains("30 x 60 pixels on 34.75 x 69.5 mm"), "{said}");
+    let said = good(folder.path(), &["tall.png", "--stock", "tri-x", "--side", "20", "-o", "t.png"]);
+    assert!(said.contains("10 x 20 pixels") && read(at("t.png")).dimensions() == (10, 20), "{said}");
+}
+
+/// A mid gray card, by pixels, by a scene through a lens, and through the lens of the command.
+#[test]
+fn a_metered_gray_card_prints_as_in_a_scene() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    put(at("gray.png"), 24, 16, |_, _| [118; 3]);
+    for stock in ["kodak-tri-x-400", "kodak-vision3-250d-5207", "kodak-ektachrome-100d"] {
+        good(folder.path(), &["gray.png", "--stock", stock, "--grain", "off", "-o", "own.png"]);
+        let scene = format!(
+            "spectra: 1\n\
+             source: {{kind: picture, file: gray.png, distance: 3 m, width: fill, edge: mirror, luminance: 5000 cd/m2, \
+             illuminant: iso-7589-sensitometric-daylight}}\n\
+             lens: {{file: zeiss-biotar-50-f1.4, f-number: f/8, focus: 3 m}}\n\
+             imager: {{kind: film, format: 135, resolution: [24, 16]}}\n\
+             film: {{stock: {stock}, metering: spot, spot: {{diameter: 0.3}}, grain: false}}\n\
+             render: {{samples: 1024}}\noutput: [png]\n"
+        );
+        std::fs::write(at("scene.yaml"), scene).expect("written");
+        let output = run(&["run", shown(&at("scene.yaml")), "-o", shown(&at("scene.png")), "--quiet"]);
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        let (own, scene) = (read(at("own.png")), read(at("scene.png")));
+        let (own, scene) = (own.get_pixel(12, 8).0, scene.get_pixel(12, 8).0);
+        println!("{stock}: a gray card is {own:?} by its pixels, {scene:?} by a scene");
+        // Of 255: a step of the file, and one of the rays' noise.
+        assert!(own.iter().zip(scene).all(|(a, b)| a.abs_diff(b) <= 2), "{stock}: {own:?} {scene:?}");
+    }
+}
+
+/// What each layer gets of each color is what rays bring it.
+#[test]
+fn layers_get_of_colors_what_rays_bring_them() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    for (i, color) in [[200, 30, 20], [30, 160, 40], [20, 40, 190], [230, 200, 60]].into_iter().enumerate() {
+        put(at("color.png"), 6, 4, |_, _| color);
+        let plain = ["color.png", "--stock", "5207", "--meter", "each", "--format", "super-8"];
+        good(folder.path(), &[&plain[..], &["-o", "own.exr"]].concat());
+        let through = ["--lens", "helios", "--f-number", "f/8", "--noise", "0.3%", "-o", "lens.exr"];
+        // A lens that has no color of its own.
+        let clear = ["--set", "lens.coating=ideal", "--set", "lens.absorption=false"];
+        good(folder.path(), &[&plain[..], &through, &clear].concat());
+        let (own, lens) = (channels(at("own.exr")), channels(at("lens.exr")));
+        for ((name, own), (_, lens)) in own.iter().zip(&lens).filter(|((name, _), _)| !name.contains("meter")) {
+            let middle = |values: &[f32]| f64::from(values[2 * 6 + 3]);
+            let off = middle(own) / middle(lens) - 1.0;
+            println!("color {i}, {name}: {:+.3} % off", 100.0 * off);
+            // What is metered is the mean of a small frame, which is as noisy as the pixel.
+            assert!(off.abs() < 0.02, "{name}: {off}");
+        }
+    }
+}
+
+#[test]
+fn frames_have_grain_of_their_own_and_one_exposure() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    for frame in 7..9 {
+        put(at(&format!("plates/plate.{frame:04}.png")), 120, 80, |_, _| [118; 3]);
+    }
+    put(at("plates/plate.0009.png"), 120, 80, |_, _| [60; 3]);
+    std::fs::write(at("plates/plate.0010.png"), b"broken").expect("written");
+    let said = refused(folder.path(), &["plates", "--stock", "tri-x", "--format", "super-8", "-o", "out/"], 1);
+    assert!(said.contains("metered on the first") && said.contains("3 of 4 pictures"), "{said}");
+    assert!(said.contains("`plates/plate.0010.png` is not developed"), "{said}");
+    let frames = [7, 8, 9].map(|n| read(at(&format!("out/plate.{n:04}.png"))));
+    let [a, b, dark] = frames.each_ref().map(mean);
+    println!("means of the frames: {a:.2} {b:.2} {dark:.2}");
+    let differ = frames[0].as_raw().iter().zip(frames[1].as_raw()).filter(|(a, b)| a != b).count();
+    assert!(differ * 2 > frames[0].as_raw().len(), "{differ} values differ");
+    assert!((a - b).abs() < 1.0 && dark < a - 20.0, "{a} {b} {dark}");
+
+    // Metered each, the dark one is as light; a sequence is named as others are, and numbers stay.
+    let each = ["plates/plate.000#.png", "--stock", "tri-x", "--format", "super-8", "--meter", "each"];
+    good(folder.path(), &[&each[..], &["-o", "each/d.%03d.tiff"]].concat());
+    let again = mean(&read(at("each/d.009.tiff")));
+    assert!((again - a).abs() < 1.5, "{again} {a}");
+    // A frame alone has the grain that it has among others, whatever came before.
+    good(
+        folder.path(),
+        &["plates/plate.0007.png", "plates/plate.0008.png", "--stock", "tri-x", "--format", "super-8", "-o", "two"],
+    );
+    assert!(read(at("two/plate.0008.png")) == frames[1], "the grain of frame 8 is that of frame 8");
+    // What is there is kept where that is asked for.
+    put(at("two/plate.0007.png"), 2, 2, |_, _| [1; 3]);
+    good(folder.path(), &["plates/plate.000#.png", "--stock", "tri-x", "-o", "two", "--skip-existing"]);
+    assert_eq!(read(at("two/plate.0007.png")).dimensions(), (2, 2));
+}
+
+#[test]
+fn slips_are_told_with_what_to_write() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    put(at("photo.png"), 6, 4, colors);
+    std::fs::write(at("notes.txt"), "no picture").expect("written");
+    std::fs::create_dir(at("empty")).expect("made");
+    // A picture of 60 000 x 60 000 pixels, as its header says.
+    let huge = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 60000 +X 60000\n";
+    std::fs::write(at("huge.hdr"), huge).expect("written");
+    let tri_x = ["--stock", "tri-x"];
+    for (arguments, words) in [
+        (&["photo.png"][..], &["--stock"][..]),
+        (&["photo.png", "--stock", "tri-y"], &["no film stock is called `tri-y`", "help: "]),
+        (&["photo.png", "--stock", "2383"], &["is not a camera film"]),
+        (&["photo.jpg", "--stock", "tri-x"], &["`photo.jpg`: no such file"]),
+        (&["notes.txt", "--stock", "tri-x"], &["not an OpenEXR, PNG, JPEG, TIFF or Radiance HDR file"]),
+        (&["huge.hdr", "--stock", "tri-x"], &["60000 x 60000"]),
+        (&["empty", "--stock", "tri-x"], &["no pictures in `empty`"]),
+        (&["plate.####.png", "--stock", "tri-x"], &["no file is called `plate.####.png`", "plate.0001.png"]),
+        (&["photo.png", "--stock", "tri-x", "--grade", "7"], &["--grade 7", "0 (soft) to 5 (hard)"]),
+        (&["photo.png", "--stock", "tri-x", "--push", "9"], &["--push 9"]),
+        (&["photo.png", "--stock", "tri-x", "--exposure", "+20"], &["a number from -10 to 10"]),
+        (&["photo.png", "--stock", "tri-x", "--format", "6x66"], &["did you mean `6x6`?"]),
+        (&["photo.png", "--stock", "tri-x", "--lens", "helyos"], &["helios"]),
+        (&["photo.png", "--stock", "tri-x", "--f-number", "f/4"], &["--lens"]),
+        (&["photo.png", "--stock", "tri-x", "--set", "film.stok=a"], &["--set film.stok=a", "did you mean `stock`?"]),
+        (&["photo.png", "--stock", "tri-x", "--view", "projection"], &["--view projection", "is a negative"]),
+        (&["photo.png", "--stock", "tri-x", "--side", "60"], &["or fewer"]),
+        (&["photo.png", "--stock", "tri-x", "-o", "photo.png"], &["over a picture that is read"]),
+        (&["photo.png", "--stock", "tri-x", "-o", "photo.gif"], &[".png, .tiff or .exr"]),
+        (&["photo.png", "photo.png", "--stock", "tri-x", "-o", "a.png"], &["is one picture"]),
+        (&["photo.png", "photo.png", "--stock", "tri-x", "-o", "out"], &["would both be written as"]),
+    ] {
+        let said = refused(folder.path(), arguments, 2);
+        for word in words {
+            assert!(said.replace("\n        ", "").contains(word), "{arguments:?} lacks `{word}`: {said}");
+        }
+    }
+    // What is wrong with every picture is said once.
+    std::fs::copy(at("photo.png"), at("empty/a.png")).expect("copied");
+    std::fs::copy(at("photo.png"), at("empty/b.png")).expect("copied");
+    let said = refused(folder.path(), &[&["empty", "--grade", "7"][..], &tri_x].concat(), 2);
+    assert_eq!(said.matches("there is no paper of grade").count(), 1, "{said}");
+    // Programs hear it as an event.
+    let output = in_folder(folder.path(), &["photo.png", "--stock", "tri-x", "--grade", "7", "--json"]);
+    let event: serde_json::Value = serde_json::from_slice(&output.stdout).expect("one line of JSON");
+    assert_eq!((event["event"].as_str(), event["faults"].as_array().map(Vec::len)), (Some("error"), Some(1)));
+    let output = in_folder(folder.path(), &["photo.png", "--stock", "tri-x", "--json"]);
+    let lines = text(&output.stdout);
+    assert!(
+        lines.lines().any(|l| l.contains("\"written\"")) && lines.lines().any(|l| l.contains("\"done\"")),
+        "{lines}"
+    );
+}
+
+/// What a `.cube` file holds, read by its format alone: points along a side, and the points, red running fastest.
+fn cube(path: PathBuf) -> (usize, Vec<[f64; 3]>) {
+    let content = std::fs::read_to_string(path).expect("a file");
+    let lines = || content.lines().filter(|line| !line.starts_with('#') && !line.is_empty());
+    let size = lines().find_map(|l| l.strip_prefix("LUT_3D_SIZE ")).expect("a size").parse().expect("a number");
+    let rows = lines().filter(|line| line.starts_with(|c: char| c.is_ascii_digit() || c == '-'));
+    let rows: Vec<[f64; 3]> = rows
+        .map(|row| {
+            let values: Vec<f64> = row.split(' ').map(|v| v.parse().expect("a number")).collect();
+            values.try_into().expect("three values")
+        })
+        .collect();
+    assert_eq!(rows.len(), size * size * size);
+    (size, rows)
+}
+
+/// A table shows what the film without its spatial effects does: the asked 0.5 on average, and the picture that `develop` makes of
+/// an even color.
+#[test]
+fn a_table_shows_what_the_film_does() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    let made = |arguments: &[&str]| {
+        let output = spectra().current_dir(folder.path()).args(["film", "cube"]).args(arguments).output();
+        output.expect("the program starts")
+    };
+    let plain = ["5207", "--print", "2383", "-o", "5207.cube"];
+    let output = made(&[&plain[..], &["--json"]].concat());
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let report: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let mean = report["random_colors"]["mean_ciede2000"].as_f64().expect("a figure");
+    println!("5207 on 2383, 65 points: {report}");
+    assert!(mean > 0.0 && mean <= 0.5, "{mean}");
+    assert!(report["colorchecker"]["mean_ciede2000"].as_f64().is_some_and(|off| off > 0.1 && off < 6.0), "{report}");
+    let (size, points) = cube(at("5207.cube"));
+    assert_eq!(size, 65);
+    let head = std::fs::read_to_string(at("5207.cube")).expect("there");
+    for word in ["TITLE \"Kodak Vision3 250D 5207", "Left out", "AllocationTransform", "log2(x / 0.18) / 14"] {
+        assert!(head.contains(word), "{word}");
+    }
+    // Brighter red, which runs fastest, makes red brighter.
+    let point = |r: usize, g: usize, b: usize| points[(b * size + g) * size + r];
+    assert!(point(48, 16, 16)[0] > point(16, 16, 16)[0] + 0.2 && point(16, 16, 48)[2] > point(16, 16, 16)[2] + 0.2);
+
+    // A mid gray is the middle, and is what a gray card is developed to.
+    put(at("gray.png"), 24, 16, |_, _| [118; 3]);
+    let off = ["--grain", "off", "--halation", "off", "-o", "gray-5207.png"];
+    good(folder.path(), &[&["gray.png", "--stock", "5207"][..], &off].concat());
+    let card = read(at("gray-5207.png")).get_pixel(12, 8).0.map(f64::from);
+    let middle = point(32, 32, 32).map(|v| 255.0 * v);
+    println!("a gray card: {card:?} developed, {middle:.1?} in the table");
+    // 118 of 255 is 0.1812; and a step of the file.
+    assert!(card.iter().zip(middle).all(|(a, b)| (a - b).abs() < 2.0), "{card:?} {middle:?}");
+
+    // Coarser is farther off.
+    let output = made(&["5207", "--size", "9", "-o", "coarse.cube", "--json"]);
+    let coarse: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert!(coarse["random_colors"]["mean_ciede2000"].as_f64().is_some_and(|off| off > 2.0 * mean), "{coarse}");
+    for (arguments, word) in [
+        (&["tri-x", "--grade", "auto"][..], "a grade from 0 to 5"),
+        (&["tri-x", "-o", "a.lut"], ".cube"),
+        (&["tri-x", "--stops", "1"], "from 2 to 40"),
+        (&["tri-x", "--illuminant", "D66"], "--illuminant D66"),
+        (&["tri-y"], "no film stock is called `tri-y`"),
+    ] {
+        let output = made(arguments);
+        let said = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {said}");
+        assert!(said.contains(word), "{arguments:?} lacks `{word}`: {said}");
+    }
+}
