@@ -55,7 +55,7 @@ fn picture(job: &Job<'_>, host: &dyn Host) -> Result<Ended, SessionError> {
     let files = Files::of(&job.names, session.scene(), &member)?;
     // What cannot be rendered leaves no folder behind.
     fits(&session, host)?;
-    session.prepare()?;
+    session.prepare(host.workers())?;
     host.hear(Event::Ready);
     // Before any light is traced: an hour's picture must not end without a place to go.
     let report_file = job.names.report(&member.stem(""));
