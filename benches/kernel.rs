@@ -264,6 +264,8 @@ fn main() {
     ));
     for isa in Isa::available().into_iter().filter(|i| *i != best) {
         cases.push((format!("spectra {}, glasses of soa.cpp", isa.name()), make(&numbers, band, isa), Vec::new()));
+        let aspheres = make(&biotar(cauchy, even_asphere), band, isa);
+        cases.push((format!("spectra {}, ten even aspheres of 8 terms", isa.name()), aspheres, Vec::new()));
     }
     // The same lens with ten surfaces of another kind.
     for (name, surface) in [("conics", conic as fn(f64) -> _), ("even aspheres of 8 terms", even_asphere)] {
@@ -312,10 +314,17 @@ fn main() {
     let [.., conics, aspheres] = &cases[..] else { unreachable!("both were put there") };
     let (conics, aspheres) = (to_spheres(conics), to_spheres(aspheres));
     println!("rays a second by those of spheres: conics {conics:.3}, even aspheres of 8 terms {aspheres:.3}");
+    // Of each narrower set, spheres and aspheres stand side by side behind the first two.
+    let mut json = String::new();
+    for (isa, pair) in Isa::available().into_iter().filter(|i| *i != best).zip(cases[2..].chunks(2)) {
+        let ratio = median(pair[1].2.iter().zip(&pair[0].2).map(|(rate, sphere)| rate / sphere).collect());
+        println!("the same with {}: {ratio:.3}", isa.name());
+        json.push_str(&format!(",\"even_asphere_to_sphere_{}\":{ratio:.4}", isa.name()));
+    }
     let rate = median(cases[0].2.clone());
     let ratio = if ratios.is_empty() { "null".to_owned() } else { format!("{:.4}", median(ratios)) };
     println!(
-        "{{\"bench\":\"kernel\",\"isa\":\"{}\",\"rays_per_second\":{rate:.0},\"intersections_per_second\":{:.0},\"ratio_to_soa\":{ratio},\"conic_to_sphere\":{conics:.4},\"even_asphere_to_sphere\":{aspheres:.4},\"mean_y_mm\":{mean_y:.6},\"lost\":{lost}}}",
+        "{{\"bench\":\"kernel\",\"isa\":\"{}\",\"rays_per_second\":{rate:.0},\"intersections_per_second\":{:.0},\"ratio_to_soa\":{ratio},\"conic_to_sphere\":{conics:.4},\"even_asphere_to_sphere\":{aspheres:.4}{json},\"mean_y_mm\":{mean_y:.6},\"lost\":{lost}}}",
         best.name(),
         rate * INTERSECTIONS
     );

@@ -51,6 +51,24 @@ impl SagShape for SagAndSlope {
     }
 }
 
+/// A sag whose rays are searched one after the other.
+#[derive(Debug)]
+struct OneByOne<S>(FromSag<S>);
+
+impl<S: SagShape> ScalarShape for OneByOne<S> {
+    fn intersect(&self, position: DVec3, direction: DVec3) -> Option<Intersection> {
+        self.0.intersect(position, direction)
+    }
+
+    fn sag_mm(&self, x_mm: f64, y_mm: f64) -> Option<f64> {
+        self.0.sag_mm(x_mm, y_mm)
+    }
+
+    fn vertex_curvature_per_mm(&self) -> (f64, f64) {
+        self.0.vertex_curvature_per_mm()
+    }
+}
+
 /// The scalar tier: where the ray meets the sphere, in a closed form.
 #[derive(Debug)]
 struct Scalar(f64);
@@ -148,18 +166,24 @@ fn main() {
         lens.elements[REPLACED].surface = surface;
         lens
     };
-    let cases: [(&str, &str, Lens); 5] = [
+    let cases: [(&str, &str, Lens); 7] = [
         ("built-in surfaces only", "", lens.clone()),
         ("kernel tier", "kernel", with(Arc::new(Kernel(Vector(radius_mm))))),
         ("scalar tier, closed form", "scalar", with(Arc::new(PerRay(Scalar(radius_mm))))),
         ("scalar tier, sag and slopes", "sag_and_slope", with(Arc::new(PerRay(FromSag(SagAndSlope(Sag(radius_mm))))))),
         ("scalar tier, sag alone", "sag", with(Arc::new(PerRay(FromSag(Sag(radius_mm)))))),
+        (
+            "sag and slopes, ray by ray",
+            "sag_and_slope_ray_by_ray",
+            with(Arc::new(PerRay(OneByOne(FromSag(SagAndSlope(Sag(radius_mm))))))),
+        ),
+        ("sag alone, ray by ray", "sag_ray_by_ray", with(Arc::new(PerRay(OneByOne(FromSag(Sag(radius_mm))))))),
     ];
     let band = Indices::Band { min_nm: 400.0, max_nm: 700.0 };
     let isa = Isa::detect();
     let tracers = cases.each_ref().map(|(_, _, lens)| Tracer::new(lens, band, isa).expect("its glasses have indices"));
     let mut batch = RayBatch::new(BATCH);
-    let mut ratios: [Vec<f64>; 5] = Default::default();
+    let mut ratios: [Vec<f64>; 7] = Default::default();
     let mut fastest_s = f64::INFINITY;
     for _ in 0..if quick { 1 } else { TURNS } {
         let results = tracers.each_ref().map(|tracer| trace(tracer, &mut batch));

@@ -26,7 +26,7 @@ pub(crate) fn render(
     scene.render.rays = u64::from(samples) * scene.imager.size().pixels() as u64;
     scene.render.seed = seed;
     let failed = |error| BenchError::Render { strategy: strategy.to_owned(), error };
-    let renderer = Renderer::new(scene.clone(), isa).map_err(failed)?;
+    let renderer = Renderer::on(scene.clone(), isa, &Threads(threads)).map_err(failed)?;
     let begun = Instant::now();
     let rendering = renderer.run(&Threads(threads), &Control::new()).map_err(failed)?;
     Ok((rendering.exposure, begun.elapsed().as_secs_f64()))

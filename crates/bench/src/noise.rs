@@ -104,7 +104,7 @@ fn row(scene: Scene, direction: &str, settings: &NoiseSettings) -> Result<NoiseR
         scene.render.seed = first.wrapping_add(seed << 32);
         let scene = Arc::new(scene);
         let begun = Instant::now();
-        let renderer = Renderer::new(Arc::clone(&scene), settings.isa).map_err(failed)?;
+        let renderer = Renderer::on(Arc::clone(&scene), settings.isa, &Threads(settings.threads)).map_err(failed)?;
         let mut light: Light = renderer.begin().map_err(failed)?;
         ready_s += begun.elapsed().as_secs_f64() / settings.seeds as f64;
         let begun = Instant::now();

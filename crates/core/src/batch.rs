@@ -110,6 +110,9 @@ struct Scratch {
     /// Between the loops the cosine of incidence; afterwards how far the ray is from ending.
     cosine_then_margin: Column<f64>,
     valid: Column<f64>,
+    /// Of shapes that rays come to by steps: what they keep, and the size of the last step.
+    kept: Column<f64>,
+    step: Column<f64>,
 }
 
 /// See [`Scratch`].
@@ -117,6 +120,8 @@ pub(crate) struct ScratchColumns<'a> {
     pub radius2: &'a mut [f64],
     pub cosine_then_margin: &'a mut [f64],
     pub valid: &'a mut [f64],
+    pub kept: &'a mut [f64],
+    pub step: &'a mut [f64],
 }
 
 /// All columns of a batch, to read and write at once.
@@ -203,6 +208,8 @@ impl RayBatch {
                 radius2_is_true: false,
                 cosine_then_margin: column(),
                 valid: column(),
+                kept: column(),
+                step: column(),
             },
         }
     }
@@ -360,6 +367,8 @@ impl RayBatch {
             radius2: self.scratch.radius2.slice_mut(len),
             cosine_then_margin: self.scratch.cosine_then_margin.slice_mut(len),
             valid: self.scratch.valid.slice_mut(len),
+            kept: self.scratch.kept.slice_mut(len),
+            step: self.scratch.step.slice_mut(len),
         };
         (columns, scratch)
     }

@@ -30,6 +30,7 @@ pub mod spectral;
 pub mod stage;
 pub mod surface;
 pub mod view;
+pub mod workers;
 
 pub use batch::RayBatch;
 pub use glam;

@@ -247,6 +247,18 @@ impl Tracer {
         Work { compact: false, ..self.work(capacity) }
     }
 
+    /// The same for rendering: what clear coatings of thin layers pass is worked out in single precision, within 1e-6.
+    #[must_use]
+    pub fn work_for_light(&self, capacity: usize) -> Work {
+        let work = self.work(capacity);
+        Work { before: work.before.map(Before::swift), ..work }
+    }
+
+    /// The same for whoever asks only which rays pass, and where: their weights are left as they are.
+    pub(crate) fn work_unweighed(&self, capacity: usize) -> Work {
+        Work { before: None, ..self.work_in_place(capacity) }
+    }
+
     /// Traces a batch straight through the lens. Forward, it enters in the frame of the lens and leaves in that of the image
     /// plane; backward the other way round.
     pub fn trace(&self, rays: &mut RayBatch, work: &mut Work, travel: Travel) {

@@ -5,7 +5,7 @@
 //! before and after, whatever the kind of surface.
 
 use crate::absorption::{Absorption, Grid, Locate};
-use crate::coating::{Amplitudes, Coating, Films, Polarizing, Sides};
+use crate::coating::{Amplitudes, CHUNK, Coating, Films, Polarizing, Sides, Singles, Swift};
 use crate::{Element, Lens, LensMedium};
 use spectra_core::Loss;
 use spectra_core::RayBatch;
@@ -33,10 +33,10 @@ const NO_PLANE: f64 = 1e-9;
 pub(crate) enum Kernel {
     /// Fresnel's equations.
     Bare,
-    /// Clear layers, with the number of times that [`Films`] halves the angle.
-    One(Films<1>, u32),
-    Two(Films<2>, u32),
-    Three(Films<3>, u32),
+    /// Clear layers, with the number of times that [`Films`] halves the angle; and in single precision, where that is enough.
+    One(Films<1>, u32, Option<Swift<1>>),
+    Two(Films<2>, u32, Option<Swift<2>>),
+    Three(Films<3>, u32, Option<Swift<3>>),
     /// Any coating: [`Coating::transmittance`].
     RayByRay,
 }
@@ -48,20 +48,22 @@ impl Kernel {
             Coating::Bare => return Self::Bare,
             Coating::Layer { index, thickness_nm } => {
                 let films = Films::new(&[[*index, *thickness_nm]]);
-                return films.halvings(shortest_nm, low).map_or(Self::RayByRay, |h| Self::One(films, h));
+                return films
+                    .halvings(shortest_nm, low)
+                    .map_or(Self::RayByRay, |h| Self::One(films, h, Swift::of(&films, shortest_nm, low)));
             }
             Coating::Stack(stack) => {
                 let one = || {
                     let films = Films::new(&stack.clear_layers::<1>()?);
-                    Some(Self::One(films, films.halvings(shortest_nm, low)?))
+                    Some(Self::One(films, films.halvings(shortest_nm, low)?, Swift::of(&films, shortest_nm, low)))
                 };
                 let two = || {
                     let films = Films::new(&stack.clear_layers::<2>()?);
-                    Some(Self::Two(films, films.halvings(shortest_nm, low)?))
+                    Some(Self::Two(films, films.halvings(shortest_nm, low)?, Swift::of(&films, shortest_nm, low)))
                 };
                 let three = || {
                     let films = Films::new(&stack.clear_layers::<3>()?);
-                    Some(Self::Three(films, films.halvings(shortest_nm, low)?))
+                    Some(Self::Three(films, films.halvings(shortest_nm, low)?, Swift::of(&films, shortest_nm, low)))
                 };
                 one().or_else(two).or_else(three)
             }
@@ -148,6 +150,8 @@ pub(crate) struct Before {
     /// Where the wavelengths lie in the tables of absorption.
     cell: Column<u64>,
     part: Column<f64>,
+    /// Whether layers are worked out in single precision, where that is within 1e-6.
+    swift: bool,
 }
 
 impl Before {
@@ -155,7 +159,19 @@ impl Before {
     pub(crate) fn new(capacity: usize) -> Self {
         let column = || Column::new(capacity);
         let three = || std::array::from_fn(|_| column());
-        Self { position: three(), direction: three(), per_mm: column(), cell: Column::new(capacity), part: column() }
+        Self {
+            position: three(),
+            direction: three(),
+            per_mm: column(),
+            cell: Column::new(capacity),
+            part: column(),
+            swift: false,
+        }
+    }
+
+    /// The same, with clear layers in single precision.
+    pub(crate) fn swift(self) -> Self {
+        Self { swift: true, ..self }
     }
 
     /// Takes down where the wavelengths lie in tables of absorption.
@@ -302,9 +318,12 @@ impl Before {
                 let at = Pass { rays, before, n, n_after };
                 match kernel {
                     Kernel::Bare => isa.run(PassBare(at)),
-                    Kernel::One(films, halvings) => at.through(films, *halvings, isa),
-                    Kernel::Two(films, halvings) => at.through(films, *halvings, isa),
-                    Kernel::Three(films, halvings) => at.through(films, *halvings, isa),
+                    Kernel::One(.., Some(swift)) if self.swift => isa.run(PassSwift(at, swift)),
+                    Kernel::Two(.., Some(swift)) if self.swift => isa.run(PassSwift(at, swift)),
+                    Kernel::Three(.., Some(swift)) if self.swift => isa.run(PassSwift(at, swift)),
+                    Kernel::One(films, halvings, _) => at.through(films, *halvings, isa),
+                    Kernel::Two(films, halvings, _) => at.through(films, *halvings, isa),
+                    Kernel::Three(films, halvings, _) => at.through(films, *halvings, isa),
                     Kernel::RayByRay => at.ray_by_ray(coating),
                 }
             }
@@ -458,5 +477,58 @@ impl<const N: usize, const H: usize> Vectorized for PassFilms<'_, N, H> {
     #[inline(always)]
     fn run(self) {
         self.0.weigh(Layers::<N, H>(*self.1));
+    }
+}
+
+struct PassSwift<'a, const N: usize>(Pass<'a>, &'a Swift<N>);
+
+impl<const N: usize> Vectorized for PassSwift<'_, N> {
+    type Output = ();
+    #[inline(always)]
+    fn run(self) {
+        let (Pass { rays: c, before, n, n_after }, swift) = (self.0, *self.1);
+        let len = c.weight.len();
+        for first in (0..len).step_by(CHUNK) {
+            let span = first..(first + CHUNK).min(len);
+            swift_chunk(
+                &swift,
+                before.map(|column| &column[span.clone()]),
+                c.direction.map(|column| &column[span.clone()]),
+                [&n[span.clone()], &n_after[span.clone()], &c.wavelength_nm[span.clone()]],
+                &c.state[span.clone()],
+                &mut c.weight[span],
+            );
+        }
+    }
+}
+
+/// In three loops, so that the one in the middle holds nothing but single precision.
+#[inline(always)]
+fn swift_chunk<const N: usize>(
+    swift: &Swift<N>,
+    [bl, bm, bn]: [&[f64]; 3],
+    [l, m, nz]: [&[f64]; 3],
+    [n, n_after, wavelength_nm]: [&[f64]; 3],
+    state: &[u64],
+    weight: &mut [f64],
+) {
+    let len = weight.len().min(CHUNK);
+    let [bl, bm, bn, l, m, nz] = [bl, bm, bn, l, m, nz].map(|column| &column[..len]);
+    let [n, n_after, wavelength_nm] = [n, n_after, wavelength_nm].map(|column| &column[..len]);
+    let (state, weight) = (&state[..len], &mut weight[..len]);
+    const ZERO: Singles = [0.0; CHUNK];
+    let (mut from, mut to, mut step, mut h, mut nm, mut back) = (ZERO, ZERO, ZERO, ZERO, ZERO, ZERO);
+    for i in 0..len {
+        let turn = [l[i] - bl[i], m[i] - bm[i], nz[i] - bn[i]];
+        h[i] = (0.5 * (turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2])) as f32;
+        step[i] = (n_after[i] - n[i]) as f32;
+        (from[i], to[i], nm[i]) = (n[i] as f32, n_after[i] as f32, wavelength_nm[i] as f32);
+    }
+    for i in 0..CHUNK {
+        back[i] = swift.reflects(from[i], to[i], step[i], h[i], 1.0 / nm[i]);
+    }
+    for i in 0..len {
+        let usable = ((n_after[i] - n[i]).abs() >= SAME_INDEX) & (state[i] == ALIVE);
+        weight[i] -= if usable { weight[i] * f64::from(back[i]) } else { 0.0 };
     }
 }

@@ -37,7 +37,7 @@ pub(crate) struct Backward {
 
 impl Backward {
     /// Searches what passes the lens, and finds the scale of the sums.
-    pub(crate) fn new(pipeline: Arc<Pipeline>) -> Result<Self, RenderError> {
+    pub(crate) fn new(pipeline: Arc<Pipeline>, workers: &dyn Workers) -> Result<Self, RenderError> {
         let scene = &pipeline.scene;
         let launch = scene.imager.launch().ok_or(RenderError::CannotLaunch)?;
         pipeline.source().radiance().ok_or(RenderError::NoRadiance)?;
@@ -45,7 +45,8 @@ impl Backward {
         let [x, y, z] = rays.positions();
         let points: Vec<DVec3> = (0..rays.len()).map(|i| DVec3::new(x[i], y[i], z[i])).collect();
         let grid = scene.grid;
-        let rear = RearPupil::search(&scene.lens, &pipeline.tracer, &points, grid.start_nm, grid.end_nm());
+        let band_nm = [grid.start_nm, grid.end_nm()];
+        let rear = RearPupil::search_on(&scene.lens, &pipeline.tracer, &points, band_nm, workers);
         let numbers = pipeline.numbers(PILOT_SEED);
         let rear = rear.map(|rear| {
             rays.columns_mut().wavelength_nm.fill(grid.start_nm);

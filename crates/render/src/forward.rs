@@ -53,9 +53,9 @@ const SOURCE_POINTS: usize = 4096;
 
 impl Forward {
     /// Searches where light goes in, and finds the scale of the sums.
-    pub(crate) fn new(pipeline: Arc<Pipeline>) -> Result<Self, RenderError> {
+    pub(crate) fn new(pipeline: Arc<Pipeline>, workers: &dyn Workers) -> Result<Self, RenderError> {
         let seed = pipeline.scene.render.seed;
-        let mut own = Self::aimed(pipeline)?;
+        let mut own = Self::aimed(pipeline, workers)?;
         if own.pipeline.share == Share::Lights && !own.pipeline.scene.render.rays_stated {
             own.a_sample = Some(own.lights_a_sample());
         }
@@ -119,7 +119,7 @@ impl Forward {
     }
 
     /// With the numbers of the pilot, and no scale.
-    pub(crate) fn aimed(pipeline: Arc<Pipeline>) -> Result<Self, RenderError> {
+    pub(crate) fn aimed(pipeline: Arc<Pipeline>, workers: &dyn Workers) -> Result<Self, RenderError> {
         let scene = &pipeline.scene;
         let emit = pipeline.source().emit().ok_or(RenderError::CannotEmit)?;
         scene.imager.receive().ok_or(RenderError::CannotReceive)?;
@@ -129,7 +129,8 @@ impl Forward {
         } else {
             let points = source_points(&pipeline, emit, &numbers);
             let grid = scene.grid;
-            let pupil = FrontPupil::search(&scene.lens, &pipeline.tracer, &points, grid.start_nm, grid.end_nm());
+            let band_nm = [grid.start_nm, grid.end_nm()];
+            let pupil = FrontPupil::search_on(&scene.lens, &pipeline.tracer, &points, band_nm, workers);
             Some(Arc::new(pupil.ok_or(RenderError::NoAperture)?))
         };
         Ok(Self { pupil, numbers, cone, scale: 1.0, pipeline, a_sample: None })

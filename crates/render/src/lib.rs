@@ -40,5 +40,6 @@ pub use noise::Noise;
 pub use pipeline::Pipeline;
 pub use remarks::percent;
 pub use renderer::{Renderer, Rendering};
+pub use spectra_core::workers::{Alone, Workers};
 pub use sums::ExactSums;
-pub use workers::{Alone, Threads, Workers};
+pub use workers::Threads;

@@ -10,9 +10,9 @@ use crate::error::RenderError;
 use crate::forward::{Forward, PATHS_PER_UNIT};
 use crate::pipeline::{Pipeline, ThreadState};
 use crate::sums::ExactSums;
-use crate::workers::each_of;
 use spectra_core::batch::pixel_and_channel;
 use spectra_core::numbers::Numbers;
+use spectra_core::workers::each_of;
 use spectra_core::{Isa, RayBatch};
 use std::ops::Range;
 

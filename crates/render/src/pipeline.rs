@@ -173,7 +173,7 @@ impl ThreadState {
         let rays = RayBatch::new(capacity);
         Self {
             rays: if pipeline.draws { rays.with_numbers() } else { rays },
-            work: pipeline.tracer.work(capacity),
+            work: pipeline.tracer.work_for_light(capacity),
             numbers: std::array::from_fn(|_| Column::new(capacity)),
             values: vec![0.0; capacity],
             integers: vec![vec![0; capacity]; pipeline.responses.channels()],

@@ -13,7 +13,7 @@ use crate::pilot::PILOT_RAYS;
 use crate::pipeline::{Pipeline, Share, ThreadState};
 use crate::remarks::remarks;
 use crate::sums::{LARGEST_CONTRIBUTION, LARGEST_EXPECTED};
-use crate::{Control, Light, Noise, RenderError, Workers};
+use crate::{Alone, Control, Light, Noise, RenderError, Workers};
 use spectra_core::frame::{ExposureChannel, ExposureFrame};
 use spectra_core::numbers::mix64;
 use spectra_core::stage::WavelengthDensity;
@@ -63,7 +63,15 @@ impl Renderer {
     /// # Errors
     /// [`RenderError`]: a stage lacks the ability that the direction needs, or the source's files are broken.
     pub fn new(scene: impl Into<Arc<Scene>>, isa: Isa) -> Result<Self, RenderError> {
-        Self::with_density(scene.into(), isa, None)
+        Self::on(scene, isa, &Alone)
+    }
+
+    /// The same, with the search for pupils on these workers: the same bits on any.
+    ///
+    /// # Errors
+    /// As [`Renderer::new`].
+    pub fn on(scene: impl Into<Arc<Scene>>, isa: Isa, workers: &dyn Workers) -> Result<Self, RenderError> {
+        Self::with_density(scene.into(), isa, None, workers)
     }
 
     /// The same with a density of wavelengths that is known to fit.
@@ -77,6 +85,7 @@ impl Renderer {
         scene: Arc<Scene>,
         isa: Isa,
         density: Option<Arc<dyn WavelengthDensity>>,
+        workers: &dyn Workers,
     ) -> Result<Self, RenderError> {
         let direction = scene.render.direction;
         let lights = scene.render.lights;
@@ -85,13 +94,13 @@ impl Renderer {
         let pays = scene.source.split().map(|split| split.pays);
         let apart = lights != Lights::Same && pays.is_some_and(|pays| pays || lights == Lights::Forward);
         if !apart {
-            let plain = Self::of(scene, isa, density, &[direction])?;
+            let plain = Self::by(scene, isa, density, &[direction], workers)?;
             return if ghosts.unwrap_or(0) == 0 { Ok(plain) } else { plain.with_ghosts() };
         }
         let pipeline = Arc::new(Pipeline::new(&scene, isa, density)?);
         let share = |share| Arc::new(pipeline.of_share(share));
         let of_lights = share(Share::Lights);
-        let (rest, lights) = (Backward::new(share(Share::Rest))?, Forward::new(of_lights.clone())?);
+        let (rest, lights) = (Backward::new(share(Share::Rest), workers)?, Forward::new(of_lights.clone(), workers)?);
         let found = if ghosts == Some(0) { None } else { Ghosts::new(&of_lights)? };
         let found = found.filter(|found| ghosts.is_some() || found.brightest() > MATTERS * rest.mean());
         let ledger = found.as_ref().map(|found| found.ledger().clone());
@@ -136,13 +145,23 @@ impl Renderer {
         density: Option<Arc<dyn WavelengthDensity>>,
         estimators: &[Direction],
     ) -> Result<Self, RenderError> {
+        Self::by(scene, isa, density, estimators, &Alone)
+    }
+
+    fn by(
+        scene: Arc<Scene>,
+        isa: Isa,
+        density: Option<Arc<dyn WavelengthDensity>>,
+        estimators: &[Direction],
+        workers: &dyn Workers,
+    ) -> Result<Self, RenderError> {
         scene.source.prepare().map_err(RenderError::Source)?;
         let pipeline = Arc::new(Pipeline::new(&scene, isa, density)?);
         let one = |direction: &Direction| -> Result<Box<dyn Estimator>, RenderError> {
             let pipeline = Arc::clone(&pipeline);
             Ok(match direction {
-                Direction::Forward => Box::new(Forward::new(pipeline)?),
-                Direction::Backward => Box::new(Backward::new(pipeline)?),
+                Direction::Forward => Box::new(Forward::new(pipeline, workers)?),
+                Direction::Backward => Box::new(Backward::new(pipeline, workers)?),
             })
         };
         let estimators = estimators.iter().map(one).collect::<Result<_, _>>()?;
@@ -176,7 +195,7 @@ impl Renderer {
     /// the source cannot emit, or nothing passes the lens.
     #[must_use]
     pub fn landing(&self) -> Option<Landing> {
-        let forward = Forward::aimed(Arc::clone(&self.pipeline)).ok()?;
+        let forward = Forward::aimed(Arc::clone(&self.pipeline), &Alone).ok()?;
         let mut state = ThreadState::new(&self.pipeline, PILOT_RAYS as usize);
         let mut landing = None;
         forward.steps(&mut state, 0, PILOT_RAYS as usize, &mut |step, rays| {

@@ -1,23 +1,6 @@
-//! Who does the work: threads belong to the program that renders, not to the engine.
+//! Threads, for a program that has none of its own.
 
-use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
-use std::sync::{Mutex, PoisonError};
-
-/// Some threads.
-pub trait Workers: Sync {
-    /// Calls `work` once on each of them, and returns when all calls have.
-    fn each(&self, work: &(dyn Fn() + Sync));
-}
-
-/// The thread that asks.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Alone;
-
-impl Workers for Alone {
-    fn each(&self, work: &(dyn Fn() + Sync)) {
-        work();
-    }
-}
+use spectra_core::workers::Workers;
 
 /// So many threads of this process, made for each piece of work: for a program that has none of its own.
 #[derive(Clone, Copy, Debug)]
@@ -36,32 +19,4 @@ impl Workers for Threads {
             work();
         });
     }
-}
-
-/// Does so many pieces of work, each on one of the workers, who has columns of its own; gives their results in order.
-pub(crate) fn each_of<S, T: Send, E: Send>(
-    workers: &dyn Workers,
-    pieces: usize,
-    fresh: impl Fn() -> S + Sync,
-    work: impl Fn(&mut S, usize) -> Result<T, E> + Sync,
-) -> Result<Vec<T>, E> {
-    let next = AtomicUsize::new(0);
-    let done: Mutex<Vec<(usize, Result<T, E>)>> = Mutex::new(Vec::with_capacity(pieces));
-    workers.each(&|| {
-        let mut state = fresh();
-        loop {
-            let piece = next.fetch_add(1, Relaxed);
-            if piece >= pieces {
-                break;
-            }
-            let result = work(&mut state, piece);
-            if result.is_err() {
-                next.store(pieces, Relaxed);
-            }
-            done.lock().unwrap_or_else(PoisonError::into_inner).push((piece, result));
-        }
-    });
-    let mut done = done.into_inner().unwrap_or_else(PoisonError::into_inner);
-    done.sort_unstable_by_key(|(piece, _)| *piece);
-    done.into_iter().map(|(_, result)| result).collect()
 }

@@ -72,7 +72,7 @@ pub(crate) fn picture(job: &Job<'_>, host: &dyn Host) -> Result<(Ended, Vec<Film
     // What cannot be rendered leaves no folder behind.
     fits(&session, host)?;
     let exposed = match job.light {
-        LightFrom::Rays => session.prepare().map(|()| None)?,
+        LightFrom::Rays => session.prepare(host.workers()).map(|()| None)?,
         LightFrom::Pixels => Some(session.expose()?),
     };
     host.hear(Event::Ready);

@@ -188,7 +188,7 @@ impl Work<'_> {
         // Not kept from the check: a thousand scenes would not fit into memory.
         let mut session = Session::after(job.series.clone(), picture.index, self.other.take(), job.isa)?;
         let control = host.control();
-        session.prepare()?;
+        session.prepare(host.workers())?;
         let Taken { rendering, seconds, failure } = Taken::of(&mut session, host, &control)?;
         if let Some(text) = failure {
             return Err(SessionError::Failed(text));

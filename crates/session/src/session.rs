@@ -1,7 +1,7 @@
 //! One picture of a scene, on its way.
 
 use crate::files::Files;
-use crate::{Control, Names, Rendering, SessionError, Workers, header, still};
+use crate::{Alone, Control, Names, Rendering, SessionError, Workers, header, still};
 use spectra_core::params::{Faults, Node, Warning};
 use spectra_core::resources::Resources;
 use spectra_core::sink::Sink;
@@ -106,9 +106,9 @@ impl Session {
     ///
     /// # Errors
     /// What shows only once the stages are put together, as a fault of the scene.
-    pub fn prepare(&mut self) -> Result<(), SessionError> {
+    pub fn prepare(&mut self, workers: &dyn Workers) -> Result<(), SessionError> {
         if self.ready.is_none() {
-            self.ready = Some(self.made(Renderer::new(Arc::clone(&self.scene), self.isa))?);
+            self.ready = Some(self.made(Renderer::on(Arc::clone(&self.scene), self.isa, workers))?);
         }
         Ok(())
     }
@@ -138,7 +138,7 @@ impl Session {
     /// The scene cannot be rendered; `numbers` that cannot go on beyond the samples of the scene; a stage that gave a number
     /// that no light can have. The light before stays.
     pub fn advance(&mut self, samples: u64, workers: &dyn Workers, control: &Control) -> Result<(), SessionError> {
-        self.prepare()?;
+        self.prepare(workers)?;
         let Some((renderer, light)) = &mut self.ready else { return Ok(()) };
         let traced = renderer.advance(light, samples, workers, control);
         traced.map_err(|error| SessionError::of(&error, &self.scene))
@@ -149,7 +149,7 @@ impl Session {
     /// # Errors
     /// There is no memory for it.
     pub fn look(&mut self) -> Result<Rendering, SessionError> {
-        self.prepare()?;
+        self.prepare(&Alone)?;
         let Some((renderer, light)) = &self.ready else { return Err(Faults::new().into()) };
         renderer.look(&self.scene, light).map_err(|error| SessionError::of(&error, &self.scene))
     }
@@ -242,7 +242,7 @@ impl Session {
             Some(ready) if same_light => Some(ready),
             Some(ready) => {
                 let density = system.then(|| Arc::clone(ready.0.density()));
-                let made = Renderer::with_density(Arc::clone(&scene), self.isa, density);
+                let made = Renderer::with_density(Arc::clone(&scene), self.isa, density, &Alone);
                 let made = made.and_then(|renderer| renderer.begin().map(|light| (renderer, light)));
                 match made {
                     Ok(made) => Some(made),
@@ -267,7 +267,7 @@ impl Session {
     /// # Errors
     /// What the stream has; and as [`Session::prepare`].
     pub fn save(&mut self, out: &mut dyn Write) -> Result<(), SessionError> {
-        self.prepare()?;
+        self.prepare(&Alone)?;
         let Some((_, light)) = &self.ready else { return Ok(()) };
         let scene = self.scene.text.as_bytes();
         out.write_all(&(scene.len() as u64).to_le_bytes())?;
@@ -280,7 +280,7 @@ impl Session {
     /// # Errors
     /// What the stream has; light of another scene, which leaves all as it was; and as [`Session::prepare`].
     pub fn load(&mut self, from: &mut dyn Read) -> Result<(), SessionError> {
-        self.prepare()?;
+        self.prepare(&Alone)?;
         let Some((renderer, light)) = &mut self.ready else { return Ok(()) };
         let scene = self.scene.text.as_bytes();
         let mut length = [0; 8];

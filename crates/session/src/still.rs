@@ -72,6 +72,7 @@ pub(crate) fn expose(scene: &Scene) -> Result<Rendering, SessionError> {
         noise: None,
         estimators: Vec::new(),
         warnings: Vec::new(),
+        ledger: None,
     })
 }
 

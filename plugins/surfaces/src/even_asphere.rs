@@ -7,16 +7,17 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{Faults, LengthOrInfinity, Params};
 use spectra_core::registry::Context;
-use spectra_core::surface::{Hit, Kernel, KernelShape, Ray, Real, Surface, Travel, nearest_crossing};
+use spectra_core::surface::{Hit, Kernel, KernelShape, Near, Ray, Real, Surface, Travel, nearest_crossing};
 
 /// z = conic sag + a2 r^2 + a4 r^4 + ..., with up to `TERMS` coefficients: the sizes are compiled apart, so that the
 /// polynomial is straight code.
 ///
 /// In a lens file: `{kind: even-asphere, radius: 12.3, conic: -0.8, coefficients: [0, 1.2e-5, -3e-8], glass: SCHOTT/N-BK7}`.
 ///
-/// With u = z - polynomial(r^2) the surface is c (r^2 + (1 + k) u^2) - 2 u = 0: no square root, so steps of Newton's
-/// method cost one division each. They start where the ray meets a conic that fits at the vertex. Rays for which four
-/// steps do not plainly lead home go to [`nearest_crossing`].
+/// With u = z - polynomial(r^2) the surface is c (r^2 + (1 + k) u^2) - 2 u = 0, without a square root. Steps start where the ray meets
+/// a conic that fits at the vertex. The first two are those of Ostrowski's method, of fourth order for one slope and two heights (A. M.
+/// Ostrowski, Solution of Equations and Systems of Equations, 1966, chapter 11); Newton's follow, of which mostly one is enough, and
+/// the last one leaves the normal behind. Rays that such steps do not plainly lead home go to [`nearest_crossing`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EvenAsphere<const TERMS: usize> {
     section: ConicSection,
@@ -24,6 +25,8 @@ pub struct EvenAsphere<const TERMS: usize> {
     start: ConicSection,
     /// a2, a4, ...
     coefficients: [f64; TERMS],
+    /// a2, 2 a4, 3 a6, ...: of the derivative by the square of the radius.
+    slopes: [f64; TERMS],
 }
 
 /// Sizes of [`EvenAsphere`] that are compiled.
@@ -43,51 +46,39 @@ impl<const TERMS: usize> EvenAsphere<TERMS> {
         let (c, whole) = (section.curvature_per_mm, section.curvature_per_mm + 2.0 * all[0]);
         let ratio = c / whole;
         let one_plus_conic = if ratio > 0.0 { section.one_plus_conic * ratio * ratio * ratio.min(1.0) } else { 0.0 };
-        Self { section, start: ConicSection { curvature_per_mm: whole, one_plus_conic }, coefficients: all }
+        Self {
+            section,
+            start: ConicSection { curvature_per_mm: whole, one_plus_conic },
+            coefficients: all,
+            slopes: std::array::from_fn(|i| (i + 1) as f64 * all[i]),
+        }
     }
 
-    /// The polynomial at a square of the radius, and its derivative by that. Terms of even and of odd place are summed
-    /// apart, by the fourth power of the radius: two short chains of operations instead of a long one.
+    /// The polynomial at a square of the radius, and its derivative by that.
     #[inline(always)]
     fn polynomial<R: Real>(&self, radius2: R) -> (R, R) {
-        let (even, odd, even_slope, odd_slope) = self.halves(radius2 * radius2);
-        let value = even + radius2 * odd;
-        let slope = odd + (radius2 + radius2) * (even_slope + radius2 * odd_slope);
-        (radius2 * value, value + radius2 * slope)
+        (radius2 * sum(&self.coefficients, radius2), sum(&self.slopes, radius2))
     }
 
-    /// a2 + a6 x + ..., a4 + a8 x + ..., and their derivatives.
+    /// Half the height over the surface times the length of the gradient (zero on the surface), from the square of the radius and from u;
+    /// and the z component of the conic part's normal, which is negative on the wrong sheet.
     #[inline(always)]
-    fn halves<R: Real>(&self, x: R) -> (R, R, R, R) {
-        const { assert!(TERMS.is_multiple_of(2) && TERMS >= 2) };
-        let a = &self.coefficients;
-        let zero = R::constant(0.0);
-        let (mut even, mut even_slope) = (R::constant(a[TERMS - 2]), zero);
-        let (mut odd, mut odd_slope) = (R::constant(a[TERMS - 1]), zero);
-        for i in (0..TERMS / 2 - 1).rev() {
-            even_slope = even_slope * x + even;
-            odd_slope = odd_slope * x + odd;
-            even = even * x + R::constant(a[2 * i]);
-            odd = odd * x + R::constant(a[2 * i + 1]);
-        }
-        (even, odd, even_slope, odd_slope)
-    }
-
-    /// At a distance along a ray: height over the surface (zero on it), its derivative along the ray (direction .
-    /// normal), and the z component of the conic part's normal, which is negative on the wrong sheet.
-    #[inline(always)]
-    fn height<R: Real>(&self, [x, y, z]: [R; 3], [l, m, n]: [R; 3], t: R) -> (R, R, R) {
+    fn height<R: Real>(&self, radius2: R, u: R) -> (R, R) {
         let c = R::constant(self.section.curvature_per_mm);
         let one = R::constant(1.0);
+        let sheet = one - R::constant(self.section.curvature_per_mm * self.section.one_plus_conic) * u;
+        (R::constant(0.5) * (u * (one + sheet) - c * radius2), sheet)
+    }
+
+    /// At a distance along a ray: the height, its derivative along the ray (direction . normal), and what makes the normal.
+    #[inline(always)]
+    fn height_and_slope<R: Real>(&self, [x, y, z]: [R; 3], [l, m, n]: [R; 3], t: R) -> (R, R, [R; 2]) {
         let (x, y, z) = (x + t * l, y + t * m, z + t * n);
         let radius2 = x * x + y * y;
-        let outward = x * l + y * m;
         let (p, dp) = self.polynomial(radius2);
-        let u = z - p;
-        let sheet = one - c * (R::constant(self.section.one_plus_conic) * u);
-        let value = R::constant(0.5) * (u * (one + sheet) - c * radius2);
-        let slope = sheet * (n - (dp + dp) * outward) - c * outward;
-        (value, slope, sheet)
+        let (value, sheet) = self.height(radius2, z - p);
+        let across = R::constant(self.section.curvature_per_mm) + (dp + dp) * sheet;
+        (value, sheet * n - across * (x * l + y * m), [across, sheet])
     }
 
     /// Sag, and its derivative by the square of the radius.
@@ -98,12 +89,31 @@ impl<const TERMS: usize> EvenAsphere<TERMS> {
     }
 }
 
+/// a0 + a1 x + a2 x^2 + ...: terms of even and of odd place are summed apart, by the square of x, as two short chains of operations
+/// instead of a long one.
+#[inline(always)]
+fn sum<R: Real, const TERMS: usize>(a: &[f64; TERMS], x: R) -> R {
+    const { assert!(TERMS.is_multiple_of(2) && TERMS >= 2) };
+    let x2 = x * x;
+    let (mut even, mut odd) = (R::constant(a[TERMS - 2]), R::constant(a[TERMS - 1]));
+    for i in (0..TERMS / 2 - 1).rev() {
+        even = even * x2 + R::constant(a[2 * i]);
+        odd = odd * x2 + R::constant(a[2 * i + 1]);
+    }
+    even + x * odd
+}
+
 /// A step may be this part of the one before: see [`nearest_crossing`].
 const SHORTER: f64 = 0.4;
 /// Steps below this, mm, may be rounding.
 const NOISE_MM: f64 = 1e-11;
-/// The last step leaves about its size times its ratio to the one before, mm: at most this.
-const LEFT_MM: f64 = 1e-14;
+/// A ray has arrived with a step of at most this, mm, or so many times the rounding of its distance: then the normal is right, too.
+const ARRIVED_MM: f64 = 1e-13;
+const ROUNDINGS: f64 = 4.0 * f64::EPSILON;
+/// The second step is that of Ostrowski's method where the first one was longer than this, mm, and left at most this part of the height;
+/// else what it divides by may be rounding, or far from what it stands for. Then it goes by the slope of the first one.
+const PLAIN_MM: f64 = 1e-6;
+const PLAIN: f64 = 0.1;
 
 /// Not negative where a step is well below the size of the last one.
 #[inline(always)]
@@ -114,51 +124,63 @@ fn shorter<R: Real>(step: R, last: R) -> R {
 impl<const TERMS: usize> KernelShape for EvenAsphere<TERMS> {
     const UNIT_NORMAL: bool = false;
     const SEARCHES: bool = true;
+    const STEPS: bool = true;
 
-    /// Three steps of Newton's method, the third with one more behind it.
-    const ROUNDS: usize = 2;
-
-    /// The first guess.
     #[inline(always)]
     fn hit<R: Real, const FORWARD: bool>(&self, ray: Ray<R, FORWARD>) -> Hit<R> {
-        let start = Conic::of_section(self.start).hit(ray);
-        // `cosine` carries the size of the last step.
-        Hit { distance: start.distance, cosine: R::constant(f64::INFINITY), valid: R::constant(1.0) }
+        Hit { valid: R::constant(1.0), ..Conic::of_section(self.start).hit(ray) }
     }
 
+    /// A step of Newton's method; keeps it, and one over the slope.
     #[inline(always)]
-    fn refine<R: Real, const FORWARD: bool>(&self, ray: Ray<R, FORWARD>, hit: Hit<R>) -> Hit<R> {
-        let (value, slope, _) = self.height(ray.position, ray.direction, hit.distance);
-        let step = value / slope;
-        Hit { distance: hit.distance - step, cosine: step.abs(), valid: hit.valid.min(shorter(step, hit.cosine)) }
-    }
-
-    #[inline(always)]
-    fn finish<R: Real, const FORWARD: bool>(&self, ray: Ray<R, FORWARD>, hit: Hit<R>) -> Hit<R> {
-        let (p, d, t) = (ray.position, ray.direction, hit.distance);
-        let (value, slope, _) = self.height(p, d, t);
+    fn approach<R: Real, const FORWARD: bool>(&self, ray: Ray<R, FORWARD>, hit: Hit<R>) -> Near<R> {
+        let (value, slope, _) = self.height_and_slope(ray.position, ray.direction, hit.distance);
         let inverse = R::constant(1.0) / slope;
         let step = value * inverse;
-        let t = t - step;
-        // The last step takes the slope from the one before, which is right to the digits that it needs.
-        let (value, _, sheet) = self.height(p, d, t);
-        let last = value * inverse;
-        let t = t - last;
+        Near { distance: hit.distance - step, kept: [step, inverse], step: step.abs(), valid: hit.valid }
+    }
+
+    /// With the height of before, and the height here by the slope of before, h0 and h1: a step of h1 h0 / (h0 - 2 h1).
+    #[inline(always)]
+    fn correct<R: Real, const FORWARD: bool>(&self, ray: Ray<R, FORWARD>, near: Near<R>) -> Near<R> {
+        let ([x, y, z], [l, m, n], t) = (ray.position, ray.direction, near.distance);
+        let (x, y, z) = (x + t * l, y + t * m, z + t * n);
+        let radius2 = x * x + y * y;
+        let [before, inverse] = near.kept;
+        let here = self.height(radius2, z - radius2 * sum(&self.coefficients, radius2)).0 * inverse;
+        let plain = (R::constant(PLAIN) * near.step - here.abs()).min(near.step - R::constant(PLAIN_MM));
+        let step = here * plain.choose(before / (before - (here + here)), R::constant(1.0));
+        Near { distance: t - step, step: step.abs(), valid: near.valid.min(shorter(step, near.step)), ..near }
+    }
+
+    /// A step of Newton's method; keeps what makes the normal.
+    #[inline(always)]
+    fn settle<R: Real, const FORWARD: bool>(&self, ray: Ray<R, FORWARD>, near: Near<R>) -> Near<R> {
+        let (value, slope, kept) = self.height_and_slope(ray.position, ray.direction, near.distance);
+        let step = value / slope;
+        let rounding = R::constant(ARRIVED_MM) + R::constant(ROUNDINGS) * near.distance.abs();
         // NaN, once in, reaches the last step, and `min` passes it on from there.
-        let valid = (hit.valid.min(shorter(step, hit.cosine)))
-            .min(sheet)
-            .min(ray.along(slope))
-            .min(R::constant(LEFT_MM) * step.abs() + R::constant(NOISE_MM * NOISE_MM) - last * last);
-        Hit { distance: valid.choose(t, R::constant(0.0)), cosine: slope, valid }
+        let valid = near.valid.min(kept[1]).min(ray.along(slope)).min(shorter(step, near.step));
+        let left = (rounding - step.abs()).choose(R::constant(0.0), step.abs());
+        Near { distance: near.distance - step, kept, step: left, valid }
     }
 
     #[inline(always)]
-    fn normal<R: Real>(&self, [x, y, z]: [R; 3]) -> [R; 3] {
-        let c = R::constant(self.section.curvature_per_mm);
-        let (p, dp) = self.polynomial(x * x + y * y);
-        let sheet = R::constant(1.0) - c * (R::constant(self.section.one_plus_conic) * (z - p));
-        let across = c + (dp + dp) * sheet;
+    fn keep<R: Real>(&self, [x, y, z]: [R; 3]) -> [R; 2] {
+        let radius2 = x * x + y * y;
+        let (p, dp) = self.polynomial(radius2);
+        let (_, sheet) = self.height(radius2, z - p);
+        [R::constant(self.section.curvature_per_mm) + (dp + dp) * sheet, sheet]
+    }
+
+    #[inline(always)]
+    fn normal_kept<R: Real>(&self, [x, y, _]: [R; 3], [across, sheet]: [R; 2]) -> [R; 3] {
         [-(across * x), -(across * y), sheet]
+    }
+
+    #[inline(always)]
+    fn normal<R: Real>(&self, point: [R; 3]) -> [R; 3] {
+        self.normal_kept(point, self.keep(point))
     }
 
     fn search(&self, position: [f64; 3], direction: [f64; 3], travel: Travel) -> Option<f64> {

@@ -77,24 +77,56 @@ pub struct Hit<R> {
     pub valid: R,
 }
 
+/// How far a ray has come on its steps toward a surface.
+#[derive(Clone, Copy, Debug)]
+pub struct Near<R> {
+    /// Distance along the ray, mm.
+    pub distance: R,
+    /// What the shape keeps for the next step.
+    pub kept: [R; 2],
+    /// Size of the last step, mm; 0 once the ray has arrived.
+    pub step: R,
+    /// As [`Hit::valid`].
+    pub valid: R,
+}
+
+/// Most times that [`KernelShape::settle`] runs; a ray that has not arrived then is searched for.
+const MOST_SETTLING: usize = 4;
+
 /// A surface in branch-free code. Mark its methods `#[inline(always)]`.
 pub trait KernelShape: Send + Sync + std::fmt::Debug {
     /// Where the ray hits the surface; for a ray along the axis, the vertex.
     fn hit<R: Real, const FORWARD: bool>(&self, ray: Ray<R, FORWARD>) -> Hit<R>;
-    /// How often [`KernelShape::refine`] runs over the batch between `hit` and `finish`, for a shape that is intersected by
-    /// iteration and whose `hit` is a first guess. Each step is its own loop over the batch: within one loop the steps of a
-    /// ray would wait for each other, while separate loops keep several rays in flight. Such a shape has no `UNIT_NORMAL`, and
-    /// may keep whatever it needs between steps in `cosine`.
-    const ROUNDS: usize = 0;
-    /// A better hit than the one before.
+    /// Whether rays come to the surface by steps, from the distance that `hit` guesses: then `approach`, `correct` and `settle`
+    /// run over the batch one after the other, the last of them again while a ray has not arrived. Each step is its own loop over the
+    /// batch: within one loop the steps of a ray would wait for each other, while separate loops keep several rays in flight. Such a
+    /// shape has no `UNIT_NORMAL`.
+    const STEPS: bool = false;
+    /// The first step.
     #[inline(always)]
-    fn refine<R: Real, const FORWARD: bool>(&self, _ray: Ray<R, FORWARD>, hit: Hit<R>) -> Hit<R> {
-        hit
+    fn approach<R: Real, const FORWARD: bool>(&self, _ray: Ray<R, FORWARD>, hit: Hit<R>) -> Near<R> {
+        Near { distance: hit.distance, kept: [hit.cosine; 2], step: R::constant(0.0), valid: hit.valid }
     }
-    /// The final hit.
+    /// The second step.
     #[inline(always)]
-    fn finish<R: Real, const FORWARD: bool>(&self, _ray: Ray<R, FORWARD>, hit: Hit<R>) -> Hit<R> {
-        hit
+    fn correct<R: Real, const FORWARD: bool>(&self, _ray: Ray<R, FORWARD>, near: Near<R>) -> Near<R> {
+        near
+    }
+    /// The last step, which says by [`Near::step`] whether there has to be another one, and keeps what [`KernelShape::normal_kept`]
+    /// asks for.
+    #[inline(always)]
+    fn settle<R: Real, const FORWARD: bool>(&self, _ray: Ray<R, FORWARD>, near: Near<R>) -> Near<R> {
+        near
+    }
+    /// What [`KernelShape::settle`] keeps, for a point of the surface.
+    #[inline(always)]
+    fn keep<R: Real>(&self, _point: [R; 3]) -> [R; 2] {
+        [R::constant(0.0); 2]
+    }
+    /// The normal from what was kept.
+    #[inline(always)]
+    fn normal_kept<R: Real>(&self, point: [R; 3], _kept: [R; 2]) -> [R; 3] {
+        self.normal(point)
     }
     /// Normal at a point of the surface, toward +z at the vertex; of unit length if [`KernelShape::UNIT_NORMAL`] says so.
     fn normal<R: Real>(&self, point: [R; 3]) -> [R; 3];
@@ -200,6 +232,18 @@ impl<S: KernelShape, const FORWARD: bool> Vectorized for Intersect<'_, S, FORWAR
     #[inline(always)]
     fn run(self) -> bool {
         let (c, s) = self.rays.columns_and_scratch_mut();
+        if S::STEPS {
+            return step_loops::<S, FORWARD>(
+                self.shape,
+                self.shift_mm,
+                [c.l, c.m, c.n],
+                [s.radius2, s.cosine_then_margin, s.kept, s.step, s.valid],
+                c.state,
+                c.x,
+                c.y,
+                c.z,
+            );
+        }
         intersect_loop::<S, FORWARD>(
             self.shape,
             self.shift_mm,
@@ -243,8 +287,12 @@ fn search<S: KernelShape>(shape: &S, rays: &mut RayBatch, travel: Travel) {
         if c.state[i] == ALIVE && ends(s.valid[i]) {
             let (p, d) = ([c.x[i], c.y[i], c.z[i]], [c.l[i], c.m[i], c.n[i]]);
             if let Some(t) = shape.search(p, d, travel) {
-                (c.x[i], c.y[i], c.z[i]) = (p[0] + t * d[0], p[1] + t * d[1], p[2] + t * d[2]);
+                let q = [p[0] + t * d[0], p[1] + t * d[1], p[2] + t * d[2]];
+                (c.x[i], c.y[i], c.z[i]) = q.into();
                 s.valid[i] = 0.0;
+                if S::STEPS {
+                    [s.cosine_then_margin[i], s.kept[i]] = shape.keep(q);
+                }
             }
         }
     }
@@ -269,9 +317,6 @@ fn intersect_loop<S: KernelShape, const FORWARD: bool>(
     // Stating the equal lengths once removes the bounds checks from the loop.
     let (y, z, cosine, valid) = (&mut y[..len], &mut z[..len], &mut cosine[..len], &mut valid[..len]);
     let (l, m, n, radius2, state) = (&l[..len], &m[..len], &n[..len], &mut radius2[..len], &state[..len]);
-    if S::ROUNDS > 0 {
-        return iterate::<S, FORWARD>(shape, shift, [l, m, n], radius2, state, x, y, z, cosine, valid);
-    }
     let mut unsure = false;
     for i in 0..len {
         let p = [x[i], y[i], z[i] - shift];
@@ -288,52 +333,112 @@ fn intersect_loop<S: KernelShape, const FORWARD: bool>(
     unsure
 }
 
-/// The same for a shape intersected by iteration. Between the steps the column of x^2 + y^2, which bending rewrites, holds the
-/// distance.
+/// The same for a shape that rays come to by steps. Between them the column of x^2 + y^2, which bending rewrites, holds the
+/// distance. What becomes of a ray does not depend on its neighbors: once it has arrived it stays where it is.
 #[inline(always)]
-fn iterate<S: KernelShape, const FORWARD: bool>(
+fn step_loops<S: KernelShape, const FORWARD: bool>(
     shape: &S,
     shift: f64,
     [l, m, n]: [&[f64]; 3],
-    radius2_then_distance: &mut [f64],
+    [distance, first, second, step, valid]: [&mut [f64]; 5],
     state: &[u64],
     x: &mut [f64],
     y: &mut [f64],
     z: &mut [f64],
-    cosine: &mut [f64],
-    valid: &mut [f64],
 ) -> bool {
     let len = x.len();
-    let (y, z, cosine, valid) = (&mut y[..len], &mut z[..len], &mut cosine[..len], &mut valid[..len]);
-    let (l, m, n, state) = (&l[..len], &m[..len], &n[..len], &state[..len]);
-    let distance = &mut radius2_then_distance[..len];
+    guess_loop::<S, FORWARD>(shape, shift, [x, y, l, m, n], z, distance, first, valid);
+    let (x, y, z) = (&mut x[..len], &mut y[..len], &mut z[..len]);
+    let place: [&[f64]; 6] = [x, y, z, l, m, n];
+    near_loop::<S, FORWARD, APPROACH>(shape, place, distance, first, second, step, valid);
+    near_loop::<S, FORWARD, CORRECT>(shape, place, distance, first, second, step, valid);
+    near_loop::<S, FORWARD, SETTLE>(shape, place, distance, first, second, step, valid);
+    for _ in 1..MOST_SETTLING {
+        let under_way = |i: usize| (step[i] > 0.0) & (valid[i] >= 0.0) & (state[i] == ALIVE);
+        if !(0..len).any(under_way) {
+            break;
+        }
+        near_loop::<S, FORWARD, SETTLE_ON>(shape, place, distance, first, second, step, valid);
+    }
+    move_loop(x, y, z, [l, m, n], [distance, step], valid, state)
+}
+
+#[inline(always)]
+fn guess_loop<S: KernelShape, const FORWARD: bool>(
+    shape: &S,
+    shift: f64,
+    [x, y, l, m, n]: [&[f64]; 5],
+    z: &mut [f64],
+    radius2_then_distance: &mut [f64],
+    cosine: &mut [f64],
+    valid: &mut [f64],
+) {
+    let len = x.len();
+    let (y, z, l, m, n) = (&y[..len], &mut z[..len], &l[..len], &m[..len], &n[..len]);
+    let (distance, cosine, valid) = (&mut radius2_then_distance[..len], &mut cosine[..len], &mut valid[..len]);
     for i in 0..len {
         z[i] -= shift;
         let (position, direction) = ([x[i], y[i], z[i]], [l[i], m[i], n[i]]);
         let hit = shape.hit(Ray::<f64, FORWARD> { position, direction, radius2: distance[i] });
         (distance[i], cosine[i], valid[i]) = (hit.distance, hit.cosine, hit.valid);
     }
-    for _ in 0..S::ROUNDS {
-        for i in 0..len {
-            let (position, direction) = ([x[i], y[i], z[i]], [l[i], m[i], n[i]]);
-            let radius2 = position[0] * position[0] + position[1] * position[1];
-            let hit = Hit { distance: distance[i], cosine: cosine[i], valid: valid[i] };
-            let hit = shape.refine(Ray::<f64, FORWARD> { position, direction, radius2 }, hit);
-            (distance[i], cosine[i], valid[i]) = (hit.distance, hit.cosine, hit.valid);
-        }
+}
+
+const APPROACH: u8 = 0;
+const CORRECT: u8 = 1;
+const SETTLE: u8 = 2;
+const SETTLE_ON: u8 = 3;
+
+/// One step of all rays; [`SETTLE_ON`] of those that have not arrived.
+#[inline(always)]
+fn near_loop<S: KernelShape, const FORWARD: bool, const STEP: u8>(
+    shape: &S,
+    [x, y, z, l, m, n]: [&[f64]; 6],
+    distance: &mut [f64],
+    first: &mut [f64],
+    second: &mut [f64],
+    step: &mut [f64],
+    valid: &mut [f64],
+) {
+    let len = x.len();
+    let (y, z, l, m, n) = (&y[..len], &z[..len], &l[..len], &m[..len], &n[..len]);
+    let (distance, first, second) = (&mut distance[..len], &mut first[..len], &mut second[..len]);
+    let (step, valid) = (&mut step[..len], &mut valid[..len]);
+    for i in 0..len {
+        let (position, direction) = ([x[i], y[i], z[i]], [l[i], m[i], n[i]]);
+        let radius2 = position[0] * position[0] + position[1] * position[1];
+        let ray = Ray::<f64, FORWARD> { position, direction, radius2 };
+        let near = Near { distance: distance[i], kept: [first[i], second[i]], step: step[i], valid: valid[i] };
+        let next = match STEP {
+            APPROACH => shape.approach(ray, Hit { distance: distance[i], cosine: first[i], valid: valid[i] }),
+            CORRECT => shape.correct(ray, near),
+            _ => shape.settle(ray, near),
+        };
+        let near = if STEP != SETTLE_ON || near.step > 0.0 { next } else { near };
+        (distance[i], [first[i], second[i]], step[i], valid[i]) = (near.distance, near.kept, near.step, near.valid);
     }
+}
+
+/// Moves the rays that have arrived; returns whether any living one has not.
+#[inline(always)]
+fn move_loop(
+    x: &mut [f64],
+    y: &mut [f64],
+    z: &mut [f64],
+    [l, m, n]: [&[f64]; 3],
+    [distance, step]: [&[f64]; 2],
+    valid: &mut [f64],
+    state: &[u64],
+) -> bool {
+    let len = x.len();
+    let (y, z, l, m, n) = (&mut y[..len], &mut z[..len], &l[..len], &m[..len], &n[..len]);
+    let (distance, step, valid, state) = (&distance[..len], &step[..len], &mut valid[..len], &state[..len]);
     let mut unsure = false;
     for i in 0..len {
-        let (p, d) = ([x[i], y[i], z[i]], [l[i], m[i], n[i]]);
-        let radius2 = p[0] * p[0] + p[1] * p[1];
-        let hit = Hit { distance: distance[i], cosine: cosine[i], valid: valid[i] };
-        let hit = shape.finish(Ray::<f64, FORWARD> { position: p, direction: d, radius2 }, hit);
-        let t = hit.distance;
-        (x[i], y[i], z[i]) = (p[0] + t * d[0], p[1] + t * d[1], p[2] + t * d[2]);
-        valid[i] = hit.valid;
-        if S::SEARCHES {
-            unsure |= ends(hit.valid) & (state[i] == ALIVE);
-        }
+        valid[i] = if step[i] > 0.0 { -1.0 } else { valid[i] };
+        let t = if valid[i] >= 0.0 { distance[i] } else { 0.0 };
+        (x[i], y[i], z[i]) = (x[i] + t * l[i], y[i] + t * m[i], z[i] + t * n[i]);
+        unsure |= ends(valid[i]) & (state[i] == ALIVE);
     }
     unsure
 }
@@ -349,7 +454,7 @@ fn bend_all<S: KernelShape, const ACTION: u8, const FORWARD: bool>(
     bend_loop::<S, ACTION, FORWARD>(
         shape,
         at.clip_radius2_mm2,
-        [c.x, c.y, c.z, s.valid, at.before.n, at.after.inverse],
+        [c.x, c.y, c.z, s.valid, s.kept, at.before.n, at.after.inverse],
         c.state,
         c.l,
         c.m,
@@ -363,7 +468,7 @@ fn bend_all<S: KernelShape, const ACTION: u8, const FORWARD: bool>(
 fn bend_loop<S: KernelShape, const ACTION: u8, const FORWARD: bool>(
     shape: &S,
     clip2: f64,
-    [x, y, z, valid, before, inverse_after]: [&[f64]; 6],
+    [x, y, z, valid, kept, before, inverse_after]: [&[f64]; 7],
     state: &[u64],
     l: &mut [f64],
     m: &mut [f64],
@@ -373,7 +478,7 @@ fn bend_loop<S: KernelShape, const ACTION: u8, const FORWARD: bool>(
 ) -> bool {
     let len = x.len();
     let (y, z, valid, state) = (&y[..len], &z[..len], &valid[..len], &state[..len]);
-    let (before, inverse_after) = (&before[..len], &inverse_after[..len]);
+    let (kept, before, inverse_after) = (&kept[..len], &before[..len], &inverse_after[..len]);
     let (l, m, n) = (&mut l[..len], &mut m[..len], &mut n[..len]);
     let (radius2, cosine_then_margin) = (&mut radius2[..len], &mut cosine_then_margin[..len]);
     let mut any = false;
@@ -385,7 +490,7 @@ fn bend_loop<S: KernelShape, const ACTION: u8, const FORWARD: bool>(
         // NaN where the ray missed: `min` passes over it to the validity.
         let mut margin = clip2 - r2;
         if ACTION != PASS && !S::UNIT_NORMAL {
-            let g = shape.normal(q);
+            let g = if S::STEPS { shape.normal_kept(q, [cosine_then_margin[i], kept[i]]) } else { shape.normal(q) };
             let length2 = g[0] * g[0] + g[1] * g[1] + g[2] * g[2];
             let along = d[0] * g[0] + d[1] * g[1] + d[2] * g[2];
             let (mut mu, mut push) = (1.0, -2.0 * along / length2);

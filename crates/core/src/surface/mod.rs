@@ -8,13 +8,14 @@
 //! Both clip at the clear semi-diameter, refract or reflect, and count the rays lost.
 
 mod bend;
+mod by_batch;
 mod kernel;
 mod per_ray;
 mod plane;
 mod sag;
 mod search;
 
-pub use kernel::{Hit, Kernel, KernelShape, Ray, Real};
+pub use kernel::{Hit, Kernel, KernelShape, Near, Ray, Real};
 pub use per_ray::{Bending, Intersection, PerRay, ScalarShape};
 pub use plane::Plane;
 pub use sag::{FromSag, SagShape};

@@ -76,6 +76,12 @@ pub trait ScalarShape: Send + Sync + std::fmt::Debug {
     fn draws(&self) -> bool {
         false
     }
+    /// As [`Surface::interact`], for shapes that can do more for a batch than one ray after the other; `None`, the default, where
+    /// there is nothing better.
+    #[doc(hidden)]
+    fn by_batch(&self, _rays: &mut RayBatch, _interface: &Interface<'_>, _isa: Isa) -> Option<usize> {
+        None
+    }
 }
 
 /// Turns a [`ScalarShape`] into a [`Surface`].
@@ -101,7 +107,10 @@ impl<S: ScalarShape> Surface for PerRay<S> {
     fn draws(&self) -> bool {
         self.0.draws()
     }
-    fn interact(&self, rays: &mut RayBatch, interface: &Interface<'_>, _isa: Isa) -> usize {
+    fn interact(&self, rays: &mut RayBatch, interface: &Interface<'_>, isa: Isa) -> usize {
+        if let Some(lost) = self.0.by_batch(rays, interface, isa) {
+            return lost;
+        }
         let c = rays.columns_mut();
         let mut lost = 0;
         let clip2 = interface.clip_radius2_mm2;
@@ -136,7 +145,7 @@ impl<S: ScalarShape> Surface for PerRay<S> {
 
 /// Whether a ray passes beside the cylinder around the axis that holds the clear part of a surface.
 #[inline]
-fn passes_beside(p: DVec3, d: DVec3, clip_radius2_mm2: f64, [low, high]: [f64; 2]) -> bool {
+pub(super) fn passes_beside(p: DVec3, d: DVec3, clip_radius2_mm2: f64, [low, high]: [f64; 2]) -> bool {
     /// What rounding may take from the bounds.
     const SLACK: f64 = 1e-9;
     if d.z == 0.0 {

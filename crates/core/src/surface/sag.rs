@@ -1,7 +1,10 @@
 //! The least that makes a surface: its sag.
 
+use super::per_ray::passes_beside;
 use super::search::nearest_crossing;
-use super::{Intersection, ScalarShape, Travel};
+use super::{Interface, Intersection, ScalarShape, Travel, by_batch};
+use crate::RayBatch;
+use crate::isa::Isa;
 use glam::DVec3;
 
 /// A surface given by its sag z(x, y).
@@ -45,7 +48,8 @@ pub trait SagShape: Send + Sync + std::fmt::Debug {
     }
 }
 
-/// Turns a [`SagShape`] into a [`ScalarShape`]: a ray hits it where it crosses the sag in its direction of travel.
+/// Turns a [`SagShape`] into a [`ScalarShape`]: a ray hits it where it crosses the sag in its direction of travel. Under
+/// [`PerRay`](super::PerRay) whole batches step toward it side by side.
 #[derive(Clone, Debug)]
 pub struct FromSag<S>(pub S);
 
@@ -76,5 +80,11 @@ impl<S: SagShape> ScalarShape for FromSag<S> {
     }
     fn extent_mm(&self, radius_mm: f64) -> Option<[f64; 2]> {
         self.0.extent_mm(radius_mm)
+    }
+    fn by_batch(&self, rays: &mut RayBatch, interface: &Interface<'_>, isa: Isa) -> Option<usize> {
+        let clip2 = interface.clip_radius2_mm2;
+        let extent = if clip2.is_finite() { self.0.extent_mm(clip2.sqrt()) } else { None };
+        let beside = extent.map(|extent| move |p: DVec3, d: DVec3| passes_beside(p, d, clip2, extent));
+        Some(by_batch::interact(self, rays, interface, isa, beside))
     }
 }

@@ -8,11 +8,11 @@ use glam::DVec3;
 const NEWTON_STEPS: usize = 12;
 /// A step counts as converging if it is at most this fraction of the one before. Below one half, no other crossing can lie between
 /// the start and the limit of the steps (the condition of Kantorovich's theorem on Newton's method).
-const SHORTER: f64 = 0.4;
+pub(super) const SHORTER: f64 = 0.4;
 /// Steps below this, mm, may be rounding, or the noise of slopes taken by differences.
-const NOISE_MM: f64 = 1e-8;
+pub(super) const NOISE_MM: f64 = 1e-8;
 /// Once a step is smaller than this, mm, the ray has arrived.
-const ARRIVED_MM: f64 = 1e-13;
+pub(super) const ARRIVED_MM: f64 = 1e-13;
 
 /// First step of the search, as a fraction of the distance between ray and vertex.
 const FIRST_STEP: f64 = 0.01;

@@ -5,6 +5,7 @@ use super::search::{Sphere, Task};
 use super::table::{AimPattern, Depth, Table, Zone};
 use crate::{Lens, Tracer, Travel};
 use glam::DVec3;
+use spectra_core::workers::{Alone, Workers};
 use spectra_core::{Isa, RayBatch};
 
 /// Where on its way into the lens light passes, for each point in front of it: the real entrance pupil,
@@ -29,9 +30,21 @@ impl FrontPupil {
     /// `min_nm` to `max_nm`. `None` where no surface states a size.
     #[must_use]
     pub fn search(lens: &Lens, tracer: &Tracer, points: &[DVec3], min_nm: f64, max_nm: f64) -> Option<Self> {
+        Self::search_on(lens, tracer, points, [min_nm, max_nm], &Alone)
+    }
+
+    /// The same, shared out over workers, with the same bits on any; light of a band, nm.
+    #[must_use]
+    pub fn search_on(
+        lens: &Lens,
+        tracer: &Tracer,
+        points: &[DVec3],
+        band_nm: [f64; 2],
+        workers: &dyn Workers,
+    ) -> Option<Self> {
         let bound = Sphere::around(lens, Travel::Forward)?;
         let size = lens.image_z_mm().abs() + bound.radius_mm;
-        let pupil = lens.first_order(0.5 * (min_nm + max_nm)).entrance_pupil_z_mm;
+        let pupil = lens.first_order(0.5 * (band_nm[0] + band_nm[1])).entrance_pupil_z_mm;
         let eye_z_mm = pupil.filter(|z| z.abs() < 2.0 * size).unwrap_or(bound.center.z);
         let reach = (eye_z_mm - bound.center.z).abs() + bound.radius_mm;
         let eye = DVec3::new(0.0, 0.0, eye_z_mm);
@@ -46,7 +59,8 @@ impl FrontPupil {
             depth: Depth { from: 0.0, to, zones },
             depth_nodes: (0..=zones).map(|k| to * k as f64 / zones as f64).collect(),
             most: 2.0,
-            band_nm: [min_nm, max_nm],
+            band_nm,
+            workers,
         };
         Some(Self { table: task.run()? })
     }

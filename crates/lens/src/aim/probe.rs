@@ -77,31 +77,40 @@ impl Bounds {
     }
 }
 
-/// One lens that probes are sent through.
+/// A lens that probes are sent through.
 struct Stage<T> {
     tracer: T,
-    work: Work,
     /// Up to a surface that scatters: what it lets pass may come from anywhere behind it.
     route: Route,
 }
 
 impl<T: Borrow<Tracer>> Stage<T> {
     fn new(tracer: T, travel: Travel) -> Self {
-        let lens: &Tracer = tracer.borrow();
-        Self { work: lens.work_in_place(BATCH), route: lens.certain(travel), tracer }
+        Self { route: tracer.borrow().certain(travel), tracer }
     }
 
-    fn trace(&mut self, rays: &mut RayBatch) {
-        self.tracer.borrow().follow(&self.route, rays, &mut self.work);
+    fn work(&self) -> Work {
+        self.tracer.borrow().work_unweighed(BATCH)
+    }
+
+    fn trace(&self, rays: &mut RayBatch, work: &mut Work) {
+        self.tracer.borrow().follow(&self.route, rays, work);
     }
 }
 
 /// The lens, and the same lens with its small openings opened: step by step, so that each step passes
 /// all that the next one does. However small the pupil is, it is found by closing in on it.
-pub(super) struct Prober<'a> {
+pub(super) struct Stages<'a> {
     wavelengths_nm: [f64; 3],
     opened: Vec<Stage<Tracer>>,
     whole: Stage<&'a Tracer>,
+}
+
+/// What one thread needs to send probes through them.
+pub(super) struct Prober<'a> {
+    stages: &'a Stages<'a>,
+    /// Of each of those opened, then of the whole.
+    work: Vec<Work>,
     rays: RayBatch,
 }
 
@@ -117,7 +126,7 @@ pub(super) const EDGE: usize = 96;
 const ROUGH: usize = 8;
 const HALVINGS: usize = 8;
 
-impl<'a> Prober<'a> {
+impl<'a> Stages<'a> {
     /// `None` where a medium has no index in the middle of the band.
     pub fn new(lens: &Lens, tracer: &'a Tracer, travel: Travel, min_nm: f64, max_nm: f64) -> Option<Self> {
         let middle_nm = 0.5 * (min_nm + max_nm);
@@ -138,31 +147,33 @@ impl<'a> Prober<'a> {
             opened.push(Stage::new(tracer, travel));
             opening *= STEP;
         }
-        Some(Self {
-            wavelengths_nm: [min_nm, middle_nm, max_nm],
-            opened,
-            whole: Stage::new(tracer, travel),
-            rays: RayBatch::new(BATCH),
-        })
+        Some(Self { wavelengths_nm: [min_nm, middle_nm, max_nm], opened, whole: Stage::new(tracer, travel) })
     }
 
     /// For probes of the lens itself, not for a search.
     pub fn of(tracer: &'a Tracer, travel: Travel) -> Self {
-        let rays = RayBatch::new(BATCH);
-        Self { wavelengths_nm: [0.0; 3], opened: Vec::new(), whole: Stage::new(tracer, travel), rays }
+        Self { wavelengths_nm: [0.0; 3], opened: Vec::new(), whole: Stage::new(tracer, travel) }
     }
 
+    /// For one thread.
+    pub fn prober(&'a self) -> Prober<'a> {
+        let work = self.opened.iter().map(Stage::work).chain([self.whole.work()]).collect();
+        Prober { stages: self, work, rays: RayBatch::new(BATCH) }
+    }
+}
+
+impl Prober<'_> {
     /// What passes from `point` through `start` on `plane`, at the ends and the middle of the band: its
     /// places on the plane, and the size of the cells of the grid that found them.
     pub fn search(&mut self, point: DVec3, plane: &Plane, start: Bounds, grid: usize) -> Option<Found> {
         let mut bounds = start;
-        for level in 0..=self.opened.len() {
-            let last = level == self.opened.len();
+        for level in 0..=self.stages.opened.len() {
+            let last = level == self.stages.opened.len();
             let mut n = COARSE;
             let found = loop {
                 let mut found = Vec::new();
-                for wavelength_nm in self.wavelengths_nm {
-                    if last || wavelength_nm == self.wavelengths_nm[1] {
+                for wavelength_nm in self.stages.wavelengths_nm {
+                    if last || wavelength_nm == self.stages.wavelengths_nm[1] {
                         self.grid(level, point, plane, &bounds, n, wavelength_nm, &mut found);
                     }
                 }
@@ -178,7 +189,7 @@ impl<'a> Prober<'a> {
             if last {
                 // Once more, on a grid that fits.
                 let mut places = Vec::new();
-                for wavelength_nm in self.wavelengths_nm {
+                for wavelength_nm in self.stages.wavelengths_nm {
                     self.grid(level, point, plane, &bounds, grid, wavelength_nm, &mut places);
                 }
                 places.extend(found);
@@ -288,7 +299,7 @@ impl<'a> Prober<'a> {
 
     /// Which of these probes (point, target, wavelength), at most a batch, pass the lens itself.
     pub fn pass(&mut self, probes: impl ExactSizeIterator<Item = (DVec3, DVec3, f64)>) -> &[u64] {
-        let level = self.opened.len();
+        let level = self.stages.opened.len();
         self.trace(level, probes);
         self.rays.states()
     }
@@ -307,9 +318,10 @@ impl<'a> Prober<'a> {
             (c.l[i], c.m[i], c.n[i]) = direction.into();
             c.wavelength_nm[i] = wavelength_nm;
         }
-        match self.opened.get_mut(level) {
-            Some(stage) => stage.trace(&mut self.rays),
-            None => self.whole.trace(&mut self.rays),
+        let (rays, work) = (&mut self.rays, &mut self.work[level]);
+        match self.stages.opened.get(level) {
+            Some(stage) => stage.trace(rays, work),
+            None => self.stages.whole.trace(rays, work),
         }
     }
 }

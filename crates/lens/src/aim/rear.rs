@@ -6,6 +6,7 @@ use super::search::{Sphere, Task};
 use super::table::{AimPattern, Depth, Table, measure};
 use crate::{Lens, Tracer, Travel};
 use glam::DVec3;
+use spectra_core::workers::{Alone, Workers};
 use spectra_core::{Isa, RayBatch};
 
 /// Where on its way out of the lens light comes from, for each point of the imager: the real exit pupil,
@@ -32,6 +33,18 @@ impl RearPupil {
     /// where no surface states a size, or no point is given.
     #[must_use]
     pub fn search(lens: &Lens, tracer: &Tracer, points: &[DVec3], min_nm: f64, max_nm: f64) -> Option<Self> {
+        Self::search_on(lens, tracer, points, [min_nm, max_nm], &Alone)
+    }
+
+    /// The same, shared out over workers, with the same bits on any; light of a band, nm.
+    #[must_use]
+    pub fn search_on(
+        lens: &Lens,
+        tracer: &Tracer,
+        points: &[DVec3],
+        band_nm: [f64; 2],
+        workers: &dyn Workers,
+    ) -> Option<Self> {
         let bound = Sphere::around(lens, Travel::Backward)?;
         let vertex = lens.image_pose.local_point(lens.elements.last()?.pose.origin_mm);
         let nearest = points.iter().map(|p| p.z).reduce(f64::min)?;
@@ -56,7 +69,8 @@ impl RearPupil {
             depth: Depth { from, to, zones },
             depth_nodes: if flat { vec![middle] } else { (0..=zones).map(node).collect() },
             most: most.min(0.999),
-            band_nm: [min_nm, max_nm],
+            band_nm,
+            workers,
         };
         Some(Self { table: task.run()? })
     }

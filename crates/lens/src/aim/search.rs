@@ -2,7 +2,7 @@
 
 use super::nodes::{Geometry, Node};
 use super::outline::{Colors, Outlines, RING, STRIDE, TURN_STEPS};
-use super::probe::{Bounds, Plane, Prober};
+use super::probe::{Bounds, Plane, Prober, Stages};
 use super::reach::{DIRECTIONS, Reach};
 use super::shape::Shape;
 use super::stopped::{self, Seen, Stopped};
@@ -13,6 +13,25 @@ use spectra_core::Isa;
 use spectra_core::loss::ALIVE;
 use spectra_core::math::{atan2, sin_cos_turns};
 use spectra_core::numbers::Numbers;
+use spectra_core::workers::{Workers, each_of};
+use std::convert::Infallible;
+
+/// What the search of zones goes by.
+struct Searched<'a> {
+    stopped: Option<&'a (Stopped, Stages<'a>)>,
+    lattice: &'a Lattice,
+    colors: Colors,
+    /// Zones of the azimuth of outlines.
+    looks: usize,
+    bands: usize,
+}
+
+/// An outline of a zone, by the zone of the azimuth and that of the wavelength.
+struct Outline {
+    look: usize,
+    color: usize,
+    own: [[f32; 2]; STRIDE],
+}
 
 /// A sphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,6 +68,7 @@ pub(super) struct Task<'a> {
     pub most: f64,
     /// The ends of the band, nm.
     pub band_nm: [f64; 2],
+    pub workers: &'a dyn Workers,
 }
 
 /// A sphere that holds a tilted rim, too.
@@ -92,22 +112,22 @@ impl Task<'_> {
         if let Some((round, at)) = stopped::split(self.lens) {
             let tracer = Tracer::new(&round, Indices::Band { min_nm, max_nm }, self.tracer.isa()).ok()?;
             // Where light scatters before it comes to the opening, there is nothing but the round lens to aim at.
-            let opening = Stopped::new(self.lens, &round, at, travel, self.band_nm);
-            let itself = Prober::of(self.tracer, travel);
+            let opening = Stopped::new(self.lens, &round, at, travel, self.band_nm, self.tracer.isa());
+            let itself = Stages::of(self.tracer, travel);
             return Task { lens: &round, tracer: &tracer, ..self }.search(opening.map(|opening| (opening, itself)));
         }
         self.search(None)
     }
 
     /// The same for a lens as it is, or for the round one around an opening; that and the lens itself come along.
-    fn search<'b>(&'b self, mut stopped: Option<(Stopped, Prober<'b>)>) -> Option<Table> {
+    fn search(&self, stopped: Option<(Stopped, Stages<'_>)>) -> Option<Table> {
         let travel = self.geometry.travel;
         let [from_nm, to_nm] = self.band_nm;
-        let mut prober = Prober::new(self.lens, self.tracer, travel, from_nm, to_nm)?;
+        let stages = &Stages::new(self.lens, self.tracer, travel, from_nm, to_nm)?;
         let with_axis = self.lens.has_axis_of_revolution();
         let azimuths = if with_axis { 1 } else { AZIMUTHS };
         let zones = if with_axis { ZONES } else { ZONES_WITHOUT_AXIS };
-        let most = self.end_of_field(&mut prober, azimuths).min(self.most);
+        let most = self.end_of_field(stages, azimuths).min(self.most);
         let scale = if most > 0.0 { zones as f64 / most } else { 0.0 };
         let surface = if travel == Travel::Forward { 1 } else { self.lens.elements.len() as u32 };
         let bands = if to_nm <= from_nm {
@@ -139,58 +159,77 @@ impl Task<'_> {
             let zone = |step: usize| (turns((step as f64 + 0.5) / TURN_STEPS as f64) * looks as f64) as usize;
             (0..TURN_STEPS).map(|step| zone(step).min(looks - 1) as u16).collect()
         });
-        let turned = looks > 1;
         // Of a zone, its two edges and its middle are looked at; over the azimuth, its edges.
-        let lattice = Lattice::new(self, &mut prober, azimuths, 2 * zones, most, &colors.nodes_nm());
-        let stride = STRIDE;
-        let mut corners = vec![[0.0_f32; 2]; self.depth.zones * looks * zones * bands * stride];
-        for depth in 0..self.depth.zones {
-            for azimuth in 0..azimuths {
-                let mut row = vec![Zone::default(); zones];
-                for (zone, own) in row.iter_mut().enumerate() {
-                    let at = ZonePlace { depth, azimuth, zone, azimuths, scale };
-                    let Some(mut region) = self.zone(&mut prober, &lattice, &at) else { continue };
-                    (region.drift, region.by_band) = region.drifts(&lattice, &at, bands);
-                    *own = region.zone(self.geometry.eye_z_mm);
-                    let folds = stopped.as_ref().map_or(1, |(opening, _)| opening.folds);
-                    let views = lattice.views(&at, stopped.as_mut().map(|(opening, _)| opening), &colors);
-                    let each = looks / azimuths / folds;
-                    for look in 0..each {
-                        let sector = Sector {
-                            from: if stopped.is_some() { look as f64 / looks as f64 } else { turns_of(&at).0 },
-                            to: if stopped.is_some() { (look + 1) as f64 / looks as f64 } else { turns_of(&at).1 },
-                            turned,
-                        };
-                        let opening = stopped.as_ref().map(|(opening, _)| opening);
-                        let mut reaches = region.reaches(&lattice, &at, &sector, views.as_deref(), opening, bands);
-                        if !region.fades {
-                            let whole = match &mut stopped {
-                                Some((_, itself)) => itself,
-                                None => &mut prober,
-                            };
-                            self.hold(whole, &region, &at, (look, &sector), &colors, &mut reaches);
-                        }
-                        for (color, reach) in reaches.iter().enumerate() {
-                            let outline = reach.corners();
-                            for fold in 0..folds {
-                                let place = (depth * looks + azimuth + look + fold * each) * zones + zone;
-                                let first = (place * bands + color) * stride;
-                                let (sin, cos) = sin_cos_turns(fold as f64 / folds as f64);
-                                let drifts = region.by_band[color].columns();
-                                corners[first + outline.len()..first + stride].copy_from_slice(&drifts);
-                                for (corner, [x, y]) in corners[first..].iter_mut().zip(outline) {
-                                    let (x, y) = (f64::from(x), f64::from(y));
-                                    *corner = [(x * cos - y * sin) as f32, (x * sin + y * cos) as f32];
-                                }
-                            }
-                        }
-                    }
+        let lattice = Lattice::new(self, stages, azimuths, 2 * zones, most, &colors.nodes_nm());
+        let all = Searched { stopped: stopped.as_ref(), lattice: &lattice, colors, looks, bands };
+        let rows = self.depth.zones * azimuths;
+        let fresh = || (stages.prober(), stopped.as_ref().map(|(_, itself)| itself.prober()));
+        let found = each_of(self.workers, rows * zones, fresh, |(prober, itself), piece| {
+            let (row, zone) = (piece / zones, piece % zones);
+            let at = ZonePlace { depth: row / azimuths, azimuth: row % azimuths, zone, azimuths, scale };
+            Ok::<_, Infallible>(self.outlined(&all, prober, itself.as_mut(), &at))
+        });
+        let Ok(found) = found;
+        let mut corners = vec![[0.0_f32; 2]; rows / azimuths * looks * zones * bands * STRIDE];
+        for (row, found) in found.chunks(zones).enumerate() {
+            let zone = |(zone, _): &(Zone, Vec<Outline>)| *zone;
+            table.rows[row] =
+                Row::new(&found.iter().map(|f| f.as_ref().map_or(Zone::default(), zone)).collect::<Vec<_>>());
+            for (zone, (_, outlines)) in
+                found.iter().enumerate().filter_map(|(zone, found)| Some((zone, found.as_ref()?)))
+            {
+                for Outline { look, color, own } in outlines {
+                    let place = (row / azimuths * looks + look) * zones + zone;
+                    corners[(place * bands + color) * STRIDE..][..STRIDE].copy_from_slice(own);
                 }
-                table.rows[depth * azimuths + azimuth] = Row::new(&row);
             }
         }
-        table.outlines = Some(Outlines { colors, zones, azimuths: looks, turns, turned, corners });
+        table.outlines = Some(Outlines { colors, zones, azimuths: looks, turns, turned: looks > 1, corners });
         Some(table)
+    }
+
+    /// A zone and its outlines; `None` where nothing passes.
+    fn outlined<'p>(
+        &self,
+        all: &Searched<'_>,
+        prober: &mut Prober<'p>,
+        itself: Option<&mut Prober<'p>>,
+        at: &ZonePlace,
+    ) -> Option<(Zone, Vec<Outline>)> {
+        let Searched { lattice, colors, looks, bands, .. } = *all;
+        let opening = all.stopped.map(|(opening, _)| opening);
+        let mut region = self.zone(prober, lattice, at)?;
+        (region.drift, region.by_band) = region.drifts(lattice, at, bands);
+        let folds = opening.map_or(1, |opening| opening.folds);
+        let views = lattice.views(at, opening, &colors);
+        let each = looks / at.azimuths / folds;
+        let whole = itself.unwrap_or(prober);
+        let mut outlines = Vec::with_capacity(each * folds * bands);
+        for look in 0..each {
+            let sector = Sector {
+                from: if opening.is_some() { look as f64 / looks as f64 } else { turns_of(at).0 },
+                to: if opening.is_some() { (look + 1) as f64 / looks as f64 } else { turns_of(at).1 },
+                turned: looks > 1,
+            };
+            let mut reaches = region.reaches(lattice, at, &sector, views.as_deref(), opening, bands);
+            if !region.fades {
+                self.hold(whole, &region, at, (look, &sector), &colors, &mut reaches);
+            }
+            for (color, reach) in reaches.iter().enumerate() {
+                let outline = reach.corners();
+                for fold in 0..folds {
+                    let (sin, cos) = sin_cos_turns(fold as f64 / folds as f64);
+                    let mut own = [[0.0; 2]; STRIDE];
+                    own[outline.len()..].copy_from_slice(&region.by_band[color].columns());
+                    for (corner, [x, y]) in own.iter_mut().zip(outline) {
+                        let (x, y) = (f64::from(x), f64::from(y));
+                        *corner = [(x * cos - y * sin) as f32, (x * sin + y * cos) as f32];
+                    }
+                    outlines.push(Outline { look: at.azimuth + look + fold * each, color, own });
+                }
+            }
+        }
+        Some((region.zone(self.geometry.eye_z_mm), outlines))
     }
 
     /// Raises the reach of a zone by wavelength to what random rays find beyond it.
@@ -245,7 +284,8 @@ impl Task<'_> {
     }
 
     /// The measure of the angle beyond which nothing passes; 0 where nothing does at all.
-    fn end_of_field(&self, prober: &mut Prober<'_>, azimuths: usize) -> f64 {
+    fn end_of_field(&self, stages: &Stages<'_>, azimuths: usize) -> f64 {
+        let prober = &mut stages.prober();
         let (first, last) = (self.depth_nodes[0], self.depth_nodes[self.depth_nodes.len() - 1]);
         let depths = if first == last { vec![first] } else { vec![first, last] };
         let looks = azimuths.min(8);
@@ -667,28 +707,27 @@ struct Lattice {
 }
 
 impl Lattice {
-    fn new(
-        task: &Task<'_>,
-        prober: &mut Prober<'_>,
-        azimuths: usize,
-        steps: usize,
-        most: f64,
-        colors_nm: &[f64],
-    ) -> Self {
+    fn new(task: &Task<'_>, stages: &Stages<'_>, azimuths: usize, steps: usize, most: f64, colors_nm: &[f64]) -> Self {
         let grid = if azimuths == 1 { GRID } else { GRID_WITHOUT_AXIS };
-        let mut rows = Vec::new();
-        for depth in &task.depth_nodes {
-            for azimuth in 0..azimuths {
-                let turns = turns(azimuth as f64 / azimuths as f64);
-                let node = |k: usize| {
-                    let measure = most * k as f64 / steps as f64;
-                    // Outlines go by the ends of zones.
-                    let colors_nm = if k.is_multiple_of(2) { colors_nm } else { &[] };
-                    task.geometry.node(prober, measure, *depth, turns, grid, colors_nm)
-                };
-                rows.push((0..=steps).map(node).collect());
-            }
-        }
+        let a_row = steps + 1;
+        let pieces = task.depth_nodes.len() * azimuths * a_row;
+        let nodes = each_of(
+            task.workers,
+            pieces,
+            || stages.prober(),
+            |prober, piece| {
+                let (row, k) = (piece / a_row, piece % a_row);
+                let turns = turns((row % azimuths) as f64 / azimuths as f64);
+                let measure = most * k as f64 / steps as f64;
+                // Outlines go by the ends of zones.
+                let colors_nm = if k.is_multiple_of(2) { colors_nm } else { &[] };
+                let depth = task.depth_nodes[row / azimuths];
+                Ok::<_, Infallible>(task.geometry.node(prober, measure, depth, turns, grid, colors_nm))
+            },
+        );
+        let Ok(nodes) = nodes;
+        let mut nodes = nodes.into_iter();
+        let rows = (0..task.depth_nodes.len() * azimuths).map(|_| nodes.by_ref().take(a_row).collect()).collect();
         Self { rows, azimuths, depths: task.depth_nodes.len() }
     }
 
@@ -732,10 +771,10 @@ impl Lattice {
     }
 
     /// How an opening is seen from the ends of a zone.
-    fn views(&self, at: &ZonePlace, opening: Option<&mut Stopped>, colors: &Colors) -> Option<Views> {
+    fn views(&self, at: &ZonePlace, opening: Option<&Stopped>, colors: &Colors) -> Option<Views> {
         let opening = opening?;
         let nodes_nm = colors.nodes_nm();
-        let mut of_end = |node: &Node| {
+        let of_end = |node: &Node| {
             let lines = node.edges.iter().zip(&nodes_nm);
             lines.map(|(line, nm)| (!line.is_empty()).then(|| opening.seen(node, line, *nm)).flatten()).collect()
         };

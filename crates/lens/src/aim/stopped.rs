@@ -5,12 +5,11 @@
 
 use super::nodes::Node;
 use crate::aperture::{Aperture, Shape};
-use crate::tracer::Work;
 use crate::{Indices, Lens, Path, Pose, Route, Tracer, Travel};
 use glam::DVec3;
-use spectra_core::RayBatch;
 use spectra_core::loss::ALIVE;
 use spectra_core::math::sin_cos_turns;
+use spectra_core::{Isa, RayBatch};
 
 /// Places on the edge of the opening.
 const EDGE: usize = 120;
@@ -32,8 +31,6 @@ pub(super) struct Stopped {
     pub folds: usize,
     tracer: Tracer,
     route: Route,
-    work: Work,
-    rays: RayBatch,
     /// To the frame that rays start in, from the one that they leave in.
     back: Pose,
 }
@@ -72,7 +69,7 @@ fn reach_mm(aperture: &Aperture, semi_mm: Option<f64>) -> f64 {
 
 impl Stopped {
     /// The opening of `lens` at one of its elements; `round` is the lens without it.
-    pub fn new(lens: &Lens, round: &Lens, at: usize, travel: Travel, band_nm: [f64; 2]) -> Option<Self> {
+    pub fn new(lens: &Lens, round: &Lens, at: usize, travel: Travel, band_nm: [f64; 2], isa: Isa) -> Option<Self> {
         let e = &lens.elements[at];
         let rim = round.elements[at].semi_diameter_mm?;
         let iris = e.apertures.iter().any(|a| !a.obscures && matches!(a.shape, Shape::Iris(_)));
@@ -105,19 +102,15 @@ impl Stopped {
             [place.x, place.y]
         });
         let edge = edge.collect();
-        let tracer =
-            Tracer::new(round, Indices::Band { min_nm: band_nm[0], max_nm: band_nm[1] }, spectra_core::Isa::Baseline)
-                .ok()?;
+        let tracer = Tracer::new(round, Indices::Band { min_nm: band_nm[0], max_nm: band_nm[1] }, isa).ok()?;
         let path = Path::through(round.elements.len(), travel).up_to(|k| k == at);
         // Behind a surface that scatters, the opening is nothing to aim at.
         let (_, before) = path.steps().split_last()?;
         if before.iter().any(|step| round.elements[step.element].surface.draws()) {
             return None;
         }
-        let capacity = 1 + PARTS.len() * super::probe::EDGE;
         let back = if travel == Travel::Forward { lens.image_pose } else { lens.image_pose.inverse() };
-        let (work, rays) = (tracer.work_in_place(capacity), RayBatch::new(capacity));
-        Some(Self { edge, folds, route: tracer.route(&path), work, rays, tracer, back })
+        Some(Self { edge, folds, route: tracer.route(&path), tracer, back })
     }
 
     /// Zones of the azimuth: as many in each fold.
@@ -127,23 +120,24 @@ impl Stopped {
 
     /// How places of the opening are seen from a node at one wavelength, as a map to lines of sight. `None` where too little
     /// of it is.
-    pub fn seen(&mut self, node: &Node, line: &[DVec3], wavelength_nm: f64) -> Option<Seen> {
+    pub fn seen(&self, node: &Node, line: &[DVec3], wavelength_nm: f64) -> Option<Seen> {
         let middle = line.iter().sum::<DVec3>() / line.len() as f64;
         let targets: Vec<DVec3> = std::iter::once(middle)
             .chain(PARTS.iter().flat_map(|part| line.iter().step_by(3).map(move |p| middle + (*p - middle) * *part)))
             .collect();
-        self.rays.restart(targets.len());
-        let c = self.rays.columns_mut();
+        let (mut work, mut rays) = (self.tracer.work_unweighed(targets.len()), RayBatch::new(targets.len()));
+        rays.restart(targets.len());
+        let c = rays.columns_mut();
         for (i, target) in targets.iter().enumerate() {
             (c.x[i], c.y[i], c.z[i]) = (*target).into();
             (c.l[i], c.m[i], c.n[i]) = (*target - node.point).normalize().into();
             c.wavelength_nm[i] = wavelength_nm;
         }
-        self.tracer.follow(&self.route, &mut self.rays, &mut self.work);
-        let [x, y, z] = self.rays.positions();
+        self.tracer.follow(&self.route, &mut rays, &mut work);
+        let [x, y, z] = rays.positions();
         let mut fit = [Fit::default(), Fit::default(), Fit::default()];
         for (i, target) in targets.iter().enumerate() {
-            if self.rays.states()[i] != ALIVE {
+            if rays.states()[i] != ALIVE {
                 continue;
             }
             let at = DVec3::new(x[i], y[i], z[i]);

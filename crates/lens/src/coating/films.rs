@@ -10,6 +10,7 @@
 //! light does not run in the layer but decays. The series are taken at delta / 2^H, and the angle is doubled H times.
 
 use std::f64::consts::TAU;
+use std::ops::{Add, Mul, Sub};
 
 /// Largest square of delta / 2^H for which the series are good: the first terms left out are 6e-15 (cosine) and 7e-14 (sine).
 const SERIES_REACH: f64 = 1.5;
@@ -21,11 +22,11 @@ const MOST_HALVINGS: u32 = 5;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Films<const N: usize> {
     /// Square of the index.
-    square: [f64; N],
+    pub(super) square: [f64; N],
     /// One over that.
-    per_square: [f64; N],
+    pub(super) per_square: [f64; N],
     /// 2 pi times the thickness, nm.
-    turn_nm: [f64; N],
+    pub(super) turn_nm: [f64; N],
 }
 
 /// What a batch kernel needs to know of the two sides of a surface: see the head of this file.
@@ -125,7 +126,10 @@ impl<const N: usize> Films<N> {
 
 /// The product of two matrices [a, i x; i y, d] of real a, x, y and d.
 #[inline(always)]
-fn times([a, x, y, d]: [f64; 4], [a2, x2, y2, d2]: [f64; 4]) -> [f64; 4] {
+pub(super) fn times<T: Copy + Add<Output = T> + Sub<Output = T> + Mul<Output = T>>(
+    [a, x, y, d]: [T; 4],
+    [a2, x2, y2, d2]: [T; 4],
+) -> [T; 4] {
     [a * a2 - x * y2, a * x2 + x * d2, y * a2 + d * y2, d * d2 - y * x2]
 }
 

@@ -12,6 +12,7 @@ mod measured;
 mod params;
 mod stack;
 mod standard;
+mod swift;
 mod v_coat;
 
 pub(crate) use amplitude::{Amplitudes, Polarizing};
@@ -20,6 +21,7 @@ pub use measured::MeasuredCoating;
 pub(crate) use params::CoatingKeys;
 pub use params::{CoatingEntry, CoatingForm, StatedCoating, read_coating, read_stated_coating};
 pub use stack::{Stack, StackLayer};
+pub(crate) use swift::{CHUNK, Singles, Swift};
 
 use spectra_core::math;
 use std::sync::Arc;

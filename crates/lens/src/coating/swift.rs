@@ -1,0 +1,167 @@
+//! What clear layers pass, in single precision, for rendering: twice as many rays an instruction as by [`Films`].
+//!
+//! The formulas are those of [`Films`], but it is the part *reflected* that is worked out,
+//! R = ((eta a - eta' d)^2 + (eta eta' x - y)^2) / ((eta a + eta' d)^2 + (eta eta' x + y)^2), and the weight loses that part of itself.
+//! R is small, and so is its error: what passes is within [`SWIFT_ERROR`] of the exact formula, which the tests hold. Where R is large
+//! (grazing light, layers of many orders) the layers are left to [`Films`].
+
+use super::Films;
+use super::films::times;
+
+/// What passes differs from the exact formula by less than this.
+#[cfg(test)]
+pub(crate) const SWIFT_ERROR: f64 = 1e-6;
+
+/// Largest square of delta / 2^H for which the polynomials of [`cos_and_sinc`] are good.
+const REACH: f64 = 6.25;
+/// Each halving makes the error four times as large.
+const MOST_HALVINGS: u32 = 1;
+
+/// Rays that are worked out side by side.
+pub(crate) const CHUNK: usize = 64;
+pub(crate) type Singles = [f32; CHUNK];
+
+/// [`Films`] in single precision.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Swift<const N: usize> {
+    square: [f32; N],
+    per_square: [f32; N],
+    turn_nm: [f32; N],
+    /// One over 4^H.
+    scale: f32,
+    halvings: u32,
+}
+
+impl<const N: usize> Swift<N> {
+    /// For light of this wavelength, nm, or longer, between media of which the lower index is `low`; `None` where single precision
+    /// would not do.
+    pub(crate) fn of(films: &Films<N>, shortest_nm: f64, low: f64) -> Option<Self> {
+        let largest = |h: u32| REACH * f64::from(1_u32 << (2 * h));
+        let good = |h: &u32| {
+            (0..N).all(|k| {
+                let turn = films.turn_nm[k] / shortest_nm;
+                turn * turn * films.square[k] <= largest(*h) && films.square[k] > low * low
+            })
+        };
+        let halvings = (0..=MOST_HALVINGS).find(good)?;
+        let [square, per_square, turn_nm] =
+            [films.square, films.per_square, films.turn_nm].map(|column| column.map(|value| value as f32));
+        Some(Self { square, per_square, turn_nm, scale: 1.0 / (1_u32 << (2 * halvings)) as f32, halvings })
+    }
+
+    /// The part of unpolarized light that is reflected: h and the indices as in the head of `films.rs`, `step` from the first to the
+    /// second one, and one over the wavelength, 1/nm.
+    #[inline(always)]
+    pub(crate) fn reflects(&self, n: f32, n_after: f32, step: f32, h: f32, per_nm: f32) -> f32 {
+        let (u, v) = (step - n_after * h, step + n * h);
+        let both = n * n_after;
+        let per_g2 = 1.0 / (step * step + 2.0 * both * h);
+        let cosines = u * v * per_g2;
+        let tangential = both * both * h * (2.0 - h) * per_g2;
+        let up = step > 0.0;
+        let (low, u_low) = if up { (n, u) } else { (n_after, v) };
+        let (high, u_high) = if up { (n_after, v) } else { (n, u) };
+        let (mut s, mut p) = ([1.0, 0.0, 0.0, 1.0], [1.0, 0.0, 0.0, 1.0]);
+        for k in 0..N {
+            let along2 = self.square[k] - tangential;
+            let turn = self.turn_nm[k] * per_nm;
+            let (cos, sinc) = cos_and_sinc(turn * turn * along2 * self.scale);
+            // One halving or none.
+            let (cos, sinc) = if self.halvings > 0 { (2.0 * cos * cos - 1.0, sinc * cos) } else { (cos, sinc) };
+            let over = sinc * turn;
+            let next_s = [cos, over, along2 * over, cos];
+            let next_p = [cos, along2 * over * self.per_square[k], self.square[k] * over, cos];
+            (s, p) = if k == 0 { (next_s, next_p) } else { (times(s, next_s), times(p, next_p)) };
+        }
+        // Of the sum and of the difference, the square.
+        let squares = |re: [f32; 2], im: [f32; 2]| {
+            let (re_sum, im_sum) = (re[0] + re[1], im[0] + im[1]);
+            let (re_less, im_less) = (re[0] - re[1], im[0] - im[1]);
+            (re_sum * re_sum * per_g2 + im_sum * im_sum, re_less * re_less * per_g2 + im_less * im_less)
+        };
+        let [a, x, y, d] = s;
+        let (all_s, back_s) = squares([low * u_low * a, high * u_high * d], [both * cosines * x, y]);
+        let [a, x, y, d] = p;
+        let (all_p, back_p) = squares([low * u_high * a, high * u_low * d], [both * x, cosines * y]);
+        0.5 * (back_s * all_p + back_p * all_s) / (all_s * all_p)
+    }
+}
+
+/// cos(delta) and sin(delta) / delta by the square of delta, from 0 to [`REACH`]: interpolated at Chebyshev's nodes, within 6e-8 and
+/// 5e-9 but for rounding.
+#[inline(always)]
+fn cos_and_sinc(z: f32) -> (f32, f32) {
+    let cos = 0.999_999_95
+        + z * (-0.499_999_37
+            + z * (0.041_665_485 + z * (-1.388_077_8e-3 + z * (2.454_880_8e-5 + z * -2.388_531_7e-7))));
+    let sinc = 1.0
+        + z * (-0.166_666_62
+            + z * (8.333_241_2e-3 + z * (-1.983_495_1e-4 + z * (2.736_064_8e-6 + z * -2.220_337_2e-8))));
+    (cos, sinc)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Coating, Stack, StackLayer};
+    use spectra_core::math;
+    use std::sync::Arc;
+
+    /// Every pair of media, every angle and wavelength of the band against [`Coating::transmittance`]; the largest difference and the
+    /// mean one.
+    fn differences<const N: usize>(layers: [[f64; 2]; N], shortest_nm: f64) -> (f64, f64) {
+        let films = Films::new(&layers);
+        let stack = layers.iter().map(|[index, nm]| StackLayer::constant(*nm, *index, 0.0)).collect();
+        let coating = Coating::Stack(Arc::new(Stack::new(stack)));
+        let (mut worst, mut sum, mut count) = (0.0_f64, 0.0, 0.0);
+        for (n, n_after) in [(1.0, 1.5168), (1.0, 1.9), (1.0, 1.33), (1.7, 1.0), (1.52, 1.0), (1.0003, 1.62)] {
+            let swift = Swift::of(&films, shortest_nm, f64::min(n, n_after)).expect("thin");
+            for angle_deg in (0..360).map(|quarter| 0.25 * f64::from(quarter)) {
+                let (sin, cos) = (math::sin(angle_deg.to_radians()), math::cos(angle_deg.to_radians()));
+                let after = n / n_after * sin;
+                if after >= 1.0 {
+                    continue;
+                }
+                let cos_after = (1.0 - after * after).sqrt();
+                let turn = [after - sin, cos_after - cos];
+                let h = 0.5 * (turn[0] * turn[0] + turn[1] * turn[1]);
+                for nm in (shortest_nm as u32..=1100).step_by(13).map(f64::from) {
+                    let want = coating.transmittance(n, n_after, cos, nm).mean();
+                    let back =
+                        swift.reflects(n as f32, n_after as f32, (n_after - n) as f32, h as f32, 1.0 / nm as f32);
+                    let miss = 1.0 - f64::from(back) - want;
+                    worst = worst.max(miss.abs());
+                    (sum, count) = (sum + miss, count + 1.0);
+                }
+            }
+        }
+        (worst, sum / count)
+    }
+
+    #[test]
+    fn layers_in_single_precision_are_as_good_as_stated() {
+        let quarter = |n: f64| [n, 515.0 / 4.0 / n];
+        let three = [quarter(1.38), [2.1, 515.0 / 2.0 / 2.1], quarter(1.72)];
+        for (worst, mean) in [
+            differences([[1.38, 550.0 / 4.0 / 1.38]], 350.0),
+            differences([[1.38, 99.6]], 300.0),
+            differences([quarter(1.38), quarter(1.72)], 350.0),
+            differences(three, 350.0),
+        ] {
+            // Rounding has no preference.
+            assert!(worst < SWIFT_ERROR && mean.abs() < 0.1 * SWIFT_ERROR, "{worst:e}, {mean:e} in the mean");
+        }
+    }
+
+    /// Thick layers, and those in which light may decay, are left to double precision.
+    #[test]
+    fn what_single_precision_is_no_good_for() {
+        let swift =
+            |layers: [[f64; 2]; 1], shortest_nm: f64, low: f64| Swift::of(&Films::new(&layers), shortest_nm, low);
+        assert!(swift([[1.38, 99.6]], 350.0, 1.0).is_some());
+        assert!(swift([[1.5, 1500.0]], 380.0, 1.0).is_none());
+        assert!(swift([[1.38, 99.6]], 350.0, 1.5).is_none());
+        assert!(swift([[f64::NAN, 99.6]], 350.0, 1.0).is_none());
+        assert!(swift([[1.38, 99.6]], f64::NAN, 1.0).is_none());
+    }
+}
