@@ -188,7 +188,7 @@ impl Cube {
         for patch in PATCHES {
             let surface =
                 find_reflectance(&format!("colorchecker#{patch}")).map_err(|e| SessionError::Failed(e.to_string()))?;
-            let xyz = xyz_of_reflectance(&surface, &daylight, &observer).unwrap_or_default();
+            let xyz = xyz_of_reflectance(&surface, &daylight, observer).unwrap_or_default();
             seen.push(space.from_xyz(xyz.map(|v| v / 100.0)).map(|v| v.max(0.0)));
             let lit = white.continuum.iter().zip(surface.on_grid(&BAND)).map(|(p, r)| p * r).collect();
             let lines = white.lines.iter().map(|l| Line { power: l.power * surface.at(l.wavelength_nm), ..*l });

@@ -71,8 +71,11 @@ fn names_in(folder: &Path) -> Result<Vec<String>, Failure> {
     Ok(names)
 }
 
+/// A file, and its number if its name has one.
+type Numbering = (PathBuf, Option<u64>);
+
 /// The files that one argument names, with their numbers; and whether it may name several.
-fn files(argument: &str) -> Result<(Vec<(PathBuf, Option<u64>)>, bool), Failure> {
+fn files(argument: &str) -> Result<(Vec<Numbering>, bool), Failure> {
     let path = Path::new(argument);
     if path.is_dir() {
         let is_picture = |name: &String| {
