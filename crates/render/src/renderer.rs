@@ -23,9 +23,6 @@ use spectra_scene::{Direction, Lights, NumberFamily, Scene};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Ghosts matter by themselves where the brightest of them has more than this part of the mean of the frame.
-const MATTERS: f64 = 0.01;
-
 /// What a render gives.
 #[derive(Clone, Debug)]
 pub struct Rendering {
@@ -89,20 +86,19 @@ impl Renderer {
     ) -> Result<Self, RenderError> {
         let direction = scene.render.direction;
         let lights = scene.render.lights;
-        let ghosts = scene.render.reflections.order;
+        let ghosts = scene.render.reflections.order.unwrap_or(0);
         scene.source.prepare().map_err(RenderError::Source)?;
         let pays = scene.source.split().map(|split| split.pays);
         let apart = lights != Lights::Same && pays.is_some_and(|pays| pays || lights == Lights::Forward);
         if !apart {
             let plain = Self::by(scene, isa, density, &[direction], workers)?;
-            return if ghosts.unwrap_or(0) == 0 { Ok(plain) } else { plain.with_ghosts() };
+            return if ghosts == 0 { Ok(plain) } else { plain.with_ghosts() };
         }
         let pipeline = Arc::new(Pipeline::new(&scene, isa, density)?);
         let share = |share| Arc::new(pipeline.of_share(share));
         let of_lights = share(Share::Lights);
         let (rest, lights) = (Backward::new(share(Share::Rest), workers)?, Forward::new(of_lights.clone(), workers)?);
-        let found = if ghosts == Some(0) { None } else { Ghosts::new(&of_lights)? };
-        let found = found.filter(|found| ghosts.is_some() || found.brightest() > MATTERS * rest.mean());
+        let found = if ghosts == 0 { None } else { Ghosts::new(&of_lights)? };
         let ledger = found.as_ref().map(|found| found.ledger().clone());
         let mut kinds: Vec<Box<dyn Estimator>> = vec![Box::new(rest), Box::new(lights)];
         kinds.extend(found.map(|found| Box::new(found) as Box<dyn Estimator>));

@@ -137,8 +137,7 @@ struct RenderSection {
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct ReflectionsSection {
-    /// How often light may be reflected on its way to the imager: 0 (no ghosts) or 2. If absent, 2 where lights are so bright that
-    /// the brightest ghost is more than 1 % of the mean of the frame without them, and 0 elsewhere.
+    /// How often light is reflected on its way to the imager: 0 (no ghosts, the default) or 2.
     order: Option<Whole<0, 2>>,
     /// Part of the light that film or sensor sends back into the lens as a mirror does, from 0 to 1; assumed 0.043 if absent, as of
     /// gelatin (index 1.52) in air.

@@ -48,7 +48,7 @@ pub enum Lights {
 /// Light that surfaces of the lens reflect on its way to the imager.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Reflections {
-    /// Reflections on the way: 0 for none, 2, 4 for those of 2 and of 4; `None` for 2 where lights are bright enough to matter.
+    /// Reflections on the way: 0 for none, 2 for pairs; none where the scene does not say.
     pub order: Option<u32>,
     /// Part of the light that the imager itself reflects as a mirror does.
     pub imager: f64,

@@ -75,8 +75,6 @@ struct Plan {
     /// Rays of a block of all paths.
     rays: u64,
     blocks_a_sample: u64,
-    /// The brightest block, W/m2 in the mean of its pixels and the sum of its channels.
-    brightest: f64,
     ledger: LightLedger,
 }
 
@@ -121,8 +119,7 @@ impl Ghosts {
             boost: 1.0,
         };
         let ways: Vec<Way> = Path::ghosts(count, &surfaces, 2).into_iter().map(way).collect();
-        let plan =
-            Plan { opening, zones, ways, rays: 1, blocks_a_sample: 1, brightest: 0.0, ledger: LightLedger::default() };
+        let plan = Plan { opening, zones, ways, rays: 1, blocks_a_sample: 1, ledger: LightLedger::default() };
         let mut own = Self { pipeline, plan: Arc::new(plan), numbers, scale: 1.0 };
         own.plan = Arc::new(own.planned(&lens, &surfaces));
         own.scale = own.pilot_scale()?;
@@ -132,11 +129,6 @@ impl Ghosts {
 
     fn of_seed(&self, seed: u64) -> Numbers {
         self.pipeline.numbers(mix64(seed ^ SEED))
-    }
-
-    /// The brightest block of 32 x 32 pixels, W/m2 in the mean of its pixels and the sum of its channels.
-    pub(crate) fn brightest(&self) -> f64 {
-        self.plan.brightest
     }
 
     /// Where the light goes.
@@ -313,17 +305,11 @@ impl Ghosts {
                 (*guide, *variance) = (best, *variance + own);
             }
         }
-        let pixels_of = |block: usize| {
-            let (column, row) = (block % columns * BLOCK, block / columns * BLOCK);
-            ((width - column).min(BLOCK) * (height - row).min(BLOCK)) as f64
-        };
-        let mean = |(block, light): (usize, &f64)| light / (pixels_of(block) * size.pixel_area_mm2());
-        let brightest = light.iter().enumerate().map(mean).fold(0.0, f64::max);
-        self.shared_out(ways, brightest, account::of(self, lens, surfaces))
+        self.shared_out(ways, account::of(self, lens, surfaces))
     }
 
     /// The rays of a sample, shared out over the paths.
-    fn shared_out(&self, found: Vec<(Vec<Guide>, f64)>, brightest: f64, ledger: LightLedger) -> Plan {
+    fn shared_out(&self, found: Vec<(Vec<Guide>, f64)>, ledger: LightLedger) -> Plan {
         let old = &self.plan;
         let paths = old.ways.len() as u64;
         let pixels = self.pipeline.scene.imager.size().pixels() as f64;
@@ -348,7 +334,7 @@ impl Ghosts {
             boost: rays as f64 / *count as f64,
         };
         let ways = found.into_iter().zip(&old.ways).zip(&counts).map(way).collect();
-        Plan { opening: old.opening, zones: old.zones.clone(), ways, rays, blocks_a_sample, brightest, ledger }
+        Plan { opening: old.opening, zones: old.zones.clone(), ways, rays, blocks_a_sample, ledger }
     }
 
     /// The scale of the sums, by one block.
