@@ -57,6 +57,37 @@ where
     picture.write_data(values).expect("written");
 }
 
+/// A plane for each channel, one after the other, in strips of 8 rows.
+fn planar(path: &Path, channels: u16) {
+    const ROWS: u32 = 8;
+    let mut encoder = TiffEncoder::new(File::create(path).expect("a file")).expect("a file");
+    let mut picture = encoder.image_directory().expect("a picture");
+    let plane = ramp(1, |i| i as f32);
+    let (mut offsets, mut counts) = (Vec::new(), Vec::new());
+    for _ in 0..channels {
+        for strip in plane.chunks((WIDTH * ROWS) as usize) {
+            offsets.push(picture.write_data(strip).expect("written") as u32);
+            counts.push(4 * strip.len() as u32);
+        }
+    }
+    let each = vec![32_u16; usize::from(channels)];
+    picture.write_tag(Tag::ImageWidth, WIDTH).expect("a tag");
+    picture.write_tag(Tag::ImageLength, HEIGHT).expect("a tag");
+    picture.write_tag(Tag::BitsPerSample, &each[..]).expect("a tag");
+    picture.write_tag(Tag::Compression, 1_u16).expect("a tag");
+    picture.write_tag(Tag::PhotometricInterpretation, 2_u16).expect("a tag");
+    picture.write_tag(Tag::StripOffsets, &offsets[..]).expect("a tag");
+    picture.write_tag(Tag::SamplesPerPixel, channels).expect("a tag");
+    picture.write_tag(Tag::RowsPerStrip, ROWS).expect("a tag");
+    picture.write_tag(Tag::StripByteCounts, &counts[..]).expect("a tag");
+    picture.write_tag(Tag::PlanarConfiguration, 2_u16).expect("a tag");
+    if channels == 4 {
+        picture.write_tag(Tag::ExtraSamples, 2_u16).expect("a tag");
+    }
+    picture.write_tag(Tag::SampleFormat, &vec![3_u16; usize::from(channels)][..]).expect("a tag");
+    picture.finish().expect("written");
+}
+
 fn photograph(path: &Path) {
     let mut encoder = JpegEncoder::new(File::create(path).expect("a file"));
     // TIFF header, one entry: tag 274, short, 6.
@@ -87,6 +118,8 @@ fn a_picture_costs_twelve_bytes_a_pixel_and_its_header_none() {
         ("float.tif", |path| tiff::<colortype::RGB32Float>(path, 1, &ramp(3, |i| i as f32))),
         ("float-with-cover.tif", |path| tiff::<colortype::RGBA32Float>(path, 1, &ramp(4, |i| i as f32))),
         ("float-on-its-side.tif", |path| tiff::<colortype::RGB32Float>(path, 6, &ramp(3, |i| i as f32))),
+        ("float-by-planes.tif", |path| planar(path, 3)),
+        ("float-by-planes-with-cover.tif", |path| planar(path, 4)),
         ("scan-on-its-side.tif", |path| tiff::<colortype::RGB16>(path, 8, &ramp(3, |i| i as u16))),
         ("scan-with-cover-on-its-side.tif", |path| tiff::<colortype::RGBA16>(path, 5, &ramp(4, |i| i as u16))),
         ("on-its-side.jpg", photograph),

@@ -247,7 +247,7 @@ fn linear<R: BufRead + Seek>(
     if size <= LIGHT {
         let start = pixels * (LIGHT - size);
         match plain {
-            Some(plain) => plain.read(&mut memory[start..])?,
+            Some(mut plain) => plain.read(&mut memory[start..], size, size / count)?,
             None => decoder.read_image(&mut memory[start..])?,
         }
         if !is_upright && 2 * size <= LIGHT {
@@ -264,12 +264,25 @@ fn linear<R: BufRead + Seek>(
             pixel[..size].copy_from_slice(&memory[start + i * size..][..size]);
             keep(memory, i, &pixel[..size]);
         }
-    } else if let Some(plain) = plain {
-        plain.runs(width as usize, size, |first, codes| {
-            for (i, pixel) in codes.chunks_exact(size).enumerate() {
-                keep(memory, first + i, pixel);
-            }
-        })?;
+    } else if let Some(mut plain) = plain {
+        if plain.is_planar() {
+            // Colors first, to where the light will be; each pixel is whole as its cover arrives.
+            plain.read(memory, LIGHT, size / count)?;
+            let mut pixel = vec![0_u8; size];
+            plain.runs(count - 1, size - LIGHT, |first, codes| {
+                for (i, cover) in codes.chunks_exact(size - LIGHT).enumerate() {
+                    pixel[..LIGHT].copy_from_slice(&memory[(first + i) * LIGHT..][..LIGHT]);
+                    pixel[LIGHT..].copy_from_slice(cover);
+                    keep(memory, first + i, &pixel);
+                }
+            })?;
+        } else {
+            plain.runs(0, size, |first, codes| {
+                for (i, pixel) in codes.chunks_exact(size).enumerate() {
+                    keep(memory, first + i, pixel);
+                }
+            })?;
+        }
     } else {
         let mut codes = vec![0; pixels * size];
         decoder.read_image(&mut codes)?;
@@ -322,6 +335,72 @@ mod tests {
         assert_eq!(linear.rgb[2], [1.0, 1.0, 1.0]);
         // IEC 61966-2-1: ((188/255 + 0.055) / 1.055)^2.4 = 0.50289.
         assert!((linear.rgb[3][0] - 0.502_89).abs() < 1e-5);
+    }
+
+    /// A TIFF of 20 x 19 pixels whose sample c of pixel (x, y) is `of(c, x, y)`, a plane for each channel or pixel by pixel, in
+    /// strips of 6 rows or tiles of 16 x 16.
+    fn tiff_of(channels: usize, is_planar: bool, is_tiled: bool, of: impl Fn(usize, usize, usize) -> f32) -> Vec<u8> {
+        use ::tiff::{encoder::TiffEncoder, tags::Tag};
+        const SIZE: [usize; 2] = [20, 19];
+        let mut bytes = Cursor::new(Vec::new());
+        let mut encoder = TiffEncoder::new(&mut bytes).unwrap();
+        let mut picture = encoder.image_directory().unwrap();
+        let chunk = if is_tiled { [16, 16] } else { [SIZE[0], 6] };
+        let (mut offsets, mut counts) = (Vec::new(), Vec::new());
+        let planes = if is_planar { (0..channels).map(|c| c..c + 1).collect() } else { vec![0..channels] };
+        for plane in planes {
+            for y0 in (0..SIZE[1]).step_by(chunk[1]) {
+                let rows = if is_tiled { 16 } else { chunk[1].min(SIZE[1] - y0) };
+                for x0 in (0..SIZE[0]).step_by(chunk[0]) {
+                    let mut samples = Vec::new();
+                    for (y, x) in (y0..y0 + rows).flat_map(|y| (x0..x0 + chunk[0]).map(move |x| (y, x))) {
+                        samples.extend(plane.clone().map(|c| of(c, x, y)));
+                    }
+                    offsets.push(picture.write_data(&samples[..]).unwrap() as u32);
+                    counts.push(4 * samples.len() as u32);
+                }
+            }
+        }
+        let all = |value: u16| vec![value; channels];
+        picture.write_tag(Tag::ImageWidth, SIZE[0] as u32).unwrap();
+        picture.write_tag(Tag::ImageLength, SIZE[1] as u32).unwrap();
+        picture.write_tag(Tag::BitsPerSample, &all(32)[..]).unwrap();
+        picture.write_tag(Tag::Compression, 1_u16).unwrap();
+        picture.write_tag(Tag::PhotometricInterpretation, 2_u16).unwrap();
+        picture.write_tag(Tag::SamplesPerPixel, channels as u16).unwrap();
+        picture.write_tag(Tag::PlanarConfiguration, if is_planar { 2_u16 } else { 1 }).unwrap();
+        if channels == 4 {
+            picture.write_tag(Tag::ExtraSamples, 2_u16).unwrap();
+        }
+        picture.write_tag(Tag::SampleFormat, &all(3)[..]).unwrap();
+        let [at, size] = if is_tiled {
+            picture.write_tag(Tag::TileWidth, 16_u32).unwrap();
+            picture.write_tag(Tag::TileLength, 16_u32).unwrap();
+            [Tag::TileOffsets, Tag::TileByteCounts]
+        } else {
+            picture.write_tag(Tag::RowsPerStrip, chunk[1] as u32).unwrap();
+            [Tag::StripOffsets, Tag::StripByteCounts]
+        };
+        picture.write_tag(at, &offsets[..]).unwrap();
+        picture.write_tag(size, &counts[..]).unwrap();
+        picture.finish().unwrap();
+        bytes.into_inner()
+    }
+
+    #[test]
+    fn planes_are_read_as_pixels_are() {
+        let of = |c: usize, x: usize, y: usize| (1 + c) as f32 / 8.0 + x as f32 / 64.0 + y as f32;
+        for (channels, is_tiled) in [(3, false), (4, false), (3, true), (4, true)] {
+            let [planes, pixels] = [true, false].map(|is_planar| {
+                let cover = |c, x, y| if c == 3 { x as f32 / 20.0 } else { of(c, x, y) };
+                let choice = Choice { cover: true, ..Choice::default() };
+                decode(&tiff_of(channels, is_planar, is_tiled, cover), choice).unwrap()
+            });
+            assert_eq!((planes.width, planes.height), (20, 19));
+            assert!(planes.rgb == pixels.rgb && planes.alpha == pixels.alpha, "{channels} {is_tiled}");
+            assert_eq!(planes.rgb[18 * 20 + 7], [0, 1, 2].map(|c| of(c, 7, 18)), "{channels} {is_tiled}");
+            assert_eq!(planes.alpha.map(|cover| cover[18 * 20 + 7]), (channels == 4).then_some(7.0 / 20.0));
+        }
     }
 
     #[test]

@@ -7,8 +7,13 @@ use tiff::TiffError;
 use tiff::decoder::{ChunkType, Decoder, Limits};
 use tiff::tags::Tag;
 
-/// A file whose samples lie as they are wanted: pixel by pixel, and of a kind that needs no conversion.
-pub(super) struct Plain<R: BufRead + Seek>(Decoder<R>);
+/// A file whose samples are of a kind that needs no conversion, pixel by pixel or a plane for each channel.
+pub(super) struct Plain<R: BufRead + Seek> {
+    decoder: Decoder<R>,
+    size: [usize; 2],
+    /// How many planes there are, one where the samples of a pixel lie together.
+    planes: usize,
+}
 
 impl<R: BufRead + Seek> Plain<R> {
     /// The file behind `decoder`, read once more; `None` of any other kind. `spare_bytes` is what it may take to unpack.
@@ -27,38 +32,66 @@ impl<R: BufRead + Seek> Plain<R> {
         limits.ifd_value_size = limits.intermediate_buffer_size;
         let mut own = Decoder::new(reader).map_err(said)?.with_limits(limits);
         let layout = own.find_tag_unsigned::<u16>(Tag::PlanarConfiguration).map_err(said)?;
+        let planes = match layout {
+            None | Some(1) => 1,
+            Some(2) => usize::from(decoder.color_type().channel_count()),
+            Some(_) => return Ok(None),
+        };
+        // Of one plane.
         let layout_bytes = own.image_buffer_layout().map_err(said)?.len as u64;
-        let is_plain = layout.is_none_or(|layout| layout == 1) && layout_bytes == decoder.total_bytes();
-        Ok(is_plain.then_some(Self(own)))
+        let (width, height) = decoder.dimensions();
+        let size = [width as usize, height as usize];
+        let is_plain = layout_bytes.checked_mul(planes as u64) == Some(decoder.total_bytes());
+        Ok(is_plain.then_some(Self { decoder: own, size, planes }))
     }
 
-    /// All samples, row by row.
-    pub(super) fn read(mut self, to: &mut [u8]) -> Result<(), ImageError> {
-        self.0.read_image_bytes(to).map_err(said)
+    pub(super) fn is_planar(&self) -> bool {
+        self.planes > 1
     }
 
-    /// Calls back with runs of pixels of `size` bytes, each with the place of its first one in the picture.
+    /// All samples, row by row and pixel by pixel, of `pixel` bytes each. Of planes as many as a pixel has room for, of
+    /// `sample` bytes each.
+    pub(super) fn read(&mut self, to: &mut [u8], pixel: usize, sample: usize) -> Result<(), ImageError> {
+        if !self.is_planar() {
+            return self.decoder.read_image_bytes(to).map_err(said);
+        }
+        for plane in 0..self.planes.min(pixel / sample) {
+            self.runs(plane, sample, |first, samples| {
+                let pixels = to[first * pixel..].chunks_exact_mut(pixel);
+                for (to, of) in pixels.zip(samples.chunks_exact(sample)) {
+                    to[plane * sample..][..sample].copy_from_slice(of);
+                }
+            })?;
+        }
+        Ok(())
+    }
+
+    /// Calls back with runs of pixels of `size` bytes of a plane, each with the place of its first one in the picture.
     pub(super) fn runs(
-        mut self,
-        width: usize,
+        &mut self,
+        plane: usize,
         size: usize,
         mut take: impl FnMut(usize, &[u8]),
     ) -> Result<(), ImageError> {
-        let count = match self.0.get_chunk_type() {
-            ChunkType::Strip => self.0.strip_count(),
-            ChunkType::Tile => self.0.tile_count(),
+        let decoder = &mut self.decoder;
+        let count = match decoder.get_chunk_type() {
+            ChunkType::Strip => decoder.strip_count(),
+            ChunkType::Tile => decoder.tile_count(),
         };
-        let (chunk_width, chunk_height) = self.0.chunk_dimensions();
+        let count = count.map_err(said)? as usize / self.planes;
+        let [width, height] = self.size;
+        let (chunk_width, chunk_height) = decoder.chunk_dimensions();
         let across = width.div_ceil(chunk_width as usize);
         let mut chunk = Vec::new();
-        for index in 0..count.map_err(said)? {
-            let (own_width, own_height) = self.0.chunk_data_dimensions(index);
+        for index in 0..count {
+            let stored = (plane * count + index) as u32;
+            let (own_width, own_height) = decoder.chunk_data_dimensions(stored);
             let row_bytes = own_width as usize * size;
             chunk.resize(row_bytes * own_height as usize, 0);
-            self.0.read_chunk_bytes(index, &mut chunk).map_err(said)?;
-            let (x, y) =
-                (index as usize % across * chunk_width as usize, index as usize / across * chunk_height as usize);
-            for (row, pixels) in chunk.chunks_exact(row_bytes).enumerate() {
+            decoder.read_chunk_bytes(stored, &mut chunk).map_err(said)?;
+            let (x, y) = (index % across * chunk_width as usize, index / across * chunk_height as usize);
+            // The lowest tiles of a plane but the first are given with the rows below the picture.
+            for (row, pixels) in chunk.chunks_exact(row_bytes).take(height - y).enumerate() {
                 take((y + row) * width + x, pixels);
             }
         }
