@@ -293,8 +293,7 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
             faults.push(fault.hint("thicknesses follow the direction of the light: write it without the minus sign"));
         }
         let apertures = stated.aperture.as_ref().map(|node| aperture::read(node, resources));
-        let mut element =
-            Element::new(shape.kind().unwrap_or(usual), Arc::from(surface), medium_before, medium_after);
+        let mut element = Element::new(shape.kind().unwrap_or(usual), Arc::from(surface), medium_before, medium_after);
         if stated.mirror && element.stop {
             faults.push(place.fault("mirror", "a stop does not refract light").hint("`kind: plane` with `stop: true`"));
         } else if stated.mirror {

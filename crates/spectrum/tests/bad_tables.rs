@@ -34,7 +34,10 @@ fn each_fault_has_its_place() {
         ("wavelength_nm,p\n400,1e999\n", "bad.csv: row 2, column 2 (p): `1e999` is not a finite number"),
         ("wavelength_nm,p\n400,\n", "bad.csv: row 2, column 2 (p): `` is not a number"),
         ("wavelength_nm,p\n400,0x10\n", "bad.csv: row 2, column 2 (p): `0x10` is not a number"),
-        ("wavelength_nm,p\n400\n", "bad.csv: row 2, column 1 (wavelength_nm): number of fields: 1, but the header has 2"),
+        (
+            "wavelength_nm,p\n400\n",
+            "bad.csv: row 2, column 1 (wavelength_nm): number of fields: 1, but the header has 2",
+        ),
         ("wavelength_nm,p\n400,1,2\n", "bad.csv: row 2, column 2 (p): number of fields: 3, but the header has 2"),
         (
             "time,p\n400,1\n",

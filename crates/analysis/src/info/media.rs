@@ -48,7 +48,10 @@ pub(super) fn write(media: &[AssumedMedium], f: &mut fmt::Formatter<'_>) -> fmt:
         (media.iter().filter(|m| m.modeled_from_lines == Some(1))).map(|m| m.medium.clone()).collect();
     if !modeled.is_empty() {
         writeln!(f, "modeled dispersion (ordinary glass of this nd and Vd): {}", list(modeled))?;
-        writeln!(f, "  for nine glasses out of ten the index is right within 0.0002 at r, 0.0004 at g and 0.0009 at h;")?;
+        writeln!(
+            f,
+            "  for nine glasses out of ten the index is right within 0.0002 at r, 0.0004 at g and 0.0009 at h;"
+        )?;
         writeln!(f, "  the error is larger for dense flints, short flints, fluor crowns and phosphate crowns")?;
     }
     let through: Vec<String> =

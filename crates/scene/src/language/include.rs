@@ -278,7 +278,10 @@ mod tests {
         let mut bomb: Vec<(&str, &str)> = bomb.iter().map(|(n, t)| (n.as_str(), t.as_str())).collect();
         bomb.push(("f12.yaml", "x: 1\n"));
         for (files, said) in [
-            (vec![("s.yaml", "a: 1\ninclude: [b, 3]\n"), ("basis.yaml", "x: 1")], "/s.yaml:2:11: `b`: no scene or file of this name"),
+            (
+                vec![("s.yaml", "a: 1\ninclude: [b, 3]\n"), ("basis.yaml", "x: 1")],
+                "/s.yaml:2:11: `b`: no scene or file of this name",
+            ),
             (vec![("s.yaml", "include: basi.yaml"), ("basis.yaml", "x: 1")], "did you mean `basis.yaml`?"),
             (vec![("s.yaml", "include: {a: 1}")], "/s.yaml:1:10: an include names a file"),
             (vec![("s.yaml", "include: s.yaml")], "`s.yaml` includes itself (the chain is s.yaml -> s.yaml)"),

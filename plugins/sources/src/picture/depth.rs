@@ -153,7 +153,10 @@ impl Depth {
         let mut faults = Faults::new();
         let texts = [
             ("is not a number", "the renderer wrote no depth there: fill it with a large one, and give `far`"),
-            ("is 0 or less", "depth is measured from the camera; give pixels without depth a large value, and set `far`"),
+            (
+                "is 0 or less",
+                "depth is measured from the camera; give pixels without depth a large value, and set `far`",
+            ),
             ("is infinite", "say where the backdrop stands, such as `far: 1 km`"),
         ];
         for (first, (what, hint)) in bad.iter().zip(texts) {
