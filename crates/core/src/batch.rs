@@ -69,7 +69,7 @@ pub fn pixel_and_channel(tag: u32) -> (u32, Option<u32>) {
 /// |---|---|---|
 /// | `x y z` | mm | a point of the ray, in the frame that the holder states |
 /// | `l m n` | 1 | unit direction |
-/// | `wavelength_nm` | nm | vacuum-equal air wavelength, as glass catalogues use it |
+/// | `wavelength_nm` | nm | wavelength in air, as glass catalogues state it |
 /// | `line` | | number of the source's spectral line that was drawn, or [`CONTINUUM`] |
 /// | `index` | 1 | refractive index of the medium that the ray is in |
 /// | `weight` | see [`crate::stage`] | flux forward, throughput backward |

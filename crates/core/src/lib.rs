@@ -1,7 +1,7 @@
 //! The vocabulary of the spectral camera: rays in batches, stage traits, registry, typed parameters.
 //!
-//! Every plugin depends on this crate, and needs no other for what it computes with: mathematics of the same bits everywhere is
-//! handed on from `spectra-numerics`.
+//! Every plugin depends on this crate and needs no other. Mathematical functions that give the same bits on every machine are
+//! re-exported from `spectra-numerics`.
 //!
 //! # Conventions
 //! - Lengths are in millimetres, wavelengths in nanometres, angles in radians, times in seconds. A bare `f64` that

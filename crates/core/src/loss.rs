@@ -14,7 +14,7 @@ pub enum Loss {
     Absorbed = 4,
     /// It passed the lens but missed the imager's frame.
     OutOfFrame = 5,
-    /// No light comes along it: backward, it passes beside the picture in front of the lens, or meets black.
+    /// It carries no light: traced backward, it misses the picture in front of the lens, or meets black.
     Unlit = 6,
 }
 

@@ -9,6 +9,8 @@ const UNKNOWN: &str = "unknown";
 /// A length, or why there is none.
 fn mm(value: Option<f64>) -> String {
     match value {
+        // Rounding leaves no sign of a zero.
+        Some(value) if value.abs() < 5e-5 => "0.0000 mm".to_owned(),
         Some(value) if value.is_finite() => format!("{value:.4} mm"),
         Some(_) => "infinite".to_owned(),
         None => UNKNOWN.to_owned(),
@@ -135,7 +137,8 @@ impl LensReport {
 
     fn prescription(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let nm = self.wavelength_nm.map_or(String::new(), |nm| format!("; index at {nm} nm"));
-        writeln!(f, "surfaces (lengths in mm{nm})")?;
+        let across = if self.surfaces.iter().any(|s| s.radius_x_mm.is_some()) { "; x: in the x-z section" } else { "" };
+        writeln!(f, "surfaces (lengths in mm{nm}{across})")?;
         let kinds = self.surfaces.iter().map(|s| s.kind.len()).max().unwrap_or(0).max(7);
         writeln!(
             f,
@@ -143,12 +146,16 @@ impl LensReport {
             "#", "surface", "radius", "thickness", "semi-diameter", "index"
         )?;
         for s in &self.surfaces {
-            let radius = s.radius_mm.map_or("flat".to_owned(), |r| format!("{r:.4}"));
+            let radius = match (s.radius_mm, s.radius_x_mm) {
+                (Some(radius_mm), _) => format!("{radius_mm:.4}"),
+                (None, Some(radius_x_mm)) => format!("x {radius_x_mm:.4}"),
+                (None, None) => "flat".to_owned(),
+            };
             let semi_diameter = s.semi_diameter_mm.map_or("-".to_owned(), |d| format!("{d:.4}"));
             let medium = if s.mirror { "mirror" } else { &s.medium };
-            let across = match s.radius_x_mm {
-                Some(radius_x_mm) => format!(" (radius in the x-z section: {radius_x_mm:.4})"),
-                None => String::new(),
+            let across = match (s.radius_mm, s.radius_x_mm) {
+                (Some(_), Some(radius_x_mm)) => format!(" (radius x {radius_x_mm:.4})"),
+                _ => String::new(),
             };
             writeln!(
                 f,

@@ -20,7 +20,7 @@ const fn hash(name: &str, mut from: u64) -> u64 {
     from
 }
 
-/// Tells a stage from the others that draw: by what it is, and as which of its kind.
+/// Identifies a stage that draws numbers: its kind, and its number among the stages of that kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StageKey(u64);
 
@@ -119,7 +119,7 @@ impl StageNumbers<'_> {
         Self { kind: None, stage: StageKey(0), streams: &mut [], samples: &mut [] }
     }
 
-    /// Those of ray `i`; `None` where nothing is left to chance, as in drawings and in the search for focus.
+    /// The numbers of ray `i`; `None` where there are none, as in drawings and in the search for focus.
     #[inline]
     #[must_use]
     pub fn of(&self, i: usize) -> Option<RayNumbers> {

@@ -1,4 +1,4 @@
-//! Typed parameters with places, and what is said when they are wrong.
+//! Typed parameters with their places in the file, and the messages when they are wrong.
 //!
 //! A file becomes a tree of [`Node`]s, each with the place where it was written. A stage gets its own
 //! map of it as [`Params`] and states what it wants as a plain struct: keys are the kebab-case names of
@@ -49,9 +49,9 @@
 //! # Ok::<(), Faults>(())
 //! ```
 //!
-//! All of it rests on one declaration: the struct. `schemars` makes its schema, `check` holds the tree against that, and serde reads
-//! what is then known to be right. A check that serde makes (`try_from`, a `Deserialize` by hand) comes last, and is placed at the map around it; it
-//! may put a hint behind its message, on a line that starts with `hint: `.
+//! The struct is the only declaration. `schemars` makes its schema, `check` compares the tree with the schema, and serde then reads
+//! the tree. A check by serde itself (`try_from`, a hand-written `Deserialize`) comes last, and its fault is placed at the map
+//! around the value; it may add a hint to its message, on a line that starts with `hint: `.
 
 mod at;
 mod check;

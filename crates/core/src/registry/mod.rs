@@ -72,20 +72,20 @@ pub struct Context<'a> {
     pub grid: Grid,
     /// For a color model: the light that the source's colors are seen under.
     pub illuminant: Option<&'a SpectralPower>,
-    /// For a source: what the frame sees in front of the lens; `None` where there is no lens, or none that is sound.
+    /// For a source: what the frame sees in front of the lens; `None` if the scene has no valid lens.
     pub view: Option<&'a View>,
     /// Where warnings go, if anywhere; see [`Context::warn`].
     pub warnings: Option<&'a Warnings>,
 }
 
 impl<'a> Context<'a> {
-    /// Of files and a band; nothing else is known.
+    /// A context with files and a band, and nothing else.
     #[must_use]
     pub const fn new(resources: &'a dyn Resources, grid: Grid) -> Self {
         Self { resources, grid, illuminant: None, view: None, warnings: None }
     }
 
-    /// Says what a person should know before believing a picture: a [`Fault`] with its place and a hint, or a text.
+    /// Warns of something that makes the picture doubtful: a [`Fault`] with its place and a hint, or a text.
     pub fn warn(&self, warning: impl Into<Warning>) {
         if let Some(warnings) = self.warnings {
             warnings.push(warning);
@@ -273,9 +273,9 @@ pub struct Listed {
     pub package: &'static str,
     /// Version of the crate.
     pub version: &'static str,
-    /// Whether it is taken where a scene names no kind.
+    /// Whether it is the default where a scene names no kind.
     pub default: bool,
-    /// What its parameters are written in.
+    /// The schema of its parameters.
     pub schema: SchemaOf,
 }
 
@@ -292,7 +292,7 @@ impl Listed {
         }
     }
 
-    /// What a person reads about it.
+    /// Its documentation, as `spectra doc` shows it.
     #[must_use]
     pub fn documentation(&self) -> Documentation {
         Documentation::of(self.schema)
