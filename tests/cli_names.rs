@@ -79,7 +79,7 @@ fn parts_of_names_are_enough() {
         (&["film", "info", "helios"], "`helios-44-58-f2` is a lens"),
         (&["film", "info", "kodak"], "which one? "),
         (&["spectrum", "info", "helios"], "`helios-44-58-f2` is a lens"),
-        (&["film", "info", "portra-400"], "known: "),
+        (&["film", "info", "delta-3200"], "known: "),
         (&["run", "helios"], "is a lens"),
     ] {
         let said = refused(arguments);

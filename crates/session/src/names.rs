@@ -12,8 +12,9 @@ pub struct Names {
     only: Option<[String; 2]>,
 }
 
-/// Endings of pictures, by which a name is known to be that of a file.
-const ENDINGS: [&str; 5] = ["png", "tif", "tiff", "exr", "dng"];
+/// Endings of pictures, by which a name is known to be that of a file and not of a folder; no scene is written as the last of them.
+const ENDINGS: [&str; 13] =
+    ["png", "tif", "tiff", "exr", "dng", "jpg", "jpeg", "webp", "gif", "bmp", "jp2", "hdr", "tga"];
 
 impl Names {
     /// All files that the scene asks for, by its name.
@@ -37,7 +38,10 @@ impl Names {
         let Some([stem, ending]) = &self.only else { return Ok(scene.output.clone()) };
         let ending = ending.to_ascii_lowercase();
         let ending = if ending == "tif" { "tiff" } else { &ending };
-        let none = || SessionError::Request(format!("{stem}.{ending}: no picture is written as `.{ending}`"));
+        let none = || {
+            let fault = Fault::new(format!("{stem}.{ending}: no picture is written as `.{ending}`"));
+            SessionError::Request(fault.hint(format!("name it {stem}.png, .tiff or .exr")).to_string())
+        };
         let output = scene.output_of(&format!(".{ending}")).ok_or_else(none)?;
         match output.check(&*scene.imager) {
             Ok(()) => Ok(vec![output]),

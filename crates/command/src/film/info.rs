@@ -189,7 +189,11 @@ fn iso_6(stock: &Stock) -> Option<String> {
 }
 
 fn text(stock: &Stock) -> String {
-    let mut out = format!("{}: {} film, {} layer(s)\n\n", stock.name, process(stock), stock.layers.len());
+    let layers = match stock.layers.len() {
+        1 => "1 layer".to_owned(),
+        several => format!("{several} layers"),
+    };
+    let mut out = format!("{}: {} film, {layers}\n\n", stock.name, process(stock));
     let mut row = |name: &str, value: Option<String>| {
         if let Some(value) = value {
             // Writing to a String cannot fail.

@@ -347,7 +347,8 @@ mod tests {
         let mut picture = encoder.image_directory().unwrap();
         let chunk = if is_tiled { [16, 16] } else { [SIZE[0], 6] };
         let (mut offsets, mut counts) = (Vec::new(), Vec::new());
-        let planes = if is_planar { (0..channels).map(|c| c..c + 1).collect() } else { vec![0..channels] };
+        let planes: Vec<_> =
+            if is_planar { (0..channels).map(|c| c..c + 1).collect() } else { std::iter::once(0..channels).collect() };
         for plane in planes {
             for y0 in (0..SIZE[1]).step_by(chunk[1]) {
                 let rows = if is_tiled { 16 } else { chunk[1].min(SIZE[1] - y0) };
