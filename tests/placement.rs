@@ -287,7 +287,7 @@ fn faults_of_placement_say_what_to_do() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("lens.yaml");
     for (text, words) in [
-        ("  - {kind: plane, mirror: true, glass: SCHOTT/F2}\n", "so it has no glass"),
+        ("  - {kind: plane, mirror: true, glass: SCHOTT/F2}\n", "there is no glass behind a mirror"),
         ("  - {kind: plane, aperture: {shape: rectangl, half-width: 1, half-height: 1}}\n", "did you mean `rectangle`"),
         ("  - {kind: plane, aperture: [{shape: ring, inner: 3, outer: 2}]}\n", "no ring lies between"),
         ("  - {kind: plane, aperture: {shape: mask, file: nowhere.png, width: 10}}\n", "no such file"),
