@@ -106,6 +106,8 @@ fn stopped(session: &mut Session, samples: u64) {
             });
         }
     }
+    // Those who stop by rays would wait for ever where none is traced: while pupils are searched.
+    session.prepare(&Alone).expect("ready");
     let control = Control::new();
     session.advance(samples, &Tired(&control), &control).expect("stopped");
 }
