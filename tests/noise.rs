@@ -116,7 +116,9 @@ fn the_same_bits_however_the_work_is_done() {
 #[test]
 fn strata_cannot_stop() {
     let faults = spectra_scene::load(&path("gray-card"), &settings(&["render.numbers=stratified"]));
-    assert!(faults.map(drop).expect_err("refused").to_string().contains("`stratified` numbers need all of their samples"));
+    assert!(
+        faults.map(drop).expect_err("refused").to_string().contains("`stratified` numbers need all of their samples")
+    );
 }
 
 /// A gray card in even light at 64 samples a pixel: every layer of a color negative is known to 2.5 %, by neighbors' differences. Of
