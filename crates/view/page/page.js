@@ -10,7 +10,7 @@
 /** @typedef {{is: "switch"}} SwitchKind */
 /** @typedef {{path: string, kind: NumberKind | PairKind | ChoiceKind | SwitchKind, value: any, help: string, front: boolean}} Control */
 /** @typedef {{message: string, place?: string, hint?: string}} Fault */
-/** @typedef {{frame: number, width?: number, height?: number, samples?: number, of?: number, rays?: number, since_change_ms?: number,
+/** @typedef {{frame: number, scene?: number, width?: number, height?: number, samples?: number, of?: number, rays?: number, since_change_ms?: number,
  *   exposure_s?: number, lens?: string, film?: string, focus?: string, warnings?: Fault[], fault?: {path: string, faults: Fault[]}?}} Head */
 /** @typedef {{head: Head, width: number, height: number, light: Float32Array}} Picture */
 
@@ -536,7 +536,7 @@ function tell(head) {
 
 async function follow() {
   let after = 0;
-  let changed = -1;
+  let scene = -1;
   for (;;) {
     const answer = await fetch(`/frame?desk=${desk}&after=${after}`);
     if (answer.status === 204) continue;
@@ -554,9 +554,11 @@ async function follow() {
       if (!keptIsShown) redraw();
     }
     tell(head);
-    // The first picture after a change: the scene may have other controls and another lens now.
-    if ((head.since_change_ms ?? 0) < changed || changed < 0 || head.fault) refresh().catch(() => {});
-    changed = head.since_change_ms ?? 0;
+    // The first picture of another scene: it may have other controls and another lens.
+    if (head.scene !== undefined && head.scene !== scene) {
+      scene = head.scene;
+      refresh().catch(() => {});
+    }
     document.body.dataset.frame = String(head.frame);
   }
 }

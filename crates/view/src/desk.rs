@@ -49,6 +49,8 @@ struct State {
     fault: Option<Value>,
     section: [Option<Arc<String>>; 2],
     scene: Option<Arc<spectra_scene::Scene>>,
+    /// How often the scene was another one: the page asks for its controls again.
+    scenes: u64,
     /// What the page set, by path, for the scene's file.
     changes: Vec<(String, String)>,
     stop: Arc<Stop>,
@@ -305,6 +307,7 @@ impl Desk {
             state.section = [None, None];
         }
         state.scene = Some(Arc::clone(session.scene()));
+        state.scenes += 1;
         self.turned.notify_all();
     }
 
@@ -340,6 +343,7 @@ impl Desk {
         let DisplayPicture { width_px, height_px, rgb } = picture;
         let head = json!({
             "frame": state.number,
+            "scene": state.scenes,
             "fault": state.fault,
             "width": width_px,
             "height": height_px,

@@ -46,6 +46,15 @@ await row("lens.f-number").locator("input[type=number]").fill("5.6");
 await page.keyboard.press("Enter");
 await done(at);
 
+// A control that becomes another one by its first value: the blades of a round stop, and of one with blades.
+for (const blades of ["5", "6"]) {
+  at = await frame();
+  await page.locator('[data-path="lens.aperture"], [data-path="lens.aperture.blades"]').locator("input[type=number]").fill(blades);
+  await page.keyboard.press("Enter");
+  await done(at);
+  await page.waitForFunction(() => document.querySelector('[data-path="lens.aperture.blades"]'));
+}
+
 // A value that cannot be: it is said with its place, and the picture stays.
 at = await frame();
 await row("lens.f-number").locator("input[type=number]").fill("0.1");
@@ -87,7 +96,7 @@ assert.ok(wide <= 400, `${wide} px wide`);
 
 await page.locator("#save").click();
 await page.waitForFunction(() => document.querySelector("#saved").textContent !== "");
-assert.equal(await page.locator("#saved").textContent(), "1 value written to the scene.");
+assert.equal(await page.locator("#saved").textContent(), "3 values written to the scene.");
 
 // Reload: the scene as it is saved.
 await page.reload();

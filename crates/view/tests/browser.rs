@@ -45,5 +45,5 @@ fn a_person_turns_types_saves_and_is_told_what_is_wrong() {
     assert!(output.status.success(), "{said}");
     println!("{said}");
     let saved = std::fs::read_to_string(&file).expect("a file");
-    assert_eq!(saved, SCENE.replace("f/2,", "f/5.6,"));
+    assert_eq!(saved, SCENE.replace("f/2, focus: 2 m", "f/5.6, focus: 2 m, aperture: {shape: iris, blades: 6}"));
 }
