@@ -315,7 +315,7 @@ fn ghost_rays_are_those_of_optiland() {
         compared += 1;
         paths.insert(fields[..3].join(" "));
     }
-    assert!(compared >= 55 && paths.len() == 15, "{compared} rays of {} paths", paths.len());
+    assert!(compared == 57 && paths.len() == 15, "{compared} rays of {} paths", paths.len());
 }
 
 /// Every watt is booked once, and of a bare lens two reflections leave some 1.6 % of the light along the axis.
