@@ -73,6 +73,7 @@ impl Report<'_> {
             "width_mm": size.width_mm,
             "height_mm": size.height_mm,
             "channels": channels,
+            "fingerprint": format!("{:016x}", rendering.exposure.fingerprint()),
             "exposure_time_s": self.exposure_time_s(),
             "metered_time_s": self.film_times_s(|time| Some(time.time_s)),
             "source": scene.source.describe(),

@@ -4,11 +4,11 @@
 //! once, by the last of them; the work at hand is stopped for them. A desk that nobody asks anything of is cleared.
 
 use crate::controls::{self, Control};
+use crate::parts::{fault_json, packed, said};
 use crate::{save, section};
 use serde_json::{Value, json};
 use spectra_core::Isa;
 use spectra_core::frame::{DisplayPicture, ExposureFrame};
-use spectra_core::params::Fault;
 use spectra_scene::Shot;
 use spectra_session::{Control as Stop, Session, SessionError, Threads};
 use std::path::{Path, PathBuf};
@@ -374,32 +374,6 @@ impl Desk {
 fn empty() -> ExposureFrame {
     let size = spectra_core::frame::FrameSize { width_px: 0, height_px: 0, width_mm: 0.0, height_mm: 0.0 };
     ExposureFrame { size, channels: Vec::new() }
-}
-
-/// A head and the numbers of a picture, these from a place that is a multiple of four.
-fn packed(head: &Value, numbers: &[f32]) -> Vec<u8> {
-    let mut head = head.to_string();
-    head.push_str(&" ".repeat((4 - head.len() % 4) % 4));
-    let mut bytes = Vec::with_capacity(4 + head.len() + 4 * numbers.len());
-    bytes.extend((head.len() as u32).to_le_bytes());
-    bytes.extend(head.as_bytes());
-    bytes.extend(numbers.iter().flat_map(|v| v.to_le_bytes()));
-    bytes
-}
-
-/// A fault as the page shows it, with the control that it is about.
-fn said(error: &SessionError, path: &str) -> Value {
-    match error {
-        SessionError::Faults(faults) => {
-            let all: Vec<Value> = faults.iter().map(fault_json).collect();
-            json!({"path": path, "faults": all})
-        }
-        other => json!({"path": path, "faults": [{"message": other.to_string()}]}),
-    }
-}
-
-fn fault_json(fault: &Fault) -> Value {
-    json!({"message": fault.message, "place": fault.place_text(), "hint": fault.hint})
 }
 
 /// Whether a scene can be viewed at all: faults are told at the start, and not by a page.
