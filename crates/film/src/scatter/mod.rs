@@ -15,8 +15,8 @@ pub use modulation::Modulation;
 pub use mtf::{Mtf, MtfError};
 pub use spread::PointSpread;
 
-use crate::convolve::Convolver;
 use crate::raster::Raster;
+use spectra_numerics::convolve::Convolver;
 
 /// Part of the light that may be beyond the kernel.
 const BEYOND: f64 = 1e-9;

@@ -1,4 +1,4 @@
-//! Convolution of a plane with a small symmetric kernel, block by block.
+//! Convolution of a plane with a small kernel that is the same at opposite places, block by block.
 //!
 //! Each block of the picture is transformed with the kernel's reach around it (overlap and save; T. G. Stockham,
 //! "High-speed convolution and correlation", AFIPS 1966), so memory stays that of a few blocks and the result is a
@@ -10,18 +10,18 @@ mod fft;
 mod grid;
 mod kernel;
 
-pub(crate) use grid::Grid;
-pub(crate) use kernel::Kernel;
+pub use grid::Grid;
+pub use kernel::Kernel;
 
+use crate::isa::Isa;
 use block::{Scratch, Transform};
 use rayon::prelude::*;
-use spectra_core::isa::Isa;
 
 /// Longest side of a block, unless the kernel asks for more.
 const LONGEST_SIDE: usize = 512;
 
 /// A kernel made ready for planes of one size.
-pub(crate) struct Convolver {
+pub struct Convolver {
     width: usize,
     height: usize,
     radius: usize,
@@ -33,11 +33,15 @@ pub(crate) struct Convolver {
 
 impl Convolver {
     /// Prepares `kernel` for planes of `width` by `height` pixels.
-    pub(crate) fn new(kernel: &Kernel, width: usize, height: usize) -> Self {
+    pub fn new(kernel: &Kernel, width: usize, height: usize) -> Self {
+        Self::of(kernel.radius(), kernel.signed(), width, height)
+    }
+
+    /// The same of weights by how far a pixel lies to the right and down, up to `radius`; they are the same at opposite places.
+    pub fn of(radius: usize, weight: impl Fn(isize, isize) -> f64, width: usize, height: usize) -> Self {
         let isa = Isa::detect();
-        let radius = kernel.radius();
         let transform = Transform::new(side(width, radius), side(height, radius));
-        let spectrum = transform.spectrum(kernel, isa);
+        let spectrum = transform.spectrum(radius, weight, isa);
         Self { width, height, radius, transform, spectrum, isa }
     }
 
@@ -45,7 +49,7 @@ impl Convolver {
     ///
     /// # Panics
     /// If a plane has another size than was prepared for.
-    pub(crate) fn apply(&self, source: &[f32], target: &mut [f32], write: impl Fn(&mut f32, f64) + Sync) {
+    pub fn apply(&self, source: &[f32], target: &mut [f32], write: impl Fn(&mut f32, f64) + Sync) {
         assert_eq!(source.len(), self.width * self.height, "the plane has the size that was prepared for");
         assert_eq!(target.len(), source.len(), "both planes have the same size");
         if source.is_empty() {
@@ -59,7 +63,7 @@ impl Convolver {
     }
 
     /// Convolves the rows from `y0` on, two tiles at a time: one is the real, one the imaginary part. The kernel is
-    /// symmetric, so its spectrum is real and the two do not mix.
+    /// the same at opposite places, so its spectrum is real and the two do not mix.
     fn strip(
         &self,
         source: &[f32],

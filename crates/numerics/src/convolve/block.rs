@@ -1,8 +1,7 @@
 //! Two-dimensional transforms of one block.
 
 use super::fft::{Fft, LANES, Lane};
-use super::kernel::Kernel;
-use spectra_core::isa::{Isa, Vectorized};
+use crate::isa::{Isa, Vectorized};
 
 /// Transforms of blocks of one size.
 pub(super) struct Transform {
@@ -82,23 +81,30 @@ impl Transform {
         self.down.length()
     }
 
-    /// The kernel's spectrum over the number of points, column chunk by column chunk.
-    pub(super) fn spectrum(&self, kernel: &Kernel, isa: Isa) -> Vec<f64> {
+    /// The spectrum, over the number of points, of weights that are the same at opposite places: column chunk by column chunk.
+    pub(super) fn spectrum(&self, radius: usize, weight: impl Fn(isize, isize) -> f64, isa: Isa) -> Vec<f64> {
         let scale = 1.0 / (self.width() * self.height()) as f64;
-        self.spectrum_with(kernel, &mut Scratch::new(self), scale, isa)
+        self.spectrum_with(radius, weight, &mut Scratch::new(self), scale, isa)
     }
 
-    /// The kernel's spectrum times `scale`; a kernel as wide as the block wraps around once.
-    pub(super) fn spectrum_with(&self, kernel: &Kernel, scratch: &mut Scratch, scale: f64, isa: Isa) -> Vec<f64> {
+    /// The spectrum of weights times `scale`; weights as wide as the block wrap around once.
+    pub(super) fn spectrum_with(
+        &self,
+        radius: usize,
+        weight: impl Fn(isize, isize) -> f64,
+        scratch: &mut Scratch,
+        scale: f64,
+        isa: Isa,
+    ) -> Vec<f64> {
         let (width, height) = (self.width(), self.height());
         scratch.block.iter_mut().for_each(|part| part.fill(0.0));
-        // The distance to the origin, around the block.
-        let away = |k: usize, length: usize| k.min(length - k);
+        // The way from the origin, around the block.
+        let way = |k: usize, length: usize| if 2 * k <= length { k as isize } else { k as isize - length as isize };
         for j in 0..height {
             for i in 0..width {
-                let (di, dj) = (away(i, width), away(j, height));
-                if di <= kernel.radius() && dj <= kernel.radius() {
-                    scratch.block[0][j * width + i] = kernel.weight(di, dj);
+                let (di, dj) = (way(i, width), way(j, height));
+                if di.unsigned_abs() <= radius && dj.unsigned_abs() <= radius {
+                    scratch.block[0][j * width + i] = weight(di, dj);
                 }
             }
         }
@@ -221,7 +227,7 @@ impl Vectorized for Backward<'_> {
     }
 }
 
-/// The real part of the spectrum, where the block is a kernel.
+/// The real part of the spectrum, where the block is a kernel: the imaginary one of what is the same at opposite places is 0.
 struct Spectrum<'a> {
     transform: &'a Transform,
     scratch: &'a mut Scratch,

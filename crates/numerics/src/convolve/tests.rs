@@ -71,3 +71,18 @@ fn kernels_sum_over_all_four_quarters() {
     assert_eq!(kernel.clone().cropped(0).sum(), 1.0);
     assert_eq!(kernel.scaled(2.0).sum(), 8.0);
 }
+
+/// A kernel that is the same at opposite places and nowhere else.
+#[test]
+fn slanted_kernels_keep_their_slant() {
+    let mut source = vec![0.0; 40 * 30];
+    source[15 * 40 + 20] = 1.0;
+    let weight =
+        |i: isize, j: isize| if i == 2 * j && j.abs() < 4 { 1.0 / (1.0 + j.unsigned_abs() as f64) } else { 0.0 };
+    let mut target = vec![0.0; source.len()];
+    Convolver::of(6, weight, 40, 30).apply(&source, &mut target, |to, v| *to = v as f32);
+    for (at, found) in target.iter().enumerate() {
+        let want = weight(at as isize % 40 - 20, at as isize / 40 - 15);
+        assert!((f64::from(*found) - want).abs() < 1e-7, "{at}: {found} {want}");
+    }
+}

@@ -2,7 +2,7 @@
 
 /// Weights of the pixels around one, the same under a turn by a right angle and in a mirror.
 #[derive(Clone, Debug)]
-pub(crate) struct Kernel {
+pub struct Kernel {
     radius: usize,
     /// The quarter from the center on: weight of the pixel `i` to the right and `j` down at `j * (radius + 1) + i`.
     quarter: Vec<f64>,
@@ -10,7 +10,7 @@ pub(crate) struct Kernel {
 
 impl Kernel {
     /// The kernel whose pixel `i` across and `j` down (at least `i`) weighs `weight(i, j)`.
-    pub(crate) fn new(radius: usize, weight: impl Fn(usize, usize) -> f64 + Sync) -> Self {
+    pub fn new(radius: usize, weight: impl Fn(usize, usize) -> f64 + Sync) -> Self {
         use rayon::prelude::*;
         let side = radius + 1;
         let triangle = |j: usize| (0..j + 1).map(|i| weight(i, j)).collect::<Vec<f64>>();
@@ -23,17 +23,22 @@ impl Kernel {
     }
 
     /// Pixels that it reaches.
-    pub(crate) fn radius(&self) -> usize {
+    pub fn radius(&self) -> usize {
         self.radius
     }
 
     /// Weight of the pixel `i` across and `j` down.
-    pub(crate) fn weight(&self, i: usize, j: usize) -> f64 {
+    pub fn weight(&self, i: usize, j: usize) -> f64 {
         self.quarter[j * (self.radius + 1) + i]
     }
 
+    /// The weight of the pixel so far to the right and down.
+    pub(super) fn signed(&self) -> impl Fn(isize, isize) -> f64 + '_ {
+        |i, j| self.weight(i.unsigned_abs(), j.unsigned_abs())
+    }
+
     /// Sum of all weights.
-    pub(crate) fn sum(&self) -> f64 {
+    pub fn sum(&self) -> f64 {
         let times = |k: usize| if k == 0 { 1.0 } else { 2.0 };
         let side = self.radius + 1;
         self.quarter.iter().enumerate().map(|(k, w)| w * times(k % side) * times(k / side)).sum()
@@ -41,19 +46,19 @@ impl Kernel {
 
     /// All weights times `factor`.
     #[must_use]
-    pub(crate) fn scaled(mut self, factor: f64) -> Self {
+    pub fn scaled(mut self, factor: f64) -> Self {
         self.quarter.iter_mut().for_each(|w| *w *= factor);
         self
     }
 
     /// Adds to the weight of the pixel itself.
-    pub(crate) fn add_center(&mut self, weight: f64) {
+    pub fn add_center(&mut self, weight: f64) {
         self.quarter[0] += weight;
     }
 
     /// The part within `radius`.
     #[must_use]
-    pub(crate) fn cropped(self, radius: usize) -> Self {
+    pub fn cropped(self, radius: usize) -> Self {
         if radius >= self.radius { self } else { Self::new(radius, |i, j| self.weight(i, j)) }
     }
 }

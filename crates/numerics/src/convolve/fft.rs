@@ -1,14 +1,14 @@
 //! The discrete Fourier transform of a power of two of complex numbers, eight columns at once.
 //!
 //! Own code rather than a crate's, so that a picture has the same bits on every machine: twiddle factors come from
-//! [`spectra_core::math`], the order of operations is fixed, and the eight columns are what the compiler turns into vectors
+//! [`crate::math`], the order of operations is fixed, and the eight columns are what the compiler turns into vectors
 //! of any width without changing a bit.
 //!
 //! The forward transform decimates in frequency and leaves its result in digit-reversed order, the inverse decimates in
 //! time and takes it so (W. M. Gentleman and G. Sande, "Fast Fourier transforms for fun and profit", AFIPS 1966): a
 //! convolution, which multiplies two spectra in the same order, needs no reordering.
 
-use spectra_core::math::{cos, sin};
+use crate::math::{cos, sin};
 
 /// Columns that are transformed together.
 pub(super) const LANES: usize = 8;
