@@ -6,6 +6,7 @@
 //! - [`focus`]: what an image point is sharp for;
 //! - [`fan`]: the rays of a field that pass, as a drawing shows them;
 //! - [`ghosts`]: light that two surfaces reflect, path by path;
+//! - [`glare`]: how much of an extended white field a lens spreads over what should be black;
 //! - [`draw`]: a lens as a figure, with rays in the colors of their wavelengths;
 //! - [`figure`]: spectra, their colors, and glasses as figures.
 
@@ -16,6 +17,7 @@ pub mod fan;
 pub mod figure;
 pub mod focus;
 pub mod ghosts;
+pub mod glare;
 pub mod info;
 mod light;
 pub mod trace;

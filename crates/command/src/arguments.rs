@@ -9,7 +9,7 @@ use crate::quantity::parse;
 use crate::spectrum::SpectrumArguments;
 use crate::version;
 use clap::{Args, Parser, Subcommand};
-use spectra_core::params::{FNumber, Length, OrInfinity, Positive, Time, Wavelength};
+use spectra_core::params::{FNumber, Length, OrInfinity, Positive, Ratio, Time, Wavelength};
 use spectra_lens::Criterion;
 use std::path::PathBuf;
 
@@ -590,6 +590,12 @@ fn line(name: &str) -> Result<f64, String> {
     })
 }
 
+/// A part of the light: `4 %`, `0.04`.
+fn part(text: &str) -> Result<f64, String> {
+    let part = parse::<Ratio>(text)?.number();
+    if (0.0..=1.0).contains(&part) { Ok(part) } else { Err("expected a part from 0 to 100 %".to_owned()) }
+}
+
 /// `spectra lens info`.
 #[derive(Debug, Args)]
 #[command(
@@ -599,14 +605,29 @@ fn line(name: &str) -> Result<f64, String> {
         and pupil diameters come from the real marginal ray; the positions of planes and pupils are paraxial; focus \
         shifts, the largest field and the chief rays come from real rays. The T-number includes coatings, mirrors and \
         absorption; a note beside it lists these and what is assumed: coatings typical of the lens's time, unless its \
-        file or --coating says otherwise.",
-    after_long_help = "Example: the same lens in blue light\n  spectra lens info zeiss-biotar-50-f1.4 --line g"
+        file or --coating says otherwise.\n\n\
+        --glare adds the veiling glare index by the integral method of ISO 9358: the light in the middle of a black disk \
+        within an endless white field, over that without the disk. The image of the disk is a tenth as large as the diagonal of \
+        a 36 x 24 mm frame; its middle half is looked at, in the light of the report. Light is reflected by every surface any number \
+        of times, and scattered by black paint on barrel, rims, edges of the glass and blades.",
+    after_long_help = "Examples: the same lens in blue light; its veiling glare with a single layer on each surface\n  \
+        spectra lens info zeiss-biotar-50-f1.4 --line g\n  \
+        spectra lens info zeiss-biotar-50-f1.4 --f-number f/2 --coating single-layer --glare"
 )]
 pub(crate) struct LensInfo {
     #[command(flatten)]
     pub setting: LensSetting,
     #[command(flatten)]
     pub light: OneLight,
+    /// Work out the veiling glare index (some seconds).
+    #[arg(long)]
+    pub glare: bool,
+    /// Diffuse reflectance of the black paint, for --glare; 4 % if not given.
+    #[arg(long, value_name = "PART", value_parser = part, requires = "glare")]
+    pub paint: Option<f64>,
+    /// Diffuse reflectance of the film or sensor, for --glare; none if not given, as ISO 9358 looks at the lens alone.
+    #[arg(long, value_name = "PART", value_parser = part, requires = "glare")]
+    pub film_reflectance: Option<f64>,
     /// Write a JSON object to standard output.
     #[arg(long)]
     pub json: bool,

@@ -32,6 +32,9 @@ pub enum RenderError {
     /// A medium of the lens has no index in the band.
     #[error("lens: {0}")]
     Lens(String),
+    /// The lens is none whose veiling glare is known.
+    #[error("glare: {0}")]
+    Glare(String),
     /// A stage gave a number that no light can have.
     #[error("{0}")]
     NoNumber(NoNumber),
@@ -75,6 +78,7 @@ impl RenderError {
                 None => at("wavelengths", text, "leave `wavelengths` out for the usual strategy"),
             },
             Self::Lens(text) => at("lens", text, "another glass, or another `wavelengths: {band: ...}`"),
+            Self::Glare(text) => at("render.glare", text, "leave `glare` out, or take another lens"),
             Self::NoNumber(found) => at(
                 found.step.section(),
                 &text,

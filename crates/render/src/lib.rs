@@ -25,6 +25,7 @@ mod remarks;
 mod renderer;
 mod response;
 mod sums;
+mod veil;
 mod workers;
 
 pub use blame::{NoNumber, Step};

@@ -13,6 +13,7 @@ use crate::pilot::PILOT_RAYS;
 use crate::pipeline::{Pipeline, Share, ThreadState};
 use crate::remarks::remarks;
 use crate::sums::{LARGEST_CONTRIBUTION, LARGEST_EXPECTED};
+use crate::veil::{self, Veil};
 use crate::{Alone, Control, Light, Noise, RenderError, Workers};
 use spectra_core::frame::{ExposureChannel, ExposureFrame};
 use spectra_core::numbers::mix64;
@@ -42,6 +43,8 @@ pub struct Rendering {
     pub estimators: Vec<&'static str>,
     /// Where the light of the source's lights goes, if ghosts are traced.
     pub ledger: Option<LightLedger>,
+    /// What part of the exposure of the whole frame, all channels together, is veiling glare, where it is asked for.
+    pub glare: Option<f64>,
     /// What a person should know before believing the picture, and what to write.
     pub warnings: Vec<String>,
 }
@@ -84,6 +87,15 @@ impl Renderer {
         density: Option<Arc<dyn WavelengthDensity>>,
         workers: &dyn Workers,
     ) -> Result<Self, RenderError> {
+        Self::without_veil(scene, isa, density, workers)?.with_veil()
+    }
+
+    fn without_veil(
+        scene: Arc<Scene>,
+        isa: Isa,
+        density: Option<Arc<dyn WavelengthDensity>>,
+        workers: &dyn Workers,
+    ) -> Result<Self, RenderError> {
         let direction = scene.render.direction;
         let lights = scene.render.lights;
         let ghosts = scene.render.reflections.order.unwrap_or(0);
@@ -121,6 +133,34 @@ impl Renderer {
         for half in (1..=halves).rev() {
             let Some(ghosts) = both.next_back() else { break };
             self.estimators.insert(half * kinds, ghosts);
+        }
+        Ok(self)
+    }
+
+    /// With the veiling glare that the scene asks for: of lights from the source, of the rest from the imager.
+    fn with_veil(mut self) -> Result<Self, RenderError> {
+        let Some(matter) = self.scene.render.glare else { return Ok(self) };
+        let ghosts_apart = self.scene.render.reflections.order.unwrap_or(0) > 0;
+        let emits = |split: &spectra_core::stage::Split<'_>| split.lights.emit().is_some();
+        let veils = if self.scene.source.split().as_ref().is_some_and(emits) {
+            let share = |share| Arc::new(self.pipeline.of_share(share));
+            vec![
+                Veil::new(share(Share::Lights), true, ghosts_apart, matter)?,
+                Veil::new(share(Share::Rest), false, false, matter)?,
+            ]
+        } else {
+            let from_source = self.scene.render.direction == Direction::Forward;
+            vec![Veil::new(Arc::clone(&self.pipeline), from_source, ghosts_apart, matter)?]
+        };
+        let halves = self.halves() as usize;
+        let many = veils.len();
+        let all = halved(&self.scene, veils.into_iter().map(|veil| Box::new(veil) as Box<dyn Estimator>).collect());
+        // Halves stand behind one another.
+        let kinds = self.estimators.len() / halves;
+        let mut all: Vec<_> = all.into_iter().collect();
+        for half in (1..=halves).rev() {
+            let own = all.split_off((half - 1) * many);
+            self.estimators.splice(half * kinds..half * kinds, own);
         }
         Ok(self)
     }
@@ -170,7 +210,8 @@ impl Renderer {
     /// # Errors
     /// As [`Renderer::new`].
     pub fn check(scene: &Arc<Scene>, isa: Isa) -> Result<(), RenderError> {
-        Pipeline::new(scene, isa, None)?;
+        let pipeline = Pipeline::new(scene, isa, None)?;
+        veil::check(&pipeline)?;
         let sized = |travel| spectra_lens::has_sizes(&scene.lens, travel);
         let is_open = match scene.render.direction {
             Direction::Forward => {
@@ -414,8 +455,23 @@ impl Renderer {
             partial: light.samples() < u64::from(scene.render.samples) && !self.is_clean(light),
             noise: self.noise(light),
             ledger: self.ledger.clone(),
+            glare: self.glare_of(light, &weights),
             warnings: Vec::new(),
         })
+    }
+
+    /// What part of all light is veiling glare; `weights` are those of the parts.
+    fn glare_of(&self, light: &Light, weights: &[Vec<f64>]) -> Option<f64> {
+        self.scene.render.glare?;
+        let channels = self.pipeline.recorded.len();
+        let (mut glare, mut all) = (0.0, 0.0);
+        for ((estimator, part), weights) in self.estimators().zip(&light.parts).zip(weights) {
+            let of_pixel = |p: usize| (0..channels).map(|at| part.sums.get(p * channels + at) as f64).sum::<f64>();
+            let own: f64 = weights.iter().enumerate().map(|(p, weight)| weight * of_pixel(p)).sum();
+            all += own;
+            glare += if estimator.name() == veil::ESTIMATOR { own } else { 0.0 };
+        }
+        (all > 0.0).then_some(glare / all)
     }
 
     /// What a person should know of a rendering before believing it.

@@ -20,7 +20,7 @@ use spectra_core::registry::{self, Context, StageOf};
 use spectra_core::resources::Resources;
 use spectra_core::spectral::{BAND, Channel, Grid};
 use spectra_core::stage::{Film, Imager, Source, WavelengthSampler};
-use spectra_lens::MATTE_BOX;
+use spectra_lens::{MATTE_BOX, StrayMatter};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
@@ -131,6 +131,48 @@ struct RenderSection {
     /// Light of the source's lights that surfaces of the lens reflect to the imager: ghosts and flare.
     #[serde(default)]
     reflections: ReflectionsSection,
+    /// Veiling glare: light that glass, paint, film or sensor spread over the frame. `true`, or what it is made of; none if absent.
+    glare: Option<GlareSection>,
+}
+
+/// What `glare` is written as.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(untagged)]
+enum GlareSection {
+    /// With black paint, or none.
+    Switch(bool),
+    /// Of this.
+    Of(GlareParams),
+}
+
+/// What makes veiling glare.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct GlareParams {
+    /// Part of the light that barrel, rims, edges of the glass, blades and the camera's inside scatter, from 0 to 1; 4 % if absent, as of
+    /// flat black paint.
+    #[schemars(extend("minimum" = 0, "maximum" = 1))]
+    paint: Option<Ratio>,
+    /// Part of the light that film or sensor scatter back into the lens, from 0 to 1; none if absent. What they reflect as a mirror does
+    /// is `reflections.imager`.
+    #[schemars(extend("minimum" = 0, "maximum" = 1))]
+    imager: Option<Ratio>,
+}
+
+impl GlareSection {
+    /// What is asked for, beside an imager that reflects a part as a mirror; `None` where nothing is.
+    fn matter(self, imager_mirror: f64) -> Option<StrayMatter> {
+        let usual = StrayMatter { imager_mirror, ..StrayMatter::default() };
+        match self {
+            Self::Switch(false) => None,
+            Self::Switch(true) => Some(usual),
+            Self::Of(own) => Some(StrayMatter {
+                paint: own.paint.map_or(usual.paint, Ratio::number),
+                imager: own.imager.map_or(usual.imager, Ratio::number),
+                ..usual
+            }),
+        }
+    }
 }
 
 /// Which reflections are traced.
@@ -442,6 +484,15 @@ fn render_settings(
         let fault = params.fault("samples", format!("this makes {rays} rays, at most {MAX_RAYS} are traced"));
         faults.push(fault.hint("fewer samples or pixels, or write `rays`"));
     }
+    let imager_mirror = s.reflections.imager.map_or(GELATIN, Ratio::number);
+    let glare = s.glare.and_then(|glare| glare.matter(imager_mirror));
+    if let Some(matter) = glare.filter(|matter| matter.imager + matter.imager_mirror > 1.0) {
+        let fault = params.fault("glare.imager", "the imager sends back more light than comes to it");
+        faults.push(fault.hint(format!(
+            "`glare.imager` and `reflections.imager` ({}) together are at most 1",
+            matter.imager_mirror
+        )));
+    }
     faults.into_result(RenderSettings {
         direction,
         lights,
@@ -460,5 +511,6 @@ fn render_settings(
             imager_stated: s.reflections.imager.is_some(),
             polarized: s.reflections.polarized,
         },
+        glare,
     })
 }

@@ -10,7 +10,7 @@ use spectra_core::frame::{ExposureChannel, ExposureFrame};
 use spectra_core::params::{Fault, Params, Warning};
 use spectra_core::spectral::{Channel, Grid};
 use spectra_core::stage::{Film, Imager, Source, WavelengthSampler};
-use spectra_lens::Lens;
+use spectra_lens::{Lens, StrayMatter};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -115,6 +115,8 @@ pub struct RenderSettings {
     pub cone: ConePattern,
     /// What reflections are traced.
     pub reflections: Reflections,
+    /// What veiling glare is made of, where it is asked for.
+    pub glare: Option<StrayMatter>,
 }
 
 impl RenderSettings {

@@ -59,9 +59,12 @@ impl Report<'_> {
             })),
             "lost": self.lost(),
             "ledger": rendering.ledger.as_ref().map(|ledger| self.ledger(ledger)),
+            "glare": settings.glare.map(|of| json!({
+                "share": rendering.glare, "paint": of.paint, "imager": of.imager, "imager_mirror": of.imager_mirror,
+            })),
             "seed": settings.seed,
             "direction": match &rendering.estimators[..] {
-                all if all.iter().filter(|name| **name != "ghosts").count() > 1 => "both",
+                all if all.iter().filter(|name| !["ghosts", "glare"].contains(name)).count() > 1 => "both",
                 _ => settings.direction.name(),
             },
             "samples_per_pixel": (!forward).then_some(settings.samples),

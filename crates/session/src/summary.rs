@@ -61,6 +61,9 @@ pub(crate) fn of(report: &Report<'_>) -> String {
             share(ledger.not_traced_w)
         ));
     }
+    if let Some(glare) = rendering.glare {
+        text.push_str(&format!(", veiling glare is {} of all light on the frame", spectra_render::percent(glare)));
+    }
     if let Some(noise) = rendering.noise {
         let (median, p95) = (spectra_render::percent(noise.median), spectra_render::percent(noise.p95));
         text.push_str(&format!(", noise {median} (95 % of the frame below {p95})"));
