@@ -1,6 +1,6 @@
 //! One Gaussian term followed through all factors of a spectral integral.
 
-use spectra_spectrum::{GaussianMixture, GaussianTerm};
+use super::{GaussianMixture, GaussianTerm};
 
 /// An integral over a band of a product of signed Gaussian mixtures (a source, filters, a detector), estimated by
 /// following one term of each factor.
@@ -11,8 +11,7 @@ use spectra_spectrum::{GaussianMixture, GaussianTerm};
 /// choices carry it all, and the scatter that samples show is far too low.
 ///
 /// ```
-/// use spectra_plugin_samplers::OneTerm;
-/// use spectra_spectrum::{GaussianMixture, GaussianTerm};
+/// use spectra_spectrum::{GaussianMixture, GaussianTerm, OneTerm};
 /// let mixture = GaussianMixture::new(vec![GaussianTerm::new(2.0, 550.0, 30.0)?]);
 /// let one_term = OneTerm::new(vec![mixture.clone()], 380.0, 780.0).unwrap();
 /// assert_eq!(one_term.estimate(&[0.3]), mixture.band_integral(380.0, 780.0));
@@ -66,6 +65,12 @@ impl OneTerm {
             product = Some(product.map_or(*term, |so_far| so_far.times(term)));
         }
         product.map_or(0.0, |term| term.band_integral(self.min_nm, self.max_nm) / probability)
+    }
+
+    /// How many choices there are: the product of the numbers of terms that reach the band.
+    #[must_use]
+    pub fn choices(&self) -> f64 {
+        self.factors.iter().map(|factor| factor.len() as f64).product()
     }
 
     /// Exact mean (the integral) and standard deviation of one estimate, by all choices that there are: their number is
