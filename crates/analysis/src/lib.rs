@@ -7,7 +7,8 @@
 //! - [`fan`]: the rays of a field that pass, as a drawing shows them;
 //! - [`ghosts`]: light that two surfaces reflect, path by path;
 //! - [`draw`]: a lens as a figure, with rays in the colors of their wavelengths;
-//! - [`figure`]: spectra, their colors, and glasses as figures.
+//! - [`figure`]: spectra, their colors, and glasses as figures;
+//! - [`picture`]: a rendered picture measured: light, colors, views, cuts, differences.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
@@ -18,6 +19,7 @@ pub mod focus;
 pub mod ghosts;
 pub mod info;
 mod light;
+pub mod picture;
 pub mod trace;
 
 pub use light::Light;

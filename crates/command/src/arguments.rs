@@ -5,6 +5,7 @@ use crate::film::FilmArguments;
 use crate::frames::Frames;
 use crate::glass::GlassArguments;
 use crate::new::NewArguments;
+use crate::picture::PictureArguments;
 use crate::quantity::parse;
 use crate::spectrum::SpectrumArguments;
 use crate::version;
@@ -64,6 +65,8 @@ pub(crate) enum Command {
     Spectrum(SpectrumArguments),
     /// Inspect glass: refractive index, Abbe diagram, nearest glass, fits.
     Glass(GlassArguments),
+    /// Measure pictures: power and flux, false-color views, cuts, spectra, differences.
+    Picture(PictureArguments),
     /// Create a plugin, a scene or a lens of your own.
     New(NewArguments),
     /// Build a version of the program that includes your plugins.
