@@ -5,6 +5,7 @@ use crate::film::FilmArguments;
 use crate::frames::Frames;
 use crate::glass::GlassArguments;
 use crate::new::NewArguments;
+use crate::picture::PictureArguments;
 use crate::quantity::parse;
 use crate::spectrum::SpectrumArguments;
 use crate::version;
@@ -64,6 +65,8 @@ pub(crate) enum Command {
     Spectrum(SpectrumArguments),
     /// Inspect glass: refractive index, Abbe diagram, nearest glass, fits.
     Glass(GlassArguments),
+    /// Measure pictures: power and flux, false-color views, cuts, spectra, differences.
+    Picture(PictureArguments),
     /// Create a plugin, a scene or a lens of your own.
     New(NewArguments),
     /// Build a version of the program that includes your plugins.
@@ -661,10 +664,13 @@ pub(crate) struct LensGhosts {
         Input columns: x_mm,y_mm,z_mm (a point on the ray before the first surface, whose vertex is the origin; +z \
         runs toward the image), l,m,n (unit direction) and wavelength_nm, unless one line or wavelength is given for \
         all rays. Columns are found by name, in any order.\n\n\
-        Output, one row per ray: status,surface,x_mm,y_mm,z_mm,l,m,n. A `hit` is where the ray meets the image plane, \
-        in the same coordinates; a ray that ends earlier is `missed`, `vignetted`, `tir` or `absorbed`, with the \
-        number of the surface, counted from 1. Surfaces clip only at stated semi-diameters, unless --f-number sets \
-        the stop; the lens is not refocused unless --focus is given.",
+        Output, one row per ray: status,surface,x_mm,y_mm,z_mm,l,m,n,wavelength_nm,transmittance,optical_path_mm. A \
+        `hit` is where the ray meets the image plane, in the same coordinates; a ray that ends earlier is `missed`, \
+        `vignetted`, `tir` or `absorbed`, with the number of the surface, counted from 1. `transmittance` is what \
+        coatings and glass leave of the light, `optical_path_mm` the index times the length from the start of the ray. \
+        --every-surface has a row `passed` for each surface as well, with the direction behind it, and the number of the \
+        ray first. Surfaces clip only at stated semi-diameters, unless --f-number sets the stop; the lens is not \
+        refocused unless --focus is given.",
     after_long_help = "Example:\n  spectra lens trace zeiss-biotar-50-f1.4 --rays rays.csv --nd -o hits.csv"
 )]
 pub(crate) struct LensTrace {
@@ -678,6 +684,9 @@ pub(crate) struct LensTrace {
     /// Follow the path that these surfaces reflect, counted from 1, in the order of the light: 7,3 is a ghost.
     #[arg(long, value_name = "A,B", value_delimiter = ',')]
     pub path: Vec<usize>,
+    /// Write a row for every surface that a ray passes.
+    #[arg(long)]
+    pub every_surface: bool,
     /// Output file; standard output if not given, or if `-`.
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,

@@ -8,7 +8,7 @@ use crate::lens_section::{LensSection, SetLens, held_lens};
 use crate::resources::read_yaml;
 use crate::{
     ConePattern, Direction, Lights, NumberFamily, Output, Reflections, RenderSettings, Scene, doubts, films, lamps,
-    language, output, sight, yaml,
+    landing, language, output, sight, yaml,
 };
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -297,7 +297,8 @@ fn all_stages(
     let filters = lens.as_ref().and_then(|p| faults.take(filters::filters_of(p, grid, resources))).flatten();
     // Focus wants to know all others, and a source what the lens sees; faults are told in the order of the sections.
     let (mut of_lens, mut behind) = (Faults::new(), Faults::new());
-    let imager = match earlier.imager.take() {
+    let imager_place = imager.clone().filter(|p| earlier.imager.is_none() && landing::is_wanted(p));
+    let mut imager = match earlier.imager.take() {
         Some(imager) => Some(imager),
         None => imager.and_then(|p| behind.take(registry::build::<dyn Imager>(&p, &context))).map(Arc::from),
     };
@@ -359,6 +360,19 @@ fn all_stages(
         Some(lens) => Some(lens),
         None => held.and_then(|held| of_lens.take(held.focused(focus_light.as_ref()))),
     };
+    if let (Some(place), Some(SetLens { lens, .. }), Some(source), Some(light)) =
+        (imager_place, &lens, &source, &focus_light)
+        && imager.is_some()
+    {
+        // Now that it is known where the light lands, the imager looks there. What it had to say was said before.
+        match landing::middle_mm(&**source, lens, light, &grid) {
+            Ok(landing_mm) => {
+                let context = Context { landing_mm: Some(landing_mm), warnings: None, ..context };
+                imager = behind.take(registry::build::<dyn Imager>(&place, &context)).map(Arc::from);
+            }
+            Err([text, hint]) => behind.push(place.fault("around", text).hint(hint)),
+        }
+    }
     faults.extend(of_lens);
     if let (Some(place), Some(SetLens { lens, .. }), Some(source)) = (lens_place, &lens, &source)
         && lens.elements.first().is_some_and(|e| e.kind == MATTE_BOX && e.vertex_z_mm() <= -source.distance_mm())

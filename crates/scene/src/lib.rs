@@ -15,6 +15,7 @@ mod films;
 mod filters;
 mod focus;
 mod lamps;
+mod landing;
 mod language;
 mod lens_section;
 mod output;

@@ -23,6 +23,7 @@ mod bundled;
 mod by_name;
 mod cell;
 mod cie;
+mod color_checker;
 pub mod constants;
 mod document;
 mod emission;
@@ -54,6 +55,7 @@ pub use by_name::{
     meta_in, notes_in,
 };
 pub use cie::{Observer, v_lambda, v_prime};
+pub use color_checker::COLOR_CHECKER;
 pub use document::schema as document_schema;
 pub use emission::Emission;
 pub use error::SpectrumError;
