@@ -204,14 +204,18 @@ fn samples(text: &str) -> Result<u32, String> {
         writes what was changed into the scene file, where it stands, and leaves the rest of the file as it is.\n\n\
         The address is printed to standard output. It opens once, in one browser, and only on this machine. Ctrl-C ends the \
         viewer.",
-    after_long_help = "Examples: a bundled scene; another film, and the address alone\n  \
+    after_long_help = "Examples: a bundled scene; another film, and the address alone; wavelengths as a screen shows them\n  \
         spectra view biotar-ortho\n  \
-        spectra view biotar-ortho --set film.stock=tri-x --no-open"
+        spectra view biotar-ortho --set film.stock=tri-x --no-open\n  \
+        spectra view --color-tester"
 )]
 pub(crate) struct View {
     /// A scene file, or the name of a bundled scene (see `spectra list scene`).
-    #[arg(value_name = "SCENE")]
-    pub scene: PathBuf,
+    #[arg(value_name = "SCENE", required_unless_present = "color_tester")]
+    pub scene: Option<PathBuf>,
+    /// In place of a scene: light of one wavelength or a narrow band, as a screen can show it.
+    #[arg(long, conflicts_with_all = ["scene", "overrides", "threads"])]
+    pub color_tester: bool,
     /// Port of this machine to serve the page at; 0 takes a free one.
     #[arg(long, value_name = "PORT", default_value_t = 0)]
     pub port: u16,

@@ -21,6 +21,7 @@ pub mod display;
 pub mod emulsion;
 pub mod grain;
 pub mod halation;
+mod known;
 mod lookup;
 pub mod optics;
 pub mod positive;

@@ -24,6 +24,10 @@ mod save;
 mod served;
 #[cfg(not(target_family = "wasm"))]
 mod server;
+#[cfg(not(target_family = "wasm"))]
+mod study;
+#[cfg(not(target_family = "wasm"))]
+mod tester;
 
 #[cfg(not(target_family = "wasm"))]
-pub use served::{View, view};
+pub use served::{View, color_tester, view};
