@@ -4,7 +4,7 @@
 //! once, by the last of them; the work at hand is stopped for them. A desk that nobody asks anything of is cleared.
 
 use crate::controls::{self, Control};
-use crate::parts::{fault_json, packed, said};
+use crate::parts::{fault_json, packed, said, spectra};
 use crate::{save, section};
 use serde_json::{Value, json};
 use spectra_core::Isa;
@@ -334,30 +334,10 @@ impl Desk {
         Some(made)
     }
 
-    /// The spectrum of the scene's light, and what each layer of its film makes of it: its largest value 1, over the wavelengths.
+    /// The light and the layers of the scene as it is set now.
     pub(crate) fn spectra(&self) -> Option<Value> {
         let scene = held(&self.state).scene.clone()?;
-        let unit = |values: &[f64]| -> Vec<f64> {
-            let most = values.iter().copied().fold(0.0, f64::max);
-            values.iter().map(|v| if most > 0.0 { v / most } else { 0.0 }).collect()
-        };
-        let light = scene.source.spectrum();
-        let strongest = light.lines.iter().map(|line| line.power).fold(0.0, f64::max);
-        let lines: Vec<[f64; 2]> = light
-            .lines
-            .iter()
-            .map(|line| [line.wavelength_nm, line.power / strongest.max(f64::MIN_POSITIVE)])
-            .collect();
-        let layers: Vec<Value> = scene
-            .picture_channels()
-            .into_iter()
-            .filter_map(|at| scene.channels.get(at))
-            .map(|channel| json!({"name": channel.name, "nm": scene.grid.wavelengths_nm().collect::<Vec<_>>(), "values": unit(&channel.response)}))
-            .collect();
-        Some(json!({
-            "light": {"nm": light.grid.wavelengths_nm().collect::<Vec<_>>(), "values": unit(&light.continuum), "lines": lines},
-            "layers": layers,
-        }))
+        Some(spectra(&scene))
     }
 
     /// Writes what the page set into the scene's file; says how many values.

@@ -78,6 +78,8 @@ async function answer(url, body) {
       return new Promise((done) => { listener = (bytes) => done(new Response(bytes)); });
     case "/controls":
       return json(await ask({ do: "controls" }));
+    case "/spectra":
+      return json(await ask({ do: "spectra" }));
     case "/pixel":
       return json(await ask({ do: "pixel", x: number("x"), y: number("y") }));
     case "/section": {

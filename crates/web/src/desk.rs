@@ -5,8 +5,9 @@ use spectra_core::frame::DisplayPicture;
 use spectra_core::{Isa, registry};
 use spectra_scene::{Shot, bundled::Bundled};
 use spectra_session::{Alone, Control as Stop, Session, SessionError};
-use spectra_view::parts::{Control, of_scene, packed, said, svg};
+use spectra_view::parts::{Control, of_scene, packed, said, spectra, svg};
 use std::path::Path;
+use std::sync::Arc;
 
 /// Widths of the picture that a page may choose, pixels.
 const WIDTHS_PX: [u32; 4] = [240, 480, 960, 1920];
@@ -26,9 +27,10 @@ struct Open {
     controls: Vec<Control>,
     /// Height over width, in pixels.
     aspect: f64,
-    /// Pictures so far, and scenes: as the page counts them.
+    /// Pictures so far, scenes, and lenses: as the page counts them.
     frames: u64,
     scenes: u64,
+    lenses: u64,
     fault: Option<Value>,
 }
 
@@ -67,6 +69,7 @@ impl Desk {
                 let drawn = svg(self.open()?.session.scene(), word("ground") == "dark");
                 drawn.map(String::into_bytes).map_err(|why| wrong(&why))
             }
+            "spectra" => self.open().map(|open| json(&spectra(open.session.scene()))),
             "fingerprint" => self.open()?.fingerprint(),
             other => Err(wrong(&format!("no such request: {other}"))),
         }
@@ -102,7 +105,7 @@ impl Open {
         let size = session.scene().imager.size();
         let aspect = f64::from(size.height_px) / f64::from(size.width_px);
         let controls = of_scene(session.scene().params.node());
-        Ok(Self { name: name.to_owned(), session, controls, aspect, frames: 0, scenes: 1, fault: None })
+        Ok(Self { name: name.to_owned(), session, controls, aspect, frames: 0, scenes: 1, lenses: 1, fault: None })
     }
 
     /// How far the picture is.
@@ -119,11 +122,13 @@ impl Open {
     }
 
     fn change(&mut self, path: &str, text: &str) -> Answer {
+        let before = Arc::clone(&self.session.scene().lens);
         let changed = self.session.change(text);
         self.fault = changed.as_ref().err().map(|error| said(error, path));
         let kept = changed.map_err(|error| said(&error, path))?;
         self.controls = of_scene(self.session.scene().params.node());
         self.scenes += 1;
+        self.lenses += u64::from(!Arc::ptr_eq(&before, &self.session.scene().lens));
         let mut state = self.state();
         state["kept"] = kept.light.into();
         Ok(json(&state))
@@ -165,6 +170,7 @@ impl Open {
         let head = json!({
             "frame": self.frames,
             "scene": self.scenes,
+            "lens_drawn": self.lenses,
             "fault": self.fault,
             "width": width_px,
             "height": height_px,
