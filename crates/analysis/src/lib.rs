@@ -18,6 +18,7 @@ pub mod focus;
 pub mod ghosts;
 pub mod info;
 mod light;
+pub mod terms;
 pub mod trace;
 
 pub use light::Light;
