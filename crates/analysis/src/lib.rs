@@ -22,6 +22,7 @@ pub mod glare;
 pub mod info;
 mod light;
 pub mod picture;
+pub mod terms;
 pub mod trace;
 
 pub use light::Light;

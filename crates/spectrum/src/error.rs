@@ -149,8 +149,8 @@ impl SpectrumError {
                 // What is wrong in another file has its place there.
                 cause.placed(Box::new(|message| here(message).within(text, *at, *len)))
             }
-            Self::Negative { at_nm, .. } => here(self.to_string())
-                .hint(format!("subtract less there, or cut it off: `(...) * rectangle:400,{}`", at_nm.floor()))
+            Self::Negative { .. } => here(self.to_string())
+                .hint("subtract less: what is subtracted must nowhere be more than what it is taken from")
                 .into(),
             Self::NotFinite { .. } => here(self.to_string())
                 .hint("a divisor must not be 0 anywhere from 350 to 830 nm; add a little to it, such as `A / (B + 0.001)`")

@@ -234,7 +234,14 @@ impl Reader<'_> {
                 '(' => open.push(self.at),
                 ')' if open.pop().is_none() => break,
                 '*' | '^' if open.is_empty() => break,
-                '+' | '-' | '/' if open.is_empty() && self.is_space(self.at - 1) && self.is_space(self.at + 1) => break,
+                '+' | '-' | '/'
+                    if open.is_empty()
+                        && self.at > start
+                        && self.is_space(self.at - 1)
+                        && self.is_space(self.at + 1) =>
+                {
+                    break;
+                }
                 _ => {}
             }
             self.at += 1;
@@ -285,6 +292,8 @@ mod tests {
             ("5600 K", "5600 K"),
             ("he-ne", "he-ne"),
             ("spectra/illuminants/A.csv", "spectra/illuminants/A.csv"),
+            ("/data/lamp.csv#warm", "/data/lamp.csv#warm"),
+            ("2 * /data/lamp.csv", "[2*/data/lamp.csv]"),
             ("a lamp (1).csv", "a lamp (1).csv"),
             ("1 - wratten-25", "[1-wratten-25]"),
             ("0.5 * D65 + line:e", "[[0.5*D65]+line:e]"),

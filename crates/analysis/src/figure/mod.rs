@@ -3,12 +3,14 @@
 mod abbe;
 mod chromaticity;
 mod dispersion;
+mod lamp;
 mod spectrum;
 mod swatches;
 
 pub use abbe::{AbbeGroup, abbe};
-pub use chromaticity::chromaticity;
+pub use chromaticity::{Diagram, chromaticity, chromaticity_diagram};
 pub use dispersion::{IndexCurve, dispersion};
+pub use lamp::{Patch as LampPatch, lamp};
 pub use spectrum::{spectrum, spectrum_and_functions};
 pub use swatches::swatches;
 
