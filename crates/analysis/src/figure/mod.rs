@@ -3,12 +3,14 @@
 mod abbe;
 mod chromaticity;
 mod dispersion;
+mod glass_fit;
 mod spectrum;
 mod swatches;
 
 pub use abbe::{AbbeGroup, abbe};
 pub use chromaticity::chromaticity;
 pub use dispersion::{IndexCurve, dispersion};
+pub use glass_fit::{FittedCurve, glass_fit};
 pub use spectrum::{spectrum, spectrum_and_functions};
 pub use swatches::swatches;
 
