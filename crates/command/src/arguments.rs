@@ -98,7 +98,7 @@ pub(crate) struct Completions {
     long_about = "Render a scene to a picture and to linear exposure data.\n\n\
         The scene's `output` selects the files: SCENE.exr (linear exposure, one image channel for each channel of the \
         imager or film, 32-bit float) and SCENE.png or SCENE.tiff (the picture for viewing), named after the scene \
-        file. SCENE.json holds the time, rays, light losses and versions. --output x.png (.tiff, .exr, .dng) writes \
+        file. SCENE.json holds the time, rays, light losses and versions. --output x.png (.tiff, .exr, .dng, .html) writes \
         only that picture. A file appears under its final name only once it is complete.\n\n\
         Ctrl-C stops within a second and writes the picture so far, marked as partial (exit code 130); a second \
         Ctrl-C quits immediately.\n\n\
@@ -114,7 +114,7 @@ pub(crate) struct Run {
     /// A scene file, or the name of a bundled scene (see `spectra list scene`).
     #[arg(value_name = "SCENE")]
     pub scene: PathBuf,
-    /// Output folder, created if it does not exist; or the name of a single picture file: x.png, .tiff, .exr, .dng.
+    /// Output folder, created if it does not exist; or the name of a single picture file: x.png, .tiff, .exr, .dng, .html.
     #[arg(short, long, value_name = "DIR|FILE", default_value = "out")]
     pub output: PathBuf,
     #[command(flatten)]

@@ -3,6 +3,7 @@
 mod abbe;
 mod chromaticity;
 mod dispersion;
+mod glass_fit;
 mod lamp;
 mod spectrum;
 mod swatches;
@@ -10,6 +11,7 @@ mod swatches;
 pub use abbe::{AbbeGroup, abbe};
 pub use chromaticity::{Diagram, chromaticity, chromaticity_diagram};
 pub use dispersion::{IndexCurve, dispersion};
+pub use glass_fit::{FittedCurve, glass_fit};
 pub use lamp::{Patch as LampPatch, lamp};
 pub use spectrum::{spectrum, spectrum_and_functions};
 pub use swatches::swatches;

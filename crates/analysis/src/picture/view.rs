@@ -64,7 +64,7 @@ impl Ends {
         let high = match high {
             h if h > low => h,
             h if is_log => h * 1.01,
-            h if h == 0.0 => 1.0,
+            0.0 => 1.0,
             h => h + 0.01 * h.abs(),
         };
         Ok(Self { low, high, is_log })

@@ -42,6 +42,7 @@ mod numbered;
 mod polynomial;
 mod sellmeier;
 mod table;
+mod unit;
 
 pub(crate) use buchdahl::BUCHDAHL;
 pub use form::{Closed, Form};
