@@ -232,6 +232,19 @@ impl ThreadState {
         largest
     }
 
+    /// What all rays of the batch contribute to all channels.
+    pub(crate) fn sum(&mut self, pipeline: &Pipeline) -> f64 {
+        let len = self.rays.len();
+        let mut sum = 0.0;
+        for channel in 0..pipeline.responses.channels() {
+            let values = &mut self.values[..len];
+            let (nm, weights) = (self.rays.wavelengths_nm(), self.rays.weights());
+            pipeline.isa.run(pipeline.responses.weigh(channel, nm, weights, values));
+            sum += values.iter().sum::<f64>();
+        }
+        sum
+    }
+
     /// Writes each ray's contribution to each channel as integers; false where one does not fit.
     pub(crate) fn contributions(&mut self, pipeline: &Pipeline, scale: f64) -> bool {
         let len = self.rays.len();

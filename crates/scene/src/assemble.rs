@@ -179,7 +179,8 @@ impl GlareSection {
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct ReflectionsSection {
-    /// How often light is reflected on its way to the imager: 0 (no ghosts, the default) or 2.
+    /// How often light may be reflected on its way to the imager: 0 (no ghosts) or 2. If absent, 2 where lights are so bright that
+    /// the brightest ghost is more than 1 % of the mean of the frame without them, and 0 elsewhere.
     order: Option<Whole<0, 2>>,
     /// Part of the light that film or sensor sends back into the lens as a mirror does, from 0 to 1; assumed 0.043 if absent, as of
     /// gelatin (index 1.52) in air.
@@ -472,17 +473,20 @@ fn render_settings(
     }
     let can_backward = source.radiance().is_some() && imager.launch().is_some();
     let can_forward = source.emit().is_some() && imager.receive().is_some();
+    // Of a source whose lights alone emit, the rest is seen backward.
+    let has_lights = source.split().is_some_and(|split| split.lights.emit().is_some());
+    let lights_forward = can_forward || has_lights && imager.receive().is_some();
     let direction = match s.direction {
         Way::Auto if can_backward => Direction::Backward,
         Way::Auto | Way::Forward => Direction::Forward,
         Way::Backward | Way::Both => Direction::Backward,
     };
     let lights = match s.direction {
-        Way::Auto if can_backward && can_forward => Lights::Auto,
+        Way::Auto if can_backward && lights_forward => Lights::Auto,
         Way::Both => Lights::Forward,
         _ => Lights::Same,
     };
-    if lights == Lights::Forward && can_backward && !can_forward {
+    if lights == Lights::Forward && can_backward && !lights_forward {
         let fault = params.fault("direction", "this source cannot be rendered forward");
         faults.push(fault.hint("write `direction: backward`, or leave it to `auto`"));
     }

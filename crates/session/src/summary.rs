@@ -53,9 +53,13 @@ pub(crate) fn of(report: &Report<'_>) -> String {
         }
     }
     if let Some(ledger) = rendering.ledger.as_ref().filter(|ledger| ledger.direct_w + ledger.ghosts_w > 0.0) {
+        let why = match scene.render.reflections.order {
+            None => " (bright enough to matter; `render.reflections.order: 0` leaves them out)",
+            Some(_) => "",
+        };
         let share = |part: f64| spectra_render::percent(part / ledger.emitted_w);
         text.push_str(&format!(
-            ", ghosts of {} paths: {} of the light of the lights, {} left after two reflections",
+            ", ghosts of {} paths{why}: {} of the light of the lights, {} left after two reflections",
             ledger.paths.len(),
             share(ledger.ghosts_w),
             share(ledger.not_traced_w)
