@@ -1,6 +1,7 @@
 //! The renderer: units of work, handed to threads, summed exactly.
 
 use crate::backward::Backward;
+use crate::diffracted::{self, Diffracted};
 use crate::done::Units;
 use crate::estimator::Estimator;
 use crate::forward::Forward;
@@ -42,6 +43,8 @@ pub struct Rendering {
     pub estimators: Vec<&'static str>,
     /// Where the light of the source's lights goes, if ghosts are traced.
     pub ledger: Option<LightLedger>,
+    /// What diffraction did to each channel of the picture, where the scene asks for it.
+    pub diffraction: Option<Vec<Diffracted>>,
     /// What a person should know before believing the picture, and what to write.
     pub warnings: Vec<String>,
 }
@@ -405,6 +408,8 @@ impl Renderer {
             }
             planes.push(ExposureChannel { name: channel.name.clone(), unit: channel.unit.clone(), values });
         }
+        let spread = || diffracted::spread(scene, &mut planes, recorded, self.pipeline.isa);
+        let diffraction = scene.render.diffraction.then(spread).transpose().map_err(RenderError::Diffraction)?;
         Ok(Rendering {
             exposure: ExposureFrame { size, channels: planes },
             rays: light.rays(),
@@ -414,6 +419,7 @@ impl Renderer {
             partial: light.samples() < u64::from(scene.render.samples) && !self.is_clean(light),
             noise: self.noise(light),
             ledger: self.ledger.clone(),
+            diffraction,
             warnings: Vec::new(),
         })
     }

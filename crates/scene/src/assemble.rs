@@ -131,6 +131,9 @@ struct RenderSection {
     /// Light of the source's lights that surfaces of the lens reflect to the imager: ghosts and flare.
     #[serde(default)]
     reflections: ReflectionsSection,
+    /// Whether the edge of the aperture spreads light: stars around lamps, and pictures that soften as the stop closes. Not if absent.
+    #[serde(default)]
+    diffraction: bool,
 }
 
 /// Which reflections are traced.
@@ -460,5 +463,6 @@ fn render_settings(
             imager_stated: s.reflections.imager.is_some(),
             polarized: s.reflections.polarized,
         },
+        diffraction: s.diffraction,
     })
 }

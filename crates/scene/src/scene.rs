@@ -115,13 +115,15 @@ pub struct RenderSettings {
     pub cone: ConePattern,
     /// What reflections are traced.
     pub reflections: Reflections,
+    /// Whether the edge of the aperture spreads the light that was summed.
+    pub diffraction: bool,
 }
 
 impl RenderSettings {
     /// Whether the same rays are traced, as far as both want as many.
     #[must_use]
     pub fn traces_as(&self, other: &Self) -> bool {
-        let free = |settings: &Self| Self { batch: 0, samples: 0, rays: 0, ..*settings };
+        let free = |settings: &Self| Self { batch: 0, samples: 0, rays: 0, diffraction: false, ..*settings };
         // Forward, so many rays are a sample.
         let share = |s: &Self| u128::from(s.rays);
         let as_many = (self.direction == Direction::Backward && self.lights == Lights::Same)

@@ -59,6 +59,9 @@ impl Report<'_> {
             })),
             "lost": self.lost(),
             "ledger": rendering.ledger.as_ref().map(|ledger| self.ledger(ledger)),
+            "diffraction": rendering.diffraction.as_ref().map(|all| all.iter().map(|d| json!({
+                "channel": d.channel, "stays_in_pixel": d.stays, "left_frame": d.left, "stars": d.stars,
+            })).collect::<Vec<_>>()),
             "seed": settings.seed,
             "direction": match &rendering.estimators[..] {
                 all if all.iter().filter(|name| **name != "ghosts").count() > 1 => "both",

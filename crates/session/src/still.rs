@@ -73,6 +73,7 @@ pub(crate) fn expose(scene: &Scene) -> Result<Rendering, SessionError> {
         estimators: Vec::new(),
         warnings: Vec::new(),
         ledger: None,
+        diffraction: None,
     })
 }
 
