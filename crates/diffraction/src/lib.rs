@@ -6,8 +6,15 @@
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
+mod kernel;
 mod polygon;
+mod pupil;
+mod spread;
+mod star;
 mod wings;
 
+pub use kernel::{Light, PixelSpread};
 pub use polygon::Polygon;
+pub use pupil::Pupil;
+pub use spread::{Account, Seen, Spread};
 pub use wings::{Fan, Wings};

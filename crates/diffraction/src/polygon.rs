@@ -117,15 +117,123 @@ impl Polygon {
         re * re + im * im
     }
 
+    /// [`Polygon::intensity`] on a lattice of `step` radians per unit: rows from the origin on, `count` of them after it, each from as
+    /// many columns before the origin to as many after it.
+    ///
+    /// Far from the origin and from an edge's normal its term is a difference of its ends' phases, which are products of one of the
+    /// column and one of the row.
+    #[must_use]
+    pub fn lattice(&self, step: f64, count: usize) -> Vec<f64> {
+        let columns = 2 * count + 1;
+        let turn = |phase: f64| [math::cos(phase), math::sin(phase)];
+        let at = |i: usize| (i as f64 - count as f64) * step;
+        let phases: Vec<Vec<[Vec<[f64; 2]>; 2]>> = self
+            .rings
+            .iter()
+            .map(|ring| {
+                let corner = |[x, y]: &[f64; 2]| {
+                    [
+                        (0..columns).map(|i| turn(at(i) * x)).collect(),
+                        (0..count + 1).map(|j| turn(j as f64 * step * y)).collect(),
+                    ]
+                };
+                ring.iter().map(corner).collect()
+            })
+            .collect();
+        let far2 = 1.0 / self.area;
+        let value = |i: usize, j: usize| {
+            let k = [at(i), j as f64 * step];
+            let k2 = k[0] * k[0] + k[1] * k[1];
+            if k2 < far2 {
+                return self.intensity(k);
+            }
+            let (mut re, mut im) = (0.0, 0.0);
+            for (ring, phases) in self.rings.iter().zip(&phases) {
+                let end = |c: usize| {
+                    let ([a, b], [c, d]) = (phases[c][0][i], phases[c][1][j]);
+                    [a * c - b * d, a * d + b * c]
+                };
+                let mut from = ring.len() - 1;
+                let mut before = end(from);
+                for to in 0..ring.len() {
+                    let d = [ring[to][0] - ring[from][0], ring[to][1] - ring[from][1]];
+                    let cross = k[0] * d[1] - k[1] * d[0];
+                    let along = k[0] * d[0] + k[1] * d[1];
+                    let after = end(to);
+                    // (k x d) sinc exp(i k m): its quotient by i k^2 comes last.
+                    if along.abs() > 0.2 {
+                        let part = cross / along;
+                        re += part * (after[1] - before[1]);
+                        im -= part * (after[0] - before[0]);
+                    } else {
+                        // The phase of the middle is that of the first end, turned on by half of the way.
+                        let sinc = cross * (1.0 + sinc_less_one(0.5 * along));
+                        let [c, s] = turn(0.5 * along);
+                        re += sinc * (before[0] * c - before[1] * s);
+                        im += sinc * (before[1] * c + before[0] * s);
+                    }
+                    (from, before) = (to, after);
+                }
+            }
+            let scale = 1.0 / (k2 * self.area);
+            (re * re + im * im) * scale * scale
+        };
+        (0..count + 1).flat_map(|j| (0..columns).map(move |i| (i, j))).map(|(i, j)| value(i, j)).collect()
+    }
+
+    /// The same without corners that lie closer than `tolerance` to the line between their neighbors that stay.
+    #[must_use]
+    pub fn simplified(&self, tolerance: f64) -> Self {
+        let mut rings = Vec::new();
+        for ring in &self.rings {
+            let count = ring.len();
+            // Begin where it turns most, so that a straight side is one piece.
+            let turn = |i: usize| {
+                let (a, b, c) = (ring[(i + count - 1) % count], ring[i], ring[(i + 1) % count]);
+                ((b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0])).abs()
+            };
+            let begin = (0..count).max_by(|a, b| turn(*a).total_cmp(&turn(*b))).unwrap_or(0);
+            let at = |i: usize| ring[(begin + i) % count];
+            let mut kept = Vec::new();
+            let mut from = 0;
+            while from < count {
+                kept.push(at(from));
+                // As far as all corners between lie on the line.
+                let mut to = from + 1;
+                while to < count {
+                    let (a, b) = (at(from), at(to + 1));
+                    let d = [b[0] - a[0], b[1] - a[1]];
+                    let length = (d[0] * d[0] + d[1] * d[1]).sqrt();
+                    let off = |i: usize| (d[0] * (at(i)[1] - a[1]) - d[1] * (at(i)[0] - a[0])).abs();
+                    if (from + 1..to + 1).any(|i| off(i) > tolerance * length) {
+                        break;
+                    }
+                    to += 1;
+                }
+                from = to;
+            }
+            rings.push(if kept.len() > 2 { kept } else { ring.clone() });
+        }
+        let [cx, cy] = self.center;
+        rings.iter_mut().flatten().for_each(|p| (p[0], p[1]) = (p[0] + cx, p[1] + cy));
+        Self::new(rings).unwrap_or_else(|| self.clone())
+    }
+
     /// What of it lies inside of a convex polygon whose corners run counter-clockwise, both as they were given to [`Polygon::new`]
     /// (I. E. Sutherland and G. W. Hodgman, "Reentrant polygon clipping", Commun. ACM 17, 1974). `None` where nothing does.
     #[must_use]
     pub fn within(&self, convex: &[[f64; 2]]) -> Option<Self> {
+        let lines: Vec<_> = (0..convex.len()).map(|i| [convex[i], convex[(i + 1) % convex.len()]]).collect();
+        self.left_of(&lines)
+    }
+
+    /// What of it lies to the left of each of these lines, given by two places. `None` where nothing does.
+    #[must_use]
+    pub fn left_of(&self, lines: &[[[f64; 2]; 2]]) -> Option<Self> {
         let mut rings: Vec<Vec<[f64; 2]>> = self.rings.clone();
         for ring in &mut rings {
             ring.iter_mut().for_each(|p| (0..2).for_each(|k| p[k] += self.center[k]));
-            for i in 0..convex.len() {
-                let (a, b) = (convex[i], convex[(i + 1) % convex.len()]);
+            for [a, b] in lines {
                 let side = |p: [f64; 2]| (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
                 let mut kept = Vec::with_capacity(ring.len() + 1);
                 for j in 0..ring.len() {

@@ -10,9 +10,11 @@ use std::f64::consts::{PI, TAU};
 use std::sync::OnceLock;
 
 /// Edges that turn by less than this from one to the next are pieces of one line, rad.
-const CORNER_RAD: f64 = 0.12;
+const CORNER_RAD: f64 = 0.2;
+/// Lines of edges that bend less than this send off a spike, rad; others a fan.
+const SPIKE_RAD: f64 = 0.03;
 /// Widest fan: a line that bends by more is taken in pieces, rad.
-const WIDEST_RAD: f64 = 0.06;
+const WIDEST_RAD: f64 = 0.12;
 
 /// What a line of edges sends off to both of its sides.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,6 +27,14 @@ pub struct Fan {
     pub length: f64,
     /// Length of the whole line that this is a piece of.
     pub line: f64,
+}
+
+impl Fan {
+    /// Whether what it sends off is a spike: it comes from a whole line that hardly bends.
+    #[must_use]
+    pub fn is_spike(&self) -> bool {
+        self.length == self.line && self.spread_rad <= SPIKE_RAD
+    }
 }
 
 /// What a polygon does far from the core.
@@ -87,7 +97,7 @@ impl Wings {
             let per_mm = PI * fan.line / wavelength_mm;
             let half = half.map(|half| half * per_mm);
             let mut share = mean(t * per_mm, half, spike_integrals);
-            if without_boxes {
+            if without_boxes && fan.is_spike() {
                 share -= mean(t * per_mm, half, boxes_integrals);
             }
             sum += fan.length * fan.line * along * along * share;

@@ -167,3 +167,28 @@ fn what_lies_within_a_convex_polygon_is_cut_out() {
     assert!((cut.area() - 2.0).abs() < 1e-12 && (cut.center()[0] - 1.5).abs() < 1e-12, "{cut:?}");
     assert!(square.within(&[[3.0, 0.0], [4.0, 0.0], [4.0, 1.0]]).is_none());
 }
+
+/// The lattice has the values of its places, and corners on a line may go.
+#[test]
+fn the_lattice_is_the_closed_form() {
+    let sides = |opening: &Polygon| {
+        let ring = &opening.rings()[0];
+        let cut = ring.iter().zip(ring.iter().cycle().skip(1));
+        Polygon::new(vec![
+            cut.flat_map(|(a, b)| (0..5).map(move |i| [0, 1].map(|k| a[k] + (b[k] - a[k]) * f64::from(i) / 5.0)))
+                .collect(),
+        ])
+    };
+    for opening in [Polygon::regular(7, 1.0, 0.2), Polygon::regular(8, 1.0, PI / 8.0), l_shape()] {
+        let (step, count) = (0.37, 40);
+        for (k, found) in opening.lattice(step, count).into_iter().enumerate() {
+            let at = [(k % 81) as f64 - 40.0, (k / 81) as f64];
+            let want = opening.intensity(at.map(|v| v * step));
+            assert!((found - want).abs() < 1e-14, "{at:?}: {found:e} {want:e}");
+        }
+    }
+    let seven = Polygon::regular(7, 1.0, 0.2);
+    let simple = sides(&seven).unwrap().simplified(1e-9);
+    assert_eq!(simple.rings()[0].len(), 7);
+    assert!((simple.area() / seven.area() - 1.0).abs() < 1e-12);
+}

@@ -58,6 +58,9 @@ impl Pipeline {
         isa: Isa,
         density: Option<Arc<dyn WavelengthDensity>>,
     ) -> Result<Self, RenderError> {
+        if let Some(text) = crate::diffracted::fault(scene) {
+            return Err(RenderError::Diffraction(text));
+        }
         // A meter's channel is none of them: whether a camera meters must not change the picture's samples.
         let recorded = scene.picture_channels();
         let system = system(scene, Share::Whole, &recorded);

@@ -1,6 +1,7 @@
 //! The renderer: units of work, handed to threads, summed exactly.
 
 use crate::backward::Backward;
+use crate::diffracted::{self, Diffracted};
 use crate::done::Units;
 use crate::estimator::Estimator;
 use crate::forward::Forward;
@@ -48,6 +49,8 @@ pub struct Rendering {
     pub ledger: Option<LightLedger>,
     /// What part of the exposure of the whole frame, all channels together, is veiling glare, where it is asked for.
     pub glare: Option<f64>,
+    /// What diffraction did to each channel of the picture, where the scene asks for it.
+    pub diffraction: Option<Vec<Diffracted>>,
     /// What a person should know before believing the picture, and what to write.
     pub warnings: Vec<String>,
 }
@@ -453,6 +456,8 @@ impl Renderer {
             }
             planes.push(ExposureChannel { name: channel.name.clone(), unit: channel.unit.clone(), values });
         }
+        let spread = || diffracted::spread(scene, &mut planes, recorded, self.pipeline.isa);
+        let diffraction = scene.render.diffraction.then(spread).transpose().map_err(RenderError::Diffraction)?;
         Ok(Rendering {
             exposure: ExposureFrame { size, channels: planes },
             rays: light.rays(),
@@ -463,6 +468,7 @@ impl Renderer {
             noise: self.noise(light),
             ledger: self.ledger.clone(),
             glare: self.glare_of(light, &weights),
+            diffraction,
             warnings: Vec::new(),
         })
     }

@@ -133,6 +133,9 @@ struct RenderSection {
     reflections: ReflectionsSection,
     /// Veiling glare: light that glass, paint, film or sensor spread over the frame. `true`, or what it is made of; none if absent.
     glare: Option<GlareSection>,
+    /// Whether the edge of the aperture spreads light: stars around lamps, and pictures that soften as the stop closes. Not if absent.
+    #[serde(default)]
+    diffraction: bool,
 }
 
 /// What `glare` is written as.
@@ -530,5 +533,6 @@ fn render_settings(
             polarized: s.reflections.polarized,
         },
         glare,
+        diffraction: s.diffraction,
     })
 }

@@ -62,6 +62,9 @@ impl Report<'_> {
             "glare": settings.glare.map(|of| json!({
                 "share": rendering.glare, "paint": of.paint, "imager": of.imager, "imager_mirror": of.imager_mirror,
             })),
+            "diffraction": rendering.diffraction.as_ref().map(|all| all.iter().map(|d| json!({
+                "channel": d.channel, "stays_in_pixel": d.stays, "left_frame": d.left, "stars": d.stars,
+            })).collect::<Vec<_>>()),
             "seed": settings.seed,
             "direction": match &rendering.estimators[..] {
                 all if all.iter().filter(|name| !["ghosts", "glare"].contains(name)).count() > 1 => "both",

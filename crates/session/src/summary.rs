@@ -68,6 +68,16 @@ pub(crate) fn of(report: &Report<'_>) -> String {
     if let Some(glare) = rendering.glare {
         text.push_str(&format!(", veiling glare is {} of all light on the frame", spectra_render::percent(glare)));
     }
+    if let Some(all) = rendering.diffraction.as_ref().filter(|all| !all.is_empty()) {
+        let mean = |of: fn(&spectra_render::Diffracted) -> f64| all.iter().map(of).sum::<f64>() / all.len() as f64;
+        let stars = all.iter().map(|d| d.stars).max().unwrap_or(0);
+        text.push_str(&format!(
+            ", diffraction: {} of the light of a point stays in its pixel, {} leaves the frame, stars of {} pixels",
+            spectra_render::percent(mean(|d| d.stays)),
+            spectra_render::percent(mean(|d| d.left.max(0.0))),
+            words::count(stars as u64)
+        ));
+    }
     if let Some(noise) = rendering.noise {
         let (median, p95) = (spectra_render::percent(noise.median), spectra_render::percent(noise.p95));
         text.push_str(&format!(", noise {median} (95 % of the frame below {p95})"));
