@@ -118,7 +118,7 @@ impl<'a> Spread<'a> {
     fn smooth(&self, wings: &Wings, without_boxes: bool) -> Vec<f64> {
         let [across, down] = self.reach.map(|r| r as isize);
         let side = self.pitch_mm.map(|p| p * self.cell_px as f64);
-        let (end, colors) = (self.end_mm(), coarse(&self.light));
+        let (end, colors, mean) = (self.end_mm(), coarse(&self.light), [[self.light.mean_mm(), 1.0]]);
         let row = |j: isize| -> Vec<f64> {
             let cell = |i: isize| -> f64 {
                 let at = [-(i as f64) * side[0], j as f64 * side[1]];
@@ -128,7 +128,7 @@ impl<'a> Spread<'a> {
                     return 0.0;
                 }
                 // Near the middle a cell is large for what it holds.
-                let parts: usize = if r < 3.0 * end { 4 } else { 1 };
+                let (parts, colors): (usize, _) = if r < 3.0 * end { (4, &colors[..]) } else { (1, &mean[..]) };
                 let mut sum = 0.0;
                 for k in 0..parts * parts {
                     let place = |n: usize, side: f64| ((n as f64 + 0.5) / parts as f64 - 0.5) * side;
@@ -145,7 +145,10 @@ impl<'a> Spread<'a> {
             };
             (-across..across + 1).map(cell).collect()
         };
-        (-down..down + 1).into_par_iter().flat_map_iter(row).collect()
+        // The same at opposite places.
+        let lower: Vec<f64> = (0..down + 1).into_par_iter().flat_map_iter(row).collect();
+        let line = 2 * across as usize + 1;
+        lower[line..].iter().rev().chain(&lower).copied().collect()
     }
 
     /// Spreads a plane of exposures, in place.
