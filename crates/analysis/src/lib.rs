@@ -8,7 +8,8 @@
 //! - [`ghosts`]: light that two surfaces reflect, path by path;
 //! - [`glare`]: how much of an extended white field a lens spreads over what should be black;
 //! - [`draw`]: a lens as a figure, with rays in the colors of their wavelengths;
-//! - [`figure`]: spectra, their colors, and glasses as figures.
+//! - [`figure`]: spectra, their colors, and glasses as figures;
+//! - [`picture`]: a rendered picture measured: light, colors, views, cuts, differences.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
@@ -20,6 +21,8 @@ pub mod ghosts;
 pub mod glare;
 pub mod info;
 mod light;
+pub mod picture;
+pub mod terms;
 pub mod trace;
 
 pub use light::Light;

@@ -5,6 +5,7 @@ use crate::film::FilmArguments;
 use crate::frames::Frames;
 use crate::glass::GlassArguments;
 use crate::new::NewArguments;
+use crate::picture::PictureArguments;
 use crate::quantity::parse;
 use crate::spectrum::SpectrumArguments;
 use crate::version;
@@ -64,6 +65,8 @@ pub(crate) enum Command {
     Spectrum(SpectrumArguments),
     /// Inspect glass: refractive index, Abbe diagram, nearest glass, fits.
     Glass(GlassArguments),
+    /// Measure pictures: power and flux, false-color views, cuts, spectra, differences.
+    Picture(PictureArguments),
     /// Create a plugin, a scene or a lens of your own.
     New(NewArguments),
     /// Build a version of the program that includes your plugins.
@@ -95,7 +98,7 @@ pub(crate) struct Completions {
     long_about = "Render a scene to a picture and to linear exposure data.\n\n\
         The scene's `output` selects the files: SCENE.exr (linear exposure, one image channel for each channel of the \
         imager or film, 32-bit float) and SCENE.png or SCENE.tiff (the picture for viewing), named after the scene \
-        file. SCENE.json holds the time, rays, light losses and versions. --output x.png (.tiff, .exr, .dng) writes \
+        file. SCENE.json holds the time, rays, light losses and versions. --output x.png (.tiff, .exr, .dng, .html) writes \
         only that picture. A file appears under its final name only once it is complete.\n\n\
         Ctrl-C stops within a second and writes the picture so far, marked as partial (exit code 130); a second \
         Ctrl-C quits immediately.\n\n\
@@ -111,7 +114,7 @@ pub(crate) struct Run {
     /// A scene file, or the name of a bundled scene (see `spectra list scene`).
     #[arg(value_name = "SCENE")]
     pub scene: PathBuf,
-    /// Output folder, created if it does not exist; or the name of a single picture file: x.png, .tiff, .exr, .dng.
+    /// Output folder, created if it does not exist; or the name of a single picture file: x.png, .tiff, .exr, .dng, .html.
     #[arg(short, long, value_name = "DIR|FILE", default_value = "out")]
     pub output: PathBuf,
     #[command(flatten)]
@@ -201,14 +204,18 @@ fn samples(text: &str) -> Result<u32, String> {
         writes what was changed into the scene file, where it stands, and leaves the rest of the file as it is.\n\n\
         The address is printed to standard output. It opens once, in one browser, and only on this machine. Ctrl-C ends the \
         viewer.",
-    after_long_help = "Examples: a bundled scene; another film, and the address alone\n  \
+    after_long_help = "Examples: a bundled scene; another film, and the address alone; wavelengths as a screen shows them\n  \
         spectra view biotar-ortho\n  \
-        spectra view biotar-ortho --set film.stock=tri-x --no-open"
+        spectra view biotar-ortho --set film.stock=tri-x --no-open\n  \
+        spectra view --color-tester"
 )]
 pub(crate) struct View {
     /// A scene file, or the name of a bundled scene (see `spectra list scene`).
-    #[arg(value_name = "SCENE")]
-    pub scene: PathBuf,
+    #[arg(value_name = "SCENE", required_unless_present = "color_tester")]
+    pub scene: Option<PathBuf>,
+    /// In place of a scene: light of one wavelength or a narrow band, as a screen can show it.
+    #[arg(long, conflicts_with_all = ["scene", "overrides", "threads"])]
+    pub color_tester: bool,
     /// Port of this machine to serve the page at; 0 takes a free one.
     #[arg(long, value_name = "PORT", default_value_t = 0)]
     pub port: u16,
@@ -661,10 +668,13 @@ pub(crate) struct LensGhosts {
         Input columns: x_mm,y_mm,z_mm (a point on the ray before the first surface, whose vertex is the origin; +z \
         runs toward the image), l,m,n (unit direction) and wavelength_nm, unless one line or wavelength is given for \
         all rays. Columns are found by name, in any order.\n\n\
-        Output, one row per ray: status,surface,x_mm,y_mm,z_mm,l,m,n. A `hit` is where the ray meets the image plane, \
-        in the same coordinates; a ray that ends earlier is `missed`, `vignetted`, `tir` or `absorbed`, with the \
-        number of the surface, counted from 1. Surfaces clip only at stated semi-diameters, unless --f-number sets \
-        the stop; the lens is not refocused unless --focus is given.",
+        Output, one row per ray: status,surface,x_mm,y_mm,z_mm,l,m,n,wavelength_nm,transmittance,optical_path_mm. A \
+        `hit` is where the ray meets the image plane, in the same coordinates; a ray that ends earlier is `missed`, \
+        `vignetted`, `tir` or `absorbed`, with the number of the surface, counted from 1. `transmittance` is what \
+        coatings and glass leave of the light, `optical_path_mm` the index times the length from the start of the ray. \
+        --every-surface has a row `passed` for each surface as well, with the direction behind it, and the number of the \
+        ray first. Surfaces clip only at stated semi-diameters, unless --f-number sets the stop; the lens is not \
+        refocused unless --focus is given.",
     after_long_help = "Example:\n  spectra lens trace zeiss-biotar-50-f1.4 --rays rays.csv --nd -o hits.csv"
 )]
 pub(crate) struct LensTrace {
@@ -678,6 +688,9 @@ pub(crate) struct LensTrace {
     /// Follow the path that these surfaces reflect, counted from 1, in the order of the light: 7,3 is a ghost.
     #[arg(long, value_name = "A,B", value_delimiter = ',')]
     pub path: Vec<usize>,
+    /// Write a row for every surface that a ray passes.
+    #[arg(long)]
+    pub every_surface: bool,
     /// Output file; standard output if not given, or if `-`.
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,

@@ -8,15 +8,8 @@ use spectra_core::Isa;
 use spectra_view::View;
 use std::process::{Command, Stdio};
 
-/// Serves a scene to a browser until the process ends.
+/// Serves a scene, or the color tester, to a browser until the process ends.
 pub(crate) fn view(arguments: &arguments::View, isa: Isa) -> Outcome {
-    let view = View {
-        scene: arguments.scene.clone(),
-        overrides: arguments.set.overrides.clone(),
-        port: arguments.port,
-        isa,
-        threads: arguments.threads.map_or_else(limits::processors, usize::from),
-    };
     let ready = |address: &str| {
         // A reader that has gone away is no failure.
         let _ = console::out(&format!("{address}\n"));
@@ -28,7 +21,20 @@ pub(crate) fn view(arguments: &arguments::View, isa: Isa) -> Outcome {
             console::note("no browser could be started: open this address in one; Ctrl-C ends the viewer");
         }
     };
-    let ended = spectra_view::view(view, ready);
+    let ended = match &arguments.scene {
+        // The parser lets nothing else through.
+        None => spectra_view::color_tester(arguments.port, ready),
+        Some(scene) => {
+            let view = View {
+                scene: scene.clone(),
+                overrides: arguments.set.overrides.clone(),
+                port: arguments.port,
+                isa,
+                threads: arguments.threads.map_or_else(limits::processors, usize::from),
+            };
+            spectra_view::view(view, ready)
+        }
+    };
     match ended {
         Ok(never) => match never {},
         Err(error) => Err(Failure::from(error)),

@@ -13,10 +13,15 @@
 //! and a sine of the frequency f is developed 1 + gain (1 - 1 / (1 + (2 pi l f)^2)) times as strong. There is no less than no silver
 //! and no more than all of it: near either end of the curve the change d is held to d / (1 + |d| / room).
 
-use crate::convolve::Convolver;
+use crate::known::Known;
 use crate::raster::Raster;
 use crate::scatter::PointSpread;
+use spectra_numerics::convolve::Convolver;
 use std::f64::consts::PI;
+use std::sync::Arc;
+
+/// Kernels on a plane, by their length in mm.
+static CONVOLVERS: Known<(f64, Raster), Convolver> = Known::new();
 
 /// How strong and how wide the effect is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,7 +60,7 @@ impl Adjacency {
 pub struct Edges {
     raster: Raster,
     gain: f64,
-    convolver: Convolver,
+    convolver: Arc<Convolver>,
 }
 
 impl Edges {
@@ -67,10 +72,13 @@ impl Edges {
     pub fn new(adjacency: &Adjacency, raster: &Raster) -> Self {
         let good = |v: f64| v > 0.0 && v.is_finite();
         assert!(good(raster.pitch_mm) && good(adjacency.length_mm), "a pitch and a length above 0");
-        let spread = PointSpread::bessel(adjacency.length_mm);
-        let kernel = spread.over_pixels(raster.pitch_mm, BEYOND, LONGEST);
-        let kernel = kernel.cropped(raster.width.max(raster.height));
-        Self { raster: *raster, gain: adjacency.gain, convolver: Convolver::new(&kernel, raster.width, raster.height) }
+        let convolver = CONVOLVERS.of((adjacency.length_mm, *raster), || {
+            let spread = PointSpread::bessel(adjacency.length_mm);
+            let kernel = spread.over_pixels(raster.pitch_mm, BEYOND, LONGEST);
+            let kernel = kernel.cropped(raster.width.max(raster.height));
+            Convolver::new(&kernel, raster.width, raster.height)
+        });
+        Self { raster: *raster, gain: adjacency.gain, convolver }
     }
 
     /// Applies the effect to a plane of amounts (density of silver, or dye), in place. Beside the frame lies film with

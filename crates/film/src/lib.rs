@@ -13,7 +13,6 @@
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 pub mod adjacency;
-mod convolve;
 mod cube;
 pub mod curve;
 pub mod deposit;
@@ -22,6 +21,7 @@ pub mod display;
 pub mod emulsion;
 pub mod grain;
 pub mod halation;
+mod known;
 mod lookup;
 pub mod optics;
 pub mod positive;

@@ -35,6 +35,9 @@ pub enum RenderError {
     /// The lens is none whose veiling glare is known.
     #[error("glare: {0}")]
     Glare(String),
+    /// What the stop does to light is not known.
+    #[error("diffraction: {0}")]
+    Diffraction(String),
     /// A stage gave a number that no light can have.
     #[error("{0}")]
     NoNumber(NoNumber),
@@ -79,6 +82,11 @@ impl RenderError {
             },
             Self::Lens(text) => at("lens", text, "another glass, or another `wavelengths: {band: ...}`"),
             Self::Glare(text) => at("render.glare", text, "leave `glare` out, or take another lens"),
+            Self::Diffraction(_) => at(
+                "render.diffraction",
+                &text,
+                "`diffraction: false`, or a stop with blades or one that is drawn as an SVG in black and white",
+            ),
             Self::NoNumber(found) => at(
                 found.step.section(),
                 &text,

@@ -9,6 +9,7 @@
 mod backward;
 mod blame;
 mod control;
+mod diffracted;
 mod done;
 mod error;
 mod estimator;
@@ -30,6 +31,7 @@ mod workers;
 
 pub use blame::{NoNumber, Step};
 pub use control::Control;
+pub use diffracted::Diffracted;
 pub use done::{Done, Units};
 pub use error::RenderError;
 pub use estimator::{Estimator, Scratch, Unit};

@@ -1,6 +1,7 @@
 //! The renderer: units of work, handed to threads, summed exactly.
 
 use crate::backward::Backward;
+use crate::diffracted::{self, Diffracted};
 use crate::done::Units;
 use crate::estimator::Estimator;
 use crate::forward::Forward;
@@ -24,6 +25,9 @@ use spectra_scene::{Direction, Lights, NumberFamily, Scene};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, PoisonError};
 
+/// Ghosts matter by themselves where the brightest of them has more than this part of the mean of the frame.
+pub(crate) const MATTERS: f64 = 0.01;
+
 /// What a render gives.
 #[derive(Clone, Debug)]
 pub struct Rendering {
@@ -45,6 +49,8 @@ pub struct Rendering {
     pub ledger: Option<LightLedger>,
     /// What part of the exposure of the whole frame, all channels together, is veiling glare, where it is asked for.
     pub glare: Option<f64>,
+    /// What diffraction did to each channel of the picture, where the scene asks for it.
+    pub diffraction: Option<Vec<Diffracted>>,
     /// What a person should know before believing the picture, and what to write.
     pub warnings: Vec<String>,
 }
@@ -98,19 +104,23 @@ impl Renderer {
     ) -> Result<Self, RenderError> {
         let direction = scene.render.direction;
         let lights = scene.render.lights;
-        let ghosts = scene.render.reflections.order.unwrap_or(0);
+        let order = scene.render.reflections.order;
         scene.source.prepare().map_err(RenderError::Source)?;
         let pays = scene.source.split().map(|split| split.pays);
         let apart = lights != Lights::Same && pays.is_some_and(|pays| pays || lights == Lights::Forward);
         if !apart {
             let plain = Self::by(scene, isa, density, &[direction], workers)?;
-            return if ghosts == 0 { Ok(plain) } else { plain.with_ghosts() };
+            return if order.unwrap_or(0) == 0 { Ok(plain) } else { plain.with_ghosts(workers) };
         }
         let pipeline = Arc::new(Pipeline::new(&scene, isa, density)?);
         let share = |share| Arc::new(pipeline.of_share(share));
         let of_lights = share(Share::Lights);
         let (rest, lights) = (Backward::new(share(Share::Rest), workers)?, Forward::new(of_lights.clone(), workers)?);
-        let found = if ghosts == 0 { None } else { Ghosts::new(&of_lights)? };
+        let found = match order {
+            Some(0) => None,
+            Some(_) => Ghosts::new(&of_lights, None, workers)?,
+            None => Ghosts::new(&of_lights, Some(MATTERS * rest.mean()), workers)?,
+        };
         let ledger = found.as_ref().map(|found| found.ledger().clone());
         let mut kinds: Vec<Box<dyn Estimator>> = vec![Box::new(rest), Box::new(lights)];
         kinds.extend(found.map(|found| Box::new(found) as Box<dyn Estimator>));
@@ -118,11 +128,11 @@ impl Renderer {
     }
 
     /// With the ghosts of its lights, or of all of the source where none of it is brighter than the rest.
-    fn with_ghosts(mut self) -> Result<Self, RenderError> {
+    fn with_ghosts(mut self, workers: &dyn Workers) -> Result<Self, RenderError> {
         let share = if self.scene.source.split().is_some() { Share::Lights } else { Share::Whole };
         let found = match share {
-            Share::Whole => Ghosts::new(&self.pipeline)?,
-            share => Ghosts::new(&self.pipeline.of_share(share))?,
+            Share::Whole => Ghosts::new(&self.pipeline, None, workers)?,
+            share => Ghosts::new(&self.pipeline.of_share(share), None, workers)?,
         };
         let Some(found) = found else { return Ok(self) };
         self.ledger = Some(found.ledger().clone());
@@ -446,6 +456,8 @@ impl Renderer {
             }
             planes.push(ExposureChannel { name: channel.name.clone(), unit: channel.unit.clone(), values });
         }
+        let spread = || diffracted::spread(scene, &mut planes, recorded, self.pipeline.isa);
+        let diffraction = scene.render.diffraction.then(spread).transpose().map_err(RenderError::Diffraction)?;
         Ok(Rendering {
             exposure: ExposureFrame { size, channels: planes },
             rays: light.rays(),
@@ -456,6 +468,7 @@ impl Renderer {
             noise: self.noise(light),
             ledger: self.ledger.clone(),
             glare: self.glare_of(light, &weights),
+            diffraction,
             warnings: Vec::new(),
         })
     }

@@ -62,6 +62,9 @@ impl Report<'_> {
             "glare": settings.glare.map(|of| json!({
                 "share": rendering.glare, "paint": of.paint, "imager": of.imager, "imager_mirror": of.imager_mirror,
             })),
+            "diffraction": rendering.diffraction.as_ref().map(|all| all.iter().map(|d| json!({
+                "channel": d.channel, "stays_in_pixel": d.stays, "left_frame": d.left, "stars": d.stars,
+            })).collect::<Vec<_>>()),
             "seed": settings.seed,
             "direction": match &rendering.estimators[..] {
                 all if all.iter().filter(|name| !["ghosts", "glare"].contains(name)).count() > 1 => "both",
@@ -76,6 +79,7 @@ impl Report<'_> {
             "width_mm": size.width_mm,
             "height_mm": size.height_mm,
             "channels": channels,
+            "fingerprint": format!("{:016x}", rendering.exposure.fingerprint()),
             "exposure_time_s": self.exposure_time_s(),
             "metered_time_s": self.film_times_s(|time| Some(time.time_s)),
             "source": scene.source.describe(),

@@ -91,6 +91,15 @@ impl Session {
         self.scene
     }
 
+    /// The same picture with these values `path=value` on top, without light. Of this one's stages it has those that do not rest on
+    /// them; this one stays as it is.
+    ///
+    /// # Errors
+    /// Everything that is wrong with the scene as it would be.
+    pub fn branch(&self, texts: &[String]) -> Result<Self, SessionError> {
+        Self::after(self.series.with_all(texts)?, self.index, Some(Arc::clone(&self.scene)), self.isa)
+    }
+
     /// The picture among those that the scene's file stands for.
     #[must_use]
     pub fn member(&self) -> spectra_scene::Member {
@@ -213,6 +222,14 @@ impl Session {
     /// # Errors
     /// Everything that is wrong with the scene as it would be.
     pub fn change(&mut self, text: &str) -> Result<Kept, SessionError> {
+        self.change_on(text, &Alone)
+    }
+
+    /// The same, with what is searched anew on these workers: the same bits on any.
+    ///
+    /// # Errors
+    /// As [`Session::change`].
+    pub fn change_on(&mut self, text: &str, workers: &dyn Workers) -> Result<Kept, SessionError> {
         let series = self.series.with(text)?;
         let before = Arc::clone(&self.scene);
         let scene: Arc<Scene> = series.scene_after(self.index, Some(Arc::clone(&before)))?.into();
@@ -242,7 +259,7 @@ impl Session {
             Some(ready) if same_light => Some(ready),
             Some(ready) => {
                 let density = system.then(|| Arc::clone(ready.0.density()));
-                let made = Renderer::with_density(Arc::clone(&scene), self.isa, density, &Alone);
+                let made = Renderer::with_density(Arc::clone(&scene), self.isa, density, workers);
                 let made = made.and_then(|renderer| renderer.begin().map(|light| (renderer, light)));
                 match made {
                     Ok(made) => Some(made),

@@ -74,6 +74,7 @@ pub(crate) fn expose(scene: &Scene) -> Result<Rendering, SessionError> {
         warnings: Vec::new(),
         ledger: None,
         glare: None,
+        diffraction: None,
     })
 }
 

@@ -10,9 +10,12 @@
 /** @typedef {{is: "switch"}} SwitchKind */
 /** @typedef {{path: string, kind: NumberKind | PairKind | ChoiceKind | SwitchKind, value: any, help: string, front: boolean}} Control */
 /** @typedef {{message: string, place?: string, hint?: string}} Fault */
-/** @typedef {{frame: number, scene?: number, width?: number, height?: number, samples?: number, of?: number, rays?: number, since_change_ms?: number,
+/** @typedef {{frame: number, scene?: number, lens_drawn?: number, reread?: number, turns?: number, width?: number, height?: number, light?: [number, number], draft?: boolean, samples?: number, of?: number, rays?: number, since_change_ms?: number,
  *   exposure_s?: number, lens?: string, film?: string, focus?: string, warnings?: Fault[], fault?: {path: string, faults: Fault[]}?}} Head */
-/** @typedef {{head: Head, width: number, height: number, light: Float32Array}} Picture */
+/**
+ * A picture, and its light: of a draft, fewer pixels than the picture will have.
+ * @typedef {{head: Head, width: number, height: number, across: number, down: number, light: Float32Array}} Picture
+ */
 
 /**
  * @template {Element} T
@@ -95,43 +98,42 @@ const bands = [
 
 const inked = document.createElement("canvas");
 
+/** @param {number} v */
+const code = (v) => codes[v >= 1 ? 4096 : v > 0 ? (4096 * v) | 0 : 0];
+
 /** @param {Picture} picture */
 function ink(picture) {
-  const { width, height, light } = picture;
-  inked.width = width;
-  inked.height = height;
+  const { across, down, light } = picture;
+  inked.width = across;
+  inked.height = down;
   const context = inked.getContext("2d");
   if (!context) return;
-  const image = context.createImageData(width, height);
-  const to = image.data;
+  const image = context.createImageData(across, down);
+  const to = new Uint32Array(image.data.buffer);
   const gain = 2 ** Number(stops.value);
   const how = show.value;
   const counts = [0, 1, 2].map(() => new Uint32Array(256));
-  for (let i = 0, n = width * height; i < n; i += 1) {
+  const [reds, greens, blues] = counts;
+  for (let i = 0, n = across * down; i < n; i += 1) {
     const r = gain * light[3 * i], g = gain * light[3 * i + 1], b = gain * light[3 * i + 2];
-    const code = (/** @type {number} */ v) => codes[v >= 1 ? 4096 : v > 0 ? (4096 * v) | 0 : 0];
-    const rgb = [code(r), code(g), code(b)];
-    counts[0][rgb[0]] += 1;
-    counts[1][rgb[1]] += 1;
-    counts[2][rgb[2]] += 1;
-    let color = rgb;
+    const red = code(r), green = code(g), blue = code(b);
+    reds[red] += 1;
+    greens[green] += 1;
+    blues[blue] += 1;
+    let color = (blue << 16) | (green << 8) | red;
     if (how !== "picture") {
       const luminance = 0.2126 * r + 0.7152 * g + 0.0722 * b;
       if (how === "gray") {
-        const v = code(luminance);
-        color = [v, v, v];
+        color = code(luminance) * 0x10101;
       } else if (how === "false") {
         const stop = Math.round(Math.log2(Math.max(luminance, 1e-9) / 0.18));
-        color = bands[Math.min(Math.max(stop + 5, 0), 10)];
-      } else {
-        const dim = rgb.map((v) => v >> 2);
-        color = r >= 1 || g >= 1 || b >= 1 ? [255, 60, 60] : r <= 0 || g <= 0 || b <= 0 ? [60, 90, 255] : dim;
-      }
+        const band = bands[Math.min(Math.max(stop + 5, 0), 10)];
+        color = (band[2] << 16) | (band[1] << 8) | band[0];
+      } else if (r >= 1 || g >= 1 || b >= 1) color = 0x3c3cff;
+      else if (r <= 0 || g <= 0 || b <= 0) color = 0xff5a3c;
+      else color = ((blue >> 2) << 16) | ((green >> 2) << 8) | (red >> 2);
     }
-    to[4 * i] = color[0];
-    to[4 * i + 1] = color[1];
-    to[4 * i + 2] = color[2];
-    to[4 * i + 3] = 255;
+    to[i] = 0xff000000 | color;
   }
   context.putImageData(image, 0, 0);
   drawHistogram(counts);
@@ -181,11 +183,13 @@ function draw() {
     const context = canvas.getContext("2d");
     if (!context) return;
     const scale = (across / picture.width) * view.zoom;
-    context.imageSmoothingEnabled = scale < 2;
+    const isDraft = picture.across !== picture.width;
+    context.imageSmoothingEnabled = scale < 2 || isDraft;
+    context.imageSmoothingQuality = isDraft ? "high" : "low";
     context.fillStyle = "#000";
     context.fillRect(0, 0, across, down);
     context.setTransform(scale, 0, 0, scale, -view.x * scale, -view.y * scale);
-    context.drawImage(inked, 0, 0);
+    context.drawImage(inked, 0, 0, picture.width, picture.height);
     context.setTransform(1, 0, 0, 1, 0, 0);
   });
 }
@@ -229,10 +233,11 @@ async function read(event) {
   if (!at) return;
   const { x, y, picture } = at;
   const gain = 2 ** Number(stops.value);
-  const light = picture.light.subarray(3 * (y * picture.width + x), 3 * (y * picture.width + x) + 3);
-  const code = [...light].map((v) => codes[Math.round(4096 * Math.min(Math.max(gain * v, 0), 1))]);
-  const hex = code.map((v) => v.toString(16).padStart(2, "0")).join("");
-  const own = `${x}, ${y} px: display ${code.join(" ")} (#${hex})`;
+  const column = Math.floor((x * picture.across) / picture.width);
+  const at0 = 3 * (Math.floor((y * picture.down) / picture.height) * picture.across + column);
+  const display = [...picture.light.subarray(at0, at0 + 3)].map((v) => codes[Math.round(4096 * Math.min(Math.max(gain * v, 0), 1))]);
+  const hex = display.map((v) => v.toString(16).padStart(2, "0")).join("");
+  const own = `${x}, ${y} px: display ${display.join(" ")} (#${hex})`;
   readout.textContent = own;
   if (picture === kept && keptIsShown) return;
   asked += 1;
@@ -492,10 +497,12 @@ async function refresh() {
   const said = await answer.json();
   part("name", HTMLElement).textContent = said.name;
   document.title = `${said.name} – spectra`;
+  part("study", HTMLElement).hidden = !said.is_prism;
   save.disabled = !said.saves || said.changes === 0;
   if (width.options.length === 0) {
     width.append(...said.widths.map((/** @type {number} */ w) => new Option(`${w} px`, String(w), w === 480, w === 480)));
   }
+  drawSpectra().catch(() => {});
   const shape = JSON.stringify(said.controls.map((/** @type {Control} */ c) => [c.path, c.kind]));
   if (shape !== formSays) {
     formSays = shape;
@@ -507,6 +514,55 @@ async function refresh() {
       if (field instanceof HTMLElement) field.focus();
     }
   }
+}
+
+// Spectra -----------------------------------------------------------------------------------------------------------------------
+
+/** @typedef {{nm: number[], values: number[]}} Curve */
+/** @typedef {{light: Curve & {lines: number[][]}, layers: (Curve & {name: string})[]}} Spectra */
+
+/** The color of a curve by where it is highest. @param {Curve} curve */
+function tint(curve) {
+  const peak = curve.nm[curve.values.indexOf(Math.max(...curve.values))] ?? 550;
+  return peak < 490 ? "short" : peak < 580 ? "middle" : "long";
+}
+
+let spectraSaid = "";
+/** The light's spectrum and the film's layers, each by its largest value. */
+async function drawSpectra() {
+  const answer = await fetch(`/spectra?desk=${desk}`);
+  if (!answer.ok) return;
+  const text = await answer.text();
+  if (text === spectraSaid) return;
+  spectraSaid = text;
+  /** @type {Spectra} */
+  const known = JSON.parse(text);
+  const figure = part("spectra", SVGSVGElement);
+  const [from, to] = [known.light.nm[0], known.light.nm[known.light.nm.length - 1]];
+  const x = (/** @type {number} */ nm) => 12 + (696 * (nm - from)) / (to - from);
+  const y = (/** @type {number} */ v) => 172 - 160 * v;
+  const put = (/** @type {string} */ name, /** @type {Record<string, string | number>} */ attributes, text = "") => {
+    const element = document.createElementNS("http://www.w3.org/2000/svg", name);
+    for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, String(value));
+    element.textContent = text;
+    figure.append(element);
+  };
+  const path = (/** @type {Curve} */ curve) => `M${curve.nm.map((nm, i) => `${x(nm).toFixed(1)} ${y(curve.values[i]).toFixed(1)}`).join("L")}`;
+  figure.replaceChildren();
+  put("line", { class: "axis", x1: 12, x2: 708, y1: 172, y2: 172 });
+  for (let nm = Math.ceil(from / 50) * 50; nm <= to; nm += 50) {
+    put("line", { class: "axis", x1: x(nm), x2: x(nm), y1: 172, y2: 177 });
+    if (nm % 100 === 0) put("text", { x: x(nm), y: 193, "text-anchor": "middle" }, `${nm} nm`);
+  }
+  if (known.light.values.some((v) => v > 0)) put("path", { class: "light", d: path(known.light) });
+  for (const [nm, power] of known.light.lines) if (nm >= from && nm <= to) put("line", { class: "light", x1: x(nm), x2: x(nm), y1: 172, y2: y(power) });
+  for (const layer of known.layers) put("path", { class: `layer ${tint(layer)}`, d: path(layer) });
+  const names = known.layers.map((layer) => layer.name).join(", ");
+  part("spectra-said", HTMLElement).textContent = `Spectrum of the light (dashed)${names ? `, and what answers to it: ${names}` : ""}; each by its largest value.`;
+}
+
+/** The lens as it is now. */
+async function drawLens() {
   const ground = matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light";
   const drawing = await fetch(`/section?desk=${desk}&ground=${ground}`);
   if (drawing.ok) {
@@ -524,7 +580,8 @@ function tell(head) {
   if (head.samples !== undefined && head.of !== undefined) {
     const time = ((head.since_change_ms ?? 0) / 1000).toFixed(1);
     const rays = Number(head.rays).toLocaleString("en");
-    state.textContent = `${head.samples} of ${head.of} samples, ${rays} rays, ${time} s`;
+    const samples = head.draft ? "draft" : `${head.samples} of ${head.of} samples`;
+    state.textContent = `${samples}, ${rays} rays, ${time} s`;
     progress.value = head.samples / head.of;
     const seconds = head.exposure_s ?? 1;
     const exposed = seconds < 0.3 ? `1/${Math.round(1 / seconds)} s` : `${Number(seconds.toPrecision(2))} s`;
@@ -536,7 +593,7 @@ function tell(head) {
 
 async function follow() {
   let after = 0;
-  let scene = -1;
+  let scene = -1, lens = -1, reread = 0;
   for (;;) {
     const answer = await fetch(`/frame?desk=${desk}&after=${after}`);
     if (answer.status === 204) continue;
@@ -548,8 +605,9 @@ async function follow() {
     after = head.frame;
     if (head.width !== undefined && head.height !== undefined) {
       const light = new Float32Array(bytes, 4 + length);
+      const [across, down] = head.light ?? [head.width, head.height];
       const isOther = now?.width !== head.width;
-      now = { head, width: head.width, height: head.height, light };
+      now = { head, width: head.width, height: head.height, across, down, light };
       if (isOther) fit();
       if (!keptIsShown) redraw();
     }
@@ -559,7 +617,17 @@ async function follow() {
       scene = head.scene;
       refresh().catch(() => {});
     }
+    if (head.lens_drawn !== undefined && head.lens_drawn !== lens) {
+      lens = head.lens_drawn;
+      drawLens().catch(() => {});
+    }
+    if (head.reread !== undefined && head.reread > reread) {
+      reread = head.reread;
+      saved.textContent = "The scene's file was saved: this is what it says now.";
+    }
     document.body.dataset.frame = String(head.frame);
+    if (head.turns !== undefined) document.body.dataset.turns = String(head.turns);
+    document.body.dataset.draft = String(head.draft === true);
   }
 }
 
@@ -571,6 +639,10 @@ save.addEventListener("click", async () => {
   } catch (error) {
     saved.textContent = error instanceof Error ? error.message : String(error);
   }
+});
+matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+  redraw();
+  drawLens().catch(() => {});
 });
 addEventListener("pagehide", () => {
   if (desk) fetch(`/close?desk=${desk}`, { method: "POST", keepalive: true });

@@ -5,12 +5,13 @@
 
 use serde_json::{Value, json};
 use spectra_core::params::{Node, Value as Written};
-use spectra_core::registry::{self, Parameter};
+use spectra_core::registry::{self, Listed, Parameter};
 use spectra_film::stock::{Process, Stock};
 use spectra_scene::bundled::Bundled;
 use spectra_scene::{FileKind, FileResources, file_documentation, shared_documentation};
 use spectra_spectrum::bundled_spectra;
 use std::path::Path;
+use std::sync::LazyLock;
 
 /// How a value is written.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,7 +28,7 @@ enum Kind {
 
 /// Something to turn.
 #[derive(Clone, Debug)]
-pub(crate) struct Control {
+pub struct Control {
     path: String,
     kind: Kind,
     /// As the scene has it; null where it is left out.
@@ -60,30 +61,75 @@ const IN_FRONT: [&str; 14] = [
 const OWN: [&str; 4] = ["imager.resolution", "imager.crop", "render.batch", "render.frame"];
 const LIGHTS: [&str; 3] = ["illuminant", "lamp", "light"];
 
+/// Sections of a scene, and the stages that stand in them.
+const SECTIONS: [(&str, &str); 5] = [
+    ("film", "film"),
+    ("imager", "imager"),
+    ("imager.response", "response"),
+    ("source", "source"),
+    ("wavelengths", "wavelengths"),
+];
+
+/// What this program's stages declare: the same for every scene, and slow to gather.
+struct Declared {
+    stages: Vec<(Listed, Vec<Parameter>)>,
+    shared: Vec<(&'static str, Vec<Parameter>)>,
+    /// Of the scene's own sections.
+    of_file: Vec<Parameter>,
+}
+
+static DECLARED: LazyLock<Declared> = LazyLock::new(|| {
+    let is_wanted = |stage: &str| SECTIONS.iter().any(|(_, of)| *of == stage);
+    let stages = registry::list().into_iter().filter(|listed| is_wanted(listed.stage));
+    let of_stage = |stage| shared_documentation(stage).map(|found| (stage, found.parameters));
+    let mut of_file = file_documentation(FileKind::Scene).parameters;
+    of_file.retain(|parameter| parameter.key.starts_with("lens.") || parameter.key.starts_with("render."));
+    Declared {
+        stages: stages.map(|listed| (listed, listed.documentation().parameters)).collect(),
+        shared: SECTIONS.iter().filter_map(|(_, stage)| of_stage(*stage)).collect(),
+        of_file,
+    }
+});
+
+/// Names of the bundled stocks that are exposed in a camera, and of those that others are printed on.
+static STOCKS: LazyLock<[Vec<String>; 2]> = LazyLock::new(|| {
+    let bundled = FileResources::beside(Path::new(""));
+    let mut both = [Vec::new(), Vec::new()];
+    for name in Stock::bundled() {
+        if let Ok(stock) = Stock::load(name, &bundled) {
+            both[usize::from(stock.process == Process::Print)].push(name.to_owned());
+        }
+    }
+    both
+});
+
+/// Gathers what all scenes have in common, ahead of the first page.
+pub(crate) fn gather() {
+    LazyLock::force(&DECLARED);
+    LazyLock::force(&STOCKS);
+}
+
 /// The controls of a scene, as it is written.
-pub(crate) fn of_scene(root: &Node) -> Vec<Control> {
+#[must_use]
+pub fn of_scene(root: &Node) -> Vec<Control> {
     let mut all = Vec::new();
-    let stages = registry::list();
+    let Declared { stages, shared, of_file } = &*DECLARED;
     let mut section = |prefix: &str, stage: &str| {
         let Some(node) = root.at_path(prefix).filter(|node| matches!(node.value, Written::Map(_))) else { return };
-        let of_stage = || stages.iter().filter(|listed| listed.stage == stage);
-        let said = of_stage().next().and_then(|listed| node.get(listed.key)).and_then(Node::as_str);
-        let listed = of_stage().find(|listed| said.map_or(listed.default, |name| name == listed.name));
-        let own = listed.map(|listed| listed.documentation().parameters).unwrap_or_default();
-        let shared = shared_documentation(stage).map(|found| found.parameters).unwrap_or_default();
-        for parameter in own.iter().chain(&shared) {
+        let of_stage = || stages.iter().filter(|(listed, _)| listed.stage == stage);
+        let said = of_stage().next().and_then(|(listed, _)| node.get(listed.key)).and_then(Node::as_str);
+        let listed = of_stage().find(|(listed, _)| said.map_or(listed.default, |name| name == listed.name));
+        let own = listed.map_or(&[][..], |(_, own)| own);
+        let shared = shared.iter().filter(|(of, _)| *of == stage).flat_map(|(_, keys)| keys);
+        for parameter in own.iter().chain(shared) {
             all.extend(control(root, &format!("{prefix}.{}", parameter.key), parameter));
         }
     };
-    section("film", "film");
-    section("imager", "imager");
-    section("imager.response", "response");
-    section("source", "source");
-    section("wavelengths", "wavelengths");
-    for parameter in file_documentation(FileKind::Scene).parameters {
-        if parameter.key.starts_with("lens.") || parameter.key.starts_with("render.") {
-            all.extend(control(root, &parameter.key, &parameter));
-        }
+    for (prefix, stage) in SECTIONS {
+        section(prefix, stage);
+    }
+    for parameter in of_file {
+        all.extend(control(root, &parameter.key, parameter));
     }
     all.push(blades(root));
     // Of several declarations of a key the first holds; a map in place of a number has its own controls.
@@ -178,18 +224,12 @@ fn control(root: &Node, path: &str, parameter: &Parameter) -> Option<Control> {
 /// The names that a text is one of, by its place.
 fn names(path: &str) -> Option<Vec<String>> {
     let key = path.rsplit('.').next().unwrap_or_default();
-    let stocks = |is_print: bool| {
-        let bundled = FileResources::beside(Path::new(""));
-        let is_wanted = |stock: Stock| (stock.process == Process::Print) == is_print;
-        let all = Stock::bundled().filter(|name| Stock::load(name, &bundled).is_ok_and(is_wanted));
-        all.map(str::to_owned).collect()
-    };
     Some(match (path, key) {
         // Those in folders are parts for tests; a word of a page holds no `/`.
         ("lens.file", _) => Bundled::Lens.names().into_iter().filter(|name| !name.contains('/')).collect(),
         ("lens.coating", _) => ["ideal", "bare", "single-layer", "three-layer"].map(str::to_owned).into(),
-        ("film.stock", _) => stocks(false),
-        ("film.print", _) => stocks(true),
+        ("film.stock", _) => STOCKS[0].clone(),
+        ("film.print", _) => STOCKS[1].clone(),
         ("film.halation" | "film.optics", _) => vec!["off".to_owned()],
         (_, key) if LIGHTS.contains(&key) => {
             let all = bundled_spectra().filter(|(_, path)| path.starts_with("spectra/illuminants/"));
@@ -239,12 +279,15 @@ fn number(node: &Node) -> Option<(&'static str, f64, String)> {
 }
 
 impl Control {
-    pub(crate) fn path(&self) -> &str {
+    /// Where its value stands in the scene.
+    #[must_use]
+    pub fn path(&self) -> &str {
         &self.path
     }
 
     /// As the page gets it.
-    pub(crate) fn to_json(&self) -> Value {
+    #[must_use]
+    pub fn to_json(&self) -> Value {
         let kind = match &self.kind {
             Kind::Number { before, unit, least, most, whole } => {
                 json!({"is": "number", "before": before, "unit": unit, "least": least, "most": most, "whole": whole})
@@ -260,7 +303,7 @@ impl Control {
     ///
     /// # Errors
     /// Why it is none of this control's.
-    pub(crate) fn text(&self, value: &Value) -> Result<String, String> {
+    pub fn text(&self, value: &Value) -> Result<String, String> {
         let bounded = |value: &Value, least: Option<f64>, most: Option<f64>| match value.as_f64() {
             Some(number) if !number.is_finite() => Err("no finite number".to_owned()),
             Some(number) if least.is_some_and(|least| number < least) || most.is_some_and(|most| number > most) => {

@@ -116,8 +116,11 @@ impl Answer {
         }
         head.push_str("\r\n");
         stream.set_write_timeout(Some(TAKEN))?;
-        stream.write_all(head.as_bytes())?;
-        stream.write_all(&self.body)?;
+        // Head and body in one: a body alone would wait for the other side to acknowledge the head.
+        stream.set_nodelay(true)?;
+        let mut all = head.into_bytes();
+        all.extend_from_slice(&self.body);
+        stream.write_all(&all)?;
         stream.flush()
     }
 }

@@ -23,7 +23,10 @@ pub(crate) fn save(
     let now = std::fs::read_to_string(file).map_err(|error| format!("{}: {error}", file.display()))?;
     let mut text = now.clone();
     if now != before {
-        return Err(format!("{} has changed since it was opened: reload the page, and turn again", file.display()));
+        return Err(format!(
+            "{} has changed meanwhile: the page takes it up in a moment; then save again",
+            file.display()
+        ));
     }
     for (path, change) in changes {
         let value = change.split_once('=').map_or("", |(_, value)| value);
@@ -43,6 +46,15 @@ pub(crate) fn save(
     }
     write_atomically(file, |out| Ok(out.write_all(text.as_bytes())?)).map_err(|error| error.to_string())?;
     Ok(text)
+}
+
+/// Whether two texts of a scene's file say the same at a path, also where neither says anything.
+pub(crate) fn says_same(one: &str, other: &str, path: &str) -> bool {
+    let at = |text: &str| {
+        let root = spectra_yaml::parse(SourceFile::new("scene", text)).ok()?;
+        Some(root.at_path(path).map(said))
+    };
+    at(one) == at(other)
 }
 
 /// What a tree says, so that its order does not count.

@@ -3,6 +3,7 @@
 use crate::desk::{Desk, Order};
 use crate::guard::Guard;
 use crate::http::{self, Answer, Request};
+use crate::{study, tester};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::io;
@@ -18,6 +19,10 @@ const MAX_DESKS: usize = 4;
 /// A page that waits for a picture asks again after this.
 const WAIT: Duration = Duration::from_secs(10);
 
+const STUDY: &str = include_str!("../page/study.html");
+const STUDY_SCRIPT: &str = include_str!("../page/study.js");
+const TESTER: &str = include_str!("../page/tester.html");
+const TESTER_SCRIPT: &str = include_str!("../page/tester.js");
 const PAGE: &str = include_str!("../page/index.html");
 const SCRIPT: &str = include_str!("../page/page.js");
 const STYLE: &str = include_str!("../page/page.css");
@@ -26,7 +31,8 @@ const STYLE: &str = include_str!("../page/page.css");
 pub(crate) struct Server {
     listener: TcpListener,
     guard: Guard,
-    order: Order,
+    /// The scene that it shows; the color tester alone without one.
+    order: Option<Order>,
     desks: Mutex<(u64, BTreeMap<u64, Arc<Desk>>)>,
     connections: AtomicUsize,
 }
@@ -42,7 +48,7 @@ impl Drop for Counted<'_> {
 
 impl Server {
     /// Takes a port of this machine's own address; 0 takes a free one.
-    pub(crate) fn bind(port: u16, order: Order) -> io::Result<Self> {
+    pub(crate) fn bind(port: u16, order: Option<Order>) -> io::Result<Self> {
         let listener = TcpListener::bind(("127.0.0.1", port))?;
         let guard = Guard::new(listener.local_addr()?.to_string())?;
         Ok(Self { listener, guard, order, desks: Mutex::default(), connections: AtomicUsize::new(0) })
@@ -105,7 +111,28 @@ impl Server {
             serde_json::from_slice(&request.body).map_err(|_| Answer::refused(400, "the body is no JSON"))
         };
         match (request.is_post, request.path.as_str()) {
-            (false, "/") => Ok(Answer::new("text/html; charset=utf-8", PAGE)),
+            (false, "/") if self.order.is_some() => Ok(Answer::new("text/html; charset=utf-8", PAGE)),
+            (false, "/" | "/tester") => Ok(Answer::new("text/html; charset=utf-8", TESTER)),
+            (false, "/tester.js") => Ok(Answer::new("text/javascript; charset=utf-8", TESTER_SCRIPT)),
+            (false, "/study") => Ok(Answer::new("text/html; charset=utf-8", STUDY)),
+            (false, "/study.js") => Ok(Answer::new("text/javascript; charset=utf-8", STUDY_SCRIPT)),
+            (false, "/choices") => Ok(Answer::json(&study::choices())),
+            (false, "/prism" | "/rays") => {
+                let refused = |why: String| Answer::refused(400, &why);
+                let prism = study::Prism::of(|name| request.asked(name).map(str::to_owned)).map_err(refused)?;
+                let answer = if request.path == "/prism" {
+                    prism.shown()
+                } else {
+                    let at = |name| number(request, name).map(|v| usize::try_from(v).unwrap_or(usize::MAX));
+                    prism.traced(at("first")?, at("count")?)
+                };
+                Ok(Answer::json(&answer.map_err(refused)?))
+            }
+            (false, "/diagram") => Ok(Answer::json(&tester::diagram())),
+            (false, "/color") => {
+                let asked = tester::Asked::of(|name| request.asked(name).map(str::to_owned));
+                Ok(Answer::json(&tester::color(&asked.map_err(|why| Answer::refused(400, &why))?)))
+            }
             (false, "/page.js") => Ok(Answer::new("text/javascript; charset=utf-8", SCRIPT)),
             (false, "/page.css") => Ok(Answer::new("text/css; charset=utf-8", STYLE)),
             (true, "/open") => self.open(),
@@ -131,6 +158,10 @@ impl Server {
                 Ok(frame.map_or_else(Answer::nothing, |f| Answer::new("application/octet-stream", f.bytes.clone())))
             }
             (false, "/controls") => Ok(Answer::json(&self.desk(request)?.controls())),
+            (false, "/spectra") => {
+                let known = self.desk(request)?.spectra();
+                known.map(|known| Answer::json(&known)).ok_or_else(|| Answer::refused(404, "no scene yet"))
+            }
             (false, "/pixel") => {
                 let at = |name| number(request, name).map(|v| u32::try_from(v).unwrap_or(u32::MAX));
                 let pixel = self.desk(request)?.pixel(at("x")?, at("y")?);
@@ -162,7 +193,8 @@ impl Server {
             let Some((_, oldest)) = desks.1.pop_first() else { break };
             oldest.close();
         }
-        let desk = Desk::open(self.order.clone());
+        let order = self.order.clone().ok_or_else(|| Answer::refused(404, "no scene is viewed"))?;
+        let desk = Desk::open(order);
         let desk = desk.map_err(|error| Answer::refused(503, &format!("no thread for another page: {error}")))?;
         desks.0 += 1;
         let number = desks.0;

@@ -1,6 +1,7 @@
 // What a person does on the page: node browser.mjs FOLDER-WITH-NODE_MODULES CHROMIUM ADDRESS
 import assert from "node:assert/strict";
 import { createRequire } from "node:module";
+import { findings } from "./axe.mjs";
 
 const [folder, executablePath, address] = process.argv.slice(2);
 const { chromium } = createRequire(`${folder}/`)("playwright-core");
@@ -32,6 +33,8 @@ await done(0);
 const first = await mean();
 assert.ok(first > 20 && first < 235, `a picture: ${first}`);
 assert.ok(await page.locator("#section").isVisible(), "the lens is drawn");
+
+assert.deepEqual(await findings(page, folder), []);
 
 // Drag: the f-number by its slider, with keys as a person without a mouse does.
 let at = await frame();

@@ -2,7 +2,7 @@
 
 use spectra_core::Isa;
 use spectra_plugins as _;
-use spectra_view::{View, view};
+use spectra_view::{View, color_tester, view};
 use std::process::Command;
 use std::sync::mpsc;
 use std::time::Duration;
@@ -39,11 +39,94 @@ fn a_person_turns_types_saves_and_is_told_what_is_wrong() {
     // The thread ends with the process.
     std::thread::spawn(move || view(own, |address| tell.send(address.to_owned()).expect("heard")));
     let address = hear.recv_timeout(Duration::from_secs(60)).expect("an address");
-    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/browser.mjs");
-    let output = Command::new("node").args([script, &folder, &chromium, &address]).output().expect("node");
+    driven("browser.mjs", &folder, &chromium, &address);
+    let saved = std::fs::read_to_string(&file).expect("a file");
+    assert_eq!(saved, SCENE.replace("f/2, focus: 2 m", "f/5.6, focus: 2 m, aperture: {shape: iris, blades: 6}"));
+}
+
+/// A short one; `tests/random.mjs` by hand goes on for as long as one likes.
+#[test]
+fn random_use_leaves_neither_errors_nor_threads_behind() {
+    let (folder, chromium) = match browser() {
+        Ok(found) => found,
+        Err(why) => return println!("skipped: {why}"),
+    };
+    let program = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../target/debug/spectra");
+    // A process of its own, so that its threads and its memory are the server's alone.
+    if !program.exists() {
+        return println!("skipped: {} is not built", program.display());
+    }
+    let scene = tempfile::tempdir().expect("a folder");
+    let file = scene.path().join("scene.yaml");
+    std::fs::write(&file, SCENE).expect("written");
+    let mut server = Command::new(program)
+        .args(["view", "--no-open"])
+        .arg(&file)
+        .stdout(std::process::Stdio::piped())
+        .stderr(std::process::Stdio::null())
+        .spawn()
+        .expect("a server");
+    let mut address = String::new();
+    let out = server.stdout.take().expect("a pipe");
+    std::io::BufRead::read_line(&mut std::io::BufReader::new(out), &mut address).expect("an address");
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/random.mjs");
+    let process = server.id().to_string();
+    let output =
+        Command::new("node").args([script, &folder, &chromium, address.trim(), &process, "20"]).output().expect("node");
+    let ended = server.try_wait().expect("asked");
+    let _ = server.kill();
+    let _ = server.wait();
+    let said = String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success() && ended.is_none(), "{said}");
+    println!("{said}");
+}
+
+/// Drives a page at an address by a script beside this file; it says what fails.
+fn driven(script: &str, folder: &str, chromium: &str, address: &str) {
+    let script = format!("{}/tests/{script}", env!("CARGO_MANIFEST_DIR"));
+    let output = Command::new("node").args([&script, folder, chromium, address]).output().expect("node");
     let said = String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{said}");
     println!("{said}");
-    let saved = std::fs::read_to_string(&file).expect("a file");
-    assert_eq!(saved, SCENE.replace("f/2, focus: 2 m", "f/5.6, focus: 2 m, aperture: {shape: iris, blades: 6}"));
+}
+
+/// By `typescript`, from the types in the comments.
+#[test]
+fn the_code_of_the_pages_keeps_its_types() {
+    let Ok(folder) = std::env::var("SPECTRA_PLAYWRIGHT") else {
+        return println!("skipped: SPECTRA_PLAYWRIGHT names no folder with typescript");
+    };
+    let compiler = std::path::Path::new(&folder).join("node_modules/typescript/bin/tsc");
+    if !compiler.is_file() {
+        return println!("skipped: {folder} holds no node_modules/typescript");
+    }
+    let pages = concat!(env!("CARGO_MANIFEST_DIR"), "/page");
+    let output = Command::new("node").arg(compiler).args(["--project", pages]).output().expect("node");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stdout));
+}
+
+#[test]
+fn the_color_tester_has_the_figures_of_the_command_line_and_labels_that_do_not_overlap() {
+    let (folder, chromium) = match browser() {
+        Ok(found) => found,
+        Err(why) => return println!("skipped: {why}"),
+    };
+    let (tell, hear) = mpsc::channel();
+    // The thread ends with the process.
+    std::thread::spawn(move || color_tester(0, |address| tell.send(address.to_owned()).expect("heard")));
+    let address = hear.recv_timeout(Duration::from_secs(60)).expect("an address");
+    driven("tester.mjs", &folder, &chromium, &address);
+}
+
+#[test]
+fn a_prism_is_dragged_and_its_rays_grow_and_stop() {
+    let (folder, chromium) = match browser() {
+        Ok(found) => found,
+        Err(why) => return println!("skipped: {why}"),
+    };
+    let (tell, hear) = mpsc::channel();
+    // The thread ends with the process. The study is there whatever is shown.
+    std::thread::spawn(move || color_tester(0, |address| tell.send(address.to_owned()).expect("heard")));
+    let address = hear.recv_timeout(Duration::from_secs(60)).expect("an address");
+    driven("study.mjs", &folder, &chromium, &address);
 }

@@ -159,6 +159,11 @@ fn a_picture_follows_what_is_turned_and_is_saved() {
     );
     assert_eq!(browser.get(&format!("/pixel?desk={desk}&x=480&y=0")).expect("an answer").status, 404);
 
+    let spectra = browser.get(&format!("/spectra?desk={desk}")).expect("an answer").json();
+    let values = spectra["layers"][0]["values"].as_array().expect("a list");
+    assert_eq!(values.iter().filter_map(Value::as_f64).fold(0.0, f64::max), 1.0);
+    assert_eq!(spectra["light"]["values"].as_array().expect("a list").len(), values.len());
+
     // Development alone: the same rays, a lighter print of the denser negative or the other way round.
     let rays = head["rays"].clone();
     let at = head["frame"].as_u64().expect("a number");
@@ -200,11 +205,77 @@ fn a_picture_follows_what_is_turned_and_is_saved() {
     assert!(std::fs::read_to_string(&browser.file).expect("a file").contains("push: 0"));
     assert_eq!(browser.turn(desk, "film.push", json!(1)).status, 204);
     std::fs::write(&browser.file, SCENE).expect("written by somebody else");
-    assert_eq!(browser.post(&format!("/save?desk={desk}"), "").status, 409);
+    // Or, where the file was looked at in between, nothing is left to write.
+    let refused = browser.post(&format!("/save?desk={desk}"), "");
+    assert!(refused.status == 409 || refused.json()["saved"] == 0, "{}", refused.head);
     assert_eq!(std::fs::read_to_string(&browser.file).expect("a file"), SCENE);
 
     assert_eq!(browser.post(&format!("/close?desk={desk}"), "").status, 204);
     assert_eq!(browser.get(&format!("/frame?desk={desk}&after=0")).expect("an answer").status, 404);
+}
+
+#[test]
+fn a_draft_comes_first_and_the_whole_picture_is_that_of_a_run() {
+    let browser = Browser::let_in();
+    let desk = browser.open();
+    let (head, _) = browser.frame(desk, 0, is_done);
+    let at = head["frame"].as_u64().expect("a number");
+    assert_eq!(browser.turn(desk, "lens.focus", json!(1.5)).status, 204);
+    let (draft, light) = browser.frame(desk, at, |head| head["width"].is_u64());
+    assert_eq!((&draft["draft"], &draft["width"], &draft["light"]), (&json!(true), &json!(480), &json!([120, 80])));
+    assert_eq!(light.len(), 3 * 120 * 80);
+    // A pixel of the whole picture is found in the draft, too.
+    assert_eq!(browser.get(&format!("/pixel?desk={desk}&x=479&y=319")).expect("an answer").status, 200);
+    let (whole, light) = browser.frame(desk, draft["frame"].as_u64().expect("a number"), is_done);
+    assert_eq!((&whole["draft"], &whole["light"]), (&json!(false), &json!([480, 320])));
+    let text = SCENE.replace("[60, 40]", "[480, 320]").replace("focus: 2 m", "focus: 1.5 m");
+    let resources = std::sync::Arc::new(spectra_scene::FileResources::beside(".".as_ref()));
+    let mut session =
+        spectra_session::Session::of_text("scene.yaml", &text, resources, Isa::detect()).expect("a scene");
+    session.step(4, &spectra_session::Threads(2), &spectra_session::Control::new()).expect("light");
+    assert!(light == session.develop().expect("a picture").remove(0).1.rgb.concat(), "{whole}");
+
+    // Print, push, grade and grain: no draft, no ray, the whole at once; where it is large, smaller before.
+    assert_eq!(browser.turn(desk, "width", json!(960)).status, 204);
+    let large = |head: &Value| is_done(head) && head["width"] == 960;
+    let (head, _) = browser.frame(desk, whole["frame"].as_u64().expect("a number"), large);
+    assert_eq!(browser.turn(desk, "film.paper.grade", json!("4")).status, 204);
+    let (first, _) = browser.frame(desk, head["frame"].as_u64().expect("a number"), |head| head["width"].is_u64());
+    assert_eq!(first["rays"], head["rays"]);
+    assert!(first["light"] == json!([480, 320]) || first["light"] == json!([960, 640]), "{first}");
+    let (last, _) = browser.frame(desk, head["frame"].as_u64().expect("a number"), |head| head["light"][0] == 960);
+    assert_eq!(last["rays"], head["rays"]);
+}
+
+#[test]
+fn a_file_that_is_saved_is_rendered_again_and_a_broken_one_is_told() {
+    let browser = Browser::let_in();
+    let desk = browser.open();
+    let (head, first) = browser.frame(desk, 0, is_done);
+    let at = |head: &Value| head["frame"].as_u64().expect("a number");
+    // Values of the page stay, but for those that the file now says otherwise.
+    assert_eq!(browser.turn(desk, "film.push", json!(1)).status, 204);
+    assert_eq!(browser.turn(desk, "lens.f-number", json!(8)).status, 204);
+    let (head, _) = browser.frame(desk, at(&head), |head| is_done(head) && head["draft"] == false);
+    std::fs::write(&browser.file, SCENE.replace("f/2", "f/4")).expect("written");
+    let (again, light) = browser.frame(desk, at(&head), |head| is_done(head) && head["reread"] == 1);
+    assert!(light != first);
+    let controls = browser.get(&format!("/controls?desk={desk}")).expect("an answer").json();
+    let value = |path: &str| {
+        let all = controls["controls"].as_array().expect("a list");
+        all.iter().find(|control| control["path"] == path).expect("a control")["value"].clone()
+    };
+    assert_eq!((value("lens.f-number"), value("film.push")), (json!(4.0), json!(1.0)));
+
+    // Broken: told with its place; the picture stays.
+    std::fs::write(&browser.file, SCENE.replace("f/2", "f/2, fnumber: 3")).expect("written");
+    let (broken, _) = browser.frame(desk, at(&again), |head| head["fault"].is_object());
+    let fault = &broken["fault"]["faults"][0];
+    assert!(fault["message"].as_str().is_some_and(|m| m.contains("fnumber")), "{fault}");
+    assert!(fault["place"].as_str().is_some_and(|p| p.contains(":3:")), "{fault}");
+    assert!(broken["width"].is_null());
+    std::fs::write(&browser.file, SCENE).expect("written");
+    browser.frame(desk, at(&broken), |head| is_done(head) && head["reread"] == 2 && head["fault"].is_null());
 }
 
 #[test]

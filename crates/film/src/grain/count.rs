@@ -2,6 +2,7 @@
 
 use spectra_core::math::exp;
 use spectra_numerics::normal;
+use std::sync::LazyLock;
 
 /// Nodes of the square root of the mean: steps an unit, and where the table ends.
 const STEPS: usize = 16;
@@ -20,7 +21,13 @@ pub(super) struct Counts {
 }
 
 impl Counts {
-    pub(super) fn new() -> Self {
+    /// The table, which is the same for all grain: it is made once.
+    pub(super) fn all() -> &'static Self {
+        static ALL: LazyLock<Counts> = LazyLock::new(Counts::new);
+        &ALL
+    }
+
+    fn new() -> Self {
         let means = (0..=STEPS * END).map(|k| (k as f64 / STEPS as f64) * (k as f64 / STEPS as f64));
         let (rows, ties): (Vec<_>, Vec<_>) = means.map(row).unzip();
         Self { table: rows.concat(), ties }

@@ -84,7 +84,7 @@ pub struct Grain {
     per_amount: Vec<f32>,
     steps_a_unit: f32,
     parts: [Part; 2],
-    counts: Counts,
+    counts: &'static Counts,
     isa: Isa,
 }
 
@@ -143,7 +143,7 @@ impl Grain {
             per_amount,
             steps_a_unit: STEPS as f32 / most as f32,
             parts,
-            counts: Counts::new(),
+            counts: Counts::all(),
             isa: Isa::detect(),
         })
     }

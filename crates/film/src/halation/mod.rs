@@ -26,9 +26,15 @@ mod trips;
 pub use base::{HalationBase, HalationError};
 pub use trips::Trips;
 
+use crate::known::Known;
 use crate::raster::Raster;
 use kernel::Level;
 use spread::Spread;
+use std::sync::Arc;
+
+/// What returns of a point, by the base; and its kernels on a plane.
+static TRIPS: Known<HalationBase, Trips> = Known::new();
+static SPREADS: Known<(HalationBase, Raster), Spread> = Known::new();
 
 /// Halation of one layer on planes of one size.
 ///
@@ -46,7 +52,7 @@ use spread::Spread;
 /// ```
 pub struct Halation {
     raster: Raster,
-    spread: Option<Spread>,
+    spread: Option<Arc<Spread>>,
 }
 
 impl Halation {
@@ -59,10 +65,10 @@ impl Halation {
         if !(raster.pitch_mm > 0.0 && raster.pitch_mm.is_finite()) {
             return Err(HalationError::OutOfRange { what: "pitch", value: raster.pitch_mm, range: "more than 0 mm" });
         }
-        let trips = Trips::new(base);
+        let trips = TRIPS.of(*base, || Trips::new(base));
         let none = trips.returned() == 0.0 || raster.pixels() == 0;
-        let spread =
-            (!none).then(|| Spread::new(Level::all(base, &trips, raster), 1.0 / (1.0 + trips.returned()), raster));
+        let made = || Spread::new(Level::all(base, &trips, raster), 1.0 / (1.0 + trips.returned()), raster);
+        let spread = (!none).then(|| SPREADS.of((*base, *raster), made));
         Ok(Self { raster: *raster, spread })
     }
 

@@ -15,8 +15,13 @@ pub use modulation::Modulation;
 pub use mtf::{Mtf, MtfError};
 pub use spread::PointSpread;
 
-use crate::convolve::Convolver;
+use crate::known::Known;
 use crate::raster::Raster;
+use spectra_numerics::convolve::Convolver;
+use std::sync::Arc;
+
+/// Kernels on a plane.
+static CONVOLVERS: Known<(Mtf, Raster), Convolver> = Known::new();
 
 /// Part of the light that may be beyond the kernel.
 const BEYOND: f64 = 1e-9;
@@ -40,7 +45,7 @@ const LONGEST: f64 = 2000.0;
 /// ```
 pub struct Scatter {
     raster: Raster,
-    convolver: Convolver,
+    convolver: Arc<Convolver>,
 }
 
 impl Scatter {
@@ -61,9 +66,12 @@ impl Scatter {
         if mtf.spread().reach_mm(BEYOND) / pitch_mm > LONGEST {
             return Err(out_of_range("at least a 2000th of the spread"));
         }
-        let kernel = mtf.spread().over_pixels(pitch_mm, BEYOND, LONGEST as usize);
-        let longest = raster.width.max(raster.height);
-        Ok(Self { raster: *raster, convolver: Convolver::new(&kernel.cropped(longest), raster.width, raster.height) })
+        let convolver = CONVOLVERS.of((mtf.clone(), *raster), || {
+            let kernel = mtf.spread().over_pixels(pitch_mm, BEYOND, LONGEST as usize);
+            let longest = raster.width.max(raster.height);
+            Convolver::new(&kernel.cropped(longest), raster.width, raster.height)
+        });
+        Ok(Self { raster: *raster, convolver })
     }
 
     /// Scatters the light of a plane of exposure (linear; any unit), in place.

@@ -220,6 +220,12 @@ impl Written {
 }
 
 impl Series {
+    /// The text of its file, and below it, as remarks, what is set on top.
+    #[must_use]
+    pub fn text(&self) -> String {
+        record(&self.written.text.text, &self.overrides)
+    }
+
     /// Takes `sweep` and `animation` out of the tree.
     fn unfolded(mut self, set: &[String], references: &std::collections::BTreeSet<String>) -> Result<Self, Faults> {
         let mut faults = Faults::new();
@@ -285,10 +291,20 @@ impl Series {
     /// # Errors
     /// As [`load_series`].
     pub fn with(&self, text: &str) -> Result<Self, Faults> {
+        self.with_all(std::slice::from_ref(&text))
+    }
+
+    /// The same with several values more.
+    ///
+    /// # Errors
+    /// As [`load_series`].
+    pub fn with_all(&self, texts: &[impl AsRef<str>]) -> Result<Self, Faults> {
         let path = |text: &str| text.split_once('=').map(|(path, _)| path.trim().to_owned());
         let mut overrides = self.overrides.clone();
-        overrides.retain(|other| path(other) != path(text));
-        overrides.push(text.to_owned());
+        for text in texts.iter().map(AsRef::as_ref) {
+            overrides.retain(|other| path(other) != path(text));
+            overrides.push(text.to_owned());
+        }
         self.written.clone().set(&overrides)
     }
 

@@ -1,0 +1,64 @@
+//! What was made before: kernels and tables that rest on a few figures alone, and take longer to make than to use.
+
+use std::collections::VecDeque;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// So many are kept: the layers of a color film on planes of two sizes.
+const KEPT: usize = 6;
+
+/// The last few that were made, each with what it was made of. What is made twice has the same bits, so nothing but time depends
+/// on what is known.
+pub(crate) struct Known<K, V>(Mutex<VecDeque<(K, Arc<V>)>>);
+
+impl<K: PartialEq, V> Known<K, V> {
+    pub(crate) const fn new() -> Self {
+        Self(Mutex::new(VecDeque::new()))
+    }
+
+    /// What is known of `key`, or else what `make` gives, which is known from then on.
+    pub(crate) fn of(&self, key: K, make: impl FnOnce() -> V) -> Arc<V> {
+        let all = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let known = {
+            let mut all = all();
+            let at = all.iter().position(|(other, _)| *other == key);
+            // The one that was asked for last goes last.
+            at.and_then(|at| all.remove(at)).map(|found| {
+                let value = Arc::clone(&found.1);
+                all.push_back(found);
+                value
+            })
+        };
+        known.unwrap_or_else(|| {
+            // Not under the lock: other threads may ask meanwhile.
+            let made = Arc::new(make());
+            let mut all = all();
+            while all.len() >= KEPT {
+                all.pop_front();
+            }
+            all.push_back((key, Arc::clone(&made)));
+            made
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_known_is_not_made_again_and_the_oldest_is_forgotten() {
+        let known = Known::new();
+        let mut made = Vec::new();
+        for key in [1, 2, 1, 3, 4, 5, 6, 7, 1, 2] {
+            assert_eq!(
+                *known.of(key, || {
+                    made.push(key);
+                    10 * key
+                }),
+                10 * key
+            );
+        }
+        // 1 was asked for after 2, so 2 made room for the seventh.
+        assert_eq!(made, [1, 2, 3, 4, 5, 6, 7, 2]);
+    }
+}
