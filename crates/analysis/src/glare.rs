@@ -13,7 +13,7 @@ use std::convert::Infallible;
 /// Walks of one piece of work.
 const PIECE: usize = 4096;
 /// Numbers of walks are drawn by this seed.
-const SEED: u64 = 0x676c_6172_65;
+const SEED: u64 = 0x0067_6c61_7265;
 
 /// What veiling glare is measured with.
 #[derive(Clone, Copy, Debug, PartialEq)]

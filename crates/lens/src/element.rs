@@ -1,5 +1,6 @@
 //! One surface in its place.
 
+use crate::Solid;
 use crate::aperture::Aperture;
 use crate::coating::Coating;
 use crate::pose::{AxisBreak, Displacement, Pose};
@@ -14,6 +15,8 @@ pub struct Element {
     pub kind: String,
     /// Its own parameters as they stand in the file, for export; `None` where it was built otherwise.
     pub parameters: Option<Params>,
+    /// The prism that it is, if it is one; then [`Element::surface`] is a plane that stands for it in first order.
+    pub solid: Option<Arc<Solid>>,
     /// Shape and bending.
     pub surface: Arc<dyn Surface>,
     /// Bends of the axis in front of it, in order.
@@ -61,6 +64,7 @@ impl Element {
         Self {
             kind: kind.to_owned(),
             parameters: None,
+            solid: None,
             surface,
             breaks: Vec::new(),
             displacement: Displacement::NONE,

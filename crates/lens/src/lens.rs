@@ -129,6 +129,11 @@ impl Lens {
             if e.action == Action::Reflect {
                 along = !along;
             }
+            if let Some(solid) = &e.solid {
+                // From where the axis leaves it, along the light.
+                axis = axis.then(&solid.exit);
+                along_axis_mm += solid.reduced_mm;
+            }
             axis = axis.advanced(e.thickness_mm);
             along_axis_mm += e.thickness_mm;
         }

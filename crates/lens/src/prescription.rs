@@ -1,5 +1,6 @@
 //! Lens files: a prescription in YAML, and where it comes from.
 
+use crate::prism::{self, PRISM, PrismParams};
 use crate::{
     AxisBreak, Coating, CoatingForm, Displacement, Element, FocusLaw, FocusTable, Group, GroupTravel, Lens, LensMedium,
     aperture, read_coating, read_stated_coating, schema,
@@ -14,7 +15,7 @@ use spectra_core::params::{
 use spectra_core::registry::{self, Context};
 use spectra_core::resources::Resources;
 use spectra_core::spectral::BAND;
-use spectra_core::surface::{Action, Surface};
+use spectra_core::surface::{Action, Kernel, Plane, Surface};
 use spectra_glass::file::{self, Figures};
 use spectra_glass::{Beside, Catalogue, Line, LineTriple, Medium, ModelGlass, lines};
 use std::sync::Arc;
@@ -255,6 +256,42 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
             continue;
         }
         let (place, shape) = params.split(&place_keys);
+        if params.kind() == Some(PRISM) {
+            let stated = faults.take(place.parse::<Place>());
+            let own = faults.take(shape.parse::<PrismParams>());
+            let (Some(stated), Some(own)) = (stated, own) else { continue };
+            faults.extend(prism::misplaced(&place));
+            let number = lens.elements.len() + 1;
+            let glass = match medium(&stated, &place, number, resources, reference, &mut lens) {
+                Ok(Some(glass)) => remember(&mut lens.media, glass),
+                Ok(None) => {
+                    faults.push(
+                        place
+                            .fault("glass", "missing key `glass`: a prism is of glass")
+                            .hint("add `glass: SCHOTT/N-BK7`"),
+                    );
+                    continue;
+                }
+                Err(more) => {
+                    faults.extend(more);
+                    continue;
+                }
+            };
+            let index = lens.index(glass, reference_nm) / lens.index(medium_before, reference_nm);
+            let Some(solid) = faults.take(own.solid(&shape, glass, index)) else { continue };
+            let plane = Arc::new(Kernel(Plane::refracting()));
+            let mut element = Element::new(PRISM, plane, medium_before, medium_before);
+            element.semi_diameter_mm = Some(solid.reach_mm());
+            element.solid = Some(Arc::new(solid));
+            element.parameters = Some(shape);
+            element.breaks = std::mem::take(&mut breaks);
+            element.displacement = displacement(stated.decenter, stated.tilt);
+            element.thickness_mm = stated.thickness.map_or(0.0, |t| t.mm());
+            element.coating = stated.coating.as_ref().and_then(|node| faults.take(read_coating(node, resources)));
+            element.reflectance = stated.reflectance.map_or(1.0, Ratio::number);
+            lens.elements.push(element);
+            continue;
+        }
         let surface = faults.take(registry::build::<dyn Surface>(&shape, &context));
         let stated = faults.take(place.parse::<Place>());
         let (Some(surface), Some(stated)) = (surface, stated) else { continue };

@@ -4,10 +4,16 @@ use crate::pose::{AxisBreak, Displacement};
 use crate::{Element, Lens};
 use spectra_core::surface::Action;
 
-/// A lens with an odd number of mirrors looks back to where its light comes from; turned round it has no front.
+/// Why a lens cannot be turned round.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("a lens with an odd number of mirrors cannot be reversed: its image is on the object side")]
-pub struct ReverseError;
+pub enum ReverseError {
+    /// It looks back to where its light comes from; turned round it has no front.
+    #[error("a lens with an odd number of mirrors cannot be reversed: its image is on the object side")]
+    OddMirrors,
+    /// Its axis leaves a prism by another way than it enters.
+    #[error("a lens with a prism cannot be reversed: write its file the other way round")]
+    Prism,
+}
 
 /// Seen from the other side, half a turn about y away: right is left, front is rear.
 fn turned(d: Displacement) -> Displacement {
@@ -30,7 +36,10 @@ impl Lens {
     /// [`ReverseError`].
     pub fn reversed(&self) -> Result<Self, ReverseError> {
         if self.elements.iter().filter(|e| e.action == Action::Reflect).count() % 2 == 1 {
-            return Err(ReverseError);
+            return Err(ReverseError::OddMirrors);
+        }
+        if self.elements.iter().any(|e| e.solid.is_some()) {
+            return Err(ReverseError::Prism);
         }
         let count = self.elements.len();
         let mut elements: Vec<Element> = self.elements.iter().rev().cloned().collect();

@@ -3,6 +3,7 @@
 use crate::aperture::ApertureKeys;
 use crate::coating::CoatingKeys;
 use crate::prescription::{BreakParams, LensFile, Place};
+use crate::prism::PrismParams;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde_json::json;
 use spectra_core::params::Kinds;
@@ -49,13 +50,26 @@ impl JsonSchema for SurfaceOrBreak {
             shared: None,
             by_name: true,
         };
-        let is_bend =
-            json!({ "properties": { "kind": { "const": crate::prescription::BREAK } }, "required": ["kind"] });
+        let is = |kind: &str| json!({ "properties": { "kind": { "const": kind } }, "required": ["kind"] });
+        let is_bend = is(crate::prescription::BREAK);
+        let place = Place::json_schema(generator);
+        let prism = Kinds {
+            key: "kind",
+            kinds: vec![(crate::prism::PRISM, PrismParams::json_schema(generator))],
+            default: None,
+            shared: Some(&place),
+            by_name: false,
+        };
+        let surface = json!({ "$ref": "#/$defs/surface" });
         json_schema!({
-            "x-words": "a surface, or a coordinate-break",
+            "x-words": "a surface, a prism, or a coordinate-break",
             "if": { "type": "object", "allOf": [is_bend] },
             "then": bend.schema(),
-            "else": { "$ref": "#/$defs/surface" },
+            "else": {
+                "if": { "type": "object", "allOf": [is(crate::prism::PRISM)] },
+                "then": prism.schema(),
+                "else": surface,
+            },
         })
     }
 }

@@ -18,7 +18,12 @@ pub(crate) fn has_axis_of_revolution(lens: &Lens) -> bool {
 fn is_round(e: &Element) -> bool {
     let pose = if e.reversed { e.pose.reversed() } else { e.pose };
     let (cx, cy) = e.surface.vertex_curvature_per_mm();
-    if !pose.is_on_axis() || cx != cy || e.surface.is_directional() || !e.apertures.iter().all(|a| a.is_round()) {
+    if e.solid.is_some()
+        || !pose.is_on_axis()
+        || cx != cy
+        || e.surface.is_directional()
+        || !e.apertures.iter().all(|a| a.is_round())
+    {
         return false;
     }
     let rim = e.semi_diameter_mm.or(e.outer_semi_diameter_mm).unwrap_or(RIM_MM);

@@ -2,14 +2,17 @@
 
 use crate::absorption::{Absorption, Grid};
 use crate::aperture::Shape;
+use crate::coating::Coating;
 use crate::ledger::{Booked, Ledger, StepLedger, living};
 use crate::path::{Act, Path, PathStep};
 use crate::pose::Pose;
+use crate::solid::{Bend, Solid};
 use crate::transmission::{Before, Passage};
 use crate::{Element, Lens};
 use glam::{DMat3, DVec3};
 use spectra_core::batch::Column;
 use spectra_core::isa::{Isa, Vectorized};
+use spectra_core::loss::ALIVE;
 use spectra_core::numbers::StageKey;
 use spectra_core::surface::{Action, IndexColumns, Interface, Travel};
 use spectra_core::{Loss, LossCounts, RayBatch};
@@ -46,6 +49,8 @@ pub struct Tracer {
     media: Vec<Dispersion>,
     /// What each surface does to the weight of light.
     passages: Vec<Passage>,
+    /// Coatings of prisms, by element; [`Coating::Ideal`] of all else.
+    solid_coatings: Vec<Coating>,
     /// What each medium absorbs, where that is asked for.
     absorptions: Vec<Option<Absorption>>,
     /// Where they are tabulated, if there are any.
@@ -179,6 +184,8 @@ impl Tracer {
             Indices::Stated | Indices::At(_) => ANY_NM,
         };
         let passages = lens.elements.iter().map(|e| Passage::of(lens, e, shortest_nm)).collect();
+        let solid_coating = |e: &Element| if e.solid.is_some() { lens.solid_coating_of(e) } else { Coating::Ideal };
+        let solid_coatings = lens.elements.iter().map(solid_coating).collect();
         let (min_nm, max_nm) = match indices {
             Indices::Band { min_nm, max_nm } => (min_nm, max_nm),
             Indices::Stated => (lens.reference_nm, lens.reference_nm),
@@ -192,7 +199,19 @@ impl Tracer {
         let image_pose = lens.image_pose;
         let way = |travel| route(&elements, &image_pose, &Path::through(elements.len(), travel));
         let (forward, backward) = (way(Travel::Forward), way(Travel::Backward));
-        Ok(Self { elements, clips, image_pose, forward, backward, media, passages, absorptions, absorption_grid, isa })
+        Ok(Self {
+            elements,
+            clips,
+            image_pose,
+            forward,
+            backward,
+            media,
+            passages,
+            solid_coatings,
+            absorptions,
+            absorption_grid,
+            isa,
+        })
     }
 
     /// Makes a path ready, once for all batches that follow it.
@@ -229,7 +248,11 @@ impl Tracer {
 
     /// Whether light keeps its weight through it.
     fn is_ideal(&self) -> bool {
-        self.passages.iter().all(|p| *p == Passage::All) && self.absorptions.iter().all(Option::is_none)
+        let clear =
+            |e: &Element, coating: &Coating| e.solid.is_none() || (*coating == Coating::Ideal && e.reflectance == 1.0);
+        self.passages.iter().all(|p| *p == Passage::All)
+            && self.elements.iter().zip(&self.solid_coatings).all(|(e, coating)| clear(e, coating))
+            && self.absorptions.iter().all(Option::is_none)
     }
 
     /// Scratch space for batches of up to `capacity` rays. Rays that end are dropped from the batch
@@ -330,6 +353,9 @@ impl Tracer {
                 0.0
             }
         };
+        if let Some(solid) = &element.solid {
+            return self.pass_solid(rays, work, leg, step, shift_mm, solid);
+        }
         let len = rays.len();
         let passage = &self.passages[leg.at];
         let absorption = self.absorptions[leg.before].as_ref().filter(|_| leg.inside);
@@ -398,6 +424,90 @@ impl Tracer {
             booked.settle(rays, &mut ledger.steps[step], |s| &mut s.absorbed);
         }
         rays.set_surface(interface.number);
+        ended
+    }
+
+    /// Takes a batch through a prism, ray by ray.
+    fn pass_solid(
+        &self,
+        rays: &mut RayBatch,
+        work: &mut Work,
+        leg: &Leg,
+        step: usize,
+        shift_mm: f64,
+        solid: &Solid,
+    ) -> usize {
+        let element = &self.elements[leg.at];
+        let number = leg.at as u32 + 1;
+        let len = rays.len();
+        let n = columns(&work.media[leg.before], len).n;
+        let inside = columns(&work.media[solid.medium], len).n;
+        let absorption = self.absorptions[solid.medium].as_ref().zip(self.absorption_grid.as_ref());
+        let weighs = work.before.is_some();
+        if let Some(noted) = &mut work.before {
+            noted.note_directions(rays);
+        }
+        let mut paths: Vec<(usize, f64)> = Vec::with_capacity(len);
+        let (mut ended, mut clear, mut mirrors) = (0, vec![1.0; len], vec![1.0; len]);
+        let c = rays.columns_mut();
+        for i in 0..len {
+            if c.state[i] != ALIVE {
+                continue;
+            }
+            let from = DVec3::new(c.x[i], c.y[i], c.z[i] - shift_mm);
+            let way = DVec3::new(c.l[i], c.m[i], c.n[i]);
+            let nm = c.wavelength_nm[i];
+            let passed = solid.pass(from, way, inside[i] / n[i], |_, cosine, bend| {
+                if weighs {
+                    let of = (&self.solid_coatings[leg.at], element.reflectance);
+                    let left = solid.passes(bend, cosine, [n[i], inside[i]], nm, of);
+                    *(if bend == Bend::Mirror { &mut mirrors[i] } else { &mut clear[i] }) *= left;
+                }
+            });
+            match passed {
+                Err(cause) => {
+                    c.state[i] = cause.state(number);
+                    ended += 1;
+                }
+                Ok(passed) => {
+                    (c.x[i], c.y[i], c.z[i]) = passed.position.into();
+                    (c.l[i], c.m[i], c.n[i]) = passed.direction.into();
+                    if let Some((absorption, grid)) = absorption.filter(|_| weighs) {
+                        let (cell, part) = grid.place(nm);
+                        let mut per_mm = [0.0];
+                        absorption.fill(&[cell], &[part], &mut per_mm);
+                        mirrors[i] *= spectra_core::math::exp(-per_mm[0] * passed.inside_mm);
+                    }
+                    // A batch that carries its optical path has a column of it.
+                    paths.push((i, n[i] * passed.outside_mm + inside[i] * passed.inside_mm));
+                }
+            }
+        }
+        let weighing = rays.weighing();
+        if !weighing.optical_path_mm.is_empty() {
+            paths.iter().for_each(|(i, path)| weighing.optical_path_mm[*i] += path);
+        }
+        if leg.turns {
+            // A prism as a whole reflects nothing back.
+            weighing.weight.fill(0.0);
+        }
+        // What mirrors and glass absorb, then what faces reflect.
+        for (own, absorbed) in [(&mirrors, true), (&clear, false)] {
+            rays.weighing().weight.iter_mut().zip(own).for_each(|(weight, left)| *weight *= left);
+            if let Some((ledger, booked)) = &mut work.ledger {
+                booked.settle(
+                    rays,
+                    &mut ledger.steps[step],
+                    |s| if absorbed { &mut s.absorbed } else { &mut s.elsewhere },
+                );
+            }
+        }
+        if rays.is_polarized()
+            && let Some(noted) = &work.before
+        {
+            noted.polarize(rays, &Passage::All, false, [n, n]);
+        }
+        rays.set_surface(number);
         ended
     }
 

@@ -120,6 +120,11 @@ impl Lens {
         }
     }
 
+    /// The coating of the faces of a prism: its own, else the lens's.
+    pub(crate) fn solid_coating_of(&self, element: &Element) -> Coating {
+        element.coating.as_ref().unwrap_or(&self.coating).clone()
+    }
+
     /// The media whose absorption is borrowed, each with its label and the glass that lends; whether or not glass absorbs
     /// now.
     #[must_use]

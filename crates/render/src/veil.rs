@@ -27,7 +27,7 @@ use std::sync::Arc;
 /// What numbers of its own stages draw by.
 pub(crate) const ESTIMATOR: &str = "glare";
 /// Turns the picture's seed into that of the walks.
-const SEED: u64 = 0x676c_6172_65;
+const SEED: u64 = 0x0067_6c61_7265;
 /// All walks form one stream of numbers.
 const STREAM: u64 = 0;
 /// Cells of the lattice across the frame.

@@ -5,7 +5,7 @@ use glam::DVec3;
 use spectra_core::math::sin;
 use spectra_core::surface::Action;
 use spectra_glass::lines;
-use spectra_lens::{Element, Lens, LensMedium};
+use spectra_lens::{Element, Lens, LensMedium, Section};
 
 /// Points along a surface from edge to edge.
 const POINTS: usize = 97;
@@ -40,13 +40,18 @@ pub fn outlines(lens: &Lens, view: &View, reach_mm: &[f64]) -> Outlines {
     let sizes: Vec<f64> = (0..lens.elements.len()).map(|at| size_mm(lens, at, reach_mm)).collect();
     for (at, e) in lens.elements.iter().enumerate() {
         let next = lens.elements.get(at + 1);
+        if let Some(solid) = &e.solid {
+            if view.section == Section::Y {
+                let outline = solid.corners().iter().map(|[y, z]| e.pose.point(DVec3::new(0.0, *y, *z))).collect();
+                let (nd, vd) = figures(&lens.media[solid.medium]);
+                all.solids.push(Solid { outline, nd, vd });
+            }
+            continue;
+        }
         let solid_behind = is_solid(&lens.media[e.medium_after]) && e.action != Action::Reflect;
         if let Some(next) = next.filter(|_| solid_behind && e.medium_after != 0) {
             let outer = sizes[at].max(sizes[at + 1]);
-            let medium = &lens.media[e.medium_after];
-            let nd = medium.medium.index(lines::D.wavelength_nm);
-            let (nf, nc) = (medium.medium.index(lines::F.wavelength_nm), medium.medium.index(lines::C.wavelength_nm));
-            let vd = if nf > nc { (nd - 1.0) / (nf - nc) } else { 0.0 };
+            let (nd, vd) = figures(&lens.media[e.medium_after]);
             all.solids.push(Solid { outline: cut(e, next, [sizes[at], sizes[at + 1]], outer, view), nd, vd });
         }
         let in_glass = is_solid(&lens.media[e.medium_before]) || is_solid(&lens.media[e.medium_after]);
@@ -69,6 +74,13 @@ pub fn outlines(lens: &Lens, view: &View, reach_mm: &[f64]) -> Outlines {
         }
     }
     all
+}
+
+/// Index at the d line, and Abbe number.
+fn figures(medium: &LensMedium) -> (f64, f64) {
+    let nd = medium.medium.index(lines::D.wavelength_nm);
+    let (nf, nc) = (medium.medium.index(lines::F.wavelength_nm), medium.medium.index(lines::C.wavelength_nm));
+    (nd, if nf > nc { (nd - 1.0) / (nf - nc) } else { 0.0 })
 }
 
 fn is_solid(medium: &LensMedium) -> bool {

@@ -260,6 +260,8 @@ impl Interior {
         for (at, e) in lens.elements.iter().enumerate() {
             let fault = if e.action == Action::Reflect {
                 Some("a mirror")
+            } else if e.solid.is_some() {
+                Some("a prism")
             } else if e.surface.is_directional() || e.surface.draws() {
                 Some("no clear glass")
             } else if e.pose.rotation.z_axis.z.abs() < STRAIGHT {
