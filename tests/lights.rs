@@ -119,12 +119,17 @@ fn estimate(path: &Path, set: &[&str]) -> Vec<(f64, f64)> {
 const ERRORS: f64 = 3.0 * 1.6;
 
 fn agree(source: &str) {
+    agree_by(
+        source,
+        &[("forward", "render.rays=1500000"), ("both", "render.samples=128"), ("both", "render.rays=700000")],
+    );
+}
+
+fn agree_by(source: &str, others: &[(&str, &str)]) {
     let folder = tempfile::tempdir().expect("a folder");
     let path = scene(folder.path(), source);
     let backward = estimate(&path, &["render.direction=backward", "render.samples=2048"]);
-    for (direction, many) in
-        [("forward", "render.rays=1500000"), ("both", "render.samples=128"), ("both", "render.rays=700000")]
-    {
+    for (direction, many) in others {
         let other = estimate(&path, &[&format!("render.direction={direction}"), many]);
         for (region, ((b, eb), (o, eo))) in backward.iter().zip(&other).enumerate() {
             let error = (eb * eb + eo * eo).sqrt();
@@ -148,6 +153,14 @@ fn lights_of_a_picture_with_depth() {
 #[test]
 fn lights_of_layers() {
     agree(LAYERS);
+}
+
+/// A sun over a chart: as the film sees both, and from itself.
+#[test]
+fn a_sun_over_a_chart() {
+    let sun = "{kind: sun, field: [3 deg, 2 deg], diameter: 2 deg, illuminance: 1 lx, \
+               over: {kind: chart, chart: white, distance: 2 m, width: 60 cm}}";
+    agree_by(sun, &[("both", "render.samples=256")]);
 }
 
 /// What stands in front of a lamp takes light from it and adds none: a lamp at its edge does not go on behind it.

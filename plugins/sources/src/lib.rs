@@ -13,4 +13,5 @@ mod lazy;
 mod palette;
 mod picture;
 mod point;
+mod sun;
 mod white;

@@ -17,7 +17,7 @@ use spectra_core::{Loss, RayBatch};
 
 /// Rays for each path and round, of one zone and of each further one, and rounds: the last one says how much comes.
 const RAYS: usize = 4096;
-const RAYS_MORE: usize = 512;
+const RAYS_MORE: usize = 256;
 const ROUNDS: u64 = 3;
 /// Rays of a batch.
 const BATCH: usize = 256;
@@ -28,7 +28,7 @@ const DIM: f64 = 1e-4;
 /// Batches of each path that say whether going on is worth it. They see little of what is narrow: only what they find this many times too
 /// dim is left at that.
 const SCOUTS: usize = 4;
-const DOUBT: f64 = 4.0;
+const DOUBT: f64 = 2.0;
 
 /// What the pilot finds.
 pub(super) struct Plan {

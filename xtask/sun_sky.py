@@ -1,0 +1,78 @@
+"""Writes scenes/sun-sky.exr: a clear sky in late afternoon over hills and a meadow, for suns at the edge of the frame.
+
+The sky is bluest far from the sun and pale near the horizon and around the sun, which stands at the right edge, 18.5 degrees across and
+11 degrees up of the middle (the sun itself is not in it); four ranges of hills grow paler with distance; thin clouds. The
+picture is seen by a 50 mm lens on 36 x 24 mm. R, G, B (linear, Rec. 709, 1 is white) as 16-bit floats of 8 significant bits, ZIP
+compressed. Needs nothing but Python 3.
+
+    python3 xtask/sun_sky.py
+"""
+
+import math
+import pathlib
+
+import half_exr
+from noise_scenes import eight_bits, mixed, noise, scaled, smooth
+
+WIDTH, HEIGHT = 600, 400
+# Tangents of the field a pixel, and where the sun stands.
+PITCH = 36.0 / 50.0 / WIDTH
+SUN = (0.335, 0.195)
+HORIZON = -0.06
+
+
+def cloudy(x, y):
+    """Noise of five octaves: 0 to 1."""
+    return sum(noise(x * 2**k, y * 2**k) / 2 ** (k + 1) for k in range(5))
+
+
+def sky(x, y):
+    up = max(0.0, y - HORIZON)
+    color = mixed((0.62, 0.72, 0.84), (0.16, 0.32, 0.66), smooth(0.0, 0.34, up))
+    around = math.hypot(x - SUN[0], y - SUN[1])
+    glow = 0.9 * math.exp(-around / 0.05) + 0.45 * math.exp(-around / 0.2)
+    color = tuple(c + glow * g for c, g in zip(color, (1.0, 0.9, 0.74)))
+    cover = smooth(0.5, 0.8, cloudy(3.1 * x / (0.25 + up), 9.0 / (0.25 + up))) * smooth(0.0, 0.08, up)
+    return mixed(color, scaled((1.0, 0.98, 0.95), 0.95 + 0.5 * glow), 0.55 * cover)
+
+
+def hills(x, y):
+    """The nearest range that stands before a direction, 0 to 3 from far to near; `None` where the sky is free."""
+    found = None
+    for k, (base, height, per) in enumerate([(-0.035, 0.05, 9), (-0.055, 0.05, 13), (-0.085, 0.045, 21), (-0.13, 0.03, 8)]):
+        ridge = base + height * (cloudy(per * x + 31 * k, 7.3 * k) - 0.35)
+        if k in (1, 2):
+            # Trees.
+            ridge += 0.006 * noise(420 * x, 5.0 + k)
+        if y < ridge:
+            found = k
+    return found
+
+
+def color(x, y):
+    near = hills(x, y)
+    if near is None:
+        return sky(x, y)
+    haze = (0.5, 0.6, 0.72)
+    grain = 0.7 + 0.6 * cloudy(60 * x, 90 * y)
+    if near == 3:
+        below = -0.1 - y
+        grass = mixed((0.09, 0.13, 0.035), (0.16, 0.15, 0.05), cloudy(14 * x / (0.1 + below), 3.0 / (0.1 + below)))
+        return scaled(grass, 0.75 + 0.5 * cloudy(90 * x / (0.1 + below), 40.0 / (0.1 + below)))
+    woods = scaled((0.045, 0.065, 0.035), grain)
+    return mixed(woods, haze, (0.62, 0.3, 0.1)[near])
+
+
+def main():
+    rows = []
+    for row in range(HEIGHT):
+        y = (HEIGHT / 2 - row - 0.5) * PITCH
+        line = [color((column + 0.5 - WIDTH / 2) * PITCH, y) for column in range(WIDTH)]
+        # Channels in alphabetical order.
+        rows.append([tuple(eight_bits(c) for c in (b, g, r)) for r, g, b in line])
+    path = pathlib.Path(__file__).parent.parent / "scenes/sun-sky.exr"
+    half_exr.write(path, "a clear sky over hills, by xtask/sun_sky.py", "BGR", rows)
+
+
+if __name__ == "__main__":
+    main()
