@@ -201,3 +201,92 @@ fn noise_is_measured_between_seeds() {
         assert!((clean / want - 1.0).abs() < 1e-9, "{row}");
     }
 }
+
+/// A camera obscura with what `source` says in front of it, on Ortho Plus.
+fn pinhole(folder: &Path, source: &str) -> String {
+    let write = |name: &str, text: &str| {
+        let path = folder.join(name);
+        std::fs::write(&path, text).expect("written");
+        shown(&path).to_owned()
+    };
+    write(
+        "pinhole.yaml",
+        "name: Pinhole\nsurfaces:\n  - {kind: plane, stop: true, semi-diameter: 0.3, thickness: 50}\n",
+    );
+    write(
+        "obscura.yaml",
+        &format!(
+            "spectra: 1\nsource: {source}\nlens: {{file: pinhole.yaml}}\n\
+             imager: {{kind: film, width: 36 mm, height: 24 mm, resolution: [12, 8]}}\n\
+             film: {{stock: ilford-ortho-plus, exposure: 1 s}}\nrender: {{samples: 64, seed: 1}}\n"
+        ),
+    )
+}
+
+const EDGE: &str =
+    "{kind: chart, chart: slanted-edge, distance: 1 m, width: 1.2 m, illuminant: D65, luminance: 3000 cd/m2}";
+const EVERY: &str = "one-term-of-every-factor";
+
+/// Through a hole nothing needs a wavelength: one term of every factor has the mean of wavelengths that are drawn, within 3 standard
+/// errors, and scatters as all its choices say.
+#[test]
+fn one_term_of_every_factor_through_a_pinhole() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = pinhole(folder.path(), EDGE);
+    let both = format!("source-times-response,{EVERY}");
+    let arguments = ["bench", &scene, "--json", "--threads", "2", "-o", shown(folder.path()), "--strategies", &both];
+    let output = run(&[&arguments[..], &["--seeds", "12", "--samples", "16,64"]].concat());
+    let told = text_of(&output.stderr);
+    assert!(output.status.success(), "{told}");
+    let report: Value = serde_json::from_str(&text_of(&output.stdout)).expect("JSON");
+    let deviation: f64 = told
+        .split("a sample scatters by ")
+        .nth(1)
+        .and_then(|rest| rest.split(' ').next())
+        .and_then(|number| number.parse().ok())
+        .unwrap_or_else(|| panic!("how far a sample scatters: {told}"));
+    let of_terms = |measure, numbers| {
+        let mut all = series(&report, measure, numbers).filter(|s| s["strategy"] == EVERY);
+        all.next().unwrap_or_else(|| panic!("no row: {report}")).clone()
+    };
+    let integral = of_terms("integral", "random");
+    for point in integral["points"].as_array().expect("points") {
+        let expected = deviation / number(&point["samples"]).sqrt();
+        let error = number(&point["error"]["value"]);
+        println!("{}: {error:.4}, computed {expected:.4}", point["samples"]);
+        assert!((error / expected - 1.0).abs() < 0.1, "{error} {expected}");
+    }
+    for one in [integral, of_terms("scene", "sobol")] {
+        for point in one["points"].as_array().expect("points") {
+            for bias in point["bias"].as_array().expect("a list") {
+                let off = number(&bias["standard_errors"]);
+                println!("bias {off:.2} standard errors");
+                assert!(off.abs() < 3.0, "{one}");
+            }
+        }
+    }
+}
+
+/// Elsewhere it is refused, by the name of what needs a wavelength.
+#[test]
+fn one_term_of_every_factor_says_what_needs_a_wavelength() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let strategies = format!("source-times-response,{EVERY}{{terms: 5}}");
+    let tiny = ["--seeds", "2", "--samples", "1", "--set", "imager.resolution=[3, 2]", "--strategies", &strategies];
+    let reason = |report: &Value| report["left_out"][0]["reason"].as_str().unwrap_or("none").to_owned();
+    let glass = reason(&report(folder.path(), "d65-ortho", &tiny));
+    assert!(glass.contains("surface 1 ") && glass.contains("refracts at"), "{glass}");
+    let channels = reason(&report(folder.path(), "d65-xyz", &tiny));
+    assert!(channels.contains("records 3"), "{channels}");
+    let lines = reason(&report(folder.path(), "mercury-ortho", &tiny));
+    assert!(lines.contains("spectral lines"), "{lines}");
+    let patches = "{kind: chart, chart: patches, reflectances: colorchecker, distance: 1 m, width: 1.2 m, illuminant: D65, luminance: 3000 cd/m2}";
+    let scene = pinhole(folder.path(), patches);
+    let arguments = ["bench", &scene, "--json", "--threads", "2", "-o", shown(folder.path())];
+    let output = good(&[&arguments[..], &tiny[..4], &tiny[6..]].concat());
+    let colors = reason(&serde_json::from_str(&output).expect("JSON"));
+    assert!(colors.contains("colors of the source"), "{colors}");
+    let wrong =
+        run(&["bench", &scene, "--strategies", "one-term-of-every-factor{term: 3}", "-o", shown(folder.path())]);
+    assert!(wrong.status.code() == Some(2) && text_of(&wrong.stderr).contains("its one key is `terms`"));
+}

@@ -284,3 +284,106 @@ fn a_look_up_starts_fast() {
     println!("--version {idle:?}, glass info {look_up:?}");
     assert!(look_up.saturating_sub(idle) < limit, "{idle:?} {look_up:?}");
 }
+
+/// A table of Cauchy's own: the glass file, its rows and its figure, and the glass goes back in by its name.
+#[test]
+fn a_fit_is_written_shown_and_read_back() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    let (a, b) = (1.5046, 4200.0);
+    let lines = [404.66, 435.83, 486.13, 546.07, 587.56, 656.27];
+    let rows: Vec<String> = lines.iter().map(|nm| format!("crown,{nm},{}", a + b / (nm * nm))).collect();
+    let other = ["flint,435.8,1.66", "flint,546.1,1.63", "flint,656.3,1.61"].join("\n");
+    std::fs::write(at("melts.csv"), format!("material,wavelength_nm,n\n{}\n{other}\n", rows.join("\n")))
+        .expect("written");
+    let one = format!("{}#crown", shown(&at("melts.csv")));
+    let (yaml, figure) = (at("crown.yaml"), at("crown.svg"));
+    let said = good(&["glass", "fit", &one, "--rows", "-o", shown(&yaml), "--plot", shown(&figure)]);
+    assert!(said.contains("B / nm^2") && said.contains("4200.000") && said.contains("mean"), "{said}");
+    assert_eq!(said.lines().filter(|line| line.trim_start().starts_with("404.66")).count(), 1);
+    let text = std::fs::read_to_string(&yaml).expect("written");
+    assert!(
+        text.contains("unit: nm") && text.contains("formula: cauchy") && text.contains("range: [404.66 nm, 656.27 nm]"),
+        "{text}"
+    );
+    let figure = std::fs::read_to_string(&figure).expect("written");
+    assert!(figure.contains("crown: fitted dispersion") && figure.contains("formula minus row"));
+    let info = json(&["info", shown(&yaml), "--wavelength-nm", "589.3"]);
+    assert!((number(&info["n_at"]) - (a + b / (589.3 * 589.3))).abs() < 1e-9, "{info}");
+    // Every other model reads back, too: at a row the glass has the index of the formula, which is the row's and its deviation.
+    for model in ["cauchy-ls", "sellmeier", "conrady", "schott", "herzberger"] {
+        let fits = json(&["fit", &one, "--model", model, "-o", shown(&yaml)]);
+        let wanted = a + b / (546.07 * 546.07) + number(&fits[0]["fits"][0]["deviations"][3]);
+        let info = json(&["info", shown(&yaml), "--wavelength-nm", "546.07"]);
+        assert!((number(&info["n_at"]) - wanted).abs() < 1e-9, "{model}: {info}");
+    }
+    let fits = json(&["fit", &one, "--model", "sellmeier", "--terms", "2", "-o", shown(&yaml)]);
+    let wanted = a + b / (546.07 * 546.07) + number(&fits[0]["fits"][0]["deviations"][3]);
+    let info = json(&["info", shown(&yaml), "--wavelength-nm", "546.07"]);
+    assert!((number(&info["n_at"]) - wanted).abs() < 1e-9, "{info}");
+    // Several materials, an unknown one, a wrong ending: each is told apart.
+    let all = shown(&at("melts.csv")).to_owned();
+    for (options, words) in [
+        (&["fit", &all, "-o", "x.yaml"][..], "#crown"),
+        (&["fit", &format!("{all}#lead")], "crown, flint"),
+        (&["fit", &one, "-o", "x.csv"], "x.csv"),
+        (&["fit", &one, "--plot", "x.pdf"], "x.pdf"),
+    ] {
+        assert!(refused(options).contains(words), "{options:?}");
+    }
+}
+
+/// B in nm^2, as tables of dispersion have it, is the same glass as in um^2; other formulas say that they have no other unit.
+#[test]
+fn coefficients_may_be_in_nanometers() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let index = |text: &str| {
+        let path = folder.path().join("glass.yaml");
+        std::fs::write(&path, text).expect("written");
+        number(&json(&["info", shown(&path), "--wavelength-nm", "550"])["n_at"])
+    };
+    let um = index("formula: cauchy\ncoefficients: [1.5046, 0.0042]\n");
+    let nm = index("formula: cauchy\ncoefficients: [1.5046, 4200]\nunit: nm\n");
+    assert!((um - nm).abs() < 1e-12, "{um} {nm}");
+    let path = folder.path().join("glass.yaml");
+    std::fs::write(&path, "formula: herzberger\ncoefficients: [1.5, 0.004]\nunit: nm\n").expect("written");
+    assert!(refused(&["info", shown(&path)]).contains("in micrometers only"));
+    std::fs::write(&path, "nd: 1.5168\nvd: 64.17\nunit: nm\n").expect("written");
+    assert!(refused(&["info", shown(&path)]).contains("the unit of which formula?"));
+}
+
+/// Abbe numbers of any three lines, by their names and by wavelengths: V = (n_middle - 1) / (n_blue - n_red).
+#[test]
+fn abbe_numbers_of_any_three_lines() {
+    let at = |nm: &str| number(&json(&["info", "N-BK7", "--wavelength-nm", nm])["n_at"]);
+    let wanted = (at("580") - 1.0) / (at("450") - at("680"));
+    let info = json(&["info", "N-BK7", "--lines", "450,580,680"]);
+    assert!((number(&info["v_lines"]) - wanted).abs() < 1e-9, "{info}");
+    assert_eq!(info["lines_nm"], serde_json::json!([450.0, 580.0, 680.0]));
+    // The usual ones are the usual numbers.
+    let info = json(&["info", "N-BK7", "--lines", "F',e,C'"]);
+    assert!((number(&info["v_lines"]) - number(&info["ve"])).abs() < 1e-12, "{info}");
+    assert!(good(&["glass", "info", "N-BK7", "--lines", "450,580,680"]).contains("V 450 580 680 nm"));
+    for wrong in ["680,580,450", "450,580", "F,x,C"] {
+        assert!(refused(&["info", "N-BK7", "--lines", wrong]).contains("from blue to red"), "{wrong}");
+    }
+    // Plastics by their category.
+    let plastics = json(&["list", "--category", "plastic"]);
+    let plastics = plastics.as_array().expect("a list");
+    assert!(plastics.len() > 10 && plastics.iter().all(|glass| glass["category"] == "plastic"));
+}
+
+/// Indices and Abbe numbers at e of glass files and lens files.
+#[test]
+fn figures_at_e_are_taken_as_stated() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (glass, lens) = (folder.path().join("glass.yaml"), folder.path().join("lens.yaml"));
+    std::fs::write(&glass, "ne: 1.6242\nve: 53.1\n").expect("written");
+    let info = json(&["info", shown(&glass)]);
+    assert!((number(&info["ne"]) - 1.6242).abs() < 1e-6 && (number(&info["ve"]) - 53.1).abs() < 0.01, "{info}");
+    let text = "name: Singlet\nreference-line: e\nsurfaces:\n  - {kind: sphere, radius: 50, thickness: 5, glass: {ne: 1.6242, ve: 53.1}}\n  \
+                - {kind: sphere, radius: -50, thickness: 40}\n";
+    std::fs::write(&lens, text).expect("written");
+    let info: serde_json::Value = serde_json::from_str(&good(&["lens", "info", shown(&lens), "--json"])).expect("JSON");
+    assert!(info.to_string().contains("1.6242"), "{info}");
+}

@@ -381,3 +381,27 @@ fn wrong_settings_are_told() {
         assert!(message.contains(word), "{arguments:?}: {message}");
     }
 }
+
+/// Veiling glare: a figure with its error, for people and programs, and a reason where there is none.
+#[test]
+fn veiling_glare_is_said_where_asked() {
+    let name = "zeiss-biotar-50-f1.4";
+    assert!(info(name, &[]).get("glare").is_none());
+    let bare = info(name, &["--glare", "--f-number", "2", "--coating", "bare"])["glare"].clone();
+    let index = figure(&bare, "index");
+    assert!(index > 0.01 && index < 0.1 && figure(&bare, "standard_error") < 0.03 * index, "{bare}");
+    assert_eq!((figure(&bare, "paint"), figure(&bare, "imager")), (0.04, 0.0));
+    let options = ["--glare", "--f-number", "2", "--coating", "bare", "--paint", "50%", "--film-reflectance", "0.3"];
+    let bright = info(name, &options)["glare"].clone();
+    assert!(figure(&bright, "index") > 1.2 * index && figure(&bright, "scattered") > figure(&bare, "scattered"));
+    let table = good(&["lens", "info", name, "--glare"]);
+    assert!(table.contains("veiling glare") && table.contains("by glass alone"), "{table}");
+    for (arguments, word) in [
+        (vec!["prism-60-sf11", "--glare"], "surface 1 is turned aside"),
+        (vec![name, "--paint", "4 %"], "--glare"),
+        (vec![name, "--glare", "--paint", "120 %"], "from 0 to 100 %"),
+    ] {
+        let output = run(&[&["lens", "info"][..], &arguments].concat());
+        assert!(!output.status.success() && text(&output.stderr).contains(word), "{}", text(&output.stderr));
+    }
+}

@@ -342,3 +342,101 @@ fn colors_through_each_model() {
         assert!(refused(arguments).contains(word), "{arguments:?}: {}", refused(arguments));
     }
 }
+
+/// Figures beyond color: a Gaussian's closed forms, the CIE's and TM-30's indices of FL2, and values at wavelengths.
+#[test]
+fn figures_of_a_lamp() {
+    let bell = info(&["gaussian:550,20", "--wavelength-nm", "550,e,570"]);
+    close(&bell["centroid_nm"], &[550.0], 1e-6);
+    close(&bell["width_nm"], &[47.0964], 1e-3);
+    close(&bell["power"], &[20.0 * (2.0 * std::f64::consts::PI).sqrt()], 1e-6);
+    let values: Vec<f64> =
+        bell["values"].as_array().expect("a list").iter().map(|v| v["value"].as_f64().expect("a number")).collect();
+    let wanted = [1.0, (-0.5_f64 * (3.93_f64 / 20.0).powi(2)).exp(), (-0.5_f64).exp()];
+    assert!(values.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 1e-12), "{values:?}");
+    // 1 W at 555 nm, where V is 1.
+    close(&info(&["line:555"])["luminous_efficacy_lm_per_w"], &[683.0], 1e-6);
+    let lamp = info(&["FL2"]);
+    close(&lamp["cie_ra"], &[64.2], 0.1);
+    close(&lamp["tm30_rf"], &[70.1], 0.1);
+    close(&info(&["D65"])["uv_1976"], &[0.1978, 0.4683], 1e-4);
+    assert!(info(&["line:555"])["cie_ra"].is_null() && info(&["wratten-12"])["power"].is_null());
+    assert!(refused(&["info", "D65", "--wavelength-nm", "Q"]).contains("--wavelength-nm"));
+    let shown = good(&["spectrum", "info", "FL2", "--wavelength-nm", "550"]);
+    for wanted in ["centroid", "luminous efficacy", "CIE Ra", "TM-30 Rf", "at 550 nm", "u'v'"] {
+        assert!(shown.contains(wanted), "{wanted}: {shown}");
+    }
+}
+
+/// The chain of light, surface, filter and film: as many terms as choices, exact, in every form that it is written in.
+#[test]
+fn a_product_of_terms() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let [svg, csv] = ["terms.svg", "terms.csv"].map(|name| folder.path().join(name));
+    let chain = ["spectrum", "product", "D65", "colorchecker#red", "wratten-12", "ilford-ortho-plus", "--terms", "6"];
+    let out = good(&[&chain[..], &["--json", "-o", shown(&svg), "-o", shown(&csv)]].concat());
+    let product: Value = serde_json::from_str(&out).expect("JSON");
+    assert_eq!(product["terms"], 1296);
+    assert!(product["difference"].as_f64().expect("a number") < 1e-12);
+    assert!(product["kappa"].as_f64().expect("a number") >= 1.0);
+    let table = std::fs::read_to_string(csv).expect("written");
+    assert_eq!(table.lines().count(), 7);
+    let svg = std::fs::read_to_string(svg).expect("written");
+    assert!(svg.contains("1296 terms") && !svg.contains("NaN"));
+    let told = good(&chain);
+    for wanted in ["terms of the product    1296", "kappa", "by quadrature", "one term"] {
+        assert!(told.contains(wanted), "{wanted}: {told}");
+    }
+    assert!(refused(&["product", "D65", "A"]).contains("both of kind emission"));
+    assert!(refused(&["product", "mercury", "wratten-12"]).contains("spectral lines"));
+    assert!(refused(&["product", "D65", "-o", "x.jpg"]).contains(".csv"));
+}
+
+/// The Gaussian that touches a spectrum: of a Gaussian itself, of a black body none where its logarithm bends up.
+#[test]
+fn a_local_gaussian_or_none() {
+    let at = |name: &str, nm: &str| -> Value {
+        serde_json::from_str(&good(&["spectrum", "fit", name, "--at", nm, "--json", "--step", "0.1"])).expect("JSON")
+    };
+    let bell = at("gaussian:540,30", "560");
+    close(&bell["center_nm"], &[540.0], 1e-3);
+    close(&bell["sigma_nm"], &[30.0], 1e-3);
+    close(&bell["amplitude"], &[1.0], 1e-5);
+    let none = at("function:exp((w-600)^2/5000)", "550");
+    assert!(
+        none["center_nm"].is_null() && none["none_because"].as_str().expect("a reason").contains("does not bend down")
+    );
+    // A table bends from one of its points to the next: 5 nm of D65.
+    let day: Value = serde_json::from_str(&good(&["spectrum", "fit", "D65", "--at", "550", "--json"])).expect("JSON");
+    close(&day["step_nm"], &[5.0], 0.0);
+    assert!(refused(&["fit", "mercury", "--at", "550"]).contains("lines only"));
+    assert!(refused(&["fit", "D65", "--at", "-5"]).contains("--at"));
+}
+
+/// Diagrams of both years and fields, points of one's own, matching functions with their negative lobes, and sixteen curves that differ.
+#[test]
+fn figures_of_spectra() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let draw = |name: &str, arguments: &[&str]| {
+        let path = folder.path().join(name);
+        good(&[&["spectrum", "plot", "-o", shown(&path)][..], arguments].concat());
+        std::fs::read_to_string(path).expect("written")
+    };
+    for (diagram, observer) in [("1931", "1931"), ("1931", "1964"), ("1976", "1931"), ("1976", "1964")] {
+        let more = ["--chromaticity", "--diagram", diagram, "--observer", observer, "D65", "xy:0.3,0.4", "uv:0.2,0.5"];
+        let svg = draw("diagram.svg", &more);
+        assert!(svg.contains("aria-label=\"xy:0.3,0.4\"") && !svg.contains("NaN"), "{diagram} {observer}");
+    }
+    let cones = draw("cones.svg", &["cone-fundamentals-2deg"]);
+    assert!(cones.contains("cone-fundamentals-2deg#s"));
+    let matching = draw("matching.svg", &["srgb-1931-2deg"]);
+    assert!(matching.contains("\u{2212}"), "negative values along the axis");
+    let many: Vec<String> = (0..16).map(|i| format!("gaussian:{},15", 400 + 25 * i)).collect();
+    let names: Vec<&str> = many.iter().map(String::as_str).collect();
+    let svg = draw("many.svg", &names);
+    assert!(svg.matches("stroke-dasharray").count() >= 2 * 9, "the second seven are dashed");
+    assert_ne!(draw("deutan.svg", &[&names[..], &["--seen-by", "deutan"]].concat()), svg);
+    let much = vec!["A"; 29];
+    assert!(refused(&[&["plot"][..], &much].concat()).contains("28 at most"));
+    assert!(refused(&["plot", "xy:0.9,0.9", "--chromaticity", "-o", "x.svg"]).contains("no chromaticity"));
+}

@@ -6,7 +6,7 @@ use common::{good, lens, rows, run, shown, spectra, text};
 use std::io::Write;
 use std::process::Stdio;
 
-const HEADER: &str = "status,surface,x_mm,y_mm,z_mm,l,m,n";
+const HEADER: &str = "status,surface,x_mm,y_mm,z_mm,l,m,n,wavelength_nm,transmittance,optical_path_mm";
 
 /// Rows of the result as text fields.
 fn table(output: &str) -> Vec<Vec<&str>> {
@@ -70,7 +70,7 @@ fn reference_rays_end_where_the_reference_says() {
             let status = format!("{} {}", found[0], found[1]);
             assert_eq!(status.trim(), wanted[7], "{name}, row {row}");
             if found[0] != "hit" {
-                assert!(found[2..].iter().all(|field| field.is_empty()));
+                assert!(found[2..8].iter().chain(&found[9..]).all(|field| field.is_empty()));
                 continue;
             }
             hits += 1;
@@ -94,7 +94,7 @@ fn a_hit_lies_on_the_image_plane_in_the_frame_of_the_lens() {
     let result = traced(&name, "x_mm,y_mm,z_mm,l,m,n\n0,0,-10,0,0,1\n0,5,-10,0,0,1\n", &["--nd"]);
     let found = table(&result);
     assert_eq!(found[0][..2], ["hit", ""]);
-    assert_eq!(found[0][2..].iter().map(|f| number(f)).collect::<Vec<_>>()[..2], [0.0, 0.0]);
+    assert_eq!([2, 3].map(|at| number(found[0][at])), [0.0, 0.0]);
     for row in &found {
         assert_eq!(Some(number(row[4])), info["total_track_mm"].as_f64());
         let [l, m, n] = [5, 6, 7].map(|at| number(row[at]));
@@ -261,4 +261,59 @@ fn many_rays_keep_their_order() {
     assert_eq!(found.len(), count as usize);
     // Toward the axis, the more the higher they came in.
     assert!(found.windows(2).all(|pair| number(pair[0][6]) > number(pair[1][6])));
+}
+
+/// A plate of index 1.5, bare: Fresnel's transmittance at both faces, and index times length, in closed form; every surface has its row.
+#[test]
+fn transmittance_and_optical_path_are_those_of_a_plate() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("plate.yaml");
+    let plate = "name: Plate\ncoating: bare\nsurfaces:\n  - {kind: plane, thickness: 10, glass: {nd: 1.5}, semi-diameter: 30}\n  \
+                 - {kind: plane, thickness: 20, semi-diameter: 30}\n";
+    std::fs::write(&file, plate).expect("written");
+    let n = 1.5_f64;
+    for sine in [0.0_f64, 0.3, 0.8] {
+        let (cosine, inside) = ((1.0 - sine * sine).sqrt(), (1.0 - sine * sine / n / n).sqrt());
+        let rays = format!("x_mm,y_mm,z_mm,l,m,n\n0,0,-5,0,{sine:?},{cosine:?}\n");
+        let result = traced(shown(&file), &rays, &["--nd"]);
+        let row = &table(&result)[0];
+        let [s, p] = [(cosine, n * inside), (n * cosine, inside)].map(|(a, b)| 1.0 - ((a - b) / (a + b)).powi(2));
+        // Unpolarized light on each face: means of both states.
+        let transmittance = (0.5 * (s + p)).powi(2);
+        let path = 5.0 / cosine + n * 10.0 / inside + 20.0 / cosine;
+        assert!((number(row[9]) - transmittance).abs() < 1e-9, "{row:?} {transmittance}");
+        assert!((number(row[10]) - path).abs() < 1e-9, "{row:?} {path}");
+        assert!((number(row[8]) - 587.56).abs() < 0.01, "{row:?}");
+
+        let every = traced(shown(&file), &rays, &["--nd", "--every-surface"]);
+        let every: Vec<Vec<&str>> = every.lines().map(|line| line.split(',').collect()).collect();
+        assert_eq!(every[0].join(","), format!("ray,{HEADER}"));
+        assert_eq!([1, 2, 3].map(|i| every[i][..3].join(",")), ["1,passed,1", "1,passed,2", "1,hit,"]);
+        assert_eq!(every[3][1..], row[..]);
+        let heights = [5.0 * sine / cosine, 5.0 * sine / cosine + 10.0 * sine / n / inside];
+        for (row, (z, y)) in every[1..3].iter().zip([0.0, 10.0].into_iter().zip(heights)) {
+            assert!((number(row[5]) - z).abs() < 1e-12 && (number(row[4]) - y).abs() < 1e-9, "{row:?}");
+        }
+        // In the glass, after one face.
+        assert!((number(every[1][10]) - 0.5 * (s + p)).abs() < 1e-9 && (number(every[1][7]) - sine / n).abs() < 1e-12);
+        assert!((number(every[1][11]) - 5.0 / cosine).abs() < 1e-12);
+    }
+}
+
+/// A ray that ends has rows for the surfaces before; a wavelength beyond the band is traced with the same columns.
+#[test]
+fn every_surface_is_told_up_to_the_end() {
+    let name = "zeiss-biotar-50-f1.4";
+    let rays = "x_mm,y_mm,z_mm,l,m,n,wavelength_nm\n0,1,-5,0,0,1,546.1\n0,17.5,-5,0,0.2,0.9797958971132712,546.1\n0,1,-5,0,0,1,1000\n";
+    let result = traced(name, rays, &["--every-surface"]);
+    let rows: Vec<Vec<&str>> = result.lines().skip(1).map(|line| line.split(',').collect()).collect();
+    let of = |ray: &str| rows.iter().filter(|row| row[0] == ray).collect::<Vec<_>>();
+    let (first, second, third) = (of("1"), of("2"), of("3"));
+    assert_eq!((first.len(), first[0][1], first[first.len() - 1][1]), (third.len(), "passed", "hit"));
+    let (last, before) = second.split_last().expect("rows");
+    assert!(last[1] == "vignetted" && last[2] == (before.len() + 1).to_string(), "{second:?}");
+    assert!(third.iter().all(|row| row[9] == "1000.0") && first.iter().all(|row| row[9] == "546.1"));
+    // Light is lost at each surface, never won.
+    assert!(first.windows(2).all(|pair| number(pair[1][10]) <= number(pair[0][10])) && number(first[0][10]) < 1.0);
+    assert!(first.windows(2).all(|pair| number(pair[1][11]) > number(pair[0][11])));
 }

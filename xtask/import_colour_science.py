@@ -200,8 +200,59 @@ def unseen():
     }, training.wavelengths, columns)
 
 
+def cones():
+    """What cones see, and the 1931 observer's functions for the primaries of sRGB, with their negative lobes."""
+    for degrees, key in ((2, "Stockman & Sharpe 2 Degree Cone Fundamentals"), (10, "Stockman & Sharpe 10 Degree Cone Fundamentals")):
+        cones = colour.MSDS_CMFS[key]
+        values = np.nan_to_num(cones.values)
+        write(SPECTRA / "cie" / f"cone-fundamentals-{degrees}deg.csv", {
+            "name": f"Cone fundamentals, {degrees} degrees", "kind": "color-matching", "quantity": "relative sensitivity, of energy",
+            "unit": "1", "source": "CIE 170-1:2006; A. Stockman, L. T. Sharpe, Vision Research 40, 1711 (2000)",
+            "licence": LICENCE, "conditions": "long, medium and short cones, each with a peak of 1", "outside": "zero",
+        }, cones.wavelengths, {name: values[:, i] for i, name in enumerate("lms")})
+    xyz = colour.MSDS_CMFS["CIE 1931 2 Degree Standard Observer"]
+    matrix = np.linalg.inv(colour.normalised_primary_matrix(
+        colour.RGB_COLOURSPACES["sRGB"].primaries, np.array([0.3127, 0.3290])))
+    rgb = xyz.values @ matrix.T
+    write(SPECTRA / "cie" / "srgb-1931-2deg.csv", {
+        "name": "CIE 1931 color matching functions for the primaries of sRGB", "kind": "color-matching",
+        "quantity": "color matching function", "unit": "1", "source": f"{CIE15}; IEC 61966-2-1:1999, primaries and white",
+        "licence": LICENCE, "conditions": "2 degrees; negative where a primary has to be added to the light instead", "outside": "zero",
+    }, xyz.wavelengths, {name: np.round(rgb[:, i], 9) for i, name in enumerate("rgb")})
+
+
+def rendering():
+    """Samples by which lamps are judged, and what the package makes of F1 to F12 by them.
+
+    The fourteen test colors are those of the CIE as NIST's CQS simulation holds them (a work of the United States government); the 99
+    color evaluation samples are published with CIE 224:2017 and ANSI/IES TM-30, and are here as the package distributes them, by 5 nm.
+    """
+    colors = colour.quality.datasets.tcs.SDS_TCS_CIE1995
+    first = next(iter(colors.values()))
+    write(SPECTRA / "reflectances" / "cie-test-colors.csv", {
+        "name": "CIE test colors for color rendering", "kind": "reflectance", "quantity": "radiance factor", "unit": "1",
+        "source": "CIE 13.3-1995, after Y. Ohno and W. Davis, NIST CQS simulation 7.4 (2008)", "licence": LICENCE,
+        "conditions": "test color samples 1 to 14", "outside": "constant",
+    }, first.wavelengths, {slug(name): sd.values for name, sd in colors.items()})
+    path = pathlib.Path(colour.quality.cfi2017.ROOT_RESOURCES_CIE2017) / "tcs_cfi2017_5_nm.csv.gz"
+    data = np.genfromtxt(path, delimiter=",")
+    write(SPECTRA / "reflectances" / "color-evaluation-samples.csv", {
+        "name": "Color evaluation samples (TM-30)", "kind": "reflectance", "quantity": "reflectance factor", "unit": "1",
+        "source": "CIE 224:2017, CIE 2017 color fidelity index; ANSI/IES TM-30-18", "licence": LICENCE,
+        "conditions": "99 samples", "outside": "constant",
+    }, data[:, 0], {f"ces{i:02}": data[:, i] for i in range(1, 100)})
+    rows = ["# By colour-science 0.4.7; see xtask/import_colour_science.py.", "lamp,Ra,Rf"]
+    for i in range(1, 13):
+        sd = colour.SDS_ILLUMINANTS[f"FL{i}"]
+        indices = colour.colour_rendering_index(sd), colour.colour_fidelity_index(sd, method="CIE 2017")
+        rows.append(",".join([f"FL{i}", *(f"{v:.6f}" for v in indices)]))
+    pathlib.Path("crates/color/tests/data/rendering.csv").write_text("\n".join(rows) + "\n", encoding="utf-8")
+
+
 if __name__ == "__main__":
     observers()
     illuminants()
     checkers()
     unseen()
+    cones()
+    rendering()

@@ -6,8 +6,10 @@
 //! - [`focus`]: what an image point is sharp for;
 //! - [`fan`]: the rays of a field that pass, as a drawing shows them;
 //! - [`ghosts`]: light that two surfaces reflect, path by path;
+//! - [`glare`]: how much of an extended white field a lens spreads over what should be black;
 //! - [`draw`]: a lens as a figure, with rays in the colors of their wavelengths;
-//! - [`figure`]: spectra, their colors, and glasses as figures.
+//! - [`figure`]: spectra, their colors, and glasses as figures;
+//! - [`picture`]: a rendered picture measured: light, colors, views, cuts, differences.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
@@ -16,8 +18,11 @@ pub mod fan;
 pub mod figure;
 pub mod focus;
 pub mod ghosts;
+pub mod glare;
 pub mod info;
 mod light;
+pub mod picture;
+pub mod terms;
 pub mod trace;
 
 pub use light::Light;

@@ -17,6 +17,7 @@
 mod colors;
 mod csv;
 mod error;
+mod every_factor;
 mod frame;
 mod integral;
 mod noise;

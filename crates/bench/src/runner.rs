@@ -1,5 +1,6 @@
 //! The benchmark: every strategy, every number of samples, every seed.
 
+use crate::every_factor::{EveryFactor, needs_wavelength};
 use crate::frame::{RENDERS, Truth, render};
 use crate::integral::{Draws, Measured, exact, measure};
 use crate::report::{ChannelBias, LeftOut, Measure, NumberKind, Point, Reference, Report, Series};
@@ -54,7 +55,7 @@ pub fn bench(
 ) -> Result<Report, BenchError> {
     let samples = checked(settings)?;
     let scene = spectra_scene::load(path, overrides)?;
-    let mut run = Run::prepare(&scene, path, overrides, settings, samples)?;
+    let mut run = Run::prepare(&scene, path, overrides, settings, samples, tell)?;
     let mut series = Vec::new();
     let (own, other) = match scene.render.numbers {
         NumberFamily::Sobol => (NumberKind::Sobol, NumberKind::Random),
@@ -150,6 +151,33 @@ struct Run<'a> {
     left_out: Vec<LeftOut>,
 }
 
+/// One term of every factor as a strategy, or why the scene needs a wavelength.
+fn every_factor(
+    strategy: &Strategy,
+    scene: &Scene,
+    system: &SystemResponse,
+    settings: &Settings,
+    tell: &mut dyn FnMut(&str),
+) -> Result<Result<Entrant, String>, BenchError> {
+    let every = match EveryFactor::new(system, strategy.terms()?) {
+        Ok(every) => every,
+        Err(reason) => return Ok(Err(reason)),
+    };
+    // Of the integral alone no scene is traced.
+    if settings.render
+        && settings.response.is_none()
+        && let Some(reason) = needs_wavelength(scene, system, settings.threads, settings.isa)?
+    {
+        return Ok(Err(reason));
+    }
+    let (mean, deviation) = every.moments();
+    tell(&format!("{}: by all its choices a sample scatters by {:.4} of the mean", strategy.label(), deviation / mean));
+    let density = Shared(Arc::new(every));
+    let mut scene = scene.clone();
+    scene.sampler = Arc::new(density.clone());
+    Ok(Ok(Entrant { strategy: strategy.clone(), scene, density }))
+}
+
 impl<'a> Run<'a> {
     fn prepare(
         scene: &Scene,
@@ -157,6 +185,7 @@ impl<'a> Run<'a> {
         overrides: &[String],
         settings: &'a Settings,
         samples: Vec<u32>,
+        tell: &mut dyn FnMut(&str),
     ) -> Result<Self, BenchError> {
         scene.source.prepare()?;
         let source = scene.source.spectrum().clone();
@@ -179,6 +208,15 @@ impl<'a> Run<'a> {
         let wanted = if settings.strategies.is_empty() { all() } else { settings.strategies.clone() };
         let (mut entrants, mut left_out) = (Vec::new(), Vec::new());
         for strategy in &wanted {
+            if strategy.is_every_factor() {
+                match every_factor(strategy, scene, &system, settings, tell)? {
+                    Ok(entrant) => entrants.push(entrant),
+                    // Nobody asked for it by name, and most scenes have a lens.
+                    Err(_) if settings.strategies.is_empty() => {}
+                    Err(reason) => left_out.push(LeftOut { strategy: strategy.label(), reason }),
+                }
+                continue;
+            }
             let (strategy, replacement) = resolve(strategy, &said, scene, &system);
             let overrides: Vec<String> = overrides.iter().cloned().chain(replacement).collect();
             let mut scene = match spectra_scene::load(path, &overrides) {

@@ -26,12 +26,36 @@ impl Strategy {
     }
 }
 
+/// What follows one Gaussian term of every factor: no strategy of a scene, which would have to have a wavelength.
+pub(crate) const EVERY_FACTOR: &str = "one-term-of-every-factor";
+
+impl Strategy {
+    /// Whether it follows one term of every factor.
+    pub(crate) fn is_every_factor(&self) -> bool {
+        self.kind == EVERY_FACTOR
+    }
+
+    /// How many terms it has of each factor: 6, or its key `terms`.
+    pub(crate) fn terms(&self) -> Result<usize, BenchError> {
+        let Some(keys) = &self.keys else { return Ok(6) };
+        let terms = keys.strip_prefix("terms").map(str::trim_start).and_then(|rest| rest.strip_prefix(':'));
+        let terms = terms.and_then(|text| text.trim().parse().ok()).filter(|terms| (1..=32).contains(terms));
+        let wrong = || {
+            BenchError::Strategy(format!(
+                "`{}`: its one key is `terms`, 1 to 32: {EVERY_FACTOR}{{terms: 6}}",
+                self.label()
+            ))
+        };
+        terms.ok_or_else(wrong)
+    }
+}
+
 /// Reads strategies, separated by commas: `uniform, truncated-gaussian{center: 550, sigma: 60}`.
 ///
 /// # Errors
 /// [`BenchError::Strategy`]: braces that do not match, a name that is not registered, one that comes twice.
 pub fn parse_list(text: &str) -> Result<Vec<Strategy>, BenchError> {
-    let names = registered();
+    let names: Vec<&str> = registered().into_iter().chain([EVERY_FACTOR]).collect();
     let mut found: Vec<Strategy> = Vec::new();
     for part in split(text)? {
         let (kind, keys) = match part.split_once('{') {
@@ -101,6 +125,8 @@ fn usual() -> Option<&'static str> {
 pub(crate) fn all() -> Vec<Strategy> {
     let mut names = registered();
     names.sort_by_key(|n| Some(*n) != usual());
+    // Last, where nothing in the scene needs a wavelength.
+    names.push(EVERY_FACTOR);
     names.into_iter().map(|kind| Strategy { kind: kind.to_owned(), keys: None }).collect()
 }
 

@@ -21,11 +21,13 @@ mod aces;
 mod adaptation;
 mod cct;
 mod colorimetry;
+mod deficiency;
 mod difference;
 mod dominant;
 mod gamut;
 pub mod matrix;
 mod primaries;
+mod rendering;
 pub mod rgb;
 mod round_trip;
 mod spectral_color;
@@ -34,10 +36,15 @@ pub use aces::{aces_cct, from_aces_cct};
 pub use adaptation::Adaptation;
 pub use cct::{Cct, cct, uv_1960};
 pub use colorimetry::{chromaticity, lab, xyz_of_lab, xyz_of_light, xyz_of_reflectance, xyz_of_transmittance};
+pub use deficiency::Deficiency;
 pub use difference::ciede2000;
 pub use dominant::{Dominant, dominant_wavelength};
 pub use gamut::{Gamut, into_gamut, oklab, xyz_of_oklab};
 pub use primaries::{srgb_light, srgb_primaries};
+pub use rendering::{
+    ColorRendering, Fidelity, cam02_ucs, cie_test_colors, color_evaluation_samples, color_rendering, fidelity,
+    luminous_efficacy, uv_1976,
+};
 pub use rgb::{RgbSpace, Transfer, from_u8, to_u8, xyz_of_xy};
 pub use round_trip::{RoundTrip, RoundTripErrors};
 pub use spectral_color::{spectral_color_encoded, spectral_color_linear, spectral_color_srgb8};

@@ -5,11 +5,12 @@ use crate::film::FilmArguments;
 use crate::frames::Frames;
 use crate::glass::GlassArguments;
 use crate::new::NewArguments;
+use crate::picture::PictureArguments;
 use crate::quantity::parse;
 use crate::spectrum::SpectrumArguments;
 use crate::version;
 use clap::{Args, Parser, Subcommand};
-use spectra_core::params::{FNumber, Length, OrInfinity, Positive, Time, Wavelength};
+use spectra_core::params::{FNumber, Length, OrInfinity, Positive, Ratio, Time, Wavelength};
 use spectra_lens::Criterion;
 use std::path::PathBuf;
 
@@ -64,6 +65,8 @@ pub(crate) enum Command {
     Spectrum(SpectrumArguments),
     /// Inspect glass: refractive index, Abbe diagram, nearest glass, fits.
     Glass(GlassArguments),
+    /// Measure pictures: power and flux, false-color views, cuts, spectra, differences.
+    Picture(PictureArguments),
     /// Create a plugin, a scene or a lens of your own.
     New(NewArguments),
     /// Build a version of the program that includes your plugins.
@@ -95,7 +98,7 @@ pub(crate) struct Completions {
     long_about = "Render a scene to a picture and to linear exposure data.\n\n\
         The scene's `output` selects the files: SCENE.exr (linear exposure, one image channel for each channel of the \
         imager or film, 32-bit float) and SCENE.png or SCENE.tiff (the picture for viewing), named after the scene \
-        file. SCENE.json holds the time, rays, light losses and versions. --output x.png (.tiff, .exr, .dng) writes \
+        file. SCENE.json holds the time, rays, light losses and versions. --output x.png (.tiff, .exr, .dng, .html) writes \
         only that picture. A file appears under its final name only once it is complete.\n\n\
         Ctrl-C stops within a second and writes the picture so far, marked as partial (exit code 130); a second \
         Ctrl-C quits immediately.\n\n\
@@ -111,7 +114,7 @@ pub(crate) struct Run {
     /// A scene file, or the name of a bundled scene (see `spectra list scene`).
     #[arg(value_name = "SCENE")]
     pub scene: PathBuf,
-    /// Output folder, created if it does not exist; or the name of a single picture file: x.png, .tiff, .exr, .dng.
+    /// Output folder, created if it does not exist; or the name of a single picture file: x.png, .tiff, .exr, .dng, .html.
     #[arg(short, long, value_name = "DIR|FILE", default_value = "out")]
     pub output: PathBuf,
     #[command(flatten)]
@@ -594,6 +597,12 @@ fn line(name: &str) -> Result<f64, String> {
     })
 }
 
+/// A part of the light: `4 %`, `0.04`.
+fn part(text: &str) -> Result<f64, String> {
+    let part = parse::<Ratio>(text)?.number();
+    if (0.0..=1.0).contains(&part) { Ok(part) } else { Err("expected a part from 0 to 100 %".to_owned()) }
+}
+
 /// `spectra lens info`.
 #[derive(Debug, Args)]
 #[command(
@@ -603,14 +612,29 @@ fn line(name: &str) -> Result<f64, String> {
         and pupil diameters come from the real marginal ray; the positions of planes and pupils are paraxial; focus \
         shifts, the largest field and the chief rays come from real rays. The T-number includes coatings, mirrors and \
         absorption; a note beside it lists these and what is assumed: coatings typical of the lens's time, unless its \
-        file or --coating says otherwise.",
-    after_long_help = "Example: the same lens in blue light\n  spectra lens info zeiss-biotar-50-f1.4 --line g"
+        file or --coating says otherwise.\n\n\
+        --glare adds the veiling glare index by the integral method of ISO 9358: the light in the middle of a black disk \
+        within an endless white field, over that without the disk. The image of the disk is a tenth as large as the diagonal of \
+        a 36 x 24 mm frame; its middle half is looked at, in the light of the report. Light is reflected by every surface any number \
+        of times, and scattered by black paint on barrel, rims, edges of the glass and blades.",
+    after_long_help = "Examples: the same lens in blue light; its veiling glare with a single layer on each surface\n  \
+        spectra lens info zeiss-biotar-50-f1.4 --line g\n  \
+        spectra lens info zeiss-biotar-50-f1.4 --f-number f/2 --coating single-layer --glare"
 )]
 pub(crate) struct LensInfo {
     #[command(flatten)]
     pub setting: LensSetting,
     #[command(flatten)]
     pub light: OneLight,
+    /// Work out the veiling glare index (some seconds).
+    #[arg(long)]
+    pub glare: bool,
+    /// Diffuse reflectance of the black paint, for --glare; 4 % if not given.
+    #[arg(long, value_name = "PART", value_parser = part, requires = "glare")]
+    pub paint: Option<f64>,
+    /// Diffuse reflectance of the film or sensor, for --glare; none if not given, as ISO 9358 looks at the lens alone.
+    #[arg(long, value_name = "PART", value_parser = part, requires = "glare")]
+    pub film_reflectance: Option<f64>,
     /// Write a JSON object to standard output.
     #[arg(long)]
     pub json: bool,
@@ -644,10 +668,13 @@ pub(crate) struct LensGhosts {
         Input columns: x_mm,y_mm,z_mm (a point on the ray before the first surface, whose vertex is the origin; +z \
         runs toward the image), l,m,n (unit direction) and wavelength_nm, unless one line or wavelength is given for \
         all rays. Columns are found by name, in any order.\n\n\
-        Output, one row per ray: status,surface,x_mm,y_mm,z_mm,l,m,n. A `hit` is where the ray meets the image plane, \
-        in the same coordinates; a ray that ends earlier is `missed`, `vignetted`, `tir` or `absorbed`, with the \
-        number of the surface, counted from 1. Surfaces clip only at stated semi-diameters, unless --f-number sets \
-        the stop; the lens is not refocused unless --focus is given.",
+        Output, one row per ray: status,surface,x_mm,y_mm,z_mm,l,m,n,wavelength_nm,transmittance,optical_path_mm. A \
+        `hit` is where the ray meets the image plane, in the same coordinates; a ray that ends earlier is `missed`, \
+        `vignetted`, `tir` or `absorbed`, with the number of the surface, counted from 1. `transmittance` is what \
+        coatings and glass leave of the light, `optical_path_mm` the index times the length from the start of the ray. \
+        --every-surface has a row `passed` for each surface as well, with the direction behind it, and the number of the \
+        ray first. Surfaces clip only at stated semi-diameters, unless --f-number sets the stop; the lens is not \
+        refocused unless --focus is given.",
     after_long_help = "Example:\n  spectra lens trace zeiss-biotar-50-f1.4 --rays rays.csv --nd -o hits.csv"
 )]
 pub(crate) struct LensTrace {
@@ -661,6 +688,9 @@ pub(crate) struct LensTrace {
     /// Follow the path that these surfaces reflect, counted from 1, in the order of the light: 7,3 is a ghost.
     #[arg(long, value_name = "A,B", value_delimiter = ',')]
     pub path: Vec<usize>,
+    /// Write a row for every surface that a ray passes.
+    #[arg(long)]
+    pub every_surface: bool,
     /// Output file; standard output if not given, or if `-`.
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,

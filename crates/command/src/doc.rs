@@ -418,7 +418,9 @@ fn parameters(out: &mut String, all: &[Parameter]) {
         wrapped(out, &format!("{}: {}", p.key, words.join(", ")), 2, 10);
         let mut said = p.description.clone();
         // The usual example of a quantity shows how it is written; where the unit is told it would only mislead.
-        if let (Some(example), false) = (p.examples.first(), p.kind == "number" || said.contains("if bare")) {
+        if let (Some(example), false) =
+            (p.examples.first(), matches!(p.kind.as_str(), "number" | "ratio") || said.contains("if bare"))
+        {
             let _ = write!(said, " Such as {}.", plain(example));
         }
         for form in &forms[1..] {

@@ -26,6 +26,7 @@ mod list;
 mod memory;
 mod new;
 mod outcome;
+mod picture;
 mod quantity;
 mod run;
 mod schema;
@@ -94,6 +95,7 @@ fn dispatch(arguments: &Arguments, unpack: Unpack, notices: &str, started: Insta
         Some(Command::Bench(bench)) => bench::bench(bench, isa),
         Some(Command::Spectrum(spectrum)) => spectrum::spectrum(&spectrum.command),
         Some(Command::Glass(glass)) => glass::glass(&glass.command),
+        Some(Command::Picture(arguments)) => picture::picture(&arguments.command),
         Some(Command::New(arguments)) => new::new(arguments, unpack),
         Some(Command::Build(arguments)) => build::build(arguments, unpack, started),
         Some(Command::Completions(arguments)) => completions::completions(arguments),

@@ -93,6 +93,25 @@ impl ExposureFrame {
     pub fn values(&self, name: &str) -> Result<&[f32], String> {
         self.channel(name).map(|c| &c.values[..]).ok_or_else(|| format!("the exposure has no channel `{name}`"))
     }
+
+    /// A number of its bits: 64-bit FNV-1a (G. Fowler, L. C. Noll, K.-P. Vo) of the size in pixels, and of each channel's name
+    /// and values, little-endian. Two renders with the same number have the same bits, unless somebody went out of their way.
+    #[must_use]
+    pub fn fingerprint(&self) -> u64 {
+        let mut hash: u64 = 0xcbf2_9ce4_8422_2325;
+        let mut add = |bytes: &[u8]| {
+            for byte in bytes {
+                hash = (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3);
+            }
+        };
+        add(&self.size.width_px.to_le_bytes());
+        add(&self.size.height_px.to_le_bytes());
+        for channel in &self.channels {
+            add(channel.name.as_bytes());
+            channel.values.iter().for_each(|value| add(&value.to_le_bytes()));
+        }
+        hash
+    }
 }
 
 /// A picture for a screen: linear light in sRGB primaries; 1 is the screen's white.

@@ -13,10 +13,10 @@
 //! and a sine of the frequency f is developed 1 + gain (1 - 1 / (1 + (2 pi l f)^2)) times as strong. There is no less than no silver
 //! and no more than all of it: near either end of the curve the change d is held to d / (1 + |d| / room).
 
-use crate::convolve::Convolver;
 use crate::known::Known;
 use crate::raster::Raster;
 use crate::scatter::PointSpread;
+use spectra_numerics::convolve::Convolver;
 use std::f64::consts::PI;
 use std::sync::Arc;
 

@@ -13,7 +13,6 @@
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 pub mod adjacency;
-mod convolve;
 mod cube;
 pub mod curve;
 pub mod deposit;

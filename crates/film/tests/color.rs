@@ -14,7 +14,9 @@ use spectra_film::stock::{Process, Stock};
 use spectra_scene::FileResources;
 use spectra_spectrum::constants::LUMINOUS_EFFICACY_LM_PER_W;
 use spectra_spectrum::table::Table;
-use spectra_spectrum::{BAND, Emission, Kind, Observer, daylight, find_reflectance, illuminant, v_lambda};
+use spectra_spectrum::{
+    BAND, COLOR_CHECKER, Emission, Kind, Observer, daylight, find_reflectance, illuminant, v_lambda,
+};
 
 fn stock(name: &str) -> Stock {
     Stock::load(name, &FileResources::beside("/nowhere".as_ref())).unwrap_or_else(|faults| panic!("{faults}"))
@@ -113,27 +115,6 @@ fn eye(factor: &[f64]) -> [f64; 3] {
     lab(xyz(&|i| factor[i]), xyz(&|_| 1.0))
 }
 
-const PATCHES: [&str; 18] = [
-    "dark-skin",
-    "light-skin",
-    "blue-sky",
-    "foliage",
-    "blue-flower",
-    "bluish-green",
-    "orange",
-    "purplish-blue",
-    "moderate-red",
-    "purple",
-    "yellow-green",
-    "orange-yellow",
-    "blue",
-    "green",
-    "red",
-    "yellow",
-    "magenta",
-    "cyan",
-];
-
 fn patch(name: &str) -> Vec<f64> {
     let paint = find_reflectance(&format!("colorchecker#{name}")).expect("bundled");
     on_band(|w| paint.at(w))
@@ -166,14 +147,15 @@ fn against(film: [f64; 3], eye: [f64; 3]) -> (f64, f64) {
 
 /// Mean of the chroma ratios of the ColorChecker; prints every patch.
 fn mean_chroma(chain: &Chain) -> f64 {
-    let ratios = PATCHES.map(|name| {
+    // Grays have no chroma.
+    let ratios = COLOR_CHECKER[..18].iter().map(|name| {
         let factor = patch(name);
         let (film, eye) = (chain.surface(&factor), eye(&factor));
         let (ratio, turn) = against(film, eye);
         println!("{name:14} {film:6.1?} eye {eye:6.1?}: chroma x {ratio:.2}, hue {turn:+.1}");
         ratio
     });
-    ratios.iter().sum::<f64>() / ratios.len() as f64
+    ratios.sum::<f64>() / 18.0
 }
 
 fn turns(chain: &Chain) -> Vec<(String, f64)> {

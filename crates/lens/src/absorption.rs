@@ -19,6 +19,13 @@ impl Grid {
     pub(crate) fn over(min_nm: f64, max_nm: f64) -> Self {
         Self { start_nm: min_nm, count: ((max_nm - min_nm) / STEP_NM).ceil() as usize + 1 }
     }
+
+    /// The same for one wavelength, nm.
+    pub(crate) fn place(&self, wavelength_nm: f64) -> (u64, f64) {
+        let place = ((wavelength_nm - self.start_nm) * (1.0 / STEP_NM)).clamp(0.0, self.count as f64);
+        let cell = place.floor().min((self.count - 1) as f64);
+        (cell as u64, place - cell)
+    }
 }
 
 /// Cell of a grid, and the part of it that lies before, for each wavelength. Beyond the band its ends hold.

@@ -268,6 +268,18 @@ impl Tracer {
     /// Traces a batch along a path. At the front rays enter and leave in the frame of the lens, at the rear in that of the image
     /// plane.
     pub fn follow(&self, route: &Route, rays: &mut RayBatch, work: &mut Work) {
+        self.follow_each(route, rays, work, |_, _| {});
+    }
+
+    /// The same, and shows the batch behind each element of the path: `seen` gets the element's number, and the rays where they met it, in
+    /// the frame of its [`Element::pose`](crate::Element::pose).
+    pub fn follow_each(
+        &self,
+        route: &Route,
+        rays: &mut RayBatch,
+        work: &mut Work,
+        mut seen: impl FnMut(usize, &RayBatch),
+    ) {
         self.refractive_indices(rays, work);
         let turns = route.legs.iter().any(|leg| leg.turns);
         if (turns || rays.optical_path_mm().is_some() || rays.is_polarized()) && work.before.is_none() {
@@ -281,6 +293,7 @@ impl Tracer {
         let mut alive = rays.len();
         for (step, leg) in route.legs.iter().enumerate() {
             let ended = self.interact(rays, work, leg, step, self.isa);
+            seen(leg.at, rays);
             if ended > 0 {
                 self.count(rays, leg.at as u32 + 1, &mut work.losses);
                 alive -= ended;

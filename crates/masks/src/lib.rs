@@ -67,8 +67,14 @@ pub struct Drawing {
     half_mm: [f64; 2],
     reach_mm: f64,
     paints: Arc<[Paint]>,
+    outlines: Arc<[Vec<[f64; 2]>]>,
     grid: Grid,
 }
+
+/// How far beside an outline it is looked what passes there, as a part of an edge.
+const BESIDE: f64 = 1e-3;
+/// Edges of an outline that are looked at.
+const LOOKS: usize = 16;
 
 impl Drawing {
     /// A page of this width and height, mm, with shapes from the lowest to the topmost.
@@ -83,7 +89,46 @@ impl Drawing {
         };
         let ends = |e: &Edge| far(e.x, e.low).max(far(e.x_at(e.high), e.high));
         let reach_mm = edges.iter().map(ends).fold(0.0, f64::max);
-        Self { half_mm, reach_mm, grid: Grid::new(half_mm, &edges, &paints), paints }
+        let outlines = shapes.iter().flat_map(|shape| shape.outlines.iter().cloned()).collect();
+        Self { half_mm, reach_mm, grid: Grid::new(half_mm, &edges, &paints), paints, outlines }
+    }
+
+    /// What passes as closed rings, mm from the center of the page: outer ones counter-clockwise, holes clockwise. `None` where outlines
+    /// cross each other or the edge of the page, or some of the drawing is gray.
+    #[must_use]
+    pub fn rings(&self) -> Option<Vec<Vec<[f64; 2]>>> {
+        let mut rings = Vec::new();
+        for outline in self.outlines.iter().filter(|o| o.len() > 2) {
+            let area: f64 =
+                outline.iter().zip(outline.iter().cycle().skip(1)).map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum();
+            let mut ring = outline.clone();
+            if area < 0.0 {
+                ring.reverse();
+            }
+            let count = ring.len();
+            let mut seen: Option<[f64; 2]> = None;
+            for i in (0..count).step_by((count / LOOKS).max(1)) {
+                let (a, b) = (ring[i], ring[(i + 1) % count]);
+                let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
+                let middle = [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
+                let at = |side: f64| self.transmittance(middle[0] - side * BESIDE * dy, middle[1] + side * BESIDE * dx);
+                let both = [at(1.0), at(-1.0)];
+                if seen.is_some_and(|seen| seen != both) {
+                    return None;
+                }
+                seen = Some(both);
+            }
+            match seen {
+                Some([1.0, 0.0]) => rings.push(ring),
+                Some([0.0, 1.0]) => {
+                    ring.reverse();
+                    rings.push(ring);
+                }
+                Some([a, b]) if a == b => {}
+                _ => return None,
+            }
+        }
+        Some(rings)
     }
 
     /// What passes at a point, mm from the center of the page; 0 beside it.

@@ -256,3 +256,36 @@ fn few_edges_are_asked() {
         assert!(drawing.grid.memory_bytes() < 100_000_000);
     }
 }
+
+/// A square with a hole: the outer ring counter-clockwise, the hole clockwise, whatever their sense in the file.
+#[test]
+fn rings_have_what_passes_on_their_left() {
+    let square = |half: f64, reversed: bool| {
+        let mut ring = vec![[-half, -half], [half, -half], [half, half], [-half, half]];
+        if reversed {
+            ring.reverse();
+        }
+        ring
+    };
+    let area = |ring: &Vec<[f64; 2]>| {
+        0.5 * ring.iter().zip(ring.iter().cycle().skip(1)).map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum::<f64>()
+    };
+    for (a, b) in [(false, false), (true, false), (true, true)] {
+        let shape = Painted {
+            outlines: vec![square(3.0, a), square(1.0, b)],
+            rule: FillRule::EvenOdd,
+            transmittance: 1.0,
+            opacity: 1.0,
+        };
+        let rings = Drawing::new(10.0, 10.0, &[shape]).rings().expect("plain rings");
+        assert_eq!(rings.iter().map(area).collect::<Vec<_>>(), [36.0, -4.0]);
+    }
+    // Two squares that overlap.
+    let shape = |at: f64| Painted {
+        outlines: vec![square(2.0, false).iter().map(|[x, y]| [x + at, y + at]).collect()],
+        rule: FillRule::NonZero,
+        transmittance: 1.0,
+        opacity: 1.0,
+    };
+    assert_eq!(Drawing::new(10.0, 10.0, &[shape(-0.5), shape(0.5)]).rings(), None);
+}

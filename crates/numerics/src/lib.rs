@@ -2,6 +2,8 @@
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
+pub mod convolve;
+pub mod formula;
 pub mod isa;
 pub mod linear;
 pub mod math;

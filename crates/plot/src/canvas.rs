@@ -113,6 +113,30 @@ impl Canvas {
         });
     }
 
+    /// The drawing with every color (sRGB code values) changed: as another eye has it. Opacities stay.
+    #[must_use]
+    pub fn with_colors(mut self, change: impl Fn([u8; 3]) -> [u8; 3]) -> Self {
+        let color = |color: &mut Color| color.rgb = change(color.rgb);
+        color(&mut self.background);
+        for part in &mut self.parts {
+            match &mut part.kind {
+                PartKind::Fill { paint: Paint::Solid(solid), .. } => color(solid),
+                PartKind::Fill { paint: Paint::Gradient { stops, .. }, .. } => {
+                    stops.iter_mut().for_each(|stop| color(&mut stop.color));
+                }
+                PartKind::Fill { paint: Paint::Picture(picture), .. } => {
+                    picture.rgb.iter_mut().for_each(|rgb| *rgb = change(*rgb));
+                }
+                PartKind::Line { stroke, .. } => color(&mut stroke.color),
+                PartKind::Text { stroke, halo, .. } => {
+                    color(&mut stroke.color);
+                    halo.iter_mut().for_each(|halo| color(&mut halo.color));
+                }
+            }
+        }
+        self
+    }
+
     /// The drawing on pixels, `scale` of them a unit.
     #[must_use]
     pub fn to_pixels(&self, scale: f64) -> Pixels {

@@ -4,7 +4,8 @@
 //! needed, and areas and lines are put on pixels as an SVG viewer does it.
 //!
 //! - [`Canvas`]: lines, polygons, gradients, pictures and text, in units of a CSS pixel, y downward;
-//! - [`Axes`]: a frame with ticks, labels and a grid, from values to places on the canvas.
+//! - [`Axes`]: a frame with ticks, labels and a grid, from values to places on the canvas;
+//! - [`Page`]: figures, pictures, tables and texts as one HTML file.
 //!
 //! ```
 //! use spectra_plot::{Axes, Axis, Canvas, Color, Rect, Stroke};
@@ -23,6 +24,7 @@ mod color;
 pub mod font;
 mod geometry;
 mod labels;
+mod page;
 mod paint;
 mod raster;
 mod stroke;
@@ -36,6 +38,7 @@ pub use canvas::Canvas;
 pub use color::Color;
 pub use geometry::{Point, Rect};
 pub use labels::Labels;
+pub use page::{Cell, Page};
 pub use paint::{Paint, Picture, Stop};
 pub use raster::Pixels;
 pub use stroke::{Cap, Stroke};

@@ -75,6 +75,15 @@ impl Backward {
         &self.pipeline
     }
 
+    /// The mean of the frame, W/m2 in the sum of its channels, by a few thousand rays.
+    pub(crate) fn mean(&self) -> f64 {
+        let pixels = self.pipeline.scene.imager.size().pixels() as u64;
+        let spread = (0..PILOT_RAYS).map(|i| (u64::from(i) * pixels / u64::from(PILOT_RAYS)) as u32);
+        let mut state = ThreadState::new(&self.pipeline, PILOT_RAYS as usize);
+        self.batch(&mut state, spread, 0, 1);
+        state.sum(&self.pipeline) / f64::from(PILOT_RAYS)
+    }
+
     fn launch(&self) -> &dyn Launch {
         self.pipeline.scene.imager.launch().expect("`new` saw it")
     }

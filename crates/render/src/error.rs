@@ -32,6 +32,12 @@ pub enum RenderError {
     /// A medium of the lens has no index in the band.
     #[error("lens: {0}")]
     Lens(String),
+    /// The lens is none whose veiling glare is known.
+    #[error("glare: {0}")]
+    Glare(String),
+    /// What the stop does to light is not known.
+    #[error("diffraction: {0}")]
+    Diffraction(String),
     /// A stage gave a number that no light can have.
     #[error("{0}")]
     NoNumber(NoNumber),
@@ -75,6 +81,12 @@ impl RenderError {
                 None => at("wavelengths", text, "leave `wavelengths` out for the usual strategy"),
             },
             Self::Lens(text) => at("lens", text, "another glass, or another `wavelengths: {band: ...}`"),
+            Self::Glare(text) => at("render.glare", text, "leave `glare` out, or take another lens"),
+            Self::Diffraction(_) => at(
+                "render.diffraction",
+                &text,
+                "`diffraction: false`, or a stop with blades or one that is drawn as an SVG in black and white",
+            ),
             Self::NoNumber(found) => at(
                 found.step.section(),
                 &text,

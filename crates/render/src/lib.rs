@@ -9,6 +9,7 @@
 mod backward;
 mod blame;
 mod control;
+mod diffracted;
 mod done;
 mod error;
 mod estimator;
@@ -25,10 +26,12 @@ mod remarks;
 mod renderer;
 mod response;
 mod sums;
+mod veil;
 mod workers;
 
 pub use blame::{NoNumber, Step};
 pub use control::Control;
+pub use diffracted::Diffracted;
 pub use done::{Done, Units};
 pub use error::RenderError;
 pub use estimator::{Estimator, Scratch, Unit};

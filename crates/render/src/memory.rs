@@ -24,7 +24,10 @@ pub fn memory_needed(scene: &Scene) -> u64 {
         Lights::Auto => scene.source.split().is_some_and(|split| split.pays),
         Lights::Forward => true,
     };
-    let (halves, kinds) = (1 + u64::from(scene.render.noise.is_some()), 1 + u64::from(apart));
+    // So have ghosts; where the scene does not say, whether they matter is not known before they are looked for.
+    let ghosts = scene.render.reflections.order.map_or(apart, |order| order > 0);
+    let halves = 1 + u64::from(scene.render.noise.is_some());
+    let kinds = 1 + u64::from(apart) + u64::from(ghosts);
     let traced = channels * (SUM * halves * kinds + EXPOSURE);
     // Sums are gone by then. Of several films each is developed from a copy of its own channels.
     let picture = if scene.films.is_empty() { SHOWING } else { DEVELOPING + 3 * EXPOSURE * scene.films.len() as u64 };

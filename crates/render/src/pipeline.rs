@@ -58,6 +58,9 @@ impl Pipeline {
         isa: Isa,
         density: Option<Arc<dyn WavelengthDensity>>,
     ) -> Result<Self, RenderError> {
+        if let Some(text) = crate::diffracted::fault(scene) {
+            return Err(RenderError::Diffraction(text));
+        }
         // A meter's channel is none of them: whether a camera meters must not change the picture's samples.
         let recorded = scene.picture_channels();
         let system = system(scene, Share::Whole, &recorded);
@@ -230,6 +233,19 @@ impl ThreadState {
             largest = values.iter().fold(largest, |a, v| a.max(v.abs()));
         }
         largest
+    }
+
+    /// What all rays of the batch contribute to all channels.
+    pub(crate) fn sum(&mut self, pipeline: &Pipeline) -> f64 {
+        let len = self.rays.len();
+        let mut sum = 0.0;
+        for channel in 0..pipeline.responses.channels() {
+            let values = &mut self.values[..len];
+            let (nm, weights) = (self.rays.wavelengths_nm(), self.rays.weights());
+            pipeline.isa.run(pipeline.responses.weigh(channel, nm, weights, values));
+            sum += values.iter().sum::<f64>();
+        }
+        sum
     }
 
     /// Writes each ray's contribution to each channel as integers; false where one does not fit.

@@ -1,6 +1,7 @@
 //! The renderer: units of work, handed to threads, summed exactly.
 
 use crate::backward::Backward;
+use crate::diffracted::{self, Diffracted};
 use crate::done::Units;
 use crate::estimator::Estimator;
 use crate::forward::Forward;
@@ -13,6 +14,7 @@ use crate::pilot::PILOT_RAYS;
 use crate::pipeline::{Pipeline, Share, ThreadState};
 use crate::remarks::remarks;
 use crate::sums::{LARGEST_CONTRIBUTION, LARGEST_EXPECTED};
+use crate::veil::{self, Veil};
 use crate::{Alone, Control, Light, Noise, RenderError, Workers};
 use spectra_core::frame::{ExposureChannel, ExposureFrame};
 use spectra_core::numbers::mix64;
@@ -22,6 +24,9 @@ use spectra_lens::Travel;
 use spectra_scene::{Direction, Lights, NumberFamily, Scene};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, PoisonError};
+
+/// Ghosts matter by themselves where the brightest of them has more than this part of the mean of the frame.
+pub(crate) const MATTERS: f64 = 0.01;
 
 /// What a render gives.
 #[derive(Clone, Debug)]
@@ -42,6 +47,10 @@ pub struct Rendering {
     pub estimators: Vec<&'static str>,
     /// Where the light of the source's lights goes, if ghosts are traced.
     pub ledger: Option<LightLedger>,
+    /// What part of the exposure of the whole frame, all channels together, is veiling glare, where it is asked for.
+    pub glare: Option<f64>,
+    /// What diffraction did to each channel of the picture, where the scene asks for it.
+    pub diffraction: Option<Vec<Diffracted>>,
     /// What a person should know before believing the picture, and what to write.
     pub warnings: Vec<String>,
 }
@@ -84,21 +93,34 @@ impl Renderer {
         density: Option<Arc<dyn WavelengthDensity>>,
         workers: &dyn Workers,
     ) -> Result<Self, RenderError> {
+        Self::without_veil(scene, isa, density, workers)?.with_veil()
+    }
+
+    fn without_veil(
+        scene: Arc<Scene>,
+        isa: Isa,
+        density: Option<Arc<dyn WavelengthDensity>>,
+        workers: &dyn Workers,
+    ) -> Result<Self, RenderError> {
         let direction = scene.render.direction;
         let lights = scene.render.lights;
-        let ghosts = scene.render.reflections.order.unwrap_or(0);
+        let order = scene.render.reflections.order;
         scene.source.prepare().map_err(RenderError::Source)?;
         let pays = scene.source.split().map(|split| split.pays);
         let apart = lights != Lights::Same && pays.is_some_and(|pays| pays || lights == Lights::Forward);
         if !apart {
             let plain = Self::by(scene, isa, density, &[direction], workers)?;
-            return if ghosts == 0 { Ok(plain) } else { plain.with_ghosts() };
+            return if order.unwrap_or(0) == 0 { Ok(plain) } else { plain.with_ghosts(workers) };
         }
         let pipeline = Arc::new(Pipeline::new(&scene, isa, density)?);
         let share = |share| Arc::new(pipeline.of_share(share));
         let of_lights = share(Share::Lights);
         let (rest, lights) = (Backward::new(share(Share::Rest), workers)?, Forward::new(of_lights.clone(), workers)?);
-        let found = if ghosts == 0 { None } else { Ghosts::new(&of_lights)? };
+        let found = match order {
+            Some(0) => None,
+            Some(_) => Ghosts::new(&of_lights, None, workers)?,
+            None => Ghosts::new(&of_lights, Some(MATTERS * rest.mean()), workers)?,
+        };
         let ledger = found.as_ref().map(|found| found.ledger().clone());
         let mut kinds: Vec<Box<dyn Estimator>> = vec![Box::new(rest), Box::new(lights)];
         kinds.extend(found.map(|found| Box::new(found) as Box<dyn Estimator>));
@@ -106,11 +128,11 @@ impl Renderer {
     }
 
     /// With the ghosts of its lights, or of all of the source where none of it is brighter than the rest.
-    fn with_ghosts(mut self) -> Result<Self, RenderError> {
+    fn with_ghosts(mut self, workers: &dyn Workers) -> Result<Self, RenderError> {
         let share = if self.scene.source.split().is_some() { Share::Lights } else { Share::Whole };
         let found = match share {
-            Share::Whole => Ghosts::new(&self.pipeline)?,
-            share => Ghosts::new(&self.pipeline.of_share(share))?,
+            Share::Whole => Ghosts::new(&self.pipeline, None, workers)?,
+            share => Ghosts::new(&self.pipeline.of_share(share), None, workers)?,
         };
         let Some(found) = found else { return Ok(self) };
         self.ledger = Some(found.ledger().clone());
@@ -121,6 +143,34 @@ impl Renderer {
         for half in (1..=halves).rev() {
             let Some(ghosts) = both.next_back() else { break };
             self.estimators.insert(half * kinds, ghosts);
+        }
+        Ok(self)
+    }
+
+    /// With the veiling glare that the scene asks for: of lights from the source, of the rest from the imager.
+    fn with_veil(mut self) -> Result<Self, RenderError> {
+        let Some(matter) = self.scene.render.glare else { return Ok(self) };
+        let ghosts_apart = self.ledger.is_some();
+        let emits = |split: &spectra_core::stage::Split<'_>| split.lights.emit().is_some();
+        let veils = if self.scene.source.split().as_ref().is_some_and(emits) {
+            let share = |share| Arc::new(self.pipeline.of_share(share));
+            vec![
+                Veil::new(share(Share::Lights), true, ghosts_apart, matter)?,
+                Veil::new(share(Share::Rest), false, false, matter)?,
+            ]
+        } else {
+            let from_source = self.scene.render.direction == Direction::Forward;
+            vec![Veil::new(Arc::clone(&self.pipeline), from_source, ghosts_apart, matter)?]
+        };
+        let halves = self.halves() as usize;
+        let many = veils.len();
+        let all = halved(&self.scene, veils.into_iter().map(|veil| Box::new(veil) as Box<dyn Estimator>).collect());
+        // Halves stand behind one another.
+        let kinds = self.estimators.len() / halves;
+        let mut all: Vec<_> = all.into_iter().collect();
+        for half in (1..=halves).rev() {
+            let own = all.split_off((half - 1) * many);
+            self.estimators.splice(half * kinds..half * kinds, own);
         }
         Ok(self)
     }
@@ -170,7 +220,8 @@ impl Renderer {
     /// # Errors
     /// As [`Renderer::new`].
     pub fn check(scene: &Arc<Scene>, isa: Isa) -> Result<(), RenderError> {
-        Pipeline::new(scene, isa, None)?;
+        let pipeline = Pipeline::new(scene, isa, None)?;
+        veil::check(&pipeline)?;
         let sized = |travel| spectra_lens::has_sizes(&scene.lens, travel);
         let is_open = match scene.render.direction {
             Direction::Forward => {
@@ -405,6 +456,8 @@ impl Renderer {
             }
             planes.push(ExposureChannel { name: channel.name.clone(), unit: channel.unit.clone(), values });
         }
+        let spread = || diffracted::spread(scene, &mut planes, recorded, self.pipeline.isa);
+        let diffraction = scene.render.diffraction.then(spread).transpose().map_err(RenderError::Diffraction)?;
         Ok(Rendering {
             exposure: ExposureFrame { size, channels: planes },
             rays: light.rays(),
@@ -414,8 +467,24 @@ impl Renderer {
             partial: light.samples() < u64::from(scene.render.samples) && !self.is_clean(light),
             noise: self.noise(light),
             ledger: self.ledger.clone(),
+            glare: self.glare_of(light, &weights),
+            diffraction,
             warnings: Vec::new(),
         })
+    }
+
+    /// What part of all light is veiling glare; `weights` are those of the parts.
+    fn glare_of(&self, light: &Light, weights: &[Vec<f64>]) -> Option<f64> {
+        self.scene.render.glare?;
+        let channels = self.pipeline.recorded.len();
+        let (mut glare, mut all) = (0.0, 0.0);
+        for ((estimator, part), weights) in self.estimators().zip(&light.parts).zip(weights) {
+            let of_pixel = |p: usize| (0..channels).map(|at| part.sums.get(p * channels + at) as f64).sum::<f64>();
+            let own: f64 = weights.iter().enumerate().map(|(p, weight)| weight * of_pixel(p)).sum();
+            all += own;
+            glare += if estimator.name() == veil::ESTIMATOR { own } else { 0.0 };
+        }
+        (all > 0.0).then_some(glare / all)
     }
 
     /// What a person should know of a rendering before believing it.

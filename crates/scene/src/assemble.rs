@@ -8,7 +8,7 @@ use crate::lens_section::{LensSection, SetLens, held_lens};
 use crate::resources::read_yaml;
 use crate::{
     ConePattern, Direction, Lights, NumberFamily, Output, Reflections, RenderSettings, Scene, doubts, films, lamps,
-    language, output, sight, yaml,
+    landing, language, output, sight, yaml,
 };
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -20,7 +20,7 @@ use spectra_core::registry::{self, Context, StageOf};
 use spectra_core::resources::Resources;
 use spectra_core::spectral::{BAND, Channel, Grid};
 use spectra_core::stage::{Film, Imager, Source, WavelengthSampler};
-use spectra_lens::MATTE_BOX;
+use spectra_lens::{MATTE_BOX, StrayMatter};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
@@ -131,13 +131,59 @@ struct RenderSection {
     /// Light of the source's lights that surfaces of the lens reflect to the imager: ghosts and flare.
     #[serde(default)]
     reflections: ReflectionsSection,
+    /// Veiling glare: light that glass, paint, film or sensor spread over the frame. `true`, or what it is made of; none if absent.
+    glare: Option<GlareSection>,
+    /// Whether the edge of the aperture spreads light: stars around lamps, and pictures that soften as the stop closes. Not if absent.
+    #[serde(default)]
+    diffraction: bool,
+}
+
+/// What `glare` is written as.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(untagged)]
+enum GlareSection {
+    /// With black paint, or none.
+    Switch(bool),
+    /// Of this.
+    Of(GlareParams),
+}
+
+/// What makes veiling glare.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct GlareParams {
+    /// Part of the light that barrel, rims, edges of the glass, blades and the camera's inside scatter, from 0 to 1; 4 % if absent, as of
+    /// flat black paint.
+    #[schemars(extend("minimum" = 0, "maximum" = 1))]
+    paint: Option<Ratio>,
+    /// Part of the light that film or sensor scatter back into the lens, from 0 to 1; none if absent. What they reflect as a mirror does
+    /// is `reflections.imager`.
+    #[schemars(extend("minimum" = 0, "maximum" = 1))]
+    imager: Option<Ratio>,
+}
+
+impl GlareSection {
+    /// What is asked for, beside an imager that reflects a part as a mirror; `None` where nothing is.
+    fn matter(self, imager_mirror: f64) -> Option<StrayMatter> {
+        let usual = StrayMatter { imager_mirror, ..StrayMatter::default() };
+        match self {
+            Self::Switch(false) => None,
+            Self::Switch(true) => Some(usual),
+            Self::Of(own) => Some(StrayMatter {
+                paint: own.paint.map_or(usual.paint, Ratio::number),
+                imager: own.imager.map_or(usual.imager, Ratio::number),
+                ..usual
+            }),
+        }
+    }
 }
 
 /// Which reflections are traced.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct ReflectionsSection {
-    /// How often light is reflected on its way to the imager: 0 (no ghosts, the default) or 2.
+    /// How often light may be reflected on its way to the imager: 0 (no ghosts) or 2. If absent, 2 where lights are so bright that
+    /// the brightest ghost is more than 1 % of the mean of the frame without them, and 0 elsewhere.
     order: Option<Whole<0, 2>>,
     /// Part of the light that film or sensor sends back into the lens as a mirror does, from 0 to 1; assumed 0.043 if absent, as of
     /// gelatin (index 1.52) in air.
@@ -255,7 +301,8 @@ fn all_stages(
     let filters = lens.as_ref().and_then(|p| faults.take(filters::filters_of(p, grid, resources))).flatten();
     // Focus wants to know all others, and a source what the lens sees; faults are told in the order of the sections.
     let (mut of_lens, mut behind) = (Faults::new(), Faults::new());
-    let imager = match earlier.imager.take() {
+    let imager_place = imager.clone().filter(|p| earlier.imager.is_none() && landing::is_wanted(p));
+    let mut imager = match earlier.imager.take() {
         Some(imager) => Some(imager),
         None => imager.and_then(|p| behind.take(registry::build::<dyn Imager>(&p, &context))).map(Arc::from),
     };
@@ -317,6 +364,19 @@ fn all_stages(
         Some(lens) => Some(lens),
         None => held.and_then(|held| of_lens.take(held.focused(focus_light.as_ref()))),
     };
+    if let (Some(place), Some(SetLens { lens, .. }), Some(source), Some(light)) =
+        (imager_place, &lens, &source, &focus_light)
+        && imager.is_some()
+    {
+        // Now that it is known where the light lands, the imager looks there. What it had to say was said before.
+        match landing::middle_mm(&**source, lens, light, &grid) {
+            Ok(landing_mm) => {
+                let context = Context { landing_mm: Some(landing_mm), warnings: None, ..context };
+                imager = behind.take(registry::build::<dyn Imager>(&place, &context)).map(Arc::from);
+            }
+            Err([text, hint]) => behind.push(place.fault("around", text).hint(hint)),
+        }
+    }
     faults.extend(of_lens);
     if let (Some(place), Some(SetLens { lens, .. }), Some(source)) = (lens_place, &lens, &source)
         && lens.elements.first().is_some_and(|e| e.kind == MATTE_BOX && e.vertex_z_mm() <= -source.distance_mm())
@@ -416,17 +476,20 @@ fn render_settings(
     }
     let can_backward = source.radiance().is_some() && imager.launch().is_some();
     let can_forward = source.emit().is_some() && imager.receive().is_some();
+    // Of a source whose lights alone emit, the rest is seen backward.
+    let has_lights = source.split().is_some_and(|split| split.lights.emit().is_some());
+    let lights_forward = can_forward || has_lights && imager.receive().is_some();
     let direction = match s.direction {
         Way::Auto if can_backward => Direction::Backward,
         Way::Auto | Way::Forward => Direction::Forward,
         Way::Backward | Way::Both => Direction::Backward,
     };
     let lights = match s.direction {
-        Way::Auto if can_backward && can_forward => Lights::Auto,
+        Way::Auto if can_backward && lights_forward => Lights::Auto,
         Way::Both => Lights::Forward,
         _ => Lights::Same,
     };
-    if lights == Lights::Forward && can_backward && !can_forward {
+    if lights == Lights::Forward && can_backward && !lights_forward {
         let fault = params.fault("direction", "this source cannot be rendered forward");
         faults.push(fault.hint("write `direction: backward`, or leave it to `auto`"));
     }
@@ -441,6 +504,15 @@ fn render_settings(
     if direction == Direction::Forward && rays > MAX_RAYS {
         let fault = params.fault("samples", format!("this makes {rays} rays, at most {MAX_RAYS} are traced"));
         faults.push(fault.hint("fewer samples or pixels, or write `rays`"));
+    }
+    let imager_mirror = s.reflections.imager.map_or(GELATIN, Ratio::number);
+    let glare = s.glare.and_then(|glare| glare.matter(imager_mirror));
+    if let Some(matter) = glare.filter(|matter| matter.imager + matter.imager_mirror > 1.0) {
+        let fault = params.fault("glare.imager", "the imager sends back more light than comes to it");
+        faults.push(fault.hint(format!(
+            "`glare.imager` and `reflections.imager` ({}) together are at most 1",
+            matter.imager_mirror
+        )));
     }
     faults.into_result(RenderSettings {
         direction,
@@ -460,5 +532,7 @@ fn render_settings(
             imager_stated: s.reflections.imager.is_some(),
             polarized: s.reflections.polarized,
         },
+        glare,
+        diffraction: s.diffraction,
     })
 }

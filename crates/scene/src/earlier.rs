@@ -1,6 +1,7 @@
 //! What a picture shares with one that was assembled before it.
 
 use crate::focus::FocusLight;
+use crate::landing;
 use crate::lens_section::SetLens;
 use crate::sight::Dark;
 use crate::{Scene, SceneFilm};
@@ -62,7 +63,10 @@ impl Earlier {
         if !same("wavelengths") {
             return Self { is_check: self.is_check, ..Self::default() };
         }
-        let (imager, films, lens) = (same("imager"), same("film"), same("lens"));
+        let (films, lens) = (same("film"), same("lens"));
+        // An imager that looks where the light lands stands by all others.
+        let follows = params.stage_at("imager").ok().flatten().is_some_and(|imager| landing::is_wanted(&imager));
+        let imager = same("imager") && (!follows || (same("source") && lens && films));
         // A source that fills the frame has its size from the lens and the imager.
         let fills = params.get("source").is_some_and(fills_the_frame);
         let source = same("source") && (!fills || (imager && lens));

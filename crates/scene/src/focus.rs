@@ -38,6 +38,19 @@ impl FocusLight {
     }
 }
 
+impl FocusLight {
+    /// The wavelength, nm, at a share of the light, 0 to 1; `None` where nothing of it is seen.
+    pub(crate) fn wavelength_nm(&self, share: f64) -> Option<f64> {
+        let total: f64 = self.light.iter().map(|(_, weight)| weight).sum();
+        let mut before = 0.0;
+        let at = self.light.iter().find(|(_, weight)| {
+            before += weight;
+            share * total < before
+        });
+        at.or(self.light.last()).map(|(nm, _)| *nm)
+    }
+}
+
 /// Wavelengths that stand for light seen through a response: each for an equal part of it, in the middle of that part.
 /// A line that holds several parts is named once, with their sum.
 fn representatives(light: &SpectralPower, response: &[f64], count: usize) -> Vec<(f64, f64)> {

@@ -15,6 +15,7 @@ mod films;
 mod filters;
 mod focus;
 mod lamps;
+mod landing;
 mod language;
 mod lens_section;
 mod output;
@@ -31,7 +32,7 @@ pub use focus::{Focus, FocusBy};
 pub use language::{
     Member, Series, SeriesKind, SweptAxis, document, load, load_series, series_of_text, series_of_tree,
 };
-pub use output::{Holds, Output, OutputEntry};
+pub use output::{Holds, Output, OutputEntry, Told};
 pub use resources::FileResources;
 pub use scene::{
     ConePattern, Direction, FilmTime, Lights, NumberFamily, Reflections, RenderSettings, Scene, SceneFilm,

@@ -47,6 +47,32 @@ pub trait Output: Send + Sync {
     /// # Errors
     /// What the place that it goes to has; [`WriteFault::Format`] where the picture has nothing to write.
     fn write(&self, shot: &Shot<'_>, film: usize, out: &mut dyn Out) -> Result<(), WriteFault>;
+
+    /// Whether it also makes one file of a whole sweep or animation, `SCENE-series` with its ending.
+    fn is_of_series(&self) -> bool {
+        false
+    }
+
+    /// Writes that file.
+    ///
+    /// # Errors
+    /// What the place that it goes to has.
+    fn write_series(&self, _: &Told<'_>, _: &mut dyn Out) -> Result<(), WriteFault> {
+        Err(WriteFault::Format(format!("{} makes no file of several pictures", self.kind())))
+    }
+}
+
+/// What there is to say of a sweep or an animation.
+#[derive(Clone, Copy, Debug)]
+pub struct Told<'a> {
+    /// Its name.
+    pub name: &'a str,
+    /// The scene, as its file has it.
+    pub text: &'a str,
+    /// The content of `SCENE-series.json`.
+    pub report: &'a serde_json::Value,
+    /// Contact sheets as PNG files: their names, and their bytes.
+    pub contact_sheets: &'a [(String, Vec<u8>)],
 }
 
 /// What a file holds.

@@ -10,7 +10,7 @@ use spectra_core::frame::{ExposureChannel, ExposureFrame};
 use spectra_core::params::{Fault, Params, Warning};
 use spectra_core::spectral::{Channel, Grid};
 use spectra_core::stage::{Film, Imager, Source, WavelengthSampler};
-use spectra_lens::Lens;
+use spectra_lens::{Lens, StrayMatter};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -48,7 +48,7 @@ pub enum Lights {
 /// Light that surfaces of the lens reflect on its way to the imager.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Reflections {
-    /// Reflections on the way: 0 for none, 2 for pairs; none where the scene does not say.
+    /// Reflections on the way: 0 for none, 2 for pairs; `None` for pairs where lights are bright enough to matter.
     pub order: Option<u32>,
     /// Part of the light that the imager itself reflects as a mirror does.
     pub imager: f64,
@@ -115,13 +115,17 @@ pub struct RenderSettings {
     pub cone: ConePattern,
     /// What reflections are traced.
     pub reflections: Reflections,
+    /// What veiling glare is made of, where it is asked for.
+    pub glare: Option<StrayMatter>,
+    /// Whether the edge of the aperture spreads the light that was summed.
+    pub diffraction: bool,
 }
 
 impl RenderSettings {
     /// Whether the same rays are traced, as far as both want as many.
     #[must_use]
     pub fn traces_as(&self, other: &Self) -> bool {
-        let free = |settings: &Self| Self { batch: 0, samples: 0, rays: 0, ..*settings };
+        let free = |settings: &Self| Self { batch: 0, samples: 0, rays: 0, diffraction: false, ..*settings };
         // Forward, so many rays are a sample.
         let share = |s: &Self| u128::from(s.rays);
         let as_many = (self.direction == Direction::Backward && self.lights == Lights::Same)

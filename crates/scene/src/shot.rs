@@ -1,6 +1,7 @@
 //! A picture that was taken: the light of a scene, and what can be made of it.
 
 use crate::{FilmTime, Scene, SceneFilm};
+use serde_json::Value;
 use spectra_core::Isa;
 use spectra_core::frame::{Beside, DisplayPicture, ExposureChannel, ExposureFrame, Finished, ImageState, Wanted};
 use spectra_core::sink::WriteFault;
@@ -24,6 +25,8 @@ pub struct Shot<'a> {
     pub attributes: &'a [(String, String)],
     /// Instruction set to compute figures with.
     pub isa: Isa,
+    /// What is said of how it came about: the content of `SCENE.json`; null where nobody says.
+    pub report: Value,
     pictures: OnceLock<Result<All, String>>,
 }
 
@@ -37,7 +40,13 @@ impl<'a> Shot<'a> {
         attributes: &'a [(String, String)],
         isa: Isa,
     ) -> Self {
-        Self { scene, exposure, times, attributes, isa, pictures: OnceLock::new() }
+        Self { scene, exposure, times, attributes, isa, report: Value::Null, pictures: OnceLock::new() }
+    }
+
+    /// The same with what is said of how it came about.
+    #[must_use]
+    pub fn told(self, report: Value) -> Self {
+        Self { report, ..self }
     }
 
     /// By what the values of each channel are to be multiplied, to be what the films got.

@@ -14,7 +14,7 @@ use spectra_core::registry::{self, Context};
 use spectra_core::spectral::{BAND, Channel, Line, SpectralPower};
 use spectra_core::stage::{ColorModel, Film};
 use spectra_scene::{FileResources, yaml};
-use spectra_spectrum::{Observer, find_emission_in, find_reflectance, illuminant};
+use spectra_spectrum::{COLOR_CHECKER, Observer, find_emission_in, find_reflectance, illuminant};
 use std::f64::consts::PI;
 use std::fmt::Write as _;
 use std::path::Path;
@@ -185,7 +185,7 @@ impl Cube {
         let observer = Observer::cie_1931_2deg();
         let white = chain.model.spectrum([1.0; 3]);
         let (mut seen, mut lights) = (Vec::new(), Vec::new());
-        for patch in PATCHES {
+        for patch in COLOR_CHECKER {
             let surface =
                 find_reflectance(&format!("colorchecker#{patch}")).map_err(|e| SessionError::Failed(e.to_string()))?;
             let xyz = xyz_of_reflectance(&surface, &daylight, observer).unwrap_or_default();
@@ -234,34 +234,6 @@ impl Cube {
         )
     }
 }
-
-/// The patches of a ColorChecker.
-const PATCHES: [&str; 24] = [
-    "dark-skin",
-    "light-skin",
-    "blue-sky",
-    "foliage",
-    "blue-flower",
-    "bluish-green",
-    "orange",
-    "purplish-blue",
-    "moderate-red",
-    "purple",
-    "yellow-green",
-    "orange-yellow",
-    "blue",
-    "green",
-    "red",
-    "yellow",
-    "magenta",
-    "cyan",
-    "white",
-    "neutral-8",
-    "neutral-6.5",
-    "neutral-5",
-    "neutral-3.5",
-    "black",
-];
 
 impl Chain {
     /// The picture of lights, sRGB encoded, 0 to 1.

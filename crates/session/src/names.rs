@@ -13,8 +13,8 @@ pub struct Names {
 }
 
 /// Endings of pictures, by which a name is known to be that of a file and not of a folder; no scene is written as the last of them.
-const ENDINGS: [&str; 13] =
-    ["png", "tif", "tiff", "exr", "dng", "jpg", "jpeg", "webp", "gif", "bmp", "jp2", "hdr", "tga"];
+const ENDINGS: [&str; 14] =
+    ["png", "tif", "tiff", "exr", "dng", "html", "jpg", "jpeg", "webp", "gif", "bmp", "jp2", "hdr", "tga"];
 
 impl Names {
     /// All files that the scene asks for, by its name.

@@ -59,9 +59,15 @@ impl Report<'_> {
             })),
             "lost": self.lost(),
             "ledger": rendering.ledger.as_ref().map(|ledger| self.ledger(ledger)),
+            "glare": settings.glare.map(|of| json!({
+                "share": rendering.glare, "paint": of.paint, "imager": of.imager, "imager_mirror": of.imager_mirror,
+            })),
+            "diffraction": rendering.diffraction.as_ref().map(|all| all.iter().map(|d| json!({
+                "channel": d.channel, "stays_in_pixel": d.stays, "left_frame": d.left, "stars": d.stars,
+            })).collect::<Vec<_>>()),
             "seed": settings.seed,
             "direction": match &rendering.estimators[..] {
-                all if all.iter().filter(|name| **name != "ghosts").count() > 1 => "both",
+                all if all.iter().filter(|name| !["ghosts", "glare"].contains(name)).count() > 1 => "both",
                 _ => settings.direction.name(),
             },
             "samples_per_pixel": (!forward).then_some(settings.samples),
@@ -73,6 +79,7 @@ impl Report<'_> {
             "width_mm": size.width_mm,
             "height_mm": size.height_mm,
             "channels": channels,
+            "fingerprint": format!("{:016x}", rendering.exposure.fingerprint()),
             "exposure_time_s": self.exposure_time_s(),
             "metered_time_s": self.film_times_s(|time| Some(time.time_s)),
             "source": scene.source.describe(),

@@ -93,13 +93,14 @@ pub(crate) fn picture(job: &Job<'_>, host: &dyn Host) -> Result<(Ended, Vec<Film
     let scene = session.scene();
     let times = scene.film_times(exposure);
     let attributes = header::attributes(scene, exposure, &times, taken.rendering.partial, job.version);
-    let shot = Shot::new(scene, exposure, &times, &attributes, job.isa);
-    files.write(&shot, host.folder(), Some([host.folder(), host.elsewhere()]))?;
     let Taken { rendering, seconds, .. } = &taken;
     let report = Report { job, scene, rendering, times: &times, seconds: *seconds, threads: host.threads() };
     let shown: Vec<String> = names.iter().map(|name| host.folder().shown(name)).collect();
+    let told = report.to_json(&shown[..files.names().len()]);
+    let shot = Shot::new(scene, exposure, &times, &attributes, job.isa).told(told);
+    files.write(&shot, host.folder(), Some([host.folder(), host.elsewhere()]))?;
     if let Some(file) = &report_file {
-        write_report(host.folder(), file, &report.to_json(&shown[..shown.len() - 1]))?;
+        write_report(host.folder(), file, &shot.report)?;
     }
     host.hear(Event::Written(&shown));
     let stopped = rendering.partial && host.is_interrupted();

@@ -7,8 +7,10 @@ use crate::run::{Taken, prepare};
 use crate::{Ended, Event, Host, Job, Place, Report, Session, SessionError, header, words};
 use serde_json::{Map, Value, json};
 use spectra_core::params::{Reading, Warning};
-use spectra_scene::{Member, Scene, Series, SeriesKind, Shot};
+use spectra_core::sink::WriteFault;
+use spectra_scene::{Member, Scene, Series, SeriesKind, Shot, Told};
 use std::collections::HashMap;
+use std::io::Cursor;
 use std::sync::Arc;
 
 /// `SCENE-series.json` is brought up to date in this time, s, so that little of it is lost with the machine.
@@ -200,12 +202,13 @@ impl Work<'_> {
         let times = scene.film_times(&rendering.exposure);
         let mut attributes = header::attributes(&scene, &rendering.exposure, &times, false, job.version);
         attributes.extend(attributes_of(job.series, &picture.member));
-        let shot = Shot::new(&scene, &rendering.exposure, &times, &attributes, job.isa);
-        picture.files.write(&shot, host.folder(), Some([host.folder(), host.elsewhere()]))?;
         let report =
             Report { job, scene: &scene, rendering: &rendering, times: &times, seconds, threads: host.threads() };
+        let told = report.to_json(&shown);
+        let shot = Shot::new(&scene, &rendering.exposure, &times, &attributes, job.isa).told(told);
+        picture.files.write(&shot, host.folder(), Some([host.folder(), host.elsewhere()]))?;
         let mut said = entry(&picture.member);
-        if let Value::Object(figures) = report.to_json(&shown) {
+        if let Value::Object(figures) = shot.report.clone() {
             let common = ["scene", "scene_file", "overrides", "versions", "threads", "isa"];
             said.extend(figures.into_iter().filter(|(key, _)| !common.contains(&key.as_str())));
         }
@@ -282,21 +285,40 @@ impl Work<'_> {
     fn finish(&self, whole: bool) -> Result<Vec<String>, SessionError> {
         let (name, folder) = (self.job.series.name(), self.host.folder());
         let mut shown = Vec::new();
+        let mut sheets: Vec<(String, Vec<u8>)> = Vec::new();
         if let Some(contact) = &self.contact {
             for film in contact.films() {
                 let part = film.as_ref().map_or(String::new(), |film| format!("-{film}"));
                 let file = format!("{name}-contact{part}.png");
                 let title = format!("{name}: contact sheet");
-                let written = folder.file(&file, &mut |out| contact.write(film.as_deref(), &title, out));
-                let unwritten =
-                    |fault| SessionError::Unwritten { file: folder.shown(&file), fault, kept: String::new() };
-                written.map_err(unwritten)?;
+                let mut bytes = Cursor::new(Vec::new());
+                let written = contact.write(film.as_deref(), &title, &mut bytes);
+                let bytes = bytes.into_inner();
+                let written = written.and_then(|()| folder.file(&file, &mut |out| Ok(out.write_all(&bytes)?)));
+                written.map_err(|fault| self.unwritten(&file, fault))?;
+                shown.push(folder.shown(&file));
+                sheets.push((file, bytes));
+            }
+        }
+        let report = self.report(&shown, whole);
+        write_report(folder, &self.report_file, &report)?;
+        shown.push(folder.shown(&self.report_file));
+        // The outputs that the pictures share are those of the last one.
+        if let Some(scene) = &self.other {
+            let text = self.job.series.text();
+            let told = Told { name, text: &text, report: &report, contact_sheets: &sheets };
+            for output in scene.output.iter().filter(|output| output.is_of_series()) {
+                let file = format!("{name}-series{}", output.ending()[1]);
+                let written = folder.file(&file, &mut |out| output.write_series(&told, out));
+                written.map_err(|fault| self.unwritten(&file, fault))?;
                 shown.push(folder.shown(&file));
             }
         }
-        write_report(folder, &self.report_file, &self.report(&shown, whole))?;
-        shown.push(folder.shown(&self.report_file));
         Ok(shown)
+    }
+
+    fn unwritten(&self, file: &str, fault: WriteFault) -> SessionError {
+        SessionError::Unwritten { file: self.host.folder().shown(file), fault, kept: String::new() }
     }
 }
 

@@ -73,6 +73,8 @@ pub(crate) fn expose(scene: &Scene) -> Result<Rendering, SessionError> {
         estimators: Vec::new(),
         warnings: Vec::new(),
         ledger: None,
+        glare: None,
+        diffraction: None,
     })
 }
 

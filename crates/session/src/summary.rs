@@ -53,12 +53,29 @@ pub(crate) fn of(report: &Report<'_>) -> String {
         }
     }
     if let Some(ledger) = rendering.ledger.as_ref().filter(|ledger| ledger.direct_w + ledger.ghosts_w > 0.0) {
+        let why = match scene.render.reflections.order {
+            None => " (bright enough to matter; `render.reflections.order: 0` leaves them out)",
+            Some(_) => "",
+        };
         let share = |part: f64| spectra_render::percent(part / ledger.emitted_w);
         text.push_str(&format!(
-            ", ghosts of {} paths: {} of the light of the lights, {} left after two reflections",
+            ", ghosts of {} paths{why}: {} of the light of the lights, {} left after two reflections",
             ledger.paths.len(),
             share(ledger.ghosts_w),
             share(ledger.not_traced_w)
+        ));
+    }
+    if let Some(glare) = rendering.glare {
+        text.push_str(&format!(", veiling glare is {} of all light on the frame", spectra_render::percent(glare)));
+    }
+    if let Some(all) = rendering.diffraction.as_ref().filter(|all| !all.is_empty()) {
+        let mean = |of: fn(&spectra_render::Diffracted) -> f64| all.iter().map(of).sum::<f64>() / all.len() as f64;
+        let stars = all.iter().map(|d| d.stars).max().unwrap_or(0);
+        text.push_str(&format!(
+            ", diffraction: {} of the light of a point stays in its pixel, {} leaves the frame, stars of {} pixels",
+            spectra_render::percent(mean(|d| d.stays)),
+            spectra_render::percent(mean(|d| d.left.max(0.0))),
+            words::count(stars as u64)
         ));
     }
     if let Some(noise) = rendering.noise {

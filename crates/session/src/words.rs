@@ -55,6 +55,7 @@ pub fn files(names: &[String]) -> String {
         (there, file) if at > 0 && there == first => file.to_owned(),
         _ => name.clone(),
     };
+    let names: Vec<String> = names.iter().map(|name| name.strip_prefix("./").unwrap_or(name).to_owned()).collect();
     names.iter().enumerate().map(short).collect::<Vec<_>>().join(", ")
 }
 
@@ -80,6 +81,7 @@ mod tests {
     fn files_of_a_folder_share_a_line() {
         let names = ["out/a.exr", "out/a.png", "else/a.json"].map(str::to_owned);
         assert_eq!(files(&names), "out/a.exr, a.png, else/a.json");
+        assert_eq!(files(&["./a.exr", "./a.png"].map(str::to_owned)), "a.exr, a.png");
     }
 
     #[test]

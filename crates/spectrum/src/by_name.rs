@@ -14,10 +14,14 @@
 //! | `constant`, `constant:0.18` | the same value everywhere |
 //! | `lines:404.66=1,e=2` | several lines with their powers |
 //! | `mine.yaml` | any spectrum of those in [`crate::document`]: signed Gaussians, histograms, products ... |
-//! | `0.5 * D65 + line:e`, `A * gaussian:550,40` | sums and products, with spaces around their signs |
+//! | `FdC`, `F'eC'` | the three lines of a set, of equal power |
+//! | `function:exp(-((w - 550) / 20)^4)` | a formula of the wavelength w in nm |
+//! | `0.5 * D65 + line:e`, `1 - wratten-25`, `(A + D65) / 2`, `wratten-12^2` | algebra, with spaces around `+ - /`; see [`crate::expression`] |
 //!
 //! A Gaussian, a rectangle or a constant is whatever is wanted: light, filter, surface or detector. Of a product the first
-//! may be that, what stands behind it are filters. Two lights have no product, and only like is added to like.
+//! may be that, what stands behind it are filters. Two lights have no product, and only like is added to like. Like by like is a
+//! function, as is a filter's transmittance from a density: `10^(-0.3 * gaussian:550,20)`. What is computed may be
+//! negative on the way; the whole must not.
 
 use std::cell::Cell;
 use std::fs;
@@ -30,12 +34,13 @@ use spectra_core::spectral::Line;
 use crate::document;
 use crate::emission::Emission;
 use crate::error::SpectrumError;
+use crate::expression::{self, Sign, Tree};
 use crate::filter::{Reflectance, Sensitivity, Transmittance};
-use crate::inline::{self, Factor};
+use crate::inline;
 use crate::meta::{Kind, Meta};
 use crate::names::{candidates, normalized};
 use crate::piece::Piece;
-use crate::shape::Shape;
+use crate::signed::Signed;
 use crate::table::{MAX_BYTES, Table};
 use crate::tabulated::Tabulated;
 
@@ -199,7 +204,7 @@ fn load(name: &str, files: Option<&dyn Resources>, wanted: Kind) -> Result<Found
 #[must_use]
 pub fn meta_in(name: &str, files: &dyn Resources) -> Option<Meta> {
     let name = name.trim();
-    if inline::sum_of_products(name).is_some() || inline::single(name).is_some() {
+    if !matches!(expression::parse(name), Ok(Tree::Name { .. })) || inline::single(name, Kind::Emission).is_some() {
         return None;
     }
     let file = name.rsplit_once('#').map_or(name, |(file, _)| file.trim());
@@ -243,52 +248,52 @@ impl<'a> Loader<'a> {
         }
     }
 
-    /// The spectrum of that name; a shape stays one.
+    /// The spectrum of that name or expression; a shape stays one.
     pub(crate) fn piece(&self, name: &str, wanted: Kind) -> Result<Piece, SpectrumError> {
+        self.part(name, wanted)?.settled()
+    }
+
+    /// The same as a part of a sum, which is judged as a whole.
+    pub(crate) fn part(&self, name: &str, wanted: Kind) -> Result<Piece, SpectrumError> {
         let name = name.trim();
-        match inline::sum_of_products(name) {
-            Some(products) => self.sum(&products, wanted),
-            None => self.single(name, wanted),
+        match expression::parse(name)? {
+            Tree::Name { text, .. } => self.single(&text, wanted),
+            tree => self.value(name, &tree, wanted).map(Piece::Signed),
         }
     }
 
-    fn sum(&self, products: &[Vec<Factor<'_>>], wanted: Kind) -> Result<Piece, SpectrumError> {
-        let mut sum: Option<Piece> = None;
-        for factors in products {
-            let product = self.product(factors, wanted)?;
-            sum = Some(match sum {
-                None => product,
-                Some(before) => before.plus(product)?,
-            });
-        }
-        sum.ok_or_else(|| unknown(""))
-    }
-
-    /// The first that has a name may be what is wanted; those behind it are filters.
-    fn product(&self, factors: &[Factor<'_>], wanted: Kind) -> Result<Piece, SpectrumError> {
-        let (mut number, mut product) = (1.0, None);
-        for factor in factors {
-            product = match (factor, product) {
-                (Factor::Number(n), before) => {
-                    number *= n;
-                    before
-                }
-                (Factor::Named(name), None) => Some(self.single(name, wanted)?),
-                (Factor::Named(name), Some(before)) => {
-                    Some(Piece::times(before, self.single(name, Kind::Transmittance)?)?)
-                }
-            };
-        }
-        match product {
-            Some(product) if number == 1.0 => Ok(product),
-            Some(product) => product.scaled(number),
-            None => Ok(Piece::Bare(Shape::constant(number)?)),
+    /// What an expression comes to. The first that has a name may be what is wanted; what is behind it in a product are filters.
+    fn value(&self, whole: &str, tree: &Tree, wanted: Kind) -> Result<Signed, SpectrumError> {
+        let within = |at: usize, len: usize| {
+            move |cause: SpectrumError| match cause {
+                placed @ SpectrumError::Within { .. } => placed,
+                cause => SpectrumError::Within { text: whole.to_owned(), at, len, cause: Box::new(cause) },
+            }
+        };
+        match tree {
+            Tree::Number(value) => Signed::number(*value),
+            Tree::Name { text, at, len } => self.single(text, wanted).map(Signed::from).map_err(within(*at, *len)),
+            Tree::Negative(part) => self.value(whole, part, wanted)?.scaled(-1.0),
+            Tree::Joined { sign, at, parts } => {
+                let is_filter = matches!(sign, Sign::Times | Sign::Over) && parts[0].has_name();
+                let second = if is_filter { Kind::Transmittance } else { wanted };
+                let left = self.value(whole, &parts[0], wanted)?;
+                let right = self.value(whole, &parts[1], second)?;
+                let joined = match sign {
+                    Sign::Plus => left.plus(&right),
+                    Sign::Minus => left.minus(&right),
+                    Sign::Times => left.times(&right),
+                    Sign::Over => left.over(&right),
+                    Sign::Power => left.to_the_power(&right),
+                };
+                joined.map_err(within(*at, 1))
+            }
         }
     }
 
     fn single(&self, name: &str, wanted: Kind) -> Result<Piece, SpectrumError> {
         self.count(name)?;
-        if let Some(piece) = inline::single(name) {
+        if let Some(piece) = inline::single(name, wanted) {
             return piece;
         }
         let (file, column) = match name.rsplit_once('#') {

@@ -7,7 +7,7 @@ use spectra_core::params::{Fault, Faults};
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SpectrumError {
     /// A parameter outside of its range.
-    #[error("{what} must be {wanted}, not {value}")]
+    #[error("{what} must be {wanted}, not {}", shown(*.value))]
     OutOfRange {
         /// The parameter, with its unit.
         what: &'static str,
@@ -15,6 +15,46 @@ pub enum SpectrumError {
         wanted: &'static str,
         /// What it was.
         value: f64,
+    },
+    /// An expression that cannot be read: a parenthesis that is not closed, a sign without a value.
+    #[error("{message} at character {} of `{text}`", .at + 1)]
+    Expression {
+        /// The expression.
+        text: String,
+        /// The character, from 0.
+        at: usize,
+        /// What is wrong.
+        message: String,
+        /// What to write.
+        hint: String,
+    },
+    /// What is wrong with a part of an expression.
+    #[error("{cause}")]
+    Within {
+        /// The expression.
+        text: String,
+        /// The character of the expression at which the part begins, from 0.
+        at: usize,
+        /// How many characters it has.
+        len: usize,
+        /// What is wrong with it.
+        cause: Box<SpectrumError>,
+    },
+    /// A spectrum that is negative where it cannot be: a difference of two.
+    #[error("the whole is {} at {at_nm} nm, but {kind} cannot be negative", shown(*.value))]
+    Negative {
+        /// What it is.
+        kind: &'static str,
+        /// Where it is smallest, nm.
+        at_nm: f64,
+        /// Its value there.
+        value: f64,
+    },
+    /// A spectrum without a value somewhere: a division by 0, a root of a negative number.
+    #[error("the whole has no finite value at {at_nm} nm")]
+    NotFinite {
+        /// The first wavelength without one, nm.
+        at_nm: f64,
     },
     /// Light that a scale refers to is absent: no luminance, or no power.
     #[error("the spectrum has no {0} to scale")]
@@ -97,7 +137,24 @@ impl SpectrumError {
     /// do about it.
     #[must_use]
     pub fn faults(&self, here: impl FnOnce(String) -> Fault) -> Faults {
+        self.placed(Box::new(here))
+    }
+
+    fn placed(&self, here: Box<dyn FnOnce(String) -> Fault + '_>) -> Faults {
         match self {
+            Self::Expression { text, at, message, hint } => {
+                here(message.clone()).hint(hint.clone()).within(text, *at, 1).into()
+            }
+            Self::Within { text, at, len, cause } => {
+                // What is wrong in another file has its place there.
+                cause.placed(Box::new(|message| here(message).within(text, *at, *len)))
+            }
+            Self::Negative { .. } => here(self.to_string())
+                .hint("subtract less: what is subtracted must nowhere be more than what it is taken from")
+                .into(),
+            Self::NotFinite { .. } => here(self.to_string())
+                .hint("a divisor must not be 0 anywhere from 350 to 830 nm; add a little to it, such as `A / (B + 0.001)`")
+                .into(),
             Self::Document(faults) => faults.clone(),
             Self::Table(error) => error.fault().into(),
             Self::Unknown { name, candidates } => {
@@ -137,13 +194,23 @@ fn hint_for_unknown(name: &str, candidates: &[String]) -> String {
     match candidates {
         [one] => format!("did you mean `{one}`?"),
         [first, others @ ..] => format!("did you mean `{first}`? Similar: {}", others.join(", ")),
-        [] if name.contains(['*', '+']) => {
+        [] if name.contains(['*', '+', '(']) => {
             "a sum or a product has spaces around its signs and a spectrum behind each: `0.5 * D65 + line:e`".to_owned()
         }
         [] if name.contains(['/', '\\']) || name.contains('.') => {
             "a file is looked for beside the one that names it, then among the bundled ones".to_owned()
         }
         [] => "`spectra list spectrum` shows all names; or a file such as `lamp.csv`, or `blackbody:3200`".to_owned(),
+    }
+}
+
+/// A value as a person reads it: as it is, or with a power of ten where that would be a long row of digits.
+fn shown(value: f64) -> String {
+    let size = value.abs();
+    if size == 0.0 || !size.is_finite() || (1e-4..1e15).contains(&size) {
+        value.to_string()
+    } else {
+        format!("{value:e}")
     }
 }
 

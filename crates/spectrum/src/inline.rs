@@ -1,12 +1,14 @@
-//! Spectra written out in one line: `blackbody:5800`, `0.5 * D65 + line:e`.
+//! Spectra written out in one line: `blackbody:5800`, `line:e`, `FdC`.
 
 use spectra_core::params::{Dimension, Reading, Unit};
 use spectra_core::registry::inventory;
+use spectra_core::spectral::Line;
 
 use crate::emission::Emission;
 use crate::error::SpectrumError;
 use crate::illuminants::daylight;
-use crate::lines::named_line;
+use crate::lines::{line_set, named_line};
+use crate::meta::Kind;
 use crate::piece::Piece;
 use crate::shape::Shape;
 
@@ -18,13 +20,32 @@ pub struct Expression {
 }
 
 /// What stands behind the `:` as a spectrum; `None` if it is not understood.
-type Read = fn(&str) -> Option<Result<Piece, SpectrumError>>;
+#[derive(Clone, Copy)]
+enum Read {
+    Plain(fn(&str) -> Option<Result<Piece, SpectrumError>>),
+    /// Told what is wanted where it stands.
+    Wanted(fn(&str, Kind) -> Option<Result<Piece, SpectrumError>>),
+}
 
 impl Expression {
     /// See [`expression!`](crate::expression).
     #[must_use]
-    pub const fn new(example: &'static str, wanted: &'static str, read: Read) -> Self {
-        Self { example, wanted, read }
+    pub const fn new(
+        example: &'static str,
+        wanted: &'static str,
+        read: fn(&str) -> Option<Result<Piece, SpectrumError>>,
+    ) -> Self {
+        Self { example, wanted, read: Read::Plain(read) }
+    }
+
+    /// The same of one that is another spectrum where a light is wanted than where a surface is: a color.
+    #[must_use]
+    pub const fn of_wanted(
+        example: &'static str,
+        wanted: &'static str,
+        read: fn(&str, Kind) -> Option<Result<Piece, SpectrumError>>,
+    ) -> Self {
+        Self { example, wanted, read: Read::Wanted(read) }
     }
 
     fn head(&self) -> &'static str {
@@ -43,6 +64,15 @@ macro_rules! expression {
     };
 }
 
+/// The same of a form that is told what is wanted where it stands, a [`Kind`](crate::Kind): a color is one spectrum as a light and
+/// another as a surface. An example without `:` is a name, and what is read is empty.
+#[macro_export]
+macro_rules! expression_of_wanted {
+    ($example:literal, $wanted:literal, $read:expr $(,)?) => {
+        $crate::inventory::submit! { $crate::Expression::of_wanted($example, $wanted, $read) }
+    };
+}
+
 /// One of each, for messages, sorted.
 pub(crate) fn examples() -> Vec<&'static str> {
     let all = inventory::iter::<Expression>.into_iter().map(|expression| expression.example);
@@ -52,19 +82,32 @@ pub(crate) fn examples() -> Vec<&'static str> {
 }
 
 /// A single spectrum that is written out; `None` if `text` is none.
-pub(crate) fn single(text: &str) -> Option<Result<Piece, SpectrumError>> {
+pub(crate) fn single(text: &str, wanted: Kind) -> Option<Result<Piece, SpectrumError>> {
     if text.eq_ignore_ascii_case("constant") {
         return Some(Shape::constant(1.0).map(Piece::Bare));
     }
     if let Some(kelvin) = color_temperature(text) {
         return Some(of_color_temperature(kelvin).map(Piece::from));
     }
-    let (head, arguments) = text.split_once(':')?;
-    let head = head.trim();
+    if let Some(lines) = line_set(text) {
+        let lines = lines.map(|line| Line { wavelength_nm: line.nominal_nm, power: 1.0 });
+        return Some(Emission::new(None, lines.to_vec()).map(Piece::from));
+    }
+    let (head, arguments) = match text.split_once(':') {
+        Some((head, arguments)) => (head.trim(), Some(arguments.trim())),
+        None => (text, None),
+    };
     let mut all = inventory::iter::<Expression>.into_iter();
-    let found = all.find(|expression| expression.head().eq_ignore_ascii_case(head))?;
+    let found = all.find(|expression| {
+        expression.example.contains(':') == arguments.is_some() && expression.head().eq_ignore_ascii_case(head)
+    })?;
     let fault = || SpectrumError::Inline { text: text.chars().take(80).collect(), wanted: found.wanted };
-    Some((found.read)(arguments.trim()).unwrap_or_else(|| Err(fault())))
+    let arguments = arguments.unwrap_or("");
+    let read = match found.read {
+        Read::Plain(read) => read(arguments),
+        Read::Wanted(read) => read(arguments, wanted),
+    };
+    Some(read.unwrap_or_else(|| Err(fault())))
 }
 
 /// A line by its letter, or a number of nm.
@@ -109,23 +152,4 @@ pub(crate) fn number(text: &str) -> Option<f64> {
 
 pub(crate) fn numbers(text: &str) -> Option<Vec<f64>> {
     text.split(',').map(number).collect()
-}
-
-/// A factor of a product: a number, or what has a name.
-pub(crate) enum Factor<'a> {
-    Number(f64),
-    Named(&'a str),
-}
-
-/// The products of a sum, each by its factors; `None` where neither ` + ` nor ` * ` is written, with their spaces.
-pub(crate) fn sum_of_products(text: &str) -> Option<Vec<Vec<Factor<'_>>>> {
-    if !(text.contains(" + ") || text.contains(" * ")) {
-        return None;
-    }
-    Some(text.split(" + ").map(|product| product.split(" * ").map(as_factor).collect()).collect())
-}
-
-fn as_factor(text: &str) -> Factor<'_> {
-    let text = text.trim();
-    number(text).map_or(Factor::Named(text), Factor::Number)
 }

@@ -6,6 +6,7 @@
 use std::sync::Arc;
 
 use spectra_core::spectral::{BAND, Grid};
+use spectra_numerics::formula::Formula;
 
 use crate::cell;
 use crate::error::{SpectrumError, check};
@@ -22,15 +23,46 @@ pub struct Shape(Node);
 #[derive(Clone, Debug, PartialEq)]
 enum Node {
     Constant(f64),
-    Rectangle { from_nm: f64, to_nm: f64 },
-    Gaussian { center_nm: f64, sigma_nm: f64 },
-    Mixture { terms: Arc<GaussianMixture>, at_least_zero: bool },
-    Blackbody { temperature_k: f64 },
+    Rectangle {
+        from_nm: f64,
+        to_nm: f64,
+    },
+    Gaussian {
+        center_nm: f64,
+        sigma_nm: f64,
+    },
+    Mixture {
+        terms: Arc<GaussianMixture>,
+        at_least_zero: bool,
+    },
+    Blackbody {
+        temperature_k: f64,
+    },
     Tabulated(Tabulated),
     Histogram(Arc<Histogram>),
     Scaled(f64, Arc<Shape>),
     Sum(Arc<[Shape; 2]>),
     Product(Arc<[Shape; 2]>),
+    Quotient(Arc<[Shape; 2]>),
+    Power(Arc<[Shape; 2]>),
+    /// 0 where the other is negative.
+    Positive(Arc<Shape>),
+    /// Whether points 1 nm apart would miss some of it.
+    Function {
+        formula: Arc<Formula>,
+        is_fine: bool,
+    },
+}
+
+/// The values of a shape on 350-830 nm.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Survey {
+    /// Smallest value, and where it is, nm.
+    pub low: (f64, f64),
+    /// Largest value, and where it is, nm.
+    pub high: (f64, f64),
+    /// The first wavelength, nm, at which it has no finite value.
+    pub not_finite_nm: Option<f64>,
 }
 
 #[derive(Debug, PartialEq)]
@@ -194,6 +226,75 @@ impl Shape {
         Self(Node::Product(Arc::new([self.clone(), other.clone()])))
     }
 
+    /// This divided by the other, wavelength by wavelength; not finite where that is 0.
+    #[must_use]
+    pub fn over(&self, other: &Self) -> Self {
+        Self(Node::Quotient(Arc::new([self.clone(), other.clone()])))
+    }
+
+    /// This to the power of the other, wavelength by wavelength; not a number where it has none.
+    #[must_use]
+    pub fn to_the_power(&self, exponent: &Self) -> Self {
+        Self(Node::Power(Arc::new([self.clone(), exponent.clone()])))
+    }
+
+    /// The same, and 0 where it is negative.
+    #[must_use]
+    pub fn at_least_zero(&self) -> Self {
+        Self(Node::Positive(Arc::new(self.clone())))
+    }
+
+    /// A formula of the wavelength in nm.
+    #[must_use]
+    pub fn function(formula: Formula) -> Self {
+        // A formula does not say how fine it is: whether sums by 1 nm and by eighths of that are the same.
+        let formula = Arc::new(formula);
+        let shape = Self(Node::Function { formula: Arc::clone(&formula), is_fine: true });
+        let (mut largest, mut apart) = (0.0_f64, 0.0_f64);
+        for (w, mean) in BAND.wavelengths_nm().zip(shape.on_grid(&BAND)) {
+            largest = largest.max(mean.abs());
+            apart = apart.max((mean - formula.at(w)).abs());
+        }
+        // What the curvature of a Gaussian of two steps makes of it, 1 / (24 * 2^2), as in `is_finer_than`.
+        let is_fine = apart * 96.0 > largest;
+        Self(Node::Function { formula, is_fine })
+    }
+
+    /// The value of what is the same everywhere; `None` of anything else.
+    #[must_use]
+    pub(crate) fn as_constant(&self) -> Option<f64> {
+        match &self.0 {
+            Node::Constant(value) => Some(*value),
+            Node::Scaled(factor, shape) => Some(factor * shape.as_constant()?),
+            _ => None,
+        }
+    }
+
+    /// The sum of the sizes of what is added up at `wavelength_nm`: how large the roundings of a difference are.
+    #[must_use]
+    pub(crate) fn magnitude(&self, wavelength_nm: f64) -> f64 {
+        match &self.0 {
+            Node::Scaled(factor, shape) => factor.abs() * shape.magnitude(wavelength_nm),
+            Node::Sum(parts) => parts[0].magnitude(wavelength_nm) + parts[1].magnitude(wavelength_nm),
+            Node::Product(parts) => parts[0].magnitude(wavelength_nm) * parts[1].magnitude(wavelength_nm),
+            Node::Quotient(parts) => parts[0].magnitude(wavelength_nm) / parts[1].at(wavelength_nm).abs(),
+            _ => self.at(wavelength_nm).abs(),
+        }
+    }
+
+    /// Whether a fit by signed Gaussians is a part of it.
+    #[must_use]
+    pub(crate) fn has_mixture(&self) -> bool {
+        match &self.0 {
+            Node::Mixture { .. } => true,
+            Node::Scaled(_, shape) | Node::Positive(shape) => shape.has_mixture(),
+            Node::Sum(parts) | Node::Product(parts) | Node::Quotient(parts) | Node::Power(parts) => {
+                parts.iter().any(Self::has_mixture)
+            }
+            _ => false,
+        }
+    }
+
     /// Value at `wavelength_nm`; 0 for NaN.
     #[must_use]
     pub fn at(&self, wavelength_nm: f64) -> f64 {
@@ -221,6 +322,14 @@ impl Shape {
             Node::Scaled(factor, shape) => factor * shape.at(wavelength_nm),
             Node::Sum(parts) => parts[0].at(wavelength_nm) + parts[1].at(wavelength_nm),
             Node::Product(parts) => parts[0].at(wavelength_nm) * parts[1].at(wavelength_nm),
+            Node::Quotient(parts) => parts[0].at(wavelength_nm) / parts[1].at(wavelength_nm),
+            Node::Power(parts) => libm::pow(parts[0].at(wavelength_nm), parts[1].at(wavelength_nm)),
+            // NaN stays what it is.
+            Node::Positive(shape) => {
+                let value = shape.at(wavelength_nm);
+                if value < 0.0 { 0.0 } else { value }
+            }
+            Node::Function { formula, .. } => formula.at(wavelength_nm),
         }
     }
 
@@ -248,13 +357,63 @@ impl Shape {
         cell::integral(|w| self.at(w), &breaks) / (high_nm - low_nm)
     }
 
+    /// Integral from `low_nm` to `high_nm`, by a quadrature between all the places at which a part of it is not smooth, every
+    /// `panel_nm` at least.
+    #[must_use]
+    pub fn integral(&self, low_nm: f64, high_nm: f64, panel_nm: f64) -> f64 {
+        self.weighted(low_nm, high_nm, panel_nm, |_| 1.0)
+    }
+
+    /// The same times a smooth weight at each wavelength.
+    pub(crate) fn weighted(&self, low_nm: f64, high_nm: f64, panel_nm: f64, weight: impl Fn(f64) -> f64) -> f64 {
+        let panels = ((high_nm - low_nm) / panel_nm).clamp(1.0, 1e6).ceil() as u32;
+        let mut breaks: Vec<f64> =
+            (0..=panels).map(|i| low_nm + (high_nm - low_nm) * f64::from(i) / f64::from(panels)).collect();
+        self.breaks(low_nm, high_nm, &mut breaks);
+        breaks.retain(|b| (low_nm..=high_nm).contains(b));
+        breaks.sort_by(f64::total_cmp);
+        cell::integral(|w| weight(w) * self.at(w), &breaks)
+    }
+
+    /// How far the points of its tables lie apart, nm, the widest of them; 0 of what is known at every wavelength.
+    #[must_use]
+    pub fn spacing_nm(&self) -> f64 {
+        match &self.0 {
+            Node::Tabulated(table) => table.finest_step_nm(),
+            Node::Scaled(_, shape) | Node::Positive(shape) => shape.spacing_nm(),
+            Node::Sum(parts) | Node::Product(parts) | Node::Quotient(parts) | Node::Power(parts) => {
+                parts.iter().map(Self::spacing_nm).fold(0.0, f64::max)
+            }
+            _ => 0.0,
+        }
+    }
+
     /// Smallest and largest value on 350-830 nm: at whole nanometres, at knots, centers and edges.
     pub(crate) fn extremes(&self) -> (f64, f64) {
+        let Survey { low, high, .. } = self.survey();
+        (low.0, high.0)
+    }
+
+    /// The same, with the places.
+    pub(crate) fn survey(&self) -> Survey {
         let (low_nm, high_nm) = (BAND.start_nm, BAND.end_nm());
         let mut places: Vec<f64> = BAND.wavelengths_nm().collect();
         self.breaks(low_nm, high_nm, &mut places);
-        let values = places.into_iter().filter(|w| BAND.contains(*w)).map(|w| self.at(w));
-        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)))
+        let (low, high) = ((f64::INFINITY, low_nm), (f64::NEG_INFINITY, low_nm));
+        let mut survey = Survey { low, high, not_finite_nm: None };
+        for w in places.into_iter().filter(|w| BAND.contains(*w)) {
+            let v = self.at(w);
+            if v < survey.low.0 {
+                survey.low = (v, w);
+            }
+            if v > survey.high.0 {
+                survey.high = (v, w);
+            }
+            if !v.is_finite() && survey.not_finite_nm.is_none_or(|before| w < before) {
+                survey.not_finite_nm = Some(w);
+            }
+        }
+        survey
     }
 
     /// Whether points `step_nm` apart would miss or double some of it.
@@ -265,8 +424,12 @@ impl Shape {
             Node::Gaussian { sigma_nm, .. } => *sigma_nm < 2.0 * step_nm,
             Node::Mixture { terms, .. } => terms.terms().iter().any(|t| t.sigma_nm() < 2.0 * step_nm),
             Node::Tabulated(table) => table.finest_step_nm() < step_nm * (1.0 - 1e-9),
-            Node::Scaled(_, shape) => shape.is_finer_than(step_nm),
-            Node::Sum(parts) | Node::Product(parts) => parts.iter().any(|p| p.is_finer_than(step_nm)),
+            Node::Scaled(_, shape) | Node::Positive(shape) => shape.is_finer_than(step_nm),
+            Node::Sum(parts) | Node::Product(parts) | Node::Quotient(parts) | Node::Power(parts) => {
+                parts.iter().any(|p| p.is_finer_than(step_nm))
+            }
+            // Judged by 1 nm.
+            Node::Function { is_fine, .. } => *is_fine || step_nm > BAND.step_nm,
         }
     }
 
@@ -286,8 +449,16 @@ impl Shape {
                 let to = edges.partition_point(|e| *e <= high_nm);
                 out.extend(&edges[from..to.max(from)]);
             }
-            Node::Scaled(_, shape) => shape.breaks(low_nm, high_nm, out),
-            Node::Sum(parts) | Node::Product(parts) => parts.iter().for_each(|p| p.breaks(low_nm, high_nm, out)),
+            Node::Scaled(_, shape) | Node::Positive(shape) => shape.breaks(low_nm, high_nm, out),
+            Node::Sum(parts) | Node::Product(parts) | Node::Quotient(parts) | Node::Power(parts) => {
+                parts.iter().for_each(|p| p.breaks(low_nm, high_nm, out));
+            }
+            // Nothing says where: by eighths of a nanometer, or what the span is worth.
+            Node::Function { .. } => {
+                const MOST: f64 = 4096.0;
+                let count = (8.0 * (high_nm - low_nm)).clamp(1.0, MOST);
+                out.extend((1..count as u32).map(|i| low_nm + (high_nm - low_nm) * f64::from(i) / count));
+            }
         }
     }
 }

@@ -106,9 +106,9 @@ fn sums_and_products_fit_in_a_line() {
     for (name, want) in [
         ("D65 * A", "emission and emission have no product"),
         ("D65 + constant:0.5 * colorchecker#red", "emission and reflectance have no sum"),
-        ("-1 * D65", "factor must be 0 or more"),
+        ("-1 * D65", "emission cannot be negative"),
         ("D65 * no-such", "no-such"),
-        ("D65 + ", "no spectrum is called"),
+        ("D65 + ", "ends where a spectrum is expected"),
         ("gaussian:550", "gaussian:550,20"),
         ("lines:404.66=x", "lines:404.66=1"),
         ("lines:404.66=-1", "0 or more"),

@@ -28,7 +28,7 @@ enum Kind {
 
 /// Something to turn.
 #[derive(Clone, Debug)]
-pub(crate) struct Control {
+pub struct Control {
     path: String,
     kind: Kind,
     /// As the scene has it; null where it is left out.
@@ -110,7 +110,8 @@ pub(crate) fn gather() {
 }
 
 /// The controls of a scene, as it is written.
-pub(crate) fn of_scene(root: &Node) -> Vec<Control> {
+#[must_use]
+pub fn of_scene(root: &Node) -> Vec<Control> {
     let mut all = Vec::new();
     let Declared { stages, shared, of_file } = &*DECLARED;
     let mut section = |prefix: &str, stage: &str| {
@@ -278,12 +279,15 @@ fn number(node: &Node) -> Option<(&'static str, f64, String)> {
 }
 
 impl Control {
-    pub(crate) fn path(&self) -> &str {
+    /// Where its value stands in the scene.
+    #[must_use]
+    pub fn path(&self) -> &str {
         &self.path
     }
 
     /// As the page gets it.
-    pub(crate) fn to_json(&self) -> Value {
+    #[must_use]
+    pub fn to_json(&self) -> Value {
         let kind = match &self.kind {
             Kind::Number { before, unit, least, most, whole } => {
                 json!({"is": "number", "before": before, "unit": unit, "least": least, "most": most, "whole": whole})
@@ -299,7 +303,7 @@ impl Control {
     ///
     /// # Errors
     /// Why it is none of this control's.
-    pub(crate) fn text(&self, value: &Value) -> Result<String, String> {
+    pub fn text(&self, value: &Value) -> Result<String, String> {
         let bounded = |value: &Value, least: Option<f64>, most: Option<f64>| match value.as_f64() {
             Some(number) if !number.is_finite() => Err("no finite number".to_owned()),
             Some(number) if least.is_some_and(|least| number < least) || most.is_some_and(|most| number > most) => {

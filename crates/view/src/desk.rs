@@ -4,11 +4,12 @@
 //! once, by the last of them; the work at hand is stopped for them. A desk that nobody asks anything of is cleared.
 
 use crate::controls::{self, Control};
+use crate::parts::{fault_json, packed, said, spectra};
 use crate::{save, section};
 use serde_json::{Value, json};
 use spectra_core::Isa;
 use spectra_core::frame::{DisplayPicture, ExposureFrame};
-use spectra_core::params::{Fault, Node};
+use spectra_core::params::Node;
 use spectra_scene::{NumberFamily, Shot};
 use spectra_session::{Control as Stop, Session, SessionError, Threads};
 use std::path::{Path, PathBuf};
@@ -333,30 +334,10 @@ impl Desk {
         Some(made)
     }
 
-    /// The spectrum of the scene's light, and what each layer of its film makes of it: its largest value 1, over the wavelengths.
+    /// The light and the layers of the scene as it is set now.
     pub(crate) fn spectra(&self) -> Option<Value> {
         let scene = held(&self.state).scene.clone()?;
-        let unit = |values: &[f64]| -> Vec<f64> {
-            let most = values.iter().copied().fold(0.0, f64::max);
-            values.iter().map(|v| if most > 0.0 { v / most } else { 0.0 }).collect()
-        };
-        let light = scene.source.spectrum();
-        let strongest = light.lines.iter().map(|line| line.power).fold(0.0, f64::max);
-        let lines: Vec<[f64; 2]> = light
-            .lines
-            .iter()
-            .map(|line| [line.wavelength_nm, line.power / strongest.max(f64::MIN_POSITIVE)])
-            .collect();
-        let layers: Vec<Value> = scene
-            .picture_channels()
-            .into_iter()
-            .filter_map(|at| scene.channels.get(at))
-            .map(|channel| json!({"name": channel.name, "nm": scene.grid.wavelengths_nm().collect::<Vec<_>>(), "values": unit(&channel.response)}))
-            .collect();
-        Some(json!({
-            "light": {"nm": light.grid.wavelengths_nm().collect::<Vec<_>>(), "values": unit(&light.continuum), "lines": lines},
-            "layers": layers,
-        }))
+        Some(spectra(&scene))
     }
 
     /// Writes what the page set into the scene's file; says how many values.
@@ -764,32 +745,6 @@ fn is_prism(lens: &spectra_lens::Lens) -> bool {
 fn empty() -> ExposureFrame {
     let size = spectra_core::frame::FrameSize { width_px: 0, height_px: 0, width_mm: 0.0, height_mm: 0.0 };
     ExposureFrame { size, channels: Vec::new() }
-}
-
-/// A head and the numbers of a picture, these from a place that is a multiple of four.
-fn packed(head: &Value, numbers: &[f32]) -> Vec<u8> {
-    let mut head = head.to_string();
-    head.push_str(&" ".repeat((4 - head.len() % 4) % 4));
-    let mut bytes = Vec::with_capacity(4 + head.len() + 4 * numbers.len());
-    bytes.extend((head.len() as u32).to_le_bytes());
-    bytes.extend(head.as_bytes());
-    bytes.extend(numbers.iter().flat_map(|v| v.to_le_bytes()));
-    bytes
-}
-
-/// A fault as the page shows it, with the control that it is about.
-fn said(error: &SessionError, path: &str) -> Value {
-    match error {
-        SessionError::Faults(faults) => {
-            let all: Vec<Value> = faults.iter().map(fault_json).collect();
-            json!({"path": path, "faults": all})
-        }
-        other => json!({"path": path, "faults": [{"message": other.to_string()}]}),
-    }
-}
-
-fn fault_json(fault: &Fault) -> Value {
-    json!({"message": fault.message, "place": fault.place_text(), "hint": fault.hint})
 }
 
 /// Whether a scene can be viewed at all: faults are told at the start, and not by a page.

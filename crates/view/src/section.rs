@@ -12,8 +12,11 @@ const PARTS: [f64; 3] = [0.0, 0.6, 0.95];
 /// Wavelengths, nm.
 const COLORS_NM: [f64; 3] = [450.0, 550.0, 640.0];
 
-/// The drawing as SVG; `Err` where there is none, with the reason.
-pub(crate) fn svg(scene: &Scene, is_dark: bool) -> Result<String, String> {
+/// The drawing as SVG.
+///
+/// # Errors
+/// Why there is none.
+pub fn svg(scene: &Scene, is_dark: bool) -> Result<String, String> {
     let lens: &Lens = &scene.lens;
     let object_mm = scene.focus.distance_mm.unwrap_or(f64::INFINITY);
     let said = |error: spectra_glass::DispersionError| error.to_string();

@@ -5,6 +5,7 @@
 mod basis;
 mod fraunhofer;
 mod gaussians;
+mod named;
 mod primaries;
 mod smooth;
 

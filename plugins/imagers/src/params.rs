@@ -37,10 +37,14 @@ pub struct Frame {
     /// make them square.
     pub(crate) resolution: Resolution,
     /// Where the center of the frame lies in the image plane, along x and y, mm if bare; +y is up. The image is
-    /// upside down: a frame moved up shows more of what is below. On the axis if left out.
+    /// upside down: a frame moved up shows more of what is below. It counts from what `around` names; not shifted if left out.
     #[serde(default)]
     #[schemars(inner(range(min = -1e5, max = 1e5)))]
     pub(crate) shift: Option<[Length; 2]>,
+    /// Where `shift` counts from: the `axis` (the default), or where the light of the `source` lands, for a spot of a point beside
+    /// the axis or the spectrum of a prism.
+    #[serde(default)]
+    pub(crate) around: Around,
     /// Turns of the frame about its own center, about x and then about the y that turned along, degrees if
     /// bare, right-handed: a positive one about x moves the upper edge away from the lens. Within 80 degrees;
     /// across the axis if left out.
@@ -58,6 +62,18 @@ pub struct Frame {
     /// out.
     #[serde(default)]
     pub(crate) low_pass: Vec<LowPassParams>,
+}
+
+/// Where the center of a frame lies that is not shifted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+#[schemars(inline)]
+pub(crate) enum Around {
+    /// On the axis.
+    #[default]
+    Axis,
+    /// Where the light of the source lands.
+    Source,
 }
 
 /// `resolution` as written in a scene.
@@ -147,7 +163,7 @@ impl Frame {
         if let Some(size) = &size {
             self.warn_unless_square(size, params, context);
         }
-        let standing = faults.take(self.standing(params, size));
+        let standing = faults.take(self.standing(params, size, context));
         let plates = faults.take(self.plates(params, context));
         match (size, standing, plates) {
             (Some(size), Some(standing), Some(plates)) => {
@@ -274,9 +290,15 @@ impl Frame {
     }
 
     /// How it stands; `size` as far as it is known.
-    fn standing(&self, params: &Params, size: Option<FrameSize>) -> Result<Standing, Faults> {
+    fn standing(&self, params: &Params, size: Option<FrameSize>, context: &Context<'_>) -> Result<Standing, Faults> {
         let mut faults = Faults::new();
+        // The scene builds the imager again once it knows where the light lands.
+        let from_mm = match self.around {
+            Around::Axis => [0.0; 2],
+            Around::Source => context.landing_mm.unwrap_or([0.0; 2]),
+        };
         let shift_mm = self.shift.map_or([0.0; 2], |shift| shift.map(Length::mm));
+        let shift_mm = [from_mm[0] + shift_mm[0], from_mm[1] + shift_mm[1]];
         let tilt_rad = self.tilt.map_or([0.0; 2], |tilt| tilt.map(Angle::rad));
         let bend = self.curvature.as_ref().and_then(|c| faults.take(bend(c, params, size))).unwrap_or(Bend::Flat);
         faults.into_result(Standing::new(shift_mm, tilt_rad, bend))

@@ -73,9 +73,7 @@ impl SpectralPlane {
         let (mut channels, mut xyz) = (Vec::new(), Vec::new());
         for band in 0..bands {
             let low = first_nm + width_nm * band as f64;
-            let response: Vec<f64> = (0..grid.count)
-                .map(|i| share(grid.start_nm + grid.step_nm * i as f64, low, width_nm, grid.step_nm))
-                .collect();
+            let response: Vec<f64> = (0..grid.count).map(|i| share(i, low, width_nm, grid)).collect();
             xyz.push([0, 1, 2].map(|k| {
                 let seen: Vec<f64> = functions[k].iter().zip(&response).map(|(f, r)| f * r * width_nm).collect();
                 grid.integrate(&seen) * LUMINOUS_EFFICACY_LM_PER_W
@@ -88,10 +86,12 @@ impl SpectralPlane {
 }
 
 /// Response at a node of the grid, 1/nm: the part of the node's cell that lies in the band, over the band's width. The
-/// responses of bands side by side add up to that of one band.
-fn share(nm: f64, low_nm: f64, width_nm: f64, step_nm: f64) -> f64 {
-    let overlap = (nm + 0.5 * step_nm).min(low_nm + width_nm) - (nm - 0.5 * step_nm).max(low_nm);
-    overlap.max(0.0) / step_nm / width_nm
+/// responses of bands side by side add up to that of one band. The first and the last node have half a cell, and count half in an integral.
+fn share(node: usize, low_nm: f64, width_nm: f64, grid: &Grid) -> f64 {
+    let (nm, half) = (grid.wavelength_nm(node), 0.5 * grid.step_nm);
+    let (from, to) = ((nm - half).max(grid.start_nm), (nm + half).min(grid.end_nm()));
+    let overlap = to.min(low_nm + width_nm) - from.max(low_nm);
+    overlap.max(0.0) / (to - from) / width_nm
 }
 
 impl Response for Bands {
@@ -166,6 +166,18 @@ mod tests {
         for i in 52..348 {
             let sum: f64 = channels.iter().map(|c| c.response[i]).sum();
             assert!((sum * 300.0 / 16.0 - 1.0).abs() < 1e-12, "{i}: {sum}");
+        }
+    }
+
+    /// Bands that reach the ends of the grid hold all that is there: a mean of 1 in each, as everywhere.
+    #[test]
+    fn bands_at_the_ends_of_the_grid_are_whole() {
+        for bands in [1, 7, 48, 240] {
+            let imager = SpectralPlane::new(Plane::new(size()), &BAND, bands, BAND.start_nm, BAND.end_nm());
+            for channel in imager.channels() {
+                let mean = BAND.integrate(&channel.response);
+                assert!((mean - 1.0).abs() < 1e-12, "{bands}, {}: {mean}", channel.name);
+            }
         }
     }
 

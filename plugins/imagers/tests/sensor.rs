@@ -8,7 +8,7 @@ use spectra_core::resources::Resources;
 use spectra_core::spectral::{BAND, Channel, SpectralPower};
 use spectra_core::stage::Imager;
 use spectra_plugin_imagers::Plane;
-use spectra_plugin_imagers::sensor::{CameraColor, PATCHES};
+use spectra_plugin_imagers::sensor::CameraColor;
 use spectra_scene::FileResources;
 use spectra_spectrum::{Observer, find_emission, find_reflectance};
 
@@ -179,7 +179,7 @@ fn raw_files_carry_matrices_for_two_lights() {
         let eye = |p: &SpectralPower| [0, 1, 2].map(|i: usize| p.seen_by(&observer[i]));
         let (camera_white, eye_white) = (camera(&light), eye(&light));
         let adapt = Adaptation::Bradford.matrix(eye_white.map(|v| v / eye_white[1]), d50);
-        let errors: Vec<f64> = PATCHES
+        let errors: Vec<f64> = COLOR_CHECKER
             .iter()
             .map(|patch| {
                 let patch = find_reflectance(&format!("colorchecker#{patch}")).expect("bundled");

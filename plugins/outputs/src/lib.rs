@@ -4,6 +4,7 @@
 
 mod dng;
 mod exr;
+mod html;
 mod npy;
 mod png;
 mod rays;

@@ -13,7 +13,7 @@ use spectra_core::stage::Emit;
 use spectra_core::{Isa, RayBatch};
 use spectra_glass::DispersionError;
 use spectra_lens::{Indices, Section, Tracer};
-use spectra_plot::Format;
+use spectra_plot::{Canvas, Format};
 use spectra_scene::{Holds, Output, Scene, Shot};
 use spectra_spectrum::Observer;
 
@@ -115,25 +115,48 @@ impl Output for Rays {
     }
 
     fn write(&self, shot: &Shot<'_>, _: usize, out: &mut dyn Out) -> Result<(), WriteFault> {
-        let (scene, figure) = (shot.scene, &self.0);
-        let failed = |e: DispersionError| WriteFault::Format(e.to_string());
-        let rays = match scene.source.emit().filter(|emit| emit.is_directed()) {
-            Some(emit) => beam(scene, emit, figure, shot.isa).map_err(failed)?,
-            None => fans(scene, figure).map_err(failed)?,
-        };
-        let [width, height] = figure.size.map(|side| f64::from(side.get_u32()));
-        let sheet = Sheet {
-            width,
-            height: Some(height),
-            ground: if figure.ground == On::Light { Ground::Light } else { Ground::Dark },
-            width_mm: figure.view.map(|view| view.mm()),
-            view: View { section: Section::Y },
-            caption: String::new(),
-            image: figure.screen,
-        };
+        let figure = &self.0;
+        let canvas = drawn(shot.scene, figure, shot.isa).map_err(|e| WriteFault::Format(e.to_string()))?;
         let format = if figure.format == As::Svg { Format::Svg } else { Format::Png };
-        Ok(out.write_all(&sheet.draw(&scene.lens, &rays).to_bytes(format, 1.0)?)?)
+        Ok(out.write_all(&canvas.to_bytes(format, 1.0)?)?)
     }
+}
+
+/// A scene's light on its way through the lens.
+fn drawn(scene: &Scene, figure: &RaysParams, isa: Isa) -> Result<Canvas, DispersionError> {
+    let rays = match scene.source.emit().filter(|emit| emit.is_directed()) {
+        Some(emit) => beam(scene, emit, figure, isa)?,
+        None => fans(scene, figure)?,
+    };
+    let [width, height] = figure.size.map(|side| f64::from(side.get_u32()));
+    let sheet = Sheet {
+        width,
+        height: Some(height),
+        ground: if figure.ground == On::Light { Ground::Light } else { Ground::Dark },
+        width_mm: figure.view.map(|view| view.mm()),
+        view: View { section: Section::Y },
+        caption: String::new(),
+        image: figure.screen,
+    };
+    Ok(sheet.draw(&scene.lens, &rays))
+}
+
+/// The same on white ground, as a page shows it.
+///
+/// # Errors
+/// A medium has no index at a wavelength of a ray.
+pub(crate) fn on_paper(scene: &Scene, isa: Isa) -> Result<Canvas, DispersionError> {
+    let figure = RaysParams {
+        size: [Whole::known(1100), Whole::known(420)],
+        view: None,
+        rays: Whole::known(7),
+        wavelengths: wavelengths(),
+        intensity: Intensity::Full,
+        ground: On::Light,
+        format: As::Svg,
+        screen: true,
+    };
+    drawn(scene, &figure, isa)
 }
 
 /// Light that a screen can show, nm.

@@ -371,7 +371,8 @@ mod tests {
 
     #[test]
     fn every_patch_of_the_charts_has_a_measured_reflectance() {
-        for name in chart::PATCHES {
+        for (name, patch) in chart::PATCHES.into_iter().zip(spectra_spectrum::COLOR_CHECKER) {
+            assert_eq!(column(name), format!("colorchecker#{patch}"));
             let measured = spectra_spectrum::find_reflectance(&column(name));
             assert!(measured.is_ok(), "{name}: {measured:?}");
         }

@@ -1,12 +1,14 @@
 //! `kind: point`: one point of light.
 
+use crate::picture::color_model;
 use crate::white;
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::params::{Angle, Faults, Length, Params, Positive, Quantity, RadiantIntensity};
-use spectra_core::registry::Context;
+use spectra_color::Transfer;
+use spectra_core::params::{Angle, Faults, Length, Params, Part, Positive, Quantity, RadiantIntensity};
+use spectra_core::registry::{Context, StageOf};
 use spectra_core::spectral::SpectralPower;
-use spectra_core::stage::{Emit, Source};
+use spectra_core::stage::{ColorModel, Emit, Source};
 use spectra_core::{Isa, RayBatch, batch::CONTINUUM};
 
 /// One point of light at a finite distance.
@@ -24,6 +26,9 @@ use spectra_core::{Isa, RayBatch, batch::CONTINUUM};
 /// ```yaml
 /// {kind: point, distance: 2 m, position: [30 cm, 10 cm], spectrum: hydrogen, intensity: 0.01 W/sr}
 /// ```
+/// ```yaml
+/// {kind: point, distance: 2 m, rgb: [255, 128, 64]}
+/// ```
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct PointParams {
@@ -34,17 +39,21 @@ struct PointParams {
     /// In place of `position`: the angles under which it is seen from the first vertex (right, up), degrees if bare,
     /// each within 85.9 degrees.
     field: Option<[Angle; 2]>,
-    /// Its spectrum: the name of a light or lamp, a file beside the scene, or an expression such as `blackbody:5800`.
-    #[serde(default = "daylight")]
-    spectrum: String,
+    /// Its spectrum: the name of a light or lamp, a file beside the scene, or an expression such as `blackbody:5800`; D65 if
+    /// neither it nor `rgb` is given.
+    spectrum: Option<String>,
+    /// In place of `spectrum`: its color in sRGB, red, green and blue of 0 to 255. `intensity` says how bright it is.
+    #[schemars(inner(range(min = 0, max = 255)))]
+    rgb: Option<[f64; 3]>,
+    /// With `rgb`, how the color becomes a spectrum: a color model, `smooth` if absent.
+    color: Option<Part<StageOf<dyn ColorModel>>>,
     /// Radiant intensity in the band, W/sr if bare.
     #[serde(default = "intensity")]
     intensity: Positive<RadiantIntensity>,
 }
 
-fn daylight() -> String {
-    "D65".to_owned()
-}
+/// The spectrum of a point that says none, and white of its colors.
+const DAYLIGHT: &str = "D65";
 
 fn intensity() -> Positive<RadiantIntensity> {
     Positive::from_bare(1e-3)
@@ -70,11 +79,35 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
         }
         (None, None) => [0.0; 2],
     };
-    let named = white::light("spectrum", &p.spectrum, params, context)?;
+    let named = light(&p, params, context)?;
     let lines: f64 = named.lines.iter().filter(|l| context.grid.contains(l.wavelength_nm)).map(|l| l.power).sum();
     let power = context.grid.integrate(&named.continuum) + lines;
     let spectrum = named.scaled(p.intensity.w_per_sr() / power);
     Ok(Box::new(Point { place: [x_mm, y_mm, -distance_mm], spectrum }))
+}
+
+/// Its light in any scale.
+fn light(p: &PointParams, params: &Params, context: &Context<'_>) -> Result<SpectralPower, Faults> {
+    let Some(rgb) = p.rgb else {
+        if p.color.is_some() {
+            let fault = params.fault("color", "`color` says how an `rgb` becomes a spectrum, and there is none");
+            return Err(fault.hint("leave `color` out, or write `rgb: [255, 128, 64]`").into());
+        }
+        return white::light("spectrum", p.spectrum.as_deref().unwrap_or(DAYLIGHT), params, context);
+    };
+    if p.spectrum.is_some() {
+        return Err(params
+            .fault("rgb", "`spectrum` and `rgb` exclude each other")
+            .hint("leave one of them out")
+            .into());
+    }
+    if rgb == [0.0; 3] {
+        let fault = params.fault("rgb", "black is no light");
+        return Err(fault.hint("the color of the light; `intensity` says how bright it is").into());
+    }
+    let daylight = white::light("rgb", DAYLIGHT, params, context)?;
+    let model = color_model(p.color.clone(), &daylight, params, context)?;
+    Ok(model.spectrum(rgb.map(|v| Transfer::Srgb.decode(v / 255.0))))
 }
 
 struct Point {

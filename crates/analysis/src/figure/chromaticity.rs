@@ -1,14 +1,10 @@
 //! The chromaticity diagram.
 
-use super::{SAMPLE, entry, sheet, shortened};
-use spectra_color::{RgbSpace, chromaticity as chromaticity_of, to_u8, xyz_of_xy};
+use super::{SAMPLE, entry, sheet as paper, shortened};
+use spectra_color::{RgbSpace, chromaticity as chromaticity_of, to_u8, uv_1976, xyz_of_xy};
 use spectra_plot::{Axes, Axis, Canvas, Color, Labels, Paint, Picture, Point, Rect, Stroke, TextStyle, text_width};
 use spectra_spectrum::{Emission, Observer};
 
-/// A unit of x is as long as one of y.
-const UNIT: f64 = 800.0;
-const X: (f64, f64) = (-0.08, 0.8);
-const Y: (f64, f64) = (-0.05, 0.9);
 /// Where the locus has a direction of its own; beyond, the functions keep their ratios.
 const LOCUS_NM: (u32, u32) = (380, 700);
 /// Wavelengths that are named along the locus.
@@ -16,44 +12,119 @@ const NAMED_NM: [u32; 18] = [460, 470, 480, 490, 500, 510, 520, 530, 540, 550, 5
 /// Temperatures that are marked on the Planckian locus, K.
 const MARKED_K: [f64; 5] = [2000.0, 3000.0, 4000.0, 6500.0, 10_000.0];
 
+/// The coordinates of a chromaticity diagram.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Diagram {
+    /// x, y: CIE 1931.
+    Xy,
+    /// u', v': CIE 1976, where equal distances look more nearly alike.
+    Uv,
+}
+
+impl Diagram {
+    fn of_xy(self, [x, y]: [f64; 2]) -> [f64; 2] {
+        match self {
+            Self::Xy => [x, y],
+            Self::Uv => uv_1976([x, y]),
+        }
+    }
+
+    fn to_xy(self, [u, v]: [f64; 2]) -> [f64; 2] {
+        match self {
+            Self::Xy => [u, v],
+            Self::Uv => {
+                let divisor = 6.0 * u - 16.0 * v + 12.0;
+                [9.0 * u / divisor, 4.0 * v / divisor]
+            }
+        }
+    }
+
+    /// What is shown across and up, and how many units of the canvas are one of it.
+    fn extent(self) -> ((f64, f64), (f64, f64), f64) {
+        match self {
+            Self::Xy => ((-0.08, 0.8), (-0.05, 0.9), 800.0),
+            Self::Uv => ((-0.05, 0.68), (-0.03, 0.63), 1080.0),
+        }
+    }
+}
+
+/// A diagram for an observer, on its frame.
+struct Sheet<'a> {
+    axes: Axes,
+    diagram: Diagram,
+    observer: &'a Observer,
+}
+
+impl Sheet<'_> {
+    fn at_xy(&self, xy: [f64; 2]) -> Point {
+        let [across, up] = self.diagram.of_xy(xy);
+        self.axes.at(across, up)
+    }
+
+    fn spectral(&self, nm: u32) -> [f64; 2] {
+        chromaticity_of(self.observer.at(f64::from(nm))).expect("the observer sees 390 to 700 nm")
+    }
+}
+
 /// The CIE 1931 diagram: the spectral locus, the gamuts of sRGB, Rec.2020 and ACEScg, the Planckian locus, and points
 /// with their names. The colors are as sRGB can show them, each as bright as it can be.
 #[must_use]
 pub fn chromaticity(points: &[(String, [f64; 2])]) -> Canvas {
+    chromaticity_diagram(points, Diagram::Xy, Observer::cie_1931_2deg())
+}
+
+/// The same in other coordinates or for another observer; points are x, y for that observer. Gamuts are defined for the 1931
+/// observer, and shown for it alone.
+#[must_use]
+pub fn chromaticity_diagram(points: &[(String, [f64; 2])], diagram: Diagram, observer: &Observer) -> Canvas {
     let (left, top) = (76.0, 22.0);
-    let frame = Rect::new(left, top, left + UNIT * (X.1 - X.0), top + UNIT * (Y.1 - Y.0));
-    let axes = Axes::new(frame, Axis::new("x", X.0, X.1).ticks(9, 2), Axis::new("y", Y.0, Y.1).ticks(9, 2));
-    let mut canvas = Canvas::new(frame.right + 22.0, frame.bottom + 62.0, "CIE 1931 chromaticity diagram");
-    axes.draw_grid(&mut canvas);
-    let locus: Vec<Point> = (LOCUS_NM.0..=LOCUS_NM.1).map(|nm| at_xy(&axes, spectral(nm))).collect();
-    canvas.polygon(&locus, Paint::Picture(colors(frame)));
+    let (across, up, unit) = diagram.extent();
+    let frame = Rect::new(left, top, left + unit * (across.1 - across.0), top + unit * (up.1 - up.0));
+    let (x, y) = match diagram {
+        Diagram::Xy => ("x", "y"),
+        Diagram::Uv => ("u'", "v'"),
+    };
+    let (x, y) = (Axis::new(x, across.0, across.1).ticks(9, 2), Axis::new(y, up.0, up.1).ticks(9, 2));
+    let sheet = Sheet { axes: Axes::new(frame, x, y), diagram, observer };
+    let standard = Observer::cie_1931_2deg();
+    let title = match diagram {
+        Diagram::Xy if observer.name() == standard.name() => "CIE 1931 chromaticity diagram".to_owned(),
+        Diagram::Xy => format!("Chromaticity diagram, {}", observer.name()),
+        Diagram::Uv => format!("CIE 1976 chromaticity diagram, {}", observer.name()),
+    };
+    let mut canvas = Canvas::new(frame.right + 22.0, frame.bottom + 62.0, &title);
+    sheet.axes.draw_grid(&mut canvas);
+    // Tables of some observers begin at 390 nm.
+    let first = LOCUS_NM.0.max((LOCUS_NM.0..400).find(|nm| observer.at(f64::from(*nm)) != [0.0; 3]).unwrap_or(400));
+    let locus: Vec<Point> = (first..=LOCUS_NM.1).map(|nm| sheet.at_xy(sheet.spectral(nm))).collect();
+    canvas.polygon(&locus, Paint::Picture(colors(frame, diagram)));
     canvas.outline(&locus, &Stroke::new(Color::INK, 1.5));
-    let legend = gamuts(&mut canvas, &axes);
     let mut labels = Labels::new(frame.grown(-3.0));
-    labels.keep_clear(legend);
-    name_locus(&mut canvas, &axes, &mut labels);
-    planckian(&mut canvas, &axes, &mut labels, points);
-    draw_points(&mut canvas, &axes, &mut labels, points);
-    axes.draw_frame(&mut canvas);
+    if observer.name() == standard.name() {
+        let legend = gamuts(&mut canvas, &sheet);
+        labels.keep_clear(legend);
+    } else {
+        let style = TextStyle::new(13.5).end();
+        canvas.text([frame.right - 16.0, frame.top + 26.0], observer.name(), &style);
+        labels.keep_clear(style.bounds([frame.right - 16.0, frame.top + 26.0], observer.name()));
+    }
+    name_locus(&mut canvas, &sheet, &mut labels);
+    planckian(&mut canvas, &sheet, &mut labels, points);
+    draw_points(&mut canvas, &sheet, &mut labels, points);
+    sheet.axes.draw_frame(&mut canvas);
     canvas
 }
 
-fn at_xy(axes: &Axes, xy: [f64; 2]) -> Point {
-    axes.at(xy[0], xy[1])
-}
-
-fn spectral(nm: u32) -> [f64; 2] {
-    chromaticity_of(Observer::cie_1931_2deg().at(f64::from(nm))).expect("the observer sees 380 to 700 nm")
-}
-
 /// The colors of all chromaticities of the frame.
-fn colors(place: Rect) -> Picture {
+fn colors(place: Rect, diagram: Diagram) -> Picture {
+    let (across, up, _) = diagram.extent();
     let (width_px, height_px) = (176, 190);
     let srgb = RgbSpace::srgb();
     let rgb = (0..width_px * height_px).map(|i| {
         let share = |at: u32, count: u32| (f64::from(at) + 0.5) / f64::from(count);
-        let x = X.0 + (X.1 - X.0) * share(i % width_px, width_px);
-        let y = Y.1 - (Y.1 - Y.0) * share(i / width_px, height_px);
+        let x = across.0 + (across.1 - across.0) * share(i % width_px, width_px);
+        let y = up.1 - (up.1 - up.0) * share(i / width_px, height_px);
+        let [x, y] = diagram.to_xy([x, y]);
         // Only the edge of the area reaches y = 0.
         let linear = srgb.from_xyz(xyz_of_xy([x, y.max(0.002)], 1.0)).map(|v| v.max(0.0));
         let brightest = linear.into_iter().fold(1e-9, f64::max);
@@ -63,11 +134,11 @@ fn colors(place: Rect) -> Picture {
 }
 
 /// Ticks and wavelengths along the outer side of the locus.
-fn name_locus(canvas: &mut Canvas, axes: &Axes, labels: &mut Labels) {
+fn name_locus(canvas: &mut Canvas, sheet: &Sheet<'_>, labels: &mut Labels) {
     let style = TextStyle::new(12.0).middle().halo(Color::WHITE.with_opacity(0.85));
     for nm in (LOCUS_NM.0 + 70..=650).step_by(10) {
-        let here = at_xy(axes, spectral(nm));
-        let (before, after) = (at_xy(axes, spectral(nm - 2)), at_xy(axes, spectral(nm + 2)));
+        let spectral = |nm| sheet.at_xy(sheet.spectral(nm));
+        let (here, before, after) = (spectral(nm), spectral(nm - 2), spectral(nm + 2));
         let along = [after[0] - before[0], after[1] - before[1]];
         let length = libm::hypot(along[0], along[1]);
         // The locus runs clockwise on the sheet: outside is to its left.
@@ -86,7 +157,8 @@ fn name_locus(canvas: &mut Canvas, axes: &Axes, labels: &mut Labels) {
 }
 
 /// The triangles and their legend; returns where that lies.
-fn gamuts(canvas: &mut Canvas, axes: &Axes) -> Rect {
+fn gamuts(canvas: &mut Canvas, on: &Sheet<'_>) -> Rect {
+    let axes = &on.axes;
     let dashes: [&[f64]; 3] = [&[], &[9.0, 4.0], &[2.5, 3.5]];
     let style = TextStyle::new(13.5);
     let spaces = RgbSpace::all();
@@ -95,26 +167,26 @@ fn gamuts(canvas: &mut Canvas, axes: &Axes) -> Rect {
     let left = right - SAMPLE - widest - 24.0;
     let top = axes.frame.top + 14.0;
     let rect = Rect::new(left, top, right, top + 12.0 + 22.0 * spaces.len() as f64);
-    sheet(canvas, rect);
+    paper(canvas, rect);
     for (i, (space, dashes)) in spaces.iter().zip(dashes).enumerate() {
         let stroke = Stroke::new(Color::INK, 1.5).dashed(dashes);
-        canvas.outline(&space.primaries_xy.map(|xy| at_xy(axes, xy)), &stroke);
+        canvas.outline(&space.primaries_xy.map(|xy| on.at_xy(xy)), &stroke);
         entry(canvas, [left + 12.0, top + 21.0 + 22.0 * i as f64], space.name, &stroke, &style);
     }
     rect
 }
 
 /// The chromaticities of black bodies.
-fn planckian(canvas: &mut Canvas, axes: &Axes, labels: &mut Labels, points: &[(String, [f64; 2])]) {
+fn planckian(canvas: &mut Canvas, sheet: &Sheet<'_>, labels: &mut Labels, points: &[(String, [f64; 2])]) {
     let place = |kelvin: f64| {
         let light = Emission::blackbody(kelvin).ok()?;
-        Some(at_xy(axes, chromaticity_of(Observer::cie_1931_2deg().xyz(&light))?))
+        Some(sheet.at_xy(chromaticity_of(sheet.observer.xyz(&light))?))
     };
     // Even steps of reciprocal temperature are nearly even steps along it: 40 000 K to 1000 K.
     let line: Vec<Point> = (0..=40).filter_map(|i| place(1e6 / (25.0 + 24.375 * f64::from(i)))).collect();
     canvas.polyline(&line, &Stroke::new(Color::INK, 1.2));
     for (_, xy) in points {
-        let [x, y] = at_xy(axes, *xy);
+        let [x, y] = sheet.at_xy(*xy);
         labels.keep_clear(Rect::new(x - 6.0, y - 6.0, x + 6.0, y + 6.0));
     }
     let style = TextStyle::new(10.5);
@@ -133,17 +205,17 @@ fn planckian(canvas: &mut Canvas, axes: &Axes, labels: &mut Labels, points: &[(S
     }
 }
 
-fn draw_points(canvas: &mut Canvas, axes: &Axes, labels: &mut Labels, points: &[(String, [f64; 2])]) {
+fn draw_points(canvas: &mut Canvas, sheet: &Sheet<'_>, labels: &mut Labels, points: &[(String, [f64; 2])]) {
     let style = TextStyle::new(13.0).weight(1.2).halo(Color::WHITE.with_opacity(0.7));
     for (_, xy) in points {
-        let at = at_xy(axes, *xy);
+        let at = sheet.at_xy(*xy);
         canvas.disc(at, 5.0, Color::WHITE);
         canvas.circle(at, 5.0, &Stroke::new(Color::INK, 1.6));
         canvas.disc(at, 1.6, Color::INK);
     }
     for (name, xy) in points {
         let name = shortened(name);
-        if let Some(place) = labels.place(at_xy(axes, *xy), &name, &style, 10.0) {
+        if let Some(place) = labels.place(sheet.at_xy(*xy), &name, &style, 10.0) {
             canvas.text(place, &name, &style);
         }
     }

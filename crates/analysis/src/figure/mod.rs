@@ -3,12 +3,16 @@
 mod abbe;
 mod chromaticity;
 mod dispersion;
+mod glass_fit;
+mod lamp;
 mod spectrum;
 mod swatches;
 
 pub use abbe::{AbbeGroup, abbe};
-pub use chromaticity::chromaticity;
+pub use chromaticity::{Diagram, chromaticity, chromaticity_diagram};
 pub use dispersion::{IndexCurve, dispersion};
+pub use glass_fit::{FittedCurve, glass_fit};
+pub use lamp::{Patch as LampPatch, lamp};
 pub use spectrum::{spectrum, spectrum_and_functions};
 pub use swatches::swatches;
 
@@ -27,7 +31,7 @@ fn shortened(name: &str) -> String {
 
 /// Entries of a legend in rows from the left, each with a piece of its line: the place of each entry's base line, and
 /// how many rows there are.
-fn rows(names: &[String], start: Point, right: f64, style: &TextStyle) -> (Vec<Point>, usize) {
+pub(crate) fn rows(names: &[String], start: Point, right: f64, style: &TextStyle) -> (Vec<Point>, usize) {
     const GAP: f64 = 24.0;
     let mut at = start;
     let mut rows = 1;
@@ -48,7 +52,7 @@ fn rows(names: &[String], start: Point, right: f64, style: &TextStyle) -> (Vec<P
 /// Length of a line's piece in a legend, with the gap to its name.
 const SAMPLE: f64 = 30.0;
 
-fn entry(canvas: &mut Canvas, at: Point, name: &str, stroke: &Stroke, style: &TextStyle) {
+pub(crate) fn entry(canvas: &mut Canvas, at: Point, name: &str, stroke: &Stroke, style: &TextStyle) {
     let y = at[1] - style.half_cap();
     canvas.line([at[0], y], [at[0] + SAMPLE - 7.0, y], stroke);
     canvas.text([at[0] + SAMPLE, at[1]], name, style);

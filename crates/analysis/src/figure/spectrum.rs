@@ -52,7 +52,13 @@ pub fn spectrum_and_functions(spectra: &[(String, Found)], functions: &[(String,
     }
     canvas.clip(Some(frame));
     let alone = curves.len() == 1;
-    fill(&mut canvas, &axes, &curves, if alone { 0.92 } else { 0.4 });
+    // Many curves need a quiet ground.
+    let opacity = match curves.len() {
+        1 => 0.92,
+        2..=7 => 0.4,
+        _ => 0.18,
+    };
+    fill(&mut canvas, &axes, &curves, opacity);
     for (i, curve) in curves.iter().enumerate() {
         let color = if alone { Color::INK } else { palette(i) };
         for line in &curve.lines {
@@ -61,7 +67,8 @@ pub fn spectrum_and_functions(spectra: &[(String, Found)], functions: &[(String,
             canvas.line(ends[0], ends[1], &Stroke::new(color, 2.2));
         }
         if let Some(values) = &curve.continuum {
-            canvas.polyline(&points(&axes, values), &Stroke::new(color, 1.7));
+            let line = if alone { Stroke::new(color, 1.7) } else { stroke(i, 1.7) };
+            canvas.polyline(&points(&axes, values), &line);
         }
     }
     canvas.clip(None);
@@ -73,7 +80,7 @@ pub fn spectrum_and_functions(spectra: &[(String, Found)], functions: &[(String,
         if alone {
             canvas.text([frame.left, at[1]], name, &style.clone().weight(1.35));
         } else {
-            entry(&mut canvas, at, name, &Stroke::new(palette(i), 2.4), &style);
+            entry(&mut canvas, at, name, &stroke(i, 2.4), &style);
         }
     }
     canvas
@@ -81,6 +88,17 @@ pub fn spectrum_and_functions(spectra: &[(String, Found)], functions: &[(String,
 
 fn palette(i: usize) -> Color {
     Color::PALETTE[i % Color::PALETTE.len()]
+}
+
+/// The line of the curve `i`: as many colors as people of any color vision tell apart, then the same dashed in three ways. From the
+/// 29th on they repeat.
+fn stroke(i: usize, width: f64) -> Stroke {
+    const DASHES: [&[f64]; 4] = [&[], &[7.0, 3.0], &[2.0, 2.6], &[9.0, 2.6, 2.0, 2.6]];
+    let line = Stroke::new(palette(i), width);
+    match DASHES[i / Color::PALETTE.len() % DASHES.len()] {
+        [] => line,
+        dashes => line.dashed(dashes),
+    }
 }
 
 /// A spectrum on the scale of the figure.

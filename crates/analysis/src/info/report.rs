@@ -100,6 +100,9 @@ pub struct LensReport {
     pub stop_semi_diameter_mm: Option<f64>,
     /// The surfaces, in the order of the light.
     pub surfaces: Vec<SurfaceReport>,
+    /// Veiling glare, where it was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub glare: Option<crate::glare::Glare>,
     /// Media of which something is assumed.
     pub assumed_media: Vec<super::media::AssumedMedium>,
     /// What is worth knowing of how it is set.
@@ -194,6 +197,7 @@ impl LensReport {
             has_stop: lens.stop().is_some(),
             stop_semi_diameter_mm: lens.stop().and_then(|stop| lens.elements[stop].semi_diameter_mm),
             surfaces: surfaces(&held),
+            glare: None,
             assumed_media: super::media::assumed(lens),
             notes: lens.notes.clone(),
             warnings: lens.warnings.clone(),

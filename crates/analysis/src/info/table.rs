@@ -39,6 +39,7 @@ impl fmt::Display for LensReport {
         writeln!(f, "distances along the axis are positive toward the image")?;
         writeln!(f)?;
         self.figures(f)?;
+        self.glare(f)?;
         writeln!(f)?;
         self.field(f)?;
         self.room(f)?;
@@ -109,6 +110,31 @@ impl LensReport {
             writeln!(f, "{}", line.trim_end())?;
         }
         Ok(())
+    }
+
+    fn glare(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Some(glare) = &self.glare else { return Ok(()) };
+        let percent = |part: f64| format!("{:.*} %", if part < 0.01 { 3 } else { 2 }, 100.0 * part);
+        let row = |f: &mut fmt::Formatter<'_>, name: &str, value: String, remark: String| {
+            writeln!(f, "{}", format!("{name:<22} {value:>16}   {remark}").trim_end())
+        };
+        let of = |what: &str, part: f64| {
+            if part > 0.0 { format!(", {what} reflects {}", percent(part)) } else { String::new() }
+        };
+        row(
+            f,
+            "veiling glare",
+            percent(glare.index),
+            format!(
+                "+- {} (standard error); ISO 9358, integral, a black disk of {:.2} mm in the image{}{}",
+                percent(glare.standard_error),
+                glare.disk_mm,
+                of("paint", glare.paint),
+                of("film", glare.imager)
+            ),
+        )?;
+        let by_glass = (glare.index - glare.scattered).max(0.0);
+        row(f, "  by glass alone", percent(by_glass), "reflected twice or more, never scattered".to_owned())
     }
 
     fn field(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

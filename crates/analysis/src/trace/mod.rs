@@ -2,10 +2,13 @@
 //!
 //! In: columns `x_mm, y_mm, z_mm` (a point of the ray before the first surface, frame of the lens: its
 //! vertex is the origin, +z toward the image), `l, m, n` (unit direction) and `wavelength_nm`, by name
-//! and in any order. Out, a row for each: `status,surface,x_mm,y_mm,z_mm,l,m,n`. A `hit` is where the ray
-//! meets the image plane, in the frame of the lens, with its direction there; a ray that ended on the way
+//! and in any order. Out, a row for each:
+//! `status,surface,x_mm,y_mm,z_mm,l,m,n,wavelength_nm,transmittance,optical_path_mm`. A `hit` is where the ray
+//! meets the image plane, in the frame of the lens, with its direction there, the part of its light that glass and coatings left, and
+//! index times length from its start; a ray that ended on the way
 //! gives `missed`, `vignetted`, `tir` or `absorbed` and the number of the surface, and its other fields are
 //! empty. A ray that leaves along the image plane has `missed` it: one surface more than the lens has.
+//! On request there is a row `passed` before it for each surface that the ray went through, and the number of the ray before each.
 
 mod csv;
 mod row;
@@ -13,7 +16,8 @@ mod row;
 use crate::Light;
 use csv::NumberRows;
 use glam::DVec3;
-use row::Row;
+use row::Light as Left;
+use row::{Fate, Row};
 use spectra_core::spectral::BAND;
 use spectra_core::{Isa, Loss, LossCounts, RayBatch};
 use spectra_lens::{Indices, Lens, Path, Pose, Tracer, Travel, Work};
@@ -71,25 +75,37 @@ const BATCH: usize = 1024;
 const UNIT_TOLERANCE: f64 = 1e-6;
 const COLUMNS: [&str; 7] = ["x_mm", "y_mm", "z_mm", "l", "m", "n", "wavelength_nm"];
 
+/// How a table of rays is traced and written.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Tracing<'a> {
+    /// The light of all rays; each has a wavelength of its own where there is none.
+    pub light: Option<Light>,
+    /// The path that they take; straight through where there is none.
+    pub path: Option<&'a Path>,
+    /// How the result is written.
+    pub format: Format,
+    /// Whether every surface gets a row.
+    pub every_surface: bool,
+}
+
 /// Traces the rays of `input` (called `file` in messages) and writes a row for each to `output`, in the
-/// order of the input. Without a `light` each ray has its own wavelength; without a `path` rays go straight through. Memory
-/// does not grow with the number of rays.
+/// order of the input. Memory does not grow with the number of rays.
 ///
 /// # Errors
 /// [`TraceError`]; rows before the faulty one are written.
 pub fn trace(
     lens: &Lens,
-    (light, path): (Option<Light>, Option<&Path>),
+    tracing: Tracing<'_>,
     isa: Isa,
     input: impl BufRead,
     file: &str,
     output: &mut impl Write,
-    format: Format,
 ) -> Result<TraceSummary, TraceError> {
+    let Tracing { light, path, format, every_surface } = tracing;
     let wanted = if light.is_some() { &COLUMNS[..6] } else { &COLUMNS[..] };
     let mut rows = NumberRows::new(input, file, wanted)?;
-    let mut bench = Bench::new(lens, light, path, isa)?;
-    let mut text = String::from(format.header());
+    let mut bench = Bench::new(lens, light, path, every_surface, isa)?;
+    let mut text = format.header(every_surface);
     let mut more = true;
     while more {
         more = bench.fill(&mut rows)?;
@@ -117,12 +133,20 @@ struct Bench<'a> {
     /// The tracer of the last of them.
     single: Option<(f64, Tracer)>,
     start: Vec<[f64; 7]>,
+    /// Whether every surface gets a row.
+    every_surface: bool,
     seen_nm: Option<(f64, f64)>,
     summary: TraceSummary,
 }
 
 impl<'a> Bench<'a> {
-    fn new(lens: &'a Lens, light: Option<Light>, path: Option<&Path>, isa: Isa) -> Result<Self, TraceError> {
+    fn new(
+        lens: &'a Lens,
+        light: Option<Light>,
+        path: Option<&Path>,
+        every_surface: bool,
+        isa: Isa,
+    ) -> Result<Self, TraceError> {
         let indices = match light {
             Some(Light::Stated) => Indices::Stated,
             Some(Light::Wavelength(nm)) => Indices::At(nm),
@@ -136,7 +160,8 @@ impl<'a> Bench<'a> {
             path: path.cloned().unwrap_or_else(|| Path::through(tracer.surfaces(), Travel::Forward)),
             work: tracer.work_in_place(BATCH),
             tracer,
-            rays: RayBatch::new(BATCH),
+            rays: RayBatch::with_optical_path(BATCH),
+            every_surface,
             outside: Vec::new(),
             single: None,
             start: Vec::with_capacity(BATCH),
@@ -198,45 +223,55 @@ impl<'a> Bench<'a> {
     fn trace(&mut self) -> Result<Vec<Row>, TraceError> {
         let len = self.start.len();
         self.rays.restart(len);
+        // What an index that is held is held for, coatings and glass pass at.
+        let held = self.light.map(|light| light.wavelength_nm().unwrap_or(self.lens.reference_nm));
         let c = self.rays.columns_mut();
-        for (i, ray) in self.start.iter().enumerate() {
+        for (i, ray) in self.start.iter_mut().enumerate() {
+            ray[6] = held.unwrap_or(ray[6]);
             [c.x[i], c.y[i], c.z[i], c.l[i], c.m[i], c.n[i], c.wavelength_nm[i]] = *ray;
-            if self.light.is_some() || !BAND.contains(c.wavelength_nm[i]) {
+            if held.is_none() && !BAND.contains(c.wavelength_nm[i]) {
                 c.wavelength_nm[i] = self.lens.reference_nm;
             }
         }
-        self.tracer.follow(&self.tracer.route(&self.path), &mut self.rays, &mut self.work);
-        let surfaces = self.tracer.surfaces() as u32;
-        let image = &self.lens.image_pose;
-        let mut rows: Vec<Row> = (0..len).map(|i| row_of(&self.rays, i, surfaces, image)).collect();
+        let wavelengths: Vec<f64> = self.start.iter().map(|ray| ray[6]).collect();
+        let is_stated = self.light == Some(Light::Stated);
+        let followed = Followed { lens: self.lens, path: &self.path, wavelengths: &wavelengths, is_stated };
+        let mut fates = followed.fates(&self.tracer, &mut self.rays, &mut self.work, self.every_surface);
         for at in std::mem::take(&mut self.outside) {
-            rows[at] = self.trace_outside(self.start[at])?;
+            fates[at] = self.trace_outside(self.start[at])?;
         }
+        let first = self.summary.rays + 1;
         self.summary.rays += len as u64;
-        for row in &rows {
-            match row {
-                Row::Hit { .. } => self.summary.hits += 1,
-                Row::Lost { cause, surface } => self.summary.losses.add(*cause, *surface, 1),
+        let mut rows = Vec::with_capacity(len);
+        for (i, of_ray) in fates.into_iter().enumerate() {
+            let (ray, wavelength_nm) = (self.every_surface.then_some(first + i as u64), wavelengths[i]);
+            for fate in of_ray {
+                match fate {
+                    Fate::Hit(_) => self.summary.hits += 1,
+                    Fate::Lost { cause, surface } => self.summary.losses.add(cause, surface, 1),
+                    Fate::Passed { .. } => {}
+                }
+                rows.push(Row { ray, wavelength_nm, fate });
             }
         }
         Ok(rows)
     }
 
     /// One ray at the formulas' own indices for its wavelength.
-    fn trace_outside(&mut self, ray: [f64; 7]) -> Result<Row, TraceError> {
+    fn trace_outside(&mut self, ray: [f64; 7]) -> Result<Vec<Fate>, TraceError> {
         let nm = ray[6];
         let tracer = match self.single.take() {
             Some((made_for, tracer)) if made_for == nm => tracer,
             _ => Tracer::new(self.lens, Indices::At(nm), self.isa)?,
         };
-        let mut rays = RayBatch::new(1);
+        let mut rays = RayBatch::with_optical_path(1);
         rays.restart(1);
         let c = rays.columns_mut();
         [c.x[0], c.y[0], c.z[0], c.l[0], c.m[0], c.n[0], c.wavelength_nm[0]] = ray;
-        tracer.follow(&tracer.route(&self.path), &mut rays, &mut tracer.work_in_place(1));
-        let row = row_of(&rays, 0, tracer.surfaces() as u32, &self.lens.image_pose);
+        let followed = Followed { lens: self.lens, path: &self.path, wavelengths: &[nm], is_stated: false };
+        let mut fates = followed.fates(&tracer, &mut rays, &mut tracer.work_in_place(1), self.every_surface);
         self.single = Some((nm, tracer));
-        Ok(row)
+        Ok(fates.swap_remove(0))
     }
 
     fn summary(mut self) -> TraceSummary {
@@ -255,19 +290,71 @@ impl<'a> Bench<'a> {
     }
 }
 
-/// What became of ray `i`, which left the tracer in the frame of the image plane.
-fn row_of(rays: &RayBatch, i: usize, surfaces: u32, image: &Pose) -> Row {
-    if let Some((cause, surface)) = rays.loss(i) {
-        return Row::Lost { cause, surface };
+/// A batch on its way.
+struct Followed<'a> {
+    lens: &'a Lens,
+    path: &'a Path,
+    /// Of each ray, nm.
+    wavelengths: &'a [f64],
+    /// Whether every medium has the index that the prescription states.
+    is_stated: bool,
+}
+
+impl Followed<'_> {
+    /// What became of each ray: where it ended, last, and before it each surface that it passed, where that is asked for.
+    fn fates(&self, tracer: &Tracer, rays: &mut RayBatch, work: &mut Work, every_surface: bool) -> Vec<Vec<Fate>> {
+        let mut fates: Vec<Vec<Fate>> = vec![Vec::new(); rays.len()];
+        tracer.follow_each(&tracer.route(self.path), rays, work, |at, rays| {
+            if !every_surface {
+                return;
+            }
+            let pose = &self.lens.elements[at].pose;
+            for (i, fates) in fates.iter_mut().enumerate().filter(|(i, _)| rays.loss(*i).is_none()) {
+                fates.push(Fate::Passed { surface: at as u32 + 1, light: left_of(rays, i, pose, None) });
+            }
+        });
+        let surfaces = tracer.surfaces() as u32;
+        for (i, fates) in fates.iter_mut().enumerate() {
+            fates.push(self.end_of(rays, i, surfaces));
+        }
+        fates
     }
+
+    /// What became of ray `i`, which left the tracer in the frame of the image plane.
+    fn end_of(&self, rays: &RayBatch, i: usize, surfaces: u32) -> Fate {
+        if let Some((cause, surface)) = rays.loss(i) {
+            return Fate::Lost { cause, surface };
+        }
+        let z = rays.positions()[2][i];
+        let n = rays.directions()[2][i];
+        let distance_mm = -z / n;
+        let behind = self.path.steps().last().map_or(0, |step| self.lens.elements[step.element].medium_after);
+        let medium = &self.lens.media[behind];
+        let index = medium.stated_nd.filter(|_| self.is_stated);
+        let index = index.unwrap_or_else(|| medium.medium.index(self.wavelengths[i]));
+        let light = left_of(rays, i, &self.lens.image_pose, Some((distance_mm, index)));
+        if light.point_mm.iter().all(|v| v.is_finite()) {
+            Fate::Hit(light)
+        } else {
+            Fate::Lost { cause: Loss::Missed, surface: surfaces + 1 }
+        }
+    }
+}
+
+/// What is left of ray `i`, whose place is given in the frame of `pose`; carried on by a distance, mm, in a medium of some index.
+fn left_of(rays: &RayBatch, i: usize, pose: &Pose, on: Option<(f64, f64)>) -> Left {
     let [x, y, z] = rays.positions().map(|column| column[i]);
     let [l, m, n] = rays.directions().map(|column| column[i]);
-    let distance = -z / n;
-    let (x, y) = (x + distance * l, y + distance * m);
-    if x.is_finite() && y.is_finite() {
-        let (point_mm, direction) = (image.point(DVec3::new(x, y, 0.0)), image.direction(DVec3::new(l, m, n)));
-        Row::Hit { point_mm: point_mm.into(), direction: direction.into() }
-    } else {
-        Row::Lost { cause: Loss::Missed, surface: surfaces + 1 }
+    let path = rays.optical_path_mm().map_or(f64::NAN, |column| column[i]);
+    let (point, more) = match on {
+        None => (DVec3::new(x, y, z), 0.0),
+        // On the plane itself.
+        Some((distance, index)) => (DVec3::new(x + distance * l, y + distance * m, 0.0), distance * index),
+    };
+    Left {
+        point_mm: pose.point(point).into(),
+        direction: pose.direction(DVec3::new(l, m, n)).into(),
+        transmittance: rays.weights()[i],
+        optical_path_mm: path + more,
     }
 }

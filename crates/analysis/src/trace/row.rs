@@ -13,41 +13,103 @@ pub enum Format {
     JsonLines,
 }
 
+/// Names of the columns. Rows of every surface have the number of the ray before them.
+const COLUMNS: [&str; 12] = [
+    "ray",
+    "status",
+    "surface",
+    "x_mm",
+    "y_mm",
+    "z_mm",
+    "l",
+    "m",
+    "n",
+    "wavelength_nm",
+    "transmittance",
+    "optical_path_mm",
+];
+
 impl Format {
-    pub(super) fn header(self) -> &'static str {
+    pub(super) fn header(self, numbered: bool) -> String {
         match self {
-            Self::Csv => "status,surface,x_mm,y_mm,z_mm,l,m,n\n",
-            Self::JsonLines => "",
+            Self::Csv => COLUMNS[usize::from(!numbered)..].join(",") + "\n",
+            Self::JsonLines => String::new(),
         }
     }
 }
 
+/// Where a ray is, and what is left of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Light {
+    pub point_mm: [f64; 3],
+    pub direction: [f64; 3],
+    /// Part of the light that is left.
+    pub transmittance: f64,
+    /// Index times length from the start of the ray.
+    pub optical_path_mm: f64,
+}
+
 /// What became of a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Row {
-    Hit { point_mm: [f64; 3], direction: [f64; 3] },
+pub(super) enum Fate {
+    /// It went on behind a surface.
+    Passed { surface: u32, light: Light },
+    /// It met the image plane.
+    Hit(Light),
+    /// It ended at a surface.
     Lost { cause: Loss, surface: u32 },
+}
+
+/// One row of the result.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Row {
+    /// Its number in the table, from 1, where it is written.
+    pub ray: Option<u64>,
+    pub wavelength_nm: f64,
+    pub fate: Fate,
 }
 
 impl Row {
     /// Appends the row. Numbers have as many digits, up to 17, as it takes to read back the same f64.
     pub(super) fn write(&self, format: Format, out: &mut String) {
-        // Writing to a String cannot fail.
-        let _ = match (format, self) {
-            (Format::Csv, Self::Hit { point_mm: [x, y, z], direction: [l, m, n] }) => {
-                writeln!(out, "hit,,{x:?},{y:?},{z:?},{l:?},{m:?},{n:?}")
-            }
-            (Format::Csv, Self::Lost { cause, surface }) => writeln!(out, "{},{surface},,,,,,", cause.name()),
-            (Format::JsonLines, Self::Hit { point_mm: [x, y, z], direction: [l, m, n] }) => writeln!(
-                out,
-                r#"{{"status":"hit","surface":null,"x_mm":{x:?},"y_mm":{y:?},"z_mm":{z:?},"l":{l:?},"m":{m:?},"n":{n:?}}}"#
-            ),
-            (Format::JsonLines, Self::Lost { cause, surface }) => writeln!(
-                out,
-                r#"{{"status":"{}","surface":{surface},"x_mm":null,"y_mm":null,"z_mm":null,"l":null,"m":null,"n":null}}"#,
-                cause.name()
-            ),
+        let number = |v: f64| Some(format!("{v:?}"));
+        let (status, surface, light) = match self.fate {
+            Fate::Passed { surface, light } => ("passed", Some(surface), Some(light)),
+            Fate::Hit(light) => ("hit", None, Some(light)),
+            Fate::Lost { cause, surface } => (cause.name(), Some(surface), None),
         };
+        let at = |pick: fn(&Light) -> f64| light.as_ref().map(pick).and_then(number);
+        let fields: [Option<String>; 12] = [
+            self.ray.map(|ray| ray.to_string()),
+            Some(match format {
+                Format::Csv => status.to_owned(),
+                Format::JsonLines => format!("\"{status}\""),
+            }),
+            surface.map(|surface| surface.to_string()),
+            at(|l| l.point_mm[0]),
+            at(|l| l.point_mm[1]),
+            at(|l| l.point_mm[2]),
+            at(|l| l.direction[0]),
+            at(|l| l.direction[1]),
+            at(|l| l.direction[2]),
+            number(self.wavelength_nm),
+            at(|l| l.transmittance),
+            at(|l| l.optical_path_mm),
+        ];
+        let first = usize::from(self.ray.is_none());
+        for (i, (name, field)) in COLUMNS.iter().zip(&fields).enumerate().skip(first) {
+            // Writing to a String cannot fail.
+            let _ = match format {
+                Format::Csv => {
+                    write!(out, "{}{}", if i > first { "," } else { "" }, field.as_deref().unwrap_or_default())
+                }
+                Format::JsonLines => {
+                    let before = if i > first { "," } else { "{" };
+                    write!(out, "{before}\"{name}\":{}", field.as_deref().unwrap_or("null"))
+                }
+            };
+        }
+        out.push_str(if format == Format::JsonLines { "}\n" } else { "\n" });
     }
 }
 
@@ -57,9 +119,14 @@ mod tests {
 
     #[test]
     fn numbers_read_back_to_the_bit() {
-        let values = [0.1 + 0.2, -1.0 / 3.0, 5e-324, -0.0, 1.7976931348623157e308, 123456789.0];
-        let row =
-            Row::Hit { point_mm: [values[0], values[1], values[2]], direction: [values[3], values[4], values[5]] };
+        let values = [0.1 + 0.2, -1.0 / 3.0, 5e-324, -0.0, 1.7976931348623157e308, 123456789.0, 587.5618, 0.97, 81.25];
+        let light = Light {
+            point_mm: [values[0], values[1], values[2]],
+            direction: [values[3], values[4], values[5]],
+            transmittance: values[7],
+            optical_path_mm: values[8],
+        };
+        let row = Row { ray: None, wavelength_nm: values[6], fate: Fate::Hit(light) };
         let mut text = String::new();
         row.write(Format::Csv, &mut text);
         let read: Vec<u64> =
@@ -68,10 +135,16 @@ mod tests {
     }
 
     #[test]
-    fn a_lost_ray_has_a_cause_a_surface_and_nothing_else() {
+    fn a_lost_ray_has_a_cause_a_surface_and_its_wavelength() {
+        let row =
+            Row { ray: None, wavelength_nm: 546.1, fate: Fate::Lost { cause: Loss::TotalReflection, surface: 4 } };
         let mut text = String::new();
-        Row::Lost { cause: Loss::TotalReflection, surface: 4 }.write(Format::Csv, &mut text);
-        assert_eq!(text, "tir,4,,,,,,\n");
-        assert_eq!(text.matches(',').count(), Format::Csv.header().matches(',').count());
+        row.write(Format::Csv, &mut text);
+        assert_eq!(text, "tir,4,,,,,,,546.1,,\n");
+        assert_eq!(text.matches(',').count(), Format::Csv.header(false).matches(',').count());
+        let numbered = Row { ray: Some(7), ..row };
+        text.clear();
+        numbered.write(Format::JsonLines, &mut text);
+        assert!(text.starts_with(r#"{"ray":7,"status":"tir","surface":4,"x_mm":null,"#), "{text}");
     }
 }

@@ -27,6 +27,8 @@ pub(crate) enum FilmCommand {
     Info(FilmInfo),
     /// Plot a stock's sensitivities, curves and dyes.
     Plot(FilmPlot),
+    /// Compare two lights by what they make of colors, to the eye and on a film.
+    Lamp(FilmLamp),
     /// Develop a picture, or a sequence of them, on a film stock.
     Develop(FilmDevelop),
     /// Write a stock as a look-up table (.cube) for other programs.
@@ -64,6 +66,36 @@ pub(crate) struct FilmPlot {
     /// Output file, FILE.svg or FILE.png; NAME.svg if not given.
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
+}
+
+/// `spectra film lamp`.
+#[derive(Debug, Args)]
+#[command(
+    long_about = "Compare a lamp with a reference light by what both make of the 24 patches of the ColorChecker, to the eye and on a \
+        color film: which colors part. Shown are the lamp's color rendering (CIE Ra and TM-30 Rf) and, of each patch, the \
+        difference between both lights as CIEDE2000: to an eye that has adapted to either, and on film that is timed to a \
+        neutral white in either.\n\nThe film's colors are those of its layers' exposures, brought to the eye's in the reference \
+        light by the best matrix, as masks and timing do; so only what the lamp changes is left. Curves, dyes and grain take \
+        no part.",
+    after_long_help = "Example: a fluorescent lamp on a daylight film\n  \
+        spectra film lamp kodak-portra-400 FL2 --reference D50 -o fl2.png"
+)]
+pub(crate) struct FilmLamp {
+    /// A bundled color stock, or a YAML file.
+    #[arg(value_name = "STOCK")]
+    pub stock: String,
+    /// The lamp: a bundled spectrum, a file or an expression.
+    #[arg(value_name = "LAMP")]
+    pub lamp: String,
+    /// The light that it is compared with.
+    #[arg(long, value_name = "NAME", default_value = "D55")]
+    pub reference: String,
+    /// Output figure, FILE.svg or FILE.png.
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Write a JSON object to standard output.
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// `spectra film develop`.

@@ -6,6 +6,7 @@ mod develop;
 mod figure;
 mod info;
 mod keys;
+mod lamp;
 mod plates;
 
 pub(crate) use arguments::FilmArguments;
@@ -28,6 +29,7 @@ pub(crate) fn film(command: &FilmCommand, isa: Isa, started: Instant) -> Outcome
     match command {
         FilmCommand::Info(arguments) => info::info(arguments),
         FilmCommand::Plot(arguments) => plot(arguments),
+        FilmCommand::Lamp(arguments) => lamp::lamp(arguments),
         FilmCommand::Cube(arguments) => cube::cube(arguments),
         FilmCommand::Develop(arguments) => develop::develop(arguments, isa, started),
     }

@@ -77,6 +77,10 @@ pub(crate) struct GlassInfo {
     /// Also show the index at this wavelength in air.
     #[arg(long, value_name = "NM", value_parser = parse::<Wavelength>)]
     pub wavelength_nm: Option<Wavelength>,
+    /// Also show the Abbe number of these three lines, the index at the middle one: names or wavelengths in nm (F',e,C' or
+    /// 450,580,680).
+    #[arg(long, value_name = "BLUE,MIDDLE,RED", value_parser = three_lines)]
+    pub lines: Option<LineTriple>,
     /// Temperature of glass and air in degrees Celsius; the catalogue's if not given.
     #[arg(long, value_name = "C", allow_hyphen_values = true, value_parser = temperature)]
     pub temperature_c: Option<f64>,
@@ -213,13 +217,26 @@ pub(crate) enum Model {
     long_about = "Fit a dispersion formula to a table of wavelengths and indices.\n\n\
         The table has columns wavelength_nm (or wavelength_um) and n, and `material` if it holds several. The output \
         is the coefficients and the deviations of the formula from the rows: mean, root mean square and largest. \
-        Without --model, Cauchy's formula is fitted both from neighboring rows and by least squares.",
-    after_long_help = "Example:\n  spectra glass fit melt.csv --model sellmeier --terms 2"
+        Without --model, Cauchy's formula is fitted both from neighboring rows and by least squares. --rows adds what each \
+        row gives: Cauchy's A and B from it and the next one, and how far each formula is from it. -o writes the first formula as a \
+        glass file.",
+    after_long_help = "Example:\n  spectra glass fit melt.csv --model sellmeier --terms 2\n\n\
+        The table by row, the curve, and a glass of it:\n\n    \
+        spectra glass fit melt.csv --rows --plot melt.svg -o melt.yaml"
 )]
 pub(crate) struct GlassFit {
-    /// CSV file of the table; `-` reads standard input.
+    /// CSV file of the table; FILE.csv#MATERIAL is one of several materials; `-` reads standard input.
     #[arg(value_name = "FILE.csv")]
     pub file: PathBuf,
+    /// Glass file to write, FILE.yaml, of one material by the first formula.
+    #[arg(short, long, value_name = "FILE.yaml")]
+    pub output: Option<PathBuf>,
+    /// Figure to write, FILE.svg or FILE.png: rows, curves and deviations of one material.
+    #[arg(long, value_name = "FILE")]
+    pub plot: Option<PathBuf>,
+    /// Show every row: wavelength, index, Cauchy's A and B, deviation of each formula.
+    #[arg(long)]
+    pub rows: bool,
     /// The formula to fit; can be repeated.
     #[arg(long = "model", value_enum, value_name = "MODEL", value_delimiter = ',')]
     pub models: Vec<Model>,
@@ -253,6 +270,27 @@ fn range(text: &str) -> Result<(f64, f64), String> {
     match parts {
         Some((Ok(from), Ok(to))) if 100.0 <= from && from + 1.0 <= to && to <= 50_000.0 => Ok((from, to)),
         _ => Err("expected two wavelengths in nm, such as 350,830".into()),
+    }
+}
+
+/// The lines of `--lines`.
+fn three_lines(text: &str) -> Result<LineTriple, String> {
+    let expected =
+        || "expected three lines or wavelengths in nm from blue to red, such as F',e,C' or 450,580,680".to_owned();
+    let line = |text: &str| {
+        let text = text.trim();
+        let named = spectra_glass::lines::by_name(text);
+        let measured = || text.trim_end_matches("nm").trim().parse().ok().filter(|nm| (100.0..=50_000.0).contains(nm));
+        named.or_else(|| Some(spectra_glass::lines::Line { name: "", wavelength_nm: measured()? }))
+    };
+    let lines: Option<Vec<_>> = text.split(',').map(line).collect();
+    match lines.as_deref() {
+        Some(&[short, mid, long])
+            if short.wavelength_nm < mid.wavelength_nm && mid.wavelength_nm < long.wavelength_nm =>
+        {
+            Ok(LineTriple { mid, short, long })
+        }
+        _ => Err(expected()),
     }
 }
 

@@ -43,6 +43,9 @@ struct Report {
     vd: Option<f64>,
     ne: Option<f64>,
     ve: Option<f64>,
+    /// Of the lines that are asked for, from blue to red, nm, and the Abbe number.
+    lines_nm: Option<[f64; 3]>,
+    v_lines: Option<f64>,
     listed_nd: Option<f64>,
     listed_vd: Option<f64>,
     /// At the lines within the measured range.
@@ -148,6 +151,8 @@ fn report(medium: &Medium, arguments: &GlassInfo) -> Report {
         vd: abbe(LineTriple::FDC),
         ne: known(e),
         ve: abbe(LineTriple::F_PRIME_E_C_PRIME),
+        lines_nm: arguments.lines.map(|l| [l.short, l.mid, l.long].map(|line| line.wavelength_nm)),
+        v_lines: arguments.lines.and_then(abbe),
         listed_nd: glass.and_then(|g| g.listed_nd),
         listed_vd: glass.and_then(|g| g.listed_vd),
         n: ByLine(n),
@@ -210,7 +215,7 @@ fn text(report: &Report) -> String {
     let mut row = |name: &str, value: Option<String>| {
         if let Some(value) = value {
             // Writing to a String cannot fail.
-            let _ = writeln!(out, "  {name:<24}{value}");
+            let _ = writeln!(out, "  {name:<24}{}{value}", if name.chars().count() < 24 { "" } else { "  " });
         }
     };
     let years =
@@ -229,6 +234,10 @@ fn text(report: &Report) -> String {
     row("Vd", report.vd.map(|v| format!("{v:.2}{}", listed(report.listed_vd))));
     row("ne", report.ne.map(|n| format!("{n:.6}")));
     row("Ve", report.ve.map(|v| format!("{v:.2}")));
+    if let Some([blue, middle, red]) = report.lines_nm {
+        let value = report.v_lines.map_or_else(|| "outside of the measured range".to_owned(), |v| format!("{v:.2}"));
+        row(&format!("V {blue} {middle} {red} nm"), Some(value));
+    }
     if let (Some(nm), Some(n)) = (report.wavelength_nm, report.n_at) {
         let tau = report.internal_transmittance_10mm_at.map_or(String::new(), |t| format!("  (10 mm pass {t:.4})"));
         row(&format!("n at {nm} nm"), Some(format!("{n:.6}{tau}")));

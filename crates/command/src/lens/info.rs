@@ -2,10 +2,12 @@
 
 use super::{load, one_light};
 use crate::arguments::LensInfo;
-use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
+use crate::{console, limits};
 use spectra_analysis::Light;
+use spectra_analysis::glare::{GlareTask, glare};
 use spectra_analysis::info::LensReport;
+use spectra_session::Threads;
 
 /// Shows a lens in figures.
 pub(crate) fn info(arguments: &LensInfo) -> Outcome {
@@ -17,7 +19,14 @@ pub(crate) fn info(arguments: &LensInfo) -> Outcome {
             return Err(Failure::Input(format!("{} has no refractive index at {nm} nm", medium.label)));
         }
     }
-    let report = LensReport::of(&lens, light);
+    let mut report = LensReport::of(&lens, light);
+    if arguments.glare {
+        let mut task = GlareTask::new(light.wavelength_nm().unwrap_or(lens.reference_nm));
+        task.matter.paint = arguments.paint.unwrap_or(task.matter.paint);
+        task.matter.imager = arguments.film_reflectance.unwrap_or(task.matter.imager);
+        let found = glare(&lens, &task, &Threads(limits::processors()));
+        report.glare = Some(found.map_err(|e| Failure::Input(format!("{}: --glare: {e}", arguments.setting.lens)))?);
+    }
     if arguments.json {
         console::pretty_json(&report)?;
     } else {

@@ -4,7 +4,7 @@ use super::{load, one_light};
 use crate::arguments::LensTrace;
 use crate::outcome::{DONE, Failure, Outcome};
 use crate::{console, words};
-use spectra_analysis::trace::{Format, TraceError, TraceSummary, trace as trace_rays};
+use spectra_analysis::trace::{Format, TraceError, TraceSummary, Tracing, trace as trace_rays};
 use spectra_core::surface::Action;
 use spectra_core::{Isa, Loss};
 use spectra_files::{WriteFault, write_atomically};
@@ -22,7 +22,8 @@ pub(crate) fn trace(arguments: &LensTrace, isa: Isa) -> Outcome {
     let path = path_of(&arguments.path, &lens)?;
     let run = |output: &mut dyn Write| {
         let rays = BufReader::new(input);
-        trace_rays(&lens, (light, path.as_ref()), isa, rays, &name, &mut BufWriter::new(output), format)
+        let tracing = Tracing { light, path: path.as_ref(), format, every_surface: arguments.every_surface };
+        trace_rays(&lens, tracing, isa, rays, &name, &mut BufWriter::new(output))
     };
     let output = arguments.output.as_deref().filter(|path| *path != Path::new("-"));
     let summary = match output {

@@ -10,8 +10,10 @@ use std::path::PathBuf;
         NAME is a bundled spectrum (see `spectra list spectrum`), a column of one (`colorchecker#red`), a table \
         (.csv, .txt, .dat, .tsv) or YAML file, or an expression: blackbody:5800, daylight:5500 and 5600K (K), line:C' \
         or line:632.8, lines:404.66=1,e=2 (with powers), gaussian:550,20 (center and standard deviation, nm), \
-        rectangle:500,600 (nm), constant:1; and sums and products of these with spaces around the operators, such as \
-        '0.5 * D65 + line:e' or 'A * gaussian:550,40'.",
+        rectangle:500,600 (nm), constant:1, FdC and F'eC' (sets of lines), rgb:#ff8040 (a color, by a color model if not the \
+        default: 'rgb:#ff8040 by gaussians'), srgb-r, srgb-g, srgb-b and srgb-w, function:exp(-((w-550)/20)^4) (a formula of the \
+        wavelength w in nm); and algebra of these with + - * / ^ and parentheses, with spaces around + - and /: \
+        '0.5 * D65 + line:e', '1 - wratten-25', 'D65 / A / 10', 'wratten-12^2'.",
     after_long_help = "Examples:\n  spectra spectrum info D65\n  \
         spectra spectrum plot A D65 blackbody:5800 -o lights.svg\n  \
         spectra spectrum plot D50 LED-B3 line:e --chromaticity -o diagram.png\n  \
@@ -33,6 +35,8 @@ pub(crate) enum SpectrumCommand {
     Plot(SpectrumPlot),
     /// Fit signed Gaussian terms to a spectrum.
     Fit(SpectrumFit),
+    /// Multiply spectra as Gaussian terms: exact integrals, and estimates by one term of each.
+    Product(SpectrumProduct),
     /// Convert a color to a spectrum with each color model, and back to a color.
     Color(SpectrumColor),
     /// Measure how well each color model preserves colors.
@@ -58,6 +62,28 @@ pub(crate) enum ObserverName {
     Cie2015Wide,
 }
 
+/// An eye without one kind of cones.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum EyeName {
+    /// Without the long ones: red is dark.
+    Protan,
+    /// Without the medium ones: red and green look alike.
+    Deutan,
+    /// Without the short ones: blue and green look alike.
+    Tritan,
+}
+
+/// Coordinates of a chromaticity.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum DiagramName {
+    /// x, y.
+    #[value(name = "1931")]
+    Cie1931,
+    /// u', v'.
+    #[value(name = "1976")]
+    Cie1976,
+}
+
 /// What a spectrum is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum KindName {
@@ -74,7 +100,8 @@ pub(crate) enum KindName {
 /// `spectra spectrum info`.
 #[derive(Debug, Args)]
 #[command(
-    long_about = "Show the color values of a spectrum: color, temperature, dominant wavelength.\n\n\
+    long_about = "Show a spectrum in figures: peak, centroid, width, color, temperature, dominant wavelength; of a light its power, \
+        luminous efficacy and color rendering (CIE Ra and TM-30 Rf).\n\n\
         A light is shown at Y = 100; a transmittance or a reflectance under an illuminant whose white has Y = 100; a \
         sensitivity has no color. Lab, dominant wavelength and purity are relative to the white of the illuminant, \
         even for lights. Correlated color temperature, dominant wavelength, purity and sRGB always use the CIE 1931 \
@@ -94,6 +121,9 @@ pub(crate) struct SpectrumInfo {
     /// The light on a surface or behind a filter, and the reference white for Lab.
     #[arg(long, value_name = "NAME", default_value = "D65")]
     pub illuminant: String,
+    /// Wavelengths at which to show its value, nm or letters of lines: 546.07,C'.
+    #[arg(long, value_name = "NM", value_delimiter = ',')]
+    pub wavelength_nm: Vec<String>,
     /// Write a JSON object to standard output; values that do not apply to the spectrum are null.
     #[arg(long)]
     pub json: bool,
@@ -103,9 +133,13 @@ pub(crate) struct SpectrumInfo {
 #[derive(Debug, Args)]
 #[command(
     long_about = "Plot spectra over 350-830 nm, with the colors of the wavelengths below the curves.\n\n\
+        A table of several curves is plotted with all of them: the matching functions of an observer (cie-1931-2deg), with their \
+        negative lobes (srgb-1931-2deg, cie-rgb-1931), and cones (cone-fundamentals-2deg). Up to 28 curves differ in color or dashes.\n\n\
         With --chromaticity, plot the spectra as points in the CIE 1931 diagram, with the gamuts of sRGB, Rec. 2020 \
-        and ACEScg, and the chromaticities of black bodies.",
-    after_long_help = "Example:\n  spectra spectrum plot mercury -o mercury.png"
+        and ACEScg, and the chromaticities of black bodies; or in that of 1976 (--diagram), or for another observer (--observer). \
+        There a NAME can also be a point of your own: xy:0.31,0.33, or uv:0.198,0.468 of CIE 1976.",
+    after_long_help = "Examples:\n  spectra spectrum plot mercury -o mercury.png\n  \
+        spectra spectrum plot --chromaticity --diagram 1976 D65 FL2 rgb:#ff8040 xy:0.31,0.33 -o diagram.png"
 )]
 pub(crate) struct SpectrumPlot {
     /// Bundled spectra, CSV files, or expressions (blackbody:5800).
@@ -123,6 +157,15 @@ pub(crate) struct SpectrumPlot {
     /// The light on surfaces and behind filters in the chromaticity diagram.
     #[arg(long, value_name = "NAME", default_value = "D65", requires = "chromaticity")]
     pub illuminant: String,
+    /// Coordinates of the chromaticity diagram: x, y of 1931, or u', v' of 1976.
+    #[arg(long, value_enum, value_name = "YEAR", default_value = "1931", requires = "chromaticity")]
+    pub diagram: DiagramName,
+    /// Show the figure in the colors that an eye without one kind of cones sees.
+    #[arg(long, value_enum, value_name = "EYE")]
+    pub seen_by: Option<EyeName>,
+    /// Observer of the chromaticity diagram.
+    #[arg(long, value_enum, value_name = "YEAR", default_value = "1931", requires = "chromaticity")]
+    pub observer: ObserverName,
 }
 
 /// `spectra spectrum fit`.
@@ -132,7 +175,8 @@ pub(crate) struct SpectrumPlot {
         error, largest error, error of the integral, smallest value, and kappa, the sum of the terms' absolute \
         integrals divided by the sum of their signed ones.\n\nThe file that -o writes is an ordinary spectrum: \
         scenes, strategies and these commands accept it by name. Spectral lines are not fitted; the file lists them \
-        along with the terms.",
+        along with the terms.\n\nWith --at, the one Gaussian that touches the spectrum at a wavelength is shown, or why there is \
+        none: where the logarithm does not bend down, no Gaussian has that slope and curvature.",
     after_long_help = "Example:\n  spectra spectrum fit D65 --terms 8 -o d65-terms.yaml\n  \
         spectra spectrum plot D65 d65-terms.yaml -o both.png"
 )]
@@ -146,12 +190,44 @@ pub(crate) struct SpectrumFit {
     /// Wavelength range of the fit, nm.
     #[arg(long, value_name = "FROM,TO", value_delimiter = ',', num_args = 1..=2, default_value = "350,830")]
     pub band: Vec<f64>,
-    /// Spacing of the fitted points, nm.
-    #[arg(long, value_name = "NM", default_value_t = 1.0)]
-    pub step: f64,
+    /// Spacing of the fitted points, nm; 1 if not given. With --at the distance of the differences; the table's own, or 1, if not given.
+    #[arg(long, value_name = "NM")]
+    pub step: Option<f64>,
+    /// Show the Gaussian that has the spectrum's value, slope and curvature at this wavelength, nm, and fit nothing.
+    #[arg(long, value_name = "NM", allow_negative_numbers = true, conflicts_with_all = ["terms", "band"])]
+    pub at: Option<f64>,
     /// Output file, FILE.yaml.
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
+    /// Write a JSON object to standard output.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `spectra spectrum product`.
+#[derive(Debug, Args)]
+#[command(
+    long_about = "Multiply spectra as sums of signed Gaussian terms: a light, filters, surfaces, a film.\n\n\
+        What is not made of Gaussians is fitted. The product has a term for each choice of one term of every factor, and its \
+        integral is exact; it is compared with a quadrature. Shown are kappa (how much the terms cancel), and the error of \
+        estimates of the integral: by following one term of every factor, which needs no wavelength, as computed from all \
+        choices and as measured; and by drawing wavelengths evenly, or by the first factor.\n\n\
+        What can be of any kind (a Gaussian, a constant) is light where it comes first, and a filter elsewhere.",
+    after_long_help = "Example:\n  spectra spectrum product D65 colorchecker#red wratten-12 ilford-ortho-plus --terms 6 -o terms.svg -o terms.csv"
+)]
+pub(crate) struct SpectrumProduct {
+    /// The factors: bundled spectra, files or expressions.
+    #[arg(value_name = "NAME", required = true)]
+    pub names: Vec<String>,
+    /// Number of terms of each factor that is fitted, 1 to 32.
+    #[arg(long, value_name = "N", default_value_t = 6, value_parser = clap::value_parser!(u8).range(1..=32))]
+    pub terms: u8,
+    /// Wavelength range, nm.
+    #[arg(long, value_name = "FROM,TO", value_delimiter = ',', num_args = 1..=2, default_value = "350,830")]
+    pub band: Vec<f64>,
+    /// Output file: FILE.svg or FILE.png for a figure, FILE.csv for the errors. Can be repeated.
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Vec<PathBuf>,
     /// Write a JSON object to standard output.
     #[arg(long)]
     pub json: bool,

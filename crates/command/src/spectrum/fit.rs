@@ -2,6 +2,7 @@
 
 use super::arguments::SpectrumFit;
 use super::load;
+use super::local::local;
 use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
 use serde::Serialize;
@@ -45,9 +46,23 @@ pub(crate) fn fit(arguments: &SpectrumFit) -> Outcome {
     if let Some(path) = &arguments.output {
         yaml_ending(path)?;
     }
-    let grid = grid(arguments)?;
     let found = load(&arguments.name)?;
     let name = arguments.name.trim();
+    if let Some(at_nm) = arguments.at {
+        if arguments.output.is_some() {
+            let text = "--at shows a Gaussian and writes no file: leave --output away".to_owned();
+            return Err(Failure::Input(text));
+        }
+        let shape = match &found {
+            Found::Emission(light) => light.continuum(),
+            Found::Transmittance(filter) => Some(filter.shape()),
+            Found::Reflectance(surface) => Some(surface.shape()),
+            Found::Sensitivity(detector) => Some(detector.shape()),
+        };
+        let none = || Failure::Input(format!("`{name}` has spectral lines only: a line is no Gaussian"));
+        return local(arguments, at_nm, shape.ok_or_else(none)?);
+    }
+    let grid = grid(&arguments.band, arguments.step.unwrap_or(1.0))?;
     let (values, lines) = match &found {
         Found::Emission(light) if light.continuum().is_none() => {
             let text = format!("`{name}` has spectral lines only: they are taken as lines, not as Gaussians");
@@ -90,11 +105,10 @@ fn yaml_ending(path: &Path) -> Result<(), Failure> {
     }
 }
 
-fn grid(arguments: &SpectrumFit) -> Result<Grid, Failure> {
-    let [from, to] = arguments.band[..] else {
+pub(super) fn grid(band: &[f64], step: f64) -> Result<Grid, Failure> {
+    let [from, to] = *band else {
         return Err(Failure::Input("--band: two wavelengths in nm, such as 380,780".to_owned()));
     };
-    let step = arguments.step;
     let good = from.is_finite() && to.is_finite() && step.is_finite() && from > 0.0 && step > 0.0;
     if !good || to <= from || (to - from) / step > MOST_POINTS || to > 1e6 {
         let text = format!("--band {from},{to} by {step} nm: wavelengths that rise, at most {MOST_POINTS} of them");

@@ -6,10 +6,12 @@ use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
 use serde::Serialize;
 use spectra_color::{
-    Adaptation, Dominant, Gamut, RgbSpace, cct, chromaticity, dominant_wavelength, into_gamut, lab, to_u8,
-    xyz_of_light, xyz_of_reflectance, xyz_of_transmittance,
+    Adaptation, Dominant, Gamut, RgbSpace, cct, chromaticity, color_rendering, dominant_wavelength, fidelity,
+    into_gamut, lab, luminous_efficacy, to_u8, uv_1976, xyz_of_light, xyz_of_reflectance, xyz_of_transmittance,
 };
-use spectra_spectrum::{BAND, Emission, Found, Kind, Observer, Strengths, Tabulated, find_in, function_in, meta_in};
+use spectra_spectrum::{
+    BAND, Emission, Found, Kind, Observer, Shape, Strengths, Tabulated, find_in, function_in, meta_in, named_line,
+};
 use std::fmt::Write;
 
 /// About the least that an eye sees after an hour in the dark, cd/m2.
@@ -44,8 +46,35 @@ struct Report {
     /// Of a light: cd/m2 where its unit is W m^-2 sr^-1 nm^-1, relative otherwise.
     luminance: Option<f64>,
     peak_nm: Option<f64>,
+    /// Mean wavelength on 350-830 nm, by power or value; lines included.
+    centroid_nm: Option<f64>,
+    /// Where it has fallen to half of its peak, on both sides, and how far that is apart.
+    half_height_nm: Option<[f64; 2]>,
+    width_nm: Option<f64>,
+    /// Of a light, over 350-830 nm, lines included: W where its unit is W/nm.
+    power: Option<f64>,
+    luminous_efficacy_lm_per_w: Option<f64>,
+    /// CIE 1976 u', v'.
+    uv_1976: Option<[f64; 2]>,
+    /// CIE 13.3 general index, and the special ones R1 to R14; of lights with a color temperature.
+    cie_ra: Option<f64>,
+    cie_r: Option<Vec<f64>>,
+    /// CIE 224 and TM-30 fidelity index.
+    tm30_rf: Option<f64>,
+    /// Values at the wavelengths asked for.
+    values: Vec<At>,
     srgb: Option<[u8; 3]>,
     srgb_linear: Option<[f64; 3]>,
+}
+
+/// The value at a wavelength: of light the continuum.
+#[derive(Debug, Serialize)]
+struct At {
+    wavelength_nm: f64,
+    value: f64,
+    /// Power of the lines within 0.5 nm.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    lines: Option<f64>,
 }
 
 /// Shows a spectrum in figures.
@@ -55,6 +84,7 @@ pub(crate) fn info(arguments: &SpectrumInfo) -> Outcome {
     {
         return show_function(arguments, kind, &function);
     }
+    let asked = wavelengths(&arguments.wavelength_nm)?;
     let found = load_as(&arguments.name, arguments.kind)?;
     tell_reading(&arguments.name);
     let illuminant = load_illuminant(&arguments.illuminant)?;
@@ -71,6 +101,9 @@ pub(crate) fn info(arguments: &SpectrumInfo) -> Outcome {
     let temperature =
         color.as_ref().and_then(|c| c.xy).filter(|_| !matches!(found, Found::Reflectance(_))).and_then(cct);
     let white = white(observer)?;
+    let light = if let Found::Emission(light) = &found { Some(light) } else { None };
+    let half_height_nm = half_height_nm(&found);
+    let rendering = light.and_then(color_rendering);
     let report = Report {
         name: arguments.name.trim().to_owned(),
         kind: found.kind().word(),
@@ -91,8 +124,21 @@ pub(crate) fn info(arguments: &SpectrumInfo) -> Outcome {
         dominant_wavelength_nm: dominant.filter(|d| !d.complementary).map(|d| d.wavelength_nm),
         complementary_wavelength_nm: dominant.filter(|d| d.complementary).map(|d| d.wavelength_nm),
         purity: dominant.map(|d| d.purity),
-        luminance: if let Found::Emission(light) = &found { Some(light.luminance()) } else { None },
+        luminance: light.map(Emission::luminance),
         peak_nm: peak_nm(&found),
+        centroid_nm: match &found {
+            Found::Emission(light) => light.centroid_nm(),
+            matter => shape_of(matter).and_then(Shape::centroid_nm),
+        },
+        half_height_nm,
+        width_nm: half_height_nm.map(|[low, high]| high - low),
+        power: light.map(|light| light.power(&BAND)),
+        luminous_efficacy_lm_per_w: light.and_then(luminous_efficacy),
+        uv_1976: xyz.and_then(chromaticity).map(uv_1976),
+        cie_ra: rendering.as_ref().map(|r| r.ra),
+        cie_r: rendering.map(|r| r.special),
+        tm30_rf: light.and_then(fidelity).map(|f| f.rf),
+        values: asked.into_iter().map(|nm| value_at(&found, nm)).collect(),
         srgb: color.as_ref().map(|c| RgbSpace::srgb().encode(c.linear).map(to_u8)),
         srgb_linear: color.as_ref().map(|c| c.linear),
     };
@@ -102,6 +148,48 @@ pub(crate) fn info(arguments: &SpectrumInfo) -> Outcome {
         console::out(&text(&report, &found))?;
     }
     Ok(DONE)
+}
+
+/// What is asked for by `--wavelength-nm`: numbers or letters of lines.
+fn wavelengths(texts: &[String]) -> Result<Vec<f64>, Failure> {
+    let one = |text: &String| {
+        let nm = named_line(text).map(|line| line.nominal_nm).or_else(|| text.trim().parse().ok());
+        let wrong = || {
+            Failure::Input(format!("--wavelength-nm: `{text}` is no wavelength: write nm or a line, such as 546.07,C'"))
+        };
+        nm.filter(|nm: &f64| nm.is_finite() && *nm > 0.0 && *nm <= 1e6).ok_or_else(wrong)
+    };
+    texts.iter().map(one).collect()
+}
+
+/// The function of matter and detectors, and the continuum of light.
+fn shape_of(found: &Found) -> Option<&Shape> {
+    match found {
+        Found::Emission(light) => light.continuum(),
+        Found::Transmittance(filter) => Some(filter.shape()),
+        Found::Reflectance(surface) => Some(surface.shape()),
+        Found::Sensitivity(detector) => Some(detector.shape()),
+    }
+}
+
+/// Of light with lines nothing is half as high as the highest of them: they have no height.
+fn half_height_nm(found: &Found) -> Option<[f64; 2]> {
+    match found {
+        Found::Emission(light) if !light.lines().is_empty() => None,
+        found => shape_of(found).and_then(Shape::half_height_nm),
+    }
+}
+
+fn value_at(found: &Found, wavelength_nm: f64) -> At {
+    let value = shape_of(found).map_or(0.0, |shape| shape.at(wavelength_nm));
+    let lines = match found {
+        Found::Emission(light) if !light.lines().is_empty() => {
+            let near = light.lines().iter().filter(|line| (line.wavelength_nm - wavelength_nm).abs() <= 0.5);
+            Some(near.map(|line| line.power).sum())
+        }
+        _ => None,
+    };
+    At { wavelength_nm, value, lines }
 }
 
 /// Shows a function of the wavelength that is neither light nor matter nor a detector: where it is highest and lowest.
@@ -144,7 +232,7 @@ fn show_function(arguments: &SpectrumInfo, kind: Kind, function: &Tabulated) -> 
     Ok(DONE)
 }
 
-fn observer(name: ObserverName) -> &'static Observer {
+pub(super) fn observer(name: ObserverName) -> &'static Observer {
     match name {
         ObserverName::Cie1931 => Observer::cie_1931_2deg(),
         ObserverName::Cie1964 => Observer::cie_1964_10deg(),
@@ -212,6 +300,9 @@ fn peak_nm(found: &Found) -> Option<f64> {
     }
 }
 
+/// Distance from the Planckian locus up to which the CIE's color rendering index is defined (CIE 13.3-1995, 5.3).
+const RENDERING_DUV: f64 = 5.4e-3;
+
 /// What estimated strengths of lines are good for.
 const ESTIMATED: &str = "estimated by eye: lines far apart are not comparable, so the colors below are a guess";
 
@@ -233,12 +324,28 @@ fn text(report: &Report, found: &Found) -> String {
     report.notes.iter().for_each(|note| row("note", Some(note.clone())));
     row("range", report.range_nm.map(|[from, to]| format!("{from} to {to} nm")));
     row("peak", report.peak_nm.map(|nm| peak_in_words(nm, &on_band(found))));
+    row(
+        "centroid",
+        report.centroid_nm.map(|nm| format!("{nm:.2} nm, weighted by {}", if matter { "value" } else { "power" })),
+    );
+    let half = report.half_height_nm.zip(report.width_nm);
+    row(
+        "width at half height",
+        half.map(|([low, high], width)| format!("{width:.2} nm, from {low:.2} to {high:.2} nm")),
+    );
+    for At { wavelength_nm, value, lines } in &report.values {
+        let lines = lines
+            .filter(|p| *p > 0.0)
+            .map_or(String::new(), |p| format!(" and lines of {} within 0.5 nm", significant(p)));
+        row(&format!("at {wavelength_nm} nm"), Some(format!("{}{lines}", significant(*value))));
+    }
     if report.xyz.is_some() {
         let light = if matter { format!(", under {}", report.illuminant) } else { String::new() };
         row("observer", Some(format!("{}{light}", report.observer)));
     }
     row("XYZ", report.xyz.map(|v| numbers(&v, 4)));
     row("xy", report.xy.map(|v| numbers(&v, 5)));
+    row("u'v'", report.uv_1976.map(|v| numbers(&v, 5)));
     row("Lab", report.lab.map(|v| format!("{}  (white: {})", numbers(&v, 3), report.illuminant)));
     let far = |duv: Option<f64>| duv.map_or(String::new(), |duv| format!("  (Duv {duv:+.4})"));
     row("color temperature", report.cct_k.map(|k| format!("{k:.1} K{}", far(report.duv))));
@@ -249,6 +356,15 @@ fn text(report: &Report, found: &Found) -> String {
     let is_dark = report.name.starts_with("blackbody") && report.luminance.is_some_and(|l| l < DARK_CD_M2);
     row("light", is_dark.then(|| "too little between 350 and 830 nm to see".to_owned()));
     row("luminance", report.luminance.map(|l| format!("{} cd/m2, if its unit is W/(m2 sr nm)", significant(l))));
+    row("power", report.power.map(|p| format!("{} W over 350-830 nm, if its unit is W/nm", significant(p))));
+    row("luminous efficacy", report.luminous_efficacy_lm_per_w.map(|e| format!("{e:.2} lm/W over 350-830 nm")));
+    let far = if report.duv.is_some_and(|duv| duv.abs() > RENDERING_DUV) {
+        "; too far from white for it to mean much"
+    } else {
+        ""
+    };
+    row("CIE Ra", report.cie_ra.map(|ra| format!("{ra:.1}{far}")));
+    row("TM-30 Rf", report.tm30_rf.map(|rf| format!("{rf:.1}{far}")));
     let srgb = report.srgb.zip(report.srgb_linear);
     row(
         "sRGB",

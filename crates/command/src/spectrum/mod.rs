@@ -6,7 +6,9 @@ mod describe;
 mod fit;
 mod info;
 mod list;
+mod local;
 mod plot;
+mod product;
 
 pub(crate) use arguments::SpectrumArguments;
 
@@ -25,6 +27,7 @@ pub(crate) fn spectrum(command: &SpectrumCommand) -> Outcome {
         SpectrumCommand::Info(arguments) => info::info(arguments),
         SpectrumCommand::Plot(arguments) => plot::plot(arguments),
         SpectrumCommand::Fit(arguments) => fit::fit(arguments),
+        SpectrumCommand::Product(arguments) => product::product(arguments),
         SpectrumCommand::Color(arguments) => color::color(arguments),
         SpectrumCommand::Models(arguments) => color::measure(arguments),
         SpectrumCommand::List(arguments) => list::list(arguments),

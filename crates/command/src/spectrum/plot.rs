@@ -1,14 +1,15 @@
 //! `spectra spectrum plot`.
 
-use super::arguments::SpectrumPlot;
+use super::arguments::{DiagramName, EyeName, SpectrumPlot};
+use super::info::observer;
 use super::{files, load_as, load_illuminant, tell_reading};
 use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
 use crate::words::figure_of;
 use spectra_analysis::figure;
-use spectra_color::{chromaticity, xyz_of_light, xyz_of_reflectance, xyz_of_transmittance};
+use spectra_color::{Deficiency, chromaticity, xyz_of_light, xyz_of_reflectance, xyz_of_transmittance};
 use spectra_plot::{Format, PlotError};
-use spectra_spectrum::{BAND, Emission, Found, Observer, find_in, function_in};
+use spectra_spectrum::{BAND, Emission, Found, Observer, SpectrumError, find_in, function_in};
 
 /// Draws spectra, or their chromaticities.
 pub(crate) fn plot(arguments: &SpectrumPlot) -> Outcome {
@@ -16,9 +17,13 @@ pub(crate) fn plot(arguments: &SpectrumPlot) -> Outcome {
     let output = &arguments.output.clone().unwrap_or_else(|| figure_of(name));
     // Before anything is computed: a wrong ending is found out at once.
     Format::of(output).map_err(failure)?;
-    let (mut spectra, mut functions) = (Vec::new(), Vec::new());
-    for name in &arguments.names {
+    let (mut spectra, mut functions, mut own) = (Vec::new(), Vec::new(), Vec::new());
+    for name in &columns(&arguments.names, arguments.chromaticity)? {
         let shown = name.trim().to_owned();
+        if let Some(point) = arguments.chromaticity.then(|| own_point(&shown)).flatten() {
+            own.push((shown.clone(), point.map_err(Failure::Input)?));
+            continue;
+        }
         match function_in(name, &files()).filter(|_| !arguments.chromaticity && find_in(name, &files()).is_err()) {
             Some((_, function)) => functions.push((shown, function)),
             None => spectra.push((shown, load_as(name, arguments.kind)?)),
@@ -27,14 +32,31 @@ pub(crate) fn plot(arguments: &SpectrumPlot) -> Outcome {
     }
     let canvas = if arguments.chromaticity {
         let illuminant = load_illuminant(&arguments.illuminant)?;
-        let point = |(name, found): &(String, Found)| Ok((name.clone(), xy(name, found, &illuminant)?));
-        let points = spectra.iter().map(point).collect::<Result<Vec<_>, Failure>>()?;
-        figure::chromaticity(&points)
+        let observer = observer(arguments.observer);
+        let point = |(name, found): &(String, Found)| Ok((name.clone(), xy(name, found, &illuminant, observer)?));
+        let mut points = spectra.iter().map(point).collect::<Result<Vec<_>, Failure>>()?;
+        points.extend(own);
+        let diagram = match arguments.diagram {
+            DiagramName::Cie1931 => figure::Diagram::Xy,
+            DiagramName::Cie1976 => figure::Diagram::Uv,
+        };
+        figure::chromaticity_diagram(&points, diagram, observer)
     } else {
         spectra.iter().filter(|(_, found)| is_dark(found)).for_each(|(name, _)| {
             console::warning(&format!("`{name}` is 0 from {} to {} nm", BAND.start_nm, BAND.end_nm()));
         });
         figure::spectrum_and_functions(&spectra, &functions)
+    };
+    let canvas = match arguments.seen_by {
+        None => canvas,
+        Some(eye) => {
+            let eye = match eye {
+                EyeName::Protan => Deficiency::Protan,
+                EyeName::Deutan => Deficiency::Deutan,
+                EyeName::Tritan => Deficiency::Tritan,
+            };
+            canvas.with_colors(|code| eye.seen_srgb8(code))
+        }
     };
     canvas.write(output).map_err(failure)?;
     console::note(&format!("wrote {}", output.display()));
@@ -48,8 +70,51 @@ fn failure(error: PlotError) -> Failure {
     }
 }
 
-fn xy(name: &str, found: &Found, illuminant: &Emission) -> Result<[f64; 2], Failure> {
-    let observer = Observer::cie_1931_2deg();
+/// A chromaticity that is written out: `xy:0.31,0.33` or `uv:0.198,0.468` (CIE 1976); `None` where it is none.
+fn own_point(text: &str) -> Option<Result<[f64; 2], String>> {
+    let (head, values) = text.split_once(':')?;
+    let is_uv = match head.trim() {
+        "xy" => false,
+        "uv" => true,
+        _ => return None,
+    };
+    let values: Vec<f64> = values.split(',').filter_map(|v| v.trim().parse().ok()).collect();
+    let wrong = || format!("`{text}` is no chromaticity: write xy:0.3127,0.3290, or uv:0.1978,0.4683 of CIE 1976");
+    let xy = match values[..] {
+        [u, v] if is_uv => {
+            let divisor = 6.0 * u - 16.0 * v + 12.0;
+            [9.0 * u / divisor, 4.0 * v / divisor]
+        }
+        [x, y] => [x, y],
+        _ => return Some(Err(wrong())),
+    };
+    let is_good = xy.iter().all(|v| (0.0..=1.0).contains(v)) && xy[0] + xy[1] <= 1.0;
+    Some(if is_good { Ok(xy) } else { Err(wrong()) })
+}
+
+/// Names of tables as the names of all their columns, where curves are plotted.
+fn columns(names: &[String], chromaticity: bool) -> Result<Vec<String>, Failure> {
+    /// More than any observer or camera has.
+    const MOST: usize = 8;
+    let mut all = Vec::new();
+    for name in names {
+        match find_in(name, &files()) {
+            Err(SpectrumError::Ambiguous { columns, .. }) if !chromaticity && columns.len() <= MOST => {
+                all.extend(columns.iter().map(|column| format!("{}#{column}", name.trim())));
+            }
+            _ => all.push(name.clone()),
+        }
+    }
+    if all.len() > MOST_CURVES {
+        return Err(Failure::Input(format!("{} curves in one figure: {MOST_CURVES} at most", all.len())));
+    }
+    Ok(all)
+}
+
+/// As many as differ in color or dashes.
+const MOST_CURVES: usize = 28;
+
+fn xy(name: &str, found: &Found, illuminant: &Emission, observer: &Observer) -> Result<[f64; 2], Failure> {
     let xyz = match found {
         Found::Emission(light) => xyz_of_light(light, observer),
         Found::Transmittance(filter) => xyz_of_transmittance(filter, illuminant, observer),

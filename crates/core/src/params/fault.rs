@@ -42,6 +42,29 @@ impl Fault {
         Self { path: path.into(), ..self }
     }
 
+    /// The same at a part of the text that it is about: `len` characters from character `at` (from 0) of `text`, which stands
+    /// where the fault is. Where that cannot be found in the file, as on the command line, the message says it.
+    #[must_use]
+    pub fn within(mut self, text: &str, at: usize, len: usize) -> Self {
+        let offset_of = |character: usize| text.char_indices().nth(character).map_or(text.len(), |(offset, _)| offset);
+        let (start, end) = (offset_of(at), offset_of(at.saturating_add(len)));
+        if let Some((file, span)) = &mut self.place {
+            let covered = file.text.get(span.offset..span.offset.saturating_add(span.len)).unwrap_or("");
+            let found = covered.find(text).filter(|found| !covered[..*found].contains('\n') && !text.contains('\n'));
+            if let Some(found) = found.filter(|_| !file.is_argument()) {
+                let before = covered[..found].chars().count() + at;
+                let (offset, len) = (span.offset + found + start, end - start);
+                *span = Span { line: span.line, column: span.column + before, offset, len };
+                return self;
+            }
+        }
+        if !text.is_empty() {
+            let shown: String = text.chars().take(80).collect();
+            self.message = format!("{}, at character {} of `{shown}`", self.message, at.min(text.chars().count()) + 1);
+        }
+        self
+    }
+
     /// Its place for display: `file:line:column`, or the command-line argument.
     #[must_use]
     pub fn place_text(&self) -> Option<String> {

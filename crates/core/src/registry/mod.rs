@@ -74,6 +74,8 @@ pub struct Context<'a> {
     pub illuminant: Option<&'a SpectralPower>,
     /// For a source: what the frame sees in front of the lens; `None` if the scene has no valid lens.
     pub view: Option<&'a View>,
+    /// For an imager: where the light of the source lands in the image plane, mm; `None` where that is not known yet.
+    pub landing_mm: Option<[f64; 2]>,
     /// Where warnings go, if anywhere; see [`Context::warn`].
     pub warnings: Option<&'a Warnings>,
 }
@@ -82,7 +84,7 @@ impl<'a> Context<'a> {
     /// A context with files and a band, and nothing else.
     #[must_use]
     pub const fn new(resources: &'a dyn Resources, grid: Grid) -> Self {
-        Self { resources, grid, illuminant: None, view: None, warnings: None }
+        Self { resources, grid, illuminant: None, view: None, landing_mm: None, warnings: None }
     }
 
     /// Warns of something that makes the picture doubtful: a [`Fault`] with its place and a hint, or a text.

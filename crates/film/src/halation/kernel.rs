@@ -5,8 +5,8 @@
 
 use super::base::HalationBase;
 use super::trips::Trips;
-use crate::convolve::Kernel;
 use crate::raster::Raster;
+use spectra_numerics::convolve::Kernel;
 
 /// How much coarser each level is.
 pub(super) const STEP: usize = 4;

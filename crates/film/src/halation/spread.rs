@@ -1,9 +1,9 @@
 //! Convolution over the levels: light is shared out to coarser cells on the way down, interpolated on the way up.
 
 use super::kernel::{Level, STEP};
-use crate::convolve::Convolver;
 use crate::raster::Raster;
 use rayon::prelude::*;
+use spectra_numerics::convolve::Convolver;
 
 /// Cells beside the frame that a coarse level computes, so that there is something to interpolate with at its border.
 pub(super) const MARGIN: usize = 2;

@@ -2,7 +2,7 @@
 
 use super::base::HalationBase;
 use super::kernel::Table;
-use crate::convolve::{Grid, Kernel};
+use spectra_numerics::convolve::{Grid, Kernel};
 use std::f64::consts::PI;
 
 /// Cells of the grid on which trips are chained, a radius of the ring; its side; and radii of the ring up to which

@@ -15,9 +15,9 @@ pub use modulation::Modulation;
 pub use mtf::{Mtf, MtfError};
 pub use spread::PointSpread;
 
-use crate::convolve::Convolver;
 use crate::known::Known;
 use crate::raster::Raster;
+use spectra_numerics::convolve::Convolver;
 use std::sync::Arc;
 
 /// Kernels on a plane.

@@ -1,7 +1,7 @@
 //! The spread of a point: a sum of Gaussians, and what of it falls on each pixel.
 
-use crate::convolve::Kernel;
 use spectra_core::math::{exp, log};
+use spectra_numerics::convolve::Kernel;
 use spectra_numerics::normal;
 use std::f64::consts::PI;
 

@@ -31,8 +31,11 @@ pub struct GlassFile {
     remark: Option<String>,
     /// Name of a dispersion formula; see `spectra list formula`.
     formula: Option<NameOf<Formula>>,
-    /// Its coefficients, of the formula in micrometers.
+    /// Its coefficients, of the formula in micrometers, unless `unit` says otherwise.
     coefficients: Option<Vec<f64>>,
+    /// The unit of wavelengths in the formula: `um` (the default), or `nm` where the formula is `cauchy` (B in nm^2), `conrady`, `schott`
+    /// or `sellmeier-1`.
+    unit: Option<LengthUnit>,
     /// Measured indices: wavelength, nm if bare, and n.
     table: Option<Vec<(Wavelength, f64)>>,
     /// The same as a CSV file beside this one, with k where it is known.
@@ -49,6 +52,18 @@ pub struct GlassFile {
     extinction: Option<Vec<(Wavelength, NonNegative<f64>)>>,
     /// Absorption as makers print it.
     internal_transmittance: Option<InternalTransmittance>,
+}
+
+/// The unit of wavelengths in a formula.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, JsonSchema)]
+#[schemars(inline)]
+enum LengthUnit {
+    /// Micrometers.
+    #[serde(rename = "um")]
+    Micrometer,
+    /// Nanometers.
+    #[serde(rename = "nm")]
+    Nanometer,
 }
 
 /// Transmittance inside of the glass, without reflections.
@@ -126,8 +141,19 @@ fn base(params: &Params, p: &GlassFile, resources: &dyn Resources) -> Result<Gla
         let fault = params.fault("coefficients", "coefficients of which formula?");
         return Err(fault.hint("`formula: sellmeier-1`, or another").into());
     }
+    if p.unit.is_some() && p.formula.is_none() {
+        let fault = params.fault("unit", "the unit of which formula?");
+        return Err(fault.hint("`formula: cauchy`, or another, with its `coefficients`").into());
+    }
     if p.formula.is_some() {
-        return Ok(plain(formula(params, resources)?, BAND_NM));
+        let formula = formula(params, resources)?;
+        let is_nm = p.unit == Some(LengthUnit::Nanometer);
+        let converted = if is_nm { formula.in_micrometers() } else { Some(formula) };
+        let formula = converted.ok_or_else(|| {
+            let fault = params.fault("unit", "this formula has its coefficients in micrometers only");
+            fault.hint("leave `unit` out and convert them; `nm` goes with cauchy, conrady, schott and sellmeier-1")
+        })?;
+        return Ok(plain(formula, BAND_NM));
     }
     if let Some(table) = &p.table {
         let points: Vec<(f64, f64)> = table.iter().map(|(w, n)| (w.nm(), *n)).collect();

@@ -44,6 +44,11 @@ impl Closed {
         &self.coefficients
     }
 
+    /// The same form with other coefficients.
+    pub(super) fn again(&self, coefficients: &[f64]) -> Self {
+        Self { form: self.form, coefficients: coefficients.into() }
+    }
+
     /// Index at a wavelength in micrometers.
     pub(super) fn index(&self, um: f64) -> f64 {
         (self.form.index)(&self.coefficients, um)

@@ -32,6 +32,7 @@
 mod buchdahl;
 mod constant;
 mod form;
+mod function;
 mod handbook;
 mod hartmann;
 mod herzberger;
@@ -41,6 +42,7 @@ mod numbered;
 mod polynomial;
 mod sellmeier;
 mod table;
+mod unit;
 
 pub(crate) use buchdahl::BUCHDAHL;
 pub use form::{Closed, Form};
@@ -74,6 +76,8 @@ pub enum Formula {
     Melt(Box<Melt>),
     /// Measured points and a monotone cubic between them.
     Table(Arc<Table>),
+    /// A formula written out, of the wavelength in nm.
+    Function(Arc<spectra_numerics::formula::Formula>),
 }
 
 impl Formula {
@@ -95,6 +99,7 @@ impl Formula {
             Formula::Model(model) => model.index(wavelength_nm),
             Formula::Melt(melt) => melt.index(wavelength_nm),
             Formula::Table(table) => table.value(wavelength_nm),
+            Formula::Function(formula) => formula.at(wavelength_nm),
         }
     }
 
@@ -108,10 +113,12 @@ impl Formula {
             Formula::Model(_) => "from index and Abbe number",
             Formula::Melt(_) => "melt",
             Formula::Table(_) => "table",
+            Formula::Function(_) => "function",
         }
     }
 
-    /// The coefficients in the order of the form; for a melt those of its catalogue glass; for a table, pairs of wavelength (nm) and index.
+    /// The coefficients in the order of the form; for a melt those of its catalogue glass; for a table, pairs of wavelength (nm) and index;
+    /// none for a formula that is written out.
     #[must_use]
     pub fn coefficients(&self) -> Vec<f64> {
         match self {
@@ -121,6 +128,7 @@ impl Formula {
             Formula::Model(model) => vec![model.index_mid(), model.abbe_number()],
             Formula::Melt(melt) => melt.base().coefficients(),
             Formula::Table(table) => table.points().flat_map(|(w, n)| [w, n]).collect(),
+            Formula::Function(_) => Vec::new(),
         }
     }
 }

@@ -98,6 +98,28 @@ impl Opening {
         })
     }
 
+    /// Its edge, counter-clockwise, mm from its center: each side as so many pieces.
+    #[must_use]
+    pub fn outline(&self, pieces: u32) -> Vec<[f64; 2]> {
+        let half = std::f64::consts::PI / self.sides.len() as f64;
+        let mut outline = Vec::with_capacity(self.sides.len() * pieces as usize);
+        for [ex, ey] in &self.sides {
+            for i in 0..pieces {
+                let part = f64::from(i) / f64::from(pieces) * 2.0 - 1.0;
+                // Along the side's unit vector, and across it.
+                let (along, across) = match self.arc {
+                    Some((center, radius)) => {
+                        let angle = part * math::asin((self.corner_mm * math::sin(half) / radius).min(1.0));
+                        (center + radius * math::cos(angle), radius * math::sin(angle))
+                    }
+                    None => (self.apothem_mm, part * self.corner_mm * math::sin(half)),
+                };
+                outline.push([along * ex - across * ey, along * ey + across * ex]);
+            }
+        }
+        outline
+    }
+
     /// Distance of its corners from the center, mm.
     #[must_use]
     pub fn corner_radius_mm(&self) -> f64 {
@@ -127,6 +149,23 @@ mod tests {
                 let got = area(&opening, 8.5);
                 assert!((got / want - 1.0).abs() < 2e-3, "{iris:?}: {got} {want}");
             }
+        }
+    }
+
+    /// The outline runs along the edge of what it holds.
+    #[test]
+    fn the_outline_is_the_edge() {
+        for blade_radius_mm in [5.0, 7.0, f64::INFINITY] {
+            let opening = Iris { blades: 7, blade_radius_mm, rotation_rad: 0.3 }.opening(5.0);
+            let outline = opening.outline(5);
+            assert_eq!(outline.len(), 35);
+            let mut twice = 0.0;
+            for (a, b) in outline.iter().zip(outline.iter().cycle().skip(1)) {
+                let by = |part: f64| opening.contains(a[0] * part, a[1] * part);
+                assert!(by(1.0 - 1e-9) && !by(1.0 + 1e-9), "{blade_radius_mm}: {a:?}");
+                twice += a[0] * b[1] - a[1] * b[0];
+            }
+            assert!((0.5 * twice / (std::f64::consts::PI * 25.0) - 1.0).abs() < 6e-3, "{twice}");
         }
     }
 

@@ -92,6 +92,64 @@ impl Aperture {
         self.center_mm == [0.0; 2] && matches!(self.shape, Shape::Ring { .. })
     }
 
+    /// Its edge in the frame of the surface as closed rings, outer ones counter-clockwise and holes clockwise, with curves and sides in
+    /// some `pieces` each. `None` for what has no edge (a gray mask) or one that is not closed within itself.
+    #[must_use]
+    pub fn rings(&self, semi_diameter_mm: Option<f64>, pieces: u32) -> Option<Vec<Vec<[f64; 2]>>> {
+        let around = |a: f64, b: f64| -> Vec<[f64; 2]> {
+            let count = 24 * pieces;
+            (0..count)
+                .map(|i| {
+                    let (sin, cos) = spectra_core::math::sin_cos_turns(f64::from(i) / f64::from(count));
+                    [a * cos, b * sin]
+                })
+                .collect()
+        };
+        let cut = |corners: &[[f64; 2]]| -> Vec<[f64; 2]> {
+            let sides = corners.iter().zip(corners.iter().cycle().skip(1));
+            sides
+                .flat_map(|(a, b)| {
+                    (0..pieces).map(move |i| [0, 1].map(|k| a[k] + (b[k] - a[k]) * f64::from(i) / f64::from(pieces)))
+                })
+                .collect()
+        };
+        let mut rings = match &self.shape {
+            Shape::Ring { inner_mm, outer_mm } => {
+                let mut rings = vec![around(*outer_mm, *outer_mm)];
+                if *inner_mm > 0.0 {
+                    rings.push(around(*inner_mm, *inner_mm).into_iter().rev().collect());
+                }
+                rings
+            }
+            Shape::Rectangle { half_width_mm: a, half_height_mm: b } => {
+                vec![cut(&[[-a, -b], [*a, -b], [*a, *b], [-a, *b]])]
+            }
+            Shape::Ellipse { half_width_mm, half_height_mm } => vec![around(*half_width_mm, *half_height_mm)],
+            Shape::Polygon(corners) => {
+                let twice: f64 =
+                    corners.iter().zip(corners.iter().cycle().skip(1)).map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum();
+                let mut ring = cut(corners);
+                if twice < 0.0 {
+                    ring.reverse();
+                }
+                vec![ring]
+            }
+            Shape::Iris(iris) => vec![iris.opening(semi_diameter_mm?).outline(2 * pieces)],
+            Shape::Drawing(drawing) => drawing.rings()?,
+            Shape::Mask(_) => return None,
+        };
+        if rings.iter().flatten().flatten().any(|v| !v.is_finite()) {
+            return None;
+        }
+        for ring in &mut rings {
+            ring.iter_mut().for_each(|p| (0..2).for_each(|k| p[k] += self.center_mm[k]));
+            if self.obscures {
+                ring.reverse();
+            }
+        }
+        Some(rings)
+    }
+
     /// Radius about the vertex outside of which nothing passes, mm.
     #[must_use]
     pub fn reach_mm(&self) -> f64 {

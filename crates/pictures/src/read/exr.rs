@@ -6,11 +6,12 @@
 //! format's documentation says, which sRGB shares.
 
 use super::linear::{Choice, Linear, Trouble, check_size, clean};
+use super::planes::{Plane, Planes};
 use exr::block::UncompressedBlock;
 use exr::block::lines::LineRef;
 use exr::block::reader::ChunksReader;
 use exr::meta::MetaData;
-use exr::meta::attribute::{Chromaticities, SampleType};
+use exr::meta::attribute::{AttributeValue, Chromaticities, SampleType};
 use exr::meta::header::Header;
 use exr::prelude::{Vec2, f16};
 use spectra_color::{Adaptation, RgbSpace, Transfer};
@@ -181,6 +182,97 @@ pub(super) fn decode(
         *pixel = converted.map(clean);
     }
     Ok(Linear { width, height, pixel_aspect, rgb, alpha, depth, clipped_at: None })
+}
+
+/// Every channel of a file of `bytes` bytes as it is, and the texts of its header; 0 where the file holds nothing of the window.
+pub(super) fn planes(reader: impl BufRead + Seek + Send, bytes: u64) -> Result<Planes, Trouble> {
+    let reader = exr::block::read(reader, false).map_err(said)?;
+    let headers = reader.headers().to_vec();
+    check(&headers, bytes)?;
+    let ([width, height], pixel_aspect) = shape(&headers);
+    let pixels = width as usize * height as usize;
+    let attributes = texts(&headers);
+    let unit = |name: &str| {
+        let key = format!("unit {name}");
+        attributes.iter().find(|(own, _)| *own == key).map(|(_, text)| text.clone()).unwrap_or_default()
+    };
+    // Where the channels of each part begin.
+    let (mut channels, mut first) = (Vec::new(), Vec::new());
+    let count: usize = headers.iter().map(|header| header.channels.list.len()).sum();
+    if (count as u64).saturating_mul(pixels as u64).saturating_mul(size_of::<f32>() as u64) > MAX_BYTES {
+        return Err(Trouble::file(format!(
+            "{count} channels of {width} x {height} pixels; at most {MAX_BYTES} bytes are read"
+        )));
+    }
+    for header in &headers {
+        first.push(channels.len());
+        let part = header.own_attributes.layer_name.as_ref().map(ToString::to_string).unwrap_or_default();
+        for channel in &header.channels.list {
+            let own = channel.name.to_string();
+            if channel.sampling.0 != 1 || channel.sampling.1 != 1 {
+                let text = format!("channel `{own}` has fewer samples than the picture has pixels");
+                return Err(Trouble::file(text).hint("write it without subsampling"));
+            }
+            let repeats = part.is_empty() || own.starts_with(&format!("{part}."));
+            let name = if repeats { own } else { format!("{part}.{own}") };
+            channels.push(Plane { unit: unit(&name), name, values: vec![0.0; pixels] });
+        }
+    }
+    let window = headers[0].shared_attributes.display_window.position;
+    let take = |_: &MetaData, block: UncompressedBlock| {
+        let part = block.index.layer;
+        let header = &headers[part];
+        let position = header.own_attributes.layer_position;
+        let offset = [i64::from(position.0) - i64::from(window.0), i64::from(position.1) - i64::from(window.1)];
+        for line in block.lines(&header.channels) {
+            let row = line.location.position.1 as i64 + offset[1];
+            let from = line.location.position.0 as i64 + offset[0];
+            if !(0..i64::from(height)).contains(&row) {
+                continue;
+            }
+            let at = line.location.channel;
+            let values = &mut channels[first[part] + at].values;
+            for (i, value) in samples(&line, header.channels.list[at].sample_type)?.into_iter().enumerate() {
+                let column = from + i as i64;
+                if (0..i64::from(width)).contains(&column) {
+                    values[row as usize * width as usize + column as usize] = value;
+                }
+            }
+        }
+        Ok(())
+    };
+    let chunks = reader.filter_chunks(false, |_, _, block| block.level == Vec2(0, 0));
+    chunks.and_then(|chunks| chunks.decompress_parallel(false, take)).map_err(said)?;
+    let place = |v: Vec2<f32>| [f64::from(v.0), f64::from(v.1)];
+    let stated = headers[0].shared_attributes.chromaticities;
+    // Refused here as everywhere where they span no colors.
+    stated.map(matrix).transpose()?;
+    let chromaticities = stated.map(|c| [c.red, c.green, c.blue, c.white].map(place));
+    Ok(Planes {
+        format: "OpenEXR",
+        width,
+        height,
+        pixel_aspect,
+        channels,
+        chromaticities,
+        attributes,
+        clipped_at: None,
+    })
+}
+
+/// Texts of the headers, sorted by name; of several parts the first that says it.
+fn texts(headers: &[Header]) -> Vec<(String, String)> {
+    let mut all = std::collections::BTreeMap::new();
+    for header in headers {
+        let other = header.shared_attributes.other.iter().chain(&header.own_attributes.other);
+        for (name, value) in other {
+            if let AttributeValue::Text(text) = value {
+                let text = String::from_utf8_lossy(text.as_slice()).into_owned();
+                all.entry(name.to_string()).or_insert(text);
+            }
+        }
+    }
+    all.into_iter().collect()
 }
 
 /// The samples of a line as single precision.

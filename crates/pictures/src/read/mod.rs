@@ -9,6 +9,7 @@ mod foreign;
 mod header;
 mod jpeg;
 mod linear;
+mod planes;
 mod tiff;
 mod turn;
 
@@ -16,3 +17,4 @@ pub use decode::{decode, depth};
 pub use foreign::ENDINGS;
 pub use header::{Header, header};
 pub use linear::{Choice, Linear, Trouble};
+pub use planes::{Plane, Planes, planes};

@@ -5,13 +5,17 @@
 //! rounding. What two reflections leave in the lens goes on by paths of more: it is not traced.
 
 use super::Ghosts;
-use crate::pilot::PILOT_RAYS;
+use crate::Workers;
+use crate::error::RenderError;
 use crate::pipeline::ThreadState;
+use spectra_core::RayBatch;
 use spectra_core::loss::ALIVE;
+use spectra_core::workers::each_of;
 use spectra_lens::{Act, Ledger, Lens, Path, StepLedger, Travel};
 
-/// Rays for each path, in batches of [`PILOT_RAYS`].
-const BATCHES: u64 = 4;
+/// Rays for each path, and of a batch.
+const RAYS: usize = 16_384;
+const BATCH: usize = 256;
 const MM2_PER_M2: f64 = 1e6;
 
 /// Where the light of a source's lights goes that enters the lens, W in the band of the scene.
@@ -74,9 +78,25 @@ struct Account {
 }
 
 /// The ledger of a scene.
-pub(super) fn of(ghosts: &Ghosts, lens: &Lens, surfaces: &[usize]) -> LightLedger {
+pub(super) fn of(
+    ghosts: &Ghosts,
+    lens: &Lens,
+    surfaces: &[usize],
+    workers: &dyn Workers,
+) -> Result<LightLedger, RenderError> {
     let (count, imager) = (lens.elements.len(), lens.elements.len() - 1);
-    let mut state = ghosts.state(PILOT_RAYS as usize);
+    let rays = started(ghosts);
+    let follow = |state: &mut ThreadState, path: &Path| follow(ghosts, state, &rays, path, imager);
+    let turned =
+        |at: &[usize]| Path::reflected(count, Travel::Forward, at).expect("surfaces of the lens in their order");
+    let fresh = || ghosts.state(BATCH);
+    let by_first = each_of(workers, surfaces.len(), fresh, |state, at| {
+        let first = surfaces[at];
+        let once = follow(state, &turned(&[first]));
+        let seconds = surfaces.iter().filter(|second| **second < first);
+        let twice: Vec<_> = seconds.map(|second| (*second, follow(state, &turned(&[first, *second])))).collect();
+        Ok::<_, RenderError>((first, once, twice))
+    })?;
     let mut all = LightLedger::default();
     let book = |all: &mut LightLedger, account: &Account| {
         let lost = &account.lost;
@@ -84,26 +104,22 @@ pub(super) fn of(ghosts: &Ghosts, lens: &Lens, surfaces: &[usize]) -> LightLedge
         all.absorbed_w += lost.absorbed;
         all.beside_w += account.beside;
     };
-    let straight = follow(ghosts, &mut state, &Path::through(count, Travel::Forward), imager);
+    let straight = follow(&mut fresh(), &Path::through(count, Travel::Forward));
     let outside = straight.ledger.steps.first().map_or(0.0, |first| first.missed + first.vignetted);
     all.emitted_w = straight.ledger.launched - outside;
     all.rims_w -= outside;
     book(&mut all, &straight);
     all.direct_w = straight.on_frame;
     all.beside_w += straight.ledger.arrived - straight.on_frame;
-    for &first in surfaces {
-        let path = Path::reflected(count, Travel::Forward, &[first]).expect("a surface of the lens");
-        let once = follow(ghosts, &mut state, &path, imager);
+    for (first, once, seconds) in by_first {
         // What neither passed there nor was reflected: coatings of metal absorb it, and beside the frame is no imager.
         let kept = straight.ledger.steps[first].elsewhere - once.entered;
         *(if first == imager { &mut all.beside_w } else { &mut all.absorbed_w }) += kept;
         book(&mut all, &once);
         all.front_w += once.ledger.arrived;
-        let turn = last_turn(&path);
+        let turn = last_turn(&turned(&[first]));
         let mut left = once.lost.elsewhere;
-        for &second in surfaces.iter().filter(|second| **second < first) {
-            let path = Path::reflected(count, Travel::Forward, &[first, second]).expect("backward from the first");
-            let twice = follow(ghosts, &mut state, &path, imager);
+        for (second, twice) in seconds {
             let met = turn + (first - second);
             all.absorbed_w += once.ledger.steps[met].elsewhere - twice.entered;
             left -= once.ledger.steps[met].elsewhere;
@@ -120,7 +136,7 @@ pub(super) fn of(ghosts: &Ghosts, lens: &Lens, surfaces: &[usize]) -> LightLedge
     let followed: f64 = surfaces.iter().map(|at| straight.ledger.steps[*at].elsewhere).sum();
     all.not_traced_w += straight_left - followed;
     all.paths.sort_by(|a, b| b.power_w.total_cmp(&a.power_w).then(a.surfaces.cmp(&b.surfaces)));
-    all.scaled(1.0 / (MM2_PER_M2 * (BATCHES * u64::from(PILOT_RAYS)) as f64))
+    Ok(all.scaled(1.0 / (MM2_PER_M2 * RAYS as f64)))
 }
 
 impl LightLedger {
@@ -145,18 +161,26 @@ fn last_turn(path: &Path) -> usize {
     path.steps().iter().rposition(|step| step.act == Act::Reflect).unwrap_or(0)
 }
 
-fn follow(ghosts: &Ghosts, state: &mut ThreadState, path: &Path, imager: usize) -> Account {
-    let pipeline = &ghosts.pipeline;
-    let capacity = PILOT_RAYS as usize;
-    let work = pipeline.tracer.work_in_place(capacity).with_ledger();
-    let old = std::mem::replace(&mut state.work, work);
+/// Rays all over the front, as they enter the lens: all paths share them.
+fn started(ghosts: &Ghosts) -> Vec<RayBatch> {
     let everywhere = vec![super::Guide::everywhere(); ghosts.plan.zones.count()];
+    let mut state = ghosts.state(BATCH);
+    let mut start = |first: usize| {
+        ghosts.start(&mut state, &everywhere, (0, first as u64, BATCH), |_, _| {});
+        state.rays.clone()
+    };
+    (0..RAYS).step_by(BATCH).map(&mut start).collect()
+}
+
+fn follow(ghosts: &Ghosts, state: &mut ThreadState, rays: &[RayBatch], path: &Path, imager: usize) -> Account {
+    let pipeline = &ghosts.pipeline;
+    let work = pipeline.tracer.work_in_place(BATCH).with_ledger();
+    let old = std::mem::replace(&mut state.work, work);
     let route = pipeline.tracer.route(path);
     let forward = path.leaves() == Travel::Forward;
     let mut on_frame = 0.0;
-    for batch in 0..BATCHES {
-        let first = batch * u64::from(PILOT_RAYS);
-        ghosts.start(state, &everywhere, (0, first, capacity), |_, _| {}, |_, _| {});
+    for batch in rays {
+        state.rays = batch.clone();
         pipeline.tracer.follow(&route, &mut state.rays, &mut state.work);
         if forward {
             state.rays.set_stage(spectra_core::numbers::StageKey::IMAGER);

@@ -7,6 +7,7 @@
 
 mod account;
 mod guide;
+mod pilot;
 mod zones;
 
 pub use account::{GhostPath, LightLedger};
@@ -20,10 +21,11 @@ use crate::pipeline::{Pipeline, ThreadState};
 use crate::sums::{ExactSums, OwnSums, each, scale_for};
 use crate::{Done, Workers};
 use glam::DVec3;
-use guide::{Aim, Found, Guide};
+use guide::{Aim, Guide};
 use spectra_core::batch::pixel_and_channel;
 use spectra_core::numbers::{Numbers, StageKey, mix64};
 use spectra_core::stage::{Emit, Receive};
+use spectra_core::workers::each_of;
 use spectra_core::{Loss, RayBatch};
 use spectra_lens::{FrontOpening, Indices, Path, Route, Tracer};
 use std::ops::Range;
@@ -35,8 +37,10 @@ const ESTIMATOR: &str = "ghosts";
 /// Turns the picture's seed into that of the ghosts.
 const SEED: u64 = 0x6768_6f73_7473;
 
-/// Rays for each pixel and sample, and in all of a sample at least for each path.
+/// Rays for each pixel and sample, and in all of a sample at least for each path. Where ghosts are traced because lights are bright,
+/// dim ones get fewer, as the brightest block is to the mean of the frame.
 const RAYS_A_PIXEL: f64 = 1.0;
+const LEAST_A_PIXEL: f64 = 0.125;
 const LEAST_A_PATH: u64 = 64;
 /// Rays of a unit of work: some milliseconds.
 const RAYS_PER_BLOCK: u64 = 1 << 16;
@@ -45,16 +49,9 @@ const FLOOR: u64 = 8;
 /// What a ray costs beside its surfaces, in surfaces.
 const OVERHEAD: f64 = 8.0;
 
-/// Rays of the pilot for each path and round, of one zone and of each further one, and rounds: the last one says how much comes.
-const PILOT: usize = 4096;
-const PILOT_MORE: usize = 1024;
-const ROUNDS: u64 = 3;
-/// Pixels of a block, across and down.
-const BLOCK: usize = 32;
-/// Blocks that have less than this part of the brightest one need not be as clean as those that have more.
-const DIM: f64 = 1e-4;
-/// Room of the sums for rays that the pilot has not seen.
+/// Room of the sums for rays that the pilot has not seen, and rays of each path that it looks at.
 const HEADROOM: f64 = 4.0;
+const SCALE_RAYS: u64 = 4096;
 
 /// One path.
 struct Way {
@@ -86,8 +83,13 @@ pub(crate) struct Ghosts {
 }
 
 impl Ghosts {
-    /// Searches the ways of the light of a share of the source, and finds the scale of the sums. `None` where nothing reflects.
-    pub(crate) fn new(pipeline: &Pipeline) -> Result<Option<Self>, RenderError> {
+    /// Searches the ways of the light of a share of the source, and finds the scale of the sums. `None` where nothing reflects, or
+    /// where the brightest block of 32 x 32 pixels has no more than `matters` (W/m2, the sum of its channels).
+    pub(crate) fn new(
+        pipeline: &Pipeline,
+        matters: Option<f64>,
+        workers: &dyn Workers,
+    ) -> Result<Option<Self>, RenderError> {
         let scene = &pipeline.scene;
         let emit = pipeline.source().emit().ok_or(RenderError::CannotEmit)?;
         scene.imager.receive().ok_or(RenderError::CannotReceive)?;
@@ -121,8 +123,14 @@ impl Ghosts {
         let ways: Vec<Way> = Path::ghosts(count, &surfaces, 2).into_iter().map(way).collect();
         let plan = Plan { opening, zones, ways, rays: 1, blocks_a_sample: 1, ledger: LightLedger::default() };
         let mut own = Self { pipeline, plan: Arc::new(plan), numbers, scale: 1.0 };
-        own.plan = Arc::new(own.planned(&lens, &surfaces));
-        own.scale = own.pilot_scale()?;
+        let Some(found) = pilot::search(&own, matters, workers)? else { return Ok(None) };
+        let ledger = account::of(&own, &lens, &surfaces, workers)?;
+        let a_pixel = matters.map_or(RAYS_A_PIXEL, |matters| {
+            // What matters is a part of the mean.
+            RAYS_A_PIXEL * (crate::renderer::MATTERS * found.brightest / matters).clamp(LEAST_A_PIXEL, 1.0)
+        });
+        own.plan = Arc::new(own.shared_out(found.ways, a_pixel, ledger));
+        own.scale = own.pilot_scale(workers)?;
         own.numbers = own.of_seed(scene.render.seed);
         Ok(Some(own))
     }
@@ -152,14 +160,12 @@ impl Ghosts {
         state
     }
 
-    /// Starts rays `first .. first + len` of a stream at the front: `aims` gets the zone and the aim of each.
-    fn start(
+    /// Puts rays `first .. first + len` of a stream on the source, with the numbers of all dimensions.
+    fn place(
         &self,
         state: &mut ThreadState,
-        guides: &[Guide],
         (stream, first, len): (u64, u64, usize),
         mut look: impl FnMut(Step, &RayBatch),
-        mut aimed: impl FnMut(usize, Aim),
     ) {
         let isa = self.pipeline.isa;
         for (dimension, column) in state.numbers.iter_mut().enumerate() {
@@ -170,39 +176,55 @@ impl Ghosts {
         look(Step::Wavelengths, &state.rays);
         state.rays.number(0, &self.numbers, ESTIMATOR, stream, first);
         state.rays.set_stage(StageKey::SOURCE);
-        let [_, u, v, a, b] = &state.numbers;
-        let emit = self.emit();
-        emit.place(&mut state.rays, u.slice(len), v.slice(len), isa);
+        let [_, u, v, _, _] = &state.numbers;
+        self.emit().place(&mut state.rays, u.slice(len), v.slice(len), isa);
         look(Step::Source, &state.rays);
-        if let Some(opening) = &self.plan.opening {
-            let (a, b) = (a.slice(len), b.slice(len));
-            let c = state.rays.columns_mut();
-            for i in 0..len {
-                let point = DVec3::new(c.x[i], c.y[i], c.z[i]);
-                let zone = self.plan.zones.of(point);
-                let aim = guides[zone].draw(a[i], b[i]);
-                aimed(zone, aim);
-                let Some(disk) = opening.seen_from(point) else {
-                    // In front of the glass itself: no light of a lens that has room for a subject.
-                    c.state[i] = Loss::Vignetted.state(1);
-                    continue;
-                };
-                let at = disk.center + disk.radial * aim.place[0] + disk.across * aim.place[1];
-                let way = at - point;
-                let distance2 = way.length_squared();
-                let direction = way / distance2.sqrt();
-                (c.x[i], c.y[i], c.z[i]) = at.into();
-                (c.l[i], c.m[i], c.n[i]) = direction.into();
-                // The solid angle that the ray stands for.
-                c.weight[i] *= disk.radial.length_squared() * direction.dot(disk.sight) / (distance2 * aim.density);
-            }
-            look(Step::Pupil, &state.rays);
-        } else {
-            (0..len).for_each(|i| {
-                aimed(0, Aim { place: [2.0 * a.slice(len)[i] - 1.0, 2.0 * b.slice(len)[i] - 1.0], density: 0.25 })
-            });
+    }
+
+    /// Takes rays that are on the source to the front, by two numbers each: `aimed` gets the zone and the aim of each.
+    fn aim(&self, rays: &mut RayBatch, guides: &[Guide], [a, b]: [&[f64]; 2], mut aimed: impl FnMut(usize, Aim)) {
+        let Some(opening) = &self.plan.opening else {
+            let place = |(a, b): (&f64, &f64)| [2.0 * a - 1.0, 2.0 * b - 1.0];
+            a.iter().zip(b).for_each(|numbers| aimed(0, Aim { place: place(numbers), density: 0.25 }));
+            return;
+        };
+        let c = rays.columns_mut();
+        for i in 0..a.len() {
+            let point = DVec3::new(c.x[i], c.y[i], c.z[i]);
+            let zone = self.plan.zones.of(point);
+            let aim = guides[zone].draw(a[i], b[i]);
+            aimed(zone, aim);
+            let Some(disk) = opening.seen_from(point) else {
+                // In front of the glass itself: no light of a lens that has room for a subject.
+                c.state[i] = Loss::Vignetted.state(1);
+                continue;
+            };
+            let at = disk.center + disk.radial * aim.place[0] + disk.across * aim.place[1];
+            let way = at - point;
+            let distance2 = way.length_squared();
+            let direction = way / distance2.sqrt();
+            (c.x[i], c.y[i], c.z[i]) = at.into();
+            (c.l[i], c.m[i], c.n[i]) = direction.into();
+            // The solid angle that the ray stands for.
+            c.weight[i] *= disk.radial.length_squared() * direction.dot(disk.sight) / (distance2 * aim.density);
         }
-        emit.radiate(&mut state.rays, isa);
+    }
+
+    /// Starts rays `first .. first + len` of a stream at the front.
+    fn start(
+        &self,
+        state: &mut ThreadState,
+        guides: &[Guide],
+        span: (u64, u64, usize),
+        mut look: impl FnMut(Step, &RayBatch),
+    ) {
+        self.place(state, span, &mut look);
+        let [.., a, b] = &state.numbers;
+        self.aim(&mut state.rays, guides, [a, b].map(|numbers| numbers.slice(span.2)), |_, _| {});
+        if self.plan.opening.is_some() {
+            look(Step::Pupil, &state.rays);
+        }
+        self.emit().radiate(&mut state.rays, self.pipeline.isa);
         look(Step::Source, &state.rays);
     }
 
@@ -226,7 +248,7 @@ impl Ghosts {
         mut look: impl FnMut(Step, &RayBatch),
     ) {
         let way = &self.plan.ways[at];
-        self.start(state, &way.guides, (at as u64 + 1, first, len), &mut look, |_, _| {});
+        self.start(state, &way.guides, (at as u64 + 1, first, len), &mut look);
         self.finish(state, &way.route, &mut look);
         state.rays.compact();
         state.rays.weighing().weight.iter_mut().for_each(|weight| *weight *= way.boost);
@@ -250,70 +272,12 @@ impl Ghosts {
         state.rays.tags().iter().copied().zip(sums).collect()
     }
 
-    /// The plan that a pilot run finds.
-    fn planned(&self, lens: &spectra_lens::Lens, surfaces: &[usize]) -> Plan {
-        let zones = self.plan.zones.count();
-        let size = self.pipeline.scene.imager.size();
-        let (width, height) = (size.width_px as usize, size.height_px as usize);
-        let columns = width.div_ceil(BLOCK);
-        let block = |pixel: u32| pixel as usize / width / BLOCK * columns + pixel as usize % width / BLOCK;
-        let rays = PILOT + PILOT_MORE * (zones - 1);
-        let mut light = vec![0.0; columns * height.div_ceil(BLOCK)];
-        let mut state = self.state(PILOT);
-        state.work = self.pipeline.tracer.work_in_place(PILOT);
-        // Of the last round: zone, aim, block and value of each ray that came through.
-        let mut came: Vec<Vec<(usize, Aim, usize, f64)>> = Vec::new();
-        let mut ways: Vec<(Vec<Guide>, f64)> = Vec::new();
-        for (at, way) in self.plan.ways.iter().enumerate() {
-            let mut guides = way.guides.clone();
-            let mut seen = Vec::new();
-            for round in 0..ROUNDS {
-                let mut found: Vec<Found> = guides.iter().map(Found::of).collect();
-                for first in (0..rays).step_by(PILOT) {
-                    let len = PILOT.min(rays - first);
-                    let mut aims = Vec::with_capacity(len);
-                    let span = ((at as u64 + 1) * ROUNDS + round, first as u64, len);
-                    self.start(&mut state, &guides, span, |_, _| {}, |zone, aim| aims.push((zone, aim)));
-                    self.finish(&mut state, &way.route, |_, _| {});
-                    for ((tag, value), (zone, aim)) in self.brought(&mut state).into_iter().zip(aims) {
-                        if value != 0.0 {
-                            // Without what the density makes of it.
-                            let value = value.abs() * aim.density;
-                            found[zone].add(&guides[zone], aim, value);
-                            if round + 1 == ROUNDS {
-                                seen.push((zone, aim, block(pixel_and_channel(tag).0), value));
-                            }
-                        }
-                    }
-                }
-                if round + 1 < ROUNDS {
-                    guides = found.iter().map(Found::closer).collect();
-                }
-            }
-            seen.iter().for_each(|(_, aim, block, value)| light[*block] += value / aim.density / rays as f64);
-            came.push(seen);
-            ways.push((guides, 0.0));
-        }
-        let peak = light.iter().fold(0.0_f64, |a, b| a.max(*b));
-        for ((guides, variance), seen) in ways.iter_mut().zip(&came) {
-            let mut found: Vec<Found> = guides.iter().map(Found::of).collect();
-            for (zone, aim, block, value) in seen {
-                found[*zone].add(&guides[*zone], *aim, value / (light[*block] + DIM * peak));
-            }
-            for (guide, found) in guides.iter_mut().zip(found) {
-                let (best, own) = found.guide(rays as u64);
-                (*guide, *variance) = (best, *variance + own);
-            }
-        }
-        self.shared_out(ways, account::of(self, lens, surfaces))
-    }
-
     /// The rays of a sample, shared out over the paths.
-    fn shared_out(&self, found: Vec<(Vec<Guide>, f64)>, ledger: LightLedger) -> Plan {
+    fn shared_out(&self, found: Vec<(Vec<Guide>, f64)>, a_pixel: f64, ledger: LightLedger) -> Plan {
         let old = &self.plan;
         let paths = old.ways.len() as u64;
         let pixels = self.pipeline.scene.imager.size().pixels() as f64;
-        let a_sample = ((pixels * RAYS_A_PIXEL) as u64).max(paths * LEAST_A_PATH);
+        let a_sample = ((pixels * a_pixel) as u64).max(paths * LEAST_A_PATH);
         let blocks_a_sample = a_sample.div_ceil(RAYS_PER_BLOCK);
         let a_block = a_sample / blocks_a_sample;
         let floor = (a_block / (FLOOR * paths)).max(1);
@@ -337,22 +301,28 @@ impl Ghosts {
         Plan { opening: old.opening, zones: old.zones.clone(), ways, rays, blocks_a_sample, ledger }
     }
 
-    /// The scale of the sums, by one block.
-    fn pilot_scale(&self) -> Result<f64, RenderError> {
+    /// The scale of the sums, by some rays of each path.
+    fn pilot_scale(&self, workers: &dyn Workers) -> Result<f64, RenderError> {
         let capacity = self.pipeline.scene.render.batch;
-        let mut largest = 0.0_f64;
-        for at in 0..self.plan.ways.len() {
-            for (first, len) in spans(0..self.plan.ways[at].rays, capacity) {
+        let look = |state: &mut ThreadState, at: usize| {
+            let mut largest = 0.0_f64;
+            for (first, len) in spans(0..self.plan.ways[at].rays.min(SCALE_RAYS), capacity) {
                 let mut blame = Blame::default();
-                // Places of rays that ended in another batch are nobody's fault.
-                let mut state = self.state(capacity);
-                self.batch(&mut state, at, (first, len), |step, rays| blame.look(step, rays));
-                if let Some(error) = blame.no_number(&self.pipeline) {
-                    return Err(error);
+                self.batch(state, at, (first, len), |step, rays| blame.look(step, rays));
+                if blame.no_number(&self.pipeline).is_some() {
+                    // Places of rays that ended in another batch are nobody's fault.
+                    let (mut blame, mut again) = (Blame::default(), self.state(capacity));
+                    self.batch(&mut again, at, (first, len), |step, rays| blame.look(step, rays));
+                    if let Some(error) = blame.no_number(&self.pipeline) {
+                        return Err(error);
+                    }
                 }
                 largest = largest.max(state.largest(&self.pipeline));
             }
-        }
+            Ok(largest)
+        };
+        let each = each_of(workers, self.plan.ways.len(), || self.state(capacity), look)?;
+        let largest = each.into_iter().fold(0.0, f64::max);
         Ok(scale_for(largest * HEADROOM * self.pipeline.source().peak_over_mean().max(1.0)))
     }
 

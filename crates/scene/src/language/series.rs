@@ -220,6 +220,12 @@ impl Written {
 }
 
 impl Series {
+    /// The text of its file, and below it, as remarks, what is set on top.
+    #[must_use]
+    pub fn text(&self) -> String {
+        record(&self.written.text.text, &self.overrides)
+    }
+
     /// Takes `sweep` and `animation` out of the tree.
     fn unfolded(mut self, set: &[String], references: &std::collections::BTreeSet<String>) -> Result<Self, Faults> {
         let mut faults = Faults::new();

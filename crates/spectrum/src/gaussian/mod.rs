@@ -9,10 +9,12 @@
 mod fit;
 mod local;
 mod mixture;
+mod one_term;
 mod projection;
 mod term;
 
 pub use fit::{GaussianFit, GaussianFitReport, fit_gaussians};
 pub use local::NoGaussian;
 pub use mixture::GaussianMixture;
+pub use one_term::OneTerm;
 pub use term::GaussianTerm;

@@ -23,7 +23,7 @@ use spectra_core::params::{Faults, Positive, Wavelength};
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct Mixture {
-    /// Signed Gaussians, 1 to 4096; where their sum is negative it counts as 0.
+    /// Signed Gaussians, 1 to 4096; where their sum is negative it counts as 0, unless the mixture is a part of a `sum`.
     // More than any fit has, and than a product of several that is written out.
     #[schemars(length(min = 1, max = 4096))]
     terms: Vec<Term>,
@@ -53,7 +53,11 @@ impl SpectrumKind for Mixture {
         };
         let terms: Vec<GaussianTerm> = self.terms.iter().enumerate().filter_map(term).collect();
         faults.into_result(())?;
-        let shape = Shape::positive_mixture(GaussianMixture::new(terms)).map_err(making.at("terms"))?;
+        let mixture = GaussianMixture::new(terms);
+        if making.is_part() {
+            return Ok(Piece::Bare(Shape::mixture(mixture)));
+        }
+        let shape = Shape::positive_mixture(mixture).map_err(making.at("terms"))?;
         Ok(Piece::Bare(shape.0))
     }
 }

@@ -37,6 +37,7 @@
 
 mod band;
 mod constant;
+mod function;
 mod gaussian;
 mod histogram;
 mod led;
@@ -85,6 +86,8 @@ pub fn build_kind<K: SpectrumKind + Readable + 'static>(
 pub struct Making<'a> {
     params: &'a Params,
     wanted: Kind,
+    /// Whether it is a part of a sum, which is judged as a whole.
+    is_part: bool,
     loader: &'a Loader<'a>,
     files: &'a dyn Resources,
 }
@@ -107,19 +110,31 @@ impl Making<'_> {
         move |error| self.params.fault(key, error.to_string()).into()
     }
 
+    /// Whether it is a part of a sum: then it may be negative, as the sum is judged as a whole.
+    #[must_use]
+    pub fn is_part(&self) -> bool {
+        self.is_part
+    }
+
     /// Another spectrum that this one is made of: a name, an expression, or a map with its kind.
     ///
     /// # Errors
     /// What is wrong with it, placed.
     pub fn part(&self, node: &StageNode, wanted: Kind) -> Result<Piece, Faults> {
+        let piece = self.addend(node, wanted, false)?;
+        piece.settled().map_err(|e| e.faults(|text| node.fault(text)))
+    }
+
+    /// The same, which may be negative if it `is_part` of a sum.
+    pub(crate) fn addend(&self, node: &StageNode, wanted: Kind, is_part: bool) -> Result<Piece, Faults> {
         match node.node().as_str() {
-            Some(name) => self.loader.piece(name, wanted).map_err(|e| match e {
+            Some(name) => self.loader.part(name, wanted).map_err(|e| match e {
                 SpectrumError::Document(faults) => faults,
                 other => other.faults(|text| node.fault(text)),
             }),
             None => {
                 self.loader.count("this file").map_err(|e| node.fault(e.to_string()))?;
-                of_params(&node.params()?, wanted, self.loader, self.files)
+                made(&node.params()?, wanted, is_part, self.loader, self.files)
             }
         }
     }
@@ -132,8 +147,20 @@ pub(crate) fn of_params(
     loader: &Loader<'_>,
     files: &dyn Resources,
 ) -> Result<Piece, Faults> {
+    let piece = made(params, wanted, false, loader, files)?;
+    // What only the whole can be wrong with has no key of its own.
+    piece.settled().map_err(|e| e.faults(|text| params.fault("kind", text)))
+}
+
+fn made(
+    params: &Params,
+    wanted: Kind,
+    is_part: bool,
+    loader: &Loader<'_>,
+    files: &dyn Resources,
+) -> Result<Piece, Faults> {
     let kind = registry::build::<dyn SpectrumKind>(params, &Context::new(files, BAND))?;
-    kind.make(&Making { params, wanted, loader, files })
+    kind.make(&Making { params, wanted, is_part, loader, files })
 }
 
 /// What stands where a spectrum is wanted in a spectrum: a name or an expression, or a map with its kind.

@@ -3,7 +3,7 @@
 use super::{Making, SpectrumEntry, SpectrumForm, SpectrumKind, build_kind};
 use crate::error::SpectrumError;
 use crate::meta::Kind;
-use crate::piece::Piece;
+use crate::piece::{Piece, of_shape};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{Faults, Part};
@@ -29,7 +29,8 @@ struct Product {
 
 /// Spectra added.
 ///
-/// Lamps that shine together, or bands of one filter. In a line: `0.5 * D65 + line:e`.
+/// Lamps that shine together, or bands of one filter. Parts may be negative (a notch is 1 minus a band); the sum must not. In a
+/// line: `0.5 * D65 + line:e`, `1 - 0.9 * gaussian:550,20`.
 ///
 /// # Example
 /// ```yaml
@@ -49,13 +50,26 @@ impl SpectrumKind for Product {
     fn make(&self, making: &Making<'_>) -> Result<Piece, Faults> {
         // The first may be what is wanted; what stands behind it are filters.
         let wanted = |i| if i == 0 { making.wanted() } else { Kind::Transmittance };
-        together(&self.factors, "factors", making, wanted, Piece::times)
+        together(&self.factors, "factors", making, |node, i| making.part(node, wanted(i)), Piece::times)
     }
 }
 
 impl SpectrumKind for Sum {
     fn make(&self, making: &Making<'_>) -> Result<Piece, Faults> {
-        together(&self.parts, "parts", making, |_| making.wanted(), Piece::plus)
+        let whole =
+            together(&self.parts, "parts", making, |node, _| making.addend(node, making.wanted(), true), Piece::plus)?;
+        if making.is_part() {
+            return Ok(whole);
+        }
+        let wrong = |e: SpectrumError| e.faults(|text| making.params().fault("parts", text));
+        match whole.settled().map_err(wrong)? {
+            // What is of no kind yet is judged as what is wanted, so that the fault is told here.
+            Piece::Bare(shape) => {
+                of_shape(shape.clone(), making.wanted()).map_err(wrong)?;
+                Ok(Piece::Bare(shape))
+            }
+            whole => Ok(whole),
+        }
     }
 }
 
@@ -63,17 +77,17 @@ fn together(
     nodes: &[Part<SpectrumForm>],
     key: &str,
     making: &Making<'_>,
-    wanted: impl Fn(usize) -> Kind,
+    part: impl Fn(&Part<SpectrumForm>, usize) -> Result<Piece, Faults>,
     join: impl Fn(Piece, Piece) -> Result<Piece, SpectrumError>,
 ) -> Result<Piece, Faults> {
     let mut faults = Faults::new();
     let mut joined: Option<Piece> = None;
     for (i, node) in nodes.iter().enumerate() {
         // What is wrong with one hides nothing that is wrong with the next.
-        let Some(next) = faults.take(making.part(node, wanted(i))) else { continue };
+        let Some(next) = faults.take(part(node, i)) else { continue };
         joined = match joined {
             None => Some(next),
-            Some(before) => Some(join(before, next).map_err(|e| node.fault(e.to_string()))?),
+            Some(before) => Some(join(before, next).map_err(|e| e.faults(|text| node.fault(text)))?),
         };
     }
     faults.into_result(())?;

@@ -4,38 +4,10 @@ use glam::{DMat3, DVec3};
 use spectra_color::Adaptation;
 use spectra_core::spectral::{Channel, Grid, SpectralPower};
 use spectra_spectrum::constants::LUMINOUS_EFFICACY_LM_PER_W;
-use spectra_spectrum::{Emission, Observer, find_reflectance};
+use spectra_spectrum::{COLOR_CHECKER, Emission, Observer, find_reflectance};
 
 /// XYZ of D50, x 0.3457, y 0.3585: white of the space that converters work in (Adobe, Digital Negative Specification 1.4).
 const D50: [f64; 3] = [0.3457 / 0.3585, 1.0, (1.0 - 0.3457 - 0.3585) / 0.3585];
-
-/// The patches of the ColorChecker that matrices are fitted to: ISO 17321-1.
-pub const PATCHES: [&str; 24] = [
-    "dark-skin",
-    "light-skin",
-    "blue-sky",
-    "foliage",
-    "blue-flower",
-    "bluish-green",
-    "orange",
-    "purplish-blue",
-    "moderate-red",
-    "purple",
-    "yellow-green",
-    "orange-yellow",
-    "blue",
-    "green",
-    "red",
-    "yellow",
-    "magenta",
-    "cyan",
-    "white",
-    "neutral-8",
-    "neutral-6.5",
-    "neutral-5",
-    "neutral-3.5",
-    "black",
-];
 
 /// Matrices and white of a camera under a light.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,7 +25,7 @@ pub struct CameraColor {
 }
 
 impl CameraColor {
-    /// Fits the matrices to the ColorChecker's patches under a light, by least squares; white is met exactly: by what is
+    /// Fits the matrices to the ColorChecker's patches (ISO 17321-1) under a light, by least squares; white is met exactly: by what is
     /// left over, shared out along white, in the matrix from XYZ, and as a condition of the fit in the matrix to D50
     /// (G. D. Finlayson, M. S. Drew, J. Electron. Imaging 6, 484 (1997)). `None` for sensitivities that are blind to one
     /// of three colors.
@@ -77,7 +49,7 @@ impl CameraColor {
         let to_d50 = DMat3::from_cols_array_2d(&to_d50).transpose();
         let (mut products, mut squares) = (DMat3::ZERO, DMat3::ZERO);
         let (mut adapted_products, mut balanced_squares) = (DMat3::ZERO, DMat3::ZERO);
-        for patch in PATCHES {
+        for patch in COLOR_CHECKER {
             let reflectance = find_reflectance(&format!("colorchecker#{patch}")).ok()?;
             let continuum =
                 power.continuum.iter().zip(grid.wavelengths_nm()).map(|(p, w)| p * reflectance.at(w)).collect();

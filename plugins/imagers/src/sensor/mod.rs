@@ -8,7 +8,7 @@ mod params;
 mod pattern;
 mod photosite;
 
-pub use color::{CameraColor, PATCHES};
+pub use color::CameraColor;
 pub use convert::{Converter, electrons};
 pub use demosaic::demosaic;
 pub use noise::PixelNumbers;

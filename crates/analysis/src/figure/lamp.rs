@@ -1,0 +1,66 @@
+//! How the colors of things change from one light to another, for an eye and on film.
+
+use super::shortened;
+use spectra_plot::{Canvas, Color, Rect, Stroke, TextStyle, nice_ticks};
+
+const WIDTH: f64 = 1000.0;
+const LEFT: f64 = 150.0;
+const ROW: f64 = 30.0;
+const TOP: f64 = 92.0;
+/// Where the patches end and the bars begin.
+const BARS: f64 = 420.0;
+const RIGHT: f64 = 960.0;
+const EYE: Color = Color::PALETTE[0];
+const FILM: Color = Color::PALETTE[1];
+
+/// A thing in two lights.
+#[derive(Clone, Debug)]
+pub struct Patch {
+    /// What it is called.
+    pub name: String,
+    /// As an eye sees it in the reference light and in the lamp, sRGB, once it has adapted to either.
+    pub eye: [[u8; 3]; 2],
+    /// As the film has it in both, sRGB, timed to a neutral white in either.
+    pub film: [[u8; 3]; 2],
+    /// How different the two look, CIEDE2000: to the eye, and on film.
+    pub apart: [f64; 2],
+}
+
+/// Things by rows: how they look in a reference light and in a lamp, side by side, to an eye and on film, and how far apart that is.
+#[must_use]
+pub fn lamp(title: &str, below: &str, patches: &[Patch]) -> Canvas {
+    let bottom = TOP + ROW * patches.len() as f64;
+    let mut canvas = Canvas::new(WIDTH, bottom + 64.0, title);
+    canvas.text([24.0, 30.0], &shortened(title), &TextStyle::new(16.0).weight(1.4));
+    canvas.text([24.0, 54.0], below, &TextStyle::new(12.5).color(Color::GREY));
+    let small = TextStyle::new(12.5);
+    for (x, name, color) in [(LEFT, "eye", EYE), (LEFT + 128.0, "film", FILM)] {
+        canvas.text([x, TOP - 10.0], name, &small.clone().weight(1.3).color(color));
+    }
+    let most = patches.iter().flat_map(|p| p.apart).fold(1.0, f64::max);
+    let ticks = nice_ticks(0.0, 1.05 * most, 6);
+    let x = |value: f64| BARS + (RIGHT - BARS) * value / (1.05 * most);
+    for value in &ticks.values {
+        canvas.line([x(*value), TOP], [x(*value), bottom], &Stroke::new(Color::PALE, 0.8));
+        canvas.text([x(*value), bottom + 18.0], &ticks.label(*value), &small.clone().middle());
+    }
+    let about = "CIEDE2000 between the two lights: how far a color parts";
+    canvas.text([0.5 * (BARS + RIGHT), bottom + 42.0], about, &TextStyle::new(13.5).middle());
+    for (i, patch) in patches.iter().enumerate() {
+        let top = TOP + ROW * i as f64;
+        canvas.text([LEFT - 12.0, top + 0.5 * ROW + small.half_cap()], &shortened(&patch.name), &small.clone().end());
+        for (left, colors) in [(LEFT, patch.eye), (LEFT + 128.0, patch.film)] {
+            let place = Rect::new(left, top + 2.0, left + 112.0, top + ROW - 2.0);
+            // Side by side without a line between: what matches is one patch.
+            canvas.rectangle(place, Color::from(colors[0]));
+            canvas.rectangle(Rect { left: left + 56.0, ..place }, Color::from(colors[1]));
+        }
+        let bars = [(patch.apart[0], EYE), (patch.apart[1], FILM)];
+        for (k, (value, color)) in bars.into_iter().enumerate() {
+            let from = top + 5.0 + 10.0 * k as f64;
+            canvas.rectangle(Rect::new(BARS, from, x(value).max(BARS + 0.5), from + 9.0), color);
+        }
+    }
+    canvas.line([BARS, TOP], [BARS, bottom], &Stroke::new(Color::INK, 1.1));
+    canvas
+}

@@ -1,0 +1,178 @@
+//! Two pictures against each other.
+
+use super::field::{Field, said};
+use super::measured::{Measured, NotMeasured, Unit};
+use serde::Serialize;
+use spectra_color::{RgbSpace, ciede2000, lab};
+
+/// Side of the blocks whose means are compared, pixels.
+const BLOCK_PX: usize = 16;
+
+/// How one quantity of two pictures differs.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Differs {
+    /// The channel, or `Y`.
+    pub name: String,
+    /// Its unit; empty where it has none.
+    pub unit: String,
+    /// Mean of the first and of the second picture.
+    pub means: [f64; 2],
+    /// Mean of second minus first, over the mean of both.
+    pub relative_mean: Option<f64>,
+    /// Standard error of that, if the noise of each pixel were its own.
+    pub relative_standard_error: Option<f64>,
+    /// Root mean square of the differences over the mean of both.
+    pub relative_rms: Option<f64>,
+    /// Noise of a pixel in one picture, over the mean: the standard deviation of the differences over the square root of 2, if both
+    /// pictures are of one scene, with as much noise.
+    pub relative_noise: Option<f64>,
+    /// Largest of the differences.
+    pub largest: f64,
+    /// Where it is: column and row.
+    pub largest_at: [u32; 2],
+    /// Share of the blocks of 16 x 16 pixels whose means differ by more than 3 standard errors, by the differences within each.
+    /// Of noise alone some 0.3 %; `None` where there is no whole block.
+    pub blocks_beyond_3: Option<f64>,
+    /// Values that are no number in either picture and are left out.
+    pub not_finite: usize,
+}
+
+/// Two pictures of one size against each other.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Difference {
+    /// Y first, where both pictures have colors; then the channels that both have.
+    pub channels: Vec<Differs>,
+    /// CIEDE2000 of each pixel; `None` where a picture has no colors.
+    pub delta_e: Option<Vec<f64>>,
+    /// White of both pictures in words, for CIEDE2000.
+    pub white: Option<String>,
+}
+
+impl Difference {
+    /// Mean, median, 95th percentile and largest of CIEDE2000, and where the largest is.
+    #[must_use]
+    pub fn delta_e_figures(&self, width: u32) -> Option<([f64; 4], [u32; 2])> {
+        let all = self.delta_e.as_ref()?;
+        let mut finite: Vec<(f64, usize)> = all.iter().copied().zip(0..).filter(|(v, _)| v.is_finite()).collect();
+        if finite.is_empty() {
+            return None;
+        }
+        let mean = finite.iter().map(|(v, _)| v).sum::<f64>() / finite.len() as f64;
+        // Of equals the first in the picture.
+        finite.sort_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)));
+        let at = |quantile: f64| finite[((quantile * finite.len() as f64).ceil() as usize).clamp(1, finite.len()) - 1];
+        let (most, pixel) = at(1.0);
+        let place = [pixel as u32 % width, pixel as u32 / width];
+        Some(([mean, at(0.5).0, at(0.95).0, most], place))
+    }
+
+    /// CIEDE2000 of each pixel as a view.
+    #[must_use]
+    pub fn field(&self) -> Option<Field> {
+        let values = self.delta_e.clone()?;
+        let name = "CIEDE2000".to_owned();
+        Some(Field { name, unit: String::new(), values, is_hue: false, white: self.white.clone() })
+    }
+}
+
+/// Compares two pictures of one size, pixel by pixel. Colors are seen against one white of D65 for both, whose Y is `white`, or else
+/// that of the first picture ([`Measured::white`]).
+///
+/// # Errors
+/// Pictures of other sizes or units, or that have nothing in common.
+pub fn compare(first: &Measured, second: &Measured, white: Option<f64>) -> Result<Difference, NotMeasured> {
+    let size = |p: &Measured| [p.planes.width, p.planes.height];
+    if size(first) != size(second) {
+        let [[a, b], [c, d]] = [size(first), size(second)];
+        let text = format!("the pictures have {a} x {b} and {c} x {d} pixels");
+        return Err(NotMeasured::new(text, "render both in one `resolution`"));
+    }
+    let both_colored = first.colors.is_some() && second.colors.is_some();
+    if both_colored && first.unit != second.unit {
+        let word = |unit: Unit| match unit {
+            Unit::Lux => "in lx",
+            Unit::LuxSeconds => "in lx s",
+            Unit::OfWhite => "relative to white",
+            Unit::Unknown => "of no stated unit",
+        };
+        let text = format!("the first picture is {}, the second {}", word(first.unit), word(second.unit));
+        return Err(NotMeasured::new(text, "compare pictures by one kind of imager, or two finished ones"));
+    }
+    let pixels = first.planes.pixels();
+    let mut channels = Vec::new();
+    if both_colored {
+        let y = |p: &Measured, pixel: usize| p.xyz(pixel).map_or(f64::NAN, |xyz| xyz[1]);
+        channels.push(differs("Y", first.unit.symbol(), first, &|i| [y(first, i), y(second, i)]));
+    }
+    for channel in &first.planes.channels {
+        let is_y = both_colored && channel.name == "Y";
+        let Some(other) = second.planes.channel(&channel.name).filter(|other| !is_y && other.unit == channel.unit)
+        else {
+            continue;
+        };
+        let values = |i: usize| [f64::from(channel.values[i]), f64::from(other.values[i])];
+        channels.push(differs(&channel.name, &channel.unit, first, &values));
+    }
+    if channels.is_empty() {
+        let text = "the pictures have neither colors nor a channel of one name and unit in common";
+        return Err(NotMeasured::new(text, "`spectra picture info` shows what each holds"));
+    }
+    let white = if both_colored { white.or_else(|| first.white()).or_else(|| second.white()) } else { None };
+    let delta_e = white.map(|y| {
+        let against = RgbSpace::srgb().white_xyz().map(|v| v * y);
+        let of = |p: &Measured, pixel: usize| lab(p.xyz(pixel).unwrap_or([f64::NAN; 3]), against);
+        let differs = |i: usize| ciede2000(of(first, i), of(second, i));
+        (0..pixels).map(differs).map(|v| if v.is_finite() { v } else { f64::NAN }).collect()
+    });
+    Ok(Difference { channels, delta_e, white: white.map(|y| said(y, first.unit)) })
+}
+
+fn differs(name: &str, unit: &str, picture: &Measured, values: &dyn Fn(usize) -> [f64; 2]) -> Differs {
+    let [width, height] = [picture.planes.width as usize, picture.planes.height as usize];
+    let (mut sums, mut count, mut square, mut sum) = ([0.0; 2], 0_usize, 0.0, 0.0);
+    let (mut largest, mut largest_at) = (0.0_f64, 0);
+    let finite = |i: usize| Some(values(i)).filter(|v| v.iter().all(|v| v.is_finite()));
+    for i in 0..width * height {
+        let Some([a, b]) = finite(i) else { continue };
+        count += 1;
+        (sums[0], sums[1]) = (sums[0] + a, sums[1] + b);
+        let d = b - a;
+        (sum, square) = (sum + d, square + d * d);
+        if d.abs() > largest.abs() {
+            (largest, largest_at) = (d, i);
+        }
+    }
+    let n = count.max(1) as f64;
+    let means = sums.map(|v| v / n);
+    let mean = 0.5 * (means[0] + means[1]);
+    let over = |value: f64| (mean != 0.0 && value.is_finite()).then(|| value / mean.abs());
+    let variance = (square / n - (sum / n) * (sum / n)).max(0.0) * n / (n - 1.0).max(1.0);
+    let (mut beyond, mut blocks) = (0_usize, 0_usize);
+    for top in (0..height / BLOCK_PX).map(|i| i * BLOCK_PX) {
+        for left in (0..width / BLOCK_PX).map(|i| i * BLOCK_PX) {
+            let pixels = (top..top + BLOCK_PX).flat_map(|row| (left..left + BLOCK_PX).map(move |c| row * width + c));
+            let all: Vec<f64> = pixels.filter_map(finite).map(|[a, b]| b - a).collect();
+            let n = all.len() as f64;
+            let mean = all.iter().sum::<f64>() / n;
+            let variance = all.iter().map(|d| (d - mean) * (d - mean)).sum::<f64>() / (n - 1.0);
+            // Where both are dark there is nothing to compare.
+            if variance > 0.0 || mean != 0.0 {
+                blocks += 1;
+                beyond += usize::from(mean.abs() > 3.0 * (variance / n).sqrt());
+            }
+        }
+    }
+    Differs {
+        name: name.to_owned(),
+        unit: unit.to_owned(),
+        means,
+        relative_mean: over(means[1] - means[0]),
+        relative_standard_error: over((variance / n).sqrt()),
+        relative_rms: over((square / n).sqrt()),
+        relative_noise: over((0.5 * variance).sqrt()),
+        largest,
+        largest_at: [(largest_at % width) as u32, (largest_at / width) as u32],
+        blocks_beyond_3: (blocks > 0).then(|| beyond as f64 / blocks as f64),
+        not_finite: width * height - count,
+    }
+}

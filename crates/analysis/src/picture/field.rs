@@ -1,0 +1,205 @@
+//! One quantity of a picture at each pixel.
+
+use super::measured::{Measured, NotMeasured, Unit};
+use spectra_color::{RgbSpace, lab};
+
+/// What is asked of each pixel.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    /// Illuminance, lx.
+    Illuminance,
+    /// Luminous exposure, lx s.
+    Exposure,
+    /// Irradiance within the recorded bands, W m^-2.
+    Irradiance,
+    /// Luminance relative to white.
+    Luminance,
+    /// CIE L*.
+    Lightness,
+    /// CIE chroma C*ab.
+    Chroma,
+    /// CIE hue angle h_ab, degrees; undefined for grays.
+    Hue,
+    /// The values of a channel.
+    Channel(String),
+}
+
+impl Quantity {
+    /// Those that have a name of their own.
+    pub const NAMED: [(&'static str, Self); 7] = [
+        ("illuminance", Self::Illuminance),
+        ("exposure", Self::Exposure),
+        ("irradiance", Self::Irradiance),
+        ("luminance", Self::Luminance),
+        ("lightness", Self::Lightness),
+        ("chroma", Self::Chroma),
+        ("hue", Self::Hue),
+    ];
+
+    /// By its name, or the channel of that name; `L*` is lightness.
+    #[must_use]
+    pub fn named(name: &str, picture: &Measured) -> Option<Self> {
+        if picture.planes.channel(name).is_some() {
+            return Some(Self::Channel(name.to_owned()));
+        }
+        let name = if name == "L*" { "lightness" } else { name };
+        Self::NAMED.into_iter().find(|(own, _)| *own == name).map(|(_, quantity)| quantity)
+    }
+
+    /// What one looks at first: the light in absolute units as far as the picture knows it; without colors its first channel.
+    #[must_use]
+    pub fn usual(picture: &Measured) -> Self {
+        match picture.unit {
+            _ if picture.colors.is_none() => {
+                Self::Channel(picture.planes.channels.first().map_or_else(String::new, |c| c.name.clone()))
+            }
+            _ if picture.lux_per_y().is_some() => Self::Illuminance,
+            Unit::LuxSeconds => Self::Exposure,
+            Unit::Lux | Unit::OfWhite | Unit::Unknown => Self::Luminance,
+        }
+    }
+}
+
+/// A quantity at each pixel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Field {
+    /// What it is, without unit.
+    pub name: String,
+    /// Its unit; empty where it has none, or none is known.
+    pub unit: String,
+    /// Row by row from the top; NaN where it is undefined.
+    pub values: Vec<f64>,
+    /// Whether it is an angle of 0 to 360 degrees.
+    pub is_hue: bool,
+    /// What white is, where the quantity refers to one, in words.
+    pub white: Option<String>,
+}
+
+/// Chroma below which hue says nothing.
+const GRAY_CHROMA: f64 = 1.0;
+
+impl Field {
+    /// A quantity of a picture; lightness, chroma and hue against a white of D65 whose Y is `white`, or else
+    /// [`Measured::white`].
+    ///
+    /// # Errors
+    /// What the picture does not say.
+    pub fn of(picture: &Measured, quantity: &Quantity, white: Option<f64>) -> Result<Self, NotMeasured> {
+        let pixels = 0..picture.planes.pixels();
+        let colors = || picture.colors.as_ref().map(|_| ()).ok_or_else(|| picture.without_colors());
+        let y = |pixel: usize| picture.xyz(pixel).map_or(f64::NAN, |xyz| xyz[1]);
+        let plain = |name: &str, unit: &str, values: Vec<f64>| Self {
+            name: name.to_owned(),
+            unit: unit.to_owned(),
+            values,
+            is_hue: false,
+            white: None,
+        };
+        let times = |factor: f64| pixels.clone().map(|p| y(p) * factor).collect();
+        Ok(match quantity {
+            Quantity::Channel(name) => {
+                let channel = picture.planes.channel(name).ok_or_else(|| no_channel(picture, name))?;
+                plain(name, &channel.unit, channel.values.iter().map(|v| f64::from(*v)).collect())
+            }
+            Quantity::Illuminance => {
+                colors()?;
+                plain("illuminance", "lx", times(picture.lux_per_y().ok_or_else(|| no_lux(picture))?))
+            }
+            Quantity::Exposure => {
+                colors()?;
+                if picture.unit != Unit::LuxSeconds {
+                    let hint = "`--quantity illuminance`, or an imager with `exposure: 1/60 s`";
+                    return Err(NotMeasured::new("the picture has no exposure in lx s", hint));
+                }
+                plain("exposure", "lx s", times(1.0))
+            }
+            Quantity::Irradiance => {
+                if picture.bands().is_none() {
+                    let hint = "`imager: {kind: spectral, bands: 40}` records it";
+                    return Err(NotMeasured::new("the picture does not say its power by wavelength", hint));
+                }
+                let irradiance = |p: usize| picture.irradiance_w_m2(p).unwrap_or(f64::NAN);
+                plain("irradiance", "W/m^{2}", pixels.map(irradiance).collect())
+            }
+            Quantity::Luminance => {
+                colors()?;
+                let unit = picture.unit.symbol();
+                let name = if picture.unit == Unit::OfWhite { "luminance / white" } else { "Y" };
+                plain(name, unit, times(1.0))
+            }
+            Quantity::Lightness | Quantity::Chroma | Quantity::Hue => {
+                colors()?;
+                let white = white.or_else(|| picture.white()).ok_or_else(dark)?;
+                let against = RgbSpace::srgb().white_xyz().map(|v| v * white);
+                let value = |pixel: usize| {
+                    let [l, a, b] = lab(picture.xyz(pixel).unwrap_or([f64::NAN; 3]), against);
+                    let chroma = (a * a + b * b).sqrt();
+                    match quantity {
+                        Quantity::Lightness => l,
+                        Quantity::Chroma => chroma,
+                        _ if chroma < GRAY_CHROMA || !chroma.is_finite() => f64::NAN,
+                        _ => libm::atan2(b, a).to_degrees().rem_euclid(360.0),
+                    }
+                };
+                let (name, unit) = match quantity {
+                    Quantity::Lightness => ("lightness L*", ""),
+                    Quantity::Chroma => ("chroma C*", ""),
+                    _ => ("hue h", "degrees"),
+                };
+                let field = plain(name, unit, pixels.map(value).collect());
+                Self { is_hue: *quantity == Quantity::Hue, white: Some(said(white, picture.unit)), ..field }
+            }
+        })
+    }
+
+    /// Smallest and largest of what is finite; `None` where nothing is.
+    #[must_use]
+    pub fn range(&self) -> Option<[f64; 2]> {
+        let finite = self.values.iter().filter(|v| v.is_finite());
+        finite.fold(None, |range: Option<[f64; 2]>, v| Some(range.map_or([*v; 2], |[a, b]| [a.min(*v), b.max(*v)])))
+    }
+
+    /// Name and unit, as they stand beside a scale.
+    #[must_use]
+    pub fn label(&self) -> String {
+        if self.unit.is_empty() { self.name.clone() } else { format!("{} / {}", self.name, self.unit) }
+    }
+}
+
+/// White in words.
+pub(super) fn said(white: f64, unit: Unit) -> String {
+    format!("white: Y = {} {}", short(white), unit.symbol()).trim_end().to_owned()
+}
+
+/// Four digits.
+pub(super) fn short(value: f64) -> String {
+    if value == 0.0 || (1e-3..1e5).contains(&value.abs()) {
+        let whole = format!("{:.0}", value.abs()).len();
+        let text = format!("{value:.*}", 5_usize.saturating_sub(whole));
+        if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+    } else {
+        format!("{value:.3e}")
+    }
+}
+
+pub(super) fn dark() -> NotMeasured {
+    NotMeasured::new("nothing in the picture is lit", "`--white` says what is shown as white")
+}
+
+fn no_lux(picture: &Measured) -> NotMeasured {
+    match picture.unit {
+        Unit::OfWhite => NotMeasured::new(
+            "the picture is relative to its white, not in lux",
+            "`--quantity luminance`; the linear exposure of the same render is in lx s",
+        ),
+        Unit::LuxSeconds => NotMeasured::new("the file does not say how long light fell", "`--quantity exposure`"),
+        Unit::Lux | Unit::Unknown => {
+            NotMeasured::new("the file does not say the unit of its values", "`--quantity luminance`")
+        }
+    }
+}
+
+fn no_channel(picture: &Measured, name: &str) -> NotMeasured {
+    let names: Vec<_> = picture.planes.channels.iter().take(12).map(|c| format!("`{}`", c.name)).collect();
+    NotMeasured::new(format!("the picture has no channel `{name}`"), format!("its channels are {}", names.join(", ")))
+}

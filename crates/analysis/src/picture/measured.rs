@@ -1,0 +1,239 @@
+//! What a picture file says of its light.
+
+use super::bands::{Band, edges_nm, middle_nm, xyz_of_band};
+use spectra_color::{RgbSpace, Transfer};
+use spectra_pictures::read::{Planes, Trouble};
+
+/// The unit of a picture's XYZ.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unit {
+    /// Y is illuminance on the imager, lx.
+    Lux,
+    /// Y is exposure, lx s.
+    LuxSeconds,
+    /// Y is relative to white, which is 1.
+    OfWhite,
+    /// Y is on a scale that the file does not say.
+    Unknown,
+}
+
+impl Unit {
+    /// As it stands behind a number; empty of what has none.
+    #[must_use]
+    pub fn symbol(self) -> &'static str {
+        match self {
+            Self::Lux => "lx",
+            Self::LuxSeconds => "lx s",
+            Self::OfWhite | Self::Unknown => "",
+        }
+    }
+}
+
+/// How a pixel's XYZ (CIE 1931) follow from its channels.
+#[derive(Clone, Debug)]
+pub enum Colors {
+    /// They are channels: their numbers.
+    Xyz([usize; 3]),
+    /// From linear red, green and blue of a space: the numbers of the channels.
+    Rgb([usize; 3], Box<RgbSpace>),
+    /// From bands of the spectrum.
+    Bands(Vec<Band>),
+}
+
+/// A picture whose light can be asked for.
+#[derive(Clone, Debug)]
+pub struct Measured {
+    /// As the file has it.
+    pub planes: Planes,
+    /// Its colors; `None` where the channels say none, such as those of a film's layers.
+    pub colors: Option<Colors>,
+    /// The unit of XYZ.
+    pub unit: Unit,
+    /// Width and height on the film, mm.
+    pub size_mm: Option<[f64; 2]>,
+    /// How long light fell, s.
+    pub exposure_time_s: Option<f64>,
+}
+
+/// What a picture cannot say, and what could.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{text}")]
+pub struct NotMeasured {
+    /// What is missing.
+    pub text: String,
+    /// What to do about it.
+    pub hint: String,
+}
+
+impl NotMeasured {
+    pub(super) fn new(text: impl Into<String>, hint: impl Into<String>) -> Self {
+        Self { text: text.into(), hint: hint.into() }
+    }
+}
+
+impl Measured {
+    /// Finds out what the channels of a picture are, by their names and units and what the header says.
+    ///
+    /// # Errors
+    /// Bands of a spectrum that are named twice.
+    pub fn of(planes: Planes) -> Result<Self, Trouble> {
+        let number = |name: &str| planes.channels.iter().position(|c| c.name == name);
+        let all = |names: [&str; 3]| Some([number(names[0])?, number(names[1])?, number(names[2])?]);
+        let bands = bands(&planes)?;
+        let is_data = planes.attribute("spectra:image state") == Some("data");
+        let is_ours = planes.attribute("spectra:version").is_some();
+        let (colors, unit) = if let Some(bands) = bands {
+            (Some(Colors::Bands(bands)), Unit::Lux)
+        } else if let Some(at) = all(["X", "Y", "Z"]) {
+            let unit = match planes.channels[at[1]].unit.as_str() {
+                "lx" => Unit::Lux,
+                "lx s" => Unit::LuxSeconds,
+                _ => Unit::Unknown,
+            };
+            (Some(Colors::Xyz(at)), unit)
+        } else if let Some(at) = all(["R", "G", "B"]).filter(|_| !is_data) {
+            let space = planes.chromaticities.map_or_else(
+                || RgbSpace::srgb().clone(),
+                |[r, g, b, white]| RgbSpace::new("of the file", [r, g, b], white, Transfer::Linear),
+            );
+            let shows_white = is_ours || planes.clipped_at.is_some();
+            (Some(Colors::Rgb(at, Box::new(space))), if shows_white { Unit::OfWhite } else { Unit::Unknown })
+        } else {
+            (None, Unit::Unknown)
+        };
+        let size_mm = planes.attribute("spectra:film size").and_then(size_mm);
+        let exposure_time_s = planes.attribute("spectra:exposure time").and_then(|text| {
+            let time: f64 = text.strip_suffix(" s")?.parse().ok()?;
+            (time.is_finite() && time > 0.0).then_some(time)
+        });
+        Ok(Self { planes, colors, unit, size_mm, exposure_time_s })
+    }
+
+    /// XYZ of a pixel in the picture's unit; `None` where the picture has no colors.
+    #[must_use]
+    pub fn xyz(&self, pixel: usize) -> Option<[f64; 3]> {
+        let value = |channel: usize| f64::from(self.planes.channels[channel].values[pixel]);
+        Some(match self.colors.as_ref()? {
+            Colors::Xyz(at) => at.map(value),
+            Colors::Rgb(at, space) => space.to_xyz(at.map(value)),
+            Colors::Bands(bands) => {
+                let mut sum = [0.0; 3];
+                for band in bands {
+                    let mean = value(band.channel);
+                    sum.iter_mut().zip(band.xyz).for_each(|(sum, xyz)| *sum += mean * xyz);
+                }
+                sum
+            }
+        })
+    }
+
+    /// Irradiance of a pixel within the bands, W m^-2; `None` where no bands were recorded.
+    #[must_use]
+    pub fn irradiance_w_m2(&self, pixel: usize) -> Option<f64> {
+        let bands = self.bands()?;
+        let power = |band: &Band| {
+            f64::from(self.planes.channels[band.channel].values[pixel]) * (band.edges_nm[1] - band.edges_nm[0])
+        };
+        Some(bands.iter().map(power).sum())
+    }
+
+    /// The bands, by wavelength, where they were recorded.
+    #[must_use]
+    pub fn bands(&self) -> Option<&[Band]> {
+        if let Some(Colors::Bands(bands)) = &self.colors { Some(bands) } else { None }
+    }
+
+    /// The value of red, green or blue from which on a pixel counts as clipped: where integers end, or white. `None` where the file
+    /// says neither.
+    #[must_use]
+    pub fn clips_at(&self) -> Option<f64> {
+        if !matches!(self.colors, Some(Colors::Rgb(..))) {
+            return None;
+        }
+        self.planes.clipped_at.map(f64::from).or((self.unit == Unit::OfWhite).then_some(1.0))
+    }
+
+    /// Whether a pixel is beyond what the picture holds: red, green or blue where integers end, or above white.
+    #[must_use]
+    pub fn is_clipped(&self, pixel: usize) -> bool {
+        let (Some(Colors::Rgb(at, _)), Some(limit)) = (&self.colors, self.clips_at()) else { return false };
+        let is_end = self.planes.clipped_at.is_some();
+        at.iter().any(|channel| {
+            let value = f64::from(self.planes.channels[*channel].values[pixel]);
+            if is_end { value >= limit } else { value > limit }
+        })
+    }
+
+    /// What makes lux of the picture's Y; `None` where the file does not say.
+    #[must_use]
+    pub fn lux_per_y(&self) -> Option<f64> {
+        match self.unit {
+            Unit::Lux => Some(1.0),
+            Unit::LuxSeconds => self.exposure_time_s.map(|time| 1.0 / time),
+            Unit::OfWhite | Unit::Unknown => None,
+        }
+    }
+
+    /// Area of a pixel on the film, m^2.
+    #[must_use]
+    pub fn pixel_area_m2(&self) -> Option<f64> {
+        let [width, height] = self.size_mm?;
+        Some(1e-6 * width * height / self.planes.pixels() as f64)
+    }
+
+    /// The Y that a screen shows as white: 1 where the picture is relative to white; else as the picture is shown under automatic
+    /// exposure, where the 99th percentile of what is lit is 0.9 of white. `None` without light or colors.
+    #[must_use]
+    pub fn white(&self) -> Option<f64> {
+        const QUANTILE: f64 = 0.99;
+        const SHOWN_AS: f64 = 0.9;
+        if self.unit == Unit::OfWhite {
+            return Some(1.0);
+        }
+        let lit = |v: &f64| *v > 0.0 && v.is_finite();
+        let mut lit: Vec<f64> = (0..self.planes.pixels()).filter_map(|p| Some(self.xyz(p)?[1])).filter(lit).collect();
+        if lit.is_empty() {
+            return None;
+        }
+        // Nearest rank: the smallest value that this share of all does not exceed.
+        let rank = ((QUANTILE * lit.len() as f64).ceil() as usize).clamp(1, lit.len());
+        let (_, anchor, _) = lit.select_nth_unstable_by(rank - 1, f64::total_cmp);
+        Some(*anchor / SHOWN_AS)
+    }
+
+    /// Why the picture has no colors.
+    #[must_use]
+    pub fn without_colors(&self) -> NotMeasured {
+        let names: Vec<_> = self.planes.channels.iter().take(8).map(|c| format!("`{}`", c.name)).collect();
+        let text = format!("the picture's channels {} say no color", names.join(", "));
+        NotMeasured::new(
+            text,
+            "pictures by `imager: {kind: xyz}` or `spectral` do, and finished ones: `{kind: exr, holds: picture}`",
+        )
+    }
+}
+
+/// `36 x 24 mm`.
+fn size_mm(text: &str) -> Option<[f64; 2]> {
+    let (width, height) = text.strip_suffix(" mm")?.split_once(" x ")?;
+    let number = |text: &str| text.parse().ok().filter(|v: &f64| v.is_finite() && *v > 0.0);
+    Some([number(width)?, number(height)?])
+}
+
+/// The bands of a spectral picture, by wavelength; `None` where there are fewer than two.
+fn bands(planes: &Planes) -> Result<Option<Vec<Band>>, Trouble> {
+    let named = planes.channels.iter().enumerate();
+    let mut middles: Vec<(f64, usize)> = named.filter_map(|(i, c)| Some((middle_nm(&c.name)?, i))).collect();
+    middles.sort_by(|a, b| a.0.total_cmp(&b.0));
+    if let Some(pair) = middles.windows(2).find(|pair| pair[0].0 == pair[1].0) {
+        let text = format!("two channels hold the band around {} nm", pair[0].0);
+        return Err(Trouble { key: "file", text, hint: Some("each band once".to_owned()) });
+    }
+    let nm: Vec<f64> = middles.iter().map(|(nm, _)| *nm).collect();
+    let Some(edges) = edges_nm(&nm) else { return Ok(None) };
+    let band = |((_, channel), pair): (&(f64, usize), &[f64])| {
+        let edges_nm = [pair[0], pair[1]];
+        Band { channel: *channel, edges_nm, xyz: xyz_of_band(edges_nm) }
+    };
+    Ok(Some(middles.iter().zip(edges.windows(2)).map(band).collect()))
+}

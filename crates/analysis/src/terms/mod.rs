@@ -1,0 +1,323 @@
+//! Gaussian terms through a whole chain of light, filters, surfaces and film.
+//!
+//! Each factor is a signed sum of Gaussian terms, known as such or fitted; their product is one with as many terms as there are
+//! choices of one term of each factor, and its integral is exact. To follow one term of every factor estimates that integral
+//! without any wavelength; how far such an estimate scatters is computed here, and measured.
+
+mod figure;
+
+pub use figure::figure;
+
+use serde::Serialize;
+use spectra_core::Isa;
+use spectra_core::numbers::Numbers;
+use spectra_core::spectral::Grid;
+use spectra_spectrum::{Found, GaussianMixture, OneTerm, Shape, fit_gaussians};
+
+/// Most terms of a product that are written out.
+pub const MOST_TERMS: f64 = 1_000_000.0;
+/// Numbers of samples at which the scatter is measured.
+const SAMPLES: [usize; 6] = [4, 16, 64, 256, 1024, 4096];
+/// Seeds of each.
+const SEEDS: u64 = 200;
+/// Widest panel of a quadrature, nm.
+const PANEL_NM: f64 = 0.5;
+
+/// One factor as Gaussian terms.
+#[derive(Clone, Debug, Serialize)]
+pub struct Factor {
+    /// What it is called.
+    pub name: String,
+    /// What it is.
+    pub kind: &'static str,
+    /// How many terms stand for it.
+    pub terms: usize,
+    /// Whether it is made of Gaussians and nothing was fitted.
+    pub exact: bool,
+    /// Relative L2 error of the terms; 0 if exact.
+    pub relative_l2: f64,
+    /// Relative error of their integral; 0 if exact.
+    pub integral_error: f64,
+    /// How much the terms cancel.
+    pub kappa: f64,
+    /// The terms.
+    #[serde(skip)]
+    pub mixture: GaussianMixture,
+    /// The spectrum itself.
+    #[serde(skip)]
+    pub shape: Shape,
+}
+
+/// Relative errors of estimates of the integral of the product of terms by a number of samples.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Scatter {
+    /// Samples of one estimate.
+    pub samples: usize,
+    /// One term of every factor, root mean square over the seeds.
+    pub one_term_measured: f64,
+    /// The same as computed from all choices.
+    pub one_term: f64,
+    /// Wavelengths drawn evenly over the band, as computed.
+    pub even: f64,
+    /// Wavelengths drawn in proportion to the first factor, as computed.
+    pub first_factor: f64,
+}
+
+/// A product of factors.
+#[derive(Clone, Debug, Serialize)]
+pub struct Chain {
+    /// The factors.
+    pub factors: Vec<Factor>,
+    /// The band, nm.
+    pub band_nm: [f64; 2],
+    /// Terms of the product.
+    pub terms: usize,
+    /// Its integral over the band, exact: the sum of those of its terms.
+    pub integral: f64,
+    /// The same by quadrature of the product of the sums of terms.
+    pub quadrature: f64,
+    /// The difference of both over the sum of the sizes of all terms' integrals.
+    pub difference: f64,
+    /// Integral of the product of the spectra themselves, by quadrature.
+    pub of_spectra: f64,
+    /// What the fits make of it: `integral` over that, less 1.
+    pub fit_error: f64,
+    /// Sum of the sizes of the integrals of all terms over the integral.
+    pub kappa: f64,
+    /// Mean of one-term estimates by all choices: the integral.
+    pub one_term_mean: f64,
+    /// Relative standard deviation of one such estimate, by all choices.
+    pub one_term_deviation: f64,
+    /// Estimates that each error is measured by.
+    pub seeds: u64,
+    /// Errors by numbers of samples.
+    pub scatter: Vec<Scatter>,
+    /// The terms of the product.
+    #[serde(skip)]
+    pub product: GaussianMixture,
+}
+
+/// Why there is no chain.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ChainError {
+    /// A factor whose light is lines.
+    #[error("`{0}` has spectral lines, which are no Gaussian terms")]
+    Lines(String),
+    /// A factor to which no terms can be fitted.
+    #[error("`{name}` cannot be fitted: {reason}")]
+    Fit {
+        /// Its name.
+        name: String,
+        /// Why.
+        reason: String,
+    },
+    /// Two lights, or two detectors.
+    #[error("`{first}` and `{second}` are both of kind {kind}: a chain has one light and one detector at most")]
+    Twice {
+        /// The first.
+        first: String,
+        /// The second.
+        second: String,
+        /// What both are.
+        kind: &'static str,
+    },
+    /// More terms than can be written out.
+    #[error("the product has {terms} terms, more than {MOST_TERMS}")]
+    TooMany {
+        /// How many.
+        terms: f64,
+    },
+    /// Nothing is left of the light on the band.
+    #[error("nothing passes all factors on the band")]
+    Dark,
+}
+
+impl Chain {
+    /// The product of `factors`, each by its name, over the band of `grid`; what is not made of Gaussians is fitted by `terms` of
+    /// them on that grid.
+    ///
+    /// # Errors
+    /// [`ChainError`].
+    pub fn new(factors: &[(String, Found)], terms: usize, grid: &Grid, isa: Isa) -> Result<Self, ChainError> {
+        for (i, (second, found)) in factors.iter().enumerate() {
+            let is_end = matches!(found, Found::Emission(_) | Found::Sensitivity(_));
+            let same = |(_, other): &&(String, Found)| other.kind() == found.kind();
+            if let Some((first, _)) = factors[..i].iter().find(same).filter(|_| is_end) {
+                let (first, second) = (first.clone(), second.clone());
+                return Err(ChainError::Twice { first, second, kind: found.kind().word() });
+            }
+        }
+        let factors: Vec<Factor> =
+            factors.iter().map(|(name, found)| factor(name, found, terms, grid)).collect::<Result<_, _>>()?;
+        let [min_nm, max_nm] = [grid.start_nm, grid.end_nm()];
+        let one_term = OneTerm::new(factors.iter().map(|f| f.mixture.clone()).collect(), min_nm, max_nm);
+        let one_term = one_term.ok_or(ChainError::Dark)?;
+        let count = factors.iter().map(|f| f.terms as f64).product::<f64>();
+        if count > MOST_TERMS {
+            return Err(ChainError::TooMany { terms: count });
+        }
+        let mut product = factors[0].mixture.clone();
+        for factor in &factors[1..] {
+            product = product.times(&factor.mixture);
+        }
+        let integral = product.band_integral(min_nm, max_nm);
+        let sizes: f64 = product.terms().iter().map(|t| t.band_integral(min_nm, max_nm).abs()).sum();
+        let together = |shape: &dyn Fn(&Factor) -> Shape| {
+            let all = factors[1..].iter().fold(shape(&factors[0]), |all, f| all.times(&shape(f)));
+            (all.integral(min_nm, max_nm, PANEL_NM), all)
+        };
+        let (quadrature, of_terms) = together(&|f| Shape::mixture(f.mixture.clone()));
+        let (of_spectra, _) = together(&|f| f.shape.clone());
+        if !(of_spectra > 0.0 && integral.is_finite() && integral != 0.0) {
+            return Err(ChainError::Dark);
+        }
+        let (mean, deviation) = one_term.moments();
+        let relative = deviation / integral.abs();
+        // Of the product of terms, so that all estimate the same integral.
+        let wavelengths = |density: &Shape| {
+            let all = density.integral(min_nm, max_nm, PANEL_NM);
+            let second = of_terms.times(&of_terms).over(density).integral(min_nm, max_nm, PANEL_NM) * all;
+            (second / (integral * integral) - 1.0).max(0.0).sqrt()
+        };
+        let even = Shape::rectangle(min_nm, max_nm).map_or(f64::NAN, |shape| wavelengths(&shape));
+        let first = wavelengths(&factors[0].shape);
+        let scatter = SAMPLES
+            .into_iter()
+            .map(|samples| {
+                let root = (samples as f64).sqrt();
+                let measured = measured(&one_term, integral, samples, isa);
+                Scatter {
+                    samples,
+                    one_term_measured: measured,
+                    one_term: relative / root,
+                    even: even / root,
+                    first_factor: first / root,
+                }
+            })
+            .collect();
+        Ok(Self {
+            band_nm: [min_nm, max_nm],
+            terms: product.terms().len(),
+            integral,
+            quadrature,
+            difference: (integral - quadrature).abs() / sizes,
+            of_spectra,
+            fit_error: integral / of_spectra - 1.0,
+            kappa: sizes / integral.abs(),
+            one_term_mean: mean,
+            one_term_deviation: relative,
+            seeds: SEEDS,
+            scatter,
+            product,
+            factors,
+        })
+    }
+
+    /// The factors and the errors as a table for a spreadsheet.
+    #[must_use]
+    pub fn csv(&self) -> String {
+        let mut out = "samples,one_term_measured,one_term,even_wavelengths,wavelengths_by_first_factor\n".to_owned();
+        for s in &self.scatter {
+            let Scatter { samples, one_term_measured, one_term, even, first_factor } = s;
+            out.push_str(&format!("{samples},{one_term_measured:e},{one_term:e},{even:e},{first_factor:e}\n"));
+        }
+        out
+    }
+}
+
+fn factor(name: &str, found: &Found, terms: usize, grid: &Grid) -> Result<Factor, ChainError> {
+    let shape = match found {
+        Found::Emission(light) if !light.lines().is_empty() => return Err(ChainError::Lines(name.to_owned())),
+        Found::Emission(light) => light.continuum().ok_or(ChainError::Dark)?,
+        Found::Transmittance(filter) => filter.shape(),
+        Found::Reflectance(surface) => surface.shape(),
+        Found::Sensitivity(detector) => detector.shape(),
+    };
+    let band = (grid.start_nm, grid.end_nm());
+    let (exact, mixture, relative_l2, integral_error) = match shape.as_mixture() {
+        Some(mixture) => (true, mixture, 0.0, 0.0),
+        None => {
+            let fit = fit_gaussians(grid, &shape.on_grid(grid), terms)
+                .map_err(|e| ChainError::Fit { name: name.to_owned(), reason: e.to_string() })?;
+            (false, fit.mixture, fit.report.relative_l2, fit.report.integral)
+        }
+    };
+    Ok(Factor {
+        name: name.to_owned(),
+        kind: found.kind().word(),
+        terms: mixture.terms().len(),
+        exact,
+        relative_l2,
+        integral_error,
+        kappa: mixture.kappa(band.0, band.1),
+        mixture,
+        shape: shape.clone(),
+    })
+}
+
+/// Relative root-mean-square error over the seeds.
+fn measured(one_term: &OneTerm, integral: f64, samples: usize, isa: Isa) -> f64 {
+    let factors = one_term.numbers();
+    let mut columns = vec![vec![0.0; samples]; factors];
+    let mut choice = vec![0.0; factors];
+    let mut squares = 0.0;
+    for seed in 0..SEEDS {
+        // A stream for each number of samples, so that none shares its numbers with another.
+        let numbers = Numbers::random(seed + 1);
+        for (dimension, column) in columns.iter_mut().enumerate() {
+            numbers.fill(isa, samples as u64, 0, dimension as u32, column);
+        }
+        let mut sum = 0.0;
+        for sample in 0..samples {
+            choice.iter_mut().zip(&columns).for_each(|(u, column)| *u = column[sample]);
+            sum += one_term.estimate(&choice);
+        }
+        let error = sum / (samples as f64 * integral) - 1.0;
+        squares += error * error;
+    }
+    (squares / SEEDS as f64).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use spectra_spectrum::{
+        BAND, Transmittance, find_emission, find_reflectance, find_sensitivity, find_transmittance,
+    };
+
+    #[test]
+    fn a_chain_of_measured_spectra_is_exact_and_scatters_as_computed() {
+        let factors = [
+            ("D65".to_owned(), Found::Emission(find_emission("D65").expect("bundled"))),
+            ("red".to_owned(), Found::Reflectance(find_reflectance("colorchecker#red").expect("bundled"))),
+            ("yellow".to_owned(), Found::Transmittance(find_transmittance("wratten-12").expect("bundled"))),
+            ("film".to_owned(), Found::Sensitivity(find_sensitivity("ilford-ortho-plus").expect("bundled"))),
+        ];
+        let chain = Chain::new(&factors, 6, &BAND, Isa::Baseline).expect("a chain");
+        assert_eq!(chain.terms, 6_usize.pow(4));
+        assert!(chain.difference < 1e-12, "{:e}", chain.difference);
+        assert!((chain.one_term_mean / chain.integral - 1.0).abs() < 1e-9 * chain.kappa);
+        assert!(chain.kappa >= 1.0 && chain.one_term_deviation > 0.0);
+        // Four thousand samples follow the computed scatter; fewer miss rare choices.
+        let last = chain.scatter.last().expect("errors");
+        let ratio = last.one_term_measured / last.one_term;
+        assert!((0.7..1.3).contains(&ratio), "{ratio}");
+        assert!(chain.csv().lines().count() == 7);
+    }
+
+    #[test]
+    fn what_is_no_chain_says_why() {
+        let light = |name: &str| (name.to_owned(), Found::Emission(find_emission(name).expect("a light")));
+        let new =
+            |factors: &[(String, Found)], terms| Chain::new(factors, terms, &BAND, Isa::Baseline).map(|c| c.terms);
+        assert!(matches!(new(&[light("mercury")], 4), Err(ChainError::Lines(_))));
+        assert!(matches!(new(&[light("D65"), light("A")], 4), Err(ChainError::Twice { .. })));
+        let narrow = Transmittance::gaussian(550.0, 20.0, 1.0).expect("a filter");
+        let filter = ("narrow".to_owned(), Found::Transmittance(narrow));
+        assert_eq!(new(&[light("gaussian:500,30"), filter.clone()], 4), Ok(1));
+        let yellow = find_transmittance("wratten-12").expect("bundled");
+        let mut many = vec![light("D65")];
+        many.extend((0..4).map(|i| (i.to_string(), Found::Transmittance(yellow.clone()))));
+        assert!(matches!(new(&many, 20), Err(ChainError::TooMany { .. })));
+    }
+}

@@ -1,0 +1,230 @@
+//! What can be written after `spectra picture`.
+
+use clap::{Args, Subcommand};
+use spectra_analysis::picture::Rectangle;
+use std::path::PathBuf;
+
+/// `spectra picture`.
+#[derive(Debug, Args)]
+#[command(
+    long_about = "Measure pictures: power and flux, false-color views, cuts, spectra, differences.\n\n\
+        FILE is an OpenEXR file, first of all one that `spectra run` wrote: the linear exposure (XYZ in lx or lx s, bands of the \
+        spectrum, the layers of a film) or the finished picture. PNG, TIFF and JPEG files are read as sRGB.",
+    after_long_help = "Examples, where a.exr and b.exr are yours:\n\n    \
+        spectra picture info a.exr\n    \
+        spectra picture plot a.exr --quantity illuminance --log -o a-lux.png\n    \
+        spectra picture cut a.exr --row 120 -o a-row.svg\n    \
+        spectra picture spectrum a.exr --area 10,10,20,20 --diagram a-xy.svg\n    \
+        spectra picture compare a.exr b.exr -o difference.png"
+)]
+pub(crate) struct PictureArguments {
+    /// The command to run.
+    #[command(subcommand)]
+    pub command: PictureCommand,
+}
+
+/// The commands on pictures.
+#[derive(Debug, Subcommand)]
+pub(crate) enum PictureCommand {
+    /// Show a picture in figures: channels, power, luminous flux, illuminance, gamut, and where it came from.
+    Info(PictureInfo),
+    /// Plot one quantity of a picture in false color, with its scale.
+    Plot(PicturePlot),
+    /// Plot quantities along a row, a column or a line.
+    Cut(PictureCut),
+    /// Show the mean color of an area; write its spectrum where bands were recorded.
+    Spectrum(PictureSpectrum),
+    /// Compare two pictures: difference, noise, CIEDE2000.
+    Compare(PictureCompare),
+}
+
+/// `spectra picture info`.
+#[derive(Debug, Args)]
+#[command(
+    long_about = "Show a picture in figures: channels, power, luminous flux, illuminance, gamut, and where it came from.\n\n\
+        Luminous flux (lm) is illuminance times the area of the frame; exposures in lx s are divided by the exposure time that the \
+        file states. Radiant power (W) needs the spectrum: a picture by `imager: {kind: spectral}`, and counts its bands only. \
+        `out of sRGB` is the share of the lit pixels whose color has a negative part in that space. --json has the scene as well.",
+    after_long_help = "Example, where a.exr is yours:\n\n    spectra picture info a.exr --json"
+)]
+pub(crate) struct PictureInfo {
+    /// The picture.
+    #[arg(value_name = "FILE")]
+    pub file: PathBuf,
+    /// Write a JSON object to standard output, with all texts of the header.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// What is shown of each pixel, and against which white.
+#[derive(Debug, Args)]
+pub(crate) struct White {
+    /// The Y that counts as white for lightness, chroma, hue, clipping and CIEDE2000, in the unit of the picture. If not given, 1
+    /// of a finished picture, and of light what automatic exposure shows as white.
+    #[arg(long, value_name = "Y", value_parser = positive)]
+    pub white: Option<f64>,
+}
+
+/// `spectra picture plot`.
+#[derive(Debug, Args)]
+#[command(
+    long_about = "Plot one quantity of a picture in false color, with its scale.\n\n\
+        QUANTITY is illuminance (lx), exposure (lx s), irradiance (W/m2, of spectral pictures), luminance, lightness (L*), chroma (C*), \
+        hue, clipping, or the name of a channel, such as Y or ortho. `clipping` shows brightness in gray, and marks what is beyond white, \
+        outside of sRGB, or no number. Lightness, chroma and hue are CIE Lab against a white of D65.",
+    after_long_help = "Examples, where a.exr is yours:\n\n    \
+        spectra picture plot a.exr --log\n    spectra picture plot a.exr --quantity hue -o a-hue.png"
+)]
+pub(crate) struct PicturePlot {
+    /// The picture.
+    #[arg(value_name = "FILE")]
+    pub file: PathBuf,
+    /// What to show; if not given, illuminance, else what comes nearest to it.
+    #[arg(long, value_name = "QUANTITY")]
+    pub quantity: Option<String>,
+    /// A scale by powers of ten.
+    #[arg(long)]
+    pub log: bool,
+    /// Ends of the scale; the smallest (or 0) and the largest value if not given.
+    #[arg(long, value_name = "FROM,TO", allow_hyphen_values = true, value_parser = range)]
+    pub range: Option<[f64; 2]>,
+    #[command(flatten)]
+    pub white: White,
+    /// Output file, FILE.png or FILE.svg; NAME-QUANTITY.png in the working folder if not given.
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+}
+
+/// `spectra picture cut`.
+#[derive(Debug, Args)]
+#[command(
+    long_about = "Plot quantities along a row, a column or a line through a picture, or write them as a table.\n\n\
+        Rows and columns count from 0 at the upper left. Along a line, given in columns and rows (0.5,0.5 is the middle of the first \
+        pixel), values between pixels are interpolated. Distances are in mm on the film where the file states its size.",
+    after_long_help = "Examples, where a.exr is yours:\n\n    \
+        spectra picture cut a.exr --row 120 -o a-row.svg\n    \
+        spectra picture cut a.exr --line 10,10,200,90 --quantity X,Y,Z --log -o a-line.csv"
+)]
+pub(crate) struct PictureCut {
+    /// The picture.
+    #[arg(value_name = "FILE")]
+    pub file: PathBuf,
+    #[command(flatten)]
+    pub way: WayArguments,
+    /// Quantities or channels, as `spectra picture plot` has them.
+    #[arg(long, value_name = "A,B,...", value_delimiter = ',')]
+    pub quantity: Vec<String>,
+    /// Show the logarithm; a table holds the values themselves.
+    #[arg(long)]
+    pub log: bool,
+    #[command(flatten)]
+    pub white: White,
+    /// Output file, FILE.svg, FILE.png or a table FILE.csv; NAME-cut.svg in the working folder if not given.
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+}
+
+/// Where a cut goes.
+#[derive(Debug, Args)]
+#[group(required = true, multiple = false)]
+pub(crate) struct WayArguments {
+    /// Along this row.
+    #[arg(long, value_name = "ROW")]
+    pub row: Option<u32>,
+    /// Along this column.
+    #[arg(long, value_name = "COLUMN")]
+    pub column: Option<u32>,
+    /// From one place to another.
+    #[arg(long, value_name = "COLUMN,ROW,COLUMN,ROW", value_parser = line)]
+    pub line: Option<[f64; 4]>,
+}
+
+/// `spectra picture spectrum`.
+#[derive(Debug, Args)]
+#[command(
+    long_about = "Show the mean color of areas of a picture; write their spectrum where bands were recorded.\n\n\
+        A picture by `imager: {kind: spectral}` holds the spectrum: -o writes that of the area as a spectrum file (`kind: histogram`), \
+        which a scene takes back as a light by its name. --diagram marks the chromaticities of the areas in the CIE 1931 diagram.",
+    after_long_help = "Examples, where spectral.exr is yours:\n\n    \
+        spectra picture spectrum spectral.exr --area 10,10,20,20 -o measured.yaml\n    \
+        spectra picture spectrum spectral.exr --area 0,0,8,8 --area 40,20,8,8 --diagram areas.svg"
+)]
+pub(crate) struct PictureSpectrum {
+    /// The picture.
+    #[arg(value_name = "FILE")]
+    pub file: PathBuf,
+    /// An area: first column and row, width and height in pixels; can be repeated. The whole picture if not given.
+    #[arg(long = "area", value_name = "COLUMN,ROW,WIDTH,HEIGHT", value_parser = rectangle)]
+    pub areas: Vec<Rectangle>,
+    /// Spectrum file to write, FILE.yaml, of one area.
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Chromaticity diagram to write, FILE.svg or FILE.png.
+    #[arg(long, value_name = "FILE")]
+    pub diagram: Option<PathBuf>,
+    /// Write a JSON object to standard output.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `spectra picture compare`.
+#[derive(Debug, Args)]
+#[command(
+    long_about = "Compare two pictures of one size: difference, noise, CIEDE2000.\n\n\
+        Differences are second minus first, relative to the mean of both. `noise` is what each picture has if both show one scene with as \
+        many samples (the standard deviation of the differences over the square root of 2). Where only noise tells them apart, the means \
+        differ by a few standard errors at most, and some 0.3 % of the blocks of 16 x 16 pixels by more than 3. CIEDE2000 is \
+        taken in CIE Lab against one white of D65 for both.",
+    after_long_help = "Example, where a.exr and b.exr are yours:\n\n    \
+        spectra picture compare a.exr b.exr -o difference.png"
+)]
+pub(crate) struct PictureCompare {
+    /// The first picture.
+    #[arg(value_name = "FIRST")]
+    pub first: PathBuf,
+    /// The second picture.
+    #[arg(value_name = "SECOND")]
+    pub second: PathBuf,
+    #[command(flatten)]
+    pub white: White,
+    /// A view of CIEDE2000 to write, FILE.png or FILE.svg.
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Write a JSON object to standard output.
+    #[arg(long)]
+    pub json: bool,
+}
+
+fn numbers<const N: usize>(text: &str) -> Option<[f64; N]> {
+    let all: Option<Vec<f64>> =
+        text.split(',').map(|v| v.trim().parse().ok().filter(|v: &f64| v.is_finite())).collect();
+    all?.try_into().ok()
+}
+
+/// The number of `--white`.
+fn positive(text: &str) -> Result<f64, String> {
+    let [value] = numbers(text).filter(|[v]| *v > 0.0).ok_or("expected a number above 0, such as 0.4")?;
+    Ok(value)
+}
+
+/// The numbers of `--range`.
+fn range(text: &str) -> Result<[f64; 2], String> {
+    let rises = |[from, to]: &[f64; 2]| from < to;
+    numbers(text).filter(rises).ok_or_else(|| "expected two numbers that rise, such as 0.1,100".to_owned())
+}
+
+/// The numbers of `--line`.
+fn line(text: &str) -> Result<[f64; 4], String> {
+    numbers(text).ok_or_else(|| "expected four numbers: column and row of each end, such as 10,10,200,90".to_owned())
+}
+
+/// The numbers of `--area`.
+fn rectangle(text: &str) -> Result<Rectangle, String> {
+    let all: Option<Vec<u32>> = text.split(',').map(|v| v.trim().parse().ok()).collect();
+    match all.as_deref() {
+        Some(&[x, y, width, height]) if width > 0 && height > 0 => {
+            Ok(Rectangle { from: [x, y], size: [width, height] })
+        }
+        _ => Err("expected four whole numbers: column, row, width and height, such as 10,10,20,20".to_owned()),
+    }
+}

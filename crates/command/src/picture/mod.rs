@@ -1,0 +1,110 @@
+//! `spectra picture`: what was rendered, measured.
+
+mod arguments;
+mod compare;
+mod cut;
+mod info;
+mod plot;
+mod spectrum;
+
+pub(crate) use arguments::PictureArguments;
+
+use crate::outcome::{Failure, Outcome};
+use arguments::PictureCommand;
+use spectra_analysis::picture::{Field, Measured, NotMeasured, Quantity};
+use spectra_core::params::{Fault, nearest};
+use spectra_core::resources::Found;
+use spectra_pictures::read::{Choice, planes};
+use spectra_plot::PlotError;
+use std::path::{Path, PathBuf};
+
+/// Runs a command on pictures.
+pub(crate) fn picture(command: &PictureCommand) -> Outcome {
+    match command {
+        PictureCommand::Info(arguments) => info::info(arguments),
+        PictureCommand::Plot(arguments) => plot::plot(arguments),
+        PictureCommand::Cut(arguments) => cut::cut(arguments),
+        PictureCommand::Spectrum(arguments) => spectrum::spectrum(arguments),
+        PictureCommand::Compare(arguments) => compare::compare(arguments),
+    }
+}
+
+/// Reads a picture and finds out what it holds.
+fn load(path: &Path) -> Result<Measured, Failure> {
+    let shown = path.display().to_string();
+    if !path.is_file() {
+        let what = if path.is_dir() { "is a folder" } else { "no such file" };
+        let hint = "name a picture file: `spectra run SCENE` writes SCENE.exr into the folder `out`";
+        return Err(Fault::new(format!("{shown}: {what}")).hint(hint).into());
+    }
+    let found = Found::on_disk(shown.clone(), path.to_owned());
+    let choice = Choice { name: &shown, ..Choice::default() };
+    planes(&found, choice).and_then(Measured::of).map_err(|trouble| {
+        let fault = Fault::new(format!("{shown}: {}", trouble.text));
+        trouble.hint.map_or(fault.clone(), |hint| fault.hint(hint)).into()
+    })
+}
+
+/// A fault of a picture, by its name.
+fn refuse(path: &Path, error: NotMeasured) -> Failure {
+    Fault::new(format!("{}: {}", path.display(), error.text)).hint(error.hint).into()
+}
+
+/// What `--quantity` names.
+fn quantity(name: &str, picture: &Measured, also: &[&str]) -> Result<Quantity, Failure> {
+    let name = name.trim();
+    Quantity::named(name, picture).ok_or_else(|| {
+        let words = Quantity::NAMED.iter().map(|(word, _)| *word).chain(also.iter().copied());
+        let channels = picture.planes.channels.iter().map(|c| c.name.as_str());
+        let known: Vec<&str> = words.chain(channels).collect();
+        let hint = match nearest(name, known.iter().copied()) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => known.iter().take(24).map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", "),
+        };
+        Fault::new(format!("--quantity: `{name}` is neither a quantity nor a channel of the picture")).hint(hint).into()
+    })
+}
+
+/// A quantity of a picture at each pixel.
+fn field(path: &Path, picture: &Measured, quantity: &Quantity, white: Option<f64>) -> Result<Field, Failure> {
+    Field::of(picture, quantity, white).map_err(|error| refuse(path, error))
+}
+
+/// The name of a file without its ending.
+fn stem(path: &Path) -> String {
+    path.file_stem().map_or_else(|| "picture".to_owned(), |stem| stem.to_string_lossy().into_owned())
+}
+
+/// The file of a figure: as given, or in the working folder by the name of the picture.
+fn output(given: Option<&PathBuf>, path: &Path, rest: &str) -> PathBuf {
+    let plain = |c: char| if c.is_alphanumeric() || matches!(c, '-' | '_' | '.') { c } else { '-' };
+    given.cloned().unwrap_or_else(|| format!("{}-{rest}", stem(path)).chars().map(plain).collect::<String>().into())
+}
+
+fn not_written(error: PlotError) -> Failure {
+    match error {
+        PlotError::Ending { .. } => Failure::Input(error.to_string()),
+        PlotError::Write(error) => error.into(),
+    }
+}
+
+/// Six digits, with a power of ten where the number is large or small.
+fn significant(value: f64) -> String {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    let shown = format!("{value:.5e}");
+    // Its power of ten after rounding.
+    match shown.split_once('e').and_then(|(_, power)| power.parse::<i32>().ok()) {
+        Some(power @ -4..=5) => format!("{value:.*}", (5 - power) as usize),
+        _ => shown,
+    }
+}
+
+/// A share as a percentage; what is not quite 0 is not shown as 0.
+fn percent(share: f64) -> String {
+    match 100.0 * share {
+        p if p > 0.0 && p < 0.01 => "< 0.01 %".to_owned(),
+        p => format!("{p:.2} %"),
+    }
+}

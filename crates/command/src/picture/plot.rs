@@ -1,0 +1,42 @@
+//! `spectra picture plot`.
+
+use super::arguments::PicturePlot;
+use super::{field, load, not_written, output, quantity, refuse, stem};
+use crate::console;
+use crate::outcome::{DONE, Outcome};
+use spectra_analysis::picture::{Quantity, Scale, clipping, view};
+use spectra_plot::Format;
+
+/// The word that is no quantity of a pixel alone.
+const CLIPPING: &str = "clipping";
+
+/// Draws a picture in false color.
+pub(super) fn plot(arguments: &PicturePlot) -> Outcome {
+    let path = &arguments.file;
+    if let Some(given) = &arguments.output {
+        // Before anything is read: a wrong ending is found out at once.
+        Format::of(given).map_err(not_written)?;
+    }
+    let picture = load(path)?;
+    let asked = arguments.quantity.as_deref().map(str::trim);
+    let white = arguments.white.white;
+    let (canvas, name) = if asked == Some(CLIPPING) && picture.planes.channel(CLIPPING).is_none() {
+        let title = format!("{}: clipping", stem(path));
+        (clipping(&picture, white, &title).map_err(|error| refuse(path, error))?, CLIPPING.to_owned())
+    } else {
+        let asked = asked.map(|name| quantity(name, &picture, &[CLIPPING])).transpose()?;
+        let quantity = asked.unwrap_or_else(|| Quantity::usual(&picture));
+        let name = match &quantity {
+            Quantity::Channel(name) => name.clone(),
+            other => Quantity::NAMED.iter().find(|(_, own)| own == other).map_or("view", |(word, _)| word).to_owned(),
+        };
+        let field = field(path, &picture, &quantity, white)?;
+        let scale = Scale { is_log: arguments.log, range: arguments.range };
+        let title = format!("{}: {}", stem(path), field.name);
+        (view(&picture, &field, scale, &title).map_err(|error| refuse(path, error))?, name)
+    };
+    let output = output(arguments.output.as_ref(), path, &format!("{name}.png"));
+    canvas.write(&output).map_err(not_written)?;
+    console::note(&format!("wrote {}", output.display()));
+    Ok(DONE)
+}

@@ -1,0 +1,254 @@
+//! How a unit of light in one pixel is spread over those around it.
+
+use crate::{Polygon, Wings};
+use spectra_core::math;
+use std::f64::consts::{PI, TAU};
+
+/// Light of a channel: wavelengths (mm) with their shares, which sum to 1.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Light {
+    shares: Vec<[f64; 2]>,
+}
+
+/// Wavelengths that a channel's light is taken as.
+const WAVELENGTHS: usize = 8;
+
+impl Light {
+    /// Of what a channel sees at wavelengths, nm: parts of equal light, each as its mean wavelength. `None` where it sees nothing.
+    #[must_use]
+    pub fn of(seen: &[[f64; 2]]) -> Option<Self> {
+        let mut sorted: Vec<[f64; 2]> = seen.iter().copied().filter(|[_, light]| *light > 0.0).collect();
+        sorted.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        let all: f64 = sorted.iter().map(|[_, light]| light).sum();
+        if !(all > 0.0 && all.is_finite()) {
+            return None;
+        }
+        let part = all / WAVELENGTHS as f64;
+        let mut shares = Vec::new();
+        let (mut filled, mut moment) = (0.0, 0.0);
+        for [nm, mut light] in sorted {
+            while light > 0.0 {
+                let taken = light.min(part - filled);
+                filled += taken;
+                moment += taken * nm;
+                light -= taken;
+                if filled >= part * (1.0 - 1e-9) {
+                    shares.push([moment / filled * 1e-6, filled / all]);
+                    (filled, moment) = (0.0, 0.0);
+                }
+                if taken <= 0.0 {
+                    break;
+                }
+            }
+        }
+        if filled > 1e-6 * part {
+            shares.push([moment / filled * 1e-6, filled / all]);
+        }
+        let sum: f64 = shares.iter().map(|[_, share]| share).sum();
+        shares.iter_mut().for_each(|[_, share]| *share /= sum);
+        Some(Self { shares })
+    }
+
+    /// One wavelength, nm.
+    #[must_use]
+    pub fn line(nm: f64) -> Self {
+        Self { shares: vec![[nm * 1e-6, 1.0]] }
+    }
+
+    /// Wavelengths, mm, with their shares.
+    #[must_use]
+    pub fn shares(&self) -> &[[f64; 2]] {
+        &self.shares
+    }
+
+    /// Mean wavelength, mm.
+    #[must_use]
+    pub fn mean_mm(&self) -> f64 {
+        self.shares.iter().map(|[mm, share]| mm * share).sum()
+    }
+
+    fn range_mm(&self) -> [f64; 2] {
+        self.shares.iter().fold([f64::INFINITY, 0.0], |[low, high], [mm, _]| [low.min(*mm), high.max(*mm)])
+    }
+}
+
+/// Fringes, in wavelengths times f-number, within which the pattern itself is added up; beyond, what edges do on average.
+const FRINGES: f64 = 16.0;
+/// Samples of the pattern in the finest of its fringes.
+const SAMPLES: f64 = 3.0;
+/// Pixels that the window reaches which keeps fine patterns sharp.
+const WINDOW: f64 = 6.0;
+
+/// Weights of the pixels around one, the same at opposite places.
+#[derive(Clone, Debug)]
+pub struct PixelSpread {
+    radius: usize,
+    weights: Vec<f64>,
+}
+
+impl PixelSpread {
+    /// The spread of a channel's light by an opening over pixels of `pitch_mm`, out to `radius` pixels, where it fades out by
+    /// [`fade`]; `elsewhere` is the part of the light that goes there. What is in it and elsewhere is all light.
+    #[must_use]
+    pub fn new(opening: &Polygon, light: &Light, pitch_mm: [f64; 2], radius: usize, elsewhere: f64) -> Self {
+        let wings = Wings::new(opening);
+        let mut own = Self { radius, weights: vec![0.0; (2 * radius + 1) * (2 * radius + 1)] };
+        let far_mm = radius as f64 * pitch_mm[0].min(pitch_mm[1]);
+        let near_mm = near_mm(opening, light);
+        let is_near = |x: f64, y: f64| x * x + y * y <= near_mm * near_mm;
+        let r = radius as isize;
+        let colors = coarse(light);
+        for j in 0..r + 1 {
+            for i in -r..r + 1 {
+                // Columns run against x.
+                let (x, y) = (-i as f64 * pitch_mm[0], j as f64 * pitch_mm[1]);
+                let stays = 1.0 - fade((x * x + y * y).sqrt(), far_mm);
+                if (j == 0 && i < 1) || is_near(x, y) || stays <= 0.0 {
+                    continue;
+                }
+                let half = pitch_mm.map(|p| 0.5 * p);
+                let of = |[mm, share]: &[f64; 2]| share * wings.intensity([x, y], half, *mm, false);
+                own.set(i, j, stays * pitch_mm[0] * pitch_mm[1] * colors.iter().map(of).sum::<f64>());
+            }
+        }
+        if near_mm >= pitch_mm[0].min(pitch_mm[1]) {
+            own.add_near(opening, light, pitch_mm, near_mm, far_mm);
+        }
+        own.set(0, 0, 0.0);
+        let all: f64 = own.weights.iter().sum();
+        own.set(0, 0, 1.0 - all - elsewhere);
+        own
+    }
+
+    /// Pixels that it reaches.
+    #[must_use]
+    pub fn radius(&self) -> usize {
+        self.radius
+    }
+
+    /// Weight of the pixel so far to the right and down.
+    #[must_use]
+    pub fn weight(&self, i: isize, j: isize) -> f64 {
+        let r = self.radius as isize;
+        self.weights[((j + r) * (2 * r + 1) + i + r) as usize]
+    }
+
+    fn set(&mut self, i: isize, j: isize, weight: f64) {
+        let r = self.radius as isize;
+        for [i, j] in [[i, j], [-i, -j]] {
+            self.weights[((j + r) * (2 * r + 1) + i + r) as usize] = weight;
+        }
+    }
+
+    /// The pattern itself, sampled and shared out to the pixels near the middle.
+    fn add_near(&mut self, opening: &Polygon, light: &Light, pitch_mm: [f64; 2], near_mm: f64, far_mm: f64) {
+        let [shortest, longest] = light.range_mm();
+        let across = 2.0 * opening.reach();
+        let pitch = pitch_mm[0].min(pitch_mm[1]);
+        let widest = pitch_mm[0].max(pitch_mm[1]);
+        // In cycles per unit of direction cosine: film over wavelength.
+        let step = (1.0 / (SAMPLES * across)).min(0.4 * pitch / longest);
+        // Patterns much finer than pixels need no window: boxes take all of them.
+        let sharp = pitch < light.mean_mm() / across;
+        let room = if sharp { WINDOW } else { 0.75 };
+        let samples = ((near_mm + room * widest) / shortest / step).ceil() as isize;
+        let side = 2 * samples as usize + 1;
+        let mut pattern = vec![0.0; side * side];
+        // What these corners are off turns no phase by more than a thousandth.
+        let simple = opening.simplified(1e-3 / (TAU * step * samples as f64));
+        for (k, value) in simple.lattice(TAU * step, samples as usize).into_iter().enumerate() {
+            // Columns run against x.
+            let (i, j) = (side - 1 - k % side, k / side);
+            pattern[(samples as usize + j) * side + i] = value;
+            pattern[(samples as usize - j) * side + side - 1 - i] = value;
+        }
+        let per_sample = opening.area() * step * step;
+        let reach = ((near_mm / pitch).ceil() as usize + 1).min(self.radius);
+        let pixels = 2 * reach + 1;
+        let mut sums = [vec![0.0; pixels * pixels], vec![0.0; pixels * pixels]];
+        for [mm, share] in light.shares() {
+            for (kind, sum) in sums.iter_mut().enumerate().take(1 + usize::from(sharp)) {
+                // What the pixels of a line get of each sample.
+                let taps = |pitch: f64| -> Vec<Vec<(usize, f64)>> {
+                    let size = step * mm / pitch;
+                    (-samples..samples + 1).map(|i| taps(i as f64 * size, size, reach, kind == 1)).collect()
+                };
+                let [columns, rows] = pitch_mm.map(taps);
+                let mut line = vec![0.0; pixels];
+                for (j, taps) in rows.iter().enumerate().filter(|(_, taps)| !taps.is_empty()) {
+                    line.fill(0.0);
+                    for (value, taps) in pattern[j * side..][..side].iter().zip(&columns) {
+                        taps.iter().for_each(|(at, part)| line[*at] += value * part);
+                    }
+                    for (row, part) in taps {
+                        let factor = share * per_sample * part;
+                        sum[row * pixels..][..pixels].iter_mut().zip(&line).for_each(|(to, v)| *to += factor * v);
+                    }
+                }
+            }
+        }
+        let [boxed, windowed] = sums;
+        let places = |k: usize| [(k % pixels) as isize - reach as isize, (k / pixels) as isize - reach as isize];
+        let distance = |[i, j]: [isize; 2]| {
+            let (x, y) = (i as f64 * pitch_mm[0], j as f64 * pitch_mm[1]);
+            (x * x + y * y).sqrt()
+        };
+        for (k, a) in boxed.iter().enumerate() {
+            let [i, j] = places(k);
+            let r = distance([i, j]);
+            if r <= near_mm && (j > 0 || (j == 0 && i > 0)) {
+                // No pixel gets less than nothing, or than a little of what its own box gets.
+                let own = if sharp { windowed[k].max(0.02 * a) } else { *a };
+                self.set(i, j, (1.0 - fade(r, far_mm)) * own);
+            }
+        }
+    }
+}
+
+/// How far the pattern itself is added up, mm.
+pub(crate) fn near_mm(opening: &Polygon, light: &Light) -> f64 {
+    FRINGES * light.range_mm()[1] / (2.0 * opening.reach())
+}
+
+/// The same light as at most four wavelengths: enough for wings.
+pub(crate) fn coarse(light: &Light) -> Vec<[f64; 2]> {
+    let pairs = light.shares().chunks(light.shares().len().div_ceil(4));
+    pairs
+        .map(|pair| {
+            let share: f64 = pair.iter().map(|[_, share]| share).sum();
+            [pair.iter().map(|[mm, share]| mm * share).sum::<f64>() / share, share]
+        })
+        .collect()
+}
+
+/// The part of the light at a distance that is no more in the pixels around: 0 up to 0.6 of the way, 1 from its end on.
+pub(crate) fn fade(r: f64, end: f64) -> f64 {
+    let t = ((r / end - 0.6) / 0.4).clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}
+
+/// The parts that pixels up to `reach` get of a sample of this size around `at`, in pixels.
+fn taps(at: f64, size: f64, reach: usize, sharp: bool) -> Vec<(usize, f64)> {
+    let end = reach as f64;
+    let pixel = |k: f64| (k + end) as usize;
+    let (low, high) = (at - 0.5 * size, at + 0.5 * size);
+    let around =
+        if sharp { [(at - WINDOW).ceil(), (at + WINDOW).floor()] } else { [(low + 0.5).floor(), (high + 0.5).floor()] };
+    let mut taps = Vec::new();
+    let mut k = around[0].max(-end);
+    while k <= around[1].min(end) {
+        let part = if sharp { window(at - k) } else { ((high.min(k + 0.5) - low.max(k - 0.5)) / size).max(0.0) };
+        if part != 0.0 {
+            taps.push((pixel(k), part));
+        }
+        k += 1.0;
+    }
+    taps
+}
+
+/// A sinc that ends at [`WINDOW`]: 1 at its pixel, 0 at all others (C. E. Duchon, "Lanczos filtering in one and two dimensions", J. Appl.
+/// Meteorol. 18, 1979).
+fn window(x: f64) -> f64 {
+    let sinc = |x: f64| if x.abs() < 1e-9 { 1.0 } else { math::sin(PI * x) / (PI * x) };
+    if x.abs() >= WINDOW { 0.0 } else { sinc(x) * sinc(x / WINDOW) }
+}

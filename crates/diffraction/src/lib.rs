@@ -1,0 +1,20 @@
+//! What the edge of the aperture does to light.
+//!
+//! A point of light through a lens without aberrations is on film the squared transform of the opening that light passes, laid out in
+//! direction cosines as the point sees it (Fraunhofer; M. Born and E. Wolf, "Principles of optics", 8.5). Openings are polygons: their
+//! transform is a sum over edges, in closed form, at any distance.
+
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
+mod kernel;
+mod polygon;
+mod pupil;
+mod spread;
+mod star;
+mod wings;
+
+pub use kernel::{Light, PixelSpread};
+pub use polygon::Polygon;
+pub use pupil::Pupil;
+pub use spread::{Account, Seen, Spread};
+pub use wings::{Fan, Wings};

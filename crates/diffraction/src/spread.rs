@@ -1,0 +1,362 @@
+//! A frame spread by diffraction.
+//!
+//! Near its core each pixel's light is spread by the opening as its part of the frame sees it, in zones that pass into each other. Farther
+//! out the spikes of bright pixels are drawn line by line to the edge of the frame; what other pixels send there, and what lies between
+//! spikes, is smooth and spread on coarse cells. All light is accounted for: what it does is spread, or left beside the frame.
+
+use crate::kernel::{coarse, fade, near_mm};
+use crate::star::{Spike, Spikes, fading};
+use crate::{Light, PixelSpread, Polygon, Wings};
+use rayon::prelude::*;
+use spectra_core::frame::FrameSize;
+use spectra_numerics::convolve::Convolver;
+use std::f64::consts::TAU;
+
+/// Zones of the core across the longer side of the frame.
+const ZONES: usize = 4;
+/// Pixels around one within which its light is spread pixel by pixel, at least and at most.
+const RADIUS: [usize; 2] = [48, 160];
+/// Cells of what is spread smoothly, for each radius.
+const CELLS: usize = 8;
+/// Side of the squares whose bright pixels share the spikes of their middle, pixels.
+const SQUARE: usize = 48;
+/// A spike is drawn where it stands out by this part of what pixels have at their median ...
+const SEEN: f64 = 2e-3;
+/// ... and by this part of the brightest spike.
+const OF_BRIGHTEST: f64 = 1e-4;
+/// Most pixels of a channel whose spikes are drawn.
+const MOST: usize = 6000;
+
+/// How the places of a frame see the opening: at a column and row, in pixels from the upper left corner of the picture.
+pub type Seen<'a> = dyn Fn([f64; 2]) -> Option<Polygon> + Sync + 'a;
+
+/// What was done to a channel.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Account {
+    /// Part of its light that diffraction brings beside the frame.
+    pub left: f64,
+    /// Part of the light of a pixel in the middle of the frame that stays in it.
+    pub stays: f64,
+    /// Pixels whose spikes were drawn.
+    pub stars: usize,
+}
+
+/// A frame made ready: the kernels of one channel's light.
+pub struct Spread<'a> {
+    size: FrameSize,
+    pitch_mm: [f64; 2],
+    seen: &'a Seen<'a>,
+    light: Light,
+    radius: usize,
+    middle: Polygon,
+    /// What goes farther than the pixels around, from the middle of the frame: all, and without spikes.
+    cells: [Vec<f64>; 2],
+    cell_px: usize,
+    reach: [usize; 2],
+    /// What of it lies beyond the reach of the cells.
+    beyond: [f64; 2],
+    zones: [usize; 2],
+    kernels: Vec<PixelSpread>,
+}
+
+impl<'a> Spread<'a> {
+    /// For a channel's light on a frame. `None` where the middle of the frame sees no opening.
+    #[must_use]
+    pub fn new(size: FrameSize, light: Light, seen: &'a Seen<'a>) -> Option<Self> {
+        let (width, height) = (size.width_px as usize, size.height_px as usize);
+        let pitch_mm = [size.width_mm / width as f64, size.height_mm / height as f64];
+        let middle = seen([0.5 * width as f64, 0.5 * height as f64])?;
+        let longer = width.max(height) as f64;
+        let zones = [width, height].map(|side| ((ZONES as f64 * side as f64 / longer).round() as usize).max(1));
+        let node = |k: usize| {
+            let [i, j] = [k % (zones[0] + 1), k / (zones[0] + 1)];
+            let at = [width as f64 * i as f64 / zones[0] as f64, height as f64 * j as f64 / zones[1] as f64];
+            seen(at).unwrap_or_else(|| middle.clone())
+        };
+        let count = (zones[0] + 1) * (zones[1] + 1);
+        let openings: Vec<Polygon> = (0..count).into_par_iter().map(node).collect();
+        let pitch = pitch_mm[0].min(pitch_mm[1]);
+        let near = openings.iter().map(|o| near_mm(o, &light)).fold(0.0, f64::max);
+        let radius = ((near / pitch / 0.6).ceil() as usize + 2).clamp(RADIUS[0], RADIUS[1]);
+        let cell_px = (radius / CELLS).max(1);
+        let reach = [width.div_ceil(cell_px), height.div_ceil(cell_px)];
+        let mut own = Self {
+            size,
+            pitch_mm,
+            seen,
+            light,
+            radius,
+            middle,
+            cells: [Vec::new(), Vec::new()],
+            cell_px,
+            reach,
+            beyond: [0.0; 2],
+            zones,
+            kernels: Vec::new(),
+        };
+        let wings = Wings::new(&own.middle);
+        own.cells = [false, true].map(|without| own.smooth(&wings, without));
+        let (mean, end) = (own.light.mean_mm(), own.end_mm());
+        let sums = own.cells.each_ref().map(|cells| cells.iter().sum::<f64>());
+        let spikes: f64 = Spike::all(&wings, mean, pitch_mm).iter().map(|s| s.light(end)).sum();
+        own.beyond[0] = (wings.beyond(1.0, mean) * fading(end) - sums[0]).max(0.0);
+        own.beyond[1] = (wings.beyond(1.0, mean) * fading(end) - spikes - sums[1]).max(0.0);
+        let elsewhere = sums[0] + own.beyond[0];
+        own.kernels = openings
+            .par_iter()
+            .map(|opening| PixelSpread::new(opening, &own.light, pitch_mm, radius, elsewhere))
+            .collect();
+        Some(own)
+    }
+
+    /// Where light has left the pixels around, mm.
+    fn end_mm(&self) -> f64 {
+        self.radius as f64 * self.pitch_mm[0].min(self.pitch_mm[1])
+    }
+
+    /// What goes farther than the pixels around, cell by cell; of spikes only what lies beside their boxes.
+    fn smooth(&self, wings: &Wings, without_boxes: bool) -> Vec<f64> {
+        let [across, down] = self.reach.map(|r| r as isize);
+        let side = self.pitch_mm.map(|p| p * self.cell_px as f64);
+        let (end, colors) = (self.end_mm(), coarse(&self.light));
+        let row = |j: isize| -> Vec<f64> {
+            let cell = |i: isize| -> f64 {
+                let at = [-(i as f64) * side[0], j as f64 * side[1]];
+                let r = (at[0] * at[0] + at[1] * at[1]).sqrt();
+                let diagonal = (side[0] * side[0] + side[1] * side[1]).sqrt();
+                if r + diagonal < 0.6 * end {
+                    return 0.0;
+                }
+                // Near the middle a cell is large for what it holds.
+                let parts: usize = if r < 3.0 * end { 4 } else { 1 };
+                let mut sum = 0.0;
+                for k in 0..parts * parts {
+                    let place = |n: usize, side: f64| ((n as f64 + 0.5) / parts as f64 - 0.5) * side;
+                    let p = [at[0] + place(k % parts, side[0]), at[1] + place(k / parts, side[1])];
+                    let half = side.map(|s| 0.5 * s / parts as f64);
+                    let faded = fade((p[0] * p[0] + p[1] * p[1]).sqrt(), end);
+                    if faded > 0.0 {
+                        let of = |[mm, share]: &[f64; 2]| share * wings.intensity(p, half, *mm, without_boxes);
+                        sum += faded * colors.iter().map(of).sum::<f64>();
+                    }
+                }
+                let light = sum * side[0] * side[1] / (parts * parts) as f64;
+                if without_boxes { light.max(0.0) } else { light }
+            };
+            (-across..across + 1).map(cell).collect()
+        };
+        (-down..down + 1).into_par_iter().flat_map_iter(row).collect()
+    }
+
+    /// Spreads a plane of exposures, in place.
+    ///
+    /// # Panics
+    /// If it has another size.
+    pub fn apply(&self, plane: &mut [f32]) -> Account {
+        let (width, height) = (self.size.width_px as usize, self.size.height_px as usize);
+        assert_eq!(plane.len(), width * height, "the plane has the frame's size");
+        let before: f64 = plane.iter().map(|v| f64::from(*v)).sum();
+        // No light, or more than a number can hold.
+        if !(before > 0.0 && before.is_finite()) {
+            return Account::default();
+        }
+        let bright = self.bright(plane);
+        let mut spread = self.cores(plane, &bright);
+        self.stars(plane, &bright, &mut spread);
+        let mut rest = plane.to_vec();
+        let mut stars = vec![0.0_f32; rest.len()];
+        for at in &bright {
+            std::mem::swap(&mut rest[*at], &mut stars[*at]);
+        }
+        self.cells(&rest, true, &self.cells[0], &mut spread);
+        if !bright.is_empty() {
+            self.cells(&stars, false, &self.cells[1], &mut spread);
+        }
+        plane.par_iter_mut().zip(&spread).for_each(|(to, v)| *to = v.max(0.0) as f32);
+        let after: f64 = spread.iter().sum();
+        let center = self.kernels.len() / 2;
+        let stays = self.kernels.get(center).map_or(1.0, |kernel| kernel.weight(0, 0));
+        Account { left: 1.0 - after / before, stays, stars: bright.len() }
+    }
+
+    /// The pixels whose spikes are drawn.
+    fn bright(&self, plane: &[f32]) -> Vec<usize> {
+        let wings = Wings::new(&self.middle);
+        let spikes = Spike::all(&wings, self.light.mean_mm(), self.pitch_mm);
+        let [end, mean] = [self.end_mm(), self.light.mean_mm()];
+        // Of a round opening that all around.
+        let around = wings.beyond(end, mean) / (TAU * end * end) * self.pitch_mm[0] * self.pitch_mm[1];
+        let peak = spikes.iter().map(|s| s.peak(end)).fold(around, f64::max);
+        let brightest = plane.iter().fold(0.0_f32, |a, b| a.max(*b));
+        if peak <= 0.0 {
+            return Vec::new();
+        }
+        let mut sorted = plane.to_vec();
+        let (_, median, _) = sorted.select_nth_unstable_by(plane.len() / 2, f32::total_cmp);
+        let mut least = (SEEN * f64::from(*median) / peak).max(OF_BRIGHTEST * f64::from(brightest)) as f32;
+        let mut above: Vec<f32> = plane.iter().copied().filter(|v| *v > least).collect();
+        if above.len() > MOST {
+            let (_, next, _) = above.select_nth_unstable_by(MOST, |a, b| b.total_cmp(a));
+            least = *next;
+        }
+        (0..plane.len()).filter(|at| plane[*at] > least).collect()
+    }
+
+    /// The core of all pixels. What is no star goes on beyond the frame as in a mirror, so that as much comes in as leaves.
+    fn cores(&self, plane: &[f32], bright: &[usize]) -> Vec<f64> {
+        let (width, height) = (self.size.width_px as usize, self.size.height_px as usize);
+        let r = self.radius;
+        let mut is_star = vec![false; plane.len()];
+        bright.iter().for_each(|at| is_star[*at] = true);
+        let mut spread = vec![0.0; plane.len()];
+        for (at, kernel) in self.kernels.iter().enumerate() {
+            let node = [at % (self.zones[0] + 1), at / (self.zones[0] + 1)];
+            // The first and last pixel with a share in this zone, a margin beyond the frame included.
+            let span = |k: usize, side: usize| -> [isize; 2] {
+                let (zones, node) = (self.zones[k], node[k]);
+                let place = |n: usize| side as f64 * n as f64 / zones as f64;
+                let first = if node == 0 { -(r as isize) } else { place(node - 1).floor() as isize };
+                let last = if node == zones { (side + r) as isize } else { place(node + 1).ceil() as isize };
+                [first, last]
+            };
+            let [xs, ys] = [span(0, width), span(1, height)];
+            let share = |k: usize, at: isize, side: usize| {
+                let p = (at as f64 + 0.5).clamp(0.0, side as f64) * self.zones[k] as f64 / side as f64;
+                (1.0 - (p - node[k] as f64).abs()).max(0.0)
+            };
+            // With room for what is spread beside it.
+            let (w, h) = ((xs[1] - xs[0]) as usize + 2 * r, (ys[1] - ys[0]) as usize + 2 * r);
+            let mut part = vec![0.0_f32; w * h];
+            let columns: Vec<(usize, bool, f64)> = (xs[0]..xs[1])
+                .map(|x| (mirrored(x, width), x >= 0 && x < width as isize, share(0, x, width)))
+                .collect();
+            part.par_chunks_mut(w).enumerate().skip(r).take(h - 2 * r).for_each(|(row, line)| {
+                let y = ys[0] + (row - r) as isize;
+                let (from, inside, share) =
+                    (mirrored(y, height) * width, y >= 0 && y < height as isize, share(1, y, height));
+                for (to, (column, within, own)) in line[r..].iter_mut().zip(&columns) {
+                    let at = from + column;
+                    if (inside && *within) || !is_star[at] {
+                        *to = (f64::from(plane[at]) * share * own) as f32;
+                    }
+                }
+            });
+            let mut light = vec![0.0_f32; w * h];
+            Convolver::of(r, |i, j| kernel.weight(i, j), w, h).apply(&part, &mut light, |to, v| *to = v as f32);
+            let origin = [xs[0] - r as isize, ys[0] - r as isize];
+            spread.par_chunks_mut(width).enumerate().for_each(|(y, to)| {
+                let Some(row) = usize::try_from(y as isize - origin[1]).ok().filter(|row| *row < h) else { return };
+                for (x, to) in to.iter_mut().enumerate() {
+                    if let Some(column) = usize::try_from(x as isize - origin[0]).ok().filter(|column| *column < w) {
+                        *to += f64::from(light[row * w + column]);
+                    }
+                }
+            });
+        }
+        spread
+    }
+
+    /// The spikes of bright pixels; and in the pixels themselves what these hold more or less than others.
+    fn stars(&self, plane: &[f32], bright: &[usize], spread: &mut [f64]) {
+        if bright.is_empty() {
+            return;
+        }
+        let (width, height) = (self.size.width_px as usize, self.size.height_px as usize);
+        let across = width.div_ceil(SQUARE);
+        let square = |at: usize| at / width / SQUARE * across + at % width / SQUARE;
+        let mut squares: Vec<usize> = bright.iter().map(|at| square(*at)).collect();
+        squares.sort_unstable();
+        squares.dedup();
+        let (mean, end) = (self.light.mean_mm(), self.end_mm());
+        let of_square = |k: &usize| {
+            let at = [k % across, k / across].map(|n| (n as f64 + 0.5) * SQUARE as f64);
+            let seen = (self.seen)([at[0].min(width as f64), at[1].min(height as f64)]);
+            let wings = Wings::new(&seen.unwrap_or_else(|| self.middle.clone()));
+            Spike::all(&wings, mean, self.pitch_mm)
+        };
+        let known: Vec<Vec<Spike>> = squares.par_iter().map(of_square).collect();
+        let usual: f64 = self.cells[0].iter().sum::<f64>() + self.beyond[0];
+        let between: f64 = self.cells[1].iter().sum::<f64>() + self.beyond[1];
+        let mut spikes = Spikes::new(width, height);
+        for at in bright {
+            let Ok(own) = squares.binary_search(&square(*at)) else { continue };
+            let light = f64::from(plane[*at]);
+            let mut taken = between;
+            for spike in &known[own] {
+                spikes.add(spike, at % width, at / width, light, end);
+                taken += spike.light(end);
+            }
+            spread[*at] += light * (usual - taken);
+        }
+        spikes.add_to(spread);
+    }
+
+    /// Spreads a plane by cells that know how light goes farther than the pixels around; beyond the frame a mirror of it, or nothing.
+    fn cells(&self, plane: &[f32], mirror: bool, weights: &[f64], spread: &mut [f64]) {
+        let (width, height) = (self.size.width_px as usize, self.size.height_px as usize);
+        let cell = self.cell_px;
+        let [across, down] = self.reach;
+        // A frame of cells with a margin as far as they reach.
+        let (w, h) = (3 * across + 4, 3 * down + 4);
+        let first = [across as isize + 2, down as isize + 2];
+        let place = |at: isize, k: usize| {
+            let p = (at as f64 + 0.5) / cell as f64 - 0.5 + first[k] as f64;
+            let low = p.floor();
+            (low, p - low)
+        };
+        let mut sums = vec![0.0_f64; w * h];
+        let margin = if mirror { [(across * cell) as isize, (down * cell) as isize] } else { [0; 2] };
+        let columns: Vec<(usize, f64, usize)> = (-margin[0]..width as isize + margin[0])
+            .map(|x| {
+                let (low, part) = place(x, 0);
+                (low.max(0.0) as usize, part, mirrored(x, width))
+            })
+            .collect();
+        for y in -margin[1]..height as isize + margin[1] {
+            let (low, part) = place(y, 1);
+            let from = mirrored(y, height) * width;
+            for (row, share) in [(low.max(0.0) as usize, 1.0 - part), (low.max(0.0) as usize + 1, part)] {
+                if row >= h {
+                    continue;
+                }
+                let line = &mut sums[row * w..][..w];
+                for (column, right, at) in &columns {
+                    let light = f64::from(plane[from + at]) * share;
+                    if column + 1 < w {
+                        line[*column] += light * (1.0 - right);
+                        line[column + 1] += light * right;
+                    }
+                }
+            }
+        }
+        let cells: Vec<f32> = sums.iter().map(|v| *v as f32).collect();
+        let mut light = vec![0.0_f32; cells.len()];
+        let radius = across.max(down);
+        let weight = |i: isize, j: isize| {
+            let (i, j) = (i + across as isize, j + down as isize);
+            let inside = i >= 0 && j >= 0 && i <= 2 * across as isize && j <= 2 * down as isize;
+            if inside { weights[j as usize * (2 * across + 1) + i as usize] } else { 0.0 }
+        };
+        Convolver::of(radius, weight, w, h).apply(&cells, &mut light, |to, v| *to = v as f32);
+        let per_pixel = 1.0 / (cell * cell) as f64;
+        spread.par_chunks_mut(width).enumerate().for_each(|(y, line)| {
+            let (row, down) = place(y as isize, 1);
+            let row = row as usize;
+            for (x, to) in line.iter_mut().enumerate() {
+                let (column, right) = place(x as isize, 0);
+                let at = |k: usize| f64::from(light[k]);
+                let k = row * w + column as usize;
+                let upper = at(k) + (at(k + 1) - at(k)) * right;
+                let lower = at(k + w) + (at(k + w + 1) - at(k + w)) * right;
+                *to += (upper + (lower - upper) * down) * per_pixel;
+            }
+        });
+    }
+}
+
+/// The pixel of a frame that a mirror at its border shows at a place.
+fn mirrored(at: isize, side: usize) -> usize {
+    let side = side as isize;
+    let at = at.rem_euclid(2 * side);
+    (if at < side { at } else { 2 * side - 1 - at }) as usize
+}

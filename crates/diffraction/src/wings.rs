@@ -1,0 +1,316 @@
+//! Far from its core: a point spread as what each edge of the opening sends off along its normal.
+//!
+//! The squared transform of a polygon is a sum over pairs of edges. Pairs that do not meet beat with a period of wavelength times
+//! f-number, which pixels and colors average away. What is left are the edges alone, each a spike across itself that falls as 1/r^2 and
+//! is wavelength over length wide, and pairs that share a corner. A bent edge sends its light into a fan of normals.
+
+use crate::Polygon;
+use spectra_core::math;
+use std::f64::consts::{PI, TAU};
+use std::sync::OnceLock;
+
+/// Edges that turn by less than this from one to the next are pieces of one line, rad.
+const CORNER_RAD: f64 = 0.2;
+/// Lines of edges that bend less than this send off a spike, rad; others a fan.
+const SPIKE_RAD: f64 = 0.03;
+/// Widest fan: a line that bends by more is taken in pieces, rad.
+const WIDEST_RAD: f64 = 0.12;
+
+/// What a line of edges sends off to both of its sides.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fan {
+    /// Unit vector out of the opening, in the middle of the fan.
+    pub normal: [f64; 2],
+    /// Angle of the fan, rad; 0 of a straight edge.
+    pub spread_rad: f64,
+    /// Length of the edge that it comes from.
+    pub length: f64,
+    /// Length of the whole line that this is a piece of.
+    pub line: f64,
+}
+
+impl Fan {
+    /// Whether what it sends off is a spike: it comes from a whole line that hardly bends.
+    #[must_use]
+    pub fn is_spike(&self) -> bool {
+        self.length == self.line && self.spread_rad <= SPIKE_RAD
+    }
+}
+
+/// What a polygon does far from the core.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Wings {
+    fans: Vec<Fan>,
+    /// Fans before and behind each corner.
+    corners: Vec<[usize; 2]>,
+    area: f64,
+    around: f64,
+}
+
+impl Wings {
+    /// Of an opening in direction cosines.
+    #[must_use]
+    pub fn new(opening: &Polygon) -> Self {
+        let (mut fans, mut corners) = (Vec::new(), Vec::new());
+        for ring in opening.rings() {
+            lines(ring, &mut fans, &mut corners);
+        }
+        let around = fans.iter().map(|fan| fan.length).sum();
+        Self { fans, corners, area: opening.area(), around }
+    }
+
+    /// What each line of edges sends off.
+    #[must_use]
+    pub fn fans(&self) -> &[Fan] {
+        &self.fans
+    }
+
+    /// Part of the light of a wavelength (mm) that falls farther than `r_mm` from the middle: that which each edge sends off, wavelength
+    /// times circumference over 2 pi^2 times area times r.
+    #[must_use]
+    pub fn beyond(&self, r_mm: f64, wavelength_mm: f64) -> f64 {
+        wavelength_mm * self.around / (2.0 * PI * PI * self.area * r_mm)
+    }
+
+    /// Part of the light of a wavelength (mm) that one fan sends beyond `r_mm`, both sides together.
+    #[must_use]
+    pub fn of_fan(&self, fan: &Fan, r_mm: f64, wavelength_mm: f64) -> f64 {
+        wavelength_mm * fan.length / (2.0 * PI * PI * self.area * r_mm)
+    }
+
+    /// Part of the light per mm^2 at a place on film, mm from the middle, on average over fringes and over a cell of these half sides;
+    /// without that which `boxes` take of each spike: see [`Wings::boxes`].
+    #[must_use]
+    pub fn intensity(&self, at: [f64; 2], half_mm: [f64; 2], wavelength_mm: f64, without_boxes: bool) -> f64 {
+        let r2 = at[0] * at[0] + at[1] * at[1];
+        let r = r2.sqrt();
+        let across = |fan: &Fan| {
+            let [nx, ny] = fan.normal;
+            let t = at[1] * nx - at[0] * ny;
+            // The cell seen along the edge is one box spread by another; so is the fan.
+            let (a, b) = (half_mm[0] * ny.abs(), half_mm[1] * nx.abs());
+            (at[0] * nx + at[1] * ny, t, [a.max(b) + 0.5 * r * fan.spread_rad, a.min(b)])
+        };
+        let mut sum = 0.0;
+        for fan in &self.fans {
+            let (along, t, half) = across(fan);
+            let per_mm = PI * fan.line / wavelength_mm;
+            let half = half.map(|half| half * per_mm);
+            let mut share = mean(t * per_mm, half, spike_integrals);
+            if without_boxes && fan.is_spike() {
+                share -= mean(t * per_mm, half, boxes_integrals);
+            }
+            sum += fan.length * fan.line * along * along * share;
+        }
+        let mut together = 0.0;
+        for pair in &self.corners {
+            let one = |at: usize| {
+                let fan = &self.fans[at];
+                let (along, t, half) = across(fan);
+                let least = half[0] + half[1] + wavelength_mm / (PI * fan.line);
+                along * t / (t * t + least * least)
+            };
+            together -= one(pair[0]) * one(pair[1]);
+        }
+        let pairs = together * wavelength_mm * wavelength_mm / (2.0 * PI * PI);
+        let all = sum + pairs;
+        (if without_boxes { all } else { all.max(0.0) }) / (4.0 * PI * PI * self.area * r2 * r2)
+    }
+
+    /// A spike across itself as two boxes: part of its light and half width, in wavelengths over length of the line. Together they are as
+    /// high as the spike is in its middle, and hold nine tenths of it.
+    #[must_use]
+    pub fn boxes() -> [[f64; 2]; 2] {
+        [[0.7, 0.42], [0.2, 0.6]]
+    }
+}
+
+/// Lines of edges of a ring, cut at its corners.
+fn lines(ring: &[[f64; 2]], fans: &mut Vec<Fan>, corners: &mut Vec<[usize; 2]>) {
+    let count = ring.len();
+    let edge = |i: usize| {
+        let (a, b) = (ring[i % count], ring[(i + 1) % count]);
+        [b[0] - a[0], b[1] - a[1]]
+    };
+    let length = |d: [f64; 2]| (d[0] * d[0] + d[1] * d[1]).sqrt();
+    let all: f64 = (0..count).map(|i| length(edge(i))).sum();
+    // Edges without length turn nowhere.
+    let edges: Vec<[f64; 2]> = (0..count).map(edge).filter(|d| length(*d) > 1e-12 * all).collect();
+    let count = edges.len();
+    let turn = |i: usize| {
+        let (a, b) = (edges[i % count], edges[(i + 1) % count]);
+        math::atan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1])
+    };
+    let is_corner = |i: usize| turn(i).abs() > CORNER_RAD;
+    let begin = (0..count).find(|i| is_corner(*i)).map_or(0, |i| i + 1);
+    let first_fan = fans.len();
+    let mut starts: Vec<[usize; 2]> = Vec::new();
+    let mut at = 0;
+    while at < count {
+        let from = at;
+        while at + 1 < count && !is_corner(begin + at) {
+            at += 1;
+        }
+        at += 1;
+        let span: Vec<usize> = (from..at).map(|i| (begin + i) % count).collect();
+        let first = fans.len();
+        line(&edges, &span, &turn, at - from == count, fans);
+        starts.push([first, fans.len() - 1]);
+    }
+    if (0..count).any(is_corner) {
+        for i in 0..starts.len() {
+            corners.push([starts[i][1], starts[(i + 1) % starts.len()][0]]);
+        }
+    }
+    debug_assert!(fans.len() > first_fan);
+}
+
+/// The fans of one line of edges.
+fn line(edges: &[[f64; 2]], span: &[usize], turn: &dyn Fn(usize) -> f64, closed: bool, fans: &mut Vec<Fan>) {
+    let length = |d: [f64; 2]| (d[0] * d[0] + d[1] * d[1]).sqrt();
+    let whole: f64 = span.iter().map(|i| length(edges[*i])).sum();
+    // Each edge stands for half of the turns at its ends; at the ends of the line, for as much beyond.
+    let turns: Vec<f64> = (0..span.len())
+        .map(|i| {
+            let before = if i > 0 { Some(turn(span[i - 1])) } else { closed.then(|| turn(span[span.len() - 1])) };
+            let after = if i + 1 < span.len() || closed { Some(turn(span[i])) } else { None };
+            match (before, after) {
+                (Some(a), Some(b)) => 0.5 * (a + b),
+                (Some(one), None) | (None, Some(one)) => one,
+                (None, None) => 0.0,
+            }
+        })
+        .collect();
+    let mut at = 0;
+    while at < span.len() {
+        let mut sum = [0.0; 2];
+        let (mut spread, mut long) = (0.0_f64, 0.0);
+        let from = at;
+        while at < span.len() && (at == from || (spread + turns[at]).abs() <= WIDEST_RAD) {
+            let d = edges[span[at]];
+            (sum[0], sum[1]) = (sum[0] + d[0], sum[1] + d[1]);
+            spread += turns[at];
+            long += length(d);
+            at += 1;
+        }
+        let chord = length(sum);
+        fans.push(Fan {
+            normal: [sum[1] / chord, -sum[0] / chord],
+            spread_rad: spread.abs(),
+            length: long,
+            line: whole,
+        });
+    }
+}
+
+/// The mean of a function around x over one box spread by another, by its integral and the integral of that.
+fn mean(x: f64, [wide, narrow]: [f64; 2], integrals: fn(f64) -> [f64; 2]) -> f64 {
+    let at = |x: f64| integrals(x);
+    if narrow < 0.02 {
+        return (at(x + wide)[0] - at(x - wide)[0]) / (2.0 * wide);
+    }
+    let second = |x: f64| at(x)[1];
+    let (sum, less) = (wide + narrow, wide - narrow);
+    (second(x + sum) - second(x + less) - second(x - less) + second(x - sum)) / (4.0 * wide * narrow)
+}
+
+/// Points of the table of [`spike_integrals`], and their distance.
+const POINTS: usize = 1024;
+const STEP: f64 = TAU / 128.0;
+
+/// Integral of (sin(x) / x)^2 from 0 to x, and the integral of that, within 1e-6.
+fn spike_integrals(x: f64) -> [f64; 2] {
+    static TABLE: OnceLock<Vec<[f64; 3]>> = OnceLock::new();
+    let value = |x: f64| {
+        let s = if x == 0.0 { 1.0 } else { math::sin(x) / x };
+        s * s
+    };
+    let table = TABLE.get_or_init(|| {
+        let (mut first, mut second) = (0.0, 0.0);
+        (0..POINTS + 1)
+            .map(|i| {
+                let to = i as f64 * STEP;
+                let point = [value(to), first, second];
+                // Of the cubic through four points of the step to the next (Simpson's 3/8 rule), and its moment about the end.
+                let at = [0.0, 1.0, 2.0, 3.0].map(|k| value(to + k / 3.0 * STEP));
+                second +=
+                    STEP * first + STEP * STEP * (39.0 * at[0] + 108.0 * at[1] + 27.0 * at[2] + 6.0 * at[3]) / 360.0;
+                first += STEP / 8.0 * (at[0] + 3.0 * at[1] + 3.0 * at[2] + at[3]);
+                point
+            })
+            .collect()
+    });
+    // Far out: the sine and cosine integrals' asymptotic series.
+    let far_first = |x: f64| {
+        let (sin, cos) = (math::sin(2.0 * x), math::cos(2.0 * x));
+        0.5 * PI - 0.5 / x - sin / (4.0 * x * x) + cos / (4.0 * x * x * x)
+    };
+    let far_second = |x: f64| {
+        let (sin, cos) = (math::sin(2.0 * x), math::cos(2.0 * x));
+        0.5 * PI * x - 0.5 * math::log(x) + cos / (8.0 * x * x) + sin / (4.0 * x * x * x)
+    };
+    let far = x.abs();
+    let p = far / STEP;
+    let [first, second] = if p < POINTS as f64 {
+        let i = p as usize;
+        let (f, [da, a, c], [db, b, d]) = (p - i as f64, table[i], table[i + 1]);
+        // Hermite's cubics.
+        let cubic = |a: f64, b: f64, da: f64, db: f64| {
+            let (m, n) = (STEP * da - (b - a), (b - a) - STEP * db);
+            a + f * (b - a) + f * (1.0 - f) * ((1.0 - f) * m + f * n)
+        };
+        [cubic(a, b, da, db), cubic(c, d, a, b)]
+    } else {
+        let end = POINTS as f64 * STEP;
+        let last = table[POINTS];
+        [far_first(far), last[2] + far_second(far) - far_second(end)]
+    };
+    [if x < 0.0 { -first } else { first }, second]
+}
+
+/// The same of the boxes that stand for a spike.
+fn boxes_integrals(x: f64) -> [f64; 2] {
+    let far = x.abs();
+    let mut both = [0.0; 2];
+    for [part, half] in Wings::boxes() {
+        let (all, end) = (0.5 * part * PI, PI * half);
+        both[0] += all * (far / end).min(1.0);
+        both[1] += if far < end { 0.5 * all * far * far / end } else { all * (far - 0.5 * end) };
+    }
+    [if x < 0.0 { -both[0] } else { both[0] }, both[1]]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_integral_is_that_of_its_function() {
+        let (mut sum, mut second) = (0.0, 0.0);
+        let n = 2_000_000;
+        let step = 100.0 / f64::from(n);
+        for i in 0..n {
+            let x = (f64::from(i) + 0.5) * step;
+            let before = sum;
+            sum += (x.sin() / x).powi(2) * step;
+            second += 0.5 * (before + sum) * step;
+            if i % 50_021 == 0 {
+                let at = x + 0.5 * step;
+                let [one, two] = spike_integrals(at);
+                assert!((one - sum).abs() < 1e-6 && (two - second).abs() < 1e-5, "{at}: {one} {sum}, {two} {second}");
+                assert_eq!(spike_integrals(-at), [-one, two]);
+            }
+        }
+    }
+
+    #[test]
+    fn lines_are_cut_at_corners_only() {
+        let seven = Wings::new(&Polygon::regular(7, 0.03, 0.1));
+        assert_eq!((seven.fans().len(), seven.corners.len()), (7, 7));
+        assert!(seven.fans().iter().all(|fan| fan.spread_rad == 0.0));
+        let round = Wings::new(&Polygon::regular(256, 0.03, 0.0));
+        let all: f64 = round.fans().iter().map(|fan| fan.spread_rad).sum();
+        assert!((all - TAU).abs() < 1e-9 && round.corners.is_empty(), "{all}");
+        assert!((round.around - TAU * 0.03).abs() < 1e-5);
+    }
+}

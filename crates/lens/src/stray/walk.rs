@@ -1,0 +1,272 @@
+//! The walk of one particle of light.
+
+use super::Chance;
+use super::room::{Disk, Interior, Met};
+use glam::DVec3;
+use spectra_core::math;
+
+/// Walls that a particle meets at most; what is left by then is booked.
+const MOST_WALLS: usize = 4096;
+
+/// A particle of light, in the frame of the lens.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Particle {
+    /// Where it is, mm.
+    pub position: DVec3,
+    /// Unit vector.
+    pub direction: DVec3,
+    /// What it stands for.
+    pub weight: f64,
+    /// How often surfaces of glass, or the imager as a mirror, reflected it so far.
+    pub mirrored: u32,
+    /// How often paint, or the imager as a screen, scattered it so far.
+    pub scattered: u32,
+}
+
+impl Particle {
+    /// Whether it came straight.
+    #[must_use]
+    pub fn is_straight(&self) -> bool {
+        self.mirrored == 0 && self.scattered == 0
+    }
+}
+
+/// Where the light of walks ended, in the unit of their weights: `launched + aimed` is the sum of the others, up to rounding.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StrayLedger {
+    /// What set out.
+    pub launched: f64,
+    /// What was added where light was sent to where it matters, with weights to make up for it: zero but for noise.
+    pub aimed: f64,
+    /// Left through the front.
+    pub front: f64,
+    /// Absorbed by paint.
+    pub paint: f64,
+    /// Absorbed by glass.
+    pub glass: f64,
+    /// Absorbed by coatings.
+    pub coatings: f64,
+    /// Absorbed by the imager.
+    pub imager: f64,
+    /// Not followed to its end.
+    pub not_traced: f64,
+}
+
+impl StrayLedger {
+    /// All that ended.
+    #[must_use]
+    pub fn ended(&self) -> f64 {
+        self.front + self.paint + self.glass + self.coatings + self.imager + self.not_traced
+    }
+
+    /// Adds another one.
+    pub fn add(&mut self, other: &Self) {
+        self.launched += other.launched;
+        self.aimed += other.aimed;
+        self.front += other.front;
+        self.paint += other.paint;
+        self.glass += other.glass;
+        self.coatings += other.coatings;
+        self.imager += other.imager;
+        self.not_traced += other.not_traced;
+    }
+}
+
+/// What one thread needs to walk: the media at the wavelength of the walk.
+#[derive(Clone, Debug)]
+pub struct Walker<'a> {
+    interior: &'a Interior,
+    wavelength_nm: f64,
+    /// Index and absorption, 1/mm, of each room.
+    rooms: Vec<[f64; 2]>,
+    /// Where all light so far ended.
+    pub ledger: StrayLedger,
+}
+
+impl<'a> Walker<'a> {
+    /// Inside of a lens.
+    #[must_use]
+    pub fn new(interior: &'a Interior) -> Self {
+        let rooms = vec![[1.0, 0.0]; interior.skins.len() + 1];
+        Self { interior, wavelength_nm: 0.0, rooms, ledger: StrayLedger::default() }
+    }
+
+    /// From now on light has this wavelength, nm.
+    pub fn set_wavelength(&mut self, wavelength_nm: f64) {
+        if wavelength_nm != self.wavelength_nm {
+            self.wavelength_nm = wavelength_nm;
+            for room in 0..self.rooms.len() {
+                self.rooms[room] = self.interior.medium(self.interior.medium_of(room), wavelength_nm);
+            }
+        }
+    }
+
+    /// Starts at a place of the imager, mm in its plane, against the light, and walks to the front: the particle that leaves there, if
+    /// it does. Its weight is 1 on average at the start, and stands for the part of the irradiance there that comes along its way from
+    /// a field of uniform radiance, over pi times that radiance.
+    pub fn from_imager(&mut self, [x, y]: [f64; 2], chance: &mut Chance) -> Option<Particle> {
+        let position = DVec3::new(x, y, self.interior.imager_z_mm());
+        let (direction, weight) = self.off_imager(position, chance);
+        let start = Particle { position, direction, weight, mirrored: 0, scattered: 0 };
+        self.ledger.launched += weight;
+        self.walk(start, self.interior.skins.len(), true, chance, &mut |_| {})
+    }
+
+    /// Lets a particle in at the front, with the light, and tells of each time that it comes to the imager: what comes there for the
+    /// first time, and, where the imager reflects, again. What leaves through the front, if it does.
+    pub fn from_front(
+        &mut self,
+        particle: Particle,
+        chance: &mut Chance,
+        mut arrives: impl FnMut(&Particle),
+    ) -> Option<Particle> {
+        self.ledger.launched += particle.weight;
+        self.walk(particle, 0, false, chance, &mut arrives)
+    }
+
+    /// A direction off the imager, and its weight: by Lambert's law, or toward pupil and last rim, a third each.
+    fn off_imager(&self, from: DVec3, chance: &mut Chance) -> (DVec3, f64) {
+        let which = 3.0 * chance.number();
+        let [u, v] = [chance.number(), chance.number()];
+        let direction = match which as usize {
+            0 => scattered(-DVec3::Z, u, v),
+            k => {
+                let Disk { z_mm, radius_mm } = self.interior.guides[k.min(2) - 1];
+                let (a, b) = math::concentric_disk(u, v);
+                (DVec3::new(radius_mm * a, radius_mm * b, z_mm) - from).normalize()
+            }
+        };
+        let lambert = -direction.z / std::f64::consts::PI;
+        let density = |disk: &Disk| {
+            let t = (disk.z_mm - from.z) / direction.z;
+            let at = from + direction * t;
+            let inside = t > 0.0 && at.truncate().length_squared() <= disk.radius_mm * disk.radius_mm;
+            let area = std::f64::consts::PI * disk.radius_mm * disk.radius_mm;
+            if inside { t * t / (area * -direction.z) } else { 0.0 }
+        };
+        let mixed = (lambert + self.interior.guides.iter().map(density).sum::<f64>()) / 3.0;
+        (direction, lambert / mixed)
+    }
+
+    fn walk(
+        &mut self,
+        mut particle: Particle,
+        mut room: usize,
+        guided: bool,
+        chance: &mut Chance,
+        arrives: &mut dyn FnMut(&Particle),
+    ) -> Option<Particle> {
+        let matter = self.interior.matter;
+        for _ in 0..MOST_WALLS {
+            let Some((met, way_mm, normal)) = self.interior.next(room, particle.position, particle.direction) else {
+                if room == 0 {
+                    self.ledger.front += particle.weight;
+                    return Some(particle);
+                }
+                // Through a slit between rims that do not quite meet.
+                self.ledger.paint += particle.weight;
+                return None;
+            };
+            particle.position += particle.direction * way_mm;
+            let [index, per_mm] = self.rooms[room];
+            if per_mm > 0.0 {
+                let taken = particle.weight * (1.0 - math::exp(-per_mm * way_mm));
+                self.ledger.glass += taken;
+                particle.weight -= taken;
+            }
+            let painted = match met {
+                Met::Paint => true,
+                Met::Imager => {
+                    arrives(&particle);
+                    let u = chance.number();
+                    if u >= matter.imager + matter.imager_mirror {
+                        self.ledger.imager += particle.weight;
+                        return None;
+                    }
+                    if u < matter.imager {
+                        let before = particle.weight;
+                        if guided {
+                            let (direction, weight) = self.off_imager(particle.position, chance);
+                            (particle.direction, particle.weight) = (direction, before * weight);
+                        } else {
+                            particle.direction = scattered(normal, chance.number(), chance.number());
+                        }
+                        self.ledger.aimed += particle.weight - before;
+                        particle.scattered += 1;
+                    } else {
+                        particle.direction -= 2.0 * particle.direction.dot(normal) * normal;
+                        particle.mirrored += 1;
+                    }
+                    false
+                }
+                Met::Skin(at, clear) => {
+                    if clear <= 0.0 || (clear < 1.0 && chance.number() >= clear) {
+                        true
+                    } else {
+                        let beyond = if at == room { room + 1 } else { at };
+                        let turned = self.interior.skins[at].refracts
+                            && self.bend(&mut particle, at, index, self.rooms[beyond][0], normal, chance)?;
+                        if !turned {
+                            room = beyond;
+                        }
+                        false
+                    }
+                }
+            };
+            if painted {
+                if chance.number() >= matter.paint {
+                    self.ledger.paint += particle.weight;
+                    return None;
+                }
+                particle.direction = scattered(normal, chance.number(), chance.number());
+                particle.scattered += 1;
+            }
+        }
+        self.ledger.not_traced += particle.weight;
+        None
+    }
+
+    /// Reflects the particle, or lets it through; says whether it was reflected. `None` where nothing of it is left.
+    fn bend(
+        &mut self,
+        particle: &mut Particle,
+        at: usize,
+        n: f64,
+        n_beyond: f64,
+        normal: DVec3,
+        chance: &mut Chance,
+    ) -> Option<bool> {
+        let coating = &self.interior.skins[at].coating;
+        let d = particle.direction;
+        let cosine = -d.dot(normal);
+        let reflects = coating.reflectance(n, n_beyond, cosine, self.wavelength_nm).mean();
+        let passes = coating.transmittance(n, n_beyond, cosine, self.wavelength_nm).mean();
+        let left = reflects + passes;
+        if left < 1.0 {
+            let taken = particle.weight * (1.0 - left).max(0.0);
+            self.ledger.coatings += taken;
+            particle.weight -= taken;
+            if !(left > 0.0) {
+                return None;
+            }
+        }
+        if passes <= 0.0 || chance.number() * left < reflects {
+            particle.direction = d + 2.0 * cosine * normal;
+            particle.mirrored += 1;
+            return Some(true);
+        }
+        let ratio = n / n_beyond;
+        let inner = (1.0 - ratio * ratio * (1.0 - cosine * cosine)).max(0.0).sqrt();
+        particle.direction = (ratio * d + (ratio * cosine - inner) * normal).normalize();
+        Some(false)
+    }
+}
+
+/// A direction by Lambert's law off a wall with this normal.
+fn scattered(normal: DVec3, u: f64, v: f64) -> DVec3 {
+    let (a, b) = math::concentric_disk(u, v);
+    let up = (1.0 - a * a - b * b).max(0.0).sqrt();
+    let aside = if normal.x.abs() < 0.5 { DVec3::X } else { DVec3::Y };
+    let first = normal.cross(aside).normalize();
+    (a * first + b * normal.cross(first) + up * normal).normalize()
+}

@@ -1,0 +1,64 @@
+//! Kernels: how a unit of light in one pixel is spread over its neighbors.
+
+/// Weights of the pixels around one, the same under a turn by a right angle and in a mirror.
+#[derive(Clone, Debug)]
+pub struct Kernel {
+    radius: usize,
+    /// The quarter from the center on: weight of the pixel `i` to the right and `j` down at `j * (radius + 1) + i`.
+    quarter: Vec<f64>,
+}
+
+impl Kernel {
+    /// The kernel whose pixel `i` across and `j` down (at least `i`) weighs `weight(i, j)`.
+    pub fn new(radius: usize, weight: impl Fn(usize, usize) -> f64 + Sync) -> Self {
+        use rayon::prelude::*;
+        let side = radius + 1;
+        let triangle = |j: usize| (0..j + 1).map(|i| weight(i, j)).collect::<Vec<f64>>();
+        let rows: Vec<Vec<f64>> = (0..side).into_par_iter().map(triangle).collect();
+        let quarter = (0..side * side).map(|k| {
+            let (i, j) = (k % side, k / side);
+            rows[i.max(j)][i.min(j)]
+        });
+        Self { radius, quarter: quarter.collect() }
+    }
+
+    /// Pixels that it reaches.
+    pub fn radius(&self) -> usize {
+        self.radius
+    }
+
+    /// Weight of the pixel `i` across and `j` down.
+    pub fn weight(&self, i: usize, j: usize) -> f64 {
+        self.quarter[j * (self.radius + 1) + i]
+    }
+
+    /// The weight of the pixel so far to the right and down.
+    pub(super) fn signed(&self) -> impl Fn(isize, isize) -> f64 + '_ {
+        |i, j| self.weight(i.unsigned_abs(), j.unsigned_abs())
+    }
+
+    /// Sum of all weights.
+    pub fn sum(&self) -> f64 {
+        let times = |k: usize| if k == 0 { 1.0 } else { 2.0 };
+        let side = self.radius + 1;
+        self.quarter.iter().enumerate().map(|(k, w)| w * times(k % side) * times(k / side)).sum()
+    }
+
+    /// All weights times `factor`.
+    #[must_use]
+    pub fn scaled(mut self, factor: f64) -> Self {
+        self.quarter.iter_mut().for_each(|w| *w *= factor);
+        self
+    }
+
+    /// Adds to the weight of the pixel itself.
+    pub fn add_center(&mut self, weight: f64) {
+        self.quarter[0] += weight;
+    }
+
+    /// The part within `radius`.
+    #[must_use]
+    pub fn cropped(self, radius: usize) -> Self {
+        if radius >= self.radius { self } else { Self::new(radius, |i, j| self.weight(i, j)) }
+    }
+}

@@ -1,0 +1,105 @@
+//! Convolution of a plane with a small kernel that is the same at opposite places, block by block.
+//!
+//! Each block of the picture is transformed with the kernel's reach around it (overlap and save; T. G. Stockham,
+//! "High-speed convolution and correlation", AFIPS 1966), so memory stays that of a few blocks and the result is a
+//! function of the plane alone, whatever the threads. Beside the plane there is no light, and nothing wraps around.
+//! Sums are in double precision: one bright point leaves the shadows of its block as they were.
+
+mod block;
+mod fft;
+mod grid;
+mod kernel;
+
+pub use grid::Grid;
+pub use kernel::Kernel;
+
+use crate::isa::Isa;
+use block::{Scratch, Transform};
+use rayon::prelude::*;
+
+/// Longest side of a block, unless the kernel asks for more.
+const LONGEST_SIDE: usize = 512;
+
+/// A kernel made ready for planes of one size.
+pub struct Convolver {
+    width: usize,
+    height: usize,
+    radius: usize,
+    transform: Transform,
+    /// The kernel's spectrum over the number of points, in the order of the transform.
+    spectrum: Vec<f64>,
+    isa: Isa,
+}
+
+impl Convolver {
+    /// Prepares `kernel` for planes of `width` by `height` pixels.
+    pub fn new(kernel: &Kernel, width: usize, height: usize) -> Self {
+        Self::of(kernel.radius(), kernel.signed(), width, height)
+    }
+
+    /// The same of weights by how far a pixel lies to the right and down, up to `radius`; they are the same at opposite places.
+    pub fn of(radius: usize, weight: impl Fn(isize, isize) -> f64, width: usize, height: usize) -> Self {
+        let isa = Isa::detect();
+        let transform = Transform::new(side(width, radius), side(height, radius));
+        let spectrum = transform.spectrum(radius, weight, isa);
+        Self { width, height, radius, transform, spectrum, isa }
+    }
+
+    /// The plane `source` convolved: each value is given to `write` with its target.
+    ///
+    /// # Panics
+    /// If a plane has another size than was prepared for.
+    pub fn apply(&self, source: &[f32], target: &mut [f32], write: impl Fn(&mut f32, f64) + Sync) {
+        assert_eq!(source.len(), self.width * self.height, "the plane has the size that was prepared for");
+        assert_eq!(target.len(), source.len(), "both planes have the same size");
+        if source.is_empty() {
+            return;
+        }
+        let tile = [self.transform.width() - 2 * self.radius, self.transform.height() - 2 * self.radius];
+        target.par_chunks_mut(self.width * tile[1]).enumerate().for_each_init(
+            || Scratch::new(&self.transform),
+            |scratch, (strip, target)| self.strip(source, strip * tile[1], tile, target, scratch, &write),
+        );
+    }
+
+    /// Convolves the rows from `y0` on, two tiles at a time: one is the real, one the imaginary part. The kernel is
+    /// the same at opposite places, so its spectrum is real and the two do not mix.
+    fn strip(
+        &self,
+        source: &[f32],
+        y0: usize,
+        tile: [usize; 2],
+        target: &mut [f32],
+        scratch: &mut Scratch,
+        write: &impl Fn(&mut f32, f64),
+    ) {
+        let rows = target.len() / self.width;
+        for x0 in (0..self.width).step_by(2 * tile[0]) {
+            let x1 = x0 + tile[0];
+            scratch.load(source, [self.width, self.height], [x0, x1], y0, self.radius);
+            self.transform.convolve(scratch, &self.spectrum, self.isa);
+            for (part, x) in [(0, x0), (1, x1)] {
+                let columns = tile[0].min(self.width.saturating_sub(x));
+                for row in 0..rows {
+                    let from = (self.radius + row) * self.transform.width() + self.radius;
+                    let target = &mut target[row * self.width..][..self.width];
+                    for i in 0..columns {
+                        write(&mut target[x + i], scratch.value(part, from + i));
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The side of a block along an axis of `length` pixels: the one that costs least work.
+fn side(length: usize, radius: usize) -> usize {
+    let least = (2 * radius + 2).next_power_of_two().max(fft::LANES);
+    let most = LONGEST_SIDE.max(2 * least);
+    let sides = std::iter::successors(Some(least), |s| Some(s * 2)).take_while(|s| *s <= most);
+    let cost = |s: &usize| length.div_ceil(s - 2 * radius) * s * (2 + s.trailing_zeros() as usize);
+    sides.min_by_key(cost).unwrap_or(least)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,93 @@
+//! A picture file as it is: every channel with its values and what the header says, for whoever measures in it.
+
+use super::decode::{self, Kind};
+use super::exr;
+use super::linear::{Choice, Trouble};
+use spectra_core::resources::{Found, ResourceError};
+
+/// One channel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plane {
+    /// Its name, with that of the part of the file before it where the part has one.
+    pub name: String,
+    /// Its unit, as this program writes it (`unit NAME`); empty where nothing is said.
+    pub unit: String,
+    /// Row by row from the top; negative, infinite and undefined values as they stand in the file.
+    pub values: Vec<f32>,
+}
+
+/// All channels of a picture, upright, and what its header says.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Planes {
+    /// The format, for people.
+    pub format: &'static str,
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// Width over height of a pixel.
+    pub pixel_aspect: f64,
+    /// The channels in the order of the file; of a file of integers linear `R`, `G` and `B` in the primaries of sRGB.
+    pub channels: Vec<Plane>,
+    /// Chromaticities x, y of red, green, blue and white, where the header states them.
+    pub chromaticities: Option<[[f64; 2]; 4]>,
+    /// Name and text of each attribute of the header that is a text.
+    pub attributes: Vec<(String, String)>,
+    /// The value from which on integers are clipped, in linear light; `None` for floating point.
+    pub clipped_at: Option<f32>,
+}
+
+impl Planes {
+    /// The channel of that name.
+    #[must_use]
+    pub fn channel(&self, name: &str) -> Option<&Plane> {
+        self.channels.iter().find(|c| c.name == name)
+    }
+
+    /// The text of that attribute.
+    #[must_use]
+    pub fn attribute(&self, name: &str) -> Option<&str> {
+        self.attributes.iter().find(|(own, _)| own == name).map(|(_, text)| text.as_str())
+    }
+
+    /// Number of pixels.
+    #[must_use]
+    pub fn pixels(&self) -> usize {
+        self.width as usize * self.height as usize
+    }
+}
+
+/// Reads all channels of an OpenEXR file; of any other format that [`decode()`](super::decode()) reads, its linear light.
+///
+/// # Errors
+/// What is wrong with the file.
+pub fn planes(found: &Found, choice: Choice<'_>) -> Result<Planes, Trouble> {
+    let io = |error: ResourceError| Trouble::file(error.to_string());
+    let kind = decode::kind(&found.read(64).map_err(io)?, choice)?;
+    if kind == Kind::Exr {
+        return exr::planes(found.open().map_err(io)?, found.size_bytes().map_err(io)?);
+    }
+    let format = match kind {
+        Kind::Native(image::ImageFormat::Png) => "PNG",
+        Kind::Native(image::ImageFormat::Jpeg) => "JPEG",
+        Kind::Native(image::ImageFormat::Tiff) => "TIFF",
+        Kind::Native(image::ImageFormat::Hdr) => "Radiance HDR",
+        _ => "by OpenImageIO",
+    };
+    let linear = decode::decode(found, choice)?;
+    let channel = |(at, name): (usize, &str)| Plane {
+        name: name.to_owned(),
+        unit: String::new(),
+        values: linear.rgb.iter().map(|rgb| rgb[at]).collect(),
+    };
+    Ok(Planes {
+        format,
+        width: linear.width,
+        height: linear.height,
+        pixel_aspect: linear.pixel_aspect,
+        channels: ["R", "G", "B"].into_iter().enumerate().map(channel).collect(),
+        chromaticities: None,
+        attributes: Vec::new(),
+        clipped_at: linear.clipped_at,
+    })
+}

@@ -1,0 +1,94 @@
+//! Where the light of a source lands behind a lens, for imagers that look there: `imager: {around: source}`.
+
+use crate::focus::FocusLight;
+use spectra_core::glam::DVec3;
+use spectra_core::loss::ALIVE;
+use spectra_core::numbers::Numbers;
+use spectra_core::params::{Params, Value};
+use spectra_core::spectral::Grid;
+use spectra_core::stage::Source;
+use spectra_core::{Isa, RayBatch};
+use spectra_lens::{AimPattern, FrontPupil, Indices, Lens, Tracer, Travel};
+
+/// Rays traced.
+const RAYS: usize = 4096;
+/// Their numbers: the same for every scene.
+const SEED: u64 = 1;
+
+/// Whether an imager asks to look where the light of the source lands.
+pub(crate) fn is_wanted(imager: &Params) -> bool {
+    matches!(imager.get("around").map(|node| &node.value), Some(Value::String(text)) if text == "source")
+}
+
+/// The middle of what the light of `source` makes in the image plane, mm: half of the rays land to each side of it, in x and in y. Rays
+/// start all over the source and go all over what passes the lens, in wavelengths as source and channels have them.
+///
+/// # Errors
+/// What is wrong, and what to do.
+pub(crate) fn middle_mm(
+    source: &dyn Source,
+    lens: &Lens,
+    light: &FocusLight,
+    grid: &Grid,
+) -> Result<[f64; 2], [String; 2]> {
+    let Some(emit) = source.emit() else {
+        let hint = "leave `around` out, or take a source that emits light, such as `{kind: point, ...}`";
+        return Err(["the source has no light that could be followed to the imager".to_owned(), hint.to_owned()]);
+    };
+    let isa = Isa::Baseline;
+    let blocked = || {
+        let hint = "`spectra lens draw` shows what blocks it";
+        ["none of the light of the source passes the lens to the imager".to_owned(), hint.to_owned()]
+    };
+    let band = Indices::Band { min_nm: grid.start_nm, max_nm: grid.end_nm() };
+    let tracer = Tracer::new(lens, band, isa).map_err(|error| [error.to_string(), "another glass".to_owned()])?;
+    let numbers = Numbers::sobol(SEED);
+    let columns: Vec<Vec<f64>> = (0..5)
+        .map(|dimension| {
+            let mut column = vec![0.0; RAYS];
+            numbers.fill(isa, 0, 0, dimension, &mut column);
+            column
+        })
+        .collect();
+    let mut rays = RayBatch::new(RAYS);
+    rays.restart(RAYS);
+    for (nm, share) in rays.columns_mut().wavelength_nm.iter_mut().zip(&columns[0]) {
+        *nm = light.wavelength_nm(*share).ok_or_else(|| {
+            let hint = "another light, or another film or response";
+            ["the imager sees nothing of the light of the source".to_owned(), hint.to_owned()]
+        })?;
+    }
+    emit.place(&mut rays, &columns[1], &columns[2], isa);
+    if !emit.is_directed() {
+        aim(lens, &tracer, &mut rays, [&columns[3], &columns[4]], grid)?;
+    }
+    tracer.trace(&mut rays, &mut tracer.work_in_place(RAYS), Travel::Forward);
+    let ([x, y, z], [l, m, n]) = (rays.positions(), rays.directions());
+    let mut places: [Vec<f64>; 2] = [Vec::new(), Vec::new()];
+    for i in (0..RAYS).filter(|i| rays.states()[*i] == ALIVE) {
+        let distance = -z[i] / n[i];
+        let at = [x[i] + distance * l[i], y[i] + distance * m[i]];
+        if at.iter().all(|v| v.is_finite()) {
+            places[0].push(at[0]);
+            places[1].push(at[1]);
+        }
+    }
+    let middle = |mut along: Vec<f64>| {
+        along.sort_by(f64::total_cmp);
+        along.get(along.len() / 2).copied()
+    };
+    let [across, down] = places;
+    middle(across).zip(middle(down)).map(|(x, y)| [x, y]).ok_or_else(blocked)
+}
+
+/// Sends rays from where they start all over what passes the lens.
+fn aim(lens: &Lens, tracer: &Tracer, rays: &mut RayBatch, places: [&[f64]; 2], grid: &Grid) -> Result<(), [String; 2]> {
+    let [x, y, z] = rays.positions();
+    let points: Vec<DVec3> = (0..rays.len()).map(|i| DVec3::new(x[i], y[i], z[i])).collect();
+    let pupil = FrontPupil::search(lens, tracer, &points, grid.start_nm, grid.end_nm()).ok_or_else(|| {
+        let hint = "state `semi-diameter` in the lens file";
+        ["no surface of the lens states its size, so no light can be aimed at it".to_owned(), hint.to_owned()]
+    })?;
+    pupil.aim(rays, places[0], places[1], AimPattern::Disk, Isa::Baseline);
+    Ok(())
+}

@@ -1,0 +1,50 @@
+//! `kind: function`.
+
+use super::{Making, SpectrumEntry, SpectrumKind, build_kind};
+use crate::error::SpectrumError;
+use crate::piece::Piece;
+use crate::shape::Shape;
+use schemars::JsonSchema;
+use serde::Deserialize;
+use spectra_core::params::Faults;
+use spectra_numerics::formula::Formula;
+
+/// A formula of the wavelength.
+///
+/// `w` is the wavelength in nm. Known are `+ - * / ^`, parentheses, `pi`, and abs, cos, erf, exp, ln, log10, max, min, sin, sqrt, step, tan, tanh
+/// (step is 1 from 0 on, 0 below). In a line: `function:exp(-((w - 550) / 20)^4)`.
+///
+/// # Example
+/// ```yaml
+/// {kind: function, formula: "exp(-((w - 550) / 20)^4)"}
+/// ```
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct Function {
+    /// The formula, of the wavelength `w` in nm.
+    formula: String,
+}
+
+spectra_core::register!(SpectrumEntry, "function": Function, build_kind::<Function>);
+crate::expression!(
+    "function:exp(-((w-550)/20)^4)",
+    "write a formula of the wavelength w in nm, such as function:exp(-((w-550)/20)^4)",
+    |text| Some(function(text).map(Piece::Bare))
+);
+
+impl SpectrumKind for Function {
+    fn make(&self, making: &Making<'_>) -> Result<Piece, Faults> {
+        let wrong = |e: SpectrumError| e.faults(|text| making.params().fault("formula", text));
+        function(&self.formula).map(Piece::Bare).map_err(wrong)
+    }
+}
+
+fn function(text: &str) -> Result<Shape, SpectrumError> {
+    let formula = Formula::parse(text, "w").map_err(|fault| SpectrumError::Expression {
+        text: text.to_owned(),
+        at: fault.at,
+        message: fault.message,
+        hint: fault.hint,
+    })?;
+    Ok(Shape::function(formula))
+}

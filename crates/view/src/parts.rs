@@ -1,0 +1,62 @@
+//! What a page needs wherever its engine runs: controls, the drawing of the lens, pictures and faults as it takes them.
+
+pub use crate::controls::{Control, of_scene};
+pub use crate::section::svg;
+
+use serde_json::{Value, json};
+use spectra_core::params::Fault;
+use spectra_scene::Scene;
+use spectra_session::SessionError;
+
+/// A head and the numbers of a picture, these from a place that is a multiple of four.
+#[must_use]
+pub fn packed(head: &Value, numbers: &[f32]) -> Vec<u8> {
+    let mut head = head.to_string();
+    head.push_str(&" ".repeat((4 - head.len() % 4) % 4));
+    let mut bytes = Vec::with_capacity(4 + head.len() + 4 * numbers.len());
+    bytes.extend((head.len() as u32).to_le_bytes());
+    bytes.extend(head.as_bytes());
+    bytes.extend(numbers.iter().flat_map(|v| v.to_le_bytes()));
+    bytes
+}
+
+/// What is wrong, with the control that it is about.
+#[must_use]
+pub fn said(error: &SessionError, path: &str) -> Value {
+    match error {
+        SessionError::Faults(faults) => {
+            let all: Vec<Value> = faults.iter().map(fault_json).collect();
+            json!({"path": path, "faults": all})
+        }
+        other => json!({"path": path, "faults": [{"message": other.to_string()}]}),
+    }
+}
+
+/// A fault as the page shows it.
+#[must_use]
+pub fn fault_json(fault: &Fault) -> Value {
+    json!({"message": fault.message, "place": fault.place_text(), "hint": fault.hint})
+}
+
+/// The spectrum of a scene's light, and what each layer of its film makes of it: its largest value 1, over the wavelengths.
+#[must_use]
+pub fn spectra(scene: &Scene) -> Value {
+    let unit = |values: &[f64]| -> Vec<f64> {
+        let most = values.iter().copied().fold(0.0, f64::max);
+        values.iter().map(|v| if most > 0.0 { v / most } else { 0.0 }).collect()
+    };
+    let light = scene.source.spectrum();
+    let strongest = light.lines.iter().map(|line| line.power).fold(f64::MIN_POSITIVE, f64::max);
+    let lines = light.lines.iter().map(|line| [line.wavelength_nm, line.power / strongest]);
+    let grid: Vec<f64> = scene.grid.wavelengths_nm().collect();
+    let channels = scene.picture_channels().into_iter().filter_map(|at| scene.channels.get(at));
+    let layers = channels.map(|c| json!({"name": c.name, "nm": grid, "values": unit(&c.response)}));
+    json!({
+        "light": {
+            "nm": light.grid.wavelengths_nm().collect::<Vec<_>>(),
+            "values": unit(&light.continuum),
+            "lines": lines.collect::<Vec<_>>(),
+        },
+        "layers": layers.collect::<Vec<_>>(),
+    })
+}

@@ -1,0 +1,53 @@
+//! The page with its server.
+
+use crate::controls;
+use crate::desk::{self, Order};
+use crate::server::Server;
+use spectra_core::Isa;
+use spectra_session::SessionError;
+use std::path::PathBuf;
+
+/// What is viewed, and how.
+#[derive(Clone, Debug)]
+pub struct View {
+    /// A scene file, or the name of a bundled scene.
+    pub scene: PathBuf,
+    /// Texts `path=value` on top of it.
+    pub overrides: Vec<String>,
+    /// Port of 127.0.0.1; 0 is a free one.
+    pub port: u16,
+    /// The instruction set to trace with.
+    pub isa: Isa,
+    /// Threads that a page's picture is traced on.
+    pub threads: usize,
+}
+
+/// Serves a scene until the process ends; `ready` gets the address to open.
+///
+/// # Errors
+/// Everything that is wrong with the scene; a port that cannot be had.
+pub fn view(view: View, ready: impl FnOnce(&str)) -> Result<std::convert::Infallible, SessionError> {
+    let View { scene, overrides, port, isa, threads } = view;
+    desk::looked_at(&scene, &overrides, isa)?;
+    let order = Order { scene, overrides, isa, threads };
+    let server = bound(port, Some(order))?;
+    ready(&server.address());
+    // A page that is there sooner waits for it; without a thread for it, too.
+    let _ = std::thread::Builder::new().name("gather".to_owned()).spawn(controls::gather);
+    Err(SessionError::Failed(format!("the server ended: {}", server.serve())))
+}
+
+/// Serves the color tester, lights of one wavelength as a screen shows them, until the process ends; `ready` gets the address to open.
+///
+/// # Errors
+/// A port that cannot be had.
+pub fn color_tester(port: u16, ready: impl FnOnce(&str)) -> Result<std::convert::Infallible, SessionError> {
+    let server = bound(port, None)?;
+    ready(&server.address());
+    Err(SessionError::Failed(format!("the server ended: {}", server.serve())))
+}
+
+fn bound(port: u16, order: Option<Order>) -> Result<Server, SessionError> {
+    Server::bind(port, order)
+        .map_err(|error| SessionError::Request(format!("port {port} of this machine cannot be had: {error}")))
+}

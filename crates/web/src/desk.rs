@@ -1,0 +1,270 @@
+//! What a page without a server works on: one session, which its requests move on.
+
+use serde_json::{Value, json};
+use spectra_core::frame::DisplayPicture;
+use spectra_core::{Isa, registry};
+use spectra_scene::{Shot, bundled::Bundled};
+use spectra_session::{Alone, Control as Stop, Session, SessionError};
+use spectra_view::parts::{Control, of_scene, packed, said, spectra, svg};
+use std::path::Path;
+use std::sync::Arc;
+
+/// Widths of the picture that a page may choose, pixels.
+const WIDTHS_PX: [u32; 4] = [240, 480, 960, 1920];
+/// The first of them.
+const WIDTH_PX: u32 = 480;
+
+/// Answers the requests of a page.
+#[derive(Default)]
+pub struct Desk {
+    open: Option<Open>,
+}
+
+/// A scene that is open.
+struct Open {
+    name: String,
+    session: Session,
+    controls: Vec<Control>,
+    /// Height over width, in pixels.
+    aspect: f64,
+    /// Pictures so far, scenes, and lenses: as the page counts them.
+    frames: u64,
+    scenes: u64,
+    lenses: u64,
+    fault: Option<Value>,
+}
+
+type Answer = Result<Vec<u8>, Value>;
+
+impl Desk {
+    /// The answer to a request: JSON, with `faults` where it went wrong; of `look`, a picture as `spectra view` sends it.
+    #[must_use]
+    pub fn answer(&mut self, request: &[u8]) -> Vec<u8> {
+        let answer = match serde_json::from_slice::<Value>(request) {
+            Ok(request) => self.asked(&request),
+            Err(error) => Err(wrong(&format!("the request is no JSON: {error}"))),
+        };
+        answer.unwrap_or_else(|error| error.to_string().into_bytes())
+    }
+
+    fn asked(&mut self, request: &Value) -> Answer {
+        let word = |key: &str| request[key].as_str().unwrap_or_default();
+        let number = |key: &str| request[key].as_u64().unwrap_or_default();
+        match word("do") {
+            "about" => Ok(json(&about())),
+            "open" => {
+                self.open = None;
+                let set = request["set"].as_array().into_iter().flatten();
+                let set: Vec<String> = set.filter_map(|text| text.as_str().map(str::to_owned)).collect();
+                let open = Open::scene(word("scene"), &set).map_err(|error| said(&error, ""))?;
+                Ok(json(&self.open.insert(open).state()))
+            }
+            "width" => self.open()?.width(number("width")),
+            "turn" => self.open()?.turn(word("path"), &request["value"]),
+            "step" => self.open()?.step(number("samples").max(1)),
+            "look" => self.open()?.look(),
+            "controls" => self.open().map(|open| json(&open.controls())),
+            "pixel" => self.open()?.pixel(number("x"), number("y")),
+            "section" => {
+                let drawn = svg(self.open()?.session.scene(), word("ground") == "dark");
+                drawn.map(String::into_bytes).map_err(|why| wrong(&why))
+            }
+            "spectra" => self.open().map(|open| json(&spectra(open.session.scene()))),
+            "fingerprint" => self.open()?.fingerprint(),
+            other => Err(wrong(&format!("no such request: {other}"))),
+        }
+    }
+
+    fn open(&mut self) -> Result<&mut Open, Value> {
+        self.open.as_mut().ok_or_else(|| wrong("no scene is open"))
+    }
+}
+
+/// The program, and what it was linked with.
+fn about() -> Value {
+    json!({
+        "version": env!("CARGO_PKG_VERSION"),
+        "stages": registry::list().len(),
+        "scenes": Bundled::Scene.names(),
+        "isa": Isa::detect().name(),
+    })
+}
+
+fn json(value: &Value) -> Vec<u8> {
+    value.to_string().into_bytes()
+}
+
+fn wrong(message: &str) -> Value {
+    json!({"faults": [{"message": message}]})
+}
+
+impl Open {
+    /// A bundled scene.
+    fn scene(name: &str, set: &[String]) -> Result<Self, SessionError> {
+        let session = Session::open(Path::new(name), set, Isa::detect())?;
+        let size = session.scene().imager.size();
+        let aspect = f64::from(size.height_px) / f64::from(size.width_px);
+        let controls = of_scene(session.scene().params.node());
+        Ok(Self { name: name.to_owned(), session, controls, aspect, frames: 0, scenes: 1, lenses: 1, fault: None })
+    }
+
+    /// How far the picture is.
+    fn state(&self) -> Value {
+        let scene = self.session.scene();
+        let size = scene.imager.size();
+        json!({
+            "width": size.width_px,
+            "height": size.height_px,
+            "samples": self.session.samples(),
+            "of": scene.render.samples,
+            "light": self.session.has_light(),
+        })
+    }
+
+    fn change(&mut self, path: &str, text: &str) -> Answer {
+        let before = Arc::clone(&self.session.scene().lens);
+        let changed = self.session.change(text);
+        self.fault = changed.as_ref().err().map(|error| said(error, path));
+        let kept = changed.map_err(|error| said(&error, path))?;
+        self.controls = of_scene(self.session.scene().params.node());
+        self.scenes += 1;
+        self.lenses += u64::from(!Arc::ptr_eq(&before, &self.session.scene().lens));
+        let mut state = self.state();
+        state["kept"] = kept.light.into();
+        Ok(json(&state))
+    }
+
+    fn width(&mut self, width_px: u64) -> Answer {
+        let width_px = WIDTHS_PX.into_iter().find(|w| u64::from(*w) == width_px).unwrap_or(WIDTH_PX);
+        let height_px = (f64::from(width_px) * self.aspect).round().max(1.0);
+        self.change("width", &format!("imager.resolution=[{width_px}, {height_px}]"))
+    }
+
+    fn turn(&mut self, path: &str, value: &Value) -> Answer {
+        let control = self.controls.iter().find(|control| control.path() == path);
+        let text = control.ok_or_else(|| wrong("no such control"))?.text(value).map_err(|why| wrong(&why))?;
+        self.change(path, &text)
+    }
+
+    fn step(&mut self, samples: u64) -> Answer {
+        let left = u64::from(self.session.scene().render.samples).saturating_sub(self.session.samples());
+        let stepped = self.session.step(samples.min(left), &Alone, &Stop::new());
+        self.fault = stepped.as_ref().err().map(|error| said(error, ""));
+        stepped.map_err(|error| said(&error, ""))?;
+        Ok(json(&self.state()))
+    }
+
+    /// The light so far, developed.
+    fn look(&mut self) -> Answer {
+        let failed = |error: SessionError| said(&error, "");
+        let rendering = self.session.look().map_err(failed)?;
+        let scene = self.session.scene();
+        let times = scene.film_times(&rendering.exposure);
+        let shot = Shot::new(scene, &rendering.exposure, &times, &[], Isa::detect());
+        let developed = shot.pictures().map_err(|error| failed(SessionError::Failed(error)))?;
+        let Some((_, DisplayPicture { width_px, height_px, rgb })) = developed.first() else {
+            return Err(wrong("the imager has no picture"));
+        };
+        self.frames += 1;
+        let warnings = self.session.warnings().map(|warning| json!({"message": warning.to_string()}));
+        let head = json!({
+            "frame": self.frames,
+            "scene": self.scenes,
+            "lens_drawn": self.lenses,
+            "fault": self.fault,
+            "width": width_px,
+            "height": height_px,
+            "samples": self.session.samples(),
+            "of": scene.render.samples,
+            "rays": rendering.rays,
+            "exposure_s": times.first().map_or(1.0, |time| time.time_s),
+            "lens": scene.lens.name,
+            "film": times.first().map(|time| time.film.clone()),
+            "focus": scene.focus.to_string(),
+            "warnings": warnings.collect::<Vec<_>>(),
+        });
+        Ok(packed(&head, rgb.as_flattened()))
+    }
+
+    fn controls(&self) -> Value {
+        json!({
+            "name": self.name,
+            "controls": self.controls.iter().map(Control::to_json).collect::<Vec<_>>(),
+            "widths": WIDTHS_PX,
+            "saves": false,
+            "changes": 0,
+        })
+    }
+
+    /// What a pixel got, channel by channel.
+    fn pixel(&mut self, x: u64, y: u64) -> Answer {
+        let rendering = self.session.look().map_err(|error| said(&error, ""))?;
+        let times = self.session.scene().film_times(&rendering.exposure);
+        let gain = |channel: usize| {
+            times.iter().find(|time| time.channels.contains(&channel)).map_or(1.0, |time| time.gain as f32)
+        };
+        let size = rendering.exposure.size;
+        if x >= u64::from(size.width_px) || y >= u64::from(size.height_px) {
+            return Err(wrong("no such pixel"));
+        }
+        let at = y as usize * size.width_px as usize + x as usize;
+        let channels = rendering.exposure.channels.iter().enumerate();
+        let values = channels.map(|(i, c)| json!({"name": c.name, "unit": c.unit, "value": c.values[at] * gain(i)}));
+        Ok(json(&json!({"frame": self.frames, "channels": values.collect::<Vec<_>>()})))
+    }
+
+    /// A number of the exposure's bits, as `spectra run` writes it into its report.
+    fn fingerprint(&mut self) -> Answer {
+        let rendering = self.session.look().map_err(|error| said(&error, ""))?;
+        let fingerprint = format!("{:016x}", rendering.exposure.fingerprint());
+        Ok(json(&json!({"fingerprint": fingerprint, "rays": rendering.rays, "samples": self.session.samples()})))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ask(desk: &mut Desk, request: &Value) -> Value {
+        serde_json::from_slice(&desk.answer(request.to_string().as_bytes())).expect("JSON")
+    }
+
+    #[test]
+    fn a_page_has_the_bits_of_the_command_and_a_second_render_too() {
+        let set = ["imager.resolution=[48, 32]", "render.samples=4"];
+        let mut desk = Desk::default();
+        let mut found = Vec::new();
+        for steps in [vec![4], vec![1, 3]] {
+            let opened = ask(&mut desk, &json!({"do": "open", "scene": "biotar-ortho", "set": set}));
+            assert_eq!(opened["of"], 4, "{opened}");
+            for samples in steps {
+                ask(&mut desk, &json!({"do": "step", "samples": samples}));
+            }
+            found.push(ask(&mut desk, &json!({"do": "fingerprint"})));
+        }
+        let mut session = Session::open(Path::new("biotar-ortho"), &set.map(str::to_owned), Isa::detect()).expect("it");
+        session.step(4, &Alone, &Stop::new()).expect("light");
+        let command = format!("{:016x}", session.look().expect("light").exposure.fingerprint());
+        assert!(found.iter().all(|answer| answer["fingerprint"] == command.as_str()), "{found:?}, {command}");
+    }
+
+    #[test]
+    fn what_is_wrong_is_said_and_the_scene_stays() {
+        let mut desk = Desk::default();
+        let faulty = |answer: &Value| answer["faults"][0]["message"].is_string();
+        for request in [json!({"do": "step"}), json!({"do": "x"}), json!([]), json!({"do": "open", "scene": "no-such"})]
+        {
+            assert!(faulty(&ask(&mut desk, &request)), "{request}");
+        }
+        ask(&mut desk, &json!({"do": "open", "scene": "biotar-ortho", "set": ["imager.resolution=[24, 16]"]}));
+        let turn = |path: &str, value: Value| json!({"do": "turn", "path": path, "value": value});
+        assert!(faulty(&ask(&mut desk, &turn("lens.file", "../../etc/passwd".into()))));
+        assert!(faulty(&ask(&mut desk, &turn("lens.f-number", 0.1.into()))));
+        assert_eq!(ask(&mut desk, &turn("lens.f-number", 4.into()))["kept"], false);
+        assert_eq!(ask(&mut desk, &json!({"do": "step", "samples": 1}))["samples"], 1);
+        let frame = desk.answer(json!({"do": "look"}).to_string().as_bytes());
+        let head = u32::from_le_bytes(frame[..4].try_into().expect("four bytes")) as usize;
+        assert_eq!(frame.len(), 4 + head + 24 * 16 * 3 * 4);
+        assert!(desk.answer(json!({"do": "section", "ground": "light"}).to_string().as_bytes()).starts_with(b"<svg"));
+    }
+}

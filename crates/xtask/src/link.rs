@@ -1,0 +1,51 @@
+//! This program as the linker of the WebAssembly module.
+//!
+//! Nobody names the statics by which plugins register their stages, and for WebAssembly the linker leaves out what nobody names. So
+//! this program stands in for the linker: it asks for the plugins' libraries as a whole, and hands on to the toolchain's own.
+
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// The variable that makes this program a linker: the path of the toolchain's own.
+pub const ASKED: &str = "SPECTRA_WEB_LINKER";
+
+/// Links.
+///
+/// # Errors
+/// The linker cannot be started, or has found something wrong, which it has said.
+pub fn link(arguments: Vec<OsString>) -> Result<(), String> {
+    let own = std::env::var_os(ASKED).unwrap_or_default();
+    let status = Command::new(&own).args(["-flavor", "wasm"]).args(whole(arguments)).status();
+    let status = status.map_err(|error| format!("{}: {error}", own.display()))?;
+    if status.success() { Ok(()) } else { Err(format!("{}: {status}", own.display())) }
+}
+
+/// The same arguments, with each library of a plugin asked for as a whole.
+fn whole(arguments: Vec<OsString>) -> Vec<OsString> {
+    let mut all = Vec::with_capacity(arguments.len());
+    for argument in arguments {
+        let name = Path::new(&argument).file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+        if name.starts_with("libspectra_plugin") && name.ends_with(".rlib") {
+            all.extend(["--whole-archive".into(), argument, "--no-whole-archive".into()]);
+        } else if argument != "-flavor" && argument != "wasm" {
+            all.push(argument);
+        }
+    }
+    all
+}
+
+/// The linker that comes with the toolchain.
+///
+/// # Errors
+/// There is none, or `rustc` cannot be asked.
+pub fn own() -> Result<PathBuf, String> {
+    let ask = |what: &str| -> Result<String, String> {
+        let said = Command::new("rustc").args(["--print", what]).output().map_err(|error| format!("rustc: {error}"))?;
+        Ok(String::from_utf8_lossy(&said.stdout).trim().to_owned())
+    };
+    let (sysroot, host) = (ask("sysroot")?, ask("host-tuple")?);
+    let linker = Path::new(&sysroot).join("lib/rustlib").join(host).join("bin/rust-lld");
+    let linker = linker.with_extension(std::env::consts::EXE_EXTENSION);
+    if linker.is_file() { Ok(linker) } else { Err(format!("the toolchain has no {}", linker.display())) }
+}

@@ -1,0 +1,145 @@
+//! Colors where a spectrum is named: `rgb:#ff8040`, `rgb:255,128,64 by gaussians`, `srgb-r`.
+//!
+//! As a light it is what a model makes of the color under D65; as a surface, a filter or a detector the function by which the model
+//! multiplies an equal-energy light.
+
+use spectra_color::RgbSpace;
+use spectra_core::params::{Fault, Faults, Node, Params, SourceFile, Span, Value};
+use spectra_core::registry::{self, Context, Stage};
+use spectra_core::resources::{Resource, ResourceError, Resources};
+use spectra_core::spectral::{BAND, SpectralPower};
+use spectra_core::stage::ColorModel;
+use spectra_spectrum::{Emission, Kind, Outside, Piece, Scale, Shape, SpectrumError, Tabulated, illuminant};
+use std::sync::Arc;
+
+spectra_spectrum::expression_of_wanted!(
+    "rgb:#ff8040",
+    "write an sRGB color such as rgb:#ff8040 or rgb:255,128,64, and a color model if not the default one: rgb:#ff8040 by gaussians",
+    |text, wanted| {
+        let (color, model) = match text.split_once(" by ") {
+            Some((color, model)) => (color, Some(model.trim())),
+            None => (text, None),
+        };
+        of_color(code_values(color)?, model, wanted)
+    }
+);
+spectra_spectrum::expression_of_wanted!("srgb-r", "write srgb-r alone", |_, wanted| of_color(
+    [255.0, 0.0, 0.0],
+    None,
+    wanted
+));
+spectra_spectrum::expression_of_wanted!("srgb-g", "write srgb-g alone", |_, wanted| of_color(
+    [0.0, 255.0, 0.0],
+    None,
+    wanted
+));
+spectra_spectrum::expression_of_wanted!("srgb-b", "write srgb-b alone", |_, wanted| of_color(
+    [0.0, 0.0, 255.0],
+    None,
+    wanted
+));
+spectra_spectrum::expression_of_wanted!("srgb-w", "write srgb-w alone", |_, wanted| of_color([255.0; 3], None, wanted));
+
+/// `#ff8040` or `255,128,64`, from 0 to 255.
+fn code_values(text: &str) -> Option<[f64; 3]> {
+    let text = text.trim();
+    if let Some(digits) = text.strip_prefix('#') {
+        if digits.len() != 6 || !digits.bytes().all(|b| b.is_ascii_hexdigit()) {
+            return None;
+        }
+        let channel = |i: usize| u8::from_str_radix(digits.get(2 * i..2 * i + 2)?, 16).ok().map(f64::from);
+        return Some([channel(0)?, channel(1)?, channel(2)?]);
+    }
+    let values: Option<Vec<f64>> = text.split(',').map(|t| t.trim().parse().ok()).collect();
+    let values: [f64; 3] = values?.try_into().ok()?;
+    values.iter().all(|v| (0.0..=255.0).contains(v)).then_some(values)
+}
+
+/// `None` where no model is called that.
+fn of_color(code_values: [f64; 3], model: Option<&str>, wanted: Kind) -> Option<Result<Piece, SpectrumError>> {
+    let entries = <dyn ColorModel as Stage>::entries();
+    let name = match model {
+        Some(name) => entries.iter().find(|entry| entry.name == name)?.name,
+        None => entries.iter().find(|entry| entry.default)?.name,
+    };
+    Some(spectrum(code_values, name, wanted))
+}
+
+fn spectrum(code_values: [f64; 3], model: &str, wanted: Kind) -> Result<Piece, SpectrumError> {
+    let is_light = matches!(wanted, Kind::Emission | Kind::Lines);
+    let under = if is_light { illuminant("D65")? } else { Emission::constant(1.0)? };
+    let model = build(model, &under.to_power(&BAND))?;
+    let linear = RgbSpace::srgb().decode(code_values.map(|v| v / 255.0));
+    let SpectralPower { grid, continuum, lines } = model.spectrum(linear);
+    let wavelengths: Vec<f64> = grid.wavelengths_nm().collect();
+    let outside = if is_light { Outside::Zero } else { Outside::Constant };
+    let is_dark = continuum.iter().all(|v| *v == 0.0);
+    let shape = Shape::tabulated(Tabulated::new(&wavelengths, &continuum, outside, Scale::Linear)?);
+    if is_light {
+        let continuum = (!is_dark || lines.is_empty()).then_some(shape);
+        return Emission::new(continuum, lines).map(Piece::from);
+    }
+    if lines.iter().any(|line| line.power != 0.0) {
+        let (left, right) = ("a color model of spectral lines", wanted.word());
+        return Err(SpectrumError::NotTogether { left, right, operation: "meaning" });
+    }
+    Ok(Piece::Bare(shape))
+}
+
+/// A model without keys of its own.
+fn build(name: &str, light: &SpectralPower) -> Result<Box<dyn ColorModel>, SpectrumError> {
+    let file = Arc::new(SourceFile::new("rgb", name));
+    let node = Node::new(Value::String(name.to_owned()), Span { len: name.len(), ..Span::default() }, file);
+    let params = Params::stage(node, "color").map_err(SpectrumError::Document)?;
+    let context = Context { illuminant: Some(light), ..Context::new(&NoFiles, BAND) };
+    registry::build::<dyn ColorModel>(&params, &context).map_err(SpectrumError::Document)
+}
+
+/// A model that is named alone reads none.
+struct NoFiles;
+
+impl Resources for NoFiles {
+    fn read(&self, path: &str, _: &[&str], _: &[&str], _: u64) -> Result<Resource, ResourceError> {
+        Err(ResourceError::Io(format!("`{path}` is not read for a color that is named in a line")))
+    }
+
+    fn document(&self, path: &str, _: &[&str], _: &[&str]) -> Result<Params, Faults> {
+        Err(Fault::new(format!("`{path}` is not read for a color that is named in a line")).into())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use spectra_color::{RgbSpace, chromaticity, xyz_of_light, xyz_of_reflectance};
+    use spectra_spectrum::{Observer, find_emission, find_reflectance, illuminant};
+
+    /// The corners of sRGB, and white as D65, as lights and, half as bright, as surfaces under D65.
+    #[test]
+    fn colors_are_lights_and_surfaces() {
+        let observer = Observer::cie_1931_2deg();
+        let d65 = illuminant("D65").expect("bundled");
+        let space = RgbSpace::srgb();
+        for (name, rgb) in [
+            ("srgb-r", [1.0, 0.0, 0.0]),
+            ("srgb-g", [0.0, 1.0, 0.0]),
+            ("srgb-b", [0.0, 0.0, 1.0]),
+            ("srgb-w", [1.0; 3]),
+            ("rgb:#ff8040", [1.0, 0.215_860_5, 0.051_269_5]),
+            ("rgb:255,128,64 by smooth", [1.0, 0.215_860_5, 0.051_269_5]),
+        ] {
+            let wanted = chromaticity(space.to_xyz(rgb)).expect("a color");
+            let light = find_emission(name).unwrap_or_else(|e| panic!("{name}: {e}"));
+            let seen = xyz_of_light(&light, observer).and_then(chromaticity).expect("a color");
+            let apart = (seen[0] - wanted[0]).hypot(seen[1] - wanted[1]);
+            assert!(apart < 2e-3, "{name}: {seen:?}, not {wanted:?}");
+            let surface = find_reflectance(&format!("0.5 * {name}")).unwrap_or_else(|e| panic!("{name}: {e}"));
+            let seen = xyz_of_reflectance(&surface, &d65, observer).expect("a color");
+            let apart = chromaticity(seen).map(|s| (s[0] - wanted[0]).hypot(s[1] - wanted[1])).expect("a color");
+            assert!(apart < 2e-3, "{name} as a surface: {apart}");
+            assert!((seen[1] / 50.0 / space.luminance(rgb) - 1.0).abs() < 0.02, "{name}: Y {}", seen[1]);
+        }
+        for wrong in ["rgb:#ff80", "rgb:1,2", "rgb:300,0,0", "rgb:#ff8040 by magic"] {
+            assert!(find_emission(wrong).expect_err(wrong).to_string().contains("is not understood"), "{wrong}");
+        }
+    }
+}

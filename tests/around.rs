@@ -1,0 +1,134 @@
+//! Imagers that look where the light of the source lands (`imager: {around: source}`), and points of a color.
+
+use spectra_color::{RgbSpace, to_u8};
+use spectra_core::Isa;
+use spectra_core::frame::ExposureFrame;
+use spectra_plugins as _;
+use spectra_render::{Control, Renderer, Threads};
+use std::path::Path;
+
+/// Focal length of the ideal lens, and the distance that it is focused at, mm.
+const FOCAL_MM: f64 = 50.0;
+const DISTANCE_MM: f64 = 2000.0;
+
+fn scene(folder: &Path, source: &str, imager: &str) -> Result<spectra_scene::Scene, String> {
+    let lens = "name: ideal\nsource: geometry\nsurfaces:\n  - {kind: thin-lens, focal-length: 50, thickness: 50, semi-diameter: 6}\n";
+    std::fs::write(folder.join("ideal.yaml"), lens).expect("written");
+    let path = folder.join("scene.yaml");
+    let text = format!(
+        "spectra: 1\nsource: {source}\nlens: {{file: ideal.yaml, focus: 2 m}}\nimager: {imager}\n\
+         render: {{direction: forward, rays: 40000, seed: 1}}\n"
+    );
+    std::fs::write(&path, text).expect("written");
+    spectra_scene::load(&path, &[]).map_err(|faults| faults.to_string())
+}
+
+fn render(scene: spectra_scene::Scene) -> ExposureFrame {
+    let renderer = Renderer::new(scene, Isa::detect()).expect("ready");
+    renderer.run(&Threads(2), &Control::new()).expect("rendered").exposure
+}
+
+/// Column and row of the middle of the light, in pixels, and all of Y.
+fn middle(frame: &ExposureFrame) -> ([f64; 2], f64) {
+    let y = frame.values("Y").expect("of an xyz imager");
+    let width = frame.size.width_px as usize;
+    let (mut sum, mut places) = (0.0, [0.0; 2]);
+    for (i, value) in y.iter().map(|v| f64::from(*v)).enumerate() {
+        sum += value;
+        places[0] += value * ((i % width) as f64 + 0.5);
+        places[1] += value * ((i / width) as f64 + 0.5);
+    }
+    (places.map(|v| v / sum), sum)
+}
+
+/// A point far off the axis: its image lies at the magnification times its place, and there the frame of 1 mm stands.
+#[test]
+fn a_frame_of_a_millimeter_finds_the_spot() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let source = "{kind: point, distance: 2 m, position: [300 mm, -120 mm], spectrum: D65}";
+    let frame = |more: &str| format!("{{kind: xyz, width: 1 mm, height: 1 mm, resolution: [101, 101]{more}}}");
+    let around = render(scene(folder.path(), source, &frame(", around: source")).expect("valid"));
+    let ([column, row], light) = middle(&around);
+    assert!(light > 0.0 && (column - 50.5).abs() < 0.51 && (row - 50.5).abs() < 0.51, "{column} {row}");
+    // Where that is: x and y count against the image, which is upside down.
+    let magnification = FOCAL_MM / (DISTANCE_MM - FOCAL_MM);
+    let [x, y] = [-300.0 * magnification, 120.0 * magnification];
+    let by_hand = render(scene(folder.path(), source, &frame(&format!(", shift: [{x} mm, {y} mm]"))).expect("valid"));
+    let ([by_column, by_row], by_light) = middle(&by_hand);
+    assert!((column - by_column).abs() < 0.51 && (row - by_row).abs() < 0.51, "{by_column} {by_row}");
+    assert!((light / by_light - 1.0).abs() < 1e-6, "{light} {by_light}");
+    // A shift counts from there: 0.2 mm along x and y are 20.2 pixels to the right and up.
+    let shifted =
+        render(scene(folder.path(), source, &frame(", around: source, shift: [0.2 mm, 0.2 mm]")).expect("valid"));
+    let ([shifted_column, shifted_row], _) = middle(&shifted);
+    assert!(
+        (shifted_column - column - 20.2).abs() < 0.7 && (shifted_row - row + 20.2).abs() < 0.7,
+        "{shifted_column} {shifted_row}"
+    );
+    // Without either the light falls beside the frame.
+    assert_eq!(middle(&render(scene(folder.path(), source, &frame("")).expect("valid"))).1, 0.0);
+}
+
+/// A lens that bends its light away: a narrow screen on the axis misses a line that a prism sends aside, and finds it around the source.
+#[test]
+fn a_screen_finds_the_line_behind_a_prism() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/prism-hydrogen.yaml");
+    let landing = |around: &str| {
+        let overrides = [
+            "render.rays=20000",
+            "source.spectrum=\"line:435.83\"",
+            "imager.shift=[0, 0]",
+            "imager.height=6 mm",
+            "imager.resolution=[120, 60]",
+            &format!("imager.around={around}"),
+        ];
+        let scene =
+            spectra_scene::load(&path, &overrides.map(str::to_owned)).unwrap_or_else(|faults| panic!("{faults}"));
+        Renderer::new(scene, Isa::detect()).expect("ready").landing().expect("light")
+    };
+    let (axis, source) = (landing("axis"), landing("source"));
+    assert!(axis.on_frame < 0.1 && source.on_frame > 0.9, "{axis:?} {source:?}");
+}
+
+/// The color of a point is that of its `rgb`, within half a code value, however bright it is.
+#[test]
+fn a_point_has_the_color_that_it_is_given() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for rgb in [[255_u8, 128, 64], [0, 200, 40], [20, 20, 255], [90, 90, 90]] {
+        let [r, g, b] = rgb;
+        let source = format!("{{kind: point, distance: 2 m, rgb: [{r}, {g}, {b}]}}");
+        let imager = "{kind: xyz, width: 1 mm, height: 1 mm, resolution: [9, 9], around: source}";
+        let frame = render(scene(folder.path(), &source, imager).expect("valid"));
+        let sum = |name: &str| frame.values(name).expect("of an xyz imager").iter().map(|v| f64::from(*v)).sum::<f64>();
+        let linear = RgbSpace::srgb().from_xyz([sum("X"), sum("Y"), sum("Z")]);
+        // Brightness apart: the largest is as large as it is asked to be.
+        let scale = RgbSpace::srgb().decode(rgb.map(|v| f64::from(v) / 255.0)).into_iter().fold(0.0, f64::max)
+            / linear.into_iter().fold(0.0, f64::max);
+        let found = RgbSpace::srgb().encode(linear.map(|v| v * scale)).map(to_u8);
+        assert!(found.iter().zip(rgb).all(|(a, b)| a.abs_diff(b) <= 2), "{rgb:?} {found:?}");
+    }
+}
+
+#[test]
+fn what_cannot_be_is_refused_with_its_place() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let imager = "{kind: xyz, width: 1 mm, height: 1 mm, resolution: [9, 9], around: source}";
+    for (source, imager, words) in [
+        (
+            "{kind: point, distance: 2 m, rgb: [255, 0, 0], spectrum: D65}",
+            imager,
+            "`spectrum` and `rgb` exclude each other",
+        ),
+        ("{kind: point, distance: 2 m, rgb: [0, 0, 0]}", imager, "black is no light"),
+        ("{kind: point, distance: 2 m, rgb: [256, 0, 0]}", imager, "256"),
+        ("{kind: point, distance: 2 m, color: {kind: smooth}}", imager, "there is none"),
+        (
+            "{kind: point, distance: 2 m, field: [80 deg, 0]}",
+            "{kind: xyz, width: 1 mm, height: 1 mm, resolution: [9, 9], around: lamp}",
+            "around",
+        ),
+    ] {
+        let faults = scene(folder.path(), source, imager).err().unwrap_or_else(|| panic!("{source} passes"));
+        assert!(faults.contains(words), "{faults}");
+    }
+}

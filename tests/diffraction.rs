@@ -1,0 +1,147 @@
+//! Diffraction in pictures: the opening that the film sees, stars of lamps, and nothing at all where it is off.
+
+use glam::DVec3;
+use spectra_core::{Isa, RayBatch};
+use spectra_diffraction::Pupil;
+use spectra_lens::{Indices, Lens, Tracer, Travel};
+use spectra_plugins as _;
+use spectra_render::{Control, Renderer, Rendering, Threads};
+use spectra_scene::Scene;
+
+fn scene(lens: &str, set: &[&str]) -> Scene {
+    let text = format!(
+        "spectra: 1\n\
+         source: {{kind: point, distance: 20 m, field: [0.3 deg, 0.2 deg], spectrum: D55, intensity: 1000}}\n\
+         lens: {lens}\n\
+         imager: {{kind: xyz, width: 9, height: 6, resolution: [300, 200]}}\n\
+         render: {{direction: forward, samples: 4, rays: 100000}}\n"
+    );
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("scene.yaml");
+    std::fs::write(&path, text).expect("written");
+    let set: Vec<String> = set.iter().map(|s| (*s).to_owned()).collect();
+    spectra_scene::load(&path, &set).unwrap_or_else(|faults| panic!("{faults}"))
+}
+
+const SEVEN: &str = "{file: zeiss-biotar-50-f1.4, focus: infinity, f-number: 16, aperture: {shape: iris, blades: 7}}";
+
+fn render(lens: &str, set: &[&str]) -> Rendering {
+    let renderer = Renderer::new(scene(lens, set), Isa::detect()).expect("ready");
+    renderer.run(&Threads(2), &Control::new()).expect("rendered")
+}
+
+/// Area in direction cosines of what a point of the film sees, by rays on a grid through the lens as it is.
+fn counted(lens: &Lens, point: DVec3) -> f64 {
+    let tracer = Tracer::new(lens, Indices::At(lens.reference_nm), Isa::detect()).expect("indices");
+    let (n, reach) = (700, 0.75);
+    let cell = 2.0 * reach / n as f64;
+    let mut seen = 0;
+    for row in 0..n {
+        let mut rays = RayBatch::new(n);
+        rays.restart(n);
+        let c = rays.columns_mut();
+        let at = |k: usize| (k as f64 + 0.5) * cell - reach;
+        for k in 0..n {
+            let (l, m) = (at(k), at(row));
+            let up = 1.0 - l * l - m * m;
+            (c.x[k], c.y[k], c.z[k]) = point.into();
+            (c.l[k], c.m[k], c.n[k]) = (l, m, -up.max(1e-4).sqrt());
+            c.wavelength_nm[k] = lens.reference_nm;
+        }
+        let mut work = tracer.work_in_place(n);
+        tracer.trace(&mut rays, &mut work, Travel::Backward);
+        seen += rays.alive();
+    }
+    seen as f64 * cell * cell
+}
+
+/// The polygon has the area that rays find: blades on the axis and beside it, and the cat's eye of a lens wide open.
+#[test]
+fn the_opening_is_what_rays_pass() {
+    let blades = "{file: zeiss-biotar-50-f1.4, focus: infinity, f-number: 2.8, aperture: {shape: iris, blades: 7}}";
+    let wide = "{file: zeiss-biotar-50-f1.4, focus: infinity}";
+    let stopped = "{file: zeiss-biotar-50-f1.4, focus: infinity, f-number: 1.6}";
+    for (text, points) in
+        [(blades, [[0.0, 0.0], [10.0, 6.0]]), (wide, [[0.0, 0.0], [14.0, 9.0]]), (stopped, [[8.0, 0.0], [0.0, -11.0]])]
+    {
+        let scene = scene(text, &[]);
+        let pupil = Pupil::new(&scene.lens).expect("an opening");
+        for [x, y] in points {
+            let point = DVec3::new(x, y, 0.0);
+            let seen = pupil.seen_from(point, [DVec3::X, DVec3::Y]).expect("it sees the opening");
+            let want = counted(&scene.lens, point);
+            println!("{text} at {x}, {y}: {:.6} and {want:.6}", seen.area());
+            assert!((seen.area() / want - 1.0).abs() < 0.01, "{text} at {x}, {y}: {} {want}", seen.area());
+        }
+    }
+    // sin theta' = 1 / 2N.
+    let round = scene("{file: zeiss-biotar-50-f1.4, focus: infinity, f-number: 16}", &[]);
+    let axis = Pupil::new(&round.lens).unwrap().seen_from(DVec3::ZERO, [DVec3::X, DVec3::Y]).unwrap();
+    assert!((axis.area() / (std::f64::consts::PI / 1024.0) - 1.0).abs() < 0.02, "{}", axis.area());
+}
+
+#[test]
+fn without_it_the_bits_are_as_they_were() {
+    let (absent, off) = (render(SEVEN, &[]), render(SEVEN, &["render.diffraction=false"]));
+    assert!(absent.exposure == off.exposure && absent.diffraction.is_none());
+    let on = render(SEVEN, &["render.diffraction=true"]);
+    assert!(on.exposure != off.exposure);
+    assert_eq!((on.rays, on.detected), (off.rays, off.detected));
+}
+
+/// All light of a lamp is in its frame or booked as beside it, and a lamp has the stars of its blades.
+#[test]
+fn a_lamp_gets_its_star() {
+    for (blades, spikes) in [(7, 14), (8, 8)] {
+        let lens = SEVEN.replace("blades: 7", &format!("blades: {blades}"));
+        let (off, on) = (render(&lens, &[]), render(&lens, &["render.diffraction=true"]));
+        let booked = on.diffraction.as_ref().expect("booked");
+        assert_eq!(booked.len(), 3);
+        let y = |r: &Rendering| {
+            r.exposure.channel("Y").expect("Y").values.iter().map(|v| f64::from(*v)).collect::<Vec<_>>()
+        };
+        let (before, after) = (y(&off), y(&on));
+        let sum = |v: &[f64]| v.iter().sum::<f64>();
+        let left = booked.iter().find(|d| d.channel == "Y").expect("Y").left;
+        assert!((sum(&after) / sum(&before) + left - 1.0).abs() < 1e-6, "{left}");
+        assert!(left > 0.0 && left < 0.05, "{left}");
+        // On a circle of 50 pixels about the lamp.
+        let lamp = (0..before.len()).max_by(|a, b| before[*a].total_cmp(&before[*b])).expect("pixels");
+        let (column, row) = ((lamp % 300) as f64, (lamp / 300) as f64);
+        let around: Vec<f64> = (0..720)
+            .map(|i| {
+                let a = f64::from(i) * std::f64::consts::TAU / 720.0;
+                let (x, y) = (column + 50.0 * a.cos(), row + 50.0 * a.sin());
+                if (0.0..300.0).contains(&x) && (0.0..200.0).contains(&y) {
+                    after[y as usize * 300 + x as usize]
+                } else {
+                    0.0
+                }
+            })
+            .collect();
+        let high = 0.3 * around.iter().fold(0.0_f64, |a, b| a.max(*b));
+        let begins: Vec<usize> = (0..720).filter(|i| around[*i] > high && around[(*i + 719) % 720] <= high).collect();
+        // Steps of pixels may part a spike in two.
+        let apart = begins.iter().enumerate().filter(|(k, i)| *k == 0 || **i - begins[k - 1] > 20).count();
+        assert_eq!(apart, spikes, "{blades} blades: {begins:?}");
+    }
+}
+
+#[test]
+fn a_picture_as_a_mask_is_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    image::GrayImage::from_fn(8, 8, |x, _| image::Luma([x as u8 * 30]))
+        .save(folder.path().join("mask.png"))
+        .expect("written");
+    let text = "spectra: 1\n\
+         source: {kind: point, distance: 20 m, spectrum: D55, intensity: 1000}\n\
+         lens: {file: zeiss-biotar-50-f1.4, focus: infinity, aperture: {shape: mask, file: mask.png, width: 10}}\n\
+         imager: {kind: xyz, width: 9, height: 6, resolution: [30, 20]}\n\
+         render: {direction: forward, rays: 1000, diffraction: true}\n";
+    let path = folder.path().join("scene.yaml");
+    std::fs::write(&path, text).expect("written");
+    let scene = std::sync::Arc::new(spectra_scene::load(&path, &[]).unwrap_or_else(|faults| panic!("{faults}")));
+    let error = Renderer::check(&scene, Isa::detect()).expect_err("it has no edge");
+    let faults = error.faults(&scene).expect("a fault of the scene").to_string();
+    assert!(faults.contains("picture as a mask") && faults.contains("`diffraction: false`"), "{faults}");
+}
