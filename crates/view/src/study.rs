@@ -287,13 +287,12 @@ mod tests {
     fn names_are_those_of_the_lists() {
         let words = |glass: &'static str, light: &'static str| {
             Prism::of(move |name| {
-                Some(match name {
+                Some(str::to_owned(match name {
                     "glass" => glass,
                     "light" => light,
                     "side" | "apex" => "30",
                     _ => "1",
-                })
-                .map(str::to_owned)
+                }))
             })
         };
         assert_eq!(words("0", "1").expect("a prism").light, "hydrogen");

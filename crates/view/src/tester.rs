@@ -190,13 +190,12 @@ mod tests {
     fn what_a_page_sends_is_looked_at() {
         let words = |nm: &'static str, space: &'static str| {
             Asked::of(move |name| {
-                Some(match name {
+                Some(str::to_owned(match name {
                     "nm" => nm,
                     "space" => space,
                     "gamut" => "clip",
                     _ => "0.5",
-                })
-                .map(str::to_owned)
+                }))
             })
         };
         assert!(words("577", "srgb").is_ok());
