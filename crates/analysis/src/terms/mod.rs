@@ -147,15 +147,17 @@ impl Chain {
                 return Err(ChainError::Twice { first, second, kind: found.kind().word() });
             }
         }
+        // Before anything is fitted.
+        let terms_of = |found: &Found| shape_of(found).and_then(Shape::as_mixture).map_or(terms, |m| m.terms().len());
+        let count = factors.iter().map(|(_, found)| terms_of(found) as f64).product::<f64>();
+        if count > MOST_TERMS {
+            return Err(ChainError::TooMany { terms: count });
+        }
         let factors: Vec<Factor> =
             factors.iter().map(|(name, found)| factor(name, found, terms, grid)).collect::<Result<_, _>>()?;
         let [min_nm, max_nm] = [grid.start_nm, grid.end_nm()];
         let one_term = OneTerm::new(factors.iter().map(|f| f.mixture.clone()).collect(), min_nm, max_nm);
         let one_term = one_term.ok_or(ChainError::Dark)?;
-        let count = factors.iter().map(|f| f.terms as f64).product::<f64>();
-        if count > MOST_TERMS {
-            return Err(ChainError::TooMany { terms: count });
-        }
         let mut product = factors[0].mixture.clone();
         for factor in &factors[1..] {
             product = product.times(&factor.mixture);
@@ -226,13 +228,10 @@ impl Chain {
 }
 
 fn factor(name: &str, found: &Found, terms: usize, grid: &Grid) -> Result<Factor, ChainError> {
-    let shape = match found {
-        Found::Emission(light) if !light.lines().is_empty() => return Err(ChainError::Lines(name.to_owned())),
-        Found::Emission(light) => light.continuum().ok_or(ChainError::Dark)?,
-        Found::Transmittance(filter) => filter.shape(),
-        Found::Reflectance(surface) => surface.shape(),
-        Found::Sensitivity(detector) => detector.shape(),
-    };
+    if matches!(found, Found::Emission(light) if !light.lines().is_empty()) {
+        return Err(ChainError::Lines(name.to_owned()));
+    }
+    let shape = shape_of(found).ok_or(ChainError::Dark)?;
     let band = (grid.start_nm, grid.end_nm());
     let (exact, mixture, relative_l2, integral_error) = match shape.as_mixture() {
         Some(mixture) => (true, mixture, 0.0, 0.0),
@@ -253,6 +252,16 @@ fn factor(name: &str, found: &Found, terms: usize, grid: &Grid) -> Result<Factor
         mixture,
         shape: shape.clone(),
     })
+}
+
+/// The function of the wavelength; `None` of light that has lines alone.
+fn shape_of(found: &Found) -> Option<&Shape> {
+    match found {
+        Found::Emission(light) => light.continuum(),
+        Found::Transmittance(filter) => Some(filter.shape()),
+        Found::Reflectance(surface) => Some(surface.shape()),
+        Found::Sensitivity(detector) => Some(detector.shape()),
+    }
 }
 
 /// Relative root-mean-square error over the seeds.
