@@ -6,6 +6,7 @@ mod common;
 
 use common::{good, repository, run, shown, spectra, text};
 use serde_json::Value;
+use spectra_core::frame::{ExposureChannel, ExposureFrame, FrameSize};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -306,6 +307,19 @@ const LEFT_OUT: [(&str, &str); 2] = [
     ("./spectra-mine ", "what `spectra build` made"),
 ];
 
+/// A picture of a person's own: channels with their units, brighter to the right and from channel to channel.
+fn own_picture(path: &Path, [width_px, height_px]: [u32; 2], channels: Vec<(String, &str)>) {
+    let size = FrameSize { width_px, height_px, width_mm: 36.0, height_mm: 24.0 };
+    let values = |at: usize| (0..size.pixels()).map(|i| (at + 1) as f32 + (i as u32 % width_px) as f32).collect();
+    let channel = |(at, (name, unit)): (usize, (String, &str))| ExposureChannel {
+        name,
+        unit: unit.to_owned(),
+        values: values(at),
+    };
+    let channels = channels.into_iter().enumerate().map(channel).collect();
+    spectra_pictures::write::write_exr(path, &ExposureFrame { size, channels }, &[]).expect("written");
+}
+
 /// Every example of every `--help`, run by a shell in one empty folder, with the files that examples name as a person's own.
 #[test]
 #[cfg(unix)]
@@ -339,6 +353,10 @@ fn every_example_of_the_help_works() {
     photo.save(folder.path().join("photo.jpg")).expect("written");
     fs::create_dir(folder.path().join("plates")).expect("made");
     photo.save(folder.path().join("plates/plate.0001.png")).expect("written");
+    own_picture(&folder.path().join("a.exr"), [240, 160], ["X", "Y", "Z"].map(|name| (name.to_owned(), "lx")).to_vec());
+    fs::copy(folder.path().join("a.exr"), folder.path().join("b.exr")).expect("written");
+    let bands = (0..8).map(|i| (format!("S0.{},0nm", 425 + 50 * i), "W.m^-2.nm^-1"));
+    own_picture(&folder.path().join("spectral.exr"), [60, 40], bands.collect());
     let exported = run_in(folder.path(), &["lens", "export", "tessar-50-f4.5", "-o", "tessar.zmx"]);
     assert!(exported.status.success(), "{}", text(&exported.stderr));
     let program = Path::new(env!("CARGO_BIN_EXE_spectra")).parent().expect("a folder").to_owned();
