@@ -36,6 +36,9 @@ pub struct GlassFile {
     /// The unit of wavelengths in the formula: `um` (the default), or `nm` where the formula is `cauchy` (B in nm^2), `conrady`, `schott`
     /// or `sellmeier-1`.
     unit: Option<LengthUnit>,
+    /// Of `formula: function`, the index as a formula of the wavelength `w` in nm.
+    #[expect(dead_code, reason = "the formula reads it")]
+    n: Option<String>,
     /// Measured indices: wavelength, nm if bare, and n.
     table: Option<Vec<(Wavelength, f64)>>,
     /// The same as a CSV file beside this one, with k where it is known.
@@ -181,7 +184,7 @@ fn base(params: &Params, p: &GlassFile, resources: &dyn Resources) -> Result<Gla
 
 /// The formula that the registry knows by its name.
 fn formula(params: &Params, resources: &dyn Resources) -> Result<Formula, Faults> {
-    let (own, _) = params.split(&[Formula::KEY, "coefficients"]);
+    let (own, _) = params.split(&[Formula::KEY, "coefficients", "n"]);
     let own = Params::kinded(own.node().clone(), params.path(), Formula::KEY)?;
     registry::build::<Formula>(&own, &Context::new(resources, BAND)).map(|formula| *formula)
 }
