@@ -150,7 +150,8 @@ impl Renderer {
     /// With the veiling glare that the scene asks for: of lights from the source, of the rest from the imager.
     fn with_veil(mut self) -> Result<Self, RenderError> {
         let Some(matter) = self.scene.render.glare else { return Ok(self) };
-        let ghosts_apart = self.ledger.is_some();
+        // Also where they are traced because the lights are bright enough, and nothing was said.
+        let ghosts_apart = self.estimators().any(|estimator| estimator.name() == "ghosts");
         let emits = |split: &spectra_core::stage::Split<'_>| split.lights.emit().is_some();
         let veils = if self.scene.source.split().as_ref().is_some_and(emits) {
             let share = |share| Arc::new(self.pipeline.of_share(share));

@@ -195,7 +195,9 @@ impl Veil {
             }
             state.draw_wavelengths(&self.pipeline, len);
             state.rays.number(0, &self.numbers, ESTIMATOR, STREAM, first);
-            (weights.clear(), nm.clear(), places.clear());
+            weights.clear();
+            nm.clear();
+            places.clear();
             if plan.from_source {
                 self.start(state, len);
                 let (at, way) = (state.rays.positions(), state.rays.directions());
@@ -249,7 +251,8 @@ impl Veil {
 
     /// Whether light is stray, and no other estimator's.
     fn is_ours(&self, particle: &Particle) -> bool {
-        !particle.is_straight() && !(self.plan.ghosts_apart && particle.mirrored == 2 && particle.scattered == 0)
+        let is_pair = particle.mirrored == 2 && particle.scattered == 0;
+        !(particle.is_straight() || self.plan.ghosts_apart && is_pair)
     }
 
     fn radiance(&self) -> &dyn Radiance {
