@@ -274,7 +274,7 @@ fn of_lens(scene: &Scene) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use spectra_core::spectral::{BAND, Channel, SpectralPower};
+    use spectra_core::spectral::{BAND, Channel};
     use spectra_spectrum::{find_emission, find_sensitivity};
 
     fn system(light: &str, film: &str) -> SystemResponse {

@@ -10,6 +10,7 @@ use spectra_core::stage::Imager;
 use spectra_plugin_imagers::Plane;
 use spectra_plugin_imagers::sensor::CameraColor;
 use spectra_scene::FileResources;
+use spectra_spectrum::COLOR_CHECKER;
 use spectra_spectrum::{Observer, find_emission, find_reflectance};
 
 fn build(yaml: &str) -> Result<Box<dyn Imager>, Faults> {
