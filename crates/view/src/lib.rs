@@ -13,21 +13,7 @@ mod section;
 
 // Where there are no threads and no connections, another program stands in for the server.
 #[cfg(not(target_family = "wasm"))]
-mod desk;
-#[cfg(not(target_family = "wasm"))]
-mod guard;
-#[cfg(not(target_family = "wasm"))]
-mod http;
-#[cfg(not(target_family = "wasm"))]
-mod save;
-#[cfg(not(target_family = "wasm"))]
 mod served;
-#[cfg(not(target_family = "wasm"))]
-mod server;
-#[cfg(not(target_family = "wasm"))]
-mod study;
-#[cfg(not(target_family = "wasm"))]
-mod tester;
 
 #[cfg(not(target_family = "wasm"))]
 pub use served::{View, color_tester, view};

@@ -1,6 +1,6 @@
 //! Who may ask: a page that this server gave out, in a browser that was shown the token.
 
-use crate::http::{Answer, Request};
+use super::http::{Answer, Request};
 use std::sync::atomic::{AtomicBool, Ordering::SeqCst};
 
 /// 128 random bits, as 32 hexadecimal digits.

@@ -1,30 +1,21 @@
-//! What one page works on: a session of its own, on a thread of its own.
-//!
-//! The page leaves changes on the desk and takes frames from it. Changes of one control that arrive while a picture is traced count
-//! once, by the last of them; the work at hand is stopped for them. A desk that nobody asks anything of is cleared.
+//! What the thread of a desk does: take up what was turned, trace, develop, and watch the scene's file.
 
-use crate::controls::{self, Control};
-use crate::parts::{fault_json, packed, said, spectra};
-use crate::{save, section};
+use super::super::save;
+use super::hand::{Drafted, Hand, Shape};
+use super::{Desk, Frame, State, WIDTHS_PX, held};
+use crate::controls;
+use crate::parts::{fault_json, packed, said};
 use serde_json::{Value, json};
-use spectra_core::Isa;
 use spectra_core::frame::{DisplayPicture, ExposureFrame};
-use spectra_core::params::Node;
 use spectra_scene::{NumberFamily, Shot};
 use spectra_session::{Control as Stop, Session, SessionError, Threads};
-use std::path::{Path, PathBuf};
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, PoisonError};
 use std::time::{Duration, Instant};
 
 /// A page that asks nothing for so long is gone.
 const PATIENCE: Duration = Duration::from_secs(25);
 /// Light is traced in pieces of about this time, so that the picture is seen to grow.
 const PIECE_S: f64 = 0.12;
-/// Widths of the picture that a page may choose, pixels.
-const WIDTHS_PX: [u32; 4] = [240, 480, 960, 1920];
-/// The first picture after a change: its width, pixels, and its samples of a pixel.
-const DRAFT_PX: u32 = 120;
-const DRAFT_SAMPLES: u32 = 4;
 /// What a draft has of its own.
 const NOT_DRAFTED: [&str; 4] = ["width", "render.samples", "render.rays", "render.noise"];
 /// After a draft the whole picture is begun when nothing was turned for so long.
@@ -35,60 +26,6 @@ const GLANCE: Duration = Duration::from_millis(300);
 const MAX_SCENE_BYTES: u64 = 1 << 22;
 /// Developed first at this width where the whole is larger, pixels.
 const QUICK_PX: u32 = 480;
-
-/// What is rendered, and by what means.
-#[derive(Clone, Debug)]
-pub(crate) struct Order {
-    pub scene: PathBuf,
-    pub overrides: Vec<String>,
-    pub isa: Isa,
-    pub threads: usize,
-}
-
-/// A picture for the page.
-pub(crate) struct Frame {
-    pub number: u64,
-    /// A head as JSON, with its length before it, and linear red, green and blue as `f32`, little-endian.
-    pub bytes: Vec<u8>,
-    exposure: ExposureFrame,
-    /// Width of the picture that it is one of, pixels: that of its numbers or, of a draft, more.
-    whole_px: u32,
-}
-
-#[derive(Default)]
-struct State {
-    /// Texts `path=value` by their paths, in the order in which the paths were first turned.
-    pending: Vec<(String, String)>,
-    controls: Vec<Control>,
-    frame: Option<Arc<Frame>>,
-    number: u64,
-    fault: Option<Value>,
-    section: [Option<Arc<String>>; 2],
-    scene: Option<Arc<spectra_scene::Scene>>,
-    /// How often the scene was another one: the page asks for its controls again.
-    scenes: u64,
-    /// What the page set, by path, for the scene's file.
-    changes: Vec<(String, String)>,
-    /// How often the lens was another one: the page asks for its drawing again.
-    lenses: u64,
-    /// How often the scene's file was taken up after somebody wrote it.
-    reread: u64,
-    /// Width of the whole picture, pixels.
-    width_px: u32,
-    /// Values that were turned; and those among them that the pictures have.
-    turns: u64,
-    turns_taken: u64,
-    stop: Arc<Stop>,
-    is_closed: bool,
-}
-
-/// A value that was turned and that the whole picture does not have yet.
-struct Owed {
-    path: String,
-    /// `path=value`; of the width, the number alone.
-    text: String,
-    is_drafted: bool,
-}
 
 /// How a picture comes to the page.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -101,264 +38,8 @@ enum Detail {
     Whole,
 }
 
-/// What came of a draft.
-enum Drafted {
-    /// The page has it.
-    Shown,
-    /// The light stays: the whole picture is as soon developed.
-    SameLight,
-    /// There is none.
-    None,
-}
-
-/// What the thread of a desk has in hand.
-struct Hand {
-    session: Session,
-    /// The same scene, small.
-    draft: Option<Session>,
-    shape: Shape,
-    width_px: u32,
-    owed: Vec<Owed>,
-    is_light_owed: bool,
-    /// A sample of all pixels takes so long.
-    pace_s: Option<f64>,
-    /// A text of the scene's file that is no scene.
-    refused: Option<String>,
-}
-
-impl Hand {
-    /// Of values of one control the last counts.
-    fn owe(&mut self, turned: Vec<(String, String)>) {
-        for (path, text) in turned {
-            self.owed.retain(|owed| owed.path != path);
-            self.owed.push(Owed { path, text, is_drafted: false });
-        }
-    }
-
-    fn without_draft(&mut self) -> Drafted {
-        self.draft = None;
-        Drafted::None
-    }
-
-    /// Goes on with another scene.
-    fn take_up(&mut self, session: Session, shape: Shape) {
-        *self = Self {
-            session,
-            draft: None,
-            shape,
-            width_px: self.width_px,
-            owed: std::mem::take(&mut self.owed),
-            is_light_owed: true,
-            pace_s: None,
-            refused: None,
-        };
-    }
-}
-
-/// The shape of a scene's picture, as its file has it.
-struct Shape {
-    /// Height over width, in pixels.
-    aspect: f64,
-}
-
-impl Shape {
-    fn of(session: &Session) -> Self {
-        let size = session.scene().imager.size();
-        Self { aspect: f64::from(size.height_px) / f64::from(size.width_px) }
-    }
-
-    fn height_px(&self, width_px: u32) -> u32 {
-        (f64::from(width_px) * self.aspect).round().max(1.0) as u32
-    }
-
-    fn resolution(&self, width_px: u32) -> String {
-        format!("imager.resolution=[{width_px}, {}]", self.height_px(width_px))
-    }
-
-    /// `path=value` for the whole picture.
-    fn text(&self, owed: &Owed) -> Option<String> {
-        if owed.path != "width" {
-            return Some(owed.text.clone());
-        }
-        owed.text.parse().ok().map(|width_px| self.resolution(width_px))
-    }
-
-    /// What makes a draft of a scene.
-    fn draft(&self, session: &Session) -> Vec<String> {
-        let mut texts = vec![self.resolution(DRAFT_PX), format!("render.samples={DRAFT_SAMPLES}")];
-        let render = &session.scene().render;
-        if let Some(rays) = session
-            .scene()
-            .params
-            .node()
-            .at_path("render.rays")
-            .and_then(Node::as_str)
-            .and_then(|text| text.parse::<f64>().ok())
-        {
-            let pixels = |width_px: u32| f64::from(width_px) * f64::from(self.height_px(width_px));
-            let whole = session.scene().imager.size().pixels() as f64 * f64::from(render.samples);
-            let part = pixels(DRAFT_PX) * f64::from(DRAFT_SAMPLES) / whole;
-            texts.push(format!("render.rays={}", (rays * part).ceil().max(1.0)));
-        }
-        texts
-    }
-}
-
-/// A desk, as the page's requests and its thread share it.
-pub(crate) struct Desk {
-    order: Order,
-    /// The scene's file as it was opened, or saved since; none of a bundled scene.
-    written: Mutex<Option<String>>,
-    seen: Mutex<Instant>,
-    state: Mutex<State>,
-    turned: Condvar,
-}
-
-/// A lock is held for copying alone: what a thread that panicked left is whole.
-fn held<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
 impl Desk {
-    /// A desk with its thread, which ends when the desk is closed or forgotten.
-    pub(crate) fn open(order: Order) -> std::io::Result<Arc<Self>> {
-        let written = std::fs::read_to_string(&order.scene).ok();
-        let desk = Self {
-            order,
-            written: Mutex::new(written),
-            seen: Mutex::new(Instant::now()),
-            state: Mutex::new(State::default()),
-            turned: Condvar::new(),
-        };
-        let desk = Arc::new(desk);
-        let own = Arc::clone(&desk);
-        std::thread::Builder::new().name("desk".to_owned()).spawn(move || own.work())?;
-        Ok(desk)
-    }
-
-    /// Somebody is there.
-    pub(crate) fn is_asked(&self) {
-        *held(&self.seen) = Instant::now();
-    }
-
-    /// Whether its thread has ended or is to end.
-    pub(crate) fn is_closed(&self) -> bool {
-        held(&self.state).is_closed
-    }
-
-    /// Ends the work.
-    pub(crate) fn close(&self) {
-        let mut state = held(&self.state);
-        state.is_closed = true;
-        state.stop.stop();
-        self.turned.notify_all();
-    }
-
-    /// Takes a value that the page sent.
-    ///
-    /// # Errors
-    /// Why the scene has no such value.
-    pub(crate) fn turn(&self, path: &str, value: &Value) -> Result<(), String> {
-        let mut state = held(&self.state);
-        let text = if path == "width" {
-            let width = value.as_u64().and_then(|w| u32::try_from(w).ok()).filter(|w| WIDTHS_PX.contains(w));
-            width.ok_or("none of the widths")?.to_string()
-        } else {
-            let control = state.controls.iter().find(|c| c.path() == path).ok_or("no such control")?;
-            control.text(value)?
-        };
-        match state.pending.iter_mut().find(|(other, _)| other == path) {
-            Some((_, pending)) => *pending = text,
-            None => state.pending.push((path.to_owned(), text)),
-        }
-        state.turns += 1;
-        state.stop.stop();
-        self.turned.notify_all();
-        Ok(())
-    }
-
-    /// The first frame after this number, if there is one within the time.
-    pub(crate) fn frame_after(&self, number: u64, patience: Duration) -> Option<Arc<Frame>> {
-        let is_waiting =
-            |state: &mut State| !state.is_closed && state.frame.as_ref().is_none_or(|frame| frame.number <= number);
-        let waited = self.turned.wait_timeout_while(held(&self.state), patience, is_waiting);
-        let (state, _) = waited.unwrap_or_else(PoisonError::into_inner);
-        state.frame.clone().filter(|frame| frame.number > number)
-    }
-
-    /// What the scene's controls are and say now.
-    pub(crate) fn controls(&self) -> Value {
-        let state = held(&self.state);
-        let name = self.order.scene.file_stem().map(|stem| stem.to_string_lossy().into_owned());
-        json!({
-            "name": name,
-            "controls": state.controls.iter().map(Control::to_json).collect::<Vec<_>>(),
-            "widths": WIDTHS_PX,
-            "saves": held(&self.written).is_some(),
-            "changes": state.changes.len(),
-            "is_prism": state.scene.as_ref().is_some_and(|scene| is_prism(&scene.lens)),
-        })
-    }
-
-    /// What a pixel of the last frame got, channel by channel.
-    pub(crate) fn pixel(&self, x: u32, y: u32) -> Option<Value> {
-        let frame = held(&self.state).frame.clone()?;
-        let size = frame.exposure.size;
-        // Of a draft, the pixel that covers it.
-        let part = |at: u32| u64::from(at) * u64::from(size.width_px) / u64::from(frame.whole_px.max(1));
-        let [x, y] = [x, y].map(|at| u32::try_from(part(at)).unwrap_or(u32::MAX));
-        if x >= size.width_px || y >= size.height_px {
-            return None;
-        }
-        let at = y as usize * size.width_px as usize + x as usize;
-        let channels =
-            frame.exposure.channels.iter().map(|c| json!({"name": c.name, "unit": c.unit, "value": c.values.get(at)}));
-        Some(json!({"frame": frame.number, "channels": channels.collect::<Vec<_>>()}))
-    }
-
-    /// The cross-section of the lens as it is set now; an empty text where it cannot be drawn.
-    pub(crate) fn section(&self, is_dark: bool) -> Option<Arc<String>> {
-        let (drawn, scene) = {
-            let state = held(&self.state);
-            (state.section[usize::from(is_dark)].clone(), state.scene.clone())
-        };
-        if drawn.is_some() {
-            return drawn;
-        }
-        let scene = scene?;
-        let made = Arc::new(section::svg(&scene, is_dark).unwrap_or_default());
-        let mut state = held(&self.state);
-        if state.scene.as_ref().is_some_and(|now| Arc::ptr_eq(now, &scene)) {
-            state.section[usize::from(is_dark)] = Some(Arc::clone(&made));
-        }
-        Some(made)
-    }
-
-    /// The light and the layers of the scene as it is set now.
-    pub(crate) fn spectra(&self) -> Option<Value> {
-        let scene = held(&self.state).scene.clone()?;
-        Some(spectra(&scene))
-    }
-
-    /// Writes what the page set into the scene's file; says how many values.
-    ///
-    /// # Errors
-    /// Why it is not written; then the file is as it was.
-    pub(crate) fn save(&self) -> Result<usize, String> {
-        let mut written = held(&self.written);
-        let Some(before) = &*written else {
-            return Err(
-                "a bundled scene is not written to: `spectra new scene` makes one of your own to view".to_owned()
-            );
-        };
-        let changes = held(&self.state).changes.clone();
-        *written = Some(save::save(&self.order.scene, before, &self.order.overrides, &changes)?);
-        // What was turned meanwhile is still to be written.
-        held(&self.state).changes.retain(|change| !changes.contains(change));
-        Ok(changes.len())
-    }
-
-    fn work(&self) {
+    pub(super) fn work(&self) {
         let mut session = match Session::open(&self.order.scene, &self.order.overrides, self.order.isa) {
             Ok(session) => session,
             Err(error) => {
@@ -734,23 +415,7 @@ fn shrunk(exposure: &ExposureFrame, width_px: u32) -> ExposureFrame {
     small
 }
 
-/// Whether a lens is one piece of glass between plane faces that are tilted to each other.
-fn is_prism(lens: &spectra_lens::Lens) -> bool {
-    let [first, second] = &lens.elements[..] else { return false };
-    let normal = |element: &spectra_lens::Element| element.pose.direction(glam::DVec3::Z);
-    let is_plane = |element: &spectra_lens::Element| element.surface.vertex_curvature_per_mm() == (0.0, 0.0);
-    is_plane(first) && is_plane(second) && normal(first).dot(normal(second)).abs() < 0.9999
-}
-
 fn empty() -> ExposureFrame {
     let size = spectra_core::frame::FrameSize { width_px: 0, height_px: 0, width_mm: 0.0, height_mm: 0.0 };
     ExposureFrame { size, channels: Vec::new() }
-}
-
-/// Whether a scene can be viewed at all: faults are told at the start, and not by a page.
-///
-/// # Errors
-/// Everything that is wrong with it.
-pub(crate) fn looked_at(scene: &Path, overrides: &[String], isa: Isa) -> Result<Session, SessionError> {
-    Session::open(scene, overrides, isa)
 }

@@ -1,8 +1,16 @@
-//! The page with its server.
+//! The page with its server: connections, threads, and the scene's file.
+
+mod desk;
+mod guard;
+mod http;
+mod save;
+mod server;
+mod study;
+mod tester;
 
 use crate::controls;
-use crate::desk::{self, Order};
-use crate::server::Server;
+use desk::Order;
+use server::Server;
 use spectra_core::Isa;
 use spectra_session::SessionError;
 use std::path::PathBuf;

@@ -1,9 +1,9 @@
 //! The server: it listens on the loopback address, gives out the page, and passes what the page asks to its desk.
 
-use crate::desk::{Desk, Order};
-use crate::guard::Guard;
-use crate::http::{self, Answer, Request};
-use crate::{study, tester};
+use super::desk::{Desk, Order};
+use super::guard::Guard;
+use super::http::{self, Answer, Request};
+use super::{study, tester};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::io;
@@ -19,13 +19,13 @@ const MAX_DESKS: usize = 4;
 /// A page that waits for a picture asks again after this.
 const WAIT: Duration = Duration::from_secs(10);
 
-const STUDY: &str = include_str!("../page/study.html");
-const STUDY_SCRIPT: &str = include_str!("../page/study.js");
-const TESTER: &str = include_str!("../page/tester.html");
-const TESTER_SCRIPT: &str = include_str!("../page/tester.js");
-const PAGE: &str = include_str!("../page/index.html");
-const SCRIPT: &str = include_str!("../page/page.js");
-const STYLE: &str = include_str!("../page/page.css");
+const STUDY: &str = include_str!("../../page/study.html");
+const STUDY_SCRIPT: &str = include_str!("../../page/study.js");
+const TESTER: &str = include_str!("../../page/tester.html");
+const TESTER_SCRIPT: &str = include_str!("../../page/tester.js");
+const PAGE: &str = include_str!("../../page/index.html");
+const SCRIPT: &str = include_str!("../../page/page.js");
+const STYLE: &str = include_str!("../../page/page.css");
 
 /// A server that has its port.
 pub(crate) struct Server {

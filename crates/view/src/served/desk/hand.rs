@@ -1,0 +1,119 @@
+//! What the thread of a desk has in hand: the scene, the same scene small for a draft, and what either is still to be told.
+
+use spectra_core::params::Node;
+use spectra_session::Session;
+
+/// The first picture after a change: its width, pixels, and its samples of a pixel.
+const DRAFT_PX: u32 = 120;
+const DRAFT_SAMPLES: u32 = 4;
+
+/// A value that was turned and that the whole picture does not have yet.
+pub(super) struct Owed {
+    pub(super) path: String,
+    /// `path=value`; of the width, the number alone.
+    pub(super) text: String,
+    pub(super) is_drafted: bool,
+}
+
+/// What came of a draft.
+pub(super) enum Drafted {
+    /// The page has it.
+    Shown,
+    /// The light stays: the whole picture is as soon developed.
+    SameLight,
+    /// There is none.
+    None,
+}
+
+/// What the thread of a desk has in hand.
+pub(super) struct Hand {
+    pub(super) session: Session,
+    /// The same scene, small.
+    pub(super) draft: Option<Session>,
+    pub(super) shape: Shape,
+    pub(super) width_px: u32,
+    pub(super) owed: Vec<Owed>,
+    pub(super) is_light_owed: bool,
+    /// A sample of all pixels takes so long.
+    pub(super) pace_s: Option<f64>,
+    /// A text of the scene's file that is no scene.
+    pub(super) refused: Option<String>,
+}
+
+impl Hand {
+    /// Of values of one control the last counts.
+    pub(super) fn owe(&mut self, turned: Vec<(String, String)>) {
+        for (path, text) in turned {
+            self.owed.retain(|owed| owed.path != path);
+            self.owed.push(Owed { path, text, is_drafted: false });
+        }
+    }
+
+    pub(super) fn without_draft(&mut self) -> Drafted {
+        self.draft = None;
+        Drafted::None
+    }
+
+    /// Goes on with another scene.
+    pub(super) fn take_up(&mut self, session: Session, shape: Shape) {
+        *self = Self {
+            session,
+            draft: None,
+            shape,
+            width_px: self.width_px,
+            owed: std::mem::take(&mut self.owed),
+            is_light_owed: true,
+            pace_s: None,
+            refused: None,
+        };
+    }
+}
+
+/// The shape of a scene's picture, as its file has it.
+pub(super) struct Shape {
+    /// Height over width, in pixels.
+    pub(super) aspect: f64,
+}
+
+impl Shape {
+    pub(super) fn of(session: &Session) -> Self {
+        let size = session.scene().imager.size();
+        Self { aspect: f64::from(size.height_px) / f64::from(size.width_px) }
+    }
+
+    pub(super) fn height_px(&self, width_px: u32) -> u32 {
+        (f64::from(width_px) * self.aspect).round().max(1.0) as u32
+    }
+
+    pub(super) fn resolution(&self, width_px: u32) -> String {
+        format!("imager.resolution=[{width_px}, {}]", self.height_px(width_px))
+    }
+
+    /// `path=value` for the whole picture.
+    pub(super) fn text(&self, owed: &Owed) -> Option<String> {
+        if owed.path != "width" {
+            return Some(owed.text.clone());
+        }
+        owed.text.parse().ok().map(|width_px| self.resolution(width_px))
+    }
+
+    /// What makes a draft of a scene.
+    pub(super) fn draft(&self, session: &Session) -> Vec<String> {
+        let mut texts = vec![self.resolution(DRAFT_PX), format!("render.samples={DRAFT_SAMPLES}")];
+        let render = &session.scene().render;
+        if let Some(rays) = session
+            .scene()
+            .params
+            .node()
+            .at_path("render.rays")
+            .and_then(Node::as_str)
+            .and_then(|text| text.parse::<f64>().ok())
+        {
+            let pixels = |width_px: u32| f64::from(width_px) * f64::from(self.height_px(width_px));
+            let whole = session.scene().imager.size().pixels() as f64 * f64::from(render.samples);
+            let part = pixels(DRAFT_PX) * f64::from(DRAFT_SAMPLES) / whole;
+            texts.push(format!("render.rays={}", (rays * part).ceil().max(1.0)));
+        }
+        texts
+    }
+}
