@@ -88,7 +88,7 @@ pub struct PixelSpread {
 
 impl PixelSpread {
     /// The spread of a channel's light by an opening over pixels of `pitch_mm`, out to `radius` pixels, where it fades out by
-    /// [`fade`]; `elsewhere` is the part of the light that goes there. What is in it and elsewhere is all light.
+    /// `fade`; `elsewhere` is the part of the light that goes there. What is in it and elsewhere is all light.
     #[must_use]
     pub fn new(opening: &Polygon, light: &Light, pitch_mm: [f64; 2], radius: usize, elsewhere: f64) -> Self {
         let wings = Wings::new(opening);
