@@ -100,6 +100,8 @@ impl Shape {
     /// What makes a draft of a scene.
     pub(super) fn draft(&self, session: &Session) -> Vec<String> {
         let mut texts = vec![self.resolution(DRAFT_PX), format!("render.samples={DRAFT_SAMPLES}")];
+        // To look for ghosts, and to spread light at the stop, takes seconds.
+        texts.extend(["render.reflections.order=0", "render.diffraction=false"].map(str::to_owned));
         let render = &session.scene().render;
         if let Some(rays) = session
             .scene()

@@ -17,7 +17,8 @@ const PATIENCE: Duration = Duration::from_secs(25);
 /// Light is traced in pieces of about this time, so that the picture is seen to grow.
 const PIECE_S: f64 = 0.12;
 /// What a draft has of its own.
-const NOT_DRAFTED: [&str; 4] = ["width", "render.samples", "render.rays", "render.noise"];
+const NOT_DRAFTED: [&str; 6] =
+    ["width", "render.samples", "render.rays", "render.noise", "render.reflections.order", "render.diffraction"];
 /// After a draft the whole picture is begun when nothing was turned for so long.
 const REST: Duration = Duration::from_millis(60);
 /// The scene's file is looked at so often.
