@@ -62,10 +62,14 @@ fn export_and_import_keep_every_ray() {
             let wanted = trace(lens);
             for found in [trace(shown(&zmx)), trace(shown(&yaml))] {
                 assert_eq!(found.lines().count(), wanted.lines().count());
+                // No format holds coatings, which the transmittance rests on.
+                let head: Vec<&str> = wanted.lines().next().expect("a head").split(',').collect();
+                let transmittance = head.iter().position(|name| *name == "transmittance").expect("a column");
                 for (a, b) in wanted.lines().zip(found.lines()).skip(1) {
                     let (a, b): (Vec<&str>, Vec<&str>) = (a.split(',').collect(), b.split(',').collect());
                     assert_eq!(a[..2], b[..2], "{lens} {light:?}");
-                    for (a, b) in a[2..].iter().zip(&b[2..]).filter(|(a, _)| !a.is_empty()) {
+                    let numbers = a.iter().zip(&b).enumerate().skip(2);
+                    for (_, (a, b)) in numbers.filter(|(at, (a, _))| *at != transmittance && !a.is_empty()) {
                         let (a, b): (f64, f64) = (a.parse().expect("a number"), b.parse().expect("a number"));
                         assert!((a - b).abs() <= 1e-12 * scale, "{lens} {light:?}: {a} {b}");
                     }
