@@ -19,6 +19,8 @@ fn load(name: &str) -> Lens {
 fn library() -> Vec<(String, Lens)> {
     let names = spectra_data::list("lenses/")
         .filter_map(|path| path.strip_prefix("lenses/").and_then(|name| name.strip_suffix(".yaml")).map(str::to_owned));
+    // Those in folders are studies of surfaces.
+    let names = names.filter(|name| !name.contains('/'));
     names.map(|name| (name.clone(), load(&name))).filter(|(_, lens)| lens.stop().is_some()).collect()
 }
 

@@ -43,7 +43,9 @@ await page.waitForFunction(() => /^traced: [1-9][0-9]? of/.test(document.querySe
 // Dragged, and by keys.
 for (const [name, by] of [["beam", [0, -20]], ["apex", [-40, 0]], ["incidence", [-15, 5]], ["side", [0, 12]]]) {
   const before = await number(name);
-  const box = await page.locator(`[data-moves="${name}"]`).boundingBox();
+  // The figure is drawn anew while rays arrive: a handle may be gone for a moment.
+  let box = null;
+  while (!box) box = await page.locator(`[data-moves="${name}"]`).boundingBox();
   await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
   await page.mouse.down();
   await page.mouse.move(box.x + box.width / 2 + by[0], box.y + box.height / 2 + by[1], { steps: 4 });

@@ -2,7 +2,7 @@
 #![allow(unsafe_code)] // names without mangling, and the one call that registers the stages
 
 use crate::Desk;
-use std::cell::RefCell;
+use std::sync::{LazyLock, Mutex, MutexGuard, PoisonError};
 
 #[derive(Default)]
 struct Module {
@@ -11,8 +11,10 @@ struct Module {
     desk: Desk,
 }
 
-thread_local! {
-    static MODULE: RefCell<Module> = RefCell::default();
+static MODULE: LazyLock<Mutex<Module>> = LazyLock::new(Mutex::default);
+
+fn module() -> MutexGuard<'static, Module> {
+    MODULE.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// To be called once, before anything else: registers the stages of all plugins.
@@ -32,24 +34,22 @@ pub extern "C" fn start() {
 /// Room for a request of so many bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn inbox(bytes: usize) -> *mut u8 {
-    MODULE.with_borrow_mut(|module| {
-        module.inbox.clear();
-        module.inbox.resize(bytes, 0);
-        module.inbox.as_mut_ptr()
-    })
+    let mut module = module();
+    module.inbox.clear();
+    module.inbox.resize(bytes, 0);
+    module.inbox.as_mut_ptr()
 }
 
 /// Answers the request in the inbox; the length of the answer, bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn call() -> usize {
-    MODULE.with_borrow_mut(|module| {
-        module.outbox = module.desk.answer(&module.inbox);
-        module.outbox.len()
-    })
+    let module = &mut *module();
+    module.outbox = module.desk.answer(&module.inbox);
+    module.outbox.len()
 }
 
 /// The last answer.
 #[unsafe(no_mangle)]
 pub extern "C" fn outbox() -> *const u8 {
-    MODULE.with_borrow(|module| module.outbox.as_ptr())
+    module().outbox.as_ptr()
 }
