@@ -1,13 +1,16 @@
 //! Writes a sorted table of the repository's data files, their bytes compiled in.
 //!
 //! What is bundled: everything under `spectra/`, `lenses/*` and the YAML files under `scenes/` with their pictures.
-//! Hidden files and editors' backups are left out.
+//! Hidden files and editors' backups are left out, and for WebAssembly large pictures: a page is loaded before anything is seen, and
+//! the scenes that it offers have none.
 
 use std::env;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+/// What a page has of large pictures: none above this, bytes.
+const MOST_OF_A_PAGE: u64 = 200_000;
 /// Folder of the repository, and the endings taken from it (none: every file).
 const FOLDERS: [(&str, &[&str]); 3] = [("spectra", &[]), ("lenses", &[]), ("scenes", &["yaml", "yml", "exr", "svg"])];
 
@@ -42,6 +45,10 @@ fn main() {
     for (folder, endings) in FOLDERS {
         let mut found = Vec::new();
         collect(&root.join(folder), endings, &mut found);
+        if env::var("CARGO_CFG_TARGET_FAMILY").is_ok_and(|family| family == "wasm") {
+            let is_picture = |path: &PathBuf| path.extension().is_some_and(|ending| ending == "exr");
+            found.retain(|path| !is_picture(path) || fs::metadata(path).is_ok_and(|of| of.len() <= MOST_OF_A_PAGE));
+        }
         for path in found {
             let inside = path.strip_prefix(&root).expect("collected below the root");
             let name: Vec<String> = inside.components().map(|c| c.as_os_str().to_string_lossy().into_owned()).collect();
