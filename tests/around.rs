@@ -90,6 +90,21 @@ fn a_screen_finds_the_line_behind_a_prism() {
     assert!(axis.on_frame < 0.1 && source.on_frame > 0.9, "{axis:?} {source:?}");
 }
 
+/// The screens of the bundled prisms catch what they are there for: all Balmer lines, and a continuous spectrum where the eye sees it.
+#[test]
+fn the_screens_of_the_prisms_catch_every_line() {
+    let balmer: &[f64] = &[656.28, 486.13, 434.05, 410.17, 397.01, 388.91, 383.54];
+    for (name, lines_nm) in [("prism-hydrogen", balmer), ("prism-5800k", &[400.0, 700.0])] {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/{name}.yaml"));
+        for nm in lines_nm {
+            let overrides = ["render.rays=20000".to_owned(), format!("source.spectrum=\"line:{nm}\"")];
+            let scene = spectra_scene::load(&path, &overrides).unwrap_or_else(|faults| panic!("{faults}"));
+            let landing = Renderer::new(scene, Isa::detect()).expect("ready").landing().expect("light");
+            assert!(landing.on_frame > 0.9, "{name}, {nm} nm: {landing:?}");
+        }
+    }
+}
+
 /// The color of a point is that of its `rgb`, within half a code value, however bright it is.
 #[test]
 fn a_point_has_the_color_that_it_is_given() {

@@ -267,6 +267,26 @@ fn one_term_of_every_factor_through_a_pinhole() {
     }
 }
 
+/// One Gaussian each leaves nothing to chance: every sample is the integral, to rounding, as the scene has it.
+#[test]
+fn one_gaussian_each_is_exact() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = pinhole(folder.path(), EDGE);
+    let every = format!("{EVERY}{{terms: 1}}");
+    let arguments = ["bench", &scene, "--json", "--threads", "2", "--integral-only", "-o", shown(folder.path())];
+    let more = ["--seeds", "50", "--samples", "1,16", "--set", "source.illuminant=gaussian:545,40"];
+    let which = ["--response", "gaussian:540,45", "--strategies", &every];
+    let report: Value = serde_json::from_str(&good(&[&arguments[..], &more, &which].concat())).expect("JSON");
+    let mut points = 0;
+    for one in series(&report, "integral", "sobol").chain(series(&report, "integral", "random")) {
+        for point in one["points"].as_array().expect("points") {
+            assert!(number(&point["error"]["value"]) < 1e-12, "{one}");
+            points += 1;
+        }
+    }
+    assert_eq!(points, 4);
+}
+
 /// Elsewhere it is refused, by the name of what needs a wavelength.
 #[test]
 fn one_term_of_every_factor_says_what_needs_a_wavelength() {

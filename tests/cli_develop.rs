@@ -83,6 +83,27 @@ fn a_photograph_is_developed_on_every_kind_of_film() {
     assert!(said.contains("10 x 20 pixels") && read(at("t.png")).dimensions() == (10, 20), "{said}");
 }
 
+/// The scene that a developed picture records is a scene that runs, with the same bits.
+#[test]
+fn the_recorded_scene_gives_the_same_picture() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    put(at("photo.png"), 30, 20, colors);
+    for format in ["135", "6x7"] {
+        good(folder.path(), &["photo.png", "--stock", "ektachrome", "--format", format, "-o", "own.exr"]);
+        let header = exr::meta::MetaData::read_from_file(at("own.exr"), false).expect("an EXR").headers.remove(0);
+        let recorded = header.own_attributes.other.iter().chain(&header.shared_attributes.other);
+        let scene = recorded.into_iter().find(|(name, _)| name.to_string() == "spectra:scene").expect("recorded").1;
+        let exr::meta::attribute::AttributeValue::Text(scene) = scene else { panic!("no text: {scene:?}") };
+        assert!(scene.to_string().contains("no-lens"), "{scene}");
+        std::fs::write(at("recorded.yaml"), scene.to_string()).expect("written");
+        let output = spectra().current_dir(folder.path()).args(["run", "recorded.yaml", "-o", "again.exr"]).output();
+        let output = output.expect("the program starts");
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        assert!(channels(at("own.exr")) == channels(at("again.exr")), "{format}");
+    }
+}
+
 /// A mid gray card, by pixels, by a scene through a lens, and through the lens of the command.
 #[test]
 fn a_metered_gray_card_prints_as_in_a_scene() {

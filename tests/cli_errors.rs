@@ -180,3 +180,23 @@ fn an_unknown_instruction_set_is_told() {
     let message = text(&output.stderr);
     assert!(message.contains("SPECTRA_ISA") && message.contains("baseline"), "{message}");
 }
+
+/// `null` takes a key away wherever it is written, as the guide says; a key that is not there is still a slip.
+#[test]
+fn null_takes_a_key_away() {
+    let check = |set: &[&str]| {
+        let set = set.iter().flat_map(|set| ["--set", set]);
+        run(&["check", "biotar-trix"].into_iter().chain(set).collect::<Vec<_>>())
+    };
+    let unmetered = check(&["film.metering=null", "film.exposure=1/100 s"]);
+    assert!(unmetered.status.success(), "{}", text(&unmetered.stderr));
+    for (set, word) in [
+        ("film.metering=", "found nothing, expected one of manual, average, spot"),
+        ("film.metring=null", "unknown key `metring`"),
+        ("source.distance=null", "missing key `distance`"),
+    ] {
+        let output = check(&[set]);
+        assert_eq!(output.status.code(), Some(2), "{set}");
+        assert!(text(&output.stderr).contains(word), "{set}: {}", text(&output.stderr));
+    }
+}

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{good, run, text};
+use common::{good, rows, run, shown, text};
 use serde_json::Value;
 
 #[test]
@@ -53,4 +53,71 @@ fn what_is_wrong_is_said() {
         assert_eq!(output.status.code(), Some(2), "{arguments:?}");
         assert!(text(&output.stderr).contains(word), "{}", text(&output.stderr));
     }
+}
+
+/// What colors do from one light to another, to the eye and to the layers of three films: as an independent computation has it
+/// (xtask/film_lamp.py, by colour-science), within 0.02 CIEDE2000.
+#[test]
+fn film_lamp_is_that_of_another_program() {
+    let rows = rows("film-lamp.csv");
+    assert_eq!(rows.len(), 3 * 24);
+    for case in rows.chunks(24) {
+        let [stock, lamp, reference] = [0, 1, 2].map(|i| case[0][i].as_str());
+        let found = good(&["film", "lamp", stock, lamp, "--reference", reference, "--json"]);
+        let found: Value = serde_json::from_str(&found).expect("JSON");
+        let patches = found["ciede2000"].as_array().expect("patches");
+        let mut worst = [0.0_f64; 2];
+        for (row, patch) in case.iter().zip(patches) {
+            assert_eq!(patch["name"], row[3].as_str());
+            for (i, key) in ["eye", "layers"].into_iter().enumerate() {
+                let wanted: f64 = row[4 + i].parse().expect("a number");
+                let own = patch[key].as_f64().expect("a number");
+                worst[i] = worst[i].max((own - wanted).abs());
+            }
+        }
+        println!("{stock} {lamp} {reference}: {worst:?}");
+        assert!(worst.iter().all(|off| *off < 0.02), "{stock} {lamp}: {worst:?}");
+    }
+}
+
+/// A lamp against itself parts nothing, brighter or not; a lamp that parts colors does so in the picture, too, and a film of more contrast
+/// drives them further. What is named as parting does.
+#[test]
+fn film_lamp_judges_the_finished_picture() {
+    let lamp = |arguments: &[&str]| -> Value {
+        serde_json::from_str(&good(&[&["film", "lamp"], arguments, &["--json"]].concat())).expect("JSON")
+    };
+    let mean = |of: &Value| of["mean_film"].as_f64().expect("a number");
+    for same in ["D50", "3 * D50"] {
+        let none = lamp(&["kodak-portra-400", same, "--reference", "D50"]);
+        for key in ["mean_eye", "mean_layers", "mean_film"] {
+            assert!(none[key].as_f64().expect("a number") < 1e-3, "{same}: {none}");
+        }
+        assert!(none["fidelity"]["film"].as_f64() > Some(99.99) && none["fidelity"]["eye"].as_f64() > Some(99.99));
+        assert_eq!(none["parting"], serde_json::json!([]));
+    }
+    let found = lamp(&["kodak-portra-400", "FL2", "--reference", "D50"]);
+    let [eye, film] = ["eye", "film"].map(|key| found["fidelity"][key].as_f64().expect("a number"));
+    assert!((0.0..95.0).contains(&eye) && (0.0..95.0).contains(&film), "{found}");
+    assert!(mean(&found) > 1.0, "{found}");
+    for name in found["parting"].as_array().expect("names") {
+        let patch =
+            found["ciede2000"].as_array().and_then(|all| all.iter().find(|p| p["name"] == *name)).expect("a patch");
+        assert!(patch["film"].as_f64() > patch["eye"].as_f64(), "{patch}");
+    }
+    // Another print is another picture of the same exposures.
+    let print = lamp(&["kodak-vision3-250d-5207", "FL2", "--reference", "D50", "--print", "kodak-vision-premier-2393"]);
+    let usual = lamp(&["kodak-vision3-250d-5207", "FL2", "--reference", "D50", "--print", "kodak-vision-2383"]);
+    assert_eq!(print["mean_layers"], usual["mean_layers"]);
+    assert!(mean(&print) != mean(&usual), "{} {}", mean(&print), mean(&usual));
+    // The table says the same as the figures, and the figure is drawn.
+    let folder = tempfile::tempdir().expect("a folder");
+    let figure = folder.path().join("lamp.svg");
+    let table = good(&["film", "lamp", "kodak-portra-400", "FL2", "--reference", "D50", "-o", shown(&figure)]);
+    assert!(table.contains(&format!("eye {eye:.1}, film {film:.1}")), "{table}");
+    assert!(std::fs::read_to_string(figure).expect("written").contains("layers"));
+    let refused = run(&["film", "lamp", "kodak-tri-x-400", "FL2"]);
+    assert!(text(&refused.stderr).contains("only a color film"), "{}", text(&refused.stderr));
+    let refused = run(&["film", "lamp", "kodak-portra-400", "FL2", "--view", "sideways"]);
+    assert!(text(&refused.stderr).contains("--view sideways"), "{}", text(&refused.stderr));
 }

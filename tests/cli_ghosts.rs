@@ -75,6 +75,57 @@ fn ghosts_are_where_paraxial_optics_has_them() {
     }
 }
 
+/// A singlet has one path of four reflections, with some of the fourth power of its reflectance; asked for no more than that begins
+/// with, it is cut, and what it would have had is said to be left.
+#[test]
+fn paths_of_four_are_cut_where_little_begins() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = lens(folder.path(), &[[50.0, 5.0, 1.5168], [-50.0, 47.536, 1.0]]);
+    // So narrow that all light stays near the normals.
+    let narrow = std::fs::read_to_string(&file).expect("written").replace("semi-diameter: 8", "semi-diameter: 1");
+    std::fs::write(&file, narrow).expect("written");
+    let found = |more: &[&str]| -> Value {
+        let output = run(&[&["lens", "ghosts", shown(&file), "--json"], more].concat());
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        serde_json::from_slice(&output.stdout).expect("JSON")
+    };
+    let surfaces = |report: &Value| -> Vec<Value> {
+        report["paths"].as_array().expect("paths").iter().map(|path| path["surfaces"].clone()).collect()
+    };
+    let left = |report: &Value| report["not_traced"].as_f64().expect("a number");
+    let r = (0.5168_f64 / 2.5168).powi(2);
+    let [two, four, cut] = [&[][..], &["--order", "4"], &["--order", "4", "--share", "1e-3"]].map(found);
+    assert_eq!(surfaces(&two), [serde_json::json!([2, 1])]);
+    assert_eq!(surfaces(&four), [serde_json::json!([2, 1]), serde_json::json!([2, 1, 2, 1])]);
+    assert_eq!(surfaces(&cut), surfaces(&two));
+    let energy = four["paths"][1]["energy"].as_f64().expect("a number");
+    assert!((energy / r.powi(4) - 1.0).abs() < 0.05, "{energy}");
+    // What leaves a pair inside is a third reflection; what leaves four, a fifth.
+    assert!((0.85..1.05).contains(&(left(&two) / r.powi(3))), "{}", left(&two));
+    assert!((0.85..1.05).contains(&(left(&four) / r.powi(5))), "{}", left(&four));
+    assert!((left(&cut) / left(&two) - 1.0).abs() < 1e-9);
+}
+
+/// The drawing has the rays that were asked for, of the ghost that was asked for.
+#[test]
+fn a_ghost_is_drawn() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let size = |name: &str, more: &[&str]| {
+        let file = folder.path().join(name);
+        let output =
+            run(&[&["lens", "ghosts", "zeiss-biotar-50-f1.4", "--coating", "bare", "-o", shown(&file)], more].concat());
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        (std::fs::read_to_string(file).expect("an SVG").matches("<path").count(), text(&output.stderr))
+    };
+    let (few, said) = size("few.svg", &["--rays", "1", "--path", "9,5"]);
+    assert!(said.contains("surfaces 9, 5"), "{said}");
+    let (many, _) = size("many.svg", &["--rays", "8", "--path", "9,5"]);
+    // The bar of the scale may be another one.
+    assert!(many >= few + 7, "{few} {many}");
+    let (_, worst) = size("worst.svg", &["--field", "15"]);
+    assert!(worst.contains("the ghost of surfaces"), "{worst}");
+}
+
 #[test]
 fn the_table_is_for_people() {
     let output = run(&["lens", "ghosts", "zeiss-biotar-50-f1.4", "--f-number", "2"]);

@@ -98,7 +98,7 @@ fn ambiguous_and_unknown_names_are_refused_with_candidates() {
     }
     assert!(text(&run(&["glass", "info", "BK7"]).stdout).starts_with("SCHOTT/BK7"));
     assert!(refused(&["info", "H2O"]).contains("H2O/Daimon-20.0C"));
-    let plastic = refused(&["info", "COC"]);
+    let plastic = refused(&["info", "PTFE"]);
     assert!(
         plastic.contains("no data of this plastic") && plastic.contains("PMMA") && !plastic.contains("HOYA"),
         "{plastic}"
@@ -386,4 +386,33 @@ fn figures_at_e_are_taken_as_stated() {
     std::fs::write(&lens, text).expect("written");
     let info: serde_json::Value = serde_json::from_str(&good(&["lens", "info", shown(&lens), "--json"])).expect("JSON");
     assert!(info.to_string().contains("1.6242"), "{info}");
+}
+
+/// Nearest glasses and the Abbe diagram for any three lines.
+#[test]
+fn glasses_by_any_three_lines() {
+    let info = json(&["info", "SCHOTT/F2", "--lines", "450,580,680", "--wavelength-nm", "580"]);
+    let (n, v) = (number(&info["n_at"]).to_string(), number(&info["v_lines"]).to_string());
+    let found = json(&["match", "--nd", &n, "--vd", &v, "--line", "450,580,680", "--maker", "SCHOTT", "--limit", "1"]);
+    assert_eq!((&found["matches"][0]["name"], &found["line"]), (&"SCHOTT/F2".into(), &"580 nm".into()), "{found}");
+    assert_eq!(found["lines_nm"], serde_json::json!([450.0, 580.0, 680.0]));
+    assert!(number(&found["matches"][0]["distance"]) < 1e-6, "{found}");
+    // Taken for nd and Vd, the same figures are another glass's.
+    let other = json(&["match", "--nd", &n, "--vd", &v, "--maker", "SCHOTT", "--limit", "1"]);
+    assert!(number(&other["matches"][0]["distance"]) > 1.0, "{other}");
+    let table = good(&["glass", "match", "--nd", &n, "--vd", &v, "--line", "450,580,680", "--limit", "2"]);
+    assert!(table.contains("V(450 nm, 580 nm, 680 nm)"), "{table}");
+    let unknown = json(&["info", "--nd", &n, "--vd", &v, "--line", "450,580,680", "--wavelength-nm", "580"]);
+    assert!((number(&unknown["n_at"]) - number(&info["n_at"])).abs() < 1e-12, "{unknown}");
+    let folder = tempfile::tempdir().expect("a folder");
+    let figure = folder.path().join("abbe.svg");
+    good(&["glass", "plot", "SCHOTT/F2", "--abbe", "--lines", "F',e,C'", "--makers", "SCHOTT", "-o", shown(&figure)]);
+    let svg = std::fs::read_to_string(&figure).expect("written");
+    assert!(svg.contains("V_{e}") || svg.contains("Abbe number"), "axes are named");
+    for wrong in ["C,d,F", "q", "F,d"] {
+        assert!(
+            refused(&["match", "--nd", "1.6", "--vd", "40", "--line", wrong]).contains("from blue to red"),
+            "{wrong}"
+        );
+    }
 }

@@ -233,7 +233,16 @@ fn lenses_fit_their_own_mounts() {
         assert!(found.iter().any(|m| m == own), "{lens}: {found:?}");
         assert!(!found.iter().any(|m| m == other), "{lens}: {found:?}");
     }
-    assert!(good(&["lens", "info", "canon-fd-50-f1.8"]).contains("Canon FD 42 (9.3 behind the flange)"));
+    // People get the common ones, and the others on request.
+    let told = |arguments: &[&str]| {
+        let table = good(&[&["lens", "info", "canon-fd-50-f1.8"][..], arguments].concat());
+        table.lines().find(|line| line.starts_with("fits these mounts")).expect("a line").to_owned()
+    };
+    let (common, every) = (told(&[]), told(&["--mounts"]));
+    assert!(common.contains("Canon FD 42 (9.3 behind the flange)") && every.contains("Canon FD 42"), "{common}");
+    assert!(!common.contains("Samsung NX") && every.contains("Samsung NX 25.5"), "{common}");
+    assert!(common.ends_with("less common ones (`--mounts` lists them)") && !every.contains("--mounts"), "{common}");
+    assert_eq!(every.matches(", ").count() + 1, mounts("canon-fd-50-f1.8").len());
 }
 
 /// The number in a lens's name is its full aperture, on every bundled lens that has one; a note says where that is rounded.
@@ -339,6 +348,21 @@ fn t_number_counts_reflections() {
         let ratio = figure(&info, "f_number") / figure(&info, "t_number");
         assert!((ratio - (1.0 - reflectance)).abs() < 1e-6, "{ratio} {reflectance}");
         assert!((figure(&info, "transmittance") - ratio * ratio).abs() < 1e-12);
+    }
+}
+
+/// Where the axis is folded, or bends behind the last surface, lengths go along it.
+#[test]
+fn a_folded_lens_is_as_long_as_its_axis() {
+    for (name, length_mm, image_mm) in [
+        ("surfaces/newton-200-f2.5", -150.0, 50.0),
+        ("prism-60-sf11", 0.0, 150.0),
+        ("surfaces/schmidt-200-f2", 400.0, -200.0),
+    ] {
+        let info = info(name, &[]);
+        assert!((figure(&info, "vertex_length_mm") - length_mm).abs() < 1e-9, "{name}: {info}");
+        assert!((figure(&info, "image_distance_mm") - image_mm).abs() < 1e-9, "{name}: {info}");
+        assert!((figure(&info, "total_track_mm") - length_mm - image_mm).abs() < 1e-9, "{name}: {info}");
     }
 }
 

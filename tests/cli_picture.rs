@@ -260,6 +260,51 @@ fn cuts_hold_the_values_of_the_picture() {
     assert!(fs::read_to_string(figure).expect("written").contains("distance on the film / mm"));
 }
 
+/// A picture in its colors, and as eyes without one kind of cones have it: the published matrices (Machado, Oliveira and Fernandes 2009,
+/// severity 1) on linear sRGB, worked out here for red, green and a gray.
+#[test]
+fn a_picture_as_other_eyes_have_it() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("colors.exr");
+    // Full red, full green and half a gray in linear sRGB, as XYZ of IEC 61966-2-1.
+    let colors = [[0.412_4, 0.212_6, 0.019_3], [0.357_6, 0.715_2, 0.119_2], [0.475_25, 0.5, 0.544_5]];
+    let xyz: Vec<[f32; 3]> = (0..72).map(|i| colors[i % 24 / 8].map(|v| v as f32)).collect();
+    picture(&file, &xyz, "lx");
+    let encoded = |linear: f64| {
+        let v = linear.clamp(0.0, 1.0);
+        let code = if v <= 0.003_130_8 { 12.92 * v } else { 1.055 * v.powf(1.0 / 2.4) - 0.055 };
+        (255.0 * code).round() as i32
+    };
+    for (eye, red, green) in [
+        (None, [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]),
+        (Some("protan"), [0.152_286, 0.114_503, -0.003_882], [1.052_583, 0.786_281, -0.048_116]),
+        (Some("deutan"), [0.367_322, 0.280_085, -0.011_820], [0.860_646, 0.672_501, 0.042_940]),
+        (Some("tritan"), [1.255_528, -0.078_411, 0.004_733], [-0.076_749, 0.930_809, 0.691_367]),
+    ] {
+        let figure = folder.path().join("seen.png");
+        let mut arguments = vec!["picture", "plot", shown(&file), "--white", "1", "-o", shown(&figure)];
+        match eye {
+            // Without another quantity an eye is asked about the colors.
+            Some(eye) => arguments.extend(["--seen-by", eye]),
+            None => arguments.extend(["--quantity", "color"]),
+        }
+        good(&arguments);
+        let image = image::open(&figure).expect("a picture").into_rgb8();
+        for (name, wanted) in [("red", red), ("green", green), ("gray", [0.5; 3])] {
+            let wanted = wanted.map(encoded);
+            let near = |p: &image::Rgb<u8>| p.0.iter().zip(wanted).all(|(a, b)| (i32::from(*a) - b).abs() <= 1);
+            let count = image.pixels().filter(|p| near(p)).count();
+            let share = count as f64 / f64::from(image.width() * image.height());
+            assert!(share > 0.05, "{eye:?} {name}: {wanted:?} is {share} of the sheet");
+        }
+    }
+    // A scale in false color as such an eye has it.
+    let [own, seen] = ["own.png", "seen.png"].map(|name| folder.path().join(name));
+    good(&["picture", "plot", shown(&file), "--quantity", "hue", "-o", shown(&own)]);
+    good(&["picture", "plot", shown(&file), "--quantity", "hue", "--seen-by", "deutan", "-o", shown(&seen)]);
+    assert_ne!(fs::read(own).expect("written"), fs::read(seen).expect("written"));
+}
+
 /// Every quantity that a picture knows has a view; what it does not know is refused with a reason.
 #[test]
 fn views_show_what_a_picture_knows() {
@@ -267,7 +312,7 @@ fn views_show_what_a_picture_knows() {
     let at = |name: &str| folder.path().join(name);
     let source = format!("illuminant: FL11, luminance: {LUMINANCE} cd/m2");
     let xyz = render(&scene(folder.path(), "xyz", &source, "kind: xyz, exposure: 1/60 s", 4), folder.path());
-    for quantity in ["illuminance", "exposure", "lightness", "L*", "chroma", "hue", "clipping", "X"] {
+    for quantity in ["illuminance", "exposure", "lightness", "L*", "chroma", "hue", "clipping", "color", "X"] {
         let figure = at("view.png");
         good(&["picture", "plot", shown(&xyz), "--quantity", quantity, "-o", shown(&figure)]);
         let size = fs::metadata(&figure).expect("written").len();

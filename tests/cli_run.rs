@@ -480,6 +480,28 @@ fn a_meter_needs_no_samples_of_the_picture() {
     assert!(text(&output.stderr).contains("meter sees no light where it looks, so the film is exposed for 1 s"));
 }
 
+/// A meter that the sun leads astray says so, and what to write: with that time the sky around it is a mid gray.
+#[test]
+fn a_meter_that_a_light_dazzles_says_so() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = shown(&repository("scenes/sun-biotar.yaml")).to_owned();
+    let common = ["run", &scene, "-o", shown(folder.path()), "--samples", "4", "--set", "imager.resolution=[60, 40]"];
+    let one = ["--set", "sweep=null", "--set", "film.metering=average", "--set", "film.exposure=null"];
+    let output = spectra().args(common).args(one).output().expect("the program starts");
+    let told = text(&output.stderr);
+    assert!(told.contains("the brightest hundredth of what the camera's meter sees sets the exposure"), "{told}");
+    let (_, rest) = told.split_once("in place of `metering`, `exposure: ").expect("what to write");
+    let (time, _) = rest.split_once("` is the time without it").expect("what to write");
+    let spot = ["--set", "sweep=null", "--set", "film.metering=spot", "--set", "film.exposure=null", "-q", "-q"];
+    let output = spectra().args(common).args(spot).output().expect("the program starts");
+    assert!(output.status.success() && text(&output.stderr).is_empty(), "{}", text(&output.stderr));
+    let spot_s = json(&folder.path().join("sun-biotar.json"))["metered_time_s"].as_f64().expect("a number");
+    let below: f64 =
+        time.strip_prefix("1/").and_then(|t| t.strip_suffix(" s")).and_then(|n| n.parse().ok()).expect("1/N s");
+    // The picture's sky is half as bright in places, and twice elsewhere.
+    assert!((spot_s * below).log2().abs() < 1.0, "{time} {spot_s}");
+}
+
 /// Several films in one light: each one's planes are of its own time.
 #[test]
 fn each_film_gets_its_own_time() {

@@ -43,7 +43,7 @@ fn d65() {
     close(&d65["srgb"], &[255.0, 255.0, 255.0], 0.0);
     close(&d65["range_nm"], &[300.0, 780.0], 0.0);
     assert_eq!([&d65["name"], &d65["kind"]], ["D65", "emission"]);
-    assert!(d65["source"].is_string() && d65["licence"].is_string() && d65["luminance"].as_f64() > Some(0.0));
+    assert!(d65["source"].is_string() && d65["license"].is_string() && d65["luminance"].as_f64() > Some(0.0));
     // CIE 15:2004: 10 degrees, x 0.31382, y 0.33100.
     close(&info(&["d65", "--observer", "1964"])["xy"], &[0.31382, 0.33100], 3e-5);
     for observer in ["2015-2", "2015-10"] {
@@ -135,7 +135,7 @@ fn people_read_a_table() {
     assert!(list.contains("D65") && list.contains("mercury") && list.contains("#dark-skin"));
     let list: Value = serde_json::from_str(&good(&["spectrum", "list", "--json"])).expect("JSON");
     for item in list.as_array().expect("a list") {
-        assert!(item["name"].is_string() && item["licence"].is_string() && item["source"].is_string(), "{item}");
+        assert!(item["name"].is_string() && item["license"].is_string() && item["source"].is_string(), "{item}");
     }
 }
 
@@ -441,4 +441,26 @@ fn figures_of_spectra() {
     let much = vec!["A"; 29];
     assert!(refused(&[&["plot"][..], &much].concat()).contains("28 at most"));
     assert!(refused(&["plot", "xy:0.9,0.9", "--chromaticity", "-o", "x.svg"]).contains("no chromaticity"));
+}
+
+/// Files of many columns take one line, unless every column is asked for.
+#[test]
+fn the_list_folds_files_of_many_columns() {
+    let short = good(&["spectrum", "list"]);
+    assert!(short.contains("(99 columns: #ces01 ... #ces99)") && !short.contains("#ces50"), "{short}");
+    assert!(short.contains("#neutral-5") && short.contains("--all"), "{short}");
+    let longest = short.lines().map(|line| line.chars().count()).max().unwrap_or(0);
+    assert!(longest < 600, "{longest}");
+    let all = good(&["spectrum", "list", "--all"]);
+    assert!(all.contains("#ces01, #ces02") && all.contains("#ces50"), "{all}");
+}
+
+/// Three lines that are white together, and of the hues of sRGB's primaries.
+#[test]
+fn lines_that_make_white() {
+    let light = info(&["rgb-lines"]);
+    close(&light["xy"], &[0.3127, 0.3290], 1e-4);
+    let picture = good(&["spectrum", "info", "rgb-lines"]);
+    assert!(picture.contains("rgb-lines"), "{picture}");
+    assert!(refused(&["info", "rgb-lines:1"]).contains("rgb-lines"));
 }

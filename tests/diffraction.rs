@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 use spectra_core::{Isa, RayBatch};
-use spectra_diffraction::Pupil;
-use spectra_lens::{Indices, Lens, Tracer, Travel};
+use spectra_diffraction::{Light, PixelSpread, Pupil, Waves};
+use spectra_lens::{Criterion, FocusSearch, Indices, Lens, Tracer, Travel};
 use spectra_plugins as _;
 use spectra_render::{Control, Renderer, Rendering, Threads};
 use spectra_scene::Scene;
@@ -144,4 +144,120 @@ fn a_picture_as_a_mask_is_refused() {
     let error = Renderer::check(&scene, Isa::detect()).expect_err("it has no edge");
     let faults = error.faults(&scene).expect("a fault of the scene").to_string();
     assert!(faults.contains("picture as a mask") && faults.contains("`diffraction: false`"), "{faults}");
+}
+
+/// Rays land where the wavefront's slope says.
+#[test]
+fn the_slope_of_the_wavefront_is_where_rays_land() {
+    let scene = scene("{file: zeiss-biotar-50-f1.4, focus: infinity, f-number: 2.8}", &[]);
+    let lens = &scene.lens;
+    let pupil = Pupil::new(lens).expect("an opening");
+    let waves = Waves::new(lens, lens.reference_nm).expect("indices");
+    let axes = [DVec3::X, DVec3::Y];
+    for point in [DVec3::ZERO, DVec3::new(3.0, -9.0, 0.0)] {
+        let opening = pupil.seen_from(point, axes).expect("it sees the opening");
+        let wave = waves.seen_from(point, axes, &opening).expect("a wavefront");
+        let tracer = Tracer::new(lens, Indices::At(lens.reference_nm), Isa::detect()).expect("indices");
+        // The way of the light that the middle of the opening brings to the point.
+        let middle = opening.center();
+        let mut back = RayBatch::new(1);
+        back.restart(1);
+        let c = back.columns_mut();
+        (c.x[0], c.y[0], c.z[0]) = point.into();
+        (c.l[0], c.m[0], c.n[0]) = (middle[0], middle[1], -(1.0 - middle[0].powi(2) - middle[1].powi(2)).sqrt());
+        c.wavelength_nm[0] = lens.reference_nm;
+        tracer.trace(&mut back, &mut tracer.work_in_place(1), Travel::Backward);
+        let [x, y, z] = back.positions().map(|c| c[0]);
+        let from = DVec3::new(x, y, z);
+        let way = -DVec3::from_array(back.directions().map(|c| c[0]));
+        // Others beside it.
+        let n = 41;
+        let mut rays = RayBatch::new(n * n);
+        rays.restart(n * n);
+        let c = rays.columns_mut();
+        for k in 0..n * n {
+            let aside = |at: usize| (at as f64 / (n - 1) as f64 - 0.5) * 36.0;
+            let start = from + DVec3::new(aside(k % n), aside(k / n), 0.0) - way * 60.0;
+            (c.x[k], c.y[k], c.z[k]) = start.into();
+            (c.l[k], c.m[k], c.n[k]) = way.into();
+            c.wavelength_nm[k] = lens.reference_nm;
+        }
+        tracer.trace(&mut rays, &mut tracer.work_in_place(n * n), Travel::Forward);
+        let none = wave.at(middle).1;
+        let (mut worst, mut largest, mut count) = (0.0_f64, 0.0_f64, 0);
+        for k in (0..n * n).filter(|k| rays.states()[*k] == spectra_core::loss::ALIVE) {
+            let [l, m, along] = rays.directions().map(|c| c[k]);
+            let [x, y, z] = rays.positions().map(|c| c[k]);
+            let (x, y) = (x - z / along * l, y - z / along * m);
+            let slope = wave.at([-l, -m]).1;
+            let landed = [x - point.x, y - point.y];
+            for axis in 0..2 {
+                worst = worst.max((slope[axis] - none[axis] - landed[axis]).abs());
+                largest = largest.max(landed[axis].abs());
+            }
+            count += 1;
+        }
+        println!("{point}: {count} rays land up to {largest:.4} mm off, as the slope says within {worst:.5} mm");
+        assert!(count > 50 && largest > 0.004, "{count} {largest}");
+        assert!(worst < 0.03 * largest, "{point}: {worst} of {largest}");
+    }
+}
+
+/// What lines across or along a kernel hold.
+fn lines(kernel: &PixelSpread, across: bool) -> Vec<f64> {
+    let r = kernel.radius() as isize;
+    let weight = |k: isize, n: isize| if across { kernel.weight(k, n) } else { kernel.weight(n, k) };
+    (-r..r + 1).map(|k| (-r..r + 1).map(|n| weight(k, n)).sum()).collect()
+}
+
+/// Rays and kernel together have the contrast of light, which an independent script has from traced wavefronts.
+#[test]
+fn rays_spread_by_the_wavefront_have_its_contrast() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/crates/diffraction/tests/data/wave-contrast.csv");
+    let text = std::fs::read_to_string(path).expect("a table");
+    let mut rows = text.lines().filter(|line| !line.starts_with('#')).skip(1).peekable();
+    let (mut worst, mut perfect, mut sum, mut count, mut wrong) = (0.0_f64, 0.0_f64, 0.0, 0, 0);
+    while let Some(first) = rows.next() {
+        let [lens, stop, _, film_y] = first.splitn(5, ',').take(4).collect::<Vec<_>>()[..] else { panic!("{first}") };
+        let group: Vec<&str> =
+            std::iter::once(first).chain(std::iter::from_fn(|| rows.next_if(|row| row.contains(film_y)))).collect();
+        let lens = scene(&format!("{{file: {lens}, focus: infinity, f-number: {stop}}}"), &[]).lens;
+        // As `spectra lens trace` focuses.
+        let criterion = Criterion::Contrast { per_mm: 30.0 };
+        let light = vec![(lens.reference_nm, 1.0)];
+        let lens =
+            Lens::clone(&lens).focused_by(&FocusSearch { object_mm: f64::INFINITY, field_rad: 0.0, criterion, light });
+        let lens = lens.expect("focused");
+        let point = DVec3::new(0.0, film_y.parse().expect("mm"), 0.0);
+        let axes = [DVec3::X, DVec3::Y];
+        let opening = Pupil::new(&lens).unwrap().seen_from(point, axes).expect("it sees the opening");
+        let wave = Waves::new(&lens, 550.0).unwrap().seen_from(point, axes, &opening).expect("a wavefront");
+        let (light, pitch) = (Light::line(550.0), [0.004; 2]);
+        let plain = PixelSpread::new(&opening, &light, pitch, 128, 0.0);
+        let kernel = plain.clone().with_wave(&opening, &wave, &light, pitch);
+        let [edge, light] = [&plain, &kernel].map(|kernel| [true, false].map(|across| lines(kernel, across)));
+        for row in group {
+            let fields: Vec<&str> = row.split(',').collect();
+            let [per_mm, rays, _, want] = [5, 6, 7, 8].map(|k| fields[k].parse::<f64>().expect("a number"));
+            let contrast = |lines: &[Vec<f64>; 2]| {
+                let line = &lines[usize::from(fields[4] == "y")];
+                let turns = |k: usize| per_mm * pitch[0] * (k as f64 - (line.len() / 2) as f64);
+                rays * line.iter().enumerate().map(|(k, v)| v * (std::f64::consts::TAU * turns(k)).cos()).sum::<f64>()
+            };
+            let (found, without) = (contrast(&light), contrast(&edge));
+            println!("{row}: {found:.3}, of a perfect lens {without:.3}");
+            // What rays have lost cannot be given back.
+            let least = if rays > 0.15 { 0.05 } else { 0.1 };
+            wrong += u32::from((found - want).abs() > least);
+            worst = worst.max((found - want).abs());
+            perfect = perfect.max((without - want).abs());
+            sum += (found - want).abs();
+            count += 1;
+        }
+    }
+    let mean = sum / f64::from(count);
+    println!(
+        "{count} contrasts within {worst:.3}, on average {mean:.4}; by a perfect lens's pattern within {perfect:.3}"
+    );
+    assert!(count == 240 && wrong == 0 && mean < 0.01, "{count}, {wrong} wrong, {mean}");
 }

@@ -82,6 +82,62 @@ fn more_lines_of_a_patent() {
     assert_eq!(more.media[1].label, "nd = 1.80518, ng = 1.847073, vd = 25.43");
 }
 
+/// Schott's formula of N-BK7 (data sheet, 2014), apart from the program.
+fn n_bk7(nm: f64) -> f64 {
+    let square = nm * nm * 1e-6;
+    let term = |b: f64, c: f64| b * square / (square - c);
+    let sum = term(1.039_612_12, 0.006_000_698_67) + term(0.231_792_344, 0.020_017_914_4);
+    (1.0 + sum + term(1.010_469_45, 103.560_653)).sqrt()
+}
+
+/// Index and Abbe number for any three lines, by name or wavelength: in a lens file by its `reference-line` or beside a surface, in a glass
+/// by `abbe`. Each way gives the glass back whose figures were stated.
+#[test]
+fn any_three_lines() {
+    let plate = |head: &str, glass: &str| {
+        parse(&format!(
+            "name: p\n{head}surfaces:\n  - {{kind: plane, thickness: 5, {glass}}}\n  - {{kind: plane, thickness: 1}}\n"
+        ))
+    };
+    for (lines, [short, mid, long]) in [
+        ("[450 nm, 580, 0.68 um]", [450.0, 580.0, 680.0]),
+        ("[F', e, C']", [479.9914, 546.074, 643.8469]),
+        ("[F, e, C]", [486.1327, 546.074, 656.2725]),
+    ] {
+        let (n, v) = (n_bk7(mid), (n_bk7(mid) - 1.0) / (n_bk7(short) - n_bk7(long)));
+        let by_lines = plate(&format!("reference-line: {lines}\n"), &format!("nd: {n:.6}, vd: {v:.3}"));
+        let by_glass = plate("", &format!("glass: {{abbe: {{lines: {lines}, n: {n:.6}, v: {v:.3}}}}}"));
+        // The index at d, and only the Abbe number for these lines.
+        let mixed = plate("", &format!("glass: {{nd: {:.6}, abbe: {{lines: {lines}, v: {v:.3}}}}}", n_bk7(587.5618)));
+        for lens in [&by_lines, &by_glass, &mixed] {
+            for nm in [435.8343, 486.1327, 587.5618, 656.2725, 706.5188] {
+                let off = lens.index(1, nm) - n_bk7(nm);
+                assert!(off.abs() < 5e-5, "{lines} at {nm}: {off}");
+            }
+            let got = lens.media[1].medium.abbe_number(lens_lines(short, mid, long));
+            assert!((got - v).abs() < 0.01, "{lines}: {got}, not {v}");
+        }
+        assert_eq!(by_lines.abbe_lines, lens_lines(short, mid, long));
+        assert_eq!((by_lines.reference_nm, by_lines.media[1].stated_nd), (mid, Some((n * 1e6).round() / 1e6)));
+        // A glass of that name is held against the index at that line.
+        let named = |n: f64| plate(&format!("reference-line: {lines}\n"), &format!("glass: SCHOTT/N-BK7, nd: {n:.5}"));
+        assert!(named(n).warnings.is_empty(), "{:?}", named(n).warnings);
+        assert!(named(n + 0.01).warnings[0].contains("the prescription states"), "{lines}");
+    }
+    // `ne` and `ve` of a surface, whatever the reference line.
+    let (ne, ve) = (n_bk7(546.074), 63.96);
+    for head in ["", "reference-line: e\n", "reference-line: D\n"] {
+        let lens = plate(head, &format!("ne: {ne:.6}, ve: {ve}"));
+        assert!((lens.index(1, 587.5618) - 1.5168).abs() < 2e-6, "{head}");
+        assert!((lens.media[1].stated_nd.expect("known") - n_bk7(lens.reference_nm)).abs() < 2e-6, "{head}");
+    }
+}
+
+fn lens_lines(short: f64, mid: f64, long: f64) -> spectra_glass::LineTriple {
+    let [short, mid, long] = [short, mid, long].map(|nm| lines::Line::at(nm).expect("a line"));
+    spectra_glass::LineTriple::rising(short, mid, long).expect("rising")
+}
+
 /// D6: the exact name first; where several have it the maker or the time of the lens; else the usual one, and a note.
 #[test]
 fn one_rule_for_names() {

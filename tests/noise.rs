@@ -77,6 +77,86 @@ fn noise_is_what_was_asked_for() {
     assert!((a - b).abs() < 4.0 * (va + vb).sqrt(), "{a} {b} +- {}", (va + vb).sqrt());
 }
 
+/// Luminance, or the only layer, of pictures of a scene by these seeds; each made ready and traced on one thread, two at a time.
+fn pictures(scene: &str, more: &[&str], seeds: std::ops::Range<u64>) -> Vec<Vec<f32>> {
+    let scene = spectra_scene::load(&path(scene), &settings(more)).unwrap_or_else(|faults| panic!("{faults}"));
+    let one = |seed: u64| {
+        let mut scene = scene.clone();
+        scene.render.seed = seed;
+        let picture = Renderer::new(scene, Isa::detect()).expect("ready").run(&Alone, &Control::new());
+        let mut channels = picture.expect("rendered").exposure.channels;
+        let at = channels.iter().position(|c| c.name == "Y").unwrap_or(0);
+        channels.swap_remove(at).values
+    };
+    let middle = seeds.start + (seeds.end - seeds.start) / 2;
+    std::thread::scope(|scope| {
+        let second = scope.spawn(|| (middle..seeds.end).map(one).collect::<Vec<_>>());
+        let first: Vec<_> = (seeds.start..middle).map(one).collect();
+        [first, second.join().expect("no panic")].concat()
+    })
+}
+
+/// What stops at 1 % is biased by less than 0.1 %, the frame for sure and its blocks within their errors, and at most 5 % of its blocks are off by more than 1.2 %: each
+/// picture against the mean of all, root mean square over the pixels of a block.
+#[test]
+#[ignore = "minutes in a release build: see benches/README.md"]
+fn a_thousand_seeds_have_no_bias() {
+    let seeds = std::env::var("SPECTRA_SEEDS").map_or(1000, |text| text.parse::<u64>().expect("a number"));
+    let scene = "bench/noise-flat";
+    let set = ["imager.crop=\"3:2\"", "render.noise=1 %", "render.samples=8192"];
+    let stopped = pictures(scene, &set, 0..seeds);
+    // As many as give the mean of the others' accuracy, or nearly.
+    let fixed = [&set[..1], &["render.noise=null", "render.samples=2048"]].concat();
+    let all = pictures(scene, &fixed, 1 << 40..(1 << 40) + seeds.div_ceil(4));
+    let mean_of = |pictures: &[Vec<f32>], pixel: usize| {
+        pictures.iter().map(|p| f64::from(p[pixel])).sum::<f64>() / pictures.len() as f64
+    };
+    let truth: Vec<f64> = (0..WIDTH * HEIGHT).map(|pixel| mean_of(&all, pixel)).collect();
+    let stopped_mean: Vec<f64> = (0..WIDTH * HEIGHT).map(|pixel| mean_of(&stopped, pixel)).collect();
+    // Mean over some pixels, relative to the truth there, and its standard error by the scatter between pictures.
+    let bias = |pixels: &[usize]| {
+        let over = |values: &dyn Fn(usize) -> f64| pixels.iter().map(|p| values(*p)).sum::<f64>() / pixels.len() as f64;
+        let truth = over(&|p| truth[p]);
+        let error2 = |pictures: &[Vec<f32>]| {
+            let means: Vec<f64> = pictures.iter().map(|picture| over(&|p| f64::from(picture[p]))).collect();
+            let mean = means.iter().sum::<f64>() / means.len() as f64;
+            means.iter().map(|m| (m - mean) * (m - mean)).sum::<f64>() / (means.len() * (means.len() - 1)) as f64
+        };
+        (over(&|p| stopped_mean[p]) / truth - 1.0, (error2(&stopped) + error2(&all)).sqrt() / truth)
+    };
+    let frame: Vec<usize> = (0..WIDTH * HEIGHT).collect();
+    let (off, error) = bias(&frame);
+    println!("{seeds} seeds: the frame is biased by {:.4} % +- {:.4} %", 100.0 * off, 100.0 * error);
+    assert!(off.abs() + 2.0 * error < 0.001, "{off:e} +- {error:e}");
+    let (mut above, mut judged) = (0, 0);
+    for row in 0..HEIGHT / BLOCK {
+        for column in 0..WIDTH / BLOCK {
+            let pixels: Vec<usize> =
+                (0..BLOCK * BLOCK).map(|i| (row * BLOCK + i / BLOCK) * WIDTH + column * BLOCK + i % BLOCK).collect();
+            let (off, error) = bias(&pixels);
+            let mean = pixels.iter().map(|p| stopped_mean[*p]).sum::<f64>() / pixels.len() as f64;
+            let noises: Vec<f64> = stopped
+                .iter()
+                .map(|picture| {
+                    let square: f64 = pixels.iter().map(|p| (f64::from(picture[*p]) - stopped_mean[*p]).powi(2)).sum();
+                    (square / pixels.len() as f64).sqrt() / mean
+                })
+                .collect();
+            let loud = noises.iter().filter(|noise| **noise > 0.012).count();
+            println!(
+                "block {row}, {column}: {:.4} % +- {:.4} %; noise {:.3} %, {loud} above 1.2 %",
+                100.0 * off,
+                100.0 * error,
+                100.0 * noises.iter().sum::<f64>() / noises.len() as f64
+            );
+            assert!(off.abs() < 0.001 + 4.0 * error, "block {row}, {column}: {off:e} +- {error:e}");
+            (above, judged) = (above + loud, judged + noises.len());
+        }
+    }
+    println!("{above} of {judged} blocks are above 1.2 %");
+    assert!(above * 20 <= judged, "{above} of {judged}");
+}
+
 /// Parts of a picture end after different numbers of samples, and what was reached is said.
 #[test]
 fn dark_and_busy_parts_get_more_samples() {

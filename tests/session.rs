@@ -297,3 +297,55 @@ fn it_works_without_threads_and_disk() {
         assert!(*bytes == other.1, "{name}");
     }
 }
+
+/// What a change asks to be made ready waits until light is asked for, and can be stopped; then the bits are those of a run.
+#[test]
+fn a_change_can_be_made_ready_later() {
+    struct Stopped;
+    impl Workers for Stopped {
+        fn each(&self, work: &(dyn Fn() + Sync)) {
+            work();
+        }
+        fn should_stop(&self) -> bool {
+            true
+        }
+    }
+    let small = ["imager.resolution=[24, 16]", "render.samples=4"];
+    let mut later = session("biotar-ortho", &small);
+    go(&mut later, 4);
+    let kept = later.change_later("lens.f-number=f/8").expect("it stops down");
+    assert!(!kept.light && kept.density && !kept.lens, "{kept:?}");
+    // A second one before the first was made ready.
+    later.change_later("imager.tilt=[3 deg, 0 deg]").expect("it tilts");
+    later.advance(4, &Stopped, &Control::new()).expect("nobody waits for it");
+    assert_eq!((later.samples(), later.has_light()), (0, false));
+    go(&mut later, 4);
+    let mut whole =
+        session("biotar-ortho", &[&small[..], &["lens.f-number=f/8", "imager.tilt=[3 deg, 0 deg]"]].concat());
+    go(&mut whole, 4);
+    assert_eq!(bits(&mut later), bits(&mut whole));
+    // Development alone keeps it.
+    assert!(later.change_later("film.grain=false").expect("it has no grain").light);
+    assert_eq!(bits(&mut later), bits(&mut whole));
+}
+
+/// A first look shows the same light, exposed as long, by less effort.
+#[test]
+fn a_draft_is_as_bright_as_the_whole() {
+    for set in [&[][..], &["imager.tilt=[10 deg, -5 deg]"], &["lens.aperture={shape: iris, blades: 5}"]] {
+        let all = [set, &["imager.resolution=[48, 32]", "render.samples=16"]].concat();
+        let mut whole = session("biotar-trix", &all);
+        go(&mut whole, 16);
+        let mut draft = whole.draft(&["render.samples=16".to_owned()]).expect("the same scene");
+        go(&mut draft, 16);
+        let mean = |session: &mut Session| {
+            let exposure = session.look().expect("light").exposure;
+            let time_s = session.scene().film_times(&exposure).first().expect("a film").time_s;
+            let values = &exposure.channels[0].values;
+            (values.iter().map(|v| f64::from(*v)).sum::<f64>() / values.len() as f64, time_s)
+        };
+        let ((a, a_s), (b, b_s)) = (mean(&mut whole), mean(&mut draft));
+        assert!((b / a - 1.0).abs() < 0.01, "{set:?}: {a} and {b}");
+        assert!((b_s / a_s - 1.0).abs() < 0.03, "{set:?}: {a_s} s and {b_s} s");
+    }
+}

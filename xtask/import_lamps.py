@@ -46,7 +46,7 @@ LOW, HIGH = 350.0, 830.0
 SHARE, MOST = 0.01, 40
 
 RASCAL = "BSD-3-Clause (rascal 0.3.11, Copyright 2020 Josh Veitch-Michaelis, Marco Lam)"
-FACTS = "facts, no licence needed"
+FACTS = "facts, no license needed"
 GASES = {
     "Hg": "mercury", "Ne": "neon", "He": "helium", "Ar": "argon", "Kr": "krypton", "Xe": "xenon", "Cd": "cadmium",
 }
@@ -120,12 +120,12 @@ def measured_mercury(estimates):
     return sorted(lines, key=lambda line: float(line[0]))
 
 
-def write(name, title, source, licence, conditions, strengths, lines, notes=()):
+def write(name, title, source, license, conditions, strengths, lines, notes=()):
     """One lamp. `lines`: (wavelength as text, intensity as text or number)."""
     text = "\n".join([
         "# spectra: 1", f"# name: {title}", "# kind: lines",
         f"# quantity: relative {'power' if strengths == 'measured' else 'intensity'}", "# unit: 1",
-        f"# source: {source}", f"# licence: {licence}", f"# conditions: {conditions}", f"# strengths: {strengths}",
+        f"# source: {source}", f"# license: {license}", f"# conditions: {conditions}", f"# strengths: {strengths}",
         "# outside: zero", f"# range: {lines[0][0]}-{lines[-1][0]} nm", *(f"# note: {note}" for note in notes),
         "wavelength_nm,power", *(f"{w},{i:.6g}" for w, i in lines),
     ])

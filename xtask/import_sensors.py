@@ -32,7 +32,7 @@ FRONT = """# spectra: 1
 # quantity: relative spectral sensitivity per power
 # unit: 1
 # source: M. M. Darrodi, G. Finlayson, T. Goodman, M. Mackiewicz, J. Opt. Soc. Am. A 32, 381 (2015), doi:10.1364/JOSAA.32.000381
-# licence: BSD-3-Clause (colour-science 0.4.7, Copyright 2013 Colour Developers)
+# license: BSD-3-Clause (colour-science 0.4.7, Copyright 2013 Colour Developers)
 # conditions: measured with a monochromator at the National Physical Laboratory; camera with its filters, without lens
 # outside: zero
 # range: 380-780 nm

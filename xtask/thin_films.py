@@ -1,6 +1,6 @@
 """What surfaces with and without films reflect and pass, by another program: tests/data/thin-films.csv.
 
-tmm (MIT; S. J. Byrnes, https://pypi.org/project/tmm/), version 0.2.0, `coh_tmm`, double precision: the transfer matrix of a coherent stack
+the Python package `tmm` (MIT; S. J. Byrnes), version 0.2.0, `coh_tmm`, double precision: the transfer matrix of a coherent stack
 between two half-spaces. Columns: a name; the indices of the medium that light comes from and of the one behind; the layers in the order
 in which light meets them, each as thickness (nm), n and k, divided by `/`; wavelength (nm); angle of incidence (degrees);
 reflectance and transmittance of s and of p light, as parts of the power.

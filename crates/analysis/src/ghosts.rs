@@ -1,17 +1,19 @@
-//! The ghosts of a lens one by one: light from infinity on the axis that two surfaces reflect.
+//! The ghosts of a lens one by one: light from infinity on the axis that two surfaces reflect, or four.
 
+use crate::draw::{DrawnRay, View};
+use glam::DVec3;
 use serde::Serialize;
 use spectra_core::loss::ALIVE;
-use spectra_core::math::sin_cos_turns;
+use spectra_core::math::{cos, sin, sin_cos_turns};
 use spectra_core::{Isa, RayBatch};
 use spectra_glass::{DispersionError, lines};
-use spectra_lens::{FrontOpening, Indices, Lens, Path, Route, Tracer, Travel};
+use spectra_lens::{Branches, FrontOpening, Indices, Ledger, Lens, Path, Route, Section, Tracer, Travel};
 
 /// What one path by reflections does with light from infinity on the axis.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Ghost {
     /// The surfaces that reflect, in the order of the light, counted from 1.
-    pub surfaces: [usize; 2],
+    pub surfaces: Vec<usize>,
     /// What comes to the image plane, as a part of what comes there straight.
     pub energy: f64,
     /// Where the ghost is in focus: distance of its paraxial image of infinity from the image plane, mm, positive beyond it; none
@@ -26,38 +28,89 @@ pub struct Ghost {
     pub color: [f64; 3],
 }
 
+impl Ghost {
+    /// How bright it is on the image plane: its energy over the area of its disk, as if none were smaller than a tenth of a mm.
+    #[must_use]
+    pub fn density(&self) -> f64 {
+        let size = self.size_mm.max(0.1);
+        self.energy / (size * size)
+    }
+}
+
+/// The ghosts of a lens.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ghosts {
+    /// Brightest first.
+    pub paths: Vec<Ghost>,
+    /// What is reflected more often, or begins a path with too little, and is not followed: a part of the light that enters the lens.
+    pub not_traced: f64,
+}
+
+/// Which ghosts are looked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GhostSearch {
+    /// For this wavelength, nm.
+    pub wavelength_nm: f64,
+    /// Reflections at most: 2 or 4.
+    pub order: usize,
+    /// Paths of four reflections are left out where less than this part of the straight light begins them.
+    pub share: f64,
+}
+
 /// Rays across the front, and the height of the paraxial one, mm.
 const RAYS: usize = 4096;
+const RAYS_OF_FOUR: usize = 1024;
+/// Rays that are tried to find those of a ghost that come.
+const TRIED: usize = 1001;
 const PARAXIAL_MM: f64 = 1e-3;
 /// A slope below which light is parallel.
 const PARALLEL: f64 = 1e-12;
 
-/// All ghosts of two reflections of a lens as it is set, brightest first; figures but color are for this wavelength, nm. Empty where
-/// nothing reflects.
+/// The ghosts of a lens as it is set, brightest first; figures but color are for the search's wavelength. None where nothing reflects.
 ///
 /// # Errors
 /// A medium has no index there or at a line.
-pub fn ghosts(lens: &Lens, wavelength_nm: f64, isa: Isa) -> Result<Vec<Ghost>, DispersionError> {
+pub fn ghosts(lens: &Lens, search: GhostSearch, isa: Isa) -> Result<Ghosts, DispersionError> {
     let tracer = |nm: f64| Tracer::new(lens, Indices::At(nm), isa).map(|tracer| (nm, tracer));
-    let main = tracer(wavelength_nm)?;
+    let main = tracer(search.wavelength_nm)?;
     let colors = [lines::C_PRIME, lines::E, lines::F_PRIME].map(|line| tracer(line.wavelength_nm));
     let [red, green, blue] = colors;
     let colors = [red?, green?, blue?];
     let radius_mm = FrontOpening::of(lens).map_or(0.0, |opening| opening.radius_mm());
-    let straight = Path::through(main.1.surfaces(), Travel::Forward);
-    let light = |(nm, tracer): &(f64, Tracer), path: &Path| disk(tracer, &tracer.route(path), *nm, radius_mm);
-    let own = light(&main, &straight).0;
-    let own_colors = colors.each_ref().map(|color| light(color, &straight).0);
-    let mut all: Vec<Ghost> = Path::ghosts(main.1.surfaces(), &main.1.reflecting(), 2)
-        .iter()
-        .map(|path| {
-            let (energy, size_mm) = light(&main, path);
-            let by_color: Vec<f64> = colors.iter().zip(own_colors).map(|(c, own)| light(c, path).0 / own).collect();
+    let elements = main.1.surfaces();
+    let straight = Path::through(elements, Travel::Forward);
+    let light = |(nm, tracer): &(f64, Tracer), path: &Path, rays: usize| {
+        disk(tracer, &tracer.route(path), *nm, radius_mm, rays)
+    };
+    let first = light(&main, &straight, RAYS);
+    let own = first.energy;
+    let surfaces = main.1.reflecting();
+    let least = search.share * own;
+    let mut found = Vec::new();
+    let mut visit = |path: &Path, _: f64| {
+        let disk = light(&main, path, RAYS);
+        let reflections = path.reflections().count();
+        if reflections > 0 && path.leaves() == Travel::Forward {
+            found.push((path.clone(), reflections, disk.energy, disk.size_mm));
+        }
+        disk.ledger
+    };
+    let branches = Branches { elements, surfaces: &surfaces, order: search.order, least };
+    let left = branches.follow(&mut Vec::new(), 0.0, &mut visit);
+    let entered = first.ledger.launched - first.ledger.steps.first().map_or(0.0, |step| step.missed + step.vignetted);
+    // Of so many paths of four the colors are told by fewer rays.
+    let own_colors = [RAYS, RAYS_OF_FOUR].map(|rays| colors.each_ref().map(|c| light(c, &straight, rays).energy));
+    let mut paths: Vec<Ghost> = found
+        .into_iter()
+        .map(|(path, reflections, energy, size_mm)| {
+            let (rays, own_colors) =
+                if reflections > 2 { (RAYS_OF_FOUR, own_colors[1]) } else { (RAYS, own_colors[0]) };
+            let by_color: Vec<f64> =
+                colors.iter().zip(own_colors).map(|(c, own)| light(c, &path, rays).energy / own).collect();
             let over = |of: f64| if by_color[1] > 0.0 { of / by_color[1] } else { 0.0 };
-            let (focus_mm, focal_length_mm) = focus(&main.1, &main.1.route(path), wavelength_nm);
-            let mut surfaces = path.reflections().map(|at| at + 1);
+            let (focus_mm, focal_length_mm) = focus(&main.1, &main.1.route(&path), search.wavelength_nm);
             Ghost {
-                surfaces: std::array::from_fn(|_| surfaces.next().unwrap_or(0)),
+                surfaces: path.reflections().map(|at| at + 1).collect(),
                 energy: if own > 0.0 { energy / own } else { 0.0 },
                 focus_mm,
                 focal_length_mm,
@@ -66,33 +119,81 @@ pub fn ghosts(lens: &Lens, wavelength_nm: f64, isa: Isa) -> Result<Vec<Ghost>, D
             }
         })
         .collect();
-    all.sort_by(|a, b| b.energy.total_cmp(&a.energy).then(a.surfaces.cmp(&b.surfaces)));
-    Ok(all)
+    paths.sort_by(|a, b| b.energy.total_cmp(&a.energy).then_with(|| a.surfaces.cmp(&b.surfaces)));
+    Ok(Ghosts { paths, not_traced: if entered > 0.0 { left / entered } else { 0.0 } })
 }
 
-/// Parallel light across the front: what arrives of it, and the diameter of the disk that it makes on the image plane, mm.
-fn disk(tracer: &Tracer, route: &Route, wavelength_nm: f64, radius_mm: f64) -> (f64, f64) {
-    let mut rays = RayBatch::new(RAYS);
-    rays.restart(RAYS);
+/// What parallel light across the front does along a path.
+struct Disk {
+    /// What arrives of it.
+    energy: f64,
+    /// The diameter of the disk that it makes on the image plane, mm.
+    size_mm: f64,
+    ledger: Ledger,
+}
+
+/// Follows parallel light across the front.
+fn disk(tracer: &Tracer, route: &Route, wavelength_nm: f64, radius_mm: f64, many: usize) -> Disk {
+    let mut rays = RayBatch::new(many);
+    rays.restart(many);
     let c = rays.columns_mut();
-    for i in 0..RAYS {
+    for i in 0..many {
         // Of equal areas, turned on by the golden section (H. Vogel, 1979).
-        let r = radius_mm * ((i as f64 + 0.5) / RAYS as f64).sqrt();
+        let r = radius_mm * ((i as f64 + 0.5) / many as f64).sqrt();
         let turns = i as f64 * 0.618_033_988_749_894_9;
         let (sin, cos) = sin_cos_turns(turns - turns.floor());
         (c.x[i], c.y[i], c.z[i], c.l[i], c.m[i], c.n[i]) = (r * cos, r * sin, -1.0, 0.0, 0.0, 1.0);
         c.wavelength_nm[i] = wavelength_nm;
     }
-    tracer.follow(route, &mut rays, &mut tracer.work_in_place(RAYS));
+    let mut work = tracer.work(many).with_ledger();
+    tracer.follow(route, &mut rays, &mut work);
     let ([x, y, z], [l, m, n]) = (rays.positions(), rays.directions());
-    let (mut sum, mut farthest) = (0.0, 0.0_f64);
-    for i in (0..RAYS).filter(|i| rays.states()[*i] == ALIVE && n[*i] > 0.0 && rays.weights()[*i] > 0.0) {
+    let (mut energy, mut farthest) = (0.0, 0.0_f64);
+    for i in (0..rays.len()).filter(|i| rays.states()[*i] == ALIVE && n[*i] > 0.0 && rays.weights()[*i] > 0.0) {
         let way = -z[i] / n[i];
         let (x, y) = (x[i] + way * l[i], y[i] + way * m[i]);
-        sum += rays.weights()[i];
+        energy += rays.weights()[i];
         farthest = farthest.max((x * x + y * y).sqrt());
     }
-    (sum, 2.0 * farthest)
+    Disk { energy, size_mm: 2.0 * farthest, ledger: work.take_ledger().unwrap_or_default() }
+}
+
+/// Rays of a ghost, to be drawn: parallel light at an angle to the axis, evenly over what of it comes to the image plane by these
+/// reflections (counted from 0). Fewer where fewer come.
+///
+/// # Errors
+/// A medium has no index there.
+///
+/// # Panics
+/// The reflections do not follow from one another.
+pub fn ghost_rays(
+    lens: &Lens,
+    reflections: &[usize],
+    wavelength_nm: f64,
+    field_rad: f64,
+    section: Section,
+    many: usize,
+) -> Result<Vec<DrawnRay>, DispersionError> {
+    let tracer = Tracer::new(lens, Indices::At(wavelength_nm), Isa::Baseline)?;
+    let path = Path::reflected(tracer.surfaces(), Travel::Forward, reflections).expect("surfaces in their order");
+    let route = tracer.route(&path);
+    let Some(opening) = FrontOpening::of(lens) else { return Ok(Vec::new()) };
+    let view = View { section };
+    let (sin, cos) = (sin(field_rad), cos(field_rad));
+    let (direction, side) = (view.across(sin, cos), view.across(cos, -sin));
+    let start = |k: usize| -> DVec3 {
+        let s_mm = opening.radius_mm() * (2.0 * (k as f64 + 0.5) / TRIED as f64 - 1.0);
+        opening.center() + side * s_mm - direction * (3.0 * opening.radius_mm())
+    };
+    let comes = |k: usize| {
+        let path = tracer.path_along(&route, start(k), direction, wavelength_nm);
+        let forward = lens.image_pose.local_direction(path.direction).z > 0.0;
+        (path.end.is_none() && forward && path.points.iter().all(|p| p.is_finite())).then_some(path)
+    };
+    let came: Vec<_> = (0..TRIED).filter_map(comes).collect();
+    let many = many.min(came.len());
+    let at = |k: usize| if many > 1 { k * (came.len() - 1) / (many - 1) } else { came.len() / 2 };
+    Ok((0..many).map(|k| DrawnRay { path: came[at(k)].clone(), wavelength_nm, strength: 1.0 }).collect())
 }
 
 /// Paraxial focus behind the image plane, mm, and focal length, mm.

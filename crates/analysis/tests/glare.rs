@@ -74,7 +74,14 @@ fn the_index_is_the_share_of_the_light_in_the_black_disk() {
         let (a, b) = spectra_core::math::concentric_disk(chance.number(), chance.number());
         let side = normal.cross(DVec3::X).normalize();
         let direction = a * side + b * normal.cross(side) + (1.0 - a * a - b * b).max(0.0).sqrt() * normal;
-        let start = Particle { position: at - 1e-3 * direction, direction, weight: 1.0, mirrored: 0, scattered: 0 };
+        let start = Particle {
+            position: at - 1e-3 * direction,
+            direction,
+            weight: 1.0,
+            mirrored: 0,
+            scattered: 0,
+            diffused: 0,
+        };
         let is_black = disk.holds(&start);
         let mut own = 0.0;
         walker.from_front(start, &mut chance, |p| {

@@ -118,6 +118,12 @@ impl EveryFactor {
             }
             integrals.extend(row);
         }
+        // A scene holds spectra as tables, straight between their points; of two Gaussians that differs from their own integral by some
+        // h^2 / 6 / (s^2 + t^2), for points h apart and standard deviations s and t. The integral is that of the scene.
+        let of_terms = integrals.iter().sum::<f64>();
+        if of_terms > 0.0 {
+            integrals.iter_mut().for_each(|value| *value *= all / of_terms);
+        }
         let pairs = source.shares.iter().flat_map(|a| film.shares.iter().map(move |b| a * b));
         let probabilities: Vec<f64> = pairs.collect();
         let values = integrals.iter().zip(&probabilities).map(|(w, p)| if *p > 0.0 { w / p } else { 0.0 }).collect();

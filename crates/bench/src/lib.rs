@@ -19,6 +19,7 @@ mod csv;
 mod error;
 mod every_factor;
 mod frame;
+mod ghosts;
 mod integral;
 mod noise;
 mod picture;
@@ -30,6 +31,7 @@ mod table;
 
 pub use csv::csv;
 pub use error::BenchError;
+pub use ghosts::{GhostNoise, GhostRow, GhostSettings, ghost_table, ghosts};
 pub use noise::{NoiseRow, NoiseSettings, noise, noise_table};
 pub use picture::picture;
 pub use report::{ChannelBias, Interval, LeftOut, Measure, NumberKind, Point, Reference, Report, Series};

@@ -43,7 +43,7 @@ pub use gamut::{Gamut, into_gamut, oklab, xyz_of_oklab};
 pub use primaries::{srgb_light, srgb_primaries};
 pub use rendering::{
     ColorRendering, Fidelity, cam02_ucs, cie_test_colors, color_evaluation_samples, color_rendering, fidelity,
-    luminous_efficacy, uv_1976,
+    fidelity_index, luminous_efficacy, uv_1976,
 };
 pub use rgb::{RgbSpace, Transfer, from_u8, to_u8, xyz_of_xy};
 pub use round_trip::{RoundTrip, RoundTripErrors};

@@ -121,11 +121,12 @@ pub fn fidelity(light: &Emission) -> Option<Fidelity> {
     };
     let apart: Vec<f64> = seen(&test)?.into_iter().zip(seen(&reference)?).map(|(a, b)| distance(a, b)).collect();
     let mean = apart.iter().sum::<f64>() / apart.len() as f64;
-    Some(Fidelity { rf: index(mean), samples: apart.into_iter().map(index).collect() })
+    Some(Fidelity { rf: fidelity_index(mean), samples: apart.into_iter().map(fidelity_index).collect() })
 }
 
-/// CIE 224:2017, 4.6: from a color difference to an index.
-fn index(difference: f64) -> f64 {
+/// CIE 224:2017, 4.6: from a color difference (CAM02-UCS, or the mean of several) to an index from 100 down to 0.
+#[must_use]
+pub fn fidelity_index(difference: f64) -> f64 {
     10.0 * libm::log1p(libm::exp((100.0 - 6.73 * difference) / 10.0))
 }
 

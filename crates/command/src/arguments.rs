@@ -345,6 +345,36 @@ pub(crate) struct Bench {
 pub(crate) enum OtherBench {
     /// Measure how long scenes take until they are clean: time to 1 % noise.
     Noise(BenchNoise),
+    /// Measure how clean ghosts are after how much time, and what the search for their rays gains.
+    Ghosts(BenchGhosts),
+}
+
+/// `spectra bench ghosts`.
+#[derive(Debug, Args)]
+#[command(
+    long_about = "Measure how clean ghosts are after how much time, and what the search for their rays gains.\n\n\
+        Of each scene nothing but the ghosts is rendered, several times with different seeds: as its pictures have them, and with \
+        as many rays for each path all over the front of the lens. Noise is the standard deviation between the seeds of blocks of \
+        32 x 32 pixels, relative to their mean, where ghosts have more than 1e-4 of the brightest block; and that of single pixels. \
+        The gain is how many times longer the even rays take to the same noise.\n\n\
+        The table (Markdown) goes to standard output.",
+    after_long_help = "Example: one sun through a bare lens of 1927\n  spectra bench ghosts bench/ghosts-sun --seeds 8"
+)]
+pub(crate) struct BenchGhosts {
+    /// Scene files, or names of bundled scenes.
+    #[arg(value_name = "SCENE", required = true)]
+    pub scenes: Vec<PathBuf>,
+    #[command(flatten)]
+    pub set: Set,
+    /// Number of seeds, at least 2.
+    #[arg(long, value_name = "N", default_value = "4", value_parser = clap::value_parser!(u16).range(2..=1000))]
+    pub seeds: u16,
+    /// Number of render threads; all processors if not given.
+    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Write a JSON list to standard output instead of the table.
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// `spectra bench noise`.
@@ -510,6 +540,18 @@ pub(crate) enum CutArgument {
     X,
 }
 
+/// A part of something: from 0 to 1.
+fn share(text: &str) -> Result<f64, String> {
+    let value = text.parse::<f64>().ok().filter(|v| (0.0..=1.0).contains(v));
+    value.ok_or_else(|| "a part from 0 to 1, such as 1e-8".to_owned())
+}
+
+/// An angle that light can come from in front.
+fn field(text: &str) -> Result<f64, String> {
+    let value = text.parse::<f64>().ok().filter(|v| v.abs() < 90.0);
+    value.ok_or_else(|| "degrees between -90 and 90".to_owned())
+}
+
 fn wavelength_or_line(text: &str) -> Result<f64, String> {
     match spectra_glass::lines::by_name(text.trim()) {
         Some(line) => Ok(line.wavelength_nm),
@@ -626,6 +668,9 @@ pub(crate) struct LensInfo {
     pub setting: LensSetting,
     #[command(flatten)]
     pub light: OneLight,
+    /// List every mount that the lens fits, not only the common ones.
+    #[arg(long)]
+    pub mounts: bool,
     /// Work out the veiling glare index (some seconds).
     #[arg(long)]
     pub glare: bool,
@@ -643,16 +688,42 @@ pub(crate) struct LensInfo {
 /// `spectra lens ghosts`.
 #[derive(Debug, Args)]
 #[command(
-    long_about = "List the ghosts of a lens: light that two surfaces reflect on its way to the film.\n\n\
+    long_about = "List the ghosts of a lens: light that two surfaces reflect on its way to the film, or four.\n\n\
         For light from infinity on the axis, at the reference line: energy relative to the straight light; distance of the ghost's focus \
         from the image plane, positive beyond it, and its focal length (both paraxial); the diameter of its disk on the image plane; \
         and its energy at C', e and F' over that at e. Surfaces are counted from 1, in the order in which they reflect. Coatings are those \
-        of the lens file, or typical of its time, unless --coating says otherwise.",
-    after_long_help = "Example: what a single layer does\n  spectra lens ghosts zeiss-biotar-50-f1.4 --coating single-layer"
+        of the lens file, or typical of its time, unless --coating says otherwise.\n\n\
+        Paths of four reflections (--order 4) are searched by following the light: whatever a path begins with less than --share of the \
+        straight light is cut there, since nothing further on can add to it. What is not followed is said.\n\n\
+        With -o the lens is drawn with the rays of a ghost: the one that is brightest on the film, or that of --path.",
+    after_long_help = "Examples: what a single layer does; the brightest ghost; one of those with the light from 20 degrees\n  \
+        spectra lens ghosts zeiss-biotar-50-f1.4 --coating single-layer\n  \
+        spectra lens ghosts zeiss-biotar-50-f1.4 -o ghost.svg\n  \
+        spectra lens ghosts zeiss-biotar-50-f1.4 -o ghost.svg --path 7,3 --field 20"
 )]
 pub(crate) struct LensGhosts {
     #[command(flatten)]
     pub setting: LensSetting,
+    /// Reflections at most: 2, or 4.
+    #[arg(long, value_name = "N", default_value = "2", value_parser = ["2", "4"])]
+    pub order: String,
+    /// Leave out paths of four reflections that begin with less than this part of the straight light.
+    #[arg(long, value_name = "PART", default_value = "1e-8", value_parser = share)]
+    pub share: f64,
+    /// Draw the lens with the rays of a ghost: the one brightest on the film, or that of --path. To .svg or .png.
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// The ghost to draw: the surfaces that reflect it, counted from 1, in the order of the light.
+    #[arg(long, value_name = "A,B", value_delimiter = ',', requires = "output")]
+    pub path: Vec<usize>,
+    /// Field angle of the light that is drawn, degrees.
+    #[arg(long, value_name = "DEG", default_value = "0", allow_negative_numbers = true, requires = "output",
+        value_parser = field)]
+    pub field: f64,
+    /// Number of rays that are drawn.
+    #[arg(long, value_name = "N", default_value = "11", requires = "output",
+        value_parser = clap::value_parser!(u16).range(1..=1001))]
+    pub rays: u16,
     /// Show all of them, not only the brightest.
     #[arg(long)]
     pub all: bool,

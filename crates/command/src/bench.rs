@@ -1,10 +1,10 @@
 //! `spectra bench`: wavelength strategies against each other.
 
-use crate::arguments::{Bench, BenchNoise, OtherBench};
+use crate::arguments::{Bench, BenchGhosts, BenchNoise, OtherBench};
 use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
 use crate::version;
-use spectra_bench::{BenchError, NoiseSettings, Settings, parse_list};
+use spectra_bench::{BenchError, GhostSettings, NoiseSettings, Settings, parse_list};
 use spectra_core::Isa;
 use spectra_core::spectral::Channel;
 use spectra_files::write_atomically;
@@ -20,8 +20,10 @@ const INTEGRAL_SEEDS: usize = 50;
 
 /// Measures, writes the files, and shows the table, or JSON in its place.
 pub(crate) fn bench(arguments: &Bench, isa: Isa) -> Outcome {
-    if let Some(OtherBench::Noise(arguments)) = &arguments.other {
-        return noise(arguments, isa);
+    match &arguments.other {
+        Some(OtherBench::Noise(arguments)) => return noise(arguments, isa),
+        Some(OtherBench::Ghosts(arguments)) => return ghosts(arguments, isa),
+        None => {}
     }
     let Some(scene) = &arguments.scene else {
         return Err(Failure::Input("name a scene, such as `spectra bench bench/sampling-d65-xyz`".to_owned()));
@@ -89,6 +91,39 @@ fn noise(arguments: &BenchNoise, isa: Isa) -> Outcome {
         format!("{}, {}, {} threads, commit {}", processor(), isa.name(), settings.threads, version::commit());
     console::out(&spectra_bench::noise_table(&rows, &settings, &machine))?;
     Ok(DONE)
+}
+
+/// Measures how clean ghosts are.
+fn ghosts(arguments: &BenchGhosts, isa: Isa) -> Outcome {
+    let threads = arguments.threads.map(usize::from);
+    let settings = GhostSettings {
+        seeds: arguments.seeds.into(),
+        threads: threads.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from)),
+        isa,
+        processor_s,
+    };
+    let mut rows = Vec::new();
+    for scene in &arguments.scenes {
+        let mut tell = |line: &str| console::note(line);
+        rows.push(spectra_bench::ghosts(scene, &arguments.set.overrides, &settings, &mut tell)?);
+    }
+    if arguments.json {
+        console::pretty_json(&rows)?;
+        return Ok(DONE);
+    }
+    let machine =
+        format!("{}, {}, {} threads, commit {}", processor(), isa.name(), settings.threads, version::commit());
+    console::out(&spectra_bench::ghost_table(&rows, &settings, &machine))?;
+    Ok(DONE)
+}
+
+/// Seconds that processors have spent on this program, where the system says (proc(5): `utime`, `stime`, in hundredths on Linux).
+fn processor_s() -> Option<f64> {
+    let text = std::fs::read_to_string("/proc/self/stat").ok()?;
+    // The name, in parentheses, may hold anything.
+    let mut fields = text.rsplit_once(')')?.1.split_whitespace().skip(11);
+    let mut ticks = || fields.next()?.parse::<f64>().ok();
+    Some((ticks()? + ticks()?) / 100.0)
 }
 
 /// What the system calls its processor; on a system that does not say, the architecture.

@@ -5,7 +5,7 @@ use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
 use serde_json::{Value, json};
 use spectra_core::names::{self, Match};
-use spectra_core::params::{self, Fault};
+use spectra_core::params::Fault;
 use spectra_core::registry::{self, Documentation, Listed, Parameter};
 use spectra_scene::{FileKind, file_documentation, shared_documentation};
 use std::fmt::Write;
@@ -154,7 +154,7 @@ fn keys(name: &str) -> Result<Page, Vec<String>> {
         Match::One(key) => keys(key),
         Match::Several(several) => Err(several.into_iter().map(str::to_owned).collect()),
         Match::Nothing => {
-            Err(params::nearest(&wanted, last.iter().map(String::as_str)).map(str::to_owned).into_iter().collect())
+            Err(names::nearest(&wanted, last.iter().map(String::as_str)).map(str::to_owned).into_iter().collect())
         }
     }
 }
@@ -248,7 +248,7 @@ fn find(name: &str) -> Result<Page, Failure> {
             if let Match::One(one) = names::find(name, names.iter().map(String::as_str)) {
                 return find(one);
             }
-            let near = params::nearest(name, names.iter().map(String::as_str)).map(str::to_owned);
+            let near = names::nearest(name, names.iter().map(String::as_str)).map(str::to_owned);
             let hint = match (near, near_keys.as_slice()) {
                 (Some(near), _) => format!("did you mean `{near}`?"),
                 (None, [one]) => format!("did you mean `{one}`?"),

@@ -13,6 +13,7 @@ mod check;
 mod completions;
 mod console;
 mod doc;
+mod eye;
 mod film;
 mod folder;
 mod frames;
@@ -20,7 +21,7 @@ mod glass;
 mod guess;
 mod interrupt;
 mod lens;
-mod licences;
+mod licenses;
 mod limits;
 mod list;
 mod memory;
@@ -81,7 +82,7 @@ fn dispatch(arguments: &Arguments, unpack: Unpack, notices: &str, started: Insta
     let isa = instruction_set()?;
     tracing::debug!(isa = isa.name(), "instruction set");
     if arguments.licenses {
-        return licences::show(notices);
+        return licenses::show(notices);
     }
     match &arguments.command {
         Some(Command::Run(run)) => run::run(run, isa, started),

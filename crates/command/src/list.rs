@@ -7,7 +7,7 @@ use serde::Serialize;
 use serde_json::{Map, Value, json};
 use spectra_analysis::fan::FanFinder;
 use spectra_core::names;
-use spectra_core::params::{self, Fault};
+use spectra_core::params::Fault;
 use spectra_core::registry::{self, Documentation, Listed};
 use spectra_film::stock::{Process, Stock};
 use spectra_glass::Catalogue;
@@ -94,7 +94,7 @@ fn kind(typed: &str, kinds: &[&'static str]) -> Result<&'static str, Fault> {
         return Ok(kind);
     }
     let fault = Fault::new(format!("no list is called `{typed}`"));
-    if params::nearest(&key, kinds.iter().copied()).is_some() {
+    if names::nearest(&key, kinds.iter().copied()).is_some() {
         return Err(fault.hint(names::hint(&key, kinds, "")));
     }
     let named = bundled::meanings(typed).into_iter().next();
@@ -245,7 +245,7 @@ fn spectrum(stage: &'static str, name: &'static str, path: &'static str) -> Opti
         "range_nm": range.map(|(from, to)| [from, to]),
         "columns": columns_in,
         "source": table.meta.source,
-        "licence": table.meta.licence,
+        "license": table.meta.license,
     });
     let columns =
         vec![table.kind.word().to_owned(), range.map_or(String::new(), |(from, to)| format!("{from:.0}-{to:.0} nm"))];

@@ -22,6 +22,7 @@ pub mod numbers;
 pub mod one_layer;
 pub mod params;
 pub mod prelude;
+pub mod quantity;
 pub mod registry;
 pub mod resources;
 pub mod shutter;

@@ -7,6 +7,12 @@ use std::sync::{Mutex, PoisonError};
 pub trait Workers: Sync {
     /// Calls `work` once on each of them, and returns when all calls have.
     fn each(&self, work: &(dyn Fn() + Sync));
+
+    /// Whether whoever asked does not want the result any more. Once it is true it stays so. Work that heeds it ends early, with
+    /// an error of its own.
+    fn should_stop(&self) -> bool {
+        false
+    }
 }
 
 /// The thread that asks.

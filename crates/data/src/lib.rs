@@ -12,9 +12,9 @@
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
-mod licences;
+mod licenses;
 
-pub use licences::{Licence, licences};
+pub use licenses::{License, licenses};
 
 include!(concat!(env!("OUT_DIR"), "/files.rs"));
 

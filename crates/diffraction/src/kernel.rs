@@ -1,6 +1,7 @@
 //! How a unit of light in one pixel is spread over those around it.
 
-use crate::{Polygon, Wings};
+use crate::aberrated::{Correction, correction};
+use crate::{Polygon, Wave, Wings};
 use spectra_core::math;
 use std::f64::consts::{PI, TAU};
 
@@ -131,6 +132,21 @@ impl PixelSpread {
     pub fn weight(&self, i: isize, j: isize) -> f64 {
         let r = self.radius as isize;
         self.weights[((j + r) * (2 * r + 1) + i + r) as usize]
+    }
+
+    /// The same, but so that rays with a wavefront's aberrations, spread by it, have the contrast of the wavefront.
+    #[must_use]
+    pub fn with_wave(mut self, opening: &Polygon, wave: &Wave, light: &Light, pitch_mm: [f64; 2]) -> Self {
+        if let Some(Correction { reach, weights }) = correction(opening, wave, light, pitch_mm) {
+            let r = reach as isize;
+            let places = (-r..r + 1).flat_map(|j| (-r..r + 1).map(move |i| [i, j]));
+            for ([i, j], weight) in places.zip(weights).filter(|([i, j], _)| *j > 0 || (*j == 0 && *i >= 0)) {
+                if i.unsigned_abs().max(j.unsigned_abs()) <= self.radius {
+                    self.set(i, j, self.weight(i, j) + weight);
+                }
+            }
+        }
+        self
     }
 
     fn set(&mut self, i: isize, j: isize, weight: f64) {

@@ -78,6 +78,36 @@ impl Polygon {
         self.rings.iter().flatten().map(|[x, y]| (x * x + y * y).sqrt()).fold(0.0, f64::max)
     }
 
+    /// The least and the largest of each coordinate, as they were given to [`Polygon::new`].
+    #[must_use]
+    pub fn bounds(&self) -> [[f64; 2]; 2] {
+        let mut bounds = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
+        for p in self.rings.iter().flatten() {
+            for k in 0..2 {
+                bounds[0][k] = bounds[0][k].min(p[k] + self.center[k]);
+                bounds[1][k] = bounds[1][k].max(p[k] + self.center[k]);
+            }
+        }
+        bounds
+    }
+
+    /// The parts of a line of constant `y` that lie in the opening, from `x` to `x`, as they were given to [`Polygon::new`].
+    #[must_use]
+    pub fn spans(&self, y: f64) -> Vec<[f64; 2]> {
+        let y = y - self.center[1];
+        let mut crossed = Vec::new();
+        for ring in &self.rings {
+            for (i, a) in ring.iter().enumerate() {
+                let b = ring[(i + 1) % ring.len()];
+                if (a[1] > y) != (b[1] > y) {
+                    crossed.push(self.center[0] + a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]));
+                }
+            }
+        }
+        crossed.sort_by(f64::total_cmp);
+        crossed.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect()
+    }
+
     /// The mean over the opening of exp(i k r), r from its centroid: real and imaginary part, 1 at the origin. `k` is in radians per
     /// unit of its places.
     ///

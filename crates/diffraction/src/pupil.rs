@@ -1,6 +1,6 @@
 //! The opening of a lens as a place on film sees it.
 
-use crate::Polygon;
+use crate::{Polygon, Wave};
 use glam::{DVec2, DVec3};
 use spectra_core::loss::ALIVE;
 use spectra_core::math::sin_cos_turns;
@@ -20,6 +20,8 @@ const CORNERS: usize = 192;
 const STEPS: usize = 40;
 /// How much larger than its marginal ray a stop without a size is taken.
 const ROOM: f64 = 1.3;
+/// Rays across an opening that find its wavefront.
+const WAVE_RAYS: usize = 22;
 /// Degree of the map from an opening to the directions in which it is seen.
 const DEGREE: usize = 5;
 
@@ -60,12 +62,7 @@ impl Pupil {
             }
         };
         let reach_mm = rings.iter().flatten().map(|[x, y]| (x * x + y * y).sqrt()).fold(0.0, f64::max);
-        let mut open = lens.clone();
-        for e in &mut open.elements {
-            e.semi_diameter_mm = None;
-            e.apertures.clear();
-        }
-        let tracer = Tracer::new(&open, Indices::At(lens.reference_nm), Isa::detect()).map_err(|e| e.to_string())?;
+        let tracer = without_rims(lens, lens.reference_nm)?;
         let count = lens.elements.len();
         let route = |at: usize| tracer.route(&Path::through(count, Travel::Backward).up_to(|k| k == at));
         let routes = (0..count).map(route).collect();
@@ -203,6 +200,86 @@ impl Pupil {
             opening = opening.left_of(&lines)?;
         }
         Some(opening)
+    }
+}
+
+fn without_rims(lens: &Lens, nm: f64) -> Result<Tracer, String> {
+    let mut open = lens.clone();
+    for e in &mut open.elements {
+        e.semi_diameter_mm = None;
+        e.apertures.clear();
+    }
+    Tracer::new(&open, Indices::At(nm), Isa::detect()).map_err(|e| e.to_string())
+}
+
+/// The wavefronts of a lens at one wavelength, of points at the distance that it is focused at.
+pub struct Waves<'a> {
+    lens: &'a Lens,
+    tracer: Tracer,
+    nm: f64,
+}
+
+impl<'a> Waves<'a> {
+    /// At a wavelength, nm, that its glasses know.
+    #[must_use]
+    pub fn new(lens: &'a Lens, nm: f64) -> Option<Self> {
+        Some(Self { lens, tracer: without_rims(lens, nm).ok()?, nm })
+    }
+
+    /// The wavefront of the light that comes to a point of the film through an opening in direction cosines along two unit vectors: mm
+    /// and vectors in the frame of the image plane. `None` where too few rays come through.
+    #[must_use]
+    pub fn seen_from(&self, point: DVec3, axes: [DVec3; 2], opening: &Polygon) -> Option<Wave> {
+        let normal = axes[0].cross(axes[1]);
+        // Toward the lens.
+        let rear = self.lens.image_pose.local_point(self.lens.elements.last()?.pose.origin_mm) - point;
+        let along = |u: f64, v: f64| {
+            let up = (1.0 - u * u - v * v).max(0.0).sqrt();
+            let aside = axes[0] * u + axes[1] * v;
+            [aside + normal * up, aside - normal * up].into_iter().max_by(|a, b| a.dot(rear).total_cmp(&b.dot(rear)))
+        };
+        let [low, high] = opening.bounds();
+        let middle = |k: usize, n: usize, cells: usize| low[k] + (n as f64 + 0.5) / cells as f64 * (high[k] - low[k]);
+        let mut cosines = vec![opening.center()];
+        for row in 0..WAVE_RAYS {
+            let v = middle(1, row, WAVE_RAYS);
+            for [from, to] in opening.spans(v) {
+                let columns = (0..WAVE_RAYS).map(|n| middle(0, n, WAVE_RAYS));
+                cosines.extend(columns.filter(|u| from <= *u && *u <= to).map(|u| [u, v]));
+            }
+        }
+        let mut rays = RayBatch::with_optical_path(cosines.len());
+        rays.restart(cosines.len());
+        let c = rays.columns_mut();
+        for (i, [u, v]) in cosines.iter().enumerate() {
+            (c.x[i], c.y[i], c.z[i]) = point.into();
+            (c.l[i], c.m[i], c.n[i]) = along(*u, *v)?.into();
+            c.wavelength_nm[i] = self.nm;
+        }
+        self.tracer.trace(&mut rays, &mut self.tracer.work(cosines.len()), Travel::Backward);
+        let [at, way] = [rays.positions(), rays.directions()];
+        let (at, way) =
+            (|i: usize| DVec3::from_array(at.map(|c| c[i])), |i: usize| DVec3::from_array(way.map(|c| c[i])));
+        let states = rays.states();
+        if states[0] != ALIVE {
+            return None;
+        }
+        // The ray from the middle of the opening says where the point is that is seen there.
+        let (from, toward) = (at(0), way(0));
+        let distance = self.lens.focused_mm;
+        let seen = from + toward * ((-distance - from.z) / toward.z);
+        let paths = rays.optical_path_mm()?;
+        let rest = |i: usize| {
+            let (p, d) = (at(i), way(i));
+            // To where the ray comes nearest to that point; of an infinite distance, to a plane across the middle ray.
+            if distance.is_finite() { d.dot(seen - p) } else { (from - p).dot(toward) / d.dot(toward) }
+        };
+        let (places, mm): (Vec<_>, Vec<_>) = (0..cosines.len())
+            .filter(|i| states[*i] == ALIVE)
+            .map(|i| (cosines[i], paths[i] + rest(i)))
+            .filter(|(_, mm)| mm.is_finite())
+            .unzip();
+        Wave::fitted(&places, &mm)
     }
 }
 

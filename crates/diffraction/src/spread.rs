@@ -6,7 +6,7 @@
 
 use crate::kernel::{coarse, fade, near_mm};
 use crate::star::{Spike, Spikes, fading};
-use crate::{Light, PixelSpread, Polygon, Wings};
+use crate::{Light, PixelSpread, Polygon, Wave, Wings};
 use rayon::prelude::*;
 use spectra_core::frame::FrameSize;
 use spectra_numerics::convolve::Convolver;
@@ -27,8 +27,25 @@ const OF_BRIGHTEST: f64 = 1e-4;
 /// Most pixels of a channel whose spikes are drawn.
 const MOST: usize = 6000;
 
-/// How the places of a frame see the opening: at a column and row, in pixels from the upper left corner of the picture.
-pub type Seen<'a> = dyn Fn([f64; 2]) -> Option<Polygon> + Sync + 'a;
+/// How the places of a frame see the lens: at a column and row, in pixels from the upper left corner of the picture.
+pub trait View: Sync {
+    /// The opening. `None` where none is seen.
+    fn opening(&self, at: [f64; 2]) -> Option<Polygon>;
+
+    /// The wavefront over that opening. `None` of a perfect lens, and where it is not known.
+    fn wave(&self, at: [f64; 2], opening: &Polygon) -> Option<Wave>;
+}
+
+/// Of a perfect lens.
+impl<F: Fn([f64; 2]) -> Option<Polygon> + Sync> View for F {
+    fn opening(&self, at: [f64; 2]) -> Option<Polygon> {
+        self(at)
+    }
+
+    fn wave(&self, _: [f64; 2], _: &Polygon) -> Option<Wave> {
+        None
+    }
+}
 
 /// What was done to a channel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -45,7 +62,7 @@ pub struct Account {
 pub struct Spread<'a> {
     size: FrameSize,
     pitch_mm: [f64; 2],
-    seen: &'a Seen<'a>,
+    seen: &'a dyn View,
     light: Light,
     radius: usize,
     middle: Polygon,
@@ -62,21 +79,23 @@ pub struct Spread<'a> {
 impl<'a> Spread<'a> {
     /// For a channel's light on a frame. `None` where the middle of the frame sees no opening.
     #[must_use]
-    pub fn new(size: FrameSize, light: Light, seen: &'a Seen<'a>) -> Option<Self> {
+    pub fn new(size: FrameSize, light: Light, seen: &'a dyn View) -> Option<Self> {
         let (width, height) = (size.width_px as usize, size.height_px as usize);
         let pitch_mm = [size.width_mm / width as f64, size.height_mm / height as f64];
-        let middle = seen([0.5 * width as f64, 0.5 * height as f64])?;
+        let middle = seen.opening([0.5 * width as f64, 0.5 * height as f64])?;
         let longer = width.max(height) as f64;
         let zones = [width, height].map(|side| ((ZONES as f64 * side as f64 / longer).round() as usize).max(1));
         let node = |k: usize| {
             let [i, j] = [k % (zones[0] + 1), k / (zones[0] + 1)];
             let at = [width as f64 * i as f64 / zones[0] as f64, height as f64 * j as f64 / zones[1] as f64];
-            seen(at).unwrap_or_else(|| middle.clone())
+            let opening = seen.opening(at).unwrap_or_else(|| middle.clone());
+            let wave = seen.wave(at, &opening);
+            (opening, wave)
         };
         let count = (zones[0] + 1) * (zones[1] + 1);
-        let openings: Vec<Polygon> = (0..count).into_par_iter().map(node).collect();
+        let openings: Vec<(Polygon, Option<Wave>)> = (0..count).into_par_iter().map(node).collect();
         let pitch = pitch_mm[0].min(pitch_mm[1]);
-        let near = openings.iter().map(|o| near_mm(o, &light)).fold(0.0, f64::max);
+        let near = openings.iter().map(|(o, _)| near_mm(o, &light)).fold(0.0, f64::max);
         let radius = ((near / pitch / 0.6).ceil() as usize + 2).clamp(RADIUS[0], RADIUS[1]);
         let cell_px = (radius / CELLS).max(1);
         let reach = [width.div_ceil(cell_px), height.div_ceil(cell_px)];
@@ -104,7 +123,13 @@ impl<'a> Spread<'a> {
         let elsewhere = sums[0] + own.beyond[0];
         own.kernels = openings
             .par_iter()
-            .map(|opening| PixelSpread::new(opening, &own.light, pitch_mm, radius, elsewhere))
+            .map(|(opening, wave)| {
+                let kernel = PixelSpread::new(opening, &own.light, pitch_mm, radius, elsewhere);
+                match wave {
+                    Some(wave) => kernel.with_wave(opening, wave, &own.light, pitch_mm),
+                    None => kernel,
+                }
+            })
             .collect();
         Some(own)
     }
@@ -273,7 +298,7 @@ impl<'a> Spread<'a> {
         let (mean, end) = (self.light.mean_mm(), self.end_mm());
         let of_square = |k: &usize| {
             let at = [k % across, k / across].map(|n| (n as f64 + 0.5) * SQUARE as f64);
-            let seen = (self.seen)([at[0].min(width as f64), at[1].min(height as f64)]);
+            let seen = self.seen.opening([at[0].min(width as f64), at[1].min(height as f64)]);
             let wings = Wings::new(&seen.unwrap_or_else(|| self.middle.clone()));
             Spike::all(&wings, mean, self.pitch_mm)
         };

@@ -27,7 +27,7 @@ impl Cube {
     }
 
     /// The three functions at `x`.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn at(&self, x: [f32; 3]) -> [f32; 3] {
         let last = self.steps as f32;
         let mut index = [0; 3];
@@ -39,11 +39,24 @@ impl Cube {
         }
         let places = self.steps + 1;
         let at = (index[0] * places + index[1]) * places + index[2];
-        let mix = |a: [f32; 3], b: [f32; 3], t: f32| -> [f32; 3] { [0, 1, 2].map(|c| a[c] + (b[c] - a[c]) * t) };
-        let line = |at: usize| mix(self.values[at], self.values[at + 1], part[2]);
-        let face = |at: usize| mix(line(at), line(at + places), part[1]);
-        mix(face(at), face(at + places * places), part[0])
+        let near = face(&self.values[at..], places, part);
+        let far = face(&self.values[at + places * places..], places, part);
+        mix(near, far, part[0])
     }
+}
+
+// Every pixel comes by here: functions, since closures over arrays are left uninlined.
+#[inline(always)]
+fn mix(a: [f32; 3], b: [f32; 3], t: f32) -> [f32; 3] {
+    [a[0] + (b[0] - a[0]) * t, a[1] + (b[1] - a[1]) * t, a[2] + (b[2] - a[2]) * t]
+}
+
+#[inline(always)]
+fn face(values: &[[f32; 3]], places: usize, part: [f32; 3]) -> [f32; 3] {
+    let values = &values[..places + 2];
+    let upper = mix(values[0], values[1], part[2]);
+    let lower = mix(values[places], values[places + 1], part[2]);
+    mix(upper, lower, part[1])
 }
 
 #[cfg(test)]

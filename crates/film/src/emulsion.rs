@@ -50,6 +50,7 @@ enum AmountCurve {
 }
 
 impl AmountCurve {
+    #[inline]
     fn at(&self, log10_exposure: f64) -> f64 {
         match self {
             Self::Density(curve) => curve.density(log10_exposure),
@@ -213,13 +214,17 @@ impl Emulsion {
         let own = [0, 1, 2].map(|i| per_octave(|x| self.amount(i, x), effect));
         let held = [0, 1, 2].map(|i| per_octave(|x| x + self.relief(i, x), effect));
         let clear = self.neutral(f64::NEG_INFINITY);
+        let rows = [0, 1, 2].map(|i| [0, 1, 2].map(|j| self.inhibition[i].get(j).copied().unwrap_or(0.0)));
         let pixel = |h: [f32; 3]| -> [f32; 3] {
-            let at = h.map(|h| if h > 0.0 { Some(octaves(h)) } else { None });
-            let n = [0, 1, 2].map(|i| at[i].map_or(clear[i], |o| own[i].at(o)));
-            [0, 1, 2].map(|i| {
-                let develops = |o: f64| self.amount(i, held[i].at(o) - inhibited(&self.inhibition[i], &n));
-                at[i].map_or(clear[i], develops) as f32
-            })
+            let (mut n, mut out) = ([0.0_f64; 3], [0.0_f32; 3]);
+            for (i, (n, h)) in n.iter_mut().zip(h).enumerate() {
+                *n = if h > 0.0 { own[i].at(octaves(h)) } else { clear[i] };
+            }
+            for (i, (out, h)) in out.iter_mut().zip(h).enumerate() {
+                let developed = |h: f32| self.amount(i, held[i].at(octaves(h)) - inhibited(&rows[i], &n));
+                *out = if h > 0.0 { developed(h) } else { clear[i] } as f32;
+            }
+            out
         };
         let chunks = a.par_chunks_mut(PIXELS_A_TASK).zip(b.par_chunks_mut(PIXELS_A_TASK));
         chunks.zip(c.par_chunks_mut(PIXELS_A_TASK)).for_each(|((a, b), c)| {
@@ -244,6 +249,7 @@ impl Emulsion {
 }
 
 /// By how much a layer is held back whose row this is, log10 of exposure, where the layers hold these amounts.
+#[inline(always)]
 fn inhibited(row: &[f64], amounts: &[f64]) -> f64 {
     row.iter().zip(amounts).map(|(k, n)| k * n).sum()
 }

@@ -34,6 +34,7 @@ impl Lookup {
     }
 
     /// The function at `x`; no number is taken as the low end.
+    #[inline(always)]
     pub(crate) fn at(&self, x: f64) -> f64 {
         let last = self.values.len() - 1;
         let p = ((x - self.low) * self.per_step).max(0.0).min(last as f64);
@@ -43,6 +44,7 @@ impl Lookup {
 
 /// Octaves of a positive number over the smallest normal one: whole at the powers of 2 and straight between, so
 /// it is cheap, exact and has an exact inverse.
+#[inline(always)]
 pub(crate) fn octaves(value: f32) -> f64 {
     f64::from(value.to_bits()) * (1.0 / 8_388_608.0) - 1.0
 }

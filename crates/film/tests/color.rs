@@ -195,16 +195,18 @@ fn keeps_hues(chain: &Chain, but_for: &[(&str, f64)]) {
 #[test]
 fn skies_leaves_and_skins_keep_their_hue_on_the_print() {
     let chain = Chain::negative(PictureWhite::Film);
-    // Dark leaves print greener than the paint of the ColorChecker, which the fit saw. The film could tell better: the best matrix
-    // from its three exposures to XYZ keeps all of these within 8 degrees (foliage -8, leaf-88 +5). It is the inhibition, one
-    // number a pair of layers, that cannot: leaves stray alike from 1 stop under to 2 over.
-    let leaves = [("leaf-86", 11.5), ("leaf-87", 11.5), ("leaf-88", 13.0), ("leaf-89", 9.5), ("leaf-90", 9.5)];
-    keeps_hues(&chain, &[&leaves[..], &[("skin-14", 11.0), ("skin-17", 11.0)]].concat());
+    // Dark leaves print greener than the paint of the ColorChecker, which the fit saw. It is the curves behind the film's
+    // exposures: the best matrix from these straight to XYZ keeps all of them within 8 degrees (foliage -6, leaf-88 +7), the
+    // best matrix before the curves no more of them than the inhibition does.
+    let leaves = [("leaf-86", 10.5), ("leaf-87", 10.5), ("leaf-88", 11.5), ("leaf-89", 8.6)];
+    keeps_hues(&chain, &leaves);
 }
 
 #[test]
 fn skies_leaves_and_skins_keep_their_hue_on_the_slide() {
-    // By its S-shaped curves: leaf-86 turns by 13 degrees as metered, by 6 two stops lighter.
+    // By its S-shaped curves: leaf-86 turns by 13 degrees as metered, by 6 two stops lighter. The best matrix on the exposures
+    // before them, fitted to the ColorChecker, keeps 11 of the 17 within 8 degrees; fitted to the 17 themselves 16, but then
+    // foliage turns by 14 and colors are left 0.8 of their chroma.
     let leaves = [("foliage", 12.5), ("leaf-86", 14.5), ("leaf-87", 13.5), ("leaf-88", 11.5)];
     keeps_hues(&Chain::slide(), &[&leaves[..], &[("skin-17", 9.0), ("skin-18", 9.5)]].concat());
 }

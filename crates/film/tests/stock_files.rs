@@ -8,7 +8,7 @@ use std::fs;
 const SOUND: &str = "
 name: Mine
 source: my densitometer
-licence: CC0-1.0
+license: CC0-1.0
 iso: 100
 reference-illuminant: iso-7589-sensitometric-daylight
 layers:
@@ -139,7 +139,7 @@ fn layers_that_do_not_fit_are_told() {
     };
     let dye = "    dye: {name: cyan, table: [[400, 0.1], [650, 1.0]]}\n";
     let curve = "      - {development: normal, points: [[-3, 0.1], [-1, 1.8]]}\n";
-    let head = "spectra: 1\nname: Mine\nsource: me\nlicence: CC0-1.0\niso: 100\nreference-illuminant: D55\n";
+    let head = "spectra: 1\nname: Mine\nsource: me\nlicense: CC0-1.0\niso: 100\nreference-illuminant: D55\n";
     let cases = [
         (format!("{head}layers:\n{}{}", layer("red", dye, curve), layer("green", "", curve)), "some have none"),
         (format!("{head}layers:\n{}{}", layer("red", "", curve), layer("green", "", curve)), "a `dye` in each"),

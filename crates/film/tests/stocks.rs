@@ -72,8 +72,8 @@ fn every_stock_is_whole_and_says_where_it_comes_from() {
     }
     for name in names {
         let s = stock(name);
-        assert!(!s.source.is_empty() && !s.licence.is_empty() && !s.name.is_empty(), "{name}");
-        assert!(["MIT", "BSD", "CC0"].iter().any(|terms| s.licence.starts_with(terms)), "{name}: {}", s.licence);
+        assert!(!s.source.is_empty() && !s.license.is_empty() && !s.name.is_empty(), "{name}");
+        assert!(["MIT", "BSD", "CC0"].iter().any(|terms| s.license.starts_with(terms)), "{name}: {}", s.license);
         assert_eq!(s.iso.is_none(), s.process == Process::Print, "{name}: cameras need a speed, printers none");
         assert!(s.iso.is_none_or(|iso| (1.0..=3200.0).contains(&iso)), "{name}");
         assert!(s.granularity.is_none_or(|g| (2.0..60.0).contains(&g.rms) && g.aperture_mm == 0.048), "{name}");

@@ -2,10 +2,12 @@
 //!
 //! Wavelengths are those in air, in nanometres, with the digits that glass makers use (Schott TIE-29; ISO 7944).
 
-/// A spectral line by its Fraunhofer name.
+use spectra_core::params::{Dimension, Reading, Unit};
+
+/// A spectral line by its Fraunhofer name, or any wavelength taken as one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Line {
-    /// Fraunhofer's letter, with a prime where a second line bears it.
+    /// Fraunhofer's letter, with a prime where a second line bears it; empty for a wavelength that has none.
     pub name: &'static str,
     /// Wavelength in air, nm.
     pub wavelength_nm: f64,
@@ -47,6 +49,42 @@ pub const T: Line = line("t", 1013.98);
 /// All lines, from short to long.
 pub const ALL: [Line; 14] = [I, H, G, F_PRIME, F, E, D, SODIUM_D, C_PRIME, C, R, A_PRIME, S, T];
 
+/// Wavelengths at which an index may be stated, nm.
+const STATED_NM: std::ops::RangeInclusive<f64> = 100.0..=50_000.0;
+
+impl Line {
+    /// The line at a wavelength in nm: one of the named lines where it is exactly theirs. `None` outside of 100 to 50 000 nm.
+    #[must_use]
+    pub fn at(wavelength_nm: f64) -> Option<Line> {
+        let named = ALL.into_iter().find(|line| line.wavelength_nm == wavelength_nm);
+        named.or_else(|| STATED_NM.contains(&wavelength_nm).then_some(Line { name: "", wavelength_nm }))
+    }
+
+    /// The line of a name (`F'`), or a wavelength in nm if bare (`450`, `0.45 um`).
+    #[must_use]
+    pub fn read(text: &str) -> Option<Line> {
+        by_name(text).or_else(|| match Reading::of(text.trim()) {
+            Reading::Bare(nm) => Line::at(nm),
+            Reading::Quantity { value, unit } if unit.dimension == Dimension::Length => {
+                Line::at(unit.convert(value, Unit::find("nm")?))
+            }
+            _ => None,
+        })
+    }
+
+    /// The name, or the wavelength: `F'`, `450 nm`.
+    #[must_use]
+    pub fn label(&self) -> String {
+        if self.name.is_empty() { format!("{} nm", self.wavelength_nm) } else { self.name.to_owned() }
+    }
+
+    /// How an index (`n`) or an Abbe number (`V`) at the line is called: `nd`, `n(450 nm)`.
+    #[must_use]
+    pub fn indexed(&self, symbol: &str) -> String {
+        if self.name.is_empty() { format!("{symbol}({})", self.label()) } else { format!("{symbol}{}", self.name) }
+    }
+}
+
 /// The line of that name; `d` and `D` differ, so case counts. A prime may be written `'` or typographically.
 #[must_use]
 pub fn by_name(name: &str) -> Option<Line> {
@@ -86,6 +124,38 @@ impl LineTriple {
         }
     }
 
+    /// The three lines, from short to long wavelengths; `None` in any other order.
+    #[must_use]
+    pub fn rising(short: Line, mid: Line, long: Line) -> Option<LineTriple> {
+        let rising = short.wavelength_nm < mid.wavelength_nm && mid.wavelength_nm < long.wavelength_nm;
+        rising.then_some(LineTriple { mid, short, long })
+    }
+
+    /// What figures are stated at, as a person writes it: a reference line with the lines that belong to it (`d`, `e`), or three lines
+    /// from blue to red, by name or wavelength in nm (`F',e,C'`, `450,580,680`).
+    #[must_use]
+    pub fn read(text: &str) -> Option<LineTriple> {
+        let lines: Option<Vec<Line>> = text.split(',').map(Line::read).collect();
+        match *lines?.as_slice() {
+            [line] => LineTriple::of_reference(line),
+            [short, mid, long] => LineTriple::rising(short, mid, long),
+            _ => None,
+        }
+    }
+
+    /// The lines from short to long: `F', e, C'`.
+    #[must_use]
+    pub fn label(&self) -> String {
+        [self.short, self.mid, self.long].map(|line| line.label()).join(", ")
+    }
+
+    /// What the Abbe number is called: `Vd`, `Ve`, `VD` for the usual lines, otherwise with all three: `V(450 nm, e, C)`.
+    #[must_use]
+    pub fn abbe_label(&self) -> String {
+        let usual = LineTriple::of_reference(self.mid) == Some(*self);
+        if usual { self.mid.indexed("V") } else { format!("V({})", self.label()) }
+    }
+
     /// Abbe number of the index function `n(wavelength_nm)`: infinite without dispersion.
     pub fn abbe_number(&self, n: impl Fn(f64) -> f64) -> f64 {
         (n(self.mid.wavelength_nm) - 1.0) / (n(self.short.wavelength_nm) - n(self.long.wavelength_nm))
@@ -104,6 +174,28 @@ mod tests {
         assert_eq!(by_name("x"), None);
         for pair in ALL.windows(2) {
             assert!(pair[0].wavelength_nm < pair[1].wavelength_nm);
+        }
+    }
+
+    #[test]
+    fn lines_as_a_person_writes_them() {
+        assert_eq!(Line::read("F'"), Some(F_PRIME));
+        assert_eq!(Line::read("587.5618 nm"), Some(D));
+        let named = |text| Line::read(text).map(|line| (line.label(), line.indexed("n")));
+        assert_eq!(named("0.45 um"), Some(("450 nm".to_owned(), "n(450 nm)".to_owned())));
+        for wrong in ["", "q", "1 kg", "5", "-450", "inf"] {
+            assert_eq!(Line::read(wrong), None, "{wrong}");
+        }
+        assert_eq!(LineTriple::read("e"), Some(LineTriple::F_PRIME_E_C_PRIME));
+        assert_eq!(LineTriple::read(" F, e ,C"), Some(LineTriple::FEC));
+        assert_eq!(
+            LineTriple::read("450,580 nm,680").map(|t| t.abbe_label()).as_deref(),
+            Some("V(450 nm, 580 nm, 680 nm)")
+        );
+        assert_eq!(LineTriple::F_PRIME_E_C_PRIME.abbe_label(), "Ve");
+        assert_eq!(LineTriple::FEC.abbe_label(), "V(F, e, C)");
+        for wrong in ["g", "C,d,F", "F,d", "F,d,C,r", "d,d,d"] {
+            assert_eq!(LineTriple::read(wrong), None, "{wrong}");
         }
     }
 

@@ -3,7 +3,9 @@
 use crate::Solid;
 use crate::aperture::Aperture;
 use crate::coating::Coating;
+use crate::onion::OnionRings;
 use crate::pose::{AxisBreak, Displacement, Pose};
+use crate::scatter::Layer;
 use spectra_core::params::Params;
 use spectra_core::surface::{Action, Surface};
 use std::sync::Arc;
@@ -42,6 +44,10 @@ pub struct Element {
     pub action: Action,
     /// Its own coating; `None` has the lens's.
     pub coating: Option<Coating>,
+    /// Rings that were left on it when it was made.
+    pub onion_rings: Option<OnionRings>,
+    /// What lies on it and scatters light.
+    pub layers: Vec<Layer>,
     /// Part of the light that it reflects where it is a mirror, 0 to 1.
     pub reflectance: f64,
     /// Medium in front of it: index into [`crate::Lens::media`].
@@ -77,6 +83,8 @@ impl Element {
             stop,
             action: if stop { Action::Pass } else { Action::Refract },
             coating: None,
+            onion_rings: None,
+            layers: Vec::new(),
             reflectance: 1.0,
             medium_before,
             medium_after,

@@ -13,6 +13,8 @@ pub struct StepLedger {
     pub vignetted: f64,
     /// Absorbed by the glass on the way there, by a mirror, or by the surface itself.
     pub absorbed: f64,
+    /// Scattered by what lies on the surface: light of another kind.
+    pub scattered: f64,
     /// Went on by another path: reflected where this one refracts (totally or in part), transmitted where this one reflects.
     pub elsewhere: f64,
 }
@@ -21,7 +23,7 @@ impl StepLedger {
     /// All that left the path at this step.
     #[must_use]
     pub fn total(&self) -> f64 {
-        self.missed + self.vignetted + self.absorbed + self.elsewhere
+        self.missed + self.vignetted + self.absorbed + self.scattered + self.elsewhere
     }
 }
 
@@ -44,6 +46,7 @@ impl Ledger {
             missed: sum.missed + s.missed,
             vignetted: sum.vignetted + s.vignetted,
             absorbed: sum.absorbed + s.absorbed,
+            scattered: sum.scattered + s.scattered,
             elsewhere: sum.elsewhere + s.elsewhere,
         })
     }

@@ -8,7 +8,7 @@ use crate::pose::{AxisBreak, Pose};
 use crate::{Element, symmetry};
 use spectra_core::cover::CoverStack;
 use spectra_core::surface::Action;
-use spectra_glass::Medium;
+use spectra_glass::{LineTriple, Medium};
 
 /// A medium as the prescription names it.
 #[derive(Clone, Debug)]
@@ -50,6 +50,8 @@ pub struct Lens {
     pub remark: Option<String>,
     /// Wavelength of the reference line, nm: focus and first order are meant there.
     pub reference_nm: f64,
+    /// The lines of the Abbe numbers that go with it.
+    pub abbe_lines: LineTriple,
     /// The surfaces, in the order of the light.
     pub elements: Vec<Element>,
     /// Groups of surfaces that move together.
@@ -64,6 +66,8 @@ pub struct Lens {
     pub cover: Option<CoverStack>,
     /// Where the image plane stands; follows from the above, see [`Lens::arrange`].
     pub image_pose: Pose,
+    /// Length of the axis from the first vertex to the image plane, mm: its z where nothing is folded. Follows as well.
+    pub image_along_axis_mm: f64,
     /// The media; number 0 is air.
     pub media: Vec<LensMedium>,
     /// Coating of every surface that states none of its own.
@@ -91,7 +95,8 @@ impl Lens {
             maker: None,
             source: None,
             remark: None,
-            reference_nm: spectra_glass::lines::D.wavelength_nm,
+            reference_nm: LineTriple::FDC.mid.wavelength_nm,
+            abbe_lines: LineTriple::FDC,
             elements: Vec::new(),
             groups: Vec::new(),
             focus_laws: Vec::new(),
@@ -99,6 +104,7 @@ impl Lens {
             image_breaks: Vec::new(),
             cover: None,
             image_pose: Pose::IDENTITY,
+            image_along_axis_mm: 0.0,
             media: vec![LensMedium::air()],
             coating: Coating::Ideal,
             coating_assumed: false,
@@ -139,7 +145,8 @@ impl Lens {
         }
         // Behind an odd number of mirrors light arrives from the other side: the image plane faces it, and its x is
         // that of the lens still, so that a picture shows the subject unmirrored.
-        let image = bent(axis, along_axis_mm, &self.image_breaks).0;
+        let (image, image_along_axis_mm) = bent(axis, along_axis_mm, &self.image_breaks);
+        self.image_along_axis_mm = image_along_axis_mm;
         self.image_pose = if along { image } else { image.facing_back() };
         for group in &self.groups {
             group.displace(&mut self.elements);

@@ -1,6 +1,6 @@
 //! What is taken of a lens's losses, in words: beside every T-number.
 
-use crate::{Coating, Lens};
+use crate::{Coating, Lens, Soil};
 use spectra_core::surface::Action;
 use spectra_glass::Medium;
 
@@ -19,7 +19,22 @@ impl Lens {
         if self.coating_assumed && own < all {
             coating += &self.year.map_or(" (assumed: no year is stated)".to_owned(), |y| format!(" (assumed for {y})"));
         }
-        format!("{coating}, {}", self.absorption_words())
+        let soiled = self.layer_words().map_or(String::new(), |words| format!(", {words}"));
+        format!("{coating}, {}{soiled}", self.absorption_words())
+    }
+
+    /// What lies on surfaces, and on how many: `haze on 8 surfaces`.
+    fn layer_words(&self) -> Option<String> {
+        let on = |soil: Soil| {
+            let many = self
+                .elements
+                .iter()
+                .filter(|e| e.layers.iter().any(|layer| layer.soil == soil && layer.scattered > 0.0))
+                .count();
+            (many > 0).then(|| format!("{} on {many} surface{}", soil.key(), if many == 1 { "" } else { "s" }))
+        };
+        let words: Vec<String> = [Soil::Haze, Soil::Dust, Soil::Scratches].into_iter().filter_map(on).collect();
+        (!words.is_empty()).then(|| words.join(", "))
     }
 
     /// Whether glass absorbs, by how much of what is known.
@@ -44,6 +59,7 @@ impl Lens {
     #[must_use]
     pub fn is_lossless(&self) -> bool {
         let ideal = |e: &crate::Element| e.coating.as_ref().unwrap_or(&self.coating) == &Coating::Ideal;
-        !self.absorption && self.elements.iter().filter(|e| e.action == Action::Refract).all(ideal)
+        let clean = self.elements.iter().flat_map(|e| &e.layers).all(|layer| layer.scattered == 0.0);
+        clean && !self.absorption && self.elements.iter().filter(|e| e.action == Action::Refract).all(ideal)
     }
 }

@@ -1,9 +1,10 @@
 //! Lens files: a prescription in YAML, and where it comes from.
 
+use crate::onion::OnionRingsForm;
 use crate::prism::{self, PRISM, PrismParams};
 use crate::{
-    AxisBreak, Coating, CoatingForm, Displacement, Element, FocusLaw, FocusTable, Group, GroupTravel, Lens, LensMedium,
-    aperture, read_coating, read_stated_coating, schema,
+    AxisBreak, Coating, CoatingForm, Displacement, DustForm, Element, FocusLaw, FocusTable, Group, GroupTravel,
+    HazeForm, Lens, LensMedium, ScratchesForm, aperture, read_coating, read_layers, read_stated_coating, schema,
 };
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -16,8 +17,8 @@ use spectra_core::registry::{self, Context};
 use spectra_core::resources::Resources;
 use spectra_core::spectral::BAND;
 use spectra_core::surface::{Action, Kernel, Plane, Surface};
-use spectra_glass::file::{self, Figures};
-use spectra_glass::{Beside, Catalogue, Line, LineTriple, Medium, ModelGlass, lines};
+use spectra_glass::file::{self, Figures, StatedLines};
+use spectra_glass::{Beside, Catalogue, LineTriple, Medium, ModelGlass};
 use std::sync::Arc;
 
 /// A lens: its prescription, surface by surface, and where it comes from.
@@ -64,9 +65,10 @@ pub(crate) struct LensFile {
     maker: Option<String>,
     /// Patent and example; none if absent.
     patent: Option<String>,
-    /// Line at which indices are stated and focus is meant, by its short name: d, D or e mostly.
-    #[serde(default = "line_d")]
-    reference_line: String,
+    /// Line at which indices are stated and focus is meant, by its short name, d, D or e mostly, with the usual lines of Abbe numbers; or
+    /// three lines from blue to red, by name or wavelength, `[F', e, C']` or `[450 nm, 580 nm, 680 nm]`: the index at the
+    /// middle one, the Abbe number by all. d if absent.
+    reference_line: Option<StatedLines>,
     /// Where the figures come from.
     source: Option<String>,
     /// Doubts and choices, for people.
@@ -83,6 +85,13 @@ pub(crate) struct LensFile {
     /// `assumed: true` where it is not known. What lenses of the `year` had if absent: `bare` before 1940 or without a year,
     /// `single-layer` before 1970, then `three-layer`.
     coating: Option<Part<CoatingForm>>,
+    /// Haze on all surfaces where glass meets air that state none: the share of the light that each scatters, and how wide. None if
+    /// absent.
+    haze: Option<Part<HazeForm>>,
+    /// Dust on them: the share that it covers, and how large its grains are. None if absent.
+    dust: Option<Part<DustForm>>,
+    /// Scratches on them: the share that they cover or a drawing of them, and how wide they are. None if absent.
+    scratches: Option<Part<ScratchesForm>>,
     /// Whether glass absorbs as its catalogue says.
     #[serde(default = "yes")]
     absorption: bool,
@@ -90,10 +99,6 @@ pub(crate) struct LensFile {
 
 fn yes() -> bool {
     true
-}
-
-fn line_d() -> String {
-    "d".to_owned()
 }
 
 /// What every surface may state, whatever its kind; all other keys are the kind's own.
@@ -111,9 +116,15 @@ pub(crate) struct Place {
     /// Index at the reference line, 1 to 4, as the patent states it; the glass gives the dispersion.
     #[schemars(range(min = 1, max = 4))]
     nd: Option<f64>,
-    /// Abbe number, 5 to 200, as the patent states it.
+    /// Abbe number at the reference line, 5 to 200, as the patent states it.
     #[schemars(range(min = 5, max = 200))]
     vd: Option<f64>,
+    /// Index at the e line, 1 to 4, in place of `nd`, whatever the reference line is.
+    #[schemars(range(min = 1, max = 4))]
+    ne: Option<f64>,
+    /// Abbe number at e, F' and C', 5 to 200, with `ne`.
+    #[schemars(range(min = 5, max = 200))]
+    ve: Option<f64>,
     /// Clear semi-diameter, mm if bare, more than 0; clips nothing if absent.
     #[schemars(range(max = LONGEST_MM))]
     semi_diameter: Option<Positive<Length>>,
@@ -141,6 +152,14 @@ pub(crate) struct Place {
     reversed: bool,
     /// Its own coating: `ideal`, `bare`, or a layer; the lens's if absent.
     coating: Option<Part<CoatingForm>>,
+    /// Haze on it: the share of the light that it scatters, and how wide; the lens's if absent.
+    haze: Option<Part<HazeForm>>,
+    /// Dust on it: the share that it covers, and how large its grains are; the lens's if absent.
+    dust: Option<Part<DustForm>>,
+    /// Scratches on it: the share that they cover or a drawing of them, and how wide they are; the lens's if absent.
+    scratches: Option<Part<ScratchesForm>>,
+    /// Rings that turning left on it, by their period and height: they show in highlights out of focus. None if absent.
+    onion_rings: Option<Part<OnionRingsForm>>,
     /// Part of the light that a mirror reflects, 0 to 1; all of it if absent.
     #[schemars(range(min = 0, max = 1))]
     reflectance: Option<Ratio>,
@@ -220,12 +239,9 @@ pub fn load(name: &str, resources: &dyn Resources) -> Result<Lens, Faults> {
 pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults> {
     let file: LensFile = params.parse()?;
     let mut faults = Faults::new();
-    let reference = lines::by_name(&file.reference_line).unwrap_or_else(|| {
-        let fault = params.fault("reference-line", format!("unknown spectral line `{}`", file.reference_line));
-        faults.push(fault.hint("d, D and e are usual; any of i h g F' F e d D C' C r A' s t"));
-        lines::D
-    });
-    let reference_nm = reference.wavelength_nm;
+    let reference = file.reference_line.and_then(|lines| faults.take(lines.triple(params, "reference-line")));
+    let reference = reference.unwrap_or(LineTriple::FDC);
+    let reference_nm = reference.mid.wavelength_nm;
     let mut lens = Lens {
         name: file.name,
         year: file.year,
@@ -236,6 +252,7 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
         source: file.source,
         remark: file.remark,
         reference_nm,
+        abbe_lines: reference,
         ..Lens::empty("")
     };
     if file.surfaces.is_empty() {
@@ -297,7 +314,7 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
         let (Some(surface), Some(stated)) = (surface, stated) else { continue };
         let semi_diameter_mm = stated.semi_diameter.map(|s| s.mm());
         let number = lens.elements.len() + 1;
-        let medium_is_stated = stated.glass.is_some() || stated.nd.is_some();
+        let medium_is_stated = stated.glass.is_some() || stated.nd.is_some() || stated.ne.is_some();
         if stated.mirror && medium_is_stated {
             let fault = place.fault("mirror", "there is no glass behind a mirror");
             faults.push(fault.hint("leave the glass out: the medium in front of the mirror continues"));
@@ -372,6 +389,18 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
             let fault = place.fault("reflectance", "only a mirror has a `reflectance`");
             faults.push(fault.hint("what a lens surface reflects follows from its `coating`"));
         }
+        let soil = soils(&stated.haze, &stated.dust, &stated.scratches);
+        element.layers = read_layers(soil, resources, &mut faults);
+        let is_bent = element.surface.is_directional() || element.surface.draws() || element.surface.is_stop();
+        let bends = element.action == Action::Reflect || medium_before != medium_after;
+        let rings = stated.onion_rings.as_ref().and_then(|node| faults.take(node.read()));
+        element.onion_rings = rings.map(|rings| rings.rings());
+        let misplaced = element.layers.first().map(|layer| layer.soil.key());
+        let misplaced = misplaced.or(element.onion_rings.map(|_| "onion-rings"));
+        if let Some(key) = misplaced.filter(|_| is_bent || !bends) {
+            let fault = place.fault(key, format!("`{key}` belongs where glass meets another medium, or on a mirror"));
+            faults.push(fault.hint("state it at a surface of glass"));
+        }
         lens.elements.push(element);
         medium_before = medium_after;
     }
@@ -381,6 +410,9 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
         None => (Coating::of_year(lens.year), true),
         Some(stated) => stated.map_or((Coating::Bare, false), |stated| (stated.coating, stated.assumed)),
     };
+    for layer in read_layers(soils(&file.haze, &file.dust, &file.scratches), resources, &mut faults) {
+        lens.add_layer(&layer);
+    }
     lens.absorption = file.absorption;
     for node in &file.groups {
         lens.groups.extend(faults.take(group(node, lens.elements.len())));
@@ -399,6 +431,15 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
         lens.warnings.extend(doubts);
     }
     faults.into_result(lens)
+}
+
+/// What is written of haze, dust and scratches.
+fn soils<'a>(
+    haze: &'a Option<Part<HazeForm>>,
+    dust: &'a Option<Part<DustForm>>,
+    scratches: &'a Option<Part<ScratchesForm>>,
+) -> [Option<&'a StageNode>; 3] {
+    [haze.as_deref(), dust.as_deref(), scratches.as_deref()]
 }
 
 /// The motion of a group in focusing.
@@ -522,33 +563,61 @@ fn reach_mm(surface: &dyn Surface, semi_diameter_mm: f64) -> Option<f64> {
     Some((outside * 1e4).round() / 1e4)
 }
 
-/// The medium that a surface states, or `None` for air. `nd` and `vd` of a surface hold for the reference line.
+/// An index that a surface states beside its glass or in place of one, with its Abbe number and the lines of both.
+fn stated_figures(
+    stated: &Place,
+    place: &Params,
+    reference: LineTriple,
+) -> Result<Option<(f64, Option<f64>, LineTriple)>, Fault> {
+    let needs = |v: &str, n: &str| Err(place.fault(v, format!("`{v}` needs `{n}`")).hint(format!("add `{n}: ...`")));
+    match (stated.nd, stated.ne) {
+        (Some(_), Some(_)) => {
+            let fault = place.fault("ne", "the index of this surface is stated at two lines");
+            Err(fault.hint("`glass: {nd: ..., ne: ...}` takes all that a patent states"))
+        }
+        (None, _) if stated.vd.is_some() => needs("vd", "nd"),
+        (_, None) if stated.ve.is_some() => needs("ve", "ne"),
+        (Some(nd), None) => Ok(Some((nd, stated.vd, reference))),
+        (None, Some(ne)) => Ok(Some((ne, stated.ve, LineTriple::F_PRIME_E_C_PRIME))),
+        (None, None) => Ok(None),
+    }
+}
+
+/// The medium that a surface states, or `None` for air. `nd` and `vd` of a surface hold for the reference lines.
 fn medium(
     stated: &Place,
     place: &Params,
     number: usize,
     resources: &dyn Resources,
-    reference: Line,
+    reference: LineTriple,
     lens: &mut Lens,
 ) -> Result<Option<LensMedium>, Faults> {
-    let triple = LineTriple::of_reference(reference).unwrap_or(LineTriple { mid: reference, ..LineTriple::FDC });
+    let figures = stated_figures(stated, place, reference)?;
+    let reference_nm = reference.mid.wavelength_nm;
+    // The index at the reference line, if that is where it is stated.
+    let stated_nd = figures.filter(|(_, _, lines)| lines.mid.wavelength_nm == reference_nm).map(|(n, ..)| n);
     let Some(glass) = &stated.glass else {
-        let Some(nd) = stated.nd else {
-            if stated.vd.is_some() {
-                return Err(place.fault("vd", "`vd` needs `nd`").hint("add `nd: ...`").into());
-            }
-            return Ok(None);
-        };
-        let medium = match stated.vd {
-            None => Medium::Constant(nd),
-            Some(vd) => {
-                let fault = || place.fault("vd", format!("no glass has nd {nd} and vd {vd}"));
-                let model = ModelGlass::new(nd, vd, triple).map(Medium::Model);
+        let Some((n, v, lines)) = figures else { return Ok(None) };
+        let medium = match v {
+            None => Medium::Constant(n),
+            Some(v) => {
+                let (key, n_key) = if stated.ne.is_some() { ("ve", "ne") } else { ("vd", "nd") };
+                let fault = || place.fault(key, format!("no glass has {n_key} {n} and {key} {v}"));
+                let unusual = LineTriple::of_reference(lines.mid) != Some(lines);
+                let model = ModelGlass::new(n, v, lines).filter(|model| !unusual || model.falls()).map(Medium::Model);
                 model.ok_or_else(|| fault().hint("an index near 1 has no such dispersion"))?
             }
         };
-        let label = stated.vd.map_or(format!("n = {nd}"), |vd| format!("nd = {nd}, vd = {vd}"));
-        return Ok(Some(LensMedium { medium, stated_nd: Some(nd), label }));
+        let label = match v {
+            None => format!("n = {n}"),
+            Some(v) => {
+                let usual = LineTriple::of_reference(lines.mid) == Some(lines);
+                let of_v = if usual { lines.mid.indexed("v") } else { lines.abbe_label() };
+                format!("{} = {n}, {of_v} = {v}", lines.mid.indexed("n"))
+            }
+        };
+        let stated_nd = stated_nd.unwrap_or_else(|| medium.index(reference_nm));
+        return Ok(Some(LensMedium { medium, stated_nd: Some(stated_nd), label }));
     };
     if let Some(name) = glass.node().as_str() {
         if name == "air" {
@@ -557,22 +626,22 @@ fn medium(
         let medium = if file::is_file(name) || name.eq_ignore_ascii_case("vacuum") {
             file::medium(name, place, "glass", resources)?
         } else {
-            let beside = Beside {
-                figures: stated.nd.map(|n| (n, stated.vd, triple)),
-                maker: lens.maker.as_deref(),
-                year: lens.year,
-            };
+            let beside = Beside { figures, maker: lens.maker.as_deref(), year: lens.year };
             let chosen = Catalogue::bundled().choose(name, beside);
             let chosen = chosen.map_err(|e| place.fault("glass", e.message()).hint(e.hint()))?;
             lens.warnings.extend(chosen.note.map(|note| format!("surface {number}: {note}")));
             Medium::from(chosen.glass)
         };
-        let own = medium.index(reference.wavelength_nm);
-        if let Some(n) = stated.nd.filter(|n| (n - own).abs() > INDEX_TOLERANCE) {
-            let line = reference.name;
-            lens.warnings.push(format!("surface {number}: {name} has n{line} {own:.5}, the prescription states {n}"));
+        if let Some((n, _, lines)) = figures {
+            let own = medium.index(lines.mid.wavelength_nm);
+            if (n - own).abs() > INDEX_TOLERANCE {
+                let called = lines.mid.indexed("n");
+                let text = format!("surface {number}: {name} has {called} {own:.5}, the prescription states {n}");
+                lens.warnings.push(text);
+            }
         }
-        return Ok(Some(LensMedium { medium, stated_nd: stated.nd.or(Some(own)), label: name.to_owned() }));
+        let stated_nd = stated_nd.unwrap_or_else(|| medium.index(reference_nm));
+        return Ok(Some(LensMedium { medium, stated_nd: Some(stated_nd), label: name.to_owned() }));
     }
     let params = Params::section(glass.node().clone(), glass.path())?;
     // A glass written out where it stands, with the keys of a glass file; one of figures alone is a model.
@@ -581,15 +650,15 @@ fn medium(
         let medium = Medium::from(file::from_params(&params, &called, resources)?);
         let label = medium.name();
         return Ok(Some(LensMedium {
-            stated_nd: Some(stated.nd.unwrap_or(medium.index(reference.wavelength_nm))),
+            stated_nd: Some(stated_nd.unwrap_or_else(|| medium.index(reference_nm))),
             medium,
             label,
         }));
     }
     let figures: Figures = params.parse()?;
     let (medium, label) = figures.medium(&params)?;
-    let stated_nd = stated.nd.or(figures.index_at(reference.wavelength_nm));
-    Ok(Some(LensMedium { stated_nd: stated_nd.or(Some(medium.index(reference.wavelength_nm))), medium, label }))
+    let stated_nd = stated_nd.or(figures.index_at(reference_nm)).unwrap_or_else(|| medium.index(reference_nm));
+    Ok(Some(LensMedium { stated_nd: Some(stated_nd), medium, label }))
 }
 
 /// Number of a medium: that of an equal one, or a new one.

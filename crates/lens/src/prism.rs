@@ -35,8 +35,19 @@ pub(crate) struct PrismParams {
 }
 
 /// Keys of surfaces that a prism has not.
-const NOT_OF_A_PRISM: [&str; 7] =
-    ["semi-diameter", "outer-semi-diameter", "chamfer", "aperture", "mirror", "stop", "reversed"];
+const NOT_OF_A_PRISM: [&str; 11] = [
+    "semi-diameter",
+    "outer-semi-diameter",
+    "chamfer",
+    "aperture",
+    "mirror",
+    "stop",
+    "reversed",
+    "haze",
+    "dust",
+    "scratches",
+    "onion-rings",
+];
 
 /// Faults of keys that a prism has not.
 pub(crate) fn misplaced(place: &Params) -> Faults {

@@ -4,8 +4,10 @@ use crate::absorption::{Absorption, Grid};
 use crate::aperture::Shape;
 use crate::coating::Coating;
 use crate::ledger::{Booked, Ledger, StepLedger, living};
+use crate::onion::Bent;
 use crate::path::{Act, Path, PathStep};
 use crate::pose::Pose;
+use crate::scatter::{self, Layer, Meeting, Shares};
 use crate::solid::{Bend, Solid};
 use crate::transmission::{Before, Passage};
 use crate::{Element, Lens};
@@ -51,6 +53,10 @@ pub struct Tracer {
     passages: Vec<Passage>,
     /// Coatings of prisms, by element; [`Coating::Ideal`] of all else.
     solid_coatings: Vec<Coating>,
+    /// What lies on each surface.
+    layers: Vec<Vec<Layer>>,
+    /// Whether it traces what is scattered at least once, in place of what never is.
+    scattered: bool,
     /// What each medium absorbs, where that is asked for.
     absorptions: Vec<Option<Absorption>>,
     /// Where they are tabulated, if there are any.
@@ -117,6 +123,8 @@ struct Leg {
     turned: bool,
     /// What the surface draws its numbers by, if it does.
     stage: Option<StageKey>,
+    /// Where scattered light is traced: what lies on it.
+    soiled: Option<scatter::Place>,
 }
 
 /// What one thread needs to trace: index columns, and what was lost.
@@ -152,6 +160,8 @@ impl Work {
 pub struct RayPath {
     /// The start, then the point on each surface that it met, mm, frame of the lens.
     pub points: Vec<DVec3>,
+    /// The element of each point but the start.
+    pub elements: Vec<usize>,
     /// Direction behind the last surface it passed.
     pub direction: DVec3,
     /// Why and where it ended, if it did.
@@ -196,8 +206,9 @@ impl Tracer {
         let absorptions: Vec<Option<Absorption>> = lens.media.iter().map(|m| absorption(&m.medium)).collect();
         let absorption_grid = absorptions.iter().any(Option::is_some).then_some(grid);
         let elements = lens.elements.clone();
+        let layers: Vec<Vec<Layer>> = elements.iter().map(|e| e.layers.clone()).collect();
         let image_pose = lens.image_pose;
-        let way = |travel| route(&elements, &image_pose, &Path::through(elements.len(), travel));
+        let way = |travel| route(&elements, &image_pose, &Path::through(elements.len(), travel), None);
         let (forward, backward) = (way(Travel::Forward), way(Travel::Backward));
         Ok(Self {
             elements,
@@ -208,6 +219,8 @@ impl Tracer {
             media,
             passages,
             solid_coatings,
+            layers,
+            scattered: false,
             absorptions,
             absorption_grid,
             isa,
@@ -220,7 +233,27 @@ impl Tracer {
     /// If the path names an element that the lens does not have.
     #[must_use]
     pub fn route(&self, path: &Path) -> Route {
-        route(&self.elements, &self.image_pose, path)
+        route(&self.elements, &self.image_pose, path, self.scattered.then_some(&self.layers[..]))
+    }
+
+    /// The same for light that layers on surfaces scatter at least once ([`crate::Layer`]): batches that follow it must have
+    /// [numbers](RayBatch::with_numbers). As it is, a tracer traces light that none of them scatters.
+    #[must_use]
+    pub fn scattering(mut self) -> Self {
+        self.scattered = true;
+        let way = |travel| self.route(&Path::through(self.elements.len(), travel));
+        (self.forward, self.backward) = (way(Travel::Forward), way(Travel::Backward));
+        self
+    }
+
+    /// For the same kind of light as another one.
+    pub(crate) fn like(self, other: &Self) -> Self {
+        if other.scattered { self.scattering() } else { self }
+    }
+
+    /// Whether behind an element light may go another way than the one that it goes without chance.
+    pub(crate) fn leaves_to_chance(&self, at: usize) -> bool {
+        self.elements[at].surface.draws() || self.scattered && !self.layers[at].is_empty()
     }
 
     /// The instruction set in use.
@@ -243,7 +276,12 @@ impl Tracer {
     /// As far as light of this direction comes before a surface draws its numbers; straight through where none does.
     pub(crate) fn certain(&self, travel: Travel) -> Route {
         let path = Path::through(self.elements.len(), travel);
-        self.route(&path.up_to(|at| self.elements[at].surface.draws()))
+        self.route(&path.up_to(|at| self.leaves_to_chance(at)))
+    }
+
+    /// Whether surfaces have rings that bend light, for which directions are taken down.
+    fn has_rings(&self) -> bool {
+        self.elements.iter().any(|e| e.onion_rings.is_some())
     }
 
     /// Whether light keeps its weight through it.
@@ -253,6 +291,8 @@ impl Tracer {
         self.passages.iter().all(|p| *p == Passage::All)
             && self.elements.iter().zip(&self.solid_coatings).all(|(e, coating)| clear(e, coating))
             && self.absorptions.iter().all(Option::is_none)
+            && !self.scattered
+            && !self.has_rings()
     }
 
     /// Scratch space for batches of up to `capacity` rays. Rays that end are dropped from the batch
@@ -279,7 +319,7 @@ impl Tracer {
 
     /// The same for whoever asks only which rays pass, and where: their weights are left as they are.
     pub(crate) fn work_unweighed(&self, capacity: usize) -> Work {
-        Work { before: None, ..self.work_in_place(capacity) }
+        Work { before: self.has_rings().then(|| Before::new(capacity)), ..self.work_in_place(capacity) }
     }
 
     /// Traces a batch straight through the lens. Forward, it enters in the frame of the lens and leaves in that of the image
@@ -365,7 +405,13 @@ impl Tracer {
             if needs_way {
                 noted.note_positions(rays);
             }
-            if needs_way || leg.turns || rays.is_polarized() || matches!(passage, Passage::Coated(..)) {
+            if needs_way
+                || leg.turns
+                || leg.soiled.is_some()
+                || element.onion_rings.is_some()
+                || rays.is_polarized()
+                || matches!(passage, Passage::Coated(..))
+            {
                 noted.note_directions(rays);
             }
         }
@@ -382,6 +428,11 @@ impl Tracer {
             rays.set_stage(stage);
         }
         let mut ended = element.surface.interact(rays, &interface, isa);
+        if let (Some(rings), Some(noted)) = (&element.onion_rings, &work.before) {
+            let (before, n) = (noted.directions(len), [interface.before.n, interface.after.n]);
+            let mirror = leg.action == Action::Reflect;
+            ended += rings.bend(rays, &Bent { before, n, mirror, number: interface.number });
+        }
         if let (Some(noted), true) = (&work.before, leg.turned) {
             ended += noted.end_behind(rays, shift_mm, interface.number);
         }
@@ -423,8 +474,54 @@ impl Tracer {
         if let Some((ledger, booked)) = &mut work.ledger {
             booked.settle(rays, &mut ledger.steps[step], |s| &mut s.absorbed);
         }
-        rays.set_surface(interface.number);
+        // What a surface reflects although it should pass it does so beneath what lies on it.
+        if !self.layers[leg.at].is_empty() && !leg.turns {
+            ended += self.meet_layers(rays, work, leg, step);
+        }
+        rays.set_surface(leg.at as u32 + 1);
         ended
+    }
+
+    /// Takes a batch that was bent by a surface past what lies on it; says how many rays ended.
+    fn meet_layers(&self, rays: &mut RayBatch, work: &mut Work, leg: &Leg, step: usize) -> usize {
+        let (layers, semi_diameter_mm) = (&self.layers[leg.at], self.elements[leg.at].semi_diameter_mm);
+        if let (Some(place), Some(noted)) = (&leg.soiled, &work.before) {
+            let len = rays.len();
+            let coating = match &self.passages[leg.at] {
+                Passage::Coated(coating, _) => Some(coating),
+                Passage::All | Passage::Mirror(_) => None,
+            };
+            let meeting = Meeting {
+                layers,
+                semi_diameter_mm,
+                before: noted.directions(len),
+                n: [leg.before, leg.after].map(|medium| work.media[medium].n.slice(len)),
+                mirror: leg.action == Action::Reflect,
+                coating,
+                number: leg.at as u32 + 1,
+            };
+            let ended = scatter::scatter(rays, place, &meeting);
+            if let Some((ledger, booked)) = &mut work.ledger {
+                booked.settle(rays, &mut ledger.steps[step], |s| &mut s.absorbed);
+            }
+            return ended;
+        }
+        let Some((ledger, booked)) = &mut work.ledger else {
+            scatter::dim(rays, layers, semi_diameter_mm, |shares| shares.straight);
+            return 0;
+        };
+        scatter::dim(rays, layers, semi_diameter_mm, |shares| shares.open);
+        booked.settle(rays, &mut ledger.steps[step], |s| &mut s.absorbed);
+        scatter::dim(
+            rays,
+            layers,
+            semi_diameter_mm,
+            |Shares { open, straight }| {
+                if open > 0.0 { straight / open } else { 0.0 }
+            },
+        );
+        booked.settle(rays, &mut ledger.steps[step], |s| &mut s.scattered);
+        0
     }
 
     /// Takes a batch through a prism, ray by ray.
@@ -516,6 +613,12 @@ impl Tracer {
     /// `position` (mm) and the unit `direction` are in the frame of the lens; so are the points.
     #[must_use]
     pub fn path(&self, position: DVec3, direction: DVec3, wavelength_nm: f64) -> RayPath {
+        self.path_along(&self.forward, position, direction, wavelength_nm)
+    }
+
+    /// The same along a path that enters at the front.
+    #[must_use]
+    pub fn path_along(&self, route: &Route, position: DVec3, direction: DVec3, wavelength_nm: f64) -> RayPath {
         let mut rays = RayBatch::new(1);
         rays.restart(1);
         let c = rays.columns_mut();
@@ -523,14 +626,18 @@ impl Tracer {
         (c.l[0], c.m[0], c.n[0]) = direction.into();
         c.wavelength_nm[0] = wavelength_nm;
         let mut work = self.work_in_place(1);
+        if work.before.is_none() && route.legs.iter().any(|leg| leg.turns) {
+            work.before = Some(Before::new(1));
+        }
         self.refractive_indices(&rays, &mut work);
-        let mut path = RayPath { points: vec![position], direction, end: None };
-        for (step, leg) in self.forward.legs.iter().enumerate() {
+        let mut path = RayPath { points: vec![position], elements: Vec::new(), direction, end: None };
+        for (step, leg) in route.legs.iter().enumerate() {
             let element = &self.elements[leg.at];
             self.interact(&mut rays, &mut work, leg, step, Isa::Baseline);
             let ([x, y, z], [l, m, n]) = (rays.positions(), rays.directions());
             path.end = rays.loss(0);
             if path.end.is_none_or(|(cause, _)| cause == Loss::Vignetted) {
+                path.elements.push(leg.at);
                 path.points.push(element.pose.point(DVec3::new(x[0], y[0], z[0])));
             }
             if path.end.is_some() {
@@ -602,7 +709,8 @@ impl Vectorized for Evaluate<'_> {
     }
 }
 
-fn route(elements: &[Element], image_pose: &Pose, path: &Path) -> Route {
+/// A path made ready; for light that is scattered at least once by these layers of elements, if there are any.
+fn route(elements: &[Element], image_pose: &Pose, path: &Path, layers: Option<&[Vec<Layer>]>) -> Route {
     let end = |at_front: bool| if at_front { &Pose::IDENTITY } else { image_pose };
     let mut frame = end(path.enters() == Travel::Forward);
     let mut outside = 0;
@@ -631,8 +739,23 @@ fn route(elements: &[Element], image_pose: &Pose, path: &Path) -> Route {
                 let visits = legs.iter().filter(|leg| leg.at == *at).count();
                 StageKey::new(&element.kind, (visits as u64) << 32 | same as u64)
             }),
+            soiled: None,
         });
         (frame, outside) = (&element.pose, after);
+    }
+    if let Some(layers) = layers {
+        let most = |leg: &Leg| if leg.turns { 0.0 } else { Shares::most_scattered(&layers[leg.at]) };
+        let all: f64 = legs.iter().map(most).sum();
+        let mut from = 0.0;
+        for leg in &mut legs {
+            let own = most(leg);
+            if own > 0.0 {
+                let upto = from + own / all;
+                leg.soiled =
+                    Some(scatter::Place { stage: StageKey::new("scatter", leg.at as u64), first: [from, upto] });
+                from = upto;
+            }
+        }
     }
     Route { legs, out: Move::between(frame, end(path.leaves() == Travel::Backward)), outside }
 }

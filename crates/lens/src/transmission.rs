@@ -194,6 +194,11 @@ impl Before {
         }
     }
 
+    /// What was taken down of the directions of so many rays.
+    pub(crate) fn directions(&self, len: usize) -> [&[f64]; 3] {
+        self.direction.each_ref().map(|column| column.slice(len))
+    }
+
     /// Takes down where rays are.
     pub(crate) fn note_positions(&mut self, rays: &RayBatch) {
         let len = rays.len();

@@ -18,7 +18,7 @@ fn biotar(f_number: f64) -> Lens {
 }
 
 fn start(position: DVec3, direction: DVec3) -> Particle {
-    Particle { position, direction, weight: 1.0, mirrored: 0, scattered: 0 }
+    Particle { position, direction, weight: 1.0, mirrored: 0, scattered: 0, diffused: 0 }
 }
 
 /// Mean and standard error of so many outcomes, all 0 but these.

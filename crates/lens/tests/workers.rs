@@ -25,6 +25,35 @@ fn lens(name: &str) -> Lens {
         .expect("a lens of the library")
 }
 
+/// One thread that is to stop after so many looks.
+struct Impatient(std::sync::atomic::AtomicUsize);
+
+impl Workers for Impatient {
+    fn each(&self, work: &(dyn Fn() + Sync)) {
+        work();
+    }
+
+    fn should_stop(&self) -> bool {
+        use std::sync::atomic::Ordering::Relaxed;
+        self.0.fetch_update(Relaxed, Relaxed, |left| left.checked_sub(1)).is_err()
+    }
+}
+
+/// A search ends where nobody waits for it any more, with nothing.
+#[test]
+fn a_search_can_be_stopped() {
+    let lens = lens("zeiss-biotar-50-f1.4");
+    let band_nm = [450.0, 650.0];
+    let tracer =
+        Tracer::new(&lens, Indices::Band { min_nm: band_nm[0], max_nm: band_nm[1] }, Isa::detect()).expect("media");
+    let film = [DVec3::ZERO, DVec3::new(18.0, 12.0, 0.0)];
+    // Among the points that stand for zones; among the zones; not at all.
+    for (looks, is_found) in [(0, false), (20, false), (150, false), (1_000_000, true)] {
+        let workers = Impatient(looks.into());
+        assert_eq!(RearPupil::search_on(&lens, &tracer, &film, band_nm, &workers).is_some(), is_found, "{looks}");
+    }
+}
+
 /// By all that a pupil holds, in figures that tell numbers apart to the last bit.
 #[test]
 fn pupils_have_the_same_bits_on_any_number_of_threads() {

@@ -4,7 +4,7 @@
 //! The few that run once per ray have branch-free forms of our own.
 
 pub use libm::{
-    acos, asin, atan, atan2, cbrt, cos, erf, erfc, exp, expm1, j0, lgamma, log, log1p, log2, log10, pow, sin, tan,
+    acos, asin, atan, atan2, cbrt, cos, erf, erfc, exp, expm1, j0, j1, lgamma, log, log1p, log2, log10, pow, sin, tan,
 };
 
 /// Sine and cosine of `x` in [-pi/4, pi/4] rad, within 1.2e-16; branch-free.

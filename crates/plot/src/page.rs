@@ -7,7 +7,8 @@ use std::fmt::Write;
 /// Nothing is loaded from anywhere, and nothing runs.
 const POLICY: &str = "default-src 'none'; img-src data:; style-src 'unsafe-inline'";
 
-/// Colors with a contrast of 4.5 : 1 and more on both grounds.
+/// Colors with a contrast of 4.5 : 1 and more on both grounds; drawings, which are made for paper, turn dark with their hues kept.
+/// What scrolls is reached by the keyboard.
 const STYLE: &str = "\
 :root{color-scheme:light dark;--ink:#1f2328;--dim:#57606a;--ground:#fff;--line:#d5d9de;--panel:#f5f6f8}
 @media(prefers-color-scheme:dark){:root{--ink:#e6e8eb;--dim:#a5adb8;--ground:#16181c;--line:#3a3f47;--panel:#1f2227}}
@@ -16,6 +17,7 @@ font:16px/1.5 system-ui,sans-serif}
 h1{font-size:1.6rem;line-height:1.2;margin:.5rem 0}h2{font-size:1.15rem;margin:2rem 0 .5rem}
 p{margin:.4rem 0}.dim{color:var(--dim)}
 figure{margin:.75rem 0}figure img{display:block;max-width:100%;height:auto}figure.drawn img{background:#fff}
+@media(prefers-color-scheme:dark){figure.drawn img{filter:invert(.9) hue-rotate(180deg)}}
 figcaption{color:var(--dim);font-size:.875rem;margin-top:.25rem}
 .wide{overflow-x:auto;margin:.5rem 0 1.25rem}
 table{border-collapse:collapse;font-variant-numeric:tabular-nums}
@@ -83,7 +85,7 @@ impl Page {
 
     /// Names and what they say, a row each.
     pub fn facts(&mut self, rows: &[(String, String)]) {
-        self.body.push_str("<div class=\"wide\"><table>\n");
+        self.body.push_str("<div class=\"wide\" tabindex=\"0\"><table>\n");
         for (name, value) in rows {
             self.add(format_args!(
                 "<tr><th class=\"name\" scope=\"row\">{}</th><td>{}</td></tr>\n",
@@ -96,7 +98,7 @@ impl Page {
 
     /// A table with a head.
     pub fn table(&mut self, head: &[&str], rows: &[Vec<Cell>]) {
-        self.body.push_str("<div class=\"wide\"><table>\n<tr>");
+        self.body.push_str("<div class=\"wide\" tabindex=\"0\"><table>\n<tr>");
         for (at, name) in head.iter().enumerate() {
             // A column of numbers is set to the right, its head with it.
             let is_number = rows.first().is_some_and(|row| matches!(row.get(at), Some(Cell::Number(_))));
@@ -123,7 +125,7 @@ impl Page {
 
     /// A text as it is, in letters of one width.
     pub fn text(&mut self, text: &str) {
-        self.add(format_args!("<pre>{}</pre>\n", escaped(text)));
+        self.add(format_args!("<pre tabindex=\"0\">{}</pre>\n", escaped(text)));
     }
 
     /// The file.

@@ -5,7 +5,7 @@ use crate::error::RenderError;
 use crate::estimator::{Estimator, Scratch, Unit};
 use crate::meter;
 use crate::pilot::{self, PILOT_RAYS, PILOT_SEED};
-use crate::pipeline::{Pipeline, ThreadState};
+use crate::pipeline::{Pipeline, SCATTER, ThreadState};
 use crate::sums::ExactSums;
 use crate::{Done, Workers};
 use glam::DVec3;
@@ -46,7 +46,8 @@ impl Backward {
         let points: Vec<DVec3> = (0..rays.len()).map(|i| DVec3::new(x[i], y[i], z[i])).collect();
         let grid = scene.grid;
         let band_nm = [grid.start_nm, grid.end_nm()];
-        let rear = RearPupil::search_on(&scene.lens, &pipeline.tracer, &points, band_nm, workers);
+        let effort = pipeline.effort;
+        let rear = RearPupil::search_by(&scene.lens, &pipeline.tracer, &points, band_nm, workers, effort);
         let numbers = pipeline.numbers(PILOT_SEED);
         let rear = rear.map(|rear| {
             rays.columns_mut().wavelength_nm.fill(grid.start_nm);
@@ -55,7 +56,7 @@ impl Backward {
             if aside_mm > 0.0 { rear.widened(ROOM * aside_mm) } else { rear }
         });
         let pixels = scene.imager.size().pixels() as u64;
-        let (rear, seed) = (Arc::new(rear.ok_or(RenderError::NoAperture)?), scene.render.seed);
+        let (rear, seed) = (Arc::new(rear.ok_or_else(|| RenderError::no_pupil(workers))?), scene.render.seed);
         let mut own = Self { rear, numbers, scale: 1.0, pipeline };
         own.scale = pilot::scale(&own.pipeline, |state, batch, mut look| {
             let spread = (0..PILOT_RAYS).map(|i| (u64::from(i) * pixels / u64::from(PILOT_RAYS)) as u32);
@@ -233,7 +234,7 @@ impl Backward {
 
 impl Estimator for Backward {
     fn name(&self) -> &'static str {
-        "backward"
+        if self.pipeline.scattered { SCATTER } else { "backward" }
     }
 
     fn tiles(&self) -> usize {

@@ -1,10 +1,10 @@
 //! Exposure spread by the edge of the aperture.
 
 use glam::DVec3;
-use spectra_core::frame::{ExposureChannel, FrameSize};
+use spectra_core::frame::ExposureChannel;
 use spectra_core::spectral::{Channel, SpectralPower};
 use spectra_core::{Isa, RayBatch};
-use spectra_diffraction::{Account, Light, Polygon, Pupil, Spread};
+use spectra_diffraction::{Account, Light, Polygon, Pupil, Spread, View, Wave, Waves};
 use spectra_scene::Scene;
 
 /// What diffraction did to a channel.
@@ -34,10 +34,11 @@ pub(crate) fn spread(
 ) -> Result<Vec<Diffracted>, String> {
     let size = scene.imager.size();
     let pupil = Pupil::new(&scene.lens)?;
-    let seen = |at: [f64; 2]| seen(scene, &pupil, size, at, isa);
     let one = |number: &usize| -> Option<Diffracted> {
         let (channel, plane) = (scene.channels.get(*number)?, planes.get_mut(*number)?);
         let light = light(scene.source.spectrum(), channel)?;
+        let waves = Waves::new(&scene.lens, light.mean_mm() * 1e6);
+        let seen = Seen { scene, pupil: &pupil, waves, isa };
         let Account { left, stays, stars } = Spread::new(size, light, &seen)?.apply(&mut plane.values);
         Some(Diffracted { channel: channel.name.clone(), left, stays, stars })
     };
@@ -56,8 +57,29 @@ fn light(source: &SpectralPower, channel: &Channel) -> Option<Light> {
     Light::of(&continuum.chain(lines).collect::<Vec<_>>())
 }
 
-/// The opening as a place of the frame sees it, along the axes of the frame there.
-fn seen(scene: &Scene, pupil: &Pupil, size: FrameSize, [column, row]: [f64; 2], isa: Isa) -> Option<Polygon> {
+/// The lens as places of the frame see it.
+struct Seen<'a> {
+    scene: &'a Scene,
+    pupil: &'a Pupil,
+    waves: Option<Waves<'a>>,
+    isa: Isa,
+}
+
+impl View for Seen<'_> {
+    fn opening(&self, at: [f64; 2]) -> Option<Polygon> {
+        let (point, axes) = place(self.scene, at, self.isa)?;
+        self.pupil.seen_from(point, axes)
+    }
+
+    fn wave(&self, at: [f64; 2], opening: &Polygon) -> Option<Wave> {
+        let (point, axes) = place(self.scene, at, self.isa)?;
+        self.waves.as_ref()?.seen_from(point, axes, opening)
+    }
+}
+
+/// A place of the frame, and the axes of the frame there, in the frame of the image plane.
+fn place(scene: &Scene, [column, row]: [f64; 2], isa: Isa) -> Option<(DVec3, [DVec3; 2])> {
+    let size = scene.imager.size();
     let pixel = |at: f64, count: u32| (at.max(0.0) as u32).min(count - 1);
     let (i, j) = (pixel(column, size.width_px), pixel(row, size.height_px));
     let tag = j * size.width_px + i;
@@ -77,5 +99,5 @@ fn seen(scene: &Scene, pupil: &Pupil, size: FrameSize, [column, row]: [f64; 2], 
     };
     // Columns run against x.
     let axes = [(points[1] - points[2]).try_normalize()?, (points[4] - points[3]).try_normalize()?];
-    pupil.seen_from(points[0], axes)
+    Some((points[0], axes))
 }

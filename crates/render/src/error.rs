@@ -1,5 +1,6 @@
 //! Why a scene cannot be rendered.
 
+use crate::Workers;
 use crate::blame::NoNumber;
 use crate::memory::bytes;
 use spectra_core::params::{Fault, Faults};
@@ -23,6 +24,9 @@ pub enum RenderError {
     /// What the source reads is broken.
     #[error("{0}")]
     Source(Faults),
+    /// Whoever asked does not want it any more: no fault of the scene.
+    #[error("stopped before the scene was made ready")]
+    Stopped,
     /// No surface states a size.
     #[error("no surface of the lens states a semi-diameter: nothing says where light may enter")]
     NoAperture,
@@ -59,6 +63,11 @@ pub enum RenderError {
 }
 
 impl RenderError {
+    /// Why a search for what passes gave nothing.
+    pub(crate) fn no_pupil(workers: &dyn Workers) -> Self {
+        if workers.should_stop() { Self::Stopped } else { Self::NoAperture }
+    }
+
     /// The same as a fault of the scene, at the section that has it; `None` for what is not the scene's doing.
     #[must_use]
     pub fn faults(&self, scene: &Scene) -> Option<Faults> {
@@ -95,7 +104,7 @@ impl RenderError {
             Self::Memory(_) => at("imager.resolution", &text, "fewer pixels, or fewer channels"),
             Self::Source(faults) => Some(faults.clone()),
             Self::DoesNotExtend(_) => at("render.numbers", &text, "`numbers: sobol`, which goes on at any length"),
-            Self::Overflow { .. } => None,
+            Self::Overflow { .. } | Self::Stopped => None,
         }
     }
 }

@@ -5,7 +5,7 @@ use crate::error::RenderError;
 use crate::estimator::{Estimator, Scratch, Unit};
 use crate::meter;
 use crate::pilot::{self, PILOT_RAYS, PILOT_SEED};
-use crate::pipeline::{Pipeline, Share, ThreadState};
+use crate::pipeline::{Pipeline, SCATTER, Share, ThreadState};
 use crate::sums::{ExactSums, OwnSums, each};
 use crate::{Done, Workers};
 use glam::DVec3;
@@ -130,8 +130,9 @@ impl Forward {
             let points = source_points(&pipeline, emit, &numbers);
             let grid = scene.grid;
             let band_nm = [grid.start_nm, grid.end_nm()];
-            let pupil = FrontPupil::search_on(&scene.lens, &pipeline.tracer, &points, band_nm, workers);
-            Some(Arc::new(pupil.ok_or(RenderError::NoAperture)?))
+            let effort = pipeline.effort;
+            let pupil = FrontPupil::search_by(&scene.lens, &pipeline.tracer, &points, band_nm, workers, effort);
+            Some(Arc::new(pupil.ok_or_else(|| RenderError::no_pupil(workers))?))
         };
         Ok(Self { pupil, numbers, cone, scale: 1.0, pipeline, a_sample: None })
     }
@@ -246,7 +247,7 @@ impl Forward {
 
 impl Estimator for Forward {
     fn name(&self) -> &'static str {
-        "forward"
+        if self.pipeline.scattered { SCATTER } else { "forward" }
     }
 
     fn tiles(&self) -> usize {

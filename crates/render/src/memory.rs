@@ -27,11 +27,17 @@ pub fn memory_needed(scene: &Scene) -> u64 {
     // So have ghosts; where the scene does not say, whether they matter is not known before they are looked for.
     let ghosts = scene.render.reflections.order.map_or(apart, |order| order > 0);
     let halves = 1 + u64::from(scene.render.noise.is_some());
-    let kinds = 1 + u64::from(apart) + u64::from(ghosts);
-    let traced = channels * (SUM * halves * kinds + EXPOSURE);
+    // What haze, dust and scratches scatter is traced beside what they do not.
+    let scattered = if scene.lens.scatters() { 1 + u64::from(apart) } else { 0 };
+    let kinds = 1 + u64::from(apart) + u64::from(ghosts) + scattered;
+    // Layers of kinds of light, and the exposure before diffraction while it is worked out.
+    let layers = scene.light_layers().len() as u64;
+    let layers = if layers > 0 && scene.render.diffraction { layers + 1 } else { layers };
+    let traced = channels * (SUM * halves * kinds + EXPOSURE * (1 + layers));
     // Sums are gone by then. Of several films each is developed from a copy of its own channels.
     let picture = if scene.films.is_empty() { SHOWING } else { DEVELOPING + 3 * EXPOSURE * scene.films.len() as u64 };
-    let written = channels * EXPOSURE + if is_shown { picture } else { channels * EXPOSURE };
+    // A file of layers is written from a copy of them.
+    let written = channels * EXPOSURE * (1 + 2 * layers) + if is_shown { picture } else { channels * EXPOSURE };
     pixels.saturating_mul(traced.max(written))
 }
 

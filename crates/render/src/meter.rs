@@ -14,6 +14,7 @@ use spectra_core::batch::pixel_and_channel;
 use spectra_core::numbers::Numbers;
 use spectra_core::workers::each_of;
 use spectra_core::{Isa, RayBatch};
+use spectra_lens::Effort;
 use std::ops::Range;
 
 /// Rays that it takes for a pixel: 4 % of the time of a picture of 64 samples. The picture's own number does not matter, so that a
@@ -23,6 +24,8 @@ const RAYS_PER_PIXEL: f64 = 64.0 / 25.0;
 const LEAST: u64 = 1 << 16;
 /// And at most: more tell nothing.
 const MOST: u64 = 1 << 20;
+/// Those of a first look: the mean is within a hundredth.
+const OF_DRAFT: u64 = 1 << 14;
 /// Most rays forward, where many are needed to hit a small spot.
 const MOST_FORWARD: u64 = 1 << 22;
 /// Places of a unit of work. They share one stream of numbers, so that neighbors complete each other.
@@ -33,8 +36,11 @@ pub(crate) const SEED: u64 = 0x6d65_7465_7220_6c78;
 const CHOICE: u64 = u64::MAX;
 
 /// How many rays a meter takes in a frame of so many pixels.
-fn rays_for(pixels: usize) -> u64 {
-    ((pixels as f64 * RAYS_PER_PIXEL) as u64).clamp(LEAST, MOST)
+fn rays_for(pixels: usize, effort: Effort) -> u64 {
+    match effort {
+        Effort::Full => ((pixels as f64 * RAYS_PER_PIXEL) as u64).clamp(LEAST, MOST),
+        Effort::Draft => OF_DRAFT,
+    }
 }
 
 /// A pixel that is looked at, for itself and its neighbors.
@@ -70,12 +76,17 @@ pub(crate) fn backward(backward: &Backward, workers: &dyn Workers) -> Result<Vec
     if pixels.is_empty() {
         return Ok(planes);
     }
-    let rays = rays_for(size);
+    let rays = rays_for(size, pipeline.effort);
     let numbers = Numbers::sobol(scene.render.seed ^ SEED);
     let places = places(&pixels, rays, &numbers, isa);
     let samples = (rays / places.len() as u64).max(1) as usize;
     let units: Vec<&[Place]> = places.chunks(PLACES_PER_UNIT).collect();
-    let work = |state: &mut ThreadState, at: usize| unit(backward, &numbers, state, at as u64, units[at], samples);
+    let work = |state: &mut ThreadState, at: usize| {
+        if workers.should_stop() {
+            return Err(RenderError::Stopped);
+        }
+        unit(backward, &numbers, state, at as u64, units[at], samples)
+    };
     let fresh = || ThreadState::new(pipeline, scene.render.batch);
     let sums = each_of(workers, units.len(), fresh, work)?;
     for (place, of_channels) in places.iter().zip(sums.iter().flat_map(|sums| sums.chunks_exact(channels))) {
@@ -150,12 +161,15 @@ pub(crate) fn forward(forward: &Forward, workers: &dyn Workers) -> Result<Vec<Ve
         return Ok(vec![vec![0.0; size.pixels()]; channels]);
     }
     // Rays land where they will: as many in what is metered as backward ones would be.
-    let rays = rays_for(size.pixels());
+    let rays = rays_for(size.pixels(), pipeline.effort);
     let rays = (rays as f64 * size.pixels() as f64 / looked_at as f64).min(MOST_FORWARD.max(rays) as f64) as u64;
     let too_large = || RenderError::Memory(crate::memory_needed(scene));
     let sums = ExactSums::new(size.pixels() * channels).ok_or_else(too_large)?;
     let work = |state: &mut ThreadState, unit: usize| {
         let first = unit as u64 * PATHS_PER_UNIT;
+        if workers.should_stop() {
+            return Err(RenderError::Stopped);
+        }
         forward.unit(state, first, PATHS_PER_UNIT.min(rays - first), &sums).1.map_or(Ok(()), Err)
     };
     let fresh = || ThreadState::new(pipeline, scene.render.batch);

@@ -10,7 +10,7 @@ use spectra_core::numbers::{Dimension, Numbers};
 use spectra_core::spectral::SystemResponse;
 use spectra_core::stage::{Source, WavelengthDensity};
 use spectra_core::{Isa, Loss, RayBatch};
-use spectra_lens::{Indices, Tracer, Work};
+use spectra_lens::{Effort, Indices, Tracer, Work};
 use spectra_scene::{NumberFamily, Scene};
 use std::sync::Arc;
 
@@ -42,6 +42,7 @@ pub struct Pipeline {
     /// Which light of the source is traced.
     pub(crate) share: Share,
     pub(crate) isa: Isa,
+    pub(crate) effort: Effort,
     pub(crate) tracer: Arc<Tracer>,
     pub(crate) density: Arc<dyn WavelengthDensity>,
     pub(crate) responses: Responses,
@@ -49,7 +50,14 @@ pub struct Pipeline {
     pub(crate) recorded: Vec<usize>,
     /// Whether a stage on the way draws numbers of its own, for which batches carry what it needs.
     pub(crate) draws: bool,
+    /// Whether it traces light that layers on the lens scatter at least once, in place of what none of them does.
+    pub(crate) scattered: bool,
 }
+
+/// What an estimator of scattered light is called, in either direction.
+pub(crate) const SCATTER: &str = "scatter";
+/// Its numbers are none of those of the other light of the same pixel.
+const SCATTER_SEED: u64 = 0x5ca7_7e4e_d11f_7b0d;
 
 impl Pipeline {
     /// With this density of wavelengths, where one is known to fit.
@@ -57,6 +65,7 @@ impl Pipeline {
         scene: &Arc<Scene>,
         isa: Isa,
         density: Option<Arc<dyn WavelengthDensity>>,
+        effort: Effort,
     ) -> Result<Self, RenderError> {
         if let Some(text) = crate::diffracted::fault(scene) {
             return Err(RenderError::Diffraction(text));
@@ -66,12 +75,11 @@ impl Pipeline {
         let system = system(scene, Share::Whole, &recorded);
         let fitted = || scene.sampler.prepare(&system).map(Arc::from).map_err(RenderError::Sampler);
         let density = density.map_or_else(fitted, Ok)?;
-        let indices = Indices::Band { min_nm: scene.grid.start_nm, max_nm: scene.grid.end_nm() };
-        let tracer = Tracer::new(&scene.lens, indices, isa).map_err(|e| RenderError::Lens(e.to_string()))?;
+        let tracer = tracer(scene, isa)?;
         let responses = Responses::new(scene.grid, &system.channels);
         let draws = draws(scene);
         let (scene, tracer, share) = (Arc::clone(scene), Arc::new(tracer), Share::Whole);
-        Ok(Self { scene, share, isa, tracer, density, responses, recorded, draws })
+        Ok(Self { scene, share, isa, effort, tracer, density, responses, recorded, draws, scattered: false })
     }
 
     /// The same for a share of the source, with a density of its own where one can be fitted to it.
@@ -82,11 +90,13 @@ impl Pipeline {
             scene: self.scene.clone(),
             share,
             isa: self.isa,
+            effort: self.effort,
             tracer: self.tracer.clone(),
             density,
             responses: Responses::new(self.scene.grid, &system.channels),
             recorded: self.recorded.clone(),
             draws: self.draws,
+            scattered: self.scattered,
         }
     }
 
@@ -96,12 +106,23 @@ impl Pipeline {
             scene: self.scene.clone(),
             share: self.share,
             isa: self.isa,
+            effort: self.effort,
             tracer: Arc::new(tracer),
             density: self.density.clone(),
             responses: self.responses.clone(),
             recorded: self.recorded.clone(),
             draws: self.draws,
+            scattered: self.scattered,
         }
+    }
+
+    /// The same for light that haze, dust and scratches on the lens scatter; `None` where nothing lies on it.
+    pub(crate) fn scattered(&self) -> Result<Option<Self>, RenderError> {
+        if !self.scene.lens.scatters() {
+            return Ok(None);
+        }
+        let tracer = tracer(&self.scene, self.isa)?.scattering();
+        Ok(Some(Self { draws: true, scattered: true, ..self.with_tracer(tracer) }))
     }
 
     /// What is traced of the source.
@@ -119,16 +140,19 @@ impl Pipeline {
             scene: self.scene.clone(),
             share: self.share,
             isa: self.isa,
+            effort: self.effort,
             tracer: self.tracer.clone(),
             density,
             responses,
             recorded,
             draws: self.draws,
+            scattered: self.scattered,
         })
     }
 
     /// The numbers of a seed, as the scene wants them.
     pub(crate) fn numbers(&self, seed: u64) -> Numbers {
+        let seed = if self.scattered { seed ^ SCATTER_SEED } else { seed };
         match self.scene.render.numbers {
             NumberFamily::Sobol => Numbers::sobol(seed),
             NumberFamily::Lattice => Numbers::lattice(seed),
@@ -141,6 +165,12 @@ impl Pipeline {
     pub(crate) fn group(&self, dimension: usize) -> u32 {
         if dimension == Dimension::Wavelength as usize { self.density.group() } else { 1 }
     }
+}
+
+/// The lens of a scene, made ready for its band.
+fn tracer(scene: &Scene, isa: Isa) -> Result<Tracer, RenderError> {
+    let indices = Indices::Band { min_nm: scene.grid.start_nm, max_nm: scene.grid.end_nm() };
+    Tracer::new(&scene.lens, indices, isa).map_err(|e| RenderError::Lens(e.to_string()))
 }
 
 /// Whether any stage draws.

@@ -5,10 +5,18 @@ use spectra_core::frame::ExposureFrame;
 use spectra_core::{Loss, LossCounts, shutter};
 use spectra_scene::{Direction, Scene, SceneFilm};
 
-/// Of the lit pixels, this share beside empty ones tells that rays are too few, and not that the picture is black there.
+/// Of the lit pixels, this share alone or beside holes tells that rays are too few, and not that the picture is black there.
 const SPARSE: f64 = 0.5;
 /// What is clean almost everywhere is not worth a word.
 const CLEAN: f64 = 0.99;
+
+/// One part in so many of the frame may be a light and not what the picture is of.
+const DAZZLING: usize = 100;
+/// A meter goes by the lights and by nothing else where they make its mean so many times larger: six stops.
+const DAZZLED: f64 = 64.0;
+/// The shortest time of most cameras; where a meter asks for less, two stops are enough to say why.
+const SHUTTER_S: f64 = 1.0 / 8000.0;
+const DAZZLED_SHORT: f64 = 4.0;
 
 /// What is to be said of a rendering.
 pub(crate) fn remarks(renderer: &Renderer, rendering: &Rendering) -> Vec<String> {
@@ -22,6 +30,7 @@ pub(crate) fn remarks(renderer: &Renderer, rendering: &Rendering) -> Vec<String>
         return all;
     }
     all.extend(scene.films.iter().filter_map(|film| blind_meter(film, &rendering.exposure)));
+    all.extend(scene.films.iter().filter_map(|film| dazzled_meter(film, &rendering.exposure)));
     all.extend(rendering.noise.filter(|_| !rendering.partial).and_then(|noise| still_noisy(scene, &noise)));
     let planes = &rendering.exposure.channels;
     let pixels = rendering.exposure.size.pixels();
@@ -78,18 +87,54 @@ fn blind_meter(film: &SceneFilm, exposure: &ExposureFrame) -> Option<String> {
     })
 }
 
+/// A sun or a lamp in the frame outshines what the picture is of, and a mean goes by it.
+fn dazzled_meter(film: &SceneFilm, exposure: &ExposureFrame) -> Option<String> {
+    let plane = exposure.channels.get(film.channels.clone())?.get(film.film.picture_channels()..)?.first()?;
+    if !film.film.is_metered() || plane.values.iter().any(|value| !value.is_finite()) {
+        return None;
+    }
+    let seen = |(pixel, value): (u32, &f32)| film.film.is_metered_at(&exposure.size, pixel).then_some(*value);
+    let mut values: Vec<f32> = (0_u32..).zip(&plane.values).filter_map(seen).collect();
+    let few = values.len() / DAZZLING;
+    if few == 0 {
+        return None;
+    }
+    values.sort_unstable_by(f32::total_cmp);
+    let mean = |values: &[f32]| values.iter().map(|value| f64::from(*value)).sum::<f64>() / values.len() as f64;
+    let brighter = mean(&values) / mean(&values[..values.len() - few]);
+    let time_s = film.film.metered_time_s(exposure);
+    let is_short = time_s < SHUTTER_S && brighter > DAZZLED_SHORT;
+    if !(is_short || brighter > DAZZLED) || !brighter.is_finite() {
+        return None;
+    }
+    let named = film.name.as_ref().map_or_else(String::new, |name| format!("{name}: "));
+    Some(format!(
+        "{named}the brightest hundredth of what the camera's meter sees sets the exposure, {}, and leaves the rest of the picture \
+         {:.0} stops too dark; in place of `metering`, `exposure: {}` is the time without it",
+        shutter::words(time_s),
+        spectra_core::math::log2(brighter),
+        shutter::words(time_s * brighter)
+    ))
+}
+
 /// Film is no mean: what no ray reached is developed as unexposed, between pixels that rays did reach.
 fn sparse(scene: &Scene, exposure: &ExposureFrame) -> Option<String> {
     let (width, height) = (exposure.size.width_px as usize, exposure.size.height_px as usize);
     let lit: Vec<bool> = (0..width * height).map(|p| exposure.channels.iter().any(|c| c.values[p] != 0.0)).collect();
-    let beside_empty = |p: usize| {
+    let around = |p: usize| {
         let (column, row) = (p % width, p / width);
-        let columns = column.saturating_sub(1)..=(column + 1).min(width - 1);
-        let mut rows = row.saturating_sub(1)..=(row + 1).min(height - 1);
-        rows.any(|row| columns.clone().any(|column| !lit[row * width + column]))
+        let columns = column.saturating_sub(1)..(column + 2).min(width);
+        let rows = row.saturating_sub(1)..(row + 2).min(height);
+        rows.flat_map(move |row| columns.clone().map(move |column| row * width + column)).filter(move |at| *at != p)
+    };
+    let lit_around = |p: usize| around(p).filter(|at| lit[*at]).count();
+    // Alone, or beside a hole: the edge of a small spot is neither.
+    let is_ragged = |p: usize| {
+        let beside_empty = around(p).any(|at| !lit[at]);
+        beside_empty && (lit_around(p) < 3 || around(p).any(|at| !lit[at] && lit_around(at) > 3))
     };
     let many = lit.iter().filter(|lit| **lit).count();
-    let edge = (0..lit.len()).filter(|p| lit[*p] && beside_empty(*p)).count();
+    let edge = (0..lit.len()).filter(|p| lit[*p] && is_ragged(*p)).count();
     let empty = lit.len() - many;
     if many == 0 || (edge as f64) < SPARSE * many as f64 || empty * 10 < lit.len() {
         return None;

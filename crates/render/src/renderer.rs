@@ -5,23 +5,23 @@ use crate::diffracted::{self, Diffracted};
 use crate::done::Units;
 use crate::estimator::Estimator;
 use crate::forward::Forward;
-use crate::ghosts::{Ghosts, LightLedger};
+use crate::ghosts::{self, GhostRays, Ghosts, LightLedger};
 use crate::landing::Landing;
 use crate::light::Part;
 use crate::memory::memory_needed;
 use crate::noise::{ends_round, next_round};
 use crate::pilot::PILOT_RAYS;
-use crate::pipeline::{Pipeline, Share, ThreadState};
+use crate::pipeline::{Pipeline, SCATTER, Share, ThreadState};
 use crate::remarks::remarks;
 use crate::sums::{LARGEST_CONTRIBUTION, LARGEST_EXPECTED};
 use crate::veil::{self, Veil};
-use crate::{Alone, Control, Light, Noise, RenderError, Workers};
+use crate::{Alone, Control, Effort, Light, Noise, RenderError, Workers};
 use spectra_core::frame::{ExposureChannel, ExposureFrame};
 use spectra_core::numbers::mix64;
 use spectra_core::stage::WavelengthDensity;
 use spectra_core::{Isa, LossCounts};
 use spectra_lens::Travel;
-use spectra_scene::{Direction, Lights, NumberFamily, Scene};
+use spectra_scene::{Direction, LightKind, LightLayer, Lights, NumberFamily, Scene};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -33,6 +33,8 @@ pub(crate) const MATTERS: f64 = 0.01;
 pub struct Rendering {
     /// Linear exposure per channel.
     pub exposure: ExposureFrame,
+    /// The same by kinds of light, of those of which an output of the scene holds layers.
+    pub layers: Vec<LightLayer>,
     /// Rays launched toward the first or last surface.
     pub rays: u64,
     /// What was lost, by cause and surface.
@@ -93,13 +95,29 @@ impl Renderer {
         density: Option<Arc<dyn WavelengthDensity>>,
         workers: &dyn Workers,
     ) -> Result<Self, RenderError> {
-        Self::without_veil(scene, isa, density, workers)?.with_veil()
+        Self::with_effort(scene, isa, density, Effort::Full, workers)
+    }
+
+    /// The same, with some effort to find what passes and what meters see; [`RenderError::Stopped`] where the workers are to stop
+    /// meanwhile.
+    ///
+    /// # Errors
+    /// As [`Renderer::new`].
+    pub fn with_effort(
+        scene: Arc<Scene>,
+        isa: Isa,
+        density: Option<Arc<dyn WavelengthDensity>>,
+        effort: Effort,
+        workers: &dyn Workers,
+    ) -> Result<Self, RenderError> {
+        Self::without_veil(scene, isa, density, effort, workers)?.with_veil()
     }
 
     fn without_veil(
         scene: Arc<Scene>,
         isa: Isa,
         density: Option<Arc<dyn WavelengthDensity>>,
+        effort: Effort,
         workers: &dyn Workers,
     ) -> Result<Self, RenderError> {
         let direction = scene.render.direction;
@@ -109,13 +127,14 @@ impl Renderer {
         let pays = scene.source.split().map(|split| split.pays);
         let apart = lights != Lights::Same && pays.is_some_and(|pays| pays || lights == Lights::Forward);
         if !apart {
-            let plain = Self::by(scene, isa, density, &[direction], workers)?;
+            let plain = Self::by(scene, isa, density, &[direction], effort, workers)?;
             return if order.unwrap_or(0) == 0 { Ok(plain) } else { plain.with_ghosts(workers) };
         }
-        let pipeline = Arc::new(Pipeline::new(&scene, isa, density)?);
+        let pipeline = Arc::new(Pipeline::new(&scene, isa, density, effort)?);
         let share = |share| Arc::new(pipeline.of_share(share));
         let of_lights = share(Share::Lights);
-        let (rest, lights) = (Backward::new(share(Share::Rest), workers)?, Forward::new(of_lights.clone(), workers)?);
+        let of_rest = share(Share::Rest);
+        let (rest, lights) = (Backward::new(of_rest.clone(), workers)?, Forward::new(of_lights.clone(), workers)?);
         let found = match order {
             Some(0) => None,
             Some(_) => Ghosts::new(&of_lights, None, workers)?,
@@ -124,6 +143,10 @@ impl Renderer {
         let ledger = found.as_ref().map(|found| found.ledger().clone());
         let mut kinds: Vec<Box<dyn Estimator>> = vec![Box::new(rest), Box::new(lights)];
         kinds.extend(found.map(|found| Box::new(found) as Box<dyn Estimator>));
+        if let (Some(rest), Some(lights)) = (of_rest.scattered()?, of_lights.scattered()?) {
+            kinds.push(Box::new(Backward::new(Arc::new(rest), workers)?));
+            kinds.push(Box::new(Forward::new(Arc::new(lights), workers)?));
+        }
         Ok(Self { estimators: halved(&scene, kinds), scene, pipeline, ledger })
     }
 
@@ -147,21 +170,40 @@ impl Renderer {
         Ok(self)
     }
 
+    /// Nothing but the ghosts of a scene, to measure them by themselves; `None` where nothing reflects.
+    ///
+    /// # Errors
+    /// As [`Renderer::new`].
+    pub fn of_ghosts(
+        scene: Arc<Scene>,
+        isa: Isa,
+        rays: GhostRays,
+        workers: &dyn Workers,
+    ) -> Result<Option<Self>, RenderError> {
+        scene.source.prepare().map_err(RenderError::Source)?;
+        let pipeline = Arc::new(Pipeline::new(&scene, isa, None, Effort::Full)?);
+        let share = if scene.source.split().is_some() { Share::Lights } else { Share::Whole };
+        let Some(found) = Ghosts::with_rays(&pipeline.of_share(share), None, rays, workers)? else { return Ok(None) };
+        let ledger = Some(found.ledger().clone());
+        Ok(Some(Self { estimators: halved(&scene, vec![Box::new(found)]), scene, pipeline, ledger }))
+    }
+
     /// With the veiling glare that the scene asks for: of lights from the source, of the rest from the imager.
     fn with_veil(mut self) -> Result<Self, RenderError> {
         let Some(matter) = self.scene.render.glare else { return Ok(self) };
         // Also where they are traced because the lights are bright enough, and nothing was said.
-        let ghosts_apart = self.estimators().any(|estimator| estimator.name() == "ghosts");
+        let has_ghosts = self.estimators().any(|estimator| estimator.name() == ghosts::ESTIMATOR);
+        let ghosts_order = if has_ghosts { self.scene.render.reflections.order.unwrap_or(2) } else { 0 };
         let emits = |split: &spectra_core::stage::Split<'_>| split.lights.emit().is_some();
         let veils = if self.scene.source.split().as_ref().is_some_and(emits) {
             let share = |share| Arc::new(self.pipeline.of_share(share));
             vec![
-                Veil::new(share(Share::Lights), true, ghosts_apart, matter)?,
-                Veil::new(share(Share::Rest), false, false, matter)?,
+                Veil::new(share(Share::Lights), true, ghosts_order, matter)?,
+                Veil::new(share(Share::Rest), false, 0, matter)?,
             ]
         } else {
             let from_source = self.scene.render.direction == Direction::Forward;
-            vec![Veil::new(Arc::clone(&self.pipeline), from_source, ghosts_apart, matter)?]
+            vec![Veil::new(Arc::clone(&self.pipeline), from_source, ghosts_order, matter)?]
         };
         let halves = self.halves() as usize;
         let many = veils.len();
@@ -192,7 +234,7 @@ impl Renderer {
         density: Option<Arc<dyn WavelengthDensity>>,
         estimators: &[Direction],
     ) -> Result<Self, RenderError> {
-        Self::by(scene, isa, density, estimators, &Alone)
+        Self::by(scene, isa, density, estimators, Effort::Full, &Alone)
     }
 
     fn by(
@@ -200,18 +242,22 @@ impl Renderer {
         isa: Isa,
         density: Option<Arc<dyn WavelengthDensity>>,
         estimators: &[Direction],
+        effort: Effort,
         workers: &dyn Workers,
     ) -> Result<Self, RenderError> {
         scene.source.prepare().map_err(RenderError::Source)?;
-        let pipeline = Arc::new(Pipeline::new(&scene, isa, density)?);
-        let one = |direction: &Direction| -> Result<Box<dyn Estimator>, RenderError> {
-            let pipeline = Arc::clone(&pipeline);
+        let pipeline = Arc::new(Pipeline::new(&scene, isa, density, effort)?);
+        let scattered = pipeline.scattered()?.map(Arc::new);
+        let one = |(pipeline, direction): (&Arc<Pipeline>, &Direction)| -> Result<Box<dyn Estimator>, RenderError> {
+            let pipeline = Arc::clone(pipeline);
             Ok(match direction {
                 Direction::Forward => Box::new(Forward::new(pipeline, workers)?),
                 Direction::Backward => Box::new(Backward::new(pipeline, workers)?),
             })
         };
-        let estimators = estimators.iter().map(one).collect::<Result<_, _>>()?;
+        let kinds = std::iter::once(&pipeline).chain(&scattered);
+        let each = kinds.flat_map(|pipeline| estimators.iter().map(move |direction| (pipeline, direction)));
+        let estimators = each.map(one).collect::<Result<_, _>>()?;
         Ok(Self { estimators: halved(&scene, estimators), scene, pipeline, ledger: None })
     }
 
@@ -221,7 +267,7 @@ impl Renderer {
     /// # Errors
     /// As [`Renderer::new`].
     pub fn check(scene: &Arc<Scene>, isa: Isa) -> Result<(), RenderError> {
-        let pipeline = Pipeline::new(scene, isa, None)?;
+        let pipeline = Pipeline::new(scene, isa, None, Effort::Full)?;
         veil::check(&pipeline)?;
         let sized = |travel| spectra_lens::has_sizes(&scene.lens, travel);
         let is_open = match scene.render.direction {
@@ -283,7 +329,11 @@ impl Renderer {
             return Err(RenderError::DoesNotExtend("stratified"));
         }
         if light.metered.is_none() {
-            light.metered = Some(self.metered(workers)?);
+            match self.metered(workers) {
+                // Nothing is lost: the meters look again the next time.
+                Err(RenderError::Stopped) => return Ok(()),
+                metered => light.metered = Some(metered?),
+            }
         }
         let Some(asked) = self.scene.render.noise else { return self.trace(light, samples, workers, control) };
         let upto = samples.div_ceil(self.halves());
@@ -430,37 +480,36 @@ impl Renderer {
     /// # Errors
     /// [`RenderError::Memory`].
     pub fn look(&self, scene: &Scene, light: &Light) -> Result<Rendering, RenderError> {
-        let size = scene.imager.size();
         let recorded = &self.pipeline.recorded;
-        let (channels, of_meters) = (recorded.len(), scene.meter_channels());
-        let metered = light.metered.as_deref().unwrap_or_default();
         let time_s = scene.exposure_time_s();
         let parts = self.estimators.iter().zip(&light.parts);
         // Halves are added up; each stands for all light.
         let share_s = time_s / self.halves() as f64;
         let weights: Vec<Vec<f64>> = parts.map(|(e, part)| e.weights(&part.done, part.rays, share_s)).collect();
-        let mut planes = Vec::with_capacity(scene.channels.len());
-        for (number, channel) in scene.channels.iter().enumerate() {
-            let mut values = Vec::new();
-            values.try_reserve_exact(size.pixels()).map_err(|_| self.too_large())?;
-            let seen = of_meters.iter().position(|meter| *meter == number).and_then(|at| metered.get(at));
-            if let Some(at) = recorded.iter().position(|r| *r == number) {
-                values.extend((0..size.pixels()).map(|p| {
-                    let parts = light.parts.iter().zip(&weights);
-                    parts.map(|(part, w)| part.sums.get(p * channels + at) as f64 * w[p]).sum::<f64>() as f32
-                }));
-            } else if let Some(seen) = seen {
-                values.extend(seen.iter().map(|value| (value * time_s) as f32));
-            } else {
-                // A meter that sees nothing of this source.
-                values.resize(size.pixels(), 0.0);
-            }
-            planes.push(ExposureChannel { name: channel.name.clone(), unit: channel.unit.clone(), values });
+        let mut planes = self.planes(scene, light, &weights, None)?;
+        let wanted = scene.light_layers();
+        let mut layers = Vec::with_capacity(wanted.len());
+        for kind in &wanted {
+            let channels = self.planes(scene, light, &weights, Some(*kind))?;
+            layers.push(LightLayer { kind: *kind, channels });
         }
-        let spread = || diffracted::spread(scene, &mut planes, recorded, self.pipeline.isa);
-        let diffraction = scene.render.diffraction.then(spread).transpose().map_err(RenderError::Diffraction)?;
+        let star = layers.iter_mut().find(|layer| layer.kind == LightKind::Star);
+        let diffraction = if scene.render.diffraction {
+            let before = if star.is_some() { planes.clone() } else { Vec::new() };
+            let done = diffracted::spread(scene, &mut planes, recorded, self.pipeline.isa);
+            let done = done.map_err(RenderError::Diffraction)?;
+            for ((star, plane), before) in star.into_iter().flat_map(|s| &mut s.channels).zip(&planes).zip(before) {
+                let moved = plane.values.iter().zip(before.values).map(|(now, before)| now - before);
+                star.values = moved.collect();
+            }
+            Some(done)
+        } else {
+            None
+        };
+        let size = scene.imager.size();
         Ok(Rendering {
             exposure: ExposureFrame { size, channels: planes },
+            layers,
             rays: light.rays(),
             losses: light.losses.clone(),
             detected: light.detected,
@@ -472,6 +521,44 @@ impl Renderer {
             diffraction,
             warnings: Vec::new(),
         })
+    }
+
+    /// The exposure before diffraction, of all light or of a kind; `weights` are those of the parts. What meters see is straight.
+    fn planes(
+        &self,
+        scene: &Scene,
+        light: &Light,
+        weights: &[Vec<f64>],
+        kind: Option<LightKind>,
+    ) -> Result<Vec<ExposureChannel>, RenderError> {
+        let pixels = scene.imager.size().pixels();
+        let recorded = &self.pipeline.recorded;
+        let (channels, of_meters) = (recorded.len(), scene.meter_channels());
+        let metered = light.metered.as_deref().unwrap_or_default();
+        let time_s = scene.exposure_time_s();
+        let own = self.estimators.iter().zip(&light.parts).zip(weights);
+        let own = own.filter(|((e, _), _)| kind.is_none_or(|kind| kind == kind_of(&***e)));
+        let parts: Vec<(&Part, &Vec<f64>)> = own.map(|((_, part), w)| (part, w)).collect();
+        let is_straight = kind.is_none_or(|kind| kind == LightKind::Direct);
+        let mut planes = Vec::with_capacity(scene.channels.len());
+        for (number, channel) in scene.channels.iter().enumerate() {
+            let mut values = Vec::new();
+            values.try_reserve_exact(pixels).map_err(|_| self.too_large())?;
+            let seen = of_meters.iter().position(|meter| *meter == number).and_then(|at| metered.get(at));
+            if let Some(at) = recorded.iter().position(|r| *r == number).filter(|_| !parts.is_empty()) {
+                values.extend((0..pixels).map(|p| {
+                    parts.iter().map(|(part, w)| part.sums.get(p * channels + at) as f64 * w[p]).sum::<f64>() as f32
+                }));
+            } else if let Some(seen) = seen.filter(|_| is_straight) {
+                values.extend(seen.iter().map(|value| (value * time_s) as f32));
+            } else {
+                // A kind that there is none of, or a meter that sees nothing of this source.
+                values.resize(pixels, 0.0);
+            }
+            let name = kind.map_or_else(|| channel.name.clone(), |kind| format!("{}.{}", kind.name(), channel.name));
+            planes.push(ExposureChannel { name, unit: channel.unit.clone(), values });
+        }
+        Ok(planes)
     }
 
     /// What part of all light is veiling glare; `weights` are those of the parts.
@@ -521,6 +608,16 @@ impl Renderer {
 
     pub(crate) fn too_large(&self) -> RenderError {
         RenderError::Memory(memory_needed(&self.scene))
+    }
+}
+
+/// The kind of light that an estimator estimates.
+fn kind_of(estimator: &dyn Estimator) -> LightKind {
+    match estimator.name() {
+        // Stray light, as what lies on glass scatters.
+        name if name == veil::ESTIMATOR || name == SCATTER => LightKind::Glare,
+        name if name == ghosts::ESTIMATOR => LightKind::Ghosts,
+        _ => LightKind::Direct,
     }
 }
 

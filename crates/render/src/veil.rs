@@ -107,8 +107,8 @@ struct Plan {
     /// Where light of lights comes in; `None` where walks start at the imager, or the source directs its rays.
     opening: Option<FrontOpening>,
     from_source: bool,
-    /// Whether what glass alone reflected twice is another's.
-    ghosts_apart: bool,
+    /// What glass alone reflected so often at most is another's.
+    ghosts_order: u32,
     gains: Vec<PixelGain>,
     /// Cells down.
     rows: usize,
@@ -123,11 +123,12 @@ pub(crate) struct Veil {
 }
 
 impl Veil {
-    /// Of a share of the source: from it, or from the imager. `ghosts_apart`: an estimator of ghosts has its pairs of reflections.
+    /// Of a share of the source: from it, or from the imager. `ghosts_order`: an estimator of ghosts has its paths of so many
+    /// reflections, 0 for none.
     pub(crate) fn new(
         pipeline: Arc<Pipeline>,
         from_source: bool,
-        ghosts_apart: bool,
+        ghosts_order: u32,
         matter: StrayMatter,
     ) -> Result<Self, RenderError> {
         let scene = &pipeline.scene;
@@ -147,7 +148,7 @@ impl Veil {
         let size = scene.imager.size();
         let rows = (ACROSS as f64 * size.height_mm / size.width_mm).round().clamp(1.0, 4.0 * ACROSS as f64) as usize;
         let gains = gains(&pipeline);
-        let plan = Plan { interior, frame, opening, from_source, ghosts_apart, gains, rows };
+        let plan = Plan { interior, frame, opening, from_source, ghosts_order, gains, rows };
         let (numbers, seed) = (pipeline.numbers(PILOT_SEED ^ SEED), PILOT_SEED);
         let mut own = Self { pipeline, plan: Arc::new(plan), numbers, seed, scale: 1.0 };
         own.scale = own.pilot_scale()?;
@@ -210,6 +211,7 @@ impl Veil {
                         weight: state.rays.weights()[i],
                         mirrored: 0,
                         scattered: 0,
+                        diffused: 0,
                     };
                     walker.from_front(start, &mut Chance::new(self.seed ^ SEED, first + i as u64), |p| {
                         if self.is_ours(p) {
@@ -251,8 +253,9 @@ impl Veil {
 
     /// Whether light is stray, and no other estimator's.
     fn is_ours(&self, particle: &Particle) -> bool {
-        let is_pair = particle.mirrored == 2 && particle.scattered == 0;
-        !(particle.is_straight() || self.plan.ghosts_apart && is_pair)
+        let is_ghosts =
+            particle.scattered == 0 && particle.diffused == 0 && particle.mirrored <= self.plan.ghosts_order;
+        !(particle.is_straight() || is_ghosts)
     }
 
     fn radiance(&self) -> &dyn Radiance {

@@ -2,7 +2,8 @@
 //! section that is a bare name; and the order in which faults are told.
 
 use crate::bundled::{self, Bundled};
-use spectra_core::params::{Fault, Faults, Node, Params, SourceFile, Value, nearest};
+use spectra_core::names::nearest;
+use spectra_core::params::{Fault, Faults, Node, Params, SourceFile, Value};
 use std::path::Path;
 use std::sync::Arc;
 

@@ -182,9 +182,10 @@ impl GlareSection {
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct ReflectionsSection {
-    /// How often light may be reflected on its way to the imager: 0 (no ghosts) or 2. If absent, 2 where lights are so bright that
-    /// the brightest ghost is more than 1 % of the mean of the frame without them, and 0 elsewhere.
-    order: Option<Whole<0, 2>>,
+    /// How often light may be reflected on its way to the imager: 0 (no ghosts), 2 or 4. If absent, 2 where lights are so bright that
+    /// the brightest ghost is more than 1 % of the mean of the frame without them, and 0 elsewhere. Of 4, paths that begin with less than
+    /// 1e-8 of the light are left out.
+    order: Option<Whole<0, 4>>,
     /// Part of the light that film or sensor sends back into the lens as a mirror does, from 0 to 1; assumed 0.043 if absent, as of
     /// gelatin (index 1.52) in air.
     #[schemars(extend("minimum" = 0, "maximum" = 1))]
@@ -472,7 +473,7 @@ fn render_settings(
     let frame = s.frame.map(Whole::get);
     if s.reflections.order.is_some_and(|order| order.get() % 2 == 1) {
         let fault = params.fault("reflections.order", "light that is reflected once goes back out of the front");
-        faults.push(fault.hint("write `order: 2`, or `order: 0` for no ghosts"));
+        faults.push(fault.hint("write `order: 2` or `order: 4`, or `order: 0` for no ghosts"));
     }
     let can_backward = source.radiance().is_some() && imager.launch().is_some();
     let can_forward = source.emit().is_some() && imager.receive().is_some();

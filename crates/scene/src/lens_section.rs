@@ -15,7 +15,8 @@ use spectra_core::params::{
 };
 use spectra_core::resources::Resources;
 use spectra_lens::{
-    ApertureError, ApertureForm, CoatingForm, Criterion, FocusError, FocusSearch, Lens, MatteBox, Misalignment, Shape,
+    ApertureError, ApertureForm, CoatingForm, Criterion, DustForm, FocusError, FocusSearch, HazeForm, Lens, MatteBox,
+    Misalignment, ScratchesForm, Shape,
 };
 use std::sync::Arc;
 
@@ -32,6 +33,13 @@ pub(crate) struct LensSection {
     /// Coating of all surfaces: `ideal` (no reflection), `bare`, `single-layer`, `three-layer`, a layer or a stack. If absent,
     /// that of the lens file, or else the usual one of the lens's year.
     coating: Option<Part<CoatingForm>>,
+    /// Haze on all surfaces where glass meets air, in place of what the lens file says of it: the share of the light that each
+    /// scatters, and how wide.
+    haze: Option<Part<HazeForm>>,
+    /// Dust on them, likewise: the share that it covers, and how large its grains are.
+    dust: Option<Part<DustForm>>,
+    /// Scratches on them, likewise: the share that they cover or a drawing of them, and how wide they are.
+    scratches: Option<Part<ScratchesForm>>,
     /// Whether glass absorbs light; if absent, as the lens file says, or else true.
     absorption: Option<bool>,
     /// F-number, set with the real marginal ray; as in the lens file if absent. The f-number in the lens's name means wide open.
@@ -286,6 +294,10 @@ fn as_built(
     let coating = section.coating.as_ref();
     if let Some(coating) = coating.and_then(|node| faults.take(spectra_lens::read_coating(node, resources))) {
         lens = lens.with_coating(coating);
+    }
+    let soils = [section.haze.as_deref(), section.dust.as_deref(), section.scratches.as_deref()];
+    for layer in spectra_lens::read_layers(soils, resources, faults) {
+        lens = lens.with_layer(&layer);
     }
     lens.absorption = section.absorption.unwrap_or(lens.absorption);
     lens.squeeze = section.squeeze.unwrap_or(lens.squeeze);

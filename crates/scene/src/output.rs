@@ -1,7 +1,7 @@
 //! The `output` section: what a scene wants written. Each output is a stage of its own.
 
 use crate::{FileResources, Scene, SceneFilm, Shot};
-use spectra_core::frame::Wanted;
+use spectra_core::frame::{ExposureChannel, Wanted};
 use spectra_core::params::{Fault, Faults, Node, Params, Part, Value};
 use spectra_core::registry::{self, Context, StageOf};
 use spectra_core::sink::{Out, WriteFault};
@@ -42,6 +42,11 @@ pub trait Output: Send + Sync {
         Wanted::default()
     }
 
+    /// Kinds of light of which it holds layers of their own.
+    fn lights(&self) -> &[LightKind] {
+        &[]
+    }
+
     /// Writes a file; of films side by side, that of the film at a place.
     ///
     /// # Errors
@@ -60,6 +65,44 @@ pub trait Output: Send + Sync {
     fn write_series(&self, _: &Told<'_>, _: &mut dyn Out) -> Result<(), WriteFault> {
         Err(WriteFault::Format(format!("{} makes no file of several pictures", self.kind())))
     }
+}
+
+/// How light came to the imager. All kinds together are the exposure.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum LightKind {
+    /// Straight through the lens.
+    Direct,
+    /// By reflections that are traced as paths.
+    Ghosts,
+    /// By walks inside the lens, or scattered by what lies on its glass.
+    Glare,
+    /// What diffraction moves: it is negative where more is taken away than comes.
+    Star,
+}
+
+impl LightKind {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Direct, Self::Ghosts, Self::Glare, Self::Star];
+
+    /// Its name in a scene, and as a layer.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Direct => "direct",
+            Self::Ghosts => "ghosts",
+            Self::Glare => "glare",
+            Self::Star => "star",
+        }
+    }
+}
+
+/// The light of one kind.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LightLayer {
+    /// Which one.
+    pub kind: LightKind,
+    /// Channels in the order of the exposure's, under names such as `ghosts.Y`.
+    pub channels: Vec<ExposureChannel>,
 }
 
 /// What there is to say of a sweep or an animation.
@@ -148,6 +191,15 @@ pub(crate) fn check(
 }
 
 impl Scene {
+    /// Kinds of light of which an output holds layers.
+    #[must_use]
+    pub fn light_layers(&self) -> Vec<LightKind> {
+        LightKind::ALL
+            .into_iter()
+            .filter(|kind| self.output.iter().any(|output| output.lights().contains(kind)))
+            .collect()
+    }
+
     /// The output whose file has this ending (`.png`), and nothing before it but the picture's name: one of the scene's own, a
     /// finished picture of the scene's that has the ending, or else what is registered.
     #[must_use]

@@ -2,7 +2,8 @@
 
 use spectra_core::params::{Faults, Params};
 use spectra_core::resources::{Found, Resource, ResourceError, Resources};
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
+use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// What was asked for: path, folders, endings.
@@ -14,7 +15,12 @@ pub(crate) struct Remembered {
     inner: Arc<dyn Resources>,
     files: Mutex<HashMap<Key, Resource>>,
     documents: Mutex<HashMap<Key, Params>>,
+    /// Names of all that was asked for and is there, as messages have them.
+    names: Mutex<BTreeSet<String>>,
 }
+
+/// Before the names of those that are bundled.
+pub(crate) const BUNDLED: &str = "bundled:";
 
 fn key(path: &str, folders: &[&str], endings: &[&str]) -> Key {
     let owned = |all: &[&str]| all.iter().map(|s| (*s).to_owned()).collect();
@@ -34,22 +40,34 @@ fn once<T: Clone, E>(known: &Mutex<HashMap<Key, T>>, key: Key, read: impl FnOnce
 
 impl Remembered {
     pub(crate) fn new(inner: Arc<dyn Resources>) -> Self {
-        Self { inner, files: Mutex::default(), documents: Mutex::default() }
+        Self { inner, files: Mutex::default(), documents: Mutex::default(), names: Mutex::default() }
+    }
+
+    /// The files on disk among those that were asked for so far.
+    pub(crate) fn on_disk(&self) -> Vec<PathBuf> {
+        let names = self.names.lock().unwrap_or_else(PoisonError::into_inner);
+        names.iter().filter(|name| !name.starts_with(BUNDLED)).map(PathBuf::from).collect()
+    }
+
+    fn note(&self, name: &str) {
+        self.names.lock().unwrap_or_else(PoisonError::into_inner).insert(name.to_owned());
     }
 }
 
 impl Resources for Remembered {
     fn read(&self, path: &str, folders: &[&str], endings: &[&str], limit: u64) -> Result<Resource, ResourceError> {
         let read = once(&self.files, key(path, folders, endings), || self.inner.read(path, folders, endings, limit))?;
+        self.note(&read.name);
         let size = read.bytes.len() as u64;
         if size > limit { Err(ResourceError::TooLarge(size, limit)) } else { Ok(read) }
     }
 
     fn find(&self, path: &str, folders: &[&str], endings: &[&str], limit: u64) -> Result<Found, ResourceError> {
-        self.inner.find(path, folders, endings, limit)
+        self.inner.find(path, folders, endings, limit).inspect(|found| self.note(&found.name))
     }
 
     fn document(&self, path: &str, folders: &[&str], endings: &[&str]) -> Result<Params, Faults> {
-        once(&self.documents, key(path, folders, endings), || self.inner.document(path, folders, endings))
+        let read = || self.inner.document(path, folders, endings);
+        once(&self.documents, key(path, folders, endings), read).inspect(|read| self.note(&read.node().file.name))
     }
 }

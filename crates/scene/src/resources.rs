@@ -3,7 +3,8 @@
 use crate::advice::{FileIs, other_file};
 use crate::bundled::{Bundled, other_kind};
 use crate::yaml;
-use spectra_core::params::{Fault, Faults, Node, Params, SourceFile, nearest};
+use spectra_core::names::nearest;
+use spectra_core::params::{Fault, Faults, Node, Params, SourceFile};
 use spectra_core::resources::{Found, Resource, ResourceError, Resources};
 use spectra_exchange::Format;
 use std::borrow::Cow;
@@ -12,6 +13,12 @@ use std::path::{Path, PathBuf};
 
 /// Largest YAML document, bytes.
 const MAX_DOCUMENT: u64 = 4 << 20;
+
+/// The name of the lens that is none: an ideal one, which `spectra film develop` records for a picture that it exposed film to
+/// by its own pixels.
+pub const NO_LENS: &str = "no-lens";
+/// Its f-number. Its focal length is of no account: the picture fills the frame.
+pub const NO_LENS_F_NUMBER: f64 = 2.8;
 
 /// Looks beside a file, then beside others, then among the bundled data.
 #[derive(Clone, Debug)]
@@ -56,6 +63,17 @@ impl FileResources {
         let folders: Vec<String> = self.folders().map(shown).collect();
         format!(" (looked in {}, and among the bundled data)", folders.join(", "))
     }
+}
+
+fn no_lens() -> Result<Params, Faults> {
+    const FOCAL_MM: f64 = 100.0;
+    let radius_mm = FOCAL_MM / (2.0 * NO_LENS_F_NUMBER);
+    let surface = format!(
+        "{{kind: thin-lens, focal-length: {FOCAL_MM}, thickness: {FOCAL_MM}, semi-diameter: {radius_mm}, stop: true}}"
+    );
+    let name = format!("no lens (the picture itself, as an ideal lens at f/{NO_LENS_F_NUMBER} images it)");
+    let text = format!("name: {name}\nsurfaces: [{surface}]\n");
+    Params::section(yaml::parse(SourceFile::new(NO_LENS, text))?, "")
 }
 
 impl Resources for FileResources {
@@ -116,6 +134,9 @@ impl Resources for FileResources {
     }
 
     fn document(&self, path: &str, folders: &[&str], endings: &[&str]) -> Result<Params, Faults> {
+        if path == NO_LENS && folders == ["lenses"] {
+            return no_lens();
+        }
         // A lens of another program is read as the lens file that its import would write.
         let foreign = Format::of_name(path).filter(|_| folders.contains(&"lenses"));
         let missing = match folders {

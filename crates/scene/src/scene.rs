@@ -48,7 +48,7 @@ pub enum Lights {
 /// Light that surfaces of the lens reflect on its way to the imager.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Reflections {
-    /// Reflections on the way: 0 for none, 2 for pairs; `None` for pairs where lights are bright enough to matter.
+    /// Reflections on the way: 0 for none, 2 for pairs, 4 for more; `None` for pairs where lights are bright enough to matter.
     pub order: Option<u32>,
     /// Part of the light that the imager itself reflects as a mirror does.
     pub imager: f64,

@@ -1,6 +1,6 @@
 //! A picture that was taken: the light of a scene, and what can be made of it.
 
-use crate::{FilmTime, Scene, SceneFilm};
+use crate::{FilmTime, LightLayer, Scene, SceneFilm};
 use serde_json::Value;
 use spectra_core::Isa;
 use spectra_core::frame::{Beside, DisplayPicture, ExposureChannel, ExposureFrame, Finished, ImageState, Wanted};
@@ -27,6 +27,8 @@ pub struct Shot<'a> {
     pub isa: Isa,
     /// What is said of how it came about: the content of `SCENE.json`; null where nobody says.
     pub report: Value,
+    /// The light by its kinds, of those that an output holds.
+    pub layers: &'a [LightLayer],
     pictures: OnceLock<Result<All, String>>,
 }
 
@@ -40,13 +42,19 @@ impl<'a> Shot<'a> {
         attributes: &'a [(String, String)],
         isa: Isa,
     ) -> Self {
-        Self { scene, exposure, times, attributes, isa, report: Value::Null, pictures: OnceLock::new() }
+        Self { scene, exposure, times, attributes, isa, report: Value::Null, layers: &[], pictures: OnceLock::new() }
     }
 
     /// The same with what is said of how it came about.
     #[must_use]
     pub fn told(self, report: Value) -> Self {
         Self { report, ..self }
+    }
+
+    /// The same with the light by its kinds.
+    #[must_use]
+    pub fn with_layers(self, layers: &'a [LightLayer]) -> Self {
+        Self { layers, ..self }
     }
 
     /// By what the values of each channel are to be multiplied, to be what the films got.

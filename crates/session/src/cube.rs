@@ -6,7 +6,7 @@ use crate::still::F_NUMBER;
 use crate::{SessionError, Setting};
 use rayon::prelude::*;
 use spectra_color::{RgbSpace, ciede2000, lab, xyz_of_reflectance};
-use spectra_core::frame::{ExposureChannel, ExposureFrame, FrameSize};
+use spectra_core::frame::{ExposureChannel, ExposureFrame, FrameSize, Wanted};
 use spectra_core::math::{log2, pow};
 use spectra_core::numbers::mix64;
 use spectra_core::params::{Faults, Key, Node, Params, SourceFile, Value};
@@ -61,14 +61,14 @@ const GRAY: f64 = 0.18;
 pub(crate) const WHITE_CD_M2: f64 = 5000.0;
 
 /// The film, and what it gets of colors.
-struct Chain {
+pub(crate) struct Chain {
     film: Box<dyn Film>,
     model: Box<dyn ColorModel>,
     channels: Vec<Channel>,
     /// Exposure per integral over the model's spectra.
     factor: f64,
     /// What the meter gets of a mid gray.
-    metered: Vec<f64>,
+    pub(crate) metered: Vec<f64>,
 }
 
 impl Cube {
@@ -77,7 +77,7 @@ impl Cube {
     /// # Errors
     /// What is wrong with the settings; the film cannot be developed.
     pub fn file(&self, version: &str) -> Result<CubeFile, SessionError> {
-        let chain = self.chain()?;
+        let chain = Chain::of(&self.settings, &self.illuminant)?;
         let side: Vec<f64> = (0..self.size).map(|i| self.linear(i as f64 / (self.size - 1) as f64)).collect();
         let mut lattice = Vec::with_capacity(self.size * self.size * self.size);
         // Red runs fastest (the order of `.cube`).
@@ -106,46 +106,6 @@ impl Cube {
     /// Its inverse, within the table.
     fn place(&self, linear: f64) -> f64 {
         if linear <= 0.0 { 0.0 } else { (0.5 + log2(linear / GRAY) / self.stops).clamp(0.0, 1.0) }
-    }
-
-    fn chain(&self) -> Result<Chain, Faults> {
-        const MADE: &str = "--made";
-        let resources = FileResources::beside(Path::new(""));
-        let text = "{kind: stock, metering: average, scatter: false, adjacency: false, halation: off, grain: false, optics: off}";
-        let film = yaml::parse(SourceFile::new(MADE, text))?;
-        let entries = vec![(Key { text: "film".to_owned(), span: Default::default() }, film.clone())];
-        let mut root = Node::new(Value::Map(entries), film.span, film.file);
-        let mut faults = Faults::new();
-        for setting in &self.settings {
-            let node = faults.take(yaml::parse(SourceFile::new(setting.said.as_str(), setting.value.as_str())));
-            if let Some(node) = node {
-                if setting.path == "film.paper.grade" && node.as_str() == Some("auto") {
-                    let fault = node.fault("an automatic print suits each frame, and a table is the same for all");
-                    faults.push(fault.hint("a grade from 0 to 5"));
-                }
-                faults.take(root.set_path(&setting.path, node));
-            }
-        }
-        let light = yaml::parse(SourceFile::new(self.illuminant.said.as_str(), self.illuminant.value.as_str()))?;
-        let named = light.as_str().unwrap_or_default();
-        let found = find_emission_in(named, &resources).map_err(|e| e.faults(|text| light.fault(text)));
-        let found = faults.take(found);
-        let Some(found) = faults.into_result(found)? else { return Err(Faults::new()) };
-        let light = found.to_power(&BAND);
-        let context = Context::new(&resources, BAND);
-        let film = root.get("film").cloned().unwrap_or(root);
-        let film = registry::build::<dyn Film>(&Params::stage(film, "film")?, &context)?;
-        let color = Params::stage(yaml::parse(SourceFile::new(MADE, "{kind: smooth}"))?, "source.color")?;
-        let model = registry::build::<dyn ColorModel>(&color, &Context { illuminant: Some(&light), ..context })?;
-        let channels = film.channels();
-        let white = model.spectrum([1.0; 3]);
-        let lux =
-            spectra_spectrum::constants::LUMINOUS_EFFICACY_LM_PER_W * Observer::cie_1931_2deg().xyz_of_power(&white)[1];
-        let factor = WHITE_CD_M2 / lux * PI / (4.0 * F_NUMBER * F_NUMBER) * film.exposure_time_s();
-        let gray = model.spectrum([GRAY; 3]);
-        let mut chain = Chain { film, model, channels, factor, metered: Vec::new() };
-        chain.metered = chain.seen(&gray);
-        Ok(chain)
     }
 
     /// Interpolates the table as other programs do: linear along each side.
@@ -236,18 +196,75 @@ impl Cube {
 }
 
 impl Chain {
+    /// The film of these settings, metered for a mid gray in the light `illuminant`; what needs a pixel's neighbors is off.
+    pub(crate) fn of(settings: &[Setting], illuminant: &Setting) -> Result<Self, Faults> {
+        const MADE: &str = "--made";
+        let resources = FileResources::beside(Path::new(""));
+        let text = "{kind: stock, metering: average, scatter: false, adjacency: false, halation: off, grain: false, optics: off}";
+        let film = yaml::parse(SourceFile::new(MADE, text))?;
+        let entries = vec![(Key { text: "film".to_owned(), span: Default::default() }, film.clone())];
+        let mut root = Node::new(Value::Map(entries), film.span, film.file);
+        let mut faults = Faults::new();
+        for setting in settings {
+            let node = faults.take(yaml::parse(SourceFile::new(setting.said.as_str(), setting.value.as_str())));
+            if let Some(node) = node {
+                if setting.path == "film.paper.grade" && node.as_str() == Some("auto") {
+                    let fault = node.fault("an automatic print suits each frame, and a table is the same for all");
+                    faults.push(fault.hint("a grade from 0 to 5"));
+                }
+                faults.take(root.set_path(&setting.path, node));
+            }
+        }
+        let light = yaml::parse(SourceFile::new(illuminant.said.as_str(), illuminant.value.as_str()))?;
+        let named = light.as_str().unwrap_or_default();
+        let found = find_emission_in(named, &resources).map_err(|e| e.faults(|text| light.fault(text)));
+        let found = faults.take(found);
+        let Some(found) = faults.into_result(found)? else { return Err(Faults::new()) };
+        let light = found.to_power(&BAND);
+        let context = Context::new(&resources, BAND);
+        let film = root.get("film").cloned().unwrap_or(root);
+        let film = registry::build::<dyn Film>(&Params::stage(film, "film")?, &context)?;
+        let color = Params::stage(yaml::parse(SourceFile::new(MADE, "{kind: smooth}"))?, "source.color")?;
+        let model = registry::build::<dyn ColorModel>(&color, &Context { illuminant: Some(&light), ..context })?;
+        let channels = film.channels();
+        let white = model.spectrum([1.0; 3]);
+        let lux =
+            spectra_spectrum::constants::LUMINOUS_EFFICACY_LM_PER_W * Observer::cie_1931_2deg().xyz_of_power(&white)[1];
+        let factor = WHITE_CD_M2 / lux * PI / (4.0 * F_NUMBER * F_NUMBER) * film.exposure_time_s();
+        let gray = model.spectrum([GRAY; 3]);
+        let mut chain = Self { film, model, channels, factor, metered: Vec::new() };
+        chain.metered = chain.seen(&gray);
+        Ok(chain)
+    }
+
     /// The picture of lights, sRGB encoded, 0 to 1.
     fn shown_of(&self, lights: impl Iterator<Item = SpectralPower>) -> Result<Vec<[f64; 3]>, SessionError> {
         self.shown(&lights.map(|light| self.seen(&light)).collect::<Vec<_>>())
     }
 
     /// What each channel gets of a light.
-    fn seen(&self, light: &SpectralPower) -> Vec<f64> {
+    pub(crate) fn seen(&self, light: &SpectralPower) -> Vec<f64> {
         self.channels.iter().map(|channel| self.factor * light.seen_by(&channel.response)).collect()
     }
 
     /// The picture of what each channel got, sRGB encoded, 0 to 1. The meter saw mid gray.
     fn shown(&self, exposures: &[Vec<f64>]) -> Result<Vec<[f64; 3]>, SessionError> {
+        let picture = self.film.develop(&self.frame(exposures)).map_err(SessionError::Failed)?;
+        let space = RgbSpace::srgb();
+        let encoded = |rgb: &[f32; 3]| space.encode(rgb.map(|v| f64::from(v).clamp(0.0, 1.0)));
+        Ok(picture.rgb.iter().map(encoded).collect())
+    }
+
+    /// The same in linear light of sRGB primaries, brought into no gamut as far as the film knows such a picture.
+    pub(crate) fn open(&self, exposures: &[Vec<f64>]) -> Result<Vec<[f64; 3]>, SessionError> {
+        let wanted = Wanted { open: true, ..Wanted::default() };
+        let finished = self.film.finish(&self.frame(exposures), wanted).map_err(SessionError::Failed)?;
+        let picture = finished.beside.open.unwrap_or(finished.shown);
+        Ok(picture.rgb.iter().map(|rgb| rgb.map(f64::from)).collect())
+    }
+
+    /// A row of pixels with what each channel got.
+    fn frame(&self, exposures: &[Vec<f64>]) -> ExposureFrame {
         let pictured = self.film.picture_channels();
         let plane = |k: usize| -> Vec<f32> {
             let of_meter = k >= pictured;
@@ -260,10 +277,6 @@ impl Chain {
         });
         let width = exposures.len() as u32;
         let size = FrameSize { width_px: width, height_px: 1, width_mm: f64::from(width), height_mm: 1.0 };
-        let frame = ExposureFrame { size, channels: channels.collect() };
-        let picture = self.film.develop(&frame).map_err(SessionError::Failed)?;
-        let space = RgbSpace::srgb();
-        let encoded = |rgb: &[f32; 3]| space.encode(rgb.map(|v| f64::from(v).clamp(0.0, 1.0)));
-        Ok(picture.rgb.iter().map(encoded).collect())
+        ExposureFrame { size, channels: channels.collect() }
     }
 }

@@ -5,16 +5,16 @@
 
 use crate::cube::WHITE_CD_M2;
 use crate::run::picture;
-use crate::{Ended, Event, Host, Job, LightFrom, Names, Place, SessionError, still, words};
+use crate::{Ended, Event, Host, Job, LightFrom, Names, Place, SessionError, words};
 use serde_json::{Value, json};
 use spectra_core::Isa;
 use spectra_core::params::{Fault, Faults, Node, Params, SourceFile, Warning};
 use spectra_core::registry::{self, Context};
-use spectra_core::resources::{Found, Resource, ResourceError, Resources};
+use spectra_core::resources::{ResourceError, Resources};
 use spectra_core::spectral::BAND;
 use spectra_core::stage::Imager;
 use spectra_pictures::read::{Choice, Header, header};
-use spectra_scene::{FileResources, FilmTime, Series, document, series_of_tree, yaml};
+use spectra_scene::{FileResources, FilmTime, NO_LENS, Series, document, series_of_tree, yaml};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -72,8 +72,6 @@ pub const TRACED_PX: u32 = 1920;
 
 /// What the made scene is called where a value is nobody's.
 const MADE: &str = "--made";
-/// How the made scene names the lens that is none.
-const NO_LENS: &str = "no-lens";
 /// A file of one picture, bytes; the limit of `source: picture`.
 const MAX_BYTES: u64 = 1 << 30;
 /// Keys of the film that find the exposure; where it is known they are left out.
@@ -244,8 +242,7 @@ fn scene(job: &Develop<'_>, plate: &Plate, metered: Option<&FilmTime>) -> Result
     faults.into_result(())?;
     // For the record: the scene as somebody would write it.
     root.file = Arc::new(SourceFile::new(MADE, document(&root)));
-    let diagonal_mm = (width_mm * width_mm + height_mm * height_mm).sqrt();
-    let resources: Arc<dyn Resources> = Arc::new(WithNoLens { files, focal_mm: diagonal_mm });
+    let resources: Arc<dyn Resources> = Arc::new(files);
     let name = Path::new(&plate.output).file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
     Ok((series_of_tree(&format!("{name}.yaml"), root, &overrides, resources)?, light))
 }
@@ -302,35 +299,4 @@ fn pixels(job: &Develop<'_>, header: &Header, has_lens: bool) -> Result<[u32; 2]
         None => return Ok(own),
     };
     Ok(upright.map(|px| ((px * side / longest).round() as u32).max(1)))
-}
-
-/// Files, and the lens of scenes that have none.
-struct WithNoLens {
-    files: FileResources,
-    focal_mm: f64,
-}
-
-impl Resources for WithNoLens {
-    fn read(&self, path: &str, folders: &[&str], endings: &[&str], most: u64) -> Result<Resource, ResourceError> {
-        self.files.read(path, folders, endings, most)
-    }
-
-    fn find(&self, path: &str, folders: &[&str], endings: &[&str], most: u64) -> Result<Found, ResourceError> {
-        self.files.find(path, folders, endings, most)
-    }
-
-    fn document(&self, path: &str, folders: &[&str], endings: &[&str]) -> Result<Params, Faults> {
-        if path != NO_LENS || folders != ["lenses"] {
-            return self.files.document(path, folders, endings);
-        }
-        let (focal, radius) = (self.focal_mm, self.focal_mm / (2.0 * still::F_NUMBER));
-        let surface = format!(
-            "{{kind: thin-lens, focal-length: {focal}, thickness: {focal}, semi-diameter: {radius}, stop: true}}"
-        );
-        let text = format!(
-            "name: no lens (the picture itself, as an ideal lens at f/{} images it)\nsurfaces: [{surface}]\n",
-            still::F_NUMBER
-        );
-        Params::section(yaml::parse(SourceFile::new(MADE, text))?, "")
-    }
 }

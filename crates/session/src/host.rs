@@ -28,6 +28,8 @@ pub enum Event<'a> {
         /// Of how many.
         of: usize,
     },
+    /// The scene is right; where light passes its lens is searched, which takes seconds behind a drawing as aperture.
+    Preparing,
     /// Nothing is wrong: light is traced from now on.
     Ready,
     /// What a person should know before believing the picture.

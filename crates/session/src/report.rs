@@ -67,7 +67,7 @@ impl Report<'_> {
             })).collect::<Vec<_>>()),
             "seed": settings.seed,
             "direction": match &rendering.estimators[..] {
-                all if all.iter().filter(|name| !["ghosts", "glare"].contains(name)).count() > 1 => "both",
+                all if all.iter().filter(|name| !["ghosts", "glare", "scatter"].contains(name)).count() > 1 => "both",
                 _ => settings.direction.name(),
             },
             "samples_per_pixel": (!forward).then_some(settings.samples),
@@ -143,6 +143,7 @@ impl Report<'_> {
             "lost_by": {
                 "rims": ledger.rims_w,
                 "absorbed": ledger.absorbed_w,
+                "scattered": ledger.scattered_w,
                 "out_of_the_front": ledger.front_w,
                 "beside_the_frame": ledger.beside_w,
             },

@@ -71,6 +71,7 @@ pub(crate) fn picture(job: &Job<'_>, host: &dyn Host) -> Result<(Ended, Vec<Film
     let files = Files::of(&job.names, session.scene(), &member)?;
     // What cannot be rendered leaves no folder behind.
     fits(&session, host)?;
+    host.hear(Event::Preparing);
     let exposed = match job.light {
         LightFrom::Rays => session.prepare(host.workers()).map(|()| None)?,
         LightFrom::Pixels => Some(session.expose()?),
@@ -97,7 +98,7 @@ pub(crate) fn picture(job: &Job<'_>, host: &dyn Host) -> Result<(Ended, Vec<Film
     let report = Report { job, scene, rendering, times: &times, seconds: *seconds, threads: host.threads() };
     let shown: Vec<String> = names.iter().map(|name| host.folder().shown(name)).collect();
     let told = report.to_json(&shown[..files.names().len()]);
-    let shot = Shot::new(scene, exposure, &times, &attributes, job.isa).told(told);
+    let shot = Shot::new(scene, exposure, &times, &attributes, job.isa).told(told).with_layers(&rendering.layers);
     files.write(&shot, host.folder(), Some([host.folder(), host.elsewhere()]))?;
     if let Some(file) = &report_file {
         write_report(host.folder(), file, &shot.report)?;

@@ -206,6 +206,7 @@ impl Work<'_> {
             Report { job, scene: &scene, rendering: &rendering, times: &times, seconds, threads: host.threads() };
         let told = report.to_json(&shown);
         let shot = Shot::new(&scene, &rendering.exposure, &times, &attributes, job.isa).told(told);
+        let shot = shot.with_layers(&rendering.layers);
         picture.files.write(&shot, host.folder(), Some([host.folder(), host.elsewhere()]))?;
         let mut said = entry(&picture.member);
         if let Value::Object(figures) = shot.report.clone() {

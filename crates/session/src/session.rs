@@ -7,10 +7,10 @@ use spectra_core::resources::Resources;
 use spectra_core::sink::Sink;
 use spectra_core::stage::WavelengthDensity;
 use spectra_core::{Isa, frame::ExposureFrame};
-use spectra_render::{Light, Renderer};
+use spectra_render::{Effort, Light, RenderError, Renderer};
 use spectra_scene::{Developed, Scene, Series, Shot, load_series, series_of_text, series_of_tree};
 use std::io::{self, Read, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// What a change of a scene leaves of what was made before.
@@ -34,6 +34,9 @@ pub struct Session {
     scene: Arc<Scene>,
     /// The scene made ready, once light is asked for, with that light.
     ready: Option<(Renderer, Light)>,
+    /// A density of wavelengths that fits the scene, where one is known from before.
+    density: Option<Arc<dyn WavelengthDensity>>,
+    effort: Effort,
 }
 
 impl Session {
@@ -77,7 +80,7 @@ impl Session {
         isa: Isa,
     ) -> Result<Self, SessionError> {
         let scene = series.scene_after(index, other)?.into();
-        Ok(Self { series, index, isa, scene, ready: None })
+        Ok(Self { series, index, isa, scene, ready: None, density: None, effort: Effort::Full })
     }
 
     /// The scene, assembled.
@@ -100,10 +103,24 @@ impl Session {
         Self::after(self.series.with_all(texts)?, self.index, Some(Arc::clone(&self.scene)), self.isa)
     }
 
+    /// The same for a first look: what passes the lens, and what meters see, is found with less effort, and so the bits are others.
+    ///
+    /// # Errors
+    /// As [`Session::branch`].
+    pub fn draft(&self, texts: &[String]) -> Result<Self, SessionError> {
+        Ok(Self { effort: Effort::Draft, ..self.branch(texts)? })
+    }
+
     /// The picture among those that the scene's file stands for.
     #[must_use]
     pub fn member(&self) -> spectra_scene::Member {
         self.series.member(self.index)
+    }
+
+    /// The files on disk that its pictures rest on: the scene, what it includes, and what its stages have asked for so far.
+    #[must_use]
+    pub fn files(&self) -> Vec<PathBuf> {
+        self.series.files_on_disk()
     }
 
     /// What a person should know before believing the picture.
@@ -111,20 +128,31 @@ impl Session {
         self.series.warnings().iter().chain(&self.scene.warnings)
     }
 
-    /// Makes the scene ready, if it is not.
+    /// Makes the scene ready, if it is not; where the workers are to stop meanwhile, it stays as it is.
     ///
     /// # Errors
     /// What shows only once the stages are put together, as a fault of the scene.
     pub fn prepare(&mut self, workers: &dyn Workers) -> Result<(), SessionError> {
-        if self.ready.is_none() {
-            self.ready = Some(self.made(Renderer::on(Arc::clone(&self.scene), self.isa, workers))?);
+        if self.ready.is_some() {
+            return Ok(());
+        }
+        match self.made(&self.scene, self.density.clone(), workers) {
+            Ok(ready) => self.ready = Some(ready),
+            Err(RenderError::Stopped) => {}
+            Err(error) => return Err(SessionError::of(&error, &self.scene)),
         }
         Ok(())
     }
 
-    fn made(&self, renderer: Result<Renderer, spectra_render::RenderError>) -> Result<(Renderer, Light), SessionError> {
-        let made = renderer.and_then(|renderer| renderer.begin().map(|light| (renderer, light)));
-        made.map_err(|error| SessionError::of(&error, &self.scene))
+    fn made(
+        &self,
+        scene: &Arc<Scene>,
+        density: Option<Arc<dyn WavelengthDensity>>,
+        workers: &dyn Workers,
+    ) -> Result<(Renderer, Light), RenderError> {
+        let renderer = Renderer::with_effort(Arc::clone(scene), self.isa, density, self.effort, workers)?;
+        let light = renderer.begin()?;
+        Ok((renderer, light))
     }
 
     /// Of each pixel, so many samples are traced.
@@ -210,7 +238,7 @@ impl Session {
         let (scene, exposure) = (&self.scene, &rendering.exposure);
         let times = scene.film_times(exposure);
         let attributes = header::attributes(scene, exposure, &times, rendering.partial, env!("CARGO_PKG_VERSION"));
-        let shot = Shot::new(scene, exposure, &times, &attributes, self.isa);
+        let shot = Shot::new(scene, exposure, &times, &attributes, self.isa).with_layers(&rendering.layers);
         let files = Files::of(&Names::of_scene(), scene, &self.member())?;
         files.write(&shot, sink, None)?;
         Ok(files.names())
@@ -230,6 +258,19 @@ impl Session {
     /// # Errors
     /// As [`Session::change`].
     pub fn change_on(&mut self, text: &str, workers: &dyn Workers) -> Result<Kept, SessionError> {
+        self.changed(text, Some(workers))
+    }
+
+    /// The same, but what the change asks to be made ready anew is made when light is asked for again, where it can be stopped. What
+    /// shows only then is told then.
+    ///
+    /// # Errors
+    /// What is wrong with the stages of the scene as it would be.
+    pub fn change_later(&mut self, text: &str) -> Result<Kept, SessionError> {
+        self.changed(text, None)
+    }
+
+    fn changed(&mut self, text: &str, workers: Option<&dyn Workers>) -> Result<Kept, SessionError> {
         let series = self.series.with(text)?;
         let before = Arc::clone(&self.scene);
         let scene: Arc<Scene> = series.scene_after(self.index, Some(Arc::clone(&before)))?.into();
@@ -251,26 +292,25 @@ impl Session {
             && Arc::ptr_eq(&before.imager, &scene.imager)
             && before.render.traces_as(&scene.render);
         let mut kept = Kept { light: same_light, density: system, lens, source };
-        self.ready = match self.ready.take() {
-            None => {
-                kept = Kept { light: false, density: false, ..kept };
+        let ready = self.ready.take();
+        let known = ready.as_ref().map(|(renderer, _)| renderer.density()).or(self.density.as_ref());
+        let density = known.filter(|_| system).cloned();
+        self.ready = match (ready, workers) {
+            (None, _) => {
+                kept = Kept { light: false, density: density.is_some(), ..kept };
                 None
             }
-            Some(ready) if same_light => Some(ready),
-            Some(ready) => {
-                let density = system.then(|| Arc::clone(ready.0.density()));
-                let made = Renderer::with_density(Arc::clone(&scene), self.isa, density, workers);
-                let made = made.and_then(|renderer| renderer.begin().map(|light| (renderer, light)));
-                match made {
-                    Ok(made) => Some(made),
-                    Err(error) => {
-                        self.ready = Some(ready);
-                        return Err(SessionError::of(&error, &scene));
-                    }
+            (Some(ready), _) if same_light => Some(ready),
+            (Some(_), None) => None,
+            (Some(ready), Some(workers)) => match self.made(&scene, density.clone(), workers) {
+                Ok(made) => Some(made),
+                Err(error) => {
+                    self.ready = Some(ready);
+                    return Err(SessionError::of(&error, &scene));
                 }
-            }
+            },
         };
-        (self.series, self.scene) = (series, scene);
+        (self.series, self.scene, self.density) = (series, scene, density);
         Ok(kept)
     }
 

@@ -16,7 +16,7 @@ use spectra_scene::Scene;
 use std::f64::consts::PI;
 
 /// F-number of the ideal lens.
-pub(crate) const F_NUMBER: f64 = 2.8;
+pub(crate) const F_NUMBER: f64 = spectra_scene::NO_LENS_F_NUMBER;
 
 /// Points along each side of the table, closer together toward 0 as [`value`] has it: two to a cell of the table that the `smooth`
 /// model looks its own coefficients up in.
@@ -65,6 +65,7 @@ pub(crate) fn expose(scene: &Scene) -> Result<Rendering, SessionError> {
     });
     Ok(Rendering {
         exposure: ExposureFrame { size, channels: channels.collect() },
+        layers: Vec::new(),
         rays: 0,
         losses: LossCounts::default(),
         detected: 0,

@@ -59,10 +59,11 @@ pub(crate) fn of(report: &Report<'_>) -> String {
         };
         let share = |part: f64| spectra_render::percent(part / ledger.emitted_w);
         text.push_str(&format!(
-            ", ghosts of {} paths{why}: {} of the light of the lights, {} left after two reflections",
+            ", ghosts of {} paths{why}: {} of the light of the lights, {} left after {} reflections",
             ledger.paths.len(),
             share(ledger.ghosts_w),
-            share(ledger.not_traced_w)
+            share(ledger.not_traced_w),
+            if ledger.order > 2 { "four" } else { "two" }
         ));
     }
     if let Some(glare) = rendering.glare {

@@ -15,6 +15,7 @@
 //! | `lines:404.66=1,e=2` | several lines with their powers |
 //! | `mine.yaml` | any spectrum of those in [`crate::document`]: signed Gaussians, histograms, products ... |
 //! | `FdC`, `F'eC'` | the three lines of a set, of equal power |
+//! | `rgb-lines` | three lines of the hues of sRGB's primaries that together are white (a form that the color models bring) |
 //! | `function:exp(-((w - 550) / 20)^4)` | a formula of the wavelength w in nm |
 //! | `0.5 * D65 + line:e`, `1 - wratten-25`, `(A + D65) / 2`, `wratten-12^2` | algebra, with spaces around `+ - /`; see [`crate::expression`] |
 //!
@@ -199,7 +200,7 @@ fn load(name: &str, files: Option<&dyn Resources>, wanted: Kind) -> Result<Found
     Loader::new(files).piece(name, wanted)?.into_found(wanted)
 }
 
-/// What a bundled spectrum or a file says of itself: name, source, licence, range. `None` for a spectrum that is written
+/// What a bundled spectrum or a file says of itself: name, source, license, range. `None` for a spectrum that is written
 /// out, and for what is not found.
 #[must_use]
 pub fn meta_in(name: &str, files: &dyn Resources) -> Option<Meta> {

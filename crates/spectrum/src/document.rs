@@ -10,7 +10,7 @@
 //! ```
 //!
 //! A file may say what it is a spectrum `of` (`emission`, `transmittance`, `reflectance`, `sensitivity`) and, in words,
-//! its `name`, `source`, `licence`, `conditions` and `note`. Without `of` a function is what is wanted where it is named.
+//! its `name`, `source`, `license`, `conditions` and `note`. Without `of` a function is what is wanted where it is named.
 
 use crate::by_name::Loader;
 use crate::kind::{SpectrumKind, of_params};
@@ -36,7 +36,9 @@ struct Head {
     name: Option<String>,
     /// Where the figures come from.
     source: Option<String>,
-    /// Licence of the figures.
+    /// License of the figures.
+    license: Option<String>,
+    /// The same, as older files write it.
     licence: Option<String>,
     /// How it was measured: angle, temperature, age.
     conditions: Option<String>,
@@ -128,7 +130,8 @@ pub(crate) fn of_file(
         }
         None => piece,
     };
-    let Head { name, source, licence, conditions, note, .. } = said;
+    let Head { name, source, license, licence, conditions, note, .. } = said;
+    let license = license.or(licence);
     let notes = note.into_iter().collect();
-    Ok((piece, Meta { name, kind: of, source, licence, conditions, notes, ..Meta::default() }))
+    Ok((piece, Meta { name, kind: of, source, license, conditions, notes, ..Meta::default() }))
 }

@@ -18,6 +18,10 @@ impl Shape {
         }
         let is_high = |nm: f64| self.at(nm) >= 0.5 * height;
         let side = |toward_nm: f64| -> Option<f64> {
+            // Highest at the very end: on that side it does not fall.
+            if toward_nm == peak_nm {
+                return None;
+            }
             let step = STEP_NM.copysign(toward_nm - peak_nm);
             let mut high = peak_nm;
             let mut low = loop {
@@ -94,8 +98,11 @@ mod tests {
         }
         let both = find_emission("line:500 + 3 * line:600").expect("a light");
         assert_eq!(both.centroid_nm(), Some(575.0));
-        let open = find_emission("A").expect("a light");
-        assert!(open.continuum().and_then(|c| c.half_height_nm()).is_none());
+        // Of what is highest at an end of the band, the other side alone is no width.
+        for open in ["A", "D65 / A / 10", "1 - 0.9 * gaussian:550,20", "rectangle:300,500"] {
+            let open = find_emission(open).expect("a light");
+            assert!(open.continuum().and_then(|c| c.half_height_nm()).is_none());
+        }
         assert!(find_emission("line:t").expect("a light").centroid_nm().is_none());
     }
 }

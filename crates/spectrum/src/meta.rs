@@ -207,7 +207,7 @@ pub struct Meta {
     /// Publication, maker's sheet or measurement.
     pub source: Option<String>,
     /// Terms under which the figures came.
-    pub licence: Option<String>,
+    pub license: Option<String>,
     /// Conditions of the measurement.
     pub conditions: Option<String>,
     /// Of `kind: lines`: where their strengths come from.
@@ -231,7 +231,7 @@ impl Meta {
         "quantity",
         "unit",
         "source",
-        "licence",
+        "license",
         "conditions",
         "strengths",
         "interpolation",
@@ -249,7 +249,7 @@ impl Meta {
             ("quantity", self.quantity.is_some()),
             ("unit", self.unit.is_some()),
             ("source", self.source.is_some()),
-            ("licence", self.licence.is_some()),
+            ("license", self.license.is_some()),
             ("conditions", self.conditions.is_some()),
             ("strengths", self.strengths.is_some() || self.kind != Some(Kind::Lines)),
             ("range", self.range_nm.is_some()),
@@ -276,7 +276,8 @@ impl Meta {
             }
             "unit" => self.unit = text(),
             "source" => self.source = text(),
-            "licence" => self.licence = text(),
+            // Older files have the British word.
+            "license" | "licence" => self.license = text(),
             "conditions" => self.conditions = text(),
             "note" => self.notes.push(value.to_owned()),
             "kind" => {

@@ -40,12 +40,12 @@ fn nothing_else_lies_there() {
     }
 }
 
-/// Data of any format is under known terms: each data file states `source` and `licence` in its first lines.
+/// Data of any format is under known terms: each data file states `source` and `license` in its first lines.
 #[test]
-fn every_data_file_states_source_and_licence() {
-    let stated = spectra_data::licences();
+fn every_data_file_states_source_and_license() {
+    let stated = spectra_data::licenses();
     for path in files().filter(|p| !p.ends_with(".md")) {
-        assert!(stated.iter().any(|l| l.files.contains(&path)), "{path} does not state source and licence");
+        assert!(stated.iter().any(|l| l.files.contains(&path)), "{path} does not state source and license");
     }
 }
 

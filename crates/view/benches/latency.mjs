@@ -1,11 +1,15 @@
-// How long a person waits for the first picture after a slider moved: node latency.mjs FOLDER CHROMIUM SPECTRA SCENE [EVENTS]
+// How long a person waits for the first picture after a slider moved: node latency.mjs FOLDER CHROMIUM SPECTRA SCENE [EVENTS [ONLY]]
+//
+// ONLY is a part of the names of the controls to be turned. The CPU time of the server is given for each event, too, the work on the
+// whole picture in the pauses included: it is what can be compared on a machine that is not idle.
 //
 // FOLDER holds node_modules/playwright-core. Each event sets a control of the page as a hand does; its time ends when the browser has
 // painted the first picture that has the value. Events come at random pauses of 150 to 600 ms, in the midst of whatever is traced.
 import { spawn } from "node:child_process";
+import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
 
-const [folder, executablePath, spectra, scene, events = "100"] = process.argv.slice(2);
+const [folder, executablePath, spectra, scene, events = "100", only = ""] = process.argv.slice(2);
 const { chromium } = createRequire(`${folder}/`)("playwright-core");
 const server = spawn(spectra, ["view", scene, "--no-open"], { stdio: ["ignore", "pipe", "ignore"] });
 const address = await new Promise((done) => server.stdout.once("data", (d) => done(String(d).trim())));
@@ -16,6 +20,16 @@ await page.goto(address);
 await page.waitForFunction(() => Number(document.body.dataset.frame) > 0);
 console.log(`page and first picture: ${Date.now() - opened} ms`);
 await page.waitForTimeout(3000);
+
+/** What the server has taken of the processors, ms; 0 where /proc does not say. */
+const cpu = () => {
+  try {
+    const fields = readFileSync(`/proc/${server.pid}/stat`, "utf8").split(") ")[1].split(" ");
+    return 10 * (Number(fields[11]) + Number(fields[12]));
+  } catch {
+    return 0;
+  }
+};
 
 // The same pauses in every run.
 let seed = 1;
@@ -48,28 +62,64 @@ const set = ([path, value]) => page.evaluate(async ([path, value]) => {
   return got;
 }, [path, value]);
 
+/** Brightness, which asks nothing of the server: until it is painted. */
+const brighten = (value) => page.evaluate(async (value) => {
+  const stops = document.querySelector("#stops");
+  const start = performance.now();
+  stops.value = String(value);
+  stops.dispatchEvent(new Event("input"));
+  await new Promise((done) => requestAnimationFrame(() => setTimeout(done, 0)));
+  return { first: performance.now() - start };
+}, value);
+
 const numbers = (least, most) => () => Number((least + (most - least) * random()).toFixed(3));
 const word = (...words) => { let i = 0; return () => words[(i += 1) % words.length]; };
 const whole = (least, most) => { let i = 0; return () => least + ((i += 1) % (most - least + 1)); };
-for (const [path, value, count] of [
+const of = (all, part) => all.sort((a, b) => a - b)[Math.min(all.length - 1, Math.floor(part * all.length))]?.toFixed(0) ?? "-";
+/** Turns a control so often, and says how long each took. */
+async function turned([path, value, count], act = set, name = path) {
+  if (!name.includes(only)) return;
+  const times = [], lenses = [], wholes = [], before = cpu();
+  for (let i = 0; i < Number(count); i += 1) {
+    const got = await act(act === set ? [path, value()] : value()).catch((error) => console.log(name, String(error).slice(0, 200)));
+    if (got) times.push(got.first);
+    if (got?.lens) lenses.push(got.lens - got.first);
+    if (got?.whole) wholes.push(got.whole);
+    await page.waitForTimeout(150 + 450 * random());
+  }
+  const fault = await page.locator("#fault").textContent();
+  const lens = lenses.length ? `; lens after it ${of(lenses, 0.5)} ms` : "";
+  const whole = wholes.length ? `; whole ${of(wholes, 0.5)} ms` : "";
+  console.log(`${name}: first picture ${of(times, 0.5)} ms (median), ${of(times, 0.95)} ms (95 %), of ${times.length}${lens}${whole}; CPU ${((cpu() - before) / Number(count)).toFixed(0)} ms${fault ? `; ${fault}` : ""}`);
+}
+
+for (const one of [
   ["lens.f-number", numbers(2, 16), events],
   ["lens.focus", numbers(1.2, 5), events],
   ["imager.tilt", () => [numbers(-5, 5)(), numbers(-5, 5)()], events],
   ["lens.aperture", whole(5, 11), events],
   ["film.paper.grade", word("0", "1", "3", "4", "5"), events],
+  ["film.push", word("1", "0"), events],
   ["film.stock", word("kodak-tri-x-400", "ilford-ortho-plus"), events / 4],
   ["lens.file", word("cooke-triplet-50-f5", "zeiss-biotar-50-f1.4"), events / 4],
-]) {
-  const times = [], lenses = [];
-  for (let i = 0; i < Number(count); i += 1) {
-    const got = await set([path, value()]).catch((error) => console.log(path, String(error).slice(0, 200)));
-    if (got) times.push(got.first);
-    if (got?.lens) lenses.push(got.lens - got.first);
-    await page.waitForTimeout(150 + 450 * random());
-  }
-  const of = (all, part) => all.sort((a, b) => a - b)[Math.min(all.length - 1, Math.floor(part * all.length))]?.toFixed(0) ?? "-";
-  const fault = await page.locator("#fault").textContent();
-  console.log(`${path}: first picture ${of(times, 0.5)} ms (median), ${of(times, 0.95)} ms (95 %), of ${times.length}${lenses.length ? `; lens after it ${of(lenses, 0.5)} ms` : ""}${fault ? `; ${fault}` : ""}`);
+]) await turned(one);
+
+// Development alone of a large picture: a small one comes first, then the whole, and no ray is traced.
+await page.locator("#width").selectOption("1920");
+await page.waitForFunction(() => document.body.dataset.draft === "false" && document.querySelector("#canvas").width > 0, null, { timeout: 120_000 });
+await page.waitForTimeout(5000);
+const both = async (at) => {
+  const got = await set(at);
+  if (got) got.whole = await page.evaluate(async (since) => {
+    const start = performance.now();
+    while (document.body.dataset.draft !== "false" && performance.now() - start < 20000) await new Promise((done) => setTimeout(done, 1));
+    return since + performance.now() - start;
+  }, got.first);
+  return got;
+};
+for (const [path, value] of [["film.paper.grade", word("1", "4")], ["film.push", word("1", "0")]]) {
+  await turned([path, () => [path, value()], events / 4], both, `${path} at 1920 px`);
 }
+await turned(["", numbers(-2, 2), events], brighten, "brightness at 1920 px");
 await browser.close();
 server.kill();

@@ -2,7 +2,8 @@
 // The dispersion study: a beam through a prism, ray by ray as it is traced. What is computed is computed by the server.
 
 /** @typedef {{nm: number, rgb: number[], points: number[][]}} Ray */
-/** @typedef {{glasses: string[], lights: string[]}} Choices */
+/** What the viewed scene has of a prism. @typedef {{apex: number, side: number?, incidence: number, beam: number, glass: string?, light: string?, intensity: string, text: string?}} Start */
+/** @typedef {{glasses: string[], lights: string[], start: Start?}} Choices */
 /** @typedef {{nm: number[], catalogue: number[], rows: number[], two: number[], three: number[], samples: number[][], a: number, b_nm2: number, apart: number[]}} Cauchy */
 /** @typedef {{outline: number[][], rays: number, nd: number, least_deviation: number[]?, deviation_deg: number?, spread_deg: number?, cauchy: Cauchy}} Shown */
 
@@ -36,6 +37,11 @@ const field = (name) => part(`${name}-field`, HTMLInputElement);
 /** @param {string} name */
 const value = (name) => Number(field(name).value);
 
+const save = part("save", HTMLButtonElement);
+const saved = part("saved", HTMLElement);
+
+/** Stands for the text of the scene's file that the study began with; none where there is none to save to. */
+let text = "";
 /** @type {Shown?} */
 let shown = null;
 /** @type {Ray[]} */
@@ -253,11 +259,40 @@ for (const name of numbers) {
 for (const list of [glass, light, intensity]) list.addEventListener("change", () => changed());
 part("controls", HTMLFormElement).addEventListener("submit", (event) => event.preventDefault());
 
+/** Takes up what the scene has; what the study does not know stays as it is. @param {Start} start */
+function begin(start) {
+  for (const name of numbers) {
+    const known = start[/** @type {"apex"} */ (name)];
+    if (known === null) continue;
+    field(name).value = String(Number(known.toFixed(4)));
+    slider(name).value = field(name).value;
+  }
+  for (const [list, known] of /** @type {[HTMLSelectElement, string?][]} */ ([[glass, start.glass], [light, start.light], [intensity, start.intensity]])) {
+    if ([...list.options].some((option) => option.value === known)) list.value = String(known);
+  }
+  text = start.text ?? "";
+  save.disabled = text === "";
+}
+
+save.addEventListener("click", async () => {
+  const words = asked();
+  words.set("text", text);
+  const answer = await fetch(`/keep?${words}`, { method: "POST" });
+  if (!answer.ok) {
+    saved.textContent = (await answer.text()).trim();
+    return;
+  }
+  const said = await answer.json();
+  text = said.text;
+  saved.textContent = `The prism is written to ${said.lens}, and ${said.saved === 1 ? "1 value" : `${said.saved} values`} to the scene.`;
+});
+
 try {
   /** @type {Choices} */
   const choices = await get("/choices");
   glass.append(...choices.glasses.map((name) => new Option(name, name, false, name === "SCHOTT/N-SF11")));
   light.append(...choices.lights.map((name) => new Option(name.replace("blackbody:5800", "5 800 K"), name)));
+  if (choices.start) begin(choices.start);
   await changed();
 } catch (error) {
   state.textContent = "stopped";

@@ -66,23 +66,24 @@ function shape(name, attributes, text) {
 const meet = (a, b) => a.x < b.x + b.width + 2 && b.x < a.x + a.width + 2 && a.y < b.y + b.height + 1 && b.y < a.y + a.height + 1;
 
 /**
- * A label at the first free place around a point; none where all are taken and it may be left out.
- * @param {Box[]} taken @param {number[]} at @param {string} text @param {string} kind @param {boolean} mustBe
+ * A label at the first free place around a point, off the lines if it can be; none where all are taken and it may be left out.
+ * @param {Box[]} taken @param {Box[]} lines @param {number[]} at @param {string} text @param {string} kind @param {boolean} mustBe
  */
-function label(taken, at, text, kind, mustBe) {
+function label(taken, lines, at, text, kind, mustBe) {
   const element = shape("text", { class: `label ${kind}`, x: 0, y: 0 }, text);
   diagram.append(element);
   if (!(element instanceof SVGGraphicsElement)) return;
   const size = element.getBBox();
   /** @type {Box?} */
   let found = null;
-  for (const far of mustBe ? [9, 22, 36, 52, 70, 90] : [9]) {
+  const fars = mustBe ? [9, 22, 36, 52, 70, 90] : [9];
+  for (const [far, others] of /** @type {[number, Box[]][]} */ ([...fars.map((far) => [far, [...taken, ...lines]]), ...fars.map((far) => [far, taken])])) {
     for (let i = 0; i < 16 && !found; i += 1) {
       const angle = (i * Math.PI) / 8;
       const [cx, cy] = [at[0] + (far + size.width / 2) * Math.cos(angle), at[1] - (far + size.height / 2) * Math.sin(angle)];
       const box = { x: cx - size.width / 2, y: cy - size.height / 2, width: size.width, height: size.height };
       const isInside = box.x >= 2 && box.y >= 2 && box.x + box.width <= 638 && box.y + box.height <= SIDE - BOTTOM - 2;
-      if (isInside && !taken.some((other) => meet(box, other))) found = box;
+      if (isInside && !others.some((other) => meet(box, other))) found = box;
     }
     if (found) break;
   }
@@ -123,6 +124,18 @@ function draw() {
   diagram.append(shape("circle", { class: "white", cx: white[0], cy: white[1], r: 3 }));
   /** @type {Box[]} */
   const taken = [...diagram.querySelectorAll("text")].map((text) => text.getBBox());
+  // Places along the lines that a label would cover.
+  /** @type {Box[]} */
+  const lines = [];
+  const along = (/** @type {number[]} */ [ax, ay], /** @type {number[]} */ [bx, by]) => {
+    const steps = Math.max(1, Math.ceil(Math.hypot(bx - ax, by - ay) / 6));
+    for (let i = 0; i <= steps; i += 1) lines.push({ x: ax + ((bx - ax) * i) / steps - 1, y: ay + ((by - ay) * i) / steps - 1, width: 2, height: 2 });
+  };
+  drawn.locus.slice(1).forEach((s, i) => along(place(drawn.locus[i].x, drawn.locus[i].y), place(s.x, s.y)));
+  chosen.corners.forEach(([x, y], i) => {
+    const [u, v] = chosen.corners[(i + 1) % chosen.corners.length];
+    along(place(x, y), place(u, v));
+  });
   const mark = (/** @type {number[]?} */ xy, /** @type {string} */ kind) => {
     if (!xy) return null;
     const at = place(xy[0], xy[1]);
@@ -133,14 +146,14 @@ function draw() {
   const light = mark(color.xy, "light");
   const shown = color.shown_apart !== null && color.shown_apart > 5e-4 ? mark(color.shown_xy, "shown") : null;
   const mixed = mark(color.mixed_xy, "mixed");
-  if (light) label(taken, light, `${color.nm} nm`, "light", true);
-  if (shown) label(taken, shown, "as shown", "shown", true);
-  if (mixed) label(taken, mixed, "your mixture", "mixed", true);
+  if (light) label(taken, lines, light, `${color.nm} nm`, "light", true);
+  if (shown) label(taken, lines, shown, "as shown", "shown", true);
+  if (mixed) label(taken, lines, mixed, "your mixture", "mixed", true);
   for (const nm of [460, 470, 480, 490, 500, 510, 520, 530, 540, 550, 560, 570, 580, 590, 600, 620, 700]) {
     const at = drawn.locus.find((s) => s.nm === nm);
-    if (at) label(taken, place(at.x, at.y), String(nm), "spectral", false);
+    if (at) label(taken, lines, place(at.x, at.y), String(nm), "spectral", false);
   }
-  label(taken, white, "white", "spectral", false);
+  label(taken, lines, white, "white", "spectral", false);
 }
 
 // The figures -------------------------------------------------------------------------------------------------------------------

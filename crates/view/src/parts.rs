@@ -4,9 +4,10 @@ pub use crate::controls::{Control, of_scene};
 pub use crate::section::svg;
 
 use serde_json::{Value, json};
+use spectra_core::frame::{ExposureChannel, ExposureFrame};
 use spectra_core::params::Fault;
-use spectra_scene::Scene;
-use spectra_session::SessionError;
+use spectra_scene::{FilmTime, Scene};
+use spectra_session::{Session, SessionError};
 
 /// A head and the numbers of a picture, these from a place that is a multiple of four.
 #[must_use]
@@ -18,6 +19,49 @@ pub fn packed(head: &Value, numbers: &[f32]) -> Vec<u8> {
     bytes.extend(head.as_bytes());
     bytes.extend(numbers.iter().flat_map(|v| v.to_le_bytes()));
     bytes
+}
+
+/// A head with what it says of a session's picture: its light so far, of so many rays, on films that were exposed so.
+#[must_use]
+pub fn head(mut own: Value, session: &Session, times: &[FilmTime], rays: u64) -> Value {
+    let scene = session.scene();
+    let known = json!({
+        "samples": session.samples(),
+        "of": scene.render.samples,
+        "rays": rays,
+        "exposure_s": times.first().map_or(1.0, |time| time.time_s),
+        "lens": scene.lens.name,
+        "film": times.first().map(|time| time.film.clone()),
+        "focus": scene.focus.to_string(),
+        "warnings": session.warnings().map(|warning| fault_json(&warning.0)).collect::<Vec<_>>(),
+    });
+    if let (Value::Object(own), Value::Object(known)) = (&mut own, known) {
+        own.extend(known);
+    }
+    own
+}
+
+/// What each film got, by its own time.
+#[must_use]
+pub fn exposed(mut exposure: ExposureFrame, times: &[FilmTime]) -> ExposureFrame {
+    for time in times {
+        for channel in exposure.channels.get_mut(time.channels.clone()).into_iter().flatten() {
+            channel.values.iter_mut().for_each(|value| *value *= time.gain as f32);
+        }
+    }
+    exposure
+}
+
+/// What a pixel got, channel by channel, in the frame of this number; `None` where there is no such pixel.
+#[must_use]
+pub fn pixel(exposure: &ExposureFrame, frame: u64, [x, y]: [u64; 2]) -> Option<Value> {
+    let [width, height] = [exposure.size.width_px, exposure.size.height_px].map(u64::from);
+    if x >= width || y >= height {
+        return None;
+    }
+    let at = (y * width + x) as usize;
+    let of = |channel: &ExposureChannel| json!({"name": channel.name, "unit": channel.unit, "value": channel.values.get(at)});
+    Some(json!({"frame": frame, "channels": exposure.channels.iter().map(of).collect::<Vec<_>>()}))
 }
 
 /// What is wrong, with the control that it is about.

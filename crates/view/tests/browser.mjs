@@ -1,16 +1,9 @@
 // What a person does on the page: node browser.mjs FOLDER-WITH-NODE_MODULES CHROMIUM ADDRESS
 import assert from "node:assert/strict";
-import { createRequire } from "node:module";
 import { findings } from "./axe.mjs";
+import { driven } from "./driver.mjs";
 
-const [folder, executablePath, address] = process.argv.slice(2);
-const { chromium } = createRequire(`${folder}/`)("playwright-core");
-const browser = await chromium.launch({ executablePath, args: ["--no-sandbox"] });
-const page = await browser.newPage({ viewport: { width: 1280, height: 900 } });
-page.setDefaultTimeout(60_000);
-const errors = [];
-page.on("console", (message) => message.type() === "error" && errors.push(message.text()));
-page.on("pageerror", (error) => errors.push(String(error)));
+const { folder, address, page, narrow, end } = await driven();
 
 /** The number of the frame that is seen. */
 const frame = () => page.evaluate(() => Number(document.body.dataset.frame ?? 0));
@@ -91,11 +84,7 @@ await page.locator("#swap").click();
 await page.locator("#canvas").hover({ position: { x: 200, y: 120 } });
 await page.waitForFunction(() => /display .*lx s/.test(document.querySelector("#readout").textContent));
 
-// A phone's width: nothing is wider than the window.
-await page.setViewportSize({ width: 400, height: 800 });
-await page.waitForTimeout(200);
-const wide = await page.evaluate(() => document.documentElement.scrollWidth);
-assert.ok(wide <= 400, `${wide} px wide`);
+await narrow();
 
 await page.locator("#save").click();
 await page.waitForFunction(() => document.querySelector("#saved").textContent !== "");
@@ -106,5 +95,4 @@ await page.reload();
 await done(0);
 await page.waitForFunction(() => document.querySelector('[data-path="lens.f-number"] input[type=number]'));
 assert.equal(await row("lens.f-number").locator("input[type=number]").inputValue(), "5.6");
-assert.deepEqual(errors, []);
-await browser.close();
+await end();

@@ -27,19 +27,13 @@ fn browser() -> Result<(String, String), String> {
 
 #[test]
 fn a_person_turns_types_saves_and_is_told_what_is_wrong() {
-    let (folder, chromium) = match browser() {
-        Ok(found) => found,
-        Err(why) => return println!("skipped: {why}"),
-    };
     let scene = tempfile::tempdir().expect("a folder");
     let file = scene.path().join("scene.yaml");
     std::fs::write(&file, SCENE).expect("written");
-    let (tell, hear) = mpsc::channel();
     let own = View { scene: file.clone(), overrides: Vec::new(), port: 0, isa: Isa::detect(), threads: 2 };
-    // The thread ends with the process.
-    std::thread::spawn(move || view(own, |address| tell.send(address.to_owned()).expect("heard")));
-    let address = hear.recv_timeout(Duration::from_secs(60)).expect("an address");
-    driven("browser.mjs", &folder, &chromium, &address);
+    if !driven("browser.mjs", |ready| drop(view(own, ready))) {
+        return;
+    }
     let saved = std::fs::read_to_string(&file).expect("a file");
     assert_eq!(saved, SCENE.replace("f/2, focus: 2 m", "f/5.6, focus: 2 m, aperture: {shape: iris, blades: 6}"));
 }
@@ -81,13 +75,25 @@ fn random_use_leaves_neither_errors_nor_threads_behind() {
     println!("{said}");
 }
 
-/// Drives a page at an address by a script beside this file; it says what fails.
-fn driven(script: &str, folder: &str, chromium: &str, address: &str) {
+/// Drives a page of what `serve` serves by a script beside this file, which says what fails; false where there is no browser.
+fn driven(script: &str, serve: impl FnOnce(Box<dyn FnOnce(&str)>) + Send + 'static) -> bool {
+    let (folder, chromium) = match browser() {
+        Ok(found) => found,
+        Err(why) => {
+            println!("skipped: {why}");
+            return false;
+        }
+    };
+    let (tell, hear) = mpsc::channel();
+    // The thread ends with the process.
+    std::thread::spawn(move || serve(Box::new(move |address: &str| tell.send(address.to_owned()).expect("heard"))));
+    let address = hear.recv_timeout(Duration::from_secs(60)).expect("an address");
     let script = format!("{}/tests/{script}", env!("CARGO_MANIFEST_DIR"));
-    let output = Command::new("node").args([&script, folder, chromium, address]).output().expect("node");
+    let output = Command::new("node").args([&script, &folder, &chromium, &address]).output().expect("node");
     let said = String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{said}");
     println!("{said}");
+    true
 }
 
 /// By `typescript`, from the types in the comments.
@@ -107,26 +113,11 @@ fn the_code_of_the_pages_keeps_its_types() {
 
 #[test]
 fn the_color_tester_has_the_figures_of_the_command_line_and_labels_that_do_not_overlap() {
-    let (folder, chromium) = match browser() {
-        Ok(found) => found,
-        Err(why) => return println!("skipped: {why}"),
-    };
-    let (tell, hear) = mpsc::channel();
-    // The thread ends with the process.
-    std::thread::spawn(move || color_tester(0, |address| tell.send(address.to_owned()).expect("heard")));
-    let address = hear.recv_timeout(Duration::from_secs(60)).expect("an address");
-    driven("tester.mjs", &folder, &chromium, &address);
+    driven("tester.mjs", |ready| drop(color_tester(0, ready)));
 }
 
 #[test]
 fn a_prism_is_dragged_and_its_rays_grow_and_stop() {
-    let (folder, chromium) = match browser() {
-        Ok(found) => found,
-        Err(why) => return println!("skipped: {why}"),
-    };
-    let (tell, hear) = mpsc::channel();
-    // The thread ends with the process. The study is there whatever is shown.
-    std::thread::spawn(move || color_tester(0, |address| tell.send(address.to_owned()).expect("heard")));
-    let address = hear.recv_timeout(Duration::from_secs(60)).expect("an address");
-    driven("study.mjs", &folder, &chromium, &address);
+    // The study is there whatever is shown.
+    driven("study.mjs", |ready| drop(color_tester(0, ready)));
 }

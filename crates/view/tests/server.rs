@@ -204,10 +204,17 @@ fn a_picture_follows_what_is_turned_and_is_saved() {
     assert_eq!(browser.post(&format!("/save?desk={desk}"), "").status, 200);
     assert!(std::fs::read_to_string(&browser.file).expect("a file").contains("push: 0"));
     assert_eq!(browser.turn(desk, "film.push", json!(1)).status, 204);
-    std::fs::write(&browser.file, SCENE).expect("written by somebody else");
-    // Or, where the file was looked at in between, nothing is left to write.
+    // What somebody else wrote is no scene, so the page cannot take it up, and must not write over it.
+    let broken = SCENE.replace("f/2", "f/2, fnumber: 3");
+    std::fs::write(&browser.file, &broken).expect("written by somebody else");
     let refused = browser.post(&format!("/save?desk={desk}"), "");
-    assert!(refused.status == 409 || refused.json()["saved"] == 0, "{}", refused.head);
+    assert_eq!(refused.status, 409, "{}", refused.head);
+    assert_eq!(std::fs::read_to_string(&browser.file).expect("a file"), broken);
+    // Once the page has taken up what it says, and what was turned gave way to that, nothing is left to write.
+    std::fs::write(&browser.file, SCENE).expect("written by somebody else");
+    browser.frame(desk, 0, |head| head["reread"] == 1);
+    let nothing = browser.post(&format!("/save?desk={desk}"), "");
+    assert_eq!((nothing.status, &nothing.json()["saved"]), (200, &json!(0)));
     assert_eq!(std::fs::read_to_string(&browser.file).expect("a file"), SCENE);
 
     assert_eq!(browser.post(&format!("/close?desk={desk}"), "").status, 204);

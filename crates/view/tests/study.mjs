@@ -1,16 +1,9 @@
 // The dispersion study, as a person uses it: node study.mjs FOLDER-WITH-NODE_MODULES CHROMIUM ADDRESS
 import assert from "node:assert/strict";
-import { createRequire } from "node:module";
 import { findings } from "./axe.mjs";
+import { driven } from "./driver.mjs";
 
-const [folder, executablePath, address] = process.argv.slice(2);
-const { chromium } = createRequire(`${folder}/`)("playwright-core");
-const browser = await chromium.launch({ executablePath, args: ["--no-sandbox"] });
-const page = await browser.newPage({ viewport: { width: 1280, height: 900 } });
-page.setDefaultTimeout(60_000);
-const errors = [];
-page.on("console", (message) => message.type() === "error" && errors.push(message.text()));
-page.on("pageerror", (error) => errors.push(String(error)));
+const { folder, address, page, narrow, end } = await driven();
 
 /** Waits for a state. @param {RegExp} wanted */
 const says = (wanted) => page.waitForFunction((text) => new RegExp(text).test(document.querySelector("#state").textContent), wanted.source);
@@ -65,7 +58,5 @@ await page.locator("#apex-field").fill("60");
 await page.waitForFunction(() => /n = 1\.5168.*at 49\.3/.test(document.querySelector("#said").textContent));
 await page.locator("#least").click();
 await page.waitForFunction(() => /bent by 38\.6.*least deviation 38\.6/.test(document.querySelector("#said").textContent));
-await page.setViewportSize({ width: 400, height: 800 });
-assert.ok((await page.evaluate(() => document.documentElement.scrollWidth)) <= 400);
-assert.deepEqual(errors, []);
-await browser.close();
+await narrow();
+await end();

@@ -1,16 +1,9 @@
 // The color tester, as a person uses it: node tester.mjs FOLDER-WITH-NODE_MODULES CHROMIUM ADDRESS
 import assert from "node:assert/strict";
-import { createRequire } from "node:module";
 import { findings } from "./axe.mjs";
+import { driven } from "./driver.mjs";
 
-const [folder, executablePath, address] = process.argv.slice(2);
-const { chromium } = createRequire(`${folder}/`)("playwright-core");
-const browser = await chromium.launch({ executablePath, args: ["--no-sandbox"] });
-const page = await browser.newPage({ viewport: { width: 1280, height: 900 } });
-page.setDefaultTimeout(60_000);
-const errors = [];
-page.on("console", (message) => message.type() === "error" && errors.push(message.text()));
-page.on("pageerror", (error) => errors.push(String(error)));
+const { folder, address, page, narrow, end } = await driven();
 
 /** Sets a field and waits for the figures. @param {string} name @param {string} value */
 const set = (name, value) => page.evaluate(async ([name, value]) => {
@@ -76,8 +69,5 @@ await page.locator("#r").focus();
 for (let i = 0; i < 20; i += 1) await page.keyboard.press("ArrowLeft");
 await page.waitForFunction(() => !/is 0\.0000 from the light/.test(document.querySelector("#apart").textContent));
 
-// A phone's width.
-await page.setViewportSize({ width: 400, height: 800 });
-assert.ok((await page.evaluate(() => document.documentElement.scrollWidth)) <= 400);
-assert.deepEqual(errors, []);
-await browser.close();
+await narrow();
+await end();

@@ -5,7 +5,7 @@ use spectra_core::frame::DisplayPicture;
 use spectra_core::{Isa, registry};
 use spectra_scene::{Shot, bundled::Bundled};
 use spectra_session::{Alone, Control as Stop, Session, SessionError};
-use spectra_view::parts::{Control, of_scene, packed, said, spectra, svg};
+use spectra_view::parts::{Control, exposed, head, of_scene, packed, pixel, said, spectra, svg};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -166,24 +166,15 @@ impl Open {
             return Err(wrong("the imager has no picture"));
         };
         self.frames += 1;
-        let warnings = self.session.warnings().map(|warning| json!({"message": warning.to_string()}));
-        let head = json!({
+        let own = json!({
             "frame": self.frames,
             "scene": self.scenes,
             "lens_drawn": self.lenses,
             "fault": self.fault,
             "width": width_px,
             "height": height_px,
-            "samples": self.session.samples(),
-            "of": scene.render.samples,
-            "rays": rendering.rays,
-            "exposure_s": times.first().map_or(1.0, |time| time.time_s),
-            "lens": scene.lens.name,
-            "film": times.first().map(|time| time.film.clone()),
-            "focus": scene.focus.to_string(),
-            "warnings": warnings.collect::<Vec<_>>(),
         });
-        Ok(packed(&head, rgb.as_flattened()))
+        Ok(packed(&head(own, &self.session, &times, rendering.rays), rgb.as_flattened()))
     }
 
     fn controls(&self) -> Value {
@@ -200,17 +191,8 @@ impl Open {
     fn pixel(&mut self, x: u64, y: u64) -> Answer {
         let rendering = self.session.look().map_err(|error| said(&error, ""))?;
         let times = self.session.scene().film_times(&rendering.exposure);
-        let gain = |channel: usize| {
-            times.iter().find(|time| time.channels.contains(&channel)).map_or(1.0, |time| time.gain as f32)
-        };
-        let size = rendering.exposure.size;
-        if x >= u64::from(size.width_px) || y >= u64::from(size.height_px) {
-            return Err(wrong("no such pixel"));
-        }
-        let at = y as usize * size.width_px as usize + x as usize;
-        let channels = rendering.exposure.channels.iter().enumerate();
-        let values = channels.map(|(i, c)| json!({"name": c.name, "unit": c.unit, "value": c.values[at] * gain(i)}));
-        Ok(json(&json!({"frame": self.frames, "channels": values.collect::<Vec<_>>()})))
+        let seen = pixel(&exposed(rendering.exposure, &times), self.frames, [x, y]);
+        seen.map(|seen| json(&seen)).ok_or_else(|| wrong("no such pixel"))
     }
 
     /// A number of the exposure's bits, as `spectra run` writes it into its report.

@@ -1,15 +1,15 @@
-//! Colors where a spectrum is named: `rgb:#ff8040`, `rgb:255,128,64 by gaussians`, `srgb-r`.
+//! Colors where a spectrum is named: `rgb:#ff8040`, `rgb:255,128,64 by gaussians`, `srgb-r`, `rgb-lines`.
 //!
 //! As a light it is what a model makes of the color under D65; as a surface, a filter or a detector the function by which the model
 //! multiplies an equal-energy light.
 
-use spectra_color::RgbSpace;
+use spectra_color::{RgbSpace, chromaticity, dominant_wavelength, matrix};
 use spectra_core::params::{Fault, Faults, Node, Params, SourceFile, Span, Value};
 use spectra_core::registry::{self, Context, Stage};
 use spectra_core::resources::{Resource, ResourceError, Resources};
-use spectra_core::spectral::{BAND, SpectralPower};
+use spectra_core::spectral::{BAND, Line, SpectralPower};
 use spectra_core::stage::ColorModel;
-use spectra_spectrum::{Emission, Kind, Outside, Piece, Scale, Shape, SpectrumError, Tabulated, illuminant};
+use spectra_spectrum::{Emission, Kind, Observer, Outside, Piece, Scale, Shape, SpectrumError, Tabulated, illuminant};
 use std::sync::Arc;
 
 spectra_spectrum::expression_of_wanted!(
@@ -39,6 +39,32 @@ spectra_spectrum::expression_of_wanted!("srgb-b", "write srgb-b alone", |_, want
     wanted
 ));
 spectra_spectrum::expression_of_wanted!("srgb-w", "write srgb-w alone", |_, wanted| of_color([255.0; 3], None, wanted));
+
+spectra_spectrum::expression_of_wanted!("rgb-lines", "write rgb-lines alone", |_, _| Some(
+    rgb_lines().map(Piece::from)
+));
+
+/// Three spectral lines of the hues of sRGB's red, green and blue, in the powers that together are white (D65): light of three wavelengths
+/// that nobody tells from daylight, until it falls on something. The mean power is 1, as of the lines of other sets.
+fn rgb_lines() -> Result<Emission, SpectrumError> {
+    let (space, observer) = (RgbSpace::srgb(), Observer::cie_1931_2deg());
+    let white = space.white_xyz();
+    let mut lines_nm = [0.0; 3];
+    let mut xyz_of_lines = [[0.0; 3]; 3];
+    for (i, nm) in lines_nm.iter_mut().enumerate() {
+        let mut primary = [0.0; 3];
+        primary[i] = 1.0;
+        let hue = chromaticity(space.to_xyz(primary)).zip(chromaticity(white));
+        *nm = hue.and_then(|(hue, white)| dominant_wavelength(hue, white)).map_or(f64::NAN, |hue| hue.wavelength_nm);
+        let line = observer.at(*nm);
+        (0..3).for_each(|k| xyz_of_lines[k][i] = line[k]);
+    }
+    let powers = matrix::apply(&matrix::inverse(&xyz_of_lines), white);
+    let unit = 3.0 / powers.iter().sum::<f64>();
+    let lines =
+        lines_nm.into_iter().zip(powers).map(|(wavelength_nm, power)| Line { wavelength_nm, power: unit * power });
+    Emission::new(None, lines.collect())
+}
 
 /// `#ff8040` or `255,128,64`, from 0 to 255.
 fn code_values(text: &str) -> Option<[f64; 3]> {
@@ -141,5 +167,33 @@ mod tests {
         for wrong in ["rgb:#ff80", "rgb:1,2", "rgb:300,0,0", "rgb:#ff8040 by magic"] {
             assert!(find_emission(wrong).expect_err(wrong).to_string().contains("is not understood"), "{wrong}");
         }
+    }
+
+    const RGB_LINES: [(f64, f64); 3] = [(611.282, 0.747_601), (549.133, 1.148_732), (464.312, 1.103_667)];
+
+    /// White of three lines whose hues are those of the primaries.
+    #[test]
+    fn rgb_lines_make_white() {
+        let observer = Observer::cie_1931_2deg();
+        let (space, light) = (RgbSpace::srgb(), find_emission("rgb-lines").expect("named"));
+        let white = chromaticity(space.white_xyz()).expect("a color");
+        let seen = xyz_of_light(&light, observer).and_then(chromaticity).expect("a color");
+        assert!((seen[0] - white[0]).abs() < 1e-12 && (seen[1] - white[1]).abs() < 1e-12, "{seen:?}");
+        // Dominant wavelengths and relative powers computed apart (xtask/rgb_lines.py).
+        for (line, (nm, power)) in light.lines().iter().zip(RGB_LINES) {
+            assert!((line.wavelength_nm - nm).abs() < 0.01, "{line:?}");
+            assert!((line.power - power).abs() < 1e-3, "{line:?}");
+        }
+        // Each is of the hue of its primary: line, primary and white lie on one straight line.
+        for (i, line) in light.lines().iter().enumerate() {
+            let mut primary = [0.0; 3];
+            primary[i] = 1.0;
+            let [p, l] =
+                [space.to_xyz(primary), observer.at(line.wavelength_nm)].map(|xyz| chromaticity(xyz).expect("a color"));
+            let [a, b] = [p, l].map(|xy| [xy[0] - white[0], xy[1] - white[1]]);
+            assert!((a[0] * b[1] - a[1] * b[0]).abs() < 1e-5 && a[0] * b[0] + a[1] * b[1] > 0.0, "{line:?}");
+        }
+        let total: f64 = light.lines().iter().map(|line| line.power).sum();
+        assert!((total - 3.0).abs() < 1e-12);
     }
 }

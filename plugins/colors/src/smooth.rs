@@ -14,7 +14,9 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_color::{RgbSpace, chromaticity, matrix};
+use spectra_core::Isa;
 use spectra_core::batch::CONTINUUM;
+use spectra_core::isa::Vectorized;
 use spectra_core::params::{Faults, Params};
 use spectra_core::registry::Context;
 use spectra_core::spectral::{BAND, Line, SpectralPower};
@@ -79,6 +81,18 @@ impl Smooth {
     }
 }
 
+impl Smooth {
+    /// Of the illuminant: per nm, or of a line.
+    #[inline(always)]
+    fn power(&self, wavelength_nm: f64, line: u32) -> f64 {
+        if line == CONTINUUM {
+            self.light.grid.interpolate(&self.light.continuum, wavelength_nm)
+        } else {
+            self.light.lines.get(line as usize).map_or(0.0, |l| l.power)
+        }
+    }
+}
+
 impl ColorModel for Smooth {
     fn lines_nm(&self) -> &[f64] {
         &self.lines_nm
@@ -101,26 +115,140 @@ impl ColorModel for Smooth {
     }
 
     fn evaluate(&self, coefficients: &[[f32; 3]], wavelength_nm: &[f64], line: &[u32], weight: &mut [f64]) {
-        for i in 0..weight.len() {
-            let (scale, color) = self.table.look_up(coefficients[i].map(f64::from));
-            let power = if line[i] == CONTINUUM {
-                self.light.grid.interpolate(&self.light.continuum, wavelength_nm[i])
-            } else {
-                self.light.lines.get(line[i] as usize).map_or(0.0, |l| l.power)
-            };
-            weight[i] *= power * scale * sigmoid(quadratic(color, wavelength_nm[i]));
+        let isa = Isa::detect();
+        let mut looked = Looked::new();
+        for (k, weight) in weight.chunks_mut(CHUNK).enumerate() {
+            let r = k * CHUNK..k * CHUNK + weight.len();
+            let (colors, wavelength_nm, line) = (&coefficients[r.clone()], &wavelength_nm[r.clone()], &line[r]);
+            isa.run(Evaluate { model: self, looked: &mut looked, colors, wavelength_nm, line, weight });
         }
     }
 }
 
+/// Rays that are worked on side by side.
+const CHUNK: usize = 64;
+type Each<T> = [T; CHUNK];
+
+/// What is known of them: where their colors lie in the table, and what stands there.
+struct Looked {
+    /// The number to multiply by.
+    scale: Each<f64>,
+    /// The first of four points, and how far a color lies from it along rows and along columns.
+    point: Each<u32>,
+    along: [Each<f64>; 2],
+    /// The three coefficients of each of the four points.
+    corners: [[Each<f32>; 3]; 4],
+    /// Of the illuminant.
+    power: Each<f64>,
+}
+
+impl Looked {
+    fn new() -> Self {
+        Self {
+            scale: [0.0; CHUNK],
+            point: [0; CHUNK],
+            along: [[0.0; CHUNK]; 2],
+            corners: [[[0.0; CHUNK]; 3]; 4],
+            power: [0.0; CHUNK],
+        }
+    }
+}
+
+/// Multiplies the weights of up to [`CHUNK`] rays by their spectra: as [`Table::look_up`] for each, but what needs no table in vectors.
+struct Evaluate<'a> {
+    model: &'a Smooth,
+    looked: &'a mut Looked,
+    colors: &'a [[f32; 3]],
+    wavelength_nm: &'a [f64],
+    line: &'a [u32],
+    weight: &'a mut [f64],
+}
+
+impl Vectorized for Evaluate<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run(self) {
+        let Self { model, looked, colors, wavelength_nm, line, weight } = self;
+        let len = weight.len().min(CHUNK);
+        let (colors, wavelength_nm, line, weight) =
+            (&colors[..len], &wavelength_nm[..len], &line[..len], &mut weight[..len]);
+        let Looked { scale, point, along, corners, power } = looked;
+        for i in 0..len {
+            let [r, g, b] = colors[i].map(f64::from).map(|v| if v > 0.0 { v } else { 0.0 });
+            let (is_red, is_green) = ((r >= g) & (r >= b), g >= b);
+            let (largest, most, next, last) = if is_red {
+                (0, r, g, b)
+            } else if is_green {
+                (1, g, b, r)
+            } else {
+                (2, b, r, g)
+            };
+            let (row, along_rows) = cell(next, most);
+            let (column, along_columns) = cell(last, most);
+            scale[i] = most / LEVEL;
+            point[i] = (largest * SIDE as u32 + row) * SIDE as u32 + column;
+            (along[0][i], along[1][i]) = (along_rows, along_columns);
+        }
+        for i in 0..len {
+            let at = point[i] as usize;
+            let points = &model.table.points[at..at + SIDE + 2];
+            for (corner, at) in corners.iter_mut().zip([0, 1, SIDE, SIDE + 1]) {
+                for (column, value) in corner.iter_mut().zip(points[at]) {
+                    column[i] = value;
+                }
+            }
+            power[i] = model.power(wavelength_nm[i], line[i]);
+        }
+        let [p00, p01, p10, p11] = corners;
+        for i in 0..len {
+            let mixed = std::array::from_fn(|k| {
+                let [a, b, c, d] = [p00[k][i], p01[k][i], p10[k][i], p11[k][i]].map(f64::from);
+                mix([a, b, c, d], along[0][i], along[1][i])
+            });
+            weight[i] *= power[i] * scale[i] * sigmoid(quadratic(mixed, wavelength_nm[i]));
+        }
+    }
+}
+
+/// The cell of a value relative to the largest one, and where in it the value lies. Where nothing shines the first.
+#[inline(always)]
+fn cell(value_of: f64, most: f64) -> (u32, f64) {
+    let relative = value_of / if most > 0.0 { most } else { 1.0 };
+    let position = position(relative);
+    // A cast would be done one by one. Beside 2^52 there is room for whole numbers only, in the last bits.
+    const WHOLE: f64 = (1_u64 << 52) as f64;
+    let most = (SIDE - 2) as f64;
+    let position = if position < most { position } else { most };
+    let nearest = (position + WHOLE) - WHOLE;
+    let below = if nearest > position { nearest - 1.0 } else { nearest };
+    let i = (below + WHOLE).to_bits() as u32;
+    // Weights by the values themselves, not by the curved scale of the points.
+    let curve = |at: f64| (at / (SIDE - 1) as f64) * (at / (SIDE - 1) as f64);
+    let (low, high) = (curve(below), curve(below + 1.0));
+    let part = (relative - low) / (high - low);
+    let part = if part > 0.0 { part } else { 0.0 };
+    (i, if part < 1.0 { part } else { 1.0 })
+}
+
+/// Linear between four points.
+#[inline(always)]
+fn mix([p00, p01, p10, p11]: [f64; 4], along_rows: f64, along_columns: f64) -> f64 {
+    let upper = p00 + (p01 - p00) * along_columns;
+    let lower = p10 + (p11 - p10) * along_columns;
+    upper + (lower - upper) * along_rows
+}
+
+#[inline(always)]
 fn sigmoid(x: f64) -> f64 {
     0.5 + 0.5 * x / (1.0 + x * x).sqrt()
 }
 
+#[inline(always)]
 fn place(wavelength_nm: f64) -> f64 {
     (wavelength_nm - 0.5 * (BAND.start_nm + BAND.end_nm())) / (0.5 * (BAND.end_nm() - BAND.start_nm))
 }
 
+#[inline(always)]
 fn quadratic([a, b, c]: Coefficients, wavelength_nm: f64) -> f64 {
     let t = place(wavelength_nm);
     a + b * t + c * (1.5 * t * t - 0.5)
@@ -185,11 +313,7 @@ impl Table {
         let (column, along_columns) = cell(rgb[(largest + 2) % 3]);
         let at = |r: usize, c: usize| self.points[(largest * SIDE + row + r) * SIDE + column + c].map(f64::from);
         let [p00, p01, p10, p11] = [at(0, 0), at(0, 1), at(1, 0), at(1, 1)];
-        let mixed = |k: usize| {
-            let upper = p00[k] + (p01[k] - p00[k]) * along_columns;
-            let lower = p10[k] + (p11[k] - p10[k]) * along_columns;
-            upper + (lower - upper) * along_rows
-        };
+        let mixed = |k: usize| mix([p00[k], p01[k], p10[k], p11[k]], along_rows, along_columns);
         (most / LEVEL, [mixed(0), mixed(1), mixed(2)])
     }
 }
@@ -201,8 +325,9 @@ fn value(i: usize) -> f64 {
 }
 
 /// The inverse of [`value`].
+#[inline(always)]
 fn position(value: f64) -> f64 {
-    value.min(1.0).sqrt() * (SIDE - 1) as f64
+    (if value < 1.0 { value } else { 1.0 }).sqrt() * (SIDE - 1) as f64
 }
 
 /// Finds the coefficients whose reflectance has a color under D65.
@@ -307,6 +432,38 @@ mod tests {
         println!("largest difference in linear RGB at the points of the table: {worst:e}");
         // What is left is the table's single precision.
         assert!(worst < 1e-6, "{worst:e}");
+    }
+
+    /// Batches of any length are what the table says of each color alone, bit by bit, on every tier.
+    #[test]
+    fn side_by_side_is_as_alone() {
+        let model = model();
+        let mut state = 3_u64;
+        let mut draw = move || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        let many = 3 * CHUNK + 5;
+        let mut colors: Vec<[f32; 3]> =
+            (0..many).map(|_| [0, 1, 2].map(|_| (draw() * if draw() < 0.2 { 40.0 } else { 1.0 }) as f32)).collect();
+        colors[..7].copy_from_slice(&[
+            [0.0; 3],
+            [1.0; 3],
+            [0.0, 0.0, 1.0],
+            [0.5, 0.5, 0.0],
+            [f32::NAN, 0.2, 0.1],
+            [-1.0, 0.3, 0.3],
+            [1e-30, 1e-31, 0.0],
+        ]);
+        let nm: Vec<f64> = (0..many).map(|_| 340.0 + 500.0 * draw()).collect();
+        let mut weight = vec![1.5; many];
+        model.evaluate(&colors, &nm, &vec![CONTINUUM; many], &mut weight);
+        for i in 0..many {
+            let (scale, color) = model.table.look_up(colors[i].map(f64::from));
+            let power = model.light.grid.interpolate(&model.light.continuum, nm[i]);
+            let want = 1.5 * (power * scale * sigmoid(quadratic(color, nm[i])));
+            assert_eq!(weight[i].to_bits(), want.to_bits(), "{:?} at {}: {} {want}", colors[i], nm[i], weight[i]);
+        }
     }
 
     #[test]

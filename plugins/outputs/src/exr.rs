@@ -2,19 +2,21 @@
 
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::frame::{ImageState, Wanted};
+use spectra_core::frame::{ExposureFrame, ImageState, Wanted};
 use spectra_core::params::{Faults, Params};
 use spectra_core::registry::Context;
 use spectra_core::sink::{Out, WriteFault};
 use spectra_core::stage::{Film, Imager};
 use spectra_pictures::library;
 use spectra_pictures::write::{LinearSpace, exr, picture_exr, tiled_exr};
-use spectra_scene::{Holds, Output, Shot};
+use spectra_scene::{Holds, LightKind, Output, Shot};
 
 /// Light as OpenEXR: the linear exposure, a channel for each that was recorded, or the finished picture.
 ///
 /// Of the exposure nothing that was computed is lost: 32-bit floats in lux seconds (or what the channel's unit says), with the scene
-/// and how it was rendered in the header. For measuring, and to keep the light of a long render.
+/// and how it was rendered in the header. For measuring, and to keep the light of a long render. `layers` adds kinds of light, each
+/// with a channel for each of the exposure's: `layers: [direct, ghosts]` has `direct.Y` and `ghosts.Y` beside `Y`. All four together are
+/// the exposure, up to the rounding of their 32 bits; a kind that the picture has none of is 0.
 ///
 /// `holds: picture` is for compositing, `SCENE-picture.exr`: R, G and B of the developed, printed or balanced picture in linear
 /// light, no color clipped by a screen's gamut. 1 is the film's white, or what the imager's picture shows as white. The header says
@@ -46,9 +48,10 @@ struct ExrParams {
     /// With `holds: picture`, its colors: `linear-srgb` (the default), `rec2020`, `p3-d65`, `acescg` (white of ACES), or `xyz`, all
     /// but `acescg` with the white D65; whites are brought together by CAT02.
     space: Option<Space>,
-    /// With `holds: picture`, layers beside it: `exposures` of each channel, of a film in lux seconds after scatter and halation, as
+    /// Layers beside it. Of light: `direct`, straight through the lens; `ghosts`; `glare`, the veil; `star`, what diffraction moves, negative
+    /// where it takes more away than it brings. With `holds: picture`: `exposures` of each channel, of a film in lux seconds after scatter and halation, as
     /// `exposure.red`; `densities` of each layer of a film as a densitometer reads them, grain included, as `density.red`.
-    #[schemars(length(max = 2))]
+    #[schemars(length(max = 4))]
     layers: Option<Vec<LayerGroup>>,
     /// With `holds: picture`, whether R, G and B take 16 bits each: half the space, three digits.
     half: Option<bool>,
@@ -85,6 +88,23 @@ enum Space {
 enum LayerGroup {
     Exposures,
     Densities,
+    Direct,
+    Ghosts,
+    Glare,
+    Star,
+}
+
+impl LayerGroup {
+    /// The kind of light that it is; `None` of what is made of a picture.
+    fn light(self) -> Option<LightKind> {
+        match self {
+            Self::Exposures | Self::Densities => None,
+            Self::Direct => Some(LightKind::Direct),
+            Self::Ghosts => Some(LightKind::Ghosts),
+            Self::Glare => Some(LightKind::Glare),
+            Self::Star => Some(LightKind::Star),
+        }
+    }
 }
 
 impl From<Space> for LinearSpace {
@@ -103,6 +123,7 @@ spectra_core::register!(spectra_scene::OutputEntry, "exr": ExrParams, build);
 
 struct Exr {
     tiled: bool,
+    lights: Vec<LightKind>,
 }
 
 fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Output>, Faults> {
@@ -116,16 +137,37 @@ fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Output>, Faults> {
         if p.tiled {
             faults.push(params.fault("tiled", "a picture is written without tiles").hint("leave `tiled` out"));
         }
+        let layers = p.layers.unwrap_or_default();
+        if let Some(at) = layers.iter().position(|layer| layer.light().is_some()) {
+            let fault =
+                params.fault(&format!("layers[{at}]"), "kinds of light are layers of the exposure, not of the picture");
+            faults.push(fault.hint("an output `{kind: exr, layers: [...]}` without `holds: picture`"));
+        }
         let (space, half) = (p.space.unwrap_or_default().into(), p.half.unwrap_or(false));
-        return faults.into_result(Box::new(PictureExr { space, layers: p.layers.unwrap_or_default(), half }) as _);
+        return faults.into_result(Box::new(PictureExr { space, layers, half }) as _);
     }
-    for (key, given) in [("space", p.space.is_some()), ("layers", p.layers.is_some()), ("half", p.half.is_some())] {
+    for (key, given) in [("space", p.space.is_some()), ("half", p.half.is_some())] {
         if given {
             let fault = params.fault(key, format!("`{key}` is for the finished picture, not for the exposure"));
             faults.push(fault.hint("`holds: picture`"));
         }
     }
-    faults.into_result(Box::new(Exr { tiled: p.tiled }) as _)
+    let mut lights = Vec::new();
+    for (at, layer) in p.layers.unwrap_or_default().into_iter().enumerate() {
+        match layer.light() {
+            Some(kind) if lights.contains(&kind) => {
+                let fault = params.fault(&format!("layers[{at}]"), format!("`{}` is there twice", kind.name()));
+                faults.push(fault.hint("leave one of them out"));
+            }
+            Some(kind) => lights.push(kind),
+            None => {
+                let fault = params
+                    .fault(&format!("layers[{at}]"), "this layer is of the finished picture, not of the exposure");
+                faults.push(fault.hint("`holds: picture`, or of light `direct`, `ghosts`, `glare`, `star`"));
+            }
+        }
+    }
+    faults.into_result(Box::new(Exr { tiled: p.tiled, lights }) as _)
 }
 
 impl Output for Exr {
@@ -141,9 +183,25 @@ impl Output for Exr {
         Holds::Light
     }
 
+    fn lights(&self) -> &[LightKind] {
+        &self.lights
+    }
+
     fn write(&self, shot: &Shot<'_>, _: usize, out: &mut dyn Out) -> Result<(), WriteFault> {
         let write = if self.tiled { tiled_exr } else { exr };
-        write(out, shot.exposure, &shot.gains(), shot.scene.lens.squeeze, shot.attributes)
+        let (gains, squeeze) = (shot.gains(), shot.scene.lens.squeeze);
+        if self.lights.is_empty() {
+            return write(out, shot.exposure, &gains, squeeze, shot.attributes);
+        }
+        let own = self.lights.iter().filter_map(|kind| shot.layers.iter().find(|layer| layer.kind == *kind));
+        let layers: Vec<_> = own.collect();
+        if layers.len() < self.lights.len() {
+            return Err(WriteFault::Format("this light was not kept by its kinds".to_owned()));
+        }
+        let channels = shot.exposure.channels.iter().chain(layers.iter().flat_map(|layer| &layer.channels));
+        let frame = ExposureFrame { size: shot.exposure.size, channels: channels.cloned().collect() };
+        let gains = gains.repeat(1 + layers.len());
+        write(out, &frame, &gains, squeeze, shot.attributes)
     }
 }
 
@@ -157,11 +215,13 @@ struct PictureExr {
 impl PictureExr {
     /// Whether a layer of this name is asked for.
     fn takes(&self, name: &str) -> bool {
-        let group = |group: &LayerGroup| match group {
-            LayerGroup::Exposures => "exposure.",
-            LayerGroup::Densities => "density.",
+        let is_of = |group: &LayerGroup| match group {
+            LayerGroup::Exposures => name.starts_with("exposure."),
+            LayerGroup::Densities => name.starts_with("density."),
+            // Kinds of light are refused.
+            _ => false,
         };
-        self.layers.iter().any(|asked| name.starts_with(group(asked)))
+        self.layers.iter().any(is_of)
     }
 }
 

@@ -4,7 +4,8 @@ use crate::Cells;
 use crate::seen::Seen;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
-use spectra_core::params::{NonNegative, Quantity, Ratio, quantity, schema_of};
+use spectra_core::params::{NonNegative, Quantity, Ratio, schema_of};
+use spectra_core::quantity;
 use spectra_core::spectral::Grid;
 
 /// Share of the samples that follow the summed response of all channels, whatever else a strategy

@@ -69,9 +69,9 @@ impl View {
 pub fn reach_mm(lens: &Lens, rays: &[DrawnRay]) -> Vec<f64> {
     let mut reach = vec![0.0_f64; lens.elements.len()];
     for ray in rays {
-        for (at, point) in ray.path.points.iter().skip(1).enumerate() {
-            let local = lens.elements[at].pose.local_point(*point);
-            reach[at] = reach[at].max(local.truncate().length());
+        for (at, point) in ray.path.elements.iter().zip(ray.path.points.iter().skip(1)) {
+            let local = lens.elements[*at].pose.local_point(*point);
+            reach[*at] = reach[*at].max(local.truncate().length());
         }
     }
     reach

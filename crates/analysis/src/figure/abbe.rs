@@ -16,9 +16,10 @@ pub struct AbbeGroup {
 }
 
 /// nd against Vd, which falls to the right as is usual: each group in its color, and `named` glasses (name, [Vd, nd])
-/// marked and named on top.
+/// marked and named on top. `axes` are the names of the Abbe number and of the index: both may hold for other lines.
 #[must_use]
-pub fn abbe(groups: &[AbbeGroup], named: &[(String, [f64; 2])]) -> Canvas {
+pub fn abbe(groups: &[AbbeGroup], named: &[(String, [f64; 2])], axes: &[String; 2]) -> Canvas {
+    let [of_v, of_n] = axes;
     let names: Vec<String> = groups.iter().map(|g| format!("{} ({})", shortened(&g.name), g.points.len())).collect();
     let mut canvas = Canvas::new(WIDTH, HEIGHT, "Abbe diagram");
     let style = TextStyle::new(14.0);
@@ -26,11 +27,7 @@ pub fn abbe(groups: &[AbbeGroup], named: &[(String, [f64; 2])]) -> Canvas {
     let frame = Rect::new(92.0, 20.0 + 22.4 * rows as f64, WIDTH - 24.0, HEIGHT - 66.0);
     let all = || groups.iter().flat_map(|g| &g.points).chain(named.iter().map(|(_, p)| p)).filter(|p| p[0].is_finite());
     let (v, n) = (span(all().map(|p| p[0]), 5.0, (20.0, 90.0)), span(all().map(|p| p[1]), 0.05, (1.4, 1.9)));
-    let axes = Axes::new(
-        frame,
-        Axis::new("Abbe number V_{d}", v.1, v.0).ticks(9, 2),
-        Axis::new("refractive index n_{d}", n.0, n.1).ticks(9, 2),
-    );
+    let axes = Axes::new(frame, Axis::new(of_v, v.1, v.0).ticks(9, 2), Axis::new(of_n, n.0, n.1).ticks(9, 2));
     axes.draw_grid(&mut canvas);
     canvas.clip(Some(frame));
     for (i, group) in groups.iter().enumerate() {
@@ -91,7 +88,7 @@ mod tests {
             AbbeGroup { name: "crown".into(), points: vec![[64.17, 1.5168]] },
             AbbeGroup { name: "flint".into(), points: vec![[25.68, 1.78472]] },
         ];
-        let pixels = abbe(&groups, &[]).to_pixels(1.0);
+        let pixels = abbe(&groups, &[], &["V".to_owned(), "n".to_owned()]).to_pixels(1.0);
         let place = |is: &dyn Fn([i32; 3]) -> bool| {
             // Within the frame, below the legend.
             let found: Vec<(usize, usize)> = (60..670)

@@ -5,12 +5,13 @@ use spectra_plot::{Canvas, Color, Rect, Stroke, TextStyle, nice_ticks};
 
 const WIDTH: f64 = 1000.0;
 const LEFT: f64 = 150.0;
-const ROW: f64 = 30.0;
-const TOP: f64 = 92.0;
+const ROW: f64 = 34.0;
+const TOP: f64 = 106.0;
 /// Where the patches end and the bars begin.
 const BARS: f64 = 420.0;
 const RIGHT: f64 = 960.0;
 const EYE: Color = Color::PALETTE[0];
+const LAYERS: Color = Color::PALETTE[2];
 const FILM: Color = Color::PALETTE[1];
 
 /// A thing in two lights.
@@ -20,21 +21,29 @@ pub struct Patch {
     pub name: String,
     /// As an eye sees it in the reference light and in the lamp, sRGB, once it has adapted to either.
     pub eye: [[u8; 3]; 2],
-    /// As the film has it in both, sRGB, timed to a neutral white in either.
+    /// As the finished picture has it in both, sRGB, a gray being neutral in either.
     pub film: [[u8; 3]; 2],
-    /// How different the two look, CIEDE2000: to the eye, and on film.
-    pub apart: [f64; 2],
+    /// How different the two look, CIEDE2000: to the eye, to the layers of the film, and in the picture.
+    pub apart: [f64; 3],
 }
 
 /// Things by rows: how they look in a reference light and in a lamp, side by side, to an eye and on film, and how far apart that is.
 #[must_use]
-pub fn lamp(title: &str, below: &str, patches: &[Patch]) -> Canvas {
+pub fn lamp(title: &str, below: [&str; 2], patches: &[Patch]) -> Canvas {
     let bottom = TOP + ROW * patches.len() as f64;
     let mut canvas = Canvas::new(WIDTH, bottom + 64.0, title);
     canvas.text([24.0, 30.0], &shortened(title), &TextStyle::new(16.0).weight(1.4));
-    canvas.text([24.0, 54.0], below, &TextStyle::new(12.5).color(Color::GREY));
+    for (line, y) in below.into_iter().zip([52.0, 70.0]) {
+        canvas.text([24.0, y], line, &TextStyle::new(12.5).color(Color::GREY));
+    }
     let small = TextStyle::new(12.5);
-    for (x, name, color) in [(LEFT, "eye", EYE), (LEFT + 128.0, "film", FILM)] {
+    for (x, name, color) in [
+        (LEFT, "eye", EYE),
+        (LEFT + 128.0, "film", FILM),
+        (BARS, "eye", EYE),
+        (BARS + 40.0, "layers", LAYERS),
+        (BARS + 100.0, "film", FILM),
+    ] {
         canvas.text([x, TOP - 10.0], name, &small.clone().weight(1.3).color(color));
     }
     let most = patches.iter().flat_map(|p| p.apart).fold(1.0, f64::max);
@@ -55,10 +64,10 @@ pub fn lamp(title: &str, below: &str, patches: &[Patch]) -> Canvas {
             canvas.rectangle(place, Color::from(colors[0]));
             canvas.rectangle(Rect { left: left + 56.0, ..place }, Color::from(colors[1]));
         }
-        let bars = [(patch.apart[0], EYE), (patch.apart[1], FILM)];
-        for (k, (value, color)) in bars.into_iter().enumerate() {
-            let from = top + 5.0 + 10.0 * k as f64;
-            canvas.rectangle(Rect::new(BARS, from, x(value).max(BARS + 0.5), from + 9.0), color);
+        let bars = patch.apart.into_iter().zip([EYE, LAYERS, FILM]);
+        for (k, (value, color)) in bars.enumerate() {
+            let from = top + 3.0 + 9.5 * k as f64;
+            canvas.rectangle(Rect::new(BARS, from, x(value).max(BARS + 0.5), from + 8.5), color);
         }
     }
     canvas.line([BARS, TOP], [BARS, bottom], &Stroke::new(Color::INK, 1.1));

@@ -85,6 +85,24 @@ pub const MOUNTS: [Mount; 36] = [
     mount("CS-mount", 12.526, 25.4),
 ];
 
+/// Mounts of the cameras that most lenses are made for or adapted to today, still and cinema.
+const COMMON: [&str; 14] = [
+    "ARRI PL",
+    "Nikon F",
+    "M42",
+    "Pentax K",
+    "Canon EF",
+    "Minolta SR",
+    "Canon FD",
+    "Leica M",
+    "Canon RF",
+    "L-Mount",
+    "Micro Four Thirds",
+    "Sony E",
+    "Fujifilm X",
+    "Nikon Z",
+];
+
 /// A mount that a lens fits.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MountReport {
@@ -96,6 +114,14 @@ pub struct MountReport {
     pub throat_mm: Option<f64>,
     /// From the rearmost glass to the flange; negative where glass stands behind it, in the mirror box.
     pub clearance_mm: f64,
+}
+
+impl MountReport {
+    /// Whether it is among those that most lenses are made for or adapted to today.
+    #[must_use]
+    pub fn is_common(&self) -> bool {
+        COMMON.contains(&self.name)
+    }
 }
 
 /// One surface of glass, as a mount sees it.
@@ -141,6 +167,7 @@ mod tests {
         names.sort_unstable();
         names.dedup();
         assert_eq!(names.len(), MOUNTS.len());
+        assert!(COMMON.iter().all(|common| names.contains(common)));
         // A screw of 42 mm does not go through a flange of 39.
         assert!(MOUNTS.iter().all(|m| m.throat_mm.is_none_or(|t| t > 10.0 && t < 100.0)));
         // A mirror stands behind the flange, and glass that passes it goes through a throat that is known.

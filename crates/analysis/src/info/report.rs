@@ -88,11 +88,14 @@ pub struct LensReport {
     pub chief_ray_exit_angle_deg: Vec<FieldReport>,
     /// Mounts that it fits, by the distances of its glass from the image plane.
     pub mounts: Vec<MountReport>,
-    /// First vertex to image plane.
+    /// Whether the text names all of them, and not only the common ones.
+    #[serde(skip)]
+    pub every_mount: bool,
+    /// First vertex to image plane, along the axis.
     pub total_track_mm: f64,
-    /// First vertex to last.
+    /// First vertex to last, along the axis.
     pub vertex_length_mm: f64,
-    /// Last vertex to image plane.
+    /// Last vertex to image plane, along the axis.
     pub image_distance_mm: f64,
     /// Whether it has a stop.
     pub has_stop: bool,
@@ -191,9 +194,15 @@ impl LensReport {
             max_field_limit,
             chief_ray_exit_angle_deg: chief_rays,
             mounts: glass(lens).map(|glass| cleared(&glass)).unwrap_or_default(),
-            total_track_mm: lens.image_z_mm(),
+            every_mount: false,
+            total_track_mm: if lens.image_pose.is_on_axis() { lens.image_z_mm() } else { lens.image_along_axis_mm },
             vertex_length_mm: lens.elements.last().map_or(0.0, |e| e.along_axis_mm),
-            image_distance_mm: lens.image_gap_mm(),
+            // Behind the last surface the axis may bend, too.
+            image_distance_mm: if lens.image_breaks.is_empty() {
+                lens.image_gap_mm()
+            } else {
+                lens.image_along_axis_mm - lens.elements.last().map_or(0.0, |e| e.along_axis_mm)
+            },
             has_stop: lens.stop().is_some(),
             stop_semi_diameter_mm: lens.stop().and_then(|stop| lens.elements[stop].semi_diameter_mm),
             surfaces: surfaces(&held),

@@ -153,7 +153,13 @@ impl LensReport {
         let dips =
             |m: &MountReport| (m.clearance_mm < 0.0).then(|| format!(" ({:.1} behind the flange)", -m.clearance_mm));
         let words = |m: &MountReport| format!("{} {}{}", m.name, m.flange_mm, dips(m).unwrap_or_default());
-        let mounts: Vec<String> = self.mounts.iter().map(words).collect();
+        let mut mounts: Vec<String> =
+            self.mounts.iter().filter(|m| self.every_mount || m.is_common()).map(words).collect();
+        match self.mounts.len() - mounts.len() {
+            0 => {}
+            more if mounts.is_empty() => mounts.push(format!("{more} less common ones (`--mounts` lists them)")),
+            more => mounts.push(format!("and {more} less common ones (`--mounts` lists them)")),
+        }
         if !mounts.is_empty() {
             writeln!(f, "fits these mounts (flange focal distance in mm): {}", mounts.join(", "))?;
             writeln!(f)?;

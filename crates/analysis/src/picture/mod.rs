@@ -2,12 +2,13 @@
 //!
 //! - [`Measured`]: the picture with its colors, its size on the film and its exposure time, as far as the file says them;
 //! - [`Summary`]: power, luminous flux, illuminance, colors that screens cannot show;
-//! - [`Field`]: one quantity at each pixel, as a view ([`view()`]) or a cut ([`Cut`]);
+//! - [`Field`]: one quantity at each pixel, as a view ([`view()`]) or a cut ([`Cut`]), or its colors ([`color()`]);
 //! - [`Area`]: the mean of a rectangle, with its spectrum where bands were recorded;
 //! - [`Difference`]: two pictures against each other.
 
 mod area;
 mod bands;
+mod color;
 mod compare;
 mod curve;
 mod cut;
@@ -18,6 +19,7 @@ mod view;
 
 pub use area::{Area, Rectangle};
 pub use bands::Band;
+pub use color::color;
 pub use compare::{Difference, Differs, compare};
 pub use curve::curve;
 pub use cut::{Cut, Way};

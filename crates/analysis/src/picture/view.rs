@@ -218,16 +218,16 @@ pub fn clipping(picture: &Measured, white: Option<f64>, title: &str) -> Result<C
 }
 
 /// A picture's values as the sheet shows them.
-struct Shown {
-    frame: Rect,
-    columns: usize,
-    rows: usize,
-    values: Vec<f64>,
+pub(super) struct Shown {
+    pub(super) frame: Rect,
+    pub(super) columns: usize,
+    pub(super) rows: usize,
+    pub(super) values: Vec<f64>,
 }
 
 impl Shown {
     /// Means of the finite values of blocks where the picture has more pixels than are shown; of angles the first.
-    fn of(picture: &Measured, is_angle: bool, value: &dyn Fn(usize) -> f64) -> Self {
+    pub(super) fn of(picture: &Measured, is_angle: bool, value: &dyn Fn(usize) -> f64) -> Self {
         let mean = |block: &mut dyn Iterator<Item = f64>| {
             let mut finite = block.filter(|v| v.is_finite());
             if is_angle {
@@ -268,7 +268,7 @@ impl Shown {
 }
 
 /// The sheet with title, picture, rows and columns.
-fn sheet(picture: &Measured, title: &str, note: Option<&str>, shown: &Shown, rgb: Vec<[u8; 3]>) -> Canvas {
+pub(super) fn sheet(picture: &Measured, title: &str, note: Option<&str>, shown: &Shown, rgb: Vec<[u8; 3]>) -> Canvas {
     let frame = shown.frame;
     let mut canvas = Canvas::new(frame.right + GAP + BAR + LABELS + 24.0, frame.bottom + 62.0, title);
     let style = TextStyle::new(14.0);

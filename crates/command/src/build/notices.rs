@@ -2,7 +2,7 @@
 
 use super::plugin::{Metadata, Package};
 use super::program::Program;
-use crate::licences;
+use crate::licenses;
 use crate::sources::{Sources, plain};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
@@ -28,7 +28,7 @@ pub(super) fn of(graph: &Metadata, program: &Program, sources: &Sources) -> Noti
     let linked = linked(graph, &program.name);
     let is_new = |package: &&Package| {
         let own = package.name == program.name || plain(&package.manifest_path).starts_with(&ours);
-        linked.contains(package.id.as_str()) && !own && !licences::has(&package.name, &package.version)
+        linked.contains(package.id.as_str()) && !own && !licenses::has(&package.name, &package.version)
     };
     let mut packages: Vec<&Package> = graph.packages.iter().filter(is_new).collect();
     packages.sort_by(|a, b| (&a.name, &a.version).cmp(&(&b.name, &b.version)));
@@ -125,9 +125,9 @@ mod tests {
     fn plugins_and_what_they_bring_are_listed() {
         let folder = tempfile::tempdir().unwrap();
         let at = folder.path();
-        let has = |name: &str| licences::has(name, "1.2.3");
+        let has = |name: &str| licenses::has(name, "1.2.3");
         let (known, version) = a_known_crate();
-        assert!(licences::has(known, version) && !licences::has(known, "") && !has("plugin"));
+        assert!(licenses::has(known, version) && !licenses::has(known, "") && !has("plugin"));
         let mut known_package = package(at, known, Some("MIT"));
         known_package["version"] = version.into();
         let link = |to: &str, kind: Option<&str>| serde_json::json!({"pkg": to, "dep_kinds": [{"kind": kind}]});

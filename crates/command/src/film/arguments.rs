@@ -73,10 +73,13 @@ pub(crate) struct FilmPlot {
 #[command(
     long_about = "Compare a lamp with a reference light by what both make of the 24 patches of the ColorChecker, to the eye and on a \
         color film: which colors part. Shown are the lamp's color rendering (CIE Ra and TM-30 Rf) and, of each patch, the \
-        difference between both lights as CIEDE2000: to an eye that has adapted to either, and on film that is timed to a \
-        neutral white in either.\n\nThe film's colors are those of its layers' exposures, brought to the eye's in the reference \
-        light by the best matrix, as masks and timing do; so only what the lamp changes is left. Curves, dyes and grain take \
-        no part.",
+        difference between both lights as CIEDE2000: to an eye that has adapted to either, to the layers of the film, and in the \
+        finished picture. `fidelity` says the same in one figure, on the scale of TM-30 (100: nothing parts): of its 99 samples in \
+        the lamp against the reference, to the eye and in the picture.\n\n\
+        On the camera, filters take the cast of either light away, so that a gray exposes the layers alike. `layers` are these \
+        exposures, brought to the eye's colors in the reference light by the best matrix: what the sensitivities alone do. `film` \
+        is the picture after curves, dyes, what layers do to each other, and print or projection; grain and light that spreads take \
+        no part. A film of high contrast drives colors further apart than the eye has them.",
     after_long_help = "Example: a fluorescent lamp on a daylight film\n  \
         spectra film lamp kodak-portra-400 FL2 --reference D50 -o fl2.png"
 )]
@@ -90,6 +93,12 @@ pub(crate) struct FilmLamp {
     /// The light that it is compared with.
     #[arg(long, value_name = "NAME", default_value = "D55")]
     pub reference: String,
+    /// How the film is viewed: print, negative, scan, projection; as suits the stock if not given.
+    #[arg(long, value_name = "VIEW")]
+    pub view: Option<String>,
+    /// The print stock or color paper; that of the stock's maker if not given.
+    #[arg(long, value_name = "NAME")]
+    pub print: Option<String>,
     /// Output figure, FILE.svg or FILE.png.
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,

@@ -116,7 +116,7 @@ fn to_json(stock: &Stock) -> Value {
         "filter_factors": factors,
         "print": stock.print,
         "source": stock.source,
-        "licence": stock.licence,
+        "license": stock.license,
         "remark": stock.remark,
     })
 }
@@ -258,7 +258,7 @@ fn text(stock: &Stock) -> String {
     );
     row("print on", stock.print.clone());
     row("source", Some(stock.source.clone()));
-    row("licence", Some(stock.licence.clone()));
+    row("license", Some(stock.license.clone()));
     for layer in &stock.layers {
         let assumed = if layer.assumed { " (assumed)" } else { "" };
         let dye = layer.dye.as_ref().map_or(String::new(), |d| format!(", forms {} dye", d.name));

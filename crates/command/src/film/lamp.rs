@@ -1,20 +1,22 @@
 //! `spectra film lamp`: how colors change on film and to the eye from one light to another.
 
 use super::arguments::FilmLamp;
-use super::{failure, load};
+use super::keys::set;
+use super::{called, failure, load};
 use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
 use serde_json::json;
 use spectra_analysis::figure::{LampPatch, lamp as figure};
 use spectra_color::{
-    Adaptation, Gamut, RgbSpace, ciede2000, color_rendering, fidelity, into_gamut, lab, matrix, to_u8, xyz_of_light,
-    xyz_of_reflectance,
+    Adaptation, Gamut, RgbSpace, cam02_ucs, ciede2000, color_evaluation_samples, color_rendering, fidelity,
+    fidelity_index, into_gamut, lab, matrix, to_u8, xyz_of_light, xyz_of_reflectance,
 };
 use spectra_core::params::Fault;
 use spectra_core::spectral::BAND;
 use spectra_film::stock::Stock;
 use spectra_plot::Format;
 use spectra_scene::FileResources;
+use spectra_session::FilmInLight;
 use spectra_spectrum::{Emission, Observer, Reflectance, find_emission_in, find_reflectance_in};
 use std::fmt::Write;
 use std::path::Path;
@@ -22,10 +24,23 @@ use std::path::Path;
 /// The ColorChecker's patches that are compared.
 const CHART: &str = "colorchecker";
 
-/// A patch in a light: as the eye has it, and as the film does, XYZ under D65 with 1 for white.
+/// A surface in a light, XYZ under D65 with 1 for white: as the eye has it, as the layers of the film got it, and as the picture shows it.
 struct Seen {
     eye: [f64; 3],
+    layers: [f64; 3],
     film: [f64; 3],
+}
+
+/// A light by its name.
+struct Named<'a> {
+    light: Emission,
+    name: &'a str,
+}
+
+impl Named<'_> {
+    fn dark(&self) -> Failure {
+        Failure::Input(format!("`{}` has no light that the film and the eye see", self.name))
+    }
 }
 
 /// Compares two lights by what they make of a chart, for the eye and on a film.
@@ -40,26 +55,18 @@ pub(crate) fn lamp(arguments: &FilmLamp) -> Outcome {
         return Err(Failure::Input(text));
     }
     let files = FileResources::beside(Path::new(""));
-    let light = |name: &str| find_emission_in(name, &files).map_err(|e| Failure::Faults(e.faults(Fault::new)));
+    let light = |name| -> Result<Named<'_>, Failure> {
+        let light = find_emission_in(name, &files).map_err(|e| Failure::Faults(e.faults(Fault::new)))?;
+        Ok(Named { light, name: name.trim() })
+    };
     let (test, reference) = (light(&arguments.lamp)?, light(&arguments.reference)?);
     let patches = patches(&files)?;
-    let xyz_of_film = film_matrix(&stock, &reference, &patches, &arguments.reference)?;
-    let seen = |light: &Emission, name: &str| -> Result<Vec<Seen>, Failure> {
-        let none = || Failure::Input(format!("`{name}` has no light that the film and the eye see"));
-        let white = exposures(&stock, light, None);
-        if white.iter().any(|e| !(*e > 0.0 && e.is_finite())) {
-            return Err(none());
-        }
-        let eye_white = xyz_of_light(light, Observer::cie_1931_2deg()).ok_or_else(none)?;
-        let one = |(_, surface): &(String, Reflectance)| {
-            let exposed = exposures(&stock, light, Some(surface));
-            let film = matrix::apply(&xyz_of_film, [0, 1, 2].map(|i| exposed[i] / white[i]));
-            let xyz = xyz_of_reflectance(surface, light, Observer::cie_1931_2deg()).ok_or_else(none)?;
-            Ok(Seen { eye: to_d65(xyz, eye_white), film })
-        };
-        patches.iter().map(one).collect()
-    };
-    let (in_test, in_reference) = (seen(&test, &arguments.lamp)?, seen(&reference, &arguments.reference)?);
+    let film = film(arguments, &stock)?;
+    let chart: Vec<&Reflectance> = patches.iter().map(|(_, surface)| surface).collect();
+    let samples: Vec<&Reflectance> = color_evaluation_samples().iter().collect();
+    let xyz_of_layers = layers_matrix(&stock, &reference, &chart)?;
+    let seen = |light: &Named<'_>| seen(light, &stock, &film, &xyz_of_layers, &chart);
+    let (in_test, in_reference) = (seen(&test)?, seen(&reference)?);
     let rows: Vec<LampPatch> = patches
         .iter()
         .zip(in_reference.iter().zip(&in_test))
@@ -67,50 +74,121 @@ pub(crate) fn lamp(arguments: &FilmLamp) -> Outcome {
             name: name.clone(),
             eye: [shown(a.eye), shown(b.eye)],
             film: [shown(a.film), shown(b.film)],
-            apart: [apart(a.eye, b.eye), apart(a.film, b.film)],
+            apart: [apart(a.eye, b.eye), apart(a.layers, b.layers), apart(a.film, b.film)],
         })
         .collect();
-    let (ra, rf) = (color_rendering(&test).map(|r| r.ra), fidelity(&test).map(|f| f.rf));
+    let pictures = |light: &Named<'_>| film.pictures(&light.light, &samples)?.ok_or_else(|| light.dark());
+    let film_rf = fidelity_of(&pictures(&test)?, &pictures(&reference)?);
+    let eye = |light: &Named<'_>| samples.iter().map(|sample| to_eye(light, sample)).collect::<Result<Vec<_>, _>>();
+    let eye_rf = fidelity_of(&eye(&test)?, &eye(&reference)?);
+    let (ra, rf) = (color_rendering(&test.light).map(|r| r.ra), fidelity(&test.light).map(|f| f.rf));
     let mean = |which: usize| rows.iter().map(|r| r.apart[which]).sum::<f64>() / rows.len().max(1) as f64;
-    let (eye, film) = (mean(0), mean(1));
     let index = |value: Option<f64>| value.map_or("-".to_owned(), |v| format!("{v:.1}"));
-    let figures =
-        format!("CIE Ra {}, TM-30 Rf {}; mean CIEDE2000 to the eye {eye:.2}, on film {film:.2}", index(ra), index(rf));
-    let title = format!("{} against {} on {}", arguments.lamp.trim(), arguments.reference.trim(), stock.name);
+    let indices = format!("CIE Ra {}, TM-30 Rf {}", index(ra), index(rf));
+    let against = format!("fidelity against {}: eye {eye_rf:.1}, film {film_rf:.1}", reference.name);
+    let means = format!("mean CIEDE2000: eye {:.2}, layers {:.2}, film {:.2}", mean(0), mean(1), mean(2));
+    let title = format!("{} against {} on {}", test.name, reference.name, stock.name);
     if let Some(path) = &arguments.output {
-        figure(
-            &title,
-            &format!("left half: {}, right half: {}. {figures}", arguments.reference.trim(), arguments.lamp.trim()),
-            &rows,
-        )
-        .write(path)
-        .map_err(failure)?;
+        let first = format!("left half: {}, right half: {}. {}: {indices}", reference.name, test.name, test.name);
+        let second = format!("{against}; {means}");
+        figure(&title, [&first, &second], &rows).write(path).map_err(failure)?;
         console::note(&format!("wrote {}", path.display()));
     }
+    let parting = parting(&rows);
     if arguments.json {
-        let patches: Vec<_> =
-            rows.iter().map(|r| json!({ "name": r.name, "eye": r.apart[0], "film": r.apart[1] })).collect();
+        let patches: Vec<_> = rows
+            .iter()
+            .map(|r| json!({ "name": r.name, "eye": r.apart[0], "layers": r.apart[1], "film": r.apart[2] }))
+            .collect();
+        let parting: Vec<&str> = parting.iter().map(|row| row.name.as_str()).collect();
         console::pretty_json(&json!({
             "stock": arguments.stock, "lamp": arguments.lamp, "reference": arguments.reference, "cie_ra": ra, "tm30_rf": rf,
-            "mean_eye": eye, "mean_film": film, "ciede2000": patches,
+            "fidelity": { "eye": eye_rf, "film": film_rf },
+            "mean_eye": mean(0), "mean_layers": mean(1), "mean_film": mean(2), "ciede2000": patches, "parting": parting,
         }))?;
         return Ok(DONE);
     }
-    let mut out = format!("{title}\n\n  {figures}\n\n  {:<16}  {:>6}  {:>6}\n", "CIEDE2000", "eye", "film");
+    let mut out = format!(
+        "{title}\n\n  {}: {indices}\n  {against} (99 samples, scale of TM-30)\n  {means}\n\n  {:<16}  {:>6}  {:>6}  {:>6}\n",
+        test.name, "CIEDE2000", "eye", "layers", "film"
+    );
     for row in &rows {
         // Writing to a String cannot fail.
-        let _ = writeln!(out, "  {:<16}  {:>6.2}  {:>6.2}", row.name, row.apart[0], row.apart[1]);
+        let [eye, layers, film] = row.apart;
+        let _ = writeln!(out, "  {:<16}  {eye:>6.2}  {layers:>6.2}  {film:>6.2}", row.name);
     }
-    let parts = rows.iter().max_by(|a, b| (a.apart[1] - a.apart[0]).total_cmp(&(b.apart[1] - b.apart[0])));
-    if let Some(row) = parts.filter(|row| row.apart[1] > row.apart[0]) {
-        let _ = writeln!(
-            out,
-            "\n  {} parts most from what the eye expects: {:.2} on film, {:.2} to the eye",
-            row.name, row.apart[1], row.apart[0]
-        );
+    if !parting.is_empty() {
+        let named =
+            |row: &&LampPatch| format!("{} ({:.1} on film, {:.1} to the eye)", row.name, row.apart[2], row.apart[0]);
+        let all: Vec<String> = parting.iter().map(named).collect();
+        let _ = writeln!(out, "\n  what parts on film more than to the eye: {}", all.join(", "));
     }
     console::out(&out)?;
     Ok(DONE)
+}
+
+/// How many of the colors that part are named.
+const NAMED: usize = 5;
+
+/// The colors that part on film by at least one CIEDE2000 more than to the eye, the worst first.
+fn parting(rows: &[LampPatch]) -> Vec<&LampPatch> {
+    let by = |row: &&LampPatch| row.apart[2] - row.apart[0];
+    let mut parting: Vec<&LampPatch> = rows.iter().filter(|row| by(row) >= 1.0).collect();
+    parting.sort_by(|a, b| by(b).total_cmp(&by(a)));
+    parting.truncate(NAMED);
+    parting
+}
+
+/// The film as it is developed and shown.
+fn film(arguments: &FilmLamp, stock: &Stock) -> Result<FilmInLight, Failure> {
+    let called = called(&arguments.stock)?;
+    let mut settings = vec![set("film.stock", "STOCK", &called)];
+    settings.extend(arguments.view.as_ref().map(|view| set("film.view", "--view", view)));
+    settings.extend(arguments.print.as_ref().map(|print| set("film.print", "--print", print)));
+    let made_for = set("source.illuminant", "STOCK", &stock.reference_illuminant);
+    Ok(FilmInLight::new(&settings, &made_for)?)
+}
+
+/// All that is seen of surfaces in a light.
+fn seen(
+    light: &Named<'_>,
+    stock: &Stock,
+    film: &FilmInLight,
+    xyz_of_layers: &[[f64; 3]; 3],
+    surfaces: &[&Reflectance],
+) -> Result<Vec<Seen>, Failure> {
+    let white = exposures(stock, &light.light, None);
+    if white.iter().any(|e| !(*e > 0.0 && e.is_finite())) {
+        return Err(light.dark());
+    }
+    let pictures = film.pictures(&light.light, surfaces)?.ok_or_else(|| light.dark())?;
+    let one = |(surface, film): (&&Reflectance, [f64; 3])| {
+        let exposed = exposures(stock, &light.light, Some(surface));
+        let layers = matrix::apply(xyz_of_layers, [0, 1, 2].map(|i| exposed[i] / white[i]));
+        Ok(Seen { eye: to_eye(light, surface)?, layers, film })
+    };
+    surfaces.iter().zip(pictures).map(one).collect()
+}
+
+/// A surface to an eye that has adapted to the light.
+fn to_eye(light: &Named<'_>, surface: &Reflectance) -> Result<[f64; 3], Failure> {
+    let observer = Observer::cie_1931_2deg();
+    let white = xyz_of_light(&light.light, observer).ok_or_else(|| light.dark())?;
+    let xyz = xyz_of_reflectance(surface, &light.light, observer).ok_or_else(|| light.dark())?;
+    Ok(to_d65(xyz, white))
+}
+
+/// The fidelity index of samples that were seen in two ways: by the mean of their differences in CAM02-UCS, on the scale of TM-30.
+fn fidelity_of(test: &[[f64; 3]], reference: &[[f64; 3]]) -> f64 {
+    let white = RgbSpace::srgb().white_xyz().map(|v| 100.0 * v);
+    // Light that no surface sends, a hair below 0 by the numbers of a film, is black.
+    let place = |xyz: &[f64; 3]| cam02_ucs(xyz.map(|v| (100.0 * v).max(0.0)), white);
+    let apart = |(a, b): (&[f64; 3], &[f64; 3])| {
+        let (a, b) = (place(a), place(b));
+        (0..3).map(|i| (a[i] - b[i]) * (a[i] - b[i])).sum::<f64>().sqrt()
+    };
+    let all: f64 = test.iter().zip(reference).map(apart).sum();
+    fidelity_index(all / test.len().max(1) as f64)
 }
 
 fn patches(files: &FileResources) -> Result<Vec<(String, Reflectance)>, Failure> {
@@ -144,17 +222,10 @@ fn to_d65(xyz: [f64; 3], white: [f64; 3]) -> [f64; 3] {
 
 /// The matrix from the layers' exposures over white's to XYZ under D65 that is best for the chart in the reference light, with white kept:
 /// what a laboratory's timing and masks come to, so that only what the lamp changes is left.
-fn film_matrix(
-    stock: &Stock,
-    reference: &Emission,
-    patches: &[(String, Reflectance)],
-    name: &str,
-) -> Result<[[f64; 3]; 3], Failure> {
-    let none = || Failure::Input(format!("`{name}` has no light that the film and the eye see"));
-    let white = exposures(stock, reference, None);
-    let eye_white = xyz_of_light(reference, Observer::cie_1931_2deg()).ok_or_else(none)?;
+fn layers_matrix(stock: &Stock, reference: &Named<'_>, chart: &[&Reflectance]) -> Result<[[f64; 3]; 3], Failure> {
+    let white = exposures(stock, &reference.light, None);
     if white.iter().any(|e| !(*e > 0.0 && e.is_finite())) {
-        return Err(none());
+        return Err(reference.dark());
     }
     let (mut squares, mut products) = ([[0.0; 3]; 3], [[0.0; 3]; 3]);
     let mut add = |from: [f64; 3], to: [f64; 3], weight: f64| {
@@ -165,13 +236,12 @@ fn film_matrix(
             }
         }
     };
-    for (_, surface) in patches {
-        let exposed = exposures(stock, reference, Some(surface));
-        let xyz = xyz_of_reflectance(surface, reference, Observer::cie_1931_2deg()).ok_or_else(none)?;
+    for surface in chart {
+        let exposed = exposures(stock, &reference.light, Some(surface));
         let from = [0, 1, 2].map(|i| exposed[i] / white[i]);
         // Dark patches count as light ones do.
         let weight = 1.0 / from.iter().sum::<f64>().max(1e-3);
-        add(from, to_d65(xyz, eye_white), weight);
+        add(from, to_eye(reference, surface)?, weight);
     }
     // White by far the most.
     add([1.0; 3], RgbSpace::srgb().white_xyz(), 1e4);

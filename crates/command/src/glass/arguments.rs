@@ -71,8 +71,9 @@ pub(crate) struct GlassInfo {
     /// Abbe number that goes with --nd.
     #[arg(long, visible_alias = "v", value_name = "V", requires = "nd")]
     pub vd: Option<f64>,
-    /// Reference line of --nd and --vd without a name: d and D go with F and C, e with F' and C'.
-    #[arg(long, value_name = "d|D|e", default_value = "d", value_parser = reference, conflicts_with = "name")]
+    /// Reference line of --nd and --vd without a name: d and D go with F and C, e with F' and C'; or three lines from blue to red
+    /// (F,e,C or 450,580,680), the index at the middle one.
+    #[arg(long, value_name = "LINE|BLUE,MIDDLE,RED", default_value = "d", value_parser = reference, conflicts_with = "name")]
     pub line: LineTriple,
     /// Also show the index at this wavelength in air.
     #[arg(long, value_name = "NM", value_parser = parse::<Wavelength>)]
@@ -139,6 +140,9 @@ pub(crate) struct GlassPlot {
     /// Plot the Abbe diagram.
     #[arg(long)]
     pub abbe: bool,
+    /// The lines of the Abbe diagram: d, D or e, or three lines from blue to red (F',e,C' or 450,580,680).
+    #[arg(long, value_name = "LINE|BLUE,MIDDLE,RED", default_value = "d", value_parser = reference, requires = "abbe")]
+    pub lines: LineTriple,
     /// Show only these makers in the Abbe diagram, each in its own color.
     #[arg(long, value_name = "A,B,...", value_delimiter = ',', requires = "abbe")]
     pub makers: Vec<String>,
@@ -160,6 +164,7 @@ pub(crate) struct GlassPlot {
         lists the nearest glasses for each medium of a lens.",
     after_long_help = "Examples:\n  spectra glass match --nd 1.64329 --vd 48 --maker SCHOTT --era 1927\n  \
         spectra glass match --nd 1.6242 --vd 53.1 --line e --era modern\n  \
+        spectra glass match --nd 1.6200 --vd 36.0 --line 450,580,680\n  \
         spectra glass match --lens zeiss-biotar-50-f1.4 --limit 3"
 )]
 pub(crate) struct GlassMatch {
@@ -172,8 +177,9 @@ pub(crate) struct GlassMatch {
     /// Match every medium of this lens, by its stated index and Abbe number.
     #[arg(long, value_name = "LENS", conflicts_with_all = ["nd", "vd", "line"])]
     pub lens: Option<String>,
-    /// Reference line of both: d and D go with F and C, e with F' and C'.
-    #[arg(long, value_name = "d|D|e", default_value = "d", value_parser = reference)]
+    /// Reference line of both: d and D go with F and C, e with F' and C'; or three lines from blue to red (F,e,C or 450,580,680), the
+    /// index at the middle one.
+    #[arg(long, value_name = "LINE|BLUE,MIDDLE,RED", default_value = "d", value_parser = reference)]
     pub line: LineTriple,
     /// Only glasses of this maker; can be repeated.
     #[arg(long = "maker", value_name = "MAKER", value_delimiter = ',')]
@@ -275,28 +281,15 @@ fn range(text: &str) -> Result<(f64, f64), String> {
 
 /// The lines of `--lines`.
 fn three_lines(text: &str) -> Result<LineTriple, String> {
-    let expected =
-        || "expected three lines or wavelengths in nm from blue to red, such as F',e,C' or 450,580,680".to_owned();
-    let line = |text: &str| {
-        let text = text.trim();
-        let named = spectra_glass::lines::by_name(text);
-        let measured = || text.trim_end_matches("nm").trim().parse().ok().filter(|nm| (100.0..=50_000.0).contains(nm));
-        named.or_else(|| Some(spectra_glass::lines::Line { name: "", wavelength_nm: measured()? }))
-    };
-    let lines: Option<Vec<_>> = text.split(',').map(line).collect();
-    match lines.as_deref() {
-        Some(&[short, mid, long])
-            if short.wavelength_nm < mid.wavelength_nm && mid.wavelength_nm < long.wavelength_nm =>
-        {
-            Ok(LineTriple { mid, short, long })
-        }
-        _ => Err(expected()),
-    }
+    let expected = "expected three lines or wavelengths in nm from blue to red, such as F',e,C' or 450,580,680";
+    LineTriple::read(text).filter(|_| text.contains(',')).ok_or_else(|| expected.to_owned())
 }
 
-fn reference(name: &str) -> Result<LineTriple, String> {
-    let line = spectra_glass::lines::by_name(name);
-    line.and_then(LineTriple::of_reference).ok_or_else(|| "expected d, D or e".into())
+/// The lines of `--line`.
+fn reference(text: &str) -> Result<LineTriple, String> {
+    let expected =
+        "expected d, D or e, or three lines or wavelengths in nm from blue to red, such as F',e,C' or 450,580,680";
+    LineTriple::read(text).ok_or_else(|| expected.to_owned())
 }
 
 fn category(name: &str) -> Result<Category, String> {

@@ -5,7 +5,7 @@ use super::{catalogue, makers};
 use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
 use serde::Serialize;
-use spectra_glass::{Catalogue, Category, LineTriple, Match, Query, lines};
+use spectra_glass::{Catalogue, Category, LineTriple, Match, Query};
 use spectra_lens::Lens;
 use spectra_scene::FileResources;
 use std::fmt::Write;
@@ -18,7 +18,12 @@ struct Report {
     medium: Option<String>,
     /// Surfaces of the lens in front of the medium, from 1.
     surfaces: Vec<usize>,
-    line: &'static str,
+    /// The middle line: its name, or its wavelength.
+    line: String,
+    /// All three, from blue to red, nm.
+    lines_nm: [f64; 3],
+    #[serde(skip)]
+    called: [String; 2],
     n: f64,
     v: Option<f64>,
     matches: Vec<Row>,
@@ -54,7 +59,7 @@ pub(crate) fn nearest(arguments: &GlassMatch) -> Outcome {
     let (lines, wanted) = match &arguments.lens {
         Some(name) => {
             let lens = spectra_lens::load(name, &FileResources::beside(Path::new("")))?;
-            let lines = triple(lens.reference_nm);
+            let lines = lens.abbe_lines;
             (lines, media(&lens, lines))
         }
         None => {
@@ -99,12 +104,6 @@ pub(crate) fn nearest(arguments: &GlassMatch) -> Outcome {
     Ok(DONE)
 }
 
-/// The lines that belong to a reference wavelength; d's for one that defines no Abbe number.
-fn triple(reference_nm: f64) -> LineTriple {
-    let line = lines::ALL.into_iter().find(|line| line.wavelength_nm == reference_nm);
-    line.and_then(LineTriple::of_reference).unwrap_or(LineTriple::FDC)
-}
-
 /// The media of a lens but air, each once, with the surfaces in front of them.
 fn media(lens: &Lens, lines: LineTriple) -> Vec<Wanted> {
     let surfaces = |medium: usize| -> Vec<usize> {
@@ -140,7 +139,9 @@ fn report(catalogue: &Catalogue, wanted: Wanted, query: &Query) -> Report {
     Report {
         medium: wanted.label,
         surfaces: wanted.surfaces,
-        line: query.lines.mid.name,
+        line: query.lines.mid.label(),
+        lines_nm: [query.lines.short, query.lines.mid, query.lines.long].map(|line| line.wavelength_nm),
+        called: [query.lines.mid.indexed("n"), query.lines.abbe_label()],
         n: wanted.n,
         v: wanted.v,
         matches: catalogue.nearest(query).into_iter().map(row).collect(),
@@ -148,22 +149,22 @@ fn report(catalogue: &Catalogue, wanted: Wanted, query: &Query) -> Report {
 }
 
 fn text(report: &Report) -> String {
-    let line = report.line;
+    let [of_n, of_v] = &report.called;
     let mut out = String::new();
     // Writing to a String cannot fail.
     if let Some(medium) = &report.medium {
         let numbers: Vec<String> = report.surfaces.iter().map(ToString::to_string).collect();
         let _ = write!(out, "behind surface {}: {medium}, ", numbers.join(", "));
     }
-    let _ = write!(out, "n{line} {}", report.n);
-    let _ = report.v.map(|v| write!(out, ", V{line} {}", rounded(v)));
+    let _ = write!(out, "{of_n} {}", report.n);
+    let _ = report.v.map(|v| write!(out, ", {of_v} {}", rounded(v)));
     let width = report.matches.iter().map(|row| row.name.len()).max().unwrap_or(0).max(5);
     let _ = writeln!(
         out,
         "\n  {:<width$}  {:>9}  {:>7}  {:>9}  {:>7}  {:>8}  {:<9}  listed",
         "glass",
-        format!("n{line}"),
-        format!("V{line}"),
+        if of_n.len() > 9 { "n" } else { of_n },
+        if of_v.len() > 7 { "V" } else { of_v },
         "dn",
         "dV",
         "distance",

@@ -60,23 +60,24 @@ fn dispersion(media: &[(String, Medium)], band_nm: (f64, f64)) -> Result<Canvas,
 }
 
 fn abbe(arguments: &GlassPlot, catalogue: &Catalogue, media: &[(String, Medium)]) -> Result<Canvas, Failure> {
+    let lines = arguments.lines;
     let makers = makers(&arguments.makers, catalogue)?;
     let glasses = |maker: Option<&String>| {
-        let mut query = Query::new(1.5, None, LineTriple::FDC);
+        let mut query = Query::new(1.5, None, lines);
         query.count = usize::MAX;
         query.makers.extend(maker.cloned());
         query.categories.push(Category::User);
         if let Some(era) = arguments.era {
             era.narrow(&mut query);
         }
-        let points = catalogue.nearest(&query).iter().map(|m| [m.glass.vd(), m.n]).filter(visible).collect();
+        let points = catalogue.nearest(&query).iter().map(|m| [m.v, m.n]).filter(visible).collect();
         AbbeGroup { name: maker.map_or("all makers", String::as_str).to_owned(), points }
     };
     let groups: Vec<AbbeGroup> =
         if makers.is_empty() { vec![glasses(None)] } else { makers.iter().map(|m| glasses(Some(m))).collect() };
     let mut named = Vec::new();
     for (name, medium) in media {
-        let (n, v) = (medium.index(lines::D.wavelength_nm), medium.abbe_number(LineTriple::FDC));
+        let (n, v) = (medium.index(lines.mid.wavelength_nm), medium.abbe_number(lines));
         if !visible(&[v, n]) {
             return Err(Failure::Input(format!("{name} has no Abbe number that a diagram can show")));
         }
@@ -85,7 +86,15 @@ fn abbe(arguments: &GlassPlot, catalogue: &Catalogue, media: &[(String, Medium)]
     for group in groups.iter().filter(|g| g.points.is_empty()) {
         console::warning(&format!("no optical glass of {} fits", group.name));
     }
-    Ok(figure::abbe(&groups, &named))
+    Ok(figure::abbe(&groups, &named, &axes(lines)))
+}
+
+/// How its axes are called: the Abbe number, and the index.
+fn axes(lines: LineTriple) -> [String; 2] {
+    let of = |symbol: &str| format!("{symbol}_{{{}}}", lines.mid.label());
+    let usual = LineTriple::of_reference(lines.mid) == Some(lines);
+    let for_lines = if usual { String::new() } else { format!(" for {}", lines.label()) };
+    [format!("Abbe number {}{for_lines}", of("V")), format!("refractive index {}", of("n"))]
 }
 
 /// What an Abbe diagram has room for.

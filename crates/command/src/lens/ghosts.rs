@@ -1,60 +1,158 @@
 //! `spectra lens ghosts`.
 
 use super::load;
+use super::trace::path_of;
 use crate::arguments::LensGhosts;
 use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
 use serde_json::json;
-use spectra_analysis::ghosts::{Ghost, ghosts as find};
+use spectra_analysis::draw::{Ground, Sheet, View};
+use spectra_analysis::ghosts::{Ghost, GhostSearch, Ghosts, ghost_rays, ghosts as find};
 use spectra_core::Isa;
+use spectra_lens::{Lens, Section};
+use spectra_plot::{Format, PlotError};
+use std::path::Path;
 
-/// Lists the ghosts of a lens.
+/// Lists the ghosts of a lens, and draws one.
 pub(crate) fn ghosts(arguments: &LensGhosts, isa: Isa) -> Outcome {
+    // Before anything is computed: a wrong ending is found out at once.
+    if let Some(output) = &arguments.output {
+        Format::of(output).map_err(failure)?;
+    }
     let lens = load(&arguments.setting)?;
-    let all = find(&lens, lens.reference_nm, isa)
-        .map_err(|error| Failure::Input(format!("{}: {error}", arguments.setting.lens)))?;
-    let sum: f64 = all.iter().map(|ghost| ghost.energy).sum();
+    let path = path_of(&arguments.path, &lens)?;
+    let asked = path.as_ref().map(|path| path.reflections().count());
+    let order = if arguments.order == "4" || asked == Some(4) { 4 } else { 2 };
+    if asked.is_some_and(|count| count > 4) {
+        return Err(Failure::Input("--path: two surfaces, or four".to_owned()));
+    }
+    let search = GhostSearch { wavelength_nm: lens.reference_nm, order, share: arguments.share };
+    let all =
+        find(&lens, search, isa).map_err(|error| Failure::Input(format!("{}: {error}", arguments.setting.lens)))?;
     if arguments.json {
         console::pretty_json(&json!({
             "lens": lens.name,
             "wavelength_nm": lens.reference_nm,
-            "energy": sum,
-            "paths": all,
+            "order": order,
+            "energy": sum(&all.paths),
+            "not_traced": all.not_traced,
+            "paths": all.paths,
         }))?;
-        return Ok(DONE);
+    } else {
+        console::out(&table(&lens, &all, order, arguments.all))?;
     }
+    if let Some(output) = &arguments.output {
+        let asked: Option<Vec<usize>> = path.map(|path| path.reflections().map(|at| at + 1).collect());
+        draw(arguments, &lens, &all, asked, output)?;
+    }
+    Ok(DONE)
+}
+
+fn sum(ghosts: &[Ghost]) -> f64 {
+    ghosts.iter().map(|ghost| ghost.energy).sum()
+}
+
+fn table(lens: &Lens, found: &Ghosts, order: usize, is_whole: bool) -> String {
+    let all = &found.paths;
+    let of = |many: usize| all.iter().filter(|ghost| ghost.surfaces.len() == many).count();
+    let four = if order > 2 { format!(" and {} of four", of(4)) } else { String::new() };
     let mut text = format!(
-        "{}: {} ghosts of two reflections, together {:.3} % of the straight light (infinity, on the axis, {:.1} nm)\n",
+        "{}: {} ghosts of two reflections{four}, together {:.3} % of the straight light (infinity, on the axis, {:.1} nm)\n",
         lens.name,
-        all.len(),
-        100.0 * sum,
+        of(2),
+        100.0 * sum(all),
         lens.reference_nm
     );
+    let more = if order > 2 { "more often, or on paths that begin with less than was asked" } else { "more often" };
+    text.push_str(&format!("{} of the light that enters is reflected {more}\n", percent(found.not_traced)));
+    let width = if order > 2 { 14 } else { 8 };
     if !all.is_empty() {
-        text.push_str("surfaces     energy      focus   f of ghost  size on film    C' : e : F'\n");
+        text.push_str(&format!(
+            "{:<width$}     energy      focus   f of ghost  size on film    C' : e : F'\n",
+            "surfaces"
+        ));
     }
-    let shown = if arguments.all { all.len() } else { MOST.min(all.len()) };
-    all[..shown].iter().for_each(|ghost| text.push_str(&row(ghost)));
+    let shown = if is_whole { all.len() } else { MOST.min(all.len()) };
+    all[..shown].iter().for_each(|ghost| text.push_str(&row(ghost, width)));
     if shown < all.len() {
         text.push_str(&format!("{} weaker ones: --all shows them\n", all.len() - shown));
     }
-    console::out(&text)?;
-    Ok(DONE)
+    text
+}
+
+/// Two digits, however little.
+fn percent(part: f64) -> String {
+    let percent = 100.0 * part;
+    if percent >= 0.1 || percent == 0.0 { format!("{percent:.2} %") } else { format!("{percent:.1e} %") }
 }
 
 /// Paths listed unless all are asked for.
 const MOST: usize = 15;
 
-fn row(ghost: &Ghost) -> String {
+fn names(surfaces: &[usize]) -> String {
+    surfaces.iter().map(usize::to_string).collect::<Vec<_>>().join(", ")
+}
+
+fn row(ghost: &Ghost, width: usize) -> String {
     let length = |mm: Option<f64>| mm.map_or_else(|| "-".to_owned(), |mm| format!("{mm:.2} mm"));
-    let [a, b] = ghost.surfaces;
     let [red, green, blue] = ghost.color;
     format!(
-        "{:>8} {:>10.2e} {:>10} {:>12} {:>10.2} mm    {red:.2} : {green:.0} : {blue:.2}\n",
-        format!("{a}, {b}"),
+        "{:>width$} {:>10.2e} {:>10} {:>12} {:>10.2} mm    {red:.2} : {green:.0} : {blue:.2}\n",
+        names(&ghost.surfaces),
         ghost.energy,
         length(ghost.focus_mm),
         length(ghost.focal_length_mm),
         ghost.size_mm
     )
+}
+
+/// Draws the lens with the rays of a ghost.
+fn draw(
+    arguments: &LensGhosts,
+    lens: &Lens,
+    all: &Ghosts,
+    asked: Option<Vec<usize>>,
+    output: &Path,
+) -> Result<(), Failure> {
+    let ghost = match &asked {
+        Some(surfaces) => all.paths.iter().find(|ghost| ghost.surfaces == *surfaces),
+        None => all.paths.iter().max_by(|a, b| a.density().total_cmp(&b.density())),
+    };
+    let Some(surfaces) = asked.clone().or_else(|| ghost.map(|ghost| ghost.surfaces.clone())) else {
+        return Err(Failure::Input(format!("{} has no ghosts to draw: nothing reflects", lens.name)));
+    };
+    let reflections: Vec<usize> = surfaces.iter().map(|at| at - 1).collect();
+    let section = Section::Y;
+    let field_rad = arguments.field.to_radians();
+    let rays = ghost_rays(lens, &reflections, lens.reference_nm, field_rad, section, arguments.rays.into());
+    let rays = rays.map_err(|error| Failure::Input(format!("{}: {error}", arguments.setting.lens)))?;
+    if rays.is_empty() {
+        console::warning("no ray comes to the image plane by this path: the drawing shows glass alone");
+    }
+    let at = if arguments.field == 0.0 { String::new() } else { format!(", light from {} degrees", arguments.field) };
+    let energy =
+        ghost.map_or_else(String::new, |ghost| format!(": {:.1e} of the straight light on the axis", ghost.energy));
+    let named = names(&surfaces);
+    let sheet = Sheet {
+        width: WIDTH,
+        height: None,
+        ground: Ground::Light,
+        width_mm: None,
+        view: View { section },
+        caption: format!("{}, reflected by surfaces {named}{energy}{at}", lens.name),
+        image: true,
+    };
+    sheet.draw(lens, &rays).write(output).map_err(failure)?;
+    console::note(&format!("wrote {}: the ghost of surfaces {named}", output.display()));
+    Ok(())
+}
+
+/// Width of the drawing, in units of a CSS pixel.
+const WIDTH: f64 = 900.0;
+
+fn failure(error: PlotError) -> Failure {
+    match error {
+        PlotError::Ending { .. } => Failure::Input(error.to_string()),
+        PlotError::Write(error) => error.into(),
+    }
 }

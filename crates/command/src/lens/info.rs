@@ -20,6 +20,7 @@ pub(crate) fn info(arguments: &LensInfo) -> Outcome {
         }
     }
     let mut report = LensReport::of(&lens, light);
+    report.every_mount = arguments.mounts;
     if arguments.glare {
         let mut task = GlareTask::new(light.wavelength_nm().unwrap_or(lens.reference_nm));
         task.matter.paint = arguments.paint.unwrap_or(task.matter.paint);

@@ -43,7 +43,7 @@ pub(crate) fn trace(arguments: &LensTrace, isa: Isa) -> Outcome {
 }
 
 /// The path by reflections that is asked for.
-fn path_of(surfaces: &[usize], lens: &Lens) -> Result<Option<LightPath>, Failure> {
+pub(super) fn path_of(surfaces: &[usize], lens: &Lens) -> Result<Option<LightPath>, Failure> {
     if surfaces.is_empty() {
         return Ok(None);
     }

@@ -1,5 +1,6 @@
 //! What can be written after `spectra picture`.
 
+use crate::eye::EyeName;
 use clap::{Args, Subcommand};
 use spectra_analysis::picture::Rectangle;
 use std::path::PathBuf;
@@ -68,18 +69,21 @@ pub(crate) struct White {
 /// `spectra picture plot`.
 #[derive(Debug, Args)]
 #[command(
-    long_about = "Plot one quantity of a picture in false color, with its scale.\n\n\
+    long_about = "Plot one quantity of a picture in false color, with its scale, or the picture in its colors.\n\n\
         QUANTITY is illuminance (lx), exposure (lx s), irradiance (W/m2, of spectral pictures), luminance, lightness (L*), chroma (C*), \
-        hue, clipping, or the name of a channel, such as Y or ortho. `clipping` shows brightness in gray, and marks what is beyond white, \
-        outside of sRGB, or no number. Lightness, chroma and hue are CIE Lab against a white of D65.",
+        hue, clipping, color, or the name of a channel, such as Y or ortho. `color` is the picture as a screen shows it. `clipping` shows brightness in gray, and marks what is beyond white, \
+        outside of sRGB, or no number. Lightness, chroma and hue are CIE Lab against a white of D65. \
+        --seen-by shows the picture as an eye without one kind of cones has it (Machado, Oliveira and Fernandes 2009, in full); with \
+        another --quantity it does so with the false colors.",
     after_long_help = "Examples, where a.exr is yours:\n\n    \
-        spectra picture plot a.exr --log\n    spectra picture plot a.exr --quantity hue -o a-hue.png"
+        spectra picture plot a.exr --log\n    spectra picture plot a.exr --quantity hue -o a-hue.png\n    \
+        spectra picture plot a.exr --seen-by deutan -o a-deutan.png"
 )]
 pub(crate) struct PicturePlot {
     /// The picture.
     #[arg(value_name = "FILE")]
     pub file: PathBuf,
-    /// What to show; if not given, illuminance, else what comes nearest to it.
+    /// What to show; if not given, illuminance, else what comes nearest to it, or with --seen-by the color.
     #[arg(long, value_name = "QUANTITY")]
     pub quantity: Option<String>,
     /// A scale by powers of ten.
@@ -88,6 +92,9 @@ pub(crate) struct PicturePlot {
     /// Ends of the scale; the smallest (or 0) and the largest value if not given.
     #[arg(long, value_name = "FROM,TO", allow_hyphen_values = true, value_parser = range)]
     pub range: Option<[f64; 2]>,
+    /// Show it as an eye has it that lacks one kind of cones.
+    #[arg(long, value_enum, value_name = "EYE")]
+    pub seen_by: Option<EyeName>,
     #[command(flatten)]
     pub white: White,
     /// Output file, FILE.png or FILE.svg; NAME-QUANTITY.png in the working folder if not given.

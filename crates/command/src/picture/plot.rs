@@ -1,14 +1,15 @@
-//! `spectra picture plot`.
+//! `spectra picture plot`: a quantity in false color, or the picture in its colors.
 
 use super::arguments::PicturePlot;
 use super::{field, load, not_written, output, quantity, refuse, stem};
 use crate::console;
 use crate::outcome::{DONE, Outcome};
-use spectra_analysis::picture::{Quantity, Scale, clipping, view};
+use spectra_analysis::picture::{Quantity, Scale, clipping, color, view};
 use spectra_plot::Format;
 
-/// The word that is no quantity of a pixel alone.
+/// The words that are no quantity of a pixel alone.
 const CLIPPING: &str = "clipping";
+const COLOR: &str = "color";
 
 /// Draws a picture in false color.
 pub(super) fn plot(arguments: &PicturePlot) -> Outcome {
@@ -20,11 +21,20 @@ pub(super) fn plot(arguments: &PicturePlot) -> Outcome {
     let picture = load(path)?;
     let asked = arguments.quantity.as_deref().map(str::trim);
     let white = arguments.white.white;
-    let (canvas, name) = if asked == Some(CLIPPING) && picture.planes.channel(CLIPPING).is_none() {
+    let eye = arguments.seen_by;
+    // The picture itself is what an eye is asked about, if nothing else is.
+    let asked = asked.or(eye.map(|_| COLOR));
+    let (canvas, name) = if asked == Some(COLOR) && picture.planes.channel(COLOR).is_none() {
+        let title = match eye {
+            Some(eye) => format!("{}: as {} has it", stem(path), eye.eye()),
+            None => format!("{}: color", stem(path)),
+        };
+        (color(&picture, white, &title).map_err(|error| refuse(path, error))?, COLOR.to_owned())
+    } else if asked == Some(CLIPPING) && picture.planes.channel(CLIPPING).is_none() {
         let title = format!("{}: clipping", stem(path));
         (clipping(&picture, white, &title).map_err(|error| refuse(path, error))?, CLIPPING.to_owned())
     } else {
-        let asked = asked.map(|name| quantity(name, &picture, &[CLIPPING])).transpose()?;
+        let asked = asked.map(|name| quantity(name, &picture, &[CLIPPING, COLOR])).transpose()?;
         let quantity = asked.unwrap_or_else(|| Quantity::usual(&picture));
         let name = match &quantity {
             Quantity::Channel(name) => name.clone(),
@@ -34,6 +44,10 @@ pub(super) fn plot(arguments: &PicturePlot) -> Outcome {
         let scale = Scale { is_log: arguments.log, range: arguments.range };
         let title = format!("{}: {}", stem(path), field.name);
         (view(&picture, &field, scale, &title).map_err(|error| refuse(path, error))?, name)
+    };
+    let (canvas, name) = match eye {
+        None => (canvas, name),
+        Some(eye) => (eye.sees(canvas), format!("{name}-{}", eye.word())),
     };
     let output = output(arguments.output.as_ref(), path, &format!("{name}.png"));
     canvas.write(&output).map_err(not_written)?;

@@ -52,7 +52,7 @@ fn render_scene(arguments: &Run, isa: Isa, started: Instant) -> Outcome {
     let job = Job {
         chosen: frames::chosen(&series, arguments)?,
         series: &series,
-        light: LightFrom::Rays,
+        light: if series.is_without_lens() { LightFrom::Pixels } else { LightFrom::Rays },
         skip_existing: arguments.skip_existing,
         names: target.names.clone(),
         isa,

@@ -59,6 +59,7 @@ impl Progress {
     pub(super) fn hear(&mut self, event: Event<'_>, threads: usize, isa: Isa) {
         match event {
             Event::Checked { done, of } => self.checking(done, of),
+            Event::Preparing => self.preparing(),
             Event::Ready => {}
             Event::Warning(warning) => self.warning(warning),
             Event::Note(text) => self.note(text),
@@ -130,6 +131,14 @@ impl Progress {
                 console::note(&format!("{} of {} pictures checked", done, of));
             }
             Listener::Json | Listener::Lines | Listener::Quiet => {}
+        }
+    }
+
+    /// Before the first ray.
+    fn preparing(&self) {
+        if let Listener::Bar(bar) = &self.listener {
+            bar.set_message("finding where light passes the lens");
+            bar.tick();
         }
     }
 

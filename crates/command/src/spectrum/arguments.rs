@@ -1,5 +1,6 @@
 //! What can be written after `spectra spectrum`.
 
+use crate::eye::EyeName;
 use clap::{Args, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
@@ -10,7 +11,7 @@ use std::path::PathBuf;
         NAME is a bundled spectrum (see `spectra list spectrum`), a column of one (`colorchecker#red`), a table \
         (.csv, .txt, .dat, .tsv) or YAML file, or an expression: blackbody:5800, daylight:5500 and 5600K (K), line:C' \
         or line:632.8, lines:404.66=1,e=2 (with powers), gaussian:550,20 (center and standard deviation, nm), \
-        rectangle:500,600 (nm), constant:1, FdC and F'eC' (sets of lines), rgb:#ff8040 (a color, by a color model if not the \
+        rectangle:500,600 (nm), constant:1, FdC and F'eC' (sets of lines), rgb-lines (three lines that make white), rgb:#ff8040 (a color, by a color model if not the \
         default: 'rgb:#ff8040 by gaussians'), srgb-r, srgb-g, srgb-b and srgb-w, function:exp(-((w-550)/20)^4) (a formula of the \
         wavelength w in nm); and algebra of these with + - * / ^ and parentheses, with spaces around + - and /: \
         '0.5 * D65 + line:e', '1 - wratten-25', 'D65 / A / 10', 'wratten-12^2'.",
@@ -60,17 +61,6 @@ pub(crate) enum ObserverName {
     /// CIE 2015 (170-2), 10 degrees.
     #[value(name = "2015-10")]
     Cie2015Wide,
-}
-
-/// An eye without one kind of cones.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum EyeName {
-    /// Without the long ones: red is dark.
-    Protan,
-    /// Without the medium ones: red and green look alike.
-    Deutan,
-    /// Without the short ones: blue and green look alike.
-    Tritan,
 }
 
 /// Coordinates of a chromaticity.
@@ -284,7 +274,13 @@ pub(crate) struct SpectrumModels {
 
 /// `spectra spectrum list`.
 #[derive(Debug, Args)]
+#[command(long_about = "List the bundled spectra, by kind of data.\n\n\
+        A name behind # is a column of its file: `colorchecker#red`. Of a file of many columns the first and the last are shown, \
+        unless --all asks for every one.")]
 pub(crate) struct SpectrumList {
+    /// Show every column of files that have many, such as the 99 samples of TM-30.
+    #[arg(long)]
+    pub all: bool,
     /// Write a JSON list to standard output.
     #[arg(long)]
     pub json: bool,

@@ -16,7 +16,7 @@ mod tests {
     fn what_is_found_as_a_spectrum_says_where_it_is_from() {
         for (name, path) in bundled_spectra() {
             let meta = meta_in(name, &files()).unwrap_or_else(|| panic!("{name}"));
-            assert!(meta.source.is_some() && meta.licence.is_some() && meta.range_nm.is_some(), "{path}");
+            assert!(meta.source.is_some() && meta.license.is_some() && meta.range_nm.is_some(), "{path}");
         }
         for name in ["F11", "d 65", "colorchecker#red", "illuminants/A.csv"] {
             assert!(load(name).is_ok() && meta_in(name, &files()).is_some(), "{name}");

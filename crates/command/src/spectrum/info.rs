@@ -24,7 +24,7 @@ struct Report {
     kind: &'static str,
     title: Option<String>,
     source: Option<String>,
-    licence: Option<String>,
+    license: Option<String>,
     conditions: Option<String>,
     /// Of a lamp's lines: measured, computed or estimated.
     strengths: Option<&'static str>,
@@ -109,7 +109,7 @@ pub(crate) fn info(arguments: &SpectrumInfo) -> Outcome {
         kind: found.kind().word(),
         title: meta.name,
         source: meta.source,
-        licence: meta.licence,
+        license: meta.license,
         conditions: meta.conditions,
         strengths: meta.strengths.map(Strengths::word),
         notes: meta.notes,
@@ -208,7 +208,7 @@ fn show_function(arguments: &SpectrumInfo, kind: Kind, function: &Tabulated) -> 
             "kind": kind.word(),
             "title": meta.name,
             "source": meta.source,
-            "licence": meta.licence,
+            "license": meta.license,
             "range_nm": meta.range_nm.map(|(from, to)| [from, to]),
             "peak_nm": highest.0,
             "highest": highest.1,
@@ -224,7 +224,7 @@ fn show_function(arguments: &SpectrumInfo, kind: Kind, function: &Tabulated) -> 
         let _ = writeln!(out, "  {name:<22}{value}");
     };
     row("source", meta.source.unwrap_or_default());
-    row("licence", meta.licence.unwrap_or_default());
+    row("license", meta.license.unwrap_or_default());
     row("range", meta.range_nm.map_or(String::new(), |(from, to)| format!("{from} to {to} nm")));
     row("highest", format!("{} at {} nm", significant(highest.1), highest.0));
     row("lowest", format!("{} at {} nm", significant(lowest.1), lowest.0));
@@ -318,7 +318,7 @@ fn text(report: &Report, found: &Found) -> String {
         }
     };
     row("source", report.source.clone());
-    row("licence", report.licence.clone());
+    row("license", report.license.clone());
     row("conditions", report.conditions.clone());
     row("strengths", report.strengths.map(|s| if s == Strengths::Estimated.word() { ESTIMATED } else { s }.to_owned()));
     report.notes.iter().for_each(|note| row("note", Some(note.clone())));
@@ -384,7 +384,8 @@ fn peak_in_words(nm: f64, values: &[f64]) -> String {
         nm if nm >= BAND.end_nm() => format!("none: rises to the end of the band, {nm} nm"),
         nm if stays && nm > BAND.start_nm => format!("none: rises to {nm} nm and stays there to the end of the band"),
         nm if nm <= BAND.start_nm => format!("none: falls from the start of the band, {nm} nm"),
-        nm => format!("{nm} nm"),
+        // What is computed has more digits than mean anything.
+        nm => format!("{} nm", (nm * 1000.0).round_ties_even() / 1000.0),
     }
 }
 

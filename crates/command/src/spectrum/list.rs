@@ -18,9 +18,12 @@ struct Item {
     /// What can stand after `#`; empty where the file holds one spectrum.
     columns: Vec<String>,
     source: Option<String>,
-    licence: Option<String>,
+    license: Option<String>,
     file: &'static str,
 }
+
+/// Most columns of a file that are shown one by one: a chart of 24 patches is.
+const MOST_COLUMNS: usize = 30;
 
 /// Shows the list.
 pub(crate) fn list(arguments: &SpectrumList) -> Outcome {
@@ -28,7 +31,7 @@ pub(crate) fn list(arguments: &SpectrumList) -> Outcome {
     if arguments.json {
         console::pretty_json(&items)?;
     } else {
-        console::out(&table(&items))?;
+        console::out(&table(&items, arguments.all))?;
     }
     Ok(DONE)
 }
@@ -37,11 +40,11 @@ fn item(name: &'static str, file: &'static str) -> Option<Item> {
     let table = bundled(file)?;
     let columns = if table.columns.len() > 1 { table.columns } else { Vec::new() };
     let range_nm = table.meta.range_nm.map(|(from, to)| [from, to]);
-    let (title, source, licence) = (table.meta.name, table.meta.source, table.meta.licence);
-    Some(Item { name, title, kind: table.kind.word(), range_nm, columns, source, licence, file })
+    let (title, source, license) = (table.meta.name, table.meta.source, table.meta.license);
+    Some(Item { name, title, kind: table.kind.word(), range_nm, columns, source, license, file })
 }
 
-fn table(items: &[Item]) -> String {
+fn table(items: &[Item], all: bool) -> String {
     let width = items.iter().map(|item| item.name.len()).max().unwrap_or(0);
     let mut out = String::new();
     let mut folder = "";
@@ -56,15 +59,22 @@ fn table(items: &[Item]) -> String {
         let range = item.range_nm.map_or(String::new(), |[from, to]| format!("{from:.0}-{to:.0} nm"));
         let title = item.title.as_deref().unwrap_or("");
         let _ = write!(out, "  {:<width$}  {:<14}  {range:<12}  {title}", item.name, item.kind);
-        match item.columns.as_slice() {
+        let columns = item.columns.as_slice();
+        match columns {
             [] => out.push('\n'),
+            [first, .., last] if columns.len() > MOST_COLUMNS && !all => {
+                let _ = writeln!(out, " ({} columns: #{first} ... #{last})", columns.len());
+            }
             columns => {
                 let _ = writeln!(out, " (#{})", columns.join(", #"));
             }
         }
     }
+    if !all && items.iter().any(|item| item.columns.len() > MOST_COLUMNS) {
+        out.push_str("\n--all shows every column of files that have many\n");
+    }
     out.push_str(
-        "\nwritten out: blackbody:5800  daylight:5500  line:C'  line:632.8  gaussian:550,20  rectangle:500,600\n\
+        "\nwritten out: blackbody:5800  daylight:5500  line:C'  line:632.8  gaussian:550,20  rectangle:500,600  FdC  F'eC'  rgb-lines  rgb:#ff8040\n\
          algebra of them with + - * / ^ and parentheses: '0.5 * D65 + line:e', '1 - wratten-25'; or a CSV or YAML file of your own\n",
     );
     out

@@ -1,13 +1,13 @@
 //! `spectra spectrum plot`.
 
-use super::arguments::{DiagramName, EyeName, SpectrumPlot};
+use super::arguments::{DiagramName, SpectrumPlot};
 use super::info::observer;
 use super::{files, load_as, load_illuminant, tell_reading};
 use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
 use crate::words::figure_of;
 use spectra_analysis::figure;
-use spectra_color::{Deficiency, chromaticity, xyz_of_light, xyz_of_reflectance, xyz_of_transmittance};
+use spectra_color::{chromaticity, xyz_of_light, xyz_of_reflectance, xyz_of_transmittance};
 use spectra_plot::{Format, PlotError};
 use spectra_spectrum::{BAND, Emission, Found, Observer, SpectrumError, find_in, function_in};
 
@@ -49,14 +49,7 @@ pub(crate) fn plot(arguments: &SpectrumPlot) -> Outcome {
     };
     let canvas = match arguments.seen_by {
         None => canvas,
-        Some(eye) => {
-            let eye = match eye {
-                EyeName::Protan => Deficiency::Protan,
-                EyeName::Deutan => Deficiency::Deutan,
-                EyeName::Tritan => Deficiency::Tritan,
-            };
-            canvas.with_colors(|code| eye.seen_srgb8(code))
-        }
+        Some(eye) => eye.sees(canvas),
     };
     canvas.write(output).map_err(failure)?;
     console::note(&format!("wrote {}", output.display()));

@@ -5,15 +5,13 @@
 
 use super::at::At;
 use super::fault::{Fault, Faults};
-use super::limits::Limits;
 use super::node::{Key, Node, Value};
 use super::part::PART;
 use super::path::Step;
-use super::quantity::Form;
-use super::text::{found, nearest, shown};
-use super::units::Reading;
+use super::text::found;
 use super::whole::{Exact, limits_of};
-use crate::names;
+use crate::names::{self, nearest, shown};
+use crate::quantity::{Form, Limits, Reading};
 use serde_json::Value as Schema;
 use std::sync::Arc;
 

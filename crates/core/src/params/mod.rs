@@ -56,37 +56,31 @@
 mod at;
 mod check;
 mod fault;
-mod limits;
 mod node;
 #[allow(clippy::module_inception)] // The type `Params` is the idea of the module `params`.
 mod params;
 mod part;
 mod parts;
 mod path;
-mod quantities;
-pub mod quantity;
 mod reader;
 mod schema;
 #[cfg(test)]
 mod tests;
 mod text;
-mod units;
 mod warning;
 mod whole;
 
+pub use crate::quantity::{
+    Angle, Bound, Dimension, Exposure, FNumber, Illuminance, Length, LengthOrInfinity, Luminance, NonNegative,
+    OrInfinity, Positive, Power, Quantity, RadiantIntensity, Ratio, Reading, SpatialFrequency, Temperature, Time, Unit,
+    Wavelength, schema_of,
+};
 pub use fault::{Fault, Faults};
 pub use node::{Key, MAX_DEPTH, Node, Number, SourceFile, Span, Value};
 pub use params::Params;
 pub use part::{Part, StageNode};
 pub use path::{Step, steps};
-pub use quantities::{
-    Angle, Exposure, FNumber, Illuminance, Length, LengthOrInfinity, Luminance, NonNegative, OrInfinity, Positive,
-    Power, RadiantIntensity, Ratio, SpatialFrequency, Temperature, Time, Wavelength,
-};
-pub use quantity::{Bound, Quantity};
 pub use reader::Readable;
-pub use schema::{Kinds, keys_of, schema_of};
-pub use text::nearest;
-pub use units::{Dimension, Reading, Unit};
+pub use schema::{Kinds, keys_of};
 pub use warning::{DataEnd, Warning, Warnings};
 pub use whole::Whole;

@@ -1,6 +1,7 @@
 //! The tree that a scene file is read into: values, each with the place where it was written.
 
 use super::fault::Fault;
+use crate::quantity::decimal_end;
 use std::fmt;
 use std::path::Path;
 use std::sync::Arc;
@@ -161,31 +162,6 @@ fn radix(digits: &str, base: u32) -> Option<f64> {
         return None;
     }
     digits.chars().try_fold(0.0, |sum: f64, c| Some(sum * f64::from(base) + f64::from(c.to_digit(base)?)))
-}
-
-/// Where the decimal number at the start of `text` (without a sign) ends, in bytes; `None` if there is no number.
-pub(super) fn decimal_end(text: &str) -> Option<usize> {
-    let bytes = text.as_bytes();
-    let digits = |from: usize| bytes[from..].iter().take_while(|b| b.is_ascii_digit()).count();
-    let whole = digits(0);
-    let mut end = whole;
-    if bytes.get(end) == Some(&b'.') {
-        let fraction = digits(end + 1);
-        if whole + fraction == 0 {
-            return None;
-        }
-        end += 1 + fraction;
-    } else if whole == 0 {
-        return None;
-    }
-    if matches!(bytes.get(end), Some(b'e' | b'E')) {
-        let sign = usize::from(matches!(bytes.get(end + 1), Some(b'+' | b'-')));
-        let exponent = digits(end + 1 + sign);
-        if exponent > 0 {
-            end += 1 + sign + exponent;
-        }
-    }
-    Some(end)
 }
 
 /// A value with its place.

@@ -5,7 +5,8 @@ use super::node::{Key, Node, Value};
 use super::path::joined;
 use super::path::steps;
 use super::reader::{self, Readable};
-use super::text::{found, shown};
+use super::text::found;
+use crate::names::shown;
 
 /// The key that names a stage.
 const KIND: &str = "kind";

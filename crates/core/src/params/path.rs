@@ -2,7 +2,8 @@
 
 use super::fault::Fault;
 use super::node::{Key, MAX_DEPTH, Node, Span, Value};
-use super::text::{found, shown};
+use super::text::found;
+use crate::names::shown;
 use std::sync::Arc;
 
 /// One step of a path.

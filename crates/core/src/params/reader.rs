@@ -12,18 +12,35 @@ use schemars::generate::SchemaSettings;
 use serde::de::value::{MapAccessDeserializer, MapDeserializer, SeqDeserializer, StrDeserializer};
 use serde::de::{DeserializeOwned, Deserializer, Error, IntoDeserializer, Visitor};
 use serde::forward_to_deserialize_any;
+use std::any::TypeId;
+use std::collections::HashMap;
 use std::fmt;
+use std::sync::{Arc, LazyLock, PoisonError, RwLock};
 
 /// A type that can be read from a scene: serde reads it, and its schema says what is allowed.
-pub trait Readable: DeserializeOwned + JsonSchema {}
+pub trait Readable: DeserializeOwned + JsonSchema + 'static {}
 
-impl<T: DeserializeOwned + JsonSchema> Readable for T {}
+impl<T: DeserializeOwned + JsonSchema + 'static> Readable for T {}
+
+/// Schemas by their types: to make one takes longer than to read a section by it, and a viewer reads a scene again at each change.
+static SCHEMAS: LazyLock<RwLock<HashMap<TypeId, Arc<serde_json::Value>>>> = LazyLock::new(RwLock::default);
+
+/// The schema of a type, with all that it holds in its place.
+fn schema<T: Readable>() -> Arc<serde_json::Value> {
+    let of = TypeId::of::<T>();
+    if let Some(known) = SCHEMAS.read().unwrap_or_else(PoisonError::into_inner).get(&of) {
+        return Arc::clone(known);
+    }
+    // Made while nothing is held: a type may ask for others.
+    let settings = SchemaSettings::draft2020_12().with(|s| s.inline_subschemas = true);
+    let made = Arc::new(settings.into_generator().into_root_schema_for::<T>().to_value());
+    Arc::clone(SCHEMAS.write().unwrap_or_else(PoisonError::into_inner).entry(of).or_insert(made))
+}
 
 /// A value from a node, or everything that is wrong with it. `prefix` is the path of the node.
 pub(super) fn parse<T: Readable>(node: &Node, prefix: &str) -> Result<T, Faults> {
     let at = At::root(node, prefix);
-    let schema = SchemaSettings::draft2020_12().with(|s| s.inline_subschemas = true).into_generator();
-    check(&at, schema.into_root_schema_for::<T>().as_value())?;
+    check(&at, &schema::<T>())?;
     T::deserialize(Reader(at)).map_err(|error| match *error.0 {
         Inner::Placed(fault) => fault.into(),
         Inner::Words(words) => at.fault(&words).into(),

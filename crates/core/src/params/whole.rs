@@ -1,6 +1,6 @@
 //! Whole numbers, read from their digits, because an f64 would silently change those above 2^53.
 
-use super::node::decimal_end;
+use crate::quantity::decimal_end;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Deserializer, Error};
 use serde::{Deserialize, Serialize, Serializer};

@@ -4,8 +4,11 @@ use crate::prescription::{
     Aperture, ApertureShape, CoordinateBreak, Displacement, Item, Medium, Ordering, Prescription, Shape, Surface,
 };
 use spectra_core::params::{
-    Angle, Faults, Length, LengthOrInfinity, Node, Params, Readable, SpatialFrequency, StageNode, Value,
+    Angle, Fault, Faults, Length, LengthOrInfinity, Node, Params, Readable, SpatialFrequency, StageNode, Value,
 };
+use spectra_core::resources::{Resource, ResourceError, Resources};
+use spectra_glass::file::{self, Figures, StatedLines};
+use spectra_glass::{LineTriple, ModelGlass, lines};
 
 /// Reads a lens file. What it holds that no other program knows is noted in `left_out`. The file is expected to be sound: a lens is
 /// loaded before it is written.
@@ -13,12 +16,16 @@ use spectra_core::params::{
 /// # Errors
 /// What is wrong with values that are looked at.
 pub fn read(params: &Params) -> Result<Prescription, Faults> {
+    let lines = match value::<StatedLines>(params, "reference-line")? {
+        Some(lines) => lines.triple(params, "reference-line")?,
+        None => LineTriple::FDC,
+    };
     let mut lens = Prescription {
         name: value::<String>(params, "name")?.unwrap_or_default(),
         maker: value(params, "maker")?,
         patent: value(params, "patent")?,
         year: value(params, "year")?,
-        reference_line: value(params, "reference-line")?,
+        reference_line: Some(lines.mid.label()).filter(|_| params.get("reference-line").is_some()),
         ..Prescription::default()
     };
     for key in ["source", "remark"] {
@@ -45,7 +52,7 @@ pub fn read(params: &Params) -> Result<Prescription, Faults> {
     let mut faults = Faults::new();
     let nodes: Vec<StageNode> = value(params, "surfaces")?.unwrap_or_default();
     for (at, node) in nodes.iter().enumerate() {
-        faults.take(node.params().and_then(|params| item(&params, at + 1, &mut lens)));
+        faults.take(node.params().and_then(|params| item(&params, at + 1, lines, &mut lens)));
     }
     faults.into_result(lens)
 }
@@ -111,11 +118,13 @@ fn note_others(params: &Params, known: &[&str], whose: &str, lens: &mut Prescrip
 }
 
 /// Keys of every surface.
-const PLACE: [&str; 14] = [
+const PLACE: [&str; 16] = [
     "thickness",
     "glass",
     "nd",
     "vd",
+    "ne",
+    "ve",
     "semi-diameter",
     "mirror",
     "stop",
@@ -128,7 +137,7 @@ const PLACE: [&str; 14] = [
     "reversed",
 ];
 
-fn item(params: &Params, number: usize, lens: &mut Prescription) -> Result<(), Faults> {
+fn item(params: &Params, number: usize, lines: LineTriple, lens: &mut Prescription) -> Result<(), Faults> {
     let kind = params.kind().unwrap_or_default().to_owned();
     let line = params.node().span.line;
     let whose = format!("surface {number}: ");
@@ -151,12 +160,12 @@ fn item(params: &Params, number: usize, lens: &mut Prescription) -> Result<(), F
     let is_stop = shape == Shape::Stop;
     let mirror = value(params, "mirror")?.unwrap_or(false);
     let stands_in = || lens.surfaces().filter(|s| !s.mirror).last().map(|s| s.medium.clone()).unwrap_or_default();
-    let stated = params.get("glass").is_some() || params.get("nd").is_some();
+    let stated = ["glass", "nd", "ne"].iter().any(|key| params.get(key).is_some());
     let surface = Surface {
         shape,
         thickness_mm: mm(params, "thickness")?.unwrap_or(0.0),
         // A stop stands in the medium that is there.
-        medium: if is_stop && !stated { stands_in() } else { medium(params)? },
+        medium: if is_stop && !stated { stands_in() } else { medium(params, lines)? },
         mirror,
         stop: is_stop || value(params, "stop")?.unwrap_or(false),
         semi_diameter_mm: mm(params, "semi-diameter")?,
@@ -248,19 +257,67 @@ fn shape(kind: &str, params: &Params) -> Result<(Shape, &'static [&'static str])
     })
 }
 
-fn medium(params: &Params) -> Result<Medium, Faults> {
-    let (nd, vd): (Option<f64>, Option<f64>) = (value(params, "nd")?, value(params, "vd")?);
+/// The medium of a surface. Other programs state nd and Vd: what a lens states at other lines is turned into them.
+fn medium(params: &Params, lines: LineTriple) -> Result<Medium, Faults> {
+    let pair = |n, v| -> Result<(Option<f64>, Option<f64>), Faults> { Ok((value(params, n)?, value(params, v)?)) };
+    let (n, v, lines) = match pair("ne", "ve")? {
+        (Some(ne), ve) => (Some(ne), ve, LineTriple::F_PRIME_E_C_PRIME),
+        (None, _) => pair("nd", "vd").map(|(n, v)| (n, v, lines))?,
+    };
     let Some(glass) = params.get("glass") else {
-        return Ok(nd.map_or(Medium::Air, |nd| Medium::Model { nd, vd }));
+        return Ok(n.map_or(Medium::Air, |n| at_d(n, v, lines)));
     };
     match glass.as_str() {
         Some(name) if name.eq_ignore_ascii_case("air") => Ok(Medium::Air),
-        Some(name) => Ok(Medium::Glass { name: name.to_owned(), nd, vd }),
-        None => {
-            let figures = Params::section(glass.clone(), "glass")?;
-            let nd = number(&figures, "nd")?;
-            Ok(Medium::Model { nd, vd: value(&figures, "vd")? })
+        Some(name) => {
+            // Beside a name, figures only tell which glass of that name is meant.
+            let (nd, vd) = match n.map(|n| at_d(n, v, lines)) {
+                Some(Medium::Model { nd, vd }) if v.is_some() || lines == LineTriple::FDC => (Some(nd), vd),
+                _ => (None, None),
+            };
+            Ok(Medium::Glass { name: name.to_owned(), nd, vd })
         }
+        None => {
+            let own = Params::section(glass.clone(), "glass")?;
+            if ["formula", "table", "file", "name"].iter().any(|key| own.get(key).is_some()) {
+                let glass = file::from_params(&own, "glass", &NoFiles)?;
+                let vd = Some(glass.vd()).filter(|vd| vd.is_finite());
+                return Ok(Medium::Model { nd: glass.nd(), vd });
+            }
+            Ok(figures_at_d(&value::<Figures>(params, "glass")?.unwrap_or_default().medium(&own)?.0))
+        }
+    }
+}
+
+/// An index and an Abbe number for any lines as nd and Vd; at d, F and C they are what they were.
+fn at_d(n: f64, v: Option<f64>, lines: LineTriple) -> Medium {
+    let model = v.filter(|_| lines != LineTriple::FDC).and_then(|v| ModelGlass::new(n, v, lines));
+    model.map_or(Medium::Model { nd: n, vd: v }, |model| figures_at_d(&spectra_glass::Medium::Model(model)))
+}
+
+fn figures_at_d(medium: &spectra_glass::Medium) -> Medium {
+    let vd = match medium {
+        spectra_glass::Medium::Model(model) if model.lines() == LineTriple::FDC => Some(model.abbe_number()),
+        other => Some(other.abbe_number(LineTriple::FDC)).filter(|vd| vd.is_finite()),
+    };
+    let nd = match medium {
+        // As it was written, to the last digit.
+        spectra_glass::Medium::Model(model) if model.lines() == LineTriple::FDC => model.index_mid(),
+        other => other.index(lines::D.wavelength_nm),
+    };
+    Medium::Model { nd, vd }
+}
+
+/// A glass that is written out in a lens file and names a file of its own is not carried.
+struct NoFiles;
+
+impl Resources for NoFiles {
+    fn read(&self, path: &str, _: &[&str], _: &[&str], _: u64) -> Result<Resource, ResourceError> {
+        Err(ResourceError::Io(format!("the glass of `{path}` is not carried: state its `nd` and `vd`")))
+    }
+
+    fn document(&self, path: &str, _: &[&str], _: &[&str]) -> Result<Params, Faults> {
+        Err(Fault::new(format!("the glass of `{path}` is not carried: state its `nd` and `vd`")).into())
     }
 }
 

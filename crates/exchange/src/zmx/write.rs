@@ -7,7 +7,7 @@ use crate::prescription::{
     ApertureShape, CoordinateBreak, Displacement, FieldKind, Item, Medium, Note, Ordering, Prescription, Shape,
     Surface, SystemAperture,
 };
-use spectra_glass::{Catalogue, lines};
+use spectra_glass::{Catalogue, Line, lines};
 use std::fmt::Write;
 
 /// A file, and what it could not hold.
@@ -117,7 +117,7 @@ impl Writer {
             Some(FieldKind::RealImageHeight) => 3,
         };
         let points = lens.fields.as_ref().map_or(vec![[0.0; 2]], |fields| fields.points.clone());
-        let reference = lens.reference_line.as_deref().and_then(lines::by_name).unwrap_or(lines::D);
+        let reference = lens.reference_line.as_deref().and_then(Line::read).unwrap_or(lines::D);
         let mut wavelengths: Vec<(f64, f64)> = lens.wavelengths.iter().map(|w| (w.nm, w.weight)).collect();
         if wavelengths.is_empty() {
             wavelengths.push((reference.wavelength_nm, 1.0));

@@ -1,5 +1,6 @@
 //! From RMS granularity to the size of grains and their clumps.
 
+use crate::known::Known;
 use spectra_core::math::{acos, sin};
 use std::f64::consts::PI;
 
@@ -53,6 +54,11 @@ const READ_MM: f64 = 0.005;
 
 /// Variance times area (mm^2) of large areas, over the square of the deviation through the 48 um aperture.
 pub(super) fn selwyn_mm2(clump_mm: f64) -> f64 {
+    static KNOWN: Known<u64, f64> = Known::new();
+    *KNOWN.of(clump_mm.to_bits(), || found_selwyn_mm2(clump_mm))
+}
+
+fn found_selwyn_mm2(clump_mm: f64) -> f64 {
     // A pixel averages, and stands at the aperture's rim for a part of itself: two boxes more, to the second order. A quadratic
     // spline has the variance h^2 / 4, a box p^2 / 12.
     let kept = |cell_mm: f64| kept_variance((cell_mm * cell_mm + 2.0 / 3.0 * READ_MM * READ_MM).sqrt(), APERTURE_MM);

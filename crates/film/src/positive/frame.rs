@@ -13,6 +13,10 @@ use std::f64::consts::LN_10;
 /// range of 4 that is 0.2 / 8 * (4 / 64)^2 = 1e-4 in density.
 const STEPS: usize = 64;
 
+/// Steps of the table over the amounts of a print: light follows them without a steep curve between, and what lies beyond the
+/// screen's gamut is brought back by differences of it. Within 0.6 of a code value of 8 bits, where 64 are within 1.6.
+const PRINT_STEPS: usize = 96;
+
 /// Steps of the picture of one layer of silver, and the largest density there. The picture's second derivative over
 /// density is below 60, so linear interpolation is within 60 / 8 * (6 / 8192)^2 = 4e-6.
 const SILVER_STEPS: usize = 8192;
@@ -68,7 +72,7 @@ impl Tables {
             curves = (0..layers).map(curve).collect();
             if layers == 3 {
                 let ranges = [0, 1, 2].map(|i| print.range(i));
-                last = Some(densities(print.deposit(), ranges, printing.viewing.weights()));
+                last = Some(densities(print.deposit(), ranges, printing.viewing.weights(), PRINT_STEPS));
             }
         }
         let bare = match printing {
@@ -76,7 +80,7 @@ impl Tables {
             None => [0.0; 3],
         };
         let light = Lookup::new(-1.0, DARKEST, DENSITY_STEPS, |d| exp(-LN_10 * d));
-        Self::Dyes(Box::new(Dyes { first: densities(film, ranges, weights), curves, last, bare, light }))
+        Self::Dyes(Box::new(Dyes { first: densities(film, ranges, weights, STEPS), curves, last, bare, light }))
     }
 
     /// Those of one layer of silver.
@@ -114,19 +118,22 @@ impl Dyes {
             Way::Look(viewing) => (first, viewing),
             Way::Scan(scan) => return scan.shown_in(&first.map(f64::from), reach).map(|v| v as f32),
             Way::Print(printing) => {
-                let amount = |i: usize| self.curves[i].at(-f64::from(first[i])) as f32;
+                let mut amounts = [0.0_f32; 3];
+                for ((amount, curve), d) in amounts.iter_mut().zip(&self.curves).zip(first) {
+                    *amount = curve.at(-f64::from(d)) as f32;
+                }
                 let densities = match &self.last {
-                    Some(last) => last.at([amount(0), amount(1), amount(2)]),
+                    Some(last) => last.at(amounts),
                     // Silver: the same in X, Y and Z.
-                    None => {
-                        let d = amount(0);
-                        [0, 1, 2].map(|i| d + self.bare[i])
-                    }
+                    None => [amounts[0] + self.bare[0], amounts[0] + self.bare[1], amounts[0] + self.bare[2]],
                 };
                 (densities, &printing.viewing)
             }
         };
-        viewing.shown_in(densities.map(|d| self.light.at(f64::from(d))), reach).map(|v| v as f32)
+        let [x, y, z] = densities;
+        let light = |d: f32| self.light.at(f64::from(d));
+        let [r, g, b] = viewing.shown_in([light(x), light(y), light(z)], reach);
+        [r as f32, g as f32, b as f32]
     }
 }
 
@@ -146,20 +153,20 @@ fn silver(film: &Deposit, way: &Way, reach: Reach) -> Vec<[f32; 3]> {
 /// Densities that three receivers see of each place of three dyes.
 pub(super) fn seen(film: &Deposit, ranges: &[(f64, f64)], weights: &[Vec<f64>], planes: [&[f32]; 3]) -> Vec<[f32; 3]> {
     let ranges = [0, 1, 2].map(|i| (ranges[i].0 - MARGIN, ranges[i].1 + MARGIN));
-    let cube = densities(film, ranges, weights);
+    let cube = densities(film, ranges, weights, STEPS);
     let [a, b, c] = planes;
     let pixels = a.par_iter().zip(b.par_iter()).zip(c.par_iter()).with_min_len(PIXELS_A_TASK);
     pixels.map(|((a, b), c)| cube.at([*a, *b, *c])).collect()
 }
 
 /// Densities that up to three receivers see, over the amounts of three dyes.
-fn densities(deposit: &Deposit, ranges: [(f64, f64); 3], weights: &[Vec<f64>]) -> Cube {
-    let place = |k: usize, i: usize| ranges[k].0 + (ranges[k].1 - ranges[k].0) * i as f64 / STEPS as f64;
+fn densities(deposit: &Deposit, ranges: [(f64, f64); 3], weights: &[Vec<f64>], steps: usize) -> Cube {
+    let place = |k: usize, i: usize| ranges[k].0 + (ranges[k].1 - ranges[k].0) * i as f64 / steps as f64;
     let layers: Vec<Vec<Vec<f64>>> =
-        (0..3).map(|k| (0..=STEPS).map(|i| deposit.layer_transmittance(k, place(k, i))).collect()).collect();
+        (0..3).map(|k| (0..=steps).map(|i| deposit.layer_transmittance(k, place(k, i))).collect()).collect();
     let base = deposit.base_transmittance();
-    Cube::by_slabs(ranges, STEPS, |i, to| {
-        for (j, row) in to.chunks_mut(STEPS + 1).enumerate() {
+    Cube::by_slabs(ranges, steps, |i, to| {
+        for (j, row) in to.chunks_mut(steps + 1).enumerate() {
             let both: Vec<f64> =
                 base.iter().zip(&layers[0][i]).zip(&layers[1][j]).map(|((b, x), y)| b * x * y).collect();
             for (channel, weight) in weights.iter().take(3).enumerate() {

@@ -71,6 +71,7 @@ impl Surround {
         Self { factor: Lookup::new(low, high, steps, factor) }
     }
 
+    #[inline(always)]
     fn factor(&self, luminance: f64) -> f64 {
         if luminance > 0.0 { self.factor.at(octaves(luminance as f32)) } else { 0.0 }
     }
@@ -155,12 +156,19 @@ impl Viewing {
     /// XYZ as an eye in an average surround would have to meet them to see the same: black taken off, the surround allowed
     /// for, white still [`Viewing::white`].
     #[must_use]
+    #[inline]
     pub fn seen(&self, xyz: [f64; 3]) -> [f64; 3] {
         // Taken off as so much of white: black is a veil over the whole picture.
         let veil = self.black / self.white[1];
-        let seen = [0, 1, 2].map(|i| (xyz[i] - veil * self.white[i]) / (1.0 - veil));
-        let factor = self.surround.as_ref().map_or(1.0, |s| s.factor(seen[1] / self.white[1]));
-        seen.map(|v| v * factor)
+        let mut seen = xyz;
+        for (v, white) in seen.iter_mut().zip(&self.white) {
+            *v = (*v - veil * white) / (1.0 - veil);
+        }
+        if let Some(surround) = &self.surround {
+            let factor = surround.factor(seen[1] / self.white[1]);
+            seen.iter_mut().for_each(|v| *v *= factor);
+        }
+        seen
     }
 }
 

@@ -36,7 +36,7 @@ use std::borrow::Cow;
 /// spectra: 1
 /// name: Old orthochromatic film
 /// source: sheet of the maker, 1950
-/// licence: facts
+/// license: facts
 /// iso: 80
 /// reference-illuminant: iso-7589-sensitometric-daylight
 /// layers:
@@ -67,8 +67,10 @@ struct StockFile {
     maker: Option<String>,
     /// Where the figures come from: sheet, edition, who digitized it.
     source: String,
-    /// Licence of the figures.
-    licence: String,
+    /// License of the figures; required.
+    license: Option<String>,
+    /// The same, as older files write it.
+    licence: Option<String>,
     /// Doubts and choices, for people.
     remark: Option<String>,
     /// What it becomes: `negative` (the default), `reversal` (a positive, to be projected) or `print` (a positive from
@@ -323,6 +325,12 @@ pub(super) fn read(params: &Params, resources: &dyn Resources) -> Result<Stock, 
     let halation = file.halation.as_ref().and_then(|h| faults.take(h.read(params, layer_count)));
     let bases = file.bases.iter().map(BaseFile::read).collect();
     let reciprocity = file.reciprocity.as_ref().and_then(|r| faults.take(r.read(params)));
+    let license = file.license.or(file.licence);
+    if license.is_none() {
+        faults.push(
+            params.fault_here("`license` is missing").hint("the terms of the figures, such as `license: CC0-1.0`"),
+        );
+    }
     let Some(densitometry) = densitometry else {
         return Err(faults);
     };
@@ -333,7 +341,7 @@ pub(super) fn read(params: &Params, resources: &dyn Resources) -> Result<Stock, 
         name: file.name,
         maker: file.maker,
         source: file.source,
-        licence: file.licence,
+        license: license.unwrap_or_default(),
         remark: file.remark,
         process,
         medium: file.medium,

@@ -47,7 +47,7 @@ pub struct Stock {
     /// Where the values come from.
     pub source: String,
     /// Terms under which they came.
-    pub licence: String,
+    pub license: String,
     /// What else is worth knowing.
     pub remark: Option<String>,
     /// What it is for.

@@ -108,7 +108,7 @@ const MAKERS: [(&str, &str); 7] = [
 ];
 
 /// Usual plastics of which the catalogue has no data: what looks like their names is something else.
-const PLASTICS_NOT_HELD: [&str; 9] = ["COC", "CR39", "CR-39", "PES", "PP", "PE", "ABS", "PTFE", "PSU"];
+const PLASTICS_NOT_HELD: [&str; 6] = ["PES", "PP", "PE", "ABS", "PTFE", "PSU"];
 
 /// Makers in the order in which they are meant where a name has several and nothing else tells.
 const USUAL: [&str; 9] = ["SCHOTT", "OHARA", "HOYA", "HIKARI", "CDGM", "SUMITA", "NHG", "LZOS", "CORNING"];
@@ -355,7 +355,7 @@ impl Catalogue {
             if other_maker && !category.is_glass() {
                 continue;
             }
-            let distance = edit_distance(&bare, candidate);
+            let distance = if is_heir(&bare, candidate) { 0 } else { edit_distance(&bare, candidate) };
             if distance <= farthest {
                 scored.push((distance, other_maker, i));
             }
@@ -434,6 +434,12 @@ fn squeeze(name: &str) -> String {
     name.chars().filter(|c| !matches!(c, '-' | '_' | ' ' | '.')).flat_map(char::to_uppercase).collect()
 }
 
+/// Whether a glass is the named one but for the letter that its maker puts before it today: `K-LASFN1` of `LASFN1`.
+fn is_heir(name: &[char], candidate: &str) -> bool {
+    let Some((mark, rest)) = candidate.split_once('-') else { return false };
+    mark.len() == 1 && rest.chars().eq(name.iter().copied())
+}
+
 /// Levenshtein's distance: insertions, deletions and replacements of characters.
 fn edit_distance(a: &[char], b: &str) -> usize {
     let mut row: Vec<usize> = (0..=a.len()).collect();
@@ -459,6 +465,13 @@ mod tests {
         assert_eq!(edit_distance(&chars("KITTEN"), "SITTING"), 3);
         assert_eq!(edit_distance(&chars(""), "ABC"), 3);
         assert_eq!(edit_distance(&chars("N-BK7"), "N-BK7"), 0);
+    }
+
+    #[test]
+    fn heirs() {
+        let lasfn1: Vec<char> = "LASFN1".chars().collect();
+        assert!(is_heir(&lasfn1, "K-LASFN1"));
+        assert!(!is_heir(&lasfn1, "K-LASFN10") && !is_heir(&lasfn1, "LASFN1") && !is_heir(&lasfn1, "KZ-LASFN1"));
     }
 
     #[test]

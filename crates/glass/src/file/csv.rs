@@ -3,7 +3,8 @@
 use super::{OWN_MAKER, sensible};
 use crate::fit::samples::{Material, Place, Row, read_rows};
 use crate::{Category, Extinction, Formula, Glass, Table};
-use spectra_core::params::{Fault, Faults, SourceFile, Span, nearest};
+use spectra_core::names::nearest;
+use spectra_core::params::{Fault, Faults, SourceFile, Span};
 use std::sync::Arc;
 
 /// Most rows that are read.

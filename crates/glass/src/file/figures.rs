@@ -1,5 +1,6 @@
 //! A glass by its figures, as patents state them.
 
+use super::stated_lines::{self, ThreeLines};
 use crate::formula::ModelGlass;
 use crate::lines::{self, Line, LineTriple};
 use crate::medium::Medium;
@@ -11,6 +12,11 @@ use spectra_core::params::{Fault, Params};
 const TOLERANCE_N: f64 = 1e-4;
 /// The same for an Abbe number, as part of it.
 const TOLERANCE_V: f64 = 0.01;
+/// Keys of an index and an Abbe number for any lines.
+const ANY_N: &str = "abbe.n";
+const ANY_V: &str = "abbe.v";
+/// Lines between which ordinary glasses keep to the normal lines of partial dispersion, nm.
+const MODEL_NM: std::ops::RangeInclusive<f64> = 300.0..=1100.0;
 
 /// A glass by its figures: one index alone has no dispersion; with an Abbe number, or with more indices, it has that of
 /// ordinary glasses with these figures.
@@ -68,15 +74,34 @@ pub struct Figures {
     /// Index at the s line (852.11 nm).
     #[schemars(range(min = 1, max = 4))]
     pub ns: Option<f64>,
+    /// An Abbe number for any three lines, and the index at the middle one: `{lines: [450 nm, 580 nm, 680 nm], n: 1.52, v: 60}`.
+    pub abbe: Option<AbbeNumber>,
+}
+
+/// An Abbe number V = (n - 1) / (n_blue - n_red) for any three lines.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(inline)]
+pub struct AbbeNumber {
+    /// The three lines, from blue to red, by name or wavelength, nm if bare: `[F, e, C]`.
+    pub lines: ThreeLines,
+    /// Index at the middle line, 1 to 4; may be absent where an index at another line is stated.
+    #[schemars(range(min = 1, max = 4))]
+    pub n: Option<f64>,
+    /// Abbe number, 5 to 200.
+    #[schemars(range(min = 5, max = 200))]
+    pub v: f64,
 }
 
 impl Figures {
     /// The indices with their keys, that at the reference line of a patent first: d, else e, else D.
     fn indices(&self) -> Vec<(&'static str, Line, f64)> {
+        let any = self.abbe_lines().zip(self.abbe.as_ref().and_then(|abbe| abbe.n));
         let all = [
             ("nd", lines::D, self.nd),
             ("ne", lines::E, self.ne),
             ("nD", lines::SODIUM_D, self.n_sodium),
+            (ANY_N, any.map_or(lines::D, |(lines, _)| lines.mid), any.map(|(_, n)| n)),
             ("ni", lines::I, self.ni),
             ("nh", lines::H, self.nh),
             ("ng", lines::G, self.ng),
@@ -97,7 +122,41 @@ impl Figures {
             ("ve", LineTriple::F_PRIME_E_C_PRIME, self.ve),
             ("vD", LineTriple::F_SODIUM_C, self.v_sodium),
         ];
-        all.into_iter().filter_map(|(key, lines, v)| Some((key, lines, v?))).collect()
+        let any = self.abbe_lines().zip(self.abbe.as_ref()).map(|(lines, abbe)| (ANY_V, lines, abbe.v));
+        all.into_iter().filter_map(|(key, lines, v)| Some((key, lines, v?))).chain(any).collect()
+    }
+
+    /// The lines of `abbe`, if they are three.
+    fn abbe_lines(&self) -> Option<LineTriple> {
+        self.abbe.as_ref().and_then(|abbe| stated_lines::rising(&abbe.lines))
+    }
+
+    /// How a report calls a figure of that key.
+    fn called(&self, key: &str) -> String {
+        match self.abbe_lines() {
+            Some(lines) if key == ANY_N => lines.mid.indexed("n"),
+            Some(lines) if key == ANY_V => lines.abbe_label(),
+            _ => key.to_owned(),
+        }
+    }
+
+    /// Whether `abbe` names three lines, and an index that nothing else states. `params` places faults.
+    ///
+    /// # Errors
+    /// Lines that are unknown or do not rise; the same line twice.
+    pub(super) fn checked(&self, params: &Params) -> Result<(), Fault> {
+        let Some(abbe) = &self.abbe else { return Ok(()) };
+        let lines = stated_lines::triple(&abbe.lines, params, "abbe.lines")?;
+        let twice = |(key, line, _): &(&str, Line, f64)| {
+            *key != ANY_N && abbe.n.is_some() && line.wavelength_nm == lines.mid.wavelength_nm
+        };
+        match self.indices().into_iter().find(twice) {
+            Some((key, ..)) => {
+                let text = format!("the index at {} is stated by `{key}`, too", lines.mid.label());
+                Err(params.fault(ANY_N, text).hint("leave one of them out"))
+            }
+            None => Ok(()),
+        }
     }
 
     /// The index stated at a line.
@@ -126,7 +185,15 @@ impl Figures {
     /// No index; a figure that no glass has; figures that contradict each other.
     pub fn medium(&self, params: &Params) -> Result<(Medium, String), Fault> {
         let (indices, abbe) = (self.indices(), self.abbe_numbers());
-        let figure = |(key, value): (&str, f64)| format!("{key} = {value}");
+        self.checked(params)?;
+        if let Some(lines) = self.abbe_lines()
+            && !(MODEL_NM.contains(&lines.short.wavelength_nm) && MODEL_NM.contains(&lines.long.wavelength_nm))
+        {
+            let fault =
+                params.fault("abbe.lines", "by these lines alone the dispersion of light that is seen is not known");
+            return Err(fault.hint("lines from 300 to 1100 nm, or a `formula` or `table`"));
+        }
+        let figure = |(key, value): (&str, f64)| format!("{} = {value}", self.called(key));
         let named = indices.iter().map(|(key, _, n)| (*key, *n)).chain(abbe.iter().map(|(key, _, v)| (*key, *v)));
         let label = match (&indices[..], &abbe[..]) {
             ([(_, _, n)], []) => format!("n = {n}"),
@@ -136,7 +203,7 @@ impl Figures {
             ([], []) => {
                 let fault = params.fault_here("the glass has no index");
                 return Err(
-                    fault.hint("`nd` and `vd`, `ne` and `ve`, or indices at several lines: `nd`, `ng`, `nF`, `nC`")
+                    fault.hint("`nd` and `vd`, `ne` and `ve`, `abbe: {lines: [F, e, C], n: ..., v: ...}`, or indices at several lines: `nd`, `ng`, `nF`, `nC`")
                 );
             }
             ([], [(key, ..), ..]) => {
@@ -177,7 +244,6 @@ impl Figures {
                 return Err(slip(key, *v, format!("{own:.2}")));
             }
         }
-        let falls = (350..830).all(|nm| model.index(f64::from(nm)) > model.index(f64::from(nm + 1)));
-        if falls { Ok(model) } else { Err(no_such()) }
+        if model.falls() { Ok(model) } else { Err(no_such()) }
     }
 }

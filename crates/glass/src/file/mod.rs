@@ -9,13 +9,16 @@
 mod csv;
 mod database;
 mod figures;
+mod stated_lines;
 mod yaml;
 
-pub use figures::Figures;
+pub use figures::{AbbeNumber, Figures};
+pub use stated_lines::{StatedLine, StatedLines, ThreeLines};
 pub use yaml::{GlassFile, InternalTransmittance, from_params};
 
 use crate::{Catalogue, Glass, Medium, agf};
-use spectra_core::params::{Fault, Faults, Params, nearest};
+use spectra_core::names::nearest;
+use spectra_core::params::{Fault, Faults, Params};
 use spectra_core::resources::{ResourceError, Resources, beside};
 
 /// Largest table or catalogue file that is read, bytes.

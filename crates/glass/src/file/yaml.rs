@@ -25,6 +25,9 @@ pub struct GlassFile {
     source: Option<String>,
     /// Terms under which they came.
     #[expect(dead_code, reason = "for the reader of the file")]
+    license: Option<String>,
+    /// The same, as older files write it.
+    #[expect(dead_code, reason = "for the reader of the file")]
     licence: Option<String>,
     /// What else is worth knowing.
     #[expect(dead_code, reason = "for the reader of the file")]
@@ -120,6 +123,7 @@ pub fn from_params(params: &Params, called: &str, resources: &dyn Resources) -> 
         let hint = "coefficients are those of the formula in micrometers; `range` is where they hold";
         return Err(params.fault(key, text).hint(hint).into());
     }
+    faults.take(p.figures.checked(params));
     for (key, stated, own, tolerance) in p.figures.against(|nm| glass.index(nm)) {
         if !((stated - own).abs() <= tolerance) {
             let fault = params.fault(key, format!("{key} is stated as {stated}, but the data give {own:.5}"));

@@ -106,7 +106,8 @@ impl ModelGlass {
         let &(first, n_first) = indices.first()?;
         let usable = indices.iter().all(|(_, n)| (1.0..=4.0).contains(n))
             && abbe.iter().all(|(v, _)| *v > 0.0 && v.is_finite())
-            && (1..indices.len()).all(|i| indices[..i].iter().all(|other| other.0 != indices[i].0));
+            && (1..indices.len())
+                .all(|i| indices[..i].iter().all(|other| other.0.wavelength_nm != indices[i].0.wavelength_nm));
         if !usable || indices.len() + abbe.len() < 2 {
             return None;
         }
@@ -168,6 +169,12 @@ impl ModelGlass {
     #[must_use]
     pub fn index(&self, wavelength_nm: f64) -> f64 {
         self.constant + sum(&self.coefficients, wavelength_nm)
+    }
+
+    /// Whether the index falls all the way from 350 to 830 nm, as that of every glass does.
+    #[must_use]
+    pub fn falls(&self) -> bool {
+        (350..830).all(|nm| self.index(f64::from(nm)) > self.index(f64::from(nm + 1)))
     }
 
     /// The stated index; of a model through several lines that at d.

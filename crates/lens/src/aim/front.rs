@@ -1,5 +1,6 @@
 //! The pupil as the object sees it.
 
+use super::effort::Effort;
 use super::nodes::Geometry;
 use super::search::{Sphere, Task};
 use super::table::{AimPattern, Depth, Table, Zone};
@@ -42,6 +43,19 @@ impl FrontPupil {
         band_nm: [f64; 2],
         workers: &dyn Workers,
     ) -> Option<Self> {
+        Self::search_by(lens, tracer, points, band_nm, workers, Effort::Full)
+    }
+
+    /// The same with some effort. `None`, too, where the workers are to stop meanwhile.
+    #[must_use]
+    pub fn search_by(
+        lens: &Lens,
+        tracer: &Tracer,
+        points: &[DVec3],
+        band_nm: [f64; 2],
+        workers: &dyn Workers,
+        effort: Effort,
+    ) -> Option<Self> {
         let bound = Sphere::around(lens, Travel::Forward)?;
         let size = lens.image_z_mm().abs() + bound.radius_mm;
         let pupil = lens.first_order(0.5 * (band_nm[0] + band_nm[1])).entrance_pupil_z_mm;
@@ -51,7 +65,7 @@ impl FrontPupil {
         let nearest = points.iter().map(|p| p.distance(eye)).fold(f64::INFINITY, f64::min) / 1.05;
         // Where the source is nearer than the lens is large, aiming at a region has no meaning.
         let to = 1.0 / nearest.max(1.3 * reach).min(100.0 * reach);
-        let zones = ((to * reach / DEPTH_STEP).ceil() as usize).clamp(1, MAX_DEPTHS);
+        let zones = ((to * reach / DEPTH_STEP).ceil() as usize).clamp(1, MAX_DEPTHS.min(effort.fineness().depths));
         let task = Task {
             lens,
             tracer,
@@ -61,6 +75,7 @@ impl FrontPupil {
             most: 2.0,
             band_nm,
             workers,
+            effort,
         };
         Some(Self { table: task.run()? })
     }

@@ -17,6 +17,7 @@
 //! over distance squared, so light is counted equally per solid angle, and the estimate has no bias while outline and ring hold
 //! all that passes; random rays beyond the outline check that when it is made.
 
+mod effort;
 mod front;
 mod nodes;
 mod outline;
@@ -28,6 +29,7 @@ mod shape;
 mod stopped;
 mod table;
 
+pub use effort::Effort;
 pub use front::{AimRegion, FrontPupil};
 pub use rear::RearPupil;
 pub(crate) use search::Sphere;

@@ -7,7 +7,7 @@
 
 use super::AimPattern;
 use super::reach::CORNERS;
-use super::table::{Table, azimuth_measure};
+use super::table::{SLOTS, Table, azimuth_measure, whole};
 use spectra_core::isa::{Isa, Vectorized};
 use spectra_core::{Loss, RayBatch};
 
@@ -51,7 +51,7 @@ impl Colors {
     /// The zone of a wavelength.
     #[inline(always)]
     pub fn zone(&self, nm: f64) -> usize {
-        (self.at(nm) as i32 as usize).min(self.zones - 1)
+        whole(self.at(nm), (self.zones - 1) as f64)
     }
 
     /// A wavelength in zones from the lower end of the band; its ends stand for what is beyond.
@@ -142,6 +142,10 @@ pub(super) fn aim<const BACKWARD: bool>(
 
 /// What a chunk of rays looks up.
 struct Looked {
+    /// Row of the table, slot in it, azimuth's step, zone of the wavelength, triangle.
+    at: [[u32; CHUNK]; 5],
+    /// Where in its zones of wavelength and depth a ray is, -0.5 to 0.5.
+    inner: [[f64; CHUNK]; 2],
     /// Ends of the outer edge of the triangle, mm.
     edge: [[f64; CHUNK]; 4],
     /// Middle of the zone: radial, across, axial; normal of its plane: radial, axial; 0 where nothing passes.
@@ -165,6 +169,8 @@ impl<const BACKWARD: bool, const RINGS: bool, const MANY: bool> Vectorized for D
         let Self { table, outlines, u, v, rays } = self;
         let c = rays.columns_mut();
         let mut looked = Looked {
+            at: [[0; CHUNK]; 5],
+            inner: [[0.0; CHUNK]; 2],
             edge: [[0.0; CHUNK]; 4],
             zone: [[0.0; CHUNK]; 6],
             drift: [[0.0; CHUNK]; 4],
@@ -239,33 +245,51 @@ fn look<const BACKWARD: bool, const RINGS: bool, const MANY: bool>(
 ) {
     let len = x.len().min(CHUNK);
     let (u, v, x, y, z, color) = (&u[..len], &v[..len], &x[..len], &y[..len], &z[..len], &color[..len]);
+    // What needs no table, in vectors; then the tables, ray by ray.
     for i in 0..len {
         let (row, slot, ex, ey, zones) =
             table.place::<BACKWARD, MANY>(table.eye_z_mm, table.angle_scale, x[i], y[i], z[i]);
+        let step = whole(azimuth_measure(ex, ey) * (0.25 * TURN_STEPS as f64), TURN_STEPS as f64);
+        let (squared, turns) = disk::<RINGS>(u[i], v[i]);
+        let along = turns * CORNERS as f64;
+        let triangle = whole(along, (CORNERS - 1) as f64);
+        let shade = outlines.colors.at(color[i]);
+        let band = whole(shade, (outlines.colors.zones - 1) as f64);
+        looked.inner[0][i] = shade - band as f64 - 0.5;
+        looked.inner[1][i] = table.depth_part::<BACKWARD>(x[i], y[i], z[i]);
+        looked.part[i] = zones - slot as f64 - 0.5;
+        looked.out[0][i] = ex;
+        looked.out[1][i] = ey;
+        let inside = squared < INSIDE;
+        let radius2 = if inside { squared * (1.0 / INSIDE) } else { 1.0 + (squared - INSIDE) * STRETCH };
+        looked.place[0][i] = along - triangle as f64;
+        looked.place[1][i] = radius2.sqrt();
+        looked.place[2][i] = if inside { 0.5 * CORNERS as f64 / INSIDE } else { 0.5 * CORNERS as f64 * STRETCH };
+        looked.at[0][i] = row as u32;
+        looked.at[1][i] = slot as u32;
+        looked.at[2][i] = step as u32;
+        looked.at[3][i] = band as u32;
+        looked.at[4][i] = triangle as u32;
+    }
+    for i in 0..len {
+        let [row, slot, step, band, triangle] = looked.at.each_ref().map(|column| column[i] as usize);
+        let slot = slot & (SLOTS - 1);
         let f = &table.rows[row].0;
         let mut at = row;
         if !outlines.turns.is_empty() {
-            let step = (azimuth_measure(ex, ey) * (0.25 * TURN_STEPS as f64)) as i32 as usize;
             at = row * outlines.azimuths + usize::from(outlines.turns[step & (TURN_STEPS - 1)]);
         }
         let at = at * outlines.zones + slot.min(outlines.zones - 1);
-        let (squared, turns) = disk::<RINGS>(u[i], v[i]);
-        let along = turns * CORNERS as f64;
-        let triangle = (along as i32 as usize).min(CORNERS - 1);
-        let shade = outlines.colors.at(color[i]);
-        let band = (shade as i32 as usize).min(outlines.colors.zones - 1);
         let first = (at * outlines.colors.zones + band) * STRIDE;
-        let by_color = shade - band as f64 - 0.5;
-        let by_depth = table.depth_part::<BACKWARD>(x[i], y[i], z[i]);
-        let [shift, deeper, grown] = std::array::from_fn(|k| outlines.corners[first + CORNERS + 1 + k]);
+        let outline = &outlines.corners[first..first + STRIDE];
+        let (by_color, by_depth) = (looked.inner[0][i], looked.inner[1][i]);
+        let [shift, deeper, grown] = std::array::from_fn(|k| outline[CORNERS + 1 + k]);
         let size = 1.0 + by_color * f64::from(grown[0]) + by_depth * f64::from(grown[1]);
         for (k, column) in looked.moved.iter_mut().enumerate() {
             column[i] = by_color * f64::from(shift[k]) + by_depth * f64::from(deeper[k]);
         }
-        let at = first + triangle;
-        let [a, b] = [outlines.corners[at], outlines.corners[at + 1]];
-        let edge = [a[0], a[1], b[0], b[1]];
-        for (column, value) in looked.edge.iter_mut().zip(edge) {
+        let [a, b] = [outline[triangle], outline[triangle + 1]];
+        for (column, value) in looked.edge.iter_mut().zip([a[0], a[1], b[0], b[1]]) {
             column[i] = f64::from(value);
         }
         for (column, field) in looked.zone.iter_mut().zip([0, 1, 2, 6, 7, 8]) {
@@ -274,15 +298,8 @@ fn look<const BACKWARD: bool, const RINGS: bool, const MANY: bool>(
         for (column, value) in looked.drift.iter_mut().zip(&f[10..14]) {
             column[i] = value[slot];
         }
-        looked.part[i] = zones - slot as f64 - 0.5;
-        looked.out[0][i] = ex;
-        looked.out[1][i] = ey;
-        let inside = squared < INSIDE;
-        let radius2 = if inside { squared * (1.0 / INSIDE) } else { 1.0 + (squared - INSIDE) * STRETCH };
-        looked.place[0][i] = along - triangle as f64;
-        looked.place[1][i] = size * radius2.sqrt();
-        let part = if inside { 0.5 * CORNERS as f64 / INSIDE } else { 0.5 * CORNERS as f64 * STRETCH };
-        looked.place[2][i] = size * size * part;
+        looked.place[1][i] *= size;
+        looked.place[2][i] *= size * size;
     }
 }
 

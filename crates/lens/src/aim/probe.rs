@@ -143,7 +143,7 @@ impl<'a> Stages<'a> {
                     element.semi_diameter_mm = element.semi_diameter_mm.map(|own| own.max(opening));
                 }
             }
-            let tracer = Tracer::new(&open, Indices::At(middle_nm), tracer.isa()).ok()?;
+            let tracer = Tracer::new(&open, Indices::At(middle_nm), tracer.isa()).ok()?.like(tracer);
             opened.push(Stage::new(tracer, travel));
             opening *= STEP;
         }

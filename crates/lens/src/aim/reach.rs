@@ -1,6 +1,7 @@
 //! How far what passes reaches from a place in each direction, and the corners that stand for it.
 
 use spectra_core::math::{atan2, sin_cos_turns};
+use std::sync::LazyLock;
 
 /// Directions that a reach is known in.
 pub(super) const DIRECTIONS: usize = 512;
@@ -16,6 +17,14 @@ const SHARP: f64 = 0.42;
 /// More corners than this are roughness.
 const MOST_SHARP: usize = 24;
 
+/// Unit vectors of the directions.
+static WAYS: LazyLock<[[f64; 2]; DIRECTIONS]> = LazyLock::new(|| {
+    std::array::from_fn(|direction| {
+        let (sin, cos) = sin_cos_turns(direction as f64 / DIRECTIONS as f64);
+        [cos, sin]
+    })
+});
+
 /// The smallest star-shaped region about the origin of a plane that holds what it was told of: a radius a direction, mm.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Reach([f64; DIRECTIONS]);
@@ -26,8 +35,7 @@ impl Reach {
 
     /// Unit vector of a direction.
     pub fn way(direction: usize) -> [f64; 2] {
-        let (sin, cos) = sin_cos_turns(direction as f64 / DIRECTIONS as f64);
-        [cos, sin]
+        WAYS[direction]
     }
 
     pub fn is_empty(&self) -> bool {
@@ -41,8 +49,9 @@ impl Reach {
 
     /// Holds a closed line, too.
     pub fn include(&mut self, line: &[[f64; 2]]) {
+        let ways = &*WAYS;
         let polar: Vec<(f64, f64)> = line.iter().map(|p| (share(*p), length(*p))).collect();
-        for (k, from) in line.iter().enumerate() {
+        for k in 0..line.len() {
             let next = (k + 1) % line.len();
             let (a, b) = if (polar[next].0 - polar[k].0).rem_euclid(1.0) <= 0.5 { (k, next) } else { (next, k) };
             let turn = (polar[b].0 - polar[a].0).rem_euclid(1.0);
@@ -53,14 +62,14 @@ impl Reach {
             let mut direction = first;
             while direction <= last {
                 let d = direction as usize % DIRECTIONS;
-                let crossed = cross(start, edge) / cross(Self::way(d), edge);
+                let crossed = cross(start, edge) / cross(ways[d], edge);
                 // Along the line of sight, the farther end.
                 let r = if crossed.is_finite() && crossed >= 0.0 { crossed.min(most) } else { most };
                 self.0[d] = self.0[d].max(r);
                 direction += 1.0;
             }
             // A corner between two directions counts for the nearer one.
-            let d = (share(*from) * DIRECTIONS as f64).round() as usize % DIRECTIONS;
+            let d = (polar[k].0 * DIRECTIONS as f64).round() as usize % DIRECTIONS;
             self.0[d] = self.0[d].max(polar[k].1);
         }
     }

@@ -1,5 +1,6 @@
 //! The pupil as the film sees it.
 
+use super::effort::Effort;
 use super::front::AimRegion;
 use super::nodes::Geometry;
 use super::search::{Sphere, Task};
@@ -23,7 +24,6 @@ pub struct RearPupil {
 
 /// Zones of the depth are this fine, times the distance from the last vertex.
 const DEPTH_STEP: f64 = 0.02;
-const MAX_DEPTHS: usize = 8;
 /// Points within this of one plane, as a share of their distance, are on it.
 const FLAT: f64 = 1e-7;
 
@@ -45,6 +45,19 @@ impl RearPupil {
         band_nm: [f64; 2],
         workers: &dyn Workers,
     ) -> Option<Self> {
+        Self::search_by(lens, tracer, points, band_nm, workers, Effort::Full)
+    }
+
+    /// The same with some effort. `None`, too, where the workers are to stop meanwhile.
+    #[must_use]
+    pub fn search_by(
+        lens: &Lens,
+        tracer: &Tracer,
+        points: &[DVec3],
+        band_nm: [f64; 2],
+        workers: &dyn Workers,
+        effort: Effort,
+    ) -> Option<Self> {
         let bound = Sphere::around(lens, Travel::Backward)?;
         let vertex = lens.image_pose.local_point(lens.elements.last()?.pose.origin_mm);
         let nearest = points.iter().map(|p| p.z).reduce(f64::min)?;
@@ -60,7 +73,11 @@ impl RearPupil {
         let flat = far - near <= FLAT * far;
         let (middle, slack) = (0.5 * (near + far), 0.02 * (far - near) + FLAT * far);
         let (from, to) = ((near - slack).max(0.5 * near), far + slack);
-        let zones = if flat { 1 } else { (((to - from) / (DEPTH_STEP * from)).ceil() as usize).clamp(1, MAX_DEPTHS) };
+        let zones = if flat {
+            1
+        } else {
+            (((to - from) / (DEPTH_STEP * from)).ceil() as usize).clamp(1, effort.fineness().depths)
+        };
         let node = |k: usize| from + (to - from) * k as f64 / zones as f64;
         let task = Task {
             lens,
@@ -71,6 +88,7 @@ impl RearPupil {
             most: most.min(0.999),
             band_nm,
             workers,
+            effort,
         };
         Some(Self { table: task.run()? })
     }

@@ -1,5 +1,6 @@
 //! The search for what passes: zone by zone, then verified.
 
+use super::effort::Effort;
 use super::nodes::{Geometry, Node};
 use super::outline::{Colors, Outlines, RING, STRIDE, TURN_STEPS};
 use super::probe::{Bounds, Plane, Prober, Stages};
@@ -14,7 +15,6 @@ use spectra_core::loss::ALIVE;
 use spectra_core::math::{atan2, sin_cos_turns};
 use spectra_core::numbers::Numbers;
 use spectra_core::workers::{Workers, each_of};
-use std::convert::Infallible;
 
 /// What the search of zones goes by.
 struct Searched<'a> {
@@ -69,24 +69,16 @@ pub(super) struct Task<'a> {
     /// The ends of the band, nm.
     pub band_nm: [f64; 2],
     pub workers: &'a dyn Workers,
+    pub effort: Effort,
 }
+
+/// Nobody wants the result any more.
+struct NotWanted;
 
 /// A sphere that holds a tilted rim, too.
 const SLACK: f64 = 1.1;
-/// Zones of the angle, with an axis of revolution and without one.
-const ZONES: usize = 64;
-const ZONES_WITHOUT_AXIS: usize = 32;
-/// Zones of the azimuth, without one.
-const AZIMUTHS: usize = 24;
-/// Grid over what passes from one point.
-const GRID: usize = 24;
-const GRID_WITHOUT_AXIS: usize = 20;
-/// Step in which the end of the field is looked for, in the measure of the angle: under two degrees.
-const STEP: f64 = 0.02;
 /// So far beyond the last light seen, in that measure, no more is looked for: some 15 degrees.
 const GIVE_UP: f64 = 0.2;
-/// Random rays beside each zone's shape, none of which may pass.
-const CHECKS: usize = 1024;
 /// How often a shape is widened before it is given up for the whole surface.
 const ROUNDS: u64 = 8;
 /// Zones of wavelength: of a round lens, of one with an opening that is not, of one without axis.
@@ -105,14 +97,23 @@ const SLIGHT: f64 = 1.008;
 const BASE: usize = 11;
 
 impl Task<'_> {
-    /// Searches all zones. `None` where no surface states a size.
+    /// Whether somebody still waits for the result.
+    fn wanted(&self) -> Result<(), NotWanted> {
+        if self.workers.should_stop() { Err(NotWanted) } else { Ok(()) }
+    }
+
+    /// Searches all zones. `None` where no surface states a size, and where the workers are to stop.
     pub fn run(self) -> Option<Table> {
         let [min_nm, max_nm] = self.band_nm;
         let travel = self.geometry.travel;
         if let Some((round, at)) = stopped::split(self.lens) {
-            let tracer = Tracer::new(&round, Indices::Band { min_nm, max_nm }, self.tracer.isa()).ok()?;
+            let tracer =
+                Tracer::new(&round, Indices::Band { min_nm, max_nm }, self.tracer.isa()).ok()?.like(self.tracer);
             // Where light scatters before it comes to the opening, there is nothing but the round lens to aim at.
-            let opening = Stopped::new(self.lens, &round, at, travel, self.band_nm, self.tracer.isa());
+            // A first look aims at the round lens, too.
+            let is_seen = self.effort.fineness().outlines;
+            let opening = || Stopped::new(self.lens, &round, at, travel, self.band_nm, self.tracer);
+            let opening = is_seen.then(opening).flatten();
             let itself = Stages::of(self.tracer, travel);
             return Task { lens: &round, tracer: &tracer, ..self }.search(opening.map(|opening| (opening, itself)));
         }
@@ -125,8 +126,9 @@ impl Task<'_> {
         let [from_nm, to_nm] = self.band_nm;
         let stages = &Stages::new(self.lens, self.tracer, travel, from_nm, to_nm)?;
         let with_axis = self.lens.has_axis_of_revolution();
-        let azimuths = if with_axis { 1 } else { AZIMUTHS };
-        let zones = if with_axis { ZONES } else { ZONES_WITHOUT_AXIS };
+        let fineness = self.effort.fineness();
+        let azimuths = if with_axis { 1 } else { fineness.azimuths };
+        let zones = fineness.zones[usize::from(!with_axis)];
         let most = self.end_of_field(stages, azimuths).min(self.most);
         let scale = if most > 0.0 { zones as f64 / most } else { 0.0 };
         let surface = if travel == Travel::Forward { 1 } else { self.lens.elements.len() as u32 };
@@ -160,16 +162,18 @@ impl Task<'_> {
             (0..TURN_STEPS).map(|step| zone(step).min(looks - 1) as u16).collect()
         });
         // Of a zone, its two edges and its middle are looked at; over the azimuth, its edges.
-        let lattice = Lattice::new(self, stages, azimuths, 2 * zones, most, &colors.nodes_nm());
+        let nodes_nm = if fineness.outlines { colors.nodes_nm() } else { Vec::new() };
+        let lattice = Lattice::new(self, stages, azimuths, 2 * zones, most, &nodes_nm).ok()?;
         let all = Searched { stopped: stopped.as_ref(), lattice: &lattice, colors, looks, bands };
         let rows = self.depth.zones * azimuths;
         let fresh = || (stages.prober(), stopped.as_ref().map(|(_, itself)| itself.prober()));
         let found = each_of(self.workers, rows * zones, fresh, |(prober, itself), piece| {
             let (row, zone) = (piece / zones, piece % zones);
             let at = ZonePlace { depth: row / azimuths, azimuth: row % azimuths, zone, azimuths, scale };
-            Ok::<_, Infallible>(self.outlined(&all, prober, itself.as_mut(), &at))
+            self.wanted()?;
+            Ok::<_, NotWanted>(self.outlined(&all, prober, itself.as_mut(), &at))
         });
-        let Ok(found) = found;
+        let found = found.ok()?;
         let mut corners = vec![[0.0_f32; 2]; rows / azimuths * looks * zones * bands * STRIDE];
         for (row, found) in found.chunks(zones).enumerate() {
             let zone = |(zone, _): &(Zone, Vec<Outline>)| *zone;
@@ -184,7 +188,8 @@ impl Task<'_> {
                 }
             }
         }
-        table.outlines = Some(Outlines { colors, zones, azimuths: looks, turns, turned: looks > 1, corners });
+        let outlines = Outlines { colors, zones, azimuths: looks, turns, turned: looks > 1, corners };
+        table.outlines = fineness.outlines.then_some(outlines);
         Some(table)
     }
 
@@ -199,6 +204,9 @@ impl Task<'_> {
         let Searched { lattice, colors, looks, bands, .. } = *all;
         let opening = all.stopped.map(|(opening, _)| opening);
         let mut region = self.zone(prober, lattice, at)?;
+        if !self.effort.fineness().outlines {
+            return Some((region.zone(self.geometry.eye_z_mm), Vec::new()));
+        }
         (region.drift, region.by_band) = region.drifts(lattice, at, bands);
         let folds = opening.map_or(1, |opening| opening.folds);
         let views = lattice.views(at, opening, &colors);
@@ -286,21 +294,22 @@ impl Task<'_> {
     /// The measure of the angle beyond which nothing passes; 0 where nothing does at all.
     fn end_of_field(&self, stages: &Stages<'_>, azimuths: usize) -> f64 {
         let prober = &mut stages.prober();
+        let step_of = self.effort.fineness().step;
         let (first, last) = (self.depth_nodes[0], self.depth_nodes[self.depth_nodes.len() - 1]);
         let depths = if first == last { vec![first] } else { vec![first, last] };
         let looks = azimuths.min(8);
         let mut end = 0.0;
         let mut step = 0;
         // Nobody builds a lens that sees more than 130 degrees to each side.
-        while STEP * f64::from(step) <= 1.55_f64.min(self.most + STEP) {
-            let measure = STEP * f64::from(step);
+        while step_of * f64::from(step) <= 1.55_f64.min(self.most + step_of) {
+            let measure = step_of * f64::from(step);
             let passes = depths.iter().any(|depth| {
                 (0..looks).any(|k| {
                     self.geometry.node(prober, measure, *depth, turns(k as f64 / looks as f64), 8, &[]).is_some()
                 })
             });
             if passes {
-                end = measure + STEP;
+                end = measure + step_of;
             } else if end > 0.0 && measure > end + GIVE_UP {
                 break;
             }
@@ -331,7 +340,8 @@ impl Task<'_> {
             shape.half = shape.half.map(|h| h * 1.25);
         }
         // Where the light fades out in the zone, what passes may run away from what was seen.
-        let (checks, reach) = if fades { (4 * CHECKS, 2.0) } else { (CHECKS, 1.3) };
+        let checks = self.effort.fineness().checks;
+        let (checks, reach) = if fades { (4 * checks, 2.0) } else { (checks, 1.3) };
         for round in 0..ROUNDS {
             let beside = self.beside(prober, &shape, &plane, at, (round, checks, reach));
             if beside.is_empty() {
@@ -707,8 +717,15 @@ struct Lattice {
 }
 
 impl Lattice {
-    fn new(task: &Task<'_>, stages: &Stages<'_>, azimuths: usize, steps: usize, most: f64, colors_nm: &[f64]) -> Self {
-        let grid = if azimuths == 1 { GRID } else { GRID_WITHOUT_AXIS };
+    fn new(
+        task: &Task<'_>,
+        stages: &Stages<'_>,
+        azimuths: usize,
+        steps: usize,
+        most: f64,
+        colors_nm: &[f64],
+    ) -> Result<Self, NotWanted> {
+        let grid = task.effort.fineness().grid[usize::from(azimuths > 1)];
         let a_row = steps + 1;
         let pieces = task.depth_nodes.len() * azimuths * a_row;
         let nodes = each_of(
@@ -722,13 +739,13 @@ impl Lattice {
                 // Outlines go by the ends of zones.
                 let colors_nm = if k.is_multiple_of(2) { colors_nm } else { &[] };
                 let depth = task.depth_nodes[row / azimuths];
-                Ok::<_, Infallible>(task.geometry.node(prober, measure, depth, turns, grid, colors_nm))
+                task.wanted()?;
+                Ok(task.geometry.node(prober, measure, depth, turns, grid, colors_nm))
             },
         );
-        let Ok(nodes) = nodes;
-        let mut nodes = nodes.into_iter();
+        let mut nodes = nodes?.into_iter();
         let rows = (0..task.depth_nodes.len() * azimuths).map(|_| nodes.by_ref().take(a_row).collect()).collect();
-        Self { rows, azimuths, depths: task.depth_nodes.len() }
+        Ok(Self { rows, azimuths, depths: task.depth_nodes.len() })
     }
 
     /// Nodes of a zone that all see light.

@@ -7,9 +7,9 @@ use super::nodes::Node;
 use crate::aperture::{Aperture, Shape};
 use crate::{Indices, Lens, Path, Pose, Route, Tracer, Travel};
 use glam::DVec3;
+use spectra_core::RayBatch;
 use spectra_core::loss::ALIVE;
 use spectra_core::math::sin_cos_turns;
-use spectra_core::{Isa, RayBatch};
 
 /// Places on the edge of the opening.
 const EDGE: usize = 120;
@@ -69,7 +69,14 @@ fn reach_mm(aperture: &Aperture, semi_mm: Option<f64>) -> f64 {
 
 impl Stopped {
     /// The opening of `lens` at one of its elements; `round` is the lens without it.
-    pub fn new(lens: &Lens, round: &Lens, at: usize, travel: Travel, band_nm: [f64; 2], isa: Isa) -> Option<Self> {
+    pub fn new(
+        lens: &Lens,
+        round: &Lens,
+        at: usize,
+        travel: Travel,
+        band_nm: [f64; 2],
+        whole: &Tracer,
+    ) -> Option<Self> {
         let e = &lens.elements[at];
         let rim = round.elements[at].semi_diameter_mm?;
         let iris = e.apertures.iter().any(|a| !a.obscures && matches!(a.shape, Shape::Iris(_)));
@@ -102,11 +109,11 @@ impl Stopped {
             [place.x, place.y]
         });
         let edge = edge.collect();
-        let tracer = Tracer::new(round, Indices::Band { min_nm: band_nm[0], max_nm: band_nm[1] }, isa).ok()?;
+        let tracer = Tracer::new(round, Indices::Band { min_nm: band_nm[0], max_nm: band_nm[1] }, whole.isa()).ok()?;
         let path = Path::through(round.elements.len(), travel).up_to(|k| k == at);
         // Behind a surface that scatters, the opening is nothing to aim at.
         let (_, before) = path.steps().split_last()?;
-        if before.iter().any(|step| round.elements[step.element].surface.draws()) {
+        if before.iter().any(|step| whole.leaves_to_chance(step.element)) {
             return None;
         }
         let back = if travel == Travel::Forward { lens.image_pose } else { lens.image_pose.inverse() };

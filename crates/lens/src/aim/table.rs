@@ -161,7 +161,20 @@ pub(super) fn measure(radius: f64, ahead: f64) -> f64 {
     if ahead < 0.0 { 2.0 - share } else { share }
 }
 
-/// The same for the azimuth of (x, y): in [0, 4), a quarter turn a unit.
+/// The whole part of a number, from 0 to `last`; 0 of what is no number.
+///
+/// A cast would be done one by one. Beside 2^52 there is room for whole numbers only, in the last bits: that takes additions.
+#[inline(always)]
+pub(super) fn whole(at: f64, last: f64) -> usize {
+    const WHOLE: f64 = (1_u64 << 52) as f64;
+    let at = if at > 0.0 { at } else { 0.0 };
+    let at = if at < last { at } else { last };
+    let nearest = (at + WHOLE) - WHOLE;
+    let below = if nearest > at { nearest - 1.0 } else { nearest };
+    (below + WHOLE).to_bits() as u32 as usize
+}
+
+/// [`measure`] for the azimuth of (x, y): in [0, 4), a quarter turn a unit.
 #[inline(always)]
 pub(super) fn azimuth_measure(x: f64, y: f64) -> f64 {
     let share = y / (x.abs() + y.abs());
@@ -254,7 +267,7 @@ impl Table {
         let share =
             (Self::depth_of::<BACKWARD>(x * x + y * y, ahead) - self.depth.from) / (self.depth.to - self.depth.from);
         let zones = share * self.depth.zones as f64;
-        let at = (zones as usize).min(self.depth.zones - 1);
+        let at = whole(zones, (self.depth.zones - 1) as f64);
         let part = zones - at as f64 - 0.5;
         // A point that was not searched for is aimed at in another way.
         if part.abs() <= 0.5 { part } else { 0.0 }
@@ -304,8 +317,7 @@ impl Table {
         let radius = radius2.sqrt();
         let ahead = if BACKWARD { z - eye_z_mm } else { eye_z_mm - z };
         let zones = measure(radius, ahead) * angle_scale;
-        let slot = zones as i32;
-        let slot = slot.min(SLOTS as i32 - 1) as usize & (SLOTS - 1);
+        let slot = whole(zones, (SLOTS - 1) as f64) & (SLOTS - 1);
         // Unit vector away from the axis; on it any will do.
         let on_axis = radius == 0.0;
         let inverse = 1.0 / if on_axis { 1.0 } else { radius };
@@ -314,11 +326,11 @@ impl Table {
         if MANY {
             let depth = Self::depth_of::<BACKWARD>(radius2, ahead);
             let share = (depth - self.depth.from) / (self.depth.to - self.depth.from);
-            let at = ((share * self.depth.zones as f64) as usize).min(self.depth.zones - 1);
+            let at = whole(share * self.depth.zones as f64, (self.depth.zones - 1) as f64);
             row = at * self.azimuths;
             if self.azimuths > 1 {
                 let turn = azimuth_measure(ex, ey) * 0.25 * self.azimuths as f64;
-                row += (turn as usize).min(self.azimuths - 1);
+                row += whole(turn, (self.azimuths - 1) as f64);
             }
         }
         (row, slot, ex, ey, zones)

@@ -4,10 +4,8 @@ use super::layers::{StackParams, stack};
 use super::{Coating, MeasuredCoating};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
-use spectra_core::names;
-use spectra_core::params::{
-    Fault, Faults, Kinds, Node, Params, SourceFile, Span, StageNode, Value, Whole, keys_of, nearest,
-};
+use spectra_core::names::{self, nearest};
+use spectra_core::params::{Fault, Faults, Kinds, Node, Params, SourceFile, Span, StageNode, Value, Whole, keys_of};
 use spectra_core::registry::{self, Context, Stage};
 use spectra_core::resources::{Resources, beside};
 use spectra_core::spectral::BAND;
@@ -29,6 +27,9 @@ pub(crate) struct CoatingKeys {
     #[expect(dead_code, reason = "for the reader of the file")]
     source: Option<String>,
     /// Terms under which they came.
+    #[expect(dead_code, reason = "for the reader of the file")]
+    license: Option<String>,
+    /// The same, as older files write it.
     #[expect(dead_code, reason = "for the reader of the file")]
     licence: Option<String>,
     /// What else is worth knowing.

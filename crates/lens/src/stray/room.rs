@@ -5,6 +5,7 @@ use crate::absorption::{Absorption, Grid};
 use crate::aperture::{Aperture, Shape};
 use crate::coating::Coating;
 use crate::pose::Pose;
+use crate::scatter::Layer;
 use crate::{Element, Lens};
 use glam::{DVec2, DVec3};
 use spectra_core::surface::{Action, Surface};
@@ -61,15 +62,28 @@ pub(super) struct Skin {
     /// Radius to which it reaches: beyond the clear one it is painted.
     outer_mm: f64,
     apertures: Vec<Aperture>,
-    semi_diameter_mm: Option<f64>,
+    pub semi_diameter_mm: Option<f64>,
     /// Whether it parts two media.
     pub refracts: bool,
     pub coating: Coating,
+    /// What lies on it.
+    pub layers: Vec<Layer>,
     /// Media in front of it and behind it.
     pub media: [usize; 2],
 }
 
 impl Skin {
+    /// x and y in its own frame of a place of the lens, mm.
+    pub fn place(&self, at: DVec3) -> [f64; 2] {
+        let local = self.pose.local_point(at);
+        [local.x, local.y]
+    }
+
+    /// Its own x and y, frame of the lens.
+    pub fn axes(&self) -> [DVec3; 2] {
+        [DVec3::X, DVec3::Y].map(|axis| self.pose.direction(axis))
+    }
+
     /// Height of its rim above its vertex plane, mm.
     fn rim_sag_mm(&self) -> f64 {
         match &self.form {
@@ -416,6 +430,7 @@ fn skin(lens: &Lens, at: usize) -> Skin {
         semi_diameter_mm: e.semi_diameter_mm,
         refracts: e.action == Action::Refract && e.medium_before != e.medium_after,
         coating: lens.coating_of(e),
+        layers: e.layers.clone(),
         media: [e.medium_before, e.medium_after],
     }
 }

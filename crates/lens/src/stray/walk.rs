@@ -2,6 +2,7 @@
 
 use super::Chance;
 use super::room::{Disk, Interior, Met};
+use crate::scatter::{Shares, which};
 use glam::DVec3;
 use spectra_core::math;
 
@@ -21,10 +22,12 @@ pub struct Particle {
     pub mirrored: u32,
     /// How often paint, or the imager as a screen, scattered it so far.
     pub scattered: u32,
+    /// How often haze, dust or scratches on surfaces scattered it so far.
+    pub diffused: u32,
 }
 
 impl Particle {
-    /// Whether it came straight.
+    /// Whether nothing turned it back: it came straight, but for what lies on surfaces.
     #[must_use]
     pub fn is_straight(&self) -> bool {
         self.mirrored == 0 && self.scattered == 0
@@ -44,7 +47,7 @@ pub struct StrayLedger {
     pub paint: f64,
     /// Absorbed by glass.
     pub glass: f64,
-    /// Absorbed by coatings.
+    /// Absorbed by coatings, and by what lies on them.
     pub coatings: f64,
     /// Absorbed by the imager.
     pub imager: f64,
@@ -107,7 +110,7 @@ impl<'a> Walker<'a> {
     pub fn from_imager(&mut self, [x, y]: [f64; 2], chance: &mut Chance) -> Option<Particle> {
         let position = DVec3::new(x, y, self.interior.imager_z_mm());
         let (direction, weight) = self.off_imager(position, chance);
-        let start = Particle { position, direction, weight, mirrored: 0, scattered: 0 };
+        let start = Particle { position, direction, weight, mirrored: 0, scattered: 0, diffused: 0 };
         self.ledger.launched += weight;
         self.walk(start, self.interior.skins.len(), true, chance, &mut |_| {})
     }
@@ -204,8 +207,22 @@ impl<'a> Walker<'a> {
                         true
                     } else {
                         let beyond = if at == room { room + 1 } else { at };
-                        let turned = self.interior.skins[at].refracts
-                            && self.bend(&mut particle, at, index, self.rooms[beyond][0], normal, chance)?;
+                        let turned = self.interior.skins[at].refracts && {
+                            let n_beyond = self.rooms[beyond][0];
+                            let layers = &self.interior.skins[at].layers;
+                            if layers.is_empty() {
+                                self.bend(&mut particle, at, index, n_beyond, normal, chance)?
+                            } else if index < n_beyond {
+                                self.diffuse(&mut particle, at, index, normal, chance)?;
+                                self.bend(&mut particle, at, index, n_beyond, normal, chance)?
+                            } else {
+                                let turned = self.bend(&mut particle, at, index, n_beyond, normal, chance)?;
+                                if !turned {
+                                    self.diffuse(&mut particle, at, n_beyond, normal, chance)?;
+                                }
+                                turned
+                            }
+                        };
                         if !turned {
                             room = beyond;
                         }
@@ -224,6 +241,46 @@ impl<'a> Walker<'a> {
         }
         self.ledger.not_traced += particle.weight;
         None
+    }
+
+    /// Lets what lies on a surface, in a medium of this index, stop the particle or scatter it. `None` where nothing of it is left.
+    fn diffuse(
+        &mut self,
+        particle: &mut Particle,
+        at: usize,
+        n: f64,
+        normal: DVec3,
+        chance: &mut Chance,
+    ) -> Option<()> {
+        let skin = &self.interior.skins[at];
+        let place = skin.place(particle.position);
+        let Shares { open, straight } = Shares::at(&skin.layers, place, skin.semi_diameter_mm);
+        self.ledger.coatings += particle.weight * (1.0 - open);
+        particle.weight *= open;
+        if !(open > 0.0) {
+            return None;
+        }
+        if chance.number() * open < straight {
+            return Some(());
+        }
+        let layer = which(&skin.layers, place, skin.semi_diameter_mm, chance.number());
+        let (one, other) = ([chance.number(), chance.number()], [chance.number(), chance.number()]);
+        let [x, y] = layer?.lobe.step(one, other, self.wavelength_nm, place);
+        let normal = if normal.dot(particle.direction) < 0.0 { -normal } else { normal };
+        let [axis_x, axis_y] = skin.axes();
+        let across_x = (axis_x - axis_x.dot(normal) * normal).normalize();
+        let across_y = axis_y - axis_y.dot(normal) * normal;
+        let across_y = (across_y - across_y.dot(across_x) * across_x).normalize();
+        let d = particle.direction;
+        let along = d - d.dot(normal) * normal + (x * across_x + y * across_y) / n;
+        let square = along.length_squared();
+        if !(square < 1.0) {
+            self.ledger.coatings += particle.weight;
+            return None;
+        }
+        particle.direction = (along + normal * (1.0 - square).sqrt()).normalize();
+        particle.diffused += 1;
+        Some(())
     }
 
     /// Reflects the particle, or lets it through; says whether it was reflected. `None` where nothing of it is left.

@@ -1,6 +1,7 @@
 //! Files: each is written whole or not at all, and nothing in it changes from run to run.
 
 mod dng;
+mod eight;
 mod exposure;
 mod icc;
 mod linear;

@@ -1,5 +1,6 @@
 //! Pictures for a screen.
 
+use super::eight::Eight;
 use super::space::{PictureSpace, chunk};
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::codecs::tiff::TiffEncoder;
@@ -34,7 +35,7 @@ pub fn png8(
     space: PictureSpace,
     pixel_aspect: f64,
 ) -> Result<(), WriteFault> {
-    let bytes = encoded(picture, space, |code| [to_u8(code)]);
+    let bytes = if space.is_srgb() { eight(picture) } else { encoded(picture, space, |code| [to_u8(code)]) };
     png(out, picture, &bytes, ExtendedColorType::Rgb8, space, pixel_aspect)
 }
 
@@ -141,6 +142,18 @@ fn encoded<const N: usize>(
             for (to, value) in to.chunks_exact_mut(N).zip(encode(*linear)) {
                 to.copy_from_slice(&code(value));
             }
+        }
+    });
+    bytes
+}
+
+/// The picture in 8 bits of sRGB.
+fn eight(picture: &DisplayPicture) -> Vec<u8> {
+    let codes = Eight::srgb();
+    let mut bytes = vec![0; picture.rgb.len() * 3];
+    bytes.par_chunks_mut(PIXELS_A_TASK * 3).zip(picture.rgb.par_chunks(PIXELS_A_TASK)).for_each(|(bytes, rgb)| {
+        for (to, linear) in bytes.iter_mut().zip(rgb.as_flattened()) {
+            *to = codes.code(*linear);
         }
     });
     bytes

@@ -1,8 +1,9 @@
-//! Where the light of lights goes: straight to the imager, to it by two reflections, or elsewhere.
+//! Where the light of lights goes: straight to the imager, to it by reflections, or elsewhere.
 //!
-//! One set of rays, spread evenly over the front, follows the straight path, those of one reflection and those of two. What leaves a
-//! path at a surface by reflection is what the path that turns there gets; so every watt is booked once, and the books close but for
-//! rounding. What two reflections leave in the lens goes on by paths of more: it is not traced.
+//! One set of rays, spread evenly over the front, follows the straight path, and those of one reflection, two, and more if asked for.
+//! What leaves a path at a surface by reflection is what the path that turns there gets; so every watt is booked once, and the books
+//! close but for rounding. It is also all that any path has which goes on from there: where that is less than [`SHARE`] of the light,
+//! a branch of more than two reflections is cut. What is cut, and what is reflected more often, is not traced.
 
 use super::Ghosts;
 use crate::Workers;
@@ -11,12 +12,15 @@ use crate::pipeline::ThreadState;
 use spectra_core::RayBatch;
 use spectra_core::loss::ALIVE;
 use spectra_core::workers::each_of;
-use spectra_lens::{Act, Ledger, Lens, Path, StepLedger, Travel};
+use spectra_lens::{Act, Branches, Ledger, Lens, Path, StepLedger, Travel};
 
-/// Rays for each path, and of a batch.
+/// Rays for each path, where there are pairs of reflections only and where there are more, and of a batch.
 const RAYS: usize = 16_384;
+const RAYS_OF_MORE: usize = 4096;
 const BATCH: usize = 256;
 const MM2_PER_M2: f64 = 1e6;
+/// Paths of more than two reflections begin with this part of the light at least.
+const SHARE: f64 = 1e-8;
 
 /// Where the light of a source's lights goes that enters the lens, W in the band of the scene.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -25,19 +29,23 @@ pub struct LightLedger {
     pub emitted_w: f64,
     /// Falls on the frame straight, less what the imager sends back.
     pub direct_w: f64,
-    /// Falls on it by two reflections, less what the imager sends back.
+    /// Falls on it by reflections, less what the imager sends back.
     pub ghosts_w: f64,
     /// Ends at rims, stops and blades.
     pub rims_w: f64,
     /// Is absorbed by glass, coatings and mirrors.
     pub absorbed_w: f64,
+    /// Is scattered by haze, dust and scratches: it is traced apart.
+    pub scattered_w: f64,
     /// Leaves by the front.
     pub front_w: f64,
     /// Falls beside the frame.
     pub beside_w: f64,
-    /// Is reflected more than twice: no path of this order follows it.
+    /// Is reflected more often than `order`, or begins a path of more than two reflections with too little: no path follows it.
     pub not_traced_w: f64,
-    /// The paths by two reflections, brightest first.
+    /// Reflections of a path at most.
+    pub order: u32,
+    /// The paths by two reflections, and by more, brightest first.
     pub paths: Vec<GhostPath>,
 }
 
@@ -60,7 +68,7 @@ impl LightLedger {
     /// Ends elsewhere.
     #[must_use]
     pub fn lost_w(&self) -> f64 {
-        self.rims_w + self.absorbed_w + self.front_w + self.beside_w
+        self.rims_w + self.absorbed_w + self.scattered_w + self.front_w + self.beside_w
     }
 }
 
@@ -77,69 +85,81 @@ struct Account {
     beside: f64,
 }
 
-/// The ledger of a scene.
+/// The ledger of a scene, with paths of so many reflections at most.
 pub(super) fn of(
     ghosts: &Ghosts,
     lens: &Lens,
     surfaces: &[usize],
+    order: u32,
     workers: &dyn Workers,
 ) -> Result<LightLedger, RenderError> {
     let (count, imager) = (lens.elements.len(), lens.elements.len() - 1);
-    let rays = started(ghosts);
+    let many = if order > 2 { RAYS_OF_MORE } else { RAYS };
+    let rays = started(ghosts, many);
     let follow = |state: &mut ThreadState, path: &Path| follow(ghosts, state, &rays, path, imager);
-    let turned =
-        |at: &[usize]| Path::reflected(count, Travel::Forward, at).expect("surfaces of the lens in their order");
     let fresh = || ghosts.state(BATCH);
-    let by_first = each_of(workers, surfaces.len(), fresh, |state, at| {
-        let first = surfaces[at];
-        let once = follow(state, &turned(&[first]));
-        let seconds = surfaces.iter().filter(|second| **second < first);
-        let twice: Vec<_> = seconds.map(|second| (*second, follow(state, &turned(&[first, *second])))).collect();
-        Ok::<_, RenderError>((first, once, twice))
-    })?;
-    let mut all = LightLedger::default();
-    let book = |all: &mut LightLedger, account: &Account| {
-        let lost = &account.lost;
-        all.rims_w += lost.missed + lost.vignetted - account.beside;
-        all.absorbed_w += lost.absorbed;
-        all.beside_w += account.beside;
-    };
     let straight = follow(&mut fresh(), &Path::through(count, Travel::Forward));
     let outside = straight.ledger.steps.first().map_or(0.0, |first| first.missed + first.vignetted);
-    all.emitted_w = straight.ledger.launched - outside;
-    all.rims_w -= outside;
-    book(&mut all, &straight);
+    let mut all = LightLedger { order, emitted_w: straight.ledger.launched - outside, ..LightLedger::default() };
+    let branches = Branches { elements: count, surfaces, order: order as usize, least: SHARE * all.emitted_w };
+    let by_first = each_of(workers, surfaces.len(), fresh, |state, at| {
+        let mut own = LightLedger::default();
+        let mut visit = |path: &Path, came: f64| {
+            let account = follow(state, path);
+            own.book(path, came, &account, imager);
+            account.ledger
+        };
+        let came = straight.ledger.steps[surfaces[at]].elsewhere;
+        let left = branches.follow(&mut vec![surfaces[at]], came, &mut visit);
+        own.not_traced_w += left;
+        Ok::<_, RenderError>(own)
+    })?;
+    all.rims_w = straight.lost.missed + straight.lost.vignetted - straight.beside - outside;
+    all.absorbed_w = straight.lost.absorbed;
+    all.scattered_w = straight.lost.scattered;
+    all.beside_w = straight.beside + (straight.ledger.arrived - straight.on_frame);
     all.direct_w = straight.on_frame;
-    all.beside_w += straight.ledger.arrived - straight.on_frame;
-    for (first, once, seconds) in by_first {
-        // What neither passed there nor was reflected: coatings of metal absorb it, and beside the frame is no imager.
-        let kept = straight.ledger.steps[first].elsewhere - once.entered;
-        *(if first == imager { &mut all.beside_w } else { &mut all.absorbed_w }) += kept;
-        book(&mut all, &once);
-        all.front_w += once.ledger.arrived;
-        let turn = last_turn(&turned(&[first]));
-        let mut left = once.lost.elsewhere;
-        for (second, twice) in seconds {
-            let met = turn + (first - second);
-            all.absorbed_w += once.ledger.steps[met].elsewhere - twice.entered;
-            left -= once.ledger.steps[met].elsewhere;
-            book(&mut all, &twice);
-            all.ghosts_w += twice.on_frame;
-            all.beside_w += twice.ledger.arrived - twice.on_frame;
-            all.not_traced_w += twice.lost.elsewhere;
-            all.paths.push(GhostPath { surfaces: vec![first + 1, second + 1], power_w: twice.on_frame });
-        }
-        // Sent back at surfaces that are none of the reflecting ones.
-        all.not_traced_w += left;
-    }
-    let straight_left: f64 = straight.ledger.steps.iter().map(|s| s.elsewhere).sum();
-    let followed: f64 = surfaces.iter().map(|at| straight.ledger.steps[*at].elsewhere).sum();
-    all.not_traced_w += straight_left - followed;
-    all.paths.sort_by(|a, b| b.power_w.total_cmp(&a.power_w).then(a.surfaces.cmp(&b.surfaces)));
-    Ok(all.scaled(1.0 / (MM2_PER_M2 * RAYS as f64)))
+    by_first.into_iter().for_each(|own| all.add(own));
+    let others = straight.ledger.steps.iter().enumerate().filter(|(at, _)| surfaces.binary_search(at).is_err());
+    all.not_traced_w += others.map(|(_, step)| step.elsewhere).sum::<f64>();
+    all.paths.sort_by(|a, b| b.power_w.total_cmp(&a.power_w).then_with(|| a.surfaces.cmp(&b.surfaces)));
+    Ok(all.scaled(1.0 / (MM2_PER_M2 * many as f64)))
 }
 
 impl LightLedger {
+    /// Books a path by reflections, to which `came` at the last of them.
+    fn book(&mut self, path: &Path, came: f64, account: &Account, imager: usize) {
+        // What neither passed there nor was reflected: coatings of metal absorb it, and beside the frame is no imager.
+        let kept = came - account.entered;
+        let reflections: Vec<usize> = path.reflections().collect();
+        *(if reflections.last() == Some(&imager) { &mut self.beside_w } else { &mut self.absorbed_w }) += kept;
+        let lost = &account.lost;
+        self.rims_w += lost.missed + lost.vignetted - account.beside;
+        self.absorbed_w += lost.absorbed;
+        self.scattered_w += lost.scattered;
+        self.beside_w += account.beside;
+        if path.leaves() == Travel::Backward {
+            self.front_w += account.ledger.arrived;
+            return;
+        }
+        self.ghosts_w += account.on_frame;
+        self.beside_w += account.ledger.arrived - account.on_frame;
+        let surfaces = reflections.into_iter().map(|at| at + 1).collect();
+        self.paths.push(GhostPath { surfaces, power_w: account.on_frame });
+    }
+
+    /// Adds what was booked apart.
+    fn add(&mut self, other: Self) {
+        self.ghosts_w += other.ghosts_w;
+        self.rims_w += other.rims_w;
+        self.absorbed_w += other.absorbed_w;
+        self.scattered_w += other.scattered_w;
+        self.front_w += other.front_w;
+        self.beside_w += other.beside_w;
+        self.not_traced_w += other.not_traced_w;
+        self.paths.extend(other.paths);
+    }
+
     fn scaled(mut self, by: f64) -> Self {
         let own = [
             &mut self.emitted_w,
@@ -147,6 +167,7 @@ impl LightLedger {
             &mut self.ghosts_w,
             &mut self.rims_w,
             &mut self.absorbed_w,
+            &mut self.scattered_w,
             &mut self.front_w,
             &mut self.beside_w,
             &mut self.not_traced_w,
@@ -162,19 +183,19 @@ fn last_turn(path: &Path) -> usize {
 }
 
 /// Rays all over the front, as they enter the lens: all paths share them.
-fn started(ghosts: &Ghosts) -> Vec<RayBatch> {
+fn started(ghosts: &Ghosts, many: usize) -> Vec<RayBatch> {
     let everywhere = vec![super::Guide::everywhere(); ghosts.plan.zones.count()];
     let mut state = ghosts.state(BATCH);
     let mut start = |first: usize| {
         ghosts.start(&mut state, &everywhere, (0, first as u64, BATCH), |_, _| {});
         state.rays.clone()
     };
-    (0..RAYS).step_by(BATCH).map(&mut start).collect()
+    (0..many).step_by(BATCH).map(&mut start).collect()
 }
 
 fn follow(ghosts: &Ghosts, state: &mut ThreadState, rays: &[RayBatch], path: &Path, imager: usize) -> Account {
     let pipeline = &ghosts.pipeline;
-    let work = pipeline.tracer.work_in_place(BATCH).with_ledger();
+    let work = pipeline.tracer.work(BATCH).with_ledger();
     let old = std::mem::replace(&mut state.work, work);
     let route = pipeline.tracer.route(path);
     let forward = path.leaves() == Travel::Forward;

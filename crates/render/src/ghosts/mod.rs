@@ -1,6 +1,6 @@
 //! Ghosts: light of the source's lights that surfaces of the lens reflect on its way to the imager.
 //!
-//! Forward, as [`crate::forward`], but along paths by two reflections, each traced exactly as the straight one. A pilot run finds for
+//! Forward, as [`crate::forward`], but along paths by two reflections, or four, each traced exactly as the straight one. A pilot run finds for
 //! each path and zone of the source where on the front of the lens its light comes in ([`guide`]), and how much each path needs: rays
 //! are shared out so that the noise of 32 x 32 pixels, as a part of the ghosts' light there, is least. A tenth of every path's rays goes
 //! all over the front, so that no path has a bias whatever the pilot overlooked.
@@ -27,13 +27,23 @@ use spectra_core::numbers::{Numbers, StageKey, mix64};
 use spectra_core::stage::{Emit, Receive};
 use spectra_core::workers::each_of;
 use spectra_core::{Loss, RayBatch};
-use spectra_lens::{FrontOpening, Indices, Path, Route, Tracer};
+use spectra_lens::{FrontOpening, Indices, Path, Route, Tracer, Travel};
 use std::ops::Range;
 use std::sync::Arc;
 use zones::Zones;
 
+/// How rays are shared out over the paths of ghosts, and where on the front each begins.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum GhostRays {
+    /// As a search before finds it best.
+    #[default]
+    Found,
+    /// As many for each path, all over the front: what the search is measured against.
+    Even,
+}
+
 /// What numbers of its own stages draw by.
-const ESTIMATOR: &str = "ghosts";
+pub(crate) const ESTIMATOR: &str = "ghosts";
 /// Turns the picture's seed into that of the ghosts.
 const SEED: u64 = 0x6768_6f73_7473;
 
@@ -56,11 +66,20 @@ const SCALE_RAYS: u64 = 4096;
 /// One path.
 struct Way {
     route: Route,
-    /// By the zones of the source.
+    /// How often it is reflected.
+    reflections: usize,
+    /// By the zones of the source; of more than two reflections one for all.
     guides: Vec<Guide>,
     /// Rays of a block, and what each of them weighs for those of all paths.
     rays: u64,
     boost: f64,
+}
+
+impl Way {
+    /// What a ray takes, in surfaces.
+    fn cost(&self) -> f64 {
+        self.route.steps() as f64 + OVERHEAD
+    }
 }
 
 /// What was found once for a scene.
@@ -90,6 +109,16 @@ impl Ghosts {
         matters: Option<f64>,
         workers: &dyn Workers,
     ) -> Result<Option<Self>, RenderError> {
+        Self::with_rays(pipeline, matters, GhostRays::Found, workers)
+    }
+
+    /// The same, with its rays shared out otherwise.
+    pub(crate) fn with_rays(
+        pipeline: &Pipeline,
+        matters: Option<f64>,
+        share: GhostRays,
+        workers: &dyn Workers,
+    ) -> Result<Option<Self>, RenderError> {
         let scene = &pipeline.scene;
         let emit = pipeline.source().emit().ok_or(RenderError::CannotEmit)?;
         scene.imager.receive().ok_or(RenderError::CannotReceive)?;
@@ -113,18 +142,43 @@ impl Ghosts {
             let points = source_points(&pipeline, emit, &numbers);
             Zones::new(&points, opening.center(), lens.has_axis_of_revolution())
         });
+        let everywhere = Guide::everywhere();
         // What reaches the imager counts, not what it keeps: exposure is incident light.
-        let way = |path: Path| Way {
-            route: pipeline.tracer.route(&path.before(imager)),
-            guides: vec![Guide::everywhere(); zones.count()],
-            rays: 1,
-            boost: 1.0,
+        let way = |path: Path| {
+            let reflections = path.reflections().count();
+            let route = pipeline.tracer.route(&path.before(imager));
+            let zones = if reflections > 2 { 1 } else { zones.count() };
+            Way { route, reflections, guides: vec![everywhere.clone(); zones], rays: 1, boost: 1.0 }
         };
-        let ways: Vec<Way> = Path::ghosts(count, &surfaces, 2).into_iter().map(way).collect();
+        let ways: Vec<Way> = Path::ghosts(count, &surfaces, 2).into_iter().map(&way).collect();
+        let zones = zones.clone();
         let plan = Plan { opening, zones, ways, rays: 1, blocks_a_sample: 1, ledger: LightLedger::default() };
-        let mut own = Self { pipeline, plan: Arc::new(plan), numbers, scale: 1.0 };
-        let Some(found) = pilot::search(&own, matters, workers)? else { return Ok(None) };
-        let ledger = account::of(&own, &lens, &surfaces, workers)?;
+        let mut own = Self { pipeline: Arc::clone(&pipeline), plan: Arc::new(plan), numbers, scale: 1.0 };
+        let order = reflections.order.unwrap_or(2);
+        let mut ledger = None;
+        if order > 2 {
+            // The books say which paths of more have enough.
+            let books = account::of(&own, &lens, &surfaces, order, workers)?;
+            let mut more: Vec<&[usize]> = books.paths.iter().map(|path| &path.surfaces[..]).collect();
+            more.retain(|surfaces| surfaces.len() > 2);
+            more.sort_unstable();
+            let path = |surfaces: &[usize]| {
+                let at: Vec<usize> = surfaces.iter().map(|at| at - 1).collect();
+                Path::reflected(count, Travel::Forward, &at).expect("the books follow paths")
+            };
+            let ways = more.into_iter().map(|surfaces| way(path(surfaces))).collect();
+            own.plan = Arc::new(own.plan.with(ways));
+            ledger = Some(books);
+        }
+        let found = match share {
+            GhostRays::Found => pilot::search(&own, matters, workers)?,
+            GhostRays::Even => Some(pilot::Plan::even(&own)),
+        };
+        let Some(found) = found else { return Ok(None) };
+        let ledger = match ledger {
+            Some(ledger) => ledger,
+            None => account::of(&own, &lens, &surfaces, order, workers)?,
+        };
         let a_pixel = matters.map_or(RAYS_A_PIXEL, |matters| {
             // What matters is a part of the mean.
             RAYS_A_PIXEL * (crate::renderer::MATTERS * found.brightest / matters).clamp(LEAST_A_PIXEL, 1.0)
@@ -191,7 +245,7 @@ impl Ghosts {
         let c = rays.columns_mut();
         for i in 0..a.len() {
             let point = DVec3::new(c.x[i], c.y[i], c.z[i]);
-            let zone = self.plan.zones.of(point);
+            let zone = self.plan.zones.of(point).min(guides.len() - 1);
             let aim = guides[zone].draw(a[i], b[i]);
             aimed(zone, aim);
             let Some(disk) = opening.seen_from(point) else {
@@ -281,11 +335,8 @@ impl Ghosts {
         let blocks_a_sample = a_sample.div_ceil(RAYS_PER_BLOCK);
         let a_block = a_sample / blocks_a_sample;
         let floor = (a_block / (FLOOR * paths)).max(1);
-        let needs: Vec<f64> = found
-            .iter()
-            .zip(&old.ways)
-            .map(|((_, variance), way)| (variance / (way.route.steps() as f64 + OVERHEAD)).sqrt())
-            .collect();
+        let needs: Vec<f64> =
+            found.iter().zip(&old.ways).map(|((_, variance), way)| (variance / way.cost()).sqrt()).collect();
         let sum: f64 = needs.iter().sum();
         let left = a_block.saturating_sub(floor * paths) as f64;
         let share = |need: f64| if sum > 0.0 { (left * need / sum) as u64 } else { 0 };
@@ -293,6 +344,7 @@ impl Ghosts {
         let rays: u64 = counts.iter().sum();
         let way = |(((guides, _), way), count): (((Vec<Guide>, f64), &Way), &u64)| Way {
             route: way.route.clone(),
+            reflections: way.reflections,
             guides,
             rays: *count,
             boost: rays as f64 / *count as f64,
@@ -350,6 +402,22 @@ impl Ghosts {
     }
 }
 
+impl Plan {
+    /// With more paths, before rays are shared out.
+    fn with(&self, more: Vec<Way>) -> Self {
+        let own = |way: &Way| Way {
+            route: way.route.clone(),
+            reflections: way.reflections,
+            guides: way.guides.clone(),
+            rays: way.rays,
+            boost: way.boost,
+        };
+        let ways = self.ways.iter().map(own).chain(more).collect();
+        let (opening, zones) = (self.opening, self.zones.clone());
+        Self { opening, zones, ways, rays: 1, blocks_a_sample: 1, ledger: LightLedger::default() }
+    }
+}
+
 /// A span of rays in batches: the first one and the number of each.
 fn spans(rays: Range<u64>, capacity: usize) -> impl Iterator<Item = (u64, usize)> {
     let end = rays.end;
@@ -358,7 +426,7 @@ fn spans(rays: Range<u64>, capacity: usize) -> impl Iterator<Item = (u64, usize)
 
 impl Estimator for Ghosts {
     fn name(&self) -> &'static str {
-        "ghosts"
+        ESTIMATOR
     }
 
     fn tiles(&self) -> usize {

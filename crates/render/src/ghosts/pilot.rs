@@ -19,6 +19,8 @@ use spectra_core::{Loss, RayBatch};
 const RAYS: usize = 4096;
 const RAYS_MORE: usize = 256;
 const ROUNDS: u64 = 3;
+/// Paths of more than two reflections are many, and have little light: this part of the rays.
+const OF_MORE: usize = 4;
 /// Rays of a batch.
 const BATCH: usize = 256;
 /// Pixels of a block, across and down.
@@ -36,6 +38,14 @@ pub(super) struct Plan {
     pub ways: Vec<(Vec<Guide>, f64)>,
     /// The brightest block, W/m2 in the mean of its pixels and the sum of its channels.
     pub brightest: f64,
+}
+
+impl Plan {
+    /// Without a search: all over the front, and such variances that all paths get as many rays.
+    pub fn even(ghosts: &Ghosts) -> Self {
+        let way = |way: &Way| (way.guides.clone(), way.cost());
+        Self { ways: ghosts.plan.ways.iter().map(way).collect(), brightest: 0.0 }
+    }
 }
 
 /// A ray that came through: its zone, its aim, the block that it reached, and what it brought but for the density of its aim.
@@ -62,10 +72,13 @@ impl Blocks {
         pixel / self.width / BLOCK * self.across() + pixel % self.width / BLOCK
     }
 
-    /// What came to each, by `rays` rays a path.
-    fn light<'a>(&self, seen: impl Iterator<Item = &'a Seen>, rays: usize) -> Vec<f64> {
+    /// What came to each: of each path what was seen, by so many batches.
+    fn light<'a>(&self, paths: impl Iterator<Item = (&'a Vec<Seen>, usize)>) -> Vec<f64> {
         let mut light = vec![0.0; self.count()];
-        seen.for_each(|(_, aim, block, value)| light[*block] += value / aim.density / rays as f64);
+        for (seen, batches) in paths {
+            let rays = (batches * BATCH) as f64;
+            seen.iter().for_each(|(_, aim, block, value)| light[*block] += value / aim.density / rays);
+        }
         light
     }
 
@@ -89,12 +102,15 @@ struct Aimed {
 struct Pilot<'a> {
     ghosts: &'a Ghosts,
     blocks: Blocks,
-    /// Rays of a round.
-    rays: usize,
     /// On the source, without a direction.
     placed: Vec<RayBatch>,
     /// The same, all over the front.
     everywhere: Vec<Aimed>,
+}
+
+/// Whether somebody still waits for the result.
+fn wanted(workers: &dyn Workers) -> Result<(), RenderError> {
+    if workers.should_stop() { Err(RenderError::Stopped) } else { Ok(()) }
 }
 
 /// Searches all paths. `None` where no block has more than `matters`.
@@ -105,15 +121,19 @@ pub(super) fn search(
 ) -> Result<Option<Plan>, RenderError> {
     let pilot = &Pilot::new(ghosts);
     let (ways, fresh) = (&ghosts.plan.ways, || ghosts.state(BATCH));
+    // Batches of a path, of so many of a pair's.
+    let of = |way: &Way, batches: usize| if way.reflections > 2 { batches.div_ceil(OF_MORE) } else { batches };
     let first = |batches: usize| {
         each_of(workers, ways.len(), fresh, move |state, at| {
-            Ok::<_, RenderError>(pilot.round(state, &ways[at], &ways[at].guides, None, batches))
+            wanted(workers)?;
+            Ok::<_, RenderError>(pilot.round(state, &ways[at], &ways[at].guides, None, of(&ways[at], batches)))
         })
     };
     let is_dim = |brightest: f64, doubt: f64| matters.is_some_and(|matters| !(brightest > matters / doubt));
     if matters.is_some() {
         let scouts = first(SCOUTS)?;
-        let light = pilot.blocks.light(scouts.iter().flat_map(|(_, seen)| seen), SCOUTS * BATCH);
+        let seen = scouts.iter().zip(ways).map(|((_, seen), way)| (seen, of(way, SCOUTS)));
+        let light = pilot.blocks.light(seen);
         if is_dim(pilot.blocks.brightest(&light), DOUBT) {
             return Ok(None);
         }
@@ -121,11 +141,12 @@ pub(super) fn search(
     let all = pilot.placed.len();
     let first = first(all)?;
     let last = each_of(workers, ways.len(), fresh, |state, at| {
+        wanted(workers)?;
         let closer = |found: &[Found]| -> Vec<Guide> { found.iter().map(Found::closer).collect() };
         let mut guides = closer(&first[at].0);
         for round in 1..ROUNDS {
             let stream = (at as u64 + 1) * ROUNDS + round;
-            let (found, seen) = pilot.round(state, &ways[at], &guides, Some(stream), all);
+            let (found, seen) = pilot.round(state, &ways[at], &guides, Some(stream), of(&ways[at], all));
             if round + 1 == ROUNDS {
                 return Ok::<_, RenderError>((guides, seen));
             }
@@ -133,24 +154,25 @@ pub(super) fn search(
         }
         Ok((guides, Vec::new()))
     })?;
-    let light = pilot.blocks.light(last.iter().flat_map(|(_, seen)| seen), pilot.rays);
+    let light = pilot.blocks.light(last.iter().zip(ways).map(|((_, seen), way)| (seen, of(way, all))));
     let brightest = pilot.blocks.brightest(&light);
     if is_dim(brightest, 1.0) {
         return Ok(None);
     }
     let peak = light.iter().fold(0.0_f64, |a, b| a.max(*b));
-    let guide = |(guides, seen): (Vec<Guide>, Vec<Seen>)| {
+    let guide = |((guides, seen), way): ((Vec<Guide>, Vec<Seen>), &Way)| {
         let mut found: Vec<Found> = guides.iter().map(Found::of).collect();
         for (zone, aim, block, value) in seen {
             found[zone].add(&guides[zone], aim, value / (light[block] + DIM * peak));
         }
-        let best = found.iter().map(|found| found.guide(pilot.rays as u64));
+        let rays = (of(way, all) * BATCH) as u64;
+        let best = found.iter().map(|found| found.guide(rays));
         best.fold((Vec::new(), 0.0), |(mut guides, variance), (guide, own)| {
             guides.push(guide);
             (guides, variance + own)
         })
     };
-    Ok(Some(Plan { ways: last.into_iter().map(guide).collect(), brightest }))
+    Ok(Some(Plan { ways: last.into_iter().zip(ways).map(guide).collect(), brightest }))
 }
 
 impl<'a> Pilot<'a> {
@@ -169,7 +191,7 @@ impl<'a> Pilot<'a> {
             let [.., a, b] = &state.numbers;
             everywhere.push(aimed(ghosts, state.rays.clone(), &guides, [a.slice(BATCH), b.slice(BATCH)]));
         }
-        Self { ghosts, blocks, rays, placed, everywhere }
+        Self { ghosts, blocks, placed, everywhere }
     }
 
     /// One round of a path by so many batches: what its guides found, and each ray that came through. `stream` are the numbers of the
@@ -195,6 +217,8 @@ impl<'a> Pilot<'a> {
             };
             for (ray, tag, value) in self.through(state, way, &batch.rays) {
                 let (zone, aim) = batch.aims[ray];
+                // Where one guide is for all zones, that.
+                let zone = zone.min(guides.len() - 1);
                 // Without what the density makes of it.
                 let value = value.abs() * aim.density;
                 found[zone].add(&guides[zone], aim, value);

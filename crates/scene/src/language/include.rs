@@ -4,7 +4,8 @@ use super::merge::merge;
 use crate::resources::read_yaml;
 use crate::yaml;
 use schemars::JsonSchema;
-use spectra_core::params::{Fault, Faults, Node, Params, Value, nearest};
+use spectra_core::names::nearest;
+use spectra_core::params::{Fault, Faults, Node, Params, Value};
 use std::collections::BTreeSet;
 use std::path::{Component, Path, PathBuf};
 

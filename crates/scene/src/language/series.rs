@@ -8,9 +8,9 @@ use super::variables::{self, VARIABLES, Variables};
 use crate::assemble::{assemble, read, record};
 use crate::earlier::Earlier;
 use crate::lens_section::is_too_fast;
-use crate::remembered::Remembered;
-use crate::{FileResources, Scene, yaml};
-use spectra_core::params::{Fault, Faults, Key, Node, Number, Params, SourceFile, Value, Warning};
+use crate::remembered::{BUNDLED, Remembered};
+use crate::{FileResources, NO_LENS, Scene, yaml};
+use spectra_core::params::{Fault, Faults, Key, Node, Number, Params, SourceFile, Step, Value, Warning, steps};
 use spectra_core::resources::Resources;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -163,7 +163,7 @@ struct Written {
     root: Node,
     /// The file itself, for the record.
     text: Arc<SourceFile>,
-    resources: Arc<dyn Resources>,
+    resources: Arc<Remembered>,
     /// The files that it is made of.
     files: Vec<String>,
     /// Variables that any of the files refers to.
@@ -207,6 +207,10 @@ impl Written {
             variables::references(&over.node, &mut references);
             variables::open(&mut root, &over.path);
             set.push(over.path.clone());
+            // `null` takes a key away, as in a file that includes another; nothing at all (`film.stock=`) is a slip.
+            if matches!(over.node.value, Value::Null) && over.node.span.len > 0 && take_away(&mut root, &over.path) {
+                continue;
+            }
             faults.take(over.apply(&mut root));
         }
         faults.into_result(())?;
@@ -217,6 +221,20 @@ impl Written {
         let series = Series { written: self, overrides, root, plain, going: Going::Single, warnings: Vec::new() };
         if is_plain { Ok(series) } else { series.unfolded(&set, &references) }
     }
+}
+
+/// Takes the key at a path away; says whether it was there.
+fn take_away(root: &mut Node, path: &str) -> bool {
+    let Ok(steps) = steps(path) else { return false };
+    let Some((Step::Key(last), through)) = steps.split_last() else { return false };
+    let parent = through.iter().try_fold(root, |node, step| match (step, &mut node.value) {
+        (Step::Key(key), Value::Map(entries)) => entries.iter_mut().find(|(k, _)| k.text == *key).map(|(_, node)| node),
+        (Step::Index(index), Value::Seq(entries)) => entries.get_mut(*index),
+        _ => None,
+    });
+    let Some(Node { value: Value::Map(entries), .. }) = parent else { return false };
+    let at = entries.iter().position(|(key, _)| key.text == *last);
+    at.map(|at| entries.remove(at)).is_some()
 }
 
 impl Series {
@@ -336,6 +354,13 @@ impl Series {
         }
     }
 
+    /// Whether the lens that it names is [`NO_LENS`]: film gets its picture's own pixels.
+    #[must_use]
+    pub fn is_without_lens(&self) -> bool {
+        let file = self.root.get("lens").and_then(|lens| lens.get("file"));
+        file.and_then(Node::as_str) == Some(NO_LENS)
+    }
+
     /// How many pictures there are.
     #[must_use]
     pub fn count(&self) -> usize {
@@ -356,6 +381,13 @@ impl Series {
     #[must_use]
     pub fn files(&self) -> &[String] {
         &self.written.files
+    }
+
+    /// All files on disk that it rests on: those that it is made of, and those that its stages have asked for so far.
+    #[must_use]
+    pub fn files_on_disk(&self) -> Vec<PathBuf> {
+        let own = self.files().iter().filter(|name| !name.starts_with(BUNDLED)).map(PathBuf::from);
+        own.chain(self.written.resources.on_disk()).collect()
     }
 
     /// Where a variable is used: paths of values with their texts, such as `source.distance` and `$far`.

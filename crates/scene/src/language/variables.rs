@@ -2,8 +2,8 @@
 
 use super::count;
 use crate::yaml::MAX_NODES;
-use spectra_core::names;
-use spectra_core::params::{Fault, Faults, Key, MAX_DEPTH, Node, SourceFile, Span, Value, Warning, nearest};
+use spectra_core::names::{self, nearest};
+use spectra_core::params::{Fault, Faults, Key, MAX_DEPTH, Node, SourceFile, Span, Value, Warning};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 

@@ -6,7 +6,8 @@ use crate::piece::Piece;
 use crate::shape::Shape;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::Deserialize;
-use spectra_core::params::{Dimension, Faults, NonNegative, Positive, Quantity, Wavelength, quantity, schema_of};
+use spectra_core::params::{Dimension, Faults, NonNegative, Positive, Quantity, Wavelength, schema_of};
+use spectra_core::quantity;
 
 /// A place on the axis of wavelengths, of any sign: a Gaussian's center may lie far outside of all light. nm if bare.
 #[derive(Clone, Copy, Debug)]

@@ -1,5 +1,6 @@
 //! The page with its server: connections, threads, and the scene's file.
 
+mod bench;
 mod desk;
 mod guard;
 mod http;

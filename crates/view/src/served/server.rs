@@ -3,7 +3,7 @@
 use super::desk::{Desk, Order};
 use super::guard::Guard;
 use super::http::{self, Answer, Request};
-use super::{study, tester};
+use super::{bench, study, tester};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::io;
@@ -116,7 +116,18 @@ impl Server {
             (false, "/tester.js") => Ok(Answer::new("text/javascript; charset=utf-8", TESTER_SCRIPT)),
             (false, "/study") => Ok(Answer::new("text/html; charset=utf-8", STUDY)),
             (false, "/study.js") => Ok(Answer::new("text/javascript; charset=utf-8", STUDY_SCRIPT)),
-            (false, "/choices") => Ok(Answer::json(&study::choices())),
+            (false, "/choices") => {
+                let mut choices = study::choices();
+                choices["start"] = self.order.as_ref().and_then(bench::start).into();
+                Ok(Answer::json(&choices))
+            }
+            (true, "/keep") => {
+                let order = self.order.as_ref().ok_or_else(|| Answer::refused(404, "no scene is viewed"))?;
+                let refused = |why: String| Answer::refused(400, &why);
+                let prism = study::Prism::of(|name| request.asked(name).map(str::to_owned)).map_err(refused)?;
+                let kept = bench::keep(order, &prism, request.asked("text").unwrap_or_default());
+                kept.map(|kept| Answer::json(&kept)).map_err(|why| Answer::refused(409, &why))
+            }
             (false, "/prism" | "/rays") => {
                 let refused = |why: String| Answer::refused(400, &why);
                 let prism = study::Prism::of(|name| request.asked(name).map(str::to_owned)).map_err(refused)?;

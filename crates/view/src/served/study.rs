@@ -89,19 +89,39 @@ impl Prism {
         })
     }
 
-    /// The prism as a lens: its axis is the beam's direction and meets the first face in its middle.
-    fn lens(&self) -> Result<Lens, String> {
+    /// The prism as the text of a lens file: its axis is the beam's direction and meets the first face in its middle. Behind the
+    /// second face stands `end`.
+    fn text(&self, end: &str) -> String {
         let Self { apex_deg, side_mm, glass, incidence_deg, .. } = self;
         let half = side_mm / 2.0;
-        let text = format!(
-            "name: Prism\nreference-line: d\ncoating: bare\nsurfaces:\n\
+        format!(
+            "name: Prism of {apex_deg} degrees\nreference-line: d\ncoating: bare\nsurfaces:\n\
              - {{kind: coordinate-break, tilt: [{incidence_deg}, 0, 0]}}\n\
              - {{kind: plane, glass: {glass:?}, semi-diameter: {half}}}\n\
              - {{kind: coordinate-break, decenter: [0, {half}]}}\n\
              - {{kind: coordinate-break, tilt: [-{apex_deg}, 0, 0]}}\n\
              - {{kind: coordinate-break, decenter: [0, -{half}]}}\n\
-             - {{kind: plane, semi-diameter: {half}, thickness: 1}}\n"
-        );
+             - {{kind: plane, semi-diameter: {half}{end}"
+        )
+    }
+
+    /// The lens file of a scene: a screen across the light of the d line stands where the study's rays end.
+    ///
+    /// # Errors
+    /// No such light leaves by the second face.
+    pub(crate) fn file(&self) -> Result<String, String> {
+        let deviation_deg = self
+            .deviation_deg(&self.lens()?, lines::D.wavelength_nm)
+            .ok_or("the beam does not leave by the second face: nothing comes to a screen")?;
+        // The light leaves at this angle to the normal of the second face.
+        let leaves_deg = deviation_deg + self.apex_deg - self.incidence_deg;
+        Ok(self.text(&format!(
+            "}}\n- {{kind: coordinate-break, tilt: [{leaves_deg:.4}, 0, 0], thickness: {BEHIND_MM}}}\n"
+        )))
+    }
+
+    fn lens(&self) -> Result<Lens, String> {
+        let text = self.text(", thickness: 1}\n");
         let node = spectra_yaml::parse(SourceFile::new("prism", text)).map_err(|faults| faults.to_string())?;
         let params = Params::section(node, "").map_err(|faults| faults.to_string())?;
         spectra_lens::parse(&params, &FileResources::beside(Path::new(""))).map_err(|faults| faults.to_string())

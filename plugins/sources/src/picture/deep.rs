@@ -5,7 +5,7 @@
 //! a pixel and one that stands nearer: where a ray passes there it meets the step, or what is guessed behind it. So rays start on
 //! both, and each ray that meets anything can be drawn in one way.
 
-use super::field::{HeightField, Hit, Line, Wall};
+use super::field::{HeightField, Hit, Line, Lines, SIDE_BY_SIDE, Wall};
 use super::map::PictureMap;
 use crate::flat::Texture;
 use crate::halves::Half;
@@ -145,38 +145,36 @@ impl Radiance for DeepPicture {
 }
 
 /// Rays that are worked on at a time.
-const CHUNK: usize = 64;
+const CHUNK: usize = SIDE_BY_SIDE;
 
-/// What is known of a chunk of rays: their lines over the picture, column and row, and their colors.
+/// What is known of a chunk of rays: their lines over the picture, what they meet, and its colors.
 struct Looked {
-    at_infinity: [[f64; CHUNK]; 2],
-    per_w: [[f64; CHUNK]; 2],
+    lines: Lines,
+    hits: [Option<Hit>; CHUNK],
     colors: [[f32; 3]; CHUNK],
 }
 
 impl Looked {
     fn new() -> Self {
-        Self { at_infinity: [[0.0; CHUNK]; 2], per_w: [[0.0; CHUNK]; 2], colors: [[0.0; 3]; CHUNK] }
+        Self { lines: Lines::new(), hits: [None; CHUNK], colors: [[0.0; 3]; CHUNK] }
     }
 
-    /// Writes the lines of rays.
+    /// Finds what rays meet that have not ended.
     #[inline(always)]
-    fn lines(&mut self, deep: &DeepPicture, [x, y, z]: [&[f64]; 3], [l, m, n]: [&[f64]; 3]) {
+    fn look(&mut self, deep: &DeepPicture, [x, y, z]: [&[f64]; 3], [l, m, n]: [&[f64]; 3], state: &[u64]) {
         let len = x.len().min(CHUNK);
         let (x, y, z, l, m, n) = (&x[..len], &y[..len], &z[..len], &l[..len], &m[..len], &n[..len]);
+        let lines = &mut self.lines;
         for i in 0..len {
             let Line { at_infinity, per_w } = deep.line([x[i], y[i], z[i]], [l[i], m[i], n[i]]);
-            (self.at_infinity[0][i], self.at_infinity[1][i]) = (at_infinity[0], at_infinity[1]);
-            (self.per_w[0][i], self.per_w[1][i]) = (per_w[0], per_w[1]);
+            (lines.at_infinity[0][i], lines.at_infinity[1][i]) = (at_infinity[0], at_infinity[1]);
+            (lines.per_w[0][i], lines.per_w[1][i]) = (per_w[0], per_w[1]);
         }
-    }
-
-    #[inline(always)]
-    fn line(&self, i: usize) -> Line {
-        Line {
-            at_infinity: [self.at_infinity[0][i], self.at_infinity[1][i]],
-            per_w: [self.per_w[0][i], self.per_w[1][i]],
+        let mut wanted = [false; CHUNK];
+        for (wanted, state) in wanted.iter_mut().zip(state) {
+            *wanted = *state == ALIVE;
         }
+        deep.field.hits(lines, len, &wanted, &mut self.hits);
     }
 }
 
@@ -195,18 +193,18 @@ impl Vectorized for See<'_> {
     #[inline(always)]
     fn run(self) {
         let Self { deep, position, direction, state, weight, looked } = self;
-        looked.lines(deep, position, direction);
-        for i in 0..weight.len() {
-            if state[i] == ALIVE && !(direction[2][i] < 0.0) {
-                state[i] = Loss::Absorbed.state(0);
+        for (state, n) in state.iter_mut().zip(direction[2]) {
+            if *state == ALIVE && !(*n < 0.0) {
+                *state = Loss::Absorbed.state(0);
             }
+        }
+        looked.look(deep, position, direction, state);
+        for i in 0..weight.len() {
             let mut share = 1.0;
             looked.colors[i] = [0.0; 3];
-            if state[i] == ALIVE {
-                // Black beside the picture.
-                if let Some(hit) = deep.field.hit(&looked.line(i)) {
-                    (looked.colors[i], share) = deep.color(&hit);
-                }
+            // Black beside the picture.
+            if let Some(hit) = &looked.hits[i] {
+                (looked.colors[i], share) = deep.color(hit);
             }
             weight[i] *= deep.map.scale * f64::from(share);
         }
@@ -228,6 +226,8 @@ struct Walls {
     all: Vec<Wall>,
     /// Up to and with each; the last is 1.
     sums: Vec<f64>,
+    /// For each of as many equal parts of [0, 1) the step that its lower end lies in.
+    guide: Vec<u32>,
     /// Which part of the rays starts on them.
     share: f64,
 }
@@ -270,12 +270,25 @@ impl Walls {
         if let Some(last) = sums.last_mut() {
             *last = 1.0;
         }
-        Self { all, sums, share }
+        let mut at = 0;
+        let guide = (0..sums.len()).map(|part| {
+            let from = part as f64 / sums.len() as f64;
+            while at + 1 < sums.len() && sums[at] <= from {
+                at += 1;
+            }
+            at as u32 // there are four a pixel at most
+        });
+        let guide = guide.collect();
+        Self { all, sums, guide, share }
     }
 
     /// One of them, what is left of the number, and one over its probability.
     fn draw(&self, u: f64) -> (Wall, f64, f64) {
-        let at = self.sums.partition_point(|sum| *sum <= u).min(self.sums.len() - 1);
+        let many = self.sums.len();
+        let mut at = self.guide[((u * many as f64) as usize).min(many - 1)] as usize;
+        while at + 1 < many && self.sums[at] <= u {
+            at += 1;
+        }
         let from = if at > 0 { self.sums[at - 1] } else { 0.0 };
         let part = self.sums[at] - from;
         (self.all[at], ((u - from) / part).clamp(0.0, 1.0), 1.0 / part)
@@ -357,7 +370,7 @@ impl Vectorized for Shine<'_> {
     #[inline(always)]
     fn run(self) {
         let Self { deep, position, direction, tag, state, weight, looked } = self;
-        looked.lines(deep, position, direction);
+        looked.look(deep, position, direction, state);
         for i in 0..weight.len() {
             looked.colors[i] = [0.0; 3];
             if state[i] != ALIVE {
@@ -366,7 +379,7 @@ impl Vectorized for Shine<'_> {
             let (tag, way) = (tag[i], [direction[0][i], direction[1][i], direction[2][i]]);
             let from = Wall { cell: tag & (MOST_CELLS as u32 - 1), side: (tag >> SIDE_BITS & 3) as u8 };
             let is_wall = tag & IS_WALL != 0;
-            let hit = match deep.field.hit(&looked.line(i)) {
+            let hit = match looked.hits[i] {
                 Some(hit) if !is_wall && hit.wall.is_none() && hit.cell == tag as usize => hit,
                 Some(hit) if is_wall && hit.wall == Some(from) => hit,
                 _ => {

@@ -15,6 +15,15 @@
 
 use super::bounds::Bounds;
 
+/// Lines that are looked at side by side.
+pub(super) const SIDE_BY_SIDE: usize = 64;
+
+/// Loops over some of them go by as many: no vector is left half done.
+const VECTOR: usize = 8;
+
+/// One number of each of them.
+type Each = [f64; SIDE_BY_SIDE];
+
 /// One over the depth of each pixel.
 pub(super) struct HeightField {
     width: usize,
@@ -44,14 +53,181 @@ impl Line {
     }
 }
 
-impl Line {
-    /// The w at which it leaves a column (of `axis` 0) or row, coming from large w; nowhere if it runs along.
-    #[inline(always)]
-    fn leaves(&self, at: usize, axis: usize) -> f64 {
-        let border = (at + usize::from(self.per_w[axis] < 0.0)) as f64;
-        let w = (border - self.at_infinity[axis]) / self.per_w[axis];
-        if self.per_w[axis] == 0.0 || w.is_nan() { f64::NEG_INFINITY } else { w }
+/// Lines side by side, a column each; what lies beyond the last one is any line.
+pub(super) struct Lines {
+    pub at_infinity: [Each; 2],
+    pub per_w: [Each; 2],
+}
+
+impl Lines {
+    pub(super) fn new() -> Self {
+        Self { at_infinity: [[0.0; SIDE_BY_SIDE]; 2], per_w: [[0.0; SIDE_BY_SIDE]; 2] }
     }
+
+    #[inline(always)]
+    pub(super) fn line(&self, i: usize) -> Line {
+        Line {
+            at_infinity: [self.at_infinity[0][i], self.at_infinity[1][i]],
+            per_w: [self.per_w[0][i], self.per_w[1][i]],
+        }
+    }
+}
+
+/// Lines that are being narrowed: those that are done leave, the others move up.
+struct Narrowing {
+    len: usize,
+    /// Which of the [`Lines`] each is.
+    ray: [u32; SIDE_BY_SIDE],
+    at_infinity: [Each; 2],
+    per_w: [Each; 2],
+    room: [Each; 2],
+    near: Each,
+    far: Each,
+    /// How much of what is left is looked at.
+    part: Each,
+}
+
+/// One look at what stands around each line.
+struct Look {
+    upto: Each,
+    /// The box: first column and row, last column and row.
+    corners: [[u32; SIDE_BY_SIDE]; 4],
+    nearest: [f32; SIDE_BY_SIDE],
+    farthest: [f32; SIDE_BY_SIDE],
+    /// Not 0 where there is no closer look.
+    small: [u32; SIDE_BY_SIDE],
+    /// Not 0 where the line is done.
+    done: [u32; SIDE_BY_SIDE],
+}
+
+impl Look {
+    #[inline(always)]
+    fn new() -> Self {
+        Self {
+            upto: [0.0; SIDE_BY_SIDE],
+            corners: [[0; SIDE_BY_SIDE]; 4],
+            nearest: [0.0; SIDE_BY_SIDE],
+            farthest: [0.0; SIDE_BY_SIDE],
+            small: [0; SIDE_BY_SIDE],
+            done: [0; SIDE_BY_SIDE],
+        }
+    }
+
+    #[inline(always)]
+    fn of(&self, i: usize) -> ([usize; 2], [usize; 2]) {
+        let [a, b, c, d] = [0, 1, 2, 3].map(|k| self.corners[k][i] as usize);
+        ([a, b], [c, d])
+    }
+}
+
+impl Narrowing {
+    #[inline(always)]
+    fn new() -> Self {
+        const ZERO: Each = [0.0; SIDE_BY_SIDE];
+        Self {
+            len: 0,
+            ray: [0; SIDE_BY_SIDE],
+            at_infinity: [ZERO; 2],
+            per_w: [ZERO; 2],
+            room: [ZERO; 2],
+            near: ZERO,
+            far: ZERO,
+            part: ZERO,
+        }
+    }
+
+    #[inline(always)]
+    fn line(&self, i: usize) -> Line {
+        Line {
+            at_infinity: [self.at_infinity[0][i], self.at_infinity[1][i]],
+            per_w: [self.per_w[0][i], self.per_w[1][i]],
+        }
+    }
+
+    /// Appends a line, if it is to be narrowed.
+    #[inline(always)]
+    fn take(&mut self, lines: &Lines, i: usize, is_wanted: bool) {
+        let at = self.len % SIDE_BY_SIDE;
+        self.ray[at] = i as u32;
+        for k in 0..2 {
+            self.at_infinity[k][at] = lines.at_infinity[k][i];
+            self.per_w[k][at] = lines.per_w[k][i];
+        }
+        self.len += usize::from(is_wanted);
+    }
+
+    /// The boxes that the parts of the lines that are looked at are over: see [`HeightField::around_line`].
+    #[inline(always)]
+    fn boxes(&self, last: [f64; 2], look: &mut Look) {
+        for i in 0..self.len.next_multiple_of(VECTOR).min(SIDE_BY_SIDE) {
+            let (near, far, line) = (self.near[i], self.far[i], self.line(i));
+            let upto = if self.part[i] == 1.0 { far } else { near - self.part[i] * (near - far) };
+            let [a, b] = [line.at(near), line.at(upto)];
+            for k in 0..2 {
+                look.corners[k][i] = pixel(less(a[k], b[k]) - self.room[k][i], last[k]);
+                look.corners[2 + k][i] = pixel(more(a[k], b[k]) + self.room[k][i], last[k]);
+            }
+            look.upto[i] = upto;
+        }
+    }
+
+    /// Moves the ends of the lines by what was seen.
+    #[inline(always)]
+    fn shorten(&mut self, look: &mut Look) {
+        for i in 0..self.len.next_multiple_of(VECTOR).min(SIDE_BY_SIDE) {
+            let (nearest, farthest) = (f64::from(look.nearest[i]), f64::from(look.farthest[i]));
+            let (near, far, upto, part) = (self.near[i], self.far[i], look.upto[i], self.part[i]);
+            let next = less(near, more(nearest, upto));
+            let end = if (farthest > far) & (farthest >= upto) { less(farthest, next) } else { far };
+            let shorter = next - end < MUCH_SHORTER * (near - far);
+            let moved = next < near;
+            self.part[i] = if shorter & moved {
+                1.0
+            } else if shorter | moved {
+                part
+            } else {
+                0.5 * part
+            };
+            self.near[i] = next;
+            self.far[i] = end;
+            look.done[i] = u32::from((next == end) | (!shorter & (look.small[i] != 0)));
+        }
+    }
+
+    /// Writes how far all have come, and drops those that are done.
+    #[inline(always)]
+    fn keep(&mut self, look: &Look, found: &mut Each) {
+        let mut kept = 0;
+        for i in 0..self.len {
+            let ray = self.ray[i];
+            found[ray as usize % SIDE_BY_SIDE] = self.near[i];
+            let to = kept % SIDE_BY_SIDE;
+            self.ray[to] = ray;
+            for k in 0..2 {
+                self.at_infinity[k][to] = self.at_infinity[k][i];
+                self.per_w[k][to] = self.per_w[k][i];
+                self.room[k][to] = self.room[k][i];
+            }
+            self.near[to] = self.near[i];
+            self.far[to] = self.far[i];
+            self.part[to] = self.part[i];
+            kept += usize::from(look.done[i] == 0);
+        }
+        self.len = kept;
+    }
+}
+
+/// The pixel of a column or row, or the nearest one.
+#[inline(always)]
+fn pixel(at: f64, last: f64) -> u32 {
+    // Also where it is no number.
+    let at = if at > 0.0 { at } else { 0.0 };
+    let at = if at < last { at } else { last };
+    // A cast would be done one by one. Beside this number there is room for whole ones only, in the last bits.
+    const WHOLE: f64 = (1_u64 << 52) as f64;
+    let nearest = (at + WHOLE) - WHOLE;
+    let below = if nearest > at { nearest - 1.0 } else { nearest };
+    (below + WHOLE).to_bits() as u32
 }
 
 /// The smaller of two numbers, or the second.
@@ -152,6 +328,113 @@ impl HeightField {
     pub(super) fn together(&self, a: usize, b: usize) -> bool {
         let (a, b) = (self.w(a), self.w(b));
         (a - b).abs() <= (self.edge * a.max(b)).max(STEP * self.nearest)
+    }
+
+    /// What the rays along `len` lines meet first, coming from the lens; those that are not `wanted` are left out. Each finds what
+    /// [`HeightField::hit`] finds, but they are narrowed side by side: a loop of its own for each thing that is done, so that all
+    /// but the look at the squares runs in vectors, and none waits for another's.
+    #[inline(always)]
+    pub(super) fn hits(&self, lines: &Lines, len: usize, wanted: &[bool; SIDE_BY_SIDE], hits: &mut [Option<Hit>]) {
+        let len = len.min(SIDE_BY_SIDE);
+        let mut inside = [false; SIDE_BY_SIDE];
+        self.lie_inside(lines, &mut inside);
+        let mut narrowing = Narrowing::new();
+        for i in 0..len {
+            narrowing.take(lines, i, inside[i] & wanted[i]);
+        }
+        let mut near = [self.nearest; SIDE_BY_SIDE];
+        self.narrow(&mut narrowing, &mut near);
+        let mut cells = [[0_u32; SIDE_BY_SIDE]; 2];
+        let mut sure = [false; SIDE_BY_SIDE];
+        self.begin(lines, &near, &mut cells, &mut sure);
+        for i in 0..len {
+            if !wanted[i] {
+                hits[i] = None;
+                continue;
+            }
+            let line = lines.line(i);
+            if !inside[i] {
+                hits[i] = self.hit(&line);
+                continue;
+            }
+            let (cell, from) = if sure[i] {
+                let (cell, w) = (cells.map(|column| column[i] as usize), near[i]);
+                let here = cell[1] * self.width + cell[0];
+                if self.w(here) == w {
+                    hits[i] = Some(Hit { place: line.at(w), cell: here, guessed: false, wall: None });
+                    continue;
+                }
+                (cell, w)
+            } else {
+                (self.cell_at(line.at(self.nearest)), self.nearest)
+            };
+            hits[i] = self.walk::<true>(&line, cell, from, self.farthest);
+        }
+    }
+
+    /// Which lines lie over the picture from in front of everything to the farthest: see [`HeightField::over`].
+    #[inline(always)]
+    fn lie_inside(&self, lines: &Lines, inside: &mut [bool; SIDE_BY_SIDE]) {
+        let size = [self.width as f64, self.height as f64];
+        for i in 0..SIDE_BY_SIDE {
+            let line = lines.line(i);
+            let ([near, far], room) = ([line.at(self.nearest), line.at(self.farthest)], self.room(&line));
+            let mut lies = true;
+            for k in 0..2 {
+                lies &= less(near[k], far[k]) > room[k];
+                lies &= more(near[k], far[k]) < size[k] - room[k];
+            }
+            inside[i] = lies;
+        }
+    }
+
+    /// [`HeightField::narrowed`] for lines side by side: writes where each has anything beside it first.
+    #[inline(always)]
+    fn narrow(&self, lines: &mut Narrowing, found: &mut Each) {
+        let last = [self.width as f64 - 1.0, self.height as f64 - 1.0];
+        lines.near = [self.nearest; SIDE_BY_SIDE];
+        lines.far = [self.farthest; SIDE_BY_SIDE];
+        lines.part = [1.0; SIDE_BY_SIDE];
+        for i in 0..SIDE_BY_SIDE {
+            let room = self.room(&lines.line(i));
+            (lines.room[0][i], lines.room[1][i]) = (room[0], room[1]);
+        }
+        for _ in 0..MOST_LOOKS {
+            if lines.len == 0 {
+                break;
+            }
+            let mut look = Look::new();
+            lines.boxes(last, &mut look);
+            for i in 0..lines.len {
+                let (first, last) = look.of(i);
+                let ends = self.bounds.of(first, last);
+                (look.nearest[i], look.farthest[i]) = (ends.nearest, ends.farthest);
+                look.small[i] = u32::from(Bounds::is_small(first, last));
+            }
+            lines.shorten(&mut look);
+            lines.keep(&look, found);
+        }
+        for i in 0..lines.len {
+            found[lines.ray[i] as usize % SIDE_BY_SIDE] = lines.near[i];
+        }
+    }
+
+    /// The pixels that lines are over at these w, and whether rounding leaves no doubt of it and they were narrowed at all.
+    #[inline(always)]
+    fn begin(&self, lines: &Lines, near: &Each, cells: &mut [[u32; SIDE_BY_SIDE]; 2], sure: &mut [bool; SIDE_BY_SIDE]) {
+        let last = [self.width as f64 - 1.0, self.height as f64 - 1.0];
+        for i in 0..SIDE_BY_SIDE {
+            let line = lines.line(i);
+            let (place, room) = (line.at(near[i]), self.room(&line));
+            let mut is_sure = near[i] != self.nearest;
+            for k in 0..2 {
+                let cell = pixel(place[k], last[k]);
+                cells[k][i] = cell;
+                let part = place[k] - f64::from(cell);
+                is_sure &= (part > room[k]) & (part < 1.0 - room[k]);
+            }
+            sure[i] = is_sure;
+        }
     }
 
     /// What the ray along a line meets first, coming from the lens.
@@ -290,12 +573,12 @@ impl HeightField {
     }
 
     /// Follows a line pixel by pixel, from a pixel that it is over at `w_in`; `LOOKS` ahead where that may save steps.
+    ///
+    /// Which side a pixel is left by is a toss-up, so nothing branches on it: both axes are carried on.
     #[inline(always)]
-    fn walk<const LOOKS: bool>(&self, line: &Line, mut cell: [usize; 2], mut w_in: f64, w_end: f64) -> Option<Hit> {
-        let last = [self.width - 1, self.height - 1];
-        let forward = [line.per_w[0] < 0.0, line.per_w[1] < 0.0];
-        // Where it leaves the column and the row.
-        let mut leaves = [line.leaves(cell[0], 0), line.leaves(cell[1], 1)];
+    fn walk<const LOOKS: bool>(&self, line: &Line, cell: [usize; 2], mut w_in: f64, w_end: f64) -> Option<Hit> {
+        let [mut across, mut down] = [self.way(line, cell, 0), self.way(line, cell, 1)];
+        let mut here = cell[1] * self.width + cell[0];
         // The pixel whose surface the ray was last in front of, and whether it still is.
         let mut before: Option<usize> = None;
         let mut in_front = w_in >= self.nearest;
@@ -303,10 +586,11 @@ impl HeightField {
         let mut wall = None;
         let mut side = 0;
         loop {
-            let axis = usize::from(leaves[1] > leaves[0]);
-            let ends = !(leaves[axis] > w_end);
-            let w_out = if ends { w_end } else { leaves[axis].min(w_in) };
-            let here = cell[1] * self.width + cell[0];
+            let (leaves_column, leaves_row) = (across.leaves(), down.leaves());
+            let is_down = leaves_row > leaves_column;
+            let leaves = if is_down { leaves_row } else { leaves_column };
+            let ends = !(leaves > w_end);
+            let w_out = if ends { w_end } else { less(leaves, w_in) };
             let surface = self.w(here);
             if w_in >= surface {
                 if w_out <= surface {
@@ -331,18 +615,59 @@ impl HeightField {
                     return Some(Hit { place: line.at(self.w(before)), cell: before, guessed: true, wall });
                 }
             }
-            if ends {
+            // Out of the picture, too, there is nothing.
+            let (border, end) = if is_down { (down.border, down.end) } else { (across.border, across.end) };
+            if ends | (border == end) {
                 return None;
             }
-            let next = if forward[axis] { cell[axis] + 1 } else { cell[axis].wrapping_sub(1) };
-            if next > last[axis] {
-                return None;
-            }
-            cell[axis] = next;
-            leaves[axis] = line.leaves(cell[axis], axis);
-            side = 2 * axis as u8 + u8::from(forward[axis]);
+            across.border += if is_down { 0.0 } else { across.step };
+            down.border += if is_down { down.step } else { 0.0 };
+            here = here.wrapping_add(if is_down { down.stride } else { across.stride });
+            side = if is_down { down.side } else { across.side };
             w_in = w_out;
         }
+    }
+
+    /// How a line goes over columns (`axis` 0) or rows, from this pixel on.
+    #[inline(always)]
+    fn way(&self, line: &Line, cell: [usize; 2], axis: usize) -> Way {
+        let slope = line.per_w[axis];
+        let forward = slope < 0.0;
+        let (size, stride) = if axis == 0 { (self.width, 1) } else { (self.height, self.width) };
+        Way {
+            border: (cell[axis] + usize::from(forward)) as f64,
+            step: if forward { 1.0 } else { -1.0 },
+            end: if forward { size as f64 } else { 0.0 },
+            origin: line.at_infinity[axis],
+            inverse: if slope == 0.0 { f64::INFINITY } else { 1.0 / slope },
+            stride: if forward { stride } else { stride.wrapping_neg() },
+            side: 2 * axis as u8 + u8::from(forward),
+        }
+    }
+}
+
+/// How a line goes over columns or rows, coming from large w.
+struct Way {
+    /// Where it leaves the column or row that it is over.
+    border: f64,
+    /// From one border to the next.
+    step: f64,
+    /// The picture's border that it comes to.
+    end: f64,
+    /// Where it is at w = 0, and one over its change per w.
+    origin: f64,
+    inverse: f64,
+    /// From pixel to pixel.
+    stride: usize,
+    /// Of the pixel that it comes to, the side by which it comes: see [`Wall::side`].
+    side: u8,
+}
+
+impl Way {
+    /// The w at which it leaves; nowhere if it runs along.
+    #[inline(always)]
+    fn leaves(&self) -> f64 {
+        more((self.border - self.origin) * self.inverse, f64::NEG_INFINITY)
     }
 }
 
@@ -462,6 +787,60 @@ mod tests {
             }
         }
         assert!(met > 20_000 && walls > 2000 && guessed > 1000 && skipped > 5000, "{met} {walls} {guessed} {skipped}");
+    }
+
+    /// Side by side, with some left out and some beside the picture, each line meets what it meets alone.
+    #[test]
+    fn side_by_side_is_as_alone() {
+        let mut state = 5_u64;
+        let mut draw = move || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        let (mut met, mut walls, mut guessed, mut out) = (0, 0, 0, 0);
+        for (width, height) in [(1, 1), (37, 23), (150, 90)] {
+            for kind in 0..4 {
+                let depth: Vec<f32> = (0..width * height)
+                    .map(|i| match (kind, i % width, i / width) {
+                        (0, ..) => 1500.0,
+                        (1, c, r) => 900.0 + 7.0 * c as f32 + 3.0 * r as f32,
+                        (2, c, r) if (c / 9 + r / 7) % 3 == 0 => 1000.0 + c as f32,
+                        _ => 4000.0 + 900.0 * ((i * 7919 % 613) as f32 / 613.0),
+                    })
+                    .collect();
+                let field = HeightField::new(width, height, &depth, 0.05);
+                for round in 0..120 {
+                    let mut lines = Lines::new();
+                    let mut wanted = [false; SIDE_BY_SIDE];
+                    for i in 0..SIDE_BY_SIDE {
+                        let reach = 10.0_f64.powf(4.0 * draw()) / field.nearest;
+                        let w = field.farthest + (field.nearest - field.farthest) * draw();
+                        for (k, size) in [width, height].into_iter().enumerate() {
+                            lines.per_w[k][i] = if draw() < 0.1 { 0.0 } else { (draw() - 0.5) * reach };
+                            lines.at_infinity[k][i] = (draw() * 1.2 - 0.1) * size as f64 - lines.per_w[k][i] * w;
+                        }
+                        wanted[i] = draw() < 0.9;
+                    }
+                    lines.at_infinity[0][7] = f64::NAN;
+                    let len = SIDE_BY_SIDE - round % 5;
+                    let mut hits = [None; SIDE_BY_SIDE];
+                    field.hits(&lines, len, &wanted, &mut hits);
+                    for i in 0..len {
+                        let alone = field.hit_step_by_step(&lines.line(i)).filter(|_| wanted[i]);
+                        if i == 7 {
+                            // Nowhere is nowhere, whatever is found there.
+                            continue;
+                        }
+                        assert_eq!(hits[i], alone, "{width} x {height}, {kind}: {:?}", lines.line(i));
+                        met += usize::from(alone.is_some());
+                        walls += usize::from(alone.is_some_and(|hit| hit.wall.is_some()));
+                        guessed += usize::from(alone.is_some_and(|hit| hit.guessed));
+                        out += usize::from(alone.is_none());
+                    }
+                }
+            }
+        }
+        assert!(met > 20_000 && walls > 2000 && guessed > 1000 && out > 5000, "{met} {walls} {guessed} {out}");
     }
 
     #[test]

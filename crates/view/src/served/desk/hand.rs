@@ -1,5 +1,6 @@
 //! What the thread of a desk has in hand: the scene, the same scene small for a draft, and what either is still to be told.
 
+use super::watch::Stamps;
 use spectra_core::params::Node;
 use spectra_session::Session;
 
@@ -36,8 +37,10 @@ pub(super) struct Hand {
     pub(super) is_light_owed: bool,
     /// A sample of all pixels takes so long.
     pub(super) pace_s: Option<f64>,
-    /// A text of the scene's file that is no scene.
-    pub(super) refused: Option<String>,
+    /// The files that the scene names, as they were read.
+    pub(super) stamps: Stamps,
+    /// A text of the scene's file, and the files that it names, that are no scene.
+    pub(super) refused: Option<(Option<String>, Stamps)>,
 }
 
 impl Hand {
@@ -64,6 +67,7 @@ impl Hand {
             owed: std::mem::take(&mut self.owed),
             is_light_owed: true,
             pace_s: None,
+            stamps: Stamps::default(),
             refused: None,
         };
     }

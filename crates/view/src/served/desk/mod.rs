@@ -4,11 +4,13 @@
 //! once, by the last of them; the work at hand is stopped for them. A desk that nobody asks anything of is cleared.
 
 mod hand;
+mod watch;
 mod work;
 
+use super::bench::is_prism;
 use super::save;
 use crate::controls::Control;
-use crate::parts::spectra;
+use crate::parts::{pixel, spectra};
 use crate::section;
 use serde_json::{Value, json};
 use spectra_core::Isa;
@@ -168,14 +170,7 @@ impl Desk {
         let size = frame.exposure.size;
         // Of a draft, the pixel that covers it.
         let part = |at: u32| u64::from(at) * u64::from(size.width_px) / u64::from(frame.whole_px.max(1));
-        let [x, y] = [x, y].map(|at| u32::try_from(part(at)).unwrap_or(u32::MAX));
-        if x >= size.width_px || y >= size.height_px {
-            return None;
-        }
-        let at = y as usize * size.width_px as usize + x as usize;
-        let channels =
-            frame.exposure.channels.iter().map(|c| json!({"name": c.name, "unit": c.unit, "value": c.values.get(at)}));
-        Some(json!({"frame": frame.number, "channels": channels.collect::<Vec<_>>()}))
+        pixel(&frame.exposure, frame.number, [x, y].map(part))
     }
 
     /// The cross-section of the lens as it is set now; an empty text where it cannot be drawn.
@@ -219,14 +214,6 @@ impl Desk {
         held(&self.state).changes.retain(|change| !changes.contains(change));
         Ok(changes.len())
     }
-}
-
-/// Whether a lens is one piece of glass between plane faces that are tilted to each other.
-fn is_prism(lens: &spectra_lens::Lens) -> bool {
-    let [first, second] = &lens.elements[..] else { return false };
-    let normal = |element: &spectra_lens::Element| element.pose.direction(glam::DVec3::Z);
-    let is_plane = |element: &spectra_lens::Element| element.surface.vertex_curvature_per_mm() == (0.0, 0.0);
-    is_plane(first) && is_plane(second) && normal(first).dot(normal(second)).abs() < 0.9999
 }
 
 /// Whether a scene can be viewed at all: faults are told at the start, and not by a page.

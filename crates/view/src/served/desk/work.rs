@@ -2,13 +2,14 @@
 
 use super::super::save;
 use super::hand::{Drafted, Hand, Shape};
+use super::watch::Stamps;
 use super::{Desk, Frame, State, WIDTHS_PX, held};
 use crate::controls;
-use crate::parts::{fault_json, packed, said};
+use crate::parts::{exposed, head, packed, said};
 use serde_json::{Value, json};
 use spectra_core::frame::{DisplayPicture, ExposureFrame};
 use spectra_scene::{NumberFamily, Shot};
-use spectra_session::{Control as Stop, Session, SessionError, Threads};
+use spectra_session::{Control as Stop, Session, SessionError, Threads, Workers};
 use std::sync::{Arc, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -39,6 +40,22 @@ enum Detail {
     Whole,
 }
 
+/// Threads whose work nobody waits for once something more is turned.
+struct Until<'a> {
+    threads: Threads,
+    stop: &'a Stop,
+}
+
+impl Workers for Until<'_> {
+    fn each(&self, work: &(dyn Fn() + Sync)) {
+        self.threads.each(work);
+    }
+
+    fn should_stop(&self) -> bool {
+        self.stop.should_stop()
+    }
+}
+
 impl Desk {
     pub(super) fn work(&self) {
         let mut session = match Session::open(&self.order.scene, &self.order.overrides, self.order.isa) {
@@ -62,6 +79,7 @@ impl Desk {
             owed: Vec::new(),
             is_light_owed: true,
             pace_s: None,
+            stamps: Stamps::default(),
             refused: None,
         };
         let mut started = Instant::now();
@@ -136,7 +154,9 @@ impl Desk {
             };
             let from = Instant::now();
             let more = more.min(all - done);
-            if let Err(error) = hand.session.step(more, &Threads(self.order.threads), &stop) {
+            // To search what passes the whole scene's lens may take longer than a draft: that, too, ends where more is turned.
+            let workers = Until { threads: Threads(self.order.threads), stop: &stop };
+            if let Err(error) = hand.session.step(more, &workers, &stop) {
                 self.tell(Some(said(&error, "")));
                 continue;
             }
@@ -166,7 +186,7 @@ impl Desk {
                 let mut texts: Vec<String> = hand.owed.iter().filter_map(|owed| hand.shape.text(owed)).collect();
                 texts.extend(hand.shape.draft(&hand.session));
                 // What cannot be is said of the whole scene.
-                hand.draft = hand.session.branch(&texts).ok();
+                hand.draft = hand.session.draft(&texts).ok();
             }
             Some(draft) => {
                 for owed in hand.owed.iter().filter(|owed| !owed.is_drafted && !NOT_DRAFTED.contains(&&*owed.path)) {
@@ -202,7 +222,13 @@ impl Desk {
         let (mut is_light_kept, mut trouble) = (true, None);
         for owed in std::mem::take(&mut hand.owed) {
             let Some(text) = hand.shape.text(&owed) else { continue };
-            match hand.session.change_on(&text, &Threads(self.order.threads)) {
+            // Where a draft of it was made, the scene can be.
+            let changed = if hand.draft.is_some() && !NOT_DRAFTED.contains(&&*owed.path) {
+                hand.session.change_later(&text)
+            } else {
+                hand.session.change_on(&text, &Threads(self.order.threads))
+            };
+            match changed {
                 Ok(kept) => {
                     is_light_kept &= kept.light;
                     if owed.path == "width" {
@@ -227,29 +253,37 @@ impl Desk {
         is_light_kept
     }
 
-    /// Takes up the scene's file where somebody wrote it since; says whether there is another scene now. A file that is broken is
-    /// told, and all stays as it is.
+    /// Takes up the scene's file, or one that it names, where somebody wrote it since; says whether there is another scene now. A
+    /// file that is broken is told, and all stays as it is.
     fn is_written_anew(&self, hand: &mut Hand) -> bool {
         let mut written = held(&self.written);
-        let Some(before) = &*written else { return false };
-        let is_small = std::fs::metadata(&self.order.scene).is_ok_and(|found| found.len() <= MAX_SCENE_BYTES);
-        if !is_small {
-            return false;
-        }
-        // A file that is just being replaced is there the next time.
-        let Ok(now) = std::fs::read_to_string(&self.order.scene) else { return false };
-        if now == *before {
+        let now = match &*written {
+            None => None,
+            Some(_) => {
+                let is_small = std::fs::metadata(&self.order.scene).is_ok_and(|found| found.len() <= MAX_SCENE_BYTES);
+                // A file that is just being replaced is there the next time.
+                let Some(now) = is_small.then(|| std::fs::read_to_string(&self.order.scene).ok()).flatten() else {
+                    return false;
+                };
+                Some(now)
+            }
+        };
+        let others = hand.stamps.now(&hand.session, &self.order.scene);
+        if now == *written && !others.differ(&hand.stamps) {
+            hand.stamps.learn(&others);
             if hand.refused.take().is_some() {
                 self.tell(None);
             }
             return false;
         }
-        if hand.refused.as_ref() == Some(&now) {
+        if hand.refused.as_ref().is_some_and(|refused| refused.0 == now && !others.differ(&refused.1)) {
             return false;
         }
         // What the page set stays, but for what the file now says otherwise.
         let mut changes = held(&self.state).changes.clone();
-        changes.retain(|(path, _)| save::says_same(before, &now, path));
+        if let (Some(before), Some(now)) = (&*written, &now) {
+            changes.retain(|(path, _)| save::says_same(before, now, path));
+        }
         let opened = Session::open(&self.order.scene, &self.order.overrides, self.order.isa).and_then(|session| {
             let shape = Shape::of(&session);
             let mut texts: Vec<String> = changes.iter().map(|(_, text)| text.clone()).collect();
@@ -258,7 +292,7 @@ impl Desk {
         });
         match opened {
             Ok((session, shape)) => {
-                *written = Some(now);
+                *written = now;
                 drop(written);
                 hand.take_up(session, shape);
                 let mut state = held(&self.state);
@@ -271,7 +305,7 @@ impl Desk {
             }
             Err(error) => {
                 drop(written);
-                hand.refused = Some(now);
+                hand.refused = Some((now, others));
                 self.tell(Some(said(&error, "")));
                 false
             }
@@ -345,7 +379,7 @@ impl Desk {
         session: &Session,
         shape: &Shape,
         started: Instant,
-        mut exposure: ExposureFrame,
+        exposure: ExposureFrame,
         rays: u64,
         is_draft: bool,
     ) -> Result<(), SessionError> {
@@ -356,18 +390,12 @@ impl Desk {
             shot.pictures().map_err(SessionError::Failed)?.to_vec()
         };
         let Some((_, picture)) = developed.into_iter().next() else { return Ok(()) };
-        let warnings: Vec<Value> = session.warnings().map(|w| fault_json(&w.0)).collect();
-        // What each film got, by its own time.
-        for time in &times {
-            for channel in exposure.channels.get_mut(time.channels.clone()).into_iter().flatten() {
-                channel.values.iter_mut().for_each(|v| *v *= time.gain as f32);
-            }
-        }
+        let exposure = exposed(exposure, &times);
         let DisplayPicture { width_px, height_px, rgb } = picture;
         let mut state = held(&self.state);
         state.number += 1;
         let whole_px = if is_draft { state.width_px } else { width_px };
-        let head = json!({
+        let own = json!({
             "frame": state.number,
             "scene": state.scenes,
             "lens_drawn": state.lenses,
@@ -378,16 +406,12 @@ impl Desk {
             "height": if is_draft { shape.height_px(whole_px) } else { height_px },
             "light": [width_px, height_px],
             "draft": is_draft,
-            "samples": if is_draft { 0 } else { session.samples() },
-            "of": scene.render.samples,
-            "rays": rays,
             "since_change_ms": started.elapsed().as_millis() as u64,
-            "exposure_s": times.first().map_or(1.0, |time| time.time_s),
-            "lens": scene.lens.name,
-            "film": times.first().map(|time| time.film.clone()),
-            "focus": scene.focus.to_string(),
-            "warnings": warnings,
         });
+        let mut head = head(own, session, &times, rays);
+        if is_draft {
+            head["samples"] = 0.into();
+        }
         let bytes = packed(&head, bytemuck::cast_slice(&rgb));
         state.frame = Some(Arc::new(Frame { number: state.number, bytes, exposure, whole_px }));
         self.turned.notify_all();

@@ -3,7 +3,6 @@
 //! Factors are exact by definition: prefixes and the units of time and angle from the SI Brochure (9th edition, 2019, tables 7
 //! and 8), inch and foot from the international yard and pound agreement of 1959.
 
-use super::node::decimal_end;
 use std::borrow::Cow;
 
 /// What kind of quantity a unit measures.
@@ -260,6 +259,31 @@ fn number(text: &str) -> Option<(f64, &str)> {
     let end = decimal_end(unsigned)?;
     let end = text.len() - unsigned.len() + end;
     Some((text[..end].parse().ok()?, &text[end..]))
+}
+
+/// Where the decimal number at the start of `text` (without a sign) ends, in bytes; `None` if there is no number.
+pub(crate) fn decimal_end(text: &str) -> Option<usize> {
+    let bytes = text.as_bytes();
+    let digits = |from: usize| bytes[from..].iter().take_while(|b| b.is_ascii_digit()).count();
+    let whole = digits(0);
+    let mut end = whole;
+    if bytes.get(end) == Some(&b'.') {
+        let fraction = digits(end + 1);
+        if whole + fraction == 0 {
+            return None;
+        }
+        end += 1 + fraction;
+    } else if whole == 0 {
+        return None;
+    }
+    if matches!(bytes.get(end), Some(b'e' | b'E')) {
+        let sign = usize::from(matches!(bytes.get(end + 1), Some(b'+' | b'-')));
+        let exponent = digits(end + 1 + sign);
+        if exponent > 0 {
+            end += 1 + sign + exponent;
+        }
+    }
+    Some(end)
 }
 
 #[cfg(test)]

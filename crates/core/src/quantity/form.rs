@@ -1,8 +1,8 @@
 //! How a quantity is written: a bare number in a stated unit, or a text with a unit whose dimension is checked.
 
 use super::limits::Limits;
-use super::text::{found_text, nearest, shown, with_article};
 use super::units::{Dimension, Reading, Unit};
+use crate::names::{nearest, shown};
 use serde::de::{Deserializer, Error, Visitor};
 use serde_json::Value;
 use std::fmt;
@@ -91,7 +91,7 @@ pub trait Quantity: Copy {
 
 /// How a quantity is written and what is allowed: a [`Quantity`] with the limits of one key.
 #[derive(Clone, Copy)]
-pub(super) struct Form<'a> {
+pub(crate) struct Form<'a> {
     noun: &'a str,
     dimension: Dimension,
     /// The unit of a bare number; empty if it has none.
@@ -103,7 +103,7 @@ pub(super) struct Form<'a> {
 
 impl<'a> Form<'a> {
     /// What a schema made by [`super::schema_of`] says, perhaps with narrower limits.
-    pub(super) fn of(schema: &'a Value) -> Option<Self> {
+    pub(crate) fn of(schema: &'a Value) -> Option<Self> {
         let text = |key: &str| schema.get(key).and_then(Value::as_str);
         let (noun, unit) = (text("x-quantity")?, text("x-unit").unwrap_or_default());
         // Only what is no number has a unit; per cent is written as one.
@@ -122,19 +122,19 @@ impl<'a> Form<'a> {
         })
     }
 
-    pub(super) fn example(&self) -> &'a str {
+    pub(crate) fn example(&self) -> &'a str {
         self.example
     }
 
     /// The right form in words: `a positive length such as 50 mm`.
-    pub(super) fn expected(&self) -> String {
+    pub(crate) fn expected(&self) -> String {
         let noun = format!("{}{}", self.limits.adjective(), self.noun);
         let or_infinity = if self.infinity { " or `inf`" } else { "" };
         format!("{} such as {}{or_infinity}", with_article(&noun), self.example)
     }
 
     /// A text as a number in its unit; in that of a bare number where it has none.
-    pub(super) fn read(&self, text: &str) -> Result<(f64, Option<&'static Unit>), String> {
+    pub(crate) fn read(&self, text: &str) -> Result<(f64, Option<&'static Unit>), String> {
         let expected = self.expected();
         let as_in = format!("write it as in `{}`", self.example);
         let found = |what: &str, hint: &str| Err(format!("found {what}, expected {expected}\nhint: {hint}"));
@@ -172,7 +172,7 @@ impl<'a> Form<'a> {
     }
 
     /// Whether a number in the unit of a bare one is within the limits.
-    pub(super) fn allowed(&self, value: f64, written: &str) -> Result<(), String> {
+    pub(crate) fn allowed(&self, value: f64, written: &str) -> Result<(), String> {
         let written = shown(written);
         if !value.is_finite() {
             let expected = self.expected();
@@ -212,6 +212,20 @@ impl<'a> Form<'a> {
             return "did you mean `infinity`?".to_owned();
         }
         format!("write a number with its unit, as in `{}`", self.example)
+    }
+}
+
+/// A noun with its article, such as `a length`, `an angle`, `an f-number`.
+pub(crate) fn with_article(noun: &str) -> String {
+    let vowel = noun.starts_with(['a', 'e', 'i', 'o', 'u']) || noun.starts_with("f-");
+    format!("{} {noun}", if vowel { "an" } else { "a" })
+}
+
+/// Describes a text: as a quantity of some dimension, or as just a text.
+pub(crate) fn found_text(text: &str) -> String {
+    match Reading::of(text) {
+        Reading::Quantity { unit, .. } => with_article(unit.dimension.noun()),
+        _ => format!("the text `{}`", shown(text)),
     }
 }
 

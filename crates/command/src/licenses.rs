@@ -4,7 +4,7 @@ use crate::console;
 use crate::outcome::{DONE, Outcome};
 use std::fmt::Write;
 
-/// The crates that are linked in, and their licences; written by `xtask/notices.py`.
+/// The crates that are linked in, and their licenses; written by `xtask/notices.py`.
 const NOTICES: &str = include_str!("notices.txt");
 
 /// Whether this version of a crate is among those that are linked into every program.
@@ -21,13 +21,13 @@ pub(crate) fn show(of_plugins: &str) -> Outcome {
 
 fn text(of_plugins: &str) -> String {
     let mut out = format!(
-        "spectra {}: {}\n\nBundled data, by licence and source:\n",
+        "spectra {}: {}\n\nBundled data, by license and source:\n",
         crate::version::VERSION,
         env!("CARGO_PKG_LICENSE")
     );
-    for entry in spectra_data::licences() {
+    for entry in spectra_data::licenses() {
         // Writing to a String cannot fail.
-        let _ = write!(out, "\n{}\n  {}\n", entry.licence, entry.source);
+        let _ = write!(out, "\n{}\n  {}\n", entry.license, entry.source);
         for file in &entry.files {
             let _ = writeln!(out, "    {file}");
         }

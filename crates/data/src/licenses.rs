@@ -4,9 +4,9 @@ use crate::{FILES, text};
 
 /// One source and its terms, with the files that come from it.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Licence {
+pub struct License {
     /// Terms as the file states them, such as `CC0-1.0`.
-    pub licence: String,
+    pub license: String,
     /// Publication or catalogue the figures come from.
     pub source: String,
     /// Bundled files, by path in the repository, sorted.
@@ -30,28 +30,28 @@ fn catalogue_source(line: &str) -> Option<(&str, &str)> {
     Some((terms, source.trim()))
 }
 
-/// Licence and source of every bundled file that states them, one entry for each pair, sorted.
+/// License and source of every bundled file that states them, one entry for each pair, sorted.
 ///
-/// The first `licence` and the first `source` among the first 60 lines of a file count, or else every line
+/// The first `license` and the first `source` among the first 60 lines of a file count, or else every line
 /// `!source MARK TEXT` there.
 #[must_use]
-pub fn licences() -> Vec<Licence> {
-    let mut all: Vec<Licence> = Vec::new();
+pub fn licenses() -> Vec<License> {
+    let mut all: Vec<License> = Vec::new();
     for (name, _) in FILES {
         let Some(text) = text(name) else { continue };
         // Terms stand at the head of a file; data rows below need no search.
         let head: Vec<&str> = text.lines().take(60).collect();
-        let licence = head.iter().find_map(|l| value(l, "licence"));
+        let license = head.iter().find_map(|l| value(l, "license").or_else(|| value(l, "licence")));
         let source = head.iter().find_map(|l| value(l, "source"));
-        let stated = licence.zip(source);
-        for (licence, source) in stated.into_iter().chain(head.iter().filter_map(|l| catalogue_source(l))) {
-            match all.iter_mut().find(|l| l.licence == licence && l.source == source) {
+        let stated = license.zip(source);
+        for (license, source) in stated.into_iter().chain(head.iter().filter_map(|l| catalogue_source(l))) {
+            match all.iter_mut().find(|l| l.license == license && l.source == source) {
                 Some(known) => known.files.push(name),
-                None => all.push(Licence { licence: licence.into(), source: source.into(), files: vec![name] }),
+                None => all.push(License { license: license.into(), source: source.into(), files: vec![name] }),
             }
         }
     }
-    all.sort_by(|a, b| (&a.licence, &a.source).cmp(&(&b.licence, &b.source)));
+    all.sort_by(|a, b| (&a.license, &a.source).cmp(&(&b.license, &b.source)));
     all
 }
 
@@ -61,11 +61,11 @@ mod tests {
 
     #[test]
     fn values_are_read_from_csv_and_yaml_heads() {
-        assert_eq!(value("# licence: CC0-1.0", "licence"), Some("CC0-1.0"));
-        assert_eq!(value("licence: \"MIT\"", "licence"), Some("MIT"));
-        assert_eq!(value("  licence: nested", "licence"), None);
-        assert_eq!(value("licences: x", "licence"), None);
-        assert_eq!(value("licence:", "licence"), None);
+        assert_eq!(value("# license: CC0-1.0", "license"), Some("CC0-1.0"));
+        assert_eq!(value("license: \"MIT\"", "license"), Some("MIT"));
+        assert_eq!(value("  license: nested", "license"), None);
+        assert_eq!(value("licenses: x", "license"), None);
+        assert_eq!(value("license:", "license"), None);
     }
 
     #[test]
@@ -80,11 +80,11 @@ mod tests {
 
     #[test]
     fn each_pair_appears_once_with_all_its_files() {
-        let all = licences();
+        let all = licenses();
         for (i, a) in all.iter().enumerate() {
-            assert!(all[i + 1..].iter().all(|b| (&a.licence, &a.source) != (&b.licence, &b.source)));
+            assert!(all[i + 1..].iter().all(|b| (&a.license, &a.source) != (&b.license, &b.source)));
         }
         let daylight = all.iter().find(|l| l.files.contains(&"spectra/illuminants/D65.csv")).expect("D65 is bundled");
-        assert!(daylight.licence.starts_with("BSD-3-Clause") && daylight.source.contains("CIE 15"));
+        assert!(daylight.license.starts_with("BSD-3-Clause") && daylight.source.contains("CIE 15"));
     }
 }

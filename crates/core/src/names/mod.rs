@@ -9,6 +9,12 @@
 //! assert_eq!(find("portra-400", stocks), Match::Nothing);
 //! ```
 
+mod nearest;
+mod shown;
+
+pub use nearest::nearest;
+pub(crate) use shown::shown;
+
 /// Shortest part of a name that can stand for it, in letters and digits.
 const SHORTEST: usize = 3;
 /// Longer texts are never names.
@@ -94,7 +100,7 @@ pub fn listed<S: AsRef<str>>(names: &[S], command: &str) -> String {
 #[must_use]
 pub fn hint<S: AsRef<str>>(typed: &str, known: &[S], command: &str) -> String {
     let all = || listed(known, command);
-    if let Some(near) = crate::params::nearest(typed, known.iter().map(AsRef::as_ref)) {
+    if let Some(near) = nearest(typed, known.iter().map(AsRef::as_ref)) {
         return match known.len() {
             0..=LISTED => format!("did you mean `{near}`? Known: {}", all()),
             _ if command.is_empty() => format!("did you mean `{near}`?"),

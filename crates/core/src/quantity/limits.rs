@@ -4,7 +4,7 @@ use serde_json::Value;
 
 /// Limits of a number: the keywords `minimum`, `exclusiveMinimum`, `maximum` and `exclusiveMaximum` of JSON Schema.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Limits {
+pub(crate) struct Limits {
     /// The lower one, and whether it is itself allowed.
     least: Option<(f64, bool)>,
     /// The upper one, likewise.
@@ -12,11 +12,11 @@ pub(super) struct Limits {
 }
 
 impl Limits {
-    pub(super) const ANY: Self = Self { least: None, most: None };
-    pub(super) const NOT_NEGATIVE: Self = Self { least: Some((0.0, true)), most: None };
-    pub(super) const POSITIVE: Self = Self { least: Some((0.0, false)), most: None };
+    pub(crate) const ANY: Self = Self { least: None, most: None };
+    pub(crate) const NOT_NEGATIVE: Self = Self { least: Some((0.0, true)), most: None };
+    pub(crate) const POSITIVE: Self = Self { least: Some((0.0, false)), most: None };
 
-    pub(super) fn of(schema: &Value) -> Self {
+    pub(crate) fn of(schema: &Value) -> Self {
         let number = |key: &str, included| Some((schema.get(key)?.as_f64()?, included));
         let stricter = |one: Option<(f64, bool)>, other: Option<(f64, bool)>, sign: f64| match (one, other) {
             (Some(a), Some(b)) => Some(if a.0 * sign > b.0 * sign { a } else { b }),
@@ -29,14 +29,14 @@ impl Limits {
     }
 
     /// NaN is never allowed.
-    pub(super) fn allow(self, value: f64) -> bool {
+    pub(crate) fn allow(self, value: f64) -> bool {
         let above = self.least.is_none_or(|(least, included)| value > least || (included && value == least));
         let below = self.most.is_none_or(|(most, included)| value < most || (included && value == most));
         above && below && !value.is_nan()
     }
 
     /// `positive `, `non-negative ` or nothing.
-    pub(super) fn adjective(self) -> &'static str {
+    pub(crate) fn adjective(self) -> &'static str {
         match self.least {
             Some((least, included)) if least > 0.0 || (least == 0.0 && !included) => "positive ",
             Some((0.0, _)) => "non-negative ",
@@ -45,12 +45,12 @@ impl Limits {
     }
 
     /// Whether a value has the wrong sign for them: then the adjective says what is wrong.
-    pub(super) fn sign_is_wrong(self, value: f64) -> bool {
+    pub(crate) fn sign_is_wrong(self, value: f64) -> bool {
         !self.adjective().is_empty() && value <= 0.0
     }
 
     /// `from 1 mm to 5 mm`, `0 or more`, with a unit behind each number (or before it, where it ends in `/`).
-    pub(super) fn words(self, unit: &str) -> String {
+    pub(crate) fn words(self, unit: &str) -> String {
         let number = |value: f64| match unit {
             _ if value == 0.0 || unit.is_empty() => format!("{value}"),
             unit if unit.ends_with('/') => format!("{unit}{value}"),

@@ -1,0 +1,32 @@
+//! A picture in its colors.
+
+use super::measured::{Measured, NotMeasured};
+use super::view::{Shown, sheet};
+use spectra_color::{Gamut, RgbSpace, into_gamut, to_u8};
+use spectra_plot::Canvas;
+
+/// The picture as a screen shows it: sRGB, with `white` (the Y of white in the picture's unit; that of the picture itself where absent)
+/// as full white. What no screen shows is brought into sRGB at its hue.
+///
+/// # Errors
+/// The picture has no colors, or nothing in it is lit.
+pub fn color(picture: &Measured, white: Option<f64>, title: &str) -> Result<Canvas, NotMeasured> {
+    if picture.colors.is_none() {
+        return Err(picture.without_colors());
+    }
+    let white = white.or_else(|| picture.white()).ok_or_else(super::field::dark)?;
+    let srgb = RgbSpace::srgb();
+    // Light adds up: what is shown smaller is the mean of linear light.
+    let [x, y, z] = [0, 1, 2].map(|i| {
+        let shown = Shown::of(picture, false, &|pixel| picture.xyz(pixel).map_or(f64::NAN, |xyz| xyz[i]));
+        (shown.values, shown.frame, shown.columns, shown.rows)
+    });
+    let rgb = x.0.iter().zip(&y.0).zip(&z.0).map(|((x, y), z)| {
+        let linear = srgb.from_xyz([*x, *y, *z].map(|v| if v.is_finite() { v / white } else { 0.0 }));
+        srgb.encode(into_gamut(linear, srgb, Gamut::Perceptual)).map(to_u8)
+    });
+    let rgb: Vec<[u8; 3]> = rgb.collect();
+    let note = super::field::said(white, picture.unit);
+    let shown = Shown { frame: x.1, columns: x.2, rows: x.3, values: Vec::new() };
+    Ok(sheet(picture, title, Some(&note), &shown, rgb))
+}

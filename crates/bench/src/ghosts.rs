@@ -1,0 +1,263 @@
+//! How clean ghosts are after how much time, and what the search for their rays gains.
+//!
+//! Of a scene the ghosts alone are rendered, with several seeds, once as its pictures have them and once with as many rays for
+//! each path all over the front. What is judged are blocks of [`SIDE`] x [`SIDE`] pixels that have more than [`DIM`] of the
+//! brightest one: the scatter of a block's sum between the seeds, over its mean.
+
+use crate::BenchError;
+use serde::Serialize;
+use spectra_core::Isa;
+use spectra_core::frame::ExposureFrame;
+use spectra_render::{Control, GhostRays, Renderer, Threads};
+use spectra_scene::Scene;
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// Pixels a side of the blocks.
+const SIDE: usize = 32;
+/// Blocks that have less than this part of the brightest are not judged.
+const DIM: f64 = 1e-4;
+/// The noise that a time is given for.
+const CLEAN: f64 = 0.02;
+
+/// What is measured of each scene.
+#[derive(Clone, Copy, Debug)]
+pub struct GhostSettings {
+    /// Seeds, 2 at least.
+    pub seeds: u64,
+    /// Threads to render on.
+    pub threads: usize,
+    /// Instruction set.
+    pub isa: Isa,
+    /// Seconds that the processors have spent on this program so far, all threads together; `None` where nobody says. Other
+    /// programs that run meanwhile do not count, as they do by the clock.
+    pub processor_s: fn() -> Option<f64>,
+}
+
+/// How clean one way to share out rays is.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct GhostNoise {
+    /// Rays, and seconds before the first of them: pilot, books.
+    pub rays: u64,
+    /// Seconds before the first ray.
+    pub ready_s: f64,
+    /// Seconds of tracing, a mean over the seeds.
+    pub trace_s: f64,
+    /// Blocks that are judged.
+    pub blocks: usize,
+    /// The root of the mean square of their noise.
+    pub rms: f64,
+    /// The noise that 95 % of them stay below.
+    pub most: f64,
+    /// The noise of the worst; of many blocks and few seeds it is found too large.
+    pub worst: f64,
+    /// The root of the mean square of the noise of single pixels, in the middle one of the blocks.
+    pub pixel: f64,
+}
+
+/// What was measured of a scene.
+#[derive(Clone, Debug, Serialize)]
+pub struct GhostRow {
+    /// Name of the scene.
+    pub scene: String,
+    /// Paths of ghosts.
+    pub paths: usize,
+    /// Pixels across and down.
+    pub pixels: [u32; 2],
+    /// Samples.
+    pub samples: u32,
+    /// The channel whose noise it is.
+    pub channel: String,
+    /// Whether seconds are those of processors, not of the clock.
+    pub processor_time: bool,
+    /// As pictures have them.
+    pub found: GhostNoise,
+    /// With as many rays for each path, all over the front.
+    pub even: GhostNoise,
+    /// How many times longer those take to the same noise (root of the mean square over the blocks), preparations left out.
+    pub gain: f64,
+    /// Seconds to 2 %, with all that comes before the first ray: of 95 % of the blocks.
+    pub clean_s: f64,
+}
+
+/// Measures a scene file with `overrides` (texts `path=value`). `tell` is given a line on what is being measured.
+///
+/// # Errors
+/// [`BenchError`].
+pub fn ghosts(
+    path: &Path,
+    overrides: &[String],
+    settings: &GhostSettings,
+    tell: &mut dyn FnMut(&str),
+) -> Result<GhostRow, BenchError> {
+    if settings.seeds < 2 {
+        return Err(BenchError::Settings("seeds: 2 at least, or there is no scatter to judge by"));
+    }
+    let scene = spectra_scene::load(path, overrides)?;
+    let mut paths = 0;
+    let mut judged = None;
+    let mut one = |rays: GhostRays, words: &str| -> Result<GhostNoise, BenchError> {
+        tell(&format!("{}: {words}", scene.name));
+        let (noise, frames, count) = rendered(&scene, rays, settings)?;
+        paths = count;
+        // Both are judged in the blocks that the clean one says are bright.
+        let blocks = judged.get_or_insert_with(|| Blocks::of(&frames));
+        noise.judged(blocks, &frames).ok_or(BenchError::Dark)
+    };
+    let found = one(GhostRays::Found, "rays where the search says")?;
+    let even = one(GhostRays::Even, "rays all over the front")?;
+    let size = scene.imager.size();
+    Ok(GhostRow {
+        scene: scene.name.clone(),
+        paths,
+        pixels: [size.width_px, size.height_px],
+        samples: scene.render.samples,
+        channel: judged.map(|blocks| blocks.name).unwrap_or_default(),
+        processor_time: (settings.processor_s)().is_some(),
+        found,
+        even,
+        gain: even.rms * even.rms * even.trace_s / (found.rms * found.rms * found.trace_s),
+        clean_s: found.ready_s + found.trace_s * (found.most / CLEAN) * (found.most / CLEAN),
+    })
+}
+
+/// The ghosts of a scene by each seed.
+fn rendered(
+    scene: &Scene,
+    rays: GhostRays,
+    settings: &GhostSettings,
+) -> Result<(GhostNoise, Vec<ExposureFrame>, usize), BenchError> {
+    let failed = |error| BenchError::Render { strategy: "ghosts".to_owned(), error };
+    let begun = Instant::now();
+    let now = || (settings.processor_s)().unwrap_or_else(|| begun.elapsed().as_secs_f64());
+    let (workers, control) = (Threads(settings.threads), Control::new());
+    let many = settings.seeds as f64;
+    let mut noise = GhostNoise {
+        rays: 0,
+        ready_s: 0.0,
+        trace_s: 0.0,
+        blocks: 0,
+        rms: f64::NAN,
+        most: f64::NAN,
+        worst: f64::NAN,
+        pixel: f64::NAN,
+    };
+    let (mut frames, mut paths) = (Vec::new(), 0);
+    for seed in 0..settings.seeds {
+        let mut scene = scene.clone();
+        scene.render.seed = scene.render.seed.wrapping_add(seed << 32);
+        let start = now();
+        let ready = Renderer::of_ghosts(Arc::new(scene), settings.isa, rays, &workers).map_err(failed)?;
+        let renderer = ready.ok_or(BenchError::Dark)?;
+        noise.ready_s += (now() - start) / many;
+        let start = now();
+        let rendering = renderer.run(&workers, &control).map_err(failed)?;
+        noise.trace_s += (now() - start) / many;
+        noise.rays = rendering.rays;
+        paths = rendering.ledger.map_or(0, |ledger| ledger.paths.len());
+        frames.push(rendering.exposure);
+    }
+    Ok((noise, frames, paths))
+}
+
+/// The blocks that are judged, by their pixels.
+struct Blocks {
+    channel: usize,
+    name: String,
+    /// Of each the light by the rays that the search shares out, and its pixels.
+    pixels: Vec<(f64, Vec<usize>)>,
+}
+
+impl Blocks {
+    fn of(frames: &[ExposureFrame]) -> Self {
+        let first = &frames[0];
+        let channel = first.channels.iter().position(|c| c.name == "Y").unwrap_or(0);
+        let (width, height) = (first.size.width_px as usize, first.size.height_px as usize);
+        let mut all = Vec::new();
+        for top in (0..height).step_by(SIDE) {
+            for left in (0..width).step_by(SIDE) {
+                let rows = top..(top + SIDE).min(height);
+                let row = |row| (left..(left + SIDE).min(width)).map(move |column| row * width + column);
+                let pixels: Vec<usize> = rows.flat_map(row).collect();
+                let light: f64 = frames.iter().map(|f| light_of(f, channel, &pixels)).sum();
+                all.push((light, pixels));
+            }
+        }
+        let brightest = all.iter().fold(0.0_f64, |most, (light, _)| most.max(*light));
+        all.retain(|(light, _)| *light > DIM * brightest);
+        let pixels = all.into_iter().map(|(light, pixels)| (light / frames.len() as f64, pixels)).collect();
+        Self { channel, name: first.channels[channel].name.clone(), pixels }
+    }
+}
+
+fn light_of(frame: &ExposureFrame, channel: usize, pixels: &[usize]) -> f64 {
+    pixels.iter().map(|p| f64::from(frame.channels[channel].values[*p])).sum()
+}
+
+fn variance(values: &[f64]) -> f64 {
+    let many = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / many;
+    values.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / (many - 1.0)
+}
+
+impl GhostNoise {
+    fn judged(self, blocks: &Blocks, frames: &[ExposureFrame]) -> Option<Self> {
+        let channel = blocks.channel;
+        // Both ways are judged by the light of the clean one: rays that are spread evenly may miss a block with every seed.
+        let of_block = |(light, pixels): &(f64, Vec<usize>)| {
+            let sums: Vec<f64> = frames.iter().map(|frame| light_of(frame, channel, pixels)).collect();
+            let of_pixel = |pixel: &usize| {
+                let values: Vec<f64> = frames.iter().map(|f| f64::from(f.channels[channel].values[*pixel])).collect();
+                variance(&values)
+            };
+            let many = pixels.len() as f64;
+            let single = pixels.iter().map(of_pixel).sum::<f64>() / many;
+            (variance(&sums) / (light * light), single.sqrt() * many / light)
+        };
+        let (mut squares, mut single): (Vec<f64>, Vec<f64>) = blocks.pixels.iter().map(of_block).unzip();
+        squares.sort_by(f64::total_cmp);
+        single.sort_by(f64::total_cmp);
+        let at = |share: f64| (squares.len() as f64 * share) as usize;
+        Some(Self {
+            blocks: squares.len(),
+            rms: (squares.iter().sum::<f64>() / squares.len() as f64).sqrt(),
+            most: squares.get(at(0.95))?.sqrt(),
+            worst: squares.last()?.sqrt(),
+            pixel: *single.get(single.len() / 2)?,
+            ..self
+        })
+    }
+}
+
+/// A table of some rows, in Markdown; `machine` says what they were measured on.
+#[must_use]
+pub fn ghost_table(rows: &[GhostRow], settings: &GhostSettings, machine: &str) -> String {
+    let unit = if rows.iter().all(|row| row.processor_time) { "CPU s" } else { "s" };
+    let mut text = format!(
+        "{machine}\n{} seeds; noise of {SIDE} x {SIDE} pixels above {DIM:e} of the brightest: root of the mean square, 95 %, worst\n\n\
+         | scene | rays | M | {unit} before | {unit} | blocks | noise, % | a pixel, % | gain | {unit} to {} % |\n\
+         |---|---|---|---|---|---|---|---|---|---|\n",
+        settings.seeds,
+        100.0 * CLEAN
+    );
+    for row in rows {
+        let line = |words: &str, noise: &GhostNoise, rest: &str| {
+            format!(
+                "| {} | {words} | {:.1} | {:.1} | {:.1} | {} | {:.2}, {:.2}, {:.1} | {:.0} | {rest} |\n",
+                row.scene,
+                noise.rays as f64 / 1e6,
+                noise.ready_s,
+                noise.trace_s,
+                noise.blocks,
+                100.0 * noise.rms,
+                100.0 * noise.most,
+                100.0 * noise.worst,
+                100.0 * noise.pixel,
+            )
+        };
+        text.push_str(&line("found", &row.found, &format!("{:.1} | {:.1}", row.gain, row.clean_s)));
+        text.push_str(&line("all over", &row.even, "1 | "));
+    }
+    text
+}

@@ -1,0 +1,21 @@
+//! Quantities as people write them: `50 mm`, `f/2.8`, `1/125 s`.
+//!
+//! A [`Quantity`] is a type with a dimension, the unit of its bare number and a bound; it knows how it is read, shown and described in a
+//! schema. Nothing here knows of files: what is wrong is said as a text, and [`crate::params`] puts it at its place.
+
+mod form;
+mod kinds;
+mod limits;
+mod units;
+mod written;
+
+pub use form::{Bound, Quantity, deserialize};
+pub(crate) use form::{Form, found_text};
+pub use kinds::{
+    Angle, Exposure, FNumber, Illuminance, Length, LengthOrInfinity, Luminance, NonNegative, OrInfinity, Positive,
+    Power, RadiantIntensity, Ratio, SpatialFrequency, Temperature, Time, Wavelength,
+};
+pub(crate) use limits::Limits;
+pub(crate) use units::decimal_end;
+pub use units::{Dimension, Reading, Unit};
+pub use written::schema_of;

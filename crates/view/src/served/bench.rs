@@ -1,0 +1,214 @@
+//! The prism of a scene on the study's bench: where the study starts, and what it saves.
+
+use super::desk::Order;
+use super::save::save;
+use super::study::Prism;
+use glam::DVec3;
+use serde_json::{Value, json};
+use spectra_core::math::atan2;
+use spectra_core::params::{Length, Node, Quantity};
+use spectra_files::write_atomically;
+use spectra_glass::Medium;
+use spectra_lens::Lens;
+use spectra_scene::Scene;
+use spectra_session::Session;
+use std::hash::{DefaultHasher, Hash, Hasher};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// How a lens file begins that this page wrote, and may write again.
+const MARK: &str = "# A prism, as the dispersion study of `spectra view` has it.\n";
+
+/// Whether a lens is one piece of glass between plane faces that are tilted to each other.
+pub(super) fn is_prism(lens: &Lens) -> bool {
+    let [first, second] = &lens.elements[..] else { return false };
+    let is_plane = |element: &spectra_lens::Element| element.surface.vertex_curvature_per_mm() == (0.0, 0.0);
+    is_plane(first) && is_plane(second) && normals(lens).is_some_and(|[one, other]| one.dot(other).abs() < 0.9999)
+}
+
+fn normals(lens: &Lens) -> Option<[DVec3; 2]> {
+    let [first, second] = &lens.elements[..] else { return None };
+    Some([first, second].map(|element| element.pose.direction(DVec3::Z)))
+}
+
+/// What the scene of an order has of a prism in words of the page; nothing of what the study cannot show. `None` where the scene
+/// has no prism.
+pub(super) fn start(order: &Order) -> Option<Value> {
+    let session = Session::open(&order.scene, &order.overrides, order.isa).ok()?;
+    let scene = session.scene();
+    if !is_prism(&scene.lens) {
+        return None;
+    }
+    let mut start = words(scene)?;
+    start["text"] = std::fs::read_to_string(&order.scene).ok().map(|text| print_of(&text)).into();
+    Some(start)
+}
+
+/// What a scene has of a prism.
+fn words(scene: &Scene) -> Option<Value> {
+    let lens = &scene.lens;
+    let angles = normals(lens)?.map(|normal| atan2(-normal.y, normal.z).to_degrees());
+    let first = lens.elements.first()?;
+    let glass = match &lens.media.get(first.medium_after)?.medium {
+        Medium::Glass(glass) => Some(format!("{}/{}", glass.maker, glass.name)),
+        _ => None,
+    };
+    let root = scene.params.node();
+    let text = |path: &str| root.at_path(path).and_then(Node::as_str).map(str::to_owned);
+    let height = root.at_path("source.position").and_then(|position| position.element(1)).and_then(Node::as_str);
+    let intensity = (0..16).find_map(|k| text(&format!("output[{k}].intensity")));
+    Some(json!({
+        "apex": angles[0] - angles[1],
+        "side": first.semi_diameter_mm.map(|half| 2.0 * half),
+        "incidence": angles[0],
+        "beam": height.and_then(|text| Length::from_text(text).ok()).map_or(0.0, Length::mm),
+        "glass": glass,
+        "light": text("source.spectrum"),
+        "intensity": intensity.filter(|word| word == "true").unwrap_or_else(|| "full".to_owned()),
+    }))
+}
+
+/// A number that stands for a text.
+fn print_of(text: &str) -> String {
+    let mut hasher = DefaultHasher::new();
+    text.hash(&mut hasher);
+    format!("{:016x}", hasher.finish())
+}
+
+/// Writes a prism and its beam into the scene of an order, whose file is still the one of this print: the prism into a lens file of
+/// its own beside it, the rest where a person would write it. Gives the number of values of the scene, and the new print.
+///
+/// # Errors
+/// Why nothing is written.
+pub(super) fn keep(order: &Order, prism: &Prism, print: &str) -> Result<Value, String> {
+    let file = &order.scene;
+    let before = std::fs::read_to_string(file).map_err(|_| {
+        "a bundled scene is not written to: `spectra new scene` makes one of your own to view".to_owned()
+    })?;
+    if print_of(&before) != print {
+        return Err(format!("{} has changed meanwhile: reload the page", file.display()));
+    }
+    let session = Session::open(file, &order.overrides, order.isa).map_err(|error| error.to_string())?;
+    let scene = session.scene();
+    let known = words(scene).filter(|_| is_prism(&scene.lens)).ok_or("the scene has no prism any more")?;
+    let root = scene.params.node();
+    let lens = lens_file(file, root.at_path("lens.file").and_then(Node::as_str).unwrap_or_default())?;
+    let mut changes = Vec::new();
+    let mut set = |path: &str, value: String| changes.push((path.to_owned(), format!("{path}={value}")));
+    if known["light"] != prism.light.as_str() {
+        set("source.spectrum", format!("{:?}", prism.light));
+    }
+    if known["beam"].as_f64().is_none_or(|height| (height - prism.beam_mm).abs() > 1e-9) {
+        set("source.position", format!("[0 mm, {} mm]", prism.beam_mm));
+    }
+    if !lens.is_named {
+        set("lens.file", lens.name.clone());
+    }
+    let text = format!("{MARK}{}", prism.file()?);
+    let old = std::fs::read(&lens.path).ok();
+    let put =
+        |bytes: &[u8]| write_atomically(&lens.path, |out| Ok(out.write_all(bytes)?)).map_err(|error| error.to_string());
+    put(text.as_bytes())?;
+    let saved = if changes.is_empty() { Ok(before.clone()) } else { save(file, &before, &order.overrides, &changes) };
+    match saved {
+        Ok(now) => Ok(json!({"saved": changes.len(), "lens": lens.path.display().to_string(), "text": print_of(&now)})),
+        Err(why) => {
+            // All or nothing.
+            match old {
+                Some(old) => put(&old)?,
+                None => drop(std::fs::remove_file(&lens.path)),
+            }
+            Err(why)
+        }
+    }
+}
+
+/// Where the prism is written.
+struct LensFile {
+    path: PathBuf,
+    /// As a scene names it.
+    name: String,
+    /// Whether the scene does so already.
+    is_named: bool,
+}
+
+/// The lens file of a scene, if this page wrote it; or else one that is not there yet.
+fn lens_file(scene: &Path, named: &str) -> Result<LensFile, String> {
+    let folder = scene.parent().unwrap_or(Path::new(""));
+    let is_own = |path: &Path| std::fs::read_to_string(path).is_ok_and(|text| text.starts_with(MARK));
+    let path = folder.join(named);
+    if is_own(&path) {
+        return Ok(LensFile { path, name: named.to_owned(), is_named: true });
+    }
+    let stem = scene.file_stem().map_or_else(|| "scene".into(), |stem| stem.to_string_lossy());
+    let name = format!("{stem}-prism.yaml");
+    let path = folder.join(&name);
+    if path.exists() && !is_own(&path) {
+        return Err(format!("{} is there, and somebody else wrote it", path.display()));
+    }
+    Ok(LensFile { path, name, is_named: false })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use spectra_core::Isa;
+    use spectra_plugins as _;
+
+    fn order(scene: PathBuf) -> Order {
+        Order { scene, overrides: Vec::new(), isa: Isa::detect(), threads: 1 }
+    }
+
+    #[test]
+    fn the_study_starts_from_the_scene_and_saves_into_it() {
+        let bundled = start(&order("prism-5800k".into())).expect("a prism");
+        let number = |start: &Value, name: &str| start[name].as_f64().expect("a number");
+        assert!(
+            (number(&bundled, "apex") - 60.0).abs() < 1e-9 && (number(&bundled, "incidence") - 63.1713).abs() < 1e-9
+        );
+        assert_eq!((number(&bundled, "side"), number(&bundled, "beam")), (30.0, 0.0));
+        assert_eq!((&bundled["glass"], &bundled["light"]), (&json!("SCHOTT/N-SF11"), &json!("blackbody:5800")));
+        assert!(start(&order("biotar-ortho".into())).is_none());
+
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = folder.path().join("mine.yaml");
+        let text = "spectra: 1 # mine\nsource: {kind: beam, distance: 60 mm, slit: [6 mm, 0.3 mm], spectrum: \"blackbody:5800\"}\n\
+            lens: {file: prism-60-sf11}\nimager: {kind: xyz, width: 12 mm, height: 36 mm, resolution: [24, 72]}\n\
+            render: {rays: 1e4}\n";
+        std::fs::write(&file, text).expect("written");
+        let order = order(file.clone());
+        let begun = start(&order).expect("a prism");
+        let print = begun["text"].as_str().expect("a print").to_owned();
+        let prism = Prism {
+            apex_deg: 45.0,
+            side_mm: 40.0,
+            glass: "SCHOTT/N-BK7".to_owned(),
+            incidence_deg: 35.0,
+            beam_mm: 2.5,
+            light: "hydrogen".to_owned(),
+            is_true: false,
+        };
+        let kept = keep(&order, &prism, &print).unwrap_or_else(|why| panic!("{why}"));
+        assert_eq!(kept["saved"], 3);
+        let now = std::fs::read_to_string(&file).expect("there");
+        assert!(now.starts_with("spectra: 1 # mine\n") && now.contains("mine-prism.yaml"), "{now}");
+        let again = start(&order).expect("a prism");
+        for (name, value) in [("apex", 45.0), ("side", 40.0), ("incidence", 35.0), ("beam", 2.5)] {
+            assert!((number(&again, name) - value).abs() < 1e-9, "{name}: {again}");
+        }
+        assert_eq!(
+            (&again["glass"], &again["light"], &again["text"]),
+            (&json!("SCHOTT/N-BK7"), &json!("hydrogen"), &kept["text"])
+        );
+
+        // Its own file is written again; a scene that somebody wrote meanwhile, or a lens file of somebody else, is left alone.
+        assert!(keep(&order, &prism, &print).expect_err("an older text").contains("has changed"));
+        let print = kept["text"].as_str().expect("a print");
+        assert_eq!(keep(&order, &Prism { apex_deg: 50.0, ..prism.clone() }, print).expect("saved")["saved"], 0);
+        assert!((number(&start(&order).expect("a prism"), "apex") - 50.0).abs() < 1e-9);
+        std::fs::write(&file, text).expect("written");
+        std::fs::write(folder.path().join("mine-prism.yaml"), "name: of somebody else\n").expect("written");
+        assert!(keep(&order, &prism, &print_of(text)).expect_err("not its own").contains("somebody else"));
+        assert_eq!(std::fs::read_to_string(&file).expect("there"), text);
+    }
+}

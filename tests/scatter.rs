@@ -1,0 +1,119 @@
+//! Haze, dust and scratches on a lens: the same picture from the source and from the imager, lit card and halo; clean lenses keep
+//! their bits; the books of a scene with ghosts close.
+
+use spectra_core::Isa;
+use spectra_plugins as _;
+use spectra_render::{Control, Renderer, Rendering, Threads};
+use std::path::Path;
+
+const SEEDS: u64 = 12;
+
+fn render(overrides: &[&str], seed: u64) -> Rendering {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/gray-card.yaml");
+    let common = [
+        "source={kind: chart, chart: white, distance: 1 m, width: 10 cm, illuminant: D65, luminance: 300 cd/m2}",
+        "lens.focus={distance: 1 m, by: paraxial}",
+        "lens.f-number=f/4",
+        "imager={kind: xyz, width: 15, height: 10, resolution: [15, 10]}",
+    ];
+    let mut all: Vec<String> = common.iter().chain(overrides).map(|s| (*s).to_owned()).collect();
+    all.push(format!("render.seed={seed}"));
+    let scene = spectra_scene::load(&path, &all).unwrap_or_else(|faults| panic!("{faults}"));
+    let renderer = Renderer::new(scene, Isa::detect()).expect("the scene can be rendered");
+    renderer.run(&Threads(2), &Control::new()).expect("rendered")
+}
+
+fn y(rendering: &Rendering) -> Vec<f64> {
+    let plane = rendering.exposure.channel("Y").expect("an XYZ imager");
+    plane.values.iter().map(|y| f64::from(*y)).collect()
+}
+
+const SOILED: [&str; 3] = [
+    "lens.haze={share: 4 %, shoulder: 2 deg}",
+    "lens.dust={coverage: 1 %, diameter: 20 um}",
+    "lens.scratches={coverage: 1 %, width: 6 um, direction: 30 deg, where: {shape: ring, inner: 2, outer: 12}}",
+];
+
+/// Mean and standard error of each pixel.
+fn estimate(overrides: &[&str]) -> Vec<(f64, f64)> {
+    let runs: Vec<Vec<f64>> = (1..=SEEDS).map(|seed| y(&render(&[&SOILED[..], overrides].concat(), seed))).collect();
+    let n = SEEDS as f64;
+    let of = |pixel: usize| {
+        let mean = runs.iter().map(|run| run[pixel]).sum::<f64>() / n;
+        let variance = runs.iter().map(|run| (run[pixel] - mean) * (run[pixel] - mean)).sum::<f64>() / (n - 1.0);
+        (mean, (variance / n).sqrt())
+    };
+    (0..runs[0].len()).map(of).collect()
+}
+
+/// Sums over card and halo agree within 3 standard errors, and the pixels' differences have the spread of their errors (Student's t of 22
+/// degrees of freedom: a mean square of 22/20).
+#[test]
+fn both_directions_are_equal() {
+    let backward = estimate(&["render.direction=backward", "render.samples=512"]);
+    let forward = estimate(&["render.direction=forward", "render.rays=400000"]);
+    let middle = backward.iter().map(|b| b.0).fold(0.0, f64::max);
+    let (mut squares, mut most) = (0.0, 0.0_f64);
+    // Difference, its variance, and light: card, halo.
+    let mut parts = [[0.0; 3]; 2];
+    for ((b, eb), (f, ef)) in backward.iter().zip(&forward) {
+        let variance = eb * eb + ef * ef;
+        squares += (f - b) * (f - b) / variance;
+        most = most.max((f - b).abs() / variance.sqrt());
+        let part = &mut parts[usize::from(*b < 0.1 * middle)];
+        for (sum, add) in part.iter_mut().zip([f - b, variance, *b]) {
+            *sum += add;
+        }
+    }
+    let mean_square = squares / backward.len() as f64;
+    println!("mean square {mean_square:.3}, at most {most:.2} standard errors");
+    for (name, [difference, variance, light]) in ["card", "halo"].into_iter().zip(parts) {
+        let errors = difference / variance.sqrt();
+        let part = difference / light;
+        println!("{name}: {part:+.5} of the light, {errors:+.2} standard errors of {:.5}", variance.sqrt() / light);
+        assert!(errors.abs() < 3.0 && light > 0.0, "{name}");
+    }
+    assert!(parts[1][2] > 0.02 * parts[0][2], "no halo");
+    assert!((0.7..1.6).contains(&mean_square) && most < 5.5);
+}
+
+/// Of nothing that lies there the bits are those of a clean lens; what lies there is another estimator, and has the same bits in
+/// batches of any size.
+#[test]
+fn bits_stay() {
+    let of = |set: &[&str]| render(&[&["render.samples=32"], set].concat(), 1);
+    let (clean, none) = (of(&[]), of(&["lens.haze={share: 0}"]));
+    assert_eq!((y(&clean), clean.rays, clean.estimators), (y(&none), none.rays, none.estimators));
+    let soiled = of(&SOILED);
+    assert_eq!(soiled.estimators, ["backward", "scatter"]);
+    assert_eq!(soiled.detected + soiled.losses.total(), soiled.rays);
+    let cut = of(&[&SOILED[..], &["render.batch=100"]].concat());
+    assert_eq!(y(&soiled), y(&cut));
+}
+
+/// The middle of a card through dust on the eight outer surfaces of the lens.
+#[test]
+fn dust_takes_what_it_covers() {
+    let of = |set: &[&str]| render(&[&["render.samples=2048"], set].concat(), 1);
+    let dust = of(&["lens.dust={coverage: 2 %, diameter: 5 mm, spread: 0}"]);
+    let clean = of(&[]);
+    // Grains this large scatter by less than a pixel: the light that they stop is gone, the light that they diffract stays.
+    let middle = |of: &Rendering| {
+        (3..6).flat_map(|row| (6..9).map(move |column| row * 15 + column)).map(|p| y(of)[p]).sum::<f64>()
+    };
+    let (got, want) = (middle(&dust) / middle(&clean), 0.98_f64.powi(8));
+    assert!((got / want - 1.0).abs() < 0.01, "{got} {want}");
+}
+
+/// Of a sun whose ghosts are traced every watt is booked once, what is scattered apart.
+#[test]
+fn the_books_of_a_sun_close() {
+    let sun = "source={kind: sun, field: [5 deg, 3 deg], illuminance: 60000 lx, spectrum: \"blackbody:5400\"}";
+    let set =
+        [sun, "render.reflections.order=2", "render.direction=forward", "render.rays=2000", "lens.focus=infinity"];
+    let rendering = render(&[&SOILED[..], &set].concat(), 1);
+    let ledger = rendering.ledger.expect("ghosts are traced");
+    let booked = ledger.detected_w() + ledger.lost_w() + ledger.not_traced_w;
+    assert!((booked / ledger.emitted_w - 1.0).abs() < 1e-9, "{ledger:?}");
+    assert!(ledger.scattered_w > 0.05 * ledger.emitted_w && ledger.absorbed_w > 0.0, "{ledger:?}");
+}
