@@ -1,7 +1,7 @@
 //! `spectra lens compare`.
 
+use super::arguments::LensCompare;
 use super::{Setting, one_light, set};
-use crate::arguments::LensCompare;
 use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
 use spectra_analysis::info::Comparison;

@@ -1,7 +1,7 @@
 //! `spectra lens draw`.
 
+use super::arguments::{CutArgument, LensDraw};
 use super::load;
-use crate::arguments::{CutArgument, LensDraw};
 use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
 use crate::words::figure_of;

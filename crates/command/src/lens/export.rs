@@ -1,7 +1,7 @@
 //! `spectra lens export`.
 
+use super::arguments::LensExport;
 use super::exchanged::{deliver, target};
-use crate::arguments::LensExport;
 use crate::outcome::{Failure, Outcome};
 use spectra_core::resources::Resources;
 use spectra_exchange::{Format, SystemAperture, yaml, zmx};

@@ -1,8 +1,8 @@
 //! `spectra lens ghosts`.
 
+use super::arguments::LensGhosts;
 use super::load;
 use super::trace::path_of;
-use crate::arguments::LensGhosts;
 use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
 use serde_json::json;

@@ -1,7 +1,7 @@
 //! `spectra lens import`.
 
+use super::arguments::LensImport;
 use super::exchanged::{deliver, target};
-use crate::arguments::LensImport;
 use crate::console;
 use crate::outcome::{Failure, Outcome};
 use spectra_core::resources::Resources;

@@ -1,7 +1,7 @@
 //! `spectra lens info`.
 
+use super::arguments::LensInfo;
 use super::{load, one_light};
-use crate::arguments::LensInfo;
 use crate::outcome::{DONE, Failure, Outcome};
 use crate::{console, limits};
 use spectra_analysis::Light;

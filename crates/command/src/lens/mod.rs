@@ -1,5 +1,6 @@
 //! `spectra lens`: the lens as an optical engineer looks at it.
 
+mod arguments;
 mod compare;
 mod draw;
 mod exchanged;
@@ -9,8 +10,10 @@ mod import;
 mod info;
 mod trace;
 
-use crate::arguments::{LensCommand, LensOptions, LensSetting, OneLight};
+pub(crate) use arguments::LensArguments;
+
 use crate::outcome::{Failure, Outcome};
+use arguments::{LensCommand, LensOptions, LensSetting, OneLight};
 use spectra_analysis::Light;
 use spectra_core::Isa;
 use spectra_core::params::FNumber;

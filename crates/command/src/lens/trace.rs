@@ -1,7 +1,7 @@
 //! `spectra lens trace`.
 
+use super::arguments::LensTrace;
 use super::{load, one_light};
-use crate::arguments::LensTrace;
 use crate::outcome::{DONE, Failure, Outcome};
 use crate::{console, words};
 use spectra_analysis::trace::{Format, TraceError, TraceSummary, Tracing, trace as trace_rays};

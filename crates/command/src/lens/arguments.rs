@@ -1,0 +1,387 @@
+//! What can be written after `spectra lens`.
+
+use crate::quantity::parse;
+use clap::{Args, Subcommand};
+use spectra_core::params::{FNumber, Length, OrInfinity, Positive, Ratio, Wavelength};
+use spectra_lens::Criterion;
+use std::path::PathBuf;
+
+/// `spectra lens`.
+#[derive(Debug, Args)]
+#[command(after_long_help = "Example:\n  spectra lens info zeiss-biotar-50-f1.4")]
+pub(crate) struct LensArguments {
+    /// The command to run.
+    #[command(subcommand)]
+    pub command: LensCommand,
+}
+
+/// The commands on lenses.
+#[derive(Debug, Subcommand)]
+pub(crate) enum LensCommand {
+    /// Show the data of a lens: focal lengths, pupils, f-number, prescription.
+    Info(LensInfo),
+    /// Compare lenses side by side: focal length, f-number, field, contrast, distortion.
+    Compare(LensCompare),
+    /// Draw a lens: glass, stop, and rays from several field angles in their spectral colors.
+    Draw(LensDraw),
+    /// List the ghosts of a lens: energy, focus, size and color of each pair of reflections.
+    Ghosts(LensGhosts),
+    /// Trace rays through a lens: CSV in, CSV out.
+    Trace(LensTrace),
+    /// Convert a lens file from another program: .zmx, .seq or .csv.
+    Import(LensImport),
+    /// Export a lens for other programs, as .zmx.
+    Export(LensExport),
+}
+
+/// `spectra lens compare`.
+#[derive(Debug, Args)]
+#[command(
+    long_about = "Compare lenses side by side: focal length, f-number, T-number, field, size, contrast on axis and \
+        off axis, distortion.\n\n\
+        Contrast is geometrical, at 30 lp/mm, in the plane where it is highest on axis. The off-axis field is the \
+        same for all lenses: 0.7 of the field of the narrowest one. A lens that cannot reach --f-number stays wide \
+        open, with a note.",
+    after_long_help = "Example: both at f/2\n  spectra lens compare zeiss-biotar-50-f1.4 helios-44-58-f2 --f-number f/2"
+)]
+pub(crate) struct LensCompare {
+    /// Two or more lens files, or names of bundled lenses (see `spectra list lens`).
+    #[arg(value_name = "LENS", num_args = 2.., required = true)]
+    pub lenses: Vec<String>,
+    #[command(flatten)]
+    pub options: LensOptions,
+    #[command(flatten)]
+    pub light: OneLight,
+    /// Write a JSON object to standard output.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `spectra lens draw`.
+#[derive(Debug, Args)]
+#[command(
+    long_about = "Draw a lens: glass tinted by its index and dispersion, stop, image plane, and rays from several \
+        field angles in the colors of their wavelengths.\n\n\
+        Every ray is traced; the rays of a fan are spaced evenly over the beam that actually passes at that field \
+        angle. An element with no size in the prescription is drawn as large as the beam on it.",
+    after_long_help = "Example: the Biotar at f/4, three field angles\n  \
+        spectra lens draw zeiss-biotar-50-f1.4 --f-number f/4 --fields 0,10,20 -o biotar.svg"
+)]
+pub(crate) struct LensDraw {
+    #[command(flatten)]
+    pub setting: LensSetting,
+    /// Output file, .svg or .png; LENS.svg if not given.
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Field angles in degrees; if not given, the axis, and 0.6 and 0.95 of the largest field angle that passes (up to
+    /// 85).
+    #[arg(long, value_name = "DEG,DEG,...", value_delimiter = ',', allow_negative_numbers = true)]
+    pub fields: Vec<f64>,
+    /// Wavelengths (550nm) or spectral lines (C').
+    #[arg(long, value_name = "NM,NM,...", value_delimiter = ',', default_value = "F',e,C'", value_parser = wavelength_or_line)]
+    pub wavelengths: Vec<f64>,
+    /// Number of rays per fan and wavelength.
+    #[arg(long, value_name = "N", default_value = "5", value_parser = clap::value_parser!(u16).range(0..=1001))]
+    pub rays: u16,
+    /// Distance of the object from the first surface (2m, inf).
+    #[arg(long, value_name = "DISTANCE", default_value = "inf", value_parser = parse::<OrInfinity<Positive<Length>>>)]
+    pub object: OrInfinity<Positive<Length>>,
+    /// Plane of the cross-section: `y` is the y-z plane, `x` the x-z plane.
+    #[arg(long, value_enum, default_value_t = CutArgument::Y)]
+    pub section: CutArgument,
+    /// Width of the drawing; a .png is twice as many pixels wide.
+    #[arg(long, value_name = "UNITS", default_value = "900", value_parser = clap::value_parser!(u16).range(100..=8000))]
+    pub width: u16,
+    /// White glass and additively blended rays on a black background.
+    #[arg(long)]
+    pub dark: bool,
+}
+
+/// The plane of a drawing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum CutArgument {
+    /// The y-z plane, y up.
+    #[value(alias = "y-z")]
+    Y,
+    /// The x-z plane, x up.
+    #[value(alias = "x-z")]
+    X,
+}
+
+/// A part of something: from 0 to 1.
+fn share(text: &str) -> Result<f64, String> {
+    let value = text.parse::<f64>().ok().filter(|v| (0.0..=1.0).contains(v));
+    value.ok_or_else(|| "a part from 0 to 1, such as 1e-8".to_owned())
+}
+
+/// An angle that light can come from in front.
+fn field(text: &str) -> Result<f64, String> {
+    let value = text.parse::<f64>().ok().filter(|v| v.abs() < 90.0);
+    value.ok_or_else(|| "degrees between -90 and 90".to_owned())
+}
+
+fn wavelength_or_line(text: &str) -> Result<f64, String> {
+    match spectra_glass::lines::by_name(text.trim()) {
+        Some(line) => Ok(line.wavelength_nm),
+        None => parse::<Wavelength>(text).map(|w| w.nm()).map_err(|e| format!("{e}; or a line such as F', e, C'")),
+    }
+}
+
+/// A lens, and how it is set.
+#[derive(Debug, Args)]
+pub(crate) struct LensSetting {
+    /// A lens file, or the name of a bundled lens (see `spectra list lens`).
+    #[arg(value_name = "LENS")]
+    pub lens: String,
+    #[command(flatten)]
+    pub options: LensOptions,
+}
+
+/// How a lens is set.
+#[derive(Debug, Args)]
+pub(crate) struct LensOptions {
+    /// Focus at this distance from the first surface (2m, 77cm, inf); as in the file if not given.
+    #[arg(long, value_name = "DISTANCE", value_parser = parse::<OrInfinity<Positive<Length>>>)]
+    pub focus: Option<OrInfinity<Positive<Length>>>,
+    /// Focus distance as a plain number in millimeters.
+    #[arg(long, value_name = "MM", value_parser = parse::<OrInfinity<Positive<Length>>>, conflicts_with = "focus")]
+    pub focus_mm: Option<OrInfinity<Positive<Length>>>,
+    /// What --focus optimizes, at the lens's reference line, on axis and at the chosen aperture.
+    #[arg(long, value_name = "MEASURE", value_enum, default_value_t = FocusMeasure::Contrast)]
+    pub focus_by: FocusMeasure,
+    /// Set the stop to this f-number (f/2), measured with the real marginal ray; as in the file if not given.
+    #[arg(long, value_name = "F/N", value_parser = parse::<FNumber>)]
+    pub f_number: Option<FNumber>,
+    /// Coating of all surfaces: ideal (no reflection), bare, single-layer, three-layer, another of `spectra list coating` that
+    /// has no required parameters, or a file; as in the lens file if not given.
+    #[arg(long, value_name = "COATING")]
+    pub coating: Option<String>,
+    /// Whether glass absorbs light: true or false; as in the file if not given.
+    #[arg(long, value_name = "BOOL")]
+    pub absorption: Option<bool>,
+}
+
+/// What a focused lens is best at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum FocusMeasure {
+    /// Highest contrast at 30 line pairs per mm, with real rays, as scenes on a 135 frame are focused.
+    Contrast,
+    /// Smallest RMS spot, with real rays.
+    #[value(alias = "rms")]
+    Spot,
+    /// The paraxial (first-order) image.
+    Paraxial,
+}
+
+impl FocusMeasure {
+    /// What real rays are searched by.
+    pub(crate) fn criterion(self) -> Option<Criterion> {
+        match self {
+            Self::Contrast => Some(Criterion::Contrast { per_mm: 30.0 }),
+            Self::Spot => Some(Criterion::Rms),
+            Self::Paraxial => None,
+        }
+    }
+}
+
+/// One light for all.
+#[derive(Debug, Args)]
+#[group(multiple = false)]
+pub(crate) struct OneLight {
+    /// Use this spectral line: i, h, g, F', F, e, d, D, C', C, r, A', s or t.
+    #[arg(long, value_name = "LINE", value_parser = line)]
+    pub line: Option<f64>,
+    /// Use this wavelength in air.
+    #[arg(long, value_name = "NM", value_parser = parse::<Wavelength>)]
+    pub wavelength_nm: Option<Wavelength>,
+    /// Use the index stated in the prescription for every glass.
+    #[arg(long)]
+    pub nd: bool,
+}
+
+/// Wavelength of a spectral line, nm.
+fn line(name: &str) -> Result<f64, String> {
+    spectra_glass::lines::by_name(name).map(|line| line.wavelength_nm).ok_or_else(|| {
+        let known: Vec<&str> = spectra_glass::lines::ALL.iter().map(|line| line.name).collect();
+        format!("no such spectral line; {}", spectra_core::names::hint(name, &known, ""))
+    })
+}
+
+/// A part of the light: `4 %`, `0.04`.
+fn part(text: &str) -> Result<f64, String> {
+    let part = parse::<Ratio>(text)?.number();
+    if (0.0..=1.0).contains(&part) { Ok(part) } else { Err("expected a part from 0 to 100 %".to_owned()) }
+}
+
+/// `spectra lens info`.
+#[derive(Debug, Args)]
+#[command(
+    long_about = "Show the data of a lens: focal lengths, principal planes, pupils, f-number, T-number, focus, field, \
+        the mounts it leaves room for, and prescription.\n\n\
+        Values are for the reference line of the lens's patent, unless a line or wavelength is given. The f-number \
+        and pupil diameters come from the real marginal ray; the positions of planes and pupils are paraxial; focus \
+        shifts, the largest field and the chief rays come from real rays. The T-number includes coatings, mirrors and \
+        absorption; a note beside it lists these and what is assumed: coatings typical of the lens's time, unless its \
+        file or --coating says otherwise.\n\n\
+        --glare adds the veiling glare index by the integral method of ISO 9358: the light in the middle of a black disk \
+        within an endless white field, over that without the disk. The image of the disk is a tenth as large as the diagonal of \
+        a 36 x 24 mm frame; its middle half is looked at, in the light of the report. Light is reflected by every surface any number \
+        of times, and scattered by black paint on barrel, rims, edges of the glass and blades.",
+    after_long_help = "Examples: the same lens in blue light; its veiling glare with a single layer on each surface\n  \
+        spectra lens info zeiss-biotar-50-f1.4 --line g\n  \
+        spectra lens info zeiss-biotar-50-f1.4 --f-number f/2 --coating single-layer --glare"
+)]
+pub(crate) struct LensInfo {
+    #[command(flatten)]
+    pub setting: LensSetting,
+    #[command(flatten)]
+    pub light: OneLight,
+    /// List every mount that the lens fits, not only the common ones.
+    #[arg(long)]
+    pub mounts: bool,
+    /// Work out the veiling glare index (some seconds).
+    #[arg(long)]
+    pub glare: bool,
+    /// Diffuse reflectance of the black paint, for --glare; 4 % if not given.
+    #[arg(long, value_name = "PART", value_parser = part, requires = "glare")]
+    pub paint: Option<f64>,
+    /// Diffuse reflectance of the film or sensor, for --glare; none if not given, as ISO 9358 looks at the lens alone.
+    #[arg(long, value_name = "PART", value_parser = part, requires = "glare")]
+    pub film_reflectance: Option<f64>,
+    /// Write a JSON object to standard output.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `spectra lens ghosts`.
+#[derive(Debug, Args)]
+#[command(
+    long_about = "List the ghosts of a lens: light that two surfaces reflect on its way to the film, or four.\n\n\
+        For light from infinity on the axis, at the reference line: energy relative to the straight light; distance of the ghost's focus \
+        from the image plane, positive beyond it, and its focal length (both paraxial); the diameter of its disk on the image plane; \
+        and its energy at C', e and F' over that at e. Surfaces are counted from 1, in the order in which they reflect. Coatings are those \
+        of the lens file, or typical of its time, unless --coating says otherwise.\n\n\
+        Paths of four reflections (--order 4) are searched by following the light: whatever a path begins with less than --share of the \
+        straight light is cut there, since nothing further on can add to it. What is not followed is said.\n\n\
+        With -o the lens is drawn with the rays of a ghost: the one that is brightest on the film, or that of --path.",
+    after_long_help = "Examples: what a single layer does; the brightest ghost; one of those with the light from 20 degrees\n  \
+        spectra lens ghosts zeiss-biotar-50-f1.4 --coating single-layer\n  \
+        spectra lens ghosts zeiss-biotar-50-f1.4 -o ghost.svg\n  \
+        spectra lens ghosts zeiss-biotar-50-f1.4 -o ghost.svg --path 7,3 --field 20"
+)]
+pub(crate) struct LensGhosts {
+    #[command(flatten)]
+    pub setting: LensSetting,
+    /// Reflections at most: 2, or 4.
+    #[arg(long, value_name = "N", default_value = "2", value_parser = ["2", "4"])]
+    pub order: String,
+    /// Leave out paths of four reflections that begin with less than this part of the straight light.
+    #[arg(long, value_name = "PART", default_value = "1e-8", value_parser = share)]
+    pub share: f64,
+    /// Draw the lens with the rays of a ghost: the one brightest on the film, or that of --path. To .svg or .png.
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// The ghost to draw: the surfaces that reflect it, counted from 1, in the order of the light.
+    #[arg(long, value_name = "A,B", value_delimiter = ',', requires = "output")]
+    pub path: Vec<usize>,
+    /// Field angle of the light that is drawn, degrees.
+    #[arg(long, value_name = "DEG", default_value = "0", allow_negative_numbers = true, requires = "output",
+        value_parser = field)]
+    pub field: f64,
+    /// Number of rays that are drawn.
+    #[arg(long, value_name = "N", default_value = "11", requires = "output",
+        value_parser = clap::value_parser!(u16).range(1..=1001))]
+    pub rays: u16,
+    /// Show all of them, not only the brightest.
+    #[arg(long)]
+    pub all: bool,
+    /// Write a JSON object to standard output, with all of them.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `spectra lens trace`.
+#[derive(Debug, Args)]
+#[command(
+    long_about = "Trace rays through a lens: CSV in, CSV out.\n\n\
+        Input columns: x_mm,y_mm,z_mm (a point on the ray before the first surface, whose vertex is the origin; +z \
+        runs toward the image), l,m,n (unit direction) and wavelength_nm, unless one line or wavelength is given for \
+        all rays. Columns are found by name, in any order.\n\n\
+        Output, one row per ray: status,surface,x_mm,y_mm,z_mm,l,m,n,wavelength_nm,transmittance,optical_path_mm. A \
+        `hit` is where the ray meets the image plane, in the same coordinates; a ray that ends earlier is `missed`, \
+        `vignetted`, `tir` or `absorbed`, with the number of the surface, counted from 1. `transmittance` is what \
+        coatings and glass leave of the light, `optical_path_mm` the index times the length from the start of the ray. \
+        --every-surface has a row `passed` for each surface as well, with the direction behind it, and the number of the \
+        ray first. Surfaces clip only at stated semi-diameters, unless --f-number sets the stop; the lens is not \
+        refocused unless --focus is given.",
+    after_long_help = "Example:\n  spectra lens trace zeiss-biotar-50-f1.4 --rays rays.csv --nd -o hits.csv"
+)]
+pub(crate) struct LensTrace {
+    #[command(flatten)]
+    pub setting: LensSetting,
+    #[command(flatten)]
+    pub light: OneLight,
+    /// CSV file of rays; `-` reads standard input.
+    #[arg(long, value_name = "FILE")]
+    pub rays: PathBuf,
+    /// Follow the path that these surfaces reflect, counted from 1, in the order of the light: 7,3 is a ghost.
+    #[arg(long, value_name = "A,B", value_delimiter = ',')]
+    pub path: Vec<usize>,
+    /// Write a row for every surface that a ray passes.
+    #[arg(long)]
+    pub every_surface: bool,
+    /// Output file; standard output if not given, or if `-`.
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Write one JSON object per line for each ray, instead of CSV.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `spectra lens import`.
+#[derive(Debug, Args)]
+#[command(
+    long_about = "Convert a lens file from another program: .zmx (Zemax OpticStudio, sequential), .seq (CODE V) or \
+        .csv (one row per surface).\n\n\
+        Anything that cannot be converted is listed on standard error and kept in the file as comments; anything that \
+        changes the path of light is marked with `!`. Entrance pupil, f-number, fields and wavelengths become a \
+        remark. Every command that takes a lens also reads these files directly, without importing them first.",
+    after_long_help = "Example:\n  spectra lens import tessar.zmx -o tessar.yaml"
+)]
+pub(crate) struct LensImport {
+    /// The file to convert.
+    #[arg(value_name = "FILE")]
+    pub file: PathBuf,
+    /// Output lens file; standard output if not given, or if `-`.
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Overwrite an existing file.
+    #[arg(long)]
+    pub force: bool,
+    /// Write a JSON object to standard output: what was read, and what was left out; needs -o.
+    #[arg(long, requires = "output")]
+    pub json: bool,
+}
+
+/// `spectra lens export`.
+#[derive(Debug, Args)]
+#[command(
+    long_about = "Export a lens for other programs, as .zmx (Zemax OpticStudio and programs that read its files).\n\n\
+        Catalogue glasses are written by name, others by nd and Vd. Anything that cannot be converted is listed on \
+        standard error.",
+    after_long_help = "Example:\n  spectra lens export zeiss-biotar-50-f1.4 -o biotar.zmx"
+)]
+pub(crate) struct LensExport {
+    /// A lens file, or the name of a bundled lens.
+    #[arg(value_name = "LENS")]
+    pub lens: String,
+    /// Output file, with a name ending in .zmx; standard output if not given, or if `-`.
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Overwrite an existing file.
+    #[arg(long)]
+    pub force: bool,
+    /// Write a JSON object to standard output: what was written, and what was left out; needs -o.
+    #[arg(long, requires = "output")]
+    pub json: bool,
+}
