@@ -13,6 +13,8 @@ use std::time::Instant;
 const BAND_NM: [f64; 2] = [350.0, 830.0];
 /// Rays on the axis, and over the whole frame.
 const RAYS: usize = 1 << 15;
+/// Points of the frame from which weights are looked at.
+const WEIGHED: usize = 64;
 
 fn load(name: &str) -> Lens {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
@@ -101,11 +103,37 @@ impl Pupil {
         }
     }
 
-    fn largest_weight(&self) -> f64 {
-        match self {
-            Self::Rear(p) => p.largest_weight(),
-            Self::Front(p) => p.largest_weight(),
+    /// What a ray from one of some points weighs at most, in mean weights of the rays from there: of numbers all over the
+    /// square, and of those at its rim, which are aimed around what passes.
+    fn largest_weight(&self, points: &[DVec3], isa: Isa) -> f64 {
+        const RIM: usize = 1 << 10;
+        const ALL: usize = 1 << 11;
+        let (mut u, mut v) = (numbers(31, 0, ALL), numbers(31, 1, ALL));
+        for k in 0..RIM {
+            let along = ((k / 4) as f64 + 0.5) / (RIM / 4) as f64;
+            let far = 1.0 - 1e-6;
+            let (a, b) = [(along, far), (along, 1.0 - far), (far, along), (1.0 - far, along)][k % 4];
+            u.push(a);
+            v.push(b);
         }
+        let mut rays = RayBatch::new(ALL + RIM);
+        let mut largest = 0.0_f64;
+        for (k, point) in points.iter().enumerate() {
+            rays.restart(ALL + RIM);
+            let c = rays.columns_mut();
+            c.x.fill(point.x);
+            c.y.fill(point.y);
+            c.z.fill(point.z);
+            c.n.fill(-1.0);
+            c.wavelength_nm.fill(BAND_NM[0] + (k as f64 + 0.5) / points.len() as f64 * (BAND_NM[1] - BAND_NM[0]));
+            self.aim(&mut rays, &u, &v, isa);
+            let weights = rays.weights();
+            let mean = weights[..ALL].iter().sum::<f64>() / ALL as f64;
+            if mean > 0.0 {
+                largest = weights.iter().fold(largest, |largest, weight| largest.max(weight / mean));
+            }
+        }
+        largest
     }
 
     fn aim(&self, rays: &mut RayBatch, u: &[f64], v: &[f64], isa: Isa) -> usize {
@@ -207,9 +235,9 @@ fn row(name: &str, lens: &Lens, frame: [f64; 2], n: usize, forward: bool) -> [f6
     let start = Instant::now();
     let pupil = rear(lens, &tracer, frame);
     let searched = start.elapsed();
-    let mut weight = pupil.largest_weight();
     let axis = vec![DVec3::ZERO; n];
     let points = film(frame, n);
+    let mut weight = pupil.largest_weight(&points[..WEIGHED], tracer.isa());
     let [on_axis, all] = [&axis, &points].map(|p| 100.0 * outcome(&tracer, &pupil, p, 3).lost());
     let old = pupil.without_outlines();
     let [old_axis, old_all] = [&axis, &points].map(|p| 100.0 * outcome(&tracer, &old, p, 3).lost());
@@ -218,7 +246,7 @@ fn row(name: &str, lens: &Lens, frame: [f64; 2], n: usize, forward: bool) -> [f6
     if forward {
         let start = Instant::now();
         let (pupil, points) = front(lens, &tracer, frame, n);
-        weight = weight.max(pupil.largest_weight());
+        weight = weight.max(pupil.largest_weight(&points[..WEIGHED], tracer.isa()));
         took = start.elapsed();
         let far = points[0].length();
         let axis = vec![DVec3::new(0.0, 0.0, -far); n];
@@ -289,6 +317,8 @@ fn nearly_all_rays_pass() {
         ("zeiss-biotar-50-f1.4", 0.0, Opening::Round, true),
         ("zeiss-biotar-50-f1.4", 16.0, Opening::Round, false),
         ("zeiss-biotar-50-f1.4", 4.0, Opening::Blades, true),
+        ("zeiss-biotar-50-f1.4", 1.43, Opening::Star, false),
+        ("zeiss-biotar-50-f1.4", 4.0, Opening::Star, true),
         ("nikkor-100-f1.4", 0.0, Opening::Round, false),
         ("nikkor-100-f1.4", 4.0, Opening::Blades, false),
         ("minolta-fisheye-16-f2.7", 0.0, Opening::Round, false),

@@ -88,12 +88,6 @@ impl FrontPupil {
         self
     }
 
-    /// What a ray beside the outline of its zone weighs at most, in mean weights of those inside.
-    #[must_use]
-    pub fn largest_weight(&self) -> f64 {
-        self.table.outlines.as_ref().map_or(1.0, super::outline::Outlines::largest_weight)
-    }
-
     /// Turns the rays of a batch, which are at their source points, toward the pupil, starts them
     /// there, and multiplies their weights by the solid angle of the region (sr), so that all of it
     /// counts alike. `u` and `v`, one a ray in [0, 1), choose the place. Rays of points from which

@@ -2,8 +2,9 @@
 //!
 //! An outline is a fan of triangles about the middle of its zone, of nearly equal areas, one for each zone of angle, depth,
 //! azimuth and wavelength. Numbers of the unit square choose a triangle and a place in it, neighbors to neighbors, so that
-//! strata survive. Nearly all of them fill the outline; the last few are stretched over a ring around it. What the outline
-//! forgot is found there, with a weight that is larger by a known factor, so the estimate has no bias.
+//! strata survive. Nearly all of them fill the outline; the last few are stretched over a ring around it, a triangle's share of
+//! them by its area, so that the ring is filled evenly also where triangles are not alike. What the outline forgot is found
+//! there, with a weight that is larger by a known factor, so the estimate has no bias.
 
 use super::AimPattern;
 use super::reach::CORNERS;
@@ -15,14 +16,24 @@ use spectra_core::{Loss, RayBatch};
 const INSIDE: f64 = 0.9969;
 /// The ring reaches this much farther than the outline, in proportion.
 pub(super) const RING: f64 = 0.025;
-/// How much of the squared radius a number of the ring stands for. To that of the outline, 1 / `INSIDE`, it is as 16.3 to 1.
-const STRETCH: f64 = ((1.0 + RING) * (1.0 + RING) - 1.0) / (1.0 - INSIDE);
-/// Corners of one outline, the first one twice, and how it moves and grows over its zones of wavelength and depth.
-pub(super) const STRIDE: usize = CORNERS + 4;
+/// The area of the ring, in areas of the outline. The mean of its numbers stands for 16.3 times as much as that of the others.
+const AROUND: f64 = (1.0 + RING) * (1.0 + RING) - 1.0;
+/// Corners of one outline, the first one twice, how it moves and grows over its zones of wavelength and depth, and [`thin`].
+pub(super) const STRIDE: usize = CORNERS + 5;
 /// Rays that are aimed at once.
 const CHUNK: usize = 256;
 /// Steps of the azimuth's measure in [`Outlines::turns`].
 pub(super) const TURN_STEPS: usize = 4096;
+
+/// The share of a triangle's numbers that go to the ring, for each mm2 of twice its area.
+pub(super) fn thin(corners: &[[f32; 2]]) -> f32 {
+    let doubled = corners.windows(2).map(|pair| {
+        let ([ax, ay], [bx, by]) = (pair[0].map(f64::from), pair[1].map(f64::from));
+        ax * by - ay * bx
+    });
+    let sum: f64 = doubled.sum();
+    if sum > 0.0 { ((1.0 - INSIDE) * CORNERS as f64 / sum) as f32 } else { 0.0 }
+}
 
 /// Where in the band a wavelength lies: zones are narrower where glass disperses more.
 #[derive(Clone, Copy, Debug)]
@@ -78,7 +89,8 @@ pub(super) struct Outlines {
     /// Whether corners are along x and y of the lens, not along and across the plane of the point.
     pub turned: bool,
     /// By depth, azimuth, angle, wavelength: corners about the middle of the zone, then shifts from the lower to the upper end
-    /// of its wavelengths and of its depths, along and across the plane of the point, mm; then its growth over both, in parts.
+    /// of its wavelengths and of its depths, along and across the plane of the point, mm; then its growth over both, in parts; then
+    /// [`thin`].
     pub corners: Vec<[f32; 2]>,
 }
 
@@ -87,7 +99,7 @@ impl Outlines {
     pub fn widened(mut self, margin_mm: f64) -> Self {
         for outline in self.corners.chunks_exact_mut(STRIDE) {
             // Grown in proportion, each edge moves out by as much as it is away from the center.
-            let outline = &mut outline[..=CORNERS];
+            let (outline, more) = outline.split_at_mut(CORNERS + 1);
             let nearest = outline.windows(2).filter_map(|pair| {
                 let ([ax, ay], [bx, by]) = (pair[0].map(f64::from), pair[1].map(f64::from));
                 let length = ((bx - ax) * (bx - ax) + (by - ay) * (by - ay)).sqrt();
@@ -96,21 +108,9 @@ impl Outlines {
             let nearest = nearest.fold(f64::INFINITY, f64::min);
             let by = if nearest > 0.0 && nearest.is_finite() { 1.0 + margin_mm / nearest } else { 1.0 };
             outline.iter_mut().flatten().for_each(|c| *c = (f64::from(*c) * by) as f32);
+            more[STRIDE - CORNERS - 2][0] = thin(outline);
         }
         self
-    }
-
-    /// The most that a ray of a ring weighs, in mean weights of its outline.
-    pub fn largest_weight(&self) -> f64 {
-        let share = |outline: &[[f32; 2]]| {
-            let areas = outline[..=CORNERS].windows(2).map(|pair| {
-                let ([ax, ay], [bx, by]) = (pair[0].map(f64::from), pair[1].map(f64::from));
-                ax * by - ay * bx
-            });
-            let (most, sum) = areas.fold((0.0_f64, 0.0), |(most, sum), area| (most.max(area), sum + area));
-            if sum > 0.0 { most / sum * CORNERS as f64 } else { 0.0 }
-        };
-        STRETCH * INSIDE * self.corners.chunks_exact(STRIDE).map(share).fold(0.0, f64::max)
     }
 }
 
@@ -158,8 +158,9 @@ struct Looked {
     part: [f64; CHUNK],
     /// Unit vector from the axis to the point.
     out: [[f64; CHUNK]; 2],
-    /// Place on the outer edge from its first end to its second, radius as part of the outline's, area a number stands for.
-    place: [[f64; CHUNK]; 3],
+    /// Place on the outer edge from its first end to its second, the squared radius as a share of all, size of the outline, and
+    /// [`thin`].
+    place: [[f64; CHUNK]; 4],
 }
 
 impl<const BACKWARD: bool, const RINGS: bool, const MANY: bool> Vectorized for Draw<'_, BACKWARD, RINGS, MANY> {
@@ -177,7 +178,7 @@ impl<const BACKWARD: bool, const RINGS: bool, const MANY: bool> Vectorized for D
             moved: [[0.0; CHUNK]; 2],
             part: [0.0; CHUNK],
             out: [[0.0; CHUNK]; 2],
-            place: [[0.0; CHUNK]; 3],
+            place: [[0.0; CHUNK]; 4],
         };
         let (mut dark, mut from) = (0, 0);
         while from < c.x.len() {
@@ -231,6 +232,16 @@ fn disk<const RINGS: bool>(u: f64, v: f64) -> (f64, f64) {
     (r * r, if turns < 0.0 { turns + 1.0 } else { turns })
 }
 
+/// A number of a triangle as a squared radius in parts of the outline's, and how much of that it stands for, where `ring` is the
+/// share of the numbers that go around it.
+#[inline(always)]
+fn within(squared: f64, ring: f64) -> (f64, f64) {
+    let kept = 1.0 - ring;
+    let inside = squared <= kept;
+    let stands_for = if inside { 1.0 } else { AROUND } / if inside { kept } else { ring };
+    (if inside { squared * stands_for } else { 1.0 + (squared - kept) * stands_for }, stands_for)
+}
+
 #[inline(always)]
 fn look<const BACKWARD: bool, const RINGS: bool, const MANY: bool>(
     table: &Table,
@@ -260,11 +271,8 @@ fn look<const BACKWARD: bool, const RINGS: bool, const MANY: bool>(
         looked.part[i] = zones - slot as f64 - 0.5;
         looked.out[0][i] = ex;
         looked.out[1][i] = ey;
-        let inside = squared < INSIDE;
-        let radius2 = if inside { squared * (1.0 / INSIDE) } else { 1.0 + (squared - INSIDE) * STRETCH };
         looked.place[0][i] = along - triangle as f64;
-        looked.place[1][i] = radius2.sqrt();
-        looked.place[2][i] = if inside { 0.5 * CORNERS as f64 / INSIDE } else { 0.5 * CORNERS as f64 * STRETCH };
+        looked.place[1][i] = squared;
         looked.at[0][i] = row as u32;
         looked.at[1][i] = slot as u32;
         looked.at[2][i] = step as u32;
@@ -298,8 +306,8 @@ fn look<const BACKWARD: bool, const RINGS: bool, const MANY: bool>(
         for (column, value) in looked.drift.iter_mut().zip(&f[10..14]) {
             column[i] = value[slot];
         }
-        looked.place[1][i] *= size;
-        looked.place[2][i] *= size * size;
+        looked.place[2][i] = size;
+        looked.place[3][i] = f64::from(outline[STRIDE - 1][0]);
     }
 }
 
@@ -326,14 +334,17 @@ fn turn<const BACKWARD: bool>(
     let [ax, ay, bx, by] = &looked.edge;
     let [zr, za, zz, nr, nz, area] = &looked.zone;
     let [out_x, out_y] = &looked.out;
-    let [on_edge, radius, share] = &looked.place;
+    let [on_edge, squared, size, thin] = &looked.place;
     let [moved_a, moved_c] = &looked.moved;
     let [shift_a, shift_c, growth_a, growth_c] = &looked.drift;
     let mut dark = 0_u64;
     for i in 0..len {
         let (ex, ey) = (out_x[i], out_y[i]);
-        let p = radius[i] * (ax[i] + on_edge[i] * (bx[i] - ax[i]));
-        let q = radius[i] * (ay[i] + on_edge[i] * (by[i] - ay[i]));
+        let doubled = ax[i] * by[i] - ay[i] * bx[i];
+        let (radius2, stands_for) = within(squared[i], thin[i] * doubled);
+        let radius = radius2.sqrt() * size[i];
+        let p = radius * (ax[i] + on_edge[i] * (bx[i] - ax[i]));
+        let q = radius * (ay[i] + on_edge[i] * (by[i] - ay[i]));
         let (along, beside) = if turned { (p * ex + q * ey, q * ex - p * ey) } else { (p, q) };
         let part = looked.part[i];
         let (grown_a, grown_c) = (1.0 + part * growth_a[i], 1.0 + part * growth_c[i]);
@@ -348,7 +359,7 @@ fn turn<const BACKWARD: bool>(
         let inverse = 1.0 / (dx * dx + dy * dy + dz * dz).sqrt();
         let (dl, dm, dn) = (dx * inverse, dy * inverse, dz * inverse);
         let cosine = ((dl * ex + dm * ey) * nr[i] + dn * nz[i]).abs();
-        let mm2 = share[i] * (ax[i] * by[i] - ay[i] * bx[i]) * (grown_a * grown_c);
+        let mm2 = 0.5 * CORNERS as f64 * stands_for * doubled * (size[i] * size[i]) * (grown_a * grown_c);
         let mut solid_angle = mm2 * cosine * inverse * inverse;
         if BACKWARD {
             // The imager's normal stands in the place of the direction.
@@ -392,8 +403,19 @@ mod tests {
 
     #[test]
     fn numbers_stand_for_outline_and_ring() {
-        let area = INSIDE / INSIDE + (1.0 - INSIDE) * STRETCH;
-        assert!((area - (1.0 + RING) * (1.0 + RING)).abs() < 1e-12, "{area}");
+        let n = 1 << 20;
+        for ring in [0.0, 0.2 * (1.0 - INSIDE), 1.0 - INSIDE, 0.2] {
+            // Each number stands for what lies between it and the next one.
+            let (mut sum, mut last) = (0.0, 0.0);
+            for k in 0..n {
+                let (radius2, stands_for) = within((k as f64 + 0.5) / n as f64, ring);
+                assert!(radius2 > last, "{ring}: {radius2} after {last}");
+                (sum, last) = (sum + stands_for / n as f64, radius2);
+            }
+            let want = if ring > 0.0 { (1.0 + RING) * (1.0 + RING) } else { 1.0 };
+            assert!((last / want - 1.0).abs() < 1e-4 && (sum / want - 1.0).abs() < 1e-4, "{ring}: {last} {sum}");
+        }
+        assert_eq!(within(1.0, 0.0), (1.0, 1.0));
     }
 
     #[test]

@@ -107,12 +107,6 @@ impl RearPupil {
         self
     }
 
-    /// What a ray beside the outline of its zone weighs at most, in mean weights of those inside.
-    #[must_use]
-    pub fn largest_weight(&self) -> f64 {
-        self.table.outlines.as_ref().map_or(1.0, super::outline::Outlines::largest_weight)
-    }
-
     /// Turns the rays of a batch, which are at points of the imager, toward the pupil, starts them
     /// there, and multiplies their weights by the projected solid angle of the region, sr; the imager's
     /// unit normal stands in the place of each direction. `u` and `v`, one a ray in [0, 1), choose the

@@ -2,7 +2,7 @@
 
 use super::effort::Effort;
 use super::nodes::{Geometry, Node};
-use super::outline::{Colors, Outlines, RING, STRIDE, TURN_STEPS};
+use super::outline::{Colors, Outlines, RING, STRIDE, TURN_STEPS, thin};
 use super::probe::{Bounds, Plane, Prober, Stages};
 use super::reach::{DIRECTIONS, Reach};
 use super::shape::Shape;
@@ -228,7 +228,8 @@ impl Task<'_> {
                 for fold in 0..folds {
                     let (sin, cos) = sin_cos_turns(fold as f64 / folds as f64);
                     let mut own = [[0.0; 2]; STRIDE];
-                    own[outline.len()..].copy_from_slice(&region.by_band[color].columns());
+                    own[outline.len()..STRIDE - 1].copy_from_slice(&region.by_band[color].columns());
+                    own[STRIDE - 1][0] = thin(&outline);
                     for (corner, [x, y]) in own.iter_mut().zip(outline) {
                         let (x, y) = (f64::from(x), f64::from(y));
                         *corner = [(x * cos - y * sin) as f32, (x * sin + y * cos) as f32];
