@@ -106,6 +106,27 @@ fn paths_of_four_are_cut_where_little_begins() {
     assert!((left(&cut) / left(&two) - 1.0).abs() < 1e-9);
 }
 
+/// The books in the report of a picture say how many reflections they follow.
+#[test]
+fn a_report_says_the_order_of_its_books() {
+    let scene = "spectra: 1\n\
+        source: {kind: beam, distance: 10 mm, diameter: 0.1 mm, spectrum: he-ne}\n\
+        lens: {file: zeiss-biotar-50-f1.4, focus: infinity}\n\
+        imager: {kind: xyz, width: 36, height: 24, resolution: [24, 16]}\n\
+        render: {direction: forward, samples: 1, rays: 1000}\n\
+        output: [exr]\n";
+    for order in [2, 4] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("beam.yaml");
+        std::fs::write(&path, scene).expect("written");
+        let set = format!("render.reflections.order={order}");
+        common::good(&["run", shown(&path), "-o", shown(folder.path()), "--set", &set]);
+        let report = std::fs::read(folder.path().join("beam.json")).expect("a report");
+        let report: Value = serde_json::from_slice(&report).expect("JSON");
+        assert_eq!(report["ledger"]["order"], order);
+    }
+}
+
 /// The drawing has the rays that were asked for, of the ghost that was asked for.
 #[test]
 fn a_ghost_is_drawn() {

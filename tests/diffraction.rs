@@ -89,6 +89,34 @@ fn without_it_the_bits_are_as_they_were() {
     assert_eq!((on.rays, on.detected), (off.rays, off.detected));
 }
 
+/// Where lights are rendered apart and their stars would be seen, diffraction is there unless it is refused; where no star would be seen
+/// it is not.
+#[test]
+fn it_comes_where_stars_are_seen() {
+    let sky = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/sun-sky.exr");
+    let over = format!("over: {{kind: picture, file: '{sky}', distance: 500 m, width: fill, luminance: 6000 cd/m2}}");
+    let source = |illuminance: &str| {
+        let sun = format!("kind: sun, field: [9 deg, 5 deg], illuminance: {illuminance}, spectrum: D55, {over}");
+        format!("source={{{sun}}}")
+    };
+    let frame = "imager={kind: xyz, width: 36, height: 24, resolution: [150, 100]}";
+    let shown = |illuminance: &str, more: &[&str]| {
+        let source = source(illuminance);
+        let base = ["render={samples: 2, rays: 20000, reflections: {order: 0}}", frame, &source];
+        render(SEVEN, &[&base, more].concat())
+    };
+    let [off, on] = ["false", "true"].map(|asked| shown("60000 lx", &[&format!("render.diffraction={asked}")]));
+    let itself = shown("60000 lx", &[]);
+    assert_eq!(itself.estimators, ["backward", "forward"]);
+    assert!(off.diffraction.is_none() && itself.diffraction == on.diffraction && on.diffraction.is_some());
+    assert!(itself.exposure == on.exposure && itself.exposure != off.exposure);
+    // A star so much dimmer is not seen: the same light, and none of it is moved.
+    let dim = shown("1 lx", &["render.direction=both"]);
+    assert_eq!(dim.estimators, ["backward", "forward"]);
+    assert!(dim.diffraction.is_none());
+    assert!(dim.exposure == shown("1 lx", &["render.direction=both", "render.diffraction=false"]).exposure);
+}
+
 /// All light of a lamp is in its frame or booked as beside it, and a lamp has the stars of its blades.
 #[test]
 fn a_lamp_gets_its_star() {

@@ -19,6 +19,6 @@ mod wings;
 pub use kernel::{Light, PixelSpread};
 pub use polygon::Polygon;
 pub use pupil::{Pupil, Waves};
-pub use spread::{Account, Spread, View};
+pub use spread::{Account, Spread, View, brightest_star};
 pub use wave::Wave;
 pub use wings::{Fan, Wings};

@@ -58,6 +58,37 @@ pub struct Account {
     pub stars: usize,
 }
 
+/// What of the median of a frame the brightest star has where it leaves the pixels around its light; `None` where the middle of the frame
+/// sees no opening, or where no light is.
+#[must_use]
+pub fn brightest_star(size: FrameSize, light: &Light, seen: &dyn View, plane: &[f32]) -> Option<f64> {
+    let pitch_mm = [size.width_mm / f64::from(size.width_px), size.height_mm / f64::from(size.height_px)];
+    let middle = seen.opening([0.5 * f64::from(size.width_px), 0.5 * f64::from(size.height_px)])?;
+    let pitch = pitch_mm[0].min(pitch_mm[1]);
+    let end = radius(near_mm(&middle, light), pitch) as f64 * pitch;
+    let brightest = plane.iter().fold(0.0_f32, |a, b| a.max(*b));
+    let star = f64::from(brightest) * star_peak(&middle, light.mean_mm(), pitch_mm, end);
+    (star > 0.0).then(|| star / f64::from(median(plane)))
+}
+
+/// How many pixels around one get its light pixel by pixel, where that goes so far.
+fn radius(near_mm: f64, pitch_mm: f64) -> usize {
+    ((near_mm / pitch_mm / 0.6).ceil() as usize + 2).clamp(RADIUS[0], RADIUS[1])
+}
+
+/// The most that a pixel's star brings to another one at a distance, of a round opening all around.
+fn star_peak(opening: &Polygon, mean_mm: f64, pitch_mm: [f64; 2], end_mm: f64) -> f64 {
+    let wings = Wings::new(opening);
+    let around = wings.beyond(end_mm, mean_mm) / (TAU * end_mm * end_mm) * pitch_mm[0] * pitch_mm[1];
+    Spike::all(&wings, mean_mm, pitch_mm).iter().map(|spike| spike.peak(end_mm)).fold(around, f64::max)
+}
+
+fn median(plane: &[f32]) -> f32 {
+    let mut sorted = plane.to_vec();
+    let (_, median, _) = sorted.select_nth_unstable_by(plane.len() / 2, f32::total_cmp);
+    *median
+}
+
 /// A frame made ready: the kernels of one channel's light.
 pub struct Spread<'a> {
     size: FrameSize,
@@ -96,7 +127,7 @@ impl<'a> Spread<'a> {
         let openings: Vec<(Polygon, Option<Wave>)> = (0..count).into_par_iter().map(node).collect();
         let pitch = pitch_mm[0].min(pitch_mm[1]);
         let near = openings.iter().map(|(o, _)| near_mm(o, &light)).fold(0.0, f64::max);
-        let radius = ((near / pitch / 0.6).ceil() as usize + 2).clamp(RADIUS[0], RADIUS[1]);
+        let radius = radius(near, pitch);
         let cell_px = (radius / CELLS).max(1);
         let reach = [width.div_ceil(cell_px), height.div_ceil(cell_px)];
         let mut own = Self {
@@ -209,19 +240,12 @@ impl<'a> Spread<'a> {
 
     /// The pixels whose spikes are drawn.
     fn bright(&self, plane: &[f32]) -> Vec<usize> {
-        let wings = Wings::new(&self.middle);
-        let spikes = Spike::all(&wings, self.light.mean_mm(), self.pitch_mm);
-        let [end, mean] = [self.end_mm(), self.light.mean_mm()];
-        // Of a round opening that all around.
-        let around = wings.beyond(end, mean) / (TAU * end * end) * self.pitch_mm[0] * self.pitch_mm[1];
-        let peak = spikes.iter().map(|s| s.peak(end)).fold(around, f64::max);
+        let peak = star_peak(&self.middle, self.light.mean_mm(), self.pitch_mm, self.end_mm());
         let brightest = plane.iter().fold(0.0_f32, |a, b| a.max(*b));
         if peak <= 0.0 {
             return Vec::new();
         }
-        let mut sorted = plane.to_vec();
-        let (_, median, _) = sorted.select_nth_unstable_by(plane.len() / 2, f32::total_cmp);
-        let mut least = (SEEN * f64::from(*median) / peak).max(OF_BRIGHTEST * f64::from(brightest)) as f32;
+        let mut least = (SEEN * f64::from(median(plane)) / peak).max(OF_BRIGHTEST * f64::from(brightest)) as f32;
         let mut above: Vec<f32> = plane.iter().copied().filter(|v| *v > least).collect();
         if above.len() > MOST {
             let (_, next, _) = above.select_nth_unstable_by(MOST, |a, b| b.total_cmp(a));

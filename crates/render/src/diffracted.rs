@@ -4,7 +4,7 @@ use glam::DVec3;
 use spectra_core::frame::ExposureChannel;
 use spectra_core::spectral::{Channel, SpectralPower};
 use spectra_core::{Isa, RayBatch};
-use spectra_diffraction::{Account, Light, Polygon, Pupil, Spread, View, Wave, Waves};
+use spectra_diffraction::{Account, Light, Polygon, Pupil, Spread, View, Wave, Waves, brightest_star};
 use spectra_scene::Scene;
 
 /// What diffraction did to a channel.
@@ -22,7 +22,18 @@ pub struct Diffracted {
 
 /// Why it is not known what the stop of a scene does to light; `None` where it is.
 pub(crate) fn fault(scene: &Scene) -> Option<String> {
-    if scene.render.diffraction { Pupil::new(&scene.lens).err() } else { None }
+    if scene.render.diffraction == Some(true) { Pupil::new(&scene.lens).err() } else { None }
+}
+
+/// What of the median of a frame the brightest star has where it leaves the pixels around its light, in the channel that has most.
+/// `None` where that is not known.
+pub(crate) fn star(scene: &Scene, planes: &[ExposureChannel], recorded: &[usize], isa: Isa) -> Option<f64> {
+    let seen = Seen { scene, pupil: &Pupil::new(&scene.lens).ok()?, waves: None, isa };
+    let one = |number: &usize| {
+        let (channel, plane) = (scene.channels.get(*number)?, planes.get(*number)?);
+        brightest_star(scene.imager.size(), &light(scene.source.spectrum(), channel)?, &seen, &plane.values)
+    };
+    recorded.iter().filter_map(one).reduce(f64::max)
 }
 
 /// Spreads the recorded planes of a frame.

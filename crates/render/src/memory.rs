@@ -32,7 +32,7 @@ pub fn memory_needed(scene: &Scene) -> u64 {
     let kinds = 1 + u64::from(apart) + u64::from(ghosts) + scattered;
     // Layers of kinds of light, and the exposure before diffraction while it is worked out.
     let layers = scene.light_layers().len() as u64;
-    let layers = if layers > 0 && scene.render.diffraction { layers + 1 } else { layers };
+    let layers = if layers > 0 && scene.render.diffraction.unwrap_or(apart) { layers + 1 } else { layers };
     let traced = channels * (SUM * halves * kinds + EXPOSURE * (1 + layers));
     // Sums are gone by then. Of several films each is developed from a copy of its own channels.
     let picture = if scene.films.is_empty() { SHOWING } else { DEVELOPING + 3 * EXPOSURE * scene.films.len() as u64 };

@@ -25,7 +25,8 @@ use spectra_scene::{Direction, LightKind, LightLayer, Lights, NumberFamily, Scen
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Ghosts matter by themselves where the brightest of them has more than this part of the mean of the frame.
+/// Ghosts matter by themselves where the brightest of them has more than this part of the mean of the frame, diffraction where the
+/// brightest star has more of its median.
 pub(crate) const MATTERS: f64 = 0.01;
 
 /// What a render gives.
@@ -63,6 +64,8 @@ pub struct Renderer {
     pipeline: Arc<Pipeline>,
     estimators: Vec<Box<dyn Estimator>>,
     ledger: Option<LightLedger>,
+    /// Whether lights are rendered apart from the rest.
+    has_lights: bool,
 }
 
 impl Renderer {
@@ -147,7 +150,7 @@ impl Renderer {
             kinds.push(Box::new(Backward::new(Arc::new(rest), workers)?));
             kinds.push(Box::new(Forward::new(Arc::new(lights), workers)?));
         }
-        Ok(Self { estimators: halved(&scene, kinds), scene, pipeline, ledger })
+        Ok(Self { estimators: halved(&scene, kinds), scene, pipeline, ledger, has_lights: true })
     }
 
     /// With the ghosts of its lights, or of all of the source where none of it is brighter than the rest.
@@ -185,7 +188,7 @@ impl Renderer {
         let share = if scene.source.split().is_some() { Share::Lights } else { Share::Whole };
         let Some(found) = Ghosts::with_rays(&pipeline.of_share(share), None, rays, workers)? else { return Ok(None) };
         let ledger = Some(found.ledger().clone());
-        Ok(Some(Self { estimators: halved(&scene, vec![Box::new(found)]), scene, pipeline, ledger }))
+        Ok(Some(Self { estimators: halved(&scene, vec![Box::new(found)]), scene, pipeline, ledger, has_lights: false }))
     }
 
     /// With the veiling glare that the scene asks for: of lights from the source, of the rest from the imager.
@@ -258,7 +261,7 @@ impl Renderer {
         let kinds = std::iter::once(&pipeline).chain(&scattered);
         let each = kinds.flat_map(|pipeline| estimators.iter().map(move |direction| (pipeline, direction)));
         let estimators = each.map(one).collect::<Result<_, _>>()?;
-        Ok(Self { estimators: halved(&scene, estimators), scene, pipeline, ledger: None })
+        Ok(Self { estimators: halved(&scene, estimators), scene, pipeline, ledger: None, has_lights: false })
     }
 
     /// Looks whether a scene can be made ready: what [`Renderer::new`] refuses, as far as that shows without
@@ -494,7 +497,7 @@ impl Renderer {
             layers.push(LightLayer { kind: *kind, channels });
         }
         let star = layers.iter_mut().find(|layer| layer.kind == LightKind::Star);
-        let diffraction = if scene.render.diffraction {
+        let diffraction = if scene.render.diffraction.unwrap_or_else(|| self.has_seen_star(scene, &planes)) {
             let before = if star.is_some() { planes.clone() } else { Vec::new() };
             let done = diffracted::spread(scene, &mut planes, recorded, self.pipeline.isa);
             let done = done.map_err(RenderError::Diffraction)?;
@@ -521,6 +524,12 @@ impl Renderer {
             diffraction,
             warnings: Vec::new(),
         })
+    }
+
+    /// Whether diffraction matters by itself.
+    fn has_seen_star(&self, scene: &Scene, planes: &[ExposureChannel]) -> bool {
+        let star = || diffracted::star(scene, planes, &self.pipeline.recorded, self.pipeline.isa);
+        self.has_lights && star().is_some_and(|star| star > MATTERS)
     }
 
     /// The exposure before diffraction, of all light or of a kind; `weights` are those of the parts. What meters see is straight.

@@ -133,9 +133,10 @@ struct RenderSection {
     reflections: ReflectionsSection,
     /// Veiling glare: light that glass, paint, film or sensor spread over the frame. `true`, or what it is made of; none if absent.
     glare: Option<GlareSection>,
-    /// Whether the edge of the aperture spreads light: stars around lamps, and pictures that soften as the stop closes. Not if absent.
-    #[serde(default)]
-    diffraction: bool,
+    /// Whether the edge of the aperture spreads light: stars around lamps, and pictures that soften as the stop closes. If absent, where
+    /// lights are rendered apart from the rest, and the star of the brightest pixel has more than 1 % of the median of the frame where it
+    /// leaves the pixels around.
+    diffraction: Option<bool>,
 }
 
 /// What `glare` is written as.

@@ -117,15 +117,15 @@ pub struct RenderSettings {
     pub reflections: Reflections,
     /// What veiling glare is made of, where it is asked for.
     pub glare: Option<StrayMatter>,
-    /// Whether the edge of the aperture spreads the light that was summed.
-    pub diffraction: bool,
+    /// Whether the edge of the aperture spreads the light that was summed; `None`: where stars of lights would be seen.
+    pub diffraction: Option<bool>,
 }
 
 impl RenderSettings {
     /// Whether the same rays are traced, as far as both want as many.
     #[must_use]
     pub fn traces_as(&self, other: &Self) -> bool {
-        let free = |settings: &Self| Self { batch: 0, samples: 0, rays: 0, diffraction: false, ..*settings };
+        let free = |settings: &Self| Self { batch: 0, samples: 0, rays: 0, diffraction: None, ..*settings };
         // Forward, so many rays are a sample.
         let share = |s: &Self| u128::from(s.rays);
         let as_many = (self.direction == Direction::Backward && self.lights == Lights::Same)

@@ -134,7 +134,7 @@ impl Report<'_> {
         let path = |path: &GhostPath| json!({ "surfaces": path.surfaces, "power_w": path.power_w });
         let imager = self.scene.render.reflections;
         json!({
-            "order": 2,
+            "order": ledger.order,
             "emitted": ledger.emitted_w,
             "detected": ledger.detected_w(),
             "lost": ledger.lost_w(),

@@ -72,8 +72,12 @@ pub(crate) fn of(report: &Report<'_>) -> String {
     if let Some(all) = rendering.diffraction.as_ref().filter(|all| !all.is_empty()) {
         let mean = |of: fn(&spectra_render::Diffracted) -> f64| all.iter().map(of).sum::<f64>() / all.len() as f64;
         let stars = all.iter().map(|d| d.stars).max().unwrap_or(0);
+        let why = match scene.render.diffraction {
+            None => " (stars are bright enough; `render.diffraction: false` leaves it out)",
+            Some(_) => "",
+        };
         text.push_str(&format!(
-            ", diffraction: {} of the light of a point stays in its pixel, {} leaves the frame, stars of {} pixels",
+            ", diffraction{why}: {} of the light of a point stays in its pixel, {} leaves the frame, stars of {} pixels",
             spectra_render::percent(mean(|d| d.stays)),
             spectra_render::percent(mean(|d| d.left.max(0.0))),
             words::count(stars as u64)
