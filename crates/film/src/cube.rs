@@ -8,7 +8,8 @@ pub(crate) struct Cube {
     low: [f32; 3],
     per_step: [f32; 3],
     steps: usize,
-    values: Vec<[f32; 3]>,
+    /// The fourth is there to be loaded with the others.
+    values: Vec<[f32; 4]>,
 }
 
 impl Cube {
@@ -17,10 +18,10 @@ impl Cube {
     pub(crate) fn by_slabs(
         ranges: [(f64, f64); 3],
         steps: usize,
-        slab: impl Fn(usize, &mut [[f32; 3]]) + Sync,
+        slab: impl Fn(usize, &mut [[f32; 4]]) + Sync,
     ) -> Self {
         let places = steps + 1;
-        let mut values = vec![[0.0; 3]; places * places * places];
+        let mut values = vec![[0.0; 4]; places * places * places];
         values.par_chunks_mut(places * places).enumerate().for_each(|(i, to)| slab(i, to));
         let per_step = ranges.map(|(low, high)| (steps as f64 / (high - low)) as f32);
         Self { low: ranges.map(|r| r.0 as f32), per_step, steps, values }
@@ -41,18 +42,19 @@ impl Cube {
         let at = (index[0] * places + index[1]) * places + index[2];
         let near = face(&self.values[at..], places, part);
         let far = face(&self.values[at + places * places..], places, part);
-        mix(near, far, part[0])
+        let [a, b, c, _] = mix(near, far, part[0]);
+        [a, b, c]
     }
 }
 
 // Every pixel comes by here: functions, since closures over arrays are left uninlined.
 #[inline(always)]
-fn mix(a: [f32; 3], b: [f32; 3], t: f32) -> [f32; 3] {
-    [a[0] + (b[0] - a[0]) * t, a[1] + (b[1] - a[1]) * t, a[2] + (b[2] - a[2]) * t]
+fn mix(a: [f32; 4], b: [f32; 4], t: f32) -> [f32; 4] {
+    [a[0] + (b[0] - a[0]) * t, a[1] + (b[1] - a[1]) * t, a[2] + (b[2] - a[2]) * t, a[3] + (b[3] - a[3]) * t]
 }
 
 #[inline(always)]
-fn face(values: &[[f32; 3]], places: usize, part: [f32; 3]) -> [f32; 3] {
+fn face(values: &[[f32; 4]], places: usize, part: [f32; 3]) -> [f32; 4] {
     let values = &values[..places + 2];
     let upper = mix(values[0], values[1], part[2]);
     let lower = mix(values[places], values[places + 1], part[2]);
@@ -70,7 +72,8 @@ mod tests {
         let place = |i: usize| i as f32 / 4.0 * 2.0 - 1.0;
         let cube = Cube::by_slabs([(-1.0, 1.0); 3], 4, |i, to| {
             for (n, value) in to.iter_mut().enumerate() {
-                *value = f(place(i), place(n / 5), place(n % 5));
+                let [a, b, c] = f(place(i), place(n / 5), place(n % 5));
+                *value = [a, b, c, 0.0];
             }
         });
         for x in [[-1.0, -1.0, -1.0], [0.3, -0.7, 0.9], [1.0, 1.0, 1.0], [0.0, 0.25, 0.26]] {

@@ -3,12 +3,12 @@
 //! The lens blurs light that has passed the film, so its blur acts on transmittance: grain and edges lose the same. Its MTF is taken
 //! as a Gaussian, exp(-ln 2 (f / f50)^2), which good lenses are close to down to a fifth of the contrast.
 
-use crate::emulsion::per_octave;
-use crate::lookup::{Lookup, octaves};
 use rayon::prelude::*;
-use spectra_core::math::exp;
+use spectra_core::isa::{Isa, Vectorized};
+use spectra_numerics::math::{exp2_single, log2_single};
 use spectra_numerics::normal;
-use std::f64::consts::{LN_2, LN_10, PI};
+use std::f32::consts::{LOG2_10, LOG10_2};
+use std::f64::consts::{LN_2, PI};
 
 /// The lens between a film and its picture, for pixels of one size.
 ///
@@ -23,16 +23,14 @@ use std::f64::consts::{LN_2, LN_10, PI};
 pub struct Optics {
     /// Weights across and down, from the middle on; the middle alone where pixels are coarser than the blur.
     weights: [Vec<f32>; 2],
-    through: Lookup,
-    back: Lookup,
+    isa: Isa,
 }
 
 /// Deviations that a kernel reaches.
 const REACH: f64 = 4.0;
 
-/// Densities whose transmittance is tabulated, and steps; beyond, it is held.
-const DENSITIES: (f64, f64) = (-1.0, 9.0);
-const STEPS: usize = 1 << 16;
+/// Densities that pass as they are; beyond, as the nearest of them.
+const DENSITIES: (f32, f32) = (-1.0, 9.0);
 
 impl Optics {
     /// A lens that keeps half of the contrast at `mtf50` cycles/mm on the film, for pixels of `pitch_mm` across and down.
@@ -44,9 +42,7 @@ impl Optics {
         assert!([mtf50, pitch_mm[0], pitch_mm[1]].iter().all(|v| *v > 0.0 && v.is_finite()), "values above 0");
         // exp(-2 (pi s f)^2) is a half at f50.
         let deviation_mm = (LN_2 / 2.0).sqrt() / (PI * mtf50);
-        let through = Lookup::new(DENSITIES.0, DENSITIES.1, STEPS, |d| exp(-LN_10 * d));
-        let back = per_octave(|log10_transmittance| -log10_transmittance, 1.0);
-        Self { weights: pitch_mm.map(|pitch| weights(deviation_mm / pitch)), through, back }
+        Self { weights: pitch_mm.map(|pitch| weights(deviation_mm / pitch)), isa: Isa::detect() }
     }
 
     /// Whether pixels are fine enough for the lens to matter.
@@ -65,29 +61,60 @@ impl Optics {
         let mut passed = vec![0.0_f32; density.len()];
         passed.par_chunks_mut(width).zip(density.par_chunks(width)).for_each_init(
             || vec![0.0_f32; width + 2 * (across.len() - 1)],
-            |row, (to, from)| {
-                let reach = across.len() - 1;
-                for (light, d) in row[reach..].iter_mut().zip(from) {
-                    *light = self.through.at(f64::from(*d)) as f32;
-                }
-                let (first, last) = (row[reach], row[reach + width - 1]);
-                row[..reach].fill(first);
-                row[reach + width..].fill(last);
-                blur(to, across, |k, sign| if sign { &row[reach + k..] } else { &row[reach - k..] });
-            },
+            |row, (to, from)| self.isa.run(Across { weights: across, row, from, to }),
         );
-        let height = density.len() / width;
         density.par_chunks_mut(width).enumerate().for_each(|(y, to)| {
-            blur(to, down, |k, sign| {
-                let row = if sign { (y + k).min(height - 1) } else { y.saturating_sub(k) };
-                &passed[row * width..]
-            });
-            to.iter_mut().for_each(|v| *v = self.back.at(octaves(*v)) as f32);
+            self.isa.run(Down { weights: down, passed: &passed, y, to });
         });
     }
 }
 
+/// From a row of densities to its light, blurred along it.
+struct Across<'a> {
+    weights: &'a [f32],
+    row: &'a mut [f32],
+    from: &'a [f32],
+    to: &'a mut [f32],
+}
+
+impl Vectorized for Across<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run(self) {
+        let Self { weights, row, from, to } = self;
+        let (reach, width) = (weights.len() - 1, to.len());
+        for (light, d) in row[reach..].iter_mut().zip(from) {
+            *light = exp2_single(-LOG2_10 * d.max(DENSITIES.0).min(DENSITIES.1));
+        }
+        let (first, last) = (row[reach], row[reach + width - 1]);
+        row[..reach].fill(first);
+        row[reach + width..].fill(last);
+        blur(to, weights, |k, after| if after { &row[reach + k..] } else { &row[reach - k..] });
+    }
+}
+
+/// The rows of light around the row `y`, blurred and turned into densities again.
+struct Down<'a> {
+    weights: &'a [f32],
+    passed: &'a [f32],
+    y: usize,
+    to: &'a mut [f32],
+}
+
+impl Vectorized for Down<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run(self) {
+        let Self { weights, passed, y, to } = self;
+        let width = to.len();
+        let last = passed.len() / width - 1;
+        blur(to, weights, |k, after| &passed[if after { (y + k).min(last) } else { y.saturating_sub(k) } * width..]);
+        to.iter_mut().for_each(|v| *v = -LOG10_2 * log2_single(*v));
+    }
+}
+
 /// The weighted sum of lines around one: `line(k, after)` is the one `k` after or before it.
+#[inline(always)]
 fn blur<'a>(to: &mut [f32], weights: &[f32], line: impl Fn(usize, bool) -> &'a [f32]) {
     for (to, v) in to.iter_mut().zip(line(0, true)) {
         *to = weights[0] * v;

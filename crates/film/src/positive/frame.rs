@@ -3,10 +3,10 @@
 use super::{Reach, Way};
 use crate::cube::Cube;
 use crate::deposit::Deposit;
-use crate::lookup::{Lookup, PIXELS_A_TASK};
+use crate::lookup::PIXELS_A_TASK;
 use rayon::prelude::*;
-use spectra_core::math::{exp, log10};
-use std::f64::consts::LN_10;
+use spectra_core::isa::{Isa, Vectorized};
+use spectra_core::math::log10;
 
 /// Steps of the tables over the amounts of three dyes. Densities of sums over the band are nearly linear in the amounts: their
 /// second derivative is the variance of the dye's density over what the receiver sees, times ln 10, 0.2 or less. Over a
@@ -25,9 +25,12 @@ const HIGHEST_DENSITY: f64 = 6.0;
 /// How far beyond the curves' amounts the tables go: grain does.
 const MARGIN: f64 = 0.15;
 
-/// Largest density of XYZ and its steps: 10^-D is interpolated within 2.3^2 / 8 * (12 / 65536)^2 = 2e-8 of D = 0.
-const DENSITY_STEPS: usize = 1 << 16;
-const DARKEST: f64 = 12.0;
+/// Log10 exposures between which the curves of a print are tabulated, and steps: they bend within hundredths of a decade.
+const EXPOSURES: f64 = 6.0;
+const CURVE_STEPS: usize = 24_000;
+
+/// Places that go each part of the way together.
+pub(super) const ROW: usize = 512;
 
 #[derive(Clone, Debug)]
 pub(super) enum Tables {
@@ -42,13 +45,12 @@ pub(super) struct Dyes {
     /// Amounts of the film to densities of XYZ, of the scanner's channels, or of what exposes the print's layers.
     first: Cube,
     /// Log10 exposure to amounts of the print's layers; none where nothing is printed.
-    curves: Vec<Lookup>,
+    curves: Vec<Vec<f32>>,
     /// Amounts of a print of three dyes to densities of XYZ.
     last: Option<Cube>,
     /// Densities of XYZ of the bare light.
     bare: [f32; 3],
-    /// Light over density.
-    light: Lookup,
+    isa: Isa,
 }
 
 impl Tables {
@@ -67,8 +69,8 @@ impl Tables {
         if let Some(printing) = printing {
             let print = &printing.emulsion;
             let layers = print.layers();
-            // Print curves bend within hundredths of a decade.
-            let curve = |i: usize| Lookup::new(-6.0, 6.0, 24_000, |x| print.amount(i, x));
+            let exposure = |k: usize| (2.0 * k as f64 / CURVE_STEPS as f64 - 1.0) * EXPOSURES;
+            let curve = |i: usize| (0..=CURVE_STEPS).map(|k| print.amount(i, exposure(k)) as f32).collect();
             curves = (0..layers).map(curve).collect();
             if layers == 3 {
                 let ranges = [0, 1, 2].map(|i| print.range(i));
@@ -79,8 +81,8 @@ impl Tables {
             Some(printing) => [0, 1, 2].map(|i| -log10(printing.viewing.weights()[i].iter().sum::<f64>()) as f32),
             None => [0.0; 3],
         };
-        let light = Lookup::new(-1.0, DARKEST, DENSITY_STEPS, |d| exp(-LN_10 * d));
-        Self::Dyes(Box::new(Dyes { first: densities(film, ranges, weights, STEPS), curves, last, bare, light }))
+        let first = densities(film, ranges, weights, STEPS);
+        Self::Dyes(Box::new(Dyes { first, curves, last, bare, isa: Isa::detect() }))
     }
 
     /// Those of one layer of silver.
@@ -102,8 +104,14 @@ impl Tables {
                 plane.par_iter().with_min_len(PIXELS_A_TASK).map(one).collect()
             }
             (Self::Dyes(dyes), [a, b, c]) => {
-                let pixels = a.par_iter().zip(b.par_iter()).zip(c.par_iter()).with_min_len(PIXELS_A_TASK);
-                pixels.map(|((a, b), c)| dyes.shown([*a, *b, *c], way, reach)).collect()
+                let mut picture = vec![[0.0; 3]; a.len()];
+                picture.par_chunks_mut(PIXELS_A_TASK).enumerate().for_each(|(task, to)| {
+                    let part =
+                        |plane: &'_ [f32]| task * PIXELS_A_TASK..(task * PIXELS_A_TASK + to.len()).min(plane.len());
+                    let planes = [&a[part(a)], &b[part(b)], &c[part(c)]];
+                    dyes.isa.run(Shown { dyes, planes, way, reach, to });
+                });
+                picture
             }
             // Planes are as many as layers: the film that made the one made the other.
             _ => Vec::new(),
@@ -111,29 +119,66 @@ impl Tables {
     }
 }
 
-impl Dyes {
-    fn shown(&self, amounts: [f32; 3], way: &Way, reach: Reach) -> [f32; 3] {
-        let first = self.first.at(amounts);
-        let (densities, viewing) = match way {
-            Way::Look(viewing) => (first, viewing),
-            Way::Scan(scan) => return scan.shown_in(&first.map(f64::from), reach).map(|v| v as f32),
-            Way::Print(printing) => {
-                let mut amounts = [0.0_f32; 3];
-                for ((amount, curve), d) in amounts.iter_mut().zip(&self.curves).zip(first) {
-                    *amount = curve.at(-f64::from(d)) as f32;
-                }
-                let densities = match &self.last {
-                    Some(last) => last.at(amounts),
-                    // Silver: the same in X, Y and Z.
-                    None => [amounts[0] + self.bare[0], amounts[0] + self.bare[1], amounts[0] + self.bare[2]],
-                };
-                (densities, &printing.viewing)
+/// Places on their way from amounts of dye to the screen.
+struct Shown<'a> {
+    dyes: &'a Dyes,
+    planes: [&'a [f32]; 3],
+    way: &'a Way,
+    reach: Reach,
+    to: &'a mut [[f32; 3]],
+}
+
+impl Vectorized for Shown<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run(self) {
+        let Self { dyes, planes: [a, b, c], way, reach, to } = self;
+        let mut row = [[0.0_f32; ROW]; 3];
+        for (k, to) in to.chunks_mut(ROW).enumerate() {
+            let part = k * ROW..k * ROW + to.len();
+            let places = a[part.clone()].iter().zip(&b[part.clone()]).zip(&c[part]);
+            for (i, ((a, b), c)) in places.enumerate() {
+                let first = dyes.first.at([*a, *b, *c]);
+                (0..3).for_each(|k| row[k][i] = first[k]);
             }
-        };
-        let [x, y, z] = densities;
-        let light = |d: f32| self.light.at(f64::from(d));
-        let [r, g, b] = viewing.shown_in([light(x), light(y), light(z)], reach);
-        [r as f32, g as f32, b as f32]
+            match way {
+                Way::Look(viewing) => viewing.shown_row(&mut row, reach, to),
+                Way::Scan(scan) => {
+                    for (i, to) in to.iter_mut().enumerate() {
+                        let densities = [0, 1, 2].map(|k| f64::from(row[k][i]));
+                        *to = scan.shown_in(&densities, reach).map(|v| v as f32);
+                    }
+                }
+                Way::Print(printing) => {
+                    dyes.print(&mut row, to.len());
+                    printing.viewing.shown_row(&mut row, reach, to);
+                }
+            }
+        }
+    }
+}
+
+impl Dyes {
+    /// From what exposes the layers of a print to densities of XYZ, of `count` places.
+    #[inline(always)]
+    fn print(&self, row: &mut [[f32; ROW]; 3], count: usize) {
+        for (line, curve) in row.iter_mut().zip(&self.curves) {
+            for d in &mut line[..count] {
+                // Linear between samples.
+                const PER_STEP: f32 = CURVE_STEPS as f32 / (2.0 * EXPOSURES as f32);
+                let place = ((EXPOSURES as f32 - *d) * PER_STEP).max(0.0).min(CURVE_STEPS as f32);
+                let k = (place as usize).min(CURVE_STEPS - 1);
+                *d = curve[k] + (curve[k + 1] - curve[k]) * (place - k as f32);
+            }
+        }
+        for i in 0..count {
+            let densities = match &self.last {
+                Some(last) => last.at([row[0][i], row[1][i], row[2][i]]),
+                // Silver: the same in X, Y and Z.
+                None => self.bare.map(|bare| row[0][i] + bare),
+            };
+            (0..3).for_each(|k| row[k][i] = densities[k]);
+        }
     }
 }
 

@@ -1,13 +1,14 @@
 //! Light through a film to an eye: XYZ, and what a screen shows of it.
 
 use super::Reach;
+use super::frame::ROW;
 use crate::deposit::Deposit;
-use crate::lookup::{Lookup, from_octaves, octaves};
 use spectra_color::matrix::{Matrix, apply, product};
 use spectra_color::{Adaptation, Gamut, RgbSpace, into_gamut};
-use spectra_core::math::pow;
+use spectra_core::math::{exp2_single, log2_single, pow};
 use spectra_core::spectral::BAND;
 use spectra_spectrum::{Emission, Observer};
+use std::f32::consts::LOG2_10;
 
 /// What is shown as white.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -43,15 +44,8 @@ pub struct Viewing {
     to_rgb: Matrix,
     /// Luminance of what is taken for black, relative to the bare light.
     black: f64,
-    /// Of a picture seen in the dark.
-    surround: Option<Surround>,
-}
-
-/// What a dark surround does to a picture: it looks lighter and softer than the same in a lit room.
-#[derive(Clone, Debug)]
-struct Surround {
-    /// Luminance to what it is multiplied by, over octaves.
-    factor: Lookup,
+    /// Seen in the dark, where a picture looks lighter and softer than the same in a lit room.
+    is_in_the_dark: bool,
 }
 
 /// Exponent of luminance by which a picture seen in a dark surround is shown on a screen in a lit one: the ratio of c, the
@@ -59,23 +53,8 @@ struct Surround {
 /// stay, as in the system gamma of ITU-R BT.2100.
 pub const DARK_TO_AVERAGE: f64 = 0.525 / 0.69;
 
-/// Octaves under 1 and over 1 at which the surround is sampled, and steps an octave: within 2e-7 of the power.
-const SURROUND_OCTAVES: (f64, f64) = (126.0 - 24.0, 126.0 + 4.0);
-const SURROUND_STEPS: usize = 1024;
-
-impl Surround {
-    fn dark() -> Self {
-        let (low, high) = SURROUND_OCTAVES;
-        let steps = (high - low) as usize * SURROUND_STEPS;
-        let factor = |o: f64| pow(from_octaves(o), DARK_TO_AVERAGE - 1.0);
-        Self { factor: Lookup::new(low, high, steps, factor) }
-    }
-
-    #[inline(always)]
-    fn factor(&self, luminance: f64) -> f64 {
-        if luminance > 0.0 { self.factor.at(octaves(luminance as f32)) } else { 0.0 }
-    }
-}
+/// Luminances between which [`DARK_TO_AVERAGE`] is taken at its word; beyond, what it does to the nearer end.
+const SURROUND: (f64, f64) = (1.0 / (1 << 24) as f64, 16.0);
 
 impl Viewing {
     /// In this light; `None` where it is dark to the eye. The bare light is shown as white, no light as black.
@@ -90,7 +69,7 @@ impl Viewing {
         let weights: Vec<Vec<f64>> =
             functions.iter().map(|f| f.iter().zip(&power).map(|(f, p)| f * p / sum).collect()).collect();
         let white = [0, 1, 2].map(|i| weights[i].iter().sum());
-        Some(Self { weights, white, to_rgb: to_rgb(white), black: 0.0, surround: None })
+        Some(Self { weights, white, to_rgb: to_rgb(white), black: 0.0, is_in_the_dark: false })
     }
 
     /// The same with an eye that takes a film of the XYZ `white` for white, as one does of a slide in the dark and of a
@@ -103,13 +82,13 @@ impl Viewing {
     /// The same, seen in the dark, as projections are: shown with [`DARK_TO_AVERAGE`].
     #[must_use]
     pub fn in_the_dark(self) -> Self {
-        Self { surround: Some(Surround::dark()), ..self }
+        Self { is_in_the_dark: true, ..self }
     }
 
     /// The luminance, as a share of white over black, that is shown as `shown`, both in linear light.
     #[must_use]
     pub fn share_shown_as(&self, shown: f64) -> f64 {
-        if self.surround.is_some() { pow(shown, 1.0 / DARK_TO_AVERAGE) } else { shown }
+        if self.is_in_the_dark { pow(shown, 1.0 / DARK_TO_AVERAGE) } else { shown }
     }
 
     /// What weighs transmittances into XYZ.
@@ -164,11 +143,58 @@ impl Viewing {
         for (v, white) in seen.iter_mut().zip(&self.white) {
             *v = (*v - veil * white) / (1.0 - veil);
         }
-        if let Some(surround) = &self.surround {
-            let factor = surround.factor(seen[1] / self.white[1]);
+        if self.is_in_the_dark {
+            let luminance = seen[1] / self.white[1];
+            let held = luminance.clamp(SURROUND.0, SURROUND.1);
+            let factor = if luminance > 0.0 { pow(held, DARK_TO_AVERAGE - 1.0) } else { 0.0 };
             seen.iter_mut().for_each(|v| *v *= factor);
         }
         seen
+    }
+}
+
+impl Viewing {
+    /// [`Viewing::shown_in`] for a row of places whose densities of XYZ are `row`, which is work space from then on.
+    #[inline(always)]
+    pub(super) fn shown_row(&self, row: &mut [[f32; ROW]; 3], reach: Reach, to: &mut [[f32; 3]]) {
+        let veil = self.black / self.white[1];
+        let black = self.white.map(|white| (veil * white) as f32);
+        let over_black = (1.0 / (1.0 - veil)) as f32;
+        let per_white = (1.0 / self.white[1]) as f32;
+        let matrix = self.to_rgb.map(|row| row.map(|v| v as f32));
+        let luminance =
+            [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|v| RgbSpace::srgb().luminance(v) as f32);
+        let (least, most) = (SURROUND.0 as f32, SURROUND.1 as f32);
+        let [x, y, z] = row;
+        for ((x, y), z) in x.iter_mut().zip(y.iter_mut()).zip(z.iter_mut()) {
+            let light = |d: f32, black: f32| (exp2_single(-LOG2_10 * d) - black) * over_black;
+            let mut seen = [light(*x, black[0]), light(*y, black[1]), light(*z, black[2])];
+            if self.is_in_the_dark {
+                let y = seen[1] * per_white;
+                let held = y.max(least).min(most);
+                let factor = exp2_single(log2_single(held) * (DARK_TO_AVERAGE as f32 - 1.0));
+                let factor = if y > 0.0 { factor } else { 0.0 };
+                seen = [seen[0] * factor, seen[1] * factor, seen[2] * factor];
+            }
+            let rgb = |m: [f32; 3]| m[0] * seen[0] + m[1] * seen[1] + m[2] * seen[2];
+            (*x, *y, *z) = (rgb(matrix[0]), rgb(matrix[1]), rgb(matrix[2]));
+            if reach == Reach::Screen {
+                // As `spectra_color::into_gamut` desaturates: toward the gray of its luminance, by the largest share of color that fits.
+                let gray = luminance[0] * *x + luminance[1] * *y + luminance[2] * *z;
+                let gray = gray.max(0.0).min(1.0);
+                let share = |v: f32| {
+                    let room = if v > gray { 1.0 - gray } else { gray };
+                    let far = (v - gray).abs();
+                    if far > room { room / far } else { 1.0 }
+                };
+                let share = share(*x).min(share(*y)).min(share(*z));
+                let within = |v: f32| (gray + share * (v - gray)).max(0.0).min(1.0);
+                (*x, *y, *z) = (within(*x), within(*y), within(*z));
+            }
+        }
+        for (i, to) in to.iter_mut().enumerate() {
+            *to = [x[i], y[i], z[i]];
+        }
     }
 }
 

@@ -10,24 +10,25 @@
 mod modulation;
 mod mtf;
 mod spread;
+mod spreading;
 
 pub use modulation::Modulation;
 pub use mtf::{Mtf, MtfError};
 pub use spread::PointSpread;
+pub(crate) use spreading::Spreading;
 
 use crate::known::Known;
 use crate::raster::Raster;
-use spectra_numerics::convolve::Convolver;
 use std::sync::Arc;
 
 /// Kernels on a plane.
-static CONVOLVERS: Known<(Mtf, Raster), Convolver> = Known::new();
+static KERNELS: Known<(Mtf, Raster), Spreading> = Known::new();
 
 /// Part of the light that may be beyond the kernel.
 const BEYOND: f64 = 1e-9;
 
 /// Pixels that a kernel reaches at most.
-const LONGEST: f64 = 2000.0;
+const LONGEST: usize = 2000;
 
 /// The scatter of one layer on planes of one size.
 ///
@@ -45,7 +46,7 @@ const LONGEST: f64 = 2000.0;
 /// ```
 pub struct Scatter {
     raster: Raster,
-    convolver: Arc<Convolver>,
+    spreading: Arc<Spreading>,
 }
 
 impl Scatter {
@@ -63,15 +64,11 @@ impl Scatter {
         if !(pitch_mm > 0.0 && pitch_mm.is_finite()) {
             return Err(out_of_range("more than 0 mm"));
         }
-        if mtf.spread().reach_mm(BEYOND) / pitch_mm > LONGEST {
+        if mtf.spread().reach_mm(BEYOND) / pitch_mm > LONGEST as f64 {
             return Err(out_of_range("at least a 2000th of the spread"));
         }
-        let convolver = CONVOLVERS.of((mtf.clone(), *raster), || {
-            let kernel = mtf.spread().over_pixels(pitch_mm, BEYOND, LONGEST as usize);
-            let longest = raster.width.max(raster.height);
-            Convolver::new(&kernel.cropped(longest), raster.width, raster.height)
-        });
-        Ok(Self { raster: *raster, convolver })
+        let made = || Spreading::new(mtf.spread(), raster, BEYOND, LONGEST);
+        Ok(Self { raster: *raster, spreading: KERNELS.of((mtf.clone(), *raster), made) })
     }
 
     /// Scatters the light of a plane of exposure (linear; any unit), in place.
@@ -84,6 +81,6 @@ impl Scatter {
     pub fn apply(&self, exposure: &mut [f32]) {
         assert_eq!(exposure.len(), self.raster.pixels(), "the plane has the size that was prepared for");
         let source = exposure.to_vec();
-        self.convolver.apply(&source, exposure, |to, v| *to = v.max(0.0) as f32);
+        self.spreading.apply(&source, exposure, |to, v| *to = v.max(0.0) as f32);
     }
 }

@@ -74,16 +74,26 @@ impl PointSpread {
     /// What falls on the pixels around one, `pitch_mm` wide, from a point in its middle; all but `share`, and no farther than
     /// `most` pixels. It sums to 1.
     pub(crate) fn over_pixels(&self, pitch_mm: f64, share: f64, most: usize) -> Kernel {
+        let all = self.profiles(pitch_mm, share, most);
+        let kernel = Kernel::new(all[0].1.len() - 1, |i, j| all.iter().map(|(w, a)| w * a[i] * a[j]).sum());
+        let sum = kernel.sum();
+        kernel.scaled(1.0 / sum)
+    }
+
+    /// The same as a sum of products: of each Gaussian its weight, and what of it falls on the pixels along an axis, from the one
+    /// in its middle on. Together they sum to 1.
+    pub(crate) fn profiles(&self, pitch_mm: f64, share: f64, most: usize) -> Vec<(f64, Vec<f64>)> {
         let radius = ((self.reach_mm(share) / pitch_mm).ceil() as usize).max(1).min(most);
-        // Along an axis, what of each Gaussian falls on pixel i; on the falling side, where nothing cancels.
+        // On the falling side, where nothing cancels.
         let along = |sigma: f64| -> Vec<f64> {
             let beyond = |i: usize| normal::below(-(i as f64 + 0.5) * pitch_mm / sigma);
             (0..=radius).map(|i| if i == 0 { 1.0 - 2.0 * beyond(0) } else { beyond(i - 1) - beyond(i) }).collect()
         };
-        let all: Vec<(f64, Vec<f64>)> = self.terms.iter().map(|[s, w]| (*w, along(*s))).collect();
-        let kernel = Kernel::new(radius, |i, j| all.iter().map(|(w, a)| w * a[i] * a[j]).sum());
-        let sum = kernel.sum();
-        kernel.scaled(1.0 / sum)
+        let all = |a: &Vec<f64>| a[0] + 2.0 * a[1..].iter().sum::<f64>();
+        let mut profiles: Vec<(f64, Vec<f64>)> = self.terms.iter().map(|[s, w]| (*w, along(*s))).collect();
+        let sum: f64 = profiles.iter().map(|(w, a)| w * all(a) * all(a)).sum();
+        profiles.iter_mut().for_each(|(w, _)| *w /= sum);
+        profiles
     }
 }
 

@@ -9,9 +9,11 @@ mod block;
 mod fft;
 mod grid;
 mod kernel;
+mod products;
 
 pub use grid::Grid;
 pub use kernel::Kernel;
+pub use products::Products;
 
 use crate::isa::Isa;
 use block::{Scratch, Transform};
@@ -43,6 +45,16 @@ impl Convolver {
         let transform = Transform::new(side(width, radius), side(height, radius));
         let spectrum = transform.spectrum(radius, weight, isa);
         Self { width, height, radius, transform, spectrum, isa }
+    }
+
+    /// Operations that a pixel costs, about: those of the transforms of two tiles over the pixels that they give, for a kernel of
+    /// `radius` on planes of `width` by `height`.
+    #[must_use]
+    pub fn operations(radius: usize, width: usize, height: usize) -> usize {
+        let sides = [side(width, radius), side(height, radius)];
+        let points = sides[0] * sides[1];
+        // There and back, five operations a point and step.
+        5 * points * points.trailing_zeros() as usize / ((sides[0] - 2 * radius) * (sides[1] - 2 * radius))
     }
 
     /// The plane `source` convolved: each value is given to `write` with its target.

@@ -1,0 +1,38 @@
+//! A spread on planes of one size, by what costs less: products of profiles, or transforms.
+
+use super::PointSpread;
+use crate::raster::Raster;
+use spectra_numerics::convolve::{Convolver, Products};
+
+/// Part of what may be beyond the kernel that may be beyond each Gaussian: where one ends others are a hundred times as
+/// bright.
+const OF_A_TERM: f64 = 0.01;
+
+/// A spread made ready.
+pub(crate) enum Spreading {
+    Products(Products),
+    Transforms(Convolver),
+}
+
+impl Spreading {
+    /// All of a spread but the part `beyond`, and no farther than `most` pixels.
+    pub(crate) fn new(spread: &PointSpread, raster: &Raster, beyond: f64, most: usize) -> Self {
+        let (width, height) = (raster.width, raster.height);
+        let most = most.min(width.max(height)).max(1);
+        let profiles = spread.profiles(raster.pitch_mm, beyond, most);
+        let radius = profiles[0].1.len() - 1;
+        let products = Products::new(&profiles, OF_A_TERM * beyond, width, height);
+        if products.pairs() <= Convolver::operations(radius, width, height) {
+            return Self::Products(products);
+        }
+        Self::Transforms(Convolver::new(&spread.over_pixels(raster.pitch_mm, beyond, most), width, height))
+    }
+
+    /// The plane `source` spread: each value is given to `write` with its target.
+    pub(crate) fn apply(&self, source: &[f32], target: &mut [f32], write: impl Fn(&mut f32, f64) + Sync) {
+        match self {
+            Self::Products(products) => products.apply(source, target, |to, v| write(to, f64::from(v))),
+            Self::Transforms(convolver) => convolver.apply(source, target, write),
+        }
+    }
+}
