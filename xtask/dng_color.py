@@ -13,7 +13,8 @@ are compared with what the eye sees of their reflectances in the same light, ada
 patches must be at most 1.5 on average by the specification's way.
 
 Where the packages are installed (`pip install rawpy exifread`), LibRaw opens the same file (it reads the matrix for D65
-alone), and an EXIF reader shows exposure and lens. Neither is needed.
+alone), and an EXIF reader shows exposure and lens. Neither is needed. With LibRaw by way of rawpy 0.28.0 the means are 1.02 (D65) and
+1.27 (A) by the specification, 1.05 and 3.07 by LibRaw.
 """
 
 import csv

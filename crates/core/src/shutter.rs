@@ -1,13 +1,13 @@
 //! Exposure times as a photographer writes them.
 
-/// Largest relative distance of 1/t from a whole number that still counts as that number.
-const WHOLE: f64 = 1e-6;
+/// Largest distance of 1/t from a whole number that still counts as that number, relative and absolute.
+const WHOLE: (f64, f64) = (1e-6, 1e-3);
 
 /// An exposure time in words: `1/125 s`, `1/700 s`, `0.4 s`, `2 s`. One over a whole number is shown as it is, any other
-/// time rounded to what a shutter can tell apart (two digits below 0.3 s, three above).
+/// time rounded to what a shutter can tell apart (two digits below 0.3 s, three above). Beyond 1e-7 s and 1e5 s as a number.
 #[must_use]
 pub fn words(seconds: f64) -> String {
-    if !(1e-5..1e5).contains(&seconds) {
+    if !(1e-7..1e5).contains(&seconds) {
         return match seconds {
             0.0 => "0 s".to_owned(),
             s if s.is_finite() => format!("{} s", short(&format!("{s:.2e}"))),
@@ -15,7 +15,7 @@ pub fn words(seconds: f64) -> String {
         };
     }
     let below = 1.0 / seconds;
-    if seconds < 1.0 && (below - below.round()).abs() <= WHOLE * below {
+    if seconds < 1.0 && (below - below.round()).abs() <= WHOLE.1.min(WHOLE.0 * below) {
         return format!("1/{} s", below.round());
     }
     if seconds >= 0.3 {
@@ -64,12 +64,28 @@ mod tests {
             1.25,
             2.0,
             1234.0,
+            8.01e-6,
             0.0,
             1.2e-9,
         ];
         let wanted = [
-            "1/125 s", "1/137 s", "1/700 s", "1/100 s", "1/23 s", "1/7 s", "0.14 s", "1/3 s", "1/2 s", "0.4 s", "1 s",
-            "1.25 s", "2 s", "1230 s", "0 s", "1.2e-9 s",
+            "1/125 s",
+            "1/137 s",
+            "1/700 s",
+            "1/100 s",
+            "1/23 s",
+            "1/7 s",
+            "0.14 s",
+            "1/3 s",
+            "1/2 s",
+            "0.4 s",
+            "1 s",
+            "1.25 s",
+            "2 s",
+            "1230 s",
+            "1/120000 s",
+            "0 s",
+            "1.2e-9 s",
         ];
         assert_eq!(times.map(words), wanted);
     }
@@ -78,7 +94,7 @@ mod tests {
     #[test]
     fn words_stay_near_the_time() {
         for i in 0..4000 {
-            let seconds = 1e-5 * crate::math::pow(1e9, f64::from(i) / 4000.0);
+            let seconds = 1e-7 * crate::math::pow(1e11, f64::from(i) / 4000.0);
             let text = words(seconds);
             let number = text.trim_end_matches(" s");
             let said = match number.split_once('/') {

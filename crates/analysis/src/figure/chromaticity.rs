@@ -100,13 +100,17 @@ pub fn chromaticity_diagram(points: &[(String, [f64; 2])], diagram: Diagram, obs
     canvas.polygon(&locus, Paint::Picture(colors(frame, diagram)));
     canvas.outline(&locus, &Stroke::new(Color::INK, 1.5));
     let mut labels = Labels::new(frame.grown(-3.0));
+    // Names do not lie across the locus.
+    for [x, y] in &locus {
+        labels.keep_clear(Rect::new(x - 1.0, y - 1.0, x + 1.0, y + 1.0));
+    }
+    let style = TextStyle::new(13.5).end();
+    let corner = [frame.right - 16.0, frame.top + 26.0];
+    canvas.text(corner, observer.name(), &style);
+    labels.keep_clear(style.bounds(corner, observer.name()));
     if observer.name() == standard.name() {
         let legend = gamuts(&mut canvas, &sheet);
         labels.keep_clear(legend);
-    } else {
-        let style = TextStyle::new(13.5).end();
-        canvas.text([frame.right - 16.0, frame.top + 26.0], observer.name(), &style);
-        labels.keep_clear(style.bounds([frame.right - 16.0, frame.top + 26.0], observer.name()));
     }
     name_locus(&mut canvas, &sheet, &mut labels);
     planckian(&mut canvas, &sheet, &mut labels, points);
@@ -150,7 +154,7 @@ fn name_locus(canvas: &mut Canvas, sheet: &Sheet<'_>, labels: &mut Labels) {
             let text = nm.to_string();
             let [x, y] = off(10.0);
             let place = [x + out[0] * 0.5 * text_width(&text, style.size), y + style.half_cap() * (1.0 + out[1])];
-            labels.keep_clear(style.bounds(place, &text));
+            labels.keep_clear(style.bounds(place, &text).grown(2.0));
             canvas.text(place, &text, &style);
         }
     }
@@ -165,7 +169,7 @@ fn gamuts(canvas: &mut Canvas, on: &Sheet<'_>) -> Rect {
     let widest = spaces.iter().map(|s| text_width(s.name, style.size)).fold(0.0, f64::max);
     let right = axes.frame.right - 14.0;
     let left = right - SAMPLE - widest - 24.0;
-    let top = axes.frame.top + 14.0;
+    let top = axes.frame.top + 38.0;
     let rect = Rect::new(left, top, right, top + 12.0 + 22.0 * spaces.len() as f64);
     paper(canvas, rect);
     for (i, (space, dashes)) in spaces.iter().zip(dashes).enumerate() {

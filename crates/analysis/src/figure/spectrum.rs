@@ -59,7 +59,8 @@ pub fn spectrum_and_functions(spectra: &[(String, Found)], functions: &[(String,
         _ => 0.18,
     };
     fill(&mut canvas, &axes, &curves, opacity);
-    for (i, curve) in curves.iter().enumerate() {
+    let order = order(&names);
+    for (i, curve) in order.iter().copied().zip(&curves) {
         let color = if alone { Color::INK } else { palette(i) };
         for line in &curve.lines {
             let color = if alone { shown(line.wavelength_nm) } else { color };
@@ -76,7 +77,7 @@ pub fn spectrum_and_functions(spectra: &[(String, Found)], functions: &[(String,
         name_lines(&mut canvas, &axes, &curves[0].lines);
     }
     axes.draw_frame(&mut canvas);
-    for (i, (name, at)) in names.iter().zip(places).enumerate() {
+    for (i, (name, at)) in order.into_iter().zip(names.iter().zip(places)) {
         if alone {
             canvas.text([frame.left, at[1]], name, &style.clone().weight(1.35));
         } else {
@@ -84,6 +85,15 @@ pub fn spectrum_and_functions(spectra: &[(String, Found)], functions: &[(String,
         }
     }
     canvas
+}
+
+/// Which line each curve has, by its place in the palette. Three columns that stand for long, middle and short waves are reddish,
+/// green and blue.
+fn order(names: &[String]) -> Vec<usize> {
+    const THREES: [[&str; 3]; 4] = [["r", "g", "b"], ["red", "green", "blue"], ["x", "y", "z"], ["l", "m", "s"]];
+    let columns: Vec<&str> = names.iter().filter_map(|name| Some(name.rsplit_once('#')?.1)).collect();
+    let all_columns = columns.len() == names.len();
+    if all_columns && THREES.iter().any(|three| columns == three) { vec![1, 2, 0] } else { (0..names.len()).collect() }
 }
 
 fn palette(i: usize) -> Color {

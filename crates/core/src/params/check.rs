@@ -18,8 +18,15 @@ use std::sync::Arc;
 /// Most faults that one map reports.
 const MOST_FAULTS: usize = 100;
 
-/// What helps where a key has no value.
-const NO_VALUE: &str = "write the value behind the `:`, or leave the key out";
+/// What helps where a key has no value, in a file or on the command line.
+fn no_value(node: &Node) -> String {
+    let before = node.file.text.get(..node.span.offset).unwrap_or("");
+    if node.file.is_argument() && before.trim_end().ends_with('=') {
+        "write the value after the `=`; `null` takes the key away".to_owned()
+    } else {
+        "write the value after the `:`, or leave the key out".to_owned()
+    }
+}
 
 /// Everything in which a tree does not keep to a schema, in the order of the file.
 pub(super) fn check(at: &At<'_, '_>, schema: &Schema) -> Result<(), Faults> {
@@ -158,7 +165,7 @@ impl<'s> Check<'s> {
             (Some(joined), _) if matches!(Value::from_plain(&joined), Value::Number(_)) => {
                 Some(format!("write `{}`", shown(&joined)))
             }
-            _ if matches!(at.node.value, Value::Null) => Some(NO_VALUE.to_owned()),
+            _ if matches!(at.node.value, Value::Null) => Some(no_value(at.node)),
             (_, Some((_, example))) => Some(format!("write it as in `{example}`")),
             _ => None,
         };
@@ -235,7 +242,7 @@ impl<'s> Check<'s> {
                     })
                     .unzip();
                 let hint = as_list.unwrap_or_else(|| match &at.node.value {
-                    Value::Null => NO_VALUE.to_owned(),
+                    Value::Null => no_value(at.node),
                     _ => format!("write it as in {}", examples.join(" or ")),
                 });
                 self.mismatch(at, &forms.join(" or "), Some(hint));
@@ -278,7 +285,7 @@ impl<'s> Check<'s> {
             Value::Number(super::Number { text, .. }) | Value::String(text) => form.read(text).map(|_| ()),
             value => {
                 let hint = match value {
-                    Value::Null => format!("\nhint: {NO_VALUE}"),
+                    Value::Null => format!("\nhint: {}", no_value(at.node)),
                     Value::Seq(_) => "\nhint: one value, without brackets".to_owned(),
                     _ => format!("\nhint: write it as in `{}`", form.example()),
                 };

@@ -25,10 +25,6 @@ pub fn decode(found: &Found, choice: Choice<'_>) -> Result<Linear, Trouble> {
     let bytes = found.size_bytes().map_err(io)?;
     match kind(&found.read(64).map_err(io)?, choice)? {
         Kind::Exr => exr::decode(found.open().map_err(io)?, bytes, choice, true),
-        Kind::Native(ImageFormat::Jpeg) if !jpeg::is_whole(&found.read(bytes).map_err(io)?) => {
-            Err(Trouble::file("the file is truncated")
-                .hint("copy, download or save it again: the missing part would be gray"))
-        }
         Kind::Native(format) => match native(found, format, choice.cover, said) {
             Ok(linear) => Ok(linear),
             Err(NotRead::Trouble(trouble)) => Err(trouble),
@@ -151,6 +147,9 @@ fn orientation(decoder: &mut impl ImageDecoder) -> u8 {
 }
 
 fn native(found: &Found, format: ImageFormat, cover: bool, said: Option<Encoding>) -> Result<Linear, NotRead> {
+    if format == ImageFormat::Jpeg {
+        jpeg::refuse_unless_whole(found)?;
+    }
     let mut decoder = decoder(found.open().map_err(io)?, format, found.size_bytes().map_err(io)?)?;
     let mut limits = Limits::default();
     limits.max_image_width = Some(MAX_SIDE);

@@ -1,7 +1,7 @@
 //! What the beginning of a picture file says: enough to place it, without its pixels.
 
 use super::decode::{self, Kind};
-use super::exr;
+use super::{exr, jpeg};
 use super::linear::{Choice, Trouble};
 use spectra_core::resources::{Found, ResourceError};
 
@@ -31,7 +31,8 @@ impl Header {
     }
 }
 
-/// Reads the header of a file, and no pixels: those formats apart that a library unpacks as it opens them.
+/// Reads the header of a file, and no pixels: those formats apart that a library unpacks as it opens them. A JPEG is looked
+/// through to its end, since its decoder does not tell when the end is missing.
 ///
 /// # Errors
 /// What is wrong with it.
@@ -44,6 +45,7 @@ pub fn header(found: &Found, choice: Choice<'_>) -> Result<Header, Trouble> {
         Kind::Native(format) => {
             let is_jpeg = format == image::ImageFormat::Jpeg;
             if is_jpeg {
+                jpeg::refuse_unless_whole(found)?;
                 let beginning = found.read(BEGINNING_BYTES).map_err(io)?;
                 decode::native_header(std::io::Cursor::new(beginning), format, bytes)?
             } else {
