@@ -329,6 +329,31 @@ fn a_change_can_be_made_ready_later() {
     assert_eq!(bits(&mut later), bits(&mut whole));
 }
 
+/// Who has drafted a change has focused the lens; a frame that turns leaves it as it is. The picture is that of a run.
+#[test]
+fn a_lens_is_focused_once() {
+    let small = ["imager.resolution=[24, 16]", "render.samples=4"];
+    let mut whole = session("biotar-ortho", &small);
+    go(&mut whole, 4);
+    let mut draft = whole.draft(&["imager.resolution=[12, 8]".to_owned()]).expect("the same scene");
+    let before = Arc::clone(&whole.scene().lens);
+    for change in ["lens.focus=1.5 m", "imager.tilt=[3 deg, 0 deg]"] {
+        draft.change(change).expect("it can be");
+        whole.change_after(change, &draft).expect("it can be");
+        assert!(Arc::ptr_eq(&whole.scene().lens, &draft.scene().lens), "{change}");
+    }
+    assert!(!Arc::ptr_eq(&whole.scene().lens, &before));
+    let focused = Arc::clone(&whole.scene().lens);
+    go(&mut whole, 4);
+    let mut fresh =
+        session("biotar-ortho", &[&small[..], &["lens.focus=1.5 m", "imager.tilt=[3 deg, 0 deg]"]].concat());
+    go(&mut fresh, 4);
+    assert_eq!(bits(&mut whole), bits(&mut fresh));
+    // Other light is focused anew, whatever was drafted.
+    whole.change_after("film.stock=kodak-tri-x-400", &draft).expect("it can be");
+    assert!(!Arc::ptr_eq(&whole.scene().lens, &focused));
+}
+
 /// A first look shows the same light, exposed as long, by less effort.
 #[test]
 fn a_draft_is_as_bright_as_the_whole() {

@@ -310,7 +310,7 @@ fn all_stages(
     };
     let lens_place = lens.clone();
     let cover = imager.as_ref().and_then(|imager| imager.cover());
-    let held = lens.and_then(|p| of_lens.take(held_lens(&p, resources, cover)));
+    let held = lens.and_then(|p| of_lens.take(held_lens(&p, resources, cover.clone())));
     let seen = || held.as_ref().zip(imager.as_ref()).and_then(|(held, imager)| sight::seen(&held.lens, &**imager));
     let (source, dark) = match earlier.source.take() {
         Some(source) if earlier.same_view || earlier.is_check => (Some(source), said.dark),
@@ -362,7 +362,7 @@ fn all_stages(
         }
         _ => None,
     };
-    let lens = match earlier.lens_in(focus_light.as_ref()) {
+    let lens = match earlier.lens_in(focus_light.as_ref(), cover.as_ref()) {
         Some(lens) => Some(lens),
         None => held.and_then(|held| of_lens.take(held.focused(focus_light.as_ref()))),
     };

@@ -5,6 +5,7 @@ use crate::landing;
 use crate::lens_section::SetLens;
 use crate::sight::Dark;
 use crate::{Scene, SceneFilm};
+use spectra_core::cover::CoverStack;
 use spectra_core::params::{DataEnd, Fault, Node, Params, Value, Warning};
 use spectra_core::stage::{Imager, Source, WavelengthSampler};
 use std::sync::Arc;
@@ -18,6 +19,21 @@ pub(crate) struct Said {
     pub dark: Option<Dark>,
 }
 
+/// A lens of another scene.
+struct Focused {
+    params: Params,
+    set: SetLens,
+    light: FocusLight,
+}
+
+impl Focused {
+    fn of(scene: &Scene) -> Option<Self> {
+        let (light, warnings) = scene.focused.clone();
+        let set = SetLens { lens: Arc::clone(&scene.lens), focus: scene.focus.clone(), warnings };
+        Some(Self { params: scene.params.clone(), set, light: light? })
+    }
+}
+
 /// Stages of another scene: where a section says the same, its stage is taken over.
 #[derive(Default)]
 pub(crate) struct Earlier {
@@ -26,8 +42,8 @@ pub(crate) struct Earlier {
     pub sampler: Option<Arc<dyn WavelengthSampler>>,
     pub imager: Option<Arc<dyn Imager>>,
     pub films: Option<Vec<SceneFilm>>,
-    /// The lens, as it was focused in this light.
-    lens: Option<(SetLens, FocusLight)>,
+    /// Lenses, as they were focused.
+    lenses: Vec<Focused>,
     frame: Option<u64>,
     said: Said,
     /// Whether lens and imager say the same.
@@ -40,15 +56,13 @@ impl Earlier {
     /// The stages of `scene`. Where nobody else holds it, they are all that is left of it, and may be set for another frame.
     pub(crate) fn of(scene: Option<Arc<Scene>>, is_check: bool) -> Self {
         let Some(scene) = scene else { return Self { is_check, ..Self::default() } };
-        let (light, warnings) = scene.focused.clone();
-        let set = SetLens { lens: Arc::clone(&scene.lens), focus: scene.focus.clone(), warnings };
         Self {
             params: Some(scene.params.clone()),
             source: Some(Arc::clone(&scene.source)),
             sampler: Some(Arc::clone(&scene.sampler)),
             imager: Some(Arc::clone(&scene.imager)),
             films: (!scene.films.is_empty()).then(|| scene.films.clone()),
-            lens: light.map(|light| (set, light)),
+            lenses: Focused::of(&scene).into_iter().collect(),
             frame: scene.render.frame,
             said: scene.said.clone(),
             same_view: false,
@@ -56,12 +70,20 @@ impl Earlier {
         }
     }
 
+    /// With the lens of one more scene, where it was focused as it is to be here; of all else of that scene nothing.
+    pub(crate) fn and_lens_of(mut self, other: Option<&Scene>) -> Self {
+        self.lenses.extend(other.and_then(Focused::of));
+        self
+    }
+
     /// Leaves nothing of what `params` say otherwise.
     pub(crate) fn fitting(self, params: &Params) -> Self {
         let same = |key: &str| self.params.as_ref().is_some_and(|before| same_section(before, params, key));
         // The band is everybody's.
+        let mut lenses = self.lenses;
+        lenses.retain(|known| ["wavelengths", "lens"].iter().all(|key| same_section(&known.params, params, key)));
         if !same("wavelengths") {
-            return Self { is_check: self.is_check, ..Self::default() };
+            return Self { is_check: self.is_check, lenses, ..Self::default() };
         }
         let (films, lens) = (same("film"), same("lens"));
         // An imager that looks where the light lands stands by all others.
@@ -87,16 +109,17 @@ impl Earlier {
             source: self.source.filter(|_| source),
             imager: self.imager.filter(|_| imager && in_time),
             films: self.films.filter(|all| films && (in_time || all.iter().all(is_ours))),
-            lens: self.lens.filter(|_| lens && imager),
+            lenses,
             said,
             same_view: lens && imager,
             ..self
         }
     }
 
-    /// The lens, where it was focused in this light already.
-    pub(crate) fn lens_in(&mut self, light: Option<&FocusLight>) -> Option<SetLens> {
-        self.lens.take().filter(|(_, before)| light == Some(before)).map(|(lens, _)| lens)
+    /// The lens, where it was focused in this light and behind these plates already.
+    pub(crate) fn lens_in(&mut self, light: Option<&FocusLight>, cover: Option<&CoverStack>) -> Option<SetLens> {
+        let is_it = |known: &Focused| light == Some(&known.light) && cover == known.set.lens.cover.as_ref();
+        std::mem::take(&mut self.lenses).into_iter().find(is_it).map(|known| known.set)
     }
 
     /// What was said of the stages that are left.

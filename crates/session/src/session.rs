@@ -258,7 +258,7 @@ impl Session {
     /// # Errors
     /// As [`Session::change`].
     pub fn change_on(&mut self, text: &str, workers: &dyn Workers) -> Result<Kept, SessionError> {
-        self.changed(text, Some(workers))
+        self.changed(text, Some(workers), None)
     }
 
     /// The same, but what the change asks to be made ready anew is made when light is asked for again, where it can be stopped. What
@@ -267,13 +267,26 @@ impl Session {
     /// # Errors
     /// What is wrong with the stages of the scene as it would be.
     pub fn change_later(&mut self, text: &str) -> Result<Kept, SessionError> {
-        self.changed(text, None)
+        self.changed(text, None, None)
     }
 
-    fn changed(&mut self, text: &str, workers: Option<&dyn Workers>) -> Result<Kept, SessionError> {
+    /// The same, where `other` may have the lens as the change asks for it, focused: a draft that was changed so before.
+    ///
+    /// # Errors
+    /// As [`Session::change_later`].
+    pub fn change_after(&mut self, text: &str, other: &Self) -> Result<Kept, SessionError> {
+        self.changed(text, None, Some(&other.scene))
+    }
+
+    fn changed(
+        &mut self,
+        text: &str,
+        workers: Option<&dyn Workers>,
+        lens_of: Option<&Scene>,
+    ) -> Result<Kept, SessionError> {
         let series = self.series.with(text)?;
         let before = Arc::clone(&self.scene);
-        let scene: Arc<Scene> = series.scene_after(self.index, Some(Arc::clone(&before)))?.into();
+        let scene: Arc<Scene> = series.scene_between(self.index, Some(Arc::clone(&before)), lens_of)?.into();
         let responses = |scene: &Scene, which: Vec<usize>| -> Vec<Vec<f64>> {
             which.iter().filter_map(|at| scene.channels.get(*at)).map(|c| c.response.clone()).collect()
         };
@@ -283,9 +296,13 @@ impl Session {
             && before.metered_pixels() == scene.metered_pixels();
         let source = Arc::ptr_eq(&before.source, &scene.source);
         let lens = Arc::ptr_eq(&before.lens, &scene.lens);
-        let system =
-            source && same_channels && before.grid == scene.grid && Arc::ptr_eq(&before.sampler, &scene.sampler);
+        // A source that fills the frame is another one with every lens; its light has the spectrum of before.
+        let system = before.source.spectrum() == scene.source.spectrum()
+            && same_channels
+            && before.grid == scene.grid
+            && Arc::ptr_eq(&before.sampler, &scene.sampler);
         let same_light = system
+            && source
             && same_meters
             && lens
             && before.imager.size() == scene.imager.size()

@@ -281,9 +281,6 @@ fn lit(light: &SpectralPower, reflectance: &Reflectance) -> SpectralPower {
     }
 }
 
-/// Points a side at which the chart is looked at to weigh its inks.
-const CENSUS: usize = 512;
-
 struct ChartTexture {
     chart: Chart,
     palette: Palette,
@@ -294,16 +291,7 @@ struct ChartTexture {
 
 impl ChartTexture {
     fn new(chart: Chart, palette: Palette, spectra: &[SpectralPower]) -> Self {
-        let mut areas = vec![0.0; spectra.len()];
-        let step = |i: usize| (i as f64 + 0.5) / CENSUS as f64 - 0.5;
-        for i in 0..CENSUS {
-            for j in 0..CENSUS {
-                let ink = chart.ink_at(step(i) * chart.width_mm(), step(j) * chart.height_mm());
-                if let Some(area) = areas.get_mut(usize::from(ink)) {
-                    *area += 1.0 / (CENSUS * CENSUS) as f64;
-                }
-            }
-        }
+        let mut areas = chart.areas().to_vec();
         // An ink too small to be met still must be able to be seen: it keeps the density positive.
         areas.iter_mut().for_each(|a| *a = a.max(1e-6));
         let mean = palette.mean(&areas);

@@ -458,6 +458,19 @@ impl Series {
         self.assembled(index, Earlier::of(other, false))
     }
 
+    /// The same, with the lens of one more picture where both focus it alike.
+    ///
+    /// # Errors
+    /// As [`Series::scene`].
+    pub fn scene_between(
+        &self,
+        index: usize,
+        other: Option<Arc<Scene>>,
+        lens_of: Option<&Scene>,
+    ) -> Result<Scene, Faults> {
+        self.assembled(index, Earlier::of(other, false).and_lens_of(lens_of))
+    }
+
     /// A picture to be looked at, not to be rendered: noise and grain need not be those of its frame. So that all the
     /// stages of another such picture serve again, where the scene says the same of them.
     ///

@@ -1,6 +1,8 @@
 //! The charts by name.
 
+use std::collections::VecDeque;
 use std::fmt;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use super::designs;
 use super::drawing::Drawing;
@@ -28,9 +30,8 @@ impl ChartEntry {
         {
             return Err(ChartError::Width { width_mm });
         }
-        let drawing = (self.draw)(seed);
-        let width_mm = width_mm.unwrap_or(drawing.width_mm());
-        Ok(drawing.finish(self.name, width_mm))
+        let design = known((self.name, seed), || (self.draw)(seed).finish(self.name));
+        Ok(design.scaled(width_mm.unwrap_or(design.width_mm())))
     }
 }
 
@@ -94,7 +95,29 @@ pub const OWN_PATCHES: &str = "patches";
 /// A chart of `count` patches ([`Ink::Own`](super::Ink::Own)) in a block on a black frame, `width_mm` wide.
 #[must_use]
 pub fn own_patches(count: u16, width_mm: f64) -> Chart {
-    designs::patches(count).finish(OWN_PATCHES, width_mm)
+    let key = (OWN_PATCHES, u64::from(count));
+    known(key, || designs::patches(count).finish(OWN_PATCHES)).scaled(width_mm)
+}
+
+/// So many designs are kept, those that were asked for last: to draw one takes tens of milliseconds, to scale it less than one.
+const KEPT: usize = 4;
+
+/// What a chart's name and its seed, or its number of patches, stand for.
+type Key = (&'static str, u64);
+
+/// The chart in the size of its design. What is drawn twice is the same, so nothing but time depends on what is known.
+fn known(key: Key, draw: impl FnOnce() -> Chart) -> Arc<Chart> {
+    static KNOWN: Mutex<VecDeque<(Key, Arc<Chart>)>> = Mutex::new(VecDeque::new());
+    let all = || KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
+    let found = all().iter().find(|(other, _)| *other == key).map(|(_, chart)| Arc::clone(chart));
+    found.unwrap_or_else(|| {
+        // Not under the lock: other threads may ask meanwhile.
+        let drawn = Arc::new(draw());
+        let mut all = all();
+        all.truncate(KEPT - 1);
+        all.push_front((key, Arc::clone(&drawn)));
+        drawn
+    })
 }
 
 /// Draws the chart `name`, `width_mm` wide or in the size of its design.

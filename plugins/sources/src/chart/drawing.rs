@@ -17,7 +17,7 @@ pub enum Align {
 }
 
 /// Shapes on a ground, later ones on top, in millimetres of the drawing (origin at the center, +x right, +y
-/// up); [`Drawing::finish`] brings it to the wanted size.
+/// up); a finished chart is brought to the wanted size.
 #[derive(Debug)]
 pub struct Drawing {
     width_mm: f64,
@@ -32,12 +32,6 @@ impl Drawing {
     #[must_use]
     pub fn new(width_mm: f64, height_mm: f64, ground: Ink) -> Self {
         Self { width_mm, height_mm, inks: vec![ground], shapes: Vec::new(), landmarks: Vec::new() }
-    }
-
-    /// Width of the drawing, mm.
-    #[must_use]
-    pub fn width_mm(&self) -> f64 {
-        self.width_mm
     }
 
     /// Draws a shape in `ink`.
@@ -93,13 +87,10 @@ impl Drawing {
         }
     }
 
-    /// The chart, `width_mm` wide, everything in proportion.
+    /// The chart, in the size of the drawing.
     #[must_use]
-    pub fn finish(self, name: &'static str, width_mm: f64) -> Chart {
-        let factor = width_mm / self.width_mm;
-        let shapes = self.shapes.into_iter().map(|(shape, ink)| (shape.scaled(factor), ink)).collect();
-        let landmarks = self.landmarks.into_iter().map(|landmark| landmark.scaled(factor)).collect();
-        Chart::new(name, width_mm, self.height_mm * factor, self.inks, shapes, landmarks)
+    pub fn finish(self, name: &'static str) -> Chart {
+        Chart::new(name, self.width_mm, self.height_mm, self.inks, self.shapes, self.landmarks)
     }
 }
 

@@ -34,6 +34,8 @@ const CHUNK: usize = 256;
 /// The cells of a chart.
 #[derive(Clone, Debug)]
 pub struct Grid {
+    /// Cells along the longer side.
+    along: usize,
     half_width_mm: f64,
     half_height_mm: f64,
     cells_per_mm: f64,
@@ -65,6 +67,14 @@ impl Grid {
         }
     }
 
+    /// The same for a chart of the same shape and another size: which shapes may touch a cell does not change with it.
+    #[must_use]
+    pub fn scaled(&self, width_mm: f64, height_mm: f64) -> Self {
+        let cell_mm = width_mm.max(height_mm) / self.along as f64;
+        let [half_width_mm, half_height_mm] = [0.5 * width_mm, 0.5 * height_mm];
+        Self { half_width_mm, half_height_mm, cells_per_mm: 1.0 / cell_mm, ..self.clone() }
+    }
+
     fn of_depth(width_mm: f64, height_mm: f64, shapes: &[(Shape, u16)], depth: u32) -> Self {
         let side_mm = width_mm.max(height_mm);
         let along = 1_usize << depth;
@@ -74,6 +84,7 @@ impl Grid {
         let [columns, rows] = [blocks_over(width_mm), blocks_over(height_mm)];
         let inks = shapes.iter().map(|&(_, ink)| ink).max().unwrap_or(0);
         let grid = Self {
+            along,
             half_width_mm: 0.5 * width_mm,
             half_height_mm: 0.5 * height_mm,
             cells_per_mm: 1.0 / cell_mm,

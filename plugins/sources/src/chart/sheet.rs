@@ -19,9 +19,9 @@ pub struct Landmark {
 }
 
 impl Landmark {
-    pub(super) fn scaled(self, factor: f64) -> Self {
+    fn scaled(&self, factor: f64) -> Self {
         let [x, y] = self.center_mm;
-        Self { name: self.name, center_mm: [x * factor, y * factor], radius_mm: self.radius_mm * factor }
+        Self { name: self.name.clone(), center_mm: [x * factor, y * factor], radius_mm: self.radius_mm * factor }
     }
 }
 
@@ -37,8 +37,13 @@ pub struct Chart {
     inks: Vec<Ink>,
     shapes: Vec<(Shape, u16)>,
     landmarks: Vec<Landmark>,
+    /// Part of the chart that each ink covers.
+    areas: Vec<f64>,
     grid: Grid,
 }
+
+/// Points a side at which a chart is looked at to weigh its inks.
+const CENSUS: usize = 512;
 
 impl Chart {
     pub(super) fn new(
@@ -50,7 +55,33 @@ impl Chart {
         landmarks: Vec<Landmark>,
     ) -> Self {
         let grid = Grid::new(width_mm, height_mm, &shapes);
-        Self { name, width_mm, height_mm, inks, shapes, landmarks, grid }
+        let mut areas = vec![0.0; inks.len()];
+        let step = |i: usize| (i as f64 + 0.5) / CENSUS as f64 - 0.5;
+        for i in 0..CENSUS {
+            for j in 0..CENSUS {
+                let ink = grid.ink_at(&shapes, step(i) * width_mm, step(j) * height_mm);
+                if let Some(area) = areas.get_mut(usize::from(ink)) {
+                    *area += 1.0 / (CENSUS * CENSUS) as f64;
+                }
+            }
+        }
+        Self { name, width_mm, height_mm, inks, shapes, landmarks, areas, grid }
+    }
+
+    /// The same `width_mm` wide, everything in proportion.
+    pub(super) fn scaled(&self, width_mm: f64) -> Self {
+        let factor = width_mm / self.width_mm;
+        let height_mm = self.height_mm * factor;
+        Self {
+            name: self.name,
+            width_mm,
+            height_mm,
+            inks: self.inks.clone(),
+            shapes: self.shapes.iter().map(|(shape, ink)| (shape.clone().scaled(factor), *ink)).collect(),
+            landmarks: self.landmarks.iter().map(|landmark| landmark.scaled(factor)).collect(),
+            areas: self.areas.clone(),
+            grid: self.grid.scaled(width_mm, height_mm),
+        }
     }
 
     /// Name in the list of charts.
@@ -75,6 +106,12 @@ impl Chart {
     #[must_use]
     pub fn inks(&self) -> &[Ink] {
         &self.inks
+    }
+
+    /// The part of the chart that each ink covers, in all 1, by a count of 512 x 512 points: whatever the width, the same.
+    #[must_use]
+    pub fn areas(&self) -> &[f64] {
+        &self.areas
     }
 
     /// Named places, in the order in which they were drawn.

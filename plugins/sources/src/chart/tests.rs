@@ -214,7 +214,7 @@ fn siemens_star_has_its_sectors() {
 fn letters_read_left_to_right_and_stand_upright() {
     let mut drawing = Drawing::new(100.0, 50.0, Ink::Gray(1.0));
     drawing.text("FR", [-20.0, -20.0], 40.0, Align::Left, Ink::Gray(0.0));
-    let chart = drawing.finish("test", 100.0);
+    let chart = drawing.finish("test");
     let black = |x: f64, y: f64| ink(&chart, x, y) == Ink::Gray(0.0);
     // Units of 5 mm; the middle of the pen of F runs from (-17.5, -17.5) to 17.5 above and back.
     let unit = 5.0;
@@ -245,7 +245,7 @@ fn text_is_aligned_to_its_anchor() {
     for (align, left) in [(Align::Left, 0.0), (Align::Center, -0.5 * width), (Align::Right, -width)] {
         let mut drawing = Drawing::new(200.0, 50.0, Ink::Gray(1.0));
         drawing.text("LENS 58", [0.0, -4.0], 8.0, align, Ink::Gray(0.0));
-        let chart = drawing.finish("test", 200.0);
+        let chart = drawing.finish("test");
         let start = -90.0 + 200.0 * change(&chart, [-90.0, 0.0], [left + 0.1, 0.0]) * (left + 90.1) / 200.0;
         assert!((start - left).abs() < 1e-9, "{align:?}: {start} {left}");
     }
@@ -262,10 +262,15 @@ fn charts_scale_with_their_width() {
             assert_eq!(scaled.width_mm(), factor * w);
             assert!((scaled.height_mm() - factor * h).abs() < 1e-12 * h);
             assert_eq!(scaled.inks(), design.inks());
+            // So that the light of a chart that fills the frame is the same in front of every lens.
+            assert_eq!(scaled.areas(), design.areas());
+            assert!((scaled.areas().iter().sum::<f64>() - 1.0).abs() < 1e-9, "{}", entry.name);
             let mut dice = Dice(9);
             for _ in 0..20_000 {
                 let [x, y] = [0.5 * w * dice.throw(), 0.5 * h * dice.throw()];
-                assert_eq!(scaled.ink_at(factor * x, factor * y), design.ink_at(x, y), "{} ({x}, {y})", entry.name);
+                let ink = scaled.ink_at(factor * x, factor * y);
+                assert_eq!(ink, design.ink_at(x, y), "{} ({x}, {y})", entry.name);
+                assert_eq!(ink, scaled.ink_by_all_shapes(factor * x, factor * y), "{} ({x}, {y})", entry.name);
             }
             for (large, small) in design.landmarks().iter().zip(scaled.landmarks()) {
                 assert_eq!(large.name, small.name);

@@ -223,10 +223,9 @@ impl Desk {
         for owed in std::mem::take(&mut hand.owed) {
             let Some(text) = hand.shape.text(&owed) else { continue };
             // Where a draft of it was made, the scene can be.
-            let changed = if hand.draft.is_some() && !NOT_DRAFTED.contains(&&*owed.path) {
-                hand.session.change_later(&text)
-            } else {
-                hand.session.change_on(&text, &Threads(self.order.threads))
+            let changed = match &hand.draft {
+                Some(draft) if !NOT_DRAFTED.contains(&&*owed.path) => hand.session.change_after(&text, draft),
+                _ => hand.session.change_on(&text, &Threads(self.order.threads)),
             };
             match changed {
                 Ok(kept) => {
