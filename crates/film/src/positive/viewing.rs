@@ -181,14 +181,14 @@ impl Viewing {
             if reach == Reach::Screen {
                 // As `spectra_color::into_gamut` desaturates: toward the gray of its luminance, by the largest share of color that fits.
                 let gray = luminance[0] * *x + luminance[1] * *y + luminance[2] * *z;
-                let gray = gray.max(0.0).min(1.0);
+                let gray = gray.clamp(0.0, 1.0);
                 let share = |v: f32| {
                     let room = if v > gray { 1.0 - gray } else { gray };
                     let far = (v - gray).abs();
                     if far > room { room / far } else { 1.0 }
                 };
                 let share = share(*x).min(share(*y)).min(share(*z));
-                let within = |v: f32| (gray + share * (v - gray)).max(0.0).min(1.0);
+                let within = |v: f32| (gray + share * (v - gray)).clamp(0.0, 1.0);
                 (*x, *y, *z) = (within(*x), within(*y), within(*z));
             }
         }

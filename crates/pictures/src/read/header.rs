@@ -1,8 +1,8 @@
 //! What the beginning of a picture file says: enough to place it, without its pixels.
 
 use super::decode::{self, Kind};
-use super::{exr, jpeg};
 use super::linear::{Choice, Trouble};
+use super::{exr, jpeg};
 use spectra_core::resources::{Found, ResourceError};
 
 /// The beginning of a JPEG that its decoder is shown: it reads all that it is given, and the size stands before the pixels.
