@@ -93,7 +93,7 @@ fn the_recorded_scene_gives_the_same_picture() {
         good(folder.path(), &["photo.png", "--stock", "ektachrome", "--format", format, "-o", "own.exr"]);
         let header = exr::meta::MetaData::read_from_file(at("own.exr"), false).expect("an EXR").headers.remove(0);
         let recorded = header.own_attributes.other.iter().chain(&header.shared_attributes.other);
-        let scene = recorded.into_iter().find(|(name, _)| name.to_string() == "spectra:scene").expect("recorded").1;
+        let scene = recorded.into_iter().find(|(name, _)| *name == "spectra:scene").expect("recorded").1;
         let exr::meta::attribute::AttributeValue::Text(scene) = scene else { panic!("no text: {scene:?}") };
         assert!(scene.to_string().contains("no-lens"), "{scene}");
         std::fs::write(at("recorded.yaml"), scene.to_string()).expect("written");
