@@ -1,21 +1,27 @@
 //! Tracing of whole batches along a path: straight through the lens in either direction, or by reflections.
 
+mod kernels;
+mod route;
+
+pub use route::Route;
+
 use crate::absorption::{Absorption, Grid};
 use crate::aperture::Shape;
 use crate::coating::Coating;
 use crate::ledger::{Booked, Ledger, StepLedger, living};
 use crate::onion::Bent;
-use crate::path::{Act, Path, PathStep};
+use crate::path::Path;
 use crate::pose::Pose;
 use crate::scatter::{self, Layer, Meeting, Shares};
 use crate::solid::{Bend, Solid};
 use crate::transmission::{Before, Passage};
 use crate::{Element, Lens};
-use glam::{DMat3, DVec3};
+use glam::DVec3;
+use kernels::{Count, Evaluate, Leave, Reframe};
+use route::{Leg, Move, route};
 use spectra_core::batch::Column;
-use spectra_core::isa::{Isa, Vectorized};
+use spectra_core::isa::Isa;
 use spectra_core::loss::ALIVE;
-use spectra_core::numbers::StageKey;
 use spectra_core::surface::{Action, IndexColumns, Interface, Travel};
 use spectra_core::{Loss, LossCounts, RayBatch};
 use spectra_glass::{Dispersion, DispersionError, Medium};
@@ -62,69 +68,6 @@ pub struct Tracer {
     /// Where they are tabulated, if there are any.
     absorption_grid: Option<Grid>,
     isa: Isa,
-}
-
-/// How rays come from one frame into the next.
-#[derive(Clone, Copy, Debug)]
-enum Move {
-    /// Both stand alike on one line along z: the next origin lies this far, mm.
-    Shift(f64),
-    /// Anything else: the pose of the frame they are in, seen from the next one.
-    Turn(Pose),
-}
-
-impl Move {
-    fn between(from: &Pose, to: &Pose) -> Self {
-        let aside = from.origin_mm - to.origin_mm;
-        if from.rotation == to.rotation && from.rotation == DMat3::IDENTITY && aside.x == 0.0 && aside.y == 0.0 {
-            return Self::Shift(to.origin_mm.z - from.origin_mm.z);
-        }
-        Self::Turn(to.inverse().then(from))
-    }
-}
-
-/// A path made ready: where each surface stands seen from the one before, what it does, and between which media.
-#[derive(Clone, Debug)]
-pub struct Route {
-    legs: Vec<Leg>,
-    /// Into the frame in which the light leaves.
-    out: Move,
-    /// The medium that it leaves into.
-    outside: usize,
-}
-
-impl Route {
-    /// How many elements it goes by.
-    #[must_use]
-    pub fn steps(&self) -> usize {
-        self.legs.len()
-    }
-}
-
-/// One step of a [`Route`].
-#[derive(Clone, Copy, Debug)]
-struct Leg {
-    /// The element, also the place of its booking.
-    at: usize,
-    /// Into the frame of the surface.
-    into: Move,
-    action: Action,
-    /// Whether a refracting surface reflects.
-    turns: bool,
-    /// Direction of travel along the surface's own z.
-    travel: Travel,
-    /// Media: the one that the light comes through, the one that it goes on in, and the one on the other side.
-    before: usize,
-    after: usize,
-    beyond: usize,
-    /// Whether the way here lies within the lens, where glass absorbs.
-    inside: bool,
-    /// Whether the light was reflected before, so that it may run away from this surface.
-    turned: bool,
-    /// What the surface draws its numbers by, if it does.
-    stage: Option<StageKey>,
-    /// Where scattered light is traced: what lies on it.
-    soiled: Option<scatter::Place>,
 }
 
 /// What one thread needs to trace: index columns, and what was lost.
@@ -694,83 +637,6 @@ fn columns(medium: &IndexColumnPair, len: usize) -> IndexColumns<'_> {
     IndexColumns { n: medium.n.slice(len), inverse: medium.inverse.slice(len) }
 }
 
-struct Evaluate<'a> {
-    medium: &'a Dispersion,
-    wavelength_nm: &'a [f64],
-    n: &'a mut [f64],
-    inverse: &'a mut [f64],
-}
-
-impl Vectorized for Evaluate<'_> {
-    type Output = ();
-    #[inline(always)]
-    fn run(self) {
-        self.medium.index_and_inverse(self.wavelength_nm, self.n, self.inverse);
-    }
-}
-
-/// A path made ready; for light that is scattered at least once by these layers of elements, if there are any.
-fn route(elements: &[Element], image_pose: &Pose, path: &Path, layers: Option<&[Vec<Layer>]>) -> Route {
-    let end = |at_front: bool| if at_front { &Pose::IDENTITY } else { image_pose };
-    let mut frame = end(path.enters() == Travel::Forward);
-    let mut outside = 0;
-    let mut legs: Vec<Leg> = Vec::with_capacity(path.steps().len());
-    for PathStep { element: at, act, travel } in path.steps() {
-        let element = &elements[*at];
-        let (before, beyond) = match travel {
-            Travel::Forward => (element.medium_before, element.medium_after),
-            Travel::Backward => (element.medium_after, element.medium_before),
-        };
-        let turns = *act == Act::Reflect && element.action == Action::Refract;
-        let after = if turns { before } else { beyond };
-        legs.push(Leg {
-            at: *at,
-            into: Move::between(frame, &element.pose),
-            action: if turns { Action::Reflect } else { element.action },
-            turns,
-            travel: sense(element, *travel),
-            before,
-            after,
-            beyond,
-            inside: !legs.is_empty(),
-            turned: legs.iter().any(|leg| leg.turns),
-            stage: element.surface.draws().then(|| {
-                let same = elements[..*at].iter().filter(|e| e.surface.draws() && e.kind == element.kind).count();
-                let visits = legs.iter().filter(|leg| leg.at == *at).count();
-                StageKey::new(&element.kind, (visits as u64) << 32 | same as u64)
-            }),
-            soiled: None,
-        });
-        (frame, outside) = (&element.pose, after);
-    }
-    if let Some(layers) = layers {
-        let most = |leg: &Leg| if leg.turns { 0.0 } else { Shares::most_scattered(&layers[leg.at]) };
-        let all: f64 = legs.iter().map(most).sum();
-        let mut from = 0.0;
-        for leg in &mut legs {
-            let own = most(leg);
-            if own > 0.0 {
-                let upto = from + own / all;
-                leg.soiled =
-                    Some(scatter::Place { stage: StageKey::new("scatter", leg.at as u64), first: [from, upto] });
-                from = upto;
-            }
-        }
-    }
-    Route { legs, out: Move::between(frame, end(path.leaves() == Travel::Backward)), outside }
-}
-
-/// The sense in which light meets a surface, along the surface's own z: behind a mirror, or where the surface is turned
-/// round, it is the other one.
-fn sense(element: &Element, travel: Travel) -> Travel {
-    // Backward, a mirror is met from where light leaves it forward: on the same side.
-    let forward = match travel {
-        Travel::Forward => element.along,
-        Travel::Backward => element.along == (element.action == Action::Reflect),
-    };
-    if forward { Travel::Forward } else { Travel::Backward }
-}
-
 /// Square of the radius at which a surface clips, mm^2: an iris reaches beyond the circle of its area.
 fn round_clip2_mm2(element: &Element) -> f64 {
     let Some(size_mm) = element.semi_diameter_mm else { return f64::INFINITY };
@@ -780,76 +646,4 @@ fn round_clip2_mm2(element: &Element) -> f64 {
     });
     let reach_mm = iris.unwrap_or(size_mm);
     reach_mm * reach_mm
-}
-
-/// Brings rays from one frame into another.
-struct Reframe<'a> {
-    rays: &'a mut RayBatch,
-    /// The frame they are in, seen from the one they go to.
-    pose: Pose,
-}
-
-impl Vectorized for Reframe<'_> {
-    type Output = ();
-    #[inline(always)]
-    fn run(self) {
-        let Pose { origin_mm: o, rotation: r } = self.pose;
-        let c = self.rays.columns_mut();
-        let len = c.x.len();
-        let (x, y, z) = (&mut c.x[..len], &mut c.y[..len], &mut c.z[..len]);
-        let (l, m, n) = (&mut c.l[..len], &mut c.m[..len], &mut c.n[..len]);
-        for i in 0..len {
-            let (px, py, pz) = (x[i], y[i], z[i]);
-            x[i] = r.x_axis.x * px + r.y_axis.x * py + r.z_axis.x * pz + o.x;
-            y[i] = r.x_axis.y * px + r.y_axis.y * py + r.z_axis.y * pz + o.y;
-            z[i] = r.x_axis.z * px + r.y_axis.z * py + r.z_axis.z * pz + o.z;
-            let (dl, dm, dn) = (l[i], m[i], n[i]);
-            l[i] = r.x_axis.x * dl + r.y_axis.x * dm + r.z_axis.x * dn;
-            m[i] = r.x_axis.y * dl + r.y_axis.y * dm + r.z_axis.y * dn;
-            n[i] = r.x_axis.z * dl + r.y_axis.z * dm + r.z_axis.z * dn;
-        }
-        let [ax, ay, az] = c.polarization.axis;
-        for ((x, y), z) in ax.iter_mut().zip(ay).zip(az) {
-            (*x, *y, *z) = (r * DVec3::new(*x, *y, *z)).into();
-        }
-    }
-}
-
-/// Puts rays into the frame that they leave the lens in, and into the medium there.
-struct Leave<'a> {
-    rays: &'a mut RayBatch,
-    index: &'a [f64],
-    shift_mm: f64,
-}
-
-impl Vectorized for Leave<'_> {
-    type Output = ();
-    #[inline(always)]
-    fn run(self) {
-        let c = self.rays.columns_mut();
-        c.index.copy_from_slice(self.index);
-        for z in c.z.iter_mut() {
-            *z += self.shift_mm;
-        }
-    }
-}
-
-/// How many rays are in each of these states, in one pass.
-struct Count<'a, const N: usize> {
-    states: &'a [u64],
-    wanted: [u64; N],
-}
-
-impl<const N: usize> Vectorized for Count<'_, N> {
-    type Output = [u64; N];
-    #[inline(always)]
-    fn run(self) -> [u64; N] {
-        let mut many = [0; N];
-        for state in self.states {
-            for (many, wanted) in many.iter_mut().zip(&self.wanted) {
-                *many += u64::from(state == wanted);
-            }
-        }
-        many
-    }
 }

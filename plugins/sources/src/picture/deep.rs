@@ -5,8 +5,9 @@
 //! a pixel and one that stands nearer: where a ray passes there it meets the step, or what is guessed behind it. So rays start on
 //! both, and each ray that meets anything can be drawn in one way.
 
-use super::field::{HeightField, Hit, Line, Lines, SIDE_BY_SIDE, Wall};
+use super::field::{HeightField, Hit, Wall};
 use super::map::PictureMap;
+use super::narrowing::{Line, Lines, SIDE_BY_SIDE};
 use crate::flat::Texture;
 use crate::halves::Half;
 use spectra_core::isa::Vectorized;

@@ -7,6 +7,7 @@ mod field;
 mod highlights;
 pub(crate) mod lights;
 pub(crate) mod map;
+mod narrowing;
 mod places;
 
 use crate::flat::Flat;

@@ -1,0 +1,217 @@
+//! Lines through a height field, many side by side, each narrowed to the part of it that has to be walked.
+
+/// Lines that are looked at side by side.
+pub(super) const SIDE_BY_SIDE: usize = 64;
+
+/// Loops over some of them go by as many: no vector is left half done.
+const VECTOR: usize = 8;
+
+/// One number of each of them.
+pub(super) type Each = [f64; SIDE_BY_SIDE];
+
+/// A closer look is worth its time where the last one left less of the way than this.
+pub(super) const MUCH_SHORTER: f64 = 0.8;
+
+/// A line in picture coordinates: column and row (pixels from the upper left) at w = 0, and their change per w.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Line {
+    pub at_infinity: [f64; 2],
+    pub per_w: [f64; 2],
+}
+
+impl Line {
+    #[inline(always)]
+    pub(super) fn at(&self, w: f64) -> [f64; 2] {
+        let ([a, b], [x, y]) = (self.at_infinity, self.per_w);
+        [a + x * w, b + y * w]
+    }
+}
+
+/// Lines side by side, a column each; what lies beyond the last one is any line.
+pub(super) struct Lines {
+    pub at_infinity: [Each; 2],
+    pub per_w: [Each; 2],
+}
+
+impl Lines {
+    pub(super) fn new() -> Self {
+        Self { at_infinity: [[0.0; SIDE_BY_SIDE]; 2], per_w: [[0.0; SIDE_BY_SIDE]; 2] }
+    }
+
+    #[inline(always)]
+    pub(super) fn line(&self, i: usize) -> Line {
+        Line {
+            at_infinity: [self.at_infinity[0][i], self.at_infinity[1][i]],
+            per_w: [self.per_w[0][i], self.per_w[1][i]],
+        }
+    }
+}
+
+/// Lines that are being narrowed: those that are done leave, the others move up.
+pub(super) struct Narrowing {
+    pub(super) len: usize,
+    /// Which of the [`Lines`] each is.
+    pub(super) ray: [u32; SIDE_BY_SIDE],
+    pub(super) at_infinity: [Each; 2],
+    pub(super) per_w: [Each; 2],
+    pub(super) room: [Each; 2],
+    pub(super) near: Each,
+    pub(super) far: Each,
+    /// How much of what is left is looked at.
+    pub(super) part: Each,
+}
+
+/// One look at what stands around each line.
+pub(super) struct Look {
+    pub(super) upto: Each,
+    /// The box: first column and row, last column and row.
+    pub(super) corners: [[u32; SIDE_BY_SIDE]; 4],
+    pub(super) nearest: [f32; SIDE_BY_SIDE],
+    pub(super) farthest: [f32; SIDE_BY_SIDE],
+    /// Not 0 where there is no closer look.
+    pub(super) small: [u32; SIDE_BY_SIDE],
+    /// Not 0 where the line is done.
+    pub(super) done: [u32; SIDE_BY_SIDE],
+}
+
+impl Look {
+    #[inline(always)]
+    pub(super) fn new() -> Self {
+        Self {
+            upto: [0.0; SIDE_BY_SIDE],
+            corners: [[0; SIDE_BY_SIDE]; 4],
+            nearest: [0.0; SIDE_BY_SIDE],
+            farthest: [0.0; SIDE_BY_SIDE],
+            small: [0; SIDE_BY_SIDE],
+            done: [0; SIDE_BY_SIDE],
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn of(&self, i: usize) -> ([usize; 2], [usize; 2]) {
+        let [a, b, c, d] = [0, 1, 2, 3].map(|k| self.corners[k][i] as usize);
+        ([a, b], [c, d])
+    }
+}
+
+impl Narrowing {
+    #[inline(always)]
+    pub(super) fn new() -> Self {
+        const ZERO: Each = [0.0; SIDE_BY_SIDE];
+        Self {
+            len: 0,
+            ray: [0; SIDE_BY_SIDE],
+            at_infinity: [ZERO; 2],
+            per_w: [ZERO; 2],
+            room: [ZERO; 2],
+            near: ZERO,
+            far: ZERO,
+            part: ZERO,
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn line(&self, i: usize) -> Line {
+        Line {
+            at_infinity: [self.at_infinity[0][i], self.at_infinity[1][i]],
+            per_w: [self.per_w[0][i], self.per_w[1][i]],
+        }
+    }
+
+    /// Appends a line, if it is to be narrowed.
+    #[inline(always)]
+    pub(super) fn take(&mut self, lines: &Lines, i: usize, is_wanted: bool) {
+        let at = self.len % SIDE_BY_SIDE;
+        self.ray[at] = i as u32;
+        for k in 0..2 {
+            self.at_infinity[k][at] = lines.at_infinity[k][i];
+            self.per_w[k][at] = lines.per_w[k][i];
+        }
+        self.len += usize::from(is_wanted);
+    }
+
+    /// The boxes that the parts of the lines that are looked at are over: see [`super::field::HeightField::around_line`].
+    #[inline(always)]
+    pub(super) fn boxes(&self, last: [f64; 2], look: &mut Look) {
+        for i in 0..self.len.next_multiple_of(VECTOR).min(SIDE_BY_SIDE) {
+            let (near, far, line) = (self.near[i], self.far[i], self.line(i));
+            let upto = if self.part[i] == 1.0 { far } else { near - self.part[i] * (near - far) };
+            let [a, b] = [line.at(near), line.at(upto)];
+            for k in 0..2 {
+                look.corners[k][i] = pixel(less(a[k], b[k]) - self.room[k][i], last[k]);
+                look.corners[2 + k][i] = pixel(more(a[k], b[k]) + self.room[k][i], last[k]);
+            }
+            look.upto[i] = upto;
+        }
+    }
+
+    /// Moves the ends of the lines by what was seen.
+    #[inline(always)]
+    pub(super) fn shorten(&mut self, look: &mut Look) {
+        for i in 0..self.len.next_multiple_of(VECTOR).min(SIDE_BY_SIDE) {
+            let (nearest, farthest) = (f64::from(look.nearest[i]), f64::from(look.farthest[i]));
+            let (near, far, upto, part) = (self.near[i], self.far[i], look.upto[i], self.part[i]);
+            let next = less(near, more(nearest, upto));
+            let end = if (farthest > far) & (farthest >= upto) { less(farthest, next) } else { far };
+            let shorter = next - end < MUCH_SHORTER * (near - far);
+            let moved = next < near;
+            self.part[i] = if shorter & moved {
+                1.0
+            } else if shorter | moved {
+                part
+            } else {
+                0.5 * part
+            };
+            self.near[i] = next;
+            self.far[i] = end;
+            look.done[i] = u32::from((next == end) | (!shorter & (look.small[i] != 0)));
+        }
+    }
+
+    /// Writes how far all have come, and drops those that are done.
+    #[inline(always)]
+    pub(super) fn keep(&mut self, look: &Look, found: &mut Each) {
+        let mut kept = 0;
+        for i in 0..self.len {
+            let ray = self.ray[i];
+            found[ray as usize % SIDE_BY_SIDE] = self.near[i];
+            let to = kept % SIDE_BY_SIDE;
+            self.ray[to] = ray;
+            for k in 0..2 {
+                self.at_infinity[k][to] = self.at_infinity[k][i];
+                self.per_w[k][to] = self.per_w[k][i];
+                self.room[k][to] = self.room[k][i];
+            }
+            self.near[to] = self.near[i];
+            self.far[to] = self.far[i];
+            self.part[to] = self.part[i];
+            kept += usize::from(look.done[i] == 0);
+        }
+        self.len = kept;
+    }
+}
+
+/// The pixel of a column or row, or the nearest one.
+#[inline(always)]
+pub(super) fn pixel(at: f64, last: f64) -> u32 {
+    // Also where it is no number.
+    let at = if at > 0.0 { at } else { 0.0 };
+    let at = if at < last { at } else { last };
+    // A cast would be done one by one. Beside this number there is room for whole ones only, in the last bits.
+    const WHOLE: f64 = (1_u64 << 52) as f64;
+    let nearest = (at + WHOLE) - WHOLE;
+    let below = if nearest > at { nearest - 1.0 } else { nearest };
+    (below + WHOLE).to_bits() as u32
+}
+
+/// The smaller of two numbers, or the second.
+#[inline(always)]
+pub(super) fn less(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+/// The larger of two numbers, or the second.
+#[inline(always)]
+pub(super) fn more(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
