@@ -1,6 +1,6 @@
 //! The Abbe diagram: index against Abbe number.
 
-use super::{entry_disc, rows, shortened};
+use super::{entry_disc, palette, rows, shortened};
 use spectra_plot::{Axes, Axis, Canvas, Color, Labels, Point, Rect, Stroke, TextStyle};
 
 const WIDTH: f64 = 980.0;
@@ -42,10 +42,6 @@ pub fn abbe(groups: &[AbbeGroup], named: &[(String, [f64; 2])], axes: &[String; 
         entry_disc(&mut canvas, at, name, palette(i), &style);
     }
     canvas
-}
-
-fn palette(i: usize) -> Color {
-    Color::PALETTE[i % Color::PALETTE.len()]
 }
 
 /// Whole steps around all values.

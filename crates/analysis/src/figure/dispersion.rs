@@ -1,6 +1,6 @@
 //! Refractive index against wavelength.
 
-use super::{entry, rows, shortened};
+use super::{entry, palette, rows, shortened};
 use spectra_plot::{Axes, Axis, Canvas, Color, Point, Rect, Stroke, TextStyle};
 
 const WIDTH: f64 = 900.0;
@@ -48,10 +48,6 @@ pub fn dispersion(curves: &[IndexCurve], band_nm: (f64, f64), marks: &[(&str, f6
         entry(&mut canvas, at, name, &Stroke::new(palette(i), 2.4), &style);
     }
     canvas
-}
-
-fn palette(i: usize) -> Color {
-    Color::PALETTE[i % Color::PALETTE.len()]
 }
 
 /// The indices that are shown, with a margin.

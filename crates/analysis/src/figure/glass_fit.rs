@@ -1,6 +1,6 @@
 //! Fitted dispersion formulas, with the rows that they were fitted to.
 
-use super::{entry, entry_disc, rows, shortened};
+use super::{entry, entry_disc, palette, rows, shortened};
 use spectra_plot::{Axes, Axis, Canvas, Color, Rect, Stroke, TextStyle};
 
 const WIDTH: f64 = 900.0;
@@ -47,10 +47,9 @@ pub fn glass_fit(title: &str, measured: &[[f64; 2]], curves: &[FittedCurve]) -> 
     );
     top.draw_grid(&mut canvas);
     canvas.clip(Some(top.frame));
-    let color = |i: usize| Color::PALETTE[i % Color::PALETTE.len()];
     for (i, curve) in curves.iter().enumerate() {
         let run: Vec<_> = curve.points.iter().map(|p| top.at(p[0], p[1])).collect();
-        canvas.polyline(&run, &Stroke::new(color(i), 1.9));
+        canvas.polyline(&run, &Stroke::new(palette(i), 1.9));
     }
     for [nm, n] in measured {
         canvas.disc(top.at(*nm, *n), 4.0, Color::INK);
@@ -78,14 +77,14 @@ pub fn glass_fit(title: &str, measured: &[[f64; 2]], curves: &[FittedCurve]) -> 
     for (i, curve) in curves.iter().enumerate() {
         for ([nm, _], deviation) in measured.iter().zip(&curve.deviations).filter(|(_, d)| d.is_finite()) {
             let at = low.at(*nm, deviation / unit);
-            canvas.line(low.at(*nm, 0.0), at, &Stroke::new(color(i).with_opacity(0.5), 1.2));
-            canvas.disc(at, 3.5, color(i));
+            canvas.line(low.at(*nm, 0.0), at, &Stroke::new(palette(i).with_opacity(0.5), 1.2));
+            canvas.disc(at, 3.5, palette(i));
         }
     }
     low.draw_frame(&mut canvas);
     entry_disc(&mut canvas, places[0], &names[0], Color::INK, &style);
     for (i, (name, at)) in names.iter().zip(places).enumerate().skip(1) {
-        entry(&mut canvas, at, name, &Stroke::new(color(i - 1), 2.4), &style);
+        entry(&mut canvas, at, name, &Stroke::new(palette(i - 1), 2.4), &style);
     }
     canvas
 }

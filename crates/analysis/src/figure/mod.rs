@@ -5,6 +5,7 @@ mod chromaticity;
 mod dispersion;
 mod glass_fit;
 mod lamp;
+mod lines;
 mod spectrum;
 mod swatches;
 
@@ -15,6 +16,8 @@ pub use glass_fit::{FittedCurve, glass_fit};
 pub use lamp::{Patch as LampPatch, lamp};
 pub use spectrum::{spectrum, spectrum_and_functions};
 pub use swatches::swatches;
+
+pub(crate) use lines::{order, palette, stroke};
 
 use spectra_plot::{Canvas, Color, Point, Rect, Stroke, TextStyle, text_width};
 

@@ -1,6 +1,6 @@
 //! The spectrum plot.
 
-use super::{entry, rows, shortened};
+use super::{entry, order, palette, rows, shortened, stroke};
 use spectra_color::{RgbSpace, spectral_color_linear, to_u8};
 use spectra_plot::{Axes, Axis, Canvas, Color, Labels, Paint, Point, Rect, Stop, Stroke, TextStyle};
 use spectra_spectrum::{BAND, Found, Grid, Kind, Line, Tabulated};
@@ -85,30 +85,6 @@ pub fn spectrum_and_functions(spectra: &[(String, Found)], functions: &[(String,
         }
     }
     canvas
-}
-
-/// Which line each curve has, by its place in the palette. Three columns that stand for long, middle and short waves are reddish,
-/// green and blue.
-fn order(names: &[String]) -> Vec<usize> {
-    const THREES: [[&str; 3]; 4] = [["r", "g", "b"], ["red", "green", "blue"], ["x", "y", "z"], ["l", "m", "s"]];
-    let columns: Vec<&str> = names.iter().filter_map(|name| Some(name.rsplit_once('#')?.1)).collect();
-    let all_columns = columns.len() == names.len();
-    if all_columns && THREES.iter().any(|three| columns == three) { vec![1, 2, 0] } else { (0..names.len()).collect() }
-}
-
-fn palette(i: usize) -> Color {
-    Color::PALETTE[i % Color::PALETTE.len()]
-}
-
-/// The line of the curve `i`: as many colors as people of any color vision tell apart, then the same dashed in three ways. From the
-/// 29th on they repeat.
-fn stroke(i: usize, width: f64) -> Stroke {
-    const DASHES: [&[f64]; 4] = [&[], &[7.0, 3.0], &[2.0, 2.6], &[9.0, 2.6, 2.0, 2.6]];
-    let line = Stroke::new(palette(i), width);
-    match DASHES[i / Color::PALETTE.len() % DASHES.len()] {
-        [] => line,
-        dashes => line.dashed(dashes),
-    }
 }
 
 /// A spectrum on the scale of the figure.

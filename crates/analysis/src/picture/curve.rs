@@ -2,8 +2,8 @@
 
 use super::cut::Cut;
 use super::measured::NotMeasured;
-use crate::figure::{entry, rows};
-use spectra_plot::{Axes, Axis, Canvas, Color, Rect, Stroke, TextStyle};
+use crate::figure::{entry, order, palette, rows, stroke};
+use spectra_plot::{Axes, Axis, Canvas, Rect, TextStyle};
 
 const WIDTH: f64 = 900.0;
 const HEIGHT: f64 = 500.0;
@@ -54,23 +54,23 @@ pub fn curve(cut: &Cut, is_log: bool, title: &str) -> Result<Canvas, NotMeasured
     let axes = Axes::new(frame, Axis::new(name, 0.0, end), Axis::new(&quantity, low, high + 0.05 * span).ticks(6, 2));
     axes.draw_grid(&mut canvas);
     canvas.clip(Some(frame));
-    let color = |i: usize| if several { Color::PALETTE[i % Color::PALETTE.len()] } else { Color::BLUE };
-    for (i, values) in cut.values.iter().enumerate() {
+    let order = order(&cut.labels);
+    for (i, values) in order.iter().zip(&cut.values) {
         // What is undefined interrupts the line.
         let points: Vec<_> = x.iter().zip(values).map(|(x, v)| shown(*v).map(|v| axes.at(*x, v))).collect();
         for run in points.split(Option::is_none).filter(|run| !run.is_empty()) {
             let run: Vec<_> = run.iter().flatten().copied().collect();
             if let [alone] = run[..] {
-                canvas.disc(alone, 1.5, color(i));
+                canvas.disc(alone, 1.5, palette(*i));
             }
-            canvas.polyline(&run, &Stroke::new(color(i), 1.7));
+            canvas.polyline(&run, &stroke(*i, 1.7));
         }
     }
     canvas.clip(None);
     axes.draw_frame(&mut canvas);
     if several {
-        for (i, (label, at)) in cut.labels.iter().zip(places).enumerate() {
-            entry(&mut canvas, at, label, &Stroke::new(color(i), 2.4), &style);
+        for (i, (label, at)) in order.iter().zip(cut.labels.iter().zip(places)) {
+            entry(&mut canvas, at, label, &stroke(*i, 2.4), &style);
         }
     }
     Ok(canvas)
