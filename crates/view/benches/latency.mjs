@@ -108,7 +108,7 @@ async function turned([path, value, count], act = set, name = path) {
 /** The page anew, with the scene as its file has it, and these values set. */
 async function anew(values) {
   await page.goto(new URL("/", address).href);
-  await page.waitForFunction(() => Number(document.body.dataset.frame) > 0);
+  await page.waitForFunction(() => Number(document.body.dataset.frame) > 0 && document.querySelector("[data-path]"));
   for (const at of values) await set(at);
   await page.waitForTimeout(2000);
 }
@@ -135,6 +135,13 @@ for (const [values, rows] of [
 }
 
 // Development alone of a large picture: a small one comes first, then the whole, and no ray is traced.
+const large = async (values) => {
+  await anew(values);
+  await page.locator("#width").selectOption("1920");
+  await page.waitForTimeout(1000);
+  await page.waitForFunction(() => document.body.dataset.draft === "false", null, { timeout: 120_000 });
+  await page.waitForTimeout(5000);
+};
 const both = async (at) => {
   const got = await set(at);
   if (got) got.whole = await page.evaluate(async (since) => {
@@ -152,13 +159,13 @@ for (const [values, path, value] of [
 ]) {
   const name = `${path} at 1920 px`;
   if (!name.includes(only)) continue;
-  await anew(values);
-  await page.locator("#width").selectOption("1920");
-  await page.waitForFunction(() => document.body.dataset.draft === "false", null, { timeout: 120_000 });
-  await page.waitForTimeout(5000);
+  await large(values);
   await turned([path, () => [path, value()], events / 4], both, name);
 }
-await turned(["", numbers(-2, 2), events], brighten, "brightness at 1920 px");
+if ("brightness at 1920 px".includes(only)) {
+  await large([]);
+  await turned(["", numbers(-2, 2), events], brighten, "brightness at 1920 px");
+}
 isDone = true;
 await browser.close();
 server.kill();
