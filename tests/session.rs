@@ -298,18 +298,50 @@ fn it_works_without_threads_and_disk() {
     }
 }
 
+/// Nobody waits for what it does.
+struct Stopped;
+
+impl Workers for Stopped {
+    fn each(&self, work: &(dyn Fn() + Sync)) {
+        work();
+    }
+    fn should_stop(&self) -> bool {
+        true
+    }
+}
+
+/// Stopped down so far that a corner of the frame sees nothing through the paraxial pupil, what the frame sees is searched as closely as
+/// for a picture: on any workers the same, not at all where they are to stop, and in a draft by less effort.
+#[test]
+fn what_a_frame_sees_is_searched_by_those_who_are_asked() {
+    /// Works, and counts how often it is asked to.
+    struct Counting(AtomicUsize);
+    impl Workers for Counting {
+        fn each(&self, work: &(dyn Fn() + Sync)) {
+            self.0.fetch_add(1, Relaxed);
+            Threads(3).each(work);
+        }
+    }
+    let small = ["imager.resolution=[24, 16]", "render.samples=4"];
+    let f15 = "lens.f-number=f/15";
+    let mut whole = session("biotar-ortho", &small);
+    go(&mut whole, 4);
+    let before = bits(&mut whole);
+    let draft = whole.draft(&["imager.resolution=[12, 8]".to_owned()]).expect("the same scene");
+    assert!(whole.change_after(f15, &draft, &Stopped).is_err());
+    assert_eq!(bits(&mut whole), before, "all is as it was");
+    let counting = Counting(AtomicUsize::new(0));
+    whole.change_after(f15, &draft, &counting).expect("it stops down");
+    assert!(counting.0.load(Relaxed) > 0, "the search was theirs");
+    go(&mut whole, 4);
+    let mut fresh = session("biotar-ortho", &[&small[..], &[f15]].concat());
+    go(&mut fresh, 4);
+    assert_eq!(bits(&mut whole), bits(&mut fresh));
+}
+
 /// What a change asks to be made ready waits until light is asked for, and can be stopped; then the bits are those of a run.
 #[test]
 fn a_change_can_be_made_ready_later() {
-    struct Stopped;
-    impl Workers for Stopped {
-        fn each(&self, work: &(dyn Fn() + Sync)) {
-            work();
-        }
-        fn should_stop(&self) -> bool {
-            true
-        }
-    }
     let small = ["imager.resolution=[24, 16]", "render.samples=4"];
     let mut later = session("biotar-ortho", &small);
     go(&mut later, 4);
@@ -339,7 +371,7 @@ fn a_lens_is_focused_once() {
     let before = Arc::clone(&whole.scene().lens);
     for change in ["lens.focus=1.5 m", "imager.tilt=[3 deg, 0 deg]"] {
         draft.change(change).expect("it can be");
-        whole.change_after(change, &draft).expect("it can be");
+        whole.change_after(change, &draft, &Alone).expect("it can be");
         assert!(Arc::ptr_eq(&whole.scene().lens, &draft.scene().lens), "{change}");
     }
     assert!(!Arc::ptr_eq(&whole.scene().lens, &before));
@@ -350,18 +382,21 @@ fn a_lens_is_focused_once() {
     go(&mut fresh, 4);
     assert_eq!(bits(&mut whole), bits(&mut fresh));
     // Other light is focused anew, whatever was drafted.
-    whole.change_after("film.stock=kodak-tri-x-400", &draft).expect("it can be");
+    whole.change_after("film.stock=kodak-tri-x-400", &draft, &Alone).expect("it can be");
     assert!(!Arc::ptr_eq(&whole.scene().lens, &focused));
 }
 
 /// A first look shows the same light, exposed as long, by less effort.
 #[test]
 fn a_draft_is_as_bright_as_the_whole() {
-    for set in [&[][..], &["imager.tilt=[10 deg, -5 deg]"], &["lens.aperture={shape: iris, blades: 5}"]] {
-        let all = [set, &["imager.resolution=[48, 32]", "render.samples=16"]].concat();
-        let mut whole = session("biotar-trix", &all);
-        go(&mut whole, 16);
+    for set in [&[][..], &["lens.f-number=f/15"], &["imager.tilt=[10 deg, -5 deg]"], &["lens.aperture={shape: iris, blades: 5}"]] {
+        let mut whole = session("biotar-trix", &["imager.resolution=[48, 32]", "render.samples=16"]);
         let mut draft = whole.draft(&["render.samples=16".to_owned()]).expect("the same scene");
+        for text in set {
+            draft.change(text).expect("it can be");
+            whole.change(text).expect("it can be");
+        }
+        go(&mut whole, 16);
         go(&mut draft, 16);
         let mean = |session: &mut Session| {
             let exposure = session.look().expect("light").exposure;

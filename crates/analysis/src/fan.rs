@@ -111,9 +111,8 @@ impl<'a> FanFinder<'a> {
     /// The fan of a field angle; `None` where nothing passes. Where several bundles pass, the widest.
     #[must_use]
     pub fn fan(&self, field_rad: f64, object_mm: f64) -> Option<Fan> {
-        let step = 2.0 * self.reach_mm / (TRIED - 1) as f64;
-        let at = |i: f64| i * step - self.reach_mm;
-        let passed = self.passed(field_rad, object_mm, &at);
+        let at = |i: f64| self.at(i);
+        let passed: Vec<bool> = self.passed(field_rad, object_mm).collect();
         let (mut best, mut start) = (0..0, None);
         for i in 0..=TRIED {
             match (passed.get(i).copied().unwrap_or(false), start) {
@@ -149,36 +148,51 @@ impl<'a> FanFinder<'a> {
         Some(Fan { field_rad, object_mm, low_mm, high_mm })
     }
 
-    fn passed(&self, field_rad: f64, object_mm: f64, at: &dyn Fn(f64) -> f64) -> Vec<bool> {
+    /// Where a ray that is tried crosses the line through the aim, mm.
+    fn at(&self, i: f64) -> f64 {
+        i * (2.0 * self.reach_mm / (TRIED - 1) as f64) - self.reach_mm
+    }
+
+    /// Whether anything passes.
+    fn sees(&self, field_rad: f64, object_mm: f64) -> bool {
+        self.passed(field_rad, object_mm).any(|passes| passes)
+    }
+
+    /// Of each ray that is tried, whether it passes.
+    fn passed(&self, field_rad: f64, object_mm: f64) -> impl Iterator<Item = bool> {
         let mut rays = RayBatch::new(TRIED);
         rays.restart(TRIED);
         let c = rays.columns_mut();
         for i in 0..TRIED {
-            let (position, direction) = self.ray(field_rad, object_mm, at(i as f64));
+            let (position, direction) = self.ray(field_rad, object_mm, self.at(i as f64));
             (c.x[i], c.y[i], c.z[i]) = position.into();
             (c.l[i], c.m[i], c.n[i]) = direction.into();
             c.wavelength_nm[i] = self.wavelength_nm;
         }
         self.tracer.trace(&mut rays, &mut self.tracer.work_in_place(TRIED), Travel::Forward);
-        let alive = rays.states().iter().enumerate().map(|(i, state)| (i, *state == ALIVE));
-        alive.map(|(i, alive)| alive && (self.is_sized || self.passes(field_rad, object_mm, at(i as f64)))).collect()
+        let passes = move |i: usize| {
+            rays.states()[i] == ALIVE && (self.is_sized || self.passes(field_rad, object_mm, self.at(i as f64)))
+        };
+        (0..TRIED).map(passes)
     }
 
     /// The largest field angle at which anything passes, rad, up to `limit_rad`: to 0.01 degrees.
     #[must_use]
     pub fn largest_field_rad(&self, object_mm: f64, limit_rad: f64) -> Option<f64> {
-        self.fan(0.0, object_mm)?;
+        if !self.sees(0.0, object_mm) {
+            return None;
+        }
         // From the middle outward: a lens may be blind between two bundles, which is not its field.
         let step = 1.0_f64.to_radians();
         let (mut seen, mut next) = (0.0, step);
-        while next <= limit_rad && self.fan(next, object_mm).is_some() {
+        while next <= limit_rad && self.sees(next, object_mm) {
             seen = next;
             next += step;
         }
         let mut blind = next.min(limit_rad);
         while blind - seen > 0.01_f64.to_radians() {
             let middle = 0.5 * (seen + blind);
-            if self.fan(middle, object_mm).is_some() {
+            if self.sees(middle, object_mm) {
                 seen = middle;
             } else {
                 blind = middle;

@@ -258,7 +258,7 @@ pub(crate) fn assemble(
     text: String,
     params: &Params,
     resources: &dyn Resources,
-    earlier: Earlier,
+    earlier: Earlier<'_>,
 ) -> Result<Scene, Faults> {
     if let Some(fault) = advice::other_file(params.node(), FileIs::Scene) {
         return Err(Fault { message: fault.message, hint: fault.hint, ..params.fault_here("") }.into());
@@ -271,7 +271,7 @@ fn all_stages(
     text: String,
     params: &Params,
     resources: &dyn Resources,
-    earlier: Earlier,
+    earlier: Earlier<'_>,
 ) -> Result<Scene, Faults> {
     let mut faults = Faults::new();
     let mut earlier = earlier.fitting(params);
@@ -310,10 +310,17 @@ fn all_stages(
     };
     let lens_place = lens.clone();
     let cover = imager.as_ref().and_then(|imager| imager.cover());
-    let held = lens.and_then(|p| of_lens.take(held_lens(&p, resources, cover.clone())));
-    let seen = || held.as_ref().zip(imager.as_ref()).and_then(|(held, imager)| sight::seen(&held.lens, &**imager));
+    let hold =
+        |faults: &mut Faults| lens.as_ref().and_then(|p| faults.take(held_lens(p, resources, cover.clone())));
+    let is_view_known = earlier.source.is_some() && (earlier.same_view || earlier.is_check);
+    // A lens that is there as it is to be is not read again.
+    let held = if is_view_known && earlier.may_have_lens() { None } else { Some(hold(&mut of_lens)) };
+    let seen = || {
+        let (held, imager) = held.as_ref()?.as_ref().zip(imager.as_ref())?;
+        sight::seen(&held.lens, &**imager, earlier.search)
+    };
     let (source, dark) = match earlier.source.take() {
-        Some(source) if earlier.same_view || earlier.is_check => (Some(source), said.dark),
+        Some(source) if is_view_known => (Some(source), said.dark),
         Some(source) => (Some(source), seen().and_then(|seen| seen.dark)),
         None => {
             let seen = seen();
@@ -324,6 +331,9 @@ fn all_stages(
             )
         }
     };
+    if earlier.search.workers.should_stop() {
+        return Err(Fault::new("the work was stopped").into());
+    }
     let films = match several {
         _ if earlier.films.is_some() => earlier.films.take(),
         Some(items) => behind.take(films::several(items, params, &context)),
@@ -364,7 +374,10 @@ fn all_stages(
     };
     let lens = match earlier.lens_in(focus_light.as_ref(), cover.as_ref()) {
         Some(lens) => Some(lens),
-        None => held.and_then(|held| of_lens.take(held.focused(focus_light.as_ref()))),
+        None => {
+            let held = held.unwrap_or_else(|| hold(&mut of_lens));
+            held.and_then(|held| of_lens.take(held.focused(focus_light.as_ref())))
+        }
     };
     if let (Some(place), Some(SetLens { lens, .. }), Some(source), Some(light)) =
         (imager_place, &lens, &source, &focus_light)

@@ -3,7 +3,7 @@
 use crate::focus::FocusLight;
 use crate::landing;
 use crate::lens_section::SetLens;
-use crate::sight::Dark;
+use crate::sight::{Dark, Search};
 use crate::{Scene, SceneFilm};
 use spectra_core::cover::CoverStack;
 use spectra_core::params::{DataEnd, Fault, Node, Params, Value, Warning};
@@ -36,7 +36,7 @@ impl Focused {
 
 /// Stages of another scene: where a section says the same, its stage is taken over.
 #[derive(Default)]
-pub(crate) struct Earlier {
+pub(crate) struct Earlier<'a> {
     params: Option<Params>,
     pub source: Option<Arc<dyn Source>>,
     pub sampler: Option<Arc<dyn WavelengthSampler>>,
@@ -50,9 +50,11 @@ pub(crate) struct Earlier {
     pub same_view: bool,
     /// The scene is only looked at: noise and grain need not be those of its frame.
     pub is_check: bool,
+    /// How what the frame sees is looked for, where it is looked for again.
+    pub search: Search<'a>,
 }
 
-impl Earlier {
+impl<'a> Earlier<'a> {
     /// The stages of `scene`. Where nobody else holds it, they are all that is left of it, and may be set for another frame.
     pub(crate) fn of(scene: Option<Arc<Scene>>, is_check: bool) -> Self {
         let Some(scene) = scene else { return Self { is_check, ..Self::default() } };
@@ -65,9 +67,19 @@ impl Earlier {
             lenses: Focused::of(&scene).into_iter().collect(),
             frame: scene.render.frame,
             said: scene.said.clone(),
-            same_view: false,
             is_check,
+            ..Self::default()
         }
+    }
+
+    /// With what the frame sees looked for so.
+    pub(crate) fn by(self, search: Search<'a>) -> Self {
+        Self { search, ..self }
+    }
+
+    /// Whether a lens may be among these as it is to be.
+    pub(crate) fn may_have_lens(&self) -> bool {
+        !self.lenses.is_empty()
     }
 
     /// With the lens of one more scene, where it was focused as it is to be here; of all else of that scene nothing.
@@ -83,7 +95,7 @@ impl Earlier {
         let mut lenses = self.lenses;
         lenses.retain(|known| ["wavelengths", "lens"].iter().all(|key| same_section(&known.params, params, key)));
         if !same("wavelengths") {
-            return Self { is_check: self.is_check, lenses, ..Self::default() };
+            return Self { is_check: self.is_check, search: self.search, lenses, ..Self::default() };
         }
         let (films, lens) = (same("film"), same("lens"));
         // An imager that looks where the light lands stands by all others.

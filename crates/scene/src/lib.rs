@@ -39,3 +39,4 @@ pub use scene::{
 };
 pub use schema::{FileKind, file_documentation, file_schema, shared_documentation};
 pub use shot::{Developed, Shot};
+pub use sight::Search;

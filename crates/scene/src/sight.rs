@@ -8,8 +8,9 @@ use spectra_core::glam::DVec3;
 use spectra_core::loss::ALIVE;
 use spectra_core::stage::Imager;
 use spectra_core::view::{Sight, View};
+use spectra_core::workers::{Alone, Workers};
 use spectra_core::{Isa, RayBatch};
-use spectra_lens::{Indices, Lens, RearPupil, Tracer, Travel};
+use spectra_lens::{Effort, Indices, Lens, RearPupil, Tracer, Travel};
 
 /// Points a side of the frame, its edges among them.
 const SIDE: usize = 13;
@@ -19,6 +20,21 @@ const BEYOND: f64 = 1.15;
 const CELLS: usize = 12;
 /// Halvings of the way from the middle of the frame to a corner, in search of where the light ends.
 const HALVINGS: usize = 7;
+
+/// How what the frame sees is looked for.
+#[derive(Clone, Copy)]
+pub struct Search<'a> {
+    /// How closely; a draft has a view of its own, a little beside that of the picture.
+    pub effort: Effort,
+    /// Who traces: the same bits by any. Where they are to stop, the scene is not assembled, for a reason of no interest.
+    pub workers: &'a dyn Workers,
+}
+
+impl Default for Search<'_> {
+    fn default() -> Self {
+        Self { effort: Effort::Full, workers: &Alone }
+    }
+}
 
 /// What the frame sees.
 pub(crate) struct Seen {
@@ -40,12 +56,12 @@ pub(crate) struct Dark {
 
 /// What the frame of `imager` sees through `lens`. `None` where that cannot be told: an imager that launches no rays, or a
 /// lens none of whose surfaces states a size.
-pub(crate) fn seen(lens: &Lens, imager: &dyn Imager) -> Option<Seen> {
+pub(crate) fn seen(lens: &Lens, imager: &dyn Imager, search: Search<'_>) -> Option<Seen> {
     let aim = Aim::new(lens)?;
     let points = points(imager, &grid())?;
     let mut found = aim.sights(&points);
     let lost: Vec<usize> = (0..points.len()).filter(|point| found[*point].is_empty()).collect();
-    let pupil = if lost.is_empty() { None } else { Some(aim.pupil(&points)?) };
+    let pupil = if lost.is_empty() { None } else { Some(aim.pupil(&points, search)?) };
     if let Some(pupil) = &pupil {
         let again = aim.through(pupil, &lost.iter().map(|i| points[*i]).collect::<Vec<_>>());
         for (point, sights) in lost.iter().zip(again) {
@@ -169,8 +185,9 @@ impl<'a> Aim<'a> {
     }
 
     /// The real exit pupil, as points of the imager see it.
-    fn pupil(&self, points: &[DVec3]) -> Option<RearPupil> {
-        RearPupil::search(self.lens, &self.tracer, points, self.lens.reference_nm, self.lens.reference_nm)
+    fn pupil(&self, points: &[DVec3], search: Search<'_>) -> Option<RearPupil> {
+        let Search { effort, workers } = search;
+        RearPupil::search_by(self.lens, &self.tracer, points, [self.lens.reference_nm; 2], workers, effort)
     }
 
     /// Lines of sight of each point by way of the real exit pupil.

@@ -82,7 +82,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             mark();
             draft.develop()?;
             mark();
-            whole.change_after(&text, &draft)?;
+            whole.change_after(&text, &draft, &Alone)?;
             mark();
             rows.push(std::array::from_fn(|k| (marks[k + 1] - marks[k]) as f64 / 1e6));
         }

@@ -8,6 +8,7 @@ use crate::{Ended, Event, Host, Job, Place, Report, Session, SessionError, heade
 use serde_json::{Map, Value, json};
 use spectra_core::params::{Reading, Warning};
 use spectra_core::sink::WriteFault;
+use spectra_render::Effort;
 use spectra_scene::{Member, Scene, Series, SeriesKind, Shot, Told};
 use std::collections::HashMap;
 use std::io::Cursor;
@@ -188,7 +189,7 @@ impl Work<'_> {
             return Ok(true);
         }
         // Not kept from the check: a thousand scenes would not fit into memory.
-        let mut session = Session::after(job.series.clone(), picture.index, self.other.take(), job.isa)?;
+        let mut session = Session::after(job.series.clone(), picture.index, self.other.take(), job.isa, Effort::Full)?;
         let control = host.control();
         session.prepare(host.workers())?;
         let Taken { rendering, seconds, failure } = Taken::of(&mut session, host, &control)?;

@@ -8,7 +8,7 @@ use spectra_core::sink::Sink;
 use spectra_core::stage::WavelengthDensity;
 use spectra_core::{Isa, frame::ExposureFrame};
 use spectra_render::{Effort, Light, RenderError, Renderer};
-use spectra_scene::{Developed, Scene, Series, Shot, load_series, series_of_text, series_of_tree};
+use spectra_scene::{Developed, Scene, Search, Series, Shot, load_series, series_of_text, series_of_tree};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -69,7 +69,7 @@ impl Session {
     /// # Errors
     /// As [`Session::open`].
     pub fn of_series(series: Series, index: usize, isa: Isa) -> Result<Self, SessionError> {
-        Self::after(series, index, None, isa)
+        Self::after(series, index, None, isa, Effort::Full)
     }
 
     /// The same, with the stages of another scene where both say the same.
@@ -78,9 +78,10 @@ impl Session {
         index: usize,
         other: Option<Arc<Scene>>,
         isa: Isa,
+        effort: Effort,
     ) -> Result<Self, SessionError> {
-        let scene = series.scene_after(index, other)?.into();
-        Ok(Self { series, index, isa, scene, ready: None, density: None, effort: Effort::Full })
+        let scene = series.scene_between(index, other, None, Search { effort, workers: &Alone })?.into();
+        Ok(Self { series, index, isa, scene, ready: None, density: None, effort })
     }
 
     /// The scene, assembled.
@@ -100,15 +101,20 @@ impl Session {
     /// # Errors
     /// Everything that is wrong with the scene as it would be.
     pub fn branch(&self, texts: &[String]) -> Result<Self, SessionError> {
-        Self::after(self.series.with_all(texts)?, self.index, Some(Arc::clone(&self.scene)), self.isa)
+        self.branched(texts, Effort::Full)
     }
 
-    /// The same for a first look: what passes the lens, and what meters see, is found with less effort, and so the bits are others.
+    fn branched(&self, texts: &[String], effort: Effort) -> Result<Self, SessionError> {
+        Self::after(self.series.with_all(texts)?, self.index, Some(Arc::clone(&self.scene)), self.isa, effort)
+    }
+
+    /// The same for a first look: what passes the lens, and what frame and meters see, is found with less effort, and so the bits are
+    /// others.
     ///
     /// # Errors
     /// As [`Session::branch`].
     pub fn draft(&self, texts: &[String]) -> Result<Self, SessionError> {
-        Ok(Self { effort: Effort::Draft, ..self.branch(texts)? })
+        self.branched(texts, Effort::Draft)
     }
 
     /// The picture among those that the scene's file stands for.
@@ -258,7 +264,7 @@ impl Session {
     /// # Errors
     /// As [`Session::change`].
     pub fn change_on(&mut self, text: &str, workers: &dyn Workers) -> Result<Kept, SessionError> {
-        self.changed(text, Some(workers), None)
+        self.changed(text, true, None, workers)
     }
 
     /// The same, but what the change asks to be made ready anew is made when light is asked for again, where it can be stopped. What
@@ -267,26 +273,28 @@ impl Session {
     /// # Errors
     /// What is wrong with the stages of the scene as it would be.
     pub fn change_later(&mut self, text: &str) -> Result<Kept, SessionError> {
-        self.changed(text, None, None)
+        self.changed(text, false, None, &Alone)
     }
 
     /// The same, where `other` may have the lens as the change asks for it, focused: a draft that was changed so before.
     ///
     /// # Errors
-    /// As [`Session::change_later`].
-    pub fn change_after(&mut self, text: &str, other: &Self) -> Result<Kept, SessionError> {
-        self.changed(text, None, Some(&other.scene))
+    /// As [`Session::change_later`]; and something where the workers are to stop meanwhile, which then leaves all as it was.
+    pub fn change_after(&mut self, text: &str, other: &Self, workers: &dyn Workers) -> Result<Kept, SessionError> {
+        self.changed(text, false, Some(&other.scene), workers)
     }
 
     fn changed(
         &mut self,
         text: &str,
-        workers: Option<&dyn Workers>,
+        is_made_ready: bool,
         lens_of: Option<&Scene>,
+        workers: &dyn Workers,
     ) -> Result<Kept, SessionError> {
         let series = self.series.with(text)?;
         let before = Arc::clone(&self.scene);
-        let scene: Arc<Scene> = series.scene_between(self.index, Some(Arc::clone(&before)), lens_of)?.into();
+        let search = Search { effort: self.effort, workers };
+        let scene: Arc<Scene> = series.scene_between(self.index, Some(Arc::clone(&before)), lens_of, search)?.into();
         let responses = |scene: &Scene, which: Vec<usize>| -> Vec<Vec<f64>> {
             which.iter().filter_map(|at| scene.channels.get(*at)).map(|c| c.response.clone()).collect()
         };
@@ -312,14 +320,14 @@ impl Session {
         let ready = self.ready.take();
         let known = ready.as_ref().map(|(renderer, _)| renderer.density()).or(self.density.as_ref());
         let density = known.filter(|_| system).cloned();
-        self.ready = match (ready, workers) {
-            (None, _) => {
+        self.ready = match ready {
+            None => {
                 kept = Kept { light: false, density: density.is_some(), ..kept };
                 None
             }
-            (Some(ready), _) if same_light => Some(ready),
-            (Some(_), None) => None,
-            (Some(ready), Some(workers)) => match self.made(&scene, density.clone(), workers) {
+            Some(ready) if same_light => Some(ready),
+            Some(_) if !is_made_ready => None,
+            Some(ready) => match self.made(&scene, density.clone(), workers) {
                 Ok(made) => Some(made),
                 Err(error) => {
                     self.ready = Some(ready);

@@ -5,6 +5,7 @@
 //
 // FOLDER holds node_modules/playwright-core. Each event sets a control of the page as a hand does; its time ends when the browser has
 // painted the first picture that has the value. Events come at random pauses of 150 to 600 ms, in the midst of whatever is traced.
+// "Lens" is how long after that picture the cross-section of the lens was another one.
 import { spawn } from "node:child_process";
 import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
@@ -15,6 +16,16 @@ const server = spawn(spectra, ["view", scene, "--no-open"], { stdio: ["ignore", 
 const address = await new Promise((done) => server.stdout.once("data", (d) => done(String(d).trim())));
 const browser = await chromium.launch({ executablePath, args: ["--no-sandbox"] });
 const page = await browser.newPage({ viewport: { width: 1280, height: 900 } });
+let isDone = false;
+const fail = (what) => {
+  if (isDone) return;
+  console.log(what);
+  server.kill();
+  process.exit(1);
+};
+page.on("crash", () => fail("the page crashed"));
+browser.on("disconnected", () => fail("the browser ended, or was ended: a signal to this process ends it, too"));
+server.on("exit", (code, signal) => fail(`the server ended: ${signal ?? code}`));
 const opened = Date.now();
 await page.goto(address);
 await page.waitForFunction(() => Number(document.body.dataset.frame) > 0);
@@ -40,11 +51,11 @@ const set = ([path, value]) => page.evaluate(async ([path, value]) => {
   const painted = () => new Promise((done) => requestAnimationFrame(() => setTimeout(done, 0)));
   const row = document.querySelector(`[data-path="${path}"]`) ?? document.querySelector(`[data-path="${path}.blades"]`);
   const fields = path === "width" ? [document.querySelector("#width")]
-    : [...row.querySelectorAll('input[type="number"], select')];
+    : [...row.querySelectorAll('input[type="number"], input[type="checkbox"], select')];
   const wanted = Number(body.dataset.turns ?? 0) + 1;
   const lens = document.querySelector("#section")?.getAttribute("src");
   const start = performance.now();
-  [value].flat().forEach((v, i) => { fields[i].value = String(v); });
+  [value].flat().forEach((v, i) => { fields[i][fields[i].type === "checkbox" ? "checked" : "value"] = typeof v === "boolean" ? v : String(v); });
   fields[0].dispatchEvent(new Event("change"));
   const got = {};
   while (!(Number(body.dataset.turns ?? 0) >= wanted)) {
@@ -73,6 +84,7 @@ const brighten = (value) => page.evaluate(async (value) => {
 }, value);
 
 const numbers = (least, most) => () => Number((least + (most - least) * random()).toFixed(3));
+const flip = () => { let on = true; return () => (on = !on); };
 const word = (...words) => { let i = 0; return () => words[(i += 1) % words.length]; };
 const whole = (least, most) => { let i = 0; return () => least + ((i += 1) % (most - least + 1)); };
 const of = (all, part) => all.sort((a, b) => a - b)[Math.min(all.length - 1, Math.floor(part * all.length))]?.toFixed(0) ?? "-";
@@ -88,26 +100,48 @@ async function turned([path, value, count], act = set, name = path) {
     await page.waitForTimeout(150 + 450 * random());
   }
   const fault = await page.locator("#fault").textContent();
-  const lens = lenses.length ? `; lens after it ${of(lenses, 0.5)} ms` : "";
+  const lens = lenses.length ? `; lens after it ${of(lenses, 0.5)} ms (median), ${of(lenses, 0.95)} ms (95 %)` : "";
   const whole = wholes.length ? `; whole ${of(wholes, 0.5)} ms` : "";
   console.log(`${name}: first picture ${of(times, 0.5)} ms (median), ${of(times, 0.95)} ms (95 %), of ${times.length}${lens}${whole}; CPU ${((cpu() - before) / Number(count)).toFixed(0)} ms${fault ? `; ${fault}` : ""}`);
 }
 
-for (const one of [
-  ["lens.f-number", numbers(2, 16), events],
-  ["lens.focus", numbers(1.2, 5), events],
-  ["imager.tilt", () => [numbers(-5, 5)(), numbers(-5, 5)()], events],
-  ["lens.aperture", whole(5, 11), events],
-  ["film.paper.grade", word("0", "1", "3", "4", "5"), events],
-  ["film.push", word("1", "0"), events],
-  ["film.stock", word("kodak-tri-x-400", "ilford-ortho-plus"), events / 4],
-  ["lens.file", word("cooke-triplet-50-f5", "zeiss-biotar-50-f1.4"), events / 4],
-]) await turned(one);
+/** The page anew, with the scene as its file has it, and these values set. */
+async function anew(values) {
+  await page.goto(new URL("/", address).href);
+  await page.waitForFunction(() => Number(document.body.dataset.frame) > 0 && document.querySelector("[data-path]"));
+  for (const at of values) await set(at);
+  await page.waitForTimeout(2000);
+}
+const [pushed, color] = [["film.stock", "kodak-tri-x-400"], ["film.stock", "kodak-gold-200"]];
+
+for (const [values, rows] of [
+  [[], [
+    ["lens.f-number", numbers(2, 16), events],
+    ["lens.focus", numbers(1.2, 5), events],
+    ["imager.tilt", () => [numbers(-5, 5)(), numbers(-5, 5)()], events],
+    ["lens.aperture", whole(5, 11), events],
+  ]],
+  [[], [["film.paper.grade", word("0", "1", "3", "4", "5"), events], ["film.grain", flip(), events]]],
+  [[color], [["film.print", word("kodak-endura-premier", "fuji-crystal-archive-dpii"), events]]],
+  [[pushed], [["film.push", word("1", "0"), events]]],
+  [[], [
+    ["film.stock", word("kodak-tri-x-400", "ilford-ortho-plus"), events / 4],
+    ["lens.file", word("cooke-triplet-50-f5", "zeiss-biotar-50-f1.4"), events / 4],
+  ]],
+]) {
+  const wanted = rows.filter(([path]) => path.includes(only));
+  if (wanted.length > 0) await anew(values);
+  for (const one of wanted) await turned(one);
+}
 
 // Development alone of a large picture: a small one comes first, then the whole, and no ray is traced.
-await page.locator("#width").selectOption("1920");
-await page.waitForFunction(() => document.body.dataset.draft === "false" && document.querySelector("#canvas").width > 0, null, { timeout: 120_000 });
-await page.waitForTimeout(5000);
+const large = async (values) => {
+  await anew(values);
+  await page.locator("#width").selectOption("1920");
+  await page.waitForTimeout(1000);
+  await page.waitForFunction(() => document.body.dataset.draft === "false", null, { timeout: 120_000 });
+  await page.waitForTimeout(5000);
+};
 const both = async (at) => {
   const got = await set(at);
   if (got) got.whole = await page.evaluate(async (since) => {
@@ -117,9 +151,21 @@ const both = async (at) => {
   }, got.first);
   return got;
 };
-for (const [path, value] of [["film.paper.grade", word("1", "4")], ["film.push", word("1", "0")]]) {
-  await turned([path, () => [path, value()], events / 4], both, `${path} at 1920 px`);
+for (const [values, path, value] of [
+  [[], "film.paper.grade", word("1", "4")],
+  [[], "film.grain", flip()],
+  [[color], "film.print", word("kodak-endura-premier", "fuji-crystal-archive-dpii")],
+  [[pushed], "film.push", word("1", "0")],
+]) {
+  const name = `${path} at 1920 px`;
+  if (!name.includes(only)) continue;
+  await large(values);
+  await turned([path, () => [path, value()], events / 4], both, name);
 }
-await turned(["", numbers(-2, 2), events], brighten, "brightness at 1920 px");
+if ("brightness at 1920 px".includes(only)) {
+  await large([]);
+  await turned(["", numbers(-2, 2), events], brighten, "brightness at 1920 px");
+}
+isDone = true;
 await browser.close();
 server.kill();

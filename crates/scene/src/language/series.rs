@@ -9,6 +9,7 @@ use crate::assemble::{assemble, read, record};
 use crate::earlier::Earlier;
 use crate::lens_section::is_too_fast;
 use crate::remembered::{BUNDLED, Remembered};
+use crate::sight::Search;
 use crate::{FileResources, NO_LENS, Scene, yaml};
 use spectra_core::params::{Fault, Faults, Key, Node, Number, Params, SourceFile, Step, Value, Warning, steps};
 use spectra_core::resources::Resources;
@@ -449,26 +450,19 @@ impl Series {
         self.assembled(index, Earlier::default())
     }
 
-    /// The same, with the stages of another picture of the series where the scene says the same of them; nothing else is
-    /// left of that one.
+    /// The same, with the stages of another picture of the series where the scene says the same of them, of which nothing else is
+    /// left, with the lens of one more where both focus it alike, and with what the frame sees looked for as `search` says.
     ///
     /// # Errors
-    /// As [`Series::scene`].
-    pub fn scene_after(&self, index: usize, other: Option<Arc<Scene>>) -> Result<Scene, Faults> {
-        self.assembled(index, Earlier::of(other, false))
-    }
-
-    /// The same, with the lens of one more picture where both focus it alike.
-    ///
-    /// # Errors
-    /// As [`Series::scene`].
+    /// As [`Series::scene`]; and something where the workers are to stop.
     pub fn scene_between(
         &self,
         index: usize,
         other: Option<Arc<Scene>>,
         lens_of: Option<&Scene>,
+        search: Search<'_>,
     ) -> Result<Scene, Faults> {
-        self.assembled(index, Earlier::of(other, false).and_lens_of(lens_of))
+        self.assembled(index, Earlier::of(other, false).and_lens_of(lens_of).by(search))
     }
 
     /// A picture to be looked at, not to be rendered: noise and grain need not be those of its frame. So that all the
@@ -480,7 +474,7 @@ impl Series {
         self.assembled(index, Earlier::of(other, true))
     }
 
-    fn assembled(&self, index: usize, earlier: Earlier) -> Result<Scene, Faults> {
+    fn assembled(&self, index: usize, earlier: Earlier<'_>) -> Result<Scene, Faults> {
         let member = self.member(index);
         let name = member.stem("");
         if let Some(text) = &self.plain {
@@ -511,15 +505,15 @@ impl Series {
         let mut uses = Vec::new();
         let root = variables.unwrap_or_default().put_into(&root, &mut uses)?;
         let text = self.record(&member, &root);
-        let is_check = earlier.is_check;
-        let built = |root: &Node, text: &str, earlier: Earlier| {
+        let (is_check, search) = (earlier.is_check, earlier.search);
+        let built = |root: &Node, text: &str, earlier: Earlier<'_>| {
             Params::section(root.clone(), "")
                 .and_then(|params| assemble(&name, text.to_owned(), &params, &*self.written.resources, earlier))
         };
         let scene =
             built(&root, &text, earlier).or_else(|faults| match self.wide_open_instead(index, &root, &faults) {
                 Some((open, warning)) => {
-                    built(&open, &self.record(&member, &open), Earlier::of(None, is_check)).map(|mut scene| {
+                    built(&open, &self.record(&member, &open), Earlier::of(None, is_check).by(search)).map(|mut scene| {
                         scene.warnings.push(warning.into());
                         scene
                     })

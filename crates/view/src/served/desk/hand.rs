@@ -34,6 +34,8 @@ pub(super) struct Hand {
     pub(super) shape: Shape,
     pub(super) width_px: u32,
     pub(super) owed: Vec<Owed>,
+    /// Texts `path=value` that the draft does not have yet.
+    pub(super) behind: Vec<String>,
     pub(super) is_light_owed: bool,
     /// A sample of all pixels takes so long.
     pub(super) pace_s: Option<f64>,
@@ -65,6 +67,7 @@ impl Hand {
             shape,
             width_px: self.width_px,
             owed: std::mem::take(&mut self.owed),
+            behind: Vec::new(),
             is_light_owed: true,
             pace_s: None,
             stamps: Stamps::default(),

@@ -1,7 +1,7 @@
 //! What the thread of a desk does: take up what was turned, trace, develop, and watch the scene's file.
 
 use super::super::save;
-use super::hand::{Drafted, Hand, Shape};
+use super::hand::{Drafted, Hand, Owed, Shape};
 use super::watch::Stamps;
 use super::{Desk, Frame, State, WIDTHS_PX, held};
 use crate::controls;
@@ -15,11 +15,16 @@ use std::time::{Duration, Instant};
 
 /// A page that asks nothing for so long is gone.
 const PATIENCE: Duration = Duration::from_secs(25);
-/// Light is traced in pieces of about this time, so that the picture is seen to grow.
+/// Light is traced in pieces of at least about this time, and of this part of the time since the change, at most so long: the picture
+/// is seen to grow, and little of the time goes into developing it.
 const PIECE_S: f64 = 0.12;
+const PIECE_PART: f64 = 0.5;
+const LONGEST_PIECE_S: f64 = 1.0;
 /// What a draft has of its own.
 const NOT_DRAFTED: [&str; 6] =
     ["width", "render.samples", "render.rays", "render.noise", "render.reflections.order", "render.diffraction"];
+/// What chooses another film, and so other light; all else of a film mostly leaves the light as it is.
+const CHOOSES_FILM: [&str; 2] = ["stock", "kind"];
 /// After a draft the whole picture is begun when nothing was turned for so long.
 const REST: Duration = Duration::from_millis(60);
 /// The scene's file is looked at so often.
@@ -77,6 +82,7 @@ impl Desk {
             shape,
             width_px: WIDTHS_PX[1],
             owed: Vec::new(),
+            behind: Vec::new(),
             is_light_owed: true,
             pace_s: None,
             stamps: Stamps::default(),
@@ -132,8 +138,15 @@ impl Desk {
                     Drafted::SameLight | Drafted::None => {}
                 }
             }
-            if !hand.owed.is_empty() {
-                let is_light_kept = self.settle(&mut hand);
+            if hand.owed.is_empty() {
+                hand.is_light_owed = false;
+            } else {
+                let Some(is_light_kept) = self.settle(&mut hand, &stop) else { continue };
+                if !is_light_kept && !hand.behind.is_empty() {
+                    // What was taken for development alone is not.
+                    is_asked_for_draft = true;
+                    continue;
+                }
                 if is_light_kept && hand.session.has_light() {
                     if let Err(error) = self.picture(&mut hand.session, &hand.shape, started, Detail::Quick) {
                         self.tell(Some(said(&error, "")));
@@ -150,7 +163,10 @@ impl Desk {
             let more = match hand.pace_s {
                 _ if scene.render.numbers == NumberFamily::Stratified => all,
                 None => 1,
-                Some(pace_s) => (PIECE_S / pace_s).floor().clamp(1.0, 4096.0) as u64,
+                Some(pace_s) => {
+                    let piece_s = (PIECE_PART * started.elapsed().as_secs_f64()).clamp(PIECE_S, LONGEST_PIECE_S);
+                    (piece_s / pace_s).floor().clamp(1.0, 4096.0) as u64
+                }
             };
             let from = Instant::now();
             let more = more.min(all - done);
@@ -181,16 +197,23 @@ impl Desk {
     fn drafted(&self, hand: &mut Hand, started: Instant) -> Drafted {
         let workers = Threads(self.order.threads);
         let mut same_light = hand.draft.is_some() && hand.session.has_light();
+        if same_light && !hand.is_light_owed && hand.owed.iter().all(|owed| is_of_development(&owed.path)) {
+            // The draft takes it up when it is wanted.
+            return Drafted::SameLight;
+        }
         match &mut hand.draft {
             None => {
+                hand.behind.clear();
                 let mut texts: Vec<String> = hand.owed.iter().filter_map(|owed| hand.shape.text(owed)).collect();
                 texts.extend(hand.shape.draft(&hand.session));
                 // What cannot be is said of the whole scene.
                 hand.draft = hand.session.draft(&texts).ok();
             }
             Some(draft) => {
-                for owed in hand.owed.iter().filter(|owed| !owed.is_drafted && !NOT_DRAFTED.contains(&&*owed.path)) {
-                    match draft.change_on(&owed.text, &workers) {
+                let fresh = |owed: &&Owed| !owed.is_drafted && !NOT_DRAFTED.contains(&&*owed.path);
+                let behind = std::mem::take(&mut hand.behind);
+                for text in behind.iter().chain(hand.owed.iter().filter(fresh).map(|owed| &owed.text)) {
+                    match draft.change_on(text, &workers) {
                         Ok(kept) => same_light &= kept.light,
                         Err(_) => return hand.without_draft(),
                     }
@@ -216,26 +239,35 @@ impl Desk {
         Drafted::Shown
     }
 
-    /// Sets the scene as it is to be; says whether the light is the same.
-    fn settle(&self, hand: &mut Hand) -> bool {
+    /// Sets the scene as it is to be; says whether the light is the same. `None` where more was turned meanwhile: what is not set is
+    /// owed still.
+    fn settle(&self, hand: &mut Hand, stop: &Stop) -> Option<bool> {
         let is_drafted = hand.draft.is_some() && hand.is_light_owed;
+        // Where there is no draft to look at, this is what is waited for.
+        let never = Stop::new();
+        let stop = if is_drafted { stop } else { &never };
+        let workers = Until { threads: Threads(self.order.threads), stop };
         let (mut is_light_kept, mut trouble) = (true, None);
         for owed in std::mem::take(&mut hand.owed) {
             let Some(text) = hand.shape.text(&owed) else { continue };
             // Where a draft of it was made, the scene can be.
             let changed = match &hand.draft {
-                Some(draft) if !NOT_DRAFTED.contains(&&*owed.path) => hand.session.change_after(&text, draft),
+                Some(draft) if !NOT_DRAFTED.contains(&&*owed.path) => hand.session.change_after(&text, draft, &workers),
                 _ => hand.session.change_on(&text, &Threads(self.order.threads)),
             };
             match changed {
                 Ok(kept) => {
                     is_light_kept &= kept.light;
+                    if hand.draft.is_some() && is_of_development(&owed.path) && !owed.is_drafted {
+                        hand.behind.push(text.clone());
+                    }
                     if owed.path == "width" {
                         hand.width_px = owed.text.parse().unwrap_or(hand.width_px);
                     } else {
                         self.remember(&owed.path, &text);
                     }
                 }
+                Err(_) if stop.should_stop() => hand.owed.push(owed),
                 Err(error) => {
                     trouble = Some(said(&error, &owed.path));
                     // The draft may have taken it.
@@ -243,13 +275,17 @@ impl Desk {
                 }
             }
         }
-        hand.is_light_owed = false;
         if !is_light_kept {
             hand.pace_s = None;
         }
+        if !hand.owed.is_empty() {
+            hand.is_light_owed |= !is_light_kept;
+            return None;
+        }
+        hand.is_light_owed = false;
         self.tell(trouble);
         self.adopt(&hand.session, is_drafted);
-        is_light_kept
+        Some(is_light_kept)
     }
 
     /// Takes up the scene's file, or one that it names, where somebody wrote it since; says whether there is another scene now. A
@@ -416,6 +452,11 @@ impl Desk {
         self.turned.notify_all();
         Ok(())
     }
+}
+
+/// Whether a value is of the development of a film, by its path.
+fn is_of_development(path: &str) -> bool {
+    path.starts_with("film.") && !CHOOSES_FILM.iter().any(|key| path.rsplit('.').next() == Some(key))
 }
 
 /// The same exposure of fewer pixels: each has the mean of those that it covers.
