@@ -389,7 +389,12 @@ fn a_lens_is_focused_once() {
 /// A first look shows the same light, exposed as long, by less effort.
 #[test]
 fn a_draft_is_as_bright_as_the_whole() {
-    for set in [&[][..], &["lens.f-number=f/15"], &["imager.tilt=[10 deg, -5 deg]"], &["lens.aperture={shape: iris, blades: 5}"]] {
+    for set in [
+        &[][..],
+        &["lens.f-number=f/15"],
+        &["imager.tilt=[10 deg, -5 deg]"],
+        &["lens.aperture={shape: iris, blades: 5}"],
+    ] {
         let mut whole = session("biotar-trix", &["imager.resolution=[48, 32]", "render.samples=16"]);
         let mut draft = whole.draft(&["render.samples=16".to_owned()]).expect("the same scene");
         for text in set {

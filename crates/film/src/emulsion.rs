@@ -2,6 +2,7 @@
 
 use crate::curve::CharacteristicCurve;
 use crate::deposit::Deposit;
+use crate::known::Known;
 use crate::lookup::{Lookup, PIXELS_A_TASK, from_octaves, octaves};
 use crate::stock::{Densitometry, Process, Stock};
 use rayon::prelude::*;
@@ -31,8 +32,12 @@ pub enum EmulsionError {
     Layers,
 }
 
+/// Curves sampled over the exposure, by what that is multiplied with first: of a layer, and of three that meet.
+static SAMPLED: Known<(AmountCurve, u64), Lookup> = Known::new();
+static TOGETHER: Known<(Emulsion, u64), [[Lookup; 3]; 2]> = Known::new();
+
 /// A stock in one development, ready to turn exposures into amounts; see [`Deposit`] for their unit.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Emulsion {
     deposit: Deposit,
     curves: Vec<AmountCurve>,
@@ -41,7 +46,7 @@ pub struct Emulsion {
     inhibition: Vec<Vec<f64>>,
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 enum AmountCurve {
     /// Silver: the curve as it is.
     Density(CharacteristicCurve),
@@ -211,8 +216,11 @@ impl Emulsion {
     }
 
     fn develop_together(&self, [a, b, c]: [&mut Vec<f32>; 3], effect: f64) {
-        let own = [0, 1, 2].map(|i| per_octave(|x| self.amount(i, x), effect));
-        let held = [0, 1, 2].map(|i| per_octave(|x| x + self.relief(i, x), effect));
+        let sampled = TOGETHER.of((self.clone(), effect.to_bits()), || {
+            let own = [0, 1, 2].map(|i| per_octave(|x| self.amount(i, x), effect));
+            [own, [0, 1, 2].map(|i| per_octave(|x| x + self.relief(i, x), effect))]
+        });
+        let [own, held] = &*sampled;
         let clear = self.neutral(f64::NEG_INFINITY);
         let rows = [0, 1, 2].map(|i| [0, 1, 2].map(|j| self.inhibition[i].get(j).copied().unwrap_or(0.0)));
         let pixel = |h: [f32; 3]| -> [f32; 3] {
@@ -238,7 +246,8 @@ impl Emulsion {
     /// it: [`Emulsion::develop_all`] for one layer.
     pub fn develop(&self, layer: usize, plane: &mut [f32], effect: f64) {
         let curve = &self.curves[layer];
-        let sampled = per_octave(|log10_exposure| curve.at(log10_exposure), effect);
+        let made = || per_octave(|log10_exposure| curve.at(log10_exposure), effect);
+        let sampled = SAMPLED.of((curve.clone(), effect.to_bits()), made);
         let unexposed = curve.at(f64::NEG_INFINITY) as f32;
         plane.par_chunks_mut(PIXELS_A_TASK).for_each(|pixels| {
             for h in pixels {

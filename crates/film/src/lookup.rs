@@ -7,7 +7,7 @@ use spectra_numerics::table;
 pub(crate) const PIXELS_A_TASK: usize = 8192;
 
 /// A function sampled at equal steps, linear between the samples, held constant beyond them.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Lookup {
     low: f64,
     per_step: f64,

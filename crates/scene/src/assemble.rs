@@ -310,8 +310,7 @@ fn all_stages(
     };
     let lens_place = lens.clone();
     let cover = imager.as_ref().and_then(|imager| imager.cover());
-    let hold =
-        |faults: &mut Faults| lens.as_ref().and_then(|p| faults.take(held_lens(p, resources, cover.clone())));
+    let hold = |faults: &mut Faults| lens.as_ref().and_then(|p| faults.take(held_lens(p, resources, cover.clone())));
     let is_view_known = earlier.source.is_some() && (earlier.same_view || earlier.is_check);
     // A lens that is there as it is to be is not read again.
     let held = if is_view_known && earlier.may_have_lens() { None } else { Some(hold(&mut of_lens)) };

@@ -25,8 +25,10 @@
 //! negative on the way; the whole must not.
 
 use std::cell::Cell;
+use std::collections::BTreeMap;
 use std::fs;
 use std::io::Read as _;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use spectra_core::names::{self, Match};
 use spectra_core::resources::{ResourceError, Resources};
@@ -144,7 +146,7 @@ pub fn notes_in(name: &str, files: &dyn Resources) -> Vec<&'static str> {
     if !is_table(file) {
         return Vec::new();
     }
-    table(file, Some(files), Kind::Emission).map_or_else(|_| Vec::new(), |table| table.notes)
+    table(file, Some(files), Kind::Emission).map_or_else(|_| Vec::new(), |table| table.notes.clone())
 }
 
 macro_rules! typed {
@@ -212,13 +214,13 @@ pub fn meta_in(name: &str, files: &dyn Resources) -> Option<Meta> {
     if is_yaml(file) {
         return Loader::new(Some(files)).document(file, Kind::Emission).ok().map(|(_, meta)| meta);
     }
-    table(file, Some(files), Kind::Emission).ok().map(|table| table.meta)
+    table(file, Some(files), Kind::Emission).ok().map(|table| table.meta.clone())
 }
 
 /// The same of a bundled spectrum alone, whatever lies in the working directory.
 #[must_use]
 pub fn bundled_meta(name: &str) -> Option<Meta> {
-    table(name, None, Kind::Emission).ok().map(|table| table.meta)
+    table(name, None, Kind::Emission).ok().map(|table| table.meta.clone())
 }
 
 /// Loads spectra that may be made of others, and bounds how many.
@@ -304,7 +306,7 @@ impl<'a> Loader<'a> {
         if is_yaml(file) {
             return self.document(name, wanted).map(|(piece, _)| piece);
         }
-        from_table(name, &table(file, self.files, wanted)?, column).map(Piece::Typed)
+        from_table(name, &*table(file, self.files, wanted)?, column).map(Piece::Typed)
     }
 
     fn document(&self, name: &str, wanted: Kind) -> Result<(Piece, Meta), SpectrumError> {
@@ -335,8 +337,23 @@ fn is_table(name: &str) -> bool {
     ending.is_some_and(|ending| ENDINGS.contains(&ending.as_str())) || name.contains(['/', '\\'])
 }
 
+/// The bundled table of that path; read once.
+fn bundled_table(path: &'static str) -> Result<Arc<Table>, SpectrumError> {
+    static KNOWN: Mutex<BTreeMap<&'static str, Arc<Table>>> = Mutex::new(BTreeMap::new());
+    let known = || KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
+    let found = known().get(path).cloned();
+    found.map_or_else(
+        || {
+            let read = Arc::new(Table::parse_bytes(path, spectra_data::get(path).unwrap_or_default(), None)?);
+            known().insert(path, Arc::clone(&read));
+            Ok(read)
+        },
+        Ok,
+    )
+}
+
 /// The table of a bundled name, or of a file.
-fn table(name: &str, files: Option<&dyn Resources>, wanted: Kind) -> Result<Table, SpectrumError> {
+fn table(name: &str, files: Option<&dyn Resources>, wanted: Kind) -> Result<Arc<Table>, SpectrumError> {
     if !is_table(name) {
         let key = normalized(name);
         let fluorescent = key.strip_prefix('f').filter(|n| n.starts_with(|c: char| c.is_ascii_digit()));
@@ -344,7 +361,7 @@ fn table(name: &str, files: Option<&dyn Resources>, wanted: Kind) -> Result<Tabl
         return match names::find(&key, bundled_spectra().map(|(name, _)| name)) {
             Match::One(found) => {
                 let path = bundled_spectra().find(|(name, _)| *name == found).map_or("", |(_, path)| path);
-                Ok(Table::parse_bytes(path, spectra_data::get(path).unwrap_or_default(), None)?)
+                bundled_table(path)
             }
             Match::Several(several) => Err(SpectrumError::Unknown {
                 name: name.chars().take(80).collect(),
@@ -357,7 +374,7 @@ fn table(name: &str, files: Option<&dyn Resources>, wanted: Kind) -> Result<Tabl
         Some(files) => read_resource(name, files)?,
         None => read_file(name)?,
     };
-    Ok(Table::parse_bytes(&shown, &bytes, Some(wanted))?)
+    Ok(Arc::new(Table::parse_bytes(&shown, &bytes, Some(wanted))?))
 }
 
 fn unknown(name: &str) -> SpectrumError {

@@ -37,6 +37,13 @@ fn schema<T: Readable>() -> Arc<serde_json::Value> {
     Arc::clone(SCHEMAS.write().unwrap_or_else(PoisonError::into_inner).entry(of).or_insert(made))
 }
 
+/// The keys of a map, for [`super::Params::split`].
+#[must_use]
+pub fn keys_of<T: Readable>() -> Vec<String> {
+    let properties = schema::<T>().get("properties").and_then(serde_json::Value::as_object).cloned();
+    properties.map_or_else(Vec::new, |all| all.into_iter().map(|(key, _)| key).collect())
+}
+
 /// A value from a node, or everything that is wrong with it. `prefix` is the path of the node.
 pub(super) fn parse<T: Readable>(node: &Node, prefix: &str) -> Result<T, Faults> {
     let at = At::root(node, prefix);

@@ -1,14 +1,7 @@
 //! JSON Schema of nested stages: one of several kinds of a map.
 
-use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use schemars::{Schema, json_schema};
 use serde_json::{Map, Value, json};
-
-/// The keys of a map, for [`super::Params::split`].
-#[must_use]
-pub fn keys_of<T: JsonSchema>() -> Vec<String> {
-    let schema = T::json_schema(&mut SchemaGenerator::default());
-    schema.get("properties").and_then(Value::as_object).map_or_else(Vec::new, |all| all.keys().cloned().collect())
-}
 
 /// One of several kinds of a map, as the schema of each.
 pub struct Kinds<'a> {

@@ -66,10 +66,9 @@ struct Borrower<'a> {
 
 /// A glass that could lend.
 struct Candidate {
-    place: Place,
+    glass: Glass,
     nd: f64,
     vd: f64,
-    category: Category,
     old: Option<bool>,
 }
 
@@ -131,23 +130,25 @@ impl Catalogue {
         let distance = |candidate: &Candidate| {
             let (dn, dv) = ((candidate.nd - borrower.nd) / UNIT_ND, (candidate.vd - borrower.vd) / UNIT_VD);
             let near = (dn * dn + dv * dv).sqrt();
-            let maker = borrower.maker.is_some_and(|maker| !maker.eq_ignore_ascii_case(self.maker_of(candidate.place)));
+            if !(near <= FARTHEST) {
+                return None;
+            }
+            let maker = borrower.maker.is_some_and(|maker| !maker.eq_ignore_ascii_case(&candidate.glass.maker));
             let time = borrower.old.zip(candidate.old).is_some_and(|(a, b)| a != b);
-            (near <= FARTHEST).then_some(near + ANOTHER * (f64::from(u8::from(maker)) + f64::from(u8::from(time))))
+            Some(near + ANOTHER * (f64::from(u8::from(maker)) + f64::from(u8::from(time))))
         };
         let (best, at) = (self.lenders())
             .iter()
-            .filter(|candidate| lends_to(candidate.category, borrower.category))
+            .filter(|candidate| lends_to(candidate.glass.category, borrower.category))
             .filter_map(|candidate| Some((distance(candidate)?, candidate)))
             .min_by(|a, b| a.0.total_cmp(&b.0))?;
-        let glass = self.glass(at.place);
         let lender = Lender {
-            full_name: glass.full_name(),
+            full_name: at.glass.full_name(),
             delta_nd: at.nd - borrower.nd,
             delta_vd: at.vd - borrower.vd,
             distance: best,
         };
-        Some(Absorption { extinction: glass.extinction?, lender: Some(lender) })
+        Some(Absorption { extinction: at.glass.extinction.clone()?, lender: Some(lender) })
     }
 
     /// The glasses with absorption, by name; looked for once.
@@ -159,13 +160,7 @@ impl Catalogue {
                 let glass = catalogue.with_absorption(place)?;
                 let seen = glass.extinction.as_ref()?.range_nm();
                 let lends = lends_to(glass.category, glass.category) && seen.0 <= 440.0 && seen.1 >= 640.0;
-                lends.then(|| Candidate {
-                    place,
-                    nd: glass.nd(),
-                    vd: glass.vd(),
-                    category: glass.category,
-                    old: old(&glass),
-                })
+                lends.then(|| Candidate { nd: glass.nd(), vd: glass.vd(), old: old(&glass), glass })
             };
             catalogue.index.iter().filter_map(|(_, place)| candidate(*place)).collect()
         })

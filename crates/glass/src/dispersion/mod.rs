@@ -77,7 +77,9 @@ impl Dispersion {
         if !(min_nm > 0.0 && min_nm < max_nm && max_nm.is_finite()) {
             return Err(DispersionError::Band { min_nm, max_nm });
         }
-        let checks: Vec<(f64, f64)> = (0..CHECKS)
+        // Of what does not disperse one wavelength says all.
+        let count = if matches!(medium, Medium::Constant(_) | Medium::Air) { 1 } else { CHECKS };
+        let checks: Vec<(f64, f64)> = (0..count)
             .map(|i| min_nm + (max_nm - min_nm) * i as f64 / (CHECKS - 1) as f64)
             .map(|w| (w, medium.index(w)))
             .collect();

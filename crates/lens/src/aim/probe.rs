@@ -101,7 +101,8 @@ impl<T: Borrow<Tracer>> Stage<T> {
 /// The lens, and the same lens with its small openings opened: step by step, so that each step passes
 /// all that the next one does. However small the pupil is, it is found by closing in on it.
 pub(super) struct Stages<'a> {
-    wavelengths_nm: [f64; 3],
+    /// The ends of the band and its middle; one where they are the same.
+    wavelengths_nm: Vec<f64>,
     opened: Vec<Stage<Tracer>>,
     whole: Stage<&'a Tracer>,
 }
@@ -147,12 +148,13 @@ impl<'a> Stages<'a> {
             opened.push(Stage::new(tracer, travel));
             opening *= STEP;
         }
-        Some(Self { wavelengths_nm: [min_nm, middle_nm, max_nm], opened, whole: Stage::new(tracer, travel) })
+        let wavelengths_nm = if min_nm < max_nm { vec![min_nm, middle_nm, max_nm] } else { vec![middle_nm] };
+        Some(Self { wavelengths_nm, opened, whole: Stage::new(tracer, travel) })
     }
 
     /// For probes of the lens itself, not for a search.
     pub fn of(tracer: &'a Tracer, travel: Travel) -> Self {
-        Self { wavelengths_nm: [0.0; 3], opened: Vec::new(), whole: Stage::new(tracer, travel) }
+        Self { wavelengths_nm: Vec::new(), opened: Vec::new(), whole: Stage::new(tracer, travel) }
     }
 
     /// For one thread.
@@ -167,18 +169,19 @@ impl Prober<'_> {
     /// places on the plane, and the size of the cells of the grid that found them.
     pub fn search(&mut self, point: DVec3, plane: &Plane, start: Bounds, grid: usize) -> Option<Found> {
         let mut bounds = start;
-        for level in 0..=self.stages.opened.len() {
-            let last = level == self.stages.opened.len();
+        let stages = self.stages;
+        let all = &stages.wavelengths_nm[..];
+        for level in 0..=stages.opened.len() {
+            let last = level == stages.opened.len();
             let mut n = COARSE;
             let found = loop {
                 let mut found = Vec::new();
-                for wavelength_nm in self.stages.wavelengths_nm {
-                    if last || wavelength_nm == self.stages.wavelengths_nm[1] {
-                        self.grid(level, point, plane, &bounds, n, wavelength_nm, &mut found);
-                    }
+                let colors = if last { all } else { &all[all.len() / 2..][..1] };
+                for wavelength_nm in colors {
+                    self.grid(level, point, plane, &bounds, n, *wavelength_nm, &mut found);
                 }
                 // A handful of points tells little of the size: look closer.
-                if found.len() >= if last { 3 * 12 } else { 6 } || n >= FINE {
+                if found.len() >= if last { all.len() * 12 } else { 6 } || n >= FINE {
                     break found;
                 }
                 n = (n * 2).min(FINE);
@@ -189,8 +192,8 @@ impl Prober<'_> {
             if last {
                 // Once more, on a grid that fits.
                 let mut places = Vec::new();
-                for wavelength_nm in self.stages.wavelengths_nm {
-                    self.grid(level, point, plane, &bounds, grid, wavelength_nm, &mut places);
+                for wavelength_nm in all {
+                    self.grid(level, point, plane, &bounds, grid, *wavelength_nm, &mut places);
                 }
                 places.extend(found);
                 return Some(Found { places, cell: bounds.half().map(|h| 2.0 * h / grid as f64) });

@@ -513,10 +513,12 @@ impl Series {
         let scene =
             built(&root, &text, earlier).or_else(|faults| match self.wide_open_instead(index, &root, &faults) {
                 Some((open, warning)) => {
-                    built(&open, &self.record(&member, &open), Earlier::of(None, is_check).by(search)).map(|mut scene| {
-                        scene.warnings.push(warning.into());
-                        scene
-                    })
+                    built(&open, &self.record(&member, &open), Earlier::of(None, is_check).by(search)).map(
+                        |mut scene| {
+                            scene.warnings.push(warning.into());
+                            scene
+                        },
+                    )
                 }
                 None => Err(faults),
             });
