@@ -180,7 +180,15 @@ pub(crate) fn held_lens(
         let fault = params.fault("kind", "a lens has no `kind`: name its file with `file`");
         return Err(match params.get("file") {
             Some(_) => fault.hint("leave `kind` out"),
-            None => fault.hint(format!("write `lens: {{file: {kind}}}`")).path("lens"),
+            None if spectra_lens::load(kind, resources).is_ok() => {
+                fault.hint(format!("write `lens: {{file: {kind}}}`")).path("lens")
+            }
+            None => fault
+                .hint(
+                    "`spectra lens list` has the names for `lens: {file: NAME}`; a file of your own has `name` and `surfaces`, \
+                     for an ideal lens `[{kind: thin-lens, focal-length: 50, thickness: 50, semi-diameter: 8}]`",
+                )
+                .path("lens"),
         }
         .into());
     }

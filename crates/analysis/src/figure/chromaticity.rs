@@ -105,11 +105,16 @@ pub fn chromaticity_diagram(points: &[(String, [f64; 2])], diagram: Diagram, obs
         labels.keep_clear(Rect::new(x - 1.0, y - 1.0, x + 1.0, y + 1.0));
     }
     let style = TextStyle::new(13.5).end();
-    let corner = [frame.right - 16.0, frame.top + 26.0];
+    // Where the locus leaves room: u', v' have it below.
+    let top = match diagram {
+        Diagram::Xy => frame.top,
+        Diagram::Uv => frame.bottom - 128.0,
+    };
+    let corner = [frame.right - 16.0, top + 26.0];
     canvas.text(corner, observer.name(), &style);
     labels.keep_clear(style.bounds(corner, observer.name()));
     if observer.name() == standard.name() {
-        let legend = gamuts(&mut canvas, &sheet);
+        let legend = gamuts(&mut canvas, &sheet, top + 38.0);
         labels.keep_clear(legend);
     }
     name_locus(&mut canvas, &sheet, &mut labels);
@@ -160,8 +165,8 @@ fn name_locus(canvas: &mut Canvas, sheet: &Sheet<'_>, labels: &mut Labels) {
     }
 }
 
-/// The triangles and their legend; returns where that lies.
-fn gamuts(canvas: &mut Canvas, on: &Sheet<'_>) -> Rect {
+/// The triangles and their legend, which begins at `top`; returns where that lies.
+fn gamuts(canvas: &mut Canvas, on: &Sheet<'_>, top: f64) -> Rect {
     let axes = &on.axes;
     let dashes: [&[f64]; 3] = [&[], &[9.0, 4.0], &[2.5, 3.5]];
     let style = TextStyle::new(13.5);
@@ -169,7 +174,6 @@ fn gamuts(canvas: &mut Canvas, on: &Sheet<'_>) -> Rect {
     let widest = spaces.iter().map(|s| text_width(s.name, style.size)).fold(0.0, f64::max);
     let right = axes.frame.right - 14.0;
     let left = right - SAMPLE - widest - 24.0;
-    let top = axes.frame.top + 38.0;
     let rect = Rect::new(left, top, right, top + 12.0 + 22.0 * spaces.len() as f64);
     paper(canvas, rect);
     for (i, (space, dashes)) in spaces.iter().zip(dashes).enumerate() {
