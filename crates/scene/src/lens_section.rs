@@ -185,7 +185,7 @@ pub(crate) fn held_lens(
             }
             None => fault
                 .hint(
-                    "`spectra lens list` has the names for `lens: {file: NAME}`; a file of your own has `name` and `surfaces`, \
+                    "`spectra list lens` has the names for `lens: {file: NAME}`; a file of your own has `name` and `surfaces`, \
                      for an ideal lens `[{kind: thin-lens, focal-length: 50, thickness: 50, semi-diameter: 8}]`",
                 )
                 .path("lens"),
