@@ -6,7 +6,7 @@ use spectra_film::emulsion::Emulsion;
 use spectra_film::stock::Stock;
 use spectra_plugins as _;
 use spectra_render::{Control, Renderer, Threads};
-use spectra_scene::{FileResources, Scene};
+use spectra_scene::{FileResources, Negatives, Scene, Shot};
 use std::path::Path;
 
 fn root() -> &'static Path {
@@ -159,6 +159,46 @@ fn a_metered_gray_card_is_a_mid_gray() {
         for c in 0..3 {
             let mean = middle.iter().map(|p| f64::from(p[c])).sum::<f64>() / 4.0;
             assert!((mean / mid - 1.0).abs() < most, "{film}: {middle:?}");
+        }
+    }
+}
+
+/// A film that is printed in another way is not developed again, one that develops otherwise is, and either way the picture is that of
+/// a film developed from nothing.
+#[test]
+fn negatives_are_kept_while_they_are_printed_otherwise() {
+    const SMALL: [&str; 2] = ["imager.resolution=[60, 40]", "render.samples=4"];
+    let of = |overrides: &[&str]| load("biotar-ortho.yaml", &[&SMALL, overrides].concat());
+    let color = |rest: &[&str]| of(&[&["film.stock=kodak-gold-200"], rest].concat());
+    let silver = [
+        (of(&["film.paper.grade=1"]), false),
+        (of(&["film.paper.grade=4"]), true),
+        (of(&["film.paper.grade=4", "film.grain=false"]), false),
+        (of(&["film.grain=false"]), true),
+        (of(&["film.grain-seed=5"]), false),
+        (of(&["film.grain-seed=5", "film.halation=off"]), false),
+        (of(&["film.grain-seed=5", "film.halation=off", "film.optics=off"]), false),
+    ];
+    let dyes = [
+        (color(&[]), false),
+        (color(&["film.print=kodak-endura-premier"]), true),
+        (color(&["film.print=fuji-crystal-archive-dpii", "film.light=D65"]), true),
+        (color(&["film.view=scan"]), true),
+        (color(&["film.halation=off"]), false),
+    ];
+    for films in [&silver[..], &dyes] {
+        let exposure = render(&films[0].0);
+        let kept = Negatives::default();
+        let mut before: Option<&Scene> = None;
+        for (i, (scene, is_kept)) in films.iter().enumerate() {
+            let film = &scene.films[0].film;
+            let is_same = before.is_some_and(|before| film.develops_as(&*before.films[0].film));
+            assert_eq!(is_same, *is_kept, "{i}");
+            let times = scene.film_times(&exposure);
+            let shot = || Shot::new(scene, &exposure, &times, &[], Isa::detect());
+            let (again, anew) = (shot().keeping(&kept), shot());
+            assert_eq!(again.pictures().expect("a picture"), anew.pictures().expect("a picture"), "{i}");
+            before = Some(scene);
         }
     }
 }

@@ -53,7 +53,7 @@ impl<T: Fn(f64, Pixel) -> [f64; 3] + Send + Sync> OneLayer<T> {
     }
 }
 
-impl<T: Fn(f64, Pixel) -> [f64; 3] + Send + Sync> Film for OneLayer<T> {
+impl<T: Fn(f64, Pixel) -> [f64; 3] + Send + Sync + 'static> Film for OneLayer<T> {
     fn channels(&self) -> Vec<Channel> {
         vec![self.channel.clone()]
     }

@@ -11,6 +11,7 @@ use crate::frame::{DisplayPicture, ExposureFrame, Finished, FrameSize, ImageStat
 use crate::isa::Isa;
 use crate::params::Faults;
 use crate::spectral::{Channel, SpectralPower, SystemResponse};
+use std::any::Any;
 use std::sync::Arc;
 
 /// A light source. It can emit rays, return the radiance along given rays, or both.
@@ -290,8 +291,11 @@ pub trait Launch: Send + Sync {
     }
 }
 
+/// A developed film, as the film that made it knows it.
+pub type Negative = Box<dyn Any + Send + Sync>;
+
 /// The film: which light it responds to, and how it is developed.
-pub trait Film: Send + Sync {
+pub trait Film: Any + Send + Sync {
     /// Its channels: responses to spectral irradiance, in lux (times seconds of exposure).
     fn channels(&self) -> Vec<Channel>;
 
@@ -352,6 +356,28 @@ pub trait Film: Send + Sync {
     /// As [`Film::develop`].
     fn finish(&self, exposure: &ExposureFrame, _wanted: Wanted) -> Result<Finished, String> {
         self.develop(exposure).map(Finished::of)
+    }
+
+    /// The developed film, before it is printed, scanned or looked at, with what is `wanted` that rests on it alone; `None` where a
+    /// film is finished in one go.
+    ///
+    /// # Errors
+    /// As [`Film::develop`].
+    fn negative(&self, _exposure: &ExposureFrame, _wanted: Wanted) -> Result<Option<Negative>, String> {
+        Ok(None)
+    }
+
+    /// [`Film::finish`] from a negative that this film made, or one that [`Film::develops_as`] it.
+    ///
+    /// # Errors
+    /// As [`Film::develop`]; a negative of another kind of film.
+    fn print(&self, _negative: &Negative, _wanted: Wanted) -> Result<Finished, String> {
+        Err("this film makes no negative".to_owned())
+    }
+
+    /// Whether the [`Film::negative`] of any exposure is that of `other`, bit for bit.
+    fn develops_as(&self, _other: &dyn Film) -> bool {
+        false
     }
 
     /// What the values of its picture stand for.

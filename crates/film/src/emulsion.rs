@@ -36,6 +36,10 @@ pub enum EmulsionError {
 static SAMPLED: Known<(AmountCurve, u64), Lookup> = Known::new();
 static TOGETHER: Known<(Emulsion, u64), [[Lookup; 3]; 2]> = Known::new();
 
+/// Curves of color film taken apart into amounts: of these dyes, by what three filters see of them.
+static AMOUNTS: Known<(Deposit, Vec<CharacteristicCurve>, Vec<Vec<f64>>), Result<Vec<AmountCurve>, EmulsionError>> =
+    Known::new();
+
 /// A stock in one development, ready to turn exposures into amounts; see [`Deposit`] for their unit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Emulsion {
@@ -62,6 +66,32 @@ impl AmountCurve {
             Self::Amount(table) => table.at(log10_exposure),
         }
     }
+}
+
+/// The amounts of dye that have the densities of `curves` over the clear film, seen through the filters `products`.
+fn amounts(
+    deposit: &Deposit,
+    curves: &[CharacteristicCurve],
+    products: &[Vec<f64>],
+) -> Result<Vec<AmountCurve>, EmulsionError> {
+    let layers = deposit.layers();
+    let clear: Vec<f64> = deposit.seen(&vec![0.0; layers], products).into_iter().map(|v| -log10(v)).collect();
+    let spans: Vec<(f64, f64)> = curves.iter().map(CharacteristicCurve::span).collect();
+    let low = spans.iter().fold(f64::INFINITY, |a, s| a.min(s.0));
+    let high = spans.iter().fold(f64::NEG_INFINITY, |a, s| a.max(s.1));
+    let steps = (((high - low) * SAMPLES_A_DECADE).ceil() as usize).max(1);
+    let mut amounts = vec![Vec::with_capacity(steps + 1); layers];
+    let mut last = vec![0.0; layers];
+    for i in 0..=steps {
+        let x = low + (high - low) * i as f64 / steps as f64;
+        let over = |c: &CharacteristicCurve| c.density(x) - c.density_range().0;
+        let wanted: Vec<f64> = curves.iter().zip(&clear).map(|(c, clear)| clear + over(c)).collect();
+        let found = deposit.amounts_for(&wanted, products, &last);
+        last = found.ok_or(EmulsionError::NoAmounts { log10_exposure: x })?;
+        amounts.iter_mut().zip(&last).for_each(|(all, one)| all.push(*one));
+    }
+    let table = |values: Vec<f64>| AmountCurve::Amount(Lookup::from_values(low, high, values));
+    Ok(amounts.into_iter().map(table).collect())
 }
 
 /// Samples of a dye curve a decade of exposure: with a second derivative below 15 (a print film's toe), linear interpolation
@@ -101,26 +131,13 @@ impl Emulsion {
         }
         let names: Vec<&str> = stock.layers.iter().map(|l| l.name.as_str()).collect();
         let products = stock.densitometry.products(&names).ok_or(EmulsionError::Layers)?;
-        let clear: Vec<f64> = deposit.seen(&[0.0; 3], &products).into_iter().map(|v| -log10(v)).collect();
-        let spans: Vec<(f64, f64)> = curves.iter().map(CharacteristicCurve::span).collect();
-        let low = spans.iter().fold(f64::INFINITY, |a, s| a.min(s.0));
-        let high = spans.iter().fold(f64::NEG_INFINITY, |a, s| a.max(s.1));
-        let steps = (((high - low) * SAMPLES_A_DECADE).ceil() as usize).max(1);
-        let mut amounts = vec![Vec::with_capacity(steps + 1); names.len()];
-        let mut last = vec![0.0; names.len()];
-        for i in 0..=steps {
-            let x = low + (high - low) * i as f64 / steps as f64;
-            let over = |c: &CharacteristicCurve| c.density(x) - c.density_range().0;
-            let wanted: Vec<f64> = curves.iter().zip(&clear).map(|(c, clear)| clear + over(c)).collect();
-            let found = deposit.amounts_for(&wanted, &products, &last);
-            last = found.ok_or(EmulsionError::NoAmounts { log10_exposure: x })?;
-            amounts.iter_mut().zip(&last).for_each(|(all, one)| all.push(*one));
-        }
-        let table = |values: Vec<f64>| AmountCurve::Amount(Lookup::from_values(low, high, values));
+        let key = (deposit.clone(), curves, products);
+        let amounts = AMOUNTS.of(key.clone(), || amounts(&key.0, &key.1, &key.2));
+        let curves = Result::clone(&amounts)?;
         let sign = if stock.process == Process::Reversal { -1.0 } else { 1.0 };
         let signed = |row: &Vec<f64>| row.iter().map(|v| sign * v).collect();
         let inhibition = stock.interlayer.as_ref().map_or_else(Vec::new, |i| i.inhibition.iter().map(signed).collect());
-        Ok(Self { deposit, curves: amounts.into_iter().map(table).collect(), inhibition })
+        Ok(Self { deposit, curves, inhibition })
     }
 
     /// Three separation negatives of silver, in the order blue, green, red; see

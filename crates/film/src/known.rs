@@ -3,21 +3,29 @@
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// So many are kept: the layers of a color film on planes of two sizes.
+/// So many are kept unless said otherwise: the layers of a color film on planes of two sizes.
 const KEPT: usize = 6;
 
 /// The last few that were made, each with what it was made of. What is made twice has the same bits, so nothing but time depends
 /// on what is known.
-pub(crate) struct Known<K, V>(Mutex<VecDeque<(K, Arc<V>)>>);
+pub(crate) struct Known<K, V> {
+    all: Mutex<VecDeque<(K, Arc<V>)>>,
+    kept: usize,
+}
 
 impl<K: PartialEq, V> Known<K, V> {
     pub(crate) const fn new() -> Self {
-        Self(Mutex::new(VecDeque::new()))
+        Self::keeping(KEPT)
+    }
+
+    /// The same that keeps so many: fewer of what is large.
+    pub(crate) const fn keeping(kept: usize) -> Self {
+        Self { all: Mutex::new(VecDeque::new()), kept }
     }
 
     /// What is known of `key`, or else what `make` gives, which is known from then on.
     pub(crate) fn of(&self, key: K, make: impl FnOnce() -> V) -> Arc<V> {
-        let all = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let all = || self.all.lock().unwrap_or_else(PoisonError::into_inner);
         let known = {
             let mut all = all();
             let at = all.iter().position(|(other, _)| *other == key);
@@ -32,7 +40,7 @@ impl<K: PartialEq, V> Known<K, V> {
             // Not under the lock: other threads may ask meanwhile.
             let made = Arc::new(make());
             let mut all = all();
-            while all.len() >= KEPT {
+            while all.len() >= self.kept {
                 all.pop_front();
             }
             all.push_back((key, Arc::clone(&made)));

@@ -18,6 +18,7 @@ mod lamps;
 mod landing;
 mod language;
 mod lens_section;
+mod negatives;
 mod output;
 mod remembered;
 mod resources;
@@ -32,6 +33,7 @@ pub use focus::{Focus, FocusBy};
 pub use language::{
     Member, Series, SeriesKind, SweptAxis, document, load, load_series, series_of_text, series_of_tree,
 };
+pub use negatives::Negatives;
 pub use output::{Holds, LightKind, LightLayer, Output, OutputEntry, Told};
 pub use resources::{FileResources, NO_LENS, NO_LENS_F_NUMBER};
 pub use scene::{

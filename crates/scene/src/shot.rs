@@ -1,6 +1,6 @@
 //! A picture that was taken: the light of a scene, and what can be made of it.
 
-use crate::{FilmTime, LightLayer, Scene, SceneFilm};
+use crate::{FilmTime, LightLayer, Negatives, Scene, SceneFilm};
 use serde_json::Value;
 use spectra_core::Isa;
 use spectra_core::frame::{Beside, DisplayPicture, ExposureChannel, ExposureFrame, Finished, ImageState, Wanted};
@@ -29,6 +29,7 @@ pub struct Shot<'a> {
     pub report: Value,
     /// The light by its kinds, of those that an output holds.
     pub layers: &'a [LightLayer],
+    kept: Option<&'a Negatives>,
     pictures: OnceLock<Result<All, String>>,
 }
 
@@ -42,7 +43,8 @@ impl<'a> Shot<'a> {
         attributes: &'a [(String, String)],
         isa: Isa,
     ) -> Self {
-        Self { scene, exposure, times, attributes, isa, report: Value::Null, layers: &[], pictures: OnceLock::new() }
+        let (report, pictures) = (Value::Null, OnceLock::new());
+        Self { scene, exposure, times, attributes, isa, report, layers: &[], kept: None, pictures }
     }
 
     /// The same with what is said of how it came about.
@@ -55,6 +57,13 @@ impl<'a> Shot<'a> {
     #[must_use]
     pub fn with_layers(self, layers: &'a [LightLayer]) -> Self {
         Self { layers, ..self }
+    }
+
+    /// The same for pictures alone, nothing beside them: films that were developed of this exposure before are printed again, and those
+    /// that are developed are kept.
+    #[must_use]
+    pub fn keeping(self, kept: &'a Negatives) -> Self {
+        Self { kept: Some(kept), ..self }
     }
 
     /// By what the values of each channel are to be multiplied, to be what the films got.
@@ -133,15 +142,19 @@ impl<'a> Shot<'a> {
             }
             return Ok((vec![(None, shown)], vec![beside]));
         }
-        let of = |film: &SceneFilm| -> Result<(Developed, Beside), String> {
+        let of = |(place, film): (usize, &SceneFilm)| -> Result<(Developed, Beside), String> {
+            let finish = |exposure: &ExposureFrame| match self.kept {
+                None => film.film.finish(exposure, wanted),
+                Some(kept) => kept.finish(place, &film.film, exposure),
+            };
             let Finished { shown, beside } = match &film.name {
                 // A film alone has the frame for itself.
-                None => film.film.finish(exposure, wanted)?,
-                Some(_) => film.film.finish(&film.exposure(exposure), wanted)?,
+                None => finish(exposure)?,
+                Some(_) => finish(&film.exposure(exposure))?,
             };
             Ok(((film.name.clone(), shown), beside))
         };
-        let all = scene.films.iter().map(of).collect::<Result<Vec<_>, String>>()?;
+        let all = scene.films.iter().enumerate().map(of).collect::<Result<Vec<_>, String>>()?;
         Ok(all.into_iter().unzip())
     }
 

@@ -41,27 +41,20 @@ pub fn head(mut own: Value, session: &Session, times: &[FilmTime], rays: u64) ->
     own
 }
 
-/// What each film got, by its own time.
+/// What a pixel got, channel by channel and by each film's own time, in the frame of this number; `None` where there is no such pixel.
 #[must_use]
-pub fn exposed(mut exposure: ExposureFrame, times: &[FilmTime]) -> ExposureFrame {
-    for time in times {
-        for channel in exposure.channels.get_mut(time.channels.clone()).into_iter().flatten() {
-            channel.values.iter_mut().for_each(|value| *value *= time.gain as f32);
-        }
-    }
-    exposure
-}
-
-/// What a pixel got, channel by channel, in the frame of this number; `None` where there is no such pixel.
-#[must_use]
-pub fn pixel(exposure: &ExposureFrame, frame: u64, [x, y]: [u64; 2]) -> Option<Value> {
+pub fn pixel(exposure: &ExposureFrame, times: &[FilmTime], frame: u64, [x, y]: [u64; 2]) -> Option<Value> {
     let [width, height] = [exposure.size.width_px, exposure.size.height_px].map(u64::from);
     if x >= width || y >= height {
         return None;
     }
     let at = (y * width + x) as usize;
-    let of = |channel: &ExposureChannel| json!({"name": channel.name, "unit": channel.unit, "value": channel.values.get(at)});
-    Some(json!({"frame": frame, "channels": exposure.channels.iter().map(of).collect::<Vec<_>>()}))
+    let of = |(i, channel): (usize, &ExposureChannel)| {
+        let gain = times.iter().find(|time| time.channels.contains(&i)).map_or(1.0, |time| time.gain as f32);
+        let value = channel.values.get(at).map(|value| value * gain);
+        json!({"name": channel.name, "unit": channel.unit, "value": value})
+    };
+    Some(json!({"frame": frame, "channels": exposure.channels.iter().enumerate().map(of).collect::<Vec<_>>()}))
 }
 
 /// What is wrong, with the control that it is about.

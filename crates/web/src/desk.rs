@@ -5,7 +5,7 @@ use spectra_core::frame::DisplayPicture;
 use spectra_core::{Isa, registry};
 use spectra_scene::{Shot, bundled::Bundled};
 use spectra_session::{Alone, Control as Stop, Session, SessionError};
-use spectra_view::parts::{Control, exposed, head, of_scene, packed, pixel, said, spectra, svg};
+use spectra_view::parts::{Control, head, of_scene, packed, pixel, said, spectra, svg};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -191,7 +191,7 @@ impl Open {
     fn pixel(&mut self, x: u64, y: u64) -> Answer {
         let rendering = self.session.look().map_err(|error| said(&error, ""))?;
         let times = self.session.scene().film_times(&rendering.exposure);
-        let seen = pixel(&exposed(rendering.exposure, &times), self.frames, [x, y]);
+        let seen = pixel(&rendering.exposure, &times, self.frames, [x, y]);
         seen.map(|seen| json(&seen)).ok_or_else(|| wrong("no such pixel"))
     }
 

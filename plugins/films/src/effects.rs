@@ -128,7 +128,7 @@ impl From<&StockParams> for Switches<'static> {
 }
 
 /// How grainy the layers are.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 enum Granularity {
     /// RMS granularity of silver, at 48 um and the density 1.
     Silver(f64),
@@ -137,7 +137,7 @@ enum Granularity {
 }
 
 /// The effects of one film.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Effects {
     /// How each layer spreads light, where it is known.
     mtf: Vec<Option<Mtf>>,

@@ -27,7 +27,7 @@ pub enum Metering {
 }
 
 /// `spot` as written in a scene.
-#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema, PartialEq)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct SpotParams {
     /// Its center, in shares of the frame's width and height from the upper left corner, each 0 to 1.
@@ -64,7 +64,7 @@ pub(crate) fn overruled(is_overruled: bool) -> Vec<String> {
 }
 
 /// A meter, set for a speed.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Meter {
     metering: Metering,
     spot: SpotParams,

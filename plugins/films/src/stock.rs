@@ -15,7 +15,7 @@ use spectra_core::params::{Fault, Faults, Params, Positive, Time};
 use spectra_core::registry::Context;
 use spectra_core::resources::Resources;
 use spectra_core::spectral::Channel;
-use spectra_core::stage::Film;
+use spectra_core::stage::{Film, Negative};
 use spectra_film::display::channel;
 use spectra_film::emulsion::Emulsion;
 use spectra_film::optics::Optics;
@@ -24,6 +24,7 @@ use spectra_film::print::{Print, metered_exposure_lx_s};
 use spectra_film::push::pushed;
 use spectra_film::raster::Raster;
 use spectra_film::stock::{MeterResponse, Process, Stock};
+use std::any::Any;
 
 /// Film from a data file, developed, and printed, scanned or projected.
 ///
@@ -292,6 +293,46 @@ impl StockFilm {
         }
         Ok(Planes { amounts, exposed, raster, laid })
     }
+
+    /// The developed film as the lens after it sees it, and what is `wanted` beside it, as layers of a file.
+    fn seen_through(&self, exposure: &ExposureFrame, wanted: Wanted) -> Result<(Planes, Vec<ExposureChannel>), String> {
+        let mut planes = self.planes(exposure, wanted.layers)?;
+        let mut layers = std::mem::take(&mut planes.exposed);
+        if wanted.layers {
+            let amounts: Vec<&[f32]> = planes.amounts.iter().map(Vec::as_slice).collect();
+            let density = densities(&self.stock, &self.emulsion, &amounts);
+            let named = self.stock.layers.iter().zip(density);
+            layers.extend(named.map(|(layer, values)| layer_of("density", &layer.name, "", values)));
+        }
+        if let Some(mtf50) = self.mtf50 {
+            let lens = Optics::new(mtf50, pixel_mm(&exposure.size));
+            planes.amounts.iter_mut().for_each(|plane| lens.apply(plane, planes.raster.width));
+        }
+        Ok((planes, layers))
+    }
+
+    /// The picture of a developed film.
+    fn printed(&self, negative: &Planes, layers: Vec<ExposureChannel>, wanted: Wanted) -> Result<Finished, String> {
+        let Planes { amounts, raster, laid, .. } = negative;
+        let planes: Vec<&[f32]> = amounts.iter().map(Vec::as_slice).collect();
+        let (mut shown, mut open): (Vec<[f32; 3]>, _) = match (&self.picture, &planes[..]) {
+            // Paper is a gray between its own black and white: any screen has it.
+            (Picture::Paper(print), [silver]) => (print.pictures(silver)?.into_iter().map(|v| [v; 3]).collect(), None),
+            (Picture::Positive(positive), planes) => {
+                (positive.picture(planes), wanted.open.then(|| positive.open_picture(planes)))
+            }
+            // `build` makes paper prints of one layer only.
+            (Picture::Paper(_), _) => return Err(format!("{} is not a film with one layer", self.stock.name)),
+        };
+        if let Some(laid) = laid {
+            laid.punch(&mut shown, self.hole(Reach::Screen));
+            if let Some(open) = &mut open {
+                laid.punch(open, self.hole(Reach::Open));
+            }
+        }
+        let picture = |rgb| DisplayPicture { width_px: raster.width as u32, height_px: raster.height as u32, rgb };
+        Ok(Finished { shown: picture(shown), beside: Beside { open: open.map(picture), layers, white: None } })
+    }
 }
 
 /// Exposure of what stands on a film's edge, over that of a mid gray: dense on any film.
@@ -401,36 +442,29 @@ impl Film for StockFilm {
     }
 
     fn finish(&self, exposure: &ExposureFrame, wanted: Wanted) -> Result<Finished, String> {
-        let Planes { mut amounts, exposed, raster, laid } = self.planes(exposure, wanted.layers)?;
-        let mut layers = exposed;
-        if wanted.layers {
-            let planes: Vec<&[f32]> = amounts.iter().map(Vec::as_slice).collect();
-            let density = densities(&self.stock, &self.emulsion, &planes);
-            let named = self.stock.layers.iter().zip(density);
-            layers.extend(named.map(|(layer, values)| layer_of("density", &layer.name, "", values)));
-        }
-        if let Some(mtf50) = self.mtf50 {
-            let lens = Optics::new(mtf50, pixel_mm(&exposure.size));
-            amounts.iter_mut().for_each(|plane| lens.apply(plane, raster.width));
-        }
-        let planes: Vec<&[f32]> = amounts.iter().map(Vec::as_slice).collect();
-        let (mut shown, mut open): (Vec<[f32; 3]>, _) = match (&self.picture, &planes[..]) {
-            // Paper is a gray between its own black and white: any screen has it.
-            (Picture::Paper(print), [silver]) => (print.pictures(silver)?.into_iter().map(|v| [v; 3]).collect(), None),
-            (Picture::Positive(positive), planes) => {
-                (positive.picture(planes), wanted.open.then(|| positive.open_picture(planes)))
-            }
-            // `build` makes paper prints of one layer only.
-            (Picture::Paper(_), _) => return Err(format!("{} is not a film with one layer", self.stock.name)),
-        };
-        if let Some(laid) = &laid {
-            laid.punch(&mut shown, self.hole(Reach::Screen));
-            if let Some(open) = &mut open {
-                laid.punch(open, self.hole(Reach::Open));
-            }
-        }
-        let picture = |rgb| DisplayPicture { width_px: raster.width as u32, height_px: raster.height as u32, rgb };
-        Ok(Finished { shown: picture(shown), beside: Beside { open: open.map(picture), layers, white: None } })
+        let (negative, layers) = self.seen_through(exposure, wanted)?;
+        self.printed(&negative, layers, wanted)
+    }
+
+    fn negative(&self, exposure: &ExposureFrame, wanted: Wanted) -> Result<Option<Negative>, String> {
+        Ok(Some(Box::new(self.seen_through(exposure, wanted)?)))
+    }
+
+    fn print(&self, negative: &Negative, wanted: Wanted) -> Result<Finished, String> {
+        let made = negative.downcast_ref::<(Planes, Vec<ExposureChannel>)>();
+        let (negative, layers) = made.ok_or_else(|| format!("{} makes other negatives", self.stock.name))?;
+        self.printed(negative, layers.clone(), wanted)
+    }
+
+    fn develops_as(&self, other: &dyn Film) -> bool {
+        let of = |film: &Self| (film.exposure_time_s, film.meter, film.gray_lx_s, film.mtf50);
+        (other as &dyn Any).downcast_ref::<Self>().is_some_and(|other| {
+            of(self) == of(other)
+                && self.effects == other.effects
+                && self.frame == other.frame
+                && self.emulsion == other.emulsion
+                && self.stock == other.stock
+        })
     }
 
     fn image_state(&self) -> ImageState {

@@ -3,10 +3,13 @@
 use super::{Reach, Way};
 use crate::cube::Cube;
 use crate::deposit::Deposit;
+use crate::known::Known;
 use crate::lookup::PIXELS_A_TASK;
 use rayon::prelude::*;
 use spectra_core::isa::{Isa, Vectorized};
 use spectra_core::math::log10;
+use std::ops::Range;
+use std::sync::Arc;
 
 /// Steps of the tables over the amounts of three dyes. Densities of sums over the band are nearly linear in the amounts: their
 /// second derivative is the variance of the dye's density over what the receiver sees, times ln 10, 0.2 or less. Over a
@@ -43,11 +46,11 @@ pub(super) enum Tables {
 #[derive(Clone, Debug)]
 pub(super) struct Dyes {
     /// Amounts of the film to densities of XYZ, of the scanner's channels, or of what exposes the print's layers.
-    first: Cube,
+    first: Arc<Cube>,
     /// Log10 exposure to amounts of the print's layers; none where nothing is printed.
     curves: Vec<Vec<f32>>,
     /// Amounts of a print of three dyes to densities of XYZ.
-    last: Option<Cube>,
+    last: Option<Arc<Cube>>,
     /// Densities of XYZ of the bare light.
     bare: [f32; 3],
     isa: Isa,
@@ -204,34 +207,80 @@ pub(super) fn seen(film: &Deposit, ranges: &[(f64, f64)], weights: &[Vec<f64>], 
     pixels.map(|((a, b), c)| cube.at([*a, *b, *c])).collect()
 }
 
+/// What densities rest on: the dyes, the amounts between which they are wanted, what the receivers see, and steps.
+type Seen = (Deposit, [(f64, f64); 3], Vec<Vec<f64>>, usize);
+
+/// Those of two prints: of a negative to the print's layers, and of the print to the eye.
+static KNOWN: Known<Seen, Cube> = Known::keeping(4);
+
 /// Densities that up to three receivers see, over the amounts of three dyes.
-fn densities(deposit: &Deposit, ranges: [(f64, f64); 3], weights: &[Vec<f64>], steps: usize) -> Cube {
+fn densities(deposit: &Deposit, ranges: [(f64, f64); 3], weights: &[Vec<f64>], steps: usize) -> Arc<Cube> {
+    let key = (deposit.clone(), ranges, weights.to_vec(), steps);
+    KNOWN.of(key, || summed(deposit, ranges, weights, steps))
+}
+
+/// [`densities`], anew.
+fn summed(deposit: &Deposit, ranges: [(f64, f64); 3], weights: &[Vec<f64>], steps: usize) -> Cube {
     let place = |k: usize, i: usize| ranges[k].0 + (ranges[k].1 - ranges[k].0) * i as f64 / steps as f64;
-    let layers: Vec<Vec<Vec<f64>>> =
-        (0..3).map(|k| (0..=steps).map(|i| deposit.layer_transmittance(k, place(k, i))).collect()).collect();
+    let passed =
+        |k: usize| -> Vec<Vec<f64>> { (0..=steps).map(|i| deposit.layer_transmittance(k, place(k, i))).collect() };
+    let layers = [passed(0), passed(1)];
+    let thirds: Vec<Columns> = passed(2).chunks(COLUMNS).map(columns).collect();
     let base = deposit.base_transmittance();
+    // Where a receiver sees nothing there is nothing to add.
+    let parts: Vec<Range<usize>> = weights
+        .iter()
+        .take(3)
+        .map(|weight| {
+            let from = weight.iter().position(|w| *w != 0.0).unwrap_or(0);
+            from..weight.iter().rposition(|w| *w != 0.0).map_or(from, |last| last + 1)
+        })
+        .collect();
+    let isa = Isa::detect();
     Cube::by_slabs(ranges, steps, |i, to| {
         for (j, row) in to.chunks_mut(steps + 1).enumerate() {
             let both: Vec<f64> =
                 base.iter().zip(&layers[0][i]).zip(&layers[1][j]).map(|((b, x), y)| b * x * y).collect();
-            for (channel, weight) in weights.iter().take(3).enumerate() {
-                // Where the receiver sees nothing there is nothing to add.
-                let from = weight.iter().position(|w| *w != 0.0).unwrap_or(0);
-                let to = weight.iter().rposition(|w| *w != 0.0).map_or(0, |last| last + 1).max(from);
-                let weighed: Vec<f64> = both[from..to].iter().zip(&weight[from..to]).map(|(b, w)| b * w).collect();
-                for (value, third) in row.iter_mut().zip(&layers[2]) {
-                    value[channel] = -log10(dot(&weighed, &third[from..to])) as f32;
+            for (channel, (weight, part)) in weights.iter().zip(&parts).enumerate() {
+                let weighed: Vec<f64> =
+                    both[part.clone()].iter().zip(&weight[part.clone()]).map(|(b, w)| b * w).collect();
+                for (third, to) in thirds.iter().zip(row.chunks_mut(COLUMNS)) {
+                    let sums = isa.run(Sums { weighed: &weighed, columns: &third[part.clone()] });
+                    to.iter_mut().zip(sums).for_each(|(value, sum)| value[channel] = -log10(sum) as f32);
                 }
             }
         }
     })
 }
 
-/// Sum of products, in four interleaved sums: always the same order, and not one addition waiting for the last.
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let mut sums = [0.0; 4];
-    for (a, b) in a.chunks(4).zip(b.chunks(4)) {
-        a.iter().zip(b).zip(&mut sums).for_each(|((a, b), s)| *s += a * b);
+/// So many amounts of the third dye are summed over the band together.
+const COLUMNS: usize = 24;
+
+/// At each wavelength, what that many amounts of a dye let pass.
+type Columns = Vec<[f64; COLUMNS]>;
+
+/// A few spectra, side by side.
+fn columns(spectra: &[Vec<f64>]) -> Columns {
+    let at = |w: usize| std::array::from_fn(|i| spectra.get(i).map_or(1.0, |spectrum| spectrum[w]));
+    (0..spectra[0].len()).map(at).collect()
+}
+
+/// Sums of products over the band, each in the order of wavelengths.
+struct Sums<'a> {
+    weighed: &'a [f64],
+    columns: &'a [[f64; COLUMNS]],
+}
+
+impl Vectorized for Sums<'_> {
+    type Output = [f64; COLUMNS];
+    #[inline(always)]
+    fn run(self) -> Self::Output {
+        let mut sums = [0.0; COLUMNS];
+        for (weight, passes) in self.weighed.iter().zip(self.columns) {
+            for i in 0..COLUMNS {
+                sums[i] += weight * passes[i];
+            }
+        }
+        sums
     }
-    (sums[0] + sums[1]) + (sums[2] + sums[3])
 }

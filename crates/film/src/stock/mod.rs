@@ -38,7 +38,7 @@ pub enum Process {
 }
 
 /// A film stock.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Stock {
     /// Name that people know it by.
     pub name: String,
@@ -95,7 +95,7 @@ pub struct Stock {
 }
 
 /// One light-sensitive layer.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Layer {
     /// Name; that of its channel too.
     pub name: String,

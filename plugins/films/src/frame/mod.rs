@@ -18,7 +18,7 @@ use spectra_core::params::{Length, Positive};
 use spectra_film::raster::Raster;
 
 /// `frame` as written in a scene: all of it is off unless it is written.
-#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct FrameParams {
     /// How far the picture wanders in the gate from frame to frame, root mean square across and down, up to 1 mm, mm if bare; a good
@@ -55,7 +55,7 @@ pub enum BorderKind {
 }
 
 /// The effects of one film.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct FrameEffects {
     params: FrameParams,
     /// What stands on the border.

@@ -1,12 +1,17 @@
 //! What the thread of a desk has in hand: the scene, the same scene small for a draft, and what either is still to be told.
 
 use super::watch::Stamps;
+use spectra_core::frame::ExposureFrame;
 use spectra_core::params::Node;
-use spectra_session::Session;
+use spectra_scene::Negatives;
+use spectra_session::{Rendering, Session};
+use std::sync::Arc;
 
 /// The first picture after a change: its width, pixels, and its samples of a pixel.
 const DRAFT_PX: u32 = 120;
 const DRAFT_SAMPLES: u32 = 4;
+/// Developed first at this width where the whole is larger, pixels.
+const QUICK_PX: u32 = 480;
 
 /// A value that was turned and that the whole picture does not have yet.
 pub(super) struct Owed {
@@ -26,6 +31,40 @@ pub(super) enum Drafted {
     None,
 }
 
+/// What the film got, and what was developed of it: of all pixels, and of fewer where they are many.
+pub(super) struct Light {
+    pub(super) whole: Plate,
+    small: Option<Plate>,
+    pub(super) rays: u64,
+}
+
+impl Light {
+    pub(super) fn of(rendering: Rendering) -> Self {
+        Self { whole: Plate::of(rendering.exposure), small: None, rays: rendering.rays }
+    }
+
+    /// Of fewer pixels, where they are many; made when it is first asked for.
+    pub(super) fn small(&mut self) -> Option<&Plate> {
+        let exposure = &self.whole.exposure;
+        if exposure.size.width_px <= QUICK_PX {
+            return None;
+        }
+        Some(self.small.get_or_insert_with(|| Plate::of(shrunk(exposure, QUICK_PX))))
+    }
+}
+
+/// An exposure and its negatives.
+pub(super) struct Plate {
+    pub(super) exposure: Arc<ExposureFrame>,
+    pub(super) negatives: Negatives,
+}
+
+impl Plate {
+    pub(super) fn of(exposure: ExposureFrame) -> Self {
+        Self { exposure: Arc::new(exposure), negatives: Negatives::default() }
+    }
+}
+
 /// What the thread of a desk has in hand.
 pub(super) struct Hand {
     pub(super) session: Session,
@@ -37,6 +76,8 @@ pub(super) struct Hand {
     /// Texts `path=value` that the draft does not have yet.
     pub(super) behind: Vec<String>,
     pub(super) is_light_owed: bool,
+    /// The light of the session so far, while it stays.
+    pub(super) light: Option<Light>,
     /// A sample of all pixels takes so long.
     pub(super) pace_s: Option<f64>,
     /// The files that the scene names, as they were read.
@@ -69,6 +110,7 @@ impl Hand {
             owed: std::mem::take(&mut self.owed),
             behind: Vec::new(),
             is_light_owed: true,
+            light: None,
             pace_s: None,
             stamps: Stamps::default(),
             refused: None,
@@ -125,4 +167,25 @@ impl Shape {
         }
         texts
     }
+}
+
+/// The same exposure of fewer pixels: each has the mean of those that it covers.
+fn shrunk(exposure: &ExposureFrame, width_px: u32) -> ExposureFrame {
+    let [from_x, from_y] = [exposure.size.width_px, exposure.size.height_px].map(|n| n as usize);
+    let to_x = (width_px as usize).min(from_x).max(1);
+    let to_y = (from_y * to_x).div_ceil(from_x).clamp(1, from_y.max(1));
+    let span = |i: usize, from: usize, to: usize| i * from / to..((i + 1) * from / to).max(i * from / to + 1);
+    let mut small = exposure.clone();
+    (small.size.width_px, small.size.height_px) = (to_x as u32, to_y as u32);
+    for channel in &mut small.channels {
+        let values = std::mem::take(&mut channel.values);
+        let mean = |(x, y): (usize, usize)| {
+            let (columns, rows) = (span(x, from_x, to_x), span(y, from_y, to_y));
+            let count = (columns.len() * rows.len()) as f64;
+            let sum: f64 = rows.flat_map(|row| &values[row * from_x..][columns.clone()]).map(|v| f64::from(*v)).sum();
+            (sum / count) as f32
+        };
+        channel.values = (0..to_y).flat_map(|y| (0..to_x).map(move |x| (x, y))).map(mean).collect();
+    }
+    small
 }

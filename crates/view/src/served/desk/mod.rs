@@ -15,6 +15,7 @@ use crate::section;
 use serde_json::{Value, json};
 use spectra_core::Isa;
 use spectra_core::frame::ExposureFrame;
+use spectra_scene::FilmTime;
 use spectra_session::{Control as Stop, Session, SessionError};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
@@ -37,7 +38,8 @@ pub(crate) struct Frame {
     pub number: u64,
     /// A head as JSON, with its length before it, and linear red, green and blue as `f32`, little-endian.
     pub bytes: Vec<u8>,
-    exposure: ExposureFrame,
+    exposure: Arc<ExposureFrame>,
+    times: Vec<FilmTime>,
     /// Width of the picture that it is one of, pixels: that of its numbers or, of a draft, more.
     whole_px: u32,
 }
@@ -170,7 +172,7 @@ impl Desk {
         let size = frame.exposure.size;
         // Of a draft, the pixel that covers it.
         let part = |at: u32| u64::from(at) * u64::from(size.width_px) / u64::from(frame.whole_px.max(1));
-        pixel(&frame.exposure, frame.number, [x, y].map(part))
+        pixel(&frame.exposure, &frame.times, frame.number, [x, y].map(part))
     }
 
     /// The cross-section of the lens as it is set now; an empty text where it cannot be drawn.

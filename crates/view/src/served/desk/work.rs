@@ -1,11 +1,11 @@
 //! What the thread of a desk does: take up what was turned, trace, develop, and watch the scene's file.
 
 use super::super::save;
-use super::hand::{Drafted, Hand, Owed, Shape};
+use super::hand::{Drafted, Hand, Light, Owed, Plate, Shape};
 use super::watch::Stamps;
 use super::{Desk, Frame, State, WIDTHS_PX, held};
 use crate::controls;
-use crate::parts::{exposed, head, packed, said};
+use crate::parts::{head, packed, said};
 use serde_json::{Value, json};
 use spectra_core::frame::{DisplayPicture, ExposureFrame};
 use spectra_scene::{NumberFamily, Shot};
@@ -31,19 +31,6 @@ const REST: Duration = Duration::from_millis(60);
 const GLANCE: Duration = Duration::from_millis(300);
 /// A scene's file that is larger than this is none.
 const MAX_SCENE_BYTES: u64 = 1 << 22;
-/// Developed first at this width where the whole is larger, pixels.
-const QUICK_PX: u32 = 480;
-
-/// How a picture comes to the page.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Detail {
-    /// A small one, of few samples.
-    Draft,
-    /// All of its pixels; where they are many, fewer before.
-    Quick,
-    /// All of its pixels.
-    Whole,
-}
 
 /// Threads whose work nobody waits for once something more is turned.
 struct Until<'a> {
@@ -84,6 +71,7 @@ impl Desk {
             owed: Vec::new(),
             behind: Vec::new(),
             is_light_owed: true,
+            light: None,
             pace_s: None,
             stamps: Stamps::default(),
             refused: None,
@@ -148,7 +136,7 @@ impl Desk {
                     continue;
                 }
                 if is_light_kept && hand.session.has_light() {
-                    if let Err(error) = self.picture(&mut hand.session, &hand.shape, started, Detail::Quick) {
+                    if let Err(error) = self.picture(&mut hand, started, true) {
                         self.tell(Some(said(&error, "")));
                     }
                     continue;
@@ -170,6 +158,7 @@ impl Desk {
             };
             let from = Instant::now();
             let more = more.min(all - done);
+            hand.light = None;
             // To search what passes the whole scene's lens may take longer than a draft: that, too, ends where more is turned.
             let workers = Until { threads: Threads(self.order.threads), stop: &stop };
             if let Err(error) = hand.session.step(more, &workers, &stop) {
@@ -187,7 +176,7 @@ impl Desk {
             if hand.session.samples() == 0 || stop.should_stop() {
                 continue;
             }
-            if let Err(error) = self.picture(&mut hand.session, &hand.shape, started, Detail::Whole) {
+            if let Err(error) = self.picture(&mut hand, started, false) {
                 self.tell(Some(said(&error, "")));
             }
         }
@@ -232,8 +221,13 @@ impl Desk {
         self.draw(draft, false);
         let all = u64::from(draft.scene().render.samples);
         let traced = draft.advance(all, &workers, &Stop::new());
-        if traced.is_err() || draft.samples() == 0 || self.picture(draft, &hand.shape, started, Detail::Draft).is_err()
-        {
+        let seen = match traced {
+            Ok(()) if draft.samples() > 0 => draft.look(),
+            _ => return hand.without_draft(),
+        };
+        let shown =
+            seen.and_then(|seen| self.show(draft, &hand.shape, started, &Plate::of(seen.exposure), seen.rays, true));
+        if shown.is_err() {
             return hand.without_draft();
         }
         Drafted::Shown
@@ -248,6 +242,8 @@ impl Desk {
         let stop = if is_drafted { stop } else { &never };
         let workers = Until { threads: Threads(self.order.threads), stop };
         let (mut is_light_kept, mut trouble) = (true, None);
+        let time_s = hand.session.scene().exposure_time_s();
+        let is_developed_only = hand.owed.iter().all(|owed| is_of_development(&owed.path));
         for owed in std::mem::take(&mut hand.owed) {
             let Some(text) = hand.shape.text(&owed) else { continue };
             // Where a draft of it was made, the scene can be.
@@ -277,6 +273,10 @@ impl Desk {
         }
         if !is_light_kept {
             hand.pace_s = None;
+        }
+        // What the film got follows from the light, but for what is done to the sum of it.
+        if !is_light_kept || !is_developed_only || hand.session.scene().exposure_time_s() != time_s {
+            hand.light = None;
         }
         if !hand.owed.is_empty() {
             hand.is_light_owed |= !is_light_kept;
@@ -386,27 +386,29 @@ impl Desk {
             let before = state.frame.take();
             state.number += 1;
             let head = json!({"frame": state.number, "fault": state.fault});
-            let (exposure, whole_px) = before.map_or_else(|| (empty(), 0), |f| (f.exposure.clone(), f.whole_px));
-            state.frame = Some(Arc::new(Frame { number: state.number, bytes: packed(&head, &[]), exposure, whole_px }));
+            let (exposure, times, whole_px) = match before {
+                Some(before) => (Arc::clone(&before.exposure), before.times.clone(), before.whole_px),
+                None => (Arc::new(empty()), Vec::new(), 0),
+            };
+            let (number, bytes) = (state.number, packed(&head, &[]));
+            state.frame = Some(Arc::new(Frame { number, bytes, exposure, times, whole_px }));
         }
         self.turned.notify_all();
     }
 
-    /// Develops the light so far and gives it to the page.
-    fn picture(
-        &self,
-        session: &mut Session,
-        shape: &Shape,
-        started: Instant,
-        detail: Detail,
-    ) -> Result<(), SessionError> {
-        let rendering = session.look()?;
-        if detail == Detail::Quick && rendering.exposure.size.width_px > QUICK_PX {
-            let small = shrunk(&rendering.exposure, QUICK_PX);
+    /// Develops the light so far and gives it to the page; if it is to be `quick`, a small picture comes before a large one.
+    fn picture(&self, hand: &mut Hand, started: Instant, quick: bool) -> Result<(), SessionError> {
+        let light = match hand.light.take() {
+            Some(light) => light,
+            None => Light::of(hand.session.look()?),
+        };
+        let light = hand.light.insert(light);
+        let rays = light.rays;
+        if let Some(small) = quick.then(|| light.small()).flatten() {
             // What cannot be developed small is seen whole.
-            let _ = self.show(session, shape, started, small, rendering.rays, true);
+            let _ = self.show(&hand.session, &hand.shape, started, small, rays, true);
         }
-        self.show(session, shape, started, rendering.exposure, rendering.rays, detail == Detail::Draft)
+        self.show(&hand.session, &hand.shape, started, &light.whole, rays, false)
     }
 
     fn show(
@@ -414,19 +416,16 @@ impl Desk {
         session: &Session,
         shape: &Shape,
         started: Instant,
-        exposure: ExposureFrame,
+        plate: &Plate,
         rays: u64,
         is_draft: bool,
     ) -> Result<(), SessionError> {
         let scene = Arc::clone(session.scene());
-        let times = scene.film_times(&exposure);
-        let developed = {
-            let shot = Shot::new(&scene, &exposure, &times, &[], self.order.isa);
-            shot.pictures().map_err(SessionError::Failed)?.to_vec()
-        };
-        let Some((_, picture)) = developed.into_iter().next() else { return Ok(()) };
-        let exposure = exposed(exposure, &times);
+        let times = scene.film_times(&plate.exposure);
+        let shot = Shot::new(&scene, &plate.exposure, &times, &[], self.order.isa).keeping(&plate.negatives);
+        let Some((_, picture)) = shot.pictures().map_err(SessionError::Failed)?.first() else { return Ok(()) };
         let DisplayPicture { width_px, height_px, rgb } = picture;
+        let [width_px, height_px] = [*width_px, *height_px];
         let mut state = held(&self.state);
         state.number += 1;
         let whole_px = if is_draft { state.width_px } else { width_px };
@@ -447,8 +446,9 @@ impl Desk {
         if is_draft {
             head["samples"] = 0.into();
         }
-        let bytes = packed(&head, bytemuck::cast_slice(&rgb));
-        state.frame = Some(Arc::new(Frame { number: state.number, bytes, exposure, whole_px }));
+        let bytes = packed(&head, bytemuck::cast_slice(rgb));
+        let exposure = Arc::clone(&plate.exposure);
+        state.frame = Some(Arc::new(Frame { number: state.number, bytes, exposure, times, whole_px }));
         self.turned.notify_all();
         Ok(())
     }
@@ -457,27 +457,6 @@ impl Desk {
 /// Whether a value is of the development of a film, by its path.
 fn is_of_development(path: &str) -> bool {
     path.starts_with("film.") && !CHOOSES_FILM.iter().any(|key| path.rsplit('.').next() == Some(key))
-}
-
-/// The same exposure of fewer pixels: each has the mean of those that it covers.
-fn shrunk(exposure: &ExposureFrame, width_px: u32) -> ExposureFrame {
-    let [from_x, from_y] = [exposure.size.width_px, exposure.size.height_px].map(|n| n as usize);
-    let to_x = (width_px as usize).min(from_x).max(1);
-    let to_y = (from_y * to_x).div_ceil(from_x).clamp(1, from_y.max(1));
-    let span = |i: usize, from: usize, to: usize| i * from / to..((i + 1) * from / to).max(i * from / to + 1);
-    let mut small = exposure.clone();
-    (small.size.width_px, small.size.height_px) = (to_x as u32, to_y as u32);
-    for channel in &mut small.channels {
-        let values = std::mem::take(&mut channel.values);
-        let mean = |(x, y): (usize, usize)| {
-            let (columns, rows) = (span(x, from_x, to_x), span(y, from_y, to_y));
-            let count = (columns.len() * rows.len()) as f64;
-            let sum: f64 = rows.flat_map(|row| &values[row * from_x..][columns.clone()]).map(|v| f64::from(*v)).sum();
-            (sum / count) as f32
-        };
-        channel.values = (0..to_y).flat_map(|y| (0..to_x).map(move |x| (x, y))).map(mean).collect();
-    }
-    small
 }
 
 fn empty() -> ExposureFrame {
