@@ -13,6 +13,7 @@
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 pub mod adjacency;
+mod cells;
 mod cube;
 pub mod curve;
 pub mod deposit;

@@ -57,14 +57,26 @@ impl Optics {
         if !self.is_felt() || density.is_empty() {
             return;
         }
-        let [across, down] = &self.weights;
         let mut passed = vec![0.0_f32; density.len()];
+        self.pass(density, width, &mut passed);
+    }
+
+    /// The same for planes of one size, with memory for one more.
+    pub fn apply_to_all(&self, planes: &mut [Vec<f32>], width: usize) {
+        let Some(pixels) = planes.first().map(Vec::len).filter(|pixels| self.is_felt() && *pixels > 0) else { return };
+        let mut passed = vec![0.0_f32; pixels];
+        planes.iter_mut().for_each(|plane| self.pass(plane, width, &mut passed));
+    }
+
+    fn pass(&self, density: &mut [f32], width: usize, passed: &mut [f32]) {
+        let [across, down] = &self.weights;
         passed.par_chunks_mut(width).zip(density.par_chunks(width)).for_each_init(
             || vec![0.0_f32; width + 2 * (across.len() - 1)],
             |row, (to, from)| self.isa.run(Across { weights: across, row, from, to }),
         );
+        let passed = &*passed;
         density.par_chunks_mut(width).enumerate().for_each(|(y, to)| {
-            self.isa.run(Down { weights: down, passed: &passed, y, to });
+            self.isa.run(Down { weights: down, passed, y, to });
         });
     }
 }

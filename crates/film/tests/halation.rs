@@ -69,6 +69,33 @@ fn profile_is_the_closed_form() {
     }
 }
 
+/// Pixels much finer than the ring have it from cells of some pixels: round a point anywhere on them it is the closed form, off the
+/// ring's steep inner side, and never negative.
+#[test]
+fn fine_pixels_have_the_same_halo() {
+    for pitch in [0.006, 0.003, 0.0017] {
+        let side = (1.6 / pitch) as usize;
+        let raster = Raster::new(side, side, pitch);
+        for (dx, dy) in [(0, 0), (1, 0), (1, 3), (2, 1)] {
+            let [x0, y0] = [side / 2 + dx, side / 2 + dy];
+            let plane = point(&ACETATE, &raster, x0, y0, 1e6);
+            let even = 1.0 + ACETATE.returned();
+            let mut worst: f64 = 0.0;
+            for (k, got) in plane.iter().enumerate() {
+                let [x, y] = [k % side, k / side].map(|v| v as f64);
+                let r = ((x - x0 as f64) * (x - x0 as f64) + (y - y0 as f64) * (y - y0 as f64)).sqrt() * pitch;
+                assert!(*got >= 0.0, "{pitch} {r}: {got}");
+                if r > 0.05 && (r - ACETATE.ring_radius_mm()).abs() > 0.025 && r < 0.75 {
+                    let want = 1e6 * pitch * pitch * ACETATE.density_per_mm2(r) / even;
+                    worst = worst.max((f64::from(*got) / want - 1.0).abs());
+                }
+            }
+            println!("pitch {pitch}, {dx} {dy}: within {worst:.4}");
+            assert!(worst < 0.03, "{pitch}: {worst}");
+        }
+    }
+}
+
 /// What leaves the frame is what the closed form puts beside it; all else is kept, to 1e-6 of the light.
 #[test]
 fn light_is_kept() {

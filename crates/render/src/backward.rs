@@ -19,8 +19,8 @@ use spectra_lens::{RearPupil, Travel};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Pixels of a unit of work.
-pub(crate) const PIXELS_PER_UNIT: u32 = 64;
+/// Side of a tile, the pixels of a unit of work: blocks that noise is judged by consist of whole ones.
+pub(crate) const TILE: u32 = 8;
 /// Samples of each pixel in a unit of work.
 pub(crate) const SAMPLES_PER_PASS: u32 = 32;
 
@@ -161,40 +161,38 @@ impl Backward {
         state.settle(isa);
     }
 
-    /// Adds samples `first .. first + samples` of pixels `begin .. end` to the sums.
+    /// Adds samples `first .. first + samples` of a tile's pixels to the sums.
     ///
     /// # Errors
     /// A contribution is no number, or does not fit; then nothing of the unit is added.
     fn unit(
         &self,
         state: &mut ThreadState,
-        begin: u32,
-        end: u32,
+        tile: &Tile,
         first: u32,
         samples: u32,
         sums: &ExactSums,
     ) -> Result<(), RenderError> {
         let channels = state.integers.len();
-        let mut local = vec![0_i64; (end - begin) as usize * channels];
+        let mut local = vec![0_i64; tile.len() as usize * channels];
         let capacity = state.rays.capacity() as u32;
         // As many whole pixels as the batch holds; where it holds not even one, parts of a pixel.
         let part = samples.min(capacity);
         let whole = (capacity / part).max(1);
-        let mut pixel = begin;
-        while pixel < end {
-            let upto = (pixel + whole).min(end);
+        for begin in (0..tile.len()).step_by(whole as usize) {
+            let pixels = (begin..tile.len().min(begin + whole)).map(|at| tile.pixel(at));
             let mut sample = first;
             while sample < first + samples {
                 let count = part.min(first + samples - sample);
-                self.batch(state, pixel..upto, sample, count as usize);
+                self.batch(state, pixels.clone(), sample, count as usize);
                 if !state.contributions(&self.pipeline, self.scale) {
                     let mut blame = Blame::default();
-                    self.steps(state, pixel..upto, sample, count as usize, &mut |step, rays| blame.look(step, rays));
+                    self.steps(state, pixels, sample, count as usize, &mut |step, rays| blame.look(step, rays));
                     return Err(blame.error(&self.pipeline, state, self.scale));
                 }
                 for (i, tag) in state.rays.tags().iter().enumerate() {
                     let (pixel, only) = pixel_and_channel(*tag);
-                    let cell = (pixel - begin) as usize * channels;
+                    let cell = tile.at(pixel) as usize * channels;
                     for (channel, integers) in state.integers.iter().enumerate() {
                         if only.is_none_or(|only| only as usize == self.pipeline.recorded[channel]) {
                             local[cell + channel] += integers[i];
@@ -203,19 +201,18 @@ impl Backward {
                 }
                 sample += count;
             }
-            pixel = upto;
         }
-        let base = begin as usize * channels;
-        for (i, value) in local.iter().enumerate() {
-            sums.add(base + i, *value);
+        for (at, values) in (0..).zip(local.chunks_exact(channels)) {
+            let cell = tile.pixel(at) as usize * channels;
+            values.iter().enumerate().for_each(|(channel, value)| sums.add(cell + channel, *value));
         }
         Ok(())
     }
 }
 
 impl Backward {
-    fn pixels(&self) -> usize {
-        self.pipeline.scene.imager.size().pixels()
+    fn size(&self) -> FrameSize {
+        self.pipeline.scene.imager.size()
     }
 
     /// Tile and samples of a unit.
@@ -225,10 +222,39 @@ impl Backward {
         (tiles[(unit % many) as usize], first..samples.end.min(first + u64::from(SAMPLES_PER_PASS)))
     }
 
-    /// Pixels of a tile.
-    fn pixels_of(&self, tile: u32) -> Range<u32> {
-        let begin = tile * PIXELS_PER_UNIT;
-        begin..(begin + PIXELS_PER_UNIT).min(self.pixels() as u32)
+    fn tile(&self, tile: u32) -> Tile {
+        let size = self.size();
+        let across = size.width_px.div_ceil(TILE);
+        let (column, row) = (tile % across * TILE, tile / across * TILE);
+        let (columns, rows) = (TILE.min(size.width_px - column), TILE.min(size.height_px - row));
+        Tile { width: size.width_px, column, row, columns, rows }
+    }
+}
+
+/// A square of pixels; smaller at the frame's right and lower border.
+struct Tile {
+    /// Of the frame.
+    width: u32,
+    /// Of its first pixel.
+    column: u32,
+    row: u32,
+    columns: u32,
+    rows: u32,
+}
+
+impl Tile {
+    fn len(&self) -> u32 {
+        self.columns * self.rows
+    }
+
+    /// The pixel of the frame that is the tile's `at`.
+    fn pixel(&self, at: u32) -> u32 {
+        (self.row + at / self.columns) * self.width + self.column + at % self.columns
+    }
+
+    /// Which of the tile's a pixel of the frame is.
+    fn at(&self, pixel: u32) -> u32 {
+        (pixel / self.width - self.row) * self.columns + pixel % self.width - self.column
     }
 }
 
@@ -238,11 +264,13 @@ impl Estimator for Backward {
     }
 
     fn tiles(&self) -> usize {
-        self.pixels().div_ceil(PIXELS_PER_UNIT as usize)
+        let size = self.size();
+        size.width_px.div_ceil(TILE) as usize * size.height_px.div_ceil(TILE) as usize
     }
 
     fn tile_of(&self, pixel: usize) -> usize {
-        pixel / PIXELS_PER_UNIT as usize
+        let (width, side) = (self.size().width_px as usize, TILE as usize);
+        pixel / width / side * width.div_ceil(side) + pixel % width / side
     }
 
     fn reseeded(&self, seed: u64) -> Box<dyn Estimator> {
@@ -256,9 +284,9 @@ impl Estimator for Backward {
 
     fn rays(&self, samples: &Range<u64>, tiles: &[u32]) -> u64 {
         let pixels = if tiles.len() == self.tiles() {
-            self.pixels() as u64
+            self.size().pixels() as u64
         } else {
-            tiles.iter().map(|tile| self.pixels_of(*tile).len() as u64).sum()
+            tiles.iter().map(|tile| u64::from(self.tile(*tile).len())).sum()
         };
         pixels * (samples.end - samples.start)
     }
@@ -269,10 +297,10 @@ impl Estimator for Backward {
 
     fn run(&self, samples: &Range<u64>, tiles: &[u32], unit: u64, scratch: &mut Scratch, sums: &ExactSums) -> Unit {
         let (tile, samples) = Self::piece(samples, tiles, unit);
-        let Range { start: begin, end } = self.pixels_of(tile);
+        let tile = self.tile(tile);
         let count = (samples.end - samples.start) as u32;
-        match self.unit(&mut scratch.0, begin, end, samples.start as u32, count, sums) {
-            Ok(()) => Unit { rays: u64::from(end - begin) * u64::from(count), error: None },
+        match self.unit(&mut scratch.0, &tile, samples.start as u32, count, sums) {
+            Ok(()) => Unit { rays: u64::from(tile.len()) * u64::from(count), error: None },
             Err(error) => Unit { rays: 0, error: Some(error) },
         }
     }
@@ -288,7 +316,7 @@ impl Estimator for Backward {
             }
         }
         let weight = |pixel: usize| time_s / self.scale / of_tile[self.tile_of(pixel)].max(1) as f64;
-        (0..self.pixels()).map(weight).collect()
+        (0..self.size().pixels()).map(weight).collect()
     }
 
     fn metered(&self, workers: &dyn Workers) -> Result<Vec<Vec<f64>>, RenderError> {

@@ -4,15 +4,19 @@
 //! block is known within some 4 %, whatever the light looks like. All is computed from exact sums in a fixed order: what is clean
 //! is so on every machine.
 
+use crate::backward::TILE;
 use crate::estimator::Estimator;
 use crate::light::Part;
 use crate::{Light, Renderer};
 use spectra_scene::Scene;
 
-/// Samples of a half, after which it is decided where to go on: then half as many again, and so on.
+/// Samples of a half, after which it is decided where to go on: then a quarter to an eighth as many again, and so on.
 const FIRST_ROUND: u64 = 32;
-/// Side of a block, pixels.
+/// Samples of a half in a round, at least.
+const LEAST_ROUND: u64 = 8;
+/// Side of a block, pixels: some tiles.
 const BLOCK: usize = 16;
+const _: () = assert!(BLOCK.is_multiple_of(TILE as usize));
 /// A block that is darker than the middle one of the frame by so much is judged as if it were no darker: four stops.
 const DARKEST: f64 = 1.0 / 16.0;
 /// An estimator goes on where at least this part of the variance is its own, of so many that there are.
@@ -74,13 +78,9 @@ struct Judged {
 /// The end of the round in which sample `done` of a half lies, if it has ended none.
 pub(crate) fn next_round(done: u64) -> u64 {
     let mut end = FIRST_ROUND;
-    let mut step = FIRST_ROUND;
     while end <= done {
-        // 32, 64, 96, 128, 192, 256, 384, 512, ...
-        if end >= 4 * step {
-            step *= 2;
-        }
-        end += step;
+        // 32, 40, 48, ... 120, 128, 144, 160, ...
+        end += ((1 << end.ilog2()) / 8).max(LEAST_ROUND);
     }
     end
 }
@@ -195,16 +195,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn rounds_grow_by_a_half_at_most() {
+    fn rounds_grow_by_a_quarter_and_then_an_eighth_at_most() {
         let mut done = 0;
         let ends: Vec<u64> = std::iter::from_fn(|| {
             done = next_round(done);
             Some(done)
         })
-        .take(11)
+        .take(16)
         .collect();
-        assert_eq!(ends, [32, 64, 96, 128, 192, 256, 384, 512, 768, 1024, 1536]);
-        assert!(ends.iter().all(|end| ends_round(*end)) && !ends_round(0) && !ends_round(33) && !ends_round(160));
-        assert_eq!((next_round(33), next_round(500)), (64, 512));
+        assert_eq!(ends, [32, 40, 48, 56, 64, 72, 80, 88, 96, 104, 112, 120, 128, 144, 160, 176]);
+        assert!(ends.iter().all(|end| ends_round(*end)) && !ends_round(0) && !ends_round(33) && !ends_round(136));
+        assert_eq!((next_round(33), next_round(500)), (40, 512));
     }
 }

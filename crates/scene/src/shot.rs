@@ -25,10 +25,10 @@ pub struct Shot<'a> {
     pub attributes: &'a [(String, String)],
     /// Instruction set to compute figures with.
     pub isa: Isa,
-    /// What is said of how it came about: the content of `SCENE.json`; null where nobody says.
-    pub report: Value,
     /// The light by its kinds, of those that an output holds.
     pub layers: &'a [LightLayer],
+    tell: &'a (dyn Fn() -> Value + Sync),
+    report: OnceLock<Value>,
     kept: Option<&'a Negatives>,
     pictures: OnceLock<Result<All, String>>,
 }
@@ -43,14 +43,21 @@ impl<'a> Shot<'a> {
         attributes: &'a [(String, String)],
         isa: Isa,
     ) -> Self {
-        let (report, pictures) = (Value::Null, OnceLock::new());
-        Self { scene, exposure, times, attributes, isa, report, layers: &[], kept: None, pictures }
+        let (report, pictures) = (OnceLock::new(), OnceLock::new());
+        let tell = &|| Value::Null;
+        Self { scene, exposure, times, attributes, isa, layers: &[], tell, report, kept: None, pictures }
     }
 
-    /// The same with what is said of how it came about.
+    /// The same with what is said of how it came about, which is made when it is asked for.
     #[must_use]
-    pub fn told(self, report: Value) -> Self {
-        Self { report, ..self }
+    pub fn told(self, tell: &'a (dyn Fn() -> Value + Sync)) -> Self {
+        Self { tell, ..self }
+    }
+
+    /// What is said of how it came about: the content of `SCENE.json`; null where nobody says.
+    #[must_use]
+    pub fn report(&self) -> &Value {
+        self.report.get_or_init(self.tell)
     }
 
     /// The same with the light by its kinds.

@@ -97,11 +97,11 @@ pub(crate) fn picture(job: &Job<'_>, host: &dyn Host) -> Result<(Ended, Vec<Film
     let Taken { rendering, seconds, .. } = &taken;
     let report = Report { job, scene, rendering, times: &times, seconds: *seconds, threads: host.threads() };
     let shown: Vec<String> = names.iter().map(|name| host.folder().shown(name)).collect();
-    let told = report.to_json(&shown[..files.names().len()]);
-    let shot = Shot::new(scene, exposure, &times, &attributes, job.isa).told(told).with_layers(&rendering.layers);
+    let told = || report.to_json(&shown[..files.names().len()]);
+    let shot = Shot::new(scene, exposure, &times, &attributes, job.isa).told(&told).with_layers(&rendering.layers);
     files.write(&shot, host.folder(), Some([host.folder(), host.elsewhere()]))?;
     if let Some(file) = &report_file {
-        write_report(host.folder(), file, &shot.report)?;
+        write_report(host.folder(), file, shot.report())?;
     }
     host.hear(Event::Written(&shown));
     let stopped = rendering.partial && host.is_interrupted();

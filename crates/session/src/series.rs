@@ -205,12 +205,12 @@ impl Work<'_> {
         attributes.extend(attributes_of(job.series, &picture.member));
         let report =
             Report { job, scene: &scene, rendering: &rendering, times: &times, seconds, threads: host.threads() };
-        let told = report.to_json(&shown);
-        let shot = Shot::new(&scene, &rendering.exposure, &times, &attributes, job.isa).told(told);
+        let told = || report.to_json(&shown);
+        let shot = Shot::new(&scene, &rendering.exposure, &times, &attributes, job.isa).told(&told);
         let shot = shot.with_layers(&rendering.layers);
         picture.files.write(&shot, host.folder(), Some([host.folder(), host.elsewhere()]))?;
         let mut said = entry(&picture.member);
-        if let Value::Object(figures) = shot.report.clone() {
+        if let Value::Object(figures) = shot.report().clone() {
             let common = ["scene", "scene_file", "overrides", "versions", "threads", "isa"];
             said.extend(figures.into_iter().filter(|(key, _)| !common.contains(&key.as_str())));
         }

@@ -26,6 +26,8 @@ const SIDE: usize = 129;
 const TOLERANCE: f64 = 1e-2;
 /// Colors by which a table is judged.
 const JUDGES: usize = 256;
+/// Channels that are read off together.
+const LANES: usize = 4;
 /// Pixels that a thread takes at a time.
 const PIXELS_A_TASK: usize = 1 << 14;
 
@@ -84,8 +86,9 @@ pub(crate) struct Colors<'a> {
     model: &'a dyn ColorModel,
     channels: &'a [Channel],
     factor: f64,
-    /// Of each largest value, row and column what each channel gets of the color; none where a table is not near enough.
-    points: Vec<f32>,
+    /// Of each largest value, row and column what the channels get of the color, [`LANES`] at a time; none where a table is not near
+    /// enough.
+    points: Vec<[f32; LANES]>,
     /// Values at the points of a side, and one over the step to the next.
     values: Vec<[f32; 2]>,
 }
@@ -102,7 +105,7 @@ impl<'a> Colors<'a> {
         let step = |i: usize| if i + 1 < SIDE { value(i + 1) - value(i) } else { 1.0 };
         let values = (0..SIDE).map(|i| [value(i) as f32, (1.0 / step(i)) as f32]).collect();
         let mut colors = Self { model, channels, factor, points: Vec::new(), values };
-        let row = |at: usize| -> Vec<f32> {
+        let row = |at: usize| -> Vec<[f32; LANES]> {
             let (largest, row) = (at / SIDE, at % SIDE);
             let color = |column: usize| {
                 let mut color = [1.0; 3];
@@ -110,7 +113,9 @@ impl<'a> Colors<'a> {
                 color[(largest + 2) % 3] = value(column);
                 color
             };
-            (0..SIDE).flat_map(|column| colors.integrals(color(column))).map(|v| v as f32).collect()
+            let lanes = |all: &[f64]| std::array::from_fn(|l| all.get(l).map_or(0.0, |v| *v as f32));
+            let of = |column: usize| colors.integrals(color(column)).chunks(LANES).map(lanes).collect::<Vec<_>>();
+            (0..SIDE).flat_map(of).collect()
         };
         colors.points = (0..3 * SIDE).into_par_iter().flat_map_iter(row).collect();
         if colors.worst() > TOLERANCE {
@@ -168,13 +173,17 @@ impl<'a> Colors<'a> {
         };
         let (row, along_rows) = cell(rgb[(largest + 1) % 3]);
         let (column, along_columns) = cell(rgb[(largest + 2) % 3]);
-        let count = to.len();
+        let count = to.len().div_ceil(LANES);
         let first = ((largest * SIDE + row) * SIDE + column) * count;
         let (upper, lower) = (&self.points[first..][..2 * count], &self.points[first + SIDE * count..][..2 * count]);
-        for (k, to) in to.iter_mut().enumerate() {
-            let a = upper[k] + (upper[count + k] - upper[k]) * along_columns;
-            let b = lower[k] + (lower[count + k] - lower[k]) * along_columns;
-            *to = most * (a + (b - a) * along_rows);
+        for (k, to) in to.chunks_mut(LANES).enumerate() {
+            let (u0, u1, l0, l1) = (upper[k], upper[count + k], lower[k], lower[count + k]);
+            let got: [f32; LANES] = std::array::from_fn(|l| {
+                let a = u0[l] + (u1[l] - u0[l]) * along_columns;
+                let b = l0[l] + (l1[l] - l0[l]) * along_columns;
+                most * (a + (b - a) * along_rows)
+            });
+            to.copy_from_slice(&got[..to.len()]);
         }
     }
 

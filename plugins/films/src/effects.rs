@@ -233,21 +233,21 @@ impl Effects {
         Ok(Raster::new(size.width_px as usize, size.height_px as usize, (across * down).sqrt()))
     }
 
-    /// Spreads light as the emulsion of a layer does.
-    pub(crate) fn scatter(&self, layer: usize, plane: &mut [f32], raster: &Raster) -> Result<(), String> {
-        if let Some(mtf) = &self.mtf[layer] {
-            Scatter::new(mtf, raster).map_err(|e| e.to_string())?.apply(plane);
+    /// The light of a plane as the emulsion of a layer spreads it.
+    pub(crate) fn scattered(&self, layer: usize, plane: &[f32], raster: &Raster) -> Result<Vec<f32>, String> {
+        match &self.mtf[layer] {
+            Some(mtf) => Ok(Scatter::new(mtf, raster).map_err(|e| e.to_string())?.applied(plane)),
+            None => Ok(plane.to_vec()),
         }
-        Ok(())
     }
 
-    /// Spreads the light of a layer: in its emulsion, and from the back of the film.
-    pub(crate) fn spread(&self, layer: usize, plane: &mut [f32], raster: &Raster) -> Result<(), String> {
-        self.scatter(layer, plane, raster)?;
+    /// The light of a plane as a layer gets it: spread in its emulsion, and from the back of the film.
+    pub(crate) fn spread(&self, layer: usize, plane: &[f32], raster: &Raster) -> Result<Vec<f32>, String> {
+        let mut plane = self.scattered(layer, plane, raster)?;
         if let Some(base) = &self.halation[layer] {
-            Halation::new(base, raster).map_err(|e| e.to_string())?.apply(plane);
+            Halation::new(base, raster).map_err(|e| e.to_string())?.apply(&mut plane);
         }
-        Ok(())
+        Ok(plane)
     }
 
     /// Develops the edges of a layer.

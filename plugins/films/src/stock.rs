@@ -233,8 +233,8 @@ impl StockFilm {
         let factor = self.meter.factor(exposure) as f32;
         let raster = self.effects.raster(exposure.size)?;
         let layers = self.stock.layers.iter().enumerate().map(|(i, layer)| {
-            let mut plane = channel(exposure, &layer.name).map_err(|error| error.to_string())?.values.clone();
-            self.effects.spread(i, &mut plane, &raster)?;
+            let channel = channel(exposure, &layer.name).map_err(|error| error.to_string())?;
+            let mut plane = self.effects.spread(i, &channel.values, &raster)?;
             plane.iter_mut().for_each(|v| *v *= factor);
             Ok(plane)
         });
@@ -268,8 +268,8 @@ impl StockFilm {
         let breathing = self.frame.as_ref().map_or(1.0, FrameEffects::exposure);
         let mut exposed = Vec::new();
         let spread = self.stock.layers.iter().enumerate().map(|(i, layer)| {
-            let mut plane = channel(exposure, &layer.name).map_err(|error| error.to_string())?.values.clone();
-            self.effects.spread(i, &mut plane, &frame_raster)?;
+            let channel = channel(exposure, &layer.name).map_err(|error| error.to_string())?;
+            let mut plane = self.effects.spread(i, &channel.values, &frame_raster)?;
             if let Some(laid) = &laid {
                 plane = laid.lay(plane, &frame_raster);
                 laid.print(&mut plane, (EDGE_PRINT * self.gray_lx_s / (factor * effect * breathing)) as f32);
@@ -305,8 +305,7 @@ impl StockFilm {
             layers.extend(named.map(|(layer, values)| layer_of("density", &layer.name, "", values)));
         }
         if let Some(mtf50) = self.mtf50 {
-            let lens = Optics::new(mtf50, pixel_mm(&exposure.size));
-            planes.amounts.iter_mut().for_each(|plane| lens.apply(plane, planes.raster.width));
+            Optics::new(mtf50, pixel_mm(&exposure.size)).apply_to_all(&mut planes.amounts, planes.raster.width);
         }
         Ok((planes, layers))
     }

@@ -277,12 +277,12 @@ impl ThreeStrip {
         let factor = self.meter.factor(exposure);
         let raster = self.effects[BLUE].raster(exposure.size)?;
         let negatives = RECORDS.iter().enumerate().map(|(i, name)| {
-            let mut plane = channel(exposure, name).map_err(|error| error.to_string())?.values.clone();
+            let light = &channel(exposure, name).map_err(|error| error.to_string())?.values;
             let (effects, film) = (&self.effects[i], &self.developed[i]);
-            if i == RED {
-                self.effects[BLUE].scatter(0, &mut plane, &raster)?;
-            }
-            effects.spread(0, &mut plane, &raster)?;
+            let mut plane = match i {
+                RED => effects.spread(0, &self.effects[BLUE].scattered(0, light, &raster)?, &raster)?,
+                _ => effects.spread(0, light, &raster)?,
+            };
             exposed(name, &plane, factor);
             film.develop(0, &mut plane, factor);
             effects.edges(0, &mut plane, film, &raster);

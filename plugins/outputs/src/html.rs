@@ -66,7 +66,7 @@ impl Output for Html {
 const SIDE: f64 = 1100.0;
 
 fn of_picture(shot: &Shot<'_>) -> Result<Page, WriteFault> {
-    let (scene, report) = (shot.scene, &shot.report);
+    let (scene, report) = (shot.scene, shot.report());
     let mut page = Page::new(&scene.name);
     page.aside(&scene.source.describe());
     // Not every imager has something to show: then the page says what there is.
@@ -200,7 +200,7 @@ fn light(page: &mut Page, shot: &Shot<'_>) {
     if rows.len() > MOST {
         page.aside(&format!("and {} more channels", rows.len() - MOST));
     }
-    let report = &shot.report;
+    let report = shot.report();
     let Some(rays) = report["rays"].as_f64().filter(|rays| *rays > 0.0) else { return };
     let mut rows = vec![("traced".to_owned(), rays)];
     rows.extend(report["detected"].as_f64().map(|detected| ("recorded".to_owned(), detected)));

@@ -79,8 +79,18 @@ impl Scatter {
     /// # Panics
     /// If the plane has another number of pixels than the raster.
     pub fn apply(&self, exposure: &mut [f32]) {
+        exposure.copy_from_slice(&self.applied(exposure));
+    }
+
+    /// The plane that [`Scatter::apply`] makes of `exposure`.
+    ///
+    /// # Panics
+    /// If the plane has another number of pixels than the raster.
+    #[must_use]
+    pub fn applied(&self, exposure: &[f32]) -> Vec<f32> {
         assert_eq!(exposure.len(), self.raster.pixels(), "the plane has the size that was prepared for");
-        let source = exposure.to_vec();
-        self.spreading.apply(&source, exposure, |to, v| *to = v.max(0.0) as f32);
+        let mut spread = vec![0.0; exposure.len()];
+        self.spreading.apply(exposure, &mut spread, |to, v| *to = v.max(0.0) as f32);
+        spread
     }
 }
