@@ -15,7 +15,7 @@
 
 mod common;
 
-use common::{repository, spectra, text};
+use common::{repository, spectra, text, together};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -50,12 +50,10 @@ fn each_slip_is_told_where_it_is_and_what_to_do() {
     let bless = std::env::var_os("SPECTRA_BLESS").is_some();
     let cases = cases(&root);
     assert!(cases.len() >= LEAST, "{} cases", cases.len());
-    let mut wrong = Vec::new();
-    for case in &cases {
-        for fault in judge(case, &root, bless) {
-            wrong.push(format!("{}: {fault}", case.name));
-        }
-    }
+    let of = |case: &Case| -> Vec<String> {
+        judge(case, &root, bless).into_iter().map(|fault| format!("{}: {fault}", case.name)).collect()
+    };
+    let wrong = together(&cases, of).concat();
     assert!(wrong.is_empty(), "{} complaints about {} cases\n\n{}", wrong.len(), cases.len(), wrong.join("\n\n"));
 }
 

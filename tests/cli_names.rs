@@ -4,7 +4,7 @@
 
 mod common;
 
-use common::{good, repository, run, shown, spectra, text};
+use common::{good, repository, run, shown, spectra, text, together};
 use serde_json::Value;
 use spectra_core::frame::{ExposureChannel, ExposureFrame, FrameSize};
 use std::collections::BTreeMap;
@@ -407,6 +407,7 @@ fn viewed(folder: &Path, arguments: &str) {
 }
 
 /// A fault or a warning: what it says, where, how many letters are underlined, and its hint.
+#[derive(Clone)]
 struct Told {
     message: String,
     place: (String, usize, usize),
@@ -660,27 +661,18 @@ const BY_HAND: [(&str, &str); 4] = [
 /// What the other hints propose is written, and the fault or the warning is gone; commands in them are run.
 #[test]
 fn every_recorded_proposal_works() {
-    let mut wrong: Vec<String> = Vec::new();
-    let (mut files, mut commands) = (0, 0);
+    let (mut changes, mut commands): (Vec<Proposal>, Vec<(String, String)>) = (Vec::new(), Vec::new());
     let mut left: Vec<&str> = BY_HAND.iter().map(|(name, _)| *name).collect();
-    let elsewhere = tempfile::tempdir().expect("a folder");
-    let mut run_before: Vec<String> = Vec::new();
     for folder in ["broken", "warned"] {
-        let root = repository("tests").join(folder);
-        for (name, said) in recorded(&root) {
+        for (name, said) in recorded(&repository("tests").join(folder)) {
             let all: Vec<Told> =
                 if folder == "broken" { said.split("\n\n").filter_map(told).collect() } else { warned(&said) };
             for told in all.iter().filter(|told| folder == "warned" || told.meant().is_none()) {
                 for (change, text) in proposed(&told.hint) {
+                    let text = text.to_owned();
                     if change == Change::Run {
-                        if !run_before.iter().any(|known| known == text) && !text.contains(".yaml") {
-                            run_before.push(text.to_owned());
-                            let words: Vec<&str> = text.split_whitespace().skip(1).collect();
-                            let output = run_in(elsewhere.path(), &words);
-                            if !output.status.success() {
-                                wrong.push(format!("{name}: `{text}`: {}", self::text(&output.stderr)));
-                            }
-                            commands += 1;
+                        if !commands.iter().any(|(_, known)| *known == text) && !text.contains(".yaml") {
+                            commands.push((name.clone(), text));
                         }
                         continue;
                     }
@@ -691,33 +683,60 @@ fn every_recorded_proposal_works() {
                     if BY_HAND.iter().any(|(known, _)| *known == name) {
                         continue;
                     }
-                    let (copy, arguments) = copied(&root, &name);
-                    let file = copy.path().join(&told.place.0);
-                    let content = fs::read(&file).unwrap_or_default();
-                    let content = String::from_utf8_lossy(&content).into_owned();
-                    let Some(new) = changed(&content, told, change, text) else {
-                        wrong.push(format!("{name}: no place for `{text}` ({change:?}): {}", told.hint));
-                        continue;
-                    };
-                    fs::write(&file, &new).expect("written");
-                    let now = said_in(copy.path(), &arguments);
-                    let gone = match folder {
-                        "broken" => !now.contains(&told.message),
-                        _ => now.matches("warning: ").count() < said.matches("warning: ").count(),
-                    };
-                    if !gone || now.contains("panicked") {
-                        let diff: Vec<&str> = new.lines().filter(|l| !content.lines().any(|old| old == *l)).collect();
-                        wrong.push(format!("{name}: `{text}` ({change:?}) does not help: {diff:?}\n{now}"));
-                    }
-                    files += 1;
+                    let (name, said, told) = (name.clone(), said.clone(), told.clone());
+                    changes.push(Proposal { folder, name, said, told, change, text });
                 }
             }
         }
     }
+    let elsewhere = tempfile::tempdir().expect("a folder");
+    let fails = |(name, text): &(String, String)| {
+        let words: Vec<&str> = text.split_whitespace().skip(1).collect();
+        let output = run_in(elsewhere.path(), &words);
+        (!output.status.success()).then(|| format!("{name}: `{text}`: {}", self::text(&output.stderr)))
+    };
+    let wrong = [together(&commands, fails), together(&changes, Proposal::fails)].concat();
+    let wrong: Vec<String> = wrong.into_iter().flatten().collect();
+    let (files, commands) = (changes.len(), commands.len());
     println!("{files} recorded proposals work, and {commands} commands; by hand: {BY_HAND:?}");
     assert!(wrong.is_empty(), "{}", wrong.join("\n\n"));
     assert!(left.is_empty(), "nothing is proposed by {left:?}");
     assert!(files >= 40, "{files} proposals");
+}
+
+/// A change of a case's file that its recorded text proposes.
+struct Proposal {
+    folder: &'static str,
+    name: String,
+    said: String,
+    told: Told,
+    change: Change,
+    text: String,
+}
+
+impl Proposal {
+    /// Why it does not help.
+    fn fails(&self) -> Option<String> {
+        let Self { folder, name, said, told, change, text } = self;
+        let (copy, arguments) = copied(&repository("tests").join(folder), name);
+        let file = copy.path().join(&told.place.0);
+        let content = fs::read(&file).unwrap_or_default();
+        let content = String::from_utf8_lossy(&content).into_owned();
+        let Some(new) = changed(&content, told, *change, text) else {
+            return Some(format!("{name}: no place for `{text}` ({change:?}): {}", told.hint));
+        };
+        fs::write(&file, &new).expect("written");
+        let now = said_in(copy.path(), &arguments);
+        let gone = match *folder {
+            "broken" => !now.contains(&told.message),
+            _ => now.matches("warning: ").count() < said.matches("warning: ").count(),
+        };
+        if gone && !now.contains("panicked") {
+            return None;
+        }
+        let diff: Vec<&str> = new.lines().filter(|l| !content.lines().any(|old| old == *l)).collect();
+        Some(format!("{name}: `{text}` ({change:?}) does not help: {diff:?}\n{now}"))
+    }
 }
 
 /// The README's paths of scenes are names of scenes that are there.

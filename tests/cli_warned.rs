@@ -9,11 +9,9 @@
 
 mod common;
 
-use common::{repository, spectra, text};
+use common::{repository, spectra, text, together};
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Fewer cases than this, and some were lost.
 const LEAST: usize = 12;
@@ -89,19 +87,7 @@ const ANAMORPHIC: &str = "streak-anamorphic";
 fn nothing_is_said_about_bundled_scenes() {
     let root = repository("scenes");
     let scenes: Vec<PathBuf> = ["", "surfaces", "bench"].iter().flat_map(|folder| yaml(&root.join(folder))).collect();
-    let (next, wrong) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
-    let work = || {
-        while let Some(path) = scenes.get(next.fetch_add(1, Ordering::Relaxed)) {
-            let said = said_about(&root, path);
-            wrong.lock().expect("no thread panics").extend(said);
-        }
-    };
-    std::thread::scope(|scope| {
-        for _ in 0..std::thread::available_parallelism().map_or(1, usize::from) {
-            scope.spawn(work);
-        }
-    });
-    let wrong = wrong.into_inner().expect("no thread panics");
+    let wrong = together(&scenes, |path| said_about(&root, path)).concat();
     assert!(wrong.is_empty(), "{}", wrong.join("\n\n"));
 }
 
