@@ -69,8 +69,7 @@ fn profile_is_the_closed_form() {
     }
 }
 
-/// Pixels much finer than the ring have it from cells of some pixels: round a point anywhere on them it is the closed form, off the
-/// ring's steep inner side, and never negative.
+/// On pixels much finer than the ring the light round a point is the closed form, off the ring's steep inner side, and never negative.
 #[test]
 fn fine_pixels_have_the_same_halo() {
     for pitch in [0.006, 0.003, 0.0017] {

@@ -1,8 +1,7 @@
-//! The spread as a sum of kernels, each on a grid four times as coarse as the one before, the first one of pixels or, where they are much
-//! finer than the ring, of a few of them.
+//! The spread as a sum of kernels, each on a grid four times as coarse as the one before.
 //!
 //! The returned light falls with the fourth power of the distance but never ends, and is smooth outside of the ring. So
-//! the ring is computed on the finest, and each further part on cells of four times the size, up to the frame's diagonal.
+//! the ring is computed on the pixels, and each further part on cells of four times the size, up to the frame's diagonal.
 
 use super::base::HalationBase;
 use super::trips::Trips;
@@ -20,7 +19,7 @@ const RINGS: f64 = 2.2;
 const FADE: f64 = 0.6;
 
 /// Cells that each part reaches, at least and at most.
-const REACH: (f64, f64) = (24.0, 64.0);
+const REACH: (f64, f64) = (24.0, 400.0);
 
 /// One part of the spread.
 pub(super) struct Level {
@@ -45,7 +44,7 @@ impl Level {
         // Where pixels are far finer than the ring, it is computed on cells that still are.
         let mut cell_px = 1;
         while RINGS * ring / (raster.pitch_mm * cell_px as f64) > REACH.1 {
-            cell_px *= 2;
+            cell_px *= STEP;
         }
         let diagonal = ((raster.width * raster.width + raster.height * raster.height) as f64).sqrt() * raster.pitch_mm;
         let cell = raster.pitch_mm * cell_px as f64;
@@ -59,11 +58,7 @@ impl Level {
             let density = |r: f64| weight(r) * trips.density_per_mm2(r);
             let kernel = if before.is_none() {
                 let parts = (40.0 * cell / ring).ceil().clamp(4.0, 64.0) as usize;
-                let kernel = over_pixels(radius, cell, parts, &density);
-                // From cell to cell is spread by s^2 / 6 along each axis, as from pixel to pixel; and see below.
-                let wide = cell_px as f64;
-                let more = (1.0 - 1.0 / (wide * wide)) / 12.0;
-                if cell_px == 1 { kernel } else { kernel.sharpened(BOTH_WAYS + more) }
+                over_pixels(radius, cell, parts, &density)
             } else {
                 let value = |i: f64, j: f64| density((i * i + j * j).sqrt() * cell);
                 // Sharing light out to cells and interpolating between them spread it by s^2 / 6 each, in the mean and along
