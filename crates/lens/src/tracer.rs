@@ -6,7 +6,7 @@ mod route;
 pub use route::Route;
 
 use crate::absorption::{Absorption, Grid};
-use crate::aperture::Shape;
+use crate::aperture::{Opening, Shape};
 use crate::coating::Coating;
 use crate::ledger::{Booked, Ledger, StepLedger, living};
 use crate::onion::Bent;
@@ -51,6 +51,8 @@ pub struct Tracer {
     elements: Vec<Element>,
     /// Square of the radius at which each clips, mm^2.
     clips: Vec<f64>,
+    /// What the blades of each one's irises leave open, by its apertures; none of other apertures.
+    openings: Vec<Vec<Option<Opening>>>,
     image_pose: Pose,
     forward: Route,
     backward: Route,
@@ -132,6 +134,11 @@ impl Tracer {
             })
             .collect::<Result<_, _>>()?;
         let clips = lens.elements.iter().map(round_clip2_mm2).collect();
+        let openings = lens
+            .elements
+            .iter()
+            .map(|e| e.apertures.iter().map(|aperture| aperture.opening(e.semi_diameter_mm)).collect());
+        let openings = openings.collect();
         let shortest_nm = match indices {
             Indices::Band { min_nm, .. } => min_nm,
             Indices::Stated | Indices::At(_) => ANY_NM,
@@ -156,6 +163,7 @@ impl Tracer {
         Ok(Self {
             elements,
             clips,
+            openings,
             image_pose,
             forward,
             backward,
@@ -411,8 +419,11 @@ impl Tracer {
                 );
             }
         }
-        for aperture in &element.apertures {
-            ended += aperture.clip(rays, interface.number, element.semi_diameter_mm);
+        for (aperture, opening) in element.apertures.iter().zip(&self.openings[leg.at]) {
+            ended += match opening {
+                Some(opening) => aperture.clip_by(opening, rays, interface.number, isa),
+                None => aperture.clip(rays, interface.number, element.semi_diameter_mm),
+            };
         }
         if let Some((ledger, booked)) = &mut work.ledger {
             booked.settle(rays, &mut ledger.steps[step], |s| &mut s.absorbed);

@@ -12,9 +12,10 @@
 /** @typedef {{message: string, place?: string, hint?: string}} Fault */
 /** @typedef {{frame: number, scene?: number, lens_drawn?: number, reread?: number, turns?: number, width?: number, height?: number, light?: [number, number], draft?: boolean, samples?: number, of?: number, rays?: number, since_change_ms?: number,
  *   exposure_s?: number, lens?: string, film?: string, focus?: string, warnings?: Fault[], fault?: {path: string, faults: Fault[]}?}} Head */
+/** @typedef {{across: number, down: number, light: Float32Array}} Light */
 /**
  * A picture, and its light: of a draft, fewer pixels than the picture will have.
- * @typedef {{head: Head, width: number, height: number, across: number, down: number, light: Float32Array}} Picture
+ * @typedef {Light & {head: Head, width: number, height: number, levels?: Light[]}} Picture
  */
 
 /**
@@ -90,6 +91,12 @@ const codes = Uint8ClampedArray.from({ length: 4097 }, (_, i) => {
   const v = i / 4096;
   return Math.round(255 * (v <= 0.0031308 ? 12.92 * v : 1.055 * v ** (1 / 2.4) - 0.055));
 });
+/** Numbers of 16 bits, IEEE 754 binary16, as what they are. */
+const halves = Float32Array.from({ length: 65536 }, (_, bits) => {
+  const [exponent, rest] = [(bits >> 10) & 31, (bits & 1023) / 1024];
+  const size = exponent === 31 ? (rest ? NaN : Infinity) : exponent === 0 ? rest * 2 ** -14 : (1 + rest) * 2 ** (exponent - 15);
+  return bits & 32768 ? -size : size;
+});
 /** Colors of stops around a mid gray, as cine cameras show them: from five below to four above. */
 const bands = [
   [30, 0, 60], [60, 30, 140], [50, 80, 200], [70, 130, 200], [110, 160, 180], [128, 128, 128],
@@ -97,46 +104,98 @@ const bands = [
 ];
 
 const inked = document.createElement("canvas");
+/** What `inked` holds, in pixels of its level, and where that lies in it. */
+let inkedPart = { x: 0, y: 0, across: 0, down: 0, level: 0 };
+let isInked = false;
 
 /** @param {number} v */
 const code = (v) => codes[v >= 1 ? 4096 : v > 0 ? (4096 * v) | 0 : 0];
 
-/** @param {Picture} picture */
-function ink(picture) {
-  const { across, down, light } = picture;
-  inked.width = across;
-  inked.height = down;
+/**
+ * The light of a picture in parts of 2^level pixels, each the mean of those that it covers; made when it is first asked for.
+ * @param {Picture} picture @param {number} level @returns {Light}
+ */
+function lightOf(picture, level) {
+  picture.levels ??= [{ across: picture.across, down: picture.down, light: picture.light }];
+  while (picture.levels.length <= level) {
+    const from = picture.levels[picture.levels.length - 1];
+    const [across, down] = [Math.max(1, from.across >> 1), Math.max(1, from.down >> 1)];
+    const light = new Float32Array(3 * across * down);
+    const right = from.across > 1 ? 3 : 0, below = from.down > 1 ? 3 * from.across : 0;
+    for (let y = 0, to = 0; y < down; y += 1) {
+      for (let at = 6 * y * from.across, end = at + 6 * across; at < end; at += 6) {
+        for (let c = at; c < at + 3; c += 1, to += 1) {
+          light[to] = 0.25 * (from.light[c] + from.light[c + right] + from.light[c + below] + from.light[c + below + right]);
+        }
+      }
+    }
+    picture.levels.push({ across, down, light });
+  }
+  return picture.levels[level];
+}
+
+/** Inks what is seen of a picture, no finer than it is seen. @param {Picture} picture @param {number} scale pixels of the canvas to one of the picture */
+function ink(picture, scale) {
+  const finest = Math.max(0, Math.floor(Math.log2(picture.across / (picture.width * scale))));
+  const level = Math.min(finest, 12);
+  const { across, down, light } = lightOf(picture, level);
+  const [perX, perY] = [across / picture.width, down / picture.height];
+  // One pixel more on each side, for what smooths them.
+  const x = Math.max(0, Math.floor(view.x * perX) - 1);
+  const y = Math.max(0, Math.floor(view.y * perY) - 1);
+  const right = Math.min(across, Math.ceil((view.x + picture.width / view.zoom) * perX) + 1);
+  const below = Math.min(down, Math.ceil((view.y + picture.height / view.zoom) * perY) + 1);
+  inkedPart = { x, y, across: right - x, down: below - y, level };
+  if (inked.width !== inkedPart.across || inked.height !== inkedPart.down) [inked.width, inked.height] = [inkedPart.across, inkedPart.down];
   const context = inked.getContext("2d");
   if (!context) return;
-  const image = context.createImageData(across, down);
+  const image = context.createImageData(inkedPart.across, inkedPart.down);
   const to = new Uint32Array(image.data.buffer);
   const gain = 2 ** Number(stops.value);
   const how = show.value;
-  const counts = [0, 1, 2].map(() => new Uint32Array(256));
-  const [reds, greens, blues] = counts;
-  for (let i = 0, n = across * down; i < n; i += 1) {
-    const r = gain * light[3 * i], g = gain * light[3 * i + 1], b = gain * light[3 * i + 2];
-    const red = code(r), green = code(g), blue = code(b);
-    reds[red] += 1;
-    greens[green] += 1;
-    blues[blue] += 1;
-    let color = (blue << 16) | (green << 8) | red;
-    if (how !== "picture") {
-      const luminance = 0.2126 * r + 0.7152 * g + 0.0722 * b;
-      if (how === "gray") {
-        color = code(luminance) * 0x10101;
-      } else if (how === "false") {
-        const stop = Math.round(Math.log2(Math.max(luminance, 1e-9) / 0.18));
-        const band = bands[Math.min(Math.max(stop + 5, 0), 10)];
-        color = (band[2] << 16) | (band[1] << 8) | band[0];
-      } else if (r >= 1 || g >= 1 || b >= 1) color = 0x3c3cff;
-      else if (r <= 0 || g <= 0 || b <= 0) color = 0xff5a3c;
-      else color = ((blue >> 2) << 16) | ((green >> 2) << 8) | (red >> 2);
+  for (let row = y, i = 0; row < below; row += 1) {
+    for (let at = 3 * (row * across + x), end = at + 3 * inkedPart.across; at < end; at += 3, i += 1) {
+      const r = gain * light[at], g = gain * light[at + 1], b = gain * light[at + 2];
+      let color = 0;
+      if (how === "picture") {
+        color = (code(b) << 16) | (code(g) << 8) | code(r);
+      } else {
+        const luminance = 0.2126 * r + 0.7152 * g + 0.0722 * b;
+        if (how === "gray") {
+          color = code(luminance) * 0x10101;
+        } else if (how === "false") {
+          const stop = Math.round(Math.log2(Math.max(luminance, 1e-9) / 0.18));
+          const band = bands[Math.min(Math.max(stop + 5, 0), 10)];
+          color = (band[2] << 16) | (band[1] << 8) | band[0];
+        } else if (r >= 1 || g >= 1 || b >= 1) color = 0x3c3cff;
+        else if (r <= 0 || g <= 0 || b <= 0) color = 0xff5a3c;
+        else color = ((code(b) >> 2) << 16) | ((code(g) >> 2) << 8) | (code(r) >> 2);
+      }
+      to[i] = 0xff000000 | color;
     }
-    to[i] = 0xff000000 | color;
   }
   context.putImageData(image, 0, 0);
-  drawHistogram(counts);
+  isInked = true;
+}
+
+/** So many pixels of a picture are enough for the shape of its histogram. */
+const COUNTED = 200_000;
+
+/** Counts the codes of a picture, of a large one each so many pixels. @param {Picture} picture */
+function count(picture) {
+  const { light, across } = picture;
+  const gain = 2 ** Number(stops.value);
+  const counts = [0, 1, 2].map(() => new Uint32Array(256));
+  const [reds, greens, blues] = counts;
+  let step = Math.max(1, Math.round(light.length / 3 / COUNTED));
+  // All columns have their turn.
+  while (step > 1 && across % step === 0) step += 1;
+  for (let i = 0; i < light.length; i += 3 * step) {
+    reds[code(gain * light[i])] += 1;
+    greens[code(gain * light[i + 1])] += 1;
+    blues[code(gain * light[i + 2])] += 1;
+  }
+  return counts;
 }
 
 /** @param {Uint32Array[]} counts */
@@ -163,14 +222,14 @@ function shown() {
   return keptIsShown && kept ? kept : now;
 }
 
-/** Inks anew, then draws. */
+/** Inks and counts anew, then draws. */
 function redraw() {
-  const picture = shown();
-  if (!picture) return;
-  ink(picture);
+  isInked = false;
+  isCounted = false;
   draw();
 }
 
+let isCounted = false;
 let isAsked = false;
 function draw() {
   if (isAsked) return;
@@ -185,14 +244,20 @@ function draw() {
     const context = canvas.getContext("2d");
     if (!context) return;
     const scale = (across / picture.width) * view.zoom;
+    if (!isInked) ink(picture, scale);
     // Of a draft, bilinear: a finer one takes as long as half of the draft itself.
     context.imageSmoothingEnabled = scale < 2 || picture.across !== picture.width;
     context.imageSmoothingQuality = "low";
     context.fillStyle = "#000";
     context.fillRect(0, 0, across, down);
-    context.setTransform(scale, 0, 0, scale, -view.x * scale, -view.y * scale);
-    context.drawImage(inked, 0, 0, picture.width, picture.height);
-    context.setTransform(1, 0, 0, 1, 0, 0);
+    const part = inkedPart;
+    const size = lightOf(picture, part.level);
+    const [wide, high] = [(scale * picture.width) / size.across, (scale * picture.height) / size.down];
+    context.drawImage(inked, part.x * wide - view.x * scale, part.y * high - view.y * scale, part.across * wide, part.down * high);
+    if (isCounted) return;
+    isCounted = true;
+    // After the picture is painted.
+    setTimeout(() => drawHistogram(count(picture)));
   });
 }
 
@@ -203,6 +268,7 @@ function bound() {
   view.zoom = Math.min(Math.max(view.zoom, 1), 64);
   view.x = Math.min(Math.max(view.x, 0), picture.width * (1 - 1 / view.zoom));
   view.y = Math.min(Math.max(view.y, 0), picture.height * (1 - 1 / view.zoom));
+  isInked = false;
   draw();
 }
 
@@ -294,6 +360,7 @@ canvas.addEventListener("keydown", (event) => {
 
 function fit() {
   view = { zoom: 1, x: 0, y: 0 };
+  isInked = false;
   draw();
 }
 
@@ -325,7 +392,10 @@ addEventListener("keydown", (event) => {
   const isTyping = event.target instanceof HTMLInputElement || event.target instanceof HTMLSelectElement;
   if (event.key === "b" && !isTyping && !event.ctrlKey && !event.metaKey) swapped();
 });
-new ResizeObserver(draw).observe(canvas);
+new ResizeObserver(() => {
+  isInked = false;
+  draw();
+}).observe(canvas);
 
 // Faults ------------------------------------------------------------------------------------------------------------------------
 
@@ -606,7 +676,9 @@ async function follow() {
     const head = JSON.parse(new TextDecoder().decode(new Uint8Array(bytes, 4, length)));
     after = head.frame;
     if (head.width !== undefined && head.height !== undefined) {
-      const light = new Float32Array(bytes, 4 + length);
+      const coded = new Uint16Array(bytes, 4 + length);
+      const light = new Float32Array(coded.length);
+      for (let i = 0; i < light.length; i += 1) light[i] = halves[coded[i]];
       const [across, down] = head.light ?? [head.width, head.height];
       const isOther = now?.width !== head.width;
       now = { head, width: head.width, height: head.height, across, down, light };

@@ -5,7 +5,7 @@ use spectra_core::frame::DisplayPicture;
 use spectra_core::{Isa, registry};
 use spectra_scene::{Shot, bundled::Bundled};
 use spectra_session::{Alone, Control as Stop, Session, SessionError};
-use spectra_view::parts::{Control, head, of_scene, packed, pixel, said, spectra, svg};
+use spectra_view::parts::{Control, halves, head, of_scene, packed, pixel, said, spectra, svg};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -174,7 +174,7 @@ impl Open {
             "width": width_px,
             "height": height_px,
         });
-        Ok(packed(&head(own, &self.session, &times, rendering.rays), rgb.as_flattened()))
+        Ok(packed(&head(own, &self.session, &times, rendering.rays), &halves(rgb.as_flattened())))
     }
 
     fn controls(&self) -> Value {

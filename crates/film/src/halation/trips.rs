@@ -17,6 +17,8 @@ const PARTS: usize = 3;
 /// All that returns of a point.
 pub struct Trips {
     base: HalationBase,
+    /// Light that returns at once, over the light that exposes.
+    once: f64,
     /// Radius over which light is sampled that goes around again, mm, and its density there, per unit of light that
     /// enters; nothing where none does.
     again: Option<(f64, Vec<f64>)>,
@@ -31,7 +33,7 @@ impl Trips {
     /// for a trip, b + reflected b * b + reflected^2 b * b * b and so on, summed as a geometric series of transforms.
     #[must_use]
     pub fn new(base: &HalationBase) -> Self {
-        let mut trips = Self { base: *base, again: None, beyond: 0.0 };
+        let mut trips = Self { base: *base, once: base.returned(), again: None, beyond: 0.0 };
         let unit = HalationBase { entering: 1.0, reflected: 0.0, ..*base };
         let once = unit.returned();
         if base.reflected == 0.0 || base.entering == 0.0 || once == 0.0 {
@@ -93,7 +95,7 @@ impl Trips {
     /// Light that returns, over the light that exposes: the integral of [`Trips::density_per_mm2`].
     #[must_use]
     pub fn returned(&self) -> f64 {
-        let once = self.base.returned();
+        let once = self.once;
         if self.again.is_none() {
             return once;
         }

@@ -3,6 +3,8 @@
 use crate::{Indices, Lens, Route, Tracer, Travel, Work};
 use glam::DVec3;
 use spectra_core::RayBatch;
+use spectra_core::batch::Columns;
+use spectra_core::isa::Vectorized;
 use spectra_core::loss::ALIVE;
 use std::borrow::Borrow;
 
@@ -213,26 +215,22 @@ impl Prober<'_> {
         wavelength_nm: f64,
         found: &mut Vec<[f64; 2]>,
     ) {
-        let (center, half) = (bounds.center(), bounds.half());
-        let at = |k: usize| ((k as f64 + 0.5) / n as f64) * 2.0 - 1.0;
-        // Rows of a grid may all pass beside a narrow tip: shift every other one by half a cell.
-        let place = |k: usize| {
-            let (i, j) = (k % n, k / n);
-            let shift = if j % 2 == 1 { 0.5 } else { -0.5 } / n as f64;
-            [center[0] + half[0] * at(j), center[1] + half[1] * (at(i) + shift)]
-        };
-        let mut first = 0;
-        while first < n * n {
-            let len = BATCH.min(n * n - first);
-            let places = (first..first + len).map(place);
-            let probes = places.clone().map(|p| (point, plane.at(p), wavelength_nm));
-            self.trace(level, probes);
-            for (state, place) in self.rays.states().iter().zip(places) {
-                if *state == ALIVE {
-                    found.push(place);
-                }
+        let at: Vec<f64> = (0..n).map(|k| ((k as f64 + 0.5) / n as f64) * 2.0 - 1.0).collect();
+        let lines = Lines { point, plane, center: bounds.center(), half: bounds.half(), at: &at };
+        let isa = self.stages.whole.tracer.isa();
+        let most = (BATCH / n).max(1);
+        for first in (0..n).step_by(most) {
+            let count = most.min(n - first);
+            self.rays.restart(count * n);
+            let columns = self.rays.columns_mut();
+            columns.wavelength_nm[..count * n].fill(wavelength_nm);
+            isa.run(Probes { lines, first, columns });
+            self.follow(level);
+            for (line, states) in (first..).zip(self.rays.states().chunks(n)) {
+                let along = lines.along(line);
+                let passed = (0..n).filter(|k| states[*k] == ALIVE);
+                found.extend(passed.map(|k| [along, lines.across(line, k)]));
             }
-            first += len;
         }
     }
 
@@ -321,10 +319,68 @@ impl Prober<'_> {
             (c.l[i], c.m[i], c.n[i]) = direction.into();
             c.wavelength_nm[i] = wavelength_nm;
         }
+        self.follow(level);
+    }
+
+    /// Traces the probes that are laid out.
+    fn follow(&mut self, level: usize) {
         let (rays, work) = (&mut self.rays, &mut self.work[level]);
         match self.stages.opened.get(level) {
             Some(stage) => stage.trace(rays, work),
             None => self.stages.whole.trace(rays, work),
+        }
+    }
+}
+
+/// A square grid of places over a rectangle of a plane, line by line, seen from a point.
+#[derive(Clone, Copy)]
+struct Lines<'a> {
+    point: DVec3,
+    plane: &'a Plane,
+    center: [f64; 2],
+    half: [f64; 2],
+    /// Middles of the cells, of -1 to 1.
+    at: &'a [f64],
+}
+
+impl Lines<'_> {
+    #[inline(always)]
+    fn along(&self, line: usize) -> f64 {
+        self.center[0] + self.half[0] * self.at[line]
+    }
+
+    /// All lines of a grid may pass beside a narrow tip: every other one is shifted by half a cell.
+    #[inline(always)]
+    fn across(&self, line: usize, k: usize) -> f64 {
+        let shift = if line % 2 == 1 { 0.5 } else { -0.5 } / self.at.len() as f64;
+        self.center[1] + self.half[1] * (self.at[k] + shift)
+    }
+}
+
+/// Puts rays through the places of some lines, from the `first` on.
+struct Probes<'a> {
+    lines: Lines<'a>,
+    first: usize,
+    columns: Columns<'a>,
+}
+
+impl Vectorized for Probes<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { lines, first, columns: c } = self;
+        let (n, point, plane) = (lines.at.len(), lines.point, lines.plane);
+        let own = c.x.chunks_exact_mut(n).zip(c.y.chunks_exact_mut(n)).zip(c.z.chunks_exact_mut(n));
+        let own = own.zip(c.l.chunks_exact_mut(n)).zip(c.m.chunks_exact_mut(n)).zip(c.n.chunks_exact_mut(n));
+        for (line, (((((x, y), z), l), m), cosine)) in (first..).zip(own) {
+            let start = plane.origin + plane.along * lines.along(line);
+            for k in 0..n {
+                let target = start + plane.across * lines.across(line, k);
+                let direction = (target - point).normalize();
+                (x[k], y[k], z[k]) = target.into();
+                (l[k], m[k], cosine[k]) = direction.into();
+            }
         }
     }
 }

@@ -46,8 +46,15 @@ impl Shape {
 /// The corners of the convex hull (A. M. Andrew's monotone chain, Inf. Process. Lett. 9, 1979): whatever
 /// convex shape holds them holds all places, also seen on another plane from the same point.
 pub(super) fn hull(places: &[[f64; 2]]) -> Vec<[f64; 2]> {
-    let mut sorted = places.to_vec();
-    sorted.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
+    // Of places on one line along the second axis, those between its ends are no corners.
+    let ends = |line: &[[f64; 2]]| {
+        let of = |better: fn(f64, f64) -> bool| {
+            line.iter().copied().reduce(|a, b| if better(b[1], a[1]) { b } else { a }).unwrap_or_default()
+        };
+        [of(|a, b| a < b), of(|a, b| a > b)].into_iter().take(line.len())
+    };
+    let mut sorted: Vec<[f64; 2]> = places.chunk_by(|a, b| a[0] == b[0]).flat_map(ends).collect();
+    sorted.sort_unstable_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
     if sorted.len() < 4 {
         return sorted;
     }

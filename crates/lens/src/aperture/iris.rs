@@ -1,5 +1,8 @@
 //! The opening between the blades of a stop.
 
+use spectra_core::batch::Columns;
+use spectra_core::isa::Vectorized;
+use spectra_core::loss::ALIVE;
 use spectra_core::math;
 
 /// Blades that close a stop.
@@ -127,6 +130,69 @@ impl Opening {
     }
 }
 
+/// Ends rays that blades stop; says how many.
+pub(super) struct Blades<'a> {
+    pub opening: &'a Opening,
+    pub center_mm: [f64; 2],
+    pub obscures: bool,
+    /// State of a ray that ends.
+    pub stopped: u64,
+    pub columns: Columns<'a>,
+}
+
+/// Rays that are held against a side at once.
+const AT_ONCE: usize = 64;
+
+impl Vectorized for Blades<'_> {
+    type Output = usize;
+
+    #[inline(always)]
+    fn run(self) -> usize {
+        let Self { opening, center_mm: [x0, y0], obscures, stopped, columns } = self;
+        let passes = u64::from(!obscures);
+        let mut ended = 0;
+        let rays = columns.x.chunks(AT_ONCE).zip(columns.y.chunks(AT_ONCE));
+        for ((x, y), state) in rays.zip(columns.state.chunks_mut(AT_ONCE)) {
+            let inside = opening.contain(x, y, [x0, y0]);
+            for (state, inside) in state.iter_mut().zip(inside) {
+                let ends = *state == ALIVE && inside != passes;
+                *state = if ends { stopped } else { *state };
+                ended += usize::from(ends);
+            }
+        }
+        ended
+    }
+}
+
+impl Opening {
+    /// As [`Opening::contains`] says of some points, at most [`AT_ONCE`], around a center: 1 of those inside, 0 of others.
+    #[inline(always)]
+    fn contain(&self, x_mm: &[f64], y_mm: &[f64], [x0, y0]: [f64; 2]) -> [u64; AT_ONCE] {
+        // Where there are fewer points, the others are at the center.
+        let (mut x, mut y, mut inside) = ([0.0; AT_ONCE], [0.0; AT_ONCE], [1_u64; AT_ONCE]);
+        x.iter_mut().zip(x_mm).for_each(|(own, x)| *own = x - x0);
+        y.iter_mut().zip(y_mm).for_each(|(own, y)| *own = y - y0);
+        let end2 = self.corner_mm * self.corner_mm;
+        for k in 0..AT_ONCE {
+            inside[k] &= u64::from(x[k] * x[k] + y[k] * y[k] <= end2);
+        }
+        for [ex, ey] in &self.sides {
+            if let Some((center, radius)) = self.arc {
+                let (cx, cy, radius2) = (center * ex, center * ey, radius * radius);
+                for k in 0..AT_ONCE {
+                    let (x, y) = (x[k] - cx, y[k] - cy);
+                    inside[k] &= u64::from(x * x + y * y <= radius2);
+                }
+            } else {
+                for k in 0..AT_ONCE {
+                    inside[k] &= u64::from(x[k] * ex + y[k] * ey <= self.apothem_mm);
+                }
+            }
+        }
+        inside
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -166,6 +232,23 @@ mod tests {
                 twice += a[0] * b[1] - a[1] * b[0];
             }
             assert!((0.5 * twice / (std::f64::consts::PI * 25.0) - 1.0).abs() < 6e-3, "{twice}");
+        }
+    }
+
+    /// Many points at once are held as each alone.
+    #[test]
+    fn points_are_held_at_once_as_alone() {
+        for blade_radius_mm in [5.0, 7.0, f64::INFINITY] {
+            let opening = Iris { blades: 7, blade_radius_mm, rotation_rad: 0.3 }.opening(5.0);
+            let at = |i: usize| (i as f64 + 0.5) / 40.0 * 12.0 - 6.0;
+            let (x, y): (Vec<f64>, Vec<f64>) = (0..1600).map(|k| (at(k % 40), at(k / 40))).unzip();
+            let center = [0.5, -0.25];
+            let parts = x.chunks(AT_ONCE - 5).zip(y.chunks(AT_ONCE - 5));
+            let many = parts.flat_map(|(x, y)| opening.contain(x, y, center).into_iter().take(x.len()));
+            let alone = x.iter().zip(&y).map(|(x, y)| u64::from(opening.contains(x - center[0], y - center[1])));
+            let (many, alone): (Vec<u64>, Vec<u64>) = (many.collect(), alone.collect());
+            assert_eq!(many, alone);
+            assert!(many.iter().sum::<u64>() > 300);
         }
     }
 

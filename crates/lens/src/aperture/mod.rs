@@ -11,8 +11,9 @@ pub use mask::Mask;
 pub(crate) use params::ApertureKeys;
 pub use params::{ApertureEntry, ApertureForm, read};
 
-use spectra_core::RayBatch;
+use iris::Blades;
 use spectra_core::loss::{ALIVE, Loss};
+use spectra_core::{Isa, RayBatch};
 use spectra_masks::Drawing;
 
 /// Limits the light at a surface.
@@ -169,13 +170,17 @@ impl Aperture {
         reach + (x * x + y * y).sqrt()
     }
 
+    /// What the blades leave open, if it is an iris of a surface of this size.
+    pub(crate) fn opening(&self, semi_diameter_mm: Option<f64>) -> Option<Opening> {
+        match &self.shape {
+            Shape::Iris(iris) => semi_diameter_mm.map(|size| iris.opening(size)),
+            _ => None,
+        }
+    }
+
     /// Ends the living rays of the batch, in the frame of the surface, that it stops, and weighs the others. Returns
     /// how many ended.
     pub(crate) fn clip(&self, rays: &mut RayBatch, number: u32, semi_diameter_mm: Option<f64>) -> usize {
-        let opening = match &self.shape {
-            Shape::Iris(iris) => semi_diameter_mm.map(|size| iris.opening(size)),
-            _ => None,
-        };
         let stopped = Loss::Vignetted.state(number);
         let c = rays.columns_mut();
         let mut ended = 0;
@@ -183,14 +188,7 @@ impl Aperture {
             if c.state[i] != ALIVE {
                 continue;
             }
-            let passes = match &opening {
-                // The blades' arcs are found once a batch.
-                Some(opening) => {
-                    let inside = opening.contains(c.x[i] - self.center_mm[0], c.y[i] - self.center_mm[1]);
-                    f64::from(inside != self.obscures)
-                }
-                None => self.transmittance(c.x[i], c.y[i], semi_diameter_mm),
-            };
+            let passes = self.transmittance(c.x[i], c.y[i], semi_diameter_mm);
             if passes > 0.0 {
                 c.weight[i] *= passes;
             } else {
@@ -199,6 +197,13 @@ impl Aperture {
             }
         }
         ended
+    }
+
+    /// The same by what its blades leave open.
+    pub(crate) fn clip_by(&self, opening: &Opening, rays: &mut RayBatch, number: u32, isa: Isa) -> usize {
+        let Self { center_mm, obscures, .. } = *self;
+        let stopped = Loss::Vignetted.state(number);
+        isa.run(Blades { opening, center_mm, obscures, stopped, columns: rays.columns_mut() })
     }
 }
 

@@ -33,23 +33,24 @@ pub(super) enum Drafted {
 
 /// What the film got, and what was developed of it: of all pixels, and of fewer where they are many.
 pub(super) struct Light {
-    pub(super) whole: Plate,
-    small: Option<Plate>,
+    pub(super) whole: Arc<Plate>,
+    small: Option<Arc<Plate>>,
     pub(super) rays: u64,
 }
 
 impl Light {
     pub(super) fn of(rendering: Rendering) -> Self {
-        Self { whole: Plate::of(rendering.exposure), small: None, rays: rendering.rays }
+        Self { whole: Arc::new(Plate::of(rendering.exposure)), small: None, rays: rendering.rays }
     }
 
     /// Of fewer pixels, where they are many; made when it is first asked for.
-    pub(super) fn small(&mut self) -> Option<&Plate> {
+    pub(super) fn small(&mut self) -> Option<Arc<Plate>> {
         let exposure = &self.whole.exposure;
         if exposure.size.width_px <= QUICK_PX {
             return None;
         }
-        Some(self.small.get_or_insert_with(|| Plate::of(shrunk(exposure, QUICK_PX))))
+        let small = self.small.get_or_insert_with(|| Arc::new(Plate::of(shrunk(exposure, QUICK_PX))));
+        Some(Arc::clone(small))
     }
 }
 
@@ -119,6 +120,7 @@ impl Hand {
 }
 
 /// The shape of a scene's picture, as its file has it.
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Shape {
     /// Height over width, in pixels.
     pub(super) aspect: f64,

@@ -4,6 +4,8 @@
 //! once, by the last of them; the work at hand is stopped for them. A desk that nobody asks anything of is cleared.
 
 mod hand;
+mod priority;
+mod show;
 mod watch;
 mod work;
 
@@ -18,7 +20,7 @@ use spectra_core::frame::ExposureFrame;
 use spectra_scene::FilmTime;
 use spectra_session::{Control as Stop, Session, SessionError};
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 
 /// Widths of the picture that a page may choose, pixels.
@@ -36,7 +38,7 @@ pub(crate) struct Order {
 /// A picture for the page.
 pub(crate) struct Frame {
     pub number: u64,
-    /// A head as JSON, with its length before it, and linear red, green and blue as `f32`, little-endian.
+    /// A head as JSON, with its length before it, and linear red, green and blue as [`halves`](crate::parts::halves) has them.
     pub bytes: Vec<u8>,
     exposure: Arc<ExposureFrame>,
     times: Vec<FilmTime>,
@@ -67,6 +69,8 @@ struct State {
     /// Values that were turned; and those among them that the pictures have.
     turns: u64,
     turns_taken: u64,
+    /// A large picture is being developed beside the desk's thread.
+    is_developing: bool,
     stop: Arc<Stop>,
     is_closed: bool,
 }
@@ -78,6 +82,8 @@ pub(crate) struct Desk {
     seen: Mutex<Instant>,
     state: Mutex<State>,
     turned: Condvar,
+    /// Threads that develop large pictures, made when there is the first; none where the system has no more.
+    beside: OnceLock<Option<rayon::ThreadPool>>,
 }
 
 /// A lock is held for copying alone: what a thread that panicked left is whole.
@@ -95,6 +101,7 @@ impl Desk {
             seen: Mutex::new(Instant::now()),
             state: Mutex::new(State::default()),
             turned: Condvar::new(),
+            beside: OnceLock::new(),
         };
         let desk = Arc::new(desk);
         let own = Arc::clone(&desk);

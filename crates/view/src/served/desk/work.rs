@@ -1,15 +1,17 @@
 //! What the thread of a desk does: take up what was turned, trace, develop, and watch the scene's file.
 
 use super::super::save;
-use super::hand::{Drafted, Hand, Light, Owed, Plate, Shape};
+use super::hand::{Drafted, Hand, Owed, Plate, Shape};
+use super::priority;
+use super::show::Kind;
 use super::watch::Stamps;
 use super::{Desk, Frame, State, WIDTHS_PX, held};
 use crate::controls;
-use crate::parts::{head, packed, said};
+use crate::parts::{packed, said};
 use serde_json::{Value, json};
-use spectra_core::frame::{DisplayPicture, ExposureFrame};
-use spectra_scene::{NumberFamily, Shot};
-use spectra_session::{Control as Stop, Session, SessionError, Threads, Workers};
+use spectra_core::frame::ExposureFrame;
+use spectra_scene::NumberFamily;
+use spectra_session::{Control as Stop, Session, Threads, Workers};
 use std::sync::{Arc, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -32,15 +34,15 @@ const GLANCE: Duration = Duration::from_millis(300);
 /// A scene's file that is larger than this is none.
 const MAX_SCENE_BYTES: u64 = 1 << 22;
 
-/// Threads whose work nobody waits for once something more is turned.
+/// Threads whose work nobody waits for once something more is turned. They give way to the page.
 struct Until<'a> {
-    threads: Threads,
+    threads: usize,
     stop: &'a Stop,
 }
 
 impl Workers for Until<'_> {
     fn each(&self, work: &(dyn Fn() + Sync)) {
-        self.threads.each(work);
+        priority::each(self.threads, work);
     }
 
     fn should_stop(&self) -> bool {
@@ -49,7 +51,7 @@ impl Workers for Until<'_> {
 }
 
 impl Desk {
-    pub(super) fn work(&self) {
+    pub(super) fn work(self: &Arc<Self>) {
         let mut session = match Session::open(&self.order.scene, &self.order.overrides, self.order.isa) {
             Ok(session) => session,
             Err(error) => {
@@ -160,7 +162,7 @@ impl Desk {
             let more = more.min(all - done);
             hand.light = None;
             // To search what passes the whole scene's lens may take longer than a draft: that, too, ends where more is turned.
-            let workers = Until { threads: Threads(self.order.threads), stop: &stop };
+            let workers = Until { threads: self.order.threads, stop: &stop };
             if let Err(error) = hand.session.step(more, &workers, &stop) {
                 self.tell(Some(said(&error, "")));
                 continue;
@@ -225,8 +227,10 @@ impl Desk {
             Ok(()) if draft.samples() > 0 => draft.look(),
             _ => return hand.without_draft(),
         };
-        let shown =
-            seen.and_then(|seen| self.show(draft, &hand.shape, started, &Plate::of(seen.exposure), seen.rays, true));
+        let shown = seen.and_then(|seen| {
+            let plate = Arc::new(Plate::of(seen.exposure));
+            self.show(&self.taken(draft, &hand.shape, started, plate, seen.rays, Kind::Draft))
+        });
         if shown.is_err() {
             return hand.without_draft();
         }
@@ -240,7 +244,7 @@ impl Desk {
         // Where there is no draft to look at, this is what is waited for.
         let never = Stop::new();
         let stop = if is_drafted { stop } else { &never };
-        let workers = Until { threads: Threads(self.order.threads), stop };
+        let workers = Until { threads: self.order.threads, stop };
         let (mut is_light_kept, mut trouble) = (true, None);
         let time_s = hand.session.scene().exposure_time_s();
         let is_developed_only = hand.owed.iter().all(|owed| is_of_development(&owed.path));
@@ -377,7 +381,7 @@ impl Desk {
     }
 
     /// Says what is wrong, or that nothing is any more.
-    fn tell(&self, fault: Option<Value>) {
+    pub(super) fn tell(&self, fault: Option<Value>) {
         let mut state = held(&self.state);
         let is_new = fault.is_some() || state.fault.is_some();
         state.fault = fault;
@@ -394,63 +398,6 @@ impl Desk {
             state.frame = Some(Arc::new(Frame { number, bytes, exposure, times, whole_px }));
         }
         self.turned.notify_all();
-    }
-
-    /// Develops the light so far and gives it to the page; if it is to be `quick`, a small picture comes before a large one.
-    fn picture(&self, hand: &mut Hand, started: Instant, quick: bool) -> Result<(), SessionError> {
-        let light = match hand.light.take() {
-            Some(light) => light,
-            None => Light::of(hand.session.look()?),
-        };
-        let light = hand.light.insert(light);
-        let rays = light.rays;
-        if let Some(small) = quick.then(|| light.small()).flatten() {
-            // What cannot be developed small is seen whole.
-            let _ = self.show(&hand.session, &hand.shape, started, small, rays, true);
-        }
-        self.show(&hand.session, &hand.shape, started, &light.whole, rays, false)
-    }
-
-    fn show(
-        &self,
-        session: &Session,
-        shape: &Shape,
-        started: Instant,
-        plate: &Plate,
-        rays: u64,
-        is_draft: bool,
-    ) -> Result<(), SessionError> {
-        let scene = Arc::clone(session.scene());
-        let times = scene.film_times(&plate.exposure);
-        let shot = Shot::new(&scene, &plate.exposure, &times, &[], self.order.isa).keeping(&plate.negatives);
-        let Some((_, picture)) = shot.pictures().map_err(SessionError::Failed)?.first() else { return Ok(()) };
-        let DisplayPicture { width_px, height_px, rgb } = picture;
-        let [width_px, height_px] = [*width_px, *height_px];
-        let mut state = held(&self.state);
-        state.number += 1;
-        let whole_px = if is_draft { state.width_px } else { width_px };
-        let own = json!({
-            "frame": state.number,
-            "scene": state.scenes,
-            "lens_drawn": state.lenses,
-            "reread": state.reread,
-            "turns": state.turns_taken,
-            "fault": state.fault,
-            "width": whole_px,
-            "height": if is_draft { shape.height_px(whole_px) } else { height_px },
-            "light": [width_px, height_px],
-            "draft": is_draft,
-            "since_change_ms": started.elapsed().as_millis() as u64,
-        });
-        let mut head = head(own, session, &times, rays);
-        if is_draft {
-            head["samples"] = 0.into();
-        }
-        let bytes = packed(&head, bytemuck::cast_slice(rgb));
-        let exposure = Arc::clone(&plate.exposure);
-        state.frame = Some(Arc::new(Frame { number: state.number, bytes, exposure, times, whole_px }));
-        self.turned.notify_all();
-        Ok(())
     }
 }
 
