@@ -1,5 +1,6 @@
 //! The server, over the wire: what a page does, and what others try.
 
+use half::f16;
 use serde_json::{Value, json};
 use spectra_core::Isa;
 use spectra_plugins as _;
@@ -115,8 +116,8 @@ impl Browser {
             let head: Value = serde_json::from_slice(&got.body[4..4 + length]).expect("a head");
             after = head["frame"].as_u64().expect("a number");
             if is_wanted(&head) {
-                let floats = got.body[4 + length..].chunks_exact(4);
-                return (head, floats.map(|b| f32::from_le_bytes(b.try_into().expect("four"))).collect());
+                let halves = got.body[4 + length..].chunks_exact(2);
+                return (head, halves.map(|b| f16::from_le_bytes(b.try_into().expect("two")).to_f32()).collect());
             }
         }
     }
@@ -240,7 +241,9 @@ fn a_draft_comes_first_and_the_whole_picture_is_that_of_a_run() {
     let mut session =
         spectra_session::Session::of_text("scene.yaml", &text, resources, Isa::detect()).expect("a scene");
     session.step(4, &spectra_session::Threads(2), &spectra_session::Control::new()).expect("light");
-    assert!(light == session.develop().expect("a picture").remove(0).1.rgb.concat(), "{whole}");
+    let developed = session.develop().expect("a picture").remove(0).1.rgb.concat();
+    let of_halves: Vec<f32> = developed.iter().map(|v| f16::from_f32(*v).to_f32()).collect();
+    assert!(light == of_halves, "{whole}");
 
     // Print, push, grade and grain: no draft, no ray, the whole at once; where it is large, smaller before.
     assert_eq!(browser.turn(desk, "width", json!(960)).status, 204);
