@@ -1,7 +1,7 @@
-"""Writes scenes/night-lights.exr: lamps in the dark, for pictures of what a lens makes of lights out of focus.
+"""Writes scenes/night-lights.exr and scenes/far-lights.exr: lamps in the dark, for pictures of what a lens makes of lights out of focus.
 
-Sixty lamps of one pixel each on black, placed by a fixed seed and at least 9 pixels apart, white, warm, red, green and blue
-as along a street. R, G, B (linear, Rec. 709) as 16-bit floats, ZIP compressed.
+Lamps of one pixel each on black, placed by a fixed seed and apart from each other, white, warm, red, green and blue as along a street:
+sixty, and twenty-six smaller ones for what is fine in a disk of light. R, G, B (linear, Rec. 709) as 16-bit floats, ZIP compressed.
 
     python3 xtask/night_lights.py
 """
@@ -11,26 +11,28 @@ import random
 
 import half_exr
 
-WIDTH, HEIGHT, LAMPS, APART = 180, 120, 60, 9
+# Width, height, lamps, pixels between them.
+FILES = {"night-lights": (180, 120, 60, 9), "far-lights": (480, 320, 26, 52)}
 TINTS = [(1, 0.9, 0.7), (1, 0.7, 0.35), (1, 0.12, 0.06), (0.15, 0.9, 0.3), (0.3, 0.5, 1), (1, 1, 1)]
 
 
-def lamps():
+def lamps(width, height, many, apart):
     dice = random.Random(7)
     placed = {}
-    while len(placed) < LAMPS:
-        x, y = dice.randrange(4, WIDTH - 4), dice.randrange(4, HEIGHT - 4)
-        if all((x - a) ** 2 + (y - b) ** 2 >= APART**2 for a, b in placed):
+    while len(placed) < many:
+        x, y = dice.randrange(4, width - 4), dice.randrange(4, height - 4)
+        if all((x - a) ** 2 + (y - b) ** 2 >= apart**2 for a, b in placed):
             power = 2 ** dice.uniform(-1.5, 0)
             placed[x, y] = tuple(power * c for c in dice.choice(TINTS))
     return placed
 
 
 def main():
-    placed = lamps()
-    rows = [[placed.get((x, y), (0, 0, 0))[::-1] for x in range(WIDTH)] for y in range(HEIGHT)]
-    out = pathlib.Path(__file__).resolve().parent.parent / "scenes" / "night-lights.exr"
-    half_exr.write(out, "Synthetic, by xtask/night_lights.py; CC0-1.0", "BGR", rows)
+    scenes = pathlib.Path(__file__).resolve().parent.parent / "scenes"
+    for name, (width, height, many, apart) in FILES.items():
+        placed = lamps(width, height, many, apart)
+        rows = [[placed.get((x, y), (0, 0, 0))[::-1] for x in range(width)] for y in range(height)]
+        half_exr.write(scenes / f"{name}.exr", "Synthetic, by xtask/night_lights.py; CC0-1.0", "BGR", rows)
 
 
 if __name__ == "__main__":

@@ -16,6 +16,12 @@ pub trait Estimator: Send + Sync {
     /// Parts of the frame that may have samples of their own number; 1 where light lands anywhere.
     fn tiles(&self) -> usize;
 
+    /// Paths of ghosts whose light it sums once more, each by itself: as many sums again behind those of all of its light, in this
+    /// order. The surfaces of each, counted from 1.
+    fn paths(&self) -> &[Vec<usize>] {
+        &[]
+    }
+
     /// The tile of a pixel.
     fn tile_of(&self, pixel: usize) -> usize;
 

@@ -16,6 +16,7 @@ mod estimator;
 mod forward;
 mod ghosts;
 mod landing;
+mod layers;
 mod light;
 mod memory;
 mod meter;

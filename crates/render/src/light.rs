@@ -2,7 +2,7 @@
 
 use crate::done::Units;
 use crate::sums::ExactSums;
-use crate::{Done, RenderError, Renderer};
+use crate::{Done, Estimator, RenderError, Renderer};
 use spectra_core::{Loss, LossCounts};
 use std::collections::BTreeMap;
 use std::io::{self, Read, Write};
@@ -187,8 +187,17 @@ impl Light {
                 ended.insert(u32::try_from(tile).map_err(|_| other())?, samples);
             }
             part.done = Done::of(complete, (samples.start < samples.end).then_some((samples, units)), ended);
-            if form.next()? != part.sums.cells() as u64 {
-                return Err(other());
+            let (saved, own, of_all) = (form.next()?, part.sums.cells() as u64, renderer.cells() as u64);
+            if saved != own {
+                return Err(match (saved / of_all, own / of_all) {
+                    (0, _) => other(),
+                    _ if saved % of_all != 0 => other(),
+                    (saved, own) => bad(&format!(
+                        "this light has sums of {} paths of ghosts by themselves, and this scene has {}: set `ghost-paths` as it was",
+                        saved - 1,
+                        own - 1
+                    )),
+                });
             }
             for cell in 0..part.sums.cells() {
                 part.sums.add(cell, form.next()? as i64);
@@ -205,8 +214,9 @@ impl Renderer {
     /// # Errors
     /// [`RenderError::Memory`].
     pub fn begin(&self) -> Result<Light, RenderError> {
-        let part = |_| {
-            let sums = ExactSums::new(self.cells()).ok_or_else(|| self.too_large())?;
+        let part = |estimator: &dyn Estimator| {
+            let cells = self.cells().checked_mul(1 + estimator.paths().len());
+            let sums = cells.and_then(ExactSums::new).ok_or_else(|| self.too_large())?;
             Ok(Part { sums, done: Done::default(), rays: 0 })
         };
         let parts = self.estimators().map(part).collect::<Result<_, RenderError>>()?;

@@ -1,6 +1,6 @@
 //! How much memory a picture takes: known before any light is traced.
 
-use spectra_core::params::Faults;
+use spectra_core::params::{Faults, Value};
 use spectra_scene::{Holds, Lights, Scene};
 
 /// Bytes of a sum and of an exposure: one of each, a pixel and channel.
@@ -14,6 +14,11 @@ const SHOWING: u64 = 16;
 /// Bytes that rendering and writing a scene takes beyond what the scene holds already.
 #[must_use]
 pub fn memory_needed(scene: &Scene) -> u64 {
+    needed(scene, scene.ghost_paths() as u64)
+}
+
+/// The same with layers of so many paths of ghosts.
+fn needed(scene: &Scene, paths: u64) -> u64 {
     let pixels = scene.imager.size().pixels() as u64;
     let channels = scene.channels.len() as u64;
     let is_shown = scene.output.iter().any(|o| matches!(o.holds(), Holds::Picture | Holds::Numbers));
@@ -29,9 +34,11 @@ pub fn memory_needed(scene: &Scene) -> u64 {
     let halves = 1 + u64::from(scene.render.noise.is_some());
     // What haze, dust and scratches scatter is traced beside what they do not.
     let scattered = if scene.lens.scatters() { 1 + u64::from(apart) } else { 0 };
-    let kinds = 1 + u64::from(apart) + u64::from(ghosts) + scattered;
-    // Layers of kinds of light, and the exposure before diffraction while it is worked out.
-    let layers = scene.light_layers().len() as u64;
+    // Paths that have layers have sums of their own beside those of all ghosts.
+    let kinds = 1 + u64::from(apart) + if ghosts { 1 + paths } else { 0 } + scattered;
+    // Layers of kinds of light and of paths, and the exposure before diffraction while it is worked out.
+    let of_paths = if paths == 0 { 0 } else { 1 + if ghosts { paths } else { 0 } };
+    let layers = scene.light_layers().len() as u64 + of_paths;
     let layers = if layers > 0 && scene.render.diffraction.unwrap_or(apart) { layers + 1 } else { layers };
     let traced = channels * (SUM * halves * kinds + EXPOSURE * (1 + layers));
     // Sums are gone by then. Of several films each is developed from a copy of its own channels.
@@ -65,6 +72,20 @@ pub fn fits(scene: &Scene, available: u64) -> Result<(), Faults> {
     }
     let size = scene.imager.size();
     let per = scene.channels.len();
+    let paths = scene.ghost_paths() as u64;
+    if let Some(fewer) = (0..paths).rev().find(|paths| self::needed(scene, *paths) <= available) {
+        let text = format!(
+            "layers of {paths} paths of ghosts, {} x {} pixels of {per} channel{} each, bring the picture to {} of memory, and {} are available",
+            size.width_px,
+            size.height_px,
+            if per == 1 { "" } else { "s" },
+            bytes(needed),
+            bytes(available)
+        );
+        let hint = if fewer == 0 { "leave `ghost-paths` out".to_owned() } else { format!("`ghost-paths: {fewer}`") };
+        let key = key_of_paths(scene).unwrap_or_else(|| "output".to_owned());
+        return Err(scene.params.fault(&key, text).hint(format!("{hint}, or a machine with more memory")).into());
+    }
     let imager = scene.params.get("imager");
     let key = ["bands", "resolution"].into_iter().find(|key| imager.is_some_and(|node| node.get(key).is_some()));
     let key = key.map_or_else(|| "imager".to_owned(), |key| format!("imager.{key}"));
@@ -81,6 +102,13 @@ pub fn fits(scene: &Scene, available: u64) -> Result<(), Faults> {
     let fewer = if key.ends_with("bands") { "fewer bands, or " } else { "" };
     let hint = format!("{fewer}`resolution: [{}, {}]`, or a machine with more memory", smaller[0], smaller[1]);
     Err(scene.params.fault(&key, text).hint(hint).into())
+}
+
+/// Where a scene asks for layers of paths.
+fn key_of_paths(scene: &Scene) -> Option<String> {
+    let Value::Seq(items) = &scene.params.get("output")?.value else { return None };
+    let at = items.iter().position(|item| item.get("ghost-paths").is_some())?;
+    Some(format!("output[{at}].ghost-paths"))
 }
 
 #[cfg(test)]

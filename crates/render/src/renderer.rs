@@ -11,7 +11,7 @@ use crate::light::Part;
 use crate::memory::memory_needed;
 use crate::noise::{ends_round, next_round};
 use crate::pilot::PILOT_RAYS;
-use crate::pipeline::{Pipeline, SCATTER, Share, ThreadState};
+use crate::pipeline::{Pipeline, Share, ThreadState};
 use crate::remarks::remarks;
 use crate::sums::{LARGEST_CONTRIBUTION, LARGEST_EXPECTED};
 use crate::veil::{self, Veil};
@@ -34,7 +34,7 @@ pub(crate) const MATTERS: f64 = 0.01;
 pub struct Rendering {
     /// Linear exposure per channel.
     pub exposure: ExposureFrame,
-    /// The same by kinds of light, of those of which an output of the scene holds layers.
+    /// The same by kinds of light, and by paths of ghosts, of those of which an output of the scene holds layers.
     pub layers: Vec<LightLayer>,
     /// Rays launched toward the first or last surface.
     pub rays: u64,
@@ -490,12 +490,7 @@ impl Renderer {
         let share_s = time_s / self.halves() as f64;
         let weights: Vec<Vec<f64>> = parts.map(|(e, part)| e.weights(&part.done, part.rays, share_s)).collect();
         let mut planes = self.planes(scene, light, &weights, None)?;
-        let wanted = scene.light_layers();
-        let mut layers = Vec::with_capacity(wanted.len());
-        for kind in &wanted {
-            let channels = self.planes(scene, light, &weights, Some(*kind))?;
-            layers.push(LightLayer { kind: *kind, channels });
-        }
+        let mut layers = self.layers(scene, light, &weights)?;
         let star = layers.iter_mut().find(|layer| layer.kind == LightKind::Star);
         let diffraction = if scene.render.diffraction.unwrap_or_else(|| self.has_seen_star(scene, &planes)) {
             let before = if star.is_some() { planes.clone() } else { Vec::new() };
@@ -530,44 +525,6 @@ impl Renderer {
     fn has_seen_star(&self, scene: &Scene, planes: &[ExposureChannel]) -> bool {
         let star = || diffracted::star(scene, planes, &self.pipeline.recorded, self.pipeline.isa);
         self.has_lights && star().is_some_and(|star| star > MATTERS)
-    }
-
-    /// The exposure before diffraction, of all light or of a kind; `weights` are those of the parts. What meters see is straight.
-    fn planes(
-        &self,
-        scene: &Scene,
-        light: &Light,
-        weights: &[Vec<f64>],
-        kind: Option<LightKind>,
-    ) -> Result<Vec<ExposureChannel>, RenderError> {
-        let pixels = scene.imager.size().pixels();
-        let recorded = &self.pipeline.recorded;
-        let (channels, of_meters) = (recorded.len(), scene.meter_channels());
-        let metered = light.metered.as_deref().unwrap_or_default();
-        let time_s = scene.exposure_time_s();
-        let own = self.estimators.iter().zip(&light.parts).zip(weights);
-        let own = own.filter(|((e, _), _)| kind.is_none_or(|kind| kind == kind_of(&***e)));
-        let parts: Vec<(&Part, &Vec<f64>)> = own.map(|((_, part), w)| (part, w)).collect();
-        let is_straight = kind.is_none_or(|kind| kind == LightKind::Direct);
-        let mut planes = Vec::with_capacity(scene.channels.len());
-        for (number, channel) in scene.channels.iter().enumerate() {
-            let mut values = Vec::new();
-            values.try_reserve_exact(pixels).map_err(|_| self.too_large())?;
-            let seen = of_meters.iter().position(|meter| *meter == number).and_then(|at| metered.get(at));
-            if let Some(at) = recorded.iter().position(|r| *r == number).filter(|_| !parts.is_empty()) {
-                values.extend((0..pixels).map(|p| {
-                    parts.iter().map(|(part, w)| part.sums.get(p * channels + at) as f64 * w[p]).sum::<f64>() as f32
-                }));
-            } else if let Some(seen) = seen.filter(|_| is_straight) {
-                values.extend(seen.iter().map(|value| (value * time_s) as f32));
-            } else {
-                // A kind that there is none of, or a meter that sees nothing of this source.
-                values.resize(pixels, 0.0);
-            }
-            let name = kind.map_or_else(|| channel.name.clone(), |kind| format!("{}.{}", kind.name(), channel.name));
-            planes.push(ExposureChannel { name, unit: channel.unit.clone(), values });
-        }
-        Ok(planes)
     }
 
     /// What part of all light is veiling glare; `weights` are those of the parts.
@@ -610,23 +567,13 @@ impl Renderer {
         self.estimators.iter().map(|e| &**e)
     }
 
-    /// Sums of one estimator: one a pixel and channel.
+    /// Sums of all light of one estimator: one a pixel and channel.
     pub(crate) fn cells(&self) -> usize {
         self.scene.imager.size().pixels() * self.pipeline.recorded.len()
     }
 
     pub(crate) fn too_large(&self) -> RenderError {
         RenderError::Memory(memory_needed(&self.scene))
-    }
-}
-
-/// The kind of light that an estimator estimates.
-fn kind_of(estimator: &dyn Estimator) -> LightKind {
-    match estimator.name() {
-        // Stray light, as what lies on glass scatters.
-        name if name == veil::ESTIMATOR || name == SCATTER => LightKind::Glare,
-        name if name == ghosts::ESTIMATOR => LightKind::Ghosts,
-        _ => LightKind::Direct,
     }
 }
 

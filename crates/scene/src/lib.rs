@@ -34,7 +34,7 @@ pub use language::{
     Member, Series, SeriesKind, SweptAxis, document, load, load_series, series_of_text, series_of_tree,
 };
 pub use negatives::Negatives;
-pub use output::{Holds, LightKind, LightLayer, Output, OutputEntry, Told};
+pub use output::{GhostPaths, Holds, LightKind, LightLayer, Output, OutputEntry, Told};
 pub use resources::{FileResources, NO_LENS, NO_LENS_F_NUMBER};
 pub use scene::{
     ConePattern, Direction, FilmTime, Lights, NumberFamily, Reflections, RenderSettings, Scene, SceneFilm,

@@ -47,6 +47,12 @@ pub trait Output: Send + Sync {
         &[]
     }
 
+    /// Of how many paths of ghosts, the strongest, it holds layers of their own, with one for all others; 0 for none. Where outputs
+    /// ask for different numbers, all get the layers of the largest.
+    fn ghost_paths(&self) -> usize {
+        0
+    }
+
     /// Writes a file; of films side by side, that of the film at a place.
     ///
     /// # Errors
@@ -96,13 +102,44 @@ impl LightKind {
     }
 }
 
-/// The light of one kind.
+/// Which paths of ghosts a layer has the light of.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum GhostPaths {
+    /// All of them; so has every other kind of light.
+    #[default]
+    All,
+    /// That which these surfaces reflect, in the order of the light, counted from 1; one more than the lens has is the imager.
+    One(Vec<usize>),
+    /// All that have no layer of their own.
+    Others,
+}
+
+/// The light of one kind, or of some paths of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LightLayer {
     /// Which one.
     pub kind: LightKind,
-    /// Channels in the order of the exposure's, under names such as `ghosts.Y`.
+    /// Of which paths.
+    pub paths: GhostPaths,
+    /// Channels in the order of the exposure's, under names such as `ghosts.Y` and `ghosts.7-3.Y`.
     pub channels: Vec<ExposureChannel>,
+}
+
+impl LightLayer {
+    /// A layer's name: `ghosts`, `ghosts.7-3` for what the seventh surface and then the third one reflect, `ghosts.other`.
+    ///
+    /// No comma, as programs that take lists of channels part them by commas.
+    #[must_use]
+    pub fn name(kind: LightKind, paths: &GhostPaths) -> String {
+        match paths {
+            GhostPaths::All => kind.name().to_owned(),
+            GhostPaths::One(surfaces) => {
+                let surfaces: Vec<String> = surfaces.iter().map(usize::to_string).collect();
+                format!("{}.{}", kind.name(), surfaces.join("-"))
+            }
+            GhostPaths::Others => format!("{}.other", kind.name()),
+        }
+    }
 }
 
 /// What there is to say of a sweep or an animation.
@@ -198,6 +235,12 @@ impl Scene {
             .into_iter()
             .filter(|kind| self.output.iter().any(|output| output.lights().contains(kind)))
             .collect()
+    }
+
+    /// Of how many paths of ghosts, the strongest, an output holds layers.
+    #[must_use]
+    pub fn ghost_paths(&self) -> usize {
+        self.output.iter().map(|output| output.ghost_paths()).max().unwrap_or(0)
     }
 
     /// The output whose file has this ending (`.png`), and nothing before it but the picture's name: one of the scene's own, a

@@ -315,6 +315,7 @@ impl Session {
             && lens
             && before.imager.size() == scene.imager.size()
             && Arc::ptr_eq(&before.imager, &scene.imager)
+            && before.ghost_paths() == scene.ghost_paths()
             && before.render.traces_as(&scene.render);
         let mut kept = Kept { light: same_light, density: system, lens, source };
         let ready = self.ready.take();

@@ -9,14 +9,15 @@ use spectra_core::sink::{Out, WriteFault};
 use spectra_core::stage::{Film, Imager};
 use spectra_pictures::library;
 use spectra_pictures::write::{LinearSpace, exr, picture_exr, tiled_exr};
-use spectra_scene::{Holds, LightKind, Output, Shot};
+use spectra_scene::{GhostPaths, Holds, LightKind, LightLayer, Output, Shot};
 
 /// Light as OpenEXR: the linear exposure, a channel for each that was recorded, or the finished picture.
 ///
 /// Of the exposure nothing that was computed is lost: 32-bit floats in lux seconds (or what the channel's unit says), with the scene
 /// and how it was rendered in the header. For measuring, and to keep the light of a long render. `layers` adds kinds of light, each
 /// with a channel for each of the exposure's: `layers: [direct, ghosts]` has `direct.Y` and `ghosts.Y` beside `Y`. All four together are
-/// the exposure, up to the rounding of their 32 bits; a kind that the picture has none of is 0.
+/// the exposure, up to the rounding of their 32 bits; a kind that the picture has none of is 0. `ghost-paths: 6` takes `ghosts` apart: `ghosts.7-3.Y`
+/// is what surface 7 and then surface 3 reflect, for each of the six strongest paths, and `ghosts.other.Y` the rest.
 ///
 /// `holds: picture` is for compositing, `SCENE-picture.exr`: R, G and B of the developed, printed or balanced picture in linear
 /// light, no color clipped by a screen's gamut. 1 is the film's white, or what the imager's picture shows as white. The header says
@@ -28,6 +29,9 @@ use spectra_scene::{Holds, LightKind, Output, Shot};
 /// # Example
 /// ```yaml
 /// {kind: exr}
+/// ```
+/// ```yaml
+/// {kind: exr, layers: [direct, glare, star], ghost-paths: 6}
 /// ```
 /// ```yaml
 /// {kind: exr, holds: picture, space: acescg, layers: [exposures]}
@@ -53,6 +57,10 @@ struct ExrParams {
     /// `exposure.red`; `densities` of each layer of a film as a densitometer reads them, grain included, as `density.red`.
     #[schemars(length(max = 4))]
     layers: Option<Vec<LayerGroup>>,
+    /// Of light, so many paths of ghosts as layers of their own: the strongest of the picture by their light on the frame in watts, as
+    /// its `ledger` has them, each named by the surfaces that reflect, as by `spectra lens ghosts`. All others are one layer more.
+    #[schemars(range(min = 1, max = 32))]
+    ghost_paths: Option<u8>,
     /// With `holds: picture`, whether R, G and B take 16 bits each: half the space, three digits.
     half: Option<bool>,
 }
@@ -124,6 +132,26 @@ spectra_core::register!(spectra_scene::OutputEntry, "exr": ExrParams, build);
 struct Exr {
     tiled: bool,
     lights: Vec<LightKind>,
+    ghost_paths: usize,
+}
+
+impl Exr {
+    /// The layers that it holds, of those that there are.
+    fn own<'a>(&self, layers: &'a [LightLayer]) -> Result<Vec<&'a LightLayer>, WriteFault> {
+        let (kinds, paths): (Vec<_>, Vec<_>) = layers.iter().partition(|layer| layer.paths == GhostPaths::All);
+        let of_kind = |kind: &LightKind| kinds.iter().copied().find(|layer| layer.kind == *kind);
+        let mut own: Vec<&LightLayer> = self.lights.iter().filter_map(of_kind).collect();
+        if own.len() < self.lights.len() {
+            return Err(WriteFault::Format("this light was not kept by its kinds".to_owned()));
+        }
+        if self.ghost_paths > 0 {
+            if paths.is_empty() {
+                return Err(WriteFault::Format("the ghosts of this light were not kept by their paths".to_owned()));
+            }
+            own.extend(paths);
+        }
+        Ok(own)
+    }
 }
 
 fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Output>, Faults> {
@@ -142,6 +170,10 @@ fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Output>, Faults> {
             let fault =
                 params.fault(&format!("layers[{at}]"), "kinds of light are layers of the exposure, not of the picture");
             faults.push(fault.hint("an output `{kind: exr, layers: [...]}` without `holds: picture`"));
+        }
+        if p.ghost_paths.is_some() {
+            let fault = params.fault("ghost-paths", "paths of ghosts are layers of the exposure, not of the picture");
+            faults.push(fault.hint("an output `{kind: exr, ghost-paths: ...}` without `holds: picture`"));
         }
         let (space, half) = (p.space.unwrap_or_default().into(), p.half.unwrap_or(false));
         return faults.into_result(Box::new(PictureExr { space, layers, half }) as _);
@@ -167,7 +199,7 @@ fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Output>, Faults> {
             }
         }
     }
-    faults.into_result(Box::new(Exr { tiled: p.tiled, lights }) as _)
+    faults.into_result(Box::new(Exr { tiled: p.tiled, lights, ghost_paths: p.ghost_paths.unwrap_or(0).into() }) as _)
 }
 
 impl Output for Exr {
@@ -187,17 +219,17 @@ impl Output for Exr {
         &self.lights
     }
 
+    fn ghost_paths(&self) -> usize {
+        self.ghost_paths
+    }
+
     fn write(&self, shot: &Shot<'_>, _: usize, out: &mut dyn Out) -> Result<(), WriteFault> {
         let write = if self.tiled { tiled_exr } else { exr };
         let (gains, squeeze) = (shot.gains(), shot.scene.lens.squeeze);
-        if self.lights.is_empty() {
+        if self.lights.is_empty() && self.ghost_paths == 0 {
             return write(out, shot.exposure, &gains, squeeze, shot.attributes);
         }
-        let own = self.lights.iter().filter_map(|kind| shot.layers.iter().find(|layer| layer.kind == *kind));
-        let layers: Vec<_> = own.collect();
-        if layers.len() < self.lights.len() {
-            return Err(WriteFault::Format("this light was not kept by its kinds".to_owned()));
-        }
+        let layers = self.own(shot.layers)?;
         let channels = shot.exposure.channels.iter().chain(layers.iter().flat_map(|layer| &layer.channels));
         let frame = ExposureFrame { size: shot.exposure.size, channels: channels.cloned().collect() };
         let gains = gains.repeat(1 + layers.len());

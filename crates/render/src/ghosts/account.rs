@@ -65,6 +65,12 @@ impl LightLedger {
         self.direct_w + self.ghosts_w
     }
 
+    /// Surfaces of so many paths that bring light to the frame, brightest first; fewer where there are fewer.
+    pub(super) fn strongest(&self, many: usize) -> Vec<Vec<usize>> {
+        let lit = self.paths.iter().filter(|path| path.power_w > 0.0);
+        lit.take(many).map(|path| path.surfaces.clone()).collect()
+    }
+
     /// Ends elsewhere.
     #[must_use]
     pub fn lost_w(&self) -> f64 {

@@ -64,18 +64,26 @@ const HEADROOM: f64 = 4.0;
 const SCALE_RAYS: u64 = 4096;
 
 /// One path.
+#[derive(Clone)]
 struct Way {
     route: Route,
-    /// How often it is reflected.
-    reflections: usize,
+    /// The surfaces that reflect, counted from 1.
+    surfaces: Vec<usize>,
     /// By the zones of the source; of more than two reflections one for all.
     guides: Vec<Guide>,
     /// Rays of a block, and what each of them weighs for those of all paths.
     rays: u64,
     boost: f64,
+    /// Sums of its own, if it has any: the first of them.
+    own_cells: Option<usize>,
 }
 
 impl Way {
+    /// Whether two surfaces reflect, and no more.
+    fn is_of_pair(&self) -> bool {
+        self.surfaces.len() <= 2
+    }
+
     /// What a ray takes, in surfaces.
     fn cost(&self) -> f64 {
         self.route.steps() as f64 + OVERHEAD
@@ -92,6 +100,8 @@ struct Plan {
     rays: u64,
     blocks_a_sample: u64,
     ledger: LightLedger,
+    /// Paths that have sums of their own.
+    apart: Vec<Vec<usize>>,
 }
 
 pub(crate) struct Ghosts {
@@ -145,14 +155,14 @@ impl Ghosts {
         let everywhere = Guide::everywhere();
         // What reaches the imager counts, not what it keeps: exposure is incident light.
         let way = |path: Path| {
-            let reflections = path.reflections().count();
+            let surfaces: Vec<usize> = path.reflections().map(|at| at + 1).collect();
             let route = pipeline.tracer.route(&path.before(imager));
-            let zones = if reflections > 2 { 1 } else { zones.count() };
-            Way { route, reflections, guides: vec![everywhere.clone(); zones], rays: 1, boost: 1.0 }
+            let zones = if surfaces.len() > 2 { 1 } else { zones.count() };
+            Way { route, surfaces, guides: vec![everywhere.clone(); zones], rays: 1, boost: 1.0, own_cells: None }
         };
         let ways: Vec<Way> = Path::ghosts(count, &surfaces, 2).into_iter().map(&way).collect();
         let zones = zones.clone();
-        let plan = Plan { opening, zones, ways, rays: 1, blocks_a_sample: 1, ledger: LightLedger::default() };
+        let plan = Plan::new(opening, zones, ways);
         let mut own = Self { pipeline: Arc::clone(&pipeline), plan: Arc::new(plan), numbers, scale: 1.0 };
         let order = reflections.order.unwrap_or(2);
         let mut ledger = None;
@@ -326,6 +336,11 @@ impl Ghosts {
         state.rays.tags().iter().copied().zip(sums).collect()
     }
 
+    /// Sums of all paths: one a pixel and channel.
+    fn cells(&self) -> usize {
+        self.pipeline.scene.imager.size().pixels() * self.pipeline.recorded.len()
+    }
+
     /// The rays of a sample, shared out over the paths.
     fn shared_out(&self, found: Vec<(Vec<Guide>, f64)>, a_pixel: f64, ledger: LightLedger) -> Plan {
         let old = &self.plan;
@@ -342,15 +357,17 @@ impl Ghosts {
         let share = |need: f64| if sum > 0.0 { (left * need / sum) as u64 } else { 0 };
         let counts: Vec<u64> = needs.iter().map(|need| floor + share(*need)).collect();
         let rays: u64 = counts.iter().sum();
+        let apart = ledger.strongest(self.pipeline.scene.ghost_paths());
         let way = |(((guides, _), way), count): (((Vec<Guide>, f64), &Way), &u64)| Way {
             route: way.route.clone(),
-            reflections: way.reflections,
+            surfaces: way.surfaces.clone(),
             guides,
             rays: *count,
             boost: rays as f64 / *count as f64,
+            own_cells: apart.iter().position(|path| *path == way.surfaces).map(|at| (at + 1) * self.cells()),
         };
         let ways = found.into_iter().zip(&old.ways).zip(&counts).map(way).collect();
-        Plan { opening: old.opening, zones: old.zones.clone(), ways, rays, blocks_a_sample, ledger }
+        Plan { opening: old.opening, zones: old.zones.clone(), ways, rays, blocks_a_sample, ledger, apart }
     }
 
     /// The scale of the sums, by some rays of each path.
@@ -395,6 +412,10 @@ impl Ghosts {
                     Some(own) => own.add(tags, &state.integers, recorded, sums),
                     None => each(tags, &state.integers, recorded, 0..tags.len(), |cell, value| sums.add(cell, value)),
                 }
+                if let Some(first) = way.own_cells {
+                    let add = |cell, value| sums.add(first + cell, value);
+                    each(tags, &state.integers, recorded, 0..tags.len(), add);
+                }
                 rays += len as u64;
             }
         }
@@ -403,18 +424,16 @@ impl Ghosts {
 }
 
 impl Plan {
+    /// Before rays are shared out.
+    fn new(opening: Option<FrontOpening>, zones: Zones, ways: Vec<Way>) -> Self {
+        let (ledger, apart) = (LightLedger::default(), Vec::new());
+        Self { opening, zones, ways, rays: 1, blocks_a_sample: 1, ledger, apart }
+    }
+
     /// With more paths, before rays are shared out.
     fn with(&self, more: Vec<Way>) -> Self {
-        let own = |way: &Way| Way {
-            route: way.route.clone(),
-            reflections: way.reflections,
-            guides: way.guides.clone(),
-            rays: way.rays,
-            boost: way.boost,
-        };
-        let ways = self.ways.iter().map(own).chain(more).collect();
-        let (opening, zones) = (self.opening, self.zones.clone());
-        Self { opening, zones, ways, rays: 1, blocks_a_sample: 1, ledger: LightLedger::default() }
+        let ways = self.ways.iter().cloned().chain(more).collect();
+        Self::new(self.opening, self.zones.clone(), ways)
     }
 }
 
@@ -431,6 +450,10 @@ impl Estimator for Ghosts {
 
     fn tiles(&self) -> usize {
         1
+    }
+
+    fn paths(&self) -> &[Vec<usize>] {
+        &self.plan.apart
     }
 
     fn tile_of(&self, _pixel: usize) -> usize {
@@ -452,7 +475,7 @@ impl Estimator for Ghosts {
 
     fn scratch(&self) -> Scratch {
         let mut state = self.state(self.pipeline.scene.render.batch);
-        state.own = OwnSums::new(self.pipeline.scene.imager.size().pixels() * self.pipeline.recorded.len());
+        state.own = OwnSums::new(self.cells());
         Scratch(state)
     }
 

@@ -122,7 +122,7 @@ pub(super) fn search(
     let pilot = &Pilot::new(ghosts);
     let (ways, fresh) = (&ghosts.plan.ways, || ghosts.state(BATCH));
     // Batches of a path, of so many of a pair's.
-    let of = |way: &Way, batches: usize| if way.reflections > 2 { batches.div_ceil(OF_MORE) } else { batches };
+    let of = |way: &Way, batches: usize| if way.is_of_pair() { batches } else { batches.div_ceil(OF_MORE) };
     let first = |batches: usize| {
         each_of(workers, ways.len(), fresh, move |state, at| {
             wanted(workers)?;

@@ -1,0 +1,115 @@
+//! The exposure of a render so far: of all light, of a kind of it, of a path of ghosts.
+
+use crate::estimator::Estimator;
+use crate::light::Part;
+use crate::pipeline::SCATTER;
+use crate::{Light, RenderError, Renderer, ghosts, veil};
+use spectra_core::frame::ExposureChannel;
+use spectra_scene::{GhostPaths, LightKind, LightLayer, Scene};
+use std::ops::Range;
+
+/// What of an estimator's sums is meant, in sums of all its light: one place, less some others.
+#[derive(Clone, Debug)]
+struct Taken {
+    from: usize,
+    less: Range<usize>,
+}
+
+impl Taken {
+    /// In an estimator that sums these paths by themselves; `None` where it does not have that path.
+    fn of(paths: &GhostPaths, apart: &[Vec<usize>]) -> Option<Self> {
+        match paths {
+            GhostPaths::All => Some(Self { from: 0, less: 0..0 }),
+            GhostPaths::One(surfaces) => {
+                let at = apart.iter().position(|path| path == surfaces)?;
+                Some(Self { from: 1 + at, less: 0..0 })
+            }
+            // Integers: nothing is lost.
+            GhostPaths::Others => Some(Self { from: 0, less: 1..1 + apart.len() }),
+        }
+    }
+}
+
+impl Renderer {
+    /// Paths of ghosts that have sums of their own, strongest first.
+    fn paths_apart(&self) -> &[Vec<usize>] {
+        self.estimators().map(Estimator::paths).find(|paths| !paths.is_empty()).unwrap_or_default()
+    }
+
+    /// The layers of light that the outputs of a scene hold, before diffraction; `weights` are those of the parts.
+    pub(crate) fn layers(
+        &self,
+        scene: &Scene,
+        light: &Light,
+        weights: &[Vec<f64>],
+    ) -> Result<Vec<LightLayer>, RenderError> {
+        let mut wanted: Vec<_> = scene.light_layers().into_iter().map(|kind| (kind, GhostPaths::All)).collect();
+        if scene.ghost_paths() > 0 {
+            let apart = self.paths_apart().iter().cloned().map(GhostPaths::One);
+            wanted.extend(apart.chain([GhostPaths::Others]).map(|paths| (LightKind::Ghosts, paths)));
+        }
+        let layer = |(kind, paths): (LightKind, GhostPaths)| {
+            let channels = self.planes(scene, light, weights, Some((kind, &paths)))?;
+            Ok(LightLayer { kind, paths, channels })
+        };
+        wanted.into_iter().map(layer).collect()
+    }
+
+    /// The exposure before diffraction, of all light or of a layer; `weights` are those of the parts. What meters see is straight.
+    pub(crate) fn planes(
+        &self,
+        scene: &Scene,
+        light: &Light,
+        weights: &[Vec<f64>],
+        layer: Option<(LightKind, &GhostPaths)>,
+    ) -> Result<Vec<ExposureChannel>, RenderError> {
+        let pixels = scene.imager.size().pixels();
+        let recorded = self.recorded();
+        let (channels, of_meters) = (recorded.len(), scene.meter_channels());
+        let metered = light.metered.as_deref().unwrap_or_default();
+        let time_s = scene.exposure_time_s();
+        let own = self.estimators().zip(&light.parts).zip(weights);
+        let own = own.filter(|((e, _), _)| layer.is_none_or(|(kind, _)| kind == kind_of(*e)));
+        let taken = |e: &dyn Estimator| Taken::of(layer.map_or(&GhostPaths::All, |(_, paths)| paths), e.paths());
+        let parts: Vec<(&Part, &Vec<f64>, Taken)> =
+            own.filter_map(|((e, part), w)| Some((part, w, taken(e)?))).collect();
+        let cells = self.cells();
+        let sum = |part: &Part, taken: &Taken, cell: usize| -> i64 {
+            let all = part.sums.get(taken.from * cells + cell);
+            taken.less.clone().fold(all, |left, of| left - part.sums.get(of * cells + cell))
+        };
+        let is_straight = layer.is_none_or(|(kind, _)| kind == LightKind::Direct);
+        let mut planes = Vec::with_capacity(scene.channels.len());
+        for (number, channel) in scene.channels.iter().enumerate() {
+            let mut values = Vec::new();
+            values.try_reserve_exact(pixels).map_err(|_| self.too_large())?;
+            let seen = of_meters.iter().position(|meter| *meter == number).and_then(|at| metered.get(at));
+            if let Some(at) = recorded.iter().position(|r| *r == number).filter(|_| !parts.is_empty()) {
+                values.extend((0..pixels).map(|p| {
+                    let own = parts.iter().map(|(part, w, taken)| sum(part, taken, p * channels + at) as f64 * w[p]);
+                    own.sum::<f64>() as f32
+                }));
+            } else if let Some(seen) = seen.filter(|_| is_straight) {
+                values.extend(seen.iter().map(|value| (value * time_s) as f32));
+            } else {
+                // A kind that there is none of, or a meter that sees nothing of this source.
+                values.resize(pixels, 0.0);
+            }
+            let named =
+                |(kind, paths): (LightKind, &GhostPaths)| format!("{}.{}", LightLayer::name(kind, paths), channel.name);
+            let name = layer.map_or_else(|| channel.name.clone(), named);
+            planes.push(ExposureChannel { name, unit: channel.unit.clone(), values });
+        }
+        Ok(planes)
+    }
+}
+
+/// The kind of light that an estimator estimates.
+fn kind_of(estimator: &dyn Estimator) -> LightKind {
+    match estimator.name() {
+        // Stray light, as what lies on glass scatters.
+        name if name == veil::ESTIMATOR || name == SCATTER => LightKind::Glare,
+        name if name == ghosts::ESTIMATOR => LightKind::Ghosts,
+        _ => LightKind::Direct,
+    }
+}
