@@ -36,9 +36,11 @@ pub enum EmulsionError {
 static SAMPLED: Known<(AmountCurve, u64), Lookup> = Known::new();
 static TOGETHER: Known<(Emulsion, u64), [[Lookup; 3]; 2]> = Known::new();
 
-/// Curves of color film taken apart into amounts: of these dyes, by what three filters see of them.
-static AMOUNTS: Known<(Deposit, Vec<CharacteristicCurve>, Vec<Vec<f64>>), Result<Vec<AmountCurve>, EmulsionError>> =
-    Known::new();
+/// Dyes, the curves of a film that has them, and what three filters see of them.
+type Measured = (Deposit, Vec<CharacteristicCurve>, Vec<Vec<f64>>);
+
+/// Curves of color film taken apart into amounts.
+static AMOUNTS: Known<Measured, Result<Vec<AmountCurve>, EmulsionError>> = Known::new();
 
 /// A stock in one development, ready to turn exposures into amounts; see [`Deposit`] for their unit.
 #[derive(Clone, Debug, PartialEq)]
