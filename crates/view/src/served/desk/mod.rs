@@ -20,7 +20,7 @@ use spectra_core::frame::ExposureFrame;
 use spectra_scene::FilmTime;
 use spectra_session::{Control as Stop, Session, SessionError};
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, OnceLock, PoisonError};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 /// Widths of the picture that a page may choose, pixels.
@@ -82,8 +82,6 @@ pub(crate) struct Desk {
     seen: Mutex<Instant>,
     state: Mutex<State>,
     turned: Condvar,
-    /// Threads that develop large pictures, made when there is the first; none where the system has no more.
-    beside: OnceLock<Option<rayon::ThreadPool>>,
 }
 
 /// A lock is held for copying alone: what a thread that panicked left is whole.
@@ -101,7 +99,6 @@ impl Desk {
             seen: Mutex::new(Instant::now()),
             state: Mutex::new(State::default()),
             turned: Condvar::new(),
-            beside: OnceLock::new(),
         };
         let desk = Arc::new(desk);
         let own = Arc::clone(&desk);

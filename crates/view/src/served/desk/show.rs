@@ -74,7 +74,7 @@ impl Desk {
 
     /// Shows it from a thread of its own, or from this one where the system has no more.
     fn show_beside(self: &Arc<Self>, taken: Taken) -> Result<(), SessionError> {
-        let Some(pool) = self.beside.get_or_init(|| priority::pool(self.order.threads)) else {
+        let Some(pool) = priority::pool(self.order.threads) else {
             return self.show(&taken);
         };
         held(&self.state).is_developing = true;

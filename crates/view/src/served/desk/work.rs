@@ -52,6 +52,8 @@ impl Workers for Until<'_> {
 
 impl Desk {
     pub(super) fn work(self: &Arc<Self>) {
+        // Before there is much to do: later pictures are developed by it.
+        priority::pool(self.order.threads);
         let mut session = match Session::open(&self.order.scene, &self.order.overrides, self.order.isa) {
             Ok(session) => session,
             Err(error) => {
