@@ -131,6 +131,11 @@ fn is_done(head: &Value) -> bool {
     head["samples"].is_u64() && head["samples"] == head["of"]
 }
 
+/// Light as a page is handed it, in 16 bits.
+fn as_sent(light: &[f32]) -> Vec<f32> {
+    light.iter().map(|v| f16::from_f32(*v).to_f32()).collect()
+}
+
 fn mean(light: &[f32]) -> f64 {
     light.iter().map(|v| f64::from(*v)).sum::<f64>() / light.len() as f64
 }
@@ -182,7 +187,7 @@ fn a_picture_follows_what_is_turned_and_is_saved() {
         spectra_session::Session::of_text("scene.yaml", &text, resources, Isa::detect()).expect("a scene");
     session.step(4, &spectra_session::Threads(2), &spectra_session::Control::new()).expect("light");
     let wanted = session.develop().expect("a picture").remove(0).1;
-    assert!(light == wanted.rgb.concat(), "{closed}");
+    assert!(light == as_sent(&wanted.rgb.concat()), "{closed}");
 
     // What the scene cannot be is told with its place, and the picture stays.
     assert_eq!(browser.turn(desk, "lens.f-number", json!(0.01)).status, 204);
@@ -241,9 +246,8 @@ fn a_draft_comes_first_and_the_whole_picture_is_that_of_a_run() {
     let mut session =
         spectra_session::Session::of_text("scene.yaml", &text, resources, Isa::detect()).expect("a scene");
     session.step(4, &spectra_session::Threads(2), &spectra_session::Control::new()).expect("light");
-    let developed = session.develop().expect("a picture").remove(0).1.rgb.concat();
-    let of_halves: Vec<f32> = developed.iter().map(|v| f16::from_f32(*v).to_f32()).collect();
-    assert!(light == of_halves, "{whole}");
+    let wanted = session.develop().expect("a picture").remove(0).1;
+    assert!(light == as_sent(&wanted.rgb.concat()), "{whole}");
 
     // Print, push, grade and grain: no draft, no ray, the whole at once; where it is large, smaller before.
     assert_eq!(browser.turn(desk, "width", json!(960)).status, 204);
@@ -299,7 +303,7 @@ fn pages_do_not_disturb_each_other_and_the_oldest_makes_room() {
     let (_, second) = browser.frame(two, before["frame"].as_u64().expect("a number"), is_done);
     assert!(first != second);
     let again = browser.get(&format!("/frame?desk={one}&after=0")).expect("an answer");
-    assert!(again.body.ends_with(&first.iter().flat_map(|v| v.to_le_bytes()).collect::<Vec<u8>>()));
+    assert!(again.body.ends_with(&first.iter().flat_map(|v| f16::from_f32(*v).to_le_bytes()).collect::<Vec<u8>>()));
     for _ in 0..3 {
         browser.open();
     }

@@ -246,7 +246,7 @@ mod tests {
         assert_eq!(ask(&mut desk, &json!({"do": "step", "samples": 1}))["samples"], 1);
         let frame = desk.answer(json!({"do": "look"}).to_string().as_bytes());
         let head = u32::from_le_bytes(frame[..4].try_into().expect("four bytes")) as usize;
-        assert_eq!(frame.len(), 4 + head + 24 * 16 * 3 * 4);
+        assert_eq!(frame.len(), 4 + head + 24 * 16 * 3 * 2);
         assert!(desk.answer(json!({"do": "section", "ground": "light"}).to_string().as_bytes()).starts_with(b"<svg"));
     }
 }
