@@ -136,6 +136,22 @@ for (const [values, rows] of [
   for (const one of wanted) await turned(one);
 }
 
+// Until a picture has all its samples: of a scene that asks for a noise, until it is as clean as that.
+const ended = async (at) => {
+  const got = await set(at);
+  if (got) got.whole = await page.evaluate(async (start) => {
+    while (!/^(\d+) of \1 samples/.test(document.querySelector("#state").textContent) && performance.now() - start < 60000) {
+      await new Promise((done) => setTimeout(done, 5));
+    }
+    return performance.now() - start;
+  }, got.start);
+  return got;
+};
+if ("lens.f-number, all samples".includes(only)) {
+  await anew([]);
+  await turned(["", () => ["lens.f-number", numbers(2, 5.6)()], events / 10], ended, "lens.f-number, all samples");
+}
+
 // Development alone of a large picture: a small one comes first, then the whole, and no ray is traced.
 const large = async (values) => {
   await anew(values);

@@ -238,6 +238,8 @@ function draw() {
     isAsked = false;
     const picture = shown();
     if (!picture) return;
+    // A tall picture is seen whole.
+    canvas.style.setProperty("--aspect", String(picture.width / picture.height));
     const across = Math.max(1, Math.round(canvas.clientWidth * devicePixelRatio));
     const down = Math.round((across * picture.height) / picture.width);
     if (canvas.width !== across || canvas.height !== down) [canvas.width, canvas.height] = [across, down];

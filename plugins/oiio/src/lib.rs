@@ -18,6 +18,3 @@ mod writing;
 
 pub use library::OpenImageIo;
 pub use writing::{Samples, Written, make_texture, write};
-
-#[cfg(test)]
-mod oiio_tests;

@@ -1,8 +1,14 @@
 //! What the picture sources and the program do not see: files that fill disks, repetitions, limits.
 
-use crate::{OpenImageIo, Samples, Written, write};
+#![cfg(feature = "oiio")]
+
+/// Its test runs with those of this file.
+#[path = "../src/stated.rs"]
+mod stated;
+
 use spectra_core::resources::Found;
 use spectra_pictures::library::{FilePicture, PictureLibrary, PictureLimits, TiledExr, library};
+use spectra_plugin_oiio::{OpenImageIo, Samples, Written, write};
 use std::fs::File;
 use std::io::{Read, Seek};
 
