@@ -7,6 +7,7 @@ use polarization::PolarizationColumns;
 
 use crate::loss::{ALIVE, Loss};
 use crate::numbers::{Numbers, RayColumns, StageKey, StageNumbers};
+use std::ops::Range;
 
 /// Eight values on one cache line.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
@@ -98,6 +99,8 @@ pub struct RayBatch {
     line: Vec<u32>,
     tag: Vec<u32>,
     surface: u32,
+    /// Of [`RayBatch::compact`].
+    stretches: Vec<Range<usize>>,
     scratch: Scratch,
 }
 
@@ -203,6 +206,7 @@ impl RayBatch {
             line: vec![CONTINUUM; capacity],
             tag: vec![0; capacity],
             surface: 0,
+            stretches: Vec::new(),
             scratch: Scratch {
                 radius2: column(),
                 radius2_is_true: false,
@@ -436,31 +440,55 @@ impl RayBatch {
     /// Drops the rays that have ended and keeps the order of the rest. Returns how many are left.
     pub fn compact(&mut self) -> usize {
         let len = self.len;
+        let Some(first) = self.states().iter().position(|state| *state != ALIVE) else { return len };
+        let mut stretches = std::mem::take(&mut self.stretches);
+        stretches.clear();
+        let mut ended = first;
+        while ended < len {
+            let states = &self.states()[ended..];
+            let from = ended + states.iter().position(|state| *state == ALIVE).unwrap_or(states.len());
+            let states = &self.states()[from..];
+            let upto = from + states.iter().position(|state| *state != ALIVE).unwrap_or(states.len());
+            stretches.push(from..upto);
+            ended = upto;
+        }
         let mut c = self.columns_mut();
-        let mut to = 0;
-        for from in 0..len {
-            c.x[to] = c.x[from];
-            c.y[to] = c.y[from];
-            c.z[to] = c.z[from];
-            c.l[to] = c.l[from];
-            c.m[to] = c.m[from];
-            c.n[to] = c.n[from];
-            c.wavelength_nm[to] = c.wavelength_nm[from];
-            c.index[to] = c.index[from];
-            c.weight[to] = c.weight[from];
-            c.line[to] = c.line[from];
-            c.tag[to] = c.tag[from];
-            if let Some(path) = c.optical_path_mm.get(from).copied() {
-                c.optical_path_mm[to] = path;
-            }
+        let to = first + stretches.iter().map(ExactSizeIterator::len).sum::<usize>();
+        let columns = [&mut c.x, &mut c.y, &mut c.z, &mut c.l, &mut c.m, &mut c.n];
+        for column in columns.into_iter().chain([&mut c.wavelength_nm, &mut c.index, &mut c.weight]) {
+            close_up(column, first, &stretches);
+        }
+        close_up(c.line, first, &stretches);
+        close_up(c.tag, first, &stretches);
+        if !c.optical_path_mm.is_empty() {
+            close_up(c.optical_path_mm, first, &stretches);
+        }
+        for (to, from) in (first..).zip(stretches.iter().cloned().flatten()) {
             c.polarization.keep(from, to);
             c.numbers.keep(from, to);
-            let state = c.state[from];
-            c.state[to] = state;
-            to += usize::from(state == ALIVE);
         }
+        c.state[..to].fill(ALIVE);
+        self.stretches = stretches;
         self.len = to;
         to
+    }
+}
+
+/// A stretch of at most this many is moved one by one.
+const SHORT: usize = 8;
+
+/// Moves the values of `stretches` behind the first `to`, in their order.
+#[inline(always)]
+fn close_up<T: Copy>(column: &mut [T], mut to: usize, stretches: &[Range<usize>]) {
+    for stretch in stretches {
+        if stretch.len() > SHORT {
+            column.copy_within(stretch.clone(), to);
+        } else {
+            for (k, from) in stretch.clone().enumerate() {
+                column[to + k] = column[from];
+            }
+        }
+        to += stretch.len();
     }
 }
 
@@ -495,5 +523,33 @@ mod tests {
         assert_eq!(batch.tags(), [0, 3, 6, 9]);
         assert_eq!(batch.positions()[0], [0.0, 3.0, 6.0, 9.0]);
         assert_eq!(batch.alive(), 4);
+    }
+
+    /// Stretches of any length, at the beginning and at the end, all or none of them.
+    #[test]
+    fn compaction_closes_up_any_gaps() {
+        for kind in 0..7_usize {
+            let mut batch = RayBatch::new(200);
+            batch.restart(200);
+            let lives = |i: usize| match kind {
+                0 => true,
+                1 => false,
+                2 => i != 0 && i != 199,
+                3 => i % 2 == 1,
+                4 => i % 37 > 3,
+                5 => i < 100,
+                _ => i >= 50,
+            };
+            let c = batch.columns_mut();
+            for i in 0..200 {
+                (c.weight[i], c.tag[i]) = (i as f64, i as u32);
+                c.state[i] = if lives(i) { ALIVE } else { Loss::Missed.state(1) };
+            }
+            let want: Vec<u32> = (0..200).filter(|i| lives(*i)).map(|i| i as u32).collect();
+            assert_eq!(batch.compact(), want.len());
+            assert_eq!(batch.tags(), want);
+            assert!(batch.weights().iter().zip(&want).all(|(weight, i)| *weight == f64::from(*i)));
+            assert_eq!(batch.alive(), want.len());
+        }
     }
 }

@@ -80,11 +80,55 @@ impl Absorption {
         per_mm.iter().any(|a| *a > 0.0).then(|| Self { per_mm: steps.collect() })
     }
 
-    /// At places of the grid: 1/mm.
-    pub(crate) fn fill(&self, cells: &[u64], parts: &[f64], per_mm: &mut [f64]) {
+    /// At a place of the grid: 1/mm.
+    pub(crate) fn at(&self, (cell, part): (u64, f64)) -> f64 {
+        let [here, step] = self.per_mm[cell as usize];
+        here + part * step
+    }
+}
+
+/// What all media of a tracer absorb: tabulated side by side, so that a wavelength finds them all at one place of the memory.
+#[derive(Clone, Debug)]
+pub(crate) struct Absorptions {
+    pub(crate) grid: Grid,
+    /// Which table is a medium's; `None` where it absorbs nothing.
+    table_of: Vec<Option<usize>>,
+    /// Number of tables.
+    tables: usize,
+    /// By steps of the grid, then by tables, as [`Absorption`] has it.
+    per_mm: Vec<[f64; 2]>,
+}
+
+impl Absorptions {
+    /// Of some media, by their own tables; `None` where none of them absorbs anything.
+    pub(crate) fn of(grid: Grid, media: &[Option<Absorption>]) -> Option<Self> {
+        let absorbing: Vec<&Absorption> = media.iter().flatten().collect();
+        let number = |medium: usize| media[..medium].iter().flatten().count();
+        let table_of = media.iter().enumerate().map(|(k, own)| own.as_ref().map(|_| number(k))).collect();
+        let per_mm = (0..grid.count).flat_map(|cell| absorbing.iter().map(move |own| own.per_mm[cell])).collect();
+        (!absorbing.is_empty()).then_some(Self { grid, table_of, tables: absorbing.len(), per_mm })
+    }
+
+    /// Number of tables.
+    pub(crate) fn tables(&self) -> usize {
+        self.tables
+    }
+
+    /// Which one is a medium's.
+    pub(crate) fn table_of(&self, medium: usize) -> Option<usize> {
+        self.table_of[medium]
+    }
+
+    /// What a table says at a place of the grid: 1/mm.
+    pub(crate) fn at(&self, table: usize, (cell, part): (u64, f64)) -> f64 {
+        let [here, step] = self.per_mm[cell as usize * self.tables + table];
+        here + part * step
+    }
+
+    /// The same at many places.
+    pub(crate) fn fill(&self, table: usize, cells: &[u64], parts: &[f64], per_mm: &mut [f64]) {
         for ((to, cell), part) in per_mm.iter_mut().zip(cells).zip(parts) {
-            let [here, step] = self.per_mm[*cell as usize];
-            *to = here + part * step;
+            *to = self.at(table, (*cell, *part));
         }
     }
 }
@@ -108,5 +152,24 @@ mod tests {
                 assert!((0.0..=1.0).contains(part), "{nm}: {part}");
             }
         }
+    }
+
+    /// Side by side each medium has what its own table says, bit by bit.
+    #[test]
+    fn media_keep_their_own_absorption() {
+        let grid = Grid::over(380.0, 400.25);
+        let table = |by: f64| Absorption { per_mm: (0..grid.count).map(|k| [by * k as f64, 0.1 * by]).collect() };
+        let media = [None, Some(table(0.3)), None, Some(table(0.7))];
+        let all = Absorptions::of(grid, &media).expect("two absorb");
+        assert_eq!((all.tables(), all.table_of(0), all.table_of(3)), (2, None, Some(1)));
+        let (cells, parts): (Vec<u64>, Vec<f64>) = (0..grid.count as u64).map(|k| (k, 1.0 / (k + 2) as f64)).unzip();
+        let mut found = vec![0.0; cells.len()];
+        for (medium, own) in media.iter().enumerate().filter_map(|(k, own)| Some((k, own.as_ref()?))) {
+            all.fill(all.table_of(medium).expect("it absorbs"), &cells, &parts, &mut found);
+            for ((cell, part), found) in cells.iter().zip(&parts).zip(&found) {
+                assert_eq!(found.to_bits(), own.at((*cell, *part)).to_bits());
+            }
+        }
+        assert!(Absorptions::of(grid, &[None, None]).is_none());
     }
 }

@@ -5,7 +5,7 @@ mod route;
 
 pub use route::Route;
 
-use crate::absorption::{Absorption, Grid};
+use crate::absorption::{Absorption, Absorptions, Grid};
 use crate::aperture::{Opening, Shape};
 use crate::coating::Coating;
 use crate::ledger::{Booked, Ledger, StepLedger, living};
@@ -42,6 +42,9 @@ pub enum Indices {
     At(f64),
 }
 
+/// Who looks at rays behind each element.
+type Seen<'a> = &'a mut dyn FnMut(usize, &RayBatch);
+
 /// Where indices do not depend on the wavelength, rays may have any down to this, nm.
 const ANY_NM: f64 = 200.0;
 
@@ -66,9 +69,7 @@ pub struct Tracer {
     /// Whether it traces what is scattered at least once, in place of what never is.
     scattered: bool,
     /// What each medium absorbs, where that is asked for.
-    absorptions: Vec<Option<Absorption>>,
-    /// Where they are tabulated, if there are any.
-    absorption_grid: Option<Grid>,
+    absorptions: Option<Absorptions>,
     isa: Isa,
 }
 
@@ -92,6 +93,13 @@ impl Work {
     pub fn with_ledger(mut self) -> Self {
         self.ledger = Some((Ledger::default(), Booked::new(self.capacity)));
         self
+    }
+
+    /// Weighs rays by what media absorbed of them so far.
+    fn weigh_absorbed(&mut self, rays: &mut RayBatch, isa: Isa) {
+        if let Some(noted) = &mut self.before {
+            noted.weigh_absorbed(rays, isa);
+        }
     }
 
     /// The ledger so far, which begins anew; `None` if none is kept.
@@ -154,7 +162,7 @@ impl Tracer {
         let grid = Grid::over(min_nm, max_nm);
         let absorption = |medium: &Medium| lens.absorption.then(|| Absorption::of(medium, lens.year, &grid)).flatten();
         let absorptions: Vec<Option<Absorption>> = lens.media.iter().map(|m| absorption(&m.medium)).collect();
-        let absorption_grid = absorptions.iter().any(Option::is_some).then_some(grid);
+        let absorptions = Absorptions::of(grid, &absorptions);
         let elements = lens.elements.clone();
         let layers: Vec<Vec<Layer>> = elements.iter().map(|e| e.layers.clone()).collect();
         let image_pose = lens.image_pose;
@@ -173,7 +181,6 @@ impl Tracer {
             layers,
             scattered: false,
             absorptions,
-            absorption_grid,
             isa,
         })
     }
@@ -235,13 +242,18 @@ impl Tracer {
         self.elements.iter().any(|e| e.onion_rings.is_some())
     }
 
+    /// Room for what is taken down in front of surfaces.
+    fn before(&self, capacity: usize) -> Before {
+        Before::new(capacity, self.absorptions.as_ref().map_or(0, Absorptions::tables))
+    }
+
     /// Whether light keeps its weight through it.
     fn is_ideal(&self) -> bool {
         let clear =
             |e: &Element, coating: &Coating| e.solid.is_none() || (*coating == Coating::Ideal && e.reflectance == 1.0);
         self.passages.iter().all(|p| *p == Passage::All)
             && self.elements.iter().zip(&self.solid_coatings).all(|(e, coating)| clear(e, coating))
-            && self.absorptions.iter().all(Option::is_none)
+            && self.absorptions.is_none()
             && !self.scattered
             && !self.has_rings()
     }
@@ -251,7 +263,7 @@ impl Tracer {
     #[must_use]
     pub fn work(&self, capacity: usize) -> Work {
         let media = self.media.iter().map(|medium| IndexColumnPair::new(medium, capacity)).collect();
-        let before = (!self.is_ideal()).then(|| Before::new(capacity));
+        let before = (!self.is_ideal()).then(|| self.before(capacity));
         Work { media, losses: LossCounts::default(), compact: true, capacity, before, ledger: None }
     }
 
@@ -265,12 +277,12 @@ impl Tracer {
     #[must_use]
     pub fn work_for_light(&self, capacity: usize) -> Work {
         let work = self.work(capacity);
-        Work { before: work.before.map(Before::swift), ..work }
+        Work { before: work.before.map(|before| before.swift(capacity)), ..work }
     }
 
     /// The same for whoever asks only which rays pass, and where: their weights are left as they are.
     pub(crate) fn work_unweighed(&self, capacity: usize) -> Work {
-        Work { before: self.has_rings().then(|| Before::new(capacity)), ..self.work_in_place(capacity) }
+        Work { before: self.has_rings().then(|| self.before(capacity)), ..self.work_in_place(capacity) }
     }
 
     /// Traces a batch straight through the lens. Forward, it enters in the frame of the lens and leaves in that of the image
@@ -282,7 +294,7 @@ impl Tracer {
     /// Traces a batch along a path. At the front rays enter and leave in the frame of the lens, at the rear in that of the image
     /// plane.
     pub fn follow(&self, route: &Route, rays: &mut RayBatch, work: &mut Work) {
-        self.follow_each(route, rays, work, |_, _| {});
+        self.go(route, rays, work, None);
     }
 
     /// The same, and shows the batch behind each element of the path: `seen` gets the element's number, and the rays where they met it, in
@@ -294,10 +306,14 @@ impl Tracer {
         work: &mut Work,
         mut seen: impl FnMut(usize, &RayBatch),
     ) {
+        self.go(route, rays, work, Some(&mut seen));
+    }
+
+    fn go(&self, route: &Route, rays: &mut RayBatch, work: &mut Work, mut seen: Option<Seen<'_>>) {
         self.refractive_indices(rays, work);
         let turns = route.legs.iter().any(|leg| leg.turns);
         if (turns || rays.optical_path_mm().is_some() || rays.is_polarized()) && work.before.is_none() {
-            work.before = Some(Before::new(work.capacity));
+            work.before = Some(self.before(work.capacity));
         }
         if let Some((ledger, booked)) = &mut work.ledger {
             ledger.steps.resize(route.legs.len(), StepLedger::default());
@@ -307,11 +323,15 @@ impl Tracer {
         let mut alive = rays.len();
         for (step, leg) in route.legs.iter().enumerate() {
             let ended = self.interact(rays, work, leg, step, self.isa);
-            seen(leg.at, rays);
+            if let Some(seen) = &mut seen {
+                work.weigh_absorbed(rays, self.isa);
+                seen(leg.at, rays);
+            }
             if ended > 0 {
                 self.count(rays, leg.at as u32 + 1, &mut work.losses);
                 alive -= ended;
                 if work.compact && alive * 2 < rays.len() {
+                    work.weigh_absorbed(rays, self.isa);
                     rays.compact();
                     self.refractive_indices(rays, work);
                     if let Some((_, booked)) = &mut work.ledger {
@@ -320,6 +340,7 @@ impl Tracer {
                 }
             }
         }
+        work.weigh_absorbed(rays, self.isa);
         if let Some((ledger, _)) = &mut work.ledger {
             ledger.arrived += living(rays);
         }
@@ -349,7 +370,7 @@ impl Tracer {
         }
         let len = rays.len();
         let passage = &self.passages[leg.at];
-        let absorption = self.absorptions[leg.before].as_ref().filter(|_| leg.inside);
+        let absorption = self.absorptions.as_ref().filter(|_| leg.inside).and_then(|all| all.table_of(leg.before));
         let carries_path = rays.optical_path_mm().is_some();
         if let Some(noted) = &mut work.before {
             let needs_way = absorption.is_some() || carries_path || leg.turned;
@@ -394,9 +415,10 @@ impl Tracer {
             if carries_path {
                 noted.lengthen(rays, interface.before.n, shift_mm);
             }
-            if let Some(absorption) = absorption {
-                noted.absorb(rays, absorption, shift_mm, isa);
+            if let Some(table) = absorption {
+                noted.absorb(rays, table, shift_mm, isa);
                 if let Some((ledger, booked)) = &mut work.ledger {
+                    noted.weigh_absorbed(rays, isa);
                     booked.settle(rays, &mut ledger.steps[step], |s| &mut s.absorbed);
                 }
             }
@@ -493,7 +515,7 @@ impl Tracer {
         let len = rays.len();
         let n = columns(&work.media[leg.before], len).n;
         let inside = columns(&work.media[solid.medium], len).n;
-        let absorption = self.absorptions[solid.medium].as_ref().zip(self.absorption_grid.as_ref());
+        let absorption = self.absorptions.as_ref().and_then(|all| Some((all, all.table_of(solid.medium)?)));
         let weighs = work.before.is_some();
         if let Some(noted) = &mut work.before {
             noted.note_directions(rays);
@@ -523,11 +545,9 @@ impl Tracer {
                 Ok(passed) => {
                     (c.x[i], c.y[i], c.z[i]) = passed.position.into();
                     (c.l[i], c.m[i], c.n[i]) = passed.direction.into();
-                    if let Some((absorption, grid)) = absorption.filter(|_| weighs) {
-                        let (cell, part) = grid.place(nm);
-                        let mut per_mm = [0.0];
-                        absorption.fill(&[cell], &[part], &mut per_mm);
-                        mirrors[i] *= spectra_core::math::exp(-per_mm[0] * passed.inside_mm);
+                    if let Some((all, table)) = absorption.filter(|_| weighs) {
+                        let per_mm = all.at(table, all.grid.place(nm));
+                        mirrors[i] *= spectra_core::math::exp(-per_mm * passed.inside_mm);
                     }
                     // A batch that carries its optical path has a column of it.
                     paths.push((i, n[i] * passed.outside_mm + inside[i] * passed.inside_mm));
@@ -581,7 +601,7 @@ impl Tracer {
         c.wavelength_nm[0] = wavelength_nm;
         let mut work = self.work_in_place(1);
         if work.before.is_none() && route.legs.iter().any(|leg| leg.turns) {
-            work.before = Some(Before::new(1));
+            work.before = Some(self.before(1));
         }
         self.refractive_indices(&rays, &mut work);
         let mut path = RayPath { points: vec![position], elements: Vec::new(), direction, end: None };
@@ -610,8 +630,8 @@ impl Tracer {
                 self.isa.run(Evaluate { medium, wavelength_nm: rays.wavelengths_nm(), n, inverse });
             }
         }
-        if let (Some(grid), Some(noted)) = (&self.absorption_grid, &mut work.before) {
-            noted.note_wavelengths(rays, grid, self.isa);
+        if let Some(noted) = &mut work.before {
+            noted.note_wavelengths(rays, self.absorptions.as_ref(), self.isa);
         }
     }
 

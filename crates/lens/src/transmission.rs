@@ -4,7 +4,7 @@
 //! here. The normal of a refracting surface is parallel to n' d' - n d, so that the angles follow from the directions
 //! before and after, whatever the kind of surface.
 
-use crate::absorption::{Absorption, Grid, Locate};
+use crate::absorption::{Absorptions, Locate};
 use crate::coating::{Amplitudes, CHUNK, Coating, Films, Polarizing, Sides, Singles, Swift};
 use crate::{Element, Lens, LensMedium};
 use spectra_core::Loss;
@@ -150,40 +150,56 @@ impl Lens {
 pub(crate) struct Before {
     position: [Column<f64>; 3],
     direction: [Column<f64>; 3],
-    /// What the medium absorbs at each ray's wavelength, 1/mm.
-    per_mm: Column<f64>,
+    /// What each medium that absorbs does at each ray's wavelength, 1/mm.
+    per_mm: Vec<Column<f64>>,
     /// Where the wavelengths lie in the tables of absorption.
     cell: Column<u64>,
     part: Column<f64>,
-    /// Whether layers are worked out in single precision, where that is within 1e-6.
+    /// What was absorbed since rays were weighed by it: the sum of that times the way.
+    depth: Column<f64>,
+    /// Whether anything was.
+    absorbed: bool,
+    /// Whether layers are worked out in single precision, where that is within 1e-6; then one over each ray's wavelength, 1/nm.
     swift: bool,
+    per_nm: Vec<f32>,
 }
 
 impl Before {
-    /// Room for batches of up to `capacity` rays.
-    pub(crate) fn new(capacity: usize) -> Self {
+    /// Room for batches of up to `capacity` rays, in a lens with so many media that absorb.
+    pub(crate) fn new(capacity: usize, absorbing: usize) -> Self {
         let column = || Column::new(capacity);
         let three = || std::array::from_fn(|_| column());
         Self {
             position: three(),
             direction: three(),
-            per_mm: column(),
+            per_mm: (0..absorbing).map(|_| column()).collect(),
             cell: Column::new(capacity),
             part: column(),
+            depth: column(),
+            absorbed: false,
             swift: false,
+            per_nm: Vec::new(),
         }
     }
 
-    /// The same, with clear layers in single precision.
-    pub(crate) fn swift(self) -> Self {
-        Self { swift: true, ..self }
+    /// The same, with clear layers in single precision; for batches of up to `capacity` rays.
+    pub(crate) fn swift(self, capacity: usize) -> Self {
+        let per_nm = vec![0.0; capacity];
+        Self { swift: true, per_nm, ..self }
     }
 
-    /// Takes down where the wavelengths lie in tables of absorption.
-    pub(crate) fn note_wavelengths(&mut self, rays: &RayBatch, grid: &Grid, isa: Isa) {
+    /// Takes down what media absorb at the wavelengths of rays, and what layers need of those.
+    pub(crate) fn note_wavelengths(&mut self, rays: &RayBatch, absorptions: Option<&Absorptions>, isa: Isa) {
         let len = rays.len();
+        if self.swift {
+            isa.run(Invert { wavelength_nm: rays.wavelengths_nm(), per_nm: &mut self.per_nm[..len] });
+        }
+        let Some(absorptions) = absorptions else { return };
         let (cell, part) = (self.cell.slice_mut(len), self.part.slice_mut(len));
-        isa.run(Locate { grid: *grid, wavelengths_nm: rays.wavelengths_nm(), cell, part });
+        isa.run(Locate { grid: absorptions.grid, wavelengths_nm: rays.wavelengths_nm(), cell, part });
+        for (table, per_mm) in self.per_mm.iter_mut().enumerate() {
+            absorptions.fill(table, cell, part, per_mm.slice_mut(len));
+        }
     }
 
     /// Takes down whereto rays run.
@@ -207,15 +223,28 @@ impl Before {
         }
     }
 
-    /// Weighs rays that arrived on a surface by what a medium absorbed on the way; `shift_mm` is the surface's vertex in
-    /// the frame of what was noted.
-    pub(crate) fn absorb(&mut self, rays: &mut RayBatch, absorption: &Absorption, shift_mm: f64, isa: Isa) {
+    /// Takes down what a medium absorbed of rays on their way to a surface, by its table; `shift_mm` is the surface's vertex in the
+    /// frame of what was noted. Their weights follow in [`Before::weigh_absorbed`]: one power for the whole way through a lens.
+    pub(crate) fn absorb(&mut self, rays: &RayBatch, table: usize, shift_mm: f64, isa: Isa) {
         let len = rays.len();
-        let per_mm = self.per_mm.slice_mut(len);
-        absorption.fill(self.cell.slice(len), self.part.slice(len), per_mm);
         let position = self.position.each_ref().map(|column| column.slice(len));
         let direction = self.direction.each_ref().map(|column| column.slice(len));
-        isa.run(Absorb { rays: rays.weighing(), position, direction, per_mm, shift_mm });
+        let columns = [position, direction, rays.positions()];
+        let (per_mm, depth) = (self.per_mm[table].slice(len), self.depth.slice_mut(len));
+        if self.absorbed {
+            isa.run(Absorb::<false> { columns, per_mm, shift_mm, depth });
+        } else {
+            isa.run(Absorb::<true> { columns, per_mm, shift_mm, depth });
+        }
+        self.absorbed = true;
+    }
+
+    /// Weighs rays by what was absorbed of them so far.
+    pub(crate) fn weigh_absorbed(&mut self, rays: &mut RayBatch, isa: Isa) {
+        if std::mem::take(&mut self.absorbed) {
+            let depth = self.depth.slice(rays.len());
+            isa.run(WeighAbsorbed { rays: rays.weighing(), depth });
+        }
     }
 
     /// Ends rays that met a surface behind them: a steep reflection may send light sideways, past the surface that comes next. Says
@@ -328,9 +357,9 @@ impl Before {
                 let at = Pass { rays, before, n, n_after };
                 match kernel {
                     Kernel::Bare => isa.run(PassBare(at)),
-                    Kernel::One(.., Some(swift)) if self.swift => isa.run(PassSwift(at, swift)),
-                    Kernel::Two(.., Some(swift)) if self.swift => isa.run(PassSwift(at, swift)),
-                    Kernel::Three(.., Some(swift)) if self.swift => isa.run(PassSwift(at, swift)),
+                    Kernel::One(.., Some(swift)) if self.swift => isa.run(PassSwift(at, swift, &self.per_nm)),
+                    Kernel::Two(.., Some(swift)) if self.swift => isa.run(PassSwift(at, swift, &self.per_nm)),
+                    Kernel::Three(.., Some(swift)) if self.swift => isa.run(PassSwift(at, swift, &self.per_nm)),
                     Kernel::One(films, halvings, _) => at.through(films, *halvings, isa),
                     Kernel::Two(films, halvings, _) => at.through(films, *halvings, isa),
                     Kernel::Three(films, halvings, _) => at.through(films, *halvings, isa),
@@ -356,33 +385,52 @@ fn way_mm(i: usize, from: [&[f64]; 3], to: [&[f64]; 3], d: [&[f64]; 3], shift_mm
     step[0] * d[0][i] + step[1] * d[1][i] + step[2] * d[2][i]
 }
 
-struct Absorb<'a> {
-    rays: Weighing<'a>,
-    position: [&'a [f64]; 3],
-    direction: [&'a [f64]; 3],
+/// Adds what is absorbed on the way, or begins with it.
+struct Absorb<'a, const FIRST: bool> {
+    /// Positions and directions before, positions after.
+    columns: [[&'a [f64]; 3]; 3],
     per_mm: &'a [f64],
     shift_mm: f64,
+    depth: &'a mut [f64],
 }
 
-impl Vectorized for Absorb<'_> {
+impl<const FIRST: bool> Vectorized for Absorb<'_, FIRST> {
     type Output = ();
     #[inline(always)]
     fn run(self) {
-        let c = self.rays;
-        absorb_loop([self.position, self.direction, c.position], self.per_mm, self.shift_mm, c.state, c.weight);
+        let Self { columns, per_mm, shift_mm, depth } = self;
+        let len = depth.len();
+        let [from, d, to] = columns.map(|columns| columns.map(|column| &column[..len]));
+        let per_mm = &per_mm[..len];
+        for i in 0..len {
+            let way_mm = way_mm(i, from, to, d, shift_mm);
+            let way_mm = if way_mm > 0.0 { way_mm } else { 0.0 };
+            let own = per_mm[i] * way_mm;
+            depth[i] = if FIRST { own } else { depth[i] + own };
+        }
+    }
+}
+
+struct WeighAbsorbed<'a> {
+    rays: Weighing<'a>,
+    depth: &'a [f64],
+}
+
+impl Vectorized for WeighAbsorbed<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run(self) {
+        weigh_absorbed(self.depth, self.rays.state, self.rays.weight);
     }
 }
 
 /// Columns are separate arguments, so the compiler knows that weights overlap none of the others.
 #[inline(always)]
-fn absorb_loop([from, d, to]: [[&[f64]; 3]; 3], per_mm: &[f64], shift_mm: f64, state: &[u64], weight: &mut [f64]) {
+fn weigh_absorbed(depth: &[f64], state: &[u64], weight: &mut [f64]) {
     let len = weight.len();
-    let [from, d, to] = [from, d, to].map(|columns| columns.map(|column| &column[..len]));
-    let (per_mm, state) = (&per_mm[..len], &state[..len]);
+    let (depth, state) = (&depth[..len], &state[..len]);
     for i in 0..len {
-        let way_mm = way_mm(i, from, to, d, shift_mm);
-        let way_mm = if way_mm > 0.0 { way_mm } else { 0.0 };
-        let left = math::exp_within_700(-(per_mm[i] * way_mm));
+        let left = math::exp_within_700(-depth[i]);
         weight[i] *= if state[i] == ALIVE { left } else { 1.0 };
     }
 }
@@ -449,7 +497,7 @@ impl Pass<'_> {
     }
 }
 
-/// As [`absorb_loop`].
+/// As [`weigh_absorbed`].
 #[inline(always)]
 fn weigh_loop(
     [before, after]: [[&[f64]; 3]; 2],
@@ -490,13 +538,30 @@ impl<const N: usize, const H: usize> Vectorized for PassFilms<'_, N, H> {
     }
 }
 
-struct PassSwift<'a, const N: usize>(Pass<'a>, &'a Swift<N>);
+/// One over the wavelengths, 1/nm.
+struct Invert<'a> {
+    wavelength_nm: &'a [f64],
+    per_nm: &'a mut [f32],
+}
+
+impl Vectorized for Invert<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run(self) {
+        for (nm, per_nm) in self.wavelength_nm.iter().zip(self.per_nm) {
+            *per_nm = 1.0 / *nm as f32;
+        }
+    }
+}
+
+/// With one over the wavelengths, 1/nm.
+struct PassSwift<'a, const N: usize>(Pass<'a>, &'a Swift<N>, &'a [f32]);
 
 impl<const N: usize> Vectorized for PassSwift<'_, N> {
     type Output = ();
     #[inline(always)]
     fn run(self) {
-        let (Pass { rays: c, before, n, n_after }, swift) = (self.0, *self.1);
+        let (Pass { rays: c, before, n, n_after }, swift, per_nm) = (self.0, *self.1, self.2);
         let len = c.weight.len();
         for first in (0..len).step_by(CHUNK) {
             let span = first..(first + CHUNK).min(len);
@@ -504,7 +569,8 @@ impl<const N: usize> Vectorized for PassSwift<'_, N> {
                 &swift,
                 before.map(|column| &column[span.clone()]),
                 c.direction.map(|column| &column[span.clone()]),
-                [&n[span.clone()], &n_after[span.clone()], &c.wavelength_nm[span.clone()]],
+                [&n[span.clone()], &n_after[span.clone()]],
+                &per_nm[span.clone()],
                 &c.state[span.clone()],
                 &mut c.weight[span],
             );
@@ -518,24 +584,26 @@ fn swift_chunk<const N: usize>(
     swift: &Swift<N>,
     [bl, bm, bn]: [&[f64]; 3],
     [l, m, nz]: [&[f64]; 3],
-    [n, n_after, wavelength_nm]: [&[f64]; 3],
+    [n, n_after]: [&[f64]; 2],
+    per_nm: &[f32],
     state: &[u64],
     weight: &mut [f64],
 ) {
     let len = weight.len().min(CHUNK);
     let [bl, bm, bn, l, m, nz] = [bl, bm, bn, l, m, nz].map(|column| &column[..len]);
-    let [n, n_after, wavelength_nm] = [n, n_after, wavelength_nm].map(|column| &column[..len]);
+    let [n, n_after] = [n, n_after].map(|column| &column[..len]);
     let (state, weight) = (&state[..len], &mut weight[..len]);
     const ZERO: Singles = [0.0; CHUNK];
-    let (mut from, mut to, mut step, mut h, mut nm, mut back) = (ZERO, ZERO, ZERO, ZERO, ZERO, ZERO);
+    let (mut from, mut to, mut step, mut h, mut inverse, mut back) = (ZERO, ZERO, ZERO, ZERO, ZERO, ZERO);
+    inverse[..len].copy_from_slice(&per_nm[..len]);
     for i in 0..len {
         let turn = [l[i] - bl[i], m[i] - bm[i], nz[i] - bn[i]];
         h[i] = (0.5 * (turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2])) as f32;
         step[i] = (n_after[i] - n[i]) as f32;
-        (from[i], to[i], nm[i]) = (n[i] as f32, n_after[i] as f32, wavelength_nm[i] as f32);
+        (from[i], to[i]) = (n[i] as f32, n_after[i] as f32);
     }
     for i in 0..CHUNK {
-        back[i] = swift.reflects(from[i], to[i], step[i], h[i], 1.0 / nm[i]);
+        back[i] = swift.reflects(from[i], to[i], step[i], h[i], inverse[i]);
     }
     for i in 0..len {
         let usable = ((n_after[i] - n[i]).abs() >= SAME_INDEX) & (state[i] == ALIVE);

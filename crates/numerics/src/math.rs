@@ -7,6 +7,21 @@ pub use libm::{
     acos, asin, atan, atan2, cbrt, cos, erf, erfc, exp, expm1, j0, j1, lgamma, log, log1p, log2, log10, pow, sin, tan,
 };
 
+/// The whole part of a number from 0 to `last` (a whole number below 2^32), as an index and as a number; the nearer end of what lies
+/// beyond, 0 of what is no number. Branch-free.
+///
+/// A cast would be done one by one. Beside 2^52 there is room for whole numbers only, in the last bits: that takes additions.
+#[inline(always)]
+#[must_use]
+pub fn whole(at: f64, last: f64) -> (u32, f64) {
+    const WHOLE: f64 = (1_u64 << 52) as f64;
+    let at = if at > 0.0 { at } else { 0.0 };
+    let at = if at < last { at } else { last };
+    let nearest = (at + WHOLE) - WHOLE;
+    let below = if nearest > at { nearest - 1.0 } else { nearest };
+    ((below + WHOLE).to_bits() as u32, below)
+}
+
 /// Sine and cosine of `x` in [-pi/4, pi/4] rad, within 1.2e-16; branch-free.
 ///
 /// Taylor series to x^15 and x^16: the first term left out is below 5e-17 and 3e-18 there.
@@ -171,6 +186,20 @@ mod tests {
             assert!((found - exact).abs() <= 1e-7 * exact.abs().max(1.0), "{x}: {found} {exact}");
         }
         assert_eq!((exp2_single(0.0), log2_single(1.0), exp2_single(-1e9)), (1.0, 0.0, exp2_single(-126.0)));
+    }
+
+    #[test]
+    fn whole_parts_are_those_of_a_cast() {
+        for i in 0..100_000 {
+            let at = f64::from(i) * 0.125 - 100.0;
+            let want = (at as u32).min(7777);
+            assert_eq!(whole(at, 7777.0), (want, f64::from(want)), "{at}");
+        }
+        let below = |x: f64| f64::from_bits(x.to_bits() - 1);
+        for (at, want) in [(below(3.0), 2), (3.0, 3), (f64::NAN, 0), (f64::INFINITY, 9), (-0.0, 0), (below(9.0), 8)] {
+            assert_eq!(whole(at, 9.0), (want, f64::from(want)), "{at}");
+        }
+        assert_eq!(whole(4e9, 4_294_967_295.0).0, 4_000_000_000);
     }
 
     /// Moments of a uniform unit disk: E r^2 = 1/2, E r^4 = 1/3, E x = 0, E x^2 = 1/4.

@@ -190,14 +190,18 @@ impl Backward {
                     self.steps(state, pixels, sample, count as usize, &mut |step, rays| blame.look(step, rays));
                     return Err(blame.error(&self.pipeline, state, self.scale));
                 }
-                for (i, tag) in state.rays.tags().iter().enumerate() {
-                    let (pixel, only) = pixel_and_channel(*tag);
+                // The samples of a pixel lie together.
+                let mut from = 0;
+                for tags in state.rays.tags().chunk_by(|a, b| a == b) {
+                    let (pixel, only) = pixel_and_channel(tags[0]);
                     let cell = tile.at(pixel) as usize * channels;
+                    let rays = from..from + tags.len();
                     for (channel, integers) in state.integers.iter().enumerate() {
                         if only.is_none_or(|only| only as usize == self.pipeline.recorded[channel]) {
-                            local[cell + channel] += integers[i];
+                            local[cell + channel] += integers[rays.clone()].iter().sum::<i64>();
                         }
                     }
+                    from = rays.end;
                 }
                 sample += count;
             }

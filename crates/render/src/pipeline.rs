@@ -2,7 +2,7 @@
 
 use crate::error::RenderError;
 use crate::response::Responses;
-use crate::sums::{OwnSums, Round};
+use crate::sums::OwnSums;
 use spectra_core::batch::Column;
 use spectra_core::isa::Vectorized;
 use spectra_core::loss::ALIVE;
@@ -280,19 +280,8 @@ impl ThreadState {
 
     /// Writes each ray's contribution to each channel as integers; false where one does not fit.
     pub(crate) fn contributions(&mut self, pipeline: &Pipeline, scale: f64) -> bool {
-        let len = self.rays.len();
-        let mut good = true;
-        for (channel, integers) in self.integers.iter_mut().enumerate() {
-            let values = &mut self.values[..len];
-            pipeline.isa.run(pipeline.responses.weigh(
-                channel,
-                self.rays.wavelengths_nm(),
-                self.rays.weights(),
-                values,
-            ));
-            good &= pipeline.isa.run(Round { values, scale, out: &mut integers[..len] });
-        }
-        good
+        let (nm, weights) = (self.rays.wavelengths_nm(), self.rays.weights());
+        pipeline.isa.run(pipeline.responses.count(nm, weights, scale, &mut self.integers))
     }
 }
 

@@ -1,7 +1,6 @@
 //! Exact sums: 64-bit fixed point, so that the order of adding cannot matter.
 
 use spectra_core::batch::pixel_and_channel;
-use spectra_core::isa::Vectorized;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicI64, Ordering::Relaxed};
 
@@ -24,28 +23,36 @@ pub(crate) fn scale_for(largest: f64) -> f64 {
     libm::ldexp(1.0, BITS_OF_LARGEST - exponent)
 }
 
-/// Rounds scaled values to integers, ties to even, by the same operations on every tier.
+/// A scaled value as the nearest integer, ties to even, by the same operations on every tier; and whether it fits.
+#[inline(always)]
+pub(crate) fn rounded(scaled: f64) -> (i64, bool) {
+    // Adding 1.5 * 2^52 leaves the integer in the low bits.
+    const MAGIC: f64 = 6_755_399_441_055_744.0;
+    const BITS: i64 = MAGIC.to_bits() as i64;
+    ((scaled + MAGIC).to_bits() as i64 - BITS, scaled.abs() < LARGEST_CONTRIBUTION)
+}
+
+/// [`rounded`] values times a scale.
+#[cfg(test)]
 pub(crate) struct Round<'a> {
     pub values: &'a [f64],
     pub scale: f64,
     pub out: &'a mut [i64],
 }
 
-impl Vectorized for Round<'_> {
+#[cfg(test)]
+impl spectra_core::isa::Vectorized for Round<'_> {
     /// Whether every value fits.
     type Output = bool;
     #[inline(always)]
     fn run(self) -> bool {
-        // Adding 1.5 * 2^52 leaves the integer in the low bits.
-        const MAGIC: f64 = 6_755_399_441_055_744.0;
-        const BITS: i64 = MAGIC.to_bits() as i64;
-        let mut bad = 0_u64;
+        let mut good = true;
         for (value, out) in self.values.iter().zip(self.out) {
-            let scaled = value * self.scale;
-            bad |= u64::from(!(scaled.abs() < LARGEST_CONTRIBUTION));
-            *out = (scaled + MAGIC).to_bits() as i64 - BITS;
+            let (whole, fits) = rounded(value * self.scale);
+            *out = whole;
+            good &= fits;
         }
-        bad == 0
+        good
     }
 }
 

@@ -17,6 +17,7 @@ use spectra_color::{RgbSpace, chromaticity, matrix};
 use spectra_core::Isa;
 use spectra_core::batch::CONTINUUM;
 use spectra_core::isa::Vectorized;
+use spectra_core::math::whole;
 use spectra_core::params::{Faults, Params};
 use spectra_core::registry::Context;
 use spectra_core::spectral::{BAND, Line, SpectralPower};
@@ -125,6 +126,9 @@ impl ColorModel for Smooth {
     }
 }
 
+/// A wavelength beside the band of the illuminant.
+const BESIDE: u32 = u32::MAX;
+
 /// Rays that are worked on side by side.
 const CHUNK: usize = 64;
 type Each<T> = [T; CHUNK];
@@ -138,8 +142,9 @@ struct Looked {
     along: [Each<f64>; 2],
     /// The three coefficients of each of the four points.
     corners: [[Each<f32>; 3]; 4],
-    /// Of the illuminant.
-    power: Each<f64>,
+    /// The illuminant before and behind a wavelength, and how far this lies from one to the other.
+    lit: [Each<f64>; 2],
+    between: Each<f64>,
 }
 
 impl Looked {
@@ -149,7 +154,8 @@ impl Looked {
             point: [0; CHUNK],
             along: [[0.0; CHUNK]; 2],
             corners: [[[0.0; CHUNK]; 3]; 4],
-            power: [0.0; CHUNK],
+            lit: [[0.0; CHUNK]; 2],
+            between: [0.0; CHUNK],
         }
     }
 }
@@ -172,7 +178,17 @@ impl Vectorized for Evaluate<'_> {
         let len = weight.len().min(CHUNK);
         let (colors, wavelength_nm, line, weight) =
             (&colors[..len], &wavelength_nm[..len], &line[..len], &mut weight[..len]);
-        let Looked { scale, point, along, corners, power } = looked;
+        let Looked { scale, point, along, corners, lit, between } = looked;
+        let (grid, continuum) = (model.light.grid, &model.light.continuum[..]);
+        let (last, top) = ((grid.count - 2) as f64, (grid.count - 1) as f64);
+        let mut shade = [0_u32; CHUNK];
+        for i in 0..len {
+            let p = (wavelength_nm[i] - grid.start_nm) / grid.step_nm;
+            let inside = (p >= 0.0) & (p <= top);
+            let (at, below) = whole(if inside { p } else { 0.0 }, last);
+            between[i] = if inside { p - below } else { 0.0 };
+            shade[i] = if inside { at } else { BESIDE };
+        }
         for i in 0..len {
             let [r, g, b] = colors[i].map(f64::from).map(|v| if v > 0.0 { v } else { 0.0 });
             let (is_red, is_green) = ((r >= g) & (r >= b), g >= b);
@@ -197,7 +213,13 @@ impl Vectorized for Evaluate<'_> {
                     column[i] = value;
                 }
             }
-            power[i] = model.power(wavelength_nm[i], line[i]);
+            [lit[0][i], lit[1][i]] = if (line[i] == CONTINUUM) & (shade[i] != BESIDE) {
+                let pair = &continuum[shade[i] as usize..][..2];
+                [pair[0], pair[1]]
+            } else {
+                // The same on both sides.
+                [model.power(wavelength_nm[i], line[i]); 2]
+            };
         }
         let [p00, p01, p10, p11] = corners;
         for i in 0..len {
@@ -205,7 +227,8 @@ impl Vectorized for Evaluate<'_> {
                 let [a, b, c, d] = [p00[k][i], p01[k][i], p10[k][i], p11[k][i]].map(f64::from);
                 mix([a, b, c, d], along[0][i], along[1][i])
             });
-            weight[i] *= power[i] * scale[i] * sigmoid(quadratic(mixed, wavelength_nm[i]));
+            let power = lit[0][i] + (lit[1][i] - lit[0][i]) * between[i];
+            weight[i] *= power * scale[i] * sigmoid(quadratic(mixed, wavelength_nm[i]));
         }
     }
 }

@@ -8,6 +8,7 @@ use spectra_core::cover::CoverStack;
 use spectra_core::frame::FrameSize;
 use spectra_core::isa::{Isa, Vectorized};
 use spectra_core::loss::ALIVE;
+use spectra_core::math::whole;
 use spectra_core::numbers::RayNumbers;
 use spectra_core::stage::{Launch, Receive};
 use spectra_core::{Loss, RayBatch};
@@ -177,6 +178,7 @@ impl Vectorized for ReceiveBatch<'_> {
     fn run(self) {
         let FrameSize { width_px, height_px, width_mm, height_mm } = self.size;
         let (columns, rows) = (f64::from(width_px), f64::from(height_px));
+        let (last_column, last_row) = (columns - 1.0, rows - 1.0);
         let beside = Loss::OutOfFrame.state(0);
         let c = self.rays.columns_mut();
         let len = c.x.len();
@@ -192,8 +194,7 @@ impl Vectorized for ReceiveBatch<'_> {
             let row = (0.5 + py / height_mm) * rows;
             // Also where a ray runs along the plane and the place is no number.
             let inside = (column >= 0.0) & (row >= 0.0) & (column < columns) & (row < rows);
-            // Both are below 32 768 inside, so the signed cast, which every tier has for whole vectors, is exact.
-            let pixel = (row as i32 as u32).wrapping_mul(width_px).wrapping_add(column as i32 as u32);
+            let pixel = whole(row, last_row).0 * width_px + whole(column, last_column).0;
             let alive = state[i] == ALIVE;
             (x[i], y[i], z[i]) = (px, py, 0.0);
             tag[i] = if alive & inside { pixel } else { tag[i] };
@@ -225,7 +226,7 @@ impl Vectorized for PlaceBatch<'_> {
             // Pixels number below 2^28 and columns below 2^16: a quotient just under a whole number is at least
             // 2^-16 under it, so the division of doubles cannot round up to it, and truncation gives the row.
             let pixel = f64::from(tag[i] as i32);
-            let row = f64::from((pixel / columns) as i32);
+            let (_, row) = whole(pixel / columns, rows - 1.0);
             let column = pixel - row * columns;
             // As FrameSize::point_of has it, to the bit.
             x[i] = (0.5 - (column + u[i]) / columns) * width_mm;

@@ -187,10 +187,10 @@ impl Vectorized for DrawQuantiles<'_> {
     type Output = ();
     #[inline(always)]
     fn run(self) {
-        for ((u, wavelength), weight) in self.u.iter().zip(self.wavelength_nm).zip(self.weight) {
-            let (nm, inverse) = self.quantiles.draw(*u);
-            *wavelength = nm;
-            *weight *= inverse;
+        const CHUNK: usize = crate::quantiles::CHUNK;
+        let columns = self.u.chunks(CHUNK).zip(self.wavelength_nm.chunks_mut(CHUNK)).zip(self.weight.chunks_mut(CHUNK));
+        for ((u, wavelength_nm), weight) in columns {
+            self.quantiles.draw_chunk(u, wavelength_nm, weight);
         }
     }
 }

@@ -300,33 +300,36 @@ impl ChartTexture {
         let peak_over_mean = if average > 0.0 { peak / average } else { 1.0 };
         Self { chart, palette, mean, peak_over_mean, edge: Edge::Black }
     }
+
+    /// The inks at up to [`CHUNK`] places, also beyond the border.
+    fn folded_ink(&self, x_mm: &[f64], y_mm: &[f64], inks: &mut [u16], isa: Isa) {
+        let [x, y] = [(x_mm, self.chart.width_mm()), (y_mm, self.chart.height_mm())].map(|(places, side)| {
+            let mut folded = [0.0_f64; CHUNK];
+            for (out, at) in folded.iter_mut().zip(places) {
+                *out = self.edge.place(at + 0.5 * side, side).map_or(f64::NAN, |at| at - 0.5 * side);
+            }
+            folded
+        });
+        self.chart.ink_at_batch(&x[..x_mm.len()], &y[..y_mm.len()], inks, isa);
+    }
 }
+
+/// Places that are looked at together.
+const CHUNK: usize = 256;
 
 impl Texture for ChartTexture {
     fn shine(&self, at: Places<'_>, weight: &mut [f64], isa: Isa) {
-        let mut inks = [0_u16; 256];
-        let mut folded = [[0.0_f64; 256]; 2];
-        let sides = [self.chart.width_mm(), self.chart.height_mm()];
-        for start in (0..weight.len()).step_by(256) {
-            let end = (start + 256).min(weight.len());
+        let mut inks = [0_u16; CHUNK];
+        for start in (0..weight.len()).step_by(CHUNK) {
+            let end = (start + CHUNK).min(weight.len());
             let inks = &mut inks[..end - start];
-            let mut places = [&at.x_mm[start..end], &at.y_mm[start..end]];
-            if self.edge != Edge::Black {
-                let [x, y] = &mut folded;
-                for ((out, place), side) in [x, y].into_iter().zip(&mut places).zip(sides) {
-                    for (out, at) in out.iter_mut().zip(*place) {
-                        *out = self.edge.place(at + 0.5 * side, side).map_or(f64::NAN, |at| at - 0.5 * side);
-                    }
-                    *place = &out[..end - start];
-                }
+            let (x_mm, y_mm) = (&at.x_mm[start..end], &at.y_mm[start..end]);
+            if self.edge == Edge::Black {
+                self.chart.ink_at_batch(x_mm, y_mm, inks, isa);
+            } else {
+                self.folded_ink(x_mm, y_mm, inks, isa);
             }
-            self.chart.ink_at_batch(places[0], places[1], inks);
-            let part = Places {
-                x_mm: &at.x_mm[start..end],
-                y_mm: &at.y_mm[start..end],
-                wavelength_nm: &at.wavelength_nm[start..end],
-                line: &at.line[start..end],
-            };
+            let part = Places { x_mm, y_mm, wavelength_nm: &at.wavelength_nm[start..end], line: &at.line[start..end] };
             isa.run(self.palette.shine(inks, part, &mut weight[start..end]));
         }
     }

@@ -3,6 +3,7 @@
 use crate::flat::Places;
 use spectra_core::batch::CONTINUUM;
 use spectra_core::isa::Vectorized;
+use spectra_core::math::whole;
 use spectra_core::spectral::{Grid, Line, SpectralPower};
 
 /// Radiance spectra of numbered inks; number `len` and beyond is dark.
@@ -69,24 +70,107 @@ impl Vectorized for Shine<'_> {
     type Output = ();
     #[inline(always)]
     fn run(self) {
-        let p = self.palette;
-        let (grid, width) = (p.grid, p.lines_nm.len());
-        let inverse_step = 1.0 / grid.step_nm;
-        let (last, top) = (grid.count - 2, (grid.count - 1) as f64);
-        for i in 0..self.weight.len() {
-            let ink = (self.ink[i] as usize).min(p.inks);
-            let line = self.at.line[i];
-            if line == CONTINUUM {
-                let place = (self.at.wavelength_nm[i] - grid.start_nm) * inverse_step;
-                let inside = place >= 0.0 && place <= top;
-                let cell = (if inside { place } else { 0.0 } as usize).min(last);
-                let f = place - cell as f64;
-                let row = ink * grid.count + cell;
-                let (a, b) = (p.tables[row], p.tables[row + 1]);
-                self.weight[i] *= if inside { a + (b - a) * f } else { 0.0 };
+        let Self { palette, ink, at: Places { wavelength_nm, line, .. }, weight } = self;
+        for start in (0..weight.len()).step_by(CHUNK) {
+            let part = start..(start + CHUNK).min(weight.len());
+            let (ink, nm, line) = (&ink[part.clone()], &wavelength_nm[part.clone()], &line[part.clone()]);
+            let weight = &mut weight[part];
+            if line.iter().all(|line| *line == CONTINUUM) {
+                palette.shine_smoothly(ink, nm, weight);
             } else {
-                let at = line as usize;
-                self.weight[i] *= if at < width { p.powers[ink * width + at] } else { 0.0 };
+                for i in 0..weight.len() {
+                    weight[i] *= palette.at(ink[i], nm[i], line[i]);
+                }
+            }
+        }
+    }
+}
+
+/// Rays that are worked on at a time.
+const CHUNK: usize = 64;
+
+impl Palette {
+    /// The radiance of an ink.
+    #[inline(always)]
+    fn at(&self, ink: u16, wavelength_nm: f64, line: u32) -> f64 {
+        let (grid, width) = (self.grid, self.lines_nm.len());
+        let ink = (ink as usize).min(self.inks);
+        if line == CONTINUUM {
+            let (last, top) = (grid.count - 2, (grid.count - 1) as f64);
+            let place = (wavelength_nm - grid.start_nm) * (1.0 / grid.step_nm);
+            let inside = place >= 0.0 && place <= top;
+            let cell = (if inside { place } else { 0.0 } as usize).min(last);
+            let f = place - cell as f64;
+            let row = ink * grid.count + cell;
+            let (a, b) = (self.tables[row], self.tables[row + 1]);
+            if inside { a + (b - a) * f } else { 0.0 }
+        } else {
+            let at = line as usize;
+            if at < width { self.powers[ink * width + at] } else { 0.0 }
+        }
+    }
+
+    /// Multiplies up to [`CHUNK`] weights by [`Palette::at`], none of them on a line: what needs no table in vectors.
+    #[inline(always)]
+    fn shine_smoothly(&self, ink: &[u16], wavelength_nm: &[f64], weight: &mut [f64]) {
+        let grid = self.grid;
+        let len = weight.len().min(CHUNK);
+        let (ink, wavelength_nm, weight) = (&ink[..len], &wavelength_nm[..len], &mut weight[..len]);
+        let (inverse_step, inks, count) = (1.0 / grid.step_nm, self.inks as u32, grid.count as u32);
+        let (last, top) = ((grid.count - 2) as f64, (grid.count - 1) as f64);
+        let (mut row, mut part, mut ends) = ([0_u32; CHUNK], [0.0; CHUNK], [[0.0; CHUNK]; 2]);
+        for i in 0..len {
+            let place = (wavelength_nm[i] - grid.start_nm) * inverse_step;
+            let inside = (place >= 0.0) & (place <= top);
+            let (cell, below) = whole(if inside { place } else { 0.0 }, last);
+            part[i] = place - below;
+            // The last row is dark.
+            row[i] = if inside { u32::from(ink[i]).min(inks) } else { inks } * count + cell;
+        }
+        for i in 0..len {
+            let at = row[i] as usize;
+            let pair = &self.tables[at..at + 2];
+            (ends[0][i], ends[1][i]) = (pair[0], pair[1]);
+        }
+        let [from, to] = &ends;
+        for i in 0..len {
+            let place = part[i];
+            // Beside the band it may be no number.
+            let radiance = from[i] + (to[i] - from[i]) * place;
+            weight[i] *= if (place >= 0.0) & (place <= 1.0) { radiance } else { 0.0 };
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use spectra_core::Isa;
+
+    /// In vectors each ray gets what its ink has alone, bit by bit, on every tier; beside the band and beyond the inks nothing.
+    #[test]
+    fn side_by_side_is_as_alone() {
+        let grid = Grid { start_nm: 380.0, step_nm: 5.0, count: 71 };
+        let spectrum = |k: usize| SpectralPower {
+            grid,
+            continuum: (0..grid.count).map(|i| 0.1 + ((i * 37 + k * 11) % 29) as f64).collect(),
+            lines: vec![Line { wavelength_nm: 546.0 + k as f64, power: 2.0 }],
+        };
+        let palette = Palette::new(grid, &[0, 1, 2].map(spectrum));
+        let many = 3 * CHUNK + 5;
+        let mut nm: Vec<f64> = (0..many).map(|i| 370.0 + 1.93 * i as f64).collect();
+        (nm[0], nm[1], nm[2], nm[3]) = (380.0, grid.end_nm(), f64::NAN, f64::INFINITY);
+        let ink: Vec<u16> = (0..many).map(|i| [0, 1, 2, 3, u16::MAX][i % 5]).collect();
+        let mut line = vec![CONTINUUM; many];
+        line[2 * CHUNK + 3] = 1;
+        line[2 * CHUNK + 4] = 9;
+        for isa in Isa::available() {
+            let mut weight = vec![1.5; many];
+            let at = Places { x_mm: &nm, y_mm: &nm, wavelength_nm: &nm, line: &line };
+            isa.run(palette.shine(&ink, at, &mut weight));
+            for i in 0..many {
+                let want = 1.5 * palette.at(ink[i], nm[i], line[i]);
+                assert_eq!(weight[i].to_bits(), want.to_bits(), "{} at {}", ink[i], nm[i]);
             }
         }
     }

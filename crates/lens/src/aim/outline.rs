@@ -20,8 +20,8 @@ pub(super) const RING: f64 = 0.025;
 const AROUND: f64 = (1.0 + RING) * (1.0 + RING) - 1.0;
 /// Corners of one outline, the first one twice, how it moves and grows over its zones of wavelength and depth, and [`thin`].
 pub(super) const STRIDE: usize = CORNERS + 5;
-/// Rays that are aimed at once.
-const CHUNK: usize = 256;
+/// Rays that are aimed at once: what is looked up for them stays in the first level of the cache.
+const CHUNK: usize = 64;
 /// Steps of the azimuth's measure in [`Outlines::turns`].
 pub(super) const TURN_STEPS: usize = 4096;
 
@@ -68,7 +68,7 @@ impl Colors {
     /// A wavelength in zones from the lower end of the band; its ends stand for what is beyond.
     #[inline(always)]
     pub fn at(&self, nm: f64) -> f64 {
-        let x = (nm - self.from_nm) / (self.to_nm - self.from_nm);
+        let x = (nm - self.from_nm) * (1.0 / (self.to_nm - self.from_nm));
         // Also a band of no width has a zone.
         let x = if x > 0.0 { x } else { 0.0 };
         let x = if x < 1.0 { x } else { 1.0 };
@@ -147,20 +147,19 @@ struct Looked {
     /// Where in its zones of wavelength and depth a ray is, -0.5 to 0.5.
     inner: [[f64; CHUNK]; 2],
     /// Ends of the outer edge of the triangle, mm.
-    edge: [[f64; CHUNK]; 4],
+    edge: [[f32; CHUNK]; 4],
     /// Middle of the zone: radial, across, axial; normal of its plane: radial, axial; 0 where nothing passes.
     zone: [[f64; CHUNK]; 6],
     /// How outlines change over the zone: shift along and across, mm; growth.
     drift: [[f64; CHUNK]; 4],
-    /// How far they move for this wavelength and depth, along and across, mm.
-    moved: [[f64; CHUNK]; 2],
+    /// How they change with wavelength and depth, as [`Outlines::corners`] has it behind the corners; and [`thin`].
+    change: [[f32; CHUNK]; 7],
     /// Where in the zone the point is, -0.5 to 0.5.
     part: [f64; CHUNK],
     /// Unit vector from the axis to the point.
     out: [[f64; CHUNK]; 2],
-    /// Place on the outer edge from its first end to its second, the squared radius as a share of all, size of the outline, and
-    /// [`thin`].
-    place: [[f64; CHUNK]; 4],
+    /// Place on the outer edge from its first end to its second, and the squared radius as a share of all.
+    place: [[f64; CHUNK]; 2],
 }
 
 impl<const BACKWARD: bool, const RINGS: bool, const MANY: bool> Vectorized for Draw<'_, BACKWARD, RINGS, MANY> {
@@ -175,10 +174,10 @@ impl<const BACKWARD: bool, const RINGS: bool, const MANY: bool> Vectorized for D
             edge: [[0.0; CHUNK]; 4],
             zone: [[0.0; CHUNK]; 6],
             drift: [[0.0; CHUNK]; 4],
-            moved: [[0.0; CHUNK]; 2],
+            change: [[0.0; CHUNK]; 7],
             part: [0.0; CHUNK],
             out: [[0.0; CHUNK]; 2],
-            place: [[0.0; CHUNK]; 4],
+            place: [[0.0; CHUNK]; 2],
         };
         let (mut dark, mut from) = (0, 0);
         while from < c.x.len() {
@@ -260,7 +259,6 @@ fn look<const BACKWARD: bool, const RINGS: bool, const MANY: bool>(
     for i in 0..len {
         let (row, slot, ex, ey, zones) =
             table.place::<BACKWARD, MANY>(table.eye_z_mm, table.angle_scale, x[i], y[i], z[i]);
-        let step = whole(azimuth_measure(ex, ey) * (0.25 * TURN_STEPS as f64), TURN_STEPS as f64);
         let (squared, turns) = disk::<RINGS>(u[i], v[i]);
         let along = turns * CORNERS as f64;
         let triangle = whole(along, (CORNERS - 1) as f64);
@@ -275,14 +273,19 @@ fn look<const BACKWARD: bool, const RINGS: bool, const MANY: bool>(
         looked.place[1][i] = squared;
         looked.at[0][i] = row as u32;
         looked.at[1][i] = slot as u32;
-        looked.at[2][i] = step as u32;
         looked.at[3][i] = band as u32;
         looked.at[4][i] = triangle as u32;
+    }
+    if !outlines.turns.is_empty() {
+        for i in 0..len {
+            let measure = azimuth_measure(looked.out[0][i], looked.out[1][i]);
+            looked.at[2][i] = whole(measure * (0.25 * TURN_STEPS as f64), TURN_STEPS as f64) as u32;
+        }
     }
     for i in 0..len {
         let [row, slot, step, band, triangle] = looked.at.each_ref().map(|column| column[i] as usize);
         let slot = slot & (SLOTS - 1);
-        let f = &table.rows[row].0;
+        let f = &table.rows[row].0[slot];
         let mut at = row;
         if !outlines.turns.is_empty() {
             at = row * outlines.azimuths + usize::from(outlines.turns[step & (TURN_STEPS - 1)]);
@@ -290,24 +293,20 @@ fn look<const BACKWARD: bool, const RINGS: bool, const MANY: bool>(
         let at = at * outlines.zones + slot.min(outlines.zones - 1);
         let first = (at * outlines.colors.zones + band) * STRIDE;
         let outline = &outlines.corners[first..first + STRIDE];
-        let (by_color, by_depth) = (looked.inner[0][i], looked.inner[1][i]);
-        let [shift, deeper, grown] = std::array::from_fn(|k| outline[CORNERS + 1 + k]);
-        let size = 1.0 + by_color * f64::from(grown[0]) + by_depth * f64::from(grown[1]);
-        for (k, column) in looked.moved.iter_mut().enumerate() {
-            column[i] = by_color * f64::from(shift[k]) + by_depth * f64::from(deeper[k]);
+        let [[sa, sc], [da, dc], [gc, gd], [thin, _]] = std::array::from_fn(|k| outline[CORNERS + 1 + k]);
+        for (column, value) in looked.change.iter_mut().zip([sa, sc, da, dc, gc, gd, thin]) {
+            column[i] = value;
         }
         let [a, b] = [outline[triangle], outline[triangle + 1]];
         for (column, value) in looked.edge.iter_mut().zip([a[0], a[1], b[0], b[1]]) {
-            column[i] = f64::from(value);
+            column[i] = value;
         }
         for (column, field) in looked.zone.iter_mut().zip([0, 1, 2, 6, 7, 8]) {
-            column[i] = f[field][slot];
+            column[i] = f[field];
         }
         for (column, value) in looked.drift.iter_mut().zip(&f[10..14]) {
-            column[i] = value[slot];
+            column[i] = *value;
         }
-        looked.place[2][i] = size;
-        looked.place[3][i] = f64::from(outline[STRIDE - 1][0]);
     }
 }
 
@@ -331,25 +330,30 @@ fn turn<const BACKWARD: bool>(
     let (l, m, n) = (&mut l[..len], &mut m[..len], &mut n[..len]);
     let (weight, state) = (&mut weight[..len], &mut state[..len]);
     let ended = Loss::Vignetted.state(table.surface);
-    let [ax, ay, bx, by] = &looked.edge;
     let [zr, za, zz, nr, nz, area] = &looked.zone;
     let [out_x, out_y] = &looked.out;
-    let [on_edge, squared, size, thin] = &looked.place;
-    let [moved_a, moved_c] = &looked.moved;
+    let [on_edge, squared] = &looked.place;
+    let [by_color, by_depth] = &looked.inner;
     let [shift_a, shift_c, growth_a, growth_c] = &looked.drift;
     let mut dark = 0_u64;
     for i in 0..len {
         let (ex, ey) = (out_x[i], out_y[i]);
-        let doubled = ax[i] * by[i] - ay[i] * bx[i];
-        let (radius2, stands_for) = within(squared[i], thin[i] * doubled);
-        let radius = radius2.sqrt() * size[i];
-        let p = radius * (ax[i] + on_edge[i] * (bx[i] - ax[i]));
-        let q = radius * (ay[i] + on_edge[i] * (by[i] - ay[i]));
+        let [ax, ay, bx, by] = looked.edge.each_ref().map(|column| f64::from(column[i]));
+        let [color_a, color_c, depth_a, depth_c, of_color, of_depth, thin] =
+            looked.change.each_ref().map(|column| f64::from(column[i]));
+        let (color, depth) = (by_color[i], by_depth[i]);
+        let size = 1.0 + color * of_color + depth * of_depth;
+        let (moved_a, moved_c) = (color * color_a + depth * depth_a, color * color_c + depth * depth_c);
+        let doubled = ax * by - ay * bx;
+        let (radius2, stands_for) = within(squared[i], thin * doubled);
+        let radius = radius2.sqrt() * size;
+        let p = radius * (ax + on_edge[i] * (bx - ax));
+        let q = radius * (ay + on_edge[i] * (by - ay));
         let (along, beside) = if turned { (p * ex + q * ey, q * ex - p * ey) } else { (p, q) };
         let part = looked.part[i];
         let (grown_a, grown_c) = (1.0 + part * growth_a[i], 1.0 + part * growth_c[i]);
         let (along, beside) =
-            (along * grown_a + (part * shift_a[i] + moved_a[i]), beside * grown_c + (part * shift_c[i] + moved_c[i]));
+            (along * grown_a + (part * shift_a[i] + moved_a), beside * grown_c + (part * shift_c[i] + moved_c));
         let radial = zr[i] + along * nz[i];
         let across = za[i] + beside;
         let tx = radial * ex - across * ey;
@@ -359,7 +363,7 @@ fn turn<const BACKWARD: bool>(
         let inverse = 1.0 / (dx * dx + dy * dy + dz * dz).sqrt();
         let (dl, dm, dn) = (dx * inverse, dy * inverse, dz * inverse);
         let cosine = ((dl * ex + dm * ey) * nr[i] + dn * nz[i]).abs();
-        let mm2 = 0.5 * CORNERS as f64 * stands_for * doubled * (size[i] * size[i]) * (grown_a * grown_c);
+        let mm2 = 0.5 * CORNERS as f64 * stands_for * doubled * (size * size) * (grown_a * grown_c);
         let mut solid_angle = mm2 * cosine * inverse * inverse;
         if BACKWARD {
             // The imager's normal stands in the place of the direction.

@@ -42,6 +42,11 @@ impl Reach {
         self.0.iter().all(|r| *r <= 0.0)
     }
 
+    /// How large it is, in a scale of its own.
+    pub fn area(&self) -> f64 {
+        self.0.iter().map(|r| r * r).sum()
+    }
+
     /// In a direction, mm.
     pub fn at(&self, direction: usize) -> f64 {
         self.0[direction]
@@ -89,15 +94,17 @@ impl Reach {
         self.0.iter_mut().for_each(|r| *r *= by);
     }
 
-    /// Holds a place that was overlooked and what is close to it, unless it lies within `slight` times the reach. Says whether it
-    /// was farther out than `by` times the reach.
-    pub fn raise(&mut self, place: [f64; 2], slight: f64, by: f64) -> bool {
+    /// Holds a place that was overlooked and what is close to it, unless it lies within `slight` times the reach: as far, or, where
+    /// `alike` says so, at most in proportion, since along the tips of a star neighbors differ by more than what was overlooked. Says
+    /// whether it was farther out than `by` times the reach.
+    pub fn raise(&mut self, place: [f64; 2], slight: f64, by: f64, alike: bool) -> bool {
         let (middle, r) = ((share(place) * DIRECTIONS as f64).round() as usize, length(place));
         let own = self.0[middle % DIRECTIONS];
         if r > slight * own {
+            let (upto, growth) = (1.002 * r, 1.002 * r / own);
             for d in middle + DIRECTIONS - 1..=middle + DIRECTIONS + 1 {
                 let own = &mut self.0[d % DIRECTIONS];
-                *own = own.max(1.002 * r);
+                *own = own.max(if alike { upto.min(*own * growth) } else { upto });
             }
         }
         r > by * own
@@ -282,9 +289,19 @@ mod tests {
     fn what_was_overlooked_is_held() {
         let mut reach = Reach::EMPTY;
         reach.include(&ring(100, [0.0; 2], |_| 1.0));
-        assert!(reach.raise([0.0, 1.2], 1.01, 1.06));
-        assert!(!reach.raise([0.0, 1.19], 1.01, 1.0));
-        assert!(!reach.raise([1.005, 0.0], 1.01, 1.06));
+        assert!(reach.raise([0.0, 1.2], 1.01, 1.06, false));
+        assert!(!reach.raise([0.0, 1.19], 1.01, 1.0, false));
+        assert!(!reach.raise([1.005, 0.0], 1.01, 1.06, false));
         assert!(reach.at(DIRECTIONS / 4) >= 1.2 && reach.at(0) < 1.001);
+        // Beside a place on the flank of a tip, its slope stays.
+        let mut tip = Reach::EMPTY;
+        tip.include(&ring(8, [0.0; 2], |k| if k % 2 == 0 { 10.0 } else { 3.0 }));
+        let (before, d) = (tip.clone(), DIRECTIONS / 16);
+        let r = 1.01 * tip.at(d);
+        let place = Reach::way(d).map(|w| w * r);
+        assert!(!tip.raise(place, 1.008, 1.025, true) && tip.at(d) >= r);
+        for beside in [d - 1, d, d + 1] {
+            assert!((1.0..1.013).contains(&(tip.at(beside) / before.at(beside))), "{beside}");
+        }
     }
 }

@@ -15,6 +15,7 @@ use spectra_core::loss::ALIVE;
 use spectra_core::math::{atan2, sin_cos_turns};
 use spectra_core::numbers::Numbers;
 use spectra_core::workers::{Workers, each_of};
+use std::borrow::Cow;
 
 /// What the search of zones goes by.
 struct Searched<'a> {
@@ -207,21 +208,36 @@ impl Task<'_> {
         if !self.effort.fineness().outlines {
             return Some((region.zone(self.geometry.eye_z_mm), Vec::new()));
         }
-        (region.drift, region.by_band) = region.drifts(lattice, at, bands);
         let folds = opening.map_or(1, |opening| opening.folds);
         let views = lattice.views(at, opening, &colors);
         let each = looks / at.azimuths / folds;
+        let sector = |look: usize| Sector {
+            from: if opening.is_some() { look as f64 / looks as f64 } else { turns_of(at).0 },
+            to: if opening.is_some() { (look + 1) as f64 / looks as f64 } else { turns_of(at).1 },
+            turned: looks > 1,
+            opening: opening.is_some(),
+        };
+        let seen = (opening, views.as_deref());
+        let reaches = |region: &Region| -> Vec<Vec<Reach>> {
+            (0..each).map(|look| region.reaches(lattice, at, &sector(look), seen, bands)).collect()
+        };
+        (region.drift, region.by_band) = region.drifts(lattice, at, bands, None);
+        let mut all_reaches = reaches(&region);
+        // What passes moves as the rims do, or as the opening does: whatever leaves less to aim at.
+        if let (Some(opening), Some(views)) = seen {
+            let area = |all: &[Vec<Reach>]| all.iter().flatten().map(Reach::area).sum::<f64>();
+            let (drift, by_band) = region.drifts(lattice, at, bands, Some((opening, views)));
+            let with_opening = Region { drift, by_band, ..region };
+            let others = reaches(&with_opening);
+            if area(&others) < area(&all_reaches) {
+                (region, all_reaches) = (with_opening, others);
+            }
+        }
         let whole = itself.unwrap_or(prober);
         let mut outlines = Vec::with_capacity(each * folds * bands);
-        for look in 0..each {
-            let sector = Sector {
-                from: if opening.is_some() { look as f64 / looks as f64 } else { turns_of(at).0 },
-                to: if opening.is_some() { (look + 1) as f64 / looks as f64 } else { turns_of(at).1 },
-                turned: looks > 1,
-            };
-            let mut reaches = region.reaches(lattice, at, &sector, views.as_deref(), opening, bands);
+        for (look, mut reaches) in all_reaches.into_iter().enumerate() {
             if !region.fades {
-                self.hold(whole, &region, at, (look, &sector), &colors, &mut reaches);
+                self.hold(whole, &region, at, (look, &sector(look)), &colors, &mut reaches);
             }
             for (color, reach) in reaches.iter().enumerate() {
                 let outline = reach.corners();
@@ -284,7 +300,7 @@ impl Task<'_> {
             let states = prober.pass(probes.iter().map(|p| p.2));
             let mut beyond = false;
             for ((zone, place, _), _) in probes.iter().zip(states).filter(|(_, s)| **s == ALIVE) {
-                beyond |= reaches[*zone].raise(*place, SLIGHT, 1.0 + RING);
+                beyond |= reaches[*zone].raise(*place, SLIGHT, 1.0 + RING, sector.opening);
             }
             if !beyond {
                 break;
@@ -462,6 +478,8 @@ struct Sector {
     to: f64,
     /// Whether places are along x and y of the lens, not along and across the plane of the point.
     turned: bool,
+    /// Whether an opening that is not round is seen in it.
+    opening: bool,
 }
 
 impl Sector {
@@ -491,6 +509,8 @@ impl Sector {
 
 /// How an opening is seen from the ends of a zone, by wavelength.
 type Views = Vec<Vec<Option<Seen>>>;
+/// An opening, and that.
+type Opened<'a> = (&'a Stopped, &'a [Vec<Option<Seen>>]);
 
 /// The ellipse or rectangle of a zone, on its plane.
 struct Region {
@@ -545,8 +565,15 @@ impl Region {
         }
     }
 
-    /// How what passes changes from the lower to the upper ends of the zone, in the mean of them.
-    fn drifts(&self, lattice: &Lattice, at: &ZonePlace, bands: usize) -> (Drift, Vec<BandDrift>) {
+    /// How what passes changes from the lower to the upper ends of the zone, in the mean of them: the edges of what passes the rims,
+    /// or the opening as it is seen.
+    fn drifts(
+        &self,
+        lattice: &Lattice,
+        at: &ZonePlace,
+        bands: usize,
+        opening: Option<Opened<'_>>,
+    ) -> (Drift, Vec<BandDrift>) {
         let known = || {
             let ends = lattice.ends(at)?;
             let depths = ends.len() / lattice.ends_a_depth();
@@ -556,7 +583,13 @@ impl Region {
             let mut by_depth = [[0.0; 4]; 2];
             let mut by_color = vec![[0.0; 4]; colors];
             for (k, (_, node)) in ends.iter().enumerate() {
-                for (line, of_color) in node.edges.iter().zip(&mut by_color) {
+                let lines: Option<Vec<Cow<'_, [DVec3]>>> = match opening {
+                    None => Some(node.edges.iter().map(|line| line[..].into()).collect()),
+                    Some((opening, views)) => {
+                        views[k].iter().map(|seen| Some(opening.around(seen.as_ref()?).into())).collect()
+                    }
+                };
+                for (line, of_color) in lines?.iter().zip(&mut by_color) {
                     let places: Option<Vec<[f64; 2]>> =
                         line.iter().map(|p| self.plane.project(node.point, *p).map(|(place, _)| place)).collect();
                     let bounds = Bounds::around(&places?)?;
@@ -608,11 +641,10 @@ impl Region {
         lattice: &Lattice,
         at: &ZonePlace,
         sector: &Sector,
-        views: Option<&[Vec<Option<Seen>>]>,
-        opening: Option<&Stopped>,
+        seen: (Option<&Stopped>, Option<&[Vec<Option<Seen>>]>),
         bands: usize,
     ) -> Vec<Reach> {
-        let known = if self.fades { None } else { self.by_edges(lattice, at, sector, views, opening, bands) };
+        let known = if self.fades { None } else { self.by_edges(lattice, at, sector, seen, bands) };
         known.unwrap_or_else(|| (0..bands).map(|band| self.whole(sector, band)).collect())
     }
 
@@ -647,8 +679,7 @@ impl Region {
         lattice: &Lattice,
         at: &ZonePlace,
         sector: &Sector,
-        views: Option<&[Vec<Option<Seen>>]>,
-        opening: Option<&Stopped>,
+        (opening, views): (Option<&Stopped>, Option<&[Vec<Option<Seen>>]>),
         bands: usize,
     ) -> Option<Vec<Reach>> {
         let ends = lattice.ends(at)?;

@@ -159,12 +159,25 @@ impl Stopped {
         Some(Seen { middle, by: [a?, b?, c?] })
     }
 
+    /// The circle around the opening, of the mean radius of its edge, as it is seen by a map.
+    pub fn around(&self, seen: &Seen) -> Vec<DVec3> {
+        let radius = self.edge.iter().map(|[x, y]| (x * x + y * y).sqrt()).sum::<f64>() / self.edge.len() as f64;
+        let at = |k: usize| {
+            let (sin, cos) = sin_cos_turns(k as f64 / AROUND as f64);
+            seen.at([radius * cos, radius * sin])
+        };
+        (0..AROUND).map(at).collect()
+    }
+
     /// The edge of the opening as it is seen by a map, from a point of this azimuth.
     pub fn line(&self, seen: &Seen, turns: f64) -> Vec<DVec3> {
         let (sin, cos) = sin_cos_turns(turns - turns.floor());
         self.edge.iter().map(|[x, y]| seen.at([x * cos + y * sin, y * cos - x * sin])).collect()
     }
 }
+
+/// Places on a circle that say how the opening is seen.
+const AROUND: usize = 16;
 
 /// Terms of a map, to the third power: what a pupil needs that is seen through lenses.
 const TERMS: usize = 10;

@@ -4,7 +4,7 @@ use super::outline::{self, Outlines};
 use super::search::Sphere;
 use glam::DVec3;
 use spectra_core::isa::{Isa, Vectorized};
-use spectra_core::math::{concentric_disk, polar_disk, sin_cos_turns};
+use spectra_core::math::{self, concentric_disk, polar_disk, sin_cos_turns};
 use spectra_core::{Loss, RayBatch};
 
 /// How numbers in the unit square become places on the ellipse of a zone.
@@ -19,7 +19,9 @@ pub enum AimPattern {
 /// Zones of the angle in one row; the rest of its slots pass nothing. A power of two, so that a
 /// masked index needs no bounds check and the lookup is a vector gather.
 pub(super) const SLOTS: usize = 128;
-const FIELDS: usize = 14;
+/// Numbers of a zone that are in use, and their room: two lines of a cache.
+const USED: usize = 14;
+pub(super) const FIELDS: usize = 16;
 
 /// The region of one zone, in the frame of the point: `radial` away from the axis through the point,
 /// `across` at right angles to that and to the axis, `axial` along +z.
@@ -66,14 +68,14 @@ impl Zone {
     }
 }
 
-/// Zones of one depth and azimuth, a column a field.
+/// Zones of one depth and azimuth: what a ray asks of its zone lies together.
 #[derive(Clone, Debug)]
-pub(super) struct Row(pub(super) [[f64; SLOTS]; FIELDS]);
+pub(super) struct Row(pub(super) [[f64; FIELDS]; SLOTS]);
 
 impl Row {
     pub fn new(zones: &[Zone]) -> Self {
-        let mut row = [[0.0; SLOTS]; FIELDS];
-        for (k, zone) in zones.iter().enumerate().take(SLOTS - 1) {
+        let mut row = [[0.0; FIELDS]; SLOTS];
+        for (own, zone) in row.iter_mut().zip(zones).take(SLOTS - 1) {
             let [r, z] = zone.half_along;
             let length = (r * r + z * z).sqrt();
             // The plane's normal, radial and axial; of a zone that passes nothing any will do.
@@ -82,9 +84,7 @@ impl Row {
             let flag = if zone.ellipse { 1.0 } else { 0.0 };
             let Drift { shift: [sa, sc], growth: [ga, gc] } = zone.drift;
             let fields = [cr, ca, cz, r, z, zone.half_across, nr, nz, zone.area_mm2(), flag, sa, sc, ga, gc];
-            for (column, value) in row.iter_mut().zip(fields) {
-                column[k] = value;
-            }
+            own[..USED].copy_from_slice(&fields);
         }
         Self(row)
     }
@@ -92,19 +92,19 @@ impl Row {
     /// The same with every region larger: whatever lay in it may be moved by `margin_mm` in its plane.
     fn widened(&self, margin_mm: f64) -> Self {
         let mut row = self.0;
-        for k in 0..SLOTS {
-            let (along, across) = ((row[3][k] * row[3][k] + row[4][k] * row[4][k]).sqrt(), row[5][k]);
-            if row[8][k] <= 0.0 || along <= 0.0 || across <= 0.0 {
+        for row in &mut row {
+            let (along, across) = ((row[3] * row[3] + row[4] * row[4]).sqrt(), row[5]);
+            if row[8] <= 0.0 || along <= 0.0 || across <= 0.0 {
                 continue;
             }
             // An ellipse that grows in proportion holds disks about all of its places; a rectangle needs the margin alone.
-            let ellipse = row[9][k] > 0.0;
+            let ellipse = row[9] > 0.0;
             let grown = |half: f64| if ellipse { 1.0 + margin_mm / along.min(across) } else { 1.0 + margin_mm / half };
             let (f, g) = (grown(along), grown(across));
-            row[3][k] *= f;
-            row[4][k] *= f;
-            row[5][k] *= g;
-            row[8][k] *= f * g;
+            row[3] *= f;
+            row[4] *= f;
+            row[5] *= g;
+            row[8] *= f * g;
         }
         Self(row)
     }
@@ -119,6 +119,14 @@ pub(super) struct Depth {
     pub to: f64,
     /// Number of zones.
     pub zones: usize,
+}
+
+impl Depth {
+    /// Where a depth lies, 0 at the lower end and 1 at the upper one. The division is the same for all rays of a batch.
+    #[inline(always)]
+    fn share(&self, depth: f64) -> f64 {
+        (depth - self.from) * (1.0 / (self.to - self.from))
+    }
 }
 
 /// All zones of one side of a lens.
@@ -161,17 +169,10 @@ pub(super) fn measure(radius: f64, ahead: f64) -> f64 {
     if ahead < 0.0 { 2.0 - share } else { share }
 }
 
-/// The whole part of a number, from 0 to `last`; 0 of what is no number.
-///
-/// A cast would be done one by one. Beside 2^52 there is room for whole numbers only, in the last bits: that takes additions.
+/// [`math::whole`] as an index.
 #[inline(always)]
 pub(super) fn whole(at: f64, last: f64) -> usize {
-    const WHOLE: f64 = (1_u64 << 52) as f64;
-    let at = if at > 0.0 { at } else { 0.0 };
-    let at = if at < last { at } else { last };
-    let nearest = (at + WHOLE) - WHOLE;
-    let below = if nearest > at { nearest - 1.0 } else { nearest };
-    (below + WHOLE).to_bits() as u32 as usize
+    math::whole(at, last).0 as usize
 }
 
 /// [`measure`] for the azimuth of (x, y): in [0, 4), a quarter turn a unit.
@@ -264,8 +265,7 @@ impl Table {
     #[inline(always)]
     pub(super) fn depth_part<const BACKWARD: bool>(&self, x: f64, y: f64, z: f64) -> f64 {
         let ahead = if BACKWARD { z - self.eye_z_mm } else { self.eye_z_mm - z };
-        let share =
-            (Self::depth_of::<BACKWARD>(x * x + y * y, ahead) - self.depth.from) / (self.depth.to - self.depth.from);
+        let share = self.depth.share(Self::depth_of::<BACKWARD>(x * x + y * y, ahead));
         let zones = share * self.depth.zones as f64;
         let at = whole(zones, (self.depth.zones - 1) as f64);
         let part = zones - at as f64 - 0.5;
@@ -292,7 +292,7 @@ impl Table {
         }
         let (row, slot, ex, ey, _) =
             self.place::<BACKWARD, true>(self.eye_z_mm, self.angle_scale, point.x, point.y, point.z);
-        let f = |field: usize| self.rows[row].0[field][slot];
+        let f = |field: usize| self.rows[row].0[slot][field];
         let zone = Zone {
             center: [f(0), f(1), f(2)],
             half_along: [f(3), f(4)],
@@ -325,7 +325,7 @@ impl Table {
         let mut row = 0;
         if MANY {
             let depth = Self::depth_of::<BACKWARD>(radius2, ahead);
-            let share = (depth - self.depth.from) / (self.depth.to - self.depth.from);
+            let share = self.depth.share(depth);
             let at = whole(share * self.depth.zones as f64, (self.depth.zones - 1) as f64);
             row = at * self.azimuths;
             if self.azimuths > 1 {
@@ -392,7 +392,7 @@ impl<const BACKWARD: bool, const RINGS: bool, const MANY: bool> Vectorized for A
 #[inline(always)]
 fn aim_loop<const BACKWARD: bool, const RINGS: bool, const MANY: bool>(
     table: &Table,
-    only: &[[f64; SLOTS]; FIELDS],
+    only: &[[f64; FIELDS]; SLOTS],
     [u, v]: [&[f64]; 2],
     x: &mut [f64],
     y: &mut [f64],
@@ -413,22 +413,22 @@ fn aim_loop<const BACKWARD: bool, const RINGS: bool, const MANY: bool>(
     for i in 0..len {
         let (px, py, pz) = (x[i], y[i], z[i]);
         let (row, k, ex, ey, _) = table.place::<BACKWARD, MANY>(eye, scale, px, py, pz);
-        let f = if MANY { &table.rows[row].0 } else { only };
+        let f = &(if MANY { &table.rows[row].0 } else { only })[k];
         let disk = if RINGS { polar_disk(u[i], v[i]) } else { concentric_disk(u[i], v[i]) };
-        let ellipse = f[9][k] > 0.0;
+        let ellipse = f[9] > 0.0;
         let p = if ellipse { disk.0 } else { 2.0 * u[i] - 1.0 };
         let q = if ellipse { disk.1 } else { 2.0 * v[i] - 1.0 };
-        let radial = f[0][k] + p * f[3][k];
-        let across = f[1][k] + q * f[5][k];
+        let radial = f[0] + p * f[3];
+        let across = f[1] + q * f[5];
         let tx = radial * ex - across * ey;
         let ty = radial * ey + across * ex;
-        let tz = eye + (f[2][k] + p * f[4][k]);
+        let tz = eye + (f[2] + p * f[4]);
         let (dx, dy, dz) = (tx - px, ty - py, tz - pz);
         let inverse = 1.0 / (dx * dx + dy * dy + dz * dz).sqrt();
         let (dl, dm, dn) = (dx * inverse, dy * inverse, dz * inverse);
-        let area = f[8][k];
+        let area = f[8];
         // Solid angle of the share of area, as the point sees it.
-        let cosine = ((dl * ex + dm * ey) * f[6][k] + dn * f[7][k]).abs();
+        let cosine = ((dl * ex + dm * ey) * f[6] + dn * f[7]).abs();
         let mut solid_angle = area * cosine * inverse * inverse;
         if BACKWARD {
             // The imager's normal stands in the place of the direction.

@@ -304,12 +304,7 @@ impl Interior {
             let clear = Absorption::of(&m.medium, lens.year, &grid).filter(|_| lens.absorption);
             let at = |k: usize| {
                 let nm = band_nm[0] + STEP_NM * k as f64;
-                let mut per_mm = [0.0];
-                if let Some(absorption) = &clear {
-                    let (cell, part) = grid.place(nm);
-                    absorption.fill(&[cell], &[part], &mut per_mm);
-                }
-                [m.medium.index(nm), per_mm[0]]
+                [m.medium.index(nm), clear.as_ref().map_or(0.0, |absorption| absorption.at(grid.place(nm)))]
             };
             (0..=steps).map(at).collect()
         };

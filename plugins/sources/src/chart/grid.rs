@@ -11,6 +11,8 @@ use std::collections::HashMap;
 use super::cell::{Cell, Coverage};
 use super::shape::Shape;
 use super::sheet::NO_INK;
+use spectra_core::isa::{Isa, Vectorized};
+use spectra_core::math::whole;
 
 /// Halvings from the whole to a cell.
 const DEPTH: u32 = 10;
@@ -28,6 +30,8 @@ const CELL_MASK: u32 = (BLOCK * BLOCK - 1) as u32;
 const CELL_BITS: u32 = 2 * BLOCK_DEPTH;
 /// Set in the entry of a cell that has a list, whose number stands in the other bits.
 const HAS_LIST: u16 = 1 << 15;
+/// The cell of a point that lies on no chart.
+const OUTSIDE: u32 = u32::MAX;
 /// Points that a batch looks up at a time.
 const CHUNK: usize = 256;
 
@@ -111,16 +115,19 @@ impl Grid {
         if entry & HAS_LIST == 0 || entry == NO_INK { entry } else { self.top_of_list(entry, shapes, x_mm, y_mm) }
     }
 
-    /// [`Grid::ink_at`] for many points. First all of a chunk are looked up, without a branch; then those that have
-    /// a list are decided.
-    pub fn ink_at_batch(&self, shapes: &[(Shape, u16)], x_mm: &[f64], y_mm: &[f64], ink: &mut [u16]) {
+    /// [`Grid::ink_at`] for many points. First the cells of a chunk are found, in vectors; then all are looked up, without a
+    /// branch; then those that have a list are decided.
+    pub fn ink_at_batch(&self, shapes: &[(Shape, u16)], x_mm: &[f64], y_mm: &[f64], ink: &mut [u16], isa: Isa) {
         let chunks = x_mm.chunks(CHUNK).zip(y_mm.chunks(CHUNK)).zip(ink.chunks_mut(CHUNK));
+        let (mut block, mut within) = ([0; CHUNK], [0; CHUNK]);
         for ((x_mm, y_mm), ink) in chunks {
             let count = x_mm.len().min(y_mm.len()).min(ink.len());
+            let (x_mm, y_mm) = (&x_mm[..count], &y_mm[..count]);
+            isa.run(Find { grid: self, x_mm, y_mm, block: &mut block, within: &mut within });
             let mut open = [0_u16; CHUNK];
             let mut opened = 0;
             for i in 0..count {
-                let entry = self.entry(x_mm[i], y_mm[i]);
+                let entry = self.entry_at(block[i], within[i]);
                 ink[i] = entry;
                 open[opened] = i as u16;
                 opened += usize::from(entry & HAS_LIST != 0 && entry != NO_INK);
@@ -135,15 +142,27 @@ impl Grid {
     /// Entry of the cell of a point: an ink, or a list.
     #[inline(always)]
     fn entry(&self, x_mm: f64, y_mm: f64) -> u16 {
-        let inside = x_mm.abs() <= self.half_width_mm && y_mm.abs() <= self.half_height_mm;
-        // Whatever these conversions make of a point outside, the limits keep it to a cell of the grid.
-        let column = ((x_mm + self.half_width_mm) * self.cells_per_mm) as i32 as u32 as usize;
-        let row = ((y_mm + self.half_height_mm) * self.cells_per_mm) as i32 as u32 as usize;
-        let (column, row) = (column.min(self.last[0]), row.min(self.last[1]));
-        let block = self.blocks[row / BLOCK * self.columns + column / BLOCK];
-        let within = (row % BLOCK * BLOCK + column % BLOCK) & (block & CELL_MASK) as usize;
-        let entry = self.cells[(block >> CELL_BITS) as usize + within];
-        if inside { entry } else { NO_INK }
+        let [block, within] = self.place(x_mm, y_mm);
+        self.entry_at(block, within)
+    }
+
+    /// Number of the block of a point, and of its cell within it, or [`OUTSIDE`].
+    #[inline(always)]
+    fn place(&self, x_mm: f64, y_mm: f64) -> [u32; 2] {
+        const SIDE: u32 = BLOCK as u32;
+        let inside = (x_mm.abs() <= self.half_width_mm) & (y_mm.abs() <= self.half_height_mm);
+        // A point outside has some cell of the grid.
+        let (column, _) = whole((x_mm + self.half_width_mm) * self.cells_per_mm, self.last[0] as f64);
+        let (row, _) = whole((y_mm + self.half_height_mm) * self.cells_per_mm, self.last[1] as f64);
+        let within = row % SIDE * SIDE + column % SIDE;
+        [row / SIDE * self.columns as u32 + column / SIDE, if inside { within } else { OUTSIDE }]
+    }
+
+    #[inline(always)]
+    fn entry_at(&self, block: u32, within: u32) -> u16 {
+        let block = self.blocks[block as usize];
+        let entry = self.cells[((block >> CELL_BITS) + (within & block & CELL_MASK)) as usize];
+        if within == OUTSIDE { NO_INK } else { entry }
     }
 
     fn top_of_list(&self, entry: u16, shapes: &[(Shape, u16)], x_mm: f64, y_mm: f64) -> u16 {
@@ -162,6 +181,28 @@ impl Grid {
     #[must_use]
     pub fn bytes(&self) -> usize {
         4 * (self.blocks.len() + self.lists.len()) + 2 * (self.cells.len() + self.listed.len())
+    }
+}
+
+/// [`Grid::place`] for a chunk of points.
+struct Find<'a> {
+    grid: &'a Grid,
+    x_mm: &'a [f64],
+    y_mm: &'a [f64],
+    block: &'a mut [u32; CHUNK],
+    within: &'a mut [u32; CHUNK],
+}
+
+impl Vectorized for Find<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run(self) {
+        let len = self.x_mm.len().min(CHUNK);
+        let (x_mm, y_mm) = (&self.x_mm[..len], &self.y_mm[..len]);
+        let (block, within) = (&mut self.block[..len], &mut self.within[..len]);
+        for i in 0..len {
+            [block[i], within[i]] = self.grid.place(x_mm[i], y_mm[i]);
+        }
     }
 }
 

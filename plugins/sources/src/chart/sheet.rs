@@ -3,6 +3,7 @@
 use super::grid::Grid;
 use super::ink::Ink;
 use super::shape::Shape;
+use spectra_core::Isa;
 
 /// Answer where there is no chart.
 pub const NO_INK: u16 = u16::MAX;
@@ -128,8 +129,8 @@ impl Chart {
     }
 
     /// [`Chart::ink_at`] for each point (`x_mm[i]`, `y_mm[i]`), into `ink[i]`; stops at the shortest slice.
-    pub fn ink_at_batch(&self, x_mm: &[f64], y_mm: &[f64], ink: &mut [u16]) {
-        self.grid.ink_at_batch(&self.shapes, x_mm, y_mm, ink);
+    pub fn ink_at_batch(&self, x_mm: &[f64], y_mm: &[f64], ink: &mut [u16], isa: Isa) {
+        self.grid.ink_at_batch(&self.shapes, x_mm, y_mm, ink, isa);
     }
 
     /// Number of shapes.

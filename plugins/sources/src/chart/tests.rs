@@ -1,5 +1,6 @@
 use super::drawing::{Align, Drawing, text_width_mm};
 use super::*;
+use spectra_core::Isa;
 
 /// A linear congruential generator is random enough to place points.
 struct Dice(u64);
@@ -81,9 +82,12 @@ fn batch_answers_as_points_do() {
     let x: Vec<f64> = (0..3000).map(|_| 760.0 * dice.throw()).collect();
     let y: Vec<f64> = (0..3000).map(|_| 510.0 * dice.throw()).collect();
     let mut inks = vec![1234; 3000];
-    chart.ink_at_batch(&x, &y, &mut inks);
-    assert!((0..3000).all(|i| inks[i] == chart.ink_at(x[i], y[i])));
-    assert!(inks.contains(&NO_INK));
+    for isa in Isa::available() {
+        inks.fill(1234);
+        chart.ink_at_batch(&x, &y, &mut inks, isa);
+        assert!((0..3000).all(|i| inks[i] == chart.ink_at(x[i], y[i])), "{}", isa.name());
+        assert!(inks.contains(&NO_INK));
+    }
 }
 
 #[test]
@@ -358,7 +362,7 @@ fn times() {
         let mut best = f64::INFINITY;
         for _ in 0..7 {
             let start = std::time::Instant::now();
-            chart.ink_at_batch(&x, &y, &mut inks);
+            chart.ink_at_batch(&x, &y, &mut inks, Isa::detect());
             best = best.min(start.elapsed().as_secs_f64() * 1e9 / count as f64);
         }
         println!(

@@ -1,5 +1,7 @@
 //! Lines through a height field, many side by side, each narrowed to the part of it that has to be walked.
 
+use spectra_core::math::whole;
+
 /// Lines that are looked at side by side.
 pub(super) const SIDE_BY_SIDE: usize = 64;
 
@@ -194,14 +196,7 @@ impl Narrowing {
 /// The pixel of a column or row, or the nearest one.
 #[inline(always)]
 pub(super) fn pixel(at: f64, last: f64) -> u32 {
-    // Also where it is no number.
-    let at = if at > 0.0 { at } else { 0.0 };
-    let at = if at < last { at } else { last };
-    // A cast would be done one by one. Beside this number there is room for whole ones only, in the last bits.
-    const WHOLE: f64 = (1_u64 << 52) as f64;
-    let nearest = (at + WHOLE) - WHOLE;
-    let below = if nearest > at { nearest - 1.0 } else { nearest };
-    (below + WHOLE).to_bits() as u32
+    whole(at, last).0
 }
 
 /// The smaller of two numbers, or the second.
