@@ -294,7 +294,7 @@ impl<'a> Spread<'a> {
                 }
             });
             let mut light = vec![0.0_f32; w * h];
-            Convolver::of(r, |i, j| kernel.weight(i, j), w, h).apply(&part, &mut light, |to, v| *to = v as f32);
+            Convolver::<f64>::of(r, |i, j| kernel.weight(i, j), w, h).apply(&part, &mut light, |to, v| *to = v as f32);
             let origin = [xs[0] - r as isize, ys[0] - r as isize];
             spread.par_chunks_mut(width).enumerate().for_each(|(y, to)| {
                 let Some(row) = usize::try_from(y as isize - origin[1]).ok().filter(|row| *row < h) else { return };
@@ -389,7 +389,7 @@ impl<'a> Spread<'a> {
             let inside = i >= 0 && j >= 0 && i <= 2 * across as isize && j <= 2 * down as isize;
             if inside { weights[j as usize * (2 * across + 1) + i as usize] } else { 0.0 }
         };
-        Convolver::of(radius, weight, w, h).apply(&cells, &mut light, |to, v| *to = v as f32);
+        Convolver::<f64>::of(radius, weight, w, h).apply(&cells, &mut light, |to, v| *to = v as f32);
         let per_pixel = 1.0 / (cell * cell) as f64;
         spread.par_chunks_mut(width).enumerate().for_each(|(y, line)| {
             let (row, down) = place(y as isize, 1);

@@ -22,7 +22,7 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 /// Kernels on a plane, by their length in mm: how many pixels wide the cells are that they are made for, and they.
-static CONVOLVERS: Known<(f64, Raster), (usize, Convolver)> = Known::new();
+static CONVOLVERS: Known<(f64, Raster), (usize, Convolver<f32>)> = Known::new();
 
 /// How strong and how wide the effect is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,7 +65,7 @@ impl Adjacency {
 pub struct Edges {
     raster: Raster,
     gain: f64,
-    convolver: Arc<(usize, Convolver)>,
+    convolver: Arc<(usize, Convolver<f32>)>,
 }
 
 impl Edges {
@@ -118,7 +118,7 @@ impl Edges {
         let over = |amount: f32| amount - unexposed as f32;
         if *cell_px == 1 {
             let over: Vec<f32> = amounts.iter().map(|a| over(*a)).collect();
-            convolver.apply(&over, amounts, develop);
+            convolver.apply(&over, amounts, |to, v| develop(to, f64::from(v)));
         } else {
             let size = [self.raster.width, self.raster.height];
             let mut cells = Cells::of_pixels(amounts, size, *cell_px, over);

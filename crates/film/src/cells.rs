@@ -91,10 +91,10 @@ impl Cells {
     }
 
     /// Convolves the cells, margin included.
-    pub(crate) fn convolve(&mut self, convolver: &Convolver) {
+    pub(crate) fn convolve(&mut self, convolver: &Convolver<f32>) {
         let source = std::mem::take(&mut self.values);
         self.values = vec![0.0; source.len()];
-        convolver.apply(&source, &mut self.values, |to, v| *to = v as f32);
+        convolver.apply(&source, &mut self.values, |to, v| *to = v);
     }
 
     /// Gives these cells, linear between their centers, to one line of what is finer.
@@ -108,13 +108,26 @@ impl Cells {
         }
     }
 
+    /// Where the columns of a plane of `width` pixels lie on the cells.
+    pub(crate) fn columns(&self, width: usize) -> Vec<(usize, f32)> {
+        (0..width).map(|i| Self::place((i as f64 + 0.5) / self.cell_px as f64)).collect()
+    }
+
+    /// Gives what the cells have at each pixel of the row `row` to `write`, with the pixel.
+    pub(crate) fn over_row(
+        &self,
+        row: usize,
+        columns: &[(usize, f32)],
+        line: &mut [f32],
+        write: impl Fn(&mut f32, f32),
+    ) {
+        self.over_line((row as f64 + 0.5) / self.cell_px as f64, columns, line, write);
+    }
+
     /// Gives what the cells have at each pixel of a plane of `width` columns to `write`, with the pixel.
     pub(crate) fn over_pixels(&self, plane: &mut [f32], width: usize, write: impl Fn(&mut f32, f32) + Sync) {
-        let per_cell = 1.0 / self.cell_px as f64;
-        let columns: Vec<_> = (0..width).map(|i| Self::place((i as f64 + 0.5) * per_cell)).collect();
-        plane.par_chunks_mut(width).enumerate().for_each(|(row, line)| {
-            self.over_line((row as f64 + 0.5) * per_cell, &columns, line, &write);
-        });
+        let columns = self.columns(width);
+        plane.par_chunks_mut(width).enumerate().for_each(|(row, line)| self.over_row(row, &columns, line, &write));
     }
 
     /// Adds these cells to those of a finer level, `step` of which make one, its margin included.

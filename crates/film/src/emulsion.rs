@@ -3,9 +3,10 @@
 use crate::curve::CharacteristicCurve;
 use crate::deposit::Deposit;
 use crate::known::Known;
-use crate::lookup::{Lookup, PIXELS_A_TASK, from_octaves, octaves};
+use crate::lookup::{Lookup, PIXELS_A_TASK, Pair, from_octaves, octaves};
 use crate::stock::{Densitometry, Process, Stock};
 use rayon::prelude::*;
+use spectra_core::isa::{Isa, Vectorized};
 use spectra_core::math::log10;
 
 /// A stock whose layers cannot be developed as asked.
@@ -34,7 +35,7 @@ pub enum EmulsionError {
 
 /// Curves sampled over the exposure, by what that is multiplied with first: of a layer, and of three that meet.
 static SAMPLED: Known<(AmountCurve, u64), Lookup> = Known::new();
-static TOGETHER: Known<(Emulsion, u64), [[Lookup; 3]; 2]> = Known::new();
+static TOGETHER: Known<(Emulsion, u64), [Pair; 3]> = Known::new();
 
 /// Dyes, the curves of a film that has them, and what three filters see of them.
 type Measured = (Deposit, Vec<CharacteristicCurve>, Vec<Vec<f64>>);
@@ -61,7 +62,7 @@ enum AmountCurve {
 }
 
 impl AmountCurve {
-    #[inline]
+    #[inline(always)]
     fn at(&self, log10_exposure: f64) -> f64 {
         match self {
             Self::Density(curve) => curve.density(log10_exposure),
@@ -236,28 +237,17 @@ impl Emulsion {
 
     fn develop_together(&self, [a, b, c]: [&mut Vec<f32>; 3], effect: f64) {
         let sampled = TOGETHER.of((self.clone(), effect.to_bits()), || {
-            let own = [0, 1, 2].map(|i| per_octave(|x| self.amount(i, x), effect));
-            [own, [0, 1, 2].map(|i| per_octave(|x| x + self.relief(i, x), effect))]
+            [0, 1, 2].map(|i| {
+                let own = per_octave(|x| self.amount(i, x), effect);
+                Pair::new(&own, &per_octave(|x| x + self.relief(i, x), effect))
+            })
         });
-        let [own, held] = &*sampled;
-        let clear = self.neutral(f64::NEG_INFINITY);
+        let clear = [0, 1, 2].map(|i| self.amount(i, f64::NEG_INFINITY));
         let rows = [0, 1, 2].map(|i| [0, 1, 2].map(|j| self.inhibition[i].get(j).copied().unwrap_or(0.0)));
-        let pixel = |h: [f32; 3]| -> [f32; 3] {
-            let (mut n, mut out) = ([0.0_f64; 3], [0.0_f32; 3]);
-            for (i, (n, h)) in n.iter_mut().zip(h).enumerate() {
-                *n = if h > 0.0 { own[i].at(octaves(h)) } else { clear[i] };
-            }
-            for (i, (out, h)) in out.iter_mut().zip(h).enumerate() {
-                let developed = |h: f32| self.amount(i, held[i].at(octaves(h)) - inhibited(&rows[i], &n));
-                *out = if h > 0.0 { developed(h) } else { clear[i] } as f32;
-            }
-            out
-        };
+        let (isa, sampled) = (Isa::detect(), &*sampled);
         let chunks = a.par_chunks_mut(PIXELS_A_TASK).zip(b.par_chunks_mut(PIXELS_A_TASK));
         chunks.zip(c.par_chunks_mut(PIXELS_A_TASK)).for_each(|((a, b), c)| {
-            for ((a, b), c) in a.iter_mut().zip(b).zip(c) {
-                [*a, *b, *c] = pixel([*a, *b, *c]);
-            }
+            isa.run(Together { emulsion: self, sampled, clear, rows: &rows, planes: [a, b, c] });
         });
     }
 
@@ -273,6 +263,39 @@ impl Emulsion {
                 *h = if *h > 0.0 { sampled.at(octaves(*h)) as f32 } else { unexposed };
             }
         });
+    }
+}
+
+/// Places of three layers that are developed together.
+struct Together<'a> {
+    emulsion: &'a Emulsion,
+    /// Of each layer, by octaves of its exposure: its own amount, and the exposure that it counts by.
+    sampled: &'a [Pair; 3],
+    /// Amounts of no exposure.
+    clear: [f64; 3],
+    rows: &'a [[f64; 3]; 3],
+    planes: [&'a mut [f32]; 3],
+}
+
+impl Vectorized for Together<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run(self) {
+        let Self { emulsion, sampled, clear, rows, planes: [a, b, c] } = self;
+        for ((a, b), c) in a.iter_mut().zip(b).zip(c) {
+            let exposure = [*a, *b, *c];
+            let (mut own, mut held) = (clear, [0.0; 3]);
+            for i in 0..3 {
+                if exposure[i] > 0.0 {
+                    [own[i], held[i]] = sampled[i].at(octaves(exposure[i]));
+                }
+            }
+            for (i, to) in [a, b, c].into_iter().enumerate() {
+                let is_lit = exposure[i] > 0.0;
+                let amount = if is_lit { emulsion.curves[i].at(held[i] - inhibited(&rows[i], &own)) } else { clear[i] };
+                *to = amount as f32;
+            }
+        }
     }
 }
 

@@ -42,6 +42,33 @@ impl Lookup {
     }
 }
 
+/// Two functions sampled at the same places, side by side.
+#[derive(Clone, Debug)]
+pub(crate) struct Pair {
+    low: f64,
+    per_step: f64,
+    values: Vec<[f64; 2]>,
+}
+
+impl Pair {
+    /// Of two functions that are sampled at the same places.
+    pub(crate) fn new(first: &Lookup, second: &Lookup) -> Self {
+        assert_eq!((first.low, first.per_step), (second.low, second.per_step), "the places are the same");
+        let values = first.values.iter().zip(&second.values).map(|(a, b)| [*a, *b]).collect();
+        Self { low: first.low, per_step: first.per_step, values }
+    }
+
+    /// Both at `x`, as [`Lookup::at`] has them.
+    #[inline(always)]
+    pub(crate) fn at(&self, x: f64) -> [f64; 2] {
+        let last = self.values.len() - 1;
+        let p = ((x - self.low) * self.per_step).max(0.0).min(last as f64);
+        let i = (p as i32 as usize).min(last - 1);
+        let (a, b, t) = (self.values[i], self.values[i + 1], p - i as f64);
+        [a[0] + (b[0] - a[0]) * t, a[1] + (b[1] - a[1]) * t]
+    }
+}
+
 /// Octaves of a positive number over the smallest normal one: whole at the powers of 2 and straight between, so
 /// it is cheap, exact and has an exact inverse.
 #[inline(always)]

@@ -241,13 +241,21 @@ impl Effects {
         }
     }
 
-    /// The light of a plane as a layer gets it: spread in its emulsion, and from the back of the film.
-    pub(crate) fn spread(&self, layer: usize, plane: &[f32], raster: &Raster) -> Result<Vec<f32>, String> {
-        let mut plane = self.scattered(layer, plane, raster)?;
-        if let Some(base) = &self.halation[layer] {
-            Halation::new(base, raster).map_err(|e| e.to_string())?.apply(&mut plane);
-        }
-        Ok(plane)
+    /// The light of a plane as a layer gets it: spread in its emulsion, and from the back of the film. `spare` is work space, which
+    /// layers that come one after the other share.
+    pub(crate) fn spread(
+        &self,
+        layer: usize,
+        plane: &[f32],
+        raster: &Raster,
+        spare: &mut Vec<f32>,
+    ) -> Result<Vec<f32>, String> {
+        let Some(base) = &self.halation[layer] else { return self.scattered(layer, plane, raster) };
+        let halation = Halation::new(base, raster).map_err(|e| e.to_string())?;
+        let Some(mtf) = &self.mtf[layer] else { return Ok(halation.applied(plane)) };
+        spare.resize(plane.len(), 0.0);
+        Scatter::new(mtf, raster).map_err(|e| e.to_string())?.apply_to(plane, spare);
+        Ok(halation.applied(spare))
     }
 
     /// Develops the edges of a layer.

@@ -232,9 +232,10 @@ impl StockFilm {
     pub fn exposed(&self, exposure: &ExposureFrame) -> Result<Vec<Vec<f32>>, String> {
         let factor = self.meter.factor(exposure) as f32;
         let raster = self.effects.raster(exposure.size)?;
+        let mut spare = Vec::new();
         let layers = self.stock.layers.iter().enumerate().map(|(i, layer)| {
             let channel = channel(exposure, &layer.name).map_err(|error| error.to_string())?;
-            let mut plane = self.effects.spread(i, &channel.values, &raster)?;
+            let mut plane = self.effects.spread(i, &channel.values, &raster, &mut spare)?;
             plane.iter_mut().for_each(|v| *v *= factor);
             Ok(plane)
         });
@@ -266,10 +267,10 @@ impl StockFilm {
         let laid = self.frame.as_ref().map(|frame| frame.laid(&frame_raster));
         let raster = laid.as_ref().map_or(frame_raster, |laid| laid.raster);
         let breathing = self.frame.as_ref().map_or(1.0, FrameEffects::exposure);
-        let mut exposed = Vec::new();
+        let (mut exposed, mut spare) = (Vec::new(), Vec::new());
         let spread = self.stock.layers.iter().enumerate().map(|(i, layer)| {
             let channel = channel(exposure, &layer.name).map_err(|error| error.to_string())?;
-            let mut plane = self.effects.spread(i, &channel.values, &frame_raster)?;
+            let mut plane = self.effects.spread(i, &channel.values, &frame_raster, &mut spare)?;
             if let Some(laid) = &laid {
                 plane = laid.lay(plane, &frame_raster);
                 laid.print(&mut plane, (EDGE_PRINT * self.gray_lx_s / (factor * effect * breathing)) as f32);
@@ -281,6 +282,7 @@ impl StockFilm {
             Ok(plane)
         });
         let mut amounts = spread.collect::<Result<Vec<_>, String>>()?;
+        drop(spare);
         self.emulsion.develop_all(&mut amounts, factor * effect * breathing);
         for (i, plane) in amounts.iter_mut().enumerate() {
             let range = self.emulsion.range(i);

@@ -276,12 +276,13 @@ impl ThreeStrip {
     ) -> Result<Vec<Vec<f32>>, String> {
         let factor = self.meter.factor(exposure);
         let raster = self.effects[BLUE].raster(exposure.size)?;
+        let mut spare = Vec::new();
         let negatives = RECORDS.iter().enumerate().map(|(i, name)| {
             let light = &channel(exposure, name).map_err(|error| error.to_string())?.values;
             let (effects, film) = (&self.effects[i], &self.developed[i]);
             let mut plane = match i {
-                RED => effects.spread(0, &self.effects[BLUE].scattered(0, light, &raster)?, &raster)?,
-                _ => effects.spread(0, light, &raster)?,
+                RED => effects.spread(0, &self.effects[BLUE].scattered(0, light, &raster)?, &raster, &mut spare)?,
+                _ => effects.spread(0, light, &raster, &mut spare)?,
             };
             exposed(name, &plane, factor);
             film.develop(0, &mut plane, factor);

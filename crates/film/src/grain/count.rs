@@ -9,9 +9,9 @@ const STEPS: usize = 16;
 const END: usize = 8;
 
 /// Nodes of the normal number: from -LIMIT to LIMIT, so many steps a unit.
-const LIMIT: usize = 5;
-const FINENESS: usize = 32;
-const NODES: usize = 2 * LIMIT * FINENESS + 1;
+pub(super) const LIMIT: usize = 5;
+pub(super) const FINENESS: usize = 32;
+pub(super) const NODES: usize = 2 * LIMIT * FINENESS + 1;
 
 /// Quantiles of Poisson's law, sampled.
 pub(super) struct Counts {

@@ -31,14 +31,17 @@ mod calibrate;
 mod color;
 mod count;
 mod field;
+mod pixels;
 mod spline;
 
 pub use calibrate::{APERTURE_MM, GrainError};
 pub use color::{ColorGrain, FOG};
 
+use crate::known::Known;
 use crate::raster::Raster;
 use count::Counts;
 use field::{Cells, Field};
+use pixels::Pixels;
 use rayon::prelude::*;
 use spectra_core::isa::{Isa, Vectorized};
 use spline::Taps;
@@ -169,7 +172,7 @@ impl Grain {
     ///
     /// The result of a pixel depends on its own density and its place on the film alone: any cut into tiles gives the
     /// same bits. Densities of 0 and less, and no numbers, stay as they are, and so does all where the
-    /// pitch is not positive and finite. Memory: some tiles.
+    /// pitch is not positive, or some meters. Memory: some tiles.
     ///
     /// # Panics
     /// If the plane has another number of pixels than the raster.
@@ -180,17 +183,25 @@ impl Grain {
             return;
         }
         let layouts = [0, 1].map(|part| self.layout(part, raster));
+        if layouts.iter().any(|layout| layout.columns.taps() > MOST_TAPS) {
+            return;
+        }
         // Of a pixel, where the variance times the area of large areas is 1 mm^2.
         let variance: f32 =
             layouts.iter().map(|l| l.weight * l.weight * l.columns.mean_square() * l.columns.mean_square()).sum();
         let alone = (variance * (raster.pitch_mm * raster.pitch_mm) as f32).min(1.0);
+        let made = || Pixels::new(self.counts, alone, |density| self.per_amount(density) * variance);
+        let key = (self.per_amount.clone(), [self.steps_a_unit.to_bits(), variance.to_bits(), alone.to_bits()]);
+        let pixels = &*PIXELS.of(key, made);
         density.par_chunks_mut(raster.width * TILE).enumerate().for_each_init(
-            || [Cells::default(), Cells::default()],
-            |cells, (strip, plane)| {
+            || [Lines::new(), Lines::new()],
+            |lines, (strip, plane)| {
                 let first = raster.offset_px[1] + (strip * TILE) as i64;
                 let rows = |l: &Layout| Taps::new(first, plane.len() / raster.width, l.cells_a_pixel);
                 let rows = [rows(&layouts[0]), rows(&layouts[1])];
-                self.isa.run(Strip { grain: self, layouts: &layouts, rows: &rows, variance, alone, cells, plane });
+                let strip =
+                    Strip { grain: self, layouts: &layouts, rows: &rows, variance, alone, pixels, lines, plane };
+                self.isa.run(strip);
             },
         );
     }
@@ -219,6 +230,15 @@ struct Layout {
     columns: Taps,
 }
 
+/// What pixels of one size become, by the grain's variances and the pixel's.
+static PIXELS: Known<(Vec<f32>, [u32; 3]), Pixels> = Known::new();
+
+/// Cells that a pixel takes along an axis, at most: eight from its beginning to its end, and those that reach in.
+const MOST_TAPS: usize = 11;
+
+/// Cells along a tile that a line has room for: 64 pixels take 8 each and what reaches in.
+const LINE: usize = 1024;
+
 /// Rows of tiles.
 struct Strip<'a> {
     grain: &'a Grain,
@@ -227,68 +247,121 @@ struct Strip<'a> {
     /// Of a pixel, where the variance times the area of large areas is 1 mm^2, 1/mm^2; and its part of that of large areas.
     variance: f32,
     alone: f32,
-    cells: &'a mut [Cells; 2],
+    pixels: &'a Pixels,
+    lines: &'a mut [Lines; 2],
     plane: &'a mut [f32],
 }
 
-/// Sums of the cells of one row of pixels, along the columns of cells.
-#[inline(always)]
-fn down(rows: &Taps, row: usize, cells: &Cells, x: i64, line: &mut [f32]) {
-    line.fill(0.0);
-    let (first, weights) = rows.of(row);
-    for (t, w) in weights.iter().enumerate() {
-        let cells = &cells.row(first + t as i64, x)[..line.len()];
-        for (sum, z) in line.iter_mut().zip(cells) {
-            *sum += w * z;
+/// The cells of a tile, and what its columns of pixels take of them.
+struct Lines {
+    cells: Cells,
+    /// The first column of the cells, and how many there are.
+    x: i64,
+    across: usize,
+    /// Of each column of pixels its first cell, counted from `x`, and tap by tap its weights.
+    first: [u32; TILE],
+    weights: [[f32; TILE]; MOST_TAPS],
+    evening: [f32; TILE],
+    /// Sums of the cells of a row of pixels.
+    line: [f32; LINE],
+}
+
+impl Lines {
+    fn new() -> Self {
+        Self {
+            cells: Cells::default(),
+            x: 0,
+            across: 0,
+            first: [0; TILE],
+            weights: [[0.0; TILE]; MOST_TAPS],
+            evening: [0.0; TILE],
+            line: [0.0; LINE],
         }
     }
+
+    /// Those of the columns `from` to before `to` of a part.
+    #[inline(always)]
+    fn fill(&mut self, part: &Part, layout: &Layout, rows: &Taps, [from, to]: [usize; 2]) {
+        let (x, across) = layout.columns.cells(from, to);
+        let (y, down) = rows.cells(0, rows.len());
+        part.field.fill(layout.level, [x, y], [across, down], &mut self.cells);
+        (self.x, self.across) = (x, across.min(LINE));
+        for column in 0..TILE {
+            // Columns beside the plane are as its last one.
+            let on_plane = (from + column).min(to - 1);
+            let (first, weights) = layout.columns.of(on_plane);
+            self.first[column] = (first - x) as u32;
+            self.evening[column] = layout.columns.evening(on_plane);
+            for (to, weight) in self.weights.iter_mut().zip(weights) {
+                to[column] = *weight;
+            }
+        }
+    }
+
+    /// Adds the normal numbers of a row of pixels, times `factor`, to `numbers`.
+    #[inline(always)]
+    fn add(&mut self, rows: &Taps, row: usize, factor: f32, numbers: &mut [f32; TILE]) {
+        // Along the columns of cells.
+        let line = &mut self.line[..self.across];
+        line.fill(0.0);
+        let (first, weights) = rows.of(row);
+        for (t, w) in weights.iter().enumerate() {
+            let cells = &self.cells.row(first + t as i64, self.x)[..line.len()];
+            for (sum, z) in line.iter_mut().zip(cells) {
+                *sum += w * z;
+            }
+        }
+        let factor = factor * rows.evening(row);
+        let mut sums = [0.0; TILE];
+        for (t, weights) in self.weights.iter().enumerate().take(rows.taps()) {
+            for column in 0..TILE {
+                sums[column] += weights[column] * self.line[(self.first[column] + t as u32) as usize % LINE];
+            }
+        }
+        for column in 0..TILE {
+            numbers[column] += sums[column] * self.evening[column] * factor;
+        }
+    }
+}
+
+/// [`Pixels::at`] where that has none.
+#[inline(never)]
+fn beyond(grain: &Grain, [variance, alone]: [f32; 2], density: f32, number: f32) -> f32 {
+    // A grain's density in this pixel, and the grains that are expected.
+    let one = grain.per_amount(density) * variance;
+    if !(density > 0.0 && density.is_finite() && one > 0.0) {
+        return density;
+    }
+    let mean = grain.counts.evened(density / one, alone);
+    density * grain.counts.quantile(mean, number) / mean
 }
 
 impl Vectorized for Strip<'_> {
     type Output = ();
     #[inline(always)]
     fn run(self) {
-        let Self { grain, layouts: [clumps, crystals], rows, variance, alone, cells, plane } = self;
+        let Self { grain, layouts, rows, variance, alone, pixels, lines, plane } = self;
         let deviation = variance.sqrt();
-        let width = clumps.columns.len();
-        let (mut line_a, mut line_b) = (Vec::new(), Vec::new());
-        let [cells_a, cells_b] = cells;
-        let [rows_a, rows_b] = rows;
+        let width = layouts[0].columns.len();
         for from in (0..width).step_by(TILE) {
             let to = (from + TILE).min(width);
-            let fill = |part: &Part, layout: &Layout, rows: &Taps, cells: &mut Cells, line: &mut Vec<f32>| {
-                let (x, across) = layout.columns.cells(from, to);
-                let (y, down) = rows.cells(0, rows.len());
-                part.field.fill(layout.level, [x, y], [across, down], cells);
-                line.clear();
-                line.resize(across, 0.0_f32);
-                x
-            };
-            let xa = fill(&grain.parts[0], clumps, rows_a, cells_a, &mut line_a);
-            let xb = fill(&grain.parts[1], crystals, rows_b, cells_b, &mut line_b);
-            for row in 0..rows_a.len() {
-                down(rows_a, row, cells_a, xa, &mut line_a);
-                down(rows_b, row, cells_b, xb, &mut line_b);
-                let even_a = rows_a.evening(row) * clumps.weight / deviation;
-                let even_b = rows_b.evening(row) * crystals.weight / deviation;
-                for column in from..to {
-                    let density = &mut plane[row * width + column];
-                    if !(*density > 0.0 && density.is_finite()) {
-                        continue;
-                    }
-                    let across = |taps: &Taps, x: i64, line: &[f32]| {
-                        let (first, weights) = taps.of(column);
-                        let sum = weights.iter().zip(&line[(first - x) as usize..]).map(|(w, z)| w * z).sum::<f32>();
-                        sum * taps.evening(column)
-                    };
-                    let number =
-                        across(&clumps.columns, xa, &line_a) * even_a + across(&crystals.columns, xb, &line_b) * even_b;
-                    // A grain's density in this pixel, and the grains that are expected.
-                    let one = grain.per_amount(*density) * variance;
-                    if one > 0.0 {
-                        let mean = grain.counts.evened(*density / one, alone);
-                        *density *= grain.counts.quantile(mean, number) / mean;
-                    }
+            for part in 0..2 {
+                lines[part].fill(&grain.parts[part], &layouts[part], &rows[part], [from, to]);
+            }
+            for row in 0..rows[0].len() {
+                let plane = &mut plane[row * width + from..row * width + to];
+                let mut numbers = [0.0; TILE];
+                for part in 0..2 {
+                    lines[part].add(&rows[part], row, layouts[part].weight / deviation, &mut numbers);
+                }
+                let (mut densities, mut grainy) = ([0.0; TILE], [0.0; TILE]);
+                densities[..plane.len()].copy_from_slice(plane);
+                for column in 0..TILE {
+                    grainy[column] = pixels.at(densities[column], numbers[column]);
+                }
+                for (column, to) in plane.iter_mut().enumerate() {
+                    let here = grainy[column];
+                    *to = if here.is_nan() { beyond(grain, [variance, alone], *to, numbers[column]) } else { here };
                 }
             }
         }

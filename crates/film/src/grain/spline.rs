@@ -43,7 +43,8 @@ fn squares(begin: f64, end: f64, first: f64, taps: usize, mut each: impl FnMut(f
 impl Taps {
     /// `pixels` from the pixel `offset` on; pixel 0 and cell 0 begin at the same place.
     pub(super) fn new(offset: i64, pixels: usize, cells_a_pixel: f64) -> Self {
-        let taps = cells_a_pixel.ceil() as usize + 4;
+        // From the cell before that of its beginning to the one after that of its end.
+        let taps = cells_a_pixel.ceil() as usize + 3;
         let mut all = Self {
             taps,
             first: Vec::with_capacity(pixels),
@@ -76,6 +77,11 @@ impl Taps {
     #[inline(always)]
     pub(super) fn of(&self, pixel: usize) -> (i64, &[f32]) {
         (self.first[pixel], &self.weights[pixel * self.taps..(pixel + 1) * self.taps])
+    }
+
+    /// Cells of a pixel.
+    pub(super) fn taps(&self) -> usize {
+        self.taps
     }
 
     /// What a pixel's sum is multiplied by, so that all pixels have the variance of the mean one.

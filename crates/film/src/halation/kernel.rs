@@ -72,10 +72,7 @@ impl Level {
             let mass = even * trips.returned_weighted(weight);
             let sum = kernel.sum();
             // A kernel without weight (all absorbed) stays so.
-            let mut kernel = kernel.scaled(if sum > 0.0 { mass / sum } else { 0.0 });
-            if cell_px == 1 {
-                kernel.add_center(even);
-            }
+            let kernel = kernel.scaled(if sum > 0.0 { mass / sum } else { 0.0 });
             let longest = raster.width.max(raster.height).div_ceil(cell_px) + 2 * MARGIN;
             levels.push(Self { cell_px, kernel: kernel.cropped(longest) });
             if FADE * end >= diagonal {

@@ -80,9 +80,19 @@ impl Halation {
     /// # Panics
     /// If the plane has another number of pixels than the raster.
     pub fn apply(&self, exposure: &mut [f32]) {
+        exposure.copy_from_slice(&self.applied(exposure));
+    }
+
+    /// The plane that [`Halation::apply`] makes of `exposure`.
+    ///
+    /// # Panics
+    /// If the plane has another number of pixels than the raster.
+    #[must_use]
+    pub fn applied(&self, exposure: &[f32]) -> Vec<f32> {
         assert_eq!(exposure.len(), self.raster.pixels(), "the plane has the size that was prepared for");
-        if let Some(spread) = &self.spread {
-            spread.apply(exposure);
-        }
+        let Some(spread) = &self.spread else { return exposure.to_vec() };
+        let mut plane = vec![0.0; exposure.len()];
+        spread.apply(exposure, &mut plane);
+        plane
     }
 }

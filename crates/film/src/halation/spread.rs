@@ -3,6 +3,7 @@
 use super::kernel::{Level, STEP};
 use crate::cells::{Cells, with_margin};
 use crate::raster::Raster;
+use rayon::prelude::*;
 use spectra_numerics::convolve::Convolver;
 
 /// A sum of convolutions.
@@ -11,7 +12,7 @@ pub(super) struct Spread {
     height: usize,
     /// Light that stays in its pixel.
     stays: f32,
-    levels: Vec<(usize, Convolver)>,
+    levels: Vec<(usize, Convolver<f32>)>,
 }
 
 impl Spread {
@@ -27,14 +28,15 @@ impl Spread {
         Self { width, height, stays, levels: levels.into_iter().map(prepare).collect() }
     }
 
-    pub(super) fn apply(&self, plane: &mut [f32]) {
+    /// Spreads the light of `source`, which `plane` gets.
+    pub(super) fn apply(&self, source: &[f32], plane: &mut [f32]) {
         // Finest first.
         let mut coarse: Vec<Cells> = Vec::new();
         let frame = [self.width, self.height];
         for (cell_px, _) in self.levels.iter().filter(|(cell, _)| *cell > 1) {
             coarse.push(match coarse.last() {
                 Some(finer) => finer.gathered(frame, STEP),
-                None => Cells::of_pixels(plane, frame, *cell_px, |v| v),
+                None => Cells::of_pixels(source, frame, *cell_px, |v| v),
             });
         }
         let mut above: Option<Cells> = None;
@@ -47,22 +49,20 @@ impl Spread {
                 above = Some(now);
             }
         }
-        match self.levels.first() {
-            Some((1, convolver)) => {
-                let source = plane.to_vec();
-                convolver.apply(&source, plane, |to, v| *to = v.max(0.0) as f32);
-                if let Some(above) = above {
-                    above.over_pixels(plane, self.width, |to, v| *to += v);
-                }
-            }
-            // Even the ring is on coarse cells: the pixels have what stays.
-            _ => {
-                let stays = self.stays;
-                let lit = |v: f32| if v.is_finite() { v * stays } else { 0.0 };
-                if let Some(above) = above {
-                    above.over_pixels(plane, self.width, |to, v| *to = (lit(*to) + v).max(0.0));
-                }
-            }
+        // Where even the ring is on coarse cells, the pixels have what stays alone.
+        if let Some((1, convolver)) = self.levels.first() {
+            convolver.apply(source, plane, |to, v| *to = v);
         }
+        let rows = plane.par_chunks_mut(self.width).zip(source.par_chunks(self.width)).enumerate();
+        let columns = above.as_ref().map(|above| above.columns(self.width));
+        rows.for_each(|(row, (to, from))| {
+            if let (Some(above), Some(columns)) = (&above, &columns) {
+                above.over_row(row, columns, to, |to, v| *to += v);
+            }
+            for (to, from) in to.iter_mut().zip(from) {
+                let stays = if from.is_finite() { from * self.stays } else { 0.0 };
+                *to = (*to + stays).max(0.0);
+            }
+        });
     }
 }

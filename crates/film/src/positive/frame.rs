@@ -136,14 +136,14 @@ impl Vectorized for Shown<'_> {
     #[inline(always)]
     fn run(self) {
         let Self { dyes, planes: [a, b, c], way, reach, to } = self;
-        let mut row = [[0.0_f32; ROW]; 3];
+        let (mut row, mut found) = ([[0.0_f32; ROW]; 3], [[0.0_f32; 4]; ROW]);
         for (k, to) in to.chunks_mut(ROW).enumerate() {
             let part = k * ROW..k * ROW + to.len();
             let places = a[part.clone()].iter().zip(&b[part.clone()]).zip(&c[part]);
-            for (i, ((a, b), c)) in places.enumerate() {
-                let first = dyes.first.at([*a, *b, *c]);
-                (0..3).for_each(|k| row[k][i] = first[k]);
+            for (found, ((a, b), c)) in found.iter_mut().zip(places) {
+                *found = dyes.first.at([*a, *b, *c]);
             }
+            turned(&found, &mut row);
             match way {
                 Way::Look(viewing) => viewing.shown_row(&mut row, reach, to),
                 Way::Scan(scan) => {
@@ -153,7 +153,7 @@ impl Vectorized for Shown<'_> {
                     }
                 }
                 Way::Print(printing) => {
-                    dyes.print(&mut row, to.len());
+                    dyes.print(&mut row, &mut found, to.len());
                     printing.viewing.shown_row(&mut row, reach, to);
                 }
             }
@@ -161,27 +161,39 @@ impl Vectorized for Shown<'_> {
     }
 }
 
+/// The densities of a row of places, each by itself.
+#[inline(always)]
+fn turned(found: &[[f32; 4]; ROW], row: &mut [[f32; ROW]; 3]) {
+    for (i, [a, b, c, _]) in found.iter().enumerate() {
+        (row[0][i], row[1][i], row[2][i]) = (*a, *b, *c);
+    }
+}
+
 impl Dyes {
     /// From what exposes the layers of a print to densities of XYZ, of `count` places.
     #[inline(always)]
-    fn print(&self, row: &mut [[f32; ROW]; 3], count: usize) {
+    fn print(&self, row: &mut [[f32; ROW]; 3], found: &mut [[f32; 4]; ROW], count: usize) {
         for (line, curve) in row.iter_mut().zip(&self.curves) {
             for d in &mut line[..count] {
                 // Linear between samples.
                 const PER_STEP: f32 = CURVE_STEPS as f32 / (2.0 * EXPOSURES as f32);
                 let place = ((EXPOSURES as f32 - *d) * PER_STEP).max(0.0).min(CURVE_STEPS as f32);
-                let k = (place as usize).min(CURVE_STEPS - 1);
+                let k = (place as i32 as usize).min(CURVE_STEPS - 1);
                 *d = curve[k] + (curve[k + 1] - curve[k]) * (place - k as f32);
             }
         }
-        for i in 0..count {
-            let densities = match &self.last {
-                Some(last) => last.at([row[0][i], row[1][i], row[2][i]]),
-                // Silver: the same in X, Y and Z.
-                None => self.bare.map(|bare| row[0][i] + bare),
-            };
-            (0..3).for_each(|k| row[k][i] = densities[k]);
+        let Some(last) = &self.last else {
+            // Silver: the same in X, Y and Z.
+            let silver = row[0];
+            for (line, bare) in row.iter_mut().zip(self.bare) {
+                line.iter_mut().zip(&silver).for_each(|(to, d)| *to = d + bare);
+            }
+            return;
+        };
+        for (i, found) in found[..count].iter_mut().enumerate() {
+            *found = last.at([row[0][i], row[1][i], row[2][i]]);
         }
+        turned(found, row);
     }
 }
 
@@ -204,7 +216,7 @@ pub(super) fn seen(film: &Deposit, ranges: &[(f64, f64)], weights: &[Vec<f64>], 
     let cube = densities(film, ranges, weights, STEPS);
     let [a, b, c] = planes;
     let pixels = a.par_iter().zip(b.par_iter()).zip(c.par_iter()).with_min_len(PIXELS_A_TASK);
-    pixels.map(|((a, b), c)| cube.at([*a, *b, *c])).collect()
+    pixels.map(|((a, b), c)| cube.at([*a, *b, *c])).map(|[a, b, c, _]| [a, b, c]).collect()
 }
 
 /// What densities rest on: the dyes, the amounts between which they are wanted, what the receivers see, and steps.

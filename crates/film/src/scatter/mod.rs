@@ -88,9 +88,17 @@ impl Scatter {
     /// If the plane has another number of pixels than the raster.
     #[must_use]
     pub fn applied(&self, exposure: &[f32]) -> Vec<f32> {
-        assert_eq!(exposure.len(), self.raster.pixels(), "the plane has the size that was prepared for");
         let mut spread = vec![0.0; exposure.len()];
-        self.spreading.apply(exposure, &mut spread, |to, v| *to = v.max(0.0) as f32);
+        self.apply_to(exposure, &mut spread);
         spread
+    }
+
+    /// Writes the plane that [`Scatter::apply`] makes of `exposure`.
+    ///
+    /// # Panics
+    /// If a plane has another number of pixels than the raster.
+    pub fn apply_to(&self, exposure: &[f32], to: &mut [f32]) {
+        assert_eq!(exposure.len(), self.raster.pixels(), "the plane has the size that was prepared for");
+        self.spreading.apply(exposure, to, |to, v| *to = v.max(0.0) as f32);
     }
 }

@@ -1,75 +1,82 @@
 //! Two-dimensional transforms of one block.
+//!
+//! A block lies in panels of [`LANES`] columns, row after row of a panel together: down the columns it is transformed where it lies,
+//! and across by [`LANES`] rows at a time, whose squares of the panels are turned on the way to and from a line.
 
 use super::fft::{Fft, LANES, Lane};
+use super::real::Real;
 use crate::isa::{Isa, Vectorized};
 
 /// Transforms of blocks of one size.
-pub(super) struct Transform {
-    across: Fft,
-    down: Fft,
+pub(super) struct Transform<T> {
+    across: Fft<T>,
+    down: Fft<T>,
 }
 
-/// Blocks under work.
-pub(super) struct Scratch {
-    /// Rows by columns.
-    block: [Vec<f64>; 2],
-    /// Columns by rows.
-    turned: [Vec<f64>; 2],
-    re: Vec<Lane>,
-    im: Vec<Lane>,
+/// Blocks under work: a real and an imaginary part.
+pub(super) struct Scratch<T> {
+    block: [Vec<Lane<T>>; 2],
+    /// Some rows, turned.
+    line: [Vec<Lane<T>>; 2],
     width: usize,
+    height: usize,
 }
 
-impl Scratch {
-    pub(super) fn new(transform: &Transform) -> Self {
-        let pixels = transform.width() * transform.height();
-        let side = transform.width().max(transform.height());
-        let plane = || vec![0.0; pixels];
-        let lanes = || vec![[0.0; LANES]; side];
-        Self {
-            block: [plane(), plane()],
-            turned: [plane(), plane()],
-            re: lanes(),
-            im: lanes(),
-            width: transform.width(),
-        }
+impl<T: Real> Scratch<T> {
+    pub(super) fn new(transform: &Transform<T>) -> Self {
+        let (width, height) = (transform.width(), transform.height());
+        let lanes = |count: usize| vec![[T::default(); LANES]; count];
+        let block = || lanes(width.div_ceil(LANES) * height);
+        Self { block: [block(), block()], line: [lanes(width), lanes(width)], width, height }
     }
 
     /// Fills the block's two parts with what lies around the tiles that start at the columns `x0` and the row `y0`
     /// of a plane of size `size`; what is beside the plane, or no number, is 0.
+    #[inline(always)]
     pub(super) fn load(&mut self, plane: &[f32], size: [usize; 2], x0: [usize; 2], y0: usize, radius: usize) {
         for (block, x0) in self.block.iter_mut().zip(x0) {
             // Columns of the block that lie on the plane: column c is x = x0 + c - radius.
             let first = radius.saturating_sub(x0).min(self.width);
             let last = (size[0] + radius).saturating_sub(x0).min(self.width).max(first);
-            for (row, line) in block.chunks_exact_mut(self.width).enumerate() {
+            for row in 0..self.height {
                 let y = (y0 + row).checked_sub(radius).filter(|y| *y < size[1]);
-                let Some(y) = y else {
-                    line.fill(0.0);
-                    continue;
-                };
-                line[..first].fill(0.0);
-                line[last..].fill(0.0);
-                if first < last {
-                    let from = y * size[0] + x0 + first - radius;
-                    for (to, from) in line[first..last].iter_mut().zip(&plane[from..]) {
-                        *to = if from.is_finite() { f64::from(*from) } else { 0.0 };
+                let line = y.map_or(&[][..], |y| &plane[y * size[0]..][..size[0]]);
+                for (panel, lanes) in block.chunks_exact_mut(self.height).enumerate() {
+                    let (to, column) = (&mut lanes[row], panel * LANES);
+                    let of = |from: f32| if from.is_finite() { T::of_single(from) } else { T::default() };
+                    if y.is_some() && column >= first && column + LANES <= last {
+                        for (to, from) in to.iter_mut().zip(&line[x0 + column - radius..][..LANES]) {
+                            *to = of(*from);
+                        }
+                        continue;
+                    }
+                    *to = [T::default(); LANES];
+                    for c in first.max(column)..last.min(column + LANES) {
+                        to[c - column] = line.get(x0 + c - radius).map_or(T::default(), |from| of(*from));
                     }
                 }
             }
         }
     }
 
-    /// A value of the block's part 0 or 1.
+    /// Copies `line.len()` values of the block's part 0 or 1, of the row `row` from the column `from` on.
     #[inline(always)]
-    pub(super) fn value(&self, part: usize, at: usize) -> f64 {
-        self.block[part][at]
+    pub(super) fn read(&self, part: usize, row: usize, from: usize, line: &mut [T]) {
+        let mut done = 0;
+        while done < line.len() {
+            let (panel, lane) = ((from + done) / LANES, (from + done) % LANES);
+            let count = (LANES - lane).min(line.len() - done);
+            let lanes = &self.block[part][panel * self.height + row];
+            line[done..done + count].copy_from_slice(&lanes[lane..lane + count]);
+            done += count;
+        }
     }
 }
 
-impl Transform {
+impl<T: Real> Transform<T> {
     /// Blocks of `width` by `height`, powers of two of at least [`LANES`].
     pub(super) fn new(width: usize, height: usize) -> Self {
+        assert!(width >= LANES && height >= LANES, "{width} x {height} is less than {LANES} lanes");
         Self { across: Fft::new(width), down: Fft::new(height) }
     }
 
@@ -82,7 +89,7 @@ impl Transform {
     }
 
     /// The spectrum, over the number of points, of weights that are the same at opposite places: column chunk by column chunk.
-    pub(super) fn spectrum(&self, radius: usize, weight: impl Fn(isize, isize) -> f64, isa: Isa) -> Vec<f64> {
+    pub(super) fn spectrum(&self, radius: usize, weight: impl Fn(isize, isize) -> f64, isa: Isa) -> Vec<Lane<T>> {
         let scale = 1.0 / (self.width() * self.height()) as f64;
         self.spectrum_with(radius, weight, &mut Scratch::new(self), scale, isa)
     }
@@ -92,25 +99,25 @@ impl Transform {
         &self,
         radius: usize,
         weight: impl Fn(isize, isize) -> f64,
-        scratch: &mut Scratch,
+        scratch: &mut Scratch<T>,
         scale: f64,
         isa: Isa,
-    ) -> Vec<f64> {
+    ) -> Vec<Lane<T>> {
         let (width, height) = (self.width(), self.height());
-        scratch.block.iter_mut().for_each(|part| part.fill(0.0));
+        scratch.block.iter_mut().for_each(|part| part.fill([T::default(); LANES]));
         // The way from the origin, around the block.
         let way = |k: usize, length: usize| if 2 * k <= length { k as isize } else { k as isize - length as isize };
         for j in 0..height {
             for i in 0..width {
                 let (di, dj) = (way(i, width), way(j, height));
                 if di.unsigned_abs() <= radius && dj.unsigned_abs() <= radius {
-                    scratch.block[0][j * width + i] = weight(di, dj);
+                    scratch.block[0][i / LANES * height + j][i % LANES] = T::of(weight(di, dj));
                 }
             }
         }
-        let mut spectrum = vec![0.0; width * height];
-        isa.run(Forward { transform: self, scratch });
-        isa.run(Spectrum { transform: self, scratch, scale, out: &mut spectrum });
+        let mut spectrum = vec![[T::default(); LANES]; height / LANES * width];
+        isa.run(Down { transform: self, scratch });
+        isa.run(Spectrum { transform: self, scratch, scale: T::of(scale), out: &mut spectrum });
         spectrum
     }
 
@@ -119,108 +126,88 @@ impl Transform {
         self.across.order()
     }
 
-    /// Where a spectrum holds the place `u` across and `v` down.
-    pub(super) fn at(&self, u: usize, v: usize) -> usize {
-        (v / LANES * self.width() + u) * LANES + v % LANES
+    /// Where a spectrum holds the place `u` across and `v` down: its lanes, and which of them.
+    pub(super) fn at(&self, u: usize, v: usize) -> (usize, usize) {
+        (v / LANES * self.width() + u, v % LANES)
     }
 
-    /// Convolves the block.
-    pub(super) fn convolve(&self, scratch: &mut Scratch, spectrum: &[f64], isa: Isa) {
-        isa.run(Forward { transform: self, scratch });
-        isa.run(Multiply { transform: self, scratch, spectrum });
-        isa.run(Backward { transform: self, scratch });
-    }
-}
-
-/// Reads [`LANES`] columns of a plane of `columns` columns, from column `c` on.
-#[inline(always)]
-fn gather(plane: &[f64], columns: usize, c: usize, lanes: &mut [Lane]) {
-    for (lane, row) in lanes.iter_mut().zip(plane.chunks_exact(columns)) {
-        lane.copy_from_slice(&row[c..c + LANES]);
-    }
-}
-
-/// Writes [`LANES`] columns of `rows` values as rows of the turned plane, from row `c` on.
-#[inline(always)]
-fn scatter_turned(lanes: &[Lane], rows: usize, c: usize, turned: &mut [f64]) {
-    for l in 0..LANES {
-        for (to, lane) in turned[(c + l) * rows..][..rows].iter_mut().zip(lanes) {
-            *to = lane[l];
+    /// Convolves the block. Of the result only the columns of `wanted` are whole.
+    #[inline(always)]
+    pub(super) fn convolve(&self, scratch: &mut Scratch<T>, spectrum: &[Lane<T>], wanted: std::ops::Range<usize>) {
+        Down { transform: self, scratch }.run();
+        Across { transform: self, scratch, spectrum }.run();
+        let [real, imaginary] = &mut scratch.block;
+        let height = self.height();
+        let panels = wanted.start / LANES * height..wanted.end.div_ceil(LANES) * height;
+        let (re, im) = (real[panels.clone()].chunks_exact_mut(height), imaginary[panels].chunks_exact_mut(height));
+        for (re, im) in re.zip(im) {
+            self.down.inverse(re, im);
         }
     }
 }
 
-/// Down the columns of the block, into the turned planes.
-struct Forward<'a> {
-    transform: &'a Transform,
-    scratch: &'a mut Scratch,
+/// Turns a square: its rows become columns.
+#[inline(always)]
+fn turn<T: Real>(from: &[Lane<T>], to: &mut [Lane<T>]) {
+    let (from, to) = (&from[..LANES], &mut to[..LANES]);
+    for i in 0..LANES {
+        for j in 0..LANES {
+            to[i][j] = from[j][i];
+        }
+    }
 }
 
-impl Vectorized for Forward<'_> {
+/// [`LANES`] rows of the block from the row `row` on, as columns of the line.
+#[inline(always)]
+fn gather<T: Real>(block: &[Lane<T>], height: usize, row: usize, line: &mut [Lane<T>]) {
+    for (panel, line) in block.chunks_exact(height).zip(line.chunks_exact_mut(LANES)) {
+        turn(&panel[row..], line);
+    }
+}
+
+/// Down the columns of the block.
+struct Down<'a, T> {
+    transform: &'a Transform<T>,
+    scratch: &'a mut Scratch<T>,
+}
+
+impl<T: Real> Vectorized for Down<'_, T> {
     type Output = ();
     #[inline(always)]
     fn run(self) {
-        let Scratch { block, turned, re, im, .. } = self.scratch;
-        let (width, height) = (self.transform.width(), self.transform.height());
-        for c in (0..width).step_by(LANES) {
-            gather(&block[0], width, c, re);
-            gather(&block[1], width, c, im);
+        let [real, imaginary] = &mut self.scratch.block;
+        let height = self.transform.height();
+        for (re, im) in real.chunks_exact_mut(height).zip(imaginary.chunks_exact_mut(height)) {
             self.transform.down.forward(re, im);
-            scatter_turned(re, height, c, &mut turned[0]);
-            scatter_turned(im, height, c, &mut turned[1]);
         }
     }
 }
 
-/// Across, times the spectrum, and back, from the turned planes into the block.
-struct Multiply<'a> {
-    transform: &'a Transform,
-    scratch: &'a mut Scratch,
-    spectrum: &'a [f64],
+/// Across, times the spectrum, and back.
+struct Across<'a, T> {
+    transform: &'a Transform<T>,
+    scratch: &'a mut Scratch<T>,
+    spectrum: &'a [Lane<T>],
 }
 
-impl Vectorized for Multiply<'_> {
-    type Output = ();
+impl<T: Real> Across<'_, T> {
     #[inline(always)]
     fn run(self) {
-        let Scratch { block, turned, re, im, .. } = self.scratch;
+        let Scratch { block, line: [re, im], .. } = self.scratch;
         let (width, height) = (self.transform.width(), self.transform.height());
-        for (c, spectrum) in (0..height).step_by(LANES).zip(self.spectrum.chunks_exact(width * LANES)) {
-            gather(&turned[0], height, c, re);
-            gather(&turned[1], height, c, im);
+        for (row, spectrum) in (0..height).step_by(LANES).zip(self.spectrum.chunks_exact(width)) {
+            gather(&block[0], height, row, re);
+            gather(&block[1], height, row, im);
             self.transform.across.forward(re, im);
-            for ((re, im), s) in re.iter_mut().zip(im.iter_mut()).zip(spectrum.chunks_exact(LANES)) {
-                for l in 0..LANES {
-                    re[l] *= s[l];
-                    im[l] *= s[l];
+            for line in [&mut *re, &mut *im] {
+                for (v, s) in line.as_flattened_mut().iter_mut().zip(spectrum.as_flattened()) {
+                    *v *= *s;
                 }
             }
             self.transform.across.inverse(re, im);
-            scatter_turned(re, width, c, &mut block[0]);
-            scatter_turned(im, width, c, &mut block[1]);
-        }
-    }
-}
-
-/// Back down the columns, in the block.
-struct Backward<'a> {
-    transform: &'a Transform,
-    scratch: &'a mut Scratch,
-}
-
-impl Vectorized for Backward<'_> {
-    type Output = ();
-    #[inline(always)]
-    fn run(self) {
-        let Scratch { block, re, im, .. } = self.scratch;
-        let width = self.transform.width();
-        for c in (0..width).step_by(LANES) {
-            gather(&block[0], width, c, re);
-            gather(&block[1], width, c, im);
-            self.transform.down.inverse(re, im);
-            for (part, lanes) in block.iter_mut().zip([&*re, &*im]) {
-                for (row, lane) in part.chunks_exact_mut(width).zip(lanes) {
-                    row[c..c + LANES].copy_from_slice(lane);
+            for (part, line) in block.iter_mut().zip([&*re, &*im]) {
+                for (panel, line) in part.chunks_exact_mut(height).zip(line.chunks_exact(LANES)) {
+                    turn(line, &mut panel[row..]);
                 }
             }
         }
@@ -228,27 +215,25 @@ impl Vectorized for Backward<'_> {
 }
 
 /// The real part of the spectrum, where the block is a kernel: the imaginary one of what is the same at opposite places is 0.
-struct Spectrum<'a> {
-    transform: &'a Transform,
-    scratch: &'a mut Scratch,
-    scale: f64,
-    out: &'a mut [f64],
+struct Spectrum<'a, T> {
+    transform: &'a Transform<T>,
+    scratch: &'a mut Scratch<T>,
+    scale: T,
+    out: &'a mut [Lane<T>],
 }
 
-impl Vectorized for Spectrum<'_> {
+impl<T: Real> Vectorized for Spectrum<'_, T> {
     type Output = ();
     #[inline(always)]
     fn run(self) {
-        let Scratch { turned, re, im, .. } = self.scratch;
+        let Scratch { block, line: [re, im], .. } = self.scratch;
         let (width, height) = (self.transform.width(), self.transform.height());
-        for (c, out) in (0..height).step_by(LANES).zip(self.out.chunks_exact_mut(width * LANES)) {
-            gather(&turned[0], height, c, re);
-            gather(&turned[1], height, c, im);
+        for (row, out) in (0..height).step_by(LANES).zip(self.out.chunks_exact_mut(width)) {
+            gather(&block[0], height, row, re);
+            gather(&block[1], height, row, im);
             self.transform.across.forward(re, im);
-            for (out, re) in out.chunks_exact_mut(LANES).zip(re.iter()) {
-                for l in 0..LANES {
-                    out[l] = re[l] * self.scale;
-                }
+            for (out, re) in out.as_flattened_mut().iter_mut().zip(re.as_flattened()) {
+                *out = *re * self.scale;
             }
         }
     }

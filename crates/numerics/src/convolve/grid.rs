@@ -6,15 +6,15 @@ use crate::isa::Isa;
 
 /// A square grid that wraps around.
 pub struct Grid {
-    transform: Transform,
-    scratch: Scratch,
+    transform: Transform<f64>,
+    scratch: Scratch<f64>,
     /// Place of each frequency in a transform.
     place: Vec<usize>,
     isa: Isa,
 }
 
 impl Grid {
-    /// A grid of `side` by `side` points, a power of two of at least 8.
+    /// A grid of `side` by `side` points, a power of two of at least 16.
     pub fn new(side: usize) -> Self {
         let transform = Transform::new(side, side);
         let scratch = Scratch::new(&transform);
@@ -29,6 +29,9 @@ impl Grid {
         let side = self.transform.width();
         let spectrum =
             self.transform.spectrum_with(weights.radius(), weights.signed(), &mut self.scratch, 1.0, self.isa);
-        Kernel::new(side / 2, |u, v| spectrum[self.transform.at(self.place[u], self.place[v])])
+        Kernel::new(side / 2, |u, v| {
+            let (lanes, lane) = self.transform.at(self.place[u], self.place[v]);
+            spectrum[lanes][lane]
+        })
     }
 }

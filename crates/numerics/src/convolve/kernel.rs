@@ -61,11 +61,6 @@ impl Kernel {
         })
     }
 
-    /// Adds to the weight of the pixel itself.
-    pub fn add_center(&mut self, weight: f64) {
-        self.quarter[0] += weight;
-    }
-
     /// The part within `radius`.
     #[must_use]
     pub fn cropped(self, radius: usize) -> Self {

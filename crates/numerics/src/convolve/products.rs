@@ -211,7 +211,7 @@ mod tests {
             let kernel = Kernel::new(radius, |i, j| terms.iter().map(|(w, p)| w * p[i] * p[j]).sum());
             let (mut target, mut wanted) = (vec![0.0; source.len()], vec![0.0; source.len()]);
             Products::new(&terms, 0.0, width, height).apply(&source, &mut target, |to, v| *to = v);
-            Convolver::new(&kernel, width, height).apply(&source, &mut wanted, |to, v| *to = v as f32);
+            Convolver::<f64>::new(&kernel, width, height).apply(&source, &mut wanted, |to, v| *to = v as f32);
             for (got, want) in target.iter().zip(&wanted) {
                 assert!((got - want).abs() <= 2e-6 * want, "{width} {height} {radius}: {got} {want}");
             }

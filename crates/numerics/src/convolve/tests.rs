@@ -15,7 +15,7 @@ fn blocks_give_the_sum_that_defines_a_convolution() {
         let source = plane(width, height);
         let kernel = kernel(radius);
         let mut target = vec![0.0; source.len()];
-        Convolver::new(&kernel, width, height).apply(&source, &mut target, |to, v| *to = v as f32);
+        Convolver::<f64>::new(&kernel, width, height).apply(&source, &mut target, |to, v| *to = v as f32);
         let r = radius as i64;
         for k in (0..source.len()).step_by(37) {
             let (x, y) = ((k % width) as i64, (k / width) as i64);
@@ -41,7 +41,7 @@ fn same_bits_on_any_threads_and_tier() {
     let source = plane(width, height);
     let run = |threads: usize, isa: Isa| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-        let mut convolver = Convolver::new(&kernel(30), width, height);
+        let mut convolver = Convolver::<f64>::new(&kernel(30), width, height);
         convolver.isa = isa;
         let mut target = vec![0.0; source.len()];
         pool.install(|| convolver.apply(&source, &mut target, |to, v| *to = v as f32));
@@ -60,7 +60,7 @@ fn shadows_survive_highlights() {
     source[150 * 300 + 150] = 1e7;
     let kernel = Kernel::new(2, |i, j| if i + j == 0 { 0.6 } else { 0.4 / 24.0 });
     let mut target = vec![0.0; source.len()];
-    Convolver::new(&kernel, 300, 300).apply(&source, &mut target, |to, v| *to = v as f32);
+    Convolver::<f64>::new(&kernel, 300, 300).apply(&source, &mut target, |to, v| *to = v as f32);
     assert!((target[150 * 300 + 154] - 1.0).abs() < 1e-6, "{}", target[150 * 300 + 154]);
 }
 
@@ -80,7 +80,7 @@ fn slanted_kernels_keep_their_slant() {
     let weight =
         |i: isize, j: isize| if i == 2 * j && j.abs() < 4 { 1.0 / (1.0 + j.unsigned_abs() as f64) } else { 0.0 };
     let mut target = vec![0.0; source.len()];
-    Convolver::of(6, weight, 40, 30).apply(&source, &mut target, |to, v| *to = v as f32);
+    Convolver::<f64>::of(6, weight, 40, 30).apply(&source, &mut target, |to, v| *to = v as f32);
     for (at, found) in target.iter().enumerate() {
         let want = weight(at as isize % 40 - 20, at as isize / 40 - 15);
         assert!((f64::from(*found) - want).abs() < 1e-7, "{at}: {found} {want}");
