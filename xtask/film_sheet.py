@@ -3,12 +3,12 @@
 
 Run from the root of the repository:
 
-    python3 xtask/film_sheet.py target/release/spectra [NAME...]
+    VENV/bin/python xtask/film_sheet.py target/release/spectra [NAME...]
 
-With names, only the pictures of these films are made anew; `-` makes none. The page is always of all.
+With names, only the pictures of these films are made anew; `-` makes none. The page is always of all. Needs numpy where pictures are made.
 
-The photograph is scenes/bench/noise-portrait.yaml, stopped down to f/4 and metered on its gray card. All films of one light are
-developed of one trace. Films for tungsten light get it: the scene's illuminant is theirs.
+The photograph is a still life by a window (xtask/still_life.py), through a lens at f/8, metered on its gray card. All films of one light
+are developed of one trace. Films for tungsten light get it: the scene's illuminant is theirs.
 """
 
 import json
@@ -26,9 +26,8 @@ ACROSS = 3
 TOGETHER = 12
 
 SCENE = """spectra: 1
-include: {portrait}
-source: {{illuminant: {light}}}
-lens: {{f-number: f/4}}
+source: {{kind: picture, file: {picture}, distance: 1.5 m, width: fill, edge: mirror, illuminant: {light}, luminance: 300 cd/m2}}
+lens: {{file: nikkor-100-f1.4, f-number: f/8, focus: 1.5 m}}
 imager: {{kind: film, format: 135, crop: "3:2", resolution: [{width}, {height}]}}
 film:
 {films}
@@ -36,7 +35,7 @@ render: {{samples: 96, seed: 1}}
 output: [png]
 """
 # The middle of the gray card.
-SPOT = "{center: [0.845, 0.675], diameter: 0.2}"
+SPOT = "{center: [0.89, 0.635], diameter: 0.12}"
 MADE_FOR = {"iso-7589-sensitometric-daylight": "D55", "iso-7589-sensitometric-studio-tungsten": "iso-7589-studio-tungsten"}
 KINDS = (
     ("Color negatives", lambda s: len(s["layers"]) == 3 and s["process"] == "negative"),
@@ -54,24 +53,32 @@ def run(*command):
 
 def shoot(program, stocks, wanted):
     """A picture of every film that is wanted."""
+    import still_life
+
+    with tempfile.TemporaryDirectory() as folder:
+        picture = Path(folder) / "still-life.exr"
+        still_life.write(picture)
+        expose(program, picture, stocks, wanted)
+
+
+def expose(program, picture, stocks, wanted):
     for illuminant, light in MADE_FOR.items():
         names = [n for n, s in stocks.items() if s["reference_illuminant"] == illuminant]
         if light == "D55":
             names.append("three-strip")
         names = [n for n in names if n in wanted]
         for k in range(0, len(names), TOGETHER):
-            develop(program, light, names[k:k + TOGETHER])
+            develop(program, picture, light, names[k:k + TOGETHER])
 
 
-def develop(program, light, names):
+def develop(program, picture, light, names):
     """Pictures of a few films, of one trace."""
     what = {n: "kind: three-strip" if n == "three-strip" else f"stock: {n}" for n in names}
     films = [f"  - {{name: {n}, {what[n]}, metering: spot, spot: {SPOT}}}" for n in names]
     if films:
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "sheet.yaml"
-            portrait = ROOT / "scenes" / "bench" / "noise-portrait.yaml"
-            path.write_text(SCENE.format(portrait=portrait, light=light, width=SIZE[0], height=SIZE[1], films="\n".join(films)),
+            path.write_text(SCENE.format(picture=picture, light=light, width=SIZE[0], height=SIZE[1], films="\n".join(films)),
                             encoding="utf-8")
             run(program, "run", path, "--output", folder, "--quiet")
             for name in names:
@@ -112,8 +119,8 @@ def page(stocks, prints):
     lines = [
         "# The film library", "",
         "One photograph on each bundled film, as its maker wants it printed or projected: black and white on paper of grade 2, color",
-        "negatives on the paper or print film that their file names, reversal films projected. The picture is that of",
-        "`scenes/bench/noise-portrait.yaml` (drawn by `xtask/noise_scenes.py`), metered on its gray card in the light that the film is",
+        "negatives on the paper or print film that their file names, reversal films projected. The picture is a still life by a window",
+        "(drawn by `xtask/still_life.py`), through the Nikkor 100 mm at f/8, metered on its gray card in the light that the film is",
         "made for. Films are small here: 360 pixels of a frame of 36 mm, so that grain is that of the whole frame at arm's length.",
         "Written by `xtask/film_sheet.py`; where the figures come from stands in each file under `spectra/film/`, with what is assumed",
         "and why (`spectra film info NAME`).", "",
@@ -149,7 +156,9 @@ def main():
     names = sorted(p.stem for p in STOCKS.glob("*.yaml"))
     infos = {n: json.loads(run(program, "film", "info", n, "--json")) for n in names}
     stocks = {n: s for n, s in infos.items() if s["process"] != "print"}
-    shoot(program, stocks, sys.argv[2:] or [*stocks, "three-strip"])
+    wanted = sys.argv[2:] or [*stocks, "three-strip"]
+    if wanted != ["-"]:
+        shoot(program, stocks, wanted)
     page(stocks, {n: s for n, s in infos.items() if n not in stocks})
     total = sum(p.stat().st_size for p in IMAGES.glob("*"))
     print(f"{len(stocks)} films, {total / 1e6:.2f} MB of pictures")

@@ -4,6 +4,7 @@
 //! once, by the last of them; the work at hand is stopped for them. A desk that nobody asks anything of is cleared.
 
 mod hand;
+mod memory;
 mod priority;
 mod show;
 mod watch;
@@ -102,7 +103,10 @@ impl Desk {
         };
         let desk = Arc::new(desk);
         let own = Arc::clone(&desk);
-        std::thread::Builder::new().name("desk".to_owned()).spawn(move || own.work())?;
+        std::thread::Builder::new().name("desk".to_owned()).spawn(move || {
+            own.work();
+            memory::give_back();
+        })?;
         Ok(desk)
     }
 

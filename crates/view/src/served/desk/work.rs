@@ -2,10 +2,9 @@
 
 use super::super::save;
 use super::hand::{Drafted, Hand, Owed, Plate, Shape};
-use super::priority;
 use super::show::Kind;
 use super::watch::Stamps;
-use super::{Desk, Frame, State, WIDTHS_PX, held};
+use super::{Desk, Frame, State, WIDTHS_PX, held, memory, priority};
 use crate::controls;
 use crate::parts::{packed, said};
 use serde_json::{Value, json};
@@ -31,6 +30,8 @@ const CHOOSES_FILM: [&str; 2] = ["stock", "kind"];
 const REST: Duration = Duration::from_millis(60);
 /// The scene's file is looked at so often.
 const GLANCE: Duration = Duration::from_millis(300);
+/// Memory that nobody used for so long is given back.
+const TIDY: Duration = Duration::from_secs(1);
 /// A scene's file that is larger than this is none.
 const MAX_SCENE_BYTES: u64 = 1 << 22;
 
@@ -84,6 +85,8 @@ impl Desk {
         // The first picture of all is a draft, too.
         let mut is_asked_for_draft = true;
         let mut looked = Instant::now();
+        // When there was work to do last, until its memory is given back.
+        let mut worked = None;
         loop {
             let (pending, stop) = {
                 let all = u64::from(hand.session.scene().render.samples);
@@ -98,12 +101,19 @@ impl Desk {
                     self.turned.notify_all();
                 }
                 if state.is_closed {
-                    return;
+                    break;
+                }
+                if !is_done || !state.pending.is_empty() {
+                    worked = Some(Instant::now());
                 }
                 state.stop = Arc::new(Stop::new());
                 state.turns_taken = state.turns;
                 (std::mem::take(&mut state.pending), Arc::clone(&state.stop))
             };
+            if worked.is_some_and(|worked| worked.elapsed() >= TIDY) {
+                worked = None;
+                memory::give_back();
+            }
             if pending.is_empty() && looked.elapsed() >= GLANCE {
                 looked = Instant::now();
                 if self.is_written_anew(&mut hand) {
