@@ -137,7 +137,7 @@ impl Palette {
             let place = part[i];
             // Beside the band it may be no number.
             let radiance = from[i] + (to[i] - from[i]) * place;
-            weight[i] *= if (place >= 0.0) & (place <= 1.0) { radiance } else { 0.0 };
+            weight[i] *= if (0.0..=1.0).contains(&place) { radiance } else { 0.0 };
         }
     }
 }

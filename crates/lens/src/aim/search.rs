@@ -509,7 +509,10 @@ impl Sector {
 
 /// How an opening is seen from the ends of a zone, by wavelength.
 type Views = Vec<Vec<Option<Seen>>>;
-/// An opening, and that.
+
+/// An opening, and that; neither where the lens is round, and not the views where they are not known.
+type PerhapsOpened<'a> = (Option<&'a Stopped>, Option<&'a [Vec<Option<Seen>>]>);
+/// Both.
 type Opened<'a> = (&'a Stopped, &'a [Vec<Option<Seen>>]);
 
 /// The ellipse or rectangle of a zone, on its plane.
@@ -641,7 +644,7 @@ impl Region {
         lattice: &Lattice,
         at: &ZonePlace,
         sector: &Sector,
-        seen: (Option<&Stopped>, Option<&[Vec<Option<Seen>>]>),
+        seen: PerhapsOpened<'_>,
         bands: usize,
     ) -> Vec<Reach> {
         let known = if self.fades { None } else { self.by_edges(lattice, at, sector, seen, bands) };
@@ -679,7 +682,7 @@ impl Region {
         lattice: &Lattice,
         at: &ZonePlace,
         sector: &Sector,
-        (opening, views): (Option<&Stopped>, Option<&[Vec<Option<Seen>>]>),
+        (opening, views): PerhapsOpened<'_>,
         bands: usize,
     ) -> Option<Vec<Reach>> {
         let ends = lattice.ends(at)?;
