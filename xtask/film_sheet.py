@@ -7,7 +7,7 @@ Run from the root of the repository:
 
 With names, only the pictures of these films are made anew; `-` makes none. The page is always of all. Needs numpy where pictures are made.
 
-The photograph is a still life by a window (xtask/still_life.py), through a lens at f/8, metered on its gray card. All films of one light
+The photograph is a still life by a window (xtask/still_life.py), through a lens at f/8, exposed half a stop below its gray card, so that the white jug keeps its shade. All films of one light
 are developed of one trace. Films for tungsten light get it: the scene's illuminant is theirs.
 """
 
@@ -74,7 +74,7 @@ def expose(program, picture, stocks, wanted):
 def develop(program, picture, light, names):
     """Pictures of a few films, of one trace."""
     what = {n: "kind: three-strip" if n == "three-strip" else f"stock: {n}" for n in names}
-    films = [f"  - {{name: {n}, {what[n]}, metering: spot, spot: {SPOT}}}" for n in names]
+    films = [f"  - {{name: {n}, {what[n]}, metering: spot, spot: {SPOT}, compensation: -0.5}}" for n in names]
     if films:
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "sheet.yaml"
@@ -120,7 +120,7 @@ def page(stocks, prints):
         "# The film library", "",
         "One photograph on each bundled film, as its maker wants it printed or projected: black and white on paper of grade 2, color",
         "negatives on the paper or print film that their file names, reversal films projected. The picture is a still life by a window",
-        "(drawn by `xtask/still_life.py`), through the Nikkor 100 mm at f/8, metered on its gray card in the light that the film is",
+        "(drawn by `xtask/still_life.py`), through the Nikkor 100 mm at f/8, half a stop below what its gray card asks, in the light that the film is",
         "made for. Films are small here: 360 pixels of a frame of 36 mm, so that grain is that of the whole frame at arm's length.",
         "Written by `xtask/film_sheet.py`; where the figures come from stands in each file under `spectra/film/`, with what is assumed",
         "and why (`spectra film info NAME`).", "",
