@@ -211,6 +211,8 @@ fn memory_is_counted() {
     let step = needed("[{kind: exr, ghost-paths: 8}]", &[]) - needed("[{kind: exr, ghost-paths: 7}]", &[]);
     // A sum of eight bytes and a value of four, or in the file's own copy two values of four.
     assert_eq!(step, pixels * channels * 12);
+    // A veil has a sum, too, and knows eight bytes of each pixel.
+    assert_eq!(needed("[exr]", &[]) - needed("[exr]", &["render.glare=false"]), pixels * (channels * 8 + 8));
     let scene = scene_of(SUN, "[png, {kind: exr, ghost-paths: 32}]", &[]);
     let fits = needed("[png, {kind: exr, ghost-paths: 20}]", &[]);
     assert!(spectra_render::fits(&scene, spectra_render::memory_needed(&scene)).is_ok());

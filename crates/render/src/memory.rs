@@ -6,6 +6,8 @@ use spectra_scene::{Holds, Lights, Scene};
 /// Bytes of a sum and of an exposure: one of each, a pixel and channel.
 const SUM: u64 = 8;
 const EXPOSURE: u64 = 4;
+/// Bytes of what a veil knows of each pixel.
+const GAIN: u64 = 8;
 /// Bytes a pixel that developing a film takes beside the exposure: planes that are convolved, densities, the picture.
 const DEVELOPING: u64 = 40;
 /// Bytes a pixel of a picture that an imager shows by itself, and of packing it into a file.
@@ -34,13 +36,16 @@ fn needed(scene: &Scene, paths: u64) -> u64 {
     let halves = 1 + u64::from(scene.render.noise.is_some());
     // What haze, dust and scratches scatter is traced beside what they do not.
     let scattered = if scene.lens.scatters() { 1 + u64::from(apart) } else { 0 };
+    // The veil is one of all light, or one of lights and one of the rest, whether or not it pays to render lights apart.
+    let emits = |split: spectra_core::stage::Split<'_>| split.lights.emit().is_some();
+    let veils = if scene.render.glare.is_some() { 1 + u64::from(scene.source.split().is_some_and(emits)) } else { 0 };
     // Paths that have layers have sums of their own beside those of all ghosts.
-    let kinds = 1 + u64::from(apart) + if ghosts { 1 + paths } else { 0 } + scattered;
+    let kinds = 1 + u64::from(apart) + if ghosts { 1 + paths } else { 0 } + scattered + veils;
     // Layers of kinds of light and of paths, and the exposure before diffraction while it is worked out.
     let of_paths = if paths == 0 { 0 } else { 1 + if ghosts { paths } else { 0 } };
     let layers = scene.light_layers().len() as u64 + of_paths;
     let layers = if layers > 0 && scene.render.diffraction.unwrap_or(apart) { layers + 1 } else { layers };
-    let traced = channels * (SUM * halves * kinds + EXPOSURE * (1 + layers));
+    let traced = channels * (SUM * halves * kinds + EXPOSURE * (1 + layers)) + GAIN * veils;
     // Sums are gone by then. Of several films each is developed from a copy of its own channels.
     let picture = if scene.films.is_empty() { SHOWING } else { DEVELOPING + 3 * EXPOSURE * scene.films.len() as u64 };
     // A file of layers is written from a copy of them.

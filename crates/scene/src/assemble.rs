@@ -425,7 +425,10 @@ fn all_stages(
     let channels: Arc<[Channel]> = channels.into();
     let SetLens { lens, focus, warnings: of_focus } = lens;
     let pictured = films::pictured(&films, &channels);
-    let whole = doubts::Whole { params, lens: &lens, source: &*source, channels: &pictured, grid };
+    let pays = || source.split().is_some_and(|split| split.pays);
+    let apart = render.lights == Lights::Forward || render.lights == Lights::Auto && pays();
+    let ghosts = render.reflections.order.map_or(apart, |order| order > 0);
+    let whole = doubts::Whole { params, lens: &lens, source: &*source, channels: &pictured, grid, ghosts };
     let said = Said { warnings: warnings.all(), ends: warnings.ends(), dark };
     whole.doubt(said.dark.as_ref(), &warnings);
     of_focus.iter().for_each(|fault| warnings.push(fault.clone()));

@@ -25,6 +25,8 @@ pub(crate) struct Whole<'a> {
     pub source: &'a dyn Source,
     pub channels: &'a [Channel],
     pub grid: Grid,
+    /// Whether ghosts are traced, or may be.
+    pub ghosts: bool,
 }
 
 impl Whole<'_> {
@@ -41,6 +43,27 @@ impl Whole<'_> {
         }
         self.light(warnings);
         self.glass(warnings);
+        self.ghosts(warnings);
+    }
+
+    /// Prisms, whose faces have ghosts that no path follows.
+    fn ghosts(&self, warnings: &Warnings) {
+        let elements = self.lens.elements.iter().enumerate();
+        let prisms: Vec<String> =
+            elements.filter(|(_, e)| e.solid.is_some()).map(|(at, _)| (at + 1).to_string()).collect();
+        if prisms.is_empty() || !self.ghosts {
+            return;
+        }
+        let key = "render.reflections.order";
+        let key = if self.at(key).is_some() { key } else { "lens.file" };
+        let text = format!(
+            "no path of ghosts is reflected by the faces of a prism (surface{} {} of the lens): what of these falls on the frame is missing",
+            if prisms.len() == 1 { "" } else { "s" },
+            prisms.join(", ")
+        );
+        let hint =
+            "faces written as surfaces of `kind: plane` between bends of the axis have ghosts; `order: 0` traces none";
+        warnings.push(self.params.fault(key, text).hint(hint));
     }
 
     /// A source close to the lens.
