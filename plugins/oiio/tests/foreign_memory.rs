@@ -28,14 +28,12 @@ fn planes<T>(samples: Samples, then: impl FnOnce(&Written<'_>) -> T) -> T {
 
 fn foreign(path: &Path) {
     let mut file = File::options().read(true).write(true).create_new(true).open(path).expect("a file");
-    planes(Samples::U16, |picture| write(&mut file, picture))
-        .expect("written");
+    planes(Samples::U16, |picture| write(&mut file, picture)).expect("written");
 }
 
 /// Half a float a sample is what is read by OpenImageIO alone.
 fn texture(path: &Path) {
-    planes(Samples::F16, |picture| make_texture(path, picture))
-        .expect("written");
+    planes(Samples::F16, |picture| make_texture(path, picture)).expect("written");
 }
 
 #[test]
