@@ -43,12 +43,12 @@ const held = () => {
   });
   return { memory_mb: Number(/VmRSS:\s+(\d+)/.exec(status)[1]) / 1024, threads: tasks.length, children: children.length };
 };
-/** When nothing is asked of it: pictures are whole, connections are those that wait. */
+/** When nothing is asked of it: pictures are whole, connections are those that wait, and what was freed has gone back to the system. */
 const rest = async () => {
   for (const page of pages) {
     await page.waitForFunction(() => document.querySelector("progress").value === 1 || !document.querySelector("#fault").hidden, null, { timeout: 300_000 }).catch(() => {});
   }
-  await pages[0].waitForTimeout(1500);
+  await pages[0].waitForTimeout(4000);
   return held();
 };
 
