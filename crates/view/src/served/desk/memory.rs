@@ -1,7 +1,7 @@
 //! Memory that a picture took goes back to the system.
 
 /// Hands what is free back to the system. The allocator of the GNU C library keeps it for each of many threads, of which a
-/// server has new ones all the time: after half an hour, four times what is in use. Other allocators are left as they are.
+/// server has new ones all the time: after seven minutes of random use by four pages, 273 MB of which 67 were in use. Other allocators are left as they are.
 #[cfg_attr(all(target_os = "linux", target_env = "gnu"), expect(unsafe_code, reason = "a call of the C library"))]
 pub(super) fn give_back() {
     #[cfg(all(target_os = "linux", target_env = "gnu"))]
