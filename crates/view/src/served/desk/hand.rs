@@ -4,7 +4,7 @@ use super::watch::Stamps;
 use spectra_core::frame::ExposureFrame;
 use spectra_core::params::Node;
 use spectra_scene::Negatives;
-use spectra_session::{Rendering, Session};
+use spectra_session::{Rendering, Session, SessionError};
 use std::sync::Arc;
 
 /// The first picture after a change: its width, pixels, and its samples of a pixel.
@@ -31,38 +31,26 @@ pub(super) enum Drafted {
     None,
 }
 
-/// What the film got, and what was developed of it: of all pixels, and of fewer where they are many.
-pub(super) struct Light {
-    pub(super) whole: Arc<Plate>,
-    small: Option<Arc<Plate>>,
-    pub(super) rays: u64,
-}
-
-impl Light {
-    pub(super) fn of(rendering: Rendering) -> Self {
-        Self { whole: Arc::new(Plate::of(rendering.exposure)), small: None, rays: rendering.rays }
-    }
-
-    /// Of fewer pixels, where they are many; made when it is first asked for.
-    pub(super) fn small(&mut self) -> Option<Arc<Plate>> {
-        let exposure = &self.whole.exposure;
-        if exposure.size.width_px <= QUICK_PX {
-            return None;
-        }
-        let small = self.small.get_or_insert_with(|| Arc::new(Plate::of(shrunk(exposure, QUICK_PX))));
-        Some(Arc::clone(small))
-    }
-}
-
-/// An exposure and its negatives.
+/// What the film got, and what was developed of it.
 pub(super) struct Plate {
     pub(super) exposure: Arc<ExposureFrame>,
     pub(super) negatives: Negatives,
+    /// Rays that were traced for it.
+    pub(super) rays: u64,
 }
 
 impl Plate {
-    pub(super) fn of(exposure: ExposureFrame) -> Self {
-        Self { exposure: Arc::new(exposure), negatives: Negatives::default() }
+    pub(super) fn of(rendering: Rendering) -> Self {
+        Self::got(rendering.exposure, rendering.rays)
+    }
+
+    fn got(exposure: ExposureFrame, rays: u64) -> Self {
+        Self { exposure: Arc::new(exposure), negatives: Negatives::default(), rays }
+    }
+
+    /// The same of fewer pixels, where they are many.
+    pub(super) fn small(&self) -> Option<Self> {
+        (self.exposure.size.width_px > QUICK_PX).then(|| Self::got(shrunk(&self.exposure, QUICK_PX), self.rays))
     }
 }
 
@@ -77,8 +65,10 @@ pub(super) struct Hand {
     /// Texts `path=value` that the draft does not have yet.
     pub(super) behind: Vec<String>,
     pub(super) is_light_owed: bool,
-    /// The light of the session so far, while it stays.
-    pub(super) light: Option<Light>,
+    /// The light of the session so far, until more is traced.
+    pub(super) light: Option<Arc<Plate>>,
+    /// The light that was last shown, of fewer pixels: while the scene's light stays, what only develops otherwise is first seen by it.
+    pub(super) small: Option<Arc<Plate>>,
     /// A sample of all pixels takes so long.
     pub(super) pace_s: Option<f64>,
     /// The files that the scene names, as they were read.
@@ -88,6 +78,15 @@ pub(super) struct Hand {
 }
 
 impl Hand {
+    /// The light so far.
+    pub(super) fn look(&mut self) -> Result<Arc<Plate>, SessionError> {
+        let light = match self.light.take() {
+            Some(light) => light,
+            None => Arc::new(Plate::of(self.session.look()?)),
+        };
+        Ok(Arc::clone(self.light.insert(light)))
+    }
+
     /// Of values of one control the last counts.
     pub(super) fn owe(&mut self, turned: Vec<(String, String)>) {
         for (path, text) in turned {
@@ -112,6 +111,7 @@ impl Hand {
             behind: Vec::new(),
             is_light_owed: true,
             light: None,
+            small: None,
             pace_s: None,
             stamps: Stamps::default(),
             refused: None,

@@ -1,6 +1,6 @@
 //! Develops light and gives the picture to the page: a small one at once, and a large one beside whatever is turned next.
 
-use super::hand::{Hand, Light, Plate, Shape};
+use super::hand::{Hand, Plate, Shape};
 use super::{Desk, Frame, State, held, priority};
 use crate::parts::{halves, head, packed, said};
 use serde_json::{Value, json};
@@ -42,24 +42,29 @@ impl Desk {
         started: Instant,
         quick: bool,
     ) -> Result<(), SessionError> {
-        let light = match hand.light.take() {
-            Some(light) => light,
-            None => Light::of(hand.session.look()?),
-        };
-        let light = hand.light.insert(light);
-        let rays = light.rays;
-        let small = quick.then(|| light.small()).flatten();
-        let taken = |plate, kind| self.taken(&hand.session, &hand.shape, started, plate, rays, kind);
+        let of = |hand: &Hand, plate, kind| self.taken(&hand.session, &hand.shape, started, plate, kind);
         if quick {
+            let small = match &hand.small {
+                Some(small) => Some(Arc::clone(small)),
+                None => hand.look()?.small().map(Arc::new),
+            };
+            hand.small.clone_from(&small);
             match small {
-                None => return self.show(&taken(Arc::clone(&light.whole), Kind::First)),
                 // What cannot be developed small is seen whole.
-                Some(small) => drop(self.show(&taken(small, Kind::Draft))),
+                Some(small) => drop(self.show(&of(hand, small, Kind::Draft))),
+                None => {
+                    let whole = hand.look()?;
+                    return self.show(&of(hand, whole, Kind::First));
+                }
             }
+        }
+        let whole = hand.look()?;
+        if !quick {
+            hand.small = whole.small().map(Arc::new);
         }
         // One after the other; and for none of them does anybody wait who turns something.
         if self.is_developed() {
-            self.show_beside(taken(Arc::clone(&light.whole), Kind::Later))?;
+            self.show_beside(of(hand, whole, Kind::Later))?;
             self.is_developed();
         }
         Ok(())
@@ -96,12 +101,11 @@ impl Desk {
         shape: &Shape,
         started: Instant,
         plate: Arc<Plate>,
-        rays: u64,
         kind: Kind,
     ) -> Taken {
         let scene = Arc::clone(session.scene());
         let times = scene.film_times(&plate.exposure);
-        let mut head = head(json!({}), session, &times, rays);
+        let mut head = head(json!({}), session, &times, plate.rays);
         if kind == Kind::Draft {
             head["samples"] = 0.into();
         }

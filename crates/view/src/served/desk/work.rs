@@ -77,6 +77,7 @@ impl Desk {
             behind: Vec::new(),
             is_light_owed: true,
             light: None,
+            small: None,
             pace_s: None,
             stamps: Stamps::default(),
             refused: None,
@@ -240,8 +241,7 @@ impl Desk {
             _ => return hand.without_draft(),
         };
         let shown = seen.and_then(|seen| {
-            let plate = Arc::new(Plate::of(seen.exposure));
-            self.show(&self.taken(draft, &hand.shape, started, plate, seen.rays, Kind::Draft))
+            self.show(&self.taken(draft, &hand.shape, started, Arc::new(Plate::of(seen)), Kind::Draft))
         });
         if shown.is_err() {
             return hand.without_draft();
@@ -292,7 +292,7 @@ impl Desk {
         }
         // What the film got follows from the light, but for what is done to the sum of it.
         if !is_light_kept || !is_developed_only || hand.session.scene().exposure_time_s() != time_s {
-            hand.light = None;
+            (hand.light, hand.small) = (None, None);
         }
         if !hand.owed.is_empty() {
             hand.is_light_owed |= !is_light_kept;
