@@ -4,7 +4,7 @@
 //! compiles it once per tier, and the compiler vectorises each copy. Rust never fuses `a * b + c`, so every tier gives the same
 //! bits.
 //!
-//! No other module of the workspace may hold `unsafe` code.
+//! No other module of the engine holds `unsafe` code; what does, calls into another language: OpenImageIO, a browser, the C library.
 #![allow(unsafe_code)]
 
 use std::sync::OnceLock;

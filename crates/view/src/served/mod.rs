@@ -4,6 +4,7 @@ mod bench;
 mod desk;
 mod guard;
 mod http;
+mod memory;
 mod save;
 mod server;
 mod study;
@@ -37,6 +38,7 @@ pub struct View {
 /// Everything that is wrong with the scene; a port that cannot be had.
 pub fn view(view: View, ready: impl FnOnce(&str)) -> Result<std::convert::Infallible, SessionError> {
     let View { scene, overrides, port, isa, threads } = view;
+    memory::keep_little();
     desk::looked_at(&scene, &overrides, isa)?;
     let order = Order { scene, overrides, isa, threads };
     let server = bound(port, Some(order))?;

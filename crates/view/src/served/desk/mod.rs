@@ -4,14 +4,13 @@
 //! once, by the last of them; the work at hand is stopped for them. A desk that nobody asks anything of is cleared.
 
 mod hand;
-mod memory;
 mod priority;
 mod show;
 mod watch;
 mod work;
 
 use super::bench::is_prism;
-use super::save;
+use super::{memory, save};
 use crate::controls::Control;
 use crate::parts::{pixel, spectra};
 use crate::section;

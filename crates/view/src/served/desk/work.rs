@@ -1,10 +1,10 @@
 //! What the thread of a desk does: take up what was turned, trace, develop, and watch the scene's file.
 
-use super::super::save;
+use super::super::{memory, save};
 use super::hand::{Drafted, Hand, Owed, Plate, Shape};
 use super::show::Kind;
 use super::watch::Stamps;
-use super::{Desk, Frame, State, WIDTHS_PX, held, memory, priority};
+use super::{Desk, Frame, State, WIDTHS_PX, held, priority};
 use crate::controls;
 use crate::parts::{packed, said};
 use serde_json::{Value, json};
