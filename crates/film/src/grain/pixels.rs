@@ -33,13 +33,14 @@ impl Pixels {
         Self { values }
     }
 
-    /// The density that `density` becomes by the number `z`; no number where it is not above 0, or beyond the last row.
+    /// The density that `density` becomes by the number `z`; no number where it is not above 0, or beyond the last row, or where `z` is
+    /// beyond the nodes.
     ///
     /// Between two rows linear in the density, so that the mean over z stays.
     #[inline(always)]
     pub(super) fn at(&self, density: f32, z: f32) -> f32 {
         let root = density.sqrt() * STEPS as f32;
-        let is_here = root > 0.0 && root < (ROWS - 1) as f32;
+        let is_here = root > 0.0 && root < (ROWS - 1) as f32 && z.abs() <= LIMIT as f32;
         let k = if is_here { root as i32 } else { 0 };
         let part = (density * (STEPS * STEPS) as f32 - (k * k) as f32) / (2 * k + 1) as f32;
         let place = ((z + LIMIT as f32) * FINENESS as f32).max(0.0).min((NODES - 1) as f32);
@@ -49,5 +50,45 @@ impl Pixels {
         let node = |at: i32| value(at) + (value(at + 1) - value(at)) * t;
         let (a, b) = (node(k * ROW as i32 + i), node((k + 1) * ROW as i32 + i));
         if is_here { a + (b - a) * part } else { f32::NAN }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The mean over the normal number is the density, and the variance the density times that of one grain: Poisson's law, by a sum
+    /// over the normal distribution.
+    #[test]
+    fn grainy_densities_have_the_moments_of_poissons_law() {
+        for one in [0.3_f64, 0.01, 2e-4] {
+            let pixels = Pixels::new(Counts::all(), 1.0, |_| one as f32);
+            for density in [0.02_f64, 0.3, 1.0, 2.7] {
+                let (mut all, mut sum, mut squares) = (0.0, 0.0, 0.0);
+                for k in -4990..=4990 {
+                    let z = f64::from(k) / 1000.0;
+                    let weight = (-0.5 * z * z).exp();
+                    let got = f64::from(pixels.at(density as f32, z as f32));
+                    (all, sum, squares) = (all + weight, sum + weight * got, squares + weight * got * got);
+                }
+                let (mean, grains) = (sum / all, density / one);
+                let variance = squares / all - mean * mean;
+                assert!((mean / density - 1.0).abs() < 2e-3, "{density} of {one}: {mean}");
+                // Counts of few grains have variance of their own between the nodes.
+                let off = if grains < 2.0 { 0.2 } else { 0.03 };
+                assert!((variance / (density * one) - 1.0).abs() < off, "{density} of {one}: {variance}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_beyond_the_table_is_no_number() {
+        let pixels = Pixels::new(Counts::all(), 1.0, |_| 0.01);
+        assert!(pixels.at(1.0, 4.9).is_finite());
+        for (density, z) in
+            [(0.0, 0.0), (-1.0, 0.0), (f32::NAN, 0.0), (4.1, 0.0), (1.0, 5.1), (1.0, -5.1), (1.0, f32::NAN)]
+        {
+            assert!(pixels.at(density, z).is_nan(), "{density} {z}");
+        }
     }
 }

@@ -53,6 +53,30 @@ fn same_bits_on_any_threads_and_tier() {
     }
 }
 
+/// Single precision rounds by some 1e-7 of the root of the mean square of a block, and has the same bits everywhere, too.
+#[test]
+fn single_precision_is_as_good_as_it_says() {
+    let (width, height) = (900, 700);
+    let source: Vec<f32> = (0..width * height).map(|k| 1.0 + ((k * 7919) % 1013) as f32).collect();
+    let kernel = Kernel::new(40, |i, j| 1.0 / (1.0 + (i * i + j * j) as f64));
+    let sum = kernel.sum();
+    let kernel = kernel.scaled(1.0 / sum);
+    let mut want = vec![0.0; source.len()];
+    Convolver::<f64>::new(&kernel, width, height).apply(&source, &mut want, |to, v| *to = v as f32);
+    let root_mean_square = (want.iter().map(|v| v * v).sum::<f32>() / want.len() as f32).sqrt();
+    let mut before: Option<Vec<f32>> = None;
+    for isa in Isa::available() {
+        let mut convolver = Convolver::<f32>::new(&kernel, width, height);
+        convolver.isa = isa;
+        let mut got = vec![0.0; source.len()];
+        convolver.apply(&source, &mut got, |to, v| *to = v);
+        let worst = got.iter().zip(&want).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+        assert!(worst < 2e-6 * root_mean_square, "{worst} of {root_mean_square}");
+        assert!(before.is_none_or(|before| before == got), "{}", isa.name());
+        before = Some(got);
+    }
+}
+
 /// A point 1e7 times as bright as the rest must not disturb it beyond what it sheds.
 #[test]
 fn shadows_survive_highlights() {
