@@ -379,7 +379,9 @@ fn every_example_of_the_help_works() {
             run if run.starts_with("spectra run ") => format!("{run} --time-limit 1s"),
             noise if noise.starts_with("spectra bench noise ") => format!("{noise} --seeds 2 --seconds 1"),
             // As many rays as a small picture needs.
-            ghosts if ghosts.starts_with("spectra bench ghosts ") => format!("{ghosts} --set imager.resolution=[96,64]"),
+            ghosts if ghosts.starts_with("spectra bench ghosts ") => {
+                format!("{ghosts} --set imager.resolution=[96,64]")
+            }
             other => other.clone(),
         };
         let mut shell = Command::new("sh");
