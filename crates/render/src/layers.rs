@@ -55,7 +55,8 @@ impl Renderer {
         wanted.into_iter().map(layer).collect()
     }
 
-    /// The exposure before diffraction, of all light or of a layer; `weights` are those of the parts. What meters see is straight.
+    /// The exposure before diffraction, of all light or of a layer; `weights` are those of the parts. What meters see of all light
+    /// stands in the layer of straight light.
     pub(crate) fn planes(
         &self,
         scene: &Scene,

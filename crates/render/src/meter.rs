@@ -1,13 +1,14 @@
 //! What the camera's meter sees: light of its own, so that metering does not change the picture's samples.
 //!
-//! A meter wants a mean and no picture. It gets a small part of the rays, drawn from a wavelength density made for its own
-//! channel, by numbers of their own. Where there are fewer rays than pixels that it looks at, neighbors share one.
+//! It meters what falls on the film, so ghosts and veil too. A meter wants a mean and no picture. It gets a small part of the rays,
+//! drawn from a wavelength density made for its own channel, by numbers of their own. Where there are fewer rays than pixels that it looks at, neighbors share one.
 
 use crate::Workers;
 use crate::backward::{Backward, ESTIMATOR};
 use crate::blame::{Blame, Step};
 use crate::error::RenderError;
 use crate::forward::{Forward, PATHS_PER_UNIT};
+use crate::ghosts::Ghosts;
 use crate::pipeline::{Pipeline, ThreadState};
 use crate::sums::ExactSums;
 use spectra_core::batch::pixel_and_channel;
@@ -175,6 +176,33 @@ pub(crate) fn forward(forward: &Forward, workers: &dyn Workers) -> Result<Vec<Ve
     let fresh = || ThreadState::new(pipeline, scene.render.batch);
     each_of(workers, rays.div_ceil(PATHS_PER_UNIT) as usize, fresh, work)?;
     let weight = 1.0 / forward.scale() / size.pixel_area_mm2() / rays as f64;
-    let plane = |channel: usize| (0..size.pixels()).map(|p| sums.get(p * channels + channel) as f64 * weight).collect();
-    Ok((0..channels).map(plane).collect())
+    Ok(planes(&sums, channels, |_| weight, size.pixels()))
+}
+
+/// The same of ghosts, by some of their blocks.
+pub(crate) fn ghosts(ghosts: &Ghosts, workers: &dyn Workers) -> Result<Vec<Vec<f64>>, RenderError> {
+    let pipeline = ghosts.pipeline();
+    let scene = &pipeline.scene;
+    let pixels = scene.imager.size().pixels();
+    let channels = pipeline.responses.channels();
+    if scene.metered_pixels().is_empty() {
+        return Ok(vec![vec![0.0; pixels]; channels]);
+    }
+    let blocks = rays_for(pixels, pipeline.effort).div_ceil(ghosts.rays_of_block());
+    let sums = ExactSums::new(pixels * channels).ok_or_else(|| RenderError::Memory(crate::memory_needed(scene)))?;
+    let work = |state: &mut ThreadState, block: usize| {
+        if workers.should_stop() {
+            return Err(RenderError::Stopped);
+        }
+        ghosts.block(state, block as u64, &sums).error.map_or(Ok(()), Err)
+    };
+    each_of(workers, blocks as usize, || ghosts.state(scene.render.batch), work)?;
+    let weight = ghosts.worth(blocks * ghosts.rays_of_block());
+    Ok(planes(&sums, channels, |_| weight, pixels))
+}
+
+/// Sums as planes of the channels, by what a unit of them is worth at each pixel.
+pub(crate) fn planes(sums: &ExactSums, channels: usize, weight: impl Fn(usize) -> f64, pixels: usize) -> Vec<Vec<f64>> {
+    let value = |pixel: usize, channel: usize| sums.get(pixel * channels + channel) as f64 * weight(pixel);
+    (0..channels).map(|channel| (0..pixels).map(|pixel| value(pixel, channel)).collect()).collect()
 }

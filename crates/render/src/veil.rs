@@ -10,6 +10,7 @@
 use crate::error::RenderError;
 use crate::estimator::{Estimator, Scratch, Unit};
 use crate::landing;
+use crate::meter;
 use crate::pilot::PILOT_SEED;
 use crate::pipeline::{Pipeline, ThreadState};
 use crate::sums::{ExactSums, scale_for};
@@ -20,6 +21,7 @@ use spectra_core::batch::pixel_and_channel;
 use spectra_core::loss::{ALIVE, Loss};
 use spectra_core::numbers::{Numbers, StageKey, mix64};
 use spectra_core::stage::{Emit, Radiance};
+use spectra_core::workers::each_of;
 use spectra_lens::{Chance, FrontOpening, Interior, Particle, StrayMatter, Walker};
 use std::ops::Range;
 use std::sync::Arc;
@@ -38,6 +40,9 @@ const WALKS_A_SAMPLE: u64 = 1 << 15;
 const SAMPLES_PER_UNIT: u64 = 8;
 /// Walks that say how bright the veil is.
 const PILOT_WALKS: u64 = 1 << 17;
+/// Units of walks that say what meters see, and walks of each.
+const METER_UNITS: usize = 8;
+const METER_WALKS: u64 = 1 << 14;
 /// Room of the sums below what one ray may bring to a pixel elsewhere: nodes of many walks are multiplied by [`PARTS`] twice.
 const HEADROOM: f64 = 64.0;
 /// Steps from one node of the lattice to the next.
@@ -174,7 +179,7 @@ impl Veil {
             largest = largest.max(value.abs());
         });
         if !is_number {
-            return Err(RenderError::Glare("the source gives light that is no number".to_owned()));
+            return Err(no_number());
         }
         Ok(scale_for(HEADROOM * largest))
     }
@@ -351,6 +356,44 @@ impl Veil {
         }
     }
 
+    /// What a unit of the sums of so many walks is worth where the pixel's gain is 1, W/m2.
+    fn worth(&self, walks: u64) -> f64 {
+        1.0 / self.scale / walks.max(1) as f64 / (PARTS * PARTS) as f64
+    }
+
+    /// The veil by few walks, W/m2 at each pixel, channel by channel.
+    fn seen(mut self, workers: &dyn Workers) -> Result<Vec<Vec<f64>>, RenderError> {
+        let (scene, many) = (Arc::clone(&self.pipeline.scene), self.channels() * self.nodes());
+        let (pixels, channels) = (scene.imager.size().pixels(), self.channels());
+        if scene.metered_pixels().is_empty() {
+            return Ok(vec![vec![0.0; pixels]; channels]);
+        }
+        let walk = |state: &mut ThreadState, unit: usize| {
+            if workers.should_stop() {
+                return Err(RenderError::Stopped);
+            }
+            let (first, mut lattice) = (unit as u64 * METER_WALKS, vec![0.0; many]);
+            self.walk(state, first..first + METER_WALKS, &mut |node, value| lattice[node] += value);
+            Ok(lattice)
+        };
+        let fresh = || ThreadState::new(&self.pipeline, scene.render.batch);
+        let units = each_of(workers, METER_UNITS, fresh, walk)?;
+        let lattice: Vec<f64> = (0..many).map(|node| units.iter().map(|unit| unit[node]).sum()).collect();
+        let largest = lattice.iter().fold(0.0_f64, |most, value| if value.abs() <= most { most } else { value.abs() });
+        if !largest.is_finite() {
+            return Err(no_number());
+        }
+        // All walks are done, so a node is known.
+        self.scale = if largest > 0.0 { LARGEST / largest } else { 1.0 };
+        let sums =
+            ExactSums::new(pixels * channels).ok_or_else(|| RenderError::Memory(crate::memory_needed(&scene)))?;
+        let lattice: Vec<i64> = lattice.iter().map(|value| (value * self.scale).round_ties_even() as i64).collect();
+        self.spread(&lattice, &sums);
+        let one = self.worth(METER_UNITS as u64 * METER_WALKS);
+        let weight = |pixel: usize| one * f64::from(self.plan.gains[pixel].gain);
+        Ok(meter::planes(&sums, channels, weight, pixels))
+    }
+
     fn samples_of(samples: &Range<u64>, unit: u64) -> Range<u64> {
         let first = samples.start + unit * SAMPLES_PER_UNIT;
         first..samples.end.min(first + SAMPLES_PER_UNIT)
@@ -407,13 +450,20 @@ impl Estimator for Veil {
     }
 
     fn weights(&self, _done: &Done, rays: u64, time_s: f64) -> Vec<f64> {
-        let one = time_s / self.scale / rays.max(1) as f64 / (PARTS * PARTS) as f64;
+        let one = time_s * self.worth(rays);
         self.plan.gains.iter().map(|pixel| one * f64::from(pixel.gain)).collect()
     }
 
-    fn metered(&self, _workers: &dyn Workers) -> Result<Vec<Vec<f64>>, RenderError> {
-        Ok(Vec::new())
+    fn metered(&self, workers: &dyn Workers) -> Result<Vec<Vec<f64>>, RenderError> {
+        let Some(pipeline) = self.pipeline.of_meters() else { return Ok(Vec::new()) };
+        let seed = pipeline.scene.render.seed ^ meter::SEED;
+        let numbers = pipeline.numbers(mix64(seed ^ SEED));
+        Self { pipeline: Arc::new(pipeline), plan: Arc::clone(&self.plan), numbers, seed, scale: 1.0 }.seen(workers)
     }
+}
+
+fn no_number() -> RenderError {
+    RenderError::Glare("the source gives light that is no number".to_owned())
 }
 
 /// Looks whether the veiling glare that a scene asks for can be worked out.

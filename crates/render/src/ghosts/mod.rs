@@ -16,6 +16,7 @@ use crate::blame::{Blame, Step};
 use crate::error::RenderError;
 use crate::estimator::{Estimator, Scratch, Unit};
 use crate::forward::source_points;
+use crate::meter;
 use crate::pilot::PILOT_SEED;
 use crate::pipeline::{Pipeline, ThreadState};
 use crate::sums::{ExactSums, OwnSums, each, scale_for};
@@ -91,6 +92,7 @@ impl Way {
 }
 
 /// What was found once for a scene.
+#[derive(Clone)]
 struct Plan {
     /// Where light enters; `None` of a source that sets its directions itself.
     opening: Option<FrontOpening>,
@@ -203,6 +205,23 @@ impl Ghosts {
         self.pipeline.numbers(mix64(seed ^ SEED))
     }
 
+    /// The same for what the meters see; `None` where they see nothing.
+    fn of_meters(&self, workers: &dyn Workers) -> Option<Result<Self, RenderError>> {
+        let pipeline = Arc::new(self.pipeline.of_meters()?);
+        let numbers = self.of_seed(pipeline.scene.render.seed ^ meter::SEED);
+        let own = Self { pipeline, plan: Arc::new(self.plan.together()), numbers, scale: 1.0 };
+        Some(own.pilot_scale(workers).map(|scale| Self { scale, ..own }))
+    }
+
+    pub(crate) fn pipeline(&self) -> &Pipeline {
+        &self.pipeline
+    }
+
+    /// Rays of one block: a fair picture, however many there are of them.
+    pub(crate) fn rays_of_block(&self) -> u64 {
+        self.plan.rays
+    }
+
     /// Where the light goes.
     pub(crate) fn ledger(&self) -> &LightLedger {
         &self.plan.ledger
@@ -216,7 +235,7 @@ impl Ghosts {
         self.pipeline.scene.imager.receive().expect("`new` saw it")
     }
 
-    fn state(&self, capacity: usize) -> ThreadState {
+    pub(crate) fn state(&self, capacity: usize) -> ThreadState {
         let mut state = ThreadState::new(&self.pipeline, capacity);
         if self.pipeline.scene.render.reflections.polarized {
             state.rays = state.rays.with_polarization();
@@ -370,6 +389,11 @@ impl Ghosts {
         Plan { opening: old.opening, zones: old.zones.clone(), ways, rays, blocks_a_sample, ledger, apart }
     }
 
+    /// What a unit of the sums of so many rays is worth, W/m2.
+    pub(crate) fn worth(&self, rays: u64) -> f64 {
+        1.0 / self.scale / self.pipeline.scene.imager.size().pixel_area_mm2() / rays.max(1) as f64
+    }
+
     /// The scale of the sums, by some rays of each path.
     fn pilot_scale(&self, workers: &dyn Workers) -> Result<f64, RenderError> {
         let capacity = self.pipeline.scene.render.batch;
@@ -396,7 +420,7 @@ impl Ghosts {
     }
 
     /// Adds a block to the sums.
-    fn block(&self, state: &mut ThreadState, block: u64, sums: &ExactSums) -> Unit {
+    pub(crate) fn block(&self, state: &mut ThreadState, block: u64, sums: &ExactSums) -> Unit {
         let mut rays = 0;
         for (at, way) in self.plan.ways.iter().enumerate() {
             let all = block * way.rays..(block + 1) * way.rays;
@@ -428,6 +452,12 @@ impl Plan {
     fn new(opening: Option<FrontOpening>, zones: Zones, ways: Vec<Way>) -> Self {
         let (ledger, apart) = (LightLedger::default(), Vec::new());
         Self { opening, zones, ways, rays: 1, blocks_a_sample: 1, ledger, apart }
+    }
+
+    /// Without sums of their own for some paths.
+    fn together(&self) -> Self {
+        let way = |way: &Way| Way { own_cells: None, ..way.clone() };
+        Self { ways: self.ways.iter().map(way).collect(), apart: Vec::new(), ..self.clone() }
     }
 
     /// With more paths, before rays are shared out.
@@ -485,11 +515,10 @@ impl Estimator for Ghosts {
 
     fn weights(&self, _done: &Done, rays: u64, time_s: f64) -> Vec<f64> {
         let size = self.pipeline.scene.imager.size();
-        vec![time_s / self.scale / size.pixel_area_mm2() / rays.max(1) as f64; size.pixels()]
+        vec![time_s * self.worth(rays); size.pixels()]
     }
 
-    /// A camera's meter looks at the subject: ghosts are none of it.
-    fn metered(&self, _workers: &dyn Workers) -> Result<Vec<Vec<f64>>, RenderError> {
-        Ok(Vec::new())
+    fn metered(&self, workers: &dyn Workers) -> Result<Vec<Vec<f64>>, RenderError> {
+        self.of_meters(workers).map_or(Ok(Vec::new()), |meters| meter::ghosts(&meters?, workers))
     }
 }
