@@ -12,10 +12,11 @@ mod zones;
 
 pub use account::{GhostPath, LightLedger};
 
-use crate::blame::{Blame, Step};
+use crate::blame::Blame;
 use crate::error::RenderError;
 use crate::estimator::{Estimator, Scratch, Unit};
 use crate::forward::source_points;
+use crate::no_number::Step;
 use crate::pilot::PILOT_SEED;
 use crate::pipeline::{Pipeline, ThreadState};
 use crate::sums::{ExactSums, OwnSums, each, scale_for};
@@ -41,6 +42,10 @@ pub enum GhostRays {
     /// As many for each path, all over the front: what the search is measured against.
     Even,
 }
+
+/// Ghosts matter by themselves where the brightest of them has more than this part of the mean of the frame, diffraction where the
+/// brightest star has more of its median.
+pub(crate) const MATTERS: f64 = 0.01;
 
 /// What numbers of its own stages draw by.
 pub(crate) const ESTIMATOR: &str = "ghosts";
@@ -191,7 +196,7 @@ impl Ghosts {
         };
         let a_pixel = matters.map_or(RAYS_A_PIXEL, |matters| {
             // What matters is a part of the mean.
-            RAYS_A_PIXEL * (crate::renderer::MATTERS * found.brightest / matters).clamp(LEAST_A_PIXEL, 1.0)
+            RAYS_A_PIXEL * (MATTERS * found.brightest / matters).clamp(LEAST_A_PIXEL, 1.0)
         });
         own.plan = Arc::new(own.shared_out(found.ways, a_pixel, ledger));
         own.scale = own.pilot_scale(workers)?;
