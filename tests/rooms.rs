@@ -1,7 +1,9 @@
-//! The rooms of the house, as `ARCHITECTURE.md` has them: what stands on what, and who touches disk, clock and terminal.
+//! The rooms of the house, as `ARCHITECTURE.md` has them: what stands on what, who touches disk, clock and terminal,
+//! and that files of a room import each other in no circle.
 //!
 //! Two tables of that page are read and held against the manifests and the sources: an arrow that is not in the table fails,
 //! and so does one in it that nothing uses. Tests are no arrows: neither `[dev-dependencies]` nor what is compiled for tests.
+//! Of imports, those count that lead from file to file, through all that only hands a name on.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -320,6 +322,221 @@ fn disk_clock_and_terminal_are_touched_where_the_table_says() {
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
 
+/// A file of a room as a module: its path, and what it imports, each with the name that it has here (`*`: all names).
+struct Module {
+    file: PathBuf,
+    code: String,
+    imports: Vec<(Vec<String>, String)>,
+}
+
+/// The modules of a room.
+type House = BTreeMap<Vec<String>, Module>;
+
+fn is_of_word(c: char) -> bool {
+    c.is_alphanumeric() || c == '_'
+}
+
+/// The texts of `use` items, from the word to the semicolon.
+fn use_items(code: &str) -> impl Iterator<Item = &str> {
+    code.match_indices("use ").filter_map(|(at, word)| {
+        let is_word = !code[..at].chars().next_back().is_some_and(is_of_word);
+        is_word.then(|| code[at + word.len()..].split_once(';').map(|(tree, _)| tree)).flatten()
+    })
+}
+
+/// The leaves of a tree such as `a::{b, c::*, d as e}`.
+fn leaves(tree: &str, before: &[String], found: &mut Vec<(Vec<String>, String)>) {
+    let steps = |text: &str| -> Vec<String> {
+        let own = text.split("::").map(str::trim).filter(|step| !step.is_empty());
+        let own = own.filter(|step| before.is_empty() || *step != "self").map(str::to_owned);
+        before.iter().cloned().chain(own).collect()
+    };
+    let Some((head, rest)) = tree.split_once('{') else {
+        let (path, name) = tree.split_once(" as ").map_or((tree, None), |(path, name)| (path, Some(name.trim())));
+        let path = steps(path);
+        let name = name.map(str::to_owned).or(path.last().cloned()).unwrap_or_default();
+        return found.push((path, name));
+    };
+    let (mut depth, mut from) = (0, 0);
+    let (before, nested) = (steps(head), &rest[..rest.rfind('}').unwrap_or(rest.len())]);
+    for (at, c) in nested.char_indices().chain([(nested.len(), ',')]) {
+        depth += i32::from(c == '{') - i32::from(c == '}');
+        if c == ',' && depth == 0 {
+            if !nested[from..at].trim().is_empty() {
+                leaves(&nested[from..at], &before, found);
+            }
+            from = at + 1;
+        }
+    }
+}
+
+fn house(files: Vec<(PathBuf, String)>, src: &Path) -> House {
+    let module = |(file, code): (PathBuf, String)| {
+        let own = file.strip_prefix(src).unwrap_or(&file).with_extension("");
+        let mut path: Vec<String> = own.iter().map(|step| step.to_string_lossy().into_owned()).collect();
+        path.pop_if(|last| ["lib", "main", "mod"].contains(&last.as_str()));
+        let mut imports = Vec::new();
+        use_items(&code).for_each(|tree| leaves(tree, &[], &mut imports));
+        (path, Module { file, code, imports })
+    };
+    files.into_iter().map(module).collect()
+}
+
+/// A path as it stands in a module, from the root of the room; `None` where it leads out.
+fn from_root(house: &House, at: &[String], path: &[String]) -> Option<Vec<String>> {
+    let (mut whole, mut rest) = (at.to_vec(), path);
+    match path.first()?.as_str() {
+        "crate" => (whole, rest) = (Vec::new(), &path[1..]),
+        "self" => rest = &path[1..],
+        "super" => {
+            while rest.first().is_some_and(|step| step == "super") {
+                (_, rest) = (whole.pop()?, &rest[1..]);
+            }
+        }
+        first => {
+            whole.push(first.to_owned());
+            house.get(&whole)?;
+            whole.pop();
+        }
+    }
+    whole.extend_from_slice(rest);
+    Some(whole)
+}
+
+fn has_item(code: &str, name: &str) -> bool {
+    let words: Vec<&str> = code.split(|c| !is_of_word(c)).filter(|word| !word.is_empty()).collect();
+    let items = ["fn", "struct", "enum", "trait", "type", "const", "static", "union", "macro_rules"];
+    words.windows(2).any(|pair| items.contains(&pair[0]) && pair[1] == name)
+}
+
+/// The module whose file has what a path from the root of the room names, through all that only hands it on; `None` where that is
+/// of another crate.
+fn home(house: &House, path: &[String], steps_left: usize) -> Option<Vec<String>> {
+    let known = (0..=path.len()).rev().find(|len| house.contains_key(&path[..*len]))?;
+    let (at, rest) = path.split_at(known);
+    let Some((name, more)) = rest.split_first().filter(|_| steps_left > 0) else { return Some(at.to_vec()) };
+    for (import, _) in house[at].imports.iter().filter(|(_, own)| own == name) {
+        let mut whole = from_root(house, at, import)?;
+        whole.extend_from_slice(more);
+        if whole != path {
+            return home(house, &whole, steps_left - 1);
+        }
+    }
+    let all = house[at].imports.iter().filter(|(_, own)| own == "*");
+    let mut all = all.filter_map(|(import, _)| from_root(house, at, &import[..import.len() - 1]));
+    let found = all.find_map(|whole| {
+        let home = home(house, &whole, steps_left - 1)?;
+        (home != at && has_item(&house[&home].code, name)).then_some(home)
+    });
+    found.or(Some(at.to_vec()))
+}
+
+/// Where a path in a file leads, if that counts: not within the file, and not from a folder's own file to what is in the folder.
+fn leads_to(house: &House, at: &[String], path: &[String]) -> Option<Vec<String>> {
+    let path = path.strip_suffix(&["*".to_owned()]).unwrap_or(path);
+    let found = home(house, &from_root(house, at, path)?, 16)?;
+    (!found.starts_with(at)).then_some(found)
+}
+
+/// What each module of a room imports or names by a path.
+fn edges(house: &House) -> BTreeMap<Vec<String>, BTreeSet<Vec<String>>> {
+    let of = |(at, module): (&Vec<String>, &Module)| {
+        let code = module.code.replace("::<", "<");
+        let words = code.split(|c| !is_of_word(c) && c != ':').filter(|word| !word.ends_with(':'));
+        let paths = words.filter(|word| word.starts_with("crate::") || word.starts_with("super::"));
+        let paths = paths.map(|word| word.split("::").map(str::to_owned).collect());
+        let all = module.imports.iter().map(|(path, _)| path.clone()).chain(paths);
+        (at.clone(), all.filter_map(|path: Vec<String>| leads_to(house, at, &path)).collect())
+    };
+    house.iter().map(of).collect()
+}
+
+/// The modules of a circle, if there is one.
+fn circle(edges: &BTreeMap<Vec<String>, BTreeSet<Vec<String>>>) -> Option<Vec<Vec<String>>> {
+    let mut left: BTreeSet<&Vec<String>> = edges.keys().collect();
+    loop {
+        let ends: Vec<_> = left.iter().copied().filter(|at| !edges[*at].iter().any(|to| left.contains(to))).collect();
+        if ends.is_empty() {
+            break;
+        }
+        left.retain(|at| !ends.contains(at));
+    }
+    let mut way = vec![*left.first()?];
+    loop {
+        let next = edges[way[way.len() - 1]].iter().find(|to| left.contains(to))?;
+        if let Some(from) = way.iter().position(|at| *at == next) {
+            return Some(way[from..].iter().map(|at| (*at).clone()).collect());
+        }
+        way.push(next);
+    }
+}
+
+/// Takes what comments in a file defend out of the edges, or says what is wrong with them.
+fn defended(
+    house: &House,
+    at: &[String],
+    text: &str,
+    edges: &mut BTreeMap<Vec<String>, BTreeSet<Vec<String>>>,
+) -> Vec<String> {
+    let mut faults = Vec::new();
+    for (found, words) in text.match_indices("// A circle with `") {
+        let (comment, below) = text[found + words.len()..].split_once('\n').unwrap_or_default();
+        let Some((file, _)) = comment.split_once("`: ").filter(|(_, why)| !why.is_empty()) else {
+            faults.push(format!("no reason: {comment}"));
+            continue;
+        };
+        let below = bare(below.trim_start().trim_start_matches("pub "));
+        let mut imports = Vec::new();
+        if let Some((tree, _)) = below.strip_prefix("use ").and_then(|tree| tree.split_once(';')) {
+            leaves(tree, &[], &mut imports);
+        }
+        let led = imports.iter().filter_map(|(path, _)| leads_to(house, at, path));
+        let led: Vec<_> = led.filter(|to| house[to].file.ends_with(file)).collect();
+        let own = edges.entry(at.to_vec()).or_default();
+        let before = own.len();
+        own.retain(|to| !led.contains(to));
+        if own.len() == before {
+            faults.push(format!("the `use` below does not lead to `{file}`"));
+        }
+    }
+    faults
+}
+
+#[test]
+fn files_import_each_other_in_no_circle_but_those_that_a_comment_defends() {
+    let mut faults = Vec::new();
+    for folder in folders().values() {
+        let house = house(sources(folder), &folder.join("src"));
+        let shown =
+            |at: &Vec<String>| house[at].file.strip_prefix(root()).unwrap_or(&house[at].file).display().to_string();
+        let mut edges = edges(&house);
+        for (at, module) in &house {
+            let text = fs::read_to_string(&module.file).expect("a source");
+            let before = edges.clone();
+            faults
+                .extend(defended(&house, at, &text, &mut edges).iter().map(|fault| format!("{}: {fault}", shown(at))));
+            for to in before[at].difference(&edges[at]) {
+                // What leads back is a part of the circle: else there is none any more.
+                let (mut reached, mut open) = (BTreeSet::new(), vec![to]);
+                while let Some(next) = open.pop() {
+                    if reached.insert(next) {
+                        open.extend(&before[next]);
+                    }
+                }
+                if !reached.contains(at) {
+                    faults.push(format!("{}: there is no circle with {}", shown(at), shown(to)));
+                }
+            }
+        }
+        while let Some(circle) = circle(&edges) {
+            let files: Vec<String> = circle.iter().map(shown).collect();
+            faults.push(format!("a circle: {} -> {}", files.join(" -> "), files[0]));
+            edges.get_mut(&circle[0]).expect("one of them").remove(&circle[1]);
+        }
+    }
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
 #[test]
 fn what_is_for_tests_is_told_from_what_is_not() {
     let text = r##"
@@ -348,4 +565,35 @@ fn what_is_for_tests_is_told_from_what_is_not() {
     assert_eq!(crates_named(&code).into_iter().collect::<Vec<_>>(), ["core"]);
     assert_eq!(room("spectra-plugin-oiio").as_deref(), Some("plugins/oiio"));
     assert!(has("use std::fs;", "std::fs") && has(" eprintln!()", "eprintln!") && !has("eprintln!()", "println!"));
+}
+
+#[test]
+fn circles_are_found_through_what_only_hands_on() {
+    let file = |name: &str, code: &str| (PathBuf::from(name), code.to_owned());
+    let names = |path: &[String]| path.join("/");
+    let files = vec![
+        file("lib.rs", "mod a; mod b; mod c; pub use b::{deep::B, other as another};"),
+        file("a.rs", "use crate::{B, c::{self, C as D}}; use std::fmt; fn f() -> crate::another { }"),
+        file("b/mod.rs", "mod deep; pub use deep::*; fn other() { deep::g() }"),
+        file("b/deep.rs", "pub struct B; fn g(x: super::super::c::C) { super::other() }"),
+        file("c.rs", "struct C;"),
+    ];
+    let mut house = house(files, Path::new(""));
+    let all = edges(&house);
+    let of = |at: &str| all[&vec![at.to_owned()]].iter().map(|to| names(to)).collect::<Vec<_>>();
+    assert_eq!(of("a"), ["b", "b/deep", "c"]);
+    assert!(of("b").is_empty() && of("c").is_empty() && circle(&all).is_none());
+    let a = vec!["a".to_owned()];
+    house
+        .get_mut(&vec!["c".to_owned()])
+        .expect("there")
+        .imports
+        .push((vec!["super".to_owned(), "a".to_owned()], "a".to_owned()));
+    let mut all = edges(&house);
+    assert!(circle(&all).is_some_and(|found| found.contains(&a)));
+    let text = "// A circle with `deep.rs`: why.\nuse crate::B;\n// A circle with `c.rs`: why.\nuse crate::c;\n";
+    assert_eq!(defended(&house, &a, text, &mut all).len(), 0);
+    assert!(circle(&all).is_none());
+    assert_eq!(defended(&house, &a, "// A circle with `c.rs`: why.\nuse std::fmt;", &mut all).len(), 1);
+    assert_eq!(defended(&house, &a, "// A circle with `c.rs`: \nuse crate::c;", &mut all).len(), 1);
 }

@@ -8,6 +8,7 @@ use crate::lens::LensArguments;
 use crate::new::NewArguments;
 use crate::picture::PictureArguments;
 use crate::quantity::parse;
+use crate::set::Set;
 use crate::spectrum::SpectrumArguments;
 use crate::version;
 use clap::{Args, Parser, Subcommand};
@@ -154,19 +155,6 @@ pub(crate) struct Run {
     /// Print errors only.
     #[arg(short, long, overrides_with = "quiet")]
     pub quiet: bool,
-}
-
-/// `--set`.
-#[derive(Debug, Args)]
-pub(crate) struct Set {
-    /// Set a value in the scene, as if it were written in the file; can be repeated.
-    #[arg(
-        long = "set",
-        value_name = "PATH=VALUE",
-        long_help = "Set a value in the scene, as if it were written in the file; can be repeated.\n\
-            Examples: --set film.exposure=\"1/125 s\"  --set lens.f-number=f/4  --set output=[exr]"
-    )]
-    pub overrides: Vec<String>,
 }
 
 /// The word of `--quality`.

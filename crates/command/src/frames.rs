@@ -1,6 +1,5 @@
 //! `--frames`: which frames of an animation are rendered.
 
-use crate::arguments::Run;
 use crate::outcome::Failure;
 use spectra_scene::{Series, SeriesKind};
 use std::ops::RangeInclusive;
@@ -49,11 +48,11 @@ impl Frames {
     }
 }
 
-/// Places in the series of the pictures that are asked for.
-pub(crate) fn chosen(series: &Series, arguments: &Run) -> Result<Vec<usize>, Failure> {
+/// Places in the series of the pictures that are asked for; `skips` is whether those that exist are left out.
+pub(crate) fn chosen(series: &Series, frames: Option<&Frames>, skips: bool) -> Result<Vec<usize>, Failure> {
     let all = 0..series.count();
     if series.kind() == SeriesKind::Single {
-        let named = [("--frames", arguments.frames.is_some()), ("--skip-existing", arguments.skip_existing)];
+        let named = [("--frames", frames.is_some()), ("--skip-existing", skips)];
         return match named.into_iter().find(|(_, given)| *given) {
             Some((name, _)) => Err(Failure::Input(format!(
                 "{name}: this scene is one picture; it has neither `animation` nor `sweep`"
@@ -61,7 +60,7 @@ pub(crate) fn chosen(series: &Series, arguments: &Run) -> Result<Vec<usize>, Fai
             None => Ok(all.collect()),
         };
     }
-    let Some(frames) = &arguments.frames else { return Ok(all.collect()) };
+    let Some(frames) = frames else { return Ok(all.collect()) };
     let SeriesKind::Animation { first, .. } = series.kind() else {
         return Err(Failure::Input("--frames: this scene has a `sweep`, not an `animation`".to_owned()));
     };

@@ -31,6 +31,7 @@ mod picture;
 mod quantity;
 mod run;
 mod schema;
+mod set;
 mod sources;
 mod spectrum;
 mod time_limit;

@@ -42,7 +42,7 @@ pub(crate) fn correction(opening: &Polygon, wave: &Wave, light: &Light, pitch_mm
     }
     let half = (reach + 1) * side;
     let (mut edge, mut waves, mut rays) = (vec![0.0; half], vec![0.0; half], vec![0.0; half]);
-    for (number, [mm, share]) in crate::kernel::coarse(light).iter().enumerate() {
+    for (number, [mm, share]) in light.coarse().iter().enumerate() {
         let cells = Cells::new(opening, wave, *mm, side, pitch_mm)?;
         for row in 0..reach + 1 {
             for column in 0..side {

@@ -9,6 +9,7 @@
 
 mod aberrated;
 mod kernel;
+mod light;
 mod polygon;
 mod pupil;
 mod spread;
@@ -16,7 +17,8 @@ mod star;
 mod wave;
 mod wings;
 
-pub use kernel::{Light, PixelSpread};
+pub use kernel::PixelSpread;
+pub use light::Light;
 pub use polygon::Polygon;
 pub use pupil::{Pupil, Waves};
 pub use spread::{Account, Spread, View, brightest_star};

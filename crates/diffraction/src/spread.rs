@@ -4,7 +4,7 @@
 //! out the spikes of bright pixels are drawn line by line to the edge of the frame; what other pixels send there, and what lies between
 //! spikes, is smooth and spread on coarse cells. All light is accounted for: what it does is spread, or left beside the frame.
 
-use crate::kernel::{coarse, fade, near_mm};
+use crate::kernel::{fade, near_mm};
 use crate::star::{Spike, Spikes, fading};
 use crate::{Light, PixelSpread, Polygon, Wave, Wings};
 use rayon::prelude::*;
@@ -174,7 +174,7 @@ impl<'a> Spread<'a> {
     fn smooth(&self, wings: &Wings, without_boxes: bool) -> Vec<f64> {
         let [across, down] = self.reach.map(|r| r as isize);
         let side = self.pitch_mm.map(|p| p * self.cell_px as f64);
-        let (end, colors, mean) = (self.end_mm(), coarse(&self.light), [[self.light.mean_mm(), 1.0]]);
+        let (end, colors, mean) = (self.end_mm(), self.light.coarse(), [[self.light.mean_mm(), 1.0]]);
         let row = |j: isize| -> Vec<f64> {
             let cell = |i: isize| -> f64 {
                 let at = [-(i as f64) * side[0], j as f64 * side[1]];

@@ -171,7 +171,7 @@ impl Lens {
     /// is round.
     #[must_use]
     pub fn has_axis_of_revolution(&self) -> bool {
-        symmetry::has_axis_of_revolution(self)
+        symmetry::has_axis_of_revolution(&self.elements, &self.image_pose)
     }
 
     /// The same lens with the blades of its stop opened to their circle: for what the f-number means.

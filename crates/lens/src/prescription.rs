@@ -1,12 +1,13 @@
 //! Lens files: a prescription in YAML, and where it comes from.
 
-use crate::onion::OnionRingsForm;
 use crate::prism::{self, PRISM, PrismParams};
+use crate::schema::SurfaceOrBreak;
+use crate::surface_file::{BREAK, BreakParams, Place, displacement};
 use crate::{
-    AxisBreak, Coating, CoatingForm, Displacement, DustForm, Element, FocusLaw, FocusTable, Group, GroupTravel,
-    HazeForm, Lens, LensMedium, ScratchesForm, aperture, read_coating, read_layers, read_stated_coating, schema,
+    Coating, CoatingForm, DustForm, Element, FocusLaw, FocusTable, Group, GroupTravel, HazeForm, Lens, LensMedium,
+    ScratchesForm, aperture, read_coating, read_layers, read_stated_coating,
 };
-use schemars::JsonSchema;
+use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::Deserialize;
 use spectra_core::names;
 use spectra_core::params::{
@@ -74,7 +75,7 @@ pub(crate) struct LensFile {
     /// Doubts and choices, for people.
     remark: Option<String>,
     /// The surfaces, one or more, in the order of the light.
-    surfaces: Vec<Part<schema::SurfaceOrBreak>>,
+    surfaces: Vec<Part<SurfaceOrBreak>>,
     /// Groups of surfaces that move together, in focusing or out of place; none if absent.
     #[serde(default)]
     groups: Vec<Part<GroupParams>>,
@@ -101,117 +102,9 @@ fn yes() -> bool {
     true
 }
 
-/// What every surface may state, whatever its kind; all other keys are the kind's own.
-#[derive(Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub(crate) struct Place {
-    /// Distance to the next vertex along the axis (of the last surface, to the image plane), mm if bare: positive in
-    /// the sense of the light before any mirror. 0 if absent.
-    #[serde(default)]
-    #[schemars(range(min = -LONGEST_MM, max = LONGEST_MM))]
-    thickness: Option<Length>,
-    /// Medium behind the surface: a name of the catalogue such as `SCHOTT/N-BK7`, `air`, or its `nd` and `vd`. Air if
-    /// absent; behind a mirror or a stop, what is in front of it.
-    glass: Option<Part<schema::GlassForm>>,
-    /// Index at the reference line, 1 to 4, as the patent states it; the glass gives the dispersion.
-    #[schemars(range(min = 1, max = 4))]
-    nd: Option<f64>,
-    /// Abbe number at the reference line, 5 to 200, as the patent states it.
-    #[schemars(range(min = 5, max = 200))]
-    vd: Option<f64>,
-    /// Index at the e line, 1 to 4, in place of `nd`, whatever the reference line is.
-    #[schemars(range(min = 1, max = 4))]
-    ne: Option<f64>,
-    /// Abbe number at e, F' and C', 5 to 200, with `ne`.
-    #[schemars(range(min = 5, max = 200))]
-    ve: Option<f64>,
-    /// Clear semi-diameter, mm if bare, more than 0; clips nothing if absent.
-    #[schemars(range(max = LONGEST_MM))]
-    semi_diameter: Option<Positive<Length>>,
-    /// A word for people; read, and left to them.
-    #[expect(dead_code, reason = "a remark is for the reader of the file")]
-    remark: Option<String>,
-    /// Edge of the element, mm if bare, for drawing; clips nothing. The semi-diameter if absent.
-    outer_semi_diameter: Option<Positive<Length>>,
-    /// Leg of the 45 degree chamfer at the edge, mm if bare: positive toward +z. None if absent.
-    chamfer: Option<Length>,
-    /// What else limits the light: one aperture or a list; see its `shape`. Nothing if absent.
-    aperture: Option<Part<aperture::ApertureForm>>,
-    /// Whether it reflects; then it has no glass of its own.
-    #[serde(default)]
-    mirror: bool,
-    /// Whether this optical surface is the aperture stop.
-    #[serde(default)]
-    stop: bool,
-    /// Shift of this surface alone along x and y, mm if bare; none if absent.
-    decenter: Option<[Length; 2]>,
-    /// Tilt of this surface alone about x, y and z, right-handed, degrees if bare; none if absent.
-    tilt: Option<[Angle; 3]>,
-    /// Whether it stands the other way round.
-    #[serde(default)]
-    reversed: bool,
-    /// Its own coating: `ideal`, `bare`, or a layer; the lens's if absent.
-    coating: Option<Part<CoatingForm>>,
-    /// Haze on it: the share of the light that it scatters, and how wide; the lens's if absent.
-    haze: Option<Part<HazeForm>>,
-    /// Dust on it: the share that it covers, and how large its grains are; the lens's if absent.
-    dust: Option<Part<DustForm>>,
-    /// Scratches on it: the share that they cover or a drawing of them, and how wide they are; the lens's if absent.
-    scratches: Option<Part<ScratchesForm>>,
-    /// Rings that turning left on it, by their period and height: they show in highlights out of focus. None if absent.
-    onion_rings: Option<Part<OnionRingsForm>>,
-    /// Part of the light that a mirror reflects, 0 to 1; all of it if absent.
-    #[schemars(range(min = 0, max = 1))]
-    reflectance: Option<Ratio>,
-}
-
-/// The kind that bends the axis, and is no surface.
-pub(crate) const BREAK: &str = "coordinate-break";
-
-/// A bend of the axis.
-#[derive(Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub(crate) struct BreakParams {
-    /// Shift of the axis along x and y, mm if bare; none if absent.
-    decenter: Option<[Length; 2]>,
-    /// Tilt of the axis about x, y and z, right-handed, degrees if bare; none if absent.
-    tilt: Option<[Angle; 3]>,
-    /// What comes first: `decenter-first` (the default) or `tilt-first`.
-    order: Option<Order>,
-    /// Distance to what follows, along the new axis, mm if bare; 0 if absent.
-    thickness: Option<Length>,
-}
-
-/// What comes first at a bend of the axis.
-#[derive(Clone, Copy, Debug, Deserialize, JsonSchema, PartialEq, Eq)]
-#[serde(rename_all = "kebab-case")]
-#[schemars(inline)]
-enum Order {
-    DecenterFirst,
-    TiltFirst,
-}
-
-impl BreakParams {
-    fn axis_break(&self) -> AxisBreak {
-        let tilt_first = self.order == Some(Order::TiltFirst);
-        let displacement = Displacement { tilt_first, ..displacement(self.decenter, self.tilt) };
-        AxisBreak { displacement, thickness_mm: self.thickness.map_or(0.0, Length::mm) }
-    }
-}
-
-fn displacement(decenter: Option<[Length; 2]>, tilt: Option<[Angle; 3]>) -> Displacement {
-    Displacement {
-        decenter_mm: decenter.map_or([0.0; 2], |d| d.map(Length::mm)),
-        tilt_rad: tilt.map_or([0.0; 3], |t| t.map(Angle::rad)),
-        tilt_first: false,
-    }
-}
-
 /// Where a stated index and the glass's own differ by more, a person is told.
 const INDEX_TOLERANCE: f64 = 0.002;
 
-/// Longer is no lens, but a slip of the exponent; 1000 km.
-const LONGEST_MM: f64 = 1e9;
 /// A shorter radius is less than a wavelength.
 const SHORTEST_RADIUS_MM: f64 = 1e-6;
 
@@ -222,6 +115,13 @@ fn length_mm(node: &Node) -> Option<f64> {
         Value::String(text) => Length::from_text(text).ok().map(Length::mm),
         _ => None,
     }
+}
+
+/// The schema of a lens file. Its surfaces refer to the definition `surface`, see
+/// [`spectra_core::registry::definitions`].
+#[must_use]
+pub fn lens_schema(generator: &mut SchemaGenerator) -> Schema {
+    LensFile::json_schema(generator)
 }
 
 /// Reads a lens by the path of its file, or by its name among the bundled ones.

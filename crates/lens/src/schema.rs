@@ -1,20 +1,13 @@
-//! JSON Schema of a lens file, for editors.
+//! JSON Schema of what stands in a lens file, for editors.
 
 use crate::aperture::ApertureKeys;
 use crate::coating::CoatingKeys;
-use crate::prescription::{BreakParams, LensFile, Place};
 use crate::prism::PrismParams;
+use crate::surface_file::{BREAK, BreakParams, Place};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde_json::json;
 use spectra_core::params::Kinds;
 use std::borrow::Cow;
-
-/// The schema of a lens file. Its surfaces refer to the definition `surface`, see
-/// [`spectra_core::registry::definitions`].
-#[must_use]
-pub fn lens_schema(generator: &mut SchemaGenerator) -> Schema {
-    LensFile::json_schema(generator)
-}
 
 /// What every surface may state beside the parameters of its kind: the schema of a map.
 #[must_use]
@@ -45,13 +38,13 @@ impl JsonSchema for SurfaceOrBreak {
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
         let bend = Kinds {
             key: "kind",
-            kinds: vec![(crate::prescription::BREAK, BreakParams::json_schema(generator))],
+            kinds: vec![(BREAK, BreakParams::json_schema(generator))],
             default: None,
             shared: None,
             by_name: true,
         };
         let is = |kind: &str| json!({ "properties": { "kind": { "const": kind } }, "required": ["kind"] });
-        let is_bend = is(crate::prescription::BREAK);
+        let is_bend = is(BREAK);
         let place = Place::json_schema(generator);
         let prism = Kinds {
             key: "kind",
@@ -72,17 +65,4 @@ impl JsonSchema for SurfaceOrBreak {
             },
         })
     }
-}
-
-/// What a glass is written as.
-#[derive(JsonSchema)]
-#[serde(untagged)]
-#[expect(dead_code, reason = "states what is allowed; `medium` reads it")]
-pub(crate) enum GlassForm {
-    /// A name of the catalogue, `air`, or a glass file.
-    Named(String),
-    /// Its figures.
-    Figures(Box<spectra_glass::file::Figures>),
-    /// Written out with the keys of a glass file.
-    Own(Box<spectra_glass::file::GlassFile>),
 }

@@ -1,6 +1,6 @@
 //! Whether a lens looks the same from all azimuths.
 
-use crate::{Element, Lens};
+use crate::{Element, Pose};
 
 /// Azimuths that a sag is compared at, as (cosine, sine): no symmetry of a few folds passes all of them.
 const AZIMUTHS: [(f64, f64); 4] = [(1.0, 0.0), (0.0, 1.0), (-0.6, 0.8), (0.28, -0.96)];
@@ -11,8 +11,8 @@ const SAME_MM: f64 = 1e-12;
 /// Rim where a surface states none, mm.
 const RIM_MM: f64 = 1.0;
 
-pub(crate) fn has_axis_of_revolution(lens: &Lens) -> bool {
-    (lens.image_pose.is_on_axis() || lens.image_pose.facing_back().is_on_axis()) && lens.elements.iter().all(is_round)
+pub(crate) fn has_axis_of_revolution(elements: &[Element], image: &Pose) -> bool {
+    (image.is_on_axis() || image.facing_back().is_on_axis()) && elements.iter().all(is_round)
 }
 
 fn is_round(e: &Element) -> bool {

@@ -2,6 +2,7 @@
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
+mod attribute;
 mod grid;
 mod outline;
 mod style;

@@ -1,6 +1,7 @@
 //! How an element of an SVG file is painted: attributes, `style`, style sheets, and what it inherits.
 
 use super::FillRule;
+use super::attribute::{plain_length, short};
 use super::outline::{Cap, Join, Pen};
 use roxmltree::Node;
 use simplecss::{AttributeOperator, DeclarationTokenizer, PseudoClass, StyleSheet};
@@ -148,18 +149,13 @@ impl Style {
             style.pen.miter_limit = limit.ok_or_else(|| format!("not a miter limit: `{}`", short(value)))?;
         }
         if let Some(value) = get("stroke-width") {
-            style.pen.width = super::svg::plain_length(value)?;
+            style.pen.width = plain_length(value)?;
             if style.pen.width < 0.0 {
                 return Err(format!("a line {} wide", style.pen.width));
             }
         }
         Ok(style)
     }
-}
-
-/// The first letters of a user's text.
-pub(super) fn short(text: &str) -> String {
-    text.chars().take(40).collect()
 }
 
 fn opacity(text: &str) -> Result<f64, String> {

@@ -4,8 +4,9 @@
 //! transforms, fill rules, strokes, opacity, `style` and style sheets (SVG 1.1). Whatever else would be painted is a fault:
 //! an aperture that looks other than its drawing would be found out late.
 
+use super::attribute::{length, plain_length, short};
 use super::outline::{Path, Point, stroked};
-use super::style::{Style, short};
+use super::style::Style;
 use super::{Drawing, FLATNESS_MM, FillRule, Painted};
 use roxmltree::{Document, Node, ParsingOptions};
 use schemars::JsonSchema;
@@ -15,7 +16,7 @@ use spectra_core::math;
 use spectra_core::params::{Fault, Faults, SourceFile, Span};
 use std::str::FromStr;
 use std::sync::Arc;
-use svgtypes::{Align, AspectRatio, LengthUnit, PathParser, PathSegment, PointsParser, TransformListParser};
+use svgtypes::{Align, AspectRatio, PathParser, PathSegment, PointsParser, TransformListParser};
 use svgtypes::{TransformListToken, ViewBox};
 
 /// Most nodes of a file.
@@ -150,27 +151,6 @@ struct Page {
     view: ViewBox,
     size_mm: (f64, f64),
     mm_from_user: Matrix,
-}
-
-/// A length as an attribute: a number, and mm a unit where it is one of paper; a percentage is `None`.
-fn length(text: &str) -> Option<(f64, Option<f64>)> {
-    let parsed = svgtypes::Length::from_str(text.trim()).ok()?;
-    let mm = match parsed.unit {
-        LengthUnit::Mm => Some(1.0),
-        LengthUnit::Cm => Some(10.0),
-        LengthUnit::In => Some(25.4),
-        LengthUnit::Pt => Some(25.4 / 72.0),
-        LengthUnit::Pc => Some(25.4 / 6.0),
-        LengthUnit::None | LengthUnit::Px => None,
-        LengthUnit::Em | LengthUnit::Ex | LengthUnit::Percent => return None,
-    };
-    Some((parsed.number, mm))
-}
-
-/// A length in user units: 96 to the inch.
-pub(super) fn plain_length(text: &str) -> Result<f64, String> {
-    let found = length(text).map(|(number, mm)| mm.map_or(number, |mm| number * mm * 96.0 / 25.4));
-    found.filter(|v| v.is_finite()).ok_or_else(|| format!("not a length: `{}`", short(text)))
 }
 
 /// The page: how large it is, and where its center lies.

@@ -1,12 +1,13 @@
 //! Backward: each pixel asks, through the rear of the lens, what light arrives.
 
-use crate::blame::{Blame, Step};
+use crate::blame::Blame;
 use crate::error::RenderError;
 use crate::estimator::{Estimator, Scratch, Unit};
 use crate::meter;
-use crate::pilot::{self, PILOT_RAYS, PILOT_SEED};
+use crate::no_number::Step;
+use crate::pilot::{self, PILOT_SEED};
 use crate::pipeline::{Pipeline, SCATTER, ThreadState};
-use crate::sums::ExactSums;
+use crate::sums::{ExactSums, PILOT_RAYS};
 use crate::{Done, Workers};
 use glam::DVec3;
 use spectra_core::Isa;
@@ -25,7 +26,7 @@ pub(crate) const TILE: u32 = 8;
 pub(crate) const SAMPLES_PER_PASS: u32 = 32;
 
 /// What numbers of its own stages draw by.
-pub(crate) const ESTIMATOR: &str = "backward";
+const ESTIMATOR: &str = "backward";
 
 pub(crate) struct Backward {
     pipeline: Arc<Pipeline>,
@@ -70,10 +71,6 @@ impl Backward {
     fn of_meters(&self) -> Option<Self> {
         let pipeline = Arc::new(self.pipeline.of_meters()?);
         Some(Self { pipeline, rear: self.rear.clone(), numbers: self.numbers.clone(), scale: 1.0 })
-    }
-
-    pub(crate) fn pipeline(&self) -> &Arc<Pipeline> {
-        &self.pipeline
     }
 
     /// The mean of the frame, W/m2 in the sum of its channels, by a few thousand rays.
@@ -324,7 +321,15 @@ impl Estimator for Backward {
     }
 
     fn metered(&self, workers: &dyn Workers) -> Result<Vec<Vec<f64>>, RenderError> {
-        self.of_meters().map_or(Ok(Vec::new()), |meters| meter::backward(&meters, workers))
+        self.of_meters().map_or(Ok(Vec::new()), |meters| {
+            let follow = |state: &mut ThreadState,
+                          len,
+                          start: &mut dyn FnMut(&mut RayBatch),
+                          mut look: &mut dyn FnMut(Step, &RayBatch)| {
+                meters.follow(state, len, start, &mut look);
+            };
+            meter::backward(&meters.pipeline, (ESTIMATOR, &follow), workers)
+        })
     }
 }
 

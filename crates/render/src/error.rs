@@ -1,8 +1,8 @@
 //! Why a scene cannot be rendered.
 
 use crate::Workers;
-use crate::blame::NoNumber;
 use crate::memory::bytes;
+use crate::no_number::NoNumber;
 use spectra_core::params::{Fault, Faults};
 use spectra_scene::Scene;
 
@@ -48,7 +48,7 @@ pub enum RenderError {
     /// A sum or a contribution did not fit.
     #[error(
         "the sums overflowed: a ray was {times:.1e} times as bright as the brightest of the {} that were tried before",
-        crate::pilot::PILOT_RAYS
+        crate::sums::PILOT_RAYS
     )]
     Overflow {
         /// How much brighter than the brightest ray of the pilot run.

@@ -1,12 +1,13 @@
 //! Forward: paths from the source, splatted where they land.
 
-use crate::blame::{Blame, Step};
+use crate::blame::Blame;
 use crate::error::RenderError;
 use crate::estimator::{Estimator, Scratch, Unit};
 use crate::meter;
-use crate::pilot::{self, PILOT_RAYS, PILOT_SEED};
+use crate::no_number::Step;
+use crate::pilot::{self, PILOT_SEED};
 use crate::pipeline::{Pipeline, SCATTER, Share, ThreadState};
-use crate::sums::{ExactSums, OwnSums, each};
+use crate::sums::{ExactSums, OwnSums, PILOT_RAYS, each};
 use crate::{Done, Workers};
 use glam::DVec3;
 use spectra_core::RayBatch;
@@ -19,7 +20,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 /// Paths a unit of work: some milliseconds.
-pub(crate) const PATHS_PER_UNIT: u64 = 1 << 16;
+const PATHS_PER_UNIT: u64 = 1 << 16;
 /// All forward paths form one stream of numbers.
 const STREAM: u64 = 0;
 
@@ -108,14 +109,6 @@ impl Forward {
         let (numbers, cone) = (self.numbers.clone(), self.cone.clone());
         let seed = pipeline.scene.render.seed ^ meter::SEED;
         Some(Self { pupil: self.pupil.clone(), numbers, cone, scale: 1.0, pipeline, a_sample: None }.scaled(seed))
-    }
-
-    pub(crate) fn pipeline(&self) -> &Arc<Pipeline> {
-        &self.pipeline
-    }
-
-    pub(crate) fn scale(&self) -> f64 {
-        self.scale
     }
 
     /// With the numbers of the pilot, and no scale.
@@ -292,7 +285,12 @@ impl Estimator for Forward {
     }
 
     fn metered(&self, workers: &dyn Workers) -> Result<Vec<Vec<f64>>, RenderError> {
-        self.of_meters().map_or(Ok(Vec::new()), |meters| meter::forward(&meters?, workers))
+        self.of_meters().map_or(Ok(Vec::new()), |meters| {
+            let meters = meters?;
+            let unit =
+                |state: &mut ThreadState, first, paths, sums: &ExactSums| meters.unit(state, first, paths, sums).1;
+            meter::forward(&meters.pipeline, meters.scale, (PATHS_PER_UNIT, &unit), workers)
+        })
     }
 }
 

@@ -4,11 +4,9 @@
 //! drawn from a wavelength density made for its own channel, by numbers of their own. Where there are fewer rays than pixels that it looks at, neighbors share one.
 
 use crate::Workers;
-use crate::backward::{Backward, ESTIMATOR};
-use crate::blame::{Blame, Step};
+use crate::blame::Blame;
 use crate::error::RenderError;
-use crate::forward::{Forward, PATHS_PER_UNIT};
-use crate::ghosts::Ghosts;
+use crate::no_number::Step;
 use crate::pipeline::{Pipeline, ThreadState};
 use crate::sums::ExactSums;
 use spectra_core::batch::pixel_and_channel;
@@ -36,8 +34,14 @@ pub(crate) const SEED: u64 = 0x6d65_7465_7220_6c78;
 /// The stream of the numbers that choose a pixel among neighbors.
 const CHOICE: u64 = u64::MAX;
 
+/// Traces rays from the pixels that its third argument writes, and shows them after each step.
+type Follow<'a> =
+    dyn Fn(&mut ThreadState, usize, &mut dyn FnMut(&mut RayBatch), &mut dyn FnMut(Step, &RayBatch)) + Sync + 'a;
+/// Traces rays from one on, so many.
+type SumUp<'a> = dyn Fn(&mut ThreadState, u64, u64, &ExactSums) -> Option<RenderError> + Sync + 'a;
+
 /// How many rays a meter takes in a frame of so many pixels.
-fn rays_for(pixels: usize, effort: Effort) -> u64 {
+pub(crate) fn rays_for(pixels: usize, effort: Effort) -> u64 {
     match effort {
         Effort::Full => ((pixels as f64 * RAYS_PER_PIXEL) as u64).clamp(LEAST, MOST),
         Effort::Draft => OF_DRAFT,
@@ -66,9 +70,12 @@ fn places(pixels: &[u32], most: u64, numbers: &Numbers, isa: Isa) -> Vec<Place> 
 }
 
 /// The mean irradiance times response of each of the pipeline's channels, W mm^-2 as the picture's, over the whole frame: 0
-/// where no meter looks.
-pub(crate) fn backward(backward: &Backward, workers: &dyn Workers) -> Result<Vec<Vec<f64>>, RenderError> {
-    let pipeline = backward.pipeline();
+/// where no meter looks. `follow` traces rays from pixels, with numbers of their own by a name.
+pub(crate) fn backward(
+    pipeline: &Pipeline,
+    (name, follow): (&str, &Follow<'_>),
+    workers: &dyn Workers,
+) -> Result<Vec<Vec<f64>>, RenderError> {
     let (scene, isa) = (&pipeline.scene, pipeline.isa);
     let pixels = scene.metered_pixels();
     let size = scene.imager.size().pixels();
@@ -86,7 +93,7 @@ pub(crate) fn backward(backward: &Backward, workers: &dyn Workers) -> Result<Vec
         if workers.should_stop() {
             return Err(RenderError::Stopped);
         }
-        unit(backward, &numbers, state, at as u64, units[at], samples)
+        unit(pipeline, (name, follow), &numbers, state, at as u64, units[at], samples)
     };
     let fresh = || ThreadState::new(pipeline, scene.render.batch);
     let sums = each_of(workers, units.len(), fresh, work)?;
@@ -102,14 +109,14 @@ pub(crate) fn backward(backward: &Backward, workers: &dyn Workers) -> Result<Vec
 
 /// The sums of `samples` rays from each place, channel by channel.
 fn unit(
-    backward: &Backward,
+    pipeline: &Pipeline,
+    (name, follow): (&str, &Follow<'_>),
     numbers: &Numbers,
     state: &mut ThreadState,
     stream: u64,
     places: &[Place],
     samples: usize,
 ) -> Result<Vec<f64>, RenderError> {
-    let pipeline: &Pipeline = backward.pipeline();
     let channels = pipeline.responses.channels();
     let mut sums = vec![0.0; places.len() * channels];
     let (all, capacity) = (places.len() * samples, state.rays.capacity());
@@ -121,12 +128,12 @@ fn unit(
                 let out = column.slice_mut(len);
                 numbers.fill_rotated(pipeline.isa, stream, first as u64, group, dimension as u32, out);
             }
-            let start = |rays: &mut RayBatch| {
+            let mut start = |rays: &mut RayBatch| {
                 let tags = rays.columns_mut().tag.iter_mut();
                 tags.zip(first..).for_each(|(tag, at)| *tag = places[at / samples].pixel);
-                rays.number(0, numbers, ESTIMATOR, stream, first as u64);
+                rays.number(0, numbers, name, stream, first as u64);
             };
-            backward.follow(state, len, start, &mut |step, rays| look(step, rays));
+            follow(state, len, &mut start, look);
         };
         trace(state, &mut |_, _| {});
         for channel in 0..channels {
@@ -151,9 +158,13 @@ fn unit(
     Ok(sums)
 }
 
-/// The same by rays from the source.
-pub(crate) fn forward(forward: &Forward, workers: &dyn Workers) -> Result<Vec<Vec<f64>>, RenderError> {
-    let pipeline = forward.pipeline();
+/// The same by rays from the source: `unit` traces a span of them, of `a_unit` at most, and sums their light times `scale`.
+pub(crate) fn forward(
+    pipeline: &Pipeline,
+    scale: f64,
+    (a_unit, unit): (u64, &SumUp<'_>),
+    workers: &dyn Workers,
+) -> Result<Vec<Vec<f64>>, RenderError> {
     let scene = &pipeline.scene;
     let size = scene.imager.size();
     let channels = pipeline.responses.channels();
@@ -166,39 +177,17 @@ pub(crate) fn forward(forward: &Forward, workers: &dyn Workers) -> Result<Vec<Ve
     let rays = (rays as f64 * size.pixels() as f64 / looked_at as f64).min(MOST_FORWARD.max(rays) as f64) as u64;
     let too_large = || RenderError::Memory(crate::memory_needed(scene));
     let sums = ExactSums::new(size.pixels() * channels).ok_or_else(too_large)?;
-    let work = |state: &mut ThreadState, unit: usize| {
-        let first = unit as u64 * PATHS_PER_UNIT;
+    let work = |state: &mut ThreadState, at: usize| {
+        let first = at as u64 * a_unit;
         if workers.should_stop() {
             return Err(RenderError::Stopped);
         }
-        forward.unit(state, first, PATHS_PER_UNIT.min(rays - first), &sums).1.map_or(Ok(()), Err)
+        unit(state, first, a_unit.min(rays - first), &sums).map_or(Ok(()), Err)
     };
     let fresh = || ThreadState::new(pipeline, scene.render.batch);
-    each_of(workers, rays.div_ceil(PATHS_PER_UNIT) as usize, fresh, work)?;
-    let weight = 1.0 / forward.scale() / size.pixel_area_mm2() / rays as f64;
+    each_of(workers, rays.div_ceil(a_unit) as usize, fresh, work)?;
+    let weight = 1.0 / scale / size.pixel_area_mm2() / rays as f64;
     Ok(planes(&sums, channels, |_| weight, size.pixels()))
-}
-
-/// The same of ghosts, by some of their blocks.
-pub(crate) fn ghosts(ghosts: &Ghosts, workers: &dyn Workers) -> Result<Vec<Vec<f64>>, RenderError> {
-    let pipeline = ghosts.pipeline();
-    let scene = &pipeline.scene;
-    let pixels = scene.imager.size().pixels();
-    let channels = pipeline.responses.channels();
-    if scene.metered_pixels().is_empty() {
-        return Ok(vec![vec![0.0; pixels]; channels]);
-    }
-    let blocks = rays_for(pixels, pipeline.effort).div_ceil(ghosts.rays_of_block());
-    let sums = ExactSums::new(pixels * channels).ok_or_else(|| RenderError::Memory(crate::memory_needed(scene)))?;
-    let work = |state: &mut ThreadState, block: usize| {
-        if workers.should_stop() {
-            return Err(RenderError::Stopped);
-        }
-        ghosts.block(state, block as u64, &sums).error.map_or(Ok(()), Err)
-    };
-    each_of(workers, blocks as usize, || ghosts.state(scene.render.batch), work)?;
-    let weight = ghosts.worth(blocks * ghosts.rays_of_block());
-    Ok(planes(&sums, channels, |_| weight, pixels))
 }
 
 /// Sums as planes of the channels, by what a unit of them is worth at each pixel.

@@ -1,16 +1,15 @@
 //! A few thousand rays before all others: how bright the brightest are, and whether a stage is broken.
 
 use crate::RenderError;
-use crate::blame::{Blame, Step};
+use crate::blame::Blame;
+use crate::no_number::Step;
 use crate::pipeline::{Pipeline, ThreadState};
-use crate::sums::scale_for;
+use crate::sums::{PILOT_RAYS, scale_for};
 use spectra_core::RayBatch;
 
 /// Seed of the pilot: the scale of the sums must not depend on the seed of the render, so that
 /// renders of the same scene with other seeds add.
 pub(crate) const PILOT_SEED: u64 = 0x5ca1e;
-/// Rays of a pilot batch.
-pub(crate) const PILOT_RAYS: u32 = 4096;
 /// Batches tried before a scene is taken to be dark.
 const PILOT_BATCHES: u32 = 64;
 

@@ -1,6 +1,8 @@
 //! What a person should know of a picture before believing it: nothing on it, too much on it, too little of it.
 
-use crate::{Noise, Renderer, Rendering};
+use crate::noise::Noise;
+use crate::renderer::Renderer;
+use crate::rendering::Rendering;
 use spectra_core::frame::ExposureFrame;
 use spectra_core::{Loss, LossCounts, shutter};
 use spectra_scene::{Direction, Scene, SceneFilm};
@@ -18,8 +20,15 @@ const DAZZLED: f64 = 64.0;
 const SHUTTER_S: f64 = 1.0 / 8000.0;
 const DAZZLED_SHORT: f64 = 4.0;
 
-/// What is to be said of a rendering.
-pub(crate) fn remarks(renderer: &Renderer, rendering: &Rendering) -> Vec<String> {
+impl Renderer {
+    /// What a person should know of a rendering before believing it.
+    #[must_use]
+    pub fn remarks(&self, rendering: &Rendering) -> Vec<String> {
+        remarks(self, rendering)
+    }
+}
+
+fn remarks(renderer: &Renderer, rendering: &Rendering) -> Vec<String> {
     let scene = renderer.scene();
     let mut all = Vec::new();
     if rendering.detected == 0 {

@@ -1,62 +1,28 @@
 //! The renderer: units of work, handed to threads, summed exactly.
 
 use crate::backward::Backward;
-use crate::diffracted::{self, Diffracted};
-use crate::done::Units;
+use crate::diffracted;
+use crate::done::{Done, Units};
 use crate::estimator::Estimator;
 use crate::forward::Forward;
-use crate::ghosts::{self, GhostRays, Ghosts, LightLedger};
+use crate::ghosts::{self, GhostRays, Ghosts, LightLedger, MATTERS};
 use crate::landing::Landing;
-use crate::light::Part;
+use crate::light::{Light, Part};
 use crate::memory::memory_needed;
 use crate::noise::{ends_round, next_round};
-use crate::pilot::PILOT_RAYS;
 use crate::pipeline::{Pipeline, Share, ThreadState};
-use crate::remarks::remarks;
-use crate::sums::{LARGEST_CONTRIBUTION, LARGEST_EXPECTED};
+use crate::rendering::Rendering;
+use crate::sums::{ExactSums, LARGEST_CONTRIBUTION, LARGEST_EXPECTED, PILOT_RAYS};
 use crate::veil::{self, Veil};
-use crate::{Alone, Control, Effort, Light, Noise, RenderError, Workers};
+use crate::{Alone, Control, Effort, RenderError, Workers};
 use spectra_core::frame::{ExposureChannel, ExposureFrame};
 use spectra_core::numbers::mix64;
 use spectra_core::stage::WavelengthDensity;
 use spectra_core::{Isa, LossCounts};
 use spectra_lens::Travel;
-use spectra_scene::{Direction, LightKind, LightLayer, Lights, NumberFamily, Scene};
+use spectra_scene::{Direction, LightKind, Lights, NumberFamily, Scene};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, PoisonError};
-
-/// Ghosts matter by themselves where the brightest of them has more than this part of the mean of the frame, diffraction where the
-/// brightest star has more of its median.
-pub(crate) const MATTERS: f64 = 0.01;
-
-/// What a render gives.
-#[derive(Clone, Debug)]
-pub struct Rendering {
-    /// Linear exposure per channel.
-    pub exposure: ExposureFrame,
-    /// The same by kinds of light, and by paths of ghosts, of those of which an output of the scene holds layers.
-    pub layers: Vec<LightLayer>,
-    /// Rays launched toward the first or last surface.
-    pub rays: u64,
-    /// What was lost, by cause and surface.
-    pub losses: LossCounts,
-    /// Rays that brought light to the imager: with those that were lost, all that were launched.
-    pub detected: u64,
-    /// Whether it was stopped before its end.
-    pub partial: bool,
-    /// How noisy it is, where the scene asks.
-    pub noise: Option<Noise>,
-    /// The estimators whose light it is: `forward`, `backward`.
-    pub estimators: Vec<&'static str>,
-    /// Where the light of the source's lights goes, if ghosts are traced.
-    pub ledger: Option<LightLedger>,
-    /// What part of the exposure of the whole frame, all channels together, is veiling glare, where it is asked for.
-    pub glare: Option<f64>,
-    /// What diffraction did to each channel of the picture, where the scene asks for it.
-    pub diffraction: Option<Vec<Diffracted>>,
-    /// What a person should know before believing the picture, and what to write.
-    pub warnings: Vec<String>,
-}
 
 /// A scene made ready to render.
 pub struct Renderer {
@@ -353,6 +319,21 @@ impl Renderer {
         }
     }
 
+    /// No light yet.
+    ///
+    /// # Errors
+    /// [`RenderError::Memory`].
+    pub fn begin(&self) -> Result<Light, RenderError> {
+        let part = |estimator: &dyn Estimator| {
+            let cells = self.cells().checked_mul(1 + estimator.paths().len());
+            let sums = cells.and_then(ExactSums::new).ok_or_else(|| self.too_large())?;
+            Ok(Part { sums, done: Done::default(), rays: 0 })
+        };
+        let parts = self.estimators().map(part).collect::<Result<_, RenderError>>()?;
+        let halves = self.halves();
+        Ok(Light { parts, losses: LossCounts::default(), detected: 0, metered: None, judged: 0, halves })
+    }
+
     /// Halves of the samples, with numbers of their own: two where noise is asked for.
     pub(crate) fn halves(&self) -> u64 {
         1 + u64::from(self.scene.render.noise.is_some())
@@ -539,12 +520,6 @@ impl Renderer {
             glare += if estimator.name() == veil::ESTIMATOR { own } else { 0.0 };
         }
         (all > 0.0).then_some(glare / all)
-    }
-
-    /// What a person should know of a rendering before believing it.
-    #[must_use]
-    pub fn remarks(&self, rendering: &Rendering) -> Vec<String> {
-        remarks(self, rendering)
     }
 
     /// The scene.

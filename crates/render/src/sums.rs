@@ -14,6 +14,9 @@ const LIMIT: u64 = 1 << 62;
 /// One contribution must stay below this for its rounding to be exact.
 pub(crate) const LARGEST_CONTRIBUTION: f64 = (1_u64 << 50) as f64;
 
+/// Rays of a pilot batch: the brightest of them sets the scale.
+pub(crate) const PILOT_RAYS: u32 = 4096;
+
 /// The scale for contributions whose largest is about `largest`: a power of two, so that scaling is exact.
 pub(crate) fn scale_for(largest: f64) -> f64 {
     if !(largest.is_finite() && largest > 0.0) {

@@ -1,11 +1,12 @@
 //! From a scene file to a [`Scene`], with every fault in one go.
 
 use crate::advice::{self, FileIs};
-use crate::earlier::{Earlier, Said};
+use crate::earlier::Earlier;
 use crate::filters;
 use crate::focus::FocusLight;
 use crate::lens_section::{LensSection, SetLens, held_lens};
 use crate::resources::read_yaml;
+use crate::said::Said;
 use crate::{
     ConePattern, Direction, Lights, NumberFamily, Output, Reflections, RenderSettings, Scene, doubts, films, lamps,
     landing, language, output, sight, yaml,

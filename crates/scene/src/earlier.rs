@@ -3,21 +3,13 @@
 use crate::focus::FocusLight;
 use crate::landing;
 use crate::lens_section::SetLens;
-use crate::sight::{Dark, Search};
+use crate::said::Said;
+use crate::sight::Search;
 use crate::{Scene, SceneFilm};
 use spectra_core::cover::CoverStack;
-use spectra_core::params::{DataEnd, Fault, Node, Params, Value, Warning};
+use spectra_core::params::{Fault, Node, Params, Value};
 use spectra_core::stage::{Imager, Source, WavelengthSampler};
 use std::sync::Arc;
-
-/// What stages said when they were built.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Said {
-    pub warnings: Vec<Warning>,
-    pub ends: Vec<DataEnd>,
-    /// The part of the frame that the lens leaves dark.
-    pub dark: Option<Dark>,
-}
 
 /// A lens of another scene.
 struct Focused {

@@ -18,10 +18,12 @@ mod lamps;
 mod landing;
 mod language;
 mod lens_section;
+mod light_layer;
 mod negatives;
 mod output;
 mod remembered;
 mod resources;
+mod said;
 mod scene;
 mod schema;
 mod shot;
@@ -33,8 +35,9 @@ pub use focus::{Focus, FocusBy};
 pub use language::{
     Member, Series, SeriesKind, SweptAxis, document, load, load_series, series_of_text, series_of_tree,
 };
+pub use light_layer::{GhostPaths, LightKind, LightLayer};
 pub use negatives::Negatives;
-pub use output::{GhostPaths, Holds, LightKind, LightLayer, Output, OutputEntry, Told};
+pub use output::{Holds, Output, OutputEntry, Told};
 pub use resources::{FileResources, NO_LENS, NO_LENS_F_NUMBER};
 pub use scene::{
     ConePattern, Direction, FilmTime, Lights, NumberFamily, Reflections, RenderSettings, Scene, SceneFilm,

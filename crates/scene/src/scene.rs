@@ -1,9 +1,10 @@
 //! A scene, assembled: every stage built, the lens focused and stopped, nothing traced yet.
 
 use crate::Focus;
+// A circle with `output.rs`: a scene has its outputs, and each of them writes a picture of its scene.
 use crate::Output;
-use crate::earlier::Said;
 use crate::focus::FocusLight;
+use crate::said::Said;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::frame::{ExposureChannel, ExposureFrame};

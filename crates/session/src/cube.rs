@@ -2,7 +2,7 @@
 //!
 //! What needs a pixel's neighbors cannot be in it: scatter, halation, adjacency, grain, and the lens of the printer or scanner.
 
-use crate::still::F_NUMBER;
+use crate::still::{F_NUMBER, WHITE_CD_M2};
 use crate::{SessionError, Setting};
 use rayon::prelude::*;
 use spectra_color::{RgbSpace, ciede2000, lab, xyz_of_reflectance};
@@ -57,8 +57,6 @@ pub struct CubeFile {
 pub const RANDOM_COLORS: usize = 10_000;
 /// Linear light of a mid gray.
 const GRAY: f64 = 0.18;
-/// Luminance of white, cd/m2, as `spectra film develop` has it.
-pub(crate) const WHITE_CD_M2: f64 = 5000.0;
 
 /// The film, and what it gets of colors.
 pub(crate) struct Chain {

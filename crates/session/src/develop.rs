@@ -3,8 +3,8 @@
 //! The picture fills the frame: of the format's frame the largest part that has the picture's shape. White has a luminance of
 //! 5000 cd/m2, as in daylight under clouds, which is short enough an exposure for any film. The camera meters its average.
 
-use crate::cube::WHITE_CD_M2;
 use crate::run::picture;
+use crate::still::WHITE_CD_M2;
 use crate::{Ended, Event, Host, Job, LightFrom, Names, Place, SessionError, words};
 use serde_json::{Value, json};
 use spectra_core::Isa;

@@ -1,7 +1,7 @@
 //! `SCENE.json`: how a picture came about.
 
 use crate::header::films;
-use crate::run::Job;
+use crate::job::Job;
 use serde_json::{Map, Value, json};
 use spectra_core::Loss;
 use spectra_render::{GhostPath, LightLedger, Rendering};
@@ -22,12 +22,6 @@ pub struct Report<'a> {
 }
 
 impl Report<'_> {
-    /// The picture in a few lines, as a photographer would say it.
-    #[must_use]
-    pub fn summary(&self) -> String {
-        crate::summary::of(self)
-    }
-
     /// Rays launched per second of rendering.
     #[must_use]
     pub fn rays_per_second(&self) -> f64 {

@@ -3,7 +3,7 @@
 use crate::check::{Look, checked, each_once};
 use crate::contact::Contact;
 use crate::files::{Files, write_report};
-use crate::run::{Taken, prepare};
+use crate::taken::{Taken, prepare};
 use crate::{Ended, Event, Host, Job, Place, Report, Session, SessionError, header, words};
 use serde_json::{Map, Value, json};
 use spectra_core::params::{Reading, Warning};

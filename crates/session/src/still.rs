@@ -17,6 +17,8 @@ use std::f64::consts::PI;
 
 /// F-number of the ideal lens.
 pub(crate) const F_NUMBER: f64 = spectra_scene::NO_LENS_F_NUMBER;
+/// Luminance of white, cd/m2 of a picture that is developed.
+pub(crate) const WHITE_CD_M2: f64 = 5000.0;
 
 /// Points along each side of the table, closer together toward 0 as [`value`] has it: two to a cell of the table that the `smooth`
 /// model looks its own coefficients up in.

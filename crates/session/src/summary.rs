@@ -14,9 +14,17 @@ const TELLING: [(Loss, &str); 3] = [
     (Loss::OutOfFrame, "beside the frame"),
 ];
 
+impl Report<'_> {
+    /// The picture in a few lines, as a photographer would say it.
+    #[must_use]
+    pub fn summary(&self) -> String {
+        of(self)
+    }
+}
+
 /// `Zeiss Biotar 50 mm f/1.4 at f/2, focus 2 m, Kodak Tri-X 400 at 1/700 s (metered); 1 228 800 rays in 0.8 s, 1.5 million
 /// rays/s, 39 % of them through the lens`.
-pub(crate) fn of(report: &Report<'_>) -> String {
+fn of(report: &Report<'_>) -> String {
     let (scene, rendering) = (report.scene, report.rendering);
     if report.job.light == LightFrom::Pixels {
         return of_pixels(report);

@@ -34,11 +34,13 @@ use spectra_core::names::{self, Match};
 use spectra_core::resources::{ResourceError, Resources};
 use spectra_core::spectral::Line;
 
+// A circle with `document.rs`: what bears a name may be a document, which names the spectra that it is made of.
 use crate::document;
 use crate::emission::Emission;
 use crate::error::SpectrumError;
 use crate::expression::{self, Sign, Tree};
 use crate::filter::{Reflectance, Sensitivity, Transmittance};
+use crate::found::Found;
 use crate::inline;
 use crate::meta::{Kind, Meta};
 use crate::names::{candidates, normalized};
@@ -46,32 +48,6 @@ use crate::piece::Piece;
 use crate::signed::Signed;
 use crate::table::{MAX_BYTES, Table};
 use crate::tabulated::Tabulated;
-
-/// A spectrum of any kind.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Found {
-    /// Light.
-    Emission(Emission),
-    /// A filter.
-    Transmittance(Transmittance),
-    /// A surface.
-    Reflectance(Reflectance),
-    /// A detector.
-    Sensitivity(Sensitivity),
-}
-
-impl Found {
-    /// Its kind.
-    #[must_use]
-    pub fn kind(&self) -> Kind {
-        match self {
-            Self::Emission(_) => Kind::Emission,
-            Self::Transmittance(_) => Kind::Transmittance,
-            Self::Reflectance(_) => Kind::Reflectance,
-            Self::Sensitivity(_) => Kind::Sensitivity,
-        }
-    }
-}
 
 /// Where bundled spectra lie that can be named without their folder.
 const FOLDERS: [&str; 7] = [

@@ -10,7 +10,6 @@ use std::sync::{Arc, OnceLock};
 use spectra_core::spectral::{BAND, Grid, SpectralPower};
 
 use crate::bundled;
-use crate::emission::Emission;
 use crate::filter::Sensitivity;
 use crate::tabulated::Tabulated;
 
@@ -80,14 +79,6 @@ impl Observer {
             return self.band.clone();
         }
         [0, 1, 2].map(|i| grid.wavelengths_nm().map(|w| self.functions[i].at(w)).collect())
-    }
-
-    /// The integral of `light` times each function over 350-830 nm, lines included; no factor.
-    ///
-    /// Times 683 lm/W, and of a radiance in W m^-2 sr^-1 nm^-1, Y is a luminance in cd/m^2.
-    #[must_use]
-    pub fn xyz(&self, light: &Emission) -> [f64; 3] {
-        self.xyz_of_power(&light.to_power(&BAND))
     }
 
     /// The same of light on a grid: the sum over its points times the step, as the CIE prescribes at 1 nm (CIE 15:2004,

@@ -282,6 +282,16 @@ impl Add for Emission {
     }
 }
 
+impl Observer {
+    /// The integral of `light` times each function over 350-830 nm, lines included; no factor.
+    ///
+    /// Times 683 lm/W, and of a radiance in W m^-2 sr^-1 nm^-1, Y is a luminance in cd/m^2.
+    #[must_use]
+    pub fn xyz(&self, light: &Emission) -> [f64; 3] {
+        self.xyz_of_power(&light.to_power(&BAND))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,6 +1,6 @@
 //! What can be wrong with a spectrum that is not read from a file.
 
-use crate::table::TableError;
+use crate::table_error::TableError;
 use spectra_core::params::{Fault, Faults};
 
 /// A spectrum that cannot be.

@@ -31,6 +31,7 @@ mod error;
 mod expression;
 mod extent;
 mod filter;
+mod found;
 mod gaussian;
 mod illuminants;
 mod inline;
@@ -42,15 +43,17 @@ mod names;
 mod normal;
 mod piece;
 mod planck;
+mod separator;
 mod shape;
 mod signed;
 mod sprague;
 pub mod table;
+mod table_error;
 mod tabulated;
 mod truncated;
 
 pub use by_name::{
-    Found, bundled_meta, bundled_spectra, find, find_as_in, find_emission, find_emission_in, find_in, find_reflectance,
+    bundled_meta, bundled_spectra, find, find_as_in, find_emission, find_emission_in, find_in, find_reflectance,
     find_reflectance_in, find_sensitivity, find_sensitivity_in, find_transmittance, find_transmittance_in, function_in,
     meta_in, notes_in,
 };
@@ -60,6 +63,7 @@ pub use document::schema as document_schema;
 pub use emission::Emission;
 pub use error::SpectrumError;
 pub use filter::{Reflectance, Sensitivity, Transmittance};
+pub use found::Found;
 pub use gaussian::{GaussianFit, GaussianFitReport, GaussianMixture, GaussianTerm, NoGaussian, OneTerm, fit_gaussians};
 pub use illuminants::{daylight, daylight_xy, illuminant, illuminant_names};
 pub use inline::Expression;

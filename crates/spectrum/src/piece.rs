@@ -1,12 +1,12 @@
 //! A spectrum on its way from what a person wrote to what is wanted.
 
-use crate::by_name::Found;
 use crate::emission::Emission;
 use crate::error::{SpectrumError, check};
 use crate::filter::{Reflectance, Sensitivity, Transmittance};
+use crate::found::Found;
 use crate::meta::Kind;
 use crate::shape::Shape;
-use crate::signed::{Signed, positive};
+use crate::signed::{Signed, joined, positive};
 
 /// A spectrum whose kind is known, or a shape (a Gaussian, a constant) that can be of any.
 #[derive(Clone, Debug)]
@@ -23,6 +23,24 @@ impl From<Emission> for Piece {
     /// Light.
     fn from(light: Emission) -> Self {
         Self::Typed(Found::Emission(light))
+    }
+}
+
+impl From<Piece> for Signed {
+    fn from(piece: Piece) -> Self {
+        match piece {
+            Piece::Bare(shape) => Self { kind: None, continuum: Some(shape), lines: Vec::new() },
+            Piece::Signed(signed) => signed,
+            Piece::Typed(found) => {
+                let kind = Some(found.kind());
+                match (&found, shape_of(&found)) {
+                    (Found::Emission(light), _) => {
+                        Self { kind, continuum: light.continuum().cloned(), lines: light.lines().to_vec() }
+                    }
+                    (_, shape) => Self { kind, continuum: shape.cloned(), lines: Vec::new() },
+                }
+            }
+        }
     }
 }
 
@@ -63,6 +81,21 @@ impl Piece {
             Self::Signed(signed) => signed.settled(),
             other => Ok(other),
         }
+    }
+}
+
+impl Signed {
+    /// Judged as a whole: a bare function as one of a kind only where it is known what is wanted.
+    pub(crate) fn settled(self) -> Result<Piece, SpectrumError> {
+        let Some(kind) = self.kind else {
+            return Ok(Piece::Bare(self.continuum.unwrap_or(Shape::constant(0.0)?)));
+        };
+        if kind != Kind::Emission {
+            let shape = self.continuum.unwrap_or(Shape::constant(0.0)?);
+            return of_shape(shape, kind).map(Piece::Typed);
+        }
+        let continuum = self.continuum.map(|shape| positive(shape, kind)).transpose()?;
+        Emission::new(continuum, joined(self.lines)?).map(Piece::from)
     }
 }
 

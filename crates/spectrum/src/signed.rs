@@ -1,10 +1,7 @@
 //! A spectrum while it is computed with: of either sign, judged only as a whole.
 
-use crate::by_name::Found;
-use crate::emission::Emission;
 use crate::error::SpectrumError;
 use crate::meta::Kind;
-use crate::piece::{Piece, of_shape, shape_of};
 use crate::shape::Shape;
 use spectra_core::spectral::Line;
 
@@ -12,27 +9,9 @@ use spectra_core::spectral::Line;
 #[derive(Clone, Debug)]
 pub struct Signed {
     /// `None` for a bare function of wavelength, which is whatever is wanted.
-    kind: Option<Kind>,
-    continuum: Option<Shape>,
-    lines: Vec<Line>,
-}
-
-impl From<Piece> for Signed {
-    fn from(piece: Piece) -> Self {
-        match piece {
-            Piece::Bare(shape) => Self { kind: None, continuum: Some(shape), lines: Vec::new() },
-            Piece::Signed(signed) => signed,
-            Piece::Typed(found) => {
-                let kind = Some(found.kind());
-                match (&found, shape_of(&found)) {
-                    (Found::Emission(light), _) => {
-                        Self { kind, continuum: light.continuum().cloned(), lines: light.lines().to_vec() }
-                    }
-                    (_, shape) => Self { kind, continuum: shape.cloned(), lines: Vec::new() },
-                }
-            }
-        }
-    }
+    pub(crate) kind: Option<Kind>,
+    pub(crate) continuum: Option<Shape>,
+    pub(crate) lines: Vec<Line>,
 }
 
 impl Signed {
@@ -143,23 +122,10 @@ impl Signed {
             }
         }
     }
-
-    /// Judged as a whole: a bare function as one of a kind only where it is known what is wanted.
-    pub(crate) fn settled(self) -> Result<Piece, SpectrumError> {
-        let Some(kind) = self.kind else {
-            return Ok(Piece::Bare(self.continuum.unwrap_or(Shape::constant(0.0)?)));
-        };
-        if kind != Kind::Emission {
-            let shape = self.continuum.unwrap_or(Shape::constant(0.0)?);
-            return of_shape(shape, kind).map(Piece::Typed);
-        }
-        let continuum = self.continuum.map(|shape| positive(shape, kind)).transpose()?;
-        Emission::new(continuum, joined(self.lines)?).map(Piece::from)
-    }
 }
 
 /// Lines at one wavelength as one where any is negative, and without those that are gone.
-fn joined(lines: Vec<Line>) -> Result<Vec<Line>, SpectrumError> {
+pub(crate) fn joined(lines: Vec<Line>) -> Result<Vec<Line>, SpectrumError> {
     if let Some(line) = lines.iter().find(|l| !l.power.is_finite()) {
         return Err(SpectrumError::NotFinite { at_nm: line.wavelength_nm });
     }

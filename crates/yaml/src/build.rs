@@ -3,6 +3,7 @@
 //! Events go into flat storage first, without recursion and without copies, so that an alias costs
 //! nothing until it is expanded; [`tree`] makes nodes of it.
 
+use super::items::{Item, Placed};
 use super::reports::{Reports, Stop, fault, too_deep, too_many, written};
 use super::slips;
 use super::tree;
@@ -11,24 +12,6 @@ use serde_saphyr::granit_parser::{Event, Marker, Parser, ScalarStyle, Span as Ra
 use spectra_core::params::{Faults, Node, SourceFile, Span, Value};
 use std::collections::HashMap;
 use std::sync::Arc;
-
-/// What an event made.
-pub(super) enum Item {
-    /// Neither of the others.
-    Scalar(Value),
-    /// Indices of its elements.
-    Seq(Vec<usize>),
-    /// Indices of keys and values.
-    Map(Vec<(usize, usize)>),
-    /// Index of what it names.
-    Alias(usize),
-}
-
-/// An item with its place.
-pub(super) struct Placed {
-    pub item: Item,
-    pub span: Span,
-}
 
 /// A list or map that is not closed yet.
 struct Open {

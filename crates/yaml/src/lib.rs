@@ -8,6 +8,7 @@
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 mod build;
+mod items;
 mod reports;
 mod slips;
 mod syntax;

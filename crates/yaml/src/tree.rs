@@ -1,6 +1,6 @@
 //! From items in flat storage to nodes: aliases are expanded here, within the limits.
 
-use super::build::{Item, Placed};
+use super::items::{Item, Placed};
 use super::reports::{Reports, Stop, fault, too_deep, too_many, written};
 use super::{MAX_DEPTH, MAX_NODES};
 use spectra_core::params::{Fault, Faults, Key, Node, SourceFile, Span, Value};

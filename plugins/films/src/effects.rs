@@ -1,6 +1,5 @@
 //! What happens inside of the film: light is spread before the curve, silver lies in grains after it.
 
-use crate::stock::StockParams;
 use crate::view::View;
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -110,21 +109,6 @@ pub(crate) struct Switches<'a> {
     pub grain_seed: u64,
     /// Number of its first layer among those of the picture: each has grains of its own.
     pub first_layer: u32,
-}
-
-impl From<&StockParams> for Switches<'static> {
-    fn from(p: &StockParams) -> Self {
-        Self {
-            key: "stock",
-            scatter: p.scatter,
-            adjacency: p.adjacency,
-            halation: p.halation,
-            grain: p.grain,
-            assumed: p.assumed,
-            grain_seed: p.grain_seed,
-            first_layer: 0,
-        }
-    }
 }
 
 /// How grainy the layers are.

@@ -5,13 +5,17 @@
 mod effects;
 mod frame;
 mod metering;
+mod seen;
+mod settings;
 mod stock;
+mod stocks;
 mod three_strip;
 mod view;
 
 pub use effects::{Assumed, HalationParams, HalationSetting, Off, OpticsParams, OpticsSetting};
 pub use frame::{BorderKind, FrameParams};
 pub use metering::{Metering, SpotParams};
-pub use stock::{StockFilm, StockParams};
+pub use settings::StockParams;
+pub use stock::StockFilm;
 pub use three_strip::{RecordParams, ThreeStrip, ThreeStripParams};
 pub use view::{PaperParams, View};

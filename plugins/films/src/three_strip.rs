@@ -2,7 +2,7 @@
 
 use crate::effects::{Assumed, Effects, HalationSetting, Off, OpticsSetting, Switches, mtf50, pixel_mm};
 use crate::metering::{METER, Meter, Metering, SpotParams, overruled, recorded_time_s};
-use crate::stock::load_stock;
+use crate::stocks::load_stock;
 use crate::view::WhiteParams;
 use schemars::JsonSchema;
 use serde::Deserialize;

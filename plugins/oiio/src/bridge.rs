@@ -3,7 +3,9 @@
 // sides; each C++ function keeps what it opens on its own stack, and no pointer outlives its call.
 #![allow(unsafe_code)]
 
+// A circle with `reading.rs`: C++ hands what it reads to the receiver that called it.
 use crate::reading::Receiver;
+// A circle with `writing.rs`: C++ takes pixels from what called it, and hands it the bytes.
 use crate::writing::{Pixels, Sink};
 
 #[cxx::bridge(namespace = "spectra")]

@@ -1,7 +1,6 @@
 //! Cargo, as a program to run.
 
-use super::plugin::Metadata;
-use super::program::Program;
+use super::metadata::Metadata;
 use crate::console;
 use crate::outcome::Failure;
 use crate::sources::{Sources, plain};
@@ -68,9 +67,9 @@ impl Cargo {
         serde_json::from_slice(&output.stdout).map_err(|error| format!("its output cannot be read: {error}"))
     }
 
-    /// The crates of the program, all of which share one `spectra-core`, ours.
-    pub(super) fn check_graph(&self, program: &Program, sources: &Sources) -> Result<Metadata, Failure> {
-        let metadata = self.metadata(&program.manifest, &["--filter-platform", env!("SPECTRA_TARGET")]).map_err(|text| {
+    /// The crates of the program at a manifest, all of which share one `spectra-core`, ours.
+    pub(super) fn check_graph(&self, program: &Path, sources: &Sources) -> Result<Metadata, Failure> {
+        let metadata = self.metadata(program, &["--filter-platform", env!("SPECTRA_TARGET")]).map_err(|text| {
             if text.contains("links to the native library `spectra-core`") || text.contains("links to native library `spectra-core`") {
                 let fault = Fault::new(format!("this program would contain two versions of spectra-core\n{text}"));
                 return Failure::from(fault.hint(format!(
@@ -100,15 +99,15 @@ impl Cargo {
         }
     }
 
-    /// Builds the program; cargo's words go to standard error as they come.
-    pub(super) fn build(&self, program: &Program, profile: &str) -> Result<PathBuf, Failure> {
-        let mut command = self.command("build", &program.manifest);
+    /// Builds the program of that name and manifest, in `target` where nothing else is said; cargo's words go to standard error as they come.
+    pub(super) fn build(&self, [name, profile]: [&str; 2], [manifest, target]: [&Path; 2]) -> Result<PathBuf, Failure> {
+        let mut command = self.command("build", manifest);
         // The compiler's words come as JSON, so that it is known whose they are, and are shown as they are.
         let colored = console::stderr_is_colored();
         let format = if colored { "json-diagnostic-rendered-ansi" } else { "json" };
         command.args(["--profile", profile, "--message-format", format]);
         if std::env::var_os("CARGO_TARGET_DIR").is_none_or(|folder| folder.is_empty()) {
-            command.arg("--target-dir").arg(&program.target);
+            command.arg("--target-dir").arg(target);
         } else if let Some(folder) = std::env::var_os("CARGO_TARGET_DIR") {
             // Relative to where the user is, not to the generated crate.
             command.arg("--target-dir").arg(std::path::absolute(&folder).unwrap_or_else(|_| folder.into()));
@@ -118,7 +117,7 @@ impl Cargo {
         let mut report = Report::default();
         for line in child.stdout.take().map(BufReader::new).into_iter().flat_map(BufRead::lines) {
             let Ok(line) = line else { break };
-            report.read(&line, &program.name);
+            report.read(&line, name);
         }
         let status = child.wait().map_err(failed)?;
         match report.executable {

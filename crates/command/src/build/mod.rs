@@ -6,6 +6,7 @@
 
 mod arguments;
 mod cargo;
+mod metadata;
 mod notices;
 mod plugin;
 mod program;
@@ -31,7 +32,7 @@ pub(crate) fn build(arguments: &BuildArguments, unpack: Unpack, started: Instant
     let cargo = Cargo::find(arguments.offline)?;
     let plugins = plugins(&arguments.with, &cargo, &sources)?;
     let program = Program::write(&sources, &plugins)?;
-    let graph = cargo.check_graph(&program, &sources)?;
+    let graph = cargo.check_graph(&program.manifest, &sources)?;
     let notices = notices::of(&graph, &program, &sources);
     if !notices.unlicensed.is_empty() {
         console::warning(&format!(
@@ -41,7 +42,7 @@ pub(crate) fn build(arguments: &BuildArguments, unpack: Unpack, started: Instant
         ));
     }
     program.set_notices(&notices.text)?;
-    let built = cargo.build(&program, arguments.profile.name())?;
+    let built = cargo.build([&program.name, arguments.profile.name()], [&program.manifest, &program.target])?;
     let added = stages::added(&built, &plugins)?;
     install(&built, &output)?;
     for (plugin, stages) in plugins.iter().zip(&added) {

@@ -1,6 +1,6 @@
 //! The licenses of the crates that plugins bring into a program, with their texts.
 
-use super::plugin::{Metadata, Package};
+use super::metadata::{Metadata, Package};
 use super::program::Program;
 use crate::licenses;
 use crate::sources::{Sources, plain};

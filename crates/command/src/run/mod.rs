@@ -50,7 +50,7 @@ fn render_scene(arguments: &Run, isa: Isa, started: Instant) -> Outcome {
     let overrides = overrides(arguments);
     let series = spectra_scene::load_series(&arguments.scene, &overrides)?;
     let job = Job {
-        chosen: frames::chosen(&series, arguments)?,
+        chosen: frames::chosen(&series, arguments.frames.as_ref(), arguments.skip_existing)?,
         series: &series,
         light: if series.is_without_lens() { LightFrom::Pixels } else { LightFrom::Rays },
         skip_existing: arguments.skip_existing,

@@ -6,8 +6,8 @@
 use super::at::At;
 use super::fault::{Fault, Faults};
 use super::node::{Key, Node, Value};
-use super::part::PART;
 use super::path::Step;
+use super::schema::PART;
 use super::text::found;
 use super::whole::{Exact, limits_of};
 use crate::names::{self, nearest, shown};

@@ -1,6 +1,6 @@
 //! Faults in a user's files.
 
-use super::node::{SourceFile, Span};
+use super::place::{SourceFile, Span};
 use std::fmt;
 use std::sync::Arc;
 

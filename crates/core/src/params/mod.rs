@@ -62,6 +62,7 @@ mod params;
 mod part;
 mod parts;
 mod path;
+mod place;
 mod reader;
 mod schema;
 #[cfg(test)]
@@ -76,10 +77,11 @@ pub use crate::quantity::{
     Wavelength, schema_of,
 };
 pub use fault::{Fault, Faults};
-pub use node::{Key, MAX_DEPTH, Node, Number, SourceFile, Span, Value};
+pub use node::{Key, MAX_DEPTH, Node, Number, Value};
 pub use params::Params;
 pub use part::{Part, StageNode};
 pub use path::{Step, steps};
+pub use place::{SourceFile, Span};
 pub use reader::{Readable, keys_of};
 pub use schema::Kinds;
 pub use warning::{DataEnd, Warning, Warnings};

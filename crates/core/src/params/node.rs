@@ -1,87 +1,12 @@
 //! The tree that a scene file is read into: values, each with the place where it was written.
 
 use super::fault::Fault;
+use super::place::{SourceFile, Span};
 use crate::quantity::decimal_end;
-use std::fmt;
-use std::path::Path;
 use std::sync::Arc;
 
 /// Deepest nesting of maps and lists that is read or built. It limits recursion over a [`Node`].
 pub const MAX_DEPTH: usize = 64;
-
-/// A place in a file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Span {
-    /// Line, from 1.
-    pub line: usize,
-    /// Column in characters, from 1.
-    pub column: usize,
-    /// Offset in bytes, from 0.
-    pub offset: usize,
-    /// Length in bytes; 0 if nothing was written.
-    pub len: usize,
-}
-
-impl Default for Span {
-    /// The start of a file, empty.
-    fn default() -> Self {
-        Self { line: 1, column: 1, offset: 0, len: 0 }
-    }
-}
-
-impl Span {
-    /// The part of it on its first line; messages point there when a value spans several lines.
-    #[must_use]
-    pub fn first_line(self, text: &str) -> Self {
-        let covered = text.get(self.offset..).unwrap_or("");
-        let end = covered.find(['\n', '\r']).unwrap_or(covered.len());
-        let line = covered[..end].trim_end();
-        Self { len: self.len.min(line.len()), ..self }
-    }
-}
-
-/// A text that values were read from: a file or an argument.
-#[derive(Clone, PartialEq, Eq)]
-pub struct SourceFile {
-    /// Its name in messages: a path, `bundled:...`, or the argument `--set path=value`.
-    pub name: String,
-    /// Content.
-    pub text: String,
-}
-
-impl SourceFile {
-    /// A named text.
-    #[must_use]
-    pub fn new(name: impl Into<String>, text: impl Into<String>) -> Self {
-        Self { name: name.into(), text: text.into() }
-    }
-
-    /// Whether it is an argument of the command line instead of a file; then messages give no line and column.
-    #[must_use]
-    pub fn is_argument(&self) -> bool {
-        self.name.starts_with("--")
-    }
-
-    /// The folder that relative paths in it start from: empty (the working folder) for an argument, `None` for a text without a
-    /// folder on disk.
-    #[must_use]
-    pub fn folder(&self) -> Option<&Path> {
-        if self.is_argument() {
-            Some(Path::new(""))
-        } else if self.name.starts_with("bundled:") {
-            None
-        } else {
-            Path::new(&self.name).parent()
-        }
-    }
-}
-
-impl fmt::Debug for SourceFile {
-    /// Prints the name only, because every node refers to its file.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "SourceFile({})", self.name)
-    }
-}
 
 /// A number as written.
 #[derive(Clone, Debug, PartialEq)]

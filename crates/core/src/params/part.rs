@@ -4,6 +4,7 @@ use super::fault::{Fault, Faults};
 use super::node::Node;
 use super::params::Params;
 use super::reader::{self, Readable};
+use super::schema::PART;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::Deserialize;
 use serde::de::Deserializer;
@@ -111,9 +112,6 @@ impl<'de, T> Deserialize<'de> for Part<T> {
         StageNode::deserialize(deserializer).map(|node| Self(node, PhantomData))
     }
 }
-
-/// The keyword of a schema at which [`super::check`] stops.
-pub(super) const PART: &str = "x-part";
 
 impl<T: JsonSchema> JsonSchema for Part<T> {
     fn inline_schema() -> bool {

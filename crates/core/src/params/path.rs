@@ -1,7 +1,8 @@
 //! Paths of keys: `film.exposure`, `surfaces[3].radius`.
 
 use super::fault::Fault;
-use super::node::{Key, MAX_DEPTH, Node, Span, Value};
+use super::node::{Key, MAX_DEPTH, Node, Value};
+use super::place::Span;
 use super::text::found;
 use crate::names::shown;
 use std::sync::Arc;

@@ -3,6 +3,9 @@
 use schemars::{Schema, json_schema};
 use serde_json::{Map, Value, json};
 
+/// The keyword of a schema at which a check stops: what is there is read later.
+pub(super) const PART: &str = "x-part";
+
 /// One of several kinds of a map, as the schema of each.
 pub struct Kinds<'a> {
     /// The key that names the kind.

@@ -1,12 +1,12 @@
 //! Surfaces given by their sag, a batch at a time: the rays of a chunk take each step side by side, so that the sag is vectorised
 //! where the compiler can, and divisions and roots of many rays are under way at once where it cannot.
 //!
-//! Where the search of a single ray ([`FromSag::intersect`]) asks for slopes at every step, this one takes secants: one sag a step,
+//! Where the search of a single ray ([`super::FromSag`]) asks for slopes at every step, this one takes secants: one sag a step,
 //! and the slopes once, where the ray arrives. A ray whose steps do not plainly lead home is searched alone. What becomes of a ray
 //! does not depend on its neighbors: once it has arrived it stays where it is.
 
 use super::search::{ARRIVED_MM, NOISE_MM, SHORTER};
-use super::{Action, FromSag, Interface, SagShape, ScalarShape, bend};
+use super::{Action, Interface, SagShape, ScalarShape, bend};
 use crate::RayBatch;
 use crate::isa::{Isa, Vectorized};
 use crate::loss::{ALIVE, Loss};
@@ -50,10 +50,11 @@ impl Part<'_> {
     }
 }
 
-/// As [`super::Surface::interact`]. `beside` tells which rays, by position and direction, pass beside the surface: they end there as
+/// As [`super::Surface::interact`], by the sag; `alone` is how a single ray is searched. `beside` tells which rays, by position and direction, pass beside the surface: they end there as
 /// vignetted.
 pub(super) fn interact<S: SagShape>(
-    shape: &FromSag<S>,
+    shape: &S,
+    alone: &impl ScalarShape,
     rays: &mut RayBatch,
     at: &Interface<'_>,
     isa: Isa,
@@ -84,11 +85,11 @@ pub(super) fn interact<S: SagShape>(
         }
         const ZERO: Column = [0.0; CHUNK];
         let met = &mut Meeting { t: ZERO, slope: [ZERO; 2], found: ZERO, margin: [ZERO; 2] };
-        isa.run(Meet { shape: &shape.0, part, met });
+        isa.run(Meet { shape, part, met });
         for i in 0..part.x.len() {
             if part.state[i] == ALIVE && !(met.found[i] > 0.0) {
                 let [position, direction] = part.ray(i);
-                let hit = shape.intersect(position, direction);
+                let hit = alone.intersect(position, direction);
                 met.t[i] = hit.map_or(f64::NAN, |hit| hit.distance_mm);
                 [met.slope[0][i], met.slope[1][i]] = hit.map_or([0.0; 2], |hit| [-hit.normal.x, -hit.normal.y]);
             }

@@ -9,16 +9,18 @@
 
 mod bend;
 mod by_batch;
+mod from_sag;
 mod kernel;
 mod per_ray;
 mod plane;
 mod sag;
 mod search;
 
+pub use from_sag::FromSag;
 pub use kernel::{Hit, Kernel, KernelShape, Near, Ray, Real};
 pub use per_ray::{Bending, Intersection, PerRay, ScalarShape};
 pub use plane::Plane;
-pub use sag::{FromSag, SagShape};
+pub use sag::SagShape;
 pub use search::nearest_crossing;
 
 use crate::RayBatch;

@@ -21,6 +21,7 @@
 mod base;
 mod kernel;
 mod spread;
+mod table;
 mod trips;
 
 pub use base::{HalationBase, HalationError};

@@ -1,7 +1,7 @@
 //! Light that goes around more than once: thrown down again by the emulsion, it meets the back once more.
 
 use super::base::HalationBase;
-use super::kernel::Table;
+use super::table::Table;
 use spectra_numerics::convolve::{Grid, Kernel};
 use std::f64::consts::PI;
 

@@ -2,7 +2,7 @@
 
 use super::color::{AimDensityFile, InterlayerFile, Medium};
 use super::like::inherited;
-use super::material::{DyeFile, MinimumDensityFile, densitometry};
+use super::material::{DensityFile, DyeFile, MinimumDensityFile, densitometry};
 use super::reciprocity::ReciprocityFile;
 use super::speed::{MeterResponse, SpeedKind};
 use super::structure::{Assumptions, AssumptionsFile, BaseFile, GranularityFile, HalationFile, granularity, mtf};
@@ -138,19 +138,6 @@ enum ProcessFile {
     Reversal,
     /// A print stock: a positive from a negative.
     Print,
-}
-
-/// How densities were measured.
-#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub(super) enum DensityFile {
-    /// Visual density: silver, gray.
-    #[default]
-    Visual,
-    /// Status A of ISO 5-3: positives with dyes.
-    StatusA,
-    /// Status M of ISO 5-3: negatives with dyes.
-    StatusM,
 }
 
 #[derive(Debug, Deserialize, JsonSchema)]

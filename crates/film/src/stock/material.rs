@@ -1,6 +1,5 @@
 //! What a developed film holds back, wavelength by wavelength, and how that is measured.
 
-use super::file::DensityFile;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::math::pow;
@@ -135,6 +134,19 @@ impl Densitometry {
             })
             .collect()
     }
+}
+
+/// How densities were measured.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum DensityFile {
+    /// Visual density: silver, gray.
+    #[default]
+    Visual,
+    /// Status A of ISO 5-3: positives with dyes.
+    StatusA,
+    /// Status M of ISO 5-3: negatives with dyes.
+    StatusM,
 }
 
 /// Checks the densitometry against the number of layers.

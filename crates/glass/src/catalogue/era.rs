@@ -2,7 +2,6 @@
 
 use std::str::FromStr;
 
-use super::nearest::Query;
 use crate::glass::{Glass, Status};
 use crate::lines::LineTriple;
 
@@ -19,9 +18,9 @@ pub enum Era {
 }
 
 /// Year of the oldest bundled list.
-const OLDEST: u16 = 1983;
+pub(super) const OLDEST: u16 = 1983;
 /// Year from which a catalogue counts as of today.
-const TODAY: u16 = 2017;
+pub(super) const TODAY: u16 = 2017;
 /// Rare-earth glasses came into lenses after the patent of G. W. Morey (US 2150694, filed 1936, granted 1939).
 const RARE_EARTH: u16 = 1940;
 
@@ -46,21 +45,6 @@ impl FromStr for Era {
 }
 
 impl Era {
-    /// Narrows a search to glasses of this era.
-    pub fn narrow(self, query: &mut Query) {
-        match self {
-            Era::Year(year) => {
-                query.known_by = Some(year.max(OLDEST));
-                query.era = Some(self);
-            }
-            Era::Historical => query.known_by = Some(OLDEST),
-            Era::Modern => {
-                query.still_in = Some(TODAY);
-                query.obsolete = false;
-            }
-        }
-    }
-
     /// Whether a glass fits the era by what it is, its years apart.
     ///
     /// Before 1940 that is a rule of thumb, drawn through Schott's list of 1983: the old glasses (fluor, phosphate and

@@ -1,6 +1,7 @@
 //! The real glass behind a patent's index and Abbe number.
 
-use super::{Catalogue, Era};
+use super::Catalogue;
+use super::era::{Era, OLDEST, TODAY};
 use crate::glass::{Category, Glass, Status};
 use crate::lines::LineTriple;
 
@@ -54,6 +55,23 @@ impl Query {
         let still = self.still_in.is_none_or(|year| glass.years.is_some_and(|(_, last)| year <= last));
         let of_era = self.era.is_none_or(|era| era.admits(glass));
         maker && category && known && still && of_era && (self.obsolete || glass.status != Status::Obsolete)
+    }
+}
+
+impl Era {
+    /// Narrows a search to glasses of this era.
+    pub fn narrow(self, query: &mut Query) {
+        match self {
+            Era::Year(year) => {
+                query.known_by = Some(year.max(OLDEST));
+                query.era = Some(self);
+            }
+            Era::Historical => query.known_by = Some(OLDEST),
+            Era::Modern => {
+                query.still_in = Some(TODAY);
+                query.obsolete = false;
+            }
+        }
     }
 }
 

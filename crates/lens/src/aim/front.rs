@@ -1,9 +1,11 @@
 //! The pupil as the object sees it.
 
+use super::aiming::AimPattern;
 use super::effort::Effort;
 use super::nodes::Geometry;
-use super::search::{Sphere, Task};
-use super::table::{AimPattern, Depth, Table, Zone};
+use super::sphere::Sphere;
+use super::table::{Depth, Table, Zone};
+use super::task::Task;
 use crate::{Lens, Tracer, Travel};
 use glam::DVec3;
 use spectra_core::workers::{Alone, Workers};

@@ -17,28 +17,35 @@
 //! over distance squared, so light is counted equally per solid angle, and the estimate has no bias while outline and ring hold
 //! all that passes; random rays beyond the outline check that when it is made.
 
+mod aiming;
 mod effort;
+mod fan;
 mod front;
+mod lattice;
+mod measure;
 mod nodes;
 mod outline;
 mod probe;
 mod reach;
 mod rear;
+mod region;
 mod search;
 mod shape;
+mod sphere;
 mod stopped;
 mod table;
+mod task;
 
+pub use aiming::AimPattern;
 pub use effort::Effort;
 pub use front::{AimRegion, FrontPupil};
 pub use rear::RearPupil;
-pub(crate) use search::Sphere;
-pub use table::AimPattern;
+pub(crate) use sphere::Sphere;
 
 use crate::{Lens, Travel};
 
 /// Whether any surface states a size, so that there is something to aim at.
 #[must_use]
 pub fn has_sizes(lens: &Lens, travel: Travel) -> bool {
-    search::Sphere::around(lens, travel).is_some()
+    Sphere::around(lens, travel).is_some()
 }

@@ -1,8 +1,8 @@
 //! The points that stand for zones, and what passes from each of them.
 
 use super::probe::{Bounds, Found, Plane, Prober};
-use super::search::Sphere;
 use super::shape::hull;
+use super::sphere::Sphere;
 use crate::Travel;
 use glam::DVec3;
 
@@ -27,7 +27,7 @@ impl Geometry {
         DVec3::new(0.0, 0.0, self.eye_z_mm)
     }
 
-    /// The point at a measure of the angle (see `table::measure`), a depth (one over the distance
+    /// The point at a measure of the angle (see [`measure`](super::measure::measure)), a depth (one over the distance
     /// forward, mm ahead backward) and an azimuth in turns; `None` where there is none: no point behind
     /// the reference point has a depth on the film's side.
     pub fn point(&self, measure: f64, depth: f64, turns: f64) -> Option<DVec3> {

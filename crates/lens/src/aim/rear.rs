@@ -1,10 +1,13 @@
 //! The pupil as the film sees it.
 
+use super::aiming::AimPattern;
 use super::effort::Effort;
 use super::front::AimRegion;
+use super::measure::measure;
 use super::nodes::Geometry;
-use super::search::{Sphere, Task};
-use super::table::{AimPattern, Depth, Table, measure};
+use super::sphere::Sphere;
+use super::table::{Depth, Table};
+use super::task::Task;
 use crate::{Lens, Tracer, Travel};
 use glam::DVec3;
 use spectra_core::workers::{Alone, Workers};

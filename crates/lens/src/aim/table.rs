@@ -1,20 +1,9 @@
-//! The zones of a pupil, and the aiming itself.
+//! The zones of a pupil.
 
-use super::outline::{self, Outlines};
-use super::search::Sphere;
+use super::measure::{azimuth_measure, measure, whole};
+use super::outline::Outlines;
+use super::sphere::Sphere;
 use glam::DVec3;
-use spectra_core::isa::{Isa, Vectorized};
-use spectra_core::math::{self, concentric_disk, polar_disk, sin_cos_turns};
-use spectra_core::{Loss, RayBatch};
-
-/// How numbers in the unit square become places on the ellipse of a zone.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum AimPattern {
-    /// Neighbors to neighbors (Shirley and Chiu's concentric map).
-    Disk,
-    /// Equal-area rings: the first number is the ring, the second the angle.
-    Rings,
-}
 
 /// Zones of the angle in one row; the rest of its slots pass nothing. A power of two, so that a
 /// masked index needs no bounds check and the lookup is a vector gather.
@@ -160,102 +149,7 @@ impl Table {
     }
 }
 
-/// A measure of the angle at which a point is seen from the reference point, `radius` beside the axis
-/// and `ahead` in front of it: 0 on the axis, 1 at 90 degrees, 2 straight behind. Grows with the
-/// angle, and takes one division.
-#[inline(always)]
-pub(super) fn measure(radius: f64, ahead: f64) -> f64 {
-    let share = radius / (radius + ahead.abs());
-    if ahead < 0.0 { 2.0 - share } else { share }
-}
-
-/// [`math::whole`] as an index.
-#[inline(always)]
-pub(super) fn whole(at: f64, last: f64) -> usize {
-    math::whole(at, last).0 as usize
-}
-
-/// [`measure`] for the azimuth of (x, y): in [0, 4), a quarter turn a unit.
-#[inline(always)]
-pub(super) fn azimuth_measure(x: f64, y: f64) -> f64 {
-    let share = y / (x.abs() + y.abs());
-    if x < 0.0 {
-        2.0 - share
-    } else if y < 0.0 {
-        4.0 + share
-    } else {
-        share
-    }
-}
-
-/// What a table does for one batch.
-struct Aim<'a, const BACKWARD: bool, const RINGS: bool, const MANY: bool> {
-    table: &'a Table,
-    u: &'a [f64],
-    v: &'a [f64],
-    rays: &'a mut RayBatch,
-}
-
-/// What became of the rays of a batch.
-struct Aimed {
-    /// Rays of points from which nothing passes.
-    dark: usize,
-}
-
 impl Table {
-    /// Turns the rays of a batch, which are at their points, to places of the pupil, starts them
-    /// there, and multiplies their weights by the solid angle. Returns how many have ended, because
-    /// nothing passes from their point.
-    pub fn aim<const BACKWARD: bool>(
-        &self,
-        rays: &mut RayBatch,
-        u: &[f64],
-        v: &[f64],
-        pattern: AimPattern,
-        isa: Isa,
-    ) -> usize {
-        let strays = self.strays::<BACKWARD>(rays, u, v, isa);
-        let dark = match (&self.outlines, pattern == AimPattern::Rings, self.rows.len() > 1) {
-            (Some(outlines), ..) => outline::aim::<BACKWARD>(self, outlines, rays, [u, v], pattern, isa),
-            (None, false, false) => isa.run(Aim::<BACKWARD, false, false> { table: self, u, v, rays }).dark,
-            (None, false, true) => isa.run(Aim::<BACKWARD, false, true> { table: self, u, v, rays }).dark,
-            (None, true, false) => isa.run(Aim::<BACKWARD, true, false> { table: self, u, v, rays }).dark,
-            (None, true, true) => isa.run(Aim::<BACKWARD, true, true> { table: self, u, v, rays }).dark,
-        };
-        let c = rays.columns_mut();
-        let mut revived = 0;
-        for stray in strays {
-            let i = stray.ray;
-            revived += usize::from(c.state[i] != spectra_core::loss::ALIVE);
-            c.state[i] = spectra_core::loss::ALIVE;
-            (c.x[i], c.y[i], c.z[i]) = stray.position.into();
-            (c.l[i], c.m[i], c.n[i]) = stray.direction.into();
-            c.weight[i] = stray.weight;
-        }
-        dark - revived
-    }
-
-    /// Rays of points that lie at another depth than the search was asked for: rare, and slow. They are
-    /// aimed at the whole of the surface that is met first.
-    fn strays<const BACKWARD: bool>(&self, rays: &RayBatch, u: &[f64], v: &[f64], isa: Isa) -> Vec<Stray> {
-        let [x, y, z] = rays.positions();
-        let found = isa.run(CountStrays::<BACKWARD> { table: self, x, y, z });
-        if found == 0 {
-            return Vec::new();
-        }
-        let mut strays = Vec::with_capacity(found);
-        let [l, m, n] = rays.directions();
-        for i in 0..x.len() {
-            if self.is_stray::<BACKWARD>(x[i], y[i], z[i]) {
-                let (position, direction, solid_angle) = self.bound.aim(DVec3::new(x[i], y[i], z[i]), u[i], v[i]);
-                let cosine = if BACKWARD { direction.dot(DVec3::new(l[i], m[i], n[i])).max(0.0) } else { 1.0 };
-                let weight = rays.weights()[i] * solid_angle * cosine;
-                strays.push(Stray { ray: i, position, direction, weight });
-            }
-        }
-        strays
-    }
-
     #[inline(always)]
     fn depth_of<const BACKWARD: bool>(radius2: f64, ahead: f64) -> f64 {
         if BACKWARD { ahead } else { 1.0 / (radius2 + ahead * ahead).sqrt() }
@@ -274,7 +168,7 @@ impl Table {
     }
 
     #[inline(always)]
-    fn is_stray<const BACKWARD: bool>(&self, x: f64, y: f64, z: f64) -> bool {
+    pub fn is_stray<const BACKWARD: bool>(&self, x: f64, y: f64, z: f64) -> bool {
         let ahead = if BACKWARD { z - self.eye_z_mm } else { self.eye_z_mm - z };
         if BACKWARD {
             !((ahead >= self.depth.from) & (ahead <= self.depth.to))
@@ -334,143 +228,5 @@ impl Table {
             }
         }
         (row, slot, ex, ey, zones)
-    }
-}
-
-/// A ray that is aimed at the whole surface.
-struct Stray {
-    ray: usize,
-    position: DVec3,
-    direction: DVec3,
-    weight: f64,
-}
-
-struct CountStrays<'a, const BACKWARD: bool> {
-    table: &'a Table,
-    x: &'a [f64],
-    y: &'a [f64],
-    z: &'a [f64],
-}
-
-impl<const BACKWARD: bool> Vectorized for CountStrays<'_, BACKWARD> {
-    type Output = usize;
-    #[inline(always)]
-    fn run(self) -> usize {
-        let len = self.x.len();
-        let (x, y, z) = (self.x, &self.y[..len], &self.z[..len]);
-        let mut many = 0_u64;
-        for i in 0..len {
-            many += u64::from(self.table.is_stray::<BACKWARD>(x[i], y[i], z[i]));
-        }
-        many as usize
-    }
-}
-
-impl<const BACKWARD: bool, const RINGS: bool, const MANY: bool> Vectorized for Aim<'_, BACKWARD, RINGS, MANY> {
-    type Output = Aimed;
-    #[inline(always)]
-    fn run(self) -> Aimed {
-        let c = self.rays.columns_mut();
-        let dark = aim_loop::<BACKWARD, RINGS, MANY>(
-            self.table,
-            &self.table.rows[0].0,
-            [self.u, self.v],
-            c.x,
-            c.y,
-            c.z,
-            c.l,
-            c.m,
-            c.n,
-            c.weight,
-            c.state,
-        );
-        Aimed { dark }
-    }
-}
-
-/// Columns come as arguments of their own, and so does the first row: so the compiler knows that none overlaps another.
-#[inline(always)]
-fn aim_loop<const BACKWARD: bool, const RINGS: bool, const MANY: bool>(
-    table: &Table,
-    only: &[[f64; FIELDS]; SLOTS],
-    [u, v]: [&[f64]; 2],
-    x: &mut [f64],
-    y: &mut [f64],
-    z: &mut [f64],
-    l: &mut [f64],
-    m: &mut [f64],
-    n: &mut [f64],
-    weight: &mut [f64],
-    state: &mut [u64],
-) -> usize {
-    let len = x.len();
-    let (u, v, y, z) = (&u[..len], &v[..len], &mut y[..len], &mut z[..len]);
-    let (l, m, n) = (&mut l[..len], &mut m[..len], &mut n[..len]);
-    let (weight, state) = (&mut weight[..len], &mut state[..len]);
-    let ended = Loss::Vignetted.state(table.surface);
-    let (eye, scale) = (table.eye_z_mm, table.angle_scale);
-    let mut dark = 0_u64;
-    for i in 0..len {
-        let (px, py, pz) = (x[i], y[i], z[i]);
-        let (row, k, ex, ey, _) = table.place::<BACKWARD, MANY>(eye, scale, px, py, pz);
-        let f = &(if MANY { &table.rows[row].0 } else { only })[k];
-        let disk = if RINGS { polar_disk(u[i], v[i]) } else { concentric_disk(u[i], v[i]) };
-        let ellipse = f[9] > 0.0;
-        let p = if ellipse { disk.0 } else { 2.0 * u[i] - 1.0 };
-        let q = if ellipse { disk.1 } else { 2.0 * v[i] - 1.0 };
-        let radial = f[0] + p * f[3];
-        let across = f[1] + q * f[5];
-        let tx = radial * ex - across * ey;
-        let ty = radial * ey + across * ex;
-        let tz = eye + (f[2] + p * f[4]);
-        let (dx, dy, dz) = (tx - px, ty - py, tz - pz);
-        let inverse = 1.0 / (dx * dx + dy * dy + dz * dz).sqrt();
-        let (dl, dm, dn) = (dx * inverse, dy * inverse, dz * inverse);
-        let area = f[8];
-        // Solid angle of the share of area, as the point sees it.
-        let cosine = ((dl * ex + dm * ey) * f[6] + dn * f[7]).abs();
-        let mut solid_angle = area * cosine * inverse * inverse;
-        if BACKWARD {
-            // The imager's normal stands in the place of the direction.
-            solid_angle *= positive(dl * l[i] + dm * m[i] + dn * n[i]);
-        }
-        weight[i] *= solid_angle;
-        let none = area == 0.0;
-        dark += u64::from(none);
-        state[i] = if none { ended } else { state[i] };
-        (x[i], y[i], z[i]) = (tx, ty, tz);
-        (l[i], m[i], n[i]) = (dl, dm, dn);
-    }
-    dark as usize
-}
-
-/// The larger of a number and 0: one instruction on every tier.
-#[inline(always)]
-fn positive(value: f64) -> f64 {
-    if value > 0.0 { value } else { 0.0 }
-}
-
-impl Sphere {
-    /// A ray from `point` to the sphere, evenly over the solid angle of a disk that hides it: where it
-    /// starts, its direction, and its weight in sr. From a point inside, evenly in all directions.
-    fn aim(&self, point: DVec3, u: f64, v: f64) -> (DVec3, DVec3, f64) {
-        let to = self.center - point;
-        let distance2 = to.length_squared();
-        let radius2 = self.radius_mm * self.radius_mm;
-        if distance2 <= 1.01 * radius2 {
-            let height = 2.0 * u - 1.0;
-            let (sin, cos) = sin_cos_turns(v);
-            let beside = (1.0 - height * height).max(0.0).sqrt();
-            return (point, DVec3::new(beside * cos, beside * sin, height), 4.0 * std::f64::consts::PI);
-        }
-        let axis = to / distance2.sqrt();
-        let radius = self.radius_mm / (1.0 - radius2 / distance2).sqrt();
-        let (a, b) = axis.any_orthonormal_pair();
-        let (p, q) = concentric_disk(u, v);
-        let target = self.center + (a * p + b * q) * radius;
-        let way = target - point;
-        let direction = way.normalize();
-        let area = std::f64::consts::PI * radius * radius;
-        (target, direction, area * direction.dot(axis) / way.length_squared())
     }
 }

@@ -6,6 +6,7 @@
 //! sides, and without a layer (delta = 0) it is Fresnel's.
 
 mod amplitude;
+mod entry;
 mod films;
 mod layers;
 mod measured;
@@ -16,10 +17,11 @@ mod swift;
 mod v_coat;
 
 pub(crate) use amplitude::{Amplitudes, Polarizing};
+pub use entry::CoatingEntry;
 pub(crate) use films::{Films, Sides};
 pub use measured::MeasuredCoating;
 pub(crate) use params::CoatingKeys;
-pub use params::{CoatingEntry, CoatingForm, StatedCoating, read_coating, read_stated_coating};
+pub use params::{CoatingForm, StatedCoating, read_coating, read_stated_coating};
 pub use stack::{Stack, StackLayer};
 pub(crate) use swift::{CHUNK, Singles, Swift};
 

@@ -11,8 +11,6 @@ use spectra_core::resources::{Resources, beside};
 use spectra_core::spectral::BAND;
 use std::sync::Arc;
 
-spectra_core::declare!(CoatingEntry, Coating, "coating", "A registered kind of coating.");
-
 /// What a coating says of itself, whatever its kind; a file that holds one may say more.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]

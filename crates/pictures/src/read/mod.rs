@@ -1,5 +1,7 @@
 //! Picture files to linear light.
 
+mod beginning;
+mod channels;
 mod decode;
 mod encoding;
 mod exr;
@@ -13,8 +15,10 @@ mod planes;
 mod tiff;
 mod turn;
 
+pub use beginning::header;
+pub use channels::planes;
 pub use decode::{decode, depth};
 pub use foreign::ENDINGS;
-pub use header::{Header, header};
+pub use header::Header;
 pub use linear::{Choice, Linear, Trouble};
-pub use planes::{Plane, Planes, planes};
+pub use planes::{Plane, Planes};

@@ -1,10 +1,5 @@
 //! A picture file as it is: every channel with its values and what the header says, for whoever measures in it.
 
-use super::decode::{self, Kind};
-use super::exr;
-use super::linear::{Choice, Trouble};
-use spectra_core::resources::{Found, ResourceError};
-
 /// One channel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plane {
@@ -55,39 +50,4 @@ impl Planes {
     pub fn pixels(&self) -> usize {
         self.width as usize * self.height as usize
     }
-}
-
-/// Reads all channels of an OpenEXR file; of any other format that [`decode()`](super::decode()) reads, its linear light.
-///
-/// # Errors
-/// What is wrong with the file.
-pub fn planes(found: &Found, choice: Choice<'_>) -> Result<Planes, Trouble> {
-    let io = |error: ResourceError| Trouble::file(error.to_string());
-    let kind = decode::kind(&found.read(64).map_err(io)?, choice)?;
-    if kind == Kind::Exr {
-        return exr::planes(found.open().map_err(io)?, found.size_bytes().map_err(io)?);
-    }
-    let format = match kind {
-        Kind::Native(image::ImageFormat::Png) => "PNG",
-        Kind::Native(image::ImageFormat::Jpeg) => "JPEG",
-        Kind::Native(image::ImageFormat::Tiff) => "TIFF",
-        Kind::Native(image::ImageFormat::Hdr) => "Radiance HDR",
-        _ => "by OpenImageIO",
-    };
-    let linear = decode::decode(found, choice)?;
-    let channel = |(at, name): (usize, &str)| Plane {
-        name: name.to_owned(),
-        unit: String::new(),
-        values: linear.rgb.iter().map(|rgb| rgb[at]).collect(),
-    };
-    Ok(Planes {
-        format,
-        width: linear.width,
-        height: linear.height,
-        pixel_aspect: linear.pixel_aspect,
-        channels: ["R", "G", "B"].into_iter().enumerate().map(channel).collect(),
-        chromaticities: None,
-        attributes: Vec::new(),
-        clipped_at: linear.clipped_at,
-    })
 }

@@ -7,16 +7,17 @@
 
 mod account;
 mod guide;
+mod metered;
 mod pilot;
 mod zones;
 
 pub use account::{GhostPath, LightLedger};
 
-use crate::blame::{Blame, Step};
+use crate::blame::Blame;
 use crate::error::RenderError;
 use crate::estimator::{Estimator, Scratch, Unit};
 use crate::forward::source_points;
-use crate::meter;
+use crate::no_number::Step;
 use crate::pilot::PILOT_SEED;
 use crate::pipeline::{Pipeline, ThreadState};
 use crate::sums::{ExactSums, OwnSums, each, scale_for};
@@ -42,6 +43,10 @@ pub enum GhostRays {
     /// As many for each path, all over the front: what the search is measured against.
     Even,
 }
+
+/// Ghosts matter by themselves where the brightest of them has more than this part of the mean of the frame, diffraction where the
+/// brightest star has more of its median.
+pub(crate) const MATTERS: f64 = 0.01;
 
 /// What numbers of its own stages draw by.
 pub(crate) const ESTIMATOR: &str = "ghosts";
@@ -193,7 +198,7 @@ impl Ghosts {
         };
         let a_pixel = matters.map_or(RAYS_A_PIXEL, |matters| {
             // What matters is a part of the mean.
-            RAYS_A_PIXEL * (crate::renderer::MATTERS * found.brightest / matters).clamp(LEAST_A_PIXEL, 1.0)
+            RAYS_A_PIXEL * (MATTERS * found.brightest / matters).clamp(LEAST_A_PIXEL, 1.0)
         });
         own.plan = Arc::new(own.shared_out(found.ways, a_pixel, ledger));
         own.scale = own.pilot_scale(workers)?;
@@ -203,23 +208,6 @@ impl Ghosts {
 
     fn of_seed(&self, seed: u64) -> Numbers {
         self.pipeline.numbers(mix64(seed ^ SEED))
-    }
-
-    /// The same for what the meters see; `None` where they see nothing.
-    fn of_meters(&self, workers: &dyn Workers) -> Option<Result<Self, RenderError>> {
-        let pipeline = Arc::new(self.pipeline.of_meters()?);
-        let numbers = self.of_seed(pipeline.scene.render.seed ^ meter::SEED);
-        let own = Self { pipeline, plan: Arc::new(self.plan.together()), numbers, scale: 1.0 };
-        Some(own.pilot_scale(workers).map(|scale| Self { scale, ..own }))
-    }
-
-    pub(crate) fn pipeline(&self) -> &Pipeline {
-        &self.pipeline
-    }
-
-    /// Rays of one block: a fair picture, however many there are of them.
-    pub(crate) fn rays_of_block(&self) -> u64 {
-        self.plan.rays
     }
 
     /// Where the light goes.
@@ -235,7 +223,7 @@ impl Ghosts {
         self.pipeline.scene.imager.receive().expect("`new` saw it")
     }
 
-    pub(crate) fn state(&self, capacity: usize) -> ThreadState {
+    fn state(&self, capacity: usize) -> ThreadState {
         let mut state = ThreadState::new(&self.pipeline, capacity);
         if self.pipeline.scene.render.reflections.polarized {
             state.rays = state.rays.with_polarization();
@@ -390,7 +378,7 @@ impl Ghosts {
     }
 
     /// What a unit of the sums of so many rays is worth, W/m2.
-    pub(crate) fn worth(&self, rays: u64) -> f64 {
+    fn worth(&self, rays: u64) -> f64 {
         1.0 / self.scale / self.pipeline.scene.imager.size().pixel_area_mm2() / rays.max(1) as f64
     }
 
@@ -420,7 +408,7 @@ impl Ghosts {
     }
 
     /// Adds a block to the sums.
-    pub(crate) fn block(&self, state: &mut ThreadState, block: u64, sums: &ExactSums) -> Unit {
+    fn block(&self, state: &mut ThreadState, block: u64, sums: &ExactSums) -> Unit {
         let mut rays = 0;
         for (at, way) in self.plan.ways.iter().enumerate() {
             let all = block * way.rays..(block + 1) * way.rays;
@@ -452,12 +440,6 @@ impl Plan {
     fn new(opening: Option<FrontOpening>, zones: Zones, ways: Vec<Way>) -> Self {
         let (ledger, apart) = (LightLedger::default(), Vec::new());
         Self { opening, zones, ways, rays: 1, blocks_a_sample: 1, ledger, apart }
-    }
-
-    /// Without sums of their own for some paths.
-    fn together(&self) -> Self {
-        let way = |way: &Way| Way { own_cells: None, ..way.clone() };
-        Self { ways: self.ways.iter().map(way).collect(), apart: Vec::new(), ..self.clone() }
     }
 
     /// With more paths, before rays are shared out.
@@ -519,6 +501,6 @@ impl Estimator for Ghosts {
     }
 
     fn metered(&self, workers: &dyn Workers) -> Result<Vec<Vec<f64>>, RenderError> {
-        self.of_meters(workers).map_or(Ok(Vec::new()), |meters| meter::ghosts(&meters?, workers))
+        self.of_meters(workers).map_or(Ok(Vec::new()), |meters| meters?.seen(workers))
     }
 }

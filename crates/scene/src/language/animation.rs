@@ -1,7 +1,7 @@
 //! `animation`: one scene, a sequence of frames over which values change.
 
 use super::law::{Law, Track};
-use super::sweep::{Setting, check_path};
+use super::setting::{ANIMATION, Setting, check_path};
 use super::variables::Variables;
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -9,8 +9,6 @@ use spectra_core::params::{Fault, Faults, Key, Node, Part, StageNode, Value, War
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// The key.
-pub(super) const ANIMATION: &str = "animation";
 /// Most frames of one animation: 400 s of film at 25 frames a second.
 const MAX_FRAMES: u64 = 10_000;
 /// Largest number of a frame: seven digits.

@@ -36,6 +36,7 @@ mod include;
 mod law;
 mod merge;
 mod series;
+mod setting;
 mod sweep;
 mod variables;
 

@@ -1,9 +1,10 @@
 //! A scene file as the pictures that it stands for: one, the members of a sweep, the frames of an animation.
 
-use super::animation::{ANIMATION, Animation};
+use super::animation::Animation;
 use super::flat;
 use super::include::{self, INCLUDE};
-use super::sweep::{Axis, SWEEP, Setting, Sweep};
+use super::setting::{ANIMATION, SWEEP, Setting};
+use super::sweep::{Axis, Sweep};
 use super::variables::{self, VARIABLES, Variables};
 use crate::assemble::{assemble, read, record};
 use crate::earlier::Earlier;

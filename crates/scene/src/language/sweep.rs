@@ -1,23 +1,15 @@
 //! `sweep`: one scene, several pictures that differ in named values.
 
 use super::law::{Law, Track};
+use super::setting::{SWEEP, Setting, check_path};
 use super::variables::Variables;
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::params::{Fault, Faults, Key, Node, StageNode, Value, Whole, steps};
+use spectra_core::params::{Fault, Faults, Key, Node, StageNode, Value, Whole};
 use std::collections::BTreeMap;
-use std::sync::Arc;
 
-/// The key.
-pub(super) const SWEEP: &str = "sweep";
 /// Most pictures of one sweep.
 pub(super) const MAX_PICTURES: usize = 1000;
-/// Sections that a path cannot lead into: they say what is made, and are used up before it is.
-const RESERVED: [&str; 3] = ["include", SWEEP, super::animation::ANIMATION];
-
-/// One picture's own values: paths and what is put there, in order.
-pub(super) type Setting = Vec<(String, Node)>;
-
 /// Values along one path.
 #[derive(Clone, Debug)]
 pub(super) struct Axis {
@@ -111,19 +103,6 @@ impl Sweep {
                 settings.iter().flat_map(|setting| axis.values.iter().map(move |value| with(setting, value))).collect()
             }),
         }
-    }
-}
-
-/// Whether a path can be set; the key that it stands in is blamed.
-pub(super) fn check_path(key: &Key, value: &Node, section: &str) -> Result<(), Fault> {
-    let fault = |text: String| Fault::new(text).at(Arc::clone(&value.file), key.span).path(section);
-    let found = steps(&key.text).map_err(|text| fault(text).hint("a path as of `--set`, such as `lens.f-number`"))?;
-    match found.first() {
-        Some(spectra_core::params::Step::Key(first)) if RESERVED.contains(first) => {
-            Err(fault(format!("`{first}` cannot change from picture to picture"))
-                .hint("a path leads into a stage, `render` or `variables`"))
-        }
-        _ => Ok(()),
     }
 }
 

@@ -1,8 +1,8 @@
 //! `kind: scale`.
 
 use super::{Making, SpectrumEntry, SpectrumForm, SpectrumKind, build_kind};
-use crate::by_name::Found;
 use crate::error::SpectrumError;
+use crate::found::Found;
 use crate::meta::Kind;
 use crate::piece::{Piece, of_shape, shape_of};
 use schemars::JsonSchema;

@@ -1,6 +1,6 @@
 //! The prism of a scene on the study's bench: where the study starts, and what it saves.
 
-use super::desk::Order;
+use super::order::Order;
 use super::save::save;
 use super::study::Prism;
 use glam::DVec3;

@@ -5,13 +5,14 @@ mod desk;
 mod guard;
 mod http;
 mod memory;
+mod order;
 mod save;
 mod server;
 mod study;
 mod tester;
 
 use crate::controls;
-use desk::Order;
+use order::Order;
 use server::Server;
 use spectra_core::Isa;
 use spectra_session::SessionError;

@@ -1,8 +1,9 @@
 //! The server: it listens on the loopback address, gives out the page, and passes what the page asks to its desk.
 
-use super::desk::{Desk, Order};
+use super::desk::Desk;
 use super::guard::Guard;
 use super::http::{self, Answer, Request};
+use super::order::Order;
 use super::{bench, study, tester};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;

@@ -9,8 +9,8 @@
 use std::collections::HashMap;
 
 use super::cell::{Cell, Coverage};
+use super::ink::NO_INK;
 use super::shape::Shape;
-use super::sheet::NO_INK;
 use spectra_core::isa::{Isa, Vectorized};
 use spectra_core::math::whole;
 

@@ -30,6 +30,9 @@ pub const PATCHES: [&str; 24] = [
     "black 2 (1.5 D)",
 ];
 
+/// Answer where there is no chart.
+pub const NO_INK: u16 = u16::MAX;
+
 /// One ink of a chart: a flat, opaque, diffuse color.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Ink {

@@ -20,8 +20,9 @@ mod shape;
 mod sheet;
 
 pub use catalogue::{CHARTS, ChartEntry, ChartError, OWN_PATCHES, chart, own_patches};
+pub use ink::NO_INK;
 pub use ink::{Ink, PATCHES};
-pub use sheet::{Chart, Landmark, NO_INK};
+pub use sheet::{Chart, Landmark};
 
 #[cfg(test)]
 mod pictures;

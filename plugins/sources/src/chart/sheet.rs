@@ -5,9 +5,6 @@ use super::ink::Ink;
 use super::shape::Shape;
 use spectra_core::Isa;
 
-/// Answer where there is no chart.
-pub const NO_INK: u16 = u16::MAX;
-
 /// A place of the chart that a measurement may want to find again.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Landmark {
@@ -121,7 +118,7 @@ impl Chart {
         &self.landmarks
     }
 
-    /// Index of the ink at a point; [`NO_INK`] outside of the chart, and for coordinates that are not numbers.
+    /// Index of the ink at a point; [`NO_INK`](super::NO_INK) outside of the chart, and for coordinates that are not numbers.
     #[inline]
     #[must_use]
     pub fn ink_at(&self, x_mm: f64, y_mm: f64) -> u16 {
@@ -149,7 +146,7 @@ impl Chart {
     #[cfg(test)]
     pub(super) fn ink_by_all_shapes(&self, x_mm: f64, y_mm: f64) -> u16 {
         if !(x_mm.abs() <= 0.5 * self.width_mm && y_mm.abs() <= 0.5 * self.height_mm) {
-            return NO_INK;
+            return super::NO_INK;
         }
         let top = self.shapes.iter().rev().find(|(shape, _)| shape.contains(x_mm, y_mm));
         top.map_or(0, |&(_, ink)| ink)

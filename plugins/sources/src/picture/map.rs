@@ -4,6 +4,7 @@ use crate::flat::{Places, Texture};
 use crate::frame::Edge;
 use crate::halves::Half;
 use crate::picture::lights::Lights;
+use crate::picture::spot::Spot;
 use spectra_core::Isa;
 use spectra_core::spectral::SpectralPower;
 use spectra_core::stage::ColorModel;
@@ -31,46 +32,6 @@ pub(crate) struct PictureMap {
     pub name: String,
     /// What lies beyond its border.
     pub edge: Edge,
-}
-
-/// Four pixels, and how far a place lies from the upper left one of them toward the others.
-pub(crate) struct Spot {
-    cells: [usize; 4],
-    part: [f32; 2],
-}
-
-impl Spot {
-    /// Around a place in a picture of these sides; at its rim those of the rim.
-    #[inline(always)]
-    pub(super) fn of([column, row]: [f64; 2], [width, height]: [usize; 2]) -> Self {
-        let (c, r) = ((column - 0.5).max(0.0), (row - 0.5).max(0.0));
-        let (c0, r0) = ((c as i32 as usize).min(width - 1), (r as i32 as usize).min(height - 1));
-        let (c1, r1) = ((c0 + 1).min(width - 1), (r0 + 1).min(height - 1));
-        let (upper, lower) = (r0 * width, r1 * width);
-        Self {
-            cells: [upper + c0, upper + c1, lower + c0, lower + c1],
-            part: [(c - c0 as f64) as f32, (r - r0 as f64) as f32],
-        }
-    }
-
-    /// Linear between the values of the four pixels.
-    #[inline(always)]
-    pub(crate) fn mix<const N: usize>(&self, value: impl Fn(usize) -> [f32; N]) -> [f32; N] {
-        let [a, b, d, e] = self.cells;
-        self.between([value(a), value(b), value(d), value(e)])
-    }
-
-    /// Linear between these values of the four pixels.
-    #[inline(always)]
-    pub(crate) fn between<const N: usize>(&self, [a, b, d, e]: [[f32; N]; 4]) -> [f32; N] {
-        let mut mixed = [0.0; N];
-        for k in 0..N {
-            let upper = a[k] + (b[k] - a[k]) * self.part[0];
-            let lower = d[k] + (e[k] - d[k]) * self.part[0];
-            mixed[k] = upper + (lower - upper) * self.part[1];
-        }
-        mixed
-    }
 }
 
 impl PictureMap {
@@ -104,7 +65,7 @@ impl PictureMap {
     /// Coefficients at a spot, and which part of the light there is this one's.
     #[inline(always)]
     pub(crate) fn color(&self, spot: &Spot) -> ([f32; 3], f32) {
-        let (all, [a, b, d, e]) = (&self.coefficients[..], spot.cells);
+        let (all, [a, b, d, e]) = (&self.coefficients[..], spot.cells());
         let color = spot.between([all[a], all[b], all[d], all[e]]);
         // Most spots touch no light.
         let share = match (self.half, &self.lights) {

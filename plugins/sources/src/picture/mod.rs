@@ -9,6 +9,7 @@ pub(crate) mod lights;
 pub(crate) mod map;
 mod narrowing;
 mod places;
+mod spot;
 
 use crate::flat::Flat;
 use crate::frame::{Edge, Placed, Width};

@@ -5,7 +5,7 @@
 //! smooth disk. So a third of the rays goes by power, a third by area, and a third falls on all lights alike, whatever their size:
 //! none of the three is far from the best where lamps are sharp, far out of focus, or large and uneven.
 
-use super::map::Spot;
+use super::spot::Spot;
 
 /// Places a side of a cell that its light is summed over.
 const PLACES: usize = 4;

@@ -10,6 +10,7 @@ mod watch;
 mod work;
 
 use super::bench::is_prism;
+use super::order::Order;
 use super::{memory, save};
 use crate::controls::Control;
 use crate::parts::{pixel, spectra};
@@ -19,21 +20,12 @@ use spectra_core::Isa;
 use spectra_core::frame::ExposureFrame;
 use spectra_scene::FilmTime;
 use spectra_session::{Control as Stop, Session, SessionError};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 /// Widths of the picture that a page may choose, pixels.
 const WIDTHS_PX: [u32; 4] = [240, 480, 960, 1920];
-
-/// What is rendered, and by what means.
-#[derive(Clone, Debug)]
-pub(crate) struct Order {
-    pub scene: PathBuf,
-    pub overrides: Vec<String>,
-    pub isa: Isa,
-    pub threads: usize,
-}
 
 /// A picture for the page.
 pub(crate) struct Frame {

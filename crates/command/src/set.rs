@@ -1,0 +1,16 @@
+//! `--set`: values on top of a file.
+
+use clap::Args;
+
+/// `--set`.
+#[derive(Debug, Args)]
+pub(crate) struct Set {
+    /// Set a value in the scene, as if it were written in the file; can be repeated.
+    #[arg(
+        long = "set",
+        value_name = "PATH=VALUE",
+        long_help = "Set a value in the scene, as if it were written in the file; can be repeated.\n\
+            Examples: --set film.exposure=\"1/125 s\"  --set lens.f-number=f/4  --set output=[exr]"
+    )]
+    pub overrides: Vec<String>,
+}

@@ -1,0 +1,291 @@
+//! What holds all that passes in a zone, and what of it passes in a sector of the azimuth.
+
+use super::lattice::{Lattice, ZonePlace};
+use super::measure::turns;
+use super::probe::{Bounds, Plane};
+use super::reach::{DIRECTIONS, Reach};
+use super::shape::Shape;
+use super::stopped::{Seen, Stopped};
+use super::table::{Drift, Zone};
+use glam::DVec3;
+use spectra_core::math::sin_cos_turns;
+use std::borrow::Cow;
+
+/// Room around what the edges of a zone see.
+const MARGIN: f64 = 0.0006;
+
+/// How the center moves between two sums of bounds (center along and across, half of each) over so many; mm.
+fn shift(from: &[f64; 4], to: &[f64; 4], count: f64) -> [f64; 2] {
+    [0, 1].map(|i| (to[i] - from[i]) / count)
+}
+
+/// How the size grows between them, in parts of their mean.
+fn growth(from: &[f64; 4], to: &[f64; 4]) -> f64 {
+    let [from, to] = [from, to].map(|sums| sums[2] + sums[3]);
+    (2.0 * (to - from) / (to + from)).clamp(-0.4, 0.4)
+}
+
+/// Ends of the azimuth of a zone of a table that has zones of the azimuth, turns.
+pub(super) fn turns_of(at: &ZonePlace) -> (f64, f64) {
+    let end = |k: usize| if k == at.azimuths { 1.0 } else { turns(k as f64 / at.azimuths as f64) };
+    (end(at.azimuth), end(at.azimuth + 1))
+}
+
+/// A span of the azimuth, turns.
+pub(super) struct Sector {
+    pub from: f64,
+    pub to: f64,
+    /// Whether places are along x and y of the lens, not along and across the plane of the point.
+    pub turned: bool,
+    /// Whether an opening that is not round is seen in it.
+    pub opening: bool,
+}
+
+impl Sector {
+    /// The azimuth at a part of the span.
+    pub fn at(&self, part: f64) -> f64 {
+        (self.from + part * (self.to - self.from)).min(1.0)
+    }
+
+    /// Along and across the plane of a point, of a place.
+    pub fn local(&self, [x, y]: [f64; 2], turns: f64) -> [f64; 2] {
+        if !self.turned {
+            return [x, y];
+        }
+        let (sin, cos) = sin_cos_turns(turns);
+        [x * cos + y * sin, y * cos - x * sin]
+    }
+
+    /// A place along and across the plane of a point.
+    fn place(&self, [along, across]: [f64; 2], turns: f64) -> [f64; 2] {
+        if !self.turned {
+            return [along, across];
+        }
+        let (sin, cos) = sin_cos_turns(turns);
+        [along * cos - across * sin, along * sin + across * cos]
+    }
+}
+
+/// An opening, and that; neither where the lens is round, and not the views where they are not known.
+pub(super) type PerhapsOpened<'a> = (Option<&'a Stopped>, Option<&'a [Vec<Option<Seen>>]>);
+/// Both.
+pub(super) type Opened<'a> = (&'a Stopped, &'a [Vec<Option<Seen>>]);
+
+/// The ellipse or rectangle of a zone, on its plane.
+pub(super) struct Region {
+    pub plane: Plane,
+    pub shape: Shape,
+    /// Whether light fades out in the zone.
+    pub fades: bool,
+    /// How what passes changes over the zone.
+    pub drift: Drift,
+    /// By zone of wavelength.
+    pub by_band: Vec<BandDrift>,
+}
+
+/// How what passes changes from the lower to the upper ends of a zone of wavelength, and of its depths.
+#[derive(Clone, Copy, Default)]
+pub(super) struct BandDrift {
+    /// It moves along and across, mm: with the wavelength, with the depth.
+    shift: [[f64; 2]; 2],
+    /// It grows, in parts of its size in the middle.
+    growth: [f64; 2],
+}
+
+impl BandDrift {
+    fn is_finite(&self) -> bool {
+        self.shift.iter().flatten().chain(&self.growth).all(|v| v.is_finite())
+    }
+
+    /// As an outline keeps it.
+    pub fn columns(&self) -> [[f32; 2]; 3] {
+        let [color, depth] = self.shift;
+        [color, depth, self.growth].map(|pair| pair.map(|v| v as f32))
+    }
+
+    /// How far it has moved, and its size, at parts of the wavelength and of the depth, each -0.5 to 0.5.
+    fn at(&self, color: f64, depth: f64) -> ([f64; 2], f64) {
+        let [by_color, by_depth] = self.shift;
+        let moved = std::array::from_fn(|i| color * by_color[i] + depth * by_depth[i]);
+        (moved, 1.0 + color * self.growth[0] + depth * self.growth[1])
+    }
+}
+
+impl Region {
+    pub fn zone(&self, eye_z_mm: f64) -> Zone {
+        let center = self.plane.at(self.shape.center) - DVec3::new(0.0, 0.0, eye_z_mm);
+        let along = self.plane.along * self.shape.half[0];
+        Zone {
+            center: center.into(),
+            half_along: [along.x, along.z],
+            half_across: self.shape.half[1],
+            ellipse: self.shape.ellipse,
+            drift: self.drift,
+        }
+    }
+
+    /// How what passes changes from the lower to the upper ends of the zone, in the mean of them: the edges of what passes the rims,
+    /// or the opening as it is seen.
+    pub fn drifts(
+        &self,
+        lattice: &Lattice,
+        at: &ZonePlace,
+        bands: usize,
+        opening: Option<Opened<'_>>,
+    ) -> (Drift, Vec<BandDrift>) {
+        let known = || {
+            let ends = lattice.ends(at)?;
+            let depths = ends.len() / lattice.ends_a_depth();
+            let colors = ends.first()?.1.edges.len();
+            // Center along, across, half of each: by end of the angle, by end of the depth, by wavelength.
+            let mut by_angle = [[0.0; 4]; 2];
+            let mut by_depth = [[0.0; 4]; 2];
+            let mut by_color = vec![[0.0; 4]; colors];
+            for (k, (_, node)) in ends.iter().enumerate() {
+                let lines: Option<Vec<Cow<'_, [DVec3]>>> = match opening {
+                    None => Some(node.edges.iter().map(|line| line[..].into()).collect()),
+                    Some((opening, views)) => {
+                        views[k].iter().map(|seen| Some(opening.around(seen.as_ref()?).into())).collect()
+                    }
+                };
+                for (line, of_color) in lines?.iter().zip(&mut by_color) {
+                    let places: Option<Vec<[f64; 2]>> =
+                        line.iter().map(|p| self.plane.project(node.point, *p).map(|(place, _)| place)).collect();
+                    let bounds = Bounds::around(&places?)?;
+                    let ([a, c], [b, d]) = (bounds.center(), bounds.half());
+                    for sums in [&mut by_angle[k % 2], &mut by_depth[k / lattice.ends_a_depth()], of_color] {
+                        sums.iter_mut().zip([a, c, b, d]).for_each(|(sum, value)| *sum += value);
+                    }
+                }
+            }
+            let ends = ends.len() as f64;
+            let half = 0.5 * ends * colors as f64;
+            let [low, high] = by_angle;
+            let drift = Drift {
+                shift: shift(&low, &high, half),
+                growth: [2, 3].map(|i| (2.0 * (high[i] - low[i]) / (high[i] + low[i])).clamp(-0.8, 0.8)),
+            };
+            let [near, far] = by_depth;
+            let of_depth =
+                if depths > 1 { (shift(&near, &far, half), growth(&near, &far)) } else { Default::default() };
+            let of_band = |band: usize| {
+                let (from, to) = (by_color[band], by_color[(band + 1).min(colors - 1)]);
+                let of_color = (shift(&from, &to, ends), growth(&from, &to));
+                BandDrift { shift: [of_color.0, of_depth.0], growth: [of_color.1, of_depth.1] }
+            };
+            let by_band: Vec<BandDrift> = (0..bands).map(of_band).collect();
+            let is_finite = drift.shift.iter().chain(&drift.growth).all(|v| v.is_finite());
+            (is_finite && by_band.iter().all(BandDrift::is_finite)).then_some((drift, by_band))
+        };
+        let still = (Drift::default(), vec![BandDrift::default(); bands]);
+        if self.fades { still } else { known().unwrap_or(still) }
+    }
+
+    /// A place as it is in the middle of the zone, from one at parts of its angle, wavelength and depth, each -0.5 to 0.5.
+    fn still(&self, place: [f64; 2], band: usize, [angle, color, depth]: [f64; 3]) -> [f64; 2] {
+        let (moved, size) = self.by_band[band].at(color, depth);
+        self.drift.still(std::array::from_fn(|i| place[i] - moved[i]), angle).map(|p| p / size)
+    }
+
+    /// The other way round.
+    pub fn moved(&self, place: [f64; 2], band: usize, [angle, color, depth]: [f64; 3]) -> [f64; 2] {
+        let (moved, size) = self.by_band[band].at(color, depth);
+        let place = self.drift.moved(place.map(|p| p * size), angle);
+        std::array::from_fn(|i| place[i] + moved[i])
+    }
+
+    /// What passes in a sector of the zone, by wavelength; all of the shape where that is not known.
+    pub fn reaches(
+        &self,
+        lattice: &Lattice,
+        at: &ZonePlace,
+        sector: &Sector,
+        seen: PerhapsOpened<'_>,
+        bands: usize,
+    ) -> Vec<Reach> {
+        let known = if self.fades { None } else { self.by_edges(lattice, at, sector, seen, bands) };
+        known.unwrap_or_else(|| (0..bands).map(|band| self.whole(sector, band)).collect())
+    }
+
+    /// The ellipse or rectangle itself.
+    fn whole(&self, sector: &Sector, band: usize) -> Reach {
+        let mut reach = Reach::EMPTY;
+        // It is to hold the shape wherever the drift takes it.
+        let Drift { shift, growth } = self.drift;
+        let BandDrift { shift: [by_color, by_depth], growth: [of_color, of_depth] } = self.by_band[band];
+        let smallest = 1.0 - 0.5 * (of_color.abs() + of_depth.abs());
+        let [a, b] = [0, 1].map(|i| {
+            (self.shape.half[i] + 0.5 * (shift[i].abs() + by_color[i].abs() + by_depth[i].abs()))
+                / ((1.0 - 0.5 * growth[i].abs()) * smallest)
+        });
+        let line: Vec<[f64; 2]> = if self.shape.ellipse {
+            let around = (0..DIRECTIONS).map(Reach::way);
+            around.map(|[x, y]| [x * a * 1.001, y * b * 1.001]).collect()
+        } else {
+            vec![[a, b], [-a, b], [-a, -b], [a, -b]]
+        };
+        let parts: &[f64] = if sector.turned { &[0.0, 0.5, 1.0] } else { &[0.0] };
+        for part in parts {
+            let own: Vec<[f64; 2]> = line.iter().map(|p| sector.place(*p, sector.at(*part))).collect();
+            reach.include(&own);
+        }
+        reach
+    }
+
+    /// What the ends of the zone see, by zone of wavelength.
+    fn by_edges(
+        &self,
+        lattice: &Lattice,
+        at: &ZonePlace,
+        sector: &Sector,
+        (opening, views): PerhapsOpened<'_>,
+        bands: usize,
+    ) -> Option<Vec<Reach>> {
+        let ends = lattice.ends(at)?;
+        let deep = ends.len() > lattice.ends_a_depth();
+        let mut reaches = vec![Reach::EMPTY; bands];
+        for (band, reach) in reaches.iter_mut().enumerate() {
+            for (end, (turns, node)) in ends.iter().enumerate() {
+                // Ends come in pairs, the lower and the upper one; so do depths.
+                let half = |upper: bool| if upper { 0.5 } else { -0.5 };
+                let depth = if deep { half(end >= lattice.ends_a_depth()) } else { 0.0 };
+                for upper in [false, true] {
+                    let color = (band + usize::from(upper)).min(node.edges.len() - 1);
+                    let parts = [half(end % 2 == 1), half(upper), depth];
+                    let on_plane = |line: &[DVec3], turns: f64| -> Option<Vec<[f64; 2]>> {
+                        line.iter()
+                            .map(|p| {
+                                let ([along, across], _) = self.plane.project(node.point, *p)?;
+                                let from_center = [along - self.shape.center[0], across - self.shape.center[1]];
+                                Some(sector.place(self.still(from_center, band, parts), turns))
+                            })
+                            .collect()
+                    };
+                    let edge = &node.edges[color];
+                    if edge.is_empty() {
+                        return None;
+                    }
+                    let Some(opening) = opening else {
+                        reach.include(&on_plane(edge, *turns)?);
+                        continue;
+                    };
+                    let seen = views?[end][color].as_ref()?;
+                    for part in [0.0, 1.0] {
+                        let turns = sector.at(part);
+                        let mut own = Reach::EMPTY;
+                        own.include(&on_plane(&opening.line(seen, turns), turns)?);
+                        let mut rims = Reach::EMPTY;
+                        rims.include(&on_plane(edge, turns)?);
+                        own.limit(&rims);
+                        reach.join(&own);
+                    }
+                }
+            }
+            if reach.is_empty() {
+                return None;
+            }
+            reach.scale(1.0 + MARGIN);
+        }
+        Some(reaches)
+    }
+}

@@ -1,0 +1,29 @@
+//! Groups out of place.
+
+use crate::Lens;
+
+/// A misalignment of a group.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Misalignment {
+    /// Shift along x and y, mm; as the file has it if absent.
+    pub decenter_mm: Option<[f64; 2]>,
+    /// Tilts about x, y and z, rad, about the vertex of its first surface; as the file has them if absent.
+    pub tilt_rad: Option<[f64; 3]>,
+    /// Shift along the axis toward the image, mm.
+    pub shift_mm: f64,
+}
+
+impl Lens {
+    /// The same lens with the group of this name out of place; `None` where there is no such group. The other groups and
+    /// the image plane stay where they are.
+    #[must_use]
+    pub fn with_misalignment(mut self, group: &str, by: &Misalignment) -> Option<Self> {
+        let at = self.groups.iter().position(|g| g.name == group)?;
+        self.shift_elements(self.groups[at].elements.clone(), -by.shift_mm);
+        let displacement = &mut self.groups[at].displacement;
+        displacement.decenter_mm = by.decenter_mm.unwrap_or(displacement.decenter_mm);
+        displacement.tilt_rad = by.tilt_rad.unwrap_or(displacement.tilt_rad);
+        self.arrange();
+        Some(self)
+    }
+}

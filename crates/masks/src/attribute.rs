@@ -1,0 +1,30 @@
+//! What attributes of an SVG hold.
+
+use std::str::FromStr;
+use svgtypes::LengthUnit;
+
+/// The first letters of a user's text.
+pub(super) fn short(text: &str) -> String {
+    text.chars().take(40).collect()
+}
+
+/// A length as an attribute: a number, and mm a unit where it is one of paper; a percentage is `None`.
+pub(super) fn length(text: &str) -> Option<(f64, Option<f64>)> {
+    let parsed = svgtypes::Length::from_str(text.trim()).ok()?;
+    let mm = match parsed.unit {
+        LengthUnit::Mm => Some(1.0),
+        LengthUnit::Cm => Some(10.0),
+        LengthUnit::In => Some(25.4),
+        LengthUnit::Pt => Some(25.4 / 72.0),
+        LengthUnit::Pc => Some(25.4 / 6.0),
+        LengthUnit::None | LengthUnit::Px => None,
+        LengthUnit::Em | LengthUnit::Ex | LengthUnit::Percent => return None,
+    };
+    Some((parsed.number, mm))
+}
+
+/// A length in user units: 96 to the inch.
+pub(super) fn plain_length(text: &str) -> Result<f64, String> {
+    let found = length(text).map(|(number, mm)| mm.map_or(number, |mm| number * mm * 96.0 / 25.4));
+    found.filter(|v| v.is_finite()).ok_or_else(|| format!("not a length: `{}`", short(text)))
+}

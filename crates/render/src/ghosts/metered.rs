@@ -1,0 +1,50 @@
+//! Ghosts as a camera's meter sees them: by some of their blocks, of numbers of their own.
+
+use super::{Ghosts, Plan, Way};
+use crate::Workers;
+use crate::error::RenderError;
+use crate::meter;
+use crate::pipeline::ThreadState;
+use crate::sums::ExactSums;
+use spectra_core::workers::each_of;
+use std::sync::Arc;
+
+impl Ghosts {
+    /// The same for what the meters see; `None` where they see nothing.
+    pub(super) fn of_meters(&self, workers: &dyn Workers) -> Option<Result<Self, RenderError>> {
+        let pipeline = Arc::new(self.pipeline.of_meters()?);
+        let numbers = self.of_seed(pipeline.scene.render.seed ^ meter::SEED);
+        let own = Self { pipeline, plan: Arc::new(self.plan.together()), numbers, scale: 1.0 };
+        Some(own.pilot_scale(workers).map(|scale| Self { scale, ..own }))
+    }
+
+    /// The light, W/m2 at each pixel, channel by channel.
+    pub(super) fn seen(&self, workers: &dyn Workers) -> Result<Vec<Vec<f64>>, RenderError> {
+        let pipeline = &self.pipeline;
+        let scene = &pipeline.scene;
+        let (pixels, channels) = (scene.imager.size().pixels(), pipeline.responses.channels());
+        if scene.metered_pixels().is_empty() {
+            return Ok(vec![vec![0.0; pixels]; channels]);
+        }
+        // A block is a fair picture, however many rays it has.
+        let blocks = meter::rays_for(pixels, pipeline.effort).div_ceil(self.plan.rays);
+        let sums = ExactSums::new(pixels * channels).ok_or_else(|| RenderError::Memory(crate::memory_needed(scene)))?;
+        let work = |state: &mut ThreadState, block: usize| {
+            if workers.should_stop() {
+                return Err(RenderError::Stopped);
+            }
+            self.block(state, block as u64, &sums).error.map_or(Ok(()), Err)
+        };
+        each_of(workers, blocks as usize, || self.state(scene.render.batch), work)?;
+        let weight = self.worth(blocks * self.plan.rays);
+        Ok(meter::planes(&sums, channels, |_| weight, pixels))
+    }
+}
+
+impl Plan {
+    /// Without sums of their own for some paths.
+    fn together(&self) -> Self {
+        let way = |way: &Way| Way { own_cells: None, ..way.clone() };
+        Self { ways: self.ways.iter().map(way).collect(), apart: Vec::new(), ..self.clone() }
+    }
+}

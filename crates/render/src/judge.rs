@@ -1,0 +1,158 @@
+//! How noisy a picture is, and where it is clean: by two halves of the samples, whose numbers are scrambled independently.
+//!
+//! The halves of a pixel differ by twice the error of their mean, so the mean square of the difference over the 256 pixels of a
+//! block is known within some 4 %, whatever the light looks like. All is computed from exact sums in a fixed order: what is clean
+//! is so on every machine.
+
+use crate::backward::TILE;
+use crate::estimator::Estimator;
+use crate::light::{Light, Part};
+use crate::noise::Noise;
+use crate::renderer::Renderer;
+use spectra_scene::Scene;
+
+/// Side of a block, pixels: some tiles.
+const BLOCK: usize = 16;
+const _: () = assert!(BLOCK.is_multiple_of(TILE as usize));
+/// A block that is darker than the middle one of the frame by so much is judged as if it were no darker: four stops.
+const DARKEST: f64 = 1.0 / 16.0;
+/// An estimator goes on where at least this part of the variance is its own, of so many that there are.
+const OWN_PART: f64 = 0.5;
+
+/// One block of pixels and one channel.
+#[derive(Clone, Copy, Debug, Default)]
+struct Cell {
+    /// Sum of the two halves, over its lit pixels.
+    sum: f64,
+    /// Pixels that any light reached: those of other colors of a mosaic have none.
+    lit: f64,
+}
+
+/// The frame in blocks.
+struct Blocks {
+    across: usize,
+    count: usize,
+    width: usize,
+}
+
+impl Blocks {
+    fn of(scene: &Scene) -> Self {
+        let size = scene.imager.size();
+        let (width, height) = (size.width_px as usize, size.height_px as usize);
+        let across = width.div_ceil(BLOCK);
+        Self { across, count: across * height.div_ceil(BLOCK), width }
+    }
+
+    fn at(&self, pixel: usize) -> usize {
+        pixel / self.width / BLOCK * self.across + pixel % self.width / BLOCK
+    }
+}
+
+/// What each block says of itself.
+struct Judged {
+    blocks: Blocks,
+    /// Noise, the worst of the channels that count.
+    noise: Vec<f64>,
+    /// Of each pair of estimators: the part of the variance that is its own, in the channel that is worst there.
+    share: Vec<Vec<f64>>,
+}
+
+impl Renderer {
+    /// Channels that noise is asked of: luminance where there is one, else all.
+    fn judged_channels(&self) -> Vec<usize> {
+        let scene = self.scene();
+        let names: Vec<&str> = self.recorded().iter().map(|at| scene.channels[*at].name.as_str()).collect();
+        match names.iter().position(|name| *name == "Y") {
+            Some(luminance) => vec![luminance],
+            None => (0..names.len()).collect(),
+        }
+    }
+
+    /// Looks at all blocks.
+    fn judge(&self, light: &Light) -> Judged {
+        let blocks = Blocks::of(self.scene());
+        let kinds = light.parts.len() / 2;
+        let (first, second) = light.parts.split_at(kinds);
+        let estimators: Vec<&dyn Estimator> = self.estimators().take(kinds).collect();
+        let weights = |parts: &[Part]| -> Vec<Vec<f64>> {
+            let of = |(e, part): (&&dyn Estimator, &Part)| e.weights(&part.done, part.rays, 1.0);
+            estimators.iter().zip(parts).map(of).collect()
+        };
+        let (of_first, of_second) = (weights(first), weights(second));
+        let channels = self.recorded().len();
+        let pixels = self.scene().imager.size().pixels();
+        let mut noise = vec![0.0_f64; blocks.count];
+        let mut share = vec![vec![0.0_f64; blocks.count]; kinds];
+        for channel in self.judged_channels() {
+            let mut cells = vec![Cell::default(); blocks.count];
+            // Sums of squared differences, by kind.
+            let mut squares = vec![vec![0.0_f64; blocks.count]; kinds];
+            for pixel in 0..pixels {
+                let (block, at) = (blocks.at(pixel), pixel * channels + channel);
+                let mut sum = 0.0;
+                for kind in 0..kinds {
+                    let a = first[kind].sums.get(at) as f64 * of_first[kind][pixel];
+                    let b = second[kind].sums.get(at) as f64 * of_second[kind][pixel];
+                    sum += a + b;
+                    squares[kind][block] += (a - b) * (a - b);
+                }
+                cells[block].sum += sum;
+                cells[block].lit += f64::from(u8::from(sum != 0.0));
+            }
+            // Mean of both halves in a block's lit pixels; that of the middle block says what is dark.
+            let mean = |cell: &Cell| if cell.lit > 0.0 { 0.5 * cell.sum / cell.lit } else { 0.0 };
+            let mut means: Vec<f64> = cells.iter().map(mean).collect();
+            let middle = means.len() / 2;
+            let floor = DARKEST * *means.clone().select_nth_unstable_by(middle, f64::total_cmp).1;
+            means.iter_mut().for_each(|mean| *mean = mean.max(floor));
+            for (block, cell) in cells.iter().enumerate() {
+                let square: f64 = squares.iter().map(|of_kind| of_kind[block]).sum();
+                if !(square > 0.0 && means[block] > 0.0) {
+                    continue;
+                }
+                // The error of the mean of two halves is half their difference.
+                let own = 0.5 * (square / cell.lit).sqrt() / means[block];
+                if own > noise[block] {
+                    noise[block] = own;
+                    for (share, of_kind) in share.iter_mut().zip(&squares) {
+                        share[block] = of_kind[block] / square;
+                    }
+                }
+            }
+        }
+        Judged { blocks, noise, share }
+    }
+
+    /// Ends the tiles that are clean. To be called between rounds only.
+    pub(crate) fn end_clean(&self, light: &mut Light, asked: f64) {
+        let Judged { blocks, noise, share } = self.judge(light);
+        let kinds = light.parts.len() / 2;
+        let least = OWN_PART / kinds as f64;
+        for (kind, estimator) in self.estimators().take(kinds).enumerate() {
+            let mut goes_on = vec![false; estimator.tiles()];
+            for pixel in 0..self.scene().imager.size().pixels() {
+                let block = blocks.at(pixel);
+                if noise[block] > asked && share[kind][block] >= least {
+                    goes_on[estimator.tile_of(pixel)] = true;
+                }
+            }
+            for (tile, _) in goes_on.iter().enumerate().filter(|(_, goes_on)| !**goes_on) {
+                light.parts[kind].done.end_tile(tile as u32);
+                light.parts[kinds + kind].done.end_tile(tile as u32);
+            }
+        }
+    }
+
+    /// The noise of the light so far; `None` where the scene asks for none, or the light has no two halves yet.
+    pub(crate) fn noise(&self, light: &Light) -> Option<Noise> {
+        let asked = self.scene().render.noise?;
+        if light.parts.iter().any(|part| part.rays == 0) {
+            return None;
+        }
+        let mut noise = self.judge(light).noise;
+        noise.sort_unstable_by(f64::total_cmp);
+        let of = |part: f64| noise[((noise.len() - 1) as f64 * part) as usize];
+        let clean = noise.iter().filter(|n| **n <= asked).count() as f64 / noise.len() as f64;
+        Some(Noise { asked, median: of(0.5), p95: of(0.95), worst: of(1.0), clean })
+    }
+}

@@ -1,0 +1,37 @@
+//! What a render gives.
+
+use crate::diffracted::Diffracted;
+use crate::ghosts::LightLedger;
+use crate::noise::Noise;
+use spectra_core::LossCounts;
+use spectra_core::frame::ExposureFrame;
+use spectra_scene::LightLayer;
+
+/// What a render gives.
+#[derive(Clone, Debug)]
+pub struct Rendering {
+    /// Linear exposure per channel.
+    pub exposure: ExposureFrame,
+    /// The same by kinds of light, and by paths of ghosts, of those of which an output of the scene holds layers.
+    pub layers: Vec<LightLayer>,
+    /// Rays launched toward the first or last surface.
+    pub rays: u64,
+    /// What was lost, by cause and surface.
+    pub losses: LossCounts,
+    /// Rays that brought light to the imager: with those that were lost, all that were launched.
+    pub detected: u64,
+    /// Whether it was stopped before its end.
+    pub partial: bool,
+    /// How noisy it is, where the scene asks.
+    pub noise: Option<Noise>,
+    /// The estimators whose light it is: `forward`, `backward`.
+    pub estimators: Vec<&'static str>,
+    /// Where the light of the source's lights goes, if ghosts are traced.
+    pub ledger: Option<LightLedger>,
+    /// What part of the exposure of the whole frame, all channels together, is veiling glare, where it is asked for.
+    pub glare: Option<f64>,
+    /// What diffraction did to each channel of the picture, where the scene asks for it.
+    pub diffraction: Option<Vec<Diffracted>>,
+    /// What a person should know before believing the picture, and what to write.
+    pub warnings: Vec<String>,
+}

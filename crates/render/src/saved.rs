@@ -1,0 +1,175 @@
+//! Light as a file.
+
+use crate::done::{Done, Units};
+use crate::light::{Light, Part};
+use crate::renderer::Renderer;
+use spectra_core::Loss;
+use std::collections::BTreeMap;
+use std::io::{self, Read, Write};
+
+/// Begins every file of light; its last digit is the version of the form.
+const MAGIC: &[u8; 16] = b"spectra light 3\n";
+
+/// Numbers in a row, little endian, with a check sum behind them (FNV-1a of 64 bits: G. Fowler, L. C. Noll, K.-P. Vo).
+struct Form<T> {
+    stream: T,
+    check: u64,
+}
+
+impl<T> Form<T> {
+    fn new(stream: T) -> Self {
+        Self { stream, check: 0xcbf2_9ce4_8422_2325 }
+    }
+
+    fn mix(&mut self, bytes: &[u8]) {
+        for word in bytes.chunks(8) {
+            let mut whole = [0; 8];
+            whole[..word.len()].copy_from_slice(word);
+            self.check = (self.check ^ u64::from_le_bytes(whole)).wrapping_mul(0x0000_0100_0000_01b3);
+        }
+    }
+}
+
+impl<T: Write> Form<T> {
+    fn put(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.mix(bytes);
+        self.stream.write_all(bytes)
+    }
+
+    fn number(&mut self, number: u64) -> io::Result<()> {
+        self.put(&number.to_le_bytes())
+    }
+}
+
+impl<T: Read> Form<T> {
+    fn take<const N: usize>(&mut self) -> io::Result<[u8; N]> {
+        let mut bytes = [0; N];
+        self.stream.read_exact(&mut bytes)?;
+        self.mix(&bytes);
+        Ok(bytes)
+    }
+
+    fn next(&mut self) -> io::Result<u64> {
+        Ok(u64::from_le_bytes(self.take()?))
+    }
+}
+
+impl Light {
+    /// Writes all of it, so that another process can go on with it.
+    ///
+    /// # Errors
+    /// What the stream has.
+    pub fn save(&self, out: &mut dyn Write) -> io::Result<()> {
+        let mut form = Form::new(out);
+        form.put(MAGIC)?;
+        form.number(self.detected)?;
+        let losses: Vec<(u32, Loss, u64)> = self.losses.iter().collect();
+        form.number(losses.len() as u64)?;
+        for (surface, cause, rays) in losses {
+            form.number(cause.state(surface))?;
+            form.number(rays)?;
+        }
+        let metered = self.metered.as_deref().unwrap_or_default();
+        form.number(u64::from(self.metered.is_some()) + metered.len() as u64)?;
+        for value in metered.iter().flatten() {
+            form.number(value.to_bits())?;
+        }
+        form.number(self.judged)?;
+        form.number(self.parts.len() as u64)?;
+        for Part { sums, done, rays } in &self.parts {
+            form.number(*rays)?;
+            form.number(done.complete())?;
+            let open = done.open().map(|(samples, units)| (samples.clone(), units.ranges().collect::<Vec<_>>()));
+            let (samples, units) = open.unwrap_or_default();
+            form.number(samples.start)?;
+            form.number(samples.end)?;
+            form.number(units.len() as u64)?;
+            for range in units {
+                form.number(range.start)?;
+                form.number(range.end)?;
+            }
+            form.number(done.ended().len() as u64)?;
+            for (tile, samples) in done.ended() {
+                form.number(u64::from(*tile))?;
+                form.number(*samples)?;
+            }
+            form.number(sums.cells() as u64)?;
+            for cell in 0..sums.cells() {
+                form.number(sums.get(cell) as u64)?;
+            }
+        }
+        let check = form.check;
+        form.number(check)
+    }
+
+    /// Reads what [`Light::save`] wrote of a render of the same scene.
+    ///
+    /// # Errors
+    /// What the stream has; [`io::ErrorKind::InvalidData`] where it is no light, is damaged, or of another scene.
+    pub fn load(renderer: &Renderer, from: &mut dyn Read) -> io::Result<Self> {
+        /// More causes at more surfaces, or more pieces, no render has.
+        const MANY: u64 = 1 << 24;
+        let bad = |text: &str| io::Error::new(io::ErrorKind::InvalidData, text.to_owned());
+        let other = || bad("this light is of another scene");
+        let mut form = Form::new(from);
+        if form.take::<16>()? != *MAGIC {
+            return Err(bad("this is no light of a render, or one of another version"));
+        }
+        let mut light = renderer.begin().map_err(|e| io::Error::new(io::ErrorKind::OutOfMemory, e.to_string()))?;
+        light.detected = form.next()?;
+        for _ in 0..form.next()?.min(MANY) {
+            let (state, rays) = (form.next()?, form.next()?);
+            let (cause, surface) = Loss::of_state(state).filter(|(_, s)| u64::from(*s) < MANY).ok_or_else(other)?;
+            light.losses.add(cause, surface, rays);
+        }
+        let of_meters = form.next()?;
+        if of_meters > 1 + renderer.scene().meter_channels().len() as u64 {
+            return Err(other());
+        }
+        if let Some(planes) = of_meters.checked_sub(1) {
+            let pixels = renderer.scene().imager.size().pixels();
+            let mut plane = || (0..pixels).map(|_| form.next().map(f64::from_bits)).collect::<io::Result<Vec<f64>>>();
+            light.metered = Some((0..planes).map(|_| plane()).collect::<io::Result<_>>()?);
+        }
+        light.judged = form.next()?;
+        if form.next()? != light.parts.len() as u64 {
+            return Err(other());
+        }
+        for part in &mut light.parts {
+            part.rays = form.next()?;
+            let complete = form.next()?;
+            let samples = form.next()?..form.next()?;
+            let mut units = Units::default();
+            for _ in 0..form.next()?.min(MANY) {
+                let (begin, end) = (form.next()?, form.next()?);
+                if begin >= end {
+                    return Err(bad("this light is damaged"));
+                }
+                units.insert(begin..end);
+            }
+            let mut ended = BTreeMap::new();
+            for _ in 0..form.next()?.min(MANY) {
+                let (tile, samples) = (form.next()?, form.next()?);
+                ended.insert(u32::try_from(tile).map_err(|_| other())?, samples);
+            }
+            part.done = Done::of(complete, (samples.start < samples.end).then_some((samples, units)), ended);
+            let (saved, own, of_all) = (form.next()?, part.sums.cells() as u64, renderer.cells() as u64);
+            if saved != own {
+                return Err(match (saved / of_all, own / of_all) {
+                    (0, _) => other(),
+                    _ if saved % of_all != 0 => other(),
+                    (saved, own) => bad(&format!(
+                        "this light has sums of {} paths of ghosts by themselves, and this scene has {}: set `ghost-paths` as it was",
+                        saved - 1,
+                        own - 1
+                    )),
+                });
+            }
+            for cell in 0..part.sums.cells() {
+                part.sums.add(cell, form.next()? as i64);
+            }
+        }
+        let check = form.check;
+        if form.next()? == check { Ok(light) } else { Err(bad("this light is damaged")) }
+    }
+}

@@ -1,0 +1,50 @@
+//! The light of a picture, and the place for its files before any is traced.
+
+use crate::job::Job;
+use crate::{Event, Host, Session, SessionError};
+use spectra_core::params::Warning;
+
+/// Sees to it that such files can be written.
+pub(crate) fn prepare(job: &Job<'_>, host: &dyn Host, names: &[String]) -> Result<(), SessionError> {
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    host.folder().prepare(job.series.name(), &names).map_err(SessionError::Failed)
+}
+
+/// The light of a picture.
+pub(crate) struct Taken {
+    pub rendering: spectra_render::Rendering,
+    pub seconds: f64,
+    /// Why it is not whole, where that is nobody's wish.
+    pub failure: Option<String>,
+}
+
+impl Taken {
+    /// Traces all samples that the scene states.
+    pub(crate) fn of(
+        session: &mut Session,
+        host: &dyn Host,
+        control: &spectra_render::Control,
+    ) -> Result<Self, SessionError> {
+        host.hear(Event::Start(session.scene()));
+        let begun = host.now_s();
+        let traced = session.advance(u64::from(session.scene().render.samples), host.workers(), control);
+        let seconds = host.now_s() - begun;
+        host.hear(Event::Traced);
+        // What was computed before is worth keeping: it may be hours.
+        let failure = match traced {
+            Err(SessionError::Failed(text)) if session.has_light() => {
+                Some(format!("{text}; the files hold the light traced before it, without that ray"))
+            }
+            traced => traced.map(|()| None)?,
+        };
+        let mut rendering = session.look()?;
+        rendering.partial |= failure.is_some();
+        rendering.warnings = session.remarks(&rendering);
+        for warning in &rendering.warnings {
+            host.hear(Event::Warning(&Warning::from(warning.clone())));
+        }
+        // Developing takes memory of its own.
+        session.forget_light();
+        Ok(Self { rendering, seconds, failure })
+    }
+}
