@@ -59,7 +59,8 @@ impl Desk {
             }
         }
         let whole = hand.look()?;
-        if !quick {
+        // Half as many rays are as good for a first look, and what was developed of them is kept.
+        if !quick && hand.small.as_ref().is_none_or(|small| whole.rays >= 2 * small.rays) {
             hand.small = whole.small().map(Arc::new);
         }
         // One after the other; and for none of them does anybody wait who turns something.
