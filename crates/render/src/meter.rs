@@ -1,7 +1,8 @@
 //! What the camera's meter sees: light of its own, so that metering does not change the picture's samples.
 //!
-//! It meters what falls on the film, so ghosts and veil too. A meter wants a mean and no picture. It gets a small part of the rays,
-//! drawn from a wavelength density made for its own channel, by numbers of their own. Where there are fewer rays than pixels that it looks at, neighbors share one.
+//! It meters what falls on the film, so ghosts and veil too. A meter wants a mean and no picture. It gets a small part of the
+//! rays, drawn from a wavelength density made for its own channel, by numbers of their own. Where there are fewer rays than pixels
+//! that it looks at, neighbors share one.
 
 use crate::Workers;
 use crate::blame::Blame;

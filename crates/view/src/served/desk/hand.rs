@@ -67,7 +67,7 @@ pub(super) struct Hand {
     pub(super) is_light_owed: bool,
     /// The light of the session so far, until more is traced.
     pub(super) light: Option<Arc<Plate>>,
-    /// The light that was last shown, of fewer pixels: while the scene's light stays, what only develops otherwise is first seen by it.
+    /// Light of fewer pixels, by at least half of the rays that were last shown: what only develops otherwise is first seen by it.
     pub(super) small: Option<Arc<Plate>>,
     /// A sample of all pixels takes so long.
     pub(super) pace_s: Option<f64>,
