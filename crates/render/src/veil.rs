@@ -356,9 +356,9 @@ impl Veil {
         }
     }
 
-    /// What a unit of the sums of so many walks is worth where the pixel's gain is 1, W/m2.
-    fn worth(&self, walks: u64) -> f64 {
-        1.0 / self.scale / walks.max(1) as f64 / (PARTS * PARTS) as f64
+    /// What a unit of the sums of so many walks is worth in such a time where the pixel's gain is 1, J/m2.
+    fn worth(&self, walks: u64, time_s: f64) -> f64 {
+        time_s / self.scale / walks.max(1) as f64 / (PARTS * PARTS) as f64
     }
 
     /// The veil by few walks, W/m2 at each pixel, channel by channel.
@@ -389,7 +389,7 @@ impl Veil {
             ExactSums::new(pixels * channels).ok_or_else(|| RenderError::Memory(crate::memory_needed(&scene)))?;
         let lattice: Vec<i64> = lattice.iter().map(|value| (value * self.scale).round_ties_even() as i64).collect();
         self.spread(&lattice, &sums);
-        let one = self.worth(METER_UNITS as u64 * METER_WALKS);
+        let one = self.worth(METER_UNITS as u64 * METER_WALKS, 1.0);
         let weight = |pixel: usize| one * f64::from(self.plan.gains[pixel].gain);
         Ok(meter::planes(&sums, channels, weight, pixels))
     }
@@ -450,7 +450,7 @@ impl Estimator for Veil {
     }
 
     fn weights(&self, _done: &Done, rays: u64, time_s: f64) -> Vec<f64> {
-        let one = time_s * self.worth(rays);
+        let one = self.worth(rays, time_s);
         self.plan.gains.iter().map(|pixel| one * f64::from(pixel.gain)).collect()
     }
 

@@ -36,7 +36,7 @@ impl Ghosts {
             self.block(state, block as u64, &sums).error.map_or(Ok(()), Err)
         };
         each_of(workers, blocks as usize, || self.state(scene.render.batch), work)?;
-        let weight = self.worth(blocks * self.plan.rays);
+        let weight = self.worth(blocks * self.plan.rays, 1.0);
         Ok(meter::planes(&sums, channels, |_| weight, pixels))
     }
 }

@@ -377,9 +377,9 @@ impl Ghosts {
         Plan { opening: old.opening, zones: old.zones.clone(), ways, rays, blocks_a_sample, ledger, apart }
     }
 
-    /// What a unit of the sums of so many rays is worth, W/m2.
-    fn worth(&self, rays: u64) -> f64 {
-        1.0 / self.scale / self.pipeline.scene.imager.size().pixel_area_mm2() / rays.max(1) as f64
+    /// What a unit of the sums of so many rays is worth in such a time, J/m2.
+    fn worth(&self, rays: u64, time_s: f64) -> f64 {
+        time_s / self.scale / self.pipeline.scene.imager.size().pixel_area_mm2() / rays.max(1) as f64
     }
 
     /// The scale of the sums, by some rays of each path.
@@ -497,7 +497,7 @@ impl Estimator for Ghosts {
 
     fn weights(&self, _done: &Done, rays: u64, time_s: f64) -> Vec<f64> {
         let size = self.pipeline.scene.imager.size();
-        vec![time_s * self.worth(rays); size.pixels()]
+        vec![self.worth(rays, time_s); size.pixels()]
     }
 
     fn metered(&self, workers: &dyn Workers) -> Result<Vec<Vec<f64>>, RenderError> {
