@@ -60,7 +60,7 @@ async function get(path) {
 /** @param {SVGElement} to @param {string} name @param {Record<string, string | number>} attributes @param {string} [text] */
 function put(to, name, attributes, text) {
   const element = document.createElementNS("http://www.w3.org/2000/svg", name);
-  for (const [key, v] of Object.entries(attributes)) element.setAttribute(key, String(v));
+  give(element, attributes);
   if (text !== undefined) element.textContent = text;
   to.append(element);
   return element;
@@ -71,11 +71,24 @@ function put(to, name, attributes, text) {
 /** The point of a figure in mm: along the beam, and up. @param {number[]} at */
 const place = ([z, y]) => `${z.toFixed(3)},${(-y).toFixed(3)}`;
 
+/** The figure's parts stay while their places change, so that a handle keeps the keyboard. @param {string} kind @param {string} which */
+function kept(kind, which) {
+  const there = figure.querySelector(which);
+  if (there instanceof SVGElement) return there;
+  return put(figure, kind, {});
+}
+
+/** @param {Element} element @param {Record<string, string | number>} attributes */
+function give(element, attributes) {
+  for (const [key, v] of Object.entries(attributes)) element.setAttribute(key, String(v));
+}
+
 function drawPrism() {
-  figure.replaceChildren();
   if (!shown) return;
-  put(figure, "polygon", { class: "prism", points: shown.outline.map(place).join(" ") });
-  put(figure, "g", { id: "rays" });
+  give(kept("polygon", ".prism"), { class: "prism", points: shown.outline.map(place).join(" ") });
+  const group = kept("g", "#rays");
+  give(group, { id: "rays" });
+  group.replaceChildren();
   for (const [name, [z, y], text] of /** @type {[string, number[], string][]} */ ([
     ["apex", shown.outline[1], `apex angle ${value("apex")} degrees`],
     ["incidence", shown.outline[2], `incidence ${value("incidence")} degrees`],
@@ -83,11 +96,13 @@ function drawPrism() {
     ["beam", [-55, value("beam")], `height of the beam ${value("beam")} mm`],
   ])) {
     const input = field(name);
-    const handle = put(figure, "circle", {
+    const handle = kept("circle", `[data-moves="${name}"]`);
+    give(handle, {
       class: "handle", cx: z, cy: -y, r: 2.6, tabindex: 0, role: "slider", "data-moves": name, "aria-label": text,
       "aria-valuemin": input.min, "aria-valuemax": input.max, "aria-valuenow": input.value,
     });
-    put(/** @type {SVGElement} */ (handle), "title", {}, text);
+    const title = handle.firstElementChild ?? put(handle, "title", {});
+    title.textContent = text;
   }
   drawRays(0);
 }
@@ -124,15 +139,15 @@ figure.addEventListener("keydown", (event) => {
   const step = { ArrowUp: 1, ArrowRight: 1, ArrowDown: -1, ArrowLeft: -1 }[event.key];
   if (!moves || !step) return;
   event.preventDefault();
-  set(moves, value(moves) + step * (event.shiftKey ? 0.1 : 1), true);
+  set(moves, value(moves) + step * (event.shiftKey ? 0.1 : 1));
 });
 
-/** @param {string} name @param {number} to @param {boolean} [isKeyed] */
-function set(name, to, isKeyed = false) {
+/** @param {string} name @param {number} to */
+function set(name, to) {
   const input = field(name);
   input.value = String(Number(Math.min(Math.max(to, Number(input.min)), Number(input.max)).toFixed(4)));
   slider(name).value = input.value;
-  changed(isKeyed ? name : undefined);
+  changed();
 }
 
 // The glass ---------------------------------------------------------------------------------------------------------------------
@@ -181,8 +196,8 @@ function asked() {
   return words;
 }
 
-/** The prism is another one: it is drawn, and its rays grow, unless somebody stopped them. @param {string} [focused] */
-async function changed(focused) {
+/** The prism is another one: it is drawn, and its rays grow, unless somebody stopped them. */
+async function changed() {
   prism += 1;
   const mine = prism;
   const words = asked();
@@ -195,8 +210,6 @@ async function changed(focused) {
     drawPrism();
     drawGlass();
     tell();
-    const handle = focused && figure.querySelector(`[data-moves="${focused}"]`);
-    if (handle instanceof SVGElement) handle.focus();
     if (isTracing) await grow(mine, words);
   } catch (error) {
     if (mine !== prism) return;

@@ -36,16 +36,18 @@ await page.waitForFunction(() => /^traced: [1-9][0-9]? of/.test(document.querySe
 // Dragged, and by keys.
 for (const [name, by] of [["beam", [0, -20]], ["apex", [-40, 0]], ["incidence", [-15, 5]], ["side", [0, 12]]]) {
   const before = await number(name);
-  // The figure is drawn anew while rays arrive: a handle may be gone for a moment.
-  let box = null;
-  while (!box) box = await page.locator(`[data-moves="${name}"]`).boundingBox();
+  const box = await page.locator(`[data-moves="${name}"]`).boundingBox();
   await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
   await page.mouse.down();
   await page.mouse.move(box.x + box.width / 2 + by[0], box.y + box.height / 2 + by[1], { steps: 4 });
   await page.mouse.up();
   assert.notEqual(await number(name), before, name);
   const dragged = await number(name);
+  // A handle keeps the keyboard while the figure changes under it, as it does when the drag's answer comes late.
   await page.locator(`[data-moves="${name}"]`).focus();
+  const answer = page.waitForResponse(/\/rays\?.*first=0/);
+  await page.locator("#light").dispatchEvent("change");
+  await answer;
   await page.keyboard.press("ArrowRight");
   await page.waitForFunction(([name, before]) => Number(document.querySelector(`#${name}-field`).value) !== before, [name, dragged]);
 }
