@@ -6,6 +6,7 @@ use crate::coating::Coating;
 use crate::onion::OnionRings;
 use crate::pose::{AxisBreak, Displacement, Pose};
 use crate::scatter::Layer;
+use crate::separation::Separation;
 use spectra_core::params::Params;
 use spectra_core::surface::{Action, Surface};
 use std::sync::Arc;
@@ -44,6 +45,8 @@ pub struct Element {
     pub action: Action,
     /// Its own coating; `None` has the lens's.
     pub coating: Option<Coating>,
+    /// Where its cement has come apart, if it is cemented.
+    pub separation: Option<Separation>,
     /// Rings that were left on it when it was made.
     pub onion_rings: Option<OnionRings>,
     /// What lies on it and scatters light.
@@ -83,6 +86,7 @@ impl Element {
             stop,
             action: if stop { Action::Pass } else { Action::Refract },
             coating: None,
+            separation: None,
             onion_rings: None,
             layers: Vec::new(),
             reflectance: 1.0,

@@ -19,8 +19,13 @@ impl Lens {
         if self.coating_assumed && own < all {
             coating += &self.year.map_or(" (assumed: no year is stated)".to_owned(), |y| format!(" (assumed for {y})"));
         }
+        let apart = match self.elements.iter().filter(|e| e.separation.is_some()).count() {
+            0 => String::new(),
+            1 => ", cement apart in 1 surface".to_owned(),
+            many => format!(", cement apart in {many} surfaces"),
+        };
         let soiled = self.layer_words().map_or(String::new(), |words| format!(", {words}"));
-        format!("{coating}, {}{soiled}", self.absorption_words())
+        format!("{coating}, {}{apart}{soiled}", self.absorption_words())
     }
 
     /// What lies on surfaces, and on how many: `haze on 8 surfaces`.
@@ -60,6 +65,7 @@ impl Lens {
     pub fn is_lossless(&self) -> bool {
         let ideal = |e: &crate::Element| e.coating.as_ref().unwrap_or(&self.coating) == &Coating::Ideal;
         let clean = self.elements.iter().flat_map(|e| &e.layers).all(|layer| layer.scattered == 0.0);
-        clean && !self.absorption && self.elements.iter().filter(|e| e.action == Action::Refract).all(ideal)
+        let whole = self.elements.iter().all(|e| e.separation.is_none());
+        clean && whole && !self.absorption && self.elements.iter().filter(|e| e.action == Action::Refract).all(ideal)
     }
 }

@@ -5,7 +5,7 @@ use crate::schema::SurfaceOrBreak;
 use crate::surface_file::{BREAK, BreakParams, Place, displacement};
 use crate::{
     Coating, CoatingForm, DustForm, Element, FocusLaw, FocusTable, Group, GroupTravel, HazeForm, Lens, LensMedium,
-    ScratchesForm, aperture, read_coating, read_layers, read_stated_coating,
+    ScratchesForm, aperture, read_coating, read_layers, read_separation, read_stated_coating, separation,
 };
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::Deserialize;
@@ -297,6 +297,18 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
         element.onion_rings = rings.map(|rings| rings.rings());
         let misplaced = element.layers.first().map(|layer| layer.soil.key());
         let misplaced = misplaced.or(element.onion_rings.map(|_| "onion-rings"));
+        if let Some(node) = &stated.separation
+            && let Some(separation) = faults.take(read_separation(node, resources))
+        {
+            if !lens.is_cemented(&element) {
+                let fault = place.fault(separation::KEY, "only cement comes apart: no two glasses meet here");
+                faults.push(fault.hint("state it at a surface between two glasses"));
+            } else if separation.depth_mm.is_some() && semi_diameter_mm.is_none() {
+                let fault = place.fault(separation::KEY, "a `depth` begins at the edge, and the surface states none");
+                faults.push(fault.hint("add `semi-diameter: ...`, or leave `depth` out"));
+            }
+            element.separation = Some(separation);
+        }
         if let Some(key) = misplaced.filter(|_| is_bent || !bends) {
             let fault = place.fault(key, format!("`{key}` belongs where glass meets another medium, or on a mirror"));
             faults.push(fault.hint("state it at a surface of glass"));

@@ -35,7 +35,7 @@ pub(crate) struct PrismParams {
 }
 
 /// Keys of surfaces that a prism has not.
-const NOT_OF_A_PRISM: [&str; 11] = [
+const NOT_OF_A_PRISM: [&str; 12] = [
     "semi-diameter",
     "outer-semi-diameter",
     "chamfer",
@@ -47,6 +47,7 @@ const NOT_OF_A_PRISM: [&str; 11] = [
     "dust",
     "scratches",
     "onion-rings",
+    "separation",
 ];
 
 /// Faults of keys that a prism has not.

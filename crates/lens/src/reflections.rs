@@ -3,7 +3,6 @@
 use crate::aim::Sphere;
 use crate::aperture::{Aperture, Shape};
 use crate::coating::{Coating, MeasuredCoating};
-use crate::transmission::Passage;
 use crate::{Element, Lens, LensMedium, Path, Tracer, Travel};
 use glam::DVec3;
 use spectra_core::surface::{Kernel, Plane};
@@ -12,10 +11,10 @@ use std::sync::Arc;
 
 impl Tracer {
     /// The elements that reflect part of the light that they should pass: refracting surfaces, but for those whose coating is
-    /// ideal, and for gratings and surfaces that scatter.
+    /// ideal and whose cement holds, and for gratings and surfaces that scatter.
     #[must_use]
     pub fn reflecting(&self) -> Vec<usize> {
-        (0..self.surfaces()).filter(|at| matches!(self.passage(*at), Passage::Coated(..))).collect()
+        (0..self.surfaces()).filter(|at| self.passage(*at).reflects()).collect()
     }
 }
 

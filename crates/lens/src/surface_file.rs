@@ -1,6 +1,7 @@
 //! What a lens file states of one surface beside its shape, and of a bend of the axis.
 
 use crate::onion::OnionRingsForm;
+use crate::separation::SeparationForm;
 use crate::{AxisBreak, CoatingForm, Displacement, DustForm, HazeForm, ScratchesForm, aperture};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -60,6 +61,8 @@ pub(crate) struct Place {
     pub reversed: bool,
     /// Its own coating: `ideal`, `bare`, or a layer; the lens's if absent.
     pub coating: Option<Part<CoatingForm>>,
+    /// Where the cement between two glasses has come apart, by the width of the gap of air and how far it reaches in. Nowhere if absent.
+    pub separation: Option<Part<SeparationForm>>,
     /// Haze on it: the share of the light that it scatters, and how wide; the lens's if absent.
     pub haze: Option<Part<HazeForm>>,
     /// Dust on it: the share that it covers, and how large its grains are; the lens's if absent.

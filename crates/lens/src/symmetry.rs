@@ -23,6 +23,7 @@ fn is_round(e: &Element) -> bool {
         || cx != cy
         || e.surface.is_directional()
         || !e.apertures.iter().all(|a| a.is_round())
+        || !e.separation.as_ref().is_none_or(|s| s.is_round())
     {
         return false;
     }

@@ -382,7 +382,7 @@ impl Tracer {
                 || leg.soiled.is_some()
                 || element.onion_rings.is_some()
                 || rays.is_polarized()
-                || matches!(passage, Passage::Coated(..))
+                || passage.reflects()
             {
                 noted.note_directions(rays);
             }
@@ -463,17 +463,13 @@ impl Tracer {
         let (layers, semi_diameter_mm) = (&self.layers[leg.at], self.elements[leg.at].semi_diameter_mm);
         if let (Some(place), Some(noted)) = (&leg.soiled, &work.before) {
             let len = rays.len();
-            let coating = match &self.passages[leg.at] {
-                Passage::Coated(coating, _) => Some(coating),
-                Passage::All | Passage::Mirror(_) => None,
-            };
             let meeting = Meeting {
                 layers,
                 semi_diameter_mm,
                 before: noted.directions(len),
                 n: [leg.before, leg.after].map(|medium| work.media[medium].n.slice(len)),
                 mirror: leg.action == Action::Reflect,
-                coating,
+                coating: self.passages[leg.at].coating(),
                 number: leg.at as u32 + 1,
             };
             let ended = scatter::scatter(rays, place, &meeting);

@@ -6,6 +6,7 @@
 
 use crate::absorption::{Absorptions, Locate};
 use crate::coating::{Amplitudes, CHUNK, Coating, Films, Polarizing, Sides, Singles, Swift};
+use crate::separation::Separation;
 use crate::{Element, Lens, LensMedium};
 use spectra_core::Loss;
 use spectra_core::RayBatch;
@@ -18,9 +19,6 @@ use spectra_glass::Lender;
 
 /// Indices that differ by less let everything pass: reflectance is below 1e-16 there.
 const SAME_INDEX: f64 = 1e-8;
-/// A medium of a lower index is a gas: a surface between two others is cemented, and no coating lies in it.
-const GAS_INDEX: f64 = 1.05;
-
 /// A way of less than this runs backward: cemented surfaces and rounding are on the other side of it, mm.
 const BEHIND_MM: f64 = -1e-6;
 
@@ -82,6 +80,29 @@ pub(crate) enum Passage {
     Coated(Coating, Kernel),
     /// This part is reflected by a mirror.
     Mirror(f64),
+    /// What it does where the cement holds, beside a gap of air.
+    Apart(Box<Passage>, Gap),
+}
+
+/// Where the cement of a surface has come apart.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Gap {
+    separation: Separation,
+    semi_diameter_mm: Option<f64>,
+}
+
+impl Gap {
+    /// Of living rays that met it: which, the part of their light that did, and the gap as a coating.
+    fn met<'a>(
+        &'a self,
+        [x, y, _]: [&'a [f64]; 3],
+        state: &'a [u64],
+    ) -> impl Iterator<Item = (usize, f64, Coating)> + 'a {
+        (0..state.len()).filter(|i| state[*i] == ALIVE).filter_map(move |i| {
+            let (part, coating) = self.separation.at([x[i], y[i]], self.semi_diameter_mm)?;
+            Some((i, part, coating))
+        })
+    }
 }
 
 impl Passage {
@@ -94,14 +115,37 @@ impl Passage {
             Action::Refract if element.medium_before == element.medium_after => Self::All,
             // What a grating sends into its order, or a surface scatters, is not a matter of Fresnel's equations.
             Action::Refract if element.surface.is_directional() || element.surface.draws() => Self::All,
-            Action::Refract => match lens.coating_of(element) {
-                Coating::Ideal => Self::All,
-                coating => {
-                    let sides = [element.medium_before, element.medium_after].map(|m| lens.index(m, shortest_nm));
-                    let kernel = Kernel::of(&coating, sides[0].min(sides[1]), shortest_nm);
-                    Self::Coated(coating, kernel)
+            Action::Refract => {
+                let intact = match lens.coating_of(element) {
+                    Coating::Ideal => Self::All,
+                    coating => {
+                        let sides = [element.medium_before, element.medium_after].map(|m| lens.index(m, shortest_nm));
+                        let kernel = Kernel::of(&coating, sides[0].min(sides[1]), shortest_nm);
+                        Self::Coated(coating, kernel)
+                    }
+                };
+                match element.separation.clone() {
+                    Some(separation) => {
+                        let gap = Gap { separation, semi_diameter_mm: element.semi_diameter_mm };
+                        Self::Apart(Box::new(intact), gap)
+                    }
+                    None => intact,
                 }
-            },
+            }
+        }
+    }
+
+    /// Whether it sends back light that should pass.
+    pub(crate) fn reflects(&self) -> bool {
+        matches!(self, Self::Coated(..) | Self::Apart(..))
+    }
+
+    /// The coating where it has one, and where cement holds.
+    pub(crate) fn coating(&self) -> Option<&Coating> {
+        match self {
+            Self::Coated(coating, _) => Some(coating),
+            Self::Apart(intact, _) => intact.coating(),
+            Self::All | Self::Mirror(_) => None,
         }
     }
 }
@@ -111,11 +155,10 @@ impl Lens {
     /// cemented.
     #[must_use]
     pub fn coating_of(&self, element: &Element) -> Coating {
-        let is_gas = |medium: usize| self.index(medium, self.reference_nm) < GAS_INDEX;
         match (&element.coating, &self.coating) {
             (Some(own), _) => own.clone(),
             (None, all @ (Coating::Ideal | Coating::Bare)) => all.clone(),
-            (None, _) if !is_gas(element.medium_before) && !is_gas(element.medium_after) => Coating::Bare,
+            (None, _) if !self.is_gas(element.medium_before) && !self.is_gas(element.medium_after) => Coating::Bare,
             (None, all) => all.clone(),
         }
     }
@@ -276,18 +319,30 @@ impl Before {
 
     /// Weighs rays by what a refracting surface reflects; `n_beyond` are the indices on its other side.
     pub(crate) fn reflect(&self, rays: &mut RayBatch, passage: &Passage, n: &[f64], n_beyond: &[f64]) {
+        let (coating, gap) = match passage {
+            Passage::All | Passage::Mirror(_) => return,
+            Passage::Coated(..) => (passage.coating(), None),
+            Passage::Apart(_, gap) => (passage.coating(), Some(gap)),
+        };
         let c = rays.weighing();
-        let Passage::Coated(coating, _) = passage else { return };
         let len = c.weight.len();
         let before = self.direction.each_ref().map(|column| column.slice(len));
-        for i in 0..len {
-            if c.state[i] != ALIVE {
-                continue;
-            }
+        let reflected = |i: usize, coating: &Coating| {
             // Incidence and reflection differ by twice the cosine along the normal.
             let turn: [f64; 3] = std::array::from_fn(|k| c.direction[k][i] - before[k][i]);
             let cosine = 0.5 * (turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2]).sqrt();
-            c.weight[i] *= coating.reflectance(n[i], n_beyond[i], cosine.min(1.0), c.wavelength_nm[i]).mean();
+            coating.reflectance(n[i], n_beyond[i], cosine.min(1.0), c.wavelength_nm[i]).mean()
+        };
+        let came = gap.map(|_| c.weight.to_vec());
+        for i in 0..len {
+            if c.state[i] == ALIVE {
+                c.weight[i] *= coating.map_or(0.0, |coating| reflected(i, coating));
+            }
+        }
+        if let (Some(gap), Some(came)) = (gap, came) {
+            for (i, part, coating) in gap.met(c.position, c.state) {
+                c.weight[i] += part * (came[i] * reflected(i, &coating) - c.weight[i]);
+            }
         }
     }
 
@@ -295,9 +350,10 @@ impl Before {
     /// `n_beyond` are the indices on its other side.
     pub(crate) fn polarize(&self, rays: &mut RayBatch, passage: &Passage, back: bool, [n, n_beyond]: [&[f64]; 2]) {
         let mut c = rays.weighing();
-        let amplitudes = match passage {
-            Passage::Coated(coating, _) => Some(Amplitudes::of(coating)),
-            Passage::All | Passage::Mirror(_) => None,
+        let amplitudes = passage.coating().map(Amplitudes::of);
+        let gap = match passage {
+            Passage::Apart(_, gap) => Some(gap),
+            _ => None,
         };
         for i in 0..c.weight.len() {
             if c.state[i] != ALIVE {
@@ -305,24 +361,33 @@ impl Before {
             }
             let d: [f64; 3] = std::array::from_fn(|k| self.direction[k].slice(i + 1)[i]);
             let after = c.direction.map(|column| column[i]);
-            let does = match (passage, &amplitudes) {
-                (Passage::Mirror(reflectance), _) => Polarizing::evenly(*reflectance, true),
-                (_, None) => Polarizing::evenly(1.0, back),
-                (_, Some(amplitudes)) if back => {
+            let of = |amplitudes: &Amplitudes<'_>| {
+                if back {
                     // Incidence and reflection differ by twice the cosine along the normal.
                     let turn: [f64; 3] = std::array::from_fn(|k| after[k] - d[k]);
                     let cosine = (0.5 * dot(turn, turn).sqrt()).min(1.0);
-                    amplitudes.back(n[i], n_beyond[i], cosine, c.wavelength_nm[i])
+                    return amplitudes.back(n[i], n_beyond[i], cosine, c.wavelength_nm[i]);
                 }
-                (_, Some(amplitudes)) => {
-                    let sides = Sides::of(n[i], n_beyond[i], d, after);
-                    if sides.step() < SAME_INDEX {
-                        Polarizing::evenly(1.0, false)
-                    } else {
-                        amplitudes.through(n[i], n_beyond[i], sides.cosine(), c.wavelength_nm[i])
-                    }
+                let sides = Sides::of(n[i], n_beyond[i], d, after);
+                if sides.step() < SAME_INDEX {
+                    Polarizing::evenly(1.0, false)
+                } else {
+                    amplitudes.through(n[i], n_beyond[i], sides.cosine(), c.wavelength_nm[i])
                 }
             };
+            let mut does = match (passage, &amplitudes) {
+                (Passage::Mirror(reflectance), _) => Polarizing::evenly(*reflectance, true),
+                // Where cement holds that reflects nothing, a gap of air beside it may.
+                (Passage::Apart(..), None) if back => Polarizing::evenly(0.0, true),
+                (_, None) => Polarizing::evenly(1.0, back),
+                (_, Some(amplitudes)) => of(amplitudes),
+            };
+            if let Some(gap) = gap {
+                let place = [c.position[0][i], c.position[1][i]];
+                if let Some((part, coating)) = gap.separation.at(place, gap.semi_diameter_mm) {
+                    does = does.beside(part, of(&Amplitudes::of(&coating)));
+                }
+            }
             // Across the plane of incidence; where there is none, any axis will do.
             let across = cross(d, after);
             let size = dot(across, across).sqrt();
@@ -344,10 +409,26 @@ impl Before {
 
     /// Weighs rays by what a surface passes.
     pub(crate) fn pass(&self, rays: &mut RayBatch, passage: &Passage, n: &[f64], n_after: &[f64], isa: Isa) {
+        if let Passage::Apart(intact, gap) = passage {
+            let came = rays.weights().to_vec();
+            self.pass(rays, intact, n, n_after, isa);
+            let c = rays.weighing();
+            let before = self.direction.each_ref().map(|column| column.slice(n.len()));
+            for (i, part, coating) in gap.met(c.position, c.state) {
+                let sides = Sides::of(n[i], n_after[i], before.map(|d| d[i]), c.direction.map(|d| d[i]));
+                let passed = if sides.step() < SAME_INDEX {
+                    1.0
+                } else {
+                    coating.transmittance(n[i], n_after[i], sides.cosine(), c.wavelength_nm[i]).mean()
+                };
+                c.weight[i] += part * (came[i] * passed - c.weight[i]);
+            }
+            return;
+        }
         let rays = rays.weighing();
         let before = self.direction.each_ref().map(|column| column.slice(n.len()));
         match passage {
-            Passage::All => {}
+            Passage::All | Passage::Apart(..) => {}
             Passage::Mirror(reflectance) => {
                 for weight in rays.weight {
                     *weight *= *reflectance;

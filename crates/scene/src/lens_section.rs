@@ -16,7 +16,7 @@ use spectra_core::params::{
 use spectra_core::resources::Resources;
 use spectra_lens::{
     ApertureError, ApertureForm, CoatingForm, Criterion, DustForm, FocusError, FocusSearch, HazeForm, Lens, MatteBox,
-    Misalignment, ScratchesForm, Shape,
+    Misalignment, ScratchesForm, SeparationForm, Shape,
 };
 use std::sync::Arc;
 
@@ -33,6 +33,9 @@ pub(crate) struct LensSection {
     /// Coating of all surfaces: `ideal` (no reflection), `bare`, `single-layer`, `three-layer`, a layer or a stack. If absent,
     /// that of the lens file, or else the usual one of the lens's year.
     coating: Option<Part<CoatingForm>>,
+    /// Cement that has come apart in all surfaces between two glasses, in place of what the lens file says of it, by the width of the
+    /// gap of air and how far it reaches in from the edge.
+    separation: Option<Part<SeparationForm>>,
     /// Haze on all surfaces where glass meets air, in place of what the lens file says of it: the share of the light that each
     /// scatters, and how wide.
     haze: Option<Part<HazeForm>>,
@@ -302,6 +305,16 @@ fn as_built(
     let coating = section.coating.as_ref();
     if let Some(coating) = coating.and_then(|node| faults.take(spectra_lens::read_coating(node, resources))) {
         lens = lens.with_coating(coating);
+    }
+    if let Some(node) = &section.separation
+        && let Some(separation) = faults.take(spectra_lens::read_separation(node, resources))
+    {
+        let (apart, many) = lens.with_separation(&separation);
+        lens = apart;
+        if many == 0 {
+            let fault = params.fault("separation", format!("no glasses are cemented in the lens {}", lens.name));
+            faults.push(fault.hint("leave it out, or take a lens with cemented glasses"));
+        }
     }
     let soils = [section.haze.as_deref(), section.dust.as_deref(), section.scratches.as_deref()];
     for layer in spectra_lens::read_layers(soils, resources, faults) {

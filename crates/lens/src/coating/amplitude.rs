@@ -23,6 +23,16 @@ impl Polarizing {
         Self { s: part, p: part, mixed: [if mirrored { -part } else { part }, 0.0] }
     }
 
+    /// With this part of the light that meets something else beside it.
+    pub(crate) fn beside(self, part: f64, other: Self) -> Self {
+        let between = |a: f64, b: f64| a + part * (b - a);
+        Self {
+            s: between(self.s, other.s),
+            p: between(self.p, other.p),
+            mixed: [between(self.mixed[0], other.mixed[0]), between(self.mixed[1], other.mixed[1])],
+        }
+    }
+
     /// Parts of power, without a difference of phase.
     fn of_parts(parts: Transmittance, mirrored: bool) -> Self {
         let both = (parts.s * parts.p).sqrt();

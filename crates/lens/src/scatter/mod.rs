@@ -18,9 +18,6 @@ pub(crate) use trace::{Meeting, Place, dim, scatter};
 use crate::{Element, Lens};
 use spectra_core::surface::Action;
 
-/// A medium of a lower index is a gas.
-const GAS_INDEX: f64 = 1.05;
-
 impl Lens {
     /// Whether anything on it scatters light.
     #[must_use]
@@ -49,8 +46,7 @@ impl Lens {
     }
 
     fn is_outer(&self, element: &Element) -> bool {
-        let is_gas = |medium: usize| self.index(medium, self.reference_nm) < GAS_INDEX;
-        let [before, after] = [element.medium_before, element.medium_after].map(is_gas);
+        let [before, after] = [element.medium_before, element.medium_after].map(|medium| self.is_gas(medium));
         match element.action {
             Action::Reflect => before,
             Action::Refract => {

@@ -6,6 +6,7 @@ use crate::aperture::{Aperture, Shape};
 use crate::coating::Coating;
 use crate::pose::Pose;
 use crate::scatter::Layer;
+use crate::separation::Separation;
 use crate::{Element, Lens};
 use glam::{DVec2, DVec3};
 use spectra_core::surface::{Action, Surface};
@@ -66,6 +67,8 @@ pub(super) struct Skin {
     /// Whether it parts two media.
     pub refracts: bool,
     pub coating: Coating,
+    /// Where its cement has come apart.
+    pub separation: Option<Separation>,
     /// What lies on it.
     pub layers: Vec<Layer>,
     /// Media in front of it and behind it.
@@ -425,6 +428,7 @@ fn skin(lens: &Lens, at: usize) -> Skin {
         semi_diameter_mm: e.semi_diameter_mm,
         refracts: e.action == Action::Refract && e.medium_before != e.medium_after,
         coating: lens.coating_of(e),
+        separation: e.separation.clone(),
         layers: e.layers.clone(),
         media: [e.medium_before, e.medium_after],
     }

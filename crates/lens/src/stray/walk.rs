@@ -2,6 +2,7 @@
 
 use super::Chance;
 use super::room::{Disk, Interior, Met};
+use crate::coating::Coating;
 use crate::scatter::{Shares, which};
 use glam::DVec3;
 use spectra_core::math;
@@ -293,11 +294,20 @@ impl<'a> Walker<'a> {
         normal: DVec3,
         chance: &mut Chance,
     ) -> Option<bool> {
-        let coating = &self.interior.skins[at].coating;
+        let skin = &self.interior.skins[at];
         let d = particle.direction;
         let cosine = -d.dot(normal);
-        let reflects = coating.reflectance(n, n_beyond, cosine, self.wavelength_nm).mean();
-        let passes = coating.transmittance(n, n_beyond, cosine, self.wavelength_nm).mean();
+        let sends = |coating: &Coating| {
+            let back = coating.reflectance(n, n_beyond, cosine, self.wavelength_nm).mean();
+            [back, coating.transmittance(n, n_beyond, cosine, self.wavelength_nm).mean()]
+        };
+        let [mut reflects, mut passes] = sends(&skin.coating);
+        let place = || skin.place(particle.position);
+        if let Some((part, gap)) = skin.separation.as_ref().and_then(|s| s.at(place(), skin.semi_diameter_mm)) {
+            let [back, on] = sends(&gap);
+            reflects += part * (back - reflects);
+            passes += part * (on - passes);
+        }
         let left = reflects + passes;
         if left < 1.0 {
             let taken = particle.weight * (1.0 - left).max(0.0);
