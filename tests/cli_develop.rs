@@ -175,6 +175,13 @@ fn frames_have_grain_of_their_own_and_one_exposure() {
     assert!(differ * 2 > frames[0].as_raw().len(), "{differ} values differ");
     assert!((a - b).abs() < 1.0 && dark < a - 20.0, "{a} {b} {dark}");
 
+    // What is there stays, and what is missing is still metered on the first.
+    std::fs::remove_file(at("out/plate.0009.png")).expect("removed");
+    let rest = ["plates/plate.000#.png", "--stock", "tri-x", "--format", "super-8", "--skip-existing", "-o", "out/"];
+    let said = good(folder.path(), &rest);
+    assert!(said.contains("out/plate.0007.png is there") && !said.contains("in place of the first"), "{said}");
+    assert_eq!(read(at("out/plate.0009.png")), frames[2]);
+
     // Metered each, the dark one is as light; a sequence is named as others are, and numbers stay.
     let each = ["plates/plate.000#.png", "--stock", "tri-x", "--format", "super-8", "--meter", "each"];
     good(folder.path(), &[&each[..], &["-o", "each/d.%03d.tiff"]].concat());

@@ -58,6 +58,23 @@ fn exported_pupils_are_the_real_ones() {
     }
 }
 
+/// A surface that names no kind is a sphere, as everywhere.
+#[test]
+fn a_surface_without_a_kind_keeps_its_curvature() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let own = folder.path().join("own.yaml");
+    let text =
+        "name: own\nsurfaces:\n  - {radius: 50, thickness: 5, glass: SCHOTT/N-BK7}\n  - {radius: -25, thickness: 30}\n";
+    std::fs::write(&own, text).expect("written");
+    let zmx = good(&["lens", "export", shown(&own)]);
+    let curvatures: Vec<f64> = zmx
+        .lines()
+        .filter_map(|line| line.trim().strip_prefix("CURV ")?.split_whitespace().next()?.parse().ok())
+        .filter(|curvature| *curvature != 0.0)
+        .collect();
+    assert_eq!(curvatures, [0.02, -0.04], "{zmx}");
+}
+
 /// Every lens goes out and comes back as the same lens: rays meet the image plane within 1e-12 mm (relative to a
 /// focal length of 100 mm), and end for the same cause at the same surface.
 #[test]

@@ -132,7 +132,7 @@ pub(crate) struct Run {
     pub samples: Option<u32>,
     /// Stop when the picture is clean: relative noise of a pixel (1%), of its luminance or of the noisiest film layer,
     /// overriding the scene's. --samples is then the most that a pixel gets.
-    #[arg(long, value_name = "PERCENT")]
+    #[arg(long, value_name = "PERCENT", value_parser = percent)]
     pub noise: Option<String>,
     /// Stop at 5 % noise or 256 samples per pixel (`preview`), or at 1 % or 8192 (`final`), whichever comes first; --noise and
     /// --samples override these.
@@ -175,6 +175,14 @@ impl Quality {
 }
 
 /// The number of `--samples`.
+/// A part in percent; a bare number might be meant as either.
+pub(crate) fn percent(text: &str) -> Result<String, String> {
+    match text.trim().parse::<f64>() {
+        Ok(number) => Err(format!("percent or a part? Write `{number}%` or `{}%`", 100.0 * number)),
+        Err(_) => Ok(text.to_owned()),
+    }
+}
+
 fn samples(text: &str) -> Result<u32, String> {
     let wanted = "expected a whole number from 1 to 4194304, such as 64";
     match text.trim().parse::<u32>() {

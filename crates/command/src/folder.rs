@@ -1,6 +1,7 @@
 //! Where results go: a folder, or one picture in it.
 
 use crate::outcome::Failure;
+use spectra_core::params::Fault;
 use spectra_core::sink::{Content, Sink, WriteFault};
 use spectra_files::{self as files, leftover};
 use spectra_session::{Folder, Names};
@@ -72,6 +73,10 @@ impl Folder for Target {
         self.folder.join(file).is_file()
     }
 
+    fn is(&self, file: &str, path: &Path) -> bool {
+        is_same(&self.folder.join(file), path)
+    }
+
     fn read(&self, file: &str, most: u64) -> Option<Vec<u8>> {
         let path = self.folder.join(file);
         let fits = std::fs::metadata(&path).is_ok_and(|data| data.len() <= most);
@@ -81,6 +86,24 @@ impl Folder for Target {
     fn shown(&self, file: &str) -> String {
         self.folder.join(file).display().to_string()
     }
+}
+
+/// Whether both paths lead to one file that is there.
+pub(crate) fn is_same(one: &Path, other: &Path) -> bool {
+    let real = |path: &Path| std::fs::canonicalize(path).ok();
+    real(one).is_some_and(|one| Some(one) == real(other))
+}
+
+/// Nothing is written over a file that is read.
+///
+/// # Errors
+/// `output` is one of the files that are `read`.
+pub(crate) fn apart(output: &Path, read: &[&Path]) -> Result<(), Failure> {
+    if read.iter().any(|path| is_same(path, output)) {
+        let text = format!("`{}` would be written over the file that is read", output.display());
+        return Err(Fault::new(text).hint("another name at `--output`").into());
+    }
+    Ok(())
 }
 
 fn refused(path: &Path, reason: &dyn Display) -> String {

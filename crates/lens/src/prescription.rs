@@ -209,7 +209,8 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
             lens.elements.push(element);
             continue;
         }
-        let surface = faults.take(registry::build::<dyn Surface>(&shape, &context));
+        let surface = registry::build::<dyn Surface>(&shape, &context);
+        let surface = faults.take(surface.map_err(|faults| with_keys_of_all(faults, &place_keys)));
         let stated = faults.take(place.parse::<Place>());
         let (Some(surface), Some(stated)) = (surface, stated) else { continue };
         let semi_diameter_mm = stated.semi_diameter.map(|s| s.mm());
@@ -343,6 +344,23 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
         lens.warnings.extend(doubts);
     }
     faults.into_result(lens)
+}
+
+/// Faults of what a kind of surface says, where it knows only keys of its own: what all surfaces may state is known, too.
+fn with_keys_of_all(mut faults: Faults, of_all: &[String]) -> Faults {
+    for fault in &mut faults.0 {
+        let key = fault.message.strip_prefix("unknown key `").and_then(|rest| rest.strip_suffix('`'));
+        let Some((key, hint)) = key.zip(fault.hint.as_mut()) else { continue };
+        if let Some(own) = hint.strip_prefix("known keys: ") {
+            *hint = names::nearest(key, of_all.iter().map(String::as_str)).map_or_else(
+                || format!("known keys: {own}, {}", of_all.join(", ")),
+                |near| format!("did you mean `{near}`?"),
+            );
+        } else if hint == "no keys are allowed here" {
+            *hint = names::hint(key, of_all, "");
+        }
+    }
+    faults
 }
 
 /// What is written of haze, dust and scratches.

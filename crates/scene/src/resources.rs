@@ -210,6 +210,18 @@ impl FileResources {
         if let Some(near) = nearest(path, names.iter().map(String::as_str)) {
             return vec![near.to_owned()];
         }
+        // A misspelt beginning: `heliso-44` of `helios-44-58-f2`.
+        let words = path.split('-').count();
+        let beginning = |name: &String| name.split('-').take(words).collect::<Vec<_>>().join("-");
+        let beginnings: Vec<String> = names.iter().map(beginning).collect();
+        if let Some(near) = nearest(path, beginnings.iter().map(String::as_str)) {
+            return names
+                .iter()
+                .zip(&beginnings)
+                .filter(|(_, own)| *own == near)
+                .map(|(name, _)| name.clone())
+                .collect();
+        }
         // `a\b.png` names a file of a folder on one system only; `biotar-50` is a part of a name.
         let slashed = path.replace('\\', "/");
         if slashed != path && self.folder.join(&slashed).is_file() {

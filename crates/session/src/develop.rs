@@ -5,7 +5,7 @@
 
 use crate::run::picture;
 use crate::still::WHITE_CD_M2;
-use crate::{Ended, Event, Host, Job, LightFrom, Names, Place, SessionError, words};
+use crate::{Ended, Event, Host, Job, LightFrom, Names, Place, Session, SessionError, words};
 use serde_json::{Value, json};
 use spectra_core::Isa;
 use spectra_core::params::{Fault, Faults, Node, Params, SourceFile, Warning};
@@ -114,6 +114,16 @@ fn all(job: &Develop<'_>, plates: &[Plate], host: &dyn Host) -> Result<Ended, Se
             done += 1;
             continue;
         }
+        if metered.is_none() && !job.meter_each && index > 0 {
+            metered = plates[..index].iter().find_map(|earlier| meter(job, earlier));
+            if metered.is_none() {
+                let text = format!(
+                    "`{}` is metered in place of the first picture, and those after it are exposed as it is",
+                    plate.file
+                );
+                host.hear(Event::Warning(&Warning::from(text)));
+            }
+        }
         let exposure = metered.as_ref().filter(|_| !job.meter_each);
         match one(job, plate, exposure, host) {
             Ok((Ended::Stopped, _)) => {
@@ -146,6 +156,14 @@ fn all(job: &Develop<'_>, plates: &[Plate], host: &dyn Host) -> Result<Ended, Se
         [first] => Err(SessionError::Failed(format!("`{first}` is not developed"))),
         [first, ..] => Err(SessionError::Failed(format!("{} pictures are not developed: `{first}` ...", failed.len()))),
     }
+}
+
+/// What the camera metered of a picture that is there already; `None` where it cannot be read, or where a lens has to be traced for it.
+fn meter(job: &Develop<'_>, plate: &Plate) -> Option<FilmTime> {
+    let (series, LightFrom::Pixels) = scene(job, plate, None).ok()? else { return None };
+    let session = Session::of_series(series, 0, job.isa).ok()?;
+    let exposure = session.expose().ok()?.exposure;
+    session.scene().film_times(&exposure).into_iter().find(|time| time.is_metered)
 }
 
 /// Develops a picture, exposed as another one was metered if that is said.

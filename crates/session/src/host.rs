@@ -5,6 +5,7 @@ use serde_json::Value;
 use spectra_core::params::Warning;
 use spectra_core::sink::Sink;
 use spectra_scene::Scene;
+use std::path::Path;
 use std::sync::Arc;
 
 /// A picture among several.
@@ -65,6 +66,11 @@ pub trait Folder: Sink {
 
     /// Whether a file is there.
     fn has(&self, file: &str) -> bool;
+
+    /// Whether a file is the one at this path on disk, if it is there.
+    fn is(&self, _file: &str, _path: &Path) -> bool {
+        false
+    }
 
     /// The content of a file that is there and not larger than `most` bytes.
     fn read(&self, file: &str, most: u64) -> Option<Vec<u8>>;

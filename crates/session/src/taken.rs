@@ -2,12 +2,18 @@
 
 use crate::job::Job;
 use crate::{Event, Host, Session, SessionError};
-use spectra_core::params::Warning;
+use spectra_core::params::{Fault, Warning};
 
-/// Sees to it that such files can be written.
+/// Sees to it that such files can be written, and none of them over one that the scene is made of.
 pub(crate) fn prepare(job: &Job<'_>, host: &dyn Host, names: &[String]) -> Result<(), SessionError> {
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    host.folder().prepare(job.series.name(), &names).map_err(SessionError::Failed)
+    let folder = host.folder();
+    let read = job.series.files_on_disk();
+    if let Some(file) = names.iter().find(|name| read.iter().any(|path| folder.is(name, path))) {
+        let text = format!("`{}` would be written over a file that the scene is made of", folder.shown(file));
+        return Err(Fault::new(text).hint("another folder or name at `--output`").into());
+    }
+    folder.prepare(job.series.name(), &names).map_err(SessionError::Failed)
 }
 
 /// The light of a picture.

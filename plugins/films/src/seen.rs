@@ -31,6 +31,15 @@ pub(crate) fn seen(
     let usual = if stock.process == Process::Reversal { View::Projection } else { View::Print };
     let view = p.view.unwrap_or(usual);
     let printed = view == View::Print;
+    if p.paper.is_some() && (film.layers() != 1 || stock.process == Process::Reversal) {
+        let text = format!("`paper` is for black-and-white negatives, and {} is none", stock.name);
+        let hint = if stock.process == Process::Reversal {
+            "leave it out"
+        } else {
+            "leave it out; `print: kodak-endura-premier` is a paper for color negatives"
+        };
+        return Err(params.fault("paper", text).hint(hint).into());
+    }
     for (key, given) in [
         ("print", p.print.is_some()),
         ("print-development", p.print_development.is_some()),

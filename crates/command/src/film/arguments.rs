@@ -1,5 +1,6 @@
 //! What can be written after `spectra film`.
 
+use crate::arguments::percent;
 use crate::set::Set;
 use clap::{Args, Subcommand, ValueEnum};
 use std::path::PathBuf;
@@ -144,7 +145,7 @@ pub(crate) struct FilmDevelop {
     #[arg(long, value_name = "F", requires = "lens")]
     pub f_number: Option<String>,
     /// Noise at which a render through the lens ends; 1% if not given.
-    #[arg(long, value_name = "PERCENT", requires = "lens")]
+    #[arg(long, value_name = "PERCENT", requires = "lens", value_parser = percent)]
     pub noise: Option<String>,
     #[command(flatten)]
     pub keys: FilmKeys,

@@ -109,6 +109,10 @@ pub(crate) enum CutArgument {
 }
 
 /// A part of something: from 0 to 1.
+fn surface(text: &str) -> Result<usize, String> {
+    text.trim().parse().map_err(|_| "surfaces are whole numbers, counted from 1, such as 7,3".to_owned())
+}
+
 fn share(text: &str) -> Result<f64, String> {
     let value = text.parse::<f64>().ok().filter(|v| (0.0..=1.0).contains(v));
     value.ok_or_else(|| "a part from 0 to 1, such as 1e-8".to_owned())
@@ -282,7 +286,7 @@ pub(crate) struct LensGhosts {
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
     /// The ghost to draw: the surfaces that reflect it, counted from 1, in the order of the light.
-    #[arg(long, value_name = "A,B", value_delimiter = ',', requires = "output")]
+    #[arg(long, value_name = "A,B", value_delimiter = ',', value_parser = surface, requires = "output")]
     pub path: Vec<usize>,
     /// Field angle of the light that is drawn, degrees.
     #[arg(long, value_name = "DEG", default_value = "0", allow_negative_numbers = true, requires = "output",
@@ -325,7 +329,7 @@ pub(crate) struct LensTrace {
     #[arg(long, value_name = "FILE")]
     pub rays: PathBuf,
     /// Follow the path that these surfaces reflect, counted from 1, in the order of the light: 7,3 is a ghost.
-    #[arg(long, value_name = "A,B", value_delimiter = ',')]
+    #[arg(long, value_name = "A,B", value_delimiter = ',', value_parser = surface)]
     pub path: Vec<usize>,
     /// Write a row for every surface that a ray passes.
     #[arg(long)]

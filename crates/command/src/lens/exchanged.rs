@@ -1,6 +1,7 @@
 //! What import and export have in common: a file that is not written over, and the list of what was left out.
 
 use crate::console;
+use crate::folder::apart;
 use crate::outcome::{DONE, Failure, Outcome};
 use serde_json::json;
 use spectra_exchange::Note;
@@ -11,9 +12,10 @@ use std::path::Path;
 /// The file to write to; `None` is standard output.
 ///
 /// # Errors
-/// It exists, and nobody said to write over it.
-pub(super) fn target(output: Option<&Path>, force: bool) -> Result<Option<&Path>, Failure> {
+/// It exists, and nobody said to write over it; or it is the one that is read.
+pub(super) fn target<'a>(output: Option<&'a Path>, read: &Path, force: bool) -> Result<Option<&'a Path>, Failure> {
     let output = output.filter(|path| *path != Path::new("-"));
+    output.map_or(Ok(()), |output| apart(output, &[read]))?;
     if let Some(path) = output
         && !force
         && path.exists()

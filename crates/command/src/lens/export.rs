@@ -10,7 +10,7 @@ use std::path::Path;
 
 /// Writes a lens for another program.
 pub(crate) fn export(arguments: &LensExport) -> Outcome {
-    let output = target(arguments.output.as_deref(), arguments.force)?;
+    let output = target(arguments.output.as_deref(), Path::new(&arguments.lens), arguments.force)?;
     if let Some(path) = output
         && Format::of_name(&path.display().to_string()) != Some(Format::Zmx)
     {

@@ -15,7 +15,7 @@ pub(crate) fn import(arguments: &LensImport) -> Outcome {
     let Some(format) = Format::of_name(&name) else {
         return Err(Failure::Input(format!("{name}: unknown file extension; .zmx, .seq and .csv can be read")));
     };
-    let output = target(arguments.output.as_deref(), arguments.force)?;
+    let output = target(arguments.output.as_deref(), &arguments.file, arguments.force)?;
     let resources = FileResources::beside(Path::new(""));
     let file = resources
         .read(&name, &[], &[], MAX_BYTES)

@@ -2,6 +2,7 @@
 
 use super::arguments::LensTrace;
 use super::{load, one_light};
+use crate::folder::apart;
 use crate::outcome::{DONE, Failure, Outcome};
 use crate::{console, words};
 use spectra_analysis::trace::{Format, TraceError, TraceSummary, Tracing, trace as trace_rays};
@@ -18,6 +19,8 @@ pub(crate) fn trace(arguments: &LensTrace, isa: Isa) -> Outcome {
     let lens = load(&arguments.setting)?;
     let light = one_light(&arguments.light);
     let format = if arguments.json { Format::JsonLines } else { Format::Csv };
+    let output = arguments.output.as_deref().filter(|path| *path != Path::new("-"));
+    output.map_or(Ok(()), |output| apart(output, &[&arguments.rays]))?;
     let (input, name) = open(&arguments.rays)?;
     let path = path_of(&arguments.path, &lens)?;
     let run = |output: &mut dyn Write| {
@@ -25,7 +28,6 @@ pub(crate) fn trace(arguments: &LensTrace, isa: Isa) -> Outcome {
         let tracing = Tracing { light, path: path.as_ref(), format, every_surface: arguments.every_surface };
         trace_rays(&lens, tracing, isa, rays, &name, &mut BufWriter::new(output))
     };
-    let output = arguments.output.as_deref().filter(|path| *path != Path::new("-"));
     let summary = match output {
         None => run(&mut io::stdout().lock()).map_err(|error| failure(error, None))?,
         Some(path) => to_file(path, run)?,

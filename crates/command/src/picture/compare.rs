@@ -3,6 +3,7 @@
 use super::arguments::PictureCompare;
 use super::{load, not_written, percent, refuse, significant, stem};
 use crate::console;
+use crate::folder::apart;
 use crate::outcome::{DONE, Outcome};
 use serde::Serialize;
 use spectra_analysis::picture::{self, Differs, NotMeasured, Scale, view};
@@ -37,6 +38,7 @@ pub(super) fn compare(arguments: &PictureCompare) -> Outcome {
     let [first_path, second_path] = [&arguments.first, &arguments.second];
     if let Some(output) = &arguments.output {
         Format::of(output).map_err(not_written)?;
+        apart(output, &[first_path, second_path])?;
     }
     let (first, second) = (load(first_path)?, load(second_path)?);
     let between = |error: NotMeasured| {

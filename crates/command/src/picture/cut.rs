@@ -3,6 +3,7 @@
 use super::arguments::PictureCut;
 use super::{field, load, not_written, output, quantity, refuse, stem};
 use crate::console;
+use crate::folder::apart;
 use crate::outcome::{DONE, Failure, Outcome};
 use spectra_analysis::picture::{Cut, Quantity, Way, curve};
 use spectra_files::write_atomically;
@@ -14,6 +15,7 @@ use std::path::Path;
 pub(super) fn cut(arguments: &PictureCut) -> Outcome {
     let path = &arguments.file;
     let output = output(arguments.output.as_ref(), path, "cut.svg");
+    apart(&output, &[path])?;
     let is_table = ending_is_csv(&output);
     if !is_table && Format::of(&output).is_err() {
         let text = format!("{}: a cut is written as .svg, .png or .csv", output.display());

@@ -3,6 +3,7 @@
 use super::arguments::PicturePlot;
 use super::{field, load, not_written, output, quantity, refuse, stem};
 use crate::console;
+use crate::folder::apart;
 use crate::outcome::{DONE, Outcome};
 use spectra_analysis::picture::{Quantity, Scale, clipping, color, view};
 use spectra_plot::Format;
@@ -50,6 +51,7 @@ pub(super) fn plot(arguments: &PicturePlot) -> Outcome {
         Some(eye) => (eye.sees(canvas), format!("{name}-{}", eye.word())),
     };
     let output = output(arguments.output.as_ref(), path, &format!("{name}.png"));
+    apart(&output, &[path])?;
     canvas.write(&output).map_err(not_written)?;
     console::note(&format!("wrote {}", output.display()));
     Ok(DONE)

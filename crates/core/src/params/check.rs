@@ -157,8 +157,12 @@ impl<'s> Check<'s> {
         let unquoted = at.node.is_quoted() && matches!(plain, Some(Value::Number(_) | Value::Bool(_)));
         // `10 000`, `10_000` and `10'000` are numbers to a person.
         let joined = text.filter(|text| text.starts_with(|c: char| c.is_ascii_digit()) && expected.contains("number"));
+        let between = |c: char| matches!(c, ' ' | '_' | '\'' | '\u{a0}');
+        let by_thousands = |text: &&String| {
+            text.split(between).skip(1).all(|group| group.split('.').next().unwrap_or_default().len() == 3)
+        };
         let joined: Option<String> =
-            joined.map(|text| text.chars().filter(|c| !matches!(c, ' ' | '_' | '\'' | '\u{a0}')).collect());
+            joined.filter(by_thousands).map(|text| text.chars().filter(|c| !between(*c)).collect());
         let hint = match (joined, expected.split_once(" such as ")) {
             _ if hint.is_some() => hint,
             _ if unquoted => Some("remove the quotes".to_owned()),

@@ -205,7 +205,7 @@ impl<'a> Form<'a> {
     fn text_hint(&self, text: &str) -> String {
         let text = text.trim();
         let figure = text.trim_start_matches(['f', 'F', '/', ' ']);
-        if self.dimension == Dimension::FNumber && figure.starts_with(|c: char| c.is_ascii_digit()) {
+        if self.dimension == Dimension::FNumber && figure.trim_end().parse::<f64>().is_ok() {
             return format!("write `f/{}`", shown(figure));
         }
         if self.infinity && nearest(text, ["infinity"]).is_some() {

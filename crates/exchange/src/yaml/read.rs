@@ -137,8 +137,11 @@ const PLACE: [&str; 16] = [
     "reversed",
 ];
 
+/// What a surface is that names no kind: the default of the registry, in which kinds of surfaces stand that this crate knows nothing of.
+const USUAL_KIND: &str = "sphere";
+
 fn item(params: &Params, number: usize, lines: LineTriple, lens: &mut Prescription) -> Result<(), Faults> {
-    let kind = params.kind().unwrap_or_default().to_owned();
+    let kind = params.kind().unwrap_or(USUAL_KIND).to_owned();
     let line = params.node().span.line;
     let whose = format!("surface {number}: ");
     if kind == "coordinate-break" {
