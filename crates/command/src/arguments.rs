@@ -7,7 +7,7 @@ use crate::glass::GlassArguments;
 use crate::lens::LensArguments;
 use crate::new::NewArguments;
 use crate::picture::PictureArguments;
-use crate::quantity::parse;
+use crate::quantity::{parse, percent};
 use crate::set::Set;
 use crate::spectrum::SpectrumArguments;
 use crate::version;
@@ -175,14 +175,6 @@ impl Quality {
 }
 
 /// The number of `--samples`.
-/// A part in percent; a bare number might be meant as either.
-pub(crate) fn percent(text: &str) -> Result<String, String> {
-    match text.trim().parse::<f64>() {
-        Ok(number) => Err(format!("percent or a part? Write `{number}%` or `{}%`", 100.0 * number)),
-        Err(_) => Ok(text.to_owned()),
-    }
-}
-
 fn samples(text: &str) -> Result<u32, String> {
     let wanted = "expected a whole number from 1 to 4194304, such as 64";
     match text.trim().parse::<u32>() {

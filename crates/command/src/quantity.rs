@@ -13,6 +13,14 @@ pub(crate) fn parse<Q: Quantity>(text: &str) -> Result<Q, String> {
     })
 }
 
+/// A part in percent; a bare number might be meant as either.
+pub(crate) fn percent(text: &str) -> Result<String, String> {
+    match text.trim().parse::<f64>() {
+        Ok(number) => Err(format!("percent or a part? Write `{number}%` or `{}%`", 100.0 * number)),
+        Err(_) => Ok(text.to_owned()),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,6 +1,6 @@
 //! What can be written after `spectra film`.
 
-use crate::arguments::percent;
+use crate::quantity::percent;
 use crate::set::Set;
 use clap::{Args, Subcommand, ValueEnum};
 use std::path::PathBuf;
