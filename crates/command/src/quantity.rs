@@ -16,7 +16,11 @@ pub(crate) fn parse<Q: Quantity>(text: &str) -> Result<Q, String> {
 /// A part in percent; a bare number might be meant as either.
 pub(crate) fn percent(text: &str) -> Result<String, String> {
     match text.trim().parse::<f64>() {
-        Ok(number) => Err(format!("percent or a part? Write `{number}%` or `{}%`", 100.0 * number)),
+        // Without what a product has behind the digits that were written: 57, not 56.99999999999999.
+        Ok(number) => {
+            let percent = (1e10 * number).round() / 1e8;
+            Err(format!("percent or a part? Write `{number}%` or `{percent}%`"))
+        }
         Err(_) => Ok(text.to_owned()),
     }
 }
@@ -24,6 +28,13 @@ pub(crate) fn percent(text: &str) -> Result<String, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_bare_number_is_no_percentage() {
+        assert_eq!(percent("0.5%"), Ok("0.5%".to_owned()));
+        assert_eq!(percent("0.57"), Err("percent or a part? Write `0.57%` or `57%`".to_owned()));
+    }
+
     use spectra_core::params::{FNumber, Length, OrInfinity, Positive, Time};
 
     #[test]

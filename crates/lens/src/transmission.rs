@@ -19,6 +19,7 @@ use spectra_glass::Lender;
 
 /// Indices that differ by less let everything pass: reflectance is below 1e-16 there.
 const SAME_INDEX: f64 = 1e-8;
+
 /// A way of less than this runs backward: cemented surfaces and rounding are on the other side of it, mm.
 const BEHIND_MM: f64 = -1e-6;
 

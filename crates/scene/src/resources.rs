@@ -11,6 +11,9 @@ use std::borrow::Cow;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
+/// Most names that are offered where several begin alike: a folder may hold thousands of numbered pictures.
+const MOST_NEAR: usize = 5;
+
 /// Largest YAML document, bytes.
 const MAX_DOCUMENT: u64 = 4 << 20;
 
@@ -215,12 +218,8 @@ impl FileResources {
         let beginning = |name: &String| name.split('-').take(words).collect::<Vec<_>>().join("-");
         let beginnings: Vec<String> = names.iter().map(beginning).collect();
         if let Some(near) = nearest(path, beginnings.iter().map(String::as_str)) {
-            return names
-                .iter()
-                .zip(&beginnings)
-                .filter(|(_, own)| *own == near)
-                .map(|(name, _)| name.clone())
-                .collect();
+            let alike = names.iter().zip(&beginnings).filter(|(_, own)| *own == near);
+            return alike.map(|(name, _)| name.clone()).take(MOST_NEAR).collect();
         }
         // `a\b.png` names a file of a folder on one system only; `biotar-50` is a part of a name.
         let slashed = path.replace('\\', "/");

@@ -108,11 +108,12 @@ pub(crate) enum CutArgument {
     X,
 }
 
-/// A part of something: from 0 to 1.
+/// The number of a surface, counted from 1.
 fn surface(text: &str) -> Result<usize, String> {
     text.trim().parse().map_err(|_| "surfaces are whole numbers, counted from 1, such as 7,3".to_owned())
 }
 
+/// A part of something: from 0 to 1.
 fn share(text: &str) -> Result<f64, String> {
     let value = text.parse::<f64>().ok().filter(|v| (0.0..=1.0).contains(v));
     value.ok_or_else(|| "a part from 0 to 1, such as 1e-8".to_owned())
