@@ -43,7 +43,7 @@ impl Setup {
              source: {{kind: point, distance: {DISTANCE_MM}, field: [{fx} deg, {fy} deg], spectrum: he-ne, intensity: 1000}}\n\
              lens: {{file: {lens}, focus: infinity, coating: bare, absorption: false, f-number: {f_number}}}\n\
              imager: {{kind: xyz, width: {width}, height: {height}, resolution: [96, 66]}}\n\
-             render: {{direction: forward, samples: 8, rays: 400000, reflections: {{order: {order}, imager: {imager}}}}}\n"
+             render: {{direction: forward, samples: 16, rays: 800000, reflections: {{order: {order}, imager: {imager}}}}}\n"
         );
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("scene.yaml");

@@ -110,11 +110,15 @@ impl Lens {
         Some(MarginalRay { height_mm, sine: behind.truncate().length(), stop_height_mm })
     }
 
-    /// The highest axial ray that the lens passes as it stands.
+    /// The highest axial ray that the lens passes as it stands; of a lens that is not round, that of the round pencil with the areas
+    /// of its own, before and behind the lens.
     ///
     /// # Errors
     /// [`ApertureError::Unlimited`].
     pub fn marginal_ray(&self) -> Result<MarginalRay, ApertureError> {
+        if !self.is_round_but_for_apertures() {
+            return self.axial_pencil()?.ok_or(ApertureError::Unlimited);
+        }
         let largest = self.largest_semi_diameter_mm().ok_or(ApertureError::Unlimited)?;
         let round = self.clone().with_round_stop();
         let tracer = Tracer::new(&round, Indices::At(self.reference_nm), Isa::Baseline)?;
@@ -172,6 +176,9 @@ impl Lens {
 
     /// The rim that ends the first ray above the marginal one; `open` is the ray of the asked f-number without any rims.
     fn limiting_rim(&self, widest: MarginalRay, open: Option<&RayPath>) -> Option<LimitingRim> {
+        if !self.is_round_but_for_apertures() {
+            return None;
+        }
         let round = self.clone().with_round_stop();
         let tracer = Tracer::new(&round, Indices::At(self.reference_nm), Isa::Baseline).ok()?;
         let above = DVec3::new(0.0, widest.height_mm * (1.0 + 1e-9) + 1e-9, 0.0);
@@ -193,6 +200,7 @@ impl Lens {
     pub fn at_f_number(mut self, f_number: f64) -> Result<Self, ApertureError> {
         self.stop().ok_or(ApertureError::NoStop)?;
         let sine = 0.5 / f_number;
+        let round = self.is_round_but_for_apertures();
         // Without the stop's own size: a lens may state its stop at some other f-number.
         let mut open = self.clone();
         for e in &mut open.elements {
@@ -203,7 +211,7 @@ impl Lens {
         let mut high = self.first_order(self.reference_nm).efl_mm.abs() * sine * 2.0;
         let mut low = 0.0;
         let mut found = None;
-        for _ in 0..HALVINGS {
+        for _ in 0..if round { HALVINGS } else { 0 } {
             let middle = 0.5 * (low + high);
             match self.axial_ray(&tracer, middle) {
                 Some(ray) if ray.sine <= sine => (low, found) = (middle, Some(ray)),
@@ -238,7 +246,10 @@ impl Lens {
                 };
             }
         }
-        let height = ray?.stop_height_mm.ok_or(ApertureError::NoStop)?;
+        let height = match round {
+            true => ray?.stop_height_mm.ok_or(ApertureError::NoStop)?,
+            false => self.stop_of_sine(sine)?.ok_or(ApertureError::NoRay(f_number))?,
+        };
         Ok(self.with_stop_semi_diameter_mm(height))
     }
 }

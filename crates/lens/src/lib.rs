@@ -27,6 +27,7 @@ mod matte_box;
 mod misalignment;
 mod onion;
 mod path;
+mod pencil;
 mod pose;
 mod prescription;
 mod prism;

@@ -56,7 +56,8 @@ pub struct LensReport {
     pub entrance_pupil_diameter_mm: Option<f64>,
     /// Exit pupil, paraxial.
     pub exit_pupil_z_mm: Option<f64>,
-    /// Diameter of the same beam, by the real marginal ray, in the plane of the exit pupil.
+    /// Diameter of the same beam in the plane of the exit pupil: by the real marginal ray, or where the lens is not round about one
+    /// axis by the magnification.
     pub exit_pupil_diameter_mm: Option<f64>,
     /// Exit pupil over entrance pupil, paraxial.
     pub pupil_magnification: Option<f64>,
@@ -177,7 +178,14 @@ impl LensReport {
             entrance_pupil_z_mm: first_order.entrance_pupil_z_mm.filter(|z| z.is_finite()),
             entrance_pupil_diameter_mm: marginal.map(|ray| 2.0 * ray.height_mm),
             exit_pupil_z_mm,
-            exit_pupil_diameter_mm: marginal.zip(exit_pupil_z_mm).and_then(|(ray, z)| diameter_at_mm(&held, ray, z)),
+            exit_pupil_diameter_mm: marginal.zip(exit_pupil_z_mm).and_then(|(ray, z)| {
+                if held.has_axis_of_revolution() {
+                    diameter_at_mm(&held, ray, z)
+                } else {
+                    // Behind a fold no plane of z is that of the pupil.
+                    pupil_magnification(&first_order).map(|magnification| 2.0 * ray.height_mm * magnification)
+                }
+            }),
             pupil_magnification: pupil_magnification(&first_order),
             front_principal_z_mm: first_order.front_principal_z_mm,
             rear_principal_z_mm: first_order.rear_principal_z_mm,

@@ -2,13 +2,17 @@
 //!
 //! Forward, as [`crate::forward`], but along paths by two reflections, or four, each traced exactly as the straight one. A pilot run finds for
 //! each path and zone of the source where on the front of the lens its light comes in ([`guide`]), and how much each path needs: rays
-//! are shared out so that the noise of 32 x 32 pixels, as a part of the ghosts' light there, is least. A tenth of every path's rays goes
-//! all over the front, so that no path has a bias whatever the pilot overlooked.
+//! are shared out so that the noise of 32 x 32 pixels, as a part of the ghosts' light there, is least, and nowhere much more than
+//! elsewhere ([`shares`]). A tenth of every path's rays goes all over the front, so that no path has a bias whatever the pilot overlooked.
 
 mod account;
+mod density;
 mod guide;
 mod metered;
 mod pilot;
+mod shares;
+mod sight;
+mod tree;
 mod zones;
 
 pub use account::{GhostPath, LightLedger};
@@ -196,11 +200,8 @@ impl Ghosts {
             Some(ledger) => ledger,
             None => account::of(&own, &lens, &surfaces, order, workers)?,
         };
-        let a_pixel = matters.map_or(RAYS_A_PIXEL, |matters| {
-            // What matters is a part of the mean.
-            RAYS_A_PIXEL * (MATTERS * found.brightest / matters).clamp(LEAST_A_PIXEL, 1.0)
-        });
-        own.plan = Arc::new(own.shared_out(found.ways, a_pixel, ledger));
+        let a_sample = own.rays_a_sample(matters, found.brightest);
+        own.plan = Arc::new(own.shared_out(found.ways, a_sample, ledger));
         own.scale = own.pilot_scale(workers)?;
         own.numbers = own.of_seed(scene.render.seed);
         Ok(Some(own))
@@ -325,22 +326,23 @@ impl Ghosts {
         state.rays.weighing().weight.iter_mut().for_each(|weight| *weight *= way.boost);
     }
 
-    /// What each ray of a batch brings: its tag, and the sum over its channels.
-    fn brought(&self, state: &mut ThreadState) -> Vec<(u32, f64)> {
-        let len = state.rays.len();
-        let mut sums = vec![0.0; len];
-        for channel in 0..self.pipeline.responses.channels() {
+    /// What each ray of a batch brings to each channel, ray by ray.
+    fn brought(&self, state: &mut ThreadState) -> Vec<f64> {
+        let (len, channels) = (state.rays.len(), self.pipeline.responses.channels());
+        let mut brought = vec![0.0; len * channels];
+        for channel in 0..channels {
             let values = &mut state.values[..len];
             let (nm, weights) = (state.rays.wavelengths_nm(), state.rays.weights());
             self.pipeline.isa.run(self.pipeline.responses.weigh(channel, nm, weights, values));
-            for ((sum, value), tag) in sums.iter_mut().zip(values).zip(state.rays.tags()) {
+            let own = brought.iter_mut().skip(channel).step_by(channels);
+            for ((own, value), tag) in own.zip(values).zip(state.rays.tags()) {
                 let only = pixel_and_channel(*tag).1;
                 if only.is_none_or(|only| only as usize == self.pipeline.recorded[channel]) {
-                    *sum += *value;
+                    *own = *value;
                 }
             }
         }
-        state.rays.tags().iter().copied().zip(sums).collect()
+        brought
     }
 
     /// Sums of all paths: one a pixel and channel.
@@ -348,12 +350,25 @@ impl Ghosts {
         self.pipeline.scene.imager.size().pixels() * self.pipeline.recorded.len()
     }
 
+    /// Rays of a sample, where the brightest block has so much light.
+    fn rays_a_sample(&self, matters: Option<f64>, brightest: f64) -> u64 {
+        let a_pixel = matters.map_or(RAYS_A_PIXEL, |matters| {
+            // What matters is a part of the mean.
+            RAYS_A_PIXEL * (MATTERS * brightest / matters).clamp(LEAST_A_PIXEL, 1.0)
+        });
+        let pixels = self.pipeline.scene.imager.size().pixels() as f64;
+        ((pixels * a_pixel) as u64).max(self.plan.ways.len() as u64 * LEAST_A_PATH)
+    }
+
+    /// The same of all samples.
+    fn rays_of_picture(&self, matters: Option<f64>, brightest: f64) -> f64 {
+        self.rays_a_sample(matters, brightest) as f64 * f64::from(self.pipeline.scene.render.samples)
+    }
+
     /// The rays of a sample, shared out over the paths.
-    fn shared_out(&self, found: Vec<(Vec<Guide>, f64)>, a_pixel: f64, ledger: LightLedger) -> Plan {
+    fn shared_out(&self, found: Vec<(Vec<Guide>, f64)>, a_sample: u64, ledger: LightLedger) -> Plan {
         let old = &self.plan;
         let paths = old.ways.len() as u64;
-        let pixels = self.pipeline.scene.imager.size().pixels() as f64;
-        let a_sample = ((pixels * a_pixel) as u64).max(paths * LEAST_A_PATH);
         let blocks_a_sample = a_sample.div_ceil(RAYS_PER_BLOCK);
         let a_block = a_sample / blocks_a_sample;
         let floor = (a_block / (FLOOR * paths)).max(1);

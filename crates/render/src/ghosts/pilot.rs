@@ -4,7 +4,9 @@
 //! So places are drawn once and shared by all paths, and only rays that come through are asked what they carry. In the first round all
 //! paths share the directions too; it says whether going on is worth it.
 
-use super::guide::{Aim, Found, Guide};
+use super::guide::{Aim, Guide, Lit};
+use super::shares::{self, Piece, Share};
+use super::sight::{Rays, Seen, Sight, Sorted};
 use super::{Ghosts, Way};
 use crate::Workers;
 use crate::error::RenderError;
@@ -15,10 +17,17 @@ use spectra_core::numbers::{Dimension, StageKey};
 use spectra_core::workers::each_of;
 use spectra_core::{Loss, RayBatch};
 
-/// Rays for each path and round, of one zone and of each further one, and rounds: the last one says how much comes.
+/// Rays for each path and round, of one zone and of each further one, in rounds that look where the light of each path comes in.
 const RAYS: usize = 4096;
 const RAYS_MORE: usize = 256;
 const ROUNDS: u64 = 3;
+/// Rounds after those, whose rays are shared out as those of the picture will be, each better than the one before: they find where
+/// noise is. Rays of each in parts of the picture's, and at most.
+const SHARED: u64 = 4;
+const SHARED_RAYS: f64 = 0.02;
+const SHARED_MOST: f64 = (3_u64 << 17) as f64;
+/// Streams of numbers of each path.
+const STREAMS: u64 = ROUNDS + SHARED;
 /// Paths of more than two reflections are many, and have little light: this part of the rays.
 const OF_MORE: usize = 4;
 /// Rays of a batch.
@@ -48,9 +57,6 @@ impl Plan {
     }
 }
 
-/// A ray that came through: its zone, its aim, the block that it reached, and what it brought but for the density of its aim.
-type Seen = (usize, Aim, usize, f64);
-
 /// Blocks of the frame.
 struct Blocks {
     width: usize,
@@ -72,24 +78,23 @@ impl Blocks {
         pixel / self.width / BLOCK * self.across() + pixel % self.width / BLOCK
     }
 
-    /// What came to each: of each path what was seen, by so many batches.
-    fn light<'a>(&self, paths: impl Iterator<Item = (&'a Vec<Seen>, usize)>) -> Vec<f64> {
-        let mut light = vec![0.0; self.count()];
-        for (seen, batches) in paths {
-            let rays = (batches * BATCH) as f64;
-            seen.iter().for_each(|(_, aim, block, value)| light[*block] += value / aim.density / rays);
+    /// What came to each channel of each, of parts of light.
+    fn light(&self, channels: usize, parts: impl Iterator<Item = (usize, impl Iterator<Item = f64>)>) -> Vec<f64> {
+        let mut light = vec![0.0; self.count() * channels];
+        for (block, parts) in parts {
+            light[block * channels..].iter_mut().zip(parts).for_each(|(light, part)| *light += part);
         }
         light
     }
 
     /// The brightest of them, W/m2.
-    fn brightest(&self, light: &[f64]) -> f64 {
+    fn brightest(&self, channels: usize, light: &[f64]) -> f64 {
         let pixels = |block: usize| {
             let (column, row) = (block % self.across() * BLOCK, block / self.across() * BLOCK);
             ((self.width - column).min(BLOCK) * (self.height - row).min(BLOCK)) as f64
         };
-        let mean = |(block, light): (usize, &f64)| light / (pixels(block) * self.pixel_mm2);
-        light.iter().enumerate().map(mean).fold(0.0, f64::max)
+        let mean = |(block, light): (usize, &[f64])| light.iter().sum::<f64>() / (pixels(block) * self.pixel_mm2);
+        light.chunks_exact(channels).enumerate().map(mean).fold(0.0, f64::max)
     }
 }
 
@@ -101,6 +106,7 @@ struct Aimed {
 
 struct Pilot<'a> {
     ghosts: &'a Ghosts,
+    channels: usize,
     blocks: Blocks,
     /// On the source, without a direction.
     placed: Vec<RayBatch>,
@@ -121,6 +127,7 @@ pub(super) fn search(
 ) -> Result<Option<Plan>, RenderError> {
     let pilot = &Pilot::new(ghosts);
     let (ways, fresh) = (&ghosts.plan.ways, || ghosts.state(BATCH));
+    let channels = pilot.channels;
     // Batches of a path, of so many of a pair's.
     let of = |way: &Way, batches: usize| if way.is_of_pair() { batches } else { batches.div_ceil(OF_MORE) };
     let first = |batches: usize| {
@@ -132,47 +139,54 @@ pub(super) fn search(
     let is_dim = |brightest: f64, doubt: f64| matters.is_some_and(|matters| !(brightest > matters / doubt));
     if matters.is_some() {
         let scouts = first(SCOUTS)?;
-        let seen = scouts.iter().zip(ways).map(|((_, seen), way)| (seen, of(way, SCOUTS)));
-        let light = pilot.blocks.light(seen);
-        if is_dim(pilot.blocks.brightest(&light), DOUBT) {
+        let parts = scouts.iter().zip(ways).flat_map(|((_, came), way)| came.light((of(way, SCOUTS) * BATCH) as f64));
+        let light = pilot.blocks.light(channels, parts);
+        if is_dim(pilot.blocks.brightest(channels, &light), DOUBT) {
             return Ok(None);
         }
     }
     let all = pilot.placed.len();
     let first = first(all)?;
-    let last = each_of(workers, ways.len(), fresh, |state, at| {
+    let closer = |lit: &[Lit]| -> Vec<Guide> { lit.iter().map(Lit::closer).collect() };
+    let mut sights = each_of(workers, ways.len(), fresh, |state, at| {
         wanted(workers)?;
-        let closer = |found: &[Found]| -> Vec<Guide> { found.iter().map(Found::closer).collect() };
         let mut guides = closer(&first[at].0);
+        let batches = of(&ways[at], all);
         for round in 1..ROUNDS {
-            let stream = (at as u64 + 1) * ROUNDS + round;
-            let (found, seen) = pilot.round(state, &ways[at], &guides, Some(stream), of(&ways[at], all));
+            let (lit, came) = pilot.round(state, &ways[at], &guides, Some(stream(at, round)), batches);
             if round + 1 == ROUNDS {
-                return Ok::<_, RenderError>((guides, seen));
+                let mut sight = Sight::new(channels);
+                sight.add(guides, (batches * BATCH) as f64, came);
+                return Ok::<_, RenderError>(sight);
             }
-            guides = closer(&found);
+            guides = closer(&lit);
         }
-        Ok((guides, Vec::new()))
+        Ok(Sight::new(channels))
     })?;
-    let light = pilot.blocks.light(last.iter().zip(ways).map(|((_, seen), way)| (seen, of(way, all))));
-    let brightest = pilot.blocks.brightest(&light);
-    if is_dim(brightest, 1.0) {
-        return Ok(None);
-    }
-    let peak = light.iter().fold(0.0_f64, |a, b| a.max(*b));
-    let guide = |((guides, seen), way): ((Vec<Guide>, Vec<Seen>), &Way)| {
-        let mut found: Vec<Found> = guides.iter().map(Found::of).collect();
-        for (zone, aim, block, value) in seen {
-            found[zone].add(&guides[zone], aim, value / (light[block] + DIM * peak));
+    for round in 0..SHARED {
+        let plan = pilot.best(&sights, workers)?;
+        if round == 0 && is_dim(plan.brightest, 1.0) {
+            return Ok(None);
         }
-        let rays = (of(way, all) * BATCH) as u64;
-        let best = found.iter().map(|found| found.guide(rays));
-        best.fold((Vec::new(), 0.0), |(mut guides, variance), (guide, own)| {
-            guides.push(guide);
-            (guides, variance + own)
-        })
-    };
-    Ok(Some(Plan { ways: last.into_iter().zip(ways).map(guide).collect(), brightest }))
+        let needs = plan.ways.iter().zip(ways).map(|((_, variance), way)| (variance / way.cost()).sqrt());
+        let sum: f64 = needs.clone().sum();
+        let rays = (ghosts.rays_of_picture(matters, plan.brightest) * SHARED_RAYS).min(SHARED_MOST);
+        let batches: Vec<usize> = needs.map(|need| (rays * need / sum / BATCH as f64).round() as usize).collect();
+        let came = each_of(workers, ways.len(), fresh, |state, at| {
+            wanted(workers)?;
+            let stream = Some(stream(at, ROUNDS + round));
+            Ok::<_, RenderError>(pilot.round(state, &ways[at], &plan.ways[at].0, stream, batches[at]).1)
+        })?;
+        for (((sight, (guides, _)), came), batches) in sights.iter_mut().zip(plan.ways).zip(came).zip(batches) {
+            sight.add(guides, (batches * BATCH) as f64, came);
+        }
+    }
+    Ok(Some(pilot.best(&sights, workers)?))
+}
+
+/// The numbers of a round of a path.
+fn stream(path: usize, round: u64) -> u64 {
+    (path as u64 + 1) * STREAMS + round
 }
 
 impl<'a> Pilot<'a> {
@@ -191,10 +205,50 @@ impl<'a> Pilot<'a> {
             let [.., a, b] = &state.numbers;
             everywhere.push(aimed(ghosts, state.rays.clone(), &guides, [a.slice(BATCH), b.slice(BATCH)]));
         }
-        Self { ghosts, blocks, placed, everywhere }
+        Self { ghosts, channels: ghosts.pipeline.responses.channels(), blocks, placed, everywhere }
     }
 
-    /// One round of a path by so many batches: what its guides found, and each ray that came through. `stream` are the numbers of the
+    /// The guides with the least noise, as far as was seen.
+    fn best(&self, sights: &[Sight], workers: &dyn Workers) -> Result<Plan, RenderError> {
+        let ways = &self.ghosts.plan.ways;
+        let channels = self.channels;
+        let light = self.blocks.light(channels, sights.iter().flat_map(Sight::light));
+        // Noise is a part of a channel's light, or of light so dim that nobody looks at it.
+        let mut least = vec![0.0_f64; channels];
+        for light in light.chunks_exact(channels) {
+            least.iter_mut().zip(light).for_each(|(least, light)| *least = least.max(0.5 * DIM * light));
+        }
+        let each = light.iter().zip(least.iter().cycle());
+        let over = |(light, least): (&f64, &f64)| (channels as f64 * light.max(*least).powi(2)).recip();
+        let over: Vec<f64> = each.clone().map(over).collect();
+        let is_judged: Vec<bool> = each.map(|(light, least)| light > least).collect();
+        // One over the number of rays, as many as were all alike.
+        let mut few = vec![0.0; self.blocks.count()];
+        for (block, parts) in sights.iter().flat_map(Sight::light) {
+            few[block] +=
+                over[block * channels..].iter().zip(parts).map(|(over, part)| over * part * part).sum::<f64>();
+        }
+        let judged = is_judged.chunks_exact(channels).map(|channels| channels.contains(&true));
+        let rays: Vec<Option<f64>> = few.iter().zip(judged).map(|(few, judged)| judged.then(|| few.recip())).collect();
+        let sort = |(): &mut (), at: usize| wanted(workers).map(|()| sights[at].sorted(&over));
+        let sorted: Vec<Sorted> = each_of(workers, sights.len(), || (), sort)?;
+        let (mut paths, mut pieces, mut first) = (Vec::new(), Vec::new(), 0);
+        for (sorted, way) in sorted.iter().zip(ways) {
+            paths.push(Share { zones: &sorted.trees, first, cost: way.cost() });
+            let piece = |(cell, block, square): &(u32, u32, f64)| Piece {
+                cell: first + *cell as usize,
+                block: *block as usize,
+                square: *square,
+            };
+            pieces.extend(sorted.pieces.iter().map(piece));
+            first += sorted.leaves();
+        }
+        let weights = shares::weights(&pieces, &paths, &rays);
+        let ways = sorted.iter().map(|sorted| sorted.guides(&weights)).collect();
+        Ok(Plan { ways, brightest: self.blocks.brightest(channels, &light) })
+    }
+
+    /// One round of a path by so many batches: where light came, and each ray that came through. `stream` are the numbers of the
     /// directions; `None` for those that all paths share, all over the front.
     fn round(
         &self,
@@ -203,11 +257,11 @@ impl<'a> Pilot<'a> {
         guides: &[Guide],
         stream: Option<u64>,
         batches: usize,
-    ) -> (Vec<Found>, Vec<Seen>) {
-        let mut found: Vec<Found> = guides.iter().map(Found::of).collect();
-        let mut seen = Vec::new();
+    ) -> (Vec<Lit>, Rays) {
+        let mut lit: Vec<Lit> = guides.iter().map(Lit::of).collect();
+        let mut came = Rays::new(self.channels);
         let mut own;
-        for (at, shared) in self.everywhere.iter().enumerate().take(batches) {
+        for (at, shared) in self.everywhere.iter().cycle().enumerate().take(batches) {
             let batch = match stream {
                 None => shared,
                 Some(stream) => {
@@ -215,17 +269,15 @@ impl<'a> Pilot<'a> {
                     &own
                 }
             };
-            for (ray, tag, value) in self.through(state, way, &batch.rays) {
+            self.through(state, way, &batch.rays, |ray, tag, brought| {
                 let (zone, aim) = batch.aims[ray];
                 // Where one guide is for all zones, that.
                 let zone = zone.min(guides.len() - 1);
-                // Without what the density makes of it.
-                let value = value.abs() * aim.density;
-                found[zone].add(&guides[zone], aim, value);
-                seen.push((zone, aim, self.blocks.of(pixel_and_channel(tag).0), value));
-            }
+                lit[zone].add(aim.place);
+                came.push(Seen { zone, aim, block: self.blocks.of(pixel_and_channel(tag).0) }, brought);
+            });
         }
-        (found, seen)
+        (lit, came)
     }
 
     /// A batch aimed by guides.
@@ -235,11 +287,11 @@ impl<'a> Pilot<'a> {
             let first = (at * BATCH) as u64;
             self.ghosts.numbers.fill(self.ghosts.pipeline.isa, stream, first, dimension as u32, numbers);
         }
-        aimed(self.ghosts, self.placed[at].clone(), guides, [&a, &b])
+        aimed(self.ghosts, self.placed[at % self.placed.len()].clone(), guides, [&a, &b])
     }
 
-    /// Follows a path: number, tag and value of each ray that brings light to the frame.
-    fn through(&self, state: &mut ThreadState, way: &Way, from: &RayBatch) -> Vec<(usize, u32, f64)> {
+    /// Follows a path. `came` is given number and tag of each ray that brings light to the frame, and what it brings to each channel.
+    fn through(&self, state: &mut ThreadState, way: &Way, from: &RayBatch, mut came: impl FnMut(usize, u32, &[f64])) {
         let ghosts = self.ghosts;
         state.rays = from.clone();
         let c = state.rays.columns_mut();
@@ -254,16 +306,20 @@ impl<'a> Pilot<'a> {
         let mut lit = from.clone();
         let c = lit.columns_mut();
         let unlit = Loss::Unlit.state(0);
-        let mut came = vec![unlit; c.state.len()];
+        let mut arrived = vec![unlit; c.state.len()];
         numbers
             .iter()
             .zip(state.rays.weights())
             .filter(|(_, w)| **w != 0.0)
-            .for_each(|(n, _)| came[*n as usize] = ALIVE);
-        if came.iter().all(|state| *state == unlit) {
-            return Vec::new();
+            .for_each(|(n, _)| arrived[*n as usize] = ALIVE);
+        if arrived.iter().all(|state| *state == unlit) {
+            return;
         }
-        c.state.iter_mut().zip(&came).filter(|(_, came)| **came == unlit).for_each(|(state, _)| *state = unlit);
+        c.state
+            .iter_mut()
+            .zip(&arrived)
+            .filter(|(_, arrived)| **arrived == unlit)
+            .for_each(|(state, _)| *state = unlit);
         lit.set_stage(StageKey::SOURCE);
         ghosts.emit().radiate(&mut lit, ghosts.pipeline.isa);
         let carries = |number: u32| {
@@ -271,8 +327,12 @@ impl<'a> Pilot<'a> {
             if lit.states()[at] == ALIVE { lit.weights()[at] } else { 0.0 }
         };
         state.rays.weighing().weight.iter_mut().zip(&numbers).for_each(|(weight, number)| *weight *= carries(*number));
-        let brought = ghosts.brought(state).into_iter().zip(numbers);
-        brought.filter(|((_, value), _)| *value != 0.0).map(|((tag, value), n)| (n as usize, tag, value)).collect()
+        let brought = ghosts.brought(state);
+        for ((number, tag), brought) in numbers.iter().zip(state.rays.tags()).zip(brought.chunks_exact(self.channels)) {
+            if brought.iter().any(|value| *value != 0.0) {
+                came(*number as usize, *tag, brought);
+            }
+        }
     }
 }
 

@@ -1,0 +1,180 @@
+//! What the pilot saw of one path, by all its rounds together, and the cells that this is sorted into.
+
+use super::guide::{Aim, Guide, Part};
+use super::shares;
+use super::tree::Tree;
+
+/// The part of what a ray of the pilot stands for that lies at each of four places around it, a mean distance of rays aside and up: light
+/// has no edge just where a ray happened to go.
+const NEAR: f64 = 0.05;
+
+/// A ray that came through.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Seen {
+    pub zone: usize,
+    pub aim: Aim,
+    /// The block that it reached.
+    pub block: usize,
+}
+
+/// Rays that came through.
+#[derive(Debug)]
+pub(super) struct Rays {
+    channels: usize,
+    seen: Vec<Seen>,
+    /// What each of them brought to each channel, but for the density of its aim.
+    values: Vec<f64>,
+}
+
+impl Rays {
+    pub fn new(channels: usize) -> Self {
+        Self { channels, seen: Vec::new(), values: Vec::new() }
+    }
+
+    /// One that brought `brought`.
+    pub fn push(&mut self, seen: Seen, brought: &[f64]) {
+        self.seen.push(seen);
+        self.values.extend(brought.iter().map(|value| value.abs() * seen.aim.density));
+    }
+
+    /// Each of them, and what it brought.
+    fn each(&self) -> impl Iterator<Item = (&Seen, &[f64])> {
+        self.seen.iter().zip(self.values.chunks_exact(self.channels))
+    }
+
+    /// Of each the block, and what of the light it is, channel by channel, of so many rays.
+    pub fn light(&self, rays: f64) -> impl Iterator<Item = (usize, impl Iterator<Item = f64>)> {
+        self.each().map(move |(seen, values)| {
+            let share = 1.0 / (seen.aim.density * rays);
+            (seen.block, values.iter().map(move |value| value * share))
+        })
+    }
+}
+
+/// What was seen of a path. Rays of all rounds are one set, as dense as they are together: the density of an aim is that of the set,
+/// in rays.
+pub(super) struct Sight {
+    rounds: Vec<(Vec<Guide>, f64)>,
+    all: Rays,
+}
+
+impl Sight {
+    /// Nothing yet.
+    pub fn new(channels: usize) -> Self {
+        Self { rounds: Vec::new(), all: Rays::new(channels) }
+    }
+
+    /// Adds a round of so many rays.
+    pub fn add(&mut self, guides: Vec<Guide>, rays: f64, came: Rays) {
+        for old in &mut self.all.seen {
+            old.aim.density += rays * guides[old.zone].density(old.aim.place);
+        }
+        let before = &self.rounds;
+        self.all.seen.extend(came.seen.into_iter().map(|seen| {
+            let earlier = before.iter().map(|(guides, rays)| rays * guides[seen.zone].density(seen.aim.place));
+            let density = earlier.sum::<f64>() + rays * seen.aim.density;
+            Seen { aim: Aim { density, ..seen.aim }, ..seen }
+        }));
+        self.all.values.extend(came.values);
+        self.rounds.push((guides, rays));
+    }
+
+    /// Of each ray the block, and what of the light it is, channel by channel.
+    pub fn light(&self) -> impl Iterator<Item = (usize, impl Iterator<Item = f64>)> {
+        self.all.light(1.0)
+    }
+
+    /// Sorts it into cells, as small as there are rays for; `over` is what a square of a block's channel is multiplied by, block by block.
+    pub fn sorted(&self, over: &[f64]) -> Sorted {
+        let zones = self.rounds.last().map_or(0, |(guides, _)| guides.len());
+        let places =
+            |zone: usize| self.all.seen.iter().filter(move |seen| seen.zone == zone).map(|seen| seen.aim.place);
+        let parts = self.rounds.last().into_iter().flat_map(|(guides, _)| guides).map(Guide::part);
+        let parts: Vec<Part> = parts.enumerate().map(|(zone, part)| part.with(places(zone))).collect();
+        let tree = |zone: usize| Tree::around(places(zone).filter_map(|place| parts[zone].inside(place)).collect());
+        let trees: Vec<Tree> = (0..zones).map(tree).collect();
+        let firsts: Vec<usize> = trees
+            .iter()
+            .scan(0, |next, tree| {
+                let first = *next;
+                *next += tree.leaves();
+                Some(first)
+            })
+            .collect();
+        let mut pieces = Vec::new();
+        for (seen, values) in self.all.each() {
+            let over = &over[seen.block * self.all.channels..];
+            let square =
+                values.iter().zip(over).map(|(value, over)| value * value * over).sum::<f64>() / seen.aim.density;
+            let away = 1.0 / seen.aim.density.sqrt();
+            let mut add = |dx: f64, dy: f64, share: f64| {
+                let place = [seen.aim.place[0] + dx, seen.aim.place[1] + dy];
+                if let Some(at) = parts[seen.zone].inside(place) {
+                    let cell = (firsts[seen.zone] + trees[seen.zone].leaf(at)) as u32;
+                    pieces.push((cell, seen.block as u32, share * square));
+                }
+            };
+            add(0.0, 0.0, 1.0 - 4.0 * NEAR);
+            for (x, y) in [(1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)] {
+                add(x * away, y * away, NEAR);
+            }
+        }
+        let pieces = summed(&pieces, firsts.last().map_or(0, |first| first + trees[zones - 1].leaves()));
+        Sorted { parts, trees, pieces }
+    }
+}
+
+/// What comes from the same cell to the same block, as one: by cells, and within each by blocks.
+fn summed(pieces: &[(u32, u32, f64)], cells: usize) -> Vec<(u32, u32, f64)> {
+    let mut ends = vec![0_usize; cells + 1];
+    pieces.iter().for_each(|(cell, ..)| ends[*cell as usize + 1] += 1);
+    (0..cells).for_each(|cell| ends[cell + 1] += ends[cell]);
+    let mut by_cell = vec![(0_u32, 0.0_f64); pieces.len()];
+    let mut next = ends.clone();
+    for (cell, block, square) in pieces {
+        by_cell[next[*cell as usize]] = (*block, *square);
+        next[*cell as usize] += 1;
+    }
+    let mut sums: Vec<(u32, u32, f64)> = Vec::new();
+    for cell in 0..cells {
+        let first = sums.len();
+        let own = &mut by_cell[ends[cell]..ends[cell + 1]];
+        own.sort_by_key(|(block, _)| *block);
+        for (block, square) in own {
+            match sums[first..].last_mut() {
+                Some((_, last, sum)) if last == block => *sum += *square,
+                _ => sums.push((cell as u32, *block, *square)),
+            }
+        }
+    }
+    sums
+}
+
+/// The cells of a path, zone by zone, and what came from each to each block: an estimate of the integral of the square.
+pub(super) struct Sorted {
+    parts: Vec<Part>,
+    pub trees: Vec<Tree>,
+    pub pieces: Vec<(u32, u32, f64)>,
+}
+
+impl Sorted {
+    pub fn leaves(&self) -> usize {
+        self.trees.iter().map(Tree::leaves).sum()
+    }
+
+    /// Guides with the least noise, where a block's noise weighs so much, and the variance of one ray.
+    pub fn guides(&self, weights: &[f64]) -> (Vec<Guide>, f64) {
+        let mut squares = vec![0.0; self.leaves()];
+        self.pieces
+            .iter()
+            .for_each(|(cell, block, square)| squares[*cell as usize] += weights[*block as usize] * square);
+        let (dense, variance) = shares::best(&self.trees, &squares);
+        let guide = |((part, tree), dense): ((&Part, &Tree), Vec<f64>)| {
+            if dense.iter().all(|dense| *dense == 0.0) {
+                return Guide::blind();
+            }
+            Guide::of(*part, tree.density(&dense))
+        };
+        (self.parts.iter().zip(&self.trees).zip(dense).map(guide).collect(), variance)
+    }
+}

@@ -1,0 +1,206 @@
+//! The unit square in cells that are smaller where more rays came: each cell that saw many is cut into four.
+
+use super::density::Density;
+
+/// A cell that more rays than this came through is cut.
+const MANY: usize = 32;
+/// Cuts at most, one within the other.
+const DEEPEST: u32 = 12;
+/// The mean square in a cell is at least this part of that in the cell that it was cut from.
+const LEAST: f64 = 1.0 / 64.0;
+/// Rays are at least this part as dense in a cell as in its neighbors, and so on so many cells away: the edge of what comes through is not
+/// where the last ray of the pilot went.
+const BESIDE: f64 = 0.1;
+const AROUND: usize = 2;
+
+/// A cell, cut or not.
+#[derive(Clone, Copy, Debug)]
+struct Cell {
+    /// The first of its four parts: lower left, lower right, upper left, upper right. 0 where it is not cut.
+    first: u32,
+    /// Its number among those that are not cut.
+    leaf: u32,
+    low: [f64; 2],
+    side: f64,
+}
+
+/// Cells, each behind what it is a part of.
+#[derive(Clone, Debug)]
+pub(super) struct Tree {
+    cells: Vec<Cell>,
+    leaves: usize,
+}
+
+impl Tree {
+    /// Cells around places where rays came through.
+    pub fn around(mut places: Vec<[f64; 2]>) -> Self {
+        let mut tree = Self { cells: vec![Cell { first: 0, leaf: 0, low: [0.0; 2], side: 1.0 }], leaves: 0 };
+        tree.cut(0, &mut places, DEEPEST);
+        tree.balance();
+        for cell in tree.cells.iter_mut().filter(|cell| cell.first == 0) {
+            cell.leaf = tree.leaves as u32;
+            tree.leaves += 1;
+        }
+        tree
+    }
+
+    fn cut(&mut self, at: usize, places: &mut [[f64; 2]], cuts: u32) {
+        if places.len() <= MANY || cuts == 0 {
+            return;
+        }
+        let first = self.quarter(at);
+        let middle = self.cells[first + 3].low;
+        let (below, above) = parted(places, |p| p[1] < middle[1]);
+        for (row, places) in [below, above].into_iter().enumerate() {
+            let (left, right) = parted(places, |p| p[0] < middle[0]);
+            for (column, places) in [left, right].into_iter().enumerate() {
+                self.cut(first + 2 * row + column, places, cuts - 1);
+            }
+        }
+    }
+
+    /// Cuts a cell, and says which is the first of its parts.
+    fn quarter(&mut self, at: usize) -> usize {
+        let (first, Cell { low: [x, y], side, .. }) = (self.cells.len(), self.cells[at]);
+        self.cells[at].first = first as u32;
+        let half = 0.5 * side;
+        let corners = [[x, y], [x + half, y], [x, y + half], [x + half, y + half]];
+        self.cells.extend(corners.map(|low| Cell { first: 0, leaf: 0, low, side: half }));
+        first
+    }
+
+    /// Cuts cells until none lies beside one of less than half its side.
+    fn balance(&mut self) {
+        let mut left: Vec<usize> = (0..self.cells.len()).collect();
+        while let Some(at) = left.pop() {
+            let Cell { first: 0, side, .. } = self.cells[at] else { continue };
+            for place in around(&self.cells[at]) {
+                let mut beside = self.find(place);
+                while self.cells[beside].side > 2.5 * side {
+                    let first = self.quarter(beside);
+                    left.extend(first..first + 4);
+                    beside = self.find(place);
+                }
+            }
+        }
+    }
+
+    /// The cell, not cut, that holds a place.
+    #[inline]
+    fn find(&self, place: [f64; 2]) -> usize {
+        let mut at = 0;
+        while self.cells[at].first != 0 {
+            let first = self.cells[at].first as usize;
+            let middle = self.cells[first + 3].low;
+            at = first + usize::from(place[0] >= middle[0]) + 2 * usize::from(place[1] >= middle[1]);
+        }
+        at
+    }
+
+    /// The same by its number among those that are not cut.
+    #[inline]
+    pub fn leaf(&self, place: [f64; 2]) -> usize {
+        self.cells[self.find(place)].leaf as usize
+    }
+
+    /// Cells that are not cut.
+    pub fn leaves(&self) -> usize {
+        self.leaves
+    }
+
+    /// The area of each of them.
+    pub fn areas(&self) -> impl Iterator<Item = f64> {
+        // They are numbered in their order.
+        self.cells.iter().filter(|cell| cell.first == 0).map(|cell| cell.side * cell.side)
+    }
+
+    /// How dense rays are best where each cell has such an integral of the square, but for a factor: the root of the mean square.
+    pub fn best(&self, squares: &[f64]) -> Vec<f64> {
+        let of = |cell: &Cell| if cell.first == 0 { squares[cell.leaf as usize] } else { 0.0 };
+        let mut means: Vec<f64> = self.cells.iter().map(of).collect();
+        for at in (0..self.cells.len()).rev() {
+            let Cell { first, side, .. } = self.cells[at];
+            if first != 0 {
+                means[at] = 0.25 * means[first as usize..][..4].iter().sum::<f64>();
+            } else {
+                means[at] /= side * side;
+            }
+        }
+        let mut best = vec![0.0; self.leaves];
+        for (at, cell) in self.cells.iter().enumerate() {
+            if cell.first == 0 {
+                best[cell.leaf as usize] = means[at].sqrt();
+            } else {
+                let least = LEAST * means[at];
+                means[cell.first as usize..][..4].iter_mut().for_each(|mean| *mean = mean.max(least));
+            }
+        }
+        best
+    }
+
+    /// Rays as dense in each cell as said, but for a factor, or nearly so: see [`BESIDE`].
+    pub fn density(&self, densities: &[f64]) -> Density {
+        let mut soft = densities.to_vec();
+        let beside = |cell: &Cell| around(cell).map(|place| self.leaf(place));
+        let all = self.cells.iter().filter(|cell| cell.first == 0);
+        let pairs: Vec<[usize; 2]> =
+            all.flat_map(|cell| beside(cell).map(|other| [cell.leaf as usize, other])).collect();
+        for _ in 0..AROUND {
+            let before = soft.clone();
+            for [a, b] in &pairs {
+                soft[*a] = soft[*a].max(BESIDE * before[*b]);
+                soft[*b] = soft[*b].max(BESIDE * before[*a]);
+            }
+        }
+        let cell = |cell: &Cell| (cell.first, if cell.first == 0 { soft[cell.leaf as usize] } else { 0.0 });
+        Density::of(&self.cells.iter().map(cell).collect::<Vec<_>>())
+    }
+}
+
+/// A place in each cell around one, as large as that.
+fn around(cell: &Cell) -> impl Iterator<Item = [f64; 2]> + use<> {
+    let Cell { low: [x, y], side, .. } = *cell;
+    let ways = (0..9).filter(|way| *way != 4).map(|way| [f64::from(way % 3), f64::from(way / 3)]);
+    let places = ways.map(move |[right, up]| [x + (right - 0.5) * side, y + (up - 0.5) * side]);
+    places.filter(|place| place.iter().all(|at| (0.0..1.0).contains(at)))
+}
+
+/// Those of which it is true, and the others.
+fn parted(places: &mut [[f64; 2]], is_first: impl Fn(&[f64; 2]) -> bool) -> (&mut [[f64; 2]], &mut [[f64; 2]]) {
+    let mut end = 0;
+    for at in 0..places.len() {
+        if is_first(&places[at]) {
+            places.swap(at, end);
+            end += 1;
+        }
+    }
+    places.split_at_mut(end)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use spectra_core::numbers::Numbers;
+
+    /// What is drawn from cells of all sizes has the density that is told of it, and reaches all of the square.
+    #[test]
+    fn places_have_their_density() {
+        let numbers = Numbers::sobol(3);
+        let place = |i: u64| [numbers.one(1, i, 0), numbers.one(1, i, 1)];
+        let corner = |i: u64| place(i).map(|x| x * x * x);
+        let tree = Tree::around((0..4096).map(corner).collect());
+        assert!(tree.leaves() > 200, "{}", tree.leaves());
+        assert!((tree.areas().sum::<f64>() - 1.0).abs() < 1e-12);
+        let squares: Vec<f64> = (0..tree.leaves()).map(|leaf| f64::from(leaf % 7 == 3)).collect();
+        let tree = tree.density(&tree.best(&squares));
+        let (n, mut area, mut sum) = (1 << 16, 0.0, 0.0);
+        for i in 0..n {
+            let (at, density) = tree.draw(numbers.one(2, i, 3), numbers.one(2, i, 4));
+            assert!((tree.at(at) / density - 1.0).abs() < 1e-12);
+            area += 1.0 / density / n as f64;
+            sum += at[0] * at[1] / density / n as f64;
+        }
+        assert!((area - 1.0).abs() < 0.01, "{area}");
+        assert!((sum - 0.25).abs() < 0.004, "{sum}");
+    }
+}
