@@ -12,6 +12,8 @@ use spectra_core::loss::ALIVE;
 pub(crate) struct Blame {
     /// Step, wavelength, whether infinite: of the first number that is none.
     found: Option<(Step, f64, bool)>,
+    /// Rays that have no place or no direction at the start, since one of the batch before ended there. They get theirs before the lens.
+    stale: Vec<usize>,
 }
 
 impl Blame {
@@ -22,10 +24,19 @@ impl Blame {
         }
         let ([x, y, z], [l, m, n]) = (rays.positions(), rays.directions());
         let (wavelengths, weights, states) = (rays.wavelengths_nm(), rays.weights(), rays.states());
+        let whole = |i: usize| [x[i], y[i], z[i], l[i], m[i], n[i]].iter().all(|v| v.is_finite());
+        match step {
+            Step::Wavelengths => self.stale = (0..rays.len()).filter(|i| !whole(*i)).collect(),
+            Step::Lens => self.stale.clear(),
+            _ => self.stale.retain(|i| !whole(*i)),
+        }
+        let stale = &self.stale;
         self.found = (0..rays.len()).filter(|i| states[*i] == ALIVE).find_map(|i| {
-            let of_ray = [weights[i], wavelengths[i], x[i], y[i], z[i], l[i], m[i], n[i]];
+            let own = [weights[i], wavelengths[i]];
+            let way = if stale.binary_search(&i).is_ok() { [0.0; 6] } else { [x[i], y[i], z[i], l[i], m[i], n[i]] };
+            let of_ray = own.into_iter().chain(way);
             // Where several numbers are none, NaN is the one that tells of a slip.
-            let bad = of_ray.into_iter().filter(|v| !v.is_finite()).reduce(|a, b| if a.is_nan() { a } else { b })?;
+            let bad = of_ray.filter(|v| !v.is_finite()).reduce(|a, b| if a.is_nan() { a } else { b })?;
             Some((step, wavelengths[i], bad.is_infinite()))
         });
     }
@@ -52,4 +63,33 @@ fn no_number(pipeline: &Pipeline, (step, wavelength_nm, infinite): (Step, f64, b
     let section = pipeline.scene.params.get(step.section());
     let kind = section.and_then(|node| node.get("kind").unwrap_or(node).as_str()).map(str::to_owned);
     RenderError::NoNumber(NoNumber { step, kind, wavelength_nm, infinite })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A ray of the batch before ended nowhere; its successor has no place yet when wavelengths are drawn, no direction yet when it stands on
+    /// the source, and both when it reaches the lens.
+    #[test]
+    fn what_a_ray_of_the_batch_before_left_is_nobodys_fault() {
+        let mut rays = RayBatch::new(2);
+        rays.restart(2);
+        let c = rays.columns_mut();
+        (c.x[1], c.l[1]) = (f64::NAN, f64::NAN);
+        let mut blame = Blame::default();
+        blame.look(Step::Wavelengths, &rays);
+        rays.columns_mut().x[1] = 1.0;
+        blame.look(Step::Source, &rays);
+        assert_eq!(blame.found, None);
+        let mut slip = Blame::default();
+        slip.look(Step::Wavelengths, &rays);
+        slip.look(Step::Lens, &rays);
+        assert_eq!(slip.found.map(|(step, ..)| step), Some(Step::Lens));
+        rays.columns_mut().l[1] = 0.0;
+        blame.look(Step::Pupil, &rays);
+        rays.columns_mut().x[1] = f64::INFINITY;
+        blame.look(Step::Pupil, &rays);
+        assert_eq!(blame.found.map(|(step, _, infinite)| (step, infinite)), Some((Step::Pupil, true)));
+    }
 }

@@ -209,9 +209,11 @@ impl Forward {
             let len = batch.min(first + paths - at);
             self.batch(state, at, len as usize);
             if !state.contributions(&self.pipeline, self.scale) {
+                // Anew: places of rays that ended in another batch are nobody's fault.
                 let mut blame = Blame::default();
-                self.steps(state, at, len as usize, &mut |step, rays| blame.look(step, rays));
-                return (at - first, Some(blame.error(&self.pipeline, state, self.scale)));
+                let mut again = ThreadState::new(&self.pipeline, state.rays.capacity());
+                self.steps(&mut again, at, len as usize, &mut |step, rays| blame.look(step, rays));
+                return (at - first, Some(blame.error(&self.pipeline, &mut again, self.scale)));
             }
             let (tags, recorded) = (state.rays.tags(), &self.pipeline.recorded[..]);
             match &mut state.own {
