@@ -167,6 +167,18 @@ fn a_focus_pull_records_each_frames_focus_and_a_frame_alone_is_the_same() {
     }
 }
 
+/// Whether a picture with depth has been read already changes nothing: its lens was focused in the mean light of the picture where it
+/// had been, and in white light else.
+#[test]
+fn a_frame_of_a_picture_with_depth_alone_is_the_same() {
+    let small = "include: focus-pull\nimager: {resolution: [36, 24]}\nrender: {samples: 4}\n";
+    let folder = files(&[("scene.yaml", small)]);
+    let [both, alone] = ["1-2", "2"].map(|frames| rendered(folder.path(), frames, &["--frames", frames]));
+    for name in ["scene.0002.exr", "scene.0002.png"] {
+        assert!(bytes(&both.join(name)) == bytes(&alone.join(name)), "{name}");
+    }
+}
+
 /// What an EXR says that it was made of is a scene, and makes the same picture.
 #[test]
 fn the_record_of_a_frame_makes_it_again() {

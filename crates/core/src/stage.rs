@@ -29,6 +29,12 @@ pub trait Source: Send + Sync {
     /// [`RayBatch::lines`] numbers its lines.
     fn spectrum(&self) -> &SpectralPower;
 
+    /// Light that a lens is focused in: the same before [`Source::prepare`] as after it, or a picture would depend on what else was
+    /// rendered before it.
+    fn focus_light(&self) -> &SpectralPower {
+        self.spectrum()
+    }
+
     /// Peak brightness divided by mean brightness; used to keep highlights within the range of the exact sums.
     fn peak_over_mean(&self) -> f64 {
         1.0

@@ -29,7 +29,7 @@ impl FocusLight {
     pub(crate) fn of(source: &dyn Source, imager: &dyn Imager, pictured: Arc<[Channel]>) -> Self {
         let size = imager.size();
         let diagonal_mm = (size.width_mm * size.width_mm + size.height_mm * size.height_mm).sqrt();
-        let source = source.spectrum().clone();
+        let source = source.focus_light().clone();
         let system = SystemResponse { grid: source.grid, source, channels: pictured };
         Self {
             per_mm: FREQUENCY_135_PER_MM * (DIAGONAL_135_MM / diagonal_mm.max(SMALLEST_DIAGONAL_MM)),

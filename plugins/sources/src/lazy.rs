@@ -52,6 +52,9 @@ impl Source for Lazy {
     fn spectrum(&self) -> &SpectralPower {
         self.now().spectrum()
     }
+    fn focus_light(&self) -> &SpectralPower {
+        self.stand_in.focus_light()
+    }
     fn peak_over_mean(&self) -> f64 {
         self.now().peak_over_mean()
     }
