@@ -202,6 +202,7 @@ fn faults_in_the_table_name_file_row_and_column() {
         (format!("{header}0,0,0,0,0,1\n0,0,0,0,zero,1\n"), &["--nd"][..], ":3:9: ", "column `m`: found `zero`"),
         (format!("{header}0,0,0,0,0,2\n"), &["--nd"], ":2:7: ", "expected a unit vector"),
         (format!("{header}0,0,0,0,0,0\n"), &["--nd"], ":2:7: ", "expected a unit vector"),
+        (format!("{header}0,0,5,0,0,1\n"), &["--nd"], ":2:5: ", "the ray begins 5.000 mm behind the first surface"),
         (format!("{header}0,0,0,1e300,0,1e300\n"), &["--nd"], ":2:7: ", "expected a unit vector"),
         (format!("{header}0,0,0,0,0,1\n"), &[], ":1:1: ", "`wavelength_nm` is missing"),
         (

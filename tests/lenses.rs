@@ -206,3 +206,40 @@ fn a_decentered_lens_has_the_f_number_of_its_cone() {
         assert!((part - 1.0).abs() < 0.02, "{decenter:?}: {part}");
     }
 }
+
+/// Slips that a first look at the numbers shows: the signs of another convention, one sign lost, a thickness behind a mirror that light runs
+/// away from.
+#[test]
+fn slips_of_signs_are_doubted() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let warnings = |surfaces: &str| {
+        let path = folder.path().join("lens.yaml");
+        std::fs::write(&path, format!("name: slip\nsurfaces:\n{surfaces}")).expect("written");
+        load(shown(&path)).warnings.join("; ")
+    };
+    let singlet = |front: &str, rear: &str| {
+        format!(
+            "  - {{radius: {front}, thickness: 5, nd: 1.5168, vd: 64.2, semi-diameter: 8}}\n\
+             \x20 - {{radius: {rear}, thickness: 2, semi-diameter: 8}}\n  - {{kind: stop, thickness: 45, semi-diameter: 4}}\n"
+        )
+    };
+    let mirrors = |thickness: &str| {
+        format!(
+            "  - {{kind: stop, thickness: 0, semi-diameter: 20}}\n\
+             \x20 - {{radius: -200, thickness: {thickness}, mirror: true, semi-diameter: 20}}\n"
+        )
+    };
+    for (surfaces, wanted) in [
+        (singlet("50", "-50"), None),
+        (singlet("-50", "50"), Some("the lens spreads light")),
+        (singlet("50", "-500"), Some("mm behind the image plane")),
+        (mirrors("-100"), None),
+        (mirrors("100"), Some("the mirror of surface 2 sends light toward -z")),
+    ] {
+        let found = warnings(&surfaces);
+        match wanted {
+            Some(wanted) => assert!(found.contains(wanted), "{surfaces}{found}"),
+            None => assert_eq!(found, "", "{surfaces}"),
+        }
+    }
+}

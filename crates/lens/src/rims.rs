@@ -10,20 +10,26 @@ const HALVINGS: usize = 40;
 /// Surfaces may meet at their very rims, this part of the semi-diameter and beyond: published semi-diameters are rounded up
 /// (those of three library lenses by 2 to 3 %), and edges that touch are ground.
 const RIM: f64 = 0.95;
+/// The image plane may lie this part of the focal length from the image: published last distances are for other focus, or rounded.
+const FAR: f64 = 0.1;
 /// Gaps are compared with this slack, mm.
 const TOUCH_MM: f64 = 1e-6;
 
 impl Lens {
     /// What looks like a slip in the prescription, each with a hint: neighbors that meet within their clear semi-diameters,
-    /// an image of distant objects in front of the last surface. Nothing is said of lenses with mirrors or a bent axis.
+    /// an image of distant objects in front of the last surface or of the whole lens, an image plane far from the image, light that a mirror
+    /// sends away from the next surface. Nothing is said of lenses with a bent axis, and little of those with mirrors.
     #[must_use]
     pub fn doubts(&self) -> Vec<String> {
         let straight = |e: &Element| {
             let pose = if e.reversed { e.pose.reversed() } else { e.pose };
             e.action != Action::Reflect && pose.is_on_axis()
         };
-        if !self.image_pose.is_on_axis() || !self.elements.iter().all(straight) {
+        if !self.image_pose.is_on_axis() && !self.image_pose.facing_back().is_on_axis() {
             return Vec::new();
+        }
+        if !self.elements.iter().all(straight) {
+            return self.behind_mirrors();
         }
         let mut all = Vec::new();
         let solid: Vec<usize> = (0..self.elements.len()).filter(|i| self.elements[*i].action != Action::Pass).collect();
@@ -44,6 +50,47 @@ impl Lens {
                 "the image of distant objects lies {:.2} mm in front of the last surface: does a radius have the wrong sign?",
                 -bfl
             ));
+        }
+        if efl.is_finite() && efl < 0.0 {
+            all.push(format!(
+                "the lens spreads light (focal length {efl:.2} mm), so no image of distant objects falls on film: do all radii have the sign of \
+                 another convention?"
+            ));
+        }
+        let defocus = self.paraxial_defocus_mm(self.focused_mm);
+        if efl > 0.0 && bfl > 0.0 && defocus.abs() > FAR * efl {
+            all.push(format!(
+                "the image lies {:.2} mm {} the image plane: is a radius, its sign or a thickness wrong?",
+                defocus.abs(),
+                if defocus > 0.0 { "behind" } else { "in front of" }
+            ));
+        }
+        all
+    }
+
+    /// Surfaces that the light of a mirror runs away from, where all lie on one axis.
+    fn behind_mirrors(&self) -> Vec<String> {
+        let on_axis = |e: &Element| e.solid.is_none() && (e.pose.is_on_axis() || e.pose.reversed().is_on_axis());
+        if !self.elements.iter().all(on_axis) {
+            return Vec::new();
+        }
+        let solid = self.elements.iter().enumerate().filter(|(_, e)| e.action != Action::Pass);
+        let mut places: Vec<(usize, bool, f64)> =
+            solid.map(|(at, e)| (at + 1, e.action == Action::Reflect, e.vertex_z_mm())).collect();
+        places.push((self.elements.len() + 1, false, self.image_z_mm()));
+        let mut along = 1.0;
+        let mut all = Vec::new();
+        for pair in places.windows(2) {
+            let ((at, mirror, z), (_, _, next_z)) = (pair[0], pair[1]);
+            along *= if mirror { -1.0 } else { 1.0 };
+            let gap = next_z - z;
+            if mirror && gap * along < -TOUCH_MM {
+                all.push(format!(
+                    "the mirror of surface {at} sends light toward {}z, away from what comes next: is its thickness {:.2} mm?",
+                    if along < 0.0 { "-" } else { "+" },
+                    -gap
+                ));
+            }
         }
         all
     }

@@ -73,6 +73,15 @@ impl Comparison {
     }
 }
 
+/// Contrast that a perfect lens with a round pupil has at a part of its cutoff frequency, 1 / (wavelength times f-number).
+fn diffraction_limit(part: f64) -> f64 {
+    if part >= 1.0 {
+        return 0.0;
+    }
+    let root = (1.0 - part * part).sqrt();
+    std::f64::consts::FRAC_2_PI * (spectra_core::math::atan2(root, part) - part * root)
+}
+
 /// A row of the table: what it says, and how a lens answers.
 type Row = (String, Box<dyn Fn(&Compared) -> String>);
 
@@ -97,10 +106,18 @@ impl fmt::Display for Comparison {
             row("last surface to image", |l| mm(Some(l.info.image_distance_mm))),
             row("length", |l| mm(Some(l.info.vertex_length_mm))),
             row("surfaces", |l| Some(l.info.surfaces.len().to_string())),
-            row(&format!("contrast at {per_mm} lp/mm, axis"), |l| l.axial_contrast.map(|c| format!("{c:.3}"))),
+            row(&format!("geometrical contrast at {per_mm} lp/mm, axis, best focus"), |l| {
+                l.axial_contrast.map(|c| format!("{c:.3}"))
+            }),
+            row("  diffraction's limit", move |l| {
+                let (n, nm) = l.info.f_number.zip(l.info.wavelength_nm)?;
+                Some(format!("{:.3}", diffraction_limit(per_mm * n * nm * 1e-6)))
+            }),
         ];
         if let Some(deg) = self.field_deg {
-            rows.push(row(&format!("  at {deg:.1} deg"), |l| l.field_contrast.map(|c| format!("{c:.3}"))));
+            rows.push(row(&format!("  at {deg:.1} deg, mean of both sections"), |l| {
+                l.field_contrast.map(|c| format!("{c:.3}"))
+            }));
             rows.push(row(&format!("distortion at {deg:.1} deg"), |l| {
                 l.distortion.map(|d| format!("{:+.2} %", 100.0 * d))
             }));
@@ -132,5 +149,20 @@ impl fmt::Display for Comparison {
             }
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::diffraction_limit;
+
+    /// At 587.56 nm and 30 lp/mm, f/5, f/16 and f/22.
+    #[test]
+    fn diffraction_limits_contrast() {
+        for (n, wanted) in [(5.0, 0.888), (16.0, 0.646), (22.0, 0.519)] {
+            let found = diffraction_limit(30.0 * n * 587.56e-6);
+            assert!((found - wanted).abs() < 1e-3, "{n}: {found}");
+        }
+        assert_eq!((diffraction_limit(0.0), diffraction_limit(1.2)), (1.0, 0.0));
     }
 }

@@ -170,6 +170,19 @@ impl<'a> Bench<'a> {
         })
     }
 
+    /// How far a point lies behind the first surface and its vertex, within its rim.
+    fn behind_front_mm(&self, [x, y, z]: [f64; 3]) -> Option<f64> {
+        let first = self.lens.elements.first()?;
+        let pose = if first.reversed { first.pose.reversed() } else { first.pose };
+        let rim = first.semi_diameter_mm.unwrap_or(f64::INFINITY);
+        if !pose.is_on_axis() || x * x + y * y > rim * rim {
+            return None;
+        }
+        let sag = first.surface.sag_mm(x, y)?;
+        let front = first.vertex_z_mm() + if first.reversed { -sag } else { sag }.max(0.0);
+        Some(z - front).filter(|mm| *mm > 1e-6)
+    }
+
     /// Reads a batch; false where the table ended.
     fn fill(&mut self, rows: &mut NumberRows<impl BufRead>) -> Result<bool, TraceError> {
         self.start.clear();
@@ -194,6 +207,15 @@ impl<'a> Bench<'a> {
             }
             for cosine in &mut ray[3..6] {
                 *cosine /= length;
+            }
+            if let Some(mm) = self.behind_front_mm([ray[0], ray[1], ray[2]]) {
+                return Err(rows.fault_at(
+                    "z_mm",
+                    &format!(
+                        "the ray begins {mm:.3} mm behind the first surface, expected a point of it in front of the lens, where z_mm is \
+                         0 or negative"
+                    ),
+                ));
             }
             if self.light.is_none() {
                 self.check_wavelength(nm).map_err(|message| rows.fault_at("wavelength_nm", &message))?;
