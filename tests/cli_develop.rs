@@ -5,6 +5,8 @@ mod common;
 use common::{run, shown, spectra, text};
 use exr::prelude::{ReadChannels, ReadLayers};
 use image::{Rgb, RgbImage};
+#[cfg(unix)]
+use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::process::Output;
 
@@ -197,6 +199,66 @@ fn frames_have_grain_of_their_own_and_one_exposure() {
     put(at("two/plate.0007.png"), 2, 2, |_, _| [1; 3]);
     good(folder.path(), &["plates/plate.000#.png", "--stock", "tri-x", "-o", "two", "--skip-existing"]);
     assert_eq!(read(at("two/plate.0007.png")).dimensions(), (2, 2));
+}
+
+/// Interrupts a run that would take hours once it traces light; what it says from there on.
+#[cfg(unix)]
+fn interrupted(folder: &Path, arguments: &[&str]) -> String {
+    let endless = ["--json", "--noise", "0.01%", "--set", "render.samples=4000000"];
+    let mut child = spectra()
+        .current_dir(folder)
+        .args(["film", "develop", "--stock", "tri-x", "--lens", "helios-44-58-f2", "--side", "240"])
+        .args(endless)
+        .args(arguments)
+        .stdout(std::process::Stdio::piped())
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    let mut events = BufReader::new(child.stdout.take().expect("piped"));
+    let mut line = String::new();
+    while !line.contains("\"progress\"") {
+        line.clear();
+        assert!(events.read_line(&mut line).expect("UTF-8") > 0, "ended before any progress");
+    }
+    let killed = std::process::Command::new("sh").args(["-c", &format!("kill -INT {}", child.id())]).status();
+    assert!(killed.expect("a shell").success());
+    let mut rest = String::new();
+    events.read_to_string(&mut rest).expect("UTF-8");
+    assert_eq!(child.wait().expect("it ends").code(), Some(130), "{rest}");
+    rest
+}
+
+/// Names in a folder.
+#[cfg(unix)]
+fn names_in(folder: &Path) -> Vec<String> {
+    let entries = std::fs::read_dir(folder).expect("a folder");
+    let mut names: Vec<String> =
+        entries.map(|entry| entry.expect("an entry").file_name().into_string().expect("plain")).collect();
+    names.sort();
+    names
+}
+
+/// A frame that is not whole is not written, and of one picture only beside the file that is there.
+#[cfg(unix)]
+#[test]
+fn an_interrupt_leaves_whole_pictures() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    for frame in 1..3 {
+        put(at(&format!("plates/plate.{frame:04}.png")), 60, 40, colors);
+    }
+    std::fs::create_dir(at("out")).expect("made");
+    std::fs::write(at("out/plate.0001.png"), "a good frame").expect("written");
+    let said = interrupted(folder.path(), &["plates", "-o", "out"]);
+    assert!(said.contains("\"done\":0") && said.contains("\"interrupted\":true"), "{said}");
+    assert_eq!(names_in(&at("out")), ["plate.0001.png"]);
+    let said = interrupted(folder.path(), &["plates/plate.0001.png", "-o", "out/plate.0001.png"]);
+    assert!(said.contains("out/plate.0001.png` stays as it was"), "{said}");
+    assert_eq!(names_in(&at("out")), ["plate.0001.partial.png", "plate.0001.png"]);
+    assert_eq!(std::fs::read(at("out/plate.0001.png")).expect("there"), b"a good frame");
+    // What is not whole would be skipped the next time.
+    interrupted(folder.path(), &["plates/plate.0002.png", "-o", "out/plate.0002.png", "--skip-existing"]);
+    assert_eq!(names_in(&at("out")), ["plate.0001.partial.png", "plate.0001.png"]);
 }
 
 #[test]

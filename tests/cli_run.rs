@@ -201,6 +201,26 @@ fn ctrl_c_keeps_what_there_is_within_a_second() {
     assert!(folder.path().join("biotar-ortho.png").is_file());
 }
 
+/// A picture that is not whole takes no name of one that may be.
+#[cfg(unix)]
+#[test]
+fn ctrl_c_leaves_files_that_are_there() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    std::fs::write(at("biotar-ortho.png"), "an hour's work").expect("written");
+    let (mut child, mut events) = endless(folder.path(), &[]);
+    signal(&child, "INT");
+    let mut rest = String::new();
+    events.read_to_string(&mut rest).expect("UTF-8");
+    assert_eq!(child.wait().expect("it ends").code(), Some(130));
+    assert!(rest.contains("biotar-ortho.png` stays as it was"), "{rest}");
+    assert_eq!(std::fs::read(at("biotar-ortho.png")).expect("there"), b"an hour's work");
+    for name in ["biotar-ortho.partial.exr", "biotar-ortho.partial.png", "biotar-ortho.partial.json"] {
+        assert!(at(name).is_file() && rest.contains(name), "{name}: {rest}");
+    }
+    assert!(!at("biotar-ortho.exr").exists());
+}
+
 #[test]
 fn a_time_limit_ends_in_a_partial_picture_and_no_error() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -101,8 +101,8 @@ pub(crate) struct Completions {
         imager or film, 32-bit float) and SCENE.png or SCENE.tiff (the picture for viewing), named after the scene \
         file. SCENE.json holds the time, rays, light losses and versions. --output x.png (.tiff, .exr, .dng, .html) writes \
         only that picture. A file appears under its final name only once it is complete.\n\n\
-        Ctrl-C stops within a second and writes the picture so far, marked as partial (exit code 130); a second \
-        Ctrl-C quits immediately.\n\n\
+        Ctrl-C stops within a second and writes the picture so far, marked as partial (exit code 130), beside a \
+        file that is there as NAME.partial.png; a second Ctrl-C quits immediately.\n\n\
         A scene with a `sweep` produces numbered pictures SCENE-001.png ... and a contact sheet SCENE-contact.png; a \
         scene with an `animation` produces frames SCENE.0001.exr ...; SCENE-series.json describes each of them. All \
         are checked before rendering starts. In a sweep or an animation only complete pictures are written, even if \

@@ -3,7 +3,7 @@
 //! The picture fills the frame: of the format's frame the largest part that has the picture's shape. White has a luminance of
 //! 5000 cd/m2, as in daylight under clouds, which is short enough an exposure for any film. The camera meters its average.
 
-use crate::run::picture;
+use crate::run::{Unfinished, picture};
 use crate::still::WHITE_CD_M2;
 use crate::{Ended, Event, Host, Job, LightFrom, Names, Place, Session, SessionError, words};
 use serde_json::{Value, json};
@@ -53,6 +53,8 @@ pub struct Develop<'a> {
     pub format: Option<Setting>,
     /// Pixels along the longer side of the frame; those of the picture if none, or at most [`TRACED_PX`] through a lens.
     pub side_px: Option<u32>,
+    /// Whether they are a series: of it only whole pictures are written, and one that fails does not stop the others.
+    pub is_series: bool,
     /// Whether each picture is metered; otherwise the first one is, for all.
     pub meter_each: bool,
     /// Whether pictures whose files are there are left as they are.
@@ -83,16 +85,46 @@ const METERING: [&str; 3] = ["film.metering", "film.spot", "film.compensation"];
 /// [`SessionError`]; of several pictures, those that could be are developed all the same.
 pub fn develop(job: &Develop<'_>, host: &dyn Host) -> Result<Ended, SessionError> {
     match &job.plates[..] {
-        [plate] if plate.number.is_none() => one(job, plate, None, host).map(|(ended, _)| ended),
+        [plate] if !job.is_series && !job.skip_existing => {
+            one(job, plate, None, Unfinished::IsKept, host).map(|(ended, _)| ended)
+        }
+        // Where a file that is there is skipped, it has to be whole.
+        [plate] if !job.is_series => {
+            host.hear(Event::Picture(Some(place(plate, 0, 1))));
+            if is_there(plate, 0, 1, host) {
+                return Ok(Ended::Whole);
+            }
+            one(job, plate, None, Unfinished::IsLeftOut, host).map(|(ended, _)| ended)
+        }
         plates => all(job, plates, host),
     }
+}
+
+/// Which of how many pictures it is.
+fn place(plate: &Plate, index: usize, of: usize) -> Place {
+    let number = plate.number.unwrap_or(index as u64 + 1);
+    Place { number: u32::try_from(number).unwrap_or(u32::MAX), index, of }
+}
+
+/// Whether a picture's file is there; says so.
+fn is_there(plate: &Plate, index: usize, of: usize, host: &dyn Host) -> bool {
+    let is_there = host.folder().has(&plate.output);
+    if is_there {
+        let shown = host.folder().shown(&plate.output);
+        host.hear(Event::Series(
+            &format!("{} of {of}: {} is there", index + 1, words::files(std::slice::from_ref(&shown))),
+            &json!({ "event": "kept", "files": [shown] }),
+        ));
+    }
+    is_there
 }
 
 /// Develops pictures one by one.
 fn all(job: &Develop<'_>, plates: &[Plate], host: &dyn Host) -> Result<Ended, SessionError> {
     let begun_s = host.now_s();
+    let several = if let [_] = plates { "picture" } else { "pictures" };
     host.hear(Event::Series(
-        &format!("{} pictures, {}", plates.len(), if job.meter_each { "each metered" } else { "metered on the first" }),
+        &format!("{} {several}, {}", plates.len(), if job.meter_each { "each metered" } else { "metered on the first" }),
         &json!({ "event": "series", "pictures": plates.len(), "metered": if job.meter_each { "each" } else { "first" } }),
     ));
     let (mut metered, mut done, mut failed) = (None, 0, Vec::new());
@@ -102,15 +134,8 @@ fn all(job: &Develop<'_>, plates: &[Plate], host: &dyn Host) -> Result<Ended, Se
             ended = Ended::Stopped;
             break;
         }
-        let number = plate.number.unwrap_or(index as u64 + 1);
-        let number = u32::try_from(number).unwrap_or(u32::MAX);
-        host.hear(Event::Picture(Some(Place { number, index, of: plates.len() })));
-        if job.skip_existing && host.folder().has(&plate.output) {
-            let shown = host.folder().shown(&plate.output);
-            host.hear(Event::Series(
-                &format!("{} of {}: {shown} is there", index + 1, plates.len()),
-                &json!({ "event": "kept", "files": [shown] }),
-            ));
+        host.hear(Event::Picture(Some(place(plate, index, plates.len()))));
+        if job.skip_existing && is_there(plate, index, plates.len(), host) {
             done += 1;
             continue;
         }
@@ -125,7 +150,7 @@ fn all(job: &Develop<'_>, plates: &[Plate], host: &dyn Host) -> Result<Ended, Se
             }
         }
         let exposure = metered.as_ref().filter(|_| !job.meter_each);
-        match one(job, plate, exposure, host) {
+        match one(job, plate, exposure, Unfinished::IsLeftOut, host) {
             Ok((Ended::Stopped, _)) => {
                 ended = Ended::Stopped;
                 break;
@@ -148,7 +173,7 @@ fn all(job: &Develop<'_>, plates: &[Plate], host: &dyn Host) -> Result<Ended, Se
     host.hear(Event::Picture(None));
     let stopped = ended == Ended::Stopped && host.is_interrupted();
     host.hear(Event::Series(
-        &format!("{done} of {} pictures in {}", plates.len(), words::duration(host.now_s() - begun_s)),
+        &format!("{done} of {} {several} in {}", plates.len(), words::duration(host.now_s() - begun_s)),
         &json!({ "event": "end", "done": done, "of": plates.len(), "interrupted": stopped }),
     ));
     match &failed[..] {
@@ -171,6 +196,7 @@ fn one(
     job: &Develop<'_>,
     plate: &Plate,
     metered: Option<&FilmTime>,
+    unfinished: Unfinished,
     host: &dyn Host,
 ) -> Result<(Ended, Vec<FilmTime>), SessionError> {
     let (series, light) = scene(job, plate, metered).map_err(of_nobody)?;
@@ -189,7 +215,7 @@ fn one(
         versions: job.versions.clone(),
         unit_of: job.unit_of,
     };
-    picture(&job, host).map_err(|error| match error {
+    picture(&job, unfinished, host).map_err(|error| match error {
         SessionError::Faults(faults) => SessionError::Faults(of_nobody(faults)),
         other => other,
     })

@@ -10,6 +10,8 @@ use std::sync::Arc;
 #[derive(Clone, Debug, Default)]
 pub struct Names {
     only: Option<[String; 2]>,
+    /// What stands before the ending: `.partial` of a picture that is not whole.
+    mark: &'static str,
 }
 
 /// Endings of pictures, by which a name is known to be that of a file and not of a folder; no scene is written as the last of them.
@@ -27,7 +29,12 @@ impl Names {
     #[must_use]
     pub fn of_picture(file: &Path) -> Option<Self> {
         let [stem, ending] = [file.file_stem()?, file.extension()?].map(|part| part.to_string_lossy().into_owned());
-        ENDINGS.contains(&&*ending.to_ascii_lowercase()).then_some(Self { only: Some([stem, ending]) })
+        ENDINGS.contains(&&*ending.to_ascii_lowercase()).then_some(Self { only: Some([stem, ending]), mark: "" })
+    }
+
+    /// The same for a picture that is not whole, beside one that may be.
+    pub(crate) fn of_partial(&self) -> Self {
+        Self { only: self.only.clone(), mark: ".partial" }
     }
 
     /// What is written of a scene.
@@ -58,14 +65,15 @@ impl Names {
 
     /// The name of a file of a picture; `part` is what tells it from the picture's others.
     pub(crate) fn file(&self, member: &Member, part: &str, ending: &str) -> String {
+        let mark = self.mark;
         match &self.only {
-            Some([stem, own]) => format!("{stem}{part}.{own}"),
-            None => format!("{}{ending}", member.stem(part)),
+            Some([stem, own]) => format!("{stem}{part}{mark}.{own}"),
+            None => format!("{}{mark}{ending}", member.stem(part)),
         }
     }
 
     /// The name of a report; none where one file is asked for.
     pub(crate) fn report(&self, name: &str) -> Option<String> {
-        self.only.is_none().then(|| format!("{name}.json"))
+        self.only.is_none().then(|| format!("{name}{}.json", self.mark))
     }
 }

@@ -3,7 +3,7 @@
 use crate::files::{Files, write_report};
 use crate::job::{Ended, Job, LightFrom};
 use crate::taken::{Taken, prepare};
-use crate::{Event, Host, Report, Session, SessionError, header, series};
+use crate::{Event, Host, Report, Session, SessionError, header, series, words};
 use spectra_scene::{FilmTime, SeriesKind, Shot};
 
 /// Renders and writes all that a job wants.
@@ -12,14 +12,27 @@ use spectra_scene::{FilmTime, SeriesKind, Shot};
 /// [`SessionError`]; of several pictures, those that are done are written.
 pub fn run(job: &Job<'_>, host: &dyn Host) -> Result<Ended, SessionError> {
     if job.series.kind() == SeriesKind::Single {
-        picture(job, host).map(|(ended, _)| ended)
+        picture(job, Unfinished::IsKept, host).map(|(ended, _)| ended)
     } else {
         series::run(job, host)
     }
 }
 
+/// What becomes of a picture that is stopped before it is whole.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Unfinished {
+    /// It is written: where files of its name are there, beside them.
+    IsKept,
+    /// Nothing is written of it: a file of a series is whole.
+    IsLeftOut,
+}
+
 /// A scene that is one picture; and how long its films were exposed.
-pub(crate) fn picture(job: &Job<'_>, host: &dyn Host) -> Result<(Ended, Vec<FilmTime>), SessionError> {
+pub(crate) fn picture(
+    job: &Job<'_>,
+    unfinished: Unfinished,
+    host: &dyn Host,
+) -> Result<(Ended, Vec<FilmTime>), SessionError> {
     let mut session = Session::of_series(job.series.clone(), 0, job.isa)?;
     let member = session.member();
     let files = Files::of(&job.names, session.scene(), &member)?;
@@ -44,6 +57,28 @@ pub(crate) fn picture(job: &Job<'_>, host: &dyn Host) -> Result<(Ended, Vec<Film
         None => Taken::of(&mut session, host, &control)?,
     };
     let failure = taken.failure.take();
+    let stopped = taken.rendering.partial && host.is_interrupted();
+    let (mut files, mut report_file) = (files, report_file);
+    if taken.rendering.partial {
+        if unfinished == Unfinished::IsLeftOut {
+            return failure.map_or(Ok((Ended::Stopped, Vec::new())), |text| Err(SessionError::Failed(text)));
+        }
+        let there = names.iter().find(|name| host.folder().has(name));
+        // What a limit of time ends is what was asked for.
+        if let (Some(there), true) = (there, stopped || failure.is_some()) {
+            let there = words::files(&[host.folder().shown(there)]);
+            host.hear(Event::Note(&format!(
+                "`{there}` stays as it was: this picture is not whole, and has other names"
+            )));
+            let partial = job.names.of_partial();
+            files = Files::of(&partial, session.scene(), &member)?;
+            report_file = partial.report(&member.stem(""));
+            names = files.names();
+            names.extend(report_file.clone());
+            // These, too, are no files that are read.
+            prepare(job, host, &names)?;
+        }
+    }
     let exposure = &taken.rendering.exposure;
     let scene = session.scene();
     let times = scene.film_times(exposure);
@@ -58,7 +93,6 @@ pub(crate) fn picture(job: &Job<'_>, host: &dyn Host) -> Result<(Ended, Vec<Film
         write_report(host.folder(), file, shot.report())?;
     }
     host.hear(Event::Written(&shown));
-    let stopped = rendering.partial && host.is_interrupted();
     host.hear(Event::Done { report: &report, stopped });
     match failure {
         Some(text) => Err(SessionError::Failed(text)),

@@ -17,9 +17,11 @@ pub(super) fn develop(arguments: &FilmDevelop, isa: Isa, started: Instant) -> Ou
 
 fn developed(arguments: &FilmDevelop, isa: Isa, started: Instant) -> Outcome {
     let stock = called(&arguments.stock)?;
-    let (target, plates) = plates::of(&arguments.pictures, arguments.output.as_deref(), &keys::stem(&stock))?;
+    let plates::Found { target, plates, is_series } =
+        plates::of(&arguments.pictures, arguments.output.as_deref(), &keys::stem(&stock))?;
     let job = Develop {
         plates,
+        is_series,
         settings: settings(arguments, &stock)?,
         overrides: arguments.set.overrides.clone(),
         format: arguments.format.as_ref().map(|format| set("imager.format", "--format", format)),

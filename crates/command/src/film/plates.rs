@@ -110,9 +110,19 @@ fn files(argument: &str) -> Result<(Vec<Numbering>, bool), Failure> {
     Ok((all.into_iter().map(|(number, name)| (numbered.folder.join(name), Some(number))).collect(), true))
 }
 
+/// Pictures that are meant, and what becomes of them.
+pub(super) struct Found {
+    /// Where the files go.
+    pub target: Target,
+    /// The pictures.
+    pub plates: Vec<Plate>,
+    /// Whether several are asked for, however many are found.
+    pub is_series: bool,
+}
+
 /// Where the files go and which pictures become which of them; `suffix` tells the output of a single picture from it, where no
 /// output is named.
-pub(super) fn of(arguments: &[String], output: Option<&str>, suffix: &str) -> Result<(Target, Vec<Plate>), Failure> {
+pub(super) fn of(arguments: &[String], output: Option<&str>, suffix: &str) -> Result<Found, Failure> {
     let (mut found, mut several) = (Vec::new(), arguments.len() > 1);
     for argument in arguments {
         let (files, many) = files(argument)?;
@@ -133,7 +143,7 @@ pub(super) fn of(arguments: &[String], output: Option<&str>, suffix: &str) -> Re
         };
         let target = Target { folder: folder.to_owned(), names: Names::of_scene() };
         let plates = vec![Plate { file: shown(file), output: name, number: None }];
-        return apart(target, plates);
+        return apart(Found { target, plates, is_series: false });
     }
     // Numbers that do not tell pictures apart are none.
     let mut known = BTreeMap::new();
@@ -179,7 +189,7 @@ pub(super) fn of(arguments: &[String], output: Option<&str>, suffix: &str) -> Re
             return Err(Fault::new(text).hint("a numbered output: `-o out/####.png`").into());
         }
     }
-    apart(Target { folder, names: Names::of_scene() }, plates)
+    apart(Found { target: Target { folder, names: Names::of_scene() }, plates, is_series: true })
 }
 
 fn unknown(path: &Path) -> Failure {
@@ -188,9 +198,10 @@ fn unknown(path: &Path) -> Failure {
 }
 
 /// No picture is written over one that is read.
-fn apart(target: Target, plates: Vec<Plate>) -> Result<(Target, Vec<Plate>), Failure> {
+fn apart(found: Found) -> Result<Found, Failure> {
+    let Found { target, plates, .. } = &found;
     let real = |path: &Path| std::fs::canonicalize(path).ok();
-    for plate in &plates {
+    for plate in plates {
         let written = real(&target.folder.join(&plate.output));
         if written.is_some() && plates.iter().any(|other| real(Path::new(&other.file)) == written) {
             let text = format!(
@@ -200,7 +211,7 @@ fn apart(target: Target, plates: Vec<Plate>) -> Result<(Target, Vec<Plate>), Fai
             return Err(Fault::new(text).hint("another folder or file at `-o`").into());
         }
     }
-    Ok((target, plates))
+    Ok(found)
 }
 
 #[cfg(test)]
