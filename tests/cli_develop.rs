@@ -85,6 +85,40 @@ fn a_photograph_is_developed_on_every_kind_of_film() {
     assert!(said.contains("10 x 20 pixels") && read(at("t.png")).dimensions() == (10, 20), "{said}");
 }
 
+/// An EXR is the picture, in light, as a scene's is; what somebody sets as `output` is what it holds.
+#[test]
+fn an_exr_holds_the_developed_picture() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    put(at("photo.png"), 30, 20, colors);
+    let names = |file: &str| channels(at(file)).into_iter().map(|(name, _)| name).collect::<Vec<_>>();
+    let plain = ["photo.png", "--stock", "tri-x", "--grain", "off", "--halation", "off"];
+    good(folder.path(), &[&plain[..], &["-o", "normal.exr"]].concat());
+    assert_eq!(names("normal.exr"), ["B", "G", "R"]);
+    // What is done to the film shows: paper of grade 5 is white and black where that of grade 0 is gray.
+    let spread = |file: &str| {
+        let all = channels(at(file)).swap_remove(1).1;
+        let mean = all.iter().sum::<f32>() / all.len() as f32;
+        (all.iter().map(|v| (v - mean).powi(2)).sum::<f32>() / all.len() as f32).sqrt()
+    };
+    good(folder.path(), &[&plain[..], &["--grade", "0", "-o", "soft.exr"]].concat());
+    good(folder.path(), &[&plain[..], &["--grade", "5", "-o", "hard.EXR"]].concat());
+    let (soft, hard) = (spread("soft.exr"), spread("hard.EXR"));
+    assert!(hard > 1.2 * soft, "{soft} {hard}");
+    // White is that of the print, as in a PNG.
+    good(folder.path(), &[&plain[..], &["-o", "normal.png"]].concat());
+    let encoded = |v: f32| 255.0 * if v <= 0.003_130_8 { 12.92 * v } else { 1.055 * v.powf(1.0 / 2.4) - 0.055 };
+    let png = read(at("normal.png"));
+    for (linear, pixel) in channels(at("normal.exr")).swap_remove(1).1.iter().zip(png.pixels()) {
+        assert!((encoded(*linear) - f32::from(pixel[1])).abs() < 1.5, "{linear} {pixel:?}");
+    }
+    good(folder.path(), &[&plain[..], &["--set", "output=[exr]", "-o", "light.exr"]].concat());
+    assert!(names("light.exr").iter().any(|name| name.contains("meter")), "{:?}", names("light.exr"));
+    let layers = "output=[{kind: exr, holds: picture, layers: [densities]}]";
+    good(folder.path(), &[&plain[..], &["--set", layers, "-o", "layers.exr"]].concat());
+    assert!(names("layers.exr").iter().any(|name| name.starts_with("density.")), "{:?}", names("layers.exr"));
+}
+
 /// The scene that a developed picture records is a scene that runs, with the same bits.
 #[test]
 fn the_recorded_scene_gives_the_same_picture() {
@@ -142,11 +176,12 @@ fn layers_get_of_colors_what_rays_bring_them() {
     for (i, color) in [[200, 30, 20], [30, 160, 40], [20, 40, 190], [230, 200, 60]].into_iter().enumerate() {
         put(at("color.png"), 6, 4, |_, _| color);
         let plain = ["color.png", "--stock", "5207", "--meter", "each", "--format", "super-8"];
-        good(folder.path(), &[&plain[..], &["-o", "own.exr"]].concat());
+        let light = ["--set", "output=[exr]"];
+        good(folder.path(), &[&plain[..], &light, &["-o", "own.exr"]].concat());
         let through = ["--lens", "helios", "--f-number", "f/8", "--noise", "0.3%", "-o", "lens.exr"];
         // A lens that has no color of its own.
         let clear = ["--set", "lens.coating=ideal", "--set", "lens.absorption=false"];
-        good(folder.path(), &[&plain[..], &through, &clear].concat());
+        good(folder.path(), &[&plain[..], &light, &through, &clear].concat());
         let (own, lens) = (channels(at("own.exr")), channels(at("lens.exr")));
         for ((name, own), (_, lens)) in own.iter().zip(&lens).filter(|((name, _), _)| !name.contains("meter")) {
             let middle = |values: &[f32]| f64::from(values[2 * 6 + 3]);

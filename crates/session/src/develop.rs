@@ -269,6 +269,11 @@ fn scene(job: &Develop<'_>, plate: &Plate, metered: Option<&FilmTime>) -> Result
     if has_lens {
         made.push(("render.noise", "1 %".to_owned()));
     }
+    // The name asks for the picture on film; the light before it is an output that somebody sets.
+    let is_exr = Path::new(&plate.output).extension().is_some_and(|ending| ending.eq_ignore_ascii_case("exr"));
+    if is_exr && !overrides.iter().any(|text| path_of(text) == "output") {
+        made.push(("output", "[{kind: exr, holds: picture}]".to_owned()));
+    }
     made.extend(plate.number.map(|number| ("render.frame", number.to_string())));
 
     let nobody = Arc::new(SourceFile::new(MADE, ""));

@@ -120,6 +120,8 @@ pub(crate) struct FilmLamp {
         (plate.####.exr, plate.%04d.exr) are developed one by one, with other grain in each, metered on the first \
         unless --meter each; -o is then a folder, or a sequence such as out/####.tiff. A picture that fails does not \
         stop the others. Existing files are replaced.\n\n\
+        An .exr file holds the picture in linear light (R, G, B, the primaries of sRGB). --set 'output=[{kind: exr, holds: picture, \
+        space: acescg}]' takes another space, --set output=[exr] the light that exposes the film, before any of this.\n\n\
         The values of --stock, --push and so on are those of the keys of a scene's `film` (see `spectra doc film/stock`); \
         --set sets any other key of the scene that this makes, such as source.illuminant or film.optics.",
     after_long_help = "Examples, where photo.jpg and the folder plates/ are yours:\n\n    \
