@@ -114,6 +114,20 @@ fn an_exr_holds_the_developed_picture() {
     }
     good(folder.path(), &[&plain[..], &["--set", "output=[exr]", "-o", "light.exr"]].concat());
     assert!(names("light.exr").iter().any(|name| name.contains("meter")), "{:?}", names("light.exr"));
+    // So are files in a folder.
+    let set = ["--set", "output=[{kind: exr, holds: picture, space: acescg}]"];
+    put(at("photos/a.png"), 30, 20, colors);
+    good(folder.path(), &[&plain[..], &set, &["photos", "-o", "folder"]].concat());
+    for (file, arguments) in [("alone/photo.exr", &["-o", "alone/"][..]), ("photo-kodak-tri-x-400.exr", &[])] {
+        good(folder.path(), &[&plain[..], &set, arguments].concat());
+        assert_eq!(names(file), ["B", "G", "R"], "{file}");
+    }
+    for file in ["folder/photo.exr", "folder/a.exr"] {
+        assert_eq!(names(file), ["B", "G", "R"], "{file}");
+    }
+    let two = ["--set", "output=[exr, png]", "-o", "two/"];
+    let said = refused(folder.path(), &[&plain[..], &two].concat(), 2);
+    assert!(said.contains("one file is written of a picture, and these are .exr, .png"), "{said}");
     let layers = "output=[{kind: exr, holds: picture, layers: [densities]}]";
     good(folder.path(), &[&plain[..], &["--set", layers, "-o", "layers.exr"]].concat());
     assert!(names("layers.exr").iter().any(|name| name.starts_with("density.")), "{:?}", names("layers.exr"));

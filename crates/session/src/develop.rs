@@ -14,7 +14,7 @@ use spectra_core::resources::{ResourceError, Resources};
 use spectra_core::spectral::BAND;
 use spectra_core::stage::Imager;
 use spectra_pictures::read::{Choice, Header, header};
-use spectra_scene::{FileResources, FilmTime, NO_LENS, Series, document, series_of_tree, yaml};
+use spectra_scene::{FileResources, FilmTime, NO_LENS, Output, Series, document, series_of_tree, yaml};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -78,6 +78,41 @@ const MADE: &str = "--made";
 const MAX_BYTES: u64 = 1 << 30;
 /// Keys of the film that find the exposure; where it is known they are left out.
 const METERING: [&str; 3] = ["film.metering", "film.spot", "film.compensation"];
+
+/// How the file of a picture ends, such as `png`, where `output` is set among `overrides` (texts `path=value`).
+///
+/// # Errors
+/// No picture is among the outputs, or more than one file.
+pub fn picture_ending(overrides: &[String]) -> Result<Option<String>, Fault> {
+    // What cannot be read is told of where the scene is read.
+    let set =
+        overrides.iter().rev().filter_map(|text| yaml::parse_override(text).ok()).find(|set| set.path == "output");
+    let Some(yaml::Override { node, .. }) = set else { return Ok(None) };
+    let files = FileResources::beside(Path::new(""));
+    let context = Context::new(&files, BAND);
+    let mut endings = Vec::new();
+    for item in (0..).map_while(|index| node.element(index)) {
+        let output = Params::stage(item.clone(), "output").and_then(|p| registry::build::<dyn Output>(&p, &context));
+        let Ok(output) = output else { return Ok(None) };
+        endings.push(output.ending()[1]);
+    }
+    match &endings[..] {
+        [ending] if Names::of_picture(Path::new(&format!("picture{ending}"))).is_some() => {
+            Ok(Some(ending.trim_start_matches('.').to_owned()))
+        }
+        [] => Ok(None),
+        [ending] => {
+            let text = format!("`film develop` writes pictures, and {ending} is none");
+            Err(node.fault(text).hint("`--set output=[png]`, or tiff or exr"))
+        }
+        [first, ..] => {
+            let text = format!("one file is written of a picture, and these are {}", endings.join(", "));
+            let hint =
+                format!("leave one, or say at `-o` which: `-o out/picture{first}`, of a sequence `-o out/####{first}`");
+            Err(node.fault(text).hint(hint))
+        }
+    }
+}
 
 /// Develops all pictures.
 ///

@@ -45,7 +45,7 @@ pub mod words;
 
 pub use check::{Checked, Look, check};
 pub use cube::{Cube, CubeErrors, CubeFile, RANDOM_COLORS};
-pub use develop::{Develop, Plate, Setting, TRACED_PX, develop};
+pub use develop::{Develop, Plate, Setting, TRACED_PX, develop, picture_ending};
 pub use error::SessionError;
 pub use header::films;
 pub use host::{Event, Folder, Host, Place};

@@ -137,7 +137,7 @@ pub(crate) struct FilmDevelop {
     #[arg(long, value_name = "NAME")]
     pub stock: String,
     /// Output file (.png, .tiff, .exr); of several pictures a folder or a numbered sequence. PICTURE-STOCK.png in the
-    /// working folder if not given, or the folder `out`.
+    /// working folder if not given, or the folder `out`. In a folder files are of the kind that --set output=[...] names, or .png.
     #[arg(short, long, value_name = "FILE|DIR")]
     pub output: Option<String>,
     /// A lens to render the picture through: a bundled one (see `spectra list lens`), a part of its name, or a file.

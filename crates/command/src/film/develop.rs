@@ -7,7 +7,7 @@ use crate::outcome::{Failure, Outcome};
 use crate::run::{Face, Speaks, told};
 use crate::{doc, version};
 use spectra_core::Isa;
-use spectra_session::{Develop, Setting};
+use spectra_session::{Develop, Setting, picture_ending};
 use std::time::Instant;
 
 /// Develops pictures; with `--json` a failure is an event as well.
@@ -17,8 +17,9 @@ pub(super) fn develop(arguments: &FilmDevelop, isa: Isa, started: Instant) -> Ou
 
 fn developed(arguments: &FilmDevelop, isa: Isa, started: Instant) -> Outcome {
     let stock = called(&arguments.stock)?;
+    let ending = || Ok(picture_ending(&arguments.set.overrides)?.unwrap_or_else(|| "png".to_owned()));
     let plates::Found { target, plates, is_series } =
-        plates::of(&arguments.pictures, arguments.output.as_deref(), &keys::stem(&stock))?;
+        plates::of(&arguments.pictures, arguments.output.as_deref(), &keys::stem(&stock), &ending)?;
     let job = Develop {
         plates,
         is_series,

@@ -120,9 +120,17 @@ pub(super) struct Found {
     pub is_series: bool,
 }
 
+/// How files end that are not named.
+pub(super) type Ending<'a> = &'a dyn Fn() -> Result<String, Failure>;
+
 /// Where the files go and which pictures become which of them; `suffix` tells the output of a single picture from it, where no
 /// output is named.
-pub(super) fn of(arguments: &[String], output: Option<&str>, suffix: &str) -> Result<Found, Failure> {
+pub(super) fn of(
+    arguments: &[String],
+    output: Option<&str>,
+    suffix: &str,
+    ending: Ending<'_>,
+) -> Result<Found, Failure> {
     let (mut found, mut several) = (Vec::new(), arguments.len() > 1);
     for argument in arguments {
         let (files, many) = files(argument)?;
@@ -133,8 +141,10 @@ pub(super) fn of(arguments: &[String], output: Option<&str>, suffix: &str) -> Re
     let shown = |path: &Path| path.to_string_lossy().into_owned();
     if let ([(file, _)], false) = (&found[..], several) {
         let (folder, name) = match output.map(Path::new) {
-            None => (Path::new("."), format!("{}-{suffix}.png", stem(file))),
-            Some(path) if path.is_dir() || shown(path).ends_with('/') => (path, format!("{}.png", stem(file))),
+            None => (Path::new("."), format!("{}-{suffix}.{}", stem(file), ending()?)),
+            Some(path) if path.is_dir() || shown(path).ends_with('/') => {
+                (path, format!("{}.{}", stem(file), ending()?))
+            }
             Some(path) if Names::of_picture(path).is_some() => {
                 let folder = path.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or(Path::new("."));
                 (folder, path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned()))
@@ -169,9 +179,10 @@ pub(super) fn of(arguments: &[String], output: Option<&str>, suffix: &str) -> Re
         }
         (None, None) => PathBuf::from("out"),
     };
+    let ending = if numbered.is_some() { String::new() } else { ending()? };
     let name = |at: usize, file: &Path, own: Option<u64>| match &numbered {
         Some(numbered) => numbered.name(number(at, own)),
-        None => format!("{}.png", stem(file)),
+        None => format!("{}.{ending}", stem(file)),
     };
     let plates: Vec<Plate> = found
         .iter()
