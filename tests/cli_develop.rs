@@ -287,6 +287,23 @@ fn names_in(folder: &Path) -> Vec<String> {
     names
 }
 
+/// Through a lens, too, what is missing gets the exposure that it had: that of the first picture, which is there.
+#[test]
+fn a_resumed_sequence_through_a_lens_is_metered_on_its_first_picture() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    put(at("plates/plate.0001.png"), 60, 40, |_, _| [150; 3]);
+    put(at("plates/plate.0002.png"), 60, 40, |_, _| [60; 3]);
+    let lens = ["--lens", "helios-44-58-f2", "--side", "24", "--noise", "5%"];
+    let all = [&["plates", "--stock", "tri-x", "-o", "out"][..], &lens].concat();
+    good(folder.path(), &all);
+    let dark = std::fs::read(at("out/plate.0002.png")).expect("there");
+    std::fs::remove_file(at("out/plate.0002.png")).expect("removed");
+    let said = good(folder.path(), &[&all[..], &["--skip-existing"]].concat());
+    assert!(said.contains("`plates/plate.0001.png` is traced once more") && !said.contains("in place of"), "{said}");
+    assert!(std::fs::read(at("out/plate.0002.png")).expect("there") == dark, "another exposure");
+}
+
 /// A frame that is not whole is not written, and of one picture only beside the file that is there.
 #[cfg(unix)]
 #[test]

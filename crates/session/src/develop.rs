@@ -3,8 +3,9 @@
 //! The picture fills the frame: of the format's frame the largest part that has the picture's shape. White has a luminance of
 //! 5000 cd/m2, as in daylight under clouds, which is short enough an exposure for any film. The camera meters its average.
 
-use crate::run::{Unfinished, picture};
+use crate::run::{Unfinished, fits, picture};
 use crate::still::WHITE_CD_M2;
+use crate::taken::Taken;
 use crate::{Ended, Event, Host, Job, LightFrom, Names, Place, Session, SessionError, words};
 use serde_json::{Value, json};
 use spectra_core::Isa;
@@ -163,6 +164,8 @@ fn all(job: &Develop<'_>, plates: &[Plate], host: &dyn Host) -> Result<Ended, Se
         &json!({ "event": "series", "pictures": plates.len(), "metered": if job.meter_each { "each" } else { "first" } }),
     ));
     let (mut metered, mut done, mut failed) = (None, 0, Vec::new());
+    // An exposure that is stated is not metered.
+    let mut meters = !job.meter_each;
     let mut ended = Ended::Whole;
     for (index, plate) in plates.iter().enumerate() {
         if host.is_stopped() {
@@ -174,8 +177,13 @@ fn all(job: &Develop<'_>, plates: &[Plate], host: &dyn Host) -> Result<Ended, Se
             done += 1;
             continue;
         }
-        if metered.is_none() && !job.meter_each && index > 0 {
-            metered = plates[..index].iter().find_map(|earlier| meter(job, earlier));
+        if metered.is_none() && meters && index > 0 {
+            let mut earlier = plates[..index].iter().filter(|earlier| !failed.contains(&earlier.file));
+            metered = earlier.find_map(|earlier| meter(job, earlier, host));
+            if host.is_stopped() {
+                ended = Ended::Stopped;
+                break;
+            }
             if metered.is_none() {
                 let text = format!(
                     "`{}` is metered in place of the first picture, and those after it are exposed as it is",
@@ -193,6 +201,7 @@ fn all(job: &Develop<'_>, plates: &[Plate], host: &dyn Host) -> Result<Ended, Se
             Ok((Ended::Whole, times)) => {
                 done += 1;
                 metered = metered.or_else(|| times.into_iter().find(|time| time.is_metered));
+                meters &= metered.is_some();
             }
             // What is wrong with the settings is wrong with every picture.
             Err(SessionError::Faults(faults)) if faults.iter().any(|fault| fault.place.is_some()) => {
@@ -218,11 +227,23 @@ fn all(job: &Develop<'_>, plates: &[Plate], host: &dyn Host) -> Result<Ended, Se
     }
 }
 
-/// What the camera metered of a picture that is there already; `None` where it cannot be read, or where a lens has to be traced for it.
-fn meter(job: &Develop<'_>, plate: &Plate) -> Option<FilmTime> {
-    let (series, LightFrom::Pixels) = scene(job, plate, None).ok()? else { return None };
-    let session = Session::of_series(series, 0, job.isa).ok()?;
-    let exposure = session.expose().ok()?.exposure;
+/// What the camera metered of a picture that is there already; `None` where it cannot be read, or tracing stops. Through a lens it is
+/// traced as it was then: less light would meter it otherwise in the last digits.
+fn meter(job: &Develop<'_>, plate: &Plate, host: &dyn Host) -> Option<FilmTime> {
+    let (series, light) = scene(job, plate, None).ok()?;
+    let mut session = Session::of_series(series, 0, job.isa).ok()?;
+    let rendering = match light {
+        LightFrom::Pixels => session.expose().ok()?,
+        LightFrom::Rays if !session.scene().films.iter().any(|film| film.film.is_metered()) => return None,
+        LightFrom::Rays => {
+            fits(&session, host).ok()?;
+            host.hear(Event::Note(&format!("`{}` is traced once more, to expose the others as it was", plate.file)));
+            let control = host.control();
+            session.prepare(host.workers()).ok()?;
+            Taken::of(&mut session, host, &control).ok()?.rendering
+        }
+    };
+    let exposure = (!rendering.partial).then_some(rendering.exposure)?;
     session.scene().film_times(&exposure).into_iter().find(|time| time.is_metered)
 }
 
