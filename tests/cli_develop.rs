@@ -287,6 +287,31 @@ fn names_in(folder: &Path) -> Vec<String> {
     names
 }
 
+/// A frame alone is that frame of its sequence: its number is in its grain, and in the name of its file.
+#[test]
+fn a_frame_alone_is_that_of_its_sequence() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    for frame in 7..9 {
+        put(at(&format!("plates/plate.{frame:04}.png")), 60, 40, |_, _| [118; 3]);
+    }
+    let film = ["--stock", "tri-x", "--format", "super-8", "--meter", "each", "-o"];
+    good(folder.path(), &[&["plates"][..], &film, &["all"]].concat());
+    let [seven, eight] = ["all/plate.0007.png", "all/plate.0008.png"].map(|name| std::fs::read(at(name)).expect(name));
+    assert!(seven != eight, "one grain for both");
+    let one = ["plates/plate.0008.png"];
+    for (output, file) in
+        [("alone/f.####.png", "alone/f.0008.png"), ("folder/", "folder/plate.0008.png"), ("file.png", "file.png")]
+    {
+        good(folder.path(), &[&one[..], &film, &[output]].concat());
+        assert!(std::fs::read(at(file)).expect(file) == eight, "{file}");
+    }
+    assert!(!at("alone/f.####.png").exists());
+    put(at("photo.png"), 60, 40, colors);
+    let said = refused(folder.path(), &[&["photo.png"][..], &film, &["alone/f.%04d.png"]].concat(), 2);
+    assert!(said.contains("`photo.png` has no number to put into") && said.contains("-o alone/f.0001.png"), "{said}");
+}
+
 /// Through a lens, too, what is missing gets the exposure that it had: that of the first picture, which is there.
 #[test]
 fn a_resumed_sequence_through_a_lens_is_metered_on_its_first_picture() {

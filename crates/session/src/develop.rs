@@ -37,7 +37,7 @@ pub struct Plate {
     pub file: String,
     /// The file that is written, in the folder of the host.
     pub output: String,
-    /// Its number, where it is one of several: each has grain of its own by it.
+    /// Its number, if it has one, as one of several or by its name: each has grain of its own by it.
     pub number: Option<u64>,
 }
 

@@ -139,20 +139,17 @@ pub(super) fn of(
     }
     let stem = |path: &Path| path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
     let shown = |path: &Path| path.to_string_lossy().into_owned();
-    if let ([(file, _)], false) = (&found[..], several) {
+    if let ([(file, own)], false) = (&found[..], several) {
         let (folder, name) = match output.map(Path::new) {
             None => (Path::new("."), format!("{}-{suffix}.{}", stem(file), ending()?)),
             Some(path) if path.is_dir() || shown(path).ends_with('/') => {
                 (path, format!("{}.{}", stem(file), ending()?))
             }
-            Some(path) if Names::of_picture(path).is_some() => {
-                let folder = path.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or(Path::new("."));
-                (folder, path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned()))
-            }
+            Some(path) if Names::of_picture(path).is_some() => (folder_of(path), name_of(file, *own, path)?),
             Some(path) => return Err(unknown(path)),
         };
         let target = Target { folder: folder.to_owned(), names: Names::of_scene() };
-        let plates = vec![Plate { file: shown(file), output: name, number: None }];
+        let plates = vec![Plate { file: shown(file), output: name, number: *own }];
         return apart(Found { target, plates, is_series: false });
     }
     // Numbers that do not tell pictures apart are none.
@@ -201,6 +198,23 @@ pub(super) fn of(
         }
     }
     apart(Found { target: Target { folder, names: Names::of_scene() }, plates, is_series: true })
+}
+
+/// The name of the file of a picture alone, where `output` is a file or a numbered sequence.
+fn name_of(picture: &Path, number: Option<u64>, output: &Path) -> Result<String, Failure> {
+    let plain = || output.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
+    let Some(numbered) = Numbered::of(&output.to_string_lossy()) else { return Ok(plain()) };
+    number.map(|number| numbered.name(number)).ok_or_else(|| {
+        let text = format!("`{}` has no number to put into `{}`", picture.display(), output.display());
+        Fault::new(text)
+            .hint(format!("name the file: `-o {}`", numbered.folder.join(numbered.name(1)).display()))
+            .into()
+    })
+}
+
+/// The folder of a file.
+fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
 fn unknown(path: &Path) -> Failure {
