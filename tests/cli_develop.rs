@@ -238,6 +238,17 @@ fn frames_have_grain_of_their_own_and_one_exposure() {
     good(folder.path(), &[&each[..], &["-o", "each/d.%03d.tiff"]].concat());
     let again = mean(&read(at("each/d.009.tiff")));
     assert!((again - a).abs() < 1.5, "{again} {a}");
+    // A gap is told of, to people and programs; what somebody chooses is none.
+    put(at("gaps/plate.0003.png"), 6, 4, colors);
+    put(at("gaps/plate.0007.png"), 6, 4, colors);
+    for pictures in ["gaps", "gaps/plate.####.png"] {
+        let said = good(folder.path(), &[pictures, "--stock", "tri-x", "-o", "gap"]);
+        assert!(said.contains("note: frames 4 to 6 are missing"), "{said}");
+    }
+    let output = in_folder(folder.path(), &["gaps", "--stock", "tri-x", "-o", "gap", "--json"]);
+    assert!(text(&output.stdout).lines().any(|l| l.contains("\"note\"") && l.contains("frames 4 to 6 are missing")));
+    let chosen = ["gaps/plate.0003.png", "gaps/plate.0007.png", "--stock", "tri-x", "-o", "gap"];
+    assert!(!good(folder.path(), &chosen).contains("missing"));
     // A frame alone has the grain that it has among others, whatever came before.
     good(
         folder.path(),

@@ -56,6 +56,8 @@ pub struct Develop<'a> {
     pub side_px: Option<u32>,
     /// Whether they are a series: of it only whole pictures are written, and one that fails does not stop the others.
     pub is_series: bool,
+    /// What is worth knowing of a series before any of it is developed.
+    pub notes: Vec<String>,
     /// Whether each picture is metered; otherwise the first one is, for all.
     pub meter_each: bool,
     /// Whether pictures whose files are there are left as they are.
@@ -163,6 +165,9 @@ fn all(job: &Develop<'_>, plates: &[Plate], host: &dyn Host) -> Result<Ended, Se
         &format!("{} {several}, {}", plates.len(), if job.meter_each { "each metered" } else { "metered on the first" }),
         &json!({ "event": "series", "pictures": plates.len(), "metered": if job.meter_each { "each" } else { "first" } }),
     ));
+    for note in &job.notes {
+        host.hear(Event::Note(note));
+    }
     let (mut metered, mut done, mut failed) = (None, 0, Vec::new());
     // An exposure that is stated is not metered.
     let mut meters = !job.meter_each;

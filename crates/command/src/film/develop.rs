@@ -18,11 +18,12 @@ pub(super) fn develop(arguments: &FilmDevelop, isa: Isa, started: Instant) -> Ou
 fn developed(arguments: &FilmDevelop, isa: Isa, started: Instant) -> Outcome {
     let stock = called(&arguments.stock)?;
     let ending = || Ok(picture_ending(&arguments.set.overrides)?.unwrap_or_else(|| "png".to_owned()));
-    let plates::Found { target, plates, is_series } =
+    let plates::Found { target, plates, is_series, missing } =
         plates::of(&arguments.pictures, arguments.output.as_deref(), &keys::stem(&stock), &ending)?;
     let job = Develop {
         plates,
         is_series,
+        notes: missing.into_iter().collect(),
         settings: settings(arguments, &stock)?,
         overrides: arguments.set.overrides.clone(),
         format: arguments.format.as_ref().map(|format| set("imager.format", "--format", format)),

@@ -118,6 +118,31 @@ pub(super) struct Found {
     pub plates: Vec<Plate>,
     /// Whether several are asked for, however many are found.
     pub is_series: bool,
+    /// Numbers that a sequence leaves out, in words.
+    pub missing: Option<String>,
+}
+
+/// The frames that a sequence of numbers leaves out, in words.
+fn missing(mut numbers: Vec<u64>) -> Option<String> {
+    /// Most gaps that are named.
+    const NAMED: usize = 4;
+    numbers.sort_unstable();
+    let gaps: Vec<(u64, u64)> =
+        numbers.windows(2).filter(|pair| pair[1] - pair[0] > 1).map(|pair| (pair[0] + 1, pair[1] - 1)).collect();
+    if let [(first, last)] = gaps[..]
+        && first == last
+    {
+        return Some(format!("frame {first} is missing"));
+    }
+    let one = |&(first, last): &(u64, u64)| {
+        if first == last { first.to_string() } else { format!("{first} to {last}") }
+    };
+    let mut named: Vec<String> = gaps.iter().take(NAMED).map(one).collect();
+    let more: u64 = gaps.iter().skip(NAMED).map(|(first, last)| last - first + 1).sum();
+    named.extend((more > 0).then(|| format!("{more} more")));
+    let last = named.pop()?;
+    let before = if named.is_empty() { String::new() } else { format!("{} and ", named.join(", ")) };
+    Some(format!("frames {before}{last} are missing"))
 }
 
 /// How files end that are not named.
@@ -150,7 +175,7 @@ pub(super) fn of(
         };
         let target = Target { folder: folder.to_owned(), names: Names::of_scene() };
         let plates = vec![Plate { file: shown(file), output: name, number: *own }];
-        return apart(Found { target, plates, is_series: false });
+        return apart(Found { target, plates, is_series: false, missing: None });
     }
     // Numbers that do not tell pictures apart are none.
     let mut known = BTreeMap::new();
@@ -197,7 +222,13 @@ pub(super) fn of(
             return Err(Fault::new(text).hint("a numbered output: `-o out/####.png`").into());
         }
     }
-    apart(Found { target: Target { folder, names: Names::of_scene() }, plates, is_series: true })
+    // Files that are named one by one are a choice; those of a folder are a sequence where only numbers tell them apart.
+    let before = |file: &Path| stem(file).trim_end_matches(|c: char| c.is_ascii_digit()).to_owned();
+    let is_sequence = is_numbered
+        && arguments.len() == 1
+        && (Numbered::of(&arguments[0]).is_some() || found.iter().all(|(file, _)| before(file) == before(&found[0].0)));
+    let missing = if is_sequence { missing(found.iter().filter_map(|(_, own)| *own).collect()) } else { None };
+    apart(Found { target: Target { folder, names: Names::of_scene() }, plates, is_series: true, missing })
 }
 
 /// The name of the file of a picture alone, where `output` is a file or a numbered sequence.
@@ -254,6 +285,12 @@ mod tests {
             (Some(1000), None, None)
         );
         assert!(Numbered::of("100%.png").is_none() && Numbered::of("photo.jpg").is_none());
+        let gaps = |numbers: &[u64]| missing(numbers.to_vec());
+        assert_eq!((gaps(&[3]), gaps(&[4, 2, 3])), (None, None));
+        assert_eq!(gaps(&[1003, 1005]).as_deref(), Some("frame 1004 is missing"));
+        assert_eq!(gaps(&[1, 3, 7, 8]).as_deref(), Some("frames 2 and 4 to 6 are missing"));
+        let many = [1, 3, 5, 7, 9, 11, 15, 17];
+        assert_eq!(gaps(&many).as_deref(), Some("frames 2, 4, 6, 8 and 5 more are missing"));
         assert_eq!((last_number("dsc_0042"), last_number("holiday"), last_number("12")), (Some(42), None, Some(12)));
     }
 }
