@@ -229,9 +229,12 @@ fn frames_have_grain_of_their_own_and_one_exposure() {
     // What is there stays, and what is missing is still metered on the first.
     std::fs::remove_file(at("out/plate.0009.png")).expect("removed");
     let rest = ["plates/plate.000#.png", "--stock", "tri-x", "--format", "super-8", "--skip-existing", "-o", "out/"];
+    // An empty file is none.
+    std::fs::write(at("out/plate.0008.png"), "").expect("written");
     let said = good(folder.path(), &rest);
     assert!(said.contains("out/plate.0007.png is there") && !said.contains("in place of the first"), "{said}");
     assert_eq!(read(at("out/plate.0009.png")), frames[2]);
+    assert_eq!(read(at("out/plate.0008.png")), frames[1]);
 
     // Metered each, the dark one is as light; a sequence is named as others are, and numbers stay.
     let each = ["plates/plate.000#.png", "--stock", "tri-x", "--format", "super-8", "--meter", "each"];

@@ -145,7 +145,7 @@ pub(crate) struct Run {
     /// Render only these frames of an animation: 17, 10-20, 10-, or several of these separated by commas.
     #[arg(long, value_name = "FRAMES", value_parser = <Frames as std::str::FromStr>::from_str)]
     pub frames: Option<Frames>,
-    /// Skip pictures of a sweep or an animation whose files all exist, without checking what they were made from.
+    /// Skip pictures of a sweep or an animation whose files all exist, none of them empty, without checking what they were made from.
     #[arg(long)]
     pub skip_existing: bool,
     /// Write one JSON object per line to standard output for each event: start, progress, warning, written, done,

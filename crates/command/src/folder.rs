@@ -70,7 +70,7 @@ impl Folder for Target {
     }
 
     fn has(&self, file: &str) -> bool {
-        self.folder.join(file).is_file()
+        has(&self.folder.join(file))
     }
 
     fn is(&self, file: &str, path: &Path) -> bool {
@@ -86,6 +86,11 @@ impl Folder for Target {
     fn shown(&self, file: &str) -> String {
         self.folder.join(file).display().to_string()
     }
+}
+
+/// Whether a file with content is there: an empty one is what is left of a copy or a full disk.
+fn has(path: &Path) -> bool {
+    std::fs::metadata(path).is_ok_and(|data| data.is_file() && data.len() > 0)
 }
 
 /// Whether both paths lead to one file that is there.
@@ -135,7 +140,7 @@ impl Folder for Temporary {
     }
 
     fn has(&self, file: &str) -> bool {
-        Self::path(file).is_file()
+        has(&Self::path(file))
     }
 
     fn read(&self, _: &str, _: u64) -> Option<Vec<u8>> {

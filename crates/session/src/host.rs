@@ -64,7 +64,7 @@ pub trait Folder: Sink {
     /// Why not, in words.
     fn prepare(&self, name: &str, files: &[&str]) -> Result<(), String>;
 
-    /// Whether a file is there.
+    /// Whether a file is there, and not empty.
     fn has(&self, file: &str) -> bool;
 
     /// Whether a file is the one at this path on disk, if it is there.

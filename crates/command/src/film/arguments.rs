@@ -171,7 +171,7 @@ pub(crate) struct FilmDevelop {
     pub seed: Option<u64>,
     #[command(flatten)]
     pub set: Set,
-    /// Of several pictures, skip those whose output exists.
+    /// Skip pictures whose output exists and is not empty.
     #[arg(long)]
     pub skip_existing: bool,
     /// Number of render threads; all processors if not given. It does not affect the picture.
