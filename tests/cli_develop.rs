@@ -71,6 +71,8 @@ fn a_photograph_is_developed_on_every_kind_of_film() {
         let picture = read(at(name));
         assert!(picture.pixels().any(|p| p[0].abs_diff(p[2]) > 40), "{stock} has colors");
     }
+    // As far as the sheet reaches, the longest time is 1.96 stops.
+    good(folder.path(), &["photo.png", "--stock", "tri-x", "--push", "2", "-o", "pushed.png"]);
     // The settings are those of a scene's film.
     let plain = mean(&gray);
     for (more, brighter) in [(["--exposure", "+1"], true), (["--exposure", "-1"], false)] {
@@ -387,7 +389,10 @@ fn slips_are_told_with_what_to_write() {
         (&["empty", "--stock", "tri-x"], &["no pictures in `empty`"]),
         (&["plate.####.png", "--stock", "tri-x"], &["no file is called `plate.####.png`", "plate.0001.png"]),
         (&["photo.png", "--stock", "tri-x", "--grade", "7"], &["--grade 7", "0 (soft) to 5 (hard)"]),
-        (&["photo.png", "--stock", "tri-x", "--push", "9"], &["--push 9"]),
+        (
+            &["photo.png", "--stock", "tri-x", "--push", "9"],
+            &["--push 9", "from +0 to +2 stops, not +9", "a `push` within"],
+        ),
         (&["photo.png", "--stock", "tri-x", "--exposure", "+20"], &["a number from -10 to 10"]),
         (&["photo.png", "--stock", "tri-x", "--format", "6x66"], &["did you mean `6x6`?"]),
         (&["photo.png", "--stock", "tri-x", "--lens", "helyos"], &["helios"]),

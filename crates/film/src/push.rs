@@ -15,15 +15,15 @@ pub enum PushError {
         stock: String,
     },
     /// Beyond the longest or the shortest time.
-    #[error("the curves of {stock} reach from {fewest:+.1} to {most:+.1} stops, not {stops:+.1}")]
+    #[error("the curves of {stock} reach from {fewest:+} to {most:+} stops, not {stops:+}")]
     Beyond {
         /// The stock.
         stock: String,
         /// What was asked for.
         stops: f64,
-        /// How far its shortest time pulls.
+        /// How far its shortest time pulls, to a tenth.
         fewest: f64,
-        /// How far its longest time pushes.
+        /// How far its longest time pushes, to a tenth.
         most: f64,
     },
     /// Curves that cannot be joined.
@@ -77,8 +77,9 @@ pub fn pushed(stock: &Stock, usual: &str, stops: f64) -> Result<Pushed, PushErro
     let (mut left, mut right) = (shortest, longest);
     if stops == 0.0 {
         (left, right) = (start, start);
-    } else if !(stops >= fewest && stops <= most) {
-        return Err(PushError::Beyond { stock: stock.name.clone(), stops, fewest, most });
+    } else if !(stops >= fewest.min(tenths(fewest)) && stops <= most.max(tenths(most))) {
+        // The range is told to a tenth, and what is told can be had: as far as the longest time goes.
+        return Err(PushError::Beyond { stock: stock.name.clone(), stops, fewest: tenths(fewest), most: tenths(most) });
     }
     while right - left > 1e-9 {
         let middle = 0.5 * (left + right);
@@ -92,6 +93,11 @@ pub fn pushed(stock: &Stock, usual: &str, stops: f64) -> Result<Pushed, PushErro
         .map(|x| [x, density(&series, minutes, x)])
         .collect();
     Ok(Pushed { minutes, curves: vec![TabulatedCurve::new(&points)?.into()] })
+}
+
+/// To a tenth; never -0.
+fn tenths(stops: f64) -> f64 {
+    (stops * 10.0).round() / 10.0 + 0.0
 }
 
 /// Developments of known time, the shortest first.

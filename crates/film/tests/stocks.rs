@@ -255,5 +255,13 @@ fn pushed_film_keeps_the_density_of_a_mid_gray() {
     assert!((none.minutes - 6.0).abs() < 1e-6);
     let Err(PushError::Beyond { most, .. }) = pushed(&film, "6-min", 3.0) else { panic!("beyond the sheet") };
     assert!((1.0..3.0).contains(&most), "{most}");
+    // How far it can be pushed is told to a tenth, and that far it can be.
+    let farthest = pushed(&film, "6-min", most).expect("as told");
+    assert!(
+        (farthest.minutes - film.layers[0].developments.iter().filter_map(|d| d.minutes).fold(0.0, f64::max)).abs()
+            < 1e-6
+    );
+    let said = pushed(&film, "6-min", most + 0.05).expect_err("beyond the sheet").to_string();
+    assert!(said.contains(&format!("from +0 to {most:+} stops, not {:+}", most + 0.05)), "{said}");
     assert!(matches!(pushed(&stock("ilford-ortho-plus"), "pictorial", 1.0), Err(PushError::NoSeries { .. })));
 }

@@ -21,7 +21,7 @@ use spectra_film::emulsion::Emulsion;
 use spectra_film::optics::Optics;
 use spectra_film::positive::{Reach, densities};
 use spectra_film::print::{Print, metered_exposure_lx_s};
-use spectra_film::push::pushed;
+use spectra_film::push::{PushError, pushed};
 use spectra_film::raster::Raster;
 use spectra_film::stock::{MeterResponse, Process, Stock};
 use std::any::Any;
@@ -266,8 +266,14 @@ fn develop_as(p: &StockParams, params: &Params, stock: &Stock) -> Result<(Emulsi
         let emulsion = Emulsion::new(stock, chosen).map_err(|e| params.fault("stock", e.to_string()))?;
         return Ok((emulsion, chosen.to_owned()));
     };
-    let developed = pushed(stock, chosen, stops)
-        .map_err(|e| params.fault("push", e.to_string()).hint("or change `iso`: the same film, exposed otherwise"))?;
+    let developed = pushed(stock, chosen, stops).map_err(|e| {
+        let other = "set another `iso`: the same film, exposed otherwise";
+        let hint = match &e {
+            PushError::Beyond { .. } => format!("a `push` within that, or {other}"),
+            _ => format!("leave `push` out, or {other}"),
+        };
+        params.fault("push", e.to_string()).hint(hint)
+    })?;
     let emulsion = Emulsion::with_curves(stock, developed.curves).map_err(|e| params.fault("push", e.to_string()))?;
     Ok((emulsion, format!("{:.1} min (pushed {stops:+} stops)", developed.minutes)))
 }
