@@ -72,6 +72,7 @@ ALIASES = {
     "silica": "SiO2/Malitson",
     "calcium fluoride": "CaF2/Malitson",
     "fluorite": "CaF2/Malitson",
+    "barium fluoride": "BaF2/Malitson",
     "magnesium fluoride": "MgF2/Dodge-o",
     "sapphire": "Al2O3/Malitson-o",
     "diamond": "C/Phillip",

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
 use spectra_glass::{
-    Catalogue, Category, Deviation, Era, FindError, Formula, Glass, LineTriple, Medium, Query, Status,
+    Beside, Catalogue, Category, Deviation, Era, FindError, Formula, Glass, LineTriple, Medium, Query, Status,
 };
 
 fn find(name: &str) -> Glass {
@@ -119,6 +119,39 @@ fn names_in_any_case_and_spelling() {
     assert_eq!(find("corning-france/616444").maker.as_ref(), "CORNING");
 }
 
+/// Malitson (1963) has nd 1.43385 and Vd 95.0 for fluorite; the maker's table is rounded to four digits.
+#[test]
+fn a_crystal_is_its_formula_and_no_rounded_table() {
+    for name in ["CaF2", "CAF2", "caf2", "fluorite"] {
+        let crystal = find(name);
+        assert_eq!(crystal.full_name(), "CaF2/Malitson", "{name}");
+        assert!((crystal.nd() - 1.433849).abs() < 1e-6 && (crystal.vd() - 95.0).abs() < 0.01, "{name}");
+    }
+    assert_eq!(find("barium fluoride").full_name(), "BaF2/Malitson");
+    // The table by its own name, and where no formula stands behind the everyday name.
+    assert_eq!(find("CRYSTRAN/CaF2").full_name(), "CRYSTRAN/CaF2");
+    assert_eq!(find("diamond").full_name(), "CRYSTRAN/diamond");
+}
+
+/// Of several data sets of a crystal the stated figures choose, and what they contradict is said.
+#[test]
+fn stated_figures_choose_among_data_sets() {
+    let choose = |nd: f64, vd: f64| {
+        let beside = Beside { figures: Some((nd, Some(vd), LineTriple::FDC)), ..Beside::default() };
+        let chosen = Catalogue::bundled().choose("CaF2", beside).expect("a crystal");
+        (chosen.glass.full_name(), chosen.note)
+    };
+    assert_eq!(choose(1.43384, 95.0), ("CaF2/Malitson".to_owned(), None));
+    let (name, note) = choose(1.43391, 96.4);
+    assert_eq!(name, "CRYSTRAN/CaF2");
+    let note = note.expect("another than the usual one");
+    assert!(note.ends_with("CRYSTRAN/CaF2 is taken, the nearest to the stated nd 1.43391"), "{note}");
+    let (_, note) = choose(1.4345, 95.0);
+    assert!(note.is_some_and(|note| note.contains("the nearest to the stated nd 1.4345; it has 1.43")));
+    // Far from all of them the usual one stays; a lens warns of that.
+    assert_eq!(choose(1.45, 95.0), ("CaF2/Malitson".to_owned(), None));
+}
+
 #[test]
 fn air_and_vacuum_are_media_of_a_lens() {
     let medium = |name| Catalogue::bundled().medium(name);
@@ -224,7 +257,7 @@ fn everyday_names() {
         ("soda-lime", "soda-lime/Rubin-clear"),
         ("MgF2", "MgF2/Dodge-o"),
         // Case tells the crystal from the barium flint.
-        ("BaF2", "CRYSTRAN/BaF2"),
+        ("BaF2", "BaF2/Malitson"),
         ("BK7HT", "SCHOTT/N-BK7HT"),
         ("dispersion-study/zinc-crown", "dispersion-study/zinc-crown"),
     ] {

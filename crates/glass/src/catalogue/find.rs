@@ -7,6 +7,7 @@ use std::fmt;
 use thiserror::Error;
 
 use super::{Catalogue, Place};
+use crate::formula::Formula;
 use crate::glass::{Category, Glass};
 use crate::lines::LineTriple;
 use crate::medium::Medium;
@@ -138,7 +139,8 @@ pub struct Chosen {
 impl Catalogue {
     /// The medium of that name: `SCHOTT/N-BK7`, or `N-BK7` where one maker only has it; an everyday name such as
     /// `water` or `PC`; or the substance alone where there is one measurement. Upper and lower case are the same unless
-    /// they tell two apart (`BaF2` is the crystal, `BAF2` a flint); where nothing else fits hyphens, underscores,
+    /// they tell two apart (`BaF2` is the crystal, `BAF2` a flint). The name of a crystal means the formula that its everyday name
+    /// stands for, and not a maker's rounded table (`CRYSTRAN/CaF2`). Where nothing else fits hyphens, underscores,
     /// blanks and dots do not count. `LZ_LF5` is `LZOS/LF5`.
     ///
     /// # Errors
@@ -179,7 +181,7 @@ impl Catalogue {
     pub fn find_with(&self, name: &str, nd: f64, vd: Option<f64>) -> Result<Glass, FindError> {
         let places = self.places(name);
         match places[..] {
-            [place] => Ok(self.glass(place)),
+            [place] => Ok(self.measured(name, place, (nd, vd, LineTriple::FDC)).glass),
             [] => Err(self.unknown(name)),
             _ => self.nearest_of(&places, nd, vd, LineTriple::FDC).ok_or_else(|| self.ambiguous(name, &places)),
         }
@@ -194,9 +196,10 @@ impl Catalogue {
     pub fn choose(&self, name: &str, beside: Beside<'_>) -> Result<Chosen, FindError> {
         let places = self.places(name);
         let quiet = |glass: Glass| Ok(Chosen { glass, note: None });
-        match places[..] {
-            [place] => return quiet(self.glass(place)),
-            [] => return Err(self.unknown(name)),
+        match (&places[..], beside.figures) {
+            (&[place], Some(figures)) => return Ok(self.measured(name, place, figures)),
+            (&[place], None) => return quiet(self.glass(place)),
+            ([], _) => return Err(self.unknown(name)),
             _ => {}
         }
         if let Some((n, v, lines)) = beside.figures {
@@ -279,6 +282,58 @@ impl Catalogue {
         (best.0 <= 1.0).then_some(best.1)
     }
 
+    /// The data set that the bare name of a substance means beside stated figures: the usual one where it has that index, else
+    /// the nearest of all.
+    fn measured(&self, name: &str, usual: Place, (n, v, lines): (f64, Option<f64>, LineTriple)) -> Chosen {
+        let own = |glass: &Glass| glass.index(lines.mid.wavelength_nm);
+        let glass = self.glass(usual);
+        let all = self.data_sets(name);
+        if all.len() < 2 || has_index(n, own(&glass)) {
+            return Chosen { glass, note: None };
+        }
+        // Where none is near, a lens warns of that for any glass.
+        let Some(nearest) = self.nearest_of(&all, n, v, lines) else { return Chosen { glass, note: None } };
+        let called = lines.mid.indexed("n");
+        let but = match own(&nearest) {
+            own if has_index(n, own) => String::new(),
+            own => format!("; it has {own:.5}"),
+        };
+        let note = format!(
+            "`{name}` has {} data sets: {} is taken, the nearest to the stated {called} {n}{but}",
+            all.len(),
+            nearest.full_name()
+        );
+        Chosen { glass: nearest, note: Some(note) }
+    }
+
+    /// All data of the substance of that bare name that were measured near room temperature.
+    fn data_sets(&self, name: &str) -> Vec<Place> {
+        let asked = name.trim();
+        let is_one = |place: Place| {
+            let named = same_name(self.maker_of(place), asked) || same_name(self.name_of(place), asked);
+            named && !self.category_of(place).is_glass()
+        };
+        let all = self.index.iter().map(|(_, place)| *place).filter(|place| is_one(*place));
+        all.filter(|place| self.glass(*place).temperature_c.is_none_or(|t| (0.0..=40.0).contains(&t))).collect()
+    }
+
+    /// The usual data of a substance where its name is also that of a maker's short table, which is rounded: what its everyday
+    /// name stands for.
+    fn usual_data(&self, asked: &str, named: &[Place]) -> Option<Vec<Place>> {
+        let is_table = |place: &Place| {
+            self.category_of(*place) == Category::Crystal && matches!(self.glass(*place).formula, Formula::Table(_))
+        };
+        if asked.contains('/') || !named.iter().all(is_table) {
+            return None;
+        }
+        let of_substance = |target: &&str| target.split_once('/').is_some_and(|(of, _)| same_name(of, asked));
+        let mut targets = self.bundle.aliases().map(|(_, target)| target);
+        let target = self.bundle.alias(asked).or_else(|| targets.find(of_substance))?;
+        let usual = self.places(target);
+        let is_formula = |place: &Place| !matches!(self.glass(*place).formula, Formula::Table(_));
+        (!usual.is_empty() && usual.iter().all(is_formula)).then_some(usual)
+    }
+
     fn places(&self, name: &str) -> Vec<Place> {
         let asked = name.trim();
         let (maker, name) = split_maker(asked);
@@ -290,11 +345,9 @@ impl Catalogue {
         let exact: Vec<Place> = same.filter(of_maker).collect();
         // Where case tells some of them apart it counts.
         let to_the_letter: Vec<Place> = exact.iter().copied().filter(|place| self.name_of(*place) == name).collect();
-        if !to_the_letter.is_empty() {
-            return to_the_letter;
-        }
-        if !exact.is_empty() {
-            return exact;
+        let named = if to_the_letter.is_empty() { exact } else { to_the_letter };
+        if !named.is_empty() {
+            return self.usual_data(asked, &named).unwrap_or(named);
         }
         if let Some(target) = self.bundle.alias(asked) {
             return self.places(target);
@@ -396,6 +449,12 @@ impl Catalogue {
         near.truncate(LISTED);
         near
     }
+}
+
+/// Whether a stated index is `own`, as far as its digits go.
+fn has_index(stated: f64, own: f64) -> bool {
+    let digits = stated.to_string().split_once('.').map_or(0, |(_, digits)| digits.len());
+    (stated - own).abs() <= 1.000_001 * 0.1_f64.powi(digits.min(8) as i32)
 }
 
 /// A maker as this catalogue calls it, upper case.
