@@ -160,9 +160,12 @@ fn is_there(plate: &Plate, index: usize, of: usize, host: &dyn Host) -> bool {
 /// Develops pictures one by one.
 fn all(job: &Develop<'_>, plates: &[Plate], host: &dyn Host) -> Result<Ended, SessionError> {
     let begun_s = host.now_s();
-    let several = if let [_] = plates { "picture" } else { "pictures" };
     host.hear(Event::Series(
-        &format!("{} {several}, {}", plates.len(), if job.meter_each { "each metered" } else { "metered on the first" }),
+        &format!(
+            "{}, {}",
+            words::counted(plates.len() as u64, "picture"),
+            if job.meter_each { "each metered" } else { "metered on the first" }
+        ),
         &json!({ "event": "series", "pictures": plates.len(), "metered": if job.meter_each { "each" } else { "first" } }),
     ));
     for note in &job.notes {
@@ -222,7 +225,11 @@ fn all(job: &Develop<'_>, plates: &[Plate], host: &dyn Host) -> Result<Ended, Se
     host.hear(Event::Picture(None));
     let stopped = ended == Ended::Stopped && host.is_interrupted();
     host.hear(Event::Series(
-        &format!("{done} of {} {several} in {}", plates.len(), words::duration(host.now_s() - begun_s)),
+        &format!(
+            "{done} of {} in {}",
+            words::counted(plates.len() as u64, "picture"),
+            words::duration(host.now_s() - begun_s)
+        ),
         &json!({ "event": "end", "done": done, "of": plates.len(), "interrupted": stopped }),
     ));
     match &failed[..] {

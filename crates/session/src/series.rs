@@ -89,7 +89,11 @@ pub(crate) fn run(job: &Job<'_>, host: &dyn Host) -> Result<Ended, SessionError>
     let stopped = !whole && host.is_interrupted();
     let (done, of) = (work.done.len(), planned.len());
     host.hear(Event::Series(
-        &format!("{done} of {of} pictures in {}", words::duration(host.now_s() - work.begun_s)),
+        &format!(
+            "{done} of {} in {}",
+            words::counted(of as u64, "picture"),
+            words::duration(host.now_s() - work.begun_s)
+        ),
         &json!({ "event": "end", "done": done, "of": of, "interrupted": stopped }),
     ));
     Ok(if stopped { Ended::Stopped } else { Ended::Whole })
@@ -97,13 +101,14 @@ pub(crate) fn run(job: &Job<'_>, host: &dyn Host) -> Result<Ended, SessionError>
 
 /// What a person wants to know before it begins.
 fn what(series: &Series, pictures: usize) -> String {
+    let counted = words::counted(pictures as u64, "picture");
     match series.kind() {
         SeriesKind::Sweep { axes } if !axes.is_empty() => {
             let axis = axes.iter().map(|axis| format!("{} of {}", axis.values.len(), axis.path));
-            format!("a sweep of {pictures} pictures: {}", axis.collect::<Vec<_>>().join(" x "))
+            format!("a sweep of {counted}: {}", axis.collect::<Vec<_>>().join(" x "))
         }
-        SeriesKind::Sweep { .. } => format!("a sweep of {pictures} pictures"),
-        SeriesKind::Animation { .. } => format!("{pictures} of {} frames", series.count()),
+        SeriesKind::Sweep { .. } => format!("a sweep of {counted}"),
+        SeriesKind::Animation { .. } => format!("{pictures} of {}", words::counted(series.count() as u64, "frame")),
         SeriesKind::Single => "a picture".to_owned(),
     }
 }

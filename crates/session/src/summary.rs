@@ -67,8 +67,8 @@ fn of(report: &Report<'_>) -> String {
         };
         let share = |part: f64| spectra_render::percent(part / ledger.emitted_w);
         text.push_str(&format!(
-            ", ghosts of {} paths{why}: {} of the light of the lights, {} left after {} reflections",
-            ledger.paths.len(),
+            ", ghosts of {}{why}: {} of the light of the lights, {} left after {} reflections",
+            words::counted(ledger.paths.len() as u64, "path"),
             share(ledger.ghosts_w),
             share(ledger.not_traced_w),
             if ledger.order > 2 { "four" } else { "two" }

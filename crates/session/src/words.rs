@@ -14,6 +14,13 @@ pub fn count(value: u64) -> String {
     out
 }
 
+/// A count with what is counted: `1 ray`, `1 540 rays`.
+#[must_use]
+pub fn counted(value: u64, noun: &str) -> String {
+    let plural = if value == 1 { "" } else { "s" };
+    format!("{} {noun}{plural}", count(value))
+}
+
 /// A rate in few characters: `23.4 million rays/s`.
 #[must_use]
 pub fn rate(rays_per_second: f64) -> String {
@@ -69,6 +76,11 @@ mod tests {
             ["0", "999", "1 000", "157 286 400"],
             [0, 999, 1000, 157_286_400].map(count).each_ref().map(String::as_str)
         );
+    }
+
+    #[test]
+    fn one_is_no_plural() {
+        assert_eq!([1, 0, 1540].map(|n| counted(n, "ray")), ["1 ray", "0 rays", "1 540 rays"]);
     }
 
     #[test]

@@ -3,6 +3,7 @@
 use crate::console;
 use crate::folder::apart;
 use crate::outcome::{DONE, Failure, Outcome};
+use crate::words::counted;
 use serde_json::json;
 use spectra_exchange::Note;
 use spectra_files::write_atomically;
@@ -67,7 +68,7 @@ pub(super) fn deliver(
         }
     }
     if let Some(path) = output {
-        console::note(&format!("wrote {}: {name}, {surfaces} surfaces", path.display()));
+        console::note(&format!("wrote {}: {name}, {}", path.display(), counted(surfaces as u64, "surface")));
     }
     Ok(DONE)
 }

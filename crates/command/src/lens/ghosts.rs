@@ -5,6 +5,7 @@ use super::load;
 use super::trace::path_of;
 use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
+use crate::words::counted;
 use serde_json::json;
 use spectra_analysis::draw::{Ground, Sheet, View};
 use spectra_analysis::ghosts::{Ghost, GhostSearch, Ghosts, ghost_rays, ghosts as find};
@@ -49,7 +50,8 @@ pub(crate) fn ghosts(arguments: &LensGhosts, isa: Isa) -> Outcome {
 }
 
 fn sum(ghosts: &[Ghost]) -> f64 {
-    ghosts.iter().map(|ghost| ghost.energy).sum()
+    // The sum of none would be -0.
+    ghosts.iter().fold(0.0, |sum, ghost| sum + ghost.energy)
 }
 
 fn table(lens: &Lens, found: &Ghosts, order: usize, is_whole: bool) -> String {
@@ -57,9 +59,9 @@ fn table(lens: &Lens, found: &Ghosts, order: usize, is_whole: bool) -> String {
     let of = |many: usize| all.iter().filter(|ghost| ghost.surfaces.len() == many).count();
     let four = if order > 2 { format!(" and {} of four", of(4)) } else { String::new() };
     let mut text = format!(
-        "{}: {} ghosts of two reflections{four}, together {:.3} % of the straight light (infinity, on the axis, {:.1} nm)\n",
+        "{}: {} of two reflections{four}, together {:.3} % of the straight light (infinity, on the axis, {:.1} nm)\n",
         lens.name,
-        of(2),
+        counted(of(2) as u64, "ghost"),
         100.0 * sum(all),
         lens.reference_nm
     );
@@ -75,7 +77,8 @@ fn table(lens: &Lens, found: &Ghosts, order: usize, is_whole: bool) -> String {
     let shown = if is_whole { all.len() } else { MOST.min(all.len()) };
     all[..shown].iter().for_each(|ghost| text.push_str(&row(ghost, width)));
     if shown < all.len() {
-        text.push_str(&format!("{} weaker ones: --all shows them\n", all.len() - shown));
+        let weaker = counted((all.len() - shown) as u64, "weaker one");
+        text.push_str(&format!("{weaker}: --all shows all\n"));
     }
     text
 }
@@ -83,7 +86,11 @@ fn table(lens: &Lens, found: &Ghosts, order: usize, is_whole: bool) -> String {
 /// Two digits, however little.
 fn percent(part: f64) -> String {
     let percent = 100.0 * part;
-    if percent >= 0.1 || percent == 0.0 { format!("{percent:.2} %") } else { format!("{percent:.1e} %") }
+    match percent {
+        _ if percent >= 0.1 => format!("{percent:.2} %"),
+        _ if percent > 0.0 => format!("{percent:.1e} %"),
+        _ => "0 %".to_owned(),
+    }
 }
 
 /// Paths listed unless all are asked for.
@@ -154,5 +161,16 @@ fn failure(error: PlotError) -> Failure {
     match error {
         PlotError::Ending { .. } => Failure::Input(error.to_string()),
         PlotError::Write(error) => error.into(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_is_no_negative_percentage() {
+        assert_eq!(format!("{:.3}", 100.0 * sum(&[])), "0.000");
+        assert_eq!([-0.0, 0.0, 0.002].map(percent), ["0 %", "0 %", "0.20 %"]);
     }
 }

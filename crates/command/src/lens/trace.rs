@@ -117,7 +117,7 @@ fn failure(error: TraceError, output: Option<&Path>) -> Failure {
 
 /// `1 540 rays, 912 hit, 520 vignetted`.
 fn describe(summary: &TraceSummary) -> String {
-    let mut text = format!("{} rays, {} hit", words::count(summary.rays), words::count(summary.hits));
+    let mut text = format!("{}, {} hit", words::counted(summary.rays, "ray"), words::count(summary.hits));
     for cause in Loss::ALL {
         let many = summary.losses.of_cause(cause);
         if many > 0 {

@@ -4,6 +4,7 @@ use super::arguments::PictureInfo;
 use super::{load, percent, significant};
 use crate::console;
 use crate::outcome::{DONE, Outcome};
+use crate::words::counted;
 use serde::Serialize;
 use spectra_analysis::picture::{Colors, Measured, Summary, Unit};
 use std::collections::BTreeMap;
@@ -115,7 +116,9 @@ fn text(report: &Report<'_>, picture: &Measured) -> String {
             continue;
         };
         match key {
-            "scene" => row(key, Some(format!("{} lines of YAML (--json shows them)", value.lines().count()))),
+            "scene" => {
+                row(key, Some(format!("{} of YAML (--json shows all)", counted(value.lines().count() as u64, "line"))))
+            }
             "film size" | "film coordinates" => {}
             // Illuminance has no time.
             "exposure time" if picture.unit == Unit::Lux => {}

@@ -4,6 +4,7 @@ use super::arguments::{SpectrumColor, SpectrumModels};
 use super::{files, load_illuminant};
 use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
+use crate::words::counted;
 use serde::Serialize;
 use spectra_analysis::figure;
 use spectra_color::{RgbSpace, RoundTrip, from_u8, to_u8};
@@ -117,7 +118,7 @@ pub(crate) fn color(arguments: &SpectrumColor) -> Outcome {
         let [r, g, b] = t.back;
         let back = format!("{r:.2} {g:.2} {b:.2}");
         let xy = t.xy.map_or_else(String::new, |[x, y]| format!("{x:.4} {y:.4}"));
-        let lines = if t.lines > 0 { format!(", {} lines", t.lines) } else { String::new() };
+        let lines = if t.lines > 0 { format!(", {}", counted(t.lines as u64, "line")) } else { String::new() };
         let _ = writeln!(
             out,
             "  {:<width$}  {back:<24}  {:>10.3}  {xy:<16}  peak {} nm{lines}",
