@@ -1,6 +1,7 @@
 //! Arguments with units, read as a scene reads them.
 
-use spectra_core::params::Quantity;
+use spectra_core::params::{Quantity, Wavelength};
+use spectra_core::quantity::light_nm;
 
 /// Reads an argument such as `2m`, `f/2` or `30s`.
 ///
@@ -11,6 +12,16 @@ pub(crate) fn parse<Q: Quantity>(text: &str) -> Result<Q, String> {
         Some((message, hint)) => format!("{message} ({hint})"),
         None => message,
     })
+}
+
+/// A wavelength of light, in nm if bare.
+///
+/// # Errors
+/// As [`parse`], and what is too short for light: it was given in micrometers.
+pub(crate) fn wavelength(text: &str) -> Result<Wavelength, String> {
+    let wavelength = parse::<Wavelength>(text)?;
+    light_nm(wavelength.nm()).map_err(|wrong| format!("{wrong} ({})", wrong.hint()))?;
+    Ok(wavelength)
 }
 
 /// A part in percent; a bare number might be meant as either.
@@ -28,6 +39,14 @@ pub(crate) fn percent(text: &str) -> Result<String, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_wavelength_in_micrometers_is_told() {
+        let wrong = "a wavelength of 0.5876 nm is too short for light (0.5876 um is 587.6 nm: write 587.6)";
+        assert_eq!(wavelength("0.5876"), Err(wrong.to_owned()));
+        assert_eq!(wavelength("587.6"), Ok(Wavelength::from_nm(587.6)));
+        assert_eq!(wavelength("0.5 um"), Ok(Wavelength::from_nm(500.0)));
+    }
 
     #[test]
     fn a_bare_number_is_no_percentage() {

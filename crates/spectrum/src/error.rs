@@ -2,6 +2,7 @@
 
 use crate::table_error::TableError;
 use spectra_core::params::{Fault, Faults};
+use spectra_core::quantity::NotLight;
 
 /// A spectrum that cannot be.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -127,6 +128,9 @@ pub enum SpectrumError {
         /// The system's word.
         cause: String,
     },
+    /// A wavelength that is none of light: given in micrometers.
+    #[error(transparent)]
+    NotLight(#[from] NotLight),
     /// A table with a fault.
     #[error(transparent)]
     Table(#[from] TableError),
@@ -156,6 +160,7 @@ impl SpectrumError {
                 .hint("a divisor must not be 0 anywhere from 350 to 830 nm; add a little to it, such as `A / (B + 0.001)`")
                 .into(),
             Self::Document(faults) => faults.clone(),
+            Self::NotLight(wrong) => here(wrong.to_string()).hint(wrong.hint()).into(),
             Self::Table(error) => error.fault().into(),
             Self::Unknown { name, candidates } => {
                 let fault = here(format!("no spectrum is called `{name}`"));

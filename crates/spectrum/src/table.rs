@@ -19,6 +19,7 @@
 use std::sync::Arc;
 
 use spectra_core::params::{SourceFile, Unit};
+use spectra_core::quantity::SHORTEST_LIGHT_NM;
 
 use crate::meta::{Interpolation, Kind, Meta, Scale};
 use crate::separator::is_of_number;
@@ -30,8 +31,6 @@ pub use crate::table_error::{MAX_COLUMNS, MAX_ROWS, Place, TableError, TableFaul
 
 /// Largest file that is read, bytes.
 pub const MAX_BYTES: u64 = 32 << 20;
-/// A table that ends below this was not given in nanometers, nm.
-const SHORTEST_NM: f64 = 20.0;
 /// Words of which one stands in the name of a column of wavelengths.
 const WAVELENGTH_WORDS: [&str; 8] = ["wave", "lambda", "\u{3bb}", "nm", "nano", "um", "\u{b5}m", "micro"];
 
@@ -193,7 +192,7 @@ impl<'a> Reader<'a> {
                 return Err(self.fault(numbers[i], 1, TableFault::OutOfOrder { before, found }));
             }
         }
-        if begin.max(end) < SHORTEST_NM {
+        if begin.max(end) < SHORTEST_LIGHT_NM {
             let Some((um, nm)) = Unit::find("um").zip(Unit::find("nm")).filter(|_| !self.strict) else {
                 return Err(self.fault(numbers[0], 1, TableFault::NoLight(begin)));
             };

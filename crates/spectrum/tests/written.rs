@@ -1,8 +1,9 @@
 //! Spectra as people write them: in YAML, and in one line.
 
+use spectra_core::params::Fault;
 use spectra_scene::FileResources;
 use spectra_spectrum::{
-    BAND, Emission, Found, SpectrumError, find_emission_in, find_in, find_reflectance_in, find_sensitivity_in,
+    BAND, Emission, Found, SpectrumError, find, find_emission_in, find_in, find_reflectance_in, find_sensitivity_in,
     find_transmittance_in, planck_radiance,
 };
 use std::path::Path;
@@ -184,4 +185,45 @@ fn yaml_needs_a_place_to_be_found() {
     let files = FileResources::beside(Path::new("/nowhere"));
     let error = find_emission_in("a.yaml", &files).expect_err("nowhere").to_string();
     assert!(error.contains("a.yaml") && error.contains("no such file"), "{error}");
+}
+
+/// A wavelength in micrometers is told, with what to write; widths, wide bells and infrared pass.
+#[test]
+fn micrometers_are_told() {
+    let told = |name: &str| {
+        let error = find(name).expect_err(name);
+        error.faults(Fault::new).to_string()
+    };
+    for (name, hint) in [
+        ("line:0.55", "0.55 um is 550 nm: write 550"),
+        ("lines:404.66=1,0.5461=2", "0.5461 um is 546.1 nm: write 546.1"),
+        ("gaussian:0.55,0.02", "0.55 um is 550 nm: write 550"),
+        ("led:0.45,0.02", "0.45 um is 450 nm: write 450"),
+        ("rectangle:0.5,0.6", "0.6 um is 600 nm: write 600"),
+        ("D65 * gaussian:0.55,0.02", "0.55 um is 550 nm: write 550"),
+    ] {
+        let text = told(name);
+        assert!(text.contains("too short for light") && text.contains(hint), "{name}: {text}");
+    }
+    let written = |yaml: &str| {
+        let (_folder, files) = folder(yaml);
+        find_in("a.yaml", &files).expect_err(yaml).faults(Fault::new).to_string()
+    };
+    for (yaml, key) in [
+        ("{kind: line, wavelength: 0.55}", "wavelength"),
+        ("{kind: lines, lines: [{wavelength: 0.55}]}", "lines"),
+        ("{kind: gaussian, center: 0.55, sigma: 0.02}", "center"),
+        ("{kind: led, peak: 0.55, width: 0.02}", "peak"),
+        ("{kind: rectangle, from: 0.5, to: 0.55}", "to"),
+        ("{kind: table, wavelengths: [0.4, 0.55], values: [1, 1]}", "wavelengths[1]"),
+        ("{kind: histogram, edges: [0.4, 0.55], counts: [1]}", "edges[1]"),
+    ] {
+        let text = written(yaml);
+        assert!(text.contains("0.55 um is 550 nm: write 550") && text.contains(key), "{yaml}: {text}");
+    }
+    for name in
+        ["line:0.55 um", "line:10600", "gaussian:0,300", "gaussian:550,0.02", "gaussian:-20,40", "rectangle:1,600"]
+    {
+        assert!(find(name).is_ok(), "{name}");
+    }
 }

@@ -18,6 +18,7 @@ use csv::NumberRows;
 use glam::DVec3;
 use row::Light as Left;
 use row::{Fate, Row};
+use spectra_core::quantity::light_nm;
 use spectra_core::spectral::BAND;
 use spectra_core::{Isa, Loss, LossCounts, RayBatch};
 use spectra_lens::{Indices, Lens, Path, Pose, Tracer, Travel, Work};
@@ -229,6 +230,7 @@ impl<'a> Bench<'a> {
         if nm <= 0.0 {
             return Err(format!("column `wavelength_nm`: found {nm}, expected a positive number"));
         }
+        light_nm(nm).map_err(|wrong| format!("column `wavelength_nm`: {wrong}; {}", wrong.hint()))?;
         let (low, high) = self.seen_nm.unwrap_or((nm, nm));
         self.seen_nm = Some((low.min(nm), high.max(nm)));
         if !BAND.contains(nm) {

@@ -1,6 +1,6 @@
 //! What can be written after `spectra glass`.
 
-use crate::quantity::parse;
+use crate::quantity::wavelength;
 use clap::{Args, Subcommand, ValueEnum};
 use spectra_core::params::Wavelength;
 use spectra_glass::{Category, Era, LineTriple};
@@ -76,7 +76,7 @@ pub(crate) struct GlassInfo {
     #[arg(long, value_name = "LINE|BLUE,MIDDLE,RED", default_value = "d", value_parser = reference, conflicts_with = "name")]
     pub line: LineTriple,
     /// Also show the index at this wavelength in air.
-    #[arg(long, value_name = "NM", value_parser = parse::<Wavelength>)]
+    #[arg(long, value_name = "NM", value_parser = wavelength)]
     pub wavelength_nm: Option<Wavelength>,
     /// Also show the Abbe number of these three lines, the index at the middle one: names or wavelengths in nm (F',e,C' or
     /// 450,580,680).

@@ -1,6 +1,6 @@
 //! What can be written after `spectra lens`.
 
-use crate::quantity::parse;
+use crate::quantity::{parse, wavelength};
 use clap::{Args, Subcommand};
 use spectra_core::params::{FNumber, Length, OrInfinity, Positive, Ratio, Wavelength};
 use spectra_lens::Criterion;
@@ -128,7 +128,7 @@ fn field(text: &str) -> Result<f64, String> {
 fn wavelength_or_line(text: &str) -> Result<f64, String> {
     match spectra_glass::lines::by_name(text.trim()) {
         Some(line) => Ok(line.wavelength_nm),
-        None => parse::<Wavelength>(text).map(|w| w.nm()).map_err(|e| format!("{e}; or a line such as F', e, C'")),
+        None => wavelength(text).map(|w| w.nm()).map_err(|e| format!("{e}; or a line such as F', e, C'")),
     }
 }
 
@@ -197,7 +197,7 @@ pub(crate) struct OneLight {
     #[arg(long, value_name = "LINE", value_parser = line)]
     pub line: Option<f64>,
     /// Use this wavelength in air.
-    #[arg(long, value_name = "NM", value_parser = parse::<Wavelength>)]
+    #[arg(long, value_name = "NM", value_parser = wavelength)]
     pub wavelength_nm: Option<Wavelength>,
     /// Use the index stated in the prescription for every glass.
     #[arg(long)]

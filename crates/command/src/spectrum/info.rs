@@ -9,6 +9,7 @@ use spectra_color::{
     Adaptation, Dominant, Gamut, RgbSpace, cct, chromaticity, color_rendering, dominant_wavelength, fidelity,
     into_gamut, lab, luminous_efficacy, to_u8, uv_1976, xyz_of_light, xyz_of_reflectance, xyz_of_transmittance,
 };
+use spectra_core::quantity::light_nm;
 use spectra_spectrum::{
     BAND, Emission, Found, Kind, Observer, Shape, Strengths, Tabulated, find_in, function_in, meta_in, named_line,
 };
@@ -157,7 +158,8 @@ fn wavelengths(texts: &[String]) -> Result<Vec<f64>, Failure> {
         let wrong = || {
             Failure::Input(format!("--wavelength-nm: `{text}` is no wavelength: write nm or a line, such as 546.07,C'"))
         };
-        nm.filter(|nm: &f64| nm.is_finite() && *nm > 0.0 && *nm <= 1e6).ok_or_else(wrong)
+        let nm = nm.filter(|nm: &f64| nm.is_finite() && *nm > 0.0 && *nm <= 1e6).ok_or_else(wrong)?;
+        light_nm(nm).map_err(|wrong| Failure::Input(format!("--wavelength-nm: {wrong}: {}", wrong.hint())))
     };
     texts.iter().map(one).collect()
 }

@@ -4,6 +4,7 @@ use super::arguments::SpectrumFit;
 use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
 use serde::Serialize;
+use spectra_core::quantity::light_nm;
 use spectra_spectrum::{GaussianTerm, Shape};
 use std::fmt::Write as _;
 
@@ -40,6 +41,7 @@ pub(super) fn local(arguments: &SpectrumFit, at_nm: f64, shape: &Shape) -> Outco
     if !(at_nm.is_finite() && at_nm > step_nm && at_nm <= 1e5) {
         return Err(Failure::Input(format!("--at {at_nm}: a wavelength in nm, such as 550")));
     }
+    light_nm(at_nm).map_err(|wrong| Failure::Input(format!("--at: {wrong}: {}", wrong.hint())))?;
     let [below, value, above] = [-step_nm, 0.0, step_nm].map(|d| shape.at(at_nm + d));
     let slope = (above - below) / (2.0 * step_nm);
     let curvature = (above - 2.0 * value + below) / (step_nm * step_nm);

@@ -5,6 +5,7 @@
 
 mod form;
 mod kinds;
+mod light;
 mod limits;
 mod units;
 mod written;
@@ -15,6 +16,7 @@ pub use kinds::{
     Angle, Exposure, FNumber, Illuminance, Length, LengthOrInfinity, Luminance, NonNegative, OrInfinity, Positive,
     Power, RadiantIntensity, Ratio, SpatialFrequency, Temperature, Time, Wavelength,
 };
+pub use light::{NotLight, SHORTEST_LIGHT_NM, light_nm};
 pub(crate) use limits::Limits;
 pub(crate) use units::decimal_end;
 pub use units::{Dimension, Reading, Unit};

@@ -1,12 +1,14 @@
 //! `kind: rectangle`.
 
 use super::{Making, SpectrumEntry, SpectrumKind, build_kind, times};
+use crate::error::SpectrumError;
 use crate::inline::wavelengths;
 use crate::piece::Piece;
 use crate::shape::Shape;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{Faults, NonNegative, Wavelength};
+use spectra_core::quantity::light_nm;
 
 /// A value between two wavelengths, and nothing outside.
 ///
@@ -30,12 +32,16 @@ struct Rectangle {
 spectra_core::register!(SpectrumEntry, "rectangle": Rectangle, build_kind::<Rectangle>);
 crate::expression!("rectangle:500,600", "write two wavelengths in nm, such as rectangle:500,600", |text| {
     let [from, to] = wavelengths(text)?.try_into().ok()?;
-    Some(Shape::rectangle(from, to).map(Piece::Bare))
+    Some(rectangle(from, to).map(Piece::Bare))
 });
 
 impl SpectrumKind for Rectangle {
     fn make(&self, making: &Making<'_>) -> Result<Piece, Faults> {
-        let shape = Shape::rectangle(self.from.nm(), self.to.nm());
+        let shape = rectangle(self.from.nm(), self.to.nm());
         shape.and_then(|shape| times(shape, self.value)).map_err(making.at("to"))
     }
+}
+
+fn rectangle(from_nm: f64, to_nm: f64) -> Result<Shape, SpectrumError> {
+    Shape::rectangle(from_nm, light_nm(to_nm)?)
 }

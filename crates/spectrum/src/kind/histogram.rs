@@ -1,6 +1,6 @@
 //! `kind: histogram`.
 
-use super::{Making, SpectrumEntry, SpectrumKind, build_kind, lengths, rising};
+use super::{Making, SpectrumEntry, SpectrumKind, build_kind, lengths, rising, some_light};
 use crate::piece::Piece;
 use crate::shape::Shape;
 use schemars::JsonSchema;
@@ -34,6 +34,7 @@ impl SpectrumKind for Histogram {
         lengths(params, ["edges", "counts"], wanted, "one between each two edges")?;
         let mut faults = Faults::new();
         rising(params, "edges", &self.edges, &mut faults);
+        some_light(params, "edges", &self.edges, &mut faults);
         for (i, count) in self.counts.iter().enumerate().filter(|(_, c)| **c < 0.0) {
             let fault = params.fault(&format!("counts[{i}]"), format!("a count cannot be negative: {count}"));
             faults.push(fault.hint("write 0 where nothing was counted"));

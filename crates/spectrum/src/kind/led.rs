@@ -4,7 +4,7 @@
 //! g = exp(-((w - w0) / d)^2) the light is (g + 2 g^5) / 3. The second term is a Gaussian too, so the whole is a mixture of two.
 
 use super::gaussian::Center;
-use super::{Making, SpectrumEntry, SpectrumKind, build_kind};
+use super::{Making, SpectrumEntry, SpectrumKind, bell_nm, build_kind};
 use crate::error::SpectrumError;
 use crate::gaussian::{GaussianMixture, GaussianTerm};
 use crate::inline::wavelengths;
@@ -43,6 +43,7 @@ crate::expression!("led:450,20", "write peak and width at half of it in nm, such
 
 impl SpectrumKind for Led {
     fn make(&self, making: &Making<'_>) -> Result<Piece, Faults> {
+        bell_nm(self.peak.0, self.width.nm()).map_err(making.at("peak"))?;
         led(self.peak.0, self.width.nm()).map_err(making.at("width"))
     }
 }
@@ -51,6 +52,7 @@ impl SpectrumKind for Led {
 const WIDTH_OVER_D: f64 = 0.921_823_119_649_820_5;
 
 fn led(peak_nm: f64, width_nm: f64) -> Result<Piece, SpectrumError> {
+    bell_nm(peak_nm, width_nm)?;
     let sigma_nm = width_nm / WIDTH_OVER_D * std::f64::consts::FRAC_1_SQRT_2;
     let wide = GaussianTerm::new(1.0 / 3.0, peak_nm, sigma_nm)?;
     let narrow = GaussianTerm::new(2.0 / 3.0, peak_nm, sigma_nm / 5.0_f64.sqrt())?;

@@ -2,12 +2,14 @@
 
 use super::{Making, SpectrumEntry, SpectrumKind, build_kind};
 use crate::emission::Emission;
+use crate::error::SpectrumError;
 use crate::inline::{line_nm, number};
 use crate::lines::LineOrWavelength;
 use crate::piece::Piece;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{Faults, NonNegative};
+use spectra_core::quantity::light_nm;
 use spectra_core::spectral::Line;
 
 /// One spectral line.
@@ -47,27 +49,27 @@ struct LinesParams {
 spectra_core::register!(SpectrumEntry, "line": LineParams, build_kind::<LineParams>);
 spectra_core::register!(SpectrumEntry, "lines": LinesParams, build_kind::<LinesParams>);
 crate::expression!("line:C'", "write a letter or a wavelength in nm, such as line:C' or line:632.8", |text| {
-    line_nm(text).map(|nm| Emission::line(nm, 1.0).map(Piece::from))
+    line_nm(text).map(|nm| of_lines(vec![Line { wavelength_nm: nm, power: 1.0 }]))
 });
 crate::expression!(
     "lines:404.66=1,435.84=2",
     "write wavelengths (or letters) with their powers, such as lines:404.66=1,435.84=2",
     |text| {
         let lines = text.split(',').map(weighted).collect::<Option<Vec<_>>>()?;
-        Some(Emission::new(None, lines).map(Piece::from))
+        Some(of_lines(lines))
     }
 );
 
 impl SpectrumKind for LineParams {
     fn make(&self, making: &Making<'_>) -> Result<Piece, Faults> {
-        Emission::new(None, vec![self.line()]).map(Piece::from).map_err(making.at("wavelength"))
+        of_lines(vec![self.line()]).map_err(making.at("wavelength"))
     }
 }
 
 impl SpectrumKind for LinesParams {
     fn make(&self, making: &Making<'_>) -> Result<Piece, Faults> {
         let lines = self.lines.iter().map(LineParams::line).collect();
-        Emission::new(None, lines).map(Piece::from).map_err(making.at("lines"))
+        of_lines(lines).map_err(making.at("lines"))
     }
 }
 
@@ -75,6 +77,14 @@ impl LineParams {
     fn line(&self) -> Line {
         Line { wavelength_nm: self.wavelength.nm(), power: self.power.map_or(1.0, NonNegative::get) }
     }
+}
+
+fn of_lines(lines: Vec<Line>) -> Result<Piece, SpectrumError> {
+    // Of what is no positive number more is said below.
+    for line in lines.iter().filter(|line| line.wavelength_nm > 0.0) {
+        light_nm(line.wavelength_nm)?;
+    }
+    Emission::new(None, lines).map(Piece::from)
 }
 
 /// A line as an expression has it: `435.84=2`.

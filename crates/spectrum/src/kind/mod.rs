@@ -57,6 +57,7 @@ use crate::table::MAX_ROWS;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use spectra_core::params::{Fault, Faults, NonNegative, Params, Readable, StageNode, Wavelength};
 use spectra_core::registry::{self, Context};
+use spectra_core::quantity::{SHORTEST_LIGHT_NM, light_nm};
 use spectra_core::resources::Resources;
 use spectra_core::spectral::BAND;
 
@@ -107,7 +108,10 @@ impl Making<'_> {
 
     /// Places an error at a key.
     pub fn at(&self, key: &'static str) -> impl Fn(SpectrumError) -> Faults {
-        move |error| self.params.fault(key, error.to_string()).into()
+        move |error| match error {
+            SpectrumError::NotLight(_) => error.faults(|text| self.params.fault(key, text)),
+            error => self.params.fault(key, error.to_string()).into(),
+        }
     }
 
     /// Whether it is a part of a sum: then it may be negative, as the sum is judged as a whole.
@@ -190,6 +194,18 @@ fn times(shape: Shape, value: Option<NonNegative<f64>>) -> Result<Piece, Spectru
     match value {
         Some(value) => shape.scaled(value.get()).map(Piece::Bare),
         None => Ok(Piece::Bare(shape)),
+    }
+}
+
+/// A bell whose center may lie outside of all light, if it is wide; a narrow one has its center in light.
+fn bell_nm(center_nm: f64, width_nm: f64) -> Result<f64, SpectrumError> {
+    if center_nm > 0.0 && width_nm < SHORTEST_LIGHT_NM { Ok(light_nm(center_nm)?) } else { Ok(center_nm) }
+}
+
+/// A fault if all of these, which increase, lie below any light.
+fn some_light(params: &Params, key: &str, nm: &[Wavelength], faults: &mut Faults) {
+    if let Some(Err(wrong)) = nm.last().map(|last| light_nm(last.nm())) {
+        faults.push(params.fault(&format!("{key}[{}]", nm.len() - 1), wrong.to_string()).hint(wrong.hint()));
     }
 }
 

@@ -1,6 +1,6 @@
 //! `kind: table`.
 
-use super::{Making, SpectrumEntry, SpectrumKind, build_kind, lengths, rising};
+use super::{Making, SpectrumEntry, SpectrumKind, build_kind, lengths, rising, some_light};
 use crate::meta::{Outside, Scale};
 use crate::piece::Piece;
 use crate::shape::Shape;
@@ -41,6 +41,7 @@ impl SpectrumKind for Table {
         lengths(params, ["wavelengths", "values"], counts, "the list of wavelengths")?;
         let (mut faults, scale) = (Faults::new(), self.scale.unwrap_or(Scale::Linear));
         rising(params, "wavelengths", &self.wavelengths, &mut faults);
+        some_light(params, "wavelengths", &self.wavelengths, &mut faults);
         for (i, value) in self.values.iter().enumerate() {
             let text = match scale {
                 Scale::Log10 if value.abs() > 20.0 => format!("{value} is implausible as a logarithm to base 10"),
