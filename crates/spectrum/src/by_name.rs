@@ -46,7 +46,7 @@ use crate::meta::{Kind, Meta};
 use crate::names::{candidates, normalized};
 use crate::piece::Piece;
 use crate::signed::Signed;
-use crate::table::{MAX_BYTES, Table};
+use crate::table::{MAX_BYTES, Table, TableError};
 use crate::tabulated::Tabulated;
 
 /// Where bundled spectra lie that can be named without their folder.
@@ -72,13 +72,14 @@ pub fn bundled_spectra() -> impl Iterator<Item = (&'static str, &'static str)> {
 
 /// The spectrum `name`; files are looked up in the working directory, then among the bundled data.
 ///
-/// A shape that could be of any kind is taken as light; see [`find_transmittance`] and its like.
+/// A shape that could be of any kind is taken as light, a table of your own as what its header says (`wavelength_nm,transmittance`), else
+/// as light; see [`find_transmittance`] and its like.
 ///
 /// # Errors
 /// [`SpectrumError`]: an unknown name with near ones, a faulty file with row and column, a file of several columns of
 /// which none is chosen.
 pub fn find(name: &str) -> Result<Found, SpectrumError> {
-    load(name, None, Kind::Emission)
+    Loader { by_header: true, ..Loader::new(None) }.piece(name, Kind::Emission)?.into_found(Kind::Emission)
 }
 
 /// The spectrum `name`; files are looked up by `files`, beside the scene.
@@ -86,7 +87,7 @@ pub fn find(name: &str) -> Result<Found, SpectrumError> {
 /// # Errors
 /// As [`find`].
 pub fn find_in(name: &str, files: &dyn Resources) -> Result<Found, SpectrumError> {
-    load(name, Some(files), Kind::Emission)
+    Loader { by_header: true, ..Loader::new(Some(files)) }.piece(name, Kind::Emission)?.into_found(Kind::Emission)
 }
 
 /// The spectrum `name` as one of a kind: that of a file which does not say what it is.
@@ -202,6 +203,8 @@ pub fn bundled_meta(name: &str) -> Option<Meta> {
 /// Loads spectra that may be made of others, and bounds how many.
 pub(crate) struct Loader<'a> {
     files: Option<&'a dyn Resources>,
+    /// Whether nothing says what is wanted, so that the header of a table does.
+    by_header: bool,
     /// Spectra that may still be loaded, and how deep they may still lie in one another.
     left: Cell<u32>,
     depth: Cell<u32>,
@@ -213,7 +216,7 @@ impl<'a> Loader<'a> {
     const DEEPEST: u32 = 12;
 
     fn new(files: Option<&'a dyn Resources>) -> Self {
-        Self { files, left: Cell::new(Self::MOST), depth: Cell::new(Self::DEEPEST) }
+        Self { files, by_header: false, left: Cell::new(Self::MOST), depth: Cell::new(Self::DEEPEST) }
     }
 
     /// Counts one more spectrum.
@@ -282,7 +285,13 @@ impl<'a> Loader<'a> {
         if is_yaml(file) {
             return self.document(name, wanted).map(|(piece, _)| piece);
         }
-        from_table(name, &*table(file, self.files, wanted)?, column).map(Piece::Typed)
+        // What stands behind a light in a product is a filter, whatever its header says.
+        let table = if self.by_header && wanted == Kind::Emission {
+            table_by(file, self.files, |shown, bytes| Table::parse_by_header(shown, bytes, column, wanted))?
+        } else {
+            table(file, self.files, wanted)?
+        };
+        from_table(name, &table, column).map(Piece::Typed)
     }
 
     fn document(&self, name: &str, wanted: Kind) -> Result<(Piece, Meta), SpectrumError> {
@@ -330,6 +339,15 @@ fn bundled_table(path: &'static str) -> Result<Arc<Table>, SpectrumError> {
 
 /// The table of a bundled name, or of a file.
 fn table(name: &str, files: Option<&dyn Resources>, wanted: Kind) -> Result<Arc<Table>, SpectrumError> {
+    table_by(name, files, |shown, bytes| Table::parse_bytes(shown, bytes, Some(wanted)))
+}
+
+/// The same, a file by `parse`.
+fn table_by(
+    name: &str,
+    files: Option<&dyn Resources>,
+    parse: impl FnOnce(&str, &[u8]) -> Result<Table, TableError>,
+) -> Result<Arc<Table>, SpectrumError> {
     if !is_table(name) {
         let key = normalized(name);
         let fluorescent = key.strip_prefix('f').filter(|n| n.starts_with(|c: char| c.is_ascii_digit()));
@@ -350,7 +368,7 @@ fn table(name: &str, files: Option<&dyn Resources>, wanted: Kind) -> Result<Arc<
         Some(files) => read_resource(name, files)?,
         None => read_file(name)?,
     };
-    Ok(Arc::new(Table::parse_bytes(&shown, &bytes, Some(wanted))?))
+    Ok(Arc::new(parse(&shown, &bytes)?))
 }
 
 fn unknown(name: &str) -> SpectrumError {

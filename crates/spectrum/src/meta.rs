@@ -55,6 +55,21 @@ impl Kind {
         Self::ALL.into_iter().find(|k| k.word() == word)
     }
 
+    /// What the name of a column says it is: `transmittance`, `Spectral response`, `power [W]`.
+    #[must_use]
+    pub fn of_header(name: &str) -> Option<Self> {
+        // Power stands beside the others, too: `power reflectance`.
+        const WORDS: [(Kind, &[&str]); 4] = [
+            (Kind::Transmittance, &["transmittance", "transmission", "transmissivity"]),
+            (Kind::Reflectance, &["reflectance", "reflection", "reflectivity"]),
+            (Kind::Sensitivity, &["sensitivity", "response", "responsivity", "responsivities", "sensitivities"]),
+            (Kind::Emission, &["emission", "radiance", "irradiance", "exitance", "intensity", "power", "flux", "spd"]),
+        ];
+        let name = name.to_lowercase();
+        let has = |words: &[&str]| name.split(|c: char| !c.is_alphabetic()).any(|word| words.contains(&word));
+        WORDS.into_iter().find(|(_, words)| has(words)).map(|(kind, _)| kind)
+    }
+
     /// Whether a value below 0 makes sense.
     #[must_use]
     pub fn may_be_negative(self) -> bool {

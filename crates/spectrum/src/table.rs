@@ -22,6 +22,7 @@ use spectra_core::params::{SourceFile, Unit};
 use spectra_core::quantity::SHORTEST_LIGHT_NM;
 
 use crate::meta::{Interpolation, Kind, Meta, Scale};
+use crate::names::normalized;
 use crate::separator::is_of_number;
 use crate::sprague;
 use crate::tabulated::{Reading, Tabulated};
@@ -72,6 +73,17 @@ impl Table {
         Reader::new(file, text.strip_prefix('\u{feff}').unwrap_or(text), kind).read()
     }
 
+    /// The same where nothing says what is wanted: the kind is that of the file, else that of the name of `column` or, without
+    /// one, of all columns whose names say any, else `kind`.
+    ///
+    /// # Errors
+    /// As [`Table::parse_bytes`].
+    pub fn parse_by_header(file: &str, bytes: &[u8], column: Option<&str>, kind: Kind) -> Result<Self, TableError> {
+        let text = std::str::from_utf8(bytes).map_err(|_| whole(file, TableFault::NotText))?;
+        let reader = Reader::new(file, text.strip_prefix('\u{feff}').unwrap_or(text), Some(kind));
+        Reader { by_header: Some(column.unwrap_or_default()), ..reader }.read()
+    }
+
     /// The column `name`, ready to be evaluated.
     #[must_use]
     pub fn column(&self, name: &str) -> Option<Tabulated> {
@@ -110,6 +122,8 @@ struct Reader<'a> {
     file: &'a str,
     text: &'a str,
     kind: Option<Kind>,
+    /// The column whose name says the kind; all if it is empty, none if there is no such thing.
+    by_header: Option<&'a str>,
     /// Whether the table is written as the bundled ones are.
     strict: bool,
     separator: Separator,
@@ -121,7 +135,7 @@ impl<'a> Reader<'a> {
     fn new(file: &'a str, text: &'a str, kind: Option<Kind>) -> Self {
         let strict = text.lines().next().is_some_and(|l| key_value(l).is_some_and(|(k, _)| k == "spectra"));
         let separator = Separator::Comma;
-        Self { file, text, kind, strict, separator, header: Vec::new(), notes: Vec::new() }
+        Self { file, text, kind, by_header: None, strict, separator, header: Vec::new(), notes: Vec::new() }
     }
 
     fn fault(&self, row: usize, column: usize, cause: TableFault) -> TableError {
@@ -165,7 +179,11 @@ impl<'a> Reader<'a> {
         } else {
             self.name_columns(first, self.separator.fields(line).len())?;
         }
-        let kind = meta.kind.or(self.kind).ok_or_else(|| self.fault(first, 0, TableFault::NoKind))?;
+        let kind = meta
+            .kind
+            .or_else(|| self.said_by_header())
+            .or(self.kind)
+            .ok_or_else(|| self.fault(first, 0, TableFault::NoKind))?;
         let mut values: Vec<Vec<f64>> = vec![Vec::new(); self.header.len() - 1];
         let (mut numbers, mut wavelengths): (Vec<usize>, Vec<f64>) = (Vec::new(), Vec::new());
         for (row, line) in rows {
@@ -222,6 +240,15 @@ impl<'a> Reader<'a> {
             };
             self.fault(row, 0, cause)
         })
+    }
+
+    /// The kind that the names of columns say, where they are asked and agree.
+    fn said_by_header(&self) -> Option<Kind> {
+        let column = normalized(self.by_header?);
+        let asked = |name: &&String| column.is_empty() || normalized(name) == column;
+        let mut said = self.header[1..].iter().filter(asked).filter_map(|name| Kind::of_header(name));
+        let kind = said.next()?;
+        said.all(|other| other == kind).then_some(kind)
     }
 
     fn read_header(&mut self, row: usize, line: &str) -> Result<(), TableError> {

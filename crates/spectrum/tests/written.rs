@@ -3,8 +3,8 @@
 use spectra_core::params::Fault;
 use spectra_scene::FileResources;
 use spectra_spectrum::{
-    BAND, Emission, Found, SpectrumError, find, find_emission_in, find_in, find_reflectance_in, find_sensitivity_in,
-    find_transmittance_in, planck_radiance,
+    BAND, Emission, Found, Kind, SpectrumError, find, find_emission_in, find_in, find_reflectance_in,
+    find_sensitivity_in, find_transmittance_in, planck_radiance,
 };
 use std::path::Path;
 
@@ -226,4 +226,40 @@ fn micrometers_are_told() {
     {
         assert!(find(name).is_ok(), "{name}");
     }
+}
+
+/// Where nothing says what is wanted, the names of columns do; the place and a stated kind come first.
+#[test]
+fn the_header_says_what_a_table_is() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let files = FileResources::beside(folder.path());
+    let kind = |header: &str, name: &str| {
+        let columns = header.matches(',').count();
+        let row = |nm: &str| format!("{nm}{}\n", ",0.5".repeat(columns));
+        std::fs::write(folder.path().join("mine.csv"), format!("{header}\n{}{}", row("400"), row("700")))
+            .expect("written");
+        find_in(name, &files).map(|found| found.kind()).expect(header)
+    };
+    for (header, want) in [
+        ("wavelength_nm,transmittance", Kind::Transmittance),
+        ("Wavelength (nm),Transmission", Kind::Transmittance),
+        ("wavelength_nm,spectral reflectance", Kind::Reflectance),
+        ("wavelength_nm,reflection", Kind::Reflectance),
+        ("wavelength_nm,sensitivity", Kind::Sensitivity),
+        ("wavelength_nm,relative response", Kind::Sensitivity),
+        ("wavelength_nm,irradiance", Kind::Emission),
+        ("wavelength_nm,power", Kind::Emission),
+        ("wavelength_nm,red", Kind::Emission),
+    ] {
+        assert_eq!(kind(header, "mine.csv"), want, "{header}");
+    }
+    let both = "wavelength_nm,transmittance,reflectance";
+    assert_eq!(kind(both, "mine.csv#transmittance"), Kind::Transmittance);
+    assert_eq!(kind(both, "mine.csv#reflectance"), Kind::Reflectance);
+    assert_eq!(kind("wavelength_nm,transmittance", "0.5 * mine.csv"), Kind::Transmittance);
+    assert_eq!(kind("wavelength_nm,reflectance", "D65 * mine.csv"), Kind::Emission);
+    // What is said where it is named comes first.
+    assert_eq!(kind("wavelength_nm,reflectance", "mine.csv"), Kind::Reflectance);
+    assert!(find_transmittance_in("mine.csv", &files).is_ok());
+    assert!(spectra_spectrum::find_as_in("mine.csv", Kind::Emission, &files).is_ok());
 }

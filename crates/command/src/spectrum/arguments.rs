@@ -102,7 +102,7 @@ pub(crate) struct SpectrumInfo {
     /// A bundled spectrum, a CSV file, or an expression (blackbody:5800).
     #[arg(value_name = "NAME")]
     pub name: String,
-    /// Kind of spectrum, if the file does not state it.
+    /// Kind of spectrum, whatever a header such as `wavelength_nm,transmittance` says; a file that states `kind` keeps it.
     #[arg(long = "as", value_enum, value_name = "KIND")]
     pub kind: Option<KindName>,
     /// Observer for XYZ, xy and Lab.
