@@ -9,7 +9,7 @@ use crate::RayBatch;
 use crate::cover::CoverStack;
 use crate::frame::{DisplayPicture, ExposureFrame, Finished, FrameSize, ImageState, RawFrame, Wanted};
 use crate::isa::Isa;
-use crate::params::Faults;
+use crate::params::{Faults, Warning};
 use crate::spectral::{Channel, SpectralPower, SystemResponse};
 use std::any::Any;
 use std::sync::Arc;
@@ -23,6 +23,11 @@ pub trait Source: Send + Sync {
     /// What is wrong with the files, placed at the keys that name them.
     fn prepare(&self) -> Result<(), Faults> {
         Ok(())
+    }
+
+    /// What is doubtful in its large files, once they are read.
+    fn doubts(&self) -> &[Warning] {
+        &[]
     }
 
     /// Light that enters the lens, summed over the source, in any scale; the wavelength sampler uses it as a weight.

@@ -42,8 +42,13 @@ pub struct Checked {
 pub fn check(series: &Series, look: Look<'_>) -> Result<Checked, SessionError> {
     let all: Vec<usize> = (0..series.count()).collect();
     let keep = |_, scene: &Scene| {
+        // The pixels of large files are looked at where that is done once, not for a thousand pictures.
+        if series.count() == 1 {
+            scene.source.prepare()?;
+        }
         let notes: Vec<String> = scene.all_notes().cloned().collect();
-        Ok((spectra_render::memory_needed(scene), scene.warnings.clone(), notes))
+        let warnings = scene.warnings.iter().chain(scene.source.doubts()).cloned().collect::<Vec<_>>();
+        Ok((spectra_render::memory_needed(scene), warnings, notes))
     };
     let of_each = checked(series, &all, look, &keep)?;
     let warnings = each_once(series.warnings().iter().chain(of_each.iter().flat_map(|(_, warnings, _)| warnings)));

@@ -291,9 +291,17 @@ fn one(
 
 /// A value that nobody wrote has no place to show.
 fn of_nobody(faults: Faults) -> Faults {
-    let is_made = |fault: &Fault| fault.place.as_ref().is_some_and(|(file, _)| file.name == MADE);
-    let one = |fault: Fault| if is_made(&fault) { Fault { place: None, ..fault } } else { fault };
-    faults.into_iter().map(one).collect::<Vec<_>>().into()
+    faults.into_iter().map(without_made).collect::<Vec<_>>().into()
+}
+
+fn without_made(fault: Fault) -> Fault {
+    let is_made = fault.place.as_ref().is_some_and(|(file, _)| file.name == MADE);
+    if is_made { Fault { place: None, ..fault } } else { fault }
+}
+
+/// A warning as it is told: without the place of a value that nobody wrote.
+pub(crate) fn told(warning: &Warning) -> Warning {
+    Warning(without_made(warning.0.clone()))
 }
 
 /// The scene of a picture, and where its light comes from.

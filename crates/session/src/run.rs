@@ -1,5 +1,6 @@
 //! Every picture of a scene, from its file to files.
 
+use crate::develop::told;
 use crate::files::{Files, write_report};
 use crate::job::{Ended, Job, LightFrom};
 use crate::taken::{Taken, prepare};
@@ -50,7 +51,7 @@ pub(crate) fn picture(
     names.extend(report_file.clone());
     prepare(job, host, &names)?;
     let control = host.control();
-    session.warnings().for_each(|warning| host.hear(Event::Warning(warning)));
+    session.warnings().for_each(|warning| host.hear(Event::Warning(&told(warning))));
     session.scene().all_notes().for_each(|note| host.hear(Event::Note(note)));
     let mut taken = match exposed {
         Some(rendering) => Taken { rendering, seconds: 0.0, failure: None },

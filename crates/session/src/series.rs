@@ -69,6 +69,7 @@ pub(crate) fn run(job: &Job<'_>, host: &dyn Host) -> Result<Ended, SessionError>
         contact: contact(job, &planned),
         done: Vec::new(),
         other: None,
+        doubts: Vec::new(),
         report_file,
         reported_s: host.now_s(),
         begun_s: host.now_s(),
@@ -170,6 +171,8 @@ struct Work<'a> {
     other: Option<Arc<Scene>>,
     /// What is said of each picture in `SCENE-series.json`.
     done: Vec<Value>,
+    /// What was said of the files of its sources.
+    doubts: Vec<Warning>,
     report_file: String,
     reported_s: f64,
     begun_s: f64,
@@ -197,6 +200,12 @@ impl Work<'_> {
         let mut session = Session::after(job.series.clone(), picture.index, self.other.take(), job.isa, Effort::Full)?;
         let control = host.control();
         session.prepare(host.workers())?;
+        for doubt in session.scene().source.doubts() {
+            if !self.doubts.contains(doubt) {
+                host.hear(Event::Warning(doubt));
+                self.doubts.push(doubt.clone());
+            }
+        }
         let Taken { rendering, seconds, failure } = Taken::of(&mut session, host, &control)?;
         if let Some(text) = failure {
             return Err(SessionError::Failed(text));

@@ -129,9 +129,9 @@ impl Session {
         self.series.files_on_disk()
     }
 
-    /// What a person should know before believing the picture.
+    /// What a person should know before believing the picture; of large files, once they are read.
     pub fn warnings(&self) -> impl Iterator<Item = &Warning> {
-        self.series.warnings().iter().chain(&self.scene.warnings)
+        self.series.warnings().iter().chain(&self.scene.warnings).chain(self.scene.source.doubts())
     }
 
     /// Makes the scene ready, if it is not; where the workers are to stop meanwhile, it stays as it is.

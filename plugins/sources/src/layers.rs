@@ -14,7 +14,7 @@ use crate::white;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::loss::{ALIVE, Loss};
-use spectra_core::params::{Faults, Length, Luminance, Params, Part, Positive, Quantity};
+use spectra_core::params::{Faults, Length, Luminance, Params, Part, Positive, Quantity, Warning};
 use spectra_core::registry::{Context, StageOf};
 use spectra_core::spectral::SpectralPower;
 use spectra_core::stage::{ColorModel, Emit, Radiance, Source};
@@ -139,15 +139,17 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
     let emits = layers.iter().all(|layer| layer.making.edge == Edge::Black);
     Ok(Box::new(Lazy::new(Box::new(stand_in), emits, move || {
         let mut faults = Faults::new();
-        let read: Vec<Layer> = layers.iter().filter_map(|layer| faults.take(layer.read())).collect();
+        let read: Vec<(Layer, Vec<Warning>)> = layers.iter().filter_map(|layer| faults.take(layer.read())).collect();
         faults.into_result(())?;
+        let (read, doubts): (Vec<Layer>, Vec<Vec<Warning>>) = read.into_iter().unzip();
+        let doubts = doubts.concat();
         let lights = read.iter().filter_map(|layer| layer.map.lights.as_ref().map(|lights| lights.pays));
         let Some(pays) = lights.reduce(|a, b| a || b).filter(|_| emits) else {
-            return Ok(Box::new(Layers::new(read)));
+            return Ok((Box::new(Layers::new(read)), doubts));
         };
         let half = |half| Layers::new(read.iter().map(|layer| layer.half(half)).collect());
         let (lights, rest) = (half(Half::Lights), half(Half::Rest));
-        Ok(Box::new(Halves { lights, rest, whole: Layers::new(read), pays }))
+        Ok((Box::new(Halves { lights, rest, whole: Layers::new(read), pays }), doubts))
     })))
 }
 
@@ -166,11 +168,13 @@ impl Pending {
         Layer { map, cover: None, distance_mm: self.distance_mm, center_mm: self.center_mm }
     }
 
-    fn read(&self) -> Result<Layer, Faults> {
+    /// The layer, and what is doubtful in its file.
+    fn read(&self) -> Result<(Layer, Vec<Warning>), Faults> {
         let mut linear = self.file.read()?;
+        let doubts = self.file.doubts(&linear);
         let cover = linear.alpha.take().map(Arc::new);
         let map = self.making.map(linear, &self.file.name);
-        Ok(Layer { map, cover, distance_mm: self.distance_mm, center_mm: self.center_mm })
+        Ok((Layer { map, cover, distance_mm: self.distance_mm, center_mm: self.center_mm }, doubts))
     }
 }
 

@@ -1,14 +1,16 @@
 //! A source whose large files are read when light is traced, not when a scene is checked.
 
-use spectra_core::params::Faults;
+use spectra_core::params::{Faults, Warning};
 use spectra_core::spectral::SpectralPower;
 use spectra_core::stage::{Emit, Radiance, Source, Split, Still};
 use std::sync::OnceLock;
 
+/// What was read, and what is doubtful in it.
+type Read<T> = Result<(T, Vec<Warning>), Faults>;
 /// How the source itself is made.
-type Reader = Box<dyn Fn() -> Result<Box<dyn Source>, Faults> + Send + Sync>;
+type Reader = Box<dyn Fn() -> Read<Box<dyn Source>> + Send + Sync>;
 /// How its pixels are read.
-type StillReader = Box<dyn Fn() -> Result<Still, Faults> + Send + Sync>;
+type StillReader = Box<dyn Fn() -> Read<Still> + Send + Sync>;
 
 /// A white source of the same size and place until [`Source::prepare`] is called, then the real one.
 pub(crate) struct Lazy {
@@ -18,6 +20,7 @@ pub(crate) struct Lazy {
     /// Whether the real one emits rays.
     emits: bool,
     still: Option<StillReader>,
+    doubts: OnceLock<Vec<Warning>>,
 }
 
 impl Lazy {
@@ -25,13 +28,13 @@ impl Lazy {
     pub(crate) fn new(
         stand_in: Box<dyn Source>,
         emits: bool,
-        reader: impl Fn() -> Result<Box<dyn Source>, Faults> + Send + Sync + 'static,
+        reader: impl Fn() -> Read<Box<dyn Source>> + Send + Sync + 'static,
     ) -> Self {
-        Self { stand_in, reader: Box::new(reader), read: OnceLock::new(), emits, still: None }
+        Self { stand_in, reader: Box::new(reader), read: OnceLock::new(), emits, still: None, doubts: OnceLock::new() }
     }
 
     /// The same, a flat picture whose pixels are read by `still`.
-    pub(crate) fn with_still(self, still: impl Fn() -> Result<Still, Faults> + Send + Sync + 'static) -> Self {
+    pub(crate) fn with_still(self, still: impl Fn() -> Read<Still> + Send + Sync + 'static) -> Self {
         Self { still: Some(Box::new(still)), ..self }
     }
 
@@ -43,11 +46,15 @@ impl Lazy {
 impl Source for Lazy {
     fn prepare(&self) -> Result<(), Faults> {
         if self.read.get().is_none() {
-            let source = (self.reader)()?;
+            let (source, doubts) = (self.reader)()?;
             // Where two threads read it at once, one of two equal ones is kept.
+            let _ = self.doubts.set(doubts);
             let _ = self.read.set(source);
         }
         Ok(())
+    }
+    fn doubts(&self) -> &[Warning] {
+        self.doubts.get().map_or(&[], Vec::as_slice)
     }
     fn spectrum(&self) -> &SpectralPower {
         self.now().spectrum()
@@ -71,7 +78,11 @@ impl Source for Lazy {
         self.now().split()
     }
     fn still(&self) -> Option<Result<Still, Faults>> {
-        self.still.as_ref().map(|read| read())
+        let read = self.still.as_ref()?();
+        Some(read.map(|(still, doubts)| {
+            let _ = self.doubts.set(doubts);
+            still
+        }))
     }
     fn describe(&self) -> String {
         self.now().describe()

@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::loss::ALIVE;
 use spectra_core::math::{concentric_disk, cos, tan};
-use spectra_core::params::{Angle, Faults, Illuminance, Params, Part, Positive, Quantity};
+use spectra_core::params::{Angle, Faults, Illuminance, Params, Part, Positive, Quantity, Warning};
 use spectra_core::registry::{Context, StageOf, build as build_stage};
 use spectra_core::spectral::SpectralPower;
 use spectra_core::stage::{Emit, Radiance, Source, Split};
@@ -205,6 +205,9 @@ struct Over {
 impl Source for Over {
     fn prepare(&self) -> Result<(), Faults> {
         self.over.prepare()
+    }
+    fn doubts(&self) -> &[Warning] {
+        self.over.doubts()
     }
     fn spectrum(&self) -> &SpectralPower {
         self.over.spectrum()

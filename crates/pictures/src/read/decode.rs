@@ -2,7 +2,7 @@
 
 use super::encoding::Encoding;
 use super::header::Header;
-use super::linear::{Choice, Linear, MAX_SIDE, Trouble, check_size, clean};
+use super::linear::{Choice, Linear, MAX_SIDE, Trouble, check_size, clean, mend};
 use super::{exr, foreign, jpeg, tiff, turn};
 use image::metadata::Orientation;
 use image::{ColorType, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
@@ -224,7 +224,7 @@ fn linear<R: BufRead + Seek>(
             match samples {
                 Samples::Bytes => table[usize::from(pixel[c])],
                 Samples::Shorts => table[usize::from(short(c))],
-                Samples::Floats => clean(said.map_or(float(c), |encoding| encoding.decode(f64::from(float(c))) as f32)),
+                Samples::Floats => said.map_or(float(c), |encoding| encoding.decode(f64::from(float(c))) as f32),
             }
         });
         let cover = match samples {
@@ -309,6 +309,11 @@ fn linear<R: BufRead + Seek>(
             keep(memory, &mut alpha, i, pixel);
         }
     }
+    let mut doubts = Vec::new();
+    if matches!(samples, Samples::Floats) {
+        doubts.extend(mend(&mut rgb));
+        rgb.iter_mut().flatten().for_each(|value| *value = clean(*value));
+    }
     if !is_upright {
         turn::upright(&mut rgb, stored_size, orientation);
         turn::upright(alpha.as_chunks_mut::<1>().0, stored_size, orientation);
@@ -322,6 +327,7 @@ fn linear<R: BufRead + Seek>(
         alpha: (!alpha.is_empty()).then_some(alpha),
         depth: None,
         clipped_at: (!matches!(samples, Samples::Floats)).then(|| of_integers.clipped_at()),
+        doubts,
     })
 }
 

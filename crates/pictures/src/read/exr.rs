@@ -5,7 +5,7 @@
 //! and where it holds nothing is black. Without a `chromaticities` attribute the primaries are those of Rec. 709, as the
 //! format's documentation says, which sRGB shares.
 
-use super::linear::{Choice, Linear, Trouble, check_size, clean};
+use super::linear::{Choice, Linear, Trouble, check_size, clean, mend};
 use super::planes::{Plane, Planes};
 use exr::block::UncompressedBlock;
 use exr::block::lines::LineRef;
@@ -160,7 +160,6 @@ pub(super) fn decode(
                 }
                 let pixel = row as usize * width as usize + column as usize;
                 for (channel, _) in light.iter().enumerate().filter(|(_, own)| **own == at) {
-                    let value = if value.is_finite() { value } else { 0.0 };
                     if light.len() == 1 { rgb[pixel] = [value; 3] } else { rgb[pixel][channel] = value }
                 }
                 if let Some(alpha) = alpha.as_mut().filter(|_| alpha_at == Some(at)) {
@@ -175,13 +174,14 @@ pub(super) fn decode(
     };
     chunks.and_then(|chunks| chunks.decompress_parallel(false, take)).map_err(said)?;
     let chromaticities = headers[0].shared_attributes.chromaticities;
+    let doubts = mend(&mut rgb).into_iter().collect();
     let to_srgb = chromaticities.filter(|_| light.len() == 3).map(matrix).transpose()?.flatten();
     for pixel in &mut rgb {
         let converted = to_srgb
             .map_or(*pixel, |m| m.map(|row| row.iter().zip(*pixel).map(|(a, b)| a * f64::from(b)).sum::<f64>() as f32));
         *pixel = converted.map(clean);
     }
-    Ok(Linear { width, height, pixel_aspect, rgb, alpha, depth, clipped_at: None })
+    Ok(Linear { width, height, pixel_aspect, rgb, alpha, depth, clipped_at: None, doubts })
 }
 
 /// Every channel of a file of `bytes` bytes as it is, and the texts of its header; 0 where the file holds nothing of the window.

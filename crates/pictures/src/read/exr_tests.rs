@@ -57,6 +57,27 @@ fn both_floating_point_kinds_keep_highlights_and_rows_start_at_the_top() {
     }
 }
 
+/// An infinite value is as bright as the brightest that the picture has, never darker than white; what is no number is black
+/// as a pixel, in whichever channel it stands.
+#[test]
+fn infinite_values_are_bright_and_counted() {
+    let (nan, inf) = (f32::NAN, f32::INFINITY);
+    let of = |i: usize| [[0.5, 0.25, 0.125], [inf; 3], [nan, 0.2, 0.3], [inf, 0.2, 0.0], [-0.5, 12.0, 0.1]][i];
+    let bytes = file(window(5, 1), vec![layer(None, (5, 1), rgb((5, 1), of, floats))]);
+    let read = decode(&bytes, Choice::default()).unwrap();
+    assert_eq!(read.rgb, [[0.5, 0.25, 0.125], [12.0; 3], [0.0; 3], [12.0, 0.2, 0.0], [0.0, 12.0, 0.1]]);
+    let [doubt] = &read.doubts[..] else { panic!("{:?}", read.doubts) };
+    assert!(doubt.text.contains("2 pixels with infinite values, which count as 12"), "{}", doubt.text);
+    assert!(doubt.text.contains("1 pixel with values that are no numbers"), "{}", doubt.text);
+    let dim = file(window(2, 1), vec![layer(None, (2, 1), rgb((2, 1), |i| [[0.2; 3], [inf; 3]][i], halves))]);
+    assert_eq!(
+        decode(&dim, Choice::default()).unwrap().rgb,
+        [[0.2; 3], [1.0; 3]].map(|p| p.map(|v| f16::from_f32(v).to_f32()))
+    );
+    let sound = file(window(1, 1), vec![layer(None, (1, 1), rgb((1, 1), |_| [0.2; 3], floats))]);
+    assert!(decode(&sound, Choice::default()).unwrap().doubts.is_empty());
+}
+
 #[test]
 fn chromaticities_are_honored() {
     let acescg = Chromaticities {

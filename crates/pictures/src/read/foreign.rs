@@ -6,7 +6,7 @@
 
 use super::encoding::Encoding;
 use super::header::Header;
-use super::linear::{Choice, Linear, MAX_PIXELS, MAX_SIDE, Trouble, clean};
+use super::linear::{Choice, Linear, MAX_PIXELS, MAX_SIDE, Trouble, clean, mend};
 use super::turn;
 use crate::library::{self, FilePicture, PictureLimits};
 use spectra_color::Transfer;
@@ -108,6 +108,7 @@ fn linear(mut picture: FilePicture, encoding: Encoding) -> Linear {
             }
         }
     }
+    let mut doubts = Vec::new();
     if picture.integers {
         // Of 16 bits at most: those of 8 lie on every 257th.
         let table = encoding.table(65_536);
@@ -116,8 +117,10 @@ fn linear(mut picture: FilePicture, encoding: Encoding) -> Linear {
         }
     } else {
         for value in picture.rgb.iter_mut().flatten() {
-            *value = clean(if is_light { *value } else { encoding.decode(f64::from(*value)) as f32 });
+            *value = if is_light { *value } else { encoding.decode(f64::from(*value)) as f32 };
         }
+        doubts.extend(mend(&mut picture.rgb));
+        picture.rgb.iter_mut().flatten().for_each(|value| *value = clean(*value));
     }
     if let Some(alpha) = picture.alpha.as_ref().filter(|_| !(picture.multiplied && is_light)) {
         for (pixel, cover) in picture.rgb.iter_mut().zip(alpha) {
@@ -138,6 +141,7 @@ fn linear(mut picture: FilePicture, encoding: Encoding) -> Linear {
         alpha: picture.alpha,
         depth: None,
         clipped_at: picture.integers.then(|| encoding.clipped_at()),
+        doubts,
     }
 }
 

@@ -22,6 +22,8 @@ pub struct Linear {
     pub depth: Option<Vec<f32>>,
     /// The code value from which on integers are clipped, in linear light; `None` for floating point.
     pub clipped_at: Option<f32>,
+    /// What of its pixels a person should know before believing them.
+    pub doubts: Vec<Trouble>,
 }
 
 /// What is known of a file, and chosen of one of several layers.
@@ -39,7 +41,7 @@ pub struct Choice<'a> {
     pub depth: Option<&'a str>,
 }
 
-/// What is wrong with a picture file.
+/// What is wrong with a picture file, or doubtful in it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trouble {
     /// The key whose value is to be changed: `file`, `layer`, `depth` or `transfer`.
@@ -74,6 +76,40 @@ pub(super) fn check_size(width: u64, height: u64) -> Result<(), Trouble> {
         return Err(Trouble::file(text));
     }
     Ok(())
+}
+
+/// Makes light of values that are none, and says of how many pixels: an infinite value counts as the largest finite one of
+/// the picture, or as white where that is more; a pixel with a value that is no number is black.
+pub(super) fn mend(rgb: &mut [[f32; 3]]) -> Option<Trouble> {
+    let (mut largest, mut is_sound) = (1.0_f32, true);
+    for value in rgb.iter().flatten() {
+        if value.is_finite() {
+            largest = largest.max(*value);
+        } else {
+            is_sound = false;
+        }
+    }
+    if is_sound {
+        return None;
+    }
+    let (mut infinite, mut undefined) = (0_usize, 0_usize);
+    for pixel in rgb.iter_mut().filter(|pixel| pixel.iter().any(|v| !v.is_finite())) {
+        if pixel.iter().any(|v| v.is_nan() || *v == f32::NEG_INFINITY) {
+            undefined += 1;
+            *pixel = [0.0; 3];
+        } else {
+            infinite += 1;
+            *pixel = pixel.map(|v| v.min(largest));
+        }
+    }
+    let pixels = |n: usize| if n == 1 { "1 pixel".to_owned() } else { format!("{n} pixels") };
+    let infinite =
+        (infinite > 0).then(|| format!("{} with infinite values, which count as {largest}", pixels(infinite)));
+    let undefined =
+        (undefined > 0).then(|| format!("{} with values that are no numbers, taken as black", pixels(undefined)));
+    let all: Vec<String> = infinite.into_iter().chain(undefined).collect();
+    let trouble = Trouble::file(format!("it has {}", all.join(", and ")));
+    Some(trouble.hint("repair them in the program that wrote the file; `spectra picture info` counts them by channel"))
 }
 
 /// Light as the sources take it: infinite, negative and undefined values are none.

@@ -24,7 +24,7 @@ use map::{Importance, PictureMap};
 use places::LightPlaces;
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::params::{Fault, Faults, Length, Luminance, Params, Part, Positive, Quantity};
+use spectra_core::params::{Fault, Faults, Length, Luminance, Params, Part, Positive, Quantity, Warning};
 use spectra_core::registry::{Context, StageOf, build as build_stage};
 use spectra_core::resources::{Found, ResourceError};
 use spectra_core::spectral::SpectralPower;
@@ -189,14 +189,20 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
         }
     };
     let still = {
-        let (pixels, making) = (pixels.clone(), Arc::clone(&making));
-        move || pixels().map(|linear| making.still(linear))
+        let (file, pixels, making) = (Arc::clone(&file), pixels.clone(), Arc::clone(&making));
+        move || {
+            pixels().map(|linear| {
+                let doubts = file.doubts(&linear);
+                (making.still(linear), doubts)
+            })
+        }
     };
     let lazy = Lazy::new(Box::new(stand_in), emits, move || {
         let linear = pixels()?;
+        let doubts = file.doubts(&linear);
         let Some(depth) = &depth else {
             let map = making.map(linear, &file.name);
-            return Ok(with_halves(map, emits, |texture| Flat { texture, distance_mm }));
+            return Ok((with_halves(map, emits, |texture| Flat { texture, distance_mm }), doubts));
         };
         let plane_mm = distance_mm + depth.eye_mm;
         let all = depth.of(&linear, plane_mm, width_mm)?;
@@ -205,7 +211,8 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
         let field = Arc::new(HeightField::new(map.width_px, map.height_px, &all, depth.edge));
         let eye_mm = depth.eye_mm;
         let ends_mm = ends.map(f64::from);
-        Ok(with_halves(map, emits, |map| DeepPicture::new(map, Arc::clone(&field), plane_mm, eye_mm, ends_mm)))
+        let deep = |map| DeepPicture::new(map, Arc::clone(&field), plane_mm, eye_mm, ends_mm);
+        Ok((with_halves(map, emits, deep), doubts))
     });
     Ok(Box::new(if is_flat { lazy.with_still(still) } else { lazy }))
 }
@@ -254,6 +261,11 @@ impl PictureFile {
         read::decode(&self.found, self.choice()).map_err(|e| trouble(&self.name, &e, &self.params).into())
     }
 
+    /// What is doubtful in its pixels.
+    pub(crate) fn doubts(&self, linear: &Linear) -> Vec<Warning> {
+        linear.doubts.iter().map(|doubt| trouble(&self.name, doubt, &self.params).into()).collect()
+    }
+
     /// Warns of a photograph whose code values are taken as light.
     pub(crate) fn warn(&self, header: &Header, context: &Context<'_>) {
         if header.is_jpeg && self.transfer.as_deref() == Some("linear") {
@@ -283,6 +295,7 @@ impl Making {
             alpha: None,
             depth: None,
             clipped_at: None,
+            doubts: Vec::new(),
         };
         self.map(pixel, name)
     }
