@@ -50,6 +50,21 @@ fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
 }
 
+/// A file that ends too early is refused with what to do, as where it is developed; long names of the report stand apart from
+/// their values.
+#[test]
+fn a_file_cut_short_and_a_long_name_are_told_whole() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let whole = folder.path().join("whole.png");
+    image::RgbImage::from_pixel(8, 4, image::Rgb([255; 3])).save(&whole).expect("written");
+    assert!(good(&["picture", "info", shown(&whole)]).contains("at the end of the scale 100.00 %"));
+    let bytes = fs::read(&whole).expect("there");
+    let cut = folder.path().join("cut.png");
+    fs::write(&cut, &bytes[..bytes.len() / 2]).expect("written");
+    let refused = run(&["picture", "info", shown(&cut)]);
+    assert!(!refused.status.success() && text(&refused.stderr).contains("is the file complete?"));
+}
+
 /// Projected solid angle of a disk of radius a at the distance d, seen `r` off its axis from a place that looks along the axis, sr.
 fn projected_solid_angle_sr(d: f64, a: f64, r: f64) -> f64 {
     let sum = d * d + r * r + a * a;

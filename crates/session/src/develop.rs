@@ -388,10 +388,8 @@ fn header_of(file: &str, layer: Option<&str>, files: &dyn Resources) -> Result<H
         Fault::new(format!("picture `{file}`: {error}")).hint(hint)
     })?;
     let choice = Choice { name: file, layer, ..Choice::default() };
-    header(&found, choice).map_err(|trouble| {
-        let fault = Fault::new(format!("picture `{file}`: {}", trouble.text));
-        trouble.hint.map_or(fault.clone(), |hint| fault.hint(hint)).into()
-    })
+    header(&found, choice)
+        .map_err(|trouble| Fault::new(format!("picture `{file}`: {}", trouble.text)).hint(trouble.advice()).into())
 }
 
 /// The largest frame of the picture's shape that a format holds, on its side where the picture stands upright: width and height, mm.

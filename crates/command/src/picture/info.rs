@@ -88,7 +88,7 @@ fn text(report: &Report<'_>, picture: &Measured) -> String {
     out.push('\n');
     let mut row = |name: &str, value: Option<String>| {
         if let Some(value) = value {
-            let _ = writeln!(out, "  {name:<18}{value}");
+            let _ = writeln!(out, "  {name:<17} {value}");
         }
     };
     row("film size", report.film_size_mm.map(|[w, h]| format!("{w} x {h} mm")));

@@ -15,7 +15,7 @@ use spectra_analysis::picture::{Field, Measured, NotMeasured, Quantity};
 use spectra_core::names::nearest;
 use spectra_core::params::Fault;
 use spectra_core::resources::Found;
-use spectra_pictures::read::{Choice, planes};
+use spectra_pictures::read::{Choice, Trouble, planes};
 use spectra_plot::PlotError;
 use std::path::{Path, PathBuf};
 
@@ -40,10 +40,8 @@ fn load(path: &Path) -> Result<Measured, Failure> {
     }
     let found = Found::on_disk(shown.clone(), path.to_owned());
     let choice = Choice { name: &shown, ..Choice::default() };
-    planes(&found, choice).and_then(Measured::of).map_err(|trouble| {
-        let fault = Fault::new(format!("{shown}: {}", trouble.text));
-        trouble.hint.map_or(fault.clone(), |hint| fault.hint(hint)).into()
-    })
+    let refused = |trouble: Trouble| Fault::new(format!("{shown}: {}", trouble.text)).hint(trouble.advice()).into();
+    planes(&found, choice).and_then(Measured::of).map_err(refused)
 }
 
 /// A fault of a picture, by its name.

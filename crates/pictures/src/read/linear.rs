@@ -61,6 +61,12 @@ impl Trouble {
         Self { key, text: text.into(), hint: None }
     }
 
+    /// What to do about it, also where nothing but the file's bytes is to blame.
+    #[must_use]
+    pub fn advice(&self) -> &str {
+        self.hint.as_deref().unwrap_or("is the file complete? Save it again as OpenEXR, PNG, JPEG, TIFF or HDR")
+    }
+
     pub(super) fn hint(self, hint: impl Into<String>) -> Self {
         Self { hint: Some(hint.into()), ..self }
     }

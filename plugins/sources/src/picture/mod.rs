@@ -338,9 +338,7 @@ pub(crate) fn trouble(file: &str, trouble: &Trouble, params: &Params) -> Fault {
         key => key,
     };
     let fault = params.fault(key, format!("picture `{file}`: {}", trouble.text));
-    fault.hint(
-        trouble.hint.as_deref().unwrap_or("is the file complete? Save it again as OpenEXR, PNG, JPEG, TIFF or HDR"),
-    )
+    fault.hint(trouble.advice())
 }
 
 pub(crate) fn find(file: &str, params: &Params, context: &Context<'_>) -> Result<Found, Fault> {
