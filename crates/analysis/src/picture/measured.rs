@@ -91,6 +91,8 @@ impl Measured {
                 _ => Unit::Unknown,
             };
             (Some(Colors::Xyz(at)), unit)
+        } else if let Some(at) = all(["R", "G", "B"]).filter(|_| !is_data && planes.holds_xyz()) {
+            (Some(Colors::Xyz(at)), if is_ours { Unit::OfWhite } else { Unit::Unknown })
         } else if let Some(at) = all(["R", "G", "B"]).filter(|_| !is_data) {
             let space = planes.chromaticities.map_or_else(
                 || RgbSpace::srgb().clone(),

@@ -6,7 +6,7 @@
 //! format's documentation says, which sRGB shares.
 
 use super::linear::{Choice, Linear, Trouble, check_size, clean, mend};
-use super::planes::{Plane, Planes};
+use super::planes::{Plane, Planes, are_of_xyz};
 use exr::block::UncompressedBlock;
 use exr::block::lines::LineRef;
 use exr::block::reader::ChunksReader;
@@ -14,7 +14,8 @@ use exr::meta::MetaData;
 use exr::meta::attribute::{AttributeValue, Chromaticities, SampleType};
 use exr::meta::header::Header;
 use exr::prelude::{Vec2, f16};
-use spectra_color::{Adaptation, RgbSpace, Transfer};
+use spectra_color::matrix::{Matrix, product};
+use spectra_color::{Adaptation, RgbSpace, Transfer, xyz_of_xy};
 use std::io::{BufRead, Seek};
 
 /// First bytes of a file.
@@ -175,7 +176,8 @@ pub(super) fn decode(
     chunks.and_then(|chunks| chunks.decompress_parallel(false, take)).map_err(said)?;
     let chromaticities = headers[0].shared_attributes.chromaticities;
     let doubts = mend(&mut rgb).into_iter().collect();
-    let to_srgb = chromaticities.filter(|_| light.len() == 3).map(matrix).transpose()?.flatten();
+    let neutral = headers[0].own_attributes.adopted_neutral.map(|v| [f64::from(v.0), f64::from(v.1)]);
+    let to_srgb = chromaticities.filter(|_| light.len() == 3).map(|c| matrix(c, neutral)).transpose()?.flatten();
     for pixel in &mut rgb {
         let converted = to_srgb
             .map_or(*pixel, |m| m.map(|row| row.iter().zip(*pixel).map(|(a, b)| a * f64::from(b)).sum::<f64>() as f32));
@@ -246,7 +248,7 @@ pub(super) fn planes(reader: impl BufRead + Seek + Send, bytes: u64) -> Result<P
     let place = |v: Vec2<f32>| [f64::from(v.0), f64::from(v.1)];
     let stated = headers[0].shared_attributes.chromaticities;
     // Refused here as everywhere where they span no colors.
-    stated.map(matrix).transpose()?;
+    stated.map(|c| matrix(c, None)).transpose()?;
     let chromaticities = stated.map(|c| [c.red, c.green, c.blue, c.white].map(place));
     Ok(Planes {
         format: "OpenEXR",
@@ -392,10 +394,17 @@ fn depth_channel(groups: &[Group], chosen: &Group, name: &str) -> Result<(usize,
     })
 }
 
-/// From the file's primaries to those of sRGB, white to white (Bradford); `None` where they are the same.
-fn matrix(c: Chromaticities) -> Result<Option<[[f64; 3]; 3]>, Trouble> {
+/// From the file's primaries to those of sRGB, white to white (Bradford); `None` where they are the same. The values of CIE XYZ
+/// say nothing of white: there it is `neutral`, D65 where the file states none.
+fn matrix(c: Chromaticities, neutral: Option<[f64; 2]>) -> Result<Option<Matrix>, Trouble> {
     let xy = [c.red, c.green, c.blue, c.white].map(|v| [f64::from(v.0), f64::from(v.1)]);
     let [r, g, b, white] = xy;
+    if are_of_xyz(&xy) {
+        let srgb = RgbSpace::srgb();
+        let sound = neutral.filter(|xy| xy.iter().all(|v| (0.1..0.7).contains(v)));
+        let white = sound.map_or(srgb.white_xyz(), |xy| xyz_of_xy(xy, 1.0));
+        return Ok(Some(product(&srgb.rgb_from_xyz, &Adaptation::Bradford.matrix(white, srgb.white_xyz()))));
+    }
     let area = (g[0] - r[0]) * (b[1] - r[1]) - (g[1] - r[1]) * (b[0] - r[0]);
     // ACES AP0 has a blue primary of negative y (SMPTE ST 2065-1); nothing has one of 0.
     let sound = xy.iter().all(|[x, y]| x.abs() < 2.0 && y.abs() < 2.0 && y.abs() > 1e-4) && area.abs() > 1e-4;

@@ -100,6 +100,33 @@ fn chromaticities_are_honored() {
     }
 }
 
+/// The chromaticities of CIE XYZ, and the picture's white as this program writes it: D65 is white, and so is another white that the
+/// file says is neutral.
+#[test]
+fn xyz_is_read_by_its_chromaticities() {
+    let xyz = Chromaticities {
+        red: Vec2(1.0, 0.0),
+        green: Vec2(0.0, 1.0),
+        blue: Vec2(0.0, 0.0),
+        white: Vec2(1.0 / 3.0, 1.0 / 3.0),
+    };
+    // D65 (0.3127, 0.3290), half of it, and the red of sRGB (IEC 61966-2-1).
+    let colors = [[0.950_456, 1.0, 1.089_058], [0.475_228, 0.5, 0.544_529], [0.412_391, 0.212_639, 0.019_331]];
+    let attributes = || ImageAttributes { chromaticities: Some(xyz), ..window(3, 1) };
+    let bytes = file(attributes(), vec![layer(None, (3, 1), rgb((3, 1), |i| colors[i], floats))]);
+    let read = decode(&bytes, Choice::default()).unwrap();
+    for (got, want) in read.rgb.iter().zip([[1.0; 3], [0.5; 3], [1.0, 0.0, 0.0]]) {
+        assert!(got.iter().zip(want).all(|(a, b)| (a - b).abs() < 1e-4), "{got:?} {want:?}");
+    }
+    let mut warm = layer(None, (1, 1), rgb((1, 1), |_| [1.0, 1.0, 1.0], floats));
+    warm.attributes.adopted_neutral = Some(Vec2(1.0 / 3.0, 1.0 / 3.0));
+    let bytes = file(ImageAttributes { chromaticities: Some(xyz), ..window(1, 1) }, vec![warm]);
+    let white = decode(&bytes, Choice::default()).unwrap().rgb[0];
+    assert!(white.iter().all(|v| (v - 1.0).abs() < 1e-4), "{white:?}");
+    let planes = super::exr::planes(Cursor::new(&bytes[..]), bytes.len() as u64).unwrap();
+    assert!(planes.holds_xyz());
+}
+
 #[test]
 fn layers_are_chosen_by_part_and_by_prefix() {
     let gray = |v: f32| rgb((2, 1), move |_| [v; 3], halves);

@@ -32,7 +32,19 @@ pub struct Planes {
     pub clipped_at: Option<f32>,
 }
 
+/// Whether chromaticities of red, green, blue and white are those of CIE XYZ, by which X stands in R, Y in G and Z in B.
+pub(super) fn are_of_xyz(xy: &[[f64; 2]; 4]) -> bool {
+    let primaries = [[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]];
+    xy.iter().zip(primaries).all(|(a, b)| (a[0] - b[0]).abs() < 1e-4 && (a[1] - b[1]).abs() < 1e-4)
+}
+
 impl Planes {
+    /// Whether `R`, `G` and `B` hold CIE XYZ, as the chromaticities say.
+    #[must_use]
+    pub fn holds_xyz(&self) -> bool {
+        self.chromaticities.as_ref().is_some_and(are_of_xyz)
+    }
+
     /// The channel of that name.
     #[must_use]
     pub fn channel(&self, name: &str) -> Option<&Plane> {
