@@ -18,7 +18,7 @@ pub fn color(picture: &Measured, white: Option<f64>, title: &str) -> Result<Canv
     let srgb = RgbSpace::srgb();
     // Light adds up: what is shown smaller is the mean of linear light.
     let [x, y, z] = [0, 1, 2].map(|i| {
-        let shown = Shown::of(picture, false, &|pixel| picture.xyz(pixel).map_or(f64::NAN, |xyz| xyz[i]));
+        let shown = Shown::of(picture, false, &|pixel| picture.xyz_under_d65(pixel).map_or(f64::NAN, |xyz| xyz[i]));
         (shown.values, shown.frame, shown.columns, shown.rows)
     });
     let rgb = x.0.iter().zip(&y.0).zip(&z.0).map(|((x, y), z)| {

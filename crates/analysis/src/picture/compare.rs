@@ -76,7 +76,7 @@ impl Difference {
 }
 
 /// Compares two pictures of one size, pixel by pixel. Colors are seen against one white of D65 for both, whose Y is `white`, or else
-/// that of the first picture ([`Measured::white`]).
+/// that of the first picture ([`Measured::white`]); the white of a file's primaries is brought there.
 ///
 /// # Errors
 /// Pictures of other sizes or units, or that have nothing in common.
@@ -101,7 +101,7 @@ pub fn compare(first: &Measured, second: &Measured, white: Option<f64>) -> Resul
     let pixels = first.planes.pixels();
     let mut channels = Vec::new();
     if both_colored {
-        let y = |p: &Measured, pixel: usize| p.xyz(pixel).map_or(f64::NAN, |xyz| xyz[1]);
+        let y = |p: &Measured, pixel: usize| p.xyz_under_d65(pixel).map_or(f64::NAN, |xyz| xyz[1]);
         channels.push(differs("Y", first.unit.symbol(), first, &|i| [y(first, i), y(second, i)]));
     }
     for channel in &first.planes.channels {
@@ -120,7 +120,7 @@ pub fn compare(first: &Measured, second: &Measured, white: Option<f64>) -> Resul
     let white = if both_colored { white.or_else(|| first.white()).or_else(|| second.white()) } else { None };
     let delta_e = white.map(|y| {
         let against = RgbSpace::srgb().white_xyz().map(|v| v * y);
-        let of = |p: &Measured, pixel: usize| lab(p.xyz(pixel).unwrap_or([f64::NAN; 3]), against);
+        let of = |p: &Measured, pixel: usize| lab(p.xyz_under_d65(pixel).unwrap_or([f64::NAN; 3]), against);
         let differs = |i: usize| ciede2000(of(first, i), of(second, i));
         (0..pixels).map(differs).map(|v| if v.is_finite() { v } else { f64::NAN }).collect()
     });
@@ -174,5 +174,53 @@ fn differs(name: &str, unit: &str, picture: &Measured, values: &dyn Fn(usize) ->
         largest_at: [(largest_at % width) as u32, (largest_at / width) as u32],
         blocks_beyond_3: (blocks > 0).then(|| beyond as f64 / blocks as f64),
         not_finite: width * height - count,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use spectra_color::matrix::apply;
+    use spectra_pictures::read::{Plane, Planes};
+    use spectra_pictures::write::LinearSpace;
+
+    /// Colors of linear sRGB, written in a space.
+    fn picture(space: LinearSpace, chromaticities: [[f64; 2]; 4]) -> Measured {
+        let colors = [[1.0, 1.0, 1.0], [0.18, 0.18, 0.18], [0.8, 0.05, 0.1], [0.02, 0.3, 0.6]];
+        let matrix = space.from_srgb();
+        let of = |at: usize| colors.iter().map(|rgb| apply(&matrix, *rgb)[at] as f32).collect();
+        let plane = |(at, name): (usize, &str)| Plane { name: name.to_owned(), unit: String::new(), values: of(at) };
+        Measured::of(Planes {
+            format: "OpenEXR",
+            width: 2,
+            height: 2,
+            pixel_aspect: 1.0,
+            channels: ["R", "G", "B"].into_iter().enumerate().map(plane).collect(),
+            chromaticities: Some(chromaticities),
+            attributes: Vec::new(),
+            clipped_at: None,
+        })
+        .expect("colors")
+    }
+
+    /// One picture in five spaces: no color differs, also where the white of the primaries is that of ACES, and where the values
+    /// are XYZ.
+    #[test]
+    fn one_picture_in_several_spaces_does_not_differ() {
+        let of = |space: &RgbSpace| {
+            let [r, g, b] = space.primaries_xy;
+            [r, g, b, space.white_xy]
+        };
+        let srgb = picture(LinearSpace::Srgb, of(RgbSpace::srgb()));
+        for (space, xy) in [
+            (LinearSpace::AcesCg, of(RgbSpace::aces_cg())),
+            (LinearSpace::Rec2020, of(RgbSpace::rec2020())),
+            (LinearSpace::P3D65, of(RgbSpace::display_p3())),
+            (LinearSpace::Xyz, [[1.0, 0.0], [0.0, 1.0], [0.0, 0.0], [1.0 / 3.0, 1.0 / 3.0]]),
+        ] {
+            let difference = compare(&srgb, &picture(space, xy), Some(1.0)).expect("of one size");
+            let largest = difference.delta_e.expect("colors").into_iter().fold(0.0, f64::max);
+            assert!(largest < 1e-3, "{space:?}: {largest}");
+        }
     }
 }

@@ -132,7 +132,7 @@ impl Field {
                 let white = white.or_else(|| picture.white()).ok_or_else(dark)?;
                 let against = RgbSpace::srgb().white_xyz().map(|v| v * white);
                 let value = |pixel: usize| {
-                    let [l, a, b] = lab(picture.xyz(pixel).unwrap_or([f64::NAN; 3]), against);
+                    let [l, a, b] = lab(picture.xyz_under_d65(pixel).unwrap_or([f64::NAN; 3]), against);
                     let chroma = (a * a + b * b).sqrt();
                     match quantity {
                         Quantity::Lightness => l,

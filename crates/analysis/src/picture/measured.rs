@@ -1,7 +1,8 @@
 //! What a picture file says of its light.
 
 use super::bands::{Band, edges_nm, middle_nm, xyz_of_band};
-use spectra_color::{RgbSpace, Transfer};
+use spectra_color::matrix::{Matrix, apply};
+use spectra_color::{Adaptation, RgbSpace, Transfer, xyz_of_xy};
 use spectra_pictures::read::{Planes, Trouble};
 
 /// The unit of a picture's XYZ.
@@ -53,6 +54,8 @@ pub struct Measured {
     pub size_mm: Option<[f64; 2]>,
     /// How long light fell, s.
     pub exposure_time_s: Option<f64>,
+    /// From XYZ to XYZ under a white of D65, where the primaries have another one.
+    to_d65: Option<Matrix>,
 }
 
 /// What a picture cannot say, and what could.
@@ -108,7 +111,11 @@ impl Measured {
             let time: f64 = text.strip_suffix(" s")?.parse().ok()?;
             (time.is_finite() && time > 0.0).then_some(time)
         });
-        Ok(Self { planes, colors, unit, size_mm, exposure_time_s })
+        let white = if let Some(Colors::Rgb(_, space)) = &colors { Some(space.white_xy) } else { None };
+        let d65 = RgbSpace::srgb();
+        let is_other = |xy: &[f64; 2]| xy.iter().zip(d65.white_xy).any(|(a, b)| (a - b).abs() > 1e-4);
+        let to_d65 = white.filter(is_other).map(|xy| Adaptation::Cat02.matrix(xyz_of_xy(xy, 1.0), d65.white_xyz()));
+        Ok(Self { planes, colors, unit, size_mm, exposure_time_s, to_d65 })
     }
 
     /// XYZ of a pixel in the picture's unit; `None` where the picture has no colors.
@@ -127,6 +134,13 @@ impl Measured {
                 sum
             }
         })
+    }
+
+    /// XYZ of a pixel as it looks under a white of D65: where the primaries have another white, it is brought there by CAT02.
+    #[must_use]
+    pub fn xyz_under_d65(&self, pixel: usize) -> Option<[f64; 3]> {
+        let xyz = self.xyz(pixel)?;
+        Some(self.to_d65.as_ref().map_or(xyz, |matrix| apply(matrix, xyz)))
     }
 
     /// Irradiance of a pixel within the bands, W m^-2; `None` where no bands were recorded.

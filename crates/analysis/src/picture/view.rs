@@ -179,7 +179,7 @@ pub fn clipping(picture: &Measured, white: Option<f64>, title: &str) -> Result<C
     let white = white.or_else(|| picture.white()).ok_or_else(super::field::dark)?;
     let srgb = RgbSpace::srgb();
     let kind = |pixel: usize| {
-        let xyz = picture.xyz(pixel).unwrap_or([f64::NAN; 3]);
+        let xyz = picture.xyz_under_d65(pixel).unwrap_or([f64::NAN; 3]);
         if xyz.iter().any(|v| !v.is_finite()) {
             return 3.0;
         }
