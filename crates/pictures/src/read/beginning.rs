@@ -25,9 +25,9 @@ pub fn header(found: &Found, choice: Choice<'_>) -> Result<Header, Trouble> {
             if is_jpeg {
                 jpeg::refuse_unless_whole(found)?;
                 let beginning = found.read(BEGINNING_BYTES).map_err(io)?;
-                decode::native_header(std::io::Cursor::new(beginning), format, bytes)?
+                decode::native_header(std::io::Cursor::new(beginning), format, found, choice)?
             } else {
-                decode::native_header(found.open().map_err(io)?, format, bytes)?
+                decode::native_header(found.open().map_err(io)?, format, found, choice)?
             }
         }
         Kind::Foreign => return decode::foreign_header(found, choice, None),

@@ -3,11 +3,13 @@
 use super::encoding::Encoding;
 use super::header::Header;
 use super::linear::{Choice, Linear, MAX_SIDE, Trouble, check_size, clean, mend};
+use super::tags::Tags;
 use super::{exr, foreign, jpeg, tiff, turn};
 use image::metadata::Orientation;
 use image::{ColorType, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
 use rayon::prelude::*;
 use spectra_color::Transfer;
+use spectra_color::matrix::apply;
 use spectra_core::resources::{Found, ResourceError};
 use std::io::{BufRead, Seek};
 
@@ -26,7 +28,7 @@ pub fn decode(found: &Found, choice: Choice<'_>) -> Result<Linear, Trouble> {
     let bytes = found.size_bytes().map_err(io)?;
     match kind(&found.read(64).map_err(io)?, choice)? {
         Kind::Exr => exr::decode(found.open().map_err(io)?, bytes, choice, true),
-        Kind::Native(format) => match native(found, format, choice.cover, said) {
+        Kind::Native(format) => match native(found, format, choice.cover, said.clone()) {
             Ok(linear) => Ok(linear),
             Err(NotRead::Trouble(trouble)) => Err(trouble),
             Err(NotRead::Unsupported(why)) => {
@@ -124,12 +126,14 @@ fn decoder<'a>(
     Ok(decoder)
 }
 
-/// The header of a file of `bytes` bytes, from its beginning; `Err` within of a variant that is not known here.
+/// The header of a file, from its beginning; `Err` within of a variant that is not known here.
 pub(super) fn native_header<'a>(
     reader: impl BufRead + Seek + 'a,
     format: ImageFormat,
-    bytes: u64,
+    found: &Found,
+    choice: Choice<'_>,
 ) -> Result<Result<Header, String>, Trouble> {
+    let bytes = found.size_bytes().map_err(io)?;
     let mut decoder = match decoder(reader, format, bytes) {
         Ok(decoder) => decoder,
         Err(NotRead::Trouble(trouble)) => return Err(trouble),
@@ -139,7 +143,10 @@ pub(super) fn native_header<'a>(
     let turned = turn::is_on_its_side(orientation(&mut decoder));
     let [width, height] = if turned { [height, width] } else { [width, height] };
     let clips = !matches!(decoder.color_type(), ColorType::Rgb32F | ColorType::Rgba32F);
-    Ok(Ok(Header { width, height, pixel_aspect: 1.0, clips, is_jpeg: format == ImageFormat::Jpeg }))
+    let doubt = Tags::of(found, format, &mut decoder).doubt;
+    // Somebody who states the curve has seen to it.
+    let doubts = doubt.filter(|_| choice.transfer.is_none()).into_iter().collect();
+    Ok(Ok(Header { width, height, pixel_aspect: 1.0, clips, is_jpeg: format == ImageFormat::Jpeg, doubts }))
 }
 
 /// As TIFF 6.0 numbers it. A file that says nothing sound of it lies as it is.
@@ -160,8 +167,10 @@ fn native(found: &Found, format: ImageFormat, cover: bool, said: Option<Encoding
     limits.max_alloc = Some(decoder.total_bytes().saturating_add(spare_bytes));
     decoder.set_limits(limits)?;
     let orientation = orientation(&mut decoder);
+    let tags = Tags::of(found, format, &mut decoder);
+    let tags = Tags { encoding: said.or(tags.encoding), ..tags };
     let plain = tiff::Plain::new(found.open().map_err(io)?, &decoder, format, spare_bytes)?;
-    linear(decoder, plain, orientation, cover, said)
+    linear(decoder, plain, orientation, cover, &tags)
 }
 
 /// The depth channel alone of an OpenEXR file, which need not hold light.
@@ -195,7 +204,7 @@ fn linear<R: BufRead + Seek>(
     plain: Option<tiff::Plain<R>>,
     orientation: u8,
     cover: bool,
-    said: Option<Encoding>,
+    tags: &Tags,
 ) -> Result<Linear, NotRead> {
     const LIGHT: usize = size_of::<[f32; 3]>();
     let color = decoder.color_type();
@@ -208,7 +217,9 @@ fn linear<R: BufRead + Seek>(
     let (size, count) = (usize::from(color.bytes_per_pixel()), usize::from(color.channel_count()));
     let (width, height) = decoder.dimensions();
     let pixels = width as usize * height as usize;
-    let of_integers = said.unwrap_or(Encoding::Curve(Transfer::Srgb));
+    let said = tags.encoding.as_ref();
+    let of_integers = said.cloned().unwrap_or(Encoding::Curve(Transfer::Srgb));
+    let to_srgb = tags.to_srgb.filter(|_| color.has_color());
     let table = match samples {
         Samples::Bytes => of_integers.table(256),
         Samples::Shorts => of_integers.table(65_536),
@@ -226,6 +237,10 @@ fn linear<R: BufRead + Seek>(
                 Samples::Shorts => table[usize::from(short(c))],
                 Samples::Floats => said.map_or(float(c), |encoding| encoding.decode(f64::from(float(c))) as f32),
             }
+        });
+        let rgb = to_srgb.map_or(rgb, |matrix| {
+            let converted = apply(&matrix, rgb.map(f64::from)).map(|v| v as f32);
+            if matches!(samples, Samples::Floats) { converted } else { converted.map(clean) }
         });
         let cover = match samples {
             _ if count % 2 == 1 => return (rgb, 1.0),
@@ -326,7 +341,9 @@ fn linear<R: BufRead + Seek>(
         rgb,
         alpha: (!alpha.is_empty()).then_some(alpha),
         depth: None,
-        clipped_at: (!matches!(samples, Samples::Floats)).then(|| of_integers.clipped_at()),
+        // Primaries of another space bring white to where it was but for its last digits.
+        clipped_at: (!matches!(samples, Samples::Floats))
+            .then(|| of_integers.clipped_at() * if to_srgb.is_some() { 1.0 - 1e-5 } else { 1.0 }),
         doubts,
     })
 }

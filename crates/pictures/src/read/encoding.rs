@@ -1,10 +1,11 @@
 //! From code values to linear light.
 
 use super::linear::Trouble;
-use spectra_color::Transfer;
+use spectra_color::{Transfer, from_aces_cct};
+use std::sync::Arc;
 
 /// How code values stand for light.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) enum Encoding {
     /// A standard's curve.
     Curve(Transfer),
@@ -12,6 +13,12 @@ pub(super) enum Encoding {
     Gamma(f64),
     /// Printing density of a scanned negative, see [`cineon`].
     Cineon,
+    /// The logarithm of ACES for grading.
+    AcesCct,
+    /// Light of a display, see [`pq`].
+    Pq,
+    /// Light at code values from 0 to 1 that stand equally far apart, two or more.
+    Sampled(Arc<[f32]>),
 }
 
 /// What `transfer` may say. ITU-R BT.709 and BT.2020 share one curve.
@@ -34,7 +41,7 @@ const WORDS: [(&str, &[&str]); 4] = [
 impl Encoding {
     /// By its name in a scene.
     pub(super) fn named(name: &str) -> Result<Self, Trouble> {
-        NAMES.iter().find(|(own, _)| *own == name).map(|(_, encoding)| *encoding).ok_or_else(|| {
+        NAMES.iter().find(|(own, _)| *own == name).map(|(_, encoding)| encoding.clone()).ok_or_else(|| {
             let trouble = Trouble::at("transfer", format!("no transfer `{name}` is known"));
             trouble.hint("linear, srgb, rec709 or cineon")
         })
@@ -51,21 +58,29 @@ impl Encoding {
     }
 
     /// Linear light of a code value that is 1 at most where it is an integer.
-    pub(super) fn decode(self, code: f64) -> f64 {
+    pub(super) fn decode(&self, code: f64) -> f64 {
         match self {
             Self::Curve(transfer) => transfer.decode(code),
-            Self::Gamma(gamma) => libm::pow(code.max(0.0), gamma),
+            Self::Gamma(gamma) => libm::pow(code.max(0.0), *gamma),
             Self::Cineon => cineon(code),
+            Self::AcesCct => from_aces_cct(code),
+            Self::Pq => pq(code),
+            Self::Sampled(light) => {
+                let place = code.clamp(0.0, 1.0) * (light.len() - 1) as f64;
+                let at = (place as usize).min(light.len() - 2);
+                let [a, b] = [light[at], light[at + 1]].map(f64::from);
+                a + (b - a) * (place - at as f64)
+            }
         }
     }
 
     /// Light of all code values of integers.
-    pub(super) fn table(self, levels: usize) -> Vec<f32> {
+    pub(super) fn table(&self, levels: usize) -> Vec<f32> {
         (0..levels).map(|i| self.decode(i as f64 / (levels - 1) as f64).max(0.0) as f32).collect()
     }
 
     /// Light of the largest integer.
-    pub(super) fn clipped_at(self) -> f32 {
+    pub(super) fn clipped_at(&self) -> f32 {
         self.decode(1.0) as f32
     }
 }
@@ -81,9 +96,28 @@ fn cineon(code: f64) -> f64 {
     (relative(code * 1023.0) - black) / (1.0 - black)
 }
 
+/// Light of a code value of SMPTE ST 2084, 1 at the 203 cd/m2 that ITU-R BT.2408 has for white that diffuses.
+fn pq(code: f64) -> f64 {
+    const POWERS: [f64; 2] = [0.159_301_757_812_5, 78.843_75];
+    const FACTORS: [f64; 3] = [0.835_937_5, 18.851_562_5, 18.687_5];
+    const PEAK_CD_M2: f64 = 10_000.0;
+    const WHITE_CD_M2: f64 = 203.0;
+    let root = libm::pow(code.clamp(0.0, 1.0), 1.0 / POWERS[1]);
+    libm::pow((root - FACTORS[0]).max(0.0) / (FACTORS[1] - FACTORS[2] * root), 1.0 / POWERS[0]) * PEAK_CD_M2
+        / WHITE_CD_M2
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// ITU-R BT.2100, table 4: code 1 is 10 000 cd/m2; BT.2408 has 203 cd/m2 at 58 %, and 100 cd/m2 at 51 %.
+    #[test]
+    fn pq_is_light_of_a_display() {
+        let light = |code: f64| Encoding::Pq.decode(code) * 203.0;
+        assert!(light(0.0).abs() < 1e-12 && (light(1.0) - 10_000.0).abs() < 1e-6);
+        assert!((light(0.58) / 203.0 - 1.0).abs() < 0.02 && (light(0.508) / 100.0 - 1.0).abs() < 0.01);
+    }
 
     /// Closed form: 10^(-590 * 0.002 / 0.6) = 0.0107978 is black; a stop is 0.6 * log10(2) / 0.002 = 90.309 codes.
     #[test]

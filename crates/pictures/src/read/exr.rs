@@ -111,7 +111,7 @@ pub(super) fn header(
     let headers = exr::block::read(reader, false).map_err(said)?.headers().to_vec();
     chosen(&headers, bytes, choice, true)?;
     let ([width, height], pixel_aspect) = shape(&headers);
-    Ok(super::header::Header { width, height, pixel_aspect, clips: false, is_jpeg: false })
+    Ok(super::header::Header { width, height, pixel_aspect, clips: false, is_jpeg: false, doubts: Vec::new() })
 }
 
 /// Reads what is chosen of a file; without `lit` its depth only, and no light. Block after block goes to where it is

@@ -35,7 +35,7 @@ pub(super) fn decode(found: &Found, choice: Choice<'_>, said: Option<Encoding>) 
 pub(super) fn header(found: &Found, choice: Choice<'_>, said: Option<Encoding>) -> Result<Header, Trouble> {
     let (picture, _) = read(found, choice.name, said, false)?;
     let ([width, height], pixel_aspect) = seen(&picture);
-    Ok(Header { width, height, pixel_aspect, clips: picture.integers, is_jpeg: false })
+    Ok(Header { width, height, pixel_aspect, clips: picture.integers, is_jpeg: false, doubts: Vec::new() })
 }
 
 fn read(found: &Found, name: &str, said: Option<Encoding>, pixels: bool) -> Result<(FilePicture, Encoding), Trouble> {
@@ -178,7 +178,7 @@ mod tests {
     fn cover_is_multiplied_into_light_once() {
         let curve = Encoding::Curve(Transfer::Srgb);
         for (code, multiplied) in [(0.8, false), (0.4, true)] {
-            let light = linear(file_picture(code, 0.5, multiplied, true), curve).rgb[0][0];
+            let light = linear(file_picture(code, 0.5, multiplied, true), curve.clone()).rgb[0][0];
             assert!((light - 0.301_91).abs() < 2e-5, "{light}");
         }
         let straight = linear(file_picture(0.8, 0.5, false, false), Encoding::Curve(Transfer::Linear));

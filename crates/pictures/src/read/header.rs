@@ -1,7 +1,9 @@
 //! Shape and kind of a picture.
 
+use super::linear::Trouble;
+
 /// Shape and kind of a picture.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Header {
     /// Pixels across, as the picture is seen.
     pub width: u32,
@@ -13,6 +15,8 @@ pub struct Header {
     pub clips: bool,
     /// Whether it is a JPEG.
     pub is_jpeg: bool,
+    /// What it says that a person should know before believing the picture.
+    pub doubts: Vec<Trouble>,
 }
 
 impl Header {

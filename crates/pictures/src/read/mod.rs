@@ -12,6 +12,8 @@ mod header;
 mod jpeg;
 mod linear;
 mod planes;
+mod profile;
+mod tags;
 mod tiff;
 mod turn;
 

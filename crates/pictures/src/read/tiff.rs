@@ -99,6 +99,14 @@ impl<R: BufRead + Seek> Plain<R> {
     }
 }
 
+/// The color profile of a file. The decoder of the crate `image` has no more room for it than for the picture.
+pub(super) fn profile(reader: impl BufRead + Seek) -> Option<Vec<u8>> {
+    let mut limits = Limits::default();
+    // A byte takes 32 of them: profiles of 2 MiB.
+    limits.decoding_buffer_size = 64 << 20;
+    Decoder::new(reader).ok()?.with_limits(limits).get_tag_u8_vec(Tag::IccProfile).ok()
+}
+
 /// As the crate `image` says it.
 fn said(error: TiffError) -> ImageError {
     let format = ImageFormat::Tiff;

@@ -18,4 +18,6 @@ pub use linear::{LinearSpace, picture_exr};
 pub use picture::{png8, png16, tiff16, write_png8, write_png16};
 pub use resample::squared;
 pub use space::PictureSpace;
+#[cfg(test)]
+pub(crate) use space::chunk;
 pub use tiled::tiled_exr;

@@ -121,7 +121,7 @@ pub(crate) fn from_srgb(space: &RgbSpace) -> Matrix {
 }
 
 /// A chunk of a PNG.
-pub(super) fn chunk(name: &[u8; 4], data: &[u8]) -> Vec<u8> {
+pub(crate) fn chunk(name: &[u8; 4], data: &[u8]) -> Vec<u8> {
     let mut chunk = (data.len() as u32).to_be_bytes().to_vec();
     chunk.extend(name);
     chunk.extend(data);

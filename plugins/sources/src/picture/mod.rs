@@ -38,8 +38,9 @@ const MAX_BYTES: u64 = 1 << 30;
 /// A picture file (EXR, PNG, JPEG, TIFF, HDR) on a plane at a distance.
 ///
 /// The picture stands across the axis, upright and unmirrored as the photographer sees it, and shines as a Lambertian
-/// surface. Integers of 8 and 16 bits are taken as sRGB-encoded (255 of 8 bits is 1), floating point as linear with the
-/// primaries of sRGB; a value of 1 is white, of the stated luminance and with the chromaticity of the illuminant.
+/// surface. Where a file does not say its colors (by cICP, a color profile of three primaries, gAMA and cHRM, or chromaticities),
+/// integers of 8 and 16 bits are taken as sRGB-encoded (255 of 8 bits is 1), floating point as linear with the primaries of
+/// sRGB; a value of 1 is white, of the stated luminance and with the chromaticity of the illuminant.
 /// Between pixels light is interpolated, so that no mosaic is seen however near one looks.
 ///
 /// With `depth` each pixel stands at its own distance, in the perspective of the camera that took the picture: what is
@@ -266,8 +267,9 @@ impl PictureFile {
         linear.doubts.iter().map(|doubt| trouble(&self.name, doubt, &self.params).into()).collect()
     }
 
-    /// Warns of a photograph whose code values are taken as light.
+    /// Warns of what the header leaves in doubt, and of a photograph whose code values are taken as light.
     pub(crate) fn warn(&self, header: &Header, context: &Context<'_>) {
+        header.doubts.iter().for_each(|doubt| context.warn(trouble(&self.name, doubt, &self.params)));
         if header.is_jpeg && self.transfer.as_deref() == Some("linear") {
             let text =
                 format!("`{}` is a JPEG, whose code values are sRGB: as linear light it is far too pale", self.name);

@@ -1,0 +1,288 @@
+//! What a PNG, TIFF or JPEG file says of its colors: by code points of ITU-R H.273, a color profile, or a power and primaries.
+//!
+//! In a PNG the first of cICP, iCCP, sRGB, and gAMA with cHRM counts (PNG, third edition, 4.3).
+
+use super::encoding::Encoding;
+use super::linear::Trouble;
+use super::{profile, tiff};
+use image::{ImageDecoder, ImageFormat};
+use spectra_color::matrix::{Matrix, product};
+use spectra_color::{Adaptation, RgbSpace, Transfer};
+use spectra_core::resources::Found;
+use std::io::{self, BufRead, Read, Seek, SeekFrom};
+
+/// The colors that a file states.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Tags {
+    /// The curve; `None` where nothing is said of it.
+    pub encoding: Option<Encoding>,
+    /// From the file's primaries to those of sRGB, linear, white to white; `None` where they are the same.
+    pub to_srgb: Option<Matrix>,
+    /// What is said and cannot be followed.
+    pub doubt: Option<Trouble>,
+}
+
+/// Curve, and matrix to the primaries of sRGB.
+pub(super) type Stated = (Encoding, Option<Matrix>);
+
+impl Tags {
+    /// Of a file whose decoder has read its header.
+    pub(super) fn of(found: &Found, format: ImageFormat, decoder: &mut impl ImageDecoder) -> Self {
+        let chunks = if format == ImageFormat::Png { found.open().ok().map(Chunks::of) } else { None };
+        let chunks = chunks.unwrap_or_default();
+        if let Some(points) = chunks.cicp {
+            return Self::stated(of_code_points(points), || {
+                let [primaries, transfer, matrix, range] = points;
+                format!("code points {primaries}, {transfer}, {matrix}, {range} (cICP)")
+            });
+        }
+        let profile = match format {
+            ImageFormat::Tiff => found.open().ok().and_then(tiff::profile),
+            _ => decoder.icc_profile().ok().flatten(),
+        };
+        if let Some(bytes) = profile {
+            return Self::stated(profile::read(&bytes), || "a color profile of another kind".to_owned());
+        }
+        if chunks.is_aces_cct {
+            return Self::stated(Some((Encoding::AcesCct, to_srgb(RgbSpace::aces_cg()))), String::new);
+        }
+        if chunks.is_srgb {
+            return Self { encoding: Some(Encoding::Curve(Transfer::Srgb)), ..Self::default() };
+        }
+        let to_srgb = chunks.chromaticities.and_then(|[white, r, g, b]| {
+            let space = RgbSpace::new("cHRM", [r, g, b], white, Transfer::Linear);
+            to_srgb(&space).filter(|m| m.as_flattened().iter().all(|v| v.abs() < 100.0))
+        });
+        Self { encoding: chunks.gamma.and_then(of_gamma), to_srgb, doubt: None }
+    }
+
+    fn stated(stated: Option<Stated>, what: impl Fn() -> String) -> Self {
+        match stated {
+            Some((encoding, to_srgb)) => Self { encoding: Some(encoding), to_srgb, doubt: None },
+            None => {
+                let text = format!("it states its colors by {}, which is not read: they are taken as sRGB", what());
+                let hint = "save it as sRGB, Display P3 or Rec. 2020; `transfer: srgb` if sRGB is right";
+                Self { doubt: Some(Trouble::at("transfer", text).hint(hint)), ..Self::default() }
+            }
+        }
+    }
+}
+
+/// Linear light of a space to that of sRGB, white to white (CAT02, as pictures are written); `None` where primaries and white are
+/// those of sRGB.
+pub(super) fn to_srgb(space: &RgbSpace) -> Option<Matrix> {
+    let srgb = RgbSpace::srgb();
+    let near = |a: &[f64; 2], b: &[f64; 2]| (a[0] - b[0]).abs() < 1e-3 && (a[1] - b[1]).abs() < 1e-3;
+    if near(&space.white_xy, &srgb.white_xy)
+        && space.primaries_xy.iter().zip(&srgb.primaries_xy).all(|(a, b)| near(a, b))
+    {
+        return None;
+    }
+    let adapted = Adaptation::Cat02.matrix(space.white_xyz(), srgb.white_xyz());
+    Some(keeping_white(product(&srgb.rgb_from_xyz, &product(&adapted, &space.xyz_from_rgb))))
+}
+
+/// The same, so that gray stays gray to the last digit.
+pub(super) fn keeping_white(matrix: Matrix) -> Matrix {
+    matrix.map(|row| {
+        let sum: f64 = row.iter().sum();
+        row.map(|v| v / sum)
+    })
+}
+
+/// Primaries, transfer, matrix and range by ITU-T H.273.
+fn of_code_points([primaries, transfer, matrix, range]: [u8; 4]) -> Option<Stated> {
+    let space = match primaries {
+        1 => RgbSpace::srgb(),
+        9 => RgbSpace::rec2020(),
+        12 => RgbSpace::display_p3(),
+        _ => return None,
+    };
+    let encoding = match transfer {
+        // All of ITU-R BT.709, BT.601 and BT.2020.
+        1 | 6 | 14 | 15 => Encoding::Curve(Transfer::Rec2020),
+        4 => Encoding::Gamma(2.2),
+        5 => Encoding::Gamma(2.8),
+        8 => Encoding::Curve(Transfer::Linear),
+        13 => Encoding::Curve(Transfer::Srgb),
+        16 => Encoding::Pq,
+        _ => return None,
+    };
+    // Red, green and blue, over all of the range.
+    ((matrix, range) == (0, 1)).then(|| (encoding, to_srgb(space)))
+}
+
+/// The power from light to code value, in hundred thousandths.
+fn of_gamma(stated: u32) -> Option<Encoding> {
+    let power = f64::from(stated) / 1e5;
+    Some(match power {
+        // What a PNG says that is in sRGB.
+        p if (p - 1.0 / 2.2).abs() < 1e-3 => Encoding::Curve(Transfer::Srgb),
+        p if (p - 1.0).abs() < 1e-3 => Encoding::Curve(Transfer::Linear),
+        p if (0.2..=5.0).contains(&p) => Encoding::Gamma(1.0 / p),
+        _ => return None,
+    })
+}
+
+/// What stands before the pixels of a PNG.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Chunks {
+    cicp: Option<[u8; 4]>,
+    is_srgb: bool,
+    gamma: Option<u32>,
+    /// Of white, red, green and blue.
+    chromaticities: Option<[[f64; 2]; 4]>,
+    /// As this program says it, since no tag can.
+    is_aces_cct: bool,
+}
+
+impl Chunks {
+    /// As far as they can be read: what is wrong with the file is told by its decoder.
+    fn of(mut reader: impl BufRead + Seek) -> Self {
+        let mut all = Self::default();
+        let _ = all.read(&mut reader);
+        all
+    }
+
+    fn read(&mut self, reader: &mut (impl BufRead + Seek)) -> io::Result<()> {
+        const LONGEST: u64 = 64;
+        reader.seek(SeekFrom::Start(8))?;
+        loop {
+            let mut head = [0; 8];
+            reader.read_exact(&mut head)?;
+            let [a, b, c, d, name @ ..] = head;
+            let length = u64::from(u32::from_be_bytes([a, b, c, d]));
+            if matches!(&name, b"IDAT" | b"IEND") {
+                return Ok(());
+            }
+            let is_wanted = matches!(&name, b"cICP" | b"gAMA" | b"cHRM" | b"sRGB" | b"tEXt") && length <= LONGEST;
+            let mut data = Vec::new();
+            if is_wanted {
+                reader.by_ref().take(length).read_to_end(&mut data)?;
+            }
+            // The check follows.
+            reader.seek(SeekFrom::Current((length - data.len() as u64 + 4) as i64))?;
+            self.take(&name, &data);
+        }
+    }
+
+    fn take(&mut self, name: &[u8; 4], data: &[u8]) {
+        let long = |i: usize| {
+            data.get(4 * i..4 * i + 4).map(|bytes| u32::from_be_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]))
+        };
+        match name {
+            b"cICP" => self.cicp = data.try_into().ok(),
+            b"sRGB" => self.is_srgb = true,
+            b"gAMA" => self.gamma = long(0),
+            b"cHRM" => {
+                let one = |i: usize| long(i).map(|v| f64::from(v) / 1e5);
+                let pair = |i: usize| Some([one(2 * i)?, one(2 * i + 1).filter(|y| *y > 1e-4)?]);
+                let all = || Some([pair(0)?, pair(1)?, pair(2)?, pair(3)?]);
+                self.chromaticities = all();
+            }
+            b"tEXt" => self.is_aces_cct |= data == b"Color space\0ACEScct",
+            _ => {}
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::read::decode::decode_bytes;
+    use crate::read::linear::{Choice, Linear};
+    use crate::write::{PictureSpace, chunk, png16, tiff16};
+    use spectra_color::{RgbSpace, Transfer, to_u8};
+    use spectra_core::frame::DisplayPicture;
+
+    fn read(bytes: &[u8]) -> Linear {
+        decode_bytes(bytes, Choice::default()).unwrap()
+    }
+
+    /// A PNG of one pixel, with these chunks.
+    fn png(code: [u8; 3], chunks: &[Vec<u8>]) -> Vec<u8> {
+        let mut bytes = std::io::Cursor::new(Vec::new());
+        image::RgbImage::from_pixel(1, 1, image::Rgb(code)).write_to(&mut bytes, image::ImageFormat::Png).unwrap();
+        let bytes = bytes.into_inner();
+        // After the signature and IHDR.
+        [&bytes[..33], &chunks.concat(), &bytes[33..]].concat()
+    }
+
+    fn close(got: [f32; 3], want: [f64; 3], tolerance: f64) {
+        assert!(got.iter().zip(want).all(|(a, b)| (f64::from(*a) - b).abs() < tolerance), "{got:?} {want:?}");
+    }
+
+    /// One picture is one, whatever colors its file is written in.
+    #[test]
+    fn what_is_written_is_read() {
+        let colors = vec![[0.18, 0.18, 0.18], [0.6, 0.1, 0.05], [0.05, 0.4, 0.3], [1.0, 1.0, 1.0]];
+        let picture = DisplayPicture { width_px: 2, height_px: 2, rgb: colors.clone() };
+        let spaces = [PictureSpace::Srgb, PictureSpace::DisplayP3, PictureSpace::Rec2020, PictureSpace::AcesCct];
+        for space in spaces {
+            let [mut png, mut tiff] = [std::io::Cursor::new(Vec::new()), std::io::Cursor::new(Vec::new())];
+            png16(&mut png, &picture, space, 1.0).unwrap();
+            tiff16(&mut tiff, &picture, space).unwrap();
+            // A TIFF has no way to say that it is in ACEScct.
+            let files = if space == PictureSpace::AcesCct { vec![png] } else { vec![png, tiff] };
+            for bytes in files {
+                let linear = read(bytes.get_ref());
+                assert!(linear.doubts.is_empty(), "{space:?} {:?}", linear.doubts);
+                for (got, want) in linear.rgb.iter().zip(&colors) {
+                    close(*got, want.map(f64::from), 5e-4);
+                }
+            }
+        }
+    }
+
+    /// Primaries of Display P3, linear code values, a power, and the curves of SMPTE ST 2084 and ITU-R BT.709.
+    #[test]
+    fn code_points_and_powers_are_followed() {
+        let p3 = read(&png([188, 188, 188], &[chunk(b"cICP", &[12, 13, 0, 1])])).rgb[0];
+        close(p3, [Transfer::Srgb.decode(188.0 / 255.0); 3], 1e-6);
+        // Half of red in Display P3, by the matrices of CSS Color Module Level 4: 1.2249, -0.0421, -0.0196 times light.
+        let red = read(&png([255, 0, 0], &[chunk(b"cICP", &[12, 13, 0, 1])])).rgb[0];
+        close(red, [1.2249, 0.0, 0.0], 2e-4);
+        let linear = read(&png([51, 51, 51], &[chunk(b"gAMA", &100_000_u32.to_be_bytes())])).rgb[0];
+        close(linear, [0.2; 3], 1e-6);
+        let power = read(&png([51, 51, 51], &[chunk(b"gAMA", &50_000_u32.to_be_bytes())])).rgb[0];
+        close(power, [0.04; 3], 1e-6);
+        // ST 2084: code 0.58 is 202.7 cd/m2 (ITU-R BT.2408 has 58 % for the reference white of 203).
+        let pq = read(&png([148, 148, 148], &[chunk(b"cICP", &[9, 16, 0, 1])])).rgb[0];
+        close(pq, [1.0; 3], 0.02);
+        let rec709 = read(&png([128, 128, 128], &[chunk(b"cICP", &[1, 1, 0, 1])])).rgb[0];
+        close(rec709, [Transfer::Rec2020.decode(128.0 / 255.0); 3], 1e-6);
+    }
+
+    #[test]
+    fn what_the_scene_says_of_the_curve_wins() {
+        let bytes = png([51, 51, 51], &[chunk(b"gAMA", &100_000_u32.to_be_bytes())]);
+        let said = decode_bytes(&bytes, Choice { transfer: Some("srgb"), ..Choice::default() }).unwrap();
+        close(said.rgb[0], [Transfer::Srgb.decode(0.2); 3], 1e-6);
+    }
+
+    /// HLG is not read, and neither is a range that begins at 16.
+    #[test]
+    fn what_cannot_be_followed_is_said() {
+        for points in [[9, 18, 0, 1], [1, 13, 0, 0], [22, 13, 0, 1]] {
+            let bytes = png([51, 51, 51], &[chunk(b"cICP", &points)]);
+            let found = spectra_core::resources::Found::bytes("a file".to_owned(), bytes.clone().into());
+            let header = crate::read::header(&found, Choice::default()).unwrap();
+            let [doubt] = &header.doubts[..] else { panic!("{:?}", header.doubts) };
+            assert!(doubt.text.contains("taken as sRGB") && doubt.hint.is_some(), "{doubt:?}");
+            let said = Choice { transfer: Some("srgb"), ..Choice::default() };
+            assert!(crate::read::header(&found, said).unwrap().doubts.is_empty());
+            close(read(&bytes).rgb[0], [Transfer::Srgb.decode(0.2); 3], 1e-6);
+        }
+    }
+
+    /// The chunk that says primaries in numbers: those of Rec. 2020 here.
+    #[test]
+    fn primaries_in_numbers_are_followed() {
+        let space = RgbSpace::rec2020();
+        let [r, g, b] = space.primaries_xy;
+        let numbers = [space.white_xy, r, g, b].concat();
+        let data: Vec<u8> = numbers.iter().flat_map(|v| ((v * 1e5).round() as u32).to_be_bytes()).collect();
+        let light = [0.3, 0.2, 0.25];
+        let code = space.from_xyz(RgbSpace::srgb().to_xyz(light)).map(|v| to_u8(Transfer::Srgb.encode(v)));
+        close(read(&png(code, &[chunk(b"cHRM", &data)])).rgb[0], light, 8e-3);
+    }
+}
