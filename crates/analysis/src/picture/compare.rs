@@ -199,6 +199,7 @@ mod tests {
             chromaticities: Some(chromaticities),
             attributes: Vec::new(),
             clipped_at: None,
+            doubts: Vec::new(),
         })
         .expect("colors")
     }

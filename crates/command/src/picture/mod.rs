@@ -9,11 +9,12 @@ mod spectrum;
 
 pub(crate) use arguments::PictureArguments;
 
+use crate::console;
 use crate::outcome::{Failure, Outcome};
 use arguments::PictureCommand;
 use spectra_analysis::picture::{Field, Measured, NotMeasured, Quantity};
 use spectra_core::names::nearest;
-use spectra_core::params::Fault;
+use spectra_core::params::{Fault, Warning};
 use spectra_core::resources::Found;
 use spectra_pictures::read::{Choice, Trouble, planes};
 use spectra_plot::PlotError;
@@ -40,8 +41,15 @@ fn load(path: &Path) -> Result<Measured, Failure> {
     }
     let found = Found::on_disk(shown.clone(), path.to_owned());
     let choice = Choice { name: &shown, ..Choice::default() };
-    let refused = |trouble: Trouble| Fault::new(format!("{shown}: {}", trouble.text)).hint(trouble.advice()).into();
-    planes(&found, choice).and_then(Measured::of).map_err(refused)
+    let refused = |trouble: Trouble| -> Failure {
+        Fault::new(format!("{shown}: {}", trouble.text)).hint(trouble.advice()).into()
+    };
+    let picture = planes(&found, choice).and_then(Measured::of).map_err(refused)?;
+    for doubt in &picture.planes.doubts {
+        let fault = Fault::new(format!("{shown}: {}", doubt.text)).hint(doubt.advice());
+        console::said(&Warning::from(fault), None);
+    }
+    Ok(picture)
 }
 
 /// A fault of a picture, by its name.

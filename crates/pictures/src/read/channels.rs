@@ -23,7 +23,9 @@ pub fn planes(found: &Found, choice: Choice<'_>) -> Result<Planes, Trouble> {
         Kind::Native(image::ImageFormat::Hdr) => "Radiance HDR",
         _ => "by OpenImageIO",
     };
+    let mut doubts = super::header(found, choice)?.doubts;
     let linear = decode::decode(found, choice)?;
+    doubts.extend(linear.doubts.iter().cloned());
     let channel = |(at, name): (usize, &str)| Plane {
         name: name.to_owned(),
         unit: String::new(),
@@ -38,5 +40,6 @@ pub fn planes(found: &Found, choice: Choice<'_>) -> Result<Planes, Trouble> {
         chromaticities: None,
         attributes: Vec::new(),
         clipped_at: linear.clipped_at,
+        doubts,
     })
 }

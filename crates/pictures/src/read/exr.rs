@@ -2,11 +2,12 @@
 //!
 //! Layers are what the format has two ways to say: parts of the file with a name, and channels named `layer.R`
 //! (OpenEXR, "Technical Introduction", 2013). The picture is the display window; what a file holds beside it is left out,
-//! and where it holds nothing is black. Without a `chromaticities` attribute the primaries are those of Rec. 709, as the
-//! format's documentation says, which sRGB shares.
+//! and where it holds nothing is black. Without a `chromaticities` attribute and the name of a linear space the primaries are
+//! those of Rec. 709, as the format's documentation says, which sRGB shares.
 
 use super::linear::{Choice, Linear, Trouble, check_size, clean, mend};
 use super::planes::{Plane, Planes, are_of_xyz};
+use super::space;
 use exr::block::UncompressedBlock;
 use exr::block::lines::LineRef;
 use exr::block::reader::ChunksReader;
@@ -109,9 +110,11 @@ pub(super) fn header(
     choice: Choice<'_>,
 ) -> Result<super::header::Header, Trouble> {
     let headers = exr::block::read(reader, false).map_err(said)?.headers().to_vec();
-    chosen(&headers, bytes, choice, true)?;
+    let light = chosen(&headers, bytes, choice, true)?.light;
+    let (_, doubt) = space::of(headers[0].shared_attributes.chromaticities, &texts(&headers));
+    let doubts = doubt.filter(|_| light.len() == 3).into_iter().collect();
     let ([width, height], pixel_aspect) = shape(&headers);
-    Ok(super::header::Header { width, height, pixel_aspect, clips: false, is_jpeg: false, doubts: Vec::new() })
+    Ok(super::header::Header { width, height, pixel_aspect, clips: false, is_jpeg: false, doubts })
 }
 
 /// Reads what is chosen of a file; without `lit` its depth only, and no light. Block after block goes to where it is
@@ -174,7 +177,7 @@ pub(super) fn decode(
         Ok(())
     };
     chunks.and_then(|chunks| chunks.decompress_parallel(false, take)).map_err(said)?;
-    let chromaticities = headers[0].shared_attributes.chromaticities;
+    let (chromaticities, _) = space::of(headers[0].shared_attributes.chromaticities, &texts(&headers));
     let doubts = mend(&mut rgb).into_iter().collect();
     let neutral = headers[0].own_attributes.adopted_neutral.map(|v| [f64::from(v.0), f64::from(v.1)]);
     let to_srgb = chromaticities.filter(|_| light.len() == 3).map(|c| matrix(c, neutral)).transpose()?.flatten();
@@ -246,7 +249,9 @@ pub(super) fn planes(reader: impl BufRead + Seek + Send, bytes: u64) -> Result<P
     let chunks = reader.filter_chunks(false, |_, _, block| block.level == Vec2(0, 0));
     chunks.and_then(|chunks| chunks.decompress_parallel(false, take)).map_err(said)?;
     let place = |v: Vec2<f32>| [f64::from(v.0), f64::from(v.1)];
-    let stated = headers[0].shared_attributes.chromaticities;
+    let (stated, doubt) = space::of(headers[0].shared_attributes.chromaticities, &attributes);
+    let has = |name: &str| channels.iter().any(|c| c.name == name);
+    let doubts = doubt.filter(|_| ["R", "G", "B"].into_iter().all(has)).into_iter().collect();
     // Refused here as everywhere where they span no colors.
     stated.map(|c| matrix(c, None)).transpose()?;
     let chromaticities = stated.map(|c| [c.red, c.green, c.blue, c.white].map(place));
@@ -259,6 +264,7 @@ pub(super) fn planes(reader: impl BufRead + Seek + Send, bytes: u64) -> Result<P
         chromaticities,
         attributes,
         clipped_at: None,
+        doubts,
     })
 }
 

@@ -13,6 +13,7 @@ mod jpeg;
 mod linear;
 mod planes;
 mod profile;
+mod space;
 mod tags;
 mod tiff;
 mod turn;

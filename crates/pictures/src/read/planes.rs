@@ -1,5 +1,7 @@
 //! A picture file as it is: every channel with its values and what the header says, for whoever measures in it.
 
+use super::linear::Trouble;
+
 /// One channel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plane {
@@ -24,12 +26,14 @@ pub struct Planes {
     pub pixel_aspect: f64,
     /// The channels in the order of the file; of a file of integers linear `R`, `G` and `B` in the primaries of sRGB.
     pub channels: Vec<Plane>,
-    /// Chromaticities x, y of red, green, blue and white, where the header states them.
+    /// Chromaticities x, y of red, green, blue and white, where the header states them or names a space that has them.
     pub chromaticities: Option<[[f64; 2]; 4]>,
     /// Name and text of each attribute of the header that is a text.
     pub attributes: Vec<(String, String)>,
     /// The value from which on integers are clipped, in linear light; `None` for floating point.
     pub clipped_at: Option<f32>,
+    /// What a person should know before believing its colors.
+    pub doubts: Vec<Trouble>,
 }
 
 /// Whether chromaticities of red, green, blue and white are those of CIE XYZ, by which X stands in R, Y in G and Z in B.
