@@ -143,10 +143,16 @@ pub(super) fn native_header<'a>(
     let turned = turn::is_on_its_side(orientation(&mut decoder));
     let [width, height] = if turned { [height, width] } else { [width, height] };
     let clips = !matches!(decoder.color_type(), ColorType::Rgb32F | ColorType::Rgba32F);
-    let doubt = Tags::of(found, format, &mut decoder).doubt;
+    let tags = Tags::of(found, format, &mut decoder);
+    let pixel_aspect = seen(tags.pixel_aspect, turned);
     // Somebody who states the curve has seen to it.
-    let doubts = doubt.filter(|_| choice.transfer.is_none()).into_iter().collect();
-    Ok(Ok(Header { width, height, pixel_aspect: 1.0, clips, is_jpeg: format == ImageFormat::Jpeg, doubts }))
+    let doubts = tags.doubt.filter(|_| choice.transfer.is_none()).into_iter().collect();
+    Ok(Ok(Header { width, height, pixel_aspect, clips, is_jpeg: format == ImageFormat::Jpeg, doubts }))
+}
+
+/// Width over height of a pixel as the picture is seen.
+fn seen(stored: Option<f64>, turned: bool) -> f64 {
+    stored.map_or(1.0, |aspect| if turned { 1.0 / aspect } else { aspect })
 }
 
 /// As TIFF 6.0 numbers it. A file that says nothing sound of it lies as it is.
@@ -337,7 +343,7 @@ fn linear<R: BufRead + Seek>(
     Ok(Linear {
         width: if turned { height } else { width },
         height: if turned { width } else { height },
-        pixel_aspect: 1.0,
+        pixel_aspect: seen(tags.pixel_aspect, turned),
         rgb,
         alpha: (!alpha.is_empty()).then_some(alpha),
         depth: None,

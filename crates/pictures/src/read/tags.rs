@@ -20,6 +20,8 @@ pub(super) struct Tags {
     pub to_srgb: Option<Matrix>,
     /// What is said and cannot be followed.
     pub doubt: Option<Trouble>,
+    /// Width over height of a pixel as it is stored, where the file says it.
+    pub pixel_aspect: Option<f64>,
 }
 
 /// Curve, and matrix to the primaries of sRGB.
@@ -30,6 +32,10 @@ impl Tags {
     pub(super) fn of(found: &Found, format: ImageFormat, decoder: &mut impl ImageDecoder) -> Self {
         let chunks = if format == ImageFormat::Png { found.open().ok().map(Chunks::of) } else { None };
         let chunks = chunks.unwrap_or_default();
+        Self { pixel_aspect: chunks.pixel_aspect, ..Self::colors(chunks, found, format, decoder) }
+    }
+
+    fn colors(chunks: Chunks, found: &Found, format: ImageFormat, decoder: &mut impl ImageDecoder) -> Self {
         if let Some(points) = chunks.cicp {
             return Self::stated(of_code_points(points), || {
                 let [primaries, transfer, matrix, range] = points;
@@ -53,12 +59,12 @@ impl Tags {
             let space = RgbSpace::new("cHRM", [r, g, b], white, Transfer::Linear);
             to_srgb(&space).filter(|m| m.as_flattened().iter().all(|v| v.abs() < 100.0))
         });
-        Self { encoding: chunks.gamma.and_then(of_gamma), to_srgb, doubt: None }
+        Self { encoding: chunks.gamma.and_then(of_gamma), to_srgb, ..Self::default() }
     }
 
     fn stated(stated: Option<Stated>, what: impl Fn() -> String) -> Self {
         match stated {
-            Some((encoding, to_srgb)) => Self { encoding: Some(encoding), to_srgb, doubt: None },
+            Some((encoding, to_srgb)) => Self { encoding: Some(encoding), to_srgb, ..Self::default() },
             None => {
                 let text = format!("it states its colors by {}, which is not read: they are taken as sRGB", what());
                 let hint = "save it as sRGB, Display P3 or Rec. 2020; `transfer: srgb` if sRGB is right";
@@ -134,6 +140,8 @@ struct Chunks {
     chromaticities: Option<[[f64; 2]; 4]>,
     /// As this program says it, since no tag can.
     is_aces_cct: bool,
+    /// Width over height of a pixel.
+    pixel_aspect: Option<f64>,
 }
 
 impl Chunks {
@@ -155,7 +163,8 @@ impl Chunks {
             if matches!(&name, b"IDAT" | b"IEND") {
                 return Ok(());
             }
-            let is_wanted = matches!(&name, b"cICP" | b"gAMA" | b"cHRM" | b"sRGB" | b"tEXt") && length <= LONGEST;
+            let is_wanted =
+                matches!(&name, b"cICP" | b"gAMA" | b"cHRM" | b"sRGB" | b"tEXt" | b"pHYs") && length <= LONGEST;
             let mut data = Vec::new();
             if is_wanted {
                 reader.by_ref().take(length).read_to_end(&mut data)?;
@@ -179,6 +188,11 @@ impl Chunks {
                 let pair = |i: usize| Some([one(2 * i)?, one(2 * i + 1).filter(|y| *y > 1e-4)?]);
                 let all = || Some([pair(0)?, pair(1)?, pair(2)?, pair(3)?]);
                 self.chromaticities = all();
+            }
+            b"pHYs" => {
+                // Pixels to a unit, across and down: where there are fewer, each is longer.
+                let aspect = long(0).zip(long(1)).map(|(across, down)| f64::from(down) / f64::from(across));
+                self.pixel_aspect = aspect.filter(|aspect| (0.05..=20.0).contains(aspect));
             }
             b"tEXt" => self.is_aces_cct |= data == b"Color space\0ACEScct",
             _ => {}
@@ -250,6 +264,28 @@ mod tests {
         close(pq, [1.0; 3], 0.02);
         let rec709 = read(&png([128, 128, 128], &[chunk(b"cICP", &[1, 1, 0, 1])])).rgb[0];
         close(rec709, [Transfer::Rec2020.decode(128.0 / 255.0); 3], 1e-6);
+    }
+
+    /// As this program writes an anamorphic picture, and as a file says that stands on its side: an Exif orientation of 6.
+    #[test]
+    fn pixels_are_as_wide_as_the_file_says() {
+        let picture = DisplayPicture { width_px: 2, height_px: 1, rgb: vec![[0.18; 3]; 2] };
+        for aspect in [2.0, 1.0, 0.5] {
+            let mut bytes = std::io::Cursor::new(Vec::new());
+            png16(&mut bytes, &picture, PictureSpace::Srgb, aspect).unwrap();
+            let bytes = bytes.into_inner();
+            let found = spectra_core::resources::Found::bytes("a file".to_owned(), bytes.clone().into());
+            for got in [crate::read::header(&found, Choice::default()).unwrap().pixel_aspect, read(&bytes).pixel_aspect]
+            {
+                assert!((got / aspect - 1.0).abs() < 1e-3, "{got} {aspect}");
+            }
+        }
+        let phys = chunk(b"pHYs", &[0, 0, 3, 232, 0, 0, 7, 208, 0]);
+        let exif = chunk(b"eXIf", b"MM\0\x2a\0\0\0\x08\0\x01\x01\x12\0\x03\0\0\0\x01\0\x06\0\0\0\0\0\0");
+        assert_eq!(read(&png([9; 3], &[phys.clone()])).pixel_aspect, 2.0);
+        assert_eq!(read(&png([9; 3], &[phys, exif])).pixel_aspect, 0.5);
+        let none = chunk(b"pHYs", &[0; 9]);
+        assert_eq!(read(&png([9; 3], &[none])).pixel_aspect, 1.0);
     }
 
     #[test]
