@@ -135,6 +135,20 @@ fn an_exr_holds_the_developed_picture() {
     assert!(names("layers.exr").iter().any(|name| name.starts_with("density.")), "{:?}", names("layers.exr"));
 }
 
+/// What is doubtful in the pixels is told of the file: nobody wrote a scene that it could stand in. An alpha that is opaque all over
+/// is not worth a word.
+#[test]
+fn what_is_not_opaque_is_told() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let of = |x: u32| image::Rgba([200, 120, 60, if x < 15 { 0 } else { 255 }]);
+    image::RgbaImage::from_fn(60, 40, |x, _| of(x)).save(folder.path().join("cut.png")).expect("written");
+    let said = good(folder.path(), &["cut.png", "--stock", "tri-x"]);
+    assert!(said.contains("picture `cut.png`: 600 of its 2400 pixels are not opaque"), "{said}");
+    assert!(!said.contains("--made"), "{said}");
+    image::RgbaImage::from_fn(60, 40, |_, _| of(20)).save(folder.path().join("whole.png")).expect("written");
+    assert!(!good(folder.path(), &["whole.png", "--stock", "tri-x"]).contains("opaque"));
+}
+
 /// The scene that a developed picture records is a scene that runs, with the same bits.
 #[test]
 fn the_recorded_scene_gives_the_same_picture() {

@@ -2,7 +2,7 @@
 
 use super::encoding::Encoding;
 use super::header::Header;
-use super::linear::{Choice, Linear, MAX_SIDE, Trouble, check_size, clean, mend};
+use super::linear::{Choice, Linear, MAX_SIDE, OPAQUE, Trouble, check_size, clean, mend, over_black};
 use super::tags::Tags;
 use super::{exr, foreign, jpeg, tiff, turn};
 use image::metadata::Orientation;
@@ -12,6 +12,7 @@ use spectra_color::Transfer;
 use spectra_color::matrix::apply;
 use spectra_core::resources::{Found, ResourceError};
 use std::io::{BufRead, Seek};
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 /// No picture format packs more pixels into a byte: deflate ends near 1 032 to 1, at one byte a pixel or less.
 const MAX_PIXELS_PER_BYTE: u64 = 1_100 * 8;
@@ -259,9 +260,14 @@ fn linear<R: BufRead + Seek>(
     let mut rgb: Vec<[f32; 3]> = vec![[0.0; 3]; pixels];
     let mut alpha = if count % 2 == 0 && cover { vec![0.0_f32; pixels] } else { Vec::new() };
     let memory: &mut [u8] = bytemuck::cast_slice_mut(&mut rgb);
+    // How many pixels are not opaque.
+    let thin = AtomicUsize::new(0);
     let stored_size = [width as usize, height as usize];
     let keep = |memory: &mut [u8], alpha: &mut [f32], i: usize, pixel: &[u8]| {
         let (light, cover) = light(pixel);
+        if cover < OPAQUE {
+            thin.fetch_add(1, Relaxed);
+        }
         memory[i * LIGHT..][..LIGHT].copy_from_slice(bytemuck::bytes_of(&light));
         if let Some(at) = alpha.get_mut(i) {
             *at = cover;
@@ -293,9 +299,13 @@ fn linear<R: BufRead + Seek>(
             }
             let to = free[done * LIGHT..][..clear * LIGHT].par_chunks_mut(PIXELS_A_TASK * LIGHT);
             to.zip(codes.par_chunks(PIXELS_A_TASK * size)).for_each(|(to, codes)| {
+                let mut own = 0;
                 for (to, pixel) in to.chunks_exact_mut(LIGHT).zip(codes.chunks_exact(size)) {
-                    to.copy_from_slice(bytemuck::bytes_of(&light(pixel).0));
+                    let (light, cover) = light(pixel);
+                    own += usize::from(cover < OPAQUE);
+                    to.copy_from_slice(bytemuck::bytes_of(&light));
                 }
+                thin.fetch_add(own, Relaxed);
             });
             done += clear;
         }
@@ -334,6 +344,9 @@ fn linear<R: BufRead + Seek>(
     if matches!(samples, Samples::Floats) {
         doubts.extend(mend(&mut rgb));
         rgb.iter_mut().flatten().for_each(|value| *value = clean(*value));
+    }
+    if !cover {
+        doubts.extend(over_black(thin.load(Relaxed), pixels));
     }
     if !is_upright {
         turn::upright(&mut rgb, stored_size, orientation);
@@ -450,6 +463,25 @@ mod tests {
             assert_eq!(planes.rgb[18 * 20 + 7], [0, 1, 2].map(|c| of(c, 7, 18)), "{channels} {is_tiled}");
             assert_eq!(planes.alpha.map(|cover| cover[18 * 20 + 7]), (channels == 4).then_some(7.0 / 20.0));
         }
+    }
+
+    /// A picture of four pixels, one clear and one half so: said where cover is not wanted, and nothing where all is opaque.
+    #[test]
+    fn cover_that_is_lost_is_said() {
+        for side in [2, 300] {
+            let of = |x: u32, y: u32| [200, 100, 50, if y > 0 { 255 } else { [0, 128][x as usize % 2] }];
+            let picture = image::RgbaImage::from_fn(side, side, |x, y| image::Rgba(of(x, y)));
+            let mut bytes = Cursor::new(Vec::new());
+            picture.write_to(&mut bytes, ImageFormat::Png).unwrap();
+            let read = decode(bytes.get_ref(), Choice::default()).unwrap();
+            let [doubt] = &read.doubts[..] else { panic!("{:?}", read.doubts) };
+            assert!(doubt.text.contains(&format!("{side} of its {} pixels", side * side)), "{}", doubt.text);
+            let covered = decode(bytes.get_ref(), Choice { cover: true, ..Choice::default() }).unwrap();
+            assert!(covered.doubts.is_empty() && covered.alpha.is_some());
+        }
+        let mut bytes = Cursor::new(Vec::new());
+        image::RgbaImage::from_pixel(3, 2, image::Rgba([9, 9, 9, 255])).write_to(&mut bytes, ImageFormat::Png).unwrap();
+        assert!(decode(bytes.get_ref(), Choice::default()).unwrap().doubts.is_empty());
     }
 
     #[test]

@@ -5,7 +5,7 @@
 //! and where it holds nothing is black. Without a `chromaticities` attribute and the name of a linear space the primaries are
 //! those of Rec. 709, as the format's documentation says, which sRGB shares.
 
-use super::linear::{Choice, Linear, Trouble, check_size, clean, mend};
+use super::linear::{Choice, Linear, OPAQUE, Trouble, check_size, clean, mend, over_black};
 use super::planes::{Plane, Planes, are_of_xyz};
 use super::space;
 use exr::block::UncompressedBlock;
@@ -71,7 +71,12 @@ fn chosen(headers: &[Header], bytes: u64, choice: Choice<'_>, lit: bool) -> Resu
         (groups.first().ok_or_else(|| Trouble::file("the picture has no channels"))?, Vec::new())
     };
     let depth = choice.depth.map(|name| depth_channel(&groups, chosen, name)).transpose()?;
-    let alpha = chosen.channel("A").filter(|_| lit && choice.cover);
+    let is_whole = |(part, at): &(usize, usize)| {
+        let sampling = headers[*part].channels.list[*at].sampling;
+        (sampling.0, sampling.1) == (1, 1)
+    };
+    // Where cover is not wanted it is looked at all the same, to say what is lost.
+    let alpha = chosen.channel("A").filter(|at| lit && (choice.cover || is_whole(at)));
     for &(part, at) in light.iter().chain(&alpha).chain(&depth) {
         let channel = &headers[part].channels.list[at];
         if channel.sampling.0 != 1 || channel.sampling.1 != 1 {
@@ -132,7 +137,8 @@ pub(super) fn decode(
     let pixels = width as usize * height as usize;
     // Where a file holds nothing of the window there is no light, and nothing near.
     let mut rgb = vec![[0.0_f32; 3]; if lit { pixels } else { 0 }];
-    let mut alpha = alpha_at.map(|_| vec![0.0_f32; pixels]);
+    let mut alpha = alpha_at.filter(|_| choice.cover).map(|_| vec![0.0_f32; pixels]);
+    let mut opaque = 0_usize;
     let mut depth = depth_at.map(|_| vec![f32::INFINITY; pixels]);
     let wanted: Vec<(usize, usize)> = light.iter().chain(&alpha_at).chain(&depth_at).copied().collect();
     let chunks = reader.filter_chunks(false, |_, _, block| {
@@ -166,6 +172,7 @@ pub(super) fn decode(
                 for (channel, _) in light.iter().enumerate().filter(|(_, own)| **own == at) {
                     if light.len() == 1 { rgb[pixel] = [value; 3] } else { rgb[pixel][channel] = value }
                 }
+                opaque += usize::from(alpha_at == Some(at) && value >= OPAQUE);
                 if let Some(alpha) = alpha.as_mut().filter(|_| alpha_at == Some(at)) {
                     alpha[pixel] = if value.is_finite() { value.clamp(0.0, 1.0) } else { 0.0 };
                 }
@@ -178,7 +185,8 @@ pub(super) fn decode(
     };
     chunks.and_then(|chunks| chunks.decompress_parallel(false, take)).map_err(said)?;
     let (chromaticities, _) = space::of(headers[0].shared_attributes.chromaticities, &texts(&headers));
-    let doubts = mend(&mut rgb).into_iter().collect();
+    let thin = if alpha_at.is_some() && !choice.cover { pixels.saturating_sub(opaque) } else { 0 };
+    let doubts = mend(&mut rgb).into_iter().chain(over_black(thin, pixels)).collect();
     let neutral = headers[0].own_attributes.adopted_neutral.map(|v| [f64::from(v.0), f64::from(v.1)]);
     let to_srgb = chromaticities.filter(|_| light.len() == 3).map(|c| matrix(c, neutral)).transpose()?.flatten();
     for pixel in &mut rgb {

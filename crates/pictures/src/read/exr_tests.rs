@@ -158,6 +158,8 @@ fn alpha_and_depth_come_along() {
     let read = decode(&bytes, Choice { depth: Some("Z"), cover: true, ..Choice::default() }).unwrap();
     assert_eq!(read.alpha.unwrap(), [0.5, 1.0]);
     assert_eq!(read.depth.unwrap(), [1.5, 1e10]);
+    let lost = decode(&bytes, Choice::default()).unwrap();
+    assert!(lost.alpha.is_none() && lost.doubts[0].text.contains("1 of its 2 pixels"), "{:?}", lost.doubts);
     let missing = trouble(decode(&bytes, Choice { depth: Some("depth.Z"), ..Choice::default() }));
     assert_eq!(missing.key, "depth");
     assert!(missing.hint.unwrap().contains("`Z`"));

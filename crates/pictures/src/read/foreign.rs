@@ -6,7 +6,7 @@
 
 use super::encoding::Encoding;
 use super::header::Header;
-use super::linear::{Choice, Linear, MAX_PIXELS, MAX_SIDE, Trouble, clean, mend};
+use super::linear::{Choice, Linear, MAX_PIXELS, MAX_SIDE, OPAQUE, Trouble, clean, mend, over_black};
 use super::turn;
 use crate::library::{self, FilePicture, PictureLimits};
 use spectra_color::Transfer;
@@ -28,7 +28,13 @@ fn ending(name: &str) -> String {
 pub(super) fn decode(found: &Found, choice: Choice<'_>, said: Option<Encoding>) -> Result<Linear, Trouble> {
     let (picture, encoding) = read(found, choice.name, said, true)?;
     let linear = linear(picture, encoding);
-    Ok(Linear { alpha: linear.alpha.filter(|_| choice.cover), ..linear })
+    if choice.cover {
+        return Ok(linear);
+    }
+    let cover = linear.alpha.as_deref().unwrap_or_default();
+    let mut doubts = linear.doubts;
+    doubts.extend(over_black(cover.iter().filter(|cover| **cover < OPAQUE).count(), cover.len()));
+    Ok(Linear { alpha: None, doubts, ..linear })
 }
 
 /// What the library says of a file before it reads its pixels.

@@ -118,6 +118,20 @@ pub(super) fn mend(rgb: &mut [[f32; 3]]) -> Option<Trouble> {
     Some(trouble.hint("repair them in the program that wrote the file; `spectra picture info` counts them by channel"))
 }
 
+/// Cover from which on a pixel counts as opaque: files of 16 bits do not always hold 1 to its last digit.
+pub(super) const OPAQUE: f32 = 0.999;
+
+/// What to say where `thin` of all pixels are not opaque and nothing is known of what lies behind them.
+pub(super) fn over_black(thin: usize, pixels: usize) -> Option<Trouble> {
+    if thin == 0 {
+        return None;
+    }
+    let text = format!(
+        "{thin} of its {pixels} pixels are not opaque: they are laid over black, which a meter of the whole frame counts, too"
+    );
+    Some(Trouble::file(text).hint("lay it over a background first, or save it without alpha"))
+}
+
 /// Light as the sources take it: infinite, negative and undefined values are none.
 pub(super) fn clean(value: f32) -> f32 {
     if value.is_finite() { value.max(0.0) } else { 0.0 }
