@@ -68,7 +68,7 @@ impl Tags {
             None => {
                 let text = format!("it states its colors by {}, which is not read: they are taken as sRGB", what());
                 let hint = "save it as sRGB, Display P3 or Rec. 2020; `transfer: srgb` if sRGB is right";
-                Self { doubt: Some(Trouble::at("transfer", text).hint(hint)), ..Self::default() }
+                Self { doubt: Some(Trouble::file(text).hint(hint)), ..Self::default() }
             }
         }
     }
