@@ -7,9 +7,10 @@
 //! - [`zmx::write`] makes a `.zmx` of it.
 //!
 //! The object and the image surface of those programs are no surfaces of a lens here: the object's distance is a remark, and
-//! the thickness behind the last surface is the gap to the image plane. What only chooses rays (entrance pupil,
-//! f-number, fields, wavelengths, vignetting factors) becomes a remark; what stops light (an aperture record, the stop
-//! of a file that floats by its size) clips.
+//! the thickness behind the last surface is the gap to the image plane. What only chooses rays (fields, wavelengths,
+//! vignetting factors) becomes a remark; what limits light (an aperture record, a semi-diameter that was typed in, the stop of a file
+//! that floats by its size) clips. An entrance pupil diameter, an f-number and a numerical aperture limit the beam there as the
+//! rim of the stop does here: the stop gets the size of their paraxial marginal ray.
 //!
 //! ```
 //! use spectra_exchange::{Format, read, yaml};
@@ -31,6 +32,7 @@ mod number;
 mod place;
 mod prescription;
 pub mod seq;
+mod stop;
 pub mod yaml;
 pub mod zmx;
 

@@ -111,7 +111,11 @@ fn details_of_some_files() {
     assert_eq!(lens.wavelengths.len(), 1, "five are listed, one counts");
     assert_eq!((lens.wavelengths[0].nm, lens.object_distance_mm), (780.0, Some(10.0)));
     let stop = lens.surfaces().next().expect("a surface");
-    assert_eq!((stop.semi_diameter_mm, stop.outer_semi_diameter_mm), (None, Some(2.0)), "a bare size clips nothing");
+    assert_eq!(
+        (stop.semi_diameter_mm, stop.outer_semi_diameter_mm),
+        (Some(2.0), None),
+        "its entrance pupil is 4 mm wide"
+    );
 
     let lens = load("optiland/lens_offset_aperture.zmx");
     let aperture = &lens.surfaces().next().expect("a surface").apertures[0];
@@ -132,4 +136,22 @@ fn details_of_some_files() {
     assert!(lens.left_out.iter().all(|note| !note.alters), "{:?}", lens.left_out);
     assert!(lens.left_out.iter().any(|note| note.text.starts_with("solves and pickups (11 lines)")));
     assert!(lens.left_out.iter().any(|note| note.text.starts_with("vignetting factors")));
+}
+
+/// The size of the stop by a paraxial ray, against that which the other program gave it by real rays from all over the field.
+#[test]
+fn stops_are_as_large_as_the_other_program_has_them() {
+    for (name, wanted_mm) in [
+        ("rayoptics/US00583336-2-scaled.zmx", 4.215),
+        ("rayoptics/HoO-V2C18Ex03.zmx", 10.031),
+        ("rayoptics/HoO-V2C18Ex27.zmx", 9.848),
+        ("rayoptics/HoO-V2C18Ex46.zmx", 10.022),
+        ("rayoptics/HoO-V2C18Ex66.zmx", 20.024),
+        ("rayoptics/US05331467-1.zmx", 61.80),
+    ] {
+        let lens = load(name);
+        let size = lens.surfaces().find(|surface| surface.stop).and_then(|stop| stop.semi_diameter_mm);
+        // Aberrations of the pupil, most of all where mirrors are tilted.
+        assert!(size.is_some_and(|size| (size / wanted_mm - 1.0).abs() < 0.06), "{name}: {size:?} {wanted_mm}");
+    }
 }

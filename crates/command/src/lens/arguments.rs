@@ -349,8 +349,9 @@ pub(crate) struct LensTrace {
     long_about = "Convert a lens file from another program: .zmx (Zemax OpticStudio, sequential), .seq (CODE V) or \
         .csv (one row per surface).\n\n\
         Anything that cannot be converted is listed on standard error and kept in the file as comments; anything that \
-        changes the path of light is marked with `!`. Entrance pupil, f-number, fields and wavelengths become a \
-        remark. Every command that takes a lens also reads these files directly, without importing them first.",
+        changes the path of light is marked with `!`. The entrance pupil or f-number gives the stop its size; fields and \
+        wavelengths become a remark. Every command that takes a lens also reads these files directly, without importing \
+        them first.",
     after_long_help = "Example:\n  spectra lens import tessar.zmx -o tessar.yaml"
 )]
 pub(crate) struct LensImport {

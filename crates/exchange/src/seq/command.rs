@@ -46,6 +46,8 @@ struct Reader<'a> {
     private_nm: Vec<f64>,
     private: Vec<Private>,
     in_private: bool,
+    /// Line of what sets the size of the beam.
+    aperture_line: usize,
     fields: BTreeMap<&'static str, Vec<f64>>,
     unknown: BTreeMap<String, (usize, usize)>,
 }
@@ -62,6 +64,7 @@ impl<'a> Reader<'a> {
             private_nm: Vec::new(),
             private: Vec::new(),
             in_private: false,
+            aperture_line: 0,
             fields: BTreeMap::new(),
             unknown: BTreeMap::new(),
         }
@@ -142,6 +145,7 @@ impl<'a> Reader<'a> {
             }
             "EPD" | "FNO" | "NA" | "NAO" => {
                 let value = words.first().and_then(|word| self.number(word)).filter(|value| *value > 0.0);
+                self.aperture_line = statement.line;
                 self.lens.system_aperture = value.map(|value| match known {
                     "EPD" => SystemAperture::EntrancePupilDiameter(value),
                     "FNO" => SystemAperture::FNumber(value),
@@ -365,6 +369,11 @@ impl<'a> Reader<'a> {
             self.lens.leave_out(line, true, format!("the command {text}{times} is unknown"));
         }
         build(&mut self.lens, &self.surfaces, self.radius_mode, units, &self.private);
+        // Its f-number is that of the cone at the image.
+        if let (Some(SystemAperture::FNumber(n)), Some(_)) = (self.lens.system_aperture, self.lens.object_distance_mm) {
+            self.lens.system_aperture = Some(SystemAperture::ImageNumericalAperture(0.5 / n));
+        }
+        crate::stop::size(&mut self.lens, self.aperture_line, "STO");
         self.lens.left_out.sort_by_key(|note| note.line);
         Ok(self.lens)
     }

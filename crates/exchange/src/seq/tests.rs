@@ -67,6 +67,37 @@ fn glasses_mirrors_and_apertures() {
     assert_eq!(first("S 0 3\n STO").shape, Shape::Stop);
 }
 
+/// A thin lens of 100 mm in the stop, of glass of no thickness: what sets the size of the beam sets that of the stop.
+#[test]
+fn the_beam_sizes_the_stop() {
+    let stop = |head: &str, object: &str, rim: &str| {
+        let text = format!("RDM\n{head}\nSO 0 {object}\nS 100 0 1.5\n STO\n{rim}\nS -100 100\nSI 0 0\n");
+        let found = lens(&text);
+        assert!(found.left_out.is_empty(), "{:?}", found.left_out);
+        found.surfaces().next().and_then(|surface| surface.semi_diameter_mm).expect("a size")
+    };
+    for (head, object, wanted) in [
+        ("EPD 10", "1e11", 5.0),
+        ("DIM I\nEPD 10", "1e11", 127.0),
+        ("FNO 5", "1e11", 10.0),
+        ("NA 0.1", "1e11", 10.0),
+        // As large as the object: the image is 200 mm behind.
+        ("FNO 5", "200", 20.0),
+        ("NA 0.1", "200", 20.0),
+        ("NAO 0.1", "200", 20.0 / (1.0_f64 - 0.01).sqrt()),
+    ] {
+        let size = stop(head, object, "");
+        assert!((size / wanted - 1.0).abs() < 1e-9, "{head}: {size} {wanted}");
+    }
+    assert_eq!(stop("EPD 10", "1e11", " CIR 6.95"), 5.0);
+    assert_eq!(stop("EPD 10", "1e11", " CIR 4"), 4.0);
+    let told = lens("RDM\nEPD 10\nSO 0 1e11\nS 100 1 1.5\nS -100 100\nSI 0 0\n").left_out;
+    assert!(
+        told.len() == 1 && told[0].alters && told[0].line == 2 && told[0].text.contains("write STO at one"),
+        "{told:?}"
+    );
+}
+
 /// Tilts about x and y are left-handed there and right-handed here.
 #[test]
 fn decenters_of_four_sorts() {

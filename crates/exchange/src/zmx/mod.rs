@@ -16,3 +16,6 @@ mod write;
 
 pub use read::read;
 pub use write::{Written, encode, write};
+
+/// A note in files that are written here: the beam that the file states is that which rims let pass, and its stop has no size of its own.
+const OPEN_STOP: &str = "The stop is open: the rims of the lens limit the light.";

@@ -47,7 +47,14 @@ pub fn read(name: &str, text: &str) -> Result<Prescription, Faults> {
     note_coatings(&records, &mut lens);
     note_rest(&records.rest, &mut lens);
     if lens.system_aperture == Some(SystemAperture::StopSize) {
-        float_by_stop(&mut lens, &blocks);
+        float_by_stop(&mut lens, &blocks, system.aperture_line);
+    } else if !system.open_stop {
+        if let (Some(SystemAperture::FNumber(n)), true, Some(_)) =
+            (lens.system_aperture, system.working, lens.object_distance_mm)
+        {
+            lens.system_aperture = Some(SystemAperture::ImageNumericalAperture(0.5 / n));
+        }
+        crate::stop::size(&mut lens, system.aperture_line, "STOP");
     }
     lens.left_out.sort_by_key(|note| note.line);
     Ok(lens)
@@ -130,7 +137,9 @@ impl Reader<'_> {
                 comment: block.comment.clone(),
                 ..Surface::default()
             };
-            block.aperture.place(&mut surface);
+            let bends =
+                mirror || before != medium || matches!(surface.shape, Shape::ThinLens { .. } | Shape::Grating { .. });
+            block.aperture.place(&mut surface, bends);
             let bends_nothing =
                 surface.shape == Shape::Plane && !mirror && before == Medium::Air && medium == Medium::Air;
             if block.stop && bends_nothing && surface.apertures.is_empty() {
@@ -171,18 +180,27 @@ impl Reader<'_> {
 }
 
 /// The stop of a system that floats by its size clips at that size.
-fn float_by_stop(lens: &mut Prescription, blocks: &[Block]) {
+fn float_by_stop(lens: &mut Prescription, blocks: &[Block], line: usize) {
     let size = blocks.iter().find(|block| block.stop).and_then(|block| block.aperture.semi_diameter_mm);
     let stop = lens.items.iter_mut().find_map(|item| match item {
         Item::Surface(surface) if surface.stop => Some(surface),
         _ => None,
     });
-    if let (Some(stop), Some(size)) = (stop, size)
-        && stop.semi_diameter_mm.is_none()
-        && size > 0.0
-    {
-        stop.semi_diameter_mm = Some(size);
-        stop.outer_semi_diameter_mm = stop.outer_semi_diameter_mm.filter(|outer| *outer > size);
+    let Some(stop) = stop else { return };
+    if stop.semi_diameter_mm.is_some() {
+        return;
+    }
+    match size.filter(|size| *size > 0.0) {
+        Some(size) => {
+            stop.semi_diameter_mm = Some(size);
+            stop.outer_semi_diameter_mm = stop.outer_semi_diameter_mm.filter(|outer| *outer > size);
+        }
+        None if !stop.apertures.is_empty() => {}
+        None => {
+            let text = "FLOA: the stop states no size, so it limits nothing; write DIAM there, or `semi-diameter: ...` in the \
+                        imported lens file";
+            lens.leave_out(line, true, text);
+        }
     }
 }
 

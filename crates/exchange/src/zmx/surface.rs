@@ -23,8 +23,12 @@ pub(super) struct GlassRecord {
 /// Apertures of a surface.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Apertures {
-    /// From the `DIAM` record, mm: a size, which clips nothing by itself.
+    /// From the `DIAM` record, mm: where the program chose it, a size that clips nothing by itself.
     pub(super) semi_diameter_mm: Option<f64>,
+    /// Whether a person typed that size in: on a surface that bends light it clips, unless an aperture does.
+    typed: bool,
+    /// An aperture that cannot be carried.
+    foreign: bool,
     mechanical_mm: Option<f64>,
     shape: Option<(ApertureShape, bool)>,
     center_mm: [f64; 2],
@@ -36,8 +40,8 @@ impl Apertures {
         self.shape.is_none()
     }
 
-    /// Puts what clips, and the size for drawing, onto a surface.
-    pub(super) fn place(&self, surface: &mut Surface) {
+    /// Puts what clips, and the size for drawing, onto a surface; `bends` is whether it refracts or reflects.
+    pub(super) fn place(&self, surface: &mut Surface, bends: bool) {
         let drawn = self.semi_diameter_mm.unwrap_or(0.0).max(self.mechanical_mm.unwrap_or(0.0));
         match &self.shape {
             Some((ApertureShape::Ring { inner, outer }, false)) if *inner == 0.0 && self.center_mm == [0.0; 2] => {
@@ -46,6 +50,9 @@ impl Apertures {
             Some((shape, obscures)) => {
                 let aperture = Aperture { shape: shape.clone(), center_mm: self.center_mm, obscures: *obscures };
                 surface.apertures.push(aperture);
+            }
+            None if self.typed && bends && !self.foreign => {
+                surface.semi_diameter_mm = self.semi_diameter_mm.filter(|size| *size > 0.0);
             }
             None => {}
         }
@@ -145,13 +152,17 @@ impl Block {
                     }
                 }
                 "STOP" => block.stop = true,
-                "DIAM" => block.aperture.semi_diameter_mm = number(0).map(|d| d * unit_mm).filter(|d| d.is_finite()),
+                "DIAM" => {
+                    block.aperture.semi_diameter_mm = number(0).map(|d| d * unit_mm).filter(|d| d.is_finite());
+                    block.aperture.typed = record.number(1) == Some(1.0);
+                }
                 "MEMA" => block.aperture.mechanical_mm = number(0).map(|d| d * unit_mm).filter(|d| d.is_finite()),
                 "CLAP" | "FLAP" | "OBSC" | "SQAP" | "SQOB" | "ELAP" | "ELOB" => {
                     let sizes = [number(0).unwrap_or(0.0) * unit_mm, number(1).unwrap_or(0.0) * unit_mm];
                     block.clip(&keyword, sizes, record.line, lens);
                 }
                 "USAP" | "USOB" | "SPID" | "UDAP" | "UDAD" | "UDOB" => {
+                    block.aperture.foreign = true;
                     let text =
                         format!("{keyword} {}: an aperture of a file or of arms clips nothing here", record.rest);
                     lens.leave_out(record.line, true, shown(&text));

@@ -1,7 +1,7 @@
 //! What a file says of the whole: unit, glass catalogues, beam, fields, wavelengths.
 
-use super::known;
 use super::record::Record;
+use super::{OPEN_STOP, known};
 use crate::glass::maker_of_catalogue;
 use crate::number;
 use crate::place::{Source, shown};
@@ -14,13 +14,19 @@ pub(super) struct System {
     pub(super) unit_mm: f64,
     /// Makers of the glass catalogues, in the order of the file.
     pub(super) makers: Vec<&'static str>,
+    /// Line of what sets the size of the beam.
+    pub(super) aperture_line: usize,
+    /// Whether an f-number is that of the cone at the image, wherever the object is.
+    pub(super) working: bool,
+    /// Whether the file says that its stop limits nothing.
+    pub(super) open_stop: bool,
 }
 
 /// Most wavelengths and fields that are kept.
 const MOST: usize = 64;
 
 pub(super) fn read(records: &[Record<'_>], source: &Source, lens: &mut Prescription, faults: &mut Faults) -> System {
-    let mut system = System { unit_mm: 1.0, makers: Vec::new() };
+    let mut system = System { unit_mm: 1.0, makers: Vec::new(), aperture_line: 0, working: false, open_stop: false };
     let find = |keyword: &str| records.iter().find(|record| record.keyword.eq_ignore_ascii_case(keyword));
     if let Some(record) = find("UNIT")
         && let Some(word) = record.word(0)
@@ -49,14 +55,25 @@ pub(super) fn read(records: &[Record<'_>], source: &Source, lens: &mut Prescript
     for record in records {
         let keyword = record.keyword.to_ascii_uppercase();
         let positive = record.number(0).filter(|n| *n > 0.0);
+        let second = record.number(1) == Some(1.0);
+        if ["ENPD", "FNUM", "OBNA", "FLOA"].contains(&&*keyword) {
+            system.aperture_line = record.line;
+        }
         match keyword.as_str() {
             "NAME" => lens.name = shown(record.rest),
             "GCAT" => system.makers.extend(record.words().filter_map(maker_of_catalogue)),
             "ENPD" => {
                 lens.system_aperture = positive.map(|d| SystemAperture::EntrancePupilDiameter(d * system.unit_mm));
             }
-            "FNUM" => lens.system_aperture = positive.map(SystemAperture::FNumber),
-            "OBNA" => lens.system_aperture = positive.map(SystemAperture::ObjectNumericalAperture),
+            "FNUM" => {
+                lens.system_aperture = positive.map(SystemAperture::FNumber);
+                system.working = second;
+            }
+            "OBNA" => {
+                // With a 1 behind it, half the angle of the cone in degrees.
+                let na = positive.map(|n| if second { libm::sin(n.to_radians()) } else { n });
+                lens.system_aperture = na.map(SystemAperture::ObjectNumericalAperture);
+            }
             "FLOA" => lens.system_aperture = Some(SystemAperture::StopSize),
             "NOTE" => notes.extend(record.rest.split_once(' ').map(|(_, text)| text.trim().to_owned())),
             "ENVD" | "TEMP" | "PRES" => environment(record, &keyword, lens),
@@ -72,7 +89,8 @@ pub(super) fn read(records: &[Record<'_>], source: &Source, lens: &mut Prescript
     if let Some(line) = vignetting {
         lens.leave_out(line, false, "vignetting factors: they choose rays only");
     }
-    notes.retain(|text: &String| !text.is_empty());
+    system.open_stop = notes.iter().any(|text: &String| text == OPEN_STOP);
+    notes.retain(|text| !text.is_empty() && text != OPEN_STOP);
     if !notes.is_empty() {
         let text: String = notes.join(" ").chars().take(400).collect();
         lens.remarks.push(format!("Notes of the file: {}", text.replace(char::is_control, " ")));

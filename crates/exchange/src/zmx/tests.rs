@@ -92,7 +92,7 @@ fn units_scale_every_term() {
 }
 
 #[test]
-fn apertures_clip_and_sizes_do_not() {
+fn apertures_clip_and_chosen_sizes_do_not() {
     let aperture = |shape, center_mm, obscures| Aperture { shape, center_mm, obscures };
     let ring = |inner, outer| ApertureShape::Ring { inner, outer };
     let found = surface("", "  DIAM 10 0 0 0 1 \"\"");
@@ -112,8 +112,94 @@ fn apertures_clip_and_sizes_do_not() {
     }
     assert_eq!(altering(&with("", "  USAP 0 0 0")).len(), 1);
     assert_eq!(altering(&with("", "  SQAP 3 0 0")).len(), 1);
-    assert!(surface("ENPD 5", "  STOP").semi_diameter_mm.is_none(), "a pupil chooses rays");
     assert_eq!(surface("FLOA", "  STOP\n  DIAM 4").semi_diameter_mm, Some(4.0));
+}
+
+/// A size that a person typed in is that of a rim, where light is bent and no aperture says otherwise.
+#[test]
+fn typed_sizes_clip_where_light_is_bent() {
+    let sizes = |records: &str| {
+        let found = surface("", records);
+        (found.semi_diameter_mm, found.outer_semi_diameter_mm)
+    };
+    let glass = "  CURV 0.02\n  GLAS N-BK7 0 0 1.5 40\n";
+    assert_eq!(sizes(&format!("{glass}  DIAM 10 1 0 0 1 \"\"")), (Some(10.0), None));
+    assert_eq!(sizes(&format!("{glass}  DIAM 10 0 0 0 1 \"\"")), (None, Some(10.0)));
+    assert_eq!(sizes(&format!("{glass}  DIAM 10 1\n  CLAP 0 8 0")), (Some(8.0), Some(10.0)));
+    assert_eq!(sizes(&format!("{glass}  DIAM 10 1\n  USAP 0 0 0")), (None, Some(10.0)));
+    assert_eq!(sizes("  GLAS MIRROR\n  DIAM 10 1"), (Some(10.0), None));
+    assert_eq!(sizes("  TYPE PARAXIAL\n  PARM 1 80\n  DIAM 10 1"), (Some(10.0), None));
+    assert_eq!(sizes("  DIAM 10 1"), (None, Some(10.0)), "a plane in air");
+    let behind = "SURF 0\nSURF 1\n  GLAS N-BK7\n  DISZ 2\nSURF 2\n  DIAM 7 1\nSURF 3\n";
+    let lens = read("x", behind).expect("a lens");
+    assert_eq!(lens.surfaces().nth(1).and_then(|s| s.semi_diameter_mm), Some(7.0), "from glass into air");
+    // The edge of an element does not become a rim on its way out and back.
+    for records in [format!("{glass}  DIAM 10 0"), format!("{glass}  DIAM 10 1\n  MEMA 12")] {
+        let lens = with("", &records);
+        let again = read("x", &super::write(&lens).text).expect("a lens");
+        let sizes =
+            |lens: &Prescription| lens.surfaces().next().map(|s| (s.semi_diameter_mm, s.outer_semi_diameter_mm));
+        assert_eq!(sizes(&again), sizes(&lens), "{records}");
+    }
+}
+
+/// An ideal lens of 100 mm, 20 mm in front of its stop: a ray along the axis is there at 0.8 of its height, and one from 300 mm
+/// in front comes down from 300 u at a slope of 2 u.
+#[test]
+fn the_beam_sizes_the_stop() {
+    let lens = |system: &str, object: &str, stop: &str| {
+        let text = format!(
+            "{system}\nSURF 0\n  DISZ {object}\nSURF 1\n  TYPE PARAXIAL\n  PARM 1 100\n  DISZ 20\nSURF 2\n{stop}\n  DISZ 80\nSURF 3\n"
+        );
+        read("x.zmx", &text).unwrap_or_else(|faults| panic!("{faults}"))
+    };
+    let stop = |lens: &Prescription| lens.surfaces().nth(1).and_then(|surface| surface.semi_diameter_mm);
+    for (system, object, wanted) in [
+        ("ENPD 10", "INFINITY", 4.0),
+        ("ENPD 10", "300", 4.0),
+        ("UNIT IN\nENPD 10", "INFINITY", 4.0 * 25.4),
+        ("FNUM 10 0", "INFINITY", 4.0),
+        ("FNUM 10 1", "INFINITY", 4.0),
+        ("FNUM 10 0", "300", 4.0),
+        ("FNUM 10 1", "300", 6.5),
+        ("OBNA 0.05 0", "300", 260.0 * 0.05 / (1.0_f64 - 0.0025).sqrt()),
+        ("OBNA 30 1", "300", 260.0 / 3.0_f64.sqrt()),
+    ] {
+        let found = lens(system, object, "  STOP");
+        let size = stop(&found).unwrap_or_else(|| panic!("{system}: {:?}", found.left_out));
+        assert!((size / wanted - 1.0).abs() < 1e-9, "{system}, {object}: {size} {wanted}");
+        assert!(found.left_out.is_empty() && found.remarks[0].contains("marginal ray"), "{:?}", found.remarks);
+    }
+    // The narrower one limits the light; the wider one is the edge of the element.
+    assert_eq!(stop(&lens("ENPD 10", "INFINITY", "  STOP\n  CLAP 0 3 0")), Some(3.0));
+    let wide = lens("ENPD 10", "INFINITY", "  STOP\n  CLAP 0 6.95 0");
+    assert_eq!((stop(&wide), wide.surfaces().nth(1).and_then(|s| s.outer_semi_diameter_mm)), (Some(4.0), Some(6.95)));
+    assert_eq!(stop(&lens("ENPD 10", "INFINITY", "  STOP\n  CLAP 0 4.0002 0")), Some(4.0002), "the same, rounded");
+    for (system, surface, word) in [
+        ("ENPD 10", "", "the entrance pupil diameter of 10 mm limits nothing: no surface is the stop; write STOP"),
+        ("OBNA 0.1 0", "  STOP", "the object is at infinity"),
+        ("ENPD 10", "  STOP\n  GLAS NOBODYS", "the index of NOBODYS is not known"),
+        ("FLOA", "  STOP", "FLOA: the stop states no size"),
+        ("ENPD 10", "  STOP\n  SCBD 1 0 0 2 0 0 0 0", "decentered"),
+    ] {
+        let found = lens(system, "INFINITY", surface);
+        let told = found.left_out.iter().find(|note| note.alters && note.text.contains(word));
+        assert!(told.is_some_and(|note| note.line == 1), "{system}: {:?}", found.left_out);
+        assert!(stop(&found).is_none());
+    }
+}
+
+/// A lens that is limited by its rims goes out with the beam that they let pass, and comes back with its stop as open as it was.
+#[test]
+fn an_open_stop_stays_open() {
+    let mut lens = with("", "  CURV 0.02\n  GLAS N-BK7\n  DISZ 5\n  STOP\n  CLAP 0 9 0");
+    lens.items.push(Item::Surface(Box::new(Surface { shape: Shape::Stop, stop: true, ..Surface::default() })));
+    let Item::Surface(first) = &mut lens.items[0] else { panic!("a surface") };
+    first.stop = false;
+    lens.system_aperture = Some(SystemAperture::EntrancePupilDiameter(10.0));
+    let again = read("x", &super::write(&lens).text).expect("a lens");
+    let sizes: Vec<Option<f64>> = again.surfaces().map(|surface| surface.semi_diameter_mm).collect();
+    assert_eq!((sizes, again.remarks), (vec![Some(9.0), None], vec![]));
 }
 
 #[test]

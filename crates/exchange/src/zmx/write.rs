@@ -1,5 +1,6 @@
 //! A prescription as a `.zmx`.
 
+use super::OPEN_STOP;
 use crate::glass::{everyday_name, maker_of_catalogue};
 use crate::number::shortest;
 use crate::place::shown;
@@ -101,12 +102,19 @@ impl Writer {
                 line("FLOA".to_owned());
                 None
             }
+            Some(SystemAperture::ImageNumericalAperture(_)) if stop_size.is_some() => {
+                line("FLOA".to_owned());
+                None
+            }
             Some(SystemAperture::ImageNumericalAperture(_)) | None => {
                 let size = front.unwrap_or(1.0);
                 line(format!("ENPD {}", shortest(2.0 * size)));
                 Some(size)
             }
         };
+        if stop_size.is_none() {
+            line(format!("NOTE 0 {OPEN_STOP}"));
+        }
         if !self.makers.is_empty() {
             line(format!("GCAT {}", self.makers.join(" ")));
         }
@@ -345,8 +353,11 @@ impl Writer {
     }
 
     fn apertures(&mut self, surface: &Surface, number: usize) {
-        if let Some(size) = surface.semi_diameter_mm.or(surface.outer_semi_diameter_mm) {
+        // A typed size clips on a surface that bends light; that of the edge does not.
+        if let Some(size) = surface.semi_diameter_mm {
             record!(self, "DIAM {} 1 0 0 1 \"\"", shortest(size));
+        } else if let Some(size) = surface.outer_semi_diameter_mm {
+            record!(self, "DIAM {} 0 0 0 1 \"\"", shortest(size));
         }
         if let Some(outer) = surface.outer_semi_diameter_mm {
             record!(self, "MEMA {} 0 0 0 1 \"\"", shortest(outer));
