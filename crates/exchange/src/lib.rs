@@ -73,6 +73,22 @@ impl Format {
             _ => None,
         }
     }
+
+    /// What to write in such a file, so that a surface limits the light: for a hint.
+    #[must_use]
+    pub fn how_to_clip(self) -> &'static str {
+        match self {
+            Self::Zmx => {
+                "in the .zmx, write an aperture at a surface (`CLAP 0 RADIUS 0`) or 1 behind its semi-diameter (`DIAM RADIUS 1`), or size \
+                 its beam (`ENPD DIAMETER`); or convert it by `spectra lens import` and state `semi-diameter` in the lens file"
+            }
+            Self::Seq => {
+                "in the .seq, write an aperture behind a surface (`CIR RADIUS`), or size the beam (`EPD DIAMETER`) and mark the stop (`STO`); \
+                 or convert it by `spectra lens import` and state `semi-diameter` in the lens file"
+            }
+            Self::Csv => "fill a column `semi-diameter` in the table, at least for the first surface",
+        }
+    }
 }
 
 /// Reads a lens; `name` is how faults name the file.

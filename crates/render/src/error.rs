@@ -81,9 +81,7 @@ impl RenderError {
         match self {
             Self::CannotEmit | Self::CannotReceive => at("render.direction", &text, "`direction: backward`"),
             Self::CannotLaunch | Self::NoRadiance => at("render.direction", &text, "`direction: forward`"),
-            Self::NoAperture => {
-                at("lens", &text, "state `semi-diameter` in the lens file, at least of the first surface")
-            }
+            Self::NoAperture => at("lens", &text, spectra_scene::size_hint(scene.params.get("lens"))),
             // The strategy says in one text what is wrong and what to take.
             Self::Sampler(text) => match text.split_once("; ") {
                 Some((text, hint)) => at("wavelengths", text, hint),

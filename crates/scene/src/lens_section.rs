@@ -10,10 +10,11 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::cover::CoverStack;
 use spectra_core::params::{
-    Angle, Dimension, FNumber, Fault, Faults, Length, OrInfinity, Params, Part, Positive, Reading, SpatialFrequency,
-    StageNode, Wavelength,
+    Angle, Dimension, FNumber, Fault, Faults, Length, Node, OrInfinity, Params, Part, Positive, Reading,
+    SpatialFrequency, StageNode, Wavelength,
 };
 use spectra_core::resources::Resources;
+use spectra_exchange::Format;
 use spectra_lens::{
     ApertureError, ApertureForm, CoatingForm, Criterion, DustForm, FocusError, FocusSearch, HazeForm, Lens, MatteBox,
     Misalignment, ScratchesForm, SeparationForm, Shape,
@@ -344,6 +345,15 @@ fn f_number_in(text: &str) -> Option<f64> {
     }
 }
 
+/// What to write where no surface of a lens states its size: a file of another program has words of its own. `section` is that
+/// of the lens.
+#[must_use]
+pub fn size_hint(section: Option<&Node>) -> &'static str {
+    let file = section.and_then(|node| node.get("file").unwrap_or(node).as_str());
+    file.and_then(Format::of_name)
+        .map_or("state `semi-diameter` in the lens file, at least of the first surface", Format::how_to_clip)
+}
+
 /// A fault at `f-number`.
 fn aperture_fault(params: &Params, error: &ApertureError) -> Fault {
     let hint = match error {
@@ -351,7 +361,7 @@ fn aperture_fault(params: &Params, error: &ApertureError) -> Fault {
             format!("f/{:.2} or slower; leave `f-number` out for wide open", (widest * 100.0).ceil() / 100.0)
         }
         ApertureError::NoStop => "mark one in the lens file: `- {kind: stop, thickness: ...}`".to_owned(),
-        ApertureError::Unlimited => "state `semi-diameter` in the lens file".to_owned(),
+        ApertureError::Unlimited => size_hint(Some(params.node())).to_owned(),
         ApertureError::NoRay(_) | ApertureError::Medium(_) => "leave `f-number` out for wide open".to_owned(),
     };
     params.fault("f-number", error.to_string()).hint(hint)

@@ -35,6 +35,7 @@ pub use focus::{Focus, FocusBy};
 pub use language::{
     Member, Series, SeriesKind, SweptAxis, document, load, load_series, series_of_text, series_of_tree,
 };
+pub use lens_section::size_hint;
 pub use light_layer::{GhostPaths, LightKind, LightLayer};
 pub use negatives::Negatives;
 pub use output::{Holds, Output, OutputEntry, Told};

@@ -67,6 +67,9 @@ impl LensReport {
             format!("from the image plane; highest contrast at {} lp/mm, real rays", self.contrast_frequency_per_mm);
         let (stop, stop_remark) = match (self.has_stop, self.stop_semi_diameter_mm) {
             (_, Some(_)) => (mm(self.stop_semi_diameter_mm), "semi-diameter"),
+            (true, None) if self.entrance_pupil_diameter_mm.is_none() => {
+                ("open".to_owned(), "no semi-diameter in the file, and no rim of the lens limits the light")
+            }
             (true, None) => ("open".to_owned(), "no semi-diameter in the file: the rims of the lens limit the light"),
             (false, None) => ("none".to_owned(), ""),
         };

@@ -141,3 +141,12 @@ fn the_rest_is_told() {
     assert!(message.contains("bad.seq:3:4: `x1` is not a number"), "{message}");
     assert!(read("bad.seq", "").unwrap_err().to_string().contains("no surfaces"));
 }
+
+/// What the hint says clips, clips.
+#[test]
+fn hints_help_when_followed() {
+    let hint = crate::Format::Seq.how_to_clip();
+    assert!(["`CIR RADIUS`", "`EPD DIAMETER`", "`STO`"].iter().all(|word| hint.contains(word)), "{hint}");
+    assert_eq!(first("S 50 1 NBK7_SCHOTT\n CIR 7").semi_diameter_mm, Some(7.0));
+    assert_eq!(first("EPD 14\nS 50 1 NBK7_SCHOTT\n STO").semi_diameter_mm, Some(7.0));
+}

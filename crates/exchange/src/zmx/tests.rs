@@ -266,3 +266,18 @@ fn faults_have_places() {
         assert!(read("e.zmx", empty).unwrap_err().to_string().contains("no surfaces"));
     }
 }
+
+/// What the hint says clips, clips.
+#[test]
+fn hints_help_when_followed() {
+    let hint = crate::Format::Zmx.how_to_clip();
+    let glass = "  STOP\n  CURV 0.02\n  GLAS N-BK7";
+    for (shown, system, record) in [
+        ("`CLAP 0 RADIUS 0`", "", "  CLAP 0 7 0"),
+        ("`DIAM RADIUS 1`", "", "  DIAM 7 1"),
+        ("`ENPD DIAMETER`", "ENPD 14", ""),
+    ] {
+        assert!(hint.contains(shown), "{hint}");
+        assert_eq!(surface(system, &format!("{glass}\n{record}")).semi_diameter_mm, Some(7.0), "{shown}");
+    }
+}
