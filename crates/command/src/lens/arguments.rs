@@ -351,7 +351,9 @@ pub(crate) struct LensTrace {
         Anything that cannot be converted is listed on standard error and kept in the file as comments; anything that \
         changes the path of light is marked with `!`. The entrance pupil or f-number gives the stop its size; fields and \
         wavelengths become a remark. Every command that takes a lens also reads these files directly, without importing \
-        them first.",
+        them first.\n\n\
+        The columns of a .csv are radius (or curvature), thickness, glass, nd, vd, semi-diameter (or diameter), type, conic, \
+        a2, a4 and so on, surface, lens and comment; lengths are in mm unless a unit follows, as in `radius [in]`.",
     after_long_help = "Example:\n  spectra lens import tessar.zmx -o tessar.yaml"
 )]
 pub(crate) struct LensImport {

@@ -80,9 +80,9 @@ const NAMES: [(&str, Column); 55] = [
     ("label", Column::Comment),
 ];
 
-/// The column of a name.
+/// The column of a name, which may have a unit behind it.
 pub(super) fn by_name(name: &str) -> Option<Column> {
-    let bare = name.split(['[', '(']).next().unwrap_or(name);
+    let (bare, _) = super::units::split(name);
     let plain: String = bare
         .chars()
         .filter(|c| !c.is_whitespace() && !matches!(c, '-' | '_' | '.'))
@@ -99,7 +99,7 @@ pub(super) fn by_name(name: &str) -> Option<Column> {
 
 /// Names that a person may write, for a hint.
 pub(super) const HINT: &str = "known columns: lens, surface, type, radius, curvature, thickness, glass, nd, vd, semi-diameter, \
-                               diameter, conic, a2, a4, ..., comment";
+                               diameter, conic, a2, a4, ..., comment; a unit may follow in brackets: radius [in]";
 
 #[cfg(test)]
 mod tests {

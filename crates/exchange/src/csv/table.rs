@@ -1,10 +1,11 @@
 //! Rows to surfaces.
 
 use super::columns::{Column, HINT, by_name};
+use super::units;
 use crate::place::{Source, shown};
 use crate::prescription::{Item, Medium, Prescription, Shape, Surface};
 use crate::{MAX_ITEMS, glass, number};
-use spectra_core::params::Faults;
+use spectra_core::params::{Fault, Faults};
 
 /// Reads the text of a table; `name` is how faults name it.
 ///
@@ -21,6 +22,11 @@ pub fn read(name: &str, text: &str) -> Result<Prescription, Faults> {
         return Err(source.fault_here("the table is empty").hint(HINT).into());
     };
     let separator = [';', '\t'].into_iter().find(|c| head.contains(*c)).unwrap_or(',');
+    if separator == ','
+        && let Some(fault) = decimal_commas(&source, head, rows.clone().map(|(_, line)| line))
+    {
+        return Err(fault.into());
+    }
     let mut columns = Vec::new();
     for cell in cells(head, separator) {
         let column = by_name(cell);
@@ -36,13 +42,26 @@ pub fn read(name: &str, text: &str) -> Result<Prescription, Faults> {
     if !columns.iter().flatten().any(|c| matches!(c, Column::Radius | Column::Curvature)) {
         faults.push(source.fault_here("no column `radius`").hint(HINT));
     }
+    let units_mm = units_mm(&source, &cells(head, separator), &columns, &mut faults);
+    if !columns.contains(&Some(Column::Thickness)) && rows.clone().next().is_some() {
+        faults.push(source.fault_here("no column `thickness`").hint(HINT));
+    }
     let mut lens = Prescription::default();
+    let mut seen = Seen { no_thickness: !columns.contains(&Some(Column::Thickness)), ..Seen::default() };
     for (at, line) in rows {
         if lens.items.len() >= MAX_ITEMS {
             faults.push(source.fault(line, format!("more than {MAX_ITEMS} surfaces")));
             break;
         }
-        let mut row = Row { line: at + 1, separator, source: &source, faults: &mut faults, cells: Vec::new() };
+        let mut row = Row {
+            line: at + 1,
+            separator,
+            source: &source,
+            faults: &mut faults,
+            cells: Vec::new(),
+            units_mm: &units_mm,
+            seen: &mut seen,
+        };
         for (at, cell) in cells(line, separator).into_iter().enumerate() {
             match columns.get(at) {
                 Some(Some(column)) => row.cells.push((*column, cell)),
@@ -52,6 +71,11 @@ pub fn read(name: &str, text: &str) -> Result<Prescription, Faults> {
             }
         }
         row.surface(&mut lens);
+    }
+    if let Some((line, count)) = seen.zero_radii {
+        let rows = if count > 1 { format!(" ({count} rows)") } else { String::new() };
+        lens.leave_out(line, false, format!("a radius of 0 is taken as a plane{rows}"));
+        lens.left_out.sort_by_key(|note| note.line);
     }
     if lens.items.is_empty() && faults.is_empty() {
         faults.push(source.fault_here("the table has no surfaces"));
@@ -76,12 +100,100 @@ fn cells(line: &str, separator: char) -> Vec<&str> {
     cells.into_iter().map(|cell| cell.trim().trim_matches('"').trim()).collect()
 }
 
+/// What rows so far have said.
+#[derive(Default)]
+struct Seen {
+    /// Whether the table has no column of thicknesses, which is told once.
+    no_thickness: bool,
+    /// The last number of a surface.
+    number: Option<f64>,
+    /// First line with a radius of 0, and how many there are.
+    zero_radii: Option<(usize, usize)>,
+}
+
+/// Millimeters of the unit of each column that holds lengths or their powers.
+fn units_mm(source: &Source, heads: &[&str], columns: &[Option<Column>], faults: &mut Faults) -> Vec<(Column, f64)> {
+    let mut found = Vec::new();
+    let mut silent = Vec::new();
+    for (head, column) in heads.iter().zip(columns) {
+        let Some(column) = column.filter(|column| units::power(*column).is_some()) else { continue };
+        match units::split(head).1 {
+            None => silent.push((head, column)),
+            Some(unit) => match units::unit_mm(unit, column) {
+                Some(mm) => found.push((column, mm)),
+                None => {
+                    let text = format!("`{}` is no unit of this column", shown(unit));
+                    let hint = match units::power(column) {
+                        Some(1) => units::HINT.to_owned(),
+                        _ if column == Column::Coefficients => {
+                            "the unit of the lens, as in `coefficients [mm]`".to_owned()
+                        }
+                        power => format!("such as [mm^{}]", power.unwrap_or(1)),
+                    };
+                    faults.push(source.fault(head, text).hint(hint));
+                }
+            },
+        }
+    }
+    if found.iter().any(|(_, mm)| *mm != 1.0) {
+        for (head, column) in silent {
+            let text = format!("`{}` states no unit where other columns do", shown(head));
+            let power = match units::power(column) {
+                Some(power) if power != 1 && column != Column::Coefficients => format!("^{power}"),
+                _ => String::new(),
+            };
+            let hint = format!("write it behind the name, such as `{} [mm{power}]`", shown(head));
+            faults.push(source.fault(head, text).hint(hint));
+        }
+    }
+    found
+}
+
+/// The fault of a table in which commas stand between cells and in numbers: rows are longer than the head, and no number has
+/// a point.
+fn decimal_commas<'a>(source: &Source, head: &str, rows: impl Iterator<Item = &'a str>) -> Option<Fault> {
+    let columns = cells(head, ',').len();
+    let (mut count, mut longer, mut first) = (0, 0, None);
+    for row in rows {
+        let found = cells(row, ',');
+        if found.iter().any(|cell| cell.contains('.') && number::parse(cell).is_some()) {
+            return None;
+        }
+        count += 1;
+        let filled = found.iter().rposition(|cell| !cell.is_empty()).map_or(0, |at| at + 1);
+        if filled > columns {
+            longer += 1;
+            first.get_or_insert((row, filled));
+        }
+    }
+    let (row, filled) = first.filter(|_| 2 * longer >= count)?;
+    let text =
+        format!("{filled} cells where the head has {columns}: commas stand between cells and, it seems, in numbers");
+    Some(source.fault(row, text).hint("write numbers with a point, or separate cells by semicolons or tabs"))
+}
+
+/// What helps where a cell is no number.
+fn hint_of(cell: &str) -> Option<String> {
+    let point = cell.replacen(',', ".", 1);
+    if number::parse(&point).is_some() {
+        return Some(format!("write it with a point, `{}`, or separate cells by semicolons or tabs", shown(&point)));
+    }
+    let at = cell.find(|c: char| !(c.is_ascii_digit() || "+-.,".contains(c)))?;
+    let (figure, unit) = cell.split_at(at);
+    number::parse(&figure.replacen(',', ".", 1))?;
+    units::length_mm(unit)?;
+    let unit = unit.trim();
+    Some(format!("units go into the head of the column, such as `radius [{unit}]`; here `{figure}`"))
+}
+
 struct Row<'a, 'f> {
     line: usize,
     separator: char,
     source: &'a Source,
     faults: &'f mut Faults,
     cells: Vec<(Column, &'a str)>,
+    units_mm: &'f [(Column, f64)],
+    seen: &'f mut Seen,
 }
 
 impl<'a> Row<'a, '_> {
@@ -90,9 +202,29 @@ impl<'a> Row<'a, '_> {
         self.cells.iter().find(|(c, cell)| *c == column && !cell.is_empty()).map(|(_, cell)| *cell)
     }
 
+    /// A number, in mm and powers of it where it is a length or one of its powers.
     fn number(&mut self, column: Column) -> Option<f64> {
         let cell = self.text(column)?;
-        self.parse(cell)
+        let value = self.parse(cell)?;
+        Some(units::power(column).map_or(value, |power| self.in_mm(column, value, power)))
+    }
+
+    /// A figure of a column in mm to a power.
+    fn in_mm(&self, column: Column, value: f64, power: i32) -> f64 {
+        let mm = self.units_mm.iter().find(|(known, _)| *known == column).map_or(1.0, |(_, mm)| *mm);
+        let scale = (0..power.unsigned_abs()).fold(1.0, |product, _| product * mm);
+        if power < 0 { value / scale } else { value * scale }
+    }
+
+    /// Rows stand in the order of the light: their numbers rise.
+    fn count(&mut self) {
+        let Some(cell) = self.text(Column::Number) else { return };
+        let Some(number) = number::parse(cell).filter(|number| number.is_finite()) else { return };
+        if let Some(last) = self.seen.number.filter(|last| number <= *last) {
+            let fault = self.source.fault(cell, format!("surface {number} comes after surface {last}"));
+            self.faults.push(fault.hint("rows stand in the order of the light, and numbers rise from row to row"));
+        }
+        self.seen.number = Some(number);
     }
 
     fn parse(&mut self, cell: &str) -> Option<f64> {
@@ -101,7 +233,11 @@ impl<'a> Row<'a, '_> {
             _ => number::parse(&cell.replacen(',', ".", 1)),
         };
         if value.is_none() {
-            self.faults.push(self.source.fault(cell, format!("`{}` is not a number", shown(cell))));
+            let fault = self.source.fault(cell, format!("`{}` is not a number", shown(cell)));
+            self.faults.push(match hint_of(cell) {
+                Some(hint) => fault.hint(hint),
+                None => fault,
+            });
         }
         value
     }
@@ -125,6 +261,7 @@ impl<'a> Row<'a, '_> {
                 return;
             }
         }
+        self.count();
         let kind = self.text(Column::Kind).unwrap_or_default().to_ascii_lowercase();
         let thickness = self.number(Column::Thickness).unwrap_or(0.0);
         match kind.as_str() {
@@ -140,11 +277,21 @@ impl<'a> Row<'a, '_> {
             self.faults.push(self.source.fault(cell, "a finite thickness is needed here"));
         }
         let marked = |column| self.text(column).is_some_and(|cell| cell.eq_ignore_ascii_case("stop"));
-        let stop = kind == "stop" || kind == "aperture" || marked(Column::Number) || marked(Column::Comment);
+        let stop = kind == "stop"
+            || kind == "aperture"
+            || marked(Column::Number)
+            || marked(Column::Comment)
+            || marked(Column::Radius);
         let mirror =
             kind == "mirror" || self.text(Column::Glass).is_some_and(|cell| cell.eq_ignore_ascii_case("mirror"));
         let radius = self.radius();
         let medium = if mirror { Medium::Air } else { self.medium(lens) };
+        if medium != Medium::Air && !self.seen.no_thickness && self.text(Column::Thickness).is_none() {
+            let cell = self.text(Column::Glass).or(self.text(Column::Index)).unwrap_or_default();
+            let fault = self.source.fault(cell, "the glass behind this surface needs a thickness");
+            self.faults
+                .push(fault.hint("fill the column `thickness`, the distance to the next surface; 0 where they touch"));
+        }
         let semi_diameter_mm = match self.finite(Column::SemiDiameter) {
             Some(size) => Some(size),
             None => self.finite(Column::Diameter).map(|d| d / 2.0),
@@ -166,10 +313,13 @@ impl<'a> Row<'a, '_> {
 
     fn radius(&mut self) -> f64 {
         if let Some(cell) = self.text(Column::Radius) {
-            if ["plane", "plano", "flat", "-", "∞"].contains(&cell.to_ascii_lowercase().as_str()) {
+            if ["plane", "plano", "flat", "-", "∞", "stop"].contains(&cell.to_ascii_lowercase().as_str()) {
                 return f64::INFINITY;
             }
             let radius = self.number(Column::Radius).unwrap_or(f64::INFINITY);
+            if radius == 0.0 {
+                self.seen.zero_radii = Some(self.seen.zero_radii.map_or((self.line, 1), |(line, n)| (line, n + 1)));
+            }
             return if radius == 0.0 || radius.is_infinite() { f64::INFINITY } else { radius };
         }
         self.finite(Column::Curvature).map_or(f64::INFINITY, |curvature| number::radius_mm(curvature, 1.0))
@@ -222,7 +372,8 @@ impl<'a> Row<'a, '_> {
         if let Some(cell) = self.text(Column::Coefficients) {
             for word in cell.split([' ', ';', '|']).filter(|word| !word.is_empty()).take(20) {
                 let value = self.parse(word).unwrap_or(0.0);
-                coefficients.push(value);
+                let power = -1 - 2 * coefficients.len() as i32;
+                coefficients.push(self.in_mm(Column::Coefficients, value, power));
             }
         }
         for power in (2..=40).step_by(2) {

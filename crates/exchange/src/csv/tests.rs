@@ -31,8 +31,8 @@ fn other_habits() {
     let Item::Surface(first) = &lens.items[0] else { panic!("a surface") };
     assert_eq!(first.shape, Shape::EvenAsphere { radius: 50.5, conic: 0.0, coefficients: vec![0.0, 1.5e-6] });
     assert_eq!((first.semi_diameter_mm, lens.items.len(), lens.object_distance_mm), (Some(10.0), 2, None));
-    // `1` and `2` are no types.
-    assert_eq!(lens.left_out.len(), 2);
+    // `1` and `2` are no types, and a radius of 0 is none.
+    assert_eq!(lens.left_out.len(), 3);
 }
 
 #[test]
@@ -57,4 +57,99 @@ fn faults_have_row_and_column() {
     ] {
         assert!(read("t.csv", text).unwrap_err().to_string().contains(word), "{text}");
     }
+}
+
+fn message(text: &str) -> String {
+    read("t.csv", text).map_or_else(|faults| faults.to_string(), |lens| panic!("{text}: {lens:?}"))
+}
+
+/// A lens in any unit is the same lens in millimeters, coefficients too.
+#[test]
+fn units_of_the_head_count() {
+    let mm = "radius,thickness,glass,semi-diameter,a4,a6\n508,127,N-BK7,50.8,0,0\n-508,254,,50.8,0,0\n";
+    let wanted = read("t.csv", mm).expect("a lens");
+    for text in [
+        "radius [in],thickness [in],glass,semi-diameter [inch],a4 [in^-3],a6 [in]\n20,5,N-BK7,2,0,0\n-20,10,,2,0,0\n",
+        "radius (cm),thickness [mm],glass,diameter [m],a4 [mm^-3],a6 [1/m^5]\n50.8,127,N-BK7,0.1016,0,0\n-50.8,254,,0.1016,0,0\n",
+        "radius_cm,thickness_mm,glass,semi_diameter_in\n50.8,127,N-BK7,2\n-50.8,254,,2\n",
+    ] {
+        let found = read("t.csv", text).unwrap_or_else(|faults| panic!("{faults}"));
+        assert_eq!(found, wanted, "{text}");
+    }
+    // z / in = a4 (r / in)^4: at r = 1 in 0.001 in.
+    let form = |text: &str| match read("t.csv", text).expect("a lens").surfaces().next().map(|s| s.shape.clone()) {
+        Some(Shape::EvenAsphere { radius, coefficients, .. }) => (radius, coefficients),
+        other => panic!("{other:?}"),
+    };
+    for text in [
+        "radius [in],thickness [in],a4 [in^-3]\n20,5,1e-3\n",
+        "curvature [1/in],thickness [in],a4 [1/in^3]\n0.05,5,1e-3\n",
+        "radius [in],thickness [in],coefficients [in]\n20,5,0 1e-3\n",
+    ] {
+        let (radius, coefficients) = form(text);
+        let sag_mm = coefficients[1] * 25.4_f64.powi(4);
+        assert!((radius - 508.0).abs() < 1e-9 && (sag_mm - 0.0254).abs() < 1e-15, "{text}: {radius} {sag_mm}");
+    }
+    for (text, word) in [
+        ("radius [furlong],thickness\n1,1\n", "t.csv:1:1: `furlong` is no unit of this column"),
+        ("radius [furlong],thickness\n1,1\n", "`radius [in]`"),
+        ("radius [in],thickness\n1,1\n", "t.csv:1:13: `thickness` states no unit where other columns do"),
+        ("radius [in],thickness [in],a4\n1,1,0\n", "such as `a4 [mm^-3]`"),
+        ("radius [mm],thickness [mm],a4 [mm^-5]\n1,1,0\n", "such as [mm^-3]"),
+    ] {
+        assert!(message(text).contains(word), "{}", message(text));
+    }
+}
+
+#[test]
+fn what_a_lens_file_refuses_is_refused() {
+    for (text, word) in [
+        ("radius,thickness,glass\n50,,N-BK7\n-50,40,\n", "t.csv:2:5: the glass behind this surface needs a thickness"),
+        ("radius,thickness,nd\n50,,1.5\n-50,40,\n", "0 where they touch"),
+        ("radius,glass\n50,N-BK7\n-50,\n", "no column `thickness`"),
+        ("surface,radius,thickness\n2,50,1\n1,-50,1\n", "t.csv:3:1: surface 1 comes after surface 2"),
+        ("no,radius,thickness\n1,50,1\n1,-50,1\n", "t.csv:3:1: surface 1 comes after surface 1"),
+    ] {
+        assert!(message(text).contains(word), "{}", message(text));
+    }
+    let found = read("t.csv", "no,radius,thickness\n1,0,1\nstop,50,1\n7,0,1\n").expect("a lens");
+    let faults = read("t.csv", "radius,glass\n50,N-BK7\n-50,N-SF5\n-90,\n").expect_err("faults");
+    assert_eq!(faults.0.len(), 1, "{faults}");
+    assert_eq!(found.left_out.len(), 1);
+    assert_eq!(found.left_out[0].to_string(), "line 2: a radius of 0 is taken as a plane (2 rows)");
+    assert_eq!(found.surfaces().next().map(|s| s.shape.clone()), Some(Shape::Plane));
+}
+
+#[test]
+fn a_stop_in_the_column_of_radii() {
+    let found =
+        read("t.csv", "radius,thickness,glass\n50,2,N-BK7\n-50,2,\nSTOP,3,\n40,2,N-BK7\nplane,30,\n").expect("a lens");
+    let stop = found.surfaces().nth(2).expect("a surface");
+    assert_eq!((&stop.shape, stop.stop, stop.thickness_mm), (&Shape::Stop, true, 3.0));
+}
+
+#[test]
+fn slips_with_commas_and_units_have_hints() {
+    let faults = read("t.csv", "radius,thickness,nd\n50,2,\"1,628\"\n-50.5,2,\n").expect_err("faults");
+    assert_eq!(faults.0.len(), 1);
+    assert!(faults.0[0].hint.as_deref().is_some_and(|hint| hint.contains("`1.628`")), "{faults}");
+    let faults = read("t.csv", "radius,thickness,nd\n50,5,2,5,1,628\n-50,5,40,2,1\n").expect_err("faults");
+    assert_eq!(faults.0.len(), 1, "{faults}");
+    assert!(faults.to_string().contains("t.csv:2:1: 6 cells where the head has 3"), "{faults}");
+    assert!(faults.0[0].hint.as_deref().is_some_and(|hint| hint.contains("semicolons")), "{faults}");
+    let faults = read("t.csv", "radius,thickness\n50 mm,2\n-50,40\n").expect_err("faults");
+    assert!(faults.0[0].hint.as_deref().is_some_and(|hint| hint.contains("`radius [mm]`; here `50`")), "{faults}");
+}
+
+/// The table of the guide is a lens without anything to tell.
+#[test]
+fn the_table_of_the_guide() {
+    let guide = include_str!("../../../../docs/guide/src/lens-from-patent.md");
+    let table =
+        guide.split("```csv file=doublet.csv\n").nth(1).and_then(|rest| rest.split("```").next()).expect("a table");
+    let lens = read("doublet.csv", table).unwrap_or_else(|faults| panic!("{faults}"));
+    let surfaces: Vec<_> = lens.surfaces().collect();
+    assert!(lens.left_out.is_empty(), "{:?}", lens.left_out);
+    assert!(matches!(surfaces[0].shape, Shape::Sphere { radius } if (radius - 60.96).abs() < 1e-12));
+    assert_eq!((&surfaces[3].shape, surfaces.len()), (&Shape::Stop, 4));
 }
