@@ -209,17 +209,18 @@ fn micrometers_are_told() {
         let (_folder, files) = folder(yaml);
         find_in("a.yaml", &files).expect_err(yaml).faults(Fault::new).to_string()
     };
-    for (yaml, key) in [
-        ("{kind: line, wavelength: 0.55}", "wavelength"),
-        ("{kind: lines, lines: [{wavelength: 0.55}]}", "lines"),
-        ("{kind: gaussian, center: 0.55, sigma: 0.02}", "center"),
-        ("{kind: led, peak: 0.55, width: 0.02}", "peak"),
-        ("{kind: rectangle, from: 0.5, to: 0.55}", "to"),
-        ("{kind: table, wavelengths: [0.4, 0.55], values: [1, 1]}", "wavelengths[1]"),
-        ("{kind: histogram, edges: [0.4, 0.55], counts: [1]}", "edges[1]"),
+    for yaml in [
+        "{kind: line, wavelength: 0.55}",
+        "{kind: lines, lines: [{wavelength: 0.55}]}",
+        "{kind: gaussian, center: 0.55, sigma: 0.02}",
+        "{kind: led, peak: 0.55, width: 0.02}",
+        "{kind: rectangle, from: 0.5, to: 0.55}",
+        "{kind: table, wavelengths: [0.4, 0.55], values: [1, 1]}",
+        "{kind: histogram, edges: [0.4, 0.55], counts: [1]}",
     ] {
-        let text = written(yaml);
-        assert!(text.contains("0.55 um is 550 nm: write 550") && text.contains(key), "{yaml}: {text}");
+        let (text, column) = (written(yaml), yaml.find("0.55").expect("there") + 1);
+        let place = format!("a.yaml:1:{column}: a wavelength of 0.55 nm");
+        assert!(text.contains("0.55 um is 550 nm: write 550") && text.contains(&place), "{yaml}: {text}");
     }
     for name in
         ["line:0.55 um", "line:10600", "gaussian:0,300", "gaussian:550,0.02", "gaussian:-20,40", "rectangle:1,600"]

@@ -186,8 +186,10 @@ impl Chunks {
             b"cHRM" => {
                 let one = |i: usize| long(i).map(|v| f64::from(v) / 1e5);
                 let pair = |i: usize| Some([one(2 * i)?, one(2 * i + 1).filter(|y| *y > 1e-4)?]);
-                let all = || Some([pair(0)?, pair(1)?, pair(2)?, pair(3)?]);
-                self.chromaticities = all();
+                self.chromaticities = match [0, 1, 2, 3].map(pair) {
+                    [Some(white), Some(red), Some(green), Some(blue)] => Some([white, red, green, blue]),
+                    _ => None,
+                };
             }
             b"pHYs" => {
                 // Pixels to a unit, across and down: where there are fewer, each is longer.
@@ -282,7 +284,7 @@ mod tests {
         }
         let phys = chunk(b"pHYs", &[0, 0, 3, 232, 0, 0, 7, 208, 0]);
         let exif = chunk(b"eXIf", b"MM\0\x2a\0\0\0\x08\0\x01\x01\x12\0\x03\0\0\0\x01\0\x06\0\0\0\0\0\0");
-        assert_eq!(read(&png([9; 3], &[phys.clone()])).pixel_aspect, 2.0);
+        assert_eq!(read(&png([9; 3], std::slice::from_ref(&phys))).pixel_aspect, 2.0);
         assert_eq!(read(&png([9; 3], &[phys, exif])).pixel_aspect, 0.5);
         let none = chunk(b"pHYs", &[0; 9]);
         assert_eq!(read(&png([9; 3], &[none])).pixel_aspect, 1.0);

@@ -68,7 +68,15 @@ impl SpectrumKind for LineParams {
 
 impl SpectrumKind for LinesParams {
     fn make(&self, making: &Making<'_>) -> Result<Piece, Faults> {
-        let lines = self.lines.iter().map(LineParams::line).collect();
+        let lines: Vec<Line> = self.lines.iter().map(LineParams::line).collect();
+        let mut faults = Faults::new();
+        for (i, line) in lines.iter().enumerate() {
+            if let Err(wrong) = light_nm(line.wavelength_nm) {
+                let fault = making.params().fault(&format!("lines[{i}].wavelength"), wrong.to_string());
+                faults.push(fault.hint(wrong.hint()));
+            }
+        }
+        faults.into_result(())?;
         of_lines(lines).map_err(making.at("lines"))
     }
 }

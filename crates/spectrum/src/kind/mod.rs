@@ -56,8 +56,8 @@ use crate::shape::Shape;
 use crate::table::MAX_ROWS;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use spectra_core::params::{Fault, Faults, NonNegative, Params, Readable, StageNode, Wavelength};
-use spectra_core::registry::{self, Context};
 use spectra_core::quantity::{SHORTEST_LIGHT_NM, light_nm};
+use spectra_core::registry::{self, Context};
 use spectra_core::resources::Resources;
 use spectra_core::spectral::BAND;
 
