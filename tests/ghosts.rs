@@ -528,15 +528,20 @@ fn threads_batches_and_steps_change_no_bit() {
     assert_eq!(run(&renderer(&["render.batch=40"]), 2), want);
     let scalar = Renderer::new(BIOTAR.scene(&[]), Isa::Baseline).expect("ready");
     assert_eq!(run(&scalar, 2), want);
-    // Three samples, saved, loaded, and the other five.
+    // Three samples, saved, loaded, and the others.
     let (threads, control) = (Threads(2), Control::new());
     let mut light = whole.begin().expect("memory");
     whole.advance(&mut light, 3, &threads, &control).expect("rendered");
     let mut file = Vec::new();
     light.save(&mut file).expect("written");
     let mut light = Light::load(&whole, &mut &file[..]).expect("of this scene");
-    whole.advance(&mut light, 8, &threads, &control).expect("rendered");
+    whole.advance(&mut light, 16, &threads, &control).expect("rendered");
     assert_eq!(bits(&whole.look(whole.scene(), &light).expect("memory")), want);
+    // What is searched before the first ray does not depend on how many samples are to come.
+    let fewer = renderer(&["render.samples=3", "render.rays=150000"]);
+    let mut light = whole.begin().expect("memory");
+    whole.advance(&mut light, 3, &threads, &control).expect("rendered");
+    assert!(bits(&whole.look(whole.scene(), &light).expect("memory")) == run(&fewer, 2));
 }
 
 /// Polarization moves some percent of the light of ghosts, and no more; without reflections the bits are those without the key.

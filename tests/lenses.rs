@@ -207,8 +207,8 @@ fn a_decentered_lens_has_the_f_number_of_its_cone() {
     }
 }
 
-/// Slips that a first look at the numbers shows: the signs of another convention, one sign lost, a thickness behind a mirror that light runs
-/// away from.
+/// Slips that a first look at the numbers shows: the signs of another convention, a thickness behind a mirror that light runs away from; and,
+/// where somebody looks at the prescription, a sign lost.
 #[test]
 fn slips_of_signs_are_doubted() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -232,7 +232,6 @@ fn slips_of_signs_are_doubted() {
     for (surfaces, wanted) in [
         (singlet("50", "-50"), None),
         (singlet("-50", "50"), Some("the lens spreads light")),
-        (singlet("50", "-500"), Some("mm behind the image plane")),
         (mirrors("-100"), None),
         (mirrors("100"), Some("the mirror of surface 2 sends light toward -z")),
     ] {
@@ -241,5 +240,11 @@ fn slips_of_signs_are_doubted() {
             Some(wanted) => assert!(found.contains(wanted), "{surfaces}{found}"),
             None => assert_eq!(found, "", "{surfaces}"),
         }
+    }
+    let lost = folder.path().join("lost.yaml");
+    for (rear, doubted) in [("-50", false), ("-500", true)] {
+        std::fs::write(&lost, format!("name: slip\nsurfaces:\n{}", singlet("50", rear))).expect("written");
+        let said = good(&["lens", "info", shown(&lost)]);
+        assert_eq!(said.contains("mm behind the image plane"), doubted, "{said}");
     }
 }

@@ -10,14 +10,12 @@ const HALVINGS: usize = 40;
 /// Surfaces may meet at their very rims, this part of the semi-diameter and beyond: published semi-diameters are rounded up
 /// (those of three library lenses by 2 to 3 %), and edges that touch are ground.
 const RIM: f64 = 0.95;
-/// The image plane may lie this part of the focal length from the image: published last distances are for other focus, or rounded.
-const FAR: f64 = 0.1;
 /// Gaps are compared with this slack, mm.
 const TOUCH_MM: f64 = 1e-6;
 
 impl Lens {
     /// What looks like a slip in the prescription, each with a hint: neighbors that meet within their clear semi-diameters,
-    /// an image of distant objects in front of the last surface or of the whole lens, an image plane far from the image, light that a mirror
+    /// an image of distant objects in front of the last surface or of the whole lens, light that a mirror
     /// sends away from the next surface. Nothing is said of lenses with a bent axis, and little of those with mirrors.
     #[must_use]
     pub fn doubts(&self) -> Vec<String> {
@@ -55,14 +53,6 @@ impl Lens {
             all.push(format!(
                 "the lens spreads light (focal length {efl:.2} mm), so no image of distant objects falls on film: do all radii have the sign of \
                  another convention?"
-            ));
-        }
-        let defocus = self.paraxial_defocus_mm(self.focused_mm);
-        if efl > 0.0 && bfl > 0.0 && defocus.abs() > FAR * efl {
-            all.push(format!(
-                "the image lies {:.2} mm {} the image plane: is a radius, its sign or a thickness wrong?",
-                defocus.abs(),
-                if defocus > 0.0 { "behind" } else { "in front of" }
             ));
         }
         all

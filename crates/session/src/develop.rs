@@ -3,6 +3,7 @@
 //! The picture fills the frame: of the format's frame the largest part that has the picture's shape. White has a luminance of
 //! 5000 cd/m2, as in daylight under clouds, which is short enough an exposure for any film. The camera meters its average.
 
+use crate::made::{MADE, of_nobody};
 use crate::run::{Unfinished, fits, picture};
 use crate::still::WHITE_CD_M2;
 use crate::taken::Taken;
@@ -75,8 +76,6 @@ pub struct Develop<'a> {
 /// Pixels along the longer side of a frame that rays are traced for, where nobody says how many.
 pub const TRACED_PX: u32 = 1920;
 
-/// What the made scene is called where a value is nobody's.
-const MADE: &str = "--made";
 /// A file of one picture, bytes; the limit of `source: picture`.
 const MAX_BYTES: u64 = 1 << 30;
 /// Keys of the film that find the exposure; where it is known they are left out.
@@ -287,21 +286,6 @@ fn one(
         SessionError::Faults(faults) => SessionError::Faults(of_nobody(faults)),
         other => other,
     })
-}
-
-/// A value that nobody wrote has no place to show.
-fn of_nobody(faults: Faults) -> Faults {
-    faults.into_iter().map(without_made).collect::<Vec<_>>().into()
-}
-
-fn without_made(fault: Fault) -> Fault {
-    let is_made = fault.place.as_ref().is_some_and(|(file, _)| file.name == MADE);
-    if is_made { Fault { place: None, ..fault } } else { fault }
-}
-
-/// A warning as it is told: without the place of a value that nobody wrote.
-pub(crate) fn told(warning: &Warning) -> Warning {
-    Warning(without_made(warning.0.clone()))
 }
 
 /// The scene of a picture, and where its light comes from.

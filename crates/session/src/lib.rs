@@ -31,6 +31,7 @@ mod header;
 mod host;
 mod job;
 mod lamp;
+mod made;
 mod names;
 mod pace;
 mod report;

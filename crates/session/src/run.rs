@@ -1,8 +1,8 @@
 //! Every picture of a scene, from its file to files.
 
-use crate::develop::told;
 use crate::files::{Files, write_report};
 use crate::job::{Ended, Job, LightFrom};
+use crate::made::told;
 use crate::taken::{Taken, prepare};
 use crate::{Event, Host, Report, Session, SessionError, header, series, words};
 use spectra_scene::{FilmTime, SeriesKind, Shot};

@@ -217,9 +217,25 @@ impl LensReport {
             glare: None,
             assumed_media: super::media::assumed(lens),
             notes: lens.notes.clone(),
-            warnings: lens.warnings.clone(),
+            warnings: lens.warnings.iter().cloned().chain(misplaced_image(lens, &first_order, paraxial)).collect(),
         }
     }
+}
+
+/// The image plane may lie this part of the focal length from the image: published last distances are for other focus, or rounded.
+const FAR: f64 = 0.1;
+
+/// A doubt where the image plane of a straight lens lies far from the image: a scene focuses anew, but whoever looks at a prescription wants to
+/// know.
+fn misplaced_image(lens: &Lens, first_order: &FirstOrder, defocus_mm: f64) -> Option<String> {
+    let images = lens.image_pose.is_on_axis() && first_order.efl_mm > 0.0 && first_order.bfl_mm > 0.0;
+    (images && defocus_mm.abs() > FAR * first_order.efl_mm).then(|| {
+        format!(
+            "the image lies {:.2} mm {} the image plane: is a radius, its sign or a thickness wrong?",
+            defocus_mm.abs(),
+            if defocus_mm > 0.0 { "behind" } else { "in front of" }
+        )
+    })
 }
 
 /// At infinity everything is imaged without size.

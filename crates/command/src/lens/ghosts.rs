@@ -78,7 +78,8 @@ fn table(lens: &Lens, found: &Ghosts, order: usize, is_whole: bool) -> String {
     all[..shown].iter().for_each(|ghost| text.push_str(&row(ghost, width)));
     if shown < all.len() {
         let weaker = counted((all.len() - shown) as u64, "weaker one");
-        text.push_str(&format!("{weaker}: --all shows all\n"));
+        let them = if shown + 1 == all.len() { "it" } else { "them" };
+        text.push_str(&format!("{weaker}: --all shows {them}\n"));
     }
     text
 }

@@ -1,6 +1,6 @@
 //! Rows to surfaces.
 
-use super::columns::{Column, HINT, by_name};
+use super::columns::{self, Column, HINT, by_name};
 use super::units;
 use crate::place::{Source, shown};
 use crate::prescription::{Item, Medium, Prescription, Shape, Surface};
@@ -116,14 +116,14 @@ fn units_mm(source: &Source, heads: &[&str], columns: &[Option<Column>], faults:
     let mut found = Vec::new();
     let mut silent = Vec::new();
     for (head, column) in heads.iter().zip(columns) {
-        let Some(column) = column.filter(|column| units::power(*column).is_some()) else { continue };
+        let Some(column) = column.filter(|column| columns::power(*column).is_some()) else { continue };
         match units::split(head).1 {
             None => silent.push((head, column)),
-            Some(unit) => match units::unit_mm(unit, column) {
+            Some(unit) => match columns::unit_mm(unit, column) {
                 Some(mm) => found.push((column, mm)),
                 None => {
                     let text = format!("`{}` is no unit of this column", shown(unit));
-                    let hint = match units::power(column) {
+                    let hint = match columns::power(column) {
                         Some(1) => units::HINT.to_owned(),
                         _ if column == Column::Coefficients => {
                             "the unit of the lens, as in `coefficients [mm]`".to_owned()
@@ -138,7 +138,7 @@ fn units_mm(source: &Source, heads: &[&str], columns: &[Option<Column>], faults:
     if found.iter().any(|(_, mm)| *mm != 1.0) {
         for (head, column) in silent {
             let text = format!("`{}` states no unit where other columns do", shown(head));
-            let power = match units::power(column) {
+            let power = match columns::power(column) {
                 Some(power) if power != 1 && column != Column::Coefficients => format!("^{power}"),
                 _ => String::new(),
             };
@@ -206,7 +206,7 @@ impl<'a> Row<'a, '_> {
     fn number(&mut self, column: Column) -> Option<f64> {
         let cell = self.text(column)?;
         let value = self.parse(cell)?;
-        Some(units::power(column).map_or(value, |power| self.in_mm(column, value, power)))
+        Some(columns::power(column).map_or(value, |power| self.in_mm(column, value, power)))
     }
 
     /// A figure of a column in mm to a power.

@@ -115,7 +115,7 @@ pub(super) fn mend(rgb: &mut [[f32; 3]]) -> Option<Trouble> {
         (undefined > 0).then(|| format!("{} with values that are no numbers, taken as black", pixels(undefined)));
     let all: Vec<String> = infinite.into_iter().chain(undefined).collect();
     let trouble = Trouble::file(format!("it has {}", all.join(", and ")));
-    Some(trouble.hint("repair them in the program that wrote the file; `spectra picture info` counts them by channel"))
+    Some(trouble.hint("repair them in the program that wrote the file"))
 }
 
 /// Cover from which on a pixel counts as opaque: files of 16 bits do not always hold 1 to its last digit.

@@ -1,7 +1,6 @@
 //! Color profiles of three primaries and one curve, or of gray (ICC.1:2022).
 
 use super::encoding::Encoding;
-use super::tags::{Stated, keeping_white};
 use spectra_color::matrix::{Matrix, apply, product};
 use spectra_color::{Adaptation, RgbSpace, Transfer};
 
@@ -18,6 +17,17 @@ const POINTS: usize = 4096;
 const NEAR_CURVE: f64 = 1e-3;
 /// Difference of colorants that are the same.
 const NEAR_COLORANT: f64 = 2e-3;
+
+/// Curve, and matrix to the primaries of sRGB.
+pub(super) type Stated = (Encoding, Option<Matrix>);
+
+/// A matrix of RGB, so that gray stays gray to the last digit.
+pub(super) fn keeping_white(matrix: Matrix) -> Matrix {
+    matrix.map(|row| {
+        let sum: f64 = row.iter().sum();
+        row.map(|v| v / sum)
+    })
+}
 
 /// What a profile says; `None` where it is of another kind, or broken.
 pub(super) fn read(bytes: &[u8]) -> Option<Stated> {

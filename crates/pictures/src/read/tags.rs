@@ -4,7 +4,8 @@
 
 use super::encoding::Encoding;
 use super::linear::Trouble;
-use super::{profile, tiff};
+use super::profile::{self, Stated, keeping_white};
+use super::tiff;
 use image::{ImageDecoder, ImageFormat};
 use spectra_color::matrix::{Matrix, product};
 use spectra_color::{Adaptation, RgbSpace, Transfer};
@@ -23,9 +24,6 @@ pub(super) struct Tags {
     /// Width over height of a pixel as it is stored, where the file says it.
     pub pixel_aspect: Option<f64>,
 }
-
-/// Curve, and matrix to the primaries of sRGB.
-pub(super) type Stated = (Encoding, Option<Matrix>);
 
 impl Tags {
     /// Of a file whose decoder has read its header.
@@ -86,14 +84,6 @@ pub(super) fn to_srgb(space: &RgbSpace) -> Option<Matrix> {
     }
     let adapted = Adaptation::Cat02.matrix(space.white_xyz(), srgb.white_xyz());
     Some(keeping_white(product(&srgb.rgb_from_xyz, &product(&adapted, &space.xyz_from_rgb))))
-}
-
-/// The same, so that gray stays gray to the last digit.
-pub(super) fn keeping_white(matrix: Matrix) -> Matrix {
-    matrix.map(|row| {
-        let sum: f64 = row.iter().sum();
-        row.map(|v| v / sum)
-    })
 }
 
 /// Primaries, transfer, matrix and range by ITU-T H.273.

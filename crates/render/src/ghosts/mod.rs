@@ -360,11 +360,6 @@ impl Ghosts {
         ((pixels * a_pixel) as u64).max(self.plan.ways.len() as u64 * LEAST_A_PATH)
     }
 
-    /// The same of all samples.
-    fn rays_of_picture(&self, matters: Option<f64>, brightest: f64) -> f64 {
-        self.rays_a_sample(matters, brightest) as f64 * f64::from(self.pipeline.scene.render.samples)
-    }
-
     /// The rays of a sample, shared out over the paths.
     fn shared_out(&self, found: Vec<(Vec<Guide>, f64)>, a_sample: u64, ledger: LightLedger) -> Plan {
         let old = &self.plan;

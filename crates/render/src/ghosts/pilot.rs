@@ -22,9 +22,10 @@ const RAYS: usize = 4096;
 const RAYS_MORE: usize = 256;
 const ROUNDS: u64 = 3;
 /// Rounds after those, whose rays are shared out as those of the picture will be, each better than the one before: they find where
-/// noise is. Rays of each in parts of the picture's, and at most.
+/// noise is. Rays of each in parts of a sample's, and at most: as
+/// many whatever the samples, or a picture that goes on would be another one.
 const SHARED: u64 = 4;
-const SHARED_RAYS: f64 = 0.02;
+const SHARED_RAYS: f64 = 0.16;
 const SHARED_MOST: f64 = (3_u64 << 17) as f64;
 /// Streams of numbers of each path.
 const STREAMS: u64 = ROUNDS + SHARED;
@@ -170,7 +171,7 @@ pub(super) fn search(
         }
         let needs = plan.ways.iter().zip(ways).map(|((_, variance), way)| (variance / way.cost()).sqrt());
         let sum: f64 = needs.clone().sum();
-        let rays = (ghosts.rays_of_picture(matters, plan.brightest) * SHARED_RAYS).min(SHARED_MOST);
+        let rays = (ghosts.rays_a_sample(matters, plan.brightest) as f64 * SHARED_RAYS).min(SHARED_MOST);
         let batches: Vec<usize> = needs.map(|need| (rays * need / sum / BATCH as f64).round() as usize).collect();
         let came = each_of(workers, ways.len(), fresh, |state, at| {
             wanted(workers)?;
