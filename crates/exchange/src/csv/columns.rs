@@ -143,7 +143,7 @@ mod tests {
             ("semi_diameter", "semi_diameter", None),
             ("a_4", "a_4", None),
         ] {
-            assert_eq!(split(head), (name, unit), "{head}");
+            assert_eq!(super::super::units::split(head), (name, unit), "{head}");
         }
         for (unit, column, mm) in [
             ("in", Column::Radius, Some(25.4)),
@@ -163,11 +163,6 @@ mod tests {
             assert_eq!(unit_mm(unit, column), mm, "{unit} {column:?}");
         }
     }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
 
     #[test]
     fn many_spellings() {
