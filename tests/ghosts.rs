@@ -43,7 +43,7 @@ impl Setup {
              source: {{kind: point, distance: {DISTANCE_MM}, field: [{fx} deg, {fy} deg], spectrum: he-ne, intensity: 1000}}\n\
              lens: {{file: {lens}, focus: infinity, coating: bare, absorption: false, f-number: {f_number}}}\n\
              imager: {{kind: xyz, width: {width}, height: {height}, resolution: [96, 66]}}\n\
-             render: {{direction: forward, samples: 16, rays: 800000, reflections: {{order: {order}, imager: {imager}}}}}\n"
+             render: {{direction: forward, samples: 64, rays: 800000, reflections: {{order: {order}, imager: {imager}}}}}\n"
         );
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("scene.yaml");
@@ -535,10 +535,10 @@ fn threads_batches_and_steps_change_no_bit() {
     let mut file = Vec::new();
     light.save(&mut file).expect("written");
     let mut light = Light::load(&whole, &mut &file[..]).expect("of this scene");
-    whole.advance(&mut light, 16, &threads, &control).expect("rendered");
+    whole.advance(&mut light, 64, &threads, &control).expect("rendered");
     assert_eq!(bits(&whole.look(whole.scene(), &light).expect("memory")), want);
     // What is searched before the first ray does not depend on how many samples are to come.
-    let fewer = renderer(&["render.samples=3", "render.rays=150000"]);
+    let fewer = renderer(&["render.samples=3", "render.rays=37500"]);
     let mut light = whole.begin().expect("memory");
     whole.advance(&mut light, 3, &threads, &control).expect("rendered");
     assert!(bits(&whole.look(whole.scene(), &light).expect("memory")) == run(&fewer, 2));
