@@ -88,6 +88,18 @@ fn melts_and_glasses_of_figures_alone() {
     assert!(refused(&["info", "--nd", "1.5"]).contains("--vd"));
 }
 
+/// Where stated figures choose one of several data sets, that is said.
+#[test]
+fn a_melt_of_a_substance_says_which_data_it_is_of() {
+    let of = |nd: &str| text(&run(&["glass", "info", "CaF2", "--nd", nd, "--vd", "96.4"]).stderr);
+    assert!(
+        of("1.43391").contains("CRYSTRAN/CaF2 is taken, the nearest to the stated nd 1.43391"),
+        "{}",
+        of("1.43391")
+    );
+    assert_eq!(of("1.43385"), "");
+}
+
 #[test]
 fn ambiguous_and_unknown_names_are_refused_with_candidates() {
     // Of several glasses of a name the usual maker's is taken, and the others are told; measurements are not guessed at.

@@ -152,6 +152,34 @@ fn stated_figures_choose_among_data_sets() {
     assert_eq!(choose(1.45, 95.0), ("CaF2/Malitson".to_owned(), None));
 }
 
+/// A formula as chemists write it is not taken for a glass, nor for an author's name, without a word; as glasses are written it is the glass.
+#[test]
+fn formulas_are_not_taken_for_glasses() {
+    let candidates = |name: &str| match Catalogue::bundled().choose(name, Beside::default()) {
+        Err(FindError::Ambiguous { candidates, .. }) => candidates.into_iter().map(|c| c.full_name).collect::<Vec<_>>(),
+        other => panic!("{name}: {other:?}"),
+    };
+    let fluoride = candidates("LaF3");
+    assert!(fluoride[0].starts_with("LaF3/") && fluoride.iter().any(|name| name == "HOYA/LAF3"), "{fluoride:?}");
+    let nitride = candidates("GaN");
+    assert!(nitride.iter().all(|name| name.starts_with("GaN/")), "{nitride:?}");
+    // Stated figures tell which one is meant.
+    let with = |nd: f64, vd: f64| {
+        let beside = Beside { figures: Some((nd, Some(vd), LineTriple::FDC)), ..Beside::default() };
+        Catalogue::bundled().choose("LaF3", beside).expect("one of them").glass.full_name()
+    };
+    assert!(with(1.717, 47.98).ends_with("/LAF3"));
+    for name in ["LAF3", "laf3"] {
+        let chosen = Catalogue::bundled().choose(name, Beside::default()).expect("a flint").glass;
+        assert!(chosen.full_name().ends_with("/LAF3") && chosen.category.is_glass(), "{name}");
+    }
+    // Glasses that many write like formulas, where no substance is written so.
+    for (typed, name) in [("BaK4", "BAK4"), ("BaF4", "BAF4"), ("LaK9", "LAK9")] {
+        let chosen = Catalogue::bundled().choose(typed, Beside::default()).expect("a glass").glass;
+        assert!(chosen.full_name().ends_with(name), "{typed}");
+    }
+}
+
 #[test]
 fn air_and_vacuum_are_media_of_a_lens() {
     let medium = |name| Catalogue::bundled().medium(name);

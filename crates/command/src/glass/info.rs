@@ -7,7 +7,7 @@ use crate::outcome::{DONE, Failure, Outcome};
 use serde::{Serialize, Serializer};
 use spectra_glass::air::{self, AirConditions, CATALOGUE_AIR};
 use spectra_glass::interface::{brewster_angle, critical_angle, fresnel};
-use spectra_glass::{Catalogue, Glass, LineTriple, Medium, ModelGlass, lines};
+use spectra_glass::{Beside, Catalogue, Glass, LineTriple, Medium, ModelGlass, lines};
 use std::fmt::Write;
 
 /// Thickness for which internal transmittances are stated.
@@ -97,7 +97,14 @@ fn medium(arguments: &GlassInfo, catalogue: &Catalogue) -> Result<Medium, Failur
         (Some(name), Some(melt)) => {
             let glass = match own_file(name)? {
                 Some(glass) => glass,
-                None => catalogue.find_with(name, melt.0, Some(melt.1)).map_err(unknown)?,
+                None => {
+                    let figures = Some((melt.0, Some(melt.1), LineTriple::FDC));
+                    let chosen = catalogue.choose(name, Beside { figures, ..Beside::default() }).map_err(unknown)?;
+                    if let Some(note) = &chosen.note {
+                        console::note(note);
+                    }
+                    chosen.glass
+                }
             };
             glass.melt(melt.0, melt.1).map(Medium::from).ok_or_else(|| refuse(melt))
         }

@@ -139,7 +139,7 @@ pub struct Chosen {
 impl Catalogue {
     /// The medium of that name: `SCHOTT/N-BK7`, or `N-BK7` where one maker only has it; an everyday name such as
     /// `water` or `PC`; or the substance alone where there is one measurement. Upper and lower case are the same unless
-    /// they tell two apart (`BaF2` is the crystal, `BAF2` a flint). The name of a crystal means the formula that its everyday name
+    /// they tell two apart (`BaF2` is the crystal, `BAF2` a flint; `LaF3` may be either). The name of a crystal means the formula that its everyday name
     /// stands for, and not a maker's rounded table (`CRYSTRAN/CaF2`). Where nothing else fits hyphens, underscores,
     /// blanks and dots do not count. `LZ_LF5` is `LZOS/LF5`.
     ///
@@ -334,6 +334,27 @@ impl Catalogue {
         (!usual.is_empty() && usual.iter().all(is_formula)).then_some(usual)
     }
 
+    /// The glasses of a name, which are written otherwise, and the data of the substance whose formula is written just so: `LaF3` is lanthanum
+    /// fluoride, and many write the flint LAF3 so. `named` where there is no such substance, or the name is not in upper and lower case, as
+    /// formulas are.
+    fn or_substance(&self, asked: &str, named: Vec<Place>) -> Vec<Place> {
+        let is_formula = asked.bytes().any(|b| b.is_ascii_lowercase()) && asked.bytes().any(|b| b.is_ascii_uppercase());
+        if named.is_empty() || !is_formula {
+            return named;
+        }
+        let is_of_it = |place: &Place| self.maker_of(*place) == asked && !self.category_of(*place).is_glass();
+        let mut all: Vec<Place> = self.index.iter().map(|(_, place)| *place).filter(is_of_it).collect();
+        if all.is_empty() {
+            return named;
+        }
+        // Makers write names in capitals; what else has the name by chance, as an author of measurements, is not meant.
+        let of_maker = |place: &Place| {
+            self.category_of(*place).is_glass() && !self.name_of(*place).bytes().any(|b| b.is_ascii_lowercase())
+        };
+        all.extend(named.into_iter().filter(of_maker));
+        all
+    }
+
     fn places(&self, name: &str) -> Vec<Place> {
         let asked = name.trim();
         let (maker, name) = split_maker(asked);
@@ -345,7 +366,7 @@ impl Catalogue {
         let exact: Vec<Place> = same.filter(of_maker).collect();
         // Where case tells some of them apart it counts.
         let to_the_letter: Vec<Place> = exact.iter().copied().filter(|place| self.name_of(*place) == name).collect();
-        let named = if to_the_letter.is_empty() { exact } else { to_the_letter };
+        let named = if to_the_letter.is_empty() { self.or_substance(asked, exact) } else { to_the_letter };
         if !named.is_empty() {
             return self.usual_data(asked, &named).unwrap_or(named);
         }
