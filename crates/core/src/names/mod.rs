@@ -25,7 +25,7 @@ const LONGEST: usize = 120;
 pub enum Match<'a> {
     /// This name.
     One(&'a str),
-    /// All of these contain what was typed, in the order in which they were given.
+    /// All of these contain what was typed, in the order in which they were given, those in folders last.
     Several(Vec<&'a str>),
     /// None of them.
     Nothing,
@@ -115,6 +115,8 @@ pub fn hint<S: AsRef<str>>(typed: &str, known: &[S], command: &str) -> String {
 
 fn of(mut found: Vec<&str>) -> Match<'_> {
     found.dedup();
+    // What lies in folders is for special ends: `surfaces/onion-biotar` comes after all lenses beside the folder.
+    found.sort_by_key(|name| name.contains('/'));
     match found[..] {
         [] => Match::Nothing,
         [one] => Match::One(one),
@@ -146,6 +148,9 @@ mod tests {
     #[test]
     fn what_several_hold_is_left_to_the_person() {
         assert_eq!(find("biotar", LENSES), Match::Several(vec!["zeiss-biotar-50-f1.4", "zeiss-biotar-100-f1.4"]));
+        let foldered = ["surfaces/onion-biotar", "zeiss-biotar-100-f1.4", "zeiss-biotar-50-f1.4"];
+        let several = vec!["zeiss-biotar-100-f1.4", "zeiss-biotar-50-f1.4", "surfaces/onion-biotar"];
+        assert_eq!(find("biotar", foldered), Match::Several(several));
         assert_eq!(find("D-65", ["D65", "d65"]), Match::Several(vec!["D65", "d65"]));
         assert_eq!(find("d65", ["D65", "d65"]), Match::One("d65"));
     }
