@@ -157,6 +157,15 @@ fn wavelengths_per_ray_agree_with_one_for_all() {
     assert!(heights.windows(2).all(|pair| (pair[0] - pair[1]).abs() > 1e-4), "{heights:?}");
 }
 
+/// Wavelengths in micrometers under a heading of nanometers are refused, with the row and what to write.
+#[test]
+fn micrometers_are_no_nanometers() {
+    let output = trace("zeiss-biotar-50-f1.4", "x_mm,y_mm,z_mm,l,m,n,wavelength_nm\n0,1,-5,0,0,1,0.55\n", &[]);
+    let said = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(said.contains("wavelength_nm") && said.contains("0.55") && said.contains("550"), "{said}");
+}
+
 #[test]
 fn an_f_number_clips_at_its_marginal_ray() {
     let name = "zeiss-biotar-50-f1.4";
