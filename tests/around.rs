@@ -147,3 +147,26 @@ fn what_cannot_be_is_refused_with_its_place() {
         assert!(faults.contains(words), "{faults}");
     }
 }
+
+/// Where no surface states its size, what to write is told in the words of the lens's file.
+#[test]
+fn sizes_are_asked_for_in_the_words_of_the_file() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let yaml = "name: bare\nsurfaces:\n  - {radius: 50, thickness: 5, nd: 1.5168, vd: 64.2}\n  - {radius: -50, thickness: 47}\n";
+    let zmx = "SURF 0\n  DISZ INFINITY\nSURF 1\n  CURV 0.02\n  DISZ 5\n  GLAS N-BK7\nSURF 2\n  CURV -0.02\n  DISZ 47\nSURF 3\n";
+    for (name, text, words) in [
+        ("bare.yaml", yaml, "state `semi-diameter` in the lens file"),
+        ("bare.zmx", zmx, "in the .zmx, write an aperture"),
+    ] {
+        std::fs::write(folder.path().join(name), text).expect("written");
+        let path = folder.path().join("scene.yaml");
+        let text = format!(
+            "spectra: 1\nsource: {{kind: point, distance: 2 m}}\nlens: {{file: {name}, focus: {{distance: 2 m, by: paraxial}}}}\n\
+             imager: {{kind: xyz, width: 1 mm, height: 1 mm, resolution: [9, 9], around: source}}\n\
+             render: {{direction: forward, rays: 4000, seed: 1}}\n"
+        );
+        std::fs::write(&path, text).expect("written");
+        let faults = spectra_scene::load(&path, &[]).map(drop).expect_err("no size").to_string();
+        assert!(faults.contains("states its size") && faults.contains(words), "{faults}");
+    }
+}

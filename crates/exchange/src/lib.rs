@@ -89,6 +89,16 @@ impl Format {
             Self::Csv => "fill a column `semi-diameter` in the table, at least for the first surface",
         }
     }
+
+    /// What to write in such a file, so that a surface is the stop: for a hint.
+    #[must_use]
+    pub fn how_to_stop(self) -> &'static str {
+        match self {
+            Self::Zmx => "in the .zmx, write `STOP` among the lines of the surface (`SURF`) that is the stop",
+            Self::Seq => "in the .seq, write `STO` behind the surface that is the stop",
+            Self::Csv => "in the table, write `stop` in a column `type`, in the row of the stop",
+        }
+    }
 }
 
 /// Reads a lens; `name` is how faults name the file.

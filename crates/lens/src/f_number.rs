@@ -174,6 +174,12 @@ impl Lens {
         Ok(sum / if round { RINGS as f64 } else { f64::from(passed.max(1)) })
     }
 
+    /// The rim that limits the axial beam as the lens stands; `None` where none does, or the lens is not round.
+    #[must_use]
+    pub fn axial_rim(&self) -> Option<LimitingRim> {
+        self.limiting_rim(self.marginal_ray().ok()?, None)
+    }
+
     /// The rim that ends the first ray above the marginal one; `open` is the ray of the asked f-number without any rims.
     fn limiting_rim(&self, widest: MarginalRay, open: Option<&RayPath>) -> Option<LimitingRim> {
         if !self.is_round_but_for_apertures() {

@@ -4,7 +4,7 @@ use crate::advice::{self, FileIs};
 use crate::earlier::Earlier;
 use crate::filters;
 use crate::focus::FocusLight;
-use crate::lens_section::{LensSection, SetLens, held_lens};
+use crate::lens_section::{LensSection, SetLens, held_lens, size_hint};
 use crate::resources::read_yaml;
 use crate::said::Said;
 use crate::{
@@ -384,7 +384,7 @@ fn all_stages(
         && imager.is_some()
     {
         // Now that it is known where the light lands, the imager looks there. What it had to say was said before.
-        match landing::middle_mm(&**source, lens, light, &grid) {
+        match landing::middle_mm(&**source, lens, light, &grid, size_hint(params.get("lens"))) {
             Ok(landing_mm) => {
                 let context = Context { landing_mm: Some(landing_mm), warnings: None, ..context };
                 imager = behind.take(registry::build::<dyn Imager>(&place, &context)).map(Arc::from);

@@ -21,7 +21,8 @@ pub(crate) fn is_wanted(imager: &Params) -> bool {
 }
 
 /// The middle of what the light of `source` makes in the image plane, mm: half of the rays land to each side of it, in x and in y. Rays
-/// start all over the source and go all over what passes the lens, in wavelengths as source and channels have them.
+/// start all over the source and go all over what passes the lens, in wavelengths as source and channels have them. `size_hint` is
+/// what to write where no surface states its size: see [`crate::size_hint`].
 ///
 /// # Errors
 /// What is wrong, and what to do.
@@ -30,6 +31,7 @@ pub(crate) fn middle_mm(
     lens: &Lens,
     light: &FocusLight,
     grid: &Grid,
+    size_hint: &str,
 ) -> Result<[f64; 2], [String; 2]> {
     let Some(emit) = source.emit() else {
         let hint = "leave `around` out, or take a source that emits light, such as `{kind: point, ...}`";
@@ -60,7 +62,7 @@ pub(crate) fn middle_mm(
     }
     emit.place(&mut rays, &columns[1], &columns[2], isa);
     if !emit.is_directed() {
-        aim(lens, &tracer, &mut rays, [&columns[3], &columns[4]], grid)?;
+        aim(lens, &tracer, &mut rays, [&columns[3], &columns[4]], grid, size_hint)?;
     }
     tracer.trace(&mut rays, &mut tracer.work_in_place(RAYS), Travel::Forward);
     let ([x, y, z], [l, m, n]) = (rays.positions(), rays.directions());
@@ -82,12 +84,19 @@ pub(crate) fn middle_mm(
 }
 
 /// Sends rays from where they start all over what passes the lens.
-fn aim(lens: &Lens, tracer: &Tracer, rays: &mut RayBatch, places: [&[f64]; 2], grid: &Grid) -> Result<(), [String; 2]> {
+fn aim(
+    lens: &Lens,
+    tracer: &Tracer,
+    rays: &mut RayBatch,
+    places: [&[f64]; 2],
+    grid: &Grid,
+    size_hint: &str,
+) -> Result<(), [String; 2]> {
     let [x, y, z] = rays.positions();
     let points: Vec<DVec3> = (0..rays.len()).map(|i| DVec3::new(x[i], y[i], z[i])).collect();
     let pupil = FrontPupil::search(lens, tracer, &points, grid.start_nm, grid.end_nm()).ok_or_else(|| {
-        let hint = "state `semi-diameter` in the lens file";
-        ["no surface of the lens states its size, so no light can be aimed at it".to_owned(), hint.to_owned()]
+        let text = "no surface of the lens states its size, so no light can be aimed at it";
+        [text.to_owned(), size_hint.to_owned()]
     })?;
     pupil.aim(rays, places[0], places[1], AimPattern::Disk, Isa::Baseline);
     Ok(())

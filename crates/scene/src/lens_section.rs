@@ -87,7 +87,8 @@ struct FocusParams {
     /// Distance from the first vertex that is in focus, mm if bare, or `infinity`.
     distance: OrInfinity<Positive<Length>>,
     /// What is optimized: `contrast` (the highest at a spatial frequency; the default), `spot` (the smallest RMS radius; `rms`
-    /// means the same) or `paraxial` (the first-order image at the reference line of the lens).
+    /// means the same) or `paraxial` (no search: from infinity, as its file has it, the lens moves as far as first-order optics says, at its reference
+    /// line; what its file leaves between the image plane and the first-order image stays, as designers put the film where fast lenses are sharpest).
     #[serde(default)]
     by: By,
     /// Field angle that is in focus, -89 to 89 degrees, degrees if bare; 0, the axis, if absent.
@@ -349,9 +350,27 @@ fn f_number_in(text: &str) -> Option<f64> {
 /// of the lens.
 #[must_use]
 pub fn size_hint(section: Option<&Node>) -> &'static str {
-    let file = section.and_then(|node| node.get("file").unwrap_or(node).as_str());
-    file.and_then(Format::of_name)
-        .map_or("state `semi-diameter` in the lens file, at least of the first surface", Format::how_to_clip)
+    file_of(section).map_or(SIZE_HINT, size_hint_of)
+}
+
+/// The same for a lens by the name of its file.
+#[must_use]
+pub fn size_hint_of(file: &str) -> &'static str {
+    Format::of_name(file).map_or(SIZE_HINT, Format::how_to_clip)
+}
+
+/// What to write so that a lens has a stop, by the name of its file: a file of another program has words of its own.
+#[must_use]
+pub fn stop_hint_of(file: &str) -> &'static str {
+    Format::of_name(file).map_or(STOP_HINT, Format::how_to_stop)
+}
+
+const SIZE_HINT: &str = "state `semi-diameter` in the lens file, at least of the first surface";
+const STOP_HINT: &str = "in the lens file, write `stop: true` at a surface, or a line `- {kind: stop, thickness: ...}` where the stop stands";
+
+/// The name of the lens file that a section states.
+fn file_of(section: Option<&Node>) -> Option<&str> {
+    section.and_then(|node| node.get("file").unwrap_or(node).as_str())
 }
 
 /// A fault at `f-number`.
@@ -360,7 +379,7 @@ fn aperture_fault(params: &Params, error: &ApertureError) -> Fault {
         ApertureError::TooFast { widest, .. } => {
             format!("f/{:.2} or slower; leave `f-number` out for wide open", (widest * 100.0).ceil() / 100.0)
         }
-        ApertureError::NoStop => "mark one in the lens file: `- {kind: stop, thickness: ...}`".to_owned(),
+        ApertureError::NoStop => file_of(Some(params.node())).map_or(STOP_HINT, stop_hint_of).to_owned(),
         ApertureError::Unlimited => size_hint(Some(params.node())).to_owned(),
         ApertureError::NoRay(_) | ApertureError::Medium(_) => "leave `f-number` out for wide open".to_owned(),
     };

@@ -35,7 +35,7 @@ pub use focus::{Focus, FocusBy};
 pub use language::{
     Member, Series, SeriesKind, SweptAxis, document, load, load_series, series_of_text, series_of_tree,
 };
-pub use lens_section::size_hint;
+pub use lens_section::{size_hint, size_hint_of, stop_hint_of};
 pub use light_layer::{GhostPaths, LightKind, LightLayer};
 pub use negatives::Negatives;
 pub use output::{Holds, Output, OutputEntry, Told};

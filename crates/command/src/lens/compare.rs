@@ -26,7 +26,7 @@ fn one(arguments: &LensCompare, name: &str) -> Result<Lens, Failure> {
         match lens.clone().at_f_number(f_number.number()) {
             Ok(stopped) => lens = stopped,
             Err(error @ ApertureError::TooFast { .. }) => lens.notes.push(format!("wide open: {error}")),
-            Err(error) => return Err(Failure::Input(format!("{name}: --f-number: {error}"))),
+            Err(error) => return Err(super::aperture_fault(name, &error)),
         }
     }
     let rest = Setting { f_number: None, ..Setting::of(&arguments.options) };

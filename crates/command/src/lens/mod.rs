@@ -16,9 +16,9 @@ use crate::outcome::{Failure, Outcome};
 use arguments::{LensCommand, LensOptions, LensSetting, OneLight};
 use spectra_analysis::Light;
 use spectra_core::Isa;
-use spectra_core::params::FNumber;
-use spectra_lens::{Coating, FocusSearch, Lens};
-use spectra_scene::FileResources;
+use spectra_core::params::{FNumber, Fault};
+use spectra_lens::{ApertureError, Coating, FocusSearch, Lens};
+use spectra_scene::{FileResources, size_hint_of, stop_hint_of};
 use std::path::Path;
 
 /// Runs a command on a lens.
@@ -64,7 +64,7 @@ fn set(mut lens: Lens, name: &str, setting: &Setting<'_>) -> Result<Lens, Failur
     }
     lens.absorption = options.absorption.unwrap_or(lens.absorption);
     if let Some(f_number) = setting.f_number {
-        lens = lens.at_f_number(f_number.number()).map_err(|e| refuse(format!("--f-number: {e}")))?;
+        lens = lens.at_f_number(f_number.number()).map_err(|e| aperture_fault(name, &e))?;
     }
     if let Some(focus) = options.focus.or(options.focus_mm) {
         let object_mm = focus.mm();
@@ -77,6 +77,17 @@ fn set(mut lens: Lens, name: &str, setting: &Setting<'_>) -> Result<Lens, Failur
         }
     }
     Ok(lens)
+}
+
+/// Why a lens is not set to `--f-number`, and what to write in its file where that says too little.
+fn aperture_fault(name: &str, error: &ApertureError) -> Failure {
+    let fault = Fault::new(format!("{name}: --f-number: {error}"));
+    let hint = match error {
+        ApertureError::NoStop => stop_hint_of(name),
+        ApertureError::Unlimited => size_hint_of(name),
+        _ => return Failure::Input(fault.message),
+    };
+    Failure::Faults(fault.hint(hint).into())
 }
 
 /// The light asked for, if one is.

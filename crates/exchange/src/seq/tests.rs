@@ -149,4 +149,5 @@ fn hints_help_when_followed() {
     assert!(["`CIR RADIUS`", "`EPD DIAMETER`", "`STO`"].iter().all(|word| hint.contains(word)), "{hint}");
     assert_eq!(first("S 50 1 NBK7_SCHOTT\n CIR 7").semi_diameter_mm, Some(7.0));
     assert_eq!(first("EPD 14\nS 50 1 NBK7_SCHOTT\n STO").semi_diameter_mm, Some(7.0));
+    assert!(crate::Format::Seq.how_to_stop().contains("`STO`") && first("S 50 1 NBK7_SCHOTT\n STO").stop);
 }
