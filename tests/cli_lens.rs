@@ -429,3 +429,113 @@ fn veiling_glare_is_said_where_asked() {
         assert!(!output.status.success() && text(&output.stderr).contains(word), "{}", text(&output.stderr));
     }
 }
+
+/// The field by points: curvature, astigmatism, distortion and light, at the image heights that are asked for.
+#[test]
+fn the_field_is_told_point_by_point() {
+    let name = "zeiss-biotar-50-f1.4";
+    let stopped = info(name, &["--f-number", "f/4", "--image-height", "21.6mm"]);
+    let points = stopped["chief_ray_exit_angle_deg"].as_array().expect("a list");
+    assert_eq!(points.len(), 4);
+    for (point, part) in points.iter().zip([0.0, 0.5, 0.7, 1.0]) {
+        assert!((figure(point, "image_height_mm") - part * 21.6).abs() < 1e-6, "{point}");
+        // Nothing is cut off at f/4 but near the corner: the light falls about by the fourth power of the cosine, less where the pupil grows.
+        let angle = figure(point, "angle_deg").to_radians();
+        let light = figure(point, "relative_illuminance");
+        assert!(light < angle.cos().powi(2) + 1e-9 && light > 0.5 * angle.cos().powi(4), "{point}");
+    }
+    assert_eq!((figure(&points[0], "relative_illuminance"), &points[0]["distortion"]), (1.0, &Value::Null));
+    let (sagittal, tangential) = (figure(&points[0], "sagittal_focus_mm"), figure(&points[0], "tangential_focus_mm"));
+    assert!(
+        (sagittal - tangential).abs() < 1e-6 && (sagittal - figure(&stopped, "paraxial_focus_shift_mm")).abs() < 1e-5
+    );
+    // Wide open the rims cut more off.
+    let open = info(name, &["--image-height", "21.6mm"]);
+    let corner = |info: &Value| figure(&info["chief_ray_exit_angle_deg"][3], "relative_illuminance");
+    assert!(corner(&open) < 0.7 * corner(&stopped), "{} {}", corner(&open), corner(&stopped));
+    // Without a height it goes on to where nothing comes any more.
+    let all = info(name, &[]);
+    let last = &all["chief_ray_exit_angle_deg"][10];
+    assert!(figure(last, "relative_illuminance") < 1e-3 && figure(last, "distortion").abs() < 0.2, "{last}");
+    let table = good(&["lens", "info", name, "--image-height", "21.6mm"]);
+    assert!(
+        ["distortion", "sagittal", "tangential", "100.0 %", "21.6000 mm"].iter().all(|w| table.contains(w)),
+        "{table}"
+    );
+    let too_far = run(&["lens", "info", name, "--image-height", "100mm"]);
+    assert!(
+        text(&too_far.stderr).contains("--image-height: the field of the lens ends at"),
+        "{}",
+        text(&too_far.stderr)
+    );
+}
+
+/// The same distortion in both commands, and none of a pinhole.
+#[test]
+fn distortion_is_told_alike() {
+    let (biotar, triplet) = ("zeiss-biotar-50-f1.4", "cooke-triplet-50-f5");
+    let both: Value = serde_json::from_str(&good(&["lens", "compare", biotar, triplet, "--json"])).expect("JSON");
+    let (field, distortion) = (figure(&both, "field_deg"), figure(&both["lenses"][0], "distortion"));
+    let points = info(biotar, &[])["chief_ray_exit_angle_deg"].clone();
+    // Between the points on both sides of it, which it is monotone between.
+    let beside: Vec<(f64, f64)> = points.as_array().expect("a list")[1..]
+        .iter()
+        .map(|point| (figure(point, "field_deg"), figure(point, "distortion")))
+        .collect();
+    let pair = beside.windows(2).find(|pair| pair[0].0 <= field && field <= pair[1].0).expect("a field within");
+    let (low, high) = (pair[0].1.min(pair[1].1), pair[0].1.max(pair[1].1));
+    assert!((low..=high).contains(&distortion), "{field}: {distortion} {pair:?}");
+    let pinhole = info("surfaces/pinhole-50", &["--image-height", "21.6mm"]);
+    for point in &pinhole["chief_ray_exit_angle_deg"].as_array().expect("a list")[1..] {
+        assert!(figure(point, "distortion").abs() < 1e-9, "{point}");
+    }
+}
+
+/// Light of an even field through a round hole, without any glass: the disk of radius r, D in front of the film, gives at h beside the axis
+/// E = pi L / 2 (1 - (D^2 + h^2 - r^2) / ((D^2 + h^2 + r^2)^2 - 4 r^2 h^2)^(1/2)) (e.g. P. Foote, Bull. Bur. Stand. 12 (1915), 583).
+#[test]
+fn light_over_the_field_is_that_of_a_hole() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("hole.yaml");
+    for (r, d) in [(1.0_f64, 50.0_f64), (20.0, 40.0)] {
+        let text = format!("name: Hole\nsurfaces:\n  - {{kind: stop, thickness: {d}, semi-diameter: {r}}}\n");
+        std::fs::write(&file, text).expect("written");
+        let light = |h: f64| {
+            let all = d * d + h * h + r * r;
+            1.0 - (all - 2.0 * r * r) / (all * all - 4.0 * r * r * h * h).sqrt()
+        };
+        let found = info(shown(&file), &["--image-height", "30mm"]);
+        for point in found["chief_ray_exit_angle_deg"].as_array().expect("a list") {
+            let wanted = light(figure(point, "image_height_mm")) / light(0.0);
+            let found = figure(point, "relative_illuminance");
+            assert!((found / wanted - 1.0).abs() < 2e-3, "{r} {d}: {found} {wanted}");
+        }
+    }
+}
+
+/// Without a stop: what the f-number goes by, and what to write, in the words of the file's format; what is written helps.
+#[test]
+fn a_lens_without_a_stop_says_what_is_assumed() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let yaml = "name: Singlet\nsurfaces:\n  - {radius: 50, thickness: 5, nd: 1.5168, vd: 64.2, semi-diameter: 8}\n  \
+                - {radius: -50, thickness: 47, semi-diameter: 10}\n";
+    let seq = "RDM\nS0 0 1e13\nS 50 5 516800.641700\n CIR 8\nS -50 47\n CIR 10\nSI 0 0\n";
+    let marked_yaml = yaml.replace("semi-diameter: 8", "semi-diameter: 8, stop: true");
+    let marked_seq = seq.replace(" CIR 8", " CIR 8\n STO");
+    for (name, plain, marked, words) in
+        [("singlet.yaml", yaml, marked_yaml, "`stop: true`"), ("singlet.seq", seq, marked_seq, "write `STO`")]
+    {
+        let file = folder.path().join(name);
+        std::fs::write(&file, plain).expect("written");
+        let notes = info(shown(&file), &[])["notes"].to_string();
+        assert!(notes.contains("by the rim of surface 1 (r = 8.00 mm)") && notes.contains(words), "{notes}");
+        let refused = run(&["lens", "info", shown(&file), "--f-number", "8"]);
+        assert!(text(&refused.stderr).contains(words), "{}", text(&refused.stderr));
+        std::fs::write(&file, marked).expect("written");
+        let helped = info(shown(&file), &["--f-number", "8"]);
+        assert!(!helped["notes"].to_string().contains("stop"), "{helped}");
+        assert!((figure(&helped, "f_number") - 8.0).abs() < 1e-6);
+    }
+    // What has no power needs none.
+    assert_eq!(info("prism-60-sf11", &[])["notes"], serde_json::json!([]));
+}

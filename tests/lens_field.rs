@@ -145,3 +145,96 @@ fn a_stop_in_the_front_focus_is_telecentric() {
     let entocentric = write(30.0).chief_rays(f64::INFINITY, &[0.001]).expect("media")[0].expect("a chief ray");
     assert!(entocentric.exit_angle_rad().abs() > 1e-4);
 }
+
+/// Sagittal and tangential focus along a chief ray by Coddington's equations (H. Coddington, 1829), from surface to surface of spheres
+/// and planes: n' cos^2 I' / t' - n cos^2 I / t = n' / s' - n / s = (n' cos I' - n cos I) / R. How far behind the image plane, mm along the axis.
+fn coddington(lens: &Lens, start: DVec3, direction: DVec3) -> [f64; 2] {
+    let mut open = lens.clone();
+    open.elements.iter_mut().for_each(|e| e.semi_diameter_mm = None);
+    let tracer = Tracer::new(&open, Indices::At(lens.reference_nm), Isa::Baseline).expect("media");
+    let path = tracer.path(start, direction, lens.reference_nm);
+    assert!(path.end.is_none());
+    let index = |medium: usize| lens.index(medium, lens.reference_nm);
+    // Of light from infinity: no vergence. Distances from the last point along the ray, sagittal and tangential.
+    let (mut toward, mut foci) = (direction, [f64::INFINITY; 2]);
+    for (at, e) in lens.elements.iter().enumerate() {
+        let here = path.points[at + 1];
+        let after = match path.points.get(at + 2) {
+            Some(next) => (*next - here).normalize(),
+            None => path.direction,
+        };
+        let along = if at == 0 { 0.0 } else { (here - path.points[at]).length() };
+        foci = foci.map(|f| f - along);
+        let (_, curvature) = e.vertex_curvature_per_mm();
+        let normal = match curvature == 0.0 {
+            true => DVec3::Z,
+            false => (DVec3::new(0.0, 0.0, e.vertex_z_mm() + 1.0 / curvature) - here) * curvature,
+        };
+        let (n, m) = (index(e.medium_before), index(e.medium_after));
+        let (ci, co) = (toward.dot(normal), after.dot(normal));
+        let power = (m * co - n * ci) * curvature;
+        foci = [m / (n / foci[0] + power), m * co * co / (n * ci * ci / foci[1] + power)];
+        toward = after;
+    }
+    let last = path.points[lens.elements.len()].z;
+    foci.map(|f| last + f * toward.z - lens.image_z_mm())
+}
+
+/// Close rays meet where Coddington's equations say, from f/1.4 to a wide angle.
+#[test]
+fn foci_are_those_of_coddington() {
+    for path in
+        ["lenses/zeiss-biotar-50-f1.4.yaml", "lenses/cooke-triplet-50-f5.yaml", "lenses/zeiss-hologon-15-f8.yaml"]
+    {
+        let lens = lens(path);
+        let fields = [0.0, 0.1, 0.2, 0.3];
+        let rays = lens.chief_rays(f64::INFINITY, &fields).expect("media");
+        for ray in rays {
+            let ray = ray.expect("a chief ray");
+            let wanted = coddington(&lens, ray.start_mm, ray.direction);
+            for (found, wanted) in ray.foci_mm.into_iter().zip(wanted) {
+                let found = found.expect("a focus");
+                assert!((found - wanted).abs() < 1e-6, "{path}, {}: {found} {wanted}", ray.field_rad);
+            }
+        }
+        // On the axis both are the paraxial image.
+        let axis = lens.chief_rays(f64::INFINITY, &[0.0]).expect("media")[0].expect("a chief ray");
+        let paraxial = lens.paraxial_defocus_mm(f64::INFINITY);
+        assert!(axis.foci_mm.iter().all(|z| (z.expect("a focus") - paraxial).abs() < 1e-6), "{axis:?} {paraxial}");
+    }
+}
+
+/// A spherical mirror with its stop at the center of curvature has no axis: no astigmatism, and its image lies on a sphere of half of its
+/// radius about the stop. Behind the image plane is where the light runs.
+#[test]
+fn a_mirror_about_its_stop_has_a_curved_field_without_astigmatism() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("mirror.yaml");
+    let text = "name: mirror\nsurfaces:\n  - {kind: stop, thickness: 200, semi-diameter: 5}\n  \
+                - {radius: -200, thickness: -100, mirror: true}\n";
+    std::fs::write(&file, text).expect("written");
+    let mirror = spectra_lens::load(&file.to_string_lossy(), &FileResources::beside(Path::new("."))).expect("a lens");
+    let fields = [0.0, 0.1, 0.3, 0.6];
+    for ray in mirror.chief_rays(f64::INFINITY, &fields).expect("media") {
+        let ray = ray.expect("a chief ray");
+        let wanted = 100.0 * (1.0 - ray.field_rad.cos());
+        for found in ray.foci_mm {
+            assert!((found.expect("a focus") - wanted).abs() < 1e-6, "{ray:?}: {wanted}");
+        }
+    }
+}
+
+/// Across a cylinder light stays parallel; along it there is a focus.
+#[test]
+fn a_cylinder_has_one_focus() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("cylinder.yaml");
+    let text = "name: cylinder\nsurfaces:\n  - {kind: stop, thickness: 0, semi-diameter: 5}\n  \
+                - {kind: cylinder, radius: 50, axis: x, thickness: 0, glass: {nd: 1.5}}\n  - {kind: plane, thickness: 90}\n";
+    std::fs::write(&file, text).expect("written");
+    let lens = spectra_lens::load(&file.to_string_lossy(), &FileResources::beside(Path::new("."))).expect("a lens");
+    for ray in lens.chief_rays(f64::INFINITY, &[0.0, 0.2]).expect("media") {
+        let [sagittal, tangential] = ray.expect("a chief ray").foci_mm;
+        assert!(sagittal.is_none() && tangential.is_some_and(|z| z.abs() < 20.0), "{sagittal:?} {tangential:?}");
+    }
+}

@@ -28,6 +28,10 @@ pub struct ChiefRay {
     pub image_mm: [f64; 2],
     /// Its direction behind the lens, in the frame of the image plane.
     pub exit_direction: DVec3,
+    /// How far behind the image plane the rays close to it meet, mm along the plane's z: in the x-z section (sagittal) and in the y-z
+    /// section (tangential). By real rays, not by formulas of surfaces. Where the lens is not the same on both sides of the y-z plane: where
+    /// the pencil is narrowest in x, and in y. `None` where they are parallel.
+    pub foci_mm: [Option<f64>; 2],
 }
 
 impl ChiefRay {
@@ -46,6 +50,10 @@ const WANDER: f64 = 2.0;
 const NEAR_RAD: f64 = 1.7e-5;
 /// Newton's steps: a handful each, with halvings where the light is lost.
 const NEWTON_STEPS: usize = 40;
+/// How far beside the chief ray the rays of its foci run, in radii of the front of the lens: what is left of aberrations goes by its square.
+const CLOSE: f64 = 1e-4;
+/// Rays that meet farther away than this, mm, are parallel: rounding leaves no more.
+const PARALLEL_MM: f64 = 1e7;
 /// How near to its center the chief ray passes the stop, mm.
 const AT_CENTER_MM: f64 = 1e-10;
 
@@ -216,10 +224,10 @@ impl Chief<'_> {
         (size(miss) < 1e-6).then_some(place)
     }
 
-    fn ray(&self, field_rad: f64, place: [f64; 2]) -> Option<ChiefRay> {
-        let window = self.window(field_rad)?;
-        let (start_mm, direction) = window.ray(place);
-        let path = self.tracer.path(start_mm, direction, self.lens.reference_nm);
+    /// Where the ray through a place of the window lands, and how it gets there.
+    fn landing(&self, window: &Window, place: [f64; 2]) -> Option<Landing> {
+        let (p, d) = window.ray(place);
+        let path = self.tracer.path(p, d, self.lens.reference_nm);
         let last = *path.points.last().filter(|_| path.end.is_none())?;
         let image = &self.lens.image_pose;
         let (p, d) = (image.local_point(last), image.local_direction(path.direction));
@@ -229,7 +237,49 @@ impl Chief<'_> {
         let depth_mm = self.lens.cover.as_ref().map_or(0.0, |c| c.depth_mm(slope, self.lens.reference_nm));
         let t = t - depth_mm / d.z;
         let image_mm = [p.x + t * d.x, p.y + t * d.y];
-        let finite = image_mm.iter().all(|c| c.is_finite());
-        finite.then_some(ChiefRay { field_rad, start_mm, direction, image_mm, exit_direction: d })
+        image_mm.iter().all(|c| c.is_finite()).then_some(Landing { image_mm, direction: d })
     }
+
+    fn ray(&self, field_rad: f64, place: [f64; 2]) -> Option<ChiefRay> {
+        let window = self.window(field_rad)?;
+        let (start_mm, direction) = window.ray(place);
+        let Landing { image_mm, direction: exit_direction } = self.landing(&window, place)?;
+        let foci_mm = self.foci_mm(&window, place).unwrap_or_default();
+        Some(ChiefRay { field_rad, start_mm, direction, image_mm, exit_direction, foci_mm })
+    }
+
+    /// Where rays close to the one through a place meet. Behind the image plane by z they are at x + z u, with x and slope u both linear in
+    /// the place: dx = A da, du = B da, so that dx = (A B^-1 + z) du.
+    fn foci_mm(&self, window: &Window, place: [f64; 2]) -> Option<[Option<f64>; 2]> {
+        let h = CLOSE * window.reach_mm;
+        let beside = |k: usize| {
+            let moved = |by: f64| {
+                let mut place = place;
+                place[k] += by;
+                self.landing(window, place)
+            };
+            let (a, b) = (moved(-h)?, moved(h)?);
+            let slope = |l: &Landing| [l.direction.x / l.direction.z, l.direction.y / l.direction.z];
+            let (ua, ub) = (slope(&a), slope(&b));
+            let by = |i: usize| (b.image_mm[i] - a.image_mm[i], ub[i] - ua[i]);
+            Some([by(0), by(1)])
+        };
+        // [k][i]: what a step across (0) or along (1) does to x (0) or y (1).
+        let steps = [beside(0)?, beside(1)?];
+        let (a, b) = (steps.map(|by| by.map(|c| c.0)), steps.map(|by| by.map(|c| c.1)));
+        let focus = |i: usize| {
+            let j = 1 - i;
+            // A step in the other section as well, so that the slope there stays; none where the sections have nothing to do with each other.
+            let other = if b[j][j] == 0.0 { 0.0 } else { b[i][j] / b[j][j] };
+            let z_mm = -(a[i][i] - other * a[j][i]) / (b[i][i] - other * b[j][i]);
+            (z_mm.abs() < PARALLEL_MM).then_some(z_mm)
+        };
+        Some([focus(0), focus(1)])
+    }
+}
+
+/// How a ray ends on the image plane, in its frame.
+struct Landing {
+    image_mm: [f64; 2],
+    direction: DVec3,
 }

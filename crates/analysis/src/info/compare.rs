@@ -1,7 +1,7 @@
 //! Several lenses side by side.
 
 use super::LensReport;
-use super::field::FREQUENCY_PER_MM;
+use super::field::{FREQUENCY_PER_MM, NEAR_AXIS_RAD, distortion};
 use crate::Light;
 use serde::Serialize;
 use spectra_lens::{Beam, Lens, ObjectPoint};
@@ -30,7 +30,7 @@ pub struct Compared {
     pub axial_contrast: Option<f64>,
     /// Geometrical contrast at the field in the same plane.
     pub field_contrast: Option<f64>,
-    /// Image height at the field over that of a picture without distortion, less one.
+    /// Image height at the field over that of a picture as large as the middle of this one without distortion, less one.
     pub distortion: Option<f64>,
 }
 
@@ -57,15 +57,13 @@ impl Comparison {
             let z_mm = axis.as_ref().and_then(|b| b.best_contrast_z_mm(FREQUENCY_PER_MM));
             let contrast = |beam: Option<&Beam>| Some(beam?.contrast(z_mm?, FREQUENCY_PER_MM));
             let field_rad = field_deg.map(f64::to_radians);
-            let chief =
-                field_rad.and_then(|field| held.chief_rays(held.focused_mm, &[field]).ok()?.into_iter().next()?);
-            let ideal = field_rad.filter(|_| held.focused_mm == f64::INFINITY);
-            let ideal = ideal.map(|field| info.efl_mm * spectra_core::math::tan(field));
+            let rays = field_rad.and_then(|field| held.chief_rays(held.focused_mm, &[NEAR_AXIS_RAD, field]).ok());
+            let distorted = rays.and_then(|rays| distortion(&held, rays.get(1)?.as_ref()?, rays.first()?.as_ref()?));
             Compared {
                 image_circle_mm: info.chief_ray_exit_angle_deg.last().map(|ray| 2.0 * ray.image_height_mm.abs()),
                 axial_contrast: contrast(axis.as_ref()),
                 field_contrast: contrast(field_rad.and_then(beam).as_ref()),
-                distortion: chief.zip(ideal).map(|(ray, ideal)| (ray.image_mm[1] / ideal).abs() - 1.0),
+                distortion: distorted,
                 info,
             }
         });

@@ -2,6 +2,7 @@
 
 mod compare;
 mod field;
+mod illuminance;
 mod media;
 mod mounts;
 mod report;

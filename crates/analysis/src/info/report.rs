@@ -1,6 +1,8 @@
 //! First-order figures, pupils and prescription of a lens.
 
-use super::field::{FREQUENCY_PER_MM, FieldReport, LimitReport, field, focus_shift_mm};
+use super::field::{
+    FREQUENCY_PER_MM, FieldReport, LimitReport, PARTS, field, field_points, fields_at_heights, focus_shift_mm,
+};
 use super::mounts::{Glass, MountReport, cleared};
 use crate::Light;
 use glam::DVec3;
@@ -85,7 +87,8 @@ pub struct LensReport {
     pub max_field_deg: Option<f64>,
     /// What ends the last light beyond it.
     pub max_field_limit: Option<LimitReport>,
-    /// Chief rays: real ones through the center of the stop, from the axis to the largest field.
+    /// Field points, by their chief rays: real ones through the center of the stop, from the axis to the largest field, or to the image height
+    /// that was asked for.
     pub chief_ray_exit_angle_deg: Vec<FieldReport>,
     /// Mounts that it fits, by the distances of its glass from the image plane.
     pub mounts: Vec<MountReport>,
@@ -152,9 +155,9 @@ impl LensReport {
         let images = first_order.efl_mm.is_finite();
         let f_number = marginal.map(|ray| ray.f_number()).filter(|n| n.is_finite() && images);
         let shift_mm = |criterion| focus_shift_mm(&held, criterion).filter(|_| images);
-        let indices = light.wavelength_nm().map_or(Indices::Stated, Indices::At);
+        let indices = indices(light);
         let transmittance = lens.axial_transmittance(indices, marginal).ok();
-        let (max_field_deg, max_field_limit, chief_rays) = field(&held);
+        let field = field(lens, &held, indices);
         let paraxial = held.paraxial_defocus_mm(held.focused_mm);
         let exit_pupil_z_mm = first_order.exit_pupil_z_mm.filter(|z| z.is_finite());
         Self {
@@ -198,9 +201,9 @@ impl LensReport {
             rms_focus_shift_mm: shift_mm(Criterion::Rms),
             contrast_focus_shift_mm: shift_mm(Criterion::Contrast { per_mm: FREQUENCY_PER_MM }),
             contrast_frequency_per_mm: FREQUENCY_PER_MM,
-            max_field_deg,
-            max_field_limit,
-            chief_ray_exit_angle_deg: chief_rays,
+            max_field_deg: field.largest_deg,
+            max_field_limit: field.limit,
+            chief_ray_exit_angle_deg: field.points,
             mounts: glass(lens).map(|glass| cleared(&glass)).unwrap_or_default(),
             every_mount: false,
             total_track_mm: if lens.image_pose.is_on_axis() { lens.image_z_mm() } else { lens.image_along_axis_mm },
@@ -220,6 +223,24 @@ impl LensReport {
             warnings: lens.warnings.iter().cloned().chain(misplaced_image(lens, &first_order, paraxial)).collect(),
         }
     }
+}
+
+impl LensReport {
+    /// The same with the field shown at the middle and at 0.5, 0.7 and 1 of an image height, mm above 0.
+    ///
+    /// # Errors
+    /// No chief ray lands so far out: the largest height at which one does, mm.
+    pub fn to_image_height(mut self, lens: &Lens, light: Light, height_mm: f64) -> Result<Self, f64> {
+        let held = light.hold(lens.clone());
+        let fields = fields_at_heights(&held, &PARTS.map(|part| part * height_mm))?;
+        self.chief_ray_exit_angle_deg = field_points(lens, &held, indices(light), &fields);
+        Ok(self)
+    }
+}
+
+/// Which indices a tracer takes in this light.
+fn indices(light: Light) -> Indices {
+    light.wavelength_nm().map_or(Indices::Stated, Indices::At)
 }
 
 /// The image plane may lie this part of the focal length from the image: published last distances are for other focus, or rounded.

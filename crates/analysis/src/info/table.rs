@@ -144,10 +144,35 @@ impl LensReport {
         if self.chief_ray_exit_angle_deg.is_empty() {
             return Ok(());
         }
-        writeln!(f, "chief rays")?;
-        writeln!(f, "{:>10} {:>16} {:>16}", "field", "exit angle", "image height")?;
-        for ray in &self.chief_ray_exit_angle_deg {
-            writeln!(f, "{:>8.2} ° {:>14.3} ° {:>13.4} mm", ray.field_deg, ray.angle_deg, ray.image_height_mm)?;
+        writeln!(
+            f,
+            "field points (sagittal, tangential: where close rays meet, from the image plane; light: over the middle's)"
+        )?;
+        writeln!(
+            f,
+            "{:>10} {:>12} {:>15} {:>12} {:>14} {:>14} {:>9}",
+            "field", "exit angle", "image height", "distortion", "sagittal", "tangential", "light"
+        )?;
+        let percent = |part: Option<f64>, digits: usize, sign: bool| match part.map(|part| 100.0 * part) {
+            // Rounding leaves no sign of a zero.
+            Some(percent) if percent.abs() < 0.5 * 0.1_f64.powi(digits as i32) => format!("{:.digits$} %", 0.0),
+            Some(percent) if sign => format!("{percent:+.digits$} %"),
+            Some(percent) => format!("{percent:.digits$} %"),
+            None => "-".to_owned(),
+        };
+        let focus = |focus_mm: Option<f64>| focus_mm.map_or("-".to_owned(), |z| mm(Some(z)));
+        for p in &self.chief_ray_exit_angle_deg {
+            writeln!(
+                f,
+                "{:>8.2} ° {:>10.3} ° {:>12.4} mm {:>12} {:>14} {:>14} {:>9}",
+                p.field_deg,
+                p.angle_deg,
+                p.image_height_mm,
+                percent(p.distortion, 2, true),
+                focus(p.sagittal_focus_mm),
+                focus(p.tangential_focus_mm),
+                percent(p.relative_illuminance, 1, false),
+            )?;
         }
         writeln!(f)
     }

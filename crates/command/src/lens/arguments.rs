@@ -174,7 +174,7 @@ pub(crate) enum FocusMeasure {
     /// Smallest RMS spot, with real rays.
     #[value(alias = "rms")]
     Spot,
-    /// The paraxial (first-order) image.
+    /// No search: from infinity, as in the file, by first-order optics; what the file leaves between image plane and paraxial image stays.
     Paraxial,
 }
 
@@ -225,15 +225,20 @@ fn part(text: &str) -> Result<f64, String> {
         the mounts it leaves room for, and prescription.\n\n\
         Values are for the reference line of the lens's patent, unless a line or wavelength is given. The f-number \
         and pupil diameters come from the real marginal ray; the positions of planes and pupils are paraxial; focus \
-        shifts, the largest field and the chief rays come from real rays. The T-number includes coatings, mirrors and \
+        shifts, the largest field and the field points come from real rays. The T-number includes coatings, mirrors and \
         absorption; a note beside it lists these and what is assumed: coatings typical of the lens's time, unless its \
         file or --coating says otherwise.\n\n\
+        Each field point has its chief ray (through the center of the stop); distortion; where rays close to the chief ray meet in the \
+        sagittal and in the tangential section, from the image plane, which shows curvature of field and astigmatism; and the illuminance \
+        of the film under an evenly bright field, with every rim, coatings and glass, over that in the middle.\n\n\
         --glare adds the veiling glare index by the integral method of ISO 9358: the light in the middle of a black disk \
         within an endless white field, over that without the disk. The image of the disk is a tenth as large as the diagonal of \
         a 36 x 24 mm frame; its middle half is looked at, in the light of the report. Light is reflected by every surface any number \
         of times, and scattered by black paint on barrel, rims, edges of the glass and blades.",
-    after_long_help = "Examples: the same lens in blue light; its veiling glare with a single layer on each surface\n  \
+    after_long_help = "Examples: the same lens in blue light; its field to the corner of a 36 x 24 mm frame; its veiling glare with a \
+        single layer on each surface\n  \
         spectra lens info zeiss-biotar-50-f1.4 --line g\n  \
+        spectra lens info zeiss-biotar-50-f1.4 --f-number f/4 --image-height 21.6mm\n  \
         spectra lens info zeiss-biotar-50-f1.4 --f-number f/2 --coating single-layer --glare"
 )]
 pub(crate) struct LensInfo {
@@ -241,6 +246,9 @@ pub(crate) struct LensInfo {
     pub setting: LensSetting,
     #[command(flatten)]
     pub light: OneLight,
+    /// Show the field at the middle and at 0.5, 0.7 and 1 of this image height (21.6mm), not in ten steps to the largest field.
+    #[arg(long, value_name = "LENGTH", value_parser = parse::<Positive<Length>>)]
+    pub image_height: Option<Positive<Length>>,
     /// List every mount that the lens fits, not only the common ones.
     #[arg(long)]
     pub mounts: bool,

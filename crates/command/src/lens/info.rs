@@ -7,6 +7,8 @@ use crate::{console, limits};
 use spectra_analysis::Light;
 use spectra_analysis::glare::{GlareTask, glare};
 use spectra_analysis::info::LensReport;
+use spectra_lens::Lens;
+use spectra_scene::stop_hint_of;
 use spectra_session::Threads;
 
 /// Shows a lens in figures.
@@ -20,7 +22,18 @@ pub(crate) fn info(arguments: &LensInfo) -> Outcome {
         }
     }
     let mut report = LensReport::of(&lens, light);
+    if let Some(height) = arguments.image_height {
+        let farthest = |mm: f64| {
+            let reason = match mm > 0.0 {
+                true => format!("the field of the lens ends at {mm:.2} mm"),
+                false => format!("without a stop there are no chief rays: {}", stop_hint_of(&arguments.setting.lens)),
+            };
+            Failure::Input(format!("{}: --image-height: {reason}", arguments.setting.lens))
+        };
+        report = report.to_image_height(&lens, light, height.mm()).map_err(farthest)?;
+    }
     report.every_mount = arguments.mounts;
+    report.notes.extend(no_stop(&lens, &arguments.setting.lens));
     if arguments.glare {
         let mut task = GlareTask::new(light.wavelength_nm().unwrap_or(lens.reference_nm));
         task.matter.paint = arguments.paint.unwrap_or(task.matter.paint);
@@ -34,4 +47,22 @@ pub(crate) fn info(arguments: &LensInfo) -> Outcome {
         console::out(&report.to_string())?;
     }
     Ok(DONE)
+}
+
+/// What is taken of a lens in whose file no surface is the stop, and what to write. Nothing is said of one without power: a prism, a
+/// grating.
+fn no_stop(lens: &Lens, name: &str) -> Option<String> {
+    if lens.stop().is_some() || !lens.first_order(lens.reference_nm).efl_mm.is_finite() {
+        return None;
+    }
+    let limit = match lens.axial_rim() {
+        Some(rim) => {
+            format!("the f-number is by the rim of surface {} (r = {:.2} mm), ", rim.surface, rim.semi_diameter_mm)
+        }
+        None => String::new(),
+    };
+    let hint = stop_hint_of(name);
+    Some(format!(
+        "no surface is the stop: {limit}pupils and field points are unknown, and no f-number can be set; {hint}"
+    ))
 }
