@@ -508,7 +508,7 @@ fn light_over_the_field_is_that_of_a_hole() {
         for point in found["chief_ray_exit_angle_deg"].as_array().expect("a list") {
             let wanted = light(figure(point, "image_height_mm")) / light(0.0);
             let found = figure(point, "relative_illuminance");
-            assert!((found / wanted - 1.0).abs() < 2e-3, "{r} {d}: {found} {wanted}");
+            assert!((found / wanted - 1.0).abs() < 3e-3, "{r} {d}: {found} {wanted}");
         }
     }
 }
