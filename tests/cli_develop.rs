@@ -512,3 +512,23 @@ fn a_table_shows_what_the_film_does() {
         assert!(said.contains(word), "{arguments:?} lacks `{word}`: {said}");
     }
 }
+
+/// A time that leaves the film black or white all over makes a picture, and is told of where it stands, with one that does not.
+#[test]
+fn an_exposure_beyond_the_film_is_told_of() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    put(folder.join("a.png"), 60, 40, colors);
+    for (time, wanted) in [("80 s", "saturated with light"), ("1/1000000 s", "without light")] {
+        let exposure = format!("film.exposure={time}");
+        let said = good(folder, &["a.png", "--stock", "tri-x", "--set", &exposure]);
+        assert!(said.contains(&format!("warning: --set {exposure}: the film is {wanted} nearly all over")), "{said}");
+        assert_eq!(said.matches("warning").count(), 1, "{said}");
+        let better = said.split("`exposure: ").nth(1).and_then(|rest| rest.split('`').next()).expect("a time");
+        let said = good(folder, &["a.png", "--stock", "tri-x", "--set", &format!("film.exposure={better}")]);
+        assert!(!said.contains("warning"), "{said}");
+    }
+    // Who asks for both is told that one of them does nothing.
+    let both = ["a.png", "--stock", "tri-x", "--set", "film.exposure=80 s", "--set", "film.metering=average"];
+    assert!(good(folder, &both).contains("has no effect"));
+}

@@ -305,6 +305,15 @@ pub trait Launch: Send + Sync {
 /// A developed film, as the film that made it knows it.
 pub type Negative = Box<dyn Any + Send + Sync>;
 
+/// Where a frame lies that a film can tell nothing apart in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Beyond {
+    /// It has too little light.
+    Dark,
+    /// It has too much of it.
+    Bright,
+}
+
 /// The film: which light it responds to, and how it is developed.
 pub trait Film: Any + Send + Sync {
     /// Its channels: responses to spectral irradiance, in lux (times seconds of exposure).
@@ -339,6 +348,17 @@ pub trait Film: Any + Send + Sync {
     /// Warnings about the picture, for example of a setting that has no effect.
     fn warnings(&self) -> Vec<String> {
         Vec::new()
+    }
+
+    /// Whether nearly all of a frame, its exposure as in [`Film::develop`], is beyond what the film can tell apart; `None` as well
+    /// where a film does not know.
+    fn beyond(&self, _exposure: &ExposureFrame) -> Option<Beyond> {
+        None
+    }
+
+    /// Exposure time, s, with which the mean of the frame would be a mid gray, where the film knows it.
+    fn gray_time_s(&self, _exposure: &ExposureFrame) -> Option<f64> {
+        None
     }
 
     /// Checks that a frame of this size can be developed, before any light is traced.

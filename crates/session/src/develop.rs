@@ -324,6 +324,8 @@ fn scene(job: &Develop<'_>, plate: &Plate, metered: Option<&FilmTime>) -> Result
     ];
     match metered {
         Some(time) => made.push(("film.exposure", format!("{} s", time.time_s))),
+        // Who states a time wants that one; who meters beside it is told that one of them has no effect.
+        None if overrides.iter().any(|text| path_of(text) == "film.exposure") => {}
         None => made.push(("film.metering", "average".to_owned())),
     }
     if has_lens {

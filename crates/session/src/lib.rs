@@ -21,6 +21,7 @@
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
+mod beyond;
 mod check;
 mod contact;
 mod cube;

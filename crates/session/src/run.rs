@@ -1,5 +1,6 @@
 //! Every picture of a scene, from its file to files.
 
+use crate::beyond::beyond;
 use crate::files::{Files, write_report};
 use crate::job::{Ended, Job, LightFrom};
 use crate::made::told;
@@ -83,6 +84,9 @@ pub(crate) fn picture(
     let exposure = &taken.rendering.exposure;
     let scene = session.scene();
     let times = scene.film_times(exposure);
+    if !taken.rendering.partial {
+        beyond(scene, exposure).iter().for_each(|warning| host.hear(Event::Warning(&told(warning))));
+    }
     let attributes = header::attributes(scene, exposure, &times, taken.rendering.partial, job.version);
     let Taken { rendering, seconds, .. } = &taken;
     let report = Report { job, scene, rendering, times: &times, seconds: *seconds, threads: host.threads() };

@@ -1,5 +1,6 @@
 //! Several pictures of one scene: the members of a sweep, the frames of an animation.
 
+use crate::beyond::beyond;
 use crate::check::{Look, checked, each_once};
 use crate::contact::Contact;
 use crate::files::{Files, write_report};
@@ -214,6 +215,7 @@ impl Work<'_> {
             return Ok(false);
         }
         let scene = session.into_scene();
+        beyond(&scene, &rendering.exposure).iter().for_each(|warning| host.hear(Event::Warning(warning)));
         let times = scene.film_times(&rendering.exposure);
         let mut attributes = header::attributes(&scene, &rendering.exposure, &times, false, job.version);
         attributes.extend(attributes_of(job.series, &picture.member));

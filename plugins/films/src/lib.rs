@@ -2,6 +2,7 @@
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
+mod beyond;
 mod effects;
 mod frame;
 mod metering;

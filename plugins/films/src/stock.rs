@@ -1,5 +1,6 @@
 //! `film: stock`, film from a data file: exposed, developed, and printed, scanned or projected.
 
+use crate::beyond::{beyond, ends};
 use crate::effects::{Effects, mtf50, pixel_mm};
 use crate::frame::{FrameEffects, Laid};
 use crate::metering::{METER, Meter, Metering, overruled, recorded_time_s};
@@ -15,7 +16,7 @@ use spectra_core::names;
 use spectra_core::params::{Faults, Params, Positive};
 use spectra_core::registry::Context;
 use spectra_core::spectral::Channel;
-use spectra_core::stage::{Film, Negative};
+use spectra_core::stage::{Beyond, Film, Negative};
 use spectra_film::display::channel;
 use spectra_film::emulsion::Emulsion;
 use spectra_film::optics::Optics;
@@ -317,6 +318,26 @@ impl Film for StockFilm {
             frame.check(size)?;
         }
         self.effects.check_frame(size)
+    }
+
+    fn beyond(&self, exposure: &ExposureFrame) -> Option<Beyond> {
+        let factor = self.meter.factor(exposure);
+        let effect = self.stock.reciprocity.as_ref().map_or(1.0, |r| r.effect(self.exposure_time_s * factor));
+        let layers = self.stock.layers.iter().enumerate().map(|(i, layer)| {
+            let plane = &exposure.channel(&layer.name)?.values[..];
+            let curve = |x: f64| match &self.picture {
+                Picture::Paper(print) => print.metered.picture(self.emulsion.amount(i, x)),
+                Picture::Positive(_) => self.emulsion.amount(i, x),
+            };
+            Some((plane, ends(curve)))
+        });
+        beyond(&layers.collect::<Option<Vec<_>>>()?, factor * effect)
+    }
+
+    fn gray_time_s(&self, exposure: &ExposureFrame) -> Option<f64> {
+        let plane = &exposure.channel(&self.stock.layers.first()?.name)?.values;
+        let mean = plane.iter().map(|v| f64::from(*v)).sum::<f64>() / plane.len() as f64;
+        Some(self.exposure_time_s * self.gray_lx_s / mean).filter(|time| time.is_finite() && *time > 0.0)
     }
 
     fn name(&self) -> String {
