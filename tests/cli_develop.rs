@@ -532,3 +532,22 @@ fn an_exposure_beyond_the_film_is_told_of() {
     let both = ["a.png", "--stock", "tri-x", "--set", "film.exposure=80 s", "--set", "film.metering=average"];
     assert!(good(folder, &both).contains("has no effect"));
 }
+
+/// What has no effect without a lens is refused as its option is, and a time in place of stops is told how to be written.
+#[test]
+fn what_does_nothing_is_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    put(folder.join("a.png"), 60, 40, colors);
+    for set in ["lens.f-number=2", "lens.focus=2 m"] {
+        let said = refused(folder, &["a.png", "--stock", "tri-x", "--set", set], 2);
+        assert!(said.contains("without a lens `lens.f") && said.contains(&format!("--set {set}")), "{said}");
+    }
+    for (time, in_seconds) in [("1/60", "1/60 s"), ("1/60 s", "1/60 s"), ("2s", "2 s")] {
+        let said = refused(folder, &["a.png", "--stock", "tri-x", "--exposure", time], 2);
+        assert!(said.contains("takes stops"), "{said}");
+        assert!(said.contains(&format!("--set film.exposure=\"{in_seconds}\"")), "{said}");
+    }
+    let written = ["a.png", "--stock", "tri-x", "--set", "film.exposure=1/60 s"];
+    assert!(good(folder, &written).contains("Kodak Tri-X 400 at 1/60 s"));
+}

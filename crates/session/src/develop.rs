@@ -299,6 +299,15 @@ fn scene(job: &Develop<'_>, plate: &Plate, metered: Option<&FilmTime>) -> Result
         job.settings.iter().any(|s| s.path == "lens.file") || overrides.iter().any(|o| path_of(o) == "lens.file");
     let light = if has_lens { LightFrom::Rays } else { LightFrom::Pixels };
 
+    if !has_lens && let Some(text) = overrides.iter().find(|text| path_of(text).starts_with("lens.")) {
+        let set = yaml::parse_override(text)?;
+        let fault = set.node.fault(format!("without a lens `{}` does nothing", set.path));
+        return Err(fault
+            .path(&set.path)
+            .hint("name a lens, such as `--lens helios-44-58-f2`, or leave it out")
+            .into());
+    }
+
     let layer = overrides.iter().rev().find(|o| path_of(o) == "source.layer");
     let layer = layer.and_then(|text| text.split_once('=')).map(|(_, layer)| layer.trim());
     let header = header_of(&plate.file, layer, &files)?;

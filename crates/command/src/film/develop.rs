@@ -43,6 +43,7 @@ fn developed(arguments: &FilmDevelop, isa: Isa, started: Instant) -> Outcome {
 
 /// What the options say, by the keys of a scene.
 fn settings(arguments: &FilmDevelop, stock: &str) -> Result<Vec<Setting>, Failure> {
+    keys::stops(&arguments.keys)?;
     let mut all = keys::settings(&arguments.keys, &arguments.stock, stock);
     all.push(keys::illuminant(&arguments.keys, &arguments.stock, stock)?);
     for (path, option, value) in [

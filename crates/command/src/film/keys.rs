@@ -3,6 +3,7 @@
 use super::arguments::FilmKeys;
 use super::load;
 use crate::outcome::Failure;
+use spectra_core::params::Fault;
 use spectra_session::Setting;
 use std::path::Path;
 
@@ -27,6 +28,19 @@ pub(super) fn illuminant(keys: &FilmKeys, said: &str, stock: &str) -> Result<Set
         Some(light) => set("source.illuminant", "--illuminant", light),
         None => following("source.illuminant", format!("--stock {said}"), &load(stock)?.reference_illuminant),
     })
+}
+
+/// That the exposure is said in stops: photographers think of a time first.
+pub(super) fn stops(keys: &FilmKeys) -> Result<(), Failure> {
+    let Some(said) = &keys.exposure else { return Ok(()) };
+    let time = said.trim().trim_end_matches('s').trim_end();
+    let is_time = time.len() < said.trim().len() || time.starts_with("1/");
+    if is_time && time.trim_start_matches("1/").parse::<f64>().is_ok_and(|value| value > 0.0) {
+        let text = format!("`--exposure` takes stops over or under what the meter says, and `{said}` is a time");
+        let hint = format!("`--exposure=+1`, or the time itself: `--set film.exposure=\"{time} s\"`");
+        return Err(Fault::new(text).hint(hint).into());
+    }
+    Ok(())
 }
 
 /// What the options say, by the keys of a scene; `said` is how the person named `stock`.
