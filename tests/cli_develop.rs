@@ -551,3 +551,20 @@ fn what_does_nothing_is_refused() {
     let written = ["a.png", "--stock", "tri-x", "--set", "film.exposure=1/60 s"];
     assert!(good(folder, &written).contains("Kodak Tri-X 400 at 1/60 s"));
 }
+
+/// The number of a frame stands before the version of its file: it names the output, and each frame has grain of its own.
+#[test]
+fn a_version_is_no_number() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    for name in ["plate.0007.v2.png", "plate.0008.v2.png"] {
+        put(folder.join(name), 60, 40, colors);
+        good(folder, &[name, "--stock", "tri-x", "-o", "out/film.####.v2.png"]);
+    }
+    let frames = ["out/film.0007.v2.png", "out/film.0008.v2.png"].map(|name| read(folder.join(name)));
+    assert!(frames[0] != frames[1], "the same grain");
+    // A name of nothing else has that one.
+    put(folder.join("v3.png"), 60, 40, colors);
+    good(folder, &["v3.png", "--stock", "tri-x", "-o", "out/only.##.png"]);
+    assert!(folder.join("out/only.03.png").exists());
+}

@@ -55,8 +55,20 @@ impl Numbered {
     }
 }
 
-/// The number that a name without its ending closes with.
+/// The number that a name without its ending closes with; before a version, as in `plate.0007.v2`, where there is one.
 fn last_number(stem: &str) -> Option<u64> {
+    let version = stem.rfind(['.', '_', '-']).filter(|at| {
+        let said = stem[at + 1..].strip_prefix(['v', 'V']);
+        said.is_some_and(|said| !said.is_empty() && said.bytes().all(|b| b.is_ascii_digit()))
+    });
+    if let Some(number) = version.and_then(|at| closing_number(&stem[..at])) {
+        return Some(number);
+    }
+    closing_number(stem)
+}
+
+/// The digits that a text closes with.
+fn closing_number(stem: &str) -> Option<u64> {
     let digits = stem.len() - stem.trim_end_matches(|c: char| c.is_ascii_digit()).len();
     stem[stem.len() - digits..].parse().ok()
 }
