@@ -543,6 +543,8 @@ fn what_does_nothing_is_refused() {
         let said = refused(folder, &["a.png", "--stock", "tri-x", "--set", set], 2);
         assert!(said.contains("without a lens `lens.f") && said.contains(&format!("--set {set}")), "{said}");
     }
+    // Filters need none.
+    good(folder, &["a.png", "--stock", "tri-x", "--set", "lens.filters=[wratten-12]"]);
     for (time, in_seconds) in [("1/60", "1/60 s"), ("1/60 s", "1/60 s"), ("2s", "2 s")] {
         let said = refused(folder, &["a.png", "--stock", "tri-x", "--exposure", time], 2);
         assert!(said.contains("takes stops"), "{said}");

@@ -81,6 +81,14 @@ const MAX_BYTES: u64 = 1 << 30;
 /// Keys of the film that find the exposure; where it is known they are left out.
 const METERING: [&str; 3] = ["film.metering", "film.spot", "film.compensation"];
 
+/// Keys of a lens that do nothing where there is none; its filters stand before the film all the same.
+const IDLE: [&str; 3] = ["lens.f-number", "lens.focus", "lens.aperture"];
+
+/// Whether a path is of [`IDLE`].
+fn is_idle(path: &str) -> bool {
+    IDLE.iter().any(|key| path.strip_prefix(key).is_some_and(|rest| rest.is_empty() || rest.starts_with('.')))
+}
+
 /// How the file of a picture ends, such as `png`, where `output` is set among `overrides` (texts `path=value`).
 ///
 /// # Errors
@@ -299,7 +307,7 @@ fn scene(job: &Develop<'_>, plate: &Plate, metered: Option<&FilmTime>) -> Result
         job.settings.iter().any(|s| s.path == "lens.file") || overrides.iter().any(|o| path_of(o) == "lens.file");
     let light = if has_lens { LightFrom::Rays } else { LightFrom::Pixels };
 
-    if !has_lens && let Some(text) = overrides.iter().find(|text| path_of(text).starts_with("lens.")) {
+    if !has_lens && let Some(text) = overrides.iter().find(|text| is_idle(&path_of(text))) {
         let set = yaml::parse_override(text)?;
         let fault = set.node.fault(format!("without a lens `{}` does nothing", set.path));
         return Err(fault
