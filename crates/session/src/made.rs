@@ -15,7 +15,15 @@ pub(crate) fn told(warning: &Warning) -> Warning {
     Warning(without_made(warning.0.clone()))
 }
 
+/// Whether a warning stands at a value that nobody wrote.
+pub(crate) fn is_made(warning: &Warning) -> bool {
+    at_made(&warning.0)
+}
+
+fn at_made(fault: &Fault) -> bool {
+    fault.place.as_ref().is_some_and(|(file, _)| file.name == MADE)
+}
+
 fn without_made(fault: Fault) -> Fault {
-    let is_made = fault.place.as_ref().is_some_and(|(file, _)| file.name == MADE);
-    if is_made { Fault { place: None, ..fault } } else { fault }
+    if at_made(&fault) { Fault { place: None, ..fault } } else { fault }
 }

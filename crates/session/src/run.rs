@@ -3,7 +3,7 @@
 use crate::beyond::beyond;
 use crate::files::{Files, write_report};
 use crate::job::{Ended, Job, LightFrom};
-use crate::made::told;
+use crate::made::{is_made, told};
 use crate::taken::{Taken, prepare};
 use crate::{Event, Host, Report, Session, SessionError, header, series, words};
 use spectra_scene::{FilmTime, SeriesKind, Shot};
@@ -85,7 +85,9 @@ pub(crate) fn picture(
     let scene = session.scene();
     let times = scene.film_times(exposure);
     if !taken.rendering.partial {
-        beyond(scene, exposure).iter().for_each(|warning| host.hear(Event::Warning(&told(warning))));
+        // A frame that is exposed as the first one was metered may be dark: a sequence fades.
+        let stated = beyond(scene, exposure).into_iter().filter(|warning| !is_made(warning));
+        stated.for_each(|warning| host.hear(Event::Warning(&warning)));
     }
     let attributes = header::attributes(scene, exposure, &times, taken.rendering.partial, job.version);
     let Taken { rendering, seconds, .. } = &taken;
