@@ -12,7 +12,7 @@ use serde::Deserialize;
 use spectra_core::isa::{Isa, Vectorized};
 use spectra_core::params::{Faults, Params, Wavelength};
 use spectra_core::registry::Context;
-use spectra_core::spectral::SystemResponse;
+use spectra_core::spectral::{Grid, SystemResponse};
 use spectra_core::stage::{WavelengthDensity, WavelengthSampler};
 use spectra_spectrum::{SpectrumError, TruncatedGaussian};
 
@@ -20,7 +20,8 @@ use spectra_spectrum::{SpectrumError, TruncatedGaussian};
 ///
 /// Drawn by the inverse of the normal distribution, safe however far out its center lies. For a narrow source or
 /// detector, and as a yardstick. Far from the center the Gaussian is as good as zero: `floor` sees to it that what a
-/// channel sees there is drawn nonetheless, and without one a Gaussian that does not reach all of it is refused.
+/// channel sees there is drawn nonetheless, and without one a Gaussian that does not reach all of it is refused. One that
+/// reaches nothing of it is refused with a floor, too.
 ///
 /// # Example
 /// ```yaml
@@ -56,6 +57,20 @@ impl TruncatedGaussianSampler {
         TruncatedGaussian::new(center_nm, sigma_nm, 350.0, 830.0)?;
         Ok(Self { center_nm, sigma_nm, floor })
     }
+
+    /// An error where the Gaussian draws nothing between the least and the greatest wavelength that a channel sees: every
+    /// ray but those of the floor would be lost. A center in mm for one in nm ends here.
+    fn reaches(&self, gaussian: &TruncatedGaussian, seen: &Seen, grid: &Grid) -> Result<(), String> {
+        let (low, high) =
+            seen.wavelengths_nm(grid).fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), w| (a.min(w), b.max(w)));
+        if low > high || is_drawn(gaussian.density(self.center_nm.clamp(low, high))) {
+            return Ok(());
+        }
+        Err(format!(
+            "truncated-gaussian: from its center at {} nm a `sigma` of {} nm does not reach what the channels see, {low:.0} to {high:.0} nm; set `center` within",
+            self.center_nm, self.sigma_nm
+        ))
+    }
 }
 
 impl WavelengthSampler for TruncatedGaussianSampler {
@@ -64,6 +79,9 @@ impl WavelengthSampler for TruncatedGaussianSampler {
         let (min_nm, max_nm) = (system.grid.start_nm, system.grid.end_nm());
         let gaussian = TruncatedGaussian::new(self.center_nm, self.sigma_nm, min_nm, max_nm)
             .map_err(|e| format!("truncated-gaussian: {e}"))?;
+        if seen.draws_continuum() {
+            self.reaches(&gaussian, &seen, &system.grid)?;
+        }
         let floor = self.floor.cells(system.grid, &seen).map(|cells| (self.floor.share(), cells));
         if floor.is_none()
             && let Some(nm) = seen.wavelengths_nm(&system.grid).find(|w| !is_drawn(gaussian.density(*w)))

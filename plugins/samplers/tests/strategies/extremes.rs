@@ -31,9 +31,11 @@ fn no_weight_is_infinite_or_nan() {
                 for (name, sampler) in [("gaussian", &gaussian as &dyn WavelengthSampler), ("terms", &terms)] {
                     let density = match sampler.prepare(&system) {
                         Ok(density) => density,
-                        // A term without any share of the band within reach of numbers is refused, with its reason.
+                        // What does not reach the band, or what is seen of it, is refused, with its reason.
                         Err(text) => {
-                            assert!(name == "terms" && text.contains("no Gaussian term reaches"), "{name}: {text}");
+                            let reason =
+                                if name == "terms" { "no Gaussian term reaches" } else { "does not reach what" };
+                            assert!(text.contains(reason), "{name}: {text}");
                             continue;
                         }
                     };
@@ -90,6 +92,24 @@ fn blind_densities_are_refused() {
     assert!(signed(-1.2, Follow::Collapsed).prepare(&daylight).is_ok());
     assert!(signed(-0.6, Follow::TermThenWavelength).prepare(&daylight).is_ok());
     assert!(Lines.prepare(&daylight).is_err());
+}
+
+/// `center: 540 mm` for nm, and a center beside what the film sees: fifteen of sixteen rays would be lost without a word.
+#[test]
+fn a_gaussian_far_from_what_is_seen_is_refused() {
+    let ortho = system(light("D65"), ortho_plus());
+    let refused = |center, sigma| {
+        let sampler = TruncatedGaussianSampler::new(center, sigma, Floor::default()).expect("in range");
+        sampler.prepare(&ortho).err()
+    };
+    for (center, sigma) in [(540e6, 60.0), (5400.0, 60.0), (780.0, 5.0)] {
+        let text = refused(center, sigma).expect("refused");
+        assert!(text.contains("set `center` within") && text.contains(&format!("{center} nm")), "{text}");
+    }
+    // One that only just reaches, one that is narrower than a cell, and a far one that is wide enough.
+    for (center, sigma) in [(780.0, 60.0), (540.3, 0.01), (2000.0, 10_000.0)] {
+        assert_eq!(refused(center, sigma), None, "{center} {sigma}");
+    }
 }
 
 #[test]
