@@ -277,7 +277,13 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
                 fault.hint("a lens has one stop; other surfaces limit the light by `semi-diameter` or `aperture`"),
             );
         }
-        if let Some(semi_diameter_mm) = semi_diameter_mm.filter(|s| *s > 0.0)
+        // Some tilted surfaces have no point on their axis; a number that is none is a fault of the code of the surface.
+        if element.surface.sag_mm(0.0, 0.0).is_some_and(|sag| !sag.is_finite()) {
+            let fault = place.fault_here("the sag of this surface at its vertex is not a number");
+            faults.push(
+                fault.hint("its keys, and the code of its kind: where a surface does not reach it returns `None`"),
+            );
+        } else if let Some(semi_diameter_mm) = semi_diameter_mm.filter(|s| *s > 0.0)
             && let Some(reach_mm) = reach_mm(&*element.surface, semi_diameter_mm)
         {
             let text =
@@ -480,7 +486,8 @@ const BEYOND: f64 = 0.02;
 
 /// Where a surface ends, mm from its axis, if that is before `semi_diameter_mm` along both x and y.
 fn reach_mm(surface: &dyn Surface, semi_diameter_mm: f64) -> Option<f64> {
-    let reaches = |r: f64| surface.sag_mm(r, 0.0).is_some() || surface.sag_mm(0.0, r).is_some();
+    // As light finds it: where the sag is not a number, there is no surface.
+    let reaches = |r: f64| [(r, 0.0), (0.0, r)].iter().any(|(x, y)| surface.sag_mm(*x, *y).is_some_and(f64::is_finite));
     if reaches(semi_diameter_mm * (1.0 - BEYOND)) || !reaches(0.0) {
         return None;
     }
@@ -598,4 +605,33 @@ fn remember(media: &mut Vec<LensMedium>, medium: LensMedium) -> usize {
         media.push(medium);
         media.len() - 1
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use spectra_core::surface::{FromSag, PerRay, SagShape};
+
+    /// A sphere by a root, whose sag beyond its radius is none or not a number, as its author thought of it or not.
+    #[derive(Clone, Debug)]
+    struct Root {
+        radius_mm: f64,
+        is_careful: bool,
+    }
+
+    impl SagShape for Root {
+        fn sag_mm(&self, x: f64, y: f64) -> Option<f64> {
+            let sag = self.radius_mm - (self.radius_mm * self.radius_mm - x * x - y * y).sqrt();
+            (sag.is_finite() || !self.is_careful).then_some(sag)
+        }
+    }
+
+    #[test]
+    fn a_sag_that_is_no_number_ends_the_surface() {
+        for is_careful in [true, false] {
+            let surface = PerRay(FromSag(Root { radius_mm: 5.0, is_careful }));
+            assert_eq!(reach_mm(&surface, 6.25), Some(5.0), "{is_careful}");
+            assert_eq!(reach_mm(&surface, 4.0), None, "{is_careful}");
+        }
+    }
 }

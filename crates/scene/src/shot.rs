@@ -154,11 +154,18 @@ impl<'a> Shot<'a> {
                 None => film.film.finish(exposure, wanted),
                 Some(kept) => kept.finish(place, &film.film, exposure),
             };
-            let Finished { shown, beside } = match &film.name {
+            let finished = match &film.name {
                 // A film alone has the frame for itself.
                 None => finish(exposure)?,
                 Some(_) => finish(&film.exposure(exposure))?,
             };
+            if let Some([x, y]) = no_number(&finished.shown) {
+                let film = film.film.name();
+                return Err(format!(
+                    "{film}: the color of pixel {x}, {y} is not a number: its `develop` made one that is none"
+                ));
+            }
+            let Finished { shown, beside } = finished;
             Ok(((film.name.clone(), shown), beside))
         };
         let all = scene.films.iter().enumerate().map(of).collect::<Result<Vec<_>, String>>()?;
@@ -176,6 +183,26 @@ impl<'a> Shot<'a> {
     }
 }
 
+/// The first pixel, from the left and from the top, with a value that is not a number: files would show it black.
+fn no_number(picture: &DisplayPicture) -> Option<[usize; 2]> {
+    let at = picture.rgb.iter().position(|rgb| rgb.iter().any(|v| v.is_nan()))?;
+    let width = picture.width_px as usize;
+    Some([at % width, at / width])
+}
+
 fn no_film() -> WriteFault {
     WriteFault::Format("there is no film at this place".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_value_that_is_no_number_is_found() {
+        let mut picture = DisplayPicture { width_px: 3, height_px: 2, rgb: vec![[0.5, f32::INFINITY, -1.0]; 6] };
+        assert_eq!(no_number(&picture), None);
+        picture.rgb[4][2] = f32::NAN;
+        assert_eq!(no_number(&picture), Some([1, 1]));
+    }
 }

@@ -4,9 +4,9 @@
 //! 5000 cd/m2, as in daylight under clouds, which is short enough an exposure for any film. The camera meters its average.
 
 use crate::made::{MADE, of_nobody};
-use crate::run::{Unfinished, fits, picture};
+use crate::run::{fits, picture};
 use crate::still::WHITE_CD_M2;
-use crate::taken::Taken;
+use crate::taken::{Taken, Unfinished};
 use crate::{Ended, Event, Host, Job, LightFrom, Names, Place, Session, SessionError, words};
 use serde_json::{Value, json};
 use spectra_core::Isa;
@@ -259,7 +259,7 @@ fn meter(job: &Develop<'_>, plate: &Plate, host: &dyn Host) -> Option<FilmTime> 
             host.hear(Event::Note(&format!("`{}` is traced once more, to expose the others as it was", plate.file)));
             let control = host.control();
             session.prepare(host.workers()).ok()?;
-            Taken::of(&mut session, host, &control).ok()?.rendering
+            Taken::of(&mut session, host, &control, Unfinished::IsLeftOut).ok()?.rendering
         }
     };
     let exposure = (!rendering.partial).then_some(rendering.exposure)?;

@@ -4,7 +4,7 @@ use crate::beyond::beyond;
 use crate::files::{Files, write_report};
 use crate::job::{Ended, Job, LightFrom};
 use crate::made::{is_made, told};
-use crate::taken::{Taken, prepare};
+use crate::taken::{Taken, Unfinished, prepare};
 use crate::{Event, Host, Report, Session, SessionError, header, series, words};
 use spectra_scene::{FilmTime, SeriesKind, Shot};
 
@@ -18,15 +18,6 @@ pub fn run(job: &Job<'_>, host: &dyn Host) -> Result<Ended, SessionError> {
     } else {
         series::run(job, host)
     }
-}
-
-/// What becomes of a picture that is stopped before it is whole.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Unfinished {
-    /// It is written: where files of its name are there, beside them.
-    IsKept,
-    /// Nothing is written of it: a file of a series is whole.
-    IsLeftOut,
 }
 
 /// A scene that is one picture; and how long its films were exposed.
@@ -56,7 +47,7 @@ pub(crate) fn picture(
     session.scene().all_notes().for_each(|note| host.hear(Event::Note(note)));
     let mut taken = match exposed {
         Some(rendering) => Taken { rendering, seconds: 0.0, failure: None },
-        None => Taken::of(&mut session, host, &control)?,
+        None => Taken::of(&mut session, host, &control, unfinished)?,
     };
     let failure = taken.failure.take();
     let stopped = taken.rendering.partial && host.is_interrupted();

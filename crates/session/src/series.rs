@@ -4,7 +4,7 @@ use crate::beyond::beyond;
 use crate::check::{Look, checked, each_once};
 use crate::contact::Contact;
 use crate::files::{Files, write_report};
-use crate::taken::{Taken, prepare};
+use crate::taken::{Taken, Unfinished, prepare};
 use crate::{Ended, Event, Host, Job, Place, Report, Session, SessionError, header, words};
 use serde_json::{Map, Value, json};
 use spectra_core::params::{Reading, Warning};
@@ -172,7 +172,7 @@ struct Work<'a> {
     other: Option<Arc<Scene>>,
     /// What is said of each picture in `SCENE-series.json`.
     done: Vec<Value>,
-    /// What was said of the files of its sources.
+    /// What was said of the files of its sources and of exposures beyond films.
     doubts: Vec<Warning>,
     report_file: String,
     reported_s: f64,
@@ -207,7 +207,7 @@ impl Work<'_> {
                 self.doubts.push(doubt.clone());
             }
         }
-        let Taken { rendering, seconds, failure } = Taken::of(&mut session, host, &control)?;
+        let Taken { rendering, seconds, failure } = Taken::of(&mut session, host, &control, Unfinished::IsLeftOut)?;
         if let Some(text) = failure {
             return Err(SessionError::Failed(text));
         }
@@ -215,7 +215,13 @@ impl Work<'_> {
             return Ok(false);
         }
         let scene = session.into_scene();
-        beyond(&scene, &rendering.exposure).iter().for_each(|warning| host.hear(Event::Warning(warning)));
+        for warning in beyond(&scene, &rendering.exposure) {
+            // Once for what was written once, not in each of a thousand frames.
+            if !self.doubts.iter().any(|said| said.0.place == warning.0.place) {
+                host.hear(Event::Warning(&warning));
+                self.doubts.push(warning);
+            }
+        }
         let times = scene.film_times(&rendering.exposure);
         let mut attributes = header::attributes(&scene, &rendering.exposure, &times, false, job.version);
         attributes.extend(attributes_of(job.series, &picture.member));

@@ -16,6 +16,15 @@ pub(crate) fn prepare(job: &Job<'_>, host: &dyn Host, names: &[String]) -> Resul
     folder.prepare(job.series.name(), &names).map_err(SessionError::Failed)
 }
 
+/// What becomes of a picture that is stopped before it is whole.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Unfinished {
+    /// It is written: where files of its name are there, beside them.
+    IsKept,
+    /// Nothing is written of it: a file of a series is whole.
+    IsLeftOut,
+}
+
 /// The light of a picture.
 pub(crate) struct Taken {
     pub rendering: spectra_render::Rendering,
@@ -25,11 +34,13 @@ pub(crate) struct Taken {
 }
 
 impl Taken {
-    /// Traces all samples that the scene states.
+    /// Traces all samples that the scene states. Of a picture that is left out where it is stopped, nothing is looked for, nor said,
+    /// then.
     pub(crate) fn of(
         session: &mut Session,
         host: &dyn Host,
         control: &spectra_render::Control,
+        unfinished: Unfinished,
     ) -> Result<Self, SessionError> {
         host.hear(Event::Start(session.scene()));
         let begun = host.now_s();
@@ -45,7 +56,9 @@ impl Taken {
         };
         let mut rendering = session.look()?;
         rendering.partial |= failure.is_some();
-        rendering.warnings = session.remarks(&rendering);
+        if !rendering.partial || unfinished == Unfinished::IsKept {
+            rendering.warnings = session.remarks(&rendering);
+        }
         for warning in &rendering.warnings {
             host.hear(Event::Warning(&Warning::from(warning.clone())));
         }
