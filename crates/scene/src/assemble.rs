@@ -9,7 +9,7 @@ use crate::resources::read_yaml;
 use crate::said::Said;
 use crate::{
     ConePattern, Direction, Lights, NumberFamily, Output, Reflections, RenderSettings, Scene, doubts, films, lamps,
-    landing, language, output, sight, yaml,
+    landing, language, output, responses, sight, yaml,
 };
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -361,6 +361,13 @@ fn all_stages(
             None
         }
     });
+    if let Some(own) = &channels {
+        let wrong = responses::faults(own, &grid, if films.is_some() { "film" } else { "imager" }, params);
+        if !wrong.is_empty() {
+            channels = None;
+        }
+        behind.extend(wrong);
+    }
     if let (Some(channels), Some(transmittance)) = (&mut channels, &filters) {
         filters::fold(channels, transmittance);
     }

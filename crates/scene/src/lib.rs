@@ -23,6 +23,7 @@ mod negatives;
 mod output;
 mod remembered;
 mod resources;
+mod responses;
 mod said;
 mod scene;
 mod schema;
