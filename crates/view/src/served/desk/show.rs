@@ -59,8 +59,10 @@ impl Desk {
             }
         }
         let whole = hand.look()?;
-        // Half as many rays are as good for a first look, and what was developed of them is kept.
-        if !quick && hand.small.as_ref().is_none_or(|small| whole.rays >= 2 * small.rays) {
+        // Half as many rays are as good for a first look, and what was developed of them is kept, until all are there.
+        let is_whole = hand.session.samples() >= u64::from(hand.session.scene().render.samples);
+        let is_better = |rays: u64| whole.rays >= 2 * rays || (is_whole && whole.rays > rays);
+        if !quick && hand.small.as_ref().is_none_or(|small| is_better(small.rays)) {
             hand.small = whole.small().map(Arc::new);
         }
         // One after the other; and for none of them does anybody wait who turns something.
