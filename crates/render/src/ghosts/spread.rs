@@ -9,7 +9,8 @@ use super::sight::Seen;
 
 /// The part that goes to each of four places around; what is left stays.
 pub(super) const SHARE: f64 = 0.2;
-/// So many rays and fewer are shared out over all of their spread; of more, what each stands for stays nearer.
+/// How far away those are, in spreads, where so many rays or fewer are known; of more, what each stands for stays nearer.
+const WIDTH: f64 = 0.85;
 const FEW: f64 = 80.0;
 /// The spread of fewer rays than this is not known.
 const LEAST: f64 = 3.0;
@@ -55,7 +56,7 @@ fn ways<'a>(rays: impl Iterator<Item = &'a Seen>) -> Option<[[f64; 2]; 2]> {
     }
     let along = (xy - x * y) / across;
     let up = (yy - y * y - along * along).max(0.0).sqrt();
-    let width = (FEW / alike).sqrt().min(1.0);
+    let width = WIDTH * (FEW / alike).sqrt().min(1.0);
     Some([[width * across, width * along], [0.0, width * up]])
 }
 
@@ -81,7 +82,7 @@ mod tests {
             let half = 0.5_f64.sqrt();
             [0.3 + half * (along - across), -0.1 + half * (along + across)]
         };
-        for (many, width) in [(64, 1.0), (2000, 0.2)] {
+        for (many, width) in [(64, WIDTH), (2000, 0.2 * WIDTH)] {
             let both = |i: u64| [seen(1, on(0.2, i)), seen(2, on(0.7, i))];
             let all: Vec<Seen> = (0..many).flat_map(both).collect();
             let around = around(&all);
