@@ -255,6 +255,20 @@ fn film_with_too_few_rays_is_said_so() {
     assert_eq!(sparse("2e6"), Vec::<String>::new());
 }
 
+/// A lamp in focus lights one pixel with all its rays, and ghosts around it have theirs by `samples`: more `render.rays` fill nothing.
+#[test]
+fn a_lamp_in_the_dark_needs_no_more_rays() {
+    let of = |order: &str, rays: &str| {
+        let few = ["imager.resolution=44", "render.samples=1", order, rays];
+        render(&load("streak-anamorphic.yaml", &few)).warnings
+    };
+    for order in ["render.reflections.order=0", "render.reflections.order=2"] {
+        for rays in ["render.rays=2000", "render.rays=40000"] {
+            assert_eq!(of(order, rays), Vec::<String>::new(), "{order} {rays}");
+        }
+    }
+}
+
 /// What the integral alone is measured with is what was asked for.
 #[test]
 fn seeds_of_a_benchmark_are_those_asked_for() {

@@ -25,7 +25,7 @@ const PATHS_PER_UNIT: u64 = 1 << 16;
 const STREAM: u64 = 0;
 
 /// What numbers of its own stages draw by.
-const ESTIMATOR: &str = "forward";
+pub(crate) const ESTIMATOR: &str = "forward";
 
 pub(crate) struct Forward {
     pipeline: Arc<Pipeline>,
@@ -242,7 +242,7 @@ impl Forward {
 
 impl Estimator for Forward {
     fn name(&self) -> &'static str {
-        if self.pipeline.scattered { SCATTER } else { "forward" }
+        if self.pipeline.scattered { SCATTER } else { ESTIMATOR }
     }
 
     fn tiles(&self) -> usize {

@@ -8,7 +8,6 @@ use spectra_core::LossCounts;
 pub struct Light {
     pub(crate) parts: Vec<Part>,
     pub(crate) losses: LossCounts,
-    pub(crate) detected: u64,
     /// What the meters see, once they have looked: see [`crate::Estimator::metered`].
     pub(crate) metered: Option<Vec<Vec<f64>>>,
     /// Samples of each half after which it was decided last where to go on.
@@ -22,6 +21,8 @@ pub(crate) struct Part {
     pub sums: ExactSums,
     pub done: Done,
     pub rays: u64,
+    /// Of these, rays that brought light to the imager.
+    pub detected: u64,
 }
 
 impl Light {
@@ -35,5 +36,11 @@ impl Light {
     #[must_use]
     pub fn rays(&self) -> u64 {
         self.parts.iter().map(|part| part.rays).sum()
+    }
+
+    /// Rays of these that brought light to the imager.
+    #[must_use]
+    pub fn detected(&self) -> u64 {
+        self.parts.iter().map(|part| part.detected).sum()
     }
 }

@@ -1,5 +1,7 @@
 //! What a person should know of a picture before believing it: nothing on it, too much on it, too little of it.
 
+use crate::forward;
+use crate::light::Light;
 use crate::noise::Noise;
 use crate::renderer::Renderer;
 use crate::rendering::Rendering;
@@ -9,6 +11,8 @@ use spectra_scene::{Direction, Scene, SceneFilm};
 
 /// Of the lit pixels, this share alone or beside holes tells that rays are too few, and not that the picture is black there.
 const SPARSE: f64 = 0.5;
+/// Where so many rays are expected, one pixel of 3000 gets none.
+const FEW_RAYS: f64 = 8.0;
 /// What is clean almost everywhere is not worth a word.
 const CLEAN: f64 = 0.99;
 
@@ -21,14 +25,14 @@ const SHUTTER_S: f64 = 1.0 / 8000.0;
 const DAZZLED_SHORT: f64 = 4.0;
 
 impl Renderer {
-    /// What a person should know of a rendering before believing it.
+    /// What a person should know of a rendering of this light before believing it.
     #[must_use]
-    pub fn remarks(&self, rendering: &Rendering) -> Vec<String> {
-        remarks(self, rendering)
+    pub fn remarks(&self, light: &Light, rendering: &Rendering) -> Vec<String> {
+        remarks(self, light, rendering)
     }
 }
 
-fn remarks(renderer: &Renderer, rendering: &Rendering) -> Vec<String> {
+fn remarks(renderer: &Renderer, light: &Light, rendering: &Rendering) -> Vec<String> {
     let scene = renderer.scene();
     let mut all = Vec::new();
     if rendering.detected == 0 {
@@ -56,7 +60,7 @@ fn remarks(renderer: &Renderer, rendering: &Rendering) -> Vec<String> {
                 .to_owned(),
         );
     } else if scene.render.direction == Direction::Forward && !scene.films.is_empty() {
-        all.extend(sparse(scene, &rendering.exposure));
+        all.extend(sparse(renderer, light));
     }
     all
 }
@@ -126,10 +130,24 @@ fn dazzled_meter(film: &SceneFilm, exposure: &ExposureFrame) -> Option<String> {
     ))
 }
 
-/// Film is no mean: what no ray reached is developed as unexposed, between pixels that rays did reach.
-fn sparse(scene: &Scene, exposure: &ExposureFrame) -> Option<String> {
-    let (width, height) = (exposure.size.width_px as usize, exposure.size.height_px as usize);
-    let lit: Vec<bool> = (0..width * height).map(|p| exposure.channels.iter().any(|c| c.values[p] != 0.0)).collect();
+/// Film is no mean: what no ray reached is developed as unexposed, between pixels that rays did reach. Of the light that
+/// `render.rays` are for: ghosts and glare have theirs by `samples`.
+fn sparse(renderer: &Renderer, light: &Light) -> Option<String> {
+    let scene = renderer.scene();
+    let size = scene.imager.size();
+    let (width, height) = (size.width_px as usize, size.height_px as usize);
+    let mut reached = vec![0.0; width * height];
+    let mut rays = 0;
+    let parts = renderer.estimators().zip(&light.parts).filter(|(estimator, _)| estimator.name() == forward::ESTIMATOR);
+    for (_, part) in parts {
+        let channels = renderer.recorded().len();
+        let of = |p: usize| (0..channels).map(|at| part.sums.get(p * channels + at) as f64).sum::<f64>();
+        reached.iter_mut().enumerate().for_each(|(p, sum)| *sum += of(p));
+        rays += part.detected;
+    }
+    // As much as so many rays bring: what has more was not reached by chance.
+    let few = FEW_RAYS * reached.iter().sum::<f64>() / rays as f64;
+    let lit: Vec<bool> = reached.iter().map(|sum| *sum != 0.0).collect();
     let around = |p: usize| {
         let (column, row) = (p % width, p / width);
         let columns = column.saturating_sub(1)..(column + 2).min(width);
@@ -143,7 +161,7 @@ fn sparse(scene: &Scene, exposure: &ExposureFrame) -> Option<String> {
         beside_empty && (lit_around(p) < 3 || around(p).any(|at| !lit[at] && lit_around(at) > 3))
     };
     let many = lit.iter().filter(|lit| **lit).count();
-    let edge = (0..lit.len()).filter(|p| lit[*p] && is_ragged(*p)).count();
+    let edge = (0..lit.len()).filter(|p| lit[*p] && reached[*p] < few && is_ragged(*p)).count();
     let empty = lit.len() - many;
     if many == 0 || (edge as f64) < SPARSE * many as f64 || empty * 10 < lit.len() {
         return None;

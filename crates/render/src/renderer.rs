@@ -277,7 +277,7 @@ impl Renderer {
         let mut light = self.begin()?;
         self.advance(&mut light, u64::from(self.scene.render.samples), workers, control)?;
         let mut rendering = self.look(&self.scene, &light)?;
-        rendering.warnings = self.remarks(&rendering);
+        rendering.warnings = self.remarks(&light, &rendering);
         Ok(rendering)
     }
 
@@ -327,11 +327,11 @@ impl Renderer {
         let part = |estimator: &dyn Estimator| {
             let cells = self.cells().checked_mul(1 + estimator.paths().len());
             let sums = cells.and_then(ExactSums::new).ok_or_else(|| self.too_large())?;
-            Ok(Part { sums, done: Done::default(), rays: 0 })
+            Ok(Part { sums, done: Done::default(), rays: 0, detected: 0 })
         };
         let parts = self.estimators().map(part).collect::<Result<_, RenderError>>()?;
         let halves = self.halves();
-        Ok(Light { parts, losses: LossCounts::default(), detected: 0, metered: None, judged: 0, halves })
+        Ok(Light { parts, losses: LossCounts::default(), metered: None, judged: 0, halves })
     }
 
     /// Halves of the samples, with numbers of their own: two where noise is asked for.
@@ -452,9 +452,9 @@ impl Renderer {
         });
         let (losses, detected, done, rays) = counted.into_inner().unwrap_or_else(PoisonError::into_inner);
         light.losses.merge(&losses);
-        light.detected += detected;
         let part = &mut light.parts[at];
         part.rays += rays;
+        part.detected += detected;
         part.done.note(&done, units);
         failure.into_inner().unwrap_or_else(PoisonError::into_inner).map_or(Ok(()), Err)
     }
@@ -491,7 +491,7 @@ impl Renderer {
             layers,
             rays: light.rays(),
             losses: light.losses.clone(),
-            detected: light.detected,
+            detected: light.detected(),
             estimators: self.estimators().take(self.kinds()).map(Estimator::name).collect(),
             partial: light.samples() < u64::from(scene.render.samples) && !self.is_clean(light),
             noise: self.noise(light),

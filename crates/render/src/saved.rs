@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::io::{self, Read, Write};
 
 /// Begins every file of light; its last digit is the version of the form.
-const MAGIC: &[u8; 16] = b"spectra light 3\n";
+const MAGIC: &[u8; 16] = b"spectra light 4\n";
 
 /// Numbers in a row, little endian, with a check sum behind them (FNV-1a of 64 bits: G. Fowler, L. C. Noll, K.-P. Vo).
 struct Form<T> {
@@ -62,7 +62,6 @@ impl Light {
     pub fn save(&self, out: &mut dyn Write) -> io::Result<()> {
         let mut form = Form::new(out);
         form.put(MAGIC)?;
-        form.number(self.detected)?;
         let losses: Vec<(u32, Loss, u64)> = self.losses.iter().collect();
         form.number(losses.len() as u64)?;
         for (surface, cause, rays) in losses {
@@ -76,8 +75,9 @@ impl Light {
         }
         form.number(self.judged)?;
         form.number(self.parts.len() as u64)?;
-        for Part { sums, done, rays } in &self.parts {
+        for Part { sums, done, rays, detected } in &self.parts {
             form.number(*rays)?;
+            form.number(*detected)?;
             form.number(done.complete())?;
             let open = done.open().map(|(samples, units)| (samples.clone(), units.ranges().collect::<Vec<_>>()));
             let (samples, units) = open.unwrap_or_default();
@@ -116,7 +116,6 @@ impl Light {
             return Err(bad("this is no light of a render, or one of another version"));
         }
         let mut light = renderer.begin().map_err(|e| io::Error::new(io::ErrorKind::OutOfMemory, e.to_string()))?;
-        light.detected = form.next()?;
         for _ in 0..form.next()?.min(MANY) {
             let (state, rays) = (form.next()?, form.next()?);
             let (cause, surface) = Loss::of_state(state).filter(|(_, s)| u64::from(*s) < MANY).ok_or_else(other)?;
@@ -137,6 +136,7 @@ impl Light {
         }
         for part in &mut light.parts {
             part.rays = form.next()?;
+            part.detected = form.next()?;
             let complete = form.next()?;
             let samples = form.next()?..form.next()?;
             let mut units = Units::default();

@@ -215,7 +215,7 @@ impl Session {
     /// What a person should know of such a rendering.
     #[must_use]
     pub fn remarks(&self, rendering: &Rendering) -> Vec<String> {
-        self.ready.as_ref().map_or_else(Vec::new, |(renderer, _)| renderer.remarks(rendering))
+        self.ready.as_ref().map_or_else(Vec::new, |(renderer, light)| renderer.remarks(light, rendering))
     }
 
     /// The pictures of the light so far: one for each film, with its name where there are several.

@@ -10,6 +10,8 @@ const STEP: f64 = 0.02;
 /// Lights in the dark make a picture; so do shadows in a bright one: shares of the frame that are beyond.
 const DARK: f64 = 0.999;
 const BRIGHT: f64 = 0.99;
+/// A smaller part of the frame that has any light is a lamp in the dark.
+const LAMP: f64 = 0.1;
 
 /// Log10 of the exposures, lx s, between which `curve` (of log10 of the exposure) tells light apart.
 pub(crate) fn ends(curve: impl Fn(f64) -> f64) -> [f64; 2] {
@@ -43,7 +45,7 @@ pub(crate) fn beyond(layers: &[(&[f32], [f64; 2])], factor: f64) -> Option<Beyon
     // Beside the circle of a fisheye there is no light at any exposure.
     let lit = (0..pixels).filter(|pixel| each(*pixel).any(|(value, _)| value > 0.0)).count();
     let is_bright = share(&|pixel| each(pixel).all(|(value, ends)| value > ends[1]), lit) > BRIGHT;
-    is_bright.then_some(Beyond::Bright)
+    (is_bright && lit as f64 > LAMP * pixels as f64).then_some(Beyond::Bright)
 }
 
 #[cfg(test)]
@@ -69,6 +71,7 @@ mod tests {
         assert_eq!(of(&mixed(0.001, 1.0, 2)), None);
         assert_eq!(of(&mixed(100.0, 1.0, 20)), None);
         assert_eq!(of(&mixed(100.0, 0.0, 500)), Some(Beyond::Bright));
+        assert_eq!(of(&mixed(100.0, 0.0, 999)), None);
         assert_eq!(beyond(&[(&[1.0; 10], curve)], 1e-4), Some(Beyond::Dark));
         assert_eq!(beyond(&[(&[1.0; 10], curve)], 1e4), Some(Beyond::Bright));
     }
