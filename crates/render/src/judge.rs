@@ -58,16 +58,6 @@ struct Judged {
 }
 
 impl Renderer {
-    /// Channels that noise is asked of: luminance where there is one, else all.
-    fn judged_channels(&self) -> Vec<usize> {
-        let scene = self.scene();
-        let names: Vec<&str> = self.recorded().iter().map(|at| scene.channels[*at].name.as_str()).collect();
-        match names.iter().position(|name| *name == "Y") {
-            Some(luminance) => vec![luminance],
-            None => (0..names.len()).collect(),
-        }
-    }
-
     /// Looks at all blocks.
     fn judge(&self, light: &Light) -> Judged {
         let blocks = Blocks::of(self.scene());

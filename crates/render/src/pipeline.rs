@@ -100,6 +100,14 @@ impl Pipeline {
         }
     }
 
+    /// Channels that noise is asked of, by their place among those recorded: luminance where there is one, else all.
+    pub(crate) fn judged_channels(&self) -> Vec<usize> {
+        let mut names = self.recorded.iter().map(|at| self.scene.channels[*at].name.as_str());
+        names
+            .position(|name| name == "Y")
+            .map_or_else(|| (0..self.recorded.len()).collect(), |luminance| vec![luminance])
+    }
+
     /// The same through a lens that is made ready otherwise.
     pub(crate) fn with_tracer(&self, tracer: Tracer) -> Self {
         Self {

@@ -538,6 +538,10 @@ impl Renderer {
         &self.pipeline.recorded
     }
 
+    pub(crate) fn judged_channels(&self) -> Vec<usize> {
+        self.pipeline.judged_channels()
+    }
+
     pub(crate) fn estimators(&self) -> impl Iterator<Item = &dyn Estimator> {
         self.estimators.iter().map(|e| &**e)
     }

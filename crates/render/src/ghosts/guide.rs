@@ -148,7 +148,7 @@ impl Lit {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ghosts::sight::{Rays, Seen, Sight};
+    use crate::ghosts::sight::{Brought, Seen, Sight};
     use spectra_core::math::sin_cos_turns;
     use spectra_core::numbers::Numbers;
 
@@ -158,11 +158,11 @@ mod tests {
     fn a_guide_has_no_bias() {
         let disk = |[x, y]: [f64; 2]| f64::from((x - 0.3) * (x - 0.3) + (y + 0.2) * (y + 0.2) < 0.01);
         let mut guide = Guide::everywhere();
-        let mut sight = Sight::new(1);
+        let mut sight = Sight::default();
         let numbers = Numbers::sobol(5);
         let n = 1 << 14;
         for round in 0..5 {
-            let (mut lit, mut came) = (Lit::of(&guide), Rays::new(1));
+            let (mut lit, mut came) = (Lit::of(&guide), Vec::new());
             let (mut area, mut integral, mut square) = (0.0, 0.0, 0.0);
             for i in 0..n {
                 let aim = guide.draw(numbers.one(round, i, 3), numbers.one(round, i, 4));
@@ -173,7 +173,7 @@ mod tests {
                 square += value / aim.density / aim.density / n as f64;
                 if value > 0.0 {
                     lit.add(aim.place);
-                    came.push(Seen { zone: 0, aim, block: 0 }, &[value / aim.density]);
+                    came.push(Seen { zone: 0, aim, block: 0, brought: Brought { all: value, judged: value } });
                 }
             }
             let sigma = (square / n as f64).sqrt();
@@ -188,7 +188,7 @@ mod tests {
                 guide = lit.closer();
             } else {
                 sight.add(vec![guide], n as f64, came);
-                let light: f64 = sight.light().flat_map(|(_, parts)| parts).sum();
+                let light: f64 = sight.light(Brought::judged).map(|(_, part)| part).sum();
                 assert!((light - want).abs() < 0.01 * want, "{round}: {light} {want}");
                 guide = sight.sorted(&[1.0]).guides(&[1.0]).0.remove(0);
             }
@@ -197,8 +197,8 @@ mod tests {
 
     #[test]
     fn what_was_not_found_is_looked_for_everywhere() {
-        let mut sight = Sight::new(1);
-        sight.add(vec![Guide::everywhere()], 100.0, Rays::new(1));
+        let mut sight = Sight::default();
+        sight.add(vec![Guide::everywhere()], 100.0, Vec::new());
         let guide = sight.sorted(&[]).guides(&[]).0.remove(0);
         let (sin, _) = sin_cos_turns(0.1);
         let aim = guide.draw(0.5 * sin, 0.75);

@@ -2,8 +2,8 @@
 //!
 //! Forward, as [`crate::forward`], but along paths by two reflections, or four, each traced exactly as the straight one. A pilot run finds for
 //! each path and zone of the source where on the front of the lens its light comes in ([`guide`]), and how much each path needs: rays
-//! are shared out so that the noise of 32 x 32 pixels, as a part of the ghosts' light there, is least, and nowhere much more than
-//! elsewhere ([`shares`]). A tenth of every path's rays goes all over the front, so that no path has a bias whatever the pilot overlooked.
+//! are shared out so that the noise of 32 x 32 pixels, as a part of the ghosts' light there (of luminance, where a picture has it), is
+//! least, and nowhere much more than elsewhere ([`shares`]). A tenth of every path's rays goes all over the front, so that no path has a bias whatever the pilot overlooked.
 
 mod account;
 mod density;
@@ -12,6 +12,7 @@ mod metered;
 mod pilot;
 mod shares;
 mod sight;
+mod spread;
 mod tree;
 mod zones;
 

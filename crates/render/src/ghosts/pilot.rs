@@ -6,7 +6,7 @@
 
 use super::guide::{Aim, Guide, Lit};
 use super::shares::{self, Piece, Share};
-use super::sight::{Rays, Seen, Sight, Sorted};
+use super::sight::{self, Brought, Seen, Sight, Sorted};
 use super::{Ghosts, Way};
 use crate::Workers;
 use crate::error::RenderError;
@@ -79,23 +79,21 @@ impl Blocks {
         pixel / self.width / BLOCK * self.across() + pixel % self.width / BLOCK
     }
 
-    /// What came to each channel of each, of parts of light.
-    fn light(&self, channels: usize, parts: impl Iterator<Item = (usize, impl Iterator<Item = f64>)>) -> Vec<f64> {
-        let mut light = vec![0.0; self.count() * channels];
-        for (block, parts) in parts {
-            light[block * channels..].iter_mut().zip(parts).for_each(|(light, part)| *light += part);
-        }
+    /// What came to each, of parts of light.
+    fn light(&self, parts: impl Iterator<Item = (usize, f64)>) -> Vec<f64> {
+        let mut light = vec![0.0; self.count()];
+        parts.for_each(|(block, part)| light[block] += part);
         light
     }
 
     /// The brightest of them, W/m2.
-    fn brightest(&self, channels: usize, light: &[f64]) -> f64 {
+    fn brightest(&self, light: &[f64]) -> f64 {
         let pixels = |block: usize| {
             let (column, row) = (block % self.across() * BLOCK, block / self.across() * BLOCK);
             ((self.width - column).min(BLOCK) * (self.height - row).min(BLOCK)) as f64
         };
-        let mean = |(block, light): (usize, &[f64])| light.iter().sum::<f64>() / (pixels(block) * self.pixel_mm2);
-        light.chunks_exact(channels).enumerate().map(mean).fold(0.0, f64::max)
+        let mean = |(block, light): (usize, &f64)| light / (pixels(block) * self.pixel_mm2);
+        light.iter().enumerate().map(mean).fold(0.0, f64::max)
     }
 }
 
@@ -107,7 +105,8 @@ struct Aimed {
 
 struct Pilot<'a> {
     ghosts: &'a Ghosts,
-    channels: usize,
+    /// Channels that noise is asked of.
+    judged: Vec<usize>,
     blocks: Blocks,
     /// On the source, without a direction.
     placed: Vec<RayBatch>,
@@ -128,7 +127,6 @@ pub(super) fn search(
 ) -> Result<Option<Plan>, RenderError> {
     let pilot = &Pilot::new(ghosts);
     let (ways, fresh) = (&ghosts.plan.ways, || ghosts.state(BATCH));
-    let channels = pilot.channels;
     // Batches of a path, of so many of a pair's.
     let of = |way: &Way, batches: usize| if way.is_of_pair() { batches } else { batches.div_ceil(OF_MORE) };
     let first = |batches: usize| {
@@ -140,9 +138,12 @@ pub(super) fn search(
     let is_dim = |brightest: f64, doubt: f64| matters.is_some_and(|matters| !(brightest > matters / doubt));
     if matters.is_some() {
         let scouts = first(SCOUTS)?;
-        let parts = scouts.iter().zip(ways).flat_map(|((_, came), way)| came.light((of(way, SCOUTS) * BATCH) as f64));
-        let light = pilot.blocks.light(channels, parts);
-        if is_dim(pilot.blocks.brightest(channels, &light), DOUBT) {
+        let parts = scouts
+            .iter()
+            .zip(ways)
+            .flat_map(|((_, came), way)| sight::light(came, (of(way, SCOUTS) * BATCH) as f64, Brought::all));
+        let light = pilot.blocks.light(parts);
+        if is_dim(pilot.blocks.brightest(&light), DOUBT) {
             return Ok(None);
         }
     }
@@ -156,13 +157,13 @@ pub(super) fn search(
         for round in 1..ROUNDS {
             let (lit, came) = pilot.round(state, &ways[at], &guides, Some(stream(at, round)), batches);
             if round + 1 == ROUNDS {
-                let mut sight = Sight::new(channels);
+                let mut sight = Sight::default();
                 sight.add(guides, (batches * BATCH) as f64, came);
                 return Ok::<_, RenderError>(sight);
             }
             guides = closer(&lit);
         }
-        Ok(Sight::new(channels))
+        Ok(Sight::default())
     })?;
     for round in 0..SHARED {
         let plan = pilot.best(&sights, workers)?;
@@ -206,31 +207,24 @@ impl<'a> Pilot<'a> {
             let [.., a, b] = &state.numbers;
             everywhere.push(aimed(ghosts, state.rays.clone(), &guides, [a.slice(BATCH), b.slice(BATCH)]));
         }
-        Self { ghosts, channels: ghosts.pipeline.responses.channels(), blocks, placed, everywhere }
+        Self { ghosts, judged: ghosts.pipeline.judged_channels(), blocks, placed, everywhere }
     }
 
     /// The guides with the least noise, as far as was seen.
     fn best(&self, sights: &[Sight], workers: &dyn Workers) -> Result<Plan, RenderError> {
         let ways = &self.ghosts.plan.ways;
-        let channels = self.channels;
-        let light = self.blocks.light(channels, sights.iter().flat_map(Sight::light));
-        // Noise is a part of a channel's light, or of light so dim that nobody looks at it.
-        let mut least = vec![0.0_f64; channels];
-        for light in light.chunks_exact(channels) {
-            least.iter_mut().zip(light).for_each(|(least, light)| *least = least.max(0.5 * DIM * light));
-        }
-        let each = light.iter().zip(least.iter().cycle());
-        let over = |(light, least): (&f64, &f64)| (channels as f64 * light.max(*least).powi(2)).recip();
-        let over: Vec<f64> = each.clone().map(over).collect();
-        let is_judged: Vec<bool> = each.map(|(light, least)| light > least).collect();
+        let parts = |of: fn(&Brought) -> f64| sights.iter().flat_map(move |sight| sight.light(of));
+        let light = self.blocks.light(parts(Brought::judged));
+        // Noise is a part of a block's light, or of light so dim that nobody looks at it.
+        let least = 0.5 * DIM * light.iter().fold(0.0_f64, |most, light| most.max(*light));
+        let over: Vec<f64> = light.iter().map(|light| light.max(least).powi(2).recip()).collect();
         // One over the number of rays, as many as were all alike.
         let mut few = vec![0.0; self.blocks.count()];
-        for (block, parts) in sights.iter().flat_map(Sight::light) {
-            few[block] +=
-                over[block * channels..].iter().zip(parts).map(|(over, part)| over * part * part).sum::<f64>();
+        for (block, part) in parts(Brought::judged) {
+            few[block] += over[block] * part * part;
         }
-        let judged = is_judged.chunks_exact(channels).map(|channels| channels.contains(&true));
-        let rays: Vec<Option<f64>> = few.iter().zip(judged).map(|(few, judged)| judged.then(|| few.recip())).collect();
+        let known = |(few, light): (&f64, &f64)| (*light > least).then(|| few.recip());
+        let rays: Vec<Option<f64>> = few.iter().zip(&light).map(known).collect();
         let sort = |(): &mut (), at: usize| wanted(workers).map(|()| sights[at].sorted(&over));
         let sorted: Vec<Sorted> = each_of(workers, sights.len(), || (), sort)?;
         let (mut paths, mut pieces, mut first) = (Vec::new(), Vec::new(), 0);
@@ -246,7 +240,7 @@ impl<'a> Pilot<'a> {
         }
         let weights = shares::weights(&pieces, &paths, &rays);
         let ways = sorted.iter().map(|sorted| sorted.guides(&weights)).collect();
-        Ok(Plan { ways, brightest: self.blocks.brightest(channels, &light) })
+        Ok(Plan { ways, brightest: self.blocks.brightest(&self.blocks.light(parts(Brought::all))) })
     }
 
     /// One round of a path by so many batches: where light came, and each ray that came through. `stream` are the numbers of the
@@ -258,9 +252,9 @@ impl<'a> Pilot<'a> {
         guides: &[Guide],
         stream: Option<u64>,
         batches: usize,
-    ) -> (Vec<Lit>, Rays) {
+    ) -> (Vec<Lit>, Vec<Seen>) {
         let mut lit: Vec<Lit> = guides.iter().map(Lit::of).collect();
-        let mut came = Rays::new(self.channels);
+        let mut came = Vec::new();
         let mut own;
         for (at, shared) in self.everywhere.iter().cycle().enumerate().take(batches) {
             let batch = match stream {
@@ -275,7 +269,8 @@ impl<'a> Pilot<'a> {
                 // Where one guide is for all zones, that.
                 let zone = zone.min(guides.len() - 1);
                 lit[zone].add(aim.place);
-                came.push(Seen { zone, aim, block: self.blocks.of(pixel_and_channel(tag).0) }, brought);
+                let block = self.blocks.of(pixel_and_channel(tag).0);
+                came.push(Seen { zone, aim, block, brought: brought.times(aim.density) });
             });
         }
         (lit, came)
@@ -291,8 +286,8 @@ impl<'a> Pilot<'a> {
         aimed(self.ghosts, self.placed[at % self.placed.len()].clone(), guides, [&a, &b])
     }
 
-    /// Follows a path. `came` is given number and tag of each ray that brings light to the frame, and what it brings to each channel.
-    fn through(&self, state: &mut ThreadState, way: &Way, from: &RayBatch, mut came: impl FnMut(usize, u32, &[f64])) {
+    /// Follows a path. `came` is given number and tag of each ray that brings light to the frame, and what it brings.
+    fn through(&self, state: &mut ThreadState, way: &Way, from: &RayBatch, mut came: impl FnMut(usize, u32, Brought)) {
         let ghosts = self.ghosts;
         state.rays = from.clone();
         let c = state.rays.columns_mut();
@@ -329,8 +324,13 @@ impl<'a> Pilot<'a> {
         };
         state.rays.weighing().weight.iter_mut().zip(&numbers).for_each(|(weight, number)| *weight *= carries(*number));
         let brought = ghosts.brought(state);
-        for ((number, tag), brought) in numbers.iter().zip(state.rays.tags()).zip(brought.chunks_exact(self.channels)) {
-            if brought.iter().any(|value| *value != 0.0) {
+        let channels = ghosts.pipeline.responses.channels();
+        for ((number, tag), brought) in numbers.iter().zip(state.rays.tags()).zip(brought.chunks_exact(channels)) {
+            let brought = Brought {
+                all: brought.iter().map(|value| value.abs()).sum(),
+                judged: self.judged.iter().map(|channel| brought[*channel].abs()).sum(),
+            };
+            if brought.all != 0.0 {
                 came(*number as usize, *tag, brought);
             }
         }

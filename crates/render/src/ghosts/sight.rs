@@ -2,11 +2,29 @@
 
 use super::guide::{Aim, Guide, Part};
 use super::shares;
+use super::spread;
 use super::tree::Tree;
 
-/// The part of what a ray of the pilot stands for that lies at each of four places around it, a mean distance of rays aside and up: light
-/// has no edge just where a ray happened to go.
-const NEAR: f64 = 0.05;
+/// What a ray brought: the sum of all channels, and of those that noise is asked of.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Brought {
+    pub all: f64,
+    pub judged: f64,
+}
+
+impl Brought {
+    pub fn all(&self) -> f64 {
+        self.all
+    }
+
+    pub fn judged(&self) -> f64 {
+        self.judged
+    }
+
+    pub fn times(self, factor: f64) -> Self {
+        Self { all: self.all * factor, judged: self.judged * factor }
+    }
+}
 
 /// A ray that came through.
 #[derive(Clone, Copy, Debug)]
@@ -15,80 +33,47 @@ pub(super) struct Seen {
     pub aim: Aim,
     /// The block that it reached.
     pub block: usize,
+    /// But for the density of its aim.
+    pub brought: Brought,
 }
 
-/// Rays that came through.
-#[derive(Debug)]
-pub(super) struct Rays {
-    channels: usize,
-    seen: Vec<Seen>,
-    /// What each of them brought to each channel, but for the density of its aim.
-    values: Vec<f64>,
-}
-
-impl Rays {
-    pub fn new(channels: usize) -> Self {
-        Self { channels, seen: Vec::new(), values: Vec::new() }
-    }
-
-    /// One that brought `brought`.
-    pub fn push(&mut self, seen: Seen, brought: &[f64]) {
-        self.seen.push(seen);
-        self.values.extend(brought.iter().map(|value| value.abs() * seen.aim.density));
-    }
-
-    /// Each of them, and what it brought.
-    fn each(&self) -> impl Iterator<Item = (&Seen, &[f64])> {
-        self.seen.iter().zip(self.values.chunks_exact(self.channels))
-    }
-
-    /// Of each the block, and what of the light it is, channel by channel, of so many rays.
-    pub fn light(&self, rays: f64) -> impl Iterator<Item = (usize, impl Iterator<Item = f64>)> {
-        self.each().map(move |(seen, values)| {
-            let share = 1.0 / (seen.aim.density * rays);
-            (seen.block, values.iter().map(move |value| value * share))
-        })
-    }
+/// Of each ray the block, and what of the light it is, of so many rays.
+pub(super) fn light(seen: &[Seen], rays: f64, of: fn(&Brought) -> f64) -> impl Iterator<Item = (usize, f64)> {
+    seen.iter().map(move |seen| (seen.block, of(&seen.brought) / (seen.aim.density * rays)))
 }
 
 /// What was seen of a path. Rays of all rounds are one set, as dense as they are together: the density of an aim is that of the set,
 /// in rays.
+#[derive(Default)]
 pub(super) struct Sight {
     rounds: Vec<(Vec<Guide>, f64)>,
-    all: Rays,
+    all: Vec<Seen>,
 }
 
 impl Sight {
-    /// Nothing yet.
-    pub fn new(channels: usize) -> Self {
-        Self { rounds: Vec::new(), all: Rays::new(channels) }
-    }
-
     /// Adds a round of so many rays.
-    pub fn add(&mut self, guides: Vec<Guide>, rays: f64, came: Rays) {
-        for old in &mut self.all.seen {
+    pub fn add(&mut self, guides: Vec<Guide>, rays: f64, came: Vec<Seen>) {
+        for old in &mut self.all {
             old.aim.density += rays * guides[old.zone].density(old.aim.place);
         }
         let before = &self.rounds;
-        self.all.seen.extend(came.seen.into_iter().map(|seen| {
+        self.all.extend(came.into_iter().map(|seen| {
             let earlier = before.iter().map(|(guides, rays)| rays * guides[seen.zone].density(seen.aim.place));
             let density = earlier.sum::<f64>() + rays * seen.aim.density;
             Seen { aim: Aim { density, ..seen.aim }, ..seen }
         }));
-        self.all.values.extend(came.values);
         self.rounds.push((guides, rays));
     }
 
-    /// Of each ray the block, and what of the light it is, channel by channel.
-    pub fn light(&self) -> impl Iterator<Item = (usize, impl Iterator<Item = f64>)> {
-        self.all.light(1.0)
+    /// Of each ray the block, and what of the light it is.
+    pub fn light(&self, of: fn(&Brought) -> f64) -> impl Iterator<Item = (usize, f64)> {
+        light(&self.all, 1.0, of)
     }
 
-    /// Sorts it into cells, as small as there are rays for; `over` is what a square of a block's channel is multiplied by, block by block.
+    /// Sorts it into cells, as small as there are rays for; `over` is what a square of each block is multiplied by.
     pub fn sorted(&self, over: &[f64]) -> Sorted {
         let zones = self.rounds.last().map_or(0, |(guides, _)| guides.len());
-        let places =
-            |zone: usize| self.all.seen.iter().filter(move |seen| seen.zone == zone).map(|seen| seen.aim.place);
+        let places = |zone: usize| self.all.iter().filter(move |seen| seen.zone == zone).map(|seen| seen.aim.place);
         let parts = self.rounds.last().into_iter().flat_map(|(guides, _)| guides).map(Guide::part);
         let parts: Vec<Part> = parts.enumerate().map(|(zone, part)| part.with(places(zone))).collect();
         let tree = |zone: usize| Tree::around(places(zone).filter_map(|place| parts[zone].inside(place)).collect());
@@ -102,11 +87,8 @@ impl Sight {
             })
             .collect();
         let mut pieces = Vec::new();
-        for (seen, values) in self.all.each() {
-            let over = &over[seen.block * self.all.channels..];
-            let square =
-                values.iter().zip(over).map(|(value, over)| value * value * over).sum::<f64>() / seen.aim.density;
-            let away = 1.0 / seen.aim.density.sqrt();
+        for (seen, [a, b]) in self.all.iter().zip(spread::around(&self.all)) {
+            let square = seen.brought.judged * seen.brought.judged / seen.aim.density * over[seen.block];
             let mut add = |dx: f64, dy: f64, share: f64| {
                 let place = [seen.aim.place[0] + dx, seen.aim.place[1] + dy];
                 if let Some(at) = parts[seen.zone].inside(place) {
@@ -114,9 +96,10 @@ impl Sight {
                     pieces.push((cell, seen.block as u32, share * square));
                 }
             };
-            add(0.0, 0.0, 1.0 - 4.0 * NEAR);
-            for (x, y) in [(1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)] {
-                add(x * away, y * away, NEAR);
+            add(0.0, 0.0, 1.0 - 4.0 * spread::SHARE);
+            for [x, y] in [a, b] {
+                add(x, y, spread::SHARE);
+                add(-x, -y, spread::SHARE);
             }
         }
         let pieces = summed(&pieces, firsts.last().map_or(0, |first| first + trees[zones - 1].leaves()));

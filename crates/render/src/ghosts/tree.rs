@@ -3,7 +3,7 @@
 use super::density::Density;
 
 /// A cell that more rays than this came through is cut.
-const MANY: usize = 32;
+const MANY: usize = 64;
 /// Cuts at most, one within the other.
 const DEEPEST: u32 = 12;
 /// The mean square in a cell is at least this part of that in the cell that it was cut from.
@@ -188,7 +188,7 @@ mod tests {
         let numbers = Numbers::sobol(3);
         let place = |i: u64| [numbers.one(1, i, 0), numbers.one(1, i, 1)];
         let corner = |i: u64| place(i).map(|x| x * x * x);
-        let tree = Tree::around((0..4096).map(corner).collect());
+        let tree = Tree::around((0..8192).map(corner).collect());
         assert!(tree.leaves() > 200, "{}", tree.leaves());
         assert!((tree.areas().sum::<f64>() - 1.0).abs() < 1e-12);
         let squares: Vec<f64> = (0..tree.leaves()).map(|leaf| f64::from(leaf % 7 == 3)).collect();

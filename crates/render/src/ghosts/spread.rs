@@ -1,0 +1,109 @@
+//! How far around a ray of the pilot light comes in that reaches the same block.
+//!
+//! A block may be known by few rays, and the next one that reaches it does not come in just where one of them did: where the pilot saw
+//! nothing of the block there would be few rays of the picture, and each would weigh many times as much as the others. So what a ray
+//! stands for is shared with places around it, as far away as the rays that reached the same block are spread, less where many of them
+//! say more of its shape.
+
+use super::sight::Seen;
+
+/// The part that goes to each of four places around; what is left stays.
+pub(super) const SHARE: f64 = 0.2;
+/// How far away those are, in spreads, where so many rays or fewer are known; of more, what each stands for stays nearer.
+const WIDTH: f64 = 0.85;
+const FEW: f64 = 80.0;
+/// The spread of fewer rays than this is not known.
+const LEAST: f64 = 3.0;
+
+/// For each ray two ways from its place, in the unit of places: the four places are one way and the other of both.
+pub(super) fn around(seen: &[Seen]) -> Vec<[[f64; 2]; 2]> {
+    // The same zone and block, one after the other.
+    let mut order: Vec<u32> = (0..seen.len() as u32).collect();
+    let of = |number: &u32| (seen[*number as usize].zone, seen[*number as usize].block);
+    order.sort_by_key(of);
+    let mut around = vec![[[0.0; 2]; 2]; seen.len()];
+    for numbers in order.chunk_by(|a, b| of(a) == of(b)) {
+        let own = ways(numbers.iter().map(|number| &seen[*number as usize]));
+        for number in numbers {
+            let alone = || {
+                // A mean distance of all rays there.
+                let away = 1.0 / seen[*number as usize].aim.density.sqrt();
+                [[away, away], [-away, away]]
+            };
+            around[*number as usize] = own.unwrap_or_else(alone);
+        }
+    }
+    around
+}
+
+/// The ways that the spread of some rays says: the columns of Cholesky's root of their covariance. `None` of few.
+fn ways<'a>(rays: impl Iterator<Item = &'a Seen>) -> Option<[[f64; 2]; 2]> {
+    let (mut many, mut squares, mut first, mut second) = (0.0, 0.0, [0.0; 2], [0.0; 3]);
+    for Seen { aim, .. } in rays {
+        // What of the front it stands for.
+        let (area, [x, y]) = (1.0 / aim.density, aim.place);
+        many += area;
+        squares += area * area;
+        first.iter_mut().zip([x, y]).for_each(|(sum, value)| *sum += area * value);
+        second.iter_mut().zip([x * x, x * y, y * y]).for_each(|(sum, value)| *sum += area * value);
+    }
+    let [x, y] = first.map(|sum| sum / many);
+    let [xx, xy, yy] = second.map(|sum| sum / many);
+    let across = (xx - x * x).max(0.0).sqrt();
+    let alike = many * many / squares;
+    if !(alike > LEAST && across > 0.0) {
+        return None;
+    }
+    let along = (xy - x * y) / across;
+    let up = (yy - y * y - along * along).max(0.0).sqrt();
+    let width = WIDTH * (FEW / alike).sqrt().min(1.0);
+    Some([[width * across, width * along], [0.0, width * up]])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ghosts::guide::Aim;
+    use crate::ghosts::sight::Brought;
+    use spectra_core::numbers::Numbers;
+
+    fn seen(block: usize, place: [f64; 2]) -> Seen {
+        Seen { zone: 0, aim: Aim { place, density: 1e4 }, block, brought: Brought { all: 1.0, judged: 1.0 } }
+    }
+
+    /// Along a sliver at 45 degrees, 0.2 long and 0.002 wide: what is evenly spread over a length has the length over the root of 12 as its
+    /// spread, along and across, whatever other blocks' rays lie between.
+    #[test]
+    fn the_places_around_lie_along_what_a_block_is_lit_through() {
+        let numbers = Numbers::sobol(7);
+        let on = |length: f64, i: u64| {
+            let along = length * (numbers.one(1, i, 0) - 0.5);
+            let across = 0.01 * length * (numbers.one(1, i, 1) - 0.5);
+            let half = 0.5_f64.sqrt();
+            [0.3 + half * (along - across), -0.1 + half * (along + across)]
+        };
+        for (many, width) in [(64, WIDTH), (2000, 0.2 * WIDTH)] {
+            let both = |i: u64| [seen(1, on(0.2, i)), seen(2, on(0.7, i))];
+            let all: Vec<Seen> = (0..many).flat_map(both).collect();
+            let around = around(&all);
+            for (at, length) in [(0, 0.2), (1, 0.7)] {
+                // What the two ways have as their covariance.
+                let [a, b] = around[at];
+                let along = (a[0] + a[1]).powi(2) + (b[0] + b[1]).powi(2);
+                let across = (a[0] - a[1]).powi(2) + (b[0] - b[1]).powi(2);
+                let want = width * length / 12_f64.sqrt();
+                assert!(((0.5 * along).sqrt() / want - 1.0).abs() < 0.05, "{many} {along} {want}");
+                assert!(((0.5 * across).sqrt() / (0.01 * want) - 1.0).abs() < 0.05, "{many} {across} {want}");
+            }
+        }
+    }
+
+    /// Of rays whose spread nobody knows: a mean distance of rays.
+    #[test]
+    fn few_rays_stay_near() {
+        let alone = [seen(0, [0.1, 0.2]), seen(0, [0.5, -0.2]), seen(3, [0.0, 0.0])];
+        assert_eq!(around(&alone), [[[0.01, 0.01], [-0.01, 0.01]]; 3]);
+        // All in one place.
+        assert_eq!(around(&[seen(0, [0.25, 0.5]); 8]), [[[0.01, 0.01], [-0.01, 0.01]]; 8]);
+    }
+}
