@@ -9,7 +9,7 @@ use super::tree::Tree;
 
 /// The variance that no block is to go beyond, in means of all that are judged. The low-discrepancy numbers of a picture leave less of it
 /// in most blocks, but not in those that few rays reach.
-const LIMIT: f64 = 1.5;
+const LIMIT: f64 = 1.25;
 /// Rays that leave as much in doubt as is known.
 const FEW: f64 = 200.0;
 /// Turns: what is left of an excess is about its root after each.

@@ -87,19 +87,14 @@ impl Sight {
             })
             .collect();
         let mut pieces = Vec::new();
-        for (seen, [a, b]) in self.all.iter().zip(spread::around(&self.all)) {
+        for (seen, ways) in self.all.iter().zip(spread::around(&self.all)) {
             let square = seen.brought.judged * seen.brought.judged / seen.aim.density * over[seen.block];
-            let mut add = |dx: f64, dy: f64, share: f64| {
+            for ([dx, dy], share) in spread::parts(ways) {
                 let place = [seen.aim.place[0] + dx, seen.aim.place[1] + dy];
                 if let Some(at) = parts[seen.zone].inside(place) {
                     let cell = (firsts[seen.zone] + trees[seen.zone].leaf(at)) as u32;
                     pieces.push((cell, seen.block as u32, share * square));
                 }
-            };
-            add(0.0, 0.0, 1.0 - 4.0 * spread::SHARE);
-            for [x, y] in [a, b] {
-                add(x, y, spread::SHARE);
-                add(-x, -y, spread::SHARE);
             }
         }
         let pieces = summed(&pieces, firsts.last().map_or(0, |first| first + trees[zones - 1].leaves()));

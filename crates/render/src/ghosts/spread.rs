@@ -7,15 +7,24 @@
 
 use super::sight::Seen;
 
-/// The part that goes to each of four places around; what is left stays.
-pub(super) const SHARE: f64 = 0.2;
-/// How far away those are, in spreads, where so many rays or fewer are known; of more, what each stands for stays nearer.
-const WIDTH: f64 = 0.85;
+/// The part that goes to each of eight places around; what is left stays.
+const SHARE: f64 = 0.1;
+/// Where those are: four this part of a way away, and four at the corners between the ways.
+const NEAR: f64 = 0.6;
+/// How long the ways are, in spreads, where so many rays or fewer are known; of more, what each stands for stays nearer.
+const WIDTH: f64 = 1.2;
 const FEW: f64 = 80.0;
 /// The spread of fewer rays than this is not known.
 const LEAST: f64 = 3.0;
 
-/// For each ray two ways from its place, in the unit of places: the four places are one way and the other of both.
+/// What a ray stands for: for its place and each around it, how far away that is and its part of it.
+pub(super) fn parts([a, b]: [[f64; 2]; 2]) -> [([f64; 2], f64); 9] {
+    let at = |along: f64, across: f64| ([along * a[0] + across * b[0], along * a[1] + across * b[1]], SHARE);
+    let [n, s, e, w] = [at(NEAR, 0.0), at(-NEAR, 0.0), at(0.0, NEAR), at(0.0, -NEAR)];
+    [([0.0; 2], 1.0 - 8.0 * SHARE), n, s, e, w, at(1.0, 1.0), at(1.0, -1.0), at(-1.0, 1.0), at(-1.0, -1.0)]
+}
+
+/// For each ray two ways from its place, in the unit of places.
 pub(super) fn around(seen: &[Seen]) -> Vec<[[f64; 2]; 2]> {
     // The same zone and block, one after the other.
     let mut order: Vec<u32> = (0..seen.len() as u32).collect();
@@ -96,6 +105,15 @@ mod tests {
                 assert!(((0.5 * across).sqrt() / (0.01 * want) - 1.0).abs() < 0.05, "{many} {across} {want}");
             }
         }
+    }
+
+    /// Nothing is lost, and the middle stays.
+    #[test]
+    fn the_parts_are_all_of_it() {
+        let parts = parts([[0.3, 0.1], [-0.2, 0.5]]);
+        let sum = |of: fn(&([f64; 2], f64)) -> f64| parts.iter().map(of).sum::<f64>();
+        assert!((sum(|part| part.1) - 1.0).abs() < 1e-15);
+        assert!(sum(|part| part.0[0] * part.1).abs() < 1e-15 && sum(|part| part.0[1] * part.1).abs() < 1e-15);
     }
 
     /// Of rays whose spread nobody knows: a mean distance of rays.

@@ -3,9 +3,10 @@
 use glam::DVec3;
 use spectra_core::math::atan2;
 
-/// Zones of the angle to the axis, at most, and how wide they are at least (chord of the unit circle: half a degree).
+/// Zones of the angle to the axis, at most, and how wide they are at least (chord of the unit circle: 0.6 degrees): the sun, 0.53, is one zone,
+/// as rays of both halves tell of the same places on the front.
 const MOST_RINGS: usize = 12;
-const WIDTH: f64 = 0.5 * std::f64::consts::PI / 180.0;
+const WIDTH: f64 = 0.6 * std::f64::consts::PI / 180.0;
 /// Zones around the axis, in a lens that is not round.
 const SECTORS: usize = 8;
 
@@ -68,6 +69,7 @@ mod tests {
     fn a_point_is_one_zone_and_a_wide_field_is_many() {
         let at = |deg: f64| DVec3::new(deg.to_radians().sin(), 0.0, -deg.to_radians().cos()) * 1e4;
         assert_eq!(Zones::new(&[at(20.0)], DVec3::ZERO, true).count(), 1);
+        assert_eq!(Zones::new(&[at(19.735), at(20.265)], DVec3::ZERO, true).count(), 1);
         let wide = Zones::new(&[at(0.0), at(30.0)], DVec3::ZERO, true);
         assert_eq!((wide.count(), wide.of(at(0.0)), wide.of(at(29.9)), wide.of(at(80.0))), (12, 0, 11, 11));
         let turned = Zones::new(&[at(0.0), at(30.0)], DVec3::ZERO, false);
