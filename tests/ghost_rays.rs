@@ -74,7 +74,7 @@ fn rays_that_are_sent_have_the_light_of_rays_all_over_the_front() {
     assert!(ea < 0.002 * a && eb < 0.02 * b, "known to {ea} of {a} and {eb} of {b}");
 }
 
-/// The worst of the blocks that have more than 1e-4 of the brightest one. 1.9 %; it was 5.9 % when dim blocks weighed no more than
+/// The worst of the blocks that have more than 1e-4 of the brightest one. 1.5 %; it was 5.9 % when dim blocks weighed no more than
 /// others, and cells of the front were all of one size.
 #[test]
 fn no_block_is_left_with_much_more_noise_than_others() {
