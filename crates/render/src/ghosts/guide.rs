@@ -148,7 +148,8 @@ impl Lit {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ghosts::sight::{Brought, Seen, Sight};
+    use crate::ghosts::seen::{Brought, Seen};
+    use crate::ghosts::sight::Sight;
     use spectra_core::math::sin_cos_turns;
     use spectra_core::numbers::Numbers;
 

@@ -10,6 +10,7 @@ mod density;
 mod guide;
 mod metered;
 mod pilot;
+mod seen;
 mod shares;
 mod sight;
 mod spread;

@@ -5,8 +5,9 @@
 //! paths share the directions too; it says whether going on is worth it.
 
 use super::guide::{Aim, Guide, Lit};
+use super::seen::{self, Brought, Seen};
 use super::shares::{self, Piece, Share};
-use super::sight::{self, Brought, Seen, Sight, Sorted};
+use super::sight::{Sight, Sorted};
 use super::{Ghosts, Way};
 use crate::Workers;
 use crate::error::RenderError;
@@ -141,7 +142,7 @@ pub(super) fn search(
         let parts = scouts
             .iter()
             .zip(ways)
-            .flat_map(|((_, came), way)| sight::light(came, (of(way, SCOUTS) * BATCH) as f64, Brought::all));
+            .flat_map(|((_, came), way)| seen::light(came, (of(way, SCOUTS) * BATCH) as f64, Brought::all));
         let light = pilot.blocks.light(parts);
         if is_dim(pilot.blocks.brightest(&light), DOUBT) {
             return Ok(None);

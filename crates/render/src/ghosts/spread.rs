@@ -5,7 +5,7 @@
 //! stands for is shared with places around it, as far away as the rays that reached the same block are spread, less where many of them
 //! say more of its shape.
 
-use super::sight::Seen;
+use super::seen::Seen;
 
 /// The part that goes to each of eight places around; what is left stays.
 const SHARE: f64 = 0.1;
@@ -73,7 +73,7 @@ fn ways<'a>(rays: impl Iterator<Item = &'a Seen>) -> Option<[[f64; 2]; 2]> {
 mod tests {
     use super::*;
     use crate::ghosts::guide::Aim;
-    use crate::ghosts::sight::Brought;
+    use crate::ghosts::seen::Brought;
     use spectra_core::numbers::Numbers;
 
     fn seen(block: usize, place: [f64; 2]) -> Seen {
