@@ -91,7 +91,7 @@ mod tests {
             let half = 0.5_f64.sqrt();
             [0.3 + half * (along - across), -0.1 + half * (along + across)]
         };
-        for (many, width) in [(64, WIDTH), (2000, 0.2 * WIDTH)] {
+        for (many, width) in [(64, 1.2), (2000, 0.24)] {
             let both = |i: u64| [seen(1, on(0.2, i)), seen(2, on(0.7, i))];
             let all: Vec<Seen> = (0..many).flat_map(both).collect();
             let around = around(&all);

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use spectra_core::math::atan2;
 
-/// Zones of the angle to the axis, at most, and how wide they are at least (chord of the unit circle: 0.6 degrees): the sun, 0.53, is one zone,
+/// Zones of the angle to the axis, at most, and how wide they are at least (chord of the unit circle: 0.6 degrees): the sun, 0.53, is in one ring,
 /// as rays of both halves tell of the same places on the front.
 const MOST_RINGS: usize = 12;
 const WIDTH: f64 = 0.6 * std::f64::consts::PI / 180.0;
