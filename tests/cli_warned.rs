@@ -94,6 +94,18 @@ fn nothing_is_said_about_bundled_scenes() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n\n"));
 }
 
+/// What is known of the glass of a bundled lens stands in its file, whatever part of its name calls it.
+#[test]
+fn a_bundled_lens_is_itself_by_a_part_of_its_name() {
+    for name in ["canon-fd-50-f1.8", "canon-fd-50", "Canon FD 50 f1.8"] {
+        let output = spectra()
+            .args(["check", "biotar-trix", "--set", &format!("lens.file={name}")])
+            .output()
+            .expect("the program starts");
+        assert_eq!((output.status.code(), text(&output.stderr)), (Some(0), String::new()), "{name}");
+    }
+}
+
 /// What is wrong about what is said of a scene below `root`.
 fn said_about(root: &Path, path: &Path) -> Vec<String> {
     let mut wrong = Vec::new();

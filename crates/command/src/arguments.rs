@@ -138,8 +138,8 @@ pub(crate) struct Run {
     /// --samples override these.
     #[arg(long, value_name = "QUALITY")]
     pub quality: Option<Quality>,
-    /// Stop after this time (30s, 5min), counted from the start of the program, and write the picture so far; nothing
-    /// is written if the scene is not ready to render by then.
+    /// Trace no more light after this time (30s, 5min), counted from the start of the program, then develop and write the
+    /// picture so far, which takes some seconds more; nothing is written if the scene is not ready to render by then.
     #[arg(long, value_name = "TIME", value_parser = parse::<Positive<Time>>)]
     pub time_limit: Option<Positive<Time>>,
     /// Render only these frames of an animation: 17, 10-20, 10-, or several of these separated by commas.

@@ -30,6 +30,19 @@ pub(crate) fn meant(error: &clap::Error) -> Option<Fault> {
     Some(Fault::new(format!("`{typed}` is not a command")).hint(format!("did you mean `spectra {command}`?")))
 }
 
+/// Takes away the tip to write `-- -1` or `-- --sample`, which makes the name of a file of what was meant as an option or a number.
+pub(crate) fn without_false_tips(mut error: clap::Error) -> clap::Error {
+    if error.kind() == ErrorKind::UnknownArgument
+        && let Some(ContextValue::StyledStrs(tips)) = error.remove(ContextKind::Suggested)
+    {
+        let others: Vec<_> = tips.into_iter().filter(|tip| !tip.to_string().contains("as a value, use")).collect();
+        if !others.is_empty() {
+            error.insert(ContextKind::Suggested, ContextValue::StyledStrs(others));
+        }
+    }
+    error
+}
+
 /// The command, without `spectra`.
 fn of_word(typed: &str) -> Option<String> {
     let typed = typed.trim();
@@ -68,6 +81,13 @@ mod tests {
             let error = Arguments::try_parse_from(["spectra", typed]).expect_err(typed);
             let hint = meant(&error).and_then(|fault| fault.hint).unwrap_or_default();
             assert_eq!(hint, format!("did you mean `spectra {command}`?"));
+        }
+        for words in
+            [&["run", "a.yaml", "--threads", "-1"][..], &["film", "develop", "a.png", "--stock", "x", "--samples"]]
+        {
+            let error = Arguments::try_parse_from([&["spectra"], words].concat()).expect_err("no argument");
+            let text = without_false_tips(error).to_string();
+            assert!(text.contains("unexpected argument") && !text.contains("-- "), "{text}");
         }
         // The parser's own hint is as good: `spectra lst`.
         let error = Arguments::try_parse_from(["spectra", "lst"]).expect_err("no command");

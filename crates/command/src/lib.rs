@@ -56,7 +56,7 @@ pub fn main(unpack: Unpack) -> ExitCode {
 /// bring, which `--licenses` shows after its own.
 pub fn main_with_notices(unpack: Unpack, notices: &'static str) -> ExitCode {
     let started = Instant::now();
-    let arguments = match Arguments::try_parse() {
+    let arguments = match Arguments::try_parse().map_err(guess::without_false_tips) {
         Ok(arguments) => arguments,
         Err(error) => {
             // Help and version come this way too, with code 0. A reader that has gone away is no failure.

@@ -30,7 +30,12 @@ pub(crate) fn percent(text: &str) -> Result<String, String> {
         // Without what a product has behind the digits that were written: 57, not 56.99999999999999.
         Ok(number) => {
             let percent = (1e10 * number).round() / 1e8;
-            Err(format!("percent or a part? Write `{number}%` or `{percent}%`"))
+            match number {
+                1.0.. => Err(format!("percent? Write `{number}%`")),
+                n if n > 0.0 => Err(format!("percent or a part? Write `{number}%` or `{percent}%`")),
+                // What is wrong with it is told where it is read.
+                _ => Ok(text.to_owned()),
+            }
         }
         Err(_) => Ok(text.to_owned()),
     }
@@ -51,6 +56,8 @@ mod tests {
     #[test]
     fn a_bare_number_is_no_percentage() {
         assert_eq!(percent("0.5%"), Ok("0.5%".to_owned()));
+        assert_eq!(percent("5"), Err("percent? Write `5%`".to_owned()));
+        assert_eq!(percent("0"), Ok("0".to_owned()));
         assert_eq!(percent("0.57"), Err("percent or a part? Write `0.57%` or `57%`".to_owned()));
     }
 

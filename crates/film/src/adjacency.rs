@@ -17,12 +17,12 @@ use crate::cells::{BOTH_WAYS, Cells, with_margin};
 use crate::known::Known;
 use crate::raster::Raster;
 use crate::scatter::PointSpread;
-use spectra_numerics::convolve::Convolver;
+use spectra_numerics::convolve::{Convolver, Kernel};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-/// Kernels on a plane, by their length in mm: how many pixels wide the cells are that they are made for, and they.
-static CONVOLVERS: Known<(f64, Raster), (usize, Convolver<f32>)> = Known::new();
+/// Kernels on a plane, by their length in mm.
+static DIFFUSIONS: Known<(f64, Raster), Diffusion> = Known::new();
 
 /// How strong and how wide the effect is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,6 +50,64 @@ impl Adjacency {
     }
 }
 
+/// What diffuses, on planes of one size.
+enum Diffusion {
+    /// From pixel to pixel.
+    Pixels(Convolver<f32>, FromFrame),
+    /// From cell to cell that are so many pixels wide; and of each cell the part of what diffuses there that comes from the frame.
+    Cells(usize, Convolver<f32>, Vec<f32>),
+}
+
+impl Diffusion {
+    fn on_pixels(kernel: &Kernel, raster: &Raster) -> Self {
+        let (width, height) = (raster.width, raster.height);
+        Self::Pixels(Convolver::new(kernel, width, height), FromFrame::new(kernel, [width, height]))
+    }
+
+    fn on_cells(kernel: &Kernel, raster: &Raster, cell_px: usize) -> Self {
+        let size = [raster.width, raster.height];
+        let [width, height] = size.map(|pixels| with_margin(pixels, cell_px));
+        let convolver = Convolver::new(kernel, width, height);
+        let mut even = Cells::of_pixels(&vec![1.0; raster.pixels()], size, cell_px, |v| v);
+        even.convolve(&convolver);
+        Self::Cells(cell_px, convolver, even.into_values())
+    }
+}
+
+/// The part of what diffuses to a pixel that comes from the frame, over that in the middle of a large frame: 1 but near the border. So
+/// a small frame holds it.
+struct FromFrame {
+    frame: [usize; 2],
+    small: [usize; 2],
+    parts: Vec<f32>,
+}
+
+impl FromFrame {
+    fn new(kernel: &Kernel, frame: [usize; 2]) -> Self {
+        let most = 2 * kernel.radius() + 1;
+        let small = frame.map(|side| side.min(most));
+        let even = vec![1.0; small[0] * small[1]];
+        let mut parts = vec![0.0; even.len()];
+        let whole = kernel.sum() as f32;
+        Convolver::<f32>::new(kernel, small[0], small[1]).apply(&even, &mut parts, |to, v| *to = v / whole);
+        if small == [most; 2] {
+            // But for rounding: what is far from the border is not to change at all.
+            parts[most * kernel.radius() + kernel.radius()] = 1.0;
+        }
+        Self { frame, small, parts }
+    }
+
+    #[inline]
+    fn at(&self, place: [usize; 2]) -> f32 {
+        let fold = |axis: usize| {
+            let (at, side, small) = (place[axis], self.frame[axis], self.small[axis]);
+            let middle = small / 2;
+            if at <= middle { at } else { middle.max((at + small).saturating_sub(side)) }
+        };
+        self.parts[fold(1) * self.small[0] + fold(0)]
+    }
+}
+
 /// The effect on planes of one size.
 ///
 /// ```
@@ -65,7 +123,7 @@ impl Adjacency {
 pub struct Edges {
     raster: Raster,
     gain: f64,
-    convolver: Arc<(usize, Convolver<f32>)>,
+    diffusion: Arc<Diffusion>,
 }
 
 impl Edges {
@@ -77,7 +135,7 @@ impl Edges {
     pub fn new(adjacency: &Adjacency, raster: &Raster) -> Self {
         let good = |v: f64| v > 0.0 && v.is_finite();
         assert!(good(raster.pitch_mm) && good(adjacency.length_mm), "a pitch and a length above 0");
-        let convolver = CONVOLVERS.of((adjacency.length_mm, *raster), || {
+        let diffusion = DIFFUSIONS.of((adjacency.length_mm, *raster), || {
             let mut cell_px = 1;
             while adjacency.length_mm >= 2.0 * CELLS_A_LENGTH * raster.pitch_mm * cell_px as f64 {
                 cell_px *= 2;
@@ -86,44 +144,46 @@ impl Edges {
             let kernel = spread.over_pixels(raster.pitch_mm * cell_px as f64, BEYOND, LONGEST);
             let kernel = kernel.cropped(raster.width.max(raster.height));
             if cell_px == 1 {
-                return (1, Convolver::new(&kernel, raster.width, raster.height));
+                return Diffusion::on_pixels(&kernel, raster);
             }
             // A cell is wider than a pixel, whose twelfth the kernel has, too.
             let wide = cell_px as f64;
             let kernel = kernel.sharpened(BOTH_WAYS + (1.0 - 1.0 / (wide * wide)) / 24.0);
-            let [width, height] = [raster.width, raster.height].map(|pixels| with_margin(pixels, cell_px));
-            (cell_px, Convolver::new(&kernel, width, height))
+            Diffusion::on_cells(&kernel, raster, cell_px)
         });
-        Self { raster: *raster, gain: adjacency.gain, convolver }
+        Self { raster: *raster, gain: adjacency.gain, diffusion }
     }
 
-    /// Applies the effect to a plane of amounts (density of silver, or dye), in place. Beside the frame lies film with
-    /// the amount `unexposed`; amounts stay within `range`, the ends of the curve. Takes memory for one more plane, or half of one
-    /// where pixels are fine.
+    /// Applies the effect to a plane of amounts (density of silver, or dye), in place. Beside the frame lies film as dense as what is
+    /// next to it: mounts and masks cover the border that a camera's gate leaves. Amounts stay within `range`, the ends of the
+    /// curve; `clear` is that of the unexposed film. Takes memory for one more plane, or half of one where pixels are fine.
     ///
     /// # Panics
     /// If the plane has another number of pixels than the raster.
-    pub fn apply(&self, amounts: &mut [f32], unexposed: f64, range: (f64, f64)) {
+    pub fn apply(&self, amounts: &mut [f32], clear: f64, range: (f64, f64)) {
         assert_eq!(amounts.len(), self.raster.pixels(), "the plane has the size that was prepared for");
         let (gain, (low, high)) = (self.gain, range);
-        let develop = |to: &mut f32, diffused: f64| {
+        let develop = |to: &mut f32, diffused: f32| {
             let here = f64::from(*to);
-            let change = gain * (here - unexposed - diffused);
+            let change = gain * (here - clear - f64::from(diffused));
             let room = if change < 0.0 { here - low } else { high - here };
             if room > 0.0 && change != 0.0 {
                 *to = (here + change / (1.0 + change.abs() / room)) as f32;
             }
         };
-        let (cell_px, convolver) = &*self.convolver;
-        let over = |amount: f32| amount - unexposed as f32;
-        if *cell_px == 1 {
-            let over: Vec<f32> = amounts.iter().map(|a| over(*a)).collect();
-            convolver.apply(&over, amounts, |to, v| develop(to, f64::from(v)));
-        } else {
-            let size = [self.raster.width, self.raster.height];
-            let mut cells = Cells::of_pixels(amounts, size, *cell_px, over);
-            cells.convolve(convolver);
-            cells.over_pixels(amounts, self.raster.width, |to, v| develop(to, f64::from(v)));
+        let over = |amount: f32| amount - clear as f32;
+        match &*self.diffusion {
+            Diffusion::Pixels(convolver, from_frame) => {
+                let over: Vec<f32> = amounts.iter().map(|a| over(*a)).collect();
+                convolver.apply_at(&over, amounts, |to, v, place| develop(to, v / from_frame.at(place)));
+            }
+            Diffusion::Cells(cell_px, convolver, from_frame) => {
+                let size = [self.raster.width, self.raster.height];
+                let mut cells = Cells::of_pixels(amounts, size, *cell_px, over);
+                cells.convolve(convolver);
+                cells.divide(from_frame);
+                cells.over_pixels(amounts, self.raster.width, develop);
+            }
         }
     }
 }
@@ -139,7 +199,7 @@ mod tests {
         let adjacency = Adjacency { gain: 0.25, length_mm: 0.037 };
         let raster = Raster::new(width, height, pitch_mm);
         let edges = Edges::new(&adjacency, &raster);
-        assert_eq!(edges.convolver.0, 4);
+        assert!(matches!(*edges.diffusion, Diffusion::Cells(4, ..)));
         let amount = |x: usize, y: usize| match (x, y) {
             (150 | 151, 90) => 2.0,
             (70..=103, _) => 1.1,
@@ -150,11 +210,25 @@ mod tests {
         let mut got = plane.clone();
         edges.apply(&mut got, 0.1, (0.0, 3.0));
         let kernel = PointSpread::bessel(adjacency.length_mm).over_pixels(pitch_mm, BEYOND, LONGEST);
-        let on_pixels = Edges { convolver: Arc::new((1, Convolver::new(&kernel, width, height))), ..edges };
+        let on_pixels = Edges { diffusion: Arc::new(Diffusion::on_pixels(&kernel, &raster)), ..edges };
         let mut want = plane.clone();
         on_pixels.apply(&mut want, 0.1, (0.0, 3.0));
         let most = |a: &[f32], b: &[f32]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
         println!("change {}, off by {}", most(&plane, &want), most(&got, &want));
         assert!(most(&plane, &want) > 0.05 && most(&got, &want) < 0.003);
+    }
+
+    /// An even frame stays even up to its border, on pixels and on cells of them.
+    #[test]
+    fn a_frame_has_no_rim() {
+        for length_mm in [0.006, 0.05] {
+            let raster = Raster::new(120, 80, 0.01);
+            let edges = Edges::new(&Adjacency { gain: 0.25, length_mm }, &raster);
+            assert_eq!(matches!(*edges.diffusion, Diffusion::Cells(..)), length_mm > 0.04);
+            let mut plane = vec![1.3; raster.pixels()];
+            edges.apply(&mut plane, 0.1, (0.0, 3.0));
+            let off = plane.iter().map(|v| (v - 1.3).abs()).fold(0.0, f32::max);
+            assert!(off < 1e-5, "{length_mm}: {off}");
+        }
     }
 }

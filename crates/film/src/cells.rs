@@ -97,6 +97,16 @@ impl Cells {
         convolver.apply(&source, &mut self.values, |to, v| *to = v);
     }
 
+    /// Cell by cell, margin included.
+    pub(crate) fn into_values(self) -> Vec<f32> {
+        self.values
+    }
+
+    /// Divides each cell, margin included.
+    pub(crate) fn divide(&mut self, by: &[f32]) {
+        self.values.iter_mut().zip(by).for_each(|(value, by)| *value /= by);
+    }
+
     /// Gives these cells, linear between their centers, to one line of what is finer.
     fn over_line(&self, y: f64, columns: &[(usize, f32)], line: &mut [f32], write: impl Fn(&mut f32, f32)) {
         let (j, v) = Self::place(y);

@@ -323,6 +323,7 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
         lens.elements.push(element);
         medium_before = medium_after;
     }
+    warn_of_constant_indices(&mut lens);
     lens.image_breaks = breaks;
     let coating = file.coating.as_ref().map(|node| faults.take(read_stated_coating(node, resources)));
     (lens.coating, lens.coating_assumed) = match coating {
@@ -596,6 +597,28 @@ fn medium(
     let (medium, label) = figures.medium(&params)?;
     let stated_nd = stated_nd.or(figures.index_at(reference_nm)).unwrap_or_else(|| medium.index(reference_nm));
     Ok(Some(LensMedium { stated_nd: Some(stated_nd), medium, label }))
+}
+
+/// Says where an Abbe number was probably forgotten: a glass without dispersion beside others that have one.
+fn warn_of_constant_indices(lens: &mut Lens) {
+    let is_constant = |number: &usize| matches!(lens.media[*number].medium, Medium::Constant(_));
+    let disperses = |number: &usize| matches!(lens.media[*number].medium, Medium::Model(_) | Medium::Glass(_));
+    let behind = || lens.elements.iter().map(|e| e.medium_after);
+    if !behind().any(|number| disperses(&number)) {
+        return;
+    }
+    let text = |(at, number): (usize, usize)| {
+        format!(
+            "surface {}: its glass ({}) has no dispersion, as the other glass of this lens has: add `vd: ...`, or `vd: 0` if there is none",
+            at + 1,
+            lens.media[number].label
+        )
+    };
+    // Where light goes into it, not where a stop or a mirror stands in it.
+    let into = lens.elements.iter().enumerate().filter(|(_, e)| e.medium_after != e.medium_before);
+    let constant: Vec<String> =
+        into.map(|(at, e)| (at, e.medium_after)).filter(|(_, number)| is_constant(number)).map(text).collect();
+    lens.warnings.extend(constant);
 }
 
 /// Number of a medium: that of an equal one, or a new one.

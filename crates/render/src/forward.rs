@@ -7,7 +7,7 @@ use crate::meter;
 use crate::no_number::Step;
 use crate::pilot::{self, PILOT_SEED};
 use crate::pipeline::{Pipeline, SCATTER, Share, ThreadState};
-use crate::sums::{ExactSums, OwnSums, PILOT_RAYS, each};
+use crate::sums::{ExactSums, OwnSums, PILOT_RAYS};
 use crate::{Done, Workers};
 use glam::DVec3;
 use spectra_core::RayBatch;
@@ -218,7 +218,7 @@ impl Forward {
             let (tags, recorded) = (state.rays.tags(), &self.pipeline.recorded[..]);
             match &mut state.own {
                 Some(own) => own.add(tags, &state.integers, recorded, sums),
-                None => each(tags, &state.integers, recorded, 0..tags.len(), |cell, value| sums.add(cell, value)),
+                None => sums.add_rays(0, tags, &state.integers, recorded),
             }
             at += len;
         }

@@ -1,6 +1,7 @@
 //! Exact sums: 64-bit fixed point, so that the order of adding cannot matter.
 
 use spectra_core::batch::pixel_and_channel;
+use std::hint::black_box;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicI64, Ordering::Relaxed};
 
@@ -82,6 +83,15 @@ impl ExactSums {
         }
     }
 
+    /// Adds what rays brought to the cells that begin with `first`: to the pixel that each one's tag names, one integer a channel.
+    pub(crate) fn add_rays(&self, first: usize, tags: &[u32], integers: &[Vec<i64>], recorded: &[usize]) {
+        for start in (0..tags.len()).step_by(AHEAD) {
+            let rays = start..(start + AHEAD).min(tags.len());
+            look_ahead(&tags[rays.clone()], integers.len(), |cell| self.get(first + cell));
+            each(tags, integers, recorded, rays, |cell, value| self.add(first + cell, value));
+        }
+    }
+
     /// Adds what a thread summed by itself.
     fn merge(&self, cell: usize, value: i64) {
         let old = self.cells[cell].fetch_add(value, Relaxed);
@@ -115,13 +125,7 @@ const MOST_RAYS: usize = 1 << 11;
 
 /// Calls `add` with the cell and the integer of each of some rays and each channel that it adds to.
 #[inline(always)]
-pub(crate) fn each(
-    tags: &[u32],
-    integers: &[Vec<i64>],
-    recorded: &[usize],
-    rays: Range<usize>,
-    mut add: impl FnMut(usize, i64),
-) {
+fn each(tags: &[u32], integers: &[Vec<i64>], recorded: &[usize], rays: Range<usize>, mut add: impl FnMut(usize, i64)) {
     for i in rays {
         let (pixel, only) = pixel_and_channel(tags[i]);
         let cell = pixel as usize * integers.len();
@@ -133,17 +137,30 @@ pub(crate) fn each(
     }
 }
 
-/// Adds `N` channels of some rays; gives all bits of the sizes that cells came to. Pixels lie far apart: with so few steps a ray
-/// many of them wait for memory at a time.
+/// Rays whose cells are looked up before any is added to. Pixels lie far apart, and additions would wait for memory one by one.
+const AHEAD: usize = 32;
+
+/// Looks up the first cell of each of some rays.
+#[inline(always)]
+fn look_ahead(tags: &[u32], channels: usize, cell: impl Fn(usize) -> i64) {
+    let cells = tags.iter().map(|tag| cell(pixel_and_channel(*tag).0 as usize * channels));
+    black_box(cells.fold(0, |all, cell| all | cell));
+}
+
+/// Adds `N` channels of some rays; gives all bits of the sizes that cells came to.
 #[inline(always)]
 fn add_all<const N: usize>(cells: &mut [i64], tags: &[u32], integers: [&Vec<i64>; N], rays: Range<usize>) -> u64 {
-    let (tags, integers) = (&tags[rays.clone()], integers.map(|column| &column[rays.clone()]));
     let mut most = 0;
-    for (i, tag) in tags.iter().enumerate() {
-        let first = *tag as usize * N;
-        for (cell, column) in cells[first..first + N].iter_mut().zip(integers) {
-            *cell += column[i];
-            most |= cell.unsigned_abs();
+    for start in rays.clone().step_by(AHEAD) {
+        let rays = start..(start + AHEAD).min(rays.end);
+        let (tags, integers) = (&tags[rays.clone()], integers.map(|column| &column[rays.clone()]));
+        look_ahead(tags, N, |cell| cells[cell]);
+        for (i, tag) in tags.iter().enumerate() {
+            let first = *tag as usize * N;
+            for (cell, column) in cells[first..first + N].iter_mut().zip(integers) {
+                *cell += column[i];
+                most |= cell.unsigned_abs();
+            }
         }
     }
     most
@@ -248,6 +265,7 @@ mod tests {
         for channels in [1, 2, 3, 4, 5] {
             let (sums, want) =
                 (ExactSums::new(7 * channels).expect("memory"), ExactSums::new(7 * channels).expect("memory"));
+            let beside = ExactSums::new(7 * channels + 3).expect("memory");
             let mut own = [0, 1].map(|_| OwnSums::new(7 * channels).expect("small"));
             for k in 0..50 {
                 let tags: Vec<u32> =
@@ -257,11 +275,13 @@ mod tests {
                 let recorded: Vec<usize> = (0..channels).collect();
                 own[k as usize % 2].add(&tags, &integers, &recorded, &sums);
                 each(&tags, &integers, &recorded, 0..90, |cell, value| want.add(cell, value));
+                beside.add_rays(3, &tags, &integers, &recorded);
             }
             // Given away once.
             own.iter_mut().for_each(|own| own.give(&sums));
             own[0].give(&sums);
             assert!((0..7 * channels).all(|cell| sums.get(cell) == want.get(cell)), "{channels}");
+            assert!((0..7 * channels).all(|cell| beside.get(cell + 3) == want.get(cell)), "{channels}");
             assert!(!sums.overflowed());
         }
         assert!(OwnSums::new(MOST_OWN + 1).is_none());

@@ -130,6 +130,11 @@ pub(crate) fn advised(faults: Faults, scene: &Params) -> Faults {
     Faults(all)
 }
 
+/// A film as it may be written.
+fn film_of(stock: &str) -> String {
+    format!("{{stock: {stock}, exposure: 1/60 s}}")
+}
+
 fn advise(fault: Fault, scene: &Params) -> Fault {
     if fault.message.starts_with("missing key") {
         let example = match fault.path.as_str() {
@@ -151,11 +156,24 @@ fn advise(fault: Fault, scene: &Params) -> Fault {
         return fault.hint(hint);
     }
     // A bare name is the name of a kind; of a film it will be that of a stock.
-    if fault.path == "film.kind"
+    if fault.path.starts_with("film")
+        && fault.path.ends_with(".kind")
         && fault.message.starts_with("unknown")
-        && let Some(Value::String(name)) = scene.get("film").map(|node| &node.value)
+        && let Some(Value::String(name)) = scene.node().at_path(fault.path.trim_end_matches(".kind")).map(|n| &n.value)
     {
-        return fault.hint(format!("a stock is named by `film: {{stock: {name}, exposure: 1/60 s}}`"));
+        let example = film_of(name);
+        let is_alone = fault.path == "film.kind";
+        return fault.hint(if is_alone {
+            format!("a stock is named by `film: {example}`")
+        } else {
+            format!("a stock in a list of films is `{example}`")
+        });
+    }
+    if fault.path == "film.stock"
+        && let Some(Value::Seq(stocks)) = scene.node().at_path("film.stock").map(|node| &node.value)
+    {
+        let films: Vec<String> = stocks.iter().filter_map(Node::as_str).map(film_of).collect();
+        return fault.hint(format!("several films at once are a list of them: `film: [{}]`", films.join(", ")));
     }
     fault
 }

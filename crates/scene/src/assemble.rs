@@ -436,7 +436,7 @@ fn all_stages(
     let pays = || source.split().is_some_and(|split| split.pays);
     let apart = render.lights == Lights::Forward || render.lights == Lights::Auto && pays();
     let ghosts = render.reflections.order.map_or(apart, |order| order > 0);
-    let whole = doubts::Whole { params, lens: &lens, source: &*source, channels: &pictured, grid, ghosts };
+    let whole = doubts::Whole { params, resources, lens: &lens, source: &*source, channels: &pictured, grid, ghosts };
     let said = Said { warnings: warnings.all(), ends: warnings.ends(), dark };
     whole.doubt(said.dark.as_ref(), &warnings);
     of_focus.iter().for_each(|fault| warnings.push(fault.clone()));

@@ -3,8 +3,10 @@
 //! A bare number has a unit that its key states, and slips there make a picture, only a wrong one: each rule here asks for
 //! a number without a unit, or for what no camera does.
 
+use crate::remembered::BUNDLED;
 use crate::sight::Dark;
 use spectra_core::params::{Length, Node, OrInfinity, Params, Positive, Value, Warnings};
+use spectra_core::resources::Resources;
 use spectra_core::spectral::{Channel, Grid};
 use spectra_core::stage::Source;
 use spectra_lens::Lens;
@@ -21,6 +23,7 @@ const UNMEASURED_BUNDLED: f64 = 0.25;
 /// A scene whose parts are there.
 pub(crate) struct Whole<'a> {
     pub params: &'a Params,
+    pub resources: &'a dyn Resources,
     pub lens: &'a Lens,
     pub source: &'a dyn Source,
     pub channels: &'a [Channel],
@@ -33,7 +36,8 @@ impl Whole<'_> {
     /// Says all that is doubtful.
     pub(crate) fn doubt(&self, dark: Option<&Dark>, warnings: &Warnings) {
         for text in &self.lens.warnings {
-            warnings.push(self.params.fault("lens.file", text));
+            let hint = format!("`spectra lens info {}` shows the glass behind each surface", self.lens_file());
+            warnings.push(self.params.fault("lens.file", text).hint(hint));
         }
         self.distances(warnings);
         self.focus(warnings);
@@ -160,11 +164,19 @@ impl Whole<'_> {
         }
     }
 
+    fn lens_file(&self) -> &str {
+        self.at("lens.file").and_then(Node::as_str).unwrap_or_default()
+    }
+
+    /// Whether the lens comes with the program, by whatever part of its name it is called.
+    fn is_bundled_lens(&self) -> bool {
+        let found = self.resources.find(self.lens_file(), &["lenses"], &[".yaml"], u64::MAX);
+        found.is_ok_and(|found| found.name.starts_with(BUNDLED))
+    }
+
     /// Glass whose formula is used where nobody measured it.
     fn glass(&self, warnings: &Warnings) {
-        let file = self.at("lens.file").and_then(Node::as_str).unwrap_or_default();
-        let is_bundled = spectra_data::get(&format!("lenses/{file}.yaml")).is_some();
-        let may = if is_bundled { UNMEASURED_BUNDLED } else { UNMEASURED };
+        let may = if self.is_bundled_lens() { UNMEASURED_BUNDLED } else { UNMEASURED };
         let (from_nm, to_nm) = (self.grid.start_nm, self.grid.end_nm());
         let beyond = self.lens.media.iter().filter(|medium| !medium.medium.covers(from_nm, to_nm));
         let ranges: Vec<(&str, (f64, f64))> =

@@ -17,7 +17,7 @@
 //! | `FdC`, `F'eC'` | the three lines of a set, of equal power |
 //! | `rgb-lines` | three lines of the hues of sRGB's primaries that together are white (a form that the color models bring) |
 //! | `function:exp(-((w - 550) / 20)^4)` | a formula of the wavelength w in nm |
-//! | `0.5 * D65 + line:e`, `1 - wratten-25`, `(A + D65) / 2`, `wratten-12^2` | algebra, with spaces around `+ - /`; see [`crate::expression`] |
+//! | `D65 + 5000 * line:e`, `1 - wratten-25`, `(A + D65) / 2`, `wratten-12^2` | algebra, with spaces around `+ - /`; see [`crate::expression`] |
 //!
 //! A Gaussian, a rectangle or a constant is whatever is wanted: light, filter, surface or detector. Of a product the first
 //! may be that, what stands behind it are filters. Two lights have no product, and only like is added to like. Like by like is a

@@ -197,11 +197,12 @@ impl SpectrumError {
 /// What a person may have meant by a name that nothing bears.
 fn hint_for_unknown(name: &str, candidates: &[String]) -> String {
     match candidates {
+        _ if name.contains(['*', '+', '(']) => {
+            "a sum or a product has spaces around its signs and a spectrum behind each: `D65 + 5000 * line:e`"
+                .to_owned()
+        }
         [one] => format!("did you mean `{one}`?"),
         [first, others @ ..] => format!("did you mean `{first}`? Similar: {}", others.join(", ")),
-        [] if name.contains(['*', '+', '(']) => {
-            "a sum or a product has spaces around its signs and a spectrum behind each: `0.5 * D65 + line:e`".to_owned()
-        }
         [] if name.contains(['/', '\\']) || name.contains('.') => {
             "a file is looked for beside the one that names it, then among the bundled ones".to_owned()
         }

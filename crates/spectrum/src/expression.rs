@@ -191,7 +191,7 @@ impl Reader<'_> {
     }
 
     fn value(&mut self) -> Result<Tree, SpectrumError> {
-        const STANDS: &str = "a spectrum or a number stands behind each sign: `0.5 * D65 + line:e`";
+        const STANDS: &str = "a spectrum or a number stands behind each sign: `D65 + 5000 * line:e`";
         self.skip();
         match self.peek() {
             Some('(') => {

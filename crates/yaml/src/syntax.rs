@@ -16,6 +16,12 @@ pub(super) fn is_tab(kind: &ErrorKind) -> bool {
     )
 }
 
+/// Whether a text is one word, as of a key, and no `:` behind it.
+fn is_bare_key(text: &str) -> bool {
+    let word = text.trim();
+    text.ends_with(' ') && !word.is_empty() && word.chars().all(|c| c.is_alphanumeric() || matches!(c, '-' | '_' | '.'))
+}
+
 /// Message and hint; `before` is what stands on the line before the error.
 pub(super) fn message(kind: &ErrorKind, before: &str) -> (String, Option<&'static str>) {
     use ErrorKind as E;
@@ -30,6 +36,15 @@ pub(super) fn message(kind: &ErrorKind, before: &str) -> (String, Option<&'stati
         E::MisplacedFlowCollectionEnd => ("a closing bracket without its opening one", "remove it"),
         E::ExpectedFlowMappingSeparator => ("expected `,` or `}`", "separate `key: value` pairs with commas"),
         E::ExpectedFlowSequenceSeparator => ("expected `,` or `]`", "separate entries with commas"),
+        E::MappingValueNotAllowed | E::InvalidColonPlacement
+            if before.split(['{', '[']).next().is_some_and(is_bare_key) =>
+        {
+            ("a key without its `:` in front of the bracket", "write `key: {...}`")
+        }
+        E::CommentInterceptedScalar => (
+            "a text that goes on in the next line has a comment in it",
+            "if the next line is a key, it is indented too far: keys of one map start in the same column",
+        ),
         E::MappingValueNotAllowed | E::InvalidColonPlacement if before.contains(": ") => {
             ("a second `: ` on one line", "put a text that holds `: ` in quotes, or write {key: value}")
         }

@@ -14,7 +14,7 @@ use std::path::PathBuf;
         rectangle:500,600 (nm), constant:1, FdC and F'eC' (sets of lines), rgb-lines (three lines that make white), rgb:#ff8040 (a color, by a color model if not the \
         default: 'rgb:#ff8040 by gaussians'), srgb-r, srgb-g, srgb-b and srgb-w, function:exp(-((w-550)/20)^4) (a formula of the \
         wavelength w in nm); and algebra of these with + - * / ^ and parentheses, with spaces around + - and /: \
-        '0.5 * D65 + line:e', '1 - wratten-25', 'D65 / A / 10', 'wratten-12^2'.",
+        'D65 + 5000 * line:e', '1 - wratten-25', 'D65 / A / 10', 'wratten-12^2'.",
     after_long_help = "Examples:\n  spectra spectrum info D65\n  \
         spectra spectrum plot A D65 blackbody:5800 -o lights.svg\n  \
         spectra spectrum plot D50 LED-B3 line:e --chromaticity -o diagram.png\n  \

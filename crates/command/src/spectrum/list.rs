@@ -75,7 +75,7 @@ fn table(items: &[Item], all: bool) -> String {
     }
     out.push_str(
         "\nwritten out: blackbody:5800  daylight:5500  line:C'  line:632.8  gaussian:550,20  rectangle:500,600  FdC  F'eC'  rgb-lines  rgb:#ff8040\n\
-         algebra of them with + - * / ^ and parentheses: '0.5 * D65 + line:e', '1 - wratten-25'; or a CSV or YAML file of your own\n",
+         algebra of them with + - * / ^ and parentheses: 'D65 + 5000 * line:e', '1 - wratten-25'; or a CSV or YAML file of your own\n",
     );
     out
 }

@@ -45,6 +45,9 @@ pub fn write(lens: &Prescription) -> Written {
     let body = std::mem::take(&mut writer.out);
     writer.system(lens);
     writer.out.push_str(&body);
+    if let Some(year) = lens.year {
+        writer.note(false, format!("the year {year}, by which a coating is assumed: read back, the surfaces are bare"));
+    }
     Written { text: writer.out, left_out: writer.left_out }
 }
 

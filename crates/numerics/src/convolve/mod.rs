@@ -58,6 +58,14 @@ impl<T: Real> Convolver<T> {
     /// # Panics
     /// If a plane has another size than was prepared for.
     pub fn apply(&self, source: &[f32], target: &mut [f32], write: impl Fn(&mut f32, T) + Sync) {
+        self.apply_at(source, target, |to, v, _| write(to, v));
+    }
+
+    /// The same; `write` is given the column and the row of the target as well.
+    ///
+    /// # Panics
+    /// If a plane has another size than was prepared for.
+    pub fn apply_at(&self, source: &[f32], target: &mut [f32], write: impl Fn(&mut f32, T, [usize; 2]) + Sync) {
         assert_eq!(source.len(), self.width * self.height, "the plane has the size that was prepared for");
         assert_eq!(target.len(), source.len(), "both planes have the same size");
         if source.is_empty() {
@@ -98,7 +106,7 @@ struct Strip<'a, T: Real, F> {
     write: &'a F,
 }
 
-impl<T: Real, F: Fn(&mut f32, T)> Vectorized for Strip<'_, T, F> {
+impl<T: Real, F: Fn(&mut f32, T, [usize; 2])> Vectorized for Strip<'_, T, F> {
     type Output = ();
 
     /// Two tiles at a time: one is the real, one the imaginary part. The kernel is the same at opposite places, so its spectrum is
@@ -119,8 +127,8 @@ impl<T: Real, F: Fn(&mut f32, T)> Vectorized for Strip<'_, T, F> {
                 for (row, target) in target.chunks_exact_mut(*width).enumerate() {
                     let line = &mut line[..columns];
                     scratch.read(part, radius + row, *radius, line);
-                    for (to, v) in target[x..x + columns].iter_mut().zip(line.iter()) {
-                        write(to, *v);
+                    for (column, (to, v)) in (x..).zip(target[x..x + columns].iter_mut().zip(line.iter())) {
+                        write(to, *v, [column, y0 + row]);
                     }
                 }
             }

@@ -26,7 +26,7 @@ use crate::forward::source_points;
 use crate::no_number::Step;
 use crate::pilot::PILOT_SEED;
 use crate::pipeline::{Pipeline, ThreadState};
-use crate::sums::{ExactSums, OwnSums, each, scale_for};
+use crate::sums::{ExactSums, OwnSums, scale_for};
 use crate::{Done, Workers};
 use glam::DVec3;
 use guide::{Aim, Guide};
@@ -434,11 +434,10 @@ impl Ghosts {
                 let (tags, recorded) = (state.rays.tags(), &self.pipeline.recorded[..]);
                 match &mut state.own {
                     Some(own) => own.add(tags, &state.integers, recorded, sums),
-                    None => each(tags, &state.integers, recorded, 0..tags.len(), |cell, value| sums.add(cell, value)),
+                    None => sums.add_rays(0, tags, &state.integers, recorded),
                 }
                 if let Some(first) = way.own_cells {
-                    let add = |cell, value| sums.add(first + cell, value);
-                    each(tags, &state.integers, recorded, 0..tags.len(), add);
+                    sums.add_rays(first, tags, &state.integers, recorded);
                 }
                 rays += len as u64;
             }

@@ -3,8 +3,8 @@
 use glam::DVec3;
 use spectra_core::math::atan2;
 
-/// Zones of the angle to the axis, at most, and how wide they are at least (chord of the unit circle: 0.6 degrees): the sun, 0.53, is in one ring,
-/// as rays of both halves tell of the same places on the front.
+/// Zones of the angle to the axis, at most, and how wide they are at least (chord of the unit circle: 0.6 degrees): the sun, 0.53, is in one,
+/// wherever it stands, as rays of both halves tell of the same places on the front.
 const MOST_RINGS: usize = 12;
 const WIDTH: f64 = 0.6 * std::f64::consts::PI / 180.0;
 /// Zones around the axis, in a lens that is not round.
@@ -23,6 +23,11 @@ pub(super) struct Zones {
 impl Zones {
     /// For points such as these, seen from `eye`; of a round lens all azimuths are alike.
     pub fn new(points: &[DVec3], eye: DVec3, is_round: bool) -> Self {
+        let unit = |p: &DVec3| (*p - eye).normalize_or(DVec3::NEG_Z);
+        let middle = points.iter().map(unit).sum::<DVec3>().normalize_or(DVec3::NEG_Z);
+        if points.iter().all(|p| (unit(p) - middle).length() < 0.5 * WIDTH) {
+            return Self::one();
+        }
         let chords = points.iter().map(|p| chord(*p - eye));
         let (low, high) = chords.fold((2.0_f64, 0.0_f64), |(low, high), c| (low.min(c), high.max(c)));
         let rings = (((high - low) / WIDTH).ceil() as usize).clamp(1, MOST_RINGS);
@@ -64,6 +69,7 @@ fn chord(way: DVec3) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::DMat3;
 
     #[test]
     fn a_point_is_one_zone_and_a_wide_field_is_many() {
@@ -72,6 +78,13 @@ mod tests {
         assert_eq!(Zones::new(&[at(19.735), at(20.265)], DVec3::ZERO, true).count(), 1);
         let wide = Zones::new(&[at(0.0), at(30.0)], DVec3::ZERO, true);
         assert_eq!((wide.count(), wide.of(at(0.0)), wide.of(at(29.9)), wide.of(at(80.0))), (12, 0, 11, 11));
+        // The sun beside the middle, where two of eight sectors meet.
+        let edge = |turn: f64| DMat3::from_rotation_z(turn) * at(0.265);
+        let aside = DMat3::from_rotation_y(-20.0_f64.to_radians());
+        let sun: Vec<DVec3> = (0..8).map(|k| aside * edge(f64::from(k) * std::f64::consts::FRAC_PI_4)).collect();
+        let sectors = Zones { eye: DVec3::ZERO, low: 0.0, step: 2.0, rings: 1, sectors: SECTORS };
+        assert_ne!(sectors.of(sun[2]), sectors.of(sun[6]));
+        assert_eq!(Zones::new(&sun, DVec3::ZERO, false).count(), 1);
         let turned = Zones::new(&[at(0.0), at(30.0)], DVec3::ZERO, false);
         assert_eq!(turned.count(), 96);
         assert_ne!(turned.of(at(20.0)), turned.of(DVec3::new(-1.0, 1.0, 1.0) * at(20.0)));

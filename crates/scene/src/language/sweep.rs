@@ -5,7 +5,7 @@ use super::setting::{SWEEP, Setting, check_path};
 use super::variables::Variables;
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::params::{Fault, Faults, Key, Node, StageNode, Value, Whole};
+use spectra_core::params::{Fault, Faults, Key, Node, StageNode, Value, Whole, keys_of};
 use std::collections::BTreeMap;
 
 /// Most pictures of one sweep.
@@ -142,6 +142,12 @@ fn axis(key: &Key, node: &Node, variables: &Variables) -> Result<Vec<Node>, Faul
         Value::Seq(items) if items.len() > MAX_PICTURES => {
             Err(too_many(node, &items.len().to_string()).path(path).into())
         }
+        // A path that was not written with dots.
+        Value::Map(entries) if entries.first().is_some_and(|(key, _)| !keys_of::<Range>().contains(&key.text)) => {
+            let fault = node.fault("a swept path has a list of values, or a range").path(path);
+            let joined = entries.first().map_or_else(String::new, |(inner, _)| format!("{}.{}", key.text, inner.text));
+            Err(fault.hint(format!("keys within keys are joined by dots: `{SWEEP}: {{{joined}: ...}}`")).into())
+        }
         Value::Map(entries) if !entries.is_empty() => {
             let range = variables.put_into_part(&opened)?;
             steps_of(&StageNode::new(range, path))
@@ -244,6 +250,7 @@ mod tests {
             ("{a: []}", "a swept path has a list of values"),
             ("{a..b: [1]}", "t.yaml:1:9: `a..b` is not a path: a key is empty"),
             ("{animation.frames: [1]}", "`animation` cannot change from picture to picture"),
+            ("{a: {b: [1, 2]}}", "joined by dots: `sweep: {a.b: ...}`"),
             ("{a: {from: 1, to: 2}}", "missing key `steps`"),
             ("{a: {from: 1, to: 2, stops: 3}}", "unknown key `stops` (did you mean `steps`?)"),
             (

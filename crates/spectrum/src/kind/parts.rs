@@ -30,7 +30,7 @@ struct Product {
 /// Spectra added.
 ///
 /// Lamps that shine together, or bands of one filter. Parts may be negative (a notch is 1 minus a band); the sum must not. In a
-/// line: `0.5 * D65 + line:e`, `1 - 0.9 * gaussian:550,20`.
+/// line: `D65 + 5000 * line:e`, `1 - 0.9 * gaussian:550,20`.
 ///
 /// # Example
 /// ```yaml

@@ -29,7 +29,7 @@ pub struct FrameParams {
     #[schemars(range(max = 2))]
     pub breathing: Option<Positive<f64>>,
     /// Specks and fibers on the film a square centimeter, more than 0 to 1000; others on each frame. They hold light back: white on a
-    /// print, black in a projection. None if left out.
+    /// print, black in a projection and on the negative. None if left out.
     #[schemars(range(max = 1000))]
     pub dust: Option<Positive<f64>>,
     /// How many scratches a frame has on average, more than 0 to 100. They run along the film and stay for some frames: white on a print
@@ -37,8 +37,8 @@ pub struct FrameParams {
     #[schemars(range(max = 100))]
     pub scratches: Option<Positive<f64>>,
     /// The film around the frame: `still`, 135 film that runs across, `cine`, 35 mm film that runs down, both with perforations, or
-    /// `plain`, 3 mm without any, each with the stock's name and the frame's number exposed on it. The picture is larger by it. None if
-    /// left out.
+    /// `plain`, 3 mm without any, each with the stock's name and the frame's number exposed on it. The picture is larger by it. On a
+    /// print perforations are black, as the film around them is; the negative shows them. None if left out.
     pub border: Option<BorderKind>,
 }
 
