@@ -11,7 +11,7 @@ use serde::Deserialize;
 use spectra_core::cover::CoverStack;
 use spectra_core::params::{
     Angle, Dimension, FNumber, Fault, Faults, Length, Node, OrInfinity, Params, Part, Positive, Reading,
-    SpatialFrequency, StageNode, Wavelength,
+    SpatialFrequency, StageNode, Value, Wavelength,
 };
 use spectra_core::resources::Resources;
 use spectra_exchange::Format;
@@ -391,7 +391,12 @@ fn focus_fault(params: &Params, error: &FocusError) -> Fault {
     let key =
         if params.get("focus").is_some_and(|node| node.get("distance").is_some()) { "focus.distance" } else { "focus" };
     let hint = match error {
-        FocusError::TooNear { nearest_mm } => format!("farther than {nearest_mm:.1} mm, or `infinity`"),
+        FocusError::TooNear { nearest_mm } => match params.node().at_path(key).map(|node| &node.value) {
+            Some(Value::Number(number)) => {
+                format!("a number without a unit is in mm: did you mean `{} m`?", number.value)
+            }
+            _ => format!("farther than {nearest_mm:.1} mm, or `infinity`"),
+        },
         FocusError::BeyondTable { nearest_mm, farthest_mm, .. } => {
             format!("from {nearest_mm} to {farthest_mm} mm; or extend the table in the lens file")
         }

@@ -1,7 +1,7 @@
 //! Finding a medium by name.
 
 use spectra_core::names;
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 use std::fmt;
 
 use thiserror::Error;
@@ -404,7 +404,7 @@ impl Catalogue {
     fn nearest_names(&self, name: &str) -> Vec<Candidate> {
         let asked = name.trim();
         let (maker, bare) = split_maker(asked);
-        let maker = maker.map(our_maker);
+        let maker = maker.map(|maker| self.maker_like(our_maker(maker)));
         let bare: Vec<char> = bare.to_uppercase().chars().take(64).collect();
         if maker.is_none() && PLASTICS_NOT_HELD.iter().any(|plastic| plastic.eq_ignore_ascii_case(asked)) {
             let plastics = self.bundle.aliases().filter_map(|(alias, target)| {
@@ -444,6 +444,22 @@ impl Catalogue {
             near.truncate(LISTED);
         }
         near.into_iter().map(|(_, candidate)| candidate).collect()
+    }
+
+    /// The one maker of glass whose name is a letter or two away; as typed where there is none, or several.
+    fn maker_like(&self, typed: String) -> String {
+        let glasses = self.index.iter().filter(|(_, place)| self.category_of(*place).is_glass());
+        let makers: BTreeSet<&str> = glasses.map(|(_, place)| self.maker_of(*place)).collect();
+        if makers.iter().any(|maker| same_name(maker, &typed)) {
+            return typed;
+        }
+        let letters: Vec<char> = typed.chars().take(64).collect();
+        let farthest = (letters.len() / 3).min(2);
+        let mut near = makers.iter().filter(|maker| edit_distance(&letters, &maker.to_uppercase()) <= farthest);
+        match (near.next(), near.next()) {
+            (Some(maker), None) => (*maker).to_owned(),
+            _ => typed,
+        }
     }
 
     /// Everyday names and substances near a word.
@@ -552,6 +568,12 @@ mod tests {
         let lasfn1: Vec<char> = "LASFN1".chars().collect();
         assert!(is_heir(&lasfn1, "K-LASFN1"));
         assert!(!is_heir(&lasfn1, "K-LASFN10") && !is_heir(&lasfn1, "LASFN1") && !is_heir(&lasfn1, "KZ-LASFN1"));
+    }
+
+    #[test]
+    fn a_slip_in_a_maker_is_that_maker() {
+        let Err(FindError::Unknown { nearest, .. }) = Catalogue::bundled().find("SCHOT/SK10") else { panic!("found") };
+        assert_eq!(nearest.first().map(|c| c.full_name.as_str()), Some("SCHOTT/SK10"));
     }
 
     #[test]

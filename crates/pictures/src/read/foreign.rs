@@ -49,7 +49,8 @@ fn read(found: &Found, name: &str, said: Option<Encoding>, pixels: bool) -> Resu
     let known = ENDINGS.split(' ').any(|own| own == ending);
     let Some(own) = library::library() else {
         return Err(if known {
-            Trouble::file(format!("`.{ending}` files are read by OpenImageIO only")).hint(library::WITHOUT)
+            Trouble::file(format!("`.{ending}` files are read by OpenImageIO only"))
+                .hint(format!("save it as PNG, TIFF or JPEG; {}", library::WITHOUT))
         } else {
             Trouble::file("this is not an OpenEXR, PNG, JPEG, TIFF or Radiance HDR file")
                 .hint("save it in one of these formats; changing only the file extension is not enough")
