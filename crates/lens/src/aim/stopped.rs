@@ -19,7 +19,7 @@ const HALVINGS: usize = 12;
 /// Most folds of symmetry that are looked for.
 const FOLDS: usize = 16;
 /// Zones of the azimuth, at least.
-const AZIMUTHS: usize = 40;
+const AZIMUTHS: usize = 64;
 /// Parts of the way to the edge of what passes at which places of the surface are looked at.
 const PARTS: [f64; 3] = [0.4, 0.75, 0.98];
 
