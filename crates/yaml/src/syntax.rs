@@ -37,7 +37,7 @@ pub(super) fn message(kind: &ErrorKind, before: &str) -> (String, Option<&'stati
         E::ExpectedFlowMappingSeparator => ("expected `,` or `}`", "separate `key: value` pairs with commas"),
         E::ExpectedFlowSequenceSeparator => ("expected `,` or `]`", "separate entries with commas"),
         E::MappingValueNotAllowed | E::InvalidColonPlacement
-            if before.split(['{', '[']).next().is_some_and(is_bare_key) =>
+            if before.split_once(['{', '[']).is_some_and(|(key, _)| is_bare_key(key)) =>
         {
             ("a key without its `:` in front of the bracket", "write `key: {...}`")
         }
