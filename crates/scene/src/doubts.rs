@@ -170,8 +170,8 @@ impl Whole<'_> {
 
     /// Whether the lens comes with the program, by whatever part of its name it is called.
     fn is_bundled_lens(&self) -> bool {
-        let found = self.resources.find(self.lens_file(), &["lenses"], &[".yaml"], u64::MAX);
-        found.is_ok_and(|found| found.name.starts_with(BUNDLED))
+        let read = self.resources.document(self.lens_file(), &["lenses"], &[".yaml"]);
+        read.is_ok_and(|read| read.node().file.name.starts_with(BUNDLED))
     }
 
     /// Glass whose formula is used where nobody measured it.

@@ -418,7 +418,7 @@ impl Catalogue {
         }
         let farthest = (bare.len() / 3).clamp(1, 4);
         let is_code = bare.iter().any(char::is_ascii_digit);
-        let mut scored: Vec<(usize, bool, usize)> = Vec::new();
+        let mut scored: Vec<(usize, bool, bool, usize)> = Vec::new();
         for (i, (candidate, place)) in self.index.iter().enumerate() {
             // The name of a measurement is its author's: nobody means it who does not name the substance.
             let category = self.category_of(*place);
@@ -429,15 +429,17 @@ impl Catalogue {
             if other_maker && !category.is_glass() {
                 continue;
             }
-            let distance = if is_heir(&bare, candidate) { 0 } else { edit_distance(&bare, candidate) };
+            // An heir is as near as the name itself, and comes after it.
+            let is_heir = is_heir(&bare, candidate);
+            let distance = if is_heir { 0 } else { edit_distance(&bare, candidate) };
             if distance <= farthest {
-                scored.push((distance, other_maker, i));
+                scored.push((distance, other_maker, is_heir, i));
             }
         }
         scored.sort_unstable();
         scored.truncate(LISTED);
         let mut near: Vec<(usize, Candidate)> =
-            scored.iter().map(|&(distance, _, i)| (distance, candidate(&self.glass(self.index[i].1)))).collect();
+            scored.iter().map(|&(distance, _, _, i)| (distance, candidate(&self.glass(self.index[i].1)))).collect();
         if maker.is_none() {
             near.extend(self.near_words(&bare, farthest));
             near.sort_by_key(|(distance, _)| *distance);
