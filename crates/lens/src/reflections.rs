@@ -119,24 +119,31 @@ impl FrontOpening {
     /// As seen from a point, mm in the frame of the lens; `None` from inside.
     #[must_use]
     pub fn seen_from(&self, point: DVec3) -> Option<FrontDisk> {
+        let (is_outside, disk) = self.disk_from(point);
+        is_outside.then_some(disk)
+    }
+
+    /// The same: whether the point lies outside, and the disk, which is none from inside. Without a branch, so that loops over rays can be vectorized.
+    #[must_use]
+    #[inline(always)]
+    pub fn disk_from(&self, point: DVec3) -> (bool, FrontDisk) {
         let way = self.center - point;
         let (distance2, radius2) = (way.length_squared(), self.radius_mm * self.radius_mm);
-        if !(distance2 > 1.0001 * radius2) {
-            return None;
-        }
         let distance = distance2.sqrt();
         let sight = way / distance;
         let across = DVec3::Z.cross(sight);
         let size = across.length();
-        let across = if size > 1e-12 { across / size } else { DVec3::X };
+        let is_aside = size > 1e-12;
+        let across = across / size;
+        let across = DVec3::new(
+            if is_aside { across.x } else { 1.0 },
+            if is_aside { across.y } else { 0.0 },
+            if is_aside { across.z } else { 0.0 },
+        );
         // Tangents from the point to the sphere meet the plane through its middle here.
         let radius_mm = self.radius_mm * (distance2 / (distance2 - radius2)).sqrt();
-        Some(FrontDisk {
-            center: self.center,
-            radial: across.cross(sight) * radius_mm,
-            across: across * radius_mm,
-            sight,
-        })
+        let (radial, across) = (across.cross(sight) * radius_mm, across * radius_mm);
+        (distance2 > 1.0001 * radius2, FrontDisk { center: self.center, radial, across, sight })
     }
 }
 

@@ -406,7 +406,7 @@ impl Tracer {
             ended += rings.bend(rays, &Bent { before, n, mirror, number: interface.number });
         }
         if let (Some(noted), true) = (&work.before, leg.turned) {
-            ended += noted.end_behind(rays, shift_mm, interface.number);
+            ended += noted.end_behind(rays, shift_mm, interface.number, isa);
         }
         if let Some((ledger, booked)) = &mut work.ledger {
             booked.settle(rays, &mut ledger.steps[step], |s| &mut s.absorbed);
@@ -428,7 +428,7 @@ impl Tracer {
             } else if rays.is_polarized() {
                 noted.polarize(rays, passage, leg.action == Action::Reflect, [interface.before.n, beyond.n]);
             } else if leg.turns {
-                noted.reflect(rays, passage, interface.before.n, beyond.n);
+                noted.reflect(rays, passage, interface.before.n, beyond.n, isa);
             } else {
                 noted.pass(rays, passage, interface.before.n, interface.after.n, isa);
             }

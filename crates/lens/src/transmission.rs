@@ -5,7 +5,7 @@
 //! before and after, whatever the kind of surface.
 
 use crate::absorption::{Absorptions, Locate};
-use crate::coating::{Amplitudes, CHUNK, Coating, Films, Polarizing, Sides, Singles, Swift};
+use crate::coating::{Amplitudes, CHUNK, Coating, Films, Polarizing, Sides, Singles, Swift, bare_reflectance};
 use crate::separation::Separation;
 use crate::{Element, Lens, LensMedium};
 use spectra_core::Loss;
@@ -293,18 +293,19 @@ impl Before {
 
     /// Ends rays that met a surface behind them: a steep reflection may send light sideways, past the surface that comes next. Says
     /// how many.
-    pub(crate) fn end_behind(&self, rays: &mut RayBatch, shift_mm: f64, number: u32) -> usize {
+    pub(crate) fn end_behind(&self, rays: &mut RayBatch, shift_mm: f64, number: u32, isa: Isa) -> usize {
         let len = rays.len();
-        let from = self.position.each_ref().map(|column| column.slice(len));
-        let direction = self.direction.each_ref().map(|column| column.slice(len));
+        let [from, direction] = [&self.position, &self.direction].map(|all| all.each_ref().map(|c| c.slice(len)));
         let c = rays.weighing();
-        let is_behind = |i: usize| c.state[i] == ALIVE && way_mm(i, from, c.position, direction, shift_mm) < BEHIND_MM;
-        let behind: Vec<usize> = (0..len).filter(|i| is_behind(*i)).collect();
-        if !behind.is_empty() {
+        let columns = [from, direction, c.position];
+        let many = isa.run(CountBehind { columns, shift_mm, state: c.state }) as usize;
+        if many > 0 {
+            let is_behind = |i: &usize| c.state[*i] == ALIVE && is_behind(*i, columns, shift_mm);
+            let behind: Vec<usize> = (0..len).filter(is_behind).collect();
             let c = rays.columns_mut();
             behind.iter().for_each(|i| c.state[*i] = Loss::Missed.state(number));
         }
-        behind.len()
+        many
     }
 
     /// Adds the way since the note to the optical path of batches that carry it, in a medium of these indices.
@@ -319,7 +320,7 @@ impl Before {
     }
 
     /// Weighs rays by what a refracting surface reflects; `n_beyond` are the indices on its other side.
-    pub(crate) fn reflect(&self, rays: &mut RayBatch, passage: &Passage, n: &[f64], n_beyond: &[f64]) {
+    pub(crate) fn reflect(&self, rays: &mut RayBatch, passage: &Passage, n: &[f64], n_beyond: &[f64], isa: Isa) {
         let (coating, gap) = match passage {
             Passage::All | Passage::Mirror(_) => return,
             Passage::Coated(..) => (passage.coating(), None),
@@ -328,11 +329,12 @@ impl Before {
         let c = rays.weighing();
         let len = c.weight.len();
         let before = self.direction.each_ref().map(|column| column.slice(len));
+        if let Passage::Coated(Coating::Bare, _) = passage {
+            return isa.run(ReflectBare(Pass { rays: c, before, n, n_after: n_beyond }));
+        }
         let reflected = |i: usize, coating: &Coating| {
-            // Incidence and reflection differ by twice the cosine along the normal.
-            let turn: [f64; 3] = std::array::from_fn(|k| c.direction[k][i] - before[k][i]);
-            let cosine = 0.5 * (turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2]).sqrt();
-            coating.reflectance(n[i], n_beyond[i], cosine.min(1.0), c.wavelength_nm[i]).mean()
+            let cosine = cosine_of_mirrored(i, before, c.direction);
+            coating.reflectance(n[i], n_beyond[i], cosine, c.wavelength_nm[i]).mean()
         };
         let came = gap.map(|_| c.weight.to_vec());
         for i in 0..len {
@@ -467,6 +469,14 @@ fn way_mm(i: usize, from: [&[f64]; 3], to: [&[f64]; 3], d: [&[f64]; 3], shift_mm
     step[0] * d[0][i] + step[1] * d[1][i] + step[2] * d[2][i]
 }
 
+/// Cosine of the angle of incidence of a ray that was reflected: its directions before and after differ by twice that, along the normal.
+#[inline(always)]
+fn cosine_of_mirrored(i: usize, before: [&[f64]; 3], after: [&[f64]; 3]) -> f64 {
+    let turn = [after[0][i] - before[0][i], after[1][i] - before[1][i], after[2][i] - before[2][i]];
+    let cosine = 0.5 * (turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2]).sqrt();
+    if cosine < 1.0 { cosine } else { 1.0 }
+}
+
 /// Adds what is absorbed on the way, or begins with it.
 struct Absorb<'a, const FIRST: bool> {
     /// Positions and directions before, positions after.
@@ -490,6 +500,33 @@ impl<const FIRST: bool> Vectorized for Absorb<'_, FIRST> {
             let own = per_mm[i] * way_mm;
             depth[i] = if FIRST { own } else { depth[i] + own };
         }
+    }
+}
+
+/// Whether a ray ran backward: positions and directions before, positions after.
+#[inline(always)]
+fn is_behind(i: usize, [from, direction, to]: [[&[f64]; 3]; 3], shift_mm: f64) -> bool {
+    way_mm(i, from, to, direction, shift_mm) < BEHIND_MM
+}
+
+/// Counts living rays of which that is true: hardly ever any.
+struct CountBehind<'a> {
+    columns: [[&'a [f64]; 3]; 3],
+    shift_mm: f64,
+    state: &'a [u64],
+}
+
+impl Vectorized for CountBehind<'_> {
+    type Output = u64;
+    #[inline(always)]
+    fn run(self) -> u64 {
+        let Self { columns, shift_mm, state } = self;
+        let columns = columns.map(|columns| columns.map(|column| &column[..state.len()]));
+        let mut many = 0;
+        for i in 0..state.len() {
+            many += u64::from((state[i] == ALIVE) & is_behind(i, columns, shift_mm));
+        }
+        many
     }
 }
 
@@ -607,6 +644,30 @@ impl Vectorized for PassBare<'_> {
     #[inline(always)]
     fn run(self) {
         self.0.weigh(Bare);
+    }
+}
+
+/// Weighs rays by what bare glass reflects.
+struct ReflectBare<'a>(Pass<'a>);
+
+impl Vectorized for ReflectBare<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run(self) {
+        let Pass { rays: c, before, n, n_after } = self.0;
+        reflect_bare([before, c.direction], [n, n_after], c.state, c.weight);
+    }
+}
+
+/// As [`weigh_absorbed`].
+#[inline(always)]
+fn reflect_bare([before, after]: [[&[f64]; 3]; 2], [n, n_beyond]: [&[f64]; 2], state: &[u64], weight: &mut [f64]) {
+    let len = weight.len();
+    let [before, after] = [before, after].map(|columns| columns.map(|column| &column[..len]));
+    let (n, n_beyond, state) = (&n[..len], &n_beyond[..len], &state[..len]);
+    for i in 0..len {
+        let part = bare_reflectance(n[i], n_beyond[i], cosine_of_mirrored(i, before, after)).mean();
+        weight[i] *= if state[i] == ALIVE { part } else { 1.0 };
     }
 }
 

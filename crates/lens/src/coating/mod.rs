@@ -67,6 +67,7 @@ impl Transmittance {
 
     /// Of unpolarized light.
     #[must_use]
+    #[inline(always)]
     pub fn mean(self) -> f64 {
         0.5 * (self.s + self.p)
     }
@@ -104,17 +105,13 @@ impl Coating {
     /// absorbed in the coating. Of a measured coating all that does not pass is reflected.
     #[must_use]
     pub fn reflectance(&self, n: f64, n_after: f64, cos_incidence: f64, wavelength_nm: f64) -> Reflectance {
-        let sine = n * (1.0 - cos_incidence * cos_incidence).max(0.0).sqrt();
-        let cos_square = 1.0 - sine * sine / (n_after * n_after);
+        let cos_square = cos_square_beyond(n, n_after, cos_incidence);
         if cos_square <= 0.0 {
-            return Reflectance { s: 1.0, p: 1.0 };
+            return Reflectance::FULL;
         }
         let (c, c_after) = (cos_incidence, cos_square.sqrt());
         match self {
-            Self::Bare => {
-                let part = |a: f64, b: f64| ((a - b) / (a + b)) * ((a - b) / (a + b));
-                Reflectance { s: part(n * c, n_after * c_after), p: part(n_after * c, n * c_after) }
-            }
+            Self::Bare => bare_reflectance(n, n_after, c),
             Self::Stack(stack) => stack.reflectance([n, n_after], [c, c_after], wavelength_nm),
             lossless => {
                 let passes = lossless.transmittance(n, n_after, c, wavelength_nm);
@@ -122,6 +119,26 @@ impl Coating {
             }
         }
     }
+}
+
+/// Square of the cosine of the angle of refraction; negative on total reflection.
+#[inline(always)]
+fn cos_square_beyond(n: f64, n_after: f64, cos_incidence: f64) -> f64 {
+    let sine_square = 1.0 - cos_incidence * cos_incidence;
+    let sine = n * (if sine_square > 0.0 { sine_square } else { 0.0 }).sqrt();
+    1.0 - sine * sine / (n_after * n_after)
+}
+
+/// [`Coating::reflectance`] of bare glass.
+#[inline(always)]
+pub(crate) fn bare_reflectance(n: f64, n_after: f64, cos_incidence: f64) -> Reflectance {
+    let cos_square = cos_square_beyond(n, n_after, cos_incidence);
+    let is_total = cos_square <= 0.0;
+    // Of total reflection no number.
+    let (c, c_after) = (cos_incidence, cos_square.sqrt());
+    let s = (n * c - n_after * c_after) / (n * c + n_after * c_after);
+    let p = (n_after * c - n * c_after) / (n_after * c + n * c_after);
+    Reflectance { s: if is_total { 1.0 } else { s * s }, p: if is_total { 1.0 } else { p * p } }
 }
 
 /// Fresnel: indices and cosines on both sides.

@@ -1,5 +1,8 @@
 //! A density over the unit square to draw places from, by the cells of a [`Tree`](super::tree::Tree).
 
+/// How many places are drawn side by side.
+pub(super) const ABREAST: usize = 8;
+
 /// The largest number below 1.
 const BELOW_ONE: f64 = 1.0 - 0.5 * f64::EPSILON;
 
@@ -53,6 +56,37 @@ impl Density {
         ([low[0] + u * side, low[1] + v * side], density)
     }
 
+    /// [`Density::draw`] of several side by side: by itself each step waits for the cell that the one before it found.
+    #[inline]
+    pub fn draw_abreast(
+        own: [&Self; ABREAST],
+        mut u: [f64; ABREAST],
+        mut v: [f64; ABREAST],
+    ) -> [([f64; 2], f64); ABREAST] {
+        let mut cells: [Cell; ABREAST] = std::array::from_fn(|k| own[k].cells[0]);
+        let (mut low, mut side, mut density) = ([[0.0; 2]; ABREAST], [1.0; ABREAST], [1.0; ABREAST]);
+        while cells.iter().any(|cell| cell.first != 0) {
+            for k in 0..ABREAST {
+                let cell = cells[k];
+                // Who has arrived stays.
+                let goes_on = cell.first != 0;
+                let (mut across_it, mut along_it, smaller) = (u[k], v[k], 0.5 * side[k]);
+                let (row, lengthwise) = half(&mut along_it, cell.lower);
+                let (column, across) = half(&mut across_it, cell.left[row]);
+                let corner = [low[k][0] + column as f64 * smaller, low[k][1] + row as f64 * smaller];
+                let denser = density[k] * (4.0 * lengthwise * across);
+                u[k] = if goes_on { across_it } else { u[k] };
+                v[k] = if goes_on { along_it } else { v[k] };
+                low[k] = if goes_on { corner } else { low[k] };
+                side[k] = if goes_on { smaller } else { side[k] };
+                density[k] = if goes_on { denser } else { density[k] };
+                let next = if goes_on { cell.first as usize + 2 * row + column } else { 0 };
+                cells[k] = if goes_on { own[k].cells[next] } else { cell };
+            }
+        }
+        std::array::from_fn(|k| ([low[k][0] + u[k] * side[k], low[k][1] + v[k] * side[k]], density[k]))
+    }
+
     /// How dense rays are at a place.
     #[inline]
     pub fn at(&self, [mut x, mut y]: [f64; 2]) -> f64 {
@@ -72,16 +106,19 @@ impl Density {
 #[inline]
 fn half(number: &mut f64, edge: f32) -> (usize, f64) {
     let edge = f64::from(edge);
-    let half = usize::from(*number >= edge);
-    // Without a branch: nobody can guess where a random number lies.
-    let length = [edge, 1.0 - edge][half];
-    *number = ((*number - [0.0, edge][half]) / length).min(BELOW_ONE);
-    (half, length)
+    let is_upper = *number >= edge;
+    // By bits, without a branch: nobody can guess where a random number lies.
+    let upper = u64::from(is_upper).wrapping_neg();
+    let length = f64::from_bits(edge.to_bits() & !upper | (1.0 - edge).to_bits() & upper);
+    let from = f64::from_bits(edge.to_bits() & upper);
+    *number = ((*number - from) / length).min(BELOW_ONE);
+    (usize::from(is_upper), length)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use spectra_core::numbers::Numbers;
 
     /// Whatever the numbers, no place is drawn where there are no rays.
     #[test]
@@ -102,5 +139,25 @@ mod tests {
             }
         }
         assert_eq!(parts([0.0; 4]).draw(0.25, 0.75), ([0.25, 0.75], 1.0));
+    }
+
+    /// Bit for bit, of cells that lie one, two and no steps deep.
+    #[test]
+    fn side_by_side_they_are_as_one_by_one() {
+        let deep = |first: f64| {
+            let densities = [first, 0.3, 2.0, 0.1, 0.7, 0.0, 5.0, 1.0];
+            let mut cells = vec![(1, 0.0), (5, 0.0)];
+            cells.extend(densities.map(|density| (0, density)));
+            cells.truncate(9);
+            Density::of(&cells)
+        };
+        let (all, numbers) = ([deep(1.0), deep(0.2), Density::even()], Numbers::sobol(1));
+        for i in 0..512 {
+            let own: [&Density; ABREAST] = std::array::from_fn(|k| &all[(i as usize + k) % 3]);
+            let of = |dimension: u32| std::array::from_fn(|k| numbers.one(k as u64, i, dimension));
+            let (u, v): ([f64; ABREAST], [f64; ABREAST]) = (of(0), of(1));
+            let want: [_; ABREAST] = std::array::from_fn(|k| own[k].draw(u[k], v[k]));
+            assert_eq!(Density::draw_abreast(own, u, v), want);
+        }
     }
 }

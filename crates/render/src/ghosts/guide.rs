@@ -1,6 +1,6 @@
 //! Where on the front of the lens the light of a path enters that comes to the frame.
 
-use super::density::Density;
+use super::density::{ABREAST, Density};
 
 /// Cells in which the first rounds look for the part of the front that light of a path comes through, across and up.
 const SIDE: usize = 24;
@@ -94,6 +94,20 @@ impl Guide {
         }
         let (at, dense) = self.cells.draw((u - self.even) / (1.0 - self.even), v);
         Aim { place: self.part.place(at), density: self.mixed(dense) }
+    }
+
+    /// [`Guide::draw`] of several side by side.
+    #[inline]
+    pub fn draw_abreast(own: [&Self; ABREAST], u: [f64; ABREAST], v: [f64; ABREAST]) -> [Aim; ABREAST] {
+        let rest = std::array::from_fn(|k| (u[k] - own[k].even) / (1.0 - own[k].even));
+        let drawn = Density::draw_abreast(own.map(|guide| &guide.cells), rest, v);
+        std::array::from_fn(|k| {
+            if u[k] < own[k].even {
+                return own[k].draw(u[k], v[k]);
+            }
+            let (at, dense) = drawn[k];
+            Aim { place: own[k].part.place(at), density: own[k].mixed(dense) }
+        })
     }
 
     /// How dense rays are at a place, 1 over the square's unit of area.
@@ -204,5 +218,19 @@ mod tests {
         let (sin, _) = sin_cos_turns(0.1);
         let aim = guide.draw(0.5 * sin, 0.75);
         assert_eq!((aim.place, aim.density), ([sin - 1.0, 0.5], 0.25));
+    }
+
+    #[test]
+    fn side_by_side_they_are_as_one_by_one() {
+        let part = Part { low: [-0.3, 0.1], high: [0.2, 0.7] };
+        let all = [Guide::of(part, Density::of(&[(1, 0.0), (0, 1.0), (0, 0.0), (0, 3.0), (0, 0.5)])), Guide::blind()];
+        let numbers = Numbers::sobol(2);
+        for i in 0..256 {
+            let own: [&Guide; ABREAST] = std::array::from_fn(|k| &all[usize::from(k % 3 == 0)]);
+            let of = |dimension: u32| std::array::from_fn(|k| numbers.one(k as u64, i, dimension));
+            let (u, v): ([f64; ABREAST], [f64; ABREAST]) = (of(0), of(1));
+            let want: [_; ABREAST] = std::array::from_fn(|k| own[k].draw(u[k], v[k]));
+            assert_eq!(Guide::draw_abreast(own, u, v), want);
+        }
     }
 }

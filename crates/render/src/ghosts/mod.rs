@@ -6,6 +6,7 @@
 //! least, and nowhere much more than elsewhere ([`shares`]). A tenth of every path's rays goes all over the front, so that no path has a bias whatever the pilot overlooked.
 
 mod account;
+mod aims;
 mod density;
 mod guide;
 mod metered;
@@ -28,13 +29,14 @@ use crate::pilot::PILOT_SEED;
 use crate::pipeline::{Pipeline, ThreadState};
 use crate::sums::{ExactSums, OwnSums, scale_for};
 use crate::{Done, Workers};
+use aims::Aims;
 use glam::DVec3;
-use guide::{Aim, Guide};
+use guide::Guide;
+use spectra_core::RayBatch;
 use spectra_core::batch::pixel_and_channel;
 use spectra_core::numbers::{Numbers, StageKey, mix64};
 use spectra_core::stage::{Emit, Receive};
 use spectra_core::workers::each_of;
-use spectra_core::{Loss, RayBatch};
 use spectra_lens::{FrontOpening, Indices, Path, Route, Tracer, Travel};
 use std::ops::Range;
 use std::sync::Arc;
@@ -255,33 +257,15 @@ impl Ghosts {
         look(Step::Source, &state.rays);
     }
 
-    /// Takes rays that are on the source to the front, by two numbers each: `aimed` gets the zone and the aim of each.
-    fn aim(&self, rays: &mut RayBatch, guides: &[Guide], [a, b]: [&[f64]; 2], mut aimed: impl FnMut(usize, Aim)) {
-        let Some(opening) = &self.plan.opening else {
-            let place = |(a, b): (&f64, &f64)| [2.0 * a - 1.0, 2.0 * b - 1.0];
-            a.iter().zip(b).for_each(|numbers| aimed(0, Aim { place: place(numbers), density: 0.25 }));
-            return;
-        };
-        let c = rays.columns_mut();
-        for i in 0..a.len() {
-            let point = DVec3::new(c.x[i], c.y[i], c.z[i]);
-            let zone = self.plan.zones.of(point).min(guides.len() - 1);
-            let aim = guides[zone].draw(a[i], b[i]);
-            aimed(zone, aim);
-            let Some(disk) = opening.seen_from(point) else {
-                // In front of the glass itself: no light of a lens that has room for a subject.
-                c.state[i] = Loss::Vignetted.state(1);
-                continue;
-            };
-            let at = disk.center + disk.radial * aim.place[0] + disk.across * aim.place[1];
-            let way = at - point;
-            let distance2 = way.length_squared();
-            let direction = way / distance2.sqrt();
-            (c.x[i], c.y[i], c.z[i]) = at.into();
-            (c.l[i], c.m[i], c.n[i]) = direction.into();
-            // The solid angle that the ray stands for.
-            c.weight[i] *= disk.radial.length_squared() * direction.dot(disk.sight) / (distance2 * aim.density);
-        }
+    /// Takes rays that are on the source to the front, by two numbers each; says where each is aimed at.
+    fn aim(&self, rays: &mut RayBatch, guides: &[Guide], numbers: [&[f64]; 2]) -> Aims {
+        let Some(opening) = &self.plan.opening else { return Aims::of_numbers(numbers) };
+        let [x, y, z] = rays.positions();
+        let zone = |i: usize| self.plan.zones.of(DVec3::new(x[i], y[i], z[i])).min(guides.len() - 1);
+        let zones = if guides.len() == 1 { vec![0; x.len()] } else { (0..x.len()).map(zone).collect() };
+        let aims = Aims::drawn(guides, zones, numbers);
+        aims.send(rays, *opening, self.pipeline.isa);
+        aims
     }
 
     /// Starts rays `first .. first + len` of a stream at the front.
@@ -294,7 +278,7 @@ impl Ghosts {
     ) {
         self.place(state, span, &mut look);
         let [.., a, b] = &state.numbers;
-        self.aim(&mut state.rays, guides, [a, b].map(|numbers| numbers.slice(span.2)), |_, _| {});
+        self.aim(&mut state.rays, guides, [a, b].map(|numbers| numbers.slice(span.2)));
         if self.plan.opening.is_some() {
             look(Step::Pupil, &state.rays);
         }

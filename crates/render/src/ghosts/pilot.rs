@@ -339,7 +339,6 @@ impl<'a> Pilot<'a> {
 }
 
 fn aimed(ghosts: &Ghosts, mut rays: RayBatch, guides: &[Guide], numbers: [&[f64]; 2]) -> Aimed {
-    let mut aims = Vec::with_capacity(rays.len());
-    ghosts.aim(&mut rays, guides, numbers, |zone, aim| aims.push((zone, aim)));
+    let aims = ghosts.aim(&mut rays, guides, numbers).each().collect();
     Aimed { rays, aims }
 }

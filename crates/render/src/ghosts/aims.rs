@@ -1,0 +1,132 @@
+//! Where on the front of the lens the rays of a batch go.
+
+use super::density::ABREAST;
+use super::guide::{Aim, Guide};
+use glam::DVec3;
+use spectra_core::isa::{Isa, Vectorized};
+use spectra_core::{Loss, RayBatch};
+use spectra_lens::FrontOpening;
+
+/// The aims of rays, column by column.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Aims {
+    zones: Vec<usize>,
+    places: [Vec<f64>; 2],
+    densities: Vec<f64>,
+}
+
+impl Aims {
+    /// Drawn by two numbers for each ray, by the guide of its zone.
+    pub fn drawn(guides: &[Guide], zones: Vec<usize>, [a, b]: [&[f64]; 2]) -> Self {
+        let len = zones.len();
+        let mut own = Self { zones, places: [vec![0.0; len], vec![0.0; len]], densities: vec![0.0; len] };
+        for first in (0..len).step_by(ABREAST) {
+            // The last ones once more where there are too few.
+            let at: [usize; ABREAST] = std::array::from_fn(|k| (first + k).min(len - 1));
+            let aims = Guide::draw_abreast(at.map(|i| &guides[own.zones[i]]), at.map(|i| a[i]), at.map(|i| b[i]));
+            for (i, aim) in at.into_iter().zip(aims) {
+                own.places[0][i] = aim.place[0];
+                own.places[1][i] = aim.place[1];
+                own.densities[i] = aim.density;
+            }
+        }
+        own
+    }
+
+    /// Of light that sets its directions itself: its own numbers.
+    pub fn of_numbers([a, b]: [&[f64]; 2]) -> Self {
+        let place = |numbers: &[f64]| numbers.iter().map(|number| 2.0 * number - 1.0).collect();
+        Self { zones: vec![0; a.len()], places: [place(a), place(b)], densities: vec![0.25; a.len()] }
+    }
+
+    /// The zone and the aim of each ray.
+    pub fn each(&self) -> impl Iterator<Item = (usize, Aim)> {
+        let aim = |i: usize| Aim { place: [self.places[0][i], self.places[1][i]], density: self.densities[i] };
+        self.zones.iter().enumerate().map(move |(i, zone)| (*zone, aim(i)))
+    }
+
+    /// Takes rays from the source to where they are aimed at.
+    pub fn send(&self, rays: &mut RayBatch, opening: FrontOpening, isa: Isa) {
+        let c = rays.columns_mut();
+        isa.run(Send {
+            opening,
+            places: self.places.each_ref().map(Vec::as_slice),
+            densities: &self.densities,
+            position: [c.x, c.y, c.z],
+            direction: [c.l, c.m, c.n],
+            weight: c.weight,
+            state: c.state,
+        });
+    }
+}
+
+struct Send<'a> {
+    opening: FrontOpening,
+    places: [&'a [f64]; 2],
+    densities: &'a [f64],
+    position: [&'a mut [f64]; 3],
+    direction: [&'a mut [f64]; 3],
+    weight: &'a mut [f64],
+    state: &'a mut [u64],
+}
+
+impl Vectorized for Send<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run(self) {
+        let ([x, y, z], [l, m, n]) = (self.position, self.direction);
+        send(
+            &self.opening,
+            [self.places[0], self.places[1], self.densities],
+            x,
+            y,
+            z,
+            l,
+            m,
+            n,
+            self.weight,
+            self.state,
+        );
+    }
+}
+
+/// Columns are separate arguments, so the compiler knows that none overlaps another.
+#[inline(always)]
+#[expect(clippy::too_many_arguments, reason = "columns")]
+fn send(
+    opening: &FrontOpening,
+    [right, up, density]: [&[f64]; 3],
+    x: &mut [f64],
+    y: &mut [f64],
+    z: &mut [f64],
+    l: &mut [f64],
+    m: &mut [f64],
+    n: &mut [f64],
+    weight: &mut [f64],
+    state: &mut [u64],
+) {
+    // In front of the glass itself: no light of a lens that has room for a subject.
+    let inside = Loss::Vignetted.state(1);
+    let len = state.len();
+    let (right, up, density) = (&right[..len], &up[..len], &density[..len]);
+    let (x, y, z) = (&mut x[..len], &mut y[..len], &mut z[..len]);
+    let (l, m, n, weight) = (&mut l[..len], &mut m[..len], &mut n[..len], &mut weight[..len]);
+    for i in 0..len {
+        let point = DVec3::new(x[i], y[i], z[i]);
+        let (is_outside, disk) = opening.disk_from(point);
+        let at = disk.center + disk.radial * right[i] + disk.across * up[i];
+        let way = at - point;
+        let distance2 = way.length_squared();
+        let direction = way / distance2.sqrt();
+        // The solid angle that the ray stands for.
+        let stands_for = disk.radial.length_squared() * direction.dot(disk.sight) / (distance2 * density[i]);
+        x[i] = if is_outside { at.x } else { x[i] };
+        y[i] = if is_outside { at.y } else { y[i] };
+        z[i] = if is_outside { at.z } else { z[i] };
+        l[i] = if is_outside { direction.x } else { l[i] };
+        m[i] = if is_outside { direction.y } else { m[i] };
+        n[i] = if is_outside { direction.z } else { n[i] };
+        weight[i] *= if is_outside { stands_for } else { 1.0 };
+        state[i] = if is_outside { state[i] } else { inside };
+    }
+}
