@@ -15,9 +15,28 @@ for example in "$root"/plugins/examples/*/; do
     cp -r "$example" "$work/$name"
     # Outside of the repository the path of the patch is another one.
     sed -i "s|path = \"../../../crates|path = \"$root/crates|" "$work/$name/Cargo.toml"
-    # What the workspace's own macros ask of this crate: with other features nearly all dependencies of the program would be built again.
+    # What the workspace's macros and tests ask of these crates: with other features much of the program would be built again.
     if [ ${#with[@]} -eq 0 ]; then
-        printf '\n[build-dependencies]\nproc-macro2 = { version = "1", features = ["span-locations"] }\n' >>"$work/$name/Cargo.toml"
+        cat >>"$work/$name/Cargo.toml" <<'EOF'
+
+[dependencies.num-traits]
+version = "*"
+default-features = false
+features = ["libm"]
+
+[dependencies.rand]
+version = "*"
+default-features = false
+features = ["std", "sys_rng"]
+
+[target.'cfg(unix)'.dependencies.rustix]
+version = "*"
+default-features = false
+features = ["fs", "std"]
+
+[build-dependencies]
+proc-macro2 = { version = "1", features = ["span-locations"] }
+EOF
     fi
     cp "$root/Cargo.lock" "$work/$name/Cargo.lock"
     (cd "$work/$name" && cargo clippy --all-targets -- -D warnings && cargo test)
