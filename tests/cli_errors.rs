@@ -191,7 +191,8 @@ fn null_takes_a_key_away() {
     let unmetered = check(&["film.metering=null", "film.exposure=1/100 s"]);
     assert!(unmetered.status.success(), "{}", text(&unmetered.stderr));
     for (set, word) in [
-        ("film.metering=", "found nothing, expected one of manual, average, spot"),
+        ("film.metering=", "`film.metering` has no value"),
+        ("lens.f-number=", "`--set lens.f-number=null` leaves the key out"),
         ("film.metring=null", "unknown key `metring`"),
         ("source.distance=null", "missing key `distance`"),
     ] {

@@ -160,15 +160,20 @@ mod tests {
     fn names_of_pictures_are_files_and_others_folders() {
         let folder = tempfile::tempdir().expect("a folder");
         let at = |name: &str| folder.path().join(name);
-        std::fs::write(at("notes.txt"), "").expect("written");
+        std::fs::write(at("notes"), "").expect("written");
         std::fs::write(at("old.png"), "").expect("written");
         std::fs::create_dir(at("folder.png")).expect("made");
-        for (name, is_file) in
-            [("new.png", true), ("old.png", true), ("a/b.TIF", true), ("folder.png", false), ("out", false)]
-        {
+        for (name, is_file) in [
+            ("new.png", true),
+            ("old.png", true),
+            ("a/b.TIF", true),
+            ("new.txt", true),
+            ("folder.png", false),
+            ("v1.2", false),
+        ] {
             let target = Target::of(&at(name)).expect(name);
             assert_eq!(target.folder != at(name), is_file, "{name}");
         }
-        assert!(Target::of(&at("notes.txt")).is_err());
+        assert!(Target::of(&at("notes")).is_err());
     }
 }

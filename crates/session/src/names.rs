@@ -14,9 +14,12 @@ pub struct Names {
     mark: &'static str,
 }
 
-/// Endings of pictures, by which a name is known to be that of a file and not of a folder; no scene is written as the last of them.
-const ENDINGS: [&str; 14] =
-    ["png", "tif", "tiff", "exr", "dng", "html", "jpg", "jpeg", "webp", "gif", "bmp", "jp2", "hdr", "tga"];
+/// Endings by which a name is known to be that of a file and not of a folder; no scene is written as one of the last two rows.
+const ENDINGS: [&str; 29] = [
+    "png", "tif", "tiff", "exr", "dng", "html", //
+    "jpg", "jpeg", "webp", "gif", "bmp", "jp2", "hdr", "tga", "avif", "heic", "psd", "dpx", "cin", "pfm", //
+    "mp4", "mov", "pdf", "txt", "json", "yaml", "yml", "csv", "cube",
+];
 
 impl Names {
     /// All files that the scene asks for, by its name.

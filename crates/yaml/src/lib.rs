@@ -117,7 +117,7 @@ impl Override {
 /// Parses `path=value`, the value as YAML: `film.exposure=1/60 s`, `output=[exr, png]`.
 ///
 /// # Errors
-/// The argument has no `=`, its path is ill-formed, or its value is not YAML.
+/// The argument has no `=` or nothing behind it, its path is ill-formed, or its value is not YAML.
 pub fn parse_override(argument: &str) -> Result<Override, Faults> {
     /// Longest argument that a message repeats, in bytes.
     const SHOWN: usize = 60;
@@ -139,6 +139,11 @@ pub fn parse_override(argument: &str) -> Result<Override, Faults> {
         return Err(Fault::new(message).at(file, Span { len: path.len(), ..Span::default() }).hint(hint).into());
     }
     let before = &argument[..argument.len() - value.len()];
+    // A variable of the shell that holds nothing: what is taken then would not be what was meant.
+    if value.trim().is_empty() {
+        let fault = Fault::new(format!("`{path}` has no value")).at(file, Span { len: path.len(), ..Span::default() });
+        return Err(fault.hint(format!("write one behind `=`; `--set {path}=null` leaves the key out")).into());
+    }
     let start = Span { line: 1, column: 1 + before.chars().count(), offset: before.len(), len: value.len() };
     let node = build::document(&file, start)?;
     Ok(Override { path: path.to_owned(), node })

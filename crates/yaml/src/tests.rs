@@ -412,7 +412,7 @@ fn overrides_replace_and_create() {
         "surfaces[0].radius=5 s",
         "surfaces[1]={radius: 3}",
         "empty.x=1",
-        "film.stock=",
+        "film.stock=null",
     ] {
         parse_override(argument).unwrap().apply(&mut root).unwrap();
     }
@@ -421,6 +421,9 @@ fn overrides_replace_and_create() {
     assert_eq!(root.at_path("surfaces[1].radius").and_then(Node::as_str), Some("3"));
     assert_eq!(root.at_path("empty.x").and_then(Node::as_str), Some("1"));
     assert!(root.at_path("film.stock").is_some_and(|node| node.as_str().is_none()));
+
+    let said = parse_override("lens.f-number= ").unwrap_err().to_string();
+    assert!(said.contains("`lens.f-number` has no value"), "{said}");
 
     let fault = root.at_path("surfaces[0].radius").unwrap().parse::<Length>().unwrap_err().0.remove(0);
     assert_eq!(fault.place_text().as_deref(), Some("--set surfaces[0].radius=5 s"));

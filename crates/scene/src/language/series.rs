@@ -209,8 +209,8 @@ impl Written {
             variables::references(&over.node, &mut references);
             variables::open(&mut root, &over.path);
             set.push(over.path.clone());
-            // `null` takes a key away, as in a file that includes another; nothing at all (`film.stock=`) is a slip.
-            if matches!(over.node.value, Value::Null) && over.node.span.len > 0 && take_away(&mut root, &over.path) {
+            // `null` takes a key away, as in a file that includes another.
+            if matches!(over.node.value, Value::Null) && take_away(&mut root, &over.path) {
                 continue;
             }
             faults.take(over.apply(&mut root));
@@ -263,7 +263,7 @@ impl Series {
                 Fault::new("a scene has a sweep or an animation, not both").at(Arc::clone(&node.file), key.span);
             let place = sweep.fault("").place_text().unwrap_or_default();
             faults.push(fault.path(ANIMATION).hint(format!(
-                "the sweep is at {place}; render the animation once for each value, with `--set sweep= --set lens.f-number=f/4`"
+                "the sweep is at {place}; render the animation once for each value, with `--set sweep=null --set lens.f-number=f/4`"
             )));
         }
         // A circle closes for whoever sets one of its variables otherwise: what nothing uses is looked at, too.
