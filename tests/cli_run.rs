@@ -410,6 +410,13 @@ fn outputs_bear_the_name_of_their_scene_or_their_own() {
     let raw = spectra().args(tiny(&at.join("x.dng"), &[])).output().expect("the program starts");
     assert!(raw.status.code() == Some(2) && text(&raw.stderr).contains("no A/D converter"), "{}", text(&raw.stderr));
     let taken = spectra().args(tiny(&at.join("a.yaml"), &[])).output().expect("the program starts");
+    assert!(
+        taken.status.code() == Some(2) && text(&taken.stderr).contains("written as `.yaml`"),
+        "{}",
+        text(&taken.stderr)
+    );
+    std::fs::write(at.join("notes"), "").expect("written");
+    let taken = spectra().args(tiny(&at.join("notes"), &[])).output().expect("the program starts");
     assert!(taken.status.code() == Some(1) && text(&taken.stderr).contains("is a file"), "{}", text(&taken.stderr));
     assert_eq!(std::fs::read(at.join("a.yaml")).expect("there"), std::fs::read(ortho()).expect("there"));
 }

@@ -106,7 +106,7 @@ pub fn load(path: &Path, overrides: &[String]) -> Result<Scene, Faults> {
     if let Some(key) = series.key() {
         let fault =
             series.root.fault(format!("this scene makes {} pictures, but one is expected here", series.count()));
-        return Err(fault.path(key).hint(format!("remove the series with `--set {key}=`")).into());
+        return Err(fault.path(key).hint(format!("remove the series with `--set {key}=null`")).into());
     }
     series.scene(0)
 }
