@@ -169,6 +169,7 @@ mod tests {
             ("a/b.TIF", true),
             ("new.txt", true),
             ("folder.png", false),
+            ("out", false),
             ("v1.2", false),
         ] {
             let target = Target::of(&at(name)).expect(name);
