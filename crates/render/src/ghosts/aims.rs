@@ -17,19 +17,10 @@ pub(super) struct Aims {
 
 impl Aims {
     /// Drawn by two numbers for each ray, by the guide of its zone.
-    pub fn drawn(guides: &[Guide], zones: Vec<usize>, [a, b]: [&[f64]; 2]) -> Self {
+    pub fn drawn(guides: &[Guide], zones: Vec<usize>, numbers: [&[f64]; 2], isa: Isa) -> Self {
         let len = zones.len();
         let mut own = Self { zones, places: [vec![0.0; len], vec![0.0; len]], densities: vec![0.0; len] };
-        for first in (0..len).step_by(ABREAST) {
-            // The last ones once more where there are too few.
-            let at: [usize; ABREAST] = std::array::from_fn(|k| (first + k).min(len - 1));
-            let aims = Guide::draw_abreast(at.map(|i| &guides[own.zones[i]]), at.map(|i| a[i]), at.map(|i| b[i]));
-            for (i, aim) in at.into_iter().zip(aims) {
-                own.places[0][i] = aim.place[0];
-                own.places[1][i] = aim.place[1];
-                own.densities[i] = aim.density;
-            }
-        }
+        isa.run(Draw { guides, numbers, aims: &mut own });
         own
     }
 
@@ -57,6 +48,35 @@ impl Aims {
             weight: c.weight,
             state: c.state,
         });
+    }
+}
+
+struct Draw<'a> {
+    guides: &'a [Guide],
+    numbers: [&'a [f64]; 2],
+    aims: &'a mut Aims,
+}
+
+impl Vectorized for Draw<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run(self) {
+        let Self { guides, numbers: [a, b], aims } = self;
+        let len = aims.zones.len();
+        for first in (0..len).step_by(ABREAST) {
+            let (mut own, mut places, mut density) = ([&guides[0]; ABREAST], [[0.0; ABREAST]; 2], [0.0; ABREAST]);
+            for k in 0..ABREAST {
+                // The last one once more where there are too few.
+                let i = if first + k < len { first + k } else { len - 1 };
+                own[k] = &guides[aims.zones[i]];
+                (places[0][k], places[1][k]) = (a[i], b[i]);
+            }
+            Guide::draw_abreast(own, &mut places, &mut density);
+            let end = if first + ABREAST < len { first + ABREAST } else { len };
+            aims.places[0][first..end].copy_from_slice(&places[0][..end - first]);
+            aims.places[1][first..end].copy_from_slice(&places[1][..end - first]);
+            aims.densities[first..end].copy_from_slice(&density[..end - first]);
+        }
     }
 }
 

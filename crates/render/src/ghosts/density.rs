@@ -1,7 +1,8 @@
 //! A density over the unit square to draw places from, by the cells of a [`Tree`](super::tree::Tree).
 
 /// How many places are drawn side by side.
-pub(super) const ABREAST: usize = 8;
+pub(super) const ABREAST: usize = 16;
+pub(super) type Each = [f64; ABREAST];
 
 /// The largest number below 1.
 const BELOW_ONE: f64 = 1.0 - 0.5 * f64::EPSILON;
@@ -56,44 +57,57 @@ impl Density {
         ([low[0] + u * side, low[1] + v * side], density)
     }
 
-    /// [`Density::draw`] of several side by side: by itself each step waits for the cell that the one before it found.
-    #[inline]
-    pub fn draw_abreast(
-        own: [&Self; ABREAST],
-        mut u: [f64; ABREAST],
-        mut v: [f64; ABREAST],
-    ) -> [([f64; 2], f64); ABREAST] {
-        let mut cells: [Cell; ABREAST] = std::array::from_fn(|k| own[k].cells[0]);
-        let (mut low, mut side, mut density) = ([[0.0; 2]; ABREAST], [1.0; ABREAST], [1.0; ABREAST]);
-        while cells.iter().any(|cell| cell.first != 0) {
+    /// [`Density::draw`] of several side by side: by itself each step waits for the cell that the one before it found. Each kind of
+    /// work has a loop of its own, so that all but the looks at the cells runs in vectors. Writes the places over the numbers, and
+    /// how dense rays are there.
+    #[inline(always)]
+    pub fn draw_abreast(own: [&Self; ABREAST], places: &mut [Each; 2], density: &mut Each) {
+        let [x, y] = places;
+        let (mut low_x, mut low_y, mut side) = ([0.0; ABREAST], [0.0; ABREAST], [1.0; ABREAST]);
+        let mut at = [0_u32; ABREAST];
+        *density = [1.0; ABREAST];
+        loop {
+            let (mut first, mut lower, mut left) = ([0_u32; ABREAST], [0.0_f32; ABREAST], [[0.0_f32; ABREAST]; 2]);
+            let mut any = 0;
             for k in 0..ABREAST {
-                let cell = cells[k];
+                let cell = &own[k].cells[at[k] as usize];
+                (first[k], lower[k], left[0][k], left[1][k]) = (cell.first, cell.lower, cell.left[0], cell.left[1]);
+                any |= cell.first;
+            }
+            if any == 0 {
+                break;
+            }
+            for k in 0..ABREAST {
                 // Who has arrived stays.
-                let goes_on = cell.first != 0;
-                let (mut across_it, mut along_it, smaller) = (u[k], v[k], 0.5 * side[k]);
-                let (row, lengthwise) = half(&mut along_it, cell.lower);
-                let (column, across) = half(&mut across_it, cell.left[row]);
-                let corner = [low[k][0] + column as f64 * smaller, low[k][1] + row as f64 * smaller];
-                let denser = density[k] * (4.0 * lengthwise * across);
-                u[k] = if goes_on { across_it } else { u[k] };
-                v[k] = if goes_on { along_it } else { v[k] };
-                low[k] = if goes_on { corner } else { low[k] };
+                let goes_on = first[k] != 0;
+                let (smaller, lower) = (0.5 * side[k], f64::from(lower[k]));
+                let is_upper = y[k] >= lower;
+                let (along, lengthwise) = within(y[k], lower, is_upper);
+                let left = f64::from(if is_upper { left[1][k] } else { left[0][k] });
+                let is_right = x[k] >= left;
+                let (across, widthwise) = within(x[k], left, is_right);
+                low_x[k] += if goes_on & is_right { smaller } else { 0.0 };
+                low_y[k] += if goes_on & is_upper { smaller } else { 0.0 };
+                x[k] = if goes_on { across } else { x[k] };
+                y[k] = if goes_on { along } else { y[k] };
                 side[k] = if goes_on { smaller } else { side[k] };
-                density[k] = if goes_on { denser } else { density[k] };
-                let next = if goes_on { cell.first as usize + 2 * row + column } else { 0 };
-                cells[k] = if goes_on { own[k].cells[next] } else { cell };
+                density[k] *= if goes_on { 4.0 * lengthwise * widthwise } else { 1.0 };
+                let part = 2 * u32::from(is_upper) + u32::from(is_right);
+                at[k] = if goes_on { first[k] + part } else { at[k] };
             }
         }
-        std::array::from_fn(|k| ([low[k][0] + u[k] * side[k], low[k][1] + v[k] * side[k]], density[k]))
+        for k in 0..ABREAST {
+            x[k] = low_x[k] + x[k] * side[k];
+            y[k] = low_y[k] + y[k] * side[k];
+        }
     }
 
     /// How dense rays are at a place.
     #[inline]
-    pub fn at(&self, [mut x, mut y]: [f64; 2]) -> f64 {
-        let (mut cell, mut density) = (&self.cells[0], 1.0);
+    pub fn at(&self, place: [f64; 2]) -> f64 {
+        let (mut cell, mut density, mut steps) = (&self.cells[0], 1.0, Steps::to(place));
         while cell.first != 0 {
-            let (row, _) = half(&mut y, 0.5);
-            let (column, _) = half(&mut x, 0.5);
+            let [column, row] = steps.next();
             let of = |edge: f32, half: usize| [f64::from(edge), 1.0 - f64::from(edge)][half];
             density *= 4.0 * of(cell.lower, row) * of(cell.left[row], column);
             cell = &self.cells[cell.first as usize + 2 * row + column];
@@ -102,17 +116,41 @@ impl Density {
     }
 }
 
+/// The way to a place of the unit square by halves of halves: its binary digits.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Steps([u32; 2]);
+
+impl Steps {
+    #[inline]
+    pub fn to(place: [f64; 2]) -> Self {
+        Self(place.map(|number| (number * 4_294_967_296.0) as u32))
+    }
+
+    /// Whether the next step is to the right, 0 or 1, and whether it is up.
+    #[inline]
+    pub fn next(&mut self) -> [usize; 2] {
+        let step = self.0.map(|digits| (digits >> 31) as usize);
+        self.0 = self.0.map(|digits| digits << 1);
+        step
+    }
+}
+
 /// Which part of the interval from 0 to 1 holds a number, 0 below `edge` or 1, and how long that part is; the number becomes the place in it.
 #[inline]
 fn half(number: &mut f64, edge: f32) -> (usize, f64) {
     let edge = f64::from(edge);
     let is_upper = *number >= edge;
-    // By bits, without a branch: nobody can guess where a random number lies.
-    let upper = u64::from(is_upper).wrapping_neg();
-    let length = f64::from_bits(edge.to_bits() & !upper | (1.0 - edge).to_bits() & upper);
-    let from = f64::from_bits(edge.to_bits() & upper);
-    *number = ((*number - from) / length).min(BELOW_ONE);
+    let (place, length) = within(*number, edge, is_upper);
+    *number = place;
     (usize::from(is_upper), length)
+}
+
+/// The place of a number in the upper or the lower part of the interval from 0 to 1, and how long that part is.
+#[inline(always)]
+fn within(number: f64, edge: f64, is_upper: bool) -> (f64, f64) {
+    let (from, length) = if is_upper { (edge, 1.0 - edge) } else { (0.0, edge) };
+    let place = (number - from) / length;
+    (if place < BELOW_ONE { place } else { BELOW_ONE }, length)
 }
 
 #[cfg(test)]
@@ -155,9 +193,10 @@ mod tests {
         for i in 0..512 {
             let own: [&Density; ABREAST] = std::array::from_fn(|k| &all[(i as usize + k) % 3]);
             let of = |dimension: u32| std::array::from_fn(|k| numbers.one(k as u64, i, dimension));
-            let (u, v): ([f64; ABREAST], [f64; ABREAST]) = (of(0), of(1));
-            let want: [_; ABREAST] = std::array::from_fn(|k| own[k].draw(u[k], v[k]));
-            assert_eq!(Density::draw_abreast(own, u, v), want);
+            let (mut places, mut density): ([Each; 2], Each) = ([of(0), of(1)], [0.0; ABREAST]);
+            let want: [_; ABREAST] = std::array::from_fn(|k| own[k].draw(places[0][k], places[1][k]));
+            Density::draw_abreast(own, &mut places, &mut density);
+            assert_eq!(std::array::from_fn(|k| ([places[0][k], places[1][k]], density[k])), want);
         }
     }
 }

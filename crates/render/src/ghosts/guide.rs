@@ -1,6 +1,6 @@
 //! Where on the front of the lens the light of a path enters that comes to the frame.
 
-use super::density::{ABREAST, Density};
+use super::density::{ABREAST, Density, Each};
 
 /// Cells in which the first rounds look for the part of the front that light of a path comes through, across and up.
 const SIDE: usize = 24;
@@ -34,6 +34,7 @@ pub(super) struct Part {
 impl Part {
     pub const ALL: Self = Self { low: [-1.0; 2], high: [1.0; 2] };
 
+    #[inline(always)]
     pub fn area(&self) -> f64 {
         (self.high[0] - self.low[0]) * (self.high[1] - self.low[1])
     }
@@ -47,10 +48,10 @@ impl Part {
     }
 
     /// The place that the tree counts so.
-    #[inline]
-    fn place(&self, at: [f64; 2]) -> [f64; 2] {
-        let along = |axis: usize| self.low[axis] + (self.high[axis] - self.low[axis]) * at[axis];
-        [along(0), along(1)]
+    #[inline(always)]
+    fn place(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        let ([low_x, low_y], [high_x, high_y]) = (self.low, self.high);
+        [low_x + (high_x - low_x) * x, low_y + (high_y - low_y) * y]
     }
 
     /// With places that lie outside.
@@ -96,18 +97,23 @@ impl Guide {
         Aim { place: self.part.place(at), density: self.mixed(dense) }
     }
 
-    /// [`Guide::draw`] of several side by side.
-    #[inline]
-    pub fn draw_abreast(own: [&Self; ABREAST], u: [f64; ABREAST], v: [f64; ABREAST]) -> [Aim; ABREAST] {
-        let rest = std::array::from_fn(|k| (u[k] - own[k].even) / (1.0 - own[k].even));
-        let drawn = Density::draw_abreast(own.map(|guide| &guide.cells), rest, v);
-        std::array::from_fn(|k| {
-            if u[k] < own[k].even {
-                return own[k].draw(u[k], v[k]);
-            }
-            let (at, dense) = drawn[k];
-            Aim { place: own[k].part.place(at), density: own[k].mixed(dense) }
-        })
+    /// [`Guide::draw`] of several side by side: writes the places over the numbers, and the densities.
+    #[inline(always)]
+    pub fn draw_abreast(own: [&Self; ABREAST], numbers: &mut [Each; 2], density: &mut Each) {
+        let (before, mut cells) = (*numbers, [&own[0].cells; ABREAST]);
+        for k in 0..ABREAST {
+            cells[k] = &own[k].cells;
+            numbers[0][k] = (numbers[0][k] - own[k].even) / (1.0 - own[k].even);
+        }
+        Density::draw_abreast(cells, numbers, density);
+        for k in 0..ABREAST {
+            let aim = if before[0][k] < own[k].even {
+                own[k].draw(before[0][k], before[1][k])
+            } else {
+                Aim { place: own[k].part.place([numbers[0][k], numbers[1][k]]), density: own[k].mixed(density[k]) }
+            };
+            ([numbers[0][k], numbers[1][k]], density[k]) = (aim.place, aim.density);
+        }
     }
 
     /// How dense rays are at a place, 1 over the square's unit of area.
@@ -116,7 +122,7 @@ impl Guide {
         self.mixed(self.part.inside(place).map_or(0.0, |at| self.cells.at(at)))
     }
 
-    #[inline]
+    #[inline(always)]
     fn mixed(&self, dense: f64) -> f64 {
         0.25 * self.even + (1.0 - self.even) * dense / self.part.area()
     }
@@ -228,9 +234,11 @@ mod tests {
         for i in 0..256 {
             let own: [&Guide; ABREAST] = std::array::from_fn(|k| &all[usize::from(k % 3 == 0)]);
             let of = |dimension: u32| std::array::from_fn(|k| numbers.one(k as u64, i, dimension));
-            let (u, v): ([f64; ABREAST], [f64; ABREAST]) = (of(0), of(1));
-            let want: [_; ABREAST] = std::array::from_fn(|k| own[k].draw(u[k], v[k]));
-            assert_eq!(Guide::draw_abreast(own, u, v), want);
+            let (mut places, mut density): ([Each; 2], Each) = ([of(0), of(1)], [0.0; ABREAST]);
+            let want: [_; ABREAST] = std::array::from_fn(|k| own[k].draw(places[0][k], places[1][k]));
+            Guide::draw_abreast(own, &mut places, &mut density);
+            let aim = |k: usize| Aim { place: [places[0][k], places[1][k]], density: density[k] };
+            assert_eq!(std::array::from_fn(aim), want);
         }
     }
 }

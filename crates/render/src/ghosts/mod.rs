@@ -263,7 +263,7 @@ impl Ghosts {
         let [x, y, z] = rays.positions();
         let zone = |i: usize| self.plan.zones.of(DVec3::new(x[i], y[i], z[i])).min(guides.len() - 1);
         let zones = if guides.len() == 1 { vec![0; x.len()] } else { (0..x.len()).map(zone).collect() };
-        let aims = Aims::drawn(guides, zones, numbers);
+        let aims = Aims::drawn(guides, zones, numbers, self.pipeline.isa);
         aims.send(rays, *opening, self.pipeline.isa);
         aims
     }

@@ -1,6 +1,6 @@
 //! The unit square in cells that are smaller where more rays came: each cell that saw many is cut into four.
 
-use super::density::Density;
+use super::density::{Density, Steps};
 
 /// A cell that more rays than this came through is cut.
 const MANY: usize = 64;
@@ -88,11 +88,10 @@ impl Tree {
     /// The cell, not cut, that holds a place.
     #[inline]
     fn find(&self, place: [f64; 2]) -> usize {
-        let mut at = 0;
+        let (mut at, mut steps) = (0, Steps::to(place));
         while self.cells[at].first != 0 {
-            let first = self.cells[at].first as usize;
-            let middle = self.cells[first + 3].low;
-            at = first + usize::from(place[0] >= middle[0]) + 2 * usize::from(place[1] >= middle[1]);
+            let [column, row] = steps.next();
+            at = self.cells[at].first as usize + column + 2 * row;
         }
         at
     }
