@@ -22,8 +22,12 @@ impl Target {
     /// A name that ends as a picture does is that picture, any other one a folder.
     ///
     /// # Errors
-    /// A file stands there that is no picture.
+    /// A file stands there that is no picture, or it means the standard output.
     pub(crate) fn of(output: &Path) -> Result<Self, Failure> {
+        if output == Path::new("-") {
+            let text = "--output: pictures are not written to the standard output";
+            return Err(Fault::new(text).hint("name a picture, such as out.png, or a folder").into());
+        }
         let whole = Self { folder: output.to_owned(), names: Names::of_scene() };
         if output.is_dir() {
             return Ok(whole);
@@ -176,5 +180,6 @@ mod tests {
             assert_eq!(target.folder != at(name), is_file, "{name}");
         }
         assert!(Target::of(&at("notes")).is_err());
+        assert!(Target::of(Path::new("-")).is_err());
     }
 }
