@@ -23,6 +23,7 @@ use spectra_core::registry::Context;
 use spectra_core::spectral::{BAND, Line, SpectralPower};
 use spectra_core::stage::ColorModel;
 use spectra_spectrum::{Observer, illuminant};
+use std::array::from_fn;
 use std::sync::OnceLock;
 
 /// A smooth reflectance for each color, under the illuminant.
@@ -357,6 +358,46 @@ fn position(value: f64) -> f64 {
 struct Solver {
     /// Linear sRGB per reflectance at each wavelength, and the quadratic's three functions there.
     points: Vec<([f64; 3], [f64; 3])>,
+    isa: Isa,
+}
+
+/// Red, green and blue of a reflectance, and of its change with each coefficient. A fourth value, 0, fills each vector.
+struct Seen<'a> {
+    points: &'a [([f64; 3], [f64; 3])],
+    c: Coefficients,
+}
+
+/// Wavelengths that are worked out side by side.
+const ABREAST: usize = 32;
+
+impl Vectorized for Seen<'_> {
+    type Output = [[f64; 4]; 4];
+    #[inline(always)]
+    fn run(self) -> [[f64; 4]; 4] {
+        let Self { points, c } = self;
+        let mut sums = [[0.0; 4]; 4];
+        for points in points.chunks(ABREAST) {
+            let (mut value, mut slope, mut x) = ([0.0_f64; ABREAST], [0.0_f64; ABREAST], [0.0_f64; ABREAST]);
+            for (x, (_, functions)) in x.iter_mut().zip(points) {
+                *x = c[0] * functions[0] + c[1] * functions[1] + c[2] * functions[2];
+            }
+            for i in 0..ABREAST {
+                let root = 1.0 / (1.0 + x[i] * x[i]).sqrt();
+                value[i] = 0.5 + 0.5 * x[i] * root;
+                slope[i] = 0.5 * root * root * root;
+            }
+            for (k, (seen, functions)) in points.iter().enumerate() {
+                let seen = [seen[0], seen[1], seen[2], 0.0];
+                let of = [value[k], slope[k] * functions[0], slope[k] * functions[1], slope[k] * functions[2]];
+                for j in 0..4 {
+                    for i in 0..4 {
+                        sums[j][i] += of[j] * seen[i];
+                    }
+                }
+            }
+        }
+        sums
+    }
 }
 
 impl Solver {
@@ -374,25 +415,13 @@ impl Solver {
             let seen = [0, 1, 2].map(|k| functions[k][i] * power * BAND.step_nm / xyz[1]);
             (space.from_xyz(seen), [1.0, t, 1.5 * t * t - 0.5])
         });
-        Self { points: points.collect() }
+        Self { points: points.collect(), isa: Isa::detect() }
     }
 
     /// Color of the reflectance, and its change with each coefficient (columns).
     fn color(&self, c: Coefficients) -> ([f64; 3], matrix::Matrix) {
-        let mut rgb = [0.0; 3];
-        let mut change = [[0.0; 3]; 3];
-        for (seen, functions) in &self.points {
-            let x = c[0] * functions[0] + c[1] * functions[1] + c[2] * functions[2];
-            let root = 1.0 / (1.0 + x * x).sqrt();
-            let (value, slope) = (0.5 + 0.5 * x * root, 0.5 * root * root * root);
-            for i in 0..3 {
-                rgb[i] += value * seen[i];
-                for j in 0..3 {
-                    change[i][j] += slope * functions[j] * seen[i];
-                }
-            }
-        }
-        (rgb, change)
+        let [rgb, by_coefficient @ ..] = self.isa.run(Seen { points: &self.points, c });
+        (from_fn(|i| rgb[i]), from_fn(|i| from_fn(|j| by_coefficient[j][i])))
     }
 
     /// Newton's method from `start`, each step halved until it comes nearer.
