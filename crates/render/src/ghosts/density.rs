@@ -2,6 +2,7 @@
 
 /// How many places are drawn side by side.
 pub(super) const ABREAST: usize = 16;
+/// A number for each of them.
 pub(super) type Each = [f64; ABREAST];
 
 /// The largest number below 1.
