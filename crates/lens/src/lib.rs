@@ -44,7 +44,7 @@ mod symmetry;
 mod tracer;
 mod transmission;
 
-pub use aim::{AimPattern, AimRegion, Effort, FrontPupil, RearPupil, has_sizes};
+pub use aim::{AimPart, AimPattern, AimRegion, Effort, FrontPupil, RIM_EVERY, RearPupil, has_sizes};
 pub use aperture::read as read_apertures;
 pub use aperture::{Aperture, ApertureEntry, ApertureForm, Iris, Mask, Opening, Shape};
 pub use beam::{Beam, ObjectPoint};

@@ -4,7 +4,9 @@
 use glam::DVec3;
 use spectra_core::numbers::Numbers;
 use spectra_core::{Isa, RayBatch, loss::ALIVE};
-use spectra_lens::{AimPattern, Aperture, Effort, FrontPupil, Indices, Iris, Lens, RearPupil, Shape, Tracer, Travel};
+use spectra_lens::{
+    AimPart, AimPattern, Aperture, Effort, FrontPupil, Indices, Iris, Lens, RIM_EVERY, RearPupil, Shape, Tracer, Travel,
+};
 use spectra_plugin_surfaces as _;
 use spectra_scene::FileResources;
 use std::path::Path;
@@ -88,17 +90,18 @@ fn numbers(seed: u64, dimension: u32, n: usize) -> Vec<f64> {
 /// Where rays begin, in one of the two directions.
 enum Pupil {
     Rear(RearPupil),
+    Part(RearPupil, AimPart),
     Front(FrontPupil),
 }
 
 impl Pupil {
     fn travel(&self) -> Travel {
-        if matches!(self, Self::Rear(_)) { Travel::Backward } else { Travel::Forward }
+        if matches!(self, Self::Front(_)) { Travel::Forward } else { Travel::Backward }
     }
 
     fn without_outlines(self) -> Self {
         match self {
-            Self::Rear(p) => Self::Rear(p.without_outlines()),
+            Self::Rear(p) | Self::Part(p, _) => Self::Rear(p.without_outlines()),
             Self::Front(p) => Self::Front(p.without_outlines()),
         }
     }
@@ -139,6 +142,7 @@ impl Pupil {
     fn aim(&self, rays: &mut RayBatch, u: &[f64], v: &[f64], isa: Isa) -> usize {
         match self {
             Self::Rear(p) => p.aim(rays, u, v, isa),
+            Self::Part(p, part) => p.aim_part(rays, u, v, *part, isa),
             Self::Front(p) => p.aim(rays, u, v, AimPattern::Disk, isa),
         }
     }
@@ -391,6 +395,36 @@ fn outlines_estimate_what_ellipses_do() {
     agree("fisheye", &load("minolta-fisheye-16-f2.7"), frame, n, true);
 }
 
+/// Core and rim add up to the whole, whatever is in the stop; and hardly a ray of the core ends, which is what they are for.
+#[test]
+fn core_and_rim_are_the_whole() {
+    let stopped = |name: &str, n: f64| load(name).at_f_number(n).expect("it can be stopped down");
+    let cases = [
+        ("open", load("zeiss-biotar-50-f1.4"), 2e-3),
+        ("Helios", load("helios-44-58-f2"), 1e-3),
+        ("f/8", stopped("helios-44-58-f2", 8.0), 1e-3),
+        ("f/4, blades", with(stopped("zeiss-biotar-50-f1.4", 4.0), Opening::Blades), 2e-2),
+        ("f/4, star", with(stopped("zeiss-biotar-50-f1.4", 4.0), Opening::Star), 5e-2),
+        ("fisheye", load("minolta-fisheye-16-f2.7"), 1e-2),
+        ("anamorphic, all over a frame that it does not fill", load("schneider-anamorphic-60"), 0.15),
+    ];
+    let frame = [36.0, 24.0];
+    let n = 1 << 17;
+    for (name, lens, most) in cases {
+        let tracer = tracer(&lens);
+        let rear = RearPupil::search(&lens, &tracer, &corners(frame), BAND_NM[0], BAND_NM[1]);
+        let rear = rear.expect("the lens has an aperture");
+        assert!(rear.has_rim() && !rear.clone().without_outlines().has_rim());
+        let of = |part, seed| outcome(&tracer, &Pupil::Part(rear.clone(), part), &film(frame, n), seed);
+        let (core, rim, whole) = (of(AimPart::Core, 25), of(AimPart::Rim, 26), of(AimPart::Whole, 27));
+        println!("{name}: of the whole {:.2} % end, of the core {:.3} %", 100.0 * whole.lost(), 100.0 * core.lost());
+        let values = core.values.iter().zip(&rim.values).map(|(core, rim)| core + rim / f64::from(RIM_EVERY)).collect();
+        alike(name, frame, [&Outcome { values, ..core }, &whole]);
+        let lost = core.lost();
+        assert!(lost < most, "{name}: of the core {lost:.4} end");
+    }
+}
+
 /// A search for a first look forgets no light that passes, also where film is tilted, blades or a lens without axis are in the way;
 /// more of its rays end.
 #[test]
@@ -443,8 +477,9 @@ fn outlines_estimate_what_ellipses_do_finely() {
 fn every_tier_aims_alike() {
     let lens = with(load("zeiss-biotar-50-f1.4").at_f_number(4.0).expect("it can be stopped down"), Opening::Blades);
     let frame = [36.0, 24.0];
-    let pupil = rear(&lens, &tracer(&lens), frame);
-    let aimed = |isa: Isa| {
+    let rear = RearPupil::search(&lens, &tracer(&lens), &corners(frame), BAND_NM[0], BAND_NM[1]);
+    let rear = rear.expect("the lens has an aperture");
+    let aimed = |part: AimPart, isa: Isa| {
         let points = film(frame, 3000);
         let (u, v) = (numbers(1, 0, 3000), numbers(1, 1, 3000));
         let mut rays = RayBatch::new(3000);
@@ -455,15 +490,17 @@ fn every_tier_aims_alike() {
             (c.l[i], c.m[i], c.n[i]) = (0.0, 0.0, -1.0);
             c.wavelength_nm[i] = 350.0 + 0.16 * i as f64;
         }
-        pupil.aim(&mut rays, &u, &v, isa);
+        rear.aim_part(&mut rays, &u, &v, part, isa);
         let bits = |c: &[f64]| c.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
         let mut all: Vec<Vec<u64>> = rays.positions().iter().map(|c| bits(c)).collect();
         all.extend(rays.directions().iter().map(|c| bits(c)));
         all.push(bits(rays.weights()));
         all
     };
-    let want = aimed(Isa::Baseline);
-    for isa in Isa::available() {
-        assert!(aimed(isa) == want, "{}", isa.name());
+    for part in [AimPart::Whole, AimPart::Core, AimPart::Rim] {
+        let want = aimed(part, Isa::Baseline);
+        for isa in Isa::available() {
+            assert!(aimed(part, isa) == want, "{part:?}, {}", isa.name());
+        }
     }
 }

@@ -16,7 +16,7 @@ use spectra_core::batch::pixel_and_channel;
 use spectra_core::frame::FrameSize;
 use spectra_core::numbers::{Numbers, StageKey};
 use spectra_core::stage::{Launch, Radiance};
-use spectra_lens::{RearPupil, Travel};
+use spectra_lens::{AimPart, RIM_EVERY, RearPupil, Travel};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -27,11 +27,16 @@ pub(crate) const SAMPLES_PER_PASS: u32 = 32;
 
 /// What numbers of its own stages draw by.
 const ESTIMATOR: &str = "backward";
+/// The same of rays to the rim of the pupil, and what sets their numbers apart from those of the same pixel.
+const RIM: &str = "rim";
+const RIM_STREAM: u64 = 1 << 40;
 
 pub(crate) struct Backward {
     pipeline: Arc<Pipeline>,
     rear: Arc<RearPupil>,
     numbers: Numbers,
+    /// By which samples bring a ray to the rim along.
+    shifts: Numbers,
     /// Of the sums.
     scale: f64,
 }
@@ -50,6 +55,7 @@ impl Backward {
         let effort = pipeline.effort;
         let rear = RearPupil::search_by(&scene.lens, &pipeline.tracer, &points, band_nm, workers, effort);
         let numbers = pipeline.numbers(PILOT_SEED);
+        let shifts = numbers.as_random();
         let rear = rear.map(|rear| {
             rays.columns_mut().wavelength_nm.fill(grid.start_nm);
             rays.number(0, &numbers, ESTIMATOR, 0, 0);
@@ -58,27 +64,31 @@ impl Backward {
         });
         let pixels = scene.imager.size().pixels() as u64;
         let (rear, seed) = (Arc::new(rear.ok_or_else(|| RenderError::no_pupil(workers))?), scene.render.seed);
-        let mut own = Self { rear, numbers, scale: 1.0, pipeline };
+        let mut own = Self { rear, numbers, shifts, scale: 1.0, pipeline };
         own.scale = pilot::scale(&own.pipeline, |state, batch, mut look| {
-            let spread = (0..PILOT_RAYS).map(|i| (u64::from(i) * pixels / u64::from(PILOT_RAYS)) as u32);
-            own.steps(state, spread, batch, 1, &mut look);
+            own.steps(state, spread(pixels, batch), AimPart::Whole, &mut look);
         })?;
-        own.numbers = own.pipeline.numbers(seed);
-        Ok(own)
+        Ok(own.with_seed(seed))
+    }
+
+    /// The same with the numbers of a seed.
+    fn with_seed(&self, seed: u64) -> Self {
+        let numbers = self.pipeline.numbers(seed);
+        let (pipeline, rear) = (self.pipeline.clone(), self.rear.clone());
+        Self { shifts: numbers.as_random(), pipeline, rear, numbers, scale: self.scale }
     }
 
     /// The same for what the meters see, which has no sums; `None` where they see nothing.
     fn of_meters(&self) -> Option<Self> {
         let pipeline = Arc::new(self.pipeline.of_meters()?);
-        Some(Self { pipeline, rear: self.rear.clone(), numbers: self.numbers.clone(), scale: 1.0 })
+        let (numbers, shifts) = (self.numbers.clone(), self.shifts.clone());
+        Some(Self { pipeline, rear: self.rear.clone(), numbers, shifts, scale: 1.0 })
     }
 
     /// The mean of the frame, W/m2 in the sum of its channels, by a few thousand rays.
     pub(crate) fn mean(&self) -> f64 {
-        let pixels = self.pipeline.scene.imager.size().pixels() as u64;
-        let spread = (0..PILOT_RAYS).map(|i| (u64::from(i) * pixels / u64::from(PILOT_RAYS)) as u32);
         let mut state = ThreadState::new(&self.pipeline, PILOT_RAYS as usize);
-        self.batch(&mut state, spread, 0, 1);
+        self.steps(&mut state, spread(self.size().pixels() as u64, 0), AimPart::Whole, &mut |_, _| {});
         state.sum(&self.pipeline) / f64::from(PILOT_RAYS)
     }
 
@@ -90,39 +100,36 @@ impl Backward {
         self.pipeline.source().radiance().expect("`new` saw it")
     }
 
-    /// Traces `count` samples, from `first` on, of each of `pixels`: pixel after pixel. Afterwards
-    /// the weights are irradiance, and 0 for rays that ended.
-    fn batch(&self, state: &mut ThreadState, pixels: impl Iterator<Item = u32> + Clone, first: u32, count: usize) {
-        self.steps(state, pixels, first, count, &mut |_, _| {});
-    }
-
-    /// The same, with a look at the rays after each step.
+    /// Traces samples of some pixels, pixel after pixel, through a part of the pupil, with a look at the rays after each step.
+    /// Afterwards the weights are irradiance, and 0 for rays that ended.
     #[inline(always)]
     fn steps(
         &self,
         state: &mut ThreadState,
-        pixels: impl Iterator<Item = u32> + Clone,
-        first: u32,
-        count: usize,
+        spans: impl Iterator<Item = Span> + Clone,
+        part: AimPart,
         look: &mut impl FnMut(Step, &RayBatch),
     ) {
         let isa = self.pipeline.isa;
+        let (name, stream) = if part == AimPart::Rim { (RIM, RIM_STREAM) } else { (ESTIMATOR, 0) };
         let mut len = 0;
-        for pixel in pixels.clone() {
+        for Span { pixel, first, count } in spans.clone() {
             for (dimension, column) in state.numbers.iter_mut().enumerate() {
                 let out = &mut column.slice_mut(len + count)[len..];
-                let (group, pixel, first) = (self.pipeline.group(dimension), u64::from(pixel), u64::from(first));
-                self.numbers.fill_rotated(isa, pixel, first, group, dimension as u32, out);
+                let (group, stream) = (self.pipeline.group(dimension), stream | u64::from(pixel));
+                self.numbers.fill_rotated(isa, stream, u64::from(first), group, dimension as u32, out);
             }
             len += count;
         }
         let start = |rays: &mut RayBatch| {
-            for (from, pixel) in (0..).step_by(count).zip(pixels) {
+            let mut from = 0;
+            for Span { pixel, first, count } in spans {
                 rays.columns_mut().tag[from..from + count].fill(pixel);
-                rays.number(from, &self.numbers, ESTIMATOR, u64::from(pixel), u64::from(first));
+                rays.number(from, &self.numbers, name, u64::from(pixel), u64::from(first));
+                from += count;
             }
         };
-        self.follow(state, len, start, look);
+        self.follow(state, len, part, start, look);
     }
 
     /// Traces `len` rays by the columns of numbers, from the pixels that `start` writes, with the numbers of their own that it gives.
@@ -131,6 +138,7 @@ impl Backward {
         &self,
         state: &mut ThreadState,
         len: usize,
+        part: AimPart,
         start: impl FnOnce(&mut RayBatch),
         look: &mut impl FnMut(Step, &RayBatch),
     ) {
@@ -143,7 +151,7 @@ impl Backward {
         let launch = self.launch();
         launch.place(&mut state.rays, u.slice(len), v.slice(len), isa);
         look(Step::Imager, &state.rays);
-        let dark = self.rear.aim(&mut state.rays, a.slice(len), b.slice(len), isa);
+        let dark = self.rear.aim_part(&mut state.rays, a.slice(len), b.slice(len), part, isa);
         state.drop_dark(dark);
         look(Step::Pupil, &state.rays);
         launch.admit(&mut state.rays, isa);
@@ -181,27 +189,13 @@ impl Backward {
             let mut sample = first;
             while sample < first + samples {
                 let count = part.min(first + samples - sample);
-                self.batch(state, pixels.clone(), sample, count as usize);
-                if !state.contributions(&self.pipeline, self.scale) {
-                    let mut blame = Blame::default();
-                    self.steps(state, pixels, sample, count as usize, &mut |step, rays| blame.look(step, rays));
-                    return Err(blame.error(&self.pipeline, state, self.scale));
-                }
-                // The samples of a pixel lie together.
-                let mut from = 0;
-                for tags in state.rays.tags().chunk_by(|a, b| a == b) {
-                    let (pixel, only) = pixel_and_channel(tags[0]);
-                    let cell = tile.at(pixel) as usize * channels;
-                    let rays = from..from + tags.len();
-                    for (channel, integers) in state.integers.iter().enumerate() {
-                        if only.is_none_or(|only| only as usize == self.pipeline.recorded[channel]) {
-                            local[cell + channel] += integers[rays.clone()].iter().sum::<i64>();
-                        }
-                    }
-                    from = rays.end;
-                }
+                let spans = pixels.clone().map(|pixel| Span { pixel, first: sample, count: count as usize });
+                self.add(state, tile, spans, AimPart::Core, &mut local)?;
                 sample += count;
             }
+        }
+        if self.rear.has_rim() {
+            self.add_rim(state, tile, first..first + samples, &mut local)?;
         }
         for (at, values) in (0..).zip(local.chunks_exact(channels)) {
             let cell = tile.pixel(at) as usize * channels;
@@ -211,7 +205,88 @@ impl Backward {
     }
 }
 
+/// Samples of a pixel.
+#[derive(Clone, Copy)]
+struct Span {
+    pixel: u32,
+    first: u32,
+    count: usize,
+}
+
+/// A sample of pixels all over the frame, [`PILOT_RAYS`] of them.
+fn spread(pixels: u64, sample: u32) -> impl Iterator<Item = Span> + Clone {
+    let pixel = move |i: u32| (u64::from(i) * pixels / u64::from(PILOT_RAYS)) as u32;
+    (0..PILOT_RAYS).map(move |i| Span { pixel: pixel(i), first: sample, count: 1 })
+}
+
 impl Backward {
+    /// Traces samples of pixels of a tile and adds them to its sums.
+    fn add(
+        &self,
+        state: &mut ThreadState,
+        tile: &Tile,
+        spans: impl Iterator<Item = Span> + Clone,
+        part: AimPart,
+        local: &mut [i64],
+    ) -> Result<(), RenderError> {
+        self.steps(state, spans.clone(), part, &mut |_, _| {});
+        if !state.contributions(&self.pipeline, self.scale) {
+            let mut blame = Blame::default();
+            self.steps(state, spans, part, &mut |step, rays| blame.look(step, rays));
+            return Err(blame.error(&self.pipeline, state, self.scale));
+        }
+        // The samples of a pixel lie together.
+        let channels = state.integers.len();
+        let mut from = 0;
+        for tags in state.rays.tags().chunk_by(|a, b| a == b) {
+            let (pixel, only) = pixel_and_channel(tags[0]);
+            let cell = tile.at(pixel) as usize * channels;
+            let rays = from..from + tags.len();
+            for (channel, integers) in state.integers.iter().enumerate() {
+                if only.is_none_or(|only| only as usize == self.pipeline.recorded[channel]) {
+                    local[cell + channel] += integers[rays.clone()].iter().sum::<i64>();
+                }
+            }
+            from = rays.end;
+        }
+        Ok(())
+    }
+
+    /// The same through the rim of the pupil: of each [`RIM_EVERY`] samples of a pixel one brings a ray there along, which one
+    /// differs between neighbors and is as likely any. These rays are no samples: they are in no account of rays.
+    fn add_rim(
+        &self,
+        state: &mut ThreadState,
+        tile: &Tile,
+        samples: Range<u32>,
+        local: &mut [i64],
+    ) -> Result<(), RenderError> {
+        let blocks = samples.start / RIM_EVERY..samples.end.div_ceil(RIM_EVERY);
+        let shift = |block: u32| self.shifts.one(RIM_STREAM, u64::from(block), 0) * f64::from(RIM_EVERY);
+        let shifts: Vec<u32> = blocks.clone().map(|block| shift(block) as u32).collect();
+        let with_ray = |pixel: u32, block: u32| {
+            let (column, row) = (pixel % tile.width, pixel / tile.width);
+            let shift = shifts[(block - blocks.start) as usize];
+            let own = (column % RIM_EVERY + 3 * (row % RIM_EVERY) + shift) % RIM_EVERY;
+            samples.contains(&(block * RIM_EVERY + own))
+        };
+        // All blocks but the first and the last lie within the samples.
+        let span = |pixel: u32| {
+            let count = blocks.clone().filter(|block| with_ray(pixel, *block)).count();
+            let first = blocks.start + u32::from(!with_ray(pixel, blocks.start));
+            Span { pixel, first, count }
+        };
+        let (losses, detected) = (std::mem::take(&mut state.work.losses), state.detected);
+        let whole = (state.rays.capacity() / blocks.len().max(1)).max(1) as u32;
+        for begin in (0..tile.len()).step_by(whole as usize) {
+            let pixels = begin..tile.len().min(begin + whole);
+            let spans = pixels.map(|at| span(tile.pixel(at))).filter(|span| span.count > 0);
+            self.add(state, tile, spans, AimPart::Rim, local)?;
+        }
+        (state.work.losses, state.detected) = (losses, detected);
+        Ok(())
+    }
+
     fn size(&self) -> FrameSize {
         self.pipeline.scene.imager.size()
     }
@@ -275,8 +350,7 @@ impl Estimator for Backward {
     }
 
     fn reseeded(&self, seed: u64) -> Box<dyn Estimator> {
-        let numbers = self.pipeline.numbers(seed);
-        Box::new(Self { pipeline: self.pipeline.clone(), rear: self.rear.clone(), numbers, scale: self.scale })
+        Box::new(self.with_seed(seed))
     }
 
     fn units(&self, samples: &Range<u64>, tiles: &[u32]) -> u64 {
@@ -326,7 +400,7 @@ impl Estimator for Backward {
                           len,
                           start: &mut dyn FnMut(&mut RayBatch),
                           mut look: &mut dyn FnMut(Step, &RayBatch)| {
-                meters.follow(state, len, start, &mut look);
+                meters.follow(state, len, AimPart::Whole, start, &mut look);
             };
             meter::backward(&meters.pipeline, (ESTIMATOR, &follow), workers)
         })

@@ -16,6 +16,21 @@ pub enum AimPattern {
     Rings,
 }
 
+/// Which part of what passes rays go to. What comes through the core and what comes through the rim add up to the whole: few rays
+/// of the core end on their way, and where outlines hold more than passes, the rim, a few rays of small weight find out how much.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AimPart {
+    /// All of it.
+    Whole,
+    /// All but the rim.
+    Core,
+    /// The rim, and what was overlooked around it. A ray weighs as much as [`RIM_EVERY`] of them together: so few are to go there.
+    Rim,
+}
+
+/// One ray goes to the rim for so many to the core.
+pub const RIM_EVERY: u32 = 16;
+
 /// What a table does for one batch.
 struct Aim<'a, const BACKWARD: bool, const RINGS: bool, const MANY: bool> {
     table: &'a Table,
@@ -39,13 +54,13 @@ impl Table {
         rays: &mut RayBatch,
         u: &[f64],
         v: &[f64],
-        pattern: AimPattern,
+        (pattern, part): (AimPattern, AimPart),
         isa: Isa,
     ) -> usize {
         let strays = self.strays::<BACKWARD>(rays, u, v, isa);
         let rings = pattern == AimPattern::Rings;
         let dark = match (&self.outlines, rings, self.rows.len() > 1) {
-            (Some(outlines), ..) => fan::aim::<BACKWARD>(self, outlines, rays, [u, v], rings, isa),
+            (Some(outlines), ..) => fan::aim::<BACKWARD>(self, outlines, rays, [u, v], rings, part, isa),
             (None, false, false) => isa.run(Aim::<BACKWARD, false, false> { table: self, u, v, rays }).dark,
             (None, false, true) => isa.run(Aim::<BACKWARD, false, true> { table: self, u, v, rays }).dark,
             (None, true, false) => isa.run(Aim::<BACKWARD, true, false> { table: self, u, v, rays }).dark,
@@ -59,7 +74,8 @@ impl Table {
             c.state[i] = spectra_core::loss::ALIVE;
             (c.x[i], c.y[i], c.z[i]) = stray.position.into();
             (c.l[i], c.m[i], c.n[i]) = stray.direction.into();
-            c.weight[i] = stray.weight;
+            // They have no rim.
+            c.weight[i] = if part == AimPart::Rim { 0.0 } else { stray.weight };
         }
         dark - revived
     }

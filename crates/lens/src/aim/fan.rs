@@ -1,5 +1,6 @@
 //! How rays are shared out over outlines: see [`super::outline`].
 
+use super::aiming::{AimPart, RIM_EVERY};
 use super::measure::{azimuth_measure, whole};
 use super::outline::{Outlines, RING, STRIDE, TURN_STEPS};
 use super::reach::CORNERS;
@@ -12,10 +13,40 @@ const AROUND: f64 = (1.0 + RING) * (1.0 + RING) - 1.0;
 /// Rays that are aimed at once: what is looked up for them stays in the first level of the cache.
 const CHUNK: usize = 64;
 
+/// Squared radius of the core, as a share of the outline's: the rim holds most of what an outline has beyond what passes.
+const CORE: f64 = 0.986;
+/// Numbers of the rim that go around the outline, for each that does where they go all over it.
+const RIM_THIN: f64 = 20.0;
+/// At most this share of a triangle's numbers goes around the outline.
+const MOST_THIN: f64 = 0.5;
+
+/// Where the numbers of a part go.
+#[derive(Clone, Copy)]
+struct Cast {
+    /// Squared radii within the outline, in parts of its own.
+    from: f64,
+    to: f64,
+    /// Share of the numbers that goes around it, in [`super::outline::thin`]s.
+    ring: f64,
+    /// What each number stands for beside its area.
+    each: f64,
+}
+
+impl Cast {
+    fn of(part: AimPart) -> Self {
+        match part {
+            AimPart::Whole => Self { from: 0.0, to: 1.0, ring: 1.0, each: 1.0 },
+            AimPart::Core => Self { from: 0.0, to: CORE, ring: 0.0, each: 1.0 },
+            AimPart::Rim => Self { from: CORE, to: 1.0, ring: RIM_THIN, each: f64::from(RIM_EVERY) },
+        }
+    }
+}
+
 /// What is done for one batch.
 struct Draw<'a, const BACKWARD: bool, const RINGS: bool, const MANY: bool> {
     table: &'a Table,
     outlines: &'a Outlines,
+    cast: Cast,
     u: &'a [f64],
     v: &'a [f64],
     rays: &'a mut RayBatch,
@@ -28,13 +59,15 @@ pub(super) fn aim<const BACKWARD: bool>(
     rays: &mut RayBatch,
     [u, v]: [&[f64]; 2],
     rings: bool,
+    part: AimPart,
     isa: Isa,
 ) -> usize {
+    let cast = Cast::of(part);
     match (rings, table.rows.len() > 1) {
-        (false, false) => isa.run(Draw::<BACKWARD, false, false> { table, outlines, u, v, rays }),
-        (false, true) => isa.run(Draw::<BACKWARD, false, true> { table, outlines, u, v, rays }),
-        (true, false) => isa.run(Draw::<BACKWARD, true, false> { table, outlines, u, v, rays }),
-        (true, true) => isa.run(Draw::<BACKWARD, true, true> { table, outlines, u, v, rays }),
+        (false, false) => isa.run(Draw::<BACKWARD, false, false> { table, outlines, cast, u, v, rays }),
+        (false, true) => isa.run(Draw::<BACKWARD, false, true> { table, outlines, cast, u, v, rays }),
+        (true, false) => isa.run(Draw::<BACKWARD, true, false> { table, outlines, cast, u, v, rays }),
+        (true, true) => isa.run(Draw::<BACKWARD, true, true> { table, outlines, cast, u, v, rays }),
     }
 }
 
@@ -64,7 +97,7 @@ impl<const BACKWARD: bool, const RINGS: bool, const MANY: bool> Vectorized for D
     type Output = usize;
     #[inline(always)]
     fn run(self) -> usize {
-        let Self { table, outlines, u, v, rays } = self;
+        let Self { table, outlines, cast, u, v, rays } = self;
         let c = rays.columns_mut();
         let mut looked = Looked {
             at: [[0; CHUNK]; 5],
@@ -97,6 +130,7 @@ impl<const BACKWARD: bool, const RINGS: bool, const MANY: bool> Vectorized for D
             dark += turn::<BACKWARD>(
                 table,
                 outlines.turned,
+                cast,
                 &looked,
                 &mut c.x[r.clone()],
                 &mut c.y[r.clone()],
@@ -129,14 +163,17 @@ fn disk<const RINGS: bool>(u: f64, v: f64) -> (f64, f64) {
     (r * r, if turns < 0.0 { turns + 1.0 } else { turns })
 }
 
-/// A number of a triangle as a squared radius in parts of the outline's, and how much of that it stands for, where `ring` is the
-/// share of the numbers that go around it.
+/// A number of a triangle as a squared radius in parts of the outline's, and how much of that it stands for, where `thin` is the
+/// share of the numbers that go around it where they go all over it.
 #[inline(always)]
-fn within(squared: f64, ring: f64) -> (f64, f64) {
+fn within(squared: f64, thin: f64, cast: Cast) -> (f64, f64) {
+    let ring = thin * cast.ring;
+    let ring = if ring < MOST_THIN { ring } else { MOST_THIN };
     let kept = 1.0 - ring;
     let inside = squared <= kept;
-    let stands_for = if inside { 1.0 } else { AROUND } / if inside { kept } else { ring };
-    (if inside { squared * stands_for } else { 1.0 + (squared - kept) * stands_for }, stands_for)
+    let stands_for = if inside { cast.to - cast.from } else { AROUND } / if inside { kept } else { ring };
+    let radius2 = if inside { cast.from + squared * stands_for } else { 1.0 + (squared - kept) * stands_for };
+    (radius2, stands_for * cast.each)
 }
 
 #[inline(always)]
@@ -213,6 +250,7 @@ fn look<const BACKWARD: bool, const RINGS: bool, const MANY: bool>(
 fn turn<const BACKWARD: bool>(
     table: &Table,
     turned: bool,
+    cast: Cast,
     looked: &Looked,
     x: &mut [f64],
     y: &mut [f64],
@@ -243,7 +281,7 @@ fn turn<const BACKWARD: bool>(
         let size = 1.0 + color * of_color + depth * of_depth;
         let (moved_a, moved_c) = (color * color_a + depth * depth_a, color * color_c + depth * depth_c);
         let doubled = ax * by - ay * bx;
-        let (radius2, stands_for) = within(squared[i], thin * doubled);
+        let (radius2, stands_for) = within(squared[i], thin * doubled, cast);
         let radius = radius2.sqrt() * size;
         let p = radius * (ax + on_edge[i] * (bx - ax));
         let q = radius * (ay + on_edge[i] * (by - ay));
@@ -307,17 +345,21 @@ mod tests {
     #[test]
     fn numbers_stand_for_outline_and_ring() {
         let n = 1 << 20;
+        let [whole, core, rim] = [AimPart::Whole, AimPart::Core, AimPart::Rim].map(Cast::of);
         for ring in [0.0, 0.2 * (1.0 - INSIDE), 1.0 - INSIDE, 0.2] {
-            // Each number stands for what lies between it and the next one.
-            let (mut sum, mut last) = (0.0, 0.0);
-            for k in 0..n {
-                let (radius2, stands_for) = within((k as f64 + 0.5) / n as f64, ring);
-                assert!(radius2 > last, "{ring}: {radius2} after {last}");
-                (sum, last) = (sum + stands_for / n as f64, radius2);
+            let around = if ring > 0.0 { (1.0 + RING) * (1.0 + RING) } else { 1.0 };
+            for (cast, from, to) in [(whole, 0.0, around), (core, 0.0, CORE), (rim, CORE, around)] {
+                // Each number stands for what lies between it and the next one, and for its share of the rays.
+                let (mut sum, mut last) = (0.0, from);
+                for k in 0..n {
+                    let (radius2, stands_for) = within((k as f64 + 0.5) / n as f64, ring, cast);
+                    assert!(radius2 > last, "{ring}: {radius2} after {last}");
+                    (sum, last) = (sum + stands_for / cast.each / n as f64, radius2);
+                }
+                assert!((last / to - 1.0).abs() < 1e-4, "{ring}: {last}, not {to}");
+                assert!((sum / (to - from) - 1.0).abs() < 1e-4, "{ring}: {sum} from {from} to {to}");
             }
-            let want = if ring > 0.0 { (1.0 + RING) * (1.0 + RING) } else { 1.0 };
-            assert!((last / want - 1.0).abs() < 1e-4 && (sum / want - 1.0).abs() < 1e-4, "{ring}: {last} {sum}");
         }
-        assert_eq!(within(1.0, 0.0), (1.0, 1.0));
+        assert_eq!(within(1.0, 0.0, whole), (1.0, 1.0));
     }
 }

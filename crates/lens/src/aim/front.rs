@@ -1,6 +1,6 @@
 //! The pupil as the object sees it.
 
-use super::aiming::AimPattern;
+use super::aiming::{AimPart, AimPattern};
 use super::effort::Effort;
 use super::nodes::Geometry;
 use super::sphere::Sphere;
@@ -95,7 +95,7 @@ impl FrontPupil {
     /// counts alike. `u` and `v`, one a ray in [0, 1), choose the place. Rays of points from which
     /// nothing passes end, vignetted at the first surface; returns how many.
     pub fn aim(&self, rays: &mut RayBatch, u: &[f64], v: &[f64], pattern: AimPattern, isa: Isa) -> usize {
-        self.table.aim::<false>(rays, u, v, pattern, isa)
+        self.table.aim::<false>(rays, u, v, (pattern, AimPart::Whole), isa)
     }
 
     /// The region for a source point, mm in the frame of the lens. `None` where the point is nearer than

@@ -36,7 +36,7 @@ mod stopped;
 mod table;
 mod task;
 
-pub use aiming::AimPattern;
+pub use aiming::{AimPart, AimPattern, RIM_EVERY};
 pub use effort::Effort;
 pub use front::{AimRegion, FrontPupil};
 pub use rear::RearPupil;

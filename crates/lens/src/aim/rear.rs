@@ -1,6 +1,6 @@
 //! The pupil as the film sees it.
 
-use super::aiming::AimPattern;
+use super::aiming::{AimPart, AimPattern};
 use super::effort::Effort;
 use super::front::AimRegion;
 use super::measure::measure;
@@ -115,7 +115,19 @@ impl RearPupil {
     /// unit normal stands in the place of each direction. `u` and `v`, one a ray in [0, 1), choose the
     /// place. Rays of points to which nothing comes end, vignetted at the last surface; returns how many.
     pub fn aim(&self, rays: &mut RayBatch, u: &[f64], v: &[f64], isa: Isa) -> usize {
-        self.table.aim::<true>(rays, u, v, AimPattern::Disk, isa)
+        self.aim_part(rays, u, v, AimPart::Whole, isa)
+    }
+
+    /// The same for a part of it; the core is all of it where there is no [rim](Self::has_rim).
+    pub fn aim_part(&self, rays: &mut RayBatch, u: &[f64], v: &[f64], part: AimPart, isa: Isa) -> usize {
+        debug_assert!(part != AimPart::Rim || self.has_rim());
+        self.table.aim::<true>(rays, u, v, (AimPattern::Disk, part), isa)
+    }
+
+    /// Whether what passes has a rim: outlines do, ellipses and rectangles do not.
+    #[must_use]
+    pub fn has_rim(&self) -> bool {
+        self.table.outlines.is_some()
     }
 
     /// The region for a point of the imager, mm in the frame of the image plane. `None` where the point
