@@ -96,6 +96,38 @@ fn rays_that_end_leave_no_noise() {
     }
 }
 
+/// Few samples, of which not every one brings a ray to the rim of the pupil along, are as bright as many: within 4 standard errors, which are a
+/// tenth of the light of the rim. Batches of any size are cut alike.
+#[test]
+fn few_samples_are_as_bright_as_many() {
+    let even = |more: &[&'static str]| {
+        let fixed = [
+            "source={kind: chart, chart: white, width: fill, distance: 3 m}",
+            "lens.file=helios-44-58-f2",
+            "lens.f-number=f/2",
+            "wavelengths={band: [540 nm, 541 nm]}",
+            "render.noise=null",
+        ];
+        [&fixed[..], more].concat()
+    };
+    let mean = |samples: &'static str, seeds: u64| {
+        let pixels = over_seeds("biotar-ortho", &even(&[samples]), seeds);
+        let n = pixels.len() as f64;
+        let variance = pixels.iter().map(|p| p.1).sum::<f64>() / (n * n * seeds as f64);
+        (pixels.iter().map(|p| p.0).sum::<f64>() / n, variance)
+    };
+    let (many, of_many) = mean("render.samples=256", 2);
+    for samples in ["render.samples=1", "render.samples=5", "render.samples=20"] {
+        let (few, of_few) = mean(samples, 8);
+        let error = (of_few + of_many).sqrt();
+        println!("{samples}: {:+.4} % +- {:.4} %", 100.0 * (few / many - 1.0), 100.0 * error / many);
+        assert!((few - many).abs() < 4.0 * error, "{samples}: {few} and {many} +- {error}");
+        assert!(error < 0.001 * many, "{samples}: {error}");
+        let by = |batch: &'static str| bits(&render("biotar-ortho", &even(&[samples, batch]), &Alone).exposure);
+        assert!(by("render.batch=8") == by("render.batch=256"), "{samples}");
+    }
+}
+
 /// Luminance, or the only layer, of pictures of a scene by these seeds; each made ready and traced on one thread, two at a time.
 fn pictures(scene: &str, more: &[&str], seeds: std::ops::Range<u64>) -> Vec<Vec<f32>> {
     let scene = spectra_scene::load(&path(scene), &settings(more)).unwrap_or_else(|faults| panic!("{faults}"));

@@ -30,12 +30,14 @@ const ESTIMATOR: &str = "backward";
 /// The same of rays to the rim of the pupil, and what sets their numbers apart from those of the same pixel.
 const RIM: &str = "rim";
 const RIM_STREAM: u64 = 1 << 40;
+/// What says which samples bring them along.
+const SHIFT_STREAM: u64 = 1 << 41;
 
 pub(crate) struct Backward {
     pipeline: Arc<Pipeline>,
     rear: Arc<RearPupil>,
     numbers: Numbers,
-    /// By which samples bring a ray to the rim along.
+    /// Says which samples bring a ray to the rim along.
     shifts: Numbers,
     /// Of the sums.
     scale: f64,
@@ -132,7 +134,8 @@ impl Backward {
         self.follow(state, len, part, start, look);
     }
 
-    /// Traces `len` rays by the columns of numbers, from the pixels that `start` writes, with the numbers of their own that it gives.
+    /// Traces `len` rays through a part of the pupil by the columns of numbers, from the pixels that `start` writes, with the numbers of
+    /// their own that it gives.
     #[inline(always)]
     pub(crate) fn follow(
         &self,
@@ -182,13 +185,13 @@ impl Backward {
         let mut local = vec![0_i64; tile.len() as usize * channels];
         let capacity = state.rays.capacity() as u32;
         // As many whole pixels as the batch holds; where it holds not even one, parts of a pixel.
-        let part = samples.min(capacity);
-        let whole = (capacity / part).max(1);
+        let at_once = samples.min(capacity);
+        let whole = (capacity / at_once).max(1);
         for begin in (0..tile.len()).step_by(whole as usize) {
             let pixels = (begin..tile.len().min(begin + whole)).map(|at| tile.pixel(at));
             let mut sample = first;
             while sample < first + samples {
-                let count = part.min(first + samples - sample);
+                let count = at_once.min(first + samples - sample);
                 let spans = pixels.clone().map(|pixel| Span { pixel, first: sample, count: count as usize });
                 self.add(state, tile, spans, AimPart::Core, &mut local)?;
                 sample += count;
@@ -262,12 +265,13 @@ impl Backward {
         local: &mut [i64],
     ) -> Result<(), RenderError> {
         let blocks = samples.start / RIM_EVERY..samples.end.div_ceil(RIM_EVERY);
-        let shift = |block: u32| self.shifts.one(RIM_STREAM, u64::from(block), 0) * f64::from(RIM_EVERY);
+        let shift = |block: u32| self.shifts.one(SHIFT_STREAM, u64::from(block), 0) * f64::from(RIM_EVERY);
         let shifts: Vec<u32> = blocks.clone().map(|block| shift(block) as u32).collect();
         let with_ray = |pixel: u32, block: u32| {
             let (column, row) = (pixel % tile.width, pixel / tile.width);
             let shift = shifts[(block - blocks.start) as usize];
-            let own = (column % RIM_EVERY + 3 * (row % RIM_EVERY) + shift) % RIM_EVERY;
+            // Neighbors take turns: seven and five steps lead to every place.
+            let own = (7 * (column % RIM_EVERY) + 5 * (row % RIM_EVERY) + shift) % RIM_EVERY;
             samples.contains(&(block * RIM_EVERY + own))
         };
         // All blocks but the first and the last lie within the samples.
@@ -281,7 +285,9 @@ impl Backward {
         for begin in (0..tile.len()).step_by(whole as usize) {
             let pixels = begin..tile.len().min(begin + whole);
             let spans = pixels.map(|at| span(tile.pixel(at))).filter(|span| span.count > 0);
-            self.add(state, tile, spans, AimPart::Rim, local)?;
+            if spans.clone().next().is_some() {
+                self.add(state, tile, spans, AimPart::Rim, local)?;
+            }
         }
         (state.work.losses, state.detected) = (losses, detected);
         Ok(())
@@ -374,9 +380,15 @@ impl Estimator for Backward {
         let (tile, samples) = Self::piece(samples, tiles, unit);
         let tile = self.tile(tile);
         let count = (samples.end - samples.start) as u32;
-        match self.unit(&mut scratch.0, &tile, samples.start as u32, count, sums) {
+        let state = &mut scratch.0;
+        let booked = (state.work.losses.clone(), state.detected);
+        match self.unit(state, &tile, samples.start as u32, count, sums) {
             Ok(()) => Unit { rays: u64::from(tile.len()) * u64::from(count), error: None },
-            Err(error) => Unit { rays: 0, error: Some(error) },
+            Err(error) => {
+                // Nothing of it is in the sums, so nothing is in the account.
+                (state.work.losses, state.detected) = booked;
+                Unit { rays: 0, error: Some(error) }
+            }
         }
     }
 

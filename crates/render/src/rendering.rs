@@ -14,7 +14,7 @@ pub struct Rendering {
     pub exposure: ExposureFrame,
     /// The same by kinds of light, and by paths of ghosts, of those of which an output of the scene holds layers.
     pub layers: Vec<LightLayer>,
-    /// Rays launched toward the first or last surface.
+    /// Rays launched toward the first or last surface; of those from the film, rays to the rim of the pupil, one for 16, are not counted.
     pub rays: u64,
     /// What was lost, by cause and surface.
     pub losses: LossCounts,

@@ -24,7 +24,7 @@ pub enum AimPart {
     Whole,
     /// All but the rim.
     Core,
-    /// The rim, and what was overlooked around it. A ray weighs as much as [`RIM_EVERY`] of them together: so few are to go there.
+    /// The rim, and what was overlooked around it. A ray weighs [`RIM_EVERY`] times its share: one is to go there for so many to the core.
     Rim,
 }
 

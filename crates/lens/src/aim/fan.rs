@@ -8,14 +8,14 @@ use super::table::{SLOTS, Table};
 use spectra_core::isa::{Isa, Vectorized};
 use spectra_core::{Loss, RayBatch};
 
-/// The area of the ring, in areas of the outline. The mean of its numbers stands for 16.3 times as much as that of the others.
+/// The area of the ring, in areas of the outline. Of [`AimPart::Whole`] the mean of its numbers stands for 16.3 times as much as that of the others.
 const AROUND: f64 = (1.0 + RING) * (1.0 + RING) - 1.0;
 /// Rays that are aimed at once: what is looked up for them stays in the first level of the cache.
 const CHUNK: usize = 64;
 
 /// Squared radius of the core, as a share of the outline's: the rim holds most of what an outline has beyond what passes.
 const CORE: f64 = 0.986;
-/// Numbers of the rim that go around the outline, for each that does where they go all over it.
+/// Share of the rim's numbers that goes around the outline, in shares of the whole's: a ray there weighs 0.8 times as much as one of the whole's.
 const RIM_THIN: f64 = 20.0;
 /// At most this share of a triangle's numbers goes around the outline.
 const MOST_THIN: f64 = 0.5;

@@ -15,7 +15,8 @@
 //! cut by rims, blades and drawings. Nearly all rays of a point are shared out evenly over the area of that outline, and the
 //! few others over a ring around it: see [`outline`]. The weight of each is the solid angle of its share, area times cosine
 //! over distance squared, so light is counted equally per solid angle, and the estimate has no bias while outline and ring hold
-//! all that passes; random rays beyond the outline check that when it is made.
+//! all that passes; random rays beyond the outline check that when it is made. From the film, core and rim of the two are aimed at apart:
+//! see [`AimPart`].
 
 mod aiming;
 mod effort;

@@ -9,7 +9,7 @@
 use super::measure::whole;
 use super::reach::CORNERS;
 
-/// Share of the rays that go to the outline itself.
+/// Share of the rays that go to the outline itself, where they go all over what passes ([`AimPart::Whole`](super::AimPart::Whole)).
 pub(super) const INSIDE: f64 = 0.9969;
 /// The ring reaches this much farther than the outline, in proportion.
 pub(super) const RING: f64 = 0.025;
