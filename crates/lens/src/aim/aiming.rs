@@ -1,6 +1,7 @@
 //! The aiming itself: rays to places of the zones of their points.
 
 use super::fan;
+use super::part::AimPart;
 use super::table::{FIELDS, SLOTS, Table};
 use glam::DVec3;
 use spectra_core::isa::{Isa, Vectorized};
@@ -15,21 +16,6 @@ pub enum AimPattern {
     /// Equal-area rings: the first number is the ring, the second the angle.
     Rings,
 }
-
-/// Which part of what passes rays go to. What comes through the core and what comes through the rim add up to the whole: few rays
-/// of the core end on their way, and where outlines hold more than passes, the rim, a few rays of small weight find out how much.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum AimPart {
-    /// All of it.
-    Whole,
-    /// All but the rim.
-    Core,
-    /// The rim, and what was overlooked around it. A ray weighs [`RIM_EVERY`] times its share: one is to go there for so many to the core.
-    Rim,
-}
-
-/// One ray goes to the rim for so many to the core.
-pub const RIM_EVERY: u32 = 16;
 
 /// What a table does for one batch.
 struct Aim<'a, const BACKWARD: bool, const RINGS: bool, const MANY: bool> {

@@ -1,8 +1,8 @@
 //! How rays are shared out over outlines: see [`super::outline`].
 
-use super::aiming::{AimPart, RIM_EVERY};
 use super::measure::{azimuth_measure, whole};
 use super::outline::{Outlines, RING, STRIDE, TURN_STEPS};
+use super::part::{AimPart, RIM_EVERY};
 use super::reach::CORNERS;
 use super::table::{SLOTS, Table};
 use spectra_core::isa::{Isa, Vectorized};

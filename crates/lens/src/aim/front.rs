@@ -1,8 +1,9 @@
 //! The pupil as the object sees it.
 
-use super::aiming::{AimPart, AimPattern};
+use super::aiming::AimPattern;
 use super::effort::Effort;
 use super::nodes::Geometry;
+use super::part::AimPart;
 use super::sphere::Sphere;
 use super::table::{Depth, Table, Zone};
 use super::task::Task;

@@ -26,6 +26,7 @@ mod lattice;
 mod measure;
 mod nodes;
 mod outline;
+mod part;
 mod probe;
 mod reach;
 mod rear;
@@ -37,9 +38,10 @@ mod stopped;
 mod table;
 mod task;
 
-pub use aiming::{AimPart, AimPattern, RIM_EVERY};
+pub use aiming::AimPattern;
 pub use effort::Effort;
 pub use front::{AimRegion, FrontPupil};
+pub use part::{AimPart, RIM_EVERY};
 pub use rear::RearPupil;
 pub(crate) use sphere::Sphere;
 

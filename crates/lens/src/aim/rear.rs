@@ -1,10 +1,11 @@
 //! The pupil as the film sees it.
 
-use super::aiming::{AimPart, AimPattern};
+use super::aiming::AimPattern;
 use super::effort::Effort;
 use super::front::AimRegion;
 use super::measure::measure;
 use super::nodes::Geometry;
+use super::part::AimPart;
 use super::sphere::Sphere;
 use super::table::{Depth, Table};
 use super::task::Task;
