@@ -310,22 +310,22 @@ fn agrees(setup: &Setup, rays: usize, largest_error: f64) {
 
 #[test]
 fn four_reflections_are_those_of_a_random_walk() {
-    agrees(&Setup { order: 4, ..BIOTAR }, 130_000, 0.012);
+    agrees(&Setup { order: 4, ..BIOTAR }, 160_000, 0.01);
 }
 
 #[test]
 fn four_reflections_with_an_imager_that_reflects_too() {
-    agrees(&Setup { order: 4, imager: 0.3, ..BIOTAR }, 220_000, 0.012);
+    agrees(&Setup { order: 4, imager: 0.3, ..BIOTAR }, 220_000, 0.01);
 }
 
 #[test]
 fn ghosts_of_a_double_gauss_are_those_of_a_random_walk() {
-    agrees(&BIOTAR, 130_000, 0.012);
+    agrees(&BIOTAR, 160_000, 0.01);
 }
 
 #[test]
 fn with_an_imager_that_reflects_too() {
-    agrees(&Setup { imager: 0.3, ..BIOTAR }, 220_000, 0.012);
+    agrees(&Setup { imager: 0.3, ..BIOTAR }, 220_000, 0.01);
 }
 
 #[test]
@@ -338,8 +338,8 @@ fn ghosts_of_a_fisheye_with_the_light_at_60_degrees() {
         imager: 0.0,
         order: 2,
     };
-    // Little of what the large front takes in comes to the film: the walk knows each region to some percent.
-    agrees(&fisheye, 200_000, 0.06);
+    // Little of what the large front takes in comes to the film, so it is a long walk that knows each region to 1 %.
+    agrees(&fisheye, 5_500_000, 0.01);
 }
 
 /// Rays along fifteen paths of two reflections, against another program's: `xtask/ghost_rays.py`.
