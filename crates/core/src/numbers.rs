@@ -1,7 +1,7 @@
 //! Numbers for sampling: a pure function of (seed, stream, sample, dimension).
 //!
-//! Backward, the stream is the pixel, or its rays to the rim of the pupil, and the sample counts within it; forward, there is one stream and the sample is the path.
-//! There is no state, so the numbers are the same however the work is divided.
+//! Backward, the stream is the pixel, or its rays to the rim of the pupil, and the sample counts within it; forward, there is one
+//! stream and the sample is the path. There is no state, so the numbers are the same however the work is divided.
 //!
 //! [`Numbers::sobol`] draws from Owen-scrambled Sobol points: direction numbers by S. Joe and F. Y. Kuo,
 //! "Constructing Sobol sequences with better two-dimensional projections", SIAM J. Sci. Comput. 30
