@@ -159,12 +159,23 @@ const fn directions() -> [[u32; 32]; SOBOL_DIMENSIONS] {
     all
 }
 
-fn point_reversed(dimension: usize, mut index: u32) -> u32 {
+/// Which Sobol coordinate a dimension has. The first three are the evenest together, and what a lens draws depends most on wavelength
+/// and pupil together: with place before pupil a picture on color film takes 1.16 times as many samples to the same noise.
+const COORDINATE: [usize; SOBOL_DIMENSIONS] = {
+    let mut all = [0, 1, 2, 3, 4, 5, 6, 7];
+    all[Dimension::PupilU as usize] = 1;
+    all[Dimension::PupilV as usize] = 2;
+    all[Dimension::PlaceU as usize] = 3;
+    all[Dimension::PlaceV as usize] = 4;
+    all
+};
+
+fn point_reversed(coordinate: usize, mut index: u32) -> u32 {
     let mut x = 0;
     let mut k = 0;
     while index != 0 {
         if index & 1 == 1 {
-            x ^= DIRECTIONS[dimension][k];
+            x ^= DIRECTIONS[coordinate][k];
         }
         index >>= 1;
         k += 1;
@@ -174,7 +185,7 @@ fn point_reversed(dimension: usize, mut index: u32) -> u32 {
 
 impl Numbers {
     fn new(kind: Kind, seed: u64) -> Self {
-        let low = std::array::from_fn(|d| std::array::from_fn(|i| point_reversed(d, i as u32)));
+        let low = std::array::from_fn(|d| std::array::from_fn(|i| point_reversed(COORDINATE[d], i as u32)));
         Self { kind, seed: mix64(seed.wrapping_add(GOLDEN)), low: Box::new(low) }
     }
 
@@ -242,7 +253,7 @@ impl Numbers {
             let (now, later) = rest.split_at_mut(many);
             let block = at >> 32; // beyond 2^32 samples: another scrambling of the same points
             let key = self.key(stream ^ block.wrapping_mul(0xd1b5_4a32_d192_ed03), dimension) as u32;
-            let high = point_reversed(d, (at as u32) & !0xff);
+            let high = point_reversed(COORDINATE[d], (at as u32) & !0xff);
             isa.run(FillSobol { low: &self.low[d][start..start + many], high, key, out: now });
             at += many as u64;
             rest = later;
