@@ -107,6 +107,8 @@ def what_is_assumed(stock):
             parts[key.replace("_", " ")] = ""
     if any("(assumed)" in (d["remark"] or "") for layer in stock["layers"] for d in layer["developments"]):
         parts["gray balance"] = ""
+    if any("(assumed)" in (layer["remark"] or "") for layer in stock["layers"]):
+        parts["sensitivity by 3 nm"] = ""
     return sorted(parts)
 
 

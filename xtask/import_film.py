@@ -15,6 +15,8 @@ The package holds digitizations of figures in makers' data sheets. Numbers are w
   - densities a few ten-thousandths below 0 are 0;
   - curves of color film are mended by the few numbers below (NEUTRAL, SHIFT), so that a gray scale prints and projects gray;
     xtask/fit_film_color.py finds them, and the remark of each curve says by how much it moved;
+  - sensitivities of Vision3 250D and Ektachrome 100D are moved by up to 3 nm (MOVED): so far off may a figure be read along the
+    wavelength. Skies, leaves and skins keep their hue better so; the remark of each sensitivity says by how much it moved;
   - characteristic curves that turn where the pen slipped: running maximum (reversal: minimum), counted in the remark;
   - Wratten filters, given as densities at points of unequal distance: resampled on 2 nm, straight in density between
     points, ends held (beyond a density of 2.9 or so, where the figures end, a straight line goes on down to 5).
@@ -42,19 +44,24 @@ PACKAGE = "spectral_film_lut"
 # Found by xtask/fit_film_color.py. Log10 of exposure that a layer (row) loses per unit of dye in another (column); blue, green,
 # red.
 INTERLAYER = {
-    "negative": [[0, 0.14, 0.11], [0.51, 0, 0.33], [0, 0, 0]],
-    "reversal": [[0, 0, 0], [0, 0, 0.03], [0, 0, 0]],
+    "negative": [[0, 0.28, 0.08], [0.52, 0, 0.23], [0, 0, 0]],
+    "reversal": [[0, 0, 0], [0, 0, 0.016], [0.001, 0, 0]],
 }
 # Of the negative: p, q of p (u + 1) + q (u^2 - 1), u the decades from mid gray, held beyond 1; of print and reversal film: q of
 # q d/s exp(1 - d/s), d the density over the minimum and s the TOE. Green stays as it is.
 NEUTRAL = {
     "negative": {"blue": (0.017, 0.017), "red": (0, 0.007)},
     "print": {"blue": -0.034, "red": -0.01},
-    "reversal": {"blue": -0.034, "red": -0.056},
+    "reversal": {"blue": -0.068, "red": -0.053},
 }
 TOE = {"print": 0.3, "reversal": 0.5}
 # Of the reversal film: to the right along log10 of exposure.
-SHIFT = {"blue": 0.083, "red": -0.004}
+SHIFT = {"blue": 0.088, "red": -0.003}
+# Of the sensitivities along the wavelength, nm: within 3, as far as a figure is read off.
+MOVED = {
+    "negative": {"blue": 0, "green": -3, "red": -3},
+    "reversal": {"blue": 3, "green": -3, "red": -3},
+}
 
 
 def mended(kind, layer, points, gray):
@@ -308,10 +315,15 @@ def color_layers(data, *, rising, kind, stops_of=None, grainy=False):
             # The package lists red, green, blue, or one for all.
             mtf = data.mtf[i] if len(data.mtf) == 3 else data.mtf[0]
         rms = granularity(data.rms_curve[i], data.rms_density[i]) if grainy else None
-        out.append(layer(LAYERS[i], pairs(data.log_sensitivity[i]),
+        seen, nm, said = pairs(data.log_sensitivity[i]), MOVED.get(kind, {}).get(LAYERS[i], 0), None
+        if nm:
+            seen = [(x + nm, y) for x, y in seen]
+            said = (f"moved by {number(nm)} nm, within what a figure is read off, so that skies, leaves and skins keep their hue "
+                    "(assumed)")
+        out.append(layer(LAYERS[i], seen,
                          [("normal", None, data.sensiometric_curve[i])], granularity=rms,
                          dye=(DYES[i], pairs(data.spectral_density[i])), mtf=mtf, stops_of=stops_of, rising=rising,
-                         mend=(kind, LAYERS[i])))
+                         sensitivity_remark=said, mend=(kind, LAYERS[i])))
     return out
 
 
@@ -334,9 +346,9 @@ def color_negative(folder):
                        layers=[0.01, 0.25, 1]), ACETATE,
               f"minimum-density:\n  table:{flow(pairs(data.d_min_sd), '    ')}",
               interlayer("negative", "Fitted so that the 18 chromatic patches of the ColorChecker, three skins and two leaves, printed "
-                         "on 2383, have the hue that the eye sees and about its chroma; what is sky, leaf or skin counts twice "
-                         "(xtask/fit_film_color.py). Rows and columns are blue, "
-                         "green, red. No sheet tells it.")],
+                         "on 2383, have the hue that the eye sees and about its chroma; paints of sky, leaf and skin count twice, "
+                         "skins and a leaf themselves 3.5 times, in the sun and in shade (xtask/fit_film_color.py). Rows and columns are "
+                         "blue, green, red. No sheet tells it.")],
         layers=color_layers(data, rising=True, kind="negative", stops_of=250, grainy=True),
     )
 
@@ -396,14 +408,14 @@ def reversal(folder):
         source=f"Kodak Ektachrome 100D Color Reversal Film 5294/7294, technical data, {CARRIED}",
         remark="Color reversal film for daylight. The sheet's curves are Status A densities of neutral exposures; effects of "
         "one layer's development on another are not in it, and assumed. As digitized, a mid gray in the sheet's own light would "
-        "be clearly blue, which no maker balances a film for: blue is moved by a quarter of a stop, and blue and red a "
-        "little in density (more than the digitization errs), until a gray scale is gray.",
+        "be clearly blue, which no maker balances a film for: blue is moved by 0.3 of a stop, and blue and red a "
+        "little in density (more than the digitization errs), until a gray scale is gray and skins keep their hue.",
         head=["", "process: reversal", "density: status-a", "year: 2018", "iso: 100",
               "reference-illuminant: iso-7589-sensitometric-daylight",
               halation(0.3, ENTERS + "A layer of gray silver under the emulsion, bleached in processing, lets 0.3 pass once. " + DEPTH,
                        layers=[0.01, 0.25, 1]), ACETATE, flat_minimum(*low),
-              interlayer("reversal", "Fitted as that of kodak-vision3-250d-5207 was, and hardly needed. Rows and columns are "
-                         "blue, green, red. No sheet tells it.")],
+              interlayer("reversal", "Fitted as that of kodak-vision3-250d-5207 was, but for the leaf, which counts 6.5 times and alone "
+                         "is seen in shade, too; hardly needed. Rows and columns are blue, green, red. No sheet tells it.")],
         layers=color_layers(data, rising=False, kind="reversal", grainy=True),
     )
 
