@@ -21,7 +21,7 @@ To what:
   the bundled samples for testing lamps (CIE 13.3 and IES TM-30): the hue that the eye sees, and CHROMA times its chroma,
   differences weighed as CIE94 does, hue HUE times. What people look at counts more often (COUNTS): paints made after sky, leaf or
   skin, and still more two skins and a leaf themselves, these also in shade (SHADED). None of them is among those of
-  crates/film/tests/data/unseen.csv, but the counts and CHROMA of the negative were chosen by what they do to those: the fit has not
+  crates/film/tests/data/unseen.csv, but counts, shades and CHROMA of the negative were chosen by what they do to those: the fit has not
   seen them, whoever set it up has;
   a neutral subject in the film's own light, every half stop: a*, b* within HINGE of 0 from -2.5 to +3.5 stops;
   every number as near to 0 as that allows: SPREAD is the standard deviation of the curves' corrections. The slide's curves

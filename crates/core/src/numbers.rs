@@ -565,13 +565,14 @@ mod tests {
         assert!((mean - 0.5).abs() < 4.0 * (1.0_f64 / 12.0 / 4096.0).sqrt(), "{mean}");
     }
 
-    /// The first two dimensions form a (0, 2, 2)-net: every elementary interval of 2^m points contains one.
+    /// The first two coordinates, of the wavelength and of the pupil, form a (0, 2, 2)-net: every elementary interval of 2^m points
+    /// contains one.
     #[test]
     fn first_pair_is_a_net() {
         let numbers = Numbers::sobol(9);
         let (mut u, mut v) = (vec![0.0; 256], vec![0.0; 256]);
         numbers.fill(Isa::detect(), 5, 0, 0, &mut u);
-        numbers.fill(Isa::detect(), 5, 0, 1, &mut v);
+        numbers.fill(Isa::detect(), 5, 0, Dimension::PupilU as u32, &mut v);
         for a in 0..=8 {
             let (nu, nv) = (1 << a, 1 << (8 - a));
             let mut seen = vec![0; 256];

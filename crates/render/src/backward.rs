@@ -402,8 +402,13 @@ impl Estimator for Backward {
                 of_tile[tile as usize] += piece.end - piece.start;
             }
         }
-        let weight = |pixel: usize| time_s / self.scale / of_tile[self.tile_of(pixel)].max(1) as f64;
-        (0..self.size().pixels()).map(weight).collect()
+        let of_tile: Vec<f64> = of_tile.into_iter().map(|n| time_s / self.scale / n.max(1) as f64).collect();
+        let (width, side) = (self.size().width_px as usize, TILE as usize);
+        let row = |row: usize| {
+            let tiles = of_tile[row / side * width.div_ceil(side)..].iter();
+            tiles.flat_map(|weight| std::iter::repeat_n(*weight, side)).take(width)
+        };
+        (0..self.size().height_px as usize).flat_map(row).collect()
     }
 
     fn metered(&self, workers: &dyn Workers) -> Result<Vec<Vec<f64>>, RenderError> {

@@ -9,7 +9,10 @@ use crate::estimator::Estimator;
 use crate::light::{Light, Part};
 use crate::noise::Noise;
 use crate::renderer::Renderer;
+use crate::{Alone, Workers};
+use spectra_core::workers::each_of;
 use spectra_scene::Scene;
+use std::convert::Infallible;
 
 /// Side of a block, pixels: some tiles.
 const BLOCK: usize = 16;
@@ -20,31 +23,44 @@ const DARKEST: f64 = 1.0 / 16.0;
 const OWN_PART: f64 = 0.5;
 
 /// One block of pixels and one channel.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 struct Cell {
     /// Sum of the two halves, over its lit pixels.
     sum: f64,
     /// Pixels that any light reached: those of other colors of a mosaic have none.
     lit: f64,
+    /// Sums of squared differences between the halves, by kind.
+    squares: Vec<f64>,
+}
+
+impl Cell {
+    /// Mean of both halves in its lit pixels.
+    fn mean(&self) -> f64 {
+        if self.lit > 0.0 { 0.5 * self.sum / self.lit } else { 0.0 }
+    }
 }
 
 /// The frame in blocks.
 struct Blocks {
     across: usize,
-    count: usize,
+    down: usize,
     width: usize,
+    height: usize,
 }
 
 impl Blocks {
     fn of(scene: &Scene) -> Self {
         let size = scene.imager.size();
         let (width, height) = (size.width_px as usize, size.height_px as usize);
-        let across = width.div_ceil(BLOCK);
-        Self { across, count: across * height.div_ceil(BLOCK), width }
+        Self { across: width.div_ceil(BLOCK), down: height.div_ceil(BLOCK), width, height }
     }
 
-    fn at(&self, pixel: usize) -> usize {
-        pixel / self.width / BLOCK * self.across + pixel % self.width / BLOCK
+    /// The pixels of a block, row by row.
+    fn pixels(&self, block: usize) -> impl Iterator<Item = usize> {
+        let (column, row) = (block % self.across * BLOCK, block / self.across * BLOCK);
+        let (columns, rows) = (column..self.width.min(column + BLOCK), row..self.height.min(row + BLOCK));
+        let width = self.width;
+        rows.flat_map(move |row| columns.clone().map(move |column| row * width + column))
     }
 }
 
@@ -59,7 +75,7 @@ struct Judged {
 
 impl Renderer {
     /// Looks at all blocks.
-    fn judge(&self, light: &Light) -> Judged {
+    fn judge(&self, light: &Light, workers: &dyn Workers) -> Judged {
         let blocks = Blocks::of(self.scene());
         let kinds = light.parts.len() / 2;
         let (first, second) = light.parts.split_at(kinds);
@@ -69,34 +85,39 @@ impl Renderer {
             estimators.iter().zip(parts).map(of).collect()
         };
         let (of_first, of_second) = (weights(first), weights(second));
-        let channels = self.recorded().len();
-        let pixels = self.scene().imager.size().pixels();
-        let mut noise = vec![0.0_f64; blocks.count];
-        let mut share = vec![vec![0.0_f64; blocks.count]; kinds];
-        for channel in self.judged_channels() {
-            let mut cells = vec![Cell::default(); blocks.count];
-            // Sums of squared differences, by kind.
-            let mut squares = vec![vec![0.0_f64; blocks.count]; kinds];
-            for pixel in 0..pixels {
-                let (block, at) = (blocks.at(pixel), pixel * channels + channel);
-                let mut sum = 0.0;
+        let (channels, judged) = (self.recorded().len(), self.judged_channels());
+        let cell = |block: usize, channel: usize| {
+            let mut cell = Cell { squares: vec![0.0; kinds], ..Cell::default() };
+            for pixel in blocks.pixels(block) {
+                let (at, mut sum) = (pixel * channels + channel, 0.0);
                 for kind in 0..kinds {
                     let a = first[kind].sums.get(at) as f64 * of_first[kind][pixel];
                     let b = second[kind].sums.get(at) as f64 * of_second[kind][pixel];
                     sum += a + b;
-                    squares[kind][block] += (a - b) * (a - b);
+                    cell.squares[kind] += (a - b) * (a - b);
                 }
-                cells[block].sum += sum;
-                cells[block].lit += f64::from(u8::from(sum != 0.0));
+                cell.sum += sum;
+                cell.lit += f64::from(u8::from(sum != 0.0));
             }
-            // Mean of both halves in a block's lit pixels; that of the middle block says what is dark.
-            let mean = |cell: &Cell| if cell.lit > 0.0 { 0.5 * cell.sum / cell.lit } else { 0.0 };
-            let mut means: Vec<f64> = cells.iter().map(mean).collect();
+            cell
+        };
+        // A row of blocks at a time, channel by channel.
+        let row = |(): &mut (), row: usize| -> Result<Vec<Vec<Cell>>, Infallible> {
+            let of = |channel: &usize| (0..blocks.across).map(|c| cell(row * blocks.across + c, *channel)).collect();
+            Ok(judged.iter().map(of).collect())
+        };
+        let Ok(rows) = each_of(workers, blocks.down, || (), row);
+        let mut noise = vec![0.0_f64; blocks.across * blocks.down];
+        let mut share = vec![vec![0.0_f64; noise.len()]; kinds];
+        for channel in 0..judged.len() {
+            let cells: Vec<&Cell> = rows.iter().flat_map(|row| &row[channel]).collect();
+            // That of the middle block says what is dark.
+            let mut means: Vec<f64> = cells.iter().map(|cell| cell.mean()).collect();
             let middle = means.len() / 2;
             let floor = DARKEST * *means.clone().select_nth_unstable_by(middle, f64::total_cmp).1;
             means.iter_mut().for_each(|mean| *mean = mean.max(floor));
             for (block, cell) in cells.iter().enumerate() {
-                let square: f64 = squares.iter().map(|of_kind| of_kind[block]).sum();
+                let square: f64 = cell.squares.iter().sum();
                 if !(square > 0.0 && means[block] > 0.0) {
                     continue;
                 }
@@ -104,8 +125,8 @@ impl Renderer {
                 let own = 0.5 * (square / cell.lit).sqrt() / means[block];
                 if own > noise[block] {
                     noise[block] = own;
-                    for (share, of_kind) in share.iter_mut().zip(&squares) {
-                        share[block] = of_kind[block] / square;
+                    for (share, of_kind) in share.iter_mut().zip(&cell.squares) {
+                        share[block] = of_kind / square;
                     }
                 }
             }
@@ -114,17 +135,14 @@ impl Renderer {
     }
 
     /// Ends the tiles that are clean. To be called between rounds only.
-    pub(crate) fn end_clean(&self, light: &mut Light, asked: f64) {
-        let Judged { blocks, noise, share } = self.judge(light);
+    pub(crate) fn end_clean(&self, light: &mut Light, asked: f64, workers: &dyn Workers) {
+        let Judged { blocks, noise, share } = self.judge(light, workers);
         let kinds = light.parts.len() / 2;
         let least = OWN_PART / kinds as f64;
         for (kind, estimator) in self.estimators().take(kinds).enumerate() {
             let mut goes_on = vec![false; estimator.tiles()];
-            for pixel in 0..self.scene().imager.size().pixels() {
-                let block = blocks.at(pixel);
-                if noise[block] > asked && share[kind][block] >= least {
-                    goes_on[estimator.tile_of(pixel)] = true;
-                }
+            for block in (0..noise.len()).filter(|b| noise[*b] > asked && share[kind][*b] >= least) {
+                blocks.pixels(block).for_each(|pixel| goes_on[estimator.tile_of(pixel)] = true);
             }
             for (tile, _) in goes_on.iter().enumerate().filter(|(_, goes_on)| !**goes_on) {
                 light.parts[kind].done.end_tile(tile as u32);
@@ -139,7 +157,7 @@ impl Renderer {
         if light.parts.iter().any(|part| part.rays == 0) {
             return None;
         }
-        let mut noise = self.judge(light).noise;
+        let mut noise = self.judge(light, &Alone).noise;
         noise.sort_unstable_by(f64::total_cmp);
         let of = |part: f64| noise[((noise.len() - 1) as f64 * part) as usize];
         let clean = noise.iter().filter(|n| **n <= asked).count() as f64 / noise.len() as f64;

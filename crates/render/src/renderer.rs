@@ -309,7 +309,7 @@ impl Renderer {
         loop {
             let done = light.parts.iter().map(|part| part.done.complete()).min().unwrap_or(0);
             if ends_round(done) && light.judged < done {
-                self.end_clean(light, asked);
+                self.end_clean(light, asked, workers);
                 light.judged = done;
             }
             if done >= upto || self.is_clean(light) || control.should_stop() {
