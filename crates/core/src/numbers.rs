@@ -256,7 +256,11 @@ impl Numbers {
             let key = self.key(stream ^ block.wrapping_mul(0xd1b5_4a32_d192_ed03), dimension) as u32;
             let high = point_reversed(COORDINATE[d], (at as u32) & !0xff);
             let points = FillSobol { low: &self.low[d][start..start + many], high, key, out: now };
-            if d == Dimension::Wavelength as usize { isa.run(FillMirrored(points)) } else { isa.run(points) }
+            if d == Dimension::Wavelength as usize {
+                isa.run(FillMirrored(points))
+            } else {
+                isa.run(points)
+            }
             at += many as u64;
             rest = later;
         }
