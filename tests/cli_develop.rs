@@ -170,7 +170,7 @@ fn the_recorded_scene_gives_the_same_picture() {
     }
 }
 
-/// A mid gray card, by pixels, by a scene through a lens, and through the lens of the command.
+/// A mid gray card, by pixels, and by a scene through a lens that has no color of its own.
 #[test]
 fn a_metered_gray_card_prints_as_in_a_scene() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -182,7 +182,7 @@ fn a_metered_gray_card_prints_as_in_a_scene() {
             "spectra: 1\n\
              source: {{kind: picture, file: gray.png, distance: 3 m, width: fill, edge: mirror, luminance: 5000 cd/m2, \
              illuminant: iso-7589-sensitometric-daylight}}\n\
-             lens: {{file: zeiss-biotar-50-f1.4, f-number: f/8, focus: 3 m}}\n\
+             lens: {{file: zeiss-biotar-50-f1.4, f-number: f/8, focus: 3 m, coating: ideal, absorption: false}}\n\
              imager: {{kind: film, format: 135, resolution: [24, 16]}}\n\
              film: {{stock: {stock}, metering: spot, spot: {{diameter: 0.3}}, grain: false}}\n\
              render: {{samples: 1024}}\noutput: [png]\n"
