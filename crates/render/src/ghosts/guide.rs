@@ -4,6 +4,8 @@ use super::density::{ABREAST, Density, Each};
 
 /// Cells in which the first rounds look for the part of the front that light of a path comes through, across and up.
 const SIDE: usize = 24;
+/// Where none came, as many rays or more that went furthest say where to look for it.
+const FURTHEST: usize = 8;
 /// This part of the rays goes all over the front, whatever was found: so the estimate has no bias, and what was overlooked weighs
 /// ten times as much at most.
 const EVEN: f64 = 0.1;
@@ -128,35 +130,59 @@ impl Guide {
     }
 }
 
-/// Where in the cells of a guide's part light came through.
+/// Where in the cells of a guide's part light came through, and how far along the path the other rays went.
 #[derive(Clone, Debug)]
 pub(super) struct Lit {
     part: Part,
     cells: [bool; SIDE * SIDE],
+    /// Of each ray the surfaces that it passed, and its cell.
+    went: Vec<(u16, u16)>,
 }
 
 impl Lit {
     /// Nothing yet.
     pub fn of(guide: &Guide) -> Self {
-        Self { part: guide.part, cells: [false; SIDE * SIDE] }
+        Self { part: guide.part, cells: [false; SIDE * SIDE], went: Vec::new() }
+    }
+
+    fn cell(&self, place: [f64; 2]) -> Option<usize> {
+        let [x, y] = self.part.inside(place)?.map(|at| (at * SIDE as f64) as usize);
+        Some(y * SIDE + x)
     }
 
     /// A ray came through `place`.
     pub fn add(&mut self, place: [f64; 2]) {
-        if let Some([x, y]) = self.part.inside(place).map(|at| at.map(|at| (at * SIDE as f64) as usize)) {
-            self.cells[y * SIDE + x] = true;
+        if let Some(cell) = self.cell(place) {
+            self.cells[cell] = true;
         }
     }
 
-    /// The part of the cells that light came through and their neighbors, all alike.
+    /// A ray from `place` passed so many surfaces of the path.
+    pub fn went(&mut self, place: [f64; 2], surfaces: u16) {
+        if let Some(cell) = self.cell(place).filter(|_| surfaces > 0) {
+            self.went.push((surfaces, cell as u16));
+        }
+    }
+
+    /// Whether no light came, but rays passed some surfaces.
+    pub fn is_on_the_way(&self) -> bool {
+        !self.went.is_empty() && !self.cells.contains(&true)
+    }
+
+    /// The part of the cells that light came through and their neighbors, all alike. Where none came, of those that the rays came from which
+    /// went furthest: what passes a surface is a part of what passes the one before it, so a place that one ray of a million would find is
+    /// found in some steps.
     pub fn closer(&self) -> Guide {
-        let lit = || (0..SIDE * SIDE).filter(|at| self.cells[*at]);
-        if lit().next().is_none() {
-            return Guide::everywhere();
+        let mut lit: Vec<usize> = (0..SIDE * SIDE).filter(|at| self.cells[*at]).collect();
+        if lit.is_empty() {
+            let mut went = self.went.clone();
+            went.sort_unstable_by(|a, b| b.cmp(a));
+            let Some((least, _)) = went.get(FURTHEST - 1).or(went.last()).copied() else { return Guide::everywhere() };
+            lit.extend(went.iter().take_while(|(surfaces, _)| *surfaces >= least).map(|(_, cell)| usize::from(*cell)));
         }
         let ends = |of: fn(usize) -> usize| {
-            let first = lit().map(of).min().unwrap_or(0).saturating_sub(1);
-            let last = lit().map(of).max().unwrap_or(0) + 2;
+            let first = lit.iter().map(|at| of(*at)).min().unwrap_or(0).saturating_sub(1);
+            let last = lit.iter().map(|at| of(*at)).max().unwrap_or(0) + 2;
             [first, last.min(SIDE)].map(|k| k as f64 / SIDE as f64)
         };
         let (columns, rows) = (ends(|at| at % SIDE), ends(|at| at / SIDE));
@@ -214,6 +240,38 @@ mod tests {
                 guide = sight.sorted(&[1.0]).guides(&[1.0]).0.remove(0);
             }
         }
+    }
+
+    /// Ten disks one within the other, each three tenths of the one before, down to eight of a million places: rays that pass some of them
+    /// lead to it.
+    #[test]
+    fn rays_that_go_further_lead_to_the_light() {
+        let passed = |[x, y]: [f64; 2]| {
+            let away2 = (x - 0.4) * (x - 0.4) + (y + 0.3) * (y + 0.3);
+            (0..10).filter(|at| away2 < 0.5 * 0.3_f64.powi(*at)).count() as u16
+        };
+        let (mut guide, numbers, n) = (Guide::everywhere(), Numbers::sobol(5), 4096);
+        let mut came = Vec::new();
+        for round in 0..5 {
+            let mut lit = Lit::of(&guide);
+            came.push(0);
+            for i in 0..n {
+                let aim = guide.draw(numbers.one(round, i, 3), numbers.one(round, i, 4));
+                let surfaces = passed(aim.place);
+                lit.went(aim.place, surfaces);
+                if surfaces == 10 {
+                    lit.add(aim.place);
+                    came[round as usize] += 1;
+                }
+            }
+            assert_eq!(lit.is_on_the_way(), came[round as usize] == 0);
+            guide = lit.closer();
+        }
+        assert!(came[0] == 0 && came[4] > n / 4, "{came:?}");
+        // Nothing came in: nobody knows where to look.
+        let blocked = Lit::of(&guide);
+        assert!(!blocked.is_on_the_way());
+        assert_eq!(blocked.closer().part(), Part::ALL);
     }
 
     #[test]

@@ -18,10 +18,12 @@ use spectra_core::numbers::{Dimension, StageKey};
 use spectra_core::workers::each_of;
 use spectra_core::{Loss, RayBatch};
 
-/// Rays for each path and round, of one zone and of each further one, in rounds that look where the light of each path comes in.
+/// Rays for each path and round, of one zone and of each further one, in rounds that look where the light of each path comes in: so many
+/// rounds, and more while there is a zone whose rays passed some surfaces, but none all of them.
 const RAYS: usize = 4096;
 const RAYS_MORE: usize = 256;
-const ROUNDS: u64 = 3;
+const LEAST_ROUNDS: u64 = 3;
+const ROUNDS: u64 = 6;
 /// Rounds after those, whose rays are shared out as those of the picture will be, each better than the one before: they find where
 /// noise is. Rays of each in parts of a sample's, and at most: as
 /// many whatever the samples, or a picture that goes on would be another one.
@@ -157,7 +159,8 @@ pub(super) fn search(
         let batches = of(&ways[at], all);
         for round in 1..ROUNDS {
             let (lit, came) = pilot.round(state, &ways[at], &guides, Some(stream(at, round)), batches);
-            if round + 1 == ROUNDS {
+            let done = round + 1;
+            if done == ROUNDS || done >= LEAST_ROUNDS && !lit.iter().any(Lit::is_on_the_way) {
                 let mut sight = Sight::default();
                 sight.add(guides, (batches * BATCH) as f64, came);
                 return Ok::<_, RenderError>(sight);
@@ -265,14 +268,21 @@ impl<'a> Pilot<'a> {
                     &own
                 }
             };
-            self.through(state, way, &batch.rays, |ray, tag, brought| {
+            // Where one guide is for all zones, that.
+            let aimed = |ray: usize| {
                 let (zone, aim) = batch.aims[ray];
-                // Where one guide is for all zones, that.
-                let zone = zone.min(guides.len() - 1);
+                (zone.min(guides.len() - 1), aim)
+            };
+            let passed = self.through(state, way, &batch.rays, |ray, tag, brought| {
+                let (zone, aim) = aimed(ray);
                 lit[zone].add(aim.place);
                 let block = self.blocks.of(pixel_and_channel(tag).0);
                 came.push(Seen { zone, aim, block, brought: brought.times(aim.density) });
             });
+            for (ray, surfaces) in passed.into_iter().enumerate() {
+                let (zone, aim) = aimed(ray);
+                lit[zone].went(aim.place, surfaces);
+            }
         }
         (lit, came)
     }
@@ -287,14 +297,25 @@ impl<'a> Pilot<'a> {
         aimed(self.ghosts, self.placed[at % self.placed.len()].clone(), guides, [&a, &b])
     }
 
-    /// Follows a path. `came` is given number and tag of each ray that brings light to the frame, and what it brings.
-    fn through(&self, state: &mut ThreadState, way: &Way, from: &RayBatch, mut came: impl FnMut(usize, u32, Brought)) {
+    /// Follows a path. `came` is given number and tag of each ray that brings light to the frame, and what it brings. Says how many
+    /// surfaces each ray passed.
+    fn through(
+        &self,
+        state: &mut ThreadState,
+        way: &Way,
+        from: &RayBatch,
+        mut came: impl FnMut(usize, u32, Brought),
+    ) -> Vec<u16> {
         let ghosts = self.ghosts;
         state.rays = from.clone();
         let c = state.rays.columns_mut();
         c.weight.fill(1.0);
         (0..).zip(c.tag).for_each(|(number, tag)| *tag = number);
-        ghosts.pipeline.tracer.follow(&way.route, &mut state.rays, &mut state.work);
+        let mut passed = vec![0_u16; from.len()];
+        ghosts.pipeline.tracer.follow_each(&way.route, &mut state.rays, &mut state.work, |_, rays| {
+            let alive = rays.states().iter().zip(rays.tags()).filter(|(state, _)| **state == ALIVE);
+            alive.for_each(|(_, number)| passed[*number as usize] += 1);
+        });
         let numbers = state.rays.tags().to_vec();
         state.rays.set_stage(StageKey::IMAGER);
         ghosts.receive().receive(&mut state.rays, ghosts.pipeline.isa);
@@ -310,7 +331,7 @@ impl<'a> Pilot<'a> {
             .filter(|(_, w)| **w != 0.0)
             .for_each(|(n, _)| arrived[*n as usize] = ALIVE);
         if arrived.iter().all(|state| *state == unlit) {
-            return;
+            return passed;
         }
         c.state
             .iter_mut()
@@ -335,6 +356,7 @@ impl<'a> Pilot<'a> {
                 came(*number as usize, *tag, brought);
             }
         }
+        passed
     }
 }
 
