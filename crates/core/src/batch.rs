@@ -81,9 +81,10 @@ struct Scratch {
     /// Between the loops the cosine of incidence; afterwards how far the ray is from ending.
     cosine_then_margin: Column<f64>,
     valid: Column<f64>,
-    /// Of shapes that rays come to by steps: what they keep, and the size of the last step.
-    kept: Column<f64>,
-    step: Column<f64>,
+    /// Of shapes that rays come to by steps what they keep; afterwards as [`Weighing::versine`].
+    kept_then_versine: Column<f64>,
+    /// Of such shapes the size of the last step; afterwards as [`Weighing::way_mm`].
+    step_then_way: Column<f64>,
 }
 
 /// See [`Scratch`].
@@ -91,8 +92,8 @@ pub(crate) struct ScratchColumns<'a> {
     pub radius2: &'a mut [f64],
     pub cosine_then_margin: &'a mut [f64],
     pub valid: &'a mut [f64],
-    pub kept: &'a mut [f64],
-    pub step: &'a mut [f64],
+    pub kept_then_versine: &'a mut [f64],
+    pub step_then_way: &'a mut [f64],
 }
 
 /// All columns of a batch, to read and write at once.
@@ -142,12 +143,26 @@ pub struct Weighing<'a> {
     pub wavelength_nm: &'a [f64],
     /// Alive, or cause and surface of the loss.
     pub state: &'a [u64],
+    /// As [`Meeting::way_mm`], at the last surface.
+    pub way_mm: &'a [f64],
+    /// As [`Meeting::versine`], at the last surface.
+    pub versine: &'a [f64],
     /// Flux or throughput.
     pub weight: &'a mut [f64],
     /// Optical path since [`RayBatch::restart`], mm; empty unless the batch carries it.
     pub optical_path_mm: &'a mut [f64],
     /// State of polarization; empty unless the batch carries it.
     pub polarization: Polarization<'a>,
+}
+
+/// How rays met a surface, to write: what surfaces leave that say so ([`notes_meeting`](crate::surface::Surface::notes_meeting)). Of rays that have
+/// ended it says nothing.
+#[derive(Debug)]
+pub struct Meeting<'a> {
+    /// The way from where the ray was before, mm; negative where it ran backward.
+    pub way_mm: &'a mut [f64],
+    /// Versine, 1 - cos, of the angle by which the surface bent it; anything where the surface bends no light.
+    pub versine: &'a mut [f64],
 }
 
 impl RayBatch {
@@ -180,8 +195,8 @@ impl RayBatch {
                 radius2_is_true: false,
                 cosine_then_margin: column(),
                 valid: column(),
-                kept: column(),
-                step: column(),
+                kept_then_versine: column(),
+                step_then_way: column(),
             },
         }
     }
@@ -290,8 +305,10 @@ impl RayBatch {
     /// The weights, writable, and what they may depend on.
     #[inline(always)]
     pub fn weighing(&mut self) -> Weighing<'_> {
-        let c = self.split().0;
+        let (c, s) = self.split();
         Weighing {
+            way_mm: s.step_then_way,
+            versine: s.kept_then_versine,
             position: [c.x, c.y, c.z],
             direction: [c.l, c.m, c.n],
             wavelength_nm: c.wavelength_nm,
@@ -300,6 +317,12 @@ impl RayBatch {
             optical_path_mm: c.optical_path_mm,
             polarization: c.polarization,
         }
+    }
+
+    /// How rays met the last surface, for surfaces that note it.
+    pub fn note_meeting(&mut self) -> Meeting<'_> {
+        let s = self.split().1;
+        Meeting { way_mm: s.step_then_way, versine: s.kept_then_versine }
     }
 
     /// All columns, and those that the loops of a surface share, with x^2 + y^2 up to date.
@@ -339,8 +362,8 @@ impl RayBatch {
             radius2: self.scratch.radius2.slice_mut(len),
             cosine_then_margin: self.scratch.cosine_then_margin.slice_mut(len),
             valid: self.scratch.valid.slice_mut(len),
-            kept: self.scratch.kept.slice_mut(len),
-            step: self.scratch.step.slice_mut(len),
+            kept_then_versine: self.scratch.kept_then_versine.slice_mut(len),
+            step_then_way: self.scratch.step_then_way.slice_mut(len),
         };
         (columns, scratch)
     }

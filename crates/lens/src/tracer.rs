@@ -372,18 +372,13 @@ impl Tracer {
         let passage = &self.passages[leg.at];
         let absorption = self.absorptions.as_ref().filter(|_| leg.inside).and_then(|all| all.table_of(leg.before));
         let carries_path = rays.optical_path_mm().is_some();
+        let needs_way = absorption.is_some() || carries_path || leg.turned;
+        let measures = !element.surface.notes_meeting() && (needs_way || passage.reflects());
         if let Some(noted) = &mut work.before {
-            let needs_way = absorption.is_some() || carries_path || leg.turned;
-            if needs_way {
+            if measures {
                 noted.note_positions(rays);
             }
-            if needs_way
-                || leg.turns
-                || leg.soiled.is_some()
-                || element.onion_rings.is_some()
-                || rays.is_polarized()
-                || passage.reflects()
-            {
+            if measures || leg.soiled.is_some() || element.onion_rings.is_some() || rays.is_polarized() {
                 noted.note_directions(rays);
             }
         }
@@ -400,23 +395,27 @@ impl Tracer {
             rays.set_stage(stage);
         }
         let mut ended = element.surface.interact(rays, &interface, isa);
+        if let (Some(noted), true) = (&work.before, measures) {
+            noted.measure(rays, Some(shift_mm));
+        }
         if let (Some(rings), Some(noted)) = (&element.onion_rings, &work.before) {
             let (before, n) = (noted.directions(len), [interface.before.n, interface.after.n]);
             let mirror = leg.action == Action::Reflect;
             ended += rings.bend(rays, &Bent { before, n, mirror, number: interface.number });
+            noted.measure(rays, None);
         }
-        if let (Some(noted), true) = (&work.before, leg.turned) {
-            ended += noted.end_behind(rays, shift_mm, interface.number, isa);
+        if leg.turned && work.before.is_some() {
+            ended += Before::end_behind(rays, interface.number, isa);
         }
         if let Some((ledger, booked)) = &mut work.ledger {
             booked.settle(rays, &mut ledger.steps[step], |s| &mut s.absorbed);
         }
         if let Some(noted) = &mut work.before {
             if carries_path {
-                noted.lengthen(rays, interface.before.n, shift_mm);
+                Before::lengthen(rays, interface.before.n);
             }
             if let Some(table) = absorption {
-                noted.absorb(rays, table, shift_mm, isa);
+                noted.absorb(rays, table, isa);
                 if let Some((ledger, booked)) = &mut work.ledger {
                     noted.weigh_absorbed(rays, isa);
                     booked.settle(rays, &mut ledger.steps[step], |s| &mut s.absorbed);
@@ -428,7 +427,7 @@ impl Tracer {
             } else if rays.is_polarized() {
                 noted.polarize(rays, passage, leg.action == Action::Reflect, [interface.before.n, beyond.n]);
             } else if leg.turns {
-                noted.reflect(rays, passage, interface.before.n, beyond.n, isa);
+                Before::reflect(rays, passage, interface.before.n, beyond.n, isa);
             } else {
                 noted.pass(rays, passage, interface.before.n, interface.after.n, isa);
             }

@@ -267,18 +267,34 @@ impl Before {
         }
     }
 
-    /// Takes down what a medium absorbed of rays on their way to a surface, by its table; `shift_mm` is the surface's vertex in the
-    /// frame of what was noted. Their weights follow in [`Before::weigh_absorbed`]: one power for the whole way through a lens.
-    pub(crate) fn absorb(&mut self, rays: &RayBatch, table: usize, shift_mm: f64, isa: Isa) {
+    /// Works out how rays met a surface that does not note it by itself: by positions and directions that were taken down before; `shift_mm` is the
+    /// surface's vertex in the frame of those. By directions alone, which way they were bent.
+    pub(crate) fn measure(&self, rays: &mut RayBatch, shift_mm: Option<f64>) {
         let len = rays.len();
-        let position = self.position.each_ref().map(|column| column.slice(len));
-        let direction = self.direction.each_ref().map(|column| column.slice(len));
-        let columns = [position, direction, rays.positions()];
+        let before = self.directions(len);
+        let from = self.position.each_ref().map(|column| column.slice(len));
+        for i in 0..len {
+            let (to, after) = (rays.positions().map(|column| column[i]), rays.directions().map(|column| column[i]));
+            let d = before.map(|column| column[i]);
+            let met = rays.note_meeting();
+            met.versine[i] = versine(d, after);
+            if let Some(shift_mm) = shift_mm {
+                let step = [to[0] - from[0][i], to[1] - from[1][i], to[2] - (from[2][i] - shift_mm)];
+                met.way_mm[i] = dot(step, d);
+            }
+        }
+    }
+
+    /// Takes down what a medium absorbed of rays on their way to a surface, by its table. Their weights follow in
+    /// [`Before::weigh_absorbed`]: one power for the whole way through a lens.
+    pub(crate) fn absorb(&mut self, rays: &mut RayBatch, table: usize, isa: Isa) {
+        let len = rays.len();
+        let way_mm = rays.weighing().way_mm;
         let (per_mm, depth) = (self.per_mm[table].slice(len), self.depth.slice_mut(len));
         if self.absorbed {
-            isa.run(Absorb::<false> { columns, per_mm, shift_mm, depth });
+            isa.run(Absorb::<false> { way_mm, per_mm, depth });
         } else {
-            isa.run(Absorb::<true> { columns, per_mm, shift_mm, depth });
+            isa.run(Absorb::<true> { way_mm, per_mm, depth });
         }
         self.absorbed = true;
     }
@@ -293,34 +309,28 @@ impl Before {
 
     /// Ends rays that met a surface behind them: a steep reflection may send light sideways, past the surface that comes next. Says
     /// how many.
-    pub(crate) fn end_behind(&self, rays: &mut RayBatch, shift_mm: f64, number: u32, isa: Isa) -> usize {
-        let len = rays.len();
-        let [from, direction] = [&self.position, &self.direction].map(|all| all.each_ref().map(|c| c.slice(len)));
+    pub(crate) fn end_behind(rays: &mut RayBatch, number: u32, isa: Isa) -> usize {
         let c = rays.weighing();
-        let columns = [from, direction, c.position];
-        let many = isa.run(CountBehind { columns, shift_mm, state: c.state }) as usize;
+        let many = isa.run(CountBehind { way_mm: c.way_mm, state: c.state }) as usize;
         if many > 0 {
-            let is_behind = |i: &usize| c.state[*i] == ALIVE && is_behind(*i, columns, shift_mm);
-            let behind: Vec<usize> = (0..len).filter(is_behind).collect();
+            let is_behind = |i: &usize| c.state[*i] == ALIVE && c.way_mm[*i] < BEHIND_MM;
+            let behind: Vec<usize> = (0..c.state.len()).filter(is_behind).collect();
             let c = rays.columns_mut();
             behind.iter().for_each(|i| c.state[*i] = Loss::Missed.state(number));
         }
         many
     }
 
-    /// Adds the way since the note to the optical path of batches that carry it, in a medium of these indices.
-    pub(crate) fn lengthen(&self, rays: &mut RayBatch, index: &[f64], shift_mm: f64) {
-        let len = rays.len();
-        let from = self.position.each_ref().map(|column| column.slice(len));
-        let direction = self.direction.each_ref().map(|column| column.slice(len));
+    /// Adds the way to a surface to the optical path of batches that carry it, in a medium of these indices.
+    pub(crate) fn lengthen(rays: &mut RayBatch, index: &[f64]) {
         let c = rays.weighing();
-        for (i, path) in c.optical_path_mm.iter_mut().enumerate() {
-            *path += index[i] * way_mm(i, from, c.position, direction, shift_mm);
+        for ((path, index), way_mm) in c.optical_path_mm.iter_mut().zip(index).zip(c.way_mm) {
+            *path += index * way_mm;
         }
     }
 
     /// Weighs rays by what a refracting surface reflects; `n_beyond` are the indices on its other side.
-    pub(crate) fn reflect(&self, rays: &mut RayBatch, passage: &Passage, n: &[f64], n_beyond: &[f64], isa: Isa) {
+    pub(crate) fn reflect(rays: &mut RayBatch, passage: &Passage, n: &[f64], n_beyond: &[f64], isa: Isa) {
         let (coating, gap) = match passage {
             Passage::All | Passage::Mirror(_) => return,
             Passage::Coated(..) => (passage.coating(), None),
@@ -328,12 +338,11 @@ impl Before {
         };
         let c = rays.weighing();
         let len = c.weight.len();
-        let before = self.direction.each_ref().map(|column| column.slice(len));
         if let Passage::Coated(Coating::Bare, _) = passage {
-            return isa.run(ReflectBare(Pass { rays: c, before, n, n_after: n_beyond }));
+            return isa.run(ReflectBare(Pass { rays: c, n, n_after: n_beyond }));
         }
         let reflected = |i: usize, coating: &Coating| {
-            let cosine = cosine_of_mirrored(i, before, c.direction);
+            let cosine = cosine_of_mirrored(c.versine[i]);
             coating.reflectance(n[i], n_beyond[i], cosine, c.wavelength_nm[i]).mean()
         };
         let came = gap.map(|_| c.weight.to_vec());
@@ -365,13 +374,11 @@ impl Before {
             let d: [f64; 3] = std::array::from_fn(|k| self.direction[k].slice(i + 1)[i]);
             let after = c.direction.map(|column| column[i]);
             let of = |amplitudes: &Amplitudes<'_>| {
+                let h = versine(d, after);
                 if back {
-                    // Incidence and reflection differ by twice the cosine along the normal.
-                    let turn: [f64; 3] = std::array::from_fn(|k| after[k] - d[k]);
-                    let cosine = (0.5 * dot(turn, turn).sqrt()).min(1.0);
-                    return amplitudes.back(n[i], n_beyond[i], cosine, c.wavelength_nm[i]);
+                    return amplitudes.back(n[i], n_beyond[i], cosine_of_mirrored(h), c.wavelength_nm[i]);
                 }
-                let sides = Sides::of(n[i], n_beyond[i], d, after);
+                let sides = Sides::of(n[i], n_beyond[i], h);
                 if sides.step() < SAME_INDEX {
                     Polarizing::evenly(1.0, false)
                 } else {
@@ -416,9 +423,8 @@ impl Before {
             let came = rays.weights().to_vec();
             self.pass(rays, intact, n, n_after, isa);
             let c = rays.weighing();
-            let before = self.direction.each_ref().map(|column| column.slice(n.len()));
             for (i, part, coating) in gap.met(c.position, c.state) {
-                let sides = Sides::of(n[i], n_after[i], before.map(|d| d[i]), c.direction.map(|d| d[i]));
+                let sides = Sides::of(n[i], n_after[i], c.versine[i]);
                 let passed = if sides.step() < SAME_INDEX {
                     1.0
                 } else {
@@ -429,7 +435,6 @@ impl Before {
             return;
         }
         let rays = rays.weighing();
-        let before = self.direction.each_ref().map(|column| column.slice(n.len()));
         match passage {
             Passage::All | Passage::Apart(..) => {}
             Passage::Mirror(reflectance) => {
@@ -438,7 +443,7 @@ impl Before {
                 }
             }
             Passage::Coated(coating, kernel) => {
-                let at = Pass { rays, before, n, n_after };
+                let at = Pass { rays, n, n_after };
                 match kernel {
                     Kernel::Bare => isa.run(PassBare(at)),
                     Kernel::One(.., Some(swift)) if self.swift => isa.run(PassSwift(at, swift, &self.per_nm)),
@@ -462,27 +467,25 @@ fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// How far a ray ran since it was noted, mm.
+/// Versine of the angle between two unit directions: half the square of their difference.
 #[inline(always)]
-fn way_mm(i: usize, from: [&[f64]; 3], to: [&[f64]; 3], d: [&[f64]; 3], shift_mm: f64) -> f64 {
-    let step = [to[0][i] - from[0][i], to[1][i] - from[1][i], to[2][i] - (from[2][i] - shift_mm)];
-    step[0] * d[0][i] + step[1] * d[1][i] + step[2] * d[2][i]
+pub(crate) fn versine(before: [f64; 3], after: [f64; 3]) -> f64 {
+    let turn = [after[0] - before[0], after[1] - before[1], after[2] - before[2]];
+    0.5 * dot(turn, turn)
 }
 
-/// Cosine of the angle of incidence of a ray that was reflected: its directions before and after differ by twice that, along the normal.
+/// Cosine of the angle of incidence of a ray that a surface sent back, bent by an angle of this versine: directions before and after differ by
+/// twice the cosine, along the normal.
 #[inline(always)]
-fn cosine_of_mirrored(i: usize, before: [&[f64]; 3], after: [&[f64]; 3]) -> f64 {
-    let turn = [after[0][i] - before[0][i], after[1][i] - before[1][i], after[2][i] - before[2][i]];
-    let cosine = 0.5 * (turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2]).sqrt();
+fn cosine_of_mirrored(versine: f64) -> f64 {
+    let cosine = (0.5 * versine).sqrt();
     if cosine < 1.0 { cosine } else { 1.0 }
 }
 
 /// Adds what is absorbed on the way, or begins with it.
 struct Absorb<'a, const FIRST: bool> {
-    /// Positions and directions before, positions after.
-    columns: [[&'a [f64]; 3]; 3],
+    way_mm: &'a [f64],
     per_mm: &'a [f64],
-    shift_mm: f64,
     depth: &'a mut [f64],
 }
 
@@ -490,29 +493,19 @@ impl<const FIRST: bool> Vectorized for Absorb<'_, FIRST> {
     type Output = ();
     #[inline(always)]
     fn run(self) {
-        let Self { columns, per_mm, shift_mm, depth } = self;
+        let Self { way_mm, per_mm, depth } = self;
         let len = depth.len();
-        let [from, d, to] = columns.map(|columns| columns.map(|column| &column[..len]));
-        let per_mm = &per_mm[..len];
+        let (way_mm, per_mm) = (&way_mm[..len], &per_mm[..len]);
         for i in 0..len {
-            let way_mm = way_mm(i, from, to, d, shift_mm);
-            let way_mm = if way_mm > 0.0 { way_mm } else { 0.0 };
-            let own = per_mm[i] * way_mm;
+            let own = per_mm[i] * if way_mm[i] > 0.0 { way_mm[i] } else { 0.0 };
             depth[i] = if FIRST { own } else { depth[i] + own };
         }
     }
 }
 
-/// Whether a ray ran backward: positions and directions before, positions after.
-#[inline(always)]
-fn is_behind(i: usize, [from, direction, to]: [[&[f64]; 3]; 3], shift_mm: f64) -> bool {
-    way_mm(i, from, to, direction, shift_mm) < BEHIND_MM
-}
-
-/// Counts living rays of which that is true: hardly ever any.
+/// Counts living rays that ran backward: hardly ever any.
 struct CountBehind<'a> {
-    columns: [[&'a [f64]; 3]; 3],
-    shift_mm: f64,
+    way_mm: &'a [f64],
     state: &'a [u64],
 }
 
@@ -520,11 +513,9 @@ impl Vectorized for CountBehind<'_> {
     type Output = u64;
     #[inline(always)]
     fn run(self) -> u64 {
-        let Self { columns, shift_mm, state } = self;
-        let columns = columns.map(|columns| columns.map(|column| &column[..state.len()]));
         let mut many = 0;
-        for i in 0..state.len() {
-            many += u64::from((state[i] == ALIVE) & is_behind(i, columns, shift_mm));
+        for (state, way_mm) in self.state.iter().zip(self.way_mm) {
+            many += u64::from((*state == ALIVE) & (*way_mm < BEHIND_MM));
         }
         many
     }
@@ -579,10 +570,9 @@ impl<const N: usize, const H: usize> Passes for Layers<N, H> {
     }
 }
 
-/// Rays at a surface that they passed, their directions before, and the indices on both sides.
+/// Rays at a surface that they met, and the indices on both sides.
 struct Pass<'a> {
     rays: Weighing<'a>,
-    before: [&'a [f64]; 3],
     n: &'a [f64],
     n_after: &'a [f64],
 }
@@ -600,9 +590,9 @@ impl Pass<'_> {
 
     /// Weighs rays by any coating.
     fn ray_by_ray(self, coating: &Coating) {
-        let Self { rays: c, before, n, n_after } = self;
+        let Self { rays: c, n, n_after } = self;
         for i in 0..c.weight.len() {
-            let sides = Sides::of(n[i], n_after[i], before.map(|d| d[i]), c.direction.map(|d| d[i]));
+            let sides = Sides::of(n[i], n_after[i], c.versine[i]);
             if c.state[i] == ALIVE && sides.step() >= SAME_INDEX {
                 c.weight[i] *= coating.transmittance(n[i], n_after[i], sides.cosine(), c.wavelength_nm[i]).mean();
             }
@@ -612,25 +602,18 @@ impl Pass<'_> {
     #[inline(always)]
     fn weigh(self, passes: impl Passes) {
         let c = self.rays;
-        weigh_loop([self.before, c.direction], [self.n, self.n_after, c.wavelength_nm], c.state, c.weight, passes);
+        weigh_loop([self.n, self.n_after, c.versine, c.wavelength_nm], c.state, c.weight, passes);
     }
 }
 
 /// As [`weigh_absorbed`].
 #[inline(always)]
-fn weigh_loop(
-    [before, after]: [[&[f64]; 3]; 2],
-    [n, n_after, wavelength_nm]: [&[f64]; 3],
-    state: &[u64],
-    weight: &mut [f64],
-    passes: impl Passes,
-) {
+fn weigh_loop(columns: [&[f64]; 4], state: &[u64], weight: &mut [f64], passes: impl Passes) {
     let len = weight.len();
-    let [[bl, bm, bn], [l, m, nz], [n, n_after, wavelength_nm]] =
-        [before, after, [n, n_after, wavelength_nm]].map(|columns| columns.map(|column| &column[..len]));
+    let [n, n_after, versine, wavelength_nm] = columns.map(|column| &column[..len]);
     let state = &state[..len];
     for i in 0..len {
-        let sides = Sides::of(n[i], n_after[i], [bl[i], bm[i], bn[i]], [l[i], m[i], nz[i]]);
+        let sides = Sides::of(n[i], n_after[i], versine[i]);
         let part = passes.part(&sides, wavelength_nm[i]);
         let usable = (sides.step() >= SAME_INDEX) & (state[i] == ALIVE);
         weight[i] *= if usable { part } else { 1.0 };
@@ -654,19 +637,19 @@ impl Vectorized for ReflectBare<'_> {
     type Output = ();
     #[inline(always)]
     fn run(self) {
-        let Pass { rays: c, before, n, n_after } = self.0;
-        reflect_bare([before, c.direction], [n, n_after], c.state, c.weight);
+        let Pass { rays: c, n, n_after } = self.0;
+        reflect_bare([n, n_after, c.versine], c.state, c.weight);
     }
 }
 
 /// As [`weigh_absorbed`].
 #[inline(always)]
-fn reflect_bare([before, after]: [[&[f64]; 3]; 2], [n, n_beyond]: [&[f64]; 2], state: &[u64], weight: &mut [f64]) {
+fn reflect_bare(columns: [&[f64]; 3], state: &[u64], weight: &mut [f64]) {
     let len = weight.len();
-    let [before, after] = [before, after].map(|columns| columns.map(|column| &column[..len]));
-    let (n, n_beyond, state) = (&n[..len], &n_beyond[..len], &state[..len]);
+    let [n, n_beyond, versine] = columns.map(|column| &column[..len]);
+    let state = &state[..len];
     for i in 0..len {
-        let part = bare_reflectance(n[i], n_beyond[i], cosine_of_mirrored(i, before, after)).mean();
+        let part = bare_reflectance(n[i], n_beyond[i], cosine_of_mirrored(versine[i])).mean();
         weight[i] *= if state[i] == ALIVE { part } else { 1.0 };
     }
 }
@@ -704,15 +687,13 @@ impl<const N: usize> Vectorized for PassSwift<'_, N> {
     type Output = ();
     #[inline(always)]
     fn run(self) {
-        let (Pass { rays: c, before, n, n_after }, swift, per_nm) = (self.0, *self.1, self.2);
+        let (Pass { rays: c, n, n_after }, swift, per_nm) = (self.0, *self.1, self.2);
         let len = c.weight.len();
         for first in (0..len).step_by(CHUNK) {
             let span = first..(first + CHUNK).min(len);
             swift_chunk(
                 &swift,
-                before.map(|column| &column[span.clone()]),
-                c.direction.map(|column| &column[span.clone()]),
-                [&n[span.clone()], &n_after[span.clone()]],
+                [&n[span.clone()], &n_after[span.clone()], &c.versine[span.clone()]],
                 &per_nm[span.clone()],
                 &c.state[span.clone()],
                 &mut c.weight[span],
@@ -725,23 +706,19 @@ impl<const N: usize> Vectorized for PassSwift<'_, N> {
 #[inline(always)]
 fn swift_chunk<const N: usize>(
     swift: &Swift<N>,
-    [bl, bm, bn]: [&[f64]; 3],
-    [l, m, nz]: [&[f64]; 3],
-    [n, n_after]: [&[f64]; 2],
+    columns: [&[f64]; 3],
     per_nm: &[f32],
     state: &[u64],
     weight: &mut [f64],
 ) {
     let len = weight.len().min(CHUNK);
-    let [bl, bm, bn, l, m, nz] = [bl, bm, bn, l, m, nz].map(|column| &column[..len]);
-    let [n, n_after] = [n, n_after].map(|column| &column[..len]);
+    let [n, n_after, versine] = columns.map(|column| &column[..len]);
     let (state, weight) = (&state[..len], &mut weight[..len]);
     const ZERO: Singles = [0.0; CHUNK];
     let (mut from, mut to, mut step, mut h, mut inverse, mut back) = (ZERO, ZERO, ZERO, ZERO, ZERO, ZERO);
     inverse[..len].copy_from_slice(&per_nm[..len]);
     for i in 0..len {
-        let turn = [l[i] - bl[i], m[i] - bm[i], nz[i] - bn[i]];
-        h[i] = (0.5 * (turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2])) as f32;
+        h[i] = versine[i] as f32;
         step[i] = (n_after[i] - n[i]) as f32;
         (from[i], to[i]) = (n[i] as f32, n_after[i] as f32);
     }

@@ -175,6 +175,9 @@ impl<S: KernelShape> Surface for Kernel<S> {
     fn is_stop(&self) -> bool {
         self.0.is_stop()
     }
+    fn notes_meeting(&self) -> bool {
+        true
+    }
     fn interact(&self, rays: &mut RayBatch, interface: &Interface<'_>, isa: Isa) -> usize {
         match interface.action {
             Action::Refract => interact::<S, REFRACT>(&self.0, rays, interface, isa),
@@ -237,7 +240,7 @@ impl<S: KernelShape, const FORWARD: bool> Vectorized for Intersect<'_, S, FORWAR
                 self.shape,
                 self.shift_mm,
                 [c.l, c.m, c.n],
-                [s.radius2, s.cosine_then_margin, s.kept, s.step, s.valid],
+                [s.radius2, s.cosine_then_margin, s.kept_then_versine, s.step_then_way, s.valid],
                 c.state,
                 c.x,
                 c.y,
@@ -255,6 +258,7 @@ impl<S: KernelShape, const FORWARD: bool> Vectorized for Intersect<'_, S, FORWAR
             c.z,
             s.cosine_then_margin,
             s.valid,
+            s.step_then_way,
         )
     }
 }
@@ -289,9 +293,9 @@ fn search<S: KernelShape>(shape: &S, rays: &mut RayBatch, travel: Travel) {
             if let Some(t) = shape.search(p, d, travel) {
                 let q = [p[0] + t * d[0], p[1] + t * d[1], p[2] + t * d[2]];
                 (c.x[i], c.y[i], c.z[i]) = q.into();
-                s.valid[i] = 0.0;
+                (s.valid[i], s.step_then_way[i]) = (0.0, t);
                 if S::STEPS {
-                    [s.cosine_then_margin[i], s.kept[i]] = shape.keep(q);
+                    [s.cosine_then_margin[i], s.kept_then_versine[i]] = shape.keep(q);
                 }
             }
         }
@@ -312,11 +316,13 @@ fn intersect_loop<S: KernelShape, const FORWARD: bool>(
     z: &mut [f64],
     cosine: &mut [f64],
     valid: &mut [f64],
+    way: &mut [f64],
 ) -> bool {
     let len = x.len();
     // Stating the equal lengths once removes the bounds checks from the loop.
     let (y, z, cosine, valid) = (&mut y[..len], &mut z[..len], &mut cosine[..len], &mut valid[..len]);
     let (l, m, n, radius2, state) = (&l[..len], &m[..len], &n[..len], &mut radius2[..len], &state[..len]);
+    let way = &mut way[..len];
     let mut unsure = false;
     for i in 0..len {
         let p = [x[i], y[i], z[i] - shift];
@@ -324,8 +330,7 @@ fn intersect_loop<S: KernelShape, const FORWARD: bool>(
         let hit = shape.hit(Ray::<f64, FORWARD> { position: p, direction: d, radius2: radius2[i] });
         let t = hit.distance;
         (x[i], y[i], z[i]) = (p[0] + t * d[0], p[1] + t * d[1], p[2] + t * d[2]);
-        cosine[i] = hit.cosine;
-        valid[i] = hit.valid;
+        (cosine[i], valid[i], way[i]) = (hit.cosine, hit.valid, t);
         if S::SEARCHES {
             unsure |= ends(hit.valid) & (state[i] == ALIVE);
         }
@@ -360,7 +365,7 @@ fn step_loops<S: KernelShape, const FORWARD: bool>(
         }
         near_loop::<S, FORWARD, SETTLE_ON>(shape, place, distance, first, second, step, valid);
     }
-    move_loop(x, y, z, [l, m, n], [distance, step], valid, state)
+    move_loop(x, y, z, [l, m, n], distance, step, valid, state)
 }
 
 #[inline(always)]
@@ -419,24 +424,27 @@ fn near_loop<S: KernelShape, const FORWARD: bool, const STEP: u8>(
     }
 }
 
-/// Moves the rays that have arrived; returns whether any living one has not.
+/// Moves the rays that have arrived, and leaves their way in place of the last step; returns whether any living one has not.
 #[inline(always)]
 fn move_loop(
     x: &mut [f64],
     y: &mut [f64],
     z: &mut [f64],
     [l, m, n]: [&[f64]; 3],
-    [distance, step]: [&[f64]; 2],
+    distance: &[f64],
+    step_then_way: &mut [f64],
     valid: &mut [f64],
     state: &[u64],
 ) -> bool {
     let len = x.len();
     let (y, z, l, m, n) = (&mut y[..len], &mut z[..len], &l[..len], &m[..len], &n[..len]);
-    let (distance, step, valid, state) = (&distance[..len], &step[..len], &mut valid[..len], &state[..len]);
+    let (distance, step, valid, state) =
+        (&distance[..len], &mut step_then_way[..len], &mut valid[..len], &state[..len]);
     let mut unsure = false;
     for i in 0..len {
         valid[i] = if step[i] > 0.0 { -1.0 } else { valid[i] };
         let t = if valid[i] >= 0.0 { distance[i] } else { 0.0 };
+        step[i] = t;
         (x[i], y[i], z[i]) = (x[i] + t * l[i], y[i] + t * m[i], z[i] + t * n[i]);
         unsure |= ends(valid[i]) & (state[i] == ALIVE);
     }
@@ -454,13 +462,14 @@ fn bend_all<S: KernelShape, const ACTION: u8, const FORWARD: bool>(
     bend_loop::<S, ACTION, FORWARD>(
         shape,
         at.clip_radius2_mm2,
-        [c.x, c.y, c.z, s.valid, s.kept, at.before.n, at.after.inverse],
+        [c.x, c.y, c.z, s.valid, at.before.n, at.after.inverse],
         c.state,
         c.l,
         c.m,
         c.n,
         s.radius2,
         s.cosine_then_margin,
+        s.kept_then_versine,
     )
 }
 
@@ -468,19 +477,21 @@ fn bend_all<S: KernelShape, const ACTION: u8, const FORWARD: bool>(
 fn bend_loop<S: KernelShape, const ACTION: u8, const FORWARD: bool>(
     shape: &S,
     clip2: f64,
-    [x, y, z, valid, kept, before, inverse_after]: [&[f64]; 7],
+    [x, y, z, valid, before, inverse_after]: [&[f64]; 6],
     state: &[u64],
     l: &mut [f64],
     m: &mut [f64],
     n: &mut [f64],
     radius2: &mut [f64],
     cosine_then_margin: &mut [f64],
+    kept_then_versine: &mut [f64],
 ) -> bool {
     let len = x.len();
     let (y, z, valid, state) = (&y[..len], &z[..len], &valid[..len], &state[..len]);
-    let (kept, before, inverse_after) = (&kept[..len], &before[..len], &inverse_after[..len]);
+    let (before, inverse_after) = (&before[..len], &inverse_after[..len]);
     let (l, m, n) = (&mut l[..len], &mut m[..len], &mut n[..len]);
     let (radius2, cosine_then_margin) = (&mut radius2[..len], &mut cosine_then_margin[..len]);
+    let kept_then_versine = &mut kept_then_versine[..len];
     let mut any = false;
     for i in 0..len {
         let q = [x[i], y[i], z[i]];
@@ -490,7 +501,11 @@ fn bend_loop<S: KernelShape, const ACTION: u8, const FORWARD: bool>(
         // NaN where the ray missed: `min` passes over it to the validity.
         let mut margin = clip2 - r2;
         if ACTION != PASS && !S::UNIT_NORMAL {
-            let g = if S::STEPS { shape.normal_kept(q, [cosine_then_margin[i], kept[i]]) } else { shape.normal(q) };
+            let g = if S::STEPS {
+                shape.normal_kept(q, [cosine_then_margin[i], kept_then_versine[i]])
+            } else {
+                shape.normal(q)
+            };
             let length2 = g[0] * g[0] + g[1] * g[1] + g[2] * g[2];
             let along = d[0] * g[0] + d[1] * g[1] + d[2] * g[2];
             let (mut mu, mut push) = (1.0, -2.0 * along / length2);
@@ -510,6 +525,10 @@ fn bend_loop<S: KernelShape, const ACTION: u8, const FORWARD: bool>(
             margin = Real::min(k, margin);
         } else if ACTION == REFLECT {
             (l[i], m[i], n[i]) = shape.bend(q, d, 1.0, -2.0 * cosine_then_margin[i]).into();
+        }
+        if ACTION != PASS {
+            let turn = [l[i] - d[0], m[i] - d[1], n[i] - d[2]];
+            kept_then_versine[i] = 0.5 * (turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2]);
         }
         margin = Real::min(margin, valid[i]);
         cosine_then_margin[i] = margin;

@@ -107,6 +107,12 @@ pub trait Surface: Send + Sync + std::fmt::Debug {
         false
     }
 
+    /// Whether [`Surface::interact`] leaves in the batch how far each living ray came, and how sharply it was bent:
+    /// [`RayBatch::note_meeting`]. Where it does not, whoever needs that works it out from positions and directions before and after.
+    fn notes_meeting(&self) -> bool {
+        false
+    }
+
     /// Moves the living rays of the batch, given in the frame of the surface before, onto this surface in its own frame, and
     /// bends them. Rays that end get their cause and this surface's number. Works in either direction of travel. Returns how
     /// many rays ended here.

@@ -40,11 +40,9 @@ pub(crate) struct Sides {
 }
 
 impl Sides {
-    /// Of unit directions before and after.
+    /// Of light that is bent by an angle of this versine, h.
     #[inline(always)]
-    pub(crate) fn of(n: f64, n_after: f64, before: [f64; 3], after: [f64; 3]) -> Self {
-        let turn = [after[0] - before[0], after[1] - before[1], after[2] - before[2]];
-        let h = 0.5 * (turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2]);
+    pub(crate) fn of(n: f64, n_after: f64, h: f64) -> Self {
         let step = n_after - n;
         Self { n, n_after, h, u: step - n_after * h, v: step + n * h }
     }
@@ -154,6 +152,7 @@ fn cos_and_sinc<const H: usize>(square: f64) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::transmission::versine;
     use crate::{Coating, Stack, StackLayer};
     use spectra_core::math;
     use std::sync::Arc;
@@ -175,7 +174,7 @@ mod tests {
             assert!(halvings as usize <= H, "{halvings} {H}");
             for angle_deg in (0..90).map(f64::from) {
                 let Some([before, after]) = directions(n, n_after, angle_deg) else { continue };
-                let sides = Sides::of(n, n_after, before, after);
+                let sides = Sides::of(n, n_after, versine(before, after));
                 for nm in (shortest_nm as u32..=1100).step_by(7).map(f64::from) {
                     let want = coating.transmittance(n, n_after, before[2], nm).mean();
                     let got = films.passes::<H>(&sides, 1.0 / nm);
@@ -216,7 +215,7 @@ mod tests {
             for angle_deg in (0..90).map(f64::from) {
                 let Some([before, after]) = directions(n, n_after, angle_deg) else { continue };
                 let want = Coating::Bare.transmittance(n, n_after, before[2], 550.0).mean();
-                let sides = Sides::of(n, n_after, before, after);
+                let sides = Sides::of(n, n_after, versine(before, after));
                 assert!((sides.bare() - want).abs() < 1e-13, "{n} {n_after} {angle_deg}: {} {want}", sides.bare());
                 assert!((sides.cosine() - before[2]).abs() < 1e-8, "{n} {n_after} {angle_deg}");
             }

@@ -4,8 +4,8 @@ use crate::flat::{Places, Texture};
 use crate::frame::Edge;
 use crate::halves::Half;
 use crate::picture::lights::Lights;
-use crate::picture::spot::Spot;
-use spectra_core::Isa;
+use crate::picture::spot::{Spot, along};
+use spectra_core::isa::{Isa, Vectorized};
 use spectra_core::spectral::SpectralPower;
 use spectra_core::stage::ColorModel;
 use std::sync::Arc;
@@ -35,11 +35,36 @@ pub(crate) struct PictureMap {
 }
 
 impl PictureMap {
-    /// Column and row of a point, pixels from the upper left; `None` where nothing is.
-    pub(crate) fn place(&self, x_mm: f64, y_mm: f64) -> Option<[f64; 2]> {
+    /// Column and row of a point, pixels from the upper left, as if the picture went on without end.
+    #[inline(always)]
+    fn unfolded(&self, x_mm: f64, y_mm: f64) -> [f64; 2] {
         let column = (x_mm / self.width_mm + 0.5) * self.width_px as f64;
         let row = (0.5 - y_mm / self.height_mm) * self.height_px as f64;
+        [column, row]
+    }
+
+    /// Brings such a place to where something is; `None` where nothing is.
+    #[inline]
+    fn folded(&self, [column, row]: [f64; 2]) -> Option<[f64; 2]> {
         Some([self.edge.place(column, self.width_px as f64)?, self.edge.place(row, self.height_px as f64)?])
+    }
+
+    /// Column and row of a point, pixels from the upper left; `None` where nothing is.
+    pub(crate) fn place(&self, x_mm: f64, y_mm: f64) -> Option<[f64; 2]> {
+        self.folded(self.unfolded(x_mm, y_mm))
+    }
+
+    /// Coefficients at one of some places that were looked for, and which part of the light there is this one's.
+    #[inline(always)]
+    fn looked(&self, looked: &Looked, i: usize) -> ([f32; 3], f32) {
+        let place = looked.place.each_ref().map(|each| each[i]);
+        let size = [self.width_px, self.height_px];
+        if place.iter().zip(size).all(|(at, size)| *at >= 0.0 && *at <= size as f64) {
+            let (pixel, part) =
+                (looked.pixel.each_ref().map(|each| each[i]), looked.part.each_ref().map(|each| each[i]));
+            return self.color(&Spot::beside(pixel, part, size));
+        }
+        self.folded(place).map(|place| self.color(&self.spot(place))).unwrap_or_default()
     }
 
     /// The four pixels around a place in the picture; at its rim those of the rim.
@@ -56,13 +81,7 @@ impl PictureMap {
         }
     }
 
-    /// Coefficients at a point, linear between the centres of pixels, constant beyond the outermost; and which part of the light
-    /// there is this one's.
-    fn at(&self, x_mm: f64, y_mm: f64) -> Option<([f32; 3], f32)> {
-        Some(self.color(&self.spot(self.place(x_mm, y_mm)?)))
-    }
-
-    /// Coefficients at a spot, and which part of the light there is this one's.
+    /// Coefficients at a spot, linear between the centres of pixels, constant beyond the outermost; and which part of the light there is this one's.
     #[inline(always)]
     pub(crate) fn color(&self, spot: &Spot) -> ([f32; 3], f32) {
         let (all, [a, b, d, e]) = (&self.coefficients[..], spot.cells());
@@ -114,17 +133,19 @@ impl PictureMap {
 }
 
 impl Texture for PictureMap {
-    fn shine(&self, at: Places<'_>, weight: &mut [f64], _: Isa) {
-        let mut colors = [[0.0_f32; 3]; 64];
-        for start in (0..weight.len()).step_by(64) {
-            let end = (start + 64).min(weight.len());
-            for i in start..end {
-                let (color, share) = self.at(at.x_mm[i], at.y_mm[i]).unwrap_or_default();
+    fn shine(&self, at: Places<'_>, weight: &mut [f64], isa: Isa) {
+        let (mut looked, mut colors) = (Looked::new(), [[0.0_f32; 3]; CHUNK]);
+        for start in (0..weight.len()).step_by(CHUNK) {
+            let end = (start + CHUNK).min(weight.len());
+            let (x_mm, y_mm, weight) = (&at.x_mm[start..end], &at.y_mm[start..end], &mut weight[start..end]);
+            isa.run(Look { map: self, x_mm, y_mm, looked: &mut looked });
+            for i in 0..weight.len() {
+                let (color, share) = self.looked(&looked, i);
                 weight[i] *= self.scale * f64::from(share);
-                colors[i - start] = color;
+                colors[i] = color;
             }
             let (wavelength, line) = (&at.wavelength_nm[start..end], &at.line[start..end]);
-            self.model.evaluate(&colors[..end - start], wavelength, line, &mut weight[start..end]);
+            self.model.evaluate(&colors[..end - start], wavelength, line, weight);
         }
     }
 
@@ -152,6 +173,51 @@ impl Texture for PictureMap {
             "picture {} ({} x {} pixels, {:.1} x {:.1} mm)",
             self.name, self.width_px, self.height_px, self.width_mm, self.height_mm
         )
+    }
+}
+
+/// Rays that are worked on side by side.
+const CHUNK: usize = 64;
+type Each<T> = [T; CHUNK];
+
+/// Where their places lie among the pixels.
+struct Looked {
+    /// Column and row of a place, pixels from the upper left.
+    place: [Each<f64>; 2],
+    /// The pixel, and how far from it toward the next ones.
+    pixel: [Each<u32>; 2],
+    part: [Each<f32>; 2],
+}
+
+impl Looked {
+    fn new() -> Self {
+        Self { place: [[0.0; CHUNK]; 2], pixel: [[0; CHUNK]; 2], part: [[0.0; CHUNK]; 2] }
+    }
+}
+
+/// Finds up to [`CHUNK`] places among the pixels, as [`PictureMap::spot`] each.
+struct Look<'a> {
+    map: &'a PictureMap,
+    x_mm: &'a [f64],
+    y_mm: &'a [f64],
+    looked: &'a mut Looked,
+}
+
+impl Vectorized for Look<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run(self) {
+        let Self { map, x_mm, y_mm, looked } = self;
+        let len = x_mm.len().min(CHUNK);
+        let (x_mm, y_mm) = (&x_mm[..len], &y_mm[..len]);
+        let [columns, rows] = &mut looked.place;
+        let ([across, down], [right, below]) = (&mut looked.pixel, &mut looked.part);
+        for i in 0..len {
+            let [column, row] = map.unfolded(x_mm[i], y_mm[i]);
+            (columns[i], rows[i]) = (column, row);
+            (across[i], right[i]) = along(column, map.width_px);
+            (down[i], below[i]) = along(row, map.height_px);
+        }
     }
 }
 

@@ -1,5 +1,17 @@
 //! A place of a picture among its pixels.
 
+use spectra_core::math::whole;
+
+/// The last pixel whose center does not lie behind a place along a side of so many, and which part of the way to the next one the place
+/// lies beyond it. Before the first center there is none such.
+#[inline(always)]
+pub(super) fn along(place: f64, pixels: usize) -> (u32, f32) {
+    let from_first = place - 0.5;
+    let from_first = if from_first > 0.0 { from_first } else { 0.0 };
+    let (pixel, below) = whole(from_first, (pixels - 1) as f64);
+    (pixel, (from_first - below) as f32)
+}
+
 /// Four pixels, and how far a place lies from the upper left one of them toward the others.
 pub(crate) struct Spot {
     cells: [usize; 4],
@@ -9,15 +21,18 @@ pub(crate) struct Spot {
 impl Spot {
     /// Around a place in a picture of these sides; at its rim those of the rim.
     #[inline(always)]
-    pub(super) fn of([column, row]: [f64; 2], [width, height]: [usize; 2]) -> Self {
-        let (c, r) = ((column - 0.5).max(0.0), (row - 0.5).max(0.0));
-        let (c0, r0) = ((c as i32 as usize).min(width - 1), (r as i32 as usize).min(height - 1));
+    pub(super) fn of([column, row]: [f64; 2], size: [usize; 2]) -> Self {
+        let [(c0, part_x), (r0, part_y)] = [along(column, size[0]), along(row, size[1])];
+        Self::beside([c0, r0], [part_x, part_y], size)
+    }
+
+    /// Beside the pixel of this column and row, this part of the way to the next ones.
+    #[inline(always)]
+    pub(super) fn beside([c0, r0]: [u32; 2], part: [f32; 2], [width, height]: [usize; 2]) -> Self {
+        let (c0, r0) = (c0 as usize, r0 as usize);
         let (c1, r1) = ((c0 + 1).min(width - 1), (r0 + 1).min(height - 1));
         let (upper, lower) = (r0 * width, r1 * width);
-        Self {
-            cells: [upper + c0, upper + c1, lower + c0, lower + c1],
-            part: [(c - c0 as f64) as f32, (r - r0 as f64) as f32],
-        }
+        Self { cells: [upper + c0, upper + c1, lower + c0, lower + c1], part }
     }
 
     /// The four pixels: two above, and two below.
