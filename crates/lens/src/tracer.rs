@@ -277,7 +277,7 @@ impl Tracer {
     #[must_use]
     pub fn work_for_light(&self, capacity: usize) -> Work {
         let work = self.work(capacity);
-        Work { before: work.before.map(|before| before.swift(capacity)), ..work }
+        Work { before: work.before.map(|before| before.swift(capacity, self.media.len())), ..work }
     }
 
     /// The same for whoever asks only which rays pass, and where: their weights are left as they are.
@@ -429,7 +429,7 @@ impl Tracer {
             } else if leg.turns {
                 Before::reflect(rays, passage, interface.before.n, beyond.n, isa);
             } else {
-                noted.pass(rays, passage, interface.before.n, interface.after.n, isa);
+                noted.pass(rays, passage, [leg.before, leg.after], [interface.before.n, interface.after.n], isa);
             }
             if let Some((ledger, booked)) = &mut work.ledger {
                 let mirror = matches!(passage, Passage::Mirror(_));
@@ -626,7 +626,8 @@ impl Tracer {
             }
         }
         if let Some(noted) = &mut work.before {
-            noted.note_wavelengths(rays, self.absorptions.as_ref(), self.isa);
+            let indices = work.media.iter().map(|medium| medium.n.slice(len));
+            noted.note_wavelengths(rays, indices, self.absorptions.as_ref(), self.isa);
         }
     }
 

@@ -206,6 +206,8 @@ pub(crate) struct Before {
     /// Whether layers are worked out in single precision, where that is within 1e-6; then one over each ray's wavelength, 1/nm.
     swift: bool,
     per_nm: Vec<f32>,
+    /// Then, too, the index of each medium at each ray's wavelength.
+    n: Vec<Vec<f32>>,
 }
 
 impl Before {
@@ -223,20 +225,31 @@ impl Before {
             absorbed: false,
             swift: false,
             per_nm: Vec::new(),
+            n: Vec::new(),
         }
     }
 
-    /// The same, with clear layers in single precision; for batches of up to `capacity` rays.
-    pub(crate) fn swift(self, capacity: usize) -> Self {
-        let per_nm = vec![0.0; capacity];
-        Self { swift: true, per_nm, ..self }
+    /// The same, with clear layers in single precision; for batches of up to `capacity` rays, in a lens of so many media.
+    pub(crate) fn swift(self, capacity: usize, media: usize) -> Self {
+        // Whole chunks.
+        let column = vec![1.0; capacity.next_multiple_of(CHUNK)];
+        Self { swift: true, per_nm: column.clone(), n: vec![column; media], ..self }
     }
 
-    /// Takes down what media absorb at the wavelengths of rays, and what layers need of those.
-    pub(crate) fn note_wavelengths(&mut self, rays: &RayBatch, absorptions: Option<&Absorptions>, isa: Isa) {
+    /// Takes down what media absorb at the wavelengths of rays, and what layers need of those, and of the indices of media.
+    pub(crate) fn note_wavelengths<'a>(
+        &mut self,
+        rays: &RayBatch,
+        indices: impl Iterator<Item = &'a [f64]>,
+        absorptions: Option<&Absorptions>,
+        isa: Isa,
+    ) {
         let len = rays.len();
         if self.swift {
             isa.run(Invert { wavelength_nm: rays.wavelengths_nm(), per_nm: &mut self.per_nm[..len] });
+            for (n, single) in indices.zip(&mut self.n) {
+                isa.run(ToSingle { n, single: &mut single[..len] });
+            }
         }
         let Some(absorptions) = absorptions else { return };
         let (cell, part) = (self.cell.slice_mut(len), self.part.slice_mut(len));
@@ -417,11 +430,18 @@ impl Before {
         }
     }
 
-    /// Weighs rays by what a surface passes.
-    pub(crate) fn pass(&self, rays: &mut RayBatch, passage: &Passage, n: &[f64], n_after: &[f64], isa: Isa) {
+    /// Weighs rays by what a surface between these media passes, of these indices.
+    pub(crate) fn pass(
+        &self,
+        rays: &mut RayBatch,
+        passage: &Passage,
+        media: [usize; 2],
+        [n, n_after]: [&[f64]; 2],
+        isa: Isa,
+    ) {
         if let Passage::Apart(intact, gap) = passage {
             let came = rays.weights().to_vec();
-            self.pass(rays, intact, n, n_after, isa);
+            self.pass(rays, intact, media, [n, n_after], isa);
             let c = rays.weighing();
             for (i, part, coating) in gap.met(c.position, c.state) {
                 let sides = Sides::of(n[i], n_after[i], c.versine[i]);
@@ -444,11 +464,12 @@ impl Before {
             }
             Passage::Coated(coating, kernel) => {
                 let at = Pass { rays, n, n_after };
+                let singles = || [&self.n[media[0]][..], &self.n[media[1]], &self.per_nm];
                 match kernel {
                     Kernel::Bare => isa.run(PassBare(at)),
-                    Kernel::One(.., Some(swift)) if self.swift => isa.run(PassSwift(at, swift, &self.per_nm)),
-                    Kernel::Two(.., Some(swift)) if self.swift => isa.run(PassSwift(at, swift, &self.per_nm)),
-                    Kernel::Three(.., Some(swift)) if self.swift => isa.run(PassSwift(at, swift, &self.per_nm)),
+                    Kernel::One(.., Some(swift)) if self.swift => isa.run(PassSwift(at.rays, swift, singles())),
+                    Kernel::Two(.., Some(swift)) if self.swift => isa.run(PassSwift(at.rays, swift, singles())),
+                    Kernel::Three(.., Some(swift)) if self.swift => isa.run(PassSwift(at.rays, swift, singles())),
                     Kernel::One(films, halvings, _) => at.through(films, *halvings, isa),
                     Kernel::Two(films, halvings, _) => at.through(films, *halvings, isa),
                     Kernel::Three(films, halvings, _) => at.through(films, *halvings, isa),
@@ -680,21 +701,37 @@ impl Vectorized for Invert<'_> {
     }
 }
 
-/// With one over the wavelengths, 1/nm.
-struct PassSwift<'a, const N: usize>(Pass<'a>, &'a Swift<N>, &'a [f32]);
+/// Indices in single precision.
+struct ToSingle<'a> {
+    n: &'a [f64],
+    single: &'a mut [f32],
+}
+
+impl Vectorized for ToSingle<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run(self) {
+        for (n, single) in self.n.iter().zip(self.single) {
+            *single = *n as f32;
+        }
+    }
+}
+
+/// With the indices on both sides and one over the wavelengths, 1/nm.
+struct PassSwift<'a, const N: usize>(Weighing<'a>, &'a Swift<N>, [&'a [f32]; 3]);
 
 impl<const N: usize> Vectorized for PassSwift<'_, N> {
     type Output = ();
     #[inline(always)]
     fn run(self) {
-        let (Pass { rays: c, n, n_after }, swift, per_nm) = (self.0, *self.1, self.2);
+        let (c, swift, singles) = (self.0, *self.1, self.2);
         let len = c.weight.len();
         for first in (0..len).step_by(CHUNK) {
-            let span = first..(first + CHUNK).min(len);
+            let (span, chunk) = (first..(first + CHUNK).min(len), first..first + CHUNK);
             swift_chunk(
                 &swift,
-                [&n[span.clone()], &n_after[span.clone()], &c.versine[span.clone()]],
-                &per_nm[span.clone()],
+                singles.map(|column| &column[chunk.clone()]),
+                &c.versine[span.clone()],
                 &c.state[span.clone()],
                 &mut c.weight[span],
             );
@@ -706,27 +743,23 @@ impl<const N: usize> Vectorized for PassSwift<'_, N> {
 #[inline(always)]
 fn swift_chunk<const N: usize>(
     swift: &Swift<N>,
-    columns: [&[f64]; 3],
-    per_nm: &[f32],
+    singles: [&[f32]; 3],
+    versine: &[f64],
     state: &[u64],
     weight: &mut [f64],
 ) {
     let len = weight.len().min(CHUNK);
-    let [n, n_after, versine] = columns.map(|column| &column[..len]);
-    let (state, weight) = (&state[..len], &mut weight[..len]);
-    const ZERO: Singles = [0.0; CHUNK];
-    let (mut from, mut to, mut step, mut h, mut inverse, mut back) = (ZERO, ZERO, ZERO, ZERO, ZERO, ZERO);
-    inverse[..len].copy_from_slice(&per_nm[..len]);
+    let [n, n_after, per_nm] = singles.map(|column| &column[..CHUNK]);
+    let (versine, state, weight) = (&versine[..len], &state[..len], &mut weight[..len]);
+    let (mut h, mut back): (Singles, Singles) = ([0.0; CHUNK], [0.0; CHUNK]);
     for i in 0..len {
         h[i] = versine[i] as f32;
-        step[i] = (n_after[i] - n[i]) as f32;
-        (from[i], to[i]) = (n[i] as f32, n_after[i] as f32);
     }
     for i in 0..CHUNK {
-        back[i] = swift.reflects(from[i], to[i], step[i], h[i], inverse[i]);
+        back[i] = swift.reflects(n[i], n_after[i], h[i], per_nm[i]);
     }
     for i in 0..len {
-        let usable = ((n_after[i] - n[i]).abs() >= SAME_INDEX) & (state[i] == ALIVE);
+        let usable = (n[i] != n_after[i]) & (state[i] == ALIVE);
         weight[i] -= if usable { weight[i] * f64::from(back[i]) } else { 0.0 };
     }
 }

@@ -8,6 +8,7 @@ use crate::no_number::Step;
 use crate::pilot::{self, PILOT_SEED};
 use crate::pipeline::{Pipeline, SCATTER, ThreadState};
 use crate::sums::{ExactSums, PILOT_RAYS};
+use crate::tiles::{Tile, Tiles};
 use crate::{Done, Workers};
 use glam::DVec3;
 use spectra_core::Isa;
@@ -20,8 +21,6 @@ use spectra_lens::{AimPart, RIM_EVERY, RearPupil, Travel};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Side of a tile, the pixels of a unit of work: blocks that noise is judged by consist of whole ones.
-pub(crate) const TILE: u32 = 8;
 /// Samples of each pixel in a unit of work.
 pub(crate) const SAMPLES_PER_PASS: u32 = 32;
 
@@ -304,39 +303,8 @@ impl Backward {
         (tiles[(unit % many) as usize], first..samples.end.min(first + u64::from(SAMPLES_PER_PASS)))
     }
 
-    fn tile(&self, tile: u32) -> Tile {
-        let size = self.size();
-        let across = size.width_px.div_ceil(TILE);
-        let (column, row) = (tile % across * TILE, tile / across * TILE);
-        let (columns, rows) = (TILE.min(size.width_px - column), TILE.min(size.height_px - row));
-        Tile { width: size.width_px, column, row, columns, rows }
-    }
-}
-
-/// A square of pixels; smaller at the frame's right and lower border.
-struct Tile {
-    /// Of the frame.
-    width: u32,
-    /// Of its first pixel.
-    column: u32,
-    row: u32,
-    columns: u32,
-    rows: u32,
-}
-
-impl Tile {
-    fn len(&self) -> u32 {
-        self.columns * self.rows
-    }
-
-    /// The pixel of the frame that is the tile's `at`.
-    fn pixel(&self, at: u32) -> u32 {
-        (self.row + at / self.columns) * self.width + self.column + at % self.columns
-    }
-
-    /// Which of the tile's a pixel of the frame is.
-    fn at(&self, pixel: u32) -> u32 {
-        (pixel / self.width - self.row) * self.columns + pixel % self.width - self.column
+    fn tiling(&self) -> Tiles {
+        Tiles::of(self.size())
     }
 }
 
@@ -346,13 +314,11 @@ impl Estimator for Backward {
     }
 
     fn tiles(&self) -> usize {
-        let size = self.size();
-        size.width_px.div_ceil(TILE) as usize * size.height_px.div_ceil(TILE) as usize
+        self.tiling().count()
     }
 
     fn tile_of(&self, pixel: usize) -> usize {
-        let (width, side) = (self.size().width_px as usize, TILE as usize);
-        pixel / width / side * width.div_ceil(side) + pixel % width / side
+        self.tiling().number_of(pixel) as usize
     }
 
     fn reseeded(&self, seed: u64) -> Box<dyn Estimator> {
@@ -367,7 +333,7 @@ impl Estimator for Backward {
         let pixels = if tiles.len() == self.tiles() {
             self.size().pixels() as u64
         } else {
-            tiles.iter().map(|tile| u64::from(self.tile(*tile).len())).sum()
+            tiles.iter().map(|tile| u64::from(self.tiling().tile(*tile).len())).sum()
         };
         pixels * (samples.end - samples.start)
     }
@@ -378,7 +344,7 @@ impl Estimator for Backward {
 
     fn run(&self, samples: &Range<u64>, tiles: &[u32], unit: u64, scratch: &mut Scratch, sums: &ExactSums) -> Unit {
         let (tile, samples) = Self::piece(samples, tiles, unit);
-        let tile = self.tile(tile);
+        let tile = self.tiling().tile(tile);
         let count = (samples.end - samples.start) as u32;
         let state = &mut scratch.0;
         let booked = (state.work.losses.clone(), state.detected);
@@ -403,12 +369,7 @@ impl Estimator for Backward {
             }
         }
         let of_tile: Vec<f64> = of_tile.into_iter().map(|n| time_s / self.scale / n.max(1) as f64).collect();
-        let (width, side) = (self.size().width_px as usize, TILE as usize);
-        let row = |row: usize| {
-            let tiles = of_tile[row / side * width.div_ceil(side)..].iter();
-            tiles.flat_map(|weight| std::iter::repeat_n(*weight, side)).take(width)
-        };
-        (0..self.size().height_px as usize).flat_map(row).collect()
+        self.tiling().spread(&of_tile)
     }
 
     fn metered(&self, workers: &dyn Workers) -> Result<Vec<Vec<f64>>, RenderError> {

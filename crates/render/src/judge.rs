@@ -4,11 +4,11 @@
 //! block is known within some 4 %, whatever the light looks like. All is computed from exact sums in a fixed order: what is clean
 //! is so on every machine.
 
-use crate::backward::TILE;
 use crate::estimator::Estimator;
 use crate::light::{Light, Part};
 use crate::noise::Noise;
 use crate::renderer::Renderer;
+use crate::tiles::TILE;
 use crate::{Alone, Workers};
 use spectra_core::workers::each_of;
 use spectra_scene::Scene;

@@ -31,6 +31,7 @@ mod rendering;
 mod response;
 mod saved;
 mod sums;
+mod tiles;
 mod veil;
 mod workers;
 

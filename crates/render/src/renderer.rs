@@ -24,6 +24,10 @@ use spectra_scene::{Direction, LightKind, Lights, NumberFamily, Scene};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, PoisonError};
 
+/// How many units one thread takes at a time: this part of all, so that none waits long for the others, and at most so many.
+const UNITS_A_RUN: u64 = 1024;
+const LONGEST_RUN: u64 = 16;
+
 /// A scene made ready to render.
 pub struct Renderer {
     scene: Arc<Scene>,
@@ -408,6 +412,8 @@ impl Renderer {
         let tiles = part.done.active(estimator.tiles());
         let units = estimator.units(samples, &tiles);
         let known = part.done.open().map(|(_, units)| units.clone()).unwrap_or_default();
+        // Who takes some at a time has neighbors, whose light comes from near each other.
+        let run = (units / UNITS_A_RUN).clamp(1, LONGEST_RUN);
         let (next, failed) = (AtomicU64::new(0), AtomicBool::new(false));
         let failure: Mutex<Option<RenderError>> = Mutex::new(None);
         let counted = Mutex::new((LossCounts::default(), 0, Units::default(), 0));
@@ -419,23 +425,25 @@ impl Renderer {
             let mut scratch = estimator.scratch();
             let (mut done, mut rays) = (Units::default(), 0);
             while !control.should_stop() && !failed.load(Relaxed) {
-                let unit = next.fetch_add(1, Relaxed);
-                if unit >= units {
+                let first = next.fetch_add(run, Relaxed);
+                if first >= units {
                     break;
                 }
-                if known.contains(unit) {
-                    continue;
-                }
-                let came = estimator.run(samples, &tiles, unit, &mut scratch, &part.sums);
-                rays += came.rays;
-                control.launched(came.rays);
-                match came.error {
-                    None => done.insert(unit..unit + 1),
-                    Some(error) => fail(error),
-                }
-                if part.sums.overflowed() {
-                    // A pixel's sum: so many contributions that none of them is to blame.
-                    fail(RenderError::Overflow { times: LARGEST_CONTRIBUTION / LARGEST_EXPECTED });
+                for unit in (first..units.min(first + run)).filter(|unit| !known.contains(*unit)) {
+                    if control.should_stop() || failed.load(Relaxed) {
+                        break;
+                    }
+                    let came = estimator.run(samples, &tiles, unit, &mut scratch, &part.sums);
+                    rays += came.rays;
+                    control.launched(came.rays);
+                    match came.error {
+                        None => done.insert(unit..unit + 1),
+                        Some(error) => fail(error),
+                    }
+                    if part.sums.overflowed() {
+                        // A pixel's sum: so many contributions that none of them is to blame.
+                        fail(RenderError::Overflow { times: LARGEST_CONTRIBUTION / LARGEST_EXPECTED });
+                    }
                 }
             }
             if let Some(own) = &mut scratch.0.own {

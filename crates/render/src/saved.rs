@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::io::{self, Read, Write};
 
 /// Begins every file of light; its last digit is the version of the form.
-const MAGIC: &[u8; 16] = b"spectra light 4\n";
+const MAGIC: &[u8; 16] = b"spectra light 5\n";
 
 /// Numbers in a row, little endian, with a check sum behind them (FNV-1a of 64 bits: G. Fowler, L. C. Noll, K.-P. Vo).
 struct Form<T> {

@@ -49,10 +49,11 @@ impl<const N: usize> Swift<N> {
         Some(Self { square, per_square, turn_nm, scale: 1.0 / (1_u32 << (2 * halvings)) as f32, halvings })
     }
 
-    /// The part of unpolarized light that is reflected: h and the indices as in the head of `films.rs`, `step` from the first to the
-    /// second one, and one over the wavelength, 1/nm.
+    /// The part of unpolarized light that is reflected: h and the indices as in the head of `films.rs`, and one over the wavelength,
+    /// 1/nm.
     #[inline(always)]
-    pub(crate) fn reflects(&self, n: f32, n_after: f32, step: f32, h: f32, per_nm: f32) -> f32 {
+    pub(crate) fn reflects(&self, n: f32, n_after: f32, h: f32, per_nm: f32) -> f32 {
+        let step = n_after - n;
         let (u, v) = (step - n_after * h, step + n * h);
         let both = n * n_after;
         let per_g2 = 1.0 / (step * step + 2.0 * both * h);
@@ -127,8 +128,7 @@ mod tests {
                 let h = 0.5 * (turn[0] * turn[0] + turn[1] * turn[1]);
                 for nm in (shortest_nm as u32..=1100).step_by(13).map(f64::from) {
                     let want = coating.transmittance(n, n_after, cos, nm).mean();
-                    let back =
-                        swift.reflects(n as f32, n_after as f32, (n_after - n) as f32, h as f32, 1.0 / nm as f32);
+                    let back = swift.reflects(n as f32, n_after as f32, h as f32, 1.0 / nm as f32);
                     let miss = 1.0 - f64::from(back) - want;
                     worst = worst.max(miss.abs());
                     (sum, count) = (sum + miss, count + 1.0);

@@ -177,7 +177,7 @@ impl Texture for PictureMap {
 }
 
 /// Rays that are worked on side by side.
-const CHUNK: usize = 64;
+const CHUNK: usize = 256;
 type Each<T> = [T; CHUNK];
 
 /// Where their places lie among the pixels.
