@@ -245,25 +245,64 @@ impl Numbers {
             };
             return isa.run(FillLattice { step, key: self.key(stream, dimension), first, out });
         }
-        let mut at = first;
+        self.fill_sobol(isa, std::iter::once(Stretch { stream, first, count: out.len() }), d, out);
+    }
+
+    /// Writes the numbers of stretches of samples one behind the other, as [`Numbers::fill_rotated`] those of each.
+    ///
+    /// # Panics
+    /// If `out` has no room for all of them.
+    pub fn fill_stretches(
+        &self,
+        isa: Isa,
+        stretches: impl Iterator<Item = Stretch>,
+        group: u32,
+        dimension: u32,
+        out: &mut [f64],
+    ) {
+        if self.kind == Kind::Sobol && group <= 1 && (dimension as usize) < SOBOL_DIMENSIONS {
+            return self.fill_sobol(isa, stretches, dimension as usize, out);
+        }
         let mut rest = out;
-        while !rest.is_empty() {
-            // One aligned block of 256 points shares all but the low eight bits of the index.
-            let start = (at & 0xff) as usize;
-            let many = (256 - start).min(rest.len());
-            let (now, later) = rest.split_at_mut(many);
-            let block = at >> 32; // beyond 2^32 samples: another scrambling of the same points
-            let key = self.key(stream ^ block.wrapping_mul(0xd1b5_4a32_d192_ed03), dimension) as u32;
-            let high = point_reversed(COORDINATE[d], (at as u32) & !0xff);
-            let points = FillSobol { low: &self.low[d][start..start + many], high, key, out: now };
-            if d == Dimension::Wavelength as usize {
-                isa.run(FillMirrored(points))
-            } else {
-                isa.run(points)
-            }
-            at += many as u64;
+        for Stretch { stream, first, count } in stretches {
+            let (now, later) = rest.split_at_mut(count);
+            self.fill_rotated(isa, stream, first, group, dimension, now);
             rest = later;
         }
+    }
+
+    /// Samples of a pixel are few: points and keys of many stretches are gathered, and scrambled together.
+    fn fill_sobol(&self, isa: Isa, stretches: impl Iterator<Item = Stretch>, d: usize, out: &mut [f64]) {
+        let (mut points, mut keys, mut gathered, mut written) = ([0_u32; TOGETHER], [0_u32; TOGETHER], 0, 0);
+        let scramble = |points: &[u32], keys: &[u32], out: &mut [f64]| {
+            if d == Dimension::Wavelength as usize {
+                isa.run(ScrambleMirrored { points, keys, out });
+            } else {
+                isa.run(Scramble { points, keys, out });
+            }
+        };
+        for Stretch { stream, first, count } in stretches {
+            let (mut at, end) = (first, first + count as u64);
+            while at < end {
+                // One aligned block of 256 points shares all but the low eight bits of the index.
+                let start = (at & 0xff) as usize;
+                let many = (256 - start).min((end - at) as usize).min(TOGETHER - gathered);
+                let block = at >> 32; // beyond 2^32 samples: another scrambling of the same points
+                let key = self.key(stream ^ block.wrapping_mul(0xd1b5_4a32_d192_ed03), d as u32) as u32;
+                let high = point_reversed(COORDINATE[d], (at as u32) & !0xff);
+                let now = gathered..gathered + many;
+                for (point, low) in points[now.clone()].iter_mut().zip(&self.low[d][start..start + many]) {
+                    *point = low ^ high;
+                }
+                keys[now].fill(key);
+                (gathered, at) = (gathered + many, at + many as u64);
+                if gathered == TOGETHER {
+                    scramble(&points, &keys, &mut out[written..written + TOGETHER]);
+                    (gathered, written) = (0, written + TOGETHER);
+                }
+            }
+        }
+        scramble(&points[..gathered], &keys[..gathered], &mut out[written..written + gathered]);
     }
 
     /// Writes numbers that `group` consecutive samples share, rotated: sample i has the number of i / group, shifted by (i mod
@@ -374,43 +413,58 @@ impl Vectorized for FillLattice<'_> {
     }
 }
 
-struct FillSobol<'a> {
-    low: &'a [u32],
-    high: u32,
-    key: u32,
+/// Samples of a stream: so many, from the first on.
+#[derive(Clone, Copy, Debug)]
+pub struct Stretch {
+    /// The stream.
+    pub stream: u64,
+    /// Its first sample.
+    pub first: u64,
+    /// How many.
+    pub count: usize,
+}
+
+/// Points that are scrambled together.
+const TOGETHER: usize = 256;
+
+/// Makes numbers of points, whose bits are given in reverse, by a key each.
+struct Scramble<'a> {
+    points: &'a [u32],
+    keys: &'a [u32],
     out: &'a mut [f64],
 }
 
-impl Vectorized for FillSobol<'_> {
+impl Vectorized for Scramble<'_> {
     type Output = ();
     #[inline(always)]
     fn run(self) {
-        for (out, low) in self.out.iter_mut().zip(self.low) {
-            *out = unit_from_u32(owen_scramble_reversed(low ^ self.high, self.key));
+        for ((out, point), key) in self.out.iter_mut().zip(self.points).zip(self.keys) {
+            *out = unit_from_u32(owen_scramble_reversed(*point, *key));
         }
     }
 }
 
-/// Bits of a [`FillMirrored`] number that are scrambled, so 64 strata. With 32 of them wavelength and pupil together are less even (a
-/// picture takes 1.07 times as many samples to the same noise), with 256 little is gained before there are as many samples.
+/// Bits of a [`ScrambleMirrored`] number that are scrambled, so 64 strata. With 32 of them wavelength and pupil together are less even
+/// (a picture takes 1.07 times as many samples to the same noise), with 256 little is gained before there are as many samples.
 const SCRAMBLED_BITS: u32 = 6;
 
-/// The same points with their strata scrambled, but with one place in all of them, mirrored from each to the next: what the slope of
-/// a smooth function makes wrong in one is made good in its neighbor. With fewer than 64 samples the numbers are as even as others.
-struct FillMirrored<'a>(FillSobol<'a>);
+/// The same with the strata scrambled, but with one place in all of them, mirrored from each to the next: what the slope of a smooth
+/// function makes wrong in one is made good in its neighbor. With fewer than 64 samples the numbers are as even as others.
+struct ScrambleMirrored<'a> {
+    points: &'a [u32],
+    keys: &'a [u32],
+    out: &'a mut [f64],
+}
 
-impl Vectorized for FillMirrored<'_> {
+impl Vectorized for ScrambleMirrored<'_> {
     type Output = ();
     #[inline(always)]
     fn run(self) {
         const INNER: u32 = u32::MAX >> SCRAMBLED_BITS;
-        let FillSobol { low, high, key, out } = self.0;
-        let shift = mix64(u64::from(key)) as u32;
-        for (out, low) in out.iter_mut().zip(low) {
-            let point = low ^ high;
-            let stratum = owen_scramble_reversed(point, key);
+        for ((out, point), key) in self.out.iter_mut().zip(self.points).zip(self.keys) {
+            let stratum = owen_scramble_reversed(*point, *key);
             let mirror = 0_u32.wrapping_sub((stratum >> (32 - SCRAMBLED_BITS)) & 1);
-            let place = point.reverse_bits() ^ shift ^ mirror;
+            let place = point.reverse_bits() ^ mix64(u64::from(*key)) as u32 ^ mirror;
             *out = unit_from_u32((stratum & !INNER) | (place & INNER));
         }
     }

@@ -15,7 +15,7 @@ use spectra_core::Isa;
 use spectra_core::RayBatch;
 use spectra_core::batch::pixel_and_channel;
 use spectra_core::frame::FrameSize;
-use spectra_core::numbers::{Numbers, StageKey};
+use spectra_core::numbers::{Numbers, StageKey, Stretch};
 use spectra_core::stage::{Launch, Radiance};
 use spectra_lens::{AimPart, RIM_EVERY, RearPupil, Travel};
 use std::ops::Range;
@@ -113,14 +113,15 @@ impl Backward {
     ) {
         let isa = self.pipeline.isa;
         let (name, stream) = if part == AimPart::Rim { (RIM, RIM_STREAM) } else { (ESTIMATOR, 0) };
-        let mut len = 0;
-        for Span { pixel, first, count } in spans.clone() {
-            for (dimension, column) in state.numbers.iter_mut().enumerate() {
-                let out = &mut column.slice_mut(len + count)[len..];
-                let (group, stream) = (self.pipeline.group(dimension), stream | u64::from(pixel));
-                self.numbers.fill_rotated(isa, stream, u64::from(first), group, dimension as u32, out);
-            }
-            len += count;
+        let len = spans.clone().map(|span| span.count).sum();
+        for (dimension, column) in state.numbers.iter_mut().enumerate() {
+            let stretches = spans.clone().map(|Span { pixel, first, count }| Stretch {
+                stream: stream | u64::from(pixel),
+                first: u64::from(first),
+                count,
+            });
+            let (group, out) = (self.pipeline.group(dimension), column.slice_mut(len));
+            self.numbers.fill_stretches(isa, stretches, group, dimension as u32, out);
         }
         let start = |rays: &mut RayBatch| {
             let mut from = 0;

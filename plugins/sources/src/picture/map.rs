@@ -8,6 +8,8 @@ use crate::picture::spot::{Spot, along};
 use spectra_core::isa::{Isa, Vectorized};
 use spectra_core::spectral::SpectralPower;
 use spectra_core::stage::ColorModel;
+use std::hint::black_box;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// The picture on the plane. Copies share its pixels.
@@ -52,6 +54,19 @@ impl PictureMap {
     /// Column and row of a point, pixels from the upper left; `None` where nothing is.
     pub(crate) fn place(&self, x_mm: f64, y_mm: f64) -> Option<[f64; 2]> {
         self.folded(self.unfolded(x_mm, y_mm))
+    }
+
+    /// Looks up pixels of some places that were looked for: the one above on the left and the one below on the right.
+    #[inline(always)]
+    fn look_ahead(&self, looked: &Looked, rays: Range<usize>) {
+        let ([across, down], last) = (&looked.pixel, self.coefficients.len() - 1);
+        let mut all = 0;
+        for i in rays {
+            let first = down[i] as usize * self.width_px + across[i] as usize;
+            let beyond = (first + self.width_px + 1).min(last);
+            all |= self.coefficients[first][0].to_bits() | self.coefficients[beyond][2].to_bits();
+        }
+        black_box(all);
     }
 
     /// Coefficients at one of some places that were looked for, and which part of the light there is this one's.
@@ -139,10 +154,14 @@ impl Texture for PictureMap {
             let end = (start + CHUNK).min(weight.len());
             let (x_mm, y_mm, weight) = (&at.x_mm[start..end], &at.y_mm[start..end], &mut weight[start..end]);
             isa.run(Look { map: self, x_mm, y_mm, looked: &mut looked });
-            for i in 0..weight.len() {
-                let (color, share) = self.looked(&looked, i);
-                weight[i] *= self.scale * f64::from(share);
-                colors[i] = color;
+            for first in (0..weight.len()).step_by(AHEAD) {
+                let rays = first..(first + AHEAD).min(weight.len());
+                self.look_ahead(&looked, rays.clone());
+                for i in rays {
+                    let (color, share) = self.looked(&looked, i);
+                    weight[i] *= self.scale * f64::from(share);
+                    colors[i] = color;
+                }
             }
             let (wavelength, line) = (&at.wavelength_nm[start..end], &at.line[start..end]);
             self.model.evaluate(&colors[..end - start], wavelength, line, weight);
@@ -176,6 +195,8 @@ impl Texture for PictureMap {
     }
 }
 
+/// Rays whose pixels are looked up before any is worked on: of a large picture they would be waited for one by one.
+const AHEAD: usize = 32;
 /// Rays that are worked on side by side.
 const CHUNK: usize = 256;
 type Each<T> = [T; CHUNK];
