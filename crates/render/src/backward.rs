@@ -67,7 +67,7 @@ impl Backward {
         let (rear, seed) = (Arc::new(rear.ok_or_else(|| RenderError::no_pupil(workers))?), scene.render.seed);
         let mut own = Self { rear, numbers, shifts, scale: 1.0, pipeline };
         own.scale = pilot::scale(&own.pipeline, |state, batch, mut look| {
-            own.steps(state, spread(pixels, batch), AimPart::Whole, &mut look);
+            own.steps(state, &spread(pixels, batch), AimPart::Whole, &mut look);
         })?;
         Ok(own.with_seed(seed))
     }
@@ -89,7 +89,7 @@ impl Backward {
     /// The mean of the frame, W/m2 in the sum of its channels, by a few thousand rays.
     pub(crate) fn mean(&self) -> f64 {
         let mut state = ThreadState::new(&self.pipeline, PILOT_RAYS as usize);
-        self.steps(&mut state, spread(self.size().pixels() as u64, 0), AimPart::Whole, &mut |_, _| {});
+        self.steps(&mut state, &spread(self.size().pixels() as u64, 0), AimPart::Whole, &mut |_, _| {});
         state.sum(&self.pipeline) / f64::from(PILOT_RAYS)
     }
 
@@ -104,28 +104,22 @@ impl Backward {
     /// Traces samples of some pixels, pixel after pixel, through a part of the pupil, with a look at the rays after each step.
     /// Afterwards the weights are irradiance, and 0 for rays that ended.
     #[inline(always)]
-    fn steps(
-        &self,
-        state: &mut ThreadState,
-        spans: impl Iterator<Item = Span> + Clone,
-        part: AimPart,
-        look: &mut impl FnMut(Step, &RayBatch),
-    ) {
+    fn steps(&self, state: &mut ThreadState, spans: &[Span], part: AimPart, look: &mut impl FnMut(Step, &RayBatch)) {
         let isa = self.pipeline.isa;
         let (name, stream) = if part == AimPart::Rim { (RIM, RIM_STREAM) } else { (ESTIMATOR, 0) };
-        let len = spans.clone().map(|span| span.count).sum();
+        let len = spans.iter().map(|span| span.count).sum();
         for (dimension, column) in state.numbers.iter_mut().enumerate() {
-            let stretches = spans.clone().map(|Span { pixel, first, count }| Stretch {
-                stream: stream | u64::from(pixel),
-                first: u64::from(first),
-                count,
+            let stretches = spans.iter().map(|span| Stretch {
+                stream: stream | u64::from(span.pixel),
+                first: u64::from(span.first),
+                count: span.count,
             });
             let (group, out) = (self.pipeline.group(dimension), column.slice_mut(len));
             self.numbers.fill_stretches(isa, stretches, group, dimension as u32, out);
         }
         let start = |rays: &mut RayBatch| {
             let mut from = 0;
-            for Span { pixel, first, count } in spans {
+            for &Span { pixel, first, count } in spans {
                 rays.columns_mut().tag[from..from + count].fill(pixel);
                 rays.number(from, &self.numbers, name, u64::from(pixel), u64::from(first));
                 from += count;
@@ -183,6 +177,7 @@ impl Backward {
     ) -> Result<(), RenderError> {
         let channels = state.integers.len();
         let mut local = vec![0_i64; tile.len() as usize * channels];
+        let mut spans = Vec::with_capacity(tile.len() as usize);
         let capacity = state.rays.capacity() as u32;
         // As many whole pixels as the batch holds; where it holds not even one, parts of a pixel.
         let at_once = samples.min(capacity);
@@ -192,8 +187,9 @@ impl Backward {
             let mut sample = first;
             while sample < first + samples {
                 let count = at_once.min(first + samples - sample);
-                let spans = pixels.clone().map(|pixel| Span { pixel, first: sample, count: count as usize });
-                self.add(state, tile, spans, AimPart::Core, &mut local)?;
+                spans.clear();
+                spans.extend(pixels.clone().map(|pixel| Span { pixel, first: sample, count: count as usize }));
+                self.add(state, tile, &spans, AimPart::Core, &mut local)?;
                 sample += count;
             }
         }
@@ -217,9 +213,9 @@ struct Span {
 }
 
 /// A sample of pixels all over the frame, [`PILOT_RAYS`] of them.
-fn spread(pixels: u64, sample: u32) -> impl Iterator<Item = Span> + Clone {
-    let pixel = move |i: u32| (u64::from(i) * pixels / u64::from(PILOT_RAYS)) as u32;
-    (0..PILOT_RAYS).map(move |i| Span { pixel: pixel(i), first: sample, count: 1 })
+fn spread(pixels: u64, sample: u32) -> Vec<Span> {
+    let pixel = |i: u32| (u64::from(i) * pixels / u64::from(PILOT_RAYS)) as u32;
+    (0..PILOT_RAYS).map(|i| Span { pixel: pixel(i), first: sample, count: 1 }).collect()
 }
 
 impl Backward {
@@ -228,11 +224,11 @@ impl Backward {
         &self,
         state: &mut ThreadState,
         tile: &Tile,
-        spans: impl Iterator<Item = Span> + Clone,
+        spans: &[Span],
         part: AimPart,
         local: &mut [i64],
     ) -> Result<(), RenderError> {
-        self.steps(state, spans.clone(), part, &mut |_, _| {});
+        self.steps(state, spans, part, &mut |_, _| {});
         if !state.contributions(&self.pipeline, self.scale) {
             let mut blame = Blame::default();
             self.steps(state, spans, part, &mut |step, rays| blame.look(step, rays));
@@ -284,9 +280,9 @@ impl Backward {
         let whole = (state.rays.capacity() / blocks.len().max(1)).max(1) as u32;
         for begin in (0..tile.len()).step_by(whole as usize) {
             let pixels = begin..tile.len().min(begin + whole);
-            let spans = pixels.map(|at| span(tile.pixel(at))).filter(|span| span.count > 0);
-            if spans.clone().next().is_some() {
-                self.add(state, tile, spans, AimPart::Rim, local)?;
+            let spans: Vec<Span> = pixels.map(|at| span(tile.pixel(at))).filter(|span| span.count > 0).collect();
+            if !spans.is_empty() {
+                self.add(state, tile, &spans, AimPart::Rim, local)?;
             }
         }
         (state.work.losses, state.detected) = (losses, detected);
