@@ -131,7 +131,7 @@ pub struct Columns<'a> {
     pub numbers: StageNumbers<'a>,
 }
 
-/// What the weight of a ray may depend on, to read, and the weights, to write: whoever only weighs rays leaves them where they
+/// What the weight of a ray may depend on, and the weights, to write: whoever only weighs rays leaves them where they
 /// are, and what is known of their places stays known.
 #[derive(Debug)]
 pub struct Weighing<'a> {
@@ -143,26 +143,17 @@ pub struct Weighing<'a> {
     pub wavelength_nm: &'a [f64],
     /// Alive, or cause and surface of the loss.
     pub state: &'a [u64],
-    /// As [`Meeting::way_mm`], at the last surface.
-    pub way_mm: &'a [f64],
-    /// As [`Meeting::versine`], at the last surface.
-    pub versine: &'a [f64],
+    /// How far each living ray came to the last surface, mm, negative where it ran backward; to write for whoever worked it out. Known if the
+    /// surface notes it ([`notes_meeting`](crate::surface::Surface::notes_meeting)).
+    pub way_mm: &'a mut [f64],
+    /// Versine, 1 - cos, of the angle by which that surface bent it; known likewise, where the surface bends light at all.
+    pub versine: &'a mut [f64],
     /// Flux or throughput.
     pub weight: &'a mut [f64],
     /// Optical path since [`RayBatch::restart`], mm; empty unless the batch carries it.
     pub optical_path_mm: &'a mut [f64],
     /// State of polarization; empty unless the batch carries it.
     pub polarization: Polarization<'a>,
-}
-
-/// How rays met a surface, to write: what surfaces leave that say so ([`notes_meeting`](crate::surface::Surface::notes_meeting)). Of rays that have
-/// ended it says nothing.
-#[derive(Debug)]
-pub struct Meeting<'a> {
-    /// The way from where the ray was before, mm; negative where it ran backward.
-    pub way_mm: &'a mut [f64],
-    /// Versine, 1 - cos, of the angle by which the surface bent it; anything where the surface bends no light.
-    pub versine: &'a mut [f64],
 }
 
 impl RayBatch {
@@ -317,12 +308,6 @@ impl RayBatch {
             optical_path_mm: c.optical_path_mm,
             polarization: c.polarization,
         }
-    }
-
-    /// How rays met the last surface, for surfaces that note it.
-    pub fn note_meeting(&mut self) -> Meeting<'_> {
-        let s = self.split().1;
-        Meeting { way_mm: s.step_then_way, versine: s.kept_then_versine }
     }
 
     /// All columns, and those that the loops of a surface share, with x^2 + y^2 up to date.

@@ -396,13 +396,13 @@ impl Tracer {
         }
         let mut ended = element.surface.interact(rays, &interface, isa);
         if let (Some(noted), true) = (&work.before, measures) {
-            noted.measure(rays, Some(shift_mm));
+            noted.measure(rays, shift_mm, isa);
         }
         if let (Some(rings), Some(noted)) = (&element.onion_rings, &work.before) {
             let (before, n) = (noted.directions(len), [interface.before.n, interface.after.n]);
             let mirror = leg.action == Action::Reflect;
             ended += rings.bend(rays, &Bent { before, n, mirror, number: interface.number });
-            noted.measure(rays, None);
+            noted.measure_angles(rays, isa);
         }
         if leg.turned && work.before.is_some() {
             ended += Before::end_behind(rays, interface.number, isa);

@@ -281,21 +281,17 @@ impl Before {
     }
 
     /// Works out how rays met a surface that does not note it by itself: by positions and directions that were taken down before; `shift_mm` is the
-    /// surface's vertex in the frame of those. By directions alone, which way they were bent.
-    pub(crate) fn measure(&self, rays: &mut RayBatch, shift_mm: Option<f64>) {
+    /// surface's vertex in the frame of those.
+    pub(crate) fn measure(&self, rays: &mut RayBatch, shift_mm: f64, isa: Isa) {
         let len = rays.len();
-        let before = self.directions(len);
         let from = self.position.each_ref().map(|column| column.slice(len));
-        for i in 0..len {
-            let (to, after) = (rays.positions().map(|column| column[i]), rays.directions().map(|column| column[i]));
-            let d = before.map(|column| column[i]);
-            let met = rays.note_meeting();
-            met.versine[i] = versine(d, after);
-            if let Some(shift_mm) = shift_mm {
-                let step = [to[0] - from[0][i], to[1] - from[1][i], to[2] - (from[2][i] - shift_mm)];
-                met.way_mm[i] = dot(step, d);
-            }
-        }
+        isa.run(Measure { from, direction: self.directions(len), shift_mm, rays: rays.weighing() });
+        self.measure_angles(rays, isa);
+    }
+
+    /// Works out by which angle rays were bent: by directions that were taken down before.
+    pub(crate) fn measure_angles(&self, rays: &mut RayBatch, isa: Isa) {
+        isa.run(MeasureAngles { direction: self.directions(rays.len()), rays: rays.weighing() });
     }
 
     /// Takes down what a medium absorbed of rays on their way to a surface, by its table. Their weights follow in
@@ -338,7 +334,7 @@ impl Before {
     pub(crate) fn lengthen(rays: &mut RayBatch, index: &[f64]) {
         let c = rays.weighing();
         for ((path, index), way_mm) in c.optical_path_mm.iter_mut().zip(index).zip(c.way_mm) {
-            *path += index * way_mm;
+            *path += *index * *way_mm;
         }
     }
 
@@ -480,6 +476,7 @@ impl Before {
     }
 }
 
+#[inline(always)]
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
@@ -501,6 +498,47 @@ pub(crate) fn versine(before: [f64; 3], after: [f64; 3]) -> f64 {
 fn cosine_of_mirrored(versine: f64) -> f64 {
     let cosine = (0.5 * versine).sqrt();
     if cosine < 1.0 { cosine } else { 1.0 }
+}
+
+/// The way from where rays were, along where they went.
+struct Measure<'a> {
+    from: [&'a [f64]; 3],
+    direction: [&'a [f64]; 3],
+    shift_mm: f64,
+    rays: Weighing<'a>,
+}
+
+impl Vectorized for Measure<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run(self) {
+        let Self { from, direction, shift_mm, rays: Weighing { position, way_mm, .. } } = self;
+        let len = way_mm.len();
+        let [from, direction, to] = [from, direction, position].map(|columns| columns.map(|column| &column[..len]));
+        for i in 0..len {
+            let step = [to[0][i] - from[0][i], to[1][i] - from[1][i], to[2][i] - (from[2][i] - shift_mm)];
+            way_mm[i] = step[0] * direction[0][i] + step[1] * direction[1][i] + step[2] * direction[2][i];
+        }
+    }
+}
+
+/// The angle between the directions before and after.
+struct MeasureAngles<'a> {
+    direction: [&'a [f64]; 3],
+    rays: Weighing<'a>,
+}
+
+impl Vectorized for MeasureAngles<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run(self) {
+        let (before, Weighing { direction: after, versine: versines, .. }) = (self.direction, self.rays);
+        let len = versines.len();
+        let [[bl, bm, bn], [l, m, n]] = [before, after].map(|columns| columns.map(|column| &column[..len]));
+        for i in 0..len {
+            versines[i] = versine([bl[i], bm[i], bn[i]], [l[i], m[i], n[i]]);
+        }
+    }
 }
 
 /// Adds what is absorbed on the way, or begins with it.

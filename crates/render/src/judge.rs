@@ -57,9 +57,19 @@ impl Blocks {
 
     /// The pixels of a block, row by row.
     fn pixels(&self, block: usize) -> impl Iterator<Item = usize> {
+        self.each(block, 1)
+    }
+
+    /// The first pixel of each tile of a block.
+    fn tiles(&self, block: usize) -> impl Iterator<Item = usize> {
+        self.each(block, TILE as usize)
+    }
+
+    /// Of each square of pixels of a block the first.
+    fn each(&self, block: usize, side: usize) -> impl Iterator<Item = usize> {
         let (column, row) = (block % self.across * BLOCK, block / self.across * BLOCK);
-        let (columns, rows) = (column..self.width.min(column + BLOCK), row..self.height.min(row + BLOCK));
-        let width = self.width;
+        let columns = (column..self.width.min(column + BLOCK)).step_by(side);
+        let (rows, width) = ((row..self.height.min(row + BLOCK)).step_by(side), self.width);
         rows.flat_map(move |row| columns.clone().map(move |column| row * width + column))
     }
 }
@@ -142,7 +152,7 @@ impl Renderer {
         for (kind, estimator) in self.estimators().take(kinds).enumerate() {
             let mut goes_on = vec![false; estimator.tiles()];
             for block in (0..noise.len()).filter(|b| noise[*b] > asked && share[kind][*b] >= least) {
-                blocks.pixels(block).for_each(|pixel| goes_on[estimator.tile_of(pixel)] = true);
+                blocks.tiles(block).for_each(|pixel| goes_on[estimator.tile_of(pixel)] = true);
             }
             for (tile, _) in goes_on.iter().enumerate().filter(|(_, goes_on)| !**goes_on) {
                 light.parts[kind].done.end_tile(tile as u32);

@@ -107,8 +107,9 @@ pub trait Surface: Send + Sync + std::fmt::Debug {
         false
     }
 
-    /// Whether [`Surface::interact`] leaves in the batch how far each living ray came, and how sharply it was bent:
-    /// [`RayBatch::note_meeting`]. Where it does not, whoever needs that works it out from positions and directions before and after.
+    /// Whether [`Surface::interact`] leaves in the batch how far each living ray came, and by which angle it was bent
+    /// ([`way_mm`](crate::batch::Weighing::way_mm), [`versine`](crate::batch::Weighing::versine)). Where it does not, whoever needs that
+    /// works it out from positions and directions before and after.
     fn notes_meeting(&self) -> bool {
         false
     }
