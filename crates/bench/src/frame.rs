@@ -13,23 +13,25 @@ use std::time::Instant;
 /// Renders of the reference.
 pub(crate) const RENDERS: u32 = 8;
 
-/// One render of `samples` samples a pixel, and the seconds that its light took.
-pub(crate) fn render(
+/// A render of `samples` samples a pixel for each seed, and the seconds that its light took. The scene is made ready once.
+pub(crate) fn renders(
     scene: &mut Scene,
     strategy: &str,
     samples: u32,
-    seed: u64,
+    seeds: impl Iterator<Item = u64>,
     threads: usize,
     isa: Isa,
-) -> Result<(ExposureFrame, f64), BenchError> {
+) -> Result<Vec<(ExposureFrame, f64)>, BenchError> {
     scene.render.samples = samples;
     scene.render.rays = u64::from(samples) * scene.imager.size().pixels() as u64;
-    scene.render.seed = seed;
     let failed = |error| BenchError::Render { strategy: strategy.to_owned(), error };
     let renderer = Renderer::on(scene.clone(), isa, &Threads(threads)).map_err(failed)?;
-    let begun = Instant::now();
-    let rendering = renderer.run(&Threads(threads), &Control::new()).map_err(failed)?;
-    Ok((rendering.exposure, begun.elapsed().as_secs_f64()))
+    let one = |seed| {
+        let begun = Instant::now();
+        let rendering = renderer.reseeded(seed).run(&Threads(threads), &Control::new()).map_err(failed)?;
+        Ok((rendering.exposure, begun.elapsed().as_secs_f64()))
+    };
+    seeds.map(one).collect()
 }
 
 /// The mean of some renders, and how well it is known.

@@ -144,14 +144,13 @@ fn rendered(
         pixel: f64::NAN,
     };
     let (mut frames, mut paths) = (Vec::new(), 0);
+    let start = now();
+    let ready = Renderer::of_ghosts(Arc::new(scene.clone()), settings.isa, rays, &workers).map_err(failed)?;
+    let ready = ready.ok_or(BenchError::Dark)?;
+    noise.ready_s = now() - start;
     for seed in 0..settings.seeds {
-        let mut scene = scene.clone();
-        scene.render.seed = scene.render.seed.wrapping_add(seed << 32);
         let start = now();
-        let ready = Renderer::of_ghosts(Arc::new(scene), settings.isa, rays, &workers).map_err(failed)?;
-        let renderer = ready.ok_or(BenchError::Dark)?;
-        noise.ready_s += (now() - start) / many;
-        let start = now();
+        let renderer = ready.reseeded(scene.render.seed.wrapping_add(seed << 32));
         let rendering = renderer.run(&workers, &control).map_err(failed)?;
         noise.trace_s += (now() - start) / many;
         noise.rays = rendering.rays;

@@ -92,21 +92,19 @@ pub fn noise(
 }
 
 fn row(scene: Scene, direction: &str, settings: &NoiseSettings) -> Result<NoiseRow, BenchError> {
+    let scene = Arc::new(scene);
     let failed = |error| BenchError::Render { strategy: direction.to_owned(), error };
     let (workers, control) = (Threads(settings.threads), Control::new());
     let mut samples = 0;
-    let (mut spent_s, mut ready_s, mut rays) = (0.0, 0.0, 0);
+    let (mut spent_s, mut rays) = (0.0, 0);
     let mut estimators = Vec::new();
     let mut frames: Vec<ExposureFrame> = Vec::new();
-    let first = scene.render.seed;
+    let begun = Instant::now();
+    let ready = Renderer::on(Arc::clone(&scene), settings.isa, &Threads(settings.threads)).map_err(failed)?;
+    let ready_s = begun.elapsed().as_secs_f64();
     for seed in 0..settings.seeds {
-        let mut scene = scene.clone();
-        scene.render.seed = first.wrapping_add(seed << 32);
-        let scene = Arc::new(scene);
-        let begun = Instant::now();
-        let renderer = Renderer::on(Arc::clone(&scene), settings.isa, &Threads(settings.threads)).map_err(failed)?;
+        let renderer = ready.reseeded(scene.render.seed.wrapping_add(seed << 32));
         let mut light: Light = renderer.begin().map_err(failed)?;
-        ready_s += begun.elapsed().as_secs_f64() / settings.seeds as f64;
         let begun = Instant::now();
         if samples == 0 {
             // The first seed finds how many there is time for.

@@ -1,7 +1,7 @@
 //! The benchmark: every strategy, every number of samples, every seed.
 
 use crate::every_factor::{EveryFactor, needs_wavelength};
-use crate::frame::{RENDERS, Truth, render};
+use crate::frame::{RENDERS, Truth, renders};
 use crate::integral::{Draws, Measured, exact, measure};
 use crate::report::{ChannelBias, LeftOut, Measure, NumberKind, Point, Reference, Report, Series};
 use crate::statistics::{fit, in_standard_errors, mean_and_variance_of_mean};
@@ -274,10 +274,10 @@ impl<'a> Run<'a> {
         let many = most.saturating_mul(2);
         tell(&format!("reference: {RENDERS} renders of {many} samples a pixel by {label}"));
         let (first_seed, scene) = (self.first_seed, &mut self.entrants[0].scene);
-        let renders: Result<Vec<_>, BenchError> = (0..u64::from(RENDERS))
-            .map(|r| render(scene, &label, many, first_seed.wrapping_add(r), threads, isa).map(|r| r.0))
-            .collect();
-        let truth = Truth::of(&renders?);
+        let of_reference = (0..u64::from(RENDERS)).map(|render| first_seed.wrapping_add(render));
+        let (frames, _): (Vec<_>, Vec<_>) =
+            renders(scene, &label, many, of_reference, threads, isa)?.into_iter().unzip();
+        let truth = Truth::of(&frames);
         let seen = truth.seen();
         if seen.is_empty() {
             return Err(BenchError::Dark);
@@ -293,13 +293,10 @@ impl<'a> Run<'a> {
             for (at, samples) in self.samples.clone().iter().enumerate() {
                 let first_seed = self.seed(at);
                 let scene = &mut self.entrants[entrant].scene;
-                let (mut frames, mut seconds) = (Vec::with_capacity(seeds), f64::INFINITY);
-                for seed in 0..seeds as u64 {
-                    let seed = first_seed.wrapping_add(seed);
-                    let (frame, time) = render(scene, &label, *samples, seed, threads, isa)?;
-                    frames.push(frame);
-                    seconds = seconds.min(time);
-                }
+                let of_seeds = (0..seeds as u64).map(|seed| first_seed.wrapping_add(seed));
+                let (frames, times): (Vec<_>, Vec<f64>) =
+                    renders(scene, &label, *samples, of_seeds, threads, isa)?.into_iter().unzip();
+                let seconds = times.into_iter().fold(f64::INFINITY, f64::min);
                 measured.push(Measured { seconds, ..truth.compare(&frames, &seen, xyz) });
             }
             all.push(self.series(&self.entrants[entrant], Measure::Scene, kind, &seen, &measured, pixels));

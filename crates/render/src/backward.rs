@@ -64,7 +64,7 @@ impl Backward {
             if aside_mm > 0.0 { rear.widened(ROOM * aside_mm) } else { rear }
         });
         let pixels = scene.imager.size().pixels() as u64;
-        let (rear, seed) = (Arc::new(rear.ok_or_else(|| RenderError::no_pupil(workers))?), scene.render.seed);
+        let (rear, seed) = (Arc::new(rear.ok_or_else(|| RenderError::no_pupil(workers))?), pipeline.seed);
         let mut own = Self { rear, numbers, shifts, scale: 1.0, pipeline };
         own.scale = pilot::scale(&own.pipeline, |state, batch, mut look| {
             own.steps(state, &spread(pixels, batch), AimPart::Whole, &mut look);
@@ -86,10 +86,11 @@ impl Backward {
         Some(Self { pipeline, rear: self.rear.clone(), numbers, shifts, scale: 1.0 })
     }
 
-    /// The mean of the frame, W/m2 in the sum of its channels, by a few thousand rays.
+    /// The mean of the frame, W/m2 in the sum of its channels, by a few thousand rays, the same for any seed of the picture.
     pub(crate) fn mean(&self) -> f64 {
+        let pilot = self.with_seed(PILOT_SEED);
         let mut state = ThreadState::new(&self.pipeline, PILOT_RAYS as usize);
-        self.steps(&mut state, &spread(self.size().pixels() as u64, 0), AimPart::Whole, &mut |_, _| {});
+        pilot.steps(&mut state, &spread(self.size().pixels() as u64, 0), AimPart::Whole, &mut |_, _| {});
         state.sum(&self.pipeline) / f64::from(PILOT_RAYS)
     }
 
@@ -318,8 +319,8 @@ impl Estimator for Backward {
         self.tiling().number_of(pixel) as usize
     }
 
-    fn reseeded(&self, seed: u64) -> Box<dyn Estimator> {
-        Box::new(self.with_seed(seed))
+    fn reseeded(&self, picture: u64, seed: u64) -> Box<dyn Estimator> {
+        Box::new(Self { pipeline: Arc::new(self.pipeline.of_seed(picture)), ..self.with_seed(seed) })
     }
 
     fn units(&self, samples: &Range<u64>, tiles: &[u32]) -> u64 {

@@ -25,8 +25,9 @@ pub trait Estimator: Send + Sync {
     /// The tile of a pixel.
     fn tile_of(&self, pixel: usize) -> usize;
 
-    /// The same with numbers of another seed.
-    fn reseeded(&self, seed: u64) -> Box<dyn Estimator>;
+    /// A copy that draws its samples from the numbers of `seed`, for the picture of another seed. What was searched and decided
+    /// before the first ray is shared.
+    fn reseeded(&self, picture: u64, seed: u64) -> Box<dyn Estimator>;
 
     /// Into how many units a span of samples of these tiles is cut.
     fn units(&self, samples: &Range<u64>, tiles: &[u32]) -> u64;

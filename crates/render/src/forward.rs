@@ -55,7 +55,7 @@ const SOURCE_POINTS: usize = 4096;
 impl Forward {
     /// Searches where light goes in, and finds the scale of the sums.
     pub(crate) fn new(pipeline: Arc<Pipeline>, workers: &dyn Workers) -> Result<Self, RenderError> {
-        let seed = pipeline.scene.render.seed;
+        let seed = pipeline.seed;
         let mut own = Self::aimed(pipeline, workers)?;
         if own.pipeline.share == Share::Lights && !own.pipeline.scene.render.rays_stated {
             own.a_sample = Some(own.lights_a_sample());
@@ -107,7 +107,7 @@ impl Forward {
     fn of_meters(&self) -> Option<Result<Self, RenderError>> {
         let pipeline = Arc::new(self.pipeline.of_meters()?);
         let (numbers, cone) = (self.numbers.clone(), self.cone.clone());
-        let seed = pipeline.scene.render.seed ^ meter::SEED;
+        let seed = pipeline.seed ^ meter::SEED;
         Some(Self { pupil: self.pupil.clone(), numbers, cone, scale: 1.0, pipeline, a_sample: None }.scaled(seed))
     }
 
@@ -253,9 +253,9 @@ impl Estimator for Forward {
         0
     }
 
-    fn reseeded(&self, seed: u64) -> Box<dyn Estimator> {
+    fn reseeded(&self, picture: u64, seed: u64) -> Box<dyn Estimator> {
         let (numbers, cone) = Self::numbers(&self.pipeline, seed);
-        let (pipeline, pupil) = (self.pipeline.clone(), self.pupil.clone());
+        let (pipeline, pupil) = (Arc::new(self.pipeline.of_seed(picture)), self.pupil.clone());
         Box::new(Self { pipeline, pupil, numbers, cone, scale: self.scale, a_sample: self.a_sample })
     }
 

@@ -86,7 +86,7 @@ pub(crate) fn backward(
         return Ok(planes);
     }
     let rays = rays_for(size, pipeline.effort);
-    let numbers = Numbers::sobol(scene.render.seed ^ SEED);
+    let numbers = Numbers::sobol(pipeline.seed ^ SEED);
     let places = places(&pixels, rays, &numbers, isa);
     let samples = (rays / places.len() as u64).max(1) as usize;
     let units: Vec<&[Place]> = places.chunks(PLACES_PER_UNIT).collect();

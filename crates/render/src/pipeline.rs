@@ -37,8 +37,11 @@ impl Share {
 }
 
 /// The stages, made ready for one scene.
+#[derive(Clone)]
 pub struct Pipeline {
     pub(crate) scene: Arc<Scene>,
+    /// The seed of the picture: the scene's, unless the renderer was reseeded.
+    pub(crate) seed: u64,
     /// Which light of the source is traced.
     pub(crate) share: Share,
     pub(crate) isa: Isa,
@@ -78,26 +81,20 @@ impl Pipeline {
         let tracer = tracer(scene, isa)?;
         let responses = Responses::new(scene.grid, &system.channels);
         let draws = draws(scene);
-        let (scene, tracer, share) = (Arc::clone(scene), Arc::new(tracer), Share::Whole);
-        Ok(Self { scene, share, isa, effort, tracer, density, responses, recorded, draws, scattered: false })
+        let (scene, tracer, share, seed) = (Arc::clone(scene), Arc::new(tracer), Share::Whole, scene.render.seed);
+        Ok(Self { scene, seed, share, isa, effort, tracer, density, responses, recorded, draws, scattered: false })
     }
 
     /// The same for a share of the source, with a density of its own where one can be fitted to it.
     pub(crate) fn of_share(&self, share: Share) -> Self {
         let system = system(&self.scene, share, &self.recorded);
         let density = self.scene.sampler.prepare(&system).map_or_else(|_| Arc::clone(&self.density), Arc::from);
-        Self {
-            scene: self.scene.clone(),
-            share,
-            isa: self.isa,
-            effort: self.effort,
-            tracer: self.tracer.clone(),
-            density,
-            responses: Responses::new(self.scene.grid, &system.channels),
-            recorded: self.recorded.clone(),
-            draws: self.draws,
-            scattered: self.scattered,
-        }
+        Self { share, density, responses: Responses::new(self.scene.grid, &system.channels), ..self.clone() }
+    }
+
+    /// The same stages for a picture of another seed.
+    pub(crate) fn of_seed(&self, seed: u64) -> Self {
+        Self { seed, ..self.clone() }
     }
 
     /// Channels that noise is asked of, by their place among those recorded: luminance where there is one, else all.
@@ -110,18 +107,7 @@ impl Pipeline {
 
     /// The same through a lens that is made ready otherwise.
     pub(crate) fn with_tracer(&self, tracer: Tracer) -> Self {
-        Self {
-            scene: self.scene.clone(),
-            share: self.share,
-            isa: self.isa,
-            effort: self.effort,
-            tracer: Arc::new(tracer),
-            density: self.density.clone(),
-            responses: self.responses.clone(),
-            recorded: self.recorded.clone(),
-            draws: self.draws,
-            scattered: self.scattered,
-        }
+        Self { tracer: Arc::new(tracer), ..self.clone() }
     }
 
     /// The same for light that haze, dust and scratches on the lens scatter; `None` where nothing lies on it.
@@ -144,18 +130,7 @@ impl Pipeline {
         let system = system(&self.scene, self.share, &recorded);
         let density = self.scene.sampler.prepare(&system).ok()?.into();
         let responses = Responses::new(self.scene.grid, &system.channels);
-        Some(Self {
-            scene: self.scene.clone(),
-            share: self.share,
-            isa: self.isa,
-            effort: self.effort,
-            tracer: self.tracer.clone(),
-            density,
-            responses,
-            recorded,
-            draws: self.draws,
-            scattered: self.scattered,
-        })
+        Some(Self { density, responses, recorded, ..self.clone() })
     }
 
     /// The numbers of a seed, as the scene wants them.

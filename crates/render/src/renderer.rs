@@ -234,6 +234,25 @@ impl Renderer {
         Ok(Self { estimators: halved(&scene, estimators), scene, pipeline, ledger: None, has_lights: false })
     }
 
+    /// This renderer for the picture of another seed: the bits are those of [`Renderer::new`] for the scene with that seed. What was
+    /// searched and decided before the first ray does not depend on the seed and is shared, so that this costs next to nothing.
+    #[must_use]
+    pub fn reseeded(&self, seed: u64) -> Self {
+        let mut scene = (*self.scene).clone();
+        scene.render.seed = seed;
+        let reseed = |(at, estimator): (usize, &Box<dyn Estimator>)| match self.halves() {
+            1 => estimator.reseeded(seed, seed),
+            _ => estimator.reseeded(seed, half_seed(seed, (at / self.kinds()) as u64)),
+        };
+        Self {
+            estimators: self.estimators.iter().enumerate().map(reseed).collect(),
+            scene: Arc::new(scene),
+            pipeline: Arc::new(self.pipeline.of_seed(seed)),
+            ledger: self.ledger.clone(),
+            has_lights: self.has_lights,
+        }
+    }
+
     /// Looks whether a scene can be made ready: what [`Renderer::new`] refuses, as far as that shows without
     /// its search for pupils, its pilot and the large files of a source.
     ///
@@ -569,9 +588,12 @@ fn halved(scene: &Scene, estimators: Vec<Box<dyn Estimator>>) -> Vec<Box<dyn Est
     if scene.render.noise.is_none() {
         return estimators;
     }
-    let seed = |half: u64| mix64(scene.render.seed ^ mix64(half + 1));
-    let half = |h: u64| estimators.iter().map(|e| e.reseeded(seed(h))).collect::<Vec<_>>();
-    let mut both = half(0);
-    both.extend(half(1));
-    both
+    let seed = scene.render.seed;
+    let half = |half| estimators.iter().map(move |e| e.reseeded(seed, half_seed(seed, half)));
+    half(0).chain(half(1)).collect()
+}
+
+/// The seed of the numbers of one half of the samples.
+fn half_seed(seed: u64, half: u64) -> u64 {
+    mix64(seed ^ mix64(half + 1))
 }

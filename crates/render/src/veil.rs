@@ -157,7 +157,7 @@ impl Veil {
         let (numbers, seed) = (pipeline.numbers(PILOT_SEED ^ SEED), PILOT_SEED);
         let mut own = Self { pipeline, plan: Arc::new(plan), numbers, seed, scale: 1.0 };
         own.scale = own.pilot_scale()?;
-        let seed = own.pipeline.scene.render.seed;
+        let seed = own.pipeline.seed;
         (own.numbers, own.seed) = (own.pipeline.numbers(mix64(seed ^ SEED)), seed);
         Ok(own)
     }
@@ -413,9 +413,10 @@ impl Estimator for Veil {
         0
     }
 
-    fn reseeded(&self, seed: u64) -> Box<dyn Estimator> {
+    fn reseeded(&self, picture: u64, seed: u64) -> Box<dyn Estimator> {
         let numbers = self.pipeline.numbers(mix64(seed ^ SEED));
-        Box::new(Self { pipeline: self.pipeline.clone(), plan: self.plan.clone(), numbers, seed, scale: self.scale })
+        let pipeline = Arc::new(self.pipeline.of_seed(picture));
+        Box::new(Self { pipeline, plan: self.plan.clone(), numbers, seed, scale: self.scale })
     }
 
     fn units(&self, samples: &Range<u64>, tiles: &[u32]) -> u64 {
@@ -456,7 +457,7 @@ impl Estimator for Veil {
 
     fn metered(&self, workers: &dyn Workers) -> Result<Vec<Vec<f64>>, RenderError> {
         let Some(pipeline) = self.pipeline.of_meters() else { return Ok(Vec::new()) };
-        let seed = pipeline.scene.render.seed ^ meter::SEED;
+        let seed = pipeline.seed ^ meter::SEED;
         let numbers = pipeline.numbers(mix64(seed ^ SEED));
         Self { pipeline: Arc::new(pipeline), plan: Arc::clone(&self.plan), numbers, seed, scale: 1.0 }.seen(workers)
     }

@@ -13,7 +13,7 @@ impl Ghosts {
     /// The same for what the meters see; `None` where they see nothing.
     pub(super) fn of_meters(&self, workers: &dyn Workers) -> Option<Result<Self, RenderError>> {
         let pipeline = Arc::new(self.pipeline.of_meters()?);
-        let numbers = self.of_seed(pipeline.scene.render.seed ^ meter::SEED);
+        let numbers = self.of_seed(pipeline.seed ^ meter::SEED);
         let own = Self { pipeline, plan: Arc::new(self.plan.together()), numbers, scale: 1.0 };
         Some(own.pilot_scale(workers).map(|scale| Self { scale, ..own }))
     }

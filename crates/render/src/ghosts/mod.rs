@@ -207,7 +207,7 @@ impl Ghosts {
         let a_sample = own.rays_a_sample(matters, found.brightest);
         own.plan = Arc::new(own.shared_out(found.ways, a_sample, ledger));
         own.scale = own.pilot_scale(workers)?;
-        own.numbers = own.of_seed(scene.render.seed);
+        own.numbers = own.of_seed(own.pipeline.seed);
         Ok(Some(own))
     }
 
@@ -467,8 +467,8 @@ impl Estimator for Ghosts {
         0
     }
 
-    fn reseeded(&self, seed: u64) -> Box<dyn Estimator> {
-        let (pipeline, plan) = (self.pipeline.clone(), self.plan.clone());
+    fn reseeded(&self, picture: u64, seed: u64) -> Box<dyn Estimator> {
+        let (pipeline, plan) = (Arc::new(self.pipeline.of_seed(picture)), self.plan.clone());
         Box::new(Self { pipeline, plan, numbers: self.of_seed(seed), scale: self.scale })
     }
 
