@@ -1,18 +1,74 @@
 //! The two streams to a person or a program. Nothing here panics when the other end is closed.
+//!
+//! They are the process's, or memory where a program calls the command in its own process ([`crate::call`]). A command writes
+//! from the thread that it was called on, so the choice belongs to the thread.
 
 use spectra_core::params::{Fault, Faults, Warning};
 use spectra_scene::diagnostics;
+use std::cell::RefCell;
 use std::io::{self, IsTerminal, Write};
 use std::path::Path;
+
+/// What a command wrote while its streams were kept in memory.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Kept {
+    /// Standard output.
+    pub out: Vec<u8>,
+    /// Standard error.
+    pub err: Vec<u8>,
+}
+
+thread_local! {
+    static KEPT: RefCell<Option<Kept>> = const { RefCell::new(None) };
+}
+
+/// Runs `work` with the streams of this thread kept in memory; returns its result and what it wrote.
+pub(crate) fn kept<T>(work: impl FnOnce() -> T) -> (T, Kept) {
+    KEPT.set(Some(Kept::default()));
+    let done = work();
+    (done, KEPT.take().unwrap_or_default())
+}
+
+/// Whether the streams of this thread are kept in memory: then the process belongs to somebody else.
+pub(crate) fn is_kept() -> bool {
+    KEPT.with_borrow(Option::is_some)
+}
+
+/// Standard output, as something to write to.
+pub(crate) struct Out;
+
+impl Write for Out {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        KEPT.with_borrow_mut(|kept| match kept {
+            Some(kept) => kept.out.write(bytes),
+            None => io::stdout().write(bytes),
+        })
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        if is_kept() { Ok(()) } else { io::stdout().flush() }
+    }
+}
 
 /// Writes a text to standard output.
 ///
 /// # Errors
 /// Also where the reader has gone away: the caller decides whether that matters.
 pub(crate) fn out(text: &str) -> io::Result<()> {
-    let mut stdout = io::stdout().lock();
-    stdout.write_all(text.as_bytes())?;
-    stdout.flush()
+    Out.write_all(text.as_bytes())?;
+    Out.flush()
+}
+
+/// Help and version, on standard output, or what the parser of arguments says about a mistake, on standard error.
+pub(crate) fn parsed(said: &clap::Error) {
+    // A reader that has gone away is no failure.
+    if !is_kept() {
+        drop(said.print());
+    } else if said.use_stderr() {
+        note(said.render().to_string().trim_end_matches('\n'));
+    } else {
+        drop(out(&said.render().to_string()));
+    }
 }
 
 /// Writes a value as one line of JSON to standard output.
@@ -34,7 +90,10 @@ pub(crate) fn pretty_json(value: &impl serde::Serialize) -> io::Result<()> {
 
 /// Writes a line to standard error; there is nobody to tell where that fails.
 pub(crate) fn note(line: &str) {
-    let _ = writeln!(io::stderr().lock(), "{line}");
+    let _ = KEPT.with_borrow_mut(|kept| match kept {
+        Some(kept) => writeln!(kept.err, "{line}"),
+        None => writeln!(io::stderr().lock(), "{line}"),
+    });
 }
 
 /// A warning, on standard error.
@@ -67,7 +126,7 @@ pub(crate) fn faults(faults: &Faults) {
 
 /// Whether standard error shows a moving progress bar.
 pub(crate) fn stderr_moves() -> bool {
-    io::stderr().is_terminal() && std::env::var_os("TERM").is_none_or(|term| term != "dumb")
+    !is_kept() && io::stderr().is_terminal() && std::env::var_os("TERM").is_none_or(|term| term != "dumb")
 }
 
 /// Whether standard error shows colors (<https://no-color.org>).

@@ -44,6 +44,10 @@ impl Interrupt {
 pub(crate) fn listen(control: &Arc<Control>, folder: &Path) -> Interrupt {
     let (count, first) = (Arc::new(AtomicU32::new(0)), Arc::new(AtomicU8::new(CTRL_C)));
     let control = Arc::new(Mutex::new(Arc::clone(control)));
+    if console::is_kept() {
+        // Signals belong to the program that called the command.
+        return Interrupt { count, signal: first, control };
+    }
     let (counter, said, current, folder) =
         (Arc::clone(&count), Arc::clone(&first), Arc::clone(&control), folder.to_owned());
     let listening = on_signal(move |signal| {

@@ -44,6 +44,7 @@ use clap::Parser;
 use outcome::{Failure, Outcome};
 pub use sources::Unpack;
 use spectra_core::{Isa, registry};
+use std::ffi::OsString;
 use std::process::ExitCode;
 use std::time::Instant;
 
@@ -55,26 +56,47 @@ pub fn main(unpack: Unpack) -> ExitCode {
 /// The same, for a program that `spectra build` makes: `notices` are the licenses of its plugins and of the crates that they
 /// bring, which `--licenses` shows after its own.
 pub fn main_with_notices(unpack: Unpack, notices: &'static str) -> ExitCode {
+    limits::report_large_files();
+    ExitCode::from(answer(std::env::args_os(), unpack, notices))
+}
+
+/// What a command line that was called in this process came to.
+#[derive(Clone, Debug)]
+pub struct Called {
+    /// The exit code.
+    pub code: u8,
+    /// What it wrote to standard output.
+    pub out: Vec<u8>,
+    /// What it wrote to standard error.
+    pub err: Vec<u8>,
+}
+
+/// Runs a command line in this process, `arguments` without the name of the program: what a process of its own would do, but for what
+/// belongs to a process. Signals and `--time-limit` before the first ray are left to the caller, and no stream is a terminal.
+pub fn call(arguments: impl IntoIterator<Item = OsString>, unpack: Unpack) -> Called {
+    let line = std::iter::once(OsString::from("spectra")).chain(arguments);
+    let (code, kept) = console::kept(|| answer(line, unpack, ""));
+    Called { code, out: kept.out, err: kept.err }
+}
+
+/// Runs a command line, the name of the program first; returns the exit code.
+fn answer(line: impl Iterator<Item = OsString>, unpack: Unpack, notices: &str) -> u8 {
     let started = Instant::now();
-    let arguments = match Arguments::try_parse().map_err(guess::without_false_tips) {
+    let arguments = match Arguments::try_parse_from(line).map_err(guess::without_false_tips) {
         Ok(arguments) => arguments,
         Err(error) => {
-            // Help and version come this way too, with code 0. A reader that has gone away is no failure.
+            // Help and version come this way too, with code 0.
             match guess::meant(&error) {
                 Some(hint) => console::faults(&hint.into()),
-                None => drop(error.print()),
+                None => console::parsed(&error),
             }
-            return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(outcome::BAD_INPUT));
+            return u8::try_from(error.exit_code()).unwrap_or(outcome::BAD_INPUT);
         }
     };
     if arguments.verbose {
         log_to_stderr();
     }
-    limits::report_large_files();
-    match dispatch(&arguments, unpack, notices, started) {
-        Ok(code) => ExitCode::from(code),
-        Err(failure) => ExitCode::from(failure.report()),
-    }
+    dispatch(&arguments, unpack, notices, started).unwrap_or_else(|failure| failure.report())
 }
 
 fn dispatch(arguments: &Arguments, unpack: Unpack, notices: &str, started: Instant) -> Outcome {

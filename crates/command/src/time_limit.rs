@@ -18,10 +18,11 @@ pub(crate) struct SetUp {
 }
 
 impl SetUp {
-    /// Watches from now on until `deadline`, `limit_s` after the start of the program.
+    /// Watches from now on until `deadline`, `limit_s` after the start of the program. Not where another program called the command:
+    /// its process does not end here.
     pub(crate) fn watched(deadline: Option<Instant>, limit_s: f64, is_json: bool, is_quiet: bool) -> Self {
         let state = Arc::new(AtomicU8::new(SETTING_UP));
-        if let Some(deadline) = deadline {
+        if let Some(deadline) = deadline.filter(|_| !console::is_kept()) {
             let state = Arc::clone(&state);
             // Where no thread can be had, the limit holds once light is traced.
             let _ = std::thread::Builder::new().name("time limit".to_owned()).spawn(move || {

@@ -29,7 +29,7 @@ pub(crate) fn trace(arguments: &LensTrace, isa: Isa) -> Outcome {
         trace_rays(&lens, tracing, isa, rays, &name, &mut BufWriter::new(output))
     };
     let summary = match output {
-        None => run(&mut io::stdout().lock()).map_err(|error| failure(error, None))?,
+        None => run(&mut console::Out).map_err(|error| failure(error, None))?,
         Some(path) => to_file(path, run)?,
     };
     for note in &lens.notes {
