@@ -58,6 +58,9 @@ fn far_enough_mm(lens: &Lens) -> f64 {
     if far > 0.0 { far } else { 0.5 * lens.first_order(lens.reference_nm).efl_mm.abs().min(1e6) }
 }
 
+/// Rays that are traced at a time, so that their columns stay in the caches.
+const BATCH: usize = 1024;
+
 /// A window that rays from an object point are aimed through: a plane across the way to the front of the lens.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Window {
@@ -135,11 +138,11 @@ impl Window {
         }
     }
 
-    /// Traces a grid through a cut of it, in place.
-    fn trace(&self, tracer: &Tracer, rays: &mut RayBatch, work: &mut Work, cut: Cut, cells: usize, wavelength_nm: f64) {
-        rays.restart(cells * cells);
+    /// Traces the rays through these places of it.
+    fn trace(&self, tracer: &Tracer, rays: &mut RayBatch, work: &mut Work, places: &[[f64; 2]], wavelength_nm: f64) {
+        rays.restart(places.len());
         let c = rays.columns_mut();
-        for (i, place) in cut.places(cells).enumerate() {
+        for (i, place) in places.iter().copied().enumerate() {
             let (p, d) = self.ray(place);
             (c.x[i], c.y[i], c.z[i]) = p.into();
             (c.l[i], c.m[i], c.n[i]) = d.into();
@@ -158,23 +161,26 @@ impl Window {
         cells: usize,
         wavelength_nm: f64,
     ) -> Result<Cut, Option<(Loss, u32)>> {
-        let mut rays = RayBatch::new(cells * cells);
-        self.trace(tracer, &mut rays, &mut tracer.work_in_place(cells * cells), cut, cells, wavelength_nm);
-        let mut seen: Option<Cut> = None;
-        for (place, state) in cut.places(cells).zip(rays.states()) {
-            if *state == ALIVE {
-                let old = seen.unwrap_or(Cut { min: place, max: place });
-                let low = [0, 1].map(|k| old.min[k].min(place[k]));
-                let high = [0, 1].map(|k| old.max[k].max(place[k]));
-                seen = Some(Cut { min: low, max: high });
+        let places: Vec<[f64; 2]> = cut.places(cells).collect();
+        let capacity = places.len().min(BATCH);
+        let (mut rays, mut work) = (RayBatch::new(capacity), tracer.work_unweighed(capacity));
+        let (mut seen, mut end): (Option<Cut>, Option<(Loss, u32)>) = (None, None);
+        for places in places.chunks(BATCH) {
+            self.trace(tracer, &mut rays, &mut work, places, wavelength_nm);
+            for (place, state) in places.iter().zip(rays.states()) {
+                if *state == ALIVE {
+                    let old = seen.unwrap_or(Cut { min: *place, max: *place });
+                    let low = [0, 1].map(|k| old.min[k].min(place[k]));
+                    let high = [0, 1].map(|k| old.max[k].max(place[k]));
+                    seen = Some(Cut { min: low, max: high });
+                } else if let Some(own) = Loss::of_state(*state).filter(|own| end.is_none_or(|end| own.1 >= end.1)) {
+                    end = Some(own);
+                }
             }
         }
         let cell = [0, 1].map(|k| (cut.max[k] - cut.min[k]) / cells as f64);
-        seen.map(|s| Cut { min: [0, 1].map(|k| s.min[k] - cell[k]), max: [0, 1].map(|k| s.max[k] + cell[k]) })
-            .ok_or_else(|| {
-                let ends = rays.states().iter().filter_map(|state| Loss::of_state(*state));
-                ends.max_by_key(|(_, surface)| *surface)
-            })
+        let grown = |s: Cut| Cut { min: [0, 1].map(|k| s.min[k] - cell[k]), max: [0, 1].map(|k| s.max[k] + cell[k]) };
+        seen.map(grown).ok_or(end)
     }
 
     /// What passes of it all, looked for on finer and finer grids.
@@ -241,7 +247,7 @@ impl Beam {
             if let Ok(cut) = window.search(&tracer, *wavelength_nm) {
                 let mut rays = RayBatch::new(cells * cells);
                 let mut work = tracer.work(cells * cells);
-                window.trace(&tracer, &mut rays, &mut work, cut, cells, *wavelength_nm);
+                window.trace(&tracer, &mut rays, &mut work, &cut.places(cells).collect::<Vec<_>>(), *wavelength_nm);
                 let area = (cut.max[0] - cut.min[0]) * (cut.max[1] - cut.min[1]);
                 beam.take(&rays, weight * area, lens.cover.as_ref());
             }
