@@ -1,62 +1,57 @@
-//! The diffusion filter of the example plugin: from the source and from the imager it gives the same picture, lit card and halo.
+//! The diffusion filter of the example plugin: from the source and from the imager it gives the same picture, lit card and halo. A
+//! program of its own, since the plugin is registered in it.
 
 /// The plugin itself, with its tests.
 #[path = "../plugins/examples/diffusion-filter/src/lib.rs"]
 mod diffusion_filter;
 
-use spectra_core::Isa;
-use spectra_plugins as _;
-use spectra_render::{Control, Renderer, Threads};
-use std::path::Path;
+#[path = "it/common/mod.rs"]
+mod common;
+
+use common::repository;
+use common::statistics::{self, Estimate, bits, estimates, over_seeds, pixels, ready, rendered};
+use spectra_render::Renderer;
 
 const SEEDS: u64 = 16;
 
-/// Illuminance of each pixel, lx, of one seed; and the same bits with other batches.
-fn render(direction: &str, count: &str, seed: u64) -> Vec<f64> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("plugins/examples/diffusion-filter/card.yaml");
-    let frames = [256, 100].map(|batch| {
-        let overrides = [
-            format!("render.direction={direction}"),
-            format!("render.{count}"),
-            format!("render.seed={seed}"),
-            format!("render.batch={batch}"),
-        ];
-        let scene = spectra_scene::load(&path, &overrides).unwrap_or_else(|faults| panic!("{faults}"));
-        let renderer = Renderer::new(scene, Isa::detect()).expect("the scene can be rendered");
-        renderer.run(&Threads(2), &Control::new()).expect("rendered").exposure
-    });
-    let y = |k: usize| &frames[k].channel("Y").expect("an XYZ imager").values;
-    assert_eq!(y(0), y(1), "batches of another size give other bits");
-    y(0).iter().map(|y| f64::from(*y)).collect()
+fn card(overrides: &[&str]) -> Renderer {
+    ready(statistics::load(&repository("plugins/examples/diffusion-filter/card.yaml"), overrides))
 }
 
-/// Mean and standard error of each pixel.
-fn estimate(direction: &str, count: &str) -> Vec<(f64, f64)> {
-    let runs: Vec<Vec<f64>> = (1..=SEEDS).map(|seed| render(direction, count, seed)).collect();
-    let n = SEEDS as f64;
-    let of = |pixel: usize| {
-        let mean = runs.iter().map(|run| run[pixel]).sum::<f64>() / n;
-        let variance = runs.iter().map(|run| (run[pixel] - mean) * (run[pixel] - mean)).sum::<f64>() / (n - 1.0);
-        (mean, (variance / n).sqrt())
-    };
-    (0..runs[0].len()).map(of).collect()
+/// Illuminance of each pixel, lx.
+fn estimate(direction: &str, count: &str) -> Vec<Estimate> {
+    estimates(&over_seeds(&card(&[direction, count]), 1..1 + SEEDS, pixels))
+}
+
+/// A stage that draws numbers of its own has the same bits in batches of any size.
+#[test]
+fn batches_of_any_size_have_the_same_bits() {
+    for few in [["render.direction=backward", "render.samples=64"], ["render.direction=forward", "render.rays=100000"]]
+    {
+        let by = |batch| bits(&rendered(&card(&[&few[..], &[batch]].concat())));
+        assert!(by("render.batch=256") == by("render.batch=100"), "{few:?}");
+    }
 }
 
 /// The 150 pixels' differences in standard errors have a mean square of 30/28 (Student's t of 30 degrees of freedom; good to 0.13),
 /// none is beyond what t exceeds in one of 370 such pictures, and the sums over card and halo agree within 3 standard errors.
 #[test]
 fn both_directions_are_equal() {
-    let (backward, forward) = (estimate("backward", "samples=1024"), estimate("forward", "rays=2000000"));
-    let middle = backward.iter().map(|b| b.0).fold(0.0, f64::max);
+    let (backward, forward) = (
+        estimate("render.direction=backward", "render.samples=1024"),
+        estimate("render.direction=forward", "render.rays=2000000"),
+    );
+    let middle = backward.iter().map(|b| b.mean).fold(0.0, f64::max);
     let (mut squares, mut most) = (0.0, 0.0_f64);
     // Difference, its variance, and light: card, halo.
     let mut parts = [[0.0; 3]; 2];
-    for ((b, eb), (f, ef)) in backward.iter().zip(&forward) {
-        let variance = eb * eb + ef * ef;
+    for (backward, forward) in backward.iter().zip(&forward) {
+        let (b, f) = (backward.mean, forward.mean);
+        let variance = backward.error * backward.error + forward.error * forward.error;
         squares += (f - b) * (f - b) / variance;
         most = most.max((f - b).abs() / variance.sqrt());
-        let part = &mut parts[usize::from(*b < 0.1 * middle)];
-        for (sum, add) in part.iter_mut().zip([f - b, variance, *b]) {
+        let part = &mut parts[usize::from(b < 0.1 * middle)];
+        for (sum, add) in part.iter_mut().zip([f - b, variance, b]) {
             *sum += add;
         }
     }

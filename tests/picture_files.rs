@@ -1,8 +1,12 @@
-//! Picture files beyond the ones that the program knows itself, with and without the feature `oiio`.
+//! Picture files beyond the ones that the program knows itself, with and without the feature `oiio`: a program of its own, since
+//! it is built once more with the feature.
 
+#[path = "it/common/mod.rs"]
 mod common;
 
-use common::{repository, spectra, text};
+#[cfg(feature = "oiio")]
+use common::run;
+use common::{repository, run_in, text};
 use std::path::Path;
 use std::process::Output;
 
@@ -18,7 +22,7 @@ fn scene(file: &str, more: &str) -> String {
 }
 
 fn in_folder(folder: &Path, arguments: &[&str]) -> Output {
-    spectra().current_dir(folder).args(arguments).output().expect("the program starts")
+    run_in(folder, arguments)
 }
 
 #[test]
@@ -59,7 +63,7 @@ mod without {
 #[cfg(feature = "oiio")]
 mod with {
     use super::*;
-    use common::shown;
+    use crate::common::shown;
     use exr::prelude::*;
 
     fn image(path: &Path) -> FlatImage {
@@ -81,8 +85,7 @@ mod with {
         let base = ["run", shown(&ortho), "--set", "imager.resolution=[150, 100]", "--samples", "2", "--set"];
         let run = |output: &str, to: &str| {
             let (output, to) = (format!("output={output}"), folder.path().join(to));
-            let done =
-                spectra().args(base).args([&output, "--output", shown(&to)]).output().expect("the program starts");
+            let done = run(&[&base[..], &[&output, "--output", shown(&to)]].concat());
             assert!(done.status.success(), "{}", text(&done.stderr));
             to.join("biotar-ortho.exr")
         };
@@ -131,7 +134,7 @@ mod with {
     fn plain_and_tiled_together_are_a_fault() {
         let ortho = repository("scenes/biotar-ortho.yaml");
         let set = "output=[exr, {kind: exr, tiled: true}]";
-        let output = spectra().args(["check", shown(&ortho), "--set", set]).output().expect("the program starts");
+        let output = run(&["check", shown(&ortho), "--set", set]);
         assert_eq!(output.status.code(), Some(2));
         assert!(text(&output.stderr).contains("two outputs write `SCENE.exr`"), "{}", text(&output.stderr));
     }

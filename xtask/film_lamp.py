@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """What colors do from one light to another, to the eye and to the layers of a film: an independent computation for the test
-`film_lamp_is_that_of_another_program` (tests/cli_film.rs), written as tests/data/film-lamp.csv.
+`film_lamp_is_that_of_another_program` (tests/it/cli_film.rs), written as tests/data/film-lamp.csv.
 
 Needs numpy, pyyaml and colour-science (BSD-3-Clause), which has the matching functions, CAT16, CIE Lab and CIEDE2000. Spectra are those
 under spectra/, interpolated here: lights in straight lines, surfaces by Sprague's formula, logarithmic sensitivities in

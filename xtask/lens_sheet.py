@@ -94,7 +94,7 @@ def page(infos):
         "Every lens in `lenses/`, with its drawing (rays of the e line on the axis, at 0.6 and at 0.95 of the largest field that passes) and the",
         "resolution chart through it, wide open, focused at 2 m or forty focal lengths (the anamorphic at 1 km). Focal length and f-number are",
         "those of the reference line, by the real marginal ray. Where each comes from, and what is doubtful, stands in its file;",
-        "`tests/lenses.rs` holds them to the figures of their patents. Written by `xtask/lens_sheet.py`.",
+        "`tests/it/lenses.rs` holds them to the figures of their patents. Written by `xtask/lens_sheet.py`.",
         "",
         "A lens named 100 mm whose circle is larger than 135 is shown as its patent has it, normalized; its frame is named.",
         "",

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """T-numbers of a lens file of spheres, planes and a stop, on the axis, by a tracer of its own: what `spectra lens info` is held
-against (tests/cli_lens.rs, figures in tests/data/t-numbers.csv).
+against (tests/it/cli_lens.rs, figures in tests/data/t-numbers.csv).
 
     python3 xtask/t_number.py lenses/zeiss-biotar-50-f1.4.yaml target/release/spectra
 

@@ -1,20 +1,41 @@
-//! `cargo run -p xtask -- web`: the page without a server, as a folder of files that any web server can give out.
+//! Chores of this repository that are programs.
+//!
+//! - `cargo run -p xtask -- web [FOLDER]`: the page without a server, as a folder of files that any web server can give out;
+//! - `cargo run -p xtask -- times [ARGUMENTS OF CARGO TEST]`: runs the tests and prints the slowest programs and tests;
+//! - `xtask timed PROGRAM`: the runner of test programs by which `.ci/run` knows their times; `xtask slow FILE SECONDS` judges them.
 
 mod link;
+mod times;
 mod web;
 
 use std::process::ExitCode;
 
+const USAGE: &str =
+    "usage: cargo run -p xtask -- web [FOLDER] | times [ARGUMENTS OF CARGO TEST] | timed PROGRAM | slow FILE SECONDS";
+
 fn main() -> ExitCode {
+    if std::env::var_os(link::ASKED).is_some() {
+        return ended(link::link(std::env::args_os().skip(1).collect()));
+    }
     let mut arguments = std::env::args().skip(1);
-    let done = if std::env::var_os(link::ASKED).is_some() {
-        link::link(std::env::args_os().skip(1).collect())
-    } else {
-        match (arguments.next().as_deref(), arguments.next()) {
-            (Some("web"), folder) => web::web(folder.as_deref().unwrap_or("target/web").as_ref()),
-            _ => Err("usage: cargo run -p xtask -- web [FOLDER]".to_owned()),
-        }
-    };
+    match arguments.next().as_deref() {
+        Some("web") => ended(web::web(arguments.next().as_deref().unwrap_or("target/web").as_ref())),
+        Some("times") => ended(times::times(arguments)),
+        Some("timed") => match times::timed(arguments) {
+            Ok(status) if status.success() => ExitCode::SUCCESS,
+            // What cargo shows as the program's own code.
+            Ok(status) => ExitCode::from(status.code().and_then(|code| u8::try_from(code).ok()).unwrap_or(1)),
+            Err(why) => ended(Err(why)),
+        },
+        Some("slow") => match (arguments.next(), arguments.next().and_then(|limit| limit.parse().ok())) {
+            (Some(file), Some(limit_s)) => ended(times::slow(file.as_ref(), limit_s)),
+            _ => ended(Err(USAGE.to_owned())),
+        },
+        _ => ended(Err(USAGE.to_owned())),
+    }
+}
+
+fn ended(done: Result<(), String>) -> ExitCode {
     match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(why) => {

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes spread.json beside it: what falls on the pixels around a point, for tests/scatter.rs.
+"""Writes spread.json beside it: what falls on the pixels around a point, for tests/it/scatter.rs.
 
     python3 crates/film/tests/reference/spread.py target/debug/spectra
 

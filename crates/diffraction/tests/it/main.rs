@@ -1,0 +1,4 @@
+//! The tests of this crate as its users see it: one program, so that what they need is linked once.
+
+mod closed_form;
+mod pixels;

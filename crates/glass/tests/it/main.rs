@@ -1,0 +1,7 @@
+//! The tests of this crate as its users see it: one program, so that what they need is linked once.
+
+mod absorption;
+mod acceptance;
+mod agf;
+mod catalogue;
+mod model;

@@ -1,0 +1,13 @@
+//! The tests of this crate as its users see it: one program, so that what they need is linked once.
+
+mod chance;
+mod onion;
+mod passing;
+mod paths;
+mod polarization;
+mod prisms;
+mod scatter;
+mod separation;
+mod stray;
+mod thin_films;
+mod workers;

@@ -1,0 +1,124 @@
+//! The page in a real browser: Chromium, driven by `playwright-core`, which `.ci/run` installs where it can be had.
+
+use spectra_core::Isa;
+use spectra_plugins as _;
+use spectra_view::{View, color_tester, view};
+use std::process::Command;
+use std::sync::mpsc;
+use std::time::Duration;
+
+const SCENE: &str = "spectra: 1\nsource: {kind: chart, chart: color-checker, distance: 2 m, luminance: 300 cd/m2, width: fill}\n\
+    lens: {file: zeiss-biotar-50-f1.4, f-number: f/2, focus: 2 m}\nimager: {kind: film, format: 135, resolution: [60, 40]}\n\
+    film: {stock: kodak-tri-x-400, metering: average}\nrender: {samples: 4}\noutput: [png]\n";
+
+/// The folder with `node_modules/playwright-core`, and the browser; else what is missing.
+fn browser() -> Result<(String, String), String> {
+    let folder =
+        std::env::var("SPECTRA_PLAYWRIGHT").map_err(|_| "SPECTRA_PLAYWRIGHT names no folder with playwright-core")?;
+    if !std::path::Path::new(&folder).join("node_modules/playwright-core").is_dir() {
+        return Err(format!("{folder} holds no node_modules/playwright-core"));
+    }
+    let chromium =
+        ["/usr/bin/chromium", "/usr/bin/chromium-browser"].into_iter().find(|path| std::path::Path::new(path).exists());
+    let chromium = chromium.ok_or("no Chromium is installed")?;
+    Command::new("node").arg("--version").output().map_err(|error| format!("node: {error}"))?;
+    Ok((folder, chromium.to_owned()))
+}
+
+#[test]
+fn a_person_turns_types_saves_and_is_told_what_is_wrong() {
+    let scene = tempfile::tempdir().expect("a folder");
+    let file = scene.path().join("scene.yaml");
+    std::fs::write(&file, SCENE).expect("written");
+    let own = View { scene: file.clone(), overrides: Vec::new(), port: 0, isa: Isa::detect(), threads: 2 };
+    if !driven("browser.mjs", |ready| drop(view(own, ready))) {
+        return;
+    }
+    let saved = std::fs::read_to_string(&file).expect("a file");
+    assert_eq!(saved, SCENE.replace("f/2, focus: 2 m", "f/5.6, focus: 2 m, aperture: {shape: iris, blades: 6}"));
+}
+
+/// A short one; `SPECTRA_BROWSER_SECONDS` makes it longer.
+#[test]
+fn random_use_leaves_neither_errors_nor_threads_behind() {
+    let (folder, chromium) = match browser() {
+        Ok(found) => found,
+        Err(why) => return println!("skipped: {why}"),
+    };
+    let program = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../target/debug/spectra");
+    // A process of its own, so that its threads and its memory are the server's alone.
+    if !program.exists() {
+        return println!("skipped: {} is not built", program.display());
+    }
+    let scene = tempfile::tempdir().expect("a folder");
+    let file = scene.path().join("scene.yaml");
+    std::fs::write(&file, SCENE).expect("written");
+    let mut server = Command::new(program)
+        .args(["view", "--no-open"])
+        .arg(&file)
+        .stdout(std::process::Stdio::piped())
+        .stderr(std::process::Stdio::null())
+        .spawn()
+        .expect("a server");
+    let mut address = String::new();
+    let out = server.stdout.take().expect("a pipe");
+    std::io::BufRead::read_line(&mut std::io::BufReader::new(out), &mut address).expect("an address");
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/random.mjs");
+    let process = server.id().to_string();
+    let seconds = std::env::var("SPECTRA_BROWSER_SECONDS").unwrap_or_else(|_| "10".to_owned());
+    let random = [script, &folder, &chromium, address.trim(), &process, &seconds];
+    let output = Command::new("node").args(random).output().expect("node");
+    let ended = server.try_wait().expect("asked");
+    let _ = server.kill();
+    let _ = server.wait();
+    let said = String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success() && ended.is_none(), "{said}");
+    println!("{said}");
+}
+
+/// Drives a page of what `serve` serves by a script beside this file, which says what fails; false where there is no browser.
+fn driven(script: &str, serve: impl FnOnce(Box<dyn FnOnce(&str)>) + Send + 'static) -> bool {
+    let (folder, chromium) = match browser() {
+        Ok(found) => found,
+        Err(why) => {
+            println!("skipped: {why}");
+            return false;
+        }
+    };
+    let (tell, hear) = mpsc::channel();
+    // The thread ends with the process.
+    std::thread::spawn(move || serve(Box::new(move |address: &str| tell.send(address.to_owned()).expect("heard"))));
+    let address = hear.recv_timeout(Duration::from_secs(60)).expect("an address");
+    let script = format!("{}/tests/{script}", env!("CARGO_MANIFEST_DIR"));
+    let output = Command::new("node").args([&script, &folder, &chromium, &address]).output().expect("node");
+    let said = String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{said}");
+    println!("{said}");
+    true
+}
+
+/// By `typescript`, from the types in the comments.
+#[test]
+fn the_code_of_the_pages_keeps_its_types() {
+    let Ok(folder) = std::env::var("SPECTRA_PLAYWRIGHT") else {
+        return println!("skipped: SPECTRA_PLAYWRIGHT names no folder with typescript");
+    };
+    let compiler = std::path::Path::new(&folder).join("node_modules/typescript/bin/tsc");
+    if !compiler.is_file() {
+        return println!("skipped: {folder} holds no node_modules/typescript");
+    }
+    let pages = concat!(env!("CARGO_MANIFEST_DIR"), "/page");
+    let output = Command::new("node").arg(compiler).args(["--project", pages]).output().expect("node");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stdout));
+}
+
+#[test]
+fn the_color_tester_has_the_figures_of_the_command_line_and_labels_that_do_not_overlap() {
+    driven("tester.mjs", |ready| drop(color_tester(0, ready)));
+}
+
+#[test]
+fn a_prism_is_dragged_and_its_rays_grow_and_stop() {
+    // The study is there whatever is shown.
+    driven("study.mjs", |ready| drop(color_tester(0, ready)));
+}

@@ -1,0 +1,6 @@
+//! The tests of this crate as its users see it: one program, so that what they need is linked once.
+
+mod imagers;
+mod laws;
+mod scheimpflug;
+mod sensor;

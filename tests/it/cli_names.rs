@@ -1,0 +1,778 @@
+//! Names, lists and hints: what the program tells a person to write works when it is written.
+//!
+//! Examples of `--help` and hints are run in an empty folder, where somebody with an installed program meets them.
+
+use crate::common::{answer_in, good, repository, run, run_in, shown, spectra, text, together};
+use serde_json::Value;
+use spectra_core::frame::{ExposureChannel, ExposureFrame, FrameSize};
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+/// What a run that must fail says.
+fn refused(arguments: &[&str]) -> String {
+    let folder = tempfile::tempdir().expect("a folder");
+    let output = answer_in(folder.path(), arguments);
+    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {}{}", text(&output.stdout), text(&output.stderr));
+    text(&output.stderr)
+}
+
+#[test]
+fn bundled_scenes_run_from_anywhere_under_every_name() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for name in ["gray-card", "scenes/gray-card.yaml", "./scenes/gray-card", "Gray_Card", "gray-c"] {
+        let small = ["--samples", "1", "--set", "imager.resolution=[48, 32]", "-o", "pictures"];
+        let output = run_in(folder.path(), &[&["run", name][..], &small].concat());
+        assert!(output.status.success(), "{name}: {}", text(&output.stderr));
+        let file = folder.path().join("pictures/gray-card.png");
+        assert!(file.is_file(), "{name}");
+        fs::remove_dir_all(folder.path().join("pictures")).expect("removed");
+    }
+    assert!(refused(&["check", "biotar"]).contains("which one? `biotar-"));
+    assert!(refused(&["check", "kodak-tri-x-400"]).contains("is a film stock"));
+}
+
+/// A hint never repeats what was typed.
+#[test]
+fn no_hint_suggests_what_was_typed() {
+    for typed in
+        ["scenes/biotar-orto", "scenes/biotar-orto.yaml", "biotar-orto", "gray-crad.yaml", "scenes/nothing-like-it"]
+    {
+        let said = refused(&["run", typed]);
+        assert!(said.contains("help: ") && !said.contains(&format!("did you mean `{typed}`")), "{said}");
+        let Some((_, rest)) = said.split_once("did you mean `") else { continue };
+        let meant = rest.split('`').next().expect("a name");
+        let folder = tempfile::tempdir().expect("a folder");
+        let output = answer_in(folder.path(), &["check", meant]);
+        assert!(output.status.success(), "{typed} -> {meant}: {}", text(&output.stderr));
+    }
+}
+
+#[test]
+fn parts_of_names_are_enough() {
+    for arguments in [
+        &["lens", "info", "helios"][..],
+        &["lens", "info", "Biotar 50"],
+        &["film", "info", "Tri-X"],
+        &["film", "info", "5207"],
+        &["spectrum", "info", "d 65"],
+        &["spectrum", "info", "5600 K"],
+        &["spectrum", "info", "blackbody:2000K"],
+        &["spectrum", "info", "line:632.8 nm"],
+        &["check", "gray-card", "--set", "lens.file=helios", "--set", "lens.focus=2 m"],
+        &["check", "biotar-ortho", "--set", "film.stock=tri-x"],
+        &["check", "biotar-ortho", "--set", "source.illuminant=5600K"],
+    ] {
+        let output = run(arguments);
+        assert!(output.status.success(), "{arguments:?}: {}", text(&output.stderr));
+    }
+    for (arguments, word) in [
+        (&["lens", "info", "canon"][..], "canon-35-f1.8"),
+        (&["lens", "info", "tri-x"], "`kodak-tri-x-400` is a film stock"),
+        (&["film", "info", "helios"], "`helios-44-58-f2` is a lens"),
+        (&["film", "info", "kodak"], "which one? "),
+        (&["spectrum", "info", "helios"], "`helios-44-58-f2` is a lens"),
+        (&["film", "info", "delta-3200"], "known: "),
+        (&["run", "helios"], "is a lens"),
+    ] {
+        let said = refused(arguments);
+        assert!(said.contains(word), "{arguments:?}: {said}");
+    }
+}
+
+/// A color temperature is a black body below 5000 K and daylight from there on: CIE 13.3.
+#[test]
+fn color_temperatures_are_lights() {
+    let of = |name: &str| {
+        let report: Value = serde_json::from_str(&good(&["spectrum", "info", name, "--json"])).expect("JSON");
+        report["xy"].to_string()
+    };
+    assert_eq!([of("3200K"), of("5600 K")], [of("blackbody:3200"), of("daylight:5600")]);
+}
+
+#[test]
+fn lists_have_the_words_that_one_chooses_by() {
+    for (arguments, words) in [
+        (&["list", "lens"][..], &["helios-44-58-f2", "58 mm", "f/2.0", "1958", "deg", "Helios-44 58 mm f/2"][..]),
+        (&["list", "lenses", "100"], &["zeiss-biotar-100-f1.4"]),
+        (&["list", "stock"], &["kodak-tri-x-400", "ISO 400", "black-and-white negative", "1954", "print stock\n"]),
+        (&["list", "scene"], &["biotar-ortho", "A resolution chart", "surfaces/zernike"]),
+        (&["list", "spectrum", "wratten"], &["wratten-12", "transmittance"]),
+        (&["list", "glass", "BK7"], &["SCHOTT/N-BK7", "nd 1.5168", "Vd 64.1"]),
+        (&["list", "coating"], &["bare", "ideal", "stack"]),
+        (&["list", "sensor"], &["nikon-d5100", "#red"]),
+        (&["list", "format"], &["135", "36 x 24 mm", "super-35"]),
+    ] {
+        let said = good(arguments);
+        for word in words {
+            assert!(said.contains(word), "{arguments:?} lacks `{word}`:\n{said}");
+        }
+    }
+    let lenses = good(&["list", "lens", "50"]);
+    assert!(!lenses.contains("helios"), "{lenses}");
+    let stocks = good(&["list", "stock"]);
+    let (camera, print) = stocks.split_once("print stock\n").expect("print stocks stand apart");
+    assert!(print.contains("kodak-vision-2383") && !camera.contains("kodak-vision-2383"), "{stocks}");
+    let stocks: Value = serde_json::from_str(&good(&["list", "stock", "--json"])).expect("JSON");
+    let tri_x = stocks.as_array().expect("a list").iter().find(|s| s["name"] == "kodak-tri-x-400").expect("there");
+    assert_eq!((tri_x["iso"].as_f64(), tri_x["year"].as_u64()), (Some(400.0), Some(1954)));
+    let lenses: Value = serde_json::from_str(&good(&["list", "lens", "--json"])).expect("JSON");
+    for lens in lenses.as_array().expect("a list") {
+        let keys = ["focal_length_mm", "f_number", "field_deg", "year"];
+        assert!(keys.iter().all(|key| lens.get(key).is_some()), "{lens}");
+    }
+}
+
+#[test]
+fn any_key_has_its_page() {
+    for (name, words) in [
+        ("render", &["render.samples", "render.seed"][..]),
+        ("output", &["rays", "exr"]),
+        ("focus", &["lens.focus", "lens.focus.by"]),
+        ("f-number", &["lens.f-number"]),
+        ("film.exposure", &["film/stock", "exposure"]),
+        ("halation", &["halation"]),
+        ("lens.coating.layer", &["Refractive index of the layer", "1 to 5"]),
+        ("film/stock", &["push"]),
+    ] {
+        let said = good(&["doc", name]);
+        for word in words {
+            assert!(said.contains(word), "{name} lacks `{word}`:\n{said}");
+        }
+    }
+    let halo = good(&["doc", "--search", "halo"]);
+    assert!(halo.contains("film/stock") || halo.contains("stock  halation"), "{halo}");
+    assert!(refused(&["doc", "rendr"]).contains("did you mean `render`?"));
+    let json: Value = serde_json::from_str(&good(&["doc", "film.exposure", "--json"])).expect("JSON");
+    assert!(json["found"].as_array().is_some_and(|found| !found.is_empty()), "{json}");
+}
+
+/// What is said of a key is said once on a page.
+#[test]
+fn pages_do_not_repeat_themselves() {
+    for page in ["scene", "lens", "surface", "stock", "film/stock"] {
+        let said = good(&["doc", page]);
+        // Examples write keys out again.
+        let said = said.split("\nExample\n").next().unwrap_or_default();
+        let keys =
+            said.lines().filter(|l| l.starts_with("  ") && !l.starts_with("   ")).filter_map(|l| l.split_once(": "));
+        let mut seen: BTreeMap<&str, usize> = BTreeMap::new();
+        for (key, _) in keys {
+            *seen.entry(key.trim()).or_default() += 1;
+        }
+        let twice: Vec<_> =
+            seen.iter().filter(|(key, n)| **n > 1 && !key.contains(' ') && **key != "spectra").collect();
+        assert!(twice.is_empty(), "{page}: {twice:?}");
+        assert!(said.matches("The layers, the one next to the air first.").count() <= 1, "{page}");
+    }
+}
+
+/// Every column of every bundled spectrum has figures and a picture.
+#[test]
+fn every_bundled_spectrum_can_be_shown() {
+    let list: Value = serde_json::from_str(&good(&["list", "spectrum", "--json"])).expect("JSON");
+    let mut names: Vec<String> = Vec::new();
+    // Beside the files there are the kinds, with their documentation.
+    for item in list.as_array().expect("a list").iter().filter(|item| item["documentation"].is_null()) {
+        let name = item["name"].as_str().expect("a name");
+        match item["columns"].as_array().expect("a list").as_slice() {
+            [] => names.push(name.to_owned()),
+            columns => names.extend(columns.iter().map(|c| format!("{name}#{}", c.as_str().expect("a name")))),
+        }
+    }
+    assert!(names.len() > 130 && names.contains(&"cie-rgb-1931#r".to_owned()), "{} spectra", names.len());
+    let folder = tempfile::tempdir().expect("a folder");
+    for name in &names {
+        let output = answer_in(folder.path(), &["spectrum", "info", name]);
+        assert!(output.status.success(), "{name}: {}", text(&output.stderr));
+    }
+    for some in names.chunks(24) {
+        let mut arguments = vec!["spectrum", "plot", "-o", "all.svg"];
+        arguments.extend(some.iter().map(String::as_str));
+        let output = answer_in(folder.path(), &arguments);
+        assert!(output.status.success(), "{some:?}: {}", text(&output.stderr));
+    }
+    println!("{} bundled spectra are shown", names.len());
+}
+
+#[test]
+fn tables_are_read_as_people_have_them() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let same = [
+        ("plain.csv", "wavelength_nm,power\n400,0.5\n500,1\n600,0.25\n"),
+        ("no-header.csv", "400,0.5\n500,1\n600,0.25\n"),
+        ("other-header.csv", "wavelength,value\n400,0.5\n500,1\n600,0.25\n"),
+        ("semicolons.csv", "nm;power\n400;0,5\n500;1\n600;0,25\n"),
+        ("blanks.txt", "400 0.5\n500 1\n600 0.25\n"),
+        ("tabs.dat", "nm\tpower\n400\t0,5\n500\t1\n600\t0,25\n"),
+        ("micrometers.csv", "um,power\n0.4,0.5\n0.5,1\n0.6,0.25\n"),
+        ("falling.txt", "600 0.25\n500 1\n400 0.5\n"),
+    ];
+    let mut first: Option<Value> = None;
+    for (name, content) in same {
+        fs::write(folder.path().join(name), content).expect("written");
+        let output = answer_in(folder.path(), &["spectrum", "info", name, "--json"]);
+        assert!(output.status.success(), "{name}: {}", text(&output.stderr));
+        let report: Value = serde_json::from_str(&text(&output.stdout)).expect("JSON");
+        let xyz = report["xyz"].clone();
+        assert_eq!(*first.get_or_insert(xyz.clone()), xyz, "{name}");
+        let told = text(&output.stderr);
+        match name {
+            "falling.txt" => assert!(told.contains("falling wavelengths"), "{told}"),
+            "micrometers.csv" => assert!(told.contains("wavelengths in micrometers"), "{told}"),
+            "plain.csv" | "tabs.dat" => assert!(told.is_empty(), "{told}"),
+            _ => {}
+        }
+    }
+    fs::write(folder.path().join("paint.csv"), "nm,paint,other\n400,0.2,0.1\n700,0.6,0.1\n").expect("written");
+    let output = answer_in(folder.path(), &["spectrum", "info", "paint.csv#paint", "--as", "reflectance"]);
+    assert!(output.status.success() && text(&output.stdout).contains(": reflectance"), "{}", text(&output.stdout));
+    assert!(!text(&output.stdout).contains("cd/m2"), "{}", text(&output.stdout));
+    assert!(text(&output.stdout).contains("rises to 700 nm and stays there"), "{}", text(&output.stdout));
+    assert!(good(&["spectrum", "info", "blackbody:20"]).contains("too little"));
+}
+
+#[test]
+fn words_that_are_no_commands_have_one_behind_them() {
+    for (typed, hint) in [
+        ("scene.yaml", "did you mean `spectra run scene.yaml`?"),
+        ("render", "did you mean `spectra run SCENE`?"),
+        ("licenses", "did you mean `spectra --licenses`?"),
+        ("helios", "did you mean `spectra lens info helios-44-58-f2`?"),
+    ] {
+        let said = refused(&[typed]);
+        assert!(said.contains(hint), "{said}");
+    }
+    for (arguments, word) in [
+        (&["run", "a.yaml", "--samples", "0"][..], "expected a whole number from 1 to 4194304"),
+        (&["run", "a.yaml", "--samples", "abc"], "expected a whole number from 1 to 4194304"),
+    ] {
+        let said = refused(arguments);
+        assert!(said.contains(word), "{said}");
+    }
+}
+
+#[test]
+fn completions_and_man_page_know_every_command() {
+    let bash = good(&["completions", "bash"]);
+    let man = good(&["man"]);
+    for command in ["run", "check", "view", "list", "doc", "lens", "film", "bench", "spectrum", "glass", "new", "build"]
+    {
+        assert!(bash.contains(command), "{command}");
+        assert!(man.contains(&format!("SPECTRA {}", command.to_uppercase())), "{command}");
+    }
+}
+
+/// Figures go to NAME.svg where no file is given.
+#[test]
+fn figures_have_a_name_of_their_own() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (arguments, file) in [
+        (&["lens", "draw", "helios-44-58-f2", "--rays", "1"][..], "helios-44-58-f2.svg"),
+        (&["film", "plot", "kodak-tri-x-400"], "kodak-tri-x-400.svg"),
+        (&["spectrum", "plot", "cie-rgb-1931#r"], "cie-rgb-1931-r.svg"),
+    ] {
+        let output = run_in(folder.path(), arguments);
+        assert!(output.status.success(), "{arguments:?}: {}", text(&output.stderr));
+        assert!(folder.path().join(file).is_file(), "{file}");
+    }
+}
+
+/// All commands, each as the words behind `spectra`.
+fn commands(of: &[String], found: &mut Vec<Vec<String>>) {
+    let arguments: Vec<&str> = of.iter().map(String::as_str).chain(["--help"]).collect();
+    let help = good(&arguments);
+    found.push(of.to_vec());
+    let Some((_, list)) = help.split_once("\nCommands:\n") else { return };
+    for line in list.lines().take_while(|line| line.starts_with("  ")) {
+        let Some(name) = line.split_whitespace().next().filter(|name| *name != "help") else { continue };
+        if line.starts_with("   ") {
+            continue;
+        }
+        commands(&[of, &[name.to_owned()]].concat(), found);
+    }
+}
+
+/// Examples that are no part of this test, and why.
+const LEFT_OUT: [(&str, &str); 2] = [
+    ("spectra build ", "compiles for minutes; the guide's test builds"),
+    ("./spectra-mine ", "what `spectra build` made"),
+];
+
+/// A picture of a person's own: channels with their units, brighter to the right and from channel to channel.
+fn own_picture(path: &Path, [width_px, height_px]: [u32; 2], channels: Vec<(String, &str)>) {
+    let size = FrameSize { width_px, height_px, width_mm: 36.0, height_mm: 24.0 };
+    let values = |at: usize| (0..size.pixels()).map(|i| (at + 1) as f32 + (i as u32 % width_px) as f32).collect();
+    let channel = |(at, (name, unit)): (usize, (String, &str))| ExposureChannel {
+        name,
+        unit: unit.to_owned(),
+        values: values(at),
+    };
+    let channels = channels.into_iter().enumerate().map(channel).collect();
+    spectra_pictures::write::write_exr(path, &ExposureFrame { size, channels }, &[]).expect("written");
+}
+
+/// Every example of every `--help`, in two parts.
+#[test]
+#[cfg(unix)]
+fn every_example_of_the_help_of_films_and_spectra_works() {
+    let done = examples_work(|example| is_of_films_and_spectra(example));
+    assert!(done >= 15, "{done} examples");
+}
+
+#[test]
+#[cfg(unix)]
+fn every_other_example_of_the_help_works() {
+    let done = examples_work(|example| !is_of_films_and_spectra(example));
+    assert!(done >= 15, "{done} examples");
+}
+
+fn is_of_films_and_spectra(example: &str) -> bool {
+    ["spectra film ", "spectra spectrum "].iter().any(|start| example.starts_with(start))
+}
+
+/// Runs examples of the help by a shell in one empty folder, with the files that examples name as a person's own; how many.
+#[cfg(unix)]
+fn examples_work(is_asked: impl Fn(&str) -> bool) -> usize {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut all = Vec::new();
+    commands(&[], &mut all);
+    let mut examples: Vec<String> = Vec::new();
+    for command in &all {
+        for flag in ["-h", "--help"] {
+            let arguments: Vec<&str> = command.iter().map(String::as_str).chain([flag]).collect();
+            let help = good(&arguments);
+            let lines = help.lines().map(str::trim);
+            let started =
+                lines.clone().filter_map(|l| l.strip_prefix("Start with: ")).map(|l| l.split(" (").next().unwrap_or(l));
+            for line in lines.filter(|l| l.starts_with("spectra ") || l.starts_with("./spectra")).chain(started) {
+                // A usage line is none.
+                if !line.contains("...") && !line.contains("<COMMAND>") && !examples.iter().any(|known| known == line) {
+                    examples.push(line.to_owned());
+                }
+            }
+        }
+    }
+    let own = |name: &str, content: &str| fs::write(folder.path().join(name), content).expect("written");
+    own("rays.csv", "x_mm,y_mm,z_mm,l,m,n\n0,1,-10,0,0,1\n");
+    own(
+        "melt.csv",
+        "wavelength_nm,n\n404.66,1.53024\n435.83,1.52668\n486.13,1.52238\n546.07,1.51872\n587.56,1.51680\n656.27,1.51432\n706.52,1.51289\n",
+    );
+    let photo = image::RgbImage::from_fn(48, 32, |x, y| image::Rgb([(5 * x) as u8, (7 * y) as u8, 90]));
+    photo.save(folder.path().join("photo.jpg")).expect("written");
+    fs::create_dir(folder.path().join("plates")).expect("made");
+    photo.save(folder.path().join("plates/plate.0001.png")).expect("written");
+    own_picture(&folder.path().join("a.exr"), [240, 160], ["X", "Y", "Z"].map(|name| (name.to_owned(), "lx")).to_vec());
+    fs::copy(folder.path().join("a.exr"), folder.path().join("b.exr")).expect("written");
+    let bands = (0..8).map(|i| (format!("S0.{},0nm", 425 + 50 * i), "W.m^-2.nm^-1"));
+    own_picture(&folder.path().join("spectral.exr"), [60, 40], bands.collect());
+    let exported = run_in(folder.path(), &["lens", "export", "tessar-50-f4.5", "-o", "tessar.zmx"]);
+    assert!(exported.status.success(), "{}", text(&exported.stderr));
+    let program = Path::new(env!("CARGO_BIN_EXE_spectra")).parent().expect("a folder").to_owned();
+    let path = std::env::join_paths(
+        std::iter::once(program).chain(std::env::split_paths(&std::env::var_os("PATH").unwrap_or_default())),
+    );
+    let path = path.expect("a path");
+    let mut done = 0;
+    for example in &examples {
+        if !is_asked(example) || LEFT_OUT.iter().any(|(start, _)| example.starts_with(start)) {
+            continue;
+        }
+        if let Some(rest) = example.strip_prefix("spectra view ") {
+            viewed(folder.path(), rest);
+            done += 1;
+            continue;
+        }
+        // A picture in full takes a minute: that it begins is enough.
+        let short = match example {
+            run if run.starts_with("spectra run ") => format!("{run} --time-limit 1s"),
+            // One scene of those that it names, small.
+            noise if noise.starts_with("spectra bench noise ") => {
+                let scenes = |word: &str| word.starts_with("bench/noise-") && word != "bench/noise-flat";
+                let words: Vec<&str> = noise.split(' ').filter(|word| !scenes(word)).collect();
+                format!("{} --seeds 2 --seconds 1 --set imager.resolution=[96,54]", words.join(" "))
+            }
+            // Fits of many terms take seconds.
+            terms if terms.starts_with("spectra spectrum ") => {
+                terms.replace("--terms 6", "--terms 3").replace("--terms 8", "--terms 3")
+            }
+            // As many rays as a small picture needs.
+            ghosts if ghosts.starts_with("spectra bench ghosts ") => {
+                format!("{ghosts} --set imager.resolution=[96,64]")
+            }
+            other => other.clone(),
+        };
+        let mut shell = Command::new("sh");
+        shell.args(["-c", &short]).current_dir(folder.path()).env("PATH", &path);
+        let begun = std::time::Instant::now();
+        let output = shell.env_remove("SPECTRA_ISA").stdin(Stdio::null()).output().expect("a shell");
+        assert!(output.status.success(), "{example}: {}", text(&output.stderr));
+        println!("{:5.1} s  {short}", begun.elapsed().as_secs_f64());
+        done += 1;
+    }
+    println!("{done} examples of --help work; left out: {LEFT_OUT:?}");
+    done
+}
+
+/// Starts the viewer with these arguments, and ends it once it has said where it is.
+#[cfg(unix)]
+fn viewed(folder: &Path, arguments: &str) {
+    let all = ["view"].into_iter().chain(arguments.split(' ').filter(|word| *word != "--no-open")).chain(["--no-open"]);
+    let mut command = spectra();
+    command.args(all).current_dir(folder).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = command.spawn().expect("the program starts");
+    let mut line = String::new();
+    let read =
+        std::io::BufRead::read_line(&mut std::io::BufReader::new(child.stdout.take().expect("piped")), &mut line);
+    child.kill().expect("it runs until it is ended");
+    let ended = child.wait_with_output().expect("it ended");
+    read.expect("a line");
+    assert!(line.starts_with("http://127.0.0.1:") && line.contains("/?token="), "{arguments}: {}", text(&ended.stderr));
+}
+
+/// A fault or a warning: what it says, where, how many letters are underlined, and its hint.
+#[derive(Clone)]
+struct Told {
+    message: String,
+    place: (String, usize, usize),
+    letters: usize,
+    hint: String,
+}
+
+impl Told {
+    /// What is between backquotes behind "did you mean".
+    fn meant(&self) -> Option<&str> {
+        self.hint.split_once("did you mean `")?.1.split('`').next()
+    }
+}
+
+fn place(text: &str) -> Option<(String, usize, usize)> {
+    let mut parts = text.rsplitn(3, ':');
+    let number = |part: Option<&str>| part.and_then(|n| n.parse::<usize>().ok());
+    let (column, line) = (number(parts.next())?, number(parts.next())?);
+    Some((parts.next()?.to_owned(), line, column))
+}
+
+/// A fault as `tests/broken` records it.
+fn told(said: &str) -> Option<Told> {
+    let message = said.lines().find_map(|l| l.trim_start().strip_prefix("\u{d7} "))?.to_owned();
+    let place = place(said.lines().find_map(|l| l.trim_start().strip_prefix("\u{256d}\u{2500}["))?.strip_suffix(']')?)?;
+    let underline =
+        said.lines().find(|l| l.trim_start().starts_with('\u{b7}') && l.contains(['\u{252c}', '\u{25b2}']))?;
+    let letters = underline.chars().filter(|c| matches!(c, '\u{2500}' | '\u{252c}' | '\u{25b2}')).count();
+    let (_, hint) = said.split_once("  help: ")?;
+    let hint: Vec<&str> = hint.split("\nerror: ").next()?.split_whitespace().collect();
+    Some(Told { message, place, letters, hint: hint.join(" ") })
+}
+
+/// The warnings that `tests/warned` records.
+fn warned(said: &str) -> Vec<Told> {
+    let of = |text: &str| {
+        let (line, hint) = text.split_once("\n  help: ")?;
+        let (at, message) = line.split_once(": ")?;
+        Some(Told { message: message.to_owned(), place: place(at)?, letters: 0, hint: hint.trim().to_owned() })
+    };
+    said.split("warning: ").filter_map(of).collect()
+}
+
+/// The recorded texts of a folder, each with its name, its own copy of the case, and the arguments.
+fn recorded(root: &Path) -> Vec<(String, String)> {
+    let mut texts: Vec<PathBuf> = fs::read_dir(root).expect("a folder").map(|e| e.expect("readable").path()).collect();
+    texts.retain(|path| path.extension().is_some_and(|ending| ending == "txt"));
+    texts.sort();
+    let named = |path: PathBuf| {
+        let name = path.file_stem().and_then(|s| s.to_str()).expect("plain names").to_owned();
+        (name, fs::read_to_string(&path).expect("text"))
+    };
+    texts.into_iter().map(named).collect()
+}
+
+/// A copy of a case, and the arguments that it is run with.
+fn copied(root: &Path, name: &str) -> (tempfile::TempDir, Vec<String>) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let case = root.join(name);
+    let own = if case.is_dir() { case.clone() } else { root.to_owned() };
+    for entry in fs::read_dir(&own).expect("a folder") {
+        let from = entry.expect("readable").path();
+        let is_of_case = case.is_dir() || from.file_stem().is_some_and(|stem| stem == name) || !is_case(&from);
+        if from.is_file() && is_of_case {
+            fs::copy(&from, folder.path().join(from.file_name().expect("a name"))).expect("copied");
+        }
+    }
+    let arguments = fs::read_to_string(case.join("args"));
+    let whole = if case.is_dir() { "check\nscene.yaml".to_owned() } else { format!("check\n{name}.yaml") };
+    let arguments = arguments.unwrap_or(whole);
+    (folder, arguments.lines().filter(|l| !l.starts_with('#')).map(str::to_owned).collect())
+}
+
+fn is_case(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ending == "yaml" || ending == "txt")
+}
+
+fn said_in(folder: &Path, arguments: &[String]) -> String {
+    let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    text(&answer_in(folder, &words).stderr)
+}
+
+/// A file with one line changed.
+fn with_line(content: &str, number: usize, change: impl Fn(&str) -> String) -> String {
+    let line = |(i, text): (usize, &str)| if i + 1 == number { change(text) } else { text.to_owned() };
+    content.lines().enumerate().map(line).collect::<Vec<_>>().join("\n") + "\n"
+}
+
+/// A line with `letters` characters from a column on replaced.
+fn replaced(line: &str, column: usize, letters: usize, by: &str) -> String {
+    let head: String = line.chars().take(column - 1).collect();
+    let tail: String = line.chars().skip(column - 1 + letters).collect();
+    format!("{head}{by}{tail}")
+}
+
+/// Each "did you mean" that is recorded is written in place of what is underlined, and the fault is gone.
+#[test]
+fn every_recorded_did_you_mean_works() {
+    let root = repository("tests/broken");
+    let mut done = 0;
+    for (name, said) in recorded(&root) {
+        // Of several faults each has its own; one is enough to see that the word can be written.
+        let mut all = said.split("\n\n").filter_map(told);
+        let Some(told) = all.find(|told| told.meant().is_some()).filter(|told| !told.place.0.starts_with("--")) else {
+            continue;
+        };
+        let (folder, arguments) = copied(&root, &name);
+        let (file, line, column) = &told.place;
+        let file = folder.path().join(file);
+        let Ok(content) = fs::read_to_string(&file) else { continue };
+        let meant = told.meant().expect("filtered");
+        fs::write(&file, with_line(&content, *line, |text| replaced(text, *column, told.letters, meant)))
+            .expect("written");
+        let now = said_in(folder.path(), &arguments);
+        assert!(!now.contains(&told.message), "{name}: `{meant}` does not help:\n{now}");
+        done += 1;
+    }
+    assert!(done >= 15, "{done} hints");
+    println!("{done} recorded hints `did you mean` work");
+}
+
+/// What a hint proposes to do with the text between its backquotes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Change {
+    /// Add this key, or this bracket.
+    Add,
+    /// Leave this key out.
+    Remove,
+    /// Write this value, or this key with its value.
+    Write,
+    /// Run this command.
+    Run,
+}
+
+/// The first change of a file that a hint proposes, and all commands in it.
+fn proposed(hint: &str) -> Vec<(Change, &str)> {
+    let mut found: Vec<(Change, &str)> = Vec::new();
+    let parts: Vec<&str> = hint.split('`').collect();
+    for at in (1..parts.len()).step_by(2) {
+        let (before, quoted, after) = (parts[at - 1], parts[at], parts.get(at + 1).unwrap_or(&""));
+        let is_open = quoted.contains("...")
+            || quoted == "key: value"
+            || quoted.split([' ', '/']).any(|w| w.len() > 2 && w.chars().all(|c| c.is_ascii_uppercase()));
+        let is_pair = quoted.split_once(": ").is_some_and(|(key, _)| is_key(key));
+        let change = match () {
+            () if quoted.starts_with("spectra ") => Change::Run,
+            () if before.ends_with("add ") => Change::Add,
+            () if before.ends_with("leave ") && after.starts_with(" out") => Change::Remove,
+            () if is_pair && !before.ends_with("scene: ") && !before.ends_with("under ") => Change::Write,
+            () if ["write ", "as in ", "brackets: ", "mean "].iter().any(|word| before.ends_with(word)) => {
+                Change::Write
+            }
+            () => continue,
+        };
+        if !is_open && (change == Change::Run || found.iter().all(|(other, _)| *other == Change::Run)) {
+            found.push((change, quoted));
+        }
+    }
+    found
+}
+
+fn is_key(word: &str) -> bool {
+    !word.is_empty() && word.chars().all(|c| c.is_ascii_lowercase() || c == '-' || c.is_ascii_digit())
+}
+
+/// Where the value that starts at a character of a line ends: at its bracket, or before what ends a plain one.
+fn value_end(line: &[char], start: usize) -> usize {
+    let mut depth = 0_usize;
+    for (at, c) in line.iter().enumerate().skip(start) {
+        match c {
+            '{' | '[' => depth += 1,
+            '}' | ']' if depth == 0 => return at,
+            '}' | ']' => depth -= 1,
+            ',' if depth == 0 => return at,
+            '#' if depth == 0 && at > 0 && line[at - 1] == ' ' => return at - 1,
+            _ => {}
+        }
+    }
+    line.len()
+}
+
+/// Start of a key in a line, and start and end of its value, in characters.
+fn entry(line: &[char], key: &str) -> Option<(usize, usize, usize)> {
+    let wanted: Vec<char> = format!("{key}:").chars().collect();
+    let is_start = |at: usize| at == 0 || matches!(line[at - 1], ' ' | '{' | ',');
+    let at = (0..line.len()).find(|&at| is_start(at) && line[at..].starts_with(&wanted))?;
+    let mut start = at + wanted.len();
+    while line.get(start) == Some(&' ') {
+        start += 1;
+    }
+    Some((at, start, value_end(line, start)))
+}
+
+/// The file with the change in it; `None` where it has no place for it.
+fn changed(content: &str, told: &Told, change: Change, text: &str) -> Option<String> {
+    let (_, number, column) = &told.place;
+    let line: Vec<char> = content.lines().nth(number - 1)?.chars().collect();
+    let joined = |parts: &[&[char]]| parts.concat().into_iter().collect::<String>();
+    let put = |new: String| Some(with_line(content, *number, |_| new.clone()));
+    let key = text.split_once(": ").map(|(key, _)| key).filter(|key| is_key(key));
+    let letters: Vec<char> = text.chars().collect();
+    if change == Change::Remove {
+        let (at, _, mut end) = entry(&line, text)?;
+        while line.get(end).is_some_and(|c| matches!(c, ',' | ' ')) {
+            end += 1;
+        }
+        return put(joined(&[&line[..at], &line[end..]]).replace(", }", "}"));
+    }
+    let Some(key) = key else {
+        let at = (column - 1).min(line.len());
+        if change == Change::Add {
+            return put(joined(&[&line, &letters]));
+        }
+        let end = if told.letters > 0 { at + told.letters } else { value_end(&line, at) };
+        return put(joined(&[&line[..at], &letters, &line[end.min(line.len())..]]));
+    };
+    // A section of the scene: in place of the one that is there, or a line of its own.
+    if ["spectra", "source", "lens", "imager", "film", "output"].contains(&key) && !line.starts_with(&[' ']) {
+        let head = format!("{key}:");
+        if content.lines().any(|line| line.starts_with(&head)) {
+            let lines = content.lines().map(|line| if line.starts_with(&head) { text } else { line });
+            return Some(lines.collect::<Vec<_>>().join("\n") + "\n");
+        }
+        return Some(if key == "spectra" { format!("{text}\n{content}") } else { format!("{content}\n{text}\n") });
+    }
+    if let Some((at, _, end)) = entry(&line, key) {
+        return put(joined(&[&line[..at], &letters, &line[end..]]));
+    }
+    let at = (column - 1).min(line.len());
+    if told.letters > 0 && told.message.contains("unknown key") {
+        return put(joined(&[&line[..at], &letters, &line[(at + told.letters).min(line.len())..]]));
+    }
+    // Into the map of one line that is there, or before the line.
+    match line[..(at + 1).min(line.len())].iter().rposition(|c| *c == '{') {
+        Some(brace) => put(joined(&[&line[..=brace], &letters, &[',', ' '], &line[brace + 1..]]).replace(", }", "}")),
+        None => {
+            let indent = line.iter().take_while(|c| **c == ' ').count();
+            put(format!("{}{text}\n{}", " ".repeat(indent), joined(&[&line])))
+        }
+    }
+}
+
+/// Recorded hints that this test cannot write by itself, and why.
+const BY_HAND: [(&str, &str); 4] = [
+    ("dng-from-film", "`dng` is left out of a list, not of a map"),
+    ("empty-file", "an empty file is no scene with its first line alone"),
+    ("lens-index-as-glass", "`nd` is written in place of another key, `glass`"),
+    ("width-without-a-unit", "the width that is meant leaves a narrow border, and a warning of it"),
+];
+
+/// What the other hints propose is written, and the fault or the warning is gone; commands in them are run.
+#[test]
+fn every_recorded_proposal_works() {
+    let (mut changes, mut commands): (Vec<Proposal>, Vec<(String, String)>) = (Vec::new(), Vec::new());
+    let mut left: Vec<&str> = BY_HAND.iter().map(|(name, _)| *name).collect();
+    for folder in ["broken", "warned"] {
+        for (name, said) in recorded(&repository("tests").join(folder)) {
+            let all: Vec<Told> =
+                if folder == "broken" { said.split("\n\n").filter_map(told).collect() } else { warned(&said) };
+            for told in all.iter().filter(|told| folder == "warned" || told.meant().is_none()) {
+                for (change, text) in proposed(&told.hint) {
+                    let text = text.to_owned();
+                    if change == Change::Run {
+                        if !commands.iter().any(|(_, known)| *known == text) && !text.contains(".yaml") {
+                            commands.push((name.clone(), text));
+                        }
+                        continue;
+                    }
+                    if let Some(at) = left.iter().position(|known| *known == name) {
+                        left.remove(at);
+                        continue;
+                    }
+                    if BY_HAND.iter().any(|(known, _)| *known == name) {
+                        continue;
+                    }
+                    let (name, said, told) = (name.clone(), said.clone(), told.clone());
+                    changes.push(Proposal { folder, name, said, told, change, text });
+                }
+            }
+        }
+    }
+    let elsewhere = tempfile::tempdir().expect("a folder");
+    let fails = |(name, text): &(String, String)| {
+        let words: Vec<&str> = text.split_whitespace().skip(1).collect();
+        let output = run_in(elsewhere.path(), &words);
+        (!output.status.success()).then(|| format!("{name}: `{text}`: {}", self::text(&output.stderr)))
+    };
+    let wrong = [together(&commands, fails), together(&changes, Proposal::fails)].concat();
+    let wrong: Vec<String> = wrong.into_iter().flatten().collect();
+    let (files, commands) = (changes.len(), commands.len());
+    println!("{files} recorded proposals work, and {commands} commands; by hand: {BY_HAND:?}");
+    assert!(wrong.is_empty(), "{}", wrong.join("\n\n"));
+    assert!(left.is_empty(), "nothing is proposed by {left:?}");
+    assert!(files >= 40, "{files} proposals");
+}
+
+/// A change of a case's file that its recorded text proposes.
+struct Proposal {
+    folder: &'static str,
+    name: String,
+    said: String,
+    told: Told,
+    change: Change,
+    text: String,
+}
+
+impl Proposal {
+    /// Why it does not help.
+    fn fails(&self) -> Option<String> {
+        let Self { folder, name, said, told, change, text } = self;
+        let (copy, arguments) = copied(&repository("tests").join(folder), name);
+        let file = copy.path().join(&told.place.0);
+        let content = fs::read(&file).unwrap_or_default();
+        let content = String::from_utf8_lossy(&content).into_owned();
+        let Some(new) = changed(&content, told, *change, text) else {
+            return Some(format!("{name}: no place for `{text}` ({change:?}): {}", told.hint));
+        };
+        fs::write(&file, &new).expect("written");
+        let now = said_in(copy.path(), &arguments);
+        let gone = match *folder {
+            "broken" => !now.contains(&told.message),
+            _ => now.matches("warning: ").count() < said.matches("warning: ").count(),
+        };
+        if gone && !now.contains("panicked") {
+            return None;
+        }
+        let diff: Vec<&str> = new.lines().filter(|l| !content.lines().any(|old| old == *l)).collect();
+        Some(format!("{name}: `{text}` ({change:?}) does not help: {diff:?}\n{now}"))
+    }
+}
+
+/// The README's paths of scenes are names of scenes that are there.
+#[test]
+fn scenes_of_the_readme_are_there() {
+    let readme = fs::read_to_string(repository("README.md")).expect("there");
+    let named: Vec<&str> =
+        readme.split('`').filter(|word| word.starts_with("scenes/") && word.ends_with(".yaml")).collect();
+    assert!(named.len() > 5);
+    for scene in named {
+        assert!(Path::new(shown(&repository(scene))).is_file(), "{scene}");
+    }
+}

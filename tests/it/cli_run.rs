@@ -1,0 +1,642 @@
+//! `spectra run`, from a scene to files, events and exit codes.
+
+use crate::common::{good, repository, run, shown, spectra, text};
+use exr::prelude::{ReadChannels, ReadLayers};
+use serde_json::Value;
+use spectra_core::Isa;
+use std::collections::BTreeMap;
+use std::io::{BufRead, BufReader, Read};
+use std::path::Path;
+use std::process::{Child, Stdio};
+use std::time::{Duration, Instant};
+
+/// The main scene, small and noisy.
+const TINY: [&str; 4] = ["--set", "imager.resolution=[48, 32]", "--samples", "4"];
+
+fn ortho() -> String {
+    shown(&repository("scenes/biotar-ortho.yaml")).to_owned()
+}
+
+fn tiny(output: &Path, more: &[&str]) -> Vec<String> {
+    let scene = ortho();
+    let arguments = ["run", &scene, "--output", shown(output)].into_iter().chain(TINY).chain(more.iter().copied());
+    arguments.map(str::to_owned).collect()
+}
+
+fn json(path: &Path) -> Value {
+    serde_json::from_slice(&std::fs::read(path).expect("a file")).expect("JSON")
+}
+
+/// Text attributes of an EXR.
+fn attributes(path: &Path) -> BTreeMap<String, String> {
+    let reader = exr::prelude::read().no_deep_data().largest_resolution_level().all_channels().first_valid_layer();
+    let image = reader.all_attributes().from_file(path).expect("an EXR");
+    let all = image.layer_data.attributes.other.iter().filter_map(|(name, value)| match value {
+        exr::meta::attribute::AttributeValue::Text(text) => Some((name.to_string(), text.to_string())),
+        _ => None,
+    });
+    all.collect()
+}
+
+#[test]
+fn three_files_are_written_and_say_what_they_are() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("new/out");
+    let output = spectra().args(tiny(&out, &["--seed", "7", "--threads", "1"])).output().expect("the program starts");
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let mut names: Vec<String> = std::fs::read_dir(&out)
+        .expect("a folder")
+        .map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned())
+        .collect();
+    names.sort();
+    assert_eq!(names, ["biotar-ortho.exr", "biotar-ortho.json", "biotar-ortho.png"]);
+
+    let report = json(&out.join("biotar-ortho.json"));
+    assert_eq!(report["rays"], 48 * 32 * 4);
+    assert_eq!((&report["seed"], &report["threads"], &report["partial"]), (&7.into(), &1.into(), &false.into()));
+    assert!(report["seconds"].as_f64().is_some_and(|s| s > 0.0));
+    assert!(report["rays_per_second"].as_f64().is_some_and(|r| r > 0.0));
+    let lost = &report["lost"];
+    let total = lost["total"].as_u64().expect("a count");
+    assert!(total > 0 && total < 48 * 32 * 4, "{lost}");
+    let by_cause: u64 = lost["by_cause"].as_object().expect("a map").values().filter_map(Value::as_u64).sum();
+    assert_eq!(by_cause, total);
+    let by_surface = lost["by_surface"].as_array().expect("a list").iter().map(|row| {
+        let causes = row.as_object().expect("a map").iter().filter(|(key, _)| lost["by_cause"].get(key).is_some());
+        causes.filter_map(|(_, rays)| rays.as_u64()).sum::<u64>()
+    });
+    assert_eq!(by_surface.sum::<u64>(), total);
+
+    let attributes = attributes(&out.join("biotar-ortho.exr"));
+    assert!(attributes["spectra:scene"].contains("kind: chart"));
+    assert!(attributes["spectra:lens"].contains("Biotar") && attributes["spectra:lens patent"].contains("1786916"));
+    assert!(attributes.contains_key("spectra:film coordinates") && !attributes.contains_key("spectra:partial"));
+
+    let png = std::fs::read(out.join("biotar-ortho.png")).expect("a picture");
+    assert_eq!(&png[..8], b"\x89PNG\r\n\x1a\n");
+    let size = |at: usize| u32::from_be_bytes(png[at..at + 4].try_into().expect("four bytes"));
+    assert_eq!((size(16), size(20)), (48, 32));
+}
+
+/// One EXR, whatever the number of threads, the batch and the instruction set; in both directions of light.
+#[test]
+fn bits_do_not_depend_on_how_the_work_is_done() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for direction in ["render.direction=backward", "render.direction=forward"] {
+        let render = |name: &str, more: &[&str], isa: &str| {
+            let out = folder.path().join(name);
+            let mut command = spectra();
+            command.args(tiny(&out, &["--set", direction])).args(more).env("SPECTRA_ISA", isa);
+            let output = command.output().expect("the program starts");
+            assert!(output.status.success(), "{}", text(&output.stderr));
+            std::fs::read(out.join("biotar-ortho.exr")).expect("an EXR")
+        };
+        let wanted = render("reference", &["--threads", "1"], "baseline");
+        for isa in Isa::available() {
+            assert!(render(isa.name(), &["--threads", "2"], isa.name()) == wanted, "{direction}: {}", isa.name());
+        }
+        for batch in ["render.batch=64", "render.batch=1000"] {
+            assert!(render("batch", &["--threads", "2", "--set", batch], "") == wanted, "{direction}: {batch}");
+        }
+        // And that the comparison can tell.
+        assert!(render("seed", &["--threads", "1", "--seed", "2"], "baseline") != wanted, "{direction}");
+    }
+}
+
+#[test]
+fn json_is_one_event_a_line() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let output = spectra().args(tiny(folder.path(), &["--json"])).output().expect("the program starts");
+    assert!(output.status.success());
+    let stdout = text(&output.stdout);
+    let events: Vec<Value> = stdout.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect();
+    let named = |name: &str| events.iter().filter(|event| event["event"] == name).collect::<Vec<_>>();
+    assert_eq!((named("start").len(), named("done").len()), (1, 1));
+    let written: Vec<&str> = named("written").iter().filter_map(|event| event["path"].as_str()).collect();
+    assert_eq!(written.len(), 3);
+    assert!(written.iter().all(|path| Path::new(path).is_file()), "{written:?}");
+    assert_eq!(events.last().map(|event| &event["event"]), Some(&"done".into()));
+    assert!(output.stderr.is_empty(), "{}", text(&output.stderr));
+}
+
+#[test]
+fn quiet_is_quiet() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let output = spectra().args(tiny(folder.path(), &["--quiet"])).output().expect("the program starts");
+    assert!(output.status.success());
+    assert!(output.stdout.is_empty() && output.stderr.is_empty(), "{}", text(&output.stderr));
+    assert!(folder.path().join("biotar-ortho.json").is_file());
+}
+
+#[test]
+fn pipes_get_plain_lines() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let output = spectra().args(tiny(folder.path(), &[])).output().expect("the program starts");
+    for stream in [&output.stdout, &output.stderr] {
+        assert!(stream.iter().all(|byte| *byte >= b' ' || *byte == b'\n'), "{}", text(stream));
+    }
+    assert_eq!(text(&output.stdout).lines().filter(|line| line.starts_with("wrote ")).count(), 1);
+    assert!(text(&output.stderr).contains("rays/s"));
+}
+
+/// A render that would take hours, once it has begun.
+fn endless(output: &Path, more: &[&str]) -> (Child, BufReader<std::process::ChildStdout>) {
+    let scene = ortho();
+    let mut child = spectra()
+        .args(["run", &scene, "--output", shown(output), "--json", "--samples", "4000000"])
+        .args(more)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    let mut events = BufReader::new(child.stdout.take().expect("piped"));
+    let mut line = String::new();
+    while !line.contains("\"progress\"") {
+        line.clear();
+        assert!(events.read_line(&mut line).expect("UTF-8") > 0, "ended before any progress");
+    }
+    (child, events)
+}
+
+#[cfg(unix)]
+fn signal(child: &Child, name: &str) {
+    let killed = std::process::Command::new("sh").args(["-c", &format!("kill -{name} {}", child.id())]).status();
+    assert!(killed.expect("a shell").success());
+}
+
+/// 128 + the number of the signal, as shells and batch systems have it; what there is, is kept by all of them.
+#[cfg(unix)]
+#[test]
+fn exit_codes_tell_signals_apart() {
+    for (name, code) in [("TERM", 143), ("HUP", 129)] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let (mut child, mut events) = endless(folder.path(), &[]);
+        signal(&child, name);
+        let mut rest = String::new();
+        events.read_to_string(&mut rest).expect("UTF-8");
+        assert_eq!(child.wait().expect("it ends").code(), Some(code), "{name}");
+        assert!(folder.path().join("biotar-ortho.exr").is_file());
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_keeps_what_there_is_within_a_second() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (mut child, mut events) = endless(folder.path(), &[]);
+    let begun = Instant::now();
+    signal(&child, "INT");
+    let mut rest = String::new();
+    events.read_to_string(&mut rest).expect("UTF-8");
+    let status = child.wait().expect("it ends");
+    assert!(begun.elapsed() < Duration::from_secs(1), "{:?}", begun.elapsed());
+    assert_eq!(status.code(), Some(130));
+    assert!(rest.contains("\"interrupted\":true"), "{rest}");
+    let report = json(&folder.path().join("biotar-ortho.json"));
+    assert_eq!(report["partial"], true);
+    assert!(report["rays"].as_u64().is_some_and(|rays| rays > 0));
+    assert!(attributes(&folder.path().join("biotar-ortho.exr")).contains_key("spectra:partial"));
+    assert!(folder.path().join("biotar-ortho.png").is_file());
+}
+
+/// A picture that is not whole takes no name of one that may be.
+#[cfg(unix)]
+#[test]
+fn ctrl_c_leaves_files_that_are_there() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    std::fs::write(at("biotar-ortho.png"), "an hour's work").expect("written");
+    let (mut child, mut events) = endless(folder.path(), &[]);
+    signal(&child, "INT");
+    let mut rest = String::new();
+    events.read_to_string(&mut rest).expect("UTF-8");
+    assert_eq!(child.wait().expect("it ends").code(), Some(130));
+    assert!(rest.contains("biotar-ortho.png` stays as it was"), "{rest}");
+    assert_eq!(std::fs::read(at("biotar-ortho.png")).expect("there"), b"an hour's work");
+    for name in ["biotar-ortho.partial.exr", "biotar-ortho.partial.png", "biotar-ortho.partial.json"] {
+        assert!(at(name).is_file() && rest.contains(name), "{name}: {rest}");
+    }
+    assert!(!at("biotar-ortho.exr").exists());
+}
+
+#[test]
+fn a_time_limit_ends_in_a_partial_picture_and_no_error() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (mut child, mut events) = endless(folder.path(), &["--time-limit", "5 s"]);
+    let mut rest = String::new();
+    events.read_to_string(&mut rest).expect("UTF-8");
+    assert_eq!(child.wait().expect("it ends").code(), Some(0));
+    assert!(rest.contains("\"interrupted\":false") && rest.contains("\"partial\":true"), "{rest}");
+    let report = json(&folder.path().join("biotar-ortho.json"));
+    assert_eq!(report["partial"], true);
+    let seconds = report["seconds"].as_f64().expect("a number");
+    assert!((0.2..5.1).contains(&seconds), "{seconds}");
+}
+
+/// Before light is traced there is nothing to write: said, and no folder is left behind.
+#[test]
+fn a_time_limit_that_is_over_before_light_says_so() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("out");
+    let output = spectra().args(tiny(&out, &["--time-limit", "1 us"])).output().expect("the program starts");
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    assert!(text(&output.stderr).contains("ended before rendering began"), "{}", text(&output.stderr));
+    assert!(!out.exists());
+}
+
+/// The folder goes while light is traced: it is made again.
+#[test]
+fn a_folder_that_vanishes_is_made_again() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("a/out");
+    let (mut child, mut events) = endless(&out, &["--time-limit", "2500 ms"]);
+    std::fs::remove_dir_all(folder.path().join("a")).expect("removed");
+    let mut rest = String::new();
+    events.read_to_string(&mut rest).expect("UTF-8");
+    assert_eq!(child.wait().expect("it ends").code(), Some(0), "{rest}");
+    for name in ["biotar-ortho.exr", "biotar-ortho.png", "biotar-ortho.json"] {
+        assert!(out.join(name).is_file(), "{name}");
+    }
+}
+
+/// Where nothing can be written any more, the light is kept in the folder for temporary files, and the failure says where.
+#[test]
+fn light_that_cannot_be_written_is_kept_elsewhere() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let kept = folder.path().join("kept");
+    std::fs::create_dir(&kept).expect("made");
+    let out = folder.path().join("out");
+    let scene = ortho();
+    let mut child = spectra()
+        .args(["run", &scene, "--output", shown(&out), "--json", "--samples", "4000000", "--time-limit", "2500 ms"])
+        .env("TMPDIR", &kept)
+        .env("TEMP", &kept)
+        .env("TMP", &kept)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    let mut events = BufReader::new(child.stdout.take().expect("piped"));
+    let mut line = String::new();
+    while !line.contains("\"progress\"") {
+        line.clear();
+        assert!(events.read_line(&mut line).expect("UTF-8") > 0, "ended before any progress");
+    }
+    // A file in the way of the folder: it cannot be made again.
+    std::fs::remove_dir_all(&out).expect("removed");
+    std::fs::write(&out, "").expect("written");
+    let mut rest = String::new();
+    events.read_to_string(&mut rest).expect("UTF-8");
+    assert_eq!(child.wait().expect("it ends").code(), Some(1), "{rest}");
+    let files: Vec<_> = std::fs::read_dir(&kept).expect("a folder").map(|e| e.expect("an entry").path()).collect();
+    let [file] = &files[..] else { panic!("{files:?}") };
+    assert!(rest.contains(shown(file)), "{rest}");
+    assert!(attributes(file).contains_key("spectra:partial"));
+}
+
+/// A disk that is full, as a limit of the size of files stands for it: what fits in half floats is kept so at its own place; what
+/// does not fit at all ends with a word, and no part of a file stays.
+#[cfg(unix)]
+#[test]
+fn a_full_disk_leaves_half_floats_or_nothing() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let elsewhere = folder.path().join("elsewhere");
+    std::fs::create_dir(&elsewhere).expect("made");
+    let scene = ortho();
+    let more = ["--samples", "4", "--set", "imager.resolution=[192, 128]", "--set", "output=[exr]"];
+    let run = |name: &str, blocks: Option<u64>| {
+        let out = folder.path().join(name);
+        // Blocks of 512 bytes.
+        let limit = blocks.map_or_else(String::new, |blocks| format!("ulimit -f {blocks}; "));
+        let output = std::process::Command::new("sh")
+            .args(["-c", &format!("{limit}exec \"$@\""), "sh", env!("CARGO_BIN_EXE_spectra"), "run", &scene])
+            .args(["-o", shown(&out)])
+            .args(more)
+            .env("TMPDIR", &elsewhere)
+            .output()
+            .expect("a shell");
+        (output, out)
+    };
+    let names = |folder: &Path| {
+        let entries = std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").file_name());
+        entries.map(|name| name.to_string_lossy().into_owned()).collect::<Vec<_>>()
+    };
+    let (output, out) = run("whole", None);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let file = out.join("biotar-ortho.exr");
+    let (whole, bytes) = (planes(&file), std::fs::metadata(&file).expect("there").len());
+    let (output, out) = run("half", Some(bytes * 8 / 10 / 512));
+    let file = out.join("biotar-ortho.exr");
+    let said = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(said.contains(&format!("the light was saved in {}, in half floats", shown(&file))), "{said}");
+    assert_eq!((names(&out), names(&elsewhere)), (vec!["biotar-ortho.exr".to_owned()], vec![]));
+    for (name, plane) in planes(&file) {
+        for (kept, was) in plane.iter().zip(&whole[&name]) {
+            assert!((kept - was).abs() <= 1e-3 * was.abs() + 1e-7, "{name}: {kept} of {was}");
+        }
+    }
+    let (output, out) = run("nothing", Some(4));
+    let said = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(said.contains("cannot be written") && said.contains("the light could not be saved"), "{said}");
+    assert_eq!((names(&out), names(&elsewhere)), (vec![], vec![]));
+}
+
+/// What is worth knowing of a scene is said by `check` and by a series, too: once, and in one line where several films or lamps
+/// have it.
+#[test]
+fn notes_are_said_once_by_check_run_and_series() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = folder.path().join("notes.yaml");
+    let said = "\
+spectra: 1
+source: {kind: chart, chart: resolution, distance: 2 m, width: fill, illuminant: 0.5 * helium + argon, luminance: 300 cd/m2}
+lens: {file: zeiss-biotar-50-f1.4, f-number: f/1.4, focus: 2 m}
+imager: {kind: film, format: 135, resolution: [24, 16]}
+film:
+  - {name: ortho, stock: ilford-ortho-plus, metering: average, exposure: 1/60 s}
+  - {name: pan, stock: kodak-tri-x-400, metering: average, exposure: 1/60 s}
+render: {samples: 1}
+output: [exr]
+";
+    let sweep = "sweep: {render.seed: [1, 2]}\n";
+    for (command, more) in [("check", ""), ("run", ""), ("check", sweep), ("run", sweep)] {
+        std::fs::write(&scene, format!("{said}{more}")).expect("written");
+        let out = folder.path().join("out");
+        let to: &[&str] = if command == "run" { &["-o", shown(&out)] } else { &[] };
+        let output = spectra().args([command, shown(&scene)]).args(to).output().expect("the program starts");
+        let said = text(&output.stderr);
+        assert!(output.status.success(), "{said}");
+        let once = |words: &str| said.matches(words).count() == 1;
+        assert!(once("f/1.4 is taken as wide open"), "{command}: {said}");
+        assert!(once("the line strengths of `helium` and `argon` were estimated"), "{command}: {said}");
+        assert!(once("ortho, pan: the camera meters"), "{command}: {said}");
+    }
+    let output = spectra().args(["check", "--json", shown(&scene)]).output().expect("the program starts");
+    let report: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!(report["scenes"][0]["notes"].as_array().expect("a list").len(), 2, "{report}");
+}
+
+/// Two scenes, one folder, no mixing; and a picture by its name, and nothing else.
+#[test]
+fn outputs_bear_the_name_of_their_scene_or_their_own() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = folder.path();
+    let names = |folder: &Path| {
+        let entries = std::fs::read_dir(folder).expect("a folder");
+        let mut names: Vec<String> =
+            entries.map(|e| e.expect("an entry").file_name().to_string_lossy().into_owned()).collect();
+        names.sort();
+        names
+    };
+    for name in ["a.yaml", "b.yaml"] {
+        std::fs::copy(ortho(), at.join(name)).expect("copied");
+        let scene = at.join(name);
+        let out = at.join("out");
+        let more = ["run", shown(&scene), "-o", shown(&out), "-q", "-q"];
+        good(&more.into_iter().chain(TINY).collect::<Vec<_>>());
+    }
+    assert_eq!(names(&at.join("out")), ["a.exr", "a.json", "a.png", "b.exr", "b.json", "b.png"]);
+    for name in ["x.png", "x.exr", "x.tif"] {
+        let file = at.join("new/folder").join(name);
+        let said = spectra().args(tiny(&file, &[])).output().expect("the program starts");
+        assert!(said.status.success(), "{}", text(&said.stderr));
+        assert!(text(&said.stdout).contains(shown(&file)), "{}", text(&said.stdout));
+    }
+    assert_eq!(names(&at.join("new/folder")), ["x.exr", "x.png", "x.tif"]);
+    let raw = spectra().args(tiny(&at.join("x.dng"), &[])).output().expect("the program starts");
+    assert!(raw.status.code() == Some(2) && text(&raw.stderr).contains("no A/D converter"), "{}", text(&raw.stderr));
+    let taken = spectra().args(tiny(&at.join("a.yaml"), &[])).output().expect("the program starts");
+    assert!(
+        taken.status.code() == Some(2) && text(&taken.stderr).contains("written as `.yaml`"),
+        "{}",
+        text(&taken.stderr)
+    );
+    std::fs::write(at.join("notes"), "").expect("written");
+    let taken = spectra().args(tiny(&at.join("notes"), &[])).output().expect("the program starts");
+    assert!(taken.status.code() == Some(1) && text(&taken.stderr).contains("is a file"), "{}", text(&taken.stderr));
+    assert_eq!(std::fs::read(at.join("a.yaml")).expect("there"), std::fs::read(ortho()).expect("there"));
+}
+
+/// Planes of an EXR by their names.
+fn planes(path: &Path) -> BTreeMap<String, Vec<f32>> {
+    let reader = exr::prelude::read().no_deep_data().largest_resolution_level().all_channels().first_valid_layer();
+    let image = reader.all_attributes().from_file(path).expect("an EXR");
+    let all = image.layer_data.channel_data.list.into_iter();
+    all.map(|c| (c.name.to_string(), c.sample_data.values_as_f32().collect())).collect()
+}
+
+/// What a metered scene writes is what the film got: the same light, sample by sample, as with that time stated and without a
+/// meter, on plates that see no red, on panchromatic film and on color film.
+#[test]
+fn a_metered_scene_is_that_of_the_metered_time() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (name, lx_s) in
+        [("biotar-blue-plate", None), ("biotar-trix", Some(0.025)), ("biotar-color-negative", Some(0.04))]
+    {
+        let scene = shown(&repository(&format!("scenes/{name}.yaml"))).to_owned();
+        let render = |film: &[&str]| {
+            let out = folder.path().join(name);
+            let sets = film.iter().flat_map(|set| ["--set", *set]);
+            let common = ["run", &scene, "-o", shown(&out)];
+            let output = spectra().args(common).args(TINY).args(sets).output().expect("the program starts");
+            assert!(output.status.success(), "{}", text(&output.stderr));
+            let report = json(&out.join(format!("{name}.json")));
+            let exr = out.join(format!("{name}.exr"));
+            (report, planes(&exr), attributes(&exr), text(&output.stderr))
+        };
+        let (report, metered, header, said) = render(&[]);
+        let time_s = report["metered_time_s"].as_f64().expect("a number");
+        assert_eq!(report["exposure_time_s"].as_f64(), Some(time_s));
+        // As the report is written: read back, its last digit may be another one.
+        let written = std::fs::read_to_string(folder.path().join(name).join(format!("{name}.json"))).expect("a report");
+        let exact = header["spectra:exposure time"].clone();
+        assert!(
+            written.contains(&format!("\"metered_time_s\": {}", exact.trim_end_matches(" s"))),
+            "{exact}: {written}"
+        );
+        let words = spectra_core::shutter::words(time_s);
+        assert!(said.contains(&format!("at {words} (metered)")), "{words}: {said}");
+        // The meter's mean is the 10/S lx s of a mid gray.
+        let mean = metered["meter"].iter().map(|v| f64::from(*v)).sum::<f64>() / metered["meter"].len() as f64;
+        assert!(lx_s.is_none_or(|lx_s| (mean / lx_s - 1.0).abs() < 1e-6), "{mean}");
+        let exposure = format!("film.exposure={exact}");
+        for film in [&[exposure.as_str(), "film.metering=manual"][..], &[exposure.as_str()]] {
+            let (_, stated, header, said) = render(film);
+            assert_eq!(header["spectra:exposure time"], exact);
+            // Beside a meter an exposure time has no effect, and that is said.
+            assert_eq!(said.contains("`exposure` has no effect"), film.len() == 1, "{said}");
+            assert_eq!(stated.len() + film.len() - 1, metered.len());
+            for (name, plane) in &stated {
+                for (a, b) in plane.iter().zip(&metered[name]) {
+                    assert!((a - b).abs() <= 1e-6 * a.abs(), "{name}: {a} against {b}");
+                }
+            }
+        }
+    }
+}
+
+/// The meter reads the same whatever the threads, the batch and the instructions, and is right to 1/50 stop in the smallest
+/// picture of the fewest samples: both of the whole frame and of a spot, backward and forward.
+#[test]
+fn a_meter_needs_no_samples_of_the_picture() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = shown(&repository("scenes/biotar-trix.yaml")).to_owned();
+    let metered = |isa: &str, more: &[&str]| {
+        let common = ["run", &scene, "-q", "-q", "-o", shown(folder.path()), "--set", "output=[exr]"];
+        let output = spectra().env("SPECTRA_ISA", isa).args(common).args(more).output().expect("the program starts");
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        json(&folder.path().join("biotar-trix.json"))["metered_time_s"].as_f64().expect("a number")
+    };
+    let small = ["--set", "imager.resolution=[48, 32]", "--samples"];
+    let cases: [&[&str]; 3] = [&[], &["--set", "film.metering=spot"], &["--set", "render.direction=forward"]];
+    for film in cases {
+        let with = |isa: &str, more: &[&str]| metered(isa, &[film, &small, more].concat());
+        let few = with("", &["1", "--threads", "2"]);
+        assert_eq!(few, with("baseline", &["1", "--threads", "1", "--set", "render.batch=40"]));
+        let many = with("", &["1024", "--seed", "7"]);
+        let stops = (few / many).log2().abs();
+        assert!(stops < 0.02, "{film:?}: {stops} stops apart");
+    }
+    // A spot between the middles of pixels sees nothing, and that is said.
+    let nowhere = ["--set", "film.metering=spot", "--set", "film.spot={diameter: 0.001}", "-o", shown(folder.path())];
+    let output = spectra().args(["run", &scene]).args(TINY).args(nowhere).output().expect("the program starts");
+    assert!(text(&output.stderr).contains("meter sees no light where it looks, so the film is exposed for 1 s"));
+}
+
+/// A meter that the sun leads astray says so, and what to write: with that time the sky around it is a mid gray.
+#[test]
+fn a_meter_that_a_light_dazzles_says_so() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = shown(&repository("scenes/sun-biotar.yaml")).to_owned();
+    let common = ["run", &scene, "-o", shown(folder.path()), "--samples", "4", "--set", "imager.resolution=[60, 40]"];
+    let one = ["--set", "sweep=null", "--set", "film.metering=average", "--set", "film.exposure=null"];
+    let output = spectra().args(common).args(one).output().expect("the program starts");
+    let told = text(&output.stderr);
+    assert!(told.contains("the brightest hundredth of what the camera's meter sees sets the exposure"), "{told}");
+    let (_, rest) = told.split_once("in place of `metering`, `exposure: ").expect("what to write");
+    let (time, _) = rest.split_once("` is the time without it").expect("what to write");
+    let spot = ["--set", "sweep=null", "--set", "film.metering=spot", "--set", "film.exposure=null", "-q", "-q"];
+    let output = spectra().args(common).args(spot).output().expect("the program starts");
+    assert!(output.status.success() && text(&output.stderr).is_empty(), "{}", text(&output.stderr));
+    let spot_s = json(&folder.path().join("sun-biotar.json"))["metered_time_s"].as_f64().expect("a number");
+    let below: f64 =
+        time.strip_prefix("1/").and_then(|t| t.strip_suffix(" s")).and_then(|n| n.parse().ok()).expect("1/N s");
+    // The picture's sky is half as bright in places, and twice elsewhere.
+    assert!((spot_s * below).log2().abs() < 1.0, "{time} {spot_s}");
+}
+
+/// Several films in one light: each one's planes are of its own time.
+#[test]
+fn each_film_gets_its_own_time() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = shown(&repository("scenes/three-films.yaml")).to_owned();
+    let all: Vec<&str> = ["run", &scene, "-o", shown(folder.path()), "-q"].into_iter().chain(TINY).collect();
+    good(&all);
+    let (report, planes) =
+        (json(&folder.path().join("three-films.json")), planes(&folder.path().join("three-films.exr")));
+    let times = report["metered_time_s"].as_object().expect("by name");
+    assert_eq!(&report["exposure_time_s"], &report["metered_time_s"]);
+    for (name, speed) in [("ortho", 80.0), ("panchromatic", 400.0), ("color", 250.0)] {
+        let meter = &planes[&format!("{name}.meter")];
+        let mean = meter.iter().map(|v| f64::from(*v)).sum::<f64>() / meter.len() as f64;
+        assert!((mean / (10.0 / speed) - 1.0).abs() < 1e-5, "{name}: {mean}");
+    }
+    // The meter sees the same light for all of them: times are as one over speeds.
+    let time = |name: &str| times[name].as_f64().expect("a number");
+    assert!((time("panchromatic") / time("color") - 250.0 / 400.0).abs() < 1e-5, "{times:?}");
+}
+
+#[test]
+fn a_reader_that_leaves_costs_no_picture() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (mut child, events) = endless(folder.path(), &["--time-limit", "5 s"]);
+    drop(events);
+    let mut stderr = String::new();
+    child.stderr.take().expect("piped").read_to_string(&mut stderr).expect("UTF-8");
+    assert_eq!(child.wait().expect("it ends").code(), Some(0), "{stderr}");
+    assert!(!stderr.contains("panicked"), "{stderr}");
+    assert!(folder.path().join("biotar-ortho.exr").is_file());
+}
+
+#[test]
+fn a_closed_pipe_ends_lists_quietly() {
+    for arguments in [&["list"][..], &["--licenses"], &["lens", "info", "zeiss-biotar-50-f1.4"], &["--help"]] {
+        let mut child =
+            spectra().args(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("it starts");
+        drop(child.stdout.take());
+        let output = child.wait_with_output().expect("it ends");
+        assert_eq!((output.status.code(), text(&output.stderr)), (Some(0), String::new()), "{arguments:?}");
+    }
+}
+
+#[test]
+fn a_folder_that_takes_no_files_is_told_before_rendering() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("file");
+    std::fs::write(&file, "").expect("written");
+    std::fs::create_dir_all(folder.path().join("taken/biotar-ortho.exr")).expect("made");
+    for out in [file.join("out"), folder.path().join("taken")] {
+        let output = spectra().args(tiny(&out, &["--json"])).output().expect("the program starts");
+        assert_eq!(output.status.code(), Some(1));
+        assert!(text(&output.stderr).contains("cannot write to"), "{}", text(&output.stderr));
+        let stdout = text(&output.stdout);
+        assert!(!stdout.contains("\"start\"") && stdout.contains("\"error\""), "{stdout}");
+    }
+}
+
+#[test]
+fn list_and_licenses_show_what_is_there() {
+    let stages: Value = serde_json::from_str(&good(&["list", "--json"])).expect("JSON");
+    let names: Vec<(&str, &str)> = stages
+        .as_array()
+        .expect("a list")
+        .iter()
+        .map(|item| (item["stage"].as_str().expect("text"), item["name"].as_str().expect("text")))
+        .collect();
+    for wanted in [
+        ("source", "chart"),
+        ("source", "picture"),
+        ("source", "point"),
+        ("wavelengths", "source-times-response"),
+        ("surface", "sphere"),
+        ("imager", "xyz"),
+        ("film", "stock"),
+        ("lens", "zeiss-biotar-50-f1.4"),
+        ("stock", "ilford-ortho-plus"),
+    ] {
+        assert!(names.contains(&wanted), "{wanted:?}: {names:?}");
+    }
+    let surfaces = good(&["list", "surface"]);
+    assert!(surfaces.contains("sphere") && !surfaces.contains("chart"));
+    let licenses = good(&["--licenses"]);
+    assert!(licenses.contains("MIT OR Apache-2.0") && licenses.contains("spectra/illuminants/D65.csv"));
+    for wanted in ["miette ", "clap ", "exr ", "BSD-3-Clause: ", "Unicode-3.0: ", "Zlib: ", "THE SOFTWARE IS PROVIDED"]
+    {
+        assert!(licenses.contains(wanted), "{wanted}");
+    }
+}
+
+#[test]
+fn help_has_an_example_for_every_command() {
+    for command in [&["run"][..], &["check"], &["list"], &["lens", "info"], &["lens", "trace"], &["lens"]] {
+        let help = good(&command.iter().copied().chain(["--help"]).collect::<Vec<_>>());
+        assert!(help.contains("Example") && help.contains("spectra "), "{help}");
+    }
+    let version = run(&["--version"]);
+    assert!(text(&version.stdout).starts_with("spectra ") && text(&version.stdout).contains("target: "));
+}
+
+#[test]
+fn the_scenes_of_the_repository_are_good() {
+    let folder = repository("scenes");
+    let scenes = std::fs::read_dir(&folder).expect("a folder").map(|entry| entry.expect("an entry").path());
+    let scenes: Vec<String> = scenes
+        .filter(|path| path.extension().is_some_and(|e| e == "yaml"))
+        .map(|path| shown(&path).to_owned())
+        .collect();
+    assert!(scenes.len() >= 4);
+    let arguments: Vec<&str> = std::iter::once("check").chain(scenes.iter().map(String::as_str)).collect();
+    assert_eq!(good(&arguments).lines().count(), scenes.len());
+}

@@ -1,0 +1,128 @@
+//! A corpus of slips that make a picture, only not the one that was meant: what a user is told of each, word for word.
+//!
+//! `tests/warned/NAME.yaml` is a scene that can be rendered and should not be believed; `tests/warned/NAME.txt` is what
+//! `spectra check` says. `SPECTRA_BLESS=1 cargo test --test it cli_warned` writes these anew. As in `tests/broken`, each case
+//! states in comments what is doubtful, `# doubtful: TEXT`, and one warning starts at this text, with a hint; there are no
+//! others.
+//!
+//! The bundled scenes are the counter-examples: no word about any of them.
+
+use crate::common::{answer_in, repository, run, shown, text, together};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Fewer cases than this, and some were lost.
+const LEAST: usize = 12;
+
+/// Bundled scenes of which something has to be said, and why.
+const EXCEPTIONS: [(&str, &str); 1] =
+    [("false-color", "it is about light beyond 700 nm, and nobody measured the glass of its lens there")];
+
+fn yaml(folder: &Path) -> Vec<PathBuf> {
+    let mut files: Vec<PathBuf> = fs::read_dir(folder)
+        .expect("a folder")
+        .map(|entry| entry.expect("readable").path())
+        .filter(|path| path.extension().is_some_and(|e| e == "yaml"))
+        .collect();
+    files.sort();
+    files
+}
+
+#[test]
+fn each_doubt_is_told_where_it_is_and_what_to_do() {
+    let folder = repository("tests/warned");
+    let bless = std::env::var_os("SPECTRA_BLESS").is_some();
+    let cases = yaml(&folder);
+    assert!(cases.len() >= LEAST, "{} cases", cases.len());
+    let mut wrong = Vec::new();
+    for case in &cases {
+        let name = case.file_name().and_then(|name| name.to_str()).expect("plain names");
+        let scene = fs::read_to_string(case).expect("a scene");
+        let output = answer_in(&folder, &["check", name]);
+        let said = text(&output.stderr);
+        if output.status.code() != Some(0) {
+            wrong.push(format!("{name}: ends with {:?}:\n{said}", output.status.code()));
+        }
+        let expected = case.with_extension("txt");
+        if bless {
+            fs::write(&expected, &said).expect("written");
+        } else if fs::read_to_string(&expected).unwrap_or_default() != said {
+            wrong.push(format!("{name}: the text is another one (SPECTRA_BLESS=1 writes it anew):\n{said}"));
+        }
+        let mut wanted: Vec<&str> =
+            scene.lines().filter_map(|line| line.split_once("# doubtful: ")).map(|l| l.1).collect();
+        for warning in said.split("warning: ").skip(1) {
+            if !warning.contains("\n  help: ") {
+                wrong.push(format!("{name}: no hint:\n{warning}"));
+            }
+            let mut place = warning.strip_prefix(name).unwrap_or("").split(':').skip(1);
+            let mut number = || place.next().and_then(|text| text.parse::<usize>().ok());
+            let (Some(line), Some(column)) = (number(), number()) else {
+                wrong.push(format!("{name}: no place:\n{warning}"));
+                continue;
+            };
+            let rest: String = scene.lines().nth(line - 1).unwrap_or("").chars().skip(column - 1).collect();
+            match wanted.iter().position(|token| rest.starts_with(token)) {
+                Some(at) => drop(wanted.remove(at)),
+                None => {
+                    wrong.push(format!("{name}: {line}:{column} is not what is doubtful, but `{rest}`:\n{warning}"))
+                }
+            }
+        }
+        wrong.extend(wanted.iter().map(|token| format!("{name}: nothing is said about `{token}`:\n{said}")));
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n\n"));
+}
+
+/// Points of light in the dark, which one ray for a pixel may well miss: with more.
+const POINTS: [&str; 3] = ["biotar-spot", "low-pass", "bench/sampling-point-fl11-ortho"];
+
+/// A frame of 22 x 18.6 mm, whose pixels are not square at 48 across.
+const ANAMORPHIC: &str = "streak-anamorphic";
+
+/// Scenes with ghosts, which are searched for seconds whatever the size: `bench/ghosts-sun` stands for these.
+const WITHOUT_GHOSTS: [&str; 7] =
+    ["focus-pull", "hazy-street", "night-street", "streak-anamorphic", "sun-biotar", "sun-fisheye", "sun-zoom"];
+
+/// `check` and a small render of every bundled scene: not one warning.
+#[test]
+fn nothing_is_said_about_bundled_scenes() {
+    let root = repository("scenes");
+    let scenes: Vec<PathBuf> = ["", "surfaces", "bench"].iter().flat_map(|folder| yaml(&root.join(folder))).collect();
+    let wrong = together(&scenes, |path| said_about(&root, path)).concat();
+    assert!(wrong.is_empty(), "{}", wrong.join("\n\n"));
+}
+
+/// What is known of the glass of a bundled lens stands in its file, whatever part of its name calls it.
+#[test]
+fn a_bundled_lens_is_itself_by_a_part_of_its_name() {
+    for name in ["canon-fd-50-f1.8", "canon-fd-50", "Canon FD 50 f1.8"] {
+        let output = run(&["check", "biotar-trix", "--set", &format!("lens.file={name}")]);
+        assert_eq!((output.status.code(), text(&output.stderr)), (Some(0), String::new()), "{name}");
+    }
+}
+
+/// What is wrong about what is said of a scene below `root`.
+fn said_about(root: &Path, path: &Path) -> Vec<String> {
+    let mut wrong = Vec::new();
+    let name = path.strip_prefix(root).expect("below").with_extension("");
+    let name = name.to_str().expect("plain names").replace('\\', "/");
+    let exception = EXCEPTIONS.iter().any(|(scene, _)| *scene == name);
+    let out = tempfile::tempdir().expect("a folder");
+    let [samples, rays] =
+        if POINTS.contains(&&*name) { ["64", "render.rays=100000"] } else { ["1", "render.rays=2000"] };
+    // The height follows from the frame's shape.
+    let width = if name == ANAMORPHIC { "imager.resolution=44" } else { "imager.resolution=48" };
+    let mut few = vec!["--samples", samples, "--set", rays, "--set", width, "--threads", "1"];
+    if WITHOUT_GHOSTS.contains(&&*name) {
+        few.extend(["--set", "render.reflections.order=0"]);
+    }
+    for arguments in [vec!["check"], [&["run", "-o", out.path().to_str().expect("plain")], &few[..]].concat()] {
+        let output = run(&[&arguments[..], &[shown(path)]].concat());
+        let said = text(&output.stderr);
+        if output.status.code() != Some(0) || said.contains("warning") != exception {
+            wrong.push(format!("{name}, {}: {:?}\n{said}", arguments[0], output.status.code()));
+        }
+    }
+    wrong
+}

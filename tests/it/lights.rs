@@ -1,0 +1,194 @@
+//! Bright parts of a source forward, the rest backward: the same exposure as by one direction alone, of flat pictures, pictures
+//! with depth and layers.
+
+use crate::common::statistics::{self, Estimate, bits, estimates, over_seeds, ready, rendered};
+use exr::prelude::{AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, WritableImage};
+use spectra_core::Isa;
+use spectra_render::{Control, Renderer, Rendering, Threads};
+use std::path::Path;
+
+const COLUMNS: usize = 5;
+const ROWS: usize = 4;
+const SEEDS: u64 = 12;
+const SIZE: (usize, usize) = (48, 32);
+
+/// Lamps: column, row, radius, brightness. The second and third stand at the edge of what is in front.
+const LAMPS: [(f64, f64, f64, f32); 5] = [
+    (8.0, 8.0, 1.5, 60.0),
+    (24.5, 12.5, 1.2, 90.0),
+    (25.5, 22.5, 2.0, 40.0),
+    (40.0, 9.0, 1.0, 120.0),
+    (36.0, 26.0, 0.6, 80.0),
+];
+
+fn brightness(column: usize, row: usize) -> f32 {
+    let at = |c: f64, r: f64| (column as f64 + 0.5 - c).hypot(row as f64 + 0.5 - r);
+    let lamp = LAMPS.iter().find(|(c, r, radius, _)| at(*c, *r) < *radius);
+    lamp.map_or(0.1 + 0.01 * ((column * 7 + row * 3) % 11) as f32, |lamp| lamp.3)
+}
+
+/// What is in front: a post, m away. Its light is dim, but for a lamp of its own.
+fn is_in_front(column: usize, row: usize) -> bool {
+    (12..24).contains(&column) && row >= 6
+}
+
+/// Depth: the post, before a wall that recedes to the right in small steps.
+fn depth(column: usize, row: usize) -> f32 {
+    if is_in_front(column, row) { 0.9 } else { 1.8 + 0.006 * (column as f32) }
+}
+
+/// A channel: its name, and its value by column and row.
+type Plane<'a> = (&'a str, &'a dyn Fn(usize, usize) -> f32);
+
+fn exr_file(path: &Path, planes: &[Plane<'_>]) {
+    let plane = |value: &dyn Fn(usize, usize) -> f32| -> Vec<f32> {
+        (0..SIZE.0 * SIZE.1).map(|i| value(i % SIZE.0, i / SIZE.0)).collect()
+    };
+    let channels = planes.iter().map(|(name, of)| AnyChannel::new(*name, FlatSamples::F32(plane(*of)))).collect();
+    let layer = Layer::new(SIZE, LayerAttributes::default(), Encoding::SMALL_LOSSLESS, AnyChannels::sort(channels));
+    Image::from_layer(layer).write().to_file(path).expect("written");
+}
+
+fn scene(folder: &Path, source: &str) -> std::path::PathBuf {
+    let behind = |c: usize, r: usize| brightness(c, r);
+    let all = |c: usize, r: usize| match is_in_front(c, r) {
+        true if c == 15 && r == 20 => 70.0,
+        true => 0.15,
+        false => brightness(c, r),
+    };
+    let cover = |c: usize, r: usize| if is_in_front(c, r) { 1.0 - 0.02 * (r % 5) as f32 } else { 0.0 };
+    let front = |c: usize, r: usize| if is_in_front(c, r) { all(c, r) * cover(c, r) } else { 0.0 };
+    exr_file(&folder.join("flat.exr"), &[("R", &behind), ("G", &behind), ("B", &behind)]);
+    exr_file(&folder.join("deep.exr"), &[("R", &all), ("G", &all), ("B", &all), ("Z", &depth)]);
+    let far = |c: usize, r: usize| depth(if is_in_front(c, r) { 24 } else { c }, r);
+    exr_file(&folder.join("open.exr"), &[("R", &all), ("G", &all), ("B", &all), ("Z", &far)]);
+    exr_file(&folder.join("front.exr"), &[("R", &front), ("G", &front), ("B", &front), ("A", &cover)]);
+    let path = folder.join("scene.yaml");
+    let text = format!(
+        "spectra: 1\nsource: {source}\nlens: {{file: zeiss-biotar-50-f1.4, focus: {{distance: 1.2 m, by: paraxial}}}}\n\
+         imager: {{kind: xyz, width: 12, height: 8, resolution: [30, 20]}}\n\
+         render: {{samples: 64, reflections: {{order: 0}}}}\n"
+    );
+    std::fs::write(&path, text).expect("written");
+    path
+}
+
+const FLAT: &str = "{kind: picture, file: flat.exr, distance: 2 m, width: 52 cm, edge: black}";
+const DEEP: &str = "{kind: picture, file: deep.exr, distance: 2 m, width: 52 cm, depth: {unit: m}, edge: black}";
+const LAYERS: &str = "{kind: layers, layers: [{file: front.exr, distance: 0.9 m, width: 23 cm}, \
+                      {file: flat.exr, distance: 2 m, width: 52 cm, edge: black}]}";
+
+fn made(path: &Path, set: &[&str]) -> Renderer {
+    ready(statistics::load(path, set))
+}
+
+/// Mean illuminance of the whole frame and each of its 20 regions.
+fn regions(rendering: &Rendering) -> Vec<f64> {
+    let parts = statistics::regions(rendering, COLUMNS, ROWS);
+    let whole = parts.iter().sum::<f64>() / parts.len() as f64;
+    std::iter::once(whole).chain(parts).collect()
+}
+
+fn estimate(path: &Path, set: &[&str]) -> Vec<Estimate> {
+    estimates(&over_seeds(&made(path, set), 5..5 + SEEDS, regions))
+}
+
+/// As in `tests/it/directions.rs`: three standard errors, of 21 figures. They are known from twelve seeds; by six of them, one in a hundred
+/// is taken for a third of what it is.
+const ERRORS: f64 = 3.0 * 1.6;
+
+fn agree(source: &str) {
+    agree_by(
+        source,
+        &[("forward", "render.rays=1500000"), ("both", "render.samples=128"), ("both", "render.rays=700000")],
+    );
+}
+
+fn agree_by(source: &str, others: &[(&str, &str)]) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = scene(folder.path(), source);
+    let backward = estimate(&path, &["render.direction=backward", "render.samples=2048"]);
+    for (direction, many) in others {
+        let other = estimate(&path, &[&format!("render.direction={direction}"), many]);
+        for (region, (backward, other)) in backward.iter().zip(&other).enumerate() {
+            let (b, o, error) = (backward.mean, other.mean, backward.error.hypot(other.error));
+            println!("{direction} {region}: backward {backward:?}, {other:?}, {:.2}", (o - b) / error);
+            assert!(error < 0.01 * b, "region {region}: {b} is known to {error} only");
+            assert!((o - b).abs() < ERRORS * error, "{direction}, region {region}: {o} and {b}, +- {error}");
+        }
+    }
+}
+
+#[test]
+fn lights_of_a_flat_picture() {
+    agree(FLAT);
+}
+
+#[test]
+fn lights_of_a_picture_with_depth() {
+    agree(DEEP);
+}
+
+#[test]
+fn lights_of_layers() {
+    agree(LAYERS);
+}
+
+/// A sun over a chart: as the film sees both, and from itself.
+#[test]
+fn a_sun_over_a_chart() {
+    let sun = "{kind: sun, field: [3 deg, 2 deg], diameter: 2 deg, illuminance: 1 lx, \
+               over: {kind: chart, chart: white, distance: 2 m, width: 60 cm}}";
+    agree_by(sun, &[("both", "render.samples=256")]);
+}
+
+/// What stands in front of a lamp takes light from it and adds none: a lamp at its edge does not go on behind it.
+#[test]
+fn a_lamp_at_an_edge_is_no_brighter_for_it() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = scene(folder.path(), DEEP);
+    let sharp = ["render.direction=both", "render.samples=64", "lens.focus.distance=0.9 m", "render.rays=1000000"];
+    let seen = regions(&rendered(&made(&path, &sharp)));
+    let open = regions(&rendered(&made(&path, &[&sharp[..], &["source.file=open.exr"]].concat())));
+    println!("{seen:?} {open:?}");
+    // The post is brighter by its own lamp, which is sharp now; what is hidden of the others is more.
+    assert!(seen[0] < open[0], "{} {}", seen[0], open[0]);
+}
+
+/// By itself both directions are taken where a picture has lights, and the noise of what they shine on falls.
+#[test]
+fn lights_are_seen_without_being_asked_for() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = scene(folder.path(), DEEP);
+    let estimators = |set: &[&str]| rendered(&made(&path, &[&["render.samples=1"], set].concat())).estimators;
+    assert_eq!(estimators(&[]), ["backward", "forward"]);
+    assert_eq!(estimators(&["render.direction=backward"]), ["backward"]);
+    let noise = |set: &[&str]| {
+        let frames = over_seeds(&made(&path, set), 0..4, statistics::pixels);
+        let variance = |p: usize| {
+            let mean = frames.iter().map(|f| f[p]).sum::<f64>() / 4.0;
+            frames.iter().map(|f| (f[p] - mean).powi(2)).sum::<f64>() / 3.0
+        };
+        let mean = frames[0].iter().sum::<f64>() / frames[0].len() as f64;
+        ((0..frames[0].len()).map(variance).sum::<f64>() / frames[0].len() as f64).sqrt() / mean
+    };
+    let (both, backward) = (noise(&["render.samples=32"]), noise(&["render.samples=32", "render.direction=backward"]));
+    println!("noise: both {both}, backward {backward}");
+    assert!(both < 0.25 * backward, "{both} {backward}");
+}
+
+/// The bits of both directions do not depend on threads, batches and instruction sets.
+#[test]
+fn bits_are_the_same_however_it_runs() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = scene(folder.path(), DEEP);
+    let run = |threads: usize, isa: Isa, batch: &str| {
+        let scene = statistics::load(&path, &["render.samples=3", &format!("render.batch={batch}")]);
+        let renderer = Renderer::new(scene, isa).expect("ready");
+        bits(&renderer.run(&Threads(threads), &Control::new()).expect("rendered"))
+    };
+    let want = run(1, Isa::detect(), "256");
+    for isa in Isa::available() {
+        assert_eq!(run(2, isa, "100"), want);
+    }
+}
