@@ -1,4 +1,4 @@
-//! The tests of this crate as its users see it: one program, so that what they need is linked once.
+//! The tests of this crate as its users see it, by a name of their own: `.ci/run` builds them once more with the feature.
 
 #![cfg(feature = "oiio")]
 
