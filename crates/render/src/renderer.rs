@@ -240,12 +240,12 @@ impl Renderer {
     pub fn reseeded(&self, seed: u64) -> Self {
         let mut scene = (*self.scene).clone();
         scene.render.seed = seed;
-        let reseed = |(at, estimator): (usize, &Box<dyn Estimator>)| match self.halves() {
+        let reseed = |(at, estimator): (usize, &dyn Estimator)| match self.halves() {
             1 => estimator.reseeded(seed, seed),
             _ => estimator.reseeded(seed, half_seed(seed, (at / self.kinds()) as u64)),
         };
         Self {
-            estimators: self.estimators.iter().enumerate().map(reseed).collect(),
+            estimators: self.estimators().enumerate().map(reseed).collect(),
             scene: Arc::new(scene),
             pipeline: Arc::new(self.pipeline.of_seed(seed)),
             ledger: self.ledger.clone(),
