@@ -317,7 +317,7 @@ fn own_picture(path: &Path, [width_px, height_px]: [u32; 2], channels: Vec<(Stri
 #[test]
 #[cfg(unix)]
 fn every_example_of_the_help_of_films_and_spectra_works() {
-    let done = examples_work(|example| is_of_films_and_spectra(example));
+    let done = examples_work(is_of_films_and_spectra);
     assert!(done >= 15, "{done} examples");
 }
 
