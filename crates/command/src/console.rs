@@ -5,9 +5,10 @@
 
 use spectra_core::params::{Fault, Faults, Warning};
 use spectra_scene::diagnostics;
-use std::cell::RefCell;
 use std::io::{self, IsTerminal, Write};
 use std::path::Path;
+use std::sync::{Mutex, PoisonError};
+use std::thread::ThreadId;
 
 /// What a command wrote while its streams were kept in memory.
 #[derive(Clone, Debug, Default)]
@@ -18,20 +19,30 @@ pub(crate) struct Kept {
     pub err: Vec<u8>,
 }
 
-thread_local! {
-    static KEPT: RefCell<Option<Kept>> = const { RefCell::new(None) };
+/// What threads that keep their streams have written so far: few at a time.
+static KEPT: Mutex<Vec<(ThreadId, Kept)>> = Mutex::new(Vec::new());
+
+/// Does something with what this thread keeps; `None` where it writes to the process's streams.
+fn with_kept<T>(then: impl FnOnce(Option<&mut Kept>) -> T) -> T {
+    let own = std::thread::current().id();
+    let mut all = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
+    then(all.iter_mut().find(|(thread, _)| *thread == own).map(|(_, kept)| kept))
 }
 
 /// Runs `work` with the streams of this thread kept in memory; returns its result and what it wrote.
 pub(crate) fn kept<T>(work: impl FnOnce() -> T) -> (T, Kept) {
-    KEPT.set(Some(Kept::default()));
+    let own = std::thread::current().id();
+    let all = || KEPT.lock().unwrap_or_else(PoisonError::into_inner);
+    all().push((own, Kept::default()));
     let done = work();
-    (done, KEPT.take().unwrap_or_default())
+    let mut all = all();
+    let at = all.iter().position(|(thread, _)| *thread == own);
+    (done, at.map(|at| all.swap_remove(at).1).unwrap_or_default())
 }
 
 /// Whether the streams of this thread are kept in memory: then the process belongs to somebody else.
 pub(crate) fn is_kept() -> bool {
-    KEPT.with_borrow(Option::is_some)
+    with_kept(|kept| kept.is_some())
 }
 
 /// Standard output, as something to write to.
@@ -39,7 +50,7 @@ pub(crate) struct Out;
 
 impl Write for Out {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        KEPT.with_borrow_mut(|kept| match kept {
+        with_kept(|kept| match kept {
             Some(kept) => kept.out.write(bytes),
             None => io::stdout().write(bytes),
         })
@@ -90,7 +101,7 @@ pub(crate) fn pretty_json(value: &impl serde::Serialize) -> io::Result<()> {
 
 /// Writes a line to standard error; there is nobody to tell where that fails.
 pub(crate) fn note(line: &str) {
-    let _ = KEPT.with_borrow_mut(|kept| match kept {
+    let _ = with_kept(|kept| match kept {
         Some(kept) => writeln!(kept.err, "{line}"),
         None => writeln!(io::stderr().lock(), "{line}"),
     });
