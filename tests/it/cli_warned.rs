@@ -5,18 +5,14 @@
 //! states in comments what is doubtful, `# doubtful: TEXT`, and one warning starts at this text, with a hint; there are no
 //! others.
 //!
-//! The bundled scenes are the counter-examples: no word about any of them.
+//! The bundled scenes are the counter-examples: no word about any of them, see `bundled`.
 
-use crate::common::{answer_in, repository, run, shown, text, together};
+use crate::common::{answer_in, repository, run, text};
 use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Fewer cases than this, and some were lost.
 const LEAST: usize = 12;
-
-/// Bundled scenes of which something has to be said, and why.
-const EXCEPTIONS: [(&str, &str); 1] =
-    [("false-color", "it is about light beyond 700 nm, and nobody measured the glass of its lens there")];
 
 fn yaml(folder: &Path) -> Vec<PathBuf> {
     let mut files: Vec<PathBuf> = fs::read_dir(folder)
@@ -74,25 +70,6 @@ fn each_doubt_is_told_where_it_is_and_what_to_do() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n\n"));
 }
 
-/// Points of light in the dark, which one ray for a pixel may well miss: with more.
-const POINTS: [&str; 3] = ["biotar-spot", "low-pass", "bench/sampling-point-fl11-ortho"];
-
-/// A frame of 22 x 18.6 mm, whose pixels are not square at 48 across.
-const ANAMORPHIC: &str = "streak-anamorphic";
-
-/// Scenes with ghosts, which are searched for seconds whatever the size: `bench/ghosts-sun` stands for these.
-const WITHOUT_GHOSTS: [&str; 7] =
-    ["focus-pull", "hazy-street", "night-street", "streak-anamorphic", "sun-biotar", "sun-fisheye", "sun-zoom"];
-
-/// `check` and a small render of every bundled scene: not one warning.
-#[test]
-fn nothing_is_said_about_bundled_scenes() {
-    let root = repository("scenes");
-    let scenes: Vec<PathBuf> = ["", "surfaces", "bench"].iter().flat_map(|folder| yaml(&root.join(folder))).collect();
-    let wrong = together(&scenes, |path| said_about(&root, path)).concat();
-    assert!(wrong.is_empty(), "{}", wrong.join("\n\n"));
-}
-
 /// What is known of the glass of a bundled lens stands in its file, whatever part of its name calls it.
 #[test]
 fn a_bundled_lens_is_itself_by_a_part_of_its_name() {
@@ -100,29 +77,4 @@ fn a_bundled_lens_is_itself_by_a_part_of_its_name() {
         let output = run(&["check", "biotar-trix", "--set", &format!("lens.file={name}")]);
         assert_eq!((output.status.code(), text(&output.stderr)), (Some(0), String::new()), "{name}");
     }
-}
-
-/// What is wrong about what is said of a scene below `root`.
-fn said_about(root: &Path, path: &Path) -> Vec<String> {
-    let mut wrong = Vec::new();
-    let name = path.strip_prefix(root).expect("below").with_extension("");
-    let name = name.to_str().expect("plain names").replace('\\', "/");
-    let exception = EXCEPTIONS.iter().any(|(scene, _)| *scene == name);
-    let out = tempfile::tempdir().expect("a folder");
-    let [samples, rays] =
-        if POINTS.contains(&&*name) { ["64", "render.rays=100000"] } else { ["1", "render.rays=2000"] };
-    // The height follows from the frame's shape.
-    let width = if name == ANAMORPHIC { "imager.resolution=44" } else { "imager.resolution=48" };
-    let mut few = vec!["--samples", samples, "--set", rays, "--set", width, "--threads", "1"];
-    if WITHOUT_GHOSTS.contains(&&*name) {
-        few.extend(["--set", "render.reflections.order=0"]);
-    }
-    for arguments in [vec!["check"], [&["run", "-o", out.path().to_str().expect("plain")], &few[..]].concat()] {
-        let output = run(&[&arguments[..], &[shown(path)]].concat());
-        let said = text(&output.stderr);
-        if output.status.code() != Some(0) || said.contains("warning") != exception {
-            wrong.push(format!("{name}, {}: {:?}\n{said}", arguments[0], output.status.code()));
-        }
-    }
-    wrong
 }

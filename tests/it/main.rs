@@ -1,6 +1,7 @@
 //! What a user can see, and what crates do together: one program, so that the engine is linked once.
 
 mod around;
+mod bundled;
 mod cli_apart;
 mod cli_bench;
 mod cli_broken;
