@@ -55,27 +55,49 @@ impl Reach {
     /// Holds a closed line, too.
     pub fn include(&mut self, line: &[[f64; 2]]) {
         let ways = &*WAYS;
-        let polar: Vec<(f64, f64)> = line.iter().map(|p| (share(*p), length(*p))).collect();
-        for k in 0..line.len() {
-            let next = (k + 1) % line.len();
-            let (a, b) = if (polar[next].0 - polar[k].0).rem_euclid(1.0) <= 0.5 { (k, next) } else { (next, k) };
-            let turn = (polar[b].0 - polar[a].0).rem_euclid(1.0);
-            let first = (polar[a].0 * DIRECTIONS as f64).ceil();
-            let last = ((polar[a].0 + turn) * DIRECTIONS as f64).floor();
-            let (start, edge) = (line[a], [line[b][0] - line[a][0], line[b][1] - line[a][1]]);
-            let most = polar[a].1.max(polar[b].1);
-            let mut direction = first;
-            while direction <= last {
-                let d = direction as usize % DIRECTIONS;
-                let crossed = cross(start, edge) / cross(ways[d], edge);
+        let Some(first) = line.first() else { return };
+        let before = |place: [f64; 2]| (share(place) * DIRECTIONS as f64) as usize % DIRECTIONS;
+        // The last direction at or before the place that the walk along the line has come to.
+        let mut at = before(*first);
+        for (k, &from) in line.iter().enumerate() {
+            let to = line[(k + 1) % line.len()];
+            let edge = [to[0] - from[0], to[1] - from[1]];
+            let most = length(from).max(length(to));
+            let distance = cross(from, edge);
+            let mut meet = |d: usize| {
+                let crossed = distance / cross(ways[d], edge);
                 // Along the line of sight, the farther end.
                 let r = if crossed.is_finite() && crossed >= 0.0 { crossed.min(most) } else { most };
                 self.0[d] = self.0[d].max(r);
-                direction += 1.0;
+            };
+            // No edge is seen under more than half a turn.
+            if distance >= 0.0 {
+                for _ in 0..DIRECTIONS / 2 {
+                    let next = (at + 1) % DIRECTIONS;
+                    if cross(ways[next], to) < 0.0 {
+                        break;
+                    }
+                    at = next;
+                    meet(at);
+                }
+            } else {
+                for _ in 0..DIRECTIONS / 2 {
+                    if cross(ways[at], to) >= 0.0 {
+                        break;
+                    }
+                    meet(at);
+                    at = (at + DIRECTIONS - 1) % DIRECTIONS;
+                }
+            }
+            let mut next = (at + 1) % DIRECTIONS;
+            // An edge through the origin, or close by, may lead anywhere.
+            if cross(ways[at], to) < 0.0 || cross(ways[next], to) > 0.0 {
+                at = before(to);
+                next = (at + 1) % DIRECTIONS;
             }
             // A corner between two directions counts for the nearer one.
-            let d = (polar[k].0 * DIRECTIONS as f64).round() as usize % DIRECTIONS;
-            self.0[d] = self.0[d].max(polar[k].1);
+            let d = if along(ways[at], to) >= along(ways[next], to) { at } else { next };
+            self.0[d] = self.0[d].max(length(to));
         }
     }
 
@@ -215,6 +237,10 @@ fn shares(edge: &[[f64; 2]], upto: &[f64]) -> Vec<(f64, [f64; 2])> {
 
 fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
     a[0] * b[1] - a[1] * b[0]
+}
+
+fn along(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[0] + a[1] * b[1]
 }
 
 fn length(a: [f64; 2]) -> f64 {

@@ -57,12 +57,8 @@ impl Sector {
     }
 
     /// A place along and across the plane of a point.
-    fn place(&self, [along, across]: [f64; 2], turns: f64) -> [f64; 2] {
-        if !self.turned {
-            return [along, across];
-        }
-        let (sin, cos) = sin_cos_turns(turns);
-        [along * cos - across * sin, along * sin + across * cos]
+    fn place(&self, place: [f64; 2], turns: f64) -> [f64; 2] {
+        if self.turned { turned(place, turns) } else { place }
     }
 }
 
@@ -194,17 +190,28 @@ impl Region {
         std::array::from_fn(|i| place[i] + moved[i])
     }
 
-    /// What passes in a sector of the zone, by wavelength; all of the shape where that is not known.
+    /// What passes in each of some sectors of the zone that follow one another, by wavelength; all of the shape where that is not
+    /// known.
     pub fn reaches(
         &self,
         lattice: &Lattice,
         at: &ZonePlace,
-        sector: &Sector,
+        sectors: &[Sector],
         seen: PerhapsOpened<'_>,
         bands: usize,
-    ) -> Vec<Reach> {
-        let known = if self.fades { None } else { self.by_edges(lattice, at, sector, seen, bands) };
-        known.unwrap_or_else(|| (0..bands).map(|band| self.whole(sector, band)).collect())
+    ) -> Vec<Vec<Reach>> {
+        let known = if self.fades {
+            None
+        } else if let (Some(opening), Some(views)) = seen {
+            self.by_openings(lattice, at, sectors, (opening, views), bands)
+        } else if seen.0.is_some() {
+            None
+        } else {
+            self.by_edges(lattice, at, sectors, bands)
+        };
+        let known = known.unwrap_or_else(|| vec![None; sectors.len()]);
+        let whole = |sector: &Sector| (0..bands).map(|band| self.whole(sector, band)).collect();
+        sectors.iter().zip(known).map(|(sector, known)| known.unwrap_or_else(|| whole(sector))).collect()
     }
 
     /// The ellipse or rectangle itself.
@@ -232,60 +239,128 @@ impl Region {
         reach
     }
 
-    /// What the ends of the zone see, by zone of wavelength.
+    /// What the ends of the zone see through the rims, by zone of wavelength.
     fn by_edges(
         &self,
         lattice: &Lattice,
         at: &ZonePlace,
-        sector: &Sector,
-        (opening, views): PerhapsOpened<'_>,
+        sectors: &[Sector],
         bands: usize,
-    ) -> Option<Vec<Reach>> {
+    ) -> Option<Vec<Option<Vec<Reach>>>> {
+        let ends = self.ends(lattice, at, bands)?;
+        let of_sector = |sector: &Sector| {
+            let of_band = |lines: &Vec<End>| {
+                let mut reach = Reach::EMPTY;
+                for end in lines {
+                    reach.include(&end.rims.iter().map(|p| sector.place(*p, end.turns)).collect::<Vec<_>>());
+                }
+                reach
+            };
+            held(ends.iter().map(of_band).collect())
+        };
+        Some(sectors.iter().map(of_sector).collect())
+    }
+
+    /// What they see through the rims and the opening.
+    fn by_openings(
+        &self,
+        lattice: &Lattice,
+        at: &ZonePlace,
+        sectors: &[Sector],
+        (opening, views): Opened<'_>,
+        bands: usize,
+    ) -> Option<Vec<Option<Vec<Reach>>>> {
+        let ends = self.ends(lattice, at, bands)?;
+        // A sector has at its ends what it has in common with its neighbors.
+        let turns = sectors.iter().map(|sector| sector.at(0.0)).chain(sectors.last().map(|sector| sector.at(1.0)));
+        let of_turn = |turns: f64| -> Option<Vec<Reach>> {
+            let of_band = |(band, lines): (usize, &Vec<End>)| {
+                let mut reach = Reach::EMPTY;
+                for end in lines {
+                    let seen = views[end.node][end.color].as_ref()?;
+                    let line = opening.line(seen, turns);
+                    let line: Option<Vec<_>> = line.iter().map(|p| self.stilled(end, *p, band)).collect();
+                    let [mut own, mut rims] = [Reach::EMPTY; 2];
+                    for (reach, line) in [(&mut own, &line?), (&mut rims, &end.rims)] {
+                        reach.include(&line.iter().map(|p| turned(*p, turns)).collect::<Vec<_>>());
+                    }
+                    own.limit(&rims);
+                    reach.join(&own);
+                }
+                Some(reach)
+            };
+            ends.iter().enumerate().map(of_band).collect()
+        };
+        let by_turn: Vec<Option<Vec<Reach>>> = turns.map(of_turn).collect();
+        let of_sector = |ends: &[Option<Vec<Reach>>]| {
+            let [from, to] = ends else { return None };
+            let mut both = from.clone()?;
+            both.iter_mut().zip(to.as_ref()?).for_each(|(reach, other)| reach.join(other));
+            held(both)
+        };
+        Some(by_turn.windows(2).map(of_sector).collect())
+    }
+
+    /// The ends of the zone as they see the rims, by zone of wavelength; each twice, for the ends of the wavelengths. `None` where one
+    /// sees nothing.
+    fn ends(&self, lattice: &Lattice, at: &ZonePlace, bands: usize) -> Option<Vec<Vec<End>>> {
         let ends = lattice.ends(at)?;
         let deep = ends.len() > lattice.ends_a_depth();
-        let mut reaches = vec![Reach::EMPTY; bands];
-        for (band, reach) in reaches.iter_mut().enumerate() {
-            for (end, (turns, node)) in ends.iter().enumerate() {
+        let of_band = |band: usize| {
+            let mut own = Vec::with_capacity(2 * ends.len());
+            for (at, (turns, node)) in ends.iter().enumerate() {
                 // Ends come in pairs, the lower and the upper one; so do depths.
                 let half = |upper: bool| if upper { 0.5 } else { -0.5 };
-                let depth = if deep { half(end >= lattice.ends_a_depth()) } else { 0.0 };
+                let depth = if deep { half(at >= lattice.ends_a_depth()) } else { 0.0 };
                 for upper in [false, true] {
                     let color = (band + usize::from(upper)).min(node.edges.len() - 1);
-                    let parts = [half(end % 2 == 1), half(upper), depth];
-                    let on_plane = |line: &[DVec3], turns: f64| -> Option<Vec<[f64; 2]>> {
-                        line.iter()
-                            .map(|p| {
-                                let ([along, across], _) = self.plane.project(node.point, *p)?;
-                                let from_center = [along - self.shape.center[0], across - self.shape.center[1]];
-                                Some(sector.place(self.still(from_center, band, parts), turns))
-                            })
-                            .collect()
-                    };
-                    let edge = &node.edges[color];
-                    if edge.is_empty() {
+                    let parts = [half(at % 2 == 1), half(upper), depth];
+                    let mut end = End { node: at, color, turns: *turns, from: node.point, parts, rims: Vec::new() };
+                    end.rims = node.edges[color].iter().map(|p| self.stilled(&end, *p, band)).collect::<Option<_>>()?;
+                    if end.rims.is_empty() {
                         return None;
                     }
-                    let Some(opening) = opening else {
-                        reach.include(&on_plane(edge, *turns)?);
-                        continue;
-                    };
-                    let seen = views?[end][color].as_ref()?;
-                    for part in [0.0, 1.0] {
-                        let turns = sector.at(part);
-                        let mut own = Reach::EMPTY;
-                        own.include(&on_plane(&opening.line(seen, turns), turns)?);
-                        let mut rims = Reach::EMPTY;
-                        rims.include(&on_plane(edge, turns)?);
-                        own.limit(&rims);
-                        reach.join(&own);
-                    }
+                    own.push(end);
                 }
             }
-            if reach.is_empty() {
-                return None;
-            }
-            reach.scale(1.0 + MARGIN);
-        }
-        Some(reaches)
+            Some(own)
+        };
+        (0..bands).map(of_band).collect()
     }
+
+    /// A place that an end sees, along and across from the center, as it is in the middle of the zone.
+    fn stilled(&self, end: &End, place: DVec3, band: usize) -> Option<[f64; 2]> {
+        let ([along, across], _) = self.plane.project(end.from, place)?;
+        let from_center = [along - self.shape.center[0], across - self.shape.center[1]];
+        Some(self.still(from_center, band, end.parts))
+    }
+}
+
+/// What an end of a zone sees of the rims at one wavelength.
+struct End {
+    /// Its number among the ends of the zone, and that of the wavelength.
+    node: usize,
+    color: usize,
+    /// Azimuth of its point, and the point, mm.
+    turns: f64,
+    from: DVec3,
+    /// Where it is in the zone: of the angle, the wavelength and the depth, each -0.5 to 0.5.
+    parts: [f64; 3],
+    /// Along and across, in the middle of the zone.
+    rims: Vec<[f64; 2]>,
+}
+
+/// With a little room, where light passes at each wavelength.
+fn held(mut reaches: Vec<Reach>) -> Option<Vec<Reach>> {
+    if reaches.iter().any(Reach::is_empty) {
+        return None;
+    }
+    reaches.iter_mut().for_each(|reach| reach.scale(1.0 + MARGIN));
+    Some(reaches)
+}
+
+/// A place along and across the plane of a point of this azimuth, along x and y of the lens.
+fn turned([along, across]: [f64; 2], turns: f64) -> [f64; 2] {
+    let (sin, cos) = sin_cos_turns(turns);
+    [along * cos - across * sin, along * sin + across * cos]
 }

@@ -167,27 +167,27 @@ impl Task<'_> {
             turned: looks > 1,
             opening: opening.is_some(),
         };
+        let sectors: Vec<Sector> = (0..each).map(sector).collect();
         let seen = (opening, views.as_deref());
-        let reaches = |region: &Region| -> Vec<Vec<Reach>> {
-            (0..each).map(|look| region.reaches(lattice, at, &sector(look), seen, bands)).collect()
-        };
         (region.drift, region.by_band) = region.drifts(lattice, at, bands, None);
-        let mut all_reaches = reaches(&region);
-        // What passes moves as the rims do, or as the opening does: whatever leaves less to aim at.
+        // What passes moves as the rims do, or as the opening does: whatever leaves less to aim at, by the look of one sector.
         if let (Some(opening), Some(views)) = seen {
-            let area = |all: &[Vec<Reach>]| all.iter().flatten().map(Reach::area).sum::<f64>();
+            let area = |region: &Region| {
+                let one = region.reaches(lattice, at, &sectors[..1], seen, bands);
+                one.iter().flatten().map(Reach::area).sum::<f64>()
+            };
             let (drift, by_band) = region.drifts(lattice, at, bands, Some((opening, views)));
             let with_opening = Region { drift, by_band, ..region };
-            let others = reaches(&with_opening);
-            if area(&others) < area(&all_reaches) {
-                (region, all_reaches) = (with_opening, others);
+            if area(&with_opening) < area(&region) {
+                region = with_opening;
             }
         }
+        let all_reaches = region.reaches(lattice, at, &sectors, seen, bands);
         let whole = itself.unwrap_or(prober);
         let mut outlines = Vec::with_capacity(each * folds * bands);
         for (look, mut reaches) in all_reaches.into_iter().enumerate() {
             if !region.fades {
-                self.hold(whole, &region, at, (look, &sector(look)), &colors, &mut reaches);
+                self.hold(whole, &region, at, (look, &sectors[look]), &colors, &mut reaches);
             }
             for (color, reach) in reaches.iter().enumerate() {
                 let outline = reach.corners();
