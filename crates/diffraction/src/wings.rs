@@ -96,7 +96,7 @@ impl Wings {
             let (along, t, half) = across(fan);
             let per_mm = PI * fan.line / wavelength_mm;
             let half = half.map(|half| half * per_mm);
-            let mut share = mean(t * per_mm, half, spike_integrals);
+            let mut share = spike_mean(t * per_mm, half);
             if without_boxes && fan.is_spike() {
                 share -= mean(t * per_mm, half, boxes_integrals);
             }
@@ -203,6 +203,42 @@ fn line(edges: &[[f64; 2]], span: &[usize], turn: &dyn Fn(usize) -> f64, closed:
     }
 }
 
+/// The mean of (sin(x) / x)^2 around x over one box spread by another, of these half widths.
+fn spike_mean(x: f64, [wide, narrow]: [f64; 2]) -> f64 {
+    let (x, sum, less) = (x.abs(), wide + narrow, wide - narrow);
+    if x - sum < POINTS as f64 * STEP {
+        return mean(x, [wide, narrow], spike_integrals);
+    }
+    // Differences of the series that stand in `spike_integrals`: what is alike in them is left out, and the sines of sums are made
+    // of those of what is added.
+    let sin_cos = |x: f64| {
+        let turns = x / PI;
+        math::sin_cos_turns(turns - turns.floor())
+    };
+    let middle = sin_cos(x);
+    let beside =
+        |by: f64, (sin, cos): (f64, f64)| (x + by, middle.0 * cos + middle.1 * sin, middle.1 * cos - middle.0 * sin);
+    if narrow < 0.02 {
+        let (sin, cos) = sin_cos(wide);
+        let ripple = |(x, sin, cos): (f64, f64, f64)| (cos / x - sin + 1.5 * sin / (x * x)) / (4.0 * x * x);
+        let ripples = ripple(beside(wide, (sin, cos))) - ripple(beside(-wide, (-sin, cos)));
+        return 0.5 / (x * x - wide * wide) + ripples / (2.0 * wide);
+    }
+    let ripple = |(x, sin, cos): (f64, f64, f64)| (0.125 * cos + (0.25 * sin - 0.5625 * cos / x) / x) / (x * x);
+    let both = |by: f64| {
+        let (sin, cos) = sin_cos(by);
+        ripple(beside(by, (sin, cos))) + ripple(beside(-by, (-sin, cos)))
+    };
+    let area = 4.0 * wide * narrow;
+    let part = area / (x * x - less * less);
+    let falls = if part < 1e-3 {
+        0.5 * part * (1.0 + part * (0.5 + part * (1.0 / 3.0 + 0.25 * part)))
+    } else {
+        -0.5 * math::log(1.0 - part)
+    };
+    (falls + both(sum) - both(less)) / area
+}
+
 /// The mean of a function around x over one box spread by another, by its integral and the integral of that.
 fn mean(x: f64, [wide, narrow]: [f64; 2], integrals: fn(f64) -> [f64; 2]) -> f64 {
     let at = |x: f64| integrals(x);
@@ -243,11 +279,11 @@ fn spike_integrals(x: f64) -> [f64; 2] {
     // Far out: the sine and cosine integrals' asymptotic series.
     let far_first = |x: f64| {
         let (sin, cos) = (math::sin(2.0 * x), math::cos(2.0 * x));
-        0.5 * PI - 0.5 / x - sin / (4.0 * x * x) + cos / (4.0 * x * x * x)
+        0.5 * PI - 0.5 / x + (cos / x - sin + 1.5 * sin / (x * x)) / (4.0 * x * x)
     };
     let far_second = |x: f64| {
         let (sin, cos) = (math::sin(2.0 * x), math::cos(2.0 * x));
-        0.5 * PI * x - 0.5 * math::log(x) + cos / (8.0 * x * x) + sin / (4.0 * x * x * x)
+        0.5 * PI * x - 0.5 * math::log(x) + (0.125 * cos + (0.25 * sin - 0.5625 * cos / x) / x) / (x * x)
     };
     let far = x.abs();
     let p = far / STEP;
@@ -300,6 +336,29 @@ mod tests {
                 assert!((one - sum).abs() < 1e-6 && (two - second).abs() < 1e-5, "{at}: {one} {sum}, {two} {second}");
                 assert_eq!(spike_integrals(-at), [-one, two]);
             }
+        }
+    }
+
+    #[test]
+    fn a_mean_far_out_is_that_of_its_function() {
+        for (x, wide, narrow) in [
+            (60.0, 3.0, 0.0),
+            (75.5, 0.4, 0.01),
+            (58.0, 2.0, 1.5),
+            (300.0, 12.0, 0.7),
+            (5e3, 2.8, 2.8),
+            (900.0, 400.0, 9.0),
+        ] {
+            // The second box by its middles; the first by steps much finer than a ripple.
+            let boxed = |x: f64, half: f64, of: &dyn Fn(f64) -> f64| {
+                let n = (half * 200.0).ceil().max(1.0);
+                (0..n as usize).map(|i| of(x + half * (2.0 * (i as f64 + 0.5) / n - 1.0))).sum::<f64>() / n
+            };
+            let value = |x: f64| (x.sin() / x).powi(2);
+            let want = boxed(x, narrow, &|x| boxed(x, wide, &value));
+            let got = spike_mean(x, [wide, narrow]);
+            assert!((got - want).abs() < 3e-5 / (x * x), "{x}, {wide}, {narrow}: {got} {want}");
+            assert_eq!(spike_mean(-x, [wide, narrow]), got);
         }
     }
 
