@@ -85,6 +85,14 @@ impl Pipeline {
         Ok(Self { scene, seed, share, isa, effort, tracer, density, responses, recorded, draws, scattered: false })
     }
 
+    /// What the number of rays that ghosts are searched and booked with is divided by.
+    pub(crate) fn search_divisor(&self) -> usize {
+        match self.effort {
+            Effort::Full => 1,
+            Effort::Draft => 4,
+        }
+    }
+
     /// The same for a share of the source, with a density of its own where one can be fitted to it.
     pub(crate) fn of_share(&self, share: Share) -> Self {
         let system = system(&self.scene, share, &self.recorded);

@@ -100,7 +100,7 @@ pub(super) fn of(
     workers: &dyn Workers,
 ) -> Result<LightLedger, RenderError> {
     let (count, imager) = (lens.elements.len(), lens.elements.len() - 1);
-    let many = if order > 2 { RAYS_OF_MORE } else { RAYS };
+    let many = if order > 2 { RAYS_OF_MORE } else { RAYS } / ghosts.pipeline.search_divisor();
     let rays = started(ghosts, many);
     let follow = |state: &mut ThreadState, path: &Path| follow(ghosts, state, &rays, path, imager);
     let fresh = || ghosts.state(BATCH);

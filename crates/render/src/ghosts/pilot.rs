@@ -169,6 +169,7 @@ pub(super) fn search(
         }
         Ok(Sight::default())
     })?;
+    let divisor = ghosts.pipeline.search_divisor() as f64;
     for round in 0..SHARED {
         let plan = pilot.best(&sights, workers)?;
         if round == 0 && is_dim(plan.brightest, 1.0) {
@@ -176,7 +177,7 @@ pub(super) fn search(
         }
         let needs = plan.ways.iter().zip(ways).map(|((_, variance), way)| (variance / way.cost()).sqrt());
         let sum: f64 = needs.clone().sum();
-        let rays = (ghosts.rays_a_sample(matters, plan.brightest) as f64 * SHARED_RAYS).min(SHARED_MOST);
+        let rays = (ghosts.rays_a_sample(matters, plan.brightest) as f64 * SHARED_RAYS).min(SHARED_MOST) / divisor;
         let batches: Vec<usize> = needs.map(|need| (rays * need / sum / BATCH as f64).round() as usize).collect();
         let came = each_of(workers, ways.len(), fresh, |state, at| {
             wanted(workers)?;
@@ -201,7 +202,7 @@ impl<'a> Pilot<'a> {
         let (width, height) = (size.width_px as usize, size.height_px as usize);
         let blocks = Blocks { width, height, pixel_mm2: size.pixel_area_mm2() };
         let zones = ghosts.plan.zones.count();
-        let rays = RAYS + RAYS_MORE * (zones - 1);
+        let rays = (RAYS + RAYS_MORE * (zones - 1)) / ghosts.pipeline.search_divisor();
         let mut state = ghosts.state(BATCH);
         let (mut placed, mut everywhere) = (Vec::new(), Vec::new());
         let guides = vec![Guide::everywhere(); zones];
