@@ -354,30 +354,35 @@ impl RayBatch {
     }
 
     /// Positions, mm.
+    #[inline]
     #[must_use]
     pub fn positions(&self) -> [&[f64]; 3] {
         [self.x.slice(self.len), self.y.slice(self.len), self.z.slice(self.len)]
     }
 
     /// Unit directions.
+    #[inline]
     #[must_use]
     pub fn directions(&self) -> [&[f64]; 3] {
         [self.l.slice(self.len), self.m.slice(self.len), self.n.slice(self.len)]
     }
 
     /// Wavelengths, nm.
+    #[inline]
     #[must_use]
     pub fn wavelengths_nm(&self) -> &[f64] {
         self.wavelength_nm.slice(self.len)
     }
 
     /// Weights.
+    #[inline]
     #[must_use]
     pub fn weights(&self) -> &[f64] {
         self.weight.slice(self.len)
     }
 
     /// States: [`ALIVE`], or cause and surface of the loss.
+    #[inline]
     #[must_use]
     pub fn states(&self) -> &[u64] {
         self.state.slice(self.len)
@@ -396,6 +401,7 @@ impl RayBatch {
     }
 
     /// Rows, paths or pixels.
+    #[inline]
     #[must_use]
     pub fn tags(&self) -> &[u32] {
         &self.tag[..self.len]

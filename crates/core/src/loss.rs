@@ -47,6 +47,7 @@ impl Loss {
     }
 
     /// Cause and surface of a state; `None` while the ray is alive.
+    #[inline]
     #[must_use]
     pub fn of_state(state: u64) -> Option<(Self, u32)> {
         let cause = Self::ALL.into_iter().find(|c| *c as u64 == state & 0xff)?;

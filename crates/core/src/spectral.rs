@@ -19,23 +19,27 @@ pub struct Grid {
 
 impl Grid {
     /// Last wavelength, nm.
+    #[inline]
     #[must_use]
     pub fn end_nm(&self) -> f64 {
         self.start_nm + self.step_nm * (self.count - 1) as f64
     }
 
     /// Wavelength `i`, nm.
+    #[inline]
     #[must_use]
     pub fn wavelength_nm(&self, i: usize) -> f64 {
         self.start_nm + self.step_nm * i as f64
     }
 
     /// All wavelengths, nm.
+    #[inline]
     pub fn wavelengths_nm(&self) -> impl Iterator<Item = f64> + '_ {
         (0..self.count).map(|i| self.wavelength_nm(i))
     }
 
     /// Whether `wavelength_nm` lies on the band, its ends included.
+    #[inline]
     #[must_use]
     pub fn contains(&self, wavelength_nm: f64) -> bool {
         wavelength_nm >= self.start_nm && wavelength_nm <= self.end_nm()

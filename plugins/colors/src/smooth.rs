@@ -20,7 +20,7 @@ use spectra_core::isa::Vectorized;
 use spectra_core::math::whole;
 use spectra_core::params::{Faults, Params};
 use spectra_core::registry::Context;
-use spectra_core::spectral::{BAND, Line, SpectralPower};
+use spectra_core::spectral::{BAND, Grid, Line, SpectralPower};
 use spectra_core::stage::ColorModel;
 use spectra_spectrum::{Observer, illuminant};
 use std::array::from_fn;
@@ -109,9 +109,11 @@ impl ColorModel for Smooth {
         let (scale, coefficients) = self.table.look_up(linear_srgb);
         let reflectance = |nm: f64| scale * sigmoid(quadratic(coefficients, nm));
         let light = &self.light;
+        let mut continuum = light.continuum.clone();
+        Isa::detect().run(Reflect { grid: light.grid, scale, coefficients, light: &mut continuum });
         SpectralPower {
             grid: light.grid,
-            continuum: light.grid.wavelengths_nm().zip(&light.continuum).map(|(nm, p)| p * reflectance(nm)).collect(),
+            continuum,
             lines: light.lines.iter().map(|l| Line { power: l.power * reflectance(l.wavelength_nm), ..*l }).collect(),
         }
     }
@@ -123,6 +125,25 @@ impl ColorModel for Smooth {
             let r = k * CHUNK..k * CHUNK + weight.len();
             let (colors, wavelength_nm, line) = (&coefficients[r.clone()], &wavelength_nm[r.clone()], &line[r]);
             isa.run(Evaluate { model: self, looked: &mut looked, colors, wavelength_nm, line, weight });
+        }
+    }
+}
+
+/// Multiplies light on a grid by a scaled reflectance.
+struct Reflect<'a> {
+    grid: Grid,
+    scale: f64,
+    coefficients: Coefficients,
+    light: &'a mut [f64],
+}
+
+impl Vectorized for Reflect<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run(self) {
+        let Self { grid: Grid { start_nm, step_nm, .. }, scale, coefficients, light } = self;
+        for (i, light) in light.iter_mut().enumerate() {
+            *light *= scale * sigmoid(quadratic(coefficients, start_nm + step_nm * i as f64));
         }
     }
 }
