@@ -51,19 +51,19 @@ fn a_fisheye_out_to_80_degrees() {
         "source.width=1700",
         "imager={kind: xyz, width: 2.8, height: 1.86, resolution: [30, 20]}",
     ];
-    compare(&common, "render.samples=512", "render.rays=10000000");
+    compare(&common, "render.samples=64", "render.rays=1000000");
 }
 
 #[test]
 fn a_wide_angle_lens() {
     let lens = lens("zeiss-hologon-15-f8");
     let common = [&lens, "source.width=5.4 m", "imager.resolution=[60, 40]"];
-    compare(&common, "render.samples=512", "render.rays=6000000");
+    compare(&common, "render.samples=96", "render.rays=1000000");
 }
 
 #[test]
 fn gray_card_wide_open() {
-    compare(&["imager.resolution=[60, 40]"], "render.samples=256", "render.rays=3000000");
+    compare(&["imager.resolution=[60, 40]"], "render.samples=64", "render.rays=600000");
 }
 
 #[test]

@@ -24,7 +24,7 @@ fn scene(lens: &str, f_number: &str, object: &str) -> Scene {
         format!("lens={{file: {lens}, f-number: {f_number}, focus: {object}, coating: ideal, absorption: false}}"),
         format!("source={{kind: chart, chart: white, distance: {distance}, width: {width}, luminance: {LUMINANCE}}}"),
         format!("imager.resolution=[{WIDTH}, {HEIGHT}]"),
-        "render.samples=8192".to_owned(),
+        "render.samples=1024".to_owned(),
     ];
     spectra_scene::load(&path, &overrides).unwrap_or_else(|faults| panic!("{faults}"))
 }

@@ -1,9 +1,8 @@
 //! What stands in front of the lens: filters and the matte box.
 
-use spectra_core::Isa;
+use crate::common::statistics::{drafted, rendered};
 use spectra_core::frame::ExposureFrame;
 use spectra_plugins as _;
-use spectra_render::{Control, Renderer, Threads};
 use spectra_scene::Scene;
 use spectra_spectrum::{Observer, find_emission, find_transmittance};
 use std::path::Path;
@@ -16,8 +15,7 @@ fn load(set: &[&str]) -> Result<Scene, String> {
 
 fn render(set: &[&str]) -> ExposureFrame {
     let scene = load(set).unwrap_or_else(|faults| panic!("{faults}"));
-    let renderer = Renderer::new(scene.clone(), Isa::detect()).expect("the scene can be rendered");
-    renderer.run(&Threads(2), &Control::new()).expect("rendered").exposure
+    rendered(&drafted(scene)).exposure
 }
 
 fn mean(frame: &ExposureFrame, channel: &str) -> f64 {

@@ -1,7 +1,7 @@
 //! Ghosts by paths: the strongest as layers of their own, the rest as one; together they are all ghosts, whatever is asked for and however
 //! the work is done.
 
-use crate::common::statistics::Estimate;
+use crate::common::statistics::{Estimate, drafted};
 use crate::common::{run, shown, text};
 use spectra_analysis::ghosts::{GhostSearch, ghosts};
 use spectra_core::Isa;
@@ -33,7 +33,7 @@ fn scene_of(scene: &str, output: &str, set: &[&str]) -> Scene {
 }
 
 fn renderer(output: &str, set: &[&str]) -> Renderer {
-    Renderer::new(scene_of(SUN, output, set), Isa::detect()).expect("ready")
+    drafted(scene_of(SUN, output, set))
 }
 
 fn rendered(output: &str, set: &[&str]) -> Rendering {

@@ -1,23 +1,15 @@
 //! Imagers in a camera: sensors behind lenses, both directions, films side by side.
 
-use spectra_core::Isa;
+use crate::common::repository;
+use crate::common::statistics::{self, Estimate, estimates, over_seeds, ready, rendered};
 use spectra_core::frame::ExposureFrame;
-use spectra_plugins as _;
-use spectra_render::{Control, Renderer, Threads};
-use std::path::Path;
 
 fn load(scene: &str, overrides: &[&str]) -> spectra_scene::Scene {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(scene);
-    let overrides: Vec<String> = overrides.iter().map(|s| (*s).to_owned()).collect();
-    spectra_scene::load(&path, &overrides).unwrap_or_else(|faults| panic!("{faults}"))
+    statistics::load(&repository("scenes").join(scene), overrides)
 }
 
 fn render(scene: &spectra_scene::Scene) -> ExposureFrame {
-    Renderer::new(scene.clone(), Isa::detect())
-        .expect("the scene can be rendered")
-        .run(&Threads(2), &Control::new())
-        .expect("rendered")
-        .exposure
+    rendered(&ready(scene.clone())).exposure
 }
 
 /// Mean of the wells under red, green and blue filters (rggb) in a square of the frame, electrons.
@@ -77,20 +69,9 @@ fn a_symmetric_wide_angle_lens_casts_color_and_a_retrofocus_does_not() {
     }
 }
 
-/// Mean and standard error of the three colors in four squares, over seeds.
-fn estimate(scene: &str, overrides: &[&str], of: impl Fn(&ExposureFrame) -> Vec<f64>) -> Vec<(f64, f64)> {
-    const SEEDS: usize = 5;
-    let runs: Vec<Vec<f64>> = (0..SEEDS)
-        .map(|seed| of(&render(&load(scene, &[overrides, &[&format!("render.seed={}", seed + 3)]].concat()))))
-        .collect();
-    (0..runs[0].len())
-        .map(|at| {
-            let values: Vec<f64> = runs.iter().map(|r| r[at]).collect();
-            let mean = values.iter().sum::<f64>() / SEEDS as f64;
-            let variance = values.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / (SEEDS - 1) as f64;
-            (mean, (variance / SEEDS as f64).sqrt())
-        })
-        .collect()
+/// The figures of a picture, over seeds.
+fn estimate(scene: &str, overrides: &[&str], of: impl Fn(&ExposureFrame) -> Vec<f64>) -> Vec<Estimate> {
+    estimates(&over_seeds(&ready(load(scene, overrides)), 3..8, |rendering| of(&rendering.exposure)))
 }
 
 /// Student's t with 4 + 4 degrees of freedom where the normal has 3 standard errors, for a dozen figures together.
@@ -99,9 +80,10 @@ const STUDENT: f64 = 2.0;
 fn compare(scene: &str, common: &[&str], samples: &str, rays: &str, of: impl Fn(&ExposureFrame) -> Vec<f64>) {
     let backward = estimate(scene, &[common, &["render.direction=backward", samples]].concat(), &of);
     let forward = estimate(scene, &[common, &["render.direction=forward", rays]].concat(), &of);
-    for (at, ((b, eb), (f, ef))) in backward.iter().zip(&forward).enumerate() {
-        println!("{at}: backward {b:.4} +- {eb:.4}, forward {f:.4} +- {ef:.4}, ratio {:.5}", f / b);
-        let error = (eb * eb + ef * ef).sqrt();
+    for (at, (backward, forward)) in backward.iter().zip(&forward).enumerate() {
+        let (b, f, error) = (backward.mean, forward.mean, backward.error.hypot(forward.error));
+        println!("{at}: {backward:?}, {forward:?}, ratio {:.5}", f / b);
+        assert!(error < 0.005 * b, "{at}: {b} is known to {error} only");
         assert!((f - b).abs() < 3.0 * STUDENT * error && (f / b - 1.0).abs() < 0.03, "{at}: {f} and {b}, {error}");
     }
 }
@@ -114,7 +96,7 @@ fn forward_and_backward_agree_on_a_sensor() {
     let squares = |frame: &ExposureFrame| {
         [(0, 0), (26, 0), (0, 14), (14, 8)].iter().flat_map(|(left, top)| colors(frame, *left, *top, 14)).collect()
     };
-    compare("sensor-wide-angle.yaml", &[stands], "render.samples=1024", "render.rays=6000000", squares);
+    compare("sensor-wide-angle.yaml", &[stands], "render.samples=512", "render.rays=1200000", squares);
 }
 
 /// The same behind a thick cover glass, which moves steep rays aside by a good part of this lens's small pupil.
@@ -125,7 +107,7 @@ fn forward_and_backward_agree_behind_plates() {
     let squares = |frame: &ExposureFrame| {
         [(0, 0), (26, 0), (0, 14), (14, 8)].iter().flat_map(|(left, top)| colors(frame, *left, *top, 14)).collect()
     };
-    compare("sensor-wide-angle.yaml", &[stands], "render.samples=1024", "render.rays=6000000", squares);
+    compare("sensor-wide-angle.yaml", &[stands], "render.samples=512", "render.rays=1200000", squares);
 }
 
 /// The same for a curved, tilted colorimeter, wide open.
@@ -137,7 +119,7 @@ fn forward_and_backward_agree_on_a_curved_frame() {
         let values = &frame.channel("Y").expect("XYZ").values;
         (0..8).map(|strip| values[strip * 192..][..192].iter().map(|v| f64::from(*v)).sum::<f64>() / 192.0).collect()
     };
-    compare("gray-card.yaml", &[stands], "render.samples=512", "render.rays=3000000", mean);
+    compare("gray-card.yaml", &[stands], "render.samples=64", "render.rays=400000", mean);
 }
 
 /// Three films in the light of one trace record what each records alone: the same mean exposure, within the noise of
@@ -169,7 +151,7 @@ fn films_side_by_side_record_what_each_records_alone() {
 
 #[test]
 fn faulty_films_are_told_at_their_places() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/three-films.yaml");
+    let path = repository("scenes/three-films.yaml");
     for (film, word) in [
         ("[]", "1 to 16"),
         ("[{stock: ilford-ortho-plus, exposure: 1 s, name: a/b}]", "file's name"),

@@ -1,12 +1,12 @@
 //! Light by its kinds: direct, ghosts, glare and star are the picture, in the renderer and in a file; asking for them changes no bit.
 
+use crate::common::statistics::{self, drafted, ready};
 use crate::common::{run, shown, text};
 use exr::prelude::FlatSamples;
-use spectra_core::Isa;
 use spectra_core::frame::ExposureChannel;
 use spectra_plugins as _;
-use spectra_render::{Control, Renderer, Rendering, Threads};
-use spectra_scene::LightKind;
+use spectra_render::{Renderer, Rendering};
+use spectra_scene::{LightKind, Scene};
 
 /// The sun beside the axis of a bare lens, with all that glass, paint and blades make of it.
 const SUN: &str = "spectra: 1\n\
@@ -16,13 +16,14 @@ const SUN: &str = "spectra: 1\n\
     render: {direction: forward, samples: 2, rays: 20000, reflections: {order: 2}, glare: true, diffraction: true}\n";
 
 fn rendered(output: &str, set: &[&str]) -> Rendering {
+    rendered_by(drafted, output, set)
+}
+
+fn rendered_by(made: fn(Scene) -> Renderer, output: &str, set: &[&str]) -> Rendering {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("sun.yaml");
     std::fs::write(&path, format!("{SUN}output: {output}\n")).expect("written");
-    let set: Vec<String> = set.iter().map(|s| (*s).to_owned()).collect();
-    let scene = spectra_scene::load(&path, &set).unwrap_or_else(|faults| panic!("{faults}"));
-    let renderer = Renderer::new(scene, Isa::detect()).expect("ready");
-    renderer.run(&Threads(2), &Control::new()).expect("rendered")
+    statistics::rendered(&made(statistics::load(&path, set)))
 }
 
 const ALL: &str = "[{kind: exr, layers: [direct, ghosts, glare, star]}]";
@@ -77,7 +78,7 @@ fn a_file_has_them_beside_the_exposure() {
     let channels = &image.layer_data[0].channel_data.list;
     let names: Vec<String> = channels.iter().map(|channel| channel.name.to_string()).collect();
     assert_eq!(names, ["X", "Y", "Z", "ghosts.X", "ghosts.Y", "ghosts.Z", "star.X", "star.Y", "star.Z"]);
-    let want = rendered(ALL, &[]);
+    let want = rendered_by(ready, ALL, &[]);
     let FlatSamples::F32(values) = &channels[4].sample_data else { panic!("32-bit floats") };
     assert_eq!(values, &want.layers[1].channels[1].values);
     // The picture itself is read as before, layers or not.

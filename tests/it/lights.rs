@@ -100,14 +100,14 @@ const ERRORS: f64 = 3.0 * 1.6;
 fn agree(source: &str) {
     agree_by(
         source,
-        &[("forward", "render.rays=1500000"), ("both", "render.samples=128"), ("both", "render.rays=700000")],
+        &[("forward", "render.rays=500000"), ("both", "render.samples=32"), ("both", "render.rays=200000")],
     );
 }
 
 fn agree_by(source: &str, others: &[(&str, &str)]) {
     let folder = tempfile::tempdir().expect("a folder");
     let path = scene(folder.path(), source);
-    let backward = estimate(&path, &["render.direction=backward", "render.samples=2048"]);
+    let backward = estimate(&path, &["render.direction=backward", "render.samples=400"]);
     for (direction, many) in others {
         let other = estimate(&path, &[&format!("render.direction={direction}"), many]);
         for (region, (backward, other)) in backward.iter().zip(&other).enumerate() {
@@ -139,7 +139,7 @@ fn lights_of_layers() {
 fn a_sun_over_a_chart() {
     let sun = "{kind: sun, field: [3 deg, 2 deg], diameter: 2 deg, illuminance: 1 lx, \
                over: {kind: chart, chart: white, distance: 2 m, width: 60 cm}}";
-    agree_by(sun, &[("both", "render.samples=256")]);
+    agree_by(sun, &[("both", "render.samples=64")]);
 }
 
 /// What stands in front of a lamp takes light from it and adds none: a lamp at its edge does not go on behind it.

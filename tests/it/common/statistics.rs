@@ -1,6 +1,7 @@
 //! Pictures over independent seeds, and what they say of each figure.
 
 use spectra_core::Isa;
+use spectra_lens::Effort;
 use spectra_render::{Control, Renderer, Rendering, Threads};
 use spectra_scene::Scene;
 use std::ops::Range;
@@ -15,6 +16,13 @@ pub fn load(path: &Path, settings: &[&str]) -> Scene {
 /// A scene made ready once: what is searched before the first ray serves all seeds.
 pub fn ready(scene: Scene) -> Renderer {
     Renderer::on(scene, Isa::detect(), &Threads(2)).expect("the scene can be rendered")
+}
+
+/// The same as a draft: pupils and ghosts are searched in a part of the time, so that more rays end on their way. For what does not depend
+/// on how many do.
+pub fn drafted(scene: Scene) -> Renderer {
+    Renderer::with_effort(scene.into(), Isa::detect(), None, Effort::Draft, &Threads(2))
+        .expect("the scene can be rendered")
 }
 
 /// All samples of a renderer, on two threads.
