@@ -1,6 +1,7 @@
 //! Glasses by the names that other programs give them.
 
 use crate::prescription::Medium;
+use spectra_glass::lines::F;
 use spectra_glass::{Catalogue, FindError, Glass};
 
 /// Largest difference between a stated index and that of the glass of this name, if it is to be that glass.
@@ -10,7 +11,7 @@ const SAME_INDEX: f64 = 0.002;
 const USUAL: [&str; 9] = ["SCHOTT", "OHARA", "HOYA", "HIKARI", "CDGM", "SUMITA", "NHG", "LZOS", "CORNING"];
 
 /// Names of the miscellaneous catalogues of design programs, and ours.
-const EVERYDAY: [(&str, &str); 20] = [
+const EVERYDAY: [(&str, &str); 28] = [
     ("SILICA", "silica"),
     ("F_SILICA", "silica"),
     // Corning's fused silica.
@@ -32,6 +33,14 @@ const EVERYDAY: [(&str, &str); 20] = [
     ("CALCITE", "calcite"),
     ("NACL", "salt"),
     ("E48R", "ZeonexE48R"),
+    ("ZEONEX_E48R", "ZeonexE48R"),
+    ("NOA61", "Norland_NOA-61/Norland"),
+    ("NOA-61", "Norland_NOA-61/Norland"),
+    ("GERMANIUM", "Ge/Amotchkina"),
+    ("ZNSE", "ZnSe/Marple"),
+    ("ZNS", "ZnS/Bond"),
+    ("BAF2", "BaF2/Malitson"),
+    ("LIF", "LiF/Li"),
 ];
 
 /// A medium, and what must be told of it: whether light goes another way, and the words.
@@ -108,10 +117,52 @@ pub(crate) fn model(nd: f64, vd: f64) -> Found {
         return Found { medium: Medium::Air, note: None };
     }
     if (5.0..=200.0).contains(&vd) {
-        return Found { medium: Medium::Model { nd, vd: Some(vd) }, note: None };
+        return Found { medium: Medium::Model { nd, vd: Some(vd), ng: None }, note: None };
     }
     let note = (vd != 0.0).then(|| (true, format!("an Abbe number of {vd}: carried without dispersion")));
-    Found { medium: Medium::Model { nd, vd: None }, note }
+    Found { medium: Medium::Model { nd, vd: None, ng: None }, note }
+}
+
+/// The same with a deviation of its relative partial dispersion of g and F from the normal line: ng = nF + (P + deviation) (nF - nC).
+pub(crate) fn model_off_normal(nd: f64, vd: f64, deviation: f64) -> Found {
+    let mut found = model(nd, vd);
+    if deviation != 0.0 {
+        match &mut found.medium {
+            Medium::Model { nd, vd: Some(vd), ng } => {
+                *ng = dispersed(*nd, *vd).map(|(nf, spread)| rounded(nf + (normal_partial(*vd) + deviation) * spread));
+            }
+            _ => {
+                found.note =
+                    Some((true, format!("a deviation of {deviation} from the normal line, without dispersion")))
+            }
+        }
+    }
+    found
+}
+
+/// How far a glass of these figures lies off the normal line; 0 where no index at g is stated.
+pub(crate) fn deviation(nd: f64, vd: Option<f64>, ng: Option<f64>) -> f64 {
+    let off = |vd: f64, ng: f64| {
+        let (nf, spread) = dispersed(nd, vd)?;
+        Some(rounded((ng - nf) / spread - normal_partial(vd)))
+    };
+    vd.zip(ng).and_then(|(vd, ng)| off(vd, ng)).unwrap_or(0.0)
+}
+
+/// Index at F and nF - nC of a glass of which no more is known than nd and Vd.
+fn dispersed(nd: f64, vd: f64) -> Option<(f64, f64)> {
+    let nf = spectra_glass::Medium::from_nd_vd(nd, vd)?.index(F.wavelength_nm);
+    Some((nf, (nd - 1.0) / vd))
+}
+
+/// Relative partial dispersion of g and F on the normal line through K7 and F2 (SCHOTT, TIE-29: 0.6438 - 0.001682 Vd).
+fn normal_partial(vd: f64) -> f64 {
+    0.6438 - 0.001_682 * vd
+}
+
+/// To eight decimals: more would be invented.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.8}").parse().unwrap_or(value)
 }
 
 /// The glass of a name, and what a person should know of the choice.
@@ -217,7 +268,7 @@ mod tests {
         assert_eq!(name(&found.medium), "UNOBTAINIUM");
         assert!(found.note.is_some_and(|(alters, text)| alters && text.contains("UNOBTAINIUM")));
         let found = look_up("UNOBTAINIUM", Some((1.6, 50.0)), &["SCHOTT"]);
-        assert_eq!(found.medium, Medium::Model { nd: 1.6, vd: Some(50.0) });
+        assert_eq!(found.medium, Medium::Model { nd: 1.6, vd: Some(50.0), ng: None });
         assert!(found.note.is_some_and(|(alters, text)| !alters && text.contains("UNOBTAINIUM")));
     }
 

@@ -253,6 +253,8 @@ pub enum Medium {
         nd: f64,
         /// Abbe number; without one there is no dispersion.
         vd: Option<f64>,
+        /// Index at g, where more is known of its dispersion.
+        ng: Option<f64>,
     },
     /// A name that no catalogue has, without figures: a person must say what it is.
     Unknown {

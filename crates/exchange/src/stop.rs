@@ -159,7 +159,7 @@ fn index(medium: &Medium, nm: f64) -> Result<f64, String> {
             let known = Catalogue::bundled().medium(name).ok().map(|medium| medium.index(nm));
             (name.clone(), known.filter(|n| n.is_finite()).or(*nd))
         }
-        Medium::Model { nd, vd } => {
+        Medium::Model { nd, vd, .. } => {
             let model = spectra_glass::Medium::from_nd_vd(*nd, vd.unwrap_or(0.0)).map(|medium| medium.index(nm));
             (format!("nd {nd}"), model.filter(|n| n.is_finite()).or(Some(*nd)))
         }

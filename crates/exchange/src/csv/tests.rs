@@ -17,7 +17,7 @@ fn a_table_of_a_patent() {
     assert_eq!(surfaces[2].shape, Shape::EvenAsphere { radius: -40.42, conic: 0.0, coefficients: vec![0.0, 1e-6] });
     assert_eq!(
         (&surfaces[2].medium, surfaces[2].semi_diameter_mm),
-        (&Medium::Model { nd: 1.6992, vd: Some(30.2) }, None)
+        (&Medium::Model { nd: 1.6992, vd: Some(30.2), ng: None }, None)
     );
     assert_eq!(surfaces[3].shape, Shape::Cylinder { radius: 55.0, along_x: false });
     assert_eq!(surfaces[3].thickness_mm, 50.0);

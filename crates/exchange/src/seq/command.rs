@@ -46,6 +46,8 @@ struct Reader<'a> {
     private_nm: Vec<f64>,
     private: Vec<Private>,
     in_private: bool,
+    /// Line of the command that is read.
+    line: usize,
     /// Line of what sets the size of the beam.
     aperture_line: usize,
     fields: BTreeMap<&'static str, Vec<f64>>,
@@ -64,16 +66,27 @@ impl<'a> Reader<'a> {
             private_nm: Vec::new(),
             private: Vec::new(),
             in_private: false,
+            line: 0,
             aperture_line: 0,
             fields: BTreeMap::new(),
             unknown: BTreeMap::new(),
         }
     }
 
-    fn number(&mut self, word: &str) -> Option<f64> {
+    /// A figure without which there is no lens.
+    fn needed(&mut self, word: &str) -> Option<f64> {
         let value = number::parse(word);
         if value.is_none() {
             self.faults.push(self.source.fault(word, format!("`{}` is not a number", shown(word))));
+        }
+        value
+    }
+
+    /// Any other one: of a word in its place is told.
+    fn number(&mut self, word: &str) -> Option<f64> {
+        let value = number::parse(word);
+        if value.is_none() {
+            self.lens.leave_out(self.line, true, format!("`{}` is not a number", shown(word)));
         }
         value
     }
@@ -83,9 +96,10 @@ impl<'a> Reader<'a> {
     }
 
     /// The value behind a command, and the surface that it is for: `THI S3 5.0`, or the one that was begun last.
-    fn value(&mut self, words: &[&str]) -> Option<(usize, f64)> {
+    fn value(&mut self, words: &[&str], is_needed: bool) -> Option<(usize, f64)> {
         let (at, words) = self.target(words)?;
-        let value = self.number(words.first()?)?;
+        let word = words.first()?;
+        let value = if is_needed { self.needed(word) } else { self.number(word) }?;
         Some((at, value))
     }
 
@@ -108,14 +122,26 @@ impl<'a> Reader<'a> {
     fn statement(&mut self, statement: &Statement<'_>) {
         let Some((first, words)) = statement.words.split_first() else { return };
         let upper = first.to_ascii_uppercase();
+        self.line = statement.line;
         if self.in_private {
             match upper.as_str() {
                 "PWL" => self.private_nm = self.numbers(words),
                 "END" => self.in_private = false,
                 _ => {
-                    let indices = self.numbers(words);
-                    let points = self.private_nm.iter().copied().zip(indices).collect();
                     let name = first.trim_matches(['\'', '"']).to_owned();
+                    let formula = words.first().filter(|word| number::parse(word).is_none());
+                    let indices = if let Some(formula) = formula {
+                        let text = format!(
+                            "the file's own glass {} is by a formula, {}: not read",
+                            shown(&name),
+                            shown(formula)
+                        );
+                        self.lens.leave_out(statement.line, false, text);
+                        Vec::new()
+                    } else {
+                        self.numbers(words)
+                    };
+                    let points = self.private_nm.iter().copied().zip(indices).collect();
                     if self.private.len() < 200 {
                         self.private.push(Private { name, points });
                     }
@@ -198,13 +224,17 @@ impl<'a> Reader<'a> {
     fn begin(&mut self, role: Role, line: usize, words: &[&str]) {
         let mut raw = Raw::new(role, line);
         let mut words = words;
-        for into in [&mut raw.bend, &mut raw.thickness] {
-            if let Some(word) = words.first()
-                && let Some(value) = number::parse(word)
-            {
-                *into = value;
-                words = &words[1..];
+        // What begins as a number is none of a glass, unless a number goes before it.
+        let is_figure = |word: &str| word.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c));
+        for (at, into) in [&mut raw.bend, &mut raw.thickness].into_iter().enumerate() {
+            let Some(word) = words.first() else { break };
+            let value =
+                number::parse(word).or_else(|| if at == 0 && is_figure(word) { self.needed(word) } else { None });
+            if value.is_none() && !(at == 0 && is_figure(word)) {
+                continue;
             }
+            *into = value.unwrap_or(0.0);
+            words = &words[1..];
         }
         if let Some(word) = words.first() {
             if raw.role == Role::Surface || !word.starts_with(|c: char| c.is_ascii_digit()) {
@@ -226,7 +256,7 @@ impl<'a> Reader<'a> {
             return false;
         }
         if let Some((_, power)) = POWERS.iter().find(|(name, _)| *name == command) {
-            if let Some((at, value)) = self.value(words) {
+            if let Some((at, value)) = self.value(words, false) {
                 self.surfaces[at].coefficients.insert(*power, value);
             }
             return true;
@@ -284,7 +314,8 @@ impl<'a> Reader<'a> {
             }
             "RDY" | "CUY" | "RDX" | "CUX" | "THI" | "K" | "KY" | "KX" | "XDE" | "YDE" | "ZDE" | "ADE" | "BDE"
             | "CDE" => {
-                if let Some((at, value)) = self.value(words) {
+                let is_needed = ["RDY", "CUY", "RDX", "CUX", "THI"].contains(&command);
+                if let Some((at, value)) = self.value(words, is_needed) {
                     self.surfaces[at].set(command, value);
                 }
             }

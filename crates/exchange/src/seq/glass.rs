@@ -48,7 +48,14 @@ pub(super) fn medium(name: &str, private: &[Private]) -> Found {
             }
             None => Found {
                 medium: Medium::Unknown { name: bare.to_owned() },
-                note: Some((true, format!("glass {bare}: its table does not reach from F to C"))),
+                note: Some((
+                    true,
+                    if table.points.is_empty() {
+                        format!("glass {bare}: its formula is not read; write its nd and Vd")
+                    } else {
+                        format!("glass {bare}: its table does not reach from F to C")
+                    },
+                )),
             },
         };
     }
@@ -134,7 +141,7 @@ mod tests {
         let points =
             vec![(700.0, 1.513_06), (587.5618, 1.516_80), (486.1327, 1.522_38), (546.074, 1.518_72), (650.0, 1.514_52)];
         let private = [Private { name: "OWN".to_owned(), points }];
-        let Medium::Model { nd, vd: Some(vd) } = medium("'own'", &private).medium else { panic!("no figures") };
+        let Medium::Model { nd, vd: Some(vd), .. } = medium("'own'", &private).medium else { panic!("no figures") };
         assert!((nd - 1.5168).abs() < 1e-9 && (vd - 64.17).abs() < 0.1, "{nd} {vd}");
     }
 }

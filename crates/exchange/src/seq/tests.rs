@@ -56,7 +56,7 @@ fn forms() {
 #[test]
 fn glasses_mirrors_and_apertures() {
     let found = first("S 50 1 516800.641700\n STO\n CIR 4\n CIR EDG 5\n CIR OBS 1\n SLB \"front\"");
-    assert_eq!(found.medium, Medium::Model { nd: 1.5168, vd: Some(64.17) });
+    assert_eq!(found.medium, Medium::Model { nd: 1.5168, vd: Some(64.17), ng: None });
     assert_eq!((found.stop, found.semi_diameter_mm, found.outer_semi_diameter_mm), (true, Some(4.0), Some(5.0)));
     assert_eq!(found.apertures[0].shape, ApertureShape::Ring { inner: 0.0, outer: 1.0 });
     assert!(found.apertures[0].obscures && found.comment == "front");
@@ -137,8 +137,8 @@ fn the_rest_is_told() {
         notes.iter().any(|note| note.contains("NOBODYS")) && notes.iter().any(|note| note.contains("FROB 3")),
         "{notes:?}"
     );
-    let message = read("bad.seq", "RDM\nS 50 5\n K x1\n").unwrap_err().to_string();
-    assert!(message.contains("bad.seq:3:4: `x1` is not a number"), "{message}");
+    let message = read("bad.seq", "RDM\nS 50 5\n THI x1\n").unwrap_err().to_string();
+    assert!(message.contains("bad.seq:3:6: `x1` is not a number"), "{message}");
     assert!(read("bad.seq", "").unwrap_err().to_string().contains("no surfaces"));
 }
 
@@ -150,4 +150,35 @@ fn hints_help_when_followed() {
     assert_eq!(first("S 50 1 NBK7_SCHOTT\n CIR 7").semi_diameter_mm, Some(7.0));
     assert_eq!(first("EPD 14\nS 50 1 NBK7_SCHOTT\n STO").semi_diameter_mm, Some(7.0));
     assert!(crate::Format::Seq.how_to_stop().contains("`STO`") && first("S 50 1 NBK7_SCHOTT\n STO").stop);
+}
+
+/// A word in the place of a number ends nothing but where there is no lens without it: the radius and the thickness of a surface.
+#[test]
+fn words_among_values_are_told() {
+    let file = |surface: &str| format!("RDM\nSO 0 1e13\n{surface}\nS -50 47\nSI 0 0\nGO\n");
+    for surface in [
+        "S 50 5 NBK7_SCHOTT\n K x",
+        "S 50 5\n A x",
+        "S 50 5\n CIR x",
+        "S 50 5\n CIR EDG x",
+        "S 50 5\n ADE x",
+        "S 50 5\n XDE 1..5",
+        "EPD x\nS 50 5",
+        "YAN 0 x\nS 50 5",
+        "WL 587 x\nS 50 5",
+    ] {
+        let lens = read("x.seq", &file(surface)).unwrap_or_else(|faults| panic!("{surface}: {faults}"));
+        let told = lens.left_out.iter().any(|note| note.alters && note.text.contains("is not a number"));
+        assert!(told && lens.surfaces().count() == 2, "{surface}: {:?}", lens.left_out);
+    }
+    for surface in ["S 5..0 5", "S 50 5\n THI 5..0", "S 50 5\n RDY x"] {
+        let faults = read("x.seq", &file(surface)).expect_err(surface).to_string();
+        assert!(faults.contains("is not a number") && faults.contains("x.seq:"), "{faults}");
+    }
+    // A glass by a formula ends nothing where no surface has it.
+    let private = "PRV\nPWL 550\n'GLUE' LAU 2.4 0 0.02\nEND\n";
+    let lens = read("x.seq", &format!("{private}{}", file("S 50 5 NBK7_SCHOTT"))).expect("a lens");
+    assert!(lens.left_out.iter().any(|note| !note.alters && note.text.contains("GLUE") && note.text.contains("LAU")));
+    let lens = read("x.seq", &format!("{private}{}", file("S 50 5 'GLUE'"))).expect("a lens");
+    assert!(lens.left_out.iter().any(|note| note.alters && note.text.contains("its formula is not read")));
 }

@@ -275,7 +275,7 @@ fn medium(params: &Params, lines: LineTriple) -> Result<Medium, Faults> {
         Some(name) => {
             // Beside a name, figures only tell which glass of that name is meant.
             let (nd, vd) = match n.map(|n| at_d(n, v, lines)) {
-                Some(Medium::Model { nd, vd }) if v.is_some() || lines == LineTriple::FDC => (Some(nd), vd),
+                Some(Medium::Model { nd, vd, .. }) if v.is_some() || lines == LineTriple::FDC => (Some(nd), vd),
                 _ => (None, None),
             };
             Ok(Medium::Glass { name: name.to_owned(), nd, vd })
@@ -285,9 +285,15 @@ fn medium(params: &Params, lines: LineTriple) -> Result<Medium, Faults> {
             if ["formula", "table", "file", "name"].iter().any(|key| own.get(key).is_some()) {
                 let glass = file::from_params(&own, "glass", &NoFiles)?;
                 let vd = Some(glass.vd()).filter(|vd| vd.is_finite());
-                return Ok(Medium::Model { nd: glass.nd(), vd });
+                let ng = Some(glass.index(lines::G.wavelength_nm)).filter(|n| n.is_finite());
+                return Ok(Medium::Model { nd: glass.nd(), vd, ng });
             }
-            Ok(figures_at_d(&value::<Figures>(params, "glass")?.unwrap_or_default().medium(&own)?.0))
+            let figures = value::<Figures>(params, "glass")?.unwrap_or_default();
+            let mut medium = figures_at_d(&figures.medium(&own)?.0);
+            if let Medium::Model { ng, .. } = &mut medium {
+                *ng = figures.ng;
+            }
+            Ok(medium)
         }
     }
 }
@@ -295,7 +301,7 @@ fn medium(params: &Params, lines: LineTriple) -> Result<Medium, Faults> {
 /// An index and an Abbe number for any lines as nd and Vd; at d, F and C they are what they were.
 fn at_d(n: f64, v: Option<f64>, lines: LineTriple) -> Medium {
     let model = v.filter(|_| lines != LineTriple::FDC).and_then(|v| ModelGlass::new(n, v, lines));
-    model.map_or(Medium::Model { nd: n, vd: v }, |model| figures_at_d(&spectra_glass::Medium::Model(model)))
+    model.map_or(Medium::Model { nd: n, vd: v, ng: None }, |model| figures_at_d(&spectra_glass::Medium::Model(model)))
 }
 
 fn figures_at_d(medium: &spectra_glass::Medium) -> Medium {
@@ -308,7 +314,7 @@ fn figures_at_d(medium: &spectra_glass::Medium) -> Medium {
         spectra_glass::Medium::Model(model) if model.lines() == LineTriple::FDC => model.index_mid(),
         other => other.index(lines::D.wavelength_nm),
     };
-    Medium::Model { nd, vd }
+    Medium::Model { nd, vd, ng: None }
 }
 
 /// A glass that is written out in a lens file and names a file of its own is not carried.

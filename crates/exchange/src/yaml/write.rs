@@ -153,9 +153,10 @@ fn surface_keys(surface: &Surface) -> Vec<String> {
                 keys.extend(nd.map(|nd| format!("nd: {}", shortest(nd))));
                 keys.extend(vd.filter(|_| nd.is_some()).map(|vd| format!("vd: {}", shortest(vd))));
             }
-            Medium::Model { nd, vd } => {
+            Medium::Model { nd, vd, ng } => {
                 let vd = vd.map_or(String::new(), |vd| format!(", vd: {}", shortest(vd)));
-                keys.push(format!("glass: {{nd: {}{vd}}}", shortest(*nd)));
+                let ng = ng.map_or(String::new(), |ng| format!(", ng: {}", shortest(ng)));
+                keys.push(format!("glass: {{nd: {}{vd}{ng}}}", shortest(*nd)));
             }
             Medium::Unknown { name } => keys.push(format!("glass: {}", scalar(name))),
         }

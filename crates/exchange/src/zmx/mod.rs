@@ -5,6 +5,7 @@
 //! the OpticStudio user manual (chapters Sequential Surfaces, Apertures, Coordinate Break).
 
 mod known;
+mod numbers;
 mod read;
 mod record;
 mod shape;

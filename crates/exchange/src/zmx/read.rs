@@ -1,7 +1,7 @@
 //! A whole file.
 
 use super::record::{Record, Records, sort};
-use super::surface::Block;
+use super::surface::{Block, GlassRecord};
 use super::{known, system};
 use crate::place::{Source, shown};
 use crate::prescription::{CoordinateBreak, Item, Medium, Note, Prescription, Shape, Surface, SystemAperture};
@@ -38,7 +38,8 @@ pub fn read(name: &str, text: &str) -> Result<Prescription, Faults> {
     if !faults.is_empty() {
         return Err(faults);
     }
-    Reader { lens: &mut lens, media: Vec::new(), makers: &system.makers }.surfaces(&blocks);
+    let makers = &system.makers;
+    Reader { lens: &mut lens, media: Vec::new(), makers, is_turned: false, ran_back: false }.surfaces(&blocks);
     note_solves(&records, &mut lens);
     for (keyword, (line, count)) in unknown {
         let times = if count > 1 { format!(" ({count} lines)") } else { String::new() };
@@ -65,6 +66,10 @@ struct Reader<'a> {
     /// Medium behind each surface of the file, mirrors included.
     media: Vec<Medium>,
     makers: &'a [&'static str],
+    /// Whether light runs toward smaller z, behind an odd number of mirrors.
+    is_turned: bool,
+    /// Whether the last gap ran against the light.
+    ran_back: bool,
 }
 
 impl Reader<'_> {
@@ -81,6 +86,7 @@ impl Reader<'_> {
         if object.curvature_radius_mm.is_finite() {
             self.lens.leave_out(object.line, false, "the object is curved");
         }
+        object.note_unused(0, self.lens);
         self.media.push(Medium::Air);
         for (number, block) in blocks.iter().enumerate().take(blocks.len() - 1).skip(1) {
             self.surface(number, block);
@@ -93,6 +99,17 @@ impl Reader<'_> {
                 format!("the image surface is curved, radius {radius} mm: it is a plane here"),
             );
         }
+        if image.conic != 0.0 && image.curvature_radius_mm.is_finite() || image.kind != "STANDARD" {
+            let kind = shown(&image.kind);
+            self.lens.leave_out(
+                image.line,
+                true,
+                format!("the form of the image surface ({kind}): it is a plane here"),
+            );
+            image.parameters.set_all_aside();
+            image.extra.set_all_aside();
+        }
+        image.note_unused(blocks.len() - 1, self.lens);
         if !image.aperture.is_none() {
             self.lens.leave_out(image.line, false, "the aperture of the image surface");
         }
@@ -126,7 +143,7 @@ impl Reader<'_> {
             let axis = CoordinateBreak { thickness_mm: own_mm, ..block.coordinate_break() };
             self.lens.items.push(Item::Break(axis));
         } else {
-            let mirror = block.glass.as_ref().is_some_and(|glass| glass.name.eq_ignore_ascii_case("MIRROR"));
+            let mirror = block.glass.as_ref().is_some_and(GlassRecord::is_mirror);
             let medium = if mirror { before.clone() } else { self.medium(number, block) };
             let mut surface = Surface {
                 shape: block.shape(number, self.lens),
@@ -145,26 +162,46 @@ impl Reader<'_> {
             if block.stop && bends_nothing && surface.apertures.is_empty() {
                 surface.shape = Shape::Stop;
             }
+            let is_dummy = surface.shape == Shape::Plane && !bends && !surface.stop && block.aperture.is_none();
             self.media.push(medium);
-            self.lens.items.push(Item::Surface(Box::new(surface)));
+            self.is_turned ^= mirror;
+            let runs_back = if self.is_turned { own_mm > 0.0 } else { own_mm < 0.0 };
+            if is_dummy && (runs_back || self.ran_back) {
+                self.move_along(own_mm);
+            } else if runs_back && bends && !mirror {
+                surface.thickness_mm = 0.0;
+                self.lens.items.push(Item::Surface(Box::new(surface)));
+                self.move_along(own_mm);
+            } else {
+                self.lens.items.push(Item::Surface(Box::new(surface)));
+            }
+            self.ran_back = runs_back;
         }
+        block.note_unused(number, self.lens);
         for (at, tilt) in block.after.iter().enumerate() {
             let thickness_mm = if at + 1 == block.after.len() { thickness_mm } else { 0.0 };
             self.lens.items.push(Item::Break(CoordinateBreak { thickness_mm, ..*tilt }));
         }
     }
 
+    /// A step along the axis where nothing is: on the way to a point about which what follows is turned, it runs against the light.
+    fn move_along(&mut self, thickness_mm: f64) {
+        match self.lens.items.last_mut() {
+            Some(Item::Break(axis)) if axis.by.is_none() => axis.thickness_mm += thickness_mm,
+            _ => self.lens.items.push(Item::Break(CoordinateBreak { thickness_mm, ..CoordinateBreak::default() })),
+        }
+    }
+
     /// The medium behind a surface that is no mirror.
     fn medium(&mut self, number: usize, block: &Block) -> Medium {
         let Some(stated) = &block.glass else { return Medium::Air };
-        let blank = stated.name.starts_with("___") || stated.name.is_empty();
-        let found = match (blank, stated.pickup.and_then(|from| self.media.get(from))) {
+        let found = match (stated.is_model, stated.pickup.and_then(|from| self.media.get(from))) {
             (true, Some(medium)) => glass::Found { medium: medium.clone(), note: None },
             (true, None) if !(1.0..=4.0).contains(&stated.nd) => glass::Found {
                 medium: Medium::Unknown { name: format!("nd {}", stated.nd) },
                 note: Some((true, format!("a glass with an index of {}", stated.nd))),
             },
-            (true, None) => glass::model(stated.nd, stated.vd),
+            (true, None) => glass::model_off_normal(stated.nd, stated.vd, stated.deviation),
             // 1.5 and 40 are what the program writes where nothing is known.
             (false, _) => {
                 let known =

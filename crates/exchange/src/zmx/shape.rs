@@ -5,13 +5,15 @@ use crate::prescription::{Ordering, Prescription, Shape};
 
 /// Most coefficients of an asphere in a lens file.
 const MOST_COEFFICIENTS: usize = 20;
+/// Most unused numbers that are shown of one surface.
+const MOST_SHOWN: usize = 6;
 
 impl Block {
     /// The form of a surface; what cannot be carried is noted. `number` is the file's.
     pub(super) fn shape(&self, number: usize, lens: &mut Prescription) -> Shape {
         let (radius, conic) = (self.curvature_radius_mm, self.conic);
         let simple = Shape::conic(radius, conic);
-        let value = |at: u32| self.parameters.get(&at).copied().unwrap_or(0.0);
+        let value = |at: u32| self.parameters.get(at);
         match self.kind.as_str() {
             "STANDARD" => simple,
             "EVENASPH" => even(radius, conic, self.polynomial(1..=8, 2, 2)),
@@ -19,18 +21,27 @@ impl Block {
                 let coefficients = self.polynomial(1..=8, 1, 1);
                 if coefficients.is_empty() { simple } else { Shape::OddAsphere { radius, conic, coefficients } }
             }
-            "XASPHERE" => even(radius, conic, self.extended(number, lens)),
+            "XASPHERE" => {
+                // Both kinds of terms stand for the same powers.
+                let terms = self.polynomial(1..=8, 2, 2);
+                even(radius, conic, self.extended(number, 2, terms, lens))
+            }
+            "XOSPHERE" => {
+                let coefficients = self.extended(number, 1, Vec::new(), lens);
+                if coefficients.is_empty() { simple } else { Shape::OddAsphere { radius, conic, coefficients } }
+            }
             "TOROIDAL" => self.toroid(number, lens),
             "BICONICX" => {
                 let radius_x = if value(1) == 0.0 { f64::INFINITY } else { value(1) * self.unit_mm };
                 Shape::Biconic { radius_x, radius_y: radius, conic_x: value(2), conic_y: conic }
             }
-            "TILTSURF" => {
-                self.note_beyond(number, &[1, 2], lens);
-                Shape::TiltedPlane { tan_x: value(1), tan_y: value(2) }
+            "TILTSURF" => Shape::TiltedPlane { tan_x: value(1), tan_y: value(2) },
+            "PARAXIAL" => {
+                // How optical paths are counted.
+                self.parameters.set_aside([2]);
+                let focal_length = value(1) * self.unit_mm;
+                if focal_length == 0.0 { Shape::Plane } else { Shape::ThinLens { focal_length } }
             }
-            "PARAXIAL" if value(1) != 0.0 => Shape::ThinLens { focal_length: value(1) * self.unit_mm },
-            "PARAXIAL" => Shape::Plane,
             "DGRATING" => {
                 if conic != 0.0 {
                     lens.leave_out(
@@ -49,6 +60,8 @@ impl Block {
             "SZERNSAG" => self.zernike(number, Ordering::Noll, lens).unwrap_or(simple),
             "FZERNSAG" => self.zernike(number, Ordering::Fringe, lens).unwrap_or(simple),
             other => {
+                self.parameters.set_all_aside();
+                self.extra.set_all_aside();
                 let what = if matches!(simple, Shape::Plane) { "a plane" } else { "its sphere or conic" };
                 let other = crate::place::shown(other);
                 lens.leave_out(
@@ -66,22 +79,27 @@ impl Block {
         let mut power = first;
         let mut coefficients = Vec::new();
         for at in parameters {
-            let value = self.parameters.get(&at).copied().unwrap_or(0.0);
-            coefficients.push(value / power_of(self.unit_mm, power - 1));
+            coefficients.push(self.parameters.get(at) / power_of(self.unit_mm, power - 1));
             power += step;
         }
         trimmed(coefficients)
     }
 
-    /// Coefficients of the extended asphere: sum of a_i (r / R)^(2 i), extra data 1 the number of terms, 2 R, then a_1, ...
-    fn extended(&self, number: usize, lens: &mut Prescription) -> Vec<f64> {
-        let value = |at: u32| self.extra.get(&at).copied().unwrap_or(0.0);
+    /// Coefficients of an extended asphere: sum of a_i (r / R)^(step i), extra data 1 the number of terms, 2 R, then a_1, ...; added to
+    /// `others` of the same powers.
+    fn extended(&self, number: usize, step: u32, others: Vec<f64>, lens: &mut Prescription) -> Vec<f64> {
+        let value = |at: u32| self.extra.get(at);
         let terms = value(1).clamp(0.0, 240.0) as u32;
         let normalization = if value(2) == 0.0 { 1.0 } else { value(2) } * self.unit_mm;
-        let mut coefficients =
-            trimmed((1..=terms).map(|i| value(2 + i) * self.unit_mm / power_of(normalization, 2 * i)).collect());
+        let mut coefficients = others;
+        coefficients.resize(coefficients.len().max(terms as usize), 0.0);
+        for (i, coefficient) in (1..=terms).zip(&mut coefficients) {
+            *coefficient += value(2 + i) * self.unit_mm / power_of(normalization, step * i);
+        }
+        let mut coefficients = trimmed(coefficients);
         if coefficients.len() > MOST_COEFFICIENTS || coefficients.iter().any(|a| !a.is_finite()) {
-            let text = format!("surface {number}: coefficients of an asphere beyond r^{}", 2 * MOST_COEFFICIENTS);
+            let most = step as usize * MOST_COEFFICIENTS;
+            let text = format!("surface {number}: coefficients of an asphere beyond r^{most}");
             lens.leave_out(self.line, true, text);
             coefficients.truncate(MOST_COEFFICIENTS);
             coefficients.retain(|a| a.is_finite());
@@ -91,11 +109,13 @@ impl Block {
 
     /// Parameter 1 is the radius of rotation (0: none), then y^2, y^4, ...; extra data are Zernike terms.
     fn toroid(&self, number: usize, lens: &mut Prescription) -> Shape {
-        let terms = self.extra.get(&1).copied().unwrap_or(0.0);
-        if terms > 0.0 && self.extra.iter().any(|(at, value)| *at > 2 && *value != 0.0) {
+        let terms = self.extra.get(1);
+        self.extra.set_aside([2]);
+        if terms > 0.0 && !self.extra.unused().is_empty() {
+            self.extra.set_all_aside();
             lens.leave_out(self.line, true, format!("surface {number}: Zernike terms of a toroid"));
         }
-        let stated = self.parameters.get(&1).copied().unwrap_or(0.0);
+        let stated = self.parameters.get(1);
         let rotation_radius = if stated == 0.0 { f64::INFINITY } else { stated * self.unit_mm };
         let coefficients = self.polynomial(2..=8, 2, 2);
         let (radius, conic) = (self.curvature_radius_mm, self.conic);
@@ -110,8 +130,12 @@ impl Block {
     /// Extra data: number of terms, normalization radius, coefficients. Parameters are an even asphere and a decenter:
     /// only where all of them are 0 is it what a lens file has.
     fn zernike(&self, number: usize, ordering: Ordering, lens: &mut Prescription) -> Option<Shape> {
-        let value = |at: u32| self.extra.get(&at).copied().unwrap_or(0.0);
-        if self.parameters.iter().any(|(at, value)| *at > 0 && *value != 0.0) {
+        let value = |at: u32| self.extra.get(at);
+        // How far it goes on beyond its radius.
+        self.parameters.set_aside([0]);
+        if !self.parameters.unused().is_empty() {
+            self.parameters.set_all_aside();
+            self.extra.set_all_aside();
             let text =
                 format!("surface {number}: Zernike sag with an asphere or a decenter, carried as its sphere or conic");
             lens.leave_out(self.line, true, text);
@@ -127,10 +151,18 @@ impl Block {
         Some(Shape::Zernike { radius, conic, normalization_radius, coefficients, ordering })
     }
 
-    fn note_beyond(&self, number: usize, known: &[u32], lens: &mut Prescription) {
-        for (at, value) in &self.parameters {
-            if *at > 0 && !known.contains(at) && *value != 0.0 {
-                lens.leave_out(self.line, true, format!("surface {number}: parameter {at} ({value}) of {}", self.kind));
+    /// Tells of numbers that the type of the surface has no use for.
+    pub(super) fn note_unused(&self, number: usize, lens: &mut Prescription) {
+        for (what, numbers) in [("parameter", &self.parameters), ("extra data", &self.extra)] {
+            let unused = numbers.unused();
+            let of = |(at, value): &(u32, f64)| format!("{at} ({})", crate::number::shortest(*value));
+            let shown: Vec<String> = unused.iter().take(MOST_SHOWN).map(of).collect();
+            if !shown.is_empty() {
+                let more = unused.len() - shown.len();
+                let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+                let kind = crate::place::shown(&self.kind);
+                let text = format!("surface {number}: {what} {}{more} of {kind}", shown.join(", "));
+                lens.leave_out(self.line, true, text);
             }
         }
     }

@@ -1,6 +1,7 @@
 //! One block of records: what a file says of a surface.
 
 use super::known;
+use super::numbers::Numbers;
 use super::record::Record;
 use crate::number;
 use crate::place::{Source, shown};
@@ -15,9 +16,37 @@ pub(super) struct GlassRecord {
     pub(super) name: String,
     /// Surface that it is picked up from.
     pub(super) pickup: Option<usize>,
+    /// Whether its figures are all that is known of it.
+    pub(super) is_model: bool,
     /// Stated index and Abbe number; 1.5 and 40 where nobody stated them.
     pub(super) nd: f64,
     pub(super) vd: f64,
+    /// How far the relative partial dispersion of g and F lies off the normal line.
+    pub(super) deviation: f64,
+}
+
+impl GlassRecord {
+    /// `GLAS name kind pickup nd Vd dPgF` and whether these vary.
+    fn read(record: &Record<'_>, number: &mut dyn FnMut(usize, bool) -> Option<f64>) -> Option<Self> {
+        let name = record.word(0)?;
+        let is_model = name.starts_with("___") || name.is_empty();
+        let kind = number(1, false);
+        // Beside a name these are a catalogue's figures as they were then.
+        let needed = is_model && kind != Some(2.0);
+        Some(Self {
+            name: shown(name),
+            is_model,
+            pickup: number(2, kind == Some(2.0)).filter(|_| kind == Some(2.0)).map(|n| n as usize),
+            nd: number(3, needed).unwrap_or(1.5),
+            vd: number(4, needed).unwrap_or(40.0),
+            deviation: number(5, false).filter(|_| is_model && kind != Some(2.0)).unwrap_or(0.0),
+        })
+    }
+
+    /// Whether it reflects: by its name, or, as old files have it, by an index of -1.
+    pub(super) fn is_mirror(&self) -> bool {
+        self.name.eq_ignore_ascii_case("MIRROR") || self.is_model && self.pickup.is_none() && self.nd == -1.0
+    }
 }
 
 /// Apertures of a surface.
@@ -72,10 +101,10 @@ pub(super) struct Block {
     pub(super) thickness_mm: Option<f64>,
     pub(super) glass: Option<GlassRecord>,
     pub(super) conic: f64,
-    /// Parameters by number, in the file's units.
-    pub(super) parameters: BTreeMap<u32, f64>,
-    /// Extra data by number, in the file's units.
-    pub(super) extra: BTreeMap<u32, f64>,
+    /// Parameters by number.
+    pub(super) parameters: Numbers,
+    /// Extra data by number.
+    pub(super) extra: Numbers,
     pub(super) stop: bool,
     pub(super) aperture: Apertures,
     pub(super) comment: String,
@@ -104,8 +133,8 @@ impl Block {
             thickness_mm: None,
             glass: None,
             conic: 0.0,
-            parameters: BTreeMap::new(),
-            extra: BTreeMap::new(),
+            parameters: Numbers::default(),
+            extra: Numbers::default(),
             stop: false,
             aperture: Apertures::default(),
             comment: String::new(),
@@ -115,16 +144,26 @@ impl Block {
         };
         for record in records.iter().skip(1) {
             let keyword = record.keyword.to_ascii_uppercase();
-            let mut number = |at: usize| match record.word(at) {
-                None => None,
-                Some(word) => {
-                    let value = number::parse(word);
-                    if value.is_none() {
-                        faults.push(source.fault(word, format!("{keyword}: `{}` is not a number", shown(word))));
+            // Without what is needed there is no lens; of anything else that cannot be read is told.
+            let mut unread: Vec<String> = Vec::new();
+            let mut number_of = |at: usize, is_needed: bool| {
+                let word = record.word(at)?;
+                let value = number::parse(word);
+                if value.is_none() {
+                    let text = format!("{keyword}: `{}` is not a number", shown(word));
+                    if is_needed {
+                        faults.push(source.fault(word, text));
+                    } else {
+                        unread.push(text);
                     }
-                    value
                 }
+                value
             };
+            if keyword == "GLAS" {
+                block.glass = GlassRecord::read(record, &mut number_of);
+            }
+            let is_needed = ["CURV", "DISZ"].contains(&&*keyword);
+            let mut number = |at: usize| number_of(at, is_needed);
             match keyword.as_str() {
                 "TYPE" => block.kind = record.word(0).unwrap_or("STANDARD").to_ascii_uppercase(),
                 "CURV" => {
@@ -132,22 +171,23 @@ impl Block {
                     block.curvature_radius_mm = number::radius_mm(curvature, unit_mm);
                 }
                 "DISZ" => block.thickness_mm = number(0).map(|t| t * unit_mm),
-                "CONI" => block.conic = number(0).filter(|k| k.is_finite()).unwrap_or(0.0),
-                "GLAS" => {
-                    block.glass = record.word(0).map(|name| GlassRecord {
-                        name: shown(name),
-                        pickup: (record.number(1) == Some(2.0)).then(|| record.number(2).map(|n| n as usize)).flatten(),
-                        nd: record.number(3).unwrap_or(1.5),
-                        vd: record.number(4).unwrap_or(40.0),
-                    });
+                "CONI" => {
+                    let conic = number(0).unwrap_or(0.0);
+                    if conic.is_finite() {
+                        block.conic = conic;
+                    } else {
+                        lens.leave_out(record.line, true, "CONI: an infinite conic constant");
+                    }
                 }
+                "GLAS" => {}
                 "PARM" | "XDAT" => {
                     let map = if keyword == "PARM" { &mut block.parameters } else { &mut block.extra };
                     if let (Some(at), Some(value)) = (number(0), number(1)) {
                         if (0.0..=LARGEST_NUMBER).contains(&at) && value.is_finite() {
                             map.insert(at as u32, value);
-                        } else if value != 0.0 && at > LARGEST_NUMBER {
-                            lens.leave_out(record.line, true, format!("{keyword} {at}: more data than is read"));
+                        } else if value != 0.0 {
+                            let what = if at > LARGEST_NUMBER { "more data than is read" } else { "no such number" };
+                            lens.leave_out(record.line, true, format!("{keyword} {at} {value}: {what}"));
                         }
                     }
                 }
@@ -187,6 +227,9 @@ impl Block {
                     entry.1 += 1;
                 }
             }
+            for text in unread {
+                lens.leave_out(record.line, true, text);
+            }
         }
         block
     }
@@ -217,7 +260,8 @@ impl Block {
 
     /// `SCBD side order pickup x y tilt-x tilt-y tilt-z`, side 1 before and 2 behind the surface.
     fn own_tilt(&mut self, record: &Record<'_>, unit_mm: f64, lens: &mut Prescription) {
-        let value = |at| record.number(at).unwrap_or(0.0);
+        // A word among the numbers makes the whole tilt one that cannot be read.
+        let value = |at| record.word(at).map_or(0.0, |word| number::parse(word).unwrap_or(f64::NAN));
         let by = Displacement {
             decenter_mm: [value(3) * unit_mm, value(4) * unit_mm],
             tilt_deg: [value(5), value(6), value(7)],
@@ -241,7 +285,7 @@ impl Block {
 
     /// The move of the axis.
     pub(super) fn coordinate_break(&self) -> CoordinateBreak {
-        let value = |at: u32| self.parameters.get(&at).copied().unwrap_or(0.0);
+        let value = |at: u32| self.parameters.get(at);
         CoordinateBreak {
             by: Displacement {
                 decenter_mm: [value(1) * self.unit_mm, value(2) * self.unit_mm],

@@ -35,6 +35,17 @@ fn every_type_has_its_form() {
             "  TYPE XASPHERE\n  CURV 0.02\n  CONI -1\n  XDAT 1 2\n  XDAT 2 10\n  XDAT 3 0.5\n  XDAT 4 2",
             even(&[5e-3, 2e-4]),
         ),
+        // Its parameters are those of an even asphere, for the same powers.
+        (
+            "  TYPE XASPHERE\n  CURV 0.02\n  CONI -1\n  PARM 1 1e-3\n  PARM 3 1e-7\n  XDAT 1 2\n  XDAT 2 10\n  XDAT 3 0.5\n  XDAT 4 2",
+            even(&[6e-3, 2e-4, 1e-7]),
+        ),
+        ("  TYPE XASPHERE\n  CURV 0.02\n  CONI -1\n  PARM 2 2e-5", even(&[0.0, 2e-5])),
+        // a_1 (r/10) + a_3 (r/10)^3.
+        (
+            "  TYPE XOSPHERE\n  CURV 0.02\n  XDAT 1 3\n  XDAT 2 10\n  XDAT 3 0.5\n  XDAT 5 2",
+            Shape::OddAsphere { radius, conic: 0.0, coefficients: vec![0.05, 0.0, 2e-3] },
+        ),
         ("  TYPE TOROIDAL\n  CURV 0.02\n  PARM 1 0", Shape::Cylinder { radius, along_x: true }),
         ("  TYPE TOROIDAL\n  CURV 0\n  PARM 1 30", Shape::Cylinder { radius: 30.0, along_x: false }),
         (
@@ -70,6 +81,150 @@ fn every_type_has_its_form() {
     let lens = with("", "  TYPE BINARY_2\n  CURV 0.02");
     assert_eq!(lens.surfaces().next().expect("a surface").shape, Shape::Sphere { radius });
     assert!(altering(&lens)[0].contains("BINARY_2"));
+}
+
+/// Sets each number of each type to something else in turn: the surface changes, or somebody is told. What changes neither is listed.
+#[test]
+fn no_number_of_a_surface_is_passed_over() {
+    const TYPES: [&str; 15] = [
+        "STANDARD", "EVENASPH", "ODDASPHE", "XASPHERE", "XOSPHERE", "TOROIDAL", "BICONICX", "TILTSURF", "PARAXIAL",
+        "DGRATING", "SZERNSAG", "FZERNSAG", "COORDBRK", "BINARY_2", "IRREGULA",
+    ];
+    // How optical paths are counted; a normalization that no term uses, or that is the term's own; the number of terms beyond
+    // those that are stated, and how far a sag goes on beyond its radius.
+    let means_nothing = |kind: &str, keyword: &str, at: u32| match (kind, keyword) {
+        ("PARAXIAL", "PARM") => at == 2,
+        ("SZERNSAG" | "FZERNSAG", "PARM") => at == 0,
+        ("TOROIDAL", "XDAT") => at <= 2,
+        _ => false,
+    };
+    let base = |kind: &str| {
+        let own = match kind {
+            "PARAXIAL" => "  PARM 1 80\n",
+            "DGRATING" => "  PARM 1 0.6\n  PARM 2 1\n",
+            "XASPHERE" | "XOSPHERE" | "SZERNSAG" | "FZERNSAG" => "  XDAT 1 6\n  XDAT 2 10\n  XDAT 3 0.1\n",
+            _ => "",
+        };
+        format!("  TYPE {kind}\n  CURV 0.02\n  DISZ 5\n  GLAS ___BLANK 1 0 1.6 50 0.01 0 0 0 0 0\n{own}")
+    };
+    let told = |lens: &Prescription| altering(lens).into_iter().map(str::to_owned).collect::<Vec<_>>();
+    let mut wrong = Vec::new();
+    for kind in TYPES {
+        let before = with("", &base(kind));
+        let mut changes: Vec<(String, bool)> =
+            ["CURV 0.03", "DISZ 6", "CONI -0.5", "GLAS ___BLANK 1 0 1.7 50 0.01", "GLAS ___BLANK 1 0 1.6 40 0.01"]
+                .iter()
+                .map(|record| ((*record).to_owned(), kind == "COORDBRK" && !record.starts_with("DISZ")))
+                .collect();
+        changes.push(("GLAS ___BLANK 1 0 1.6 50 0.02".to_owned(), kind == "COORDBRK"));
+        // A tilted plane, an ideal lens and a move of the axis have no curvature.
+        let flat = ["PARAXIAL", "TILTSURF"].contains(&kind);
+        changes
+            .iter_mut()
+            .filter(|(r, _)| flat && (r.starts_with("CURV") || r.starts_with("CONI")))
+            .for_each(|c| c.1 = true);
+        for at in 0..=14 {
+            changes.push((format!("PARM {at} 0.003"), means_nothing(kind, "PARM", at)));
+            changes.push((format!("PARM {at} 0..3"), false));
+            changes.push((format!("XDAT {at} 0.003"), means_nothing(kind, "XDAT", at)));
+        }
+        for (record, is_excused) in changes {
+            let after = with("", &format!("{}  {record}\n", base(kind)));
+            // Of a type that nobody knows all is told at once.
+            let is_told = told(&after) != told(&before) || told(&after).iter().any(|text| text.contains("is unknown"));
+            if !is_excused && after.items == before.items && !is_told {
+                wrong.push(format!("{kind}: {record}"));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// What is not a number is told of, and refused where there is no lens without it.
+#[test]
+fn words_among_numbers_are_told() {
+    for record in ["CURV 0.0x2", "DISZ five", "GLAS ___BLANK 1 0 1,6 50"] {
+        let text = format!("SURF 0\n  DISZ INFINITY\nSURF 1\n  {record}\nSURF 2\n");
+        let message = read("x.zmx", &text).unwrap_err().to_string();
+        assert!(message.contains("x.zmx:4:") && message.contains("is not a number"), "{message}");
+    }
+    for record in [
+        "CONI x",
+        "PARM 1 x",
+        "PARM x 1",
+        "XDAT 3 x",
+        "DIAM x",
+        "MEMA x",
+        "CLAP 0 x 0",
+        "OBDC x 0",
+        "GLAS ___BLANK 1 0 1.6 50 x",
+        "GLAS N-BK7 0 0 x",
+        "SCBD 1 0 0 x 0 0 0 0",
+    ] {
+        let lens = with("", &format!("  CURV 0.02\n  {record}"));
+        assert!(!altering(&lens).is_empty(), "{record}");
+    }
+}
+
+/// The forms of object and image are told of.
+#[test]
+fn forms_of_object_and_image_are_told() {
+    let lens = |object: &str, image: &str| {
+        let text = format!("SURF 0\n{object}\nSURF 1\n  CURV 0.02\nSURF 2\n{image}\n");
+        read("x.zmx", &text).unwrap_or_else(|faults| panic!("{faults}"))
+    };
+    assert!(altering(&lens("  DISZ 100", "  CURV 0")).is_empty());
+    for (object, image) in [
+        ("  PARM 1 0.5", ""),
+        ("  XDAT 3 0.5", ""),
+        ("", "  PARM 1 0.5"),
+        ("", "  TYPE EVENASPH\n  PARM 2 1e-4"),
+        ("", "  CURV 0.01\n  CONI -1"),
+    ] {
+        assert!(!altering(&lens(object, image)).is_empty(), "{object}{image}");
+    }
+}
+
+/// Behind a lens that is turned about a point in front of it the file goes back to that point by gaps against the light: they are moves
+/// of the axis, and nothing is met there.
+#[test]
+fn gaps_against_the_light_are_moves() {
+    let glass = "GLAS N-BK7 0 0 1.5168 64.17";
+    let text = format!(
+        "SURF 0\nSURF 1\n  TYPE COORDBRK\n  PARM 3 5\n  DISZ 8\nSURF 2\n  CURV 0.02\n  DISZ 4\n  {glass}\nSURF 3\n  DISZ -4\n\
+         SURF 4\n  DISZ -8\nSURF 5\n  TYPE COORDBRK\n  PARM 3 -5\n  DISZ 108\nSURF 6\n"
+    );
+    let lens = read("x", &text).expect("a lens");
+    let steps: Vec<f64> = lens.items.iter().map(Item::thickness_mm).collect();
+    assert_eq!((steps, lens.surfaces().count()), (vec![8.0, 4.0, 0.0, -12.0, 108.0], 2));
+    // Behind a mirror light runs the other way.
+    let mirror = "SURF 0\nSURF 1\n  GLAS MIRROR\n  DISZ -5\nSURF 2\n  DISZ -40\nSURF 3\n";
+    assert_eq!(read("x", mirror).expect("a lens").surfaces().count(), 2);
+}
+
+/// An index of -1 reflects, as the name `MIRROR` does.
+#[test]
+fn an_index_of_minus_one_is_a_mirror() {
+    let by_index = surface("", "  CURV -0.005\n  GLAS ___BLANK 1 0 -1 0 0 0 0 0 0 0");
+    assert!(by_index.mirror);
+    assert_eq!(by_index, surface("", "  CURV -0.005\n  GLAS MIRROR 0 0 1.5 40 0 0 0 0 0 0"));
+}
+
+/// By the definition of relative partial dispersion: (ng - nF) / (nF - nC) = 0.6438 - 0.001682 Vd + deviation. It comes back from a
+/// file that is written here.
+#[test]
+fn a_model_glass_keeps_its_partial_dispersion() {
+    for (nd, vd, off) in [(1.528_554, 76.975_515, 0.0258), (1.558_361, 54.157_173, -0.01)] {
+        let lens = with("", &format!("  CURV 0.02\n  GLAS ___BLANK 1 0 {nd} {vd} {off} 0 0 0 0 0"));
+        let Medium::Model { ng: Some(ng), .. } = lens.surfaces().next().expect("a surface").medium else {
+            panic!("no ng")
+        };
+        let nf = spectra_glass::Medium::from_nd_vd(nd, vd).expect("a glass").index(486.1327);
+        let partial = (ng - nf) / ((nd - 1.0) / vd);
+        assert!((partial - (0.6438 - 0.001_682 * vd + off)).abs() < 2e-6, "{partial}");
+        let again = read("x", &super::write(&lens).text).expect("a lens");
+        assert_eq!(again.surfaces().next().map(|s| &s.medium), lens.surfaces().next().map(|s| &s.medium));
+    }
 }
 
 /// A lens in inches is the same lens in millimeters: the sag of every term scales like a length.
@@ -209,10 +364,10 @@ fn glasses_by_name_figures_and_pickup() {
     assert_eq!(medium("GCAT SCHOTT", "N-BK7 0 0 1.5 40 0 0 0"), named("SCHOTT/N-BK7"));
     assert_eq!(medium("GCAT HOYA SCHOTT", "F2 0 0 1.5 40"), named("HOYA/F2"));
     assert_eq!(medium("GCAT SCHOTT HOYA", "F2 0 0 1.5 40"), named("SCHOTT/F2"));
-    assert_eq!(medium("", "___BLANK 1 0 1.6 50"), Medium::Model { nd: 1.6, vd: Some(50.0) });
-    assert_eq!(medium("", "___BLANK 1 0 1.6 0"), Medium::Model { nd: 1.6, vd: None });
+    assert_eq!(medium("", "___BLANK 1 0 1.6 50"), Medium::Model { nd: 1.6, vd: Some(50.0), ng: None });
+    assert_eq!(medium("", "___BLANK 1 0 1.6 0"), Medium::Model { nd: 1.6, vd: None, ng: None });
     assert_eq!(medium("", "___BLANK 1 0 1.0 0"), Medium::Air);
-    assert_eq!(medium("", "NOBODYS 0 0 1.7 30"), Medium::Model { nd: 1.7, vd: Some(30.0) });
+    assert_eq!(medium("", "NOBODYS 0 0 1.7 30"), Medium::Model { nd: 1.7, vd: Some(30.0), ng: None });
     assert_eq!(medium("", "NOBODYS 0 0 1.5 40"), Medium::Unknown { name: "NOBODYS".to_owned() });
     assert_eq!(altering(&with("", "  GLAS NOBODYS 0 0 1.5 40")).len(), 1);
     let text = "SURF 0\nSURF 1\n  GLAS N-BK7\n  DISZ 1\nSURF 2\n  GLAS ___BLANK 2 1 1.5 40\nSURF 3\n";

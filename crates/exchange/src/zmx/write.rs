@@ -1,7 +1,7 @@
 //! A prescription as a `.zmx`.
 
 use super::OPEN_STOP;
-use crate::glass::{everyday_name, maker_of_catalogue};
+use crate::glass::{deviation, everyday_name, maker_of_catalogue};
 use crate::number::shortest;
 use crate::place::shown;
 use crate::prescription::{
@@ -317,8 +317,9 @@ impl Writer {
     fn glass(&mut self, medium: &Medium, number: usize) {
         match medium {
             Medium::Air => {}
-            Medium::Model { nd, vd } => {
-                record!(self, "GLAS ___BLANK 1 0 {} {} 0 0 0 0 0 0", shortest(*nd), shortest(vd.unwrap_or(0.0)));
+            Medium::Model { nd, vd, ng } => {
+                let off = shortest(deviation(*nd, *vd, *ng));
+                record!(self, "GLAS ___BLANK 1 0 {} {} {off} 0 0 0 0 0", shortest(*nd), shortest(vd.unwrap_or(0.0)));
             }
             Medium::Glass { name, nd, vd } => match Catalogue::bundled().find(name) {
                 Ok(glass) => {

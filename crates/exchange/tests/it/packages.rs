@@ -18,7 +18,7 @@ fn index(medium: &Medium, nm: f64) -> f64 {
     match medium {
         Medium::Air => 1.0,
         Medium::Glass { name, .. } => Catalogue::bundled().medium(name).expect("a full name").index(nm),
-        Medium::Model { nd, vd } => {
+        Medium::Model { nd, vd, .. } => {
             spectra_glass::Medium::from_nd_vd(*nd, vd.unwrap_or(0.0)).expect("a glass").index(nm)
         }
         Medium::Unknown { name } => panic!("unknown glass {name}"),
