@@ -7,6 +7,7 @@
     --folder DIR                        keeps the copy there, so that the next run builds less
     --target DIR                        where cargo builds; else in the copy
     --no-sound                          does not look first whether all tests pass without a fault
+    --own                               only by the tests of the crate that each fault is in: minutes
 
 The faults are chosen by hand: slips that a tired person makes, in code that a user sees the results of. The copy is of the last
 commit; what is not committed is not in it. All faults are compiled in at once, so that there is one build. The environment
@@ -249,10 +250,10 @@ def crate(folder, fault):
     return folder / "/".join(fault.file.split("/")[:2])
 
 
-def search(fault, tests, own, sound):
+def search(fault, tests, own, sound, only_own):
     """Where a fault is caught, by what, and how long its runs took, s. What fails without a fault says nothing."""
     all_s = 0.0
-    for where, is_own in (("crate", True), ("workspace", False)):
+    for where, is_own in (("crate", True), ("workspace", False))[: 1 if only_own else 2]:
         for test in (test for test in tests if (test.folder == own) == is_own):
             wrong, usual_s = sound(test)
             if wrong:
@@ -265,7 +266,7 @@ def search(fault, tests, own, sound):
     return "ESCAPED", "", all_s
 
 
-def tried(chosen, tests, folder, is_sound_asked):
+def tried(chosen, tests, folder, is_sound_asked, only_own):
     """Whether all are caught."""
     # How each test program does without a fault: asked once.
     sound = functools.cache(lambda test: run(test, 0, SOUND_LIMIT_S) if is_sound_asked else (None, 0.0))
@@ -275,7 +276,7 @@ def tried(chosen, tests, folder, is_sound_asked):
     print("| no. | area | kind | caught by | test | s |\n|---:|---|---|---|---|---:|", flush=True)
     found = collections.Counter()
     for fault in chosen:
-        where, name, all_s = search(fault, tests, crate(folder, fault), sound)
+        where, name, all_s = search(fault, tests, crate(folder, fault), sound, only_own)
         found[where] += 1
         print(f"| {fault.number} | {fault.area} | {fault.kind} | {where} | {name} | {all_s:.0f} |", flush=True)
     print(f"\n{len(chosen) - found['ESCAPED']} of {len(chosen)} caught, {found['crate']} by the tests of their own crate")
@@ -289,6 +290,7 @@ def main():
     parser.add_argument("--folder", type=Path, metavar="DIR", help="where the copy is, and stays")
     parser.add_argument("--target", type=Path, metavar="DIR", help="where cargo builds")
     parser.add_argument("--no-sound", action="store_true", help="does not look first whether all passes without a fault")
+    parser.add_argument("--own", action="store_true", help="only by the tests of the crate that each fault is in")
     args = parser.parse_args()
     all_faults = faults()
     if args.list:
@@ -301,7 +303,7 @@ def main():
         folder = (args.folder or Path(temporary) / "spectra").resolve()
         target = (args.target or folder / "target").resolve()
         copied(folder, all_faults)
-        if not tried(chosen, built(folder, target), folder, not args.no_sound):
+        if not tried(chosen, built(folder, target), folder, not args.no_sound, args.own):
             sys.exit(1)
 
 

@@ -62,7 +62,9 @@ fn noise_is_what_was_asked_for() {
             let mean = pixels.iter().map(|p| stopped[*p].0).sum::<f64>() / pixels.len() as f64;
             let variance = pixels.iter().map(|p| stopped[*p].1).sum::<f64>() / pixels.len() as f64;
             let noise = variance.sqrt() / mean;
-            assert!(noise > 0.01 && noise < 0.045, "block {row}, {column}: {noise}");
+            println!("block {row}, {column}: {noise}");
+            // A round more halves the variance at most.
+            assert!(noise > 0.018 && noise < 0.045, "block {row}, {column}: {noise}");
             above += usize::from(noise > 1.2 * 0.03);
             blocks += 1;
         }

@@ -108,3 +108,23 @@ pub fn spectra(scene: &Scene) -> Value {
         "layers": layers.collect::<Vec<_>>(),
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use spectra_core::frame::FrameSize;
+
+    #[test]
+    fn a_pixel_is_that_of_its_column_and_row() {
+        let size = FrameSize { width_px: 3, height_px: 2, width_mm: 36.0, height_mm: 24.0 };
+        let channel = ExposureChannel {
+            name: "Y".to_owned(),
+            unit: "lx s".to_owned(),
+            values: (0..6).map(|i| i as f32).collect(),
+        };
+        let exposure = ExposureFrame { size, channels: vec![channel] };
+        let value = |at| pixel(&exposure, &[], 1, at).map(|found| found["channels"][0]["value"].as_f64());
+        assert_eq!([[0, 0], [2, 0], [1, 1], [2, 1]].map(value), [0.0, 2.0, 4.0, 5.0].map(|v| Some(Some(v))));
+        assert_eq!([[3, 0], [0, 2]].map(value), [None, None]);
+    }
+}

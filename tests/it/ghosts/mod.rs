@@ -332,6 +332,17 @@ fn the_books_close() {
     }
 }
 
+/// What leaves by the front does not depend on the frame; what falls beside it does.
+#[test]
+fn light_out_of_the_front_is_not_light_beside_the_frame() {
+    let [small, large] = [12.0, 2000.0].map(|side| {
+        let rendering = Setup { frame_mm: [side; 2], ..BIOTAR }.render(&["render.samples=1"]);
+        rendering.ledger.expect("ghosts are traced")
+    });
+    assert!(large.front_w > 0.01 * large.emitted_w && (small.front_w / large.front_w - 1.0).abs() < 1e-9, "{small:?}");
+    assert!(large.beside_w < 0.1 * large.front_w && small.beside_w > large.beside_w, "{small:?} {large:?}");
+}
+
 /// What the estimator puts on the frame is what the books say, within the errors of both.
 #[test]
 fn the_picture_has_the_light_of_the_books() {

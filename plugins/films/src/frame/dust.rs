@@ -116,6 +116,11 @@ mod tests {
             "{}",
             held(&fine)
         );
+        // 0.6 of them in a mm^2. A speck is four disks of some 0.65 of a radius whose mean square is 1.7e-4 mm^2, a third of them on each
+        // other; a fiber is 0.8 mm long and 0.01 mm wide; both hold back 0.7 of the light.
+        let want = 0.6 * 0.7 * (0.9 * 6.6e-4 + 0.1 * 8e-3);
+        let ratio = (1.0 - held(&fine)) / want;
+        assert!((0.4..2.5).contains(&ratio), "{ratio}");
         let part = film(400, 100, 200);
         for y in 0..200 {
             assert_eq!(part[y * 200..(y + 1) * 200], fine[(y + 100) * 400 + 100..(y + 100) * 400 + 300], "{y}");
