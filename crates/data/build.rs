@@ -39,8 +39,8 @@ fn collect(folder: &Path, endings: &[&str], found: &mut Vec<PathBuf>) {
 
 fn main() {
     println!("cargo:rerun-if-changed=build.rs");
-    let manifest = PathBuf::from(env::var_os("CARGO_MANIFEST_DIR").expect("cargo sets it"));
-    let root = manifest.join("../..");
+    // Its true path: the same by whatever link this crate was found, so that it is not built once more.
+    let root = fs::canonicalize("../..").expect("this crate lies in a repository");
     let mut files = Vec::new();
     for (folder, endings) in FOLDERS {
         let mut found = Vec::new();

@@ -17,8 +17,8 @@ const LEFT_OUT: [&str; 5] = ["tests", "benches", "examples", "docs", "target"];
 
 fn main() -> io::Result<()> {
     println!("cargo:rerun-if-changed=build.rs");
-    let manifest = PathBuf::from(std::env::var_os("CARGO_MANIFEST_DIR").expect("cargo sets it"));
-    let root = manifest.join("../..");
+    // Its true path: the same by whatever link this crate was found, so that it is not built once more.
+    let root = fs::canonicalize("../..")?;
     let mut files = Vec::new();
     // Built from a registry there is nothing around this crate: the archive stays empty, which its user is told.
     if root.join("crates/core/Cargo.toml").is_file() && root.join("Cargo.lock").is_file() {
