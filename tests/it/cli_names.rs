@@ -360,6 +360,7 @@ fn examples_work(is_asked: impl Fn(&str) -> bool) -> usize {
         "melt.csv",
         "wavelength_nm,n\n404.66,1.53024\n435.83,1.52668\n486.13,1.52238\n546.07,1.51872\n587.56,1.51680\n656.27,1.51432\n706.52,1.51289\n",
     );
+    fs::copy(repository("crates/glass/tests/data/forms.agf"), folder.path().join("old-glasses.agf")).expect("copied");
     let photo = image::RgbImage::from_fn(48, 32, |x, y| image::Rgb([(5 * x) as u8, (7 * y) as u8, 90]));
     photo.save(folder.path().join("photo.jpg")).expect("written");
     fs::create_dir(folder.path().join("plates")).expect("made");

@@ -7,6 +7,9 @@ use spectra_glass::{Catalogue, FindError, Glass};
 /// Largest difference between a stated index and that of the glass of this name, if it is to be that glass.
 const SAME_INDEX: f64 = 0.002;
 
+/// Differences in nd and Vd of a glass whose figures were written with all digits, and with those that catalogues print.
+const SAME_FIGURES: [(f64, f64); 2] = [(1e-9, 1e-6), (6e-6, 6e-3)];
+
 /// Makers in the order in which they are meant where a name has several and the file does not say.
 const USUAL: [&str; 9] = ["SCHOTT", "OHARA", "HOYA", "HIKARI", "CDGM", "SUMITA", "NHG", "LZOS", "CORNING"];
 
@@ -42,6 +45,47 @@ const EVERYDAY: [(&str, &str); 28] = [
     ("BAF2", "BaF2/Malitson"),
     ("LIF", "LiF/Li"),
 ];
+
+/// A user's own catalogue of glasses, from an AGF file.
+#[derive(Clone, Debug)]
+pub struct OwnCatalogue {
+    /// The file, as a lens file names it.
+    pub file: String,
+    /// What it holds.
+    pub glasses: Vec<Glass>,
+}
+
+/// Where the names of a file's glasses are looked for, in this order; then among all that are bundled.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Catalogues<'a> {
+    /// The user's own.
+    pub(crate) own: &'a [OwnCatalogue],
+    /// Makers whose catalogues the file names.
+    pub(crate) makers: &'a [&'static str],
+}
+
+impl Catalogues<'_> {
+    /// The name in a lens file of a glass of the user's own catalogues.
+    fn own(&self, name: &str, stated: Option<(f64, f64)>) -> Option<Medium> {
+        let fits = |glass: &&Glass| glass.name.eq_ignore_ascii_case(name) && fits(glass, stated);
+        let of = |own: &OwnCatalogue| own.glasses.iter().find(fits).map(|glass| format!("{}#{}", own.file, glass.name));
+        self.own.iter().find_map(of).map(|name| Medium::Glass { name, nd: None, vd: None })
+    }
+}
+
+/// Whether a glass may be that of which a file states nd and Vd.
+fn fits(glass: &Glass, stated: Option<(f64, f64)>) -> bool {
+    stated.is_none_or(|(nd, _)| (nd - glass.nd()).abs() <= SAME_INDEX)
+}
+
+/// The one of several glasses of a name that a file means: by its figures where they tell, else the first that fits.
+fn chosen(named: &[Glass], stated: Option<(f64, f64)>) -> Option<&Glass> {
+    let agrees = |glass: &&Glass, (most_nd, most_vd): (f64, f64)| {
+        stated.is_some_and(|(nd, vd)| (nd - glass.nd()).abs() <= most_nd && (vd - glass.vd()).abs() <= most_vd)
+    };
+    let by_figures = SAME_FIGURES.iter().find_map(|most| named.iter().find(|glass| agrees(glass, *most)));
+    by_figures.or_else(|| named.iter().find(|glass| fits(glass, stated)))
+}
 
 /// A medium, and what must be told of it: whether light goes another way, and the words.
 pub(crate) struct Found {
@@ -79,8 +123,8 @@ pub(crate) fn everyday_name(full_name: &str) -> Option<&'static str> {
 }
 
 /// The medium of a name, as near to what the file means as our catalogue has it. `stated` are nd and Vd that the file
-/// gives beside the name; `makers` come first, in order.
-pub(crate) fn look_up(name: &str, stated: Option<(f64, f64)>, makers: &[&str]) -> Found {
+/// gives beside the name.
+pub(crate) fn look_up(name: &str, stated: Option<(f64, f64)>, catalogues: Catalogues<'_>) -> Found {
     let quiet = |medium| Found { medium, note: None };
     if name.eq_ignore_ascii_case("air") {
         return quiet(Medium::Air);
@@ -88,7 +132,10 @@ pub(crate) fn look_up(name: &str, stated: Option<(f64, f64)>, makers: &[&str]) -
     if name.eq_ignore_ascii_case("vacuum") {
         return quiet(Medium::Glass { name: "vacuum".to_owned(), nd: None, vd: None });
     }
-    match find(name, stated, makers) {
+    if let Some(medium) = catalogues.own(name, stated) {
+        return quiet(medium);
+    }
+    match find(name, stated, catalogues.makers) {
         Some((glass, None)) => with_stated(&glass, stated),
         Some((glass, Some(told))) => {
             let found = with_stated(&glass, stated);
@@ -104,7 +151,10 @@ pub(crate) fn look_up(name: &str, stated: Option<(f64, f64)>, makers: &[&str]) -
                 medium: Medium::Unknown { name: name.to_owned() },
                 note: Some((
                     true,
-                    format!("glass {name} is in no catalogue here, and the file states no index: write one"),
+                    format!(
+                        "glass {name} is in no catalogue here, and the file states no index: write one, or import with a \
+                         catalogue that has it (`spectra lens import --agf FILE`)"
+                    ),
                 )),
             },
         },
@@ -174,20 +224,19 @@ fn find(name: &str, stated: Option<(f64, f64)>, makers: &[&str]) -> Option<(Glas
         Some((nd, vd)) => catalogue.find_with(full, nd, (vd > 0.0).then_some(vd)),
         None => catalogue.find(full),
     };
-    let fits = |glass: &Glass| stated.is_none_or(|(nd, _)| (nd - glass.nd()).abs() <= SAME_INDEX);
     // The prefix of a catalogue says more than the list of all catalogues.
     let prefixed = name.get(..3).is_some_and(|prefix| prefix.eq_ignore_ascii_case("LZ_"));
     let named: Vec<Glass> = match prefixed {
         true => Vec::new(),
         false => makers.iter().filter_map(|maker| by(&format!("{maker}/{name}")).ok()).collect(),
     };
-    if let Some(glass) = named.iter().find(|glass| fits(glass)) {
+    if let Some(glass) = chosen(&named, stated) {
         return Some((glass.clone(), None));
     }
     if let Some(glass) = named.first() {
         // Another maker's glass of this name has the stated index.
         return match by(name) {
-            Ok(other) if fits(&other) => {
+            Ok(other) if fits(&other, stated) => {
                 let text = format!("{name} is taken as {}, which has the stated index", other.full_name());
                 Some((other, Some((false, text))))
             }
@@ -257,27 +306,42 @@ mod tests {
             ("LZ_LF5", &["SCHOTT"], "LZOS/LF5"),
             ("PMMA", &[], "poly_methyl_methacrylate/Sultanova"),
         ] {
-            let found = look_up(theirs, None, makers);
+            let found = look_up(theirs, None, Catalogues { makers, ..Catalogues::default() });
             assert_eq!(name(&found.medium), ours, "{theirs}");
         }
     }
 
+    /// Of glasses of one name, the first catalogue has it; but where a file states figures to the last digit, the glass that has them.
+    #[test]
+    fn figures_choose_among_makers() {
+        let catalogue = Catalogue::bundled();
+        let makers = &["OHARA", "SCHOTT", "HOYA"];
+        for full in ["OHARA/F2", "SCHOTT/F2", "HOYA/F2", "OHARA/SK16", "SCHOTT/SK16"] {
+            let glass = catalogue.find(full).expect("bundled");
+            let stated = Some((glass.nd(), glass.vd()));
+            let found = look_up(&glass.name, stated, Catalogues { makers, ..Catalogues::default() });
+            assert_eq!(name(&found.medium), full);
+        }
+        let found = look_up("F2", Some((1.6201, 36.3)), Catalogues { makers, ..Catalogues::default() });
+        assert_eq!(name(&found.medium), "OHARA/F2");
+    }
+
     #[test]
     fn what_nobody_knows_is_told() {
-        let found = look_up("UNOBTAINIUM", None, &["SCHOTT"]);
+        let found = look_up("UNOBTAINIUM", None, Catalogues::default());
         assert_eq!(name(&found.medium), "UNOBTAINIUM");
         assert!(found.note.is_some_and(|(alters, text)| alters && text.contains("UNOBTAINIUM")));
-        let found = look_up("UNOBTAINIUM", Some((1.6, 50.0)), &["SCHOTT"]);
+        let found = look_up("UNOBTAINIUM", Some((1.6, 50.0)), Catalogues::default());
         assert_eq!(found.medium, Medium::Model { nd: 1.6, vd: Some(50.0), ng: None });
         assert!(found.note.is_some_and(|(alters, text)| !alters && text.contains("UNOBTAINIUM")));
     }
 
     #[test]
     fn figures_that_are_not_the_glass_are_told() {
-        let found = look_up("N-BK7", Some((1.52, 64.0)), &[]);
+        let found = look_up("N-BK7", Some((1.52, 64.0)), Catalogues::default());
         assert!(matches!(found.medium, Medium::Glass { nd: None, .. }));
         assert!(found.note.is_some_and(|(_, text)| text.contains("1.51680") && text.contains("1.52")));
-        let found = look_up("N-BK7", Some((1.5168, 64.17)), &[]);
+        let found = look_up("N-BK7", Some((1.5168, 64.17)), Catalogues::default());
         assert!(matches!(found.medium, Medium::Glass { nd: Some(1.5168), vd: Some(64.17), .. }));
     }
 

@@ -31,12 +31,14 @@ mod glass;
 mod number;
 mod place;
 mod prescription;
+mod reference;
 pub mod seq;
 mod stop;
 pub mod yaml;
 pub mod zmx;
 
 pub use decode::text;
+pub use glass::OwnCatalogue;
 pub use prescription::{
     Aperture, ApertureShape, CoordinateBreak, Displacement, FieldKind, Fields, Item, Medium, Note, Ordering,
     Prescription, Shape, Surface, SystemAperture, Wavelength,
@@ -107,6 +109,14 @@ impl Format {
 /// The file is no lens of this format: too large, no surfaces, a figure that is no number. All faults at once,
 /// with line and column.
 pub fn read(format: Format, name: &str, bytes: &[u8]) -> Result<Prescription, Faults> {
+    read_with(format, name, bytes, &[])
+}
+
+/// Reads a lens whose glasses are looked for in these catalogues first.
+///
+/// # Errors
+/// Those of [`read`].
+pub fn read_with(format: Format, name: &str, bytes: &[u8], own: &[OwnCatalogue]) -> Result<Prescription, Faults> {
     if bytes.len() as u64 > MAX_BYTES {
         let fault =
             spectra_core::params::Fault::new(format!("{name}: {} bytes, at most {MAX_BYTES} are read", bytes.len()));
@@ -114,8 +124,8 @@ pub fn read(format: Format, name: &str, bytes: &[u8]) -> Result<Prescription, Fa
     }
     let text = decode::text(bytes);
     match format {
-        Format::Zmx => zmx::read(name, &text),
-        Format::Seq => seq::read(name, &text),
-        Format::Csv => csv::read(name, &text),
+        Format::Zmx => zmx::read(name, &text, own),
+        Format::Seq => seq::read(name, &text, own),
+        Format::Csv => csv::read(name, &text, own),
     }
 }

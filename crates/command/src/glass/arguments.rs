@@ -46,7 +46,7 @@ pub(crate) enum GlassCommand {
 #[derive(Debug, Args)]
 pub(crate) struct OwnCatalogues {
     /// Your own glass catalogue file (AGF); the file name is used as the maker of its glasses. Can be repeated.
-    #[arg(long = "catalogue", visible_alias = "catalog", value_name = "FILE.agf")]
+    #[arg(long = "catalogue", visible_aliases = ["catalog", "agf"], value_name = "FILE.agf")]
     pub files: Vec<PathBuf>,
 }
 

@@ -8,11 +8,11 @@ mod list;
 mod nearest;
 mod plot;
 
-pub(crate) use arguments::GlassArguments;
+pub(crate) use arguments::{GlassArguments, OwnCatalogues};
 
 use crate::console;
 use crate::outcome::{Failure, Outcome};
-use arguments::{GlassCommand, OwnCatalogues};
+use arguments::GlassCommand;
 use spectra_core::names::nearest as near_words;
 use spectra_core::params::Fault;
 use spectra_glass::{Beside, Catalogue, FindError, Glass, Medium, agf, file};
@@ -40,19 +40,24 @@ const MAX_BYTES: u64 = 16 << 20;
 fn catalogue(own: &OwnCatalogues) -> Result<Cow<'static, Catalogue>, Failure> {
     let mut catalogue = Cow::Borrowed(Catalogue::bundled());
     for path in &own.files {
-        let bytes = read(path)?;
-        let maker = path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
-        let read = agf::read(&bytes, &maker);
-        for problem in &read.problems {
-            console::warning(&format!("{}:{}: {}", path.display(), problem.line, problem.message));
-        }
-        if read.glasses.is_empty() {
-            let hint = "a glass catalogue (AGF) has lines `NM ...` and `CD ...`";
-            return Err(Failure::Input(format!("{}: no glass in it; {hint}", path.display())));
-        }
-        catalogue.to_mut().add(read.glasses);
+        catalogue.to_mut().add(own_glasses(path)?);
     }
     Ok(catalogue)
+}
+
+/// The glasses of a catalogue file (AGF), one at least; what is not understood is told.
+pub(crate) fn own_glasses(path: &Path) -> Result<Vec<Glass>, Failure> {
+    let bytes = read(path)?;
+    let maker = path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
+    let read = agf::read(&bytes, &maker);
+    for problem in &read.problems {
+        console::warning(&format!("{}:{}: {}", path.display(), problem.line, problem.message));
+    }
+    if read.glasses.is_empty() {
+        let hint = "a glass catalogue (AGF) has lines `NM ...` and `CD ...`";
+        return Err(Failure::Input(format!("{}: no glass in it; {hint}", path.display())));
+    }
+    Ok(read.glasses)
 }
 
 /// The medium of a name: a file in the working folder, or one of the catalogue.

@@ -1,5 +1,6 @@
 //! What can be written after `spectra lens`.
 
+use crate::glass::OwnCatalogues;
 use crate::quantity::{parse, wavelength};
 use clap::{Args, Subcommand};
 use spectra_core::params::{FNumber, Length, OrInfinity, Positive, Ratio, Wavelength};
@@ -361,13 +362,18 @@ pub(crate) struct LensTrace {
         wavelengths become a remark. Every command that takes a lens also reads these files directly, without importing \
         them first.\n\n\
         The columns of a .csv are radius (or curvature), thickness, glass, nd, vd, semi-diameter (or diameter), type, conic, \
-        a2, a4 and so on, surface, lens and comment; lengths are in mm unless a unit follows, as in `radius [in]`.",
-    after_long_help = "Example:\n  spectra lens import tessar.zmx -o tessar.yaml"
+        a2, a4 and so on, surface, lens and comment; lengths are in mm unless a unit follows, as in `radius [in]`.\n\n\
+        A glass that is in no bundled catalogue is taken from a catalogue file of a maker or a design program (--agf), to which \
+        the lens file then refers.",
+    after_long_help = "Examples:\n  spectra lens import tessar.zmx -o tessar.yaml\n  \
+        spectra lens import tessar.zmx --agf old-glasses.agf -o old.yaml"
 )]
 pub(crate) struct LensImport {
     /// The file to convert.
     #[arg(value_name = "FILE")]
     pub file: PathBuf,
+    #[command(flatten)]
+    pub own: OwnCatalogues,
     /// Output lens file; standard output if not given, or if `-`.
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,

@@ -3,11 +3,12 @@
 use super::arguments::LensImport;
 use super::exchanged::{deliver, target};
 use crate::console;
+use crate::glass::own_glasses;
 use crate::outcome::{Failure, Outcome};
 use spectra_core::resources::Resources;
-use spectra_exchange::{Format, MAX_BYTES, read, yaml};
+use spectra_exchange::{Format, MAX_BYTES, OwnCatalogue, read_with, yaml};
 use spectra_scene::FileResources;
-use std::path::Path;
+use std::path::{Component, Path, absolute};
 
 /// Makes a lens file of one of another program.
 pub(crate) fn import(arguments: &LensImport) -> Outcome {
@@ -20,15 +21,37 @@ pub(crate) fn import(arguments: &LensImport) -> Outcome {
     let file = resources
         .read(&name, &[], &[], MAX_BYTES)
         .map_err(|error| Failure::Input(format!("{name}: cannot be read: {error}")))?;
-    let lens = read(format, &name, &file.bytes)?;
+    let mut own = Vec::new();
+    for path in &arguments.own.files {
+        own.push(OwnCatalogue { file: seen_from(output, path), glasses: own_glasses(path)? });
+    }
+    let lens = read_with(format, &name, &file.bytes, &own)?;
     let short = arguments.file.file_name().map(|name| name.to_string_lossy().into_owned());
     let text = yaml::write(&lens, short.as_deref());
     let title = if lens.name.is_empty() { name.clone() } else { lens.name.clone() };
     let code = deliver(&title, lens.surfaces().count(), output, text.as_bytes(), &lens.left_out, arguments.json)?;
     // A file that was written and cannot be loaded: better told now.
-    if let Err(faults) = spectra_lens::load(&name, &resources) {
+    let written = output.unwrap_or(&arguments.file).display().to_string();
+    if let Err(faults) = spectra_lens::load(&written, &resources) {
         console::warning("the lens file must be completed before it can be used:");
         console::faults(&faults);
     }
     Ok(code)
+}
+
+/// How a lens file of that name, or one that goes to standard output, names another file: by the way from its own folder.
+fn seen_from(lens: Option<&Path>, file: &Path) -> String {
+    let plain = || file.display().to_string();
+    let Some(lens) = lens else { return plain() };
+    let (Ok(lens), Ok(file)) = (absolute(lens), absolute(file)) else { return plain() };
+    let folder: Vec<Component<'_>> = lens.parent().into_iter().flat_map(Path::components).collect();
+    let parts: Vec<Component<'_>> = file.components().collect();
+    let common = folder.iter().zip(&parts).take_while(|(a, b)| a == b).count();
+    if common == 0 {
+        // Another drive.
+        return file.display().to_string();
+    }
+    let up = std::iter::repeat_n("..".into(), folder.len() - common);
+    let down = parts[common..].iter().map(|part| part.as_os_str().to_string_lossy());
+    up.chain(down).collect::<Vec<_>>().join("/")
 }

@@ -2,6 +2,7 @@
 
 use super::columns::{self, Column, HINT, by_name};
 use super::units;
+use crate::glass::{Catalogues, OwnCatalogue};
 use crate::place::{Source, shown};
 use crate::prescription::{Item, Medium, Prescription, Shape, Surface};
 use crate::{MAX_ITEMS, glass, number};
@@ -11,7 +12,7 @@ use spectra_core::params::{Fault, Faults};
 ///
 /// # Errors
 /// No usable columns, no rows, several lenses in one table, and each cell that cannot be read, with its place.
-pub fn read(name: &str, text: &str) -> Result<Prescription, Faults> {
+pub fn read(name: &str, text: &str, own: &[OwnCatalogue]) -> Result<Prescription, Faults> {
     let source = Source::new(name, text);
     let mut rows = source.text().lines().enumerate().filter(|(_, line)| {
         let line = line.trim();
@@ -61,6 +62,7 @@ pub fn read(name: &str, text: &str) -> Result<Prescription, Faults> {
             cells: Vec::new(),
             units_mm: &units_mm,
             seen: &mut seen,
+            own,
         };
         for (at, cell) in cells(line, separator).into_iter().enumerate() {
             match columns.get(at) {
@@ -194,6 +196,8 @@ struct Row<'a, 'f> {
     cells: Vec<(Column, &'a str)>,
     units_mm: &'f [(Column, f64)],
     seen: &'f mut Seen,
+    /// Where glasses are looked for first.
+    own: &'a [OwnCatalogue],
 }
 
 impl<'a> Row<'a, '_> {
@@ -326,6 +330,7 @@ impl<'a> Row<'a, '_> {
     }
 
     fn medium(&mut self, lens: &mut Prescription) -> Medium {
+        let catalogues = Catalogues { own: self.own, ..Catalogues::default() };
         let (nd, vd) = (self.finite(Column::Index), self.finite(Column::Abbe));
         if let (Some(index), Some(cell)) = (nd, self.text(Column::Index))
             && !(1.0..=4.0).contains(&index)
@@ -336,8 +341,8 @@ impl<'a> Row<'a, '_> {
         let found = match (self.text(Column::Glass), nd) {
             (None, None) => return Medium::Air,
             (None, Some(nd)) => glass::model(nd, vd.unwrap_or(0.0)),
-            (Some(name), Some(nd)) if nd != 1.0 => glass::look_up(name, Some((nd, vd.unwrap_or(0.0))), &[]),
-            (Some(name), _) => glass::look_up(name, None, &[]),
+            (Some(name), Some(nd)) if nd != 1.0 => glass::look_up(name, Some((nd, vd.unwrap_or(0.0))), catalogues),
+            (Some(name), _) => glass::look_up(name, None, catalogues),
         };
         if let Some((alters, text)) = found.note {
             lens.leave_out(self.line, alters, text);

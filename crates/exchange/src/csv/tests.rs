@@ -1,5 +1,9 @@
-use super::read;
-use crate::prescription::{Item, Medium, Shape};
+use crate::prescription::{Item, Medium, Prescription, Shape};
+use spectra_core::params::Faults;
+
+fn read(name: &str, text: &str) -> Result<Prescription, Faults> {
+    super::read(name, text, &[])
+}
 
 #[test]
 fn a_table_of_a_patent() {

@@ -3,6 +3,7 @@
 use super::glass::Private;
 use super::lens::{Aperture, Decenter, DecenterKind, Form, Raw, Role, build};
 use super::statement::{Statement, split};
+use crate::glass::OwnCatalogue;
 use crate::place::{Source, shown};
 use crate::prescription::{ApertureShape, FieldKind, Fields, Prescription, SystemAperture, Wavelength};
 use crate::{MAX_ITEMS, number};
@@ -21,7 +22,7 @@ const HARMLESS: [&str; 52] = [
 ///
 /// # Errors
 /// It has no surfaces, or a figure is no number.
-pub fn read(name: &str, text: &str) -> Result<Prescription, Faults> {
+pub fn read(name: &str, text: &str, own: &[OwnCatalogue]) -> Result<Prescription, Faults> {
     let source = Source::new(name, text);
     let mut reader = Reader { source: &source, ..Reader::new(&source) };
     for statement in &split(source.text()) {
@@ -30,7 +31,7 @@ pub fn read(name: &str, text: &str) -> Result<Prescription, Faults> {
             return Err(source.fault_here(format!("more than {MAX_ITEMS} surfaces")).into());
         }
     }
-    reader.finish()
+    reader.finish(own)
 }
 
 /// Everything that commands have said so far.
@@ -96,15 +97,33 @@ impl<'a> Reader<'a> {
     }
 
     /// The value behind a command, and the surface that it is for: `THI S3 5.0`, or the one that was begun last.
-    fn value(&mut self, words: &[&str], is_needed: bool) -> Option<(usize, f64)> {
+    fn value(&mut self, command: &str, words: &[&str], is_needed: bool) -> Option<(usize, f64)> {
         let (at, words) = self.target(words)?;
-        let word = words.first()?;
+        let Some((word, more)) = words.split_first() else {
+            self.lens.leave_out(self.line, true, format!("{command} without a value"));
+            return None;
+        };
+        // A solve, by which the program finds the value anew: `THI HMY 0.0` behind `S 50 5`.
+        if is_needed && self.surfaces[at].states(command) && word.starts_with(|c: char| c.is_ascii_alphabetic()) {
+            let is_solve = word.bytes().all(|b| b.is_ascii_alphabetic());
+            let text = format!("{command} {}: the value of its surface's own line is carried", words.join(" "));
+            self.lens.leave_out(self.line, !is_solve, shown(&text));
+            return None;
+        }
         let value = if is_needed { self.needed(word) } else { self.number(word) }?;
+        self.note_more(command, more);
         Some((at, value))
     }
 
-    /// The surface that a command is for: `S3`, `SO`, `SI`, or the last one; and the words behind.
-    fn target<'w>(&self, words: &'w [&'w str]) -> Option<(usize, &'w [&'w str])> {
+    /// Tells of words behind those that a command has.
+    fn note_more(&mut self, command: &str, more: &[&str]) {
+        if !more.is_empty() {
+            self.lens.leave_out(self.line, true, shown(&format!("{} behind {command} and its value", more.join(" "))));
+        }
+    }
+
+    /// The surface that a command is for: `S3`, `SO`, `SI`, or the last one; and the words behind. `None` is told.
+    fn target<'w>(&mut self, words: &'w [&'w str]) -> Option<(usize, &'w [&'w str])> {
         let last = self.surfaces.len().checked_sub(1)?;
         let Some(first) = words.first() else { return Some((last, words)) };
         let named = match first.to_ascii_uppercase().as_str() {
@@ -114,7 +133,10 @@ impl<'a> Reader<'a> {
         };
         match named {
             Some(at) if at <= last => Some((at, &words[1..])),
-            Some(_) => None,
+            Some(_) => {
+                self.lens.leave_out(self.line, true, format!("there is no surface {} yet", shown(first)));
+                None
+            }
             None => Some((last, words)),
         }
     }
@@ -166,7 +188,7 @@ impl<'a> Reader<'a> {
                     .collect();
             }
             "REF" => {
-                let at = words.first().and_then(|word| number::parse(word));
+                let at = words.first().and_then(|word| self.number(word));
                 self.lens.primary = at.filter(|at| (1.0..=128.0).contains(at)).map(|at| at as usize - 1);
             }
             "EPD" | "FNO" | "NA" | "NAO" => {
@@ -186,7 +208,7 @@ impl<'a> Reader<'a> {
                 self.fields.insert(key.unwrap_or("YAN"), values);
             }
             "TEM" | "PRE" => {
-                let value = words.first().and_then(|word| number::parse(word));
+                let value = words.first().and_then(|word| self.number(word));
                 let usual = if known == "TEM" { 20.0 } else { 760.0 };
                 if value.is_some_and(|value| value != usual && !(known == "PRE" && value == 1.0)) {
                     self.lens.leave_out(statement.line, true, shown(&statement.words.join(" ")));
@@ -224,6 +246,7 @@ impl<'a> Reader<'a> {
     fn begin(&mut self, role: Role, line: usize, words: &[&str]) {
         let mut raw = Raw::new(role, line);
         let mut words = words;
+        let mut stated = [false; 2];
         // What begins as a number is none of a glass, unless a number goes before it.
         let is_figure = |word: &str| word.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c));
         for (at, into) in [&mut raw.bend, &mut raw.thickness].into_iter().enumerate() {
@@ -234,8 +257,10 @@ impl<'a> Reader<'a> {
                 continue;
             }
             *into = value.unwrap_or(0.0);
+            stated[at] = true;
             words = &words[1..];
         }
+        raw.stated = stated;
         if let Some(word) = words.first() {
             if raw.role == Role::Surface || !word.starts_with(|c: char| c.is_ascii_digit()) {
                 raw.set_glass(word);
@@ -256,7 +281,7 @@ impl<'a> Reader<'a> {
             return false;
         }
         if let Some((_, power)) = POWERS.iter().find(|(name, _)| *name == command) {
-            if let Some((at, value)) = self.value(words, false) {
+            if let Some((at, value)) = self.value(command, words, false) {
                 self.surfaces[at].coefficients.insert(*power, value);
             }
             return true;
@@ -284,13 +309,18 @@ impl<'a> Reader<'a> {
                     && let Some(name) = words.first()
                 {
                     self.surfaces[at].set_glass(name);
+                    self.note_more("GLA", &words[1..]);
                 }
             }
             "RMD" => {
                 if let Some((at, words)) = self.target(words)
                     && let Some(mode) = words.first()
                 {
-                    self.surfaces[at].mirror = mode.to_ascii_uppercase().starts_with("REFL");
+                    let mode = mode.to_ascii_uppercase();
+                    self.surfaces[at].mirror = mode.starts_with("REFL");
+                    if !mode.starts_with("REFL") && !mode.starts_with("REFR") {
+                        self.lens.leave_out(line, true, shown(&format!("RMD {mode}: light is refracted here")));
+                    }
                 }
             }
             "SLB" => {
@@ -299,7 +329,7 @@ impl<'a> Reader<'a> {
                 }
             }
             "CUF" => {
-                if words.first().and_then(|word| number::parse(word)).is_some_and(|value| value != 0.0) {
+                if words.iter().any(|word| number::parse(word).is_none_or(|value| value != 0.0)) {
                     self.lens.leave_out(line, true, "CUF: the curvature of a Fresnel surface");
                 }
             }
@@ -315,7 +345,7 @@ impl<'a> Reader<'a> {
             "RDY" | "CUY" | "RDX" | "CUX" | "THI" | "K" | "KY" | "KX" | "XDE" | "YDE" | "ZDE" | "ADE" | "BDE"
             | "CDE" => {
                 let is_needed = ["RDY", "CUY", "RDX", "CUX", "THI"].contains(&command);
-                if let Some((at, value)) = self.value(words, is_needed) {
+                if let Some((at, value)) = self.value(command, words, is_needed) {
                     self.surfaces[at].set(command, value);
                 }
             }
@@ -343,6 +373,7 @@ impl<'a> Reader<'a> {
                 "HOL" => use_of = Aperture::HOLE,
                 "CLR" => use_of = Aperture::CLEAR,
                 _ if word.contains(['\'', '"']) => label = word,
+                _ if value.is_some() => self.note_more(command, &[word]),
                 _ => value = self.number(word),
             }
         }
@@ -380,7 +411,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn finish(mut self) -> Result<Prescription, Faults> {
+    fn finish(mut self, own: &[OwnCatalogue]) -> Result<Prescription, Faults> {
         if !self.surfaces.iter().any(|raw| raw.role == Role::Surface) {
             self.faults.push(
                 self.source.fault_here("no surfaces: no line begins with S").hint("is this a CODE V sequence file?"),
@@ -399,12 +430,13 @@ impl<'a> Reader<'a> {
             let times = if count > 1 { format!(" ({count} times)") } else { String::new() };
             self.lens.leave_out(line, true, format!("the command {text}{times} is unknown"));
         }
-        build(&mut self.lens, &self.surfaces, self.radius_mode, units, &self.private);
+        build(&mut self.lens, &self.surfaces, self.radius_mode, units, (&self.private, own));
         // Its f-number is that of the cone at the image.
         if let (Some(SystemAperture::FNumber(n)), Some(_)) = (self.lens.system_aperture, self.lens.object_distance_mm) {
             self.lens.system_aperture = Some(SystemAperture::ImageNumericalAperture(0.5 / n));
         }
         crate::stop::size(&mut self.lens, self.aperture_line, "STO");
+        crate::reference::set(&mut self.lens);
         self.lens.left_out.sort_by_key(|note| note.line);
         Ok(self.lens)
     }

@@ -1,6 +1,6 @@
 //! Glass names of CODE V.
 
-use crate::glass::{Found, look_up, maker_of_catalogue, model};
+use crate::glass::{Catalogues, Found, OwnCatalogue, look_up, maker_of_catalogue, model};
 use crate::number;
 use crate::prescription::Medium;
 use spectra_glass::lines::{C, D, F};
@@ -36,7 +36,7 @@ impl Private {
 }
 
 /// The medium of a name: `NBK7_SCHOTT`, `516800.641700`, `1.5168:64.17`, `'E48'`, `1.5`.
-pub(super) fn medium(name: &str, private: &[Private]) -> Found {
+pub(super) fn medium(name: &str, private: &[Private], own: &[OwnCatalogue]) -> Found {
     let bare = name.trim_matches(['\'', '"']);
     if let Some(table) = private.iter().find(|table| table.name.eq_ignore_ascii_case(bare)) {
         return match table.figures() {
@@ -65,21 +65,21 @@ pub(super) fn medium(name: &str, private: &[Private]) -> Found {
     if let Some((name, catalogue)) = bare.rsplit_once('_')
         && let Some(maker) = maker_of_catalogue(catalogue)
     {
-        return look_up(name, None, &[maker]);
+        return look_up(name, None, Catalogues { own, makers: &[maker] });
     }
     // Written by other programs: substance and measurement.
     if let Some((substance, author)) = bare.split_once('_') {
-        let found = look_up(&format!("{substance}/{author}"), None, &[]);
+        let found = look_up(&format!("{substance}/{author}"), None, Catalogues::default());
         if !matches!(found.medium, Medium::Unknown { .. }) {
             return found;
         }
-        let found = look_up(substance, None, &[]);
+        let found = look_up(substance, None, Catalogues::default());
         if let Medium::Glass { name, .. } = &found.medium {
             let text = format!("{bare} is taken as {name}");
             return Found { note: Some((false, text)), ..found };
         }
     }
-    look_up(bare, None, &["SCHOTT"])
+    look_up(bare, None, Catalogues { own, makers: &["SCHOTT"] })
 }
 
 /// nd and Vd that a name spells: digits of nd - 1, a point, digits of Vd, the first two of them whole; or nd:Vd; or an index.
@@ -131,7 +131,7 @@ mod tests {
             ("f2", "SCHOTT/F2"),
             ("bk7", "SCHOTT/BK7"),
         ] {
-            assert!(matches!(medium(name, &[]).medium, Medium::Glass { name, .. } if name == ours), "{name}");
+            assert!(matches!(medium(name, &[], &[]).medium, Medium::Glass { name, .. } if name == ours), "{name}");
         }
     }
 
@@ -141,7 +141,9 @@ mod tests {
         let points =
             vec![(700.0, 1.513_06), (587.5618, 1.516_80), (486.1327, 1.522_38), (546.074, 1.518_72), (650.0, 1.514_52)];
         let private = [Private { name: "OWN".to_owned(), points }];
-        let Medium::Model { nd, vd: Some(vd), .. } = medium("'own'", &private).medium else { panic!("no figures") };
+        let Medium::Model { nd, vd: Some(vd), .. } = medium("'own'", &private, &[]).medium else {
+            panic!("no figures")
+        };
         assert!((nd - 1.5168).abs() < 1e-9 && (vd - 64.17).abs() < 0.1, "{nd} {vd}");
     }
 }

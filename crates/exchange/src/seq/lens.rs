@@ -1,6 +1,7 @@
 //! From what commands said to a prescription.
 
 use super::glass::{self, Private};
+use crate::glass::OwnCatalogue;
 use crate::number;
 use crate::prescription::{ApertureShape, CoordinateBreak, Displacement, Item, Medium, Prescription, Shape, Surface};
 use std::collections::BTreeMap;
@@ -80,6 +81,8 @@ pub(super) struct Raw {
     /// The same in x-z, with whether it is a radius.
     pub(super) bend_x: Option<(f64, bool)>,
     pub(super) thickness: f64,
+    /// Whether the line that began it states its radius or curvature, and its thickness.
+    pub(super) stated: [bool; 2],
     glass: Option<String>,
     pub(super) mirror: bool,
     pub(super) stop: bool,
@@ -102,6 +105,7 @@ impl Raw {
             bend_is_radius: None,
             bend_x: None,
             thickness: 0.0,
+            stated: [false; 2],
             glass: None,
             mirror: false,
             stop: false,
@@ -112,6 +116,15 @@ impl Raw {
             apertures: Vec::new(),
             decenter: Decenter { kind: DecenterKind::Basic, shift: [0.0; 3], turn: [0.0; 3] },
             comment: String::new(),
+        }
+    }
+
+    /// Whether the line that began it states the value of a command.
+    pub(super) fn states(&self, command: &str) -> bool {
+        match command {
+            "RDY" | "CUY" => self.stated[0],
+            "THI" => self.stated[1],
+            _ => false,
         }
     }
 
@@ -133,6 +146,16 @@ impl Raw {
         &mut self.apertures[at]
     }
 
+    /// Whether it states a form other than that of its radius in y-z.
+    fn has_form(&self) -> bool {
+        let is_set = |value: f64| value != 0.0;
+        self.form != Form::Conic
+            || is_set(self.conic)
+            || is_set(self.conic_x)
+            || self.bend_x.is_some_and(|(value, _)| is_set(value))
+            || self.coefficients.values().any(|value| is_set(*value))
+    }
+
     fn radius_mm(&self, radius_mode: bool, unit_mm: f64) -> f64 {
         radius(self.bend, self.bend_is_radius.unwrap_or(radius_mode), unit_mm)
     }
@@ -148,7 +171,14 @@ fn radius(value: f64, is_radius: bool, unit_mm: f64) -> f64 {
 }
 
 /// Fills the lens.
-pub(super) fn build(lens: &mut Prescription, raws: &[Raw], mode: Option<bool>, unit_mm: f64, private: &[Private]) {
+pub(super) fn build(
+    lens: &mut Prescription,
+    raws: &[Raw],
+    mode: Option<bool>,
+    unit_mm: f64,
+    glasses: (&[Private], &[OwnCatalogue]),
+) {
+    let (private, own) = glasses;
     let radius_mode = mode.unwrap_or_else(|| guess_mode(lens, raws));
     let mut medium = Medium::Air;
     let mut number = 0;
@@ -159,6 +189,7 @@ pub(super) fn build(lens: &mut Prescription, raws: &[Raw], mode: Option<bool>, u
                 if thickness_mm.abs() < INFINITY_MM {
                     lens.object_distance_mm = Some(thickness_mm);
                 }
+                object(lens, raw, radius_mode, unit_mm);
                 continue;
             }
             Role::Image => {
@@ -178,7 +209,7 @@ pub(super) fn build(lens: &mut Prescription, raws: &[Raw], mode: Option<bool>, u
             medium = match &raw.glass {
                 None => Medium::Air,
                 Some(name) => {
-                    let found = glass::medium(name, private);
+                    let found = glass::medium(name, private, own);
                     if let Some((alters, text)) = found.note {
                         lens.leave_out(raw.line, alters, format!("surface {number}: {text}"));
                     }
@@ -219,6 +250,22 @@ fn guess_mode(lens: &mut Prescription, raws: &[Raw]) -> bool {
     radii
 }
 
+/// Tells of what an object has and cannot have here.
+fn object(lens: &mut Prescription, raw: &Raw, radius_mode: bool, unit_mm: f64) {
+    if raw.radius_mm(radius_mode, unit_mm).is_finite() || raw.has_form() {
+        lens.leave_out(raw.line, false, "the object is curved");
+    }
+    if raw.glass.is_some() || raw.mirror {
+        lens.leave_out(raw.line, true, "the object stands in a glass: air is in front of the lens here");
+    }
+    if raw.apertures.iter().any(|aperture| aperture.shape.is_some() || aperture.center != [0.0; 2]) {
+        lens.leave_out(raw.line, false, "the aperture of the object");
+    }
+    if raw.decenter.shift != [0.0; 3] || raw.decenter.turn != [0.0; 3] {
+        lens.leave_out(raw.line, true, "the object is decentered or tilted");
+    }
+}
+
 fn image(lens: &mut Prescription, raw: &Raw, defocus_mm: f64, radius_mode: bool, unit_mm: f64) {
     if defocus_mm != 0.0 && defocus_mm.is_finite() {
         if let Some(last) = lens.items.last_mut() {
@@ -228,10 +275,13 @@ fn image(lens: &mut Prescription, raw: &Raw, defocus_mm: f64, radius_mode: bool,
             format!("The last gap holds the defocus of {} mm of the image surface.", number::shortest(defocus_mm));
         lens.remarks.push(text);
     }
-    if raw.radius_mm(radius_mode, unit_mm).is_finite() {
+    if raw.radius_mm(radius_mode, unit_mm).is_finite() || raw.has_form() {
         lens.leave_out(raw.line, true, "the image surface is curved: it is a plane here");
     }
-    if raw.apertures.iter().any(|aperture| aperture.shape.is_some()) {
+    if raw.glass.is_some() || raw.mirror {
+        lens.leave_out(raw.line, true, "a glass or a mirror behind the image surface");
+    }
+    if raw.apertures.iter().any(|aperture| aperture.shape.is_some() || aperture.center != [0.0; 2]) {
         lens.leave_out(raw.line, false, "the aperture of the image surface");
     }
     let by = displacement(&raw.decenter, unit_mm);
@@ -262,6 +312,12 @@ fn shape(lens: &mut Prescription, raw: &Raw, number: usize, radius_mode: bool, u
     }
     let conic = raw.conic;
     let simple = Shape::conic(radius_y, conic);
+    let has_x_radius = matches!(raw.form, Form::ToroidX | Form::ToroidY | Form::Anamorphic);
+    let has_x_conic = matches!(raw.form, Form::ToroidX | Form::Anamorphic);
+    if radius_x.is_finite() && !has_x_radius || raw.conic_x != 0.0 && !has_x_conic {
+        let text = format!("surface {number}: a radius or a conic constant in x-z, which its form does not have");
+        lens.leave_out(raw.line, true, text);
+    }
     let has_terms = !coefficients.is_empty();
     match raw.form {
         Form::Conic | Form::Asphere if has_terms => Shape::EvenAsphere { radius: radius_y, conic, coefficients },

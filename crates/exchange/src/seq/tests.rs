@@ -1,7 +1,11 @@
-use super::read;
 use crate::prescription::{
     ApertureShape, CoordinateBreak, Displacement, Item, Medium, Prescription, Shape, Surface, SystemAperture,
 };
+use spectra_core::params::Faults;
+
+fn read(name: &str, text: &str) -> Result<Prescription, Faults> {
+    super::read(name, text, &[])
+}
 
 fn lens(text: &str) -> Prescription {
     read("x.seq", text).unwrap_or_else(|faults| panic!("{faults}"))
@@ -137,8 +141,8 @@ fn the_rest_is_told() {
         notes.iter().any(|note| note.contains("NOBODYS")) && notes.iter().any(|note| note.contains("FROB 3")),
         "{notes:?}"
     );
-    let message = read("bad.seq", "RDM\nS 50 5\n THI x1\n").unwrap_err().to_string();
-    assert!(message.contains("bad.seq:3:6: `x1` is not a number"), "{message}");
+    let message = read("bad.seq", "RDM\nS 50 5\n THI 5.x\n").unwrap_err().to_string();
+    assert!(message.contains("bad.seq:3:6: `5.x` is not a number"), "{message}");
     assert!(read("bad.seq", "").unwrap_err().to_string().contains("no surfaces"));
 }
 
@@ -153,6 +157,71 @@ fn hints_help_when_followed() {
 }
 
 /// A word in the place of a number ends nothing but where there is no lens without it: the radius and the thickness of a surface.
+/// Sets each value of each form to something else in turn, on the object and the image surface, too: what is read changes, or somebody is
+/// told. Nothing ends the reading but a radius or a thickness that cannot be read.
+#[test]
+fn no_value_of_a_surface_is_passed_over() {
+    const FORMS: [&str; 6] = ["", " ASP\n", " CYL\n", " YTO\n RDX 30\n", " XTO\n RDX 30\n", " AAS\n RDX 30\n"];
+    const LENGTHS: [&str; 3] = ["RDY", "RDX", "THI"];
+    let commands = [
+        "RDY", "CUY", "RDX", "CUX", "THI", "K", "KY", "KX", "A", "B", "C", "D", "E", "F", "G", "H", "J", "XDE", "YDE",
+        "ZDE", "ADE", "BDE", "CDE", "CIR", "CIR EDG", "CIR OBS", "REX", "ELY", "ARO", "CUF", "AR", "HCO 3",
+    ];
+    let file = |at: &str, own: &str| {
+        let of = |place: &str| if place == at { own } else { "" };
+        let [object, surface, image] = ["object", "surface", "image"].map(of);
+        format!("RDM\nSO 0 1e13\n{object}S 50 5 NBK7_SCHOTT\n{surface}S -50 47\nSI 0 0\n{image}GO\n")
+    };
+    // Of a form that is not carried all is told at once.
+    let is_told = |before: &Prescription, after: &Prescription| {
+        after.left_out.len() > before.left_out.len()
+            || after.left_out.iter().any(|note| note.text.contains("carried by its radius in y-z"))
+    };
+    let mut wrong = Vec::new();
+    for at in ["object", "surface", "image"] {
+        for form in FORMS.iter().filter(|form| at == "surface" || form.is_empty()) {
+            let before = read("x.seq", &file(at, form)).expect("a lens");
+            let try_out = |statement: String, wrong: &mut Vec<String>| match read(
+                "x.seq",
+                &file(at, &format!("{form} {statement}\n")),
+            ) {
+                Ok(after) => {
+                    let moved = after.items != before.items || after.object_distance_mm != before.object_distance_mm;
+                    if !moved && !is_told(&before, &after) {
+                        wrong.push(format!("{at}, {form:?}: {statement} is passed over"));
+                    }
+                }
+                Err(faults) => {
+                    let said = faults.to_string();
+                    let is_needed = ["RDY", "CUY", "RDX", "CUX", "THI"].iter().any(|name| statement.starts_with(name));
+                    if !is_needed || !said.contains("x.seq:") {
+                        wrong.push(format!("{at}, {form:?}: {statement} ends it: {said}"));
+                    }
+                }
+            };
+            for command in commands {
+                let value = if LENGTHS.contains(&command) { "44" } else { "0.003" };
+                // A plane has no conic constant; the drawing of a color is none of light.
+                let means_nothing = command == "HCO 3" || command == "THI" && at == "image";
+                if !means_nothing {
+                    try_out(format!("{command} {value}"), &mut wrong);
+                    try_out(format!("{command} {value} 7"), &mut wrong);
+                    try_out(format!("{command} 0..3"), &mut wrong);
+                    try_out(format!("{command} S9 {value}"), &mut wrong);
+                }
+            }
+        }
+    }
+    for solve in ["THI HMY 0.0", "THI PIM", "RDY UMY -0.1"] {
+        let lens = read("x.seq", &file("surface", &format!(" {solve}\n"))).expect("a lens");
+        let plain = read("x.seq", &file("", "")).expect("a lens");
+        let says =
+            |note: &crate::Note| !note.alters && note.text.contains(solve) && note.text.contains("own line is carried");
+        assert!(lens.items == plain.items && lens.left_out.iter().any(says), "{solve}: {:?}", lens.left_out);
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
 #[test]
 fn words_among_values_are_told() {
     let file = |surface: &str| format!("RDM\nSO 0 1e13\n{surface}\nS -50 47\nSI 0 0\nGO\n");
@@ -171,7 +240,7 @@ fn words_among_values_are_told() {
         let told = lens.left_out.iter().any(|note| note.alters && note.text.contains("is not a number"));
         assert!(told && lens.surfaces().count() == 2, "{surface}: {:?}", lens.left_out);
     }
-    for surface in ["S 5..0 5", "S 50 5\n THI 5..0", "S 50 5\n RDY x"] {
+    for surface in ["S 5..0 5", "S 50 5\n THI 5..0", "S\n RDY x\n THI 5", "S 50\n THI HMY"] {
         let faults = read("x.seq", &file(surface)).expect_err(surface).to_string();
         assert!(faults.contains("is not a number") && faults.contains("x.seq:"), "{faults}");
     }

@@ -43,11 +43,23 @@ pub fn read(params: &Params) -> Result<Prescription, Faults> {
         "surfaces",
         "coating",
         "absorption",
+        "squeeze",
+        "groups",
+        "focus",
     ];
     note_others(params, &known, "", &mut lens);
     // What is assumed of a lens's time is no loss; what is stated dims the light, and bends nothing.
     if let Some(coating) = params.get("coating").filter(|node| node.get("assumed").is_none()) {
         lens.leave_out(coating.span.line, false, "the coating");
+    }
+    for (key, what) in [
+        ("squeeze", "pictures are not widened there"),
+        ("groups", "the lens is written as it stands at infinity"),
+        ("focus", "the lens is written as it stands at infinity"),
+    ] {
+        if let Some(node) = params.get(key) {
+            lens.leave_out(node.span.line, false, format!("the key `{key}`: {what}"));
+        }
     }
     let mut faults = Faults::new();
     let nodes: Vec<StageNode> = value(params, "surfaces")?.unwrap_or_default();

@@ -1,16 +1,17 @@
 //! Keywords, by what they mean for a lens.
 
 /// Records of a surface that are read.
-const SURFACE_READ: [&str; 30] = [
+const SURFACE_READ: [&str; 31] = [
     "TYPE", "CURV", "DISZ", "GLAS", "CONI", "PARM", "XDAT", "STOP", "DIAM", "MEMA", "CLAP", "FLAP", "OBSC", "SQAP",
     "SQOB", "ELAP", "ELOB", "USAP", "USOB", "UDAP", "UDAD", "UDOB", "SPID", "OBDC", "COMM", "COAT", "SCBD", "PPAR",
-    "PZUP", "IGNR",
+    "PZUP", "PKUP", "IGNR",
 ];
 
-/// Records of a surface that only say how it is drawn, named or varied.
-const SURFACE_HARMLESS: [&str; 26] = [
+/// Records of a surface that only say how it is drawn, named, varied or toleranced.
+const SURFACE_HARMLESS: [&str; 30] = [
     "SSID", "FIMP", "HIDE", "MIRR", "SLAB", "POPS", "OEMA", "CHZN", "OHZN", "VDSZ", "VPAR", "VCUR", "VCON", "VXDA",
-    "SCOL", "SOPA", "RCOL", "DRAW", "TCEX", "MCHZ", "SCHZ", "VGLA", "VDIA", "SUPC", "COFR", "CDRW",
+    "SCOL", "SOPA", "RCOL", "DRAW", "TCEX", "MCHZ", "SCHZ", "VGLA", "VDIA", "SUPC", "COFR", "CDRW", "TOLE", "TCED",
+    "EDGE", "TCMM",
 ];
 
 /// Records of the system that only say how it is computed, drawn or toleranced.

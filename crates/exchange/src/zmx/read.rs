@@ -3,6 +3,7 @@
 use super::record::{Record, Records, sort};
 use super::surface::{Block, GlassRecord};
 use super::{known, system};
+use crate::glass::{Catalogues, OwnCatalogue};
 use crate::place::{Source, shown};
 use crate::prescription::{CoordinateBreak, Item, Medium, Note, Prescription, Shape, Surface, SystemAperture};
 use crate::{MAX_ITEMS, glass};
@@ -12,11 +13,11 @@ use std::collections::BTreeMap;
 /// Object distances (mm) beyond which an object is at infinity.
 const INFINITY_MM: f64 = 1e10;
 
-/// Reads the text of a file; `name` is how faults name it.
+/// Reads the text of a file; `name` is how faults name it, `own` is where its glasses are looked for first.
 ///
 /// # Errors
 /// It is not sequential, has no surfaces, or a figure is no number.
-pub fn read(name: &str, text: &str) -> Result<Prescription, Faults> {
+pub fn read(name: &str, text: &str, own: &[OwnCatalogue]) -> Result<Prescription, Faults> {
     let source = Source::new(name, text);
     let records = sort(source.text());
     let mut lens = Prescription::default();
@@ -38,8 +39,8 @@ pub fn read(name: &str, text: &str) -> Result<Prescription, Faults> {
     if !faults.is_empty() {
         return Err(faults);
     }
-    let makers = &system.makers;
-    Reader { lens: &mut lens, media: Vec::new(), makers, is_turned: false, ran_back: false }.surfaces(&blocks);
+    let catalogues = Catalogues { own, makers: &system.makers };
+    Reader { lens: &mut lens, media: Vec::new(), catalogues, is_turned: false, ran_back: false }.surfaces(&blocks);
     note_solves(&records, &mut lens);
     for (keyword, (line, count)) in unknown {
         let times = if count > 1 { format!(" ({count} lines)") } else { String::new() };
@@ -57,6 +58,7 @@ pub fn read(name: &str, text: &str) -> Result<Prescription, Faults> {
         }
         crate::stop::size(&mut lens, system.aperture_line, "STOP");
     }
+    crate::reference::set(&mut lens);
     lens.left_out.sort_by_key(|note| note.line);
     Ok(lens)
 }
@@ -65,7 +67,7 @@ struct Reader<'a> {
     lens: &'a mut Prescription,
     /// Medium behind each surface of the file, mirrors included.
     media: Vec<Medium>,
-    makers: &'a [&'static str],
+    catalogues: Catalogues<'a>,
     /// Whether light runs toward smaller z, behind an odd number of mirrors.
     is_turned: bool,
     /// Whether the last gap ran against the light.
@@ -206,7 +208,7 @@ impl Reader<'_> {
             (false, _) => {
                 let known =
                     (1.0..=4.0).contains(&stated.nd) && stated.nd != 1.0 && (stated.nd, stated.vd) != (1.5, 40.0);
-                glass::look_up(&stated.name, known.then_some((stated.nd, stated.vd)), self.makers)
+                glass::look_up(&stated.name, known.then_some((stated.nd, stated.vd)), self.catalogues)
             }
         };
         if let Some((alters, text)) = found.note {
@@ -246,7 +248,7 @@ fn note_solves(records: &Records<'_>, lens: &mut Prescription) {
     let is_solve = |record: &&Record<'_>| {
         let keyword = record.keyword.to_ascii_uppercase();
         match keyword.as_str() {
-            "PPAR" | "PZUP" | "MAZH" | "CHZH" => true,
+            "PPAR" | "PZUP" | "PKUP" | "MAZH" | "CHZH" => true,
             "CURV" => record.number(1).is_some_and(|kind| kind > 1.0),
             _ => false,
         }

@@ -1,8 +1,12 @@
-use super::read;
 use crate::prescription::{
     Aperture, ApertureShape, CoordinateBreak, Displacement, FieldKind, Item, Medium, Ordering, Prescription, Shape,
     Surface, SystemAperture,
 };
+use spectra_core::params::Faults;
+
+fn read(name: &str, text: &str) -> Result<Prescription, Faults> {
+    super::read(name, text, &[])
+}
 
 /// A file with these records in its one surface.
 fn with(system: &str, surface: &str) -> Prescription {
