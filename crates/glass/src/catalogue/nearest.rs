@@ -96,6 +96,8 @@ pub struct Match {
 const TOLERANCE_N: f64 = 5e-4;
 /// Relative tolerance of the Abbe number in the ranking.
 const TOLERANCE_V: f64 = 5e-3;
+/// Distance within which two glasses are the same to what printed figures tell.
+const SAME: f64 = 0.02;
 
 impl Catalogue {
     /// The glasses nearest to an index and an Abbe number, nearest first; equals by name.
@@ -113,9 +115,13 @@ impl Catalogue {
                 distance.is_finite().then_some(Match { glass, n, v, delta_n, delta_v, distance })
             })
             .collect();
+        // Of glasses that are the same to what figures tell, those that can be bought come first.
+        let rank = |m: &Match| ((m.distance / SAME).floor(), m.distance < SAME && m.glass.status == Status::Obsolete);
         matches.sort_by(|a, b| {
-            a.distance
-                .total_cmp(&b.distance)
+            let ((near, gone), (other_near, other_gone)) = (rank(a), rank(b));
+            near.total_cmp(&other_near)
+                .then_with(|| gone.cmp(&other_gone))
+                .then_with(|| a.distance.total_cmp(&b.distance))
                 .then_with(|| a.glass.name.cmp(&b.glass.name))
                 .then_with(|| a.glass.maker.cmp(&b.glass.maker))
         });
