@@ -3,7 +3,7 @@
 use super::decode::{self, Kind};
 use super::header::Header;
 use super::linear::{Choice, Trouble};
-use super::{exr, jpeg};
+use super::{exr, jpeg, tiff};
 use spectra_core::resources::{Found, ResourceError};
 
 /// The beginning of a JPEG that its decoder is shown: it reads all that it is given, and the size stands before the pixels.
@@ -18,7 +18,10 @@ pub fn header(found: &Found, choice: Choice<'_>) -> Result<Header, Trouble> {
     let io = |error: ResourceError| Trouble::file(error.to_string());
     let bytes = found.size_bytes().map_err(io)?;
     let beginning = found.read(64).map_err(io)?;
-    let header = match decode::kind(&beginning, choice)? {
+    let kind = decode::kind(&beginning, choice)?;
+    let without_preview = if kind == decode::TIFF { tiff::without_preview(found)? } else { None };
+    let found = without_preview.as_ref().unwrap_or(found);
+    let header = match kind {
         Kind::Exr => return exr::header(found.open().map_err(io)?, bytes, choice),
         Kind::Native(format) => {
             let is_jpeg = format == image::ImageFormat::Jpeg;

@@ -27,7 +27,10 @@ const MAX_PIXELS_PER_BYTE: u64 = 1_100 * 8;
 pub fn decode(found: &Found, choice: Choice<'_>) -> Result<Linear, Trouble> {
     let said = choice.transfer.map(Encoding::named).transpose()?;
     let bytes = found.size_bytes().map_err(io)?;
-    match kind(&found.read(64).map_err(io)?, choice)? {
+    let kind = kind(&found.read(64).map_err(io)?, choice)?;
+    let without_preview = if kind == TIFF { tiff::without_preview(found)? } else { None };
+    let found = without_preview.as_ref().unwrap_or(found);
+    match kind {
         Kind::Exr => exr::decode(found.open().map_err(io)?, bytes, choice, true),
         Kind::Native(format) => match native(found, format, choice.cover, said.clone()) {
             Ok(linear) => Ok(linear),
@@ -62,6 +65,9 @@ pub(super) enum Kind {
     Foreign,
 }
 
+/// A file that may hold several pictures.
+pub(super) const TIFF: Kind = Kind::Native(ImageFormat::Tiff);
+
 /// Tells it by the first bytes, and whether the choice suits it.
 ///
 /// # Errors
@@ -85,7 +91,10 @@ pub(super) fn kind(beginning: &[u8], choice: Choice<'_>) -> Result<Kind, Trouble
         return Err(Trouble::at("depth", "only an OpenEXR file has a depth channel")
             .hint("name a file that has it: `depth: {file: ..., channel: Z}`"));
     }
-    let format = image::guess_format(beginning).ok().filter(ImageFormat::reading_enabled);
+    // A TIFF of more than 4 GB has another number than 42 behind the order of its bytes.
+    let is_big_tiff = beginning.starts_with(b"II\x2b\0") || beginning.starts_with(b"MM\0\x2b");
+    let guessed = if is_big_tiff { Some(ImageFormat::Tiff) } else { image::guess_format(beginning).ok() };
+    let format = guessed.filter(ImageFormat::reading_enabled);
     Ok(format.map_or(Kind::Foreign, Kind::Native))
 }
 
@@ -143,8 +152,8 @@ pub(super) fn native_header<'a>(
     let (width, height) = decoder.dimensions();
     let turned = turn::is_on_its_side(orientation(&mut decoder));
     let [width, height] = if turned { [height, width] } else { [width, height] };
-    let clips = !matches!(decoder.color_type(), ColorType::Rgb32F | ColorType::Rgba32F);
     let tags = Tags::of(found, format, &mut decoder);
+    let clips = tags.is_long || !matches!(decoder.color_type(), ColorType::Rgb32F | ColorType::Rgba32F);
     let pixel_aspect = seen(tags.pixel_aspect, turned);
     // Somebody who states the curve has seen to it.
     let doubts = tags.doubt.filter(|_| choice.transfer.is_none()).into_iter().collect();
@@ -199,6 +208,8 @@ const PIXELS_A_TASK: usize = 1 << 14;
 enum Samples {
     Bytes,
     Shorts,
+    /// Integers of 32 bits, which a TIFF may have.
+    Longs,
     Floats,
 }
 
@@ -218,6 +229,7 @@ fn linear<R: BufRead + Seek>(
     let samples = match color {
         ColorType::L8 | ColorType::La8 | ColorType::Rgb8 | ColorType::Rgba8 => Samples::Bytes,
         ColorType::L16 | ColorType::La16 | ColorType::Rgb16 | ColorType::Rgba16 => Samples::Shorts,
+        ColorType::Rgb32F | ColorType::Rgba32F if tags.is_long => Samples::Longs,
         ColorType::Rgb32F | ColorType::Rgba32F => Samples::Floats,
         other => return Err(NotRead::Unsupported(format!("pixels of the kind {other:?} are not read"))),
     };
@@ -230,18 +242,21 @@ fn linear<R: BufRead + Seek>(
     let table = match samples {
         Samples::Bytes => of_integers.table(256),
         Samples::Shorts => of_integers.table(65_536),
-        Samples::Floats => Vec::new(),
+        Samples::Longs | Samples::Floats => Vec::new(),
     };
     // The light of a pixel, and its cover.
     let light = |pixel: &[u8]| -> ([f32; 3], f32) {
         let short = |c: usize| u16::from_ne_bytes([pixel[2 * c], pixel[2 * c + 1]]);
-        let float = |c: usize| f32::from_ne_bytes([pixel[4 * c], pixel[4 * c + 1], pixel[4 * c + 2], pixel[4 * c + 3]]);
+        let four = |c: usize| [pixel[4 * c], pixel[4 * c + 1], pixel[4 * c + 2], pixel[4 * c + 3]];
+        let float = |c: usize| f32::from_ne_bytes(four(c));
+        let long = |c: usize| f64::from(u32::from_ne_bytes(four(c))) / f64::from(u32::MAX);
         let gray = count < 3;
         let rgb = [0, 1, 2].map(|c| {
             let c = if gray { 0 } else { c };
             match samples {
                 Samples::Bytes => table[usize::from(pixel[c])],
                 Samples::Shorts => table[usize::from(short(c))],
+                Samples::Longs => of_integers.decode(long(c)) as f32,
                 Samples::Floats => said.map_or(float(c), |encoding| encoding.decode(f64::from(float(c))) as f32),
             }
         });
@@ -253,6 +268,7 @@ fn linear<R: BufRead + Seek>(
             _ if count % 2 == 1 => return (rgb, 1.0),
             Samples::Bytes => f32::from(pixel[count - 1]) / 255.0,
             Samples::Shorts => f32::from(short(count - 1)) / 65_535.0,
+            Samples::Longs => long(count - 1) as f32,
             Samples::Floats => return (rgb, clean(float(count - 1)).min(1.0)),
         };
         (rgb.map(|v| v * cover), cover)

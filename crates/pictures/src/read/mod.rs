@@ -4,6 +4,7 @@ mod beginning;
 mod channels;
 mod decode;
 mod encoding;
+mod exif;
 mod exr;
 #[cfg(test)]
 mod exr_tests;
@@ -12,7 +13,9 @@ mod header;
 mod jpeg;
 mod linear;
 mod planes;
+mod primaries;
 mod profile;
+mod radiance;
 mod space;
 mod tags;
 mod tiff;

@@ -1,14 +1,15 @@
-//! What a PNG, TIFF or JPEG file says of its colors: by code points of ITU-R H.273, a color profile, or a power and primaries.
+//! What a PNG, TIFF, JPEG or Radiance file says of its colors: by code points of ITU-R H.273, a color profile, or a power and primaries.
 //!
 //! In a PNG the first of cICP, iCCP, sRGB, and gAMA with cHRM counts (PNG, third edition, 4.3).
 
 use super::encoding::Encoding;
 use super::linear::Trouble;
-use super::profile::{self, Stated, keeping_white};
-use super::tiff;
+use super::primaries::to_srgb;
+use super::profile::{self, Stated};
+use super::{exif, radiance, tiff};
 use image::{ImageDecoder, ImageFormat};
-use spectra_color::matrix::{Matrix, product};
-use spectra_color::{Adaptation, RgbSpace, Transfer};
+use spectra_color::matrix::Matrix;
+use spectra_color::{RgbSpace, Transfer};
 use spectra_core::resources::Found;
 use std::io::{self, BufRead, Read, Seek, SeekFrom};
 
@@ -23,6 +24,8 @@ pub(super) struct Tags {
     pub doubt: Option<Trouble>,
     /// Width over height of a pixel as it is stored, where the file says it.
     pub pixel_aspect: Option<f64>,
+    /// Whether samples of 32 bits are integers.
+    pub is_long: bool,
 }
 
 impl Tags {
@@ -30,7 +33,8 @@ impl Tags {
     pub(super) fn of(found: &Found, format: ImageFormat, decoder: &mut impl ImageDecoder) -> Self {
         let chunks = if format == ImageFormat::Png { found.open().ok().map(Chunks::of) } else { None };
         let chunks = chunks.unwrap_or_default();
-        Self { pixel_aspect: chunks.pixel_aspect, ..Self::colors(chunks, found, format, decoder) }
+        let is_long = format == ImageFormat::Tiff && found.open().is_ok_and(tiff::has_long_integers);
+        Self { pixel_aspect: chunks.pixel_aspect, is_long, ..Self::colors(chunks, found, format, decoder) }
     }
 
     fn colors(chunks: Chunks, found: &Found, format: ImageFormat, decoder: &mut impl ImageDecoder) -> Self {
@@ -46,6 +50,15 @@ impl Tags {
         };
         if let Some(bytes) = profile {
             return Self::stated(profile::read(&bytes), || "a color profile of another kind".to_owned());
+        }
+        if format == ImageFormat::Jpeg
+            && let Some(space) = decoder.exif_metadata().ok().flatten().and_then(|bytes| exif::stated(&bytes))
+        {
+            return Self::stated(Some(space), String::new);
+        }
+        if format == ImageFormat::Hdr {
+            let to_srgb = found.open().ok().and_then(radiance::to_light);
+            return Self { to_srgb, ..Self::default() };
         }
         if chunks.is_aces_cct {
             return Self::stated(Some((Encoding::AcesCct, to_srgb(RgbSpace::aces_cg()))), String::new);
@@ -70,20 +83,6 @@ impl Tags {
             }
         }
     }
-}
-
-/// Linear light of a space to that of sRGB, white to white (CAT02, as pictures are written); `None` where primaries and white are
-/// those of sRGB.
-pub(super) fn to_srgb(space: &RgbSpace) -> Option<Matrix> {
-    let srgb = RgbSpace::srgb();
-    let near = |a: &[f64; 2], b: &[f64; 2]| (a[0] - b[0]).abs() < 1e-3 && (a[1] - b[1]).abs() < 1e-3;
-    if near(&space.white_xy, &srgb.white_xy)
-        && space.primaries_xy.iter().zip(&srgb.primaries_xy).all(|(a, b)| near(a, b))
-    {
-        return None;
-    }
-    let adapted = Adaptation::Cat02.matrix(space.white_xyz(), srgb.white_xyz());
-    Some(keeping_white(product(&srgb.rgb_from_xyz, &product(&adapted, &space.xyz_from_rgb))))
 }
 
 /// Primaries, transfer, matrix and range by ITU-T H.273.

@@ -1,11 +1,13 @@
 //! TIFF without a second copy of the picture: its strips and tiles are unpacked one by one, or to where they belong.
 
+use super::linear::Trouble;
 use image::error::{DecodingError, LimitError, LimitErrorKind, UnsupportedError, UnsupportedErrorKind};
 use image::{ExtendedColorType, ImageDecoder, ImageError, ImageFormat};
+use spectra_core::resources::Found;
 use std::io::{BufRead, Seek};
 use tiff::TiffError;
 use tiff::decoder::{ChunkType, Decoder, Limits};
-use tiff::tags::Tag;
+use tiff::tags::{ByteOrder, Tag};
 
 /// A file whose samples are of a kind that needs no conversion, pixel by pixel or a plane for each channel.
 pub(super) struct Plain<R: BufRead + Seek> {
@@ -99,6 +101,63 @@ impl<R: BufRead + Seek> Plain<R> {
     }
 }
 
+/// Whether samples are integers of 32 bits: the crate `image` hands them on as if they were floating point.
+pub(super) fn has_long_integers(reader: impl BufRead + Seek) -> bool {
+    const UNSIGNED: u16 = 1;
+    let Ok(mut decoder) = Decoder::new(reader) else { return false };
+    let mut all = |tag, usual: u16, wanted: u16| {
+        let found = decoder.find_tag_unsigned_vec::<u16>(tag).ok().flatten().unwrap_or_else(|| vec![usual]);
+        found.iter().all(|value| *value == wanted)
+    };
+    all(Tag::BitsPerSample, 1, 32) && all(Tag::SampleFormat, UNSIGNED, UNSIGNED)
+}
+
+/// The file as if its first picture that is no preview stood first; `None` where it does. Scanners and converters write a small picture
+/// in front.
+///
+/// # Errors
+/// All that it holds is a preview: in a camera's raw file the picture lies elsewhere.
+pub(super) fn without_preview(found: &Found) -> Result<Option<Found>, Trouble> {
+    const REDUCED: u32 = 1;
+    let open = || found.open().map_err(|error| Trouble::file(error.to_string()));
+    // What is wrong with the file is told where it is read.
+    let Ok(mut decoder) = Decoder::new(open()?) else { return Ok(None) };
+    let is_preview = |decoder: &mut Decoder<_>| {
+        let kind = decoder.find_tag_unsigned::<u32>(Tag::NewSubfileType);
+        kind.ok().flatten().is_some_and(|kind| kind & REDUCED != 0)
+    };
+    if !is_preview(&mut decoder) {
+        return Ok(None);
+    }
+    while decoder.more_images() && decoder.next_image().is_ok() {
+        if !is_preview(&mut decoder)
+            && let Some(at) = decoder.ifd_pointer()
+        {
+            let order = decoder.byte_order();
+            let mut bytes = found.read(u64::MAX).map_err(|error| Trouble::file(error.to_string()))?;
+            set_first(&mut bytes, at.0, order);
+            return Ok(Some(Found::bytes(found.name.clone(), bytes.into())));
+        }
+    }
+    let text = "it holds a preview only: the picture of a camera's raw file is not read";
+    Err(Trouble::file(text).hint("develop it in a raw converter, and save it as a TIFF of 16 bits or linear OpenEXR"))
+}
+
+/// Writes where the first picture's folder lies into the header of a file.
+fn set_first(bytes: &mut [u8], at: u64, order: ByteOrder) {
+    let at = match order {
+        ByteOrder::LittleEndian => at.to_le_bytes(),
+        ByteOrder::BigEndian => at.to_be_bytes(),
+    };
+    // A file of more than 4 GB has eight bytes for it, behind four more.
+    let is_big = bytes[2..4].contains(&0x2b);
+    match (is_big, order) {
+        (true, _) => bytes[8..16].copy_from_slice(&at),
+        (false, ByteOrder::LittleEndian) => bytes[4..8].copy_from_slice(&at[..4]),
+        (false, ByteOrder::BigEndian) => bytes[4..8].copy_from_slice(&at[4..]),
+    }
+}
+
 /// The color profile of a file. The decoder of the crate `image` has no more room for it than for the picture.
 pub(super) fn profile(reader: impl BufRead + Seek) -> Option<Vec<u8>> {
     let mut limits = Limits::default();
@@ -118,5 +177,92 @@ fn said(error: TiffError) -> ImageError {
         }
         TiffError::LimitsExceeded => ImageError::Limits(LimitError::from_kind(LimitErrorKind::InsufficientMemory)),
         other => ImageError::Decoding(DecodingError::new(format.into(), other)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::read::decode::decode_bytes;
+    use crate::read::header;
+    use crate::read::linear::{Choice, Linear};
+    use spectra_color::{Transfer, to_u8};
+    use std::io::Cursor;
+    use tiff::encoder::{TiffEncoder, TiffKind, colortype};
+
+    fn read(bytes: &[u8]) -> Linear {
+        decode_bytes(bytes, Choice::default()).expect("a picture")
+    }
+
+    /// Writes a picture of this side and these samples, marked as a preview or not.
+    fn add<K: TiffKind, C: colortype::ColorType>(
+        encoder: &mut TiffEncoder<&mut Cursor<Vec<u8>>, K>,
+        side: u32,
+        is_preview: bool,
+        samples: &[C::Inner],
+    ) where
+        [C::Inner]: tiff::encoder::TiffValue,
+    {
+        let mut picture = encoder.new_image::<C>(side, side).expect("written");
+        picture.encoder().write_tag(Tag::NewSubfileType, u32::from(is_preview)).expect("written");
+        picture.write_data(samples).expect("written");
+    }
+
+    const CODES: [u8; 12] = [200, 60, 40, 0, 255, 128, 9, 9, 9, 77, 88, 99];
+
+    #[test]
+    fn integers_of_32_bits_are_codes() {
+        let mut bytes = Cursor::new(Vec::new());
+        let codes = CODES.map(|code| u32::from(code) * 0x0101_0101);
+        add::<_, colortype::RGB32>(&mut TiffEncoder::new(&mut bytes).expect("begun"), 2, false, &codes);
+        // Said aloud they are refused by the decoder; most programs leave the tag out, since integers are what is meant without it.
+        let trouble = decode_bytes(bytes.get_ref(), Choice::default()).expect_err("not read by the decoder");
+        assert!(trouble.text.contains("sample format 1 for 32 bits"), "{}", trouble.text);
+        let bytes = bytes.get_mut();
+        let at = bytes.windows(4).position(|tag| tag == [0x53, 0x01, 0x03, 0x00]).expect("the tag SampleFormat");
+        bytes[at..at + 2].copy_from_slice(&0xfde8_u16.to_le_bytes());
+        let linear = read(bytes);
+        for (light, code) in linear.rgb.iter().flatten().zip(CODES) {
+            assert!(
+                (f64::from(*light) - Transfer::Srgb.decode(f64::from(code) / 255.0)).abs() < 1e-6,
+                "{light} {code}"
+            );
+        }
+        assert!(linear.clipped_at.is_some() && linear.doubts.is_empty());
+    }
+
+    #[test]
+    fn large_files_are_tiff() {
+        let mut bytes = Cursor::new(Vec::new());
+        add::<_, colortype::RGB8>(&mut TiffEncoder::new_big(&mut bytes).expect("begun"), 2, false, &CODES);
+        let codes: Vec<u8> =
+            read(bytes.get_ref()).rgb.iter().flatten().map(|v| to_u8(Transfer::Srgb.encode(f64::from(*v)))).collect();
+        assert_eq!(codes, CODES);
+    }
+
+    /// The picture behind a preview is the picture, in small and in large files; one that has a preview only is refused.
+    #[test]
+    fn previews_are_passed_over() {
+        let preview = [7_u8; 3];
+        let plain = |encoder: &mut TiffEncoder<&mut Cursor<Vec<u8>>, _>| {
+            add::<_, colortype::RGB8>(encoder, 1, true, &preview);
+            add::<_, colortype::RGB8>(encoder, 2, false, &CODES);
+        };
+        let (mut small, mut large) = (Cursor::new(Vec::new()), Cursor::new(Vec::new()));
+        plain(&mut TiffEncoder::new(&mut small).expect("begun"));
+        let mut encoder = TiffEncoder::new_big(&mut large).expect("begun");
+        add::<_, colortype::RGB8>(&mut encoder, 1, true, &preview);
+        add::<_, colortype::RGB8>(&mut encoder, 2, false, &CODES);
+        for bytes in [small, large] {
+            let found = Found::bytes("scan.tif".to_owned(), bytes.get_ref().clone().into());
+            let header = header(&found, Choice::default()).expect("a picture");
+            let linear = read(bytes.get_ref());
+            assert_eq!((header.width, linear.width, linear.height), (2, 2, 2));
+            assert!((f64::from(linear.rgb[0][0]) - Transfer::Srgb.decode(200.0 / 255.0)).abs() < 1e-6);
+        }
+        let mut only = Cursor::new(Vec::new());
+        add::<_, colortype::RGB8>(&mut TiffEncoder::new(&mut only).expect("begun"), 1, true, &preview);
+        let trouble = decode_bytes(only.get_ref(), Choice::default()).expect_err("a preview");
+        assert!(trouble.text.contains("preview only") && trouble.hint.is_some());
     }
 }
