@@ -1,6 +1,6 @@
 //! `spectra lens import` and `export`, and lens files of other programs wherever a lens is asked for.
 
-use crate::common::{good, repository, run, shown, text};
+use crate::common::{good, repository, run, shown, spectra, text};
 use serde_json::Value;
 use spectra_scene::FileResources;
 use std::path::{Path, PathBuf};
@@ -272,7 +272,7 @@ fn types_of_surfaces_keep_their_formulas() {
         point.map(|v| v * (1.0 - GAP / 5.0))
     });
     // n' sin' - n sin = order x wavelength x lines, lines along x.
-    let sine = 0.587_561_8 * 0.4 * -1.0;
+    let sine = -(0.587_561_8 * 0.4);
     let shift = GAP * sine / (1.0 - sine * sine).sqrt();
     close("DGRATING", found("DGRATING", "  PARM 1 0.4\n  PARM 2 -1\n", 1.0), &|[x, y]| [x, y + shift]);
 }
@@ -327,6 +327,21 @@ fn glasses_come_from_a_catalogue_of_ones_own() {
     let output =
         run(&["lens", "import", shown(&at("b.zmx")), "--agf", shown(&agf), "-o", shown(&at("b.yaml")), "--force"]);
     assert!(output.status.success() && !text(&output.stderr).contains("must be completed"), "{}", text(&output.stderr));
+}
+
+/// A tilde behind `=`, which shells leave alone, is the folder of the user.
+#[test]
+#[cfg(unix)]
+fn a_tilde_behind_an_equals_sign_is_the_home_folder() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let home = folder.path().join("home");
+    std::fs::create_dir(&home).expect("a folder");
+    let mut command = spectra();
+    command.current_dir(folder.path()).env("HOME", &home);
+    let output =
+        command.args(["lens", "export", "zeiss-biotar-50-f1.4", "--output=~/biotar.zmx"]).output().expect("starts");
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    assert!(home.join("biotar.zmx").is_file() && !folder.path().join("~").exists());
 }
 
 #[test]

@@ -27,6 +27,40 @@ fn figure(info: &Value, key: &str) -> f64 {
     info[key].as_f64().unwrap_or_else(|| panic!("`{key}` is no number: {}", info[key]))
 }
 
+/// An index that nobody measured is told of, each medium once.
+#[test]
+fn extrapolated_indices_are_told() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("two.yaml");
+    let text = "name: two\nsurfaces:\n  - {radius: 50, thickness: 5, glass: SCHOTT/BK7, stop: true, semi-diameter: 5}\n  - {radius: -50, thickness: 1}\n  \
+                - {radius: 50, thickness: 5, glass: SCHOTT/BK7}\n  - {radius: -50, thickness: 1}\n  \
+                - {radius: 50, thickness: 5, glass: {nd: 1.6, vd: 50}}\n  - {radius: -50, thickness: 9}\n";
+    std::fs::write(&file, text).expect("written");
+    let told = |nm: &str| {
+        let notes = info(shown(&file), &["--wavelength-nm", nm])["notes"].clone();
+        let notes = notes.as_array().expect("a list").iter().filter_map(Value::as_str);
+        notes.filter(|note| note.contains("is extrapolated")).map(str::to_owned).collect::<Vec<_>>()
+    };
+    assert_eq!(told("550"), [""; 0]);
+    let far = told("1550");
+    assert!(far.len() == 2 && far[0].starts_with("SCHOTT/BK7 was measured from 400 to 700 nm"), "{far:?}");
+    assert!(far[1].contains("by an index and an Abbe number only"), "{far:?}");
+}
+
+/// An assumed absorption that takes a stop is told of, with whose it is.
+#[test]
+fn a_stop_of_assumed_absorption_is_told() {
+    let rod = repository("tests/warned/own/rod.yaml");
+    let said = |more: &[&str]| info(shown(&rod), more)["notes"].to_string();
+    let notes = said(&[]);
+    assert!(
+        notes.contains("absorption of SCHOTT/SF53 is not known; that of SCHOTT/SF")
+            && notes.contains("stops at 405 nm"),
+        "{notes}"
+    );
+    assert!(!said(&["--absorption", "false"]).contains("darkens"));
+}
+
 /// Values computed twice, independently; printed with seven decimals.
 #[test]
 fn focal_lengths_of_thirteen_lenses() {

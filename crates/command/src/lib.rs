@@ -79,10 +79,23 @@ pub fn call(arguments: impl IntoIterator<Item = OsString>, unpack: Unpack) -> Ca
     Called { code, out: kept.out, err: kept.err }
 }
 
+/// `--output=~/picture.png` with the folder of the user: shells put it in at the beginning of a word only.
+fn at_home(argument: OsString) -> OsString {
+    let Some((name, path)) = argument.to_str().and_then(|text| text.split_once("=~/")) else { return argument };
+    match std::env::home_dir().filter(|home| name.starts_with("--") && !home.as_os_str().is_empty()) {
+        Some(home) => {
+            let mut whole = OsString::from(format!("{name}="));
+            whole.push(home.join(path));
+            whole
+        }
+        None => argument,
+    }
+}
+
 /// Runs a command line, the name of the program first; returns the exit code.
 fn answer(line: impl Iterator<Item = OsString>, unpack: Unpack, notices: &str) -> u8 {
     let started = Instant::now();
-    let arguments = match Arguments::try_parse_from(line).map_err(guess::without_false_tips) {
+    let arguments = match Arguments::try_parse_from(line.map(at_home)).map_err(guess::without_false_tips) {
         Ok(arguments) => arguments,
         Err(error) => {
             // Help and version come this way too, with code 0.

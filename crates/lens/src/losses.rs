@@ -2,7 +2,10 @@
 
 use crate::{Coating, Lens, Soil};
 use spectra_core::surface::Action;
-use spectra_glass::Medium;
+use spectra_glass::{Lender, Medium};
+
+/// From here on, stops, a person is told that an assumed absorption darkens a lens.
+const DARK_STOPS: f64 = 1.0;
 
 impl Lens {
     /// What coatings and absorption are counted, and what of it is assumed: `bare (assumed for 1927), glass absorbs`.
@@ -58,6 +61,24 @@ impl Lens {
             (_, true) => "glass absorbs".to_owned(),
             (_, false) => format!("glass absorbs (transmittances: {})", parts.join(", ")),
         }
+    }
+
+    /// The medium whose assumed absorption takes most light on the axis, whose absorption it is, and how many stops all that are
+    /// assumed take together at the reference line; `None` below one stop, or where glass does not absorb.
+    #[must_use]
+    pub fn darkened_by_assumption(&self) -> Option<(&str, Lender, f64)> {
+        let nm = self.reference_nm;
+        let mut stops = vec![0.0; self.media.len()];
+        for element in &self.elements {
+            let at = element.medium_after;
+            let assumed = self.media[at].medium.absorption(self.year).filter(|absorption| absorption.lender.is_some());
+            let k = assumed.and_then(|absorption| absorption.extinction.at(nm)).unwrap_or(0.0);
+            stops[at] += 4e6 * std::f64::consts::PI * k / nm * element.thickness_mm.abs() / std::f64::consts::LN_2;
+        }
+        let all: f64 = stops.iter().sum();
+        let (at, _) = stops.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1))?;
+        let lender = self.media[at].medium.absorption(self.year)?.lender?;
+        (self.absorption && all >= DARK_STOPS).then(|| (self.media[at].label.as_str(), lender, all))
     }
 
     /// Whether nothing is lost at surfaces or in glass, by assumption.

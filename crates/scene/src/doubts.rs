@@ -47,6 +47,7 @@ impl Whole<'_> {
         }
         self.light(warnings);
         self.glass(warnings);
+        self.assumed_absorption(warnings);
         self.ghosts(warnings);
     }
 
@@ -172,6 +173,18 @@ impl Whole<'_> {
     fn is_bundled_lens(&self) -> bool {
         let read = self.resources.document(self.lens_file(), &["lenses"], &[".yaml"]);
         read.is_ok_and(|read| read.node().file.name.starts_with(BUNDLED))
+    }
+
+    /// Glass of which no absorption is known, and whose stand-in darkens the picture.
+    fn assumed_absorption(&self, warnings: &Warnings) {
+        if let Some((medium, lender, stops)) = self.lens.darkened_by_assumption() {
+            let text = format!(
+                "the absorption of {medium} is not known; that of {} is assumed, which darkens the lens by {stops:.1} stops at {:.0} nm",
+                lender.full_name, self.lens.reference_nm
+            );
+            let hint = "write `lens.absorption: false` if the lens is clear, or a glass file of its own with `internal-transmittance`";
+            warnings.push(self.params.fault("lens.file", text).hint(hint));
+        }
     }
 
     /// Glass whose formula is used where nobody measured it.

@@ -7,6 +7,7 @@ use crate::{console, limits};
 use spectra_analysis::Light;
 use spectra_analysis::glare::{GlareTask, glare};
 use spectra_analysis::info::LensReport;
+use spectra_glass::Medium;
 use spectra_lens::Lens;
 use spectra_scene::stop_hint_of;
 use spectra_session::Threads;
@@ -33,6 +34,15 @@ pub(crate) fn info(arguments: &LensInfo) -> Outcome {
         report = report.to_image_height(&lens, light, height.mm()).map_err(farthest)?;
     }
     report.every_mount = arguments.mounts;
+    report.notes.extend(light.wavelength_nm().map(|nm| extrapolated(&lens, nm)).unwrap_or_default());
+    if let Some((medium, lender, stops)) = lens.darkened_by_assumption() {
+        let by = lender.full_name;
+        report.notes.push(format!(
+            "the absorption of {medium} is not known; that of {by} is assumed, which darkens the lens by {stops:.1} stops \
+             at {:.0} nm (--absorption false: clear)",
+            lens.reference_nm
+        ));
+    }
     report.notes.extend(no_stop(&lens, &arguments.setting.lens));
     if arguments.glare {
         let mut task = GlareTask::new(light.wavelength_nm().unwrap_or(lens.reference_nm));
@@ -47,6 +57,30 @@ pub(crate) fn info(arguments: &LensInfo) -> Outcome {
         console::out(&report.to_string())?;
     }
     Ok(DONE)
+}
+
+/// Between these wavelengths, h and r, a glass of which only an index and an Abbe number are known is like others of such figures.
+const MODEL_NM: std::ops::RangeInclusive<f64> = 404.0..=707.0;
+
+/// Media whose index at a wavelength nobody measured, each once.
+fn extrapolated(lens: &Lens, nm: f64) -> Vec<String> {
+    let mut notes = Vec::new();
+    for medium in &lens.media {
+        let label = &medium.label;
+        let note = match (medium.medium.range_nm(), &medium.medium) {
+            (Some((from, to)), _) if !(from..=to).contains(&nm) => {
+                format!("{label} was measured from {from:.0} to {to:.0} nm: its index at {nm} nm is extrapolated")
+            }
+            (None, Medium::Model(_)) if !MODEL_NM.contains(&nm) => {
+                format!("{label} is known by an index and an Abbe number only: its index at {nm} nm is extrapolated")
+            }
+            _ => continue,
+        };
+        if !notes.contains(&note) {
+            notes.push(note);
+        }
+    }
+    notes
 }
 
 /// What is taken of a lens in whose file no surface is the stop, and what to write. Nothing is said of one without power: a prism, a
