@@ -102,7 +102,7 @@ FAULTS = [
     (26, "exchange", "sign", "A tilt about x in a lens file of another program turns the other way.",
      "crates/exchange/src/seq/lens.rs", "tilt_deg: [«0.0 - a», 0.0 - b, c],", "a"),
     (27, "exchange", "off by one", "Coefficients of an asphere in inches are scaled by one power too many.",
-     "crates/exchange/src/zmx/shape.rs", "coefficients.push(value / power_of(self.unit_mm, «power - 1»));", "power"),
+     "crates/exchange/src/zmx/shape.rs", "coefficients.push(self.parameters.get(at) / power_of(self.unit_mm, «power - 1»));", "power"),
     (28, "view", "swap", "The values of a pixel that the page points at are those of another, with row and column swapped.",
      "crates/view/src/parts.rs", "let at = («y * width + x») as usize;", "x * width + y"),
     (29, "view", "factor of two", "The study of dispersion begins with a prism of half the size.",
@@ -307,4 +307,5 @@ def main():
             sys.exit(1)
 
 
-main()
+if __name__ == "__main__":
+    main()
