@@ -423,10 +423,10 @@ fn eras_of_glass() {
     assert!(kept[0] >= 175 && kept[1] == 0 && dropped[0] <= 16 && dropped[1] >= 40, "{kept:?} {dropped:?}");
 }
 
-/// Spectral lines from h to C, um.
+/// Spectral lines from h to C, nm.
 const H_TO_C: [f64; 8] = [404.6561, 435.8343, 479.9914, 486.1327, 546.074, 587.5618, 643.8469, 656.2725];
 
-/// What is printed of an old glass is what was known of it: a table of two terms, held here to 0.4 in Vd.
+/// An old glass of SCHOTT and the one with N- before its name, whose nd agree to 0.0005 and whose Vd agree to 0.4.
 fn old_and_new(name: &str) -> (Glass, Glass) {
     let (old, new) = (find(&format!("SCHOTT/{name}")), find(&format!("SCHOTT/N-{name}")));
     assert!((old.nd() - new.nd()).abs() < 5e-4 && (old.vd() - new.vd()).abs() < 0.4, "{name}");
@@ -435,7 +435,7 @@ fn old_and_new(name: &str) -> (Glass, Glass) {
 }
 
 /// Old glasses of SCHOTT without lead have the dispersion of those with N- before their name, and the six digits that were printed
-/// for them: the Abbe number within 0.05 of these, and what is listed is what comes out.
+/// for them: the Abbe number within 0.06 of these (they are rounded to 0.1), and what is listed is what comes out.
 #[test]
 fn old_glasses_disperse_as_their_namesakes() {
     // The makers' codes of these types, nd - 1 and Vd.
