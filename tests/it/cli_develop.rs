@@ -220,6 +220,85 @@ fn layers_get_of_colors_what_rays_bring_them() {
     }
 }
 
+/// An EXR in ACEScg of patches 12 pixels wide, side by side, in the shape of 135.
+fn put_acescg(path: PathBuf, colors: &[[f32; 3]]) {
+    use exr::prelude::{Encoding, Image, IntegerBounds, LayerAttributes, SpecificChannels, Vec2, WritableImage};
+    let size = Vec2(12 * colors.len(), 8 * colors.len());
+    let of = |at: Vec2<usize>| {
+        let [r, g, b] = colors[at.0 / 12];
+        (r, g, b)
+    };
+    let channels = SpecificChannels::rgb(of);
+    let mut image = Image::new(
+        exr::prelude::ImageAttributes::new(IntegerBounds::new(Vec2(0, 0), size)),
+        exr::prelude::Layer::new(size, LayerAttributes::default(), Encoding::FAST_LOSSLESS, channels),
+    );
+    image.attributes.chromaticities = Some(exr::meta::attribute::Chromaticities {
+        red: Vec2(0.713, 0.293),
+        green: Vec2(0.165, 0.830),
+        blue: Vec2(0.128, 0.044),
+        white: Vec2(0.32168, 0.33767),
+    });
+    image.write().to_file(path).expect("an EXR");
+}
+
+/// The primaries of ACEScg, which no light has, keep their luminance over gray, as CIE XYZ adapted by Bradford has it, and are counted;
+/// layers get of such colors what rays bring them.
+#[test]
+fn colors_beyond_srgb_keep_their_light() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    put_acescg(at("wide.exr"), &[[0.5, 0.0, 0.0], [0.0, 0.5, 0.0], [0.0, 0.0, 0.5]]);
+    put_acescg(at("gray.exr"), &[[0.18; 3]; 3]);
+    let scene = "spectra: 1
+source: {kind: picture, file: wide.exr, distance: 2 m, width: fill}
+lens: {file: surfaces/pinhole-50}
+imager: {kind: xyz, format: 135, resolution: [36, 24]}
+render: {samples: 256}
+output: [exr]
+";
+    std::fs::write(at("scene.yaml"), scene).expect("written");
+    let output = run_in(folder.path(), &["run", "scene.yaml", "-o", "xyz.exr"]);
+    let said = text(&output.stderr);
+    assert!(output.status.success(), "{said}");
+    assert!(said.contains("864 of its 864 pixels have colors that no light has"), "{said}");
+    assert!(said.contains("help: convert it to a narrower gamut"), "{said}");
+    std::fs::write(at("gray.yaml"), scene.replace("wide.exr", "gray.exr")).expect("written");
+    assert!(run_in(folder.path(), &["run", "gray.yaml", "-o", "gray-xyz.exr"]).status.success());
+    let [color, gray] = ["xyz.exr", "gray-xyz.exr"].map(|name| {
+        let light = channels(at(name));
+        let (_, luminance) = light.iter().find(|(name, _)| name == "Y").expect("Y");
+        [0, 1, 2].map(|i| luminance.chunks(12).skip(i).step_by(3).map(|row| f64::from(row[6])).sum::<f64>())
+    });
+    for (primary, want) in [0.7446, 1.868, 0.161].into_iter().enumerate() {
+        let got = color[primary] / gray[primary];
+        println!("primary {primary}: {got:.4} of gray, {want} wanted");
+        // Four standard errors of 24 pixels of 256 samples.
+        assert!((got / want - 1.0).abs() < 0.02, "{primary}: {got} {want}");
+    }
+    for (i, color) in [[0.0, 0.5, 0.0], [0.1, 0.0, 0.5]].into_iter().enumerate() {
+        put_acescg(at("one.exr"), &[color]);
+        let plain = ["one.exr", "--stock", "5207", "--meter", "each", "--format", "super-8"];
+        let light = ["--set", "output=[exr]"];
+        good(folder.path(), &[&plain[..], &light, &["-o", "own.exr"]].concat());
+        let through = ["--lens", "helios", "--f-number", "f/8", "--noise", "1%", "-o", "lens.exr"];
+        let clear = ["--set", "lens.coating=ideal", "--set", "lens.absorption=false"];
+        good(folder.path(), &[&plain[..], &light, &through, &clear].concat());
+        let (own, lens) = (channels(at("own.exr")), channels(at("lens.exr")));
+        for ((name, own), (_, lens)) in own.iter().zip(&lens).filter(|((name, _), _)| !name.contains("meter")) {
+            let sum = |values: &[f32]| values.iter().map(|v| f64::from(*v)).sum::<f64>();
+            let off = sum(own) / sum(lens) - 1.0;
+            println!("color {i}, {name}: {:+.3} % off", 100.0 * off);
+            assert!(off.abs() < 0.02, "{name}: {off}");
+        }
+    }
+    // A model of sRGB's colors keeps luminance and says what to write.
+    std::fs::write(at("scene.yaml"), scene.replace("width: fill}", "width: fill, color: primaries}")).expect("written");
+    let said = text(&run_in(folder.path(), &["run", "scene.yaml", "-o", "xyz.exr"]).stderr);
+    assert!(said.contains("colors beyond sRGB, of which this color model makes no light"), "{said}");
+    assert!(said.contains("write `color: {kind: smooth}`"), "{said}");
+}
+
 #[test]
 fn frames_have_grain_of_their_own_and_one_exposure() {
     let folder = tempfile::tempdir().expect("a folder");

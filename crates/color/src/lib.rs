@@ -27,6 +27,7 @@ mod dominant;
 mod gamut;
 pub mod matrix;
 mod primaries;
+mod real;
 mod rendering;
 pub mod rgb;
 mod round_trip;
@@ -41,6 +42,7 @@ pub use difference::ciede2000;
 pub use dominant::{Dominant, dominant_wavelength};
 pub use gamut::{Gamut, into_gamut, oklab, xyz_of_oklab};
 pub use primaries::{srgb_light, srgb_primaries};
+pub use real::{Fitted, MARGIN, Place, RealColors, fit};
 pub use rendering::{
     ColorRendering, Fidelity, cam02_ucs, cie_test_colors, color_evaluation_samples, color_rendering, fidelity,
     fidelity_index, luminous_efficacy, uv_1976,

@@ -139,8 +139,22 @@ pub trait Radiance: Send + Sync {
     }
 }
 
+/// The colors of which a color model makes spectra.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ColorGamut {
+    /// Those of sRGB: no value of linear sRGB is negative.
+    Srgb,
+    /// All that light can have, but for the last 0.001 in xy before the spectral locus and the line of purples.
+    Real,
+}
+
 /// Turns a color into a spectrum.
 pub trait ColorModel: Send + Sync {
+    /// The colors that it is made for. Others are moved toward white, luminance kept, before it is asked.
+    fn gamut(&self) -> ColorGamut {
+        ColorGamut::Srgb
+    }
+
     /// The spectral lines of the model, nm; for a ray on line `i`, only that line is evaluated.
     fn lines_nm(&self) -> &[f64];
 

@@ -3,7 +3,10 @@
 //! That is what an ideal lens does, up to its size on the film: with the f-number N the irradiance is pi / (4 N^2) times the radiance,
 //! the same all over the frame. What a layer gets of a color is the integral of the color's spectrum and the layer's response, which
 //! scenes that are traced draw wavelengths for. A picture has more pixels than there are colors worth an integral each: what the
-//! channels see is tabulated over the two smaller values of a color relative to the largest, since twice the color is twice the light.
+//! channels see is tabulated over the two smaller values of a color relative to the largest, since twice the color is twice the light;
+//! of colors beyond sRGB over their direction from white and their depth toward the spectral locus.
+
+mod wide;
 
 use crate::SessionError;
 use rayon::prelude::*;
@@ -14,6 +17,7 @@ use spectra_core::stage::{ColorModel, Still};
 use spectra_render::Rendering;
 use spectra_scene::Scene;
 use std::f64::consts::PI;
+use wide::Wide;
 
 /// F-number of the ideal lens.
 pub(crate) const F_NUMBER: f64 = spectra_scene::NO_LENS_F_NUMBER;
@@ -59,7 +63,10 @@ pub(crate) fn expose(scene: &Scene) -> Result<Rendering, SessionError> {
         return Err(fault.hint("as many pixels as the picture has, or fewer in the same shape").into());
     }
     let factor = still.scale * PI / (4.0 * F_NUMBER * F_NUMBER) * scene.exposure_time_s();
-    let colors = Colors::new(&*still.model, &scene.channels, factor);
+    let mut colors = Colors::new(&*still.model, &scene.channels, factor);
+    if still.rgb.par_iter().any(|rgb| rgb.iter().any(|v| *v < 0.0)) {
+        colors.take_wide();
+    }
     let planes = colors.planes(&still, &size);
     drop(still);
     let channels = scene.channels.iter().zip(planes).map(|(channel, values)| ExposureChannel {
@@ -93,6 +100,8 @@ pub(crate) struct Colors<'a> {
     points: Vec<[f32; LANES]>,
     /// Values at the points of a side, and one over the step to the next.
     values: Vec<[f32; 2]>,
+    /// The same of colors beyond sRGB, where the picture has some and a table is near enough.
+    wide: Option<Wide>,
 }
 
 /// Relative value at point `i` of a side.
@@ -106,7 +115,7 @@ impl<'a> Colors<'a> {
     pub(crate) fn new(model: &'a dyn ColorModel, channels: &'a [Channel], factor: f64) -> Self {
         let step = |i: usize| if i + 1 < SIDE { value(i + 1) - value(i) } else { 1.0 };
         let values = (0..SIDE).map(|i| [value(i) as f32, (1.0 / step(i)) as f32]).collect();
-        let mut colors = Self { model, channels, factor, points: Vec::new(), values };
+        let mut colors = Self { model, channels, factor, points: Vec::new(), values, wide: None };
         let row = |at: usize| -> Vec<[f32; LANES]> {
             let (largest, row) = (at / SIDE, at % SIDE);
             let color = |column: usize| {
@@ -126,6 +135,11 @@ impl<'a> Colors<'a> {
         colors
     }
 
+    /// Tabulates colors beyond sRGB, too.
+    fn take_wide(&mut self) {
+        self.wide = Wide::new(self).filter(|wide| wide.worst(self) <= TOLERANCE);
+    }
+
     /// What each channel gets of a color, by integrals.
     pub(crate) fn integrals(&self, color: [f64; 3]) -> Vec<f64> {
         let light = self.model.spectrum(color);
@@ -139,20 +153,29 @@ impl<'a> Colors<'a> {
             let at = |step: f64| (0.5 + i as f64 * step).fract();
             let [a, b, c] = [at(0.819_172_513_396_164_4), at(0.671_043_606_703_789_2), at(0.549_700_477_901_970_1)];
             let color = [[a, b, c], [a * a, b * b, c * c], [8.0 * a * a * a, 8.0 * b * b * b, c * c * c]][i % 3];
-            let exact = self.integrals(color.map(|v| f64::from(v as f32)));
+            let color = color.map(|v| v as f32);
             let mut found = vec![0.0; self.channels.len()];
-            self.at(color.map(|v| v as f32), &mut found);
-            let most = exact.iter().fold(0.0_f64, |a, b| a.max(*b));
-            let differs = |(found, exact): (&f32, &f64)| (f64::from(*found) - exact).abs() / exact.max(0.01 * most);
-            found.iter().zip(&exact).map(differs).fold(0.0, f64::max)
+            self.at(color, &mut found);
+            self.off(color, &found)
         };
         (0..JUDGES).into_par_iter().map(off).reduce(|| 0.0, f64::max)
     }
 
-    /// What each channel gets of a color of no negative values.
+    /// Largest difference of what was found for a color from its integrals, as [`TOLERANCE`] has it.
+    fn off(&self, color: [f32; 3], found: &[f32]) -> f64 {
+        let exact = self.integrals(color.map(f64::from));
+        let most = exact.iter().fold(0.0_f64, |a, b| a.max(*b));
+        let differs = |(found, exact): (&f32, &f64)| (f64::from(*found) - exact).abs() / exact.max(0.01 * most);
+        found.iter().zip(&exact).map(differs).fold(0.0, f64::max)
+    }
+
+    /// What each channel gets of a color.
     #[inline]
     fn at(&self, rgb: [f32; 3], to: &mut [f32]) {
-        if self.points.is_empty() {
+        if rgb.iter().any(|v| *v < 0.0) && self.wide.as_ref().is_some_and(|wide| wide.at(rgb, to)) {
+            return;
+        }
+        if self.points.is_empty() || rgb.iter().any(|v| *v < 0.0) {
             let exact = self.integrals(rgb.map(f64::from));
             to.iter_mut().zip(exact).for_each(|(to, v)| *to = v as f32);
             return;
@@ -288,6 +311,18 @@ mod tests {
             let mut nothing = vec![1.0; 4];
             colors.at([0.0; 3], &mut nothing);
             assert_eq!(nothing, [0.0; 4]);
+            // Beyond sRGB there is a table for a model that goes there; black is what has no luminance.
+            let mut colors = colors;
+            colors.take_wide();
+            assert_eq!(colors.wide.is_some(), model == "smooth");
+            if let Some(wide) = &colors.wide {
+                println!("{model}, beyond sRGB: within {:.1e}", wide.worst(&colors));
+                assert!(wide.worst(&colors) < 5e-3);
+            }
+            for none in [[0.1, -0.5, 0.1], [-1.0; 3]] {
+                colors.at(none, &mut nothing);
+                assert_eq!(nothing, [0.0; 4]);
+            }
         }
     }
 }

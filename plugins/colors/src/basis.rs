@@ -1,10 +1,10 @@
 //! Color models whose spectrum is a weighted sum of three: one a channel.
 
-use spectra_color::matrix;
+use spectra_color::{fit, matrix};
 use spectra_core::batch::CONTINUUM;
 use spectra_core::isa::{Isa, Vectorized};
 use spectra_core::spectral::{Grid, Line, SpectralPower};
-use spectra_core::stage::ColorModel;
+use spectra_core::stage::{ColorGamut, ColorModel};
 use spectra_spectrum::Observer;
 
 /// Red, green and blue spectra; a color is their sum, weighted by its linear values.
@@ -66,11 +66,13 @@ impl ColorModel for Basis {
         &self.lines_nm
     }
 
+    /// The color, brought into sRGB where it lies beyond: a negative amount of a spectrum would be negative light.
     fn coefficients(&self, linear_srgb: [f64; 3]) -> [f32; 3] {
-        linear_srgb.map(|v| v as f32)
+        fit(linear_srgb, ColorGamut::Srgb).rgb.map(|v| v as f32)
     }
 
     fn spectrum(&self, linear_srgb: [f64; 3]) -> SpectralPower {
+        let linear_srgb = fit(linear_srgb, ColorGamut::Srgb).rgb;
         let mix = |powers: [f64; 3]| powers.iter().zip(linear_srgb).map(|(p, c)| p * c).sum::<f64>();
         SpectralPower {
             grid: self.grid,

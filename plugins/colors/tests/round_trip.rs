@@ -1,11 +1,11 @@
 //! RGB to a spectrum to XYZ to sRGB: each model measured over all 8-bit colors in steps of 15 per channel.
 
-use spectra_color::{RgbSpace, from_u8};
+use spectra_color::{Adaptation, RgbSpace, fit, from_u8, lab};
 use spectra_core::params::{Faults, Key, Node, Params, SourceFile, Span, Value};
 use spectra_core::registry::{Context, build};
 use spectra_core::resources::{Resource, ResourceError, Resources};
 use spectra_core::spectral::{BAND, SpectralPower};
-use spectra_core::stage::ColorModel;
+use spectra_core::stage::{ColorGamut, ColorModel};
 use spectra_plugin_colors as _;
 use spectra_spectrum::{Observer, illuminant};
 use std::sync::Arc;
@@ -98,5 +98,58 @@ fn red_has_no_phantom_green() {
         let xyz = observer.xyz_of_power(&model.spectrum([1.0, 0.0, 0.0]));
         let green = 255.0 * srgb.encode(srgb.from_xyz(xyz.map(|v| v / white)))[1];
         assert!(green.abs() < 0.5, "{kind}: {green}");
+    }
+}
+
+/// Colors of wide spaces, uniform in their linear cubes, keep luminance within 1 % and hue within 3 degrees under `smooth`, against what
+/// they are moved to where no light has them; models of sRGB keep luminance. Chromaticities are compared by CIELAB at half of white's
+/// luminance, adapted to D65 by Bradford.
+#[test]
+fn colors_of_wide_spaces_keep_luminance_and_hue() {
+    let light = illuminant("D65").expect("bundled").to_power(&BAND);
+    let (observer, srgb) = (Observer::cie_1931_2deg(), RgbSpace::srgb());
+    let (smooth, primaries) = (model("smooth", Some(&light)), model("primaries", Some(&light)));
+    let of_white = |model: &dyn ColorModel| observer.xyz_of_power(&model.spectrum([1.0; 3]))[1];
+    let whites = [of_white(&*smooth), of_white(&*primaries)];
+    let hue = |xyz: [f64; 3]| {
+        let [_, a, b] = lab(xyz.map(|v| 0.5 * v / xyz[1]), srgb.white_xyz());
+        (b.atan2(a).to_degrees(), a.hypot(b))
+    };
+    let mut state = 7_u64;
+    let mut draw = move || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    for space in [RgbSpace::aces_cg(), RgbSpace::rec2020(), RgbSpace::display_p3()] {
+        let adapted = Adaptation::Bradford.matrix(space.white_xyz(), srgb.white_xyz());
+        let primary = |k: usize| std::array::from_fn(|i| if i == k { 0.5 } else { 0.0 });
+        let (mut beyond, mut moved, mut worst) = (0, 0, [0.0_f64; 2]);
+        for i in 0..1003 {
+            let rgb: [f64; 3] = if i < 3 { primary(i) } else { [draw(), draw(), draw()] };
+            let wanted = srgb.from_xyz(spectra_color::matrix::apply(&adapted, space.to_xyz(rgb)));
+            beyond += u32::from(wanted.iter().any(|v| *v < 0.0));
+            let fitted = fit(wanted, ColorGamut::Real);
+            moved += u32::from(fitted.moved > 1e-4);
+            let xyz = srgb.to_xyz(fitted.rgb);
+            let power = smooth.spectrum(wanted);
+            assert!(power.continuum.iter().all(|v| *v >= 0.0));
+            let got = observer.xyz_of_power(&power).map(|v| v / whites[0]);
+            let off = (got[1] / srgb.to_xyz(wanted)[1] - 1.0).abs();
+            let ((a, chroma), (b, _)) = (hue(xyz), hue(got));
+            let turned = ((a - b + 540.0) % 360.0 - 180.0).abs();
+            assert!(off < 0.01 && (turned < 3.0 || chroma < 2.0), "{} {rgb:?}: {off} {turned}", space.name);
+            worst = [worst[0].max(off), worst[1].max(if chroma < 2.0 { 0.0 } else { turned })];
+            let power = primaries.spectrum(wanted);
+            assert!(power.continuum.iter().all(|v| *v >= 0.0));
+            let got = observer.xyz_of_power(&power)[1] / whites[1];
+            assert!((got / srgb.to_xyz(wanted)[1] - 1.0).abs() < 0.01, "{} {rgb:?}: {got}", space.name);
+        }
+        let [luminance, turned] = worst;
+        println!(
+            "{}: {beyond} beyond sRGB, {moved} moved, luminance within {:.2} %, hue within {turned:.2} degrees",
+            space.name,
+            100.0 * luminance
+        );
+        assert!(beyond > 50 && moved > 0, "{}: {beyond} {moved}", space.name);
     }
 }

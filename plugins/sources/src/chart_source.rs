@@ -251,13 +251,13 @@ fn by_model(chart: &Chart, own: &[Reflectance], light: &SpectralPower, model: &d
     (spectra, model.spectrum([1.0; 3]))
 }
 
-/// A patch's color in linear sRGB, white being a perfect reflector under D65; negative values cut off.
+/// A patch's color in linear sRGB, white being a perfect reflector under D65; negative where sRGB does not hold it.
 fn linear_srgb(reflectance: &Reflectance, light: &SpectralPower) -> [f64; 3] {
     let daylight = spectra_spectrum::find_emission("D65").map_or_else(|_| light.clone(), |e| e.to_power(&light.grid));
     let observer = Observer::cie_1931_2deg();
     let white = observer.xyz_of_power(&daylight)[1];
     let xyz = observer.xyz_of_power(&lit(&daylight, reflectance)).map(|v| v / white);
-    RgbSpace::srgb().from_xyz(xyz).map(|v| v.max(0.0))
+    RgbSpace::srgb().from_xyz(xyz)
 }
 
 /// A patch's column in the bundled table: `neutral 5 (.70 D)` is `neutral-5`.

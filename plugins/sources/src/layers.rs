@@ -170,7 +170,7 @@ impl Pending {
 
     /// The layer, and what is doubtful in its file.
     fn read(&self) -> Result<(Layer, Vec<Warning>), Faults> {
-        let mut linear = self.file.read()?;
+        let mut linear = self.making.read(&self.file)?;
         let doubts = self.file.doubts(&linear);
         let cover = linear.alpha.take().map(Arc::new);
         let map = self.making.map(linear, &self.file.name);

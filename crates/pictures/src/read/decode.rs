@@ -2,7 +2,7 @@
 
 use super::encoding::Encoding;
 use super::header::Header;
-use super::linear::{Choice, Linear, MAX_SIDE, OPAQUE, Trouble, check_size, clean, mend, over_black};
+use super::linear::{Choice, Linear, MAX_SIDE, OPAQUE, Trouble, check_size, finite, mend, over_black, positive};
 use super::tags::Tags;
 use super::{exr, foreign, jpeg, tiff, turn};
 use image::metadata::Orientation;
@@ -262,14 +262,14 @@ fn linear<R: BufRead + Seek>(
         });
         let rgb = to_srgb.map_or(rgb, |matrix| {
             let converted = apply(&matrix, rgb.map(f64::from)).map(|v| v as f32);
-            if matches!(samples, Samples::Floats) { converted } else { converted.map(clean) }
+            if matches!(samples, Samples::Floats) { converted } else { converted.map(finite) }
         });
         let cover = match samples {
             _ if count % 2 == 1 => return (rgb, 1.0),
             Samples::Bytes => f32::from(pixel[count - 1]) / 255.0,
             Samples::Shorts => f32::from(short(count - 1)) / 65_535.0,
             Samples::Longs => long(count - 1) as f32,
-            Samples::Floats => return (rgb, clean(float(count - 1)).min(1.0)),
+            Samples::Floats => return (rgb, positive(float(count - 1)).min(1.0)),
         };
         (rgb.map(|v| v * cover), cover)
     };
@@ -359,7 +359,7 @@ fn linear<R: BufRead + Seek>(
     let mut doubts = Vec::new();
     if matches!(samples, Samples::Floats) {
         doubts.extend(mend(&mut rgb));
-        rgb.iter_mut().flatten().for_each(|value| *value = clean(*value));
+        rgb.iter_mut().flatten().for_each(|value| *value = finite(*value));
     }
     if !cover {
         doubts.extend(over_black(thin.load(Relaxed), pixels));

@@ -5,7 +5,7 @@
 //! and where it holds nothing is black. Without a `chromaticities` attribute and the name of a linear space the primaries are
 //! those of Rec. 709, as the format's documentation says, which sRGB shares.
 
-use super::linear::{Choice, Linear, OPAQUE, Trouble, check_size, clean, mend, over_black};
+use super::linear::{Choice, Linear, OPAQUE, Trouble, check_size, finite, mend, over_black};
 use super::planes::{Plane, Planes, are_of_xyz};
 use super::space;
 use exr::block::UncompressedBlock;
@@ -192,7 +192,7 @@ pub(super) fn decode(
     for pixel in &mut rgb {
         let converted = to_srgb
             .map_or(*pixel, |m| m.map(|row| row.iter().zip(*pixel).map(|(a, b)| a * f64::from(b)).sum::<f64>() as f32));
-        *pixel = converted.map(clean);
+        *pixel = converted.map(finite);
     }
     Ok(Linear { width, height, pixel_aspect, rgb, alpha, depth, clipped_at: None, doubts })
 }

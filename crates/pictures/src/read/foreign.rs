@@ -6,7 +6,7 @@
 
 use super::encoding::Encoding;
 use super::header::Header;
-use super::linear::{Choice, Linear, MAX_PIXELS, MAX_SIDE, OPAQUE, Trouble, clean, mend, over_black};
+use super::linear::{Choice, Linear, MAX_PIXELS, MAX_SIDE, OPAQUE, Trouble, finite, mend, over_black, positive};
 use super::turn;
 use crate::library::{self, FilePicture, PictureLimits};
 use spectra_color::Transfer;
@@ -103,7 +103,7 @@ fn encoding(picture: &FilePicture, said: Option<Encoding>) -> Result<Encoding, T
 fn linear(mut picture: FilePicture, encoding: Encoding) -> Linear {
     if let Some(alpha) = &mut picture.alpha {
         for cover in alpha {
-            *cover = clean(*cover).min(1.0);
+            *cover = positive(*cover).min(1.0);
         }
     }
     // Cover multiplied into code values of light is multiplied into light; into those of a curve it must be taken out first.
@@ -120,14 +120,14 @@ fn linear(mut picture: FilePicture, encoding: Encoding) -> Linear {
         // Of 16 bits at most: those of 8 lie on every 257th.
         let table = encoding.table(65_536);
         for value in picture.rgb.iter_mut().flatten() {
-            *value = table[(clean(*value) * 65_535.0 + 0.5).min(65_535.0) as usize];
+            *value = table[(positive(*value) * 65_535.0 + 0.5).min(65_535.0) as usize];
         }
     } else {
         for value in picture.rgb.iter_mut().flatten() {
             *value = if is_light { *value } else { encoding.decode(f64::from(*value)) as f32 };
         }
         doubts.extend(mend(&mut picture.rgb));
-        picture.rgb.iter_mut().flatten().for_each(|value| *value = clean(*value));
+        picture.rgb.iter_mut().flatten().for_each(|value| *value = finite(*value));
     }
     if let Some(alpha) = picture.alpha.as_ref().filter(|_| !(picture.multiplied && is_light)) {
         for (pixel, cover) in picture.rgb.iter_mut().zip(alpha) {

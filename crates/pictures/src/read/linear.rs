@@ -14,7 +14,7 @@ pub struct Linear {
     pub height: u32,
     /// Width over height of a pixel.
     pub pixel_aspect: f64,
-    /// Light, 0 or more; where the picture is not opaque, times alpha.
+    /// Light; where the picture is not opaque, times alpha. A color beyond sRGB has negative values.
     pub rgb: Vec<[f32; 3]>,
     /// Cover, 0 to 1; `None` where all of it is opaque, or none was asked for.
     pub alpha: Option<Vec<f32>>,
@@ -132,7 +132,12 @@ pub(super) fn over_black(thin: usize, pixels: usize) -> Option<Trouble> {
     Some(Trouble::file(text).hint("lay it over a background first, or save it without alpha"))
 }
 
-/// Light as the sources take it: infinite, negative and undefined values are none.
-pub(super) fn clean(value: f32) -> f32 {
-    if value.is_finite() { value.max(0.0) } else { 0.0 }
+/// A value of light as the sources take it: infinite and undefined ones are none, negative ones belong to colors beyond sRGB.
+pub(super) fn finite(value: f32) -> f32 {
+    if value.is_finite() { value } else { 0.0 }
+}
+
+/// A value that cannot be negative, such as cover or a code: infinite and undefined ones are 0, too.
+pub(super) fn positive(value: f32) -> f32 {
+    finite(value).max(0.0)
 }

@@ -4,6 +4,7 @@ mod bounds;
 mod deep;
 mod depth;
 mod field;
+mod gamut;
 mod highlights;
 pub(crate) mod lights;
 pub(crate) mod map;
@@ -180,9 +181,9 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
     let file = Arc::new(file);
     let is_flat = depth.is_none();
     let pixels = {
-        let file = Arc::clone(&file);
+        let (file, making) = (Arc::clone(&file), Arc::clone(&making));
         move || -> Result<Linear, Faults> {
-            let mut linear = file.read()?;
+            let mut linear = making.read(&file)?;
             if let (Some(stops), Some(clipped_at)) = (recover_stops, linear.clipped_at) {
                 highlights::recover(&mut linear.rgb, linear.width as usize, clipped_at, stops);
             }
@@ -258,7 +259,7 @@ impl PictureFile {
     }
 
     /// All of it, in linear light.
-    pub(crate) fn read(&self) -> Result<Linear, Faults> {
+    fn read(&self) -> Result<Linear, Faults> {
         read::decode(&self.found, self.choice()).map_err(|e| trouble(&self.name, &e, &self.params).into())
     }
 
@@ -287,6 +288,13 @@ pub(crate) struct Making {
 }
 
 impl Making {
+    /// All of a file, in colors that the model makes light of.
+    pub(crate) fn read(&self, file: &PictureFile) -> Result<Linear, Faults> {
+        let mut linear = file.read()?;
+        gamut::bring_in(&mut linear, &*self.model);
+        Ok(linear)
+    }
+
     /// A white picture of that shape.
     pub(crate) fn white(&self, header: &Header, name: &str) -> PictureMap {
         let pixel = Linear {
@@ -355,9 +363,10 @@ pub(crate) fn find(file: &str, params: &Params, context: &Context<'_>) -> Result
     })
 }
 
-/// Luminance weights of linear sRGB (IEC 61966-2-1): good enough to say where a picture is bright.
+/// Luminance by the weights of linear sRGB (IEC 61966-2-1): good enough to say where a picture is bright. Deep violets and reds, which
+/// film sees better than the eye, count as the blue of sRGB at least: what shines is drawn.
 fn brightness([r, g, b]: [f32; 3]) -> f32 {
-    0.2126 * r + 0.7152 * g + 0.0722 * b
+    (0.2126 * r + 0.7152 * g + 0.0722 * b).max(0.0721 * r.max(g).max(b))
 }
 
 fn assemble(linear: Linear, name: &str, making: &Making) -> PictureMap {
@@ -387,7 +396,7 @@ fn assemble(linear: Linear, name: &str, making: &Making) -> PictureMap {
             places: LightPlaces::new(width, &all, &found.level),
             touched: lights::touched(width, &found.level),
             level: found.level,
-            mean: sums.map(|sum| model.spectrum(sum.map(|v| v.max(0.0))).scaled(scale)),
+            mean: sums.map(|sum| model.spectrum(sum).scaled(scale)),
             peak_over_mean: found.peak_over_mean,
             pays: found.pays,
         })

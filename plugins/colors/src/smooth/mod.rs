@@ -10,21 +10,28 @@
 //! Coefficients lie in a table over the two smaller values relative to the largest, filled by Newton's method when the
 //! first model is made. Between pixels of a picture it is the color that is interpolated, not the coefficients: toward
 //! black they have no limit.
+//!
+//! Colors beyond sRGB, which have negative values, have a table of their own ([`wide`]) up to 0.001 from the spectral locus.
 
+mod reflectance;
+mod solver;
+mod table;
+mod wide;
+
+use reflectance::{Coefficients, quadratic, sigmoid};
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_color::{RgbSpace, chromaticity, matrix};
 use spectra_core::Isa;
 use spectra_core::batch::CONTINUUM;
 use spectra_core::isa::Vectorized;
 use spectra_core::math::whole;
 use spectra_core::params::{Faults, Params};
 use spectra_core::registry::Context;
-use spectra_core::spectral::{BAND, Grid, Line, SpectralPower};
-use spectra_core::stage::ColorModel;
-use spectra_spectrum::{Observer, illuminant};
-use std::array::from_fn;
-use std::sync::OnceLock;
+use spectra_core::spectral::{Grid, Line, SpectralPower};
+use spectra_core::stage::{ColorGamut, ColorModel};
+use spectra_spectrum::illuminant;
+use table::{LEVEL, SIDE, Table, cell, mix};
+use wide::WideTable;
 
 /// A smooth reflectance for each color, under the illuminant.
 ///
@@ -35,6 +42,9 @@ use std::sync::OnceLock;
 ///
 /// A color is first scaled to a largest value of 1/2 and its spectrum scaled back, so that no color is too bright; as a
 /// result, the reflectance of a bright, saturated color can exceed 1.
+///
+/// Colors beyond sRGB, as in pictures of wide gamut, keep their luminance and hue up to 0.001 in xy from the spectral locus; those
+/// nearer to it, and colors that no light has, are moved toward D65 to there, luminance kept.
 ///
 /// # Example
 /// ```yaml
@@ -60,14 +70,6 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn ColorModel>, 
 fn daylight() -> spectra_spectrum::Emission {
     illuminant("D65").expect("D65 is bundled")
 }
-
-/// Largest value to which colors are scaled before they are looked up.
-const LEVEL: f64 = 0.5;
-/// Points along each side of the table.
-const SIDE: usize = 65;
-
-/// Coefficients of the quadratic: of 1, t and (3 t^2 - 1) / 2, t from -1 to 1 over 350-830 nm.
-type Coefficients = [f64; 3];
 
 /// A smooth reflectance of the color, times an illuminant.
 struct Smooth {
@@ -100,13 +102,17 @@ impl ColorModel for Smooth {
         &self.lines_nm
     }
 
-    /// The color itself: what lies between two pixels is a mixture of their colors. Negative values count as 0.
+    fn gamut(&self) -> ColorGamut {
+        ColorGamut::Real
+    }
+
+    /// The color itself: what lies between two pixels is a mixture of their colors.
     fn coefficients(&self, linear_srgb: [f64; 3]) -> [f32; 3] {
-        linear_srgb.map(|v| v.max(0.0) as f32)
+        linear_srgb.map(|v| v as f32)
     }
 
     fn spectrum(&self, linear_srgb: [f64; 3]) -> SpectralPower {
-        let (scale, coefficients) = self.table.look_up(linear_srgb);
+        let (scale, coefficients) = look_up(self.table, linear_srgb);
         let reflectance = |nm: f64| scale * sigmoid(quadratic(coefficients, nm));
         let light = &self.light;
         let mut continuum = light.continuum.clone();
@@ -127,6 +133,18 @@ impl ColorModel for Smooth {
             isa.run(Evaluate { model: self, looked: &mut looked, colors, wavelength_nm, line, weight });
         }
     }
+}
+
+fn is_beyond_srgb([r, g, b]: [f64; 3]) -> bool {
+    (r < 0.0) | (g < 0.0) | (b < 0.0)
+}
+
+/// The number to multiply by, and the coefficients, of any color; what is no color is black.
+fn look_up(table: &Table, linear_srgb: [f64; 3]) -> (f64, Coefficients) {
+    if is_beyond_srgb(linear_srgb) {
+        return WideTable::get().look_up(linear_srgb).unwrap_or_default();
+    }
+    table.look_up(linear_srgb)
 }
 
 /// Multiplies light on a grid by a scaled reflectance.
@@ -182,7 +200,8 @@ impl Looked {
     }
 }
 
-/// Multiplies the weights of up to [`CHUNK`] rays by their spectra: as [`Table::look_up`] for each, but what needs no table in vectors.
+/// Multiplies the weights of up to [`CHUNK`] rays by their spectra: as [`look_up`] for each, but what needs no table in vectors.
+/// Colors beyond sRGB, which are few, are looked up one by one.
 struct Evaluate<'a> {
     model: &'a Smooth,
     looked: &'a mut Looked,
@@ -243,6 +262,11 @@ impl Vectorized for Evaluate<'_> {
                 [model.power(wavelength_nm[i], line[i]); 2]
             };
         }
+        let beyond: Option<Each<f64>> = colors.iter().any(|color| is_beyond_srgb(color.map(f64::from))).then(|| {
+            let mut kept = [0.0; CHUNK];
+            kept[..len].copy_from_slice(weight);
+            kept
+        });
         let [p00, p01, p10, p11] = corners;
         for i in 0..len {
             let mixed = std::array::from_fn(|k| {
@@ -252,235 +276,26 @@ impl Vectorized for Evaluate<'_> {
             let power = lit[0][i] + (lit[1][i] - lit[0][i]) * between[i];
             weight[i] *= power * scale[i] * sigmoid(quadratic(mixed, wavelength_nm[i]));
         }
-    }
-}
-
-/// The cell of a value relative to the largest one, and where in it the value lies. Where nothing shines the first.
-#[inline(always)]
-fn cell(value_of: f64, most: f64) -> (u32, f64) {
-    let relative = value_of / if most > 0.0 { most } else { 1.0 };
-    let position = position(relative);
-    // A cast would be done one by one. Beside 2^52 there is room for whole numbers only, in the last bits.
-    const WHOLE: f64 = (1_u64 << 52) as f64;
-    let most = (SIDE - 2) as f64;
-    let position = if position < most { position } else { most };
-    let nearest = (position + WHOLE) - WHOLE;
-    let below = if nearest > position { nearest - 1.0 } else { nearest };
-    let i = (below + WHOLE).to_bits() as u32;
-    // Weights by the values themselves, not by the curved scale of the points.
-    let curve = |at: f64| (at / (SIDE - 1) as f64) * (at / (SIDE - 1) as f64);
-    let (low, high) = (curve(below), curve(below + 1.0));
-    let part = (relative - low) / (high - low);
-    let part = if part > 0.0 { part } else { 0.0 };
-    (i, if part < 1.0 { part } else { 1.0 })
-}
-
-/// Linear between four points.
-#[inline(always)]
-fn mix([p00, p01, p10, p11]: [f64; 4], along_rows: f64, along_columns: f64) -> f64 {
-    let upper = p00 + (p01 - p00) * along_columns;
-    let lower = p10 + (p11 - p10) * along_columns;
-    upper + (lower - upper) * along_rows
-}
-
-#[inline(always)]
-fn sigmoid(x: f64) -> f64 {
-    0.5 + 0.5 * x / (1.0 + x * x).sqrt()
-}
-
-#[inline(always)]
-fn place(wavelength_nm: f64) -> f64 {
-    (wavelength_nm - 0.5 * (BAND.start_nm + BAND.end_nm())) / (0.5 * (BAND.end_nm() - BAND.start_nm))
-}
-
-#[inline(always)]
-fn quadratic([a, b, c]: Coefficients, wavelength_nm: f64) -> f64 {
-    let t = place(wavelength_nm);
-    a + b * t + c * (1.5 * t * t - 0.5)
-}
-
-/// Coefficients for each largest channel, over the values of the next two relative to it.
-struct Table {
-    points: Vec<[f32; 3]>,
-}
-
-impl Table {
-    /// The table of sRGB, filled once.
-    fn of_srgb() -> &'static Self {
-        static ONE: OnceLock<Table> = OnceLock::new();
-        ONE.get_or_init(|| {
-            let solver = Solver::new();
-            let mut points = Vec::with_capacity(3 * SIDE * SIDE);
-            for largest in 0..3 {
-                // From grey, where all coefficients are 0, each point starts from one that is solved.
-                let mut rows = vec![[[0.0; 3]; SIDE]; SIDE];
-                for row in (0..SIDE).rev() {
-                    for column in (0..SIDE).rev() {
-                        let mut color = [LEVEL; 3];
-                        color[(largest + 1) % 3] = LEVEL * value(row);
-                        color[(largest + 2) % 3] = LEVEL * value(column);
-                        let start = match (row + 1 < SIDE, column + 1 < SIDE) {
-                            (_, true) => rows[row][column + 1],
-                            (true, false) => rows[row + 1][column],
-                            (false, false) => [0.0; 3],
-                        };
-                        rows[row][column] = solver.solve(color, start);
-                    }
-                }
-                points.extend(rows.iter().flatten().map(|c| c.map(|v| v as f32)));
-            }
-            Self { points }
-        })
-    }
-
-    /// The number to multiply by, and the coefficients, linear between points. Negative values and NaN count as 0.
-    fn look_up(&self, linear_srgb: [f64; 3]) -> (f64, Coefficients) {
-        let rgb = linear_srgb.map(|v| v.max(0.0));
-        let largest = if rgb[0] >= rgb[1] && rgb[0] >= rgb[2] {
-            0
-        } else if rgb[1] >= rgb[2] {
-            1
-        } else {
-            2
-        };
-        let most = rgb[largest];
-        if most <= 0.0 {
-            return (0.0, [0.0; 3]);
-        }
-        let cell = |v: f64| {
-            let p = position(v / most);
-            let i = (p as usize).min(SIDE - 2);
-            // Weights by the values themselves, not by the curved scale of the points.
-            let (low, high) = (value(i), value(i + 1));
-            (i, ((v / most - low) / (high - low)).clamp(0.0, 1.0))
-        };
-        let (row, along_rows) = cell(rgb[(largest + 1) % 3]);
-        let (column, along_columns) = cell(rgb[(largest + 2) % 3]);
-        let at = |r: usize, c: usize| self.points[(largest * SIDE + row + r) * SIDE + column + c].map(f64::from);
-        let [p00, p01, p10, p11] = [at(0, 0), at(0, 1), at(1, 0), at(1, 1)];
-        let mixed = |k: usize| mix([p00[k], p01[k], p10[k], p11[k]], along_rows, along_columns);
-        (most / LEVEL, [mixed(0), mixed(1), mixed(2)])
-    }
-}
-
-/// Relative value at point `i` of a side: closer together toward 0, where a screen shows smaller differences.
-fn value(i: usize) -> f64 {
-    let s = i as f64 / (SIDE - 1) as f64;
-    s * s
-}
-
-/// The inverse of [`value`].
-#[inline(always)]
-fn position(value: f64) -> f64 {
-    (if value < 1.0 { value } else { 1.0 }).sqrt() * (SIDE - 1) as f64
-}
-
-/// Finds the coefficients whose reflectance has a color under D65.
-struct Solver {
-    /// Linear sRGB per reflectance at each wavelength, and the quadratic's three functions there.
-    points: Vec<([f64; 3], [f64; 3])>,
-    isa: Isa,
-}
-
-/// Red, green and blue of a reflectance, and of its change with each coefficient. A fourth value, 0, fills each vector.
-struct Seen<'a> {
-    points: &'a [([f64; 3], [f64; 3])],
-    c: Coefficients,
-}
-
-/// Wavelengths that are worked out side by side.
-const ABREAST: usize = 32;
-
-impl Vectorized for Seen<'_> {
-    type Output = [[f64; 4]; 4];
-    #[inline(always)]
-    fn run(self) -> [[f64; 4]; 4] {
-        let Self { points, c } = self;
-        let mut sums = [[0.0; 4]; 4];
-        for points in points.chunks(ABREAST) {
-            let (mut value, mut slope, mut x) = ([0.0_f64; ABREAST], [0.0_f64; ABREAST], [0.0_f64; ABREAST]);
-            for (x, (_, functions)) in x.iter_mut().zip(points) {
-                *x = c[0] * functions[0] + c[1] * functions[1] + c[2] * functions[2];
-            }
-            for i in 0..ABREAST {
-                let root = 1.0 / (1.0 + x[i] * x[i]).sqrt();
-                value[i] = 0.5 + 0.5 * x[i] * root;
-                slope[i] = 0.5 * root * root * root;
-            }
-            for (k, (seen, functions)) in points.iter().enumerate() {
-                let seen = [seen[0], seen[1], seen[2], 0.0];
-                let of = [value[k], slope[k] * functions[0], slope[k] * functions[1], slope[k] * functions[2]];
-                for j in 0..4 {
-                    for i in 0..4 {
-                        sums[j][i] += of[j] * seen[i];
-                    }
-                }
+        let Some(kept) = beyond else { return };
+        for i in 0..len {
+            let color = colors[i].map(f64::from);
+            if is_beyond_srgb(color) {
+                let (scale, coefficients) = WideTable::get().look_up(color).unwrap_or_default();
+                let power = lit[0][i] + (lit[1][i] - lit[0][i]) * between[i];
+                weight[i] = kept[i] * (power * scale * sigmoid(quadratic(coefficients, wavelength_nm[i])));
             }
         }
-        sums
-    }
-}
-
-impl Solver {
-    fn new() -> Self {
-        let light = daylight();
-        let observer = Observer::cie_1931_2deg();
-        let xyz = observer.xyz(&light);
-        // Primaries of sRGB with the white of D65 as tabulated: a reflectance of 1 has RGB (1, 1, 1).
-        let srgb = RgbSpace::srgb();
-        let white = chromaticity(xyz).unwrap_or(srgb.white_xy);
-        let space = RgbSpace::new("sRGB", srgb.primaries_xy, white, srgb.transfer);
-        let functions = observer.on_grid(&BAND);
-        let points = (0..BAND.count).zip(light.on_grid(&BAND)).map(|(i, power)| {
-            let t = place(BAND.wavelength_nm(i));
-            let seen = [0, 1, 2].map(|k| functions[k][i] * power * BAND.step_nm / xyz[1]);
-            (space.from_xyz(seen), [1.0, t, 1.5 * t * t - 0.5])
-        });
-        Self { points: points.collect(), isa: Isa::detect() }
-    }
-
-    /// Color of the reflectance, and its change with each coefficient (columns).
-    fn color(&self, c: Coefficients) -> ([f64; 3], matrix::Matrix) {
-        let [rgb, by_coefficient @ ..] = self.isa.run(Seen { points: &self.points, c });
-        (from_fn(|i| rgb[i]), from_fn(|i| from_fn(|j| by_coefficient[j][i])))
-    }
-
-    /// Newton's method from `start`, each step halved until it comes nearer.
-    fn solve(&self, wanted: [f64; 3], start: Coefficients) -> Coefficients {
-        let distance = |rgb: [f64; 3]| rgb.iter().zip(wanted).map(|(a, b)| (a - b) * (a - b)).sum::<f64>();
-        let mut now = start;
-        let (mut rgb, mut change) = self.color(now);
-        // Quadratic convergence: from a neighbor of the table three steps do.
-        for _ in 0..40 {
-            let off = distance(rgb);
-            if off < 1e-24 {
-                break;
-            }
-            let step = matrix::apply(&matrix::inverse(&change), [0, 1, 2].map(|i| wanted[i] - rgb[i]));
-            let mut share = 1.0;
-            let better = loop {
-                let next = [0, 1, 2].map(|i| now[i] + share * step[i]);
-                let (color, slope) = self.color(next);
-                if distance(color) < off {
-                    break Some((next, color, slope));
-                }
-                share *= 0.5;
-                if share < 1e-6 {
-                    break None;
-                }
-            };
-            match better {
-                Some(next) => (now, rgb, change) = next,
-                None => break,
-            }
-        }
-        now
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::solver::Solver;
+    use super::table::value;
     use super::*;
+    use spectra_color::{RealColors, RgbSpace, chromaticity};
+    use spectra_core::spectral::BAND;
+    use spectra_spectrum::Observer;
 
     fn model() -> Smooth {
         Smooth::new(daylight().to_power(&BAND))
@@ -525,14 +340,14 @@ mod tests {
             [0.0, 0.0, 1.0],
             [0.5, 0.5, 0.0],
             [f32::NAN, 0.2, 0.1],
-            [-1.0, 0.3, 0.3],
+            [-0.1, 0.3, 0.3],
             [1e-30, 1e-31, 0.0],
         ]);
         let nm: Vec<f64> = (0..many).map(|_| 340.0 + 500.0 * draw()).collect();
         let mut weight = vec![1.5; many];
         model.evaluate(&colors, &nm, &vec![CONTINUUM; many], &mut weight);
         for i in 0..many {
-            let (scale, color) = model.table.look_up(colors[i].map(f64::from));
+            let (scale, color) = look_up(model.table, colors[i].map(f64::from));
             let power = model.light.grid.interpolate(&model.light.continuum, nm[i]);
             let want = 1.5 * (power * scale * sigmoid(quadratic(color, nm[i])));
             assert_eq!(weight[i].to_bits(), want.to_bits(), "{:?} at {}: {} {want}", colors[i], nm[i], weight[i]);
@@ -549,7 +364,7 @@ mod tests {
         }
         let (one, seven) = (model.spectrum([0.9, 0.3, 0.1]), model.spectrum([6.3, 2.1, 0.7]));
         assert!(one.continuum.iter().zip(&seven.continuum).all(|(a, b)| (b / a / 7.0 - 1.0).abs() < 1e-12));
-        for nothing in [[0.0; 3], [f64::NAN; 3], [-1.0, -2.0, 0.0]] {
+        for nothing in [[0.0; 3], [f64::NAN; 3], [-1.0, -2.0, 0.0], [f64::NAN, -1.0, 0.0]] {
             assert!(model.spectrum(nothing).is_dark());
         }
     }
@@ -573,5 +388,36 @@ mod tests {
         }
         let (a, b) = (model.spectrum([0.5, 0.5, 0.1]), model.spectrum([0.5, 0.500_001, 0.1]));
         assert!(a.continuum.iter().zip(&b.continuum).all(|(a, b)| (a / b - 1.0).abs() < 1e-4));
+    }
+
+    /// Any real color has its luminance and its place in xy, none has negative light, and nothing jumps at the border of sRGB.
+    #[test]
+    fn colors_beyond_srgb_are_themselves() {
+        let (model, observer) = (model(), Observer::cie_1931_2deg());
+        let white = observer.xyz_of_power(&model.spectrum([1.0; 3]))[1];
+        let (mut worst, mut farthest) = (0.0_f64, 0.0_f64);
+        for i in 0..360 {
+            for depth in [1e-9, 0.2, 0.55, 0.85, 0.97, 1.0] {
+                let rgb = RealColors::color(f64::from(i) / 90.0 + 0.003, depth);
+                let spectrum = model.spectrum(rgb);
+                assert!(spectrum.continuum.iter().all(|v| *v >= 0.0));
+                let xyz = observer.xyz_of_power(&spectrum).map(|v| v / white);
+                let wanted = RgbSpace::srgb().to_xyz(rgb);
+                let [got, xy] = [xyz, wanted].map(|xyz| chromaticity(xyz).expect("light"));
+                worst = worst.max((xyz[1] / wanted[1] - 1.0).abs());
+                farthest = farthest.max((got[0] - xy[0]).abs().max((got[1] - xy[1]).abs()));
+            }
+            let turn = f64::from(i) / 90.0 + 0.003;
+            let [inside, outside] = [-1e-7, 1e-7].map(|depth| {
+                let border = RealColors::color(turn, 0.0);
+                model.spectrum(border.map(|v| v - depth * if v.abs() < 1e-9 { 1.0 } else { 0.0 }))
+            });
+            let most = inside.continuum.iter().fold(0.0_f64, |a, b| a.max(*b));
+            let jump = inside.continuum.iter().zip(&outside.continuum).fold(0.0_f64, |w, (a, b)| w.max((a - b).abs()));
+            assert!(jump < 0.02 * most, "{turn}: {}", jump / most);
+        }
+        println!("luminance within {worst:.1e}, xy within {farthest:.1e}");
+        assert!(worst < 1e-2 && farthest < 5e-3, "{worst} {farthest}");
+        assert!(model.spectrum([0.1, -0.5, 0.2]).is_dark());
     }
 }

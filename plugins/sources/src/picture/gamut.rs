@@ -1,0 +1,51 @@
+//! Colors of a picture that its color model makes no spectra of: they are moved toward white, and counted.
+
+use spectra_color::fit;
+use spectra_core::stage::{ColorGamut, ColorModel};
+use spectra_pictures::read::{Linear, Trouble};
+
+/// Pixels whose largest value is less, white being 1, are too dark to be worth a word.
+const DARK: f32 = 1e-3;
+/// Distance in xy from which on a color counts as moved: less is rounding.
+const MOVED: f64 = 1e-4;
+
+/// Brings the picture's colors into the gamut of the model, and adds to its doubts how many moved.
+pub(super) fn bring_in(linear: &mut Linear, model: &dyn ColorModel) {
+    let gamut = model.gamut();
+    let (mut moved, mut farthest, mut black) = (0_usize, 0.0_f64, 0_usize);
+    for pixel in linear.rgb.iter_mut().filter(|pixel| pixel.iter().any(|v| *v < 0.0)) {
+        let fitted = fit(pixel.map(f64::from), gamut);
+        let counts = pixel.iter().any(|v| v.abs() > DARK);
+        if counts && fitted.moved.is_infinite() {
+            black += 1;
+        } else if counts && fitted.moved > MOVED {
+            moved += 1;
+            farthest = farthest.max(fitted.moved);
+        }
+        *pixel = fitted.rgb.map(|v| v as f32);
+    }
+    let all = linear.rgb.len();
+    let mut said = Vec::new();
+    if moved > 0 {
+        let beyond = match gamut {
+            ColorGamut::Srgb => "colors beyond sRGB, of which this color model makes no light",
+            ColorGamut::Real => "colors that no light has, or only that of a single wavelength",
+        };
+        said.push(format!(
+            "{moved} of its {all} pixels have {beyond}: they are moved toward white, by {farthest:.4} in xy at most, luminance kept"
+        ));
+    }
+    if black > 0 {
+        said.push(format!("{black} of its {all} pixels have negative luminance and are black"));
+    }
+    if said.is_empty() {
+        return;
+    }
+    let hint = match gamut {
+        ColorGamut::Srgb => {
+            "write `color: {kind: smooth}`, which keeps all real colors, or convert the picture to sRGB"
+        }
+        ColorGamut::Real => "convert it to a narrower gamut, such as Rec. 2020 or Display P3, where it was made",
+    };
+    linear.doubts.push(Trouble { key: "file", text: said.join("; "), hint: Some(hint.to_owned()) });
+}
