@@ -220,6 +220,24 @@ fn layers_get_of_colors_what_rays_bring_them() {
     }
 }
 
+#[test]
+fn a_jpeg_to_share_is_the_picture() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    put(at("photo.png"), 48, 32, colors);
+    let plain = ["photo.png", "--stock", "portra-400", "--grain", "off", "-o"];
+    for name in ["a.png", "a.jpg", "b.jpeg"] {
+        good(folder.path(), &[&plain[..], &[name]].concat());
+    }
+    let [png, jpg, jpeg] = ["a.png", "a.jpg", "b.jpeg"].map(|name| read(at(name)));
+    let off = png.as_raw().iter().zip(jpg.as_raw()).map(|(a, b)| f64::from(a.abs_diff(*b))).sum::<f64>();
+    assert!(off / png.as_raw().len() as f64 <= 2.0, "{off}");
+    assert_eq!(jpg, jpeg);
+    let set = ["--set", "output=[{kind: jpeg, space: acescct}]", "-o", "c.jpg"];
+    let said = refused(folder.path(), &[&plain[..5], &set[..]].concat(), 2);
+    assert!(said.contains("8 bits are too few") && said.contains("`kind: tiff`, which has 16"), "{said}");
+}
+
 /// An EXR in ACEScg of patches 12 pixels wide, side by side, in the shape of 135.
 fn put_acescg(path: PathBuf, colors: &[[f32; 3]]) {
     use exr::prelude::{Encoding, Image, IntegerBounds, LayerAttributes, SpecificChannels, Vec2, WritableImage};

@@ -1,6 +1,6 @@
 //! Bytes to pictures and back.
 //!
-//! - [`read`]: picture files to linear light: OpenEXR, PNG, JPEG, TIFF, Radiance HDR, and others by a library;
+//! - [`read`]: picture files to linear light: OpenEXR, PNG, JPEG, TIFF, WebP, BMP, Radiance HDR, and others by a library;
 //! - [`mod@write`]: exposures, pictures for a screen and raw frames to files: OpenEXR, PNG, TIFF, DNG;
 //! - [`library`]: where a library registers that knows more formats.
 

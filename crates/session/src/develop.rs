@@ -386,7 +386,7 @@ fn header_of(file: &str, layer: Option<&str>, files: &dyn Resources) -> Result<H
     let found = files.find(file, &["scenes"], &[], MAX_BYTES).map_err(|error| {
         let hint = match &error {
             ResourceError::NotFound(near) if !near.is_empty() => format!("did you mean `{}`?", near.join("` or `")),
-            _ => "OpenEXR, PNG, JPEG, TIFF and Radiance HDR files are read".to_owned(),
+            _ => "OpenEXR, PNG, JPEG, TIFF, WebP, BMP and Radiance HDR files are read".to_owned(),
         };
         Fault::new(format!("picture `{file}`: {error}")).hint(hint)
     })?;

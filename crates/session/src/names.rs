@@ -16,8 +16,8 @@ pub struct Names {
 
 /// Endings by which a name is known to be that of a file and not of a folder; no scene is written as one of the last two rows.
 const ENDINGS: [&str; 29] = [
-    "png", "tif", "tiff", "exr", "dng", "html", //
-    "jpg", "jpeg", "webp", "gif", "bmp", "jp2", "hdr", "tga", "avif", "heic", "psd", "dpx", "cin", "pfm", //
+    "png", "jpg", "jpeg", "tif", "tiff", "exr", "dng", "html", //
+    "webp", "gif", "bmp", "jp2", "hdr", "tga", "avif", "heic", "psd", "dpx", "cin", "pfm", //
     "mp4", "mov", "pdf", "txt", "json", "yaml", "yml", "csv", "cube",
 ];
 
@@ -47,10 +47,14 @@ impl Names {
     pub(crate) fn outputs(&self, scene: &Scene) -> Result<Vec<Arc<dyn Output>>, SessionError> {
         let Some([stem, ending]) = &self.only else { return Ok(scene.output.clone()) };
         let ending = ending.to_ascii_lowercase();
-        let ending = if ending == "tif" { "tiff" } else { &ending };
+        let ending = match &*ending {
+            "tif" => "tiff",
+            "jpeg" => "jpg",
+            other => other,
+        };
         let none = || {
             let fault = Fault::new(format!("{stem}.{ending}: no picture is written as `.{ending}`"));
-            SessionError::Request(fault.hint(format!("name it {stem}.png, .tiff or .exr")).to_string())
+            SessionError::Request(fault.hint(format!("name it {stem}.png, .jpg, .tiff or .exr")).to_string())
         };
         let output = scene.output_of(&format!(".{ending}")).ok_or_else(none)?;
         match output.check(&*scene.imager) {

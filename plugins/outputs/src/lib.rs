@@ -5,6 +5,7 @@
 mod dng;
 mod exr;
 mod html;
+mod jpeg;
 mod npy;
 mod png;
 mod rays;

@@ -1,4 +1,4 @@
-//! What `png` and `tiff` have in common: colors, and pixels that are not square.
+//! What `png`, `jpeg` and `tiff` have in common: colors, and pixels that are not square.
 
 use crate::exr::DENSITIES;
 use schemars::JsonSchema;

@@ -116,7 +116,7 @@ pub(crate) struct FilmLamp {
         adjacency, grain and the print, scan or projection are those of a scene with this stock. Without --lens no ray \
         is traced: each pixel of the picture exposes the same pixel of the film. With --lens the picture stands 3 m in \
         front of that lens, wide open unless --f-number says otherwise, and is rendered to 1 % of noise.\n\n\
-        PICTURE is an OpenEXR, PNG, JPEG, TIFF or Radiance HDR file. Several pictures, a folder, or a numbered sequence \
+        PICTURE is an OpenEXR, PNG, JPEG, TIFF, WebP, BMP or Radiance HDR file. Several pictures, a folder, or a numbered sequence \
         (plate.####.exr, plate.%04d.exr) are developed one by one, with other grain in each, metered on the first \
         unless --meter each; -o is then a folder, or a sequence such as out/####.tiff. A picture that fails does not \
         stop the others. Existing files are replaced.\n\n\

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// Endings of pictures in a folder.
-const ENDINGS: [&str; 8] = ["exr", "png", "jpg", "jpeg", "tif", "tiff", "hdr", "dpx"];
+const ENDINGS: [&str; 10] = ["exr", "png", "jpg", "jpeg", "tif", "tiff", "webp", "bmp", "hdr", "dpx"];
 
 /// A numbered name: `plate.####.exr`, `plate.%04d.exr`.
 struct Numbered {

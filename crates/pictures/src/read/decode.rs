@@ -17,7 +17,7 @@ use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 /// No picture format packs more pixels into a byte: deflate ends near 1 032 to 1, at one byte a pixel or less.
 const MAX_PIXELS_PER_BYTE: u64 = 1_100 * 8;
 
-/// Decodes an OpenEXR, PNG, JPEG, TIFF or Radiance HDR file, told by its content, or whatever else OpenImageIO reads,
+/// Decodes an OpenEXR, PNG, JPEG, TIFF, WebP, BMP or Radiance HDR file, told by its content, or whatever else OpenImageIO reads,
 /// told by the ending of its name. Where neither the file nor the choice says otherwise, integers are taken as
 /// sRGB-encoded (8 bits: 255 is 1), floating point as linear. Alpha of integers is taken as straight, of
 /// floating point as multiplied in (as OpenEXR has it), unless the file says which.
@@ -120,13 +120,19 @@ impl From<ImageError> for NotRead {
     }
 }
 
-/// A decoder that has read the header of a file of `bytes` bytes.
+/// A decoder that has read the header of a file, by its beginning at least.
 fn decoder<'a>(
     reader: impl BufRead + Seek + 'a,
     format: ImageFormat,
-    bytes: u64,
+    found: &'a Found,
 ) -> Result<impl ImageDecoder + 'a, NotRead> {
-    let decoder = ImageReader::with_format(reader, format).into_decoder()?;
+    let is_tiff = format == ImageFormat::Tiff;
+    let widened = if is_tiff { tiff::Widened::new(found.open().map_err(io)?) } else { None };
+    let decoder: Box<dyn ImageDecoder + 'a> = match widened {
+        Some(widened) => Box::new(widened),
+        None => Box::new(ImageReader::with_format(reader, format).into_decoder()?),
+    };
+    let bytes = found.size_bytes().map_err(io)?;
     let (width, height) = decoder.dimensions();
     check_size(u64::from(width), u64::from(height))?;
     if u64::from(width) * u64::from(height) > bytes * MAX_PIXELS_PER_BYTE {
@@ -140,11 +146,10 @@ fn decoder<'a>(
 pub(super) fn native_header<'a>(
     reader: impl BufRead + Seek + 'a,
     format: ImageFormat,
-    found: &Found,
+    found: &'a Found,
     choice: Choice<'_>,
 ) -> Result<Result<Header, String>, Trouble> {
-    let bytes = found.size_bytes().map_err(io)?;
-    let mut decoder = match decoder(reader, format, bytes) {
+    let mut decoder = match decoder(reader, format, found) {
         Ok(decoder) => decoder,
         Err(NotRead::Trouble(trouble)) => return Err(trouble),
         Err(NotRead::Unsupported(why)) => return Ok(Err(why)),
@@ -174,7 +179,7 @@ fn native(found: &Found, format: ImageFormat, cover: bool, said: Option<Encoding
     if format == ImageFormat::Jpeg {
         jpeg::refuse_unless_whole(found)?;
     }
-    let mut decoder = decoder(found.open().map_err(io)?, format, found.size_bytes().map_err(io)?)?;
+    let mut decoder = decoder(found.open().map_err(io)?, format, found)?;
     let mut limits = Limits::default();
     limits.max_image_width = Some(MAX_SIDE);
     limits.max_image_height = Some(MAX_SIDE);
@@ -244,6 +249,10 @@ fn linear<R: BufRead + Seek>(
         Samples::Shorts => of_integers.table(65_536),
         Samples::Longs | Samples::Floats => Vec::new(),
     };
+    let is_float = matches!(samples, Samples::Floats);
+    // Integers are straight, and floating point is multiplied, unless the file says which.
+    let is_multiplied = tags.is_multiplied.unwrap_or(false);
+    let is_light_multiplied = is_float && tags.is_multiplied.unwrap_or(true);
     // The light of a pixel, and its cover.
     let light = |pixel: &[u8]| -> ([f32; 3], f32) {
         let short = |c: usize| u16::from_ne_bytes([pixel[2 * c], pixel[2 * c + 1]]);
@@ -251,9 +260,21 @@ fn linear<R: BufRead + Seek>(
         let float = |c: usize| f32::from_ne_bytes(four(c));
         let long = |c: usize| f64::from(u32::from_ne_bytes(four(c))) / f64::from(u32::MAX);
         let gray = count < 3;
+        let cover = match samples {
+            _ if count % 2 == 1 => 1.0,
+            Samples::Bytes => f32::from(pixel[count - 1]) / 255.0,
+            Samples::Shorts => f32::from(short(count - 1)) / 65_535.0,
+            Samples::Longs => long(count - 1) as f32,
+            Samples::Floats => positive(float(count - 1)).min(1.0),
+        };
         let rgb = [0, 1, 2].map(|c| {
             let c = if gray { 0 } else { c };
+            // A code that cover is multiplied into is that of what covers, times cover.
+            let uncovered = |code: f64| of_integers.decode((code / f64::from(cover)).min(1.0)) as f32;
             match samples {
+                Samples::Bytes if is_multiplied && cover > 0.0 => uncovered(f64::from(pixel[c]) / 255.0),
+                Samples::Shorts if is_multiplied && cover > 0.0 => uncovered(f64::from(short(c)) / 65_535.0),
+                Samples::Longs if is_multiplied && cover > 0.0 => uncovered(long(c)),
                 Samples::Bytes => table[usize::from(pixel[c])],
                 Samples::Shorts => table[usize::from(short(c))],
                 Samples::Longs => of_integers.decode(long(c)) as f32,
@@ -264,13 +285,9 @@ fn linear<R: BufRead + Seek>(
             let converted = apply(&matrix, rgb.map(f64::from)).map(|v| v as f32);
             if matches!(samples, Samples::Floats) { converted } else { converted.map(finite) }
         });
-        let cover = match samples {
-            _ if count % 2 == 1 => return (rgb, 1.0),
-            Samples::Bytes => f32::from(pixel[count - 1]) / 255.0,
-            Samples::Shorts => f32::from(short(count - 1)) / 65_535.0,
-            Samples::Longs => long(count - 1) as f32,
-            Samples::Floats => return (rgb, positive(float(count - 1)).min(1.0)),
-        };
+        if count % 2 == 1 || is_light_multiplied {
+            return (rgb, cover);
+        }
         (rgb.map(|v| v * cover), cover)
     };
     let mut rgb: Vec<[f32; 3]> = vec![[0.0; 3]; pixels];
@@ -414,6 +431,30 @@ mod tests {
         assert!((linear.rgb[3][0] - 0.502_89).abs() < 1e-5);
     }
 
+    /// BMP and lossless WebP hold the same picture as a PNG, alpha too.
+    #[test]
+    fn bmp_and_webp_are_read() {
+        let picture = image::RgbaImage::from_fn(5, 4, |x, y| {
+            image::Rgba([(x * 50) as u8, (y * 60) as u8, 128, if x == 3 { 100 } else { 255 }])
+        });
+        let opaque = image::DynamicImage::ImageRgba8(picture.clone()).to_rgb8();
+        let of = |format, alpha: bool| {
+            let mut bytes = Cursor::new(Vec::new());
+            let written =
+                if alpha { picture.write_to(&mut bytes, format) } else { opaque.write_to(&mut bytes, format) };
+            written.expect("written");
+            let found = Found::bytes("picture".to_owned(), bytes.into_inner().into());
+            super::decode(&found, Choice { cover: true, ..Choice::default() }).expect("a picture")
+        };
+        for alpha in [false, true] {
+            let png = of(ImageFormat::Png, alpha);
+            assert_eq!(png.alpha.is_some(), alpha);
+            for format in [ImageFormat::WebP, ImageFormat::Bmp] {
+                assert_eq!(of(format, alpha), png, "{format:?}");
+            }
+        }
+    }
+
     /// A TIFF of 20 x 19 pixels whose sample c of pixel (x, y) is `of(c, x, y)`, a plane for each channel or pixel by pixel, in
     /// strips of 6 rows or tiles of 16 x 16.
     fn tiff_of(channels: usize, is_planar: bool, is_tiled: bool, of: impl Fn(usize, usize, usize) -> f32) -> Vec<u8> {
@@ -448,7 +489,7 @@ mod tests {
         picture.write_tag(Tag::SamplesPerPixel, channels as u16).unwrap();
         picture.write_tag(Tag::PlanarConfiguration, if is_planar { 2_u16 } else { 1 }).unwrap();
         if channels == 4 {
-            picture.write_tag(Tag::ExtraSamples, 2_u16).unwrap();
+            picture.write_tag(Tag::ExtraSamples, 1_u16).unwrap(); // associated
         }
         picture.write_tag(Tag::SampleFormat, &all(3)[..]).unwrap();
         let [at, size] = if is_tiled {

@@ -1,4 +1,4 @@
-//! Formats that are read by a library, where the program was built with one: DPX, JPEG 2000, WebP and many more.
+//! Formats that are read by a library, where the program was built with one: DPX, JPEG 2000, HEIC and many more.
 //!
 //! What a file says of its encoding is believed. Where it is silent, floating point is linear, a Cineon file is
 //! what the name says, the integers of FITS are counts of light, those of a DPX file can be anything and are refused, and
@@ -52,12 +52,13 @@ fn read(found: &Found, name: &str, said: Option<Encoding>, pixels: bool) -> Resu
             Trouble::file(format!("`.{ending}` files are read by OpenImageIO only"))
                 .hint(format!("save it as PNG, TIFF or JPEG; {}", library::WITHOUT))
         } else {
-            Trouble::file("this is not an OpenEXR, PNG, JPEG, TIFF or Radiance HDR file")
+            Trouble::file("this is not an OpenEXR, PNG, JPEG, TIFF, WebP, BMP or Radiance HDR file")
                 .hint("save it in one of these formats; changing only the file extension is not enough")
         });
     };
     if ending.is_empty() {
-        let text = "this is not an OpenEXR, PNG, JPEG, TIFF or Radiance HDR file, and the name has no extension";
+        let text =
+            "this is not an OpenEXR, PNG, JPEG, TIFF, WebP, BMP or Radiance HDR file, and the name has no extension";
         return Err(Trouble::file(text).hint("other formats are recognized by the extension"));
     }
     let limits = PictureLimits { side_px: MAX_SIDE, pixels: MAX_PIXELS };

@@ -26,6 +26,8 @@ pub(super) struct Tags {
     pub pixel_aspect: Option<f64>,
     /// Whether samples of 32 bits are integers.
     pub is_long: bool,
+    /// Whether color is multiplied by alpha, where the file says which.
+    pub is_multiplied: Option<bool>,
 }
 
 impl Tags {
@@ -34,7 +36,14 @@ impl Tags {
         let chunks = if format == ImageFormat::Png { found.open().ok().map(Chunks::of) } else { None };
         let chunks = chunks.unwrap_or_default();
         let is_long = format == ImageFormat::Tiff && found.open().is_ok_and(tiff::has_long_integers);
-        Self { pixel_aspect: chunks.pixel_aspect, is_long, ..Self::colors(chunks, found, format, decoder) }
+        let is_tiff = format == ImageFormat::Tiff;
+        let is_multiplied = if is_tiff { found.open().ok().and_then(tiff::is_multiplied) } else { None };
+        Self {
+            pixel_aspect: chunks.pixel_aspect,
+            is_long,
+            is_multiplied,
+            ..Self::colors(chunks, found, format, decoder)
+        }
     }
 
     fn colors(chunks: Chunks, found: &Found, format: ImageFormat, decoder: &mut impl ImageDecoder) -> Self {

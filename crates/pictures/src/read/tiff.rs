@@ -1,5 +1,7 @@
 //! TIFF without a second copy of the picture: its strips and tiles are unpacked one by one, or to where they belong.
 
+mod widened;
+
 use super::linear::Trouble;
 use image::error::{DecodingError, LimitError, LimitErrorKind, UnsupportedError, UnsupportedErrorKind};
 use image::{ExtendedColorType, ImageDecoder, ImageError, ImageFormat};
@@ -8,6 +10,7 @@ use std::io::{BufRead, Seek};
 use tiff::TiffError;
 use tiff::decoder::{ChunkType, Decoder, Limits};
 use tiff::tags::{ByteOrder, Tag};
+pub(super) use widened::Widened;
 
 /// A file whose samples are of a kind that needs no conversion, pixel by pixel or a plane for each channel.
 pub(super) struct Plain<R: BufRead + Seek> {
@@ -110,6 +113,18 @@ pub(super) fn has_long_integers(reader: impl BufRead + Seek) -> bool {
         found.iter().all(|value| *value == wanted)
     };
     all(Tag::BitsPerSample, 1, 32) && all(Tag::SampleFormat, UNSIGNED, UNSIGNED)
+}
+
+/// Whether color is multiplied by alpha, where the file says which (TIFF 6.0, ExtraSamples).
+pub(super) fn is_multiplied(reader: impl BufRead + Seek) -> Option<bool> {
+    const ASSOCIATED: u16 = 1;
+    const UNASSOCIATED: u16 = 2;
+    let extra = Decoder::new(reader).ok()?.find_tag_unsigned_vec::<u16>(Tag::ExtraSamples).ok().flatten()?;
+    match extra.first() {
+        Some(&ASSOCIATED) => Some(true),
+        Some(&UNASSOCIATED) => Some(false),
+        _ => None,
+    }
 }
 
 /// The file as if its first picture that is no preview stood first; `None` where it does. Scanners and converters write a small picture
@@ -215,19 +230,17 @@ mod tests {
         let mut bytes = Cursor::new(Vec::new());
         let codes = CODES.map(|code| u32::from(code) * 0x0101_0101);
         add::<_, colortype::RGB32>(&mut TiffEncoder::new(&mut bytes).expect("begun"), 2, false, &codes);
-        // Said aloud they are refused by the decoder; most programs leave the tag out, since integers are what is meant without it.
-        let trouble = decode_bytes(bytes.get_ref(), Choice::default()).expect_err("not read by the decoder");
-        assert!(trouble.text.contains("sample format 1 for 32 bits"), "{}", trouble.text);
+        // Most programs leave the tag out, since integers are what is meant without it.
+        let said = bytes.get_ref().clone();
         let bytes = bytes.get_mut();
         let at = bytes.windows(4).position(|tag| tag == [0x53, 0x01, 0x03, 0x00]).expect("the tag SampleFormat");
         bytes[at..at + 2].copy_from_slice(&0xfde8_u16.to_le_bytes());
         let linear = read(bytes);
         for (light, code) in linear.rgb.iter().flatten().zip(CODES) {
-            assert!(
-                (f64::from(*light) - Transfer::Srgb.decode(f64::from(code) / 255.0)).abs() < 1e-6,
-                "{light} {code}"
-            );
+            let wanted = Transfer::Srgb.decode(f64::from(code) / 255.0);
+            assert!((f64::from(*light) - wanted).abs() < 1e-6, "{light} {code}");
         }
+        assert_eq!(read(&said), linear);
         assert!(linear.clipped_at.is_some() && linear.doubts.is_empty());
     }
 
@@ -264,5 +277,94 @@ mod tests {
         add::<_, colortype::RGB8>(&mut TiffEncoder::new(&mut only).expect("begun"), 1, true, &preview);
         let trouble = decode_bytes(only.get_ref(), Choice::default()).expect_err("a preview");
         assert!(trouble.text.contains("preview only") && trouble.hint.is_some());
+    }
+
+    /// A file of one strip and one row: bits and format of a sample, photometric interpretation, kind of the extra sample.
+    fn by_hand(width: u32, samples: u16, [bits, format]: [u16; 2], extra: Option<u16>, data: &[u8]) -> Vec<u8> {
+        let mut tags: Vec<(u16, u16, u32)> = vec![
+            (256, 4, width),
+            (257, 4, 1),
+            (259, 3, 1),
+            (262, 3, if samples < 3 { 1 } else { 2 }),
+            (273, 4, 0),
+            (277, 3, u32::from(samples)),
+            (278, 4, 1),
+            (279, 4, data.len() as u32),
+        ];
+        tags.extend(extra.map(|kind| (338, 3, u32::from(kind))));
+        let entries = tags.len() + 2;
+        // The folder begins at 8; lists of a value a sample, and then the data, follow it.
+        let lists = 8 + 2 + 12 * entries + 4;
+        let list_bytes = 2 * usize::from(samples);
+        let start = lists + 2 * list_bytes;
+        let mut all: Vec<(u16, u16, u32, u32)> =
+            tags.iter().map(|(tag, kind, value)| (*tag, *kind, 1, *value)).collect();
+        for (tag, value, at) in [(258, bits, lists), (339, format, lists + list_bytes)] {
+            let one_or_two = if samples == 1 { u32::from(value) } else { u32::from(value) * 0x1_0001 };
+            all.push((tag, 3, u32::from(samples), if samples < 3 { one_or_two } else { at as u32 }));
+        }
+        all.sort_unstable();
+        let mut bytes = b"II\x2a\0\x08\0\0\0".to_vec();
+        bytes.extend((entries as u16).to_le_bytes());
+        for (tag, kind, count, value) in all {
+            let value = if tag == 273 { start as u32 } else { value };
+            bytes.extend([tag.to_le_bytes(), kind.to_le_bytes()].concat());
+            bytes.extend([count.to_le_bytes(), value.to_le_bytes()].concat());
+        }
+        bytes.extend([0; 4]);
+        for value in [bits, format] {
+            (0..samples).for_each(|_| bytes.extend(value.to_le_bytes()));
+        }
+        bytes.extend(data);
+        bytes
+    }
+
+    /// Gray and half-precision floating point, and floating point of 64 bits, are light as those of 32 bits with three channels are.
+    #[test]
+    fn floating_point_of_all_kinds_is_light() {
+        let light = [0.25_f32, 1.5, -0.125];
+        let bytes_of = |v: f32, bits: u16| match bits {
+            16 => exr::prelude::f16::from_f32(v).to_le_bytes().to_vec(),
+            32 => v.to_le_bytes().to_vec(),
+            _ => f64::from(v).to_le_bytes().to_vec(),
+        };
+        for bits in [16, 32, 64] {
+            let data: Vec<u8> = light.iter().flat_map(|v| bytes_of(*v, bits)).collect();
+            let gray = read(&by_hand(3, 1, [bits, 3], None, &data));
+            assert_eq!(gray.rgb, light.map(|v| [v; 3]), "{bits} bits of gray");
+            let color = read(&by_hand(1, 3, [bits, 3], None, &data));
+            assert_eq!(color.rgb, [light], "{bits} bits");
+            assert!(color.clipped_at.is_none());
+        }
+        let codes = [0_u32, u32::MAX, 1 << 31].iter().flat_map(|v| v.to_le_bytes()).collect::<Vec<u8>>();
+        let gray = read(&by_hand(3, 1, [32, 1], None, &codes));
+        assert!(
+            gray.rgb[0] == [0.0; 3] && gray.rgb[1] == [1.0; 3] && (gray.rgb[2][0] - 0.214).abs() < 1e-3,
+            "{gray:?}"
+        );
+    }
+
+    /// Associated alpha is multiplied into codes, unassociated is not, whatever the samples are.
+    #[test]
+    fn alpha_is_what_the_file_says() {
+        const ASSOCIATED: u16 = 1;
+        const UNASSOCIATED: u16 = 2;
+        let of_half = |linear: f64| 0.5 * linear as f32;
+        // Code 100 of 255 under a cover of 128 of 255 stands for 199.2.
+        let straight = of_half(Transfer::Srgb.decode(100.0 / 255.0));
+        let multiplied = of_half(Transfer::Srgb.decode(100.0 / 128.0));
+        for (extra, want) in [(ASSOCIATED, multiplied), (UNASSOCIATED, straight)] {
+            let eight = read(&by_hand(1, 4, [8, 1], Some(extra), &[100, 100, 100, 128]));
+            let sixteen: Vec<u8> = [25_700_u16, 25_700, 25_700, 32_896].iter().flat_map(|v| v.to_le_bytes()).collect();
+            let sixteen = read(&by_hand(1, 4, [16, 1], Some(extra), &sixteen));
+            for linear in [eight, sixteen] {
+                assert!((linear.rgb[0][0] - want).abs() < 2e-3, "{extra}: {} {want}", linear.rgb[0][0]);
+            }
+        }
+        for (extra, want) in [(ASSOCIATED, 0.4), (UNASSOCIATED, 0.2)] {
+            let data: Vec<u8> = [0.4_f32, 0.4, 0.4, 0.5].iter().flat_map(|v| v.to_le_bytes()).collect();
+            let linear = read(&by_hand(1, 4, [32, 3], Some(extra), &data));
+            assert!((linear.rgb[0][0] - want).abs() < 1e-6, "{extra}: {}", linear.rgb[0][0]);
+        }
     }
 }

@@ -15,7 +15,7 @@ pub use dng::{RawLens, dng};
 pub use exposure::{exr, half_exr, write_exr};
 pub use icc::display_profile;
 pub use linear::{LinearSpace, picture_exr};
-pub use picture::{png8, png16, tiff16, write_png8, write_png16};
+pub use picture::{jpeg, png8, png16, tiff16, write_png8, write_png16};
 pub use resample::squared;
 pub use space::PictureSpace;
 #[cfg(test)]

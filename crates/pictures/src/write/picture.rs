@@ -2,6 +2,7 @@
 
 use super::eight::Eight;
 use super::space::{PictureSpace, chunk};
+use image::codecs::jpeg::JpegEncoder;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::codecs::tiff::TiffEncoder;
 use image::{ExtendedColorType, ImageEncoder, ImageError};
@@ -76,6 +77,22 @@ pub fn tiff16(out: &mut dyn Out, picture: &DisplayPicture, space: PictureSpace) 
         encoder.set_icc_profile(profile).map_err(|error| WriteFault::Format(error.to_string()))?;
     }
     encoder.write_image(&bytes, width, height, ExtendedColorType::Rgb16).map_err(fault)?;
+    Ok(to.flush()?)
+}
+
+/// Writes a JPEG of 8 bits, each channel at full resolution, with a color profile where the space has one; `quality` from 1 to 100.
+///
+/// # Errors
+/// [`WriteFault`].
+pub fn jpeg(out: &mut dyn Out, picture: &DisplayPicture, space: PictureSpace, quality: u8) -> Result<(), WriteFault> {
+    let bytes = if space.is_srgb() { eight(picture) } else { encoded(picture, space, |code| [to_u8(code)]) };
+    check(picture)?;
+    let mut to = BufWriter::new(out);
+    let mut encoder = JpegEncoder::new_with_quality(&mut to, quality);
+    if let Some(profile) = space.profile() {
+        encoder.set_icc_profile(profile).map_err(|error| WriteFault::Format(error.to_string()))?;
+    }
+    encoder.write_image(&bytes, picture.width_px, picture.height_px, ExtendedColorType::Rgb8).map_err(fault)?;
     Ok(to.flush()?)
 }
 
@@ -193,6 +210,28 @@ mod tests {
             let read = image::open(path).expect("a picture").into_rgb16();
             assert_eq!(read.get_pixel(0, 0).0, [0, 30_235, 65_535], "{}", path.display());
             assert_eq!(read.get_pixel(3, 2).0, [65_535, 30_235, 0], "{}", path.display());
+        }
+    }
+
+    /// A gradient comes back within a code value or two, with the profile of its space.
+    #[test]
+    fn a_jpeg_holds_the_picture_and_its_profile() {
+        let rgb = (0..64 * 64).map(|i| [(i % 64) as f32 / 63.0, (i / 64) as f32 / 63.0, 0.18]).collect();
+        let picture = DisplayPicture { width_px: 64, height_px: 64, rgb };
+        for space in [PictureSpace::Srgb, PictureSpace::DisplayP3] {
+            let mut bytes: Vec<u8> = Vec::new();
+            let folder = tempfile::tempdir().expect("a folder");
+            let path = folder.path().join("a.jpg");
+            write_atomically(&path, |file| jpeg(file, &picture, space, 95)).expect("written");
+            bytes.extend(std::fs::read(&path).expect("bytes"));
+            let found = spectra_core::resources::Found::bytes("a.jpg".to_owned(), bytes.into());
+            let linear = crate::read::decode(&found, crate::read::Choice::default()).expect("a picture");
+            let codes = |v: f64| 255.0 * spectra_color::Transfer::Srgb.encode(v.clamp(0.0, 1.0));
+            let pairs = linear.rgb.iter().flatten().zip(picture.rgb.iter().flatten());
+            let off = pairs.map(|(a, b)| (codes(f64::from(*a)) - codes(f64::from(*b))).abs());
+            let mean = off.sum::<f64>() / (3 * 64 * 64) as f64;
+            println!("{space:?}: {mean:.2} of 255");
+            assert!(mean < 1.5, "{space:?}: {mean}");
         }
     }
 

@@ -36,7 +36,7 @@ use std::sync::Arc;
 /// Largest picture file, bytes.
 const MAX_BYTES: u64 = 1 << 30;
 
-/// A picture file (EXR, PNG, JPEG, TIFF, HDR) on a plane at a distance.
+/// A picture file (EXR, PNG, JPEG, TIFF, WebP, BMP, HDR) on a plane at a distance.
 ///
 /// The picture stands across the axis, upright and unmirrored as the photographer sees it, and shines as a Lambertian
 /// surface. Where a file does not say its colors (by cICP, a color profile of three primaries, gAMA and cHRM, or chromaticities),
@@ -70,7 +70,7 @@ const MAX_BYTES: u64 = 1 << 30;
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct PictureParams {
-    /// An OpenEXR, PNG, JPEG, TIFF or Radiance HDR file, beside the scene; built with OpenImageIO any that it reads. At
+    /// An OpenEXR, PNG, JPEG, TIFF, WebP, BMP or Radiance HDR file, beside the scene; built with OpenImageIO any that it reads. At
     /// most 1 GiB.
     file: String,
     /// How code values are encoded: linear, srgb, rec709 or cineon; as the file says, or else srgb of integers and linear
@@ -357,7 +357,7 @@ pub(crate) fn find(file: &str, params: &Params, context: &Context<'_>) -> Result
             ResourceError::NotFound(near) if !near.is_empty() => format!("did you mean `{}`?", near.join("` or `")),
             ResourceError::NotFound(_) if file.contains('\\') => "write `/` between folders and file".to_owned(),
             ResourceError::NotFound(_) => "paths are relative to the folder of the scene".to_owned(),
-            _ => "OpenEXR, PNG, JPEG, TIFF and Radiance HDR files are read".to_owned(),
+            _ => "OpenEXR, PNG, JPEG, TIFF, WebP, BMP and Radiance HDR files are read".to_owned(),
         };
         params.fault("file", format!("picture `{file}`: {e}")).hint(hint)
     })

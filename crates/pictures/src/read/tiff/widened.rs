@@ -1,0 +1,101 @@
+//! TIFF of samples that the crate `image` does not know: gray and half-precision floating point, and integers of 32 bits that say so.
+//! They are handed on as if each pixel had red, green and blue of 32 bits.
+
+use super::said;
+use image::metadata::Orientation;
+use image::{ColorType, ImageDecoder, ImageError, ImageResult};
+use std::io::{BufRead, Seek};
+use tiff::decoder::{Decoder, DecodingResult, Limits};
+use tiff::tags::Tag;
+
+const UNSIGNED: u16 = 1;
+const FLOAT: u16 = 3;
+
+/// A decoder of such a file.
+pub(in crate::read) struct Widened<R: BufRead + Seek> {
+    decoder: Decoder<R>,
+    size: (u32, u32),
+    /// Samples of a pixel, 1, 3 or 4.
+    samples: usize,
+}
+
+impl<R: BufRead + Seek> Widened<R> {
+    /// `None` where the file is of another kind, or where it is not sound: what is wrong with it is told by its own decoder.
+    pub(in crate::read) fn new(reader: R) -> Option<Self> {
+        let mut decoder = Decoder::new(reader).ok()?;
+        let formats = decoder.find_tag_unsigned_vec::<u16>(Tag::SampleFormat).ok().flatten()?;
+        let format = *formats.first()?;
+        let (samples, bits) = match decoder.colortype().ok()? {
+            tiff::ColorType::Gray(bits) => (1, bits),
+            tiff::ColorType::RGB(bits) => (3, bits),
+            tiff::ColorType::RGBA(bits) => (4, bits),
+            _ => return None,
+        };
+        let is_known = match (format, bits) {
+            (UNSIGNED, 32) | (FLOAT, 16 | 64) => true,
+            (FLOAT, 32) => samples == 1,
+            _ => false,
+        };
+        let is_one = formats.iter().all(|other| *other == format);
+        let layout = decoder.find_tag_unsigned::<u16>(Tag::PlanarConfiguration).ok()?.unwrap_or(1);
+        let size = decoder.dimensions().ok()?;
+        (is_known && is_one && (layout == 1 || samples == 1)).then_some(Self { decoder, size, samples })
+    }
+}
+
+impl<R: BufRead + Seek> ImageDecoder for Widened<R> {
+    fn dimensions(&self) -> (u32, u32) {
+        self.size
+    }
+
+    fn color_type(&self) -> ColorType {
+        if self.samples == 4 { ColorType::Rgba32F } else { ColorType::Rgb32F }
+    }
+
+    fn orientation(&mut self) -> ImageResult<Orientation> {
+        let stated = self.decoder.find_tag_unsigned::<u8>(Tag::Orientation).map_err(said)?;
+        Ok(stated.and_then(Orientation::from_exif).unwrap_or(Orientation::NoTransforms))
+    }
+
+    fn set_limits(&mut self, limits: image::Limits) -> ImageResult<()> {
+        limits.check_dimensions(self.size.0, self.size.1)?;
+        Ok(())
+    }
+
+    fn read_image(self, to: &mut [u8]) -> ImageResult<()> {
+        // Samples of at most eight bytes; the size of the picture was checked against that of its file.
+        let mut limits = Limits::default();
+        limits.decoding_buffer_size = self.size.0 as usize * self.size.1 as usize * self.samples * 8;
+        limits.intermediate_buffer_size = limits.decoding_buffer_size.max(1 << 20);
+        let mut decoder = self.decoder.with_limits(limits);
+        let pixel = 4 * if self.samples == 4 { 4 } else { 3 };
+        let mut spread = |values: &mut dyn Iterator<Item = [u8; 4]>| {
+            for to in to.chunks_exact_mut(pixel) {
+                if self.samples == 1 {
+                    let Some(value) = values.next() else { return };
+                    to.as_chunks_mut::<4>().0.fill(value);
+                } else {
+                    to.as_chunks_mut::<4>().0.iter_mut().zip(&mut *values).for_each(|(to, value)| *to = value);
+                }
+            }
+        };
+        match decoder.read_image().map_err(said)? {
+            DecodingResult::F16(all) => spread(&mut all.iter().map(|v| v.to_f32().to_ne_bytes())),
+            DecodingResult::F32(all) => spread(&mut all.iter().map(|v| v.to_ne_bytes())),
+            DecodingResult::F64(all) => spread(&mut all.iter().map(|v| (*v as f32).to_ne_bytes())),
+            DecodingResult::U32(all) => spread(&mut all.iter().map(|v| v.to_ne_bytes())),
+            _ => {
+                let kind = image::error::UnsupportedErrorKind::GenericFeature("samples of two kinds".to_owned());
+                let format = image::ImageFormat::Tiff.into();
+                return Err(ImageError::Unsupported(image::error::UnsupportedError::from_format_and_kind(
+                    format, kind,
+                )));
+            }
+        }
+        Ok(())
+    }
+
+    fn read_image_boxed(self: Box<Self>, to: &mut [u8]) -> ImageResult<()> {
+        (*self).read_image(to)
+    }
+}
